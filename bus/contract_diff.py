@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""contract_diff: what changed in the register contract since a commit: make contract-diff BASE=commit.
+"""contract_diff: what changed in the register contract since a commit: make contract-diff
+BASE=commit.
 
     contract_diff.py SLICE2C TREE COMMIT | contract_diff.py SLICE2C OLD-FOLDER NEW-FOLDER
 
-Compares every block's *.regs.json, and those that slice2c makes of interfaces with [":hw"], of two trees. Software
-that was built against the old contract goes wrong with a breaking change: a block, register, field or event that is
-gone, elsewhere or narrower, another access, another type. New or wider ones are compatible. Exit status: 1 where
-something breaks, 2 where a tree cannot be read.
+Compares every block's *.regs.json, and those that slice2c makes of interfaces with [":hw"], of two
+trees. Software that was built against the old contract goes wrong with a breaking change: a block,
+register, field or event that is gone, elsewhere or narrower, another access, another type. New or
+wider ones are compatible. Exit status: 1 where something breaks, 2 where a tree cannot be read.
 """
 import glob
 import json
@@ -27,11 +28,14 @@ def fail(text):
 def blocks_of(tree, slice2c, work):
     """Returns descriptions by block: those written by hand and those made of Slice files."""
     os.makedirs(work)
-    files = [f for r in ROOMS for f in glob.glob(os.path.join(tree, r, "**", "*.regs.json"), recursive=True)]
-    for ice in [f for r in ROOMS for f in glob.glob(os.path.join(tree, r, "**", "*.ice"), recursive=True)]:
+    files = [f for r in ROOMS for f in glob.glob(os.path.join(tree, r, "**", "*.regs.json"),
+                                                 recursive=True)]
+    for ice in [f for r in ROOMS for f in glob.glob(os.path.join(tree, r, "**", "*.ice"),
+                                                    recursive=True)]:
         with open(ice) as f:
             if '":hw"' in f.read():
-                run = subprocess.run([slice2c, ice, "--output-dir", work + "/c", "--hw-regs", work], capture_output=True, text=True)
+                run = subprocess.run([slice2c, ice, "--output-dir", work + "/c", "--hw-regs", work],
+                                     capture_output=True, text=True)
                 if run.returncode:
                     fail(run.stderr.rstrip().replace(tree + "/", ""))
     blocks = {}
@@ -53,7 +57,8 @@ def places(registers, events):
         word = "word %d" % r["word"] + (", PAGE 0x%X" % r["page"] if r.get("page", -1) >= 0 else "")
         there[r["name"]] = (word, r.get("width", 32), r["access"])
         for f in r.get("fields", []):
-            there[r["name"] + "." + f["name"]] = ("%s, from bit %d" % (word, f["lsb"]), f["width"], r["access"])
+            there[r["name"] + "." + f["name"]] = ("%s, from bit %d" % (word, f["lsb"]), f["width"],
+                                                  r["access"])
     for e in events:
         there["EVENT." + e["name"]] = ("bit %d" % e["bit"], 1, "w1c")
     return there
@@ -97,11 +102,13 @@ def main(words):
         else:
             old, new = os.path.join(work, "old"), tree
             os.makedirs(old)
-            archive = subprocess.run(["git", "-C", tree, "archive", "--end-of-options", base], capture_output=True)
+            archive = subprocess.run(["git", "-C", tree, "archive", "--end-of-options", base],
+                                     capture_output=True)
             if archive.returncode:
                 fail(f"BASE={base} is no commit: " + archive.stderr.decode().splitlines()[0])
             subprocess.run(["tar", "-x", "-C", old], input=archive.stdout, check=True)
-        old, new = (blocks_of(t, slice2c, os.path.join(work, n)) for t, n in ((old, "o"), (new, "n")))
+        old, new = (blocks_of(t, slice2c, os.path.join(work, n))
+                    for t, n in ((old, "o"), (new, "n")))
     broken = 0
     for name in sorted(set(old) | set(new)):
         breaking, compatible = [], []

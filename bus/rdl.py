@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""rdl: makes register descriptions (*.regs.json) of SystemRDL 2.0: make from-rdl RDL=spi.rdl OUT=folder.
+"""rdl: makes register descriptions (*.regs.json) of SystemRDL 2.0: make from-rdl RDL=spi.rdl
+OUT=folder.
 
     rdl.py spi.rdl FOLDER [--first 3]
 
-Reads a flat subset: addrmap, reg and field, named or not, defaults, addresses, resets; enums and properties of others are passed over. Register n
-of an addrmap gets word FIRST + n, behind the three words that every slot has; one that begins with ID, EVENT and MASK, as
-those of icesoc.rdl, has them already; <SLOT>_PAGES has the
-words behind the slot's PAGE. Regfiles, memories, arrays and parameters, which have no words of their own, are errors.
+Reads a flat subset: addrmap, reg and field, named or not, defaults, addresses, resets; enums and
+properties of others are passed over. Register n of an addrmap gets word FIRST + n, behind the three
+words that every slot has; one that begins with ID, EVENT and MASK, as those of icesoc.rdl, has them
+already; <SLOT>_PAGES has the words behind the slot's PAGE. Regfiles, memories, arrays and
+parameters, which have no words of their own, are errors.
 """
 import argparse
 import json
@@ -27,7 +29,8 @@ class Wrong(Exception):
 def number(text):
     if "'" in text:
         digits = text.split("'")[1]
-        return int(digits[1:].replace("_", ""), {"h": 16, "b": 2, "d": 10, "o": 8}[digits[0].lower()])
+        return int(digits[1:].replace("_", ""),
+                   {"h": 16, "b": 2, "d": 10, "o": 8}[digits[0].lower()])
     return int(text.replace("_", ""), 0)
 
 
@@ -49,15 +52,18 @@ class Component:
 
 
 class Reader:
-    """Reads a file as a tree: each component's children are (instance's name, msb, lsb, reset, address, component)."""
+    """Reads a file as a tree: each component's children are (instance's name, msb, lsb, reset,
+    address, component)."""
 
     def __init__(self, path):
         with open(path) as f:
             text = f.read()
         # Comments keep their lines; those within strings are text.
         text = re.sub(r'"(?:[^"\\]|\\.)*"|//[^\n]*|/\*.*?\*/',
-                      lambda m: m[0] if m[0][0] == '"' else re.sub(r"[^\n]", " ", m[0]), text, flags=re.S)
-        self.tokens = [(m.lastgroup, m[0], text.count("\n", 0, m.start()) + 1) for m in TOKEN.finditer(text)]
+                      lambda m: m[0] if m[0][0] == '"' else re.sub(r"[^\n]", " ", m[0]), text,
+                      flags=re.S)
+        self.tokens = [(m.lastgroup, m[0], text.count("\n", 0, m.start()) + 1)
+                       for m in TOKEN.finditer(text)]
         self.at, self.last = 0, text.count("\n") + 1
 
     def peek(self, ahead=0):
@@ -76,7 +82,8 @@ class Reader:
 
     def take_number(self):
         if self.at >= len(self.tokens) or self.tokens[self.at][0] != "number":
-            self.fail("'%s' is no number; expressions and parameters are not of the flat subset" % self.peek())
+            self.fail("'%s' is no number; expressions and parameters are not of the flat subset" %
+                      self.peek())
         return number(self.take())
 
     def file(self):
@@ -101,7 +108,8 @@ class Reader:
                 if self.peek() != ";":
                     self.instances(parent, component)
                 elif word == "addrmap" and parent.kind == "root":
-                    parent.children.append(([n for n, c in parent.types.items() if c is component][0], 0, 0, None, 0, component))
+                    parent.children.append(([n for n, c in parent.types.items()
+                                             if c is component][0], 0, 0, None, 0, component))
             elif word in ("enum", "property"):
                 while self.take() != "}":
                     pass
@@ -170,7 +178,8 @@ def register_of(name, reg, word):
             lsb = next_bit
             msb = lsb + (msb or 0)
         if msb > 31 or msb < lsb:
-            raise Wrong("%s.%s is at bits %d to %d: a word has bits 31 to 0" % (name, field_name, msb, lsb))
+            raise Wrong("%s.%s is at bits %d to %d: a word has bits 31 to 0" %
+                        (name, field_name, msb, lsb))
         bits = (1 << msb - lsb + 1) - 1 << lsb
         overlap |= bool(used & bits)
         used, next_bit = used | bits, msb + 1
@@ -179,7 +188,8 @@ def register_of(name, reg, word):
             access = "w1c"
         accesses.add(access)
         resets[field_name] = reset
-        fields.append({"name": field_name, "lsb": lsb, "width": msb - lsb + 1, "doc": text_of(field)})
+        fields.append({"name": field_name, "lsb": lsb, "width": msb - lsb + 1,
+                       "doc": text_of(field)})
     if not fields:
         raise Wrong("%s has no field" % name)
     access = accesses.pop() if len(accesses) == 1 else "rw"
@@ -206,24 +216,28 @@ def block_of(name, component, first):
     letters = (re.sub(r"[^A-Za-z]", "", name) + "XX")[:2].upper()
     if "memory_bytes" in component.properties:
         block.update(memory_port=True, memory_bytes=int(component.get("memory_bytes")))
-    block["type"], block["version"], events = "0x%04X" % int.from_bytes(letters.encode(), "big"), "0x0100", []
+    block["type"], block["version"], events = "0x%04X" % int.from_bytes(letters.encode(),
+                                                                        "big"), "0x0100", []
     if [r["name"] for r in registers[:3]] == ["ID", "EVENT", "MASK"]:
         for key, field in (("type", "TYPE"), ("version", "VERSION")):
             if resets["ID"].get(field) is not None:
                 block[key] = "0x%04X" % resets["ID"][field]
-        events = [{"name": f["name"], "bit": f["lsb"], "doc": f["doc"]} for f in registers[1].get("fields", [])]
+        events = [{"name": f["name"], "bit": f["lsb"], "doc": f["doc"]}
+                  for f in registers[1].get("fields", [])]
         registers = registers[3:]
     else:
         for register in registers:
             register["word"] += first
     for register in registers:
         if register["word"] > 15:
-            raise Wrong("%s would be word %d of its slot, which has 16" % (register["name"], register["word"]))
+            raise Wrong("%s would be word %d of its slot, which has 16" %
+                        (register["name"], register["word"]))
     return dict(block, registers=registers, **({"events": events} if events else {}))
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("file", help="SystemRDL")
     parser.add_argument("folder", help="where <block>.regs.json go")
     parser.add_argument("--first", type=int, default=3, help="word of the first register (3)")
@@ -234,7 +248,8 @@ def main():
     try:
         root = Reader(args.file).file()
         maps = [(n, c) for n, _, _, _, _, c in root.children if c.kind == "addrmap"]
-        inner = [(n, c) for _, top in maps for n, _, _, _, _, c in top.children if c.kind == "addrmap"]
+        inner = [(n, c) for _, top in maps for n, _, _, _, _, c in top.children
+                 if c.kind == "addrmap"]
         blocks = [block_of(n, c, args.first) for n, c in inner or maps]
         pages = {n[:-6]: c for n, c in maps if n.endswith("_PAGES")} if inner else {}
         for (name, _), block in zip(inner, blocks):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""foreign_axis: writes the files of a core with an AXI-Stream in and one out, for new_foreign.py (BUS=axis).
+"""foreign_axis: writes the files of a core with an AXI-Stream in and one out, for new_foreign.py
+(BUS=axis).
 
 The core gets the operation `process`: a sequence goes in, and what comes out is the answer.
 Wrapper, servant and proxies are generated from its Slice interface; axis_filter moves the words.
@@ -102,11 +103,14 @@ def module(core):
     set_wires = [(setting(n), "set_" + setting(n)) for n in core.settings]
     lines = [f"    wire {vector(32)}{value};\n    wire {start};" for value, start in set_wires]
     lines += [f"    assign {w} = {v};" for r, w, v in (
-        ("s_tready", "to_ready", "1'b1"), ("m_tkeep", "from_keep", f"{{{keep}{{1'b1}}}}"), ("m_tlast", "from_last", "1'b0"))
+        ("s_tready", "to_ready", "1'b1"), ("m_tkeep", "from_keep", f"{{{keep}{{1'b1}}}}"),
+        ("m_tlast", "from_last", "1'b0"))
         if r not in core.by_role]
-    set_ports = "".join(f".{start}_start_o({start}), .{start}_value_o({value}),\n        " for value, start in set_wires)
+    set_ports = "".join(f".{start}_start_o({start}), .{start}_value_o({value}),\n        "
+                        for value, start in set_wires)
     unused = "".join(f"{value}, {start}, " for value, start in set_wires)
-    connections = ",\n        ".join(f".{n}({connection(core, n, p)})" for n, p in core.ports.items())
+    connections = ",\n        ".join(f".{n}({connection(core, n, p)})"
+                                     for n, p in core.ports.items())
     what = f"{core.top}: buffers in DDR3 through its AXI-Streams"
     return f"""{head(core.name, what, core.pins, '    `include "memory_ports.vh"' + chr(10))}    wire        core_rst, start, done, refused;
     wire [31:0] source, target;
@@ -143,7 +147,8 @@ endmodule
 def test(core):
     ice_type = "Ice_" + core.element.capitalize()
     before = [f"core.set{camel(setting(n))}(1);" for n in core.settings]
-    before += [f"core.bench_.top().{n} = 0; // a pin" for n, p in core.pins if p["direction"] == "input"]
+    before += [f"core.bench_.top().{n} = 0; // a pin" for n, p in core.pins
+               if p["direction"] == "input"]
     return f"""// SPDX-License-Identifier: MIT
 //
 // {core.name}_test: a packet goes through the core, as a program sends it. Pins: core_.bench_.top().<pin>.
@@ -188,5 +193,6 @@ def fly(log, proxy, report):
 def texts(name, top, params, ports, roles):
     """Returns the files by their names: interface, module, test, mission."""
     core = Core(name, top, params, ports, roles)
-    return {f"{name}.ice": interface(core), f"{name}.v": module(core), f"{name}_test.cpp": test(core),
+    return {f"{name}.ice": interface(core), f"{name}.v": module(core),
+            f"{name}_test.cpp": test(core),
             "ground.py": ground(core)}

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """foreign_bus: writes the files of a core with registers behind a bus, for new_foreign.py.
 
-The slot has a Wishbone or an AXI4-Lite adapter. Other buses become Wishbone's by a few gates: a core
-without acknowledge answers at once, after some clocks, or in APB's access phase.
+The slot has a Wishbone or an AXI4-Lite adapter. Other buses become Wishbone's by a few gates: a
+core without acknowledge answers at once, after some clocks, or in APB's access phase.
 """
 import json
 import re
@@ -10,15 +10,18 @@ import re
 from foreign_roles import AXI, is_answer
 from foreign_verilog import ADAPTER, head, overrides, pin_name, vector
 
-BUSES = {"wishbone": "Wishbone", "apb": "APB", "axil": "AXI4-Lite", "memory": "select, address and data",
+BUSES = {"wishbone": "Wishbone", "apb": "APB", "axil": "AXI4-Lite",
+         "memory": "select, address and data",
          "own": "a bus of its own"}
 WISHBONE = ["cyc", "stb", "we", "adr", "sel", "wdata", "rdata", "ack", "err", "rty", "stall"]
-WIDTHS = {"sel": 4, "wdata": 32, "rdata": 32, "wstrb": 4, "bresp": 2, "rresp": 2, "awprot": 3, "arprot": 3}
+WIDTHS = {"sel": 4, "wdata": 32, "rdata": 32, "wstrb": 4, "bresp": 2, "rresp": 2, "awprot": 3,
+          "arprot": 3}
 ADDRESSES = ("adr", "words", "bytes", "awaddr", "araddr")
 
 
 class Core:
-    """A third-party core: its ports by their roles; `latency`: the clocks after which it answers, if it has no ack;
+    """A third-party core: its ports by their roles; `latency`: the clocks after which it answers,
+    if it has no ack;
     `address`: "words", "bytes" or None."""
 
     def __init__(self, name, top, bus, ports, roles, latency, params, clock, address):
@@ -61,8 +64,10 @@ class Core:
 def connection(core, role, port, interrupts):
     """Returns what a port with a role is connected to; appends the wire of an interrupt."""
     width = len(port["bits"])
-    strobes = {"stb", "strobe"}.isdisjoint(core.by_role)  # without a select, read and write are strobes
-    own = {"strobe": "stb", "re": "stb && !we" if strobes else "!we", "we": "stb && we" if strobes else "we"}
+    # without a select, read and write are strobes
+    strobes = {"stb", "strobe"}.isdisjoint(core.by_role)
+    own = {"strobe": "stb", "re": "stb && !we" if strobes else "!we",
+           "we": "stb && we" if strobes else "we"}
     if role in ("stb", "strobe", "re", "we"):  # one bit per byte, all of them driven
         to = own.get(role, role) if core.bus == "own" else role
         return f"{{{width}{{{to}}}}}" if width > 1 else to
@@ -75,26 +80,34 @@ def connection(core, role, port, interrupts):
         return {"ack": "ready", "err": "refused"}[role]
     if role in ("wdata", "sel", "wstrb", "rdata") and width < core.width(role):
         return f"{role}[{width - 1}:0]"
-    fixed = {"clock": "clk_i", "reset": "rst_i", "resetn": "!rst_i", "low": f"{width}'d0", "open": "",
+    fixed = {"clock": "clk_i", "reset": "rst_i", "resetn": "!rst_i", "low": f"{width}'d0",
+             "open": "",
              "high": f"{{{width}{{1'b1}}}}", "1": f"{width}'d1", "2": f"{width}'d2"}
     return fixed.get(role, role)
 
 
 def answers(core):
-    """Returns declarations and lines that a core's missing answers need, and how ack and err are made."""
+    """Returns declarations and lines that a core's missing answers need, and how ack and err are
+    made."""
     if core.latency:
         last = core.latency - 1
         shift = f"{{answered[{last - 1}:0], stb}}" if last else "stb"
-        return ([f"    reg [{last}:0] answered; // the core answers {core.latency} clocks after its strobe"],
-                [f"    always @(posedge clk_i) answered <= rst_i ? {core.latency}'d0 : {shift};"], {"ack": f"answered[{last}]"})
+        return ([f"    reg [{last}:0] answered; // the core answers {core.latency} clocks after "
+                 "its strobe"],
+                [f"    always @(posedge clk_i) answered <= rst_i ? {core.latency}'d0 : {shift};"],
+                {"ack": f"answered[{last}]"})
     if "enable" in core.by_role:
-        made = [f"    assign {signal} = {value};" for role, signal, value in (("ack", "ready", "1'b1"), ("err", "refused", "1'b0"))
+        made = [f"    assign {signal} = {value};"
+                for role, signal, value in (("ack", "ready", "1'b1"), ("err", "refused", "1'b0"))
                 if role not in core.by_role]
-        return (["    reg access; // APB's access phase, from a transfer's second clock on; ready counts only in it",
+        return (["    reg access; // APB's access phase, from a transfer's second clock on; ready "
+                 "counts only in it",
                  "    wire enable, ready, refused;"],
-                ["    always @(posedge clk_i) access <= stb && !rst_i;", "    assign enable = stb && access;", *made],
+                ["    always @(posedge clk_i) access <= stb && !rst_i;",
+                 "    assign enable = stb && access;", *made],
                 {"ack": "enable && ready && !refused", "err": "enable && ready && refused"})
-    return [], [], {"ack": "stb"} if core.bus in ("memory", "own") and "ack" not in core.by_role else {}
+    return [], [], {"ack": "stb"} if core.bus in ("memory",
+                                                  "own") and "ack" not in core.by_role else {}
 
 
 def rules(core):
@@ -114,7 +127,8 @@ def module(core):
                    for n, p in core.ports.items()]
     wires, lines, made = answers(core)
     for s in core.signals:
-        value = made.get(s) or (f"{core.width(s)}'d0" if is_answer(s) and s not in core.by_role else "")
+        value = made.get(s) or (f"{core.width(s)}'d0" if is_answer(s)
+                                and s not in core.by_role else "")
         wires.append(f"    wire {vector(core.width(s))}{s}{' = ' + value if value else ''};")
     wires += [f"    wire {vector(w)}{i};" for w, i in interrupts]
     irq = " || ".join(("|" if w > 1 else "") + i for w, i in interrupts) or "1'b0"
@@ -125,9 +139,11 @@ def module(core):
     if core.bus != "axil":
         names["wdata"] = names["rdata"] = "wb_dat"
     adapter = ",\n        ".join([f"{ADAPTER}, .irq_i(interrupt)",
-                                  *(f".{names[s]}_{'i' if is_answer(s) else 'o'}({s})" for s in core.signals)])
+                                  *(f".{names[s]}_{'i' if is_answer(s) else 'o'}({s})"
+                                    for s in core.signals)])
     options = ", .PIPELINED(1)" if {"stall", "strobe"} & set(core.by_role) or core.latency else ""
-    if core.clock:  # the adapter gives a core up before bus_crossing does, after 250 clocks of the chip
+    # the adapter gives a core up before bus_crossing does, after 250 clocks of the chip
+    if core.clock:
         options += f", .TIMEOUT({max(2, 250 * core.clock // 100000000 - 6)})"
     kind = "bus_to_axi4lite" if core.bus == "axil" else "bus_to_wishbone"
     separator, newline = ",\n        ", "\n"
@@ -152,13 +168,15 @@ def description(core, words):
     """Returns *.regs.json; `words` are the names of the core's words by their addresses."""
     letters = (core.name.replace("_", "") + "x").upper()
     width = {} if core.data_width >= 32 else {"width": core.data_width}
-    registers = [{"word": 3, "name": "PAGE", "access": "rw", "doc": "byte address in the core of word 8", "fields": [
+    registers = [{"word": 3, "name": "PAGE", "access": "rw",
+                  "doc": "byte address in the core of word 8", "fields": [
         {"name": "ADDRESS", "lsb": 0, "width": core.adr_bits, "doc": "a multiple of 32"}]}]
     registers += [{"word": 8 + a % 8, "page": a // 8 * 32, "name": n, "access": "rw", **width,
                    "doc": f"at {4 * a:#x} in the core"} for a, n in words.items()]
     return {"block": core.name, "doc": f"The third-party core {core.top}, by {BUSES[core.bus]}.",
             "type": f"0x{ord(letters[0]):02X}{ord(letters[1]):02X}", "version": "0x0100",
-            "pins": [{"name": n, "width": len(p["bits"])} for n, p in core.pins], "registers": registers,
+            "pins": [{"name": n, "width": len(p["bits"])} for n, p in core.pins],
+            "registers": registers,
             "events": [{"name": "CORE", "bit": 0, "doc": "the core's interrupt line was high"},
                        {"name": "TIMEOUT", "bit": 1, "doc": "the core did not answer"}]}
 

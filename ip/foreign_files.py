@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""foreign_files: what new_foreign.py reads from a third-party core's files: its modules, and TOP's ports."""
+"""foreign_files: what new_foreign.py reads from a third-party core's files: its modules, and TOP's
+ports."""
 import json
 import os
 import re
@@ -12,7 +13,8 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 KINDS = {".vhd": "vhdl", ".vhdl": "vhdl", ".v": "verilog", ".sv": "verilog",
          ".vh": "header", ".svh": "header", ".h": "header", ".inc": "header"}
 # Verilator's, for a core in anybody's style.
-FLAGS = ["-Wno-fatal", "-Wno-lint", "-Wno-style", *("-Wno-" + w for w in "TIMESCALEMOD SELRANGE COMBDLY INITIALDLY UNOPTFLAT".split()),
+FLAGS = ["-Wno-fatal", "-Wno-lint", "-Wno-style",
+         *("-Wno-" + w for w in "TIMESCALEMOD SELRANGE COMBDLY INITIALDLY UNOPTFLAT".split()),
          "-Werror-MODDUP", "--no-timing"]
 
 
@@ -46,9 +48,11 @@ def declared(files, kind):
     """Returns the modules, entities or packages of the files: (name, file, line)."""
     found = []
     for f in files:
-        text = re.sub(r"/\*.*?\*/|//[^\n]*", lambda m: "\n" * m.group().count("\n"), text_of(f), flags=re.S)
+        text = re.sub(r"/\*.*?\*/|//[^\n]*", lambda m: "\n" * m.group().count("\n"), text_of(f),
+                      flags=re.S)
         found += [(m.group(1), f, text.count("\n", 0, m.start(1)) + 1)
-                  for m in re.finditer(rf"^[ \t]*{kind}\s+(?:automatic\s+)?(\w+)", text, re.M | re.I)]
+                  for m in re.finditer(rf"^[ \t]*{kind}\s+(?:automatic\s+)?(\w+)", text,
+                                       re.M | re.I)]
     return found
 
 
@@ -63,8 +67,8 @@ def only_once(modules, what_to_do):
 
 
 def check_names(slot, top, files):
-    """Each module is in one file, and none has the name of the slot or of one of this project's: in the chip there is one of each.
-    Returns TOP as it is declared."""
+    """Each module is in one file, and none has the name of the slot or of one of this project's: in
+    the chip there is one of each. Returns TOP as it is declared."""
     kind = "entity" if is_vhdl(files[0]) else "module"
     there = declared(files, kind)
     names = [n for n, *_ in there]
@@ -76,21 +80,26 @@ def check_names(slot, top, files):
         fail(f"'{slot}' is the name of a {kind} of the core: give the slot another")
     first = only_once(there, "leave one of the files out") if kind == "module" else {}
     room = os.path.dirname(HERE)
-    ours = [os.path.join(d, f) for r in ("bus", "hdl") for d, _, there in os.walk(os.path.join(room, r)) for f in there
+    ours = [os.path.join(d, f) for r in ("bus", "hdl")
+            for d, _, there in os.walk(os.path.join(room, r)) for f in there
             if f.endswith(".v")]
     for name, file, line in declared(ours, "module"):
         if name == slot:
-            fail(f"'{slot}' is the name of this project's module in {os.path.relpath(file, room)}: give the slot another")
+            fail(f"'{slot}' is the name of this project's module in "
+                 f"{os.path.relpath(file, room)}: give the slot another")
         if name in first and first[name][0] != file:
-            fail(f"{first[name][0]}:{first[name][1]}: module '{name}' has the name of this project's "
+            fail(f"{first[name][0]}:{first[name][1]}: module '{name}' has the name of this "
+                 "project's "
                  f"{os.path.relpath(file, room)}:{line}: give it another, where it is used, too")
     for name, file, line in declared([f for f in files if end_of(f) == ".sv"], "package"):
-        fail(f"{file}:{line}: package '{name}': Yosys does not read it for the report; make Verilog of it by sv2v")
+        fail(f"{file}:{line}: package '{name}': Yosys does not read it for the report; make "
+             "Verilog of it by sv2v")
     return top
 
 
 # Verilator's and Yosys' words, and what to do about it.
-HINTS = {r"[Ii]nclude file:? (?:`)?([^\s']+)": "FILES may name headers, too: `include looks for {0} in their folders (a timescale.v may be empty)",
+HINTS = {r"[Ii]nclude file:? (?:`)?([^\s']+)": "FILES may name headers, too: `include looks for "
+                                               "{0} in their folders (a timescale.v may be empty)",
          r"(?:Module `\\|unknown type `|containing module: ')(\w+)": "FILES lacks the file with module '{0}'",
          r"object for defparam `(\w+)|no generic \"(\w+)\"": "PARAMS: {top} has no '{0}'",
          r"find resource library \"(\w+)\"": "LIBRARY={0} says that the files are in that library",
@@ -98,32 +107,38 @@ HINTS = {r"[Ii]nclude file:? (?:`)?([^\s']+)": "FILES may name headers, too: `in
 
 
 def run_tool(what, top, command):
-    """Runs a tool that reads the core; a refusal is an error, with advice. Without `what`: returns whether the tool
-    accepts it."""
+    """Runs a tool that reads the core; a refusal is an error, with advice. Without `what`: returns
+    whether the tool accepts it."""
     run = subprocess.run(command, capture_output=True, text=True)
     if run.returncode and what:
         said = (run.stdout + run.stderr).rstrip()
         lines = said.splitlines()
-        hints = [hint.format(*filter(None, m.groups()), top=top) for words, hint in HINTS.items() if (m := re.search(words, said))]
-        fail("\n".join([f"{what} {top}:", *lines[:12], *(["..."] if len(lines) > 12 else []), *hints]))
+        hints = [hint.format(*filter(None, m.groups()), top=top) for words, hint in HINTS.items()
+                 if (m := re.search(words, said))]
+        fail("\n".join([f"{what} {top}:", *lines[:12], *(["..."] if len(lines) > 12 else []),
+                        *hints]))
     return run.returncode == 0
 
 
 def read_module(top, files, headers=(), params=(), defines=(), is_whole=True):
-    """The module `top`: its ports in order, and the names of its parameters. A port that resets registers asynchronously has
-    "reset", the level at which it does. `headers`: files in whose folders `include finds more. `params`: NAME=value of
-    parameters or generics; `defines`: NAME or NAME=value of macros. `is_whole`: all of its modules are in the files."""
+    """The module `top`: its ports in order, and the names of its parameters. A port that resets
+    registers asynchronously has "reset", the level at which it does. `headers`: files in whose
+    folders `include finds more. `params`: NAME=value of parameters or generics; `defines`: NAME or
+    NAME=value of macros. `is_whole`: all of its modules are in the files."""
     with tempfile.TemporaryDirectory() as work:
         out = os.path.join(work, top + ".v")
         chosen = " ".join("-chparam {} {}".format(*p.split("=", 1)) for p in params)
         if is_vhdl(files[0]):
             os.environ["VHDL_GENERICS"] = " ".join("-g" + p for p in params)
-            run_tool("GHDL does not convert", top, [os.path.join(HERE, "../cmake/vhdl_to_verilog.sh"),
-                                                    os.environ.get("GHDL", "ghdl"), work, top, out, *files])
+            run_tool("GHDL does not convert", top,
+                     [os.path.join(HERE, "../cmake/vhdl_to_verilog.sh"),
+                      os.environ.get("GHDL", "ghdl"), work, top, out, *files])
             files, chosen = [out], ""
         folders = ["-I" + d for d in folders_of([*files, *headers])] + ["-D" + d for d in defines]
-        reads = [f"read_verilog -defer {'-sv' if end_of(f) == '.sv' else ''} {' '.join(folders)} {f}" for f in files]
-        script = "; ".join([*reads, f"hierarchy {'-check' if is_whole else ''} -top {top} {chosen}", "proc", "flatten", f"write_json {out}.json"])
+        reads = [f"read_verilog -defer {'-sv' if end_of(f) == '.sv' else ''} {' '.join(folders)} "
+                 f"{f}" for f in files]
+        script = "; ".join([*reads, f"hierarchy {'-check' if is_whole else ''} -top {top} {chosen}",
+                            "proc", "flatten", f"write_json {out}.json"])
         run_tool("Yosys does not elaborate", top, ["yosys", "-q", "-p", script])
         modules = json.loads(text_of(out + ".json"))["modules"]
     module = next(m for n, m in modules.items() if m["attributes"].get("top") or n == top)
@@ -135,7 +150,8 @@ def read_module(top, files, headers=(), params=(), defines=(), is_whole=True):
 
 
 def filled(file, defines):
-    """Returns the file's text with macros and absolute paths for $readmemh, since a simulation runs in any folder."""
+    """Returns the file's text with macros and absolute paths for $readmemh, since a simulation runs
+    in any folder."""
     def path(m):
         there = os.path.join(os.path.dirname(file), m.group(1))
         return f'"{there}"' if os.path.isfile(there) else m.group()
@@ -147,9 +163,10 @@ def filled(file, defines):
 
 
 def copies_for_verilator(top, files, headers, defines):
-    """Returns texts by the files that they replace, with macros, paths of data and, where Verilator needs it,
-    SystemVerilog's words as names."""
-    lint = ["verilator", "--lint-only", *FLAGS, "--top-module", top, *("-I" + d for d in folders_of([*files, *headers])), *("-D" + d for d in defines)]
+    """Returns texts by the files that they replace, with macros, paths of data and, where Verilator
+    needs it, SystemVerilog's words as names."""
+    lint = ["verilator", "--lint-only", *FLAGS, "--top-module", top,
+            *("-I" + d for d in folders_of([*files, *headers])), *("-D" + d for d in defines)]
     copies = {f: t for f in files if (t := filled(f, defines)) != text_of(f)}
     if run_tool(None, top, [*lint, *files]):
         return copies
@@ -167,13 +184,16 @@ def copies_for_verilator(top, files, headers, defines):
 
 
 def names_of(top, files, bits):
-    """Names of the core's words by their addresses: the constants of the file with `top` that are as wide as its
-    address. KEY0 and KEY7 at a distance of 7 stand for those between, too."""
-    text = next((t for t in map(text_of, files) if re.search(rf"^\s*module\s+{top}\b", t, re.M)), "")
+    """Names of the core's words by their addresses: the constants of the file with `top` that are
+    as wide as its address. KEY0 and KEY7 at a distance of 7 stand for those between, too."""
+    text = next((t for t in map(text_of, files) if re.search(rf"^\s*module\s+{top}\b", t, re.M)),
+                "")
     text = re.sub(r"//.*", "", text)
     base = {"h": 16, "d": 10, "b": 2}
-    found = [(n, int(digits, base[b.lower()])) for part in re.findall(r"\blocalparam\b([^;]*);", text)
-             for n, b, digits in re.findall(rf"(\w+)\s*=\s*{bits}'([hdb])([0-9a-fA-F_]+)", part, re.I)]
+    found = [(n, int(digits, base[b.lower()]))
+             for part in re.findall(r"\blocalparam\b([^;]*);", text)
+             for n, b, digits in re.findall(rf"(\w+)\s*=\s*{bits}'([hdb])([0-9a-fA-F_]+)", part,
+                                            re.I)]
     if len(found) < 2 or len({v for _, v in found}) < len(found):
         return {}
     prefix = os.path.commonprefix([n for n, _ in found])
@@ -182,7 +202,8 @@ def names_of(top, files, bits):
     for value, name in list(names.items()):
         word, first = re.fullmatch(r"(.*?)(\d*)", name).groups()
         for last, other in [(v, n) for v, n in names.items() if v > value]:
-            if first and re.fullmatch(rf"{word}\d+", other) and int(other[len(word):]) - int(first) == last - value:
+            if first and re.fullmatch(rf"{word}\d+",
+                                      other) and int(other[len(word):]) - int(first) == last - value:
                 names.update({value + i: f"{word}{int(first) + i}" for i in range(last - value)})
     return {v: ("CORE_" + n if n in ("ID", "EVENT", "MASK", "PAGE") or not n[0].isalpha() else n)
             for v, n in sorted(names.items())}
@@ -190,4 +211,5 @@ def names_of(top, files, bits):
 
 if __name__ == "__main__":  # foreign_files.py FILE...: the Verilog of all cores of a chip
     only_once(declared([f for f in sys.argv[1:] if os.path.isfile(f)], "module"),
-              "a chip has one of each: give one of them another name, in a copy, where it is used, too")
+              "a chip has one of each: give one of them another name, in a copy, where it is "
+              "used, too")

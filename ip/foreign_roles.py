@@ -10,35 +10,49 @@ RESET = r"[aph]?n?(rst|reset)[nb]?"
 # Parts of a signal's name that make it another signal than these words: clk_en, gate_clk_pad_i.
 NO_CLOCK = {"en", "ena", "enable", "ce", "sel", "div", "gate", "ext", "pad"}
 INTERRUPTS = {"int", "inta", "intr", "irq", "interrupt"}
-AXI = ["awvalid", "awready", "awaddr", "awprot", "wvalid", "wready", "wdata", "wstrb", "bvalid", "bready", "bresp",
+AXI = ["awvalid", "awready", "awaddr", "awprot", "wvalid", "wready", "wdata", "wstrb", "bvalid",
+       "bready", "bresp",
        "arvalid", "arready", "araddr", "arprot", "rvalid", "rready", "rdata", "rresp"]
-WISHBONE = {"input": {"cyc": "cyc", "stb": "stb", "we": "we", "adr": "adr", "addr": "adr", "sel": "sel", "dat": "wdata",
+WISHBONE = {"input": {"cyc": "cyc", "stb": "stb", "we": "we", "adr": "adr", "addr": "adr",
+                      "sel": "sel", "dat": "wdata",
                       "data": "wdata"},
-            "output": {"ack": "ack", "err": "err", "rty": "rty", "stall": "stall", "dat": "rdata", "data": "rdata"}}
+            "output": {"ack": "ack", "err": "err", "rty": "rty", "stall": "stall", "dat": "rdata",
+                       "data": "rdata"}}
 # "apb": AMBA APB 2 to 4 (ARM IHI 0024), without waking and user signals.
-APB = {"psel": "stb", "penable": "enable", "pwrite": "we", "paddr": "adr", "pwdata": "wdata", "pstrb": "sel", "pwstrb": "sel", "pprot": "low",
+APB = {"psel": "stb", "penable": "enable", "pwrite": "we", "paddr": "adr", "pwdata": "wdata",
+       "pstrb": "sel", "pwstrb": "sel", "pprot": "low",
        "prdata": "rdata", "pready": "ack", "pslverr": "err"}
 # Optional signals of a bus, tied off for single transfers of whole words; outputs are left open.
-TIED = {"axil": {**dict.fromkeys("awid awlen awlock awcache awqos awregion awuser wuser arid arlen arlock arcache arqos arregion aruser".split(), "low"),
+TIED = {"axil": {**dict.fromkeys("awid awlen awlock awcache awqos awregion awuser wuser arid "
+                                 "arlen arlock arcache arqos arregion aruser".split(), "low"),
                  "wlast": "high", "awburst": "1", "arburst": "1", "awsize": "2", "arsize": "2",
                  **dict.fromkeys(("bid", "buser", "rid", "rlast", "ruser"), "open")},
         "wishbone": dict.fromkeys(("cti", "bte", "lock"), "low")}
 # "memory": chip select, write enable, address of a word, data; read data is there in the same
 # clock.
-MEMORY = {"cs": "stb", "ce": "stb", "we": "we", "address": "adr", "addr": "adr", "write_data": "wdata", "wdata": "wdata",
+MEMORY = {"cs": "stb", "ce": "stb", "we": "we", "address": "adr", "addr": "adr",
+          "write_data": "wdata", "wdata": "wdata",
           "din": "wdata", "read_data": "rdata", "rdata": "rdata", "dout": "rdata"}
-# Words for ROLE=port. select is high until the answer, strobe for one clock; read and write beside neither are both.
-ROLES = {"select": "stb", "strobe": "strobe", "read": "re", "write": "we", "address": "adr", "enables": "sel",
-         "wdata": "wdata", "rdata": "rdata", "ack": "ack", "error": "err", "clock": "clock", "reset": "reset",
-         "resetn": "resetn", "interrupt": "interrupt", "pin": "", "setting": "setting", "low": "low", "high": "high",
+# Words for ROLE=port. select is high until the answer, strobe for one clock; read and write beside
+# neither are both.
+ROLES = {"select": "stb", "strobe": "strobe", "read": "re", "write": "we", "address": "adr",
+         "enables": "sel",
+         "wdata": "wdata", "rdata": "rdata", "ack": "ack", "error": "err", "clock": "clock",
+         "reset": "reset",
+         "resetn": "resetn", "interrupt": "interrupt", "pin": "", "setting": "setting",
+         "low": "low", "high": "high",
          "open": "open", "words": "words", "bytes": "bytes", "enable": "enable"}
 OUTPUTS = ("rdata", "ack", "err", "interrupt", "open")
-NEEDED = {"memory": ["stb", "we", "adr", "wdata", "rdata"], "wishbone": ["stb", "we", "wdata", "rdata", "ack"],
-          "apb": ["stb", "enable", "we", "wdata", "rdata"], "axil": [n for n in AXI if not n.endswith("prot")], "own": ["we", "wdata", "rdata"], "axis": foreign_axis.NEEDED}
+NEEDED = {"memory": ["stb", "we", "adr", "wdata", "rdata"],
+          "wishbone": ["stb", "we", "wdata", "rdata", "ack"],
+          "apb": ["stb", "enable", "we", "wdata", "rdata"],
+          "axil": [n for n in AXI if not n.endswith("prot")], "own": ["we", "wdata", "rdata"],
+          "axis": foreign_axis.NEEDED}
 
 
 def is_answer(signal):
-    return signal in ("rdata", "ack", "err", "rty", "stall", "awready", "wready", "bvalid", "bresp", "arready", "rvalid", "rresp",
+    return signal in ("rdata", "ack", "err", "rty", "stall", "awready", "wready", "bvalid", "bresp",
+                      "arready", "rvalid", "rresp",
                       "s_tready", "m_tdata", "m_tvalid")
 
 
@@ -52,7 +66,10 @@ def role(name, port, bus):
         if any(re.fullmatch(RESET, t) for t in tokens):
             if "reset" in port:
                 return "reset" if port["reset"] == "1" else "resetn"
-            return "resetn" if {"n", "ni", "b"} & set(tokens) or any(re.fullmatch(RESET, t) and re.search("nr|[nb]$", t) for t in tokens) else "reset"
+            return "resetn" if {"n", "ni",
+                                "b"} & set(tokens) or any(re.fullmatch(RESET, t)
+                                                          and re.search("nr|[nb]$", t)
+                                                          for t in tokens) else "reset"
     if bus == "axis":
         return foreign_axis.role(name, port) or ""
     base = re.sub(r"^[io]_|_[io]$", "", name.lower())
@@ -73,7 +90,8 @@ def role(name, port, bus):
 
 
 def roles_of(top, bus, ports, given):
-    """Returns each port's role, and the clocks until a core without `ack` answers, or None; `given` is ROLE=port."""
+    """Returns each port's role, and the clocks until a core without `ack` answers, or None; `given`
+    is ROLE=port."""
     roles = {n: role(n, p, bus) for n, p in ports.items()}
     # The bus' own names, too, where they are no role's word.
     words = {**{r: r for r in NEEDED[bus] + (AXI if bus == "axil" else [])}, **ROLES}
@@ -90,23 +108,32 @@ def roles_of(top, bus, ports, given):
             fail(f"PORTS: {top} has no port '{port}': {known}")
         is_output = words[what] in OUTPUTS or is_answer(words[what])
         if words[what] and is_output != (ports[port]["direction"] == "output"):
-            fail(f"PORTS: {what} is an {'output' if is_output else 'input'} of a core, and '{port}' is not")
+            fail(f"PORTS: {what} is an {'output' if is_output else 'input'} of a core, and "
+                 f"'{port}' is not")
         if what == "setting" and bus != "axis":
             fail("PORTS: a setting is for BUS=axis; here an input that is none of the bus is a pin")
         roles[port] = words[what]
-    there = {*roles.values(), *(["ack"] if latency else []), *(["adr"] if {"words", "bytes"} & set(roles.values()) else []),
+    there = {*roles.values(), *(["ack"] if latency else []),
+             *(["adr"] if {"words", "bytes"} & set(roles.values()) else []),
              *(["stb"] if bus == "wishbone" and "cyc" in roles.values() else [])}
     missing = [say.get(r, r) for r in NEEDED[bus] + ["clock"] if r not in there]
     if missing:
-        fail(f"{top} has no port for {', '.join(missing)}: {known}; say which by PORTS='{missing[0]}=port ...'"
-             + (", or by ack=1 that what is read is there a clock later" if "ack" in missing else ""))
-    for r in there - {"", "clock", "reset", "resetn", "interrupt", "setting", "low", "high", "open", "1", "2"}:
+        fail(f"{top} has no port for {', '.join(missing)}: {known}; say which by "
+             f"PORTS='{missing[0]}=port ...'"
+             + (", or by ack=1 that what is read is there a clock later"
+                if "ack" in missing else ""))
+    for r in there - {"", "clock", "reset", "resetn", "interrupt", "setting", "low", "high", "open",
+                      "1", "2"}:
         if len(same := [n for n in ports if roles[n] == r]) > 1:
-            fail(f"{top} has more than one port for {say.get(r, r)}: {', '.join(same)}; what the others are by PORTS='pin={same[-1]} ...'")
+            fail(f"{top} has more than one port for {say.get(r, r)}: {', '.join(same)}; what the "
+                 f"others are by PORTS='pin={same[-1]} ...'")
     if bus == "apb" and latency:
-        fail("PORTS: an APB core without PREADY ends each transfer in its access phase: ack= is not for it")
+        fail("PORTS: an APB core without PREADY ends each transfer in its access phase: ack= is "
+             "not for it")
     if "strobe" in roles.values() and "ack" not in there:
         fail("PORTS: a strobe of one clock needs an ack; what answers in the same clock has select")
-    if wide := [n for n in ports if bus != "axis" and roles[n] in ("wdata", "rdata") and len(ports[n]["bits"]) > 32]:
-        fail(f"'{wide[0]}' of {top} has {len(ports[wide[0]]['bits'])} bits: a slot's bus has 32; put a module between that halves the words")
+    if wide := [n for n in ports if bus != "axis" and roles[n] in ("wdata", "rdata")
+                and len(ports[n]["bits"]) > 32]:
+        fail(f"'{wide[0]}' of {top} has {len(ports[wide[0]]['bits'])} bits: a slot's bus has 32; "
+             "put a module between that halves the words")
     return roles, latency

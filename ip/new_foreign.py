@@ -3,16 +3,18 @@
 """new_foreign: puts a third-party core in Verilog or VHDL into a slot (docs/recipes.md).
 
     new_foreign.py NAME TOP wishbone|axil|apb|memory|own|axis FOLDER [CLOCK=Hz] [LIBRARY=name]
-                   [ADDRESS=words|bytes] [PARAM:NAME=value...] [DEFINE:NAME...] [ROLE=port...] FILE...
+                   [ADDRESS=words|bytes] [PARAM:NAME=value...] [DEFINE:NAME...] [ROLE=port...]
+                   FILE...
 
-Reads the ports of the module or entity TOP and writes into FOLDER, which must not exist: NAME.v, which
-connects TOP to the slot; its registers, with the names that TOP has for their addresses; a test; its part
-of a mission; CMakeLists.txt. ROLE=port overrides what a port's name says. Ports that are neither bus,
-clock, reset nor interrupt become pins. CLOCK: the core has a clock of its own, of that frequency at most.
-ADDRESS: what its address counts. VHDL is read by GHDL, which the environment names. LIBRARY: the VHDL
-library that its files say they are in. PARAM: a parameter or generic of TOP. DEFINE: a macro of its
-Verilog, NAME or NAME=value. A core with AXI-Streams (axis) has an operation instead of registers:
-foreign_axis.py.
+Reads the ports of the module or entity TOP and writes into FOLDER, which must not exist: NAME.v,
+which connects TOP to the slot; its registers, with the names that TOP has for their addresses; a
+test; its part of a mission; CMakeLists.txt. ROLE=port overrides what a port's name says. Ports that
+are neither bus, clock, reset nor interrupt become pins. CLOCK: the core has a clock of its own, of
+that frequency at most.
+ADDRESS: what its address counts. VHDL is read by GHDL, which the environment names. LIBRARY: the
+VHDL library that its files say they are in. PARAM: a parameter or generic of TOP. DEFINE: a macro
+of its Verilog, NAME or NAME=value. A core with AXI-Streams (axis) has an operation instead of
+registers: foreign_axis.py.
 """
 import os
 import re
@@ -23,12 +25,14 @@ sys.path.append(os.path.dirname(os.path.dirname(os.path.realpath(__file__))))
 import foreign_axis
 import foreign_bus
 from cli.reserved import REFUSAL, RESERVED
-from foreign_files import (FLAGS, check_names, copies_for_verilator, fail, folders_of, is_vhdl, kind_of,
+from foreign_files import (FLAGS, check_names, copies_for_verilator, fail, folders_of, is_vhdl,
+                           kind_of,
                            names_of, read_module)
 from foreign_roles import NEEDED, roles_of
 from foreign_verilog import pin_name
 
-USAGE = ("usage: make new-foreign NAME=my_uart TOP=module BUS=wishbone|axil|apb|memory|own|axis FILES='a.v b.v' "
+USAGE = ("usage: make new-foreign NAME=my_uart TOP=module BUS=wishbone|axil|apb|memory|own|axis "
+         "FILES='a.v b.v' "
          "[PORTS='write=we ...']")
 
 
@@ -48,12 +52,14 @@ class Request:
             else:
                 (self.ports if "=" in word else self.files).append(word)
         self.params, self.defines = options["PARAM:"], options["DEFINE:"]
-        self.clock, self.library, self.address = (next(iter(options[o]), "") for o in ("CLOCK=", "LIBRARY=", "ADDRESS="))
+        self.clock, self.library, self.address = (next(iter(options[o]), "")
+                                                  for o in ("CLOCK=", "LIBRARY=", "ADDRESS="))
 
     def check(self):
         """Ends the program if what is asked for cannot be."""
         if self.clock and not (self.clock.isdigit() and 3000000 <= int(self.clock) <= 100000000):
-            fail(f"CLOCK={self.clock}: the frequency of the core's own clock, 3000000 to 100000000 Hz")
+            fail(f"CLOCK={self.clock}: the frequency of the core's own clock, 3000000 to "
+                 "100000000 Hz")
         if self.clock and self.bus == "axis":
             fail("CLOCK: a core with AXI-Streams reaches DDR3, whose port has the chip's clock")
         if self.address not in ("", "words", "bytes") or self.address and self.bus == "axis":
@@ -74,7 +80,8 @@ class Request:
         files = [os.path.abspath(f) for f in self.files]
         for f in files:
             if " " in f:
-                fail(f"'{f}' has a space in its name, which makefiles cannot have: rename it, or its folder")
+                fail(f"'{f}' has a space in its name, which makefiles cannot have: rename it, or "
+                     "its folder")
             if not kind_of(f) or not os.path.isfile(f):
                 fail(f"there is no Verilog or VHDL file '{f}'")
         if self.library and not any(map(is_vhdl, files)):
@@ -88,23 +95,29 @@ class Request:
 
 
 def read_core(asked):
-    """Returns TOP's ports, the parameters of its instance, and texts in place of files that Verilator does not take."""
+    """Returns TOP's ports, the parameters of its instance, and texts in place of files that
+    Verilator does not take."""
     if asked.library:
         os.environ["VHDL_LIBRARY"] = asked.library  # for vhdl_to_verilog.sh
     ports, known = read_module(asked.top, asked.files, asked.headers, asked.params, asked.defines)
     if odd := [n for n in ports if not re.fullmatch(r"\w+", n)]:
-        fail(f"{asked.top} has the port '{odd[0]}', an escaped name: put a module with plain names around it")
+        fail(f"{asked.top} has the port '{odd[0]}', an escaped name: put a module with plain "
+             "names around it")
     if two_way := [n for n, p in ports.items() if p["direction"] == "inout"]:
-        fail(f"{asked.top} has the inout port '{two_way[0]}': tri-states belong to the chip's pads; take a top without")
+        fail(f"{asked.top} has the inout port '{two_way[0]}': tri-states belong to the chip's "
+             "pads; take a top without")
     if asked.is_vhdl:
         return ports, [], {}
     # OpenCores' cores have this level as a parameter.
-    level = [] if "ARST_LVL" not in known or any(p.startswith("ARST_LVL=") for p in asked.params) else ["ARST_LVL=1'b1"]
-    return ports, asked.params + level, copies_for_verilator(asked.top, asked.files, asked.headers, asked.defines)
+    level = [] if "ARST_LVL" not in known or any(p.startswith("ARST_LVL=")
+                                                 for p in asked.params) else ["ARST_LVL=1'b1"]
+    return ports, asked.params + level, copies_for_verilator(asked.top, asked.files, asked.headers,
+                                                             asked.defines)
 
 
 def slot_texts(asked, ports, params):
-    """Returns the slot's files by their names, what CMake calls its interface, and lines that say what was taken."""
+    """Returns the slot's files by their names, what CMake calls its interface, and lines that say
+    what was taken."""
     roles, latency = roles_of(asked.top, asked.bus, ports, asked.ports)
     said = {n: roles[n] or "pin " + pin_name(n, p) for n, p in ports.items()}
     for n, p in ports.items():
@@ -114,14 +127,18 @@ def slot_texts(asked, ports, params):
         if wrong := foreign_axis.problem(asked.top, ports, roles):
             fail(wrong)
         operations = "operation: process" + "".join(
-            f", set{foreign_axis.camel(foreign_axis.setting(n))}" for n in ports if roles[n] == "setting")
-        return foreign_axis.texts(asked.name, asked.top, params, ports, roles), f"ICE {asked.name}.ice", said, operations
-    core = foreign_bus.Core(asked.name, asked.top, asked.bus, ports, roles, latency, params, int(asked.clock or 0), asked.address)
+            f", set{foreign_axis.camel(foreign_axis.setting(n))}"
+            for n in ports if roles[n] == "setting")
+        return foreign_axis.texts(asked.name, asked.top, params, ports,
+                                  roles), f"ICE {asked.name}.ice", said, operations
+    core = foreign_bus.Core(asked.name, asked.top, asked.bus, ports, roles, latency, params,
+                            int(asked.clock or 0), asked.address)
     for n in ports:
         if roles[n] in foreign_bus.ADDRESSES:
             said[n] += ", " + core.unit
     texts, registers = foreign_bus.texts(core, names_of(asked.top, asked.files, core.word_bits))
-    return texts, f"REGS {asked.name}.regs.json" + (f" CLOCK {asked.clock}" if asked.clock else ""), said, registers
+    return texts, f"REGS {asked.name}.regs.json" + (f" CLOCK {asked.clock}"
+                                                    if asked.clock else ""), said, registers
 
 
 def cmake_lists(asked, interface, copies):
@@ -159,11 +176,13 @@ def main(words):
         (folder / file).write_text(text)
     print(f"{folder}: {' '.join(sorted(texts))}")
     if copies:
-        print(f"  copies with macros, paths of data, and words of SystemVerilog as names: {' '.join(map(os.path.basename, copies))}")
+        print("  copies with macros, paths of data, and words of SystemVerilog as names: "
+              f"{' '.join(map(os.path.basename, copies))}")
     for port, what in said.items():
         print(f"  {port}: {what}")
     print(f"  {last}")
-    print(f"Next: look at what is above; make ip-test IP={asked.name}; a line {asked.name} in ip/cores.list; "
+    print(f"Next: look at what is above; make ip-test IP={asked.name}; a line {asked.name} in "
+          "ip/cores.list; "
           f"make run CORES={asked.name}")
 
 

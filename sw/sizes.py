@@ -2,13 +2,15 @@
 # SPDX-License-Identifier: MIT
 """sizes: bytes of the firmware's layers, from linkers' maps and objects.
 
-    sizes.py layers SOURCE GENERATED BUILD OUT.json   each layer on a Cortex-M3 at -Os, beside the paper's Table II; RAM and
-                                                      largest frames; fails where one exceeds sw/size_budget.json
-    sizes.py firmware MAP OBJECTS OUT.json            flash and RAM of a firmware by layer; its stacks, by the call graph
+    sizes.py layers SOURCE GENERATED BUILD OUT.json   each layer on a Cortex-M3 at -Os, beside the
+                                                      paper's Table II; RAM and largest frames;
+                                                      fails where one exceeds sw/size_budget.json
+    sizes.py firmware MAP OBJECTS OUT.json            flash and RAM of a firmware by layer; its
+                                                      stacks, by the call graph
 
-layers: `minimal` is the program that flies (sw/apps/minimal), with the minimal run time and link: of each layer what is in the
-image (text and read-only data; the C library and generated code are not counted, as in the paper). `full` is everything that
-the layer's files hold, linked or not.
+layers: `minimal` is the program that flies (sw/apps/minimal), with the minimal run time and link:
+of each layer what is in the image (text and read-only data; the C library and generated code are
+not counted, as in the paper). `full` is everything that the layer's files hold, linked or not.
 """
 import json
 import os
@@ -18,17 +20,22 @@ import subprocess
 import sys
 import tempfile
 
-PAPER = {"fsmc": 1116, "radio": 1795, "crypto": 0, "link": 1307, "icec": 2622, "endpoint": 0}  # its layers, and two of ours
-TITLES = {"uav": "application", "Autopilot": "generated stubs", "endpoints": "icec, xbee-at endpoint", "m3": "os", "GNU": "uC/OS-II",
+# its layers, and two of ours
+PAPER = {"fsmc": 1116, "radio": 1795, "crypto": 0, "link": 1307, "icec": 2622, "endpoint": 0}
+TITLES = {"uav": "application", "Autopilot": "generated stubs",
+          "endpoints": "icec, xbee-at endpoint", "m3": "os", "GNU": "uC/OS-II",
           "Source": "uC/OS-II", "ARMv7-M": "uC/OS-II"}
-ENTRIES = ("UAV_radioTask", "appMainTask", "clientTask", "watchTask", "idleTask", "EXTI0_Handler", "SysTick_Handler")
+ENTRIES = ("UAV_radioTask", "appMainTask", "clientTask", "watchTask", "idleTask", "EXTI0_Handler",
+           "SysTick_Handler")
 
 
 def sections(path):
     """Returns (section, address, bytes, file) of the image's parts in a linker's map."""
     text = open(path).read().partition("Linker script and memory map")[2]
-    text = re.sub(r"^( \.?[A-Za-z_]\S*)\n +(?=0x)", r"\1 ", text, flags=re.M)  # long names have a line of their own
-    for name, address, size, file in re.findall(r"^ (\.?[A-Za-z_]\S*) +0x(\w+) +0x(\w+) (\S.*)$", text, re.M):
+    # long names have a line of their own
+    text = re.sub(r"^( \.?[A-Za-z_]\S*)\n +(?=0x)", r"\1 ", text, flags=re.M)
+    for name, address, size, file in re.findall(r"^ (\.?[A-Za-z_]\S*) +0x(\w+) +0x(\w+) (\S.*)$",
+                                                text, re.M):
         yield name, int(address, 16), int(size, 16), file
 
 
@@ -46,49 +53,64 @@ def layers(source, generated, build, output):
         "base", "os", "os/host", "fsmc", "radio", "crypto", "link", "icec", "icec/endpoints")]
 
     def linked(layer, wanted):
-        return sum(size for name, _, size, file in image if f"/minimal_{layer}.arm/" in file and re.match(wanted, name))
+        return sum(size for name, _, size, file in image if f"/minimal_{layer}.arm/" in file
+                   and re.match(wanted, name))
 
     def whole(files, *options):
         """(text and read-only data, RAM) of all that these files hold."""
         with tempfile.TemporaryDirectory() as work:
-            paths = [str(path) for pattern in files for path in pathlib.Path(source, "sw").glob(pattern)]
-            subprocess.run(["arm-none-eabi-gcc", "-std=c90", "-mcpu=cortex-m3", "-mthumb", "-Os", "-ffunction-sections", "-fdata-sections",
-                            "-fno-merge-constants", *(f"-I{i}" for i in includes), *options, "-c", *paths], cwd=work, check=True)
-            table = subprocess.run(["arm-none-eabi-size", *os.listdir(work)], cwd=work, check=True, capture_output=True, text=True).stdout
+            paths = [str(path) for pattern in files
+                     for path in pathlib.Path(source, "sw").glob(pattern)]
+            subprocess.run(["arm-none-eabi-gcc", "-std=c90", "-mcpu=cortex-m3", "-mthumb", "-Os",
+                            "-ffunction-sections", "-fdata-sections",
+                            "-fno-merge-constants", *(f"-I{i}" for i in includes), *options, "-c",
+                            *paths], cwd=work, check=True)
+            table = subprocess.run(["arm-none-eabi-size", *os.listdir(work)], cwd=work, check=True,
+                                   capture_output=True, text=True).stdout
         rows = [line.split() for line in table.splitlines()[1:]]
         return sum(int(row[0]) for row in rows), sum(int(row[1]) + int(row[2]) for row in rows)
 
     def deepest(layer):
         """(bytes, function) of the minimal program's largest frame."""
-        lines = [line.split("\t") for su in pathlib.Path(build, "sw/apps").glob(f"minimal_{layer}.arm/**/*.su") for line in open(su)]
+        lines = [line.split("\t")
+                 for su in pathlib.Path(build, "sw/apps").glob(f"minimal_{layer}.arm/**/*.su")
+                 for line in open(su)]
         return max(((int(size), where.split(":")[3]) for where, size, *_ in lines), default=(0, ""))
 
     budget, over, entries = json.load(open(f"{source}/sw/size_budget.json")), [], []
 
     def entry(name, size, limit=0, is_held=True):
-        entries.append({"name": name, "value": size, "unit": "bytes", **({"limit": limit} if limit else {}), "command": "make size"})
+        entries.append({"name": name, "value": size, "unit": "bytes",
+                        **({"limit": limit} if limit else {}), "command": "make size"})
         if is_held and name not in budget:
             over.append(f'sw/size_budget.json has no "{name}" (it is {size})')
         elif is_held and size > budget[name]:
-            over.append(f"{name} has grown to {size} bytes, its budget is {budget[name]} (sw/size_budget.json)")
+            over.append(f"{name} has grown to {size} bytes, its budget is {budget[name]} "
+                        "(sw/size_budget.json)")
 
-    print("%-10s %8s %8s %8s %8s %9s %s" % ("layer", "minimal", "paper's", "full", "RAM min", "RAM full", "largest frame (minimal)"))
+    print("%-10s %8s %8s %8s %8s %9s %s" % ("layer", "minimal", "paper's", "full", "RAM min",
+                                            "RAM full", "largest frame (minimal)"))
     small_all = large_all = 0
     for layer, paper in PAPER.items():
         small, ram = linked(layer, r"\.(text|rodata)"), linked(layer, r"\.(data|bss)|COMMON")
-        large, large_ram = whole(["icec/endpoints/xbee_endpoint.c" if layer == "endpoint" else f"{layer}/*.c"])
-        print("%-10s %8d %8s %8d %8d %9d %d %s" % (layer, small, paper or "-", large, ram, large_ram, *deepest(layer)))
+        large, large_ram = whole(["icec/endpoints/xbee_endpoint.c"
+                                  if layer == "endpoint" else f"{layer}/*.c"])
+        print("%-10s %8d %8s %8d %8d %9d %d %s" % (layer, small, paper or "-", large, ram,
+                                                   large_ram, *deepest(layer)))
         entry(f"minimal.{layer}", small, paper)
         entry(f"full.{layer}", large)
         small_all, large_all = small_all + small, large_all + large
     print("%-10s %8d %8d %8d" % ("all", small_all, sum(PAPER.values()), large_all))
     entry("minimal.all", small_all, sum(PAPER.values()), is_held=False)
     unkeyed = whole(["link/*.c"], "-DLINK_SECURE=0")[0]
-    keyed = whole(["link/minimal/*.c", "link/link_wire.c", "link/link_secure.c"], "-DLINK_MINIMAL", "-DLINK_SECURE=1")[0]
+    keyed = whole(["link/minimal/*.c", "link/link_wire.c", "link/link_secure.c"], "-DLINK_MINIMAL",
+                  "-DLINK_SECURE=1")[0]
     entry("full.link without keys", unkeyed)
     entry("minimal.link with keys", keyed)
-    print(f"The full link without keys (LINK_SECURE=0): {unkeyed}; the minimal one with them (LINK_SECURE=1): {keyed}, and crypto")
-    print(f"RAM of the minimal program with all objects: {linked('app', r'[.](data|bss)|COMMON')} bytes, of generated code and servants: "
+    print(f"The full link without keys (LINK_SECURE=0): {unkeyed}; the minimal one with them "
+          f"(LINK_SECURE=1): {keyed}, and crypto")
+    print(f"RAM of the minimal program with all objects: {linked('app', r'[.](data|bss)|COMMON')} "
+          "bytes, of generated code and servants: "
           f"{linked('app', r'[.](text|rodata)')} bytes of text")
     written(output, entries)
     if over:
@@ -107,19 +129,24 @@ def firmware(path, objects, output):
     print("%-26s %8s %8s" % ("layer", "flash", "RAM"))
     for layer in flash:
         print("%-26s %8d %8d" % (layer, flash[layer], ram[layer]))
-    print("%-26s %8d %8d   bytes, stacks of tasks included in RAM\n" % ("all", sum(flash.values()), sum(ram.values())))
+    print("%-26s %8d %8d   bytes, stacks of tasks included in RAM\n" %
+          ("all", sum(flash.values()), sum(ram.values())))
     stacks(objects)
-    written(output, [{"name": f"{what}: {layer}", "value": table[layer], "unit": "bytes", "command": "make firmware"}
+    written(output, [{"name": f"{what}: {layer}", "value": table[layer], "unit": "bytes",
+                      "command": "make firmware"}
                      for layer in flash for what, table in (("flash", flash), ("RAM", ram))])
 
 
 def stacks(objects):
-    """Prints the deepest stack below each task: frames (-fstack-usage) along the call graph (-fcallgraph-info)."""
+    """Prints the deepest stack below each task: frames (-fstack-usage) along the call graph
+    (-fcallgraph-info)."""
     text = "".join(path.read_text() for path in sorted(pathlib.Path(objects).rglob("*.ci")))
     name = r'"(?:[^"]*:)?([^":]*)"'
-    frames = {f: int(size) for f, size in re.findall(r"^node: .*?title: " + name + r".*?(\d+) bytes", text, re.M)}
+    frames = {f: int(size) for f, size in re.findall(r"^node: .*?title: " + name +
+                                                     r".*?(\d+) bytes", text, re.M)}
     calls = {}
-    for caller, called in re.findall(r"^edge: .*?sourcename: " + name + " targetname: " + name, text, re.M):
+    for caller, called in re.findall(r"^edge: .*?sourcename: " + name + " targetname: " + name,
+                                     text, re.M):
         calls.setdefault(caller, {})[called] = True
     known = {}
 
@@ -127,12 +154,15 @@ def stacks(objects):
         """(bytes, way) of the deepest stack; a circle counts once."""
         if function not in known:
             known[function] = (0, [])
-            below, way = max((depth(called) for called in calls.get(function, ()) if called != "__indirect_call"),
+            below, way = max((depth(called) for called in calls.get(function, ())
+                              if called != "__indirect_call"),
                              key=lambda found: found[0], default=(0, []))
             known[function] = (frames.get(function, 0) + below, [function] + way * bool(below))
         return known[function]
 
-    print("%-26s %8s   %s" % ("stack, by analysis", "bytes", "deepest way (calls through pointers and of the C library are not followed)"))
+    print("%-26s %8s   %s" % ("stack, by analysis", "bytes",
+                              "deepest way (calls through pointers and of the C library are not "
+                              "followed)"))
     for entry in ENTRIES:
         size, way = depth(entry)
         print("%-26s %8d   %s" % (entry, size, " > ".join(way[1:])))

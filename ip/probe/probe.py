@@ -1,12 +1,14 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""probe: captures signals of a vehicle's FPGA by radio, as a waveform (VCD) with the simulator's names. Stock ZeroC Ice.
+"""probe: captures signals of a vehicle's FPGA by radio, as a waveform (VCD) with the simulator's
+names. Stock ZeroC Ice.
 
-    probe.py --device /dev/ttyUSB0 --plugin build/main/ground --trigger u_fir.sent=1 --after 500 capture.vcd
+    probe.py --device /dev/ttyUSB0 --plugin build/main/ground --trigger u_fir.sent=1 --after 500
+    capture.vcd
     gtkwave capture.vcd
 
-What is recorded is the line of the probe in ip/cores.list; --map is what the build made of it. Times are those of the
-chip's count of clocks, modulo 2**32 clocks.
+What is recorded is the line of the probe in ip/cores.list; --map is what the build made of it.
+Times are those of the chip's count of clocks, modulo 2**32 clocks.
 """
 
 import argparse
@@ -32,18 +34,22 @@ class Signals:
             with open(path) as f:
                 probes = json.load(f)
         except (OSError, ValueError) as e:
-            raise Failed("cannot read --map %s (%s): it is in the build folder of the vehicle's chip, gen/probes.json"
+            raise Failed("cannot read --map %s (%s): it is in the build folder of the vehicle's "
+                         "chip, gen/probes.json"
                          % (path, e))
         if name not in probes:
-            raise Failed("--map %s has no probe '%s', but %s" % (path, name, ", ".join(probes) or "none at all"))
+            raise Failed("--map %s has no probe '%s', but %s" %
+                         (path, name, ", ".join(probes) or "none at all"))
         self.names = probes[name]["names"]
         self.identity = probes[name]["identity"]
         self.list = [(signal, width) for signal, width in probes[name]["signals"]]
 
     def check(self, state):
         if state.names & 0xFFFFFFFF != self.names:
-            raise Failed("the chip's probe records other signals (hash 0x%08X) than --map says (0x%08X): give the "
-                         "probes.json of that chip's build" % (state.names & 0xFFFFFFFF, self.names))
+            raise Failed("the chip's probe records other signals (hash 0x%08X) than --map says "
+                         "(0x%08X): give the "
+                         "probes.json of that chip's build" %
+                         (state.names & 0xFFFFFFFF, self.names))
 
     def trigger(self, text):
         """mask and value of "u_fir.sent=1,u_fir.count=0x10"."""
@@ -56,7 +62,8 @@ class Signals:
                     break
                 lsb += width
             else:
-                raise Failed("--trigger: there is no signal '%s', but %s" % (name, ", ".join(s for s, _ in self.list)))
+                raise Failed("--trigger: there is no signal '%s', but %s" %
+                             (name, ", ".join(s for s, _ in self.list)))
             try:
                 value = int(number, 0)
             except ValueError:
@@ -64,7 +71,8 @@ class Signals:
             if not 0 <= value < 1 << width:
                 raise Failed("--trigger: %s has %d bits, and is never %s" % (name, width, number))
             if lsb + width > 31:
-                raise Failed("--trigger: %s is at bits %d to %d of the list; those below 31 can trigger: name it further"
+                raise Failed("--trigger: %s is at bits %d to %d of the list; those below 31 can "
+                             "trigger: name it further"
                              " in front" % (name, lsb, lsb + width - 1))
             mask |= (1 << width) - 1 << lsb
             wanted |= value << lsb
@@ -108,13 +116,15 @@ def write_vcd(path, signals, changes, clk_hz):
     unit, name = (10**9, "1ns") if 10**9 % clk_hz == 0 else (10**12, "1ps")
     ids = {s: "".join(chr(33 + d) for d in divmod(i, 94)) for i, (s, _) in enumerate(signals.list)}
     widths = dict(signals.list)
-    lines = ["$comment what a probe of IceSoC recorded, clk_hz %d $end" % clk_hz, "$timescale %s $end" % name, "$scope module TOP $end",
+    lines = ["$comment what a probe of IceSoC recorded, clk_hz %d $end" % clk_hz,
+             "$timescale %s $end" % name, "$scope module TOP $end",
              "$scope module soc $end"]
     scope = []
     for signal in sorted(ids, key=lambda s: s.split(".")):
         *folder, leaf = signal.split(".")
         same = len(os.path.commonprefix([scope, folder]))
-        lines += ["$upscope $end"] * (len(scope) - same) + ["$scope module %s $end" % s for s in folder[same:]]
+        lines += ["$upscope $end"] * (len(scope) - same) + ["$scope module %s $end" % s
+                                                            for s in folder[same:]]
         scope = folder
         bits = " [%d:0]" % (widths[signal] - 1) if widths[signal] > 1 else ""
         lines.append("$var wire %d %s %s%s $end" % (widths[signal], ids[signal], leaf, bits))
@@ -158,14 +168,16 @@ def capture(probe, signals, args, say):
     mask, value = signals.trigger(args.trigger)
     ring = RING_BYTES // (8 * state.words)
     if args.before < 0 or args.after < 0 or args.before + args.after >= ring:
-        raise Failed("the ring has room for %d changes: --before and --after together take less" % ring)
+        raise Failed("the ring has room for %d changes: --before and --after together take less" %
+                     ring)
     probe.arm(signed(mask), signed(value), bool(args.trigger) and not args.level, args.after)
     say("armed; waiting for %s" % (args.trigger or "nothing: it begins now"))
     end = time.monotonic() + args.wait
     while str((state := probe.getState()).phase) != "done":
         if time.monotonic() > end:
             say("%s after %d s: stopped with what there is" % (
-                "no trigger" if state.trigger < 0 else "not all changes behind the trigger", args.wait))
+                "no trigger" if state.trigger < 0 else "not all changes behind the trigger",
+                args.wait))
             probe.stop()
             state = probe.getState()
             break
@@ -175,18 +187,26 @@ def capture(probe, signals, args, say):
 
 def main():
     here = os.path.dirname(os.path.abspath(__file__))
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("out", help="the waveform: a VCD file")
-    parser.add_argument("--map", default=os.path.join(here, "../../build/main/gen/probes.json"), help="default: build/main/gen/probes.json")
-    parser.add_argument("--probe", default="probe", help="its name in the list of cores, if it has another (name=)")
-    parser.add_argument("--trigger", default="", help="signals and values, u_fir.sent=1,u_fir.count=0x10: begins when all become "
+    parser.add_argument("--map", default=os.path.join(here, "../../build/main/gen/probes.json"),
+                        help="default: build/main/gen/probes.json")
+    parser.add_argument("--probe", default="probe",
+                        help="its name in the list of cores, if it has another (name=)")
+    parser.add_argument("--trigger", default="",
+                        help="signals and values, u_fir.sent=1,u_fir.count=0x10: begins when all "
+                             "become "
                         "so; without: at once")
     parser.add_argument("--level", action="store_true", help="begin also if they are so already")
     parser.add_argument("--before", type=int, default=500, help="changes before the trigger (500)")
     parser.add_argument("--after", type=int, default=1500, help="changes behind it (1500)")
-    parser.add_argument("--wait", type=float, default=60, help="s: then what there is is taken (60)")
+    parser.add_argument("--wait", type=float, default=60,
+                        help="s: then what there is is taken (60)")
     parser.add_argument("--device", help="serial port of the modem")
-    parser.add_argument("--proxy", help="in place of --device: where the object is, as 'probe:tcp -h host -p 4061'")
+    parser.add_argument("--proxy",
+                        help="in place of --device: where the object is, as 'probe:tcp -h host -p "
+                             "4061'")
     parser.add_argument("--plugin", help="folder of libxbeeat.so.37")
     parser.add_argument("--key", default="", help="file with the link's key; without: in the clear")
     parser.add_argument("--guard", type=int, default=1000, help="guard time of the modem, ms")
@@ -203,14 +223,16 @@ def main():
         signals = Signals(args.map, args.probe)
         settings = {"Ice.Default.InvocationTimeout": "60000", "Ice.ACM.Close": "0"}
         communicator = plugged.initialize(settings, args.plugin, args.guard, args.key)
-        where = args.proxy or "%s:xbee-at -d %s -a 0x0001 -t 60000" % (signals.identity, args.device)
+        where = args.proxy or "%s:xbee-at -d %s -a 0x0001 -t 60000" % (signals.identity,
+                                                                       args.device)
         capture(Probes.ProbePrx.uncheckedCast(communicator.stringToProxy(where)), signals, args,
                 lambda text: print("probe: " + text, flush=True))
         return 0
     except KeyboardInterrupt:
         return 130
     except Ice.ObjectNotExistException:
-        print("probe: the vehicle has no probe '%s': ip/cores.list needs its line, the chip and the firmware a build"
+        print("probe: the vehicle has no probe '%s': ip/cores.list needs its line, the chip and "
+              "the firmware a build"
               % signals.identity, file=sys.stderr)
         return 1
     except (Failed, Ice.Exception, OSError) as e:

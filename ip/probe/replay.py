@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""replay: drives a block in Verilator with a probe's capture of its inputs, and compares its outputs, clock by clock.
+"""replay: drives a block in Verilator with a probe's capture of its inputs, and compares its
+outputs, clock by clock.
 
     replay.py capture.vcd --scope u_fir.u_filter --top fir_filter build/main/gen/fir_filter.v
 
-The capture has all inputs of the block but clock and reset, and outputs to compare. The block begins in reset: what
-it had stored before the capture is not known. Writes replay.v, and replay.fst with all its inner signals, into --out.
+The capture has all inputs of the block but clock and reset, and outputs to compare. The block
+begins in reset: what it had stored before the capture is not known. Writes replay.v, and replay.fst
+with all its inner signals, into --out.
 """
 
 import argparse
@@ -61,7 +63,8 @@ def fail(text):
 
 
 def read_vcd(path):
-    """Widths by name below soc, and (time, {name: value as bits}) of each moment; the clock's Hz."""
+    """Widths by name below soc, and (time, {name: value as bits}) of each moment; the clock's
+    Hz."""
     try:
         with open(path) as f:
             text = f.read()
@@ -96,18 +99,24 @@ def read_vcd(path):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("capture", help="VCD of probe.py")
     parser.add_argument("--scope", required=True, help="the block in the chip, as u_fir.u_filter")
     parser.add_argument("--top", required=True, help="its module")
-    parser.add_argument("--out", default="build/replay-block", help="folder for what is written (build/replay-block)")
-    parser.add_argument("-I", action="append", default=[], metavar="FOLDER", help="where Verilator looks for modules and headers")
-    parser.add_argument("files", nargs="+", help="its Verilog; of VHDL what the build has made, build/main/gen/NAME.v")
+    parser.add_argument("--out", default="build/replay-block",
+                        help="folder for what is written (build/replay-block)")
+    parser.add_argument("-I", action="append", default=[], metavar="FOLDER",
+                        help="where Verilator looks for modules and headers")
+    parser.add_argument("files", nargs="+",
+                        help="its Verilog; of VHDL what the build has made, build/main/gen/NAME.v")
     args = parser.parse_args()
     widths, moments = read_vcd(args.capture)
     if any("x" in v for _, values in moments for v in values.values()):
-        fail(f"{args.capture}: changes were lost, so the inputs are not known; record fewer signals, or a shorter time")
-    headers = [os.path.join(folder, "") for folder in args.I]  # read_module takes files and looks in their folders
+        fail(f"{args.capture}: changes were lost, so the inputs are not known; record fewer "
+             "signals, or a shorter time")
+    # read_module takes files and looks in their folders
+    headers = [os.path.join(folder, "") for folder in args.I]
     ports, _ = foreign_files.read_module(args.top, args.files, headers, is_whole=False)
     inputs, outputs, wiring = [], [], []
     for name, port in ports.items():
@@ -117,9 +126,11 @@ def main():
             wiring.append((name, {"clock": "clk", "reset": "rst", "resetn": "!rst"}[kind]))
         elif captured not in widths:
             if port["direction"] == "input":
-                fail(f"the capture has no {captured}: the probe's line needs {captured}" + (f":{width}" if width > 1 else ""))
+                fail(f"the capture has no {captured}: the probe's line needs {captured}" +
+                     (f":{width}" if width > 1 else ""))
         elif widths[captured] != width:
-            fail(f"{captured} has {widths[captured]} bits in the capture, and {width} in {args.top}")
+            fail(f"{captured} has {widths[captured]} bits in the capture, and {width} in "
+                 f"{args.top}")
         else:
             (inputs if port["direction"] == "input" else outputs).append((name, width))
     if not outputs:
@@ -143,17 +154,23 @@ def main():
         f.writelines("%x\n" % (clock << bits | value) for clock, value in rows)
     with open(os.path.join(args.out, "replay.v"), "w") as f:
         f.write(BENCH.format(
-            bits=bits, rows=len(rows), outputs=count, top=args.top, wiring=", ".join(f".{n}({w})" for n, w in wiring),
-            format=",".join(f" {n} is %h, was %h" for n, _ in shown), values="".join(", " + v for _, v in shown)))
+            bits=bits, rows=len(rows), outputs=count, top=args.top,
+            wiring=", ".join(f".{n}({w})" for n, w in wiring),
+            format=",".join(f" {n} is %h, was %h" for n, _ in shown),
+            values="".join(", " + v for _, v in shown)))
     files = [os.path.abspath(f) for f in args.files]
-    folders = [word for f in args.I + [os.path.dirname(f) for f in files] for word in ("-y", os.path.abspath(f), "-I" + os.path.abspath(f))]
-    environment = {"OBJCACHE": shutil.which("ccache") or "", **os.environ}  # of Verilator's own makefile
-    for command in (["verilator", "--binary", "--timing", "--trace-fst", "-Wno-fatal", "-Wno-lint", "--top-module", "replay",
+    folders = [word for f in args.I + [os.path.dirname(f) for f in files]
+               for word in ("-y", os.path.abspath(f), "-I" + os.path.abspath(f))]
+    # of Verilator's own makefile
+    environment = {"OBJCACHE": shutil.which("ccache") or "", **os.environ}
+    for command in (["verilator", "--binary", "--timing", "--trace-fst", "-Wno-fatal", "-Wno-lint",
+                     "--top-module", "replay",
                      "--Mdir", "model", "replay.v"] + folders + files, ["model/Vreplay"]):
         run = subprocess.run(command, cwd=args.out, capture_output=True, text=True, env=environment)
         if run.returncode:
             fail(f"{command[0]} fails:\n{run.stdout}{run.stderr}".rstrip())
-    lines = [line for line in run.stdout.splitlines() if line.endswith("differ") or "differs" in line]
+    lines = [line for line in run.stdout.splitlines() if line.endswith("differ")
+             or "differs" in line]
     print("\n".join(lines + ["waveform: " + os.path.join(args.out, "replay.fst")]))
     return 0 if lines and lines[-1].endswith(" 0 differ") else 1
 

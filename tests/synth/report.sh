@@ -1,19 +1,26 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# report: utilisation-program source-folder case kept: the command on a small project of its own, as a user runs it.
-#   counts   its figures are those that the blocks' sources promise, and Yosys' own `stat` counts them too;
+# report: utilisation-program source-folder case kept: the command on a small project of its own, as
+# a user runs it.
+#   counts   its figures are those that the blocks' sources promise, and Yosys' own `stat` counts
+#            them too;
 #            what it synthesised is left in the folder `kept`, where the other cases begin
-#   growth   a register more fails with its name; accepting it passes; a second run takes all from the cache
+#   growth   a register more fails with its name; accepting it passes; a second run takes all from
+#            the cache
 #   slow     a longer path than the clock allows fails with its ends
-#   partial  one design alone: the page has all; of those that have changed it says so; the limits hold, whatever is accepted
-#   broken   a syntax error is told with its file and line, and the other designs are reported nevertheless
+#   partial  one design alone: the page has all; of those that have changed it says so; the limits
+#            hold, whatever is accepted
+#   broken   a syntax error is told with its file and line, and the other designs are reported
+#            nevertheless
 #   twice    of two runs at once the second waits, says so, and takes what the first has made
 #   compare  what has changed since another commit, or between two, as Markdown
-#   place    a design placed with five seeds: clock, estimate, utilisation; placed once; a failure is told
+#   place    a design placed with five seeds: clock, estimate, utilisation; placed once; a failure
+#            is told
 #   made     by make, with its variables
 #   edif     the netlist for ISE is whole
-#   page     the page in Chromium: tables, chart, sorting, looking inside, differences; one file, no network
+#   page     the page in Chromium: tables, chart, sorting, looking inside, differences; one file, no
+#            network
 # It is shell because it runs the command as a user does; its parts are tested by parts_test.py.
 set -eu
 program=$1 source=$2 case=$3 kept=$4
@@ -38,9 +45,11 @@ run() {
 users_tree() {
     cd project
     mkdir -p build/main/synth build/synth
-    ln -s "$program" build/main/synth/utilisation && mv ../gen build/main && mv ../out/cache build/synth
+    ln -s "$program" build/main/synth/utilisation && mv ../gen build/main &&
+        mv ../out/cache build/synth
 }
-made() { "$source/tests/regress/test/make_in.sh" "$source" . build/main "$@" >"$work/log" 2>&1; } # in the project, as a user
+made() { "$source/tests/regress/test/make_in.sh" "$source" . build/main "$@" >"$work/log" 2>&1;
+} # in the project, as a user
 has() { grep -q -- "$1" "$work/log" || { cat "$work/log" >&2; fail "no '$1' in the output"; }; }
 
 case $case in
@@ -48,7 +57,8 @@ counts)
     run || fail "$(cat "$work/log")"
     has '^wide .* [0-9]* ([0-9]*-[0-9]*)$' # the clock, and from where to where it goes in other orders
     has '^wide  *[0-9]* ([0-9]*-[0-9]*) ' # and the LUTs
-    figure() { cat out/cache/"$1".xc6s.*.figures | /usr/bin/python3 -c 'import json, sys; f = json.load(sys.stdin); print(eval(sys.argv[1], f))' "$2"; }
+    figure() { cat out/cache/"$1".xc6s.*.figures |
+        /usr/bin/python3 -c 'import json, sys; f = json.load(sys.stdin); print(eval(sys.argv[1], f))' "$2"; }
     is() { [ "$(figure "$1" "$2")" = "$3" ] || fail "$1: $2 is $(figure "$1" "$2"), not $3"; }
     is wide 'cells["CARRY4"]' 4 # a counter of 16 bits: the parameter was set
     is store 'cells["RAM32M"], lutRam' '(1, 4)' # 32 x 6 bits
@@ -59,7 +69,8 @@ counts)
     is whole lut "$luts" # as Yosys counts
     # A core's cost in the accepted chip: a slot is the decoder of three less that of two.
     cp "$source/bus/bus_decoder.v" "$project/bus/"
-    echo '{"constants": [{"name": "SLOT_LOW", "value": 2}, {"name": "SLOT_COUNT", "value": 3}]}' >gen/map.regs.json
+    echo '{"constants": [{"name": "SLOT_LOW", "value": 2}, {"name": "SLOT_COUNT", "value": 3}]}' \
+        >gen/map.regs.json
     echo '{"yosys": "", "designs": {"soc": {"lut": 9, "ff": 9, "slices": 9, "carry": 0, "dsp": 2, "ram": 1.5, "mhz": 99,
           "signals": {"u_low": {"sum": [7, 8, 1.5, 2]}}}}}' >"$project/synth/baseline.json"
     run --core low || fail "$(cat "$work/log")"
@@ -96,7 +107,8 @@ partial)
     run --design store || fail "$(cat "$work/log")"
     if grep -q '^wide ' "$work/log"; then fail "a design that was not asked for is in the table"; fi
     has '^Designs: 2 measured now, 1 changed since'
-    grep -q '"whole": "changed since"' out/report.json && grep -q '^| whole | changed since |' out/report.md || fail "what has changed since is not told"
+    grep -q '"whole": "changed since"' out/report.json && grep -q '^| whole | changed since |' \
+        out/report.md || fail "what has changed since is not told"
     grep -q '"name": "wide lut"' out/report.json || fail "what has not changed is not in the report"
     # In a fresh clone nothing has been measured, and nothing is gone.
     run --accept && rm -r out/cache && run --design store || fail "$(cat "$work/log")"
@@ -123,7 +135,8 @@ broken)
     done
     ;;
 twice)
-    # The first one's Yosys begins when the second has been seen to wait (or, if it never does, after 20 s).
+    # The first one's Yosys begins when the second has been seen to wait (or, if it never does,
+    # after 20 s).
     cat >"$work/slow" <<'SH'
 #!/bin/sh
 [ "$1" = -V ] || for _ in $(seq 200); do
@@ -135,10 +148,12 @@ SH
     chmod +x "$work/slow"
     rm -rf out
     : >second
-    "$program" --source project --generated gen --output out --design wide --yosys "$work/slow" >first 2>&1 &
+    "$program" --source project --generated gen --output out --design wide --yosys "$work/slow" \
+        >first 2>&1 &
     first=$!
     until [ -d out/cache ] || ! kill -0 $first 2>/dev/null; do sleep 0.1; done # it has the folder
-    "$program" --source project --generated gen --output out --design wide --yosys "$work/slow" >second 2>&1 || fail "the second: $(cat second)"
+    "$program" --source project --generated gen --output out --design wide --yosys "$work/slow" \
+        >second 2>&1 || fail "the second: $(cat second)"
     wait $first || fail "the first: $(cat first)"
     grep -q 'waiting for another run in out' second || fail "the second did not wait: $(cat second)"
     [ "$(grep -c '^\[' first)" -gt 0 ] || fail "the first synthesised nothing: $(cat first)"
@@ -149,15 +164,18 @@ page)
     page=$work/out/report.html
     [ "$(wc -c <"$page")" -lt 2000000 ] || fail "the page has 2 MB or more"
     if grep -Eo '(src|href)="?https?:' "$page"; then fail "the page needs the network"; fi
-    dump() { HOME=$work chromium --headless --no-sandbox --disable-gpu --virtual-time-budget=20000 --dump-dom "file://$1" 2>/dev/null >"$work/dom"; }
+    dump() { HOME=$work chromium --headless --no-sandbox --disable-gpu --virtual-time-budget=20000 \
+        --dump-dom "file://$1" 2>/dev/null >"$work/dom"; }
     # Where the libraries could not be fetched, all is there, and the page says how to get them.
     sed '/^!function.*Tabulator=/d; /^.*var uPlot=/d' "$page" >"$work/plain.html"
     dump "$work/plain.html#whole/u_store"
-    sed -n '/<p class="soft">/,/<script id/p' "$work/dom" | tr -d '\n' | sed 's/<script.*//; s/<[^>]*>/ /g; s/  */ /g' >"$work/log"
+    sed -n '/<p class="soft">/,/<script id/p' "$work/dom" | tr -d '\n' |
+        sed 's/<script.*//; s/<[^>]*>/ /g; s/  */ /g' >"$work/log"
     has 'Tabulator and uPlot could not be fetched. With a network'
     has ' wide 1 0.0 % .* store [0-9]* .* pair 15 .* u_store .* read_addr_i 5 0 project/hdl/blocks/store.v:12 .* clk_i 11 12 [0-9]* .* rst_i synchronous 5 '
     has ' 8 to 8.5 ns left of 10 1 .* u_counter.count_o.4. 9 FDRE .* now 15 11 6 [0-9]* this run '
-    [ -s "${program%/synth/*}/page/libraries.js" ] || { echo "skipped: Tabulator and uPlot could not be fetched"; exit 77; }
+    [ -s "${program%/synth/*}/page/libraries.js" ] ||
+        { echo "skipped: Tabulator and uPlot could not be fetched"; exit 77; }
     # A second script clicks as a user does and writes what it then sees.
     cat >"$work/clicks.js" <<'JS'
 (async () => {
@@ -223,7 +241,8 @@ seen.push("choices " + document.getElementById("from").options.length);
 document.getElementById("seen").textContent = seen.join("; ") + ";";
 })().catch(error => { document.getElementById("seen").textContent = error.stack; });
 JS
-    awk -v clicks="$work/clicks.js" '/^<\/body>/ { print "<p id=\"seen\"></p><script>"; while ((getline line < clicks) > 0) print line; print "</script>" } { print }' \
+    awk -v clicks="$work/clicks.js" \
+        '/^<\/body>/ { print "<p id=\"seen\"></p><script>"; while ((getline line < clicks) > 0) print line; print "</script>" } { print }' \
         "$page" >"$work/clicked.html"
     dump "$work/clicked.html#whole/u_store"
     sed -n 's/<p id="seen">/; /p' "$work/dom" >"$work/log"
@@ -258,7 +277,8 @@ compare)
     has '^| whole | .* | [0-9]* -> [0-9]* (+12) |'
     has '^| wide | gone | gone |'
     has '^| wider | [0-9]* (new) |'
-    cmp -s build/synth/compare.md "$work/log" || grep -q '^| wider ' build/synth/compare.md || fail "compare.md is not there"
+    cmp -s build/synth/compare.md "$work/log" || grep -q '^| wider ' build/synth/compare.md ||
+        fail "compare.md is not there"
     has '^| [0-9a-f]*+ | not measured | not measured |' # nobody knows what was measured of files without a commit
     # Over budget the difference matters most: it is told, and the status is that of the budget.
     cp synth/designs.json designs.kept && sed -i 's/"ff": 30/"ff": 20/' synth/designs.json
@@ -269,7 +289,8 @@ compare)
     # The same between two commits, whatever is here now; tests and coverage are those of each.
     git add . && git -c user.name=a -c user.email=a@b commit -qm "The second one"
     mkdir -p build/regress build/coverage
-    for tests in 9 7; do printf '{"commit":"%s","passed":%s,"failed":1}\n' "$(git describe --always --abbrev=10)" $tests; done >build/regress/history.jsonl
+    for tests in 9 7; do printf '{"commit":"%s","passed":%s,"failed":1}\n' \
+        "$(git describe --always --abbrev=10)" $tests; done >build/regress/history.jsonl
     echo "$(git describe --always --abbrev=10 HEAD~1) 97.1 % of lines" >build/coverage/history
     echo 'module pair' >hdl/blocks/pair.v
     rm build/synth/report.json
@@ -319,15 +340,18 @@ made)
     has "there is no core 'nobody': store"
     ;;
 edif)
-    # The netlist that ISE reads has every cell that Yosys counts, once, and well-formed parentheses.
+    # The netlist that ISE reads has every cell that Yosys counts, once, and well-formed
+    # parentheses.
     users_tree
     made synth-edif DESIGN=whole || fail "$(cat "$work/log")"
     edif=build/synth/ise/whole.edf
-    [ "$(tr -cd '(' <"$edif" | wc -c)" = "$(tr -cd ')' <"$edif" | wc -c)" ] || fail "parentheses do not match"
+    [ "$(tr -cd '(' <"$edif" | wc -c)" = "$(tr -cd ')' <"$edif" | wc -c)" ] ||
+        fail "parentheses do not match"
     for cell in RAM32M CARRY4 FDRE; do
         inside=$(grep -o "(cellRef $cell " "$edif" | wc -l)
         counted=$(grep -c "\"type\": \"$cell\"" build/synth/ise/whole.json)
-        { [ "$inside" = "$counted" ] && [ "$inside" -gt 0 ]; } || fail "$inside $cell in EDIF, $counted counted"
+        { [ "$inside" = "$counted" ] && [ "$inside" -gt 0 ]; } ||
+            fail "$inside $cell in EDIF, $counted counted"
     done
     grep -q '(design pair' "$edif" || grep -q '(design whole' "$edif" || fail "the top is not named"
     [ -f "build/synth/ise/verilog/store.v" ] || fail "the Verilog for XST is not there"

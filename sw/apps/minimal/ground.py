@@ -4,8 +4,8 @@
 
 Usage: ground.py DEVICE [--reference PROGRAM --frame PICTURE] [Ice options]
 
-Serves Station, which the vehicle calls, and calls back on the proxy that it gets; then works with the
-vehicle's engine: both encodings, one-way calls, what the minimal run time refuses.
+Serves Station, which the vehicle calls, and calls back on the proxy that it gets; then works with
+the vehicle's engine: both encodings, one-way calls, what the minimal run time refuses.
 """
 
 import argparse
@@ -86,7 +86,8 @@ def fly(communicator, args):
         expect("as many as the C++ reference", json.loads(text)["found"] == result.found)
 
     nobody = communicator.stringToProxy("nobody" + where)
-    expect("an object that is not there is said not to be", raises(Ice.ObjectNotExistException, nobody.ice_ping))
+    expect("an object that is not there is said not to be",
+           raises(Ice.ObjectNotExistException, nobody.ice_ping))
     facet = engine.ice_facet("none")
     expect("facets are not there", raises(Ice.ObjectNotExistException, facet.ice_ping))
     expect("ice_id is refused", raises(Ice.OperationNotExistException, engine.ice_id))
@@ -101,7 +102,8 @@ def main():
     parser.add_argument("--reference", help="program that counts the corners on the host")
     args, rest = parser.parse_known_args()
     properties = Ice.createProperties()
-    for key, value in (("Ice.ThreadPool.Server.Size", "2"), ("Ice.Default.InvocationTimeout", "300000"),
+    for key, value in (("Ice.ThreadPool.Server.Size", "2"),
+                       ("Ice.Default.InvocationTimeout", "300000"),
                        ("Ice.ACM.Close", "0")):
         properties.setProperty(key, value)
     properties.parseCommandLineOptions("", rest)

@@ -3,8 +3,8 @@
 """Figure 5 of the paper, lower half: the client on the ground, as printed but for what is marked.
 
 [1] the figure has HwProcessEnginePrx and uncheckCast
-[2] the proxy says which serial port the ground's modem is on, the UAV's address, and how long setting up may take
-[3] results need a twoway proxy: "-o" is Ice's oneway flag
+[2] the proxy says which serial port the ground's modem is on, the UAV's address, and how long
+setting up may take [3] results need a twoway proxy: "-o" is Ice's oneway flag
 """
 
 import os
@@ -28,7 +28,8 @@ class Client(Ice.Application):
 
         hwobject.setParameterA(paramValue)
         hwobject.startProcessing()
-        twoway = Autopilot.HwProcessingEnginePrx.checkedCast(ic.stringToProxy("hwengine1" + where))  # [3]
+        # [3]
+        twoway = Autopilot.HwProcessingEnginePrx.checkedCast(ic.stringToProxy("hwengine1" + where))
         found = twoway.getResult().found
         while found == 0:  # the core is still at work
             found = twoway.getResult().found

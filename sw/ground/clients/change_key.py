@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: MIT
 """change_key: gives a vehicle a new key over the link, and the key file with it.
 
-Wherever this is cut off, vehicle and file have a key in common, and the next run goes on from there. The file has both
-keys before the vehicle gets the new one; the vehicle has both until a session has come up under the new one; then the
-file loses the old one.
+Wherever this is cut off, vehicle and file have a key in common, and the next run goes on from
+there. The file has both keys before the vehicle gets the new one; the vehicle has both until a
+session has come up under the new one; then the file loses the old one.
 """
 
 import argparse
@@ -48,12 +48,14 @@ def keys_of(lines, address):
 
 def talk(args, key_file, what):
     """Calls `what` with the vehicle's KeyRing, in its own session."""
-    communicator = plugged.initialize({"Ice.Default.InvocationTimeout": str(1000 * args.patience)}, args.plugin, args.guard,
+    communicator = plugged.initialize({"Ice.Default.InvocationTimeout": str(1000 * args.patience)},
+                                      args.plugin, args.guard,
                                       key_file)
     try:
         import Autopilot  # made by loadSlice
         return what(Autopilot.KeyRingPrx.uncheckedCast(communicator.stringToProxy(
-            "keys:xbee-at -d %s -a 0x%04x -t %d" % (args.device, args.address, 1000 * args.patience))))
+            "keys:xbee-at -d %s -a 0x%04x -t %d" %
+            (args.device, args.address, 1000 * args.patience))))
     finally:
         communicator.destroy()
 
@@ -84,7 +86,8 @@ def main():
     parser.add_argument("--key", required=True, help="key file; it is rewritten")
     parser.add_argument("--plugin", required=True, help="folder of libxbeeat.so.37")
     parser.add_argument("--slice", required=True, help="Autopilot.ice")
-    parser.add_argument("--address", type=lambda text: int(text, 0), default=1, help="of the vehicle")
+    parser.add_argument("--address", type=lambda text: int(text, 0), default=1,
+                        help="of the vehicle")
     parser.add_argument("--guard", type=int, default=1000, help="guard time of the modem, ms")
     parser.add_argument("--patience", type=int, default=60, help="seconds that an answer may take")
     args = parser.parse_args()

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 """mission: the ground station. Stock ZeroC Ice, and the xbee-at transport plugin.
 
-Sets the vision core's threshold, starts it on the camera's frame, fetches the corners, draws them over
-the picture, and serves Station, which the UAV calls. All of it over the radio.
+Sets the vision core's threshold, starts it on the camera's frame, fetches the corners, draws them
+over the picture, and serves Station, which the UAV calls. All of it over the radio.
 """
 
 import argparse
@@ -45,7 +45,8 @@ class Air:
         return dict(zip(names, fields[1:]))
 
 
-ENOUGH = 300  # corners: a core that takes a pixel at the threshold for a brighter one passed with 121, and failed with 313
+# corners: a core that takes a pixel at the threshold for a brighter one passed with 121, and failed with 313
+ENOUGH = 300
 IP = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../../ip")
 RESULTS = ("after.png", "report.md", "report.json", "calls.jsonl")
 
@@ -127,7 +128,9 @@ class Log:
 
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("flight", help="flight.json: threshold, key, cores, folder of the results (./icesoc run writes it)")
+    parser.add_argument("flight",
+                        help="flight.json: threshold, key, cores, folder of the results (./icesoc "
+                             "run writes it)")
     parser.add_argument("--device", required=True, help="serial port of the modem")
     parser.add_argument("--plugin", required=True, help="folder of libxbeeat.so.37")
     parser.add_argument("--slice", required=True, help="Autopilot.ice")
@@ -237,7 +240,8 @@ def part_of(folder):
     """Imports FOLDER/ground.py."""
     path = os.path.join(folder, "ground.py")
     if not os.path.exists(path):
-        raise RuntimeError("the core in %s has no part in a mission: there is no ground.py" % folder)
+        raise RuntimeError("the core in %s has no part in a mission: there is no ground.py" %
+                           folder)
     spec = importlib.util.spec_from_file_location("ground_" + os.path.basename(folder), path)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
@@ -252,14 +256,16 @@ def differences(chip):
 
 
 def explain(communicator, args, failure):
-    """Says why the UAV has no such object: a core that differs from the firmware's contract is not served."""
+    """Says why the UAV has no such object: a core that differs from the firmware's contract is not
+    served."""
     import Hw  # made by loadSlice
     text = "the UAV has no object '%s'" % failure.id.name
     with contextlib.suppress(Ice.Exception):  # a UAV without the object chip
         found = differences(Hw.ChipPrx.uncheckedCast(communicator.stringToProxy(
             "chip:xbee-at -d %s -a 0x0001 -s 0x0000" % args.device)))
         if found:
-            text += "; ".join(["", *found]) + ": build both anew from one ip/cores.list, the firmware by make firmware, " \
+            text += "; ".join(["",
+                               *found]) + ": build both anew from one ip/cores.list, the firmware by make firmware, " \
                 "the chip by make synth-edif (docs/utilisation.md)"
     return text
 
@@ -313,7 +319,8 @@ def fly(args, communicator):
             raise
         log.note("the result equals the C++ reference, bit by bit")
         if result.found < ENOUGH:
-            log.note("%d corners leave much of the core untried: make ip-test IP=vision tries all of it" % result.found)
+            log.note("%d corners leave much of the core untried: make ip-test IP=vision tries all "
+                     "of it" % result.found)
     # A part may return a function to be called after all parts.
     ends = [part.fly(log, proxy, "%d corners" % result.found) for part in parts]
     for end in filter(None, ends):
@@ -326,8 +333,10 @@ def main():
     args = parse_arguments()
     communicator = initialize(args)
     try:
-        registers = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../hw/registers/Registers.ice")
-        for file in [args.slice, registers, *(file for core in args.cores for file in glob.glob(os.path.join(core, "*.ice")))]:
+        registers = os.path.join(os.path.dirname(os.path.abspath(__file__)),
+                                 "../../hw/registers/Registers.ice")
+        for file in [args.slice, registers, *(file for core in args.cores
+                                              for file in glob.glob(os.path.join(core, "*.ice")))]:
             Ice.loadSlice("", ["-I" + (Ice.getSliceDir() or "."), file])
         fly(args, communicator)
         return 0
@@ -337,7 +346,8 @@ def main():
         print("mission: " + explain(communicator, args, e), file=sys.stderr)
         return 1
     except Ice.TimeoutException:
-        print("mission: no answer for %d s: is the UAV on, in reach, and has it the same key?" % args.patience, file=sys.stderr)
+        print("mission: no answer for %d s: is the UAV on, in reach, and has it the same key?" %
+              args.patience, file=sys.stderr)
         return 1
     except (Ice.Exception, RuntimeError, OSError, subprocess.CalledProcessError) as e:
         print("mission: %s" % e, file=sys.stderr)

@@ -7,10 +7,12 @@ import Ice
 
 
 def initialize(settings, plugin, guard, key):
-    """Returns a communicator with these properties. plugin: folder of libxbeeat.so.37, empty or None: no radio; guard:
-    the modem's guard time in ms; key: file with the link's key, empty: in the clear."""
+    """Returns a communicator with these properties. plugin: folder of libxbeeat.so.37, empty or
+    None: no radio; guard: the modem's guard time in ms; key: file with the link's key, empty: in
+    the clear."""
     if plugin:
-        settings = {"Ice.Plugin.XBeeAT": os.path.join(plugin, "xbeeat") + ":createXBeeAT", "XBeeAT.Guard": str(guard),
+        settings = {"Ice.Plugin.XBeeAT": os.path.join(plugin, "xbeeat") + ":createXBeeAT",
+                    "XBeeAT.Guard": str(guard),
                     "XBeeAT.KeyFile": key, **settings}
     data = Ice.InitializationData()
     data.properties = Ice.createProperties()

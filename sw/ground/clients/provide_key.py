@@ -1,8 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""provide_key: gives a vehicle its key over the processor's own serial port, in the factory or after a key was lost.
+"""provide_key: gives a vehicle its key over the processor's own serial port, in the factory or
+after a key was lost.
 
-Wire the port to PA9 and PA10, start this, and switch the vehicle on: it listens if the line is in a break while it starts.
+Wire the port to PA9 and PA10, start this, and switch the vehicle on: it listens if the line is in a
+break while it starts.
 """
 
 import argparse
@@ -42,7 +44,8 @@ def read_key(path, vehicle):
             if found:
                 keys[int(found[1], 16) if found[1] else None] = found[2].lower()
     if not keys:
-        raise Failed("'%s' has no key, 32 hexadecimal digits: openssl rand -hex 16 makes one" % path)
+        raise Failed("'%s' has no key, 32 hexadecimal digits: openssl rand -hex 16 makes one" %
+                     path)
     key = keys.get(vehicle, keys.get(None))
     if not key:
         raise Failed("'%s' has no line for the vehicle 0x%04x" % (path, vehicle))
@@ -61,7 +64,8 @@ def provide(port, command, patience):
     end = time.monotonic() + patience
     while "icesoc: key?" not in read_line(port, PAUSE):
         if time.monotonic() > end:
-            raise Failed("no vehicle has asked for %d s: is it wired, and was it switched on meanwhile?" % patience)
+            raise Failed("no vehicle has asked for %d s: is it wired, and was it switched on "
+                         "meanwhile?" % patience)
         fcntl.ioctl(port, TIOCSBRK)
         time.sleep(BREAK)
         termios.tcflush(port, termios.TCIFLUSH)
@@ -77,10 +81,12 @@ def main():
     parser.add_argument("--port", required=True, help="serial port that is wired to the processor")
     what = parser.add_mutually_exclusive_group(required=True)
     what.add_argument("--key", help="file with the key, mode 0600")
-    what.add_argument("--open", action="store_true", help="in place of a key: who has a radio may call the vehicle")
+    what.add_argument("--open", action="store_true",
+                      help="in place of a key: who has a radio may call the vehicle")
     parser.add_argument("--address", type=address, default=1,
                         help="of the vehicle, whose line of the file it is (default: 0x0001)")
-    parser.add_argument("--patience", type=int, default=120, help="seconds without a vehicle until it gives up")
+    parser.add_argument("--patience", type=int, default=120,
+                        help="seconds without a vehicle until it gives up")
     args = parser.parse_args()
     try:
         command = "open" if args.open else "key " + read_key(args.key, args.address)
@@ -90,7 +96,8 @@ def main():
         mode[4] = mode[5] = termios.B115200
         termios.tcsetattr(port, termios.TCSANOW, mode)
         provide(port, command, args.patience)
-        print("provide_key: the vehicle %s" % ("is open" if args.open else "has this key, and no other"))
+        print("provide_key: the vehicle %s" %
+              ("is open" if args.open else "has this key, and no other"))
         return 0
     except (Failed, OSError, termios.error) as e:
         print("provide_key: %s" % e, file=sys.stderr)

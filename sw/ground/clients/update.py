@@ -1,9 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""update: sends new firmware, or a bitstream, to a vehicle, sees it start, and confirms it. Stock ZeroC Ice.
+"""update: sends new firmware, or a bitstream, to a vehicle, sees it start, and confirms it. Stock
+ZeroC Ice.
 
-The package is what pack_update has signed. It goes on where a loss of the link, or of the vehicle's power, has
-left it; so does this program when it is started again. A refused package leaves the vehicle as it was.
+The package is what pack_update has signed. It goes on where a loss of the link, or of the vehicle's
+power, has left it; so does this program when it is started again. A refused package leaves the
+vehicle as it was.
 """
 
 import argparse
@@ -30,7 +32,8 @@ TEXT = {
     "onTrial": "what the vehicle runs is not confirmed yet; it goes back in a minute",
     "flashFault": "the vehicle's flash does not take it",
     "wentBack": "the new one was started and went back: it was not confirmed in time, or crashed",
-    "refused": "the FPGA did not take it: its CRC is wrong, or it is for another device; the golden one runs",
+    "refused": "the FPGA did not take it: its CRC is wrong, or it is for another device; the "
+               "golden one runs",
 }
 
 
@@ -42,7 +45,8 @@ class Failed(Exception):
 
 
 def read_package(path):
-    """Returns the object that the package is for, and its (header, image) by the image's offset in flash."""
+    """Returns the object that the package is for, and its (header, image) by the image's offset in
+    flash."""
     with open(path, "rb") as f:
         data = f.read()
     images, at = {}, 0
@@ -62,8 +66,8 @@ def read_package(path):
 
 
 class Clock:
-    """Returns the vehicle's time in s and the bytes on the air to it: the simulator's (sim_status.h), else the wall
-    clock's and none."""
+    """Returns the vehicle's time in s and the bytes on the air to it: the simulator's
+    (sim_status.h), else the wall clock's and none."""
 
     FORMAT = struct.Struct("<8s3Q")
 
@@ -112,8 +116,10 @@ class Vehicle:
             try:
                 return function()
             except Ice.ObjectNotExistException:
-                raise Failed("this vehicle has no object '%s': it was not started by a boot loader, or its FPGA has no"
-                             " flash that the processor reaches" % self.proxy.ice_getIdentity().name)
+                raise Failed("this vehicle has no object '%s': it was not started by a boot "
+                             "loader, or its FPGA has no"
+                             " flash that the processor reaches" %
+                             self.proxy.ice_getIdentity().name)
             except Ice.LocalException as e:
                 if time.monotonic() > end:
                     raise Failed("no answer for %d s (%s): is the vehicle on, and in reach?"
@@ -147,9 +153,12 @@ class Vehicle:
         while at < len(image) or on_the_way:
             while at < len(image) and len(on_the_way) < PIECES_ON_THE_WAY:
                 piece = image[at:at + PIECE]
-                packed = lz4.block.compress(piece, mode="high_compression", compression=12, store_size=False,
+                packed = lz4.block.compress(piece, mode="high_compression", compression=12,
+                                            store_size=False,
                                             dict=image[max(0, at - dictionary):at])
-                on_the_way.append((at + len(piece), self.proxy.writeAsync(at, len(piece), min(piece, packed, key=len))))
+                on_the_way.append((at + len(piece),
+                                   self.proxy.writeAsync(at, len(piece),
+                                                         min(piece, packed, key=len))))
                 at += len(piece)
             received, future = on_the_way.pop(0)
             self.expect(future.result())
@@ -158,11 +167,13 @@ class Vehicle:
                 say("%d of %d bytes" % (received, len(image)))
         end, air_end = clock.read()
         say("sent %d bytes in %.2f s%s; the vehicle checks them" % (
-            len(image) - first, end - begun, ", %d bytes on the air" % (air_end - air) if air_end else ""))
+            len(image) - first, end - begun, ", %d bytes on the air" % (air_end - air)
+            if air_end else ""))
 
 
 def update(vehicle, images, say, clock, rehearses):
-    """Brings the vehicle to the package's version, confirmed. A rehearsal sees it start and go back."""
+    """Brings the vehicle to the package's version, confirmed. A rehearsal sees it start and go
+    back."""
     version = HEADER.unpack(next(iter(images.values()))[0])[2]
     status = vehicle.status()
     say("the vehicle runs version %d%s" % (status.running, ", on trial" if status.trial else ""))
@@ -213,14 +224,18 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("package", help="what pack_update has written")
     parser.add_argument("--device", help="serial port of the modem")
-    parser.add_argument("--proxy", help="in place of --device: where the object is, as 'update:tcp -h host -p 4061'")
+    parser.add_argument("--proxy",
+                        help="in place of --device: where the object is, as 'update:tcp -h host "
+                             "-p 4061'")
     parser.add_argument("--plugin", help="folder of libxbeeat.so.37")
     parser.add_argument("--slice", required=True, help="Update.ice")
     parser.add_argument("--status", help="the simulator's counters")
     parser.add_argument("--key", default="", help="file with the link's key; without: in the clear")
     parser.add_argument("--guard", type=int, default=1000, help="guard time of the modem, ms")
-    parser.add_argument("--rehearse", action="store_true", help="confirm nothing: see it start, and go back by itself")
-    parser.add_argument("--patience", type=int, default=120, help="seconds without an answer until it gives up")
+    parser.add_argument("--rehearse", action="store_true",
+                        help="confirm nothing: see it start, and go back by itself")
+    parser.add_argument("--patience", type=int, default=120,
+                        help="seconds without an answer until it gives up")
     args = parser.parse_args()
     start = time.monotonic()
 
@@ -232,7 +247,8 @@ def main():
         name, images = read_package(args.package)
         Ice.loadSlice("", ["-I" + (Ice.getSliceDir() or "."), args.slice])
         import Update  # made by loadSlice
-        settings = {"Ice.Default.InvocationTimeout": "60000", "Ice.ACM.Close": "0", "Ice.RetryIntervals": "-1"}
+        settings = {"Ice.Default.InvocationTimeout": "60000", "Ice.ACM.Close": "0",
+                    "Ice.RetryIntervals": "-1"}
         communicator = plugged.initialize(settings, args.plugin, args.guard, args.key)
         where = args.proxy or "%s:xbee-at -d %s -a 0x0001 -s 0x0000 -t 60000" % (name, args.device)
         proxy = Update.FirmwarePrx.uncheckedCast(communicator.stringToProxy(where))
@@ -241,7 +257,8 @@ def main():
     except KeyboardInterrupt:
         return 130
     except Ice.UserException as e:
-        print("update: %s" % (IN_FLIGHT if e.ice_id() == "::Update::InFlight" else e), file=sys.stderr)
+        print("update: %s" % (IN_FLIGHT if e.ice_id() == "::Update::InFlight" else e),
+              file=sys.stderr)
         return 1
     except (Failed, Ice.Exception, OSError) as e:
         print("update: %s" % e, file=sys.stderr)

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# diff: source-folder slice2c work-folder   Which changes of registers are told as breaking, which as compatible.
+# diff: source-folder slice2c work-folder   Which changes of registers are told as breaking, which
+# as compatible.
 set -eu
 source=$1 diff=$1/bus/contract_diff.py slice2c=$2 work=$3
 rm -rf "$work"
@@ -22,17 +23,22 @@ run() { # exit status, trees
     shift
     status=0
     "$diff" "$slice2c" "$@" >"$work/out" 2>&1 || status=$?
-    [ "$status" = "$wanted" ] && ! grep Traceback "$work/out" || { cat "$work/out" && echo "exit status $status" && exit 1; }
+    [ "$status" = "$wanted" ] && ! grep Traceback "$work/out" || { cat "$work/out" &&
+        echo "exit status $status" && exit 1; }
 }
-says() { printf '%s\n' "$@" | cmp -s - "$work/out" || { cat "$work/out" && echo "is not: $*" && exit 1; }; }
+says() { printf '%s\n' "$@" | cmp -s - "$work/out" || { cat "$work/out" && echo "is not: $*" &&
+    exit 1; }; }
 
 run 0 "$work/old" "$work/old"
 says 'no breaking change'
 
 # Everything that breaks.
-sed -e 's/0x4141/0x4142/' -e 's/1024/512/' -e 's/"lsb": 1, "width": 3/"lsb": 2, "width": 2/' -e 's/"START"/"BEGIN"/' \
-    -e 's/"width": 16/"width": 8/' -e 's/"page": 32/"page": 64/' -e 's/"LIMIT", "access": "rw"/"LIMIT", "access": "ro"/' \
-    -e 's/"LOST", "bit": 1/"LOST", "bit": 2/' "$work/old/ip/a/a.regs.json" >"$work/new/ip/a/a.regs.json"
+sed -e 's/0x4141/0x4142/' -e 's/1024/512/' -e 's/"lsb": 1, "width": 3/"lsb": 2, "width": 2/' \
+    -e 's/"START"/"BEGIN"/' \
+    -e 's/"width": 16/"width": 8/' -e 's/"page": 32/"page": 64/' \
+    -e 's/"LIMIT", "access": "rw"/"LIMIT", "access": "ro"/' \
+    -e 's/"LOST", "bit": 1/"LOST", "bit": 2/' "$work/old/ip/a/a.regs.json" \
+    >"$work/new/ip/a/a.regs.json"
 run 1 "$work/old" "$work/new"
 says 'breaking   a: type 0x4141 is 0x4142' \
     'breaking   a: memory_bytes 1024 is 512' \
@@ -50,8 +56,10 @@ says 'breaking   a: type 0x4141 is 0x4142' \
 # Everything that does not.
 mkdir -p "$work/new/ip/b"
 cp "$work/old/ip/b/b.ice" "$work/new/ip/b"
-sed -e 's/"old"/"new"/' -e 's/1024/2048/' -e 's/"width": 16/"width": 17/' -e 's/"STATUS", "access": "ro"/"STATUS", "access": "rw"/' \
-    -e 's/^  {"word": 4/  {"word": 6, "name": "MORE", "access": "ro", "doc": ""},\n&/' "$work/old/ip/a/a.regs.json" >"$work/new/ip/a/a.regs.json"
+sed -e 's/"old"/"new"/' -e 's/1024/2048/' -e 's/"width": 16/"width": 17/' \
+    -e 's/"STATUS", "access": "ro"/"STATUS", "access": "rw"/' \
+    -e 's/^  {"word": 4/  {"word": 6, "name": "MORE", "access": "ro", "doc": ""},\n&/' \
+    "$work/old/ip/a/a.regs.json" >"$work/new/ip/a/a.regs.json"
 run 0 "$work/old" "$work/new"
 says 'compatible a: memory_bytes 1024 is 2048' \
     'compatible a: STATUS is rw, and was ro' \
@@ -62,7 +70,8 @@ says 'compatible a: memory_bytes 1024 is 2048' \
 # An interface in Slice is a contract, too.
 sed -i 's/int value/short value/' "$work/new/ip/b/b.ice"
 run 1 "$work/old" "$work/new"
-grep -q 'breaking   gone: RUN_IN0.VALUE has 16 bits, and had 32' "$work/out" || { cat "$work/out" && exit 1; }
+grep -q 'breaking   gone: RUN_IN0.VALUE has 16 bits, and had 32' "$work/out" ||
+    { cat "$work/out" && exit 1; }
 
 echo '{' >"$work/bad/ip/a/a.regs.json"
 run 2 "$work/old" "$work/bad"
@@ -74,10 +83,12 @@ git -C "$work" add old && git -C "$work" mv old/ip ip && rm -rf "$work/old"
 git -C "$work" -c user.name=t -c user.email=t@t commit -qm old
 sed -i 's/"STATUS"/"STATE"/' "$work/ip/a/a.regs.json"
 run 1 "$work" HEAD
-says 'breaking   a: STATUS (word 4) is gone' 'compatible a: STATE (word 4) is new' '1 breaking change'
+says 'breaking   a: STATUS (word 4) is gone' 'compatible a: STATE (word 4) is new' \
+    '1 breaking change'
 mkdir -p "$work/build/slice" "$work/bus"
 ln -s "$slice2c" "$work/build/slice"
 ln -s "$diff" "$work/bus"
-! "$source/tests/regress/test/make_in.sh" "$source" "$work" build contract-diff BASE=HEAD >"$work/made" 2>&1 && grep -q '^1 breaking change' "$work/made" ||
+! "$source/tests/regress/test/make_in.sh" "$source" "$work" build contract-diff BASE=HEAD \
+    >"$work/made" 2>&1 && grep -q '^1 breaking change' "$work/made" ||
     { cat "$work/made" && exit 1; }
 echo 'diff: all as expected'

@@ -17,10 +17,14 @@ for block in "$work"/new/ip/*.regs.json; do
     [ -f "$work/old/ip/$name" ] || fail "there is no block $name"
 done
 [ "$("$source/bus/contract_diff.py" true "$work/old" "$work/new")" = 'no breaking change' ] ||
-    { "$source/bus/contract_diff.py" true "$work/old" "$work/new" || true; fail 'what comes back is not what was there'; }
-for file in icesoc.svd icesoc.ipxact.xml; do xmllint --noout "$gen/$file" || fail "$file is no XML"; done
+    { "$source/bus/contract_diff.py" true "$work/old" "$work/new" || true;
+    fail 'what comes back is not what was there'; }
+for file in icesoc.svd icesoc.ipxact.xml; do xmllint --noout "$gen/$file" ||
+    fail "$file is no XML"; done
 registers=$(grep -c ' @ 0x[0-9A-F]\{1,2\};' "$gen/icesoc.rdl")
-[ "$registers" -gt 50 ] && [ "$(xmllint --xpath 'count(//*[local-name()="register"])' "$gen/icesoc.ipxact.xml")" = "$registers" ] ||
+[ "$registers" -gt 50 ] &&
+    [ "$(xmllint --xpath 'count(//*[local-name()="register"])' "$gen/icesoc.ipxact.xml")" = \
+    "$registers" ] ||
     fail "IP-XACT has not the $registers registers of SystemRDL"
 
 cat >"$work/lamp.rdl" <<'RDL'
@@ -36,7 +40,8 @@ addrmap lamp {
     reg { field { woclr; hw = w; } DONE[0:0] = 0; field { onwrite = woclr; } OVER[1:1]; } EVENTS @ 6;
 };
 RDL
-"$source/tests/regress/test/make_in.sh" "$source" "$source" none from-rdl RDL="$work/lamp.rdl" OUT="$work" >"$work/log" 2>&1 || { cat "$work/log" && fail 'the lamp was not read'; }
+"$source/tests/regress/test/make_in.sh" "$source" "$source" none from-rdl RDL="$work/lamp.rdl" \
+    OUT="$work" >"$work/log" 2>&1 || { cat "$work/log" && fail 'the lamp was not read'; }
 /usr/bin/python3 - "$work/lamp.regs.json" <<'PYTHON' || fail 'the lamp has other registers'
 import json, sys
 block = json.load(open(sys.argv[1]))
@@ -56,12 +61,14 @@ refused() { # words of the message, the SystemRDL
 }
 refused 'wrong.rdl:2: error: regfile is not of the flat subset' 'addrmap a {\n regfile { } x; };'
 refused 'wrong.rdl:1: error: arrays are not' 'addrmap a { reg { field {} b; } x[4]; };'
-refused 'parameters are not of the flat subset' 'addrmap a { reg t #(longint N = 1) { field {} b; }; };'
+refused 'parameters are not of the flat subset' \
+    'addrmap a { reg t #(longint N = 1) { field {} b; }; };'
 refused "'N' is no number" 'addrmap a { reg { field {} b[N:0]; } x; };'
 refused "'the end' comes where" 'addrmap a { reg { field {} b; } x;'
 refused 'x would be word 16 of its slot' 'addrmap a { reg { field {} b; } x @ 0x34; };'
 refused 'x has no field' 'addrmap a { reg { } x; };'
 refused 'x.b is at bits 39 to 0' 'addrmap a { reg { field {} b[40]; } x; };'
 refused 'there is no addrmap' '// nothing\n'
-! rdl "$work/none.rdl" "$work" && grep -q 'No such file' "$work/log" || fail 'a file that is not there is not said'
+! rdl "$work/none.rdl" "$work" && grep -q 'No such file' "$work/log" ||
+    fail 'a file that is not there is not said'
 echo 'rdl: all as expected'

@@ -1,9 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# cores: source-folder generated-folder work-folder   Lists of cores: what the chip is with them, lint of soc.v
-# with each, and errors.
-# It is shell because a case is a list and the words that programs (coremap, Verilator, GCC, xmllint,
-# Yosys) say of it.
+# cores: source-folder generated-folder work-folder   Lists of cores: what the chip is with them,
+# lint of soc.v with each, and errors. It is shell because a case is a list and the words that
+# programs (coremap, Verilator, GCC, xmllint, Yosys) say of it.
 set -eu
 source=$1 gen=$2 work=$3 coremap=$1/bus/coremap.py regmap=$1/bus/regmap.py
 data=$(cd "$(dirname "$0")/data" && pwd)
@@ -18,25 +17,34 @@ chip() { # name, the list: the chip in $work/name
     out=$work/$1
     mkdir -p "$out"
     printf '%b' "$2" >"$out/cores.list"
-    "$coremap" "$out/cores.list" --base "$source/bus/map.regs.json" --core "led=$data/led.regs.json" \
+    "$coremap" "$out/cores.list" --base "$source/bus/map.regs.json" \
+        --core "led=$data/led.regs.json" \
         --core "adder=$data/adder.regs.json" --core "mover=$data/mover.regs.json" \
-        --core "probe=$source/ip/probe/probe.regs.json" --clocked mover --clocked probe --idle adder --core "tuner=$work/own/tuner.regs.json" --own-clock tuner=48000000 --block "0=system=$source/hdl/system/system.regs.json" --output-dir "$out" 2>"$out/messages"
+        --core "probe=$source/ip/probe/probe.regs.json" --clocked mover --clocked probe \
+        --idle adder --core "tuner=$work/own/tuner.regs.json" --own-clock tuner=48000000 \
+        --block "0=system=$source/hdl/system/system.regs.json" --output-dir "$out" 2>"$out/messages"
 }
 accepted() {
     chip "$@" || { cat "$out/messages" && fail "refused: $2"; }
-    for regs in "$out/map.regs.json" "$data"/*.regs.json "$work"/own/*.regs.json; do "$regmap" "$regs" --output-dir "$out"; done
+    for regs in "$out/map.regs.json" "$data"/*.regs.json "$work"/own/*.regs.json;
+    do "$regmap" "$regs" --output-dir "$out"; done
     # shellcheck disable=SC2086 # a list of folders
-    verilator --lint-only -Wall -I"$out" $(for f in "$out" "$data" "$work/own" "$source"/bus "$source"/hdl/* "$source/ip/probe" "$gen"; do [ ! -d "$f" ] || echo "-y $f"; done) \
+    verilator --lint-only -Wall -I"$out" $(for f in "$out" "$data" "$work/own" "$source"/bus \
+        "$source"/hdl/* "$source/ip/probe" "$gen"; do [ ! -d "$f" ] || echo "-y $f"; done) \
         -I"$gen" --top-module soc "$source/hdl/soc.v"
-    gcc -std=c90 -pedantic -Wall -Wextra -Wmissing-prototypes -Werror -fsyntax-only -I"$out" -I"$data" -I"$source/sw/hw" \
-        -I"$source/sw/hw/registers" -I"$gen/slice/Registers" -I"$source/ip/probe" -I"$gen/slice/Probe" -I"$source/sw/icec" -I"$source/sw/base" "$out/soc_cores.c"
+    gcc -std=c90 -pedantic -Wall -Wextra -Wmissing-prototypes -Werror -fsyntax-only -I"$out" \
+        -I"$data" -I"$source/sw/hw" \
+        -I"$source/sw/hw/registers" -I"$gen/slice/Registers" -I"$source/ip/probe" \
+        -I"$gen/slice/Probe" -I"$source/sw/icec" -I"$source/sw/base" "$out/soc_cores.c"
 }
 refused() { # words of the message, the list
     ! chip refused "$2" || fail "accepted: $2"
-    grep -q -- "$1" "$work/refused/messages" || { cat "$work/refused/messages" && fail "'$1' is not said: $2"; }
+    grep -q -- "$1" "$work/refused/messages" || { cat "$work/refused/messages" &&
+        fail "'$1' is not said: $2"; }
     [ ! -f "$work/refused/soc_cores.vh" ] || fail "files were written in spite of: $1"
 }
-is() { grep -q "^#define MAP_$1 $2U" "$out/map_regs.h" || { grep "$1" "$out/map_regs.h" || true; fail "$1 is not $2"; }; }
+is() { grep -q "^#define MAP_$1 $2U" "$out/map_regs.h" || { grep "$1" "$out/map_regs.h" || true;
+fail "$1 is not $2"; }; }
 
 accepted none '# nothing\n\n'
 is SLOT_COUNT 0x2
@@ -55,95 +63,130 @@ is NPI_PORT_MOVER 0x2
 is NPI_PORT_CAMERA 0x3
 is MEMORY_MOVER 0x1000000
 is MEMORY_CAMERA 0x1000800
-# The pages are XML and HTML that others read (cores.svd holds the former to ARM's schema); the registers are where the map has them.
+# The pages are XML and HTML that others read (cores.svd holds the former to ARM's schema); the
+# registers are where the map has them.
 address=$(xmllint --xpath 'string(//peripheral[name="CAMERA"]/baseAddress)' "$out/icesoc.svd")
 [ "$address" = 0x64000100 ] || fail "CAMERA is at $address in the SVD file"
 [ "$(xmllint --xpath 'string(//peripheral[name="SYSTEM"]/registers/register[name="EVENT"]/modifiedWriteValues)' "$out/icesoc.svd")" = oneToClear ] ||
     fail 'EVENT is not cleared by writing 1 in the SVD file'
-[ "$(xmllint --xpath 'count(//peripheral)' "$out/icesoc.svd")" = 6 ] || fail 'the SVD file has not six peripherals'
+[ "$(xmllint --xpath 'count(//peripheral)' "$out/icesoc.svd")" = 6 ] ||
+    fail 'the SVD file has not six peripherals'
 # Words behind PAGE have maps of their own in SystemRDL, which gives them back, and in IP-XACT.
-"$source/bus/rdl.py" "$out/icesoc.rdl" "$work/back" >"$work/rdl" 2>&1 || { cat "$work/rdl" && fail 'SystemRDL with pages'; }
+"$source/bus/rdl.py" "$out/icesoc.rdl" "$work/back" >"$work/rdl" 2>&1 || { cat "$work/rdl" &&
+    fail 'SystemRDL with pages'; }
 for f in "$data/led.regs.json" "$work/back/led.regs.json"; do
     python3 -c 'import json, sys; print(sorted(json.dumps(dict(r), sort_keys=True) for r in json.load(open(sys.argv[1]))["registers"]))' "$f"
-done | uniq | wc -l | grep -qx 1 || { cat "$work/back/led.regs.json" && fail 'what comes back from SystemRDL is not what was there'; }
+done | uniq | wc -l | grep -qx 1 || { cat "$work/back/led.regs.json" &&
+    fail 'what comes back from SystemRDL is not what was there'; }
 [ "$(xmllint --xpath 'string(//*[local-name()="memoryMap"][*[local-name()="name"]="LED_PAGES"]//*[local-name()="register"][1]/*[local-name()="addressOffset"])' "$out/icesoc.ipxact.xml")" = "'h44" ] ||
     fail 'IP-XACT has not the words behind PAGE'
-xmllint --html --noout "$out/registers.html" 2>"$work/html" || { cat "$work/html" && fail 'registers.html'; }
+xmllint --html --noout "$out/registers.html" 2>"$work/html" || { cat "$work/html" &&
+    fail 'registers.html'; }
 is PIN_CAMERA_SEEN_O 0xB
 grep -q '"eye"' "$out/soc_cores.c" || fail 'the identity is not in the table'
-grep -q '{"camera", MAP_SLOT_CAMERA, .*core_camera_start' "$out/soc_cores.c" && grep -q 'core_camera_table\[\] = {MOVER_TABLE}' "$out/soc_cores.c" ||
+grep -q '{"camera", MAP_SLOT_CAMERA, .*core_camera_start' "$out/soc_cores.c" &&
+    grep -q 'core_camera_table\[\] = {MOVER_TABLE}' "$out/soc_cores.c" ||
     fail 'a core without a servant has not that of its registers'
 accepted unwired 'mover\nmover name=a\nmover name=b level_o=none\nled button_i=none\nmover name=c level_o=none\n'
-grep -q '"a.level_o"' "$out/soc_pins.h" && ! grep -Eq '"(c.level_o|led.button_i)"' "$out/soc_pins.h" && grep -q "button_i(1'd0)" "$out/soc_cores.vh" ||
+grep -q '"a.level_o"' "$out/soc_pins.h" && ! grep -Eq '"(c.level_o|led.button_i)"' \
+    "$out/soc_pins.h" && grep -q "button_i(1'd0)" "$out/soc_cores.vh" ||
     { grep button_i "$out/soc_cores.vh" && fail 'what is no pin has a place'; }
 accepted pins 'led name=eye button_i=@A4\nmover seen_o=@B1 level_o=@C1,C2,C3,C4,C5,C6,C7,C8,C9\n'
-grep -qx '    {"eye.button_i", 0, 1, false},' "$out/soc_pins.h" || fail 'the pin is not in the table'
-grep -qx 'NET "core_pins_i<0>" LOC = "A4"; # eye.button_i\[0\]' "$out/core_pins.ucf" || fail 'the place is not in the constraints'
-grep -qx '# NET "core_pins_o<0>" LOC = "..."; # eye.led_o\[0\]' "$out/core_pins.ucf" || fail 'the pin without a place is not listed'
-grep -qx 'NET "core_pins_o<10>" LOC = "C9"; # mover.level_o\[8\]' "$out/core_pins.ucf" || fail 'the last bit has not its place'
-grep -q 'led u_eye' "$out/soc_cores.vh" && grep -q 'mover #(.CLK_HZ(CLK_HZ)) u_mover' "$out/soc_cores.vh" || fail 'the clock goes to the wrong cores'
-# Chip and firmware have the same hash of a core's registers, which says when these change, and not when their words do.
+grep -qx '    {"eye.button_i", 0, 1, false},' "$out/soc_pins.h" ||
+    fail 'the pin is not in the table'
+grep -qx 'NET "core_pins_i<0>" LOC = "A4"; # eye.button_i\[0\]' "$out/core_pins.ucf" ||
+    fail 'the place is not in the constraints'
+grep -qx '# NET "core_pins_o<0>" LOC = "..."; # eye.led_o\[0\]' "$out/core_pins.ucf" ||
+    fail 'the pin without a place is not listed'
+grep -qx 'NET "core_pins_o<10>" LOC = "C9"; # mover.level_o\[8\]' "$out/core_pins.ucf" ||
+    fail 'the last bit has not its place'
+grep -q 'led u_eye' "$out/soc_cores.vh" && grep -q 'mover #(.CLK_HZ(CLK_HZ)) u_mover' \
+    "$out/soc_cores.vh" || fail 'the clock goes to the wrong cores'
+# Chip and firmware have the same hash of a core's registers, which says when these change, and not
+# when their words do.
 contract() { sed -n "s/.*\"$1\"}, [0-9]*, 0, (Ice_Int)0x\([0-9A-F]*\)U.*/\1/p" "$out/soc_cores.c"; }
 before=$(contract mover)
-[ -n "$before" ] && grep -q "CONTRACTS = {32'h$before, 32'h$(contract eye), 32'h0\{8\}, 32'h$(contract system)};" "$out/soc_cores.vh" ||
+[ -n "$before" ] && grep -q "CONTRACTS = {32'h$before, 32'h$(contract \
+    eye), 32'h0\{8\}, 32'h$(contract system)};" "$out/soc_cores.vh" ||
     { cat "$out/soc_cores.vh" && fail 'the chip has other hashes than the firmware'; }
 changed() { # sed's command for the mover's description: the hash with it
     mkdir -p "$work/changed"
     sed "$1" "$data/mover.regs.json" >"$work/changed/mover.regs.json"
-    "$coremap" "$out/cores.list" --base "$source/bus/map.regs.json" --core "led=$data/led.regs.json" \
+    "$coremap" "$out/cores.list" --base "$source/bus/map.regs.json" --core \
+        "led=$data/led.regs.json" \
         --core "mover=$work/changed/mover.regs.json" --output-dir "$out"
     contract mover
 }
-[ "$(changed 's/With a memory/Having a memory/')" = "$before" ] || fail 'words of a description change the hash'
-[ "$(changed 's/"registers": /&[{"word": 3, "name": "A", "access": "rw", "doc": ""}], "none": /')" != "$before" ] ||
+[ "$(changed 's/With a memory/Having a memory/')" = "$before" ] ||
+    fail 'words of a description change the hash'
+[ "$(changed 's/"registers": /&[{"word": 3, "name": "A", "access": "rw", "doc": ""}], "none": /')" \
+    != "$before" ] ||
     fail 'a register does not change the hash'
 # A servant without a call that waits has neither interrupt nor poll of its own.
 sed 's/"adder_servant.h"/&, "waits": false/' "$data/adder.regs.json" >"$work/adder.regs.json"
 echo adder >"$work/cores.list"
-"$coremap" "$work/cores.list" --base "$source/bus/map.regs.json" --core "adder=$work/adder.regs.json" \
+"$coremap" "$work/cores.list" --base "$source/bus/map.regs.json" \
+    --core "adder=$work/adder.regs.json" \
     --output-dir "$work"
 grep -q '^    Hw_Core_interrupt(&core_adder.core);' "$work/soc_cores.c" &&
     ! grep -q 'Demo_Adder_Core_\(interrupt\|poll\)' "$work/soc_cores.c" ||
     fail 'a servant that waits for nothing is asked for its interrupt or poll'
 # Only a core with idle_o can have a gate; one with a gate in the list has it on the board, too.
 accepted gates 'adder gate=on\nadder name=other\nled\n'
-grep -q 'core_gate #(.GATED(1)) u_gate_adder .*slot_valid\[2\].*clk_adder' "$out/soc_cores.vh" && grep -q '.clk_i(clk_adder)' "$out/soc_cores.vh" ||
+grep -q 'core_gate #(.GATED(1)) u_gate_adder .*slot_valid\[2\].*clk_adder' "$out/soc_cores.vh" &&
+    grep -q '.clk_i(clk_adder)' "$out/soc_cores.vh" ||
     fail 'the core that asked for a gate has none'
-grep -q 'core_gate #(.GATED(GATES)) u_gate_other' "$out/soc_cores.vh" || fail 'a core that asked for no gate has one on the board'
-grep -q '^NET "u_soc/u_gate_adder.g_gate.run" MAXDELAY' "$out/core_pins.ucf" || fail 'the way to the gate is not constrained'
-! grep -q u_gate_led "$out/soc_cores.vh" || fail 'a core that does not say when it is idle has a gate'
-# A clock of a core's own comes from a pin, from another core, or is made of the chip's; ISE is told its period, and what crosses.
+grep -q 'core_gate #(.GATED(GATES)) u_gate_other' "$out/soc_cores.vh" ||
+    fail 'a core that asked for no gate has one on the board'
+grep -q '^NET "u_soc/u_gate_adder.g_gate.run" MAXDELAY' "$out/core_pins.ucf" ||
+    fail 'the way to the gate is not constrained'
+! grep -q u_gate_led "$out/soc_cores.vh" ||
+    fail 'a core that does not say when it is idle has a gate'
+# A clock of a core's own comes from a pin, from another core, or is made of the chip's; ISE is told
+# its period, and what crosses.
 accepted clocks 'led\ntuner clock_i=@A9\ntuner name=other clock_i=led.led_o\ntuner name=made clock=6/25\n'
 is PIN_TUNER_CLOCK_I 0x2
-grep -q '^    tuner_clocked u_tuner' "$out/soc_cores.vh" && grep -q 'clock_i(pin_led_led_o)' "$out/soc_cores.vh" || fail 'a core has not its own clock'
-grep -q 'core_clock #(.MULTIPLY(6), .DIVIDE(25)) u_clock_made' "$out/soc_cores.vh" || fail 'the clock is not made'
-grep -qx 'NET "core_pins_i<2>" TNM_NET = "tuner_clk";' "$out/core_pins.ucf" && grep -qx 'TIMESPEC "TS_tuner_clk" = PERIOD "tuner_clk" 20.833 ns HIGH 50%;' "$out/core_pins.ucf" &&
-    grep -qx 'TIMESPEC "TS_made_clk" = PERIOD "made_clk" 41.667 ns HIGH 50%;' "$out/core_pins.ucf" &&
-    grep -qx 'TIMESPEC "TS_soc_to_other" = FROM "soc_clk" TO "other_clk" 8 ns DATAPATHONLY;' "$out/core_pins.ucf" || fail 'the constraints of a clock'
+grep -q '^    tuner_clocked u_tuner' "$out/soc_cores.vh" && grep -q 'clock_i(pin_led_led_o)' \
+    "$out/soc_cores.vh" || fail 'a core has not its own clock'
+grep -q 'core_clock #(.MULTIPLY(6), .DIVIDE(25)) u_clock_made' "$out/soc_cores.vh" ||
+    fail 'the clock is not made'
+grep -qx 'NET "core_pins_i<2>" TNM_NET = "tuner_clk";' "$out/core_pins.ucf" &&
+    grep -qx 'TIMESPEC "TS_tuner_clk" = PERIOD "tuner_clk" 20.833 ns HIGH 50%;' \
+    "$out/core_pins.ucf" &&
+    grep -qx 'TIMESPEC "TS_made_clk" = PERIOD "made_clk" 41.667 ns HIGH 50%;' \
+    "$out/core_pins.ucf" &&
+    grep -qx 'TIMESPEC "TS_soc_to_other" = FROM "soc_clk" TO "other_clk" 8 ns DATAPATHONLY;' \
+    "$out/core_pins.ucf" || fail 'the constraints of a clock'
 refused 'clock=3/4: 75000000 Hz' 'tuner clock=3/4\n'
 refused 'clock=2/99: 2020202 Hz' 'tuner clock=2/99\n'
 refused 'clock=9/8: a part of' 'tuner clock=9/8\n'
 refused 'clock=x: a part of' 'tuner clock=x\n'
 refused "has no input pin 'clock'" 'led clock=6/25\n'
-! "$regmap" "$data/mover.regs.json" --clocked --output-dir "$work" 2>"$work/messages" && grep -q 'a core with a memory port has the chip' "$work/messages" ||
+! "$regmap" "$data/mover.regs.json" --clocked --output-dir "$work" 2>"$work/messages" &&
+    grep -q 'a core with a memory port has the chip' "$work/messages" ||
     fail 'a memory port in another clock'
 # Registers and fields whose names are one in the headers.
 for names in 'A B A_B_LSB' 'A_B_LSB C A_B_LSB'; do
     # shellcheck disable=SC2086 # three words
     printf '{"block": "b", "doc": "", "registers": [{"word": 0, "name": "%s", "access": "ro", "doc": "",
         "fields": [{"name": "%s", "doc": "", "lsb": 0, "width": 1}]}, {"word": 1, "name": "%s", "access": "ro", "doc": ""}]}' $names >"$work/twice.regs.json"
-    ! "$regmap" "$work/twice.regs.json" --output-dir "$work" 2>"$work/messages" && grep -q 'A_B_LSB is there twice' "$work/messages" ||
+    ! "$regmap" "$work/twice.regs.json" --output-dir "$work" 2>"$work/messages" &&
+        grep -q 'A_B_LSB is there twice' "$work/messages" ||
         fail "registers and fields of one name ($names)"
 done
-# A probe has its signals by name, at any depth, in Verilator and, flattened, in Yosys; the ground is told which they are.
+# A probe has its signals by name, at any depth, in Verilator and, flattened, in Yosys; the ground
+# is told which they are.
 accepted probe 'adder\nprobe signals=u_adder.u_registers.u_wrapper.mask,u_modem.u_timer.clocks:17\nprobe name=other signals=u_adder.irq_o\n'
-yosys -q -p "verilog_defaults -add -I$out -I$gen $(for f in bus hdl/fsmc hdl/ddr hdl/modem hdl/system hdl/cdc; do printf -- '-I%s ' "$source/$f"; done)
+yosys -q -p "verilog_defaults -add -I$out -I$gen $(for f in bus hdl/fsmc hdl/ddr hdl/modem \
+    hdl/system hdl/cdc; do printf -- '-I%s ' "$source/$f"; done)
     read_verilog $source/hdl/soc.v
-    hierarchy -top soc $(for f in "$out" "$data" "$source/ip/probe" "$gen" "$source"/bus "$source"/hdl/*; do [ ! -d "$f" ] || printf -- '-libdir %s ' "$f"; done)
+    hierarchy -top soc $(for f in "$out" "$data" "$source/ip/probe" "$gen" "$source"/bus \
+        "$source"/hdl/*; do [ ! -d "$f" ] || printf -- '-libdir %s ' "$f"; done)
     proc; flatten; opt_clean; check -assert; select -assert-count 1 w:u_adder.u_registers.u_wrapper.mask" >"$work/yosys" 2>&1 ||
     { cat "$work/yosys" && fail 'Yosys does not join a signal with the probe'; }
 hash=$(sed -n 's/.*"names":\([0-9]*\),"signals":\[\["u_adder.irq_o".*/\1/p' "$out/probes.json")
-grep -q "WORDS(1), .NAMES(32'h$(printf %08X "$hash"))) u_other" "$out/soc_cores.vh" || fail 'chip and ground have other hashes of what a probe records'
+grep -q "WORDS(1), .NAMES(32'h$(printf %08X "$hash"))) u_other" "$out/soc_cores.vh" ||
+    fail 'chip and ground have other hashes of what a probe records'
 refused "1: error: 'probe' records nothing" 'probe\n'
 refused "signals: 'u_a.b:0' is no name and width" 'probe signals=u_a.b:0\n'
 refused 'signals: 224 bits; a probe has 223' 'probe signals=a:200,b:24\n'
@@ -159,7 +202,8 @@ is MEMORY_CAMERA 0x1001000
 refused 'memory=0x1000400: buffers of 2048 bytes begin at a multiple' 'mover memory=0x1000400\n'
 refused 'memory=0x0: buffers of 2048 bytes begin' 'mover memory=0\n'
 refused 'memory=0x8000000: buffers' 'mover memory=0x8000000\n'
-refused '2: error: memory=0x1000800 is within the buffers of line 1' 'mover memory=0x1000800\nmover name=b memory=0x1000800\n'
+refused '2: error: memory=0x1000800 is within the buffers of line 1' \
+    'mover memory=0x1000800\nmover name=b memory=0x1000800\n'
 refused 'memory=1x: a byte address' 'mover memory=1x\n'
 refused 'memory=0x1000000: a byte address in DDR3, for a core with buffers' 'led memory=0x1000000\n'
 refused "1: error: there is no core 'nobody'" 'nobody\n'
@@ -182,6 +226,7 @@ refused 'gate=off: on, or without the word' 'adder gate=off\n'
 refused "no core's output of 1 bits" 'led button_i=mover.nothing_o\n'
 refused "_o=none: it is no pin" 'mover\nmover name=a\nmover name=b\nmover name=c\n'
 "$coremap" --help | grep -q 'a core a line' || fail 'no help'
-! "$coremap" "$work/missing" --base "$source/bus/map.regs.json" 2>"$work/messages" || fail 'a missing list is accepted'
+! "$coremap" "$work/missing" --base "$source/bus/map.regs.json" 2>"$work/messages" ||
+    fail 'a missing list is accepted'
 grep -q 'cannot read' "$work/messages" || fail 'a missing list is not said'
 echo 'cores: all as expected'

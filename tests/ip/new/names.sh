@@ -23,7 +23,8 @@ refused() { # words of the message, arguments
     status=0
     new "$@" >"$work/log" 2>&1 || status=$?
     [ $status = 1 ] || [ $status = 2 ] || { echo "exit status $status: $*" && exit 1; }
-    grep -q -- "$words" "$work/log" || { cat "$work/log" && echo "'$words' is not said: $*" && exit 1; }
+    grep -q -- "$words" "$work/log" || { cat "$work/log" && echo "'$words' is not said: $*" &&
+        exit 1; }
     [ "$(ls "$work/ip")" = "$before" ] || { echo "files were written: $*" && exit 1; }
 }
 refused 'make new-ip NAME=low_pass'
@@ -48,7 +49,8 @@ printf '#!/bin/sh\nexec "%s" "$@"\n' "$slice2c" >"$work/build/slice/slice2c"
 chmod +x "$work/build/slice/slice2c"
 refused "cannot read .*none.ice" fir --lang verilog --ice "$work/none.ice"
 printf '#include <b.ice>\n #  include "c/d.ice"\n' >"$work/a.ice"
-refused 'a.ice includes b.ice c/d.ice: a core has one Slice file' fir --lang verilog --ice "$work/a.ice"
+refused 'a.ice includes b.ice c/d.ice: a core has one Slice file' fir --lang verilog \
+    --ice "$work/a.ice"
 echo 'module M { interface Fir { void f(); }; };' >"$work/a.ice"
 refused 'is not an interface in hardware' fir --lang verilog --ice "$work/a.ice"
 echo 'module M { [":hw"] interface Fir { void f(string s); }; };' >"$work/a.ice"
@@ -58,30 +60,38 @@ refused "has the cores iir: the name is that of the only one" fir --lang verilog
 echo 'module M { [":hw"] interface LowPass { ["hw:long"] int f(short a); }; };' >"$work/a.ice"
 for language in verilog vhdl; do
     new low_pass --lang $language --ice "$work/a.ice" >/dev/null
-    grep -q "low_pass_wrapper" "$work"/ip/low_pass/low_pass.v* && grep -q 'core.f(a)' "$work/ip/low_pass/low_pass_test.cpp" ||
+    grep -q "low_pass_wrapper" "$work"/ip/low_pass/low_pass.v* &&
+        grep -q 'core.f(a)' "$work/ip/low_pass/low_pass_test.cpp" ||
         { echo 'ip/low_pass is not made from its interface' && exit 1; }
     echo 'low_pass identity=a' >"$work/ip/cores.list"
     [ $language = vhdl ] || echo 'fir b_i=low_pass.c_o' >>"$work/ip/cores.list"
-    [ $language = vhdl ] || { ! remove low_pass 2>"$work/log" && grep -q 'inputs of fir' "$work/log" && sed -i 2d "$work/ip/cores.list"; }
+    [ $language = vhdl ] || { ! remove low_pass 2>"$work/log" &&
+        grep -q 'inputs of fir' "$work/log" && sed -i 2d "$work/ip/cores.list"; }
     remove low_pass >/dev/null
-    [ ! -e "$work/ip/low_pass" ] && [ ! -s "$work/ip/cores.list" ] || { echo 'rm-ip left something' && exit 1; }
+    [ ! -e "$work/ip/low_pass" ] && [ ! -s "$work/ip/cores.list" ] ||
+        { echo 'rm-ip left something' && exit 1; }
 done
 # An input that only cores drive does not keep the core that drives it.
 new low_pass --lang verilog --ice "$work/a.ice" >/dev/null
 mkdir -p "$work/ip/taker"
-echo '{"pins": [{"name": "b_i", "internal": true}, {"name": "c_i", "width": 2}]}' >"$work/ip/taker/taker.regs.json"
+echo '{"pins": [{"name": "b_i", "internal": true}, {"name": "c_i", "width": 2}]}' \
+    >"$work/ip/taker/taker.regs.json"
 printf 'low_pass\ntaker c_i=low_pass.c_o b_i=low_pass.b_o\n' >"$work/ip/cores.list"
-! remove low_pass 2>"$work/log" && grep -q 'inputs of taker' "$work/log" || { echo 'rm-ip makes a pin of an input' && exit 1; }
+! remove low_pass 2>"$work/log" && grep -q 'inputs of taker' "$work/log" ||
+    { echo 'rm-ip makes a pin of an input' && exit 1; }
 printf 'low_pass\ntaker b_i=low_pass.b_o\n' >"$work/ip/cores.list"
 remove low_pass >/dev/null
-[ "$(cat "$work/ip/cores.list")" = 'taker b_i=low_pass.b_o' ] || { echo 'rm-ip keeps the core, or takes another line' && exit 1; }
+[ "$(cat "$work/ip/cores.list")" = 'taker b_i=low_pass.b_o' ] ||
+    { echo 'rm-ip keeps the core, or takes another line' && exit 1; }
 rm -r "$work/ip/taker"
 for wrong in '' nobody template ../bus; do
-    ! remove "$wrong" 2>"$work/log" && grep -q 'not a core\|there is no ip/' "$work/log" || { echo "rm-ip takes '$wrong'" && exit 1; }
+    ! remove "$wrong" 2>"$work/log" && grep -q 'not a core\|there is no ip/' "$work/log" ||
+        { echo "rm-ip takes '$wrong'" && exit 1; }
 done
 # Uncommitted work stays, unless forced.
 (cd "$work" && git init -q . && new fir --lang verilog >/dev/null)
-! remove fir 2>"$work/log" && grep -q 'not committed' "$work/log" && [ -d "$work/ip/fir" ] || { echo 'rm-ip loses work' && exit 1; }
+! remove fir 2>"$work/log" && grep -q 'not committed' "$work/log" && [ -d "$work/ip/fir" ] ||
+    { echo 'rm-ip loses work' && exit 1; }
 remove fir --force >/dev/null
 [ ! -e "$work/ip/fir" ] || { echo 'rm-ip FORCE=1 left it' && exit 1; }
 rm -rf "$work/.git" "$work/build"
@@ -92,7 +102,8 @@ refused 'nothing was changed' fir --lang verilog
 rm -r "$work/build"
 made() { "$source/tests/regress/test/make_in.sh" "$source" "$work" build "$@"; }
 made new-ip NAME=fir LANG=verilog | grep -q 'make ip-test IP=fir'
-[ -f "$work/ip/fir/fir.v" ] && ! grep -rq '@[A-Z]*@' "$work/ip/fir" || { echo 'ip/fir is not what it should be' && exit 1; }
+[ -f "$work/ip/fir/fir.v" ] && ! grep -rq '@[A-Z]*@' "$work/ip/fir" ||
+    { echo 'ip/fir is not what it should be' && exit 1; }
 made rm-ip NAME=fir FORCE=1 >/dev/null
 [ ! -e "$work/ip/fir" ] || { echo 'make rm-ip left it' && exit 1; }
 echo 'names: all as expected'

@@ -11,7 +11,8 @@ refused() { # words of the message, arguments
     words=$1
     shift
     ! "$new" "$@" >"$work/log" 2>&1 || { echo "accepted: $*" && exit 1; }
-    grep -q -- "$words" "$work/log" && ! grep -q Traceback "$work/log" || { cat "$work/log" && echo "'$words' is not said: $*" && exit 1; }
+    grep -q -- "$words" "$work/log" && ! grep -q Traceback "$work/log" || { cat "$work/log" &&
+        echo "'$words' is not said: $*" && exit 1; }
     [ ! -e "$work/out" ] || { echo "something was written: $*" && exit 1; }
 }
 : >"$work/timescale.v"
@@ -25,69 +26,101 @@ refused "not 'spi'" my_port wb_port spi "$work/out" "$here/wb_port.v"
 refused 'is there already' my_port wb_port wishbone "$work" "$here/wb_port.v"
 refused 'small letters' My wb_port wishbone "$work/out" "$here/wb_port.v"
 refused "'event' is a reserved word" event wb_port wishbone "$work/out" "$here/wb_port.v"
-refused "'npi_fifo' is the name of this project's module in hdl" npi_fifo wb_port wishbone "$work/out" "$here/wb_port.v"
-refused "'wb_port' is the name of a module of the core" wb_port wb_port wishbone "$work/out" "$here/wb_port.v"
+refused "'npi_fifo' is the name of this project's module in hdl" npi_fifo wb_port wishbone \
+    "$work/out" "$here/wb_port.v"
+refused "'wb_port' is the name of a module of the core" wb_port wb_port wishbone "$work/out" \
+    "$here/wb_port.v"
 refused 'no Verilog or VHDL file' my_port wb_port wishbone "$work/out" "$work/none.v"
-refused "no module 'nobody' in FILES; there is wb_port" my_port nobody wishbone "$work/out" "$here/wb_port.v"
+refused "no module 'nobody' in FILES; there is wb_port" my_port nobody wishbone "$work/out" \
+    "$here/wb_port.v"
 refused 'does not elaborate broken' my_port broken wishbone "$work/out" "$work/broken.v"
 refused "inout port 'sda'" my_port pads wishbone "$work/out" "$work/pads.v"
 refused 'has no port for awvalid' my_port wb_port axil "$work/out" "$here/wb_port.v"
 refused 'has a space in its name' my_port wb_port wishbone "$work/out" "$work/a b.v"
 sed '1i // module wb_port' "$here/wb_port.v" >"$work/again.v"
-refused "again.v:6: module 'wb_port' is in .*/wb_port.v:5, too" my_port wb_port wishbone "$work/out" "$here/wb_port.v" "$work/again.v"
+refused "again.v:6: module 'wb_port' is in .*/wb_port.v:5, too" my_port wb_port wishbone \
+    "$work/out" "$here/wb_port.v" "$work/again.v"
 echo 'module npi_fifo(input clk); endmodule' >"$work/ours.v"
-refused "ours.v:1: module 'npi_fifo' has the name of .*hdl/ddr/npi_fifo.v:" my_port wb_port wishbone "$work/out" "$here/wb_port.v" "$work/ours.v"
+refused "ours.v:1: module 'npi_fifo' has the name of .*hdl/ddr/npi_fifo.v:" my_port wb_port \
+    wishbone "$work/out" "$here/wb_port.v" "$work/ours.v"
 sed '1i `include "sizes.vh"' "$here/wb_port.v" >"$work/head.v"
 refused "sizes.vh.*" my_port wb_port wishbone "$work/out" "$work/head.v"
 refused 'FILES may name headers' my_port wb_port wishbone "$work/out" "$work/head.v"
 printf 'package sizes; endpackage\nmodule top(input clk); endmodule\n' >"$work/top.sv"
 refused "top.sv:1: package 'sizes'" my_port top wishbone "$work/out" "$work/top.sv"
-refused 'all Verilog or all VHDL' my_port wb_port wishbone "$work/out" "$here/wb_port.v" "$here/lamps.vhd"
-refused "TOP is the name of a module or an entity, not 'wb_port; x'" my_port 'wb_port; x' wishbone "$work/out" "$here/wb_port.v"
+refused 'all Verilog or all VHDL' my_port wb_port wishbone "$work/out" "$here/wb_port.v" \
+    "$here/lamps.vhd"
+refused "TOP is the name of a module or an entity, not 'wb_port; x'" my_port 'wb_port; x' wishbone \
+    "$work/out" "$here/wb_port.v"
 refused "no entity 'lamp' in FILES; there is lamps" my_port lamp own "$work/out" "$here/lamps.vhd"
-refused 'no port for write, wdata, rdata: .*PORTS=' my_port req_words own "$work/out" "$here/req_words.v"
-refused "'grant' is none of .*select, strobe" my_port req_words own "$work/out" grant=gnt "$here/req_words.v"
+refused 'no port for write, wdata, rdata: .*PORTS=' my_port req_words own "$work/out" \
+    "$here/req_words.v"
+refused "'grant' is none of .*select, strobe" my_port req_words own "$work/out" grant=gnt \
+    "$here/req_words.v"
 refused "has no port 'go'" my_port req_words own "$work/out" write=go "$here/req_words.v"
-refused "ack is an output of a core, and 'req' is not" my_port req_words own "$work/out" ack=req "$here/req_words.v"
-refused 'a strobe of one clock needs an ack' my_port req_words own "$work/out" strobe=req write=wr wdata=value rdata=held clock=clock "$here/req_words.v"
-refused "FILES lacks the file with module 'inner'" my_port outer wishbone "$work/out" "$work/outer.v"
-refused "PARAMS: axil_words has no 'WIDTH'" my_port axil_words axil "$work/out" PARAM:WIDTH=8 "$here/axil_words.v"
-refused "'my_wide' of .* has 64 bits" my_port wide own "$work/out" select=clk_en write=we address=a wdata=my_wide rdata=q "$work/wide.v"
+refused "ack is an output of a core, and 'req' is not" my_port req_words own "$work/out" ack=req \
+    "$here/req_words.v"
+refused 'a strobe of one clock needs an ack' my_port req_words own "$work/out" strobe=req write=wr \
+    wdata=value rdata=held clock=clock "$here/req_words.v"
+refused "FILES lacks the file with module 'inner'" my_port outer wishbone "$work/out" \
+    "$work/outer.v"
+refused "PARAMS: axil_words has no 'WIDTH'" my_port axil_words axil "$work/out" PARAM:WIDTH=8 \
+    "$here/axil_words.v"
+refused "'my_wide' of .* has 64 bits" my_port wide own "$work/out" select=clk_en write=we \
+    address=a wdata=my_wide rdata=q "$work/wide.v"
 refused 'include looks for timescale.v' my_port apb_words apb "$work/out" "$here/apb_words.v"
 refused 'sv2v' my_port odd memory "$work/out" "$work/odd.sv"
 refused "no port for ack: .*ack=1" my_port wbs_names wishbone "$work/out" "$here/wbs_names.v"
-refused "more than one port for rdata: wbs_dat_o, spare" my_port wbs_names wishbone "$work/out" rdata=spare ack=1 "$here/wbs_names.v"
+refused "more than one port for rdata: wbs_dat_o, spare" my_port wbs_names wishbone "$work/out" \
+    rdata=spare ack=1 "$here/wbs_names.v"
 echo 'module two(input clk, input [7:0] a_tdata, b_tdata, input a_tvalid, output [7:0] o_tdata, output o_tvalid, input o_tready); endmodule' >"$work/two.v"
 echo 'module odd(input clk, input [23:0] i_tdata, input i_tvalid, output [7:0] o_tdata, output o_tvalid, input o_tready); endmodule' >"$work/odd.v"
-refused 'more than one port for s_tdata: a_tdata, b_tdata' my_port two axis "$work/out" "$work/two.v"
-refused 'odd has 24 and 8 bits: it must be 8, 16, 32 or 64' my_port odd axis "$work/out" "$work/odd.v"
+refused 'more than one port for s_tdata: a_tdata, b_tdata' my_port two axis "$work/out" \
+    "$work/two.v"
+refused 'odd has 24 and 8 bits: it must be 8, 16, 32 or 64' my_port odd axis "$work/out" \
+    "$work/odd.v"
 refused 'has no port for s_tdata' my_port wb_port axis "$work/out" "$here/wb_port.v"
-refused "CLOCK=fast: the frequency" my_port wb_port wishbone "$work/out" CLOCK=fast "$here/wb_port.v"
-refused 'ADDRESS=fast: words or bytes' my_port wb_port wishbone "$work/out" ADDRESS=fast "$here/wb_port.v"
-refused 'ack= is not for it' my_port apb_words apb "$work/out" ack=1 pin=PREADY "$here/apb_words.v" "$work/timescale.v"
-refused 'CLOCK: a core with AXI-Streams' my_port axis_scale axis "$work/out" CLOCK=24000000 "$here/cores.v"
-refused 'LIBRARY: .* these are Verilog' my_port req_words own "$work/out" LIBRARY=lights "$here/req_words.v"
-refused 'a setting is for BUS=axis' my_port req_words own "$work/out" setting=value "$here/req_words.v"
-refused "setting is an input of a core, and 'over' is not" my_port axis_scale axis "$work/out" setting=over "$here/cores.v"
+refused "CLOCK=fast: the frequency" my_port wb_port wishbone "$work/out" CLOCK=fast \
+    "$here/wb_port.v"
+refused 'ADDRESS=fast: words or bytes' my_port wb_port wishbone "$work/out" ADDRESS=fast \
+    "$here/wb_port.v"
+refused 'ack= is not for it' my_port apb_words apb "$work/out" ack=1 pin=PREADY \
+    "$here/apb_words.v" "$work/timescale.v"
+refused 'CLOCK: a core with AXI-Streams' my_port axis_scale axis "$work/out" CLOCK=24000000 \
+    "$here/cores.v"
+refused 'LIBRARY: .* these are Verilog' my_port req_words own "$work/out" LIBRARY=lights \
+    "$here/req_words.v"
+refused 'a setting is for BUS=axis' my_port req_words own "$work/out" setting=value \
+    "$here/req_words.v"
+refused "setting is an input of a core, and 'over' is not" my_port axis_scale axis "$work/out" \
+    setting=over "$here/cores.v"
 # Of two cores in one chip.
-! "${new%/*}/foreign_files.py" "$here/wb_port.v" "$work/again.v" 2>"$work/log" && grep -q "again.v:6: module 'wb_port' is in .*a chip has one of each" "$work/log" ||
+! "${new%/*}/foreign_files.py" "$here/wb_port.v" "$work/again.v" 2>"$work/log" &&
+    grep -q "again.v:6: module 'wb_port' is in .*a chip has one of each" "$work/log" ||
     { cat "$work/log" && exit 1; }
 # Meanings of names.
 "$new" my_port wbs_names wishbone "$work/names" ack=2 open=spare "$here/wbs_names.v" >"$work/log"
-for line in 'wbs_clk: clock' 'rst_ni: resetn' 'gate_clk_pad_i: pin' 'clk_div: pin' 'wbs_cyc_i: cyc' 'wbs_adr_i: adr, counts words: it has 2 bits; if not, ADDRESS=bytes' 'wbs_cti_i: low' 'intr: interrupt' 'spare: open'; do
+for line in 'wbs_clk: clock' 'rst_ni: resetn' 'gate_clk_pad_i: pin' 'clk_div: pin' \
+    'wbs_cyc_i: cyc' 'wbs_adr_i: adr, counts words: it has 2 bits; if not, ADDRESS=bytes' \
+    'wbs_cti_i: low' 'intr: interrupt' 'spare: open'; do
     grep -q "^  $line" "$work/log" || { cat "$work/log" && echo "'$line' is not said" && exit 1; }
 done
 # A register is as wide as its written, or read, data.
 echo 'module narrow(input clk, we, input [16:0] d, output [12:0] q); assign q = d[12:0]; endmodule' >"$work/narrow.v"
-"$new" my_port narrow own "$work/narrow" write=we wdata=d rdata=q "$work/narrow.v" >"$work/log" && grep -q '"width": 17' "$work/narrow/my_port.regs.json" ||
+"$new" my_port narrow own "$work/narrow" write=we wdata=d rdata=q "$work/narrow.v" >"$work/log" &&
+    grep -q '"width": 17' "$work/narrow/my_port.regs.json" ||
     { cat "$work/log" && echo 'a register has not 17 bits' && exit 1; }
 # The same by make, and one that is taken.
 mkdir -p "$work/tree/ip"
 ln -s "$new" "$work/tree/ip"
-made() { "${new%/ip/*}/tests/regress/test/make_in.sh" "${new%/ip/*}" "$work/tree" build new-foreign NAME=my_port TOP=req_words BUS=own FILES="$here/req_words.v" "$@" >"$work/log" 2>&1; }
+made() { "${new%/ip/*}/tests/regress/test/make_in.sh" "${new%/ip/*}" "$work/tree" build \
+    new-foreign NAME=my_port TOP=req_words BUS=own FILES="$here/req_words.v" "$@" >"$work/log" \
+    2>&1; }
 ! made && grep -q "PORTS=" "$work/log" || { cat "$work/log" && exit 1; }
-made CLOCK=24000000 PORTS='select=req write=wr address=where wdata=value rdata=held ack=gnt' && [ -s "$work/tree/ip/my_port/my_port.regs.json" ] ||
+made CLOCK=24000000 PORTS='select=req write=wr address=where wdata=value rdata=held ack=gnt' &&
+    [ -s "$work/tree/ip/my_port/my_port.regs.json" ] ||
     { cat "$work/log" && exit 1; }
-made NAME=my_bridge TOP=apb_words BUS=apb FILES="$here/apb_words.v $work/timescale.v" PARAMS=WORDS=3 PORTS= && grep -q 'WORDS(3)' "$work/tree/ip/my_bridge/my_bridge.v" ||
+made NAME=my_bridge TOP=apb_words BUS=apb FILES="$here/apb_words.v $work/timescale.v" \
+    PARAMS=WORDS=3 PORTS= && grep -q 'WORDS(3)' "$work/tree/ip/my_bridge/my_bridge.v" ||
     { cat "$work/log" && exit 1; }
 echo 'refused: all as expected'

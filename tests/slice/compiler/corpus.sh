@@ -1,10 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# corpus: inputs for the compiler's fuzzer: every Slice file of the tests, cases of the agreement test in a file each.
-# Usage: corpus.sh output-folder source-folder
+# corpus: inputs for the compiler's fuzzer: every Slice file of the tests, cases of the agreement
+# test in a file each. Usage: corpus.sh output-folder source-folder
 set -eu
 rm -rf "$1"
 mkdir -p "$1"
 find "$2" -name '*.ice' | while read -r file; do
-    awk -v to="$1/$(basename "$file" .ice)" '/^\/\/ (ok|warning|error): / { n++ } { print > (to "_" n ".ice") }' "$file"
+    awk -v to="$1/$(basename "$file" .ice)" \
+        '/^\/\/ (ok|warning|error): / { n++ } { print > (to "_" n ".ice") }' "$file"
 done

@@ -4,9 +4,10 @@
 
     names.py SLICE2C SW WORK
 
-The C of TEMPLATES gives the identifiers. Each of them takes the place of X in each template, in a module of its own;
-a kind of name is one Slice file, whose C must compile as C90 and whose header as C++. slice2c may refuse a name with
-an underscore that would be one of C's file scope; names without one (Slice's default) must all be taken.
+The C of TEMPLATES gives the identifiers. Each of them takes the place of X in each template, in a
+module of its own; a kind of name is one Slice file, whose C must compile as C90 and whose header as
+C++. slice2c may refuse a name with an underscore that would be one of C's file scope; names without
+one (Slice's default) must all be taken.
 """
 import os
 import re
@@ -42,13 +43,16 @@ TEMPLATES = {
     "long_constant": "const long X = 5; const int qa = 1; const string qb = \"a\";",
     "constant": "const int X = 5; struct qS { int qa = X; };",
     "struct": "struct X { int qa; }; sequence<X> qT; interface qI { X qop(X qa, out qT qb); };",
-    "class": COMMON + "class X { int qa; }; class qD extends X { X qb; }; interface qI { X qop(X qa, X* qb) throws qE; };",
+    "class": COMMON +
+    "class X { int qa; }; class qD extends X { X qb; }; interface qI { X qop(X qa, X* qb) throws "
+    "qE; };",
     "interface": COMMON + """interface X { int qa(X* qb) throws qE; }; interface qI extends X { void qop(); };
         class qD implements X { int qb; };""",
     "sequence": "sequence<int> X; struct qS { X qa; }; [\"c:max:4\"] sequence<X> qT;",
     "dictionary": "dictionary<int, string> X; struct qS { X qa; };",
     "enum": "enum X { qa, qb }; struct qS { X qc = qb; };",
-    "module": "module X { struct qS { int qa; }; exception qE { int qa; }; interface qI { int qop(qS qa) throws qE; }; };",
+    "module": "module X { struct qS { int qa; }; exception qE { int qa; }; interface qI { int "
+              "qop(qS qa) throws qE; }; };",
 }
 KEYWORDS = set("""module class interface exception struct sequence dictionary enum out extends implements throws void byte
     bool short int long float double string Object LocalObject local const false true idempotent optional Value""".split())
@@ -77,14 +81,16 @@ def identifiers(folder):
 
 
 def is_slice_name(name):
-    return re.match("[A-Za-z]", name) and not (name.endswith(("_", "Helper", "Holder", "Prx", "Ptr")) or "__" in name
+    return re.match("[A-Za-z]", name) and not (name.endswith(("_", "Helper", "Holder", "Prx",
+                                                              "Ptr")) or "__" in name
                 or re.fullmatch(r"q\w{1,3}(Disp)?", name))  # the templates' own
 
 
 def written(module, template, name):
     name = re.sub(r"^M_", module + "_", name)
     name = "\\" + name if name in KEYWORDS else name
-    return f"module {module} {{ " + re.sub(r"\bX\b", lambda _: name, " ".join(template.split())) + " };\n"
+    return f"module {module} {{ " + re.sub(r"\bX\b", lambda _: name,
+                                           " ".join(template.split())) + " };\n"
 
 
 def main():
@@ -100,13 +106,16 @@ def main():
     for kind, template in TEMPLATES.items():
         folder = f"{WORK}/{kind}"
         # A name with M_ in it exists only in the C of its own template.
-        names = sorted(n for n in own[kind] | {n for n in parts if "M_" not in n} if is_slice_name(n))
+        names = sorted(n for n in own[kind] | {n for n in parts if "M_" not in n}
+                       if is_slice_name(n))
         left = dict(enumerate(names, 2))  # by line
         tried += len(left)
         while True:
-            text = "".join(written(f"M{n}", template, left[n]) if n in left else "\n" for n in range(2, len(names) + 2))
+            text = "".join(written(f"M{n}", template, left[n]) if n in left else "\n"
+                           for n in range(2, len(names) + 2))
             result = compile_slice(folder, text)
-            lines = {int(n) for n in re.findall(r"^[^\n]*unit\.ice:(\d+):\d+: error", result.stderr, flags=re.M)}
+            lines = {int(n) for n in re.findall(r"^[^\n]*unit\.ice:(\d+):\d+: error", result.stderr,
+                                                flags=re.M)}
             if result.returncode == 0:
                 break
             if not lines:
@@ -117,14 +126,18 @@ def main():
                 if "_" not in name:
                     bad.append(f"{kind} '{name}': slice2c refuses it")
         with open(f"{folder}/whole.c", "w") as out:
-            out.writelines(f'#include "unit_{part}.c"\n' for part in ("types", "client", "async", "server"))
+            out.writelines(f'#include "unit_{part}.c"\n'
+                           for part in ("types", "client", "async", "server"))
         with open(f"{folder}/whole.cpp", "w") as out:
             out.write('#include "unit.h"\n')
-        for compiler in (["gcc", *C_FLAGS, "whole.c"], ["g++", "-std=c++17", "-Wall", "-Werror", "whole.cpp"]):
-            result = run([*compiler, "-fsyntax-only", "-fmax-errors=200", "-I.", *INCLUDES], cwd=folder)
+        for compiler in (["gcc", *C_FLAGS, "whole.c"],
+                         ["g++", "-std=c++17", "-Wall", "-Werror", "whole.cpp"]):
+            result = run([*compiler, "-fsyntax-only", "-fmax-errors=200", "-I.", *INCLUDES],
+                         cwd=folder)
             guilty = set(re.findall(r"error: [^\n]*?\bM(\d+)_", result.stderr)) | \
                 set(re.findall(r"^ *\d+ \|[^\n]*?\bM(\d+)_", result.stderr, flags=re.M))
-            bad += [f"{kind} '{names[int(n) - 2]}': {compiler[0]} refuses its C" for n in sorted(guilty, key=int)]
+            bad += [f"{kind} '{names[int(n) - 2]}': {compiler[0]} refuses its C"
+                    for n in sorted(guilty, key=int)]
             if result.returncode and not guilty:
                 bad.append(f"{kind}: {result.stderr}")
     print(f"{tried} pairs of name and kind: {refused} refused, {len(bad)} wrong")

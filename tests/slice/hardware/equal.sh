@@ -1,14 +1,15 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # equal: ghdl slice2c file.ice work-folder source-folder
-# Each interface's VHDL wrapper, and the new core around it, are taken as VHDL-93 and -2008 without a warning. The wrapper
-# does what the Verilog one does: from reset on, whatever comes, their outputs are the same in every clock (proven, not
-# bounded).
+# Each interface's VHDL wrapper, and the new core around it, are taken as VHDL-93 and -2008 without
+# a warning. The wrapper does what the Verilog one does: from reset on, whatever comes, their
+# outputs are the same in every clock (proven, not bounded).
 set -eu
 ghdl=$1 slice2c=$2 ice=$3 work=$4 source=$5
 rm -rf "$work"
 mkdir -p "$work"
-"$slice2c" "$ice" --output-dir "$work/c" --hw-verilog "$work" --hw-vhdl "$work" --hw-new-vhdl "$work"
+"$slice2c" "$ice" --output-dir "$work/c" --hw-verilog "$work" --hw-vhdl "$work" \
+    --hw-new-vhdl "$work"
 cd "$work"
 for file in *_wrapper.v; do
     module=$(basename "$file" .v)
@@ -27,8 +28,10 @@ for file in *_wrapper.v; do
         miter -equiv -flatten -make_assert from_verilog from_vhdl both; hierarchy -top both; proc; opt_clean
         setundef -zero -init; opt -full; techmap; opt -fast -nosdff -nodffe; dfflegalize -cell \$_DFF_P_ 01
         abc -g AND -fast; opt_clean; delete -output w:*; write_aiger -zinit both.aig"
-    # sat: where scorr alone has found the output constant, newer versions of abc have nothing left to prove
-    timeout 100 yosys-abc -c 'read_aiger both.aig; fold; strash; scorr; pdr; sat' >proof.log 2>&1 || true
+    # sat: where scorr alone has found the output constant, newer versions of abc have nothing left
+    # to prove
+    timeout 100 yosys-abc -c 'read_aiger both.aig; fold; strash; scorr; pdr; sat' >proof.log \
+        2>&1 || true
     grep -q 'Property proved\|UNSATISFIABLE' proof.log || {
         cat proof.log >&2
         echo "equal: $module: the VHDL wrapper is not shown to do what the Verilog one does" >&2

@@ -6,7 +6,8 @@
 set -eu
 slice2c=$1 sw=$2 work=$3
 here=$(cd "$(dirname "$0")" && pwd)
-command -v arm-none-eabi-gcc >/dev/null || { echo "linked: arm-none-eabi-gcc is missing; run 'make setup'" && exit 1; }
+command -v arm-none-eabi-gcc >/dev/null ||
+    { echo "linked: arm-none-eabi-gcc is missing; run 'make setup'" && exit 1; }
 rm -rf "$work"
 mkdir -p "$work"
 for file in Lent Linked; do "$slice2c" "$here/$file.ice" --output-dir "$work"; done
@@ -16,27 +17,39 @@ build() { # name, flags
     shift
     # shellcheck disable=SC2046 # a list of words
     (cd "$work" && mkdir -p "$name" && cd "$name" &&
-        arm-none-eabi-gcc -std=c90 -mcpu=cortex-m3 -mthumb -Os -ffunction-sections -fdata-sections "$@" \
-            -I"$sw/base" -I"$sw/icec" -I.. -c $(sed "s,^,$sw/icec/," "$sw/icec/minimal/sources.txt") ../Linked_*.c "$here/$name.c")
-    arm-none-eabi-gcc -mcpu=cortex-m3 -mthumb -nostartfiles --specs=nosys.specs --specs=nano.specs -Wl,--gc-sections -Wl,-e,main \
-        -o "$work/$name.elf" "$work/$name"/*.o 2>"$work/$name.log" || { cat "$work/$name.log" && exit 1; }
-    arm-none-eabi-nm "$work/$name.elf" | awk '{print $NF}' | grep -E '^(Linked|Ice|dispatch|operations)_|skipTable' >"$work/$name.names"
-    echo "$name: $(arm-none-eabi-size "$work/$name.elf" | awk 'NR == 2 {print $1}') bytes of text, $(wc -l <"$work/$name.names") names of IceC and of generated code"
+        arm-none-eabi-gcc -std=c90 -mcpu=cortex-m3 -mthumb -Os -ffunction-sections -fdata-sections \
+        "$@" \
+            -I"$sw/base" -I"$sw/icec" -I.. -c $(sed "s,^,$sw/icec/," \
+            "$sw/icec/minimal/sources.txt") ../Linked_*.c "$here/$name.c")
+    arm-none-eabi-gcc -mcpu=cortex-m3 -mthumb -nostartfiles --specs=nosys.specs --specs=nano.specs \
+        -Wl,--gc-sections -Wl,-e,main \
+        -o "$work/$name.elf" "$work/$name"/*.o 2>"$work/$name.log" || { cat "$work/$name.log" &&
+        exit 1; }
+    arm-none-eabi-nm "$work/$name.elf" | awk '{print $NF}' |
+        grep -E '^(Linked|Ice|dispatch|operations)_|skipTable' >"$work/$name.names"
+    echo "$name: $(arm-none-eabi-size "$work/$name.elf" |
+        awk 'NR == 2 {print $1}') bytes of text, $(wc \
+        -l <"$work/$name.names") names of IceC and of generated code"
 }
-# With AddressSanitizer on a host, too, where it does not keep the tables of interfaces that nobody serves.
+# With AddressSanitizer on a host, too, where it does not keep the tables of interfaces that nobody
+# serves.
 (mkdir -p "$work/host" && cd "$work/host" &&
     # shellcheck disable=SC2046 # a list of words
-    gcc -std=c90 -Os -fsanitize=address --param asan-globals=0 -ffunction-sections -fdata-sections -DICEC_MINIMAL -I"$sw/base" -I"$sw/icec" -I.. \
+    gcc -std=c90 -Os -fsanitize=address --param asan-globals=0 -ffunction-sections -fdata-sections \
+        -DICEC_MINIMAL -I"$sw/base" -I"$sw/icec" -I.. \
         -c $(sed "s,^,$sw/icec/," "$sw/icec/minimal/sources.txt") ../Linked_*.c "$here/server.c" &&
     gcc -fsanitize=address -Wl,--gc-sections -o server ./*.o)
 bad=0
 classes=$(sed -n 's/^    &\(.*\)_type,$/\1/p' "$work/Linked_types.c")
-[ "$classes" = Linked_Tree ] || { echo "linked: the table of classes is not Linked_Tree alone, which this file defines: $classes" && bad=1; }
+[ "$classes" = Linked_Tree ] ||
+    { echo "linked: the table of classes is not Linked_Tree alone, which this file defines: $classes" && bad=1; }
 has() { # program, name
-    grep -qx -- "$2" "$work/$1.names" || { echo "linked: $1 lacks $2: the test looks at the wrong thing" && bad=1; }
+    grep -qx -- "$2" "$work/$1.names" ||
+        { echo "linked: $1 lacks $2: the test looks at the wrong thing" && bad=1; }
 }
 lacks() { # program, pattern
-    ! grep -E -- "$2" "$work/$1.names" || { echo "linked: $1 has what it does not use (above: $2)" && bad=1; }
+    ! grep -E -- "$2" "$work/$1.names" ||
+        { echo "linked: $1 has what it does not use (above: $2)" && bad=1; }
 }
 build client -DICEC_MINIMAL
 build server -DICEC_MINIMAL

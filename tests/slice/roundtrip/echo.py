@@ -78,7 +78,8 @@ def maybe(echo, module, ic, encoding, i, t):
         if v is Ice.Unset or encoding == "1.0":
             check(what, result is Ice.Unset and w is Ice.Unset, v, result, w)
         else:
-            check(what, same(t, v, result, encoding, {}) and same(t, v, w, encoding, {}), v, result, w)
+            check(what, same(t, v, result, encoding, {}) and same(t, v, w, encoding, {}), v, result,
+                  w)
 
 
 def thrown(echo, module, ic, encoding, form, e):
@@ -92,11 +93,13 @@ def thrown(echo, module, ic, encoding, form, e):
         check(e.name, False, "nothing was thrown")
     except getattr(module, model.root(e).name) as got:
         what = "exception %s in %s, %s" % (e.name, encoding, form)
-        check(what, type(got).__name__ == e.name and members(e, sent, got, encoding, {}), vars(sent), got)
+        check(what, type(got).__name__ == e.name and members(e, sent, got, encoding, {}),
+              vars(sent), got)
 
 
 def hide(v, t, module, ic, values):
-    """Fills an instance of the class or exception Hidden...; `values`: how many the members of `t` may have."""
+    """Fills an instance of the class or exception Hidden...; `values`: how many the members of `t`
+    may have."""
     graph = [(v, t)] if t.kind == "class" else []  # its members may point back at it
     for name, ft, tag in t.all_fields():
         setattr(v, name, model.value(ft, module, ic, [values], graph))
@@ -107,13 +110,15 @@ def hide(v, t, module, ic, values):
 def same_hidden(t, v, got, encoding):
     """Returns the value as sent where slices are kept, else cut down to `t`."""
     kept = t.preserves() and encoding == "1.1"
-    if type(got).__name__ != ("Hidden" if kept else "") + t.name or not members(t, v, got, encoding, {id(v): got}):
+    if type(got).__name__ != ("Hidden" if kept else "") + t.name or not members(t, v, got, encoding,
+                                                                                {id(v): got}):
         return False
     return not kept or (got.more, got.last) == (v.more, v.last)
 
 
 def unknown(echo, module, ic, encoding, t):
-    """Sends an instance of a type unknown to C; where the format does not tell its slice's end, it is refused."""
+    """Sends an instance of a type unknown to C; where the format does not tell its slice's end, it
+    is refused."""
     v = getattr(module, "Hidden" + t.name)()
     graph = hide(v, t, module, ic, 15)
     v.other = v.same = model.value(t, module, ic, [15], graph)
@@ -129,8 +134,10 @@ def unknown(echo, module, ic, encoding, t):
     what = "%s of a derived type in %s" % (t.name, encoding)
     check(what, same_hidden(t, v, result, encoding), v, result)
     if type(result) is type(v):
-        check(what, result.other is result.same and members(t, v, result, encoding, {id(v): result}), v, result)
-        check(what, (result.other is result) == (v.other is v) and (v.other is None) == (result.other is None), v, result)
+        check(what, result.other is result.same
+              and members(t, v, result, encoding, {id(v): result}), v, result)
+        check(what, (result.other is result) == (v.other is v)
+              and (v.other is None) == (result.other is None), v, result)
 
 
 def lone(echo, module, encoding):
@@ -144,9 +151,11 @@ def lone(echo, module, encoding):
         except Ice.UnknownLocalException:
             return
     result, w = echo.any(first)
-    check("Object", result is w and type(result) is module.Lone and (result.number, result.text) == (1, "one"), result)
+    check("Object", result is w and type(result) is module.Lone
+          and (result.number, result.text) == (1, "one"), result)
     second = result.next
-    check("Object", second.next is result and result.any is second and (second.number, second.text) == (2, Ice.Unset), result)
+    check("Object", second.next is result and result.any is second
+          and (second.number, second.text) == (2, Ice.Unset), result)
     check("Object", echo.any(None) == (None, None))
 
 

@@ -47,7 +47,8 @@ class Model:
         self.random = r = random.Random(seed)
         self.types = [Type(k) for k in SCALARS] + [Type("proxy")]
         self.declared, self.exceptions = [], []
-        makers = [self.enum, self.struct, self.struct, self.sequence, self.sequence, self.dictionary, self.klass]
+        makers = [self.enum, self.struct, self.struct, self.sequence, self.sequence,
+                  self.dictionary, self.klass]
         for i in range(count):
             t = makers[i](i) if i < len(makers) else r.choice(makers)(i)
             self.declared.append(t)
@@ -118,11 +119,14 @@ class Model:
         for t in self.declared:
             most = '["c:max:%d"] ' % t.maximum if t.maximum else ""
             if t.kind == "enum":
-                out.append("enum %s { %s };" % (t.name, ", ".join("%s_%d = %d" % (t.name.lower(), v, v) for v in t.values)))
+                out.append("enum %s { %s };" %
+                           (t.name,
+                            ", ".join("%s_%d = %d" % (t.name.lower(), v, v) for v in t.values)))
             elif t.kind == "sequence":
                 out.append("%ssequence<%s> %s;" % (most, t.element.slice(), t.name))
             elif t.kind == "dictionary":
-                out.append("%sdictionary<%s, %s> %s;" % (most, t.key.slice(), t.element.slice(), t.name))
+                out.append("%sdictionary<%s, %s> %s;" % (most, t.key.slice(), t.element.slice(),
+                                                         t.name))
             else:
                 out.append(self.members(t))
         out += [self.members(e) for e in self.exceptions]
@@ -131,19 +135,25 @@ class Model:
         out.append("interface Echo {")
         for i, t in enumerate(self.types):
             for form in self.formats(t):
-                out.append('%s%s plain%d%s(%s v, out %s w);' % (self.meta(form), t.slice(), i, form, t.slice(), t.slice()))
-            out.append("optional(3) %s maybe%d(optional(1) %s v, out optional(2) %s w);" % ((t.slice(), i) + (t.slice(),) * 2))
+                out.append('%s%s plain%d%s(%s v, out %s w);' % (self.meta(form), t.slice(), i, form,
+                                                                t.slice(), t.slice()))
+            out.append("optional(3) %s maybe%d(optional(1) %s v, out optional(2) %s w);" %
+                       ((t.slice(), i) + (t.slice(),) * 2))
         for e in self.exceptions:
             for form in ("Compact", "Sliced"):
                 out.append("%svoid raise%s%s(%s) throws %s;" % (
-                    self.meta(form), e.name, form, ", ".join(self.parameter(f) for f in e.all_fields()), self.root(e).name))
-            out.append('["format:sliced"] void forward%s(Object* to) throws %s;' % (e.name, self.root(e).name))
+                    self.meta(form), e.name, form,
+                    ", ".join(self.parameter(f) for f in e.all_fields()), self.root(e).name))
+            out.append('["format:sliced"] void forward%s(Object* to) throws %s;' %
+                       (e.name, self.root(e).name))
         out += ['["format:sliced"] Object any(Object v, out Object w);', "void shutdown();", "};"]
         for t in self.classes() if hidden else []:
-            out.append("class Hidden%s%s extends %s { string more; %s other; optional(200) int last; %s same; };" % (
+            out.append("class Hidden%s%s extends %s { string more; %s other; optional(200) int "
+                       "last; %s same; };" % (
                 (t.name, "(%d)" % (t.compact + 5000) if t.compact else "") + (t.name,) * 3))
         for e in self.exceptions if hidden else []:
-            out.append("exception Hidden%s extends %s { string more; Lone other; optional(200) int last; };" % (e.name, e.name))
+            out.append("exception Hidden%s extends %s { string more; Lone other; optional(200) "
+                       "int last; };" % (e.name, e.name))
         out.append("};")
         return '[["underscore"]]\n' + "\n".join(out) + "\n"
 
@@ -165,7 +175,9 @@ class Model:
     @staticmethod
     def parameter(field):
         name, t, tag = field
-        return ("" if tag is None else "optional(%d) " % (tag + 1000 * int(name[1:]) if name.startswith("m") else tag)) + t.slice() + " " + name
+        return ("" if tag is None else "optional(%d) " %
+                (tag + 1000 * int(name[1:])
+                 if name.startswith("m") else tag)) + t.slice() + " " + name
 
     @staticmethod
     def members(t):
@@ -174,13 +186,15 @@ class Model:
             head += "(%d)" % t.compact
         if t.base:
             head += " extends " + t.base.name
-        fields = ["%s%s %s;" % ("" if tag is None else "optional(%d) " % tag, ft.slice(), name) for name, ft, tag in t.fields]
+        fields = ["%s%s %s;" % ("" if tag is None else "optional(%d) " % tag, ft.slice(), name)
+                  for name, ft, tag in t.fields]
         return head + " { " + " ".join(fields) + " };"
 
     # ---- values
 
     def value(self, t, module, ic, budget, graph):
-        """`budget`: [values that may still be made]; `graph`: instances made so far, which may be shared."""
+        """`budget`: [values that may still be made]; `graph`: instances made so far, which may be
+        shared."""
         r = self.random
         budget[0] -= 1
         if t.kind in SCALARS or t.kind == "proxy":
@@ -194,10 +208,12 @@ class Model:
                 if t.element.kind == "byte":
                     return bytes(r.randint(0, 255) for _ in range(count))
                 return [self.value(t.element, module, ic, budget, graph) for _ in range(count)]
-            return {self.value(t.key, module, ic, budget, graph): self.value(t.element, module, ic, budget, graph)
+            return {self.value(t.key, module, ic, budget,
+                               graph): self.value(t.element, module, ic, budget, graph)
                     for _ in range(count)}
         if t.kind == "struct":
-            return getattr(module, t.name)(*[self.value(ft, module, ic, budget, graph) for _, ft, _ in t.fields])
+            return getattr(module, t.name)(*[self.value(ft, module, ic, budget, graph)
+                                             for _, ft, _ in t.fields])
         return self.instance(t, module, ic, budget, graph)
 
     def instance(self, t, module, ic, budget, graph):
@@ -239,5 +255,6 @@ class Model:
         if not text:
             return None
         if "@" not in text:
-            text += r.choice(["", ":tcp -h 127.0.0.1 -p 10000", ":udp -h 127.0.0.1 -p 3:tcp -h 10.0.0.1 -p 4 -t 5000"])
+            text += r.choice(["", ":tcp -h 127.0.0.1 -p 10000",
+                              ":udp -h 127.0.0.1 -p 3:tcp -h 10.0.0.1 -p 4 -t 5000"])
         return ic.stringToProxy(text)

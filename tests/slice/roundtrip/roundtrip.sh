@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # roundtrip: slice2c sw-folder work-folder test-folder-of-IceC
-# Random Slice types and values (SEED) by stock ZeroC Ice through generated C servants and proxies, to stock Ice and back; with
-# sanitizers.
+# Random Slice types and values (SEED) by stock ZeroC Ice through generated C servants and proxies,
+# to stock Ice and back; with sanitizers.
 set -eu
 slice2c=$1 sw=$2 work=$3 icec=$4
 here=$(dirname "$0")
@@ -13,12 +13,15 @@ mkdir -p "$work"
 /usr/bin/python3 "$here/echo.py" generate "$seed" "$work"
 "$slice2c" "$work/Random.ice" --output-dir "$work"
 "$icec/bridge.py" "$work/Random.h" >"$work/bridged.c"
-# In a coverage run (COVERAGE_DIR) it counts lines, too. With room for graphs and long sequences; -O0, since most of the time goes into compiling.
-# Variables without a value hold a pattern, not by chance zeros.
-# shellcheck disable=SC2046
-cc -O0 -w -ftrivial-auto-var-init=pattern ${COVERAGE_DIR:+--coverage} -fsanitize=address,undefined -fno-sanitize-recover=undefined -DICE_ARENA_BYTES=262144 -DICE_MESSAGE_MAX=65536 -DICE_REPLY_MAX=262144 -DICE_VALUES_MAX=64 -DICE_VALUE_TYPES_MAX=64 \
+# In a coverage run (COVERAGE_DIR) it counts lines, too. With room for graphs and long sequences;
+# -O0, since most of the time goes into compiling. Variables without a value hold a pattern, not by
+# chance zeros. shellcheck disable=SC2046
+cc -O0 -w -ftrivial-auto-var-init=pattern ${COVERAGE_DIR:+--coverage} -fsanitize=address,undefined \
+    -fno-sanitize-recover=undefined -DICE_ARENA_BYTES=262144 -DICE_MESSAGE_MAX=65536 \
+    -DICE_REPLY_MAX=262144 -DICE_VALUES_MAX=64 -DICE_VALUE_TYPES_MAX=64 \
     -DICE_IDENTITY_MAX=255 -I"$sw/base" -I"$sw/icec" -I"$sw/icec/endpoints" -I"$work" -I"$icec" \
-    -o "$work/bridge" "$icec/bridge.c" "$work/bridged.c" "$work/Random_types.c" "$work/Random_server.c" "$work/Random_client.c" \
+    -o "$work/bridge" "$icec/bridge.c" "$work/bridged.c" "$work/Random_types.c" \
+    "$work/Random_server.c" "$work/Random_client.c" \
     "$sw"/icec/*.c "$sw"/icec/endpoints/tcp_*.c
 echo="/usr/bin/python3 $here/echo.py"
 # shellcheck disable=SC2086

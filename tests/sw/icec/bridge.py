@@ -9,7 +9,8 @@ import re
 import sys
 
 SERVANT = re.compile(r"^typedef struct (\w+) \{\n    Ice_Object base;", re.M)
-OPERATION = re.compile(r"^Ice_Status (\w+)\((\w+ self)((?:, [^;]*)?), const Ice_Current \*current\);")
+OPERATION = re.compile(r"^Ice_Status (\w+)\((\w+ self)((?:, [^;]*)?), const Ice_Current "
+                       r"\*current\);")
 CALL = re.compile(r"^Ice_Status (\w+Prx_\w+)\(\w+ self((?:, [^;]*)?)\);")
 
 
@@ -18,7 +19,8 @@ def name_of(parameter):
 
 
 def operation(name, self, parameters, calls, servants):
-    """Writes an operation. What only the call gives back is sent later: it answers asynchronously."""
+    """Writes an operation. What only the call gives back is sent later: it answers
+    asynchronously."""
     owner = max((s for s in servants if name.startswith(s + "_")), key=len)
     call = re.sub("(Disp)?$", "Prx", owner, count=1) + name[len(owner):]
     own = parameters.split(", ")[1:]

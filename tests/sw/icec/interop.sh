@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# interop: command -- command ...   Each prints the port that it listens on; the next gets it appended. The
-# last one's exit status counts, and that of the first, which it must have ended.
+# interop: command -- command ...   Each prints the port that it listens on; the next gets it
+#                                   appended. The last one's exit status counts, and that of the
+#                                   first, which it must have ended.
 set -eu
 work=$(mktemp -d)
 pids=''

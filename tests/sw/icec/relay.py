@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""relay: stands between a client and a server on 127.0.0.1, prints its own port, runs until it is killed."""
+"""relay: stands between a client and a server on 127.0.0.1, prints its own port, runs until it is
+killed."""
 import argparse
 import asyncio
 import socket
@@ -8,9 +9,14 @@ import struct
 import time
 
 parser = argparse.ArgumentParser(description=__doc__)
-parser.add_argument("--pcap", help="every byte as TCP over IPv4, with openings and ends, as a capture would hold it")
-parser.add_argument("--slow", type=int, help="hands on so many bytes at a time, a millisecond apart, in both directions")
-parser.add_argument("--cut", type=int, help="every connection ends, without a word, when so many bytes have passed")
+parser.add_argument("--pcap",
+                    help="every byte as TCP over IPv4, with openings and ends, as a capture would "
+                         "hold it")
+parser.add_argument("--slow", type=int,
+                    help="hands on so many bytes at a time, a millisecond apart, in both "
+                         "directions")
+parser.add_argument("--cut", type=int,
+                    help="every connection ends, without a word, when so many bytes have passed")
 parser.add_argument("port", type=int, help="the server's")
 words = parser.parse_args()
 FIN, SYN, PSH, ACK = 1, 2, 8, 16
@@ -29,13 +35,16 @@ class Capture:
         if not self.file:
             return
         hosts = [socket.inet_aton("127.0.0.1"), socket.inet_aton("127.0.0.2")]
-        ip = struct.pack(">BBHIBBH4s4s", 0x45, 0, 40 + len(data), 0x4000, 64, socket.IPPROTO_TCP, 0, hosts[side], hosts[1 - side])
-        tcp = struct.pack(">HHIIBBHHH", self.ports[side], self.ports[1 - side], self.sequence[side], self.sequence[1 - side],
+        ip = struct.pack(">BBHIBBH4s4s", 0x45, 0, 40 + len(data), 0x4000, 64, socket.IPPROTO_TCP, 0,
+                         hosts[side], hosts[1 - side])
+        tcp = struct.pack(">HHIIBBHHH", self.ports[side], self.ports[1 - side], self.sequence[side],
+                          self.sequence[1 - side],
                           0x50, flags, 0xFFFF, 0, 0)
         self.sequence[side] += len(data) + bool(flags & (SYN | FIN))
         packet = ip + tcp + data
         microseconds = time.time_ns() // 1000
-        self.file.write(struct.pack("<IIII", microseconds // 10**6, microseconds % 10**6, len(packet), len(packet)) + packet)
+        self.file.write(struct.pack("<IIII", microseconds // 10**6, microseconds % 10**6,
+                                    len(packet), len(packet)) + packet)
         self.file.flush()
 
 
@@ -62,7 +71,8 @@ async def connection(reader, writer):
             await target.drain()
         capture.packet(side, FIN | ACK)
 
-    pumps = [asyncio.ensure_future(pump(0, reader, server_writer)), asyncio.ensure_future(pump(1, server_reader, writer))]
+    pumps = [asyncio.ensure_future(pump(0, reader, server_writer)),
+             asyncio.ensure_future(pump(1, server_reader, writer))]
     await asyncio.wait(pumps, return_when=asyncio.FIRST_COMPLETED)
     for pump_ in pumps:
         pump_.cancel()

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Stock Ice for Python over the radio: threads, proxies, callbacks. Usage: client.py SLICE PLUGINS ENDPOINT GUARD (PLUGINS '': none)"""
+"""Stock Ice for Python over the radio: threads, proxies, callbacks. Usage: client.py SLICE PLUGINS
+ENDPOINT GUARD (PLUGINS '': none)"""
 
 import sys
 import threading
@@ -42,7 +43,8 @@ def main():
     with Ice.initialize(options) as communicator:
         proxy = RadioTest.UavPrx.uncheckedCast(communicator.stringToProxy("echo:" + endpoint))
         threads = [
-            threading.Thread(target=work, args=(proxy.ice_connectionId(str(n % 3)), 100 * n, errors))
+            threading.Thread(target=work,
+                             args=(proxy.ice_connectionId(str(n % 3)), 100 * n, errors))
             for n in range(6)
         ]
         for thread in threads:

@@ -11,13 +11,15 @@ A generated header has each operation's signature already; BODIES says only what
     echo op1 op2*                       each out parameter gets the in parameter of its type
     op3 op4: statements;                go on in lines that begin with a blank
 
-Names are shell patterns. Within statements the parameters have their Slice names, `result` is the result, `ex` the exception.
+Names are shell patterns. Within statements the parameters have their Slice names, `result` is the
+result, `ex` the exception.
 """
 import fnmatch
 import re
 import sys
 
-PROTOTYPE = re.compile(r"^Ice_Status (\w+)\((\w+) self,\s*([^;]*?)const Ice_Current \*current\);", re.M)
+PROTOTYPE = re.compile(r"^Ice_Status (\w+)\((\w+) self,\s*([^;]*?)const Ice_Current \*current\);",
+                       re.M)
 
 
 def parameters(text):
@@ -72,10 +74,14 @@ def main():
             for name in set(found) - done:
                 done.add(name)
                 own, these = signatures[name]
-                text = echo(these, classes) if body is None else body.strip().replace("\x01", "\n    ")
-                voids = "".join(" (void)%s;" % n for n in ["self", "current"] + [n for _, n in these])
-                print("\nIce_Status %s(%s self,%s const Ice_Current* current) {\n    %s\n    {\n    %s\n    }\n"
-                      "    return ICE_OK;\n}" % (name, own, "".join(" %s%s," % p for p in these), voids.strip(), text))
+                text = echo(these,
+                            classes) if body is None else body.strip().replace("\x01", "\n    ")
+                voids = "".join(" (void)%s;" % n for n in ["self", "current"] +
+                                [n for _, n in these])
+                print("\nIce_Status %s(%s self,%s const Ice_Current* current) {\n    %s\n    {\n  "
+                      "  %s\n    }\n"
+                      "    return ICE_OK;\n}" % (name, own, "".join(" %s%s," % p for p in these),
+                                                 voids.strip(), text))
 
 
 main()

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""server: ZeroC's own server of a suite: server.py FOLDER SUITE ENCODING. Prints its adapters' ports, two, serves until `shutdown`."""
+"""server: ZeroC's own server of a suite: server.py FOLDER SUITE ENCODING. Prints its adapters'
+ports, two, serves until `shutdown`."""
 import os
 import socket
 import sys

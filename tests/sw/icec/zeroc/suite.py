@@ -4,9 +4,9 @@
 
 suite.py FOLDER SUITE RUN [--Ice.Property=value...] ENDPOINT|PORT
 
-A check is a call of the client's test(), true or not. The client stops at its first failure; here each statement goes on by
-itself, so that one failure hides no other one. expected.toml has the reason of each failure, and the
-number of checks that must pass.
+A check is a call of the client's test(), true or not. The client stops at its first failure; here
+each statement goes on by itself, so that one failure hides no other one. expected.toml has the
+reason of each failure, and the number of checks that must pass.
 """
 import argparse
 import ast
@@ -42,7 +42,8 @@ def failed(where, error):
         sys.stdout.flush()
         os._exit(1)
     with lock:
-        failures.setdefault(where, "%s: %s" % (type(error).__name__, str(error).strip().replace("\n", " ")[:160]))
+        failures.setdefault(where, "%s: %s" %
+                            (type(error).__name__, str(error).strip().replace("\n", " ")[:160]))
 
 
 def turn(turns):
@@ -53,7 +54,8 @@ def turn(turns):
 
 
 def wait(self, timeout=None, wait=threading.Condition.wait):
-    """The clients' callbacks signal a condition: the wait for it is bounded, since one may have failed."""
+    """The clients' callbacks signal a condition: the wait for it is bounded, since one may have
+    failed."""
     if not wait(self, timeout or PATIENCE) and timeout is None:
         raise RuntimeError("nothing came")
 
@@ -97,8 +99,10 @@ class Guard(ast.NodeTransformer):
 
     def guarded(self, node, *before):
         note = ast.parse("__failed__(%r, __error__)" % ("%s:%d" % (self.name, node.lineno))).body
-        handler = ast.ExceptHandler(type=ast.Name("Exception", ast.Load()), name="__error__", body=note)
-        return ast.copy_location(ast.Try(body=[*before, node], handlers=[handler], orelse=[], finalbody=[]), node)
+        handler = ast.ExceptHandler(type=ast.Name("Exception", ast.Load()), name="__error__",
+                                    body=note)
+        return ast.copy_location(ast.Try(body=[*before, node], handlers=[handler], orelse=[],
+                                         finalbody=[]), node)
 
 
 class Loader(importlib.abc.Loader):
@@ -110,7 +114,8 @@ class Loader(importlib.abc.Loader):
         tree.body = [s for s in tree.body if getattr(s, "name", "") != "test"]
         if module.__name__ != "Client":
             guard = Guard(os.path.basename(self.path))
-            tree.body = [guard.visit(s) if isinstance(s, (ast.FunctionDef, ast.ClassDef)) else s for s in tree.body]
+            tree.body = [guard.visit(s) if isinstance(s, (ast.FunctionDef, ast.ClassDef)) else s
+                         for s in tree.body]
         module.test, module.__failed__, module.__turn__ = check, failed, turn
         exec(compile(ast.fix_missing_locations(tree), self.path, "exec"), module.__dict__)
 
@@ -120,7 +125,8 @@ class Finder(importlib.abc.MetaPathFinder):
 
     def find_spec(self, name, path, target=None):
         file = os.path.join(os.getcwd(), name + ".py")
-        return importlib.util.spec_from_file_location(name, file, loader=Loader(file)) if os.path.exists(file) else None
+        return importlib.util.spec_from_file_location(name, file,
+                                                      loader=Loader(file)) if os.path.exists(file) else None
 
 
 def expected(run):
@@ -143,7 +149,8 @@ def main():
     parser.add_argument("folder")
     parser.add_argument("suite")
     parser.add_argument("run", help="what the run is called: SUITE-tcp-1.1")
-    parser.add_argument("rest", nargs=argparse.REMAINDER, help="Ice properties, then an endpoint or a port")
+    parser.add_argument("rest", nargs=argparse.REMAINDER,
+                        help="Ice properties, then an endpoint or a port")
     a = parser.parse_args()
     where = a.rest.pop()
     endpoint = where if not where.isdigit() else "tcp -h 127.0.0.1 -p " + where

@@ -12,12 +12,26 @@ from tool import Stop, digest
 # A comment, a string, a word or directive, or the punctuation that instances are recognised by.
 TOKEN = re.compile(r'//[^\n]*|/\*.*?(?:\*/|$)|"([^"]*)"?|(`?[\w$]+|`)|([()#;])', re.S)
 
+PROPERTIES = {"FORMAL", "RULES", "COVER_POINTS"}  # what is under these is no hardware
+
 
 def tokens(text):
-    """The words and punctuation; an include directive becomes the token `include and the name."""
+    """The words and punctuation without properties; an include directive becomes the token `include
+    and the name."""
     result = []
+    branches = []  # of the conditions around a word: True: dropped; False: its other branch is
+    condition = ""
     for string, word, mark in TOKEN.findall(text):
-        if word or mark or (result and result[-1] == "`include"):
+        if condition:
+            branches.append((condition == "`ifdef") if word in PROPERTIES else None)
+            condition = ""
+        elif word in ("`ifdef", "`ifndef"):
+            condition = word
+        elif word in ("`else", "`elsif") and branches:
+            branches[-1] = {False: True, True: None}.get(branches[-1])
+        elif word == "`endif" and branches:
+            branches.pop()
+        elif (word or mark or (result and result[-1] == "`include")) and True not in branches:
             result.append(word or mark or string)
     return result
 

@@ -6,13 +6,25 @@ Each connection has a thread of its own and one request: a slow, silent or endle
 other wait, and ends after PATIENCE seconds of silence.
 """
 
+import sys
+
+
+def refuse(kind, error, trace):
+    """Names a lack of memory, which Python also tells as a library that cannot be loaded."""
+    if issubclass(kind, (MemoryError, ImportError)):
+        print("icesoc-live: error: not enough memory for the page", file=sys.stderr)
+    else:
+        sys.__excepthook__(kind, error, trace)
+
+
+sys.excepthook = refuse
+
 import argparse
 import http.server
 import json
 import os
 import signal
 import struct
-import sys
 from http import HTTPStatus
 
 PATIENCE = 10  # seconds

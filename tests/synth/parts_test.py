@@ -381,6 +381,15 @@ class Files(unittest.TestCase):
         self.write("txuartlite.v", "module txuartlite; endmodule\n")
         self.assertEqual(self.files_of("uart"), ["txuart.v", "txuartlite.v", "uart.v"])
 
+    def test_properties_are_no_hardware_whatever_else_is_conditional(self):
+        self.write("top.v", "module top; `ifdef RULES rules u(); `elsif A one u(); `else two u();"
+                   " `endif `ifndef FORMAL three v(); `else rules v(); `endif `ifdef B four w();"
+                   " `ifdef FORMAL rules x(); `endif `else five w(); `endif six y(); endmodule")
+        used = ["one", "two", "three", "four", "five", "six"]
+        for name in ["rules", *used]:
+            self.write(f"{name}.v", f"module {name}; endmodule")
+        self.assertEqual(set(self.files_of("top")), {f"{name}.v" for name in ["top", *used]})
+
     def test_files_outside_of_the_folders_are_found_where_the_build_names_them(self):
         self.write("top.v", "module top; part u_part (.a(b)); endmodule\n")
         far = self.write("far/part.v", "module part; endmodule\n")

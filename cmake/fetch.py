@@ -193,8 +193,10 @@ def ice(target):
 
 
 def zeroc(target):
-    """ZeroC's test suites for Python, 3.7.8"""
-    unpack(ice_source("3.7.8"), "ice-3.7.8/python/test/", target)
+    """ZeroC's test suites for Python and wrong Slice files, 3.7.8"""
+    source = ice_source("3.7.8")
+    unpack(source, "ice-3.7.8/cpp/test/Slice/errorDetection/", target / "errorDetection", ".ice")
+    unpack(source, "ice-3.7.8/python/test/", target)
 
 
 def lz4(target):

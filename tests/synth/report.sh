@@ -355,6 +355,20 @@ edif)
     done
     grep -q '(design pair' "$edif" || grep -q '(design whole' "$edif" || fail "the top is not named"
     [ -f "build/synth/ise/verilog/store.v" ] || fail "the Verilog for XST is not there"
+    # Of a primitive's port only bits that it has are connected.
+    cat >hdl/blocks/deep.v <<EOF
+module deep (input clk_i, write_i, input [7:0] at_i, from_i, input [31:0] i, output reg [31:0] o);
+    reg [31:0] words [0:255];
+    always @(posedge clk_i) begin
+        if (write_i) words[at_i] <= i;
+        o <= words[from_i];
+    end
+endmodule
+EOF
+    made synth-edif DESIGN=deep || fail "$(cat "$work/log")"
+    edif=build/synth/ise/deep.edf
+    grep -q 'cellRef RAMB8BWER' "$edif" && ! grep -q '(member [A-Za-z0-9_]* -' "$edif" ||
+        fail "an 8-Kbit block RAM has another width: $(grep -m 1 '(member [A-Za-z]* -' "$edif")"
     ;;
 *) fail "unknown case $case" ;;
 esac

@@ -128,6 +128,12 @@ function treeOf(costs) { // {name, path, own: [LUT, FF], sum: [LUT, FF], childre
   for (const n of Object.values(known)) n.children.sort((a, b) => b.sum[0] - a.sum[0] || b.sum[1] - a.sum[1]);
   return node("");
 }
+// The rows of a path. A net whose name mapping has taken is at the next one that has kept its own.
+function stepsOf(p) {
+  const rows = [...p.steps, [p.pin, p.to]].map(r => [...r]);
+  for (let i = rows.length, at; i--; ) rows[i].at = at = rows[i][1] || at;
+  return rows;
+}
 // The part of the figures that belongs to the instance at the path.
 function showInstance() {
   byId("here").textContent = `Signals of ${path || picked.top}`;
@@ -145,8 +151,8 @@ function showInstance() {
   byId("paths").replaceChildren(...paths.map(p => {
     const details = element("details"), steps = element("div"), slow = p.ns * data.slowGrade;
     details.append(element("summary", `slack ${(1000 / data.chip.mhz - slow).toFixed(2)}: ${p.ns.toFixed(2)} ns (-3), ${slow.toFixed(2)} (-2), ${p.levels} levels: ${p.from} to ${p.to} ${p.pin}`), steps);
-    details.ontoggle = () => table(steps, [["cell", r => r[0]], ["net", r => r[1] || "(no name left)"], ["fan-out", r => r[2]], ["cell ns", r => r[3], r => r[3]?.toFixed(3)],
-      ["net ns", r => r[4], r => r[4]?.toFixed(3)], source(r => r[1])], [...p.steps, [p.pin, p.to]]);
+    details.ontoggle = () => table(steps, [["cell", r => r[0]], ["net", r => r[1] || `on the way to ${r.at}`], ["fan-out", r => r[2]], ["cell ns", r => r[3], r => r[3]?.toFixed(3)],
+      ["net ns", r => r[4], r => r[4]?.toFixed(3)], source(r => r.at)], stepsOf(p));
     return details;
   }), ...(paths.length ? [] : [element("p", `None of the ${all.length} longest begins or ends in ${path}.`, "soft")]));
 }

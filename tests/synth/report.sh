@@ -225,6 +225,8 @@ seen.push("paths " + all("#paths details").length);
 all("#paths details")[0].open = true;
 await rest();
 seen.push("step " + all("#paths a").pop().textContent);
+seen.push("on the way to " + stepsOf({ steps: [["a", "x"], ["b", ""], ["c", "y"]], pin: "D",
+  to: "z" }).map(row => row.at));
 const read = id => all(`#${id} .u-value`).map(value => value.textContent).join(" ");
 let slack = read("slack");
 for (let left = 20; left && / 0 *$/.test(slack); left--) { // to the last bar
@@ -250,7 +252,7 @@ JS
     has '; folders whole,hdl/blocks, 2 modules; opened whole,hdl/blocks, 2 modules,wide,store at hdl/blocks; filtered hdl/blocks, 2 modules,store;'
     has '; sorted whole,hdl/blocks, 2 modules,store,wide; sorted hdl/blocks, 2 modules,wide,store,whole; picked 1 Inside whole: '
     has '; folded pair; at u_store; tree pair u_storestore u_countercounter; here Signals of u_store;'
-    has '; signal read_addr_i 5  0 project/hdl/blocks/store.v:12; paths 1; step project/hdl/blocks/[a-z]*.v:1[23]; slack [0-9.]* to [0-9.]* ns left of 10 [1-9][0-9]* ;'
+    has '; signal read_addr_i 5  0 project/hdl/blocks/store.v:12; paths 1; step project/hdl/blocks/[a-z]*.v:1[23]; on the way to x,y,y,z; slack [0-9.]* to [0-9.]* ns left of 10 [1-9][0-9]* ;'
     has '; clocks clk_i 11 12 [0-9]* project/hdl/blocks/pair.v:8; resets rst_i synchronous 5 project/hdl/blocks/pair.v:9;'
     has '; fanouts u_counter.count_o.4. 9 FDRE project/hdl/blocks/counter.v:13; commit this run, 1; history now  this run 15 11 6; paper 50 (0.3 %); choices 1;'
     "$source/tests/look.py" "$page" || fail "the page"

@@ -45,12 +45,8 @@ PAGE = [("tabulator-tables", "6.5.3",
         ("uplot", "1.6.32", "4b8a8191e425658e3ea8c8c1314b0fc679c861ee3a1af2b20c7b16ba50b5133d",
          ["uPlot.iife.min.js", "uPlot.min.css"])]
 # Debian 13's packages and all libraries that they load
-RUN_TIME = ["libc6", "libgcc-s1", "libstdc++6", "zlib1g", "gcc-14-base"]
-GHDL = ["ghdl-mcode", "ghdl-common", "libgnat-14", *RUN_TIME]
-BOOST = ("filesystem", "iostreams", "program-options", "thread")
-NEXTPNR = ["nextpnr-ecp5", "nextpnr-ecp5-chipdb", "libpython3.13", "libpython3.13-minimal",
-           "libpython3.13-stdlib", "libexpat1", "libbz2-1.0", "liblzma5", "libzstd1", *RUN_TIME,
-           *(f"libboost-{part}1.83.0" for part in BOOST)]
+GHDL = ["ghdl-mcode", "ghdl-common", "libgnat-14", "libc6", "libgcc-s1", "libstdc++6", "zlib1g",
+        "gcc-14-base"]
 
 
 class Unreachable(Exception):
@@ -110,7 +106,7 @@ def unpack(archive, folder, target, suffix=""):
                 file.write_bytes(tar.extractfile(member).read())
 
 
-def packages(name, *wanted):
+def packages(name, wanted):
     """The folder of these packages of Debian 13, unpacked in the cache."""
     folder = CACHE / name
     if not (folder / "done").exists():
@@ -143,37 +139,17 @@ def program(target, text):
     target.chmod(0o755)
 
 
-def loaded(root, name):
-    """The words that run a program of these packages with their own libraries."""
-    loader = next(file for file in sorted(root.rglob("ld-linux-*.so.2")) if not file.is_symlink())
-    library = root / "usr/lib" / f"{os.uname().machine}-linux-gnu"
-    words = [loader, "--library-path", library, root / "usr/bin" / name]
-    return " ".join(shlex.quote(str(word)) for word in words)
-
-
 def ghdl(target):
     """GHDL 5 (GHDL 2's Verilog output is wrong for `case`); FOLDER/ghdl runs it"""
     installed = re.match(r"GHDL (\d+)", output("ghdl", "--version"))
     if installed and int(installed[1]) >= 5:
         return program(target / "ghdl", 'exec ghdl "$@"\n')
-    root = packages("ghdl5", *GHDL)
-    prefix = shlex.quote(str(root / "usr/lib/ghdl/mcode/vhdl"))
-    program(target / "ghdl", f'GHDL_PREFIX={prefix} exec {loaded(root, "ghdl-mcode")} "$@"\n')
-
-
-def nextpnr(target):
-    """nextpnr for ECP5; FOLDER/nextpnr-ecp5 runs it"""
-    if shutil.which("nextpnr-ecp5"):
-        return program(target / "nextpnr-ecp5", 'exec nextpnr-ecp5 "$@"\n')
-    root = packages("nextpnr-0.7", *NEXTPNR)
-    # It reads its chips from /usr/share/nextpnr: a mount of its own provides that folder.
-    program(target / "nextpnr-ecp5", f"""root={shlex.quote(str(root))}
-exec unshare --map-root-user --mount sh -c 'mount --bind "$0/usr/share" /usr/share || {{
-    echo "nextpnr-ecp5: its users may mount nothing here; Debian 13 has it as a package" >&2
-    exit 1
-}}
-PYTHONHOME=$0/usr exec {loaded(root, "nextpnr-ecp5")} "$@"' "$root" "$@"
-""")
+    root = packages("ghdl5", GHDL)
+    # Its own libraries, by their own loader
+    loader = next(file for file in sorted(root.rglob("ld-linux-*.so.2")) if not file.is_symlink())
+    words = [f"GHDL_PREFIX={root}/usr/lib/ghdl/mcode/vhdl", loader, "--library-path",
+             root / f"usr/lib/{os.uname().machine}-linux-gnu", root / "usr/bin/ghdl-mcode"]
+    program(target / "ghdl", f'exec env {shlex.join(map(str, words))} "$@"\n')
 
 
 def ice_source(version):
@@ -251,7 +227,7 @@ def page(target):
 OPTIONAL = {zeroc: "Only these suites need it", svd: "Only the check of icesoc.svd needs it",
             foreign: "Only the examples of foreign cores need it"}
 THINGS = {thing.__name__: thing
-          for thing in (ice, ghdl, nextpnr, lz4, sodium, page, foreign, svd, zeroc)}
+          for thing in (ice, ghdl, lz4, sodium, page, foreign, svd, zeroc)}
 
 
 def main():

@@ -7,7 +7,7 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from cli.build_folder import BuildFolder, configured, fetch
+from cli.build_folder import BuildFolder, fetch
 from cli.command import GROUPS, command
 from cli.commands.synth import utilisation
 from cli.flight import FIELDS

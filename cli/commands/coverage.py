@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 """coverage: lines, branches and toggles that the tests reach, of C, C++, Verilog and VHDL."""
-import re
 import shutil
 import subprocess
 from pathlib import Path
 
 from cli.build_folder import BuildFolder, configured
 from cli.command import command
+from cli.commands.synth import with_name
 from cli.options import BUILD, JOBS, NAME, Option
 from cli.runner import Stop, output, run, say, warn
 
@@ -26,7 +26,7 @@ def coverage(values):
 
     Builds models, C and C++ that count what ran (build/coverage), runs all tests but proofs, lint
     and those of tools, and merges Verilator's, GHDL's and gcov's counts. Leaves html/index.html,
-    summary.json, history (a line a run)."""
+    summary.json."""
     build = configured(values, tests=True)
     build.ninja("coverage", "regress")
     counted = BuildFolder("build/coverage", values)
@@ -43,21 +43,16 @@ def coverage(values):
     points = run_tests(work, values)
     say("coverage: merging")
     infos = [*of_host(work), *of_rtl(work, points), *of_vhdl(work, points, build)]
-    run(["lcov", "--quiet", *with_word("--add-tracefile", infos), "--output-file",
+    run(["lcov", "--quiet", *with_name("--add-tracefile", infos), "--output-file",
          work / "merged.info"])
     run(["genhtml", "--quiet", "--title", "IceSoC", "--output-directory", work / "html",
          work / "merged.info"])
     others = [info for info in infos if info.name != "rtl.info"]  # the tool reads rtl.dat
     status = run([build / "tests/regress/coverage", "--gates", gates, "--verilator",
-                  work / "rtl.dat", *with_word("--info", others), "--out", work / "summary.json"],
+                  work / "rtl.dat", *with_name("--info", others), "--out", work / "summary.json"],
                  check=False)
     (work / "tree").write_text(tree)
-    note(work)
     return status
-
-
-def with_word(word, files):
-    return [each for file in files for each in (word, file)]
 
 
 def run_tests(work, values):
@@ -117,12 +112,3 @@ def of_vhdl(work, points, build):
         if counts:
             run([build / "ghdl/ghdl", "coverage", "--format=lcov", *counts], stdout=file)
     return [info] if info.stat().st_size else []
-
-
-def note(work):
-    """Adds the share of this commit to the history, which `synth report --base` reads."""
-    commit = output(["git", "describe", "--always", "--dirty=+", "--abbrev=10"], check=False,
-                    stderr=subprocess.DEVNULL) or "unknown"
-    total = re.search(r'^ "total": (\d+\.?\d?)', (work / "summary.json").read_text(), re.M)
-    with open(work / "history", "a") as file:
-        file.write(f"{commit.strip()} {total[1]} % of lines\n" if total else "")

@@ -9,7 +9,6 @@ import sys
 
 import baseline
 import cores
-import placement
 import report
 import runner
 import sources
@@ -143,10 +142,6 @@ def run(o, libraries):
     r.cores = cores_of(rows, library, options, o)
     report.show(r)
     write_reports(r, o, libraries)
-    if o.place:
-        table = placement.placed(rows, o.place, o.jobs)
-        print(f"\n{table.plain()}", end="")
-        write(o.output / "placed.md", table.markdown())
     write(o.output / "tree", f"{tree}\n")
     return 1 if r.failures else 0
 
@@ -171,10 +166,6 @@ def options_of(words):
     parser.add_argument("--core", action="append", default=[],
                         help="only tell what this core costs in the accepted chip (may be "
                              "repeated); with --design soc in the chip of now")
-    parser.add_argument("--compare", **path, metavar="REPORT.JSON",
-                        help="only tell how the last report differs from this one")
-    parser.add_argument("--place", metavar="NEXTPNR",
-                        help="place the designs for ECP5 by this nextpnr-ecp5")
     parser.add_argument("--edif", metavar="DESIGN",
                         help="only write this design as EDIF for ISE, into the folder ise")
     parser.add_argument("--netlist", metavar="DESIGN",
@@ -182,8 +173,7 @@ def options_of(words):
     parser.add_argument("--to", **path, default="build/synth/netlist.v",
                         help="the file of --netlist (%(default)s)")
     o = parser.parse_args(words)
-    wanted = {FAMILIES[0], *o.family, *(["ecp5"] if o.place else [])}
-    o.family = [family for family in FAMILIES if family in wanted]
+    o.family = [family for family in FAMILIES if family in [FAMILIES[0], *o.family]]
     return o
 
 
@@ -191,11 +181,6 @@ def main(words, build):
     """`build`: the folder of the build that has the libraries of pages."""
     o = options_of(words)
     try:
-        if o.compare:
-            before, after = (json.loads(file.read_text())
-                             for file in (o.compare, o.output / "report.json"))
-            print(report.differences(before, after), end="")
-            return 0
         # A design that another run is synthesising is then found in the cache.
         with only_one(o.output, "utilisation"):
             return run(o, build / "page")

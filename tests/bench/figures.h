@@ -15,6 +15,7 @@
 #define FIGURES_H
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -29,15 +30,18 @@ public:
     CLI::App app;       // for options of a bench's own
     bool brief = false; // a short measurement; no figure is judged
 
-    // Adds a figure. `limit` is compared with it: a physical bound, or a budget.
+    // Adds a figure, and prints it. `limit` is compared with it: a physical bound, or a budget.
     nlohmann::json& add(const std::string& name, double value, const std::string& unit,
                         double limit = 0) {
         nlohmann::json entry = {
             {"name", name}, {"value", value}, {"unit", unit}, {"command", "make bench"}};
+        std::printf("%-80s %10.4g %s", name.c_str(), value, unit.c_str());
         if (limit > 0) {
             entry["limit"] = limit;
             entry["share"] = value / limit;
+            std::printf(", %.1f %% of %.6g", 100 * value / limit, limit);
         }
+        std::puts("");
         return entries_.emplace_back(std::move(entry));
     }
     // Reports an unwanted figure; the bench then ends with status 1.
@@ -57,7 +61,7 @@ public:
             file << entries_.dump(1) << '\n';
             if (!file.flush())
                 throw std::runtime_error("cannot write " + output_);
-            std::cout << "Written: " << output_ << '\n' << std::flush;
+            std::printf("Written: %s\n", output_.c_str());
         } catch (const std::exception& error) {
             std::cerr << app.get_name() << ": error: " << error.what() << '\n';
             return 1;

@@ -25,11 +25,8 @@ Figures figures("The firmware on the Cortex-M3 model against the RTL.");
 void say(const std::string& name, double value, const std::string& unit, double limit = 0,
          const std::string& remark = "") {
     figures.add(name, value, unit, limit);
-    char text[40] = "";
-    if (limit > 0)
-        std::snprintf(text, sizeof text, "(limit %g)", limit);
-    std::printf("%-52s %10.4g %-14s %s %s\n", name.c_str(), value, unit.c_str(), text,
-                remark.c_str());
+    if (!remark.empty())
+        std::printf("    %s\n", remark.c_str());
     if (limit > 0 && value > limit)
         figures.miss(name + " is over its limit");
 }

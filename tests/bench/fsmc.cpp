@@ -16,7 +16,7 @@ extern "C" {
 
 namespace {
 
-constexpr double fabricHz = 100e6, wantedRate = 25e6; // accesses/s at the pins
+constexpr double fabricHz = 100e6;
 constexpr uint32_t ddr = MAP_DDR_WINDOW, control = MAP_CONTROL_WINDOW;
 
 Figures figures("Speed of the FSMC bridge with the real driver, up to DDR3.");
@@ -49,14 +49,10 @@ double streams(unsigned hclk, uint64_t seed, uint32_t halfwords, bool& right) {
         value = static_cast<U16>(random.next());
     U32 repeated = 0;
     double least = 1;
-    // Prints a row. An access takes whole HCLK: the limit of the pins is what the driver's timing
+    // An access takes whole HCLK: the limit of the pins is what the driver's timing
     // leaves at this HCLK (docs/fsmc.md).
     auto show = [&](const char* what, double clocks, unsigned cycles, double wanted) {
         double rate = halfwords / clocks * fabricHz, limit = hclk * 1e6 / cycles;
-        fmt::print("HCLK {:3} MHz  {:<40} {:6.2f} M/s {:6.1f} % {:4} HCLK {:6.2f} M/s {:6.1f} %",
-                   hclk, what, rate / 1e6, 100 * rate / wantedRate, cycles, limit / 1e6,
-                   100 * rate / limit);
-        fmt::print(wanted > 0 ? "   {:.0f} % wanted\n" : "\n", 100 * wanted);
         figures.add(fmt::format("FSMC, HCLK {} MHz, {}", hclk, what), rate / 1e6,
                     "million halfwords/s", limit / 1e6);
         if (wanted > 0)
@@ -85,8 +81,6 @@ void frame(unsigned hclk, uint64_t seed, bool& right, uint32_t halfwords = 320 *
     Random random(seed);
     std::vector<U16> out(halfwords), in(halfwords);
     auto show = [&](const char* what, double clocks) {
-        fmt::print("HCLK {:3} MHz  frame of 320 x 240, {:<24} {:8.0f} clocks, {:5.2f} a halfword\n",
-                   hclk, what, clocks, clocks / halfwords);
         figures.add(fmt::format("FSMC, HCLK {} MHz, frame of 320 x 240, {}", hclk, what),
                     clocks / fabricHz * 1e3, "ms");
     };
@@ -118,8 +112,6 @@ void single(unsigned hclk, uint64_t seed, int count) {
             for (int i = 0; i < count; ++i)
                 access();
         });
-        fmt::print("HCLK {:3} MHz  {:<38} {:6.1f} clocks, {:5.1f} at least\n", hclk, what,
-                   sum / count, least);
         figures.add(fmt::format("FSMC, HCLK {} MHz, {}", hclk, what), sum / count, "clocks", least);
     };
     // The least time: ADDSET 2, DATAST 4 and 1 HCLK of hold or turnaround. A read that waits ends 4
@@ -143,15 +135,10 @@ int main(int argc, char** argv) {
         const uint64_t seed = testSeed();
         const uint32_t halfwords = figures.brief ? 64 : 32768;
         bool right = true;
-        fmt::print("Blocks of {} halfwords; share of 25 million accesses/s, HCLK of an access, the "
-                   "pins' limit with it, share of that\n",
-                   halfwords);
         double least = streams(100, seed, halfwords, right);
         least = std::min(least, streams(120, seed, halfwords, right));
-        fmt::print("\nA frame, in clocks of 100 MHz\n");
         for (unsigned hclk : {100, 120})
             figures.brief ? frame(hclk, seed, right, 64) : frame(hclk, seed, right);
-        fmt::print("\nSingle accesses, in clocks of 100 MHz\n");
         for (unsigned hclk : {100, 120})
             single(hclk, seed, figures.brief ? 5 : 500);
         if (!right)

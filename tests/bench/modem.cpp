@@ -11,7 +11,6 @@
 #include "modem_setup.h"
 #include "npi_memory.h"
 #include "rf_channel.h"
-#include <cstdio>
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -113,7 +112,6 @@ int main(int argc, char** argv) {
                 std::string name = std::string(side.name) + ": " + c.name;
                 if (ms == 0)
                     throw std::runtime_error(name + ": the set-up failed");
-                std::printf("%-78s %8.1f ms  (two guard times: %.0f)\n", name.c_str(), ms, floor);
                 figures.add(name, ms, "ms simulated")
                     .update({{"peer", floor}, {"ratio", ms / floor}});
             }

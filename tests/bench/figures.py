@@ -18,7 +18,7 @@ import textwrap
 
 TITLES = {
     "simulator": "Simulator", "air": "Radio link on the half-duplex air",
-    "speed": "Simulation of RTL against Icarus", "plugin": "Stock Ice through the plugin",
+    "plugin": "Stock Ice through the plugin",
     "trust": "Attacks, losses of power in updates, bytes of a key",
     "load": "Load on the ground's engine and gateway", "modem": "Modem set-up",
     "fsmc": "FSMC bridge", "memory": "Memory ports", "firmware": "Firmware on the Cortex-M3",

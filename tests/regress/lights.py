@@ -61,7 +61,7 @@ def of_coverage(coverage):
 
 def of_entries(name, entries, command):
     """Entries with a limit: most allowed, or least where the unit says "at least"."""
-    limits = [each for each in entries if isinstance(each, dict) and "limit" in each]
+    limits = [each for each in entries if "limit" in each]
     bad = []
     for each in limits:
         value, limit, least = each["value"], each["limit"], "at least" in each.get("unit", "")
@@ -99,7 +99,7 @@ def lights_of(data, source):
     """The lights of report.py's data: [{name, state, text}]."""
     measured = [of_mutants(data["mutants"], data.get("drawn", {}), source),
                 of_coverage(data.get("coverage")), of_size(data.get("utilisation")),
-                of_entries("speed", data.get("speed", {}).get("entries", []), "make bench")]
+                of_entries("speed", data.get("speed", []), "make bench")]
     for each in measured:  # a measurement keeps the state of the tree that it measured
         tree = data["trees"].get(each["name"], "")
         if each["state"] != "grey" and tree_state(source, tree.split(":")[0]) != tree:

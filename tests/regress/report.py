@@ -12,7 +12,7 @@ from waves import drawing_of
 HERE = pathlib.Path(__file__).resolve().parent
 LARGEST = 2_000_000  # bytes of the page
 MEASURED = {"coverage": "coverage/summary.json", "utilisation": "synth/report.json",
-            "speed": "bench/speed.json", "drawn": "mutants/drawn.json"}
+            "speed": "bench/simulator.json", "drawn": "mutants/drawn.json"}
 
 
 def read(path):

@@ -138,26 +138,32 @@ class Cases(Project):
     def test_lights_figures(self):
         """As `make synth` and `make bench` report them: within a limit, beyond it, without a
         figure."""
-        def figure(name, value, unit, limit, failures=(), state="as accepted"):
-            entry = {"name": "whole", "value": value, "unit": unit, "limit": limit}
-            write(f"build/{name}.json", json.dumps(
-                {"failures": failures, "states": {"whole": state}, "entries": [entry]}))
+        def entry(value, unit, limit):
+            return [{"name": "whole", "value": value, "unit": unit, "limit": limit}]
+
+        def size(value, failures=(), state="as accepted"):
+            write("build/synth/report.json", json.dumps(
+                {"failures": failures, "states": {"whole": state},
+                 "entries": entry(value, "LUT", 40)}))
+
+        def speed(value):
+            write("build/bench/simulator.json", json.dumps(entry(value, "clocks/s, at least", 50)))
 
         def measure(**states):
             measured("synth", "project")
             measured("bench", "hdl")
             self.lights(**states)
 
-        figure("synth/report", 40, "LUT", 40)
-        figure("bench/speed", 60, "times, at least", 50)
+        size(40)
+        speed(60)
         measure(size="green", speed="green")
-        figure("synth/report", 40, "LUT", 40, state="changed since")
+        size(40, state="changed since")
         measure(size="grey   1 changed since, 0 never measured here: make synth")
-        figure("synth/report", 41, "LUT", 40)
+        size(41)
         measure(size="red   *1 beyond their limits: whole 41 [(]at most 40[)]", tests="green",
                 speed="green")
-        figure("synth/report", 0, "LUT", 40, ["whole: synthesis failed"])
-        figure("bench/speed", 49, "times, at least", 50)
+        size(0, ["whole: synthesis failed"])
+        speed(49)
         measure(size="red .*whole: synthesis failed",
                 speed="red   *1 beyond their limits: whole 49 [(]at least 50[)]")
 

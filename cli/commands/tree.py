@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """tree: set-up, clean-up, and the list of commands."""
+import json
 import os
 import shlex
 import shutil
@@ -49,13 +50,13 @@ def clean(values):
     Option("brief", SWITCH,
            "runs the brief form of each to its end, writes build/commands.md and .json"),
     Option("only", TEXT, "only those whose name contains this", ""),
-    Option("schema", PATH, "writes the JSON schema of a flight, cli/flight.schema.json", "")],
+    Option("schema", PATH, "writes the JSON schema of a flight", "")],
          make="commands", brief="commands", examples=[
              "commands --brief"])
 def commands(values):
     """list all commands with their brief forms, or run these"""
     if values.schema:
-        Path(values.schema).write_text(flight.schema_text())
+        Path(values.schema).write_text(json.dumps(flight.schema(), indent=1) + "\n")
     if values.brief:
         return run_all(values.only)
     if not values.schema:

@@ -36,7 +36,9 @@ def operation(name, self, parameters, calls, servants):
     arguments = ["&far", *given, *("&" + name_of(p) for p in later)]
     print(f"    status = {call}({', '.join(arguments)});")
     if later:
-        results = ", ".join(["&reply", *(name_of(p) for p in later if name_of(p) != "ex")])
+        names = [name_of(p) for p in later]
+        results = ", ".join(["&reply"] + [f"has_{n} ? &{n} : 0" if "has_" + n in names else n
+                                          for n in names if n != "ex" and n[:4] != "has_"])
         answer = [f"status == ICE_OK ? {name}_response({results})"]
         answer += [f"{name}_exception(&reply, &ex)" for p in later if name_of(p) == "ex"]
         print("    if (status <= ICE_USER_EXCEPTION) {\n        Ice_Reply reply;\n"

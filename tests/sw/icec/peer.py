@@ -2,11 +2,10 @@
 # SPDX-License-Identifier: MIT
 """peer: stock ZeroC Ice in Python for Interop.ice.
 
-peer.py client [minimal] PORT   every operation; minimal: what that run time has
-peer.py client slow PORT|ENDPOINT   the same, with fewer and smaller calls
-peer.py crowd PORT              many programs at once
-peer.py lost PORT               connections that are cut: calls fail cleanly, the next ones work
-peer.py server                  prints its port
+peer.py client WHAT PORT|ENDPOINT   full: every operation, to a bridge; minimal: what that run time
+                                    has; slow: fewer and smaller calls, over the radio
+peer.py crowd PORT                  many programs at once
+peer.py server                      prints its port
 """
 
 import os
@@ -19,7 +18,7 @@ import Ice
 Ice.loadSlice("", [os.path.join(os.path.dirname(__file__), "Interop.ice")])
 import Interop  # noqa: E402
 
-CROWD = 20
+CROWD = 20  # far more than the server has numbers for
 # By Ice_Status of IceC, which says of some more only that they are others.
 FAILURES = {2: Ice.ObjectNotExistException, 3: Ice.FacetNotExistException,
             4: Ice.OperationNotExistException, 5: Ice.UnknownLocalException,
@@ -88,6 +87,7 @@ def calls(base, minimal, slow):
 
 
 def oneways(service, minimal):
+    expected = 10 if minimal else 20
     before = service.notifications()
     oneway = Interop.ServicePrx.uncheckedCast(service.ice_oneway())
     for _ in range(10):
@@ -97,8 +97,9 @@ def oneways(service, minimal):
         for _ in range(10):
             batch.notify("hello")
         batch.ice_flushBatchRequests()
-    # Batch and one-way proxies have connections of the same endpoint: order holds.
-    assert service.notifications() == before + (10 if minimal else 20), service.notifications()
+    while service.notifications() < before + expected:  # a server's threads may be overtaken
+        pass
+    assert service.notifications() == before + expected
 
 
 def limits(base, encoding):
@@ -121,8 +122,8 @@ def limits(base, encoding):
     assert service.echo(b"still there") == b"still there"
 
 
-def full(ic, where, encoding, slow):
-    """Calls what only the full run time serves."""
+def full(ic, where, encoding):
+    """Calls what only the full run time serves, at the bridge as at the server behind it."""
     base = ic.stringToProxy("tester -e %s%s" % (encoding, where))
     t = Interop.TesterPrx.checkedCast(base)
     assert t.context("who", {"a": "b", "who": "me"}) == "me" and t.context("who") == "-"
@@ -133,11 +134,13 @@ def full(ic, where, encoding, slow):
     other = Interop.TesterPrx.uncheckedCast(base.ice_identity(Ice.Identity("whoever", "any")))
     assert other.whoAmI() == "any/whoever -f  mode 0"
     expect(Ice.FacetNotExistException, base.ice_facet("none").ice_ping)
-    # Asynchronous calls, answered later and in the reverse order; others are served meanwhile.
+    # Asynchronous calls, answered in the reverse order; others are served meanwhile.
     sent = (1, "a"), (2, Ice.Unset), (-3, "c")
     futures = [t.laterAsync(Interop.Node(number), text) for number, text in sent]
     assert t.context("meanwhile") == "-"
-    assert t.release() == 3
+    released = 0
+    while released < 3:  # the calls may overtake each other
+        released += t.release()
     for future, (number, text) in zip(futures[:2], sent):
         node, same = future.result()
         assert node.id == number and node.next is node
@@ -148,7 +151,8 @@ def full(ic, where, encoding, slow):
     adapter = ic.createObjectAdapterWithEndpoints("Callback" + encoding, "tcp -h 127.0.0.1")
     callback = Interop.CallbackPrx.uncheckedCast(adapter.addWithUUID(CallbackI()))
     adapter.activate()
-    assert slow or t.callBack(callback, 5) == 100
+    base.ice_getConnection().setAdapter(adapter)
+    assert t.callBack(callback, 5) == 100
     for text in ("x @ adapter", "y -s", "u:udp -h h -p 7", "s:ssl -h h -p 8:ws -h h -p 9",
                  "cat/o -f f -o:tcp -h 127.0.0.1 -p 9:opaque -t 99 -e 1.0 -v QUI="):
         proxy = ic.stringToProxy(text)  # 1.0 does not carry a proxy's own encoding
@@ -163,27 +167,27 @@ def full(ic, where, encoding, slow):
     assert expect(Interop.Failure, square.area, -1).reason == "negative"
 
 
-def client(ic, port, minimal, slow):
+def client(ic, what, port):
     where = port if port.startswith(":") else ":tcp -h 127.0.0.1 -p " + port
     for encoding in ("1.1", "1.0"):
         base = ic.stringToProxy("service -e %s%s" % (encoding, where))
-        calls(base, minimal, slow)
-        if not minimal:
-            full(ic, where, encoding, slow)
-        if not minimal and not slow:
+        calls(base, what == "minimal", what == "slow")
+        if what == "full":
+            full(ic, where, encoding)
             limits(base, encoding)
     service = Interop.ServicePrx.checkedCast(base)
-    oneways(service, minimal)
-    if ":tcp" not in where:  # a vehicle is not shut down: who would close the connection with us?
+    oneways(service, what == "minimal")
+    if what == "slow":  # a vehicle is not shut down: who would close the connection with us?
         print("peer: all calls as expected")
         return
-    if not slow:
-        adapter = ic.createObjectAdapterWithEndpoints("Callback", "tcp -h 127.0.0.1")
-        callback = CallbackI()
-        proxy = Interop.CallbackPrx.uncheckedCast(adapter.addWithUUID(callback))
-        adapter.activate()
-        service.work(proxy)
-        assert callback.event.wait(30) and callback.percent == 100
+    adapter = ic.createObjectAdapterWithEndpoints("Callback", "tcp -h 127.0.0.1")
+    callback = CallbackI()
+    proxy = Interop.CallbackPrx.uncheckedCast(adapter.addWithUUID(callback))
+    adapter.activate()
+    if what == "full":
+        service.ice_getConnection().setAdapter(adapter)
+    service.work(proxy)
+    assert callback.event.wait(30) and callback.percent == 100
     # Garbage, and a client that leaves in mid-message, disturb nobody else.
     for rubbish in (b"GET / HTTP/1.0\r\n\r\n", b"IceP\x01\x00\x01\x00\x00\x00\xff\xff\xff\x7f",
                     b"IceP\x01\x00"):
@@ -199,53 +203,22 @@ def client(ic, port, minimal, slow):
 def crowd(port):
     """Many programs at once that stay connected: each is served, and served again."""
     where = "service:tcp -h 127.0.0.1 -p " + port
-    failed = []
-
-    def one(number):
-        try:
-            with Ice.initialize() as ic:
-                service = Interop.ServicePrx.uncheckedCast(ic.stringToProxy(where))
-                for i in range(3):
-                    assert service.add(number, i) == number + i
-                start.wait()  # all are there, and far more than the server has numbers for
-                assert service.add(number, 1) == number + 1
-        except (Ice.Exception, AssertionError) as e:
-            failed.append("client %d: %r" % (number, e))
-            start.abort()
-
-    start = threading.Barrier(CROWD)
-    threads = [threading.Thread(target=one, args=(i,)) for i in range(CROWD)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert not failed, failed
-    with Ice.initialize() as ic:
-        Interop.ServicePrx.uncheckedCast(ic.stringToProxy(where)).shutdown()
+    programs = [Ice.initialize() for _ in range(CROWD)]
+    services = [Interop.ServicePrx.uncheckedCast(ic.stringToProxy(where)) for ic in programs]
+    for i in range(4):
+        futures = [service.addAsync(number, i) for number, service in enumerate(services)]
+        for number, future in enumerate(futures):
+            assert future.result() == number + i
+    services[0].shutdown()
+    for ic in programs:
+        ic.destroy()
     print("peer: %d clients at once were served" % CROWD)
 
 
-def lost(ic, port):
-    """The relay cuts every connection after some bytes; a call either answers or fails as lost."""
-    base = ic.stringToProxy("service:tcp -h 127.0.0.1 -p " + port).ice_invocationTimeout(60000)
-    service = Interop.ServicePrx.uncheckedCast(base)
-    answered = failed = 0
-    for i in range(60):
-        try:
-            assert len(service.echo(bytes(200))) == 200
-            answered += 1
-        except (Ice.ConnectionLostException, Ice.CloseConnectionException):
-            failed += 1
-    assert answered >= 20 and failed >= 3, (answered, failed)
-    while True:  # the connection of the good-bye may be cut as well
-        try:
-            service.shutdown()
-            break
-        except (Ice.ConnectionLostException, Ice.CloseConnectionException):
-            pass
-        except Ice.ConnectFailedException:
-            break
-    print("peer: %d calls answered, %d lost with their connection" % (answered, failed))
+def bound(callback, current):
+    """Returns a proxy over the caller's own connection: it may listen nowhere."""
+    return Interop.CallbackPrx.uncheckedCast(
+        current.con.createProxy(callback.ice_getIdentity()))
 
 
 class ServiceI(Interop.Service):
@@ -273,10 +246,10 @@ class ServiceI(Interop.Service):
         if 2 <= status <= 4:
             raise FAILURES[status](Ice.Identity("n", "c"), "f", "op")
         if status:
-            raise Ice.MarshalException("as asked") if status == 5 else RuntimeError("as asked")
+            raise FAILURES[status]("as asked")
 
     def work(self, callback, current):
-        pass
+        bound(callback, current).progressAsync(100)
 
     def shutdown(self, current):
         current.adapter.getCommunicator().shutdown()
@@ -294,9 +267,7 @@ class TesterI(Interop.Tester):
                                         current.mode.value)
 
     def callBack(self, callback, times, current):
-        # Over the caller's own connection: it may listen nowhere.
-        bound = current.con.createProxy(callback.ice_getIdentity())
-        return sum(Interop.CallbackPrx.uncheckedCast(bound).ask(i) for i in range(times))
+        return sum(bound(callback, current).ask(i) for i in range(times))
 
     def later(self, v, text, current):
         self.waiting.append((v, text, Ice.Future()))
@@ -379,9 +350,9 @@ for setting in ("Warn.Dispatch=0", "Warn.Connections=0", "RetryIntervals=-1",
                 "Plugin.IceSSL=IceSSL:createIceSSL"):
     data.properties.setProperty(*("Ice." + setting).split("="))
 with Ice.initialize(sys.argv, data) as communicator:
-    role, last = sys.argv[1], sys.argv[-1]
-    if role == "client":
-        client(communicator, last, "minimal" in sys.argv, "slow" in sys.argv)
+    if sys.argv[1] == "client":
+        client(communicator, sys.argv[2], sys.argv[-1])
+    elif sys.argv[1] == "crowd":
+        crowd(sys.argv[2])
     else:
-        {"crowd": lambda: crowd(last), "lost": lambda: lost(communicator, last),
-         "server": lambda: server(communicator)}[role]()
+        server(communicator)

@@ -12,9 +12,6 @@ parser = argparse.ArgumentParser(description=__doc__)
 parser.add_argument("--pcap",
                     help="every byte as TCP over IPv4, with openings and ends, as a capture would "
                          "hold it")
-parser.add_argument("--slow", type=int,
-                    help="hands on so many bytes at a time, a millisecond apart, in both "
-                         "directions")
 parser.add_argument("--cut", type=int,
                     help="every connection ends, without a word, when so many bytes have passed")
 parser.add_argument("port", type=int, help="the server's")
@@ -60,13 +57,11 @@ async def connection(reader, writer):
 
     async def pump(side, source, target):
         nonlocal passed
-        while data := await source.read(words.slow or 4096):
+        while data := await source.read(4096):
             passed += len(data)
             if words.cut and passed > words.cut:
                 return
             capture.packet(side, PSH | ACK, data)
-            if words.slow:
-                await asyncio.sleep(0.001)
             target.write(data)
             await target.drain()
         capture.packet(side, FIN | ACK)

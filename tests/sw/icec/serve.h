@@ -9,8 +9,6 @@
 
 /* Adds the servants to an adapter. */
 Ice_Status Suite_serve(Ice_ObjectAdapterPtr adapter);
-/* Adds those of Interop.ice that need the full run time. */
-Ice_Status Tester_serve(Ice_ObjectAdapterPtr adapter);
 /* Does what is due between two events. */
 void Suite_work(void);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * service: IceC's servants of Interop.ice for the minimal run time; tester.c adds the full one's.
+ * service: IceC's servant of Interop.ice, for both run times.
  */
 #include "Interop.h"
 #include "serve.h"
@@ -93,12 +93,6 @@ void Suite_work(void) {
 }
 
 Ice_Status Suite_serve(Ice_ObjectAdapterPtr adapter) {
-    Ice_Status status;
     Interop_Service_init(&service);
-    status = Ice_ObjectAdapter_add(adapter, (Ice_ObjectPtr)&service, "service");
-#ifndef ICEC_MINIMAL
-    if (status == ICE_OK)
-        status = Tester_serve(adapter);
-#endif
-    return status;
+    return Ice_ObjectAdapter_add(adapter, (Ice_ObjectPtr)&service, "service");
 }

@@ -177,6 +177,20 @@ TEST_F(Tcp, AHundredClientsAtOnceAreServed) {
     }
 }
 
+TEST_F(Tcp, AMessageMayComeByteByByte) {
+    Peer peer(port());
+    ASSERT_TRUE(peer.isConnected(1000));
+    for (int turn = 0; turn < 2; ++turn)
+        for (Ice_Byte byte : request(7, requestBody("thing", "ice_ping"))) {
+            ASSERT_TRUE(peer.send({byte}));
+            (void)Ice_Communicator_poll(ic_.get(), 1000);
+        }
+    serve(); // takes the last byte, where accepting took a turn
+    EXPECT_EQ(peer.receive(20000), message(3, {}));
+    for (int turn = 0; turn < 2; ++turn)
+        EXPECT_EQ(peer.receive(20000), message(2, {7, 0, 0, 0, 0, 6, 0, 0, 0, 1, 1}));
+}
+
 TEST_F(Tcp, AClientThatNeverReadsStopsNobodyForLong) {
     servant_.run = [](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr os) {
         static const Ice_Byte much[8000] = {0};

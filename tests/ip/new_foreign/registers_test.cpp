@@ -35,7 +35,7 @@ public:
             ++interrupts_;
             Hw_Registers_Core_interrupt(&core_);
         };
-        LoopEndpoint_join(&here_->loop, &there_->loop);
+        here_->loop.join(there_->loop);
         auto* servant = reinterpret_cast<Ice_ObjectPtr>(&core_.servant);
         EXPECT_EQ(Ice_ObjectAdapter_add(&there_->adapter, servant, "core"), ICE_OK);
         EXPECT_EQ(Ice_Communicator_stringToProxy(&here_->ic, "core:loop", &prx_), ICE_OK);

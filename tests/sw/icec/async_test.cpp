@@ -26,12 +26,9 @@ TEST_F(Calls, AServantMayAnswerLaterAndOthersAreServedMeanwhile) {
                 self->value = Ice_InputStream_readInt(is);
         }
     } slow;
-    Ice_ObjectPrx prx = here().proxy("thing:loop");
-    ASSERT_NE(Ice_ObjectPrx_begin(&prx, "slow", ICE_RESULTS), nullptr);
-    ASSERT_EQ(Ice_ObjectPrx_invokeAsync(&prx, &Answer::take, &slow), ICE_OK);
-    Ice_Int out = 0;
-    EXPECT_EQ(call(prx, "quick", 5, &out), ICE_OK);
-    EXPECT_EQ(out, 5);
+    ASSERT_NE(Ice_ObjectPrx_begin(&prx_, "slow", ICE_RESULTS), nullptr);
+    ASSERT_EQ(Ice_ObjectPrx_invokeAsync(&prx_, &Answer::take, &slow), ICE_OK);
+    EXPECT_EQ(ask(prx_, "quick", 5), 5);
     EXPECT_EQ(slow.status, ICE_LATER);
     Ice_OutputStreamPtr os = Ice_Reply_begin(&later);
     Ice_OutputStream_writeInt(os, 42);
@@ -52,13 +49,12 @@ TEST_F(Calls, SeveralCallsAreInFlightUpToTheLimit) {
     auto take = [](void* cookie, Ice_Status status, Ice_InputStreamPtr) {
         static_cast<std::vector<Ice_Status>*>(cookie)->push_back(status);
     };
-    Ice_ObjectPrx prx = here().proxy("thing:loop");
     for (int i = 0; i < ICE_CALLS; ++i) {
-        ASSERT_NE(Ice_ObjectPrx_begin(&prx, "op", 0), nullptr);
-        ASSERT_EQ(Ice_ObjectPrx_invokeAsync(&prx, take, &answers), ICE_OK);
+        ASSERT_NE(Ice_ObjectPrx_begin(&prx_, "op", 0), nullptr);
+        ASSERT_EQ(Ice_ObjectPrx_invokeAsync(&prx_, take, &answers), ICE_OK);
     }
-    EXPECT_EQ(Ice_ObjectPrx_begin(&prx, "op", 0), nullptr);
-    EXPECT_EQ(prx.status, ICE_LIMIT);
+    EXPECT_EQ(Ice_ObjectPrx_begin(&prx_, "op", 0), nullptr);
+    EXPECT_EQ(prx_.status, ICE_LIMIT);
     settle();
     ASSERT_EQ(later.size(), static_cast<size_t>(ICE_CALLS));
     for (size_t i = later.size(); i-- > 0;) { // in the reverse order
@@ -86,9 +82,7 @@ TEST_F(Calls, AnOperationMayCallBackBeforeItAnswers) {
     };
     Ice_ObjectPrx prx = here().proxy("thing:loop");
     for (int i = 0; i < 100; ++i) {
-        Ice_Int out = 0;
-        ASSERT_EQ(call(prx, "op", i, &out), ICE_OK);
-        ASSERT_EQ(out, i + 2);
+        ASSERT_EQ(ask(prx, "op", i), i + 2);
     }
 }
 

@@ -13,7 +13,7 @@ check() { # sources, flags: compiler first
     shift
     # shellcheck disable=SC2086
     "$@" $warnings -I"$sw/base" -I"$sw/icec" -I"$sw/link" -I"$sw/icec/endpoints" $sources \
-        "$sw/icec/endpoints/xbee_endpoint.c" "$sw/icec/endpoints/loop_endpoint.c"
+        "$sw/icec/endpoints/xbee_endpoint.c"
     echo "C90: $*"
 }
 for compiler in gcc clang 'arm-none-eabi-gcc -mcpu=cortex-m3 -mthumb -Os'; do

@@ -34,22 +34,9 @@ TEST_F(Calls, WhatDoesNotExistIsSaidWithItsName) {
     EXPECT_EQ(str(failure.operation), "op");
     Ice_ObjectPrx facet = here().proxy("thing -f side:loop");
     EXPECT_EQ(call(facet, "op"), ICE_FACET_NOT_EXIST);
-    servant_.run = [](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
-        return ICE_OPERATION_NOT_EXIST;
-    };
+    servant_.run = returns(ICE_OPERATION_NOT_EXIST);
     Ice_ObjectPrx thing = here().proxy("thing:loop");
     EXPECT_EQ(call(thing, "none"), ICE_OPERATION_NOT_EXIST);
-}
-
-TEST_F(Calls, AFailureOfTheRunTimeIsToldInWords) {
-    Ice_ObjectPrx prx = here().proxy("thing:loop");
-    Ice_Failure failure;
-    servant_.run = [](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
-        return ICE_LIMIT;
-    };
-    EXPECT_EQ(call(prx, "op"), ICE_UNKNOWN_EXCEPTION);
-    Ice_ObjectPrx_failure(&prx, &failure);
-    EXPECT_EQ(str(failure.unknown), Ice_Status_text(ICE_LIMIT));
 }
 
 TEST_F(Calls, AFailureIsToldOfItsProxyWhateverOthersCall) {
@@ -58,11 +45,10 @@ TEST_F(Calls, AFailureIsToldOfItsProxyWhateverOthersCall) {
     Ice_Failure failure;
     EXPECT_EQ(call(nobody, "first"), ICE_OBJECT_NOT_EXIST);
     servant_.run = [](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
-        return str(current.operation) == "works" ? ICE_OK : ICE_UNKNOWN_EXCEPTION;
+        return str(current.operation) == "works" ? ICE_OK : ICE_LIMIT;
     };
     EXPECT_EQ(call(fails, "fails"), ICE_UNKNOWN_EXCEPTION);
-    Ice_ObjectPrx_failure(&fails, &failure);
-    EXPECT_EQ(str(failure.unknown), Ice_Status_text(ICE_UNKNOWN_EXCEPTION));
+    EXPECT_EQ(reason(fails), Ice_Status_text(ICE_LIMIT)) << "the status in words";
     Ice_ObjectPrx_failure(&works, &failure);
     EXPECT_EQ(failure.unknown.size + failure.identity.name.size, 0) << "no call so far";
     EXPECT_EQ(call(works, "works"), ICE_OK);
@@ -170,65 +156,62 @@ TEST_F(Calls, AnAdapterIsFullAtItsLimitAndDeafUntilActive) {
                                  names[static_cast<size_t>(added - 1)].c_str()) == ICE_OK)
         ++added;
     EXPECT_EQ(added, ICE_SERVANTS);
-    Ice_ObjectPrx prx = here().proxy("thing:loop");
     Ice_ObjectAdapter_deactivate(&there().adapter);
-    EXPECT_EQ(call(prx, "op"), ICE_OBJECT_NOT_EXIST);
+    EXPECT_EQ(call(prx_, "op"), ICE_OBJECT_NOT_EXIST);
     Ice_ObjectAdapter_activate(&there().adapter);
-    EXPECT_EQ(call(prx, "op"), ICE_OK);
+    EXPECT_EQ(call(prx_, "op"), ICE_OK);
     Ice_ObjectAdapter_destroy(&there().adapter);
-    EXPECT_EQ(call(prx, "op"), ICE_OBJECT_NOT_EXIST);
+    EXPECT_EQ(call(prx_, "op"), ICE_OBJECT_NOT_EXIST);
 }
 
 TEST_F(Calls, ABatchIsOneMessageAndIsSentWhenFullOrFlushed) {
     std::vector<int> got;
     int messages = 0;
-    here().loop.tapContext = &messages;
-    here().loop.tap = [](void* context, int, const Ice_Byte* message, Ice_Int) {
-        *static_cast<int*>(context) += message[8] == 1; // a batch
-    };
+    here().loop.tap = [&](const Bytes& m) { messages += m[8] == 1; };
     servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr is, Ice_OutputStreamPtr) {
         EXPECT_EQ(current.requestId, 0);
         got.push_back(Ice_InputStream_readInt(is));
         return ICE_OK;
     };
-    Ice_ObjectPrx prx = here().proxy("thing:loop");
     Ice_Batch batch;
     Ice_Byte data[200];
-    Ice_ObjectPrx_ice_batchOneway(&prx, &batch, data, sizeof data);
-    EXPECT_EQ(Ice_ObjectPrx_ice_flushBatchRequests(&prx), ICE_OK) << "nothing to send";
+    Ice_ObjectPrx_ice_batchOneway(&prx_, &batch, data, sizeof data);
+    EXPECT_EQ(Ice_ObjectPrx_ice_flushBatchRequests(&prx_), ICE_OK) << "nothing to send";
     for (int i = 0; i < 5; ++i)
-        EXPECT_EQ(call(prx, "op", i), ICE_OK);
+        EXPECT_EQ(call(prx_, "op", i), ICE_OK);
     settle();
     EXPECT_TRUE(got.empty());
-    EXPECT_EQ(Ice_ObjectPrx_ice_flushBatchRequests(&prx), ICE_OK);
+    EXPECT_EQ(Ice_ObjectPrx_ice_flushBatchRequests(&prx_), ICE_OK);
     settle();
     EXPECT_EQ(got, std::vector<int>({0, 1, 2, 3, 4}));
     EXPECT_EQ(messages, 1);
     for (int i = 0; i < 20; ++i) // more than fits
-        EXPECT_EQ(call(prx, "op", i), ICE_OK);
-    EXPECT_EQ(Ice_ObjectPrx_ice_flushBatchRequests(&prx), ICE_OK);
+        EXPECT_EQ(call(prx_, "op", i), ICE_OK);
+    EXPECT_EQ(Ice_ObjectPrx_ice_flushBatchRequests(&prx_), ICE_OK);
     settle();
     EXPECT_EQ(got.size(), 25u);
     EXPECT_GT(messages, 2);
     Ice_Int out;
-    EXPECT_EQ(call(prx, "op", 0, &out), ICE_TWOWAY_ONLY);
+    EXPECT_EQ(call(prx_, "op", 0, &out), ICE_TWOWAY_ONLY);
 }
 
 TEST_F(Calls, ContextsArrive) {
     std::string seen;
     servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
-        Ice_String value;
+        Ice_String key, value;
         seen = Ice_Current_context(&current, "who", &value) ? str(value) : "-";
         EXPECT_FALSE(Ice_Current_context(&current, "else", &value));
+        for (Ice_Int i = 0; Ice_Current_contextAt(&current, i, &key, &value); ++i)
+            seen += " " + str(key) + "=" + str(value);
+        EXPECT_FALSE(Ice_Current_contextAt(&current, -1, &key, &value));
         return ICE_OK;
     };
-    Ice_ObjectPrx prx = here().proxy("thing:loop");
-    const Ice_ContextEntry context[] = {{"a", "b"}, {"who", "me"}, {nullptr, nullptr}};
-    Ice_ObjectPrx_ice_context(&prx, context);
-    EXPECT_EQ(call(prx, "op"), ICE_OK);
-    EXPECT_EQ(seen, "me");
-    Ice_ObjectPrx_ice_context(&prx, nullptr);
-    EXPECT_EQ(call(prx, "op"), ICE_OK);
+    const Ice_ContextEntry context[] = {{"a", ""}, {"who", "me"}, {nullptr, nullptr}};
+    Ice_ObjectPrx_ice_context(&prx_, context);
+    EXPECT_EQ(call(prx_, "op"), ICE_OK);
+    EXPECT_EQ(seen, "me a= who=me");
+    Ice_ObjectPrx_ice_context(&prx_, nullptr);
+    EXPECT_EQ(call(prx_, "op"), ICE_OK);
     EXPECT_EQ(seen, "-");
 }
 
@@ -238,24 +221,15 @@ TEST_F(Calls, LargeRepliesNeedTheProxysOwnBuffer) {
         Ice_OutputStream_writeBlob(os, many, sizeof many);
         return ICE_OK;
     };
-    Ice_ObjectPrx prx = here().proxy("thing:loop");
     Ice_Int out;
-    EXPECT_EQ(call(prx, "op", 0, &out), ICE_MARSHAL);
+    EXPECT_EQ(call(prx_, "op", 0, &out), ICE_MARSHAL);
     alignas(8) static U32 buffer[2048];
-    Ice_ObjectPrx_setReplyBuffer(&prx, buffer, sizeof buffer);
-    EXPECT_EQ(call(prx, "op", 0, &out), ICE_OK);
-}
-
-// Returns the reason of the last call's failure.
-std::string reason(const Ice_ObjectPrx& prx) {
-    Ice_Failure failure;
-    Ice_ObjectPrx_failure(&prx, &failure);
-    return str(failure.unknown);
+    Ice_ObjectPrx_setReplyBuffer(&prx_, buffer, sizeof buffer);
+    EXPECT_EQ(call(prx_, "op", 0, &out), ICE_OK);
 }
 
 TEST_F(Calls, EveryLimitIsSaidWithItsNameAndValue) {
     static Ice_Byte much[ICE_MESSAGE_MAX];
-    Ice_ObjectPrx prx = here().proxy("thing:loop");
     Ice_Int out;
     servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
         if (str(current.operation) == "arena") {
@@ -269,37 +243,37 @@ TEST_F(Calls, EveryLimitIsSaidWithItsNameAndValue) {
             Ice_OutputStream_writeBlob(os, much, str(current.operation) == "reply" ? 2000 : 8190);
         return ICE_OK;
     };
-    EXPECT_EQ(call(prx, "arena", 0, &out), ICE_UNKNOWN_LOCAL_EXCEPTION);
-    EXPECT_EQ(reason(prx), "::Ice::MarshalException: over ICE_ARENA_BYTES (2048)");
-    EXPECT_EQ(call(prx, "bound", 0, &out), ICE_UNKNOWN_LOCAL_EXCEPTION);
-    EXPECT_EQ(reason(prx), "over a bound of Slice");
-    EXPECT_EQ(call(prx, "message", 0, &out), ICE_UNKNOWN_LOCAL_EXCEPTION);
-    EXPECT_EQ(reason(prx), "::Ice::MarshalException: over ICE_RESULT_MAX (8192)");
-    EXPECT_EQ(call(prx, "reply", 0, &out), ICE_MARSHAL);
+    EXPECT_EQ(call(prx_, "arena", 0, &out), ICE_UNKNOWN_LOCAL_EXCEPTION);
+    EXPECT_EQ(reason(prx_), "::Ice::MarshalException: over ICE_ARENA_BYTES (2048)");
+    EXPECT_EQ(call(prx_, "bound", 0, &out), ICE_UNKNOWN_LOCAL_EXCEPTION);
+    EXPECT_EQ(reason(prx_), "over a bound of Slice");
+    EXPECT_EQ(call(prx_, "message", 0, &out), ICE_UNKNOWN_LOCAL_EXCEPTION);
+    EXPECT_EQ(reason(prx_), "::Ice::MarshalException: over ICE_RESULT_MAX (8192)");
+    EXPECT_EQ(call(prx_, "reply", 0, &out), ICE_MARSHAL);
     EXPECT_EQ(
-        reason(prx),
+        reason(prx_),
         "::Ice::MarshalException: over ICE_REPLY_MAX (1024): see Ice_ObjectPrx_setReplyBuffer");
-    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(&prx, "op", 0);
+    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(&prx_, "op", 0);
     Ice_InputStreamPtr is;
     os->failed = ICE_FAILED_BOUND, os->bound = "another one";
-    EXPECT_EQ(Ice_ObjectPrx_end(&prx, Ice_ObjectPrx_invoke(&prx, &is)), ICE_MARSHAL);
-    EXPECT_EQ(reason(prx), "another one");
-    os = Ice_ObjectPrx_begin(&prx, "op", 0);
+    EXPECT_EQ(Ice_ObjectPrx_end(&prx_, Ice_ObjectPrx_invoke(&prx_, &is)), ICE_MARSHAL);
+    EXPECT_EQ(reason(prx_), "another one");
+    os = Ice_ObjectPrx_begin(&prx_, "op", 0);
     Ice_OutputStream_writeBlob(os, much, sizeof much);
-    EXPECT_EQ(Ice_ObjectPrx_end(&prx, Ice_ObjectPrx_invoke(&prx, &is)), ICE_MARSHAL);
-    EXPECT_EQ(reason(prx), "::Ice::MarshalException: over ICE_REQUEST_MAX (8192)");
+    EXPECT_EQ(Ice_ObjectPrx_end(&prx_, Ice_ObjectPrx_invoke(&prx_, &is)), ICE_MARSHAL);
+    EXPECT_EQ(reason(prx_), "::Ice::MarshalException: over ICE_REQUEST_MAX (8192)");
     servant_.run = [](const Ice_Current&, Ice_InputStreamPtr from, Ice_OutputStreamPtr) {
         (void)Ice_InputStream_readLong(from);
         return ICE_OK;
     };
-    EXPECT_EQ(call(prx, "op"), ICE_UNKNOWN_LOCAL_EXCEPTION);
-    EXPECT_EQ(reason(prx),
+    EXPECT_EQ(call(prx_, "op"), ICE_UNKNOWN_LOCAL_EXCEPTION);
+    EXPECT_EQ(reason(prx_),
               "::Ice::MarshalException: malformed, or not of the type that is expected");
-    std::vector<Ice_ObjectPrx> busy(ICE_CALLS, prx);
+    std::vector<Ice_ObjectPrx> busy(ICE_CALLS, prx_);
     for (Ice_ObjectPrx& each : busy)
         each.call = icec_takeCall(&here().ic);
-    EXPECT_EQ(call(prx, "op"), ICE_LIMIT);
-    EXPECT_EQ(reason(prx), "::Ice::MemoryLimitException: over ICE_CALLS (4)");
+    EXPECT_EQ(call(prx_, "op"), ICE_LIMIT);
+    EXPECT_EQ(reason(prx_), "::Ice::MemoryLimitException: over ICE_CALLS (4)");
     for (Ice_ObjectPrx& each : busy)
         here().ic.calls[each.call].state = ICE_CALL_FREE;
 }

@@ -10,15 +10,12 @@ namespace {
 TEST_F(Calls, AnAnswerForALostConnectionIsRefused) {
     Ice_Reply later{};
     servant_.answerLater(later);
-    Ice_ObjectPrx prx = here().proxy("thing:loop");
-    prx.timeoutMs = 5;
-    EXPECT_EQ(call(prx, "slow"), ICE_TIMEOUT);
-    Ice_Connection_close(&here().ic, prx.connection);
+    prx_.timeoutMs = 5;
+    EXPECT_EQ(call(prx_, "slow"), ICE_TIMEOUT);
+    Ice_Connection_close(&here().ic, prx_.connection);
     settle();
-    servant_.run = [](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
-        return ICE_OK;
-    };
-    EXPECT_EQ(call(prx, "again"), ICE_OK) << "a new connection of the same number";
+    servant_.run = returns(ICE_OK);
+    EXPECT_EQ(call(prx_, "again"), ICE_OK) << "a new connection of the same number";
     (void)Ice_Reply_begin(&later);
     EXPECT_EQ(Ice_Reply_end(&later, ICE_OK), ICE_CONNECTION_LOST);
 }
@@ -32,17 +29,16 @@ TEST_F(Calls, TheCallersConnectionCarriesCallsBack) {
                   ICE_OK);
         return ICE_OK;
     };
-    Ice_ObjectPrx prx = here().proxy("thing:loop");
-    ASSERT_EQ(call(prx, "op"), ICE_OK);
+    ASSERT_EQ(call(prx_, "op"), ICE_OK);
     EXPECT_EQ(call(fixed, "op"), ICE_OK);
     EXPECT_EQ(back.calls, 1);
-    EXPECT_EQ(fixed.connection, prx.connection);
+    EXPECT_EQ(fixed.connection, prx_.connection);
     Ice_Byte bytes[100];
     Ice_OutputStream os;
     Ice_OutputStream_init(&os, bytes, sizeof bytes);
     Ice_OutputStream_writePrx(&os, &fixed);
     EXPECT_TRUE(os.failed) << "a fixed proxy means nothing to others";
-    Ice_Connection_close(&here().ic, prx.connection);
+    Ice_Connection_close(&here().ic, prx_.connection);
     settle();
     EXPECT_EQ(call(fixed, "op"), ICE_CONNECTION_LOST);
 }
@@ -50,13 +46,12 @@ TEST_F(Calls, TheCallersConnectionCarriesCallsBack) {
 TEST_F(Calls, TimeOutsAreKeptAndLateRepliesPassedOver) {
     Ice_Reply later{};
     servant_.answerLater(later);
-    Ice_ObjectPrx prx = here().proxy("thing:loop");
-    Ice_ObjectPrx_ice_invocationTimeout(&prx, 250);
-    U32 begin = *here().loop.nowMs;
-    EXPECT_EQ(call(prx, "op"), ICE_TIMEOUT);
-    EXPECT_EQ(*here().loop.nowMs - begin, 250u);
+    Ice_ObjectPrx_ice_invocationTimeout(&prx_, 250);
+    U32 begin = here().loop.nowMs();
+    EXPECT_EQ(call(prx_, "op"), ICE_TIMEOUT);
+    EXPECT_EQ(here().loop.nowMs() - begin, 250u);
     Ice_Status status = ICE_OK;
-    callAsync(prx, "op", status);
+    callAsync(prx_, "op", status);
     (void)Ice_Communicator_poll(&here().ic, 249);
     EXPECT_EQ(status, ICE_OK);
     (void)Ice_Communicator_poll(&here().ic, 249);
@@ -65,23 +60,17 @@ TEST_F(Calls, TimeOutsAreKeptAndLateRepliesPassedOver) {
     (void)Ice_Reply_begin(&later);
     EXPECT_EQ(Ice_Reply_end(&later, ICE_OK), ICE_OK);
     settle();
-    servant_.run = [](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
-        return ICE_OK;
-    };
-    EXPECT_EQ(call(prx, "op"), ICE_OK);
+    servant_.run = returns(ICE_OK);
+    EXPECT_EQ(call(prx_, "op"), ICE_OK);
 }
 
 TEST_F(Calls, WhoWaitsForALongOperationGetsSignsOfLife) {
     int beats = 0;
-    there().loop.tapContext = &beats;
-    there().loop.tap = [](void* context, int, const Ice_Byte* message, Ice_Int) {
-        *static_cast<int*>(context) += message[8] == 3; // ValidateConnection
-    };
+    there().loop.tap = [&](const Bytes& m) { beats += m[8] == 3; }; // ValidateConnection
     Ice_Reply later{};
     servant_.answerLater(later);
-    Ice_ObjectPrx prx = here().proxy("thing:loop");
-    prx.timeoutMs = 5 * ICE_HEARTBEAT_MS + 100;
-    EXPECT_EQ(call(prx, "op"), ICE_TIMEOUT);
+    prx_.timeoutMs = 5 * ICE_HEARTBEAT_MS + 100;
+    EXPECT_EQ(call(prx_, "op"), ICE_TIMEOUT);
     EXPECT_EQ(beats, 1 + 5); // the first opened the connection
     (void)Ice_Reply_begin(&later);
     EXPECT_EQ(Ice_Reply_end(&later, ICE_OK), ICE_OK);
@@ -91,11 +80,10 @@ TEST_F(Calls, WhoWaitsForALongOperationGetsSignsOfLife) {
 }
 
 TEST_F(Calls, DestroyClosesInGoodOrder) {
-    Ice_ObjectPrx prx = here().proxy("thing:loop");
-    ASSERT_EQ(call(prx, "op"), ICE_OK);
-    U32 begin = *here().loop.nowMs;
+    ASSERT_EQ(call(prx_, "op"), ICE_OK);
+    U32 begin = here().loop.nowMs();
     Ice_Communicator_destroy(&here().ic, 1000);
-    EXPECT_LT(*here().loop.nowMs - begin, 1000u) << "the peer closed";
+    EXPECT_LT(here().loop.nowMs() - begin, 1000u) << "the peer closed";
     EXPECT_FALSE(there().loop.open[0]);
 }
 
@@ -111,9 +99,8 @@ TEST_F(Calls, AfterShutdownNothingIsExecutedAndCallersKnowIt) {
 TEST_F(Calls, DestroyWaitsForAnswersThatComeLater) {
     Ice_Reply later{};
     servant_.answerLater(later);
-    Ice_ObjectPrx prx = here().proxy("thing:loop");
     Ice_Status status = ICE_LIMIT;
-    callAsync(prx, "op", status);
+    callAsync(prx_, "op", status);
     settle();
     // A call of the other side's own, whose failure comes while that side destroys itself.
     Ice_ObjectPrx own = there().proxy("nobody:loop");
@@ -137,12 +124,9 @@ TEST_F(Calls, AGracefulCloseSaysThatNothingWasExecuted) {
         Ice_Connection_close(&there().ic, current.connection);
         return ICE_OK;
     };
-    Ice_ObjectPrx prx = here().proxy("thing:loop");
-    EXPECT_EQ(call(prx, "op"), ICE_CONNECTION_CLOSED);
-    servant_.run = [&](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
-        return ICE_OK;
-    };
-    EXPECT_EQ(call(prx, "op"), ICE_OK) << "a new connection";
+    EXPECT_EQ(call(prx_, "op"), ICE_CONNECTION_CLOSED);
+    servant_.run = returns(ICE_OK);
+    EXPECT_EQ(call(prx_, "op"), ICE_OK) << "a new connection";
 }
 
 TEST_F(Calls, PropertiesMakeAdaptersAndProxies) {

@@ -9,20 +9,19 @@ namespace {
 class Minimal : public Pair {};
 
 TEST_F(Minimal, ParametersThatLackAndResultsThatDoNotFitAreUnknownLocalExceptions) {
-    Ice_ObjectPrx prx = here().proxy("thing:loop");
     servant_.run = [](const Ice_Current&, Ice_InputStreamPtr is, Ice_OutputStreamPtr) {
         (void)Ice_InputStream_readLong(is);
         return ICE_OK;
     };
-    EXPECT_EQ(call(prx, "op"), ICE_UNKNOWN_LOCAL_EXCEPTION);
+    EXPECT_EQ(call(prx_, "op"), ICE_UNKNOWN_LOCAL_EXCEPTION);
     servant_.run = [](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr os) {
         static const Ice_Byte much[ICE_MESSAGE_MAX] = {};
         Ice_OutputStream_writeBlob(os, much, ICE_MESSAGE_MAX - ICE_MESSAGE_MAX / 1000);
         Ice_OutputStream_writeBlob(os, much, ICE_MESSAGE_MAX);
         return ICE_OK;
     };
-    EXPECT_EQ(call(prx, "op"), ICE_UNKNOWN_LOCAL_EXCEPTION);
-    EXPECT_EQ(Ice_ObjectPrx_ice_ping(&prx), ICE_OK);
+    EXPECT_EQ(call(prx_, "op"), ICE_UNKNOWN_LOCAL_EXCEPTION);
+    EXPECT_EQ(Ice_ObjectPrx_ice_ping(&prx_), ICE_OK);
 }
 
 TEST_F(Minimal, CallsFromWithinAnOperationAreRefused) {
@@ -33,10 +32,7 @@ TEST_F(Minimal, CallsFromWithinAnOperationAreRefused) {
         Ice_OutputStream_writeInt(os, Ice_InputStream_readInt(is) + 1);
         return ICE_OK;
     };
-    Ice_ObjectPrx prx = here().proxy("thing:loop");
-    Ice_Int out = 0;
-    EXPECT_EQ(call(prx, "op", 4, &out), ICE_OK);
-    EXPECT_EQ(out, 5);
+    EXPECT_EQ(ask(prx_, "op", 4), 5);
     EXPECT_EQ(inner, ICE_LIMIT);
     Ice_ObjectPrx back = there().proxy("nobody:loop");
     EXPECT_EQ(call(back, "op"), ICE_OBJECT_NOT_EXIST) << "afterwards they are not";
@@ -83,23 +79,16 @@ TEST_F(Minimal, StringsThatAreNoProxiesSaySo) {
 class MinimalPeer : public ::testing::Test {
 protected:
     MinimalPeer() {
-        side_.loop.silent = 1;
+        side_.loop.silent = true;
         prx_ = side_.proxy("far:loop");
         prx_.timeoutMs = 50;
-        side_.loop.tapContext = this;
-        side_.loop.tap = [](void* context, int, const Ice_Byte* m, Ice_Int size) {
-            auto& test = *static_cast<MinimalPeer*>(context);
-            ++test.requests_;
-            if (test.answer_)
-                test.answer_(Bytes(m + 14, m + 18));
-            (void)size;
+        side_.loop.tap = [this](const Bytes& m) {
+            ++requests_;
+            if (answer_)
+                answer_(Bytes(m.begin() + 14, m.begin() + 18));
         };
     }
-    void arrives(const Bytes& m) {
-        EXPECT_EQ(LoopEndpoint_inject(&side_.loop, ICE_EVENT_MESSAGE, 0, m.data(),
-                                      static_cast<Ice_Int>(m.size())),
-                  ICE_OK);
-    }
+    void arrives(const Bytes& m) { side_.loop.inject(ICE_EVENT_MESSAGE, 0, m); }
     void arrives(Ice_Byte type, Bytes id, const Bytes& rest) {
         id.insert(id.end(), rest.begin(), rest.end());
         arrives(message(type, id));
@@ -135,9 +124,7 @@ TEST_F(MinimalPeer, RepliesToOtherCallsArePassedOver) {
         arrives(message(3, {})); // a sign of life
         arrives(2, id, seven_);
     };
-    Ice_Int out = 0;
-    EXPECT_EQ(call(prx_, "op", 0, &out), ICE_OK);
-    EXPECT_EQ(out, 7);
+    EXPECT_EQ(ask(prx_, "op", 0), 7);
 }
 
 TEST_F(MinimalPeer, ARequestMeanwhileIsServedBeforeTheReplyIsRead) {
@@ -150,9 +137,7 @@ TEST_F(MinimalPeer, ARequestMeanwhileIsServedBeforeTheReplyIsRead) {
         arrives(request(9, requestBody("thing", "op")));
         arrives(2, id, seven_);
     };
-    Ice_Int out = 0;
-    EXPECT_EQ(call(prx_, "op", 0, &out), ICE_OK);
-    EXPECT_EQ(out, 7);
+    EXPECT_EQ(ask(prx_, "op", 0), 7);
     EXPECT_EQ(servant.calls, 1);
     EXPECT_EQ(requests_, 2) << "the request and the answer to the other one";
 }
@@ -167,7 +152,7 @@ TEST_F(MinimalPeer, AConnectionThatEndsFailsTheCallAndTheNextOneConnectsAgain) {
         validate();
         answer_ = [&](const Bytes&) { arrives(end.first); };
         EXPECT_EQ(call(prx_, "op"), end.second);
-        EXPECT_EQ(side_.loop.open[0], 0);
+        EXPECT_FALSE(side_.loop.open[0]);
     }
     EXPECT_EQ(requests_, 3);
 }

@@ -4,17 +4,12 @@
 
 #pragma once
 
+#include "loop.h"
+
 #include <cstring>
-#include <functional>
 #include <gtest/gtest.h>
 #include <memory>
 #include <string>
-#include <vector>
-
-extern "C" {
-#include "icec.h"
-#include "loop_endpoint.h"
-}
 
 inline Ice_String text(const char* s) {
     return Ice_String_from(s);
@@ -23,10 +18,17 @@ inline std::string str(Ice_String s) {
     return std::string(s.data, static_cast<size_t>(s.size));
 }
 
+using Operation =
+    std::function<Ice_Status(const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr)>;
+
+inline Operation returns(Ice_Status status) {
+    return [=](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr) { return status; };
+}
+
 // A servant whose every operation is `run`.
 struct Servant {
     Ice_Object base; // first: IceC calls with its address
-    std::function<Ice_Status(const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr)> run;
+    Operation run = returns(ICE_OK);
     int calls = 0;
 
     Servant() {
@@ -34,7 +36,6 @@ struct Servant {
         base.dispatch = &Servant::dispatch;
         base.ids = ids;
         base.id = ids[1];
-        run = [](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr) { return ICE_OK; };
     }
     // Makes operations leave their answer to `later`.
     void answerLater(Ice_Reply& later) {
@@ -53,12 +54,10 @@ struct Servant {
 
 struct Side {
     Ice_Communicator ic;
-    LoopEndpoint loop;
+    Loop loop;
     Ice_ObjectAdapter adapter;
 
-    Side() {
-        Ice_initialize(&ic);
-        LoopEndpoint_init(&ic, &loop);
+    Side() : loop((Ice_initialize(&ic), ic)) {
         EXPECT_EQ(Ice_Communicator_createObjectAdapterWithEndpoints(&ic, "A", "loop", &adapter),
                   ICE_OK);
         Ice_ObjectAdapter_activate(&adapter);
@@ -85,6 +84,20 @@ inline Ice_Status call(Ice_ObjectPrx& prx, const char* operation, Ice_Int in = 0
     return Ice_ObjectPrx_end(&prx, status);
 }
 
+// Makes a call that must succeed, and returns its result.
+inline Ice_Int ask(Ice_ObjectPrx& prx, const char* operation, Ice_Int in) {
+    Ice_Int out = 0;
+    EXPECT_EQ(call(prx, operation, in, &out), ICE_OK);
+    return out;
+}
+
+// Returns the reason of the last call's failure.
+inline std::string reason(const Ice_ObjectPrx& prx) {
+    Ice_Failure failure;
+    Ice_ObjectPrx_failure(&prx, &failure);
+    return str(failure.unknown);
+}
+
 // Makes a call without parameters that sets `status` when its reply is there.
 inline void callAsync(Ice_ObjectPrx& prx, const char* operation, Ice_Status& status) {
     ASSERT_NE(Ice_ObjectPrx_begin(&prx, operation, 0), nullptr);
@@ -97,8 +110,9 @@ inline void callAsync(Ice_ObjectPrx& prx, const char* operation, Ice_Status& sta
 class Pair : public ::testing::Test {
 protected:
     Pair() : here_(std::make_unique<Side>()), there_(std::make_unique<Side>()) {
-        LoopEndpoint_join(&here_->loop, &there_->loop);
+        here_->loop.join(there_->loop);
         add("thing");
+        prx_ = here().proxy("thing:loop");
     }
     void add(const char* identity) {
         EXPECT_EQ(Ice_ObjectAdapter_add(&there_->adapter, &servant_.base, identity), ICE_OK);
@@ -112,6 +126,7 @@ protected:
             ;
     }
     Servant servant_;
+    Ice_ObjectPrx prx_;
 
 private:
     std::unique_ptr<Side> here_, there_;

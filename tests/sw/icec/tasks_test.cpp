@@ -220,10 +220,8 @@ TEST_F(Tasks, AServerTakesTheRoleFromACallThatWaits) {
     std::atomic<bool> answered{false};
     std::thread caller([&] {
         Ice_ObjectPrx prx = proxy();
-        Ice_Int out = 0;
         prx.timeoutMs = 120000;
-        EXPECT_EQ(call(prx, "later", 14, &out), ICE_OK);
-        EXPECT_EQ(out, 42);
+        EXPECT_EQ(ask(prx, "later", 14), 42);
         answered = true;
     });
     auto isAsked = [this] {
@@ -248,13 +246,10 @@ TEST_F(Tasks, AServerTakesTheRoleFromACallThatWaits) {
 // By the transport, as if the object were elsewhere: there is no short cut within a program.
 TEST_F(Tasks, MayCallTheirOwnProgramsObjects) {
     Ice_ObjectPrx prx;
-    Ice_Int out = 0;
     ASSERT_EQ(Ice_ObjectAdapter_createProxy(&server_->adapter, "thing", &prx), ICE_OK);
     prx.timeoutMs = 60000;
-    EXPECT_EQ(call(prx, "now", 4, &out), ICE_OK);
-    EXPECT_EQ(out, 8);
-    EXPECT_EQ(call(prx, "later", 4, &out), ICE_OK);
-    EXPECT_EQ(out, 12);
+    EXPECT_EQ(ask(prx, "now", 4), 8);
+    EXPECT_EQ(ask(prx, "later", 4), 12);
 }
 
 // The server listens on the second of the name's addresses only (tcp_test.cpp resolves it); the
@@ -262,9 +257,7 @@ TEST_F(Tasks, MayCallTheirOwnProgramsObjects) {
 TEST_F(Tasks, TryEachAddressOfAName) {
     Ice_ObjectPrx prx = proxy("thing", "twofold.test");
     for (int i = 0; i < 3; ++i) {
-        Ice_Int out = 0;
-        EXPECT_EQ(call(prx, "now", 4, &out), ICE_OK);
-        EXPECT_EQ(out, 8);
+        EXPECT_EQ(ask(prx, "now", 4), 8);
     }
     int open = 0;
     for (const TcpEndpoint_Connection& c : client_->tcp.connections)

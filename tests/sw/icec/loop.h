@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+//
+// loop: IceC's transport between two communicators of one process and one task.
+//
+// Proxies: "loop [-c n]", n 0 or 1: which of the two connections of this side. Time is simulated:
+// it passes only where a communicator waits and nothing can happen. Without a peer, messages go to
+// `tap` alone, and inject plays the other side.
+
+#pragma once
+
+#include <algorithm>
+#include <deque>
+#include <functional>
+#include <vector>
+
+extern "C" {
+#include "icec.h"
+}
+
+using Bytes = std::vector<Ice_Byte>;
+
+class Loop {
+public:
+    explicit Loop(Ice_Communicator& ic) : ic_(ic) {
+        static const Ice_Endpoint endpoint = {
+            "loop",
+            [](void* c, Ice_Byte* buffer, Ice_Int ms, Ice_Event* e) {
+                return of(c).receive(buffer, ms, e);
+            },
+            [](void* c, int n, const Ice_Byte* m, Ice_Int size) { return of(c).send(n, m, size); },
+            [](void* c, const Ice_Byte* encoded, Ice_Int size, int* n) {
+                return isLoop(encoded, size) ? of(c).connect(encoded[8] & 1, n) : ICE_NO_ENDPOINT;
+            },
+            [](void* c, int n) { of(c).close(n); },
+            [](void*, const char*) { return ICE_OK; },
+            [](void*, const char* options, Ice_OutputStreamPtr os) {
+                Ice_OutputStream_writeBlob(os, head, sizeof head);
+                Ice_OutputStream_writeByte(
+                    os, static_cast<Ice_Byte>(Ice_numberOption(options, 'c', 0)));
+            },
+            [](void*) {}, // one task: it is awake
+            [](void* c) { return of(c).nowMs(); },
+            [](void*, const Ice_Byte* encoded, Ice_Int size, Ice_OutputStreamPtr text) {
+                if (!isLoop(encoded, size))
+                    return Ice_Bool{0};
+                const char* printed = encoded[8] ? "loop -c 1" : "loop -c 0";
+                Ice_OutputStream_writeBlob(text, reinterpret_cast<const Ice_Byte*>(printed), 9);
+                return Ice_Bool{1};
+            }};
+        Ice_Communicator_setEndpoint(&ic, &endpoint, this);
+    }
+    Loop(const Loop&) = delete;
+    Loop& operator=(const Loop&) = delete;
+
+    // Joins two sides: one receives what the other sends.
+    void join(Loop& other) {
+        peer_ = &other;
+        other.peer_ = other.clock_ = this;
+        other.first_ = 1;
+    }
+    // Plays a peer: queues an event.
+    void inject(Ice_EventKind kind, int connection, const Bytes& message = {}) {
+        events_.push_back({kind, connection, message});
+        if (kind != ICE_EVENT_MESSAGE)
+            open[connection] = kind == ICE_EVENT_OPENED;
+    }
+    U32 nowMs() const { return clock_->ownMs_; }
+
+    bool open[ICE_CONNECTIONS] = {};
+    bool silent = false; // connections can be made, but nobody answers
+    // Sees every message that is sent.
+    std::function<void(const Bytes& message)> tap;
+
+private:
+    struct Event {
+        Ice_EventKind kind;
+        int connection;
+        Bytes message;
+    };
+    // Type, an encapsulation's size, encoding 1.1; the connection follows.
+    static constexpr Ice_Byte head[] = {0x50, 0x4C, 7, 0, 0, 0, 1, 1};
+
+    static Loop& of(void* context) { return *static_cast<Loop*>(context); }
+    static bool isLoop(const Ice_Byte* encoded, Ice_Int size) {
+        return size == 9 && encoded[0] == head[0] && encoded[1] == head[1];
+    }
+    Ice_Status receive(Ice_Byte* buffer, Ice_Int timeoutMs, Ice_Event* event) {
+        U32 begin = nowMs();
+        while (events_.empty() && static_cast<Ice_Int>(nowMs() - begin) < timeoutMs) {
+            // Runs the peer, unless the peer is waiting for this side.
+            if (peer_ && !running_) {
+                running_ = true;
+                Ice_Status status = Ice_Communicator_poll(&peer_->ic_, 0);
+                running_ = false;
+                if (status == ICE_OK)
+                    continue;
+            }
+            if (events_.empty())
+                ++clock_->ownMs_;
+        }
+        if (!events_.empty()) {
+            const Event& e = events_.front();
+            std::copy(e.message.begin(), e.message.end(), buffer);
+            *event = {e.kind, e.connection, static_cast<Ice_Int>(e.message.size())};
+            events_.pop_front();
+        }
+        return ICE_OK;
+    }
+    Ice_Status send(int connection, const Ice_Byte* bytes, Ice_Int size) {
+        Bytes message(bytes, bytes + size);
+        if (!open[connection])
+            return ICE_CONNECTION_LOST;
+        if (tap)
+            tap(message);
+        if (peer_)
+            peer_->inject(ICE_EVENT_MESSAGE, connection, message);
+        return ICE_OK;
+    }
+    Ice_Status connect(int which, int* connection) {
+        *connection = first_ + 2 * which;
+        if (open[*connection])
+            return ICE_OK;
+        if (!peer_ && !silent)
+            return ICE_CONNECTION_LOST;
+        open[*connection] = true;
+        if (peer_)
+            peer_->inject(ICE_EVENT_OPENED, *connection);
+        return ICE_OK;
+    }
+    void close(int connection) {
+        // The peer may have closed already: its report is taken back, since the connection may be a
+        // new one by now.
+        for (Event& e : events_)
+            if (e.kind == ICE_EVENT_CLOSED && e.connection == connection) {
+                e.kind = ICE_EVENT_NONE;
+                return;
+            }
+        if (open[connection] && peer_)
+            peer_->inject(ICE_EVENT_CLOSED, connection);
+        open[connection] = false;
+    }
+
+    Ice_Communicator& ic_;
+    Loop *peer_ = nullptr, *clock_ = this;
+    U32 ownMs_ = 0;
+    int first_ = 0; // connections that this side makes: this number, and this + 2
+    bool running_ = false;
+    std::deque<Event> events_;
+};

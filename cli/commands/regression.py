@@ -56,7 +56,8 @@ def test(values):
 @command("regress", [
     NAME, LABEL, BLOCK,
     Option("changed", SWITCH, "tests that what has changed since they passed can fail"),
-    Option("failed", SWITCH, "tests that failed and have not passed since, with their seeds"),
+    Option("failed", SWITCH, "tests that failed the last time"),
+    Option("kept", SWITCH, "failed tests with the seeds that are kept"),
     Option("seed", matching(r"\d{1,18}|random", "a whole number, or random", metavar="N|random"),
            "the first seed", "1"),
     Option("repeat", COUNT, "seeds", 1), WAVES, FRESH, TESTS, BUILD, JOBS], make="regress",
@@ -65,7 +66,9 @@ def test(values):
 def regress(values):
     """run the regression, write build/regress/report.html"""
     build = configured(values, "regress", tests=True)
-    switches = [f"--{word}" for word in ("changed", "failed") if getattr(values, word)]
+    switches = [
+        f"--{word}" for word, on in (("changed", values.changed), ("rerun-failed", values.failed),
+                                     ("kept", values.kept)) if on]
     return run([
         build / "tests/regress/regress", "--make", "--build", build.folder, "--jobs",
         at_once(values), "--seed", values.seed, "--repeat", values.repeat, "--waves", values.waves,
@@ -77,13 +80,14 @@ def regress(values):
     Option("nightly", COUNT, "seeds that are drawn", 3),
     Option("steps", WORDS, "these alone, by their names in the table", []), NAME, LABEL, WAVES,
     TESTS, BUILD, JOBS], make="nightly",
-         brief="nightly --steps failed random --nightly 1 --name ^tree[.]pages", examples=[
-             "nightly", "nightly --steps failed check-mutants"])
+         brief="nightly --steps kept random --nightly 1 --name ^tree[.]pages", examples=[
+             "nightly", "nightly --steps kept check-mutants"])
 def nightly(values):
     """what a timer runs: seeds that have failed, fresh seeds, ZeroC's own suites, the long form of
     every command
 
-    Writes a table of the steps, build/nightly.md."""
+    Failing seeds stay in build/regress/seeds.jsonl until their tests pass with them. Writes a table
+    of the steps, build/nightly.md."""
     build, tests = BuildFolder(values.build, values), at_once(values)
     # COMPARE_MS: test_quiet compares a second; FUZZ: times as many inputs of fuzzers; HOSTILE:
     # packets of test_link.
@@ -105,7 +109,7 @@ def nightly(values):
                 env=long) for line in lines])
 
     steps = {
-        "failed": lambda: regression("--failed"),
+        "kept": lambda: regression("--kept"),
         "random": lambda: regression("--seed", "random", "--repeat", values.nightly),
         "zeroc": lambda: suite("zeroc"), "missions": lambda: suite("nightly"), **{
             each.name.replace(' ', '-'): functools.partial(whole, each.long)

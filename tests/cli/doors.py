@@ -135,7 +135,7 @@ MISTAKES = {
     "./icesoc run --again synth/designs.json": "describes no flight: it is not of version 1",
     "./icesoc contract": "contract has the commands diff, from-rdl",
     "./icesoc bench --only airr": "there is no bench 'airr': simulator, air",
-    "./icesoc nightly --steps nothing --built": "there is no step 'nothing': failed, random",
+    "./icesoc nightly --steps nothing --built": "there is no step 'nothing': kept, random",
     "make -s rnu": "there is no 'make rnu'; did you mean run?",
     "make -s run LOS=1": "there is no variable LOS of make run; did you mean LOSS?",
     "make -s run DRAW=3": "it is one of make mutants",

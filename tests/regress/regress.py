@@ -4,6 +4,7 @@
 Exit status 0: all passed; 1: some failed; 2: it could not run."""
 import argparse
 import collections
+import datetime
 import pathlib
 import random
 import re
@@ -14,10 +15,10 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "testbench/
 import tool
 from changes import Changes
 from failures import examine
-from history import History, make_run
+from history import FailingSeeds, History, make_run
 from lights import text_of
 from report import gather, write_reports
-from runner import run_tests
+from runner import run_tests, write_junit
 from tests import fingerprint, list_tests, read_plan, targets_of, unmatched
 from tool import Stop
 from waves import add_waves
@@ -65,8 +66,9 @@ def parse(words):
     only = parser.add_mutually_exclusive_group()
     only.add_argument("--changed", action="store_true", help="only tests that failed last, or "
                       "whose program or sources differ from those of their last pass")
-    only.add_argument("--failed", action="store_true", help="only tests that failed with some "
-                      "seed and have not passed with it since, with these seeds")
+    only.add_argument("--rerun-failed", action="store_true", help="only tests that failed last")
+    only.add_argument("--kept", action="store_true", help="only tests that failed with some seed "
+                      "and have not passed with it since, with these seeds")
     add("--seed", type=seed, default="1", help="seed of the random tests, or `random`")
     add("--repeat", type=number(1, 1000), default=1, help="so many runs, each with the next seed")
     add("--jobs", type=number(1, 256), default=2, help="tests at once")
@@ -86,7 +88,6 @@ class Regression:
         self.options = options
         options.build = options.build.resolve()
         self.history = History(options.out / "history.jsonl")
-        self.failing = self.history.failing()
         self.changes = options.changed and self._changes()
 
     def _changes(self):
@@ -107,13 +108,9 @@ class Regression:
             else:
                 named = test.name == o.name.pattern if exact else o.name.search(test.name)
             if named and not (o.changed and not self._changed(test, built)) and \
-                    not (o.failed and not self._failed(test)):
+                    not (o.rerun_failed and self.history.last(test.name) != "f"):
                 chosen.append(test)
         return chosen
-
-    def _failed(self, test):
-        return any(name.startswith(test.program + ".") if test.unbuilt else name == test.name
-                   for name, _ in self.failing)
 
     def _changed(self, test, built):
         """Chooses tests that failed last in any case, and tests that have never passed here if
@@ -151,9 +148,9 @@ class Regression:
     def nothing(self, tests):
         """Says why no test is chosen. Returns the exit status."""
         o = self.options
-        if o.changed or o.failed:
-            why = "changed since the last run" if o.changed else "has failed and not passed since"
-            print(f"Nothing to run: no test {why}.")
+        if o.changed or o.rerun_failed:
+            print(f"Nothing to run: no test {'changed' if o.changed else 'failed'} since the last "
+                  "run.")
             return 0
         given = "".join(f" {name}='{value}'" for name, value in (
             ("BLOCK", o.block), ("LABEL", o.label.pattern), ("NAME", o.name.pattern)) if value)
@@ -176,16 +173,21 @@ class Regression:
         if o.list:
             print("\n".join(test.name for test in chosen))
             return 0
+        seeds = FailingSeeds(o.out / "seeds.jsonl")
+        for gone in seeds.forget_others(tests):
+            print(f"{gone} is no test any more: its seeds are forgotten")
         first = random.getrandbits(32) if o.seed == "random" else int(o.seed)
-        rounds = [(str(first + i), chosen) for i in range(o.repeat)]
-        if o.failed:
-            rounds = [(seed, [test for test in chosen if (test.name, seed) in self.failing])
-                      for seed in sorted({seed for _, seed in self.failing})]
-        return self._run_rounds([each for each in rounds if each[1]], chosen, tests)
+        rounds = list(seeds.rounds(chosen)) if o.kept else [
+            (str(first + i), chosen) for i in range(o.repeat)]
+        if not rounds:
+            print("Nothing to run: no seed is kept that made one of these tests fail.")
+            return 0
+        return self._run_rounds(rounds, chosen, tests, seeds)
 
-    def _run_rounds(self, rounds, chosen, tests):
+    def _run_rounds(self, rounds, chosen, tests, seeds):
         o, history = self.options, self.history
         changes, start = self.changes or self._changes(), time.monotonic()
+        begin = datetime.datetime.now().astimezone().isoformat(timespec="seconds")
         tool.adopt_orphans()
         results = [result for seed_, some in rounds for result in
                    run_tests(some, o.build, o.out, seed_, o.jobs, history)]
@@ -207,9 +209,11 @@ class Regression:
         history.add({**make_run(chosen, results, commit, time.monotonic() - start),
                      "subject": "" if subject[0] else subject[1].strip(), "tree": changes.tree,
                      "reasons": list(reversed(reasons.values()))[:5]})
+        seeds.update(results, commit)
         add_waves(failures, known, o.source, o.build, o.jobs, o.waves)
-        data = gather(history, tests, results, failures, o.source)
+        data = gather(history, tests, results, failures, o.source, seeds)
         summary(data, failures, o.out)
+        write_junit(o.out / "junit.xml", results, failures, begin, commit)
         write_reports(data, failures, o.build / "page", o.out)
         return 1 if failures else 0
 
@@ -232,7 +236,7 @@ def summary(data, failures, out):
     longest = sorted(((row[2], row[0]) for row in data["results"]), reverse=True)[:3]
     print("\nThe longest:", *(f"{name} {seconds:.1f} s" for seconds, name in longest))
     if data["seeds"]:
-        print(f"\n{len(data['seeds'])} failing seeds: make regress FAILED=1 runs them again")
+        print(f"\n{len(data['seeds'])} failing seeds are kept: make regress KEPT=1 runs them again")
     print(f"\n{text_of(data['lights'])}{data['passed']} passed, {data['failed']} failed, "
           f"{data['skipped']} skipped in {data['seconds']:.0f} s; {out}/report.html", flush=True)
 

@@ -46,12 +46,11 @@ def measurements(build):
     return data
 
 
-def gather(history, tests, results, failures, source):
+def gather(history, tests, results, failures, source, seeds):
     data = {**history.runs[-1], **measurements(source / "build"), "flaky": history.flaky(),
-            "proofs": proofs_of(results)}
-    del data["ends"]
+            "seeds": seeds.list(), "proofs": proofs_of(results)}
+    del data["tests"]
     known = {test.name: test for test in tests}
-    data["seeds"] = [each for each in history.failing().values() if each["test"] in known]
     data["results"] = []
     for r in results:
         test = known.get(r.name)
@@ -99,7 +98,7 @@ def markdown(data):
         text += "\nFlaky (passed and failed with the same code):\n"
         text += "".join(f"- {name}\n" for name in data["flaky"])
     if data["seeds"]:
-        text += "\nSeeds that failed, and have not passed since (`make regress FAILED=1`):\n"
+        text += "\nSeeds that failed, and have not passed since (`make regress KEPT=1`):\n"
         text += "".join(f"- {each['test']} SEED={each['seed']}\n" for each in data["seeds"])
     return text
 

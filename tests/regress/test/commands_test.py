@@ -147,7 +147,8 @@ class Cases(Project):
         self.good("regress BLOCK=room NAME=[ab][.] LABEL=rtl SEED=7 WAVES=0 TESTS=2")
         self.has("^3 passed")
         self.bad("regress NAME=b.Bad REPEAT=2", "SEED=2")
-        self.bad("regress FAILED=1", "^1 tests, SEED=2")
+        self.bad("regress FAILED=1", "^1 tests")
+        self.bad("regress KEPT=1", "^1 tests, SEED=2")
         self.good("regress CHANGED=1 NAME=a[.]")
         # A bench that fails hides no other's figures, and its older figures do not count as new.
         figures = Path("docs/figures.md")

@@ -126,6 +126,8 @@ class Cases(Project):
         self.assertIn("broken", re.search("^    make test.*", self.said, re.M)[0])
         trace = "build/regress/failures/formal.broken.vcd"
         self.assertTrue(Path(trace).is_file())
+        self.has('message="! error: unexpected operation mode',
+                 f"^wave: {trace}$", file="build/regress/junit.xml")
 
     def test_changed(self):
         """The changed files of a failed test since it passed: committed or not, new or gone; for a
@@ -165,6 +167,8 @@ class Cases(Project):
         self.has(f"{since} with SEED=1: {own}hdl/new.v:{one}, hdl/fifo/fifo.v:2 "
                  rf"\(3 lines\), hdl/old.v:{one}, {script}")  # mine first
         self.has(f"{since} with SEED=1: {own}{script}")  # its program, its folder
+        self.has("changed: changed since it passed",
+                 file="build/regress/junit.xml")
         self.has('"changed":"changed since it passed', file="build/regress/report.html")
         self.ask("git", "cat-file", "-e", git("hash-object hdl/new.v"), status=1)  # no object
         write(".git/info/exclude", "flicker\n")

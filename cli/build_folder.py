@@ -7,7 +7,7 @@ import re
 import shutil
 from pathlib import Path
 
-from cli import progress, runner
+from cli import keys, progress, runner
 from cli.runner import Stop, lock, output, run, warn
 
 TREE = Path(__file__).resolve().parent.parent
@@ -53,6 +53,7 @@ class BuildFolder:
         home = self.cached("CMAKE_HOME_DIRECTORY")
         if home and not (os.path.isdir(home) and os.path.samefile(home, ".")):
             warn(f"{self.folder} was made for the tree in {home}: made anew")
+            keys.rescue(self.folder)
             shutil.rmtree(self.folder)
         if not (self / "build.ninja").exists():
             run(["cmake", "-S", ".", "-B", self.folder, "-G", "Ninja", *arguments])

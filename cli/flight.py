@@ -176,6 +176,7 @@ def take_key(values, build):
     """The demo key, made once, for a mission that is neither open nor has a key."""
     if values.open or values.key or values.app != "uav":
         return
+    keys.rescue(build.folder.parent)
     values.key = str(keys.folder() / "demo.key")
     if make_key(values.key):
         say(f"made a demo key, {values.key}: ground and vehicle share it; KEY=file takes yours, "

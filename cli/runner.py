@@ -141,3 +141,11 @@ def until(condition, process, seconds=0.05):
     while not (held := condition()) and process.poll() is None:
         time.sleep(seconds)
     return held or condition()
+
+
+def commit(name, option="BASE"):
+    """The whole name of a commit."""
+    found = output(["git", "rev-parse", "--verify", "-q", f"{name}^{{commit}}"], check=False)
+    if not found:
+        raise Stop(f"there is no commit {option}={name}", 2)
+    return found.strip()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""check: sanitizers, seeded bugs, faults, hours of radio, measurements."""
+"""check: proofs, sanitizers, seeded bugs, faults, hours of radio, measurements."""
 import re
 import shutil
 from pathlib import Path
@@ -7,7 +7,7 @@ from pathlib import Path
 from cli.build_folder import ROOMS_OF_PROGRAMS, BuildFolder, configured
 from cli.command import GROUPS, command
 from cli.options import BLOCK, BUILD, COUNT, FRESH, JOBS, MINUTES, NAME, PATH, SEED, WORDS, Option
-from cli.runner import Stop, output, run
+from cli.runner import Stop, output, run, say
 
 GROUPS["check"] = "what takes minutes to hours"
 GUARDED = ["test_engine", "gateway", "test_radio_ice", "test_icec"]
@@ -16,6 +16,15 @@ GUARDED = ["test_engine", "gateway", "test_radio_ice", "test_icec"]
 def one_more(status, other):
     """The first status that is not 0."""
     return status or other
+
+
+@command("check proofs", [BUILD, JOBS], make="proofs", brief="check proofs")
+def proofs(values):
+    """run all formal proofs, print the processor time of all together"""
+    build = configured(values, "regmaps")
+    build.ctest("-L", "formal", tests=values.jobs, FRESH="1")
+    spent = [float(path.read_text()) for path in (build / "tests/hdl/formal").glob("*/cpu")]
+    say(f"{len(spent)} proofs, {sum(spent):.0f} s of a processor")
 
 
 @command("check sanitizers",

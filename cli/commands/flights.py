@@ -66,6 +66,7 @@ def update(values, build, held):
     """Sends firmware or a bitstream to a vehicle with the flash OUT/flash.bin, and its FPGA's
     OUT/fpga.bin; makes both if missing."""
     out, pack = Path(values.out), build / "sw/target/pack_update"
+    keys.rescue(build.folder)
     signing = keys.folder() / "update.key"  # private, made at first use
     if not (out / "flash.bin").exists():
         run([

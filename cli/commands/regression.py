@@ -1,15 +1,19 @@
 # SPDX-License-Identifier: MIT
-"""regression: the tests, with selection, history and a page; what a timer runs."""
+"""regression: the tests, with selection, history and a page; the commit since which one fails; what
+a timer runs."""
 import functools
+import json
+import re
 import shlex
 import sys
 import time
+from pathlib import Path
 
 from cli.build_folder import ROOMS_OF_PROGRAMS, BuildFolder, configured
 from cli.command import COMMANDS, command
-from cli.options import (BLOCK, BUILD, COUNT, FRESH, JOBS, LABEL, NAME, SEED, SWITCH, TESTS, UCOS2,
-                         WORDS, Option, matching, number)
-from cli.runner import Stop, run
+from cli.options import (BLOCK, BUILD, COUNT, FRESH, JOBS, LABEL, NAME, SEED, SWITCH, TESTS, TEXT,
+                         UCOS2, WORDS, Option, matching, number)
+from cli.runner import Stop, commit, lock, output, run, say
 from cli.table import Table
 
 WAVES = Option("waves", number(0), "failures of which a waveform is written", 3)
@@ -74,6 +78,87 @@ def regress(values):
         at_once(values), "--seed", values.seed, "--repeat", values.repeat, "--waves", values.waves,
         *selection(values, "block"), *switches], check=False, env={
             "FRESH": "1" if values.fresh else ""})
+
+
+def last_good(test):
+    """The last commit at which the test passed; a bisection cannot begin at a state that is not
+    committed."""
+    history = Path("build/regress/history.jsonl")
+    runs = map(json.loads, history.read_text().splitlines() if history.exists() else [])
+    good = [
+        each["commit"] for each in runs
+        if each["tests"].get(test, [""])[0] == "p" and "dirty" not in each["commit"]]
+    if not good:
+        raise Stop(f"no run that is noted passed {test} at a commit: GOOD= names one (--good)", 2)
+    return good[-1]
+
+
+@command("bisect", [
+    Option("test", TEXT, "the test, as CTest names it", "", positional=True),
+    Option("good", TEXT, "a commit that it passes at; the last one noted", ""),
+    Option("bad", TEXT, "a commit that it fails at", "HEAD"),
+    Option("list", SWITCH, "only lists the commits that would be searched"), SEED, BUILD, JOBS],
+         make="bisect", brief="bisect test_fifo.Fifo.Wraps --good HEAD~3 --list", examples=[
+             "bisect test_fifo.Fifo.Wraps --good v1"])
+def bisect(values):
+    """find the commit since which a test fails, in a checkout of its own
+
+    Commits that do not build, or lack the test, are passed over. Exit status 0: found, and named in
+    the last line; 1: not found;
+    2: it could not begin."""
+    test = values.test
+    if not test:
+        raise Stop("TEST= names the test, as CTest does: ./icesoc bisect test_fifo.Fifo.Wraps", 2)
+    bad = commit(values.bad, "BAD")
+    good = commit(values.good or last_good(test), "GOOD")
+    if run(["git", "merge-base", "--is-ancestor", good, bad], check=False):
+        raise Stop(f"{values.good or good} does not lead to {values.bad}", 2)
+    if values.list:
+        return run(["git", "log", "--oneline", f"{good}..{bad}"])
+    program = (configured(values, "regress", tests=True) / "tests/regress/regress").absolute()
+    tree = Path("build/bisect/tree").absolute()
+    tree.parent.mkdir(parents=True, exist_ok=True)
+    with lock("build/bisect/lock", refuse="another one runs in this folder"):
+        run(["git", "worktree", "remove", "--force", tree], check=False, stderr=-3)
+        run(["git", "worktree", "prune"])
+        run(["git", "worktree", "add", "-q", "--detach", tree, bad])
+        try:
+            return search(program, values, good, bad, tree)
+        finally:
+            run(["git", "worktree", "remove", "--force", tree], check=False)
+
+
+# Whether the present commit passes; 125: unknown. Its build stays for the next one.
+STEP = """mkdir -p build
+([ -e build/main/build.ninja ] || cmake -S . -B build/main -G Ninja || exit 125
+exec setpriv --pdeathsig TERM "$0" "$@") >build/step.log 2>&1
+status=$?
+case $status in 0) told=passes ;; 1) told=fails ;; *) told='cannot be told' status=125 ;; esac
+git log -1 --format="%h %s: $told" >&2
+exit $status
+"""
+
+
+def search(program, values, good, bad, tree):
+    """Lets git ask commits until it knows the first bad one."""
+    step = [
+        "setpriv", "--pdeathsig", "TERM", "sh", "-c", STEP, program, "--make", "--name",
+        f"^{re.escape(values.test)}$", "--seed", values.seed, "--jobs", values.jobs, "--waves", 0]
+
+    def git(*words):
+        run(["git", "bisect", *words], check=False, cwd=tree, stdout=-3)
+
+    if run(step, check=False, cwd=tree) == 0:
+        raise Stop(f"the test passes at {bad}", 2)
+    git("start", bad, good)
+    git("run", *step)
+    log = output(["git", "bisect", "log"], cwd=tree)
+    git("reset")
+    first = re.search(r"^# first bad commit: \[(.*?)\]", log, re.M)
+    if not first:
+        raise Stop("not found: commits that cannot be told lie between")
+    say("since " + output(["git", "log", "-1", "--format=%h %s (%an, %as)", first[1]]).strip())
+    return 0
 
 
 @command("nightly", [

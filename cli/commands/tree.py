@@ -9,7 +9,7 @@ import time
 from pathlib import Path
 
 from cli import command as doors
-from cli import flight
+from cli import flight, keys, version
 from cli.command import COMMANDS, command
 from cli.options import PATH, SWITCH, TEXT, Option
 from cli.runner import run, say
@@ -40,6 +40,8 @@ doors.ALIASES["setup-tests"] = ("setup", "WITH_TESTS")
          brief="clean --list")
 def clean(values):
     """remove what was built; keys are elsewhere"""
+    if not values.list:
+        keys.rescue("build")
     for path in sorted(Path("build").glob("*")):
         say(f"would be removed: {path}" if values.list else f"removed: {path}")
     if not values.list:
@@ -50,16 +52,19 @@ def clean(values):
     Option("brief", SWITCH,
            "runs the brief form of each to its end, writes build/commands.md and .json"),
     Option("only", TEXT, "only those whose name contains this", ""),
+    Option("man", PATH, "writes the manual page, such as icesoc.1", ""),
     Option("schema", PATH, "writes the JSON schema of a flight", "")],
          make="commands", brief="commands", examples=[
-             "commands --brief"])
+             "commands --brief", "commands --man icesoc.1 && man ./icesoc.1"])
 def commands(values):
     """list all commands with their brief forms, or run these"""
+    if values.man:
+        Path(values.man).write_text(manual())
     if values.schema:
         Path(values.schema).write_text(json.dumps(flight.schema(), indent=1) + "\n")
     if values.brief:
         return run_all(values.only)
-    if not values.schema:
+    if not values.man and not values.schema:
         for name, each in COMMANDS.items():
             say(f"{name:<18} {'make ' + each.make if each.make else '':<18} "
                 + "; ".join(each.brief))
@@ -84,3 +89,19 @@ def run_all(only):
         if status not in (0, SKIPPED):
             say("\n".join("    " + line for line in lines[-20:]))
     return table.end()
+
+
+def manual():
+    """The manual page, made of the commands' help."""
+    def plain(text):
+        return "".join(
+            f"\\&{line}\n" for line in text.replace("\\", "\\e").replace("-", "\\-").splitlines())
+
+    parts = [
+        f'.TH ICESOC 1 "" "{version.text().partition(chr(10))[0]}"', ".SH NAME",
+        "icesoc \\- every command of the IceSoC project", ".SH SYNOPSIS",
+        "\\&./icesoc COMMAND [option...]", ".SH COMMANDS", ".nf",
+        plain(doors.overview()) + ".fi"]
+    for name, each in COMMANDS.items():
+        parts += [f'.SH "{name.upper()}"', ".nf", plain(each.parser().format_help()) + ".fi"]
+    return "\n".join(parts) + "\n"

@@ -18,6 +18,7 @@ from pathlib import Path
 TREE = Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(TREE))
 from cli import command, flight, main, progress, runner, table  # noqa: E402, F401
+from cli.commands.tree import manual  # noqa: E402
 from cli.options import FLIGHT, SWITCH  # noqa: E402
 
 
@@ -60,7 +61,7 @@ class Values(Work):
         for verb, name in (("rm-ip", "NAME"), ("new-ip", "NAME"), ("ip-test", "IP"),
                            ("new-foreign", "NAME"), ("new-foreign", "FILES"),
                            ("synth-accept", "DESIGN"), ("run", "OUT"), ("run", "BUILD"),
-                           ("wave", "TEST"), ("ip-test", "CORE_FOLDERS"),
+                           ("wave", "TEST"), ("bisect", "TEST"), ("ip-test", "CORE_FOLDERS"),
                            ("regress", "NAME"), ("foreign", "IMAGE"), ("run", "KEY")):
             tree = {"ICESOC_TREE": str(self.work / "tree"), "PATH": "/usr/bin:/bin"}
             ask("make", "-s", verb, f"{name}={evil.replace('$', '$$')}",
@@ -189,7 +190,7 @@ class Mistakes(Work):
             127,
             "icesoc: there is no program 'cmake': ./icesoc setup --tests installs what is missing\n"
         ))
-        self.assertEqual(ask("./icesoc", "commands", "--schema", "/dev/full"),
+        self.assertEqual(ask("./icesoc", "commands", "--man", "/dev/full"),
                          (1, "icesoc: No space left on device\n"))
 
     def test_an_interrupt_ends_all_with_one_message(self):
@@ -209,20 +210,23 @@ class Mistakes(Work):
 class Trees(Work):
     """What happens to build folders."""
     def configure(self, tree):
-        return ask("./icesoc", "build", "configure", "--build", "build", ICESOC_TREE=str(tree))
+        return ask("./icesoc", "build", "configure", "--build", "build", ICESOC_TREE=str(tree),
+                   XDG_CONFIG_HOME=str(self.work / "config"))
 
     def test_a_tree_that_was_moved_is_built_anew_and_one_that_was_not_is_left_alone(self):
-        old, new = self.work / "tree", self.work / "new"
-        (old / "CMakeLists.txt").write_text(
-            "cmake_minimum_required(VERSION 3.25)\nproject(moved NONE)\n")
+        old, new, config = self.work / "tree", self.work / "new", self.work / "config"
+        (old /
+         "CMakeLists.txt").write_text("cmake_minimum_required(VERSION 3.25)\nproject(moved NONE)\n")
         self.assertEqual(self.configure(old)[0], 0)
         (old / "build/kept").touch()
+        (old / "build/update.key").write_bytes(b"private")
         self.assertEqual(self.configure(old)[0], 0)
         self.assertTrue((old / "build/kept").exists())
         old.rename(new)
         status, text = self.configure(new)
         self.assertIn(f"build was made for the tree in {old}: made anew", text)
         self.assertEqual(status, 0)
+        self.assertEqual((config / "icesoc/update.key").read_bytes(), b"private")
         # A value that CMake refuses is not kept: it would fail whatever is made next.
         with open(new / "CMakeLists.txt", "a") as file:
             file.write('if(CORE_FOLDERS)\n'
@@ -232,6 +236,23 @@ class Trees(Work):
         self.assertIn("CORE_FOLDERS is /here", text)
         self.assertEqual(
             subprocess.run(["cmake", new / "build"], capture_output=True).returncode, 0)
+
+    def test_keys_are_outside_of_what_is_built_and_nothing_removes_them(self):
+        tree, config = self.work / "tree", self.work / "config"
+
+        def remove(text):
+            (tree / "build/main").mkdir(parents=True, exist_ok=True)
+            (tree / "build/main/update.key").write_text(text)  # where a tree of before kept it
+            ask("make", "-s", "clean", ICESOC_TREE=str(tree), XDG_CONFIG_HOME=str(config))
+            self.assertFalse((tree / "build").exists())
+            return sorted(key.read_text() for key in (config / "icesoc").glob("update*.key"))
+
+        self.assertEqual(remove("one"), ["one"])
+        self.assertEqual(remove("one"), ["one"])
+        self.assertEqual(remove("another"), ["another", "one"])
+        self.assertEqual((config / "icesoc/update.key").read_text(), "one")
+        self.assertEqual({key.stat().st_mode & 0o777
+                          for key in (config / "icesoc").iterdir()}, {0o600})
 
     def test_programs_have_one_environment(self):
         self.script("tree/cmake/setup.sh", 'echo "$HOME $LC_ALL $CCACHE_BASEDIR ${SEED:-none} '
@@ -248,7 +269,7 @@ class Lists(unittest.TestCase):
         self.assertLessEqual(len({name.split()[0] for name in command.COMMANDS}), 20)
         for name, each in command.COMMANDS.items():
             for words in [*each.brief, *each.examples]:
-                found, rest = command.find(shlex.split(words))
+                found, rest = command.find(shlex.split(words.partition(" && ")[0]))
                 found.parser().parse_args(rest)
                 self.assertTrue(found)
             self.assertTrue(each.help and name in command.find(name.split())[0].name)
@@ -346,8 +367,12 @@ class Lists(unittest.TestCase):
             self.assertRaisesRegex(runner.Stop, "failed: bad ", rows.end)
             self.assertIn("| good | 0 | 1.5 | a / b |", Path(work, "rows.md").read_text())
 
-    def test_version_and_help_are_there(self):
+    def test_version_and_manual_are_there(self):
         self.assertRegex(ask("./icesoc", "--version")[1], r"^icesoc \d+\.\d+\.\d+\n")
+        said = subprocess.run(["groff", "-man", "-ww", "-Tutf8", "-z"], input=manual(),
+                              capture_output=True, text=True).stderr \
+            if shutil.which("groff") else ""
+        self.assertEqual(said, "")
         shown = ask("./icesoc", "run", "--help")[1]
         for option in command.COMMANDS["run"].options:
             self.assertTrue(not option.listed or f"--{option.name}" in shown, option.name)

@@ -191,7 +191,7 @@ while read -r name; do
 done <cover.names
 [ "$missing" -eq 0 ] || exit 1
 echo "$module: $covers covers reached"
-# user and system time of this script and its children
+# user and system time of this script and its children: `make proofs` adds them up
 times >times.txt
 awk 'function s(t) { split(t, a, /[ms]/); return 60 * a[1] + a[2] } { n += s($1) + s($2) }
     END { printf "%.1f\n", n }' times.txt >cpu

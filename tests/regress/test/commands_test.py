@@ -22,8 +22,9 @@ esac
 TESTS = r"""
 set(work ${CMAKE_SOURCE_DIR})
 set(build ${CMAKE_BINARY_DIR})
-add_custom_target(regress ALL COMMAND mkdir -p tests/regress
-  COMMAND ln -sf REGRESS tests/regress/regress WORKING_DIRECTORY ${build})
+add_custom_target(regress ALL COMMAND mkdir -p tests/regress tests/hdl/formal/thing
+  COMMAND ln -sf REGRESS tests/regress/regress COMMAND sh -c "echo 3 >tests/hdl/formal/thing/cpu"
+  WORKING_DIRECTORY ${build} VERBATIM)
 foreach(target sanitized regmaps bench_programs)
   add_custom_target(${target})
 endforeach()
@@ -144,6 +145,8 @@ class Cases(Project):
         write("leak", "")
         self.bad("test SEED=7", "test_s.Sane")
         Path("leak").unlink()
+        self.good("proofs")
+        self.has("^1 proofs, 3 s of a processor$")
         self.good("regress BLOCK=room NAME=[ab][.] LABEL=rtl SEED=7 WAVES=0 TESTS=2")
         self.has("^3 passed")
         self.bad("regress NAME=b.Bad REPEAT=2", "SEED=2")
@@ -173,6 +176,7 @@ class Cases(Project):
         self.good(f"ip-test IP=fir CORE_FOLDERS={self.work}/mine")
         self.has(f"^CORE_FOLDERS.*={self.work}/mine$", file="build/main/CMakeCache.txt")
         self.bad("ip-test IP=nobody", "there is no core 'nobody': fir")
+        self.bad("bisect TEST=test_a.One GOOD=nonsense BAD=HEAD SEED=1", "no commit GOOD=nonsense")
         self.good("clean")
         self.assertFalse(Path("build").exists())
 

@@ -17,7 +17,7 @@ import unittest.mock
 import xml.etree.ElementTree as xml
 from pathlib import Path
 
-from project import BREAK, REGRESS, Project, append, commit, edit, git, main, write
+from project import BREAK, REGRESS, TREE, Project, append, commit, edit, git, main, write
 
 NEEDS = """
 add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/tool COMMAND touch ${CMAKE_BINARY_DIR}/tool)
@@ -267,6 +267,35 @@ class Cases(Project):
         edit("tests/room/t.sh", "[ \"$SEED\" = 7 ]", "true")  # the bug is mended
         self.regress("--kept")
         self.assertEqual(Path(kept).read_text(), "")
+
+    def test_bisect(self):
+        """Of five commits the third breaks test_a.One, the second does not configure; the checkout
+        stays as it is."""
+        write("change", "")
+        commit("something else")
+        append("CMakeLists.txt", "broken(\n")
+        commit("does not configure")
+        git("revert --no-edit HEAD")
+        self.regress("--name a.One")  # passes, and is noted
+        edit("tests/room/t.sh", *BREAK)
+        commit("breaks it")
+        for later in "12":
+            write("change", later)
+            commit(f"later {later}")
+        write("change", "mine")
+        write("build/main/tests/regress/regress", f'#!/bin/sh\nexec {REGRESS} "$@"\n')
+        first = git("rev-list --max-parents=0 HEAD")
+        for words, status, said in (
+            ("test_a.One", 0, "^since [0-9a-f]* breaks it [(]a, "),
+            (f"test_a.One --good {first}", 0, "^since [0-9a-f]* breaks it [(]a, "),
+            (f"test_a.Two --good {first}", 2, "passes at"),
+            ("test_b.Bad", 2, "GOOD= names one"),
+            ("test_a.One --good nonsense", 2, "no commit GOOD=nonsense")):
+            self.ask("env", "ICESOC_TREE=.", TREE / "icesoc", "bisect", "--built", *words.split(),
+                     status=status)
+            self.has(said)
+            self.assertEqual(Path("change").read_text(), "mine")
+            self.assertFalse(Path("build/bisect/tree").exists())
 
     def test_large(self):
         """More tests than this project has: the page stays small."""

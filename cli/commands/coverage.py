@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """coverage: lines, branches and toggles that the tests reach, of C, C++, Verilog and VHDL."""
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -26,7 +27,7 @@ def coverage(values):
 
     Builds models, C and C++ that count what ran (build/coverage), runs all tests but proofs, lint
     and those of tools, and merges Verilator's, GHDL's and gcov's counts. Leaves html/index.html,
-    summary.json."""
+    summary.json, history (a line a run)."""
     build = configured(values, tests=True)
     build.ninja("coverage", "regress")
     counted = BuildFolder("build/coverage", values)
@@ -52,6 +53,7 @@ def coverage(values):
                   work / "rtl.dat", *with_name("--info", others), "--out", work / "summary.json"],
                  check=False)
     (work / "tree").write_text(tree)
+    note(work)
     return status
 
 
@@ -112,3 +114,12 @@ def of_vhdl(work, points, build):
         if counts:
             run([build / "ghdl/ghdl", "coverage", "--format=lcov", *counts], stdout=file)
     return [info] if info.stat().st_size else []
+
+
+def note(work):
+    """Adds the share of this commit to the history, which `synth report --base` reads."""
+    commit = output(["git", "describe", "--always", "--dirty=+", "--abbrev=10"], check=False,
+                    stderr=subprocess.DEVNULL) or "unknown"
+    total = re.search(r'^ "total": (\d+\.?\d?)', (work / "summary.json").read_text(), re.M)
+    with open(work / "history", "a") as file:
+        file.write(f"{commit.strip()} {total[1]} % of lines\n" if total else "")

@@ -3,11 +3,12 @@
 page that needs no network."""
 import dataclasses
 import itertools
+import json
 
 import baseline
 import slices
 import timing
-from baseline import MEASURED, clock_text, short_version
+from baseline import ACCEPTED, MEASURED, clock_text, short_version
 from owners import Cost
 from runner import Run
 from sources import Design, Library, Plan
@@ -240,6 +241,33 @@ def markdown(report):
     text += design_table(report.plan, report.rows, report.baseline["designs"]).markdown()
     return text + "".join(f"\n{line}\n" for row in report.rows
                           for line in [f"**Stop:** {f}" for f in row.failures] + row.notes)
+
+
+def differences(before, after):
+    """The differences between two files of entries as a table in Markdown. An entry of only
+    one of them is new or gone; one that is known but not measured has the word for that."""
+    designs = {}  # name: {kind of figure: [then, now]}
+    for number, report in enumerate((before, after)):
+        for entry in report["entries"]:
+            name, kind = entry["name"].split(" ", 1)
+            designs.setdefault(name, {}).setdefault(kind, [None, None])[number] = entry["value"]
+    lines = []
+    for name, figures in sorted(designs.items()):
+        line, differs = [name], False
+        for kind in ("lut", "ff", "slices", "clock"):
+            then, now = figures.get(kind, (None, None))
+            differs |= then != now
+            if then is not None and now is not None and then != now:
+                line.append(f"{then:g} -> {now:g} ({now - then:+g})")
+            elif now is not None:
+                was = before.get("states", {}).get(name, "new")
+                line.append(f"{now:g}" + (f" ({was})" if then is None else ""))
+            else:
+                line.append("" if then is None else after["states"].get(name, "gone"))
+        if differs:
+            lines.append(line)
+    return Table(["design", "LUT", "FF", "slices", "MHz"], lines).markdown() if lines else \
+        "No figure of any design differs.\n"
 
 
 def instances(costs):

@@ -166,6 +166,8 @@ def options_of(words):
     parser.add_argument("--core", action="append", default=[],
                         help="only tell what this core costs in the accepted chip (may be "
                              "repeated); with --design soc in the chip of now")
+    parser.add_argument("--compare", **path, metavar="REPORT.JSON",
+                        help="only tell how the last report differs from this one")
     parser.add_argument("--edif", metavar="DESIGN",
                         help="only write this design as EDIF for ISE, into the folder ise")
     parser.add_argument("--netlist", metavar="DESIGN",
@@ -181,6 +183,11 @@ def main(words, build):
     """`build`: the folder of the build that has the libraries of pages."""
     o = options_of(words)
     try:
+        if o.compare:
+            before, after = (json.loads(file.read_text())
+                             for file in (o.compare, o.output / "report.json"))
+            print(report.differences(before, after), end="")
+            return 0
         # A design that another run is synthesising is then found in the cache.
         with only_one(o.output, "utilisation"):
             return run(o, build / "page")

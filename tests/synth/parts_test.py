@@ -301,6 +301,19 @@ class Baseline(unittest.TestCase):
         run.known = True
         self.assertEqual(baseline.state_of(run, "abc", None), "changed since")
 
+    def test_a_difference_invents_no_savings(self):
+        def entries(states, **luts):
+            return {"states": states, "entries": [{"name": f"{name} lut", "value": value}
+                                                  for name, value in luts.items()]}
+        before = entries({"a": "measured now"}, a=10, b=20, c=30)
+        after = entries({"a": "measured now", "b": "changed since"}, a=12)
+        table = report.differences(before, after)
+        self.assertIn("| a | 10 -> 12 (+2) |", table)
+        self.assertIn("| b | changed since |", table)
+        self.assertIn("| c | gone |", table)
+        self.assertIn("| b | 20 (changed since) |", report.differences(after, before))
+        self.assertIn("| c | 30 (new) |", report.differences(after, before))
+
 
 class Cores(unittest.TestCase):
     MAP = {"SLOT_SYSTEM": 0, "SLOT_MODEM": 1, "SLOT_LOW": 2, "SLOT_PLAIN": 3, "SLOT_OWN": 4,

@@ -14,6 +14,7 @@
 #   broken   a syntax error is told with its file and line, and the other designs are reported
 #            nevertheless
 #   twice    of two runs at once the second waits, says so, and takes what the first has made
+#   compare  what has changed since another commit, or between two, as Markdown
 #   made     by make, with its variables
 #   edif     the netlist for ISE is whole
 #   page     the page in Chromium: tables, chart, sorting, looking inside, differences; one file, no
@@ -256,12 +257,61 @@ JS
     grep -q '"peer": 100' "$work/out/report.json" || fail "report.json has no figure of the paper"
     grep -q '^| whole |' "$work/out/report.md" || fail "report.md has no table of designs"
     ;;
+compare)
+    cd project
+    mkdir -p build/main/gen build/main/synth build/synth
+    ln -s "$program" build/main/synth/utilisation
+    cp -r ../out/cache build/synth/
+    compare() { made synth BASE="$1"; }
+    printf 'cmake_minimum_required(VERSION 3.25)\nproject(small NONE)\nadd_custom_target(synth_inputs COMMAND ${CMAKE_COMMAND} -E make_directory gen)\n' >CMakeLists.txt
+    echo build >.gitignore
+    git init -q . && git add . && git -c user.name=a -c user.email=a@b commit -qm "The first one"
+    "$program" >"$work/log" 2>&1 || fail "$(cat "$work/log")"
+    compare HEAD.. || fail "$(cat "$work/log")"
+    has '^No figure of any design differs'
+    sed -i 's/"WIDTH": 16/"WIDTH": 17/; s/"name": "wide"/"name": "wider"/' synth/designs.json
+    sed -i 's/^    wire \[5:0\] word;/&\n    reg [11:0] extra;/; s/^        data_o <= word/        extra <= {extra[5:0], word};\n        data_o <= extra[11:6] ^ word/' hdl/blocks/pair.v
+    "$program" >"$work/log" 2>&1 || [ $? -eq 1 ] || fail "$(cat "$work/log")" # it has grown
+    compare HEAD.. || fail "$(cat "$work/log")"
+    has '^Utilisation since .* (The first one):'
+    has '^| whole | .* | [0-9]* -> [0-9]* (+12) |'
+    has '^| wide | gone | gone |'
+    has '^| wider | [0-9]* (new) |'
+    cmp -s build/synth/compare.md "$work/log" || grep -q '^| wider ' build/synth/compare.md ||
+        fail "compare.md is not there"
+    has '^| [0-9a-f]*+ | not measured | not measured |' # nobody knows what was measured of files without a commit
+    # Over budget the difference matters most: it is told, and the status is that of the budget.
+    cp synth/designs.json designs.kept && sed -i 's/"ff": 30/"ff": 20/' synth/designs.json
+    if made synth BASE=HEAD; then fail "a design over its limit passes"; fi
+    has '^FAILED whole'
+    has '^| whole | .* | [0-9]* -> [0-9]* (+12) |'
+    mv designs.kept synth/designs.json
+    # The same between two commits, whatever is here now; tests and coverage are those of each.
+    git add . && git -c user.name=a -c user.email=a@b commit -qm "The second one"
+    mkdir -p build/regress build/coverage
+    for tests in 9 7; do printf '{"commit":"%s","passed":%s,"failed":1}\n' \
+        "$(git describe --always --abbrev=10)" $tests; done >build/regress/history.jsonl
+    echo "$(git describe --always --abbrev=10 HEAD~1) 97.1 % of lines" >build/coverage/history
+    echo 'module pair' >hdl/blocks/pair.v
+    rm build/synth/report.json
+    compare HEAD~1..HEAD || fail "$(cat "$work/log")"
+    has '^Utilisation since .* (The first one), at .* (The second one):'
+    has '^| whole | .* | [0-9]* -> [0-9]* (+12) |'
+    has '^| [0-9a-f]* | not measured | 97.1 % of lines |'
+    has '^| [0-9a-f]* | 9 passed, 1 failed | not measured |'
+    for wrong in nonsense HEAD..nonsense; do
+        if compare $wrong; then fail "a commit that is none"; fi
+        has 'there is no commit BASE=nonsense'
+    done
+    ;;
 made)
     users_tree
     made synth-accept DESIGN=store && made synth DESIGN=store || fail "$(cat "$work/log")"
     if grep -q '^wide ' "$work/log"; then fail "a design that was not asked for is in the table"; fi
     if made synth FAMILY=none; then fail "no such family"; fi
     has "'none'.*choose from"
+    if made synth BASE=nonsense; then fail "no such commit"; fi
+    has 'there is no commit BASE=nonsense'
     echo store >build/main/cores.known
     if made ip-synth IP=nobody; then fail "a core that is none"; fi
     has "there is no core 'nobody': store"

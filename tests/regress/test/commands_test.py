@@ -86,6 +86,7 @@ class Cases(Project):
             ("run REPLAY=/none", "no flight was recorded in '/none'"),
             (f"gdb REPLAY=/none OUT={flight}", "no flight was recorded in '/none'"),
             ("faults NAME=nonsense", "faults: none is called nonsense; there are clock_step"),
+            ("synth BASE=none", "there is no commit BASE=none"),
             *((words, "{0[0]} is a (whole )?(number|time).*, not '{0[1]}'".format(
                 words.split()[1].split("="))) for words in NUMBERS)):
             with self.subTest(words):

@@ -94,7 +94,7 @@ def run(words, check=True, **more):
 
 
 def output(words, check=True, **more):
-    """A program's output, or None if it fails and `check` is false."""
+    """A program's output; empty if it fails and `check` is false."""
     process = start(words, stdout=subprocess.PIPE, text=True, **more)
     try:
         text = process.communicate()[0]
@@ -104,7 +104,7 @@ def output(words, check=True, **more):
     if process.returncode:
         if check:
             raise Stop(status=process.returncode)
-        return None
+        return ""
     return text
 
 

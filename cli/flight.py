@@ -71,7 +71,7 @@ INNER = {name: {**kind, "description": text} for name, kind, text in [
     ("wave", _TEXT, "file for the waveform (FST) of a replay"),
     ("from", _TIME, "begin of the waveform, s"),
     ("to", _TIME, "end of the waveform, s"),
-    ("every_clock", _FLAG, "evaluates each clock, quiet ones too (slow)"),
+    ("every_clock", _FLAG, "evaluates each clock, quiet ones and those of idle cores, too (slow)"),
     ("speed", _SPEED, "real: simulated time follows the clock; 0.25: at a quarter of its speed; "
      "max: as fast as it goes"),
     ("duration", _TIME, "end after this simulated time, s"),

@@ -5,8 +5,7 @@
 // only keeps the clock.
 //
 // CDC_SEED, a number in the environment, makes the model's synchronisers uncertain
-// (hdl/cdc/cdc_random.vh); the draws follow from it and from SEED. UNGATED, any value: the clocks
-// of cores never stop (hdl/system/core_gate.v).
+// (hdl/cdc/cdc_random.vh); the draws follow from it and from SEED.
 
 #ifndef OBSERVER_H
 #define OBSERVER_H
@@ -31,8 +30,8 @@ public:
     // Prepares the recording; call it before the model is made.
     explicit Observer(VerilatedContext& context) : context_(context) {
         const uint64_t seed = environmentNumber("CDC_SEED", 0);
-        const char* arguments[] = {"", std::getenv("UNGATED") ? "+ungated" : "", "+cdc_random"};
-        context_.commandArgs(seed ? 3 : 2, arguments);
+        const char* arguments[] = {"", "+cdc_random"};
+        context_.commandArgs(seed ? 2 : 1, arguments);
         context_.randSeed(static_cast<int>(Random(testSeed() * 1000 + seed).next() | 1));
 #ifdef ICESOC_TRACE
         context_.traceEverOn(true);

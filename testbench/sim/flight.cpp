@@ -131,6 +131,8 @@ Flight::Flight(const Options& options)
     if (!o_.pins.empty())
         connectPins(soc_, o_.pins, o_.out + "/pins.log");
     placePicture();
+    if (o_.everyClock)
+        soc_.ungate();
     soc_.evaluateAll(o_.everyClock);
     soc_.reset(true);
     watchRegisters();

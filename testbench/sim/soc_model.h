@@ -43,6 +43,12 @@ public:
         cycles_ += clocks;
         return clocks;
     }
+    // Lets the clocks of cores run while they are idle, too (hdl/system/core_gate.v); for
+    // comparisons, before the reset.
+    void ungate() {
+        const char* option = "+ungated";
+        context_->commandArgsAdd(1, &option);
+    }
     // Evaluates each clock from now on, or no longer; for comparisons.
     void evaluateAll(bool all) {
         wake();

@@ -9,6 +9,8 @@
 #include <cstdlib>
 #include <iostream>
 
+constexpr size_t mostRecords = 65535; // of a frame: VISION_RECORDS
+
 int main(int argc, char** argv) {
     if (argc != 3) {
         std::cerr << "usage: vision-reference picture threshold\n";
@@ -18,6 +20,8 @@ int main(int argc, char** argv) {
         Frame frame = loadFrame(argv[1], 1024, 4096);
         auto corners =
             detectCorners(frame.pixels.data(), frame.width, frame.height, std::atoi(argv[2]));
+        if (corners.size() > mostRecords)
+            corners.resize(mostRecords);
         std::printf("{\"found\": %zu, \"best\": [", corners.size());
         const char* separator = "";
         for (const Feature& f : strongest(corners, 64)) {

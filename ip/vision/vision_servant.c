@@ -27,7 +27,7 @@ Hw_Status Vision_Core_init(Vision_Core* self, U32 slot, U32 memory, const Hw_Por
         return status;
     Autopilot_HwProcessingEngine_init(&self->servant);
     set(self, VISION_RESULT_BASE, memory);
-    set(self, VISION_RESULT_MAX, VISION_MEMORY_BYTES / VISION_RECORD_BYTES);
+    set(self, VISION_RESULT_MAX, VISION_RECORDS);
     set(self, VISION_THRESHOLD, 24);
     return HW_OK;
 }

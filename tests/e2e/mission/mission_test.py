@@ -8,6 +8,7 @@ import contextlib
 import json
 import os
 import pty
+import random
 import re
 import shutil
 import signal
@@ -84,8 +85,10 @@ class Cases(Script):
             self.assertEqual(file.stat().st_mode & 0o777, 0o600)
 
     def test_open(self):
-        """Without encryption, by an option."""
-        self.fly("--open")
+        """Without encryption, by an option; of a picture of noise, with some 29,700 corners."""
+        dots = random.Random(1).randbytes(640 * 480)
+        (self.out / "noise.pgm").write_bytes(b"P5 640 480 255\n" + dots)
+        self.fly("--open", "--image", self.out / "noise.pgm", "--size", "640x480")
         self.has('"key":""', file="flight.jsonl")
         write("any.key", "")
         self.refused("give one of them", "--open", "--key", "any.key")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """flight: the description of a flight, OUT/flight.json, which simulator, ground and page read.
 
-Each option below is a field of it, and of its schema, which the build writes for the simulator
+Each option below is a field of it. flight.schema.json beside this file is written from them
 (./icesoc commands --schema).
 """
 import json
@@ -87,6 +87,18 @@ def empty(option):
     """The value in flight.json of an option that is not given."""
     return {"boolean": False, "array": [], "string": ""}.get(option.kind.schema.get("type"),
                                                              option.default)
+
+
+def schema_text():
+    """The schema, a line a field."""
+    lines = json.dumps({**schema(), "properties": None}, indent=1).split("\n")
+    fields = ",\n".join(f"  {json.dumps(name)}: {json.dumps(rule)}"
+                        for name, rule in schema()["properties"].items())
+    at = next(number for number, line in enumerate(lines) if '"properties"' in line)
+    required = json.dumps(schema()["required"])
+    return "\n".join([
+        *lines[:at], ' "properties": {', fields, " },", f' "required": {required},',
+        ' "additionalProperties": false', "}"]) + "\n"
 
 
 def schema():

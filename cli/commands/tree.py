@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
 """tree: set-up, clean-up, and the list of commands."""
-import json
 import os
 import shlex
 import shutil
@@ -53,7 +52,7 @@ def clean(values):
            "runs the brief form of each to its end, writes build/commands.md and .json"),
     Option("only", TEXT, "only those whose name contains this", ""),
     Option("man", PATH, "writes the manual page, such as icesoc.1", ""),
-    Option("schema", PATH, "writes the JSON schema of a flight", "")],
+    Option("schema", PATH, "writes the JSON schema of a flight, cli/flight.schema.json", "")],
          make="commands", brief="commands", examples=[
              "commands --brief", "commands --man icesoc.1 && man ./icesoc.1"])
 def commands(values):
@@ -61,7 +60,7 @@ def commands(values):
     if values.man:
         Path(values.man).write_text(manual())
     if values.schema:
-        Path(values.schema).write_text(json.dumps(flight.schema(), indent=1) + "\n")
+        Path(values.schema).write_text(flight.schema_text())
     if values.brief:
         return run_all(values.only)
     if not values.man and not values.schema:

@@ -27,9 +27,6 @@ import signal
 import struct
 from http import HTTPStatus
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)) + "/../..")
-from cli.flight import schema
-
 PATIENCE = 10  # seconds
 NEWEST = 128 << 10  # bytes of events.jsonl that a page shows: a long flight does not make it large
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -41,6 +38,7 @@ FILES = {  # path: MIME type, file
     "/common.js": ("text/javascript", HERE + "/../page/common.js")}
 # SimStatus (sw/ground/sim_status.h): counters, registers by slot * 16 + word, how each was seen
 STATUS = struct.Struct("<8s7Q1024I1024B")
+SCHEMA = HERE + "/../../cli/flight.schema.json"
 COUNTERS = ("ns", "cycles", "bytesUp", "bytesDown", "packets", "lost", "wallNs")
 WRITTEN = 2
 
@@ -116,11 +114,10 @@ def register(block, word, value, seen):
 def heading(folder):
     """The options of this flight (flight.json) that are not the defaults."""
     try:
-        with open(folder + "/flight.json") as file:
-            flight = json.load(file)
+        with open(SCHEMA) as schema, open(folder + "/flight.json") as flight:
+            fields, flight = json.load(schema)["properties"], json.load(flight)
     except (OSError, ValueError):
         return ""
-    fields = schema()["properties"]
     hidden = ("version", "out", "firmware", "key", "port", "live")
     return ", ".join(f"{name} {value if not isinstance(value, list) else ' '.join(value)}"
                      for name, value in flight.items()

@@ -133,7 +133,8 @@ MISTAKES = {
     "./icesoc replay nowhere": "no flight was recorded in",
     "./icesoc run --key no.key": "./icesoc key",
     "./icesoc run --again Makefile": "cannot read the flight",
-    "./icesoc run --again synth/designs.json": "describes no flight: it is not of version 1",
+    "./icesoc run --again cli/flight.schema.json":
+    "describes no flight: it is not of version 1",
     "./icesoc contract": "contract has the commands diff, from-rdl",
     "./icesoc bench --only airr": "there is no bench 'airr': simulator, air",
     "./icesoc nightly --steps nothing --built": "there is no step 'nothing': kept, random",
@@ -292,7 +293,8 @@ class Lists(unittest.TestCase):
             for words in re.findall(r"\./icesoc ([a-z][^`\n#|]*)", quoted):
                 command.find(words.split())
 
-    def test_the_schema_holds_a_flight(self):
+    def test_the_schema_is_that_of_the_options_and_holds_a_flight(self):
+        self.assertEqual((TREE / "cli/flight.schema.json").read_text(), flight.schema_text())
         good = {
             "version": 1, **{
                 o.field: rule["default"]

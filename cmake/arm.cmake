@@ -4,8 +4,8 @@
 # host's build.
 
 icesoc_needs(gcc-arm-none-eabi ARM_GCC program arm-none-eabi-gcc)
-icesoc_needs(gcc-arm-none-eabi ARM_SIZE program arm-none-eabi-size)
-icesoc_needs(gcc-arm-none-eabi ARM_OBJCOPY program arm-none-eabi-objcopy)
+icesoc_needs(binutils-arm-none-eabi ARM_SIZE program arm-none-eabi-size)
+icesoc_needs(binutils-arm-none-eabi ARM_OBJCOPY program arm-none-eabi-objcopy)
 
 set(ARM_FLAGS -mcpu=cortex-m3 -mthumb -Os -g -ffunction-sections -fdata-sections -fno-common
     -fstack-usage -fcallgraph-info=su)

@@ -1,8 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # setup: on a terminal set-up says what it would install and asks before it calls sudo; elsewhere
-# it goes on. What CMake needs is among the packages of set-up without --tests, and it ends where
-# one is missing: so the list of tests is the same on each machine.
+# it goes on.
 # Usage: setup.sh source-folder
 set -eu
 work=$(mktemp -d)
@@ -28,16 +27,6 @@ asked n "$1"
 grep -q '    verilator: turns' "$work/said" || fail "no word of what is missing"
 grep -q 'sudo apt-get? \[Y/n\]' "$work/said" || fail "no question"
 [ ! -e "$work/sudo" ] || fail "sudo was called after a no"
-listed() { git -C "$1" grep --no-index --exclude-standard -hE "$2" -- '*.cmake' '*CMakeLists.txt'; }
-for package in $(listed "$1" '^ *icesoc_needs' | sed 's/.*(\([^ ]*\).*/\1/'); do
-    grep -q "    $package: " "$work/said" || fail "CMake needs $package, which is not set up"
-done
-sed -n '/^function(icesoc_needs/,/^endfunction/p' "$1/cmake/icesoc.cmake" >"$work/needs.cmake"
-echo 'icesoc_needs(yosys YOSYS program nothing)' >>"$work/needs.cmake"
-! cmake -P "$work/needs.cmake" >"$work/said" 2>&1 || fail "CMake goes on without a program"
-grep -q "nothing is missing (Debian: yosys): run 'make setup'" "$work/said" || fail "no word of it"
-! listed "$1" 'find_(package|program|library|path|file)\(' | grep -vE 'REQUIRED|\(CCACHE' ||
-    fail "CMake goes on where that is missing"
 asked y "$1"
 grep -q 'apt-get install .* verilator' "$work/sudo" || fail "nothing was installed after a yes"
 rm "$work/sudo"

@@ -13,14 +13,6 @@ static Ice_String part(const char* data, size_t size) {
     return s;
 }
 
-Ice_Identity icec_parseIdentity(const char* text) {
-    Ice_Identity id;
-    const char* slash = strchr(text, '/');
-    id.category = part(text, slash ? (size_t)(slash - text) : 0);
-    id.name = Ice_String_from(slash ? slash + 1 : text);
-    return id;
-}
-
 const char* icec_optionsOf(Ice_CommunicatorPtr ic, const char* text) {
     Ice_String name = part(text, strcspn(text, " :"));
     return Ice_String_is(&name, ic->endpoint->name) ? text + name.size : 0;

@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_communicator: the communicator: its parts, its properties, its loop.
+ * ice_communicator: the communicator: its parts, its end.
  */
 #include "ice_private.h"
 
 #include <string.h>
-
-#define POLL_MS 1000
 
 static void noLock(void* context, int which) {
     (void)context;
@@ -42,27 +40,6 @@ void Ice_Communicator_setEndpoint(Ice_CommunicatorPtr ic, const Ice_Endpoint* en
                                   void* context) {
     ic->endpoint = endpoint;
     ic->endpointContext = context;
-}
-
-void Ice_Communicator_waitForShutdown(Ice_CommunicatorPtr ic) {
-    Icec_Role role = icec_takeRole(ic, ICEC_FOREVER);
-    while (role != ICEC_ROLE_NONE && !icec_isStopping(ic))
-        (void)icec_receiveOne(ic, POLL_MS);
-    if (role == ICEC_ROLE_TAKEN)
-        icec_giveRole(ic); /* a task that waits for a reply receives it now */
-}
-
-Ice_Status Ice_Communicator_poll(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
-    Ice_Status status = ICE_TIMEOUT;
-    U32 begin = icec_nowMs(ic);
-    Icec_Role role = icec_takeRole(ic, timeoutMs);
-    if (role != ICEC_ROLE_NONE) {
-        Ice_Int left = timeoutMs - (Ice_Int)(icec_nowMs(ic) - begin);
-        status = icec_receiveOne(ic, left > 0 ? left : 0);
-    }
-    if (role == ICEC_ROLE_TAKEN)
-        icec_giveRole(ic);
-    return status;
 }
 
 void Ice_Communicator_shutdown(Ice_CommunicatorPtr ic) {

@@ -109,7 +109,9 @@ static Ice_Int keepTimes(Ice_CommunicatorPtr ic, Ice_Int waitMs) {
     }
 }
 
-Ice_Status icec_receiveOne(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
+/* Handles at most one event; for the task that has the role of the receiver. ICE_TIMEOUT: there was
+ * none; ICE_LIMIT: ICE_NESTING. */
+static Ice_Status receiveOne(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
     Ice_Event event;
     Ice_Status status;
     Ice_Byte* in;
@@ -126,6 +128,106 @@ Ice_Status icec_receiveOne(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
     return status;
 }
 
+/* ---- which of several tasks receives ----
+ * One task at a time holds the role: a server (waitForShutdown, poll) as soon as it can have it,
+ * else a task that waits for a reply (a leader), as long as it waits. `receiver` and `servers`
+ * change under the state lock only. A task that gives the role up wakes another that may want it.
+ */
+
+typedef enum Role {
+    ROLE_NONE,  /* another task has it */
+    ROLE_TAKEN, /* to be returned by giveRole */
+    ROLE_HAD    /* this task already had it: an operation calls this */
+} Role;
+#define FOREVER 0x7FFFFFFF /* a time-out: until the role is free, or shutdown is called */
+#define POLL_MS 1000
+
+/* Gives the role up, and wakes a task that may want it; under the state lock. */
+static void giveUp(Ice_CommunicatorPtr ic) {
+    ic->receiver = -1;
+    if (ic->servers)
+        ic->os->wake(ic->osContext, ICEC_SERVER_SLOT);
+    else
+        icec_wakeCalls(ic);
+}
+
+/* Takes the role of the receiver for a server, waiting for it up to timeoutMs. */
+static Role takeRole(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
+    int task = ic->os->task(ic->osContext);
+    U32 begin = icec_nowMs(ic);
+    Role role = ROLE_TAKEN;
+    icec_lock(ic, ICE_LOCK_STATE);
+    if (ic->receiver == task) {
+        role = ROLE_HAD;
+    } else {
+        ++ic->servers; /* a leader that sees this gives the role up */
+        while (ic->receiver >= 0) {
+            Ice_Int left = FOREVER;
+            if (timeoutMs != FOREVER)
+                left = timeoutMs - (Ice_Int)(icec_nowMs(ic) - begin);
+            if (left <= 0 || (timeoutMs == FOREVER && ic->stopping))
+                break;
+            icec_unlock(ic, ICE_LOCK_STATE);
+            ic->endpoint->wake(ic->endpointContext);
+            (void)ic->os->wait(ic->osContext, ICEC_SERVER_SLOT, left);
+            icec_lock(ic, ICE_LOCK_STATE);
+        }
+        --ic->servers;
+        if (ic->receiver >= 0)
+            role = ROLE_NONE;
+        else
+            ic->receiver = task;
+        if (ic->stopping && ic->servers)
+            ic->os->wake(ic->osContext, ICEC_SERVER_SLOT); /* the next one to leave */
+    }
+    icec_unlock(ic, ICE_LOCK_STATE);
+    return role;
+}
+
+static void giveRole(Ice_CommunicatorPtr ic) {
+    icec_lock(ic, ICE_LOCK_STATE);
+    giveUp(ic);
+    icec_unlock(ic, ICE_LOCK_STATE);
+}
+
+/* Tells whether a task that waits for a reply must receive now. Such a task leads (`leads`) where
+ * no other has or wants the role, and hands it to a server that wants it. */
+static int mayReceive(Ice_CommunicatorPtr ic, int* leads) {
+    int task = ic->os->task(ic->osContext), may;
+    icec_lock(ic, ICE_LOCK_STATE);
+    if (*leads && ic->servers) {
+        *leads = 0;
+        giveUp(ic);
+    } else if (ic->receiver < 0 && !ic->servers) {
+        *leads = 1;
+        ic->receiver = task;
+    }
+    may = ic->receiver == task;
+    icec_unlock(ic, ICE_LOCK_STATE);
+    return may;
+}
+
+void Ice_Communicator_waitForShutdown(Ice_CommunicatorPtr ic) {
+    Role role = takeRole(ic, FOREVER);
+    while (role != ROLE_NONE && !icec_isStopping(ic))
+        (void)receiveOne(ic, POLL_MS);
+    if (role == ROLE_TAKEN)
+        giveRole(ic); /* a task that waits for a reply receives it now */
+}
+
+Ice_Status Ice_Communicator_poll(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
+    Ice_Status status = ICE_TIMEOUT;
+    U32 begin = icec_nowMs(ic);
+    Role role = takeRole(ic, timeoutMs);
+    if (role != ROLE_NONE) {
+        Ice_Int left = timeoutMs - (Ice_Int)(icec_nowMs(ic) - begin);
+        status = receiveOne(ic, left > 0 ? left : 0);
+    }
+    if (role == ROLE_TAKEN)
+        giveRole(ic);
+    return status;
+}
+
 Ice_Status icec_await(Ice_CommunicatorPtr ic, int (*waits)(Ice_CommunicatorPtr ic, int which),
                       int which, int slot, Ice_Int timeoutMs) {
     U32 begin = icec_nowMs(ic);
@@ -136,15 +238,15 @@ Ice_Status icec_await(Ice_CommunicatorPtr ic, int (*waits)(Ice_CommunicatorPtr i
         status = ICE_TIMEOUT;
         if (left <= 0)
             break;
-        if (!icec_mayReceive(ic, &leads))
+        if (!mayReceive(ic, &leads))
             (void)ic->os->wait(ic->osContext, slot, left);
         else
-            status = icec_receiveOne(ic, left);
+            status = receiveOne(ic, left);
         if (status != ICE_OK && status != ICE_TIMEOUT)
             break;
         status = ICE_OK;
     }
     if (leads)
-        icec_giveRole(ic); /* the next one takes over */
+        giveRole(ic); /* the next one takes over */
     return status;
 }

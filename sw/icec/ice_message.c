@@ -9,15 +9,6 @@
 #define TYPE_AT 8
 #define SIZE_AT 10
 
-void icec_patchInt(Ice_OutputStreamPtr os, Ice_Int at, Ice_Int value) {
-    Ice_Int end = os->size;
-    if (os->failed)
-        return;
-    os->size = at;
-    Ice_OutputStream_writeInt(os, value);
-    os->size = end;
-}
-
 /* "IceP", versions of protocol and encoding, type, compression, size. */
 static const Ice_Byte head[ICEC_HEADER] = {'I', 'c', 'e', 'P', 1, 0, 1, 0, 0, 0, ICEC_HEADER};
 

@@ -20,9 +20,6 @@ void icec_endMessage(Ice_OutputStreamPtr os);
  * greater than 0xFF if it is compressed; -1 if it is no message of IceP 1.0. */
 Ice_Int icec_readHead(Ice_InputStreamPtr is);
 
-/* Overwrites the four bytes at `at`. */
-void icec_patchInt(Ice_OutputStreamPtr os, Ice_Int at, Ice_Int value);
-
 /* Writes size and encoding of an encapsulation, and returns its begin, which icec_endEncapsulation
  * takes to fill the size in. */
 Ice_Int icec_beginEncapsulation(Ice_OutputStreamPtr os);
@@ -64,6 +61,9 @@ Ice_Status icec_setIdentity(Ice_ObjectPrxPtr prx, const Ice_String* name,
 Ice_Status icec_addEndpoint(Ice_ObjectPrxPtr prx, const char* options);
 /* Returns the options after the transport's name; 0: the text names another transport. */
 const char* icec_optionsOf(Ice_CommunicatorPtr ic, const char* text);
+/* Write characters, and a number in decimal, without a size before them. */
+void icec_put(Ice_OutputStreamPtr os, const char* text);
+void icec_putNumber(Ice_OutputStreamPtr os, U32 value);
 /* Splits "category/name", or "name". */
 Ice_Identity icec_parseIdentity(const char* text);
 

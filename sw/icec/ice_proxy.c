@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_proxy: a proxy's parts, and its form on the wire.
+ * ice_proxy: a proxy's parts, its form on the wire, and changes of a copy.
  *
  * Identity, facet and endpoints are kept in the wire's form, since proxies are mostly sent.
  */
@@ -149,4 +149,68 @@ void Ice_InputStream_readPrx(Ice_InputStreamPtr is, Ice_CommunicatorPtr ic, Ice_
     }
     if (prx->mode > ICE_BATCH_DATAGRAM && !is->failed)
         is->failed = ICE_FAILED_MALFORMED;
+}
+
+/* ---- changes of one property of a copy ---- */
+
+Ice_Identity icec_parseIdentity(const char* text) {
+    Ice_Identity id;
+    const char* slash = strchr(text, '/');
+    id.category.data = text;
+    id.category.size = slash ? (Ice_Int)(slash - text) : 0;
+    id.name = Ice_String_from(slash ? slash + 1 : text);
+    return id;
+}
+
+int Ice_ObjectPrx_equals(const Ice_ObjectPrx* a, const Ice_ObjectPrx* b) {
+    return a->mode == b->mode && a->secure == b->secure && a->minor == b->minor &&
+           a->generation == b->generation && a->identitySize == b->identitySize &&
+           a->endpointsSize == b->endpointsSize &&
+           memcmp(a->identity, b->identity, a->identitySize) == 0 &&
+           memcmp(a->endpoints, b->endpoints, a->endpointsSize) == 0;
+}
+
+Ice_Status Ice_ObjectPrx_ice_identity(Ice_ObjectPrxPtr prx, const char* identity) {
+    Ice_Identity id = icec_parseIdentity(identity);
+    return id.name.size ? icec_setIdentity(prx, &id.name, &id.category, 0) : ICE_PARSE;
+}
+
+Ice_Status Ice_ObjectPrx_ice_facet(Ice_ObjectPrxPtr prx, const char* facet) {
+    Ice_String text = Ice_String_from(facet);
+    Ice_InputStream is;
+    Ice_OutputStream os;
+    Ice_InputStream_init(&is, prx->identity, prx->identitySize);
+    icec_skipStrings(&is, 2);
+    Ice_OutputStream_init(&os, prx->identity, ICE_IDENTITY_MAX);
+    os.size = is.position; /* the facet stands behind name and category */
+    icec_writeFacet(&os, &text);
+    prx->identitySize = (Ice_Byte)os.size;
+    return os.failed ? ICE_LIMIT : ICE_OK;
+}
+
+void Ice_ObjectPrx_ice_twoway(Ice_ObjectPrxPtr prx) {
+    prx->mode = ICE_TWOWAY;
+    prx->batch = 0;
+}
+
+void Ice_ObjectPrx_ice_oneway(Ice_ObjectPrxPtr prx) {
+    prx->mode = ICE_ONEWAY;
+    prx->batch = 0;
+}
+
+void Ice_ObjectPrx_ice_context(Ice_ObjectPrxPtr prx, const Ice_ContextEntry* context) {
+    prx->context = context;
+}
+
+void Ice_ObjectPrx_ice_invocationTimeout(Ice_ObjectPrxPtr prx, Ice_Int ms) {
+    prx->timeoutMs = ms;
+}
+
+void Ice_ObjectPrx_ice_encodingVersion(Ice_ObjectPrxPtr prx, Ice_Byte minor) {
+    prx->minor = minor != 0;
+}
+
+void Ice_ObjectPrx_setReplyBuffer(Ice_ObjectPrxPtr prx, U32* buffer, Ice_Int bytes) {
+    prx->reply = buffer;
+    prx->replySize = bytes & ~7;
 }

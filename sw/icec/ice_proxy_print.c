@@ -6,13 +6,13 @@
 
 #include <string.h>
 
-static void put(Ice_OutputStreamPtr os, const char* text) {
+void icec_put(Ice_OutputStreamPtr os, const char* text) {
     Ice_OutputStream_writeBlob(os, (const Ice_Byte*)text, (Ice_Int)strlen(text));
 }
 
-static void putNumber(Ice_OutputStreamPtr os, U32 value) {
+void icec_putNumber(Ice_OutputStreamPtr os, U32 value) {
     if (value > 9)
-        putNumber(os, value / 10);
+        icec_putNumber(os, value / 10);
     Ice_OutputStream_writeByte(os, (Ice_Byte)('0' + value % 10));
 }
 
@@ -44,7 +44,7 @@ static void quote(Ice_OutputStreamPtr os, Ice_Int begin) {
     Ice_Int i;
     for (i = begin; i < os->size; ++i)
         if (strchr(" :@", os->data[i])) {
-            put(os, "\"\"");
+            icec_put(os, "\"\"");
             if (os->failed)
                 return;
             memmove(os->data + begin + 1, os->data + begin, (size_t)(os->size - 2 - begin));
@@ -56,13 +56,13 @@ static void quote(Ice_OutputStreamPtr os, Ice_Int begin) {
 static void putOpaque(Ice_OutputStreamPtr os, const Ice_Byte* encoded, Ice_Int size) {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     Ice_Int i;
-    put(os, "opaque -t ");
-    putNumber(os, encoded[0] | (U32)encoded[1] << 8);
-    put(os, " -e ");
-    putNumber(os, encoded[6]);
-    put(os, ".");
-    putNumber(os, encoded[7]);
-    put(os, " -v ");
+    icec_put(os, "opaque -t ");
+    icec_putNumber(os, encoded[0] | (U32)encoded[1] << 8);
+    icec_put(os, " -e ");
+    icec_putNumber(os, encoded[6]);
+    icec_put(os, ".");
+    icec_putNumber(os, encoded[7]);
+    icec_put(os, " -v ");
     for (i = 8; i < size; i += 3) {
         U32 bits = (U32)encoded[i] << 16 | (i + 1 < size ? (U32)encoded[i + 1] << 8 : 0) |
                    (i + 2 < size ? (U32)encoded[i + 2] : 0);
@@ -84,7 +84,7 @@ static void putEndpoints(const Ice_ObjectPrx* prx, Ice_OutputStreamPtr os) {
         (void)Ice_InputStream_readShort(&is);
         (void)Ice_InputStream_readBlob(&is, Ice_InputStream_readInt(&is) - 4);
         size = (Ice_Int)(is.data + is.position - at);
-        put(os, ":");
+        icec_put(os, ":");
         if (!ic->endpoint || !ic->endpoint->print ||
             !ic->endpoint->print(ic->endpointContext, at, size, os))
             putOpaque(os, at, size);
@@ -101,26 +101,26 @@ Ice_Status Ice_Communicator_proxyToString(const Ice_ObjectPrx* prx, char* text, 
     if (!Ice_ObjectPrx_isNull(prx)) {
         if (id.category.size) {
             escape(&os, id.category, '/');
-            put(&os, "/");
+            icec_put(&os, "/");
         }
         escape(&os, id.name, '/');
         quote(&os, 0);
         if (facet.size) {
-            put(&os, " -f ");
+            icec_put(&os, " -f ");
             begin = os.size;
             escape(&os, facet, 0);
             quote(&os, begin);
         }
-        put(&os, modes[prx->mode]);
-        put(&os, prx->secure ? " -s" : "");
-        put(&os, prx->minor ? " -e 1.1" : " -e 1.0");
+        icec_put(&os, modes[prx->mode]);
+        icec_put(&os, prx->secure ? " -s" : "");
+        icec_put(&os, prx->minor ? " -e 1.1" : " -e 1.0");
         if (prx->endpoints[0]) {
             putEndpoints(prx, &os);
         } else if (prx->endpointsSize > 2) {
             Ice_String adapter;
             adapter.data = (const char*)prx->endpoints + 2;
             adapter.size = prx->endpointsSize - 2;
-            put(&os, " @ ");
+            icec_put(&os, " @ ");
             begin = os.size;
             escape(&os, adapter, 0);
             quote(&os, begin);

@@ -11,15 +11,6 @@
 #define OPTIONAL_END 0xFF
 #define TAG_ESCAPE 30
 
-static void patchInt(Ice_OutputStreamPtr os, Ice_Int at, Ice_Int value) {
-    Ice_Int end = os->size;
-    if (os->failed)
-        return;
-    os->size = at;
-    Ice_OutputStream_writeInt(os, value);
-    os->size = end;
-}
-
 void icec_failRead(Ice_InputStreamPtr is, Ice_Failed why) {
     if (!is->failed)
         is->failed = (Ice_Byte)why;
@@ -31,7 +22,7 @@ Ice_Int Ice_OutputStream_startSize(Ice_OutputStreamPtr os) {
 }
 
 void Ice_OutputStream_endSize(Ice_OutputStreamPtr os, Ice_Int begin) {
-    patchInt(os, begin, os->size - begin - 4);
+    icec_patchInt(os, begin, os->size - begin - 4);
 }
 
 /* ---- writing ---- */
@@ -54,7 +45,7 @@ Ice_Int Ice_OutputStream_startSlice(Ice_OutputStreamPtr os, const char* typeId, 
 }
 
 void icec_patchSize(Ice_OutputStreamPtr os, Ice_Int begin) {
-    patchInt(os, begin, os->size - begin);
+    icec_patchInt(os, begin, os->size - begin);
 }
 
 void icec_finishSlice(Ice_OutputStreamPtr os, Ice_Int flags, Ice_Int size) {

@@ -31,14 +31,4 @@ void icec_finishSlice(Ice_OutputStreamPtr os, Ice_Int flags, Ice_Int size);
 /* Fills in the size of four bytes at `begin`; it counts itself. */
 void icec_patchSize(Ice_OutputStreamPtr os, Ice_Int begin);
 
-typedef struct Icec_SliceHead {
-    Ice_String id;
-    Ice_Int compactId;         /* -1: none */
-    const Ice_ValueType* type; /* 0: not known */
-    Ice_Bool isObject;         /* the base of all; it ends an instance of 1.0 */
-} Icec_SliceHead;
-
-/* Reads the head of an instance's slice. */
-void icec_startSlice(Ice_InputStreamPtr is, Icec_SliceHead* head);
-
 #endif

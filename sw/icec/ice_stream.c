@@ -133,6 +133,15 @@ void(Ice_OutputStream_writeEnum)(Ice_OutputStreamPtr os, Ice_Int v, Ice_Int larg
         writeWord(os, (U32)v, largest < 127 ? 1 : largest < 32767 ? 2 : 4);
 }
 
+void icec_patchInt(Ice_OutputStreamPtr os, Ice_Int at, Ice_Int value) {
+    Ice_Int end = os->size;
+    if (os->failed)
+        return;
+    os->size = at;
+    Ice_OutputStream_writeInt(os, value);
+    os->size = end;
+}
+
 void Ice_InputStream_init(Ice_InputStreamPtr is, const Ice_Byte* data, Ice_Int size) {
     memset(is, 0, sizeof *is);
     is->data = data;

@@ -130,6 +130,8 @@ void Ice_OutputStream_writeEnum(Ice_OutputStreamPtr os, Ice_Int v, Ice_Int large
 /* Leaves room for a size of 4 bytes that does not count itself; endSize writes it. */
 Ice_Int Ice_OutputStream_startSize(Ice_OutputStreamPtr os);
 void Ice_OutputStream_endSize(Ice_OutputStreamPtr os, Ice_Int begin);
+/* Overwrites the four bytes at `at`. */
+void icec_patchInt(Ice_OutputStreamPtr os, Ice_Int at, Ice_Int value);
 
 /* ---- reading ---- */
 

@@ -1,10 +1,33 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_value_read: reads instances of classes from a stream. ice_value_write.c has their layout.
+ * ice_value_read: classes and their types, and instances read from a stream. ice_value_write.c has
+ * their layout.
  */
 #include "ice_slice.h"
 
 #include <string.h>
+
+static void noMembers(void* object, Ice_InputStreamPtr is) {
+    (void)object, (void)is;
+}
+
+static void writeNoMembers(const void* object, Ice_OutputStreamPtr os) {
+    (void)object, (void)os;
+}
+
+const Ice_ValueType Ice_Value_type = {"::Ice::Object", 0,        -1, (Ice_Int)sizeof(Ice_Value), 1,
+                                      writeNoMembers,  noMembers};
+
+int Ice_Value_isA(const Ice_Value* v, const Ice_ValueType* type) {
+    const Ice_ValueType* t = v ? v->type : 0;
+    while (t && t != type)
+        t = t->base;
+    return t != 0;
+}
+
+void* Ice_Value_cast(const void* v, const Ice_ValueType* type) {
+    return Ice_Value_isA((const Ice_Value*)v, type) ? (void*)v : 0;
+}
 
 static void readTable(Ice_InputStreamPtr is);
 static void skip(Ice_InputStreamPtr is);
@@ -173,6 +196,66 @@ static void endUnknown(Ice_InputStreamPtr is) {
 
 /* ---- instances ---- */
 
+typedef struct SliceHead {
+    Ice_String id;
+    Ice_Int compactId;         /* -1: none */
+    const Ice_ValueType* type; /* 0: not known */
+    Ice_Bool isObject;         /* the base of all; it ends an instance of 1.0 */
+} SliceHead;
+
+static Ice_String typeByIndex(Ice_InputStreamPtr is) {
+    static const Ice_String none = {0, ""};
+    Ice_Int index = Ice_InputStream_readSize(is);
+    if (index >= 1 && index <= is->values->typeCount)
+        return is->values->typeIds[index - 1];
+    icec_failRead(is, ICE_FAILED_MALFORMED);
+    return none;
+}
+
+static Ice_String typeByName(Ice_InputStreamPtr is) {
+    Ice_String id = Ice_InputStream_readString(is);
+    if (is->values->typeCount == ICE_VALUE_TYPES_MAX)
+        icec_failRead(is, ICE_FAILED_VALUE_TYPES);
+    else
+        is->values->typeIds[is->values->typeCount++] = id;
+    return id;
+}
+
+/* Reads the head of an instance's slice. */
+static void startSlice(Ice_InputStreamPtr is, SliceHead* head) {
+    const Ice_ValueType* const* type = is->values->types;
+    head->id = Ice_String_from("");
+    head->compactId = -1;
+    head->type = 0;
+    if (is->minor == 0) {
+        is->sliceFlags = ICE_SLICE_SIZE | ICE_SLICE_INSIDE;
+        head->id = Ice_InputStream_readBool(is) ? typeByIndex(is) : typeByName(is);
+    } else {
+        is->sliceFlags = (Ice_Byte)(Ice_InputStream_readByte(is) | ICE_SLICE_INSIDE);
+        switch (is->sliceFlags & ICE_SLICE_COMPACT_ID) {
+        case ICE_SLICE_COMPACT_ID:
+            head->compactId = Ice_InputStream_readSize(is);
+            break;
+        case ICE_SLICE_TYPE_INDEX:
+            head->id = typeByIndex(is);
+            break;
+        case ICE_SLICE_TYPE_STRING:
+            head->id = typeByName(is);
+            break;
+        default: /* a base, in the compact format */
+            break;
+        }
+    }
+    is->sliceEnd = icec_readSliceEnd(is, is->sliceFlags);
+    head->isObject = (Ice_Bool)(Ice_String_equals(head->id, Ice_Value_type.id) != 0);
+    if (head->isObject)
+        head->type = &Ice_Value_type;
+    for (; *type && !is->failed && !head->type; ++type)
+        if (head->compactId >= 0 ? (*type)->compactId == head->compactId
+                                 : Ice_String_equals(head->id, (*type)->id))
+            head->type = *type;
+}
+
 /* Reads the last slice of an instance of 1.0: that of ::Ice::Object, with a size that is 0. */
 static void readEnd10(Ice_InputStreamPtr is) {
     if (Ice_InputStream_readSize(is) != 0)
@@ -184,8 +267,8 @@ static void readEnd10(Ice_InputStreamPtr is) {
 static const Ice_ValueType* knownType(Ice_InputStreamPtr is, Ice_UnknownSlice** list) {
     Ice_Bool isFirst;
     for (isFirst = 1;; isFirst = 0) {
-        Icec_SliceHead head;
-        icec_startSlice(is, &head);
+        SliceHead head;
+        startSlice(is, &head);
         if (is->minor == 0 && head.isObject && !isFirst) {
             readEnd10(is); /* nobody may point at it */
             return 0;
@@ -217,7 +300,7 @@ static const Ice_ValueType* knownType(Ice_InputStreamPtr is, Ice_UnknownSlice** 
 static void readSlices(Ice_InputStreamPtr is, Ice_Int number) {
     Ice_UnknownSlice* unknown = 0;
     const Ice_ValueType* type = knownType(is, &unknown);
-    Icec_SliceHead head;
+    SliceHead head;
     Ice_Value* v;
     if (is->failed || !type)
         return;
@@ -240,10 +323,10 @@ static void readSlices(Ice_InputStreamPtr is, Ice_Int number) {
         if (!type->base != (is->minor != 0 && is->sliceFlags & ICE_SLICE_LAST) && is->minor != 0)
             icec_failRead(is, ICE_FAILED_MALFORMED);
         else if (type->base)
-            icec_startSlice(is, &head);
+            startSlice(is, &head);
     }
     if (is->minor == 0 && !is->failed) {
-        icec_startSlice(is, &head);
+        startSlice(is, &head);
         if (!head.isObject)
             icec_failRead(is, ICE_FAILED_MALFORMED);
         readEnd10(is);

@@ -3,7 +3,7 @@
  * tcp_address: endpoints of the tcp transport as proxies carry them, as strings, and as sockets.
  */
 #define _POSIX_C_SOURCE 200809L
-#include "tcp_address.h"
+#include "tcp_private.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -51,21 +51,17 @@ int TcpEndpoint_decode(const Ice_Byte* encoded, Ice_Int size, TcpEndpoint_Addres
 Ice_Bool TcpEndpoint_print(void* context, const Ice_Byte* encoded, Ice_Int size,
                            Ice_OutputStreamPtr text) {
     TcpEndpoint_Address at;
-    char line[64];
+    const char* quote;
+    char line[320];
+    int n;
     (void)context;
     if (!TcpEndpoint_decode(encoded, size, &at))
         return 0;
-    Ice_OutputStream_writeBlob(text, (const Ice_Byte*)"tcp -h ", 7);
-    if (memchr(at.host.data, ':', (size_t)at.host.size))
-        Ice_OutputStream_writeByte(text, '"');
-    Ice_OutputStream_writeBlob(text, (const Ice_Byte*)at.host.data, at.host.size);
-    if (memchr(at.host.data, ':', (size_t)at.host.size))
-        Ice_OutputStream_writeByte(text, '"');
-    if (at.timeoutMs < 0)
-        sprintf(line, " -p %d -t infinite", at.port);
-    else
-        sprintf(line, " -p %d -t %d", at.port, at.timeoutMs);
-    Ice_OutputStream_writeBlob(text, (const Ice_Byte*)line, (Ice_Int)strlen(line));
+    quote = memchr(at.host.data, ':', (size_t)at.host.size) ? "\"" : "";
+    n = sprintf(line, "tcp -h %s%.*s%s -p %d -t ", quote, (int)at.host.size, at.host.data, quote,
+                at.port);
+    n += at.timeoutMs < 0 ? sprintf(line + n, "infinite") : sprintf(line + n, "%d", at.timeoutMs);
+    Ice_OutputStream_writeBlob(text, (const Ice_Byte*)line, n);
     return 1;
 }
 

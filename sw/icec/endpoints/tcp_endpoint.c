@@ -3,8 +3,8 @@
  * tcp_endpoint: sockets, cut into IceP messages by the size in their heads.
  */
 #define _POSIX_C_SOURCE 200809L
-#include "tcp_address.h"
-#include "tcp_traffic.h"
+#include "ice_message.h"
+#include "tcp_private.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -62,16 +62,16 @@ static Ice_Int frontSize(TcpEndpoint_Connection* c) {
     Ice_InputStream is;
     Ice_Int size;
     int isCompressed;
-    if (c->have < TCP_HEAD)
+    if (c->have < ICEC_HEADER)
         return 0;
     Ice_InputStream_init(&is, c->data + 9, 5);
     isCompressed = Ice_InputStream_readByte(&is) == 2;
     size = Ice_InputStream_readInt(&is);
-    if (memcmp(c->data, "IceP", 4) != 0 || size < TCP_HEAD)
+    if (memcmp(c->data, "IceP", 4) != 0 || size < ICEC_HEADER)
         return -1;
     if (size <= ICE_MESSAGE_MAX && !isCompressed)
         return size <= c->have ? size : 0;
-    if (c->have < TCP_HEAD + 4) /* a request's id */
+    if (c->have < ICEC_HEADER + 4) /* a request's id */
         return 0;
     return TcpEndpoint_refuse(c, size) ? 0 : -1;
 }
@@ -117,7 +117,7 @@ static void acceptOne(TcpEndpoint* self, Ice_Event* event) {
         slot = TcpEndpoint_idlest(self, &left);
         if (slot < 0 || left > 0)
             return;
-        TcpEndpoint_sendHead(&self->connections[slot], TCP_CLOSE);
+        TcpEndpoint_sendHead(&self->connections[slot], ICEC_CLOSE);
         closeOne(&self->connections[slot]);
         event->kind = ICE_EVENT_CLOSED;
         event->connection = slot;

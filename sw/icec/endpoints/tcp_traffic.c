@@ -3,7 +3,8 @@
  * tcp_traffic: traffic of a connection: its use, heartbeats, sending within a bound.
  */
 #define _POSIX_C_SOURCE 200809L
-#include "tcp_traffic.h"
+#include "ice_message.h"
+#include "tcp_private.h"
 
 #include <errno.h>
 #include <poll.h>
@@ -20,7 +21,6 @@ U32 TcpEndpoint_nowMs(void* context) {
 
 #define TYPE_AT 8
 #define COMPRESSION_AT 9
-#define SIZE_AT 10
 #define REASON_MAX 80
 
 int TcpEndpoint_freeSlot(const TcpEndpoint* self) {
@@ -34,13 +34,14 @@ int TcpEndpoint_freeSlot(const TcpEndpoint* self) {
 void TcpEndpoint_note(TcpEndpoint_Connection* c, const Ice_Byte* message, Ice_Int size) {
     static const Ice_Byte noId[4] = {0};
     Ice_Byte type = message[TYPE_AT];
-    if (type != TCP_VALIDATE) {
+    if (type != ICEC_VALIDATE) {
         c->usedMs = TcpEndpoint_nowMs(0);
         c->served = 1;
     }
-    if (type == TCP_REQUEST && size >= TCP_HEAD + 4 && memcmp(message + TCP_HEAD, noId, 4) != 0)
+    if (type == ICEC_REQUEST && size >= ICEC_HEADER + 4 &&
+        memcmp(message + ICEC_HEADER, noId, 4) != 0)
         ++c->owed;
-    else if (type == TCP_REPLY && c->owed > 0)
+    else if (type == ICEC_REPLY && c->owed > 0)
         --c->owed;
 }
 
@@ -52,45 +53,43 @@ static void sendNow(TcpEndpoint_Connection* c, const Ice_Byte* message, Ice_Int 
     c->sentMs = TcpEndpoint_nowMs(0);
 }
 
-static const Ice_Byte plainHead[TCP_HEAD] = {'I', 'c', 'e', 'P', 1, 0, 1, 0, 0, 0, TCP_HEAD};
-
 void TcpEndpoint_sendHead(TcpEndpoint_Connection* c, Ice_Byte type) {
-    Ice_Byte head[TCP_HEAD];
-    memcpy(head, plainHead, TCP_HEAD);
-    head[TYPE_AT] = type;
-    sendNow(c, head, TCP_HEAD);
+    Ice_Byte bytes[ICEC_HEADER];
+    Ice_OutputStream os;
+    Ice_OutputStream_init(&os, bytes, ICEC_HEADER);
+    icec_beginMessage(&os, type);
+    sendNow(c, bytes, os.size);
 }
 
 /* Answers a request by an UnknownLocalException. */
 static void sendReason(TcpEndpoint_Connection* c, const char* reason) {
-    Ice_Byte reply[TCP_HEAD + 6 + REASON_MAX];
-    Ice_Int size = (Ice_Int)strlen(reason);
-    memcpy(reply, plainHead, TCP_HEAD);
-    reply[TYPE_AT] = TCP_REPLY;
-    reply[SIZE_AT] = (Ice_Byte)(TCP_HEAD + 6 + size);
-    memcpy(reply + TCP_HEAD, c->data + TCP_HEAD, 4);
-    reply[TCP_HEAD + 4] = ICE_UNKNOWN_LOCAL_EXCEPTION;
-    reply[TCP_HEAD + 5] = (Ice_Byte)size;
-    memcpy(reply + TCP_HEAD + 6, reason, (size_t)size);
-    sendNow(c, reply, TCP_HEAD + 6 + size);
+    Ice_Byte bytes[ICEC_HEADER + 6 + REASON_MAX];
+    Ice_OutputStream os;
+    Ice_OutputStream_init(&os, bytes, (Ice_Int)sizeof bytes);
+    icec_beginMessage(&os, ICEC_REPLY);
+    Ice_OutputStream_writeBlob(&os, c->data + ICEC_HEADER, 4); /* its id */
+    Ice_OutputStream_writeByte(&os, ICE_UNKNOWN_LOCAL_EXCEPTION);
+    Ice_OutputStream_writeText(&os, reason);
+    icec_endMessage(&os);
+    sendNow(c, bytes, os.size);
 }
 
 int TcpEndpoint_refuse(TcpEndpoint_Connection* c, Ice_Int size) {
     static const char* const types[] = {"request", "batch", "reply"};
     static const Ice_Byte noId[4] = {0};
     Ice_Byte type = c->data[TYPE_AT];
-    const char* what = type <= TCP_REPLY ? types[type] : "message";
+    const char* what = type <= ICEC_REPLY ? types[type] : "message";
     char reason[REASON_MAX];
     if (c->data[COMPRESSION_AT] == 2) {
         fprintf(stderr, "icec: refused a compressed %s: IceC has no bzip2\n", what);
-        TcpEndpoint_sendHead(c, TCP_CLOSE); /* its caller learns that it was not executed */
+        TcpEndpoint_sendHead(c, ICEC_CLOSE); /* its caller learns that it was not executed */
         return 0;
     }
     sprintf(reason, "::Ice::MemoryLimitException: over ICE_MESSAGE_MAX (%d)", ICE_MESSAGE_MAX);
     fprintf(stderr, "icec: refused a %s of %d bytes: %s\n", what, size, reason);
-    if (type > TCP_BATCH)
+    if (type > ICEC_BATCH)
         return 0;
-    if (type == TCP_REQUEST && memcmp(c->data + TCP_HEAD, noId, 4) != 0)
+    if (type == ICEC_REQUEST && memcmp(c->data + ICEC_HEADER, noId, 4) != 0)
         sendReason(c, reason);
     c->served = 1;
     c->usedMs = TcpEndpoint_nowMs(0);
@@ -145,7 +144,7 @@ Ice_Int TcpEndpoint_keepUp(TcpEndpoint* self, Ice_Int timeoutMs) {
         if (c->fd < 0 || !c->spoke)
             continue;
         if (left <= 0) {
-            TcpEndpoint_sendHead(c, TCP_VALIDATE);
+            TcpEndpoint_sendHead(c, ICEC_VALIDATE);
             left = self->heartbeatMs;
         }
         timeoutMs = left < timeoutMs ? left : timeoutMs;

@@ -4,6 +4,8 @@
  */
 #include "xbee_endpoint.h"
 
+#include "ice_message.h"
+
 #include <string.h>
 
 #define NOBODY 255
@@ -238,17 +240,6 @@ static void encode(void* context, const char* options, Ice_OutputStreamPtr os) {
     Ice_OutputStream_writeInt(os, (Ice_Int)Ice_numberOption(options, 't', 10000));
 }
 
-static void put(Ice_OutputStreamPtr text, const char* characters) {
-    while (*characters)
-        Ice_OutputStream_writeByte(text, (Ice_Byte)*characters++);
-}
-
-static void putNumber(Ice_OutputStreamPtr text, U32 value) {
-    if (value > 9)
-        putNumber(text, value / 10);
-    Ice_OutputStream_writeByte(text, (Ice_Byte)('0' + value % 10));
-}
-
 static Ice_Bool print(void* context, const Ice_Byte* encoded, Ice_Int size,
                       Ice_OutputStreamPtr text) {
     Ice_InputStream is;
@@ -258,15 +249,15 @@ static Ice_Bool print(void* context, const Ice_Byte* encoded, Ice_Int size,
     if (Ice_InputStream_readShort(&is) != XBEE_ENDPOINT_TYPE || size != HEAD + BODY)
         return 0;
     is.position = HEAD;
-    put(text, "xbee-at -a ");
-    putNumber(text, (U16)Ice_InputStream_readShort(&is));
+    icec_put(text, "xbee-at -a ");
+    icec_putNumber(text, (U16)Ice_InputStream_readShort(&is));
     channel = Ice_InputStream_readByte(&is);
     if (channel != 255) {
-        put(text, " -p ");
-        putNumber(text, channel);
+        icec_put(text, " -p ");
+        icec_putNumber(text, channel);
     }
-    put(text, " -t ");
-    putNumber(text, (U32)Ice_InputStream_readInt(&is));
+    icec_put(text, " -t ");
+    icec_putNumber(text, (U32)Ice_InputStream_readInt(&is));
     return 1;
 }
 

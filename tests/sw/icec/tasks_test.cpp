@@ -13,7 +13,7 @@
 
 extern "C" {
 #include "Graph.h"
-#include "tcp_address.h"
+#include "tcp_endpoint.h"
 
 Ice_Status Graph_Maker_echo(Graph_MakerPtr, Ice_String text, Ice_String* result,
                             const Ice_Current*) {

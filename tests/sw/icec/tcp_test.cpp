@@ -18,8 +18,7 @@
 #include <unistd.h>
 
 extern "C" {
-#include "tcp_address.h"
-#include "tcp_endpoint.h"
+#include "tcp_private.h"
 }
 
 // A resolver in place of the system's: "twofold.test" is 127.0.0.2 and 127.0.0.1, "mixed.test" is

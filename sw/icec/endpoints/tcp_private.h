@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * tcp_private: declares what the files of the tcp transport share.
+ */
+#ifndef TCP_PRIVATE_H
+#define TCP_PRIVATE_H
+
+#include "tcp_endpoint.h"
+
+/* ---- tcp_address: endpoints on the wire, names and sockets ---- */
+
+typedef struct TcpEndpoint_Address {
+    Ice_String host; /* a numeric address or a name, in the encoded endpoint */
+    Ice_Int port;
+    Ice_Int timeoutMs; /* for connecting; negative: none */
+} TcpEndpoint_Address;
+
+/* `encode` and `print` of Ice_Endpoint. */
+void TcpEndpoint_encode(void* context, const char* options, Ice_OutputStreamPtr os);
+Ice_Bool TcpEndpoint_print(void* context, const Ice_Byte* encoded, Ice_Int size,
+                           Ice_OutputStreamPtr text);
+/* Decodes an endpoint. Returns 0 if it is another transport's, or malformed. */
+int TcpEndpoint_decode(const Ice_Byte* encoded, Ice_Int size, TcpEndpoint_Address* address);
+
+/* Resolves a numeric address or a name to its first TCP_PLACES addresses, those of IPv4 first as in
+ * Ice. Returns how many; 0: there is none. */
+#define TCP_PLACES 8
+typedef struct TcpEndpoint_Place {
+    struct sockaddr_storage at;
+    socklen_t size;
+} TcpEndpoint_Place;
+int TcpEndpoint_resolve(const TcpEndpoint_Address* address, TcpEndpoint_Place* places);
+/* Connects with a time limit. Returns the socket; -1: refused, or not in time. */
+int TcpEndpoint_open(const TcpEndpoint_Place* to, Ice_Int timeoutMs);
+
+/* Sets a connection's options: no delay, and a vanished peer is noticed. */
+void TcpEndpoint_tune(int fd);
+
+/* ---- tcp_traffic: traffic of a connection; all but nowMs and sendSome under the lock ---- */
+
+U32 TcpEndpoint_nowMs(void* context);
+/* Returns a free number; -1: there is none. */
+int TcpEndpoint_freeSlot(const TcpEndpoint* self);
+
+/* Records a message that came or went; a heartbeat does not count as use of its connection. */
+void TcpEndpoint_note(TcpEndpoint_Connection* c, const Ice_Byte* message, Ice_Int size);
+/* Sends a message without a body, if the system takes it at once. */
+void TcpEndpoint_sendHead(TcpEndpoint_Connection* c, Ice_Byte type);
+/* Sends the heartbeats that are due. Returns the time until the next, at most timeoutMs. */
+Ice_Int TcpEndpoint_keepUp(TcpEndpoint* self, Ice_Int timeoutMs);
+/* Sends for at most `ms`. Returns the number of bytes that the system took. */
+Ice_Int TcpEndpoint_sendSome(int fd, const Ice_Byte* message, Ice_Int size, Ice_Int ms);
+
+/* Refuses the message whose first `have` bytes lie in c->data, and passes over the rest of it: the
+ * caller is told where it waits, else the connection ends. Returns 0 if it does. */
+int TcpEndpoint_refuse(TcpEndpoint_Connection* c, Ice_Int size);
+/* Returns the accepted connection that a new one may displace first, and how long it still may not;
+ * -1: there is none. */
+int TcpEndpoint_idlest(TcpEndpoint* self, Ice_Int* left);
+/* Returns the listener if a connection can be accepted now; else -1, and timeoutMs is shortened to
+ * when one may be. */
+int TcpEndpoint_listenerFor(TcpEndpoint* self, Ice_Int* timeoutMs);
+
+#endif

@@ -2,7 +2,6 @@
 //
 // table1: the content of the paper's Table I: FSMC bridge, memory controller with two NPI ports,
 // radio IP.
-// radio IP.
 //
 // The system slot (page register, errors) is not in the table: its signals are ports here, and its
 // slot answers as an empty one does.

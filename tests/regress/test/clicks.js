@@ -39,6 +39,10 @@ const key = (node, key) => node.dispatchEvent(new KeyboardEvent("keydown", {key,
   key($(".tabulator-row", few), "Enter");
   key($(".tabulator-row", few), "ArrowRight");
   seen.push(`open ${column(few, 0)}`);
+  key($(".tabulator-row", few), "ArrowDown");
+  seen.push(`at ${document.activeElement.textContent}`);
+  key($(".tabulator-row", few), "ArrowLeft");
+  seen.push(`folded ${column(few, 0)}`);
 
   const read = () => all(".u-value", drawn).map(v => v.textContent).join(" ");
   const canvas = $("canvas", drawn);

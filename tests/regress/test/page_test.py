@@ -48,8 +48,9 @@ class Cases(Project):
             "seen: sorted test_d.Crash test_c.Flicker test_b.Bad test_a.Two test_a.One "
             "formal.thing formal.broken;", "filtered test_c.Flicker;",
             'csv "test",.* / "test_c.Flicker","passed",',
-            "of 2000 some; largest b &lt;a&gt;; picked b; open b c &lt;a&gt;; canvas true true; "
-            "read iii no. 2 2; moved i no. 0 2;", "3 failed", 'class="waveform"',
+            "of 2000 some; largest b &lt;a&gt;; picked b; open b c &lt;a&gt;; at .*c.*; folded b "
+            "&lt;a&gt;; canvas true true; read iii no. 2 2; moved i no. 0 2;",
+            "3 failed", 'class="waveform"',
             ">top.clk_i<",  # the outermost of its names
             ">top.u_fifo.level<", ">a7<", ">UAV_radioTask<",
             ">top.u_fifo.mask<",  # it stays constant

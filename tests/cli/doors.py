@@ -143,6 +143,19 @@ MISTAKES = {
     "make -s run DRAW=3": "it is one of make mutants",
     "make -s run CAMERA=yes": "CAMERA is 1 or 0, not 'yes'",
     "make -s run SIZE=96x65k": "SIZE is WIDTHxHEIGHT",
+    "make -s run THRESHOLD=300": "THRESHOLD is 0..255 grey levels, not '300'",
+    "make -s run LOSS=7": "LOSS is the share of packets that is lost, 0..1, not '7'",
+    "make -s run CPU=x": "CPU is host or m3, not 'x'",
+    "make -s run CORES=nobody": "core 'nobody' has no part in a mission",
+    "make -s run PROBE=fir.go=1": "PROBE='fir.go=1' is a trigger of a probe: give --cores probe",
+    "make -s run OUT=/proc/none": "OUT='/proc/none' is no folder",
+    "make -s run UPDATE=/none CPU=m3": "cannot read '/none'",
+    "make -s run PINS=/none": "cannot read '/none'",
+    "make -s run REPLAY=/none": "no flight was recorded in '/none'",
+    "make -s gdb REPLAY=/none": "no flight was recorded in '/none'",
+    "make -s soak FUZZED=0": "FUZZED is a whole number from 1 on, not '0'",
+    "make -s fly MINUTES=abc": "MINUTES is a number from 0.001 on minutes, not 'abc'",
+    "make -s test SEED=7x": "SEED is a whole number from 0 on, not '7x'",
 }
 
 

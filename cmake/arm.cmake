@@ -17,13 +17,8 @@ set(ARM_FLAGS -mcpu=cortex-m3 -mthumb -Os -g -ffunction-sections -fdata-sections
 function(icesoc_arm_objects out name)
   cmake_parse_arguments(A "FOREIGN" "" "SOURCES;INCLUDES;DEFINES;OPTIONS;DEPENDS" ${ARGN})
   set(dir ${CMAKE_CURRENT_BINARY_DIR}/${name}.arm)
-  set(flags ${ARM_FLAGS})
-  foreach(i IN LISTS A_INCLUDES)
-    list(APPEND flags -I${i})
-  endforeach()
-  foreach(d IN LISTS A_DEFINES)
-    list(APPEND flags -D${d})
-  endforeach()
+  list(TRANSFORM A_INCLUDES PREPEND -I)
+  list(TRANSFORM A_DEFINES PREPEND -D)
   set(objects)
   foreach(source IN LISTS A_SOURCES)
     get_filename_component(path ${source} ABSOLUTE)
@@ -39,8 +34,8 @@ function(icesoc_arm_objects out name)
       set(own -w)
     endif()
     add_custom_command(OUTPUT ${object}
-      COMMAND ${CCACHE} ${ARM_GCC} ${flags} ${own} ${A_OPTIONS} -MMD -MF ${object}.d -c ${path}
-        -o ${object}
+      COMMAND ${CCACHE} ${ARM_GCC} ${ARM_FLAGS} ${A_INCLUDES} ${A_DEFINES} ${own} ${A_OPTIONS}
+        -MMD -MF ${object}.d -c ${path} -o ${object}
       DEPENDS ${path} ${A_DEPENDS} DEPFILE ${object}.d VERBATIM COMMENT "ARM: ${folder}/${file}")
     list(APPEND objects ${object})
   endforeach()

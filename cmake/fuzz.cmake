@@ -10,14 +10,10 @@
 function(icesoc_fuzz name)
   cmake_parse_arguments(A "" "HARNESS;DICT;RUNS;SEEDS;LENGTH"
     "SOURCES;INCLUDES;DEFINES;LIBS;LABELS;DEPENDS" ${ARGN})
+  list(TRANSFORM A_INCLUDES PREPEND -I)
+  list(TRANSFORM A_DEFINES PREPEND -D)
   set(flags -g -O1 -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined
-            -fno-omit-frame-pointer)
-  foreach(i IN LISTS A_INCLUDES)
-    list(APPEND flags -I${i})
-  endforeach()
-  foreach(d IN LISTS A_DEFINES)
-    list(APPEND flags -D${d})
-  endforeach()
+            -fno-omit-frame-pointer ${A_INCLUDES} ${A_DEFINES})
   set(dir ${CMAKE_CURRENT_BINARY_DIR}/${name}.fuzz)
   file(MAKE_DIRECTORY ${dir})
   set(objects)

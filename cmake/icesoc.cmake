@@ -166,18 +166,14 @@ function(icesoc_verilate name)
   set(lib ${dir}/V${name}__ALL.a)
   set(flags --cc -Wall --x-assign unique --x-initial unique -O3 --top-module ${A_TOP}
             --prefix V${name} --Mdir ${dir} -y ${GEN_DIR} -I${GEN_DIR} ${A_FLAGS})
-  foreach(i IN LISTS A_INCLUDES)
-    list(APPEND flags -y ${i} -I${i})
-  endforeach()
   set(library) # modules that -y may find
   foreach(i IN LISTS A_INCLUDES)
+    list(APPEND flags -y ${i} -I${i})
     file(GLOB found CONFIGURE_DEPENDS ${i}/*.v ${i}/*.vh)
     list(FILTER found EXCLUDE REGEX _proof[.]vh?$)
     list(APPEND library ${found})
   endforeach()
-  foreach(p IN LISTS A_PARAMS)
-    list(APPEND flags -G${p})
-  endforeach()
+  list(TRANSFORM A_PARAMS PREPEND -G)
   set(definitions) # observer.h reads them
   if(TRACE)
     list(APPEND flags --trace-fst)
@@ -195,15 +191,10 @@ function(icesoc_verilate name)
       list(APPEND flags ${dir}.vlt)
     endif()
   endif()
-  set(sources)
-  foreach(s IN LISTS A_SOURCES)
-    get_filename_component(s ${s} ABSOLUTE)
-    list(APPEND sources ${s})
-  endforeach()
-  set(deps ${sources} ${library} ${A_DEPENDS})
-  foreach(r IN LISTS A_REGS)
-    list(APPEND deps regmap_${r} ${GEN_DIR}/${r}_regs.vh)
-  endforeach()
+  set(sources ${A_SOURCES})
+  list(TRANSFORM sources PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
+  list(TRANSFORM A_REGS REPLACE "(.+)" "regmap_\\1;${GEN_DIR}/\\1_regs.vh")
+  set(deps ${sources} ${library} ${A_DEPENDS} ${A_REGS})
   set(compiler ${CMAKE_CXX_COMPILER})
   if(A_FAST AND NOT COVERAGE AND NOT SANITIZE)
     set(compiler ${CLANGXX})
@@ -217,7 +208,7 @@ function(icesoc_verilate name)
   # headers are said to be made here, so that what includes them is compiled again in the same run
   # of ninja, not in the next one.
   add_custom_command(OUTPUT ${lib} BYPRODUCTS ${dir}/V${name}.h ${dir}/V${name}___024root.h
-    COMMAND ${VERILATOR} ${flags} ${sources}
+    COMMAND ${VERILATOR} ${flags} ${A_PARAMS} ${sources}
     COMMAND ${CMAKE_COMMAND} -E env CCACHE_DIR=$ENV{CCACHE_DIR}
             make -s -C ${dir} -f V${name}.mk V${name}__ALL.a
             "CXX=${CCACHE} ${compiler}" "OPT_FAST=-O3 -march=native" OPT_GLOBAL=-O2

@@ -64,13 +64,15 @@ function(icesoc_core name)
     message(FATAL_ERROR "${name}: CLOCK is 3000000 to 100000000 Hz, and without IDLE: a clock of "
       "the core's own has no gate")
   endif()
-  set(clocked)
+  set(chip) # options of coremap.py
   if(A_CLK_HZ)
-    set(clocked ${name})
+    list(APPEND chip --clocked=${name})
   endif()
-  set(idle)
   if(A_IDLE)
-    set(idle ${name})
+    list(APPEND chip --idle=${name})
+  endif()
+  if(A_CLOCK)
+    list(APPEND chip --own-clock=${name}=${A_CLOCK})
   endif()
   set(files ${A_VERILOG})
   set(headers ${A_VERILOG}) # found by `include
@@ -143,11 +145,9 @@ function(icesoc_core name)
     list(APPEND A_FLAGS -Wno-PINCONNECTEMPTY) # GHDL's way to write `open`
   endif()
   set(top ${name})
-  set(own)
   set(hz 100000000)
   if(A_CLOCK)
     set(top ${name}_clocked)
-    set(own ${name}=${A_CLOCK})
     set(hz ${A_CLOCK})
     set(flag)
     if(A_CLK_HZ)
@@ -160,8 +160,7 @@ function(icesoc_core name)
     list(APPEND files ${GEN_DIR}/${top}.v)
     list(APPEND targets ${top}_verilog)
   endif()
-  foreach(what files headers targets regs libs clocked idle own slices arm_sources arm_includes
-      arm_targets)
+  foreach(what files headers targets regs libs chip slices arm_sources arm_includes arm_targets)
     set_property(GLOBAL PROPERTY ICESOC_CORE_${name}_${what} ${${what}})
   endforeach()
   set_property(GLOBAL PROPERTY ICESOC_CORE_${name}_flags ${A_FLAGS})
@@ -215,7 +214,7 @@ function(icesoc_chip)
         "ip/${name}/CMakeLists.txt with icesoc_core, or its line goes")
     endif()
     get_property(regs GLOBAL PROPERTY ICESOC_CORE_${name}_regs)
-    list(APPEND options --core ${name}=${regs})
+    list(APPEND options --core=${name}=${regs})
     get_filename_component(folder ${regs} DIRECTORY)
     file(GLOB own CONFIGURE_DEPENDS ${folder}/${name}.ucf)
     list(APPEND inputs ${regs} ${own})
@@ -239,18 +238,13 @@ function(icesoc_chip)
     endforeach()
     set(check COMMAND slice2c --one-program ${slice_includes} ${slice_files})
   endif()
-  icesoc_chip_property(clocked clocked)
-  list(TRANSFORM clocked PREPEND "--clocked;")
-  icesoc_chip_property(idle idle)
-  list(TRANSFORM idle PREPEND "--idle;")
-  icesoc_chip_property(own own)
-  list(TRANSFORM own PREPEND "--own-clock;")
+  icesoc_chip_property(chip chip)
   add_custom_command(OUTPUT ${GEN_DIR}/map.regs.json ${GEN_DIR}/soc_cores.vh ${GEN_DIR}/soc_cores.c
                      ${GEN_DIR}/soc_pins.h ${GEN_DIR}/core_pins.ucf ${GEN_DIR}/icesoc.svd
                      ${GEN_DIR}/registers.html ${GEN_DIR}/probes.json ${GEN_DIR}/icesoc.rdl
                      ${GEN_DIR}/icesoc.ipxact.xml ${check}
     COMMAND ${CMAKE_SOURCE_DIR}/bus/coremap.py ${CORES}
-            --base ${CMAKE_SOURCE_DIR}/bus/map.regs.json ${options} ${clocked} ${idle} ${own}
+            --base ${CMAKE_SOURCE_DIR}/bus/map.regs.json ${options} ${chip}
             --block 0=system=${CMAKE_SOURCE_DIR}/hdl/system/system.regs.json
             --block 1=modem=${CMAKE_SOURCE_DIR}/hdl/modem/modem.regs.json --output-dir ${GEN_DIR}
     DEPENDS ${REGMAP} ${CMAKE_SOURCE_DIR}/bus/coremap.py ${CMAKE_SOURCE_DIR}/bus/core_output.py

@@ -73,7 +73,7 @@ class Cases(Script):
     def bugs(self, **bugs):
         """Seeds bugs: the line that goes, the line that comes."""
         write("tests/mutants/tiny.bugs", "".join(
-            f"{name}: A bug.\ntest_tiny\ntiny.c\n-{old}\n+{new}\n\n"
+            f"{name}: A bug.\ntest_tiny tiny.c\n-{old}\n+{new}\n\n"
             for name, (old, new) in bugs.items()))
 
     def test_run(self):

@@ -6,8 +6,7 @@ The bugs of a block stand in tests/mutants/<block>.bugs, a core's in ip/<core>/<
 empty lines:
 
     name: what the bug does, in a sentence.
-    the test that catches it, as ctest names it
-    file
+    the test that catches it, as ctest names it, and the file, here or on the next line
     -the line, or lines, of the file that go
     +the line, or lines, that replace them
 
@@ -29,11 +28,12 @@ WORK = TOP / "build/mutants"
 
 class Bug:
     def __init__(self, block, text):
-        head, self.test, *lines = text.split("\n")
+        head, where, *lines = text.split("\n")
+        self.test, *files = where.split()
         name, _, does = head.partition(": ")
         self.name = f"{block}/{name}"
         self.changes = []  # file, old lines, new lines
-        for line in lines:
+        for line in files + lines:
             if line[0] not in " +-@":
                 file = line
             if line[0] not in " +-":

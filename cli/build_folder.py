@@ -96,10 +96,9 @@ class BuildFolder:
 
     def ctest(self, *words, tests, check=True, junit="junit.xml", **env):
         """Runs tests by CTest, and leaves their results in the build folder."""
-        return run([
-            TREE / "tests/ctest.py", "--test-dir", self.folder, "-j", tests, "--output-on-failure",
-            "--no-tests=error", "--output-junit", (self / junit).absolute(), *words], env=env,
-                   check=check)
+        return run([TREE / "tests/ctest.py", "--test-dir", self.folder, "-j", tests,
+                    "--output-on-failure", "--no-tests=error", "--output-junit",
+                    (self / junit).absolute(), *words], env=env, check=check)
 
     def targets(self):
         """Names of all targets."""

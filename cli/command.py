@@ -153,15 +153,12 @@ def by_make(goal, goals, makes):
         raise Stop(
             f"there is no 'make {goal}'"
             + nearest(goal, [each.make for each in COMMANDS.values() if each.make]), 2)
-    known = {"BUILD", "JOBS"} | {
-        option.variable
-        for each in goals for found in of(each) for option in found.options}
+    known = {"BUILD", "JOBS"} | {option.variable for each in goals for found in of(each)
+                                 for option in found.options}
     for name in makes:
         if name not in known:
-            others = sorted({
-                each.make
-                for each in COMMANDS.values()
-                if each.make and name in (o.variable for o in each.options)})
+            others = sorted({each.make for each in COMMANDS.values() if each.make
+                             and name in (o.variable for o in each.options)})
             where = f"; it is one of make {', '.join(others)}" if others else nearest(name, known)
             raise Stop(f"there is no variable {name} of make {' '.join(goals)}{where}; "
                        f"./icesoc {of(goal)[0].name} --help names them", 2)

@@ -96,23 +96,17 @@ def schema_text():
                         for name, rule in schema()["properties"].items())
     at = next(number for number, line in enumerate(lines) if '"properties"' in line)
     required = json.dumps(schema()["required"])
-    return "\n".join([
-        *lines[:at], ' "properties": {', fields, " },", f' "required": {required},',
-        ' "additionalProperties": false', "}"]) + "\n"
+    return "\n".join([*lines[:at], ' "properties": {', fields, " },", f' "required": {required},',
+                      ' "additionalProperties": false', "}"]) + "\n"
 
 
 def schema():
     """The JSON schema of flight.json."""
-    fields = {
-        option.field: {
-            **option.kind.schema, "description": option.help, "default": option.default
-            or empty(option)}
-        for option in FIELDS}
-    return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": "A flight", "type": "object", "properties": {
-            "version": {"const": VERSION}, **fields, **INNER}, "required": [
-                "version", *fields], "additionalProperties": False}
+    fields = {option.field: {**option.kind.schema, "description": option.help,
+                             "default": option.default or empty(option)} for option in FIELDS}
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "A flight",
+            "type": "object", "properties": {"version": {"const": VERSION}, **fields, **INNER},
+            "required": ["version", *fields], "additionalProperties": False}
 
 
 def wrong(flight):
@@ -216,9 +210,8 @@ def firmware(values, build):
 
 def write(values, build):
     """OUT/flight.json."""
-    flight = {
-        "version": VERSION, **{option.field: getattr(values, option.field)
-                               for option in FIELDS}}
+    flight = {"version": VERSION, **{option.field: getattr(values, option.field)
+                                     for option in FIELDS}}
     flight["firmware"] = firmware(values, build)
     path = Path(values.out) / "flight.json"
     path.with_suffix(".new").write_text(json.dumps(flight, indent=1) + "\n")

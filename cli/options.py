@@ -56,9 +56,8 @@ class Option:
         parts = [] if self.kind in (TEXT, WORDS, FILES, SWITCH, FILE, KEY_FILE, FOLDER, PATH,
                                     FLIGHT) else [self.kind.expected]
         parts += [f"default {shown}"] if shown is not None and shown != "" else []
-        return (self.help +
-                (f" ({'; '.join(parts)})" if parts else "") + f" [{self.variable}]").replace(
-                    "%", "%%")
+        return (self.help + (f" ({'; '.join(parts)})" if parts
+                             else "") + f" [{self.variable}]").replace("%", "%%")
 
 
 def matching(pattern, expected, convert=str, schema=None, metavar="VALUE"):
@@ -155,9 +154,8 @@ NAME = Option("name", TEXT, "regular expression: tests of which a part of the na
 LABEL = Option("label", TEXT,
                "tests of this label: rtl, vhdl, formal, lint, firmware, slice, interop, e2e, ...")
 BLOCK = Option("block", TEXT, "what belongs to this block, such as bus or modem")
-UCOS2 = Option(
-    "ucos2", FOLDER,
-    "folder of the real uC/OS-II: the firmware is built with it, too (docs/firmware.md)")
+UCOS2 = Option("ucos2", FOLDER,
+               "folder of the real uC/OS-II: the firmware is built with it, too (docs/firmware.md)")
 FRESH = Option("fresh", SWITCH,
                "computes proofs, lints and synthesis of unchanged files again, too")
 CORE_FOLDERS = Option(

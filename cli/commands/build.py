@@ -35,9 +35,8 @@ def build_firmware(values):
     stacks"""
     build = BuildFolder(values.build, values).prepare()
     build.ninja("firmware")
-    run([
-        "sw/sizes.py", "firmware", build / "firmware/uav.map", build / "sw/target/uav.arm",
-        "build/firmware.json"])
+    run(["sw/sizes.py", "firmware", build / "firmware/uav.map", build / "sw/target/uav.arm",
+         "build/firmware.json"])
 
 
 @command("build size", [BUILD, JOBS], make="size", brief="build size")

@@ -48,10 +48,8 @@ def sanitizers(values):
         # ThreadSanitizer leaves out Python's libraries: Python's own locks are not built with it.
         left = ["--gtest_filter=-*Python*"] if kind == "thread" else []
         for test in ("ground/test_engine", "ground/ice/test_radio_ice", "icec/test_icec"):
-            status = one_more(
-                status,
-                run([folder / "tests/sw" / test, "--gtest_brief=1", *left], check=False,
-                    env=environment))
+            status = one_more(status, run([folder / "tests/sw" / test, "--gtest_brief=1", *left],
+                                          check=False, env=environment))
     build.ninja("fuzz_gdb")
     return one_more(status, build.ctest("-R", "^fuzz[.]gdb$", tests=1, check=False))
 
@@ -67,13 +65,11 @@ def mutants(values):
     """plant every seeded bug of tests/mutants, expect its test to fail"""
     build = configured(values, tests=True)
     build.ninja("regress", *(["regmaps"] if values.draw else []))
-    drawn = [
-        "tests/mutants/drawn.py", "--build", build.folder, "--number", values.draw, "--seed",
-        values.seed]
-    return run([
-        *(drawn if values.draw else ["tests/mutants/run.py"]), "--jobs", values.jobs,
-        *(["--block", values.block] if values.block else [])], check=False, env={
-            "FRESH": "1" if values.fresh else ""})
+    drawn = ["tests/mutants/drawn.py", "--build", build.folder, "--number", values.draw, "--seed",
+             values.seed]
+    return run([*(drawn if values.draw else ["tests/mutants/run.py"]), "--jobs", values.jobs,
+                *(["--block", values.block] if values.block else [])], check=False,
+               env={"FRESH": "1" if values.fresh else ""})
 
 
 @command("check faults", [
@@ -88,9 +84,8 @@ def faults(values):
     build = configured(values)
     build.ninja("mission", "clock_step", "regress", "utilisation", "regmaps")
     if not values.name:
-        run([
-            "tests/regress/test/interrupted.py", ".", build.folder, "build/faults/interrupted",
-            values.moments, "new_ip", "regress", "synth"], env={"SEED": values.seed})
+        run(["tests/regress/test/interrupted.py", ".", build.folder, "build/faults/interrupted",
+             values.moments, "new_ip", "regress", "synth"], env={"SEED": values.seed})
     return run([
         "/usr/bin/python3", "tests/e2e/mission/faults.py",
         Path.cwd(), build.folder, "build/faults/missions", "--seed", values.seed, "--seeds",
@@ -121,9 +116,8 @@ def soak(values):
         env={**seed, "SOAK_SECONDS": 30 * values.minutes})
     run([build / "tests/sw/link/test_link", "--gtest_brief=1", "--gtest_filter=*TenMillion*"],
         env=noise)
-    run([
-        build / "tests/sw/ground/test_engine", "--gtest_brief=1",
-        "--gtest_filter=Engine.RandomBytes*"], env=noise)
+    run([build / "tests/sw/ground/test_engine", "--gtest_brief=1",
+         "--gtest_filter=Engine.RandomBytes*"], env=noise)
     run([build / "tests/hdl/test_modem_soak", "--gtest_brief=1"],
         env={**seed, "SOAK_BYTES": values.fuzzed})
 
@@ -152,8 +146,5 @@ def bench(values):
     (folder / "tree").write_text(
         output([build / "tests/regress/regress", "--tree", "bus hdl ip sw testbench tests"]))
     status = build.ninja("-k", "0", "benches", check=False, jobs=1)
-    return one_more(
-        status,
-        run([
-            "tests/bench/figures.py", values.page, *sorted(folder.glob("*.json")), "build/size.json"
-        ], check=False))
+    return one_more(status, run(["tests/bench/figures.py", values.page,
+                                 *sorted(folder.glob("*.json")), "build/size.json"], check=False))

@@ -18,11 +18,10 @@ def contract_diff(values):
     return run(["bus/contract_diff.py", build / "slice/slice2c", ".", values.base], check=False)
 
 
-@command("contract from-rdl", [
-    Option("rdl", FILE, "the SystemRDL file", "", positional=True),
-    Option("out", FOLDER, "folder that they are written to", "")], make="from-rdl",
-         brief="contract from-rdl build/main/gen/icesoc.rdl --out build/brief/rdl", examples=[
-             "contract from-rdl spi.rdl --out ip/spi"])
+@command("contract from-rdl", [Option("rdl", FILE, "the SystemRDL file", "", positional=True),
+                               Option("out", FOLDER, "folder that they are written to", "")],
+         make="from-rdl", brief="contract from-rdl build/main/gen/icesoc.rdl --out build/brief/rdl",
+         examples=["contract from-rdl spi.rdl --out ip/spi"])
 def from_rdl(values):
     """register descriptions (*.regs.json) of SystemRDL"""
     return run(["bus/rdl.py", values.rdl, values.out], check=False)

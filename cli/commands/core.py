@@ -53,8 +53,7 @@ def write_own(build, name, lang, ice, folder):
         raise Stop(f"{ice} includes {' '.join(included)}: a core has one Slice file; write into it "
                    "what it needs of others")
     work = folder.parent
-    if run([
-            build / "slice/slice2c", f"-I{Path(ice).absolute().parent}", ice, "--output-dir",
+    if run([build / "slice/slice2c", f"-I{Path(ice).absolute().parent}", ice, "--output-dir",
             work / "c", "--hw-regs", work / "regs", f"--hw-new-{lang}", work / "new"], check=False):
         raise Stop(f"{ice} is not an interface in hardware (above)")
     cores = sorted(path.name[:-len(".regs.json")] for path in (work / "regs").iterdir())
@@ -67,9 +66,8 @@ def write_own(build, name, lang, ice, folder):
     fill(template / lang / "CMakeLists.txt.in", folder, name)
     fill(template / "interface/ground.py.in", folder, name)
     readme = fill(template / "README.md.in", folder, name)
-    readme.write_text(
-        re.sub(r"^Adds an offset, and sums 1..count:", "Answers every call with zeros:",
-               readme.read_text(), flags=re.M))
+    readme.write_text(re.sub(r"^Adds an offset, and sums 1..count:",
+                             "Answers every call with zeros:", readme.read_text(), flags=re.M))
 
 
 def fill(template, folder, name):
@@ -103,13 +101,12 @@ def put_into_repository(room, name, core):
     readme.write_text(text.replace(f"make ip-test IP={name}", "make test"))
 
 
-@command("core new", [
-    NAME,
-    Option("lang", one_of("verilog", "vhdl"), "the core's language"),
-    Option("ice", FILE, "Slice file with its interface; without: an example"),
-    Option("repository", FOLDER, "a repository of your own cores, which is begun or gets this one, "
-           "in place of ip/"), BUILD, JOBS],
-         make="new-ip", brief=("core new brief_core --lang vhdl", "core remove brief_core --force"),
+@command("core new", [NAME, Option("lang", one_of("verilog", "vhdl"), "the core's language"),
+                      Option("ice", FILE, "Slice file with its interface; without: an example"),
+                      Option("repository", FOLDER,
+                             "a repository of your own cores, which is begun or gets this one, "
+                             "in place of ip/"), BUILD, JOBS], make="new-ip",
+         brief=("core new brief_core --lang vhdl", "core remove brief_core --force"),
          examples=["core new low_pass --lang vhdl", "core new lamp --lang verilog --ice lamp.ice",
                    "core new low_pass --lang verilog --repository ~/cores"])
 def new(values):
@@ -257,11 +254,10 @@ def ports(build, core):
             yield f"TOP.{name}" + (f"[{high}:{low}]" if int(high) > int(low) else "")
 
 
-@command("core wave", [
-    CORE,
-    Option("test", TEXT, "the test: its name, or an expression that matches only it", "",
-           positional=True), JOBS], make="wave", brief="core wave fir Impulse", examples=[
-               "core wave fir Impulse"])
+@command("core wave", [CORE, Option("test", TEXT,
+                                    "the test: its name, or an expression that matches only it", "",
+                                    positional=True), JOBS], make="wave",
+         brief="core wave fir Impulse", examples=["core wave fir Impulse"])
 def wave(values):
     """waveform of one test of a core, for GTKWave: build/wave/CORE.fst and .gtkw"""
     core = values.ip
@@ -309,11 +305,10 @@ def users_of(name):
                 yield user
 
 
-@command("core remove",
-         [NAME, Option("force", SWITCH, "with changes that are not committed"), BUILD, JOBS],
-         make="rm-ip",
-         brief=("core new brief_gone --lang verilog", "core remove brief_gone --force"), examples=[
-             "core remove low_pass"])
+@command("core remove", [NAME, Option("force", SWITCH, "with changes that are not committed"),
+                         BUILD, JOBS], make="rm-ip", brief=("core new brief_gone --lang verilog",
+                                                            "core remove brief_gone --force"),
+         examples=["core remove low_pass"])
 def remove(values):
     """take a core away: its folder and its line in ip/cores.list"""
     name, core = values.name, Path("ip", values.name or ".")
@@ -372,9 +367,8 @@ def examples(values):
     shutil.rmtree(cores / "slots", ignore_errors=True)
 
     def into_slot(slot, module, bus, files, *words):
-        run([
-            "ip/new_foreign.py", slot, module, bus, cores / "slots" / slot, *words, *sorted(files)],
-            stdout=-3, env={"GHDL": cores / "ghdl/ghdl"})
+        run(["ip/new_foreign.py", slot, module, bus, cores / "slots" / slot, *words,
+             *sorted(files)], stdout=-3, env={"GHDL": cores / "ghdl/ghdl"})
 
     into_slot("foreign_spi", "neorv32_spi", "own", (cores / "neorv32").glob("*.vhd"),
               "LIBRARY=neorv32", "PARAM:IO_SPI_FIFO=4", *SPI_PORTS)

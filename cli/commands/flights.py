@@ -46,10 +46,9 @@ def simulator(values, build, held, options, ground):
     """Starts the simulator, with the ground's program as its child. The simulator replaces words
     such as {out}."""
     flight.write(values, build)
-    return start([
-        build / "testbench/sim/icesoc-sim", "--flight",
-        Path(values.out) / "flight.json", *options, "--", "/usr/bin/python3", *ground], pass_fds=[
-            held], env={"PROBE": values.probe})
+    return start([build / "testbench/sim/icesoc-sim", "--flight", Path(values.out) / "flight.json",
+                  *options, "--", "/usr/bin/python3", *ground], pass_fds=[held],
+                 env={"PROBE": values.probe})
 
 
 def minimal(values, build, held):
@@ -69,9 +68,8 @@ def update(values, build, held):
     keys.rescue(build.folder)
     signing = keys.folder() / "update.key"  # private, made at first use
     if not (out / "flash.bin").exists():
-        run([
-            pack, "vehicle", build / "firmware/loader.elf",
-            flight.firmware(values, build), 1, signing, out / "flash.bin"])
+        run([pack, "vehicle", build / "firmware/loader.elf", flight.firmware(values, build), 1,
+             signing, out / "flash.bin"])
     if not (out / "fpga.bin").exists():  # a stand-in for ISE's golden bitstream
         run([build / "testbench/cpu/stand_in_bitstream", out / "golden.bin", 1, 10000])
         run([pack, "fpga", out / "golden.bin", 1, signing, out / "fpga.bin"])
@@ -90,9 +88,8 @@ def update(values, build, held):
 def mission(values, build, held):
     """Flies the mission of the README, with its page."""
     out, status_file = Path(values.out), Path(values.out) / "status"
-    page = [
-        "/usr/bin/python3", "testbench/live/live.py", "--dir", out, "--port", values.port,
-        "--registers", build / "gen/registers.list"]
+    page = ["/usr/bin/python3", "testbench/live/live.py", "--dir", out, "--port", values.port,
+            "--registers", build / "gen/registers.list"]
 
     def flown():
         return status_file.stat().st_ctime_ns if status_file.exists() else None
@@ -192,9 +189,8 @@ def gdb(values):
     flown = ["--replay", values.replay] if values.replay else [
         "--cpu", "m3", "--image", values.image, "--size", values.size, "--seed", values.seed]
     with tempfile.TemporaryFile("w+") as log:
-        sim = start([
-            build / "testbench/sim/icesoc-sim", "--gdb", 0, "--speed", "max", "--out", out, *flown],
-                    stdout=log, stderr=log)
+        sim = start([build / "testbench/sim/icesoc-sim", "--gdb", 0, "--speed", "max", "--out", out,
+                     *flown], stdout=log, stderr=log)
         try:
 
             def text():
@@ -207,9 +203,8 @@ def gdb(values):
             if not port:
                 raise Stop(status=wait(sim) or 1)
             signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is GDB's: it stops the processor
-            words = [
-                "gdb-multiarch", "-q", build / "firmware/uav.elf", "-ex",
-                "set remotetimeout unlimited", "-ex", f"target remote 127.0.0.1:{port[1]}"]
+            words = ["gdb-multiarch", "-q", build / "firmware/uav.elf", "-ex",
+                     "set remotetimeout unlimited", "-ex", f"target remote 127.0.0.1:{port[1]}"]
             return run(words, check=False,
                        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
         finally:

@@ -68,9 +68,8 @@ def told(row):
 def empty_machine(root, release):
     shutil.rmtree(root, ignore_errors=True)
     root.parent.mkdir(parents=True, exist_ok=True)
-    run([
-        "debootstrap", "--variant=minbase", "--include=git,make,ca-certificates", release, root,
-        MIRROR], stdout=open(f"{root}-debootstrap.log", "w"))
+    run(["debootstrap", "--variant=minbase", "--include=git,make,ca-certificates", release, root,
+         MIRROR], stdout=open(f"{root}-debootstrap.log", "w"))
     (root / "etc/apt/sources.list").write_text("".join(
         f"deb {MIRROR} {suite} main\n" for suite in (release, f"{release}-updates")))
     # How this machine reaches its network: name servers, proxies, certificates.
@@ -97,11 +96,10 @@ def do(root, release, step):
     kept = {name: value for name, value in os.environ.items() if name.lower().endswith("_proxy")}
     begun = time.monotonic()
     with open(log, "w") as file:
-        status = run([
-            "unshare", "--mount", "--pid", "--fork", "--kill-child", "env", "-i",
-            *(f"{name}={value}"
-              for name, value in (kept | place).items()), "sh", "-c", BOOT, "sh", root, step],
-                     check=False, stdin=subprocess.DEVNULL, stdout=file, stderr=file)
+        status = run(["unshare", "--mount", "--pid", "--fork", "--kill-child", "env", "-i",
+                      *(f"{name}={value}" for name, value in (kept | place).items()), "sh", "-c",
+                      BOOT, "sh", root, step], check=False, stdin=subprocess.DEVNULL, stdout=file,
+                     stderr=file)
     row = {
         "release": release, "step": step, "status": status,
         "minutes": round((time.monotonic() - begun) / 60, 1), "commit": output([

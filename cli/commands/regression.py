@@ -25,9 +25,8 @@ def at_once(values):
 
 def selection(values, *more):
     """Options of the regression tool that choose tests."""
-    return [
-        word for name in ("name", "label", *more) if getattr(values, name)
-        for word in (f"--{name}", getattr(values, name))]
+    return [word for name in ("name", "label", *more) if getattr(values, name)
+            for word in (f"--{name}", getattr(values, name))]
 
 
 @command("test", [LABEL, NAME, SEED, FRESH, TESTS, UCOS2, BUILD, JOBS], make="test",
@@ -42,9 +41,8 @@ def test(values):
         build.ninja()
     elif not values.built:
         build.ninja("regress")
-        run([
-            build / "tests/regress/regress", "--prepare", "--build", build.folder,
-            *selection(values)])
+        run([build / "tests/regress/regress", "--prepare", "--build", build.folder,
+             *selection(values)])
     chosen = [
         *(["-L", values.label] if values.label else []),
         *(["-R", values.name] if values.name else []),
@@ -73,11 +71,10 @@ def regress(values):
     switches = [
         f"--{word}" for word, on in (("changed", values.changed), ("rerun-failed", values.failed),
                                      ("kept", values.kept)) if on]
-    return run([
-        build / "tests/regress/regress", "--make", "--build", build.folder, "--jobs",
-        at_once(values), "--seed", values.seed, "--repeat", values.repeat, "--waves", values.waves,
-        *selection(values, "block"), *switches], check=False, env={
-            "FRESH": "1" if values.fresh else ""})
+    return run([build / "tests/regress/regress", "--make", "--build", build.folder, "--jobs",
+                at_once(values), "--seed", values.seed, "--repeat", values.repeat, "--waves",
+                values.waves, *selection(values, "block"), *switches], check=False,
+               env={"FRESH": "1" if values.fresh else ""})
 
 
 def last_good(test):
@@ -85,9 +82,8 @@ def last_good(test):
     committed."""
     history = Path("build/regress/history.jsonl")
     runs = map(json.loads, history.read_text().splitlines() if history.exists() else [])
-    good = [
-        each["commit"] for each in runs
-        if each["tests"].get(test, [""])[0] == "p" and "dirty" not in each["commit"]]
+    good = [each["commit"] for each in runs if each["tests"].get(test, [""])[0] == "p"
+            and "dirty" not in each["commit"]]
     if not good:
         raise Stop(f"no run that is noted passed {test} at a commit: GOOD= names one (--good)", 2)
     return good[-1]
@@ -177,9 +173,8 @@ def nightly(values):
     # COMPARE_MS: test_quiet compares a second; FUZZ: times as many inputs of fuzzers; HOSTILE:
     # packets of test_link.
     long = {"FRESH": "1", "FUZZ": "10", "COMPARE_MS": "1000", "HOSTILE": "10000000"}
-    tool = [
-        build / "tests/regress/regress", "--build", build.folder, "--jobs", tests, "--waves",
-        values.waves, *selection(values)]
+    tool = [build / "tests/regress/regress", "--build", build.folder, "--jobs", tests, "--waves",
+            values.waves, *selection(values)]
 
     def regression(*words):
         return run([*tool, *words], check=False, env=long)
@@ -189,9 +184,8 @@ def nightly(values):
 
     def whole(lines):
         day = time.strftime("%Y%m%d")
-        return max([
-            run([sys.executable, "icesoc", *shlex.split(line.format(day=day))], check=False,
-                env=long) for line in lines])
+        return max([run([sys.executable, "icesoc", *shlex.split(line.format(day=day))], check=False,
+                        env=long) for line in lines])
 
     steps = {
         "kept": lambda: regression("--kept"),

@@ -21,9 +21,8 @@ def with_name(option, names):
 
 
 def utilisation(build, values, *words):
-    return run(
-        [build / "synth/utilisation", "--generated", build / "gen", "--jobs", values.jobs, *words],
-        check=False)
+    return run([build / "synth/utilisation", "--generated", build / "gen", "--jobs", values.jobs,
+                *words], check=False)
 
 
 @command("synth report", [

@@ -96,11 +96,10 @@ def manual():
         return "".join(
             f"\\&{line}\n" for line in text.replace("\\", "\\e").replace("-", "\\-").splitlines())
 
-    parts = [
-        f'.TH ICESOC 1 "" "{version.text().partition(chr(10))[0]}"', ".SH NAME",
-        "icesoc \\- every command of the IceSoC project", ".SH SYNOPSIS",
-        "\\&./icesoc COMMAND [option...]", ".SH COMMANDS", ".nf",
-        plain(doors.overview()) + ".fi"]
+    parts = [f'.TH ICESOC 1 "" "{version.text().partition(chr(10))[0]}"', ".SH NAME",
+             "icesoc \\- every command of the IceSoC project", ".SH SYNOPSIS",
+             "\\&./icesoc COMMAND [option...]", ".SH COMMANDS", ".nf",
+             plain(doors.overview()) + ".fi"]
     for name, each in COMMANDS.items():
         parts += [f'.SH "{name.upper()}"', ".nf", plain(each.parser().format_help()) + ".fi"]
     return "\n".join(parts) + "\n"

@@ -25,10 +25,9 @@ from cli.options import FLIGHT, SWITCH  # noqa: E402
 def clean(**more):
     """An environment without a variable of any option, or of the make that runs the tests."""
     ours = {option.variable for each in command.COMMANDS.values() for option in each.options}
-    kept = {
-        name: value
-        for name, value in os.environ.items()
-        if name not in ours | {"MAKEFLAGS", "MFLAGS", "MAKELEVEL"}}
+    kept = {name: value for name, value in os.environ.items() if name not in ours | {"MAKEFLAGS",
+                                                                                     "MFLAGS",
+                                                                                     "MAKELEVEL"}}
     return {**kept, **more}
 
 
@@ -82,17 +81,14 @@ class Values(Work):
         self.assertIn(f"'{odd}' is not a core", ask("./icesoc", "core", "remove", odd)[1])
 
     def test_both_doors_give_the_same_values(self):
-        samples = {
-            "N": "3", "VALUE": "a", "FOLDER": "x", "WxH": "96x64", "TIME": "60s",
-            "N|random": "random", "WORD": "a b"}
+        samples = {"N": "3", "VALUE": "a", "FOLDER": "x", "WxH": "96x64", "TIME": "60s",
+                   "N|random": "random", "WORD": "a b"}
         for each in command.COMMANDS.values():
             if not each.make:
                 continue
-            options = [
-                o for o in each.options
-                if o.listed and o.kind is not SWITCH and o.kind.metavar in samples
-                and not o.positional and o.kind is not FLIGHT and o.name not in ("loss",
-                                                                                 "interference")]
+            options = [o for o in each.options if o.listed and o.kind is not SWITCH
+                       and o.kind.metavar in samples and not o.positional and o.kind is not FLIGHT
+                       and o.name not in ("loss", "interference")]
             words = [
                 word for o in options for word in (f"--{o.name}", *samples[o.kind.metavar].split())]
             given = each.values(vars(each.parser().parse_args(words)), None, os.getcwd())
@@ -171,9 +167,8 @@ class Mistakes(Work):
         self.script("tree/cmake/setup.sh", "echo set up\n")
         for wrong in ("LOSS=7", "SIZE=1x1", "IMAGE=none", "SEED=-1", "CORES=nobody",
                       "PROBE=u_fir.sent=1", "APP=minimal", "THRESHOLD=300"):
-            self.assertNotIn(
-                "set up",
-                ask("make", "-s", "run", wrong, ICESOC_TREE=str(self.work / "tree"))[1], wrong)
+            self.assertNotIn("set up", ask("make", "-s", "run", wrong,
+                                           ICESOC_TREE=str(self.work / "tree"))[1], wrong)
 
     def test_where_one_may_not_write_what_to_do_is_said(self):
         theirs = self.work / "theirs"
@@ -190,9 +185,8 @@ class Mistakes(Work):
         words = [*other, "./icesoc", "build", "configure", "--build"]
         tree = {"ICESOC_TREE": str(self.work / "tree"), "PYTHONDONTWRITEBYTECODE": "1"}
         self.assertIn(f"you may not write in {theirs}", ask(*words, str(theirs), **tree)[1])
-        self.assertIn(
-            "XDG_CACHE_HOME",
-            ask(*words, str(self.work / "mine"), HOME=str(theirs), XDG_CACHE_HOME="", **tree)[1])
+        self.assertIn("XDG_CACHE_HOME", ask(*words, str(self.work / "mine"), HOME=str(theirs),
+                                            XDG_CACHE_HOME="", **tree)[1])
 
     def test_a_missing_program_and_a_full_disk_are_told(self):
         (self.work / "bin").mkdir()
@@ -296,10 +290,8 @@ class Lists(unittest.TestCase):
             for before, verb, after in re.findall(
                     rf"\bmake ((?:{value} )*)([a-z][a-z-]*)((?:[ \n]+\[?{value})*)", quoted):
                 self.assertIn(verb, verbs, page.name)
-                known = {
-                    o.variable
-                    for each in command.COMMANDS.values() if each.make == verb
-                    for o in each.options}
+                known = {o.variable for each in command.COMMANDS.values() if each.make == verb
+                         for o in each.options}
                 self.assertLessEqual(
                     set(re.findall(r"(?<![\w$])([A-Z][A-Z0-9_]*)=", before + after)), known,
                     f"{page.name}: make {verb}")
@@ -308,17 +300,14 @@ class Lists(unittest.TestCase):
 
     def test_the_schema_is_that_of_the_options_and_holds_a_flight(self):
         self.assertEqual((TREE / "cli/flight.schema.json").read_text(), flight.schema_text())
-        good = {
-            "version": 1, **{
-                o.field: rule["default"]
-                for o in flight.FIELDS if (rule := flight.schema()["properties"][o.field])}}
+        good = {"version": 1, **{o.field: rule["default"] for o in flight.FIELDS
+                                 if (rule := flight.schema()["properties"][o.field])}}
         self.assertIsNone(flight.wrong(good))
         for change in ({"loss": 2}, {"loss": "0"}, {"cpu": "z80"}, {"cores": "fir"}, {
                 "version": 2}, {"more": 1}, {"open": 1}):
             self.assertTrue(flight.wrong({**good, **change}), change)
-        self.assertIn("'seed' is missing",
-                      flight.wrong({name: value
-                                    for name, value in good.items() if name != "seed"}))
+        self.assertIn("'seed' is missing", flight.wrong({name: value for name, value in good.items()
+                                                         if name != "seed"}))
 
     def test_a_recording_that_is_cut_has_no_span(self):
         with tempfile.TemporaryDirectory() as work:

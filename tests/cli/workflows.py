@@ -86,10 +86,8 @@ class Cases(Script):
             for junit in tree.glob("build/main/junit*.xml"):
                 junit.unlink()
             for command in commands[-2:]:
-                ours = {
-                    name: value
-                    for name, value in os.environ.items()
-                    if name not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL")}
+                ours = {name: value for name, value in os.environ.items()
+                        if name not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL")}
                 self.ask("sh", "-c", command, cwd=tree, env={
                     **ours, "BUILT": "1", "SIZE": "96x64", **environment})
             for path in kept:

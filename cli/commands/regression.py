@@ -82,8 +82,8 @@ def last_good(test):
     committed."""
     history = Path("build/regress/history.jsonl")
     runs = map(json.loads, history.read_text().splitlines() if history.exists() else [])
-    good = [each["commit"] for each in runs if each["tests"].get(test, [""])[0] == "p"
-            and "dirty" not in each["commit"]]
+    good = [each["commit"] for each in runs if "dirty" not in each["commit"]
+            and {end[1] for end in each.get("ends", []) if end[0] == test} == {"p"}]
     if not good:
         raise Stop(f"no run that is noted passed {test} at a commit: GOOD= names one (--good)", 2)
     return good[-1]
@@ -167,8 +167,7 @@ def nightly(values):
     """what a timer runs: seeds that have failed, fresh seeds, ZeroC's own suites, the long form of
     every command
 
-    Failing seeds stay in build/regress/seeds.jsonl until their tests pass with them. Writes a table
-    of the steps, build/nightly.md."""
+    Writes a table of the steps, build/nightly.md."""
     build, tests = BuildFolder(values.build, values), at_once(values)
     # COMPARE_MS: test_quiet compares a second; FUZZ: times as many inputs of fuzzers; HOSTILE:
     # packets of test_link.

@@ -25,10 +25,8 @@ from cli.options import FLIGHT, SWITCH  # noqa: E402
 def clean(**more):
     """An environment without a variable of any option, or of the make that runs the tests."""
     ours = {option.variable for each in command.COMMANDS.values() for option in each.options}
-    kept = {name: value for name, value in os.environ.items() if name not in ours | {"MAKEFLAGS",
-                                                                                     "MFLAGS",
-                                                                                     "MAKELEVEL"}}
-    return {**kept, **more}
+    ours |= {"MAKEFLAGS", "MFLAGS", "MAKELEVEL"}
+    return {**{name: value for name, value in os.environ.items() if name not in ours}, **more}
 
 
 def ask(*words, **environment):

@@ -100,7 +100,7 @@ class Changes:
         files = self.of_test(test, since) or self.differing(since)
         text = "the commit; it is not known to have passed" if not end else \
             f"it passed at {commit}" + (
-                f" with SEED={end[3]}" if end[3:] not in ([], [seed]) else "")
+                f" with SEED={end[3]}" if end[3] != seed else "")
         if not files:
             return f"nothing has changed since {text}"
         told = [path + (f":{first} ({lines} line{'s' * (lines != 1)})" if first else "")

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""history: keeps the results of each run, a line of JSON a run, in history.jsonl, and in
-seeds.jsonl the seeds that made tests fail, until the tests pass with them."""
+"""history: keeps the results of each run, a line of JSON a run, in history.jsonl."""
 import collections
 import json
 import time
@@ -10,31 +9,24 @@ from tool import write
 KEPT_RUNS = 300
 
 
-def lines_of(path, *keys):
-    """The objects of a file, and the number of its damaged lines."""
-    found, damaged = [], 0
-    for line in path.read_text(errors="replace").splitlines() if path.exists() else []:
-        try:
-            found.append(json.loads(line))
-            [found[-1][key] for key in keys]
-        except (ValueError, KeyError, TypeError):
-            found = [each for each in found if isinstance(each, dict) and keys[0] in each]
-            damaged += 1
-    return found, damaged
-
-
 class History:
-    """A run's `tests` are {name: [how, seconds, print, seed]}, how: "p", "f" or "s"."""
+    """A run's `ends` are [name, how, seconds, print, seed] of each test and seed, failures last;
+    how: "p", "f" or "s"."""
 
     def __init__(self, path):
-        self.path = path
-        self.runs, self.damaged = lines_of(path, "tests")
+        self.path, self.runs, self.damaged = path, [], 0
+        for line in path.read_text(errors="replace").splitlines() if path.exists() else []:
+            try:
+                run = json.loads(line)
+                self.runs += [run] if run["ends"] else []
+            except (ValueError, KeyError, TypeError):
+                self.damaged += 1
         self._index()
 
     def _index(self):
         self.ends = collections.defaultdict(list)  # of a test, the newest last: (end, run)
         for run in self.runs:
-            for name, end in run["tests"].items():
+            for name, *end in run["ends"]:
                 self.ends[name].append((end, run))
 
     def add(self, run):
@@ -76,52 +68,27 @@ class History:
             names += [name] * any({"p", "f"} <= each for each in how.values())
         return names
 
+    def failing(self):
+        """The seeds with which tests have failed and have not passed since: {(test, seed): {"test",
+        "seed", "since" (seconds, Unix), "commit", "times" (how often it failed)}}."""
+        found = {}
+        for run in self.runs:
+            for name, how, _, _, seed in run["ends"]:
+                if how == "p":
+                    found.pop((name, seed), None)
+                elif how == "f":
+                    entry = found.setdefault((name, seed), {
+                        "test": name, "seed": seed, "since": run["time"], "commit": run["commit"],
+                        "times": 0})
+                    entry["times"] += 1
+        return dict(sorted(found.items()))
+
 
 def make_run(tests, results, commit, seconds):
     prints = {test.name: test.print for test in tests}
-    ends, counts = {}, {"passed": 0, "failed": 0, "skipped": 0}
-    for result in results:
+    ends, counts = [], {"passed": 0, "failed": 0, "skipped": 0}
+    for result in sorted(results, key=lambda result: result.status == "failed"):
         counts[result.status] += 1
-        if ends.get(result.name, "p")[0] != "f":  # repeated: one failure counts
-            ends[result.name] = [result.status[0], result.seconds, prints.get(result.name, ""),
-                                 result.seed]
-    return {"time": int(time.time()), "commit": commit, "seconds": seconds, "tests": ends, **counts}
-
-
-class FailingSeeds:
-    """[{"test", "seed", "since" (seconds, Unix), "commit", "times" (how often it failed)}]"""
-
-    def __init__(self, path):
-        self.path = path
-        entries, _ = lines_of(path, "test", "seed", "times")
-        self.kept = {(each["test"], each["seed"]): each for each in entries}
-
-    def forget_others(self, tests):
-        """Drops tests that are not in the list any more; returns their names."""
-        names = {test.name for test in tests}
-        gone = sorted({test for test, _ in self.kept if test not in names})
-        self.kept = {key: each for key, each in self.kept.items() if key[0] in names}
-        return gone
-
-    def update(self, results, commit):
-        """Adds failures, drops tests that passed with their seed, and writes the file anew."""
-        for result in results:
-            key = (result.name, result.seed)
-            if result.status == "passed":
-                self.kept.pop(key, None)
-            elif result.status == "failed":
-                entry = self.kept.setdefault(key, {
-                    "commit": commit, "seed": result.seed, "since": int(time.time()),
-                    "test": result.name, "times": 0})
-                entry["times"] += 1
-        write(self.path, "".join(json.dumps(each, separators=(",", ":"), sort_keys=True) + "\n"
-                                 for each in self.list()))
-
-    def list(self):
-        return [self.kept[key] for key in sorted(self.kept)]
-
-    def rounds(self, chosen):
-        """(seed, tests) of each seed that made one of these tests fail."""
-        for seed in sorted({seed for _, seed in self.kept}):
-            if tests := [test for test in chosen if (test.name, seed) in self.kept]:
-                yield seed, tests
+        ends.append([result.name, result.status[0], result.seconds, prints.get(result.name, ""),
+                     result.seed])
+    return {"time": int(time.time()), "commit": commit, "seconds": seconds, "ends": ends, **counts}

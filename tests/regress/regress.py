@@ -15,7 +15,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "testbench/
 import tool
 from changes import Changes
 from failures import examine
-from history import FailingSeeds, History, make_run
+from history import History, make_run
 from lights import text_of
 from report import gather, write_reports
 from runner import run_tests, write_junit
@@ -173,18 +173,19 @@ class Regression:
         if o.list:
             print("\n".join(test.name for test in chosen))
             return 0
-        seeds = FailingSeeds(o.out / "seeds.jsonl")
-        for gone in seeds.forget_others(tests):
-            print(f"{gone} is no test any more: its seeds are forgotten")
         first = random.getrandbits(32) if o.seed == "random" else int(o.seed)
-        rounds = list(seeds.rounds(chosen)) if o.kept else [
-            (str(first + i), chosen) for i in range(o.repeat)]
+        rounds = [(str(first + i), chosen) for i in range(o.repeat)]
+        if o.kept:
+            failing = history.failing()
+            rounds = [(seed, [test for test in chosen if (test.name, seed) in failing])
+                      for seed in sorted({seed for _, seed in failing})]
+        rounds = [each for each in rounds if each[1]]
         if not rounds:
             print("Nothing to run: no seed is kept that made one of these tests fail.")
             return 0
-        return self._run_rounds(rounds, chosen, tests, seeds)
+        return self._run_rounds(rounds, chosen, tests)
 
-    def _run_rounds(self, rounds, chosen, tests, seeds):
+    def _run_rounds(self, rounds, chosen, tests):
         o, history = self.options, self.history
         changes, start = self.changes or self._changes(), time.monotonic()
         begin = datetime.datetime.now().astimezone().isoformat(timespec="seconds")
@@ -209,9 +210,8 @@ class Regression:
         history.add({**make_run(chosen, results, commit, time.monotonic() - start),
                      "subject": "" if subject[0] else subject[1].strip(), "tree": changes.tree,
                      "reasons": list(reversed(reasons.values()))[:5]})
-        seeds.update(results, commit)
         add_waves(failures, known, o.source, o.build, o.jobs, o.waves)
-        data = gather(history, tests, results, failures, o.source, seeds)
+        data = gather(history, tests, results, failures, o.source)
         summary(data, failures, o.out)
         write_junit(o.out / "junit.xml", results, failures, begin, commit)
         write_reports(data, failures, o.build / "page", o.out)

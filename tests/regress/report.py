@@ -46,11 +46,12 @@ def measurements(build):
     return data
 
 
-def gather(history, tests, results, failures, source, seeds):
+def gather(history, tests, results, failures, source):
     data = {**history.runs[-1], **measurements(source / "build"), "flaky": history.flaky(),
-            "seeds": seeds.list(), "proofs": proofs_of(results)}
-    del data["tests"]
+            "proofs": proofs_of(results)}
+    del data["ends"]
     known = {test.name: test for test in tests}
+    data["seeds"] = [each for each in history.failing().values() if each["test"] in known]
     data["results"] = []
     for r in results:
         test = known.get(r.name)

@@ -20,11 +20,6 @@ Ice_Status Graph_Maker_echo(Graph_MakerPtr, Ice_String text, Ice_String* result,
     *result = text;
     return ICE_OK;
 }
-Ice_Status Graph_Maker_echoAll(Graph_MakerPtr, const Graph_Texts* texts, Graph_Texts* result,
-                               const Ice_Current*) {
-    *result = *texts;
-    return ICE_OK;
-}
 Ice_Status Graph_Maker_make(Graph_MakerPtr, Graph_Node* a, Ice_Value*, Graph_Node** result,
                             Graph_Maker_make_Exception* ex, const Ice_Current*) {
     *result = a;
@@ -256,9 +251,8 @@ TEST_F(Tasks, MayCallTheirOwnProgramsObjects) {
 // next call finds the connection.
 TEST_F(Tasks, TryEachAddressOfAName) {
     Ice_ObjectPrx prx = proxy("thing", "twofold.test");
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < 3; ++i)
         EXPECT_EQ(ask(prx, "now", 4), 8);
-    }
     int open = 0;
     for (const TcpEndpoint_Connection& c : client_->tcp.connections)
         open += c.fd >= 0;
@@ -294,9 +288,7 @@ private:
         int wrong = 0;
         for (int i = 0; i < calls; ++i) {
             std::string mine = std::string(20, static_cast<char>('a' + task)) + std::to_string(i);
-            wrong += !(i % 3 == 0   ? string(prx, mine)
-                       : i % 3 == 1 ? sequence(prx, mine)
-                                    : instance(prx, mine, i));
+            wrong += !(i % 3 == 0 ? string(prx, mine) : instance(prx, mine, i));
         }
         EXPECT_EQ(wrong, 0);
     }
@@ -305,14 +297,6 @@ private:
         Ice_Status status = Graph_MakerPrx_echo(&prx, text(mine.c_str()), &result);
         awaitOthers();
         return status == ICE_OK && str(result) == mine;
-    }
-    bool sequence(Graph_MakerPrx& prx, const std::string& mine) {
-        Ice_String each[] = {text(mine.c_str()), text("and"), text(mine.c_str())};
-        Graph_Texts sent = {3, each}, result;
-        Ice_Status status = Graph_MakerPrx_echoAll(&prx, &sent, &result);
-        awaitOthers();
-        return status == ICE_OK && result.size == 3 && str(result.data[0]) == mine &&
-               str(result.data[1]) == "and" && str(result.data[2]) == mine;
     }
     // Two instances, or, of an odd number, an exception that holds them.
     bool instance(Graph_MakerPrx& prx, const std::string& mine, int number) {
@@ -340,10 +324,6 @@ private:
     Graph_Maker maker_;
     std::atomic<int> made_{0};
 };
-
-TEST_F(Results, AreTheirTasksOfTwo) {
-    fromThreads(2);
-}
 
 TEST_F(Results, AreTheirTasksOfFour) {
     fromThreads(4);

@@ -39,7 +39,7 @@ libcli11-dev command lines
 libsodium-dev signatures of firmware (Ed25519)
 liblz4-dev unpacks firmware that comes by radio
 python3-lz4 packs it
-libssl-dev AES of the modem model, checksums of Slice
+libssl-dev AES of the modem model
 openssl certificates of the gateway and its clients
 git finds what changed
 libstb-dev reads and writes pictures

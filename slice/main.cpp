@@ -22,8 +22,8 @@ struct Options {
     std::vector<std::string> files, includes, defines, undefines;
     std::string outputDir = ".", includeDir, headerExtension = "h", sourceExtension = "c",
                 dependFile, hwVerilog, hwVhdl, hwRegisters, hwC, hwCpp, hwNewVerilog, hwNewVhdl;
-    bool oneProgram = false, preprocessOnly = false, depend = false, dependXml = false,
-         validate = false, checksums = false, hwOwnClock = false;
+    bool oneProgram = false, preprocessOnly = false, depend = false, validate = false,
+         hwOwnClock = false;
     NameRules rules;
 };
 
@@ -81,7 +81,6 @@ CFileNames namesFor(const std::string& file, const Options& o, const Preprocesse
     names.headerExtension = o.headerExtension;
     names.sourceExtension = o.sourceExtension;
     names.includeDir = o.includeDir;
-    names.checksums = o.checksums;
     for (const std::string& included : p.includes)
         names.includes.push_back(headerOf(included, file, o.includes, o.headerExtension));
     return names;
@@ -161,7 +160,7 @@ bool compile(const std::string& file, const Options& o, Dependencies& dependenci
         return print(p.text);
     CFileNames names = namesFor(file, o, p);
     std::vector<std::string> limits = limitFiles(p.files);
-    if (o.depend || o.dependXml) {
+    if (o.depend) {
         p.files.insert(p.files.end(), limits.begin(), limits.end());
         dependencies.add(file, names, p.files);
         return true;
@@ -210,9 +209,7 @@ void describe(CLI::App& app, Options& o) {
     app.add_option("--hw-new-verilog", o.hwNewVerilog,
                    "folder for a core to begin with, in Verilog, and its test");
     app.add_option("--hw-new-vhdl", o.hwNewVhdl, "the same in VHDL");
-    app.add_flag("--checksum", o.checksums, "a table of the definitions' checksums, too");
     app.add_flag("--depend", o.depend, "print make dependencies, generate nothing");
-    app.add_flag("--depend-xml", o.dependXml, "print dependencies as XML, generate nothing");
     app.add_option("--depend-file", o.dependFile, "write dependencies to this file");
     app.add_flag("--one-program", o.oneProgram,
                  "generate nothing; say where two of the files define one name of C");
@@ -238,15 +235,14 @@ int main(int argc, char** argv) {
     }
     if (o.validate)
         return 0;
-    if (!o.dependFile.empty() && !o.dependXml)
-        o.depend = true;
+    o.depend = o.depend || !o.dependFile.empty();
     Dependencies dependencies;
     Program program;
     int failures = 0;
     for (const std::string& file : o.files)
         failures += !compile(file, o, dependencies, program);
-    if ((o.depend || o.dependXml) && failures == 0) {
-        std::string text = dependencies.text(o.dependXml);
+    if (o.depend && failures == 0) {
+        std::string text = dependencies.text();
         failures += !(o.dependFile.empty() ? print(text) : write(o.dependFile, text));
     }
     return failures ? 1 : 0;

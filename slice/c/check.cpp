@@ -198,8 +198,7 @@ void scopeEnumerators(Unit& unit) {
 
 void checkC(const Unit& unit, const CFileNames& files, Diagnostics& diagnostics) {
     CNames names(unit, diagnostics);
-    for (const char* own : {"_ice_valueTypes", "_sliceChecksums"})
-        names.add(cFileName(files, own), files.base + own, {});
+    names.add(cFileName(files, "_ice_valueTypes"), files.base + "_ice_valueTypes", {});
     for (const auto& d : unit.declarations)
         if (!d->isLocal)
             names.add(*d);

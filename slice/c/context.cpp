@@ -26,10 +26,6 @@ std::string CContext::valueTable() const {
     return cFileName(names, "_ice_valueTypes");
 }
 
-std::string CContext::checksumTable() const {
-    return cFileName(names, "_sliceChecksums");
-}
-
 bool CContext::usesClasses() const {
     for (const auto& d : unit.declarations) {
         if (d->isLocal)

@@ -18,8 +18,6 @@ struct CContext {
     std::string header() const;
     // The name of the table of classes that this unit knows, and so can receive.
     std::string valueTable() const;
-    // The name of the table of checksums.
-    std::string checksumTable() const;
     bool usesClasses() const;
     Writer begin(const std::string& what) const;
     Writer beginSource(const std::string& what) const;
@@ -71,9 +69,5 @@ std::vector<Slot> memberSlots(const Declaration& d);
 void writeWithValues(Writer& w, const std::vector<Slot>& slots, const std::string& table);
 void readWithValues(Writer& w, const CContext& c, const std::vector<Slot>& slots,
                     const std::string& table);
-
-// The checksums of the main file's definitions, except local ones, by type id, as ZeroC's compilers
-// make them: programs compare them to find out whether they were compiled from the same Slice.
-std::map<std::string, std::string> checksums(const Unit& unit);
 
 #endif

@@ -182,12 +182,5 @@ std::string typesFile(const CContext& c) {
     });
     if (c.usesClasses())
         valueTypeTable(w, c);
-    if (c.names.checksums) {
-        w.blank();
-        w.line("const Ice_SliceChecksum " + c.checksumTable() + "[] = {");
-        for (const auto& [id, checksum] : checksums(c.unit))
-            w.line("    {\"" + id + "\", \"" + checksum + "\"},");
-        w.line("    {0, 0}};");
-    }
     return w.text();
 }

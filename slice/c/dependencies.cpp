@@ -43,18 +43,9 @@ void Dependencies::add(const std::string& file, const CFileNames& names,
             entries_.back().dependsOn.push_back(shown(f));
 }
 
-std::string Dependencies::text(bool xml) const {
+std::string Dependencies::text() const {
     std::ostringstream out;
-    if (xml)
-        out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<dependencies>\n";
     for (const Entry& e : entries_) {
-        if (xml) {
-            out << "  <source name=\"" << e.file << "\">\n";
-            for (const std::string& d : e.dependsOn)
-                out << "    <dependsOn name=\"" << d << "\"/>\n";
-            out << "  </source>\n";
-            continue;
-        }
         const std::string& base = e.names.base;
         out << base << '.' << e.names.headerExtension;
         for (const char* part : {"_types", "_client", "_async", "_server"})
@@ -64,7 +55,5 @@ std::string Dependencies::text(bool xml) const {
             out << " \\\n " << d;
         out << '\n';
     }
-    if (xml)
-        out << "</dependencies>\n";
     return out.str();
 }

@@ -19,8 +19,8 @@ public:
     // `files`: the Slice file itself and all files that it includes.
     void add(const std::string& file, const CFileNames& names,
              const std::vector<std::string>& files);
-    // The dependencies as rules for make, or as XML in the format of Ice's compilers.
-    std::string text(bool xml) const;
+    // The dependencies as rules for make.
+    std::string text() const;
 
 private:
     struct Entry {

@@ -16,7 +16,6 @@ struct CFileNames {
     std::string sourceExtension = "c";
     std::string path;                  // "folder/Printer.h": the header, as others include it
     std::string includeDir;            // before the header's name in the sources, may be empty
-    bool checksums = false;            // with a table of checksums
     std::vector<std::string> includes; // headers of the Slice files that the main file includes
 };
 

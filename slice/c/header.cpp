@@ -349,11 +349,6 @@ std::string headerFile(const CContext& c) {
         w.line("/* The classes that can be received; 0 ends. */");
         w.line("extern const Ice_ValueType *const " + c.valueTable() + "[];");
     }
-    if (c.names.checksums) {
-        w.blank();
-        w.line("/* Of this file's definitions; an id of 0 ends. */");
-        w.line("extern const Ice_SliceChecksum " + c.checksumTable() + "[];");
-    }
     c.each(DKind::Interface, [&](const Declaration& d) { declareInterface(w, c, d); });
     w.blank();
     w.line("#ifdef __cplusplus");

@@ -44,7 +44,6 @@ struct Literal {
     Kind kind = Kind::None;
     int64_t integer = 0; // Bool, Integer; Enumerator: its value
     double floating = 0; // Floating
-    std::string written; // String, Enumerator: for checksums
     std::string text;    // Floating as written; String as bytes of UTF-8; Enumerator's name
     const Declaration* owner = nullptr; // Enumerator's enum
 };

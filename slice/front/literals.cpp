@@ -37,7 +37,7 @@ public:
     StringReader(const Token& token, Diagnostics& diagnostics)
         : text_(token.text), at_(token.at), diagnostics_(diagnostics) {}
 
-    std::string run(std::string* written) {
+    std::string run() {
         while (position_ < text_.size()) {
             char c = text_[position_++];
             if (c == '\\' && position_ < text_.size())
@@ -45,18 +45,12 @@ public:
             else if (static_cast<unsigned char>(c) < 32 || c == 127)
                 error("a string holds printable characters only; write an escape sequence");
             else
-                put(c);
+                value_ += c;
         }
-        if (written)
-            *written = std::move(written_);
         return std::move(value_);
     }
 
 private:
-    void put(char c) {
-        value_ += c;
-        written_ += c;
-    }
     void error(const std::string& text) {
         Location at = at_;
         at.column += static_cast<int>(position_);
@@ -78,24 +72,21 @@ private:
         static const std::string simple = "abfnrtv", replaced = "\a\b\f\n\r\t\v";
         size_t found = simple.find(c), count = 0;
         if (found != std::string::npos) {
-            put(replaced[found]);
-        } else if (c == '\\') {
-            put(c);
-            written_ += c;
-        } else if (c == '"' || c == '\'' || c == '?') {
-            put(c);
+            value_ += replaced[found];
+        } else if (c == '\\' || c == '"' || c == '\'' || c == '?') {
+            value_ += c;
         } else if (c >= '0' && c <= '7') {
             --position_;
             uint32_t v = digits(3, false, count);
             if (v > 255)
                 error("octal escape sequence is above 377");
-            put(static_cast<char>(v));
+            value_ += static_cast<char>(v);
         } else if (c == 'x') {
-            put(static_cast<char>(digits(2, true, count)));
+            value_ += static_cast<char>(digits(2, true, count));
             if (count == 0)
                 error("no digit in a hexadecimal escape sequence");
         } else if (c == 'u' || c == 'U') {
-            size_t wanted = c == 'u' ? 4 : 8, begin = position_ - 2;
+            size_t wanted = c == 'u' ? 4 : 8;
             uint32_t v = digits(wanted, true, count);
             if (count < wanted)
                 error("a universal character name has " + std::to_string(wanted) +
@@ -104,11 +95,9 @@ private:
                 error("no character has this code");
             else
                 appendUtf8(value_, v);
-            written_ += text_.substr(begin, position_ - begin);
         } else {
             diagnostics_.warning(at_, "unknown escape sequence '\\" + std::string(1, c) + "'");
-            put('\\');
-            put(c);
+            value_ += {'\\', c};
         }
     }
 
@@ -116,7 +105,7 @@ private:
     Location at_;
     Diagnostics& diagnostics_;
     size_t position_ = 0;
-    std::string value_, written_;
+    std::string value_;
 };
 
 } // namespace
@@ -157,6 +146,6 @@ double floatingValue(const Token& token, Diagnostics& diagnostics) {
     return v;
 }
 
-std::string stringValue(const Token& token, Diagnostics& diagnostics, std::string* written) {
-    return StringReader(token, diagnostics).run(written);
+std::string stringValue(const Token& token, Diagnostics& diagnostics) {
+    return StringReader(token, diagnostics).run();
 }

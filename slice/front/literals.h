@@ -12,8 +12,7 @@
 // Decimal, 0octal or 0xhex, signed; out of range or malformed is an error, and 0.
 int64_t integerValue(const Token& token, Diagnostics& diagnostics);
 double floatingValue(const Token& token, Diagnostics& diagnostics);
-// Returns the bytes of a string literal, its escapes replaced; \u and \U become UTF-8. `written`
-// (if not 0) gets it in the spelling of Ice's compilers: with \u, \U and \\.
-std::string stringValue(const Token& token, Diagnostics& diagnostics, std::string* written);
+// Returns the bytes of a string literal, its escapes replaced; \u and \U become UTF-8.
+std::string stringValue(const Token& token, Diagnostics& diagnostics);
 
 #endif

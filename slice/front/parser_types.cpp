@@ -209,7 +209,6 @@ Literal Parser::namedLiteral(const Type& type, const std::string& what) {
         v.owner = s->declaration;
         v.text = s->declaration->enumerators[s->enumerator].name;
         v.integer = s->declaration->enumerators[s->enumerator].value;
-        v.written = written;
     } else if (s->kind == Symbol::Kind::Declaration &&
                s->declaration->kind == Declaration::Kind::Constant) {
         v = s->declaration->value;
@@ -231,7 +230,7 @@ Literal Parser::literal(const Type& type, const std::string& what) {
         v.text = token().text;
     } else if (at(Token::Kind::String)) {
         v.kind = Literal::Kind::String;
-        v.text = stringValue(token(), diagnostics_, &v.written);
+        v.text = stringValue(token(), diagnostics_);
     } else if (isWord("true") || isWord("false")) {
         v.kind = Literal::Kind::Bool;
         v.integer = isWord("true");

@@ -37,11 +37,4 @@ Ice_Status Ice_Object_dispatch(const Ice_Interface* interface, const void* table
                                Ice_ObjectPtr self, const Ice_Current* current,
                                Ice_InputStreamPtr is, Ice_OutputStreamPtr os);
 
-/* A definition's checksum (slice2c --checksum), the same as those of Ice's other compilers: peers
- * that tell each other theirs find out whether their Slice is the same. */
-typedef struct Ice_SliceChecksum {
-    const char* id; /* "::M::Thing" */
-    const char* checksum;
-} Ice_SliceChecksum;
-
 #endif

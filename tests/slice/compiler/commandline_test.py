@@ -4,7 +4,6 @@
 
 Usage: commandline_test.py commandline work-folder slice2c
 """
-import re
 import subprocess
 import sys
 from pathlib import Path
@@ -13,7 +12,6 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from script import TREE, Script, edit, fresh, main, write  # noqa: E402
 
 INCLUDES = [f"-I{TREE}/sw/base", f"-I{TREE}/sw/icec"]
-ICE = Path("/usr/share/ice/slice")
 STRICT = ("-std=c90 -pedantic -Wall -Wextra -Wconversion -Wstrict-prototypes -Wmissing-prototypes "
           "-Werror -fsyntax-only").split()
 TREES = {
@@ -71,30 +69,6 @@ module Top {
     "one/other/fir.ice": "module Other { interface Fir { void f(); }; };\n",
     "one/user.ice": "#include <fir.ice>\n"
                     "module Cores { interface User { void f(Bytes b); }; };\n"}
-CHECKSUMS = r"""[["underscore"]]
-module Sums {
-    const int A = -0x10; const float B = 1.50; const double C = 1e30;
-    const string D = "a\t\u00e9\"\x41\\"; const bool E = true; const long F = A;
-    const double Third = 0.333333333333; const byte G = 0; const string Empty = "";
-    const string Raw = "\U0001F681\xe9\351\'\?\n\7";
-    enum Plain { one, two }; enum Valued { x = 5, y = 1, z };
-    const Valued G_ood = y; const Valued H = Valued::z; const Valued K = H;
-    struct S { int a = 5; ["m"] string b; Plain p; };
-    sequence<Object> Q; sequence<Object*> R; dictionary<S, Q> Dict; interface I; sequence<I*> Is;
-    exception Ex { optional(5) int b; string why; optional(2) S a; };
-    exception Fx extends Ex { }; exception Gx { };
-    interface I2 { void run(); }; interface I3 { }; interface I4 { };
-    class Base;
-    class Base(7) { int a; optional(9) Base b; optional(3) bool c; Base d; };
-    class Derived extends Base implements I2 { };
-    interface I extends I3, I4 {
-        void nothing(); idempotent int op(int a, out string b) throws Fx, Gx;
-        ["amd"] optional(3) S opt(optional(7) int z, int y, optional(1) int x, out bool w);
-        optional(1) I* all(optional(9) int a, optional(2) int b);
-        void first(int a, optional(4) int b);
-    };
-};
-"""
 
 
 class Cases(Script):
@@ -115,13 +89,12 @@ class Cases(Script):
             ("--validate", 0, ""), ("-E -I slice slice/Top.ice", 0, "struct Point_ty")):
             self.slice2c(words, status, said)
         self.assertFalse(Path("Top.h").exists())
-        self.checksums()
         self.files_that_include_others()
         self.dependencies()
         self.wrong_lines()
         self.beside_and_above()
         self.limits()
-        for option in "-E", "--depend", "--depend-xml":
+        for option in "-E", "--depend":
             with open("/dev/full", "w") as full:
                 said = subprocess.run([sys.argv[3], option, "crlf.ice"], stdout=full,
                                       stderr=subprocess.PIPE, text=True)
@@ -137,26 +110,6 @@ class Cases(Script):
         self.slice2c("--hw-c x crlf.ice", 1,
                      r"crlf.ice:1:1: error: there is no interface with \[\":hw\"\] in this file")
         self.assertFalse(Path("crlf.h").exists())
-
-    def checksums(self):
-        """They are those of slice2cpp."""
-        def sums(file):
-            text = Path(file).read_text()
-            return set(re.findall(r'^ *\{*"(::[^"]*)", "([0-9a-f]*)"', text, re.M))
-
-        write("checksums.ice", CHECKSUMS)
-        Path("sums/cpp").mkdir(parents=True)
-        for file in ("checksums.ice", *(ICE / name for name in (
-                "IceGrid/Admin.ice", "Ice/Version.ice", "Ice/Metrics.ice"))):
-            words = f"--checksum -I{ICE} {file} --output-dir sums"
-            self.slice2c(words)
-            subprocess.run(["slice2cpp", *f"{words}/cpp".split()], stderr=subprocess.DEVNULL)
-            stem = Path(file).stem
-            ours = sums(f"sums/{stem}_types.c")
-            self.assertTrue(ours)
-            self.assertEqual(ours, sums(f"sums/cpp/{stem}.cpp"))
-        self.ask("gcc", *"-std=c90 -pedantic -Wall -Wextra -Werror -fsyntax-only".split(),
-                 *INCLUDES, "sums/checksums_types.c")
 
     def files_that_include_others(self):
         """Several files in one run, each beside the others; a header is included by its name on
@@ -204,8 +157,6 @@ class Cases(Script):
     def dependencies(self):
         self.slice2c("--depend -Islice slice/Top.ice", 0, "slice/Lib/Base.ice",
                      "Top.h Top_types.c Top_client.c Top_async.c Top_server.c:")
-        self.slice2c("--depend-xml -Islice slice/Top.ice", 0,
-                     '<dependsOn name="slice/Lib/Base.ice"/>')
         self.slice2c("--depend-file deps -Islice slice/Top.ice")
         self.has("Top_client.c", file="deps")
         # Make understands it, and remakes the header when an included file changes.

@@ -17,7 +17,6 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     CFileNames names;
     names.base = "Fuzz";
     names.path = "Fuzz.h";
-    names.checksums = true;
     if (diagnostics.errors() == 0)
         checkC(unit, names, diagnostics);
     if (diagnostics.errors() > 0) {

@@ -3,7 +3,7 @@
 # agreement: slice2c cases.ice work-folder
 # Each case, from a line "// ok: ..." , "// warning: ..." or "// error: ..." to the next, is given
 # to slice2c and to ZeroC's slice2cpp: both must take it silently, take it with a warning, or refuse
-# it, at the same first line.
+# it, at the same first line. What ZeroC's own wrong files have is in error_detection.py alone.
 set -eu
 slice2c=$1 cases=$2 work=$3
 rm -rf "$work"

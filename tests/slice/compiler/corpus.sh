@@ -1,10 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # corpus: inputs for the compiler's fuzzer: every Slice file of the tests, cases of the agreement
-# test in a file each. Usage: corpus.sh output-folder source-folder
+# test in a file each. Beside the folder, as <folder>.dict, the words of Slice.
+# Usage: corpus.sh output-folder source-folder
 set -eu
 rm -rf "$1"
 mkdir -p "$1"
+grep -o '"[A-Za-z]*"' "$2/../../slice/front/names.cpp" >"$1.dict"
 find "$2" -name '*.ice' | while read -r file; do
     awk -v to="$1/$(basename "$file" .ice)" \
         '/^\/\/ (ok|warning|error): / { n++ } { print > (to "_" n ".ice") }' "$file"

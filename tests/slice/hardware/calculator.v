@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// calculator: the generated wrapper with the core behind it, for a slot.
+// calculator: a core behind its generated wrapper: adds, swaps, divides in 40 clocks.
+//
+// Dividing by 0 is refused; dividing by 666 never ends, so that a hung core can be tested.
 
 `default_nettype none
 
@@ -9,12 +11,21 @@ module calculator (
     // interrupt
     output wire        irq_o
 );
-    wire        core_rst, set_mode_start, negate_in, negate, add_start, divide_start, divide_done, divide_refused;
-    wire        get_mode_start, swap_start;
-    wire [1:0]  mode_in, mode;
-    wire [7:0]  shift_in, shift;
-    wire [31:0] add_a, add_b, sum, divide_a, divide_b, quotient, remainder;
+    localparam [5:0] CLOCKS = 6'd40;
+
+    wire        core_rst, set_mode_start, negate_in, add_start, divide_start, get_mode_start, swap_start;
+    wire [1:0]  mode_in;
+    wire [7:0]  shift_in;
+    wire [31:0] add_a, add_b, divide_a, divide_b;
     wire [15:0] x, y;
+    reg  [1:0]  mode;
+    reg         negate;
+    reg  [7:0]  shift;
+    reg  [31:0] sum, quotient, remainder;
+    reg  [5:0]  left; // clocks of the division
+
+    wire        divide_done    = left == 6'd1;
+    wire        divide_refused = divide_b == 32'd0;
 
     calculator_wrapper u_wrapper (
         `include "slot_connect.vh"
@@ -30,14 +41,32 @@ module calculator (
         .swap_start_o(swap_start), .swap_p_x_o(x), .swap_p_y_o(y), .swap_result_x_i(y),
         .swap_result_y_i(x));
 
-    calculator_core u_core (
-        .clk_i(clk_i), .rst_i(core_rst),
-        .set_mode_start_i(set_mode_start), .set_mode_mode_i(mode_in), .set_mode_negate_i(negate_in),
-        .set_mode_shift_i(shift_in), .mode_o(mode), .negate_o(negate), .shift_o(shift),
-        .add_start_i(add_start), .add_a_i(add_a), .add_b_i(add_b), .add_result_o(sum),
-        .divide_start_i(divide_start), .divide_a_i(divide_a), .divide_b_i(divide_b),
-        .divide_result_o(quotient), .divide_remainder_o(remainder), .divide_done_o(divide_done),
-        .divide_refused_o(divide_refused));
+    always @(posedge clk_i) begin
+        if (set_mode_start) begin
+            mode   <= mode_in;
+            negate <= negate_in;
+            shift  <= shift_in;
+        end
+        if (add_start)
+            sum <= negate ? -(add_a + add_b) : add_a + add_b;
+        if (divide_start)
+            left <= CLOCKS;
+        else if (left != 6'd0 && !(left == 6'd2 && divide_b == 32'd666))
+            left <= left - 6'd1;
+        if (left == 6'd3 && !divide_refused) begin
+            quotient  <= $signed(divide_a) / $signed(divide_b);
+            remainder <= $signed(divide_a) % $signed(divide_b);
+        end
+        if (core_rst) begin
+            mode      <= 2'd0;
+            negate    <= 1'b0;
+            shift     <= 8'd0;
+            left      <= 6'd0;
+            sum       <= 32'd0;
+            quotient  <= 32'd0;
+            remainder <= 32'd0;
+        end
+    end
 
     wire unused = &{1'b0, get_mode_start, swap_start, 1'b0};
 endmodule

@@ -2,7 +2,6 @@
 //
 // slice2c: Slice files into C90 stubs and skeletons for IceC.
 
-#include "c/dependencies.h"
 #include "c/names.h"
 #include "front/front.h"
 #include "front/preprocessor.h"
@@ -10,7 +9,6 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <iostream>
 #include <map>
 
@@ -18,10 +16,28 @@ namespace fs = std::filesystem;
 
 namespace {
 
+// Files of [":hw"] interfaces, wanted where the option names a folder: one or two an interface.
+struct HardwareOutput {
+    const char *option, *help;
+    GeneratedFile (*makes[2])(const hw::Block&);
+};
+const HardwareOutput hardwareOutputs[] = {
+    {"--hw-verilog",
+     "folder for the wrappers of [\":hw\"] interfaces (docs/hw-mapping.md)",
+     {hw::verilogFile}},
+    {"--hw-vhdl", "folder for the same wrappers in VHDL", {hw::vhdlFile}},
+    {"--hw-regs", "folder for their registers, *.regs.json", {hw::registersFile}},
+    {"--hw-c", "folder for their servants in C90", {hw::servantHeader, hw::servantSource}},
+    {"--hw-cpp", "folder for their proxies in C++, for test benches", {hw::proxyFile}},
+    {"--hw-new-verilog",
+     "folder for a core to begin with, in Verilog, and its test",
+     {hw::verilogSkeleton, hw::testSkeleton}},
+    {"--hw-new-vhdl", "the same in VHDL", {hw::vhdlSkeleton, hw::testSkeleton}}};
+
 struct Options {
     std::vector<std::string> files, includes, defines, undefines;
     std::string outputDir = ".", includeDir, headerExtension = "h", sourceExtension = "c",
-                dependFile, hwVerilog, hwVhdl, hwRegisters, hwC, hwCpp, hwNewVerilog, hwNewVhdl;
+                dependFile, hardware[std::size(hardwareOutputs)];
     bool oneProgram = false, preprocessOnly = false, depend = false, validate = false,
          hwOwnClock = false;
     NameRules rules;
@@ -29,12 +45,10 @@ struct Options {
 
 std::vector<std::string> preprocessorOptions(const Options& o) {
     std::vector<std::string> list;
-    for (const std::string& i : o.includes)
-        list.push_back("-I" + i);
-    for (const std::string& d : o.defines)
-        list.push_back("-D" + d);
-    for (const std::string& u : o.undefines)
-        list.push_back("-U" + u);
+    for (const auto& [flag, values] :
+         {std::pair{"-I", &o.includes}, std::pair{"-D", &o.defines}, std::pair{"-U", &o.undefines}})
+        for (const std::string& value : *values)
+            list.push_back(flag + value);
     return list;
 }
 
@@ -74,44 +88,68 @@ bool save(const std::vector<GeneratedFile>& files, const std::string& directory)
     return !error;
 }
 
+// Returns the header for `included` as an #include names it: the shortest path from one of the -I
+// folders, else from the folder of `file`.
+std::string headerOf(const std::string& included, const std::string& file, const Options& o) {
+    fs::path path = fs::weakly_canonical(included), best;
+    for (const std::string& dir : o.includes) {
+        fs::path relative = path.lexically_relative(fs::weakly_canonical(dir));
+        bool isUnder = !relative.empty() && *relative.begin() != "..";
+        if (isUnder && (best.empty() || relative.string().size() < best.string().size()))
+            best = relative;
+    }
+    if (best.empty())
+        best = path.lexically_relative(fs::weakly_canonical(fs::absolute(file).parent_path()));
+    return best.replace_extension(o.headerExtension).generic_string();
+}
+
+// The preprocessor makes paths absolute; paths below the current folder are written relative to it.
+std::string shown(const std::string& file) {
+    fs::path path = fs::weakly_canonical(file),
+             relative = path.lexically_relative(fs::current_path());
+    return relative.empty() || *relative.begin() == ".." ? path.string() : relative.string();
+}
+
+// Returns a rule for make. `files`: the Slice file itself and all files that it includes.
+std::string dependencyRule(const std::string& file, const CFileNames& names,
+                           const std::vector<std::string>& files) {
+    std::string rule = names.base + "." + names.headerExtension;
+    for (const char* part : {"_types", "_client", "_async", "_server"})
+        rule += " " + names.base + part + "." + names.sourceExtension;
+    rule += ": \\\n " + file;
+    for (const std::string& f : files)
+        if (shown(f) != shown(file))
+            rule += " \\\n " + shown(f);
+    return rule + "\n";
+}
+
 CFileNames namesFor(const std::string& file, const Options& o, const Preprocessed& p) {
     CFileNames names;
     names.base = fs::path(file).stem().string();
-    names.path = headerOf(file, file, o.includes, o.headerExtension);
+    names.path = headerOf(file, file, o);
     names.headerExtension = o.headerExtension;
     names.sourceExtension = o.sourceExtension;
     names.includeDir = o.includeDir;
     for (const std::string& included : p.includes)
-        names.includes.push_back(headerOf(included, file, o.includes, o.headerExtension));
+        names.includes.push_back(headerOf(included, file, o));
     return names;
 }
 
 bool wantsHardware(const Options& o) {
-    return !(o.hwVerilog + o.hwVhdl + o.hwRegisters + o.hwC + o.hwCpp + o.hwNewVerilog +
-             o.hwNewVhdl)
-                .empty();
+    return std::any_of(std::begin(o.hardware), std::end(o.hardware),
+                       [](const std::string& folder) { return !folder.empty(); });
 }
 
-bool saveHardware(const std::vector<hw::Block>& blocks, const Options& o, const CFileNames& names) {
-    using Make = std::function<GeneratedFile(const hw::Block&)>;
-    auto inC = [&](auto make) {
-        return [&names, make](const hw::Block& b) { return make(b, names); };
-    };
-    for (auto [directory, makes] :
-         {std::pair{&o.hwVerilog, std::vector<Make>{hw::verilogFile}},
-          std::pair{&o.hwVhdl, std::vector<Make>{hw::vhdlFile}},
-          std::pair{&o.hwRegisters, std::vector<Make>{hw::registersFile}},
-          std::pair{&o.hwC, std::vector<Make>{inC(hw::servantHeader), inC(hw::servantSource)}},
-          std::pair{&o.hwCpp, std::vector<Make>{inC(hw::proxyFile)}},
-          std::pair{&o.hwNewVerilog, std::vector<Make>{hw::verilogSkeleton, hw::testSkeleton}},
-          std::pair{&o.hwNewVhdl, std::vector<Make>{hw::vhdlSkeleton, hw::testSkeleton}}}) {
+bool saveHardware(const std::vector<hw::Block>& blocks, const Options& o) {
+    for (size_t i = 0; i < std::size(hardwareOutputs); ++i) {
         std::vector<GeneratedFile> files;
-        if (directory->empty())
+        if (o.hardware[i].empty())
             continue;
         for (const hw::Block& b : blocks)
-            for (Make make : makes)
-                files.push_back(make(b));
-        if (!save(files, *directory))
+            for (auto make : hardwareOutputs[i].makes)
+                if (make)
+                    files.push_back(make(b));
+        if (!save(files, o.hardware[i]))
             return false;
     }
     return true;
@@ -145,8 +183,8 @@ private:
     std::map<std::string, std::string> headers_, definitions_;
 };
 
-bool compile(const std::string& file, const Options& o, Dependencies& dependencies,
-             Program& program) {
+// Compiles a file, or appends its dependencies to `rules`.
+bool compile(const std::string& file, const Options& o, std::string& rules, Program& program) {
     if (fs::is_directory(file) || !std::ifstream(file)) {
         std::cerr << "slice2c: error: cannot read '" << file << "'\n";
         return false;
@@ -162,7 +200,7 @@ bool compile(const std::string& file, const Options& o, Dependencies& dependenci
     std::vector<std::string> limits = limitFiles(p.files);
     if (o.depend) {
         p.files.insert(p.files.end(), limits.begin(), limits.end());
-        dependencies.add(file, names, p.files);
+        rules += dependencyRule(file, names, p.files);
         return true;
     }
     Diagnostics diagnostics(std::cerr);
@@ -175,16 +213,17 @@ bool compile(const std::string& file, const Options& o, Dependencies& dependenci
     std::vector<hw::Block> blocks;
     if (diagnostics.errors() == 0 && wantsHardware(o))
         blocks = hw::mapHardware(unit, diagnostics);
-    for (hw::Block& b : blocks)
+    for (hw::Block& b : blocks) {
         b.hasOwnClock = o.hwOwnClock;
+        b.header = names.base + "." + names.headerExtension;
+    }
     if (diagnostics.errors() == 0 && o.oneProgram)
         program.add(unit, diagnostics);
     if (diagnostics.errors()) {
         std::cerr << diagnostics.errors() << (diagnostics.errors() == 1 ? " error\n" : " errors\n");
         return false;
     }
-    return o.oneProgram ||
-           (save(generateC(unit, names), o.outputDir) && saveHardware(blocks, o, names));
+    return o.oneProgram || (save(generateC(unit, names), o.outputDir) && saveHardware(blocks, o));
 }
 
 void describe(CLI::App& app, Options& o) {
@@ -198,17 +237,10 @@ void describe(CLI::App& app, Options& o) {
     app.add_option("--header-ext", o.headerExtension, "extension of headers, without the dot (h)");
     app.add_option("--source-ext", o.sourceExtension, "extension of sources, without the dot (c)");
     app.add_option("--include-dir", o.includeDir, "folder of the header in the sources' #include");
-    app.add_option("--hw-verilog", o.hwVerilog,
-                   "folder for the wrappers of [\":hw\"] interfaces (docs/hw-mapping.md)");
-    app.add_option("--hw-vhdl", o.hwVhdl, "folder for the same wrappers in VHDL");
-    app.add_option("--hw-regs", o.hwRegisters, "folder for their registers, *.regs.json");
-    app.add_option("--hw-c", o.hwC, "folder for their servants in C90");
-    app.add_option("--hw-cpp", o.hwCpp, "folder for their proxies in C++, for test benches");
+    for (size_t i = 0; i < std::size(hardwareOutputs); ++i)
+        app.add_option(hardwareOutputs[i].option, o.hardware[i], hardwareOutputs[i].help);
     app.add_flag("--hw-own-clock", o.hwOwnClock,
                  "the cores have a clock of their own: servants ask whether they answered");
-    app.add_option("--hw-new-verilog", o.hwNewVerilog,
-                   "folder for a core to begin with, in Verilog, and its test");
-    app.add_option("--hw-new-vhdl", o.hwNewVhdl, "the same in VHDL");
     app.add_flag("--depend", o.depend, "print make dependencies, generate nothing");
     app.add_option("--depend-file", o.dependFile, "write dependencies to this file");
     app.add_flag("--one-program", o.oneProgram,
@@ -236,14 +268,12 @@ int main(int argc, char** argv) {
     if (o.validate)
         return 0;
     o.depend = o.depend || !o.dependFile.empty();
-    Dependencies dependencies;
+    std::string rules;
     Program program;
     int failures = 0;
     for (const std::string& file : o.files)
-        failures += !compile(file, o, dependencies, program);
-    if (o.depend && failures == 0) {
-        std::string text = dependencies.text();
-        failures += !(o.dependFile.empty() ? print(text) : write(o.dependFile, text));
-    }
+        failures += !compile(file, o, rules, program);
+    if (o.depend && failures == 0)
+        failures += !(o.dependFile.empty() ? print(rules) : write(o.dependFile, rules));
     return failures ? 1 : 0;
 }

@@ -51,6 +51,8 @@ std::string clientFile(const CContext& c);
 std::string asyncFile(const CContext& c);
 std::string serverFile(const CContext& c);
 
+// M_D_find of a dictionary; empty where its keys cannot be compared.
+std::string findSignature(const Declaration& d);
 // Write an exception's functions, and those of an operation's exception union.
 void exceptionFunctions(Writer& w, const Declaration& d);
 void thrownFunctions(Writer& w, const CContext& c, const Declaration& d, const Operation& o);

@@ -108,25 +108,18 @@ void readFunction(Writer& w, const Declaration& d) {
 }
 
 void findFunction(Writer& w, const Declaration& d) {
-    if (isByPointer(d.key) || d.key.kind == Type::Kind::Long)
+    std::string signature = findSignature(d);
+    if (signature.empty())
         return;
-    bool isString = d.key.kind == Type::Kind::String;
     w.blank();
-    w.block(cVariable(d.element, "*" + cName(d) + "_find") + "(const " + cName(d) + " *v, " +
-                cVariable(d.key, "key") + ")",
-            {}, [&] {
-                w.line("Ice_Int i;");
-                w.line("for (i = 0; i < v->size; ++i)");
-                if (isString) {
-                    w.line("    if (Ice_String_same(&v->data[i].key, &key))");
-                } else {
-                    w.line("    if (v->data[i].key == key)");
-                }
-                std::string type = cType(d.element);
-                w.line("        return (" + type + (type.back() == '*' ? "*" : " *") +
-                       ")&v->data[i].value;");
-                w.line("return 0;");
-            });
+    w.block(signature, {}, [&] {
+        w.line("Ice_Int i;");
+        w.line("for (i = 0; i < v->size; ++i)");
+        w.line(d.key.kind == Type::Kind::String ? "    if (Ice_String_same(&v->data[i].key, &key))"
+                                                : "    if (v->data[i].key == key)");
+        w.line("        return (" + cVariable(d.element, "*") + ")&v->data[i].value;");
+        w.line("return 0;");
+    });
 }
 
 void structFunctions(Writer& w, const Declaration& d) {
@@ -141,6 +134,13 @@ void structFunctions(Writer& w, const Declaration& d) {
 }
 
 } // namespace
+
+std::string findSignature(const Declaration& d) {
+    if (d.kind != DKind::Dictionary || isByPointer(d.key) || d.key.kind == Type::Kind::Long)
+        return "";
+    return cVariable(d.element, "*" + cName(d) + "_find") + "(const " + cName(d) + " *v, " +
+           cVariable(d.key, "key") + ")";
+}
 
 std::string typesFile(const CContext& c) {
     Writer w = c.beginSource("Marshalling of types and exceptions.");
@@ -163,8 +163,7 @@ std::string typesFile(const CContext& c) {
         case DKind::Dictionary:
             writeFunction(w, *d);
             readFunction(w, *d);
-            if (d->kind == DKind::Dictionary)
-                findFunction(w, *d);
+            findFunction(w, *d);
             break;
         case DKind::Exception:
             exceptionFunctions(w, *d);

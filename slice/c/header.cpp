@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// header: the header: types, constants, proxies, servants.
+// header: the header: types, constants, proxies, servants. The list of all generated files.
 
 #include "c/context.h"
 #include "c/names.h"
@@ -89,10 +89,6 @@ void declareElements(Writer& w, const Declaration& d, const std::string& element
         "} " + cName(d) + ";");
 }
 
-bool hasFind(const Declaration& d) {
-    return !isByPointer(d.key) && d.key.kind != Type::Kind::Long;
-}
-
 void declareStruct(Writer& w, const Declaration& d) {
     Writer::Values v = {{"c", cName(d)}};
     bool isClass = d.kind == DKind::Class;
@@ -151,9 +147,8 @@ void declareType(Writer& w, const Declaration& d) {
         w.line("void {c}_writeSlices(const {c} *v, Ice_OutputStreamPtr os);", v);
         w.line("void {c}_readSlices({c} *v, Ice_InputStreamPtr is);", v);
     }
-    if (d.kind == DKind::Dictionary && hasFind(d))
-        w.line(cVariable(d.element, "*" + cName(d) + "_find") + "(const " + cName(d) + " *v, " +
-               cVariable(d.key, "key") + ");");
+    if (std::string find = findSignature(d); !find.empty())
+        w.line(find + ";");
 }
 
 void declare(Writer& w, const Declaration& d) {
@@ -357,4 +352,14 @@ std::string headerFile(const CContext& c) {
     w.blank();
     w.line("#endif");
     return w.text();
+}
+
+std::vector<GeneratedFile> generateC(const Unit& unit, const CFileNames& names) {
+    CContext c{unit, names};
+    const std::string& s = names.sourceExtension;
+    return {{c.header(), headerFile(c)},
+            {names.base + "_types." + s, typesFile(c)},
+            {names.base + "_client." + s, clientFile(c)},
+            {names.base + "_async." + s, asyncFile(c)},
+            {names.base + "_server." + s, serverFile(c)}};
 }

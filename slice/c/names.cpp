@@ -80,36 +80,17 @@ std::string cOperation(const std::string& name) {
 }
 
 std::string cType(const Type& t) {
+    static const char* const basic[] = {"void",      "Ice_Bool",   "Ice_Byte",
+                                        "Ice_Short", "Ice_Int",    "Ice_Long",
+                                        "Ice_Float", "Ice_Double", "Ice_String"};
     using Kind = Type::Kind;
-    switch (t.kind) {
-    case Kind::Void:
-        return "void";
-    case Kind::Bool:
-        return "Ice_Bool";
-    case Kind::Byte:
-        return "Ice_Byte";
-    case Kind::Short:
-        return "Ice_Short";
-    case Kind::Int:
-        return "Ice_Int";
-    case Kind::Long:
-        return "Ice_Long";
-    case Kind::Float:
-        return "Ice_Float";
-    case Kind::Double:
-        return "Ice_Double";
-    case Kind::String:
-        return "Ice_String";
-    case Kind::Proxy:
+    if (t.kind <= Kind::String)
+        return basic[static_cast<int>(t.kind)];
+    if (t.kind == Kind::Proxy)
         return t.declaration ? cProxy(*t.declaration) : "Ice_ObjectPrx";
-    case Kind::Named:
-        return cName(*t.declaration) +
-               (t.declaration->kind == Declaration::Kind::Class ? " *" : "");
-    case Kind::Value:
-    case Kind::LocalObject:
-        break;
-    }
-    return "Ice_Value *";
+    if (t.kind != Kind::Named)
+        return "Ice_Value *";
+    return cName(*t.declaration) + (t.declaration->kind == Declaration::Kind::Class ? " *" : "");
 }
 
 std::string cEnumerator(const Declaration& owner, const std::string& name) {

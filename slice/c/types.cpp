@@ -29,40 +29,19 @@ std::string largestEnumerator(const Declaration& d) {
 
 // ICE_OPTIONAL_...
 std::string optionalFormat(const Type& t) {
-    switch (t.kind) {
-    case Kind::Bool:
-    case Kind::Byte:
-        return "F1";
-    case Kind::Short:
-        return "F2";
-    case Kind::Int:
-    case Kind::Float:
-        return "F4";
-    case Kind::Long:
-    case Kind::Double:
-        return "F8";
-    case Kind::String:
+    if (t.kind == Kind::String)
         return "VSIZE";
-    case Kind::Named:
-        break;
-    case Kind::Proxy:
+    if (t.kind == Kind::Proxy)
         return "FSIZE";
-    default:
+    if (t.kind < Kind::String)
+        return "F" + std::to_string(leastWireSize(t));
+    if (t.kind != Kind::Named || t.declaration->kind == DKind::Class)
         return "CLASS";
-    }
-    switch (t.declaration->kind) {
-    case DKind::Enum:
+    const Declaration& d = *t.declaration;
+    if (d.kind == DKind::Enum)
         return "SIZE";
-    case DKind::Class:
-        return "CLASS";
-    case DKind::Struct:
-        return isVariable(t) ? "FSIZE" : "VSIZE";
-    case DKind::Sequence:
-        return isVariable(t.declaration->element) ? "FSIZE" : "VSIZE";
-    default:
-        return isVariable(t.declaration->key) || isVariable(t.declaration->element) ? "FSIZE"
-                                                                                    : "VSIZE";
-    }
+    bool varies = d.kind == DKind::Struct ? isVariable(t) : isVariable(d.element);
+    return varies || (d.kind == DKind::Dictionary && isVariable(d.key)) ? "FSIZE" : "VSIZE";
 }
 
 // The expression of the size before an optional of format VSIZE; empty where the value begins with

@@ -29,42 +29,16 @@ bool Declaration::isA(const Declaration& other) const {
 
 Declaration::Facts factsOf(const Type& type) {
     using Kind = Type::Kind;
-    Declaration::Facts f;
-    f.isVariable = false;
-    f.isKey = type.kind != Kind::Float && type.kind != Kind::Double;
-    switch (type.kind) {
-    case Kind::Void:
-    case Kind::Bool:
-    case Kind::Byte:
-        break;
-    case Kind::Short:
-        f.leastWireSize = 2;
-        break;
-    case Kind::Int:
-    case Kind::Float:
-        f.leastWireSize = 4;
-        break;
-    case Kind::Long:
-    case Kind::Double:
-        f.leastWireSize = 8;
-        break;
-    case Kind::String:
-        f.isVariable = true;
-        f.isNumeric = false;
-        break;
-    case Kind::Proxy:
-        f.leastWireSize = 2;
-        f.isVariable = true;
-        f.isNumeric = f.isKey = false;
-        break;
-    case Kind::Value:
-    case Kind::LocalObject:
-        f.isVariable = f.hasClass = true;
-        f.isNumeric = f.isKey = false;
-        break;
-    case Kind::Named:
+    if (type.kind == Kind::Named)
         return type.declaration->facts;
-    }
+    static const int sizes[] = {1, 1, 1, 2, 4, 8, 4, 8, 1, 1, 2, 1, 1}; // by kind
+    bool isProxy = type.kind == Kind::Proxy;
+    Declaration::Facts f;
+    f.leastWireSize = sizes[static_cast<int>(type.kind)];
+    f.hasClass = type.kind == Kind::Value || type.kind == Kind::LocalObject;
+    f.isVariable = f.hasClass || isProxy || type.kind == Kind::String;
+    f.isNumeric = !f.isVariable;
+    f.isKey = !f.hasClass && !isProxy && type.kind != Kind::Float && type.kind != Kind::Double;
     return f;
 }
 

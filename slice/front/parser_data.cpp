@@ -2,7 +2,6 @@
 //
 // parser_data: enums, structs, exceptions, classes, sequences, dictionaries and constants.
 
-#include "front/literals.h"
 #include "front/parser_private.h"
 
 void Parser::enumeration() {

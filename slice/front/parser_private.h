@@ -10,6 +10,14 @@
 #include <map>
 #include <set>
 
+// ---- values of tokens (literals.cpp)
+
+// Decimal, 0octal or 0xhex, signed; out of range or malformed is an error, and 0.
+int64_t integerValue(const Token& token, Diagnostics& diagnostics);
+double floatingValue(const Token& token, Diagnostics& diagnostics);
+// Returns the bytes of a string literal, its escapes replaced; \u and \U become UTF-8.
+std::string stringValue(const Token& token, Diagnostics& diagnostics);
+
 class Parser {
 public:
     Parser(const std::vector<Token>& tokens, const std::string& mainFile, NameRules rules,

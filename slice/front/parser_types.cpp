@@ -2,7 +2,6 @@
 //
 // parser_types: types, tags and values of constants.
 
-#include "front/literals.h"
 #include "front/parser_private.h"
 #include <algorithm>
 #include <cfloat>

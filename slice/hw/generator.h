@@ -9,17 +9,15 @@
 #include "hw/map.h"
 #include "text/writer.h"
 
-struct CFileNames;
-
 namespace hw {
 
-GeneratedFile registersFile(const Block& b);                          // <block>.regs.json
-GeneratedFile verilogFile(const Block& b);                            // <block>_wrapper.v
-GeneratedFile vhdlFile(const Block& b);                               // <block>_wrapper.vhd
-GeneratedFile servantHeader(const Block& b, const CFileNames& names); // <block>_servant.h
-GeneratedFile servantSource(const Block& b, const CFileNames& names); // <block>_servant.c
+GeneratedFile registersFile(const Block& b); // <block>.regs.json
+GeneratedFile verilogFile(const Block& b);   // <block>_wrapper.v
+GeneratedFile vhdlFile(const Block& b);      // <block>_wrapper.vhd
+GeneratedFile servantHeader(const Block& b); // <block>_servant.h
+GeneratedFile servantSource(const Block& b); // <block>_servant.c
 
-GeneratedFile proxyFile(const Block& b, const CFileNames& names); // <block>_proxy.h
+GeneratedFile proxyFile(const Block& b); // <block>_proxy.h
 
 // Files to begin a core with: <block>.v, <block>.vhd, <block>_test.cpp
 GeneratedFile verilogSkeleton(const Block& b);
@@ -32,12 +30,27 @@ struct Port {
     std::string name; // with _i or _o
     bool isOut = false;
     unsigned width = 1;
-    std::string group; // of the first port of a group: the group's heading
+    std::string group;          // of the first port of a group: the group's heading
+    const Call* call = nullptr; // 0: a port that each wrapper has
 };
 
 std::vector<Port> wrapperPorts(const Block& b);
 // Writes a wrapper's first comment; `mark` begins its lines.
 void wrapperHead(Writer& w, const Block& b, const std::string& mark);
+
+// ---- values of the servant ----
+
+std::string coreType(const Block& b); // Module_Interface_Core
+
+// Moves parameters into registers and buffers; `hw_core` is the servant.
+void writeParameters(Writer& w, const Block& b, const Call& c);
+// Moves registers and buffers into results, through pointers; returns after an exception.
+void readResults(Writer& w, const Block& b, const Call& c);
+// Declares the variables of both.
+void resultVariables(Writer& w, const Call& c);
+// Declares room for the elements of received sequences, as members of the servant.
+void sequenceMembers(Writer& w, const Block& b);
+void checkLayouts(Writer& w, const Block& b);
 
 } // namespace hw
 

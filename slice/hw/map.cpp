@@ -2,7 +2,7 @@
 //
 // map: maps interfaces to slots: checks what is allowed, and gives out words.
 
-#include "hw/map.h"
+#include "hw/generator.h"
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -162,31 +162,13 @@ private:
     // Checks that no two Slice names give one port name, as aB and a_b do, or a member x of p and
     // p_x.
     void checkPorts() {
-        std::map<std::string, std::string> ports;
-        for (const char* own : {"clk", "rst", "bus_valid", "bus_write", "bus_addr", "bus_wdata",
-                                "bus_ready", "bus_rdata", "bus_error", "irq", "core_rst"})
-            ports[own] = "the wrapper";
-        for (const Call& call : block_.calls) {
-            auto take = [&](const std::string& port) {
-                auto [it, isNew] = ports.emplace(call.name + "_" + port, call.operation->name);
-                if (!isNew)
-                    error(call.operation->at, "'" + call.operation->name + "' needs the port '" +
-                                                  it->first + "', as '" + it->second + "' does");
-            };
-            take(call.isEvent ? "event" : "start");
-            if (call.isEvent)
-                take("taken");
-            if (call.isLong) {
-                take("done");
-                take("refused");
-            }
-            for (const Word& w : call.words)
-                for (const Piece& p : w.pieces)
-                    if (p.portLsb == 0) {
-                        take(p.name);
-                        if (p.isCount)
-                            take(baseName(p));
-                    }
+        std::map<std::string, std::string> owners; // by the port's name
+        for (const Port& p : wrapperPorts(block_)) {
+            std::string owner = p.call ? p.call->operation->name : "the wrapper";
+            auto [it, isNew] = owners.emplace(p.name.substr(0, p.name.size() - 2), owner);
+            if (!isNew)
+                error(p.call->operation->at, "'" + owner + "' needs the port '" + it->first +
+                                                 "', as '" + it->second + "' does");
         }
     }
 
@@ -230,6 +212,44 @@ std::vector<const Word*> Block::words() const {
             list.push_back(&w);
     std::sort(list.begin(), list.end(),
               [](const Word* a, const Word* b) { return a->number < b->number; });
+    return list;
+}
+
+std::vector<Port> wrapperPorts(const Block& b) {
+    std::vector<Port> list = {{"clk_i", false, 1, "clock, reset"},
+                              {"rst_i", false, 1, ""},
+                              {"bus_valid_i", false, 1, "register bus"},
+                              {"bus_write_i", false, 1, ""},
+                              {"bus_addr_i", false, 4, ""},
+                              {"bus_wdata_i", false, 32, ""},
+                              {"bus_ready_o", true, 1, ""},
+                              {"bus_rdata_o", true, 32, ""},
+                              {"bus_error_o", true, 1, ""},
+                              {"irq_o", true, 1, "interrupt"},
+                              {"core_rst_o", true, 1, "the core's reset"}};
+    for (const Call& c : b.calls) {
+        auto add = [&](const std::string& name, bool isOut, unsigned width,
+                       const std::string& group) {
+            list.push_back({c.name + "_" + name + (isOut ? "_o" : "_i"), isOut, width, group, &c});
+        };
+        if (c.isEvent)
+            add("event", false, 1, "event " + c.operation->name);
+        else
+            add("start", true, 1, c.operation->name);
+        for (const Word& w : c.words)
+            for (const Piece& p : w.pieces)
+                if (p.portLsb == 0) {
+                    if (p.isCount)
+                        add(baseName(p), true, 32, "");
+                    add(p.name, !w.isOut, p.portWidth, "");
+                }
+        if (c.isEvent)
+            add("taken", true, 1, "");
+        if (c.isLong) {
+            add("done", false, 1, "");
+            add("refused", false, 1, "");
+        }
+    }
     return list;
 }
 

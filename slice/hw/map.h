@@ -77,6 +77,7 @@ struct Pin {
 struct Block {
     const Declaration* interface = nullptr;
     std::string source; // the Slice file, without .ice
+    std::string header; // of its generated C
     std::string name;   // snake_case
     unsigned type = 0, version = 0;
     std::vector<Call> calls;

@@ -4,8 +4,8 @@
 
 #include "c/names.h"
 #include "c/operations.h"
+#include "hw/generator.h"
 #include "hw/map.h"
-#include "hw/servant.h"
 #include <algorithm>
 #include <set>
 

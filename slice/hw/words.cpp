@@ -28,22 +28,9 @@ unsigned enumWidth(const Declaration& d) {
 }
 
 unsigned scalarWidth(const Type& t) {
-    switch (t.kind) {
-    case Kind::Bool:
-        return 1;
-    case Kind::Byte:
-        return 8;
-    case Kind::Short:
-        return 16;
-    case Kind::Int:
-    case Kind::Float:
-        return 32;
-    case Kind::Long:
-    case Kind::Double:
-        return 64;
-    default:
+    if (t.kind == Kind::Named)
         return enumWidth(*t.declaration);
-    }
+    return t.kind == Kind::Bool ? 1 : 8 * static_cast<unsigned>(factsOf(t).leastWireSize);
 }
 
 void addPiece(std::vector<Word>& words, Piece piece, bool isOut) {

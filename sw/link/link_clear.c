@@ -2,13 +2,13 @@
  *
  * link_clear: the codec without a key: frames end with a CRC.
  */
-#include "link.h"
+#include "link_input.h"
 
 /* The party whose checksum a frame has. */
 typedef enum Owner { NOBODY, HANDSHAKE, SESSION, CANDIDATE } Owner;
 
-U32 link_sealClear(const Link* link, U8* frame, U32 header, U32 number) {
-    U32 key = link->session.key;
+U32 link_sealClear(const Link_Output* output, U8* frame, U32 header, U32 number) {
+    U32 key = output->present.key;
     (void)number;
     if ((header & LINK_CONTROL) && LINK_IS_HANDSHAKE(header >> 21 & 7U))
         key |= LINK_NO_SEED;
@@ -20,17 +20,18 @@ static int hasGoodCrc(const U8* frame, U32 key) {
 }
 
 /* Returns the owner of a whole frame: the session, or one that a HELLO announced. */
-static Owner ownerOf(const Link* link, const U8* frame) {
-    const Link_Session* candidate = &link->handshake.candidate;
+static Owner ownerOf(const Link_Session* session, const U8* frame) {
+    const Link_Identity* present = &session->output->present;
+    const Link_Identity* candidate = &session->candidate;
     U32 epoch = LINK_EPOCH(frame);
-    if (!link_isPlausible(link, frame))
+    if (!link_isPlausible(session->output, frame))
         return NOBODY;
     if (LINK_IS_HANDSHAKE(LINK_KIND_OF(frame)))
         return hasGoodCrc(frame, LINK_NO_SEED) ? HANDSHAKE : NOBODY;
-    if (link->state == LINK_STATE_UP && epoch == LINK_KEY_EPOCH(link->session.key) &&
-        hasGoodCrc(frame, link->session.key))
+    if (session->state == LINK_STATE_UP && epoch == LINK_KEY_EPOCH(present->key) &&
+        hasGoodCrc(frame, present->key))
         return SESSION;
-    return link->handshake.hasCandidate && epoch == LINK_KEY_EPOCH(candidate->key) &&
+    return session->hasCandidate && epoch == LINK_KEY_EPOCH(candidate->key) &&
                    hasGoodCrc(frame, candidate->key)
                ? CANDIDATE
                : NOBODY;
@@ -38,7 +39,7 @@ static Owner ownerOf(const Link* link, const U8* frame) {
 
 /* Tells whether a frame that the search has found may be believed, since it might be one by chance:
  * if it ends where the bytes end, or a good one follows. Returns 1 yes, 0 no, -1 not known yet. */
-static int isConfirmed(const Link* link, const U8* next, U32 left, int isEnd) {
+static int isConfirmed(const Link_Session* session, const U8* next, U32 left, int isEnd) {
     U32 payload;
     if (left == 0)
         return 1;
@@ -47,10 +48,11 @@ static int isConfirmed(const Link* link, const U8* next, U32 left, int isEnd) {
         return 0;
     if (left < payload + LINK_OVERHEAD)
         return isEnd ? 0 : -1;
-    return ownerOf(link, next) != NOBODY;
+    return ownerOf(session, next) != NOBODY;
 }
 
-U32 link_parseClear(Link* link, const U8* bytes, U32 count, int isEnd) {
+U32 link_parseClear(Link_Input* input, const U8* bytes, U32 count, int isEnd) {
+    Link_Output* output = input->output;
     U32 used = 0;
     while (used < count) {
         const U8* frame = bytes + used;
@@ -59,62 +61,64 @@ U32 link_parseClear(Link* link, const U8* bytes, U32 count, int isEnd) {
         if (size <= LINK_MAX_FRAME && left < size && !isEnd)
             break;
         if (size <= LINK_MAX_FRAME && left >= size) {
-            Owner owner = ownerOf(link, frame);
+            Owner owner = ownerOf(input->session, frame);
             int confirmed = 1;
-            if (owner != NOBODY && link->parser.outOfStep)
-                confirmed = isConfirmed(link, frame + size, left - size, isEnd);
+            if (owner != NOBODY && input->outOfStep)
+                confirmed = isConfirmed(input->session, frame + size, left - size, isEnd);
             if (confirmed < 0)
                 break;
             if (confirmed && owner != NOBODY) {
                 if (owner == CANDIDATE)
-                    link_confirmCandidate(link);
+                    link_confirmCandidate(input->session);
                 if (owner != HANDSHAKE)
-                    link->heardAt = link->watch.provenAt = link->now;
-                link_accept(link, frame, size);
+                    output->heardAt = input->session->watch.provenAt = output->now;
+                link_accept(input, frame, size);
                 used += size;
                 continue;
             }
         }
-        link_skip(link, frame, left);
+        link_skip(input, frame, left);
         ++used;
     }
     return used;
 }
 
-static void onHello(Link* link, const U8* peerNonce, U32 features) {
-    Link_Session* session = &link->session;
+static void onHello(Link_Session* session, const U8* peerNonce, U32 features) {
+    const Link_Identity* of = &session->output->present;
     /* A repeated HELLO means that the answer was lost, and gets the same one. */
-    if (link->state != LINK_STATE_UP || link_get32(peerNonce) != link_get32(session->peerNonce)) {
-        session = &link->handshake.candidate;
-        link_makeCandidate(link, peerNonce, features);
-        link->handshake.hasCandidate = 1;
+    if (session->state != LINK_STATE_UP || link_get32(peerNonce) != link_get32(of->peerNonce)) {
+        of = &session->candidate;
+        link_makeCandidate(session, peerNonce, features);
+        session->hasCandidate = 1;
     }
-    link_sendHandshake(link, session, LINK_KIND_HELLO_ACK, LINK_VERSION);
+    link_sendHandshake(session, of, LINK_KIND_HELLO_ACK, LINK_VERSION);
 }
 
-void link_onClearHandshake(Link* link, const U8* frame, Link_Kind kind) {
+void link_onClearHandshake(Link_Session* session, const U8* frame, Link_Kind kind) {
     const U8* payload = frame + LINK_HEADER;
     if (kind == LINK_KIND_RST) {
-        if (link->state == LINK_STATE_UP && LINK_EPOCH(frame) == LINK_KEY_EPOCH(link->session.key))
-            link_lose(link);
+        if (session->state == LINK_STATE_UP &&
+            LINK_EPOCH(frame) == LINK_KEY_EPOCH(session->output->present.key))
+            link_lose(session);
     } else if (frame[1] != LINK_VERSION) {
         return;
     } else if (kind == LINK_KIND_HELLO) {
-        onHello(link, payload, frame[2]);
-    } else if (link->state == LINK_STATE_CONNECTING &&
-               link_get32(payload + 4) == link_get32(link->handshake.nonce)) {
-        link_makeCandidate(link, payload, frame[2]);
-        link_confirmCandidate(link);
-        link->receiver.ackDue = link->receiver.ackNow = 1; /* this first frame confirms it */
+        onHello(session, payload, frame[2]);
+    } else if (session->state == LINK_STATE_CONNECTING &&
+               link_get32(payload + 4) == link_get32(session->nonce)) {
+        link_makeCandidate(session, payload, frame[2]);
+        link_confirmCandidate(session);
+        link_oweAck(session->receiver); /* this first frame confirms it */
     }
 }
 
-void link_callClear(Link* link, const U8* unknown) {
+void link_callClear(Link_Session* session, const U8* unknown) {
     U8 reset[LINK_MAX_OVERHEAD];
     if (!unknown) {
-        link_sendHandshake(link, 0, LINK_KIND_HELLO, LINK_VERSION);
+        link_sendHandshake(session, 0, LINK_KIND_HELLO, LINK_VERSION);
         return;
     }
-    link->session.key = LINK_EPOCH_KEY(LINK_EPOCH(unknown));
-    (void)link_sendControl(link, reset, LINK_KIND_RST, 0, 0, LINK_FEATURES);
+    session->output->present.key = LINK_EPOCH_KEY(LINK_EPOCH(unknown));
+    (void)link_sendControl(session->output, reset, LINK_KIND_BITS(LINK_KIND_RST) | LINK_FEATURES, 0,
+                           0);
 }

@@ -17,14 +17,15 @@
 #define TOKEN_CLOSE 0xC1U /* or one more: with the compression byte set */
 #define TOKEN_AS_IT_IS 0xFFU
 
-enum { REQUEST = 0, REPLY = 2, VALIDATE = 3, CLOSE = 4 };
+#define MAGIC 0x50656349U    /* "IceP" */
+#define VERSIONS 0x00010001U /* of protocol and encoding: 1.0 */
 
-static const U8 magic[8] = {'I', 'c', 'e', 'P', 1, 0, 1, 0};
+enum { REQUEST = 0, REPLY = 2, VALIDATE = 3, CLOSE = 4 };
 
 /* Returns 1 for a whole message of this type with at least `least` bytes. */
 static int isMessage(const U8* m, U32 size, U32 type, U32 least) {
-    return size >= least && m[8] == type && memcmp(m, magic, sizeof magic) == 0 &&
-           link_get32(m + 10) == size;
+    return size >= least && m[8] == type && link_get32(m) == MAGIC &&
+           link_get32(m + 4) == VERSIONS && link_get32(m + 10) == size;
 }
 
 /* Returns the length of a request's head, identity to context; 0: the peer cannot learn it. */
@@ -141,11 +142,11 @@ void link_compress(const Link_Heads* heads, int channel, const U8* m, U32 size,
 
 /* Expands the token and prefix of a request at `p` to the fields before its body. Returns their
  * start, or 0 if it is malformed. */
-static U8* unpackRequest(const Link_Heads* heads, U32 channel, U8* p, const U8* end) {
+static U8* unpackRequest(Link_Heads* heads, U32 channel, U8* p, const U8* end) {
     U8 head[LINK_HEAD_BYTES]; /* a copy, because the output may overwrite it */
     U32 token = *p++;
     U32 mode = token < TOKEN_LITERAL ? token >> 4 & 1U : token & 3U;
-    U32 id = mode == 1U ? heads->lastRequest[channel] + 1U : 0;
+    U32 id = mode == 1U ? ++heads->lastRequest[channel] : 0;
     U32 n;
     if (token < TOKEN_LITERAL) {
         n = heads->size[token & 15U];
@@ -200,7 +201,7 @@ static U8* unpackReply(const Link_Heads* heads, U32 channel, U8* p, const U8* en
 }
 
 /* Restores the message at `p`. Returns its start, or 0 if it is malformed. */
-static U8* unpack(const Link_Heads* heads, U32 channel, U8* p, U8* end) {
+static U8* unpack(Link_Heads* heads, U32 channel, U8* p, U8* end) {
     U32 token = *p;
     U32 type = REQUEST;
     U32 compression = 0;
@@ -223,7 +224,8 @@ static U8* unpack(const Link_Heads* heads, U32 channel, U8* p, U8* end) {
     if (!p)
         return 0;
     p -= HEADER;
-    memcpy(p, magic, sizeof magic);
+    link_put32(p, MAGIC);
+    link_put32(p + 4, VERSIONS);
     p[8] = (U8)type;
     p[9] = (U8)compression;
     link_put32(p + 10, (U32)(end - p));
@@ -232,10 +234,12 @@ static U8* unpack(const Link_Heads* heads, U32 channel, U8* p, U8* end) {
 
 U8* link_decompress(Link_Heads* heads, int channel, U8* start, U32 size) {
     U8* end = start + size;
+    int hasKnownHead = *start >= TOKEN_REQUEST && *start < TOKEN_LITERAL;
     U8* p = unpack(heads, (U32)channel, start, end);
     if (!p || p == end || (U32)(end - p) > LINK_MAX_MESSAGE)
         return 0;
     size = (U32)(end - p);
-    link_note(heads, channel, p, size, headOf(p, size));
+    if (!hasKnownHead)
+        link_note(heads, channel, p, size, headOf(p, size));
     return p;
 }

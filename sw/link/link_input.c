@@ -2,10 +2,51 @@
  *
  * link_input: gives each good frame to its part of the layer.
  */
-#include "link.h"
+#include "link_input.h"
 
-int link_isPlausible(const Link* link, const U8* frame) {
-    const Link_Codec* codec = LINK_CODEC(link);
+#include <string.h>
+
+/* Parses the kept bytes, `count` now, and keeps an incomplete frame. */
+static void parseKept(Link_Input* input, U32 count, int isEnd) {
+    U32 used = LINK_CODEC(input->output)->parse(input, input->bytes, count, isEnd);
+    input->count = (U8)(count - used);
+    memmove(input->bytes, input->bytes + used, input->count);
+}
+
+void link_pollInput(Link_Input* input) {
+    if (LINK_BEFORE(input->output->now, input->at + LINK_FRAME_GAP))
+        return;
+    if (input->count)
+        parseKept(input, input->count, 1);
+    if (LINK_CODEC(input->output)->isSure)
+        input->outOfStep = 0;
+}
+
+void link_takeBytes(Link_Input* input, const U8* bytes, U32 size) {
+    link_pollInput(input);
+    if (size == 0)
+        return; /* or no silence would ever be seen; bytes may be null */
+    input->at = input->output->now;
+    if (input->count == 0) { /* the usual case: a whole frame is read in place; the rest fits */
+        U32 used = LINK_CODEC(input->output)->parse(input, bytes, size, 0);
+        input->count = (U8)(size - used);
+        memcpy(input->bytes, bytes + used, input->count);
+        return;
+    }
+    while (size) {
+        U32 had = input->count;
+        U32 part = sizeof input->bytes - had;
+        if (part > size)
+            part = size;
+        memcpy(input->bytes + had, bytes, part);
+        bytes += part;
+        size -= part;
+        parseKept(input, had + part, 0);
+    }
+}
+
+int link_isPlausible(const Link_Output* output, const U8* frame) {
+    const Link_Codec* codec = LINK_CODEC(output);
     U32 payload = LINK_LENGTH(frame) + LINK_OVERHEAD - codec->overhead;
     Link_Kind kind = LINK_KIND_OF(frame);
     if (kind == LINK_KIND_DATA)
@@ -17,61 +58,66 @@ int link_isPlausible(const Link* link, const U8* frame) {
     return payload == codec->sizes[kind];
 }
 
-static int onPiggyback(Link* link, const U8* frame) {
+static int onPiggyback(const Link_Session* session, const U8* frame) {
+    Link_Sender* sender = session->sender;
     const U8* payload = frame + LINK_HEADER;
     U32 flags = LINK_FIRST | LINK_LAST | LINK_CHANNEL(frame[2]);
     if (LINK_KIND_OF(frame) == LINK_KIND_PIGGYBACK_ASK)
         flags |= LINK_ACK_NOW;
     /* A peer sends no such frame while a message is held: the whole window is open. */
-    link_onAck(link, payload[0], link->sender.fullCredit, 0, 0);
-    return link_onData(link, frame[1], flags, payload + 1, LINK_LENGTH(frame) - 1U);
+    link_onAck(sender, payload[0], sender->fullCredit, 0, 0);
+    return link_onData(session->receiver, frame[1], flags, payload + 1, LINK_LENGTH(frame) - 1U);
 }
 
-void link_accept(Link* link, const U8* frame, U32 size) {
+void link_accept(Link_Input* input, const U8* frame, U32 size) {
+    Link_Output* output = input->output;
+    Link_Session* session = input->session;
     const U8* payload = frame + LINK_HEADER;
-    U32 duplicates = link->statistics.duplicates;
+    U32 duplicates = output->statistics.duplicates;
     Link_Kind kind = LINK_KIND_OF(frame);
     int isFair = 1;
-    link->parser.outOfStep = 0;
-    link_hear(link, size);
-    ++link->statistics.framesReceived;
-    link->statistics.bytesReceived += size;
+    input->outOfStep = 0;
+    link_hear(output, size);
+    ++output->statistics.framesReceived;
+    output->statistics.bytesReceived += size;
     if (LINK_IS_HANDSHAKE(kind)) {
-        LINK_CODEC(link)->onHandshake(link, frame, kind);
+        LINK_CODEC(output)->onHandshake(session, frame, kind);
         return;
     }
-    link->handshake.isUnconfirmed = 0;
-    if (!LINK_BEFORE(link->now, link->pingAt))
-        link->pingAt = link->now; /* or it would in time be so old that it reads as a future time */
+    session->isUnconfirmed = 0;
+    if (!LINK_BEFORE(output->now, session->pingAt))
+        session->pingAt = output->now; /* or it would in time read as a future time */
     if (kind == LINK_KIND_DATA) {
-        isFair = link_onData(link, frame[1], frame[2], payload, LINK_LENGTH(frame));
+        isFair = link_onData(session->receiver, frame[1], frame[2], payload, LINK_LENGTH(frame));
     } else if (kind == LINK_KIND_ACK) {
-        link_onAck(link, frame[1], payload[0], payload + 1, LINK_LENGTH(frame) - 1U);
+        link_onAck(session->sender, frame[1], payload[0], payload + 1, LINK_LENGTH(frame) - 1U);
     } else if (kind == LINK_KIND_BYE) {
-        link_lose(link);
-    } else if (kind == LINK_KIND_PING && LINK_CODEC(link)->onPing) {
-        LINK_CODEC(link)->onPing(link, frame);
+        link_lose(session);
+    } else if (kind == LINK_KIND_PING && LINK_CODEC(output)->onPing) {
+        LINK_CODEC(output)->onPing(session, frame);
     } else if (kind == LINK_KIND_PING) {
-        link->receiver.ackDue = link->receiver.ackNow = 1;
+        link_oweAck(session->receiver);
     } else {
-        isFair = onPiggyback(link, frame);
+        isFair = onPiggyback(session, frame);
     }
     /* What was heard before may be an attacker's recording, and is no sign of life; link_onAck and
      * the codec look themselves. */
-    if (kind >= LINK_KIND_PIGGYBACK && duplicates == link->statistics.duplicates)
-        link->heardAt = link->now;
+    if (kind >= LINK_KIND_PIGGYBACK && duplicates == output->statistics.duplicates)
+        output->heardAt = output->now;
     if (!isFair)
-        link_abort(link);
+        link_abort(session);
 }
 
 /* The first byte behind a frame may be of an unknown session, whose peer gets an answer, but not
  * too often. */
-void link_skip(Link* link, const U8* frame, U32 left) {
-    if (!link->parser.outOfStep && left >= LINK_CODEC(link)->overhead &&
-        link->state == LINK_STATE_IDLE && link->now - link->pingAt >= LINK_HELLO_FIRST) {
-        link->pingAt = link->now;
-        LINK_CODEC(link)->call(link, frame);
+void link_skip(Link_Input* input, const U8* frame, U32 left) {
+    Link_Output* output = input->output;
+    Link_Session* session = input->session;
+    if (!input->outOfStep && left >= LINK_CODEC(output)->overhead &&
+        session->state == LINK_STATE_IDLE && output->now - session->pingAt >= LINK_HELLO_FIRST) {
+        session->pingAt = output->now;
+        LINK_CODEC(output)->call(session, frame);
     }
-    link->parser.outOfStep = 1;
-    ++link->statistics.bytesSkipped;
+    input->outOfStep = 1;
+    ++output->statistics.bytesSkipped;
 }

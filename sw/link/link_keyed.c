@@ -3,7 +3,7 @@
  * link_keyed: makes sessions with a peer that has the key, and sees that it is alive.
  * A HELLO may be a recording: it changes nothing here, and costs an answer only (docs/link.md).
  */
-#include "link.h"
+#include "link_input.h"
 
 #if LINK_SECURE
 
@@ -21,139 +21,141 @@ static int isSameNonce(const U8* a, const U8* b) {
 }
 
 /* Returns whether a CONFIRM belongs to the present session. */
-static int isOfSession(const Link* link, const U8* nonces) {
-    return link->state == LINK_STATE_UP && isSameNonce(nonces, link->session.peerNonce) &&
-           isSameNonce(nonces + LINK_NONCE_BYTES, link->session.nonce);
+static int isOfSession(const Link_Session* session, const U8* nonces) {
+    const Link_Identity* present = &session->output->present;
+    return session->state == LINK_STATE_UP && isSameNonce(nonces, present->peerNonce) &&
+           isSameNonce(nonces + LINK_NONCE_BYTES, present->nonce);
 }
 
 /* Prepares the session with the peer's nonce under the key of a slot. */
-static void makeKeyed(Link* link, int slot, const U8* frame) {
-    Link_Session* session = &link->handshake.candidate;
-    link_makeCandidate(link, frame + LINK_HEADER, frame[2]);
-    session->slot = (U8)slot;
-    link_deriveKeys(&link->secrets, slot, session->nonce, session->peerNonce, &session->keys);
+static void makeKeyed(Link_Session* session, int slot, const U8* frame) {
+    Link_Identity* candidate = &session->candidate;
+    link_makeCandidate(session, frame + LINK_HEADER, frame[2]);
+    candidate->slot = (U8)slot;
+    link_deriveKeys(&session->secrets, slot, candidate->nonce, candidate->peerNonce,
+                    &candidate->keys);
 }
 
-static void forgetCandidate(Link* link) {
-    Ascon_wipe(&link->handshake.candidate.keys, sizeof link->handshake.candidate.keys);
+static void forgetCandidate(Link_Session* session) {
+    Ascon_wipe(&session->candidate.keys, sizeof session->candidate.keys);
 }
 
 /* Returns whether a frame has a good tag under the key of a slot, which the candidate then notes.
  */
-static int isUnder(Link* link, int slot, U8* frame, Link_Kind kind) {
-    const U8* key = link->secrets.hello[slot];
-    if (!(link->secrets.set >> slot & 1))
+static int isUnder(Link_Session* session, int slot, U8* frame, Link_Kind kind) {
+    const U8* key = session->secrets.hello[slot];
+    if (!(session->secrets.set >> slot & 1))
         return 0;
-    link->handshake.candidate.slot = (U8)slot;
+    session->candidate.slot = (U8)slot;
     if (kind != LINK_KIND_HELLO) {
-        makeKeyed(link, slot, frame);
-        key = link->handshake.candidate.keys.receive;
+        makeKeyed(session, slot, frame);
+        key = session->candidate.keys.receive;
     }
     return link_unprotect(frame, key, 0, 0);
 }
 
 /* Returns whether a frame of the handshake is fresh and relevant, which takes no round of Ascon. */
-static int isOfUse(const Link* link, const U8* frame, Link_Kind kind) {
-    const Link_Handshake* handshake = &link->handshake;
+static int isOfUse(const Link_Session* session, const U8* frame, Link_Kind kind) {
     const U8* nonces = frame + LINK_HEADER;
-    if (isSameNonce(nonces, handshake->nonce))
+    if (isSameNonce(nonces, session->nonce))
         return 0; /* the own frame, reflected */
     if (kind == LINK_KIND_HELLO)
         return (frame[1] & ~LINK_VERSION_UP) == LINK_VERSION;
     if (frame[1] != LINK_VERSION)
         return 0;
-    if (kind == LINK_KIND_CONFIRM && (isOfSession(link, nonces) || !handshake->isAnswered))
-        return isOfSession(link, nonces);
-    return isSameNonce(nonces + LINK_NONCE_BYTES, handshake->nonce);
+    if (kind == LINK_KIND_CONFIRM && (isOfSession(session, nonces) || !session->isAnswered))
+        return isOfSession(session, nonces);
+    return isSameNonce(nonces + LINK_NONCE_BYTES, session->nonce);
 }
 
 /* Returns whether such a frame is authentic, and decrypts it. */
-static int isGenuine(Link* link, U8* frame, Link_Kind kind) {
-    if (kind == LINK_KIND_CONFIRM && isOfSession(link, frame + LINK_HEADER))
-        return link_unprotect(frame, link->session.keys.receive, 0, 0);
-    if (isUnder(link, 0, frame, kind) || isUnder(link, 1, frame, kind))
+static int isGenuine(Link_Session* session, U8* frame, Link_Kind kind) {
+    if (kind == LINK_KIND_CONFIRM && isOfSession(session, frame + LINK_HEADER))
+        return link_unprotect(frame, session->output->present.keys.receive, 0, 0);
+    if (isUnder(session, 0, frame, kind) || isUnder(session, 1, frame, kind))
         return 1;
-    forgetCandidate(link);
+    forgetCandidate(session);
     return 0;
 }
 
 /* Spends the search budget, in rounds of Ascon, on one frame. Returns whether it sufficed: however
  * many headers an attacker's bytes pretend to hold, they do not keep the processor busy. */
-static int mayTry(Link* link, U32 rounds) {
-    Link_Parser* parser = &link->parser;
-    U32 debt = parser->paidAt - link->now;
+static int mayTry(Link_Input* input, U32 rounds) {
+    U32 debt = input->paidAt - input->output->now;
     if (debt > LINK_ROUNDS_AT_ONCE * LINK_ROUND_EVERY) /* it was paid earlier */
         debt = 0;
     debt += rounds * LINK_ROUND_EVERY;
     if (debt > LINK_ROUNDS_AT_ONCE * LINK_ROUND_EVERY)
         return 0;
-    parser->paidAt = link->now + debt;
+    input->paidAt = input->output->now + debt;
     return 1;
 }
 
 /* Decrypts a frame under the session's key, where its numbers say that it is for now. */
-static int decrypt(Link* link, U8* frame) {
-    U32 number = link->sender.base; /* whose lowest byte is near byte 1 */
+static int decrypt(Link_Session* session, U8* frame) {
+    const Link_Output* output = session->output;
+    U32 number = session->sender->base; /* whose lowest byte is near byte 1 */
     U32 acked = 0;
     Link_Kind kind = LINK_KIND_OF(frame);
     if (kind >= LINK_KIND_PIGGYBACK) /* or data */
-        number = link->receiver.next;
-    if (kind == LINK_KIND_PIGGYBACK || kind == LINK_KIND_PIGGYBACK_ASK)
-        acked = link_extend(link->sender.base, frame[LINK_HEADER]);
+        number = output->expected;
+    if (LINK_IS_RIDE(kind))
+        acked = link_extend(session->sender->base, frame[LINK_HEADER]);
     if (kind == LINK_KIND_PING)
-        number = frame[2] & LINK_PING_ANSWER ? link->watch.pingsSent : link->watch.pingsSeen;
+        number = frame[2] & LINK_PING_ANSWER ? session->watch.pingsSent : session->watch.pingsSeen;
     if (kind == LINK_KIND_BYE)
         number = frame[1];
-    if (link_unprotect(frame, link->session.keys.receive, link_extend(number, frame[1]), acked))
+    if (link_unprotect(frame, output->present.keys.receive, link_extend(number, frame[1]), acked))
         return 1;
-    ++link->watch.failures;
+    ++session->watch.failures;
     return 0;
 }
 
 /* Copies a frame, and decrypts the copy. The search looks at a frame of the handshake only where
  * the bytes end with it, as its packet does. Returns 0: it is none, or not of use here. */
-static int decipher(Link* link, const U8* frame, U8* copy, int isSearch, int isLast) {
+static int decipher(Link_Input* input, const U8* frame, U8* copy, int isSearch, int isLast) {
+    Link_Session* session = input->session;
     U32 size = LINK_LENGTH(frame) + LINK_OVERHEAD;
     U32 rounds = ROUNDS_OF(size - LINK_SECURE_OVERHEAD);
     Link_Kind kind = LINK_KIND_OF(frame);
     int isHandshake = LINK_IS_HANDSHAKE(kind);
-    if (size < LINK_SECURE_OVERHEAD || !link_isPlausible(link, frame))
+    if (size < LINK_SECURE_OVERHEAD || !link_isPlausible(input->output, frame))
         return 0;
     if (isHandshake) {
-        if ((isSearch && !isLast) || !isOfUse(link, frame, kind))
+        if ((isSearch && !isLast) || !isOfUse(session, frame, kind))
             return 0;
         rounds = kind == LINK_KIND_HELLO ? ROUNDS_HELLO : ROUNDS_HANDSHAKE;
-    } else if (link->state != LINK_STATE_UP ||
-               LINK_EPOCH(frame) != LINK_KEY_EPOCH(link->session.key)) {
+    } else if (session->state != LINK_STATE_UP ||
+               LINK_EPOCH(frame) != LINK_KEY_EPOCH(input->output->present.key)) {
         return 0;
     }
-    if (isSearch && !mayTry(link, rounds))
+    if (isSearch && !mayTry(input, rounds))
         return 0;
     memcpy(copy, frame, size);
     if (isHandshake)
-        return isGenuine(link, copy, kind);
-    return decrypt(link, copy);
+        return isGenuine(session, copy, kind);
+    return decrypt(session, copy);
 }
 
 /* A tag needs no confirmation, so a frame is taken when its last byte is there, even behind the
  * beginning of another that is not whole: that may be an attacker's, who would have it wait. */
-static U32 parse(Link* link, const U8* bytes, U32 count, int isEnd) {
+static U32 parse(Link_Input* input, const U8* bytes, U32 count, int isEnd) {
     U8 copy[LINK_MAX_FRAME];
     U32 used = 0;
     U32 at = 0;
     while (at < count) {
         U32 end = at + LINK_LENGTH(bytes + at) + LINK_OVERHEAD;
         int isFrame = end - at <= LINK_MAX_FRAME;
-        if (isFrame && end > link->parser.count && end <= count) {
-            int isSearch = link->parser.outOfStep || at != used;
-            if (decipher(link, bytes + at, copy, isSearch, end == count)) {
-                link_accept(link, copy, end - at);
+        if (isFrame && end > input->count && end <= count) {
+            int isSearch = input->outOfStep || at != used;
+            if (decipher(input, bytes + at, copy, isSearch, end == count)) {
+                link_accept(input, copy, end - at);
                 at = used = end;
                 continue;
             }
         }
         if (at == used && (!isFrame || end <= count || isEnd)) {
-            link_skip(link, bytes + at, count - at);
+            link_skip(input, bytes + at, count - at);
             ++used;
         }
         ++at;
@@ -162,84 +164,75 @@ static U32 parse(Link* link, const U8* bytes, U32 count, int isEnd) {
 }
 
 /* Completes a frame under the session's key. Returns its size in bytes. */
-static U32 seal(const Link* link, U8* frame, U32 header, U32 number) {
-    const U8* key = link->session.keys.send;
-    U32 acked = 0;
-    if (header & LINK_CONTROL) {
-        U32 kind = header >> 21 & 7U;
-        if (kind == LINK_KIND_HELLO)
-            key = link->secrets.hello[link->handshake.slot];
-        if (kind == LINK_KIND_HELLO_ACK)
-            key = link->handshake.candidate.keys.send;
-        if (kind >= LINK_KIND_PIGGYBACK)
-            acked = link->receiver.next;
-    }
-    return link_protect(frame, header | LINK_KEY_EPOCH(link->session.key) << 18, key, number,
-                        acked);
+static U32 seal(const Link_Output* output, U8* frame, U32 header, U32 number) {
+    U32 kind = header & LINK_CONTROL ? header >> 21 & 7U : LINK_KIND_DATA;
+    return link_protect(frame, header | LINK_KEY_EPOCH(output->present.key) << 18,
+                        LINK_IS_HANDSHAKE(kind) ? output->call : output->present.keys.send, number,
+                        LINK_IS_RIDE(kind) ? output->expected : 0);
 }
 
-static void begin(Link* link) {
-    link_confirmCandidate(link);
-    forgetCandidate(link);
-    link_drawNonce(link);
+static void begin(Link_Session* session) {
+    link_confirmCandidate(session);
+    forgetCandidate(session);
+    link_drawNonce(session);
 }
 
-static void onHello(Link* link, const U8* frame) {
-    Link_Handshake* handshake = &link->handshake;
-    int isUp = link->state == LINK_STATE_UP;
-    int isPresent = isUp && isSameNonce(frame + LINK_HEADER, link->session.peerNonce);
-    if (isUp && (link->now - handshake->lastAnswer < LINK_ANSWER_EVERY ||
-                 frame[1] != LINK_VERSION || (isPresent && !handshake->isUnconfirmed)))
+static void onHello(Link_Session* session, const U8* frame) {
+    Link_Output* output = session->output;
+    int isUp = session->state == LINK_STATE_UP;
+    int isPresent = isUp && isSameNonce(frame + LINK_HEADER, output->present.peerNonce);
+    if (isUp && (output->now - session->lastAnswer < LINK_ANSWER_EVERY ||
+                 frame[1] != LINK_VERSION || (isPresent && !session->isUnconfirmed)))
         return;
-    handshake->lastAnswer = link->now;
+    session->lastAnswer = output->now;
     if (isPresent) { /* the peer has not heard the CONFIRM */
-        link_sendHandshake(link, &link->session, LINK_KIND_CONFIRM, LINK_VERSION);
+        link_sendHandshake(session, &output->present, LINK_KIND_CONFIRM, LINK_VERSION);
         return;
     }
-    if (isUp && !handshake->isUnconfirmed) {
-        handshake->slot = handshake->candidate.slot;
-        link_sendHandshake(link, 0, LINK_KIND_HELLO, LINK_VERSION | LINK_VERSION_UP);
+    if (isUp && !session->isUnconfirmed) {
+        session->slot = session->candidate.slot;
+        link_sendHandshake(session, 0, LINK_KIND_HELLO, LINK_VERSION | LINK_VERSION_UP);
     } else { /* a peer that is unconfirmed may yet answer a HELLO, and begin this session then */
-        makeKeyed(link, handshake->candidate.slot, frame);
-        link_sendHandshake(link, &handshake->candidate, LINK_KIND_HELLO_ACK, LINK_VERSION);
-        forgetCandidate(link);
+        makeKeyed(session, session->candidate.slot, frame);
+        link_sendHandshake(session, &session->candidate, LINK_KIND_HELLO_ACK, LINK_VERSION);
+        forgetCandidate(session);
     }
-    if (!handshake->isAnswered)
-        handshake->firstAnswer = link->now;
-    handshake->isAnswered = 1;
+    if (!session->isAnswered)
+        session->firstAnswer = output->now;
+    session->isAnswered = 1;
 }
 
-static void onHandshake(Link* link, const U8* frame, Link_Kind kind) {
-    Link_Handshake* handshake = &link->handshake;
+static void onHandshake(Link_Session* session, const U8* frame, Link_Kind kind) {
     if (kind == LINK_KIND_HELLO) {
-        onHello(link, frame);
+        onHello(session, frame);
         return;
     }
     if (kind == LINK_KIND_HELLO_ACK) {
-        begin(link);
-        handshake->isUnconfirmed = 1;
-        handshake->helloEvery = LINK_HELLO_FIRST;
-        handshake->helloAt = link->now;
+        begin(session);
+        session->isUnconfirmed = 1;
+        session->helloEvery = LINK_HELLO_FIRST;
+        session->helloAt = session->output->now;
         return;
     }
-    if (!isOfSession(link, frame + LINK_HEADER))
-        begin(link);
-    link->receiver.ackDue = link->receiver.ackNow = 1; /* so that the peer hears */
+    if (!isOfSession(session, frame + LINK_HEADER))
+        begin(session);
+    link_oweAck(session->receiver); /* so that the peer hears */
 }
 
 /* Sends HELLO; where both slots have a key, under each in turn. A peer in an unknown session gets
  * the same, since its answer makes a new session. */
-static void call(Link* link, const U8* unknown) {
-    U32 set = link->secrets.set;
+static void call(Link_Session* session, const U8* unknown) {
+    U32 set = session->secrets.set;
     (void)unknown;
     if (!set)
         return;
-    link->handshake.slot = (U8)(set == 3U ? !link->handshake.slot : set >> 1);
-    link_sendHandshake(link, 0, LINK_KIND_HELLO, LINK_VERSION);
+    session->slot = (U8)(set == 3U ? !session->slot : set >> 1);
+    link_sendHandshake(session, 0, LINK_KIND_HELLO, LINK_VERSION);
 }
 
-static void onPing(Link* link, const U8* frame) {
-    Link_Watch* watch = &link->watch;
+static void onPing(Link_Session* session, const U8* frame) {
+    Link_Output* output = session->output;
+    Link_Watch* watch = &session->watch;
     U8 answer[LINK_MAX_OVERHEAD];
     U32 number;
     if (frame[2] & LINK_PING_ANSWER) {
@@ -247,7 +240,7 @@ static void onPing(Link* link, const U8* frame) {
         if (LINK_BEFORE(watch->pingsAnswered, number) && !LINK_BEFORE(watch->pingsSent, number)) {
             watch->pingsAnswered = watch->pingsSent;
             watch->provenAt = watch->askedAt; /* the answer itself may have been held back */
-            link->heardAt = link->now;
+            output->heardAt = output->now;
         }
         return;
     }
@@ -255,21 +248,13 @@ static void onPing(Link* link, const U8* frame) {
     if (!LINK_BEFORE(watch->pingsSeen, number))
         return; /* heard before */
     watch->pingsSeen = number;
-    link->heardAt = link->now;
-    (void)link_sendControl(link, answer, LINK_KIND_PING, number, 0, LINK_PING_ANSWER);
+    output->heardAt = output->now;
+    (void)link_sendControl(output, answer, LINK_KIND_BITS(LINK_KIND_PING) | LINK_PING_ANSWER,
+                           number, 0);
 }
 
-const Link_Codec link_keyed = {LINK_SECURE_OVERHEAD,
-                               LINK_NONCE_BYTES,
-                               0,
-                               1,
-                               LINK_KIND_BYE,
-                               0,
-                               {1, 8, 16, 16, 0, 0},
-                               seal,
-                               parse,
-                               onHandshake,
-                               onPing,
-                               call};
+const Link_Codec link_keyed = {
+    LINK_SECURE_OVERHEAD, LINK_NONCE_BYTES, 0,   1, {1, 8, 16, 16, 0, 0}, seal, parse,
+    onHandshake,          onPing,           call};
 
 #endif

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_output: sends frames: checksum or tag, pacing, counts.
+ * link_output: paces packets, and counts.
  */
-#include "link.h"
+#include "link_output.h"
 
 #include <string.h>
 
@@ -10,64 +10,64 @@
 #define LEAST 32U
 
 /* The time of a packet: on the line, or in the modem, whichever is longer. */
-static U32 timeOf(const Link* link, U32 size) {
-    U32 line = (size + LINK_SILENCE) * link->byteTimeUs16 >> 4;
+static U32 timeOf(const Link_Output* output, U32 size) {
+    U32 line = (size + LINK_SILENCE) * output->byteTimeUs16 >> 4;
     U32 modem =
-        size * LINK_BYTE_US + (link->longest + LINK_CODEC(link)->overhead > LINK_MAX_ENCRYPTED
+        size * LINK_BYTE_US + (output->longest + LINK_CODEC(output)->overhead > LINK_MAX_ENCRYPTED
                                    ? LINK_PACKET_US
                                    : LINK_PACKET_ENCRYPTED_US);
     return line > modem ? line : modem;
 }
 
-U32 link_room(const Link* link) {
-    return (U32)link->longest - link->packed;
+U32 link_room(const Link_Output* output) {
+    return (U32)output->longest - output->packed;
 }
 
-int link_flush(Link* link) {
-    if (!link->packed)
+int link_flush(Link_Output* output) {
+    if (!output->packed)
         return 1;
-    if (link->port->transmit(link->context, link->packet, link->packed) != 0)
+    if (output->port->transmit(output->context, output->packet, output->packed) != 0)
         return 0;
-    if (LINK_BEFORE(link->paceUntil, link->now))
-        link->paceUntil = link->now;
-    link->slack = timeOf(link, link->packed);
-    link->paceUntil += link->slack;
-    if (link->packed <= link->longest)
-        link->slack -= LINK_SHORT_MARGIN;
-    link->early = 0;
-    if (link->heard && link->sender.fastest > LINK_PACKET_US) { /* a wire needs no turns */
-        U32 wait = timeOf(link, link->heard) * LINK_HEARD_QUARTERS >> 2;
-        link->early = (timeOf(link, link->packed) + wait) / 2U;
-        link->paceUntil += wait;
+    if (LINK_BEFORE(output->paceUntil, output->now))
+        output->paceUntil = output->now;
+    output->slack = timeOf(output, output->packed);
+    output->paceUntil += output->slack;
+    if (output->packed <= output->longest)
+        output->slack -= LINK_SHORT_MARGIN;
+    output->early = 0;
+    if (output->heard && output->fastest > LINK_PACKET_US) { /* a wire needs no turns */
+        U32 wait = timeOf(output, output->heard) * LINK_HEARD_QUARTERS >> 2;
+        output->early = (timeOf(output, output->packed) + wait) / 2U;
+        output->paceUntil += wait;
     }
-    link->packed = link->heard = 0;
+    output->packed = output->heard = 0;
     return 1;
 }
 
-void link_hear(Link* link, U32 size) {
-    link->heard = (U8)size;
-    if (link->paceUntil - link->slack - link->now < link->early)
-        link->paceUntil = link->now + link->slack;
+void link_hear(Link_Output* output, U32 size) {
+    output->heard = (U8)size;
+    if (output->paceUntil - output->slack - output->now < output->early)
+        output->paceUntil = output->now + output->slack;
 }
 
-int link_isOpen(Link* link) {
-    if (link->packed && link->packed + LEAST > link->longest && !link_flush(link))
+int link_isOpen(Link_Output* output) {
+    if (output->packed && output->packed + LEAST > output->longest && !link_flush(output))
         return 0;
-    return link->packed || !LINK_BEFORE(link->now + link->slack, link->paceUntil);
+    return output->packed || !LINK_BEFORE(output->now + output->slack, output->paceUntil);
 }
 
-int link_sendFrame(Link* link, U8* frame, U32 header, U32 number) {
-    U32 size = LINK_CODEC(link)->seal(link, frame, header, number);
-    if (size > link_room(link) + LINK_CODEC(link)->overhead && !link_flush(link))
+int link_sendFrame(Link_Output* output, U8* frame, U32 header, U32 number) {
+    U32 size = LINK_CODEC(output)->seal(output, frame, header, number);
+    if (size > link_room(output) + LINK_CODEC(output)->overhead && !link_flush(output))
         return 0;
-    memcpy(link->packet + link->packed, frame, size);
-    link->packed = (U8)(link->packed + size);
-    ++link->statistics.framesSent;
-    link->statistics.bytesSent += size;
+    memcpy(output->packet + output->packed, frame, size);
+    output->packed = (U8)(output->packed + size);
+    ++output->statistics.framesSent;
+    output->statistics.bytesSent += size;
     return 1;
 }
 
-int link_sendControl(Link* link, U8* frame, Link_Kind kind, U32 number, U32 size, U32 flags) {
-    U32 header = LINK_CONTROL_HEADER(kind, (U8)number, size) | LINK_HEADER_OF(0U, 0U, flags);
-    return link_sendFrame(link, frame, header, number) && link_flush(link);
+int link_sendControl(Link_Output* output, U8* frame, U32 byte2, U32 number, U32 size) {
+    U32 header = LINK_HEADER_OF(LINK_CONTROL | size, (U8)number, byte2);
+    return link_sendFrame(output, frame, header, number) && link_flush(output);
 }

@@ -72,6 +72,7 @@ typedef enum Link_Kind {
 #define LINK_EPOCH_KEY(epoch) ((U32)(epoch) << 29)
 #define LINK_NO_SEED 0xFFFFU
 #define LINK_KIND_CONFIRM LINK_KIND_RST /* with a key: the answer to HELLO-ACK; there is no RST */
+#define LINK_IS_RIDE(kind) ((U32)(kind) - (U32)LINK_KIND_PIGGYBACK <= 1U)
 #define LINK_IS_HANDSHAKE(kind) ((U32)(kind) - (U32)LINK_KIND_HELLO <= 2U)
 
 /* A message of more than LINK_UNCHECKED bytes ends with LINK_CHECK bytes of check. */

@@ -176,7 +176,7 @@ TEST_F(Heads, LossAndCorruptionDoNotConfuseTheTables) {
 TEST_F(Heads, NonsenseIsRefusedWithinTheLimits) {
     Random random(testSeed());
     call(1);
-    Link_Heads& heads = b.link()->heads[0];
+    Link_Heads& heads = b.link()->receiver.heads;
     Bytes message(LINK_HEAD_ROOM + LINK_MAX_MESSAGE + 1);
     U8* const at = message.data() + LINK_HEAD_ROOM;
     unsigned refused = 0, taken = 0;
@@ -202,8 +202,8 @@ TEST_F(Heads, NonsenseIsRefusedWithinTheLimits) {
 
 // A peer that breaks the rules: both sides start a new session, and go on.
 TEST_F(Heads, ATokenThatMakesNoSenseEndsTheSession) {
-    send(a, b, {0x41});             // crosses unchanged
-    a.link()->session.features = 0; // so that A sends this token unmarked
+    send(a, b, {0x41});                    // crosses unchanged
+    a.link()->output.present.features = 0; // so that A sends this token unmarked
     b.start();
     a.send(0, {0xE0}, 99);
     ASSERT_TRUE(until([&] { return a.outcomes.count(99) != 0; }, 5'000'000));

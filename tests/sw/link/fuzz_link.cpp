@@ -137,14 +137,14 @@ private:
     U32 overhead() const { return a_.link->overhead; }
     Bytes sealed(Bytes bytes, bool) const { return bytes; }
 #else
-    U32 sessionKey() const { return a_.link->session.key; }
-    U32 expected() const { return a_.link->receiver.next; }
-    U32 overhead() const { return a_.link->codec->overhead; }
+    U32 sessionKey() const { return a_.link->output.present.key; }
+    U32 expected() const { return a_.link->output.expected; }
+    U32 overhead() const { return a_.link->output.codec->overhead; }
     // The frame under a key. A HELLO is under its own; the others of the handshake are for the
     // nonce of now, from a peer whose nonce is in the input.
     Bytes sealed(Bytes bytes, bool isHandshake) const {
         const Link* link = a_.link.get();
-        const U8* under = link->session.keys.receive;
+        const U8* under = link->output.present.keys.receive;
         Link_Keys keys;
         U32 kind = bytes[2] >> 5 & 7;
         U32 number = expected(), acked = 0;
@@ -154,10 +154,10 @@ private:
             bytes[0] = static_cast<uint8_t>(0x80 | (bytes.size() - LINK_HEADER));
             bytes[1] = LINK_VERSION;
             bytes[2] = static_cast<uint8_t>((bytes[2] & 3) | kind << 5);
-            under = link->secrets.hello[0];
+            under = link->session.secrets.hello[0];
             if (kind != LINK_KIND_HELLO) {
-                std::memcpy(&bytes[LINK_HEADER + 8], link->handshake.nonce, LINK_NONCE_BYTES);
-                link_deriveKeys(&link->secrets, 0, link->handshake.nonce, &bytes[LINK_HEADER],
+                std::memcpy(&bytes[LINK_HEADER + 8], link->session.nonce, LINK_NONCE_BYTES);
+                link_deriveKeys(&link->session.secrets, 0, link->session.nonce, &bytes[LINK_HEADER],
                                 &keys);
                 under = keys.receive;
             }
@@ -165,7 +165,8 @@ private:
             if (kind == LINK_KIND_ACK)
                 number = link->sender.base;
             else if (kind == LINK_KIND_PING)
-                number = bytes[2] & 1 ? link->watch.pingsSent : link->watch.pingsSeen;
+                number =
+                    bytes[2] & 1 ? link->session.watch.pingsSent : link->session.watch.pingsSeen;
             else if (kind >= LINK_KIND_PIGGYBACK && bytes.size() > LINK_HEADER)
                 acked = link_extend(link->sender.base, bytes[LINK_HEADER]);
             if (kind == LINK_KIND_BYE)

@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * link_receiver: puts fragments in order, assembles messages, and acknowledges. A function with an
+ * int returns 0 if the peer broke the rules: then nothing it sent can be trusted, and the session
+ * must end.
+ */
+#ifndef LINK_RECEIVER_H
+#define LINK_RECEIVER_H
+
+#include "link_compression.h"
+#include "link_output.h"
+
+#define LINK_SLOT(seq) ((seq) & (LINK_WINDOW - 1U))
+
+/* A fragment that arrived before its turn. */
+typedef struct Link_Slot {
+    U8 flags; /* as in the frame, with LINK_ACK_NOW; 0: the slot is free */
+    U8 size;
+    U8 bytes[LINK_MAX_PAYLOAD];
+} Link_Slot;
+
+typedef struct Link_Receiver {
+    Link_Output* output;
+    /* The fields from here on are 0 when a session begins. */
+    U8 isAssembling; /* between F and L */
+    U8 isHeld;       /* the message is whole, but the program has not taken it */
+    U8 channel;      /* of the message that is whole, ... */
+    U8 longChannel;  /* and of the long one that is being put together */
+    U8 ackDue, ackNow;
+    U8 waiting; /* slots in use */
+    U16 size;   /* of the two, as channel */
+    U16 longSize;
+    U32 ackAt;
+    U8* start; /* of the whole message */
+    Link_Slot slots[LINK_WINDOW];
+    Link_Heads heads; /* of messages that came */
+    /* End of the fields that begin at 0. */
+    U8 message[LINK_HEAD_ROOM + LINK_MAX_MESSAGE + LINK_ESCAPE + LINK_CHECK];
+    U8 brief[LINK_HEAD_ROOM + LINK_MAX_PAYLOAD]; /* a message of one fragment */
+} Link_Receiver;
+
+void link_resetReceiver(Link_Receiver* receiver);
+int link_onData(Link_Receiver* receiver, U32 seq, U32 flags, const U8* data, U32 size);
+/* Offers a held message again. */
+int link_pollReceiver(Link_Receiver* receiver);
+/* Has an acknowledgement go out soon. */
+void link_oweAck(Link_Receiver* receiver);
+/* True if an acknowledgement is due, and a piggybacked one says all of it. */
+int link_ackMayRide(const Link_Receiver* receiver);
+void link_ackIsSent(Link_Receiver* receiver);
+void link_pollAck(Link_Receiver* receiver);
+
+#endif

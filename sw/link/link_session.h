@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * link_session: makes and ends sessions: handshake, reboots, a peer that has vanished.
+ */
+#ifndef LINK_SESSION_H
+#define LINK_SESSION_H
+
+#include "link_sender.h"
+
+/* The watch notes signs of the peer's life. */
+typedef struct Link_Watch {
+    U32 pingsSent, pingsAnswered; /* numbers of the newest own PING, and up to which that is over */
+    U32 askedAt;                  /* when the first PING after that was sent */
+    U32 pingsSeen;                /* number of the peer's newest PING */
+    U32 provenAt;                 /* the peer lived then or later; without a key: heardAt */
+    U32 failures;                 /* frames whose tag was wrong */
+} Link_Watch;
+
+typedef struct Link_Session {
+    Link_Output* output; /* has the identity of the present session */
+    Link_Receiver* receiver;
+    Link_Sender* sender;
+    U8 state;  /* Link_State */
+    U8 wanted; /* Link_start was called */
+    U8 hasCandidate;
+    U8 slot;          /* with a key: that of the last HELLO */
+    U8 isAnswered;    /* a HELLO was answered with `nonce`, ... */
+    U8 isUnconfirmed; /* the peer may not know of the session yet */
+    U32 firstAnswer;  /* ... first at this time, ... */
+    U32 lastAnswer;   /* last at this one */
+    U32 helloAt, helloEvery, pingAt;
+    Link_Watch watch;
+    U8 nonce[LINK_NONCE_BYTES]; /* own, of the next session */
+    Link_Identity candidate; /* of a HELLO that was answered; its sender has not confirmed it yet */
+    Link_Secrets secrets;
+} Link_Session;
+
+/* Draws the nonce of the next session. */
+void link_drawNonce(Link_Session* session);
+/* Prepares the session that the peer's nonce and the own one make. */
+void link_makeCandidate(Link_Session* session, const U8* peerNonce, U32 features);
+/* Sends a frame with both nonces of a session; 0: HELLO, with the own one of the next session. */
+void link_sendHandshake(Link_Session* session, const Link_Identity* of, Link_Kind kind,
+                        U32 version);
+void link_confirmCandidate(Link_Session* session);
+/* Ends the session, if there is one: clears its state and reports its end. */
+void link_endSession(Link_Session* session, Link_State next);
+/* Ends a session that the peer's wish or silence has ended. */
+void link_lose(Link_Session* session);
+/* Ends the session, if there is one, as this side wishes, and tells the peer. */
+void link_abort(Link_Session* session);
+/* Calls or asks the peer; ends a session that is silent or has lasted too long. Returns 1: there is
+ * one. */
+int link_pollSession(Link_Session* session);
+
+#endif

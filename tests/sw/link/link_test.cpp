@@ -232,6 +232,64 @@ INSTANTIATE_TEST_SUITE_P(Vehicles, MinimalLayer,
                          ::testing::Values(Variant{"full", "minimal", false},
                                            Variant{"full", "minimal", true}));
 
+// Layers whose session ends at 60 fragments in a direction, or at 50 wrong tags.
+class Limits : public Variants {
+protected:
+    Limits() { usualSize = longestSize = 40; } // one fragment
+    static size_t delivered(const Side& side) {
+        return static_cast<size_t>(
+            std::count_if(side.outcomes.begin(), side.outcomes.end(),
+                          [](auto& tagged) { return tagged.second == LINK_DELIVERED; }));
+    }
+    // Sends until so many are delivered each way, as a program does that repeats all others.
+    template <class... Meanwhile> void deliver(size_t least, Meanwhile... meanwhile) {
+        for (size_t most = least; delivered(a) < least || delivered(b) < least; most += 10) {
+            ASSERT_LT(most, 4 * least);
+            ASSERT_TRUE(traffic(most, 600'000'000, meanwhile...));
+        }
+        checkBoth();
+    }
+};
+
+TEST_P(Limits, ASessionEndsAtItsLastNumberAndTheNextLosesNothing) {
+    ASSERT_TRUE(connect());
+    deliver(150);
+    EXPECT_GE(a.sessions(), 3u);
+    EXPECT_GE(b.sessions(), 3u);
+}
+
+TEST_P(Limits, ASessionEndsAtTooManyWrongTagsAndBeginsAnew) {
+    Bytes frame;
+    ASSERT_TRUE(connect());
+    a.open(1);
+    ASSERT_TRUE(until([&] { return a.send(1, {1, 2, 3}, 1000) == LINK_OK; }, 1'000'000));
+    ASSERT_TRUE(until(
+        [&] {
+            if (!a.air.empty())
+                frame = framesOf(a.air.back().bytes).back();
+            return a.outcomes.erase(1000) != 0;
+        },
+        1'000'000));
+    b.received.clear();
+    frame.back() ^= 1;
+    unsigned guesses = 0;
+    for (; b.isUp() && guesses < 200; ++guesses) {
+        now += 100'000; // the rest of half a frame is dropped
+        b.poll();
+        b.receive(frame);
+        b.poll();
+    }
+    EXPECT_GT(guesses, 20u); // the search goes on inside a frame, so each may count several times
+    EXPECT_LE(guesses, 50u);
+    deliver(20);
+    EXPECT_EQ(a.sessions(), 2u);
+    EXPECT_EQ(b.sessions(), 2u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Vehicles, Limits,
+                         ::testing::Values(Variant{"limits", "limits", true},
+                                           Variant{"limits", "minimal_limits", true}));
+
 TEST(FullLayer, TheQueueHasAReserveForShortMessages) {
     Pair pair(testSeed());
     ASSERT_TRUE(pair.connect());

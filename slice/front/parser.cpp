@@ -114,6 +114,14 @@ std::string Parser::doc() {
     return std::string(token().doc);
 }
 
+// Reads metadata with the doc comment that stands before or behind it.
+void Parser::readMetadata(std::string& text, Metadata& found) {
+    text = doc();
+    found = metadata();
+    if (text.empty())
+        text = doc();
+}
+
 // ---- files and metadata
 
 // The preprocessor may spell the main file's name in another way than the command line.
@@ -190,10 +198,7 @@ void Parser::definition() {
         fileMetadata();
     if (at(Token::Kind::End))
         return;
-    doc_ = doc();
-    metadata_ = metadata();
-    if (doc_.empty())
-        doc_ = doc();
+    readMetadata(doc_, metadata_);
     if (!at(Token::Kind::Identifier) || token().escaped)
         fail(expected);
     begun_.insert(token().at.file);

@@ -107,10 +107,7 @@ void Parser::classDefinition() {
 void Parser::member(Declaration& d, bool mayBeOptional) {
     size_t start = position_;
     Field f;
-    f.doc = doc();
-    f.metadata = metadata();
-    if (f.doc.empty())
-        f.doc = doc();
+    readMetadata(f.doc, f.metadata);
     Location begin = token().at;
     bool isClass = d.kind == Declaration::Kind::Class;
     bool isIdempotent = isClass && isWord("idempotent");

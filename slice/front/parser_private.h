@@ -63,6 +63,7 @@ private:
     bool isMain(std::string_view file);
     void metadataStrings(Metadata& found, std::string_view end);
     Metadata metadata();
+    void readMetadata(std::string& text, Metadata& found);
     void fileMetadata();
     void suppressWarnings(const std::string& metadata, std::string_view file);
 

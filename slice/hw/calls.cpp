@@ -19,7 +19,7 @@ public:
     CallMapper(const Declaration& d, const Unit& unit, Block& block, Diagnostics& diagnostics)
         : d_(d), unit_(unit), block_(block), diagnostics_(diagnostics) {}
 
-    int run() {
+    void run() {
         for (const Operation& o : d_.operations)
             if (isListener(o))
                 addListener(o);
@@ -30,17 +30,15 @@ public:
             while (block_.memoryBytes < offset_)
                 block_.memoryBytes *= 2;
         }
-        return errors_;
     }
 
 private:
     void error(const Location& at, const std::string& text) {
-        ++errors_;
         diagnostics_.error(at, "interface '" + d_.name + "' in hardware: " + text);
     }
     void keys(const std::vector<std::string>& metadata, const std::vector<std::string>& known,
               const Location& at) {
-        errors_ += checkKeys(metadata, known, "interface '" + d_.name + "'", at, diagnostics_);
+        checkKeys(metadata, known, "interface '" + d_.name + "'", at, diagnostics_);
     }
 
     static bool isListener(const Operation& o) {
@@ -233,7 +231,6 @@ private:
     Block& block_;
     Diagnostics& diagnostics_;
     unsigned offset_ = 0; // bytes of buffers so far
-    int errors_ = 0;
 };
 
 } // namespace
@@ -250,20 +247,16 @@ bool number(const std::string& text, unsigned low, unsigned high, unsigned& valu
     return n >= low && n <= high;
 }
 
-int checkKeys(const std::vector<std::string>& metadata, const std::vector<std::string>& known,
-              const std::string& who, const Location& at, Diagnostics& diagnostics) {
-    int errors = 0;
+void checkKeys(const std::vector<std::string>& metadata, const std::vector<std::string>& known,
+               const std::string& who, const Location& at, Diagnostics& diagnostics) {
     for (const std::string& m : metadata)
         if (m.compare(0, 3, "hw:") == 0 &&
-            std::find(known.begin(), known.end(), m.substr(0, m.find(':', 3))) == known.end()) {
+            std::find(known.begin(), known.end(), m.substr(0, m.find(':', 3))) == known.end())
             diagnostics.error(at, who + " in hardware: [\"" + m + "\"] means nothing here");
-            ++errors;
-        }
-    return errors;
 }
 
-int mapCalls(const Declaration& d, const Unit& unit, Block& block, Diagnostics& diagnostics) {
-    return CallMapper(d, unit, block, diagnostics).run();
+void mapCalls(const Declaration& d, const Unit& unit, Block& block, Diagnostics& diagnostics) {
+    CallMapper(d, unit, block, diagnostics).run();
 }
 
 } // namespace hw

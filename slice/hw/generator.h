@@ -38,6 +38,12 @@ std::vector<Port> wrapperPorts(const Block& b);
 // Writes a wrapper's first comment; `mark` begins its lines.
 void wrapperHead(Writer& w, const Block& b, const std::string& mark);
 
+// "[7:0] ", or nothing for a bit; "std_logic_vector(7 downto 0)", or "std_logic".
+std::string verilogRange(unsigned width);
+std::string vhdlType(unsigned width);
+// Writes an entity, up to its architecture's declarations.
+void vhdlEntity(Writer& w, const std::string& name, const std::vector<Port>& ports);
+
 // ---- values of the servant ----
 
 std::string coreType(const Block& b); // Module_Interface_Core

@@ -33,21 +33,21 @@ public:
         pins();
         if (!d_.bases.empty())
             error(d_.at, "has a base; each slot is one interface by itself");
-        errors_ += mapCalls(d_, unit_, block_, diagnostics_);
+        mapCalls(d_, unit_, block_, diagnostics_);
         if (block_.calls.size() > mostOperations)
             error(d_.at, "has " + std::to_string(block_.calls.size()) +
                              " operations and events; CONTROL has bits for " +
                              std::to_string(mostOperations));
-        if (errors_ == 0)
+        if (!hasErrors())
             place();
-        if (errors_ == 0)
+        if (!hasErrors())
             checkPorts();
         return block_;
     }
 
 private:
+    bool hasErrors() const { return diagnostics_.errors() > before_; }
     void error(const Location& at, const std::string& text) {
-        ++errors_;
         diagnostics_.error(at, "interface '" + d_.name + "' in hardware: " + text);
     }
 
@@ -56,8 +56,8 @@ private:
         std::string letters = upperCase(d_.name + "_");
         block_.type = static_cast<unsigned>(letters[0]) << 8 | static_cast<unsigned>(letters[1]);
         block_.version = 0x0100;
-        errors_ += checkKeys(d_.metadata, {"hw:type", "hw:version", "hw:pin"},
-                             "interface '" + d_.name + "'", d_.at, diagnostics_);
+        checkKeys(d_.metadata, {"hw:type", "hw:version", "hw:pin"}, "interface '" + d_.name + "'",
+                  d_.at, diagnostics_);
         for (auto [key, value] :
              {std::pair{"hw:type", &block_.type}, std::pair{"hw:version", &block_.version}}) {
             std::string text = d_.metadataValue(key);
@@ -142,7 +142,7 @@ private:
         if (needed > most)
             error(d_.at, "needs " + std::to_string(needed) + " words, a slot has " +
                              std::to_string(most) + ": " + list);
-        if (errors_)
+        if (hasErrors())
             return;
         unsigned next = firstWord;
         auto take = [&](const std::string& name) {
@@ -176,7 +176,7 @@ private:
     const Unit& unit_;
     Diagnostics& diagnostics_;
     Block block_;
-    int errors_ = 0;
+    int before_ = diagnostics_.errors();
 };
 
 } // namespace

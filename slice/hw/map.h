@@ -100,13 +100,13 @@ struct Block {
 // Maps all hardware interfaces of the unit's main file; errors are in `diagnostics`.
 std::vector<Block> mapHardware(const Unit& unit, Diagnostics& diagnostics);
 
-// Maps the calls of an interface, which have no words yet. Returns the number of errors.
-int mapCalls(const Declaration& d, const Unit& unit, Block& block, Diagnostics& diagnostics);
+// Maps the calls of an interface, which have no words yet.
+void mapCalls(const Declaration& d, const Unit& unit, Block& block, Diagnostics& diagnostics);
 // Parses a whole number, decimal or 0x..., within [low, high]. False: it is malformed.
 bool number(const std::string& text, unsigned low, unsigned high, unsigned& value);
-// Checks that hw: metadata is one of `known`. Returns the number of errors.
-int checkKeys(const std::vector<std::string>& metadata, const std::vector<std::string>& known,
-              const std::string& who, const Location& at, Diagnostics& diagnostics);
+// Checks that hw: metadata is one of `known`.
+void checkKeys(const std::vector<std::string>& metadata, const std::vector<std::string>& known,
+               const std::string& who, const Location& at, Diagnostics& diagnostics);
 
 std::string snakeCase(const std::string& name);
 std::string upperCase(std::string text);

@@ -66,22 +66,8 @@ std::string signalOf(const Port& p) {
     return p.name.substr(0, p.name.size() - 2);
 }
 
-std::string range(unsigned width, bool vhdl) {
-    std::string top = std::to_string(width - 1);
-    if (vhdl)
-        return width == 1 ? "std_logic" : "std_logic_vector(" + top + " downto 0)";
-    return width == 1 ? "" : "[" + top + ":0] ";
-}
-
-bool isDone(const Block& b, const Port& p) {
-    for (const Call& c : b.calls)
-        if (c.isLong && p.name == c.name + "_done_i")
-            return true;
-    return false;
-}
-
-std::string callOf(const Port& done) {
-    return done.name.substr(0, done.name.size() - 7);
+bool isDone(const Port& p) {
+    return p.call && p.call->isLong && p.name == p.call->name + "_done_i";
 }
 
 void head(Writer& w, const Block& b, const char* comment) {
@@ -133,15 +119,15 @@ std::string verilogCore(const Block& b) {
     w.line(std::string("    output wire irq_o") + (b.pins.empty() ? "" : ","));
     for (const Pin& p : b.pins)
         w.line(std::string("    ") + (p.isOut() ? "output wire " : "input  wire ") +
-               range(p.width, false) + p.name + (&p == &b.pins.back() ? "" : ","));
+               verilogRange(p.width) + p.name + (&p == &b.pins.back() ? "" : ","));
     w.line(");");
     std::string unused, connections;
     for (const Port& p : innerPorts(b)) {
         std::string name = signalOf(p);
-        if (isDone(b, p))
+        if (isDone(p))
             w.line("    reg  " + name + ";");
         else
-            w.line("    wire " + range(p.width, false) + name +
+            w.line("    wire " + verilogRange(p.width) + name +
                    (p.isOut ? "" : " = " + std::to_string(p.width) + "'d0") + ";");
         if (p.isOut)
             unused += name + ", ";
@@ -153,10 +139,10 @@ std::string verilogCore(const Block& b) {
     w.line("        .irq_o(irq_o)" + connections);
     w.line("    );");
     for (const Port& p : innerPorts(b))
-        if (isDone(b, p)) {
+        if (isDone(p)) {
             w.line();
             w.line("    always @(posedge clk_i)");
-            w.line("        " + signalOf(p) + " <= " + callOf(p) + "_start && !core_rst;");
+            w.line("        " + signalOf(p) + " <= " + p.call->name + "_start && !core_rst;");
         }
     w.line();
     std::istringstream stream(b.memoryBytes ? npiStream : "");
@@ -180,30 +166,16 @@ std::string zeroed(const std::string& name, const Port& p) {
 std::string vhdlCore(const Block& b) {
     Writer w;
     head(w, b, "--");
-    w.line("library ieee;");
-    w.line("use ieee.std_logic_1164.all;");
-    w.line();
-    w.line("entity " + b.name + " is");
-    w.line("  port (");
     auto outer = corePorts(b);
-    for (const Port& p : outer) {
-        if (!p.group.empty())
-            w.line("    -- " + p.group);
-        w.line("    " + p.name + " : " + (p.isOut ? "out " : "in  ") + range(p.width, true) +
-               (&p == &outer.back() ? "" : ";"));
-    }
-    w.line("  );");
-    w.line("end entity;");
-    w.line();
-    w.line("architecture rtl of " + b.name + " is");
+    vhdlEntity(w, b.name, outer);
     std::string connections;
     std::vector<std::string> zeros, dones;
     for (const Port& p : innerPorts(b)) {
         std::string name = signalOf(p);
-        w.line("  signal " + name + " : " + range(p.width, true) + ";");
+        w.line("  signal " + name + " : " + vhdlType(p.width) + ";");
         connections += std::string(",\n      ") + p.name + " => " + name;
-        if (isDone(b, p))
-            dones.push_back("      " + name + " <= " + callOf(p) + "_start and not core_rst;");
+        if (isDone(p))
+            dones.push_back("      " + name + " <= " + p.call->name + "_start and not core_rst;");
         else if (!p.isOut)
             zeros.push_back(zeroed(name, p));
     }

@@ -13,12 +13,38 @@
 namespace hw {
 namespace {
 
-std::string number(unsigned n) {
-    return std::to_string(n);
+std::string vectorType(unsigned width) {
+    return "std_logic_vector(" + std::to_string(width - 1) + " downto 0)";
 }
 
-std::string vectorType(unsigned width) {
-    return "std_logic_vector(" + number(width - 1) + " downto 0)";
+} // namespace
+
+std::string vhdlType(unsigned width) {
+    return width == 1 ? "std_logic" : vectorType(width);
+}
+
+void vhdlEntity(Writer& w, const std::string& name, const std::vector<Port>& ports) {
+    w.line("library ieee;");
+    w.line("use ieee.std_logic_1164.all;");
+    w.line();
+    w.line("entity " + name + " is");
+    w.line("  port (");
+    for (const Port& p : ports) {
+        if (!p.group.empty())
+            w.line("    -- " + p.group);
+        w.line("    " + p.name + " : " + (p.isOut ? "out " : "in  ") + vhdlType(p.width) +
+               (&p == &ports.back() ? "" : ";"));
+    }
+    w.line("  );");
+    w.line("end entity;");
+    w.line();
+    w.line("architecture rtl of " + name + " is");
+}
+
+namespace {
+
+std::string number(unsigned n) {
+    return std::to_string(n);
 }
 
 // `width` bits of a vector; one bit of it is a std_logic.
@@ -57,21 +83,6 @@ std::string portOf(const Call& c, const Piece& p, bool isResult) {
 
 unsigned eventBits(const Block& b) {
     return std::max(b.events(), 1u);
-}
-
-void entity(Writer& w, const Block& b) {
-    w.line("entity " + b.name + "_wrapper is");
-    w.line("  port (");
-    auto list = wrapperPorts(b);
-    for (const Port& p : list) {
-        if (!p.group.empty())
-            w.line("    -- " + p.group);
-        w.line("    " + p.name + " : " + (p.isOut ? "out " : "in  ") +
-               (p.width == 1 ? "std_logic" : vectorType(p.width)) +
-               (&p == &list.back() ? "" : ";"));
-    }
-    w.line("  );");
-    w.line("end entity;");
 }
 
 void signals(Writer& w, const Block& b) {
@@ -276,12 +287,7 @@ void calls(Writer& w, const Block& b) {
 GeneratedFile vhdlFile(const Block& b) {
     Writer w;
     wrapperHead(w, b, "--");
-    w.line("library ieee;");
-    w.line("use ieee.std_logic_1164.all;");
-    w.line();
-    entity(w, b);
-    w.line();
-    w.line("architecture rtl of " + b.name + "_wrapper is");
+    vhdlEntity(w, b.name + "_wrapper", wrapperPorts(b));
     signals(w, b);
     w.line("begin");
     w.line();

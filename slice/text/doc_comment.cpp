@@ -28,23 +28,22 @@ void plainLinks(std::string& s) {
 
 // "@param name text" becomes "name: text".
 void plainTag(std::string& s) {
-    auto is = [&](std::string_view tag) { return s.compare(0, tag.size(), tag) == 0; };
-    if (is("@param ")) {
-        s.erase(0, 7);
-        size_t end = s.find(' ');
+    static const struct {
+        std::string_view tag, text;
+        bool isNamed; // a name follows, which gets a colon
+    } tags[] = {{"@param ", "", true},
+                {"@return ", "result: ", false},
+                {"@throws ", "throws ", true},
+                {"@deprecated", "Deprecated:", false},
+                {"@see ", "see ", false}};
+    for (const auto& [tag, text, isNamed] : tags) {
+        if (s.compare(0, tag.size(), tag) != 0)
+            continue;
+        s.replace(0, tag.size(), text);
+        size_t end = isNamed ? s.find(' ', text.size()) : std::string::npos;
         if (end != std::string::npos)
             s.insert(end, ":");
-    } else if (is("@return ")) {
-        s.replace(0, 8, "result: ");
-    } else if (is("@throws ")) {
-        s.erase(0, 1);
-        size_t end = s.find(' ', 7);
-        if (end != std::string::npos)
-            s.insert(end, ":");
-    } else if (is("@deprecated")) {
-        s.replace(0, 11, "Deprecated:");
-    } else if (is("@see ")) {
-        s.erase(0, 1);
+        return;
     }
 }
 

@@ -181,20 +181,10 @@ function showInside() {
   table(byId("fanouts"), [["net", n => n.name], ["ends", n => n.ends], ["from", n => n.kind], source(n => n.name)], nets.fanouts);
 }
 
-// ---- History and differences
-function points() { // oldest first; the last is now
-  const now = { id: "now", date: "", subject: "this run", designs: {} };
-  for (const d of usable) {
-    now.designs[d.name] = { ...d.figures, instances: {} };
-    for (const [p, signals] of Object.entries(d.figures.costs))
-      now.designs[d.name].instances[p] = [0, 1].map(i => sum(Object.values(signals).map(c => c[i])));
-  }
-  for (const d of data.designs)
-    if (!d.figures && shown(d)) now.designs[d.name] = { ...shown(d), instances: {} };
-  return [...data.history].reverse().concat(now);
-}
-const all = points();
-function showHistory() {
+// ---- History
+function showHistory() { // oldest first; the last is now
+  const now = { id: "now", date: "", subject: "this run", designs: { [picked.name]: picked.figures } };
+  const all = [...data.history].reverse().concat(now);
   const kinds = [["lut", "LUT"], ["ff", "FF"], ["slices", "slices"]], known = all.filter(c => c.designs[picked.name]).map(c => ({ ...c, f: c.designs[picked.name] }));
   known.forEach((c, i) => { c.before = known[i - 1]?.f ?? c.f; });
   chart(byId("history"), { labels: known.map(c => c.date.slice(5) || c.id), titles: known.map(c => `${c.id} ${c.date} ${c.subject}`),
@@ -204,26 +194,8 @@ function showHistory() {
   table(byId("commits"), [["commit", c => c.id], ["date", c => c.date], change("lut"), change("ff"), ["slices", c => c.f.slices], ["MHz", c => c.f.mhz || 0, c => c.f.mhz?.toFixed(0)],
     ["subject", c => c.subject, , { minWidth: 400 }]], known.reverse());
 }
-function showDifference() {
-  const a = all[byId("from").value].designs, b = all[byId("to").value].designs, x = a[picked.name]?.instances ?? {}, y = b[picked.name]?.instances ?? {};
-  // Columns of a figure then and now; rows are [name, then, now].
-  const pair = (title, key, gone = "") => [[title, r => r[2]?.[key] ?? gone], changes("change", r => (r[2]?.[key] ?? 0) - (r[1]?.[key] ?? 0))];
-  const rows = (then, now, keys) => [...new Set([...Object.keys(then), ...Object.keys(now)])].sort().map(name => [name, then[name], now[name]])
-    .filter(([, x, y]) => keys.some(key => (x?.[key] ?? 0) !== (y?.[key] ?? 0)));
-  // A design without known figures of today is left out of the difference: it is not gone.
-  const isKnown = ([name, x, y]) => byId("to").value < all.length - 1 || y || !data.designs.some(d => d.name === name);
-  table(byId("difference"), [["design", r => r[0]], ...pair("LUT", "lut", "gone"), ...pair("FF", "ff"), ...pair("slices", "slices")], rows(a, b, ["lut", "ff", "slices"]).filter(isKnown));
-  byId("difference-inside").textContent = `Instances of ${picked.name}`;
-  table(byId("instances"), [["instance (without those below)", r => r[0] || picked.top], ...pair("LUT", 0, 0), ...pair("FF", 1, 0)],
-    rows(x, y, [0, 1]).sort((l, r) => Math.abs((r[2]?.[0] ?? 0) - (r[1]?.[0] ?? 0)) - Math.abs((l[2]?.[0] ?? 0) - (l[1]?.[0] ?? 0))));
-}
-function show() { showInside(); showHistory(); showDifference(); }
+function show() { showInside(); showHistory(); }
 
-for (const [id, chosen] of [["from", Math.max(0, all.length - 2)], ["to", all.length - 1]]) {
-  byId(id).append(...all.map((c, i) => new Option(`${c.id} ${c.date} ${c.subject}`.slice(0, 70), i)));
-  byId(id).value = chosen;
-  byId(id).onchange = showDifference;
-}
 showVerdict();
 showCores();
 showPaper();

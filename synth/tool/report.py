@@ -270,10 +270,6 @@ def differences(before, after):
         "No figure of any design differs.\n"
 
 
-def instances(costs):
-    return {path: [cost.lut, cost.ff] for path, cost in baseline.by_instance(costs).items()}
-
-
 def page_figures(f):
     """The figures for the page: times are rounded here, and only here."""
     def rounded(paths):
@@ -316,7 +312,7 @@ def html(report, parts, libraries):
             "cores": report.cores.rows if report.cores else [],
             "designs": [page_design(report, row) for row in report.rows],
             "history": [commit | {"designs": {
-                name: {key: a[key] for key in baseline.KEYS} | {"instances": instances(a["costs"])}
+                name: {key: a[key] for key in baseline.KEYS}
                 for name, a in commit["designs"].items()}} for commit in report.commits]}
     style, script = page_parts(libraries)
     return filled((parts / "page.html").read_text(),

@@ -8,7 +8,6 @@
 #            what it synthesised is left in the folder `kept`, where the other cases begin
 #   growth   a register more fails with its name; accepting it passes; a second run takes all from
 #            the cache
-#   slow     a longer path than the clock allows fails with its ends
 #   partial  one design alone: the page has all; of those that have changed it says so; the limits
 #            hold, whatever is accepted
 #   broken   a syntax error is told with its file and line, and the other designs are reported
@@ -90,14 +89,6 @@ growth)
     has 'extra +.*FF'
     [ "$(grep -c '^\[' "$work/log")" = 1 ] || fail "more was synthesised than what has changed"
     run --accept && run || fail "the accepted growth does not pass"
-    ;;
-slow)
-    run --accept || fail "$(cat "$work/log")"
-    sed -i 's/^    wire \[5:0\] word;/&\n    reg [31:0] chain;\n    wire [31:0] a = chain + {chain[7:0], chain[31:8]}, b = a ^ (a + {a[15:0], a[31:16]}), c = b + {b[3:0], b[31:4]}, d = c ^ (c + {c[10:0], c[31:11]}), e = d ^ (d + {d[12:0], d[31:13]}), f = e + {e[5:0], e[31:6]};/; s/^        data_o <= word/        chain <= f ^ word;\n        data_o <= chain[31:26] ^ word/' \
-        "$project/hdl/blocks/pair.v"
-    if run; then fail "a chain of adders passes"; fi
-    has 'FAILED whole: [0-9.]* MHz; accepted were [0-9.]*, the least is 100'
-    has 'chain.* to .*chain.* levels'
     ;;
 partial)
     run || fail "$(cat "$work/log")"

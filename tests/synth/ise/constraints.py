@@ -55,89 +55,96 @@ def renamed():
                           stdout=subprocess.DEVNULL, stderr=subprocess.PIPE).stderr
 
 
-def read_netlist():
-    """Pairs (start, end); a start or an end is ("pad", name), ("clock", names of the net), a start
-    ("ram", names of its clock), an end ("reset", the clock of the reset register)."""
-    module = netlist()["modules"]["chip"]
-    names, source, comb, sinks = {}, {}, {}, []
-    pads = []
-    for name, port in module["ports"].items():
-        for index, bit in enumerate(port["bits"]):
-            pad = pad_name(name, index, len(port["bits"]))
-            names.setdefault(bit, set()).add(pad)
-            if name.startswith(OF_MIG):
-                continue
-            pads.append(pad)
-            if port["direction"] == "output":
-                sinks.append((("pad", pad), bit))
-            else:
-                source[bit] = ("pad", pad)
-    for name, net in module["netnames"].items():
-        if len(net["bits"]) == 1:
-            names.setdefault(net["bits"][0], set()).add(name)
-    clock = lambda bit: ("clock", tuple(sorted(names.get(bit, ["?"]), key=len)[:4]))
-    for cell in module["cells"].values():
-        kind, nets, way = cell["type"], cell["connections"], cell["port_directions"]
+class Paths:
+    """The chip's paths, pairs (start, end) in `pairs`, and its pads without MIG's in `pads`. A start
+    or an end is ("pad", name), ("clock", names of the net), a start ("ram", names of its clock), an
+    end ("reset", the clock of the reset register)."""
+
+    def __init__(self, module):
+        self.names, self.pads = {}, []
+        # Of a net: the start that drives it, or the nets (or starts) that its logic reads
+        self.source, self.comb = {}, {}
+        self.sinks, self.origins = [], {}  # (end, net); of a net: its starts, as far as known
+        self.add_ports(module["ports"])
+        for name, net in module["netnames"].items():
+            if len(net["bits"]) == 1:
+                self.names.setdefault(net["bits"][0], set()).add(name)
+        for cell in module["cells"].values():
+            self.add(cell["type"], cell["connections"], cell["port_directions"])
+        self.find_origins()
+        self.pairs = {(start, end) for end, bit in self.sinks for start in self.known(bit)}
+
+    def clock(self, bit):
+        return "clock", tuple(sorted(self.names.get(bit, ["?"]), key=len)[:4])
+
+    def add_ports(self, ports):
+        for name, port in ports.items():
+            for index, bit in enumerate(port["bits"]):
+                pad = pad_name(name, index, len(port["bits"]))
+                self.names.setdefault(bit, set()).add(pad)
+                if name.startswith(OF_MIG):
+                    continue
+                self.pads.append(pad)
+                if port["direction"] == "output":
+                    self.sinks.append((("pad", pad), bit))
+                else:
+                    self.source[bit] = ("pad", pad)
+
+    def add(self, kind, nets, way):
         ins = [p for p in nets if way[p] == "input"]
-        outs = [p for p in nets if way[p] != "input"]
         if kind == "mig":
-            own = clock(nets["c3_clk0"][0])
+            own = self.clock(nets["c3_clk0"][0])
             for port in nets:
-                asynchronous = port.startswith((OF_MIG, "c3_sys", "c3_clk")) or "_clk" in port
-                for bit in nets[port] if not asynchronous else []:
+                if port.startswith((OF_MIG, "c3_sys", "c3_clk")) or "_clk" in port:
+                    continue
+                for bit in nets[port]:
                     if port in ins:
-                        sinks.append((own, bit))
+                        self.sinks.append((own, bit))
                     else:
-                        source[bit] = own
+                        self.source[bit] = own
         elif kind.startswith("$mem"):
-            own = clock((nets["WR_CLK"] or ["?"])[0])
-            for port in ("WR_ADDR", "WR_DATA", "WR_EN"):
-                sinks += [(own, bit) for bit in nets[port]]
-            for bit in nets["RD_DATA"]:
-                comb[bit] = list(nets["RD_ADDR"]) + ([("ram", own[1])] if nets["WR_CLK"] else [])
+            own = self.clock((nets["WR_CLK"] or ["?"])[0])
+            self.sinks += [(own, bit) for port in ("WR_ADDR", "WR_DATA", "WR_EN")
+                           for bit in nets[port]]
+            read = list(nets["RD_ADDR"]) + ([("ram", own[1])] if nets["WR_CLK"] else [])
+            self.comb.update(dict.fromkeys(nets["RD_DATA"], read))
         elif kind == "$tribuf" or "CLK" not in nets:
             needs = [bit for p in ins for bit in nets[p]]
-            for p in outs:
-                for bit in nets[p]:
-                    if bit in source and source[bit][0] == "pad":  # a pad both ways
-                        sinks += [(source[bit], need) for need in needs]
-                    else:
-                        comb[bit] = needs
+            for bit in [bit for p in nets if p not in ins for bit in nets[p]]:
+                if self.source.get(bit, "?")[0] == "pad":  # a pad both ways
+                    self.sinks += [(self.source[bit], need) for need in needs]
+                else:
+                    self.comb[bit] = needs
         else:
-            own = clock(nets["CLK"][0])
+            own = self.clock(nets["CLK"][0])
             for p in ins:
-                if p in ("ARST", "ALOAD", "SET", "CLR"):
-                    sinks += [(("reset", own), bit) for bit in nets[p]]
-                elif p != "CLK":
-                    sinks += [(own, bit) for bit in nets[p]]
-            for bit in nets["Q"]:
-                source[bit] = own
-    origins, visited = {}, set()  # of a net: starts
+                end = ("reset", own) if p in ("ARST", "ALOAD", "SET", "CLR") else own
+                self.sinks += [(end, bit) for bit in nets[p] if p != "CLK"]
+            self.source.update(dict.fromkeys(nets["Q"], own))
 
-    def known(bit):
+    def known(self, bit):
         if isinstance(bit, tuple):
             return frozenset([bit])
-        if isinstance(bit, str) or (bit not in source and bit not in comb):
-            return frozenset()
-        return frozenset([source[bit]]) if bit in source else origins.get(bit)
+        if bit in self.source:
+            return frozenset([self.source[bit]])
+        return self.origins.get(bit) if bit in self.comb else frozenset()
 
-    for _, first in sinks:
-        stack = [first]
-        while stack:
-            bit = stack[-1]
-            if known(bit) is not None:
-                stack.pop()
-                continue
-            todo = [b for b in comb[bit]
-                    if known(b) is None and b not in visited] if bit not in visited else []
-            visited.add(bit)
-            if todo:
+    def find_origins(self):
+        visited = set()
+        for _, first in self.sinks:
+            stack = [first]
+            while stack:
+                bit = stack[-1]
+                todo = []
+                if self.known(bit) is None and bit not in visited:
+                    todo = [b for b in self.comb[bit] if self.known(b) is None and b not in visited]
+                    visited.add(bit)
                 stack += todo
-            else:
-                origins[bit] = frozenset().union(*(known(b) or () for b in comb[bit]))
-                stack.pop()
-    pairs = {(start, end) for end, bit in sinks for start in known(bit)}
-    return pads, pairs
+                if not todo:
+                    stack.pop()
+                    if self.known(bit) is None:
+                        self.origins[bit] = frozenset().union(
+                            *(self.known(b) or () for b in self.comb[bit]))
 
 
 def names_in(text):
@@ -208,7 +215,8 @@ def tell(point):
 
 if renamed() != (HERE / "mig.renamed").read_text():
     sys.exit(f"{renamed()}is what merge_ucf.py renamed, and not mig.renamed")
-all_pads, all_pairs = read_netlist()
+paths = Paths(netlist()["modules"]["chip"])
+all_pads, all_pairs = paths.pads, paths.pairs
 used = {point[1] for pair in all_pairs for point in pair if point[0] == "pad"}
 used |= {name for pair in all_pairs for point in pair if point[0] == "clock" for name in point[1]}
 unused = {pad for pad in all_pads if pad.startswith("core_pins") and pad not in used}

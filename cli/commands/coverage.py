@@ -7,7 +7,6 @@ from pathlib import Path
 
 from cli.build_folder import BuildFolder, configured
 from cli.command import command
-from cli.commands.synth import with_name
 from cli.options import BUILD, JOBS, NAME, Option
 from cli.runner import Stop, output, run, say, warn
 
@@ -29,7 +28,7 @@ def coverage(values):
     and those of tools, and merges Verilator's, GHDL's and gcov's counts. Leaves html/index.html,
     summary.json, history (a line a run)."""
     build = configured(values, tests=True)
-    build.ninja("coverage", "regress")
+    build.ninja("regress")
     counted = BuildFolder("build/coverage", values)
     counted.configure("-DCOVERAGE=ON")
     work, regress = counted.folder, build / "tests/regress/regress"
@@ -44,14 +43,11 @@ def coverage(values):
     points = run_tests(work, values)
     say("coverage: merging")
     infos = [*of_host(work), *of_rtl(work, points), *of_vhdl(work, points, build)]
-    run(["lcov", "--quiet", *with_name("--add-tracefile", infos), "--output-file",
-         work / "merged.info"])
+    run(["lcov", "--quiet", *(word for info in infos for word in ("--add-tracefile", info)),
+         "--output-file", work / "merged.info"])
     run(["genhtml", "--quiet", "--title", "IceSoC", "--output-directory", work / "html",
          work / "merged.info"])
-    others = [info for info in infos if info.name != "rtl.info"]  # the tool reads rtl.dat
-    status = run([build / "tests/regress/coverage", "--gates", gates, "--verilator",
-                  work / "rtl.dat", *with_name("--info", others), "--out", work / "summary.json"],
-                 check=False)
+    status = run(["tests/regress/coverage.py", gates, work], check=False)
     (work / "tree").write_text(tree)
     note(work)
     return status

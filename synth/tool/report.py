@@ -3,12 +3,11 @@
 page that needs no network."""
 import dataclasses
 import itertools
-import json
 
 import baseline
 import slices
 import timing
-from baseline import ACCEPTED, MEASURED, clock_text, short_version
+from baseline import MEASURED, clock_text, short_version
 from owners import Cost
 from runner import Run
 from sources import Design, Library, Plan

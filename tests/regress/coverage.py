@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Compares coverage of RTL and host code with gates, for each file: points of the RTL
+"""coverage: compares coverage of RTL and host code with gates, for each file: points of the RTL
 (lines, branches, toggles, covers) from Verilator, lines of VHDL from GHDL, of C and C++ from gcov.
-Exit status 1: a file is below its gate."""
-import argparse
+
+Usage, in the tree: coverage.py GATES.json FOLDER   FOLDER: rtl.dat, host.info, vhdl.info, as far as
+there are such; summary.json is written there. Exit status 1: a file is below its gate.
+"""
 import collections
 import json
 import os
@@ -65,7 +67,7 @@ class Explanations:
                 for below, points, _, seen in self.rules if not seen[False]]
 
 
-def read_verilator(path, root, explanations, files):
+def read_verilator(path, root, files, explanations):
     """verilated.dat: C '\\1key\\2value\\1key\\2value...' count. If a module exists several times,
     in several models or with several parameters, a point is covered if any of them covers it."""
     counts, places = collections.Counter(), {}
@@ -94,7 +96,7 @@ def read_verilator(path, root, explanations, files):
             file.missed.append(f"{line}: {point}")
 
 
-def read_info(path, root, files):
+def read_info(path, root, files, _):
     """lcov's .info: SF:file, DA:line,count"""
     file = ""
     for text in open(path, errors="replace"):
@@ -145,26 +147,18 @@ def report(files, gates, out):
     return below
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--source", default=".", help="root of the tree")
-    parser.add_argument("--gates", required=True, help="JSON: least percentages by path")
-    parser.add_argument("--verilator", help="merged data of verilator_coverage")
-    parser.add_argument("--info", action="append", default=[], help="lcov file of C, C++ or VHDL")
-    parser.add_argument("--out", default="summary.json", help="JSON summary")
-    options = parser.parse_args()
+def main(gates, folder):
+    root, files = os.path.realpath("."), collections.defaultdict(File)
     try:
-        root, files = os.path.realpath(options.source), collections.defaultdict(File)
-        with open(options.gates) as text:
-            limits = json.load(text)
+        limits = json.loads(pathlib.Path(gates).read_text())
         explanations = Explanations(limits.get("explained", []))
-        if options.verilator:
-            read_verilator(options.verilator, root, explanations, files)
-        for info in options.info:
-            read_info(info, root, files)
+        for name in ("rtl.dat", "host.info", "vhdl.info"):
+            if (path := pathlib.Path(folder, name)).exists():
+                read = read_info if path.suffix == ".info" else read_verilator
+                read(path, root, files, explanations)
         if not files:
             raise Stop("nothing was measured: did the tests run with COVERAGE_DIR?")
-        below = report(files, limits["gates"], options.out)
+        below = report(files, limits["gates"], f"{folder}/summary.json")
         below += [f"an explanation that explains nothing: {rule}" for rule in explanations.stale()]
     except (OSError, ValueError, KeyError, Stop) as error:
         print(f"coverage: {error}", file=sys.stderr)
@@ -174,4 +168,4 @@ def main():
     return 1 if below else 0
 
 
-sys.exit(main())
+sys.exit(main(*sys.argv[1:]) if len(sys.argv) == 3 else __doc__)

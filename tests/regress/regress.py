@@ -24,21 +24,6 @@ from tool import Stop
 from waves import add_waves
 
 
-def number(least, most=None):
-    def parse(text):
-        if not re.fullmatch("[0-9]+", text) or int(text) < least or (most and int(text) > most):
-            raise argparse.ArgumentTypeError(
-                f"'{text}' is not a number from {least}" + (f" to {most}" if most else " on"))
-        return int(text)
-    return parse
-
-
-def seed(text):
-    if not re.fullmatch("[0-9]{1,19}|random", text):
-        raise argparse.ArgumentTypeError(f"'{text}' is neither a number nor `random`")
-    return text
-
-
 def regex(text):
     try:
         return re.compile(text)
@@ -69,10 +54,10 @@ def parse(words):
     only.add_argument("--rerun-failed", action="store_true", help="only tests that failed last")
     only.add_argument("--kept", action="store_true", help="only tests that failed with some seed "
                       "and have not passed with it since, with these seeds")
-    add("--seed", type=seed, default="1", help="seed of the random tests, or `random`")
-    add("--repeat", type=number(1, 1000), default=1, help="so many runs, each with the next seed")
-    add("--jobs", type=number(1, 256), default=2, help="tests at once")
-    add("--waves", type=number(0), default=3, help="waveforms of at most so many failures")
+    add("--seed", default="1", help="seed of the random tests, or `random`")
+    add("--repeat", type=int, default=1, help="so many runs, each with the next seed")
+    add("--jobs", type=int, default=2, help="tests at once")
+    add("--waves", type=int, default=3, help="waveforms of at most so many failures")
     add("--make", action="store_true", help="build what the chosen tests need first")
     add("--prepare", action="store_true", help="only build what the chosen tests need; with "
         "--list, only say what that is")

@@ -48,7 +48,7 @@ int main() {
         }
         top.eval();
     }
-    VerilatedCov::write("build/coverage/small.dat");
+    VerilatedCov::write("build/coverage/rtl.dat");
 }
 """
 
@@ -97,9 +97,8 @@ class Cases(Project):
 
         def measure(**environment):
             self.ask("build/small/Vcounter", env={**os.environ, **environment})
-            done = subprocess.run([TREE / "tests/regress/coverage.py", "--gates", "gates.json",
-                                   "--verilator", "build/coverage/small.dat", "--out",
-                                   "build/coverage/summary.json"], capture_output=True, text=True)
+            done = subprocess.run([TREE / "tests/regress/coverage.py", "gates.json",
+                                   "build/coverage"], capture_output=True, text=True)
             measured("coverage", "hdl")
             return done.stdout + done.stderr
 

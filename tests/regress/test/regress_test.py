@@ -152,8 +152,6 @@ class Cases(Project):
         self.has("^1 of 2, 0 failed, 1 left",  # nobody knows how long they take
                  "^2 of 2, 0 failed, 0:00 left", "^tests  *green  1 passed, 4 did not run$",
                  "^proofs  *green  1 hold, 1 of them")
-        self.regress("--seed abc", 2)
-        self.has("'abc' is neither a number nor .random")
         self.regress("--jobs none", 2)
         self.has("^regress: .*see --help")
         self.tests("add_test(NAME test_a.OneMore COMMAND true)\n")

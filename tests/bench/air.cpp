@@ -5,7 +5,6 @@
 // are as the ground's: link layer, pacer, serial line of 111,111 baud.
 
 #include "figures.h"
-#include "modem_floor.h"
 #include "modem_pair.h"
 
 namespace {

@@ -8,12 +8,65 @@
 
 #include "frame_pacer.h"
 #include "rf_channel.h"
-#include "timed_line.h"
+#include "serial_line.h"
+#include <algorithm>
+#include <deque>
 #include <stdexcept>
 
 extern "C" {
 #include "link.h"
 }
+
+// A serial line to a modem that takes a wire's time for each byte, and heeds CTS.
+class TimedLine : public SerialLine {
+public:
+    void send(const uint8_t* bytes, size_t count, uint64_t now) {
+        if (out_.empty())
+            outFree_ = std::max(outFree_, static_cast<double>(now));
+        out_.insert(out_.end(), bytes, bytes + count);
+    }
+    size_t waiting() const { return out_.size(); }
+    std::vector<uint8_t> received;
+    bool hangs = false; // its host: nothing moves
+
+    void advance(uint64_t now) override {
+        if (hangs)
+            return;
+        const double byteNs = 10 * bitNs_, time = static_cast<double>(now);
+        while (!out_.empty() && cts_ && outFree_ + byteNs <= time) {
+            outFree_ += byteNs;
+            client_->fromHost(out_.front(), now);
+            out_.pop_front();
+        }
+        if (!out_.empty() && !cts_)
+            outFree_ = std::max(outFree_, time);
+        while (busy_ && inDone_ <= time) {
+            received.push_back(byte_);
+            busy_ = client_->nextToHost(byte_);
+            inDone_ += byteNs;
+        }
+    }
+    uint64_t nextEvent() const override {
+        if (hangs)
+            return never;
+        double at = busy_ ? inDone_ : 1e300;
+        if (!out_.empty())
+            at = std::min(at, outFree_ + 10 * bitNs_);
+        return at > 1e299 ? never : static_cast<uint64_t>(at) + 1;
+    }
+    void wake(uint64_t now) override {
+        if (busy_ || !client_->nextToHost(byte_))
+            return;
+        busy_ = true;
+        inDone_ = static_cast<double>(now) + 10 * bitNs_;
+    }
+
+private:
+    std::deque<uint8_t> out_;
+    double outFree_ = 0, inDone_ = 0;
+    bool busy_ = false;
+    uint8_t byte_ = 0;
+};
 
 // The settings of modem 0 or 1, which talks to the other; RN is `leastExponent`.
 inline XBee::Options modemOptions(unsigned address, bool encrypts = false,
@@ -136,5 +189,46 @@ public:
     RfChannel air;
     End a, b;
 };
+
+// The floor of a round trip on a half-duplex air, measured: two modems with their serial ports at
+// 111,111 baud and the air, nothing else. docs/link.md has it as a formula. Returns the median in
+// ms of `out` bytes there and, from the moment of the last one on, `back` bytes here; each at most
+// a packet. RN is 2.
+inline double floorMs(size_t out, size_t back, bool isEncrypted = false) {
+    RfChannel air(1);
+    struct End {
+        End(RfChannel& channel, unsigned address, bool encrypts)
+            : modem(line, channel, modemOptions(address, encrypts)) {}
+        TimedLine line;
+        XBee modem;
+    } a(air, 0, isEncrypted), b(air, 1, isEncrypted);
+    const std::vector<uint8_t> bytes(std::max(out, back), 1);
+    std::vector<double> times;
+    uint64_t now = 1'000'000;
+    for (int i = 0; i < 201; ++i) {
+        const uint64_t start = now;
+        bool isBack = false;
+        a.line.received.clear();
+        b.line.received.clear();
+        a.line.send(bytes.data(), out, now);
+        for (;;) {
+            air.advance(now);
+            a.modem.advance(now);
+            b.modem.advance(now);
+            if (a.line.received.size() == back)
+                break;
+            if (!isBack && b.line.received.size() == out) {
+                isBack = true;
+                b.line.send(bytes.data(), back, now);
+            }
+            now = std::max(now + 1,
+                           std::min({air.nextEvent(), a.modem.nextEvent(), b.modem.nextEvent()}));
+        }
+        times.push_back(static_cast<double>(now - start) / 1e6);
+        now += 160'000'000;
+    }
+    std::sort(times.begin(), times.end());
+    return times[times.size() / 2];
+}
 
 #endif

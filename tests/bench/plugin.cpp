@@ -5,7 +5,7 @@
 
 #include "chip_world.h"
 #include "figures.h"
-#include "modem_floor.h"
+#include "modem_pair.h"
 #include <future>
 
 extern "C" {

@@ -2,23 +2,8 @@
 # SPDX-License-Identifier: MIT
 #
 # report: utilisation-program source-folder case kept: the command on a small project of its own, as
-# a user runs it.
-#   counts   its figures are those that the blocks' sources promise, and Yosys' own `stat` counts
-#            them too;
-#            what it synthesised is left in the folder `kept`, where the other cases begin
-#   growth   a register more fails with its name; accepting it passes; a second run takes all from
-#            the cache
-#   partial  one design alone: the page has all; of those that have changed it says so; the limits
-#            hold, whatever is accepted
-#   broken   a syntax error is told with its file and line, and the other designs are reported
-#            nevertheless
-#   twice    of two runs at once the second waits, says so, and takes what the first has made
-#   compare  what has changed since another commit, or between two, as Markdown
-#   made     by make, with its variables
-#   edif     the netlist for ISE is whole
-#   page     the page in Chromium: tables, chart, sorting, looking inside, differences; one file, no
-#            network
-# It is shell because it runs the command as a user does; its parts are tested by parts_test.py.
+# a user runs it; its parts are tested by parts_test.py. What `counts` has synthesised is left in the
+# folder `kept`, where the other cases begin.
 set -eu
 program=$1 source=$2 case=$3 kept=$4
 work=$(mktemp -d)
@@ -39,6 +24,9 @@ mkdir gen out
 run() {
     "$program" --source project --generated gen --output out "$@" >"$work/log" 2>&1
 }
+grow() { # twelve flip-flops more
+    sed -i 's/^    wire \[5:0\] word;/&\n    reg [11:0] extra;/; s/^        data_o <= word/        extra <= {extra[5:0], word};\n        data_o <= extra[11:6] ^ word/' "$1/pair.v"
+}
 users_tree() {
     cd project
     mkdir -p build/main/synth build/synth
@@ -51,6 +39,7 @@ has() { grep -q -- "$1" "$work/log" || { cat "$work/log" >&2; fail "no '$1' in t
 
 case $case in
 counts)
+    # its figures are those that the blocks' sources promise, and Yosys' own `stat` counts them, too
     run || fail "$(cat "$work/log")"
     has '^wide .* [0-9]* ([0-9]*-[0-9]*)$' # the clock, and from where to where it goes in other orders
     has '^wide  *[0-9]* ([0-9]*-[0-9]*) ' # and the LUTs
@@ -79,11 +68,11 @@ counts)
     cp -r out/cache "$kept"
     ;;
 growth)
+    # a register more fails with its name; accepted it passes; a second run takes all from the cache
     run --accept || fail "$(cat "$work/log")"
     run || fail "what was accepted does not pass: $(cat "$work/log")"
     if grep -q '^\[' "$work/log"; then fail "a second run synthesised again"; fi
-    sed -i 's/^    wire \[5:0\] word;/&\n    reg [11:0] extra;/; s/^        data_o <= word/        extra <= {extra[5:0], word};\n        data_o <= extra[11:6] ^ word/' \
-        "$project/hdl/blocks/pair.v"
+    grow "$project/hdl/blocks"
     if run; then fail "twelve flip-flops more pass"; fi
     has 'FAILED whole:'
     has 'extra +.*FF'
@@ -91,6 +80,7 @@ growth)
     run --accept && run || fail "the accepted growth does not pass"
     ;;
 partial)
+    # one design alone: of those that have changed it says so; limits hold, whatever is accepted
     run || fail "$(cat "$work/log")"
     sed -i 's/^    wire \[5:0\] word;/&\n    wire unused = 1;/' "$project/hdl/blocks/pair.v"
     run --design store || fail "$(cat "$work/log")"
@@ -226,11 +216,8 @@ JS
     grep -q '"peer": 100' "$work/out/report.json" || fail "report.json has no figure of the paper"
     grep -q '^| whole |' "$work/out/report.md" || fail "report.md has no table of designs"
     ;;
-compare)
-    cd project
-    mkdir -p build/main/gen build/main/synth build/synth
-    ln -s "$program" build/main/synth/utilisation
-    cp -r ../out/cache build/synth/
+compare) # what has changed since another commit, or between two, as Markdown
+    users_tree
     compare() { made synth BASE="$1"; }
     printf 'cmake_minimum_required(VERSION 3.25)\nproject(small NONE)\nadd_custom_target(synth_inputs COMMAND ${CMAKE_COMMAND} -E make_directory gen)\n' >CMakeLists.txt
     echo build >.gitignore
@@ -239,7 +226,7 @@ compare)
     compare HEAD.. || fail "$(cat "$work/log")"
     has '^No figure of any design differs'
     sed -i 's/"WIDTH": 16/"WIDTH": 17/; s/"name": "wide"/"name": "wider"/' synth/designs.json
-    sed -i 's/^    wire \[5:0\] word;/&\n    reg [11:0] extra;/; s/^        data_o <= word/        extra <= {extra[5:0], word};\n        data_o <= extra[11:6] ^ word/' hdl/blocks/pair.v
+    grow hdl/blocks
     "$program" >"$work/log" 2>&1 || [ $? -eq 1 ] || fail "$(cat "$work/log")" # it has grown
     compare HEAD.. || fail "$(cat "$work/log")"
     has '^Utilisation since .* (The first one):'
@@ -279,8 +266,6 @@ made)
     if grep -q '^wide ' "$work/log"; then fail "a design that was not asked for is in the table"; fi
     if made synth FAMILY=none; then fail "no such family"; fi
     has "'none'.*choose from"
-    if made synth BASE=nonsense; then fail "no such commit"; fi
-    has 'there is no commit BASE=nonsense'
     echo store >build/main/cores.known
     if made ip-synth IP=nobody; then fail "a core that is none"; fi
     has "there is no core 'nobody': store"

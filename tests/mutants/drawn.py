@@ -1,16 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Draws mutants of each proven module with Yosys' `mutate` and expects the module's proof, or its
-tests, to fail.
+tests, to fail (docs/regression.md#drawn-mutants).
 
-In a mutant one bit of one cell's port is inverted, stuck, or inverted by another bit. The cell
-comes from the module's own source, not from the proof's lines. A mutant that the proof misses is
-compared with the module: if no input that the proof assumes makes an output differ (abc proves
-that, by pdr), it is no bug and drops out. The module's tests try the rest, all in one build
-(model.py). A mutant that they miss, too, has survived: there is a hole at its line. The score of a
-module is the share of mutants caught, without those that dropped out, over all its proofs.
-
-Leaves build/mutants/drawn.json. Exit status 1: a module scores less than the gate.
+The score of a module is the share of mutants caught, without those that are no bug, over all its
+proofs. Leaves build/mutants/drawn.json. Exit status 1: a module scores less than the gate.
 """
 import argparse, collections, functools, json, os, pathlib, re, shutil, subprocess, sys, time
 import model, run
@@ -208,17 +202,16 @@ def by_tests(rows, copy, pool):
 
 
 def told(results, number):
-    """Returns the results and prints the progress: each one on a terminal, each tenth in a log."""
+    """Returns the results and prints the progress, a line each tenth."""
     start, rows = time.monotonic(), []
     for row in results:
         rows.append(row)
-        done, screen = len(rows), sys.stderr.isatty()
+        done = len(rows)
         left = round((time.monotonic() - start) / done * (number - done) / 60)
-        if screen or done * 10 // number > (done - 1) * 10 // number:
+        if done * 10 // number > (done - 1) * 10 // number:
             missed = sum(row["result"] == "SURVIVED" for row in rows)
             print(f"{done} of {number} mutants tried against their proofs, {missed} not seen by "
-                  f"one, {left // 60}:{left % 60:02} h left",
-                  end="\33[K\r" if screen and done < number else "\n", file=sys.stderr, flush=True)
+                  f"one, {left // 60}:{left % 60:02} h left", file=sys.stderr, flush=True)
     return rows
 
 

@@ -5,13 +5,74 @@ import contextlib
 import os
 import re
 import shutil
+import subprocess
+import sys
+import time
 from pathlib import Path
 
-from cli import keys, progress, runner
-from cli.runner import Stop, lock, output, run, warn
+from cli import keys
+from cli.runner import Stop, end, lock, output, run, say, start, wait, warn
 
 TREE = Path(__file__).resolve().parent.parent
 ROOMS_OF_PROGRAMS = "bus;slice;sw;hdl;ip;testbench;tests"
+# Beginnings of lines in which CMake, ninja, Verilator and its makefiles report on themselves.
+NOISE = ("ninja: Entering directory", "ninja: no work to do", "- Verilator: ", "- V e r i l a t",
+         "Archive ar ", "-- GLOB", "-- Configuring", "-- Generating", "-- Build files")
+
+
+class Line:
+    """A build as one line: on a terminal it is written anew, elsewhere each tenth of the steps
+    gives one, but none in the first seconds: a build of nothing says nothing."""
+
+    def __init__(self):
+        self.begin, self.told, self.is_shown = time.monotonic(), 0, False
+        self.moves = sys.stdout.isatty()
+
+    def show(self, done, total, what):
+        spent = time.monotonic() - self.begin
+        text = f"[{done}/{total}]"
+        if done > total / 20:
+            left = round(spent * (total - done) / done)
+            text += f" {left // 60}:{left % 60:02} left"
+        if self.moves:
+            width = os.get_terminal_size(sys.stdout.fileno()).columns or 80
+            print("\r\033[K" + f"{text} {what}"[:width - 1], end="", flush=True)
+            self.is_shown = True
+        elif spent > 3 and done * 10 // total > self.told:
+            self.told = done * 10 // total
+            say(f"{text} {what}")
+
+    def clear(self):
+        if self.is_shown:
+            print("\r\033[K", end="", flush=True)
+        self.is_shown = False
+
+
+def run_ninja(words, log, check=True, env=None):
+    """Runs ninja. What it says beside its steps is printed; its whole output goes to a file. If it
+    fails, the command ends, unless `check` is false."""
+    line = Line()
+    process = start(words, env={**(env or {}), "NINJA_STATUS": "[%f/%t] "}, text=True,
+                    stdout=subprocess.PIPE, stderr=subprocess.STDOUT, errors="replace")
+    try:
+        with open(log, "w", buffering=1) as file, process.stdout as said:
+            for text in said:
+                file.write(text)
+                step = re.match(r"\[(\d+)/(\d+)\] (.*)", text)
+                if step:
+                    line.show(int(step[1]), int(step[2]), step[3])
+                elif not text.startswith(NOISE):
+                    line.clear()
+                    print(text, end="", flush=True)
+    except BaseException:
+        end(process)
+        raise
+    finally:
+        line.clear()
+    status = wait(process)
+    if status and check:
+        raise Stop(f"the build failed (above); all of it is in {log}", status)
+    return status
 
 
 def writable(folder, otherwise):
@@ -91,8 +152,8 @@ class BuildFolder:
         if self.built:
             return 0
         with lock(self.folder, busy=f"waiting for another build in {self.folder} ..."):
-            return progress.build(["ninja", "-C", self.folder, "-j", jobs or self.jobs, *words],
-                                  self.folder / "build.log", check, env)
+            return run_ninja(["ninja", "-C", self.folder, "-j", jobs or self.jobs, *words],
+                             self.folder / "build.log", check, env)
 
     def ctest(self, *words, tests, check=True, junit="junit.xml", **env):
         """Runs tests by CTest, and leaves their results in the build folder."""
@@ -115,4 +176,4 @@ def configured(values, *targets, tests=False):
 
 
 def fetch(what, folder, check=True):
-    return runner.run(["cmake/fetch.py", what, folder], check=check)
+    return run(["cmake/fetch.py", what, folder], check=check)

@@ -17,7 +17,7 @@ from pathlib import Path
 
 TREE = Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(TREE))
-from cli import command, flight, main, progress, runner, table  # noqa: E402, F401
+from cli import build_folder, command, flight, main, runner, table  # noqa: E402, F401
 from cli.commands.tree import manual  # noqa: E402
 from cli.options import FLIGHT, SWITCH  # noqa: E402
 
@@ -117,8 +117,8 @@ MISTAKES = {
     "./icesoc core nwe": "core has no command 'nwe'; did you mean new?",
     "./icesoc run --treshold 3": "run has no option --treshold; did you mean --threshold?",
     "./icesoc run --loss 2": "--loss is the share of packets that is lost, 0..1, not '2'",
-    "./icesoc run --size abc":
-    "--size is WIDTHxHEIGHT, 8x8 to 1024x4096, WIDTH a multiple of 8, not 'abc'",
+    "./icesoc run --size 333x111":
+    "--size is WIDTHxHEIGHT, 8x8 to 1024x4096, WIDTH a multiple of 8, not '333x111'",
     "./icesoc run --image nofile": "cannot read '",
     "./icesoc run --jobs 0": "--jobs is a whole number from 1 on, not '0'",
     "./icesoc run fir": "run takes no 'fir'",
@@ -346,15 +346,15 @@ class Lists(unittest.TestCase):
             tool.write_text("#!/bin/sh\necho '[1/2] first'\necho 'odd: a warning'\n"
                             "echo '[2/2] second'\nexit 3\n")
             tool.chmod(0o755)
-            code = f"from cli import progress; progress.build(['{tool}'], '{log}', check=False)"
+            code = f"from cli.build_folder import *; run_ninja(['{tool}'], '{log}', check=False)"
             words = [sys.executable, "-c", code]
             self.assertEqual(ask(*words)[1], "odd: a warning\n")
             shown = ask("script", "-qec", shlex.join(words), "/dev/null")[1]
             self.assertEqual(re.sub(r"\s*\x1b\[K", "|", shown),
                              "|[1/2] 0:00 left first|odd: a warning|[2/2] 0:00 left second|")
             self.assertIn("[2/2] second", log.read_text())
-            self.assertRaisesRegex(runner.Stop, f"the build failed .* {log}", progress.build,
-                                   [str(tool)], log)
+            self.assertRaisesRegex(runner.Stop, f"the build failed .* {log}",
+                                   build_folder.run_ninja, [str(tool)], log)
 
     def test_a_table_tells_what_failed_and_what_lacks_a_network(self):
         with tempfile.TemporaryDirectory() as work, contextlib.redirect_stdout(

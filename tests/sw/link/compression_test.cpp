@@ -90,35 +90,21 @@ TEST_F(Heads, WhateverIsSentArrivesUnchanged) {
     half.resize(25);
     Bytes compressed = request(9, "a", "op", {1});
     compressed[9] = 2;
-    const std::vector<Bytes> all = {validate(),
-                                    closing(),
-                                    big,
-                                    high,
-                                    full,
-                                    ice,
-                                    longHead,
-                                    withContext,
-                                    spoilt,
-                                    half,
-                                    compressed,
-                                    Bytes(1, 0),
-                                    Bytes(1, 0x90),
-                                    request(10, "a", "op", {}),
-                                    request(11, "a", "op", {}),
-                                    request(0, "a", "op", {}),
-                                    request(12, "a", "op", {}, "facet"),
-                                    request(13, "a", "op", {}, "", 0),
-                                    request(500, "a", "op", big),
-                                    reply(3, {}),
-                                    reply(4, {1, 2}),
-                                    reply(5, {}, 1),
-                                    reply(6, {1}, 0, 0),
-                                    reply(6, {}, 2),
-                                    reply(0xFFFFFFFF, big),
-                                    reply(0, {})};
-    for (auto& m : all)
-        for (int channel : {0, 1, 0})
-            send(a, b, m, channel);
+    withContext[26] = 1;
+    const std::vector<Bytes> others = {validate(), closing(), big,         high,   full,
+                                       ice,        longHead,  withContext, spoilt, half,
+                                       compressed, {0},       {0x90}};
+    const std::vector<Bytes> requests = {
+        request(10, "a", "op", {}),        request(11, "a", "op", {}),
+        request(0, "a", "op", {}),         request(12, "a", "op", {}, "facet"),
+        request(13, "a", "op", {}, "", 0), request(500, "a", "op", big)};
+    const std::vector<Bytes> replies = {
+        reply(3, {}),    reply(4, {1, 2}),       reply(5, {}, 1), reply(6, {1}, 0, 0),
+        reply(6, {}, 2), reply(0xFFFFFFFF, big), reply(0, {})};
+    for (auto& list : {others, requests, replies})
+        for (auto& m : list)
+            for (int channel : {0, 1, 0})
+                send(a, b, m, channel);
 }
 
 TEST_F(Heads, MoreHeadsThanThereAreSlots) {

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""table: what several commands ended with, as lines, Markdown and JSON."""
-import json
+"""table: what several commands ended with, as lines and as Markdown."""
 from pathlib import Path
 
 from cli.runner import Stop, say
@@ -9,17 +8,16 @@ SKIPPED = 77  # the exit status of what needs a network, and has none
 
 
 class Table:
-    """Rows of a table that is written to PATH.md and PATH.json, row by row."""
+    """Rows of a table that is written to PATH.md, row by row."""
     def __init__(self, path):
         self.path, self.rows = Path(path), []
 
     def add(self, name, status, seconds, figure=""):
-        self.rows.append({
-            "command": name, "status": status, "seconds": round(seconds, 1), "figure": figure})
+        self.rows.append({"command": name, "status": status, "seconds": round(seconds, 1),
+                          "figure": figure})
         said = {0: "ok", SKIPPED: "skipped"}.get(status, f"FAILED ({status})")
         say(f"{name:<18} {said:<12} {seconds:7.1f} s  {figure}")
         self.path.parent.mkdir(parents=True, exist_ok=True)
-        self.path.with_suffix(".json").write_text(json.dumps(self.rows, indent=1) + "\n")
         lines = ["| command | status | seconds | what it says last |", "|---|---|---|---|"]
         for row in self.rows:
             last = row["figure"].replace("|", "/")

@@ -49,7 +49,7 @@ def clean(values):
 
 @command("commands", [
     Option("brief", SWITCH,
-           "runs the brief form of each to its end, writes build/commands.md and .json"),
+           "runs the brief form of each to its end, writes build/commands.md"),
     Option("only", TEXT, "only those whose name contains this", ""),
     Option("man", PATH, "writes the manual page, such as icesoc.1", ""),
     Option("schema", PATH, "writes the JSON schema of a flight, cli/flight.schema.json", "")],

@@ -79,7 +79,8 @@ def main():
     (work / "dpkg/status").touch()
     of_tests = packages(source, work, "--tests") - packages(source, work)
     hidden = programs_of(of_tests)
-    for program in ("gdb-multiarch", "xmllint", "strace", "clang-format-19"):
+    for program in ("gdb-multiarch", "xmllint", "strace", "clang-format-19", "chromium", "tshark",
+                    "gtkwave"):
         if program not in hidden:
             fail(f"{program} is in no package of make setup-tests: {sorted(of_tests)}")
 

@@ -166,12 +166,18 @@ def is_whole(out):
     return True
 
 
-def killed(start, name, moment, deaths):
+def caught(start, name, moment):
+    """A mission at a moment, and the process of that name; None: too late."""
     m = start()
     pid = m.find(name)
     m.pass_time(moment)
+    return m, pid if pid and m.run.poll() is None and lives(pid) else None
+
+
+def killed(start, name, moment, deaths):
+    m, pid = caught(start, name, moment)
     everybody = m.all()
-    if pid is None or m.run.poll() is not None or not lives(pid):
+    if not pid:
         return "too late"
     os.kill(pid, signal.SIGKILL)
     if name == "page":  # only a view
@@ -189,10 +195,8 @@ def killed(start, name, moment, deaths):
 
 
 def stopped(start, name, moment, deaths):
-    m = start()
-    pid = m.find(name)
-    m.pass_time(moment)
-    if pid is None or m.run.poll() is not None or not lives(pid):
+    m, pid = caught(start, name, moment)
+    if not pid:
         return "too late"
     os.kill(pid, signal.SIGSTOP)
     time.sleep(3)
@@ -216,14 +220,17 @@ def disk_full(start, name, moment, deaths):
     return "fails with a message" if status else "has room enough"
 
 
-def no_descriptors(start, name, moment, deaths):
-    m = start(prefix=["prlimit", "--nofile=%d" % (8 + int(25 * share(moment)))],
-              options=["--patience", "16"])
+def fails_or_succeeds(m):
     status = m.wait(LONGEST)
     expect(status is not None, m, "it hangs")
     expect(status != 0 or m.succeeded(), m, "it says that it succeeded")
     expect(status == 0 or m.text().strip(), m, "it fails without a word")
     return "fails with a message" if status else "succeeds"
+
+
+def no_descriptors(start, name, moment, deaths):
+    return fails_or_succeeds(start(prefix=["prlimit", f"--nofile={8 + int(25 * share(moment))}"],
+                                   options=["--patience", "16"]))
 
 
 def port_taken(start, name, moment, deaths):
@@ -239,13 +246,10 @@ def port_taken(start, name, moment, deaths):
 def no_memory(start, name, moment, deaths):
     """Limits each process to 8 to 800 MB of addresses."""
     m = start(prefix=["prlimit", "--as=%d" % (8e6 * 100**share(moment))])
-    status = m.wait(LONGEST)
-    expect(status is not None, m, "it hangs")
-    expect(status != 0 or m.succeeded(), m, "it says that it succeeded")
-    expect(status == 0 or m.text().strip(), m, "it fails without a word")
+    said = fails_or_succeeds(m)
     expect(not re.search("bad_alloc|Traceback", m.text()), m, "that is no message")
     expect(is_whole(m.out), m, "a file is cut short")
-    return "fails with a message" if status else "succeeds"
+    return said
 
 
 def clock_step(start, name, moment, deaths):

@@ -154,6 +154,27 @@ function(icesoc_regmap json)
   add_dependencies(regs_${block} regmap_${block})
 endfunction()
 
+# Waveforms and counters of icesoc_verilate, in its scope.
+macro(icesoc_verilate_observed)
+  set(definitions) # observer.h reads them
+  if(TRACE)
+    list(APPEND flags --trace-fst)
+    list(APPEND definitions ICESOC_TRACE)
+  endif()
+  if(COVERAGE)
+    # --assert: newer Verilators leave cover properties out without it. Verilator takes a cover
+    # point that reads a pin for a flip-flop of clk_i; where the pin is an asynchronous reset as
+    # well, that would be a warning.
+    list(APPEND flags --coverage --assert -DCOVER_POINTS -Wno-SYNCASYNCNET)
+    list(APPEND definitions ICESOC_COVERAGE)
+    if(A_FAST)
+      file(WRITE ${dir}.vlt
+        "`verilator_config\ncoverage_off -file \"*\"\ncoverage_on -file \"*/${A_TOP}.v\"\n")
+      list(APPEND flags ${dir}.vlt)
+    endif()
+  endif()
+endmacro()
+
 # icesoc_verilate(NAME TOP module SOURCES file... [PARAMS NAME=value...] [INCLUDES dir...]
 #                 [REGS block...] [DEPENDS target-or-file...] [FLAGS ...] [FAST])
 # Verilated model of a module as a library NAME with the class V<NAME>. Lint is on (-Wall) and
@@ -174,23 +195,7 @@ function(icesoc_verilate name)
     list(APPEND library ${found})
   endforeach()
   list(TRANSFORM A_PARAMS PREPEND -G)
-  set(definitions) # observer.h reads them
-  if(TRACE)
-    list(APPEND flags --trace-fst)
-    list(APPEND definitions ICESOC_TRACE)
-  endif()
-  if(COVERAGE)
-    # --assert: newer Verilators leave cover properties out without it. Verilator takes a cover
-    # point that reads a pin for a flip-flop of clk_i; where the pin is an asynchronous reset as
-    # well, that would be a warning.
-    list(APPEND flags --coverage --assert -DCOVER_POINTS -Wno-SYNCASYNCNET)
-    list(APPEND definitions ICESOC_COVERAGE)
-    if(A_FAST)
-      file(WRITE ${dir}.vlt
-        "`verilator_config\ncoverage_off -file \"*\"\ncoverage_on -file \"*/${A_TOP}.v\"\n")
-      list(APPEND flags ${dir}.vlt)
-    endif()
-  endif()
+  icesoc_verilate_observed()
   set(sources ${A_SOURCES})
   list(TRANSFORM sources PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
   list(TRANSFORM A_REGS REPLACE "(.+)" "regmap_\\1;${GEN_DIR}/\\1_regs.vh")

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from project import REGRESS, TREE, Project, edit, main, write
 
-# The proof's and the coverage test's design: two bits that count to 2.
+# The coverage test's design: two bits that count to 2.
 COUNTER = """`default_nettype none
 module counter (input wire clk_i, input wire rst_i, input wire enable_i, output reg [1:0] count_o);
     always @(posedge clk_i) begin
@@ -20,15 +20,6 @@ module counter (input wire clk_i, input wire rst_i, input wire enable_i, output 
         if (rst_i)
             count_o <= 0;
     end
-`ifdef FORMAL
-    initial assume (rst_i);
-    reg past = 0;
-    always @(posedge clk_i) past <= 1;
-    always @* if (past) begin
-        assert (count_o != 3);
-        cover (count_o == 2);
-    end
-`endif
 `ifdef COVER_POINTS
     reset_at_two: cover property (@(posedge clk_i) rst_i && count_o == 2);
 `endif
@@ -74,15 +65,8 @@ class Cases(Project):
         self.has("^[|] tests [|] red [|] 1 failed: test_b.Bad", file="build/regress/summary.md")
 
     def test_lights_proof(self):
-        counter = "hdl/small/counter.v"
-        write(counter, COUNTER)
-        write("bus/none.v", "")
-        Path("ip").mkdir()
-        prove = f"{TREE}/tests/hdl/formal/prove.sh counter 6 {self.work} {self.work}/build/proof"
-        self.tests(f"add_test(NAME formal.counter COMMAND {prove})\n"
-                   "set_tests_properties(formal.counter PROPERTIES LABELS formal)\n")
         self.lights("--name 'formal|a[.]'", proofs="green")
-        edit(counter, "count_o == 2) ? 0", "count_o == 3) ? 0")  # one value too many
+        self.tests("add_test(NAME formal.counter COMMAND false)\n")
         self.lights("--name 'formal|a[.]'", 1, proofs="red   *1 failed: formal.counter",
                     tests="green")
 

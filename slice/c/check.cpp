@@ -15,29 +15,6 @@ namespace {
 
 using DKind = Declaration::Kind;
 
-// Checks that a ":hw" interface fits into registers: numbers, enums, structs and sequences of them,
-// exceptions of these, and proxies of callback interfaces.
-void checkHardware(const Declaration& d, Diagnostics& diagnostics) {
-    std::string who = "interface '" + d.name + "' is hardware ([\":hw\"]): '";
-    const char* kinds = "a number, an enum, a struct or a sequence of them";
-    for (const Operation& o : d.operations) {
-        if (!factsOf(o.result).isNumeric)
-            diagnostics.error(o.at, who + o.name + "' must return " + kinds);
-        for (const Declaration* e : o.throws)
-            for (const Declaration* part = e; part; part = part->base())
-                for (const Field& f : part->fields)
-                    if (!factsOf(f.type).isNumeric || f.isOptional)
-                        diagnostics.error(o.at, who + o.name + "' throws '" + e->name +
-                                                    "', whose '" + f.name + "' is not " + kinds);
-        for (const Field& p : o.parameters)
-            if (p.isOptional)
-                diagnostics.error(p.at, who + p.name + "' is optional: registers are always there");
-            else if (!(factsOf(p.type).isNumeric || (p.type.kind == Type::Kind::Proxy && !p.isOut)))
-                diagnostics.error(p.at, who + p.name + "' must be " + kinds +
-                                            ", or the proxy of a callback interface");
-    }
-}
-
 void checkMetadata(const Declaration& d, Diagnostics& diagnostics) {
     for (const std::string& m : d.metadata) {
         if (m.compare(0, 2, "c:") != 0)
@@ -212,8 +189,6 @@ void checkC(const Unit& unit, const CFileNames& files, Diagnostics& diagnostics)
         checkText(d->value, d->at, diagnostics);
         for (const Field& f : d->fields)
             checkText(f.value, f.at, diagnostics);
-        if (d->kind == DKind::Interface && d->isHardware())
-            checkHardware(*d, diagnostics);
     }
     for (const std::string& m : unit.metadata)
         if (m.compare(0, 2, "c:") == 0 && m.compare(0, 10, "c:include:") != 0)

@@ -8,27 +8,21 @@
 
 void classFunctions(Writer& w, const Declaration& d) {
     Writer::Values v = {{"c", cName(d)}, {"id", d.id()}};
+    auto function = [&](std::string_view head, std::string_view object, const char* unused,
+                        auto body) {
+        w.blank();
+        w.block(head, v, [&] {
+            w.line(d.fields.empty() ? "(void)object;" : object, v);
+            if (d.fields.empty())
+                w.line(unused);
+            body(w, memberSlots(d));
+        });
+    };
     initFunction(w, d);
-    w.blank();
-    w.block("static void {c}_write(const void *object, Ice_OutputStreamPtr os)", v, [&] {
-        if (d.fields.empty()) {
-            w.line("(void)object;");
-            w.line("(void)os;");
-            return;
-        }
-        w.line("const {c} *v = (const {c} *)object;", v);
-        writeSlots(w, memberSlots(d));
-    });
-    w.blank();
-    w.block("static void {c}_read(void *object, Ice_InputStreamPtr is)", v, [&] {
-        if (d.fields.empty()) {
-            w.line("(void)object;");
-            w.line("(void)is;");
-            return;
-        }
-        w.line("{c} *v = ({c} *)object;", v);
-        readSlots(w, memberSlots(d));
-    });
+    function("static void {c}_write(const void *object, Ice_OutputStreamPtr os)",
+             "const {c} *v = (const {c} *)object;", "(void)os;", writeSlots);
+    function("static void {c}_read(void *object, Ice_InputStreamPtr is)", "{c} *v = ({c} *)object;",
+             "(void)is;", readSlots);
     w.blank();
     std::string base = d.base() ? "&" + cName(*d.base()) + "_type" : "0";
     w.line("const Ice_ValueType {c}_type = {", v);

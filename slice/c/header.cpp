@@ -53,17 +53,13 @@ void declareConstant(Writer& w, const Declaration& d) {
 }
 
 void declareEnum(Writer& w, const Declaration& d) {
-    w.block(
-        "typedef enum " + cName(d), {},
-        [&] {
-            for (size_t i = 0; i < d.enumerators.size(); ++i) {
-                const Enumerator& e = d.enumerators[i];
-                writeDoc(w, e.doc);
-                w.line(cEnumerator(d, e.name) + " = " + std::to_string(e.value) +
-                       (i + 1 < d.enumerators.size() ? "," : ""));
-            }
-        },
-        "} " + cName(d) + ";");
+    w.type("enum", cName(d), [&] {
+        for (const Enumerator& e : d.enumerators) {
+            writeDoc(w, e.doc);
+            w.line(cEnumerator(d, e.name) + " = " + std::to_string(e.value) +
+                   (&e == &d.enumerators.back() ? "" : ","));
+        }
+    });
 }
 
 void declareFields(Writer& w, const Declaration& d) {
@@ -79,14 +75,11 @@ void declareFields(Writer& w, const Declaration& d) {
 void declareElements(Writer& w, const Declaration& d, const std::string& element) {
     int maximum = statedMaximum(d);
     bool pointer = element.back() == '*';
-    w.block(
-        "typedef struct " + cName(d), {},
-        [&] {
-            w.line("Ice_Int size;");
-            std::string name = maximum ? "data[" + std::to_string(maximum) + "]" : "*data";
-            w.line(element + (pointer ? "" : " ") + name + ";");
-        },
-        "} " + cName(d) + ";");
+    w.type("struct", cName(d), [&] {
+        w.line("Ice_Int size;");
+        std::string name = maximum ? "data[" + std::to_string(maximum) + "]" : "*data";
+        w.line(element + (pointer ? "" : " ") + name + ";");
+    });
 }
 
 void declareStruct(Writer& w, const Declaration& d) {
@@ -114,18 +107,14 @@ void declareStruct(Writer& w, const Declaration& d) {
 void declareType(Writer& w, const Declaration& d) {
     Writer::Values v = {{"c", cName(d)}};
     switch (d.kind) {
-    case DKind::Sequence: {
+    case DKind::Sequence:
         declareElements(w, d, cType(d.element));
         break;
-    }
     case DKind::Dictionary:
-        w.block(
-            "typedef struct {c}_Entry", v,
-            [&] {
-                w.line(cVariable(d.key, "key") + ";");
-                w.line(cVariable(d.element, "value") + ";");
-            },
-            "} " + cName(d) + "_Entry;");
+        w.type("struct", cName(d) + "_Entry", [&] {
+            w.line(cVariable(d.key, "key") + ";");
+            w.line(cVariable(d.element, "value") + ";");
+        });
         declareElements(w, d, cName(d) + "_Entry");
         break;
     default:
@@ -180,23 +169,17 @@ void declareThrown(Writer& w, const CContext& c, const Declaration& d, const Ope
         return;
     }
     w.line("/* What {op} throws: `type` says which member of `u` it is. */", {{"op", op}});
-    w.block(
-        "typedef struct " + type, {},
-        [&] {
-            w.line("enum {");
-            w.line("    " + op + "_none");
-            for (const Declaration* e : family)
-                w.line("    , " + op + "_" + exceptionLabel(o, family, *e));
-            w.line("} type;");
-            w.block(
-                "union", {},
-                [&] {
-                    for (const Declaration* e : family)
-                        w.line(cName(*e) + " " + exceptionMember(o, family, *e) + ";");
-                },
-                "} u;");
-        },
-        "} " + type + ";");
+    w.type("struct", type, [&] {
+        w.line("enum {");
+        w.line("    " + op + "_none");
+        for (const Declaration* e : family)
+            w.line("    , " + op + "_" + exceptionLabel(o, family, *e));
+        w.line("} type;");
+        w.line("union {");
+        for (const Declaration* e : family)
+            w.line("    " + cName(*e) + " " + exceptionMember(o, family, *e) + ";");
+        w.line("} u;");
+    });
     w.line("void " + type + "_writeToOutputStream(const " + type + " *v, Ice_OutputStreamPtr os);");
     w.line("/* ICE_USER_EXCEPTION; ICE_UNKNOWN_USER_EXCEPTION: none of these; ICE_MARSHAL. */");
     w.line("Ice_Status " + type + "_readFromInputStream(" + type + " *v, Ice_InputStreamPtr is);");
@@ -205,22 +188,19 @@ void declareThrown(Writer& w, const CContext& c, const Declaration& d, const Ope
 void declareAsync(Writer& w, const Declaration& d, const Operation& o) {
     std::string type = operationName(d, o) + "_Async";
     w.blank();
-    w.block(
-        "typedef struct " + type, {},
-        [&] {
-            w.line("void (*completed)(struct " + type + " *self);");
-            w.line("void *context;");
-            w.line("Ice_Bool done;");
-            w.line("Ice_Status status;");
-            for (const Slot& s : outSlots(o, "")) {
-                if (s.isOptional)
-                    w.line("Ice_Bool " + s.has + ";");
-                w.line(cVariable(*s.type, s.value) + ";");
-            }
-            if (!o.throws.empty())
-                w.line(exceptionType(d, o) + " exception;");
-        },
-        "} " + type + ";");
+    w.type("struct", type, [&] {
+        w.line("void (*completed)(struct " + type + " *self);");
+        w.line("void *context;");
+        w.line("Ice_Bool done;");
+        w.line("Ice_Status status;");
+        for (const Slot& s : outSlots(o, "")) {
+            if (s.isOptional)
+                w.line("Ice_Bool " + s.has + ";");
+            w.line(cVariable(*s.type, s.value) + ";");
+        }
+        if (!o.throws.empty())
+            w.line(exceptionType(d, o) + " exception;");
+    });
     w.line(asyncSignature(d, o) + ";");
 }
 
@@ -248,26 +228,20 @@ void declareProxy(Writer& w, const Declaration& d) {
 void declareServant(Writer& w, const Declaration& d) {
     Writer::Values v = {{"c", cName(d)}};
     w.blank();
-    w.block(
-        "typedef struct {c}", v,
-        [&] {
-            w.line("Ice_Object base;");
-            w.line("const struct {c}_Operations *operations;", v);
-        },
-        "} " + cName(d) + ", *" + cName(d) + "Ptr;");
+    w.line("typedef struct {c} {", v);
+    w.line("    Ice_Object base;");
+    w.line("    const struct {c}_Operations *operations;", v);
+    w.line("} {c}, *{c}Ptr;", v);
     w.blank();
     w.line("/* A servant's operations; 0 for one that it does not have. */");
-    w.block(
-        "typedef struct {c}_Operations", v,
-        [&] {
-            for (const Declaration* base : d.bases)
-                w.line(cName(*base) + "_Operations " + cName(*base) + "_;");
-            for (const Operation& o : d.operations)
-                w.line(servantSignature(d, o, "(*" + cIdentifier(o.name) + ")") + ";");
-            if (d.bases.empty() && d.operations.empty())
-                w.line("Ice_Byte ice_unused; /* C90 has no empty structs */");
-        },
-        "} " + cName(d) + "_Operations;");
+    w.type("struct", cName(d) + "_Operations", [&] {
+        for (const Declaration* base : d.bases)
+            w.line(cName(*base) + "_Operations " + cName(*base) + "_;");
+        for (const Operation& o : d.operations)
+            w.line(servantSignature(d, o, "(*" + cIdentifier(o.name) + ")") + ";");
+        if (d.bases.empty() && d.operations.empty())
+            w.line("Ice_Byte ice_unused; /* C90 has no empty structs */");
+    });
     w.line("extern const Ice_Interface {c}_ice_interface;", v);
     w.line("void {c}_initWith({c}Ptr self, const {c}_Operations *operations);", v);
     w.blank();

@@ -34,6 +34,10 @@ public:
         indented(body);
         line(tail, values);
     }
+    // Writes `typedef KIND NAME { ... } NAME;`.
+    template <class Body> void type(const std::string& kind, const std::string& name, Body body) {
+        block("typedef " + kind + " " + name, {}, body, "} " + name + ";");
+    }
     // The one statement of an `if` or a loop.
     void nested(std::string_view text, const Values& values = {}) {
         indented([&] { line(text, values); });

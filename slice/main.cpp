@@ -197,12 +197,16 @@ bool compile(const std::string& file, const Options& o, std::string& rules, Prog
     if (o.preprocessOnly)
         return print(p.text);
     CFileNames names = namesFor(file, o, p);
+    std::vector<std::string> limits = limitFiles(p.files);
     if (o.depend) {
+        p.files.insert(p.files.end(), limits.begin(), limits.end());
         rules += dependencyRule(file, names, p.files);
         return true;
     }
     Diagnostics diagnostics(std::cerr);
     Unit unit = compileUnit(p.text, file, o.rules, diagnostics);
+    if (diagnostics.errors() == 0)
+        addLimits(unit, limits, diagnostics);
     scopeEnumerators(unit);
     if (diagnostics.errors() == 0)
         checkC(unit, names, diagnostics);

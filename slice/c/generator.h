@@ -19,6 +19,12 @@ struct CFileNames {
     std::vector<std::string> includes; // headers of the Slice files that the main file includes
 };
 
+// The files of limits beside these Slice files: Name.limits beside Name.ice, where there is one.
+std::vector<std::string> limitFiles(const std::vector<std::string>& files);
+
+// Adds the metadata of these files to the definitions that they name; it goes before the source's.
+void addLimits(Unit& unit, const std::vector<std::string>& files, Diagnostics& diagnostics);
+
 // Gives the enumerators of an enum their long names, as ["c:scoped"] does, if a short one is taken
 // by another name of the same file. What another file declares does not count: it may be included
 // or not.

@@ -93,6 +93,7 @@ class Cases(Script):
         self.dependencies()
         self.wrong_lines()
         self.beside_and_above()
+        self.limits()
         for option in "-E", "--depend":
             with open("/dev/full", "w") as full:
                 said = subprocess.run([sys.argv[3], option, "crlf.ice"], stdout=full,
@@ -135,6 +136,23 @@ class Cases(Script):
         self.slice2c("-Islice slice/Top.ice --output-dir ext --header-ext hh --source-ext cc "
                      "--include-dir sub")
         self.has('#include "sub/Top.hh"', file="ext/Top_client.cc")
+
+    def limits(self):
+        """Metadata of C from a file beside, for definitions of a file that includes it, too."""
+        write("limits/mesh.ice", "module G { sequence<int> Points; enum E { a }; enum F { b }; };")
+        write("limits/user.ice", "#include <mesh.ice>\nmodule U { struct S { G::Points p; }; };")
+        write("limits/mesh.limits", "# of a board\n\nG::Points c:max:21 # room\n::G::E c:scoped")
+        words = "-Ilimits limits/user.ice limits/mesh.ice --output-dir limits"
+        self.slice2c(words)
+        self.has(r"\[21\]", "G_E_a", file="limits/mesh.h")
+        self.lacks("G_F_b", "limits/mesh.h")
+        self.slice2c("--depend -Ilimits limits/user.ice", 0, "limits/mesh.limits")
+        for line, said in (("G::Point c:max:2", "mesh.limits:1:1: error: 'G::Point' is not def"),
+                           ("\nG::Points # 7", "mesh.limits:2:1: error: 'G::Points' has no meta"),
+                           ("G::Points c:max:0", "the maximum is a number"),
+                           ("G::Points c:least:1", "means nothing here")):
+            write("limits/mesh.limits", line)
+            self.slice2c(words, int("nothing" not in said), said)
 
     def dependencies(self):
         self.slice2c("--depend -Islice slice/Top.ice", 0, "slice/Lib/Base.ice",

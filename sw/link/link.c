@@ -122,10 +122,9 @@ Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag
     if (status != LINK_OK)
         return status;
     packed.prefix = packed.middle = packed.tailAt = 0;
-    packed.tail = size;
     if (isCompressed)
         link_compress(&sender->heads, channel, data, size, &packed);
-    total = packed.prefix + packed.middle + packed.tail;
+    total = packed.prefix + packed.middle + size - packed.tailAt;
     checkSize = total > LINK_UNCHECKED ? LINK_CODEC(output)->check : 0U;
     entry = link_offer(sender, LINK_FIRST | (U32)channel, total + checkSize);
     if (!entry)
@@ -136,7 +135,7 @@ Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag
     queue->sums = 0;
     link_put(queue, packed.bytes, packed.prefix);
     link_put(queue, data + LINK_HEAD_AT, packed.middle);
-    link_put(queue, data + packed.tailAt, packed.tail);
+    link_put(queue, data + packed.tailAt, size - packed.tailAt);
     if (isCompressed) {
         link_note(&sender->heads, channel, data, size, packed.head);
         output->statistics.headBytesSaved += size - total;

@@ -80,44 +80,38 @@ void link_note(Link_Heads* heads, int channel, const U8* m, U32 size, U32 head) 
     }
 }
 
-static void packRequest(const Link_Heads* heads, int channel, const U8* m, U32 size, U32 head,
+/* Begins the compressed message with a token, and with the id that it may announce. */
+static void setToken(Link_Packed* packed, U32 token, int hasId, U32 id) {
+    packed->bytes[0] = (U8)token;
+    packed->prefix = hasId ? 5U : 1U;
+    link_put32(packed->bytes + 1, id);
+}
+
+static void packRequest(const Link_Heads* heads, int channel, const U8* m, U32 head,
                         Link_Packed* packed) {
     U32 id = link_get32(m + HEADER);
     U32 mode = id == 0 ? 0U : id == heads->lastRequest[channel] + 1U ? 1U : 2U;
     U32 slot = find(heads, m + LINK_HEAD_AT, head, m + LINK_HEAD_AT + head + 4);
     packed->tailAt = LINK_HEAD_AT + head + ENCAPSULATION;
-    packed->prefix = 1;
     if (slot < LINK_HEADS && mode < 2U) {
-        packed->bytes[0] = (U8)(TOKEN_REQUEST | mode << 4 | slot);
-    } else {
-        packed->bytes[0] = (U8)(TOKEN_LITERAL | mode);
-        if (mode == 2U) {
-            link_put32(packed->bytes + 1, id);
-            packed->prefix = 5;
-        }
-        packed->bytes[packed->prefix++] = (U8)head;
-        packed->middle = head;
-        packed->tailAt -= 2U; /* the encoding's version */
+        setToken(packed, TOKEN_REQUEST | mode << 4 | slot, 0, 0);
+        return;
     }
-    packed->tail = size - packed->tailAt;
+    setToken(packed, TOKEN_LITERAL | mode, mode == 2U, id);
+    packed->bytes[packed->prefix++] = (U8)head;
+    packed->middle = head;
+    packed->tailAt -= 2U; /* the encoding's version */
 }
 
 static void packReply(const Link_Heads* heads, int channel, const U8* m, U32 size,
                       Link_Packed* packed) {
-    static const U8 version[2] = {1, 1};
+    const U8* body = m + LINK_HEAD_AT + 1;
     U32 id = link_get32(m + HEADER);
     int isPlain = size >= LINK_HEAD_AT + 1U + ENCAPSULATION && m[LINK_HEAD_AT] == 0 &&
-                  link_get32(m + LINK_HEAD_AT + 1U) == size - LINK_HEAD_AT - 1U &&
-                  memcmp(m + LINK_HEAD_AT + 5U, version, 2) == 0;
+                  link_get32(body) == size - LINK_HEAD_AT - 1U && body[4] == 1 && body[5] == 1;
     U32 hasId = id != heads->lastReply[channel] + 1U;
-    packed->bytes[0] = (U8)(TOKEN_REPLY | hasId << 1 | (U32)!isPlain);
-    packed->prefix = 1;
-    if (hasId) {
-        link_put32(packed->bytes + 1, id);
-        packed->prefix = 5;
-    }
     packed->tailAt = LINK_HEAD_AT + (isPlain ? 1U + ENCAPSULATION : 0U);
-    packed->tail = size - packed->tailAt;
+    setToken(packed, TOKEN_REPLY | hasId << 1 | (U32)!isPlain, hasId != 0, id);
 }
 
 void link_compress(const Link_Heads* heads, int channel, const U8* m, U32 size,
@@ -125,18 +119,16 @@ void link_compress(const Link_Heads* heads, int channel, const U8* m, U32 size,
     U32 head = headOf(m, size);
     packed->head = head;
     if (head) {
-        packRequest(heads, channel, m, size, head, packed);
+        packRequest(heads, channel, m, head, packed);
     } else if (isMessage(m, size, REPLY, LINK_HEAD_AT + 1U) && m[9] == 0) {
         packReply(heads, channel, m, size, packed);
     } else if (size == HEADER && m[9] < 2 &&
                (isMessage(m, size, CLOSE, HEADER) ||
                 (m[9] == 0 && isMessage(m, size, VALIDATE, HEADER)))) {
-        packed->bytes[0] = (U8)(m[8] == VALIDATE ? TOKEN_VALIDATE : TOKEN_CLOSE + m[9]);
-        packed->prefix = 1;
-        packed->tail = 0;
+        packed->tailAt = size;
+        setToken(packed, m[8] == VALIDATE ? TOKEN_VALIDATE : TOKEN_CLOSE + m[9], 0, 0);
     } else if (m[0] >= TOKEN_REQUEST) {
-        packed->bytes[0] = TOKEN_AS_IT_IS;
-        packed->prefix = 1;
+        setToken(packed, TOKEN_AS_IT_IS, 0, 0);
     }
 }
 

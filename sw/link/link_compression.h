@@ -30,7 +30,7 @@ typedef struct Link_Heads {
  * is the size of its head; 0: nothing to remember. */
 typedef struct Link_Packed {
     U8 bytes[8];
-    U32 prefix, middle, tailAt, tail, head;
+    U32 prefix, middle, tailAt, head;
 } Link_Packed;
 
 /* Compresses the message: changes `packed`, which stands for the unchanged one on entry. */

@@ -111,7 +111,8 @@ std::string cFileName(const CFileNames& names, const std::string& what) {
     return s + what;
 }
 
-std::string cString(const std::string& bytes) {
+// Returns "text" with escapes for all bytes.
+static std::string cString(const std::string& bytes) {
     std::string s = "\"";
     for (char c : bytes) {
         auto u = static_cast<unsigned char>(c);

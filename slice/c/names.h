@@ -32,8 +32,6 @@ std::string cEnumerator(const Declaration& owner, const std::string& name);
 std::string cValue(const Literal& value, const Type& type);
 // The name of a thing that a Slice file has once: "Folder_File_what".
 std::string cFileName(const CFileNames& names, const std::string& what);
-// "text" with escapes for all bytes.
-std::string cString(const std::string& bytes);
 // True if icec.h declares the type itself; only its stream functions are generated.
 bool isRuntimeType(const Declaration& d);
 // The elements that a sequence or dictionary has room for; 0 if its data lies elsewhere.

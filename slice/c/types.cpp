@@ -90,6 +90,8 @@ std::string cVariable(const Type& t, const std::string& name) {
     return type.back() == '*' ? type + name : type + " " + name;
 }
 
+namespace {
+
 std::string writeStatement(const Type& t, const std::string& value, const std::string& pointer) {
     if (isEnum(t))
         return "Ice_OutputStream_writeEnum(os, (Ice_Int)" + value + ", " +
@@ -119,6 +121,7 @@ std::string readStatement(const Type& t, const std::string& value, const std::st
     return value + " = Ice_InputStream_read" + streamWord(t) + "(is);";
 }
 
+// Sorts slots: required ones as they are, then the optional ones by tag.
 std::vector<Slot> wireOrder(std::vector<Slot> slots) {
     std::stable_sort(slots.begin(), slots.end(), [](const Slot& a, const Slot& b) {
         if (a.isOptional != b.isOptional)
@@ -127,6 +130,8 @@ std::vector<Slot> wireOrder(std::vector<Slot> slots) {
     });
     return slots;
 }
+
+} // namespace
 
 void writeSlots(Writer& w, const std::vector<Slot>& slots) {
     for (const Slot& s : wireOrder(slots)) {

@@ -34,12 +34,8 @@ struct Slot {
     std::string has; // whether it is there: a condition when writing, an lvalue when reading
 };
 
-// Sorts slots in the order of the wire: required ones as they are, then the optional ones by tag.
-std::vector<Slot> wireOrder(std::vector<Slot> slots);
+// Write or read slots in the order of the wire.
 void writeSlots(Writer& w, const std::vector<Slot>& slots);
 void readSlots(Writer& w, const std::vector<Slot>& slots);
-
-std::string writeStatement(const Type& type, const std::string& value, const std::string& pointer);
-std::string readStatement(const Type& type, const std::string& value, const std::string& pointer);
 
 #endif

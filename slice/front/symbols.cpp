@@ -61,28 +61,19 @@ Symbol* Symbols::resolve(const std::string& scope, const std::string& written, c
     }
 }
 
-Symbol* Symbols::innermost(std::string scope, const std::string& written) {
-    for (;;) {
-        if (Symbol* s = find(scope + "::" + written))
-            return s;
-        if (scope.empty())
-            return nullptr;
-        scope.resize(scope.rfind("::"));
-    }
+Symbol* Symbols::innermost(const std::string& scope, const std::string& written) {
+    Symbol* s = find(scope + "::" + written);
+    return s || scope.empty() ? s : innermost(scope.substr(0, scope.rfind("::")), written);
 }
 
 void Symbols::declareBare(const std::string& scope, const std::string& name, Symbol* enumerator) {
     bare_[scope + "::" + name].push_back(enumerator);
 }
 
-const std::vector<Symbol*>& Symbols::bare(std::string scope, const std::string& name) const {
+const std::vector<Symbol*>& Symbols::bare(const std::string& scope, const std::string& name) const {
     static const std::vector<Symbol*> none;
-    for (;;) {
-        auto it = bare_.find(scope + "::" + name);
-        if (it != bare_.end())
-            return it->second;
-        if (scope.empty())
-            return none;
-        scope.resize(scope.rfind("::"));
-    }
+    auto it = bare_.find(scope + "::" + name);
+    if (it != bare_.end())
+        return it->second;
+    return scope.empty() ? none : bare(scope.substr(0, scope.rfind("::")), name);
 }

@@ -35,13 +35,13 @@ public:
     Symbol* resolve(const std::string& scope, const std::string& written, const Location& at,
                     const std::string& user);
     // The same for any capitals, and without a user.
-    Symbol* innermost(std::string scope, const std::string& written);
+    Symbol* innermost(const std::string& scope, const std::string& written);
     // True if `user` has used the name for something else before; reports an error.
     bool hasChanged(const std::string& user, const std::string& name, const Location& at);
     // Enumerators with this name of any enum in the scope, or around it: Ice still allows them
     // without their enum.
     void declareBare(const std::string& scope, const std::string& name, Symbol* enumerator);
-    const std::vector<Symbol*>& bare(std::string scope, const std::string& name) const;
+    const std::vector<Symbol*>& bare(const std::string& scope, const std::string& name) const;
 
 private:
     Diagnostics& diagnostics_;

@@ -124,6 +124,7 @@ private:
         for (Call& call : block_.calls) {
             unsigned counts[2] = {0, 0};
             for (Word& w : call.words) {
+                w.call = call.name;
                 w.name = upperCase(call.name) + (w.isOut ? "_OUT" : "_IN") +
                          std::to_string(counts[w.isOut]++);
                 if (w.number >= slotWords)

@@ -38,6 +38,7 @@ struct Piece {
 struct Word {
     unsigned number = 0;
     std::string name; // ADD_IN0
+    std::string call; // the name of its call
     bool isOut = false;
     std::vector<Piece> pieces;
     unsigned width() const { return pieces.back().lsb + pieces.back().width; }

@@ -148,15 +148,13 @@ GeneratedFile registersFile(const Block& b) {
     w.line("  \"events\": [");
     std::vector<std::string> events;
     for (const Call& c : b.calls)
-        if (c.isEvent)
-            events.push_back(
-                "    {\"name\": \"" + upperCase(c.name) + "\", \"bit\": " + std::to_string(c.bit) +
-                ", \"doc\": " + quoted(firstLine(c.operation->doc, "event " + c.operation->name)) +
-                "}");
-        else if (c.isLong)
-            events.push_back("    {\"name\": \"" + upperCase(c.name) +
-                             "_DONE\", \"bit\": " + std::to_string(c.bit) + ", \"doc\": " +
-                             quoted(c.operation->name + " is done, or refused") + "}");
+        if (c.isEvent || c.isLong) {
+            std::string name = upperCase(c.name) + (c.isEvent ? "" : "_DONE"),
+                        doc = c.isEvent ? firstLine(c.operation->doc, "event " + c.operation->name)
+                                        : c.operation->name + " is done, or refused";
+            events.push_back("    {\"name\": \"" + name + "\", \"bit\": " + std::to_string(c.bit) +
+                             ", \"doc\": " + quoted(doc) + "}");
+        }
     for (const std::string& e : events)
         w.line(e + (&e == &events.back() ? "" : ","));
     w.line("  ]");

@@ -22,6 +22,12 @@ std::string slice(const std::string& vector, unsigned lsb, unsigned width) {
     return vector + "[" + (width == 1 ? low : std::to_string(lsb + width - 1) + ":" + low) + "]";
 }
 
+// The port of a piece, or the piece's bits of the port.
+std::string portOf(const Word& word, const Piece& p) {
+    std::string port = word.call + "_" + p.name + (word.isOut ? "_i" : "_o");
+    return p.portWidth > 32 ? slice(port, p.portLsb, p.width) : port;
+}
+
 // The bits of bus_registers' vectors that hold a word.
 unsigned base(unsigned word) {
     return 32 * (word % slotWords - firstWord);
@@ -187,15 +193,8 @@ void results(Writer& w, const Block& b, unsigned first) {
         show(base(status) + refusedLsb, b.events(), "refused");
     }
     for (const Word* word : outs)
-        for (const Piece& p : word->pieces) {
-            std::string port;
-            for (const Call& c : b.calls)
-                for (const Word& own : c.words)
-                    if (&own == word)
-                        port = c.name + "_" + p.name + "_i";
-            show(base(word->number) + p.lsb, p.width,
-                 p.portWidth > 32 ? slice(port, p.portLsb, p.width) : port);
-        }
+        for (const Piece& p : word->pieces)
+            show(base(word->number) + p.lsb, p.width, portOf(*word, p));
     zero(32 * (slotWords - firstWord));
 }
 
@@ -219,9 +218,7 @@ void calls(Writer& w, const Block& b) {
                     base(w, b, c, p);
                 if (word.isOut)
                     continue;
-                std::string port = c.name + "_" + p.name + "_o";
-                w.line("    assign " + (p.portWidth > 32 ? slice(port, p.portLsb, p.width) : port) +
-                       " = " +
+                w.line("    assign " + portOf(word, p) + " = " +
                        slice("value" + suffix(word.number), base(word.number) + p.lsb, p.width) +
                        ";");
             }

@@ -37,7 +37,7 @@ void addPiece(std::vector<Word>& words, Piece piece, bool isOut) {
     bool fits =
         !words.empty() && words.back().isOut == isOut && words.back().width() + piece.width <= 32;
     if (!fits)
-        words.push_back({0, "", isOut, {}});
+        words.push_back({0, "", "", isOut, {}});
     else
         piece.lsb = words.back().width();
     words.back().pieces.push_back(piece);

@@ -13,6 +13,8 @@ awk '/^\/\/ (ok|warning|error): / { n++; file = sprintf("case%03d.ice", n) } n {
     "$cases"
 { echo '// ok: modules in modules' && seq -f 'module M%g {' 200 && echo 'struct S { int a; };' &&
     seq -f '}; // %g' 200; } >case000.ice
+golden=$(dirname "$cases")/../compiler/golden
+{ echo '// ok: every construct' && cat "$golden/everything.ice"; } >case999.ice
 
 # Prints a compiler's verdict on a file: "0" or "1", and the line of its first message.
 said() { # compiler, file

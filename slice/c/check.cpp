@@ -166,7 +166,7 @@ void scopeEnumerators(Unit& unit) {
             return isRuntimeName(c) || (it != files.end() && it->second == d->at.file);
         };
         const auto& all = d->enumerators;
-        if (!d->hasMetadata("c:scoped") && std::any_of(all.begin(), all.end(), isTaken))
+        if (!hasMetadata(d->metadata, "c:scoped") && std::any_of(all.begin(), all.end(), isTaken))
             d->metadata.push_back("c:scoped");
         for (const Enumerator& e : all)
             files.emplace(cEnumerator(*d, e.name), d->at.file);

@@ -34,9 +34,9 @@ bool CContext::usesClasses() const {
             (d->kind == Declaration::Kind::Exception && d->preserves()))
             return true;
         for (const Field& f : d->fields)
-            if (containsClass(f.type))
+            if (factsOf(f.type).hasClass)
                 return true;
-        if (containsClass(d->element))
+        if (factsOf(d->element).hasClass)
             return true;
         for (const Operation& o : d->operations)
             if (sendsClasses(o) || returnsClasses(o))

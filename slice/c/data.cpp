@@ -14,7 +14,8 @@ std::string element(const Declaration& d) {
 }
 
 int leastElementSize(const Declaration& d) {
-    return leastWireSize(d.element) + (d.kind == DKind::Dictionary ? leastWireSize(d.key) : 0);
+    return factsOf(d.element).leastWireSize +
+           (d.kind == DKind::Dictionary ? factsOf(d.key).leastWireSize : 0);
 }
 
 // The slots of one element: a key and a value, or the element alone.

@@ -273,8 +273,9 @@ void declareInterface(Writer& w, const CContext& c, const Declaration& d) {
     if (d.isForward)
         return;
     w.blank();
-    w.line(d.isHardware() ? "/* ---- " + d.id() + ", implemented in hardware ---- */"
-                          : "/* ---- " + d.id() + " ---- */");
+    w.line(hasMetadata(d.metadata, ":hw")
+               ? "/* ---- " + d.id() + ", implemented in hardware ---- */"
+               : "/* ---- " + d.id() + " ---- */");
     writeDoc(w, d.doc, d.metadata);
     for (const Operation& o : d.operations)
         if (!o.throws.empty())

@@ -95,7 +95,7 @@ std::string cType(const Type& t) {
 
 std::string cEnumerator(const Declaration& owner, const std::string& name) {
     std::string prefix = cName(owner);
-    if (!owner.hasMetadata("c:scoped"))
+    if (!hasMetadata(owner.metadata, "c:scoped"))
         prefix.resize(prefix.rfind(owner.name));
     else
         prefix += "_";
@@ -162,5 +162,5 @@ bool isRuntimeType(const Declaration& d) {
 }
 
 int statedMaximum(const Declaration& d) {
-    return std::atoi(d.metadataValue("c:max").c_str());
+    return std::atoi(metadataValue(d.metadata, "c:max").c_str());
 }

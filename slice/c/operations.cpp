@@ -111,33 +111,33 @@ bool hasResults(const Operation& o) {
 }
 
 bool isAmd(const Declaration& owner, const Operation& o) {
-    return hasMetadata(o.metadata, "amd") || owner.hasMetadata("amd");
+    return hasMetadata(o.metadata, "amd") || hasMetadata(owner.metadata, "amd");
 }
 
 bool isSliced(const Declaration& owner, const Operation& o) {
     std::string format = metadataValue(o.metadata, "format");
-    return (format.empty() ? owner.metadataValue("format") : format) == "sliced";
+    return (format.empty() ? metadataValue(owner.metadata, "format") : format) == "sliced";
 }
 
 bool sendsClasses(const Operation& o) {
     return std::any_of(o.parameters.begin(), o.parameters.end(),
-                       [](const Field& p) { return !p.isOut && containsClass(p.type); });
+                       [](const Field& p) { return !p.isOut && factsOf(p.type).hasClass; });
 }
 
 bool returnsClasses(const Operation& o) {
     auto list = results(o);
     return std::any_of(list.begin(), list.end(),
-                       [](const Result& r) { return containsClass(*r.type); });
+                       [](const Result& r) { return factsOf(*r.type).hasClass; });
 }
 
 bool anyClass(const std::vector<Slot>& slots) {
     return std::any_of(slots.begin(), slots.end(),
-                       [](const Slot& s) { return containsClass(*s.type); });
+                       [](const Slot& s) { return factsOf(*s.type).hasClass; });
 }
 
 bool anyRequiredClass(const std::vector<Slot>& slots) {
     return std::any_of(slots.begin(), slots.end(),
-                       [](const Slot& s) { return !s.isOptional && containsClass(*s.type); });
+                       [](const Slot& s) { return !s.isOptional && factsOf(*s.type).hasClass; });
 }
 
 std::string operationName(const Declaration& owner, const Operation& o) {

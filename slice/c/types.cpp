@@ -34,14 +34,14 @@ std::string optionalFormat(const Type& t) {
     if (t.kind == Kind::Proxy)
         return "FSIZE";
     if (t.kind < Kind::String)
-        return "F" + std::to_string(leastWireSize(t));
+        return "F" + std::to_string(factsOf(t).leastWireSize);
     if (t.kind != Kind::Named || t.declaration->kind == DKind::Class)
         return "CLASS";
     const Declaration& d = *t.declaration;
     if (d.kind == DKind::Enum)
         return "SIZE";
-    bool varies = d.kind == DKind::Struct ? isVariable(t) : isVariable(d.element);
-    return varies || (d.kind == DKind::Dictionary && isVariable(d.key)) ? "FSIZE" : "VSIZE";
+    bool varies = d.kind == DKind::Struct ? factsOf(t).isVariable : factsOf(d.element).isVariable;
+    return varies || (d.kind == DKind::Dictionary && factsOf(d.key).isVariable) ? "FSIZE" : "VSIZE";
 }
 
 // The expression of the size before an optional of format VSIZE; empty where the value begins with
@@ -51,10 +51,10 @@ std::string sizeBefore(const Slot& s) {
     if (optionalFormat(t) != "VSIZE" || t.kind == Kind::String)
         return "";
     if (t.declaration->kind == DKind::Struct)
-        return std::to_string(leastWireSize(t));
-    int each = leastWireSize(t.declaration->element);
+        return std::to_string(factsOf(t).leastWireSize);
+    int each = factsOf(t.declaration->element).leastWireSize;
     if (t.declaration->kind == DKind::Dictionary)
-        each += leastWireSize(t.declaration->key);
+        each += factsOf(t.declaration->key).leastWireSize;
     if (each == 1)
         return "";
     std::string count = s.value[0] == '*' ? s.pointer + "->size" : s.value + ".size";
@@ -73,16 +73,6 @@ bool isClass(const Type& t) {
 
 bool isByPointer(const Type& t) {
     return t.kind == Kind::Proxy || (t.kind == Kind::Named && !isEnum(t) && !isClass(t));
-}
-
-int leastWireSize(const Type& t) {
-    return factsOf(t).leastWireSize;
-}
-bool isVariable(const Type& t) {
-    return factsOf(t).isVariable;
-}
-bool containsClass(const Type& t) {
-    return factsOf(t).hasClass;
 }
 
 std::string cVariable(const Type& t, const std::string& name) {

@@ -15,12 +15,6 @@ bool isByPointer(const Type& type);
 bool isEnum(const Type& type);
 bool isClass(const Type& type); // a pointer to an Ice_Value
 
-// The least bytes of a value on the wire; whether there can be more.
-int leastWireSize(const Type& type);
-bool isVariable(const Type& type);
-// True if a class is inside, at any depth.
-bool containsClass(const Type& type);
-
 // A declaration of `name`: "Ice_Int x", "M_Node *x".
 std::string cVariable(const Type& type, const std::string& name);
 

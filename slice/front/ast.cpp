@@ -14,17 +14,13 @@ std::string Declaration::id() const {
     return s + "::" + name;
 }
 
-bool Declaration::hasMetadata(const std::string& directive) const {
-    return ::hasMetadata(metadata, directive);
-}
-
-std::string Declaration::metadataValue(const std::string& prefix) const {
-    return ::metadataValue(metadata, prefix);
-}
-
 bool Declaration::isA(const Declaration& other) const {
     return this == &other || std::any_of(bases.begin(), bases.end(),
                                          [&](const Declaration* b) { return b->isA(other); });
+}
+
+bool Declaration::preserves() const {
+    return hasMetadata(metadata, "preserve-slice") || (base() && base()->preserves());
 }
 
 Declaration::Facts factsOf(const Type& type) {

@@ -111,16 +111,10 @@ struct Declaration {
     void complete();
 
     std::string id() const; // ::Module::Sub::Name
-    bool isHardware() const { return hasMetadata(":hw"); }
-    bool hasMetadata(const std::string& directive) const;
-    // The text behind "prefix:" in the metadata; empty if there is none.
-    std::string metadataValue(const std::string& prefix) const;
     // True if it is `other`, or derived from it.
     bool isA(const Declaration& other) const;
     // True if slices of unknown derived types are kept: ["preserve-slice"] is here or at a base.
-    bool preserves() const {
-        return hasMetadata("preserve-slice") || (base() && base()->preserves());
-    }
+    bool preserves() const;
     const Declaration* base() const { return bases.empty() ? nullptr : bases.front(); }
 };
 
@@ -131,6 +125,7 @@ struct Unit {
 };
 
 Declaration::Facts factsOf(const Type& type);
+// True if the directive is there; the text behind "prefix:", empty if there is none.
 bool hasMetadata(const std::vector<std::string>& metadata, const std::string& directive);
 std::string metadataValue(const std::vector<std::string>& metadata, const std::string& prefix);
 

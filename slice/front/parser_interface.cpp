@@ -87,7 +87,7 @@ void Parser::interface() {
         d.bases = baseList(d, Declaration::Kind::Interface, true);
     checkBases(d);
     braces(d, [&] { operation(d); });
-    if (d.hasMetadata("delegate") && (!d.isLocal || allOperations(d).size() != 1))
+    if (hasMetadata(d.metadata, "delegate") && (!d.isLocal || allOperations(d).size() != 1))
         diagnostics_.warning(d.at, "[\"delegate\"] is for local interfaces of one operation",
                              Diagnostics::Metadata);
 }

@@ -60,7 +60,7 @@ private:
                   d_.at, diagnostics_);
         for (auto [key, value] :
              {std::pair{"hw:type", &block_.type}, std::pair{"hw:version", &block_.version}}) {
-            std::string text = d_.metadataValue(key);
+            std::string text = metadataValue(d_.metadata, key);
             if (!text.empty() && !number(text, 0, 0xFFFF, *value))
                 error(d_.at, "[\"" + std::string(key) + ":" + text + "\"] is not 0..0xFFFF");
         }
@@ -258,8 +258,8 @@ std::vector<Block> mapHardware(const Unit& unit, Diagnostics& diagnostics) {
     std::vector<Block> blocks;
     std::map<std::string, const Declaration*> names;
     for (const auto& d : unit.declarations) {
-        if (d->kind != Declaration::Kind::Interface || !d->isHardware() || d->fromInclude ||
-            d->isForward)
+        if (d->kind != Declaration::Kind::Interface || !hasMetadata(d->metadata, ":hw") ||
+            d->fromInclude || d->isForward)
             continue;
         if (d->isLocal) {
             diagnostics.error(d->at, "interface '" + d->name +

@@ -107,7 +107,13 @@ const char npiStream[] =
                         npi_read_valid, npi_read_idle, npi_write_base[5:0], npi_write_ready,
                         npi_write_idle, 1'b0};)";
 
-std::string verilogCore(const Block& b) {
+std::string zeroed(const std::string& name, const Port& p) {
+    return "  " + name + " <= " + (p.width == 1 ? "'0'" : "(others => '0')") + ";";
+}
+
+} // namespace
+
+GeneratedFile verilogSkeleton(const Block& b) {
     Writer w;
     head(w, b, "//");
     w.line("`default_nettype none");
@@ -156,14 +162,10 @@ std::string verilogCore(const Block& b) {
     }
     w.line("    wire unused = &{1'b0, " + unused + "1'b0};");
     w.line("endmodule");
-    return w.text();
+    return {b.name + ".v", w.text()};
 }
 
-std::string zeroed(const std::string& name, const Port& p) {
-    return "  " + name + " <= " + (p.width == 1 ? "'0'" : "(others => '0')") + ";";
-}
-
-std::string vhdlCore(const Block& b) {
+GeneratedFile vhdlSkeleton(const Block& b) {
     Writer w;
     head(w, b, "--");
     auto outer = corePorts(b);
@@ -209,17 +211,7 @@ std::string vhdlCore(const Block& b) {
         w.line();
     }
     w.line("end architecture;");
-    return w.text();
-}
-
-} // namespace
-
-GeneratedFile verilogSkeleton(const Block& b) {
-    return {b.name + ".v", verilogCore(b)};
-}
-
-GeneratedFile vhdlSkeleton(const Block& b) {
-    return {b.name + ".vhd", vhdlCore(b)};
+    return {b.name + ".vhd", w.text()};
 }
 
 GeneratedFile testSkeleton(const Block& b) {

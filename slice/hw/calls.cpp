@@ -13,6 +13,8 @@ namespace {
 
 constexpr unsigned defaultTimeout = 1000, longestTimeout = 60000; // ms
 constexpr unsigned mostElements = 65535;
+const std::string unfit =
+    "' does not fit into registers: numbers, bools, enums and structs of them do";
 
 class CallMapper {
 public:
@@ -110,22 +112,10 @@ private:
         for (const Declaration* d = &e; d; d = d->base(), object += "base.")
             for (const Field& f : d->fields) {
                 std::string name = snakeCase(e.name) + "_" + snakeCase(f.name);
-                if (f.isOptional || !isMappable(f.type)) {
-                    error(call.operation->at, "'" + f.name + "' of '" + e.name +
-                                                  "' does not fit into registers: numbers, bools, "
-                                                  "enums and structs of them do");
-                    continue;
-                }
-                std::vector<Word> words;
-                size_t kept = shared(call, true, words);
-                size_t before = kept ? words.back().pieces.size() : 0;
-                addValue(words, f.type, name, object + cMember(*d, f), true);
-                for (Word& w : words) {
-                    for (size_t i = before; i < w.pieces.size(); ++i)
-                        w.pieces[i].exception = index;
-                    before = 0;
-                    call.words.push_back(w);
-                }
+                if (f.isOptional || !isMappable(f.type))
+                    error(call.operation->at, "'" + f.name + "' of '" + e.name + unfit);
+                else
+                    addValue(call.words, f.type, name, object + cMember(*d, f), true, index);
             }
     }
 
@@ -161,37 +151,23 @@ private:
     void addEventValue(Call& call, const Field& p, const Location& at) {
         std::string c = "*" + cParameter(*call.operation, p);
         if (p.isOptional || !isMappable(p.type))
-            return error(at, "'" + p.name + "' of the event '" + call.operation->name +
-                                 "' does not fit into registers: numbers, bools, enums and structs "
-                                 "of them do");
+            return error(at, "'" + p.name + "' of the event '" + call.operation->name + unfit);
         addValue(call.words, p.type, snakeCase(p.name), c, true);
-    }
-
-    // The last word, if the next value may continue in it; it is moved to `words`.
-    size_t shared(Call& call, bool isOut, std::vector<Word>& words) {
-        if (call.words.empty() || call.words.back().isOut != isOut || call.words.back().number)
-            return 0;
-        words.push_back(call.words.back());
-        call.words.pop_back();
-        return 1;
     }
 
     void add(Call& call, const Type& type, bool isOptional, const std::string& name,
              const std::string& c, bool isOut, const std::vector<std::string>& metadata,
              const Location& at) {
-        std::string what = "'" + name + "' of '" + call.operation->name + "'";
+        std::string whose = "'" + name + "' of '" + call.operation->name, what = whose + "'";
         std::string wanted = metadataValue(metadata, "hw:word");
         std::string most = metadataValue(metadata, "hw:max");
         if (isOptional)
             return error(at, what + " is optional; a register is always there");
         if (!isSequence(type) && !isMappable(type))
-            return error(at, what + " does not fit into registers: numbers, bools, enums and "
-                                    "structs of them do");
+            return error(at, whose + unfit);
         if (!isSequence(type) && !most.empty())
             return error(at, "[\"hw:max:" + most + "\"]: " + what + " is no sequence");
-        std::vector<Word> words;
-        if (wanted.empty())
-            shared(call, isOut, words);
+        std::vector<Word> chosen, &words = wanted.empty() ? call.words : chosen;
         if (isSequence(type))
             addSequence(words, type, what, name, c, isOut, most, at);
         else
@@ -200,7 +176,7 @@ private:
         if (!wanted.empty() && !number(wanted, firstWord + 1, slotWords - 1, first))
             error(at, "[\"hw:word:" + wanted + "\"]: words " + std::to_string(firstWord + 1) +
                           ".." + std::to_string(slotWords - 1) + " can be chosen");
-        for (Word& w : words) {
+        for (Word& w : chosen) {
             if (first)
                 w.number = first++;
             call.words.push_back(w);

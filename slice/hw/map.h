@@ -116,10 +116,11 @@ std::string upperCase(std::string text);
 
 // True if it is a number, a bool, an enum, or a struct of these.
 bool isMappable(const Type& type);
-// Appends the value's scalars. Successive ones share a word where they fit; a scalar of 64 bits
-// takes two words, low one first. `c` is the lvalue in C; "*p" for the target of p.
+// Appends the value's scalars. Successive ones share a word that has no number yet, where they fit;
+// a scalar of 64 bits takes two words, low one first. `c` is the lvalue in C; "*p" for the target
+// of p.
 void addValue(std::vector<Word>& words, const Type& type, const std::string& name,
-              const std::string& c, bool isOut);
+              const std::string& c, bool isOut, unsigned exception = 0);
 
 // Appends the number of elements of a sequence that lies `offset` bytes into the slot's buffers.
 void addCount(std::vector<Word>& words, const Type& type, const std::string& name,

@@ -123,15 +123,15 @@ void readPiece(Writer& w, const Block& b, const Call& c, const Word& word, const
 // The words with values of an exception, or of the call (0).
 void readWords(Writer& w, const Block& b, const Call& c, unsigned exception) {
     for (const Word& word : c.words) {
-        bool isMeant = std::any_of(word.pieces.begin(), word.pieces.end(), [&](const Piece& p) {
-            return !p.isCode && p.exception == exception;
-        });
-        if (!word.isOut || !isMeant)
-            continue;
-        w.line("hw_word = " + access(b, word, "read") + ");");
-        for (const Piece& p : word.pieces)
-            if (!p.isCode && p.exception == exception)
-                readPiece(w, b, c, word, p);
+        bool isRead = false;
+        for (const Piece& p : word.pieces) {
+            if (!word.isOut || p.isCode || p.exception != exception)
+                continue;
+            if (!isRead)
+                w.line("hw_word = " + access(b, word, "read") + ");");
+            isRead = true;
+            readPiece(w, b, c, word, p);
+        }
     }
 }
 

@@ -34,8 +34,8 @@ unsigned scalarWidth(const Type& t) {
 }
 
 void addPiece(std::vector<Word>& words, Piece piece, bool isOut) {
-    bool fits =
-        !words.empty() && words.back().isOut == isOut && words.back().width() + piece.width <= 32;
+    bool fits = !words.empty() && words.back().isOut == isOut && words.back().number == 0 &&
+                words.back().width() + piece.width <= 32;
     if (!fits)
         words.push_back({0, "", "", isOut, {}});
     else
@@ -133,18 +133,20 @@ bool isMappable(const Type& t) {
 }
 
 void addValue(std::vector<Word>& words, const Type& t, const std::string& name,
-              const std::string& c, bool isOut) {
+              const std::string& c, bool isOut, unsigned exception) {
     if (t.kind == Kind::Named && t.declaration->kind == DKind::Struct) {
         std::string object = c[0] == '*' ? c.substr(1) + "->" : c + ".";
         for (const Field& f : t.declaration->fields)
             addValue(words, f.type, name + "_" + snakeCase(f.name),
-                     object + cMember(*t.declaration, f), isOut);
+                     object + cMember(*t.declaration, f), isOut, exception);
         return;
     }
     unsigned width = scalarWidth(t);
     for (unsigned lsb = 0; lsb < width; lsb += 32)
-        addPiece(words, {t, name, c, 0, std::min(width, 32u), lsb, width, 0, false, false, 0, 0, 0},
-                 isOut);
+        addPiece(
+            words,
+            {t, name, c, 0, std::min(width, 32u), lsb, width, exception, false, false, 0, 0, 0},
+            isOut);
 }
 
 } // namespace hw

@@ -28,10 +28,14 @@ void writeParameters(Writer& w, const Declaration& d, const Operation& o) {
     writeWithValues(w, inSlots(o), "ice_values");
 }
 
-// Handles an exception that the operation does not declare: Python's servants can throw any.
-void refuseException(Writer& w) {
-    w.line("if (status == ICE_USER_EXCEPTION)");
-    w.nested("status = ICE_UNKNOWN_USER_EXCEPTION;");
+// Reads an exception into `to`, where the operation declares one: Python's servants can throw any.
+void readException(Writer& w, const CContext& c, const Operation& o, const std::string& to) {
+    bool isAsked = !o.throws.empty() && to == "ex"; // the caller may pass 0
+    w.line(isAsked ? "if (status == ICE_USER_EXCEPTION && ex)"
+                   : "if (status == ICE_USER_EXCEPTION)");
+    w.nested("status = " + (o.throws.empty() ? "ICE_UNKNOWN_USER_EXCEPTION;"
+                                             : c.thrownAs(o) + "_Exception_readFromInputStream(" +
+                                                   to + ", is);"));
 }
 
 void syncFunction(Writer& w, const CContext& c, const Declaration& d, const Operation& o) {
@@ -49,12 +53,7 @@ void syncFunction(Writer& w, const CContext& c, const Declaration& d, const Oper
             w.block("if (status == ICE_OK)", {},
                     [&] { readWithValues(w, c, outSlots(o, "*"), "ice_received"); });
         }
-        if (!o.throws.empty()) {
-            w.line("if (status == ICE_USER_EXCEPTION && ex)");
-            w.nested("status = " + c.thrownAs(o) + "_Exception_readFromInputStream(ex, is);");
-        }
-        if (o.throws.empty())
-            refuseException(w);
+        readException(w, c, o, "ex");
         w.line("return Ice_ObjectPrx_end(self, status);");
     });
 }
@@ -84,13 +83,7 @@ void completedFunction(Writer& w, const CContext& c, const Declaration& d, const
                         w.nested("status = ICE_MARSHAL;");
                     });
                 }
-                if (!o.throws.empty()) {
-                    w.line("if (status == ICE_USER_EXCEPTION)");
-                    w.nested("status = " + c.thrownAs(o) +
-                             "_Exception_readFromInputStream(&call->exception, is);");
-                }
-                if (o.throws.empty())
-                    refuseException(w);
+                readException(w, c, o, "&call->exception");
                 if (!hasResults(o) && o.throws.empty())
                     w.line("(void)is;");
                 w.line("call->status = status;");

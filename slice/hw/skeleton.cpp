@@ -14,52 +14,39 @@
 namespace hw {
 namespace {
 
-// The ports of a core: its slot's, a memory port's (docs/bus.md, docs/memory.md), and pins.
-std::vector<Port> corePorts(const Block& b) {
+// The ports of a core that its wrapper does not have: a memory port's (docs/memory.md), and pins.
+std::vector<Port> ownPorts(const Block& b) {
     std::vector<Port> list;
-    for (const Port& p : wrapperPorts(b)) {
-        if (p.name == "core_rst_o")
-            break;
-        list.push_back(p);
-    }
     if (b.memoryBytes)
-        for (const Port& p : std::vector<Port>{{"npi_addr_o", true, 32, "memory port"},
-                                               {"npi_addr_req_o", true, 1, ""},
-                                               {"npi_addr_ack_i", false, 1, ""},
-                                               {"npi_rnw_o", true, 1, ""},
-                                               {"npi_size_o", true, 4, ""},
-                                               {"npi_rmw_o", true, 1, ""},
-                                               {"npi_wr_data_o", true, 64, ""},
-                                               {"npi_wr_be_o", true, 8, ""},
-                                               {"npi_wr_push_o", true, 1, ""},
-                                               {"npi_wr_empty_i", false, 1, ""},
-                                               {"npi_wr_almost_full_i", false, 1, ""},
-                                               {"npi_wr_flush_o", true, 1, ""},
-                                               {"npi_rd_data_i", false, 64, ""},
-                                               {"npi_rd_word_i", false, 4, ""},
-                                               {"npi_rd_pop_o", true, 1, ""},
-                                               {"npi_rd_empty_i", false, 1, ""},
-                                               {"npi_rd_flush_o", true, 1, ""},
-                                               {"npi_init_done_i", false, 1, ""}})
-            list.push_back(p);
+        list = {{"npi_addr_o", true, 32, "memory port"},
+                {"npi_addr_req_o", true, 1, ""},
+                {"npi_addr_ack_i", false, 1, ""},
+                {"npi_rnw_o", true, 1, ""},
+                {"npi_size_o", true, 4, ""},
+                {"npi_rmw_o", true, 1, ""},
+                {"npi_wr_data_o", true, 64, ""},
+                {"npi_wr_be_o", true, 8, ""},
+                {"npi_wr_push_o", true, 1, ""},
+                {"npi_wr_empty_i", false, 1, ""},
+                {"npi_wr_almost_full_i", false, 1, ""},
+                {"npi_wr_flush_o", true, 1, ""},
+                {"npi_rd_data_i", false, 64, ""},
+                {"npi_rd_word_i", false, 4, ""},
+                {"npi_rd_pop_o", true, 1, ""},
+                {"npi_rd_empty_i", false, 1, ""},
+                {"npi_rd_flush_o", true, 1, ""},
+                {"npi_init_done_i", false, 1, ""}};
     for (const Pin& p : b.pins)
         list.push_back({p.name, p.isOut(), p.width, &p == &b.pins.front() ? "pins" : ""});
     return list;
 }
 
-// True for ports that the wrapper does not have: the memory port's, and pins.
-bool isOwn(const Block& b, const Port& p) {
-    return p.name.rfind("npi_", 0) == 0 ||
-           std::any_of(b.pins.begin(), b.pins.end(),
-                       [&](const Pin& pin) { return pin.name == p.name; });
-}
-
-// The wrapper's ports towards the core.
-std::vector<Port> innerPorts(const Block& b) {
+// The wrapper's ports towards the slot, or towards the core.
+std::vector<Port> portsOf(const Block& b, bool ofSlot) {
     std::vector<Port> list = wrapperPorts(b);
-    list.erase(list.begin(), std::find_if(list.begin(), list.end(),
-                                          [](const Port& p) { return p.name == "core_rst_o"; }));
-    return list;
+    auto core = std::find_if(list.begin(), list.end(),
+                             [](const Port& p) { return p.name == "core_rst_o"; });
+    return ofSlot ? std::vector<Port>(list.begin(), core) : std::vector<Port>(core, list.end());
 }
 
 std::string signalOf(const Port& p) {
@@ -128,7 +115,7 @@ GeneratedFile verilogSkeleton(const Block& b) {
                verilogRange(p.width) + p.name + (&p == &b.pins.back() ? "" : ","));
     w.line(");");
     std::string unused, connections;
-    for (const Port& p : innerPorts(b)) {
+    for (const Port& p : portsOf(b, false)) {
         std::string name = signalOf(p);
         if (isDone(p))
             w.line("    reg  " + name + ";");
@@ -144,7 +131,7 @@ GeneratedFile verilogSkeleton(const Block& b) {
     w.line("        `include \"slot_connect.vh\"");
     w.line("        .irq_o(irq_o)" + connections);
     w.line("    );");
-    for (const Port& p : innerPorts(b))
+    for (const Port& p : portsOf(b, false))
         if (isDone(p)) {
             w.line();
             w.line("    always @(posedge clk_i)");
@@ -168,11 +155,12 @@ GeneratedFile verilogSkeleton(const Block& b) {
 GeneratedFile vhdlSkeleton(const Block& b) {
     Writer w;
     head(w, b, "--");
-    auto outer = corePorts(b);
+    std::vector<Port> outer = portsOf(b, true), own = ownPorts(b);
+    outer.insert(outer.end(), own.begin(), own.end());
     vhdlEntity(w, b.name, outer);
     std::string connections;
     std::vector<std::string> zeros, dones;
-    for (const Port& p : innerPorts(b)) {
+    for (const Port& p : portsOf(b, false)) {
         std::string name = signalOf(p);
         w.line("  signal " + name + " : " + vhdlType(p.width) + ";");
         connections += std::string(",\n      ") + p.name + " => " + name;
@@ -181,8 +169,8 @@ GeneratedFile vhdlSkeleton(const Block& b) {
         else if (!p.isOut)
             zeros.push_back(zeroed(name, p));
     }
-    for (const Port& p : outer)
-        if (p.isOut && isOwn(b, p))
+    for (const Port& p : own)
+        if (p.isOut)
             zeros.push_back(zeroed(p.name, p));
     w.line("begin");
     w.line();

@@ -36,6 +36,8 @@ void plainTag(std::string& s) {
                 {"@throws ", "throws ", true},
                 {"@deprecated", "Deprecated:", false},
                 {"@see ", "see ", false}};
+    if (s[0] != '@')
+        return;
     for (const auto& [tag, text, isNamed] : tags) {
         if (s.compare(0, tag.size(), tag) != 0)
             continue;

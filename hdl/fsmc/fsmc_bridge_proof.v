@@ -97,14 +97,6 @@ module fsmc_bridge_proof #(
                          \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.turned_sync ,
                          \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.last ,
                          \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.earlier };
-    wire [5:0]  async = {turns[4:1] ^ turns[3:0], \u_fsmc_bridge.u_fsmc_async.u_access.bit_meta [4],
-                         \u_fsmc_bridge.u_fsmc_async.u_access.bit_sync [4]};
-    wire [9:0]  registers = {\u_fsmc_bridge.u_fsmc_registers.flushing , \u_fsmc_bridge.u_fsmc_registers.give ,
-                             \u_fsmc_bridge.u_fsmc_registers.answering , \u_fsmc_bridge.u_fsmc_registers.half_read ,
-                             \u_fsmc_bridge.u_fsmc_registers.half_write , \u_fsmc_bridge.u_fsmc_registers.asked_high ,
-                             \u_fsmc_bridge.u_fsmc_registers.given_up ,
-                             \u_fsmc_bridge.u_fsmc_registers.u_done.bit_sync , \u_fsmc_bridge.u_fsmc_registers.u_done.bit_meta ,
-                             \u_fsmc_bridge.u_fsmc_registers.seen };
     wire [44:0] taken = \u_fsmc_bridge.u_fsmc_async.taken ; // registered by NWE's edge
     wire [42:0] copy  = {\u_fsmc_bridge.taken_ne , \u_fsmc_bridge.taken_addr , \u_fsmc_bridge.taken_data };
 
@@ -207,19 +199,7 @@ module fsmc_bridge_proof #(
                 cover (waited > 8'd8 && was_access && access && nwait_n);
             end
         end else begin : g_words
-            fsmc_words_proof #(.LATE(LATE)) u_fsmc_words_proof (
-                .past_i(past), .rst_i(rst), .resets_i(resets),
-                .clock_i(clock), .ne2_i(ne2_i), .nwe_n_i(nwe_n_i), .noe_n_i(noe_n_i),
-                .access_i(access), .was_access_i(was_access), .beyond_i(beyond_i), .a_i(a_i),
-                .was_ne2_i(was_ne2), .was_noe_i(was_noe), .was_nwe_i(was_nwe),
-                .was_beyond_i(was_beyond), .was_a_i(was_a), .was_d_i(was_d), .selected_i(selected),
-                .wrote_i(wrote), .gives_up_i(gives_up), .let_go_i(let_go), .calm_i(calm), .rest_i(rest),
-                .given_up_i(given_up), .nwait_n_i(nwait_n), .was_nwait_n_i(was_nwait), .d_i(d_out),
-                .valid_i(bus_valid), .write_i(bus_write), .addr_i(bus_addr), .wdata_i(bus_wdata),
-                .rdata_i(bus_rdata), .error_i(access_error && !error_memory), .error_write_i(error_write),
-                .error_addr_i(error_addr), .async_i(async), .registers_i(registers),
-                .word_i(\u_fsmc_bridge.u_fsmc_registers.word ), .taken_i(taken), .copy_i(copy)
-            );
+            `include "fsmc_words_proof.vh"
         end
     endgenerate
 endmodule

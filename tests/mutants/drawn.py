@@ -85,12 +85,13 @@ class Proof:
         return (self.work / "list").read_text().splitlines()[:number]
 
     def lines_of_proof(self):
-        """The lines of the module's file from `ifdef FORMAL on, as Yosys' select names them."""
+        """The lines of the module's proof, as Yosys' select names them: of its file from `ifdef
+        FORMAL or RULES on, and of what that includes."""
         lines = next(self.source.glob(f"**/{self.module}.v")).read_text().splitlines()
         first = next((n for n, line in enumerate(lines, 1)
-                      if re.fullmatch("`(ifdef|elsif) FORMAL", line)), len(lines))
-        return " ".join(f"{self.module}/a:src=*/{self.module}.v:{n}.*"
-                        for n in range(first, len(lines) + 1))
+                      if re.fullmatch("`(ifdef|elsif) (FORMAL|RULES)", line)), len(lines))
+        return f"{self.module}/a:src=*_proof.vh:* " + " ".join(
+            f"{self.module}/a:src=*/{self.module}.v:{n}.*" for n in range(first, len(lines) + 1))
 
     def differs(self, folder, mutant):
         """Whether the mutant's outputs differ from the module's for some input that the proof

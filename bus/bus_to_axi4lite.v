@@ -89,15 +89,48 @@ module bus_to_axi4lite #(
     wire unused = &{1'b0, addr[1:0], axi_bresp_i[0], axi_rresp_i[0], 1'b0};
 
 `ifdef RULES // in proofs, and in tests of cores
-    wire write_open, read_open;
-    axi4lite_rules #(.ADDR_WIDTH(ADDR_WIDTH)) u_axi (
-        .clk_i(clk_i), .rst_i(rst_i),
-        .awvalid_i(axi_awvalid_o), .awready_i(axi_awready_i), .awaddr_i(axi_awaddr_o),
-        .wvalid_i(axi_wvalid_o), .wready_i(axi_wready_i), .wdata_i(axi_wdata_o),
-        .bvalid_i(axi_bvalid_i), .bready_i(axi_bready_o), .bresp_i(axi_bresp_i),
-        .arvalid_i(axi_arvalid_o), .arready_i(axi_arready_i), .araddr_i(axi_araddr_o),
-        .rvalid_i(axi_rvalid_i), .rready_i(axi_rready_o), .rdata_i(axi_rdata_i),
-        .rresp_i(axi_rresp_i), .write_open_o(write_open), .read_open_o(read_open));
+    // AXI4-Lite's handshakes as properties of a master (ARM IHI 0022, A3.1-A3.3, B1.1). The slave's
+    // side is assumed, with all its freedom: ready before, with or after valid, a response at any
+    // later time, or never.
+    reg past = 1'b0;
+    reg aw_taken = 1'b0, w_taken = 1'b0, ar_taken = 1'b0;
+    wire write_open = aw_taken && w_taken; // address and data taken, no response yet
+    always @(posedge clk_i) begin
+        past     <= past || rst_i;
+        aw_taken <= !rst_i && ((aw_taken && !(axi_bvalid_i && axi_bready_o)) || (axi_awvalid_o && axi_awready_i));
+        w_taken  <= !rst_i && ((w_taken && !(axi_bvalid_i && axi_bready_o)) || (axi_wvalid_o && axi_wready_i));
+        ar_taken <= !rst_i && ((ar_taken && !(axi_rvalid_i && axi_rready_o)) || (axi_arvalid_o && axi_arready_i));
+    end
+`ifdef FORMAL
+    always @* if (!rst_i) begin
+`else // a simulator has glitches
+    always @(posedge clk_i) if (past && !rst_i) begin
+`endif
+        // Master: one transfer of each kind at a time.
+        assert (!(axi_awvalid_o && aw_taken));
+        assert (!(axi_wvalid_o && w_taken));
+        assert (!(axi_arvalid_o && ar_taken));
+        // Slave (A3.3.1): no response before all of its transfer was taken.
+        assume (!axi_bvalid_i || write_open);
+        assume (!axi_rvalid_i || ar_taken);
+    end
+    always @(posedge clk_i) begin
+        if (past && $past(rst_i)) // A3.1.2: no valid after reset
+            assert (!axi_awvalid_o && !axi_wvalid_o && !axi_arvalid_o);
+        if (past && !rst_i && !$past(rst_i)) begin
+            // A3.2.1: valid, once high, stays with its payload until ready
+            if ($past(axi_awvalid_o && !axi_awready_i))
+                assert (axi_awvalid_o && axi_awaddr_o == $past(axi_awaddr_o));
+            if ($past(axi_wvalid_o && !axi_wready_i))
+                assert (axi_wvalid_o && axi_wdata_o == $past(axi_wdata_o));
+            if ($past(axi_arvalid_o && !axi_arready_i))
+                assert (axi_arvalid_o && axi_araddr_o == $past(axi_araddr_o));
+            if ($past(axi_bvalid_i && !axi_bready_o))
+                assume (axi_bvalid_i && axi_bresp_i == $past(axi_bresp_i));
+            if ($past(axi_rvalid_i && !axi_rready_o))
+                assume (axi_rvalid_i && axi_rdata_i == $past(axi_rdata_i) && axi_rresp_i == $past(axi_rresp_i));
+        end
+    end
 `endif
 `ifdef FORMAL
     // Each answered access is answered by its own transfer, with what the core said.
@@ -106,7 +139,7 @@ module bus_to_axi4lite #(
         assert (open && address[4:2] == bus_addr_i[2:0]);
         assert (bus_write_i ? axi_bvalid_i && !axi_bresp_i[1] && axi_wdata_o == bus_wdata_i
                             : axi_rvalid_i && !axi_rresp_i[1] && bus_rdata_o == axi_rdata_i);
-        assert (bus_write_i ? write_open : read_open);
+        assert (bus_write_i ? write_open : ar_taken);
     end
     reg was_late = 1'b0; // a late response has been thrown away
     always @(posedge clk_i)

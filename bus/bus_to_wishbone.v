@@ -60,11 +60,45 @@ module bus_to_wishbone #(
     wire unused = &{1'b0, wb_stall_i, 1'b0};
 
 `ifdef RULES // in proofs, and in tests of cores
-    wire outstanding;
-    wishbone_rules #(.PIPELINED(PIPELINED), .ADDR_WIDTH(ADDR_WIDTH)) u_wishbone (
-        .clk_i(clk_i), .rst_i(rst_i), .cyc_i(wb_cyc_o), .stb_i(wb_stb_o), .we_i(wb_we_o),
-        .adr_i(wb_adr_o), .dat_i(wb_dat_o), .ack_i(wb_ack_i), .err_i(wb_err_i), .rty_i(wb_rty_i),
-        .stall_i(wb_stall_i), .abort_i(!bus_valid_i || bus_ready_o), .outstanding_o(outstanding));
+    // The Wishbone B4 handshakes as properties of a master with one transfer at a time. Numbers are
+    // those of the standard's rules (B4, 2010). The slave's side is assumed.
+    reg past = 1'b0;
+    reg outstanding = 1'b0; // pipelined: a strobe was taken and not answered
+    wire abort  = !bus_valid_i || bus_ready_o; // the cycle may end without an answer in the next clock
+    wire answer = wb_ack_i || wb_err_i || wb_rty_i;
+    wire taken  = wb_stb_o && (PIPELINED == 0 ? answer : !wb_stall_i);
+    always @(posedge clk_i) begin
+        past <= past || rst_i;
+        outstanding <= PIPELINED != 0 && !rst_i && wb_cyc_o && !answer && !abort && (outstanding || taken);
+    end
+
+`ifdef FORMAL
+    always @* if (!rst_i) begin
+`else // a simulator has glitches
+    always @(posedge clk_i) if (past && !rst_i) begin
+`endif
+        assert (!wb_stb_o || wb_cyc_o);              // 3.25: CYC whenever STB
+        assert (!(wb_stb_o && outstanding));      // one at a time
+        assume (wb_ack_i + wb_err_i + wb_rty_i <= 1); // 3.45: one of ACK, ERR, RTY
+        // 3.55: outside of a cycle a slave may hold its answer, so nothing is assumed there.
+        if (PIPELINED != 0 && wb_cyc_o && !outstanding && !taken)
+            assume (!answer);                   // 3.35: none before the strobe was taken
+    end
+    always @(posedge clk_i) begin
+        if (past && $past(rst_i))
+            assert (!wb_cyc_o && !wb_stb_o);       // 3.20: reset ends everything
+        if (past && !rst_i && !$past(rst_i)) begin
+            // Rule 3.60: what qualifies a strobe stays until the strobe is taken.
+            if ($past(wb_stb_o && !taken && !abort)) begin
+                assert (wb_stb_o && wb_cyc_o);
+                assert (wb_we_o == $past(wb_we_o) && wb_adr_o == $past(wb_adr_o));
+                assert (!wb_we_o || wb_dat_o == $past(wb_dat_o));
+            end
+            // a taken strobe keeps the cycle open until its answer
+            if ($past(PIPELINED != 0 && wb_cyc_o && (outstanding || taken) && !answer && !abort))
+                assert (wb_cyc_o);
+        end
+    end
 `endif
 `ifdef FORMAL
     // Each answered access has had one strobe taken, and its answer is passed on unchanged.

@@ -1,19 +1,26 @@
 // SPDX-License-Identifier: MIT
 //
-// bridge_bench: the FSMC bridge alone between the processor's pins, a bus slave and a memory.
+// bridge_bench: the FSMC bridge alone between the processor's pins, a bus slave, which has the
+// system slot's ID, and a memory.
 
 #ifndef BRIDGE_BENCH_H
 #define BRIDGE_BENCH_H
 
 #include "bus_slave.h"
-#include "fsmc_master.h"
+#include "driver_port.h"
 #include "npi_memory.h"
+extern "C" {
+#include "fsmc_bank.h"
+#include "map_regs.h"
+#include "system_regs.h"
+}
 
 template <class Bridge> class BridgeBench {
 public:
     explicit BridgeBench(uint64_t seed, double stall = 0.3, unsigned hclk = 6, unsigned clk = 5)
         : memory(bench, stall, seed * 2 + 1), slave(bench, stall, seed * 2 + 2),
           master(pins, {[this] { tick(); }, [this] { settle(); }}, hclk, clk) {
+        slave.words[MAP_SLOT_SYSTEM * 16 + SYSTEM_ID] = SYSTEM_ID_VALUE;
         top.page_i = 0;
         settle();
         for (int i = 0; i < 8; ++i)
@@ -30,10 +37,17 @@ public:
     BusSlave<Bridge> slave;
     FsmcMaster master;
     unsigned errors = 0, errorAddr = 0;
-    uint32_t lateMask = 0; // bits that a late access sets in slave.clearWord
     bool errorWrite = false;
     std::function<void()> onTick; // for observers
 
+    // Sets the FSMC up by its driver: with the driver's own timing, or both banks alike.
+    FSMC_Status init() { return FSMC_init(&driverPort, &master); }
+    FSMC_Status init(const FSMC_Bank& bank) {
+        const FSMC_Bank banks[2] = {bank, bank};
+        return FSMC_initBanks(&driverPort, &master, banks);
+    }
+    // From now on EVENT is as in the system slot: late accesses set its bit, writing 1 clears.
+    void keepEvents() { slave.clearWord = MAP_SLOT_SYSTEM * 16 + SYSTEM_EVENT; }
     void tick() {
         showPins();
         top.eval();
@@ -45,7 +59,7 @@ public:
             errorWrite = top.error_write_o;
         }
         if (top.late_o && slave.clearWord < slave.words.size())
-            slave.words[slave.clearWord] |= lateMask;
+            slave.words[slave.clearWord] |= SYSTEM_EVENT_LATE_MASK;
         seePins();
         if (onTick)
             onTick();

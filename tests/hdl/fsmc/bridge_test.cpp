@@ -5,12 +5,7 @@
 
 #include "VFsmcBridge.h"
 #include "bridge_bench.h"
-#include "driver_port.h"
 #include "fsmc_fields.h"
-extern "C" {
-#include "map_regs.h"
-#include "system_regs.h"
-}
 #include <gtest/gtest.h>
 #include <map>
 
@@ -22,8 +17,7 @@ class Bridge : public ::testing::Test {
 protected:
     void SetUp() override {
         RecordProperty("seed", static_cast<int>(testSeed()));
-        b_.slave.words[MAP_SLOT_SYSTEM * 16 + SYSTEM_ID] = SYSTEM_ID_VALUE;
-        ASSERT_EQ(FSMC_init(&driverPort, &b_.master), FSMC_OK);
+        ASSERT_EQ(b_.init(), FSMC_OK);
         doorbell(); // its last write is posted
     }
     static uint32_t at(uint32_t word) { return control + 4 * word; }
@@ -246,8 +240,7 @@ TEST_F(Bridge, AHungMemoryEndsInAnErrorAndTheBridgeGoesOn) {
 // Writes that find no room are let go like reads, with an error each; after the last place they are
 // lost.
 TEST_F(Bridge, WritesToAHungMemoryEndInErrorsAndTheBridgeGoesOn) {
-    b_.slave.clearWord = MAP_SLOT_SYSTEM * 16 + SYSTEM_EVENT; // as the system slot does it
-    b_.lateMask = SYSTEM_EVENT_LATE_MASK;
+    b_.keepEvents();
     const uint32_t& event = b_.slave.words[b_.slave.clearWord];
     auto value = [](unsigned i) { return static_cast<uint16_t>(0xA000 + i); };
     b_.memory.hold(true);
@@ -322,8 +315,7 @@ TEST_F(Bridge, AnAccessThatIsGivenUpLeavesNothingHalfDone) {
 TEST_F(Bridge, StreamsAreRightHoweverSlowTheMemoryIs) {
     Random random(testSeed());
     FSMC_setHclk(120000000);
-    b_.slave.clearWord = MAP_SLOT_SYSTEM * 16 + SYSTEM_EVENT; // as the system slot does it
-    b_.lateMask = SYSTEM_EVENT_LATE_MASK;
+    b_.keepEvents();
     uint64_t repeated = 0;
     for (double stall : {0.0, 0.3, 0.9, 0.97, 0.99}) {
         b_.memory.setStall(stall);
@@ -351,8 +343,7 @@ TEST(BridgeRatios, WritesOfAStreamAreTakenAtEveryPhase) {
     for (auto [hclk, clk] :
          {std::pair(120u, 100u), {1199u, 1000u}, {1000u, 999u}, {1083u, 1000u}}) {
         BridgeBench<VFsmcBridge> b(testSeed(), 0, hclk, clk);
-        b.slave.words[MAP_SLOT_SYSTEM * 16 + SYSTEM_ID] = SYSTEM_ID_VALUE;
-        ASSERT_EQ(FSMC_init(&driverPort, &b.master), FSMC_OK);
+        ASSERT_EQ(b.init(), FSMC_OK);
         FSMC_setHclk(static_cast<U32>(100e6 * hclk / clk));
         std::vector<uint16_t> out(5000), in(out.size());
         for (auto& value : out)
@@ -374,7 +365,7 @@ TEST_F(Bridge, TheDriverTurnsThePageAndTellsOfTheFirstBusError) {
         EXPECT_EQ(words[SYSTEM_PAGE], page);
         EXPECT_EQ(b_.memory.byte(0x103), 4);
     }
-    b_.slave.clearWord = MAP_SLOT_SYSTEM * 16 + SYSTEM_EVENT; // as the system slot does it
+    b_.keepEvents();
     U32 where = 0;
     EXPECT_EQ(FSMC_checkError(&where), FSMC_OK);
     words[SYSTEM_EVENT] = SYSTEM_EVENT_BUS_ERROR_MASK | SYSTEM_EVENT_LATE_MASK;

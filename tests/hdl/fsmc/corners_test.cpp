@@ -5,14 +5,8 @@
 
 #include "VFsmcBridge.h"
 #include "bridge_bench.h"
-#include "driver_port.h"
 #include "fsmc_fields.h"
 #include "pin_delays.h"
-extern "C" {
-#include "fsmc_bank.h"
-#include "map_regs.h"
-#include "system_regs.h"
-}
 #include <gtest/gtest.h>
 #include <map>
 
@@ -44,10 +38,7 @@ template <class Case> void inEveryCorner(double stall, Case&& run) {
                              (looksTwice ? "twice, pauses between writes" : "once") +
                              ", SEED=" + std::to_string(testSeed()));
                 BridgeBench<VFsmcBridge> b(testSeed() + hclk, stall, hclk, 100);
-                b.slave.words[MAP_SLOT_SYSTEM * 16 + SYSTEM_ID] = SYSTEM_ID_VALUE;
-                b.slave.clearWord =
-                    MAP_SLOT_SYSTEM * 16 + SYSTEM_EVENT; // as the system slot does it
-                b.lateMask = SYSTEM_EVENT_LATE_MASK;
+                b.keepEvents();
                 b.delay(delays, testSeed() + corner, looksTwice);
                 b.master.pauseWrites(looksTwice);
                 run(b, hclk);
@@ -95,7 +86,7 @@ void traffic(BridgeBench<VFsmcBridge>& b, uint64_t seed) {
 TEST(Corners, NoAccessIsLostWithTheDriversTiming) {
     for (double stall : {0.3, 0.95})
         inEveryCorner(stall, [](BridgeBench<VFsmcBridge>& b, unsigned hclk) {
-            ASSERT_EQ(FSMC_init(&driverPort, &b.master), FSMC_OK);
+            ASSERT_EQ(b.init(), FSMC_OK);
             traffic(b, testSeed() + hclk);
         });
 }
@@ -105,15 +96,14 @@ TEST(Corners, EveryModeWithTimeForNwait) {
     for (FSMC_Mode mode : {FSMC_MODE_A, FSMC_MODE_2, FSMC_MODE_B, FSMC_MODE_C, FSMC_MODE_D})
         inEveryCorner(0.9, [mode](BridgeBench<VFsmcBridge>& b, unsigned hclk) {
             const FSMC_Bank bank = {mode, mode, 0, 0, 1, 0, 1, {2, 2, 6}, {2, 2, 6}};
-            const FSMC_Bank banks[2] = {bank, bank};
-            ASSERT_EQ(FSMC_initBanks(&driverPort, &b.master, banks), FSMC_OK);
+            ASSERT_EQ(b.init(bank), FSMC_OK);
             traffic(b, testSeed() + hclk);
         });
 }
 
 TEST(Corners, StreamsAreRightAtFullSpeed) {
     inEveryCorner(0, [](BridgeBench<VFsmcBridge>& b, unsigned hclk) {
-        ASSERT_EQ(FSMC_init(&driverPort, &b.master), FSMC_OK);
+        ASSERT_EQ(b.init(), FSMC_OK);
         FSMC_setHclk(hclk * 1000000);
         Random random(testSeed());
         std::vector<uint16_t> out(4000), in(out.size());

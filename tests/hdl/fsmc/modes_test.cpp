@@ -7,13 +7,7 @@
 #include "VFsmcBridgeMuxed.h"
 #include "VFsmcBridgeWaitHigh.h"
 #include "bridge_bench.h"
-#include "driver_port.h"
 #include "fsmc_fields.h"
-extern "C" {
-#include "fsmc_bank.h"
-#include "map_regs.h"
-#include "system_regs.h"
-}
 #include <gtest/gtest.h>
 #include <map>
 
@@ -53,14 +47,12 @@ template <class Bridge> void traffic(const Mode& mode, unsigned hclk, unsigned c
     SCOPED_TRACE(std::string("mode ") + mode.name + ", HCLK : clock = " + std::to_string(hclk) +
                  " : " + std::to_string(clk) + ", SEED=" + std::to_string(testSeed()));
     BridgeBench<Bridge> b(testSeed(), 0.2, hclk, clk);
-    b.slave.words[0] = SYSTEM_ID_VALUE;
     Random random(testSeed() + hclk);
     b.top.page_i =
         static_cast<uint8_t>(random.below(64)); // of the memory; as the system slot has it
     b.master.pauseWrites(random.chance(0.5));
     const uint32_t page = static_cast<uint32_t>(b.top.page_i) << 26;
-    const FSMC_Bank banks[2] = {mode.bank, mode.bank};
-    ASSERT_EQ(FSMC_initBanks(&driverPort, &b.master, banks), FSMC_OK);
+    ASSERT_EQ(b.init(mode.bank), FSMC_OK);
     for (uint32_t reg : {0xA0000000u, 0xA0000004u, 0xA0000104u}) // NE3, another chip, as NE1
         b.master.write32(reg + 0x10, b.master.read32(reg));
     std::map<uint32_t, uint8_t> reference;
@@ -130,12 +122,10 @@ TEST(Modes, NwaitActiveHighAndTheLargestBuffers) {
 // An STM32F407 pauses between the halves of a written word; RM0033 promises that it does not.
 TEST(Modes, BusturnOfWritesIsBetweenTheHalvesOfAWordOrNot) {
     BridgeBench<VFsmcBridge> b(testSeed(), 0, 120, 100);
-    b.slave.words[0] = SYSTEM_ID_VALUE;
     FSMC_Bank bank = {FSMC_MODE_A, FSMC_MODE_A, 0, 0, 1, 0, 1, {2, 1, 4}, {2, 1, 4}};
     auto hclksOfAWord = [&](uint8_t busturn, bool pauses) {
         bank.busturn = busturn;
-        const FSMC_Bank banks[2] = {bank, bank};
-        EXPECT_EQ(FSMC_initBanks(&driverPort, &b.master, banks), FSMC_OK);
+        EXPECT_EQ(b.init(bank), FSMC_OK);
         b.master.pauseWrites(pauses);
         (void)b.master.read32(control);
         b.master.idle(20);
@@ -153,10 +143,7 @@ TEST(Modes, BusturnOfWritesIsBetweenTheHalvesOfAWordOrNot) {
 // read.
 TEST(Modes, WhatADoorbellDropsOnItsWayIsNotTakenForFresh) {
     BridgeBench<VFsmcBridge> b(testSeed(), 0.1, 168, 100);
-    b.slave.words[0] = SYSTEM_ID_VALUE;
-    const FSMC_Bank bank = {FSMC_MODE_1, {}, 0, 0, 1, 0, 1, {2, 1, 4}, {}};
-    const FSMC_Bank banks[2] = {bank, bank};
-    ASSERT_EQ(FSMC_initBanks(&driverPort, &b.master, banks), FSMC_OK);
+    ASSERT_EQ(b.init(plainModes[0].bank), FSMC_OK);
     Random random(testSeed());
     for (int i = 0; i < 1000 && !HasFailure(); ++i) {
         // Two misses fetch a block; when it is there the next one is asked for, near the second

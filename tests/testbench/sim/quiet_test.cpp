@@ -44,7 +44,7 @@ struct Plan {
     std::vector<Call> calls; // again and again, each when the one before is answered
     uint64_t compareNs = 0;
     size_t comparedFrom = 0;
-    bool hasSensor = false;
+    size_t framedAfter = 0; // replies after which the camera's sensor sends a frame; 0: none
 };
 
 // Returns how much of a flight is compared (ns).
@@ -53,27 +53,30 @@ uint64_t comparedNs() {
     return static_cast<uint64_t>(1e6 * (text ? std::atof(text) : 40));
 }
 
-// Lets a sensor with 16 x 8 pixels send a frame each 100,000 clocks. Its clock stops between them.
-void connectSensor(SocModel& soc) {
-    soc.onClock([&soc, sensor = SensorModel({20, 3}), pins = SensorModel::Pins(), clock = false,
-                 nextFrame = uint64_t(0), still = 0]() mutable {
+// Lets a sensor with 16 x 8 pixels send a frame when `sends` says so, which ends that. Notes its
+// pins in each of its clocks, which stop between frames.
+void connectSensor(SocModel& soc, std::function<bool()> sends,
+                   std::function<void(uint32_t pins)> note) {
+    soc.onClock([&soc, sends, note, sensor = SensorModel({20, 3}), pins = SensorModel::Pins(),
+                 clock = false, still = 0]() mutable {
         clock = !clock;
         if (!clock) {
-            if (sensor.isIdle() && soc.cycles() >= nextFrame) {
+            if (sensor.isIdle() && sends()) {
                 std::vector<uint8_t> pixels(16 * 8);
                 for (size_t i = 0; i < pixels.size(); ++i)
-                    pixels[i] = static_cast<uint8_t>(nextFrame / 1000 + i * i * 37);
+                    pixels[i] = static_cast<uint8_t>(i * i * 37);
                 sensor.addFrame(pixels, 16, 8);
-                nextFrame = soc.cycles() + 100000;
             }
             pins = sensor.next();
         }
-        soc.setCorePins(uint32_t(clock) << MAP_PIN_CAMERA_PCLK_I |
-                        uint32_t(pins.vsync) << MAP_PIN_CAMERA_VSYNC_I |
-                        uint32_t(pins.href) << MAP_PIN_CAMERA_HREF_I |
-                        uint32_t(pins.data) << MAP_PIN_CAMERA_DATA_I);
+        const uint32_t all = uint32_t(clock) << MAP_PIN_CAMERA_PCLK_I |
+                             uint32_t(pins.vsync) << MAP_PIN_CAMERA_VSYNC_I |
+                             uint32_t(pins.href) << MAP_PIN_CAMERA_HREF_I |
+                             uint32_t(pins.data) << MAP_PIN_CAMERA_DATA_I;
+        soc.setCorePins(all);
+        note(all);
         still = sensor.isIdle() && pins.vsync ? still + 1 : 0;
-        return still > 32 ? std::max(nextFrame, soc.cycles() + 1) : soc.cycles() + 1;
+        return soc.cycles() + (still > 32 ? 100'000 : 1); // it is asked each millisecond
     });
 }
 
@@ -100,8 +103,24 @@ Flight fly(const Plan& plan, bool slow) {
     air.onPacket([&](uint64_t, const RfPacket& packet, RfChannel::Outcome outcome) {
         note(1, static_cast<uint32_t>(packet.bytes.size() << 8) | static_cast<uint32_t>(outcome));
     });
-    if (plan.hasSensor)
-        connectSensor(soc);
+    uint8_t* memory = soc.memory().data(); // a picture of 16 x 16 pixels
+    memory[UAV_FRAME_HEADER] = memory[UAV_FRAME_HEADER + 4] = 16;
+    for (uint32_t i = 0; i < 256; ++i)
+        memory[UAV_FRAME + i] = static_cast<uint8_t>(i * i * 37);
+    bool framed = false; // the frame for the call was sent
+    uint64_t nextFrame = 0;
+    if (plan.framedAfter)
+        connectSensor(
+            soc,
+            // At first, each millisecond, and while a call waits for one.
+            [&] {
+                const bool waits = ground.replies.size() == plan.framedAfter && !framed;
+                const bool first = soc.now() < 4'000'000 && soc.now() >= nextFrame;
+                framed |= waits;
+                nextFrame = first ? soc.now() + 900'000 : nextFrame;
+                return waits || first;
+            },
+            [&](uint32_t pins) { note(3, pins); });
     soc.reset(true);
     soc.evaluateAll(slow);
     size_t sent = 0;
@@ -159,7 +178,7 @@ std::pair<Flight, Flight> expectSame(const Plan& plan) {
 }
 
 TEST(Quiet, AFlightIsTheSameWithQuietClocksPassedAtOnce) {
-    auto [quick, slow] = expectSame({{{"hwengine1", "ice_ping", 2, {}}}, comparedNs(), 0, false});
+    auto [quick, slow] = expectSame({{{"hwengine1", "ice_ping", 2, {}}}, comparedNs(), 0, 0});
     EXPECT_GT(quick.events.size(), 100u);
     EXPECT_EQ(slow.evaluated, slow.clocks);
     EXPECT_LT(quick.evaluated * 2, quick.clocks);
@@ -173,16 +192,18 @@ TEST(Quiet, EachCoreWorksAsIfItsClockNeverStopped) {
         samples.push_back(static_cast<uint8_t>(i * 5));
     key.resize(17, 7);
     message.resize(41, 9);
-    expectSame({{{"camera", "capture", 2, {16, 0, 8, 0}},
+    expectSame({{{"hwengine1", "startProcessing", 0, {}},
+                 {"hwengine1", "getResult", 0, {}},
+                 {"camera", "capture", 2, {16, 0, 8, 0}},
                  {"hwengine1", "startProcessing", 0, {}},
                  {"fir", "setCoefficient", 2, {0, 0, 0, 1, 0}},
                  {"hwengine1", "getResult", 0, {}},
                  {"fir", "filter", 0, samples},
                  {"ascon", "setKey", 2, key},
                  {"ascon", "hash", 2, message}},
-                comparedNs() / 8,
-                1,
-                true});
+                comparedNs() / 40,
+                3,
+                5});
 }
 #endif
 

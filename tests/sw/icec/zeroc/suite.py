@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: MIT
 """suite: runs ZeroC's own test client of a suite, and counts its checks.
 
-suite.py FOLDER SUITE ENCODING PORT
+suite.py FOLDER SUITE RUN [--Ice.Property=value...] ENDPOINT|PORT
 
 A check is a call of the client's test(), true or not. The client stops at its first failure; here
 each statement goes on by itself, so that one failure hides no other one. expected.toml has the
 reason of each failure, and the number of checks that must pass.
 """
+import argparse
 import ast
 import fnmatch
 import importlib.abc
@@ -143,28 +144,40 @@ def expected(run):
 
 
 def main():
-    folder, suite, encoding, port = sys.argv[1:]
-    run = suite.replace("/", "_") + "-" + encoding
-    os.chdir(os.path.join(folder, "Ice", suite))
+    global PATIENCE
+    parser = argparse.ArgumentParser()
+    parser.add_argument("folder")
+    parser.add_argument("suite")
+    parser.add_argument("run", help="what the run is called: SUITE-tcp-1.1")
+    parser.add_argument("rest", nargs=argparse.REMAINDER,
+                        help="Ice properties, then an endpoint or a port")
+    a = parser.parse_args()
+    where = a.rest.pop()
+    endpoint = where if not where.isdigit() else "tcp -h 127.0.0.1 -p " + where
+    properties = dict(word[2:].split("=", 1) for word in a.rest)
+    os.chdir(os.path.join(a.folder, "Ice", a.suite))
     sys.meta_path.insert(0, Finder())
-    sys.path.append(folder)
+    sys.path.append(a.folder)
     import TestHelper
+    if not endpoint.startswith("tcp"):
+        PATIENCE = 60
     threading.Condition.wait = wait
 
     def createTestProperties(self, args=[], create=TestHelper.TestHelper.createTestProperties):
         made = create(self, list(args))
-        made.setProperty("Ice.Default.EncodingVersion", encoding)
+        for key, value in properties.items():
+            made.setProperty(key, value)
         return made
 
     TestHelper.TestHelper.createTestProperties = createTestProperties
-    TestHelper.TestHelper.getTestEndpoint = lambda *_, **__: "tcp -h 127.0.0.1 -p " + port
+    TestHelper.TestHelper.getTestEndpoint = lambda *_, **__: endpoint
     import Client
     try:
         Client.Client().run([])
     except Exception as error:
         failed("Client.py:0", error)
 
-    wanted, reasons = expected(run)
+    wanted, reasons = expected(a.run)
     byReason = {}
     unknown = 0
     print()
@@ -178,7 +191,7 @@ def main():
     for reason, places in byReason.items():
         print("by design, %s: %s" % (reason, " ".join(places)))
     print("%s: %d checks passed (%d expected), %d by design, %d failed"
-          % (run, passed, wanted, len(failures) - unknown, unknown))
+          % (a.run, passed, wanted, len(failures) - unknown, unknown))
     sys.stdout.flush()
     os._exit(0 if unknown == 0 and passed >= wanted else 1)  # a suite may leave threads that wait
 

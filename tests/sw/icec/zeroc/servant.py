@@ -1,0 +1,87 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""servant: the C of a servant from the bodies of its operations.
+
+servant.py BODIES HEADER... >servant.c
+
+A generated header has each operation's signature already; BODIES says only what the operation does:
+
+    C, up to a line %%
+    prefix Test_Thing_ Test_Derived_    the operations below are of these interfaces
+    echo op1 op2*                       each out parameter gets the in parameter of its type
+    op3 op4: statements;                go on in lines that begin with a blank
+
+Names are shell patterns. Within statements the parameters have their Slice names, `result` is the
+result, `ex` the exception.
+"""
+import fnmatch
+import re
+import sys
+
+PROTOTYPE = re.compile(r"^Ice_Status (\w+)\((\w+) self,\s*([^;]*?)const Ice_Current \*current\);",
+                       re.M)
+
+
+def parameters(text):
+    """Returns [(type, name)] of a signature's parameters."""
+    words = [" ".join(p.split()) for p in text.split(",") if p.strip()]
+    return [re.fullmatch(r"(.*?)(\w+)", w).groups() for w in words]
+
+
+def echo(found, classes):
+    """Copies in parameters to the out parameters of their types, in order."""
+    plain = lambda t: t.replace("const", "").replace("*", "").strip()
+    isOut = lambda t: "const" not in t and t.count("*") > (plain(t) in classes)
+    optional = {n[4:] for t, n in found if n.startswith("has_")}
+    sources = [(t, n) for t, n in found if not isOut(t)]
+    used, lines = {}, []
+    for kind, name in found:
+        if not isOut(kind) or name.startswith("has_"):
+            continue
+        same = [s for s in sources if plain(s[0]) == plain(kind)]
+        source, value = same[min(used.get(plain(kind), 0), len(same) - 1)]
+        used[plain(kind)] = used.get(plain(kind), 0) + 1
+        levels = source.count("*") - (kind.count("*") - 1)  # a class is a pointer on both sides
+        copy = "*%s = %s%s;" % (name, "*" * levels, value)
+        if name in optional:
+            copy = "if ((*has_%s = %s != 0))\n        %s" % (name, value, copy)
+        lines.append(copy)
+    return "\n    ".join(lines)
+
+
+def main():
+    head, rest = open(sys.argv[1]).read().split("\n%%\n")
+    rest = re.sub(r"\n[ \t]+", "\n ", rest)
+    signatures, classes = {}, {"Ice_Value"}
+    for header in sys.argv[2:]:
+        text = open(header).read()
+        classes.update(re.findall(r"#define (\w+)_cast\(", text))
+        for name, own, between in PROTOTYPE.findall(text):
+            signatures[name] = (own, parameters(between))
+    print("/* Made by servant.py from %s. */\n%s" % (sys.argv[1].split("/")[-1], head))
+    prefixes, done = [""], set()
+    for line in re.sub(r"\n ", "\x01", rest).splitlines():
+        if not line or line.startswith("#"):
+            continue
+        if line.startswith("prefix "):
+            prefixes = line.split()[1:]
+            continue
+        names, _, body = (line[5:], "", None) if line.startswith("echo ") else line.partition(":")
+        for pattern in [p + n for n in names.split() for p in prefixes]:
+            found = fnmatch.filter(signatures, pattern)
+            if not found and len(prefixes) == 1:
+                sys.exit("servant: no operation %s" % pattern)
+            for name in set(found) - done:
+                done.add(name)
+                own, these = signatures[name]
+                text = echo(these,
+                            classes) if body is None else body.strip().replace("\x01", "\n    ")
+                voids = "".join(" (void)%s;" % n for n in ["self", "current"] +
+                                [n for _, n in these])
+                print("\nIce_Status %s(%s self,%s const Ice_Current* current) {\n    %s\n    {\n  "
+                      "  %s\n    }\n"
+                      "    return ICE_OK;\n}" % (name, own, "".join(" %s%s," % p for p in these),
+                                                 voids.strip(), text))
+
+
+main()

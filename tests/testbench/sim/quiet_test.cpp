@@ -38,7 +38,7 @@ struct Call {
     std::vector<uint8_t> parameters;
 };
 
-// What a flight does. The one of comparison evaluates each clock at its start and once for
+// The plan of a flight. The slow flight evaluates each clock at its start and once for
 // `compareNs`, from the reply number `comparedFrom` on (0: from the first call on).
 struct Plan {
     std::vector<Call> calls; // again and again, each when the one before is answered

@@ -5,11 +5,10 @@
 
 #include "camera.h"
 #include "vision_model.h"
+#include "vision_regs.h"
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
-
-constexpr size_t mostRecords = 65535; // of a frame: VISION_RECORDS
 
 int main(int argc, char** argv) {
     if (argc != 3) {
@@ -20,8 +19,8 @@ int main(int argc, char** argv) {
         Frame frame = loadFrame(argv[1], 1024, 4096);
         auto corners =
             detectCorners(frame.pixels.data(), frame.width, frame.height, std::atoi(argv[2]));
-        if (corners.size() > mostRecords)
-            corners.resize(mostRecords);
+        if (corners.size() > VISION_RECORDS) // as many as the core counts and keeps
+            corners.resize(VISION_RECORDS);
         std::printf("{\"found\": %zu, \"best\": [", corners.size());
         const char* separator = "";
         for (const Feature& f : strongest(corners, 64)) {

@@ -179,8 +179,8 @@ endmacro()
 #                 [REGS block...] [DEPENDS target-or-file...] [FLAGS ...] [FAST])
 # Verilated model of a module as a library NAME with the class V<NAME>. Lint is on (-Wall) and
 # fatal. FAST, the whole chip: compiled by clang (measured: 1.18 times the speed of g++'s code).
-# With COVERAGE it counts the top module only: each block's own tests count the block, and with all
-# counters seconds of flight took minutes.
+# A model with COVERAGE counts its top module only: each block's own tests count the block, and with
+# all counters seconds of flight took minutes.
 function(icesoc_verilate name)
   cmake_parse_arguments(A "FAST" "TOP" "SOURCES;PARAMS;INCLUDES;REGS;DEPENDS;FLAGS" ${ARGN})
   set(dir ${CMAKE_CURRENT_BINARY_DIR}/verilated_${name})

@@ -62,7 +62,7 @@ class Paths:
 
     def __init__(self, module):
         self.names, self.pads = {}, []
-        # Of a net: the start that drives it, or the nets (or starts) that its logic reads
+        # The start that drives a net, or the nets (or starts) that its logic reads
         self.source, self.comb = {}, {}
         self.sinks, self.origins = [], {}  # (end, net); of a net: its starts, as far as known
         self.add_ports(module["ports"])

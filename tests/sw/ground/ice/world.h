@@ -73,12 +73,12 @@ public:
         data.properties->setProperty("Ice.ThreadPool.Server.Size", "4");
         data.properties->setProperty("Ice.Warn.Connections", "0");
         server_ = Ice::initialize(data);
-        auto adapter = server_->createObjectAdapterWithEndpoints("Uav", "tcp -h 127.0.0.1");
-        adapter->add(echo, Ice::stringToIdentity("echo"));
-        adapter->activate();
-        auto info =
-            std::dynamic_pointer_cast<Ice::TCPEndpointInfo>(adapter->getEndpoints()[0]->getInfo());
-        relay = std::make_unique<Relay>(rig, info->port);
+        uav = server_->createObjectAdapterWithEndpoints("Uav", "tcp -h 127.0.0.1");
+        uav->add(echo, Ice::stringToIdentity("echo"));
+        uav->activate();
+        uavPort = std::dynamic_pointer_cast<Ice::TCPEndpointInfo>(uav->getEndpoints()[0]->getInfo())
+                      ->port;
+        relay = std::make_unique<Relay>(rig, uavPort);
         echo->station = "station:tcp -h 127.0.0.1 -t 60000 -p " + std::to_string(relay->port());
     }
     ~World() { server_->destroy(); }
@@ -116,6 +116,8 @@ public:
 
     Rig rig;
     std::shared_ptr<EchoServant> echo = std::make_shared<EchoServant>();
+    std::shared_ptr<Ice::ObjectAdapter> uav;
+    int uavPort = 0; // of it
     std::unique_ptr<Relay> relay;
 
 private:

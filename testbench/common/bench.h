@@ -63,10 +63,14 @@ public:
         ++cycles_;
     }
 
+    void tick(uint64_t cycles) {
+        while (cycles--)
+            tick();
+    }
+
     void reset(unsigned cycles = 4) {
         top_->rst_i = 1;
-        for (unsigned i = 0; i < cycles; ++i)
-            tick();
+        tick(cycles);
         top_->rst_i = 0;
         top_->eval();
     }

@@ -36,6 +36,12 @@ public:
     }
     uint32_t read(unsigned word) { return transfer(false, word, 0).data; }
     void write(unsigned word, uint32_t data) { transfer(true, word, data); }
+    // Returns the slot's events, and clears them.
+    uint32_t takeEvents() {
+        const uint32_t events = read(1);
+        write(1, events);
+        return events;
+    }
 
 private:
     static constexpr unsigned slowest = 256; // clocks: an adapter's TIMEOUT and one (docs/bus.md)

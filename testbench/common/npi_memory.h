@@ -25,6 +25,16 @@ public:
         return it == bytes_.end() ? 0 : it->second;
     }
     void setByte(uint32_t address, uint8_t value) { bytes_[address] = value; }
+    template <class Bytes> void store(uint32_t address, const Bytes& bytes) {
+        for (uint8_t byte : bytes)
+            bytes_[address++] = byte;
+    }
+    std::vector<uint8_t> bytes(uint32_t address, size_t count) const {
+        std::vector<uint8_t> list(count);
+        for (uint8_t& each : list)
+            each = byte(address++);
+        return list;
+    }
     void setStall(double stall) { stall_ = stall; }
     // Holds all requests, as a hung memory does.
     void hold(bool held) { held_ = held; }

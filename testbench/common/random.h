@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <cstdlib>
+#include <vector>
 
 class Random {
 public:
@@ -23,6 +24,13 @@ public:
     }
     // Returns a number in 0 .. bound-1.
     uint32_t below(uint32_t bound) { return static_cast<uint32_t>(uint64_t(next()) * bound >> 32); }
+    // Returns `count` numbers, whose bits are all random.
+    template <class Item> std::vector<Item> items(size_t count) {
+        std::vector<Item> list(count);
+        for (Item& item : list)
+            item = static_cast<Item>(next());
+        return list;
+    }
     bool chance(double probability) { return next() < probability * 4294967296.0; }
 
 private:

@@ -160,6 +160,7 @@ private:
     void passWaited();
     bool onGuarded(uint32_t address, unsigned bytes, bool write);
     template <class Access> uint32_t guardedAccess(uint32_t address, unsigned bytes, Access access);
+    bool debugAccess(uint32_t address, uint8_t* data, uint32_t bytes, bool writes);
     const Instruction& instructionAt(uint32_t address);
     void pass(unsigned cycles);
     template <class Time> void passing(Time time);

@@ -136,10 +136,8 @@ bool CortexM3::onGuarded(uint32_t address, unsigned bytes, bool write) {
     if (!control_.isForbidden(address, bytes, write) || synchronous_.number ||
         currentException() == HardFault)
         return false;
-    char text[80];
-    std::snprintf(text, sizeof text, "access of %u bytes to 0x%08X: the MPU forbids it", bytes,
-                  address);
-    synchronous_ = {MemManage, SystemControl::dataAccess | SystemControl::mmfarValid, text};
+    synchronous_ = {MemManage, SystemControl::dataAccess | SystemControl::mmfarValid,
+                    accessText(address, bytes, "the MPU forbids it")};
     control_.setFaultAddress(SystemControl::mmfarValid, address);
     attention_ = true;
     uc_emu_stop(uc_);
@@ -149,48 +147,34 @@ bool CortexM3::onGuarded(uint32_t address, unsigned bytes, bool write) {
 // ---- a debugger's accesses outside of memory: in words where they are aligned, else in bytes ----
 
 bool CortexM3::debugRead(uint32_t address, void* data, uint32_t bytes) {
-    if (readMemory(address, data, bytes))
-        return true;
-    drainStore();
-    auto* to = static_cast<uint8_t*>(data);
-    try {
-        while (bytes) {
-            const unsigned size = accessSize(address, bytes);
-            uint32_t value = 0;
-            if (address >= 0xE0000000) {
-                if (!control_.read(address, size, value))
-                    return false;
-            } else {
-                value = bus_.read(address, size);
-                control_.pass(bus_.takeWaited());
-            }
-            std::memcpy(to, &value, size);
-            to += size, address += size, bytes -= size;
-        }
-    } catch (const CpuBus::Error&) {
-        (void)bus_.takeWaited();
-    }
-    return bytes == 0;
+    return readMemory(address, data, bytes) ||
+           debugAccess(address, static_cast<uint8_t*>(data), bytes, false);
 }
 
 bool CortexM3::debugWrite(uint32_t address, const void* data, uint32_t bytes) {
-    if (writeMemory(address, data, bytes))
-        return true;
+    std::vector<uint8_t> copy(bytes);
+    std::memcpy(copy.data(), data, bytes);
+    return writeMemory(address, data, bytes) || debugAccess(address, copy.data(), bytes, true);
+}
+
+bool CortexM3::debugAccess(uint32_t address, uint8_t* data, uint32_t bytes, bool writes) {
     drainStore();
-    const auto* from = static_cast<const uint8_t*>(data);
     try {
-        while (bytes) {
-            const unsigned size = accessSize(address, bytes);
+        for (unsigned size; bytes; data += size, address += size, bytes -= size) {
+            size = accessSize(address, bytes);
             uint32_t value = 0;
-            std::memcpy(&value, from, size);
-            if (address >= 0xE0000000) {
-                if (!control_.write(address, size, value))
-                    return false;
-            } else {
-                bus_.write(address, size, value);
+            std::memcpy(&value, data, writes ? size : 0);
+            if (address < 0xE0000000) {
+                if (writes)
+                    bus_.write(address, size, value);
+                else
+                    value = bus_.read(address, size);
                 control_.pass(bus_.takeWaited());
+            } else if (!(writes ? control_.write(address, size, value)
+                                : control_.read(address, size, value))) {
+                return false;
             }
-            from += size, address += size, bytes -= size;
+            std::memcpy(data, &value, size);
         }
     } catch (const CpuBus::Error&) {
         (void)bus_.takeWaited();

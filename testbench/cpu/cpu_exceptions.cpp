@@ -353,8 +353,7 @@ void CortexM3::handleUnicorn(uc_err error) {
     }
     if (raised_)
         return handleRaised();
-    char text[64];
-    std::snprintf(text, sizeof text, "%s", uc_strerror(error));
+    const std::string text = uc_strerror(error);
     switch (error) {
     case UC_ERR_OK:
         return;
@@ -375,6 +374,6 @@ void CortexM3::handleUnicorn(uc_err error) {
     case UC_ERR_EXCEPTION:
         return undefinedAt(executing_);
     default:
-        throw std::runtime_error(std::string("libunicorn: ") + text);
+        throw std::runtime_error("libunicorn: " + text);
     }
 }

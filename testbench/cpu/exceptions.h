@@ -8,6 +8,7 @@
 #ifndef EXCEPTIONS_H
 #define EXCEPTIONS_H
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -37,20 +38,57 @@ public:
         uint8_t priority = 0;
     };
 
-    void reset();
-    void pend(unsigned number, bool pending = true);
-    void enable(unsigned number, bool enabled);
-    void setPriority(unsigned number, uint8_t priority);
-    void setGrouping(unsigned group); // PRIGROUP
+    void reset() { *this = Exceptions(), update(); }
+    void pend(unsigned number, bool pending = true) {
+        states_[number].pending = pending;
+        update();
+    }
+    void enable(unsigned number, bool enabled) {
+        states_[number].enabled = enabled;
+        update();
+    }
+    void setPriority(unsigned number, uint8_t priority) {
+        states_[number].priority = priority & priorityBits;
+        update();
+    }
+    // Sets PRIGROUP.
+    void setGrouping(unsigned group) {
+        group_ = group & 7;
+        update();
+    }
     unsigned grouping() const { return group_; }
-    void setLine(unsigned number, bool high);
-    void enter(unsigned number); // pending becomes active
-    void leave(unsigned number);
+    void setLine(unsigned number, bool high) {
+        State& s = states_[number];
+        if (high && !s.level)
+            s.pending = true;
+        s.level = high;
+        update();
+    }
+    // Makes a pending exception active.
+    void enter(unsigned number) {
+        states_[number].pending = false;
+        states_[number].active = true;
+        ++activeCount_;
+        update();
+    }
+    void leave(unsigned number) {
+        State& s = states_[number];
+        if (s.active)
+            --activeCount_;
+        s.active = false;
+        s.pending = s.pending || s.level;
+        update();
+    }
     const State& operator[](unsigned number) const { return states_[number]; }
     unsigned activeCount() const { return activeCount_; }
 
     // The masks of the processor.
-    void setMasks(uint32_t primask, uint32_t basepri, uint32_t faultmask);
+    void setMasks(uint32_t primask, uint32_t basepri, uint32_t faultmask) {
+        primask_ = primask & 1;
+        basepri_ = basepri & priorityBits;
+        faultmask_ = faultmask & 1;
+        updateMasks();
+    }
 
     // Returns the exception that must be entered now; 0: none.
     unsigned deliverable() const { return bestPriority_ < runningPriority_ ? best_ : 0; }
@@ -61,12 +99,49 @@ public:
     unsigned firstPending() const { return best_; }
     // WFI wakes by an exception that would preempt with PRIMASK 0 (B1.5.19).
     bool wakes() const { return bestPriority_ < sleepPriority_; }
-    int priorityOf(unsigned number) const;
+    int priorityOf(unsigned number) const {
+        switch (number) {
+        case NonMaskable:
+            return -2;
+        case HardFault:
+            return -1;
+        default:
+            return states_[number].priority;
+        }
+    }
 
 private:
-    int groupOf(int priority) const;
-    void update();
-    void updateMasks();
+    int groupOf(int priority) const {
+        return priority < 0 ? priority : priority & ~((2 << group_) - 1) & 0xFF;
+    }
+    void update() {
+        activePriority_ = none;
+        best_ = 0;
+        bestPriority_ = none;
+        int bestExact = none;
+        for (unsigned n = NonMaskable; n < count; ++n) {
+            const State& s = states_[n];
+            if (s.active)
+                activePriority_ = std::min(activePriority_, groupOf(priorityOf(n)));
+            bool possible =
+                n < MemManage || n == SupervisorCall || n == PendSv || n == SysTick || s.enabled;
+            if (s.pending && possible && priorityOf(n) < bestExact) {
+                best_ = n;
+                bestExact = priorityOf(n);
+            }
+        }
+        if (best_)
+            bestPriority_ = groupOf(bestExact);
+        updateMasks();
+    }
+    void updateMasks() {
+        sleepPriority_ = activePriority_;
+        if (basepri_)
+            sleepPriority_ = std::min(sleepPriority_, groupOf(static_cast<int>(basepri_)));
+        if (faultmask_)
+            sleepPriority_ = std::min(sleepPriority_, -1);
+        runningPriority_ = primask_ ? std::min(sleepPriority_, 0) : sleepPriority_;
+    }
 
     std::array<State, count> states_;
     unsigned group_ = 0, activeCount_ = 0;

@@ -17,9 +17,26 @@ public:
     explicit FpgaPins(std::function<uint64_t()> now) : now_(std::move(now)) {}
 
     void wire(SpiFlash& flash) { flash_ = &flash; }
-    void powerOn();
+    void powerOn() {
+        if (!flash_)
+            return;
+        flash_->powerOff();
+        configure();
+    }
     // Takes the processor's outputs: chip select, PROGRAM_B.
-    void drive(bool isSelectLow, bool isProgramLow);
+    void drive(bool isSelectLow, bool isProgramLow) {
+        if (!flash_)
+            return;
+        flash_->select(isSelectLow);
+        const bool was = isProgramLow_;
+        isProgramLow_ = isProgramLow;
+        if (isProgramLow) {
+            boot_.running.reset();
+            boot_.reads.clear();
+        } else if (was) {
+            configure();
+        }
+    }
     bool isDone() const { return isDoneWired && (!flash_ || (boot_.running && now_() >= doneAt_)); }
     bool isDoneWired = true; // else it is read as low
     const Spartan6Boot& boot() const { return boot_; }
@@ -31,16 +48,46 @@ public:
     // The FPGA is the master: whether its chip select is low, how many bytes it has sent since
     // then, and each.
     bool isReading() const { return current() != nullptr; }
-    uint64_t bytesSent() const;
-    uint8_t byteSent(uint64_t index) const;
+    uint64_t bytesSent() const {
+        const Spartan6Boot::Read* read = current();
+        return read ? (clock() - read->from) / 8 : 0;
+    }
+    uint8_t byteSent(uint64_t index) const {
+        const Spartan6Boot::Read* read = current();
+        if (!read || index > 3)
+            return 0xFF;
+        return static_cast<uint8_t>((0x03000000 | read->address) >> (24 - 8 * index));
+    }
     // When the chip select changes next; ~0: it does not.
-    uint64_t nextEdgeNs() const;
+    uint64_t nextEdgeNs() const {
+        for (const Spartan6Boot::Read& read : boot_.reads)
+            for (uint64_t edge : {read.from, read.to})
+                if (edge != never && nsOf(edge) > now_())
+                    return nsOf(edge);
+        return never;
+    }
 
 private:
-    void configure();
-    const Spartan6Boot::Read* current() const;
-    uint64_t clock() const;
-    uint64_t nsOf(uint64_t clock) const;
+    static constexpr uint64_t second = 1'000'000'000, never = ~0ull;
+
+    void configure() {
+        boot_.configure(flash_->memory);
+        begunAt_ = now_();
+        doneAt_ = nsOf(boot_.clocks);
+        if (onReconfigured)
+            onReconfigured();
+    }
+    const Spartan6Boot::Read* current() const {
+        for (const Spartan6Boot::Read& read : boot_.reads)
+            if (read.from <= clock() && clock() < read.to)
+                return &read;
+        return nullptr;
+    }
+    uint64_t clock() const { return (now_() - begunAt_) * Spartan6Boot::cclkHz / second; }
+    // The first nanosecond at which clock() has reached it.
+    uint64_t nsOf(uint64_t clock) const {
+        return begunAt_ + (clock * second + Spartan6Boot::cclkHz - 1) / Spartan6Boot::cclkHz;
+    }
 
     std::function<uint64_t()> now_;
     SpiFlash* flash_ = nullptr;

@@ -20,36 +20,32 @@ constexpr int xpsrNumber = 25, firstSystemNumber = 26; // as in the description 
 constexpr int systemRegisters[] = {CortexM3::Msp,     CortexM3::Psp,       CortexM3::Primask,
                                    CortexM3::Basepri, CortexM3::Faultmask, CortexM3::Control};
 
-const char* const description =
-    "<?xml version=\"1.0\"?><!DOCTYPE target SYSTEM \"gdb-target.dtd\"><target version=\"1.0\">"
-    "<architecture>arm</architecture><feature name=\"org.gnu.gdb.arm.m-profile\">"
-    "<reg name=\"r0\" bitsize=\"32\"/><reg name=\"r1\" bitsize=\"32\"/><reg name=\"r2\" "
-    "bitsize=\"32\"/>"
-    "<reg name=\"r3\" bitsize=\"32\"/><reg name=\"r4\" bitsize=\"32\"/><reg name=\"r5\" "
-    "bitsize=\"32\"/>"
-    "<reg name=\"r6\" bitsize=\"32\"/><reg name=\"r7\" bitsize=\"32\"/><reg name=\"r8\" "
-    "bitsize=\"32\"/>"
-    "<reg name=\"r9\" bitsize=\"32\"/><reg name=\"r10\" bitsize=\"32\"/><reg name=\"r11\" "
-    "bitsize=\"32\"/>"
-    "<reg name=\"r12\" bitsize=\"32\"/><reg name=\"sp\" bitsize=\"32\" type=\"data_ptr\"/>"
-    "<reg name=\"lr\" bitsize=\"32\"/><reg name=\"pc\" bitsize=\"32\" type=\"code_ptr\"/>"
-    "<reg name=\"xpsr\" bitsize=\"32\" regnum=\"25\"/></feature>"
-    "<feature name=\"org.gnu.gdb.arm.m-system\">"
-    "<reg name=\"msp\" bitsize=\"32\" type=\"data_ptr\" regnum=\"26\"/>"
-    "<reg name=\"psp\" bitsize=\"32\" type=\"data_ptr\"/><reg name=\"primask\" bitsize=\"32\"/>"
-    "<reg name=\"basepri\" bitsize=\"32\"/><reg name=\"faultmask\" bitsize=\"32\"/>"
-    "<reg name=\"control\" bitsize=\"32\"/></feature></target>";
-
-std::string hexByte(unsigned value) {
-    char text[4];
-    std::snprintf(text, sizeof text, "%02x", value & 0xFF);
-    return text;
+std::string description() {
+    std::string text = R"(<?xml version="1.0"?><!DOCTYPE target SYSTEM "gdb-target.dtd">)"
+                       R"(<target version="1.0"><architecture>arm</architecture>)"
+                       R"(<feature name="org.gnu.gdb.arm.m-profile">)";
+    const auto reg = [&text](const std::string& name, const std::string& more = "") {
+        text += "<reg name=\"" + name + "\" bitsize=\"32\"" + more + "/>";
+    };
+    for (int n = 0; n <= 12; ++n)
+        reg("r" + std::to_string(n));
+    reg("sp", R"( type="data_ptr")");
+    reg("lr");
+    reg("pc", R"( type="code_ptr")");
+    reg("xpsr", R"( regnum="25")");
+    text += R"(</feature><feature name="org.gnu.gdb.arm.m-system">)";
+    reg("msp", R"( type="data_ptr" regnum="26")");
+    reg("psp", R"( type="data_ptr")");
+    for (const char* name : {"primask", "basepri", "faultmask", "control"})
+        reg(name);
+    return text + "</feature></target>";
 }
 
-std::string hexWord(uint32_t value) { // in the target's order of bytes
+std::string hexOf(const void* data, size_t bytes) {
     std::string text;
-    for (int i = 0; i < 4; ++i)
-        text += hexByte(value >> 8 * i);
+    for (size_t i = 0; i < bytes; ++i)
+        for (unsigned shift : {4, 0})
+            text += "0123456789abcdef"[static_cast<const uint8_t*>(data)[i] >> shift & 15];
     return text;
 }
 
@@ -61,10 +57,9 @@ std::string bytesOf(const std::string& hex) {
 }
 
 uint32_t wordOf(const std::string& hex) {
-    std::string b = bytesOf(hex.substr(0, 8));
+    const std::string b = bytesOf(hex.substr(0, 8));
     uint32_t value = 0;
-    for (size_t i = 0; i < b.size(); ++i)
-        value |= uint32_t(static_cast<uint8_t>(b[i])) << 8 * i;
+    std::memcpy(&value, b.data(), b.size());
     return value;
 }
 
@@ -157,10 +152,10 @@ bool GdbStub::receive(std::string& packet) {
 }
 
 void GdbStub::send(const std::string& payload) {
-    unsigned sum = 0;
+    uint8_t sum = 0;
     for (char c : payload)
-        sum += static_cast<uint8_t>(c);
-    std::string packet = "$" + payload + "#" + hexByte(sum);
+        sum = static_cast<uint8_t>(sum + c);
+    const std::string packet = "$" + payload + "#" + hexOf(&sum, 1);
     (void)!::send(connection_, packet.data(), packet.size(), MSG_NOSIGNAL);
 }
 
@@ -254,7 +249,6 @@ std::string GdbStub::answer(const Target& target, const std::string& packet) {
     case 'b':
         return back(target, packet);
     case 'H':
-        return "OK";
     case 'T':
         return "OK";
     case 'D':
@@ -285,7 +279,7 @@ std::string GdbStub::query(const Target& target, const std::string& packet) {
     if (packet.rfind(features, 0) == 0) {
         unsigned offset = 0, length = 0;
         std::sscanf(packet.c_str() + features.size(), "%x,%x", &offset, &length);
-        std::string all = description;
+        const std::string all = description();
         if (offset >= all.size())
             return "l";
         return (length >= all.size() - offset ? "l" : "m") + all.substr(offset, length);
@@ -301,18 +295,17 @@ std::string GdbStub::query(const Target& target, const std::string& packet) {
             text = "monitor reset: power-on reset of the processor; monitor info: time, cycles, "
                    "last fault\n";
         }
-        std::string hex;
-        for (char c : text)
-            hex += hexByte(static_cast<uint8_t>(c));
-        return hex;
+        return hexOf(text.data(), text.size());
     }
     return "";
 }
 
 std::string GdbStub::readRegisters(const Target& target, int first, int last) {
     std::string text;
-    for (int r = first; r <= last; ++r)
-        text += hexWord(target.cpu.reg(r));
+    for (int r = first; r <= last; ++r) {
+        const uint32_t value = target.cpu.reg(r);
+        text += hexOf(&value, sizeof value);
+    }
     return text;
 }
 
@@ -323,10 +316,7 @@ std::string GdbStub::readMemory(const Target& target, const std::string& argumen
     std::string bytes(length, 0);
     if (!target.cpu.debugRead(address, bytes.data(), length))
         return error;
-    std::string text;
-    for (char c : bytes)
-        text += hexByte(static_cast<uint8_t>(c));
-    return text;
+    return hexOf(bytes.data(), length);
 }
 
 std::string GdbStub::writeMemory(const Target& target, const std::string& arguments) {

@@ -19,7 +19,29 @@ class ProgramTrace {
 public:
     // Listens to `stm32`, with the loaded program in its flash, for good. `clocks` of the fabric
     // have passed.
-    ProgramTrace(Stm32F2& stm32, std::function<uint64_t()> clocks);
+    ProgramTrace(Stm32F2& stm32, std::function<uint64_t()> clocks)
+        : stm32_(stm32), clocks_(std::move(clocks)), taskAddress_(kernelsPointer(*stm32.image())) {
+        CortexM3& cpu = stm32.cpu();
+        cpu.listener.entered = [this, &cpu](unsigned) {
+            interrupt_ = stm32_.image()->functionAt(cpu.reg(CortexM3::Pc));
+            look();
+        };
+        cpu.listener.left = [this](unsigned number) {
+            interrupt_ = "-";
+            if (number == pendSv && taskAddress_)
+                switched();
+            look();
+        };
+        if (window_.file.empty())
+            return;
+        file_.open(window_.file + ".program.vcd");
+        if (!file_)
+            throw std::runtime_error("cannot write '" + window_.file + ".program.vcd'");
+        file_ << "$timescale 1 ps $end\n$scope module program $end\n";
+        for (const char* name : {"task", "interrupt", "function"})
+            file_ << "$var string 1 program." << name << ' ' << name << " $end\n";
+        file_ << "$upscope $end\n$enddefinitions $end\n";
+    }
     ProgramTrace(const ProgramTrace&) = delete;
     ProgramTrace& operator=(const ProgramTrace&) = delete;
 
@@ -27,10 +49,58 @@ public:
     std::function<void(const std::string& name)> onTask;
 
 private:
-    void switched();
-    void look();
-    void lookAt(uint32_t address);
-    void write(const char* row, const std::string& text);
+    static constexpr unsigned pendSv = 14;                 // in which each kernel switches tasks
+    static constexpr uint64_t tenthOfASecond = 10'000'000; // clocks
+    // An exception comes within these clocks: the tick is 100,000.
+    static constexpr uint64_t soon = 200'000;
+
+    // Returns the address of the pointer to the running task, uC/OS-II's or our kernel's; 0: the
+    // program has no kernel.
+    static uint32_t kernelsPointer(const ElfImage& image) {
+        for (const char* name : {"OSTCBCur", "os_running"})
+            if (image.has(name))
+                return image.symbol(name);
+        return 0;
+    }
+
+    // A task that is seen for the first time continues at its first instruction.
+    void switched() {
+        const CortexM3& cpu = stm32_.cpu();
+        std::string& name = tasks_[cpu.word(taskAddress_)];
+        if (name.empty())
+            name = stm32_.image()->functionAt(cpu.word(cpu.reg(CortexM3::Psp) + 24));
+        if (name != task_ && onTask)
+            onTask(name);
+        task_ = name;
+    }
+    void look() {
+        const uint64_t now = clocks_();
+        if (!file_.is_open())
+            return;
+        const bool near = now + soon >= window_.from && now <= window_.to;
+        if (near != isNear_)
+            stm32_.cpu().listener.instruction = near ? [this](uint32_t address) { lookAt(address); }
+                                                     : std::function<void(uint32_t)>();
+        isNear_ = near;
+        if (now + tenthOfASecond < window_.from || now > window_.to)
+            return;
+        write("task", task_);
+        write("interrupt", interrupt_);
+    }
+    void lookAt(uint32_t address) {
+        const uint64_t now = clocks_();
+        if (now >= window_.from && now <= window_.to)
+            write("function", stm32_.image()->functionAt(address));
+    }
+    void write(const char* row, const std::string& text) {
+        std::string& last = written_[row];
+        if (text == last || text.empty())
+            return;
+        const uint64_t time = 2 * clocks_() + 1;
+        if (time != time_)
+            file_ << '#' << (time_ = time) << '\n';
+        file_ << 's' << (last = text) << " program." << row << '\n';
+    }
 
     Stm32F2& stm32_;
     std::function<uint64_t()> clocks_;

@@ -17,8 +17,31 @@ public:
     explicit RandomBlock(uint64_t seed) : state_(seed) {}
 
     void reset() { control_ = errors_ = 0; }
-    uint32_t read(uint32_t offset, uint64_t nowNs, bool hasClock);
-    void write(uint32_t offset, uint32_t value, uint64_t nowNs);
+    uint32_t read(uint32_t offset, uint64_t nowNs, bool hasClock) {
+        if ((control_ & enable) && !hasClock)
+            errors_ |= noClock;
+        const bool isReady =
+            (control_ & enable) && hasClock && !(errors_ & badSeedNow) && nowNs >= readyNs_;
+        if (offset == 0)
+            return control_;
+        if (offset == 4)
+            return errors_ | (isReady ? ready : 0) | (hasClock ? 0 : noClockNow);
+        if (!isReady)
+            return 0;
+        readyNs_ = nowNs + numberNs;
+        return next(state_);
+    }
+    void write(uint32_t offset, uint32_t value, uint64_t nowNs) {
+        if (offset == 4)
+            errors_ &= value | badSeedNow;
+        if (offset != 0)
+            return;
+        if (!(control_ & enable) && (value & enable)) {
+            readyNs_ = nowNs + numberNs;
+            errors_ &= ~badSeedNow;
+        }
+        control_ = value & (enable | 8);
+    }
     // Stops the noise, until RNGEN is cleared and set.
     void fail() { errors_ |= 0x44; }
 
@@ -31,6 +54,10 @@ public:
     }
 
 private:
+    static constexpr uint32_t enable = 1u << 2, ready = 1, noClockNow = 1u << 1, noClock = 1u << 5,
+                              badSeedNow = 1u << 2, badSeed = 1u << 6;
+    static constexpr uint64_t numberNs = 40 * 1000 / 48;
+
     uint64_t state_, readyNs_ = 0;
     uint32_t control_ = 0, errors_ = 0;
 };

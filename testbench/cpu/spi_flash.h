@@ -21,11 +21,71 @@ public:
         : memory(bytes, 0xFF), now_(std::move(now)), random_(seed) {}
 
     // Chip select; an instruction that changes something begins when it rises.
-    void select(bool isLow);
+    void select(bool isLow) {
+        settle();
+        if (isSelected_ && !isLow && !in_.empty() && !isUnder_) {
+            const uint8_t instruction = in_[0];
+            const uint32_t at =
+                in_.size() < 4 ? 0
+                               : (uint32_t(in_[1]) << 16 | uint32_t(in_[2]) << 8 | in_[3]) % bytes;
+            if (instruction == WriteEnable || instruction == WriteDisable) {
+                mayWrite_ = instruction == WriteEnable;
+            } else if (mayWrite_ && instruction == PageProgram && in_.size() > 4) {
+                const uint32_t page =
+                    at & ~(pageBytes - 1); // behind its end it goes on at its start
+                page_.assign(pageBytes, 0xFF);
+                for (size_t i = 4; i < in_.size(); ++i)
+                    page_[(at + i - 4) % pageBytes] = in_[i];
+                begin(page, pageBytes, 7 * millisecond / 10);
+            } else if (mayWrite_ && in_.size() == 4 && instruction == SectorErase) {
+                page_.clear();
+                begin(at & ~0xFFFu, 0x1000, 45 * millisecond);
+            } else if (mayWrite_ && in_.size() == 4 && instruction == BlockErase) {
+                page_.clear();
+                begin(at & ~0xFFFFu, 0x10000, 150 * millisecond);
+            }
+        }
+        if (isLow && !isSelected_)
+            in_.clear();
+        isSelected_ = isLow;
+    }
     // Eight clocks: takes a byte, and returns the byte that it drives meanwhile.
-    uint8_t transfer(uint8_t in);
-    // A loss of power cuts the operation under way.
-    void powerOff();
+    uint8_t transfer(uint8_t in) {
+        settle();
+        in_.push_back(in);
+        const size_t behind = in_.size() - 1; // bytes behind the instruction's first
+        if (!isSelected_ || behind == 0)
+            return 0xFF;
+        if (in_[0] == ReadStatus)
+            return (isUnder_ ? Busy : 0) | (mayWrite_ ? WriteEnabled : 0);
+        if (isUnder_)
+            return 0xFF;
+        if (in_[0] == Identify && behind <= sizeof identity)
+            return identity[behind - 1];
+        if (in_[0] == Read && behind > 3) {
+            const uint32_t at = uint32_t(in_[1]) << 16 | uint32_t(in_[2]) << 8 | in_[3];
+            return memory[(at + behind - 4) % bytes];
+        }
+        return 0xFF;
+    }
+    // A loss of power cuts the operation under way. A cut write has cleared some of its bits. A cut
+    // erase, which first clears all bits and then sets them, leaves rows of 64 bytes old, cleared,
+    // erased, or in between.
+    void powerOff() {
+        settle();
+        for (uint32_t row = at_; isUnder_ && row < at_ + size_; row += 64) {
+            const unsigned kind = random_() & 3;
+            for (uint32_t i = row; i < row + 64; ++i) {
+                const auto chance = static_cast<uint8_t>(random_());
+                if (!page_.empty())
+                    memory[i] &= static_cast<uint8_t>(page_[i - at_] | chance);
+                else if (kind)
+                    memory[i] = kind == 1 ? 0 : kind == 2 ? 0xFF : memory[i] ^ chance;
+            }
+        }
+        isUnder_ = mayWrite_ = isSelected_ = false;
+        end_ = 0;
+    }
     // Returns the remaining time of an erase or a write, in ns.
     uint64_t busyNs() const { return end_ > now_() ? end_ - now_() : 0; }
 
@@ -35,8 +95,39 @@ public:
     std::function<void()> onOperation;
 
 private:
-    void begin(uint32_t at, uint32_t size, uint64_t ns);
-    void settle();
+    enum : uint8_t {
+        PageProgram = 0x02,
+        Read = 0x03,
+        WriteDisable = 0x04,
+        ReadStatus = 0x05,
+        WriteEnable = 0x06,
+        SectorErase = 0x20,
+        Identify = 0x9F,
+        BlockErase = 0xD8
+    };
+    enum : uint8_t { Busy = 1, WriteEnabled = 2 };
+    static constexpr uint8_t identity[] = {0xEF, 0x40, 0x15};
+    static constexpr uint64_t millisecond = 1'000'000;
+    static constexpr uint32_t pageBytes = 256;
+
+    void begin(uint32_t at, uint32_t size, uint64_t ns) {
+        at_ = at;
+        size_ = size;
+        end_ = now_() + ns;
+        isUnder_ = true;
+        ++operations_;
+        if (onOperation)
+            onOperation();
+    }
+    void settle() {
+        if (!isUnder_ || now_() < end_)
+            return;
+        isUnder_ = mayWrite_ = false;
+        for (uint32_t i = 0; i < size_; ++i) {
+            uint8_t& byte = memory[at_ + i];
+            byte = page_.empty() ? 0xFF : byte & page_[i];
+        }
+    }
 
     std::function<uint64_t()> now_;
     std::mt19937_64 random_;

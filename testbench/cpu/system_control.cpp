@@ -1,15 +1,48 @@
 // SPDX-License-Identifier: MIT
 //
-// system_control: SysTick as a due time, NVIC and SCB as views of Exceptions, the MPU as a list of
-// guards.
+// system_control: SysTick as a due time, NVIC and SCB (ARMv7-M ARM, B3.2) as views of Exceptions,
+// the MPU (B3.5) as a list of guards.
 
 #include "system_control.h"
 
 namespace {
 
 constexpr uint32_t dwt = 0xE0001000, scs = 0xE000E000;
+constexpr uint32_t keyIn = 0x05FA, keyOut = 0xFA05;
+
+// Exceptions 4..15 have their priorities in SHPR1..3; those that exist:
+bool hasPriority(unsigned number) {
+    return (number >= MemManage && number <= UsageFault) || number == SupervisorCall ||
+           number == DebugMonitor || number == PendSv || number == SysTick;
+}
+
+// RASR.AP for privileged code: 0 no access; 5 to 7 read only.
+bool forbids(uint32_t rasr, bool write) {
+    uint32_t access = rasr >> 24 & 7;
+    return access == 0 || (write && access >= 5);
+}
 
 } // namespace
+
+// Registers that store what is written to them. A value with unknown bits is refused.
+struct SystemControl::Stored {
+    uint32_t at;
+    uint32_t SystemControl::* value;
+    uint32_t kept = ~0u, unknown = 0;
+    bool clears = false; // ones that are written
+};
+const SystemControl::Stored SystemControl::stored[] = {
+    {0x008, &SystemControl::actlr_, ~0u, ~2u}, // DISDEFWBUF is modelled
+    {0x014, &SystemControl::load_, 0xFFFFFF},
+    {0xD08, &SystemControl::vtor_, 0x3FFFFF80},
+    {0xD10, &SystemControl::scr_, ~0u, 2}, // SLEEPONEXIT is not
+    // Traps of unaligned accesses and divisions by zero are not modelled.
+    {0xD14, &SystemControl::ccr_, ~0u, 0x18},
+    {0xD28, &SystemControl::cfsr_, 0, 0, true},
+    {0xD2C, &SystemControl::hfsr_, 0, 0, true},
+    {0xD34, &SystemControl::mmfar_},
+    {0xD38, &SystemControl::bfar_},
+    {0xDFC, &SystemControl::demcr_}};
 
 void SystemControl::reset() {
     uint64_t cycles = cycles_;
@@ -72,23 +105,17 @@ bool SystemControl::readWord(uint32_t address, uint32_t& value) {
     if (address < scs)
         return false;
     uint32_t at = address - scs;
-    auto bitsOf = [&](uint32_t base, auto test) {
+    if (at >= 0x100 && at < 0x380) { // ISER, ICER, ISPR, ICPR, IABR
+        constexpr auto enabled = &Exceptions::State::enabled, pending = &Exceptions::State::pending;
+        constexpr bool Exceptions::State::* views[] = {enabled, enabled, pending, pending,
+                                                       &Exceptions::State::active};
+        const unsigned first = (at & 0x7F) * 8;
         value = 0;
-        for (unsigned b = 0, n = (at - base) * 8; b < 32 && n + b < Exceptions::interrupts; ++b)
-            value |= uint32_t(test((*exceptions_)[FirstInterrupt + n + b])) << b;
+        for (unsigned b = 0; b < 32 && first + b < Exceptions::interrupts; ++b)
+            value |=
+                uint32_t((*exceptions_)[FirstInterrupt + first + b].*views[(at - 0x100) / 0x80])
+                << b;
         return true;
-    };
-    switch (at & ~0x7Fu) {
-    case 0x100:
-        return bitsOf(0x100, [](auto& s) { return s.enabled; });
-    case 0x180:
-        return bitsOf(0x180, [](auto& s) { return s.enabled; });
-    case 0x200:
-        return bitsOf(0x200, [](auto& s) { return s.pending; });
-    case 0x280:
-        return bitsOf(0x280, [](auto& s) { return s.pending; });
-    case 0x300:
-        return bitsOf(0x300, [](auto& s) { return s.active; });
     }
     if (at >= 0x400 && at < 0x400 + ((Exceptions::interrupts + 3) & ~3u)) {
         value = 0;
@@ -100,15 +127,9 @@ bool SystemControl::readWord(uint32_t address, uint32_t& value) {
     case 0x004:
         value = (Exceptions::interrupts - 1) / 32;
         return true; // ICTR
-    case 0x008:
-        value = actlr_;
-        return true;
     case 0x010:
         value = control_ | uint32_t(countFlag_) << 16;
         countFlag_ = false;
-        return true;
-    case 0x014:
-        value = load_;
         return true;
     case 0x018:
         value = currentTicks();
@@ -116,12 +137,14 @@ bool SystemControl::readWord(uint32_t address, uint32_t& value) {
     case 0x01C:
         value = calibration_;
         return true;
-    case 0xDFC:
-        value = demcr_;
-        return true;
     }
     if (at >= 0xD90 && at < 0xDA8)
         return accessMpu(at - 0xD90, false, value);
+    for (const Stored& r : stored)
+        if (r.at == at) {
+            value = this->*r.value;
+            return true;
+        }
     return readScb(at, value);
 }
 
@@ -136,21 +159,15 @@ bool SystemControl::writeWord(uint32_t address, uint32_t value) {
     if (address < scs)
         return false;
     uint32_t at = address - scs;
-    auto each = [&](uint32_t base, auto act) {
-        for (unsigned b = 0, n = (at - base) * 8; b < 32 && n + b < Exceptions::interrupts; ++b)
+    if (at >= 0x100 && at < 0x300) { // ISER, ICER, ISPR, ICPR
+        const bool on = !(at & 0x80);
+        const unsigned first = (at & 0x7F) * 8;
+        for (unsigned b = 0; b < 32 && first + b < Exceptions::interrupts; ++b) {
+            const unsigned number = FirstInterrupt + first + b;
             if (value >> b & 1)
-                act(FirstInterrupt + n + b);
+                at < 0x200 ? exceptions_->enable(number, on) : exceptions_->pend(number, on);
+        }
         return true;
-    };
-    switch (at & ~0x7Fu) {
-    case 0x100:
-        return each(0x100, [&](unsigned n) { exceptions_->enable(n, true); });
-    case 0x180:
-        return each(0x180, [&](unsigned n) { exceptions_->enable(n, false); });
-    case 0x200:
-        return each(0x200, [&](unsigned n) { exceptions_->pend(n); });
-    case 0x280:
-        return each(0x280, [&](unsigned n) { exceptions_->pend(n, false); });
     }
     if (at >= 0x400 && at < 0x400 + ((Exceptions::interrupts + 3) & ~3u)) {
         for (unsigned b = 0; b < 4 && at - 0x400 + b < Exceptions::interrupts; ++b)
@@ -159,9 +176,6 @@ bool SystemControl::writeWord(uint32_t address, uint32_t value) {
         return true;
     }
     switch (at) {
-    case 0x008:
-        actlr_ = value;
-        return !(value & ~2u); // only DISDEFWBUF is modelled
     case 0x010: {
         stoppedAt_ = currentTicks();
         bool wasOn = control_ & 1;
@@ -172,17 +186,11 @@ bool SystemControl::writeWord(uint32_t address, uint32_t value) {
             startSysTick(stoppedAt_ ? stoppedAt_ : uint64_t(load_) + 1);
         return true;
     }
-    case 0x014:
-        load_ = value & 0xFFFFFF;
-        return true;
     case 0x018: // any value clears it: it is loaded at the next tick
         stoppedAt_ = 0;
         countFlag_ = false;
         if (control_ & 1)
             startSysTick(uint64_t(load_) + 1);
-        return true;
-    case 0xDFC:
-        demcr_ = value;
         return true;
     case 0xF00: // STIR
         if ((value & 0x1FF) < Exceptions::interrupts)
@@ -191,5 +199,152 @@ bool SystemControl::writeWord(uint32_t address, uint32_t value) {
     }
     if (at >= 0xD90 && at < 0xDA8)
         return accessMpu(at - 0xD90, true, value);
+    for (const Stored& r : stored)
+        if (r.at == at) {
+            this->*r.value = r.clears ? this->*r.value & ~value : value & r.kept;
+            return !(value & r.unknown);
+        }
     return writeScb(at, value);
+}
+
+// ---- SCB and MPU ----
+
+bool SystemControl::takeResetRequest() {
+    bool was = resetRequested_;
+    resetRequested_ = false;
+    return was;
+}
+
+void SystemControl::setFaultAddress(uint32_t cfsrBits, uint32_t address) {
+    cfsr_ |= cfsrBits;
+    (cfsrBits & mmfarValid ? mmfar_ : bfar_) = address;
+}
+
+bool SystemControl::readScb(uint32_t at, uint32_t& value) {
+    auto flag = [&](unsigned number, unsigned bit, bool Exceptions::State::* what) {
+        value |= uint32_t((*exceptions_)[number].*what) << bit;
+    };
+    constexpr auto active = &Exceptions::State::active, pending = &Exceptions::State::pending,
+                   enabled = &Exceptions::State::enabled;
+    value = 0;
+    switch (at) {
+    case 0xD00:
+        value = 0x412FC230;
+        return true; // CPUID: r2p0, an STM32F2's
+    case 0xD04:      // ICSR; VECTACTIVE is the processor's IPSR
+        for (unsigned n = 1; n < Exceptions::count; ++n)
+            if ((*exceptions_)[n].active &&
+                exceptions_->priorityOf(n) <= exceptions_->runningPriority())
+                value = n;
+        value |= uint32_t(exceptions_->activeCount() <= 1) << 11 | exceptions_->firstPending()
+                                                                       << 12;
+        flag(SysTick, 26, pending);
+        flag(PendSv, 28, pending);
+        flag(NonMaskable, 31, pending);
+        return true;
+    case 0xD0C:
+        value = keyOut << 16 | exceptions_->grouping() << 8;
+        return true;
+    case 0xD18:
+    case 0xD1C:
+    case 0xD20:
+        for (unsigned b = 0, n = at - 0xD14; b < 4; ++b)
+            value |= uint32_t(priorityByte(n + b)) << 8 * b;
+        return true;
+    case 0xD24:
+        flag(MemManage, 0, active), flag(BusFault, 1, active), flag(UsageFault, 3, active);
+        flag(SupervisorCall, 7, active), flag(PendSv, 10, active), flag(SysTick, 11, active);
+        flag(UsageFault, 12, pending), flag(MemManage, 13, pending), flag(BusFault, 14, pending);
+        flag(MemManage, 16, enabled), flag(BusFault, 17, enabled), flag(UsageFault, 18, enabled);
+        return true;
+    default:
+        return false;
+    }
+}
+
+bool SystemControl::writeScb(uint32_t at, uint32_t value) {
+    switch (at) {
+    case 0xD04:
+        if (value >> 31)
+            exceptions_->pend(NonMaskable);
+        if (value >> 28 & 1)
+            exceptions_->pend(PendSv);
+        if (value >> 27 & 1)
+            exceptions_->pend(PendSv, false);
+        if (value >> 26 & 1)
+            exceptions_->pend(SysTick);
+        if (value >> 25 & 1)
+            exceptions_->pend(SysTick, false);
+        return true;
+    case 0xD0C:
+        if (value >> 16 != keyIn)
+            return true; // ignored without the key
+        exceptions_->setGrouping(value >> 8);
+        resetRequested_ = resetRequested_ || (value & 4);
+        return true;
+    case 0xD18:
+    case 0xD1C:
+    case 0xD20:
+        for (unsigned b = 0, n = at - 0xD14; b < 4; ++b)
+            if (hasPriority(n + b))
+                exceptions_->setPriority(n + b, static_cast<uint8_t>(value >> 8 * b));
+        return true;
+    case 0xD24:
+        exceptions_->enable(MemManage, value >> 16 & 1);
+        exceptions_->enable(BusFault, value >> 17 & 1);
+        exceptions_->enable(UsageFault, value >> 18 & 1);
+        return true;
+    default:
+        return false;
+    }
+}
+
+bool SystemControl::accessMpu(uint32_t at, bool write, uint32_t& value) {
+    Region& region = region_[mpuRegion_];
+    switch (at) {
+    case 0x0:
+        value = regions << 8;
+        return !write; // TYPE
+    case 0x4:
+        write ? mpuControl_ = value& 7 : value = mpuControl_;
+        break;
+    case 0x8:
+        write ? mpuRegion_ = value& 7 : value = mpuRegion_;
+        break;
+    case 0xC:
+        if (write && (value & 0x10)) // VALID: REGION is in the low bits
+            mpuRegion_ = value & 7;
+        if (write)
+            region_[mpuRegion_].rbar = value & ~0x1Fu;
+        else
+            value = region.rbar | mpuRegion_;
+        break;
+    case 0x10:
+        write ? region.rasr = value : value = region.rasr;
+        break;
+    default:
+        return false;
+    }
+    if (write)
+        updateGuards();
+    return true;
+}
+
+void SystemControl::updateGuards() {
+    guards_ = 0;
+    if (mpuControl_ & 1)
+        for (const Region& r : region_)
+            guards_ += (r.rasr & 1) && forbids(r.rasr, true);
+}
+
+bool SystemControl::hitsGuard(uint32_t start, uint32_t bytes, bool write) const {
+    for (const Region& r : region_) {
+        if (!(r.rasr & 1) || !forbids(r.rasr, write))
+            continue;
+        uint64_t size = 2ull << (r.rasr >> 1 & 0x1F);
+        uint64_t base = r.rbar & ~(size - 1);
+        if (start < base + size && uint64_t(start) + bytes > base)
+            return true;
+    }
+    return false;
 }

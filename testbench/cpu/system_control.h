@@ -53,6 +53,8 @@ public:
                               instructionBus = 1u << 8, forced = 1u << 30;
 
 private:
+    struct Stored;
+    static const Stored stored[];
     struct Region {
         uint32_t rbar = 0, rasr = 0;
     };

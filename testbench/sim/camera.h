@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// camera: reads a grey-scale frame from a picture file (PNG, JPEG, PGM and others of stb_image),
-// and shows one to the camera core.
+// camera: reads a grey-scale frame from a picture file (PNG, JPEG, PGM and others of stb_image).
 
 #ifndef CAMERA_H
 #define CAMERA_H
@@ -9,8 +8,6 @@
 #include <cstdint>
 #include <string>
 #include <vector>
-
-class SocModel;
 
 struct Frame {
     int width = 0, height = 0;
@@ -21,9 +18,5 @@ struct Frame {
 // wanted size. The width becomes a multiple of 8. Throws std::runtime_error with the reason.
 Frame loadFrame(const std::string& path, int width, int height);
 void savePng(const std::string& path, const Frame& frame);
-
-// Sends the frame again and again, a pixel every second clock. Throws std::runtime_error if the
-// chip has no camera core.
-void connectSensor(SocModel& soc, const Frame& frame);
 
 #endif

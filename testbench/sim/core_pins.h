@@ -5,6 +5,7 @@
 #ifndef CORE_PINS_H
 #define CORE_PINS_H
 
+#include "camera.h"
 #include "soc_model.h"
 #include <string>
 
@@ -12,5 +13,9 @@
 // instance and port, value; # begins a comment. Every change of an output goes to the file `log` in
 // the same form. Throws std::runtime_error, with file and line, for a wrong script.
 void connectPins(SocModel& soc, const std::string& script, const std::string& log);
+
+// Sends the frame again and again to the camera core, a pixel every second clock. Throws
+// std::runtime_error if the chip has none.
+void connectSensor(SocModel& soc, const Frame& frame);
 
 #endif

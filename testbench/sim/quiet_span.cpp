@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
-// quiet_span: compares the chip's state over a clock, and adds skipped clocks to its counters.
+// quiet_span: compares the chip's state over a clock, and adds skipped clocks to its counters. The
+// members of Verilator's class are found in a table made from its header (soc_members.awk).
 
 #include "quiet_span.h"
 #include "VSoc.h"
 #include "VSoc___024root.h"
-#include "soc_state.h"
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <set>
+
+#pragma GCC diagnostic ignored "-Winvalid-offsetof" // one class without bases that matter
 
 namespace {
 
@@ -32,6 +35,14 @@ const std::set<std::string> platform = {"u_fsmc_bridge", "u_bus_decoder", "u_mod
 #define TX soc__DOT__u_modem__DOT__u_uart_tx__DOT__ticks
 #define CYCLES soc__DOT__u_system_slot__DOT__cycles
 
+const struct Member {
+    size_t offset, size;
+    const char* path;
+} members[] = {
+#define MEMBER(name, path) {offsetof(VSoc___024root, name), sizeof(VSoc___024root::name), path},
+#include "soc_members.inc"
+};
+
 // Copies one member of `from` into the image of another moment.
 template <class T>
 void copyInto(std::vector<unsigned char>& image, const VSoc___024root& from, const T& member) {
@@ -41,6 +52,20 @@ void copyInto(std::vector<unsigned char>& image, const VSoc___024root& from, con
 }
 
 } // namespace
+
+SocState::Image SocState::of(const VSoc___024root& root) {
+    Image image(sizeof root);
+    std::memcpy(image.data(), &root, image.size());
+    return image;
+}
+
+std::vector<std::string> SocState::differences(const Image& a, const Image& b) {
+    std::vector<std::string> paths;
+    for (const Member& m : members)
+        if (std::memcmp(a.data() + m.offset, b.data() + m.offset, m.size) != 0)
+            paths.push_back(m.path);
+    return paths;
+}
 
 QuietSpan::QuietSpan(VSoc& top, uint64_t clkHz)
     : top_(top), timerLast_(static_cast<uint32_t>(clkHz / 16000 * 17 - 2)),

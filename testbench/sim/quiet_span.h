@@ -26,6 +26,16 @@
 #include <vector>
 
 class VSoc;
+class VSoc___024root;
+
+// SocState names the bytes of the Verilated chip's state, for differences between two moments.
+struct SocState {
+    using Image = std::vector<unsigned char>;
+
+    static Image of(const VSoc___024root& root);
+    // Returns the signals that differ, by their paths in the chip: "u_modem.u_timer.clocks".
+    static std::vector<std::string> differences(const Image& a, const Image& b);
+};
 
 class QuietSpan {
 public:

@@ -29,7 +29,7 @@ FsmcCorner cornerOf(unsigned index) {
 
 // Runs each case in a bench of its own, with its name in every message.
 template <class Case> void inEveryCorner(double stall, Case&& run) {
-    for (unsigned corner = 0; corner < fsmcCornerCount; ++corner)
+    for (unsigned corner = 0; corner < std::size(fsmcCorners); ++corner)
         for (unsigned hclk : {60u, 100u, 120u})
             for (bool looksTwice : {false, true}) {
                 const FsmcCorner delays = cornerOf(corner);
@@ -106,9 +106,8 @@ TEST(Corners, StreamsAreRightAtFullSpeed) {
         ASSERT_EQ(b.init(), FSMC_OK);
         FSMC_setHclk(hclk * 1000000);
         Random random(testSeed());
-        std::vector<uint16_t> out(4000), in(out.size());
-        for (auto& value : out)
-            value = static_cast<uint16_t>(random.next());
+        auto out = random.items<uint16_t>(4000);
+        std::vector<uint16_t> in(out.size());
         const U32 count = static_cast<U32>(out.size());
         uint64_t start = b.master.hclks();
         EXPECT_EQ(FSMC_streamWrite(0x400, out.data(), count), 0u) << "repeated";

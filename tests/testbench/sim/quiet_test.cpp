@@ -7,8 +7,8 @@
 #include "VSoc___024root.h"
 #include "ground.h"
 #include "map_regs.h"
+#include "quiet_span.h"
 #include "sensor_model.h"
-#include "soc_state.h"
 #include "uav_machine.h"
 #include <cstdlib>
 #include <gmock/gmock.h>

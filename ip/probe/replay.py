@@ -16,6 +16,7 @@ import re
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 import foreign_files  # noqa: E402
@@ -63,18 +64,14 @@ def fail(text):
 
 
 def read_vcd(path):
-    """Widths by name below soc, and (time, {name: value as bits}) of each moment; the clock's
-    Hz."""
+    """Returns a VCD file's head; by its keys, the names below soc and widths of signals; and each
+    moment's time and changes, {key: bits}."""
     try:
         with open(path) as f:
-            text = f.read()
+            head, _, body = f.read().partition("$enddefinitions $end")
     except (OSError, ValueError) as e:
         fail(f"cannot read {path}: {e}")
-    head, _, body = text.partition("$enddefinitions $end")
-    hz = re.search(r"clk_hz (\d+)", head)
-    if not hz or not body:
-        fail(f"{path} is not what probe.py has written")
-    scope, widths, names = [], {}, {}
+    scope, signals, moments = [], {}, []
     for kind, rest in re.findall(r"\$(scope|upscope|var)\s*(.*?)\s*\$end", head):
         words = rest.split()
         if kind == "scope":
@@ -83,22 +80,37 @@ def read_vcd(path):
             scope.pop()
         else:
             name = ".".join(scope[2:] + [words[3]])
-            names[words[2]], widths[name] = name, int(words[1])
-    moments, values = [], {}
+            signals.setdefault(words[2], []).append((name, int(words[1])))
     for line in body.split("\n"):
         if line.startswith("#"):
-            values = dict(values)
-            moments.append((int(line[1:]), values))
+            moments.append((int(line[1:]), {}))
         elif line.startswith("b"):
             bits, key = line[1:].split()
-            values[names[key]] = bits
-        elif line:
-            values[names[line[1:]]] = line[0]
+            moments[-1][1][key] = bits
+        elif line and line[0] in "01x":
+            moments[-1][1][line[1:]] = line[0]
+    return head, signals, moments
+
+
+def captured(path):
+    """Returns the widths of a probe's signals by their names; and (clock, {name: bits}) of each
+    moment."""
+    head, signals, moments = read_vcd(path)
+    hz = re.search(r"clk_hz (\d+)", head)
+    if not hz or not moments:
+        fail(f"{path} is not what probe.py has written")
     unit = 10**9 if "1ns" in head else 10**12
-    return widths, [(time * int(hz[1]) // unit, v) for time, v in moments]
+    values, found = {}, []
+    for time, changes in moments:
+        values = {**values, **{signals[key][0][0]: bits for key, bits in changes.items()}}
+        found.append((time * int(hz[1]) // unit, values))
+    if any("x" in bits for _, values in found for bits in values.values()):
+        fail(f"{path}: changes were lost, so the inputs are not known; record fewer signals, or a "
+             "shorter time")
+    return dict(names[0] for names in signals.values()), found
 
 
-def main():
+def words():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("capture", help="VCD of probe.py")
@@ -110,54 +122,63 @@ def main():
                         help="where Verilator looks for modules and headers")
     parser.add_argument("files", nargs="+",
                         help="its Verilog; of VHDL what the build has made, build/main/gen/NAME.v")
-    args = parser.parse_args()
-    widths, moments = read_vcd(args.capture)
-    if any("x" in v for _, values in moments for v in values.values()):
-        fail(f"{args.capture}: changes were lost, so the inputs are not known; record fewer "
-             "signals, or a shorter time")
+    return parser.parse_args()
+
+
+def block(args, widths):
+    """Returns what the block's clocks and resets are connected to; and (name, width) of its inputs
+    and of its captured outputs."""
     # read_module takes files and looks in their folders
     headers = [os.path.join(folder, "") for folder in args.I]
     ports, _ = foreign_files.read_module(args.top, args.files, headers, is_whole=False)
-    inputs, outputs, wiring = [], [], []
+    wiring, inputs, outputs = [], [], []
     for name, port in ports.items():
-        width, captured = len(port["bits"]), f"{args.scope}.{name}"
+        width, there = len(port["bits"]), f"{args.scope}.{name}"
         kind = foreign_roles.role(name, port, "own")
         if kind in ("clock", "reset", "resetn"):
             wiring.append((name, {"clock": "clk", "reset": "rst", "resetn": "!rst"}[kind]))
-        elif captured not in widths:
+        elif there not in widths:
             if port["direction"] == "input":
-                fail(f"the capture has no {captured}: the probe's line needs {captured}" +
+                fail(f"the capture has no {there}: the probe's line needs {there}" +
                      (f":{width}" if width > 1 else ""))
-        elif widths[captured] != width:
-            fail(f"{captured} has {widths[captured]} bits in the capture, and {width} in "
-                 f"{args.top}")
+        elif widths[there] != width:
+            fail(f"{there} has {widths[there]} bits in the capture, and {width} in {args.top}")
         else:
             (inputs if port["direction"] == "input" else outputs).append((name, width))
     if not outputs:
         fail("the capture has no output of the block: there is nothing to compare")
-    bits, count, shown = 0, 0, []
+    return wiring, inputs, outputs
+
+
+def write_bench(args, widths, moments):
+    """Writes replay.v, and the rows of signals that it plays."""
+    wiring, inputs, outputs = block(args, widths)
+    bits, shown = 0, []
     for name, width in outputs[::-1] + inputs[::-1]:
+        row = f"row[{bits} +: {width}]"
         if (name, width) in outputs:
-            count += width
-            wiring.append((name, f"given[{bits} +: {width}]"))
-            shown.append((name, f"given[{bits} +: {width}], row[{bits} +: {width}]"))
-        else:
-            wiring.append((name, f"row[{bits} +: {width}]"))
+            given = f"given[{bits} +: {width}]"
+            shown.append((name, f"{given}, {row}"))
+        wiring.append((name, given if (name, width) in outputs else row))
         bits += width
     rows = []
     for clock, values in moments:
         value = int("".join(values[f"{args.scope}.{n}"] for n, _ in inputs + outputs), 2)
         if not rows or rows[-1][1] != value or clock == moments[-1][0]:
             rows.append((clock - moments[0][0], value))
-    os.makedirs(args.out, exist_ok=True)
-    with open(os.path.join(args.out, "rows.hex"), "w") as f:
-        f.writelines("%x\n" % (clock << bits | value) for clock, value in rows)
-    with open(os.path.join(args.out, "replay.v"), "w") as f:
-        f.write(BENCH.format(
-            bits=bits, rows=len(rows), outputs=count, top=args.top,
-            wiring=", ".join(f".{n}({w})" for n, w in wiring),
-            format=",".join(f" {n} is %h, was %h" for n, _ in shown),
-            values="".join(", " + v for _, v in shown)))
+    out = Path(args.out)
+    out.mkdir(parents=True, exist_ok=True)
+    (out / "rows.hex").write_text("".join("%x\n" % (clock << bits | value)
+                                          for clock, value in rows))
+    (out / "replay.v").write_text(BENCH.format(
+        bits=bits, rows=len(rows), outputs=sum(width for _, width in outputs), top=args.top,
+        wiring=", ".join(f".{n}({w})" for n, w in wiring),
+        format=",".join(f" {n} is %h, was %h" for n, _ in shown),
+        values="".join(", " + v for _, v in shown)))
+
+
+def simulate(args):
+    """Runs the bench; returns its lines about differences."""
     files = [os.path.abspath(f) for f in args.files]
     folders = [word for f in args.I + [os.path.dirname(f) for f in files]
                for word in ("-y", os.path.abspath(f), "-I" + os.path.abspath(f))]
@@ -169,8 +190,14 @@ def main():
         run = subprocess.run(command, cwd=args.out, capture_output=True, text=True, env=environment)
         if run.returncode:
             fail(f"{command[0]} fails:\n{run.stdout}{run.stderr}".rstrip())
-    lines = [line for line in run.stdout.splitlines() if line.endswith("differ")
-             or "differs" in line]
+    return [line for line in run.stdout.splitlines() if line.endswith("differ")
+            or "differs" in line]
+
+
+def main():
+    args = words()
+    write_bench(args, *captured(args.capture))
+    lines = simulate(args)
     print("\n".join(lines + ["waveform: " + os.path.join(args.out, "replay.fst")]))
     return 0 if lines and lines[-1].endswith(" 0 differ") else 1
 

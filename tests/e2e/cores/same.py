@@ -4,51 +4,29 @@
 nanoseconds-of-a-clock
  Compares each signal of the capture in each clock that both have. The trace (fst2vcd) has two
 moments a clock; its clocks are those of u_system_slot.cycles, which it has. """
-import re
 import sys
+from pathlib import Path
 
-
-def read(path):
-    """Returns the names of the signals, below soc, by their keys; and (time, changes by key) of
-    each moment."""
-    with open(path) as f:
-        head, _, body = f.read().partition("$enddefinitions")
-    scope, names = [], {}
-    for kind, rest in re.findall(r"\$(scope|upscope|var)\s*(.*?)\s*\$end", head):
-        words = rest.split()
-        if kind == "scope":
-            scope.append(words[1])
-        elif kind == "upscope":
-            scope.pop()
-        else:
-            names.setdefault(words[2], []).append(".".join(scope[2:] + [words[3]]))
-    moments = []
-    for line in body.split("\n")[1:]:
-        if line.startswith("#"):
-            moments.append((int(line[1:]), {}))
-        elif line.startswith("b"):
-            bits, key = line[1:].split()
-            moments[-1][1][key] = int(bits, 2)
-        elif line and line[0] in "01" and moments:
-            moments[-1][1][line[1:]] = int(line[0])
-    return names, moments
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "ip/probe"))
+from replay import read_vcd  # noqa: E402
 
 
 def clocks(moments, keys, clock_of):
     """Returns the values of these keys' signals from a clock on, at each moment."""
-    values, found = {}, {}
+    values, found = dict.fromkeys(keys), {}
     for time, changes in moments:
-        values = {key: changes.get(key, values.get(key)) for key in keys}
+        values = {key: int(changes[key], 2) if key in changes and "x" not in changes[key] else old
+                  for key, old in values.items()}
         found[clock_of(time, values)] = values
     return found
 
 
 capture_file, trace_file, period = sys.argv[1:]
-names, moments = read(capture_file)
+_, names, moments = read_vcd(capture_file)
 captured = clocks(moments, list(names), lambda time, values: time // int(period))
-names_there, moments = read(trace_file)
-key_of = {name: key for key, all_names in names_there.items() for name in all_names}
-pairs = [(key, key_of[name], name) for key, all_names in names.items() for name in all_names]
+_, names_there, moments = read_vcd(trace_file)
+key_of = {name: key for key, all_names in names_there.items() for name, _ in all_names}
+pairs = [(key, key_of[name], name) for key, all_names in names.items() for name, _ in all_names]
 count = key_of["u_system_slot.cycles"]
 traced = clocks(moments, [count] + [other for _, other, _ in pairs],
                 lambda time, values: values[count])

@@ -45,27 +45,15 @@ protected:
             bus_.write(word, uint32_t(value[i]) | uint32_t(value[i + 1]) << 8 |
                                  uint32_t(value[i + 2]) << 16 | uint32_t(value[i + 3]) << 24);
     }
-    template <class Bytes> void load(uint32_t at, const Bytes& bytes) {
-        for (size_t i = 0; i < bytes.size(); ++i)
-            memory_.setByte(at + static_cast<uint32_t>(i), bytes[i]);
-    }
-    AsconBytes bytesAt(uint32_t at, size_t size) const {
-        AsconBytes bytes(size);
-        for (size_t i = 0; i < size; ++i)
-            bytes[i] = memory_.byte(at + static_cast<uint32_t>(i));
-        return bytes;
-    }
     AsconKey tag() const {
         AsconKey key;
-        for (size_t i = 0; i < 16; ++i)
-            key[i] = memory_.byte(tagBase_ + static_cast<uint32_t>(i));
+        const AsconBytes bytes = memory_.bytes(tagBase_, key.size());
+        std::copy(bytes.begin(), bytes.end(), key.begin());
         return key;
     }
     uint32_t finish(uint64_t limit = 100000) {
         bench_.waitFor([&] { return bench_.top().irq_o; }, "the core's interrupt", limit);
-        uint32_t events = bus_.read(ASCON_EVENT);
-        bus_.write(ASCON_EVENT, events);
-        return events;
+        return bus_.takeEvents();
     }
     void sizes(size_t associated, size_t message) {
         bus_.write(ASCON_AD_SIZE, static_cast<uint32_t>(associated));
@@ -73,31 +61,26 @@ protected:
     }
     AsconSealed encrypt(const AsconKey& nonce, const AsconBytes& associated,
                         const AsconBytes& message) {
-        load(adBase_, associated);
-        load(source_, message);
+        memory_.store(adBase_, associated);
+        memory_.store(source_, message);
         sizes(associated.size(), message.size());
         put(ASCON_NONCE, nonce);
         bus_.write(ASCON_CONTROL, ASCON_CONTROL_ENCRYPT_MASK);
         EXPECT_EQ(finish(), ASCON_EVENT_DONE_MASK);
-        return {bytesAt(target_, message.size()), tag()};
+        return {memory_.bytes(target_, message.size()), tag()};
     }
     // False: the core did not accept the tag.
     bool decrypt(const AsconKey& nonce, const AsconBytes& associated, const AsconSealed& sealed) {
-        load(adBase_, associated);
-        load(source_, sealed.text);
-        load(tagBase_, sealed.tag);
+        memory_.store(adBase_, associated);
+        memory_.store(source_, sealed.text);
+        memory_.store(tagBase_, sealed.tag);
         sizes(associated.size(), sealed.text.size());
         put(ASCON_NONCE, nonce);
         bus_.write(ASCON_CONTROL, ASCON_CONTROL_DECRYPT_MASK);
         EXPECT_EQ(finish(), ASCON_EVENT_DONE_MASK);
         return bus_.read(ASCON_STATUS) & ASCON_STATUS_VALID_MASK;
     }
-    AsconBytes random(size_t size) {
-        AsconBytes bytes(size);
-        for (auto& b : bytes)
-            b = static_cast<uint8_t>(random_.next());
-        return bytes;
-    }
+    AsconBytes random(size_t size) { return random_.items<uint8_t>(size); }
     AsconKey randomKey() {
         AsconKey key;
         for (auto& b : key)
@@ -137,7 +120,7 @@ TEST_F(AsconTest, EncryptsAndDecryptsTheKnownAnswers) {
     EXPECT_EQ(aeadAnswers([&](const AsconBytes& associated, const AsconBytes& message) {
                   auto sealed = encrypt(sixteen(0x10), associated, message);
                   EXPECT_TRUE(decrypt(sixteen(0x10), associated, sealed));
-                  EXPECT_EQ(bytesAt(target_, message.size()), message);
+                  EXPECT_EQ(memory_.bytes(target_, message.size()), message);
                   return together(sealed);
               }),
               aeadFile);
@@ -145,11 +128,11 @@ TEST_F(AsconTest, EncryptsAndDecryptsTheKnownAnswers) {
 
 TEST_F(AsconTest, HashesTheKnownAnswers) {
     EXPECT_EQ(hashAnswers([&](const AsconBytes& message) {
-                  load(source_, message);
+                  memory_.store(source_, message);
                   sizes(0, message.size());
                   bus_.write(ASCON_CONTROL, ASCON_CONTROL_HASH_MASK);
                   EXPECT_EQ(finish(), ASCON_EVENT_DONE_MASK);
-                  return bytesAt(target_, ASCON_DIGEST_BYTES);
+                  return memory_.bytes(target_, ASCON_DIGEST_BYTES);
               }),
               hashFile);
 }
@@ -183,20 +166,21 @@ TEST_F(AsconTest, EqualsTheModelForRandomMessages) {
             forged.text[place - 16] ^= bit;
         else
             forgedAd[place - 16 - message.size()] ^= bit;
-        load(target_, AsconBytes(message.size() + 8, 0x55));
+        memory_.store(target_, AsconBytes(message.size() + 8, 0x55));
         ASSERT_FALSE(decrypt(nonce, forgedAd, forged)) << place;
-        ASSERT_EQ(bytesAt(target_, message.size()), AsconBytes(message.size(), 0));
-        ASSERT_EQ(bytesAt(target_ + static_cast<uint32_t>(message.size()), 8), AsconBytes(8, 0x55))
+        ASSERT_EQ(memory_.bytes(target_, message.size()), AsconBytes(message.size(), 0));
+        ASSERT_EQ(memory_.bytes(target_ + static_cast<uint32_t>(message.size()), 8),
+                  AsconBytes(8, 0x55))
             << "not behind it";
         ASSERT_TRUE(decrypt(nonce, associated, sealed));
-        ASSERT_EQ(bytesAt(target_, message.size()), message);
+        ASSERT_EQ(memory_.bytes(target_, message.size()), message);
     }
 }
 
 TEST_F(AsconTest, ADigestWaitsForRoomInTheMemorysFifo) {
     auto message = counted(1, 30);
     auto digest = asconHash(message);
-    load(source_, message);
+    memory_.store(source_, message);
     sizes(0, message.size());
     auto start = [&] { bus_.write(ASCON_CONTROL, ASCON_CONTROL_HASH_MASK); };
     memory_.setLinger(1);
@@ -204,15 +188,14 @@ TEST_F(AsconTest, ADigestWaitsForRoomInTheMemorysFifo) {
         start();
         ASSERT_EQ(finish(), ASCON_EVENT_DONE_MASK);
     }
-    load(target_, AsconBytes(ASCON_DIGEST_BYTES, 0));
+    memory_.store(target_, AsconBytes(ASCON_DIGEST_BYTES, 0));
     start();
-    for (int i = 0; i < 1000; ++i)
-        bench_.tick();
+    bench_.tick(1000);
     EXPECT_EQ(bus_.read(ASCON_STATUS), ASCON_STATUS_BUSY_MASK);
     EXPECT_TRUE(bench_.top().npi_wr_almost_full_i);
     memory_.setLinger(0);
     EXPECT_EQ(finish(), ASCON_EVENT_DONE_MASK);
-    EXPECT_EQ(bytesAt(target_, ASCON_DIGEST_BYTES), AsconBytes(digest.begin(), digest.end()));
+    EXPECT_EQ(memory_.bytes(target_, ASCON_DIGEST_BYTES), AsconBytes(digest.begin(), digest.end()));
 }
 
 TEST_F(AsconTest, CountsSizesOfUpTo16MiB) {
@@ -222,8 +205,7 @@ TEST_F(AsconTest, CountsSizesOfUpTo16MiB) {
         uint64_t before = memory_.reads();
         put(ASCON_NONCE, sixteen(1));
         bus_.write(ASCON_CONTROL, how);
-        for (int i = 0; i < 300; ++i)
-            bench_.tick();
+        bench_.tick(300);
         bool isBusy = bus_.read(ASCON_STATUS) == ASCON_STATUS_BUSY_MASK;
         bus_.write(ASCON_CONTROL, ASCON_CONTROL_ABORT_MASK);
         return isBusy && memory_.reads() > before + 3 && finish() == ASCON_EVENT_DONE_MASK &&
@@ -257,7 +239,7 @@ TEST_F(AsconTest, WorksInPlace) {
     put(ASCON_KEY, key);
     bus_.write(ASCON_TARGET, source_);
     encrypt(nonce, {}, message);
-    EXPECT_EQ(bytesAt(source_, 777), asconEncrypt(key, nonce, {}, message).text);
+    EXPECT_EQ(memory_.bytes(source_, 777), asconEncrypt(key, nonce, {}, message).text);
 }
 
 TEST_F(AsconTest, RefusesWithoutKeyOrFreshNonce) {
@@ -281,11 +263,11 @@ TEST_F(AsconTest, RefusesWithoutKeyOrFreshNonce) {
     EXPECT_EQ(start(ASCON_CONTROL_ENCRYPT_MASK), ASCON_EVENT_DONE_MASK);
     // A nonce is begun and dropped.
     sizes(0, 5);
-    load(source_, counted(9, 5));
+    memory_.store(source_, counted(9, 5));
     bus_.write(ASCON_NONCE, 0x12345678);
     EXPECT_EQ(start(ASCON_CONTROL_HASH_MASK), ASCON_EVENT_DONE_MASK);
     auto digest = asconHash(counted(9, 5));
-    EXPECT_EQ(bytesAt(target_, 32), AsconBytes(digest.begin(), digest.end()));
+    EXPECT_EQ(memory_.bytes(target_, 32), AsconBytes(digest.begin(), digest.end()));
     bus_.write(ASCON_NONCE, 0x12345678);
     bus_.write(ASCON_CONTROL, ASCON_CONTROL_ABORT_MASK);
     EXPECT_EQ(hex(encrypt(sixteen(1), {}, counted(9, 5)).text),
@@ -297,7 +279,7 @@ TEST_F(AsconTest, RefusesWithoutKeyOrFreshNonce) {
         bus_.write(ASCON_CONTROL, how);
         put(ASCON_NONCE, sixteen(1));
         EXPECT_EQ(start(ASCON_CONTROL_ENCRYPT_MASK), ASCON_EVENT_DONE_MASK);
-        EXPECT_EQ(hex(bytesAt(target_, 5)),
+        EXPECT_EQ(hex(memory_.bytes(target_, 5)),
                   hex(asconEncrypt(sixteen(2), sixteen(1), {}, counted(9, 5)).text));
     }
     put(ASCON_NONCE, sixteen(1));
@@ -327,12 +309,11 @@ TEST_F(AsconTest, AbortEndsAMessageAndLeavesNoPlaintext) {
     put(ASCON_KEY, key);
     auto sealed = encrypt(nonce, {}, message);
     for (int clocks : {0, 20, 300, 1500, 1800}) {
-        load(source_, sealed.text);
-        load(target_, AsconBytes(3000, 0x55));
+        memory_.store(source_, sealed.text);
+        memory_.store(target_, AsconBytes(3000, 0x55));
         put(ASCON_NONCE, nonce);
         bus_.write(ASCON_CONTROL, ASCON_CONTROL_DECRYPT_MASK);
-        for (int i = 0; i < clocks; ++i)
-            bench_.tick();
+        bench_.tick(clocks);
         bus_.write(ASCON_CONTROL, ASCON_CONTROL_ABORT_MASK);
         EXPECT_EQ(finish(5000), ASCON_EVENT_DONE_MASK);
         EXPECT_EQ(bus_.read(ASCON_STATUS), ASCON_STATUS_ABORTED_MASK);
@@ -340,7 +321,7 @@ TEST_F(AsconTest, AbortEndsAMessageAndLeavesNoPlaintext) {
             ASSERT_TRUE(memory_.byte(target_ + i) == 0 || memory_.byte(target_ + i) == 0x55) << i;
     }
     ASSERT_TRUE(decrypt(nonce, {}, sealed)) << "the next is right";
-    EXPECT_EQ(bytesAt(target_, 3000), message);
+    EXPECT_EQ(memory_.bytes(target_, 3000), message);
 }
 
 TEST_F(AsconTest, SpeedWhenTheMemoryKeepsUp) {

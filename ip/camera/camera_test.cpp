@@ -54,21 +54,13 @@ protected:
             top.data_i = pins.data;
         }
     }
-    std::vector<uint8_t> picture() {
-        std::vector<uint8_t> pixels(width * height);
-        for (auto& p : pixels)
-            p = static_cast<uint8_t>(random_.next());
-        return pixels;
-    }
+    std::vector<uint8_t> picture() { return random_.items<uint8_t>(width * height); }
     // Returns the events until the sensor has sent all its frames and they have gone through.
     uint32_t drain() {
         for (int i = 0; i < 200000 && !sensor_.isIdle(); ++i)
             bench_.tick();
-        for (int i = 0; i < 400; ++i)
-            bench_.tick();
-        uint32_t events = bus_.read(CAMERA_EVENT);
-        bus_.write(CAMERA_EVENT, events);
-        return events;
+        bench_.tick(400);
+        return bus_.takeEvents();
     }
     uint32_t latest() {
         uint32_t value = bus_.read(CAMERA_LATEST);
@@ -76,8 +68,7 @@ protected:
         return base_ + ((value & CAMERA_LATEST_BUFFER_MASK) - 1) * stride_;
     }
     void expectAt(uint32_t at, const std::vector<uint8_t>& pixels) {
-        for (size_t i = 0; i < pixels.size(); ++i)
-            ASSERT_EQ(memory_.byte(at + static_cast<uint32_t>(i)), pixels[i]) << "pixel " << i;
+        ASSERT_EQ(memory_.bytes(at, pixels.size()), pixels);
     }
     void start() { bus_.write(CAMERA_CONTROL, CAMERA_CONTROL_START_MASK); }
     void stop() {
@@ -127,9 +118,7 @@ TEST_F(CameraTest, FramesMayBeAsWideAndAsHighAsTheRegistersSay) {
     for (auto [wide, lines] : {std::pair{8, 4095}, {2048, 1}, {2040, 2}, {8, 1}}) {
         configure(static_cast<uint32_t>(wide), static_cast<uint32_t>(lines));
         start();
-        std::vector<uint8_t> pixels(static_cast<size_t>(wide * lines));
-        for (auto& p : pixels)
-            p = static_cast<uint8_t>(random_.next());
+        const auto pixels = random_.items<uint8_t>(static_cast<size_t>(wide * lines));
         sensor_.addFrame(pixels, wide, lines);
         EXPECT_EQ(drain(), CAMERA_EVENT_FRAME_MASK) << wide << " x " << lines;
         expectAt(latest(), pixels);
@@ -281,8 +270,7 @@ TEST_F(CameraTest, StopsAndStartsInTheMiddleOfAFrame) {
     start();
     for (int round = 0; round < 5; ++round) {
         sensor_.addFrame(picture(), width, height);
-        for (uint32_t i = 0; i < 300 + random_.below(900); ++i)
-            bench_.tick();
+        bench_.tick(300 + random_.below(900));
         stop();
         EXPECT_FALSE(bench_.top().frame_valid_o);
         drain();
@@ -300,9 +288,7 @@ TEST_F(CameraTest, RefusesWhatItCannotCapture) {
         start();
         bench_.tick(); // checked in the clock of START, reported in the next, sticky from then on
         bench_.tick();
-        uint32_t events = bus_.read(CAMERA_EVENT);
-        bus_.write(CAMERA_EVENT, events);
-        return events == CAMERA_EVENT_REFUSED_MASK && bus_.read(CAMERA_STATUS) == 0;
+        return bus_.takeEvents() == CAMERA_EVENT_REFUSED_MASK && bus_.read(CAMERA_STATUS) == 0;
     };
     for (auto [w, h] : {std::pair{17u, 8u},
                         {18u, 8u},
@@ -358,10 +344,9 @@ TEST_F(CameraTest, APixelEachFabricClockWhenTheMemoryKeepsUp) {
         slowest_ = slowest;
         clocks = seen = 0;
         start();
-        std::vector<uint8_t> pixels(wide * lines);
+        std::vector<uint8_t> pixels;
         for (int i = 0; i < 3; ++i) {
-            for (auto& p : pixels)
-                p = static_cast<uint8_t>(random_.next());
+            pixels = random_.items<uint8_t>(wide * lines);
             sensor_.addFrame(pixels, wide, lines);
         }
         EXPECT_EQ(drain(), CAMERA_EVENT_FRAME_MASK);
@@ -371,8 +356,7 @@ TEST_F(CameraTest, APixelEachFabricClockWhenTheMemoryKeepsUp) {
             base_ + ((bus_.read(CAMERA_LATEST) & CAMERA_LATEST_BUFFER_MASK) - 1) * wide * lines;
         expectAt(at, pixels);
         bus_.write(CAMERA_CONTROL, CAMERA_CONTROL_STOP_MASK);
-        for (int i = 0; i < 100; ++i)
-            bench_.tick();
+        bench_.tick(100);
         return static_cast<double>((words - 1) * 8 * 3 * lines) / static_cast<double>(clocks);
     };
     double rate = pixelsPerClock(1); // the pixel clock equals the fabric's

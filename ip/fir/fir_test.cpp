@@ -16,12 +16,6 @@ namespace {
 
 class FirCore : public ::testing::Test {
 protected:
-    std::vector<Ice_Short> samples(size_t count, Random& random) {
-        std::vector<Ice_Short> list(count);
-        for (auto& s : list)
-            s = static_cast<Ice_Short>(random.next());
-        return list;
-    }
     std::vector<Ice_Short> filter(std::vector<Ice_Short> list) {
         Cores_Samples in{static_cast<Ice_Int>(list.size()), list.data()}, out{};
         saturations_ = core_.filter(&in, &out);
@@ -58,7 +52,7 @@ TEST_F(FirCore, EqualsTheModelAndGoesOnFromCallToCall) {
             core_.clear();
             model_.clear();
         }
-        expectFiltered(samples(1 + random.below(round % 2 ? 12 : 256), random));
+        expectFiltered(random.items<Ice_Short>(1 + random.below(round % 2 ? 12 : 256)));
     }
     EXPECT_GT(model_.saturations, 0u);
 }
@@ -83,7 +77,7 @@ TEST_F(FirCore, BuffersMayBeAnywhereInMemory) {
         core_.memoryAt_ = random.next() & ~1023u;
         core_.bus_.write(FIR_MEMORY, core_.memoryAt_ >> 10);
         SCOPED_TRACE(core_.memoryAt_);
-        expectFiltered(samples(256, random));
+        expectFiltered(random.items<Ice_Short>(256));
     }
 }
 
@@ -118,7 +112,7 @@ TEST_F(FirCore, RefusesNothingAtAllAndTooMuch) { // a block has 256 samples at m
 
 TEST_F(FirCore, WhatIsGivenUpLeavesTheMemoryPortInOrder) {
     Random random(testSeed());
-    auto list = samples(256, random);
+    auto list = random.items<Ice_Short>(256);
     for (int clocks = 1; clocks < 190; clocks += 7) {
         // The steps of the servant after a time-out: start, then reset the core.
         filter(list);
@@ -129,7 +123,7 @@ TEST_F(FirCore, WhatIsGivenUpLeavesTheMemoryPortInOrder) {
         core_.posted_ = 0;
         model_.clear();
         set(16, random);
-        expectFiltered(samples(50, random));
+        expectFiltered(random.items<Ice_Short>(50));
     }
 }
 

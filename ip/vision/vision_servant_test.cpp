@@ -48,8 +48,7 @@ protected:
     }
     void load(uint32_t at) {
         pixels_ = picture(width, height, random_);
-        for (size_t i = 0; i < pixels_.size(); ++i)
-            slot_.memory_.setByte(at + static_cast<uint32_t>(i), pixels_[i]);
+        slot_.memory_.store(at, pixels_);
     }
     void header(uint32_t w, uint32_t h) {
         for (uint32_t i = 0; i < 4; ++i) {

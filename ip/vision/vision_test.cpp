@@ -28,10 +28,7 @@ protected:
             resultBase_ = random.next() & ~(127u);
         } while (frameBase_ - resultBase_ + 0x100000 < 0x200000);
     }
-    void load(const std::vector<uint8_t>& pixels) {
-        for (size_t i = 0; i < pixels.size(); ++i)
-            memory_.setByte(frameBase_ + static_cast<uint32_t>(i), pixels[i]);
-    }
+    void load(const std::vector<uint8_t>& pixels) { memory_.store(frameBase_, pixels); }
     void start(int width, int height, int threshold, uint32_t most = 65535) {
         bus_.write(VISION_THRESHOLD, static_cast<uint32_t>(threshold));
         bus_.write(VISION_FRAME_BASE, frameBase_);
@@ -42,9 +39,7 @@ protected:
     }
     uint32_t finish(uint64_t limit = 4'000'000) {
         bench_.waitFor([&] { return bench_.top().irq_o; }, "the core's interrupt", limit);
-        uint32_t events = bus_.read(VISION_EVENT);
-        bus_.write(VISION_EVENT, events);
-        return events;
+        return bus_.takeEvents();
     }
     std::vector<Feature> results() {
         std::vector<Feature> list;
@@ -112,8 +107,7 @@ TEST_F(VisionTest, SettingsWrittenWhileBusyAreTheNextFrames) {
     auto pixels = picture(64, 48, random);
     load(pixels);
     start(64, 48, 20);
-    for (int i = 0; i < 900; ++i)
-        bench_.tick();
+    bench_.tick(900);
     bus_.write(VISION_THRESHOLD, 90);
     bus_.write(VISION_FRAME_SIZE, 16u << 16 | 16u);
     bus_.write(VISION_RESULT_MAX, 1);
@@ -140,8 +134,7 @@ TEST_F(VisionTest, AbortEndsAFrameAndTheNextIsRight) {
     auto pixels = picture(64, 48, random);
     load(pixels);
     start(64, 48, 20);
-    for (int i = 0; i < 700; ++i)
-        bench_.tick();
+    bench_.tick(700);
     bus_.write(VISION_CONTROL, VISION_CONTROL_ABORT_MASK);
     EXPECT_EQ(finish(2000), VISION_EVENT_DONE_MASK);
     EXPECT_EQ(bus_.read(VISION_STATUS), VISION_STATUS_ABORTED_MASK);
@@ -160,9 +153,7 @@ TEST_F(VisionTest, FollowsAnotherCoresFramesAndWaitsForItsReader) {
     bus_.write(VISION_MODE, VISION_MODE_FOLLOW_MASK);
     for (uint32_t buffer : {1u, 2u, 3u, 2u}) {
         auto pixels = picture(64, 48, random);
-        for (size_t i = 0; i < pixels.size(); ++i)
-            memory_.setByte(frameBase_ + (buffer - 1) * stride + static_cast<uint32_t>(i),
-                            pixels[i]);
+        memory_.store(frameBase_ + (buffer - 1) * stride, pixels);
         top.frame_index_i = static_cast<uint8_t>(buffer);
         top.frame_valid_i = 1;
         bench_.waitFor([&] { return top.frame_take_o; }, "the frame to be taken", 5);

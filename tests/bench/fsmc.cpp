@@ -44,9 +44,8 @@ struct Chip {
 double streams(unsigned hclk, uint64_t seed, uint32_t halfwords, bool& right) {
     Chip chip(hclk, seed);
     Random random(seed);
-    std::vector<U16> out(halfwords), in(halfwords);
-    for (auto& value : out)
-        value = static_cast<U16>(random.next());
+    auto out = random.items<U16>(halfwords);
+    std::vector<U16> in(halfwords);
     U32 repeated = 0;
     double least = 1;
     // An access takes whole HCLK: the limit of the pins is what the driver's timing

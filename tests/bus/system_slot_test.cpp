@@ -121,8 +121,7 @@ TEST_F(SystemSlot, TheHighHalfOfTheCycleCountIsThatOfTheLowHalf) {
     uint64_t before = bus_.read(SYSTEM_CYCLES_LO);
     before |= uint64_t(bus_.read(SYSTEM_CYCLES_HI)) << 32;
     uint64_t start = bench_.cycles();
-    for (int i = 0; i < 1000; ++i)
-        bench_.tick();
+    bench_.tick(1000);
     uint64_t ran = bench_.cycles() - start;
     uint64_t after = bus_.read(SYSTEM_CYCLES_LO);
     after |= uint64_t(bus_.read(SYSTEM_CYCLES_HI)) << 32;

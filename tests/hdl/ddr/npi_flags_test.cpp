@@ -51,10 +51,7 @@ protected:
         top_.eval();
         return data;
     }
-    void wait(unsigned cycles) {
-        for (unsigned i = 0; i < cycles; ++i)
-            bench_.tick();
-    }
+    void wait(unsigned cycles) { bench_.tick(cycles); }
     uint64_t inMemory(uint32_t address) {
         uint64_t value;
         std::memcpy(&value, memory_.data() + address, 8);

@@ -122,9 +122,8 @@ TEST_F(Bridge, TheDriverCopiesAnyLengthToAnyAddress) {
     Random random(testSeed());
     for (int i = 0; i < 60; ++i) {
         uint32_t address = random.below(0x200), bytes = 1 + random.below(70);
-        std::vector<uint8_t> out(bytes), in(bytes);
-        for (auto& byte : out)
-            byte = static_cast<uint8_t>(random.next());
+        auto out = random.items<uint8_t>(bytes);
+        std::vector<uint8_t> in(bytes);
         uint8_t before = b_.memory.byte(address + bytes);
         FSMC_writeMemory(address, out.data(), bytes);
         FSMC_readMemory(address, in.data(), bytes);
@@ -321,9 +320,8 @@ TEST_F(Bridge, StreamsAreRightHoweverSlowTheMemoryIs) {
         b_.memory.setStall(stall);
         for (int i = 0; i < 6; ++i) {
             uint32_t address = 2 * random.below(0x1FF8000), count = 1 + random.below(3000);
-            std::vector<uint16_t> out(count), in(count);
-            for (auto& value : out)
-                value = static_cast<uint16_t>(random.next());
+            auto out = random.items<uint16_t>(count);
+            std::vector<uint16_t> in(count);
             uint32_t again = FSMC_streamWrite(address, out.data(), count);
             again += FSMC_streamRead(address, in.data(), count);
             ASSERT_EQ(in, out) << "SEED=" << testSeed() << " stall " << stall << " copy " << i;
@@ -345,9 +343,8 @@ TEST(BridgeRatios, WritesOfAStreamAreTakenAtEveryPhase) {
         BridgeBench<VFsmcBridge> b(testSeed(), 0, hclk, clk);
         ASSERT_EQ(b.init(), FSMC_OK);
         FSMC_setHclk(static_cast<U32>(100e6 * hclk / clk));
-        std::vector<uint16_t> out(5000), in(out.size());
-        for (auto& value : out)
-            value = static_cast<uint16_t>(random.next());
+        auto out = random.items<uint16_t>(5000);
+        std::vector<uint16_t> in(out.size());
         uint64_t start = b.clocks();
         FSMC_streamWrite(0x400, out.data(), static_cast<U32>(out.size()));
         EXPECT_LT(b.clocks() - start, out.size() * 41 * clk / hclk / 10) << "4 HCLK an access";

@@ -41,11 +41,7 @@ protected:
         bus_.write(MODEM_CONTROL, MODEM_CONTROL_CONFIGURE_MASK);
         bench_.waitFor([&] { return bench_.top().irq_o; }, "the end of the set-up", 40'000'000);
     }
-    uint32_t takeEvents() {
-        uint32_t events = bus_.read(MODEM_EVENT);
-        bus_.write(MODEM_EVENT, events);
-        return events;
-    }
+    uint32_t takeEvents() { return bus_.takeEvents(); }
     void runMs(double ms) {
         for (uint64_t end = bench_.cycles() + static_cast<uint64_t>(ms * 1e6 / clkNs);
              bench_.cycles() < end;)
@@ -60,8 +56,7 @@ protected:
         return options;
     }
     void put(unsigned buffer, const std::vector<uint8_t>& packet) {
-        for (size_t i = 0; i < packet.size(); ++i)
-            memory_.setByte(txRing + 128 * buffer + static_cast<uint32_t>(i), packet[i]);
+        memory_.store(txRing + 128 * buffer, packet);
         bus_.write(MODEM_TX_PUT, static_cast<uint32_t>(packet.size()));
     }
     // Returns a packet like the link layer's: the first byte gives the length.
@@ -70,14 +65,17 @@ protected:
         bytes[0] = static_cast<uint8_t>(size - 5);
         return bytes;
     }
+    // Returns the oldest packet in the ring, empty if there is none; take() also releases it.
+    std::vector<uint8_t> oldest() {
+        const uint32_t get = bus_.read(MODEM_RX_GET);
+        const bool isValid = get & MODEM_RX_GET_VALID_MASK;
+        return memory_.bytes(rxRing + 128 * (get >> 8 & 0xFF),
+                             isValid ? get & MODEM_RX_GET_BYTES_MASK : 0);
+    }
     std::vector<uint8_t> take() {
-        uint32_t get = bus_.read(MODEM_RX_GET);
-        std::vector<uint8_t> packet;
-        if (!(get & MODEM_RX_GET_VALID_MASK))
-            return packet;
-        for (uint32_t i = 0; i < (get & MODEM_RX_GET_BYTES_MASK); ++i)
-            packet.push_back(memory_.byte(rxRing + 128 * (get >> 8 & 0xFF) + i));
-        bus_.write(MODEM_RX_RELEASE, 1);
+        auto packet = oldest();
+        if (!packet.empty())
+            bus_.write(MODEM_RX_RELEASE, 1);
         return packet;
     }
 
@@ -107,8 +105,7 @@ protected:
     // silent then, would not.
     void level(bool high, unsigned clocks) {
         noise_ = !high;
-        for (unsigned i = 0; i < clocks; ++i)
-            bench_.tick();
+        bench_.tick(clocks);
     }
     void byteIn(uint8_t byte, unsigned bitClocks, unsigned stopClocks) {
         level(false, bitClocks);

@@ -55,14 +55,6 @@ protected:
             hold(true, bitClocks * 2);
         sendByte(static_cast<uint8_t>(random_.next()), random_.below(500) != 0);
     }
-    std::vector<uint8_t> oldest() {
-        uint32_t get = bus_.read(MODEM_RX_GET);
-        std::vector<uint8_t> bytes;
-        if (get & MODEM_RX_GET_VALID_MASK)
-            for (uint32_t i = 0; i < (get & MODEM_RX_GET_BYTES_MASK); ++i)
-                bytes.push_back(memory_.byte(rxRing + 128 * (get >> 8 & 0xFF) + i));
-        return bytes;
-    }
     void useSoftware() {
         auto now = oldest();
         if (!seen_.empty()) {

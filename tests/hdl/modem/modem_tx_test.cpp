@@ -86,8 +86,7 @@ protected:
             [&] { return bench_.top().npi_addr_req_o && bench_.top().npi_addr_o == second; },
             "the second word");
         memory_.hold(hangs);
-        for (unsigned i = 0; i < clocks; ++i)
-            bench_.tick();
+        bench_.tick(clocks);
         bus_.write(MODEM_CONTROL, control);
     }
     void setUp() {

@@ -133,10 +133,7 @@ TEST_F(Uav, GarbageOnTheGroundsSerialLineIsSurvived) {
     fly(
         [&] {
             if (ground_.isUp() && soc_.now() > next) {
-                std::vector<uint8_t> bytes(1 + random.below(40));
-                for (auto& byte : bytes)
-                    byte = static_cast<uint8_t>(random.next());
-                ground_.noise(bytes);
+                ground_.noise(random.items<uint8_t>(1 + random.below(40)));
                 next = soc_.now() + 150'000'000;
             }
             return ping();

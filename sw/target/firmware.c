@@ -37,15 +37,16 @@ static void restart(void) {
 void Firmware_run(void) {
     UAV_Status status;
     OSInit();
+    Secrets_start();
+    UAV_useBoard(&secrets_board, 0);
     uav_update[UAV_FIRMWARE].slots = Loader_slots(&uav_update[UAV_FIRMWARE].running);
     uav_update[UAV_FIRMWARE].product = LOADER_PRODUCT;
     uav_update[UAV_BITSTREAM].product = FPGA_PRODUCT;
     if (uav_update[UAV_FIRMWARE].slots)
-        uav_update[UAV_BITSTREAM].slots = Fpga_slots(
-            uav_update[UAV_FIRMWARE].slots, Boot_isPowerOn(), &uav_update[UAV_BITSTREAM].running);
+        uav_update[UAV_BITSTREAM].slots =
+            Fpga_slots(uav_update[UAV_FIRMWARE].slots, Boot_isPowerOn(), !UAV_isFlying(),
+                       &uav_update[UAV_BITSTREAM].running);
     uav_restart = restart;
-    Secrets_start();
-    UAV_useBoard(&secrets_board, 0);
     Provision_listen();
     status = UAV_start(&board_fsmc, 0);
     if (status != UAV_NO_FPGA)

@@ -155,7 +155,7 @@ static int loadsAnother(void) {
     return !isDone() || from == Slots_at(&slots_fpga, 0) + SLOTS_IMAGE_AT;
 }
 
-const Slots_Port* Fpga_slots(const Slots_Port* firmware, int isPowerOn, U32* running) {
+const Slots_Port* Fpga_slots(const Slots_Port* firmware, int isPowerOn, int mayTry, U32* running) {
     int isRefused;
     startPins();
     if (isPowerOn)
@@ -172,7 +172,7 @@ const Slots_Port* Fpga_slots(const Slots_Port* firmware, int isPowerOn, U32* run
     port.erase = SpiNor_erase;
     port.program = SpiNor_program;
     port.mapped = 0;
-    while (Slots_settleFpga(&port, isRefused)) {
+    while ((mayTry || isRefused) && Slots_settleFpga(&port, isRefused)) {
         hold();
         isRefused = loadsAnother();
         if (!isRefused)

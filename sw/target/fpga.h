@@ -11,10 +11,10 @@
 #define FPGA_PRODUCT 0x31475046UL /* "FPG1" */
 
 /* Returns the slots of bitstreams, checked as the firmware's are, or 0 where there is no such
- * flash. Before that the FPGA loads a new bitstream, or the golden one in place of one that was not
- * confirmed or not taken, and DONE is awaited. With `isPowerOn` the FPGA loads its bitstream once
- * more, so that its reads are received. `running` becomes the slot of the bitstream that the FPGA
- * runs. */
-const Slots_Port* Fpga_slots(const Slots_Port* firmware, int isPowerOn, U32* running);
+ * flash. Before that the FPGA loads a new bitstream (with `mayTry`), or the golden one in place of
+ * one that was not confirmed or not taken, and DONE is awaited. With `isPowerOn` the FPGA loads its
+ * bitstream once more, so that its reads are received. `running` becomes the slot of the bitstream
+ * that the FPGA runs. */
+const Slots_Port* Fpga_slots(const Slots_Port* firmware, int isPowerOn, int mayTry, U32* running);
 
 #endif

@@ -8,6 +8,7 @@
 #include "flash.h"
 #include "signature.h"
 #include "stm32f2.h"
+#include "uav_keys.h"
 
 #define TRIAL_PRESCALER 6UL /* LSI / 256: 8 ms */
 #define TRIAL_RELOAD 1250UL /* 10 s until the new firmware serves the watchdog itself */
@@ -49,7 +50,8 @@ static void __attribute__((naked, noreturn)) jump(const U32* at) {
 void Reset_Handler(void) {
     U32 slot;
     Clock_start();
-    slot = Slots_choose(&port, LOADER_PRODUCT);
+    RCC_AHB1ENR |= RCC_AHB1ENR_BKPSRAM;
+    slot = Slots_choose(&port, LOADER_PRODUCT, BKPSRAM(UAV_FLIGHT_WORD) != UAV_FLYING);
     if (slot == SLOTS_NONE) /* no image can be started: only a programmer helps */
         for (;;)
             __asm__ volatile("wfi");

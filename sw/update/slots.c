@@ -119,11 +119,11 @@ static U32 versionOf(const Slots_Port* port, U32 slot) {
     return header.version;
 }
 
-U32 Slots_choose(const Slots_Port* port, U32 product) {
+U32 Slots_choose(const Slots_Port* port, U32 product, int mayTry) {
     const U32 confirmed = Slots_confirmed(port, product);
     const U32 newer = versionOf(port, 1) > versionOf(port, 0) ? 1U : 0U;
     U32 slot, i;
-    for (i = 0; i < SLOTS_COUNT; ++i) { /* new images */
+    for (i = 0; mayTry && i < SLOTS_COUNT; ++i) { /* new images */
         slot = newer ^ i;
         if (!Slots_is(port, slot, SLOTS_TRIED) && !Slots_is(port, slot, SLOTS_CONFIRMED) &&
             versionOf(port, slot) > confirmed && isSound(port, slot, product) &&

@@ -97,9 +97,9 @@ U32 Slots_confirmed(const Slots_Port* port, U32 product);
  * half-erased image never starts. */
 int Slots_retire(const Slots_Port* port, U32 slot);
 
-/* Returns the slot to run, SLOTS_NONE where there is none: a new image, once; else the newest
- * confirmed one; else any sound one. Each is signed and whole. */
-U32 Slots_choose(const Slots_Port* port, U32 product);
+/* Returns the slot to run, SLOTS_NONE where there is none: with `mayTry` a new image, once; else
+ * the newest confirmed one; else any sound one. Each is signed and whole. */
+U32 Slots_choose(const Slots_Port* port, U32 product, int mayTry);
 
 /* Checks the FPGA's flash at a start, and after each failed load of the FPGA. A new bitstream is
  * tried once. One that was tried and not confirmed is retired, and so is one that the FPGA has

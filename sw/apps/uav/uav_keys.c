@@ -8,10 +8,8 @@
 #include <string.h>
 
 #define SLOT_WORDS 5U
-#define CHECK 4U      /* a slot's check: detects words that are not whole */
-#define STATE_AT 10U  /* the state word, or nothing */
-#define FLIGHT_AT 11U /* the flight's state: FLYING, or anything else */
-#define FLYING 0x464C5921U
+#define CHECK 4U     /* a slot's check: detects words that are not whole */
+#define STATE_AT 10U /* the state word, or nothing */
 #define STATE_OPEN 0x4F50454EU
 #define STATE_NEXT 0x4E455830U /* + slot of the next key, if both have one */
 #define CHECK_SEED 0x4B455931U
@@ -85,11 +83,11 @@ int UAV_countKeys(void) {
 }
 
 int UAV_isFlying(void) {
-    return board->load(boardContext, FLIGHT_AT) == FLYING;
+    return board->load(boardContext, UAV_FLIGHT_WORD) == UAV_FLYING;
 }
 
 void UAV_setFlying(int isFlying) {
-    board->store(boardContext, FLIGHT_AT, isFlying ? FLYING : 0);
+    board->store(boardContext, UAV_FLIGHT_WORD, isFlying ? UAV_FLYING : 0);
 }
 
 int UAV_isOpen(void) {

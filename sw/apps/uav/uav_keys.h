@@ -15,6 +15,8 @@
 #endif
 #define UAV_KEY_SLOTS 2
 #define UAV_KEY_WORDS 12U /* a slot: four words of key, its check; then two states */
+#define UAV_FLIGHT_WORD 11U
+#define UAV_FLYING 0x464C5921U /* in that word; anything else: on the ground */
 
 /* The board keeps secrets and draws random numbers. `context` is passed back unchanged. */
 typedef struct UAV_Board {

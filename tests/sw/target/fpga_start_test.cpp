@@ -11,6 +11,7 @@
 
 extern "C" {
 #include "slots.h"
+#include "uav_keys.h"
 }
 
 namespace {
@@ -92,6 +93,21 @@ TEST_F(FpgaStart, ANewBitstreamIsTriedAndOneNotConfirmedGoes) {
     EXPECT_TRUE(is(SLOTS_TRIED));
     EXPECT_EQ(start(), 0u);
     EXPECT_FALSE(is(SLOTS_REFUSED));
+}
+
+TEST_F(FpgaStart, NoBitstreamIsTriedInFlightButOneThatIsRefusedGoes) {
+    receive(standInBitstream(2, frameWords));
+    chip.backup()[UAV_FLIGHT_WORD] = UAV_FLYING;
+    *at(multiBoot + 1000) ^= 8;
+    EXPECT_EQ(start(), 0u);
+    EXPECT_TRUE(is(SLOTS_REFUSED));
+    receive(standInBitstream(2, frameWords));
+    std::fill(at(slot + SLOTS_READY), at(multiBoot), uint8_t{0xFF});
+    (void)start();
+    EXPECT_FALSE(is(SLOTS_TRIED));
+    chip.backup()[UAV_FLIGHT_WORD] = 0;
+    EXPECT_EQ(start(), 1u);
+    EXPECT_TRUE(is(SLOTS_TRIED));
 }
 
 TEST_F(FpgaStart, ABitstreamForAnotherDeviceIsKnownNotToRun) {

@@ -10,6 +10,7 @@
 
 extern "C" {
 #include "loader.h"
+#include "uav_keys.h"
 }
 
 namespace {
@@ -90,6 +91,15 @@ TEST_F(Loader, TriesANewOneOnceAndGoesBack) {
     EXPECT_EQ(boot(), 1);
     EXPECT_EQ(boot(), 0);
     EXPECT_EQ(boot(), 0);
+}
+
+TEST_F(Loader, TriesNothingInFlight) {
+    fill();
+    receive(8);
+    chip.backup()[UAV_FLIGHT_WORD] = UAV_FLYING;
+    EXPECT_EQ(boot(), 0);
+    chip.backup()[UAV_FLIGHT_WORD] = 0;
+    EXPECT_EQ(boot(), 1);
 }
 
 TEST_F(Loader, StartsNeitherAnOlderOneNorOneOfAnotherKey) {

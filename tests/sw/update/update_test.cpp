@@ -86,7 +86,7 @@ public:
     // Switches the power on; returns the version that runs.
     uint32_t boot() {
         flash_.reset();
-        const uint32_t slot = Slots_choose(&port, product);
+        const uint32_t slot = Slots_choose(&port, product, 1);
         EXPECT_NE(slot, SLOTS_NONE);
         if (slot == SLOTS_NONE)
             return 0;

@@ -170,7 +170,7 @@ TEST_F(UavUpdate, AnImageComesInPiecesPackedOrNotAndIsStarted) {
          {"finish", {}, None},
          {"getStatus", {}, Ready}},
         [] { return restarted; });
-    EXPECT_EQ(Slots_choose(&flash.port, product), 1u);
+    EXPECT_EQ(Slots_choose(&flash.port, product, 1), 1u);
     EXPECT_TRUE(std::equal(image.begin(), image.end(),
                            flash.bytes.begin() + Slots_at(&slots_firmware, 1) + SLOTS_IMAGE_AT));
 }

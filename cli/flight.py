@@ -15,7 +15,7 @@ from cli.options import (COUNT, FILE, FOLDER, FRAME, KEY_FILE, PATH, SEED, SHARE
                          UCOS2, WORDS, Option, matching, number, one_of)
 from cli.runner import Stop, say
 
-VERSION = 1
+VERSION = 2
 FIELDS = [
     Option("image", FILE, "picture for the camera: PNG, JPEG or PGM",
            "/usr/share/xplanet/images/earth.jpg"),
@@ -44,6 +44,7 @@ FIELDS = [
         "camera", SWITCH,
         "the picture comes through the camera core's pins, and the vision core takes it from there"
     ),
+    Option("wire", SWITCH, "a wire to the vehicle's serial pins in place of modems and air"),
     Option("pins", FILE,
            "drives the inputs of cores (docs/simulation.md); outputs go to OUT/pins.log", ""),
     Option("probe", TEXT,
@@ -150,6 +151,11 @@ def complete(values):
         raise Stop(f"OPEN=1 flies in the clear, KEY='{values.key}' does not: give one of them", 2)
     if values.app == "minimal" and values.cpu != "m3":
         raise Stop("the minimal program is an ARM binary: give --cpu m3 (CPU=m3)", 2)
+    other = [name for name in ("loss", "interference", "distance", "trace", "update")
+             if getattr(values, name)] + ["app"] * (values.app == "minimal")
+    if values.wire and other:
+        raise Stop("WIRE=1 flies the mission without modems and air: leave out "
+                   + ", ".join(f"--{name}" for name in other), 2)
     if values.camera and values.pins:
         raise Stop("CAMERA=1 and PINS=file both drive the inputs of cores: give one of them", 2)
     if values.camera and "camera" not in values.cores:

@@ -58,7 +58,7 @@ module modem #(
     wire        bit_tick; // eight a bit time
     wire [3:0]  bd_now;
 
-    reg         ready, reset_n, pulse_ends, encrypt;
+    reg         ready, reset_n, pulse_ends, encrypt, by_wire;
     reg  [7:0]  framing_errors, overruns, retries, unsents;
     wire        cts_n_sync;
     wire        cts = !cts_n_sync;
@@ -154,7 +154,7 @@ module modem #(
 
     modem_at #(.API(API)) u_at (
         .clk_i(clk_i), .rst_i(rings_reset), .clear_o(at_clear), .time_i(waited),
-        .start_i(configure && reset_n), .busy_o(at_busy), .done_o(at_done),
+        .start_i(configure && reset_n), .wire_i(by_wire), .busy_o(at_busy), .done_o(at_done),
         .failed_o(at_failed), .retried_o(at_retried), .step_o(at_step), .bd_o(bd_now),
         .word_o(at_word), .word_i(word), .word_valid_i(word_valid && word_at == at_word),
         .tx_valid_o(at_tx_valid), .tx_data_o(at_tx_data), .tx_ready_i(tx_ready),
@@ -273,6 +273,8 @@ module modem #(
         key_index <= key_index + {1'b0, key_write};
         if (reg_write && reg_addr == MODEM_NET)
             encrypt <= reg_wdata[MODEM_NET_ENCRYPT_LSB];
+        if (reg_write && reg_addr == MODEM_BAUD)
+            by_wire <= reg_wdata[MODEM_BAUD_WIRE_LSB];
 
         if (at_done)
             ready <= 1'b1;

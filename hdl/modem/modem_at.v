@@ -20,6 +20,7 @@ module modem_at #(
     input  wire [11:0] time_i,
     // control
     input  wire        start_i,    // only while not busy
+    input  wire        wire_i,     // with start_i: no modem is there, the target rate is taken at once
     output reg         busy_o,
     output reg         done_o,     // one cycle
     output reg         failed_o,   // one cycle
@@ -39,7 +40,7 @@ module modem_at #(
 );
     `include "modem_regs.vh"
 
-    localparam [3:0] ENTER = 4'd1;
+    localparam [3:0] SETTLES = 4'd0, ENTER = 4'd1;
     localparam [3:0] FACTORY_BD = 4'd3, HIGHEST_BD = 4'd7;
 
     reg [5:0] place;    // row of the step
@@ -139,7 +140,7 @@ module modem_at #(
             bd_o <= {word_i[4], word_i[2:0]}; // 0..7, 8 for 0x3D090
 
         if (start) begin
-            step_o <= ENTER;
+            step_o <= wire_i ? SETTLES : ENTER;
             busy_o <= 1'b1;
         end
         if (ended || gives_up)
@@ -157,7 +158,7 @@ module modem_at #(
 
 `ifdef FORMAL
     // Each step needs the modem's OK, and the set-up ends.
-    localparam [3:0] EE = 4'd7, RN = 4'd9, SETTLES = 4'd0;
+    localparam [3:0] EE = 4'd7, RN = 4'd9;
     reg past = 1'b0;
     initial assume (rst_i);
     reg [23:0] heard = 24'd0; // the last three characters since the command
@@ -183,7 +184,7 @@ module modem_at #(
                 assert (!heard_k || heard[15:0] == "OK");
             end
             if (step_o != $past(step_o))
-                assert (($past(start) && step_o == ENTER) ||
+                assert (($past(start) && step_o == ($past(wire_i) ? SETTLES : ENTER)) ||
                         ($past(passed) && (step_o == $past(step_o) + 4'd1 ||
                                            ($past(step_o) == EE && step_o == RN))));
             // The end is success after the last step, or failure, never both.
@@ -201,6 +202,7 @@ module modem_at #(
                 assert (tx_valid_o && $stable(tx_data_o));
         end
         cover (past && !rst_i && step_o == 4'd3);
+        cover (past && done_o && heard == 24'd0);
         cover (past && !rst_i && retried_o && !enters && step_o == 4'd2);
         cover (past && !rst_i && digit && taken);
     end

@@ -30,7 +30,7 @@ struct Options {
     std::string listen = "127.0.0.1:10000";
     int baud = 115200, target = 1, source = 0, rfChannel = 0x0C, pan = 0x3332, guardMs = 1000;
     int trace = 0, wait = 30;
-    bool setUp = true;
+    bool setUp = true, isWire = false;
 };
 
 // Objects that change keys or programs; only --maintenance opens them.
@@ -194,8 +194,12 @@ void setProperties(const std::shared_ptr<Ice::Properties>& p, const Options& o) 
 // Returns the endpoint of the vehicle, and of its calls, at the serial port.
 std::string radioEndpoint(const Options& o) {
     std::ostringstream s;
-    s << "xbee-at -d \"" << o.device << "\" -b " << o.baud << " -a " << o.target << " -s "
-      << o.source << " -c " << o.rfChannel << " -i " << o.pan << " -g " << o.guardMs;
+    if (o.isWire)
+        s << "serial -d \"" << o.device << "\" -b " << o.baud << " -a " << o.target << " -s "
+          << o.source;
+    else
+        s << "xbee-at -d \"" << o.device << "\" -b " << o.baud << " -a " << o.target << " -s "
+          << o.source << " -c " << o.rfChannel << " -i " << o.pan << " -g " << o.guardMs;
     return s.str();
 }
 
@@ -217,6 +221,8 @@ void addOptions(CLI::App& app, Options& o) {
     app.add_option("-g,--guard", o.guardMs, "guard time of the modem as it is, ms")
         ->check(CLI::Range(2, 3300));
     app.add_flag("!--no-setup", o.setUp, "the modem is set up already");
+    app.add_flag("--wire", o.isWire,
+                 "no modems: the port is wired to the vehicle's board, whose jumper says so");
     app.add_option("-l,--listen", o.listen,
                    "HOST:PORT of this machine for clients, [::1]:PORT too; port 0: any, it is "
                    "printed. Or Ice's endpoints, e.g. \"ssl -p 10001\"");

@@ -35,7 +35,9 @@ public:
         return ICE_MAKE_SHARED(Info, ICE_SHARED_FROM_CONST_THIS(Endpoint));
     }
     Ice::Short type() const override { return endpointType; }
-    const std::string& protocol() const override { return protocolName; }
+    const std::string& protocol() const override {
+        return o_.serial.isWire ? wireName : protocolName;
+    }
     Ice::Int timeout() const override { return o_.timeoutMs; }
     EndpointIPtr timeout(Ice::Int ms) const override {
         return with([&](EndpointOptions& o) { o.timeoutMs = ms; });
@@ -94,8 +96,10 @@ public:
             s << " -d " << quoted(o_.serial.device) << " -b " << o_.serial.baud;
         s << " -a 0x" << std::hex << o_.serial.target << std::dec;
         if (!o_.serial.device.empty())
-            s << " -s 0x" << std::hex << o_.serial.source << " -c 0x" << o_.serial.rfChannel
-              << " -i 0x" << o_.serial.pan << std::dec << " -g " << o_.serial.guardMs;
+            s << " -s 0x" << std::hex << o_.serial.source << std::dec;
+        if (!o_.serial.device.empty() && !o_.serial.isWire)
+            s << " -c 0x" << std::hex << o_.serial.rfChannel << " -i 0x" << o_.serial.pan
+              << std::dec << " -g " << o_.serial.guardMs;
         if (o_.channel != 255)
             s << " -p " << o_.channel;
         s << " -t " << o_.timeoutMs;
@@ -113,6 +117,8 @@ protected:
         }
         if (std::string("-d-b-a-s-c-i-p-t-g-k-h").find(option) == std::string::npos ||
             option.size() != 2)
+            return false;
+        if (o_.serial.isWire && std::string("-c-i-g-k").find(option) != std::string::npos)
             return false;
         if (argument.empty())
             throw Ice::EndpointParseException(__FILE__, __LINE__,
@@ -188,13 +194,17 @@ private:
     EndpointOptions o_;
 };
 
+// Factory makes the endpoints of one of the two protocols.
 class Factory : public IceInternal::EndpointFactory {
 public:
-    explicit Factory(const InstancePtr& instance) : instance_(instance) {}
-    Ice::Short type() const override { return endpointType; }
-    std::string protocol() const override { return protocolName; }
+    Factory(const InstancePtr& instance, bool isWire) : instance_(instance), isWire_(isWire) {}
+    Ice::Short type() const override { return isWire_ ? wireType : endpointType; }
+    std::string protocol() const override { return isWire_ ? wireName : protocolName; }
     EndpointIPtr create(std::vector<std::string>& arguments, bool) const override {
-        auto endpoint = ICE_MAKE_SHARED(Endpoint, instance_, instance_->defaults());
+        EndpointOptions o = instance_->defaults();
+        o.serial.isWire = isWire_;
+        o.serial.setUp = o.serial.setUp && !isWire_;
+        auto endpoint = ICE_MAKE_SHARED(Endpoint, instance_, o);
         endpoint->initWithOptions(arguments);
         return endpoint;
     }
@@ -213,11 +223,12 @@ public:
     // on.
     void destroy() override { instance_->destroy(); }
     IceInternal::EndpointFactoryPtr clone(const IceInternal::ProtocolInstancePtr&) const override {
-        return new Factory(instance_);
+        return new Factory(instance_, isWire_);
     }
 
 private:
     InstancePtr instance_;
+    const bool isWire_;
 };
 
 } // namespace XBeeAT

@@ -14,8 +14,8 @@
 
 namespace XBeeAT {
 
-constexpr Ice::Short endpointType = 0x4158;
-inline const std::string protocolName = "xbee-at";
+constexpr Ice::Short endpointType = 0x4158, wireType = 0x4159; // the second never on the air
+inline const std::string protocolName = "xbee-at", wireName = "serial";
 constexpr Ice::Int defaultTimeoutMs = 30000; // setting a modem up takes seconds
 
 struct EndpointOptions {

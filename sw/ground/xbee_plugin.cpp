@@ -12,8 +12,10 @@ namespace {
 class Plugin : public Ice::Plugin {
 public:
     explicit Plugin(const Ice::CommunicatorPtr& communicator) {
-        IceInternal::getProtocolPluginFacade(communicator)
-            ->addEndpointFactory(new XBeeAT::Factory(new XBeeAT::Instance(communicator)));
+        const XBeeAT::InstancePtr instance = new XBeeAT::Instance(communicator);
+        for (bool isWire : {false, true})
+            IceInternal::getProtocolPluginFacade(communicator)
+                ->addEndpointFactory(new XBeeAT::Factory(instance, isWire));
     }
     void initialize() override {}
     void destroy() override {}

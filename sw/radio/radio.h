@@ -31,7 +31,8 @@ typedef enum Radio_Baud {
     XBEE_BD_19200,
     XBEE_BD_38400,
     XBEE_BD_57600,
-    XBEE_BD_115200
+    XBEE_BD_115200,
+    RADIO_WIRE_115200 = 0x80007 /* no modem: a wire to a serial port, at 111,111 baud as well */
 } Radio_Baud;
 
 /* Settings of the modem. The paper gives the first three; a zero in the others means the default.
@@ -70,7 +71,8 @@ typedef struct Radio_Memory {
 } Radio_Memory;
 
 /* Resets the modem and sets controller and modem up. Blocks the calling task: about 4 s with a
- * guard time of 1 s, up to 40 s where no modem answers. `memory` is copied. */
+ * guard time of 1 s, up to 40 s where no modem answers, half a second for a wire. `memory` is
+ * copied. */
 Radio_Status xbeeInit(const XBeeInitTypeDef* conf, const Radio_Memory* memory);
 
 /* Returns the step of the set-up that failed, after RADIO_NO_MODEM or RADIO_REFUSED, as STATUS.STEP

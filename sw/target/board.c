@@ -15,6 +15,8 @@
 
 #define IRQ_PORT 1UL /* PB0: EXTI0 */
 #define IRQ_PIN 0U
+#define WIRE_PORT 1UL /* PB1 */
+#define WIRE_PIN 1U
 #define EXTI0_VECTOR 6U
 #define PRIORITY_FPGA 0x50U
 #define PRIORITY_TICK 0x60U
@@ -78,11 +80,16 @@ static void startPins(void) {
         for (pin = 0; pin < 16U; ++pin)
             if (fsmcPins[port] >> pin & 1U)
                 usePinForFsmc(3U + port, pin);
+    GPIO_PUPDR(WIRE_PORT) |= 1UL << 2U * WIRE_PIN;
 }
 
 void Board_start(void) {
     Clock_start();
     startPins();
+}
+
+int Board_isWired(void) {
+    return !(GPIO_IDR(WIRE_PORT) >> WIRE_PIN & 1UL);
 }
 
 void Board_startInterrupts(void) {

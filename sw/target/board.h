@@ -13,6 +13,8 @@ extern const FSMC_Port board_fsmc;
 /* Sets up the clock (120 MHz from a crystal of 25 MHz), flash wait states and the FSMC's pins. Uses
  * no RAM. */
 void Board_start(void);
+/* Returns whether a jumper pulls PB1 low: a wire is there in place of the modem. */
+int Board_isWired(void);
 /* Starts SysTick, the FPGA's interrupt and the watchdog. To be called with interrupts masked,
  * before OSStart. */
 void Board_startInterrupts(void);

@@ -47,6 +47,7 @@ void Firmware_run(void) {
             Fpga_slots(uav_update[UAV_FIRMWARE].slots, Boot_isPowerOn(), !UAV_isFlying(),
                        &uav_update[UAV_BITSTREAM].running);
     uav_restart = restart;
+    uav_wire = (U8)Board_isWired();
     Provision_listen();
     status = UAV_start(&board_fsmc, 0);
     if (status != UAV_NO_FPGA)

@@ -102,7 +102,7 @@ private:
     std::array<uint32_t, 1024> backup_{};
     unsigned carry_ = 0, waited_ = 0;
     uint32_t resetFlags_ = 0, crc_ = 0xFFFFFFFF, pendingExti_ = 0;
-    uint32_t pins_[2] = {0x410, 0}; // levels at ports A and B
+    uint32_t pins_[2] = {0x410, 2}; // levels at ports A and B
     bool fsmcUsable_ = false, lineChanged_ = false;
     uint64_t fpgaEdgeNs_ = ~0ull; // when PA4 changes next
     uint64_t spiTaken_ = 0;       // number of the FPGA's bytes that were taken

@@ -139,12 +139,23 @@ Flight::Flight(const Options& options)
 }
 
 void Flight::connectModels() {
+    constexpr double bitNs = 9000; // 111,111 baud
+    if (o_.wire) {
+        uav_wire = 1;
+        cable_ = std::make_unique<Cable>(
+            soc_.line(), recorded_ ? static_cast<SerialLine&>(*recorded_) : *o_.replayed, bitNs,
+            [this](const SerialLine& from) {
+                ++(&from == &soc_.line() ? status_->bytesDown : status_->bytesUp);
+            });
+        soc_.plugIn(*cable_);
+    }
     soc_.onTime([this](uint64_t now) {
-        ground_.advance(now);
+        if (!o_.wire)
+            ground_.advance(now);
         status_.set(now); // the ground's clock
         step_.wait(now);
-        return std::min(
-            {ground_.nextEvent(), std::max(step_.nextEvent(), now + 1), now + clockStepNs});
+        return std::min({o_.wire ? never : ground_.nextEvent(),
+                         std::max(step_.nextEvent(), now + 1), now + clockStepNs});
     });
     air_.onPacket([this](uint64_t now, const RfPacket& packet, RfChannel::Outcome outcome) {
         (packet.from == 1 ? status_->bytesDown : status_->bytesUp) += packet.bytes.size();
@@ -259,7 +270,8 @@ void Flight::runOnHost() {
 void Flight::runOnCortexM3() {
     const std::vector<uint8_t> flash = flashOf(o_.flash, Stm32Flash::bytes, "the chip's"),
                                fpga = flashOf(o_.fpgaFlash, SpiFlash::bytes, "the FPGA's");
-    M3Machine machine(soc_, {o_.firmware, 120'000'000, o_.guard, flash, key_, o_.seed, fpga},
+    M3Machine machine(soc_,
+                      {o_.firmware, 120'000'000, o_.guard, flash, key_, o_.seed, fpga, o_.wire},
                       [this] { return poll(); });
     if (machine.program)
         machine.program->onTask = [this](const std::string& name) {

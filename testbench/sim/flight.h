@@ -65,7 +65,7 @@ public:
         RfWeather weather;
         double duration = 0;
         uint64_t seed = 1;
-        bool everyClock = false, quiet = false, sensor = false;
+        bool everyClock = false, quiet = false, sensor = false, wire = false;
         std::vector<std::string> command;
         nlohmann::json flight; // its description, which the recording keeps
         // The flight to be replayed, if any; and the span of a waveform in s, each of whose clocks
@@ -113,6 +113,7 @@ private:
     std::unique_ptr<RecordedLine> recorded_; // none in a replay
     XBee ground_;
     SocModel soc_;
+    std::unique_ptr<Cable> cable_; // in place of the modems and the air
     Child child_;
     GroundStep step_;
     Events events_;

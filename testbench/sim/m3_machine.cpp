@@ -31,6 +31,7 @@ M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> 
     SimulatedBoard board;
     board.provide(config.key);
     std::copy(board.words.begin(), board.words.end(), stm32_.backup().begin());
+    stm32_.setPinB(1, !config.isWired);
     if (config.flash.empty())
         program.emplace(stm32_, [&soc] { return soc.cycles(); });
     else

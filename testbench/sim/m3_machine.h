@@ -32,6 +32,7 @@ public:
         uint64_t seed = 1; // of the random number generator
         // The FPGA's configuration flash; none: it needs no configuration.
         std::vector<uint8_t> fpgaFlash = {};
+        bool isWired = false; // the jumper of PB1 (board.h)
     };
     // `poll` is called about once a simulated millisecond; when it returns false, run() ends.
     M3Machine(SocModel& soc, const Config& config, std::function<bool()> poll);

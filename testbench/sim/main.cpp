@@ -102,6 +102,7 @@ Flight::Options optionsOf(const json& flight) {
     take("size", o.size);
     take("camera", o.sensor);
     take("pins", o.pins);
+    take("wire", o.wire);
     take("loss", o.weather.loss);
     take("interference", o.weather.interference);
     take("distance", o.weather.distance);

@@ -52,10 +52,15 @@ void SocModel::reset(bool memoryStarts) {
 
 void SocModel::timeModels() {
     uint64_t time = now();
-    air_.advance(time);
-    modem_.advance(time);
-    air_.advance(time);
-    nextEvent_ = std::min(air_.nextEvent(), modem_.nextEvent());
+    if (cable_) {
+        cable_->advance(time);
+        nextEvent_ = cable_->nextEvent();
+    } else {
+        air_.advance(time);
+        modem_.advance(time);
+        air_.advance(time);
+        nextEvent_ = std::min(air_.nextEvent(), modem_.nextEvent());
+    }
     if (others_)
         nextEvent_ = std::min(nextEvent_, others_(time));
     if (top_->modem_rxd_i != line_.rxd() || top_->modem_cts_n_i != line_.ctsN())

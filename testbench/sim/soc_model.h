@@ -9,6 +9,7 @@
 #define SOC_MODEL_H
 
 #include "VSoc.h"
+#include "cable.h"
 #include "fsmc_master.h"
 #include "mcb_model.h"
 #include "observer.h"
@@ -88,6 +89,9 @@ public:
         return memory_;
     }
     XBee& modem() { return modem_; }
+    // A cable at the modem's pins, in its place.
+    UartPins& line() { return line_; }
+    void plugIn(Cable& cable) { cable_ = &cable; }
 
     // Adds a model with events in simulated time (the ground's modem): it is called when due.
     void onTime(std::function<uint64_t(uint64_t now)> advance) { others_ = std::move(advance); }
@@ -117,6 +121,7 @@ private:
     RfChannel& air_;
     UartPins line_;
     XBee modem_;
+    Cable* cable_ = nullptr;
     std::function<uint64_t()> drive_;
     uint64_t driveAt_ = 0; // clock of its next call
     std::function<void(uint32_t)> corePinsChanged_;

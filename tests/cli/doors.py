@@ -128,7 +128,7 @@ MISTAKES = {
     "./icesoc run --key no.key": "./icesoc key",
     "./icesoc run --again Makefile": "cannot read the flight",
     "./icesoc run --again cli/flight.schema.json":
-    "describes no flight: it is not of version 1",
+    "describes no flight: it is not of version 2",
     "./icesoc contract": "contract has the commands diff, from-rdl",
     "./icesoc bench --only airr": "there is no bench 'airr': simulator, air",
     "./icesoc nightly --steps nothing --built": "there is no step 'nothing': kept, random",
@@ -298,11 +298,11 @@ class Lists(unittest.TestCase):
 
     def test_the_schema_is_that_of_the_options_and_holds_a_flight(self):
         self.assertEqual((TREE / "cli/flight.schema.json").read_text(), flight.schema_text())
-        good = {"version": 1, **{o.field: rule["default"] for o in flight.FIELDS
+        good = {"version": flight.VERSION, **{o.field: rule["default"] for o in flight.FIELDS
                                  if (rule := flight.schema()["properties"][o.field])}}
         self.assertIsNone(flight.wrong(good))
         for change in ({"loss": 2}, {"loss": "0"}, {"cpu": "z80"}, {"cores": "fir"}, {
-                "version": 2}, {"more": 1}, {"open": 1}):
+                "version": 1}, {"more": 1}, {"open": 1}):
             self.assertTrue(flight.wrong({**good, **change}), change)
         self.assertIn("'seed' is missing", flight.wrong({name: value for name, value in good.items()
                                                          if name != "seed"}))

@@ -21,6 +21,10 @@ extern const U8* uav_modemKey;
 /* The modem's present guard time in ms; 0, the initial value: the factory's 1000. */
 extern U16 uav_guardMs;
 
+/* 1: a wire to the ground's serial port is there in place of the modems; 0, the initial value: a
+ * modem. Read when the tasks start. */
+extern U8 uav_wire;
+
 typedef enum UAV_Status {
     UAV_OK,
     UAV_NO_FPGA, /* the FPGA does not answer */

@@ -14,6 +14,7 @@ Link uav_link;
 OS_EVENT* uav_radioWork;
 const U8* uav_modemKey;
 U16 uav_guardMs;
+U8 uav_wire;
 
 static XBeeATEndpoint endpoint;
 static OS_EVENT* linkMutex;
@@ -91,6 +92,8 @@ int UAV_nextKey(const U8* key) {
 static void setUpModem(void) {
     XBeeInitTypeDef xbeeConf = {XBEE_BD_115200, UAV_ADDRESS, 0x0000, 0, 0, 0, 0};
     static const Radio_Memory rings = {UAV_TRANSMIT_RING, UAV_RECEIVE_RING};
+    if (uav_wire)
+        xbeeConf.baud = RADIO_WIRE_115200;
     xbeeConf.key = uav_modemKey;
     xbeeConf.guardMs = uav_guardMs;
     Link_limitFrame(&uav_link, uav_modemKey ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME);

@@ -142,8 +142,10 @@ def parse_arguments():
     try:
         with open(args.flight) as file:
             flight = json.load(file)
-        for name in ("threshold", "loss", "guard", "patience", "key", "camera", "out"):
+        for name in ("threshold", "loss", "guard", "patience", "key", "camera", "out", "wire"):
             setattr(args, name, flight[name])
+        args.endpoint = "%s -d %s -a 0x0001 -s 0x0000" % (
+            "serial" if args.wire else "xbee-at", args.device)
     except (OSError, ValueError, KeyError) as error:
         sys.exit("mission: '%s' describes no flight: %r" % (args.flight, error))
     args.cores = [os.path.join(IP, core) for core in flight["cores"]]
@@ -157,7 +159,7 @@ def initialize(args):
         "Ice.ThreadPool.Server.Size": "2",
         "Ice.Default.InvocationTimeout": str(1000 * args.patience),
         "Ice.ACM.Close": "0",
-        "Station.Endpoints": "xbee-at -d %s -a 0x0001 -s 0x0000" % args.device,
+        "Station.Endpoints": args.endpoint,
     }, args.plugin, args.guard, args.key)
 
 
@@ -262,7 +264,7 @@ def explain(communicator, args, failure):
     text = "the UAV has no object '%s'" % failure.id.name
     with contextlib.suppress(Ice.Exception):  # a UAV without the object chip
         found = differences(Hw.ChipPrx.uncheckedCast(communicator.stringToProxy(
-            "chip:xbee-at -d %s -a 0x0001 -s 0x0000" % args.device)))
+            "chip:" + args.endpoint)))
         if found:
             text += "; ".join(["",
                                *found]) + ": build both anew from one ip/cores.list, the firmware by make firmware, " \
@@ -279,11 +281,10 @@ def fly(args, communicator):
     adapter = communicator.createObjectAdapter("Station")
     adapter.add(station, communicator.stringToIdentity("station"))
     adapter.activate()
-    log.say("setting the ground's modem up on %s; the UAV has %d s to answer" % (
-        args.device, args.patience))
+    begun = "calling over the wire at" if args.wire else "setting the ground's modem up on"
+    log.say("%s %s; the UAV has %d s to answer" % (begun, args.device, args.patience))
 
-    where = "xbee-at -d %s -a 0x0001 -s 0x0000 -t %d" % (
-        args.device, 1000 * args.patience // 2)  # Ice tries twice
+    where = "%s -t %d" % (args.endpoint, 1000 * args.patience // 2)  # Ice tries twice
     base = communicator.stringToProxy("hwengine1:" + where)
     engine = log.call("ground -> UAV", "checkedCast(hwengine1)",
                       lambda: Autopilot.HwProcessingEnginePrx.checkedCast(base))

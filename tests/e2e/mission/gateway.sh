@@ -3,11 +3,12 @@
 #
 # gateway: stock Ice clients in C++ and Python reach the UAV through icesoc-gateway. Started by the
 # simulator.
-# Usage: gateway.sh build-folder device guard-time out-folder
+# Usage: gateway.sh build-folder device guard-time out-folder [options of the gateway]
 set -eu
 build=$1 device=$2 guard=$3 out=$4
+shift 4
 "$build/ground/icesoc-gateway" --device "$device" --guard "$guard" --listen 127.0.0.1:0 --trace 1 \
-    >"$out/gateway" 2>&1 &
+    "$@" >"$out/gateway" 2>&1 &
 gateway=$!
 trap 'kill $gateway 2>/dev/null || true' EXIT
 port=''

@@ -313,6 +313,16 @@ class Cases(Script):
         """Two stock clients at once, through TCP."""
         self.simulate(TREE / "tests/e2e/mission/gateway.sh", BUILD, "{device}", "{guard}", self.out)
 
+    def test_wire(self):
+        """A wire in place of modems: on the Cortex-M3, again from its recording, and behind the
+        gateway, with the firmware's host build."""
+        self.fly("--wire", "--cpu", "m3")
+        self.replay(self.out)
+        self.has("bit by bit the flight that was recorded", " 0 packets on the air")
+        self.simulate(TREE / "tests/e2e/mission/gateway.sh", BUILD, "{device}", "{guard}",
+                      self.out, "--wire", options=["--wire"])
+        self.refused("without modems and air: leave out --loss", "--wire", "--loss", "0.1")
+
     def test_twice(self):
         with open("a.log", "w") as log:
             first = subprocess.Popen(self.words(out=self.out / "a"), stdout=log, stderr=log)
@@ -343,7 +353,7 @@ class Cases(Script):
         """The ground's program, with a flight's description but without a simulator."""
         write("flight.json", json.dumps(
             dict(threshold=24, loss=0, guard=20, patience=300, key="", camera=False, cores=[],
-                 out=str(self.out))))
+                 wire=False, out=str(self.out))))
         return ("/usr/bin/python3", CLIENTS / "mission.py", "flight.json", *INTERFACE, "--frame",
                 "none", *words)
 

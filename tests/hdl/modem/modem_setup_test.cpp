@@ -34,6 +34,30 @@ TEST_F(ModemTest, SetUpFindsAModemAtAnUnexpectedRate) {
     EXPECT_EQ(near_->parameter("BD"), 7u);
 }
 
+TEST_F(ModemTest, AWireNeedsNoSetUp) {
+    power(quick({{"BD", 6}}));
+    near_->power(false, now());
+    bus_.write(MODEM_BAUD, MODEM_BAUD_WIRE_MASK | 7);
+    bus_.write(MODEM_CONTROL, MODEM_CONTROL_CONFIGURE_MASK);
+    unsigned lows = 0; // clocks in which the line is not idle
+    for (unsigned i = 0; i < 100'000; ++i, bench_.tick())
+        lows += !bench_.top().modem_txd_o;
+    EXPECT_EQ(lows, 0u) << "something was sent";
+    EXPECT_EQ(takeEvents(), MODEM_EVENT_CONFIGURED_MASK);
+    const uint32_t status = bus_.read(MODEM_STATUS);
+    EXPECT_TRUE(status & MODEM_STATUS_READY_MASK);
+    EXPECT_EQ(status >> MODEM_STATUS_BD_LSB, 7u);
+    const auto packet = frame(20, 0x5A);
+    bytesIn(packet, bitClocks);
+    runMs(2);
+    EXPECT_EQ(take(), packet);
+    put(0, {0x55});
+    bench_.waitFor([&] { return !bench_.top().modem_txd_o; }, "the start bit", 10'000);
+    const uint64_t begin = bench_.cycles();
+    bench_.waitFor([&] { return bench_.top().modem_txd_o; }, "the first bit", 100);
+    EXPECT_NEAR(static_cast<double>(bench_.cycles() - begin), bitClocks, 1);
+}
+
 TEST_F(ModemTest, NoModemIsReportedWithItsStep) {
     power(quick());
     near_->power(false, now());

@@ -153,6 +153,9 @@ TEST_F(StockIce, EndpointsKeepTheirOptionsAsTextAndWrongOnesAreRefused) {
         EXPECT_NE(whole.find(part), std::string::npos) << part << " in " << whole;
     EXPECT_EQ(whole.find("0011AABB"), std::string::npos) << "the key is printed";
     EXPECT_EQ(ic->proxyToString(ic->stringToProxy(whole)), whole);
+    const std::string wired = "x -t -e 1.1:serial -d /dev/a -b 57600 -a 0x12 -s 0x3 -p 1 -t 7000";
+    EXPECT_EQ(ic->proxyToString(ic->stringToProxy(wired)), wired);
+    EXPECT_THROW(ic->stringToProxy("x:serial -d /dev/a -c 0x0C"), Ice::EndpointParseException);
     for (std::string wrong : {"-d", "-a 65536", "-a x", "-p 3", "-t -1", "-k 0g", "-y 1",
                               "-k 00112233445566778899AABBCCDDEEFF0"})
         EXPECT_THROW(text(wrong), Ice::EndpointParseException) << wrong;

@@ -19,11 +19,7 @@ static OS_STK serverStack[STACK_WORDS], clientStack[STACK_WORDS], radioStack[STA
 static Ice_ObjectAdapter adapter;
 static Autopilot_Vehicle vehicle;
 static Autopilot_KeyRing keys;
-static OS_EVENT* report; /* a frame is done: tell the station */
-static U32 frames, corners;
 static U8 irqEnabled;
-/* Written by the interrupt only; a debugger reads the place of the last error. */
-static U32 busErrors, busErrorPlace;
 
 Ice_Status Autopilot_Vehicle_isAlive(Autopilot_VehiclePtr self, Ice_Short sessionId,
                                      Ice_Bool* result, const Ice_Current* current) {
@@ -89,16 +85,14 @@ static void clientTask(void* argument) {
     Autopilot_Param params[5];
     Ice_Byte data[5][4];
     Autopilot_ParamSeq list;
-    INT8U error;
     (void)argument;
     (void)Ice_Communicator_stringToProxy(&uav_ic, "station:xbee-at -a 0x0000", &station);
     (void)Ice_ObjectAdapter_createProxy(&adapter, "uav", &self);
     list.size = 5;
     list.data = params;
     for (;;) {
-        const Radio_Counters* radio;
-        OSSemPend(report, 0, &error);
-        radio = Radio_counters();
+        U32 corners, frames = UAV_waitFrame(&corners);
+        const Radio_Counters* radio = Radio_counters();
         setParam(&params[0], data[0], Autopilot_uptimeMs, OSTimeGet() * (1000U / OS_TICKS_PER_SEC));
         setParam(&params[1], data[1], Autopilot_framesProcessed, frames);
         setParam(&params[2], data[2], Autopilot_cornersFound, corners);
@@ -142,22 +136,10 @@ static void appMainTask(void* argument) {
         OSTimeDly(OS_TICKS_PER_SEC);
 }
 
-U32 UAV_busErrors(void) {
-    return busErrors;
-}
-
-void UAV_frameDone(U32 found) {
-    ++frames;
-    corners += found;
-    (void)OSSemPost(report);
-}
-
 void UAV_irqHandler(void) {
     U32 lines[2];
     lines[0] = FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_IRQ_LO);
     lines[1] = MAP_SLOT_COUNT > 32U ? FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_IRQ_HI) : 0U;
-    if ((lines[0] >> MAP_SLOT_SYSTEM & 1U) && FSMC_checkError(&busErrorPlace) == FSMC_BUS_ERROR)
-        ++busErrors;
     if (lines[0] >> MAP_SLOT_MODEM & 1U) {
         (void)Radio_interrupt();
         (void)OSSemPost(uav_radioWork);
@@ -171,17 +153,11 @@ int UAV_irqEnabled(void) {
 
 UAV_Status UAV_start(const FSMC_Port* port, void* context) {
     irqEnabled = 0;
-    busErrors = 0;
-    frames = 0;
-    corners = 0;
     if (FSMC_init(port, context) != FSMC_OK)
         return UAV_NO_FPGA;
     if (!UAV_initRadio())
         return UAV_NO_KEY;
-    FSMC_write(MAP_SLOT_SYSTEM, SYSTEM_EVENT, SYSTEM_EVENT_BUS_ERROR_MASK);
-    FSMC_write(MAP_SLOT_SYSTEM, SYSTEM_MASK, SYSTEM_MASK_BUS_ERROR_MASK);
     UAV_initIceOs();
-    report = OSSemCreate(0);
     UAV_initCores();
     createTask(appMainTask, serverStack, PRIO_SERVER);
     return UAV_OK;

@@ -35,10 +35,6 @@ typedef enum UAV_Status {
  * are tasks. */
 UAV_Status UAV_start(const FSMC_Port* port, void* context);
 
-/* Returns the number of accesses without an answer: to no register, or to a core that hung until
- * the bridge gave up. */
-U32 UAV_busErrors(void);
-
 /* Handles the FPGA's interrupt, which is a level. */
 void UAV_irqHandler(void);
 int UAV_irqEnabled(void);

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_cores: starts the servants of the cores in ip/cores.list, handles their interrupts, and has
- * the task that answers calls which take time.
+ * uav_cores: starts the servants of the cores in ip/cores.list, handles their interrupts and errors
+ * on their bus, and has the task that answers calls which take time.
  */
 #include "hw_contracts.h"
 #include "hw_instance.h"
+#include "system_regs.h"
 #include "uav.h"
 #include "uav_private.h"
 
@@ -12,7 +13,11 @@
 
 typedef char UAV_RoomForEveryServant[ICE_SERVANTS >= UAV_SERVANTS + MAP_CORES ? 1 : -1];
 
-static OS_EVENT *waiter, *work; /* wake the waiting task, coresTask */
+static OS_EVENT *waiter, *work, *frameDone; /* wake the waiting task, coresTask, UAV_waitFrame */
+static U32 framesDone, cornersFound;
+/* Accesses without an answer: to no register, or to a core that hung until the bridge gave up.
+ * Written by the interrupt only; a debugger reads the place of the last one. */
+static U32 busErrors, busErrorPlace;
 static U8 isStarted[MAP_CORES];
 static Hw_Contract contracts[MAP_CONTRACTS];
 static Hw_Chip chip;
@@ -41,15 +46,34 @@ static U32 nowMs(void* context) {
 
 static U32 errorsOnTheBus(void* context) {
     (void)context;
-    return UAV_busErrors();
+    return busErrors;
 }
 
-static Hw_Frames frames = {0, 0, 0, 0, UAV_FRAME, UAV_FRAME_HEADER, UAV_frameDone};
+static void countFrame(U32 corners) {
+    ++framesDone;
+    cornersFound += corners;
+    (void)OSSemPost(frameDone);
+}
+
+U32 UAV_waitFrame(U32* corners) {
+    INT8U error;
+    OSSemPend(frameDone, 0, &error);
+    *corners = cornersFound;
+    return framesDone;
+}
+
+static Hw_Frames frames = {0, 0, 0, 0, UAV_FRAME, UAV_FRAME_HEADER, countFrame};
 static const Hw_Port port = {waitEvent, postEvent, nowMs, errorsOnTheBus, &frames};
 
 void UAV_initCores(void) {
+    FSMC_write(MAP_SLOT_SYSTEM, SYSTEM_EVENT, SYSTEM_EVENT_BUS_ERROR_MASK);
+    FSMC_write(MAP_SLOT_SYSTEM, SYSTEM_MASK, SYSTEM_MASK_BUS_ERROR_MASK);
     waiter = OSSemCreate(0);
     work = OSSemCreate(0);
+    frameDone = OSSemCreate(0);
+    busErrors = 0;
+    framesDone = 0;
+    cornersFound = 0;
     frames.width = 0;
 }
 
@@ -77,6 +101,8 @@ void UAV_startCores(Ice_ObjectAdapterPtr adapter) {
 
 void UAV_coresInterrupt(const U32 lines[2]) {
     U32 i;
+    if ((lines[0] >> MAP_SLOT_SYSTEM & 1U) && FSMC_checkError(&busErrorPlace) == FSMC_BUS_ERROR)
+        ++busErrors;
     for (i = 0; hw_instances[i].identity; ++i)
         if (isStarted[i] && (lines[hw_instances[i].slot >> 5] >> (hw_instances[i].slot & 31U) & 1U))
             hw_instances[i].interrupt();

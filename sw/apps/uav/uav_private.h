@@ -40,14 +40,13 @@ void UAV_initIceOs(void);
 /* Serves new firmware (uav_update.c), if there are slots for it. */
 void UAV_startUpdate(Ice_ObjectAdapterPtr adapter);
 
-/* Counts a processed frame with its corners, and has the station told. */
-void UAV_frameDone(U32 corners);
-
 /* Cores (uav_cores.c): their servants, their task; `lines`: interrupt lines of slots 0..31
- * and 32..63. */
+ * and 32..63. UAV_waitFrame waits for a processed frame, and returns how many there were, with the
+ * sum of their corners. */
 void UAV_initCores(void);
 void UAV_startCores(Ice_ObjectAdapterPtr adapter);
 void UAV_coresTask(void* argument);
 void UAV_coresInterrupt(const U32 lines[2]);
+U32 UAV_waitFrame(U32* corners);
 
 #endif

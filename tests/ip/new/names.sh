@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # names: source-folder work-folder slice2c   core new and core remove: names that they
-# refuse, which leave the tree unchanged.
+# refuse, which leave the tree unchanged. It is shell because a case is a command and what it says.
 set -eu
 source=$1 ip=$1/ip work=$2 slice2c=$3
 rm -rf "$work"

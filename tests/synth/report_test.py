@@ -1,0 +1,308 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""report_test: the command `utilisation` on a small project of its own, as a user runs it; its
+parts are tested by parts_test.py. What `counts` has synthesised is left in a folder where the other
+cases begin.
+
+Usage: report_test.py case utilisation-program work-folder kept-folder
+"""
+import contextlib
+import json
+import re
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from look import browse, fault  # noqa: E402
+from script import (TREE, Script, append, commit, edit, fresh, git, main,  # noqa: E402
+                    repository, write)
+
+CASE, PROGRAM, KEPT = sys.argv[1], Path(sys.argv[2]).resolve(), Path(sys.argv[4]).resolve()
+BLOCKS = Path("project/hdl/blocks")
+SLOW = """#!/bin/sh
+[ "$1" = -V ] || for _ in $(seq 200); do
+    ! grep -q 'waiting for another run' second || break
+    sleep 0.1
+done
+exec yosys "$@"
+"""
+MADE = """cmake_minimum_required(VERSION 3.25)
+project(small NONE)
+add_custom_target(synth_inputs COMMAND ${CMAKE_COMMAND} -E make_directory gen)
+"""
+DEEP = """module deep (input clk_i, write_i, input [7:0] at_i, from_i, input [31:0] i,
+             output reg [31:0] o);
+    reg [31:0] words [0:255];
+    always @(posedge clk_i) begin
+        if (write_i) words[at_i] <= i;
+        o <= words[from_i];
+    end
+endmodule
+"""
+
+
+def grow(folder):
+    """Twelve flip-flops more."""
+    edit(folder / "pair.v", "    wire [5:0] word;", "    wire [5:0] word;\n    reg [11:0] extra;")
+    edit(folder / "pair.v", "        data_o <= word",
+         "        extra <= {extra[5:0], word};\n        data_o <= extra[11:6] ^ word")
+
+
+class Cases(Script):
+    def setUp(self):
+        # Names of files are relative, since they are part of a design's identity.
+        fresh(sys.argv[3])
+        shutil.copytree(TREE / "tests/synth/project", "project")
+        for folder in "bus", "ip":
+            write(f"project/{folder}/none", "")
+        for folder in "yosys", "report":
+            shutil.copytree(TREE / "synth" / folder, f"project/synth/{folder}")
+        Path("gen").mkdir()
+        Path("out").mkdir()
+        if CASE != "counts":
+            shutil.copytree(KEPT, "out/cache")
+
+    def run_program(self, *options, status=0):
+        self.ask(PROGRAM, "--source", "project", "--generated", "gen", "--output", "out", *options,
+                 status=status)
+
+    def users_tree(self):
+        """The project becomes a tree that make runs commands in."""
+        for folder in "build/main/synth", "build/synth":
+            Path("project", folder).mkdir(parents=True)
+        Path("project/build/main/synth/utilisation").symlink_to(PROGRAM)
+        Path("gen").rename("project/build/main/gen")
+        Path("out/cache").rename("project/build/synth/cache")
+
+    def made(self, *words, status=0):
+        """In the project, as a user."""
+        self.make(*words, tree="project", build="build/main", status=status)
+
+    def test_counts(self):
+        """Figures are those that the blocks' sources promise, and Yosys' own `stat` counts them."""
+        self.run_program()
+        # The clock, and from where to where it goes in other orders; and the LUTs.
+        self.has(r"^wide .* [0-9]+ \([0-9]*-[0-9]*\)$", r"^wide +[0-9]+ \([0-9]*-[0-9]*\) ")
+
+        def figures(design):
+            return json.loads(next(Path("out/cache").glob(f"{design}.xc6s.*.figures")).read_text())
+
+        self.assertEqual(figures("wide")["cells"]["CARRY4"], 4, "a counter of 16 bits")
+        store, whole = figures("store"), figures("whole")
+        self.assertEqual((store["cells"]["RAM32M"], store["lutRam"]), (1, 4), "32 x 6 bits")
+        self.assertEqual(whole["costs"]["u_counter"]["count_o"][2], 5)
+        self.assertEqual(whole["costs"]["u_store"]["words"][:3], [4, 4, 0])
+        self.ask("yosys", "-p", f"read_verilog {BLOCKS}/*.v; synth_xilinx -family xc6s -flatten "
+                 "-noiopad -noclkbuf -top pair; tee -q -o stat stat")
+        cells = re.findall(r"^ +(?:(LUT\d|INV) +(\d+)|(\d+) +\S+ +(LUT\d|INV))$",
+                           Path("stat").read_text(), re.M)
+        sites = 4  # of LUT RAM
+        self.assertEqual(whole["lut"], sites + sum(int(row[1] or row[2]) for row in cells))
+        # A core's cost in the accepted chip: a slot is the decoder of three less that of two.
+        shutil.copy(TREE / "bus/bus_decoder.v", "project/bus")
+        write("gen/map.regs.json", json.dumps({"constants": [
+            {"name": "SLOT_LOW", "value": 2}, {"name": "SLOT_COUNT", "value": 3}]}))
+        write("project/synth/baseline.json", json.dumps({"yosys": "", "designs": {"soc": {
+            "lut": 9, "ff": 9, "slices": 9, "carry": 0, "dsp": 2, "ram": 1.5, "mhz": 99,
+            "signals": {"u_low": {"sum": [7, 8, 1.5, 2]}}}}}))
+        self.run_program("--core", "low")
+        # A bit each of 32, a select, four of address.
+        self.has(r"^low +[1-9]\d +13 +1.5 +2 +7 / 8 +[1-9]\d* / 5$",
+                 "^The chip: 9 LUT, 9 FF, 1.5 block RAMs, 2 DSP")
+        self.run_program("--core", "high")
+        self.has("high is not in the chip of synth/baseline.json: a line in ip/cores.list, then "
+                 "make ip-synth IP=high CHIP=1")
+        shutil.rmtree(KEPT, ignore_errors=True)
+        shutil.copytree("out/cache", KEPT)
+
+    def test_growth(self):
+        """A register more fails with its name; accepted it passes; a second run takes all from the
+        cache."""
+        self.run_program("--accept")
+        self.run_program()
+        self.lacks(r"^\[")
+        grow(BLOCKS)
+        self.run_program(status=None)
+        self.has("FAILED whole:", "extra +.*FF")
+        self.assertEqual(len(re.findall(r"^\[", self.said, re.M)), 1, "more than what has changed")
+        self.run_program("--accept")
+        self.run_program()
+
+    def test_partial(self):
+        """One design alone: of those that have changed it says so; limits hold, whatever is
+        accepted."""
+        self.run_program()
+        edit(BLOCKS / "pair.v", "    wire [5:0] word;",
+             "    wire [5:0] word;\n    wire unused = 1;")
+        self.run_program("--design", "store")
+        self.lacks("^wide ")
+        self.has("^Designs: 2 measured now, 1 changed since")
+        self.has('"whole": "changed since"', '"name": "wide lut"', file="out/report.json")
+        self.has(r"^\| whole \| changed since \|", file="out/report.md")
+        # In a fresh clone nothing has been measured, and nothing is gone.
+        self.run_program("--accept")
+        shutil.rmtree("out/cache")
+        self.run_program("--design", "store")
+        self.has("^Designs: 1 measured now, 2 as accepted")
+        append(BLOCKS / "counter.v", "// changed\n")
+        write(BLOCKS / "fresh.v", "module fresh(input wire a_i); endmodule\n")
+        self.run_program("--design", "store")
+        self.has("^Designs: 1 measured now, 2 changed since, 1 never measured here")
+        edit("project/synth/designs.json", '"lut": 40', '"lut": 1')
+        self.run_program("--accept", status=None)
+        self.has("above the limit of 1: nothing is accepted")
+
+    def test_broken(self):
+        write(BLOCKS / "broken.v", "module broken(input wire a_i); assign b = ; endmodule\n")
+        self.run_program(status=None)
+        self.has("broken.v:1: ERROR: syntax error", "^wide ", "^broken .*failed")
+        self.has('"broken: synthesis failed"', file="out/report.json")
+        for name in "baseline", "designs":  # as a merge leaves it
+            write(f"project/synth/{name}.json", "{\n<<<<<<< HEAD\n")
+            self.run_program(status=None)
+            self.has(f"^utilisation: project/synth/{name}.json: .*line 2")
+
+    def test_twice(self):
+        """The first one's Yosys begins when the second has been seen to wait (or, if it never does,
+        after 20 s)."""
+        write("slow", SLOW)
+        shutil.rmtree("out")
+        words = (PROGRAM, "--source", "project", "--generated", "gen", "--output", "out",
+                 "--design", "wide", "--yosys", Path("slow").resolve())
+        with open("first", "w") as first, open("second", "w") as second:
+            begun = subprocess.Popen(words, stdout=first, stderr=first)
+            while not Path("out/cache").exists() and begun.poll() is None:  # it has the folder
+                time.sleep(0.1)
+            waited = subprocess.run(words, stdout=second, stderr=second)
+        self.assertEqual((begun.wait(), waited.returncode), (0, 0))
+        self.has("waiting for another run in out", file="second")
+        self.has(r"^\[", file="first")
+        self.lacks(r"^\[", file="second")
+
+    def dump(self, page):
+        """The page's elements when its scripts have run."""
+        return browse(f"{Path(page).resolve().as_uri()}#whole/u_store")[0]
+
+    def test_page(self):
+        self.run_program("--family", "ecp5")
+        page = Path("out/report.html")
+        text = page.read_text()
+        self.assertLess(len(text), 2_000_000)
+        self.lacks('(src|href)="?https?:', file=page)
+        # Where the libraries could not be fetched, all is there, and the page says how to get them.
+        write("plain.html", "\n".join(line for line in text.split("\n") if not re.search(
+            "^!function.*Tabulator=|^.*var uPlot=", line)))
+        seen = re.search('<p class="soft">.*?(?=<script id)', self.dump("plain.html"), re.S)[0]
+        self.said = re.sub(r"\s+", " ", re.sub("<[^>]*>", " ", seen))
+        self.has("Tabulator and uPlot could not be fetched. With a network")
+        self.has(r" flip-flops 11 .* 50 \(0.3 %\) .* wide 1 0.0 % .* store \d+ .* pair 15 .* "
+                 r"u_store .* read_addr_i 5 0 project/hdl/blocks/store.v:12 .* clk_i 11 12 \d+ "
+                 r"project/hdl/blocks/pair.v:8 .* rst_i synchronous 5 project/hdl/blocks/pair.v:9 ")
+        self.has(r" 8 to 8.5 ns left of 10 1 .* u_counter.count_o.4. 9 FDRE "
+                 r"project/hdl/blocks/counter.v:13 .* now 15 11 6 \d+ this run ")
+        if not (PROGRAM.parents[1] / "page/libraries.js").stat().st_size:
+            self.skipTest("Tabulator and uPlot could not be fetched")
+        # A second script clicks as a user does and writes what it then sees.
+        clicks = (TREE / "tests/synth/clicks.js").read_text()
+        write("clicked.html", text.replace(
+            "</body>", f'<p id="seen"></p><script>{clicks}</script></body>'))
+        self.said = self.dump("clicked.html").split('<p id="seen">')[-1]
+        for part in (
+                "at first Signals of u_store, u_store; first Within all budgets; chip 5 15 LUT0.2 "
+                "% of 9112", "folders whole,hdl/blocks, 2 modules; opened whole,hdl/blocks, 2 "
+                "modules,wide,store at hdl/blocks; sorted whole,hdl/blocks, 2 modules,store,wide;",
+                "sorted hdl/blocks, 2 modules,wide,store,whole; picked 1 Inside whole: ",
+                "tree pair u_storestore u_countercounter; here Signals of u_store;",
+                "paths 1; step project/hdl/blocks/[a-z]*.v:1[23]; on the way to x,y,y,z; slack "
+                r"[0-9.]+ to [0-9.]+ ns left of 10 [1-9]\d* ; history now  this run 15 11 6;"):
+            self.has(part)
+        self.assertEqual(fault(page), "")
+        self.has('"peer": 100', file="out/report.json")
+        self.has(r"^\| whole \|", file="out/report.md")
+
+    def compare(self, base, status=0):
+        self.made("synth", f"BASE={base}", status=status)
+
+    def test_compare(self):
+        """What has changed since another commit, or between two, as Markdown."""
+        self.users_tree()
+        here = Path("project").resolve()
+        write(here / "CMakeLists.txt", MADE)
+        write(here / ".gitignore", "build\n")
+        with contextlib.chdir(here):
+            repository()
+            commit("The first one")
+        self.ask(PROGRAM, cwd=here)
+        self.compare("HEAD..")
+        self.has("^No figure of any design differs")
+        designs = here / "synth/designs.json"
+        edit(designs, '"WIDTH": 16', '"WIDTH": 17')
+        edit(designs, '"name": "wide"', '"name": "wider"')
+        grow(here / "hdl/blocks")
+        self.ask(PROGRAM, cwd=here)
+        self.compare("HEAD..")
+        grown = r"^\| whole \| .* \| \d+ -> \d+ \(\+12\) \|"
+        # Nobody knows what was measured of files without a commit.
+        self.has(r"^Utilisation since .* \(The first one\):", grown, r"^\| wide \| gone \| gone \|",
+                 r"^\| wider \| \d+ \(new\) \|", r"^\| \w+\+ \| not measured \| not measured \|")
+        self.has(r"^\| wider ", file=here / "build/synth/compare.md")
+        # Over budget the difference matters most: it is told, and the status is that of the budget.
+        kept = designs.read_text()
+        edit(designs, '"ff": 30', '"ff": 20')
+        self.compare("HEAD", status=None)
+        self.has("^FAILED whole", grown)
+        write(designs, kept)
+        # The same between two commits, whatever is here now; tests and coverage are those of each.
+        with contextlib.chdir(here):
+            commit("The second one")
+            names = [git("describe --always --abbrev=10", name) for name in ("HEAD", "HEAD~1")]
+        write(here / "build/regress/history.jsonl", "".join(
+            json.dumps({"commit": names[0], "passed": tests, "failed": 1}) + "\n"
+            for tests in (9, 7)))
+        write(here / "build/coverage/history", f"{names[1]} 97.1 % of lines\n")
+        write(here / "hdl/blocks/pair.v", "module pair\n")
+        (here / "build/synth/report.json").unlink()
+        self.compare("HEAD~1..HEAD")
+        self.has(r"^Utilisation since .* \(The first one\), at .* \(The second one\):", grown,
+                 r"^\| \w+ \| not measured \| 97.1 % of lines \|",
+                 r"^\| \w+ \| 9 passed, 1 failed \| not measured \|")
+        for wrong in "nonsense", "HEAD..nonsense":
+            self.compare(wrong, status=None)
+            self.has("there is no commit BASE=nonsense")
+
+    def test_made(self):
+        self.users_tree()
+        self.made("synth-accept", "DESIGN=store")
+        self.made("synth", "DESIGN=store")
+        self.lacks("^wide ")
+        self.made("synth", "FAMILY=none", status=None)
+        self.has("'none'.*choose from")
+        write("project/build/main/cores.known", "store\n")
+        self.made("ip-synth", "IP=nobody", status=None)
+        self.has("there is no core 'nobody': store")
+
+    def test_edif(self):
+        """The netlist that ISE reads has every cell that Yosys counts, once, and well-formed
+        parentheses."""
+        self.users_tree()
+        self.made("synth-edif", "DESIGN=whole")
+        ise = Path("project/build/synth/ise")
+        edif, cells = (ise / "whole.edf").read_text(), (ise / "whole.json").read_text()
+        self.assertEqual(edif.count("("), edif.count(")"))
+        for cell in "RAM32M", "CARRY4", "FDRE":
+            inside = edif.count(f"(cellRef {cell} ")
+            self.assertEqual(inside, cells.count(f'"type": "{cell}"'), cell)
+            self.assertTrue(inside, cell)
+        self.has(r"\(design (pair|whole)", file=ise / "whole.edf")
+        self.assertTrue((ise / "verilog/store.v").exists(), "the Verilog for XST")
+        # Of a primitive's port only bits that it has are connected.
+        write("project/hdl/blocks/deep.v", DEEP)
+        self.made("synth-edif", "DESIGN=deep")
+        self.has("cellRef RAMB8BWER", file=ise / "deep.edf")
+        self.lacks(r"\(member [A-Za-z0-9_]* -", file=ise / "deep.edf")
+
+
+main(Cases)

@@ -44,11 +44,11 @@ public:
             wave_->close();
 #endif
 #ifdef ICESOC_COVERAGE
-        static unsigned count = 0;
-        if (const char* folder = std::getenv("COVERAGE_DIR"))
-            context_.coveragep()->write((std::string(folder) + "/" + std::to_string(getpid()) +
-                                         "-" + std::to_string(count++) + ".dat")
-                                            .c_str());
+        if (const char* folder = std::getenv("COVERAGE_DIR")) {
+            std::string file = std::string(folder) + "/XXXXXX.dat";
+            close(mkstemps(file.data(), 4)); // ids of processes come again in a long run
+            context_.coveragep()->write(file.c_str());
+        }
 #endif
     }
 

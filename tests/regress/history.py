@@ -40,19 +40,16 @@ class History:
         """How a test ended in the newest run that had it, or ""."""
         return self.ends[name][-1][0][0] if self.ends[name] else ""
 
-    def now(self, test):
-        """How a test ended last with these sources; without such a run, "f" if it failed last."""
-        return next((end[0] for end, _ in reversed(self.ends[test.name]) if end[2] == test.print),
+    def now(self, test, seed=None):
+        """How a test ended last with these sources (and with this seed); without such a run, "f" if
+        it failed last."""
+        return next((end[0] for end, _ in reversed(self.ends[test.name])
+                     if end[2] == test.print and seed in (None, end[3])),
                     "f" if self.last(test.name) == "f" else "")
 
     def last_pass(self, name):
         """(end, run) of the newest run in which a test passed, or None."""
         return next((each for each in reversed(self.ends[name]) if each[0][0] == "p"), None)
-
-    def passed_with(self, test):
-        """Whether a test's last pass was with these sources."""
-        passed = self.last_pass(test.name)
-        return bool(passed) and passed[0][2] == test.print
 
     def seconds(self, name):
         """Seconds that a test took in the newest run that had it, or None."""
@@ -68,10 +65,11 @@ class History:
             names += [name] * any({"p", "f"} <= each for each in how.values())
         return names
 
-    def failing(self):
-        """The seeds with which tests have failed and have not passed since: {(test, seed): {"test",
-        "seed", "since" (seconds, Unix), "commit", "times" (how often it failed)}}."""
-        found = {}
+    def failing(self, tests):
+        """The seeds with which these tests have failed and have not passed since, nor before with
+        these sources: {(test, seed): {"test", "seed", "since" (seconds, Unix), "commit", "times"
+        (how often it failed)}}."""
+        known, found = {test.name: test for test in tests}, {}
         for run in self.runs:
             for name, how, _, _, seed in run["ends"]:
                 if how == "p":
@@ -81,7 +79,8 @@ class History:
                         "test": name, "seed": seed, "since": run["time"], "commit": run["commit"],
                         "times": 0})
                     entry["times"] += 1
-        return dict(sorted(found.items()))
+        return {key: entry for key, entry in sorted(found.items())
+                if key[0] in known and self.now(known[key[0]], key[1]) != "p"}
 
 
 def make_run(tests, results, commit, seconds):

@@ -98,13 +98,13 @@ class Regression:
         return chosen
 
     def _changed(self, test, built):
-        """Chooses tests that failed last in any case, and tests that have never passed here if
-        their files differ from the commit."""
+        """Chooses tests that failed last in any case, not those that passed last with these
+        sources, and tests that have never passed here if their files differ from the commit."""
         passed = self.history.last_pass(test.name)
         if self.history.last(test.name) == "f":
             return True
         if passed and built:
-            return not self.history.passed_with(test)
+            return self.history.now(test) != "p"
         return self.changes.touched(test, passed)
 
     def build(self):
@@ -161,7 +161,7 @@ class Regression:
         first = random.getrandbits(32) if o.seed == "random" else int(o.seed)
         rounds = [(str(first + i), chosen) for i in range(o.repeat)]
         if o.kept:
-            failing = history.failing()
+            failing = history.failing(chosen)
             rounds = [(seed, [test for test in chosen if (test.name, seed) in failing])
                       for seed in sorted({seed for _, seed in failing})]
         rounds = [each for each in rounds if each[1]]

@@ -51,7 +51,7 @@ def gather(history, tests, results, failures, source):
             "proofs": proofs_of(results)}
     del data["ends"]
     known = {test.name: test for test in tests}
-    data["seeds"] = [each for each in history.failing().values() if each["test"] in known]
+    data["seeds"] = list(history.failing(tests).values())
     data["results"] = []
     for r in results:
         test = known.get(r.name)

@@ -14,14 +14,16 @@ from tool import write
 RUNNERS = re.compile(
     r"^\[|^at clock cycle|tests? (ran|FAILED|PASSED)|^\s*\d+ FAILED|note:|trace: |Running main|"
     r"^The mission failed|^Its end|^icesoc-sim: Cortex-M3: |^icesoc-sim: [0-9.]+ s simulated|"
-    r"^-- \S+ \S+ XBeeAT: |^[\s{}()\[\];]*$", re.I)
+    r"^-- \S+ \S+ XBeeAT: |^[\s{}()\[\];=-]*$|^(ERROR|FAIL): test_|^FAILED[ :]|^Ran \d+ test|"
+    r"^g?make(\[\d+\])?: \*\*\*|^ninja: build stopped|^collect2: |^terminate called|as expected$", re.I)
 # A message of a compiler or a lint about a line of a file
 OF_FILE = re.compile(
     r"^%(Error|Warning)[^ ]*: [^ ]+:\d+:|"
     r"^[^ ]+:\d+:(\d+:)? *((fatal|runtime) error|error|warning):|"
-    r"^SUMMARY: \S+Sanitizer: |^[^ ]+\.vhdl?:\d+:\d+:")
-# A test's message about a value, or Python's about an exception
-OF_VALUE = re.compile(r"\berror\b|(?<!as )\bexpected\b|\bdiffers?\b|^\w*(Error|Exception): ", re.I)
+    r"^SUMMARY: \S+Sanitizer: |^[^ ]+\.vhdl?:\d+:\d+:|: undefined reference to ")
+# A test's message about a value; an exception of Python, of Ice
+OF_VALUE = re.compile(r"\berror\b|(?<!as )\bexpected\b|\bdiffers?\b|"
+                      r"^(\S+: )*(\w+\.)*(::\w+)*\w*(Error|Exception):|^what\(\): ", re.I)
 
 
 @dataclasses.dataclass
@@ -43,14 +45,16 @@ class Failure:
 
 def reason_of(log):
     """The reason in the test's log: GoogleTest's lines after the first "Failure", else a compiler's
-    first message about a file, else the first line about an error, else the last line.
-
-    Indented lines below a line that ends in a colon are left out."""
+    first message about a file, else the first line about an error, else the last line. An exception
+    that ends in a colon takes the next line with it, a diff its first two lines."""
     last, of_file, of_value, failure = "", "", "", None
+    log = re.sub(r"((?:Error|Exception)\b.*:)\n+ *(?=\S)", r"\1 ", log)
+    log = re.sub(r"(?m)^@@ .*\n(?: .*\n)*(-.*)\n([+].*)", r"differs: \1 \2", log)
     for line in log.splitlines():
         below = line.startswith(" ") and last.endswith(":")
         line = line.strip()
-        if failure is not None and (not line or line[0] == "[" or len(failure) == 4):
+        if failure is not None and (not line or line[0] == "[" or len(failure) == 4
+                                    or line.endswith(": Failure")):
             break
         if not line or RUNNERS.search(line) or (below and failure is None):
             continue

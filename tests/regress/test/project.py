@@ -13,6 +13,7 @@ from script import (TREE, Script, append, commit, edit, fresh, git, main,  # noq
                     repository, write)
 
 REGRESS = TREE / "tests/regress/regress.py"
+sys.path[:0] = [str(REGRESS.parent), str(TREE / "testbench/page")]
 BUILD = Path(sys.argv[3]) if len(sys.argv) > 3 else None
 
 # test_a passes, test_b fails alike for all seeds but 7, test_c as the file `flicker` says, test_d

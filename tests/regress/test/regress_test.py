@@ -11,13 +11,13 @@ import io
 import json
 import re
 import subprocess
-import sys
 import types
 import unittest.mock
 import xml.etree.ElementTree as xml
 from pathlib import Path
 
 from project import BREAK, REGRESS, TREE, Project, append, commit, edit, git, main, write
+import runner
 
 NEEDS = """
 add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/tool COMMAND touch ${CMAKE_BINARY_DIR}/tool)
@@ -88,9 +88,6 @@ class Cases(Project):
     def test_ages(self):
         """A test that takes three times its usual time is named with its age, and once more when
         it is twice as old; without history at 60 s."""
-        sys.path.insert(0, str(REGRESS.parent))
-        sys.path.insert(0, str(REGRESS.parents[2] / "testbench/page"))
-        import runner
         usual = {"quick": 0.1, "slow": 20.0, "new": None}
         tests = [types.SimpleNamespace(name=name) for name in usual]
         progress = runner.Progress(tests, types.SimpleNamespace(seconds=usual.get), 2)

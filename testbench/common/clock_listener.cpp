@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// clock_listener: adds the model's clock to a failed assertion.
+// clock_listener: adds the model's clock to a failed assertion, and prints it on an abort.
 
 #include "observed_clock.h"
+#include "tell_on_abort.h"
 #include <cstdio>
 #include <gtest/gtest.h>
 
@@ -16,6 +17,9 @@ class ClockListener : public ::testing::EmptyTestEventListener {
 };
 
 const bool added = [] {
+    tellOnAbort(&observedClock, [] {
+        return "The model that ran last stands at clock " + std::to_string(observedClock) + ".";
+    });
     ::testing::UnitTest::GetInstance()->listeners().Append(new ClockListener);
     return true;
 }();

@@ -108,6 +108,15 @@ def only_one(folder, program):
         yield
 
 
+def children(pid):
+    """The processes that one has begun and that have not ended, the oldest first."""
+    found = []
+    for path in pathlib.Path(f"/proc/{pid}/task").glob("*/children"):
+        with contextlib.suppress(OSError):
+            found += map(int, path.read_text().split())
+    return sorted(found)
+
+
 def adopt_orphans():
     """Makes processes that programs leave behind children of this process instead of init."""
     become_subreaper = 36
@@ -120,12 +129,12 @@ def end_orphans():
     for attempt in range(40):
         time.sleep(0.05 if attempt else 0)
         left = {}
-        for pid in pathlib.Path(f"/proc/self/task/{os.getpid()}/children").read_text().split():
+        for pid in children(os.getpid()):
             with contextlib.suppress(OSError):
-                if os.waitpid(int(pid), os.WNOHANG)[0]:
+                if os.waitpid(pid, os.WNOHANG)[0]:
                     continue
                 words = pathlib.Path(f"/proc/{pid}/cmdline").read_text().replace("\0", " ")
-                left[int(pid)] = f"{words}(in {os.path.relpath(os.readlink(f'/proc/{pid}/cwd'))})"
+                left[pid] = f"{words}(in {os.path.relpath(os.readlink(f'/proc/{pid}/cwd'))})"
         if not left:
             break
     for pid in left:

@@ -5,6 +5,7 @@
 
 #include "m3_machine.h"
 #include "simulated_board.h"
+#include "tell_on_abort.h"
 #include <algorithm>
 #include <cstdio>
 
@@ -20,6 +21,18 @@ Stm32F2::Config configOf(uint32_t hclkHz, uint64_t seed) {
                                  " Hz: give 0 or a multiple of " + std::to_string(pinHclkHz) +
                                  " Hz");
     return {static_cast<unsigned>(hclkHz / pinHclkHz), hclkHz, seed};
+}
+
+// Names the function in which the program is, and those that words of its stack return to.
+std::string stackOf(Stm32F2& stm32) {
+    const CortexM3& cpu = stm32.cpu();
+    std::string text = "The program is in " + stm32.image()->functionAt(cpu.reg(CortexM3::Pc));
+    for (uint32_t at = cpu.reg(CortexM3::Sp), end = at + 256; at < end; at += 4) {
+        const uint32_t word = cpu.word(at);
+        if ((word & 1) && word >> 20 == 0x080) // an address of code, in flash
+            text += ", " + stm32.image()->functionAt(word);
+    }
+    return text + ".";
 }
 
 } // namespace
@@ -56,9 +69,11 @@ M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> 
         return nextPoll_ * SocModel::clkNs;
     });
     soc_.onIrq([this](bool high) { stm32_.setPinB(0, high); });
+    tellOnAbort(this, [this] { return stackOf(stm32_); });
 }
 
 M3Machine::~M3Machine() {
+    tellers.erase(this);
     soc_.onIrq(nullptr);
 }
 

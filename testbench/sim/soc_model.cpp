@@ -4,6 +4,7 @@
 
 #include "soc_model.h"
 #include "mcb_pins.h"
+#include "tell_on_abort.h"
 #include <algorithm>
 
 namespace {
@@ -28,9 +29,15 @@ SocModel::SocModel(RfChannel& air, XBee::Options modemOptions, unsigned hclkPerU
                                  hclkPerUnit, clkPerUnit),
       air_(air), modem_(line_, air, std::move(modemOptions)) {
     top_->modem_rxd_i = 1;
+    tellOnAbort(this, [this] {
+        return "The chip stands at clock " + std::to_string(cycles_) + ", interrupt " +
+               std::to_string(irq()) + ", cores' pins " + std::to_string(corePins()) +
+               ", modem's RTS " + std::to_string(rtsN_) + ".";
+    });
 }
 
 SocModel::~SocModel() {
+    tellers.erase(this);
     Verilated::threadContextp(context_.get()); // the chip's scopes need it
     top_->final();
     observer_.finish();

@@ -15,7 +15,8 @@ RUNNERS = re.compile(
     r"^\[|^at clock cycle|tests? (ran|FAILED|PASSED)|^\s*\d+ FAILED|note:|trace: |Running main|"
     r"^The mission failed|^Its end|^icesoc-sim: Cortex-M3: |^icesoc-sim: [0-9.]+ s simulated|"
     r"^-- \S+ \S+ XBeeAT: |^[\s{}()\[\];=-]*$|^(ERROR|FAIL): test_|^FAILED[ :]|^Ran \d+ test|"
-    r"^g?make(\[\d+\])?: \*\*\*|^ninja: build stopped|^collect2: |^terminate called|as expected$", re.I)
+    r"^g?make(\[\d+\])?: \*\*\*|^ninja: build stopped|^collect2: |^terminate called|as expected$|"
+    r"^#\d|^Thread \d|^Stack of |stands at clock", re.I)
 # A message of a compiler or a lint about a line of a file
 OF_FILE = re.compile(
     r"^%(Error|Warning)[^ ]*: [^ ]+:\d+:|"
@@ -114,7 +115,8 @@ def examine(results, tests, out):
         folder.mkdir(parents=True, exist_ok=True)
         words = reason_of(result.log)
         if result.end or not words:
-            words = (result.end or "failed") + (f": {words}" if words else " without a word")
+            mute = "" if result.end.startswith("Hang") else " without a word"
+            words = (result.end or "failed") + (f": {words}" if words else mute)
         short = re.sub(r"0x[0-9a-fA-F]+|[0-9]+(\.[0-9]+)?", "#", re.sub("[^ ]*/", "", words))
         exact = re.sub(r"([.+*?()\[\]{}|^$\\])", r"\\\1", result.name)
         base = f"{folder}/{re.sub('[^A-Za-z0-9_.-]', '_', result.name)}"

@@ -13,8 +13,10 @@ class History:
     """A run's `ends` are [name, how, seconds, print, seed] of each test and seed, failures last;
     how: "p", "f" or "s"."""
 
-    def __init__(self, path):
+    def __init__(self, path, costs):
         self.path, self.runs, self.damaged = path, [], 0
+        lines = costs.read_text().splitlines() if costs.exists() else []
+        self.costs = {name: [float(seconds)] for name, _, seconds in map(str.split, lines)}
         for line in path.read_text(errors="replace").splitlines() if path.exists() else []:
             try:
                 run = json.loads(line)
@@ -54,6 +56,12 @@ class History:
     def seconds(self, name):
         """Seconds that a test took in the newest run that had it, or None."""
         return self.ends[name][-1][0][1] if self.ends[name] else None
+
+    def usual(self, name):
+        """Seconds that a test may take: the longest of its passes, at least what tests/costs.txt
+        says (the output of a kept one came at once); None: neither is known."""
+        times = [end[1] for end, _ in self.ends[name] if end[0] == "p"]
+        return max([*times, *self.costs.get(name, [])], default=None)
 
     def flaky(self):
         """Tests that both passed and failed with one fingerprint and one seed."""

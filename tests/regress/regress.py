@@ -72,7 +72,8 @@ class Regression:
     def __init__(self, options):
         self.options = options
         options.build = options.build.resolve()
-        self.history = History(options.out / "history.jsonl")
+        self.history = History(options.out / "history.jsonl",
+                               options.source / "tests/costs.txt")
         self.changes = options.changed and self._changes()
 
     def _changes(self):

@@ -1,13 +1,19 @@
 # SPDX-License-Identifier: MIT
-"""runner: runs chosen tests by CTest, prints the progress, and writes JUnit."""
+"""runner: runs chosen tests by CTest, prints the progress, ends hangs, and writes JUnit."""
+import contextlib
 import dataclasses
+import os
+import pathlib
 import re
+import signal
 import sys
 import threading
 import time
 import xml.etree.ElementTree as xml
 
-from tool import Stop, run, write
+from tool import Stop, children, run, write
+
+SHORTEST_HANG = 300  # seconds: no test is ended before
 
 
 @dataclasses.dataclass
@@ -16,7 +22,7 @@ class Result:
     status: str  # "passed", "failed", "skipped"
     seconds: float
     log: str = ""
-    end: str = ""  # of a failed test: "SegFault", "Timeout"; "" if it ended by itself
+    end: str = ""  # of a failed test: "SegFault", "Hang, ..."; "" if it ended by itself
     seed: str = ""
 
 
@@ -27,28 +33,48 @@ class Progress:
     def __init__(self, tests, history, jobs):
         self.jobs, self.total, self.done, self.failed = jobs, len(tests), 0, 0
         self.seconds = {test.name: history.seconds(test.name) for test in tests}
-        self.running = {}  # name: when it began
+        self.usual = {test.name: history.usual(test.name) for test in tests}
+        self.running = {}  # name: when it began, the oldest first
         self.due = {}  # name: the age in seconds at which it is named
+        self.hangs = {}  # name: (how it was ended, stacks)
         self.lock = threading.Lock()
 
     def start(self, name):
-        usual = self.seconds.get(name)
+        usual = self.usual.get(name)
         self.running[name] = time.monotonic()
         self.due[name] = 60 if usual is None else max(10, 3 * usual)
 
-    def watch(self, done):
+    def watch(self, done, build):
         """Names each test that takes three times its usual time (60 s if that is not known) with
-        its age, and again at twice that age, until `done` is set."""
+        its age, and again at twice that age, until `done` is set. At ten times it ends it."""
         while not done.wait(1):
             self.name_late()
+            for name, told in self.hanging():
+                with contextlib.suppress(OSError, StopIteration):  # it has just ended
+                    if process := process_of(name, self.running):
+                        self.hangs[name] = told, ""
+                        where, stacks = end_hang(process, build)
+                        self.hangs[name] = told + where, stacks
+
+    def told(self, name, age):
+        usual = self.usual.get(name)
+        return f"{age:.0f} s, usually " + ("unknown" if usual is None else f"{usual:.1f} s")
 
     def name_late(self):
         for name, begin in list(self.running.items()):
-            age, usual = time.monotonic() - begin, self.seconds.get(name)
+            age = time.monotonic() - begin
             if age >= self.due[name]:
                 self.due[name] = 2 * age
-                self._line(f"{name} has run for {age:.0f} s, usually " + (
-                    "unknown" if usual is None else f"{usual:.1f} s"), True)
+                self._line(f"{name} has run for {self.told(name, age)}", True)
+
+    def hanging(self):
+        """(name, what is said) of the tests that have taken ten times their usual time."""
+        more = int(os.environ.get("FUZZ", 1))  # times the usual inputs
+        for name, begin in list(self.running.items()):
+            age, usual = time.monotonic() - begin, self.usual.get(name)
+            if name not in self.hangs and age >= more * max(
+                    SHORTEST_HANG, 10 * (60 if usual is None else usual)):
+                yield name, f"Hang, ended after {self.told(name, age)}"
 
     def end(self, name, status, seconds):
         self.running.pop(name, None)
@@ -70,6 +96,37 @@ class Progress:
                 print(f"\r{text[:110]}\033[K", end="\n" if keep else "", flush=True)
             elif keep:
                 print(text, flush=True)
+
+
+def process_of(name, running):
+    """The process of a running test: CTest prints them in the order in which it begins them."""
+    ctest = next(pid for pid in children(os.getpid())
+                 if pathlib.Path(f"/proc/{pid}/comm").read_text() == "ctest\n")
+    processes = children(ctest)
+    return processes[list(running).index(name)] if len(processes) == len(running) else 0
+
+
+def end_hang(process, build):
+    """Ends a test's processes. Returns the functions in which the first of its programs was, and
+    the stacks of all; aborted, they print the chip's state (testbench/common/tell_on_abort.h)."""
+    below = [process]
+    for pid in below:
+        below += children(pid)
+    stacks = ""
+    for pid in below:
+        program = os.readlink(f"/proc/{pid}/exe")
+        if program.startswith(f"{build}/"):
+            text = run(["timeout", 60, "gdb-multiarch", "-nx", "-batch", "-p", pid, "-ex",
+                        "thread apply all backtrace 40"])[1]
+            frames = re.findall(r"(?m)^(?:#|Thread ).*", text) or text.splitlines()[-1:]
+            stacks += "\n".join([f"Stack of {os.path.basename(program)}:", *frames, ""])
+            os.kill(pid, signal.SIGABRT)
+            time.sleep(1)
+    for pid in below:
+        with contextlib.suppress(OSError):
+            os.kill(pid, signal.SIGKILL)
+    names = re.findall(r"(?m)^#\d+ +(?:0x\w+ in )?(\w+)", stacks)[:3]
+    return ", in " * bool(names) + ", called by ".join(names), stacks
 
 
 def readable(log):
@@ -99,7 +156,7 @@ def run_tests(tests, build, out, seed, jobs, history):
             progress.end(name, "passed" if "Passed" in how else
                          "skipped" if "Skipped" in how else "failed", float(ended[3]))
     done = threading.Event()
-    threading.Thread(target=progress.watch, args=[done], daemon=True).start()
+    threading.Thread(target=progress.watch, args=[done, str(build)], daemon=True).start()
     try:
         status, text = run(
             ["ctest", "--test-dir", build, "-I", chosen.resolve(), "-j", jobs, "--output-junit",
@@ -122,10 +179,11 @@ def run_tests(tests, build, out, seed, jobs, history):
         if log.startswith("Unable to find"):  # its program
             how = "failed"
         end = ends.get(case.get("name"), "")
-        results.append(Result(
-            case.get("name"), how, float(case.get("time")), log,
-            "" if end in ("***Failed", "***Not Run") else re.sub("[*]{3}(Exception: *)?", "", end),
-            seed))
+        end = "" if end in ("***Failed", "***Not Run") else re.sub("[*]{3}(Exception: *)?", "", end)
+        if case.get("name") in progress.hangs:
+            end, stacks = progress.hangs[case.get("name")]
+            how, log = "failed", log + stacks
+        results.append(Result(case.get("name"), how, float(case.get("time")), log, end, seed))
     return results
 
 

@@ -11,6 +11,7 @@ import io
 import json
 import re
 import subprocess
+import sys
 import types
 import unittest.mock
 import xml.etree.ElementTree as xml
@@ -35,6 +36,20 @@ foreach(n soon radio)
   set(labels ${CMAKE_CURRENT_BINARY_DIR}/test_${n}_labels.cmake)
   file(WRITE ${labels} "PROPERTIES LABELS \\"${n};x\\"")
 endforeach()
+"""
+HANG = """#include "observed_clock.h"
+#include <gtest/gtest.h>
+#include <unistd.h>
+volatile bool hangs = access("../../../../flicker", F_OK) == 0;
+[[gnu::noinline]] void spin() {
+    while (hangs)
+        observedClock = 7654321;
+}
+[[gnu::noinline]] void radioTask() {
+    spin();
+    observedClock = 0;
+}
+TEST(H, Firmware) { radioTask(); }
 """
 LATE = "add_test(NAME test_late_NOT_BUILT COMMAND false)\n"
 
@@ -90,7 +105,8 @@ class Cases(Project):
         it is twice as old; without history at 60 s."""
         usual = {"quick": 0.1, "slow": 20.0, "new": None}
         tests = [types.SimpleNamespace(name=name) for name in usual]
-        progress = runner.Progress(tests, types.SimpleNamespace(seconds=usual.get), 2)
+        progress = runner.Progress(tests, types.SimpleNamespace(seconds=usual.get,
+                                                                  usual=usual.get), 2)
         begun = 1000.0
         for name in usual:
             progress.start(name)
@@ -103,6 +119,35 @@ class Cases(Project):
                 progress.running = dict.fromkeys(usual, begun)
                 progress.name_late()
             self.assertEqual(out.getvalue().splitlines(), said, age)
+        for age, named in ((299, []), (301, ["quick", "slow"]), (601, ["quick", "slow", "new"])):
+            with unittest.mock.patch("time.monotonic", lambda: begun + age):
+                self.assertEqual([name for name, _ in progress.hanging()], named, age)
+
+    def test_hang(self):
+        """A test that takes ten times its usual time is ended, with the stack of its program and
+        the state of the chip, as a failure like others; here without the least of 300 s."""
+        write("hang.cpp", HANG)
+        edit("CMakeLists.txt", "small NONE", "small CXX")
+        self.tests(f"""find_package(GTest REQUIRED)
+set(common {TREE}/testbench/common)
+add_executable(test_h ${{CMAKE_SOURCE_DIR}}/hang.cpp ${{common}}/clock_listener.cpp)
+target_include_directories(test_h PRIVATE ${{common}})
+target_link_libraries(test_h GTest::gtest_main)
+add_test(NAME test_h.Firmware COMMAND test_h)
+add_test(NAME script.x COMMAND sh -c "[ ! -e ../../../../flicker ] || sleep 1000; :")
+""")
+        self.ask("ninja", "-C", "build/main", "test_h")
+        self.regress("--name 'Firmware|x|a.One'")
+        write("flicker", "")
+        self.ask("python3", "-c", f"""import sys; sys.path[:0] = {sys.path[:2]}
+import regress, runner
+runner.SHORTEST_HANG = 2
+sys.exit(regress.main(["--name", "Firmware|x|a.One"]))""", status=1)
+        self.has("^1 passed, 2 failed", "^1 x  Hang, ended after [2-9] s, usually 0.. s$",
+                 "^1 x  Hang, ended after [2-9] s, usually 0.. s, in spin, called by radioTask, ")
+        self.has("^The model that ran last stands at clock 7654321[.]$", "^Stack of test_h:$",
+                 "^#0 .*spin[(]", file="build/regress/failures/test_h.Firmware-1.log")
+        self.has('message="Hang, ended after', file="build/regress/junit.xml")
 
     def page_is_small(self):
         self.assertLess(Path("build/regress/report.html").stat().st_size, 2000000)

@@ -298,6 +298,14 @@ TEST(CortexM3Firmware, ACorruptImageIsRefusedWithItsReason) {
     }
 }
 
+TEST(CortexM3Firmware, AnAbortTellsWhereTheChipAndTheProgramAre) {
+    Flight f;
+    M3Machine machine(f.soc, firmware, [&] { return f.inTime(0.01); });
+    machine.run();
+    EXPECT_DEATH(std::abort(), "The chip stands at clock [0-9]{6,}, interrupt [01], ");
+    EXPECT_DEATH(std::abort(), "The program is in OSTaskIdleHook");
+}
+
 TEST(CortexM3Firmware, WithoutAKeyItDoesNotStartAndTriesAgain) {
     Flight f;
     M3Machine machine(f.soc, firmware, [&] { return f.inTime(2.2); });

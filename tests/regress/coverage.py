@@ -159,6 +159,8 @@ def main(gates, folder):
         if not files:
             raise Stop("nothing was measured: did the tests run with COVERAGE_DIR?")
         below = report(files, limits["gates"], f"{folder}/summary.json")
+        below += [f"a gate of no file: {path}" for path in limits["gates"]
+                  if not any(name.startswith(path) for name in files)]
         below += [f"an explanation that explains nothing: {rule}" for rule in explanations.stale()]
     except (OSError, ValueError, KeyError, Stop) as error:
         print(f"coverage: {error}", file=sys.stderr)

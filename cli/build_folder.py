@@ -48,6 +48,40 @@ class Line:
         self.is_shown = False
 
 
+def in_vhdl(match):
+    """A place in Verilog that GHDL made, with that in the VHDL: it stands in a comment before what
+    assigns a signal."""
+    try:
+        lines = Path(match[1]).read_text(errors="replace").splitlines()
+    except OSError:
+        return match[0]
+    at = int(match[2]) - 1
+    if at >= len(lines) or "by GHDL" not in lines[0]:
+        return match[0]
+    declared = re.match(r" *(?:wire|reg) (?:\[.*?\] )?(\w+);", lines[at])
+    if declared:
+        at = next((n for n, line in enumerate(lines[at:], at)
+                   if re.match(rf" *(?:assign )?{declared[1]} <?= ", line)), at)
+    places = [found[1] for line in lines[at::-1]
+              if (found := re.fullmatch(r" */\* (\S+:\d+):\d+ +\*/", line))]
+    return f"{match[0]} ({places[0]})" if places else match[0]
+
+
+def explained(text):
+    """A line of a build's output, with the place in the source that it is about."""
+    missing = re.match(r"ninja: error: '(\S+)', needed by .* missing and no known rule", text)
+    if not missing:
+        return re.sub(r"(\S+\.v):(\d+)(?=:)", in_vhdl, text)
+    name = re.escape(Path(missing[1]).name)
+    folders = [*Path(missing[1]).parents, *sorted(Path("ip").glob("*"))]
+    for lists in (folder / "CMakeLists.txt" for folder in folders):
+        lines = lists.read_text().splitlines() if lists.is_file() else []
+        for number, line in enumerate(lines, 1):
+            if re.search(rf"(?<![\w.]){name}(?![\w.])", line):
+                return f"{lists}:{number}: there is no file {missing[1]}\n{text}"
+    return text
+
+
 def run_ninja(words, log, check=True, env=None):
     """Runs ninja. What it says beside its steps is printed; its whole output goes to a file. If it
     fails, the command ends, unless `check` is false."""
@@ -63,7 +97,7 @@ def run_ninja(words, log, check=True, env=None):
                     line.show(int(step[1]), int(step[2]), step[3])
                 elif not text.startswith(NOISE):
                     line.clear()
-                    print(text, end="", flush=True)
+                    print(explained(text), end="", flush=True)
     except BaseException:
         end(process)
         raise

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Writes the list of the Verilog files that Verilator read for a model, for other tools. Each file's
-# folder is one of includes: some cores include a file whose name ends with .v.
+# folder is one of includes: some cores include a file whose name ends with .v. SystemVerilog's
+# packages come first.
 #
 #   cmake -DREAD=V__ver.d -DTO=list -DTOP=module "-DDEFINES=+define+NAME" -P files.cmake
 file(READ "${READ}" text)
@@ -12,9 +13,14 @@ foreach(file IN LISTS files)
   get_filename_component(folder "${file}" DIRECTORY)
   list(APPEND folders "+incdir+${folder}")
   if(file MATCHES "[vV]$")
-    list(APPEND sources "${file}")
+    file(STRINGS "${file}" package REGEX "^[ \t]*package[ \t]" LIMIT_COUNT 1)
+    if(package)
+      list(APPEND packages "${file}")
+    else()
+      list(APPEND sources "${file}")
+    endif()
   endif()
 endforeach()
 list(REMOVE_DUPLICATES folders)
-string(JOIN "\n" lines "// top: ${TOP}" ${DEFINES} ${folders} ${sources} "")
+string(JOIN "\n" lines "// top: ${TOP}" ${DEFINES} ${folders} ${packages} ${sources} "")
 file(WRITE "${TO}" "${lines}")

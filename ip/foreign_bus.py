@@ -71,9 +71,11 @@ def connection(core, role, port, interrupts):
     if role in ("stb", "strobe", "re", "we"):  # one bit per byte, all of them driven
         to = own.get(role, role) if core.bus == "own" else role
         return f"{{{width}{{{to}}}}}" if width > 1 else to
-    if role == "interrupt":
-        interrupts.append((width, f"interrupt_{len(interrupts)}"))
-        return interrupts[-1][1]
+    if role in ("interrupt", "interruptn"):
+        wire, of_many = f"interrupt_{len(interrupts)}", width > 1
+        value = "|" * of_many + wire if role == "interrupt" else "!" + "&" * of_many + wire
+        interrupts.append((width, wire, value))
+        return wire
     if role in ADDRESSES:
         return ("adr" if role in ("words", "bytes") else role) + core.slice
     if role in ("ack", "err") and "enable" in core.by_role:
@@ -130,8 +132,8 @@ def module(core):
         value = made.get(s) or (f"{core.width(s)}'d0" if is_answer(s)
                                 and s not in core.by_role else "")
         wires.append(f"    wire {vector(core.width(s))}{s}{' = ' + value if value else ''};")
-    wires += [f"    wire {vector(w)}{i};" for w, i in interrupts]
-    irq = " || ".join(("|" if w > 1 else "") + i for w, i in interrupts) or "1'b0"
+    wires += [f"    wire {vector(width)}{wire};" for width, wire, _ in interrupts]
+    irq = " || ".join(value for *_, value in interrupts) or "1'b0"
     rdata = len(core.by_role["rdata"]["bits"])
     if rdata < 32:
         lines.append(f"    assign rdata[31:{rdata}] = {32 - rdata}'d0;")

@@ -8,13 +8,14 @@ import re
 import subprocess
 import sys
 import tempfile
+import xml.etree.ElementTree
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 KINDS = {".vhd": "vhdl", ".vhdl": "vhdl", ".v": "verilog", ".sv": "verilog",
          ".vh": "header", ".svh": "header", ".h": "header", ".inc": "header"}
 # Verilator's, for a core in anybody's style.
 FLAGS = ["-Wno-fatal", "-Wno-lint", "-Wno-style",
-         *("-Wno-" + w for w in "TIMESCALEMOD SELRANGE COMBDLY INITIALDLY UNOPTFLAT".split()),
+         *("-Wno-" + w for w in "TIMESCALEMOD SELRANGE COMBDLY INITIALDLY".split()),
          "-Werror-MODDUP", "--no-timing"]
 
 
@@ -91,10 +92,24 @@ def check_names(slot, top, files):
             fail(f"{first[name][0]}:{first[name][1]}: module '{name}' has the name of this "
                  "project's "
                  f"{os.path.relpath(file, room)}:{line}: give it another, where it is used, too")
-    for name, file, line in declared([f for f in files if end_of(f) == ".sv"], "package"):
-        fail(f"{file}:{line}: package '{name}': Yosys does not read it for the report; make "
-             "Verilog of it by sv2v")
     return top
+
+
+def packages_first(files):
+    """Returns the files with each SystemVerilog package before those that use it."""
+    there = {name: f for name, f, _ in declared(files, "package")}
+    ordered = []
+
+    def put(file, above=()):
+        for name, other in there.items():
+            if other not in (*above, file) and re.search(rf"\b{name}::", text_of(file)):
+                put(other, (*above, file))
+        if file not in ordered:
+            ordered.append(file)
+
+    for file in files:
+        put(file)
+    return ordered
 
 
 # Verilator's and Yosys' words, and what to do about it.
@@ -102,8 +117,7 @@ HINTS = {r"[Ii]nclude file:? (?:`)?([^\s']+)": "FILES may name headers, too: `in
                                                "{0} in their folders (a timescale.v may be empty)",
          r"(?:Module `\\|unknown type `|containing module: ')(\w+)": "FILES lacks the file with module '{0}'",
          r"object for defparam `(\w+)|no generic \"(\w+)\"": "PARAMS: {top} has no '{0}'",
-         r"find resource library \"(\w+)\"": "LIBRARY={0} says that the files are in that library",
-         r"\.sv:\d+: ERROR: syntax": "Make Verilog of it by sv2v, which knows all of SystemVerilog"}
+         r"find resource library \"(\w+)\"": "LIBRARY={0} says that the files are in that library"}
 
 
 def run_tool(what, top, command):
@@ -120,11 +134,43 @@ def run_tool(what, top, command):
     return run.returncode == 0
 
 
+def lint_of(top, files, defines):
+    """Returns Verilator's command for a core, but for what it shall do with which files."""
+    return ["verilator", *FLAGS, "--top-module", top, *("-I" + d for d in folders_of(files)),
+            *("-D" + d for d in defines)]
+
+
+def ports_by_verilator(top, words):
+    """Returns TOP's ports as Yosys gives them, of SystemVerilog that Yosys does not read."""
+    with tempfile.TemporaryDirectory() as work:
+        file = os.path.join(work, "top.xml")
+        run_tool("Verilator does not elaborate", top,
+                 [*words, "--xml-only", "--xml-output", file, "--Mdir", work])
+        tree = xml.etree.ElementTree.parse(file)
+    types = {t.get("id"): t for t in tree.find("netlist/typetable")}
+
+    def width(number):
+        t = types[number]
+        if t.tag == "structdtype":
+            return sum(width(member.get("sub_dtype_id")) for member in t)
+        ends = [int(c.get("name").split("h")[1], 16) for c in t.findall("range/const")]
+        if t.get("left"):
+            ends = [int(t.get("left")), int(t.get("right"))]
+        size = abs(ends[0] - ends[1]) + 1 if ends else 1
+        return size * (width(t.get("sub_dtype_id")) if t.get("sub_dtype_id") else 1)
+
+    module = next(m for m in tree.iter("module") if m.get("topModule"))
+    return {v.get("name"): {"direction": v.get("dir"), "bits": [0] * width(v.get("dtype_id")),
+                            "offset": int(types[v.get("dtype_id")].get("right") or 0)}
+            for v in module.iter("var") if v.get("dir")}
+
+
 def read_module(top, files, headers=(), params=(), defines=(), is_whole=True):
-    """The module `top`: its ports in order, and the names of its parameters. A port that resets
-    registers asynchronously has "reset", the level at which it does. `headers`: files in whose
-    folders `include finds more. `params`: NAME=value of parameters or generics; `defines`: NAME or
-    NAME=value of macros. `is_whole`: all of its modules are in the files."""
+    """The module `top`: its ports in order, and the names of its parameters; these are None if only
+    Verilator reads it. A port that resets registers asynchronously has "reset", the level at which
+    it does. `headers`: files in whose folders `include finds more. `params`: NAME=value of
+    parameters or generics; `defines`: NAME or NAME=value of macros. `is_whole`: all of its modules
+    are in the files."""
     with tempfile.TemporaryDirectory() as work:
         out = os.path.join(work, top + ".v")
         chosen = " ".join("-chparam {} {}".format(*p.split("=", 1)) for p in params)
@@ -139,7 +185,11 @@ def read_module(top, files, headers=(), params=(), defines=(), is_whole=True):
                  f"{f}" for f in files]
         script = "; ".join([*reads, f"hierarchy {'-check' if is_whole else ''} -top {top} {chosen}",
                             "proc", "flatten", f"write_json {out}.json"])
-        run_tool("Yosys does not elaborate", top, ["yosys", "-q", "-p", script])
+        is_system = any(end_of(f) == ".sv" for f in files)
+        if not run_tool("" if is_system else "Yosys does not elaborate", top,
+                        ["yosys", "-q", "-p", script]):
+            return ports_by_verilator(top, [*lint_of(top, [*files, *headers], defines),
+                                            *("-G" + p for p in params), *files]), None
         modules = json.loads(text_of(out + ".json"))["modules"]
     module = next(m for n, m in modules.items() if m["attributes"].get("top") or n == top)
     for cell in module["cells"].values():
@@ -165,10 +215,9 @@ def filled(file, defines):
 def copies_for_verilator(top, files, headers, defines):
     """Returns texts by the files that they replace, with macros, paths of data and, where Verilator
     needs it, SystemVerilog's words as names."""
-    lint = ["verilator", "--lint-only", *FLAGS, "--top-module", top,
-            *("-I" + d for d in folders_of([*files, *headers])), *("-D" + d for d in defines)]
+    lint = lint_of(top, [*files, *headers], defines)
     copies = {f: t for f in files if (t := filled(f, defines)) != text_of(f)}
-    if run_tool(None, top, [*lint, *files]):
+    if run_tool(None, top, [*lint, "--lint-only", *files]):
         return copies
     with tempfile.TemporaryDirectory() as work:
         older, names = {}, {}
@@ -178,9 +227,9 @@ def copies_for_verilator(top, files, headers, defines):
                 names[f] = os.path.join(work, os.path.basename(f))
                 with open(names[f], "w") as out:
                     out.write(older[f])
-        if run_tool(None, top, [*lint, *(names.get(f, f) for f in files)]):
+        if run_tool(None, top, [*lint, "--lint-only", *(names.get(f, f) for f in files)]):
             return {**copies, **older}
-    run_tool("Verilator does not read", top, [*lint, *files])
+    run_tool("Verilator does not read", top, [*lint, "--lint-only", *files])
 
 
 def names_of(top, files, bits):

@@ -39,10 +39,10 @@ ROLES = {"select": "stb", "strobe": "strobe", "read": "re", "write": "we", "addr
          "enables": "sel",
          "wdata": "wdata", "rdata": "rdata", "ack": "ack", "error": "err", "clock": "clock",
          "reset": "reset",
-         "resetn": "resetn", "interrupt": "interrupt", "pin": "", "setting": "setting",
-         "low": "low", "high": "high",
+         "resetn": "resetn", "interrupt": "interrupt", "interruptn": "interruptn", "pin": "",
+         "setting": "setting", "low": "low", "high": "high",
          "open": "open", "words": "words", "bytes": "bytes", "enable": "enable"}
-OUTPUTS = ("rdata", "ack", "err", "interrupt", "open")
+OUTPUTS = ("rdata", "ack", "err", "interrupt", "interruptn", "open")
 NEEDED = {"memory": ["stb", "we", "adr", "wdata", "rdata"],
           "wishbone": ["stb", "we", "wdata", "rdata", "ack"],
           "apb": ["stb", "enable", "we", "wdata", "rdata"],
@@ -86,7 +86,9 @@ def role(name, port, bus):
     found += [r for t in tokens if (r := TIED.get(bus, {}).get(t)) and (r == "open") != is_input]
     if found:
         return found[0]
-    return "interrupt" if not is_input and INTERRUPTS & set(tokens) else ""
+    if is_input or not INTERRUPTS & set(tokens):
+        return ""
+    return "interruptn" if {"n", "no"} & set(tokens) else "interrupt"
 
 
 def roles_of(top, bus, ports, given):
@@ -122,8 +124,8 @@ def roles_of(top, bus, ports, given):
              f"PORTS='{missing[0]}=port ...'"
              + (", or by ack=1 that what is read is there a clock later"
                 if "ack" in missing else ""))
-    for r in there - {"", "clock", "reset", "resetn", "interrupt", "setting", "low", "high", "open",
-                      "1", "2"}:
+    for r in there - {"", "clock", "reset", "resetn", "interrupt", "interruptn", "setting", "low",
+                      "high", "open", "1", "2"}:
         if len(same := [n for n in ports if roles[n] == r]) > 1:
             fail(f"{top} has more than one port for {say.get(r, r)}: {', '.join(same)}; what the "
                  f"others are by PORTS='pin={same[-1]} ...'")

@@ -27,13 +27,18 @@ import foreign_bus
 from cli.reserved import REFUSAL, RESERVED
 from foreign_files import (FLAGS, check_names, copies_for_verilator, fail, folders_of, is_vhdl,
                            kind_of,
-                           names_of, read_module)
+                           names_of, packages_first, read_module)
 from foreign_roles import NEEDED, roles_of
 from foreign_verilog import pin_name
 
 USAGE = ("usage: make new-foreign NAME=my_uart TOP=module BUS=wishbone|axil|apb|memory|own|axis "
          "FILES='a.v b.v' "
          "[PORTS='write=we ...']")
+
+
+# Names that may be an interrupt's.
+ASKED = re.compile("irq|(?<!po)(?<!pr)(?<!h)int(r|errupt)?s?(_?n)?(_?o)?$|(^|_)int(_|$)|ev(en)?t|"
+                   "alarm|attention", re.I)
 
 
 class Request:
@@ -87,10 +92,10 @@ class Request:
         if self.library and not any(map(is_vhdl, files)):
             fail("LIBRARY: the library that VHDL files say they are in; these are Verilog")
         self.headers = [f for f in files if kind_of(f) == "header"]
-        self.files = [f for f in files if f not in self.headers]
+        self.files = packages_first([f for f in files if f not in self.headers])
         if not self.files or len({is_vhdl(f) for f in self.files}) > 1:
             fail("FILES are all Verilog or all VHDL, and at least one")
-        self.is_vhdl = is_vhdl(self.files[0])
+        self.is_vhdl, self.is_synthesised = is_vhdl(self.files[0]), True
         self.top = check_names(self.name, self.top, self.files)
 
 
@@ -109,8 +114,9 @@ def read_core(asked):
     if asked.is_vhdl:
         return ports, [], {}
     # OpenCores' cores have this level as a parameter.
-    level = [] if "ARST_LVL" not in known or any(p.startswith("ARST_LVL=")
-                                                 for p in asked.params) else ["ARST_LVL=1'b1"]
+    level = [] if "ARST_LVL" not in (known or {}) or any(
+        p.startswith("ARST_LVL=") for p in asked.params) else ["ARST_LVL=1'b1"]
+    asked.is_synthesised = known is not None
     return ports, asked.params + level, copies_for_verilator(asked.top, asked.files, asked.headers,
                                                              asked.defines)
 
@@ -121,7 +127,7 @@ def slot_texts(asked, ports, params):
     roles, latency = roles_of(asked.top, asked.bus, ports, asked.ports)
     said = {n: roles[n] or "pin " + pin_name(n, p) for n, p in ports.items()}
     for n, p in ports.items():
-        if not roles[n] and p["direction"] == "output" and len(p["bits"]) == 1 and re.search("int(r|errupt)?$|irq", n.lower()):
+        if not roles[n] and p["direction"] == "output" and ASKED.search(n):
             said[n] += f"; if it is an interrupt: PORTS='interrupt={n}'"
     if asked.bus == "axis":
         if wrong := foreign_axis.problem(asked.top, ports, roles):
@@ -181,6 +187,13 @@ def main(words):
     for port, what in said.items():
         print(f"  {port}: {what}")
     print(f"  {last}")
+    if not asked.is_synthesised:
+        print("  SystemVerilog that Yosys does not read: tests and flights have it as it is. For "
+              "make synth and the chip, FILES is what sv2v makes of it (github.com/zachjs/sv2v, not "
+              "in Debian):")
+        print(f"  sv2v --top={asked.top} {' '.join('-I ' + d for d in folders_of(asked.headers))} "
+              f"{' '.join('-D ' + d for d in asked.defines)} {' '.join(asked.files)} "
+              f">{asked.top}.v")
     print(f"Next: look at what is above; make ip-test IP={asked.name}; a line {asked.name} in "
           "ip/cores.list; "
           f"make run CORES={asked.name}")

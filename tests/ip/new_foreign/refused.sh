@@ -46,8 +46,6 @@ refused "ours.v:1: module 'npi_fifo' has the name of .*hdl/ddr/npi_fifo.v:" my_p
 sed '1i `include "sizes.vh"' "$here/wb_port.v" >"$work/head.v"
 refused "sizes.vh.*" my_port wb_port wishbone "$work/out" "$work/head.v"
 refused 'FILES may name headers' my_port wb_port wishbone "$work/out" "$work/head.v"
-printf 'package sizes; endpackage\nmodule top(input clk); endmodule\n' >"$work/top.sv"
-refused "top.sv:1: package 'sizes'" my_port top wishbone "$work/out" "$work/top.sv"
 refused 'all Verilog or all VHDL' my_port wb_port wishbone "$work/out" "$here/wb_port.v" \
     "$here/lamps.vhd"
 refused "TOP is the name of a module or an entity, not 'wb_port; x'" my_port 'wb_port; x' wishbone \
@@ -69,7 +67,7 @@ refused "PARAMS: axil_words has no 'WIDTH'" my_port axil_words axil "$work/out" 
 refused "'my_wide' of .* has 64 bits" my_port wide own "$work/out" select=clk_en write=we \
     address=a wdata=my_wide rdata=q "$work/wide.v"
 refused 'include looks for timescale.v' my_port apb_words apb "$work/out" "$here/apb_words.v"
-refused 'sv2v' my_port odd memory "$work/out" "$work/odd.sv"
+refused 'Verilator does not elaborate odd' my_port odd memory "$work/out" "$work/odd.sv"
 refused "no port for ack: .*ack=1" my_port wbs_names wishbone "$work/out" "$here/wbs_names.v"
 refused "more than one port for rdata: wbs_dat_o, spare" my_port wbs_names wishbone "$work/out" \
     rdata=spare ack=1 "$here/wbs_names.v"
@@ -105,6 +103,40 @@ for line in 'wbs_clk: clock' 'rst_ni: resetn' 'gate_clk_pad_i: pin' 'clk_div: pi
     'wbs_cti_i: low' 'intr: interrupt' 'spare: open'; do
     grep -q "^  $line" "$work/log" || { cat "$work/log" && echo "'$line' is not said" && exit 1; }
 done
+# Outputs that may be interrupts are asked about; one that is active low is told.
+echo 'module asked(input clk, we, input [31:0] d, output [31:0] q, output TIMERINT, irq_no, point, output [3:0] rx_events); endmodule' >"$work/asked.v"
+"$new" my_port asked own "$work/asked" write=we wdata=d rdata=q "$work/asked.v" >"$work/log"
+for line in "TIMERINT: pin timerint_o; if it is an interrupt: PORTS='interrupt=TIMERINT'" \
+    "rx_events: pin rx_events_o; if it is an interrupt: PORTS='interrupt=rx_events'" \
+    'irq_no: interruptn$' 'point: pin point_o$'; do
+    grep -q "^  $line" "$work/log" || { cat "$work/log" && echo "'$line' is not said" && exit 1; }
+done
+grep -q 'interrupt = !interrupt_0;' "$work/asked/my_port.v"
+# SystemVerilog with packages, in any order, and a loop that Verilator reports.
+cat >"$work/system.sv" <<'END'
+module system import sizes::*; #(parameter EXTRA = 1) (
+    input logic clk, input logic we, input logic [1:0][7:0] d, output pair_t q,
+    output state_t state_o, input logic [EXTRA:0] more_i);
+    logic [0:2][31:0] held;
+    always_ff @(posedge clk) if (we) held <= '{default: widths::W'(d)};
+    assign q = held[1][15:0];
+    assign state_o = IDLE;
+endmodule
+END
+printf 'package sizes; import widths::*;
+typedef enum logic [1:0] {IDLE, RUN} state_t;
+typedef struct packed {logic [W-1:0] a; logic [7:0] b;} pair_t;
+endpackage' >"$work/sizes.sv"
+echo 'package widths; localparam W = 8; endpackage' >"$work/widths.sv"
+"$new" my_port system own "$work/system" PARAM:EXTRA=2 write=we wdata=d rdata=q \
+    "$work/system.sv" "$work/sizes.sv" "$work/widths.sv" >"$work/log"
+for line in 'state_o: pin state_o' "sv2v --top=system .*/widths.sv .*/sizes.sv .*/system.sv >system.v"; do
+    grep -q "^  $line" "$work/log" || { cat "$work/log" && echo "'$line' is not said" && exit 1; }
+done
+grep -q 'input  wire \[2:0\] more_i' "$work/system/my_port.v" &&
+    grep -q '"width": 16' "$work/system/my_port.regs.json" &&
+    ! grep -q UNOPTFLAT "$work/system/CMakeLists.txt" ||
+    { cat "$work/system/my_port.v" && exit 1; }
 # A register is as wide as its written, or read, data.
 echo 'module narrow(input clk, we, input [16:0] d, output [12:0] q); assign q = d[12:0]; endmodule' >"$work/narrow.v"
 "$new" my_port narrow own "$work/narrow" write=we wdata=d rdata=q "$work/narrow.v" >"$work/log" &&

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # refused: new_foreign.py work-folder   Input that make new-foreign refuses, with a reason and
-# nothing written.
+# nothing written. It is shell because a case is a command and what it says.
 set -eu
 new=$1 work=$2
 here=$(cd "$(dirname "$0")" && pwd)

@@ -7,6 +7,8 @@ const share = (part, whole) => (100 * part / whole).toFixed(1) + " %";
 // Today's figures: measured, or accepted for the same sources; none for a design that has neither.
 const shown = d => d.figures ?? (d.state === "as accepted" ? d.accepted : undefined);
 const signed = n => n > 0 ? "+" + n : String(n);
+// A clock as the terminal rounds it, too (baseline.py): of tenths, halves up.
+const clockText = mhz => (Math.round(10 * mhz) / 10).toFixed(0);
 const sum = values => values.reduce((a, b) => a + b, 0);
 const parent = p => p.slice(0, Math.max(0, p.lastIndexOf(".")));
 // "#design/instance.path" opens the page there.
@@ -22,7 +24,7 @@ function link(at) {
   return a;
 }
 // The column of a signal's file and line; name(row) is the signal's.
-const source = name => ["source", r => place(name(r)), r => link(place(name(r)))];
+const source = name => ["source", r => place(name(r)), r => link(place(name(r))), { minWidth: 250 }];
 function bar(value, whole) {
   const span = element("span"), part = element("span", "", "share");
   part.style.width = (whole ? 60 * value / whole : 0) + "px";
@@ -55,7 +57,11 @@ function showChip() {
   const box = element("div");
   const clock = element("a", f.clock ? `${f.clock} MHz` : "no path", f.mhz < data.chip.mhz ? "bad" : "good"), number = element("b");
   clock.href = "#longest"; // the path that sets it
-  clock.onclick = () => { [picked, path] = [d, ""]; show(); };
+  clock.onclick = () => {
+    [picked, path, isSlowest] = [d, "", false];
+    show();
+    byId("paths").querySelector("details").open = true;
+  };
   number.append(clock);
   box.append(number, element("div", `${data.chip.mhz} are wanted; median and range of the netlist's orders`, "soft"));
   byId("chip").append(box);
@@ -98,7 +104,7 @@ function showDesigns() {
   table(byId("designs"), [
     ["design", r => r.folder ?? r.name, r => r.members ? `${r.folder}, ${r.members.length} ${r.members.length === 1 ? "module" : "modules"}` : r.name, { minWidth: 215 }],
     [...count("LUT", "lut", f => bar(f.lut, data.chip.lut)), { minWidth: 130 }], count("of chip", "lut", f => share(f.lut, data.chip.lut)), change("lut"),
-    count("FF", "ff"), change("ff"), count("MHz", "mhz", f => f.mhz ? element("span", f.clock ?? f.mhz.toFixed(0), f.mhz < data.chip.mhz ? "bad" : "") : ""),
+    count("FF", "ff"), change("ff"), count("MHz", "mhz", f => f.mhz ? element("span", f.clock ?? clockText(f.mhz), f.mhz < data.chip.mhz ? "bad" : "") : ""),
     count("levels", "levels"), count("slices", "slices"), count("from-to", "low", f => `${f.low}-${f.high}`),
     count("RAM16", "ram"), count("DSP", "dsp"), count("LUT6", "lut6"), count("RAM", "lutRam"), count("SRL", "shift"), count("thru", "through"),
     count("carry", "carry"), count("sets", "sets"), count("pins", "pins"),
@@ -144,9 +150,9 @@ function showInstance() {
     here, { filter: "filter signals" });
   const { mhz, clocks, timing } = picked.figures, order = byId("order"), all = isSlowest ? timing.slowest : timing.paths;
   order.hidden = !timing.slowest;
-  order.textContent = isSlowest ? `${mhz.toFixed(0)} MHz: the median order` : `${clocks[0].toFixed(0)} MHz: the slowest order`;
+  order.textContent = isSlowest ? `${clockText(mhz)} MHz: the median order` : `${clockText(clocks[0])} MHz: the slowest order`;
   order.onclick = () => { isSlowest = !isSlowest; showInstance(); };
-  byId("longest").textContent = `Longest paths${mhz ? `, at ${(isSlowest ? clocks[0] : mhz).toFixed(0)} MHz` : ""}`;
+  byId("longest").textContent = `Longest paths${mhz ? `, at ${clockText(isSlowest ? clocks[0] : mhz)} MHz` : ""}`;
   const paths = all.filter(p => [p.from, p.to].some(end => end.startsWith(below)));
   byId("paths").replaceChildren(...paths.map(p => {
     const details = element("details"), steps = element("div"), slow = p.ns * data.slowGrade;
@@ -176,7 +182,7 @@ function showInside() {
   showInstance();
   showSlack();
   table(byId("clocks"), [["clock", n => n.name], ["flip-flops", n => n.flipFlops], ["pins", n => n.ends],
-    ["MHz", n => n.ns ? 1000 / n.ns / data.slowGrade : 0, n => n.ns ? (1000 / n.ns / data.slowGrade).toFixed(0) : ""], source(n => n.name)], nets.clocks);
+    ["MHz", n => n.ns ? 1000 / n.ns / data.slowGrade : 0, n => n.ns ? clockText(1000 / n.ns / data.slowGrade) : ""], source(n => n.name)], nets.clocks);
   table(byId("resets"), [["reset", n => n.name], ["kind", n => n.kind], ["flip-flops", n => n.flipFlops], source(n => n.name)], nets.resets);
   table(byId("fanouts"), [["net", n => n.name], ["ends", n => n.ends], ["from", n => n.kind], source(n => n.name)], nets.fanouts);
 }
@@ -191,7 +197,7 @@ function showHistory() { // oldest first; the last is now
     series: kinds.map(([key, name]) => ({ name, values: known.map(c => c.f[key]), colour: `--${key}` })),
     limits: kinds.filter(([key]) => picked.limits[key] < 2 * picked.figures[key]).map(([key, name]) => ({ name: `limit of ${name}`, value: picked.limits[key], colour: `--${key}` })) });
   const change = key => [key.toUpperCase(), c => c.f[key], c => c.f[key] + (c.f[key] === c.before[key] ? "" : ` (${signed(c.f[key] - c.before[key])})`)];
-  table(byId("commits"), [["commit", c => c.id], ["date", c => c.date], change("lut"), change("ff"), ["slices", c => c.f.slices], ["MHz", c => c.f.mhz || 0, c => c.f.mhz?.toFixed(0)],
+  table(byId("commits"), [["commit", c => c.id], ["date", c => c.date], change("lut"), change("ff"), ["slices", c => c.f.slices], ["MHz", c => c.f.mhz || 0, c => c.f.mhz ? clockText(c.f.mhz) : ""],
     ["subject", c => c.subject, , { minWidth: 400 }]], known.reverse());
 }
 function show() { showInside(); showHistory(); }

@@ -2,6 +2,7 @@
 """synth: utilisation of the chip, and its changes between commits."""
 import contextlib
 import json
+import subprocess
 from pathlib import Path
 
 from cli.build_folder import configured
@@ -11,8 +12,10 @@ from cli.runner import Stop, commit, lock, logged, output, run, warn
 
 GROUPS["synth"] = "utilisation of the chip"
 DEFAULTS["synth"] = "synth report"
+SHOWN = 10  # tests in a line of a pull request
 DESIGN = Option("design", WORDS,
                 "these designs only, such as modem, table1 or soc; of the others what is known")
+DIFF = Path(__file__).resolve().parents[2] / "bus/contract_diff.py"
 GIT = ["git", "-c", "advice.detachedHead=false"]
 
 
@@ -38,7 +41,7 @@ def synth(values):
     """LUTs, flip-flops, slices of the chip and each part, against limits and paper"""
     first, between, last = values.base.partition("..")
     commits = [commit(name) for name in (first, last) if name]
-    build = configured(values, "synth_inputs", tests=True)
+    build = configured(values, "synth_inputs", *["slice2c"] * bool(commits), tests=True)
     status = 0
     if not between:
         status = utilisation(build, values, *with_name("--design", values.design),
@@ -95,24 +98,43 @@ def named(base):
     return output([*GIT, "log", "-1", "--format=%h (%s)", base]).strip()
 
 
-def row(name):
-    """The commit's name in the regression, its kept run with most tests, and its coverage."""
+def measured(name):
+    """A commit's kept run with most tests in the regression, {} if none is known; its coverage."""
     def kept(file):
         path = Path("build", file)
         return path.read_text().splitlines() if path.exists() else []
 
     runs = [
         each for each in map(json.loads, kept("regress/history.jsonl")) if each["commit"] == name]
-    best = max(runs, key=lambda each: each["passed"] + each["failed"], default=None)
     covered = [
         line.split(" ", 1)[1] for line in kept("coverage/history") if line.startswith(name + " ")]
-    tests = f"{best['passed']} passed, {best['failed']} failed" if best else "not measured"
-    return f"| {name} | {tests} | {covered[-1] if covered else 'not measured'} |"
+    return (max(runs, key=lambda each: each["passed"] + each["failed"], default={}),
+            covered[-1] if covered else "not measured")
+
+
+def tests_and_coverage(names):
+    """Both of two commits, and the tests that end otherwise."""
+    runs, coverage = zip(*map(measured, names))
+    lines = ["| commit | tests | coverage |", "|---|---|---|"]
+    for name, best, covered in zip(names, runs, coverage):
+        tests = f"{best['passed']} passed, {best['failed']} failed" if best else "not measured"
+        lines.append(f"| {name} | {tests} | {covered} |")
+    then, now = ({end[0]: end[1] for end in run.get("ends", [])} for run in runs)
+    if then and now:
+        for text, some in (
+            ("fail now", [test for test in now if now[test] == "f" != then.get(test)]),
+            ("pass again", [test for test in now if now[test] == "p" and then.get(test) == "f"]),
+            ("new", now.keys() - then.keys()), ("did not run", then.keys() - now.keys())):
+            if some:
+                more = f" and {len(some) - SHOWN} more" if len(some) > SHOWN else ""
+                lines += ["", f"Tests that are {text}" if text == "new" else f"Tests that {text}"]
+                lines[-1] += f": {', '.join(sorted(some)[:SHOWN])}{more}"
+    return lines
 
 
 def compare(build, jobs, base, head=None):
-    """The changes since a commit, or between two, with tests and coverage, as Markdown for a pull
-    request."""
+    """The changes since a commit, or between two, of utilisation, registers, tests and coverage, as
+    Markdown for a pull request."""
     program, folder = (build / "synth/utilisation").absolute(), Path("build/synth")
     folder.mkdir(parents=True, exist_ok=True)
     with lock(folder / "base.lock", busy="waiting for another comparison in this folder ..."):
@@ -122,15 +144,19 @@ def compare(build, jobs, base, head=None):
         if head:
             synthesise(program, jobs, head, folder / "head")
             after = folder / "head/build/synth"
+        registers = subprocess.run(  # status 1: something breaks
+            [DIFF, build / "slice/slice2c", folder / "base", folder / "head" if head else "."],
+            stdout=subprocess.PIPE, text=True).stdout
         lines = [
             f"Utilisation since {named(base)}{f', at {named(head)}' if head else ''}:", "",
             output([
                 program, "--output", after, "--compare",
                 folder / "base/build/synth/report.json"]).rstrip("\n"), "",
-            "| commit | tests | coverage |", "|---|---|---|",
-            *(row(output([*GIT, "describe", "--always", "--abbrev=10", *which]).strip())
-              for which in ([base], [head or "--dirty=+"]))]
+            "Registers:", "", "```", registers.rstrip("\n"), "```", "",
+            *tests_and_coverage([
+                output([*GIT, "describe", "--always", "--abbrev=10", which]).strip()
+                for which in (base, head or "--dirty=+")])]
         text = "\n".join(lines) + "\n"
-        (folder / "compare.md").write_text(text)
+        Path("build/summary.md").write_text(text)
         print(text, end="")
     return 0

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """runner: runs chosen tests by CTest, prints the progress, ends hangs, and writes JUnit."""
+import collections
 import contextlib
 import dataclasses
 import os
@@ -187,6 +188,12 @@ def run_tests(tests, build, out, seed, jobs, history):
     return results
 
 
+def kind_of(result):
+    """JUnit's: a failed test that did not end by itself is an error."""
+    return {"skipped": "skipped", "passed": ""}.get(result.status,
+                                                    "error" if result.end else "failure")
+
+
 def write_junit(path, results, failures, begin, commit):
     """JUnit of all results, for CI systems: a suite for each program and seed, begun at `begin`
     (RFC 3339); a failure's text says where to look. Jenkins' junit-10.xsd has no properties of a
@@ -196,10 +203,10 @@ def write_junit(path, results, failures, begin, commit):
         suites.setdefault((result.name.split(".")[0], result.seed), []).append(result)
 
     def totals(results):
-        failed, skipped = (sum(result.status == how for result in results)
-                           for how in ("failed", "skipped"))
-        return {"tests": str(len(results)), "failures": str(failed), "errors": "0",
-                "skipped": str(skipped), "time": f"{sum(each.seconds for each in results):.3f}"}
+        kinds = collections.Counter(kind_of(result) for result in results)
+        return {"tests": str(len(results)), "failures": str(kinds["failure"]),
+                "errors": str(kinds["error"]), "skipped": str(kinds["skipped"]),
+                "time": f"{sum(each.seconds for each in results):.3f}"}
     whole = totals(results)
     del whole["skipped"]  # as the schema has it
     root = xml.Element("testsuites", name="icesoc", **whole)
@@ -213,7 +220,7 @@ def write_junit(path, results, failures, begin, commit):
                                   time=f"{result.seconds:.3f}")
             if result.status == "failed":
                 failure = of[id(result)]
-                told = xml.SubElement(case, "failure",
+                told = xml.SubElement(case, kind_of(result),
                                       message=f"{failure.reason} (SEED={result.seed})")
                 told.text = "".join(
                     f"{key}: {value}\n" for key in ("changed", "log", "repeat", "wave")

@@ -234,12 +234,15 @@ class Cases(Script):
         here = Path("project").resolve()
         write(here / "CMakeLists.txt", MADE)
         write(here / ".gitignore", "build\n")
+        registers = {"block": "pair", "type": 7, "registers": [
+            {"name": "MODE", "word": 0, "access": "rw"}]}
+        write(here / "hdl/blocks/pair.regs.json", json.dumps(registers))
         with contextlib.chdir(here):
             repository()
             commit("The first one")
         self.ask(PROGRAM, cwd=here)
         self.compare("HEAD..")
-        self.has("^No figure of any design differs")
+        self.has("^No figure of any design differs", "^no breaking change")
         designs = here / "synth/designs.json"
         edit(designs, '"WIDTH": 16', '"WIDTH": 17')
         edit(designs, '"name": "wide"', '"name": "wider"')
@@ -250,7 +253,7 @@ class Cases(Script):
         # Nobody knows what was measured of files without a commit.
         self.has(r"^Utilisation since .* \(The first one\):", grown, r"^\| wide \| gone \| gone \|",
                  r"^\| wider \| \d+ \(new\) \|", r"^\| \w+\+ \| not measured \| not measured \|")
-        self.has(r"^\| wider ", file=here / "build/synth/compare.md")
+        self.has(r"^\| wider ", file=here / "build/summary.md")
         # Over budget the difference matters most: it is told, and the status is that of the budget.
         kept = designs.read_text()
         edit(designs, '"ff": 30', '"ff": 20')
@@ -258,19 +261,25 @@ class Cases(Script):
         self.has("^FAILED whole", grown)
         write(designs, kept)
         # The same between two commits, whatever is here now; tests and coverage are those of each.
+        write(here / "hdl/blocks/pair.regs.json", json.dumps({**registers, "registers": []}))
         with contextlib.chdir(here):
             commit("The second one")
             names = [git("describe --always --abbrev=10", name) for name in ("HEAD", "HEAD~1")]
         write(here / "build/regress/history.jsonl", "".join(
-            json.dumps({"commit": names[0], "passed": tests, "failed": 1}) + "\n"
-            for tests in (9, 7)))
+            json.dumps({"commit": name, "passed": len(ends), "failed": 1,
+                        "ends": [[f"test_{end[0]}.X", end[1]] for end in ends]}) + "\n"
+            for name, ends in ((names[0], ["ap"]), (names[0], ["af", "bp", "cp", "ep"]),
+                               (names[1], ["ap", "bf", "dp", "ep"]))))
         write(here / "build/coverage/history", f"{names[1]} 97.1 % of lines\n")
         write(here / "hdl/blocks/pair.v", "module pair\n")
         (here / "build/synth/report.json").unlink()
         self.compare("HEAD~1..HEAD")
         self.has(r"^Utilisation since .* \(The first one\), at .* \(The second one\):", grown,
-                 r"^\| \w+ \| not measured \| 97.1 % of lines \|",
-                 r"^\| \w+ \| 9 passed, 1 failed \| not measured \|")
+                 r"^\| \w+ \| 4 passed, 1 failed \| 97.1 % of lines \|",
+                 r"^\| \w+ \| 4 passed, 1 failed \| not measured \|",
+                 "^breaking   pair: MODE .word 0. is gone$", "^Tests that fail now: test_a.X$",
+                 "^Tests that pass again: test_b.X$", "^Tests that are new: test_c.X$",
+                 "^Tests that did not run: test_d.X$")
         for wrong in "nonsense", "HEAD..nonsense":
             self.compare(wrong, status=None)
             self.has("there is no commit BASE=nonsense")

@@ -102,14 +102,11 @@ function showDesigns() {
     return column(title, by, d => d.accepted ? cell(d) : element("span", "new", "soft"));
   };
   table(byId("designs"), [
-    ["design", r => r.folder ?? r.name, r => r.members ? `${r.folder}, ${r.members.length} ${r.members.length === 1 ? "module" : "modules"}` : r.name, { minWidth: 215 }],
-    [...count("LUT", "lut", f => bar(f.lut, data.chip.lut)), { minWidth: 130 }], count("of chip", "lut", f => share(f.lut, data.chip.lut)), change("lut"),
-    count("FF", "ff"), change("ff"), count("MHz", "mhz", f => f.mhz ? element("span", f.clock ?? clockText(f.mhz), f.mhz < data.chip.mhz ? "bad" : "") : ""),
-    count("levels", "levels"), count("slices", "slices"), count("from-to", "low", f => `${f.low}-${f.high}`),
-    count("RAM16", "ram"), count("DSP", "dsp"), count("LUT6", "lut6"), count("RAM", "lutRam"), count("SRL", "shift"), count("thru", "through"),
-    count("carry", "carry"), count("sets", "sets"), count("pins", "pins"),
-    ...Object.keys(usable[0].others ?? {}).flatMap(family => ["lut", "ff"].map(key => column(`${family} ${key.toUpperCase()}`, d => d.others?.[family]?.[key] ?? 0))),
-    ["state", r => r.state ?? ""], ["file", r => r.file ?? "", r => link(r.file)], ["what it is", r => r.title ?? "", , { minWidth: 560 }],
+    ["design", r => r.folder ?? r.name, r => r.members ? `${r.folder}, ${r.members.length} ${r.members.length === 1 ? "module" : "modules"}` : r.name, { minWidth: 200 }],
+    [...count("LUT", "lut", f => bar(f.lut, data.chip.lut)), { minWidth: 130 }], change("lut"), count("FF", "ff"), change("ff"),
+    count("MHz", "mhz", f => f.mhz ? element("span", f.clock ?? clockText(f.mhz), f.mhz < data.chip.mhz ? "bad" : "") : ""),
+    count("slices", "slices"), count("RAM16", "ram"), count("DSP", "dsp"), ["state", r => r.state ?? ""],
+    ["file", r => r.file ? `${r.file} ${r.title}` : "", r => link(r.file), { minWidth: 250 }],
   ], rows, { filter: "filter by name, folder or title", children: r => r.members, picked: r => r === picked,
     pick: (r, line) => {
       if (r.members) return line?.treeToggle();
@@ -172,8 +169,16 @@ function showSlack() {
     { name: `of ${sum(ends)} registers and memories`, values: count.map((n, i) => slack[i] < 0 ? null : n), colour: "--bar", bars: true },
     { name: "too late", values: count.map((n, i) => slack[i] < 0 ? n : null), colour: "--bad", bars: true }] });
 }
+// What the table of designs has no room for.
+function showFigures() {
+  const f = picked.figures, more = { "of the chip's LUTs": share(f.lut, data.chip.lut), slices: `${f.low} to ${f.high}`, levels: f.levels, LUT6: f.lut6, "LUTs as RAM": f.lutRam,
+    "as shift registers": f.shift, "route-throughs": f.through, CARRY4: f.carry, "control sets": f.sets, pins: f.pins };
+  for (const [family, other] of Object.entries(picked.others ?? {})) Object.assign(more, { [`${family} LUT`]: other.lut, [`${family} FF`]: other.ff });
+  byId("figures").textContent = Object.entries(more).map(([name, value]) => `${name} ${value}`).join(", ");
+}
 function showInside() {
   byId("inside").textContent = `Inside ${picked.name}: ${picked.title}`;
+  showFigures();
   const root = treeOf(picked.figures.costs), nets = picked.figures.nets;
   const cost = (title, i) => [[title, n => n.sum[i], n => bar(n.sum[i], root.sum[i]), { minWidth: 130 }], ["its own", n => n.own[i], n => n.children.length ? n.own[i] : ""]];
   table(byId("tree"), [["instance", n => n.path, n => n.name || picked.top, { minWidth: 200 }], ...cost("LUT", 0), ...cost("FF", 1), ["module", n => picked.modules?.[n.path] ?? ""]], [root], {

@@ -37,10 +37,10 @@ def slot_cost(library, options, map, wanted):
 
 
 def core_table(costs, map, slot, names, where):
-    """A row for each core of the map that the chip has, or only for `names`: LUT, flip-flops, block
-    RAM and DSP together, then LUT / flip-flops of its parts. A port's share of the arbiter is the
-    arbiter's by the number of ports. Raises NotInChip on a name that is not there, `where` the chip
-    is from."""
+    """A row for each core of the map that the chip has, or only for `names`, the most LUTs first:
+    LUT, flip-flops, block RAM and DSP together, then LUT / flip-flops of its parts. A port's share
+    of the arbiter is the arbiter's by the number of ports. Raises NotInChip on a name that is not
+    there, `where` the chip is from."""
     def cost_of(pattern):
         return sum((cost for path, signals in costs.items() if re.fullmatch(pattern, path)
                     for cost in signals.values()), Cost())
@@ -71,4 +71,5 @@ def core_table(costs, map, slot, names, where):
                             f"make ip-synth IP={name} CHIP=1")
     return report.Table(["core in the chip", "LUT", "FF", "RAM16", "DSP", "itself", "registers",
                          f"slot {map['SLOT_COUNT']}", "memory port", "of the arbiter"],
-                        [row(name) for name in cores if not names or name in names])
+                        sorted((row(name) for name in cores if not names or name in names),
+                              key=lambda cells: -cells[1]))

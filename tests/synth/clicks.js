@@ -48,6 +48,7 @@ document.querySelector("#chip a").click();
 await rest();
 seen.push("clock " + document.querySelector("#chip a").textContent + " " +
   document.getElementById("longest").textContent + ", by " + all("#paths details[open] a").length);
+seen.push("wider " + all(".tabulator-tableholder").filter(t => t.scrollWidth > t.clientWidth).length);
 seen.push("rounded " + [104.5, 104.44, 104].map(clockText));
 let slack = read("slack");
 for (let left = 20; left && / 0 *$/.test(slack); left--) { // to the last bar

@@ -332,13 +332,13 @@ class Cores(unittest.TestCase):
     def rows(self, *names):
         return cores.core_table(self.COSTS, self.MAP, Cost(lut=12, ff=5), names, "here").rows
 
-    def test_a_share_has_each_part_once(self):
+    def test_a_share_has_each_part_once_and_the_largest_core_is_first(self):
         self.assertEqual(self.rows(), [
             ["core in the chip", "LUT", "FF", "RAM16", "DSP", "itself", "registers", "slot 6",
              "memory port", "of the arbiter"],
             ["low", "53", "56", "3.5", "4", "22 / 11", "4 / 32", "12 / 5", "5 / 6", "10 / 2"],
-            ["plain", "25", "19", "0", "0", "9 / 9", "4 / 5", "12 / 5", "", ""],
-            ["own", "39", "73", "0", "0", "1 / 1", "26 / 67", "12 / 5", "", ""]])
+            ["own", "39", "73", "0", "0", "1 / 1", "26 / 67", "12 / 5", "", ""],
+            ["plain", "25", "19", "0", "0", "9 / 9", "4 / 5", "12 / 5", "", ""]])
 
     def test_only_those_asked_for_are_told(self):
         self.assertEqual(len(self.rows("plain")), 2)

@@ -65,7 +65,9 @@ function showCalls(calls) {
 function showTimeline(state) {
     const events = state.events, svg = $('timeline'), width = svg.getBoundingClientRect().width || 1200, left = 120, height = 22;
     if (!events.length || !state.air) return;
-    const end = state.air.ns, span = Number($('span').value) * 1e9, begin = span ? Math.max(0, end - span) : 0;
+    const end = state.air.ns, first = state.calls.find(c => c.ns)?.ns ?? end, chosen = $('span').value;
+    // The first call waits for the modems to be set up: only its end is shown.
+    const span = chosen === 'call' ? 1.5 * (end - first) : Number(chosen) * 1e9, begin = span ? Math.max(0, end - span) : 0;
     const x = ns => left + (width - left - 10) * (ns - begin) / (end - begin);
     const lanes = [];
     const lane = name => lanes.find(l => l.name === name) ?? (lanes.push({name, mark: '', event: '', lost: '', calls: []}), lanes[lanes.length - 1]);
@@ -134,8 +136,9 @@ async function look() {
         showTimeline(state);
         showCalls(state.calls);
         showSlots(state.slots);
-        $('phase').className = state.over ? 'good' : '';
-        $('phase').textContent = state.over ? 'the mission is over' : state.air ? 'flying' : 'waiting for the simulator';
+        const verdict = state.calls.find(c => c.who === 'ground' && /equals|differs/.test(c.what))?.what ?? '';
+        $('phase').className = !state.over ? '' : /differs/.test(verdict) ? 'bad' : 'good';
+        $('phase').textContent = state.over ? ['the mission is over', state.found === undefined ? '' : `${state.found} corners`, verdict].filter(Boolean).join(', ') : state.air ? 'flying' : 'waiting for the simulator';
     } catch (error) {
         $('phase').className = 'bad';
         $('phase').textContent = 'the mission has ended, and its page with it (make run LIVE=1 keeps it)';

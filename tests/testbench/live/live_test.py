@@ -57,6 +57,7 @@ class Cases(Script):
             self.said, log = look.browse(f"http://127.0.0.1:{port}/",
                                          "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
                                          "--window-size=1280,1500", "--virtual-time-budget=4000")
+            state = urllib.request.urlopen(f"http://127.0.0.1:{port}/state").read().decode()
         self.assertNotRegex(log, "CONSOLE.*(rror|NOT_RESOLVED)")
         self.has(
             "the mission is over", '<p id="flight">size 96x64, cpu m3, guard 20</p>',
@@ -69,7 +70,8 @@ class Cases(Script):
             "the result equals the C[+][+] reference, bit by bit", "corners, the strongest",
             '<text x="0" y="[0-9]*">vision</text>',
             r"<title>hwengine1.getResult\(\): until [0-9.]* s</title>",
-            'id="phase" role="status" class="good"')
+            'id="phase" role="status" class="good">the mission is over, [0-9]+ corners, the result')
+        self.lacks(">0.00 s</text>")  # opens at the calls, not at the modems' set-up
         drawn = re.findall('data-features="([0-9]*)"', self.said)
         found = [len(call["features"]) for call in self.lines("calls") if "features" in call]
         self.assertEqual(drawn, [str(found[-1])])
@@ -83,6 +85,30 @@ class Cases(Script):
         self.assertGreater(sum(sum(e.get("accesses", {}).values()) for e in events), 100)
         for file in (*PAGE.glob("*.html"), *PAGE.glob("*.css")):
             self.lacks("(https?:)?//[a-z]", file)  # the page names no other host
+        self.narrow(state)
+
+    def narrow(self, state):
+        """At 420 pixels nothing is cut, or needs a scroll bar."""
+        page = (PAGE / "index.html").read_text()
+        for name in "live.css", "common.css":
+            text = next(TREE.glob(f"testbench/*/{name}"), PAGE / name).read_text()
+            page = page.replace(f'<link rel="stylesheet" href="{name}">', f"<style>{text}</style>")
+        common = (TREE / "testbench/page/common.js").read_text()
+        write("narrow.html", page.replace('<script src="common.js"></script>', f"""<script>
+window.fetch = async () => ({{json: () => ({state})}});
+setTimeout(() => document.body.append("cut: " + [...document.querySelectorAll("*")].filter(e =>
+  e.getBoundingClientRect().right > innerWidth + 1 || getComputedStyle(e).overflowX !== "visible" &&
+  e.scrollWidth > e.clientWidth + 1).map(e => e.tagName + e.id) + ";"), 1000);
+document.addEventListener("DOMContentLoaded", () => document.querySelector("details").open = true);
+{common}</script>""").replace('<script src="live.js"></script>',
+                              f"<script>{(PAGE / 'live.js').read_text()}</script>"))
+        # Chromium's windows are not narrower than 500 pixels: the page is in a frame.
+        write("frame.html", '<iframe src="narrow.html" width="420" height="2000"></iframe>'
+              """<script>setTimeout(() => document.body.append(
+frames[0].document.body.innerText.match(/cut: .*/)[0]), 2000)</script>""")
+        self.said = look.browse((self.work / "frame.html").as_uri(),
+                                "--allow-file-access-from-files")[0]
+        self.has("cut: ;")
 
     def lines(self, name):
         return [json.loads(line) for line in open(f"{name}.jsonl")]

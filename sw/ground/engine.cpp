@@ -159,18 +159,21 @@ void Engine::placePrograms(U32 now) {
         if (isGone)
             ::close(program->fd);
         else
-            streams_[channel].want(program->fd,
-                                   "the program on channel " + std::to_string(channel));
+            streams_[channel].want(program->fd, "the program on channel " + std::to_string(channel),
+                                   program->lateUs);
         program = waiting_.erase(program);
     }
 }
 
-int Engine::connect(int channel) {
+int Engine::connect(int channel, int lateMs) {
     int ends[2];
     if (!makePair(ends))
         return -1;
     std::lock_guard<std::mutex> lock(mutex_);
-    waiting_.push_back({ends[0], channel});
+    const U32 lateUs = static_cast<U32>(lateMs) < Stream::never / 1000
+                           ? static_cast<U32>(lateMs) * 1000
+                           : Stream::never;
+    waiting_.push_back({ends[0], channel, lateUs});
     placePrograms(clock_.nowUs());
     wake();
     return ends[1];

@@ -40,8 +40,9 @@ public:
     // Opens a connection to the peer, on a channel of 0..2 or (-1) any one. Returns the program's
     // end of it, a socket; -1 where no descriptor is left. The peer speaks once the link is up and
     // a channel is free; programs wait their turn. A lost port is opened again. The socket ends if
-    // there is no modem.
-    int connect(int channel);
+    // there is no modem. A message that the peer has not taken in `lateMs` is withdrawn by the end
+    // of the session; one that the link had no room for, by that of the connection. -1: never.
+    int connect(int channel, int lateMs = -1);
     size_t waiting() const; // programs without a channel
     // Lets the peer open connections. Each makes the returned descriptor readable, also after the
     // port was lost and found again. -1: another has called this.
@@ -70,6 +71,7 @@ private:
     void writeSerial(U32 now);
     struct Waiting { // a program without a channel
         int fd, channel;
+        U32 lateUs;
     };
     int freeChannel(int wanted, U32 now);
     void placePrograms(U32 now);
@@ -79,6 +81,7 @@ private:
     bool sendMessage(int channel, U32 now);
     void end(int channel, int level, const std::string& why);
     void openWanted(U32 now);
+    U32 withdrawLate(U32 now);
     void reportLost();
     U32 beat(U32 now);
     void wake();
@@ -105,6 +108,7 @@ private:
     unsigned full_ = 0;   // a bit a channel: the link has no room for its message
     unsigned lost_ = 0;   // unconfirmed calls of programs that have left
     Stream streams_[LINK_CHANNELS];
+    std::deque<U32> late_[LINK_CHANNELS]; // when each message of the link's will be late
     std::deque<Waiting> waiting_;
     std::unique_ptr<Link> link_;
     std::vector<U8> serialOut_; // the frame's bytes that the port has not taken yet

@@ -85,6 +85,7 @@ void Engine::onState(void* context, Link_State state) {
 
 void Engine::onOutcome(void* context, int channel, U32 isCall, Link_Outcome outcome) {
     const Stream& s = self(context).streams_[channel];
+    self(context).late_[channel].pop_front();
     bool hasLeft = !s.is(Stream::State::Open) || s.ended();
     self(context).lost_ += hasLeft && isCall && outcome == LINK_UNKNOWN;
 }
@@ -280,9 +281,10 @@ bool Engine::sendMessage(int channel, U32 now) {
         if (!full_)
             turn_ = channel;
         full_ |= 1u << channel;
-    } else if (status == LINK_OK)
+    } else if (status == LINK_OK) {
+        late_[channel].push_back(s.lateAt());
         s.taken(now);
-    else
+    } else
         end(channel, 1, "has no channel any more");
     return status == LINK_OK;
 }
@@ -329,6 +331,29 @@ void Engine::reportLost() {
     lost_ = 0;
 }
 
+// Withdraws what is late, so that nobody carries out what its caller has given up. Returns when to
+// look again, in microseconds.
+U32 Engine::withdrawLate(U32 now) {
+    U32 wait = 0xFFFFFFFFu;
+    const auto isLate = [&wait, now](U32 at) {
+        const bool is = static_cast<int32_t>(at - now) <= 0;
+        wait = std::min(wait, is ? 0 : at - now);
+        return is;
+    };
+    for (int channel = 0; channel < LINK_CHANNELS; ++channel) {
+        const Stream& s = streams_[channel];
+        if (!late_[channel].empty() && isLate(late_[channel].front())) {
+            log_(0, s.name() + " has a message that nobody took in time: the session ends");
+            Link_stop(link_.get(), now);
+            Link_start(link_.get(), now);
+            return 0;
+        }
+        if (s.is(Stream::State::Open) && (full_ >> channel & 1) && isLate(s.lateAt()))
+            end(channel, 0, "waits for room longer than its time-out");
+    }
+    return wait;
+}
+
 U32 Engine::beat(U32 now) {
     U32 wait = 0xFFFFFFFFu;
     for (Stream& s : streams_)
@@ -345,8 +370,9 @@ void Engine::loop(std::unique_lock<std::mutex>& lock) {
         reportLost();
         placePrograms(now);
         Link_poll(link_.get(), now);
-        U32 deadline = std::min({Link_deadline(link_.get(), now), beat(now), pacer_.deadline(now),
-                                 waiting_.empty() ? 0xFFFFFFFFu : lookUs});
+        const U32 late = withdrawLate(now);
+        U32 deadline = std::min({late, Link_deadline(link_.get(), now), beat(now),
+                                 pacer_.deadline(now), waiting_.empty() ? 0xFFFFFFFFu : lookUs});
         std::vector<pollfd> fds;
         for (Stream& s : streams_)
             fds.push_back(s.interest(!(full_ >> (&s - streams_) & 1)));

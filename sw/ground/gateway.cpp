@@ -183,6 +183,7 @@ void setProperties(const std::shared_ptr<Ice::Properties>& p, const Options& o) 
     preset("XBeeAT.Trace", std::to_string(o.trace));
     p->setProperty("XBeeAT.Setup", o.setUp ? "1" : "0");
     p->setProperty("XBeeAT.KeyFile", o.keyFile);
+    p->setProperty("Ice.Override.ConnectTimeout", "30000"); // the modem is set up meanwhile
     if (!o.modemKeyFile.empty())
         p->setProperty("XBeeAT.ModemKey", readModemKey(o.modemKeyFile));
     Ice::registerPluginFactory("XBeeAT", createXBeeAT, true);
@@ -200,6 +201,7 @@ std::string radioEndpoint(const Options& o) {
     else
         s << "xbee-at -d \"" << o.device << "\" -b " << o.baud << " -a " << o.target << " -s "
           << o.source << " -c " << o.rfChannel << " -i " << o.pan << " -g " << o.guardMs;
+    s << " -t " << o.wait * 1000;
     return s.str();
 }
 
@@ -233,7 +235,9 @@ void addOptions(CLI::App& app, Options& o) {
                    "reached, too. Without: nowhere");
     app.add_option("--rights", o.rights,
                    "JSON file: which certificate may call which identities and operations");
-    app.add_option("--wait", o.wait, "seconds that a call waits for the radio, then it fails")
+    app.add_option("--wait", o.wait,
+                   "seconds that a call waits for the radio, and then for the vehicle to take it; "
+                   "then it fails")
         ->check(CLI::Range(1, 3600));
     app.add_option("-t,--trace", o.trace, "0 errors, 1 link and connections, 2 AT commands")
         ->check(CLI::Range(0, 2));

@@ -21,7 +21,8 @@ public:
         : instance_(instance), options_(options) {}
     IceInternal::TransceiverPtr connect() override {
         auto engine = instance_->engine(options_);
-        int fd = engine->connect(options_.channel == 255 ? -1 : options_.channel);
+        int fd =
+            engine->connect(options_.channel == 255 ? -1 : options_.channel, options_.timeoutMs);
         if (fd < 0) // no descriptor is left
             throw Ice::ConnectFailedException(__FILE__, __LINE__, errno);
         return new Transceiver(engine, fd);

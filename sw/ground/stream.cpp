@@ -13,7 +13,7 @@ namespace XBeeAT {
 namespace {
 
 constexpr size_t bufferBytes = 4096, headerBytes = 14;
-constexpr U32 never = 0xFFFFFFFFu;
+constexpr U32 noBeat = 0xFFFFFFFFu;
 constexpr U32 heartbeatUs = 5000000; // below any sensible Ice.ACM.Timeout
 constexpr U32 signUs = 10000000;     // Ice 3.8 cuts a connection on which nothing comes for 60 s
 constexpr U32 leavingUs = 10000000;
@@ -28,10 +28,11 @@ bool isOver(ssize_t count) {
 
 } // namespace
 
-void Stream::want(int fd, const std::string& name) {
+void Stream::want(int fd, const std::string& name, U32 lateUs) {
     close(State::Wanted);
     fd_ = fd;
     name_ = name;
+    lateUs_ = lateUs;
 }
 
 void Stream::call() {
@@ -71,6 +72,7 @@ void Stream::close(State to) {
     in_.clear();
     ended_ = isServer_ = greeted_ = owesSign_ = false;
     pending_ = 0;
+    lateUs_ = never;
 }
 
 pollfd Stream::interest(bool reads) const {
@@ -88,6 +90,9 @@ U32 Stream::messageSize() const {
 void Stream::read(U32 nowUs) {
     U8 bytes[bufferBytes];
     ssize_t count = recv(fd_, bytes, sizeof bytes, 0);
+    if (out_.empty())
+        since_ = nowUs;
+    readAt_ = nowUs;
     if (count > 0)
         out_.insert(out_.end(), bytes, bytes + count);
     ended_ = isOver(count);
@@ -128,6 +133,7 @@ void Stream::taken(U32 nowUs) {
     if (wantsReply && pending_++ == 0)
         heardAt_ = nowUs;
     out_.erase(out_.begin(), out_.begin() + messageSize());
+    since_ = readAt_;
 }
 
 bool Stream::give(const U8* message, U32 size, U32 nowUs) {
@@ -164,7 +170,7 @@ U32 Stream::beat(U32 nowUs) {
         close();
     }
     if (!is(State::Open) || !(pending_ || owesSign_))
-        return never;
+        return noBeat;
     const U32 since = nowUs - (pending_ ? heardAt_ : owesSince_);
     const U32 limit = pending_ ? heartbeatUs : signUs;
     if (since < limit)

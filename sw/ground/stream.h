@@ -35,7 +35,9 @@ public:
     // Takes the program's socket (and closes it in the end), which must not block. `name` is for
     // log lines. A program that was called is a server, and its first ValidateConnection is its
     // greeting.
-    void want(int fd, const std::string& name);
+    // A message is late when the peer has not taken it after `lateUs`.
+    static constexpr U32 never = 2000000000;
+    void want(int fd, const std::string& name, U32 lateUs = never);
     void call(); // by the peer
     void accept(int fd, const std::string& name);
     void open(U32 nowUs);
@@ -57,8 +59,9 @@ public:
     Next next(U32 longest);
     bool isCall() const; // whether the message is a call
     const U8* data() const { return out_.data(); }
-    U32 size() const { return messageSize(); } // also of a message that makes no sense
-    void taken(U32 nowUs);                     // the link has taken the message
+    U32 size() const { return messageSize(); }      // also of a message that makes no sense
+    U32 lateAt() const { return since_ + lateUs_; } // when the next message will be late
+    void taken(U32 nowUs);                          // the link has taken the message
 
     // Hands the program a message. False: the program has left 64 KiB unread.
     bool give(const U8* message, U32 size, U32 nowUs);
@@ -87,10 +90,11 @@ private:
     std::vector<U8> out_; // from the program: less than a message and a buffer
     std::vector<U8> in_;  // to the program, not yet written
     bool ended_ = false, isServer_ = false, greeted_ = false;
-    bool owesSign_ = false;         // the program has sent something since it last heard something,
-    U32 owesSince_ = 0;             // since then
-    unsigned pending_ = 0;          // two-way requests of the program that are not answered yet
-    U32 heardAt_ = 0;               // when it got its last message
+    bool owesSign_ = false; // the program has sent something since it last heard something,
+    U32 owesSince_ = 0;     // since then
+    unsigned pending_ = 0;  // two-way requests of the program that are not answered yet
+    U32 heardAt_ = 0;       // when it got its last message
+    U32 lateUs_ = never, readAt_ = 0, since_ = 0; // last read; since when the next message waits
     U32 activeAt_ = 0, leftAt_ = 0; // when it last sent or took something; when its leaving began
 };
 

@@ -138,6 +138,52 @@ TEST_F(EngineTest, AMessageThatIsTooLongEndsItsConnectionOnly) {
     close(bad);
 }
 
+// Neither the message that the UAV's program does not take nor the one behind it is taken later.
+TEST_F(EngineTest, WhatIsLateIsWithdrawnAndItsSenderIsTold) {
+    auto engine = start();
+    const int other = engine->connect(0), fd = engine->connect(1, 2000);
+    ASSERT_TRUE(rig_.until([&] { return rig_.opened.size() == 2; }));
+    rig_.with([&] { rig_.refuse = true; });
+    const uint64_t begun = rig_.with([&] { return rig_.ns(); });
+    writeAll(fd, message(1));
+    writeAll(fd, message(2));
+    EXPECT_TRUE(readAll(fd, 1).empty());
+    EXPECT_TRUE(readAll(other, 1).empty()) << "all share the session";
+    const double seconds = double(rig_.with([&] { return rig_.ns(); }) - begun) / 1e9;
+    EXPECT_GE(seconds, 2.0);
+    EXPECT_LT(seconds, 2.5);
+    EXPECT_TRUE(logged("0 the program on channel 1 has a message that nobody took in time"))
+        << log();
+    close(fd);
+    close(other);
+    EXPECT_TRUE(rig_.until([&] { return rig_.opened.size() == 4; })) << "the end is heard";
+    rig_.with([&] {
+        rig_.refuse = false;
+        rig_.echo = true;
+    });
+    const int next = engine->connect(1, 2000);
+    echoes(next, 3);
+    rig_.with([&] { EXPECT_EQ(rig_.received, decltype(rig_.received)(1, {1, message(3)})); });
+    close(next);
+}
+
+TEST_F(EngineTest, WhatTheLinkHasNoRoomForInTimeGoesWithItsConnection) {
+    auto engine = start();
+    const int other = engine->connect(0), fd = engine->connect(1, 2000);
+    ASSERT_TRUE(rig_.until([&] { return rig_.opened.size() == 2; }));
+    rig_.with([&] { rig_.refuse = true; });
+    writeAll(other, message(1, 8000));
+    writeAll(other, message(2, 8000));
+    ASSERT_TRUE(rig_.until([&] { return Link_statistics(rig_.link())->framesReceived > 80; }));
+    writeAll(fd, message(3, 4000));
+    EXPECT_TRUE(readAll(fd, 1).empty());
+    EXPECT_TRUE(logged("waits for room longer than its time-out: connection closed")) << log();
+    rig_.with([&] { rig_.refuse = false; });
+    EXPECT_TRUE(rig_.until([&] { return rig_.received.size() == 2; })) << "the others' arrive";
+    close(fd);
+    close(other);
+}
+
 TEST_F(EngineTest, WhoGivesUpBeforeTheLinkIsUpFreesItsChannel) {
     rig_.with([&] { rig_.echo = true; });
     auto engine = start();

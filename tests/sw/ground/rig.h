@@ -67,6 +67,7 @@ public:
     Link* link() { return link_.get(); }
     U32 us() const { return static_cast<U32>(now_ / 1000); }
     uint64_t ns() const { return now_; }
+    unsigned sessions() const { return Link_statistics(link_.get())->sessions; }
     bool isUp() const { return Link_state(link_.get()) == LINK_STATE_UP; }
 
     static constexpr uint32_t guardMs = 20;

@@ -180,6 +180,21 @@ TEST_P(LinkLayer, ALateMessageDoesNotReachTheNextConnection) {
     EXPECT_TRUE(b.received.empty());
 }
 
+TEST_P(LinkLayer, AMessageThatIsNotTakenEndsTheSessionAfter27Seconds) {
+    ASSERT_TRUE(connect());
+    b.refuse = true;
+    a.open(1);
+    ASSERT_EQ(a.send(1, {1, 2, 3}, 1), LINK_OK);
+    const uint64_t start = now;
+    ASSERT_TRUE(until([&] { return !a.outcomes.empty(); }, 30'000'000));
+    EXPECT_EQ(a.outcomes[1], LINK_UNKNOWN);
+    EXPECT_NEAR(double(now - start), 27e6, 300'000);
+    run(1'000'000);
+    b.refuse = false;
+    run(5'000'000);
+    EXPECT_TRUE(b.received.empty());
+}
+
 TEST_P(LinkLayer, AMessageThatIsNotTakenWaitsAndStopsTheSender) {
     ASSERT_TRUE(connect());
     b.refuse = true;

@@ -141,6 +141,18 @@ TEST_F(StockIce, AUavThatIsOffIsAConnectTimeout) {
     EXPECT_NO_THROW(world_.proxy(ic.communicator())->ice_ping());
 }
 
+TEST_F(StockIce, ACallThatHasTimedOutIsNeverCarriedOut) {
+    Ice::CommunicatorHolder ic(world_.client({{"Ice.Override.ConnectTimeout", "60000"}}));
+    auto echo = world_.proxy(ic.communicator())->ice_timeout(2000)->ice_invocationTimeout(-2);
+    echo->ice_ping();
+    const auto take = world_.rig.take;
+    world_.rig.with([&] { world_.rig.take = [](int, const U8*, U32) { return 1; }; });
+    EXPECT_THROW(echo->note(1), Ice::LocalException);
+    EXPECT_TRUE(world_.rig.until([&] { return world_.rig.sessions() == 2; }));
+    world_.rig.with([&] { world_.rig.take = take; });
+    EXPECT_EQ(world_.proxy(ic.communicator())->noted(), 0);
+}
+
 TEST_F(StockIce, EndpointsKeepTheirOptionsAsTextAndWrongOnesAreRefused) {
     Ice::CommunicatorHolder ic(world_.client());
     auto text = [&](const std::string& endpoint) {

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""core_exchange: the chip's registers for other tools and for people.
+"""core_exchange: the chip's registers for other tools.
 
-CMSIS-SVD 1.3, SystemRDL 2.0, IP-XACT (IEEE 1685-2014) and a page in HTML. Slots are coremap.Slot.
+CMSIS-SVD 1.3, SystemRDL 2.0 and IP-XACT (IEEE 1685-2014). Slots are coremap.Slot.
 """
 import xml.etree.ElementTree as ET
-from html import escape
 
-from regmap import range_of, registers_of
+from regmap import registers_of
 
 HAND = "Generated from ip/cores.list: do not edit."
 TITLE = "Registers of the FPGA in the FSMC window NE2"
@@ -140,36 +139,7 @@ def ipxact_of(slots):
     return xml(root)
 
 
-def html_block(slot):
-    s = (f'<h2 id="{slot.name}">{slot.name}</h2>\n<p>{escape(slot.description["doc"])} '
-         f"Slot {slot.number}, 0x{slot.address:08X}.</p>\n<table>\n"
-         "<tr><th>word<th>register<th>access<th>bits<th>meaning\n")
-    for r in registers_of(slot.description):
-        page = f", PAGE 0x{r['page']:X}" if r["page"] >= 0 else ""
-        s += (f"<tr><td>{r['word']}{page}<td><b>{r['name']}</b><td>{r['access']}<td>"
-              f"<td>{escape(r['doc'])}\n")
-        for f in r["fields"]:
-            s += (f"<tr><td><td>{f['name']}<td><td>{range_of(f['lsb'], f['width'])}"
-                  f"<td>{escape(f['doc'])}\n")
-    return s + "</table>\n"
-
-
-def html_of(slots):
-    links = "".join(f'<a href="#{slot.name}">{slot.name}</a> ' for slot in slots)
-    return f"""<!DOCTYPE html>
-<meta charset="utf-8">
-<title>IceSoC: registers</title>
-<style>body {{ font: 15px sans-serif; max-width: 60em; margin: 2em auto }}
-table {{ border-collapse: collapse }}
-th, td {{ text-align: left; padding: 2px 10px; border-bottom: 1px solid #ddd }}</style>
-<h1>Registers</h1>
-<p>{HAND} Access: ro read only; rw read and write; w1c write 1 to clear; ws a write acts, reads as \
-0.</p>
-<p>{links}</p>
-{"".join(map(html_block, slots))}"""
-
-
 def files(slots):
     """Returns the files, name to text."""
     return {"icesoc.svd": svd_of(slots), "icesoc.rdl": rdl_of(slots),
-            "icesoc.ipxact.xml": ipxact_of(slots), "registers.html": html_of(slots)}
+            "icesoc.ipxact.xml": ipxact_of(slots)}

@@ -254,8 +254,8 @@ function(icesoc_chip)
   icesoc_chip_property(chip chip)
   add_custom_command(OUTPUT ${GEN_DIR}/map.regs.json ${GEN_DIR}/soc_cores.vh ${GEN_DIR}/soc_cores.c
                      ${GEN_DIR}/soc_pins.h ${GEN_DIR}/core_pins.ucf ${GEN_DIR}/icesoc.svd
-                     ${GEN_DIR}/registers.html ${GEN_DIR}/probes.json ${GEN_DIR}/icesoc.rdl
-                     ${GEN_DIR}/icesoc.ipxact.xml ${check}
+                     ${GEN_DIR}/probes.json ${GEN_DIR}/icesoc.rdl ${GEN_DIR}/icesoc.ipxact.xml
+                     ${check}
     COMMAND ${CMAKE_SOURCE_DIR}/bus/coremap.py ${CORES}
             --base ${CMAKE_SOURCE_DIR}/bus/map.regs.json ${options} ${chip}
             --block 0=system=${CMAKE_SOURCE_DIR}/hdl/system/system.regs.json

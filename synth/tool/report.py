@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""report: the figures as text for the terminal, as JSON for machines, as Markdown, and as one HTML
-page that needs no network."""
+"""report: the figures as text for the terminal, as JSON for machines, and as one HTML page that
+needs no network; differences between two reports as Markdown."""
 import dataclasses
 import itertools
 
@@ -103,7 +103,7 @@ def clock_of(f):
 def design_row(plan, row, accepted):
     name, f = row.design.name, row.figures
     if not f:
-        return [name, "failed" if row.main.wanted else row.state]
+        return [name, "failed"]
 
     def change(key):
         return ("new" if not accepted else
@@ -224,22 +224,6 @@ def entries(report):
                 add(f"ff {other.family}", other.figures["ff"], "flip-flops")
     return {"failures": [failure.partition("\n")[0] for failure in report.failures],
             "states": {row.design.name: row.state for row in report.rows}, "entries": found}
-
-
-def markdown(report):
-    text = (f"# Utilisation of {report.plan.chip['name']}\n\n{short_version(report.yosys)}, commit "
-            f"{report.commit or 'unknown'}\n\n")
-    for row in report.rows:
-        if row.design.paper and row.figures:
-            tables = [paper_table(report.plan, row), cost_table(report.library, row),
-                      path_table(report.plan, row)]
-            text += "\n".join([f"## {row.design.title}", *(t.markdown() for t in tables), ""])
-    if report.cores:
-        text += f"## Cores\n{report.cores.markdown()}\n"
-    text += "## All designs\n"
-    text += design_table(report.plan, report.rows, report.baseline["designs"]).markdown()
-    return text + "".join(f"\n{line}\n" for row in report.rows
-                          for line in [f"**Stop:** {f}" for f in row.failures] + row.notes)
 
 
 def differences(before, after):

@@ -11,7 +11,6 @@
 #define OS_CPU_HOOKS_EN 1u
 #define OS_DEBUG_EN 0u
 #define OS_EVENT_MULTI_EN 0u
-#define OS_EVENT_NAME_EN 0u
 #define OS_LOWEST_PRIO 63u
 #define OS_MAX_EVENTS 16u
 #define OS_MAX_FLAGS 1u
@@ -21,9 +20,7 @@
 #define OS_SCHED_LOCK_EN 1u
 #define OS_TICK_STEP_EN 0u
 #define OS_TICKS_PER_SEC 1000u
-#define OS_TLS_TBL_SIZE 0u
 
-#define OS_TASK_TMR_STK_SIZE 128u
 #define OS_TASK_STAT_STK_SIZE 128u
 #define OS_TASK_IDLE_STK_SIZE 128u
 
@@ -88,13 +85,5 @@
 #define OS_TIME_TICK_HOOK_EN 0u
 
 #define OS_TMR_EN 0u
-#define OS_TMR_CFG_MAX 2u
-#define OS_TMR_CFG_NAME_EN 0u
-#define OS_TMR_CFG_WHEEL_SIZE 2u
-#define OS_TMR_CFG_TICKS_PER_SEC 10u
-
-#define OS_TRACE_EN 0u
-#define OS_TRACE_API_ENTER_EN 0u
-#define OS_TRACE_API_EXIT_EN 0u
 
 #endif

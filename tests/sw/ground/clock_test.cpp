@@ -3,10 +3,8 @@
 // clock_test: the engine's clock, from a simulator's counters and from the machine.
 
 #include "clock.h"
-#include "sim_status.h"
+#include "clock_file.h"
 #include <chrono>
-#include <cstdlib>
-#include <cstring>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <system_error>
@@ -20,25 +18,17 @@ namespace {
 class SimulatedClock : public testing::Test {
 protected:
     SimulatedClock() {
-        std::memcpy(status_.magic, simMagic, sizeof simMagic);
         (void)!pipe(pipe_);
         show(0);
     }
     ~SimulatedClock() override {
-        unlink(file_.c_str());
         close(pipe_[0]);
         close(pipe_[1]);
     }
-    void show(uint64_t us) {
-        status_.ns = us * 1000;
-        std::fstream out(file_, std::ios::in | std::ios::out | std::ios::binary);
-        if (!out)
-            out.open(file_, std::ios::out | std::ios::binary);
-        out.write(reinterpret_cast<const char*>(&status_), sizeof status_);
-    }
+    void show(uint64_t us) { status_.set(us * 1000); }
 
-    SimStatus status_{};
-    std::string file_ = testing::TempDir() + "clock." + std::to_string(getpid());
+    ClockFile status_;
+    const std::string file_ = status_.path();
     int pipe_[2];
 };
 
@@ -84,7 +74,6 @@ TEST_F(SimulatedClock, FileOfSomethingElseIsRefused) {
 
 TEST_F(SimulatedClock, EnvironmentNamesIt) {
     show(77);
-    setenv("XBEEAT_CLOCK", file_.c_str(), 1);
     EXPECT_EQ(Clock().nowUs(), 77u);
     unsetenv("XBEEAT_CLOCK");
     Clock machine;

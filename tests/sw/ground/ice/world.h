@@ -6,10 +6,157 @@
 #ifndef WORLD_H
 #define WORLD_H
 
+#include "../rig.h"
 #include "Echo.h"
-#include "relay.h"
 #include <Ice/Ice.h>
+#include <arpa/inet.h>
+#include <cerrno>
+#include <fcntl.h>
+#include <netinet/tcp.h>
 #include <set>
+#include <stdexcept>
+#include <sys/socket.h>
+#include <unistd.h>
+
+// The rig's UAV hands each channel of its link to an Ice server on 127.0.0.1, and a connection of
+// that server's to the ground on channel 3. It runs in the rig's thread.
+class Relay {
+public:
+    // `server`: TCP port of the UAV's objects.
+    Relay(Rig& rig, int server) : rig_(rig), server_(server) {
+        listener_ = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+        sockaddr_in any = local(0);
+        socklen_t size = sizeof any;
+        if (bind(listener_, reinterpret_cast<sockaddr*>(&any), size) != 0 ||
+            listen(listener_, 4) != 0 ||
+            getsockname(listener_, reinterpret_cast<sockaddr*>(&any), &size) != 0)
+            throw std::runtime_error("relay: no TCP port");
+        port_ = ntohs(any.sin_port);
+        rig_.with([this] {
+            rig_.take = [this](int channel, const U8* data, U32 count) {
+                return take(lines_[channel], data, count);
+            };
+            rig_.opening = [this](int channel, bool isOpen) { opening(channel, isOpen); };
+            rig_.step = [this] { step(); };
+        });
+    }
+    ~Relay() {
+        rig_.with([this] {
+            rig_.take = nullptr;
+            rig_.opening = nullptr;
+            rig_.step = nullptr;
+        });
+        reset();
+        close(listener_);
+    }
+    Relay(const Relay&) = delete;
+    Relay& operator=(const Relay&) = delete;
+
+    int port() const { return port_; } // where the UAV's server reaches the ground
+    // The UAV's processor starts again.
+    void reboot() {
+        rig_.with([this] {
+            reset();
+            rig_.bootUav();
+        });
+    }
+
+private:
+    static constexpr int ownChannel = 3;
+    struct Line {
+        int fd = -1;
+        Rig::Bytes in, out; // from TCP, not yet a whole message; to TCP, not yet written
+    };
+
+    static sockaddr_in local(int port) {
+        sockaddr_in a{};
+        a.sin_family = AF_INET;
+        a.sin_port = htons(static_cast<uint16_t>(port));
+        a.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        return a;
+    }
+    void reset() {
+        for (Line& line : lines_)
+            end(line);
+    }
+    static void end(Line& line) {
+        if (line.fd >= 0)
+            close(line.fd);
+        line = Line();
+    }
+    static void begin(Line& line, int fd) {
+        int yes = 1;
+        setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+        fcntl(fd, F_SETFL, O_NONBLOCK);
+        line.fd = fd;
+    }
+    void opening(int channel, bool isOpen) {
+        Line& line = lines_[channel];
+        end(line);
+        if (!isOpen)
+            return;
+        int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+        sockaddr_in to = local(server_);
+        if (connect(fd, reinterpret_cast<sockaddr*>(&to), sizeof to) == 0)
+            begin(line, fd);
+        else
+            close(fd);
+    }
+    static int take(Line& line, const U8* data, U32 count) {
+        if (line.out.size() > 32768)
+            return 1; // the server is slow
+        if (line.fd >= 0)
+            line.out.insert(line.out.end(), data, data + count);
+        return 0;
+    }
+    void step() {
+        if (lines_[ownChannel].fd < 0) {
+            int fd = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
+            if (fd >= 0 && Link_openChannel(rig_.link(), ownChannel) == LINK_OK)
+                begin(lines_[ownChannel], fd);
+            else if (fd >= 0)
+                close(fd);
+        }
+        for (int channel = 0; channel < LINK_CHANNELS; ++channel) {
+            Line& line = lines_[channel];
+            if (line.fd >= 0 && !(move(line) && sendMessages(channel))) {
+                Link_closeChannel(rig_.link(), channel);
+                end(line);
+            }
+        }
+    }
+    // Bytes of the socket; false: it has ended.
+    static bool move(Line& line) {
+        if (!line.out.empty()) {
+            ssize_t count = send(line.fd, line.out.data(), line.out.size(), MSG_NOSIGNAL);
+            if (count > 0)
+                line.out.erase(line.out.begin(), line.out.begin() + count);
+        }
+        if (line.in.size() > 32768)
+            return true;
+        U8 bytes[4096];
+        ssize_t count = recv(line.fd, bytes, sizeof bytes, 0);
+        line.in.insert(line.in.end(), bytes, bytes + std::max<ssize_t>(count, 0));
+        return count > 0 || (count < 0 && errno == EAGAIN);
+    }
+    bool sendMessages(int channel) {
+        Rig::Bytes& in = lines_[channel].in;
+        while (in.size() >= 14) {
+            U32 size = static_cast<U32>(in[10] | in[11] << 8 | in[12] << 16 | in[13] << 24);
+            if (in.size() < size)
+                return true;
+            Link_Status status = Link_send(rig_.link(), channel, in.data(), size, 0);
+            if (status != LINK_OK)
+                return status == LINK_FULL;
+            in.erase(in.begin(), in.begin() + size);
+        }
+        return true;
+    }
+
+    Rig& rig_;
+    int server_, listener_ = -1, port_ = 0;
+    Line lines_[LINK_CHANNELS];
+};
 
 class EchoServant : public RadioTest::Uav {
 public:

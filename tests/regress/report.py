@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""report: writes the results of a run as a page, as Markdown and as JSON."""
+"""report: writes the results of a run as a page and as JSON."""
 import json
 import pathlib
 import re
@@ -75,35 +75,6 @@ def gather(history, tests, results, failures, source):
     return data
 
 
-def cell(text):
-    """Escapes a text for a table of Markdown."""
-    return text.replace("&", "&amp;").replace("<", "&lt;").replace("|", "\\|")[:300]
-
-
-def table(title, rows):
-    return f"\n{title}\n{'|---' * (title.count('|') - 1)}|\n" + \
-        "".join(f"| {' | '.join(row)} |\n" for row in rows) if rows else ""
-
-
-def markdown(data):
-    text = (f"# Regression: {data['passed']} passed, {data['failed']} failed, {data['skipped']} "
-            f"skipped\n\nCommit `{data['commit']}`, {data['seconds']:.0f} s.\n")
-    text += table("| light | | |", [(e["name"], e["state"], e["text"]) for e in data["lights"]])
-    text += table("| reason | test | changed | repeat |", [
-        (cell(": ".join(filter(None, (f["place"], f["reason"])))), cell(f["name"]),
-         cell(f["changed"]), f"`{f['repeat']}`") for f in data["failures"]])
-    text += table("| requirement that is not proven | page | tests |", [
-        (e["text"], e["page"], ", ".join(e["open"])) for e in data["plan"]
-        if e["state"] == "failed"])
-    if data["flaky"]:
-        text += "\nFlaky (passed and failed with the same code):\n"
-        text += "".join(f"- {name}\n" for name in data["flaky"])
-    if data["seeds"]:
-        text += "\nSeeds that failed, and have not passed since (`make regress KEPT=1`):\n"
-        text += "".join(f"- {each['test']} SEED={each['seed']}\n" for each in data["seeds"])
-    return text
-
-
 def write_reports(data, failures, libraries, out):
     style, script = page_parts(libraries)
     # Drawings get the rest of the page's size.
@@ -115,4 +86,3 @@ def write_reports(data, failures, libraries, out):
     write(out / "report.html", filled(page, {"/*COMMON*/": style, "//COMMON": script,
                                              "/*DATA*/null": script_safe(data)}))
     write(out / "report.json", json.dumps(data, indent=1))
-    write(out / "summary.md", markdown(data))

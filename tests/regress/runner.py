@@ -49,33 +49,25 @@ class Progress:
         """Names each test that takes three times its usual time (60 s if that is not known) with
         its age, and again at twice that age, until `done` is set. At ten times it ends it."""
         while not done.wait(1):
-            self.name_late()
-            for name, told in self.hanging():
+            for name, told in self.late():
                 with contextlib.suppress(OSError, StopIteration):  # it has just ended
                     if process := process_of(name, self.running):
-                        self.hangs[name] = told, ""
                         where, stacks = end_hang(process, build)
-                        self.hangs[name] = told + where, stacks
+                        self.hangs[name] = f"Hang, ended after {told}{where}", stacks
 
-    def told(self, name, age):
-        usual = self.usual.get(name)
-        return f"{age:.0f} s, usually " + ("unknown" if usual is None else f"{usual:.1f} s")
-
-    def name_late(self):
-        for name, begin in list(self.running.items()):
-            age = time.monotonic() - begin
-            if age >= self.due[name]:
-                self.due[name] = 2 * age
-                self._line(f"{name} has run for {self.told(name, age)}", True)
-
-    def hanging(self):
-        """(name, what is said) of the tests that have taken ten times their usual time."""
+    def late(self):
+        """Names tests that are late; (name, its age) of those that have taken ten times their usual
+        time."""
         more = int(os.environ.get("FUZZ", 1))  # times the usual inputs
         for name, begin in list(self.running.items()):
             age, usual = time.monotonic() - begin, self.usual.get(name)
-            if name not in self.hangs and age >= more * max(
-                    SHORTEST_HANG, 10 * (60 if usual is None else usual)):
-                yield name, f"Hang, ended after {self.told(name, age)}"
+            told = f"{age:.0f} s, usually " + ("unknown" if usual is None else f"{usual:.1f} s")
+            if age >= self.due[name]:
+                self.due[name] = 2 * age
+                self._line(f"{name} has run for {told}", True)
+            limit = more * max(SHORTEST_HANG, 10 * (60 if usual is None else usual))
+            if age >= limit and name not in self.hangs:
+                yield name, told
 
     def end(self, name, status, seconds):
         self.running.pop(name, None)
@@ -157,7 +149,8 @@ def run_tests(tests, build, out, seed, jobs, history):
             progress.end(name, "passed" if "Passed" in how else
                          "skipped" if "Skipped" in how else "failed", float(ended[3]))
     done = threading.Event()
-    threading.Thread(target=progress.watch, args=[done, str(build)], daemon=True).start()
+    watcher = threading.Thread(target=progress.watch, args=[done, str(build)], daemon=True)
+    watcher.start()
     try:
         status, text = run(
             ["ctest", "--test-dir", build, "-I", chosen.resolve(), "-j", jobs, "--output-junit",
@@ -165,6 +158,7 @@ def run_tests(tests, build, out, seed, jobs, history):
              "--test-output-truncation", "middle"], {"SEED": seed}, on_line)
     finally:
         done.set()
+        watcher.join()  # it may be reading the stacks of a hang
     if sys.stdout.isatty():
         print("\r\033[K", end="")
     try:

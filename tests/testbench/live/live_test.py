@@ -16,7 +16,7 @@ import urllib.request
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-from script import TREE, Script, fresh, main, write  # noqa: E402
+from script import TREE, Script, edit, fresh, main, write  # noqa: E402
 import look  # noqa: E402
 
 BUILD = Path(sys.argv[3]).resolve()
@@ -89,23 +89,16 @@ class Cases(Script):
 
     def narrow(self, state):
         """At 420 pixels nothing is cut, or needs a scroll bar."""
-        page = (PAGE / "index.html").read_text()
-        for name in "live.css", "common.css":
-            text = next(TREE.glob(f"testbench/*/{name}"), PAGE / name).read_text()
-            page = page.replace(f'<link rel="stylesheet" href="{name}">', f"<style>{text}</style>")
-        common = (TREE / "testbench/page/common.js").read_text()
-        write("narrow.html", page.replace('<script src="common.js"></script>', f"""<script>
+        for file in (*PAGE.iterdir(), *(TREE / "testbench/page").glob("common.*")):
+            write(file.name, file.read_text())
+        common = '<script src="common.js">'
+        edit("index.html", common, f"""<script>
 window.fetch = async () => ({{json: () => ({state})}});
-setTimeout(() => document.body.append("cut: " + [...document.querySelectorAll("*")].filter(e =>
-  e.getBoundingClientRect().right > innerWidth + 1 || getComputedStyle(e).overflowX !== "visible" &&
-  e.scrollWidth > e.clientWidth + 1).map(e => e.tagName + e.id) + ";"), 1000);
-document.addEventListener("DOMContentLoaded", () => document.querySelector("details").open = true);
-{common}</script>""").replace('<script src="live.js"></script>',
-                              f"<script>{(PAGE / 'live.js').read_text()}</script>"))
-        # Chromium's windows are not narrower than 500 pixels: the page is in a frame.
-        write("frame.html", '<iframe src="narrow.html" width="420" height="2000"></iframe>'
-              """<script>setTimeout(() => document.body.append(
-frames[0].document.body.innerText.match(/cut: .*/)[0]), 2000)</script>""")
+document.querySelector("details").open = true;
+setTimeout(() => top.document.body.append("cut: " + [...document.querySelectorAll("*")].filter(e =>
+  e.getBoundingClientRect().right > 421 || getComputedStyle(e).overflowX !== "visible" &&
+  e.scrollWidth > e.clientWidth + 1).map(e => e.tagName + e.id) + ";"), 1000);</script>{common}""")
+        write("frame.html", '<iframe src="index.html" width="420"></iframe>')
         self.said = look.browse((self.work / "frame.html").as_uri(),
                                 "--allow-file-access-from-files")[0]
         self.has("cut: ;")

@@ -12,11 +12,11 @@ namespace {
 const char* const resultName = "result";
 
 // Returns the declaration of an in parameter or response value. An optional one is a pointer, 0 for
-// none. A received instance belongs to the servant, which may change it or return it.
-std::string passed(const Type& t, const std::string& name, bool isOptional, bool isReceived) {
+// none.
+std::string passed(const Type& t, const std::string& name, bool isOptional) {
     bool isPointer = isByPointer(t) || isOptional;
     if (isClass(t))
-        return (isReceived ? "" : "const ") + cVariable(t, isPointer ? "const *" + name : name);
+        return "const " + cVariable(t, isPointer ? "const *" + name : name);
     return isPointer ? "const " + cVariable(t, "*" + name) : cVariable(t, name);
 }
 
@@ -148,20 +148,21 @@ std::string exceptionType(const Declaration& owner, const Operation& o) {
     return operationName(owner, o) + "_Exception";
 }
 
-std::string inParameters(const Operation& o, bool isReceived) {
+std::string inParameters(const Operation& o) {
     std::string list;
     for (const Field& p : o.parameters)
         if (!p.isOut)
-            list += ", " + passed(p.type, cParameter(o, p), p.isOptional, isReceived);
+            list += ", " + passed(p.type, cParameter(o, p), p.isOptional);
     return list;
 }
 
-std::string outParameters(const Declaration& owner, const Operation& o) {
+std::string outParameters(const Declaration& owner, const Operation& o, bool isSent) {
     std::string list;
     for (const Result& r : results(o)) {
         if (r.isOptional)
             list += ", Ice_Bool *has_" + r.name;
-        list += ", " + cVariable(*r.type, "*" + r.name);
+        list += isSent && isClass(*r.type) ? ", const " : ", ";
+        list += cVariable(*r.type, "*" + r.name);
     }
     if (!o.throws.empty())
         list += ", " + exceptionType(owner, o) + " *ex";
@@ -172,13 +173,13 @@ std::string outParameters(const Declaration& owner, const Operation& o) {
 static std::string responseParameters(const Operation& o) {
     std::string list;
     for (const Result& r : results(o))
-        list += ", " + passed(*r.type, r.name, r.isOptional, false);
+        list += ", " + passed(*r.type, r.name, r.isOptional);
     return list;
 }
 
 std::string proxySignature(const Declaration& d, const Operation& o) {
     return "Ice_Status " + cProxy(d) + "_" + cOperation(o.name) + "(" + cProxy(d) + "Ptr self" +
-           inParameters(o) + outParameters(d, o) + ")";
+           inParameters(o) + outParameters(d, o, false) + ")";
 }
 
 std::string asyncSignature(const Declaration& d, const Operation& o) {
@@ -188,10 +189,9 @@ std::string asyncSignature(const Declaration& d, const Operation& o) {
 
 std::string servantSignature(const Declaration& owner, const Operation& o,
                              const std::string& name) {
-    std::string list =
-        "Ice_Status " + name + "(" + cName(owner) + "Ptr self" + inParameters(o, true);
+    std::string list = "Ice_Status " + name + "(" + cName(owner) + "Ptr self" + inParameters(o);
     if (!isAmd(owner, o))
-        list += outParameters(owner, o);
+        list += outParameters(owner, o, true);
     return list + ", const Ice_Current *current)";
 }
 

@@ -38,9 +38,10 @@ std::string operationName(const Declaration& owner, const Operation& o);
 std::string exceptionType(const Declaration& owner, const Operation& o);
 
 // Lists of C parameters, each with a comma before it (", Ice_Int a, const M_S *b"): the in
-// parameters (of a servant, or of a proxy); out parameters and the result as pointers.
-std::string inParameters(const Operation& o, bool isReceived = false);
-std::string outParameters(const Declaration& owner, const Operation& o);
+// parameters; out parameters and the result as pointers. A servant's instances, which are sent, may
+// be const.
+std::string inParameters(const Operation& o);
+std::string outParameters(const Declaration& owner, const Operation& o, bool isSent);
 
 std::string proxySignature(const Declaration& d, const Operation& o);
 std::string asyncSignature(const Declaration& d, const Operation& o);

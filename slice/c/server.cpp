@@ -42,7 +42,7 @@ void declareVariables(Writer& w, const Declaration& d, const Operation& o) {
     for (const Slot& s : slots) {
         if (s.isOptional)
             w.line("Ice_Bool " + s.has + ";");
-        w.line(cVariable(*s.type, s.value) + ";");
+        w.line((isClass(*s.type) ? "const " : "") + cVariable(*s.type, s.value) + ";");
     }
     if (!amd && !o.throws.empty())
         w.line(exceptionType(d, o) + " ex;");

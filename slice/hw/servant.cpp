@@ -84,7 +84,7 @@ std::string beginSignature(const Block& b, const Call& c) {
 
 std::string endSignature(const Block& b, const Call& c) {
     return "Ice_Status " + part(b, c, "end") + "(" + coreType(b) + " *hw_core" +
-           outParameters(*b.interface, *c.operation) + ")";
+           outParameters(*b.interface, *c.operation, true) + ")";
 }
 
 std::string arguments(const std::vector<Slot>& slots) {

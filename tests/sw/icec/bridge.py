@@ -25,7 +25,7 @@ def operation(name, self, parameters, calls, servants):
     call = re.sub("(Disp)?$", "Prx", owner, count=1) + name[len(owner):]
     own = parameters.split(", ")[1:]
     later = calls.get(call, parameters).split(", ")[len(own) + 1:]
-    given = ["(const void*)" * ("*const *" in p) + name_of(p) for p in own]
+    given = ["(void*)" * ("**" in p) + name_of(p) for p in own]  # an instance is const here
     print(f"\nIce_Status {name}({self}{parameters}, const Ice_Current* current) {{")
     for result in later:
         print(f"    {result.replace('*', '', 1)};")

@@ -20,14 +20,15 @@ Ice_Status Graph_Maker_echo(Graph_MakerPtr, Ice_String text, Ice_String* result,
     *result = text;
     return ICE_OK;
 }
-Ice_Status Graph_Maker_make(Graph_MakerPtr, Graph_Node* a, Ice_Value*, Graph_Node** result,
-                            Graph_Maker_make_Exception* ex, const Ice_Current*) {
+Ice_Status Graph_Maker_make(Graph_MakerPtr, const Graph_Node* a, const Ice_Value*,
+                            const Graph_Node** result, Graph_Maker_make_Exception* ex,
+                            const Ice_Current*) {
     *result = a;
     if (a->id % 2 == 0)
         return ICE_OK;
     ex->type = Graph_Maker_make_Exception::Graph_Maker_make_Failure;
     ex->u.Failure.why = a->text;
-    ex->u.Failure.node = a;
+    ex->u.Failure.node = Graph_Node_cast(a);
     return ICE_USER_EXCEPTION;
 }
 }

@@ -31,7 +31,7 @@ def parameters(text):
 def echo(found, classes):
     """Copies in parameters to the out parameters of their types, in order."""
     plain = lambda t: t.replace("const", "").replace("*", "").strip()
-    isOut = lambda t: "const" not in t and t.count("*") > (plain(t) in classes)
+    isOut = lambda t: "**" in t if plain(t) in classes else "const" not in t and "*" in t
     optional = {n[4:] for t, n in found if n.startswith("has_")}
     sources = [(t, n) for t, n in found if not isOut(t)]
     used, lines = {}, []

@@ -13,29 +13,32 @@ static Ice_String part(const char* data, size_t size) {
     return s;
 }
 
-const char* icec_optionsOf(Ice_CommunicatorPtr ic, const char* text) {
-    Ice_String name = part(text, strcspn(text, " :"));
-    return Ice_String_is(&name, ic->endpoint->name) ? text + name.size : 0;
-}
-
 Ice_Status Ice_Communicator_createObjectAdapterWithEndpoints(Ice_CommunicatorPtr ic,
                                                              const char* name,
                                                              const char* endpoints,
                                                              Ice_ObjectAdapterPtr adapter) {
-    const char* options = endpoints ? icec_optionsOf(ic, endpoints) : 0;
     Ice_Status status = ICE_OK;
+    int t;
     memset(adapter, 0, sizeof *adapter);
     adapter->communicator = ic;
     (void)name;
-    if (endpoints && !options)
-        return ICE_NO_ENDPOINT;
     icec_lock(ic, ICE_LOCK_STATE);
-    if (endpoints)
-        status = ic->endpoint->listen(ic->endpointContext, options);
+    while (endpoints && status == ICE_OK) {
+        const char* options = icec_optionsOf(ic, endpoints, &t);
+        status = ICE_NO_ENDPOINT;
+        if (options)
+            status = ic->transports[t].endpoint->listen(ic->transports[t].context, options);
+        if (ICE_TRANSPORTS > 1 && status == ICE_OK)
+            adapter->transports |= (Ice_Byte)(1 << t);
+        endpoints = ICE_TRANSPORTS > 1 ? icec_nextEndpoint(endpoints) : 0;
+    }
     if (status == ICE_OK) {
         adapter->next = ic->adapters;
         ic->adapters = adapter;
     }
+    for (t = 0; ICE_TRANSPORTS > 1 && t < ic->transportCount && status != ICE_OK; ++t)
+        if (adapter->transports >> t & 1) /* this adapter's endpoints end with it */
+            (void)ic->transports[t].endpoint->listen(ic->transports[t].context, 0);
     icec_unlock(ic, ICE_LOCK_STATE);
     return status;
 }
@@ -158,7 +161,11 @@ Ice_Status Ice_ObjectAdapter_createProxy(Ice_ObjectAdapterPtr adapter, const cha
 Ice_Status Ice_ObjectAdapter_createProxyTo(Ice_ObjectAdapterPtr adapter,
                                            const Ice_Identity* identity, Ice_ObjectPrxPtr prx) {
     Ice_Status status;
+    int t;
     icec_initProxy(prx, adapter->communicator);
     status = icec_setIdentity(prx, &identity->name, &identity->category, 0);
-    return status == ICE_OK ? icec_addEndpoint(prx, 0) : status;
+    for (t = 0; t < ICEC_TRANSPORTS(adapter->communicator) && status == ICE_OK; ++t)
+        if (ICE_TRANSPORTS == 1 || !adapter->transports || adapter->transports >> t & 1)
+            status = icec_addEndpoint(prx, t, 0);
+    return status;
 }

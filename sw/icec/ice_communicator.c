@@ -36,18 +36,14 @@ void Ice_Communicator_setOs(Ice_CommunicatorPtr ic, const Ice_Os* os, void* cont
     ic->osContext = context;
 }
 
-void Ice_Communicator_setEndpoint(Ice_CommunicatorPtr ic, const Ice_Endpoint* endpoint,
-                                  void* context) {
-    ic->endpoint = endpoint;
-    ic->endpointContext = context;
-}
-
 void Ice_Communicator_shutdown(Ice_CommunicatorPtr ic) {
+    int t;
     icec_lock(ic, ICE_LOCK_STATE);
     ic->stopping = 1;
-    (void)ic->endpoint->listen(ic->endpointContext, 0);
+    for (t = 0; t < ICEC_TRANSPORTS(ic); ++t)
+        (void)ic->transports[t].endpoint->listen(ic->transports[t].context, 0);
     icec_unlock(ic, ICE_LOCK_STATE);
-    ic->endpoint->wake(ic->endpointContext);
+    icec_wake(ic);
     ic->os->wake(ic->osContext, ICEC_SERVER_SLOT);
 }
 
@@ -57,7 +53,7 @@ static int isOpen(Ice_CommunicatorPtr ic, int connection) {
 
 static int anyOpen(Ice_CommunicatorPtr ic) {
     int c;
-    for (c = 0; c < ICE_CONNECTIONS; ++c)
+    for (c = 0; c < ICE_TRANSPORTS * ICE_CONNECTIONS; ++c)
         if (isOpen(ic, c))
             return 1;
     return 0;
@@ -69,12 +65,12 @@ void Ice_Communicator_destroy(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
     int c;
     Ice_Communicator_shutdown(ic);
     while (anyOpen(ic) && left > 0) {
-        for (c = 0; c < ICE_CONNECTIONS; ++c)
+        for (c = 0; c < ICE_TRANSPORTS * ICE_CONNECTIONS; ++c)
             icec_askToClose(ic, c);
         (void)Ice_Communicator_poll(ic, left);
         left = timeoutMs - (Ice_Int)(icec_nowMs(ic) - begin);
     }
-    for (c = 0; c < ICE_CONNECTIONS; ++c)
+    for (c = 0; c < ICE_TRANSPORTS * ICE_CONNECTIONS; ++c)
         if (isOpen(ic, c)) {
             icec_closeConnection(ic, c);
             icec_loseConnection(ic, c, ICE_CONNECTION_LOST);
@@ -103,5 +99,5 @@ void Ice_Connection_close(Ice_CommunicatorPtr ic, int connection) {
     (void)icec_sendHead(ic, connection, ICEC_CLOSE);
     icec_closeConnection(ic, connection);
     icec_loseConnection(ic, connection, ICE_CONNECTION_LOST);
-    ic->endpoint->wake(ic->endpointContext); /* the call that failed may be its receiver's */
+    icec_wake(ic); /* the call that failed may be its receiver's */
 }

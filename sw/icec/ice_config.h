@@ -52,9 +52,21 @@
 #define ICE_ENDPOINT_MAX 96
 #endif
 
-/* Connections, of both directions: 4, from 1; over the radio at most the link's channels. */
+/* Connections of a transport, of both directions: 4, from 1; over the radio at most the link's
+ * channels. */
 #ifndef ICE_CONNECTIONS
 #define ICE_CONNECTIONS 4
+#endif
+
+/* Transports of a communicator: 1, up to 8. The minimal run time has one. */
+#ifndef ICE_TRANSPORTS
+#define ICE_TRANSPORTS 1
+#endif
+
+/* Milliseconds for which the receiver listens to a silent transport before it turns to the next, of
+ * several: 2, from 1. A message waits as long where the others are silent. */
+#ifndef ICE_TURN_MS
+#define ICE_TURN_MS 2
 #endif
 
 /* Calls under way, and tasks that keep what their last call returned: 4, from 1. */

@@ -19,12 +19,18 @@ static int isValidating(Ice_CommunicatorPtr ic, int connection) {
     return icec_connectionState(ic, connection) == ICE_CONNECTION_VALIDATING;
 }
 
-/* Connects to one endpoint, or uses the existing connection. */
+/* Connects to one endpoint by the transport that it is of, or uses the existing connection. */
 static Ice_Status open(Ice_ObjectPrxPtr self, const Ice_Byte* endpoint, Ice_Int size) {
     Ice_CommunicatorPtr ic = self->communicator;
-    Ice_Status status;
+    Ice_Status status = ICE_NO_ENDPOINT;
+    int t;
     icec_lock(ic, ICE_LOCK_STATE);
-    status = ic->endpoint->connect(ic->endpointContext, endpoint, size, &self->connection);
+    for (t = 0; t < ICEC_TRANSPORTS(ic) && status == ICE_NO_ENDPOINT; ++t) {
+        status = ic->transports[t].endpoint->connect(ic->transports[t].context, endpoint, size,
+                                                     &self->connection);
+        if (status == ICE_OK)
+            self->connection += t * ICE_CONNECTIONS;
+    }
     if (status == ICE_OK && ic->connections[self->connection].state == ICE_CONNECTION_NONE)
         icec_openConnection(ic, self->connection, ICE_CONNECTION_VALIDATING);
     icec_unlock(ic, ICE_LOCK_STATE);
@@ -192,7 +198,7 @@ Ice_Status Ice_ObjectPrx_invokeAsync(Ice_ObjectPrxPtr self, Ice_Callback callbac
         return Ice_ObjectPrx_end(self, status);
     /* Wakes the receiving task, which shortens its sleep to this call's time. */
     if (isWaiting(ic, slot))
-        ic->endpoint->wake(ic->endpointContext);
+        icec_wake(ic);
     return ICE_OK;
 }
 

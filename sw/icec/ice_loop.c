@@ -73,7 +73,7 @@ static Ice_Status takeEvent(Ice_CommunicatorPtr ic, const Ice_Byte* in, const Ic
  * -1: none. Shortens `waitMs` to the next heartbeat; under the state lock. */
 static int heartbeatDue(Ice_CommunicatorPtr ic, U32 now, Ice_Int* waitMs) {
     int c, due = -1;
-    for (c = 0; c < ICE_CONNECTIONS && due < 0; ++c) {
+    for (c = 0; c < ICE_TRANSPORTS * ICE_CONNECTIONS && due < 0; ++c) {
         Ice_Connection* connection = &ic->connections[c];
         Ice_Int left = ICE_HEARTBEAT_MS - (Ice_Int)(now - connection->signMs);
         if (connection->state != ICE_CONNECTION_OPEN || !connection->pending)
@@ -109,8 +109,29 @@ static Ice_Int keepTimes(Ice_CommunicatorPtr ic, Ice_Int waitMs) {
     }
 }
 
-/* Handles at most one event; for the task that has the role of the receiver. ICE_TIMEOUT: there was
- * none; ICE_LIMIT: ICE_NESTING. */
+/* Events after which a transport that is never silent lets the others have their turn. */
+#define TURN_EVENTS 32
+
+/* Receives from the transport whose turn it is; a silent one gives it up. */
+static Ice_Status receive(Ice_CommunicatorPtr ic, Ice_Byte* in, Ice_Int timeoutMs,
+                          Ice_Event* event) {
+    const Ice_Transport* t = ic->transports + (ICE_TRANSPORTS == 1 ? 0 : ic->turn);
+    Ice_Status status;
+    if (ICEC_TRANSPORTS(ic) > 1 && timeoutMs > ICE_TURN_MS)
+        timeoutMs = ICE_TURN_MS;
+    status = t->endpoint->receive(t->context, in, timeoutMs, event);
+    if (ICEC_TRANSPORTS(ic) > 1) {
+        event->connection += ic->turn * ICE_CONNECTIONS;
+        if (event->kind == ICE_EVENT_NONE || ++ic->turnUsed == TURN_EVENTS) {
+            ic->turn = (Ice_Byte)((ic->turn + 1) % ic->transportCount);
+            ic->turnUsed = 0;
+        }
+    }
+    return status;
+}
+
+/* Handles at most one event, of the transport whose turn it is; for the task that has the role of
+ * the receiver. ICE_TIMEOUT: there was none; ICE_LIMIT: ICE_NESTING. */
 static Ice_Status receiveOne(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
     Ice_Event event;
     Ice_Status status;
@@ -121,7 +142,7 @@ static Ice_Status receiveOne(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
     timeoutMs = keepTimes(ic, timeoutMs);
     event.kind = ICE_EVENT_NONE;
     ++ic->depth;
-    status = ic->endpoint->receive(ic->endpointContext, in, timeoutMs, &event);
+    status = receive(ic, in, timeoutMs, &event);
     if (status == ICE_OK)
         status = takeEvent(ic, in, &event);
     --ic->depth;
@@ -168,7 +189,7 @@ static Role takeRole(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
             if (left <= 0 || (timeoutMs == FOREVER && ic->stopping))
                 break;
             icec_unlock(ic, ICE_LOCK_STATE);
-            ic->endpoint->wake(ic->endpointContext);
+            icec_wake(ic);
             (void)ic->os->wait(ic->osContext, ICEC_SERVER_SLOT, left);
             icec_lock(ic, ICE_LOCK_STATE);
         }
@@ -220,8 +241,13 @@ Ice_Status Ice_Communicator_poll(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
     U32 begin = icec_nowMs(ic);
     Role role = takeRole(ic, timeoutMs);
     if (role != ROLE_NONE) {
-        Ice_Int left = timeoutMs - (Ice_Int)(icec_nowMs(ic) - begin);
-        status = receiveOne(ic, left > 0 ? left : 0);
+        int turns = ICEC_TRANSPORTS(ic);
+        Ice_Int left;
+        do {
+            left = timeoutMs - (Ice_Int)(icec_nowMs(ic) - begin);
+            status = receiveOne(ic, left > 0 ? left : 0);
+        } while (ICE_TRANSPORTS > 1 && status == ICE_TIMEOUT &&
+                 (--turns > 0 || (left > 0 && !icec_isStopping(ic))));
     }
     if (role == ROLE_TAKEN)
         giveRole(ic);

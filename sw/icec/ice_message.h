@@ -55,12 +55,9 @@ void icec_initProxy(Ice_ObjectPrxPtr prx, Ice_CommunicatorPtr ic);
 /* Sets name, category and facet; the last two may be 0. ICE_LIMIT: ICE_IDENTITY_MAX. */
 Ice_Status icec_setIdentity(Ice_ObjectPrxPtr prx, const Ice_String* name,
                             const Ice_String* category, const Ice_String* facet);
-/* Adds the transport's endpoint; `options` 0: the one that it listens on. ICE_LIMIT:
- * ICE_ENDPOINT_MAX.
- */
-Ice_Status icec_addEndpoint(Ice_ObjectPrxPtr prx, const char* options);
-/* Returns the options after the transport's name; 0: the text names another transport. */
-const char* icec_optionsOf(Ice_CommunicatorPtr ic, const char* text);
+/* As Ice_Endpoint's print, of the transport that knows the endpoint; 0: none does. */
+int icec_printEndpoint(Ice_CommunicatorPtr ic, const Ice_Byte* encoded, Ice_Int size,
+                       Ice_OutputStreamPtr text);
 /* Write characters, and a number in decimal, without a size before them. */
 void icec_put(Ice_OutputStreamPtr os, const char* text);
 void icec_putNumber(Ice_OutputStreamPtr os, U32 value);

@@ -17,6 +17,7 @@ struct Ice_ObjectAdapter {
     Ice_CommunicatorPtr communicator;
     Ice_ObjectAdapterPtr next;
     Ice_Byte active;
+    Ice_Byte transports; /* that it listens on, a bit each; 0: none by itself */
     Ice_Servant servants[ICE_SERVANTS];
 };
 
@@ -59,15 +60,23 @@ typedef struct Ice_Connection {
     U32 signMs;       /* time of the callers' last sign of life, or of the wait's begin */
 } Ice_Connection;
 
-/* Small members first: their offsets are short in the code. */
-struct Ice_Communicator {
+typedef struct Ice_Transport {
     const Ice_Endpoint* endpoint;
-    void* endpointContext;
+    void* context;
+} Ice_Transport;
+
+/* Small members first: their offsets are short in the code. The connection c of transport t has the
+ * number t * ICE_CONNECTIONS + c. */
+struct Ice_Communicator {
+    Ice_Transport transports[ICE_TRANSPORTS];
     Ice_ObjectAdapterPtr adapters;
     Ice_Byte stopping;
-    int receiver; /* task that receives, -1 none */
-    int servers;  /* tasks that want to receive */
-    int depth;    /* messages being handled */
+    Ice_Byte transportCount;
+    Ice_Byte turn;     /* transport that is listened to now */
+    Ice_Byte turnUsed; /* events that it has had meanwhile */
+    int receiver;      /* task that receives, -1 none */
+    int servers;       /* tasks that want to receive */
+    int depth;         /* messages being handled */
     Ice_Int lastId;
     Ice_OutputStream request;    /* being built, under ICE_LOCK_SEND */
     Ice_Int requestBody;         /* where its encapsulation begins */
@@ -75,7 +84,7 @@ struct Ice_Communicator {
     const Ice_Os* os;
     void* osContext;
     const char* const* properties;
-    Ice_Connection connections[ICE_CONNECTIONS];
+    Ice_Connection connections[ICE_TRANSPORTS * ICE_CONNECTIONS];
     Ice_Call calls[ICE_CALLS];
     U32 arena[ICE_ARENA_BYTES / 4];
     Ice_Byte requestData[ICE_REQUEST_MAX];

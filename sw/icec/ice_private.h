@@ -8,7 +8,11 @@
 
 #include "ice_message.h"
 
-/* ---- ice_transport: locks, time, and the connections: their states, and sending on them ---- */
+/* ---- ice_transport: transports, locks, time, and the connections: their states, and sending on
+ * them ---- */
+
+/* A loop over the transports; one alone costs none. */
+#define ICEC_TRANSPORTS(ic) (ICE_TRANSPORTS == 1 ? 1 : (ic)->transportCount)
 
 /* `which`: ICE_LOCK_STATE or ICE_LOCK_SEND. */
 #define icec_lock(ic, which) ((ic)->os->lock((ic)->osContext, which))
@@ -16,6 +20,17 @@
 
 /* Milliseconds since any time; wraps. */
 U32 icec_nowMs(Ice_CommunicatorPtr ic);
+
+/* Makes the receiver's wait end early. */
+void icec_wake(Ice_CommunicatorPtr ic);
+
+/* Returns the options after a transport's name, and sets the transport; 0: the text names none. */
+const char* icec_optionsOf(Ice_CommunicatorPtr ic, const char* text, int* transport);
+/* Returns the text behind the next colon outside of quotes; 0: there is none. */
+const char* icec_nextEndpoint(const char* text);
+/* Adds an endpoint of a transport; `options` 0: the one that it listens on. ICE_LIMIT:
+ * ICE_ENDPOINT_MAX. */
+Ice_Status icec_addEndpoint(Ice_ObjectPrxPtr prx, int transport, const char* options);
 
 /* Sends the whole message in `os`; under ICE_LOCK_SEND. ICE_CONNECTION_LOST: the connection is
  * over. */

@@ -35,17 +35,6 @@ Ice_Status icec_setIdentity(Ice_ObjectPrxPtr prx, const Ice_String* name,
     return os.failed ? ICE_LIMIT : ICE_OK;
 }
 
-Ice_Status icec_addEndpoint(Ice_ObjectPrxPtr prx, const char* options) {
-    Ice_CommunicatorPtr ic = prx->communicator;
-    Ice_OutputStream os;
-    Ice_OutputStream_init(&os, prx->endpoints, ICE_ENDPOINT_MAX);
-    os.size = prx->endpoints[0] ? prx->endpointsSize : 1;
-    ic->endpoint->encode(ic->endpointContext, options, &os);
-    prx->endpointsSize = (Ice_Byte)os.size;
-    ++prx->endpoints[0];
-    return os.failed ? ICE_LIMIT : ICE_OK;
-}
-
 int Ice_ObjectPrx_isNull(const Ice_ObjectPrx* prx) {
     return prx->identity[0] == 0;
 }
@@ -68,7 +57,7 @@ Ice_String Ice_ObjectPrx_getFacet(const Ice_ObjectPrx* prx) {
     return facet;
 }
 
-/* Gives received endpoints of this program's transport the message's encoding, as Ice does; others
+/* Gives received endpoints of this program's transports the message's encoding, as Ice does; others
  * stay as they came. */
 static void adoptEncoding(Ice_CommunicatorPtr ic, Ice_Byte* endpoints, Ice_Byte minor) {
     Ice_Byte* at = endpoints + 1;
@@ -77,8 +66,7 @@ static void adoptEncoding(Ice_CommunicatorPtr ic, Ice_Byte* endpoints, Ice_Byte 
         Ice_Int size = 2 + at[2]; /* type, and an encapsulation: at most ICE_ENDPOINT_MAX */
         Ice_OutputStream nothing;
         Ice_OutputStream_init(&nothing, 0, 0);
-        if (at[7] != minor && ic->endpoint->print &&
-            ic->endpoint->print(ic->endpointContext, at, size, &nothing))
+        if (at[7] != minor && icec_printEndpoint(ic, at, size, &nothing))
             at[7] = minor;
         at += size;
     }
@@ -96,7 +84,7 @@ void Ice_OutputStream_writePrx(Ice_OutputStreamPtr os, const Ice_ObjectPrx* prx)
     if (os->minor != 0) /* protocol 1.0, the encoding */
         Ice_OutputStream_writeInt(os, 0x00010001 | prx->minor << 24);
     Ice_OutputStream_writeBlob(os, prx->endpoints, prx->endpointsSize);
-    if (ICEC_FULL && !os->failed && prx->communicator && prx->communicator->endpoint)
+    if (ICEC_FULL && !os->failed && prx->communicator)
         adoptEncoding(prx->communicator, os->data + os->size - prx->endpointsSize, os->minor);
 }
 

@@ -2,7 +2,7 @@
  *
  * ice_proxy_parse: makes a proxy from its string, by the manual's "Proxy and Endpoint Syntax".
  */
-#include "ice_message.h"
+#include "ice_private.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -159,28 +159,36 @@ static int areOptions(const char* text) {
     }
 }
 
+const char* icec_nextEndpoint(const char* text) {
+    char quote = 0;
+    for (; *text; ++text)
+        if (*text == quote)
+            quote = 0;
+        else if (!quote && *text == ':')
+            return text + 1 + strspn(text + 1, " ");
+        else if (!quote && (*text == '"' || *text == '\''))
+            quote = *text;
+    return 0;
+}
+
+/* Parses the endpoints behind the colon at `text`. */
 static Ice_Status parseEndpoints(const char* text, Ice_ObjectPrxPtr prx) {
     Ice_Status status = ICE_OK;
-    while (*text == ':' && status == ICE_OK) {
+    while (status == ICE_OK) {
+        int transport;
         const char* options;
-        char quote = 0;
-        do
-            ++text;
-        while (*text == ' ');
-        options = icec_optionsOf(prx->communicator, text);
+        text = icec_nextEndpoint(text);
+        if (!text)
+            break;
+        options = icec_optionsOf(prx->communicator, text, &transport);
         if (!areOptions(text + strcspn(text, SPACES ":")))
             status = ICE_PARSE;
         else if (options)
-            status = icec_addEndpoint(prx, options);
+            status = icec_addEndpoint(prx, transport, options);
         else if (strncmp(text, "opaque ", 7) == 0)
             status = parseOpaque(text + 7, prx);
         else
             status = ICE_NO_ENDPOINT;
-        for (; *text && (quote || *text != ':'); ++text)
-            if (*text == quote)
-                quote = 0;
-            else if (!quote && (*text == '"' || *text == '\''))
-                quote = *text;
     }
     return status;
 }

@@ -85,8 +85,7 @@ static void putEndpoints(const Ice_ObjectPrx* prx, Ice_OutputStreamPtr os) {
         (void)Ice_InputStream_readBlob(&is, Ice_InputStream_readInt(&is) - 4);
         size = (Ice_Int)(is.data + is.position - at);
         icec_put(os, ":");
-        if (!ic->endpoint || !ic->endpoint->print ||
-            !ic->endpoint->print(ic->endpointContext, at, size, os))
+        if (!icec_printEndpoint(ic, at, size, os))
             putOpaque(os, at, size);
     }
 }

@@ -1,15 +1,75 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_transport: locks, time, connections.
+ * ice_transport: transports, locks, time, connections.
  */
 #include "ice_private.h"
 
+#include <string.h>
+
+/* A connection's transport, and its number there. */
+#define OF(ic, connection) ((ic)->transports + (ICE_TRANSPORTS == 1 ? 0 : NUMBER(connection, /)))
+#define OWN(connection) (ICE_TRANSPORTS == 1 ? (connection) : NUMBER(connection, %))
+#define NUMBER(connection, part) ((connection)part ICE_CONNECTIONS)
+
+void Ice_Communicator_setEndpoint(Ice_CommunicatorPtr ic, const Ice_Endpoint* endpoint,
+                                  void* context) {
+    Ice_Transport* t;
+    if (ICE_TRANSPORTS > 1 && ic->transportCount < ICE_TRANSPORTS)
+        ++ic->transportCount;
+    t = &ic->transports[ICEC_TRANSPORTS(ic) - 1];
+    t->endpoint = endpoint;
+    t->context = context;
+}
+
 U32 icec_nowMs(Ice_CommunicatorPtr ic) {
-    return ic->endpoint->nowMs(ic->endpointContext);
+    return ic->transports[0].endpoint->nowMs(ic->transports[0].context);
 }
 
 Ice_Status icec_send(Ice_CommunicatorPtr ic, int connection, Ice_OutputStreamPtr os) {
-    return ic->endpoint->send(ic->endpointContext, connection, os->data, os->size);
+    const Ice_Transport* t = OF(ic, connection);
+    return t->endpoint->send(t->context, OWN(connection), os->data, os->size);
+}
+
+void icec_wake(Ice_CommunicatorPtr ic) {
+    int t;
+    for (t = 0; t < ICEC_TRANSPORTS(ic); ++t)
+        ic->transports[t].endpoint->wake(ic->transports[t].context);
+}
+
+const char* icec_optionsOf(Ice_CommunicatorPtr ic, const char* text, int* transport) {
+    Ice_String name;
+    int t;
+    name.data = text;
+    name.size = (Ice_Int)strcspn(text, " :");
+    for (t = 0; t < ICEC_TRANSPORTS(ic); ++t)
+        if (Ice_String_is(&name, ic->transports[t].endpoint->name)) {
+            *transport = t;
+            return text + name.size;
+        }
+    return 0;
+}
+
+Ice_Status icec_addEndpoint(Ice_ObjectPrxPtr prx, int transport, const char* options) {
+    const Ice_Transport* t = prx->communicator->transports + (ICE_TRANSPORTS == 1 ? 0 : transport);
+    Ice_OutputStream os;
+    Ice_OutputStream_init(&os, prx->endpoints, ICE_ENDPOINT_MAX);
+    os.size = prx->endpoints[0] ? prx->endpointsSize : 1;
+    t->endpoint->encode(t->context, options, &os);
+    prx->endpointsSize = (Ice_Byte)os.size;
+    ++prx->endpoints[0];
+    return os.failed ? ICE_LIMIT : ICE_OK;
+}
+
+int icec_printEndpoint(Ice_CommunicatorPtr ic, const Ice_Byte* encoded, Ice_Int size,
+                       Ice_OutputStreamPtr text) {
+    int t;
+    for (t = 0; t < ICEC_TRANSPORTS(ic); ++t) {
+        const Ice_Endpoint* endpoint = ic->transports[t].endpoint;
+        if (endpoint && endpoint->print &&
+            endpoint->print(ic->transports[t].context, encoded, size, text))
+            return 1;
+    }
+    return 0;
 }
 
 Ice_Status icec_sendHead(Ice_CommunicatorPtr ic, int connection, Ice_Byte type) {
@@ -33,8 +93,9 @@ void icec_openConnection(Ice_CommunicatorPtr ic, int connection, Ice_ConnectionS
 }
 
 void icec_closeConnection(Ice_CommunicatorPtr ic, int connection) {
+    const Ice_Transport* t = OF(ic, connection);
     icec_lock(ic, ICE_LOCK_STATE);
-    ic->endpoint->close(ic->endpointContext, connection);
+    t->endpoint->close(t->context, OWN(connection));
     icec_unlock(ic, ICE_LOCK_STATE);
 }
 

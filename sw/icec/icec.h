@@ -252,8 +252,9 @@ void Ice_InputStream_readPrx(Ice_InputStreamPtr is, Ice_CommunicatorPtr ic, Ice_
 /* ---- communicator ---- */
 
 void Ice_initialize(Ice_CommunicatorPtr ic);
-/* Set the tasks' port, and the transport; to be called before any other function, and both must
- * stay valid. */
+/* Set the tasks' port, and a transport; to be called before any other function, and both must stay
+ * valid. Each call of the second adds a transport, up to ICE_TRANSPORTS, beyond which it takes the
+ * last one's place; a proxy's endpoints say by which transport it is called. */
 void Ice_Communicator_setOs(Ice_CommunicatorPtr ic, const Ice_Os* os, void* context);
 void Ice_Communicator_setEndpoint(Ice_CommunicatorPtr ic, const Ice_Endpoint* endpoint,
                                   void* context);
@@ -270,7 +271,8 @@ Ice_Status Ice_Communicator_propertyToProxy(Ice_CommunicatorPtr ic, const char* 
                                             Ice_ObjectPrxPtr prx);
 
 /* Makes an adapter, inactive at first. `endpoints` names the transport and its options: "xbee-at"
- * or "tcp -p 10000". ICE_NO_ENDPOINT: another transport, or the system refuses. */
+ * or "tcp -p 10000"; or several, with colons between them. ICE_NO_ENDPOINT: another transport, or
+ * the system refuses. */
 Ice_Status Ice_Communicator_createObjectAdapterWithEndpoints(Ice_CommunicatorPtr ic,
                                                              const char* name,
                                                              const char* endpoints,

@@ -24,3 +24,4 @@ for compiler in gcc clang 'arm-none-eabi-gcc -mcpu=cortex-m3 -mthumb -Os'; do
 done
 check "$full" gcc -DICE_NESTING=1 -DICE_RESULT_MAX=512 -DICE_REQUEST_MAX=300
 check "$full" gcc -DICE_CALLS=1
+check "$full" gcc -DICE_TRANSPORTS=2

@@ -40,12 +40,12 @@ protected:
         }
     }
     static RadioEndpoint& self(void* c) { return *static_cast<RadioEndpoint*>(c); }
-    const Ice_Endpoint& ops() { return *ic_.endpoint; }
+    const Ice_Endpoint& ops() { return *ic_.transports[0].endpoint; }
     std::vector<std::pair<Ice_EventKind, int>> events() {
         std::vector<std::pair<Ice_EventKind, int>> list;
         for (;;) {
             Ice_Event event{};
-            ops().receive(ic_.endpointContext, buffer_, 0, &event);
+            ops().receive(ic_.transports[0].context, buffer_, 0, &event);
             if (event.kind == ICE_EVENT_NONE)
                 return list;
             list.emplace_back(event.kind, event.connection);
@@ -54,7 +54,7 @@ protected:
     Ice_Status connect() {
         const Ice_Byte encoded[] = {0x58, 0x41};
         int connection = -1;
-        Ice_Status status = ops().connect(ic_.endpointContext, encoded, 2, &connection);
+        Ice_Status status = ops().connect(ic_.transports[0].context, encoded, 2, &connection);
         EXPECT_EQ(connection, status == ICE_OK ? 3 : connection);
         return status;
     }
@@ -97,7 +97,7 @@ TEST_F(RadioEndpoint, AMessageIsTakenOnceAndOnlyWhileSomebodyReceives) {
         EXPECT_EQ(offer(1), 1) << "one at a time";
     };
     Ice_Event event{};
-    EXPECT_EQ(ops().receive(ic_.endpointContext, buffer_, 1, &event), ICE_OK);
+    EXPECT_EQ(ops().receive(ic_.transports[0].context, buffer_, 1, &event), ICE_OK);
     EXPECT_EQ(event.kind, ICE_EVENT_MESSAGE);
     EXPECT_EQ(event.connection, 2);
     EXPECT_EQ(Bytes(buffer_, buffer_ + event.size), Bytes(message, message + 3));
@@ -119,7 +119,7 @@ TEST_F(RadioEndpoint, ConnectingWaitsUntilTheLastClosingIsAnswered) {
     ASSERT_TRUE(pair_.connect());
     ASSERT_EQ(connect(), ICE_OK);
     pair_.run(500000);
-    ops().close(ic_.endpointContext, 3);
+    ops().close(ic_.transports[0].context, 3);
     EXPECT_EQ(pair_.b.open(3), LINK_FULL);
     EXPECT_EQ(connect(), ICE_OK);
 }
@@ -131,9 +131,9 @@ TEST_F(RadioEndpoint, AnswersThatTheLinkHasNoRoomForWaitForASlowLink) {
     pair_.setWeather({0.4});
     const Bytes answer(7930, 7);
     for (int n = 0; n < 5; ++n)
-        EXPECT_EQ(
-            ops().send(ic_.endpointContext, 3, answer.data(), static_cast<Ice_Int>(answer.size())),
-            ICE_OK)
+        EXPECT_EQ(ops().send(ic_.transports[0].context, 3, answer.data(),
+                             static_cast<Ice_Int>(answer.size())),
+                  ICE_OK)
             << n;
     run(30000);
     EXPECT_EQ(pair_.a.received, (Messages(5, {3, answer})));
@@ -147,8 +147,8 @@ TEST_F(RadioEndpoint, AConnectionThatTheLinkHasNoRoomForTooLongIsClosedOnBothSid
     const Bytes answer(7930, 7);
     Ice_Status status = ICE_OK;
     for (int n = 0; n < 10 && status == ICE_OK; ++n)
-        status =
-            ops().send(ic_.endpointContext, 3, answer.data(), static_cast<Ice_Int>(answer.size()));
+        status = ops().send(ic_.transports[0].context, 3, answer.data(),
+                            static_cast<Ice_Int>(answer.size()));
     EXPECT_EQ(status, ICE_CONNECTION_LOST);
     EXPECT_EQ(events(), (Kinds{{ICE_EVENT_CLOSED, 3}}));
     pair_.a.refuse = false;
@@ -165,7 +165,7 @@ TEST_F(RadioEndpoint, AMessageForAConnectionThatHasEndedNeverReachesTheNextOnIts
     ASSERT_TRUE(pair_.connect());
     const Bytes answer(7930, 7);
     auto send = [&] {
-        return ops().send(ic_.endpointContext, 1, answer.data(),
+        return ops().send(ic_.transports[0].context, 1, answer.data(),
                           static_cast<Ice_Int>(answer.size()));
     };
     auto again = [&] { // another program takes the ground's channel

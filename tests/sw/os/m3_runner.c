@@ -17,32 +17,18 @@ extern void PendSV_Handler(void);
 void Reset_Handler(void);
 void SysTick_Handler(void);
 void Irq_Handler(void);
-void Fault_Handler(void);
 
 unsigned selected_case __attribute__((section(".noinit"))); /* written by the test */
 static unsigned ticksLeft;
 
-void Fault_Handler(void) {
+static void fault(void) {
     __asm__ volatile("bkpt #2");
 }
 
-__attribute__((section(".vectors"), used)) static const Vector vectors[17] = {stack_top,
-                                                                              Reset_Handler,
-                                                                              Fault_Handler,
-                                                                              Fault_Handler,
-                                                                              Fault_Handler,
-                                                                              Fault_Handler,
-                                                                              Fault_Handler,
-                                                                              0,
-                                                                              0,
-                                                                              0,
-                                                                              0,
-                                                                              Fault_Handler,
-                                                                              Fault_Handler,
-                                                                              0,
-                                                                              PendSV_Handler,
-                                                                              SysTick_Handler,
-                                                                              Irq_Handler};
+__attribute__((section(".vectors"), used)) static const Vector vectors[17] = {
+    stack_top, /* not a function: the first word is the stack pointer */
+    Reset_Handler, fault, fault, fault,          fault,           fault,      0, 0, 0, 0,
+    fault,         fault, 0,     PendSV_Handler, SysTick_Handler, Irq_Handler};
 
 void Reset_Handler(void) {
     startMemory();

@@ -13,8 +13,9 @@
 #define TRANSMIT 9U
 #define RECEIVE 10U
 #define LIMIT 1000U /* of 10 ms */
-#define LINE_BYTES 40U
-#define KEY_AT 4U /* behind "key " */
+#define LINE_BYTES 72U
+#define JUMPER_PORT 2U /* PC2: wired to ground, it proves that the vehicle is open */
+#define JUMPER 2U
 
 static int isBreak(void) {
     return !(GPIO_IDR(PORT) >> RECEIVE & 1UL);
@@ -59,21 +60,59 @@ static int digitOf(char c) {
     return found ? (int)(found - digits) : -1;
 }
 
-/* Executes the line. Returns 0 where it makes no sense. */
-static int obey(char* line) {
-    U8 key[LINK_KEY_BYTES];
+/* Reads a key's digits. Returns their end, 0 where they are none. */
+static const char* readKey(const char* text, U8* key) {
     U32 i;
-    int isKey = strlen(line) == KEY_AT + 2U * LINK_KEY_BYTES && memcmp(line, "key ", KEY_AT) == 0;
-    for (i = 0; isKey && i < LINK_KEY_BYTES; ++i) {
-        const int high = digitOf(line[KEY_AT + 2U * i]), low = digitOf(line[KEY_AT + 2U * i + 1U]);
-        isKey = high >= 0 && low >= 0;
+    for (i = 0; i < LINK_KEY_BYTES; ++i, text += 2) {
+        const int high = digitOf(text[0]), low = high < 0 ? -1 : digitOf(text[1]);
+        if (low < 0)
+            return 0;
         key[i] = (U8)((U32)high << 4 | (U32)low);
     }
-    if (!isKey && strcmp(line, "open") != 0)
-        return 0;
-    UAV_provide(isKey ? key : 0);
+    return text;
+}
+
+static int isProtected(void) {
+    return (FLASH_OPTCR & FLASH_OPTCR_RDP) != FLASH_OPTCR_RDP_NONE;
+}
+
+/* Sets read protection level 1, from the next power-on on. Taking it back erases flash and keys. */
+static void protect(void) {
+    if (isProtected())
+        return;
+    FLASH_OPTKEYR = FLASH_OPTKEY1;
+    FLASH_OPTKEYR = FLASH_OPTKEY2;
+    FLASH_OPTCR = (FLASH_OPTCR & ~FLASH_OPTCR_RDP) | FLASH_OPTCR_RDP_1;
+    FLASH_OPTCR |= FLASH_OPTCR_STRT;
+    while (FLASH_SR & FLASH_SR_BSY)
+        ;
+    FLASH_OPTCR |= FLASH_OPTCR_LOCK;
+}
+
+/* Executes the line. Returns the answer. */
+static const char* obey(const char* line) {
+    const char *end, *answer = "ok\r\n";
+    U8 key[LINK_KEY_BYTES], old[LINK_KEY_BYTES];
+    const int isKey = strncmp(line, "key ", 4) == 0;
+    int isProven = UAV_countKeys() == 0 || !(GPIO_IDR(JUMPER_PORT) >> JUMPER & 1UL);
+    if (strcmp(line, "protect") == 0) {
+        protect();
+        return answer;
+    }
+    end = isKey ? readKey(line + 4, key) : strncmp(line, "open", 4) == 0 ? line + 4 : 0;
+    if (end && *end == ' ') {
+        end = readKey(end + 1, old);
+        isProven |= end && UAV_isKey(old);
+    }
+    if (!end || *end)
+        answer = "no: key or open, the key's 32 of 0..9a..f, a present key's; or protect\r\n";
+    else if (!isProven)
+        answer = "no: it has a key; give that, too, or wire the jumper\r\n";
+    else
+        UAV_provide(isKey ? key : 0);
     Ascon_wipe(key, sizeof key);
-    return 1;
+    Ascon_wipe(old, sizeof old);
+    return answer;
 }
 
 static void stop(void) {
@@ -84,7 +123,7 @@ static void stop(void) {
 void Provision_listen(void) {
     char line[LINE_BYTES];
     U32 ticks = 0;
-    RCC_AHB1ENR |= 1UL << PORT;
+    RCC_AHB1ENR |= 1UL << PORT | 1UL << JUMPER_PORT;
     GPIO_PUPDR(PORT) |= 1UL << 2U * RECEIVE; /* pulled up where nothing is wired */
     if (!isBreak())
         return;
@@ -104,9 +143,13 @@ void Provision_listen(void) {
     GPIO_MODER(PORT) |= 2UL << 2U * TRANSMIT | 2UL << 2U * RECEIVE;
     USART1_BRR = USART1_BRR_115200;
     USART1_CR1 = USART1_CR1_ON;
-    say("icesoc: key?\r\n");
+    GPIO_PUPDR(JUMPER_PORT) |= 1UL << 2U * JUMPER;
+    say("icesoc: key?");
+    if (!isProtected())
+        say(" (read protection is off: whoever opens the vehicle can read its key)");
+    say("\r\n");
     if (readLine(line))
-        say(obey(line) ? "ok\r\n" : "no: key and 32 of 0..9a..f, or open\r\n");
+        say(obey(line));
     Ascon_wipe(line, sizeof line);
     GPIO_MODER(PORT) &= ~(3UL << 2U * TRANSMIT | 3UL << 2U * RECEIVE);
     stop();

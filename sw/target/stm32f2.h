@@ -57,6 +57,15 @@
 #define FLASH_CR_X32 (2UL << 8)
 #define FLASH_CR_STRT (1UL << 16)
 #define FLASH_CR_LOCK (1UL << 31)
+#define FLASH_OPTKEYR REG(0x40023C08UL)
+#define FLASH_OPTKEY1 0x08192A3BUL
+#define FLASH_OPTKEY2 0x4C5D6E7FUL
+#define FLASH_OPTCR REG(0x40023C14UL)
+#define FLASH_OPTCR_LOCK 1UL
+#define FLASH_OPTCR_STRT 2UL
+#define FLASH_OPTCR_RDP 0xFF00UL /* read protection: 0xAA none, 0xCC for ever, others level 1 */
+#define FLASH_OPTCR_RDP_NONE 0xAA00UL
+#define FLASH_OPTCR_RDP_1 0x5500UL
 
 /* CRC unit (RM0033, 3.4): polynomial 0x04C11DB7, from 0xFFFFFFFF, words, most significant bit
  * first. */

@@ -25,7 +25,7 @@ public:
         return offset < 0x10000 ? offset / 0x4000 : offset < 0x20000 ? 4 : 4 + offset / 0x20000;
     }
 
-    enum Register : uint32_t { Acr = 0, Keyr = 4, Sr = 12, Cr = 16 };
+    enum Register : uint32_t { Acr = 0, Keyr = 4, Optkeyr = 8, Sr = 12, Cr = 16, Optcr = 20 };
     enum : uint32_t { Pg = 1, Ser = 2, Strt = 1u << 16, Lock = 1u << 31 }; // of CR
     enum : uint32_t {                                                      // of SR
         Eop = 1,
@@ -53,6 +53,8 @@ public:
             return sr_ | (operation_.under ? uint32_t(Bsy) : 0);
         case Cr:
             return cr_;
+        case Optcr:
+            return optcr_;
         default:
             return 0; // the keys' registers
         }
@@ -65,6 +67,10 @@ public:
             unlock(value);
         else if (reg == Sr)
             sr_ &= ~value;
+        else if (reg == Optkeyr)
+            unlockOptions(value);
+        else if (reg == Optcr && !(optcr_ & 1))
+            setOptions(value);
         if (reg != Cr || (cr_ & Lock) || operation_.under) // writes are ignored
             return;
         cr_ = value & ~Strt;
@@ -101,10 +107,12 @@ public:
         settle();
         if (operation_.under)
             cut();
-        keyStep_ = acr_ = sr_ = 0;
+        keyStep_ = optionStep_ = acr_ = sr_ = 0;
         cr_ = Lock;
+        optcr_ = erasedOptions | uint32_t(protection_) << 8 | 1;
     }
 
+    uint8_t protection() const { return protection_; }  // 0xAA: none
     uint64_t operations() const { return operations_; } // erases and writes that have begun
     // Called when an erase or a write has begun.
     std::function<void()> onOperation;
@@ -132,6 +140,18 @@ private:
             cr_ &= ~Lock;
             keyStep_ = 0;
         }
+    }
+    // The option bytes, of which only the read protection is kept (PM0059, 2.5).
+    void unlockOptions(uint32_t key) {
+        static constexpr uint32_t optionKeys[2] = {0x08192A3B, 0x4C5D6E7F};
+        optionStep_ = optionStep_ < 2 && key == optionKeys[optionStep_] ? optionStep_ + 1 : 3;
+        if (optionStep_ == 2)
+            optcr_ &= ~1u;
+    }
+    void setOptions(uint32_t value) {
+        optcr_ = value & ~2u;
+        if (value & 2)
+            protection_ = static_cast<uint8_t>(value >> 8);
     }
     void begin(Operation operation, uint64_t ns) {
         operation_ = operation;
@@ -186,7 +206,10 @@ private:
     std::mt19937_64 random_;
     Operation operation_;
     uint64_t operations_ = 0;
+    static constexpr uint32_t erasedOptions = 0x0FFF00EC;
     uint32_t keyStep_ = 0, acr_ = 0, sr_ = 0, cr_ = Lock;
+    uint32_t optionStep_ = 0, optcr_ = erasedOptions | 0xAA01;
+    uint8_t protection_ = 0xAA;
 };
 
 #endif

@@ -53,6 +53,7 @@ public:
     // break, and the listener for the bytes that it sends.
     std::deque<uint8_t> serialIn;
     bool isSerialBreak = false;
+    bool isJumperWired = false; // PC2 to ground
     std::function<void(uint8_t)> onSerial;
 
     // The 4 KiB that VBAT keeps through power-off and resets.

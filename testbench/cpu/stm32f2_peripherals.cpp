@@ -38,8 +38,9 @@ uint32_t Stm32F2::readPeripheral(uint32_t address) {
         return (address & 0x3FF) != 0x10 ? stored(address)
                : address == gpio + 0x10  ? (pins_[0] & ~0x400u) | uint32_t(!isSerialBreak) << 10
                : address == gpio + 0x410 ? pins_[1]
-               : address == gpio + 0x810 ? uint32_t(fpga.isDone()) << 1
-                                         : 0;
+               : address == gpio + 0x810
+                   ? uint32_t(fpga.isDone()) << 1 | uint32_t(!isJumperWired) << 2
+                   : 0;
     if (isIn(address, rcc, 0x88)) {
         uint32_t value = stored(address);
         if (address == rcc) // oscillators and PLL are ready at once

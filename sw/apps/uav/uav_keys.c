@@ -82,6 +82,15 @@ int UAV_countKeys(void) {
     return count;
 }
 
+int UAV_isKey(const U8* key) {
+    U8 ours[LINK_KEY_BYTES];
+    int slot, isOurs = 0;
+    for (slot = 0; slot < UAV_KEY_SLOTS; ++slot)
+        isOurs |= UAV_readKey(slot, ours) & Ascon_isSame(ours, key, sizeof ours);
+    Ascon_wipe(ours, sizeof ours);
+    return isOurs;
+}
+
 int UAV_isFlying(void) {
     return board->load(boardContext, UAV_FLIGHT_WORD) == UAV_FLYING;
 }

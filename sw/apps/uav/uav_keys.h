@@ -43,6 +43,9 @@ void UAV_setFlying(int isFlying);
 /* Reads a slot's key. Returns 0 where it has none. */
 int UAV_readKey(int slot, U8* key);
 
+/* Returns 1 if this is one of the vehicle's keys, in the same time for any other. */
+int UAV_isKey(const U8* key);
+
 /* Returns how many slots have a key. */
 int UAV_countKeys(void);
 

@@ -62,7 +62,7 @@ def read_line(port, seconds):
 
 def provide(port, command, patience):
     end = time.monotonic() + patience
-    while "icesoc: key?" not in read_line(port, PAUSE):
+    while "icesoc: key?" not in (asked := read_line(port, PAUSE)):
         if time.monotonic() > end:
             raise Failed("no vehicle has asked for %d s: is it wired, and was it switched on "
                          "meanwhile?" % patience)
@@ -70,6 +70,9 @@ def provide(port, command, patience):
         time.sleep(BREAK)
         termios.tcflush(port, termios.TCIFLUSH)
         fcntl.ioctl(port, TIOCCBRK)
+    if "protection is off" in asked:
+        print("provide_key: read protection is off: whoever opens the vehicle can read its key "
+              "(--protect)", file=sys.stderr)
     os.write(port, command.encode() + b"\n")
     answer = read_line(port, 10)
     if answer != "ok":
@@ -83,13 +86,21 @@ def main():
     what.add_argument("--key", help="file with the key, mode 0600")
     what.add_argument("--open", action="store_true",
                       help="in place of a key: who has a radio may call the vehicle")
+    what.add_argument("--protect", action="store_true",
+                      help="in place of a key: set read protection level 1; switch the vehicle off "
+                      "and on then")
+    parser.add_argument("--old", help="file with the vehicle's present key, if it has one, and its "
+                        "jumper is not wired")
     parser.add_argument("--address", type=address, default=1,
                         help="of the vehicle, whose line of the file it is (default: 0x0001)")
     parser.add_argument("--patience", type=int, default=120,
                         help="seconds without a vehicle until it gives up")
     args = parser.parse_args()
     try:
-        command = "open" if args.open else "key " + read_key(args.key, args.address)
+        command = ("protect" if args.protect else "open" if args.open else
+                   "key " + read_key(args.key, args.address))
+        if args.old:
+            command += " " + read_key(args.old, args.address)
         port = os.open(args.port, os.O_RDWR | os.O_NOCTTY)
         tty.setraw(port)
         mode = termios.tcgetattr(port)
@@ -97,7 +108,8 @@ def main():
         termios.tcsetattr(port, termios.TCSANOW, mode)
         provide(port, command, args.patience)
         print("provide_key: the vehicle %s" %
-              ("is open" if args.open else "has this key, and no other"))
+              ("is protected" if args.protect else "is open" if args.open else
+               "has this key, and no other"))
         return 0
     except (Failed, OSError, termios.error) as e:
         print("provide_key: %s" % e, file=sys.stderr)

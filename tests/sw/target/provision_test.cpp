@@ -63,17 +63,49 @@ protected:
     Stm32F2 chip{fsmc, [this] { return fsmc.hclks() * 25 / 3; }, {}};
 };
 
+const std::string prompt = "icesoc: key? (read protection is off: whoever opens the vehicle can "
+                           "read its key)\r\n";
 const std::string digits = "00112233445566778899aabbccddeeff";
 const std::vector<uint8_t> key = {0x00, 0x11, 0x22, 0x33, 0x44, 0x55, 0x66, 0x77,
                                   0x88, 0x99, 0xAA, 0xBB, 0xCC, 0xDD, 0xEE, 0xFF};
 
 TEST_F(Provision, TakesAKeyOrOpensTheVehicle) {
-    EXPECT_EQ(start(), "icesoc: key?\r\n");
+    EXPECT_EQ(start(), prompt);
     EXPECT_EQ(answerTo("key " + digits + "\n"), "ok\r\n");
     EXPECT_TRUE(has(key));
-    EXPECT_EQ(start(), "icesoc: key?\r\n");
-    EXPECT_EQ(answerTo("open\r\n"), "ok\r\n");
+    EXPECT_EQ(start(), prompt);
+    EXPECT_EQ(answerTo("open " + digits + "\r\n"), "ok\r\n");
     EXPECT_TRUE(has({}));
+}
+
+TEST_F(Provision, WhoHasNeitherTheOldKeyNorTheJumperChangesNothing) {
+    const std::string other(32, 'a');
+    start();
+    answerTo("key " + digits + "\n");
+    for (const std::string& line :
+         {"key " + other, std::string("open"), "key " + other + " " + other, "open " + other}) {
+        start();
+        EXPECT_EQ(answerTo(line + "\n"), "no: it has a key; give that, too, or wire the jumper\r\n")
+            << line;
+        EXPECT_TRUE(has(key)) << line;
+    }
+    chip.isJumperWired = true;
+    start();
+    EXPECT_EQ(answerTo("key " + other + "\n"), "ok\r\n");
+    EXPECT_TRUE(has(std::vector<uint8_t>(16, 0xAA)));
+    chip.isJumperWired = false;
+    start();
+    EXPECT_EQ(answerTo("key " + digits + " " + other + "\n"), "ok\r\n");
+    EXPECT_TRUE(has(key));
+}
+
+TEST_F(Provision, SaysThatReadProtectionIsOffAndSetsIt) {
+    EXPECT_EQ(start(), prompt);
+    EXPECT_EQ(answerTo("protect\n"), "ok\r\n");
+    EXPECT_EQ(start(), "icesoc: key?\r\n");
+    answerTo("key " + digits + "\n");
+    EXPECT_EQ(chip.flash().protection(), 0x55);
+    EXPECT_TRUE(has(key));
 }
 
 TEST_F(Provision, WhatMakesNoSenseChangesNothing) {
@@ -81,8 +113,9 @@ TEST_F(Provision, WhatMakesNoSenseChangesNothing) {
     answerTo("key " + digits + "\n");
     for (const std::string& line :
          {"key " + digits.substr(1), "key " + digits + "0", "key x" + digits.substr(1),
+          "key " + digits + " ", "open" + digits, "open  " + digits, "protect " + digits,
           "Open" + digits, std::string("key"), std::string(""), std::string(200, 'k')}) {
-        EXPECT_EQ(start(), "icesoc: key?\r\n");
+        EXPECT_EQ(start(), prompt);
         EXPECT_EQ(answerTo(line + "\n").substr(0, 3), "no:") << line;
         EXPECT_TRUE(has(key)) << line;
         chip.serialIn.clear();
@@ -117,8 +150,8 @@ TEST_F(Provision, TheGroundsProgramGivesIt) {
     usleep(1'000'000); // no prompt: the program holds the line in a break
     std::string line;
     for (int tries = 0; tries < 60 && line.find('\n') == std::string::npos; ++tries) {
-        const std::string prompt = start();
-        ASSERT_EQ(write(port, prompt.data(), prompt.size()), ssize_t(prompt.size()));
+        const std::string asked = start();
+        ASSERT_EQ(write(port, asked.data(), asked.size()), ssize_t(asked.size()));
         pollfd wanted = {port, POLLIN, 0};
         char bytes[64];
         if (poll(&wanted, 1, 1000) > 0)

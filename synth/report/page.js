@@ -66,22 +66,19 @@ function showChip() {
   box.append(number, element("div", `${data.chip.mhz} are wanted; median and range of the netlist's orders`, "soft"));
   byId("chip").append(box);
 }
+// A table as the terminal has it: [titles, row, row, ...].
+function showRows(id, [titles, ...rows]) {
+  table(byId(id), titles.map((title, i) => [title, r => i ? parseFloat(r[i]) || 0 : r[i],
+    r => element("span", r[i], r[i] === "ok" ? "good" : / over$/.test(r[i]) ? "bad" : "")]), rows);
+}
 function showCores() {
-  byId("cores-part").hidden = !data.cores?.length;
-  if (data.cores?.length) table(byId("cores"), data.cores[0].map((title, i) => [title, r => i ? parseFloat(r[i]) || 0 : r[i], r => r[i]]), data.cores.slice(1));
+  byId("cores-part").hidden = !data.cores.length;
+  if (data.cores.length) showRows("cores", data.cores);
 }
 function showPaper() {
-  const d = usable.find(d => d.paper);
-  if (!d) return;
-  byId("paper-title").textContent = d.title;
-  const rows = [["ff", "flip-flops"], ["lut", "LUTs of the netlist"], ["lut", "LUTs as map counts them, with route-throughs", d.figures.through],
-    ["slices", `slices (estimate, ${(100 * data.slicesError).toFixed(0)} % off on average)`]]
-    .map(([key, name, more]) => ({ key, name, more, value: d.figures[key] + (more ?? 0), limit: d.limits[key], paper: data.paper[key] }));
-  table(byId("paper"), [["", r => r.name], ["here", r => r.value, r => r.value + (r.key === "slices" ? ` (${d.figures.low} to ${d.figures.high})` : "")],
-    [data.chip.name, r => r.value / data.chip[r.key], r => share(r.value, data.chip[r.key])], ["paper", r => r.paper, r => `${r.paper} (${share(r.paper, data.chip[r.key])})`],
-    ["here / paper", r => r.value / r.paper, r => (r.value / r.paper).toFixed(2)], ["limit", r => r.limit ?? ""],
-    ["accepted", r => d.accepted && r.more === undefined ? `${d.accepted[r.key]} (${signed(r.value - d.accepted[r.key])})` : ""],
-    ["", r => r.limit - r.value, r => r.limit === undefined ? "" : element("span", r.value <= r.limit ? "ok" : `${r.value - r.limit} over`, r.value <= r.limit ? "good" : "bad")]], rows);
+  if (!data.table1.length) return;
+  byId("paper-title").textContent = usable.find(d => d.paper).title;
+  showRows("paper", data.table1);
 }
 
 // ---- The table of designs

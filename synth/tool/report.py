@@ -291,8 +291,10 @@ def html(report, parts, libraries):
     `libraries`: the folder of the pages' libraries from npm."""
     data = {"yosys": short_version(report.yosys), "commit": report.commit,
             "paper": report.plan.paper, "chip": report.plan.chip, "slowGrade": timing.SLOW_GRADE,
-            "slicesError": slices.ERROR, "states": states_text(report.rows),
+            "states": states_text(report.rows),
             "cores": report.cores.rows if report.cores else [],
+            "table1": next((paper_table(report.plan, row).rows for row in report.rows
+                            if row.design.paper and row.figures), []),
             "designs": [page_design(report, row) for row in report.rows],
             "history": [commit | {"designs": {
                 name: {key: a[key] for key in baseline.KEYS}

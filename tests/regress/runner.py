@@ -118,7 +118,7 @@ def end_hang(process, build):
     for pid in below:
         with contextlib.suppress(OSError):
             os.kill(pid, signal.SIGKILL)
-    names = re.findall(r"(?m)^#\d+ +(?:0x\w+ in )?(\w+)", stacks)[:3]
+    names = re.findall(r"(?m)^#\d+ +(?:0x\w+ in )?([\w:]+)", stacks)[:3]
     return ", in " * bool(names) + ", called by ".join(names), stacks
 
 

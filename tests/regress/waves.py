@@ -61,6 +61,17 @@ def instance_in(slot, build):
     return match[1] if match else "u_modem"
 
 
+def blamed(changed, source):
+    """The name of an instance of the first Verilog module in a text of changes; "": none."""
+    if match := re.search(r"(?:hdl|bus|ip)/\S*?(\w+)\.v:", changed):
+        use = re.compile(rf"^ *{match[1]} +(?:#\s*\([^;]*?\)\s*)?(u_\w+)", re.M)
+        for folder in ("hdl", "bus", "ip"):
+            for file in sorted((source / folder).rglob("*.v")):
+                if found := use.search(file.read_text()):
+                    return found[1]
+    return ""
+
+
 def save_file(wave, build, folder, has_program):
     """GTKWave's save file: the program's rows, and the ports of the models below `folder` and below
     the folder of the tested block: tests/hdl/fifo, hdl/fifo."""
@@ -92,6 +103,7 @@ def add_wave(failure, test, scene, source, tested, jobs):
              "--to", f"{last / CLOCKS_PER_SECOND:.6f}"])
         failure.scope = instance_in(scene.slot, build)
     else:
+        failure.scope = blamed(failure.changed, source)
         run(["ctest", "--test-dir", build, "--no-tests=error", "-R",
              "^" + re.sub(r"([.+*?()\[\]{}|^$\\])", r"\\\1", failure.result.name) + "$"],
             {"SEED": failure.result.seed, "WAVE": wave, "WAVE_FROM": str(first),
@@ -193,9 +205,10 @@ def drawing_of(failure, room):
     def rank(signal):
         name = signal.name.rpartition(".")[2]
         within = f".{failure.scope}." in signal.name if failure.scope else signal.depth <= 3
+        named = name in words and (within or signal.depth <= 3)
         moves = len(signal.changes) > 1
         nameless = bool(re.fullmatch(r"n\d+(_o)?", name))  # named by a converter
-        return (signal.bits != 0, nameless, not (name in words and within),
+        return (signal.bits != 0, nameless, not named,
                 not (moves and failure.scope and within), not moves, signal.depth, signal.name)
     signals.sort(key=rank)
 

@@ -272,9 +272,16 @@ set(damaged ${CMAKE_CURRENT_SOURCE_DIR}/damaged.vcd)
 add_test(NAME formal.damaged COMMAND sh -c "echo 'damaged: trace: ${damaged}'; exit 1")
 add_custom_target(test_w)
 """)
-        wave = ("$timescale 1ns $end $var wire 1 ! clk_i $end $enddefinitions $end "
-                "#0 0! #5 1! #10 0!\n")
-        write("ip/core/t.vcd", wave)
+        wire, up = "$var wire 1 {0} {0} $end ", "$upscope $end "
+        wave = ("$timescale 1ns $end $scope module top $end $var wire 1 ! clk_i $end "
+                f"$scope module u_a $end {wire.format('&')}{up}"
+                f"$scope module u_post $end {wire.format('#')}{up}{up}"
+                "$enddefinitions $end #0 0! 0& 0# #5 1! 1& 1# #10 0! ")
+        write("ip/core/core.v", "module core;\n    post #(.N(1)) u_post (.b(b));\nendmodule\n")
+        write("ip/core/post.v", "module post;\nendmodule\n")
+        commit("two modules")
+        append("ip/core/post.v", "// a bug\n")
+        write("ip/core/t.vcd", re.sub(r"(end|#\d+|\d[!&#]) ", r"\1\n", wave))  # for vcd2fst
         write("ip/core/damaged.vcd", wave.replace("#5", "#five"))
         write("build/trace/ip/core/verilated_core/Vcore.h", "VL_IN8(&clk_i,0,0);\n")
         append("CMakeLists.txt", "add_subdirectory(ip/core)\n")
@@ -282,7 +289,8 @@ add_custom_target(test_w)
         self.regress("--name 'test_w|damaged'", 1)
         self.has("^0 passed, 2 failed", "formal.damaged.vcd is damaged, and not drawn")
         self.has("^TOP.clk_i$", file="build/regress/failures/test_w.Wave-1.gtkw")
-        self.has("test_w.Wave-1.fst", file="build/regress/report.html")
+        self.has("test_w.Wave-1.fst", r'"signals":\[\["top.u_post.#"',
+                 file="build/regress/report.html")
 
     def test_flight(self):
         """A flight that fails is flown again around the last event of a core."""

@@ -63,6 +63,13 @@ class Cases(Project):
             'log <a href="failures/test_b.Bad-1.log"',
             'to have passed: <a href="../../tests/room/CMakeLists.txt">'
             r"tests/room/CMakeLists.txt:8</a> \(2 lines\)")
+        write("tests/plan.toml", '[a]\n"It works" = "test_a.One"\n"It waits" = "test_c.*"\n')
+        write("tests/room/other", "new\n")
+        self.regress("--name a.One")
+        self.browse(written)
+        self.has("Requirements: 1 of 1 that were tested proven", ">It works<",
+                 "<summary>1 whose tests did not run with these sources</summary>")
+        self.lacks(">It waits<")
         self.assertEqual(look.fault(written), "")
         write("wrong.html", page.replace("of data.lights", "of data.lihgts"))
         self.assertRegex(look.fault("wrong.html"), "^wrong.html:[0-9]*: Uncaught TypeError: "

@@ -1,17 +1,19 @@
 /* SPDX-License-Identifier: MIT
  *
  * results_m3: tasks of the kernel on a Cortex-M3 call objects of their own program through one
- * communicator, and look at what each call returned: a string, an exception with an instance, and
- * an instance with a sequence. An interrupt, at any instruction, wakes the tasks of higher
- * priority. For m3_runner.c.
+ * communicator, with the vehicle's Ice_Os, and look at what each call returned: a string, an
+ * exception with an instance, and an instance with a sequence. An interrupt, at any instruction,
+ * wakes the tasks of higher priority. For m3_runner.c.
  */
 #include "Graph.h"
 #include "os_cases.h"
+#include "uav_private.h"
 
 #include <string.h>
 
 #define WORDS 1024 /* of a task's stack */
-#define SERVER 8   /* priorities; the tasks that the interrupt wakes have 6 and 7 */
+#define WOKEN 7    /* priorities: of two tasks that the interrupt wakes, the server, two others */
+#define SERVER 9
 #define LOW 10
 
 static Ice_Communicator ic;
@@ -20,39 +22,9 @@ static Graph_Maker maker;
 static Graph_Node nodes[2]; /* the servant's */
 static Graph_Leaf leaf;
 static OS_STK stacks[5][WORDS];
-static OS_EVENT *locks[2], *slots[ICE_CALLS + 1], *arrived, *go[2];
+static OS_EVENT *arrived, *go[2];
 static unsigned tasks, ended;
 char os_said[512];
-
-/* ---- the kernel's tasks ---- */
-
-static void lock(void* context, int which) {
-    INT8U error;
-    (void)context;
-    OSMutexPend(locks[which], 0, &error);
-}
-
-static void unlock(void* context, int which) {
-    (void)context;
-    (void)OSMutexPost(locks[which]);
-}
-
-static int wait(void* context, int slot, Ice_Int timeoutMs) {
-    INT8U error;
-    (void)context;
-    OSSemPend(slots[slot], (INT32U)timeoutMs, &error);
-    return error == OS_ERR_NONE;
-}
-
-static void wake(void* context, int slot) {
-    (void)context;
-    (void)OSSemPost(slots[slot]);
-}
-
-static int task(void* context) {
-    (void)context;
-    return OSTaskPrio();
-}
 
 /* ---- a transport whose connection 0 leads to its connection 1 ---- */
 
@@ -255,29 +227,24 @@ static void start(void (*body)(void*), INT8U priority, unsigned number) {
 static void prepare(unsigned count) {
     static const Ice_Endpoint endpoint = {"self", receive, send,         connect, closeIt,
                                           listen, encode,  wakeReceiver, nowMs,   0};
-    static const Ice_Os os = {lock, unlock, wait, wake, task};
-    INT8U error;
     int c;
     tasks = count;
-    locks[ICE_LOCK_STATE] = OSMutexCreate(3, &error);
-    locks[ICE_LOCK_SEND] = OSMutexCreate(4, &error);
+    UAV_initIceOs();
     arrived = OSSemCreate(0);
-    for (c = 0; c <= ICE_CALLS; ++c)
-        slots[c] = OSSemCreate(0);
     for (c = 0; c < 2; ++c)
         go[c] = OSSemCreate(0);
     Ice_initialize(&ic);
-    Ice_Communicator_setOs(&ic, &os, 0);
+    Ice_Communicator_setOs(&ic, &uav_iceOs, 0);
     Ice_Communicator_setEndpoint(&ic, &endpoint, 0);
     (void)Ice_Communicator_createObjectAdapterWithEndpoints(&ic, "A", "self", &adapter);
     Graph_Maker_init(&maker);
     (void)Ice_ObjectAdapter_add(&adapter, (Ice_ObjectPtr)&maker, "maker");
     Ice_ObjectAdapter_activate(&adapter);
     start(callsOnce, LOW, 0);
-    start(callsWhenWoken, 6, 0);
+    start(callsWhenWoken, WOKEN, 0);
     if (count == 4) {
         start(callsOnce, LOW + 1, 1);
-        start(callsWhenWoken, 7, 1);
+        start(callsWhenWoken, WOKEN + 1, 1);
     }
     start(serves, SERVER, 0);
 }

@@ -50,7 +50,7 @@ class Progress:
         its age, and again at twice that age, until `done` is set. At ten times it ends it."""
         while not done.wait(1):
             for name, told in self.late():
-                with contextlib.suppress(OSError, StopIteration):  # it has just ended
+                with contextlib.suppress(OSError, StopIteration, ValueError):  # it has ended
                     if process := process_of(name, self.running):
                         where, stacks = end_hang(process, build)
                         self.hangs[name] = f"Hang, ended after {told}{where}", stacks

@@ -304,6 +304,7 @@ TEST(CortexM3Firmware, AnAbortTellsWhereTheChipAndTheProgramAre) {
     machine.run();
     EXPECT_DEATH(std::abort(), "The chip stands at clock [0-9]{6,}, interrupt [01], ");
     EXPECT_DEATH(std::abort(), "The program is in OSTaskIdleHook");
+    EXPECT_DEATH(std::abort(), "The model that ran last stands at clock [0-9]{6,}");
 }
 
 TEST(CortexM3Firmware, WithoutAKeyItDoesNotStartAndTriesAgain) {

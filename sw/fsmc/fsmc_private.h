@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * fsmc_private: what the files of the FSMC driver share.
+ * fsmc_private: registers of the FSMC, and the mode and times that FSMC_init gives it.
  */
 #ifndef FSMC_PRIVATE_H
 #define FSMC_PRIVATE_H

@@ -121,7 +121,6 @@ static Ice_Status readRequest(Ice_InputStreamPtr is, Ice_Current* current, Icec_
     return icec_enterEncapsulation(is);
 }
 
-/* Executes the request behind the id, and leaves `is` where its parameters end. */
 /* Writes the reply's head. It is written last, since another reply may have used its place
  * before. */
 static void writeHead(Ice_OutputStreamPtr os, Ice_Int id) {
@@ -153,6 +152,7 @@ static Ice_Status sendReply(Ice_CommunicatorPtr ic, int connection, Ice_OutputSt
     return icec_send(ic, connection, os);
 }
 
+/* Executes the request behind the id, and leaves `is` where its parameters end. */
 static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is,
                            Ice_Int id) {
     Ice_OutputStream os;

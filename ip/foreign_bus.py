@@ -190,6 +190,7 @@ def test(name, first):
 // {name}_test: the core answers behind its adapter, and its registers are apart. Pins: slot.bench_.top().<pin>.
 
 #include "V{name}_slot.h"
+#include "V{name}_slot___024root.h"
 #include "registers_apart.h"
 extern "C" {{
 #include "{name}_regs.h"
@@ -210,6 +211,7 @@ TEST({suite}, IsInItsSlotAndAnswers) {{
 
 TEST({suite}, RegistersAreApart) {{
     CoreSlot<V{name}_slot> slot;
+    noteWhetherItRests(slot.bench_);
     expectRegistersApart(slot, table, {name.upper()}_PAGE);
 }}
 

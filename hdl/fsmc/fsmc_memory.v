@@ -91,7 +91,7 @@ module fsmc_memory #(
     wire filling    = fetch_block == rd_block && busy && !stale && !single && rd_word < fetch_word;
     wire alone      = fetch_block == rd_block && have_single;
     wire here       = rd_block ? full[1] : full[0];
-    assign rd_hit_o  = same_block && idle_o && (here || filling || (alone && rd_word == fetch_word));
+    assign rd_hit_o  = same_block && (here || filling || (alone && rd_word == fetch_word));
     wire   whole     = same_block && idle_o && here;
     assign rd_safe_o = whole && (rd_block ? settled[1] : settled[0]);
 
@@ -275,6 +275,9 @@ module fsmc_memory #(
             // A block keeps its words until a fetch needs its place, or all are dropped.
             if ($past(!rst_i && !drop_i && !wr_i && !(miss && at_upper != upper)))
                 assert (($past(full) & ~full & ($past(miss || next) ? ~(2'b01 << fetch_block) : 2'b11)) == 2'b00);
+            // The blocks' tags share the upper bits: a miss in another region takes both back.
+            if ($past(miss && at_upper != upper))
+                assert (full == 2'b00);
             assert (!ahead || fetch_block != current); // what is read ahead never takes the place of the block being read
             // The port's rules hold: one read at a time, data of a write before its request, aligned blocks.
             if (npi_addr_req_o) begin

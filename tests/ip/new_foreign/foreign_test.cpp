@@ -11,6 +11,7 @@
 #include "Vmy_memory_slot.h"
 #include "Vmy_pipelined_slot.h"
 #include "Vmy_port_slot.h"
+#include "Vmy_port_slot___024root.h"
 #include "Vmy_requests_slot.h"
 #include "Vmy_slow_memory_slot.h"
 #include "Vmy_words_slot.h"
@@ -153,6 +154,35 @@ TEST(RegistersApart, EachThatIsNotReadBackIsNamed) {
     EXPECT_EQ(::testing::internal::GetCapturedStdout(),
               "note: LEVELS: not read back: 0xc was written, 0x0 read\n"
               "note: DRIVEN: written and read back\n");
+}
+
+// A Verilated model of a counter, which counts in every `every`th clock.
+struct Counter {
+    explicit Counter(VerilatedContext*) {}
+    void eval() { root_.count += clk_i && ++clocks_ % every == 0; }
+    void final() {}
+    static inline unsigned every;
+    struct Root {
+        unsigned count = 0;
+    } root_;
+    Root* rootp = &root_;
+    unsigned clk_i = 0, rst_i = 0, clocks_ = 0;
+};
+
+TEST(RegistersApart, ACoreThatNeverRestsIsTold) {
+    for (unsigned every : {1, 3, 20}) {
+        Counter::every = every;
+        Bench<Counter> bench;
+        ::testing::internal::CaptureStdout();
+        noteWhetherItRests(bench);
+        EXPECT_EQ(::testing::internal::GetCapturedStdout().find("note: it moves in ") == 0,
+                  every < 10);
+    }
+    Bench<Vmy_port_slot> bench;
+    bench.reset();
+    ::testing::internal::CaptureStdout();
+    noteWhetherItRests(bench);
+    EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
 }
 
 TEST(Late, AValueIsReadOnceAndAClockLater) {

@@ -64,10 +64,24 @@ def write_own(build, name, lang, ice, folder):
     shutil.copy(ice, folder / f"{name}.ice")
     template = Path("ip/template")
     fill(template / lang / "CMakeLists.txt.in", folder, name)
-    fill(template / "interface/ground.py.in", folder, name)
+    ground = fill(template / "interface/ground.py.in", folder, name)
+    module, proxy = interface_of(Path(ice).read_text())
+    ground.write_text(ground.read_text().replace("@OWN@", module).replace("@PROXY@", proxy))
     readme = fill(template / "README.md.in", folder, name)
     readme.write_text(re.sub(r"^Adds an offset, and sums 1..count:",
                              "Answers every call with zeros:", readme.read_text(), flags=re.M))
+
+
+def interface_of(text):
+    """The outermost module of the interface in hardware, and the proxy's class in Python."""
+    text = re.sub(r"/\*.*?\*/|//[^\n]*", "", text, flags=re.S)
+    before, _, after = text.partition('":hw"')
+    modules = []
+    for module, brace in re.findall(r"(?:module\s+(\w+)\s*)?([{}])", before):
+        modules = modules[:-1] if brace == "}" else [*modules, module]
+    name = re.search(r"interface\s+\\?(\w+)", after)[1]
+    modules = [module for module in modules if module]
+    return modules[0], ".".join([*modules, name + "Prx"])
 
 
 def fill(template, folder, name):

@@ -61,10 +61,10 @@ void Parser::structure() {
     Declaration& d = declareType(Declaration::Kind::Struct, false);
     if (isSymbol(";"))
         fail("'{': a struct cannot be declared forward");
-    int before = diagnostics_.errors();
+    bool isEmpty = isSymbol("}", 1);
     braces(d, [&] { member(d, false); });
     d.complete();
-    if (d.fields.empty() && diagnostics_.errors() == before)
+    if (isEmpty)
         error(d.at, "a struct has at least one member");
 }
 

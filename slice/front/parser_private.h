@@ -120,6 +120,7 @@ private:
     std::map<std::string_view, bool> isMain_;
     std::set<std::string_view> begun_; // files whose definitions have begun
     std::map<int, std::string> compactIds_;
+    std::set<std::string> unknown_; // names of types that have been reported
     // State of the definition under way.
     Metadata metadata_;
     std::string doc_;

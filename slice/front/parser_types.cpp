@@ -83,7 +83,8 @@ Type Parser::namedType() {
                          : symbol->declaration->kind == Declaration::Kind::Constant
                              ? "a constant, not a type"
                              : "an exception; it can only be thrown";
-        error(begin, "'" + written + "' is " + is);
+        if (symbol || unknown_.insert(written).second) // an unknown name is told once
+            error(begin, "'" + written + "' is " + is);
         throw SyntaxError();
     }
     t.declaration = symbol->declaration;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <set>
 
 namespace hw {
 namespace {
@@ -254,6 +255,19 @@ std::vector<Port> wrapperPorts(const Block& b) {
     return list;
 }
 
+// Warns of each exception of the file that no operation throws: it has no place in a register.
+void warnOfUnthrown(const Unit& unit, Diagnostics& diagnostics) {
+    std::set<const Declaration*> thrown;
+    for (const auto& d : unit.declarations)
+        for (const Operation& o : d->operations)
+            for (const Declaration* e : o.throws)
+                for (; e; e = e->base())
+                    thrown.insert(e);
+    for (const auto& d : unit.declarations)
+        if (d->kind == Declaration::Kind::Exception && !d->fromInclude && !thrown.count(d.get()))
+            diagnostics.warning(d->at, "no operation throws exception '" + d->name + "'");
+}
+
 std::vector<Block> mapHardware(const Unit& unit, Diagnostics& diagnostics) {
     std::vector<Block> blocks;
     std::map<std::string, const Declaration*> names;
@@ -276,6 +290,8 @@ std::vector<Block> mapHardware(const Unit& unit, Diagnostics& diagnostics) {
     if (blocks.empty() && diagnostics.errors() == 0)
         diagnostics.error({diagnostics.intern(unit.file), 1, 1},
                           "there is no interface with [\":hw\"] in this file");
+    if (!blocks.empty())
+        warnOfUnthrown(unit, diagnostics);
     return blocks;
 }
 

@@ -61,6 +61,9 @@ echo 'module M { [":hw"] interface LowPass { ["hw:long"] int f(short a); }; };' 
 for language in verilog vhdl; do
     new low_pass --lang $language --ice "$work/a.ice" >/dev/null
     grep -q "low_pass_wrapper" "$work"/ip/low_pass/low_pass.v* &&
+        grep -q 'import M  #' "$work/ip/low_pass/ground.py" &&
+        grep -qF 'core = M.LowPassPrx.checkedCast(proxy("low_pass"))' \
+            "$work/ip/low_pass/ground.py" &&
         grep -q 'core.f(a)' "$work/ip/low_pass/low_pass_test.cpp" ||
         { echo 'ip/low_pass is not made from its interface' && exit 1; }
     echo 'low_pass identity=a' >"$work/ip/cores.list"

@@ -110,6 +110,13 @@ class Cases(Script):
         self.slice2c("--hw-c x crlf.ice", 1,
                      r"crlf.ice:1:1: error: there is no interface with \[\":hw\"\] in this file")
         self.assertFalse(Path("crlf.h").exists())
+        # An exception that no operation throws, by itself or as a base of one.
+        Path("thrown.ice").write_text(
+            "module M { exception Base { int a; }; exception Thrown extends Base { int b; };\n"
+            "exception Forgotten { int c; };\n"
+            '[":hw"] interface Core { int f() throws Thrown; }; };\n')
+        self.slice2c("--hw-c x thrown.ice", 0, "/thrown.ice:2:11: warning: no operation throws "
+                     "exception 'Forgotten'")
 
     def files_that_include_others(self):
         """Several files in one run, each beside the others; a header is included by its name on

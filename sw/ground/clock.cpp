@@ -169,4 +169,12 @@ void Clock::hasWritten(size_t bytes) {
         __atomic_add_fetch(&simulation_->fromGround, bytes, __ATOMIC_RELEASE);
 }
 
+size_t Clock::waiting() const {
+    if (!inStep())
+        return 0;
+    const uint64_t carried = __atomic_load_n(&simulation_->carried, __ATOMIC_ACQUIRE);
+    const uint64_t written = simulation_->fromGround;
+    return carried < written ? written - carried : 0;
+}
+
 } // namespace XBeeAT

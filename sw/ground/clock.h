@@ -39,6 +39,8 @@ public:
     // Count the bytes read from and written to `serial`.
     void hasRead(size_t bytes);
     void hasWritten(size_t bytes);
+    // Returns the bytes written that a simulated line has yet to carry.
+    size_t waiting() const;
 
 private:
     uint64_t nowNs() const;

@@ -28,7 +28,7 @@ constexpr U32 briefBytes = 128; // of a message that one fragment takes, its hea
 int Engine::onTransmit(void* context, const U8* frame, U32 size) {
     Engine& e = self(context);
     U32 now = e.clock_.nowUs();
-    if (!e.serialOut_.empty() || !e.pacer_.offer(frame, size, now))
+    if (!e.serialOut_.empty() || e.serial_.waiting() || !e.pacer_.offer(frame, size, now))
         return 1;
     e.writeSerial(now);
     return 0;

@@ -76,6 +76,13 @@ ssize_t SerialPort::write(const void* bytes, size_t size) {
     return count;
 }
 
+// The queue of a pty reads as empty: there the simulator counts.
+size_t SerialPort::waiting() const {
+    int queued = 0;
+    ioctl(fd_, TIOCOUTQ, &queued);
+    return static_cast<size_t>(queued) + clock_.waiting();
+}
+
 // Drops arrived bytes by reading them, not by TCFLSH: clock.h counts consumed bytes.
 void SerialPort::drop() {
     char bytes[256];
@@ -87,10 +94,13 @@ void SerialPort::setSpeed(int baud) {
     termios2 t{};
     if (ioctl(fd_, TCGETS2, &t) != 0)
         return;
+    // A modem that is idle has CTS on, so one that is off is not wired.
+    int lines = 0;
+    const bool hasCts = ioctl(fd_, TIOCMGET, &lines) == 0 && (lines & TIOCM_CTS);
     t.c_iflag = 0;
     t.c_oflag = 0;
     t.c_lflag = 0;
-    t.c_cflag = CS8 | CREAD | CLOCAL | BOTHER | BOTHER << IBSHIFT;
+    t.c_cflag = CS8 | CREAD | CLOCAL | BOTHER | BOTHER << IBSHIFT | (hasCts ? CRTSCTS : 0);
     t.c_ospeed = t.c_ispeed = static_cast<speed_t>(baud == 115200 ? 111111 : baud);
     t.c_cc[VMIN] = 0;
     t.c_cc[VTIME] = 0;

@@ -27,6 +27,8 @@ public:
     // Work as the system's read and write do; never wait.
     ssize_t read(void* bytes, size_t room);
     ssize_t write(const void* bytes, size_t size);
+    // Returns the bytes written that have yet to leave: CTS is off, or the line is slower.
+    size_t waiting() const;
     void drop(); // throws away the bytes that have arrived
     // Sets the rate, in baud.
     void setSpeed(int baud);

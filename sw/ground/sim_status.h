@@ -29,6 +29,7 @@ struct SimStatus {
     // Keeping step. The simulator writes:
     char device[64];   // the serial port of the ground's modem
     uint64_t toGround; // session of the keeper, and bytes given to the port since
+    uint64_t carried;  // of fromGround, what the line has carried
     // The program writes:
     uint64_t keeper;     // who keeps step: process id in the low 32 bits; 0: nobody
     uint64_t untilNs;    // it sleeps until then; 0: it works

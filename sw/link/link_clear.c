@@ -41,6 +41,8 @@ static Owner ownerOf(const Link_Session* session, const U8* frame) {
  * if it ends where the bytes end, or a good one follows. Returns 1 yes, 0 no, -1 not known yet. */
 static int isConfirmed(const Link_Session* session, const U8* next, U32 left, int isEnd) {
     U32 payload;
+    for (; left && *next == LINK_FILL; --left)
+        ++next;
     if (left == 0)
         return 1;
     payload = LINK_LENGTH(next);
@@ -58,6 +60,10 @@ U32 link_parseClear(Link_Input* input, const U8* bytes, U32 count, int isEnd) {
         const U8* frame = bytes + used;
         U32 left = count - used;
         U32 size = LINK_LENGTH(frame) + LINK_OVERHEAD;
+        if (*frame == LINK_FILL) {
+            ++used;
+            continue;
+        }
         if (size <= LINK_MAX_FRAME && left < size && !isEnd)
             break;
         if (size <= LINK_MAX_FRAME && left >= size) {

@@ -155,7 +155,8 @@ static U32 parse(Link_Input* input, const U8* bytes, U32 count, int isEnd) {
             }
         }
         if (at == used && (!isFrame || end <= count || isEnd)) {
-            link_skip(input, bytes + at, count - at);
+            if (bytes[at] != LINK_FILL)
+                link_skip(input, bytes + at, count - at);
             ++used;
         }
         ++at;

@@ -6,8 +6,12 @@
 
 #include <string.h>
 
-/* Least room in a packet for another fragment with an acknowledgement behind it. */
-#define LEAST 32U
+/* Least room in a packet for another fragment with an acknowledgement behind it, whose frame has 9
+ * bytes of payload. */
+#define LEAST(output) (LINK_CODEC(output)->overhead + 10U)
+
+/* Packets for which the modem counts as slow after the radio had no room for one. */
+#define SLOW 64U
 
 /* The time of a packet: on the line, or in the modem, whichever is longer. */
 static U32 timeOf(const Link_Output* output, U32 size) {
@@ -23,25 +27,42 @@ U32 link_room(const Link_Output* output) {
     return (U32)output->longest - output->packed;
 }
 
-int link_flush(Link_Output* output) {
-    if (!output->packed)
+/* Hands the packet to the radio, filled up if another may follow while the modem holds it: the
+ * modem joins two packets unless the first is full, and from then on all begin inside a frame. */
+static int handOver(Link_Output* output, int isFollowed) {
+    U32 size = output->packed;
+    U32 full = (U32)output->longest + LINK_CODEC(output)->overhead;
+    if (!size)
         return 1;
-    if (output->port->transmit(output->context, output->packet, output->packed) != 0)
+    if (isFollowed && output->slow && (output->present.features & LINK_FEATURE_PIGGYBACK)) {
+        memset(output->packet + size, (int)LINK_FILL, full - size);
+        size = full;
+    }
+    if (output->port->transmit(output->context, output->packet, size) != 0) {
+        output->slow = SLOW;
         return 0;
+    }
+    if (output->slow)
+        --output->slow;
+    output->statistics.bytesSent += size - output->packed;
     if (LINK_BEFORE(output->paceUntil, output->now))
         output->paceUntil = output->now;
-    output->slack = timeOf(output, output->packed);
+    output->slack = timeOf(output, size);
     output->paceUntil += output->slack;
-    if (output->packed <= output->longest)
+    if (size < full)
         output->slack -= LINK_SHORT_MARGIN;
     output->early = 0;
     if (output->heard && output->fastest > LINK_PACKET_US) { /* a wire needs no turns */
         U32 wait = timeOf(output, output->heard) * LINK_HEARD_QUARTERS >> 2;
-        output->early = (timeOf(output, output->packed) + wait) / 2U;
+        output->early = (timeOf(output, size) + wait) / 2U;
         output->paceUntil += wait;
     }
     output->packed = output->heard = 0;
     return 1;
+}
+
+int link_flush(Link_Output* output) {
+    return handOver(output, output->isStream);
 }
 
 void link_hear(Link_Output* output, U32 size) {
@@ -51,14 +72,14 @@ void link_hear(Link_Output* output, U32 size) {
 }
 
 int link_isOpen(Link_Output* output) {
-    if (output->packed && output->packed + LEAST > output->longest && !link_flush(output))
+    if (output->packed && output->packed + LEAST(output) > output->longest && !link_flush(output))
         return 0;
     return output->packed || !LINK_BEFORE(output->now + output->slack, output->paceUntil);
 }
 
 int link_sendFrame(Link_Output* output, U8* frame, U32 header, U32 number) {
     U32 size = LINK_CODEC(output)->seal(output, frame, header, number);
-    if (size > link_room(output) + LINK_CODEC(output)->overhead && !link_flush(output))
+    if (size > link_room(output) + LINK_CODEC(output)->overhead && !handOver(output, 1))
         return 0;
     memcpy(output->packet + output->packed, frame, size);
     output->packed = (U8)(output->packed + size);
@@ -69,5 +90,8 @@ int link_sendFrame(Link_Output* output, U8* frame, U32 header, U32 number) {
 
 int link_sendControl(Link_Output* output, U8* frame, U32 byte2, U32 number, U32 size) {
     U32 header = LINK_HEADER_OF(LINK_CONTROL | size, (U8)number, byte2);
-    return link_sendFrame(output, frame, header, number) && link_flush(output);
+    if (!link_sendFrame(output, frame, header, number))
+        return 0;
+    (void)link_flush(output); /* or it leaves with the packet, as soon as the radio has room */
+    return 1;
 }

@@ -72,6 +72,8 @@ struct Link_Output {
     U8 open;     /* a bit a channel: messages may be sent */
     U8 closing;  /* closed here, the peer's closing has not come yet */
     U8 closeDue; /* the own closing is not queued yet */
+    U8 isStream; /* several fragments are on their way: packets follow each other */
+    U8 slow;     /* not 0: the modem waits for the air now and then, and may hold packets */
     U32 now;
     const Link_Codec* codec;
     const Link_Port* port;

@@ -14,6 +14,9 @@
 /* Bytes of the longest acknowledgement. */
 #define ACK_ROOM(output) (LINK_CODEC(output)->overhead + 1U + LINK_BITMAP)
 
+/* Fragments in flight that make a stream. */
+#define STREAM 3U
+
 #define IN_FLIGHT(sender) ((sender)->next - (sender)->base)
 #define FRAGMENT(sender, seq) (&(sender)->window[LINK_SLOT(seq)])
 
@@ -269,6 +272,7 @@ static int pollWindow(Link_Sender* sender, U32 now) {
 
 int link_pollSender(Link_Sender* sender) {
     U32 seq;
+    sender->output->isStream = IN_FLIGHT(sender) >= STREAM;
     if (sender->output->closeDue)
         queueClosings(sender);
     if (IN_FLIGHT(sender) && !pollWindow(sender, sender->output->now))

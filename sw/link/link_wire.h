@@ -17,7 +17,7 @@
 #define LINK_GROUND 0x80000000U
 #define LINK_KEYS 2 /* slots for keys, so that a new key can replace the old one */
 
-#define LINK_VERSION 6U
+#define LINK_VERSION 7U
 #define LINK_VERSION_UP 0x80U /* with it: HELLO of a side that has a session, under a key */
 #define LINK_HEADER 3U
 #define LINK_CRC 2U
@@ -32,6 +32,7 @@
 #define LINK_CONTROL 0x80U
 #define LINK_LENGTH_OF(header) ((header) & 0x7FU)
 #define LINK_LENGTH(frame) LINK_LENGTH_OF((frame)[0])
+#define LINK_FILL 0xFFU /* in its place: no frame, but a byte that fills a packet up */
 
 /* Byte 2: the flags of data frames, the channel and epoch, the kind of control frames. */
 #define LINK_FIRST 0x80U

@@ -9,6 +9,7 @@
 #include "ucos_ii.h"
 
 #define BUFFERS MODEM_RING_BUFFERS
+#define BUSY (BUFFERS - (get(MODEM_TX_STATE) & MODEM_TX_STATE_FREE_MASK)) /* in the output ring */
 #define DEFAULT_CHANNEL 0x0CU
 #define DEFAULT_PAN 0x3332U
 #define DEFAULT_GUARD_MS 1000U
@@ -92,9 +93,13 @@ U32 Radio_failedStep(void) {
     return radio.failedStep;
 }
 
+U32 Radio_waiting(void) {
+    return BUSY;
+}
+
 /* Frees the buffers whose packets have left, oldest first. */
 static void reclaim(void) {
-    U32 busy = BUFFERS - (get(MODEM_TX_STATE) & MODEM_TX_STATE_FREE_MASK);
+    U32 busy = BUSY;
     while (radio.used > busy) {
         radio.output[radio.head].state = BUFFER_FREE;
         radio.head = (radio.head + 1U) % BUFFERS;
@@ -105,8 +110,9 @@ static void reclaim(void) {
 int Radio_transmit(void* context, const U8* frame, U32 size) {
     U32 buffer;
     (void)context;
-    reclaim();
     buffer = (radio.head + radio.used) % BUFFERS;
+    if (radio.output[buffer].state != BUFFER_FREE)
+        reclaim();
     if (radio.output[buffer].state != BUFFER_FREE) {
         ++radio.counters.ringFull;
         return 1;

@@ -83,6 +83,9 @@ U32 Radio_failedStep(void);
  * `context` is not used: the function fits Link_Port.transmit. */
 int Radio_transmit(void* context, const U8* frame, U32 size);
 
+/* Returns the packets in the output ring that have not left. They wait where the modem does. */
+U32 Radio_waiting(void);
+
 /* Takes a packet; `bytes` are valid during the call only. */
 typedef void (*Radio_OnPacket)(void* context, const U8* bytes, U32 size);
 

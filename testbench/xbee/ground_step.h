@@ -24,7 +24,7 @@ public:
     // holds time for `patience` seconds of the wall clock without a debugger is no longer waited
     // for, and stderr says so.
     GroundStep(SimStatus& status, PtyLine& pty, std::function<bool()> goOn, double patience = 60)
-        : status_(status), goOn_(std::move(goOn)), patience_(patience) {
+        : status_(status), pty_(pty), goOn_(std::move(goOn)), patience_(patience) {
         std::strncpy(status_.device, pty.path().c_str(), sizeof status_.device - 1);
         pty.keepCount({[this] { return load(status_.keeper); },
                        [this](uint64_t keeper, size_t bytes) { given(keeper, bytes); },
@@ -35,6 +35,7 @@ public:
 
     // Returns when the program lets time pass beyond `now`; at once if none keeps step.
     void wait(uint64_t now) {
+        __atomic_store_n(&status_.carried, pty_.carried(), __ATOMIC_RELEASE);
         if (!holds(now))
             return;
         const auto begin = std::chrono::steady_clock::now();
@@ -105,6 +106,7 @@ private:
     }
 
     SimStatus& status_;
+    PtyLine& pty_;
     std::function<bool()> goOn_;
     double patience_;
     uint64_t waitedNs_ = 0;

@@ -192,6 +192,8 @@ public:
         std::function<uint64_t()> fromProgram;
     };
     void keepCount(Count count) { count_ = std::move(count); }
+    // Returns how many of these the line has carried.
+    uint64_t carried() const { return fetched_ - std::min<uint64_t>(fetched_, ahead_.size()); }
 
     void advance(uint64_t now) override;
     uint64_t nextEvent() const override { return nextPoll_; }

@@ -132,7 +132,7 @@ protected:
 private:
     static ModemEnd& self(void* c) { return *static_cast<ModemEnd*>(c); }
     int transmit(const U8* frame, U32 size) {
-        if (!pacer_.offer(frame, size, static_cast<U32>(now_ / 1000)))
+        if (line.waiting() || !pacer_.offer(frame, size, static_cast<U32>(now_ / 1000)))
             return 1;
         write();
         return 0;

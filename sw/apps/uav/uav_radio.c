@@ -60,7 +60,13 @@ static U32 nowMsOf(void* context) {
 static const XBeeATEndpoint_Port endpointPort = {lockLink,  unlockLink,  kick,
                                                  waitEvent, signalEvent, nowMsOf};
 
-static const Link_Port linkPort = {Radio_transmit,
+/* Hands a packet over while at most one waits for the line. So the link layer knows how fast the
+ * modem is, and chooses late what goes next. */
+static int transmit(void* context, const U8* frame, U32 size) {
+    return Radio_waiting() > 1U || Radio_transmit(context, frame, size);
+}
+
+static const Link_Port linkPort = {transmit,
                                    UAV_random,
                                    XBeeATEndpoint_onMessage,
                                    XBeeATEndpoint_onChannel,

@@ -275,6 +275,9 @@ ssize_t SerialPort::write(const void* bytes, size_t size) {
     world->fromEngine(static_cast<const uint8_t*>(bytes), size);
     return static_cast<ssize_t>(size);
 }
+size_t SerialPort::waiting() const {
+    return 0;
+}
 void SerialPort::drop() {
     world->toEngine.clear();
 }

@@ -124,7 +124,7 @@ inline int kindOf(const Bytes& frame) {
 // The frames in a packet.
 inline std::vector<Bytes> framesOf(const Bytes& packet) {
     std::vector<Bytes> frames;
-    for (size_t at = 0; at < packet.size();) {
+    for (size_t at = 0; at < packet.size() && packet[at] != LINK_FILL;) {
         size_t size = LINK_LENGTH(&packet[at]) + LINK_OVERHEAD;
         frames.emplace_back(packet.begin() + static_cast<long>(at),
                             packet.begin() + static_cast<long>(std::min(at + size, packet.size())));

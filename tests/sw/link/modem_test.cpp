@@ -83,6 +83,30 @@ TEST_P(LinkOverModems, InThePublishedWeathersNothingIsLostOrDoubled) {
     }
 }
 
+// Returns whether a packet is made of whole frames and of bytes that fill it up.
+bool isWhole(const std::vector<uint8_t>& bytes) {
+    size_t at = 0;
+    while (at < bytes.size())
+        at += bytes[at] == LINK_FILL ? 1 : LINK_LENGTH(&bytes[at]) + LINK_OVERHEAD;
+    return at == bytes.size();
+}
+
+// A modem that waits for the air holds packets back: it must not join one with a part of the next,
+// since each later packet would hold parts of two frames, and each loss would cost both.
+TEST_P(LinkOverModems, PacketsHoldWholeFramesHoweverSlowTheModemIs) {
+    unsigned packets = 0, whole = 0;
+    air_.onPacket([&](uint64_t, const RfPacket& packet, RfChannel::Outcome) {
+        ++packets;
+        whole += isWhole(packet.bytes);
+    });
+    for (auto& [what, weather] : RfWeather::published()) {
+        air_.weather = weather;
+        expectAll(120, 300);
+    }
+    EXPECT_GE(whole, packets * 0.99) << packets;
+    EXPECT_GT(packets, 1000u);
+}
+
 TEST_P(LinkOverModems, TheTraceOfTheExampleIsFlown) {
     air_.weather.trace = std::make_shared<RfTrace>(TRACE);
     const uint64_t lost = air_.counters().lost;

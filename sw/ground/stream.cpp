@@ -53,6 +53,8 @@ void Stream::open(U32 nowUs) {
 
 unsigned Stream::leave(U32 nowUs) {
     unsigned unsent = 0;
+    for (size_t had = ~size_t(0); fd_ >= 0 && !ended_ && had != out_.size(); read(nowUs))
+        had = out_.size();
     for (; ended_ && next(0xFFFFFFFFu) == Next::Message; taken(nowUs))
         unsent += isCall();
     state_ = State::Leaving;
@@ -175,7 +177,8 @@ U32 Stream::beat(U32 nowUs) {
     const U32 limit = pending_ ? heartbeatUs : signUs;
     if (since < limit)
         return limit - since;
-    if (in_.empty()) {
+    pollfd end{fd_, POLLRDHUP, 0};
+    if (in_.empty() && poll(&end, 1, 0) == 0) { // it has not ended its writing
         const U32 activeAt = activeAt_;
         (void)give(heartbeat, headerBytes, nowUs);
         activeAt_ = activeAt;

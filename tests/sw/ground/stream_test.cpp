@@ -24,6 +24,7 @@ public:
         stream.open(0);
     }
     ~Program() { close(fd_); }
+    void endWriting() { shutdown(fd_, SHUT_WR); }
 
     void send(uint8_t type, U32 seconds) {
         Bytes m = message(0, 14);
@@ -92,6 +93,37 @@ TEST(Stream, AProgramOfTheOldKindIsLeftAloneWhileIdle) {
     for (U32 second = 2; second < 1200; ++second)
         program.pass(second, false);
     EXPECT_LE(program.heard, 1u);
+}
+
+TEST(Stream, AProgramThatHasEndedItsWritingHearsNoSigns) {
+    Program program;
+    program.send(1, 1);
+    program.endWriting();
+    for (U32 second = 2; second < 100; ++second)
+        program.pass(second, false);
+    EXPECT_EQ(program.heard, 0u);
+}
+
+// It cannot be told, so what the kernel still holds of it is counted, too.
+TEST(Stream, CallsThatAProgramLeftUnreadAreCountedWhenTheLinkIsLost) {
+    constexpr unsigned count = 3000;
+    int pair[2];
+    ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, pair), 0);
+    Stream stream;
+    stream.want(pair[1], "program");
+    stream.open(0);
+    Bytes call = message(0, 14), calls;
+    call[8] = 1; // a batch
+    for (unsigned i = 0; i < count; ++i)
+        calls.insert(calls.end(), call.begin(), call.end());
+    writeAll(pair[0], calls);
+    close(pair[0]);
+    stream.read(0);
+    unsigned sent = 0;
+    for (; stream.next(8192) == Stream::Next::Message; ++sent)
+        stream.taken(0);
+    EXPECT_GT(sent, 100u);
+    EXPECT_EQ(sent + stream.leave(0), count);
 }
 
 } // namespace

@@ -36,7 +36,12 @@ constexpr char usage[] =
     "vehicle: the flash of a new vehicle, with boot loader, public key and a confirmed firmware.\n"
     "fpga: the FPGA's, with the bitstream that is always there. KEYFILE is the private key, which "
     "is made,\n"
-    "and kept from other users, if there is none. VERSION: 1 to 4294967294.\n";
+    "and kept from other users, if there is none. VERSION: 1 to 4294967294.\n"
+    "Behind these: --vendor N and --board N (1 and 1), which vehicle and image have in common;\n"
+    "--needs VERSION: of the bitstream that a firmware needs, or the firmware that a bitstream "
+    "does.\n";
+
+uint32_t board[2] = {1, 1}, needs = 0; // of the command line
 
 [[noreturn]] void fail(const std::string& text) {
     throw std::runtime_error(text);
@@ -96,7 +101,7 @@ std::pair<Bytes, Bytes> sign(const Bytes& image, const Slots_Layout& layout, uin
                              uint32_t product, uint32_t version, const Keys& keys) {
     Slots_Header header{};
     const uint32_t base = Slots_at(&layout, slot) + SLOTS_IMAGE_AT,
-                   room = layout.bytes - SLOTS_IMAGE_AT - (layout.logAt ? SLOTS_LOG_BYTES : 0);
+                   room = layout.bytes - SLOTS_IMAGE_AT - (layout.hasGolden ? SLOTS_LOG_BYTES : 0);
     if (image.size() > room)
         fail("the image has " + std::to_string(image.size()) + " bytes, a slot has " +
              std::to_string(room));
@@ -105,6 +110,8 @@ std::pair<Bytes, Bytes> sign(const Bytes& image, const Slots_Layout& layout, uin
     header.version = version;
     header.bytes = static_cast<uint32_t>(image.size());
     header.base = base;
+    std::copy(std::begin(board), std::end(board), header.board);
+    header.needs = needs;
     crypto_hash_sha512(header.digest, image.data(), image.size());
     Bytes bytes(sizeof header);
     std::memcpy(bytes.data(), &header, sizeof header);
@@ -202,6 +209,7 @@ void fillVehicle(const std::string& loader, const std::string& elf, uint32_t ver
     for (const ElfImage::Segment& s : boot.segments())
         put(s.address - FLASH_BASE, s.bytes);
     put(SLOTS_KEY_AT, keys.open_);
+    std::memcpy(&flash[SLOTS_BOARD_AT], board, sizeof board);
     const auto [header, image] = sign(firmware, 0, version, keys);
     put(Slots_at(&slots_firmware, 0), header);
     put(Slots_at(&slots_firmware, 0) + SLOTS_IMAGE_AT, image);
@@ -214,8 +222,19 @@ void fillVehicle(const std::string& loader, const std::string& elf, uint32_t ver
 } // namespace
 
 int main(int argc, char** argv) {
-    const std::vector<std::string> word(argv + 1, argv + argc);
+    std::vector<std::string> word(argv + 1, argv + argc);
     try {
+        while (word.size() > 2 && word[word.size() - 2].rfind("--", 0) == 0) {
+            const std::string option = word[word.size() - 2];
+            uint32_t* to = option == "--vendor"  ? &board[0]
+                           : option == "--board" ? &board[1]
+                           : option == "--needs" ? &needs
+                                                 : nullptr;
+            if (!to)
+                fail("there is no option '" + option + "'");
+            *to = versionOf(word.back());
+            word.resize(word.size() - 2);
+        }
         if (sodium_init() < 0)
             fail("libsodium does not start");
         if (word.size() == 5 && word[0] == "image")

@@ -83,13 +83,13 @@ void Receiver_init(Receiver* self, const Slots_Port* port, U32 product, U32 runn
     self->port = port;
     self->product = product;
     self->running = running;
-    self->slot = port->layout->logAt ? 1U : running ^ 1U;
+    self->slot = port->layout->hasGolden ? 1U : running ^ 1U;
     Slots_header(port, running, &self->header);
     self->version = self->header.version;
     self->confirmed = Slots_confirmed(port, product);
     self->isOnTrial = !Slots_is(port, running, SLOTS_CONFIRMED);
     Slots_header(port, self->slot, &self->header);
-    if (self->slot == running || !Slots_fits(port->layout, &self->header, self->slot, product))
+    if (self->slot == running || !Slots_fits(port, &self->header, self->slot, product))
         return;
     if (hasBegun(self, &self->header))
         takeUp(self);
@@ -105,10 +105,13 @@ Receiver_Reason Receiver_begin(Receiver* self, const Slots_Header* header) {
         return RECEIVER_BUSY;
     if (self->isOnTrial)
         return RECEIVER_ON_TRIAL;
-    if (!Slots_fits(self->port->layout, header, self->slot, self->product))
+    if (!Slots_fits(self->port, header, self->slot, self->product))
         return RECEIVER_FOREIGN;
     if (header->version <= self->confirmed)
         return RECEIVER_OLD;
+    if (header->needs && (!self->counterpart || self->counterpart->isOnTrial ||
+                          self->counterpart->version < header->needs))
+        return RECEIVER_NEEDS_OTHER;
     self->header = *header;
     self->received = 0;
     self->reason = RECEIVER_OK;

@@ -20,21 +20,23 @@ typedef enum Receiver_State {
 
 typedef enum Receiver_Reason {
     RECEIVER_OK,
-    RECEIVER_FOREIGN,   /* another product or slot, or no image */
-    RECEIVER_OLD,       /* its version is not above the confirmed one */
-    RECEIVER_UNSIGNED,  /* not signed with this vehicle's key */
-    RECEIVER_DAMAGED,   /* the bytes differ from the signed ones */
-    RECEIVER_BUSY,      /* preparing, checking, or ready */
-    RECEIVER_ON_TRIAL,  /* the running image must be confirmed first */
-    RECEIVER_NOT_BEGUN, /* no update was begun, or bytes are missing */
-    RECEIVER_MISPLACED, /* a piece behind a gap, unaligned, or beyond the end */
-    RECEIVER_FLASH,     /* the flash could not be programmed */
-    RECEIVER_WENT_BACK, /* the image was tried and not confirmed */
-    RECEIVER_REFUSED    /* the FPGA did not take the bitstream */
+    RECEIVER_FOREIGN,    /* another product, board or slot, or no image */
+    RECEIVER_OLD,        /* its version is not above the confirmed one */
+    RECEIVER_UNSIGNED,   /* not signed with this vehicle's key */
+    RECEIVER_DAMAGED,    /* the bytes differ from the signed ones */
+    RECEIVER_BUSY,       /* preparing, checking, or ready */
+    RECEIVER_ON_TRIAL,   /* the running image must be confirmed first */
+    RECEIVER_NOT_BEGUN,  /* no update was begun, or bytes are missing */
+    RECEIVER_MISPLACED,  /* a piece behind a gap, unaligned, or beyond the end */
+    RECEIVER_FLASH,      /* the flash could not be programmed */
+    RECEIVER_WENT_BACK,  /* the image was tried and not confirmed */
+    RECEIVER_REFUSED,    /* the FPGA did not take the bitstream */
+    RECEIVER_NEEDS_OTHER /* the counterpart that it needs is not confirmed */
 } Receiver_Reason;
 
 typedef struct Receiver {
     const Slots_Port* port;
+    const struct Receiver* counterpart; /* of the other kind of image, set by the owner; or 0 */
     U32 product;
     U32 running, slot;   /* the slot that runs, and the slot for new images */
     U32 version;         /* that runs */

@@ -8,9 +8,10 @@
 
 #define SYNC_WORD 0x665599AAU /* AA 99 55 66 (UG380, Table 5-6), the low byte first */
 
-const Slots_Layout slots_firmware = {0x20000U, 0x60000U, 0x20000U, SLOTS_READY, SLOTS_TRUE, 0};
+const Slots_Layout slots_firmware = {0x20000U,   0x60000U, 0x20000U, SLOTS_READY,
+                                     SLOTS_TRUE, 0xC000U,  0};
 const Slots_Layout slots_fpga = {0x80000U,  0x80000U, 0x10000U, SLOTS_IMAGE_AT + SLOTS_SYNC_AT,
-                                 SYNC_WORD, 0xFF000U};
+                                 SYNC_WORD, 0xFF000U, 1};
 
 U32 Slots_at(const Slots_Layout* layout, U32 slot) {
     return layout->at + slot * layout->bytes;
@@ -42,8 +43,10 @@ int Slots_set(const Slots_Port* port, U32 slot, Slots_State state) {
                                            Slots_is(port, slot, state));
 }
 
-int Slots_fits(const Slots_Layout* layout, const Slots_Header* header, U32 slot, U32 product) {
-    return header->magic == SLOTS_MAGIC && header->product == product && header->version != 0U &&
+int Slots_fits(const Slots_Port* port, const Slots_Header* header, U32 slot, U32 product) {
+    const Slots_Layout* layout = port->layout;
+    return memcmp(header->board, port->key + SLOTS_KEY_BYTES, sizeof header->board) == 0 &&
+           header->magic == SLOTS_MAGIC && header->product == product && header->version != 0U &&
            header->version != SLOTS_ERASED && header->bytes != 0U && header->bytes % 4U == 0U &&
            header->bytes <= layout->bytes - SLOTS_IMAGE_AT &&
            header->base == Slots_at(layout, slot) + SLOTS_IMAGE_AT;
@@ -63,7 +66,7 @@ int Slots_isWhole(const Slots_Port* port, U32 slot, const Slots_Header* header) 
 static int isSound(const Slots_Port* port, U32 slot, U32 product) {
     Slots_Header header;
     Slots_header(port, slot, &header);
-    return Slots_fits(port->layout, &header, slot, product) && Slots_is(port, slot, SLOTS_READY) &&
+    return Slots_fits(port, &header, slot, product) && Slots_is(port, slot, SLOTS_READY) &&
            Slots_isSigned(port, &header) && Slots_isWhole(port, slot, &header);
 }
 
@@ -71,7 +74,7 @@ static int isSound(const Slots_Port* port, U32 slot, U32 product) {
  * cut by a loss of power. `end` becomes the offset of the first empty entry. */
 static U32 readLog(const Slots_Port* port, U32* end) {
     U32 highest = 0, entry[2];
-    for (*end = 0; port->layout->logAt && *end < SLOTS_LOG_BYTES; *end += (U32)sizeof entry) {
+    for (*end = 0; *end < SLOTS_LOG_BYTES; *end += (U32)sizeof entry) {
         port->read(port->context, port->layout->logAt + *end, (U8*)entry, sizeof entry);
         if ((entry[0] & entry[1]) == SLOTS_ERASED)
             break;
@@ -86,8 +89,8 @@ U32 Slots_confirmed(const Slots_Port* port, U32 product) {
     for (slot = 0; slot < SLOTS_COUNT; ++slot) {
         Slots_Header header;
         Slots_header(port, slot, &header);
-        if (Slots_fits(port->layout, &header, slot, product) &&
-            Slots_is(port, slot, SLOTS_CONFIRMED) && header.version > highest)
+        if (Slots_fits(port, &header, slot, product) && Slots_is(port, slot, SLOTS_CONFIRMED) &&
+            header.version > highest)
             highest = header.version;
     }
     return highest;
@@ -95,12 +98,14 @@ U32 Slots_confirmed(const Slots_Port* port, U32 product) {
 
 int Slots_retire(const Slots_Port* port, U32 slot) {
     static const U32 none = 0;
-    Slots_Header header;
+    Slots_Header header, other;
     U32 entry[2], end;
     if (!Slots_is(port, slot, SLOTS_READY))
         return 1;
     Slots_header(port, slot, &header);
-    if (port->layout->logAt && Slots_is(port, slot, SLOTS_CONFIRMED) &&
+    Slots_header(port, slot ^ 1U, &other);
+    if (Slots_is(port, slot, SLOTS_CONFIRMED) &&
+        (!Slots_is(port, slot ^ 1U, SLOTS_CONFIRMED) || other.version < header.version) &&
         readLog(port, &end) < header.version) {
         entry[0] = header.version;
         entry[1] = ~header.version;

@@ -14,20 +14,24 @@
 #define SLOTS_COUNT 2U
 #define SLOTS_NONE SLOTS_COUNT
 #define SLOTS_KEY_BYTES 32U
-#define SLOTS_KEY_AT 0x8000U  /* in the processor's flash: sector 2 is the public key's */
+/* In the processor's flash, sector 2: the public key, then the vehicle's vendor and board. */
+#define SLOTS_KEY_AT 0x8000U
+#define SLOTS_BOARD_AT (SLOTS_KEY_AT + SLOTS_KEY_BYTES)
 #define SLOTS_IMAGE_AT 0x200U /* in a slot; Cortex-M3's vectors are aligned to 512 bytes */
 
-#define SLOTS_MAGIC 0x1CE50C02U
+#define SLOTS_MAGIC 0x1CE50C05U
 #define SLOTS_DIGEST_BYTES 64U    /* SHA-512 */
 #define SLOTS_SIGNATURE_BYTES 64U /* Ed25519 */
 
 /* The beginning of a slot. The signature covers all bytes before it. */
 typedef struct Slots_Header {
     U32 magic;
-    U32 product; /* the kind of vehicle */
-    U32 version; /* 1..0xFFFFFFFE */
-    U32 bytes;   /* of the image, a multiple of 4 */
-    U32 base;    /* offset in flash of the image's first byte */
+    U32 product;  /* the kind of vehicle */
+    U32 version;  /* 1..0xFFFFFFFE */
+    U32 bytes;    /* of the image, a multiple of 4 */
+    U32 base;     /* offset in flash of the image's first byte */
+    U32 board[2]; /* vendor, and board with its revision */
+    U32 needs;    /* version that must run of the counterpart: bitstream or firmware; 0: any */
     U8 digest[SLOTS_DIGEST_BYTES];
     U8 signature[SLOTS_SIGNATURE_BYTES];
 } Slots_Header;
@@ -49,10 +53,11 @@ typedef struct Slots_Layout {
     U32 at, bytes;      /* of slot 0; slot 1 is behind it */
     U32 sectorBytes;    /* size of an erase */
     U32 readyAt, ready; /* READY's place in a slot, and the value that makes it true */
-    U32 logAt;          /* log of erased confirmed versions; 0: slots take turns */
+    U32 logAt;          /* log of erased confirmed versions */
+    U32 hasGolden;      /* slot 0 is never written; else slots take turns */
 } Slots_Layout;
 
-/* The processor's flash: sectors 5..7 and 8..10. */
+/* The processor's flash: sectors 5..7 and 8..10, and the log in sector 3. */
 extern const Slots_Layout slots_firmware;
 /* The FPGA's: slot 0 has the golden bitstream, which is never written, slot 1 the one that is tried
  * first. READY is its sync word, without which the FPGA ignores it. */
@@ -74,7 +79,7 @@ typedef struct Slots_Port {
     int (*program)(void* context, U32 offset, const U8* bytes, U32 count);
     int (*isSigned)(const U8* signature, const U8* message, U32 bytes, const U8* key);
     void (*digest)(Slots_Read read, void* context, U32 offset, U32 bytes, U8* digest);
-    const U8* key;    /* the vehicle's public key */
+    const U8* key;    /* the vehicle's public key, then its vendor and board */
     const U8* mapped; /* the flash, if it is the processor's own memory; else 0 */
 } Slots_Port;
 
@@ -85,16 +90,16 @@ void Slots_header(const Slots_Port* port, U32 slot, Slots_Header* header);
 int Slots_is(const Slots_Port* port, U32 slot, Slots_State state);
 /* Sets a state. Returns 0 where the flash does not take it. */
 int Slots_set(const Slots_Port* port, U32 slot, Slots_State state);
-/* Returns 1 if the header could be one of an image for this slot and product. */
-int Slots_fits(const Slots_Layout* layout, const Slots_Header* header, U32 slot, U32 product);
+/* Returns 1 if the header could be one of an image for this slot, product, vendor and board. */
+int Slots_fits(const Slots_Port* port, const Slots_Header* header, U32 slot, U32 product);
 /* Returns 1 if the header is signed with the vehicle's key. The header need not be in flash. */
 int Slots_isSigned(const Slots_Port* port, const Slots_Header* header);
 /* Returns 1 if the image in the slot has the header's digest. */
 int Slots_isWhole(const Slots_Port* port, U32 slot, const Slots_Header* header);
 /* Returns the highest confirmed version, 0 where there is none. */
 U32 Slots_confirmed(const Slots_Port* port, U32 product);
-/* Clears READY of a slot before it is erased, and logs its version if it was confirmed. So a
- * half-erased image never starts. */
+/* Clears READY of a slot before it is erased, and logs its version if it was the highest that is
+ * confirmed. So a half-erased image never starts, and an older one is never taken. */
 int Slots_retire(const Slots_Port* port, U32 slot);
 
 /* Returns the slot to run, SLOTS_NONE where there is none: with `mayTry` a new image, once; else

@@ -164,13 +164,16 @@ void UAV_startUpdate(Ice_ObjectAdapterPtr adapter) {
     int i;
     for (i = 0; i < UAV_UPDATABLES; ++i) {
         const UAV_Update* update = &uav_update[i];
-        receivers[i].port = 0;
+        memset(&receivers[i], 0, sizeof receivers[i]);
         if (!update->slots)
             continue;
         Receiver_init(&receivers[i], update->slots, update->product, update->running);
         Update_Firmware_init(&servants[i]);
         (void)Ice_ObjectAdapter_add(adapter, (Ice_ObjectPtr)&servants[i], names[i]);
     }
+    for (i = 0; i < UAV_UPDATABLES; ++i)
+        if (receivers[0].port && receivers[1].port)
+            receivers[i].counterpart = &receivers[1 - i];
     if (!uav_update[UAV_FIRMWARE].slots)
         return;
     work = OSSemCreate(0);

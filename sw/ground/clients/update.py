@@ -19,17 +19,19 @@ import lz4.block
 
 import plugged
 
-HEADER = struct.Struct("<5I64s64s")  # sw/update/slots.h
-MAGIC = 0x1CE50C02
+HEADER = struct.Struct("<8I64s64s")  # sw/update/slots.h
+MAGIC = 0x1CE50C05
 OBJECTS = {0x31564155: "update", 0x31475046: "fpga"}  # by product
 PIECE, PIECES_ON_THE_WAY, DICTIONARY = 4096, 3, 65535
 TEXT = {
-    "foreignImage": "the package is not for this kind of vehicle",
+    "foreignImage": "the package is not for this kind of vehicle, or not for its board",
     "oldVersion": "its version is not above the vehicle's confirmed one",
     "wrongSignature": "it is not signed with this vehicle's key",
     "damagedImage": "what arrived is not what was signed; try again",
     "busyNow": "another update is under way",
     "onTrial": "what the vehicle runs is not confirmed yet; it goes back in a minute",
+    "needsOther": "it needs a newer bitstream, or firmware, that was confirmed: send that "
+                  "first",
     "flashFault": "the vehicle's flash does not take it",
     "wentBack": "the new one was started and went back: it was not confirmed in time, or crashed",
     "refused": "the FPGA did not take it: its CRC is wrong, or it is for another device; the "

@@ -26,9 +26,9 @@ protected:
         chip.cpu().loadFlash(flashBase, folder.read("flash"));
     }
     // Leaves a complete update in the second slot.
-    void receive(int version, const char* key = "key") {
+    void receive(int version, const char* key = "key", const char* more = "") {
         ASSERT_EQ(folder.pack("image " FIRMWARE "uav.elf " + std::to_string(version) + " " + key +
-                              " update"),
+                              " update" + more),
                   0)
             << folder.said();
         const Bytes package = folder.read("update");
@@ -107,6 +107,12 @@ TEST_F(Loader, StartsNeitherAnOlderOneNorOneOfAnotherKey) {
     receive(6);
     EXPECT_EQ(boot(), 0);
     receive(8, "foreignKey");
+    EXPECT_EQ(boot(), 0);
+}
+
+TEST_F(Loader, StartsNothingForAnotherBoard) {
+    fill();
+    receive(8, "key", " --board 2");
     EXPECT_EQ(boot(), 0);
 }
 

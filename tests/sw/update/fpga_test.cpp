@@ -36,6 +36,8 @@ struct Image {
                   version,
                   static_cast<uint32_t>(bytes.size()),
                   Slots_at(&slots_fpga, slot) + SLOTS_IMAGE_AT,
+                  {board[0], board[1]},
+                  0,
                   {},
                   {}};
         crypto_hash_sha512(header.digest, bytes.data(), bytes.size());

@@ -14,6 +14,8 @@ extern "C" {
 #include "slots.h"
 }
 
+constexpr uint32_t board[2] = {7, 3};
+
 struct Keys {
     explicit Keys(uint8_t seed) {
         std::array<uint8_t, crypto_sign_SEEDBYTES> from;
@@ -25,6 +27,7 @@ struct Keys {
                              SLOTS_SIGNED_BYTES, secret.data());
     }
     std::array<uint8_t, crypto_sign_PUBLICKEYBYTES> open;
+    const uint32_t vendorAndBoard[2] = {board[0], board[1]}; // behind it, as in flash
     std::array<uint8_t, crypto_sign_SECRETKEYBYTES> secret;
 };
 

@@ -34,9 +34,15 @@ Image makeImage(uint32_t version, uint32_t slot, uint32_t size = imageBytes) {
     Random random(testSeed() + version);
     for (uint8_t& b : image.bytes)
         b = static_cast<uint8_t>(random.below(256));
-    image.header = {
-        SLOTS_MAGIC, product, version, size, Slots_at(&slots_firmware, slot) + SLOTS_IMAGE_AT,
-        {},          {}};
+    image.header = {SLOTS_MAGIC,
+                    product,
+                    version,
+                    size,
+                    Slots_at(&slots_firmware, slot) + SLOTS_IMAGE_AT,
+                    {board[0], board[1]},
+                    0,
+                    {},
+                    {}};
     crypto_hash_sha512(image.header.digest, image.bytes.data(), size);
     ours.sign(image.header);
     return image;
@@ -62,6 +68,7 @@ public:
                memory.data() + SLOTS_KEY_AT,
                memory.data()} {
         std::copy(ours.open.begin(), ours.open.end(), memory.begin() + SLOTS_KEY_AT);
+        std::memcpy(&memory[SLOTS_BOARD_AT], board, sizeof board);
         flash_.onOperation = [this] {
             if (flash_.operations() == cutAt) {
                 now_ += flash_.busyNs() / 2;
@@ -196,6 +203,13 @@ TEST(Update, WhatIsNotForThisVehicleLeavesItUntouched) {
     Image foreign = makeImage(6, 1), unsignedOne = makeImage(6, 1), otherKey = makeImage(6, 1);
     foreign.header.product ^= 1;
     ours.sign(foreign.header);
+    Image otherVendor = makeImage(6, 1), otherBoard = makeImage(6, 1);
+    ++otherVendor.header.board[0];
+    ++otherBoard.header.board[1];
+    ours.sign(otherVendor.header);
+    ours.sign(otherBoard.header);
+    EXPECT_EQ(vehicle.begin(otherVendor), RECEIVER_FOREIGN);
+    EXPECT_EQ(vehicle.begin(otherBoard), RECEIVER_FOREIGN);
     ++unsignedOne.header.version;
     others.sign(otherKey.header);
     EXPECT_EQ(vehicle.begin(foreign), RECEIVER_FOREIGN);
@@ -207,6 +221,42 @@ TEST(Update, WhatIsNotForThisVehicleLeavesItUntouched) {
     EXPECT_EQ(vehicle.receiver.state, RECEIVER_IDLE);
     EXPECT_EQ(vehicle.memory, before);
     EXPECT_EQ(vehicle.operations(), 0u);
+}
+
+TEST(Update, ItsCounterpartMustRunAndBeConfirmed) {
+    Vehicle vehicle;
+    Image image = makeImage(2, 1);
+    image.header.needs = 5;
+    ours.sign(image.header);
+    EXPECT_EQ(vehicle.begin(image), RECEIVER_NEEDS_OTHER);
+    Receiver other{};
+    other.version = 4;
+    vehicle.receiver.counterpart = &other;
+    EXPECT_EQ(vehicle.begin(image), RECEIVER_NEEDS_OTHER);
+    other.version = 5;
+    other.isOnTrial = 1;
+    EXPECT_EQ(vehicle.begin(image), RECEIVER_NEEDS_OTHER);
+    EXPECT_EQ(vehicle.operations(), 0u);
+    other.isOnTrial = 0;
+    EXPECT_EQ(vehicle.begin(image), RECEIVER_OK);
+}
+
+// The newest image has rotted, and the power is cut at each operation that replaces it.
+TEST(Update, NoLossOfPowerLowersTheConfirmedVersion) {
+    for (uint64_t cut = 1; cut < 12; ++cut) {
+        Vehicle vehicle(5);
+        vehicle.updateTo(6);
+        vehicle.memory[Slots_at(&slots_firmware, 1) + SLOTS_IMAGE_AT + 99] ^= 1;
+        EXPECT_EQ(vehicle.boot(), 5u);
+        EXPECT_EQ(vehicle.receiver.confirmed, 6u);
+        vehicle.cutAt = vehicle.operations() + cut;
+        EXPECT_THROW(vehicle.updateTo(7), PowerCut);
+        vehicle.cutAt = 0;
+        EXPECT_EQ(vehicle.boot(), 5u);
+        EXPECT_EQ(vehicle.receiver.confirmed, 6u) << "cut at operation " << cut;
+        EXPECT_EQ(vehicle.begin(makeImage(6, 1)), RECEIVER_OLD);
+        vehicle.updateTo(7);
+    }
 }
 
 TEST(Update, NoHeaderOfWhichABitWasChangedIsTaken) {

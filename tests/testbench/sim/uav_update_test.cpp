@@ -52,6 +52,8 @@ protected:
         Bytes open(crypto_sign_PUBLICKEYBYTES), seed(crypto_sign_SEEDBYTES, 9);
         crypto_sign_seed_keypair(open.data(), secret.data(), seed.data());
         std::copy(open.begin(), open.end(), flash.bytes.begin() + SLOTS_KEY_AT);
+        std::memcpy(&flash.bytes[SLOTS_BOARD_AT], headerOf(5, 0).board,
+                    sizeof Slots_Header().board);
         const Slots_Header running = headerOf(5, 0);
         std::memcpy(&flash.bytes[Slots_at(&slots_firmware, 0)], &running, sizeof running);
         Slots_set(&flash.port, 0, SLOTS_CONFIRMED);
@@ -74,6 +76,8 @@ protected:
                             version,
                             imageBytes,
                             Slots_at(&slots_firmware, slot) + SLOTS_IMAGE_AT,
+                            {1, 2},
+                            0,
                             {},
                             {}};
         crypto_hash_sha512(header.digest, image.data(), imageBytes);

@@ -56,91 +56,104 @@ def flattened(top, source, generated, work, parameters):
         return json.load(read)["modules"][top]
 
 
-def main():
-    top, clock, source, generated, work, parameters, *synchronous = sys.argv[1:]
-    module = flattened(top, Path(source), Path(generated), work, parameters)
+def names_of(module):
+    """Returns the shortest name of each net."""
     names = {}
     for name, net in module["netnames"].items():
         for bit in net["bits"]:
             if bit not in names or len(name) < len(names[bit]):
                 names[bit] = name
-    source, comb, sinks = {}, {}, []  # of a net: its clock; what it depends on; (name, clock, nets)
-    pins = {}
-    for name, port in module["ports"].items():
-        for bit in port["bits"] if port["direction"] == "input" else []:
-            pins[bit] = name
-            source[bit] = "pin"
-    main_clock = module["ports"][clock]["bits"][0]
-    for name in synchronous:
-        for bit in module["ports"][name]["bits"]:
-            source[bit] = main_clock
-    for name, cell in module["cells"].items():
-        kind, nets, way = cell["type"], cell["connections"], cell["port_directions"]
-        ins = {p for p in nets if way[p] == "input"}
-        outs = {p for p in nets if way[p] == "output"}
-        found = re.search(r"\b(cdc_[a-z]+|async_fifo)\b", kind)
-        if found:
-            for port in nets:
-                of = cdc_clock(found[1], port, nets)
-                if port in ins and of is not None:
-                    sinks.append((name + "." + port, of, nets[port]))
-                for bit in nets[port] if port in outs else []:
-                    source[bit] = of if of is not None else "unsynchronised"
-        elif kind.startswith("$mem") or "CLK" in nets:
-            own = (nets.get("CLK") or nets["WR_CLK"] or ["x"])[0]  # a ROM has none
-            data = [b for p in ins - NO_DATA - {"RD_ADDR"} for b in nets[p]]
-            sinks.append((name, own, data))
-            for bit in nets.get("Q", nets.get("RD_DATA", [])):
-                if "RD_ADDR" in nets:
-                    comb[bit] = nets["RD_ADDR"] + ([("state", own)] if own != "x" else [])
-                else:
-                    source[bit] = own
-        else:
-            needs = [b for p in ins for b in nets[p]]
-            for port in outs:
-                for bit in nets[port]:
-                    comb[bit] = needs
-    seen, visited = {}, set()
+    return names
 
-    def origins(bit):
+
+class Nets:
+    """What a module's nets come from: of a net its clock; what it depends on; and the sinks: name,
+    clock, nets."""
+
+    def __init__(self, module, main_clock, synchronous):
+        self.names, self.clock, self.comb, self.sinks = names_of(module), {}, {}, []
+        self.seen, self.visited = {}, set()
+        ports = module["ports"].values()
+        self.pins = {b for port in ports if port["direction"] == "input" for b in port["bits"]}
+        self.clock = dict.fromkeys(self.pins, "pin")
+        for name in synchronous:
+            self.clock.update(dict.fromkeys(module["ports"][name]["bits"], main_clock))
+        for name, cell in module["cells"].items():
+            nets, way = cell["connections"], cell["port_directions"]
+            ins = {p for p in nets if way[p] == "input"}
+            found = re.search(r"\b(cdc_[a-z]+|async_fifo)\b", cell["type"])
+            if found:
+                self.add_crossing(name, found[1], nets, ins)
+            elif cell["type"].startswith("$mem") or "CLK" in nets:
+                self.add_register(name, nets, ins)
+            else:
+                needs = [b for p in ins for b in nets[p]]
+                outs = [b for p in nets if way[p] == "output" for b in nets[p]]
+                self.comb.update(dict.fromkeys(outs, needs))
+
+    def add_crossing(self, name, kind, nets, ins):
+        """A module of hdl/cdc."""
+        for port in nets:
+            of = cdc_clock(kind, port, nets)
+            if port not in ins:
+                own = of if of is not None else "unsynchronised"
+                self.clock.update(dict.fromkeys(nets[port], own))
+            elif of is not None:
+                self.sinks.append((name + "." + port, of, nets[port]))
+
+    def add_register(self, name, nets, ins):
+        """A register or a memory."""
+        own = (nets.get("CLK") or nets["WR_CLK"] or ["x"])[0]  # a ROM has none
+        self.sinks.append((name, own, [b for p in ins - NO_DATA - {"RD_ADDR"} for b in nets[p]]))
+        for bit in nets.get("Q", nets.get("RD_DATA", [])):
+            if "RD_ADDR" in nets:
+                self.comb[bit] = nets["RD_ADDR"] + ([("state", own)] if own != "x" else [])
+            else:
+                self.clock[bit] = own
+
+    def origins(self, bit):
         """Returns the registers and pins that a net depends on: {clock: one of them}; each net is
         visited once."""
-        stack = [bit]
+        seen, stack = self.seen, [bit]
         while stack:
             b = stack[-1]
             if b in seen:
                 stack.pop()
             elif isinstance(b, tuple):
                 seen[b] = {b[1]: "a memory"}
-            elif b in source:
-                seen[b] = {source[b]: names.get(b, "?")}
-            elif b not in comb:
-                seen[b] = {}
+            elif b in self.clock:
+                seen[b] = {self.clock[b]: self.names.get(b, "?")}
             else:
-                new = [n for n in comb[b] if n not in seen and n not in visited]
-                later = [] if b in visited else new
-                visited.add(b)
-                if later:
-                    stack += later
+                needs = self.comb.get(b, [])
+                new = [n for n in needs if n not in seen and n not in self.visited]
+                if new and b not in self.visited:
+                    stack += new
                 else:
-                    seen[b] = {of: via for n in comb[b] for of, via in seen.get(n, {}).items()}
+                    seen[b] = {of: via for n in needs for of, via in seen.get(n, {}).items()}
+                self.visited.add(b)
         return seen[bit]
 
-    bad = set()
-    for name, own, data in sinks:
-        if not isinstance(own, int):
-            continue
-        for bit in data:
-            for of, through in origins(bit).items():
-                if of == own or (of == "pin" and own in pins and own != main_clock):
-                    continue
-                what = names.get(of, of) if isinstance(of, int) else of
-                bad.add(f"{top}: {name} ({names.get(own, own)}) sees {through} ({what})")
-    for line in sorted(bad):
-        print(line)
-    if not sinks:
-        print(f"{top}: no register at all")
-    sys.exit(1 if bad or not sinks else 0)
+    def bad(self, main_clock):
+        """Returns the sinks that see what they may not."""
+        return {
+            f"{name} ({self.names.get(own, own)}) sees {through} ({self.names.get(of, of)})"
+            for name, own, data in self.sinks
+            if isinstance(own, int)
+            for bit in data
+            for of, through in self.origins(bit).items()
+            if of != own and not (of == "pin" and own in self.pins and own != main_clock)
+        }
+
+
+def main():
+    top, clock, source, generated, work, parameters, *synchronous = sys.argv[1:]
+    module = flattened(top, Path(source), Path(generated), work, parameters)
+    main_clock = module["ports"][clock]["bits"][0]
+    nets = Nets(module, main_clock, synchronous)
+    bad = sorted(nets.bad(main_clock)) if nets.sinks else ["no register at all"]
+    for line in bad:
+        print(f"{top}: {line}")
+    sys.exit(1 if bad else 0)
 
 
 main()

@@ -208,6 +208,56 @@ protected:
             world_.with([&] { world_.air.weather = RfWeather::drawn(random, 30); });
         }
     }
+    void endure() {
+        Random random(testSeed());
+        const uint64_t end = world_.ns() + static_cast<uint64_t>(wanted() * 1e9);
+        misfortune(random, 4); // weather
+        auto said = std::chrono::steady_clock::now();
+        for (unsigned events = 0; world_.ns() < end; ++events) {
+            misfortune(random,
+                       events < 4 ? (events * 2 + 3) % 5 : random.below(6)); // 3 0 2 4, then any
+            world_.sleep((0.7 + random.below(1000) / 1000.0) * (1 + rest()));
+            if (std::chrono::steady_clock::now() - said > std::chrono::seconds(15)) {
+                said = std::chrono::steady_clock::now();
+                report();
+            }
+        }
+    }
+    bool groundIsAnswered() {
+        for (int id = (8 << 24) + 1; id <= (8 << 24) + 20; ++id) {
+            try {
+                const auto data = pattern(id, 500);
+                // Takes one of the three connections: a fourth would wait.
+                if (world_.echo(ground_.get(), "1")->repeat(id, data) == data)
+                    return true;
+            } catch (const Ice::Exception&) {
+                world_.sleep(0.2);
+            }
+        }
+        return false;
+    }
+    bool uavIsAnswered() {
+        const unsigned before = uavAnswered_;
+        for (int tries = 0; tries < 200 && uavAnswered_ == before; ++tries)
+            world_.sleep(0.1 * (1 + rest()));
+        return uavAnswered_ > before;
+    }
+    void checkBooks() {
+        unsigned reported = 0;
+        for (auto& [name, count] : reports_)
+            reported += count;
+        EXPECT_EQ(wrong_ + uavWrong_ + up_.wrong + down_.wrong, 0u) << "wrong; SEED " << testSeed();
+        EXPECT_EQ(up_.doubled + down_.doubled, 0u) << "doubled; SEED " << testSeed();
+        EXPECT_EQ(up_.outOfOrder + down_.outOfOrder, 0u) << "out of order; SEED " << testSeed();
+        EXPECT_LE(answered_, up_.executed);
+        EXPECT_GE(answered_ + wrong_ + reported, calls_.load())
+            << "calls of which nothing was said; SEED " << testSeed();
+        // A reboot takes the call under way with it.
+        EXPECT_LE(uavAnswered_ + uavReported_, static_cast<unsigned>(uavSent_));
+        EXPECT_GE(uavAnswered_ + uavReported_ + reboots_ + 1, static_cast<unsigned>(uavSent_));
+        for (auto& fault : faults_)
+            ADD_FAILURE() << "a call ended with " << fault << "; SEED " << testSeed();
+    }
     void report() {
         std::printf("chip soak: %.0f s simulated; ground to UAV: %u calls, %u answered, %u "
                     "executed; UAV to "
@@ -248,59 +298,18 @@ TEST_F(ChipSoak, EveryMessageIsRightOnceInOrderOrReported) {
     for (int w = 1; w <= 3; ++w)
         workers.push_back(std::async(std::launch::async, [this, w] { work(w); }));
     AtEnd atEnd{stop_};
-    Random random(testSeed());
     world_.sleep(2); // set-up, and some good weather
-    const uint64_t begin = world_.ns(), end = begin + static_cast<uint64_t>(wanted() * 1e9);
-    misfortune(random, 4); // weather
-    unsigned events = 0;
-    auto said = std::chrono::steady_clock::now();
-    while (world_.ns() < end) {
-        misfortune(random,
-                   events < 4 ? (events * 2 + 3) % 5 : random.below(6)); // 3 0 2 4, then any
-        ++events;
-        world_.sleep((0.7 + random.below(1000) / 1000.0) * (1 + rest()));
-        if (std::chrono::steady_clock::now() - said > std::chrono::seconds(15)) {
-            said = std::chrono::steady_clock::now();
-            report();
-        }
-    }
+    endure();
     stop_ = true;
     world_.with([&] { world_.air.weather = {}; });
     for (auto& worker : workers)
         worker.get();
-    bool works = false;
-    for (int tries = 0; tries < 20 && !works; ++tries) {
-        try {
-            const int id = 8 << 24 | (tries + 1);
-            const auto data = pattern(id, 500);
-            // Takes one of the three connections: a fourth would wait.
-            works = world_.echo(ground_.get(), "1")->repeat(id, data) == data;
-        } catch (const Ice::Exception&) {
-            world_.sleep(0.2);
-        }
-    }
-    EXPECT_TRUE(works) << "no call succeeds in good weather";
-    const unsigned before = uavAnswered_;
-    for (int tries = 0; tries < 200 && uavAnswered_ == before; ++tries)
-        world_.sleep(0.1 * (1 + rest()));
-    EXPECT_GT(uavAnswered_, before) << "none of the UAV's calls is answered in good weather";
+    EXPECT_TRUE(groundIsAnswered()) << "no call succeeds in good weather";
+    EXPECT_TRUE(uavIsAnswered()) << "none of the UAV's calls is answered in good weather";
     uavStops_ = true;
     ground_.end();
     report();
-    unsigned reported = 0;
-    for (auto& [name, count] : reports_)
-        reported += count;
-    EXPECT_EQ(wrong_ + uavWrong_ + up_.wrong + down_.wrong, 0u) << "wrong; SEED " << testSeed();
-    EXPECT_EQ(up_.doubled + down_.doubled, 0u) << "doubled; SEED " << testSeed();
-    EXPECT_EQ(up_.outOfOrder + down_.outOfOrder, 0u) << "out of order; SEED " << testSeed();
-    EXPECT_LE(answered_, up_.executed);
-    EXPECT_GE(answered_ + wrong_ + reported, calls_.load())
-        << "calls of which nothing was said; SEED " << testSeed();
-    // A reboot takes the call under way with it.
-    EXPECT_LE(uavAnswered_ + uavReported_, static_cast<unsigned>(uavSent_));
-    EXPECT_GE(uavAnswered_ + uavReported_ + reboots_ + 1, static_cast<unsigned>(uavSent_));
-    for (auto& fault : faults_)
-        ADD_FAILURE() << "a call ended with " << fault << "; SEED " << testSeed();
+    checkBooks();
 }
 
 } // namespace

@@ -4,8 +4,8 @@
 
 #include "VMemoryMcb2.h"
 #include "bench.h"
-#include "bits.h"
 #include "mcb_pins.h"
+#include "npi_requester.h"
 #include <cstring>
 #include <gtest/gtest.h>
 

@@ -48,9 +48,6 @@ TEST_F(ModemApi, SetUpChoosesFramesAnd250000Baud) {
 
 TEST_F(ModemApi, PacketsLeaveWithoutAPauseEachAsOneRfPacket) {
     ready();
-    std::vector<size_t> sizes;
-    air_.onPacket(
-        [&](uint64_t, const RfPacket& p, RfChannel::Outcome) { sizes.push_back(p.bytes.size()); });
     std::vector<uint8_t> expected;
     const std::vector<unsigned> lengths = {1, 7, 8, 9, 100, 100, 64, 33, 5};
     for (unsigned i = 0; i < lengths.size(); ++i) {
@@ -60,23 +57,20 @@ TEST_F(ModemApi, PacketsLeaveWithoutAPauseEachAsOneRfPacket) {
     }
     runMs(80);
     EXPECT_EQ(plain_.received, expected);
-    EXPECT_EQ(sizes, std::vector<size_t>(lengths.begin(), lengths.end()));
+    EXPECT_EQ(sizes_, std::vector<size_t>(lengths.begin(), lengths.end()));
     EXPECT_EQ(takeEvents(), MODEM_EVENT_TX_DONE_MASK);
     EXPECT_EQ(near_->counters().badFrames, 0u);
 }
 
 TEST_F(ModemApi, EachPacketGoesToTheTargetOfItsTime) {
     ready();
-    std::vector<uint16_t> targets;
-    air_.onPacket(
-        [&](uint64_t, const RfPacket& p, RfChannel::Outcome) { targets.push_back(p.to); });
     const std::vector<uint16_t> wanted = {0x5A5A, 0xA5A5, 0x0000, 0xFF00};
     for (unsigned i = 0; i < wanted.size(); ++i) {
         bus_.write(MODEM_ADDR, uint32_t(wanted[i]) << MODEM_ADDR_TARGET_LSB | 0x0001);
         put(i, packet(16 + i, static_cast<uint8_t>(i)));
         runMs(30);
     }
-    EXPECT_EQ(targets, wanted);
+    EXPECT_EQ(targets_, wanted);
 }
 
 TEST_F(ModemApi, PacketsArriveEachInItsBuffer) {

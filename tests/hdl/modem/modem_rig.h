@@ -26,6 +26,10 @@ protected:
         far.name = "far";
         far.set = {{"MY", 0x0000}, {"DL", 0x0001}, {"BD", 7}};
         far_ = std::make_unique<XBee>(plain_, air_, far);
+        air_.onPacket([this](uint64_t, const RfPacket& packet, RfChannel::Outcome) {
+            sizes_.push_back(packet.bytes.size());
+            targets_.push_back(packet.to);
+        });
         bench_.addModel([this] { sample(); }, [this] { drive(); });
         bench_.reset();
         bus_.write(MODEM_MASK, 0x7F);
@@ -125,6 +129,8 @@ protected:
     UartPins pins_;
     HostLine plain_;
     std::unique_ptr<XBee> near_, far_;
+    std::vector<size_t> sizes_; // of the packets that were on the air
+    std::vector<uint16_t> targets_;
     bool pinsIgnoreRts_ = false;
     bool noise_ = false; // the line to the controller is held low
 

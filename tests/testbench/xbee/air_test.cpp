@@ -113,7 +113,6 @@ TEST_F(Retries, WithRRAFailureHasAStatusOfItsOwn) {
     for (uint32_t rr : {0u, 1u}) {
         power({{"AP", 1}, {"RR", rr}});
         air.weather.tryLoss = 1;
-        heard();
         lineA.send({0x7E, 0x00, 0x06, 0x01, 0x01, 0x00, 0x02, 0x00, 'x', 0x83}, now);
         run(500 * ms);
         std::string status = heard();
@@ -124,7 +123,6 @@ TEST_F(Retries, WithRRAFailureHasAStatusOfItsOwn) {
 
 TEST_F(TrueAir, A64BitSourceComesInFrames80) {
     power({{"MY", 0xFFFE}, {"RO", 0}}, {{"AP", 1}});
-    heardB();
     send("x");
     run(50 * ms);
     std::string frame = heardB();

@@ -28,17 +28,17 @@ protected:
         }
         return out;
     }
+    void SetUp() override { power({{"AP", GetParam()}}); }
     void api(Bytes contents) { lineA.send(framed(std::move(contents)), now); }
-    Bytes answer() {
-        Bytes data;
-        data.swap(lineA.received);
-        return data;
+    Bytes answer() { return std::exchange(lineA.received, {}); }
+    Bytes command(Bytes contents) {
+        api(std::move(contents));
+        run(ms);
+        return answer();
     }
 };
 
 TEST_P(Api, ATransmitRequestIsSentAndItsStatusReported) {
-    power({{"AP", GetParam()}});
-    lineA.received.clear();
     api({0x01, 0x52, 0x00, 0x02, 0x00, 'h', 0x7E, 0x11, 'i'});
     run(20 * ms);
     EXPECT_EQ(heardB(), "h\x7E\x11i");
@@ -46,16 +46,12 @@ TEST_P(Api, ATransmitRequestIsSentAndItsStatusReported) {
 }
 
 TEST_P(Api, NobodyThereGivesStatus1) {
-    power({{"AP", GetParam()}});
-    lineA.received.clear();
     api({0x01, 0x07, 0x99, 0x99, 0x00, 'x'});
     run(100 * ms);
     EXPECT_EQ(answer(), framed({0x89, 0x07, 0x01}));
 }
 
 TEST_P(Api, FrameId0AsksForNoStatus) {
-    power({{"AP", GetParam()}});
-    lineA.received.clear();
     api({0x01, 0x00, 0x00, 0x02, 0x00, 'x'});
     run(20 * ms);
     EXPECT_EQ(heardB(), "x");
@@ -63,7 +59,6 @@ TEST_P(Api, FrameId0AsksForNoStatus) {
 }
 
 TEST_P(Api, TheOptionWithoutAckIsNotTriedAgain) {
-    power({{"AP", GetParam()}});
     air.weather.tryLoss = 1;
     api({0x01, 0x01, 0x00, 0x02, 0x01, 'x'});
     run(100 * ms);
@@ -71,15 +66,12 @@ TEST_P(Api, TheOptionWithoutAckIsNotTriedAgain) {
 }
 
 TEST_P(Api, SerialNumbersAreAddressedBy0x00) {
-    power({{"AP", GetParam()}});
     api({0x00, 0x01, 0x00, 0x13, 0xA2, 0x00, 0x00, 0x00, 0x00, 0x0B, 0x00, 'x'});
     run(20 * ms);
     EXPECT_EQ(heardB(), "x");
 }
 
 TEST_P(Api, AReceivedPacketHasSourceAndSignal) {
-    power({{"AP", GetParam()}});
-    lineA.received.clear();
     lineB.send({'h', 'i'}, now);
     run(20 * ms);
     EXPECT_EQ(answer(), framed({0x81, 0x00, 0x02, 0x28, 0x00, 'h', 'i'}));
@@ -87,42 +79,28 @@ TEST_P(Api, AReceivedPacketHasSourceAndSignal) {
 
 TEST_P(Api, ABroadcastIsMarked) {
     power({{"AP", GetParam()}}, {{"DL", 0xFFFF}});
-    lineA.received.clear();
     lineB.send({'x'}, now);
     run(20 * ms);
     EXPECT_EQ(answer(), framed({0x81, 0x00, 0x02, 0x28, 0x02, 'x'}));
 }
 
 TEST_P(Api, CommandsAreAnsweredWithAStatus) {
-    power({{"AP", GetParam()}});
-    lineA.received.clear();
-    api({0x08, 0x52, 'D', 'L'}); // the manual's example
-    run(ms);
-    EXPECT_EQ(answer(), framed({0x88, 0x52, 'D', 'L', 0, 0, 0, 0, 2}));
-    api({0x08, 0x4D, 'D', 'L', 0x50, 0x00});
-    run(ms);
-    EXPECT_EQ(answer(), framed({0x88, 0x4D, 'D', 'L', 0}));
+    // The manual's example.
+    EXPECT_EQ(command({0x08, 0x52, 'D', 'L'}), framed({0x88, 0x52, 'D', 'L', 0, 0, 0, 0, 2}));
+    EXPECT_EQ(command({0x08, 0x4D, 'D', 'L', 0x50, 0x00}), framed({0x88, 0x4D, 'D', 'L', 0}));
     EXPECT_EQ(a->parameter("DL"), 0x5000u);
-    api({0x08, 0x01, 'Z', 'Z'});
-    run(ms);
-    EXPECT_EQ(answer(), framed({0x88, 0x01, 'Z', 'Z', 2}));
-    api({0x08, 0x01, 'C', 'H', 0x55});
-    run(ms);
-    EXPECT_EQ(answer(), framed({0x88, 0x01, 'C', 'H', 3}));
+    EXPECT_EQ(command({0x08, 0x01, 'Z', 'Z'}), framed({0x88, 0x01, 'Z', 'Z', 2}));
+    EXPECT_EQ(command({0x08, 0x01, 'C', 'H', 0x55}), framed({0x88, 0x01, 'C', 'H', 3}));
 }
 
 TEST_P(Api, AQueuedCommandWaitsForAC) {
-    power({{"AP", GetParam()}});
-    api({0x09, 0x01, 'M', 'Y', 0x00, 0x44});
-    run(ms);
+    command({0x09, 0x01, 'M', 'Y', 0x00, 0x44});
     EXPECT_EQ(a->parameter("MY"), 1u);
-    api({0x08, 0x02, 'A', 'C'});
-    run(ms);
+    command({0x08, 0x02, 'A', 'C'});
     EXPECT_EQ(a->parameter("MY"), 0x44u);
 }
 
 TEST_P(Api, BadFramesAreCountedAndTheNextIsRead) {
-    power({{"AP", GetParam()}});
     Bytes bad = framed({0x01, 0x00, 0x00, 0x02, 0x00, 'x'});
     bad.back() ^= 1; // checksum
     lineA.send(bad, now);
@@ -139,18 +117,14 @@ TEST_P(Api, BadFramesAreCountedAndTheNextIsRead) {
 }
 
 TEST_P(Api, AResetIsReported) {
-    power({{"AP", GetParam()}});
     a->resetPin(true, now);
     run(1000);
     a->resetPin(false, now);
-    lineA.received.clear();
     run(100 * ms);
     EXPECT_EQ(answer(), framed({0x8A, 0x00}));
 }
 
 TEST_P(Api, TheCommandSequenceIsNotKnown) {
-    power({{"AP", GetParam()}});
-    heard();
     EXPECT_EQ(enter(), "");
     EXPECT_FALSE(a->inCommandMode());
 }
@@ -158,7 +132,6 @@ TEST_P(Api, TheCommandSequenceIsNotKnown) {
 INSTANTIATE_TEST_SUITE_P(Modes, Api, ::testing::Values(1u, 2u));
 
 TEST_P(Api, WithEscapesALostByteCostsOneFrameOnly) {
-    power({{"AP", GetParam()}});
     Bytes cut = framed({0x01, 0x00, 0x00, 0x02, 0x00, 'x', 'y', 'z'});
     cut.pop_back();
     lineA.send(cut, now);

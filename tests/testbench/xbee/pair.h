@@ -32,6 +32,8 @@ protected:
         });
         air.weather.perfect = perfect;
         run(20 * ms);
+        lineA.received.clear();
+        lineB.received.clear();
     }
     void run(uint64_t ns) {
         for (uint64_t end = now + ns; now < end;) {

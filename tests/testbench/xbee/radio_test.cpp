@@ -134,14 +134,6 @@ TEST_F(Mac, MMMustSuit) {
     EXPECT_EQ(heardB(), "x");
 }
 
-TEST_F(Encryption, TheSameKeyReads) {
-    power({{"EE", 1}}, {{"EE", 1}});
-    send("secret");
-    run(30 * ms);
-    EXPECT_EQ(heardB(), "secret");
-    EXPECT_NE(text(packets[0].bytes), "secret") << "as on the air";
-}
-
 TEST_F(Encryption, AnotherKeyGivesGarbageNotSilence) {
     power({{"EE", 1}}, {{"EE", 1}});
     enter();

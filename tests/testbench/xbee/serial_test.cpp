@@ -138,10 +138,14 @@ TEST_F(Buffers, TheOutputBufferHolds202BytesAndWhatComesThenIsAcknowledgedAndLos
 // A host with a UART of its own, bit by bit, `error` off the modem's rate.
 class Wire : public ::testing::Test {
 protected:
-    void connect(XBee::Options options) {
-        options.set["MY"] = 1;
-        options.set["DL"] = 2;
+    void connect(std::map<std::string, uint32_t> settings) {
+        XBee::Options options;
+        options.set = std::move(settings);
         modem_ = std::make_unique<XBee>(pins_, air_, options);
+        air_.onPacket([&](uint64_t, const RfPacket& p, RfChannel::Outcome) {
+            sent_.assign(p.bytes.begin(), p.bytes.end());
+        });
+        step(3'000'000);
     }
     void step(uint64_t until) {
         for (; now_ < until; now_ += 200) {
@@ -173,40 +177,30 @@ protected:
     std::unique_ptr<XBee> modem_;
     bool level_ = true;
     std::vector<uint64_t> edges_;
+    std::string sent_; // the last packet
 };
 
 class BaudTolerance : public Wire, public ::testing::WithParamInterface<double> {};
 
 TEST_P(BaudTolerance, BytesAreReadWithin4Percent) {
-    XBee::Options options;
-    options.set["BD"] = 7;
-    connect(options);
+    connect({{"BD", 7}});
     std::string text = "U\x01\xFF\x80 tolerance \x7F";
     send(text, modem_->baud() * (1 + GetParam()));
-    std::string sent;
-    air_.onPacket([&](uint64_t, const RfPacket& p, RfChannel::Outcome) {
-        sent.assign(p.bytes.begin(), p.bytes.end());
-    });
     step(now_ + 20'000'000);
     EXPECT_EQ(modem_->counters().framingErrors, 0u);
-    EXPECT_EQ(sent, text);
+    EXPECT_EQ(sent_, text);
 }
 INSTANTIATE_TEST_SUITE_P(Rates, BaudTolerance, ::testing::Values(-0.04, -0.02, 0.0, 0.02, 0.04));
 
 TEST_F(Wire, SevenPercentIsTooFar) {
-    XBee::Options options;
-    options.set["BD"] = 7;
-    connect(options);
+    connect({{"BD", 7}});
     send(std::string(50, '\x0F'), modem_->baud() * 0.93);
     step(now_ + 20'000'000);
     EXPECT_GT(modem_->counters().framingErrors, 0u);
 }
 
 TEST_F(Wire, RepliesHaveTheModemsRateAndBDChangesAfterTheOK) {
-    XBee::Options options;
-    options.set = {{"BD", 6}, {"GT", 2}};
-    connect(options);
-    step(3'000'000);
+    connect({{"BD", 6}, {"GT", 2}});
     send("+++", 57600);
     step(now_ + 3'000'000);
     ASSERT_TRUE(modem_->inCommandMode());
@@ -220,19 +214,12 @@ TEST_F(Wire, RepliesHaveTheModemsRateAndBDChangesAfterTheOK) {
         shortest = std::min(shortest, edges_[i] - edges_[i - 1]);
     EXPECT_NEAR(static_cast<double>(shortest), 1e9 / 57600, 500);
     send("data", 111111);
-    std::string sent;
-    air_.onPacket([&](uint64_t, const RfPacket& p, RfChannel::Outcome) {
-        sent.assign(p.bytes.begin(), p.bytes.end());
-    });
     step(now_ + 20'000'000);
-    EXPECT_EQ(sent, "data") << "and the new rate holds";
+    EXPECT_EQ(sent_, "data") << "and the new rate holds";
 }
 
 TEST_F(Wire, WithD6TheModemWaitsForRTS) {
-    XBee::Options options;
-    options.set = {{"BD", 7}, {"GT", 2}, {"D6", 1}};
-    connect(options);
-    step(3'000'000);
+    connect({{"BD", 7}, {"GT", 2}, {"D6", 1}});
     pins_.setRts(false, now_);
     send("+++", 111111);
     step(now_ + 5'000'000);
@@ -244,10 +231,7 @@ TEST_F(Wire, WithD6TheModemWaitsForRTS) {
 }
 
 TEST_F(Wire, WithoutD6TheModemTakesNoNoticeOfRTS) {
-    XBee::Options options;
-    options.set = {{"BD", 7}, {"GT", 2}};
-    connect(options);
-    step(3'000'000);
+    connect({{"BD", 7}, {"GT", 2}});
     pins_.setRts(false, now_);
     send("+++", 111111);
     step(now_ + 5'000'000);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // core_pins: turns a script's lines into changes of pins, in the order of their times; or connects
-// the sensor's model, with a frame each quarter of a second.
+// the sensor's model.
 
 #include "core_pins.h"
 #include "map_regs.h"
@@ -120,30 +120,29 @@ void connectPins(SocModel& soc, const std::string& script, const std::string& lo
 }
 
 #ifdef MAP_PIN_CAMERA_PCLK_I
-// The sensor's clock stops between frames, as many sensors' can.
-void connectSensor(SocModel& soc, const Frame& frame) {
-    constexpr uint64_t period = SocModel::clkHz / 4;
-    soc.onClock([&soc, frame, sensor = SensorModel({200, 9}), pins = SensorModel::Pins(),
-                 clock = false, nextFrame = uint64_t(0), still = 0]() mutable {
+void connectSensor(SocModel& soc, const Frame& frame, std::function<bool()> sends,
+                   std::function<void(uint32_t pins)> note) {
+    soc.onClock([&soc, frame, sends, note, sensor = SensorModel({200, 9}),
+                 pins = SensorModel::Pins(), clock = false, still = 0]() mutable {
         clock = !clock;
         if (!clock) { // its pins change at the falling edge
-            if (sensor.isIdle() && soc.cycles() >= nextFrame) {
+            if (sensor.isIdle() && sends())
                 sensor.addFrame(frame.pixels, frame.width, frame.height);
-                nextFrame = soc.cycles() + period;
-            }
             pins = sensor.next();
         }
-        soc.setCorePins(uint32_t(clock) << MAP_PIN_CAMERA_PCLK_I |
-                        uint32_t(pins.vsync) << MAP_PIN_CAMERA_VSYNC_I |
-                        uint32_t(pins.href) << MAP_PIN_CAMERA_HREF_I |
-                        uint32_t(pins.data) << MAP_PIN_CAMERA_DATA_I);
+        const uint32_t all = uint32_t(clock) << MAP_PIN_CAMERA_PCLK_I |
+                             uint32_t(pins.vsync) << MAP_PIN_CAMERA_VSYNC_I |
+                             uint32_t(pins.href) << MAP_PIN_CAMERA_HREF_I |
+                             uint32_t(pins.data) << MAP_PIN_CAMERA_DATA_I;
+        soc.setCorePins(all);
+        note(all);
         // VSYNC goes high after the last line, and some more clocks show it to the core.
         still = sensor.isIdle() && pins.vsync ? still + 1 : 0;
-        return still > 32 ? std::max(nextFrame, soc.cycles() + 1) : soc.cycles() + 1;
+        return soc.cycles() + (still > 32 ? SocModel::clkHz / 1000 : 1);
     });
 }
 #else
-void connectSensor(SocModel&, const Frame&) {
+void connectSensor(SocModel&, const Frame&, std::function<bool()>, std::function<void(uint32_t)>) {
     throw std::runtime_error("--camera needs a chip with the camera core (ip/cores.list)");
 }
 #endif

@@ -168,7 +168,11 @@ void Flight::connectModels() {
 
 void Flight::placePicture() {
     if (o_.sensor)
-        connectSensor(soc_, frame_);
+        connectSensor(soc_, frame_, [this, next = uint64_t(0)]() mutable {
+            const bool sends = soc_.cycles() >= next;
+            next = sends ? soc_.cycles() + SocModel::clkHz / 4 : next;
+            return sends;
+        });
     else
         loadCamera(soc_, frame_);
 }

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// ground: a ground station in this process: a modem, a link and hand-written IceP messages.
+// ground: a ground station in this process: a modem, a link and hand-written IceP messages; and
+// scripts for flights, which are called again and again until they return true.
 
 #ifndef GROUND_H
 #define GROUND_H
 
 #include "random.h"
 #include "soc_model.h"
+#include <cstring>
 #include <functional>
 #include <map>
 #include <memory>
@@ -15,12 +17,29 @@
 
 extern "C" {
 #include "link.h"
+#include "uav.h"
+}
+
+using Script = std::function<bool()>;
+
+// A script of steps, one after another.
+inline Script inOrder(std::vector<Script> steps) {
+    return [steps = std::move(steps), at = size_t(0)]() mutable {
+        while (at < steps.size() && steps[at]())
+            ++at;
+        return at == steps.size();
+    };
 }
 
 class Ground {
 public:
-    static constexpr uint16_t guardMs =
-        20; // of the tests' modems; the default, a second, would be idle time
+    struct Call {
+        std::string object, operation;
+        int mode = 0;                         // 0 normal, 2 idempotent
+        std::vector<uint8_t> parameters = {}; // encoded
+    };
+    // Of the tests' modems; the default, a second, would be idle time.
+    static constexpr uint16_t guardMs = 20;
     static XBee::Options uavModem() {
         XBee::Options options;
         options.name = "uav";
@@ -94,14 +113,18 @@ public:
             backlog_ += size;
     }
     void ping(int id, const std::string& object) { call(id, object, "ice_ping", 2); }
-    // Returns a script, to be called again and again. It pings each time the last ping is answered,
-    // and returns true once `count` are.
-    std::function<bool()> pinging(int count, const std::string& object = "hwengine1") {
-        return [this, count, object, sent = 0]() mutable {
-            if (validated && static_cast<int>(replies.size()) == sent && sent < count)
-                ping(++sent, object);
-            return static_cast<int>(replies.size()) == count;
+    // A script that makes calls, each when the one before is answered; their numbers are from 1 on.
+    Script calling(std::vector<Call> calls) {
+        return [this, calls = std::move(calls), sent = size_t(0)]() mutable {
+            if (validated && replies.size() == sent && sent < calls.size()) {
+                const Call& c = calls[sent++];
+                call(static_cast<int>(sent), c.object, c.operation, c.mode, c.parameters);
+            }
+            return replies.size() == calls.size();
         };
+    }
+    Script pinging(size_t count, const std::string& object = "hwengine1") {
+        return calling(std::vector<Call>(count, {object, "ice_ping", 2}));
     }
     void noise(const std::vector<uint8_t>& bytes) { line_.send(bytes, now_); }
 
@@ -153,6 +176,26 @@ private:
     uint64_t now_ = 0, clock_ = 0, nextPoll_ = 0;
     size_t backlog_ = 0;
     bool isOpen_ = false; // the channel of its calls
+};
+
+// A vehicle's chip, its ground station, and the air between them.
+struct GroundAndChip {
+    explicit GroundAndChip(uint64_t seed = testSeed()) : air(seed), ground(air, seed + 5) {
+        uav_guardMs = Ground::guardMs; // the host build's
+        soc.onTime([this](uint64_t now) { return ground.advance(now); });
+    }
+    bool within(double seconds) const { return static_cast<double>(soc.now()) < seconds * 1e9; }
+    // Gives the vehicle a picture, pixel by pixel, or only its size.
+    void provide(uint32_t width, uint32_t height, const std::function<uint8_t(uint32_t)>& pixel) {
+        const uint32_t size[2] = {width, height};
+        std::memcpy(soc.memory().data() + UAV_FRAME_HEADER, size, sizeof size);
+        for (uint32_t i = 0; pixel && i < width * height; ++i)
+            soc.memory().data()[UAV_FRAME + i] = pixel(i);
+    }
+
+    RfChannel air;
+    Ground ground;
+    SocModel soc{air, Ground::uavModem()};
 };
 
 #endif

@@ -11,7 +11,6 @@
 #include "m3_machine.h"
 #include <array>
 #include <cstdio>
-#include <cstring>
 
 extern "C" {
 #include "uav.h"
@@ -20,24 +19,23 @@ extern "C" {
 namespace {
 
 constexpr double hclk = 120e6; // the board's
+const Ground::Call isAlive = {"uav", "isAlive", 0, {7, 0}};
 
 // The vehicle's ARM binary in the air with its ground station, and the cycles that its processor
 // takes.
-class MeasuredFlight {
+class MeasuredFlight : public GroundAndChip {
 public:
     // `scaled` 1: the board's ratio of clocks; 50: the processor's time in the radio's. `key`: the
     // link's, if any.
     MeasuredFlight(const std::string& elf, double scaled, const std::vector<uint8_t>& key = {})
-        : warp(scaled),
+        : GroundAndChip(1), warp(scaled),
           machine(soc,
                   {elf, scaled > 1 ? static_cast<uint32_t>(hclk) : 0, Ground::guardMs, {}, key},
                   [this] { return poll(); }) {
         ground.key = key;
         ground.start();
-        soc.onTime([this](uint64_t now) { return ground.advance(now); });
         soc.reset();
-        const uint32_t size[2] = {48, 32};
-        std::memcpy(soc.memory().data() + UAV_FRAME_HEADER, size, sizeof size);
+        provide(48, 32, nullptr);
         until([this] { return ground.validated; }, 25, "the connection");
     }
     // Runs until `done`, asked each simulated millisecond; fails after `seconds`.
@@ -55,19 +53,10 @@ public:
         uint64_t end = soc.now() + static_cast<uint64_t>(seconds * 1e9);
         until([this, end] { return soc.now() >= end; }, seconds + 1, "waiting");
     }
-    // Makes this many calls, each after the answer of the one before: `call` gets their numbers,
-    // from 1 on.
-    void inTurn(int count, double seconds, const std::function<void(int number)>& call) {
+    // Makes calls, each after the answer of the one before.
+    void inTurn(const std::vector<Ground::Call>& calls, double seconds) {
         ground.replies.clear();
-        int sent = 0;
-        until(
-            [&] {
-                const int answered = static_cast<int>(ground.replies.size());
-                if (answered == sent && sent < count)
-                    call(++sent);
-                return answered == count;
-            },
-            seconds, "the calls");
+        until(ground.calling(calls), seconds, "the calls");
     }
     // Cycles on the board: while the processor was awake, and of these while it waited for the
     // FSMC.
@@ -81,9 +70,6 @@ public:
     double seconds() const { return static_cast<double>(soc.now()) / 1e9; }
 
     double warp;
-    RfChannel air{1};
-    Ground ground{air, 6};
-    SocModel soc{air, Ground::uavModem()};
     M3Machine machine;
 
 private:
@@ -157,14 +143,10 @@ void measureLatencies(MeasuredFlight& f) {
             routines->add(f.awake() - (*begin)[n]);
     };
     f.cpu().countMasked(fpgaPriority);
-    f.inTurn(10, 20, [&](int number) {
-        if (number % 5 == 1)
-            f.ground.call(number, "hwengine1", "startProcessing");
-        else if (number % 5 == 3)
-            f.ground.call(number, "hwengine1", "getResult");
-        else
-            f.ground.call(number, "uav", "isAlive", 0, {7, 0});
-    });
+    const Ground::Call start = {"hwengine1", "startProcessing"};
+    const Ground::Call result = {"hwengine1", "getResult"};
+    f.inTurn({start, isAlive, result, isAlive, isAlive, start, isAlive, result, isAlive, isAlive},
+             20);
     stopListening(f);
     say("interrupt latency, least", interrupts->least, "cycles");
     say("interrupt latency, mean", interrupts->mean(), "cycles");
@@ -178,7 +160,7 @@ void measureLatencies(MeasuredFlight& f) {
         "in " + f.machine.stm32().image()->functionAt(masked.from));
 }
 
-void measureCalls(MeasuredFlight& f, int calls, const std::string& what, double cycles,
+void measureCalls(MeasuredFlight& f, unsigned calls, const std::string& what, double cycles,
                   double share) {
     const uint32_t servant = f.machine.stm32().image()->symbol("Autopilot_Vehicle_isAlive"),
                    transmit = f.machine.stm32().image()->symbol("Radio_transmit");
@@ -198,7 +180,7 @@ void measureCalls(MeasuredFlight& f, int calls, const std::string& what, double 
         }
     };
     double awake = f.awake(), waiting = f.waiting(), began = f.seconds();
-    f.inTurn(calls, 30, [&](int number) { f.ground.call(number, "uav", "isAlive", 0, {7, 0}); });
+    f.inTurn(std::vector<Ground::Call>(calls, isAlive), 30);
     awake = f.awake() - awake;
     waiting = f.waiting() - waiting;
     double took = f.seconds() - began;
@@ -261,7 +243,7 @@ void measurePings(MeasuredFlight& f, const std::string& program) {
         else if (address == transmit && from >= 0 && isAnswered)
             took.add(f.awake() - from), from = -1;
     };
-    f.inTurn(20, 60, [&](int number) { f.ground.ping(number, "hwengine1"); });
+    f.inTurn(std::vector<Ground::Call>(20, {"hwengine1", "ice_ping", 2}), 60);
     stopListening(f);
     say(program + ": ping, message to first frame of the reply", took.mean(), "cycles");
     say(program + ": RAM with all objects and tasks' stacks",

@@ -17,41 +17,37 @@ import struct
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 IMAGE = "/usr/share/xplanet/images/earth.jpg"
 LONGEST = 240.0  # seconds of a mission on a busy machine
 REAL = 0.3  # seconds of a moment before the simulated ones
-LAST = 2.0  # moment
+LAST = 2.0  # moment; its share of this is the quantity of faults that have no moment
+
+
+def proc(pid, name):
+    """A file of a process; "": it has ended."""
+    try:
+        return Path(f"/proc/{pid}/{name}").read_text()
+    except (FileNotFoundError, ProcessLookupError):
+        return ""
 
 
 def children(of):
-    """Ids of a process' descendants, by the kernel's lists; a process that ends meanwhile has
-    none."""
+    """Ids of a process' descendants, by the kernel's lists."""
     found = []
-    try:
-        for task in os.listdir("/proc/%d/task" % of):
-            with open("/proc/%d/task/%s/children" % (of, task)) as f:
-                for child in map(int, f.read().split()):
-                    found += [child] + children(child)
-    except (FileNotFoundError, ProcessLookupError):
-        pass
+    for task in Path(f"/proc/{of}/task").glob("*"):
+        for child in proc(of, f"task/{task.name}/children").split():
+            found += [int(child)] + children(child)
     return found
 
 
 def command_of(pid):
-    try:
-        with open("/proc/%d/cmdline" % pid) as f:
-            return f.read().replace("\0", " ")
-    except OSError:
-        return ""
+    return proc(pid, "cmdline").replace("\0", " ")
 
 
 def lives(pid):
-    try:
-        with open("/proc/%d/stat" % pid) as f:
-            return f.read().rsplit(")", 1)[1].split()[0] != "Z"
-    except OSError:
-        return False
+    return proc(pid, "stat").rpartition(")")[2].split()[:1] not in ([], ["Z"])
 
 
 class Mission:
@@ -92,8 +88,7 @@ class Mission:
     def simulated(self):
         """Simulated seconds, from the simulator's counters (sw/ground/sim_status.h)."""
         try:
-            with open(os.path.join(self.out, "status"), "rb") as f:
-                return struct.unpack("<8sQ", f.read(16))[1] / 1e9
+            return struct.unpack("<8sQ", Path(self.out, "status").read_bytes()[:16])[1] / 1e9
         except (FileNotFoundError, struct.error):
             return 0
 
@@ -128,11 +123,6 @@ class Mission:
         self.run.wait()
 
 
-def share(moment):
-    """The moment as a quantity from 0 to 1, for faults that have no moment."""
-    return moment / LAST
-
-
 def gone(pids, seconds):
     end = time.monotonic() + seconds
     while any(map(lives, pids)):
@@ -155,15 +145,12 @@ def is_whole(out):
     """Checks that no file is half written: pictures decode, reports parse, and no temporary file is
     left."""
     from PIL import Image
-    for name in os.listdir(out):
-        path = os.path.join(out, name)
-        if name.endswith(".png"):
+    for path in Path(out).iterdir():
+        if path.suffix == ".png":
             Image.open(path).load()
-        elif name.endswith(".json"):
-            json.load(open(path))
-        elif name.endswith(".new"):
-            return False
-    return True
+        elif path.suffix == ".json":
+            json.loads(path.read_text())
+    return not list(Path(out).glob("*.new"))
 
 
 def caught(start, name, moment):
@@ -207,7 +194,7 @@ def stopped(start, name, moment, deaths):
 
 def disk_full(start, name, moment, deaths):
     """The folder is a file system of its own with few blocks; its files are copied at the end."""
-    size = 4096 * int(1 + 7 * share(moment))
+    size = 4096 * int(1 + 7 * moment / LAST)
     script = (f"mount -t tmpfs -o size={size} none $0 || exit 9; status=0; \"$@\" || status=$?; "
               "cp -a $0 $0.kept; exit $status")
     m = start(prefix=["unshare", "--map-root-user", "--mount", "sh", "-c", script, "sh"])
@@ -229,7 +216,7 @@ def fails_or_succeeds(m):
 
 
 def no_descriptors(start, name, moment, deaths):
-    return fails_or_succeeds(start(prefix=["prlimit", f"--nofile={8 + int(25 * share(moment))}"],
+    return fails_or_succeeds(start(prefix=["prlimit", f"--nofile={8 + int(25 * moment / LAST)}"],
                                    options=["--patience", "16"]))
 
 
@@ -245,7 +232,7 @@ def port_taken(start, name, moment, deaths):
 
 def no_memory(start, name, moment, deaths):
     """Limits each process to 8 to 800 MB of addresses."""
-    m = start(prefix=["prlimit", "--as=%d" % (8e6 * 100**share(moment))])
+    m = start(prefix=["prlimit", "--as=%d" % (8e6 * 100**(moment / LAST))])
     said = fails_or_succeeds(m)
     # An interpreter that cannot even start says so by itself, with a traceback of its own.
     expect("Fatal Python error: init" in m.text() or

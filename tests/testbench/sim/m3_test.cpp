@@ -21,51 +21,25 @@ namespace {
 
 using Bytes = std::vector<uint8_t>;
 
-// One flight: the air, both modems, the chip, and a ground station that works through a list of
-// calls.
-struct Flight {
+// One flight: the air, both modems, the chip, and a ground station that works through calls.
+struct Flight : GroundAndChip {
     explicit Flight(double loss = 0) {
         air.weather.loss = loss;
-        uav_guardMs = Ground::guardMs; // the host build's
         air.onPacket([this](uint64_t, const RfPacket& p, RfChannel::Outcome) {
             packets.push_back({p.from, p.bytes});
         });
-        soc.onTime([this](uint64_t now) { return ground.advance(now); });
         soc.reset(true);
         Random random(testSeed());
-        const uint32_t size[2] = {48, 32};
-        std::memcpy(soc.memory().data() + UAV_FRAME_HEADER, size, sizeof size);
-        for (int i = 0; i < 48 * 32; ++i)
-            soc.memory().data()[UAV_FRAME + i] = static_cast<uint8_t>(random.below(2) * 200);
+        provide(48, 32, [&](uint32_t) { return static_cast<uint8_t>(random.below(2) * 200); });
     }
-    // Next call, when the one before is answered; false when all are.
-    bool step() {
-        if (!ground.validated || static_cast<int>(ground.replies.size()) < sent)
-            return true;
-        if (sent == static_cast<int>(calls.size()))
-            return false;
-        ++sent;
-        calls[static_cast<size_t>(sent - 1)](sent);
-        return true;
-    }
-    bool inTime(double seconds) const { return static_cast<double>(soc.now()) < seconds * 1e9; }
-    // Goes on as after a restart of the ground's program.
-    void forget() {
-        ground.replies.clear();
-        sent = 0;
-    }
-    void pings(int count) {
-        for (int i = 0; i < count; ++i)
-            calls.push_back([this](int id) { ground.ping(id, "hwengine1"); });
-    }
-    void mission() {
-        pings(2);
-        calls.push_back(
-            [this](int id) { ground.call(id, "hwengine1", "setParameterA", 0, {30, 0}); });
-        calls.push_back([this](int id) { ground.call(id, "hwengine1", "startProcessing"); });
-        calls.push_back([this](int id) { ground.call(id, "hwengine1", "getResult"); });
-        calls.push_back([this](int id) { ground.call(id, "uav", "isAlive", 0, {7, 0}); });
-        calls.push_back([this](int id) { ground.ping(id, "nobody"); });
+    Script mission(size_t pings) {
+        std::vector<Ground::Call> calls(pings, {"hwengine1", "ice_ping", 2});
+        calls.insert(calls.end(), {{"hwengine1", "setParameterA", 0, {30, 0}},
+                                   {"hwengine1", "startProcessing"},
+                                   {"hwengine1", "getResult"},
+                                   {"uav", "isAlive", 0, {7, 0}},
+                                   {"nobody", "ice_ping", 2}});
+        return ground.calling(calls);
     }
     uint32_t scratch() {
         return soc.fsmc().read32(MAP_CONTROL_WINDOW + 64 * MAP_SLOT_SYSTEM + 4 * SYSTEM_SCRATCH);
@@ -75,12 +49,7 @@ struct Flight {
         int from;
         Bytes bytes;
     };
-    RfChannel air{testSeed()};
-    Ground ground{air, testSeed() + 5};
-    SocModel soc{air, Ground::uavModem()};
-    std::vector<std::function<void(int id)>> calls;
     std::vector<Packet> packets;
-    int sent = 0;
 };
 
 // UAV_FIRMWARE names another build, of the real uC/OS-II (docs/firmware.md).
@@ -109,11 +78,10 @@ constexpr int packetsThatMayDiffer = 2;
 
 TEST(CortexM3Firmware, FliesTheMissionAsTheHostBuildDoesByteByByteOnTheAir) {
     Flight host, m3;
-    host.mission();
-    m3.mission();
-    UavMachine onHost(host.soc, [&] { return host.step() && host.inTime(30); });
+    auto ofHost = host.mission(2), ofM3 = m3.mission(2);
+    UavMachine onHost(host.soc, [&] { return !ofHost() && host.within(30); });
     onHost.run();
-    M3Machine onM3(m3.soc, firmware, [&] { return m3.step() && m3.inTime(30); });
+    M3Machine onM3(m3.soc, firmware, [&] { return !ofM3() && m3.within(30); });
     onM3.run();
     ASSERT_EQ(host.ground.replies.size(), 7u);
     EXPECT_EQ(host.ground.replies[7], 2); // there is nobody of that name
@@ -136,9 +104,8 @@ TEST(CortexM3Firmware, FliesTheMissionAsTheHostBuildDoesByteByByteOnTheAir) {
 
 TEST(CortexM3Firmware, LosesNothingAtTenPercentLossAndAtTheBoardsCycleRatio) {
     Flight f(0.1);
-    f.pings(20);
-    f.mission();
-    M3Machine machine(f.soc, firmwareAt(0), [&] { return f.step() && f.inTime(90); });
+    auto script = f.mission(22);
+    M3Machine machine(f.soc, firmwareAt(0), [&] { return !script() && f.within(90); });
     machine.run();
     EXPECT_EQ(f.ground.replies.size(), 27u);
     EXPECT_GT(f.air.counters().lost, 0u);
@@ -148,11 +115,10 @@ TEST(CortexM3Firmware, LosesNothingAtTenPercentLossAndAtTheBoardsCycleRatio) {
 // a stack overflow. Each is shown in the system slot, and the link comes back by itself.
 TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
     Flight f;
-    f.pings(2);
-    int phase = 0;
     uint64_t since = 0;
     M3Machine* m3 = nullptr;
-    auto busErrors = [&] { return m3->cpu().word(m3->stm32().image()->symbol("busErrors")); };
+    auto place = [&](const char* symbol) { return m3->stm32().image()->symbol(symbol); };
+    auto hasPassed = [&] { return f.soc.cycles() >= since + SocModel::clkHz / 100; };
     auto reported = [&] {
         try {
             return reasonOf(f.scratch());
@@ -160,67 +126,51 @@ TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
             return Boot_Reason(); // the firmware has not switched the FSMC on yet
         }
     };
-    auto script = [&] {
-        switch (phase) {
-        case 0: // a register that nobody answers for: an event, an interrupt, and the flight goes
-                // on
-            if (f.step())
-                return true;
-            EXPECT_EQ(busErrors(), 0u);
-            (void)f.soc.fsmc().read32(MAP_CONTROL_WINDOW + 64 * 33 + 4 * 5);
-            since = f.soc.cycles();
-            phase = 1;
-            return true;
-        case 1:
-            if (f.soc.cycles() < since + SocModel::clkHz / 100)
-                return true;
-            EXPECT_EQ(busErrors(), 1u);
-            EXPECT_EQ(m3->cpu().word(m3->stm32().image()->symbol("busErrorPlace")), 33u * 16 + 5);
-            f.ground.ping(100, "hwengine1"); // on its way when ...
-            m3->cpu().setReg(CortexM3::Faultmask,
-                             1); // ... nothing gets through to the processor any more
-            phase = 2;
-            return true;
-        case 2: // the ground is told; the link comes up again
-            if (m3->stm32().resets().watchdog == 0 || f.ground.unknown == 0 || !f.ground.isUp())
-                return true;
-            EXPECT_EQ(f.ground.replies.count(100), 0u);
-            EXPECT_EQ(reported(), BOOT_WATCHDOG);
-            f.forget();
-            phase = 3;
-            return true;
-        case 3:
-            if (f.step())
-                return true;
-            f.soc.fsmc().write32(0xA0000008,
-                                 0x000030D2); // NE2 is switched off: the next register access fails
-            phase = 4;
-            return true;
-        case 4:
-            if (m3->stm32().resets().software == 0 || reported() != BOOT_BUS_FAULT)
-                return true;
-            EXPECT_EQ(m3->cpu().word(m3->stm32().image()->symbol("boot_record") + 20) & 0xFF000000,
-                      MAP_CONTROL_WINDOW); // where
-            since = f.soc.cycles();
-            phase = 5;
-            return true;
-        case 5: { // the idle task's stack runs over
-            if (f.soc.cycles() < since + SocModel::clkHz / 100 || m3->cpu().currentException() != 0)
-                return true;
-            bool own = m3->stm32().image()->has("idleStack");
-            m3->cpu().setReg(CortexM3::Psp,
-                             m3->stm32().image()->symbol(own ? "idleStack" : "OSTaskIdleStk") + 56);
-            phase = 6;
-            return true;
-        }
-        default:
-            return reported() != BOOT_STACK_OVERFLOW;
-        }
+    auto readNobodysRegister = [&] { // an event, an interrupt, and the flight goes on
+        EXPECT_EQ(m3->cpu().word(place("busErrors")), 0u);
+        (void)f.soc.fsmc().read32(MAP_CONTROL_WINDOW + 64 * 33 + 4 * 5);
+        since = f.soc.cycles();
+        return true;
     };
-    M3Machine machine(f.soc, firmware, [&] { return script() && f.inTime(60); });
+    auto hangProcessor = [&] {
+        EXPECT_EQ(m3->cpu().word(place("busErrors")), 1u);
+        EXPECT_EQ(m3->cpu().word(place("busErrorPlace")), 33u * 16 + 5);
+        f.ground.ping(100, "hwengine1");          // on its way when ...
+        m3->cpu().setReg(CortexM3::Faultmask, 1); // ... nothing gets through to it any more
+        return true;
+    };
+    auto groundIsTold = [&] { // the link comes up again
+        if (m3->stm32().resets().watchdog == 0 || f.ground.unknown == 0 || !f.ground.isUp())
+            return false;
+        EXPECT_EQ(f.ground.replies.count(100), 0u);
+        EXPECT_EQ(reported(), BOOT_WATCHDOG);
+        f.ground.replies.clear();
+        return true;
+    };
+    auto switchNe2Off = [&] { // the next register access fails
+        f.soc.fsmc().write32(0xA0000008, 0x000030D2);
+        return true;
+    };
+    auto busFaultIsTold = [&] {
+        if (m3->stm32().resets().software == 0 || reported() != BOOT_BUS_FAULT)
+            return false;
+        EXPECT_EQ(m3->cpu().word(place("boot_record") + 20) & 0xFF000000, MAP_CONTROL_WINDOW);
+        since = f.soc.cycles();
+        return true;
+    };
+    auto overflowIdleStack = [&] {
+        if (!hasPassed() || m3->cpu().currentException() != 0)
+            return false;
+        bool own = m3->stm32().image()->has("idleStack");
+        m3->cpu().setReg(CortexM3::Psp, place(own ? "idleStack" : "OSTaskIdleStk") + 56);
+        return true;
+    };
+    auto script = inOrder({f.ground.pinging(2), readNobodysRegister, hasPassed, hangProcessor,
+                           groundIsTold, f.ground.pinging(2), switchNe2Off, busFaultIsTold,
+                           overflowIdleStack, [&] { return reported() == BOOT_STACK_OVERFLOW; }});
+    M3Machine machine(f.soc, firmware, [&] { return !script() && f.within(60); });
     m3 = &machine;
     machine.run();
-    EXPECT_EQ(phase, 6);
     EXPECT_EQ(reported(), BOOT_STACK_OVERFLOW);
     EXPECT_EQ(f.scratch() & 0xFF, 63u) << "the idle task's priority";
     EXPECT_EQ(f.scratch() >> 16 & 0xFF, 4u) << "starts since power-on";
@@ -230,47 +180,37 @@ TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
 // place, no reset; when the memory is back, the flight goes on.
 TEST(CortexM3Firmware, AHungMemoryIsReportedAndTheFlightGoesOn) {
     Flight f;
-    f.pings(2);
-    int phase = 0;
     uint64_t since = 0;
     M3Machine* m3 = nullptr;
     auto variable = [&](const char* name) {
         return m3->cpu().word(m3->stm32().image()->symbol(name));
     };
-    auto script = [&] {
-        switch (phase) {
-        case 0:
-            if (f.step())
-                return true;
-            EXPECT_EQ(variable("busErrors"), 0u);
-            f.soc.memory().hang(true);
-            f.ground.ping(100, "hwengine1"); // the firmware must read its packet from the memory
-            (void)f.soc.fsmc().read16(MAP_DDR_WINDOW);
-            since = f.soc.cycles();
-            phase = 1;
-            return true;
-        case 1:
-            if (f.soc.cycles() < since + SocModel::clkHz / 10)
-                return true;
-            EXPECT_GE(variable("busErrors"), 1u);
-            EXPECT_EQ(variable("busErrorPlace") & 0x3FF, 0x3FFu) << "memory";
-            f.soc.memory().hang(false);
-            phase = 2;
-            return true;
-        case 2:
-            if (f.ground.replies.count(100) == 0 && f.ground.isUp())
-                return true;
-            f.calls.push_back([&f](int id) { f.ground.ping(id, "uav"); });
-            phase = 3;
-            return true;
-        default:
-            return f.step() || f.ground.replies.count(3) == 0;
-        }
+    auto hang = [&] {
+        EXPECT_EQ(variable("busErrors"), 0u);
+        f.soc.memory().hang(true);
+        f.ground.ping(100, "hwengine1"); // the firmware must read its packet from the memory
+        (void)f.soc.fsmc().read16(MAP_DDR_WINDOW);
+        since = f.soc.cycles();
+        return true;
     };
-    M3Machine machine(f.soc, firmware, [&] { return script() && f.inTime(60); });
+    auto goOn = [&] {
+        EXPECT_GE(variable("busErrors"), 1u);
+        EXPECT_EQ(variable("busErrorPlace") & 0x3FF, 0x3FFu) << "memory";
+        f.soc.memory().hang(false);
+        return true;
+    };
+    auto ping = [&] {
+        if (f.ground.validated)
+            f.ground.ping(3, "uav");
+        return f.ground.validated;
+    };
+    auto script = inOrder({f.ground.pinging(2), hang,
+                           [&] { return f.soc.cycles() >= since + SocModel::clkHz / 10; }, goOn,
+                           [&] { return f.ground.replies.count(100) != 0 || !f.ground.isUp(); },
+                           ping, [&] { return f.ground.replies.count(3) != 0; }});
+    M3Machine machine(f.soc, firmware, [&] { return !script() && f.within(60); });
     m3 = &machine;
     machine.run();
-    EXPECT_EQ(phase, 3);
     EXPECT_EQ(f.ground.replies.count(100), 1u) << "the call that was under way";
     EXPECT_EQ(f.ground.replies.count(3), 1u) << "and the next one";
     EXPECT_EQ(m3->stm32().resets().watchdog + m3->stm32().resets().software, 0u);
@@ -281,7 +221,7 @@ TEST(CortexM3Firmware, ACorruptImageIsRefusedWithItsReason) {
     Random random(testSeed());
     for (int i = 0; i < 4; ++i) {
         Flight f;
-        M3Machine machine(f.soc, firmware, [&] { return f.inTime(0.3); });
+        M3Machine machine(f.soc, firmware, [&] { return f.within(0.3); });
         const ElfImage& image = *machine.stm32().image();
         // Anywhere behind the code that reports: start, boot and FSMC driver come first in the
         // image.
@@ -300,7 +240,7 @@ TEST(CortexM3Firmware, ACorruptImageIsRefusedWithItsReason) {
 
 TEST(CortexM3Firmware, AnAbortTellsWhereTheChipAndTheProgramAre) {
     Flight f;
-    M3Machine machine(f.soc, firmware, [&] { return f.inTime(0.01); });
+    M3Machine machine(f.soc, firmware, [&] { return f.within(0.01); });
     machine.run();
     EXPECT_DEATH(std::abort(), "The chip stands at clock [0-9]{6,}, interrupt [01], ");
     EXPECT_DEATH(std::abort(), "The program is in OSTaskIdleHook");
@@ -309,7 +249,7 @@ TEST(CortexM3Firmware, AnAbortTellsWhereTheChipAndTheProgramAre) {
 
 TEST(CortexM3Firmware, WithoutAKeyItDoesNotStartAndTriesAgain) {
     Flight f;
-    M3Machine machine(f.soc, firmware, [&] { return f.inTime(2.2); });
+    M3Machine machine(f.soc, firmware, [&] { return f.within(2.2); });
     machine.stm32().backup().fill(0); // the battery was empty
     machine.run();
     EXPECT_EQ(reasonOf(f.scratch()), BOOT_NO_KEY);
@@ -321,7 +261,7 @@ TEST(CortexM3Firmware, TheSameSeedGivesTheSameRunToTheInstruction) {
     uint64_t instructions[2], cycles[2];
     for (int run = 0; run < 2; ++run) {
         Flight f; // the modem's set-up: the tick, the driver, its interrupts
-        M3Machine machine(f.soc, firmware, [&] { return f.inTime(1); });
+        M3Machine machine(f.soc, firmware, [&] { return f.within(1); });
         machine.run();
         instructions[run] = machine.cpu().instructions();
         cycles[run] = f.soc.cycles();

@@ -5,10 +5,10 @@
 // second of it. In a second flight every core works, and the camera's pins move.
 
 #include "VSoc___024root.h"
+#include "core_pins.h"
 #include "ground.h"
 #include "map_regs.h"
 #include "quiet_span.h"
-#include "sensor_model.h"
 #include "uav_machine.h"
 #include <cstdlib>
 #include <gmock/gmock.h>
@@ -32,16 +32,10 @@ struct Flight {
     std::map<int, int> replies; // their statuses
 };
 
-struct Call {
-    std::string object, operation;
-    int mode; // 0 normal, 2 idempotent
-    std::vector<uint8_t> parameters;
-};
-
 // The plan of a flight. The slow flight evaluates each clock at its start and once for
 // `compareNs`, from the reply number `comparedFrom` on (0: from the first call on).
 struct Plan {
-    std::vector<Call> calls; // again and again, each when the one before is answered
+    std::vector<Ground::Call> calls; // again and again, each when the one before is answered
     uint64_t compareNs = 0;
     size_t comparedFrom = 0;
     size_t framedAfter = 0; // replies after which the camera's sensor sends a frame; 0: none
@@ -53,42 +47,13 @@ uint64_t comparedNs() {
     return static_cast<uint64_t>(1e6 * (text ? std::atof(text) : 40));
 }
 
-// Lets a sensor with 16 x 8 pixels send a frame when `sends` says so, which ends that. Notes its
-// pins in each of its clocks, which stop between frames.
-void connectSensor(SocModel& soc, std::function<bool()> sends,
-                   std::function<void(uint32_t pins)> note) {
-    soc.onClock([&soc, sends, note, sensor = SensorModel({20, 3}), pins = SensorModel::Pins(),
-                 clock = false, still = 0]() mutable {
-        clock = !clock;
-        if (!clock) {
-            if (sensor.isIdle() && sends()) {
-                std::vector<uint8_t> pixels(16 * 8);
-                for (size_t i = 0; i < pixels.size(); ++i)
-                    pixels[i] = static_cast<uint8_t>(i * i * 37);
-                sensor.addFrame(pixels, 16, 8);
-            }
-            pins = sensor.next();
-        }
-        const uint32_t all = uint32_t(clock) << MAP_PIN_CAMERA_PCLK_I |
-                             uint32_t(pins.vsync) << MAP_PIN_CAMERA_VSYNC_I |
-                             uint32_t(pins.href) << MAP_PIN_CAMERA_HREF_I |
-                             uint32_t(pins.data) << MAP_PIN_CAMERA_DATA_I;
-        soc.setCorePins(all);
-        note(all);
-        still = sensor.isIdle() && pins.vsync ? still + 1 : 0;
-        return soc.cycles() + (still > 32 ? 100'000 : 1); // it is asked each millisecond
-    });
-}
-
 // Flies until each call has been answered, and for the time that is compared.
 Flight fly(const Plan& plan, bool slow) {
     Flight f;
-    RfChannel air(testSeed());
-    Ground ground(air, testSeed() + 5);
-    SocModel soc(air, Ground::uavModem());
+    GroundAndChip world;
+    auto& [air, ground, soc] = world;
     if (slow)
         soc.ungate();
-    uav_guardMs = Ground::guardMs;
     auto note = [&](uint32_t what, uint32_t value) {
         f.events.push_back({soc.cycles(), what, value});
     };
@@ -103,24 +68,23 @@ Flight fly(const Plan& plan, bool slow) {
     air.onPacket([&](uint64_t, const RfPacket& packet, RfChannel::Outcome outcome) {
         note(1, static_cast<uint32_t>(packet.bytes.size() << 8) | static_cast<uint32_t>(outcome));
     });
-    uint8_t* memory = soc.memory().data(); // a picture of 16 x 16 pixels
-    memory[UAV_FRAME_HEADER] = memory[UAV_FRAME_HEADER + 4] = 16;
-    for (uint32_t i = 0; i < 256; ++i)
-        memory[UAV_FRAME + i] = static_cast<uint8_t>(i * i * 37);
+    world.provide(16, 16, [](uint32_t i) { return static_cast<uint8_t>(i * i * 37); });
     bool framed = false; // the frame for the call was sent
     uint64_t nextFrame = 0;
-    if (plan.framedAfter)
-        connectSensor(
-            soc,
-            // At first, each millisecond, and while a call waits for one.
-            [&] {
-                const bool waits = ground.replies.size() == plan.framedAfter && !framed;
-                const bool first = soc.now() < 4'000'000 && soc.now() >= nextFrame;
-                framed |= waits;
-                nextFrame = first ? soc.now() + 900'000 : nextFrame;
-                return waits || first;
-            },
-            [&](uint32_t pins) { note(3, pins); });
+    if (plan.framedAfter) {
+        Frame frame{16, 8, {}};
+        for (int i = 0; i < 16 * 8; ++i)
+            frame.pixels.push_back(static_cast<uint8_t>(i * i * 37));
+        // At first, each millisecond, and while a call waits for one.
+        auto sends = [&] {
+            const bool waits = ground.replies.size() == plan.framedAfter && !framed;
+            const bool first = soc.now() < 4'000'000 && soc.now() >= nextFrame;
+            framed |= waits;
+            nextFrame = first ? soc.now() + 900'000 : nextFrame;
+            return waits || first;
+        };
+        connectSensor(soc, frame, sends, [&](uint32_t pins) { note(3, pins); });
+    }
     soc.reset(true);
     soc.evaluateAll(slow);
     size_t sent = 0;
@@ -136,7 +100,7 @@ Flight fly(const Plan& plan, bool slow) {
             soc.evaluateAll(false);
         }
         if (ground.validated && ground.replies.size() == sent) {
-            const Call& call = plan.calls[sent++ % plan.calls.size()];
+            const Ground::Call& call = plan.calls[sent++ % plan.calls.size()];
             ground.call(static_cast<int>(sent), call.object, call.operation, call.mode,
                         call.parameters);
         }

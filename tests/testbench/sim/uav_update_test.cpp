@@ -46,7 +46,7 @@ struct Flash {
         bytes.data()};
 };
 
-class UavUpdate : public ::testing::Test {
+class UavUpdate : public ::testing::Test, protected GroundAndChip {
 protected:
     void SetUp() override {
         Bytes open(crypto_sign_PUBLICKEYBYTES), seed(crypto_sign_SEEDBYTES, 9);
@@ -64,8 +64,6 @@ protected:
         uav_update[UAV_FIRMWARE] = {&flash.port, 0, product};
         uav_restart = [] { restarted = true; };
         restarted = false;
-        uav_guardMs = Ground::guardMs;
-        soc.onTime([this](uint64_t now) { return ground.advance(now); });
         soc.reset();
     }
     void TearDown() override { uav_update[UAV_FIRMWARE] = uav_update[UAV_BITSTREAM] = {}; }
@@ -144,7 +142,7 @@ protected:
                                 steps[step].parameters);
             }
             done = step == steps.size() && over();
-            return !done && !HasFailure() && static_cast<double>(soc.now()) < 4e9;
+            return !done && !HasFailure() && within(4);
         });
         machine.run();
         EXPECT_TRUE(done) << "at step " << step;
@@ -152,9 +150,6 @@ protected:
 
     Flash flash;
     Bytes image = Bytes(imageBytes), secret = Bytes(crypto_sign_SECRETKEYBYTES);
-    RfChannel air{testSeed()};
-    Ground ground{air, testSeed() + 5};
-    SocModel soc{air, Ground::uavModem()};
 };
 
 // Numbers of Update.ice.
@@ -197,7 +192,7 @@ TEST_F(UavUpdate, WhatIsRefusedChangesNothing) {
 TEST_F(UavUpdate, FirmwareThatNobodyConfirmsGoesAfterAMinute) {
     std::fill_n(flash.bytes.begin() + Slots_at(&slots_firmware, 0) + SLOTS_CONFIRMED, 4,
                 uint8_t{0xFF});
-    UavMachine machine(soc, [&] { return !restarted && static_cast<double>(soc.now()) < 2e9; });
+    UavMachine machine(soc, [&] { return !restarted && within(2); });
     machine.hurry(100);
     machine.run();
     EXPECT_TRUE(restarted);
@@ -206,42 +201,35 @@ TEST_F(UavUpdate, FirmwareThatNobodyConfirmsGoesAfterAMinute) {
 
 TEST_F(UavUpdate, InFlightImagesAndKeysAreRefusedAlsoAfterARestart) {
     struct Call {
-        const char *object, *operation;
-        Bytes parameters;
-        int mode, status;
+        Ground::Call call;
+        int status;
         const char* exception;
     };
     uav_update[UAV_BITSTREAM] = {&flash.port, 0, product};
     const Bytes key(17, 16), header = encoded(headerOf(6, 1)), data(half), before = flash.bytes;
     const std::vector<Call> calls = {
-        {"uav", "setFlightState", {1}, 2, 0, ""},
-        {"update", "begin", header, 0, 1, "::Update::InFlight"},
-        {"update", "write", piece(0, half, data), 0, 1, "::Update::InFlight"},
-        {"update", "finish", {}, 0, 1, "::Update::InFlight"},
-        {"update", "confirm", {}, 0, 1, "::Update::InFlight"},
-        {"fpga", "begin", header, 0, 1, "::Update::InFlight"},
-        {"keys", "setNextKey", key, 2, 1, "::Autopilot::InFlight"},
-        {"update", "getStatus", {}, 2, 0, ""}};
-    const std::vector<Call> landed = {{"keys", "setNextKey", key, 2, 1, "::Autopilot::InFlight"},
-                                      {"uav", "setFlightState", {0}, 2, 0, ""},
-                                      {"keys", "setNextKey", key, 2, 0, ""},
-                                      {"update", "begin", header, 0, 0, ""}};
+        {{"uav", "setFlightState", 2, {1}}, 0, ""},
+        {{"update", "begin", 0, header}, 1, "::Update::InFlight"},
+        {{"update", "write", 0, piece(0, half, data)}, 1, "::Update::InFlight"},
+        {{"update", "finish", 0, {}}, 1, "::Update::InFlight"},
+        {{"update", "confirm", 0, {}}, 1, "::Update::InFlight"},
+        {{"fpga", "begin", 0, header}, 1, "::Update::InFlight"},
+        {{"keys", "setNextKey", 2, key}, 1, "::Autopilot::InFlight"},
+        {{"update", "getStatus", 2, {}}, 0, ""}};
+    const std::vector<Call> landed = {{{"keys", "setNextKey", 2, key}, 1, "::Autopilot::InFlight"},
+                                      {{"uav", "setFlightState", 2, {0}}, 0, ""},
+                                      {{"keys", "setNextKey", 2, key}, 0, ""},
+                                      {{"update", "begin", 0, header}, 0, ""}};
     SimulatedBoard::Words words = SimulatedBoard().words; // what the battery keeps
     for (const auto& list : {calls, landed}) {
         EXPECT_EQ(flash.bytes, before);
-        int sent = 0;
+        std::vector<Ground::Call> made;
+        for (const Call& call : list)
+            made.push_back(call.call);
         soc.reset();
         ground.start();
-        UavMachine machine(soc, [&] {
-            const auto done = static_cast<int>(ground.replies.size());
-            if (!ground.validated || done != sent)
-                return static_cast<double>(soc.now()) < 4e9;
-            if (sent == static_cast<int>(list.size()))
-                return false;
-            const Call& call = list[static_cast<size_t>(sent)];
-            ground.call(++sent, call.object, call.operation, call.mode, call.parameters);
-            return true;
-        });
+        const auto script = ground.calling(made);
+        UavMachine machine(soc, [&] { return !script() && within(4); });
         machine.board.words = words;
         machine.run();
         words = machine.board.words;
@@ -249,7 +237,7 @@ TEST_F(UavUpdate, InFlightImagesAndKeysAreRefusedAlsoAfterARestart) {
         for (const auto& [id, status] : ground.replies) {
             const auto& message = ground.messages[id];
             const Call& call = list[static_cast<size_t>(id - 1)];
-            EXPECT_EQ(status, call.status) << call.object << ' ' << call.operation;
+            EXPECT_EQ(status, call.status) << call.call.object << ' ' << call.call.operation;
             EXPECT_THAT(std::string(message.begin(), message.end()),
                         testing::HasSubstr(call.exception));
         }
@@ -260,7 +248,7 @@ TEST_F(UavUpdate, InFlightImagesAndKeysAreRefusedAlsoAfterARestart) {
 TEST_F(UavUpdate, WhereBothKindsOfImageAreTakenTheKeysAreServedToo) {
     uav_update[UAV_BITSTREAM] = {&flash.port, 0, product};
     const auto script = ground.pinging(1, "keys");
-    UavMachine machine(soc, [&] { return !script() && static_cast<double>(soc.now()) < 4e9; });
+    UavMachine machine(soc, [&] { return !script() && within(4); });
     machine.run();
     EXPECT_THAT(ground.replies, testing::ElementsAre(testing::Pair(1, 0)));
 }

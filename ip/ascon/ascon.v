@@ -301,6 +301,32 @@ module ascon (
     end
 
     wire unused = &{1'b0, reg_read, 1'b0};
+`ifdef FORMAL
+    // For formal.idle_ascon: the flags of states; the stream does nothing without a job, nor before
+    // the first LOAD_SOURCE.
+    (* hierconn *) wire [23:0] \u_stream.to_give ; // the stream's
+    (* hierconn *) wire [5:0]  \u_stream.outstanding ;
+    (* hierconn *) wire [2:0]  \u_stream.filled , \u_stream.bursts ;
+    (* hierconn *) wire        \u_stream.request ;
+    reg past = 1'b0;
+    always @(posedge clk_i)
+        past <= !rst_i;
+    wire to_source = after == ADD_KEY || after == LOAD_SIZE;
+    wire before = state == FIRST_WORDS || state == ADD_KEY || state == LOAD_SIZE || in_source ||
+                  (in_rounds && to_source);
+    wire at_first = idle || state == CLEAR || (pass == ASSOCIATED && before);
+    always @* if (past && !rst_i) begin
+        assert (in_rounds == (state == ROUNDS) && in_word == (state == WORD));
+        assert (in_source == (state == LOAD_SOURCE) && in_tag == (state == LOAD_TAG));
+        assert (idle == (state == WAIT_FOR_START));
+        assert (!in_rounds || to_source || after == WORD || after == SEPARATE || after == DIGEST);
+        assert (state != CLEAR || after == WAIT_FOR_START ||
+                (after == FIRST_WORDS && pass == MESSAGE));
+        assert (!at_first || (\u_stream.to_give == 24'd0 && \u_stream.outstanding == 6'd0 &&
+                              \u_stream.filled == 3'd0 && \u_stream.bursts == 3'd0 &&
+                              !\u_stream.request ));
+    end
+`endif
 `ifdef COVER_POINTS
     refused_job: cover property (@(posedge clk_i) refused);
     wrong_tag: cover property (@(posedge clk_i) tag_step && decrypt && index[0] && (differs || sum != 64'd0));

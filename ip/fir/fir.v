@@ -117,6 +117,29 @@ module fir (
     end
 
     wire unused = &{1'b0, unused_shift_start, shift[7:5], coefficient[31:18], source[5:0], target[5:0], 1'b0};
+`ifdef FORMAL
+    // For formal.idle_fir: without a call there is nothing in the core.
+    (* hierconn *) wire [4:0] \u_filter.full ; // the parts' signals
+    (* hierconn *) wire [3:0] \u_wrapper.busy ;
+    (* hierconn *) wire [6:0] \u_stream.to_give ;
+    reg        past = 1'b0;
+    reg  [3:0] in_filter;
+    integer    f;
+    always @(posedge clk_i)
+        past <= !rst_i;
+    always @* begin
+        in_filter = 4'd0;
+        for (f = 0; f < 5; f = f + 1)
+            in_filter = in_filter + {3'd0, \u_filter.full [f]};
+        if (past && !rst_i) begin
+            assert (\u_wrapper.busy == {busy || refused, 3'd0} && !(busy && refused));
+            assert ({1'b0, to_take} == {1'b0, to_send} + {6'd0, in_filter});
+            assert (busy || (to_take == 9'd0 && !begun));
+            assert (begun || (filled == 3'd0 && !flushed && \u_stream.to_give == 7'd0));
+            assert (!flushed || (to_take == 9'd0 && filled == 3'd0));
+        end
+    end
+`endif
 `ifdef COVER_POINTS
     saturates: cover property (@(posedge clk_i) taken && saturated);
     reset_under_way: cover property (@(posedge clk_i) core_rst && busy);

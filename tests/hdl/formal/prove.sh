@@ -12,6 +12,7 @@
 # PROVE_STEP=k: the assertions carry themselves over k clocks, but are too many for MiniSat: CaDiCaL
 # does the step.
 # PROVE_BOUNDED=1: bounded only.
+# PROVE_READ: more words of read_verilog: defines, files; idle_proof's core.
 # PROVE_MUTANT: Yosys commands before flattening (tests/mutants/drawn.py); no trace then.
 # A failed assertion leaves <work>/trace.vcd. The module may instance others of its folder, of bus/
 # and of hdl/system/.
@@ -32,6 +33,15 @@ files=$(for folder in $folders; do ls "$folder"/*.v || true; done | sort -u)
 # Several clocks (a proof with `gclk`): every edge is an input of its own.
 clocks=async2sync
 ! grep -q gclk "$file" || clocks='memory_map; clk2fflogic'
+# A core that says it is idle: its registers, without those of proofs, may not move.
+flat='' read=${PROVE_READ:-}
+[ "$module" != idle_proof ] || {
+    flat="memory_map
+opt_clean
+techmap -map $here/idle_registers.v c:*u_core* w:*.f_* %ci1 %d"
+    # shellcheck disable=SC2086
+    ! grep -q 'memory_ports\|npi_addr_o' ${read#* } || read="-DMEMORY $read"
+}
 # -nosdff -nodffe: AIGER has plain flip-flops only. The module's outputs are dropped: abc would take
 # them for properties. What became undefined (a flip-flop without a clock) is free: newer AIGER
 # backends refuse it.
@@ -41,7 +51,7 @@ aiger='opt_clean; abc -g AND -fast; opt_clean; write_aiger -zinit -map'
 # shellcheck disable=SC2086
 cat >prove.ys <<END
 verilog_defaults -add -I${GEN_DIR:-.} -I$source/bus -I$source/hdl/ddr
-read_verilog -formal -sv -DRULES $(echo $files)
+read_verilog -formal -sv -DRULES $read $(echo $files)
 $parameters
 hierarchy -top $module
 proc
@@ -52,6 +62,7 @@ memory_nordff
 $clocks
 dffunmap
 chformal -early
+$flat
 setundef -anyseq -undriven
 opt_clean
 check -assert

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+//
+// idle_proof: the core CORE in a slot, whose clock core_gate.v stops; only for the prover.
+//
+// When the gate closes, no register of the core takes another value, whatever the inputs are. So
+// without a clock the core is where it would be with one, until the gate opens. The core's clock is
+// `closes` here: idle_registers.v makes that assertion of each flip-flop with this clock.
+
+`default_nettype none
+
+`ifdef CORE
+module idle_proof (
+    `include "slot_ports.vh"
+`ifdef MEMORY
+    `include "memory_ports.vh"
+`endif
+    output wire idle_o
+);
+    reg  [4:0] rest; // clocks of rest, 17 at most: the gate closes at 16
+    wire       active = rst_i || bus_valid_i || !idle_o;
+    wire       closes = !active && rest == 5'd16;
+    always @(posedge clk_i)
+        rest <= active ? 5'd0 : rest + {4'd0, rest != 5'd17};
+    initial assume (rst_i);
+    always @(posedge clk_i)
+        cover (closes);
+
+    `CORE u_core ( // its pins are free
+        .clk_i(closes), .rst_i(rst_i),
+        .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
+        .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),
+        .bus_error_o(bus_error_o),
+`ifdef MEMORY
+        `include "memory_connect.vh"
+`endif
+        .idle_o(idle_o));
+
+`ifdef MEMORY
+    // The port acknowledges requests only, and gives words that were asked for. Its words stand
+    // still while none is on its way. It is ready once, for good.
+    reg        ready = 1'b0;
+    reg [6:0]  promised; // words
+    reg [63:0] word;
+    wire [6:0] size = 7'd1 << npi_size_o;
+    always @* begin
+        assume (npi_init_done_i || !ready);
+        assume (!npi_addr_ack_i || npi_addr_req_o);
+        assume (npi_rd_empty_i || promised != 7'd0);
+        assume (npi_rd_data_i == word || promised != 7'd0);
+    end
+    always @(posedge clk_i) begin
+        ready    <= npi_init_done_i;
+        word     <= npi_rd_data_i;
+        promised <= promised + (npi_addr_ack_i && npi_rnw_o ? size : 7'd0) - {6'd0, npi_rd_pop_o};
+        if (rst_i)
+            promised <= 7'd0;
+    end
+`endif
+endmodule
+`endif

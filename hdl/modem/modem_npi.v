@@ -128,11 +128,11 @@ module modem_npi (
         end
         cover (past && !rst_i && wr_busy_o && npi_addr_ack_i);
         cover (past && !rst_i && rd_done_o);
+        cover (past && start && wr_valid_i && rd_valid_i); // the write goes first
         cover (past && !rst_i && npi_rd_pop_o && !rd_done_o);
     end
 `endif
 `ifdef COVER_POINTS
-    write_goes_first: cover property (@(posedge clk_i) start && wr_valid_i && rd_valid_i);
     read_withdrawn: cover property (@(posedge clk_i) npi_rd_pop_o && !rd_done_o);
 `endif
 endmodule

@@ -67,6 +67,12 @@ TEST_F(Scale, WhatDoesNotEndIsGivenUpAndTheNextCallWorks) {
     EXPECT_THROW(scaled(std::vector<Ice_Short>(300, 5)), CoreError);
     core_.memory_.hold(false);
     EXPECT_EQ(scaled({1, 2, 3}), (std::vector<Ice_Short>{2, 4, 6}));
+    // In its midst, when words wait for the core.
+    scaled(std::vector<Ice_Short>(512, 5));
+    core_.bus_.write(MY_SCALE_CONTROL, 1u << 1); // once more
+    core_.bench_.tick(250);
+    core_.bus_.write(MY_SCALE_CONTROL, 1u << 31);
+    EXPECT_EQ(scaled({1, 2, 3}), (std::vector<Ice_Short>{2, 4, 6}));
 }
 
 class Twice : public ::testing::Test {

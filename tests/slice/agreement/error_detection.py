@@ -18,6 +18,7 @@ REASONS = {  # regular expression of "FILE:LINE: message": why slice2c does not 
         "after a syntax error slice2cpp has lost the module; slice2c goes on in it",
     "metadata `cpp:": "metadata of C++ alone",
     "StructMembers.ice:10:": NEXT,
+    "Undefined.ice:9:": "a name that is no type is told once, not at each use",
     "ConstDef.ice:132:": "a value that was refused above is refused once",
     "NotType.ice:28:": "a struct whose member was refused is not called empty, too",
     "IllegalIdentifier.ice:23:": "the line of the wrong character is named, not the one behind it"}

@@ -119,12 +119,11 @@ void reportProcessor(M3Machine& machine) {
 Flight::Flight(const Options& options)
     : o_(options), frame_(pictureFor(o_)), key_(keyOf(o_)), status_(prepared(o_, frame_)),
       air_(o_.seed), recorded_(record(o_, pty_)),
-      ground_(recorded_ ? static_cast<SerialLine&>(*recorded_) : *o_.replayed, air_,
-              modem("ground", o_.guard)),
-      soc_(air_, modem("uav", o_.guard)), step_(*status_, pty_, [this] { return isWanted(); }),
-      events_(o_.out + "/events.jsonl"), pace_(o_.speed == "real"  ? 1
-                                               : o_.speed == "max" ? 0
-                                                                   : std::stod(o_.speed)) {
+      ground_(groundLine(), air_, modem("ground", o_.guard)), soc_(air_, modem("uav", o_.guard)),
+      step_(*status_, pty_, [this] { return isWanted(); }), events_(o_.out + "/events.jsonl"),
+      pace_(o_.speed == "real"  ? 1
+            : o_.speed == "max" ? 0
+                                : std::stod(o_.speed)) {
     air_.weather = o_.weather;
     uav_guardMs = o_.guard;
     connectModels();
@@ -138,13 +137,16 @@ Flight::Flight(const Options& options)
     watchRegisters();
 }
 
+SerialLine& Flight::groundLine() {
+    return recorded_ ? static_cast<SerialLine&>(*recorded_) : *o_.replayed;
+}
+
 void Flight::connectModels() {
     constexpr double bitNs = 9000; // 111,111 baud
     if (o_.wire) {
         uav_wire = 1;
         cable_ = std::make_unique<Cable>(
-            soc_.line(), recorded_ ? static_cast<SerialLine&>(*recorded_) : *o_.replayed, bitNs,
-            [this](const SerialLine& from) {
+            soc_.line(), groundLine(), bitNs, [this](const SerialLine& from) {
                 ++(&from == &soc_.line() ? status_->bytesDown : status_->bytesUp);
             });
         soc_.plugIn(*cable_);

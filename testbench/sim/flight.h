@@ -89,6 +89,7 @@ public:
     static volatile sig_atomic_t stopSignal;
 
 private:
+    SerialLine& groundLine(); // the pty, recorded; in a replay the recording
     void connectModels();
     void watchRegisters();
     void placePicture();

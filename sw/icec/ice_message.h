@@ -55,7 +55,7 @@ void icec_initProxy(Ice_ObjectPrxPtr prx, Ice_CommunicatorPtr ic);
 /* Sets name, category and facet; the last two may be 0. ICE_LIMIT: ICE_IDENTITY_MAX. */
 Ice_Status icec_setIdentity(Ice_ObjectPrxPtr prx, const Ice_String* name,
                             const Ice_String* category, const Ice_String* facet);
-/* As Ice_Endpoint's print, of the transport that knows the endpoint; 0: none does. */
+/* Prints an endpoint, as Ice_Endpoint's print, by the transport that knows it; 0: none does. */
 int icec_printEndpoint(Ice_CommunicatorPtr ic, const Ice_Byte* encoded, Ice_Int size,
                        Ice_OutputStreamPtr text);
 /* Write characters, and a number in decimal, without a size before them. */

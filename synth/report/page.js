@@ -166,7 +166,7 @@ function showSlack() {
     { name: `of ${sum(ends)} registers and memories`, values: count.map((n, i) => slack[i] < 0 ? null : n), colour: "--bar", bars: true },
     { name: "too late", values: count.map((n, i) => slack[i] < 0 ? n : null), colour: "--bad", bars: true }] });
 }
-// What the table of designs has no room for.
+// Shows the figures for which the table of designs has no room.
 function showFigures() {
   const f = picked.figures, more = { "of the chip's LUTs": share(f.lut, data.chip.lut), slices: `${f.low} to ${f.high}`, levels: f.levels, LUT6: f.lut6, "LUTs as RAM": f.lutRam,
     "as shift registers": f.shift, "route-throughs": f.through, CARRY4: f.carry, "control sets": f.sets, pins: f.pins };

@@ -38,7 +38,7 @@ public:
         int mode = 0;                         // 0 normal, 2 idempotent
         std::vector<uint8_t> parameters = {}; // encoded
     };
-    // Of the tests' modems; the default, a second, would be idle time.
+    // The guard time of the tests' modems; the default, a second, would be idle time.
     static constexpr uint16_t guardMs = 20;
     static XBee::Options uavModem() {
         XBee::Options options;

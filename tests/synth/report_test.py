@@ -192,7 +192,7 @@ class Cases(Script):
         text = page.read_text()
         self.assertLess(len(text), 2_000_000)
         self.lacks('(src|href)="?https?:', file=page)
-        # Where the libraries could not be fetched, all is there, and the page says how to get them.
+        # All is there where the libraries could not be fetched; the page says how to get them.
         write("plain.html", "\n".join(line for line in text.split("\n") if not re.search(
             "^!function.*Tabulator=|^.*var uPlot=", line)))
         seen = re.search('<p class="soft">.*?(?=<script id)', self.dump("plain.html"), re.S)[0]
@@ -311,7 +311,7 @@ class Cases(Script):
             self.assertTrue(inside, cell)
         self.has(r"\(design (pair|whole)", file=ise / "whole.edf")
         self.assertTrue((ise / "verilog/store.v").exists(), "the Verilog for XST")
-        # Of a primitive's port only bits that it has are connected.
+        # A primitive's port is connected by the bits that it has alone.
         write("project/hdl/blocks/deep.v", DEEP)
         self.made("synth-edif", "DESIGN=deep")
         self.has("cellRef RAMB8BWER", file=ise / "deep.edf")

@@ -116,8 +116,8 @@ TEST_F(Gateway, KeepsOfACallWhatIceBridgeKeepsAndFacets) {
     EXPECT_EQ(tryAll(plain(), endpoint()), tryAll(plain(), vehicle));
 }
 
-// As docs/security.md shows it: programs have a session with the router, the router a certificate
-// or the gateway's machine.
+// Programs have a session with the router, and the router calls at the gateway's machine, as
+// docs/security.md shows it.
 TEST_F(Gateway, IsReachedThroughAGlacier2Router) {
     start();
     Server router({"glacier2router", "--Glacier2.Client.Endpoints=tcp -h 127.0.0.1",

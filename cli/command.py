@@ -58,6 +58,9 @@ class Command:
                 if option.positional or option.many:
                     more.update(nargs="*" if option.many else "?")
             parser.add_argument(name, **more)
+            if option.positional:  # by its name, too, as by make
+                more["help"] = argparse.SUPPRESS
+                parser.add_argument(f"--{option.name}", dest=f"--{option.field}", **more)
         return parser
 
     def values(self, given, makes, place):
@@ -67,7 +70,8 @@ class Command:
         relative names of files."""
         values = argparse.Namespace(given=set(), given_by_make=makes is not None)
         for option in self.options:
-            text, called = given.get(option.field), f"--{option.name}"
+            text = given.get(option.field) or given.get(f"--{option.field}")
+            called = f"--{option.name}"
             if text is not None and makes is None:
                 values.given.add(option.field)
                 called = option.name.upper() if option.positional else called
@@ -124,6 +128,10 @@ def find(words):
 def by_words(words, place):
     """(command, values) of a command line."""
     found, rest = find(words)
+    flags = {word.partition("=")[0] for word in rest}
+    for each in COMMANDS.values():  # `run --replay`, as `make run REPLAY=`
+        if each.when and each.make == found.make and f"--{each.when.lower()}" in flags:
+            found = each
     parser = found.parser()
 
     def refuse(text):

@@ -117,8 +117,9 @@ def run(o, libraries):
     library = rtl_of(o)
     plan = sources.read_plan(o.source / "synth/designs.json", library, o.source)
     for name in o.design + [name for name in (o.edif, o.netlist) if name]:
-        if name not in [design.name for design in plan.designs]:
-            raise Stop(f"there is no design {name}")
+        names = [design.name for design in plan.designs]
+        if name not in names:
+            raise Stop(f"there is no design {name}; there are {', '.join(sorted(names))}")
     accepted = baseline.read_baseline(o.source / "synth/baseline.json")
     options = runner.Options(o.source / "synth/yosys", o.output / "cache", o.yosys, o.jobs)
     if o.edif:

@@ -125,6 +125,8 @@ MISTAKES = {
     "./icesoc run --seed": "expected one argument",
     "./icesoc core test": "a core is needed",
     "./icesoc replay nowhere": "no flight was recorded in",
+    "./icesoc run --replay nowhere": "no flight was recorded in",
+    "./icesoc core test --ip a-b": "IP is the name of a core, not 'a-b'",
     "./icesoc run --key no.key": "./icesoc key",
     "./icesoc run --again Makefile": "cannot read the flight",
     "./icesoc run --again cli/flight.schema.json":

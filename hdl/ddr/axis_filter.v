@@ -51,7 +51,7 @@ module axis_filter #(
     reg         closing, closed; // its last word is taken: the burst is filled; waits until it is in memory
     reg         empty, over; // refused
     reg  [BYTE_BITS-1:0] left; // bytes to read that the core has not got
-    reg  [BYTE_BITS-1:0] bytes; // written
+    reg  [BYTE_BITS-1:0] bytes; // written; while waiting, those of the operation
     wire        read_idle, write_idle, write_ready, word_valid;
     wire [63:0] word;
     wire        go        = waiting && read_idle && write_idle && !core_rst_i;
@@ -120,13 +120,14 @@ module axis_filter #(
         if (start_i) begin
             waiting <= bytes_i != {BYTE_BITS{1'b0}};
             awaited <= bytes_i;
+            bytes   <= bytes_i;
         end
         if (word_valid && word_ready)
             left <= word_last ? {BYTE_BITS{1'b0}} : left - {{(BYTE_BITS-4){1'b0}}, 4'd8};
         if (go) begin
             waiting <= 1'b0;
             writing <= 1'b1;
-            left    <= bytes_i;
+            left    <= bytes;
             bytes   <= {BYTE_BITS{1'b0}};
             over    <= 1'b0;
         end
@@ -155,7 +156,7 @@ module axis_filter #(
         `include "memory_connect.vh"
         .clk_i(clk_i), .rst_i(rst_i), // not by core_rst_i: requested words must be taken
         .read_start_i(go), .read_base_i(source_i[31:6]),
-        .read_words_i({1'b0, bytes_i[BYTE_BITS-1:3]} + {{(WORD_BITS-1){1'b0}}, |bytes_i[2:0]}),
+        .read_words_i({1'b0, bytes[BYTE_BITS-1:3]} + {{(WORD_BITS-1){1'b0}}, |bytes[2:0]}),
         .read_stop_i(core_rst_i), .read_valid_o(word_valid), .read_data_o(word),
         .read_take_i(word_valid && word_ready), .read_idle_o(read_idle),
         .write_start_i(go), .write_base_i(target_i[31:6]),
@@ -206,7 +207,7 @@ module axis_filter #(
         if (f_rst)
             f_left <= 0;
         else if (go)
-            f_left <= {1'b0, bytes_i[BYTE_BITS-1:3]} + {{(WORD_BITS-1){1'b0}}, |bytes_i[2:0]};
+            f_left <= {1'b0, f_bytes[BYTE_BITS-1:3]} + {{(WORD_BITS-1){1'b0}}, |f_bytes[2:0]};
         else
             f_left <= f_left - {{(WORD_BITS-1){1'b0}}, word_valid && word_ready};
         if (go)
@@ -214,7 +215,6 @@ module axis_filter #(
         else if (write && write_ready)
             f_written <= f_written + 1'b1;
         if (past && !f_rst) begin
-            assume (!waiting || $stable(bytes_i));
             if ($past(word_valid && !word_ready)) // npi_stream's word stays
                 assume (word_valid && $stable(word));
             if ($past(m_axis_tvalid_o && !m_axis_tready_i))
@@ -243,6 +243,7 @@ module axis_filter #(
         assert (!(writing && over) || !room);
         // Words as many as the bytes need; the last one keeps those that are left.
         assert (f_left == {1'b0, left[BYTE_BITS-1:3]} + |left[2:0]);
+        assert (!waiting || bytes == f_bytes);
         assert (!word_valid || (word_last == (f_left == 1) && f_size == (word_last ? left >> $clog2(KEEP) : 8 / KEEP)));
         // Split: all beats of the word, and the word goes with the last of them.
         assert (beat == f_sent && m_axis_tvalid_o == word_valid);

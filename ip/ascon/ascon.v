@@ -73,12 +73,13 @@ module ascon (
     assign bus_ready_o = ready && !acting;
 
     wire control = reg_write && reg_addr == ASCON_CONTROL;
+    wire put_job = reg_write && is_job && idle;
     wire clears  = (go && !aead) || forget || (idle && abort) || done;
     always @(posedge clk_i) begin
         command <= control && !rst_i ? reg_wdata[4:0] : 5'd0;
         clear   <= rst_i || clears;
         acting  <= rst_i || clears || control;
-        if (reg_write && is_job)
+        if (put_job)
             job[reg_addr[2:0]] <= reg_wdata;
     end
 
@@ -286,7 +287,7 @@ module ascon (
             nonce_words <= 3'd0;
         if (forget)
             key_words <= 3'd0;
-        if (reg_write && is_job)
+        if (put_job)
             bad[reg_addr[2:0]] <= is_size ? |reg_wdata[31:24] : |reg_wdata[5:0];
         if (rst_i) begin
             enter(WAIT_FOR_START);

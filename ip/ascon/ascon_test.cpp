@@ -303,6 +303,27 @@ TEST_F(AsconTest, RefusesWithoutKeyOrFreshNonce) {
     EXPECT_EQ(start(ASCON_CONTROL_HASH_MASK), ASCON_EVENT_DONE_MASK);
 }
 
+TEST_F(AsconTest, SettingsWrittenBehindTheStartAreIgnored) {
+    auto key = randomKey(), nonce = randomKey();
+    put(ASCON_KEY, key);
+    for (int clocks = 0; clocks < 300; clocks += 7) {
+        place();
+        auto sealed = asconEncrypt(key, nonce, {}, random(300));
+        sealed.tag[clocks % 16] ^= 1; // so TARGET is read again, to overwrite what was decrypted
+        memory_.store(source_, sealed.text);
+        memory_.store(tagBase_, sealed.tag);
+        sizes(0, sealed.text.size());
+        put(ASCON_NONCE, nonce);
+        bus_.write(ASCON_CONTROL, ASCON_CONTROL_DECRYPT_MASK);
+        bench_.tick(clocks);
+        bus_.write(ASCON_SIZE, 8);
+        bus_.write(ASCON_TARGET, source_);
+        ASSERT_EQ(finish(), ASCON_EVENT_DONE_MASK);
+        ASSERT_EQ(memory_.bytes(target_, 300), AsconBytes(300, 0)) << clocks;
+        ASSERT_EQ(memory_.bytes(source_, 300), sealed.text) << clocks;
+    }
+}
+
 TEST_F(AsconTest, AbortEndsAMessageAndLeavesNoPlaintext) {
     auto key = randomKey(), nonce = randomKey();
     auto message = random(3000);

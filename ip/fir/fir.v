@@ -63,7 +63,7 @@ module fir (
         `include "memory_connect.vh"
         .clk_i(clk_i), .rst_i(rst_i), // not by core_rst: requested words must be taken
         .read_start_i(go && !core_rst), .read_base_i(source[31:6]),
-        .read_words_i(count[8:2] + {6'd0, |count[1:0]}), .read_stop_i(core_rst),
+        .read_words_i(to_send[8:2] + {6'd0, |to_send[1:0]}), .read_stop_i(core_rst),
         .read_valid_o(read_valid), .read_data_o(read_data),
         .read_take_i(sent && (place == 2'd3 || to_send == 9'd1)), .read_idle_o(read_idle),
         .write_start_i(go && !core_rst), .write_base_i(target[31:6]),

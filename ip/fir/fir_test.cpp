@@ -127,6 +127,28 @@ TEST_F(FirCore, WhatIsGivenUpLeavesTheMemoryPortInOrder) {
     }
 }
 
+TEST_F(FirCore, ACountWrittenBehindTheStartDoesNotChangeTheCall) {
+    Random random(testSeed());
+    const uint32_t results = 512; // bytes behind the samples
+    for (int clocks = 10; clocks < 100; clocks += 7) {
+        set(16, random);
+        filter(random.items<Ice_Short>(256));
+        core_.bus_.write(FIR_CONTROL, 1u << 3);
+        for (int i = 0; i < clocks; ++i)
+            core_.tick();
+        // The next call waits for the words that this one has asked for.
+        core_.bus_.write(FIR_CONTROL, 1u << 31);
+        core_.bus_.write(FIR_CONTROL, 1u << 3);
+        core_.bus_.write(FIR_FILTER_IN0, 8);
+        core_.bench_.waitFor([&] { return core_.bench_.top().irq_o; }, "the core's interrupt",
+                             20000);
+        core_.bus_.write(FIR_EVENT, ~0u);
+        core_.posted_ = 0;
+        for (uint32_t i = 0; i < 512; ++i) // the reset has cleared the coefficients
+            ASSERT_EQ(core_.memory_.byte(core_.memoryAt_ + results + i), 0) << i;
+    }
+}
+
 TEST_F(FirCore, OneSampleAClockWhenTheMemoryKeepsUp) {
     core_.memory_.setStall(0);
     // A long block against a short one, without the driver's copying.

@@ -172,7 +172,8 @@ module probe #(
             case (reg_addr)
                 PROBE_TRIGGER_BITS:  mask   <= reg_wdata[30:0];
                 PROBE_TRIGGER_VALUE: wanted <= reg_wdata[30:0];
-                PROBE_BASE:          base   <= reg_wdata[31:PROBE_LOG2_BYTES];
+                PROBE_BASE: if (!running && !draining)
+                    base <= reg_wdata[31:PROBE_LOG2_BYTES];
                 PROBE_AFTER: begin
                     after     <= reg_wdata[LOG2_RING-1:0];
                     edge_only <= reg_wdata[PROBE_AFTER_EDGE_LSB];

@@ -129,6 +129,7 @@ TYPED_TEST_SUITE(ProbeTest, Widths);
 
 TYPED_TEST(ProbeTest, StoresWhatWasThereBeforeAndAfterTheTrigger) {
     ASSERT_EQ(this->arm(0x15, 0x11, true, 300), ICE_OK);
+    this->slot_.bus_.write(PROBE_BASE, coreMemory + (1u << PROBE_LOG2_BYTES)); // too late
     auto s = this->finish();
     auto all = this->capture(s);
     ASSERT_EQ(all.size(), static_cast<size_t>(s.trigger) + 301);

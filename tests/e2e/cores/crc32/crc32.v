@@ -35,7 +35,7 @@ module crc32 (
         `include "memory_connect.vh"
         .clk_i(clk_i), .rst_i(rst_i), // not by core_rst: what was asked for must be taken
         .read_start_i(go && !core_rst), .read_base_i(base[31:6]),
-        .read_words_i({14'd0, count[12:3]} + {23'd0, |count[2:0]}), .read_stop_i(core_rst),
+        .read_words_i({14'd0, left[12:3]} + {23'd0, |left[2:0]}), .read_stop_i(core_rst),
         .read_valid_o(read_valid), .read_data_o(read_data),
         .read_take_i(take && (place == 3'd7 || left == 13'd1)), .read_idle_o(read_idle),
         .write_start_i(1'b0), .write_base_i(26'd0), .write_valid_i(1'b0), .write_data_i(64'd0),

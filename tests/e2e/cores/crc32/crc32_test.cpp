@@ -5,6 +5,9 @@
 
 #include "Vcrc32_slot.h"
 #include "crc32_proxy.h"
+extern "C" {
+#include "crc32_regs.h"
+}
 
 namespace {
 
@@ -33,6 +36,20 @@ TEST(Crc32, OfTheCheckString) {
     Cores_Data data{9, digits};
     EXPECT_EQ(static_cast<uint32_t>(core.crc(&data)),
               0xCBF43926u); // the catalogue of CRCs' check value
+}
+
+TEST(Crc32, ACountWrittenBehindTheStartDoesNotChangeTheCall) {
+    Crc32Proxy<Vcrc32_slot> core;
+    std::vector<Ice_Byte> bytes(4096, 1);
+    Cores_Data data{4096, bytes.data()};
+    core.crc(&data);
+    core.bus_.write(CRC32_CONTROL, CRC32_CONTROL_CRC_MASK);
+    core.bench_.tick(50);
+    core.bus_.write(CRC32_CONTROL, CRC32_CONTROL_RESET_MASK); // given up, with words on their way
+    core.bus_.write(CRC32_CONTROL, CRC32_CONTROL_CRC_MASK);
+    core.bus_.write(CRC32_CRC_IN0, 8);
+    core.bench_.waitFor([&] { return core.bench_.top().irq_o; }, "the core's interrupt", 20000);
+    EXPECT_EQ(core.bus_.read(CRC32_CRC_OUT0), crcOf(bytes));
 }
 
 } // namespace

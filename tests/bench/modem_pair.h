@@ -190,45 +190,83 @@ public:
     End a, b;
 };
 
-// The floor of a round trip on a half-duplex air, measured: two modems with their serial ports at
-// 111,111 baud and the air, nothing else. docs/link.md has it as a formula. Returns the median in
-// ms of `out` bytes there and, from the moment of the last one on, `back` bytes here; each at most
-// a packet. RN is 2.
-inline double floorMs(size_t out, size_t back, bool isEncrypted = false) {
-    RfChannel air(1);
+// Two modems with their serial lines of 111,111 baud and the air, nothing else: what a link could
+// reach at most.
+struct BareModems {
     struct End {
-        End(RfChannel& channel, unsigned address, bool encrypts)
-            : modem(line, channel, modemOptions(address, encrypts)) {}
+        End(RfChannel& channel, const XBee::Options& options) : modem(line, channel, options) {}
         TimedLine line;
         XBee modem;
-    } a(air, 0, isEncrypted), b(air, 1, isEncrypted);
+    };
+    BareModems(const RfWeather& weather, uint64_t seed, bool encrypts, unsigned leastExponent)
+        : air(seed), a(air, modemOptions(0, encrypts, leastExponent)),
+          b(air, modemOptions(1, encrypts, leastExponent)) {
+        air.weather = weather;
+    }
+    void step() {
+        air.advance(now);
+        a.modem.advance(now);
+        b.modem.advance(now);
+    }
+    void next() {
+        now = std::max(now + 1,
+                       std::min({air.nextEvent(), a.modem.nextEvent(), b.modem.nextEvent()}));
+    }
+    RfChannel air;
+    End a, b;
+    uint64_t now = 1'000'000;
+};
+
+// The floor of a round trip on a half-duplex air, measured; docs/link.md has it as a formula.
+// Returns the median in ms of `out` bytes there and, from the moment of the last one on, `back`
+// bytes here; each at most a packet. RN is 2.
+inline double floorMs(size_t out, size_t back, bool isEncrypted = false) {
+    BareModems w(RfWeather(), 1, isEncrypted, 2);
     const std::vector<uint8_t> bytes(std::max(out, back), 1);
     std::vector<double> times;
-    uint64_t now = 1'000'000;
     for (int i = 0; i < 201; ++i) {
-        const uint64_t start = now;
+        const uint64_t start = w.now;
         bool isBack = false;
-        a.line.received.clear();
-        b.line.received.clear();
-        a.line.send(bytes.data(), out, now);
-        for (;;) {
-            air.advance(now);
-            a.modem.advance(now);
-            b.modem.advance(now);
-            if (a.line.received.size() == back)
+        w.a.line.received.clear();
+        w.b.line.received.clear();
+        w.a.line.send(bytes.data(), out, w.now);
+        for (;; w.next()) {
+            w.step();
+            if (w.a.line.received.size() == back)
                 break;
-            if (!isBack && b.line.received.size() == out) {
+            if (!isBack && w.b.line.received.size() == out) {
                 isBack = true;
-                b.line.send(bytes.data(), back, now);
+                w.b.line.send(bytes.data(), back, w.now);
             }
-            now = std::max(now + 1,
-                           std::min({air.nextEvent(), a.modem.nextEvent(), b.modem.nextEvent()}));
         }
-        times.push_back(static_cast<double>(now - start) / 1e6);
-        now += 160'000'000;
+        times.push_back(static_cast<double>(w.now - start) / 1e6);
+        w.now += 160'000'000;
     }
     std::sort(times.begin(), times.end());
     return times[times.size() / 2];
+}
+
+// The most bytes a second that two modems bring over the air in this weather, one way or both ways
+// together: full packets are always at hand, and a lost one costs its own time only, as with a
+// sender that learns at once what was lost.
+inline double mostBytesPerSecond(const RfWeather& weather, bool both, bool isEncrypted,
+                                 unsigned leastExponent, uint64_t seconds, uint64_t seed) {
+    BareModems w(weather, seed, isEncrypted, leastExponent);
+    const size_t packet = isEncrypted ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME;
+    uint64_t arrived = 0;
+    w.air.onPacket([&](uint64_t, const RfPacket&, RfChannel::Outcome outcome) {
+        arrived += outcome == RfChannel::Outcome::Delivered ? packet : 0;
+    });
+    const std::vector<uint8_t> bytes(packet, 1);
+    for (const uint64_t start = w.now; w.now < start + seconds * 1'000'000'000; w.next()) {
+        for (BareModems::End* end : {&w.a, &w.b}) {
+            end->line.received.clear();
+            if (!end->line.waiting() && (both || end == &w.a))
+                end->line.send(bytes.data(), packet, w.now);
+        }
+        w.step();
+    }
+    return static_cast<double>(arrived) / static_cast<double>(seconds);
 }
 
 #endif

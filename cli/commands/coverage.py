@@ -42,7 +42,7 @@ def coverage(values):
         counted.ninja()
     points = run_tests(work, values)
     say("coverage: merging")
-    infos = [*of_host(work), *of_rtl(work, points), *of_vhdl(work, points, build)]
+    infos = [*of_host(work), *of_rtl(work, points), *of_vhdl(work, points)]
     run(["lcov", "--quiet", *(word for info in infos for word in ("--add-tracefile", info)),
          "--output-file", work / "merged.info"])
     run(["genhtml", "--quiet", "--title", "IceSoC", "--output-directory", work / "html",
@@ -103,12 +103,12 @@ def of_rtl(work, points):
     return own(work, "rtl.info", work / "all_rtl.info", ("hdl", "bus", "ip"))
 
 
-def of_vhdl(work, points, build):
+def of_vhdl(work, points):
     """GHDL's counts."""
     counts, info = sorted(points.glob("*.json")), work / "vhdl.info"
     with open(info, "w") as file:
         if counts:
-            run([build / "ghdl/ghdl", "coverage", "--format=lcov", *counts], stdout=file)
+            run([work / "ghdl/ghdl", "coverage", "--format=lcov", *counts], stdout=file)
     return [info] if info.stat().st_size else []
 
 

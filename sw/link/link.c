@@ -133,6 +133,7 @@ Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag
     if (packed.middle)
         entry->flags |= LINK_ENTRY_LEARNS;
     queue->sums = 0;
+    queue->isSummed = checkSize != 0;
     link_put(queue, packed.bytes, packed.prefix);
     link_put(queue, data + LINK_HEAD_AT, packed.middle);
     link_put(queue, data + packed.tailAt, size - packed.tailAt);

@@ -23,15 +23,14 @@ static int hasGoodCrc(const U8* frame, U32 key) {
 static Owner ownerOf(const Link_Session* session, const U8* frame) {
     const Link_Identity* present = &session->output->present;
     const Link_Identity* candidate = &session->candidate;
-    U32 epoch = LINK_EPOCH(frame);
     if (!link_isPlausible(session->output, frame))
         return NOBODY;
     if (LINK_IS_HANDSHAKE(LINK_KIND_OF(frame)))
         return hasGoodCrc(frame, LINK_NO_SEED) ? HANDSHAKE : NOBODY;
-    if (session->state == LINK_STATE_UP && epoch == LINK_KEY_EPOCH(present->key) &&
+    if (session->state == LINK_STATE_UP && link_isOfEpoch(frame, present->key) &&
         hasGoodCrc(frame, present->key))
         return SESSION;
-    return session->hasCandidate && epoch == LINK_KEY_EPOCH(candidate->key) &&
+    return session->hasCandidate && link_isOfEpoch(frame, candidate->key) &&
                    hasGoodCrc(frame, candidate->key)
                ? CANDIDATE
                : NOBODY;
@@ -102,9 +101,9 @@ static void onHello(Link_Session* session, const U8* peerNonce, U32 features) {
 
 void link_onClearHandshake(Link_Session* session, const U8* frame, Link_Kind kind) {
     const U8* payload = frame + LINK_HEADER;
-    if (kind == LINK_KIND_RST) {
+    if (kind == LINK_KIND_RST) { /* it may answer a frame with LINK_READY */
         if (session->state == LINK_STATE_UP &&
-            LINK_EPOCH(frame) == LINK_KEY_EPOCH(session->output->present.key))
+            ((LINK_EPOCH(frame) ^ LINK_KEY_EPOCH(session->output->present.key)) & 3U) == 0)
             link_lose(session);
     } else if (frame[1] != LINK_VERSION) {
         return;

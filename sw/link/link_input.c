@@ -45,6 +45,17 @@ void link_takeBytes(Link_Input* input, const U8* bytes, U32 size) {
     }
 }
 
+/* Tells in which bits of EPOCH a frame differs from a session's key. */
+static U32 differs(const U8* frame, U32 key) {
+    return (frame[2] ^ LINK_KEY_EPOCH(key) << 2) & 0x1CU;
+}
+
+int link_isOfEpoch(const U8* frame, U32 key) {
+    U32 bits = differs(frame, key);
+    U32 whole = LINK_FIRST | LINK_LAST; /* the bits of a kind that rides, too */
+    return bits == 0 || (bits == LINK_READY && (frame[2] & whole) == whole);
+}
+
 int link_isPlausible(const Link_Output* output, const U8* frame) {
     const Link_Codec* codec = LINK_CODEC(output);
     U32 payload = LINK_LENGTH(frame) + LINK_OVERHEAD - codec->overhead;
@@ -58,10 +69,10 @@ int link_isPlausible(const Link_Output* output, const U8* frame) {
     return payload == codec->sizes[kind];
 }
 
-static int onPiggyback(const Link_Session* session, const U8* frame) {
+static int onPiggyback(const Link_Session* session, const U8* frame, U32 early) {
     Link_Sender* sender = session->sender;
     const U8* payload = frame + LINK_HEADER;
-    U32 flags = LINK_FIRST | LINK_LAST | LINK_CHANNEL(frame[2]);
+    U32 flags = early | LINK_FIRST | LINK_LAST | LINK_CHANNEL(frame[2]);
     if (LINK_KIND_OF(frame) == LINK_KIND_PIGGYBACK_ASK)
         flags |= LINK_ACK_NOW;
     /* A peer sends no such frame while a message is held: the whole window is open. */
@@ -74,6 +85,7 @@ void link_accept(Link_Input* input, const U8* frame, U32 size) {
     Link_Session* session = input->session;
     const U8* payload = frame + LINK_HEADER;
     U32 duplicates = output->statistics.duplicates;
+    U32 early = differs(frame, output->present.key) << 4;
     Link_Kind kind = LINK_KIND_OF(frame);
     int isFair = 1;
     input->outOfStep = 0;
@@ -88,7 +100,8 @@ void link_accept(Link_Input* input, const U8* frame, U32 size) {
     if (!LINK_BEFORE(output->now, session->pingAt))
         session->pingAt = output->now; /* or it would in time read as a future time */
     if (kind == LINK_KIND_DATA) {
-        isFair = link_onData(session->receiver, frame[1], frame[2], payload, LINK_LENGTH(frame));
+        isFair =
+            link_onData(session->receiver, frame[1], early | frame[2], payload, LINK_LENGTH(frame));
     } else if (kind == LINK_KIND_ACK) {
         link_onAck(session->sender, frame[1], payload[0], payload + 1, LINK_LENGTH(frame) - 1U);
     } else if (kind == LINK_KIND_BYE) {
@@ -98,7 +111,7 @@ void link_accept(Link_Input* input, const U8* frame, U32 size) {
     } else if (kind == LINK_KIND_PING) {
         link_oweAck(session->receiver);
     } else {
-        isFair = onPiggyback(session, frame);
+        isFair = onPiggyback(session, frame, early);
     }
     /* What was heard before may be an attacker's recording, and is no sign of life; link_onAck and
      * the codec look themselves. */

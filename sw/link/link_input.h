@@ -25,6 +25,8 @@ void link_pollInput(Link_Input* input);
 /* For the codecs: */
 
 /* True if a header makes sense: most garbage fails here, before the checksum. */
+/* True if a frame, none of the handshake, has the epoch of a session's key. */
+int link_isOfEpoch(const U8* frame, U32 key);
 int link_isPlausible(const Link_Output* output, const U8* frame);
 /* Acts upon a good frame of `size` bytes, whose header has the payload's length. */
 void link_accept(Link_Input* input, const U8* frame, U32 size);

@@ -126,7 +126,7 @@ static int decipher(Link_Input* input, const U8* frame, U8* copy, int isSearch, 
             return 0;
         rounds = kind == LINK_KIND_HELLO ? ROUNDS_HELLO : ROUNDS_HANDSHAKE;
     } else if (session->state != LINK_STATE_UP ||
-               LINK_EPOCH(frame) != LINK_KEY_EPOCH(input->output->present.key)) {
+               !link_isOfEpoch(frame, input->output->present.key)) {
         return 0;
     }
     if (isSearch && !mayTry(input, rounds))
@@ -167,7 +167,7 @@ static U32 parse(Link_Input* input, const U8* bytes, U32 count, int isEnd) {
 /* Completes a frame under the session's key. Returns its size in bytes. */
 static U32 seal(const Link_Output* output, U8* frame, U32 header, U32 number) {
     U32 kind = header & LINK_CONTROL ? header >> 21 & 7U : LINK_KIND_DATA;
-    return link_protect(frame, header | LINK_KEY_EPOCH(output->present.key) << 18,
+    return link_protect(frame, header ^ LINK_KEY_EPOCH(output->present.key) << 18,
                         LINK_IS_HANDSHAKE(kind) ? output->call : output->present.keys.send, number,
                         LINK_IS_RIDE(kind) ? output->expected : 0);
 }

@@ -24,7 +24,8 @@ Link_Entry* link_enqueue(Link_Queue* queue, U32 flags, U32 size, U32 longest) {
 }
 
 void link_put(Link_Queue* queue, const U8* data, U32 size) {
-    queue->sums = link_sum(queue->sums, data, size);
+    if (queue->isSummed)
+        queue->sums = link_sum(queue->sums, data, size);
     while (size--)
         queue->bytes[RING(queue->tail++)] = *data++;
 }
@@ -83,6 +84,8 @@ int link_cut(Link_Queue* queue, Link_Piece* piece, U32 room, U32 reduced, U32 ov
     if (queue->cutEntry == queue->count)
         return 0;
     entry = findAhead(queue, overtaker, &piece->start);
+    if (!entry && !reduced)
+        return 0;
     queue->isAhead = entry != 0;
     if (entry) {
         entry->flags |= LINK_ENTRY_AHEAD;

@@ -28,11 +28,12 @@ typedef struct Link_Piece {
 typedef struct Link_Queue {
     U8 first, count;
     U8 wasFull;     /* link_enqueue found no room */
+    U8 isSummed;    /* the message that is being queued gets a check */
     U8 isAhead;     /* the newest piece has overtaken a long message */
     U8 cutEntry;    /* the next piece in order is of this entry, counted from `first`, ... */
     U16 cutBytes;   /* bytes of it that are cut already */
     U32 cutAt;      /* where that piece begins */
-    U32 sums;       /* check of the message that is being queued */
+    U32 sums;       /* that check */
     U32 head, tail; /* byte counts, not reduced modulo LINK_SEND_BYTES */
     Link_Entry entries[LINK_SEND_MESSAGES];
     U8 bytes[LINK_SEND_BYTES];
@@ -43,7 +44,8 @@ typedef struct Link_Queue {
 Link_Entry* link_enqueue(Link_Queue* queue, U32 flags, U32 size, U32 longest);
 /* Appends bytes to the newest entry, and continues its check. */
 void link_put(Link_Queue* queue, const U8* data, U32 size);
-/* Cuts the next piece, of at most `room` bytes, or of `reduced` where it is not a whole message.
+/* Cuts the next piece, of at most `room` bytes, or of `reduced` where it is not a whole message;
+ * with 0 for `reduced` only an entry that overtakes.
  * `overtaker`: bytes of an entry that may overtake, at most; 0: none may. Returns 0: all is cut. */
 int link_cut(Link_Queue* queue, Link_Piece* piece, U32 room, U32 reduced, U32 overtaker);
 /* Copies the bytes of a piece. */

@@ -115,6 +115,36 @@ static int accept(Link_Receiver* receiver, U32 flags, const U8* data, U32 size) 
     return 1;
 }
 
+/* Takes a whole message out of its slot before its turn: what is missing is of other channels. It
+ * waits for its turn behind an earlier one of its channel that does so, or if the program does not
+ * take it now. Returns 0: the peer broke the rules. */
+static int takeEarly(Link_Receiver* receiver, U32 seq) {
+    Link_Heads* heads = &receiver->heads;
+    Link_Slot* slot = &receiver->slots[LINK_SLOT(seq)];
+    U32 channel = LINK_CHANNEL(slot->flags);
+    U32 request = heads->lastRequest[channel];
+    U32 reply = heads->lastReply[channel];
+    U32 expected = receiver->output->expected;
+    U32 at;
+    for (at = expected; LINK_SLOT(at) != LINK_SLOT(seq); ++at) {
+        const Link_Slot* other = &receiver->slots[LINK_SLOT(at)];
+        if (other->flags && other->size != LINK_TAKEN && LINK_CHANNEL(other->flags) == channel)
+            return 1;
+    }
+    --receiver->output->expected; /* what is acknowledged in order stays so */
+    if (!accept(receiver, slot->flags, slot->bytes, slot->size))
+        return 0;
+    receiver->output->expected = expected;
+    if (receiver->isHeld) {
+        receiver->isHeld = 0;
+        heads->lastRequest[channel] = request;
+        heads->lastReply[channel] = reply;
+    } else {
+        slot->size = LINK_TAKEN;
+    }
+    return 1;
+}
+
 /* Takes fragments in order out of the slots, unless a message is held. Returns 0: the peer broke
  * the rules. */
 static int drain(Link_Receiver* receiver) {
@@ -125,7 +155,9 @@ static int drain(Link_Receiver* receiver) {
             return 1;
         slot->flags = 0;
         --receiver->waiting;
-        if (!accept(receiver, flags, slot->bytes, slot->size))
+        if (slot->size == LINK_TAKEN)
+            ++receiver->output->expected;
+        else if (!accept(receiver, flags, slot->bytes, slot->size))
             return 0;
     }
 }
@@ -145,8 +177,11 @@ int link_onData(Link_Receiver* receiver, U32 seq, U32 flags, const U8* data, U32
         slot->flags = (U8)(flags | LINK_ACK_NOW);
         slot->size = (U8)size;
         memcpy(slot->bytes, data, size);
-        if ((flags & LINK_FIRST) && (flags & LINK_LAST))
+        if ((flags & LINK_FIRST) && (flags & LINK_LAST)) {
             receiver->ackNow = 1; /* a short message waits for a missing fragment */
+            if ((flags & LINK_EARLY) && size && !receiver->isHeld)
+                return takeEarly(receiver, seq);
+        }
     } else {
         ++receiver->output->statistics
               .duplicates; /* the acknowledgement was lost, or it is being resent */

@@ -15,9 +15,10 @@
 /* A fragment that arrived before its turn. */
 typedef struct Link_Slot {
     U8 flags; /* as in the frame, with LINK_ACK_NOW; 0: the slot is free */
-    U8 size;
+    U8 size;  /* LINK_TAKEN: the program has taken it before its turn */
     U8 bytes[LINK_MAX_PAYLOAD];
 } Link_Slot;
+#define LINK_TAKEN 0xFFU
 
 typedef struct Link_Receiver {
     Link_Output* output;

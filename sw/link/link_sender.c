@@ -66,8 +66,9 @@ void link_resetSender(Link_Sender* sender) {
     sender->output->fastest = sender->rto = LINK_RTO_FIRST;
 }
 
-/* Cuts the next fragment from the queue into the window. Returns 0: nothing to cut, or no room. */
-static int cut(Link_Sender* sender) {
+/* Cuts the next fragment from the queue into the window, or only one that overtakes. Returns 0:
+ * nothing to cut, or no room. */
+static int cut(Link_Sender* sender, int onlyAhead) {
     Link_Fragment* f = FRAGMENT(sender, sender->next);
     const Link_Output* output = sender->output;
     U32 inFlight = IN_FLIGHT(sender);
@@ -76,9 +77,11 @@ static int cut(Link_Sender* sender) {
     U32 reduced = sender->receiver->ackNow ? room - ACK_ROOM(output) : room;
     /* One fragment goes out even without credit: its acknowledgement brings news of credit. */
     if ((inFlight && inFlight >= sender->credit) || inFlight >= LINK_WINDOW ||
-        !link_cut(&sender->queue, &f->piece, room, reduced,
+        !link_cut(&sender->queue, &f->piece, room, onlyAhead ? 0 : reduced,
                   output->present.features & LINK_FEATURE_PIGGYBACK ? output->longest : 0U))
         return 0;
+    if (sender->queue.isAhead)
+        sender->ahead = sender->next;
     ++sender->next;
     f->state = LINK_TO_SEND;
     f->tries = 0;
@@ -86,9 +89,12 @@ static int cut(Link_Sender* sender) {
 }
 
 /* Returns n: one of n transmissions asks for an acknowledgement, which costs a turn of the air:
- * more often where losses stop the window, or short messages fill the queue before it. */
+ * more often where losses stop the window, while somebody waits for a message that has overtaken,
+ * or where short messages fill the queue before the window. */
 static U32 askEvery(const Link_Sender* sender) {
-    if (sender->isLossy)
+    U32 ahead = sender->ahead;
+    if (sender->isLossy ||
+        (ahead - sender->base < IN_FLIGHT(sender) && FRAGMENT(sender, ahead)->state != LINK_ACKED))
         return 5U;
     if (sender->queue.count >= LINK_SEND_MESSAGES / 2U)
         return LINK_SEND_MESSAGES / 2U;
@@ -108,21 +114,40 @@ static int mustAsk(const Link_Sender* sender, U32 seq) {
     return 1;
 }
 
+/* True if the peer may take a message of one fragment although earlier ones are missing: it has all
+ * of its channel, and learns no head from what is not in order yet. */
+static int isReady(const Link_Sender* sender, U32 seq, U32 flags) {
+    const Link_Entry* entries = sender->queue.entries;
+    const Link_Fragment* f = FRAGMENT(sender, seq);
+    while (!(entries[f->piece.entry].flags & LINK_ENTRY_LEARNS)) {
+        if (seq-- == sender->base)
+            return 1;
+        f = FRAGMENT(sender, seq);
+        if (f->state != LINK_ACKED && LINK_CHANNEL(f->piece.flags) == LINK_CHANNEL(flags))
+            break;
+    }
+    return 0;
+}
+
 /* Puts a fragment's payload into a frame. Returns the header: of data, or, for a whole short
  * message, of a control frame that takes an acknowledgement along. */
 static U32 build(const Link_Sender* sender, U32 seq, int isAsked, U8* frame) {
+    const Link_Output* output = sender->output;
     const Link_Piece* piece = &FRAGMENT(sender, seq)->piece;
     U8* p = frame + LINK_HEADER;
     U32 flags = piece->flags;
     U32 size = piece->size;
+    int isWhole = (flags & LINK_FIRST) && (flags & LINK_LAST) && size;
     U32 header = LINK_HEADER_OF(size, (U8)seq, flags | (isAsked ? LINK_ACK_NOW : 0U));
-    if ((flags & LINK_FIRST) && (flags & LINK_LAST) && size && size < link_room(sender->output) &&
-        link_ackMayRide(sender->receiver)) {
+    if (isWhole && size < link_room(output) && link_ackMayRide(sender->receiver)) {
         header = LINK_CONTROL_HEADER(isAsked ? LINK_KIND_PIGGYBACK_ASK : LINK_KIND_PIGGYBACK,
                                      (U8)seq, size + 1U) |
                  LINK_HEADER_OF(0U, 0U, LINK_CHANNEL(flags));
-        *p++ = (U8)sender->output->expected;
+        *p++ = (U8)output->expected;
     }
+    if (isWhole && seq != sender->base && (output->present.features & LINK_FEATURE_PIGGYBACK) &&
+        isReady(sender, seq, flags))
+        header |= LINK_HEADER_OF(0U, 0U, LINK_READY);
     link_copy(&sender->queue, piece, p);
     return header;
 }
@@ -242,12 +267,21 @@ void link_onAck(Link_Sender* sender, U32 cumulative, U32 credit, const U8* bitma
     }
 }
 
-/* Finds the next fragment to send, and cuts a new one if necessary. Returns 0: none. */
+/* Finds the next fragment to send: a short message that overtakes, a lost one, or a new one.
+ * Returns 0: none. */
 static int nextFragment(Link_Sender* sender, U32* seq) {
+    int isRepeated = 0;
     for (*seq = sender->base; *seq != sender->next; ++*seq)
-        if (FRAGMENT(sender, *seq)->state == LINK_TO_SEND)
-            return 1;
-    return cut(sender);
+        if (FRAGMENT(sender, *seq)->state == LINK_TO_SEND) {
+            isRepeated = FRAGMENT(sender, *seq)->tries != 0;
+            if (!isRepeated)
+                return 1;
+            break;
+        }
+    if (!cut(sender, isRepeated))
+        return isRepeated;
+    *seq = sender->next - 1U;
+    return 1;
 }
 
 /* The fragments in flight: repeats the oldest when the timer has expired. Returns 0: it has been

@@ -31,6 +31,7 @@ typedef struct Link_Sender {
     U8 unasked;   /* transmissions since the last request for an acknowledgement, or the last one */
     U8 hasSample; /* srtt and rttvar are valid */
     U32 base, next;        /* numbers whose lowest byte is SEQ: oldest unacknowledged, next new */
+    U32 ahead;             /* number of the newest fragment that has overtaken */
     U32 rto, srtt, rttvar; /* microseconds, as RFC 6298 names them */
     U32 timerAt;           /* when the retransmission timer expires */
     U32 order;             /* transmissions so far */

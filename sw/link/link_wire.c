@@ -21,7 +21,7 @@ U32 link_seal(U8* frame, U32 header, U32 key) {
     U32 crc;
     frame[0] = (U8)header;
     frame[1] = (U8)(header >> 8);
-    frame[2] = (U8)(header >> 16 | LINK_KEY_EPOCH(key) << 2);
+    frame[2] = (U8)(header >> 16 ^ LINK_KEY_EPOCH(key) << 2);
     crc = link_crc(key, frame, size);
     frame[size++] = (U8)(crc >> 8);
     frame[size++] = (U8)crc;

@@ -17,7 +17,7 @@
 #define LINK_GROUND 0x80000000U
 #define LINK_KEYS 2 /* slots for keys, so that a new key can replace the old one */
 
-#define LINK_VERSION 7U
+#define LINK_VERSION 8U
 #define LINK_VERSION_UP 0x80U /* with it: HELLO of a side that has a session, under a key */
 #define LINK_HEADER 3U
 #define LINK_CRC 2U
@@ -38,6 +38,8 @@
 #define LINK_FIRST 0x80U
 #define LINK_LAST 0x40U
 #define LINK_ACK_NOW 0x20U
+#define LINK_READY 0x10U  /* inverted: a whole message that may be taken before its turn */
+#define LINK_EARLY 0x100U /* the same among the flags of a frame that came */
 #define LINK_CHANNEL(flags) ((flags) & 3U)
 #define LINK_EPOCH(frame) ((U32)(frame)[2] >> 2 & 7U)
 #define LINK_KIND_BITS(kind) ((U32)(kind) << 5)
@@ -88,8 +90,8 @@ typedef enum Link_Kind {
  * own CRC the result is 0. */
 U32 link_crc(U32 key, const U8* bytes, U32 size);
 
-/* Writes header and CRC around the payload that `frame` already holds; `header` has no epoch, which
- * comes from `key`. Returns the frame's length in bytes. */
+/* Writes header and CRC around the payload that `frame` already holds; the epoch of `key` is added
+ * to `header`. Returns the frame's length in bytes. */
 U32 link_seal(U8* frame, U32 header, U32 key);
 
 /* Continues a message's check over `size` bytes more, from 0 on: Fletcher's two sums, which a

@@ -11,7 +11,8 @@ from pathlib import Path
 from cli import flight, keys
 from cli.build_folder import BuildFolder, configured
 from cli.command import command
-from cli.options import BUILD, FLIGHT, FOLDER, JOBS, MINUTES, PATH, SECONDS, SEED, SWITCH, Option
+from cli.options import (BUILD, COUNT, FILE, FLIGHT, FOLDER, JOBS, MINUTES, PATH, SECONDS, SEED,
+                         SWITCH, Option)
 from cli.runner import Interrupted, Stop, end, lock, run, say, start, until, wait
 
 FROM = Option("from", SECONDS, "begin of the waveform, in simulated time")
@@ -214,13 +215,39 @@ def gdb(values):
 @command("key", [
     Option("file", PATH, "the file that is written", "", positional=True),
     Option("certificate", SWITCH, "for TLS with the gateway: the file's name says whose it is, "
-           "authority.pem beside it, which is made if missing, signs it")],
-         brief=("key build/brief/my.key", "key build/brief/pilot.pem --certificate"),
-         examples=["key my.key", "run --key my.key", "key certificates/pilot.pem --certificate"])
+           "authority.pem beside it, which is made if missing, signs it"),
+    Option("signing", SWITCH, "a private key that signs updates, and beside it its public half, "
+           "as spare.pub of spare.key; a key that is there is kept"),
+    Option("list", COUNT, "the next list of keys that sign updates, with this number: the last "
+           "one's and 1"),
+    Option("by", FILE, "the private key that signs the list, one of the last list"),
+    Option("first", FILE, "a public key of the list"),
+    Option("second", FILE, "another"), BUILD, JOBS],
+         brief=("key build/brief/my.key", "key build/brief/pilot.pem --certificate",
+                "key build/brief/spare.key --signing",
+                "key build/brief/next.update --list 2 --by build/brief/spare.key --first "
+                "build/brief/spare.pub"),
+         examples=["key my.key", "run --key my.key", "key certificates/pilot.pem --certificate",
+                   "key spare.key --signing",
+                   "key next.update --list 2 --by spare.key --first spare.pub --second next.pub"])
 def key(values):
-    """make a key of the link, for vehicle and ground, or a certificate (docs/security.md)"""
+    """make a key of the link, for vehicle and ground, a certificate (docs/security.md), or a key
+    that signs updates and lists of these (docs/update.md)"""
     if not values.file:
         raise Stop("key needs the name of a file: ./icesoc key my.key", 2)
+    if values.list and not (values.by and values.first):
+        raise Stop("a list of keys needs --by, a private key, and --first, a public one", 2)
+    if values.signing or values.list:
+        pack = configured(values, "pack_update") / "sw/target/pack_update"
+        public = Path(values.file).with_suffix(".pub")
+        if values.signing:
+            run([pack, "public", values.file, public])
+            say(f"{values.file} signs updates; {public} is its public half")
+        else:
+            run([pack, "keys", values.list, values.by, values.first,
+                 *([values.second] if values.second else []), values.file])
+            say(f"made {values.file}: sw/ground/clients/update.py sends it")
+        return
     make = keys.make_certificate if values.certificate else flight.make_key
     if not make(values.file):
         raise Stop(f"'{values.file}' is there already: a key is never overwritten")

@@ -36,7 +36,7 @@ __attribute__((section(".services"), used)) static const Loader_Services service
 static const Slots_Port port = {&slots_firmware,      0,
                                 Flash_read,           Flash_erase,
                                 Flash_program,        Signature_isGood,
-                                Signature_digest,     (const U8*)FLASH_BASE + SLOTS_KEY_AT,
+                                Signature_digest,     LOADER_KEYS,
                                 (const U8*)FLASH_BASE};
 
 /* Starts the program with its vectors at this address. */

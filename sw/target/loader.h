@@ -9,7 +9,7 @@
 #include "slots.h"
 
 #define LOADER_PRODUCT 0x31564155UL /* "UAV1" */
-#define LOADER_MAGIC 0x1CE50C04UL
+#define LOADER_MAGIC 0x1CE50C06UL
 
 /* Lies behind the loader's vectors, so that images need no libsodium of their own. */
 typedef struct Loader_Services {
@@ -17,6 +17,7 @@ typedef struct Loader_Services {
     int (*isSigned)(const U8* signature, const U8* message, U32 bytes, const U8* key);
     void (*digest)(Slots_Read read, void* context, U32 offset, U32 bytes, U8* digest);
 } Loader_Services;
+#define LOADER_KEYS ((const Slots_Keys*)(0x08000000UL + SLOTS_KEYS_AT))
 #define LOADER_SERVICES ((const Loader_Services*)0x08000040UL)
 
 /* The slots as the firmware sees them; 0: no loader has started it. `running` becomes its slot. */

@@ -32,7 +32,7 @@ const Slots_Port* Loader_slots(U32* running) {
         if ((U32)image_begin == FLASH_BASE + Slots_at(&slots_firmware, *running) + SLOTS_IMAGE_AT &&
             LOADER_SERVICES->magic == LOADER_MAGIC) {
             port.layout = &slots_firmware;
-            port.key = (const U8*)FLASH_BASE + SLOTS_KEY_AT;
+            port.keys = LOADER_KEYS;
             port.mapped = (const U8*)FLASH_BASE;
             port.read = Flash_read;
             port.erase = erase;

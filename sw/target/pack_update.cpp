@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// pack_update: signs a firmware for both slots of a vehicle, or fills the flash of a new one.
+// pack_update: signs a firmware for both slots of a vehicle, or the next list of keys, or fills the
+// flash of a new vehicle.
 //
-// A package is, for each slot, the signed header (sw/update/slots.h) and the image linked for it.
+// A package is, for each slot, the signed header (sw/update/slots.h) and the image linked for it. A
+// list of keys is a header alone.
 
 #include "elf_image.h"
 #include <algorithm>
@@ -32,16 +34,23 @@ constexpr char usage[] =
     "       pack_update bitstream NEW.bit VERSION KEYFILE NEW.update\n"
     "       pack_update vehicle LOADER.elf FIRMWARE.elf VERSION KEYFILE FLASH.bin\n"
     "       pack_update fpga GOLDEN.bit VERSION KEYFILE FLASH.bin\n"
+    "       pack_update public KEYFILE KEY.pub\n"
+    "       pack_update keys NUMBER KEYFILE KEY.pub [SECOND.pub] NEW.update\n"
     "image, bitstream: signs firmware, or the FPGA's .bit or .bin, to be sent to a vehicle.\n"
     "vehicle: the flash of a new vehicle, with boot loader, public key and a confirmed firmware.\n"
     "fpga: the FPGA's, with the bitstream that is always there. KEYFILE is the private key, which "
     "is made,\n"
     "and kept from other users, if there is none. VERSION: 1 to 4294967294.\n"
+    "public: writes a key's public half. keys: signs a vehicle's next list of public keys, which "
+    "has one or\n"
+    "two; NUMBER is the last one's and 1. A new vehicle's has number 1, KEYFILE's and --second's.\n"
     "Behind these: --vendor N and --board N (1 and 1), which vehicle and image have in common;\n"
+    "--second KEY.pub: a second key, of a new vehicle;\n"
     "--needs VERSION: of the bitstream that a firmware needs, or the firmware that a bitstream "
     "does.\n";
 
 uint32_t board[2] = {1, 1}, needs = 0; // of the command line
+std::string second;
 
 [[noreturn]] void fail(const std::string& text) {
     throw std::runtime_error(text);
@@ -88,12 +97,54 @@ struct Keys {
     Bytes open_ = Bytes(crypto_sign_PUBLICKEYBYTES), secret = Bytes(crypto_sign_SECRETKEYBYTES);
 };
 
+Bytes readPublic(const std::string& path) {
+    Bytes key(crypto_sign_PUBLICKEYBYTES);
+    std::ifstream in(path);
+    std::string digits;
+    size_t size = 0;
+    in >> digits;
+    if (sodium_hex2bin(key.data(), key.size(), digits.data(), digits.size(), nullptr, &size,
+                       nullptr) != 0 ||
+        size != key.size() || digits.size() != 2 * size)
+        fail("'" + path + "' is no public key: pack_update public makes such a file");
+    return key;
+}
+
+void savePublic(const std::string& key, const std::string& output) {
+    const Bytes open = Keys(key).open_;
+    std::string digits(2 * open.size() + 1, '\n');
+    sodium_bin2hex(digits.data(), digits.size(), open.data(), open.size());
+    digits.back() = '\n';
+    save(output, {digits.begin(), digits.end()});
+}
+
 uint32_t versionOf(const std::string& text) {
     char* end = nullptr;
     const unsigned long long version = std::strtoull(text.c_str(), &end, 10);
     if (text.empty() || *end || version == 0 || version >= std::numeric_limits<uint32_t>::max())
         fail("version '" + text + "': give 1 to 4294967294");
     return static_cast<uint32_t>(version);
+}
+
+Bytes signedHeader(const Slots_Header& header, const Keys& keys) {
+    Bytes bytes(sizeof header);
+    std::memcpy(bytes.data(), &header, sizeof header);
+    crypto_sign_detached(bytes.data() + SLOTS_SIGNED_BYTES, nullptr, bytes.data(),
+                         SLOTS_SIGNED_BYTES, keys.secret.data());
+    return bytes;
+}
+
+// A signed list of one or two public keys.
+Bytes listOf(const std::vector<Bytes>& open, uint32_t number, const Keys& signer) {
+    Slots_Header list{};
+    list.magic = SLOTS_MAGIC;
+    list.product = SLOTS_KEYS;
+    list.version = number;
+    std::copy(std::begin(board), std::end(board), list.board);
+    std::fill(std::begin(list.digest), std::end(list.digest), uint8_t{0xFF}); // no key
+    for (size_t i = 0; i < open.size(); ++i)
+        std::copy(open[i].begin(), open[i].end(), list.digest + i * SLOTS_KEY_BYTES);
+    return signedHeader(list, signer);
 }
 
 // The signed header of an image for a slot, and the image.
@@ -113,11 +164,7 @@ std::pair<Bytes, Bytes> sign(const Bytes& image, const Slots_Layout& layout, uin
     std::copy(std::begin(board), std::end(board), header.board);
     header.needs = needs;
     crypto_hash_sha512(header.digest, image.data(), image.size());
-    Bytes bytes(sizeof header);
-    std::memcpy(bytes.data(), &header, sizeof header);
-    crypto_sign_detached(bytes.data() + SLOTS_SIGNED_BYTES, nullptr, bytes.data(),
-                         SLOTS_SIGNED_BYTES, keys.secret.data());
-    return {bytes, image};
+    return {signedHeader(header, keys), image};
 }
 
 std::pair<Bytes, Bytes> sign(const ElfImage& elf, uint32_t slot, uint32_t version,
@@ -208,8 +255,10 @@ void fillVehicle(const std::string& loader, const std::string& elf, uint32_t ver
     };
     for (const ElfImage::Segment& s : boot.segments())
         put(s.address - FLASH_BASE, s.bytes);
-    put(SLOTS_KEY_AT, keys.open_);
-    std::memcpy(&flash[SLOTS_BOARD_AT], board, sizeof board);
+    std::vector<Bytes> open = {keys.open_};
+    if (!second.empty())
+        open.push_back(readPublic(second));
+    put(SLOTS_KEYS_AT, listOf(open, 1, keys));
     const auto [header, image] = sign(firmware, 0, version, keys);
     put(Slots_at(&slots_firmware, 0), header);
     put(Slots_at(&slots_firmware, 0) + SLOTS_IMAGE_AT, image);
@@ -230,9 +279,12 @@ int main(int argc, char** argv) {
                            : option == "--board" ? &board[1]
                            : option == "--needs" ? &needs
                                                  : nullptr;
-            if (!to)
+            if (option == "--second")
+                second = word.back();
+            else if (!to)
                 fail("there is no option '" + option + "'");
-            *to = versionOf(word.back());
+            else
+                *to = versionOf(word.back());
             word.resize(word.size() - 2);
         }
         if (sodium_init() < 0)
@@ -243,7 +295,14 @@ int main(int argc, char** argv) {
             packBitstream(word[1], versionOf(word[2]), word[3], word[4]);
         else if (word.size() == 5 && word[0] == "fpga")
             fillFpga(word[1], versionOf(word[2]), word[3], word[4]);
-        else if (word.size() == 6 && word[0] == "vehicle")
+        else if (word.size() == 3 && word[0] == "public")
+            savePublic(word[1], word[2]);
+        else if ((word.size() == 5 || word.size() == 6) && word[0] == "keys") {
+            std::vector<Bytes> open;
+            for (size_t i = 3; i + 1 < word.size(); ++i)
+                open.push_back(readPublic(word[i]));
+            save(word.back(), listOf(open, versionOf(word[1]), Keys(word[2])));
+        } else if (word.size() == 6 && word[0] == "vehicle")
             fillVehicle(word[1], word[2], versionOf(word[3]), word[4], word[5]);
         else {
             const bool asked = word.size() == 1 && word[0] == "--help";

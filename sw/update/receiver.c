@@ -100,11 +100,36 @@ void Receiver_init(Receiver* self, const Slots_Port* port, U32 product, U32 runn
         self->reason = RECEIVER_WENT_BACK;
 }
 
+static Receiver_Reason prepareFor(Receiver* self, const Slots_Header* header) {
+    self->header = *header;
+    self->received = 0;
+    self->reason = RECEIVER_OK;
+    self->state = RECEIVER_PREPARING;
+    return RECEIVER_OK;
+}
+
+/* Checks a list of keys, but for signatures. */
+static Receiver_Reason looksAtKeys(const Receiver* self, const Slots_Header* list) {
+    const Slots_Header* keys = Slots_keys(self->port);
+    if (!self->port->mapped || list->magic != SLOTS_MAGIC ||
+        memcmp(list->board, keys->board, sizeof list->board) != 0)
+        return RECEIVER_FOREIGN;
+    if (list->version <= keys->version)
+        return RECEIVER_OLD;
+    if (list->version != keys->version + 1U)
+        return RECEIVER_NEEDS_OTHER;
+    return self->counterpart && self->counterpart->isOnTrial ? RECEIVER_ON_TRIAL : RECEIVER_OK;
+}
+
 Receiver_Reason Receiver_begin(Receiver* self, const Slots_Header* header) {
     if (self->state != RECEIVER_IDLE && self->state != RECEIVER_RECEIVING)
         return RECEIVER_BUSY;
     if (self->isOnTrial)
         return RECEIVER_ON_TRIAL;
+    if (header->product == SLOTS_KEYS) {
+        const Receiver_Reason reason = looksAtKeys(self, header);
+        return reason == RECEIVER_OK ? prepareFor(self, header) : reason;
+    }
     if (!Slots_fits(self->port, header, self->slot, self->product))
         return RECEIVER_FOREIGN;
     if (header->version <= self->confirmed)
@@ -112,11 +137,7 @@ Receiver_Reason Receiver_begin(Receiver* self, const Slots_Header* header) {
     if (header->needs && (!self->counterpart || self->counterpart->isOnTrial ||
                           self->counterpart->version < header->needs))
         return RECEIVER_NEEDS_OTHER;
-    self->header = *header;
-    self->received = 0;
-    self->reason = RECEIVER_OK;
-    self->state = RECEIVER_PREPARING;
-    return RECEIVER_OK;
+    return prepareFor(self, header);
 }
 
 Receiver_Reason Receiver_write(Receiver* self, U32 offset, const U8* data, U32 bytes) {
@@ -149,10 +170,39 @@ Receiver_Reason Receiver_confirm(Receiver* self) {
     return RECEIVER_OK;
 }
 
+/* Returns 1 if what runs is signed with a key of this list, so that it starts again. */
+static int staysSigned(const Receiver* self, const Slots_Header* list) {
+    Slots_Header header;
+    if (self->port->layout->hasGolden && self->running == 0U)
+        return 1;
+    Slots_header(self->port, self->running, &header);
+    return Slots_isSigned(self->port, list, &header);
+}
+
+/* Adds the list of keys in the first place that is empty: a loss of power may have left a part of
+ * another in one before. */
+static Receiver_Reason addKeys(const Receiver* self) {
+    static const U32 complete = SLOTS_TRUE;
+    const Slots_Header* list = &self->header;
+    U32 at = SLOTS_KEYS_AT, i;
+    if (!staysSigned(self, list) || (self->counterpart && !staysSigned(self->counterpart, list)))
+        return RECEIVER_NEEDS_OTHER;
+    for (i = 0; i < SLOTS_LISTS; ++i, at += (U32)sizeof(Slots_Keys))
+        if (isErased(self, at, (U32)sizeof(Slots_Keys)))
+            return put(self, at, (const U8*)list, (U32)sizeof *list) &&
+                           put(self, at + (U32)(sizeof(Slots_Keys) - sizeof complete),
+                               (const U8*)&complete, (U32)sizeof complete)
+                       ? RECEIVER_OK
+                       : RECEIVER_FLASH;
+    return RECEIVER_FLASH;
+}
+
 /* Checks that the header is signed, and looks for a part of its image in flash. */
 static void prepare(Receiver* self) {
-    if (!Slots_isSigned(self->port, &self->header))
+    if (!Slots_isSigned(self->port, Slots_keys(self->port), &self->header))
         end(self, RECEIVER_UNSIGNED);
+    else if (self->header.product == SLOTS_KEYS)
+        end(self, addKeys(self));
     else if (hasBegun(self, &self->header))
         takeUp(self);
     else

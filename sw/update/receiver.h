@@ -22,7 +22,7 @@ typedef enum Receiver_Reason {
     RECEIVER_OK,
     RECEIVER_FOREIGN,    /* another product, board or slot, or no image */
     RECEIVER_OLD,        /* its version is not above the confirmed one */
-    RECEIVER_UNSIGNED,   /* not signed with this vehicle's key */
+    RECEIVER_UNSIGNED,   /* not signed with one of this vehicle's keys */
     RECEIVER_DAMAGED,    /* the bytes differ from the signed ones */
     RECEIVER_BUSY,       /* preparing, checking, or ready */
     RECEIVER_ON_TRIAL,   /* the running image must be confirmed first */
@@ -31,7 +31,8 @@ typedef enum Receiver_Reason {
     RECEIVER_FLASH,      /* the flash could not be programmed */
     RECEIVER_WENT_BACK,  /* the image was tried and not confirmed */
     RECEIVER_REFUSED,    /* the FPGA did not take the bitstream */
-    RECEIVER_NEEDS_OTHER /* the counterpart that it needs is not confirmed */
+    RECEIVER_NEEDS_OTHER /* the counterpart that it needs is not confirmed; of keys: the list before
+                          * it is missing, or what runs is signed with none of them */
 } Receiver_Reason;
 
 typedef struct Receiver {
@@ -50,7 +51,8 @@ typedef struct Receiver {
 
 /* Finds what an earlier start has left. `running`: the slot that runs, of firmware or bitstream. */
 void Receiver_init(Receiver* self, const Slots_Port* port, U32 product, U32 running);
-/* Begins or continues the image of this header; `received` tells how much is there already. */
+/* Begins or continues the image of this header; `received` tells how much is there already. A list
+ * of keys has no image: it counts as soon as the state is idle again, without a reason. */
 Receiver_Reason Receiver_begin(Receiver* self, const Slots_Header* header);
 /* Writes a piece of the image: 4-byte aligned in place and size, without a gap before it. */
 Receiver_Reason Receiver_write(Receiver* self, U32 offset, const U8* data, U32 bytes);

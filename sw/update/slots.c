@@ -43,31 +43,49 @@ int Slots_set(const Slots_Port* port, U32 slot, Slots_State state) {
                                            Slots_is(port, slot, state));
 }
 
+const Slots_Header* Slots_keys(const Slots_Port* port) {
+    U32 i, last = 0;
+    for (i = 1; i < SLOTS_LISTS; ++i)
+        if (port->keys[i].isComplete == SLOTS_TRUE)
+            last = i;
+    return &port->keys[last].list;
+}
+
 int Slots_fits(const Slots_Port* port, const Slots_Header* header, U32 slot, U32 product) {
     const Slots_Layout* layout = port->layout;
-    return memcmp(header->board, port->key + SLOTS_KEY_BYTES, sizeof header->board) == 0 &&
+    return memcmp(header->board, port->keys->list.board, sizeof header->board) == 0 &&
            header->magic == SLOTS_MAGIC && header->product == product && header->version != 0U &&
            header->version != SLOTS_ERASED && header->bytes != 0U && header->bytes % 4U == 0U &&
            header->bytes <= layout->bytes - SLOTS_IMAGE_AT &&
            header->base == Slots_at(layout, slot) + SLOTS_IMAGE_AT;
 }
 
-int Slots_isSigned(const Slots_Port* port, const Slots_Header* header) {
-    return port->isSigned(header->signature, (const U8*)header, (U32)SLOTS_SIGNED_BYTES, port->key);
+int Slots_isSigned(const Slots_Port* port, const Slots_Header* keys, const Slots_Header* header) {
+    U32 i;
+    for (i = 0; i < SLOTS_DIGEST_BYTES; i += SLOTS_KEY_BYTES)
+        if (port->isSigned(header->signature, (const U8*)header, (U32)SLOTS_SIGNED_BYTES,
+                           keys->digest + i))
+            return 1;
+    return 0;
+}
+
+static int isWhole(const Slots_Port* port, U32 slot, const Slots_Header* header, Slots_Read read,
+                   void* context) {
+    U8 digest[SLOTS_DIGEST_BYTES];
+    port->digest(read, context, Slots_at(port->layout, slot) + SLOTS_IMAGE_AT, header->bytes,
+                 digest);
+    return memcmp(digest, header->digest, sizeof digest) == 0;
 }
 
 int Slots_isWhole(const Slots_Port* port, U32 slot, const Slots_Header* header) {
-    U8 digest[SLOTS_DIGEST_BYTES];
-    port->digest(port->read, port->context, Slots_at(port->layout, slot) + SLOTS_IMAGE_AT,
-                 header->bytes, digest);
-    return memcmp(digest, header->digest, sizeof digest) == 0;
+    return isWhole(port, slot, header, port->read, port->context);
 }
 
 static int isSound(const Slots_Port* port, U32 slot, U32 product) {
     Slots_Header header;
     Slots_header(port, slot, &header);
     return Slots_fits(port, &header, slot, product) && Slots_is(port, slot, SLOTS_READY) &&
-           Slots_isSigned(port, &header) && Slots_isWhole(port, slot, &header);
+           Slots_isSigned(port, Slots_keys(port), &header) && Slots_isWhole(port, slot, &header);
 }
 
 /* Returns the highest version of the log. An entry is a version and its complement; any other was
@@ -142,6 +160,23 @@ U32 Slots_choose(const Slots_Port* port, U32 product, int mayTry) {
             return slot;
     }
     return SLOTS_NONE;
+}
+
+/* Reads a bitstream as it was signed, without its sync word. */
+static void readUnready(void* context, U32 offset, U8* bytes, U32 count) {
+    const Slots_Port* port = (const Slots_Port*)context;
+    port->read(port->context, offset, bytes, count);
+    if (offset % port->layout->bytes == SLOTS_IMAGE_AT)
+        memset(bytes + SLOTS_SYNC_AT, 0xFF, sizeof port->layout->ready);
+}
+
+int Slots_isLoadable(const Slots_Port* port, U32 product) {
+    const U32 slot = Slots_is(port, 1, SLOTS_READY) ? 1U : 0U;
+    Slots_Header header;
+    Slots_header(port, slot, &header);
+    return Slots_fits(port, &header, slot, product) &&
+           Slots_isSigned(port, slot ? Slots_keys(port) : &port->keys->list, &header) &&
+           isWhole(port, slot, &header, readUnready, (void*)port);
 }
 
 int Slots_settleFpga(const Slots_Port* port, int isRefused) {

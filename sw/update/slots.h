@@ -14,27 +14,35 @@
 #define SLOTS_COUNT 2U
 #define SLOTS_NONE SLOTS_COUNT
 #define SLOTS_KEY_BYTES 32U
-/* In the processor's flash, sector 2: the public key, then the vehicle's vendor and board. */
-#define SLOTS_KEY_AT 0x8000U
-#define SLOTS_BOARD_AT (SLOTS_KEY_AT + SLOTS_KEY_BYTES)
+#define SLOTS_KEYS_AT 0x8000U /* in the processor's flash, sector 2: lists of keys */
+#define SLOTS_LISTS 64U
 #define SLOTS_IMAGE_AT 0x200U /* in a slot; Cortex-M3's vectors are aligned to 512 bytes */
 
 #define SLOTS_MAGIC 0x1CE50C05U
 #define SLOTS_DIGEST_BYTES 64U    /* SHA-512 */
 #define SLOTS_SIGNATURE_BYTES 64U /* Ed25519 */
 
-/* The beginning of a slot. The signature covers all bytes before it. */
+/* The beginning of a slot, or a list of keys. The signature covers all bytes before it. */
 typedef struct Slots_Header {
     U32 magic;
-    U32 product;  /* the kind of vehicle */
-    U32 version;  /* 1..0xFFFFFFFE */
+    U32 product;  /* the kind of vehicle, or SLOTS_KEYS */
+    U32 version;  /* 1..0xFFFFFFFE; of lists: counted up by one */
     U32 bytes;    /* of the image, a multiple of 4 */
     U32 base;     /* offset in flash of the image's first byte */
     U32 board[2]; /* vendor, and board with its revision */
     U32 needs;    /* version that must run of the counterpart: bitstream or firmware; 0: any */
-    U8 digest[SLOTS_DIGEST_BYTES];
+    U8 digest[SLOTS_DIGEST_BYTES]; /* of a list: two public keys in its place */
     U8 signature[SLOTS_SIGNATURE_BYTES];
 } Slots_Header;
+
+/* A list of the two public keys whose owners may sign images and the next list. Lists are only ever
+ * added, behind the one that a programmer has written; the last complete one counts. */
+#define SLOTS_KEYS 0x5359454BU /* "KEYS" */
+typedef struct Slots_Keys {
+    Slots_Header list;
+    U32 unused[23];
+    U32 isComplete; /* SLOTS_TRUE, written last */
+} Slots_Keys;
 
 #define SLOTS_SIGNED_BYTES (sizeof(Slots_Header) - SLOTS_SIGNATURE_BYTES)
 
@@ -79,8 +87,8 @@ typedef struct Slots_Port {
     int (*program)(void* context, U32 offset, const U8* bytes, U32 count);
     int (*isSigned)(const U8* signature, const U8* message, U32 bytes, const U8* key);
     void (*digest)(Slots_Read read, void* context, U32 offset, U32 bytes, U8* digest);
-    const U8* key;    /* the vehicle's public key, then its vendor and board */
-    const U8* mapped; /* the flash, if it is the processor's own memory; else 0 */
+    const Slots_Keys* keys; /* the lists of keys, with the vehicle's vendor and board */
+    const U8* mapped;       /* the flash, if it is the processor's own memory; else 0 */
 } Slots_Port;
 
 /* Returns the slot's offset in flash. */
@@ -92,8 +100,10 @@ int Slots_is(const Slots_Port* port, U32 slot, Slots_State state);
 int Slots_set(const Slots_Port* port, U32 slot, Slots_State state);
 /* Returns 1 if the header could be one of an image for this slot, product, vendor and board. */
 int Slots_fits(const Slots_Port* port, const Slots_Header* header, U32 slot, U32 product);
-/* Returns 1 if the header is signed with the vehicle's key. The header need not be in flash. */
-int Slots_isSigned(const Slots_Port* port, const Slots_Header* header);
+/* Returns the vehicle's list of keys. */
+const Slots_Header* Slots_keys(const Slots_Port* port);
+/* Returns 1 if the header is signed with a key of this list. The header need not be in flash. */
+int Slots_isSigned(const Slots_Port* port, const Slots_Header* keys, const Slots_Header* header);
 /* Returns 1 if the image in the slot has the header's digest. */
 int Slots_isWhole(const Slots_Port* port, U32 slot, const Slots_Header* header);
 /* Returns the highest confirmed version, 0 where there is none. */
@@ -106,6 +116,9 @@ int Slots_retire(const Slots_Port* port, U32 slot);
  * the newest confirmed one; else any sound one. Each is signed and whole. */
 U32 Slots_choose(const Slots_Port* port, U32 product, int mayTry);
 
+/* Returns 1 if the bitstream that the FPGA would load is signed and whole. The golden one, which is
+ * never written, is signed with a key of the first list. */
+int Slots_isLoadable(const Slots_Port* port, U32 product);
 /* Checks the FPGA's flash at a start, and after each failed load of the FPGA. A new bitstream is
  * tried once. One that was tried and not confirmed is retired, and so is one that the FPGA has
  * refused: it hangs, or runs the golden one. Returns 1 where the FPGA must load again. */

@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""update: sends new firmware, or a bitstream, to a vehicle, sees it start, and confirms it. Stock
-ZeroC Ice.
+"""update: sends new firmware, a bitstream, or keys to a vehicle, sees it start, and confirms it.
+Stock ZeroC Ice.
 
-The package is what pack_update has signed. It goes on where a loss of the link, or of the vehicle's
-power, has left it; so does this program when it is started again. A refused package leaves the
-vehicle as it was.
+The package is what pack_update has signed, or several of these in one file: lists of keys go
+before or behind the image, as they stand in it. It goes on where a loss of the link, or of the
+vehicle's power, has left it; so does this program when it is started again. A refused package
+leaves the vehicle as it was.
 """
 
 import argparse
@@ -21,17 +22,19 @@ import plugged
 
 HEADER = struct.Struct("<8I64s64s")  # sw/update/slots.h
 MAGIC = 0x1CE50C05
-OBJECTS = {0x31564155: "update", 0x31475046: "fpga"}  # by product
+KEYS = 0x5359454B
+OBJECTS = {0x31564155: "update", 0x31475046: "fpga", KEYS: "update"}  # by product
 PIECE, PIECES_ON_THE_WAY, DICTIONARY = 4096, 3, 65535
 TEXT = {
     "foreignImage": "the package is not for this kind of vehicle, or not for its board",
     "oldVersion": "its version is not above the vehicle's confirmed one",
-    "wrongSignature": "it is not signed with this vehicle's key",
+    "wrongSignature": "it is not signed with this vehicle's keys",
     "damagedImage": "what arrived is not what was signed; try again",
     "busyNow": "another update is under way",
     "onTrial": "what the vehicle runs is not confirmed yet; it goes back in a minute",
-    "needsOther": "it needs a newer bitstream, or firmware, that was confirmed: send that "
-                  "first",
+    "needsOther": "it needs a newer bitstream, or firmware, that was confirmed: send that first; a "
+                  "list of keys needs the list before it, and what runs signed with one of its "
+                  "keys",
     "flashFault": "the vehicle's flash does not take it",
     "wentBack": "the new one was started and went back: it was not confirmed in time, or crashed",
     "refused": "the FPGA did not take it: its CRC is wrong, or it is for another device; the "
@@ -47,11 +50,11 @@ class Failed(Exception):
 
 
 def read_package(path):
-    """Returns the object that the package is for, and its (header, image) by the image's offset in
-    flash."""
+    """Returns the object that the package is for, its (header, image) by the image's offset in
+    flash, and the lists of keys before and behind the images."""
     with open(path, "rb") as f:
         data = f.read()
-    images, at = {}, 0
+    images, before, behind, name, at = {}, [], [], "update", 0
     while at < len(data):
         head = data[at:at + HEADER.size]
         if len(head) < HEADER.size:
@@ -60,11 +63,15 @@ def read_package(path):
         image = data[at + HEADER.size:at + HEADER.size + size]
         if magic != MAGIC or product not in OBJECTS or len(image) < size:
             raise Failed("'%s' is no package, or is cut short: pack_update makes them" % path)
-        images[base] = head, image
+        if product == KEYS:
+            (behind if images else before).append(head)
+        else:
+            images[base] = head, image
+            name = OBJECTS[product]
         at += HEADER.size + size
-    if not images:
+    if not data:
         raise Failed("'%s' is empty" % path)
-    return OBJECTS[product], images
+    return name, images, before, behind
 
 
 class Clock:
@@ -173,6 +180,18 @@ class Vehicle:
             if air_end else ""))
 
 
+def send_keys(vehicle, lists, say):
+    for header in lists:
+        number = HEADER.unpack(header)[2]
+        reason = vehicle.persist(lambda: vehicle.proxy.begin(header))
+        if str(reason) == "oldVersion":
+            say("the vehicle has list %d of keys, or a later one" % number)
+            continue
+        vehicle.expect(reason)
+        vehicle.wait_while("preparing")
+        say("the vehicle takes what the keys of list %d sign" % number)
+
+
 def update(vehicle, images, say, clock, rehearses):
     """Brings the vehicle to the package's version, confirmed. A rehearsal sees it start and go
     back."""
@@ -246,7 +265,7 @@ def main():
 
     communicator = None
     try:
-        name, images = read_package(args.package)
+        name, images, before, behind = read_package(args.package)
         Ice.loadSlice("", ["-I" + (Ice.getSliceDir() or "."), args.slice])
         import Update  # made by loadSlice
         settings = {"Ice.Default.InvocationTimeout": "60000", "Ice.ACM.Close": "0",
@@ -254,7 +273,14 @@ def main():
         communicator = plugged.initialize(settings, args.plugin, args.guard, args.key)
         where = args.proxy or "%s:xbee-at -d %s -a 0x0001 -s 0x0000 -t 60000" % (name, args.device)
         proxy = Update.FirmwarePrx.uncheckedCast(communicator.stringToProxy(where))
-        update(Vehicle(proxy, args.patience), images, say, Clock(args.status), args.rehearse)
+        vehicle = Vehicle(proxy, args.patience)
+        keyring = Vehicle(proxy.ice_identity(Ice.stringToIdentity("update")), args.patience)
+        keyring.proxy = Update.FirmwarePrx.uncheckedCast(keyring.proxy)
+        send_keys(keyring, before, say)
+        if images:
+            update(vehicle, images, say, Clock(args.status), args.rehearse)
+        if not args.rehearse:
+            send_keys(keyring, behind, say)
         return 0
     except KeyboardInterrupt:
         return 130

@@ -201,9 +201,13 @@ class Cases(Script):
         flash = Path("flash.bin")
         vehicle = "vehicle", LOADER, FIRMWARE, "1"
         self.pack(*vehicle, "other.key", flash)
+        stand_in = BUILD / "testbench/cpu/stand_in_bitstream"
+        self.ask(stand_in, "golden.bin", "1", "10000")
+        self.pack("fpga", "golden.bin", "1", "other.key", "fpga.bin")
         before = flash.read_bytes()
         self.update(FIRMWARE, "not signed with this vehicle's key", status=None)
         self.assertEqual(flash.read_bytes(), before)
+        Path("fpga.bin").unlink()
         Path("cut.update").write_bytes(Path("new.update").read_bytes()[:50000])
         self.fails("is cut short", CLIENTS / "update.py", "cut.update", "--slice", UPDATES[-1])
         self.pack(*vehicle, self.keys / "update.key", flash)
@@ -213,6 +217,21 @@ class Cases(Script):
         self.assertNotEqual(flash.read_bytes(), before)
         for _ in range(2):
             self.update(FIRMWARE, "runs and is confirmed", "1 software, 0 watchdog")
+        # The first key is stolen: firmware that the second has signed, then a list without it.
+        signing = self.keys / "spare.key"
+        key = TREE / "icesoc", "key", "--built", "--build", BUILD
+        self.ask(*key, signing, "--signing")
+        self.pack(*vehicle, self.keys / "update.key", flash, "--second", self.keys / "spare.pub")
+        self.pack("image", FIRMWARE, str(int(time.time())), signing, "spare.update")
+        self.ask(*key, self.out / "list.update", "--list", "2", "--by", signing, "--first",
+                 self.keys / "spare.pub")
+        with open("spare.update", "ab") as file:
+            file.write(Path("list.update").read_bytes())
+        self.ask(SIMULATOR, "--image", IMAGE, "--size", "96x64", "--out", self.out, "--cpu", "m3",
+                 "--flash", flash, "--", *(str(word).replace("new.update", "spare.update")
+                                           for word in UPDATES))
+        self.has("runs and is confirmed", "takes what the keys of list 2 sign")
+        self.update(FIRMWARE, "not signed with this vehicle's keys", status=None)
         # 256 KiB into three full sectors, within 30 s of air.
         self.ask(TREE / "tests/e2e/mission/big_firmware.sh", BUILD, self.out / "big.elf", "262144")
         self.pack(*vehicle, self.keys / "update.key", flash)
@@ -229,7 +248,6 @@ class Cases(Script):
         # Bitstreams: no bitstream at all, one that the FPGA refuses, one that nobody confirms, and
         # one of full size.
         self.update(BUILD / "firmware/uav.bin", "has a sync word, AA 99 55 66", status=None)
-        stand_in = BUILD / "testbench/cpu/stand_in_bitstream"
         self.ask(stand_in, "new.bin", "2", "10000")
         damaged = bytearray(Path("new.bin").read_bytes())
         damaged[9000] = ord("x")

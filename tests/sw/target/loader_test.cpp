@@ -20,8 +20,9 @@ constexpr uint32_t flashBase = 0x08000000;
 
 class Loader : public ::testing::Test {
 protected:
-    void fill() {
-        ASSERT_EQ(folder.pack("vehicle " FIRMWARE "loader.elf " FIRMWARE "uav.elf 7 key flash"), 0)
+    void fill(const std::string& more = "") {
+        ASSERT_EQ(
+            folder.pack("vehicle " FIRMWARE "loader.elf " FIRMWARE "uav.elf 7 key flash" + more), 0)
             << folder.said();
         chip.cpu().loadFlash(flashBase, folder.read("flash"));
     }
@@ -93,6 +94,30 @@ TEST_F(Loader, TriesANewOneOnceAndGoesBack) {
     EXPECT_EQ(boot(), 0);
 }
 
+// The time for one that the second key has signed is one more check of a signature.
+TEST_F(Loader, StartsOneOfEitherKeyUntilItIsWithdrawn) {
+    ASSERT_EQ(folder.pack("public spare spare.pub"), 0) << folder.said();
+    fill(" --second spare.pub");
+    EXPECT_EQ(boot(), 0);
+    const uint64_t before = cycles;
+    receive(8, "spare");
+    EXPECT_EQ(boot(), 1);
+    EXPECT_LT(cycles, before * 2);
+    RecordProperty("cycles", static_cast<int>(cycles));
+    const uint32_t isTrue = SLOTS_TRUE;
+    chip.cpu().writeMemory(flashBase + Slots_at(&slots_firmware, 1) + SLOTS_CONFIRMED, &isTrue, 4);
+    ASSERT_EQ(folder.pack("keys 2 spare spare.pub list"), 0) << folder.said();
+    const uint32_t at = flashBase + SLOTS_KEYS_AT + sizeof(Slots_Keys);
+    chip.cpu().loadFlash(at, folder.read("list"));
+    receive(9, "key");    // over the one that is confirmed
+    EXPECT_EQ(boot(), 1); // the list does not count yet
+    receive(9, "key");
+    chip.cpu().writeMemory(at + offsetof(Slots_Keys, isComplete), &isTrue, 4);
+    EXPECT_EQ(boot(), -1);
+    receive(9, "spare");
+    EXPECT_EQ(boot(), 1);
+}
+
 TEST_F(Loader, TriesNothingInFlight) {
     fill();
     receive(8);
@@ -150,6 +175,8 @@ TEST(PackUpdate, SaysWhatIsWrong) {
     ::chmod((folder.path + "/key").c_str(), 0644);
     EXPECT_NE(folder.pack("image " FIRMWARE "uav.elf 2 key update"), 0);
     EXPECT_NE(folder.said().find("chmod 600"), std::string::npos) << folder.said();
+    EXPECT_NE(folder.pack("keys 2 other said list"), 0);
+    EXPECT_NE(folder.said().find("no public key"), std::string::npos) << folder.said();
 }
 
 } // namespace

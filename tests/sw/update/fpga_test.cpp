@@ -21,7 +21,7 @@ namespace {
 
 using Bytes = std::vector<uint8_t>;
 constexpr uint32_t product = 0x46504731, chunk = 4096;
-const Keys ours(1);
+const Keys ours(1), second(2);
 const uint32_t golden = Slots_at(&slots_fpga, 0) + SLOTS_IMAGE_AT,
                multiBoot = Slots_at(&slots_fpga, 1) + SLOTS_IMAGE_AT;
 
@@ -58,7 +58,10 @@ struct PowerCut {};
 // The FPGA's flash, the FPGA, and the processor that both are wired to.
 class Fpga : public ::testing::Test, public Updated {
 protected:
-    Fpga() { fill(1); }
+    Fpga() {
+        lists[0].list = ours.list(1, ours, ours);
+        fill(1);
+    }
     ~Fpga() override { flash_ = nullptr; }
 
     // As the factory leaves it: a golden bitstream, and the header that looks for a newer one.
@@ -124,10 +127,11 @@ protected:
     SpiFlash flash{[] { return now_; }};
     uint64_t cutAt = 0;
     Spartan6Boot fpga;
+    std::vector<Slots_Keys> lists = std::vector<Slots_Keys>(SLOTS_LISTS);
     Slots_Port port{&slots_fpga,      const_cast<SpiNor_Bus*>(&bus),
                     SpiNor_read,      SpiNor_erase,
                     SpiNor_program,   Signature_isGood,
-                    Signature_digest, ours.open.data(),
+                    Signature_digest, lists.data(),
                     nullptr};
 };
 
@@ -215,6 +219,21 @@ TEST_F(Fpga, ADamagedBitstreamNeverGetsItsSyncWord) {
     EXPECT_EQ(send(image), RECEIVER_DAMAGED);
     EXPECT_EQ(powerOn(), 1u);
     updateTo(2);
+}
+
+TEST_F(Fpga, OnlyWhatIsSignedAndWholeIsLoaded) {
+    EXPECT_TRUE(Slots_isLoadable(&port, product)); // the golden one
+    updateTo(2);
+    EXPECT_TRUE(Slots_isLoadable(&port, product));
+    lists[1] = {second.list(2, second, ours), {}, SLOTS_TRUE};
+    EXPECT_FALSE(Slots_isLoadable(&port, product)); // its key was withdrawn
+    EXPECT_TRUE(Slots_settleFpga(&port, 1));
+    EXPECT_TRUE(Slots_isLoadable(&port, product)); // the golden one, by the first list
+    flash.memory[golden + 5000] ^= 1;
+    EXPECT_FALSE(Slots_isLoadable(&port, product));
+    flash.memory[golden + 5000] ^= 1;
+    flash.memory[golden - SLOTS_IMAGE_AT + 8] ^= 1; // its version
+    EXPECT_FALSE(Slots_isLoadable(&port, product));
 }
 
 // Cuts the power at each operation of an update in turn, over an older bitstream, and once more at

@@ -26,8 +26,15 @@ struct Keys {
         crypto_sign_detached(header.signature, nullptr, reinterpret_cast<const uint8_t*>(&header),
                              SLOTS_SIGNED_BYTES, secret.data());
     }
+    // A list that has this key and another.
+    Slots_Header list(uint32_t version, const Keys& second, const Keys& signer) const {
+        Slots_Header list{SLOTS_MAGIC, SLOTS_KEYS, version, 0, 0, {board[0], board[1]}, 0, {}, {}};
+        std::copy(open.begin(), open.end(), list.digest);
+        std::copy(second.open.begin(), second.open.end(), list.digest + SLOTS_KEY_BYTES);
+        signer.sign(list);
+        return list;
+    }
     std::array<uint8_t, crypto_sign_PUBLICKEYBYTES> open;
-    const uint32_t vendorAndBoard[2] = {board[0], board[1]}; // behind it, as in flash
     std::array<uint8_t, crypto_sign_SECRETKEYBYTES> secret;
 };
 

@@ -21,14 +21,15 @@ namespace {
 using Bytes = std::vector<uint8_t>;
 constexpr uint32_t product = 0x55415631, imageBytes = 1024, chunk = 256;
 
-const Keys ours(1), others(2);
+const Keys ours(1), others(2), second(3), third(4);
 
 struct Image {
     Slots_Header header;
     Bytes bytes;
 };
 
-Image makeImage(uint32_t version, uint32_t slot, uint32_t size = imageBytes) {
+Image makeImage(uint32_t version, uint32_t slot, uint32_t size = imageBytes,
+                const Keys& signer = ours) {
     Image image;
     image.bytes.resize(size);
     Random random(testSeed() + version);
@@ -44,7 +45,7 @@ Image makeImage(uint32_t version, uint32_t slot, uint32_t size = imageBytes) {
                     {},
                     {}};
     crypto_hash_sha512(image.header.digest, image.bytes.data(), size);
-    ours.sign(image.header);
+    signer.sign(image.header);
     return image;
 }
 
@@ -65,10 +66,10 @@ public:
                program,
                Signature_isGood,
                Signature_digest,
-               memory.data() + SLOTS_KEY_AT,
+               reinterpret_cast<const Slots_Keys*>(memory.data() + SLOTS_KEYS_AT),
                memory.data()} {
-        std::copy(ours.open.begin(), ours.open.end(), memory.begin() + SLOTS_KEY_AT);
-        std::memcpy(&memory[SLOTS_BOARD_AT], board, sizeof board);
+        const Slots_Header list = ours.list(1, second, ours);
+        std::memcpy(&memory[SLOTS_KEYS_AT], &list, sizeof list);
         flash_.onOperation = [this] {
             if (flash_.operations() == cutAt) {
                 now_ += flash_.busyNs() / 2;
@@ -106,10 +107,16 @@ public:
         return header.version;
     }
     Receiver_Reason send(const Image& image) { return Updated::send(image, chunk); }
+    // Sends a list of keys.
+    Receiver_Reason take(const Slots_Header& list) {
+        const Receiver_Reason reason = Receiver_begin(&receiver, &list);
+        work();
+        return reason == RECEIVER_OK ? receiver.reason : reason;
+    }
     // Does the ground's part until this version is confirmed, whatever runs now.
-    void updateTo(uint32_t version) {
+    void updateTo(uint32_t version, const Keys& signer = ours) {
         for (uint32_t runs = boot(); runs != version; runs = boot()) {
-            const Image image = makeImage(version, receiver.slot);
+            const Image image = makeImage(version, receiver.slot, imageBytes, signer);
             ASSERT_EQ(begin(image), RECEIVER_OK);
             ASSERT_EQ(send(image), RECEIVER_OK);
         }
@@ -271,8 +278,90 @@ TEST(Update, NoHeaderOfWhichABitWasChangedIsTaken) {
 
 TEST(Update, WithoutAKeyNothingIsTaken) {
     Vehicle vehicle;
-    std::fill_n(vehicle.memory.begin() + SLOTS_KEY_AT, SLOTS_KEY_BYTES, uint8_t{0xFF});
+    std::fill_n(vehicle.memory.begin() + SLOTS_KEYS_AT + offsetof(Slots_Header, digest),
+                SLOTS_DIGEST_BYTES, uint8_t{0xFF});
     EXPECT_EQ(vehicle.begin(makeImage(2, 1)), RECEIVER_UNSIGNED);
+}
+
+// The first key is lost: the second one signs an image, and the list that names its successor.
+TEST(Update, TheSecondKeySignsImagesAndTheNextList) {
+    Vehicle vehicle;
+    vehicle.updateTo(2, second);
+    EXPECT_EQ(vehicle.take(second.list(2, third, second)), RECEIVER_OK);
+    EXPECT_EQ(vehicle.boot(), 2u);
+    EXPECT_EQ(vehicle.begin(makeImage(3, 0)), RECEIVER_UNSIGNED); // its key was withdrawn
+    vehicle.updateTo(3, third);
+    EXPECT_EQ(vehicle.take(third.list(3, others, third)), RECEIVER_OK);
+    EXPECT_EQ(vehicle.boot(), 3u);
+    vehicle.updateTo(4, others);
+}
+
+TEST(Update, AListIsSignedByTheOneBeforeAndCountsUpByOne) {
+    Vehicle vehicle;
+    EXPECT_EQ(vehicle.take(ours.list(2, third, second)), RECEIVER_OK);
+    const Bytes before = vehicle.memory;
+    const uint64_t operations = vehicle.operations();
+    Slots_Header foreign = ours.list(3, third, ours), changed = foreign;
+    ++foreign.board[1];
+    ours.sign(foreign);
+    ++changed.needs;
+    EXPECT_EQ(vehicle.take(ours.list(1, second, ours)), RECEIVER_OLD);
+    EXPECT_EQ(vehicle.take(ours.list(2, second, ours)), RECEIVER_OLD);
+    EXPECT_EQ(vehicle.take(ours.list(4, third, ours)), RECEIVER_NEEDS_OTHER);
+    EXPECT_EQ(vehicle.take(foreign), RECEIVER_FOREIGN);
+    EXPECT_EQ(vehicle.take(changed), RECEIVER_UNSIGNED);
+    EXPECT_EQ(vehicle.take(ours.list(3, second, second)), RECEIVER_UNSIGNED); // of the list before
+    EXPECT_EQ(vehicle.take(others.list(3, others, others)), RECEIVER_UNSIGNED);
+    EXPECT_EQ(vehicle.memory, before);
+    EXPECT_EQ(vehicle.operations(), operations);
+}
+
+TEST(Update, NoListStopsWhatRuns) {
+    Vehicle vehicle;
+    const Slots_Header list = second.list(2, third, second);
+    EXPECT_EQ(vehicle.take(list), RECEIVER_NEEDS_OTHER); // the firmware is signed with our key
+    const Image image = makeImage(2, 1, imageBytes, second);
+    EXPECT_EQ(vehicle.begin(image), RECEIVER_OK);
+    EXPECT_EQ(vehicle.send(image), RECEIVER_OK);
+    EXPECT_EQ(vehicle.take(list), RECEIVER_BUSY);
+    EXPECT_EQ(vehicle.boot(), 2u);
+    EXPECT_EQ(vehicle.take(list), RECEIVER_ON_TRIAL);
+    EXPECT_EQ(Receiver_confirm(&vehicle.receiver), RECEIVER_OK);
+    Vehicle other; // its bitstream is signed with our key
+    vehicle.receiver.counterpart = &other.receiver;
+    EXPECT_EQ(vehicle.take(list), RECEIVER_NEEDS_OTHER);
+    other.receiver.isOnTrial = 1;
+    EXPECT_EQ(vehicle.take(list), RECEIVER_ON_TRIAL);
+    other.updateTo(2, second);
+    EXPECT_EQ(vehicle.take(list), RECEIVER_OK);
+    EXPECT_EQ(vehicle.boot(), 2u);
+}
+
+// Cuts the power at each word of a list, and at a random one of the next try.
+TEST(Update, WhereverThePowerIsCutAListCountsOrTheOneBefore) {
+    constexpr unsigned words = sizeof(Slots_Header) / 4 + 1;
+    Random random(testSeed());
+    for (uint64_t first = 1; first <= words; ++first) {
+        Vehicle vehicle(1, testSeed() * 1000 + first);
+        vehicle.updateTo(2, second);
+        const Slots_Header list = second.list(2, third, second);
+        for (const uint64_t cut : {first, uint64_t{1} + random.below(words)}) {
+            if (Slots_keys(&vehicle.port)->version == 2)
+                break;
+            vehicle.cutAt = vehicle.operations() + cut;
+            EXPECT_THROW(vehicle.take(list), PowerCut);
+            vehicle.cutAt = 0;
+            EXPECT_EQ(vehicle.boot(), 2u) << "cut at word " << cut;
+            const Slots_Header* keys = Slots_keys(&vehicle.port);
+            EXPECT_EQ(keys->version == 2 ? std::memcmp(keys, &list, sizeof list) : 0, 0);
+            EXPECT_GE(keys->version, 1u);
+        }
+        if (Slots_keys(&vehicle.port)->version == 1) {
+            EXPECT_EQ(vehicle.take(list), RECEIVER_OK) << "cut at word " << first;
+        }
+        EXPECT_EQ(vehicle.boot(), 2u);
+        vehicle.updateTo(3, third);
+    }
 }
 
 TEST(Update, ADamagedOrCutImageIsNotStarted) {

@@ -42,7 +42,7 @@ struct Flash {
         },
         Signature_isGood,
         Signature_digest,
-        bytes.data() + SLOTS_KEY_AT,
+        reinterpret_cast<const Slots_Keys*>(bytes.data() + SLOTS_KEYS_AT),
         bytes.data()};
 };
 
@@ -51,9 +51,9 @@ protected:
     void SetUp() override {
         Bytes open(crypto_sign_PUBLICKEYBYTES), seed(crypto_sign_SEEDBYTES, 9);
         crypto_sign_seed_keypair(open.data(), secret.data(), seed.data());
-        std::copy(open.begin(), open.end(), flash.bytes.begin() + SLOTS_KEY_AT);
-        std::memcpy(&flash.bytes[SLOTS_BOARD_AT], headerOf(5, 0).board,
-                    sizeof Slots_Header().board);
+        Slots_Header list = listOf(1);
+        std::copy(open.begin(), open.end(), list.digest);
+        std::memcpy(&flash.bytes[SLOTS_KEYS_AT], &list, sizeof list);
         const Slots_Header running = headerOf(5, 0);
         std::memcpy(&flash.bytes[Slots_at(&slots_firmware, 0)], &running, sizeof running);
         Slots_set(&flash.port, 0, SLOTS_CONFIRMED);
@@ -82,6 +82,13 @@ protected:
         crypto_sign_detached(header.signature, nullptr, reinterpret_cast<uint8_t*>(&header),
                              SLOTS_SIGNED_BYTES, secret.data());
         return header;
+    }
+    // A list of keys, none of which signs anything.
+    Slots_Header listOf(uint32_t version) {
+        Slots_Header list{SLOTS_MAGIC, SLOTS_KEYS, version, 0, 0, {1, 2}, 0, {}, {}};
+        crypto_sign_detached(list.signature, nullptr, reinterpret_cast<uint8_t*>(&list),
+                             SLOTS_SIGNED_BYTES, secret.data());
+        return list;
     }
     Bytes encoded(const Slots_Header& header) {
         Bytes bytes(1 + sizeof header, static_cast<uint8_t>(sizeof header));

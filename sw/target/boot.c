@@ -44,8 +44,8 @@ int Boot_imageIsSound(void) {
     return CRC_DR == *image_end;
 }
 
-int Boot_isPowerOn(void) {
-    return reason == BOOT_POWER_ON;
+int Boot_loadsFpga(void) {
+    return reason == BOOT_POWER_ON || reason == BOOT_NO_FPGA;
 }
 
 U32 Boot_report(void) {

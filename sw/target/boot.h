@@ -45,8 +45,8 @@ extern Boot_Record boot_record; /* of the previous run, once Boot_begin has been
 void Boot_begin(void);
 /* Returns 1 if the checksum that the build has put behind the image is right. */
 int Boot_imageIsSound(void);
-/* Returns 1 after power-on, 0 after a reset. */
-int Boot_isPowerOn(void);
+/* Returns 1 where the FPGA must load its bitstream: after power-on, or where it did not answer. */
+int Boot_loadsFpga(void);
 /* Returns the word for SCRATCH. */
 U32 Boot_report(void);
 /* Makes the next start report this reason, whatever ends the run. */

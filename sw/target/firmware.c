@@ -44,7 +44,7 @@ void Firmware_run(void) {
     uav_update[UAV_BITSTREAM].product = FPGA_PRODUCT;
     if (uav_update[UAV_FIRMWARE].slots)
         uav_update[UAV_BITSTREAM].slots =
-            Fpga_slots(uav_update[UAV_FIRMWARE].slots, Boot_isPowerOn(), !UAV_isFlying(),
+            Fpga_slots(uav_update[UAV_FIRMWARE].slots, Boot_loadsFpga(), !UAV_isFlying(),
                        &uav_update[UAV_BITSTREAM].running);
     uav_restart = restart;
     uav_wire = (U8)Board_isWired();

@@ -155,16 +155,19 @@ static int loadsAnother(void) {
     return !isDone() || from == Slots_at(&slots_fpga, 0) + SLOTS_IMAGE_AT;
 }
 
-const Slots_Port* Fpga_slots(const Slots_Port* firmware, int isPowerOn, int mayTry, U32* running) {
+/* Has the FPGA load once more, so that all its reads are received, if the bitstream is signed and
+ * whole. Returns 1 if that is not so, or as loadsAnother. */
+static int loadsAnotherAgain(void) {
+    hold();
+    SPI1_CR1 = SPI1_CR1_MASTER;
+    if (SpiNor_isThere((void*)&bus) && !Slots_isLoadable(&port, FPGA_PRODUCT))
+        return 1;
+    return loadsAnother();
+}
+
+const Slots_Port* Fpga_slots(const Slots_Port* firmware, int mustLoad, int mayTry, U32* running) {
     int isRefused;
     startPins();
-    if (isPowerOn)
-        hold(); /* starts the load again, so that all its reads are received */
-    isRefused = loadsAnother();
-    if (!SpiNor_isThere((void*)&bus)) {
-        GPIO_MODER(CONTROL) &= ~3UL;
-        return 0;
-    }
     port = *firmware;
     port.layout = &slots_fpga;
     port.context = (void*)&bus;
@@ -172,9 +175,13 @@ const Slots_Port* Fpga_slots(const Slots_Port* firmware, int isPowerOn, int mayT
     port.erase = SpiNor_erase;
     port.program = SpiNor_program;
     port.mapped = 0;
+    isRefused = mustLoad ? loadsAnotherAgain() : loadsAnother();
+    if (!SpiNor_isThere((void*)&bus)) {
+        GPIO_MODER(CONTROL) &= ~3UL;
+        return 0;
+    }
     while ((mayTry || isRefused) && Slots_settleFpga(&port, isRefused)) {
-        hold();
-        isRefused = loadsAnother();
+        isRefused = loadsAnotherAgain();
         if (!isRefused)
             break;
     }

@@ -95,6 +95,22 @@ TEST_F(FpgaStart, ANewBitstreamIsTriedAndOneNotConfirmedGoes) {
     EXPECT_FALSE(is(SLOTS_REFUSED));
 }
 
+// Somebody has written to the flash: what he wrote would run, its CRC is right.
+TEST_F(FpgaStart, ABitstreamThatIsNotSignedNeverRuns) {
+    receive(standInBitstream(2, frameWords));
+    confirm();
+    EXPECT_EQ(start(), 1u);
+    const auto changed = standInBitstream(3, frameWords);
+    std::copy(changed.begin(), changed.end(), at(multiBoot));
+    EXPECT_EQ(start(), 0u);
+    EXPECT_TRUE(is(SLOTS_REFUSED));
+    std::copy(changed.begin(), changed.end(), at(golden));
+    chip.powerOn();
+    EXPECT_EQ(chip.run(), CortexM3::Stop::Breakpoint);
+    EXPECT_FALSE(chip.fpga.isDone());
+    EXPECT_FALSE(chip.fpga.boot().running.has_value());
+}
+
 TEST_F(FpgaStart, NoBitstreamIsTriedInFlightButOneThatIsRefusedGoes) {
     receive(standInBitstream(2, frameWords));
     chip.backup()[UAV_FLIGHT_WORD] = UAV_FLYING;

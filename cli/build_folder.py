@@ -124,6 +124,7 @@ class BuildFolder:
     def __init__(self, folder, values):
         self.folder, self.jobs, self.built = Path(folder), values.jobs, values.built
         self.ucos2 = getattr(values, "ucos2", "")
+        self.core_folders = getattr(values, "core_folders", "")
 
     def __truediv__(self, name):
         return self.folder / name
@@ -135,6 +136,8 @@ class BuildFolder:
             self.configure(*arguments)
             if self.ucos2:
                 self.set(UCOS2=os.path.abspath(self.ucos2))
+            if self.core_folders:
+                self.set(CORE_FOLDERS=";".join(map(str, self.other_cores())))
         return self
 
     def configure(self, *arguments):
@@ -180,6 +183,26 @@ class BuildFolder:
             reasons = re.findall(r"^CMake Error.*?(?=^$|\Z)", (self / "set.log").read_text(),
                                  re.M | re.S)
             raise Stop("CMake refuses " + " ".join(words[1:-1]) + "\n" + "\n".join(reasons))
+
+    def other_cores(self):
+        """Folders of cores outside of ip/: those that the command names, else those kept."""
+        if self.core_folders == "none":
+            return []
+        folders = self.core_folders or self.cached("CORE_FOLDERS")
+        return [Path(folder).absolute() for folder in folders.split(";") if folder]
+
+    def core(self, name):
+        """The folder of a core."""
+        return next((folder for folder in self.other_cores() if folder.name == name),
+                    Path("ip", name))
+
+    def follow(self, other, **variables):
+        """Has the chip of another build folder."""
+        if other.cached("CMAKE_HOME_DIRECTORY"):
+            variables["CORE_FOLDERS"] = other.cached("CORE_FOLDERS")
+        if other.cached("CORES"):
+            variables["CORES"] = other.cached("CORES")
+        self.set(**variables)
 
     def ninja(self, *words, check=True, env=None, jobs=None):
         """Builds targets, one build at a time: two would spoil each other's files."""

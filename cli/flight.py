@@ -11,8 +11,9 @@ import secrets
 from pathlib import Path
 
 from cli import keys
-from cli.options import (COUNT, FILE, FOLDER, FRAME, KEY_FILE, PATH, SEED, SHARE, SWITCH, TEXT,
-                         UCOS2, WORDS, Option, matching, number, one_of)
+from cli.build_folder import BuildFolder
+from cli.options import (CORE_FOLDERS, COUNT, FILE, FOLDER, FRAME, KEY_FILE, PATH, SEED, SHARE,
+                         SWITCH, TEXT, UCOS2, WORDS, Option, matching, number, one_of)
 from cli.runner import Stop, say
 
 VERSION = 2
@@ -81,7 +82,7 @@ INNER = {name: {**kind, "description": text} for name, kind, text in [
     ("quiet", _FLAG, "says nothing"),
 ]}
 AGAIN = Option("again", PATH, "flight.json of a flight: its options, where none is given here")
-OPTIONS = [*FIELDS, UCOS2, AGAIN]
+OPTIONS = [*FIELDS, UCOS2, AGAIN, CORE_FOLDERS]
 
 
 def empty(option):
@@ -163,10 +164,13 @@ def complete(values):
     if values.probe and "probe" not in values.cores:
         raise Stop(f"PROBE='{values.probe}' is a trigger of a probe: give --cores probe "
                    "(CORES=probe), too", 2)
-    for core in values.cores:
-        if not Path(f"ip/{core}/ground.py").is_file():
-            raise Stop(f"core '{core}' has no part in a mission: there is no ip/{core}/ground.py",
-                       2)
+    build = BuildFolder(values.build, values)
+    for at, core in enumerate(values.cores):
+        folder = build.core(core)
+        if not (folder / "ground.py").is_file():
+            raise Stop(f"core '{core}' has no part in a mission: there is no {folder}/ground.py", 2)
+        if folder.is_absolute():  # outside of ip/
+            values.cores[at] = str(folder)
     try:
         Path(values.out).mkdir(parents=True, exist_ok=True)
     except OSError:
@@ -179,7 +183,7 @@ def check_chip(values, build):
     """Refuses a core of the tree that the chip lacks: its call would fail only minutes later."""
     listed = build.cached("CORES") or "ip/cores.list"
     lines = re.findall(r"^\s*(\w+)", Path(listed).read_text(), re.M)
-    for core in values.cores:
+    for core in (Path(folder).name for folder in values.cores):
         if core not in lines:
             raise Stop(f"the chip has no core '{core}': it needs a line '{core}' in {listed}")
 

@@ -160,5 +160,5 @@ FRESH = Option("fresh", SWITCH,
                "computes proofs, lints and synthesis of unchanged files again, too")
 CORE_FOLDERS = Option(
     "core-folders", TEXT,
-    "folders of cores outside of ip/, with ; between them; none: none from now on")
+    "folders of cores outside of ip/, with ; between them, kept from then on; none: none")
 BUILT = Option("built", SWITCH, "takes what is built as it is: no set-up, no build", listed=False)

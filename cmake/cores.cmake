@@ -192,7 +192,8 @@ function(icesoc_core name)
     if(A_REGS)
       set(registers REGS ${name})
     endif()
-    icesoc_vhdl(NAME ${name} SOURCES ${wrapper} ${A_VHDL} ${registers})
+    icesoc_vhdl(NAME ${name} SOURCES ${wrapper} ${A_VHDL}
+                ${CMAKE_SOURCE_DIR}/hdl/ddr/npi_stream_pkg.vhd ${registers})
     list(APPEND files ${GEN_DIR}/${name}.v)
     list(APPEND targets ${name}_verilog)
     list(APPEND A_FLAGS -Wno-PINCONNECTEMPTY) # GHDL's way to write `open`

@@ -210,8 +210,6 @@ def known(values):
         raise Stop("a core is needed: ./icesoc core test fir (make ip-test IP=fir)")
     build = BuildFolder(values.build, values).prepare()
     if not values.built:
-        if values.core_folders:
-            build.set(CORE_FOLDERS="" if values.core_folders == "none" else values.core_folders)
         build.ninja("build.ninja")  # CMake has not seen newer folders
     cores = (build / "cores.known").read_text().split()
     if values.ip not in cores:
@@ -270,7 +268,7 @@ def ports(build, core):
 
 @command("core wave", [CORE, Option("test", TEXT,
                                     "the test: its name, or an expression that matches only it", "",
-                                    positional=True), JOBS], make="wave",
+                                    positional=True), CORE_FOLDERS, BUILD, JOBS], make="wave",
          brief="core wave fir Impulse", examples=["core wave fir Impulse"])
 def wave(values):
     """waveform of one test of a core, for GTKWave: build/wave/CORE.fst and .gtkw"""
@@ -278,11 +276,14 @@ def wave(values):
     if not core or not values.test:
         raise Stop("wave needs a core and a test: ./icesoc core wave fir Impulse "
                    "(make wave IP=fir TEST=Impulse)")
-    if not Path(f"ip/{core}/{core}_test.cpp").exists():
-        raise Stop(f"there is no ip/{core}/{core}_test.cpp")
+    main = known(values)
+    source = main.core(core) / f"{core}_test.cpp"
+    if not source.exists():
+        raise Stop(f"there is no {source}")
     build = BuildFolder("build/trace", values)
     if not values.built:
         build.configure("-DTRACE=ON")
+        build.follow(main)
     build.ninja(f"test_ip_{core}")
     program = next(path for path in sorted(build.folder.rglob(f"test_ip_{core}"))
                    if path.is_file() and os.access(path, os.X_OK))
@@ -324,15 +325,17 @@ def users_of(name):
                                                             "core remove brief_gone --force"),
          examples=["core remove low_pass"])
 def remove(values):
-    """take a core away: its folder and its line in ip/cores.list"""
-    name, core = values.name, Path("ip", values.name or ".")
+    """take a core away: its folder and its line in ip/cores.list; a folder outside of ip/ stays"""
+    build = BuildFolder(values.build, values)
+    name, core = values.name, build.core(values.name or ".")
     if not re.fullmatch(r"[a-z0-9_]+", name) or name == "template":
         raise Stop(
             f"'{name}' is not a core: ./icesoc core remove low_pass (make rm-ip NAME=low_pass)")
     if not core.is_dir():
-        raise Stop(f"there is no ip/{name}")
-    changed = output(["git", "status", "--porcelain", "--ignored", "--", core], check=False,
-                     stderr=-3)
+        raise Stop(f"there is no {core}")
+    others = build.other_cores()
+    changed = core not in others and output(
+        ["git", "status", "--porcelain", "--ignored", "--", core], check=False, stderr=-3)
     if changed and not values.force:
         raise Stop(f"ip/{name} has changes that are not committed (FORCE=1, --force, takes it away "
                    f"all the same):\n{changed}")
@@ -340,14 +343,16 @@ def remove(values):
     if users:
         raise Stop(f"in ip/cores.list the inputs of {' '.join(users)} are outputs of '{name}'; "
                    "change these lines first")
-    shutil.rmtree(core)
+    if core not in others:
+        shutil.rmtree(core)
     listed = Path("ip/cores.list")
     listed.write_text(re.sub(rf"^[ \t]*{name}(?![^\s#]).*\n?", "", listed.read_text(), flags=re.M))
-    build = BuildFolder(values.build, values)
     if (build / "build.ninja").exists():
-        logged(["cmake", build.folder], build / "rm-ip.log",
+        others = ";".join(str(folder) for folder in others if folder != core)
+        logged(["cmake", f"-DCORE_FOLDERS={others}", build.folder], build / "rm-ip.log",
                "the build cannot be configured without it")
-    say(f"ip/{name} and its line in ip/cores.list are gone")
+    say(f"ip/{name} and its line in ip/cores.list are gone" if not core.is_dir() else
+        f"the line of {name} in ip/cores.list is gone; {core} stays, and is no part of the build")
 
 
 # Cores that new_foreign.py puts into slots: slot, module, bus, repository, and Hz of their own

@@ -31,6 +31,7 @@ def coverage(values):
     build.ninja("regress")
     counted = BuildFolder("build/coverage", values)
     counted.configure("-DCOVERAGE=ON")
+    counted.follow(build)
     work, regress = counted.folder, build / "tests/regress/regress"
     tree = output([regress, "--tree", "bus hdl ip slice sw testbench tests"])
     gates = Path("tests/regress/coverage_gates.json")

@@ -164,7 +164,7 @@ def replay(values):
     say("building the simulator that writes waveforms (build/trace) ...")
     trace = BuildFolder("build/trace", values)
     trace.configure("-DTRACE=ON")
-    trace.set(CLK_HZ=build.cached("CLK_HZ"))
+    trace.follow(build, CLK_HZ=build.cached("CLK_HZ"))
     trace.ninja("icesoc-sim")
     Path(values.out).mkdir(parents=True, exist_ok=True)
     wave = Path(values.out) / "wave.fst"

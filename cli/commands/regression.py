@@ -11,8 +11,8 @@ from pathlib import Path
 
 from cli.build_folder import ROOMS_OF_PROGRAMS, BuildFolder, configured
 from cli.command import COMMANDS, command
-from cli.options import (BLOCK, BUILD, COUNT, FRESH, JOBS, LABEL, NAME, SEED, SWITCH, TESTS, TEXT,
-                         UCOS2, WORDS, Option, matching, number)
+from cli.options import (BLOCK, BUILD, CORE_FOLDERS, COUNT, FRESH, JOBS, LABEL, NAME, SEED,
+                         SWITCH, TESTS, TEXT, UCOS2, WORDS, Option, matching, number)
 from cli.runner import Stop, commit, lock, output, run, say
 from cli.table import Table
 
@@ -51,6 +51,7 @@ def test(values):
     if not some:
         sanitized = BuildFolder("build/sanitized", values)
         sanitized.configure("-DSANITIZE=ON", f"-DROOMS={ROOMS_OF_PROGRAMS}")
+        sanitized.follow(build)
         sanitized.ninja("sanitized")
         sanitized.ctest("-L", "sanitized", tests=tests, **seed)
 
@@ -62,7 +63,8 @@ def test(values):
     Option("kept", SWITCH, "failed tests with the seeds that are kept"),
     Option("seed", matching(r"\d{1,18}|random", "a whole number, or random", metavar="N|random"),
            "the first seed", "1"),
-    Option("repeat", COUNT, "seeds", 1), WAVES, FRESH, TESTS, BUILD, JOBS], make="regress",
+    Option("repeat", COUNT, "seeds", 1), WAVES, FRESH, TESTS, CORE_FOLDERS, BUILD, JOBS],
+         make="regress",
          brief="regress --block bus", examples=[
              "regress --changed", "regress --name Burst --seed random --repeat 20"])
 def regress(values):

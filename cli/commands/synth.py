@@ -7,7 +7,7 @@ from pathlib import Path
 
 from cli.build_folder import configured
 from cli.command import DEFAULTS, GROUPS, command
-from cli.options import BUILD, JOBS, TEXT, WORDS, Option
+from cli.options import BUILD, CORE_FOLDERS, JOBS, TEXT, WORDS, Option
 from cli.runner import Stop, commit, lock, logged, output, run, warn
 
 GROUPS["synth"] = "utilisation of the chip"
@@ -33,7 +33,7 @@ def utilisation(build, values, *words):
     Option("family", WORDS, "these chips, too, such as xc7 or ecp5"),
     Option("base", TEXT, "a commit: and what has changed since, as Markdown; COMMIT..COMMIT or "
            "COMMIT..: only what has changed between these, or until the last report", ""),
-    BUILD, JOBS], make="synth", brief="synth report --design npi_arbiter",
+    CORE_FOLDERS, BUILD, JOBS], make="synth", brief="synth report --design npi_arbiter",
          long="synth report", examples=[
              "synth report --design modem", "synth report --family xc7 ecp5",
              "synth report --base main..mine"])

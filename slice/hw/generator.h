@@ -41,8 +41,9 @@ void wrapperHead(Writer& w, const Block& b, const std::string& mark);
 // "[7:0] ", or nothing for a bit; "std_logic_vector(7 downto 0)", or "std_logic".
 std::string verilogRange(unsigned width);
 std::string vhdlType(unsigned width);
-// Writes an entity, up to its architecture's declarations.
-void vhdlEntity(Writer& w, const std::string& name, const std::vector<Port>& ports);
+// Writes an entity, up to its architecture's declarations, with a package that it uses.
+void vhdlEntity(Writer& w, const std::string& name, const std::vector<Port>& ports,
+                const std::string& package = "");
 
 // ---- values of the servant ----
 

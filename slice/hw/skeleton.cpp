@@ -94,6 +94,54 @@ const char npiStream[] =
                         npi_read_valid, npi_read_idle, npi_write_base[5:0], npi_write_ready,
                         npi_write_idle, 1'b0};)";
 
+// The same in VHDL: signals, then statements.
+const char npiSignals[] =
+    R"(  -- The buffers in DDR3 as two streams of words, which rest here (docs/memory.md, npi_stream).
+  signal npi_read_start, npi_read_take, npi_read_valid, npi_read_idle : std_logic;
+  signal npi_write_start, npi_write_valid, npi_write_ready : std_logic;
+  signal npi_write_flush, npi_write_idle : std_logic;
+  signal npi_read_base, npi_write_base : std_logic_vector(31 downto 0);
+  signal npi_read_words : std_logic_vector(23 downto 0);
+  signal npi_read_data, npi_write_data : std_logic_vector(63 downto 0);
+  signal npi_write_be : std_logic_vector(7 downto 0);)";
+const char npiStatements[] =
+    R"(  npi_read_start <= '0';
+  npi_read_take <= '0';
+  npi_read_base <= (others => '0');
+  npi_read_words <= (others => '0');
+  npi_write_start <= '0';
+  npi_write_valid <= '0';
+  npi_write_base <= (others => '0');
+  npi_write_data <= (others => '0');
+  npi_write_be <= (others => '1');
+  npi_write_flush <= core_rst;
+
+  u_stream : npi_stream
+    port map (
+      npi_addr_o => npi_addr_o, npi_addr_req_o => npi_addr_req_o,
+      npi_addr_ack_i => npi_addr_ack_i, npi_rnw_o => npi_rnw_o, npi_size_o => npi_size_o,
+      npi_rmw_o => npi_rmw_o, npi_wr_data_o => npi_wr_data_o, npi_wr_be_o => npi_wr_be_o,
+      npi_wr_push_o => npi_wr_push_o, npi_wr_empty_i => npi_wr_empty_i,
+      npi_wr_almost_full_i => npi_wr_almost_full_i, npi_wr_flush_o => npi_wr_flush_o,
+      npi_rd_data_i => npi_rd_data_i, npi_rd_word_i => npi_rd_word_i,
+      npi_rd_pop_o => npi_rd_pop_o, npi_rd_empty_i => npi_rd_empty_i,
+      npi_rd_flush_o => npi_rd_flush_o, npi_init_done_i => npi_init_done_i,
+      clk_i => clk_i, rst_i => rst_i, -- not by core_rst: what was asked for must be taken
+      read_start_i => npi_read_start, read_base_i => npi_read_base(31 downto 6),
+      read_words_i => npi_read_words, read_stop_i => core_rst, read_valid_o => npi_read_valid,
+      read_data_o => npi_read_data, read_take_i => npi_read_take, read_idle_o => npi_read_idle,
+      write_start_i => npi_write_start, write_base_i => npi_write_base(31 downto 6),
+      write_valid_i => npi_write_valid, write_data_i => npi_write_data,
+      write_be_i => npi_write_be, write_ready_o => npi_write_ready,
+      write_flush_i => npi_write_flush, write_idle_o => npi_write_idle);
+)";
+
+void lines(Writer& w, const char* text) {
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);)
+        w.line(line);
+}
+
 std::string zeroed(const std::string& name, const Port& p) {
     return "  " + name + " <= " + (p.width == 1 ? "'0'" : "(others => '0')") + ";";
 }
@@ -138,9 +186,8 @@ GeneratedFile verilogSkeleton(const Block& b) {
             w.line("        " + signalOf(p) + " <= " + p.call->name + "_start && !core_rst;");
         }
     w.line();
-    std::istringstream stream(b.memoryBytes ? npiStream : "");
-    for (std::string line; std::getline(stream, line);)
-        w.line(line);
+    if (b.memoryBytes)
+        lines(w, npiStream);
     for (const Pin& p : b.pins) {
         if (p.isOut())
             w.line("    assign " + p.name + " = " + std::to_string(p.width) + "'d0;");
@@ -157,7 +204,7 @@ GeneratedFile vhdlSkeleton(const Block& b) {
     head(w, b, "--");
     std::vector<Port> outer = portsOf(b, true), own = ownPorts(b);
     outer.insert(outer.end(), own.begin(), own.end());
-    vhdlEntity(w, b.name, outer);
+    vhdlEntity(w, b.name, outer, b.memoryBytes ? "npi_stream_pkg" : "");
     std::string connections;
     std::vector<std::string> zeros, dones;
     for (const Port& p : portsOf(b, false)) {
@@ -169,9 +216,11 @@ GeneratedFile vhdlSkeleton(const Block& b) {
         else if (!p.isOut)
             zeros.push_back(zeroed(name, p));
     }
-    for (const Port& p : own)
-        if (p.isOut)
-            zeros.push_back(zeroed(p.name, p));
+    for (const Pin& p : b.pins)
+        if (p.isOut())
+            zeros.push_back(zeroed(p.name, {p.name, true, p.width, ""}));
+    if (b.memoryBytes)
+        lines(w, npiSignals);
     w.line("begin");
     w.line();
     w.line("  u_wrapper : entity work." + b.name + "_wrapper");
@@ -198,9 +247,27 @@ GeneratedFile vhdlSkeleton(const Block& b) {
         w.line("  end process;");
         w.line();
     }
+    if (b.memoryBytes) {
+        lines(w, npiStatements);
+        w.line();
+    }
     w.line("end architecture;");
     return {b.name + ".vhd", w.text()};
 }
+
+namespace {
+
+// The elements that a sequence has in the test: 4, or as many as may be; of another value 0.
+unsigned shown(const Call& c, const Type& type, const std::string& value) {
+    if (isSequence(type))
+        for (const Word& word : c.words)
+            for (const Piece& p : word.pieces)
+                if (p.isCount && !word.isOut && p.name == value + "_count")
+                    return std::min(p.most, 4u);
+    return 0;
+}
+
+} // namespace
 
 GeneratedFile testSkeleton(const Block& b) {
     Writer w;
@@ -219,7 +286,17 @@ GeneratedFile testSkeleton(const Block& b) {
         w.block("TEST(" + b.interface->name + "Core, Answers" + name + ")", {}, [&] {
             w.line(b.interface->name + "Proxy<V" + b.name + "_slot> core;");
             for (const Slot& s : inVariables(*c.operation)) {
-                w.line(cVariable(*s.type, s.value) + "{};");
+                if (unsigned count = shown(c, *s.type, s.value)) {
+                    const Declaration& list = *s.type->declaration;
+                    bool hasRoom = statedMaximum(list) > 0;
+                    if (!hasRoom)
+                        w.line(cVariable(list.element, s.value + "Elements") + "[" +
+                               std::to_string(count) + "]{};");
+                    w.line(cVariable(*s.type, s.value) + "{" + std::to_string(count) + ", " +
+                           (hasRoom ? "{}" : s.value + "Elements") + "};");
+                } else {
+                    w.line(cVariable(*s.type, s.value) + "{};");
+                }
                 arguments +=
                     (arguments.empty() ? "" : ", ") + (isByPointer(*s.type) ? s.pointer : s.value);
             }
@@ -229,7 +306,12 @@ GeneratedFile testSkeleton(const Block& b) {
                     w.line(cVariable(p.type, out) + "{};");
                     arguments += (arguments.empty() ? "&" : ", &") + out;
                 }
-            w.line("core." + cIdentifier(c.operation->name) + "(" + arguments + ");");
+            std::string call = "core." + cIdentifier(c.operation->name) + "(" + arguments + ")";
+            bool isList = isSequence(c.operation->result);
+            w.line(isList ? "EXPECT_EQ(" + call + ".size, 0);" : call + ";");
+            for (const Field& p : c.operation->parameters)
+                if (p.isOut && isSequence(p.type))
+                    w.line("EXPECT_EQ(" + cParameter(*c.operation, p) + ".size, 0);");
         });
     }
     return {b.name + "_test.cpp", w.text()};

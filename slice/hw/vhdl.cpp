@@ -23,9 +23,12 @@ std::string vhdlType(unsigned width) {
     return width == 1 ? "std_logic" : vectorType(width);
 }
 
-void vhdlEntity(Writer& w, const std::string& name, const std::vector<Port>& ports) {
+void vhdlEntity(Writer& w, const std::string& name, const std::vector<Port>& ports,
+                const std::string& package) {
     w.line("library ieee;");
     w.line("use ieee.std_logic_1164.all;");
+    if (!package.empty())
+        w.line("use work." + package + ".all;");
     w.line();
     w.line("entity " + name + " is");
     w.line("  port (");

@@ -22,7 +22,7 @@ set(build ${CMAKE_BINARY_DIR})
 add_custom_target(regress ALL COMMAND mkdir -p tests/regress tests/hdl/formal/thing
   COMMAND ln -sf REGRESS tests/regress/regress COMMAND sh -c "echo 3 >tests/hdl/formal/thing/cpu"
   WORKING_DIRECTORY ${build} VERBATIM)
-foreach(target sanitized regmaps bench_programs)
+foreach(target sanitized regmaps bench_programs mission)
   add_custom_target(${target})
 endforeach()
 add_custom_target(size COMMAND cp ${work}/size.json ${work}/build)
@@ -30,9 +30,15 @@ add_custom_target(measure_good COMMAND cp ${work}/air.json ${work}/build/bench)
 add_custom_target(measure_bad COMMAND test ! -e ${work}/slow
   COMMAND cp ${work}/air.json ${work}/build/bench/link.json)
 add_custom_target(benches DEPENDS measure_bad measure_good)
-add_custom_target(test_ip_fir ALL COMMAND cp ${work}/waved ${build}/test_ip_fir)
-file(WRITE ${build}/cores.known "fir\n")
-add_test(NAME test_ip_fir.Impulse COMMAND echo "note: LEVELS: not read back")
+file(WRITE ${build}/cores.known "")
+foreach(core fir ${CORE_FOLDERS})
+  get_filename_component(core ${core} NAME)
+  add_custom_target(test_ip_${core} ALL COMMAND cp ${work}/waved ${build}/test_ip_${core})
+  file(APPEND ${build}/cores.known "${core}\n")
+  add_test(NAME test_ip_${core}.Impulse COMMAND echo "note: LEVELS: not read back")
+endforeach()
+add_custom_target(synth_inputs COMMAND mkdir -p ${build}/synth
+  COMMAND cp ${work}/utilisation ${build}/synth)
 add_test(NAME test_s.Sane COMMAND sh -c
   "case ${build} in *sanitized) ! test -e ../../../../leak ;; esac")
 set_tests_properties(test_s.Sane PROPERTIES LABELS sanitized)
@@ -152,12 +158,37 @@ class Cases(Project):
         self.bad("wave IP=fir TEST=Imp", "2 tests, not one of")
         self.good("ip-test IP=fir")
         self.has("1 tests passed|100% tests passed", "^test_ip_fir.Impulse: LEVELS: not read back$")
-        self.good(f"ip-test IP=fir CORE_FOLDERS={self.work}/mine")
-        self.has(f"^CORE_FOLDERS.*={self.work}/mine$", file="build/main/CMakeCache.txt")
         self.bad("ip-test IP=nobody", "there is no core 'nobody': fir")
+        self.elsewhere()
         self.bad("bisect TEST=test_a.One GOOD=nonsense BAD=HEAD SEED=1", "no commit GOOD=nonsense")
         self.good("clean")
         self.assertFalse(Path("build").exists())
+
+    def elsewhere(self):
+        """A core outside of the tree is named to one command, and from then on known to all."""
+        mine = self.work / "elsewhere/mine"
+        write(mine / "mine_test.cpp", "")
+        write("utilisation", '#!/bin/sh\necho "utilisation $*"\n')
+        os.chmod("utilisation", 0o755)
+        write("ip/cores.list", "fir\n")
+        self.bad(f"run CORES=mine CORE_FOLDERS={mine}", f"there is no {mine}/ground.py")
+        write(mine / "ground.py", "")
+        self.bad(f"run CORES=mine CORE_FOLDERS={os.path.relpath(mine)}",
+                 "the chip has no core 'mine'")
+        self.good(f"ip-test IP=mine CORE_FOLDERS={os.path.relpath(mine)}")
+        self.has(f"^CORE_FOLDERS.*={mine}$", file="build/main/CMakeCache.txt")
+        for words, said in (("regress NAME=test_ip_mine", "^1 passed"),
+                            ("ip-synth IP=mine", "^utilisation .*--design mine$"),
+                            ("synth DESIGN=mine", "^utilisation .*--design mine$"),
+                            ("wave IP=mine TEST=Impulse", "^gtkwave .*/build/wave/mine.fst")):
+            self.good(words)
+            self.has(said)
+        write("ip/cores.list", "fir\nmine clock_i=@B8\n")
+        self.good("rm-ip NAME=mine")
+        self.has("^CORE_FOLDERS.*=$", file="build/main/CMakeCache.txt")
+        self.assertEqual(Path("ip/cores.list").read_text(), "fir\n")
+        self.assertTrue((mine / "ground.py").exists())
+        self.bad("wave IP=mine TEST=Impulse", "there is no core 'mine': fir")
 
     def test_commands_nightly(self):
         """Each step runs even if earlier ones failed, and each failure is reported."""

@@ -15,8 +15,10 @@ for file in *_wrapper.v; do
     module=$(basename "$file" .v)
     for standard in 93 08; do
         rm -f ./*.cf
-        "$ghdl" -a -Wall -Werror --std=$standard "$module.vhd" "${module%_wrapper}.vhd"
-        "$ghdl" -e -Wall -Werror --std=$standard "${module%_wrapper}"
+        "$ghdl" -a -Wall -Werror -Wno-default-binding --std=$standard \
+            "$source/hdl/ddr/npi_stream_pkg.vhd" \
+            "$module.vhd" "${module%_wrapper}.vhd"
+        "$ghdl" -e -Wall -Werror -Wno-binding -Wno-default-binding --std=$standard "${module%_wrapper}"
     done
     "$ghdl" --synth --std=08 --out=verilog "$module" >converted
     # AIGER has flip-flops without enable only; both begin with zeros, as after a reset

@@ -2,6 +2,7 @@
 """flights: fly the mission, fly it again, look at it in a debugger; send new firmware; make a key;
 fly for hours."""
 import re
+import resource
 import signal
 import sys
 import tempfile
@@ -13,10 +14,11 @@ from cli.build_folder import BuildFolder, configured
 from cli.command import command
 from cli.options import (BUILD, COUNT, FILE, FLIGHT, FOLDER, JOBS, MINUTES, PATH, SECONDS, SEED,
                          SWITCH, Option)
-from cli.runner import Interrupted, Stop, end, lock, run, say, start, until, wait
+from cli.runner import Interrupted, Stop, end, lock, run, say, start, until, wait, warn
 
 FROM = Option("from", SECONDS, "begin of the waveform, in simulated time")
 TO = Option("to", SECONDS, "end of the waveform, in simulated time")
+DESCRIPTORS = 64  # of a process; the ground's program has some thirty
 DEBUGGED = [option for option in flight.FIELDS if option.name in ("image", "size", "seed")]
 
 
@@ -29,6 +31,10 @@ def fly_mission(values):
 
     An address of a page that shows the flight is printed. What was flown is in OUT/flight.json,
     which --again takes."""
+    descriptors = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
+    if descriptors < DESCRIPTORS:
+        raise Stop(f"a flight needs {DESCRIPTORS} file descriptors, the limit is {descriptors}: "
+                   f"ulimit -n {DESCRIPTORS}")
     flight.complete(values)
     build = BuildFolder(values.build, values).prepare()
     if not build.built:
@@ -96,7 +102,11 @@ def mission(values, build, held):
         return status_file.stat().st_ctime_ns if status_file.exists() else None
 
     before = flown()
-    run([*page, "--try"])
+    trial = run([*page, "--try"], check=False)
+    if 0 < trial <= 128:
+        raise Stop(status=trial)
+    if trial:
+        warn(f"the page's trial was ended by signal {trial - 128}; the mission goes on")
     sim = simulator(values, build, held, [], [
         "sw/ground/clients/mission.py", "{out}/flight.json", "--device", "{device}", "--frame",
         "{frame}", "--status", "{status}", "--plugin", build / "ground", "--slice",
@@ -107,10 +117,14 @@ def mission(values, build, held):
         # refusal.
         if until(lambda: flown() != before, sim):
             shown = start(page, pass_fds=[held])
+            if not until(lambda: sim.poll() is not None, shown):
+                ended = shown.returncode
+                how = f"signal {-ended}" if ended < 0 else f"exit status {ended}"
+                warn(f"the page is gone ({how}); the mission goes on")
         status = wait(sim)
         if status == 0:
             say(f"Pictures and report: {out}/before.png {out}/after.png {out}/report.md")
-        if status == 0 and values.live:
+        if status == 0 and values.live and shown.poll() is None:
             say("The page stays until Ctrl-C.")
             try:
                 wait(shown)

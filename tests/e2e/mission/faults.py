@@ -52,7 +52,8 @@ def lives(pid):
 
 class Mission:
     """A mission that runs, and its processes by name."""
-    NAMES = {"ground": "clients/mission.py", "simulator": "sim/icesoc-sim", "page": "live/live.py"}
+    NAMES = {"ground": "clients/mission.py", "simulator": "sim/icesoc-sim",
+             "page": "live/live.py(?!.* --try)", "page's trial": "live/live.py.* --try"}
 
     def __init__(self, source, build, out, prefix=(), options=()):
         self.out = out
@@ -73,8 +74,8 @@ class Mission:
         """The process of that name, as soon as it is there; None: the mission ended first."""
         while name != "run" and self.run.poll() is None:
             for pid in children(self.run.pid):
-                command = command_of(pid)  # --try: the page's trial, which ends by itself
-                if self.NAMES[name] in command and not re.search("setpriv|--try", command):
+                command = command_of(pid)
+                if re.search(self.NAMES[name], command) and "setpriv" not in command:
                     return pid
             time.sleep(0.005)
         return self.run.pid if name == "run" else None
@@ -161,15 +162,32 @@ def caught(start, name, moment):
     return m, pid if pid and m.run.poll() is None and lives(pid) else None
 
 
+def without_page(m):
+    """The page is only a view."""
+    expect(m.wait(LONGEST) == 0 and m.succeeded(), m, "the mission needs the page")
+    expect(re.search("page.*signal 9", m.text()), m, "nobody says that the page is gone")
+    return "the mission goes on"
+
+
+def killed_early(start, name, moment, deaths):
+    """Within its first 10 ms."""
+    m = start()
+    pid = m.find(name)
+    time.sleep(0.01 * moment / LAST)
+    if not pid or not lives(pid):
+        return "too late"
+    os.kill(pid, signal.SIGKILL)
+    return without_page(m)
+
+
 def killed(start, name, moment, deaths):
     m, pid = caught(start, name, moment)
     everybody = m.all()
     if not pid:
         return "too late"
     os.kill(pid, signal.SIGKILL)
-    if name == "page":  # only a view
-        expect(m.wait(LONGEST) == 0 and m.succeeded(), m, "the mission needs the page")
-        return "the mission goes on"
+    if name == "page":
+        return without_page(m)
     begin = time.monotonic()
     left = [command_of(p) for p in everybody if lives(p)] if not gone(everybody, deaths) else []
     expect(not left, m, f"still there after {deaths:.0f} s: {left}")
@@ -216,8 +234,12 @@ def fails_or_succeeds(m):
 
 
 def no_descriptors(start, name, moment, deaths):
-    return fails_or_succeeds(start(prefix=["prlimit", f"--nofile={8 + int(25 * moment / LAST)}"],
-                                   options=["--patience", "16"]))
+    m = start(prefix=["prlimit", f"--nofile={8 + int(25 * moment / LAST)}"])
+    expect(m.wait(LONGEST), m, "it succeeds, or hangs")
+    expect(re.search("64 file descriptors, the limit is [0-9]+: ulimit -n 64", m.text()), m,
+           "nobody says what is missing")
+    expect(m.simulated() == 0, m, "it is refused after it flew")
+    return "refused before it flies"
 
 
 def port_taken(start, name, moment, deaths):
@@ -263,6 +285,7 @@ def air(loss):
 
 
 FAULTS = [(killed, n) for n in ("ground", "simulator", "run", "page")] + \
+         [(killed_early, n) for n in ("page", "page's trial")] + \
          [(stopped, n) for n in ("ground", "simulator", "page")] + \
          [(f, "") for f in (disk_full, no_descriptors, no_memory, clock_step, port_taken,
                              air("0.9"), air("1"))]

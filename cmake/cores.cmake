@@ -146,7 +146,8 @@ endmacro()
 # DEPENDS: targets that generate VERILOG files.
 # CLK_HZ: the module has a parameter of that name, the clock in Hz: 100 MHz on the board, in
 # <NAME>_test.cpp and in the simulator, unless another is given.
-# IDLE: it has an output idle_o, which allows a gate for its clock (hdl/system/core_gate.v).
+# IDLE: it has an output idle_o, which allows a gate for its clock (hdl/system/core_gate.v) where
+# formal.idle_<NAME> proves it.
 # CLOCK: it has a clock of its own, of at most that frequency, behind bus/bus_crossing.v; clk_i,
 # rst_i and its pins belong to it.
 function(icesoc_core name)
@@ -171,6 +172,7 @@ function(icesoc_core name)
   endif()
   if(A_IDLE)
     list(APPEND chip --idle=${name})
+    set_property(GLOBAL APPEND PROPERTY ICESOC_IDLE_CORES ${name})
   endif()
   if(A_CLOCK)
     list(APPEND chip --own-clock=${name}=${A_CLOCK})

@@ -56,5 +56,8 @@ module idle_proof (
             promised <= 7'd0;
     end
 `endif
+`ifdef IDLE_RULES
+    `include `IDLE_RULES
+`endif
 endmodule
 `endif

@@ -11,3 +11,17 @@ module \$dff (input CLK, input [WIDTH-1:0] D, output [WIDTH-1:0] Q);
         end
     endgenerate
 endmodule
+
+// A memory that nothing writes then; what it gives is free.
+module \$mem_v2 (input [RD_PORTS-1:0] RD_CLK, RD_EN, RD_ARST, RD_SRST,
+                 input [RD_PORTS*ABITS-1:0] RD_ADDR, output [RD_PORTS*WIDTH-1:0] RD_DATA,
+                 input [WR_PORTS-1:0] WR_CLK, input [WR_PORTS*WIDTH-1:0] WR_EN, WR_DATA,
+                 input [WR_PORTS*ABITS-1:0] WR_ADDR);
+    parameter MEMID = "", SIZE = 0, OFFSET = 0, ABITS = 0, WIDTH = 0, INIT = 0, RD_PORTS = 0,
+              RD_CLK_ENABLE = 0, RD_CLK_POLARITY = 0, RD_TRANSPARENCY_MASK = 0,
+              RD_COLLISION_X_MASK = 0, RD_WIDE_CONTINUATION = 0, RD_CE_OVER_SRST = 0,
+              RD_ARST_VALUE = 0, RD_SRST_VALUE = 0, RD_INIT_VALUE = 0, WR_PORTS = 0,
+              WR_CLK_ENABLE = 0, WR_CLK_POLARITY = 0, WR_PRIORITY_MASK = 0,
+              WR_WIDE_CONTINUATION = 0;
+    \$assert _TECHMAP_REPLACE_ (.A(WR_EN == 0), .EN(WR_CLK[0]));
+endmodule

@@ -36,11 +36,15 @@ clocks=async2sync
 # A core that says it is idle: its registers, without those of proofs, may not move.
 flat='' read=${PROVE_READ:-}
 [ "$module" != idle_proof ] || {
-    flat="memory_map
+    flat="techmap -map $here/idle_registers.v r:SIZE>=256 # lines of pictures
+memory_map
 opt_clean
 techmap -map $here/idle_registers.v c:*u_core* w:*.f_* %ci1 %d"
+    core=${read#-DCORE=}
+    rules=$source/ip/${core%% *}/idle_rules.vh # of a core in VHDL
     # shellcheck disable=SC2086
     ! grep -q 'memory_ports\|npi_addr_o' ${read#* } || read="-DMEMORY $read"
+    [ ! -e "$rules" ] || read="-DIDLE_RULES=\"$rules\" $read"
 }
 # -nosdff -nodffe: AIGER has plain flip-flops only. The module's outputs are dropped: abc would take
 # them for properties. What became undefined (a flip-flop without a clock) is free: newer AIGER

@@ -39,13 +39,14 @@ module core_gate #(
             assign clk_o = clk_i;
             // The gate is open while the core is active and 16 clocks longer, then closed.
             reg [4:0] since = 5'd16; // clocks since the core was active
+            wire f_active = rst_i || access_i || !idle_i;
             reg past = 1'b0;
             initial assume (rst_i);
             always @(posedge clk_i) begin
                 past <= 1'b1;
-                since <= active ? 5'd0 : since + {4'd0, since != 5'd16};
+                since <= f_active ? 5'd0 : since + {4'd0, since != 5'd16};
                 if (past) begin
-                    assert (run == (active || since != 5'd16));
+                    assert (run == (f_active || since != 5'd16));
                     assert (rest == since);
                 end
                 cover (past && !run);

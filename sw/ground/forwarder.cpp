@@ -5,6 +5,7 @@
 #include "forwarder.h"
 
 #include <algorithm>
+#include <iostream>
 
 namespace gateway {
 
@@ -145,7 +146,7 @@ void Forwarder::sendOne(const Connection& connection, const std::shared_ptr<Requ
         send();
     };
     const auto failed = [request, done](std::exception_ptr why) {
-        request->failed(std::move(why));
+        fail({request}, why);
         done();
     };
     try {
@@ -187,58 +188,69 @@ void Forwarder::connect() {
     }
 }
 
+// Fails requests. Prints how many one-way ones are among them, since no client hears of these.
+void Forwarder::fail(const Requests& requests, std::exception_ptr why) {
+    size_t oneways = 0;
+    for (const auto& request : requests) {
+        oneways += request->isOneway();
+        request->failed(why);
+    }
+    if (oneways == 0)
+        return;
+    const auto told = [oneways](const std::string& reason) {
+        std::cerr << "gateway: one-way calls that were not sent: " + std::to_string(oneways) +
+                         " (" + reason + ")\n";
+    };
+    try {
+        std::rethrow_exception(why);
+    } catch (const Ice::UnknownException& e) {
+        told(e.unknown);
+    } catch (const std::exception& e) {
+        told(e.what());
+    }
+}
+
+// Takes out the requests that came before `due`; the mutex is held.
+Forwarder::Requests Forwarder::takeOut(std::chrono::steady_clock::time_point due) {
+    Requests out;
+    for (auto client = clients_.begin(); client != clients_.end();) {
+        auto& [requests, bytes, hasLeft] = client->second;
+        for (; !requests.empty() && requests.front()->since < due; requests.pop_front()) {
+            bytes -= requests.front()->parameters.size();
+            out.push_back(requests.front());
+        }
+        client = hasLeft && requests.empty() ? clients_.erase(client) : std::next(client);
+    }
+    room_.notify_all();
+    return out;
+}
+
 // Fails all waiting requests, since the vehicle cannot be reached.
 void Forwarder::failAll(std::exception_ptr why) {
-    std::vector<std::shared_ptr<Request>> all;
-    {
-        std::lock_guard<std::mutex> lock(mutex_);
-        isConnecting_ = false;
-        for (auto& [from, client] : clients_) {
-            all.insert(all.end(), client.requests.begin(), client.requests.end());
-            client = {};
-        }
-        room_.notify_all();
-    }
-    for (const auto& request : all)
-        request->failed(why);
+    std::unique_lock<std::mutex> lock(mutex_);
+    isConnecting_ = false;
+    const Requests all = takeOut(std::chrono::steady_clock::time_point::max());
+    lock.unlock();
+    fail(all, why);
 }
 
 void Forwarder::failLateRequests() {
-    const auto due = std::chrono::steady_clock::now() - wait_;
-    std::vector<std::shared_ptr<Request>> late;
-    {
-        std::lock_guard<std::mutex> lock(mutex_);
-        for (auto& [from, client] : clients_)
-            for (auto it = client.requests.begin(); it != client.requests.end();) {
-                if ((*it)->isOneway() || (*it)->since > due) {
-                    ++it;
-                    continue;
-                }
-                client.bytes -= (*it)->parameters.size();
-                late.push_back(std::move(*it));
-                it = client.requests.erase(it);
-            }
-        room_.notify_all();
-    }
-    for (const auto& request : late)
-        request->failed(std::make_exception_ptr(Ice::UnknownException(
-            __FILE__, __LINE__,
-            "icesoc-gateway: waited " + std::to_string(wait_.count()) +
-                " s for the radio (--wait); the vehicle has not got this call")));
+    std::unique_lock<std::mutex> lock(mutex_);
+    const Requests late = takeOut(std::chrono::steady_clock::now() - wait_);
+    lock.unlock();
+    fail(late, std::make_exception_ptr(Ice::UnknownException(
+                   __FILE__, __LINE__,
+                   "icesoc-gateway: waited " + std::to_string(wait_.count()) +
+                       " s for the radio (--wait); the vehicle has not got this call")));
 }
 
-size_t Forwarder::stop() {
-    size_t left = 0;
+void Forwarder::stop() {
     {
         std::lock_guard<std::mutex> lock(mutex_);
         stopped_ = true;
-        for (const auto& [from, client] : clients_)
-            for (const auto& request : client.requests)
-                left += request->isOneway();
     }
     // Ice waits for the answers when it stops.
     failAll(std::make_exception_ptr(Ice::CommunicatorDestroyedException(__FILE__, __LINE__)));
-    return left;
 }
 
 // ---- from the vehicle to the clients ----

@@ -43,8 +43,8 @@ struct Request {
 // Forwarder holds the clients' requests until their turn comes.
 class Forwarder {
 public:
-    // `vehicle`: a proxy with the vehicle's endpoint. `wait`: a two-way request fails if its turn
-    // does not come within this time.
+    // `vehicle`: a proxy with the vehicle's endpoint. `wait`: a request fails if its turn does not
+    // come within this time.
     Forwarder(std::shared_ptr<Ice::ObjectPrx> vehicle, std::chrono::seconds wait);
 
     // Takes a client's request. Blocks while that client has 256 KiB waiting here.
@@ -56,8 +56,7 @@ public:
     void setCallbacks(std::shared_ptr<Ice::ObjectAdapter> adapter);
 
     void failLateRequests(); // the caller calls it now and then
-    // Ends the waiting. Returns the number of one-way requests that were not sent.
-    size_t stop();
+    void stop();             // ends the waiting
 
 private:
     struct Client {
@@ -66,12 +65,15 @@ private:
         bool hasLeft = false; // only one-way requests are left
     };
     using Connection = std::shared_ptr<Ice::Connection>;
+    using Requests = std::vector<std::shared_ptr<Request>>;
     Client& clientAt(const Connection& connection);
     void forget(const Connection& connection);
     std::shared_ptr<Request> nextRequest();
     void send();
     void sendOne(const Connection& connection, const std::shared_ptr<Request>& request);
     void connect();
+    Requests takeOut(std::chrono::steady_clock::time_point due);
+    static void fail(const Requests& requests, std::exception_ptr why);
     void failAll(std::exception_ptr why);
     void tryClients(std::shared_ptr<Request> request, std::vector<Connection> clients);
 

@@ -281,8 +281,7 @@ void serve(const std::shared_ptr<Ice::Communicator>& ic, const Options& o) {
         sigaddset(&signals, signal);
     for (const timespec second{1, 0}; sigtimedwait(&signals, nullptr, &second) < 0;)
         forwarder.failLateRequests();
-    if (const size_t left = forwarder.stop())
-        std::cerr << "gateway: one-way calls that were not sent: " << left << "\n";
+    forwarder.stop();
     ic->destroy(); // while the objects that its callbacks use exist
 }
 

@@ -82,7 +82,7 @@ TEST_F(Gateway, ListensAtAnIPv6Address) {
 
 // One-way calls of a program that has left go all the same.
 TEST_F(Gateway, WhatAProgramHasSentArrivesAlthoughItLeaves) {
-    start();
+    start({"--wait", "600"}); // none is late, however slow the machine is
     constexpr int count = 1000;
     {
         Ice::CommunicatorHolder ic(plain());
@@ -222,6 +222,37 @@ TEST_F(Gateway, CompressedCallsArrive) {
         batch->note(100 + i);
     batch->ice_flushBatchRequests();
     expectNoted(30); // the server has several threads
+}
+
+// One-way calls to an absent vehicle are given up after --wait, those of a program that left, too.
+TEST_F(Gateway, AOnewayThatWaitsTooLongIsNeverCarriedOut) {
+    start({"--wait", "3"});
+    const auto power = [&](bool isOn) {
+        world_.rig.with([&] { world_.rig.uav->power(isOn, world_.rig.ns()); });
+    };
+    power(false);
+    {
+        Ice::CommunicatorHolder ic(plain());
+        proxy(ic.communicator())->ice_oneway()->note(1);
+    }
+    auto batch = echo_->ice_batchOneway();
+    batch->note(2);
+    batch->note(3);
+    batch->ice_flushBatchRequests();
+    expectRefusal([&] { echo_->ice_ping(); }, "waited 3 s for the radio"); // behind the others
+    power(true);
+    int noted = -1;
+    for (int tries = 0; tries < 50 && noted < 0; ++tries) // until there is a session
+        try {
+            noted = echo_->noted();
+        } catch (const Ice::LocalException&) {
+        }
+    EXPECT_EQ(noted, 0);
+    stop();
+    int told = 0; // in one look, or in two
+    for (size_t at = 0; (at = said().find("were not sent: ", at)) != std::string::npos;)
+        told += std::atoi(said().c_str() + (at += 15));
+    EXPECT_EQ(told, 3) << said();
 }
 
 TEST(GatewayOptions, WrongOnesAreRefusedByName) {

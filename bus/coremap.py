@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 sys.dont_write_bytecode = True
 import core_exchange
 import core_output
-from regmap import Wrong, check, reason, save
+from regmap import Block, Wrong, check, save
 
 SLOT_LIMIT, PIN_LIMIT = 64, 32
 SLOT_BYTES = 64
@@ -318,6 +318,15 @@ def read(path):
             return f.read()
     except OSError as e:
         raise Wrong(f"1: error: cannot read '{path}'") from e
+    except ValueError as e:
+        raise Wrong(f"1: error: '{path}' is no text in UTF-8") from e
+
+
+def described(path):
+    try:
+        return Block.read(path).description
+    except Wrong as e:
+        raise Wrong(f"1: error: '{path}': {e}") from None
 
 
 def parts(option, text, form):
@@ -329,12 +338,12 @@ def parts(option, text, form):
 def build(asked):
     """Returns all files, name to text."""
     files = dict(parts("--core", c, "folder=file") for c in asked.core)
-    descriptions = {folder: json.loads(read(file)) for folder, file in files.items()}
+    descriptions = {folder: described(file) for folder, file in files.items()}
     for given in asked.own_clock:
         folder, hz = parts("--own-clock", given, "folder=Hz")
         if folder in descriptions:
             descriptions[folder]["own_clock"] = int(hz)
-    base = json.loads(read(asked.base))
+    base = described(asked.base)
     chip = Chip(read(asked.list), base, descriptions)
     for core in chip.cores:
         core.has_clock = core.folder in asked.clocked
@@ -344,7 +353,7 @@ def build(asked):
         own = os.path.join(os.path.dirname(files[core.folder]), core.folder + ".ucf")
         core.constraints = read(own) if os.path.exists(own) else ""
     blocks = [parts("--block", b, "slot=name=file") for b in asked.block]
-    slots = [(name, int(number), json.loads(read(file))) for number, name, file in blocks]
+    slots = [(name, int(number), described(file)) for number, name, file in blocks]
     slots += [(core.name, core.slot, descriptions[core.folder]) for core in chip.cores]
     slots = [Slot(name, number, chip.registers + SLOT_BYTES * number, description)
              for name, number, description in slots]
@@ -371,9 +380,8 @@ def main():
     try:
         for name, text in build(asked).items():
             save(os.path.join(asked.output_dir, name), text)
-    except (Wrong, OSError, ValueError, KeyError, TypeError) as e:
-        text = reason(e)
-        sys.exit(f"{asked.list}:{'' if isinstance(e, Wrong) else '1: error: '}{text}")
+    except (Wrong, OSError) as e:
+        sys.exit(f"{asked.list}:{'' if isinstance(e, Wrong) else '1: error: '}{e}")
 
 
 if __name__ == "__main__":

@@ -17,21 +17,25 @@ import os
 import re
 import sys
 
+sys.dont_write_bytecode = True
+from regmap import Block, Wrong, check
+
 TOKEN = re.compile(r'(?P<string>"(?:[^"\\]|\\.)*")|(?P<number>\d+\'[hbdoHBDO][\da-fA-F_]+|0[xX][\da-fA-F_]+|\d+)'
-                   r'|(?P<name>\\?[A-Za-z_]\w*)|(?P<sign>->|[+%]=|[^\s])')
+                   r'|(?P<name>\\?[A-Za-z_]\w*)|(?P<sign>->|[+%]=|[^\s])', re.A)
 ACCESS = {"r": "ro", "w": "ws", "rw": "rw", "wr": "rw", "rw1": "rw", "w1": "ws"}
 
 
-class Wrong(Exception):
-    pass
-
-
 def number(text):
+    text = text.replace("_", "").lower()
     if "'" in text:
         digits = text.split("'")[1]
-        return int(digits[1:].replace("_", ""),
-                   {"h": 16, "b": 2, "d": 10, "o": 8}[digits[0].lower()])
-    return int(text.replace("_", ""), 0)
+        return int(digits[1:], {"h": 16, "b": 2, "d": 10, "o": 8}[digits[0]])
+    return int(text, 16 if text.startswith("0x") else 10)
+
+
+def bytes_in(width):
+    check(width in ("8", "16", "32", "64"), f"regwidth is 8, 16, 32 or 64, not '{width}'")
+    return int(width) // 8
 
 
 class Component:
@@ -81,10 +85,16 @@ class Reader:
         return token
 
     def take_number(self):
-        if self.at >= len(self.tokens) or self.tokens[self.at][0] != "number":
+        try:
+            isNumber = self.at < len(self.tokens) and self.tokens[self.at][0] == "number"
+            value = number(self.peek()) if isNumber else 1 << 64
+        except ValueError:  # 2'b3
+            value = 1 << 64
+        if value >= 1 << 64:
             self.fail("'%s' is no number; expressions and parameters are not of the flat subset" %
-                      self.peek())
-        return number(self.take())
+                      self.peek()[:80])
+        self.take()
+        return value
 
     def file(self):
         root = Component("root", None)
@@ -108,8 +118,10 @@ class Reader:
                 if self.peek() != ";":
                     self.instances(parent, component)
                 elif word == "addrmap" and parent.kind == "root":
-                    parent.children.append(([n for n, c in parent.types.items()
-                                             if c is component][0], 0, 0, None, 0, component))
+                    name = [n for n, c in parent.types.items() if c is component]
+                    if not name:
+                        self.fail("an addrmap of the file has no name")
+                    parent.children.append((name[0], 0, 0, None, 0, component))
             elif word in ("enum", "property"):
                 while self.take() != "}":
                     pass
@@ -203,10 +215,10 @@ def register_of(name, reg, word):
 
 
 def block_of(name, component, first):
-    bytes_of, next_address = int(component.default("regwidth") or 32) // 8, 0
+    bytes_of, next_address = bytes_in(component.default("regwidth") or "32"), 0
     registers, resets = [], {}
     for reg_name, _, _, _, address, reg in component.children:
-        bytes_of = int(reg.get("regwidth", 8 * bytes_of)) // 8
+        bytes_of = bytes_in(reg.get("regwidth", str(8 * bytes_of)))
         address = next_address if address is None else address
         next_address = address + bytes_of
         register, found = register_of(reg_name, reg, address // bytes_of)
@@ -235,6 +247,24 @@ def block_of(name, component, first):
     return dict(block, registers=registers, **({"events": events} if events else {}))
 
 
+def blocks_of(path, first):
+    """Returns the descriptions of the file's blocks, each one that regmap.py takes."""
+    root = Reader(path).file()
+    maps = [(n, c) for n, _, _, _, _, c in root.children if c.kind == "addrmap"]
+    inner = [(n, c) for _, top in maps for n, _, _, _, _, c in top.children if c.kind == "addrmap"]
+    blocks = [block_of(n, c, first) for n, c in inner or maps]
+    pages = {n[:-6]: c for n, c in maps if n.endswith("_PAGES")} if inner else {}
+    for (name, _), block in zip(inner, blocks):
+        for reg_name, _, _, _, address, reg in pages[name].children if name in pages else []:
+            check(address is not None, f"{reg_name} of {name}_PAGES has no address")
+            register, _ = register_of(reg_name, reg, 8 + address // 4 % 8)
+            block["registers"].append(dict(register, page=address // 32 * 32))
+    check(blocks, "1: error: there is no addrmap in it")
+    names = [Block(block).name for block in blocks]
+    check(len(names) == len(set(names)), "two addrmaps have one name")
+    return blocks
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -244,30 +274,21 @@ def main():
     args = parser.parse_args()
     if not args.file or not args.folder:
         sys.exit("usage: make from-rdl RDL=spi.rdl OUT=ip/spi")
-    written = []
     try:
-        root = Reader(args.file).file()
-        maps = [(n, c) for n, _, _, _, _, c in root.children if c.kind == "addrmap"]
-        inner = [(n, c) for _, top in maps for n, _, _, _, _, c in top.children
-                 if c.kind == "addrmap"]
-        blocks = [block_of(n, c, args.first) for n, c in inner or maps]
-        pages = {n[:-6]: c for n, c in maps if n.endswith("_PAGES")} if inner else {}
-        for (name, _), block in zip(inner, blocks):
-            for reg_name, _, _, _, address, reg in pages[name].children if name in pages else []:
-                register, _ = register_of(reg_name, reg, 8 + address // 4 % 8)
-                block["registers"].append(dict(register, page=address // 32 * 32))
-        if not blocks:
-            raise Wrong("1: error: there is no addrmap in it")
-    except (Wrong, OSError, UnicodeDecodeError) as e:
+        files = {os.path.join(args.folder, block["block"] + ".regs.json"): block
+                 for block in blocks_of(args.file, args.first)}
+        os.makedirs(args.folder, exist_ok=True)
+        for path, block in files.items():
+            with open(path, "w") as f:
+                f.write(json.dumps(block, indent=2) + "\n")
+    except RecursionError:
+        sys.exit("%s:1: error: its components are nested too deep" % args.file)
+    except UnicodeDecodeError:
+        sys.exit("%s:1: error: it is no text in UTF-8" % args.file)
+    except (Wrong, OSError) as e:
         text = str(e)
         sys.exit("%s:%s%s" % (args.file, "" if text[0].isdigit() else " error: ", text))
-    os.makedirs(args.folder, exist_ok=True)
-    for block in blocks:
-        written.append(os.path.join(args.folder, block["block"] + ".regs.json"))
-        with open(written[-1], "w") as f:
-            json.dump(block, f, indent=2)
-            f.write("\n")
-    print("\n".join(written))
+    print("\n".join(files))
 
 
 if __name__ == "__main__":

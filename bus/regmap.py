@@ -8,6 +8,7 @@ bus_crossing.v). Format of the description: docs/bus.md.
 """
 import argparse
 import json
+import re
 import sys
 from pathlib import Path
 
@@ -52,13 +53,52 @@ def check(holds, text):
         raise Wrong(text)
 
 
-def reason(error):
-    """Returns the text of an exception that a wrong input has raised."""
-    return f"there is no {error}" if isinstance(error, KeyError) else str(error)
+def matches(pattern, meaning):
+    return lambda v: isinstance(v, str) and re.fullmatch(pattern, v, re.A), meaning
 
 
-def number(value):
-    return int(value, 0) if isinstance(value, str) else value
+def whole(low, high):
+    return lambda v: type(v) is int and low <= v <= high, f"a whole number, {low}..{high}"
+
+
+NAME = matches(r"[A-Za-z]\w*", "a name of letters, digits and _")
+DOC = (lambda v: isinstance(v, str) and v.isprintable() and "*/" not in v,
+       "a text of one line without */")
+INTEGER = whole(-1 << 31, 1 << 31)
+FLAG = (lambda v: isinstance(v, bool), "true or false")
+ID = matches("0x[0-9A-Fa-f]{1,4}", 'four digits, as "0x4C45"')
+BITS = {"name": NAME, "lsb": whole(0, 31), "width": whole(1, 32), "doc": DOC, "reset?": ID}
+# The parts of a description; those with ? may be missing.
+PARTS = {
+    "block": NAME, "doc": DOC, "type?": ID, "version?": ID,
+    "registers": [{"word": INTEGER, "name": NAME, "access": matches(".*", "a text"), "doc": DOC,
+                   "width?": INTEGER, "page?": INTEGER, "fields?": [BITS]}],
+    "constants?": [{"name": NAME, "value": whole(0, 0xFFFFFFFF), "doc": DOC}],
+    "events?": [{"name": NAME, "bit": whole(0, 31), "doc": DOC}],
+    "pins?": [{"name": matches(r"[A-Za-z]\w*[io]", "a name that ends with i or o"),
+               "width?": whole(1, 32), "internal?": FLAG}],
+    "memory_port?": FLAG, "memory_bytes?": whole(0, 0xFFFFFFFF), "probe?": FLAG,
+    "own_clock?": whole(0, 10**9),
+    "servant?": {"type": NAME, "header": matches(r"\w[\w.]*", "a file's name"), "waits?": FLAG}}
+
+
+def fit(value, part, where):
+    """Checks a part of a description, and the parts of it."""
+    if isinstance(part, tuple):
+        holds, meaning = part
+        if not holds(value):
+            raise Wrong(f"{where} is {json.dumps(value)[:40]}: it is to be {meaning}")
+    elif isinstance(part, list):
+        check(isinstance(value, list), f"{where} is no list")
+        for i, each in enumerate(value):
+            fit(each, part[0], f"{where}[{i}]")
+    else:
+        check(isinstance(value, dict), f"{where} is no object with names and values")
+        for key, inner in part.items():
+            name = key.rstrip("?")
+            check(name in value or key != name, f"{where} has no '{name}'")
+            if name in value:
+                fit(value[name], inner, name if part is PARTS else f"{where}.{name}")
 
 
 def range_of(lsb, width):
@@ -83,10 +123,10 @@ def registers_of(block):
 
 
 def constants_of(block):
-    constants = [{**c, "value": number(c["value"])} for c in block.get("constants", [])]
+    constants = list(block.get("constants", []))
     if "type" in block:
         constants.append({"name": "ID_VALUE", "doc": "what word ID reads",
-                          "value": number(block["type"]) << 16 | number(block["version"])})
+                          "value": int(block["type"], 16) << 16 | int(block["version"], 16)})
     return constants
 
 
@@ -94,6 +134,10 @@ class Block:
     """A block's description, checked."""
 
     def __init__(self, description):
+        fit(description, PARTS, "the description")
+        check(("type" in description) == ("version" in description),
+              "a slot has a type and a version")
+        self.description = description
         self.name, self.doc = description["block"], description["doc"]
         self.prefix = self.name.upper()
         self.is_slot = "type" in description  # has ID, EVENT and MASK in words 0..2
@@ -106,6 +150,15 @@ class Block:
         for r in self.registers:
             self.check_register(r, taken)
             self.check_fields(r)
+
+    @classmethod
+    def read(cls, path):
+        try:
+            return cls(json.loads(Path(path).read_text("utf-8")))
+        except (json.JSONDecodeError, OSError) as e:
+            raise Wrong(str(e)) from None
+        except (ValueError, RecursionError):
+            raise Wrong("it is no JSON in UTF-8, or its numbers or brackets are too long") from None
 
     def add_name(self, spelled, name):
         check(spelled not in self.names, f"{name} is there twice")
@@ -245,19 +298,17 @@ def main():
                         help="whose module has the parameter CLK_HZ")
     asked = parser.parse_args()
     try:
-        with open(asked.description, encoding="utf-8") as f:
-            description = json.load(f)
-        block = Block(description)
+        block = Block.read(asked.description)
         base = f"{asked.output_dir}/{block.name}"
         if asked.clocked:
-            save(base + "_clocked.v", clocked(block.name, description, asked.clk_hz))
+            save(base + "_clocked.v", clocked(block.name, block.description, asked.clk_hz))
             return
         save(base + "_regs.vh", verilog(block))
         save(base + "_regs.h", c_header(block))
         save(base + "_regs_pkg.vhd", vhdl(block))
         save(base + "_regs.md", markdown(block))
-    except (Wrong, OSError, ValueError, KeyError, TypeError) as e:
-        sys.exit(f"{asked.description}: error: {reason(e)}")
+    except (Wrong, OSError) as e:
+        sys.exit(f"{asked.description}: error: {e}")
 
 
 if __name__ == "__main__":

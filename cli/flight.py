@@ -121,8 +121,10 @@ def wrong(flight):
         if name not in flight or name not in rules:
             return f"'{name}' is " + ("missing" if name in rules else "no field")
         value, rule = flight[name], rules[name]
-        fits = value in rule.get("enum", [value]) and isinstance(
-            value, types[rule.get("type", "string")] if name != "version" else int)
+        kind = rule.get("type", "integer" if name == "version" else "string")
+        fits = value in rule.get("enum", [value]) and isinstance(value, types[kind]) and (
+            isinstance(value, bool) == (kind == "boolean"))
+        fits = fits and (kind != "array" or all(isinstance(word, str) for word in value))
         if not fits or not rule.get("minimum", 0) <= (value if "minimum" in rule else
                                                       0) <= rule.get("maximum", float("inf")):
             return f"'{name}' is {value!r}"
@@ -133,8 +135,11 @@ def read(path):
     """A flight's description."""
     try:
         flight = json.loads(Path(path).read_text())
-    except (OSError, ValueError) as error:
+    except (OSError, json.JSONDecodeError) as error:
         raise Stop(f"cannot read the flight '{path}': {error}", 2) from None
+    except (ValueError, RecursionError):
+        raise Stop(f"the flight '{path}' is no JSON in UTF-8, or its numbers or brackets are too "
+                   "long", 2) from None
     if wrong(flight):
         raise Stop(f"'{path}' describes no flight: {wrong(flight)}", 2)
     return flight

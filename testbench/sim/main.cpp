@@ -61,9 +61,14 @@ json flightOf(const std::vector<std::string>& words) {
             flight[name] = true;
         else if (word + 1 == end)
             throw std::invalid_argument(*word + " needs a value");
-        else if (name == "flight")
-            flight.update(json::parse(readFile(*++word)));
-        else
+        else if (name == "flight") {
+            const json described = json::parse(readFile(*++word), nullptr, false);
+            if (!described.is_object())
+                throw std::invalid_argument("'" + *word +
+                                            "' describes no flight: it is no JSON "
+                                            "object");
+            flight.update(described);
+        } else
             flight[name] = valueOf(known[name], *(word + 1)), ++word;
     }
     flight.erase("version");

@@ -4,6 +4,7 @@
 no value to a shell."""
 import contextlib
 import io
+import json
 import os
 import re
 import shlex
@@ -156,6 +157,17 @@ MISTAKES = {
 
 
 class Mistakes(Work):
+    def test_what_is_no_flight_is_refused_in_words(self):
+        whole = {"version": flight.VERSION, **{
+            option.field: option.default or flight.empty(option) for option in flight.FIELDS}}
+        for text, said in ((b"\xff", "is no JSON in UTF-8"), (b"[" * 100000, "too long"),
+                           (json.dumps({**whole, "seed": True}).encode(), "'seed' is True"),
+                           (json.dumps({**whole, "cores": [1]}).encode(), "'cores' is [1]")):
+            (self.work / "flight.json").write_bytes(text)
+            status, told = ask("./icesoc", "run", "--again", str(self.work / "flight.json"))
+            self.assertEqual(status, 2)
+            self.assertIn(said, told)
+
     def test_each_is_answered_in_words(self):
         for words, said in MISTAKES.items():
             status, text = ask(*words.split())

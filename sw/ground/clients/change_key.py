@@ -16,6 +16,7 @@ import sys
 import Ice
 
 import plugged
+import provide_key
 
 
 def write(path, lines):
@@ -41,8 +42,6 @@ def keys_of(lines, address):
                 return number, words[1:]
         elif words:
             found = len(lines), words
-    if not found:
-        raise RuntimeError("the key file has no line for the vehicle 0x%04x" % address)
     return found
 
 
@@ -61,6 +60,7 @@ def talk(args, key_file, what):
 
 
 def change(args):
+    provide_key.read_key(args.key, args.address)  # each line makes sense
     with open(args.key) as f:
         lines = f.read().splitlines()
     number, keys = keys_of(lines, args.address)
@@ -99,7 +99,7 @@ def main():
         print("change_key: %s" % ("the vehicle flies: it takes no key before it has landed"
                                   if e.ice_id() == "::Autopilot::InFlight" else e), file=sys.stderr)
         return 1
-    except (Ice.Exception, RuntimeError, OSError, ValueError) as e:
+    except (Ice.Exception, provide_key.Failed, RuntimeError, OSError) as e:
         print("change_key: %s" % e, file=sys.stderr)
         return 1
 

@@ -36,13 +36,19 @@ def read_key(path, vehicle):
     """Returns a vehicle's key in a file, as the plugin finds it (docs/security.md): in the line of
     its address, else in the one without an address."""
     keys = {}
-    with open(path) as f:
+    with open(path, errors="replace") as f:
         if os.fstat(f.fileno()).st_mode & 0o077:
             raise Failed("others may read '%s': chmod 600 '%s'" % (path, path))
-        for line in f:
-            found = re.match(r"\s*(0x[0-9a-fA-F]{1,4}\s)?\s*([0-9a-fA-F]{32})\b", line)
-            if found:
-                keys[int(found[1], 16) if found[1] else None] = found[2].lower()
+        for number, line in enumerate(f.read(65536).split("\n"), 1):
+            words = " ".join(line.split("#")[0].split())
+            found = re.fullmatch("(0x[0-9a-fA-F]{1,4} )?([0-9a-fA-F]{32})( [0-9a-fA-F]{32})?",
+                                 words)
+            whose = int(found[1], 16) if found and found[1] else None
+            if words and (not found or whose in keys):
+                raise Failed("'%s', line %d: give [ADDRESS] KEY [NEXT], a key as 32 hexadecimal "
+                             "digits, one line a vehicle" % (path, number))
+            if words:
+                keys[whose] = found[2].lower()
     if not keys:
         raise Failed("'%s' has no key, 32 hexadecimal digits: openssl rand -hex 16 makes one" %
                      path)

@@ -172,6 +172,19 @@ for names in 'A B A_B_LSB' 'A_B_LSB C A_B_LSB'; do
         grep -q 'A_B_LSB is there twice' "$work/messages" ||
         fail "registers and fields of one name ($names)"
 done
+described() { # words of the message, a description that is refused
+    printf '%b' "$2" >"$work/wrong.regs.json"
+    ! "$regmap" "$work/wrong.regs.json" --output-dir "$work" 2>"$work/messages" &&
+        grep -q -- "$1" "$work/messages" || { cat "$work/messages" && fail "'$1' is not said: $2"; }
+}
+described 'the description is no object' '[]'
+described "the description has no 'doc'" '{"block": "b"}'
+described 'it is no JSON in UTF-8' '{"block": "\0377"}'
+described 'brackets are too long' "$(printf '[%.0s' $(seq 5000))"
+described 'block is "../b": it is to be a name' '{"block": "../b", "doc": "", "registers": []}'
+described 'doc is "\*/": it is to be a text' '{"block": "b", "doc": "*/", "registers": []}'
+described 'registers\[0\].word is "": it is to be a whole' '{"block": "b", "doc": "", "registers": [{"word": ""}]}'
+described 'pins\[0\].name is "a": it is to be' '{"block": "b", "doc": "", "registers": [], "pins": [{"name": "a"}]}'
 # A probe has its signals by name, at any depth, in Verilator and, flattened, in Yosys; the ground
 # is told which they are.
 accepted probe 'adder\nprobe signals=u_adder.u_registers.u_wrapper.mask,u_modem.u_timer.clocks:17\nprobe name=other signals=u_adder.irq_o\n'

@@ -367,6 +367,12 @@ class Cases(Script):
         for name in "report.md", "calls.jsonl":
             self.assertEqual(Path(name).read_text(), "mine\n")
 
+    def test_description_bad(self):
+        for text in '"text"', "[", "[{}]":
+            write("bad.json", text)
+            self.fails("'bad.json' describes no flight", SIMULATOR, "--flight", "bad.json")
+            self.lacks("exception")
+
     def described(self, *words):
         """The ground's program, with a flight's description but without a simulator."""
         write("flight.json", json.dumps(

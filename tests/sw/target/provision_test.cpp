@@ -137,6 +137,11 @@ TEST_F(Provision, TheGroundsProgramGivesIt) {
     const std::string other = std::string("/usr/bin/python3 ") + PROVIDE_KEY + " --key " + file +
                               " --port /dev/null --address 0x0003 2>&1 | grep -q 0x0003";
     EXPECT_EQ(std::system(other.c_str()), 0) << "the file has no line for this vehicle";
+    std::ofstream(file + ".wrong") << digits << "\n\xff\n";
+    ::chmod((file + ".wrong").c_str(), 0600);
+    const std::string senseless = std::string("/usr/bin/python3 ") + PROVIDE_KEY + " --key " +
+                                  file + ".wrong --port /dev/null 2>&1 | grep -q 'line 2: give'";
+    EXPECT_EQ(std::system(senseless.c_str()), 0);
     const int port = posix_openpt(O_RDWR | O_NOCTTY);
     ASSERT_TRUE(port >= 0 && grantpt(port) == 0 && unlockpt(port) == 0);
     const std::string name = ptsname(port);

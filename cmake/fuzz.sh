@@ -3,17 +3,22 @@
 #
 # fuzz: runs a libFuzzer program on a number of inputs, from SEED (default 1).
 # Usage: fuzz.sh program runs seeds|- option...
-# seeds: a folder of inputs, or a file with one a line in hex ("#" begins a comment). FUZZ=10: ten
-# times as many inputs.
+# seeds: a folder of inputs, or a file with one a line in hex ("#" begins a comment). FUZZ=600: for
+# 600 s, from the inputs that earlier runs kept (~/.cache/icesoc/fuzz).
 # It prints an input that fails.
 set -eu
-program=$1 runs=$(($2 * ${FUZZ:-1})) seeds=$3
+program=$1 end=-runs=$2 seeds=$3
 shift 3
 [ "$seeds" != - ] || seeds=
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 trap 'exit 130' INT TERM HUP
-mkdir "$work/found"
+found=$work/found
+if [ "${FUZZ:-}" ]; then
+    end=-max_total_time=$FUZZ
+    found=${XDG_CACHE_HOME:-$HOME/.cache}/icesoc/fuzz/$(basename "$(dirname "$program")" .fuzz)
+fi
+mkdir -p "$found"
 if [ -f "$seeds" ]; then
     mkdir "$work/seeds"
     python3 -c 'import sys
@@ -25,8 +30,8 @@ fi
 # libFuzzer tries values that the program compares, addresses among them: with fixed addresses,
 # where the system allows them, the inputs are the same each time.
 alike=$(setarch -R true 2>/dev/null && echo "setarch -R" || :)
-$alike "$program" -seed="${SEED:-1}" -runs="$runs" -artifact_prefix="$work/" "$@" \
-    "$work/found" $seeds >"$work/log" 2>&1 || {
+$alike "$program" -seed="${SEED:-1}" "$end" -timeout=60 -print_final_stats=1 \
+    -artifact_prefix="$work/" "$@" "$found" $seeds >"$work/log" 2>&1 || {
     cat "$work/log" >&2
     for input in "$work"/crash-* "$work"/oom-* "$work"/timeout-*; do
         [ -f "$input" ] || continue
@@ -35,4 +40,5 @@ $alike "$program" -seed="${SEED:-1}" -runs="$runs" -artifact_prefix="$work/" "$@
     done
     exit 1
 }
-echo "$(basename "$(dirname "$program")"): $runs inputs from seed ${SEED:-1}, none did harm"
+echo "${FUZZ:+note: }$(awk '/executed_units/ { n = $2 } /exec_per_sec/ { s = $2 }
+    END { print n " inputs, " s " a second" }' "$work/log") from seed ${SEED:-1}, none did harm"

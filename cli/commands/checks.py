@@ -6,7 +6,8 @@ from pathlib import Path
 
 from cli.build_folder import ROOMS_OF_PROGRAMS, BuildFolder, configured
 from cli.command import GROUPS, command
-from cli.options import BLOCK, BUILD, COUNT, FRESH, JOBS, MINUTES, NAME, PATH, SEED, WORDS, Option
+from cli.options import (BLOCK, BUILD, COUNT, FRESH, JOBS, MINUTES, NAME, PATH, SEED, TESTS, WORDS,
+                         Option)
 from cli.runner import Stop, output, run, say
 
 GROUPS["check"] = "what takes minutes to hours"
@@ -52,6 +53,22 @@ def sanitizers(values):
                                           check=False, env=environment))
     build.ninja("fuzz_gdb")
     return one_more(status, build.ctest("-R", "^fuzz[.]gdb$", tests=1, check=False))
+
+
+@command("check fuzz", [
+    Option("minutes", MINUTES, "of each fuzzer", 10.0), NAME, SEED, TESTS, BUILD, JOBS],
+         make="fuzz", brief="check fuzz --minutes 0.05 --name 'update$|rdl$'",
+         long="check fuzz --seed {day}", examples=["check fuzz --name slice --minutes 60"])
+def fuzz(values):
+    """attack every parser with mutated input, from the inputs that earlier runs have kept in
+    ~/.cache/icesoc/fuzz"""
+    build = configured(values, "regress", tests=True)
+    chosen = f"^fuzz[.].*({values.name or ''})"
+    if not values.built:
+        run([build / "tests/regress/regress", "--prepare", "--build", build.folder, "--name",
+             chosen])
+    return build.ctest("-R", chosen, tests=values.tests or values.jobs, check=False,
+                       FUZZ=max(1, round(60 * values.minutes)), SEED=values.seed)
 
 
 @command("check mutants", [

@@ -171,9 +171,8 @@ def nightly(values):
 
     Writes a table of the steps, build/nightly.md."""
     build, tests = BuildFolder(values.build, values), at_once(values)
-    # COMPARE_MS: test_quiet compares a second; FUZZ: times as many inputs of fuzzers; HOSTILE:
-    # packets of test_link.
-    long = {"FRESH": "1", "FUZZ": "10", "COMPARE_MS": "1000", "HOSTILE": "10000000"}
+    # COMPARE_MS: test_quiet compares a second; HOSTILE: packets of test_link.
+    long = {"FRESH": "1", "COMPARE_MS": "1000", "HOSTILE": "10000000"}
     tool = [build / "tests/regress/regress", "--build", build.folder, "--jobs", tests, "--waves",
             values.waves, *selection(values)]
 

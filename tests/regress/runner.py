@@ -58,14 +58,13 @@ class Progress:
     def late(self):
         """Names tests that are late; (name, its age) of those that have taken ten times their usual
         time."""
-        more = int(os.environ.get("FUZZ", 1))  # times the usual inputs
         for name, begin in list(self.running.items()):
             age, usual = time.monotonic() - begin, self.usual.get(name)
             told = f"{age:.0f} s, usually " + ("unknown" if usual is None else f"{usual:.1f} s")
             if age >= self.due[name]:
                 self.due[name] = 2 * age
                 self._line(f"{name} has run for {told}", True)
-            limit = more * max(SHORTEST_HANG, 10 * (60 if usual is None else usual))
+            limit = max(SHORTEST_HANG, 10 * (60 if usual is None else usual))
             if age >= limit and name not in self.hangs:
                 yield name, told
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// fuzz_compiler: libFuzzer's entry: any text through lexer, parser, checks and generator. Text
-// without errors must give C; nothing may crash, hang or leak (built with sanitizers).
+// fuzz_compiler: libFuzzer's entry: any text through lexer, parser, checks and all generators, as
+// slice2c calls them. Text without errors must give C, and each [":hw"] interface of it registers,
+// wrappers, servant, proxy and skeletons; nothing may crash, hang or leak (built with sanitizers).
 
 #include "c/generator.h"
 #include "front/front.h"
+#include "hw/generator.h"
 #include <cstdint>
 #include <cstdlib>
 #include <sstream>
@@ -17,8 +19,12 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     CFileNames names;
     names.base = "Fuzz";
     names.path = "Fuzz.h";
+    scopeEnumerators(unit);
     if (diagnostics.errors() == 0)
         checkC(unit, names, diagnostics);
+    std::vector<hw::Block> blocks;
+    if (diagnostics.errors() == 0)
+        blocks = hw::mapHardware(unit, diagnostics);
     if (diagnostics.errors() > 0) {
         if (out.str().empty())
             std::abort(); // errors without a message
@@ -26,5 +32,14 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     }
     if (generateC(unit, names).empty())
         std::abort();
+    for (hw::Block& block : blocks) {
+        block.hasOwnClock = size % 2 == 0;
+        block.header = names.path;
+        for (auto makes : {hw::registersFile, hw::verilogFile, hw::vhdlFile, hw::servantHeader,
+                           hw::servantSource, hw::proxyFile, hw::verilogSkeleton, hw::vhdlSkeleton,
+                           hw::testSkeleton})
+            if (makes(block).text.empty())
+                std::abort();
+    }
     return 0;
 }

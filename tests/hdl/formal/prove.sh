@@ -42,8 +42,9 @@ opt_clean
 techmap -map $here/idle_registers.v c:*u_core* w:*.f_* %ci1 %d"
     core=${read#-DCORE=}
     rules=$source/ip/${core%% *}/idle_rules.vh # of a core in VHDL
+    own=${read#* } # files of the core, and npi_stream.v
     # shellcheck disable=SC2086
-    ! grep -q 'memory_ports\|npi_addr_o' ${read#* } || read="-DMEMORY $read"
+    ! grep -q 'memory_ports\|npi_addr_o' ${own% *} || read="-DMEMORY $read"
     [ ! -e "$rules" ] || read="-DIDLE_RULES=\"$rules\" $read"
 }
 # -nosdff -nodffe: AIGER has plain flip-flops only. The module's outputs are dropped: abc would take

@@ -40,7 +40,7 @@ function showVerdict() {
   const isOpen = data.designs.some(d => !shown(d) && !d.failures.length);
   byId("verdict").append(element("p", failures.length ? "Failed" : isOpen ? data.states : "Within all budgets", failures.length ? "bad" : isOpen ? "soft" : "good"),
     ...failures.map(f => element("p", f, "bad")), ...notes.map(n => element("p", n, "soft")));
-  byId("about").textContent = `${data.chip.name}, ${data.yosys}, commit ${data.commit || "unknown"}; designs: ${data.states}`;
+  byId("about").textContent = `${data.chip.name}, ${data.yosys}, commit ${data.commit || "unknown"}${isOpen && !failures.length ? "" : `; designs: ${data.states}`}`;
 }
 // The share of the FPGA that the chip, or the largest design, fills, beside the paper's.
 function showChip() {
@@ -174,7 +174,7 @@ function showFigures() {
   byId("figures").textContent = Object.entries(more).map(([name, value]) => `${name} ${value}`).join(", ");
 }
 function showInside() {
-  byId("inside").textContent = `Inside ${picked.name}: ${picked.title}`;
+  byId("inside").textContent = `Inside ${picked.name}${picked.title && ": "}${picked.title}`;
   showFigures();
   const root = treeOf(picked.figures.costs), nets = picked.figures.nets;
   const cost = (title, i) => [[title, n => n.sum[i], n => bar(n.sum[i], root.sum[i]), { minWidth: 130 }], ["its own", n => n.own[i], n => n.children.length ? n.own[i] : ""]];

@@ -51,6 +51,7 @@ function table(place, columns, rows, options = {}) {
   pen.font = `bold ${getComputedStyle(document.body).font}`;
   const widest = column => Math.max(12 + pen.measureText(column[0]).width, ...rows.slice(0, 100).map(row => content(row, column))
     .map(seen => pen.measureText((seen.querySelector?.("summary, div") ?? seen).textContent).width));
+  const narrow = place.clientWidth < 600 ? 0.55 : 1; // there, texts break sooner
   let marked;
   const mark = row => {
     if (!options.picked?.(row.getData().row)) return;
@@ -75,8 +76,9 @@ function table(place, columns, rows, options = {}) {
     columns: columns.map((column, i) => {
       const number = rows.length > 0 && rows.every(row => typeof column[1](row) === "number"), wide = widest(column) + (number ? 32 : 28);
       const plain = rows.slice(0, 1).map(row => content(row, column)).every(seen => !seen.childElementCount && /^[-+\d.]*( |$)/.test(seen.textContent));
-      return {title: column[0], field: `c${i}`, widthGrow: Math.min(wide, 700) / 50, minWidth: Math.min(wide, 160), ...(number ? {headerSortStartingDir: "desc"} : {}),
-        formatter: cell => content(cell.getData().row, column), cssClass: number && plain ? "n" : "", ...column[3]};
+      return {title: column[0], field: `c${i}`, widthGrow: Math.min(wide, 700) / 50, ...(number ? {headerSortStartingDir: "desc"} : {}),
+        formatter: cell => content(cell.getData().row, column), cssClass: number && plain ? "n" : "", ...column[3],
+        minWidth: Math.min(column[3]?.minWidth ?? wide, narrow * (column[3]?.minWidth ?? 160))};
     }),
     rowFormatter: row => {
       const node = row.getElement();

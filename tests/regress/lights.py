@@ -47,12 +47,16 @@ def of_mutants(rows, drawn, source):
                  [row[0] for row in rows if row[1] != "caught"])
 
 
+def below_gate(f):
+    """Whether a file's coverage is: of lines, of cover points, or of toggles."""
+    return f["percent"] < f["gate"] or f.get("point_percent", 100) < f.get("point_gate", 0) or \
+        bool(f.get("toggle_points", 0)) and f.get("toggles", 100) < f.get("toggle_gate", 0)
+
+
 def of_coverage(coverage):
     if not coverage:
         return missing("coverage", "make coverage")
-    bad = [f["file"] for f in coverage["files"]
-           if f["percent"] < f["gate"] or f.get("point_percent", 100) < f.get("point_gate", 0) or
-           f.get("toggle_points", 0) and f.get("toggles", 100) < f.get("toggle_gate", 0)]
+    bad = [f["file"] for f in coverage["files"] if below_gate(f)]
     return judge("coverage", f"{coverage['total']:.1f} % of lines, "
                  f"{coverage.get('toggles', 0):.1f} % of toggles, "
                  f"{coverage.get('points', 0)} of {coverage.get('points_total', 0)} cover points",

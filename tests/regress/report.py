@@ -4,6 +4,7 @@ import json
 import pathlib
 import re
 
+from blocks import blocks_of
 from lights import lights_of
 from tests import judge_plan, read_plan
 from tool import filled, page_parts, script_safe, write
@@ -51,7 +52,9 @@ def gather(history, tests, results, failures, source):
             "proofs": proofs_of(results)}
     del data["ends"]
     known = {test.name: test for test in tests}
-    data["seeds"] = list(history.failing(tests).values())
+    now = {(r.name, r.seed) for r in results}  # of one seed its failures say it already
+    data["seeds"] = [kept for test, kept in history.failing(tests).items()
+                     if test not in now or len({r.seed for r in results}) > 1]
     data["results"] = []
     for r in results:
         test = known.get(r.name)
@@ -72,6 +75,7 @@ def gather(history, tests, results, failures, source):
                        for run in history.runs[-60:]]
     data["plan"] = judge_plan(read_plan(source), tests, history)
     data["lights"] = lights_of(data, source)
+    data["blocks"] = blocks_of(data, tests, history, source)
     return data
 
 

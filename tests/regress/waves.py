@@ -12,6 +12,7 @@ from tool import Stop, run, write
 
 CLOCKS_PER_SECOND = 1e8  # of a flight's chip
 FIRST_CORE = 2  # slot
+NAMELESS = re.compile(r"(^|[.])(n\d+(_o)?|_\d+_|\$\S*)$")  # what GHDL and Yosys call wires
 MOST_CHANGES, FEWEST_CHANGES, MOST_SIGNALS = 400, 25, 200  # of a drawing
 
 
@@ -143,8 +144,10 @@ class Signal:
         self.changes = collections.deque(maxlen=MOST_CHANGES)  # (time, value), the newest last
 
 
-def shown(bits):
-    """A value in hexadecimal, a digit with such a bit as "x" or "z"; a single bit unchanged."""
+def shown(bits, width):
+    """A value in hexadecimal, one with such a bit as "x" or "z"; a single bit unchanged. VCD leaves
+    out bits on the left that are 0, or like the first that it has."""
+    bits = bits.rjust(width, bits[0] if bits[0] in "xz" else "0")
     strange = bits.lstrip("01")
     digits = (len(bits) + 3) // 4
     return bits if len(bits) <= 1 else strange[0] if strange else f"{int(bits, 2):0{digits}x}"
@@ -187,10 +190,11 @@ def read_vcd(text):
 
 
 def drawing_of(failure, room):
-    """{from, to, signals: [[name, bits, [time, value, ...]], ...], more: signals left out}: the
-    program's, those that the failure's text names, those that move below its instance, others that
-    move, constant ones; in each group the outermost first. A drawing of more than `room` bytes
-    loses its older changes, then the last signals."""
+    """{from, to, signals: [[name, bits, [time, value, ...]], ...], first: how many of them stand
+    before the tree of instances, more: signals left out}: the program's, those that the failure's
+    text names, those that move below its instance; then others that move, constant ones; in each
+    group the outermost first. Signals that a converter has named are left out. A drawing of more
+    than `room` bytes loses its older changes, then the last signals."""
     try:
         signals, moments = read_vcd(run(["fst2vcd", "-f", failure.wave])[1]
                                     if failure.wave.endswith(".fst")
@@ -203,18 +207,18 @@ def drawing_of(failure, room):
     words = set(re.findall(r"[A-Za-z_]\w+", failure.about))
 
     def rank(signal):
-        name = signal.name.rpartition(".")[2]
         within = f".{failure.scope}." in signal.name if failure.scope else signal.depth <= 3
-        named = name in words and (within or signal.depth <= 3)
+        named = signal.name.rpartition(".")[2] in words and (within or signal.depth <= 3)
         moves = len(signal.changes) > 1
-        nameless = bool(re.fullmatch(r"n\d+(_o)?", name))  # named by a converter
-        return (signal.bits != 0, nameless, not named,
-                not (moves and failure.scope and within), not moves, signal.depth, signal.name)
-    signals.sort(key=rank)
+        blamed = bool(moves and failure.scope and within)
+        return (signal.bits != 0, not named, not blamed, not moves, signal.depth, signal.name)
+    total = len(signals)
+    signals = sorted((s for s in signals if not NAMELESS.search(s.name)), key=rank)
+    first = sum(not all(rank(s)[:3]) for s in signals)
 
     def rows(count, changes):
         return [[s.name, s.bits, [each for time, value in list(s.changes)[-changes:]
-                                  for each in (time, shown(value) if s.bits else value)]]
+                                  for each in (time, shown(value, s.bits) if s.bits else value)]]
                 for s in signals[:count]]
     count, changes = min(len(signals), MOST_SIGNALS), MOST_CHANGES
     drawn = rows(count, changes)
@@ -224,4 +228,5 @@ def drawing_of(failure, room):
         else:
             count //= 2
         drawn = rows(count, changes)
-    return {"from": moments[0], "to": moments[1], "signals": drawn, "more": len(signals) - count}
+    return {"from": moments[0], "to": moments[1], "signals": drawn, "first": min(first, count),
+            "more": total - count}

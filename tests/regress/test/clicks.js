@@ -53,6 +53,30 @@ const key = (node, key) => node.dispatchEvent(new KeyboardEvent("keydown", {key,
   key(drawn, "ArrowLeft");
   key(drawn, "ArrowLeft");
   seen.push(`moved ${read()}`);
+
+  const wave = $(".waveform"), told = $("span", wave.closest("details"));
+  const rows = () => all("text:not([text-anchor])", wave).map(t => t.textContent)
+    .filter(t => !/^(\S+Task|[\dafus-]+)$/.test(t)).join(" ");
+  const cells = () => all("text.value", wave).map(t => t.firstChild.textContent).join(" ");
+  const click = (x, row) => {
+    const {left, top} = wave.getBoundingClientRect(), at = {clientX: left + x, bubbles: true};
+    wave.dispatchEvent(new MouseEvent("click", {...at, clientY: top + 22 * row + 9}));
+  };
+  seen.push(`rows ${rows()}`);
+  key(wave, "ArrowDown");
+  key(wave, "Enter");
+  seen.push(`tree ${rows()}`);
+  click(40, 3);
+  seen.push(`deeper ${rows()}`, `values ${cells()}`, `told${told.textContent}`);
+  click(40, 4);
+  seen.push(`unsigned ${cells()}`);
+  key(wave, "Enter");
+  seen.push(`signed ${cells()}`);
+  key(wave, "ArrowLeft");
+  key(wave, "ArrowLeft");
+  seen.push(`earlier ${cells()}`, `told${told.textContent}`);
+  click(wave.clientWidth - 1, 2);
+  seen.push(`later ${cells()}`);
   filter.value = "";
   filter.oninput();
   document.body.append(element("p", `seen: ${seen.join("; ")};`));

@@ -4,8 +4,10 @@
 import json
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 from project import BUILD, TREE, Project, main, write
+import blocks
 import look
 
 VCD = """$timescale 1ns $end
@@ -51,22 +53,34 @@ class Cases(Project):
             "of 2000 some; largest b &lt;a&gt;; picked b; open b c &lt;a&gt;; at .*c.*; folded b "
             "&lt;a&gt;; canvas true true; read iii no. 2 2; moved i no. 0 2;",
             "3 failed", 'class="waveform"',
-            ">top.clk_i<",  # the outermost of its names
-            ">top.u_fifo.level<", ">a7<", ">UAV_radioTask<",
-            ">top.u_fifo.mask<",  # it stays constant
+            ">UAV_radioTask<", "; rows program.task \u25B8 top; "
+            "tree program.task \u25BE top clk_i \u25B8 u_fifo; "  # the clock once
+            "deeper program.task \u25BE top clk_i \u25BE u_fifo level mask; "
+            "values UAV_radioTask 1 a7 0a; told cursor at time 15, where it failed; "
+            "0 to 15 are shown; "
+            "unsigned UAV_radioTask 1 167 u 0a; signed UAV_radioTask 1 -89 s 0a; "
+            "earlier UAV_radioTask 0 0 s 0a; told cursor at time 0, 15 before the failure; .*; "
+            "later UAV_radioTask 1 -89 s 0a;",
             'id="results"', "test_c.Flicker",
             'id="runs".*>one<',  # the commit's subject
             "<div>test_b.Bad: value 1 is not 7", 'class="dot dp"', "12 clauses with 3 flops",
             r'<a href="../../hdl/fifo/fifo.v">hdl/fifo/fifo.v:12: level_o\[3\]</a><br>'
-            '<a href="../../hdl/fifo/fifo.v">hdl/fifo/fifo.v:40</a>', 'id="seeds"',
+            '<a href="../../hdl/fifo/fifo.v">hdl/fifo/fifo.v:40</a>',
             'at <a href="../../x.cpp">x.cpp:12</a>; '
             'log <a href="failures/test_b.Bad-1.log"',
             'to have passed: <a href="../../tests/room/CMakeLists.txt">'
             r"tests/room/CMakeLists.txt:8</a> \(2 lines\)")
+        self.lacks('id="seeds"')  # the failures of one seed are above
+        self.assertEqual(json.loads(Path("build/regress/report.json").read_text())["blocks"], [
+            {"block": "hdl/fifo", "green": "", "lines": [194, 200, 0]},
+            {"block": "room", "green": "", "tests": [3, 2, 0], "proofs": [1, 1, 0]}])
+        self.has('id="blocks".*>97.0 %<.*>2 failed of 5<.*>1 failed of 2<')
         write("tests/plan.toml", '[a]\n"It works" = "test_a.One"\n"It waits" = "test_c.*"\n')
         write("tests/room/other", "new\n")
         self.regress("--name a.One")
         self.browse(written)
+        self.has('id="seeds"', ">1 passed, 4 did not run<", ">2 did not run<",
+                 "<summary>1 of which no test ran</summary>")
         self.has("Requirements: 1 of 1 that were tested proven", ">It works<",
                  "<summary>1 whose tests did not run with these sources</summary>")
         self.lacks(">It waits<")
@@ -79,6 +93,28 @@ class Cases(Project):
         picture = Path("regression.png").read_bytes()
         self.assertEqual(picture[1:4], b"PNG")
         self.assertLess(len(picture), 100000)
+
+    def test_blocks(self):
+        """A test, a module and a file belong to the block of the folder; the last green commit is
+        that of the last run with a test of the block after which none is left that had failed."""
+        for file in "hdl/fifo/fifo.v", "hdl/fifo/fifo_proof.vh", "ip/fir/fir.v", "sw/link/test/l.c":
+            write(file, "\n")
+        known = blocks.Blocks(Path("."))
+        for name, place, block in (
+                ("test_fifo_deep.Fifo.One", "hdl", "hdl/fifo"), ("formal.fifo_2", "hdl/formal",
+                "hdl/fifo"), ("test_ip_fir.Fir.One", "fir", "ip/fir"), ("test_x.One", "hdl", "hdl"),
+                ("test_link.Link.One", "sw/link", "sw/link"), ("mission.plain", "e2e/mission",
+                "e2e")):
+            self.assertEqual(known.of_test(name, place), block)
+
+        def run(commit, *ends):
+            return {"commit": commit, "ends": [[*end.split(), 0, "", "1"] for end in ends]}
+        runs = [run("one", "a p", "b p"), run("two", "a f"), run("three", "b p"),
+                run("four", "c s")]
+        of = {"a": "x", "b": "x", "c": "y"}
+        self.assertEqual(blocks.last_green(SimpleNamespace(runs=runs), of), {"x": "one"})
+        runs.append(run("five", "a p"))
+        self.assertEqual(blocks.last_green(SimpleNamespace(runs=runs), of), {"x": "five"})
 
 
 main(Cases)

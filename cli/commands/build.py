@@ -83,7 +83,7 @@ def shoot_live(path, profile, icesoc):
                 if flight.poll() is not None:
                     raise Stop(text)
                 time.sleep(1)
-            shoot(path, 1280, 1300,
+            shoot(path, 1280, 1000,
                   re.search("^The mission as it runs: (.*)$", text, re.M)[1], profile)
         finally:
             end(flight)

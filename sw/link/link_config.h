@@ -90,9 +90,9 @@
 #define LINK_FRAME_GAP (LINK_IS_FULL ? 25000U : 0x6200U)
 
 /* Under a key the search for frames in garbage may compute one round of Ascon in LINK_ROUND_EVERY,
- * and LINK_ROUNDS_AT_ONCE at once (136 at least: one frame of the handshake). */
+ * and LINK_ROUNDS_AT_ONCE at once (168 at least: one frame of the handshake). */
 #define LINK_ROUND_EVERY 30U
-#define LINK_ROUNDS_AT_ONCE 300U
+#define LINK_ROUNDS_AT_ONCE 1000U
 
 /* How often Link_poll looks again, at most. */
 #define LINK_POLL_EVERY 1000U  /* while the radio has no room */

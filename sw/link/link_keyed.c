@@ -13,7 +13,7 @@
 
 /* Rounds of Ascon that the search may spend on a frame. */
 #define ROUNDS_HELLO 48U /* under the keys of both slots */
-#define ROUNDS_HANDSHAKE 136U
+#define ROUNDS_HANDSHAKE 168U
 #define ROUNDS_OF(payload) (24U + (payload) / 2U)
 
 static int isSameNonce(const U8* a, const U8* b) {
@@ -33,11 +33,12 @@ static void makeKeyed(Link_Session* session, int slot, const U8* frame) {
     link_makeCandidate(session, frame + LINK_HEADER, frame[2]);
     candidate->slot = (U8)slot;
     link_deriveKeys(&session->secrets, slot, candidate->nonce, candidate->peerNonce,
-                    &candidate->keys);
+                    &candidate->shake);
 }
 
 static void forgetCandidate(Link_Session* session) {
     Ascon_wipe(&session->candidate.keys, sizeof session->candidate.keys);
+    Ascon_wipe(&session->candidate.shake, sizeof session->candidate.shake);
 }
 
 /* Returns whether a frame has a good tag under the key of a slot, which the candidate then notes.
@@ -49,7 +50,7 @@ static int isUnder(Link_Session* session, int slot, U8* frame, Link_Kind kind) {
     session->candidate.slot = (U8)slot;
     if (kind != LINK_KIND_HELLO) {
         makeKeyed(session, slot, frame);
-        key = session->candidate.keys.receive;
+        key = session->candidate.shake.receive;
     }
     return link_unprotect(frame, key, 0, 0);
 }
@@ -68,12 +69,16 @@ static int isOfUse(const Link_Session* session, const U8* frame, Link_Kind kind)
     return isSameNonce(nonces + LINK_NONCE_BYTES, session->nonce);
 }
 
-/* Returns whether such a frame is authentic, and decrypts it. */
-static int isGenuine(Link_Session* session, U8* frame, Link_Kind kind) {
-    if (kind == LINK_KIND_CONFIRM && isOfSession(session, frame + LINK_HEADER))
-        return link_unprotect(frame, session->output->present.keys.receive, 0, 0);
-    if (isUnder(session, 0, frame, kind) || isUnder(session, 1, frame, kind))
-        return 1;
+/* Returns whether such a frame is authentic, and decrypts its copy. */
+static int isGenuine(Link_Session* session, const U8* frame, U8* copy, Link_Kind kind) {
+    int slot;
+    if (kind == LINK_KIND_CONFIRM && isOfSession(session, copy + LINK_HEADER))
+        return link_unprotect(copy, session->output->present.shake.receive, 0, 0);
+    for (slot = 0; slot < LINK_KEYS; ++slot) {
+        if (isUnder(session, slot, copy, kind))
+            return 1;
+        memcpy(copy, frame, LINK_LENGTH(frame) + LINK_OVERHEAD); /* the other key has spoilt it */
+    }
     forgetCandidate(session);
     return 0;
 }
@@ -133,7 +138,7 @@ static int decipher(Link_Input* input, const U8* frame, U8* copy, int isSearch, 
         return 0;
     memcpy(copy, frame, size);
     if (isHandshake)
-        return isGenuine(session, copy, kind);
+        return isGenuine(session, frame, copy, kind);
     return decrypt(session, copy);
 }
 
@@ -172,7 +177,19 @@ static U32 seal(const Link_Output* output, U8* frame, U32 header, U32 number) {
                         LINK_IS_RIDE(kind) ? output->expected : 0);
 }
 
-static void begin(Link_Session* session) {
+/* Takes the own pair, as it is sent to the peer. */
+static void offerPair(Link_Session* session) {
+    const Link_Output* output = session->output;
+    link_makePair(&session->pair, output->port, output->context);
+    memcpy(session->candidate.open, session->pair.open, LINK_OPEN_BYTES);
+}
+
+/* Begins the session of a frame, which has the peer's half of its pair. */
+static void begin(Link_Session* session, const U8* frame) {
+    Link_Identity* candidate = &session->candidate;
+    offerPair(session);
+    candidate->keys = candidate->shake;
+    link_mixKeys(&candidate->keys, &session->pair, frame + LINK_OPEN_AT, session->secrets.isGround);
     link_confirmCandidate(session);
     forgetCandidate(session);
     link_drawNonce(session);
@@ -195,6 +212,7 @@ static void onHello(Link_Session* session, const U8* frame) {
         link_sendHandshake(session, 0, LINK_KIND_HELLO, LINK_VERSION | LINK_VERSION_UP);
     } else { /* a peer that is unconfirmed may yet answer a HELLO, and begin this session then */
         makeKeyed(session, session->candidate.slot, frame);
+        offerPair(session);
         link_sendHandshake(session, &session->candidate, LINK_KIND_HELLO_ACK, LINK_VERSION);
         forgetCandidate(session);
     }
@@ -209,14 +227,14 @@ static void onHandshake(Link_Session* session, const U8* frame, Link_Kind kind) 
         return;
     }
     if (kind == LINK_KIND_HELLO_ACK) {
-        begin(session);
+        begin(session, frame);
         session->isUnconfirmed = 1;
         session->helloEvery = LINK_HELLO_FIRST;
         session->helloAt = session->output->now;
         return;
     }
     if (!isOfSession(session, frame + LINK_HEADER))
-        begin(session);
+        begin(session, frame);
     link_oweAck(session->receiver); /* so that the peer hears */
 }
 
@@ -254,8 +272,15 @@ static void onPing(Link_Session* session, const U8* frame) {
                            number, 0);
 }
 
-const Link_Codec link_keyed = {
-    LINK_SECURE_OVERHEAD, LINK_NONCE_BYTES, 0,   1, {1, 8, 16, 16, 0, 0}, seal, parse,
-    onHandshake,          onPing,           call};
+const Link_Codec link_keyed = {LINK_SECURE_OVERHEAD,
+                               LINK_NONCE_BYTES,
+                               0,
+                               1,
+                               {1, LINK_NONCE_BYTES, LINK_ANSWER_BYTES, LINK_ANSWER_BYTES, 0, 0},
+                               seal,
+                               parse,
+                               onHandshake,
+                               onPing,
+                               call};
 
 #endif

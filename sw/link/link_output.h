@@ -62,6 +62,8 @@ typedef struct Link_Identity {
     U8 nonce[LINK_NONCE_BYTES],
         peerNonce[LINK_NONCE_BYTES]; /* only the first four bytes without a key */
     Link_Keys keys;
+    Link_Keys shake;          /* under a key: of the handshake's frames */
+    U8 open[LINK_OPEN_BYTES]; /* and what they carry: the half of the own pair */
 } Link_Identity;
 
 /* Small members that are often used come first in each part: short instructions reach them. */
@@ -86,8 +88,8 @@ struct Link_Output {
     U32 paceUntil;  /* when the modem will have sent everything handed over */
     U32 early;      /* a heard packet shortens the wait by this at most */
     const U8* call; /* key of the frame of the handshake that is being sent */
-    Link_Identity present;
     Link_Statistics statistics;
+    Link_Identity present;
     U8 packet[LINK_MAX_FRAME]; /* frames that leave together */
 };
 

@@ -8,6 +8,7 @@
 #if LINK_SECURE
 
 #include "ascon.h"
+#include "x25519.h"
 
 #include <string.h>
 
@@ -15,15 +16,15 @@
 #define CLEAR_MOST 5U /* and its greatest size there */
 
 /* Returns the number of payload bytes in clear, which come first: all of a control frame, the
- * acknowledgement of a PIGGYBACK. */
+ * acknowledgement of a PIGGYBACK, the nonces of HELLO-ACK and CONFIRM. */
 static U32 clearOf(const U8* frame) {
+    U32 most = frame[2] >> 5 >= LINK_KIND_PIGGYBACK ? 1U : 2U * LINK_NONCE_BYTES;
     if (!(frame[0] & LINK_CONTROL))
         return 0;
-    return LINK_LENGTH(frame) && frame[2] >> 5 >= LINK_KIND_PIGGYBACK ? 1U : LINK_LENGTH(frame);
+    return LINK_LENGTH(frame) < most ? LINK_LENGTH(frame) : most;
 }
 
-static void makeNonce(U8* nonce, const U8* frame, U32 number, U32 acked) {
-    U32 clear = clearOf(frame);
+static void makeNonce(U8* nonce, const U8* frame, U32 clear, U32 number, U32 acked) {
     U32 kind = (U32)frame[2] >> 5;
     memset(nonce, 0, ASCON_NONCE_BYTES);
     link_put32(nonce, number);
@@ -42,7 +43,7 @@ static void crypt(U8* frame, const U8* key, U32 number, U32 acked, int isDecrypt
     U8 nonce[ASCON_NONCE_BYTES];
     U32 clear = clearOf(frame);
     Ascon ascon;
-    makeNonce(nonce, frame, number, acked);
+    makeNonce(nonce, frame, clear, number, acked);
     Ascon_begin(&ascon, key, nonce);
     Ascon_crypt(&ascon, frame + LINK_HEADER + clear, LINK_LENGTH(frame) - clear, isDecryption);
     Ascon_end(&ascon, key, tag);
@@ -95,6 +96,34 @@ void link_deriveKeys(const Link_Secrets* secrets, int slot, const U8* nonce, con
     memcpy(isFirst ? keys->send : keys->receive, text, LINK_KEY_BYTES);
     memcpy(isFirst ? keys->receive : keys->send, text + LINK_KEY_BYTES, LINK_KEY_BYTES);
     Ascon_wipe(text, sizeof text);
+}
+
+void link_makePair(Link_Pair* pair, const Link_Port* port, void* context) {
+    U32 i;
+    if (pair->isMade)
+        return;
+    for (i = 0; i < sizeof pair->own; i += 4U)
+        link_put32(pair->own + i, port->random(context));
+    X25519(pair->open, pair->own, 0);
+    pair->isMade = 1;
+}
+
+/* Who lacks either the secret or both halves of the pairs lacks one of the two that are mixed. */
+void link_mixKeys(Link_Keys* keys, Link_Pair* pair, const U8* peerOpen, int isGround) {
+    U8 shared[X25519_BYTES], text[2U * LINK_KEY_BYTES];
+    U8* send = text + (isGround ? LINK_KEY_BYTES : 0);
+    U8* receive = text + (isGround ? 0 : LINK_KEY_BYTES);
+    U32 i;
+    X25519(shared, pair->own, peerOpen);
+    derive(shared, shared + LINK_KEY_BYTES, text, sizeof text);
+    for (i = 0; i < LINK_KEY_BYTES; ++i) {
+        keys->send[i] = (U8)(keys->send[i] ^ send[i]);
+        keys->receive[i] = (U8)(keys->receive[i] ^ receive[i]);
+    }
+    Ascon_wipe(shared, sizeof shared);
+    Ascon_wipe(text, sizeof text);
+    Ascon_wipe(pair->own, sizeof pair->own);
+    pair->isMade = 0;
 }
 
 /* The key of HELLOs comes from the nonces 0, which no session has. */

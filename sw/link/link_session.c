@@ -26,15 +26,17 @@ void link_drawNonce(Link_Session* session) {
 void link_sendHandshake(Link_Session* session, const Link_Identity* of, Link_Kind kind,
                         U32 version) {
     Link_Output* output = session->output;
-    U8 frame[LINK_MAX_OVERHEAD + 2U * LINK_NONCE_BYTES];
+    U8 frame[LINK_MAX_OVERHEAD + LINK_ANSWER_BYTES];
     U32 bytes = LINK_CODEC(output)->nonceBytes;
     memcpy(frame + LINK_HEADER, of ? of->nonce : session->nonce, bytes);
     if (of)
         memcpy(frame + LINK_HEADER + bytes, of->peerNonce, bytes);
+    if (LINK_SECURE && of)
+        memcpy(frame + LINK_OPEN_AT, of->open, LINK_OPEN_BYTES);
     if (LINK_SECURE)
-        output->call = of ? of->keys.send : session->secrets.hello[session->slot];
+        output->call = of ? of->shake.send : session->secrets.hello[session->slot];
     (void)link_sendControl(output, frame, LINK_KIND_BITS(kind) | LINK_FEATURES, version,
-                           of ? 2U * bytes : bytes);
+                           of ? LINK_CODEC(output)->sizes[LINK_KIND_HELLO_ACK] : bytes);
 }
 
 void link_endSession(Link_Session* session, Link_State next) {

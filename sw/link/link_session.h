@@ -33,6 +33,7 @@ typedef struct Link_Session {
     U8 nonce[LINK_NONCE_BYTES]; /* own, of the next session */
     Link_Identity candidate; /* of a HELLO that was answered; its sender has not confirmed it yet */
     Link_Secrets secrets;
+    Link_Pair pair; /* of the next session */
 } Link_Session;
 
 /* Draws the nonce of the next session. */

@@ -8,6 +8,7 @@
 
 #include "base.h"
 #include "link_config.h"
+#include "link_port.h"
 
 #define LINK_CHANNELS 4
 #define LINK_MAX_FRAME 100U    /* bytes of one RF packet: 5 of overhead and up to 95 of payload */
@@ -17,7 +18,7 @@
 #define LINK_GROUND 0x80000000U
 #define LINK_KEYS 2 /* slots for keys, so that a new key can replace the old one */
 
-#define LINK_VERSION 8U
+#define LINK_VERSION 9U
 #define LINK_VERSION_UP 0x80U /* with it: HELLO of a side that has a session, under a key */
 #define LINK_HEADER 3U
 #define LINK_CRC 2U
@@ -108,6 +109,9 @@ U32 link_sessionKey(U32 nonce, U32 peerNonce);
 /* link_secure: encryption of frames, and derivation of a session's keys (docs/link.md). */
 
 #define LINK_NONCE_BYTES 8U /* of each side's nonce in a secure handshake */
+#define LINK_OPEN_BYTES 32U /* of the open half of a pair, which HELLO-ACK and CONFIRM carry */
+#define LINK_OPEN_AT (LINK_HEADER + 2U * LINK_NONCE_BYTES)          /* its place there, encrypted */
+#define LINK_ANSWER_BYTES (2U * LINK_NONCE_BYTES + LINK_OPEN_BYTES) /* of their payload */
 
 /* The keys of a session, one a direction. */
 typedef struct Link_Keys {
@@ -122,12 +126,27 @@ typedef struct Link_Secrets {
     U8 hello[LINK_KEYS][LINK_KEY_BYTES]; /* the keys of HELLOs, which follow from them */
 } Link_Secrets;
 
+/* A pair makes the keys of one session, and is wiped then: who learns the secrets later, from
+ * either side, cannot make them. */
+typedef struct Link_Pair {
+    U8 isMade;
+    U8 own[LINK_OPEN_BYTES], open[LINK_OPEN_BYTES];
+} Link_Pair;
+
 /* Sets a slot, or wipes it (`key` 0); `side` is Link_setKey's. */
 void link_setSecret(Link_Secrets* secrets, int slot, const U8* key, U32 side);
 
-/* Makes the keys of the session of two different nonces, LINK_NONCE_BYTES each. */
+/* Makes the keys of the handshake of two different nonces, LINK_NONCE_BYTES each. */
 void link_deriveKeys(const Link_Secrets* secrets, int slot, const U8* nonce, const U8* peerNonce,
                      Link_Keys* keys);
+
+/* Makes a pair, if there is none, of 32 random bytes. It takes long (docs/link.md), and so does
+ * link_mixKeys: both are called only for a peer that has the key, once a session. */
+void link_makePair(Link_Pair* pair, const Link_Port* port, void* context);
+
+/* Makes the handshake's keys those of the session, with the peer's half of its pair. Wipes the own
+ * half; `open` stays. */
+void link_mixKeys(Link_Keys* keys, Link_Pair* pair, const U8* peerOpen, int isGround);
 
 /* Returns the number whose lowest byte is `byte`, as near to the expected one as can be. */
 U32 link_extend(U32 expected, U32 byte);

@@ -19,6 +19,8 @@
 typedef struct Link_Keyed {
     Link_Secrets secrets;
     Link_Keys keys;                   /* of the session */
+    Link_Keys shake;                  /* of its handshake */
+    Link_Pair pair;                   /* of the next session */
     U8 nonces[2U * LINK_NONCE_BYTES]; /* of the session: the peer's, the own one */
     U8 nonce[LINK_NONCE_BYTES];       /* own, of the next session */
     U8 slot;                          /* of the session's key */

@@ -27,13 +27,15 @@ static void transmit(Link* link, U32 header, const U8* key, U32 number) {
 
 void link_forgetKeys(Link* link) {
     Ascon_wipe(&link->keyed.keys, sizeof link->keyed.keys);
+    Ascon_wipe(&link->keyed.shake, sizeof link->keyed.shake);
 }
 
 void link_transmitKeyed(Link* link, U32 header, U32 number) {
     transmit(link, header, link->keyed.keys.send, number);
 }
 
-/* Sends a frame of the handshake that carries the own nonce, and the peer's if there is one. */
+/* Sends a frame of the handshake that carries the own nonce; if there is one of the peer's, that
+ * and the half of the own pair, too. */
 static void sendHandshake(Link* link, Link_Kind kind, const U8* peerNonce, const U8* key,
                           U32 version) {
     U8* payload = link->frame + LINK_HEADER;
@@ -41,16 +43,19 @@ static void sendHandshake(Link* link, Link_Kind kind, const U8* peerNonce, const
     memcpy(payload, link->keyed.nonce, LINK_NONCE_BYTES);
     if (peerNonce) {
         memcpy(payload + LINK_NONCE_BYTES, peerNonce, LINK_NONCE_BYTES);
-        size += LINK_NONCE_BYTES;
+        memcpy(link->frame + LINK_OPEN_AT, link->keyed.pair.open, LINK_OPEN_BYTES);
+        size = LINK_ANSWER_BYTES;
     }
     transmit(link, LINK_CONTROL_HEADER(kind, version, size), key, 0);
 }
 
-/* Begins the session whose keys those are. */
+/* Begins the session whose handshake's keys those are. */
 static void begin(Link* link, const U8* nonces, const Link_Keys* keys, int slot) {
     Link_Keyed* keyed = &link->keyed;
     link_lose(link);
-    keyed->keys = *keys;
+    keyed->keys = keyed->shake = *keys;
+    link_makePair(&keyed->pair, link->port, link->context);
+    link_mixKeys(&keyed->keys, &keyed->pair, link->input + LINK_OPEN_AT, keyed->secrets.isGround);
     keyed->slot = (U8)slot;
     keyed->pingsSeen = keyed->failures = 0;
     memcpy(keyed->nonces, nonces, sizeof keyed->nonces);
@@ -78,6 +83,7 @@ static int takeUnder(Link* link, int slot, Link_Kind kind) {
             sendHandshake(link, LINK_KIND_HELLO, 0, keyed->secrets.hello[slot],
                           LINK_VERSION | LINK_VERSION_UP);
         } else {
+            link_makePair(&keyed->pair, link->port, link->context);
             sendHandshake(link, LINK_KIND_HELLO_ACK, nonces, keys.send, LINK_VERSION);
         }
         if (!keyed->isAnswered)
@@ -100,6 +106,7 @@ static void takeHandshake(Link* link, Link_Kind kind) {
     Link_Keyed* keyed = &link->keyed;
     const U8* nonces = link->input + LINK_HEADER;
     int isUp = link->state == LINK_STATE_UP;
+    U8 copy[LINK_MAX_OVERHEAD + LINK_ANSWER_BYTES];
     if (keyed->isAnswered && link->inputAt - keyed->firstAnswer >= LINK_NONCE_LIFE)
         draw(link);
     if (kind == LINK_KIND_HELLO) {
@@ -109,18 +116,23 @@ static void takeHandshake(Link* link, Link_Kind kind) {
                       memcmp(nonces, keyed->nonces, LINK_NONCE_BYTES) == 0)))
             return;
     } else if (link->input[1] != LINK_VERSION ||
-               LINK_LENGTH(link->input) != 2U * LINK_NONCE_BYTES + LINK_TAG_MORE) {
+               LINK_LENGTH(link->input) != LINK_ANSWER_BYTES + LINK_TAG_MORE) {
         return;
     } else if (isUp && kind == LINK_KIND_CONFIRM &&
                memcmp(nonces, keyed->nonces, sizeof keyed->nonces) == 0) {
-        link->ackDue |= link_unprotect(link->input, keyed->keys.receive, 0, 0) != 0;
+        link->ackDue |= link_unprotect(link->input, keyed->shake.receive, 0, 0) != 0;
         return;
     } else if (memcmp(nonces + LINK_NONCE_BYTES, keyed->nonce, LINK_NONCE_BYTES) != 0 ||
                !(kind == LINK_KIND_CONFIRM ? keyed->isAnswered : keyed->isCalled)) {
         return;
     }
-    if (memcmp(nonces, keyed->nonce, LINK_NONCE_BYTES) != 0 && !takeUnder(link, 0, kind))
+    if (memcmp(nonces, keyed->nonce, LINK_NONCE_BYTES) == 0)
+        return;
+    memcpy(copy, link->input, sizeof copy);
+    if (!takeUnder(link, 0, kind)) {
+        memcpy(link->input, copy, sizeof copy); /* the other key has spoilt it */
         (void)takeUnder(link, 1, kind);
+    }
 }
 
 int link_takeKeyed(Link* link) {

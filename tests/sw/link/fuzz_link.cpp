@@ -150,7 +150,8 @@ private:
         U32 number = expected(), acked = 0;
         if (isHandshake) {
             kind = LINK_KIND_HELLO + kind % 3;
-            bytes.resize(LINK_HEADER + (kind == LINK_KIND_HELLO ? 8 : 16));
+            bytes.resize(LINK_HEADER +
+                         (kind == LINK_KIND_HELLO ? LINK_NONCE_BYTES : LINK_ANSWER_BYTES));
             bytes[0] = static_cast<uint8_t>(0x80 | (bytes.size() - LINK_HEADER));
             bytes[1] = LINK_VERSION;
             bytes[2] = static_cast<uint8_t>((bytes[2] & 3) | kind << 5);

@@ -60,7 +60,8 @@ protected:
             break;
         case 5: { // a control frame: ACK, HELLO, HELLO-ACK, CONFIRM (or RST), BYE, PING; guessed
                   // tag
-            static const uint8_t sizes[] = {1, 8, 16, 16, 0, 0};
+            static const uint8_t sizes[] = {
+                1, LINK_NONCE_BYTES, LINK_ANSWER_BYTES, LINK_ANSWER_BYTES, 0, 0};
             uint32_t kind = random.below(6);
             frame = {static_cast<uint8_t>(0x80 | (sizes[kind] + LINK_TAG_MORE)),
                      static_cast<uint8_t>(LINK_IS_HANDSHAKE(kind) ? LINK_VERSION : random.next()),
@@ -316,6 +317,95 @@ TEST_P(Attacked, AMessageThatIsHeldBackIsReportedAndNeverTaken) {
         run(1'000'000);
         EXPECT_TRUE(to.received.empty()) << (isFromA ? "from A" : "from B");
     }
+}
+
+// Counts those of the recorded frames of a session, all but the handshake's, that keys open. They
+// are the ground's keys.
+int opened(const std::vector<std::pair<bool, Bytes>>& frames, const Link_Keys& keys) {
+    int count = 0;
+    for (auto [isFromGround, frame] : frames) {
+        const U32 acked = LINK_IS_RIDE(kindOf(frame)) ? frame[LINK_HEADER] : 0;
+        count +=
+            link_unprotect(frame.data(), isFromGround ? keys.send : keys.receive, frame[1], acked);
+    }
+    return count;
+}
+
+// Who has recorded a session and learns the key later opens the frames of its handshake only. With
+// the half of a pair that one side has wiped he could open all.
+TEST_P(Attacked, WhoLearnsTheKeyLaterOpensNoRecordedSession) {
+    Link_Pair pair = {};
+    a.start();
+    ASSERT_TRUE(until(
+        [&] {
+            if (!isMinimal() && b.link()->session.pair.isMade)
+                pair = b.link()->session.pair;
+            return listen(), bothUp();
+        },
+        5'000'000));
+    ASSERT_TRUE(traffic(10, 60'000'000, [&] { listen(); }));
+
+    Link_Secrets stolen = {};
+    link_setSecret(&stolen, 0, Bytes(LINK_KEY_BYTES, 0x5A).data(), LINK_GROUND | 1);
+    Link_Keys keys = {};
+    Bytes open;
+    std::vector<std::pair<bool, Bytes>> frames;
+    int handshakes = 0;
+    for (const auto& [isFromA, bytes] : recorded_) {
+        Bytes frame = bytes;
+        U8* nonces = &frame[LINK_HEADER];
+        const int kind = kindOf(frame);
+        if (kind == LINK_KIND_HELLO_ACK) { // the vehicle's
+            link_deriveKeys(&stolen, 0, nonces + LINK_NONCE_BYTES, nonces, &keys);
+            handshakes += link_unprotect(frame.data(), keys.receive, 0, 0);
+        } else if (kind == LINK_KIND_CONFIRM) {
+            handshakes += link_unprotect(frame.data(), keys.send, 0, 0);
+            open.assign(&frame[LINK_OPEN_AT], &frame[LINK_OPEN_AT] + LINK_OPEN_BYTES);
+        } else if (kind != LINK_KIND_HELLO) {
+            frames.emplace_back(isFromA, bytes);
+        }
+    }
+    EXPECT_GE(handshakes, 2);
+    ASSERT_GE(frames.size(), 20u);
+    EXPECT_EQ(opened(frames, keys), 0);
+    if (!isMinimal()) {
+        Link_Keys vehicles = {};
+        memcpy(vehicles.send, keys.receive, LINK_KEY_BYTES);
+        memcpy(vehicles.receive, keys.send, LINK_KEY_BYTES);
+        link_mixKeys(&vehicles, &pair, open.data(), 0);
+        memcpy(keys.send, vehicles.receive, LINK_KEY_BYTES);
+        memcpy(keys.receive, vehicles.send, LINK_KEY_BYTES);
+        EXPECT_EQ(opened(frames, keys), int(frames.size()));
+        const Link_Pair& left = a.link()->session.pair;
+        EXPECT_FALSE(left.isMade);
+        EXPECT_EQ(Bytes(left.own, left.own + LINK_OPEN_BYTES), Bytes(LINK_OPEN_BYTES, 0));
+    }
+}
+
+// The recordings of HELLOs, each with another nonce, make a side compute a pair once, and no key.
+TEST_P(Attacked, OldHellosMakeNobodyMultiplyPoints) {
+    if (isMinimal())
+        return;
+    std::vector<Bytes> hellos;
+    for (unsigned boot = 0; boot < 5; ++boot) {
+        recorded_.clear();
+        a.boot(), b.boot();
+        a.start();
+        ASSERT_TRUE(until([&] { return listen(), bothUp(); }, 5'000'000));
+        hellos.push_back(recorded_.front().bytes);
+        ASSERT_EQ(kindOf(hellos.back()), LINK_KIND_HELLO);
+    }
+    b.boot();
+    setWeather({1, 0, 0}); // A does not hear the answers
+    Link_Pair first = {};
+    for (int i = 0; i < 400; ++i, run(100'000)) { // more than four lives of a nonce
+        attack(b, hellos[size_t(i) % hellos.size()]);
+        if (i == 0)
+            first = b.link()->session.pair;
+        ASSERT_TRUE(first.isMade);
+        EXPECT_EQ(memcmp(&first, &b.link()->session.pair, sizeof first), 0);
+    }
+    EXPECT_FALSE(b.isUp());
 }
 
 // An attack on new sessions: the attacker hears the traffic and adds 20 bytes to each packet, or

@@ -1,0 +1,201 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * x25519: Montgomery's ladder modulo p = 2^255 - 19, in words of 16 bits, the lowest first.
+ * A number stays below 2^256, not below p: what goes beyond 2^256 counts 38.
+ */
+#include "x25519.h"
+
+#include "ascon.h"
+
+#include <string.h>
+
+#define WORDS 16
+#define A24 121665U /* (486662 - 2) / 4, of the curve */
+
+typedef U16 Number[WORDS];
+
+/* Adds what went beyond 2^256; after the second time nothing does. */
+static void fold(U16* r, U32 carry) {
+    int i, again;
+    for (again = 0; again < 2; ++again) {
+        carry *= 38U;
+        for (i = 0; i < WORDS; ++i) {
+            carry += r[i];
+            r[i] = (U16)carry;
+            carry >>= 16;
+        }
+    }
+}
+
+static void add(U16* r, const U16* a, const U16* b) {
+    U32 carry = 0;
+    int i;
+    for (i = 0; i < WORDS; ++i) {
+        carry += (U32)a[i] + b[i];
+        r[i] = (U16)carry;
+        carry >>= 16;
+    }
+    fold(r, carry);
+}
+
+/* Adds 4p - b, in words that are each above those of b. */
+static void subtract(U16* r, const U16* a, const U16* b) {
+    U32 carry = 0;
+    int i;
+    for (i = 0; i < WORDS; ++i) {
+        carry += a[i] + (i ? 0x1FFFEU : 0x1FFB4U) - b[i];
+        r[i] = (U16)carry;
+        carry >>= 16;
+    }
+    fold(r, carry);
+}
+
+/* The sum is at most 2^32 - 1. */
+#define MULTIPLY_WORD(word, to)  \
+    carry += factor * word + to; \
+    to = (U16)carry;             \
+    carry >>= 16
+
+static void multiply(U16* r, const U16* a, const U16* b) {
+    U16 t[2 * WORDS];
+    U32 carry;
+    int i, j;
+    memset(t, 0, sizeof t);
+    for (i = 0; i < WORDS; ++i) {
+        U32 factor = a[i];
+        U16* row = t + i;
+        carry = 0;
+        for (j = 0; j < WORDS; j += 4) {
+            MULTIPLY_WORD(b[j], row[j]);
+            MULTIPLY_WORD(b[j + 1], row[j + 1]);
+            MULTIPLY_WORD(b[j + 2], row[j + 2]);
+            MULTIPLY_WORD(b[j + 3], row[j + 3]);
+        }
+        row[WORDS] = (U16)carry;
+    }
+    carry = 0;
+    for (i = 0; i < WORDS; ++i) {
+        carry += t[i] + 38U * t[i + WORDS];
+        r[i] = (U16)carry;
+        carry >>= 16;
+    }
+    fold(r, carry);
+}
+
+/* Multiplies by A24, which has 17 bits: by its lower 16, and by 2^16, a word further. */
+static void multiplyA24(U16* r, const U16* a) {
+    U32 carry = 0;
+    U32 below = 0;
+    int i;
+    for (i = 0; i < WORDS; ++i) {
+        U32 word = a[i];
+        carry += (A24 & 0xFFFFU) * word + below;
+        below = word;
+        r[i] = (U16)carry;
+        carry >>= 16;
+    }
+    fold(r, carry + below);
+}
+
+/* Raises to p - 2, which is all ones but for the bits 2 and 4. */
+static void invert(U16* r, const U16* a) {
+    Number z;
+    int bit;
+    memcpy(z, a, sizeof z);
+    for (bit = 253; bit >= 0; --bit) {
+        multiply(z, z, z);
+        if (bit != 2 && bit != 4)
+            multiply(z, z, a);
+    }
+    memcpy(r, z, sizeof z);
+}
+
+static void exchange(U16* a, U16* b, U32 isWanted) {
+    U32 mask = 0U - isWanted;
+    int i;
+    for (i = 0; i < WORDS; ++i) {
+        U32 both = (a[i] ^ b[i]) & mask;
+        a[i] = (U16)(a[i] ^ both);
+        b[i] = (U16)(b[i] ^ both);
+    }
+}
+
+/* Brings a number below p: counts bit 255 as 19, then takes p away if that leaves something. */
+static void normalize(U16* r) {
+    Number less;
+    U32 carry = (U32)(r[WORDS - 1] >> 15) * 19U;
+    int i;
+    r[WORDS - 1] &= 0x7FFFU;
+    for (i = 0; i < WORDS; ++i) {
+        carry += r[i];
+        r[i] = (U16)carry;
+        carry >>= 16;
+    }
+    carry = 19U;
+    for (i = 0; i < WORDS; ++i) {
+        carry += r[i];
+        less[i] = (U16)carry;
+        carry >>= 16;
+    }
+    exchange(r, less, (U32)less[WORDS - 1] >> 15);
+    r[WORDS - 1] &= 0x7FFFU;
+}
+
+/* The ladder's numbers, as RFC 7748 names them, of which da also is c, and cb d. */
+typedef struct Ladder {
+    Number x1, x2, z2, x3, z3, a, b, da, cb;
+} Ladder;
+
+static void step(Ladder* l) {
+    add(l->a, l->x2, l->z2);
+    subtract(l->b, l->x2, l->z2);
+    add(l->da, l->x3, l->z3);
+    subtract(l->cb, l->x3, l->z3);
+    multiply(l->cb, l->cb, l->a);
+    multiply(l->da, l->da, l->b);
+    add(l->x3, l->cb, l->da);
+    multiply(l->x3, l->x3, l->x3);
+    subtract(l->z3, l->cb, l->da);
+    multiply(l->z3, l->z3, l->z3);
+    multiply(l->z3, l->z3, l->x1);
+    multiply(l->a, l->a, l->a);
+    multiply(l->b, l->b, l->b);
+    multiply(l->x2, l->a, l->b);
+    subtract(l->b, l->a, l->b);
+    multiplyA24(l->z2, l->b);
+    add(l->z2, l->z2, l->a);
+    multiply(l->z2, l->z2, l->b);
+}
+
+void X25519(U8* result, const U8* number, const U8* point) {
+    Ladder l;
+    U32 swapped = 0;
+    int i;
+    memset(&l, 0, sizeof l);
+    for (i = 0; point && i < WORDS; ++i)
+        l.x1[i] = (U16)(point[2 * i] | (U32)point[2 * i + 1] << 8);
+    l.x1[WORDS - 1] &= 0x7FFFU;
+    if (!point)
+        l.x1[0] = 9;
+    memcpy(l.x3, l.x1, sizeof l.x3);
+    l.x2[0] = l.z3[0] = 1;
+    for (i = 254; i >= 0; --i) {
+        U32 bit = (U32)number[i >> 3] >> (i & 7) & 1U;
+        if (i == 254)
+            bit = 1; /* this bit is set, and the three lowest are not */
+        if (i < 3)
+            bit = 0;
+        exchange(l.x2, l.x3, swapped ^ bit);
+        exchange(l.z2, l.z3, swapped ^ bit);
+        swapped = bit;
+        step(&l);
+    }
+    invert(l.z2, l.z2); /* nothing is swapped at the end: the lowest bit is 0 */
+    multiply(l.x2, l.x2, l.z2);
+    normalize(l.x2);
+    for (i = 0; i < WORDS; ++i) {
+        result[2 * i] = (U8)l.x2[i];
+        result[2 * i + 1] = (U8)(l.x2[i] >> 8);
+    }
+    Ascon_wipe(&l, sizeof l);
+}

@@ -42,8 +42,8 @@ typedef struct Link Link; /* complete below, so that callers can place it; its f
  * part of the way, in 1/16 microseconds (111,111 baud: 1440), used for pacing and timers. */
 void Link_init(Link* link, const Link_Port* port, void* context, U32 byteTimeUs16);
 
-/* Limits frames to `bytes` from now on, 32..LINK_MAX_FRAME: a modem that encrypts splits
- * packets longer than LINK_MAX_ENCRYPTED. The two sides may differ. */
+/* Limits frames to `bytes` from now on, 32 (under a key 59) to LINK_MAX_FRAME: a modem that
+ * encrypts splits packets longer than LINK_MAX_ENCRYPTED. The two sides may differ. */
 void Link_limitFrame(Link* link, U32 bytes);
 
 /* Gives the vehicle's key, LINK_KEY_BYTES bytes that both sides have, for slot 0 or 1; it is

@@ -248,6 +248,7 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         edit("tests/room/t.sh", *BREAK)
         self.regress("--changed --name a[.]", 1)
         self.has("^2 tests", "^plan  *red")
+        self.regress("--name formal")
         self.has('"test": "test_a.One"', file="build/regress/report.json")  # a kept seed
         edit("tests/room/t.sh", *reversed(BREAK))
         self.regress("--name formal")

@@ -95,7 +95,7 @@ struct Link_Output {
 
 /* True if a fragment may go out now: the packet has room, or the modem has for a new one. */
 int link_isOpen(Link_Output* output);
-/* Notes that a frame of so many bytes came. */
+/* Notes that a frame of `size` bytes came. */
 void link_hear(Link_Output* output, U32 size);
 /* Bytes of payload that a frame may have to fit into the packet, at least if link_isOpen. */
 U32 link_room(const Link_Output* output);

@@ -44,7 +44,7 @@ typedef struct Link_Sender {
 /* Adds an entry to the queue, and work to the sender. Returns 0: there is no room. */
 Link_Entry* link_offer(Link_Sender* sender, U32 flags, U32 size);
 void link_resetSender(Link_Sender* sender);
-/* `bitmap`: so many bytes, as in the frame. */
+/* `bitmap` has `size` bytes, as in the frame. */
 void link_onAck(Link_Sender* sender, U32 cumulative, U32 credit, const U8* bitmap, U32 size);
 /* Sends fragments that are due. Returns 0: one is so old that the session must end. */
 int link_pollSender(Link_Sender* sender);

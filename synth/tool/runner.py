@@ -229,7 +229,7 @@ def in_parallel(jobs, work, items):
 
 
 def write_for_simulation(design, library, options, file, models):
-    """Writes the netlist that a design's figures are of as Verilog of what its primitives do."""
+    """Writes the netlist of a design's figures as Verilog, for primitives with models."""
     options.cache.mkdir(parents=True, exist_ok=True)
     version = version_of(options.yosys)
     for orders in (design.orders, 0):  # the first of all orders is the netlist without others

@@ -112,7 +112,7 @@ void say(uint64_t now, const RfPacket& packet, RfChannel::Outcome outcome) {
                packet.from, packet.to, packet.bytes.size(), outcomes[static_cast<int>(outcome)]);
 }
 
-// Runs until Ctrl-C, or for so many seconds, if any, and prints statistics.
+// Runs until Ctrl-C, or for `duration` seconds unless that is 0, and prints statistics.
 void run(RfChannel& air, XBee& a, XBee& b, double duration) {
     std::signal(SIGINT, [](int) { stopped = 1; });
     std::signal(SIGTERM, [](int) { stopped = 1; });
@@ -169,7 +169,7 @@ int main(int argc, char** argv) {
         ->check(CLI::Range(0.0, 10000.0));
     app.add_option("--boot", bootMs, "Boot time of the modems, ms")->check(CLI::Range(0, 5000));
     app.add_option("--seed", seed, "Seed of the weather (default: SEED, or 1)");
-    app.add_option("--duration", duration, "Ends by itself after so many seconds (0: never)")
+    app.add_option("--duration", duration, "Seconds until it ends by itself (0: never)")
         ->check(CLI::Range(0.0, 1e6));
     app.add_flag("-v,--verbose", verbose, "A line for each packet");
     CLI11_PARSE(app, argc, argv);

@@ -55,9 +55,9 @@ def parse(words):
     only.add_argument("--kept", action="store_true", help="only tests that failed with some seed "
                       "and have not passed with it since, with these seeds")
     add("--seed", default="1", help="seed of the random tests, or `random`")
-    add("--repeat", type=int, default=1, help="so many runs, each with the next seed")
+    add("--repeat", type=int, default=1, help="number of runs, each with the next seed")
     add("--jobs", type=int, default=2, help="tests at once")
-    add("--waves", type=int, default=3, help="waveforms of at most so many failures")
+    add("--waves", type=int, default=3, help="failures of which a waveform is written, at most")
     add("--make", action="store_true", help="build what the chosen tests need first")
     add("--prepare", action="store_true", help="only build what the chosen tests need; with "
         "--list, only say what that is")

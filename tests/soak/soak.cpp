@@ -329,7 +329,8 @@ int main(int argc, char** argv) {
     uint64_t seed = testSeed(), messages = 0;
     app.add_option("--minutes", minutes, "of the wall clock to go on for")
         ->check(CLI::PositiveNumber);
-    app.add_option("--messages", messages, "stop after so many instead, however long it takes");
+    app.add_option("--messages", messages,
+                   "number of messages after which it stops instead, however long that takes");
     app.add_option("--seed", seed, "of everything that happens (default: $SEED, or 1)");
     bool attacked = false;
     app.add_flag("--attacked", attacked, "by a third modem that has no key; the two have one");

@@ -13,7 +13,7 @@ parser.add_argument("--pcap",
                     help="every byte as TCP over IPv4, with openings and ends, as a capture would "
                          "hold it")
 parser.add_argument("--cut", type=int,
-                    help="every connection ends, without a word, when so many bytes have passed")
+                    help="bytes after which every connection ends without a word")
 parser.add_argument("port", type=int, help="the server's")
 words = parser.parse_args()
 FIN, SYN, PSH, ACK = 1, 2, 8, 16

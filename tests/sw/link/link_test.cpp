@@ -256,7 +256,7 @@ protected:
             std::count_if(side.outcomes.begin(), side.outcomes.end(),
                           [](auto& tagged) { return tagged.second == LINK_DELIVERED; }));
     }
-    // Sends until so many are delivered each way, as a program does that repeats all others.
+    // Sends until `least` messages are delivered each way, as a program that repeats all others.
     template <class... Meanwhile> void deliver(size_t least, Meanwhile... meanwhile) {
         for (size_t most = least; delivered(a) < least || delivered(b) < least; most += 10) {
             ASSERT_LT(most, 4 * least);

@@ -18,7 +18,8 @@ LEFT_OUT = "NOT_BUILT|^fuzz|^e2e.cores"
 @command("check coverage", [
     Option("name", NAME.kind,
            "only tests of which a part of the name matches this; no gate holds then", ""), BUILD,
-    JOBS], make="coverage", brief="check coverage --name ^(test_bus_decoder[.]|vhdl[.]fir)",
+    JOBS], make="coverage", brief=["check coverage --name ^test_bus_decoder[.]",
+                             "check coverage --name ^vhdl[.]fir"],
          long="check coverage")
 def coverage(values):
     """lines, branches and toggles that the tests reach, write build/coverage/html; exit status 1:
@@ -99,6 +100,8 @@ def of_host(work):
 def of_rtl(work, points):
     """Verilator's counts of Verilog."""
     counts = sorted(points.glob("*.dat"))
+    if not counts:
+        return []
     for option, name in (("--write", "rtl.dat"), ("--write-info", "all_rtl.info")):
         run(["verilator_coverage", option, work / name, *counts], stdout=subprocess.DEVNULL)
     return own(work, "rtl.info", work / "all_rtl.info", ("hdl", "bus", "ip"))

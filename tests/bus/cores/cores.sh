@@ -180,7 +180,7 @@ described() { # words of the message, a description that is refused
 described 'the description is no object' '[]'
 described "the description has no 'doc'" '{"block": "b"}'
 described 'it is no JSON in UTF-8' '{"block": "\0377"}'
-described 'brackets are too long' "$(printf '[%.0s' $(seq 5000))"
+described 'brackets are too long' "$(printf '[%.0s' $(seq 50000))"
 described 'block is "../b": it is to be a name' '{"block": "../b", "doc": "", "registers": []}'
 described 'doc is "\*/": it is to be a text' '{"block": "b", "doc": "*/", "registers": []}'
 described 'registers\[0\].word is "": it is to be a whole' '{"block": "b", "doc": "", "registers": [{"word": ""}]}'

@@ -152,8 +152,8 @@ bool CortexM3::debugRead(uint32_t address, void* data, uint32_t bytes) {
 }
 
 bool CortexM3::debugWrite(uint32_t address, const void* data, uint32_t bytes) {
-    std::vector<uint8_t> copy(bytes);
-    std::memcpy(copy.data(), data, bytes);
+    const auto* from = static_cast<const uint8_t*>(data);
+    std::vector<uint8_t> copy(from, from + bytes);
     return writeMemory(address, data, bytes) || debugAccess(address, copy.data(), bytes, true);
 }
 

@@ -108,7 +108,8 @@ void link_makePair(Link_Pair* pair, const Link_Port* port, void* context) {
     pair->isMade = 1;
 }
 
-/* Who lacks either the secret or both halves of the pairs lacks one of the two that are mixed. */
+/* Both inputs are needed: the handshake's keys follow from the secret, `shared` from an own half.
+ */
 void link_mixKeys(Link_Keys* keys, Link_Pair* pair, const U8* peerOpen, int isGround) {
     U8 shared[X25519_BYTES], text[2U * LINK_KEY_BYTES];
     U8* send = text + (isGround ? LINK_KEY_BYTES : 0);

@@ -92,7 +92,7 @@ double flow(World& w, bool both, uint64_t seconds) {
     return rate;
 }
 
-// What the modems and the air allow in this weather, with the RN that suits it best.
+// Returns the bytes a second that modems and air allow in this weather, with the best RN.
 double limitOf(const RfWeather& weather, Mode mode, bool both) {
     double most = 0;
     for (unsigned rn = 0; rn <= 3; ++rn)

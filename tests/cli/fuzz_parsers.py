@@ -49,7 +49,7 @@ RDL = """addrmap lamp { name = "Lamp // no comment"; default regwidth = 8; defau
     state_r STATE @ 4; reg { field { woclr; } DONE[0:0] = 0; } EVENTS @ 6; };
 """
 KEYS = "# ours\n0x0001 {0}\n0xBEEF {0} {0}\n{0}\n".format("00112233445566778899AABBCCDDEEFF")
-# What no refusal of ours says: words of Python and of libraries.
+# These words of Python and of libraries stand in no refusal of ours.
 FOREIGN = re.compile(
     r"Traceback|[a-z]Error\b|NoneType|'\w+' object|unhashable|subscriptable|not supported between"
     r"|indices must|\b\w+\(\) |unsupported operand|literal for int|must be str|exception\.\w+\.\d+"

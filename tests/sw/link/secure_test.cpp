@@ -331,8 +331,8 @@ int opened(const std::vector<std::pair<bool, Bytes>>& frames, const Link_Keys& k
     return count;
 }
 
-// Who has recorded a session and learns the key later opens the frames of its handshake only. With
-// the half of a pair that one side has wiped he could open all.
+// An attacker who has recorded a session and learns the key later opens the frames of its handshake
+// only. With the half of a pair that one side has wiped he could open all.
 TEST_P(Attacked, WhoLearnsTheKeyLaterOpensNoRecordedSession) {
     Link_Pair pair = {};
     a.start();

@@ -26,7 +26,7 @@ DRAW = """setattr -set keep 1 w:f_*
 opt_clean
 write_rtlil plain.il
 write_json plain.json
-select -set proof {module}/t:$assert {module}/t:$assume {module}/t:$cover {module}/t:$any* {lines}
+select -set proof {module}/t:$ass* {module}/t:$cover {module}/t:$check {module}/t:$any* {lines}
 select -set source {module}/c:* @proof %d
 mutate -list {number} -seed {seed} -o list @source"""
 # A module or its mutant: free signals become the same input of both.

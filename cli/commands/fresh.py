@@ -6,6 +6,7 @@ package, no cache. Its mounts and processes are its own and end with it.
 """
 import json
 import os
+import re
 import shutil
 import subprocess
 import time
@@ -91,7 +92,8 @@ def put_tree(root):
 
 def do(root, release, step):
     """Carries one step out, and tells its last lines."""
-    log = Path(f"{root}-{step.replace(' ', '-')}.log")
+    words = re.findall(r"[\w.]+", step)
+    log = Path("-".join([str(root), *words]) + ".log")
     place = {"HOME": "/root", "PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "TERM": "dumb"}
     kept = {name: value for name, value in os.environ.items() if name.lower().endswith("_proxy")}
     begun = time.monotonic()

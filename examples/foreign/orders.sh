@@ -10,9 +10,9 @@ cd "$here/../.."
 source=$PWD build=build/foreign jobs=${JOBS:-$(nproc)} seed=${SEED:-1}
 names='' folders='' slices=''
 for folder in "$@"; do
-    name=$(basename "$folder")
+    folder=$(cd "$folder" && pwd) name=$(basename "$folder")
     names="$names $name"
-    folders="$folders;$source/$folder"
+    folders="$folders;$folder"
     [ ! -f "$folder/$name.ice" ] || slices="$slices $folder/$name.ice"
 done
 mkdir -p "$build"

@@ -377,29 +377,29 @@ def examples(values):
     """put third-party cores and two of one's own through the recipe, in three orders, test them and
     call them by radio
 
-    Wishbone, AXI4-Lite, AXI-Stream and plain buses in Verilog, records in VHDL. Downloads them."""
+    Wishbone, AXI4-Lite, AXI-Stream and plain buses in Verilog, records in VHDL. Downloads them;
+    without a network only this project's two are tested, and the status says so: 77."""
     if not values.built:
         run(["cmake/setup.sh", "--tests"])
     cores = Path("build/foreign-cores").absolute()
-    fetch("foreign", cores)
-    fetch("ghdl", cores / "ghdl")
+    missing = fetch("foreign", cores, check=False)
+    if not missing:
+        fetch("ghdl", cores / "ghdl")
     shutil.rmtree(cores / "slots", ignore_errors=True)
 
     def into_slot(slot, module, bus, files, *words):
         run(["ip/new_foreign.py", slot, module, bus, cores / "slots" / slot, *words,
              *sorted(files)], stdout=-3, env={"GHDL": cores / "ghdl/ghdl"})
+        return cores / "slots" / slot
 
-    into_slot("foreign_spi", "neorv32_spi", "own", (cores / "neorv32").glob("*.vhd"),
-              "LIBRARY=neorv32", "PARAM:IO_SPI_FIFO=4", *SPI_PORTS)
-    for slot, module, bus, repository, clock in EXAMPLES:
-        into_slot(slot, module, bus, (cores / repository).glob("*.v"),
-                  *([f"CLOCK={clock}"] if clock else []))
-    return run(
-        [
-            "examples/foreign/orders.sh", "examples/foreign/olo_spi", "tests/e2e/cores/servo",
-            "tests/e2e/cores/crc32", *(cores / "slots" / slot
-                                       for slot in ["foreign_spi", *(each[0]
-                                                                     for each in EXAMPLES)])],
-        check=False, env={
-            "IMAGE": values.image, "JOBS": values.jobs, "SEED": values.seed,
-            "CHIP": "1" if values.chip else ""})
+    slots = [] if missing else [
+        "examples/foreign/olo_spi",
+        into_slot("foreign_spi", "neorv32_spi", "own", (cores / "neorv32").glob("*.vhd"),
+                  "LIBRARY=neorv32", "PARAM:IO_SPI_FIFO=4", *SPI_PORTS),
+        *(into_slot(slot, module, bus, (cores / repository).glob("*.v"),
+                    *([f"CLOCK={clock}"] if clock else []))
+          for slot, module, bus, repository, clock in EXAMPLES)]
+    return run(["examples/foreign/orders.sh", "tests/e2e/cores/servo", "tests/e2e/cores/crc32",
+                *slots], check=False, env={
+                    "IMAGE": values.image, "JOBS": values.jobs, "SEED": values.seed,
+                    "CHIP": "1" if values.chip else ""}) or missing

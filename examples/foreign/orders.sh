@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# orders: folder-of-a-core...   Tests these cores, builds the chip of cores.list in three orders (as
-# listed, backwards, shuffled by SEED), and flies each: every core is called from Python by radio.
+# orders: folder-of-a-core...   Tests these cores, builds a chip of them in three orders (as in
+# cores.list, backwards, shuffled by SEED), and flies each: every core is called from Python by radio.
 # CHIP=1: also prints the cost of each in the listed chip.
 set -eu
 case ${1:-} in '' | -h | --help) sed -n '3,5s/^# //p' "$0" && exit 0 ;; esac
@@ -17,7 +17,7 @@ for folder in "$@"; do
 done
 mkdir -p "$build"
 echo "1 servo.fault_i 0" >"$build/pins" # the simulator then logs the outputs
-sed 's/#.*//; /^ *$/d' "$here/cores.list" >"$build/listed.list"
+awk -v names="$names " 'index(names, " " $1 " ")' "$here/cores.list" >"$build/listed.list"
 tac "$build/listed.list" >"$build/backwards.list"
 awk -v seed="$seed" 'BEGIN { srand(seed) } { print rand() "\t" $0 }' "$build/listed.list" |
     sort | cut -f2- >"$build/shuffled.list"
@@ -37,7 +37,7 @@ for order in backwards shuffled listed; do
     # shellcheck disable=SC2086 # a list of words
     "$build/testbench/sim/icesoc-sim" --size 96x64 --image "$IMAGE" --seed "$seed" --guard 20 \
         --pins "$build/pins" --out "$build/flight" -- /usr/bin/python3 "$here/call.py" \
-        '{device}' '{guard}' '{status}' "$build/ground/xbeeat:createXBeeAT" \
+        '{device}' '{guard}' '{status}' "$build/ground/xbeeat:createXBeeAT" "$names" \
         sw/hw/registers/Registers.ice $slices
     # Servos' frames of 20 ms, with pulses of 1.5 ms on pin 2, as the pins had them.
     awk '$2 != "servo.pwm_o" { next }

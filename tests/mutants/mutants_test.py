@@ -72,9 +72,9 @@ class Cases(Script):
 
     def bugs(self, **bugs):
         """Seeds bugs: the line that goes, the line that comes."""
-        write("tests/mutants/tiny.bugs", "".join(
-            f"{name}: A bug.\ntest_tiny tiny.c\n-{old}\n+{new}\n\n"
-            for name, (old, new) in bugs.items()))
+        write("tests/mutants/tiny.bugs.json", json.dumps({
+            name: {"does": "A bug.", "test": "test_tiny", "file": "tiny.c", "old": old, "new": new}
+            for name, (old, new) in bugs.items()}))
 
     def test_run(self):
         """Each result that a seeded bug can have, an interrupted run."""
@@ -113,10 +113,11 @@ class Cases(Script):
         self.make("mutants", "BLOCK=tiny/wrong", "JOBS=1", tree=".")
         self.has("^mutants: 1 of 1 caught")
         self.bugs(wrong=wrong)
-        malformed = Path("tests/mutants/wrong.bugs")
-        malformed.write_text("no test\n-and no file\n")
-        self.ask(run, "--check", status=1)
-        self.has("wrong.bugs: not a bug as")
+        malformed = Path("tests/mutants/wrong.bugs.json")
+        for text in '{"no": {"test": "and no file"}}\n', "no JSON\n", "[]\n":
+            malformed.write_text(text)
+            self.ask(run, "--check", status=1)
+            self.has("wrong.bugs.json: not bugs as")
         malformed.unlink()
 
         # A test that fails by itself catches nothing.

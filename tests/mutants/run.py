@@ -2,21 +2,22 @@
 # SPDX-License-Identifier: MIT
 """Plants each seeded bug in a copy of the tree and expects the test it names to fail.
 
-The bugs of a block stand in tests/mutants/<block>.bugs, a core's in ip/<core>/<core>.bugs, between
-empty lines:
+The bugs of a block stand in tests/mutants/<block>.bugs.json, a core's in
+ip/<core>/<core>.bugs.json:
 
-    name: what the bug does, in a sentence.
-    the test that catches it, as ctest names it, and the file, here or on the next line
-    -the line, or lines, of the file that go
-    +the line, or lines, that replace them
+    "name": {"does": "What the bug does, in a sentence.",
+      "test": "the test that catches it, as ctest names it", "file": "hdl/some/file.v",
+      "old": "the line of the file that goes, or a list of lines",
+      "new": "the line, or lines, that replace it",
+      "more": [{"old": "...", "new": "..."}]}
 
-A line that begins with a space stays; lines that go and stay must be found once in the file. `@@`
-begins another change of the same file, a line with a slash another file.
+Lines that go must be found once in the file. "more" changes further places; "file" there names
+another file.
 
 Leaves build/mutants/results.tsv (name, result, test, seconds, file:line).
 Exit status 1: a bug survived, is no longer found in its file, or does not build.
 """
-import argparse, collections, glob, os, pathlib, queue, re, shutil, subprocess, sys, threading, time
+import argparse, collections, glob, json, os, pathlib, queue, re, shutil, subprocess, sys, threading, time
 from concurrent.futures import ThreadPoolExecutor
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
@@ -27,22 +28,13 @@ WORK = TOP / "build/mutants"
 
 
 class Bug:
-    def __init__(self, block, text):
-        head, where, *lines = text.split("\n")
-        self.test, *files = where.split()
-        name, _, does = head.partition(": ")
-        self.name = f"{block}/{name}"
+    def __init__(self, name, said):
+        self.name, self.test, self.does, file = name, said["test"], said["does"], said["file"]
         self.changes = []  # file, old lines, new lines
-        for line in files + lines:
-            if line[0] not in " +-@":
-                file = line
-            if line[0] not in " +-":
-                self.changes.append((file, [], []))
-                continue
-            self.changes[-1][1].extend([line[1:]] if line[0] != "+" else [])
-            self.changes[-1][2].extend([line[1:]] if line[0] != "-" else [])
-        if not does or not self.changes:
-            raise ValueError
+        for change in [said, *said.get("more", [])]:
+            file = change.get("file", file)
+            self.changes.append((file, *([lines] if isinstance(lines, str) else lines
+                                         for lines in (change["old"], change["new"]))))
 
     def place(self, root):
         """file:line of its first change, in the file without it."""
@@ -67,17 +59,17 @@ class Bug:
 def bugs(chosen):
     """The bugs of a block (`*`: of all), or the one of block/name."""
     block, _, name = chosen.partition("/")
-    files = sorted(glob.glob(f"tests/mutants/{block}.bugs") + glob.glob(f"ip/{block}/{block}.bugs"))
     found = []
-    for file in files:
-        for text in pathlib.Path(file).read_text().strip("\n").split("\n\n"):
-            try:
-                found.append(Bug(pathlib.Path(file).stem, text))
-            except (ValueError, IndexError, UnboundLocalError):
-                sys.exit(f"mutants: {file}: not a bug as `tests/mutants/run.py --help` shows it: "
-                         f"{text[:60]}")
+    for file in sorted(glob.glob(f"tests/mutants/{block}.bugs.json")
+                       + glob.glob(f"ip/{block}/{block}.bugs.json")):
+        try:
+            found += [Bug(f"{pathlib.Path(file).name.split('.')[0]}/{name}", said)
+                      for name, said in json.loads(pathlib.Path(file).read_text()).items()]
+        except (ValueError, LookupError, TypeError, AttributeError) as error:
+            sys.exit(f"mutants: {file}: not bugs as `tests/mutants/run.py --help` shows them: "
+                     f"{error!r}")
     found = [bug for bug in found if not name or bug.name == chosen]
-    return found or sys.exit(f"mutants: no {chosen} in tests/mutants/*.bugs and ip/*/*.bugs")
+    return found or sys.exit(f"mutants: no {chosen} in tests/mutants/*.json and ip/*/*.bugs.json")
 
 
 def prepare(copy, *options):

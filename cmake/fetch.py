@@ -12,6 +12,7 @@ Exit status 77: there is no network, and only what is optional needs this thing.
 import argparse
 import fcntl
 import hashlib
+import json
 import os
 import pathlib
 import re
@@ -24,7 +25,7 @@ import tempfile
 import urllib.request
 
 CACHE = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "icesoc"
-LIST = pathlib.Path(__file__).resolve().parent.parent / "examples/foreign/files.list"
+LIST = pathlib.Path(__file__).resolve().parent.parent / "examples/foreign/files.json"
 GITHUB = os.environ.get("ICESOC_RAW") or "https://raw.githubusercontent.com"
 NPM = os.environ.get("ICESOC_NPM") or "https://registry.npmjs.org"
 KEYRING = "/usr/share/keyrings/debian-archive-keyring.gpg"
@@ -186,13 +187,12 @@ def sodium(target):
 
 
 def foreign(target):
-    """the third-party cores that examples/foreign/files.list names"""
-    for line in LIST.read_text().splitlines():
-        if not line.startswith("#"):
-            repository, commit, path, checksum = line.split()
+    """the third-party cores that examples/foreign/files.json names"""
+    for repository, its in json.loads(LIST.read_text()).items():
+        for path, checksum in its["files"].items():
             file = target / repository.split("/")[1] / os.path.basename(path)
             file.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(kept(f"{GITHUB}/{repository}/{commit}/{path}", checksum), file)
+            shutil.copyfile(kept(f"{GITHUB}/{repository}/{its['commit']}/{path}", checksum), file)
 
 
 def svd(target):

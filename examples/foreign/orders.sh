@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # orders: folder-of-a-core...   Tests these cores, builds a chip of them in three orders (as in
-# cores.list, backwards, shuffled by SEED), and flies each: every core is called from Python by radio.
+# cores.list, backwards, shuffled by SEED), and flies each: Python calls every core by radio.
 # CHIP=1: also prints the cost of each in the listed chip.
 set -eu
 case ${1:-} in '' | -h | --help) sed -n '3,5s/^# //p' "$0" && exit 0 ;; esac

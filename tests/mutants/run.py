@@ -17,7 +17,8 @@ another file.
 Leaves build/mutants/results.tsv (name, result, test, seconds, file:line).
 Exit status 1: a bug survived, is no longer found in its file, or does not build.
 """
-import argparse, collections, glob, json, os, pathlib, queue, re, shutil, subprocess, sys, threading, time
+import argparse, collections, glob, json, os, pathlib, queue, re, shutil, subprocess, sys
+import threading, time
 from concurrent.futures import ThreadPoolExecutor
 
 TOP = pathlib.Path(__file__).resolve().parents[2]

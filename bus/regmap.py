@@ -14,6 +14,7 @@ from pathlib import Path
 
 ACCESSES = "ro", "rw", "w1c", "ws"
 WORDS_PER_SLOT = 16
+SCHEMA = json.loads(Path(__file__).with_name("regs.schema.json").read_text())
 REGISTER = {"width": 32, "page": -1, "fields": []}  # page: a byte address behind an adapter
 CLOCKED = """\
 // Generated from {name}.regs.json: do not edit. {name} in a clock of its own (docs/hw-mapping.md).
@@ -53,52 +54,26 @@ def check(holds, text):
         raise Wrong(text)
 
 
-def matches(pattern, meaning):
-    return lambda v: isinstance(v, str) and re.fullmatch(pattern, v, re.A), meaning
-
-
-def whole(low, high):
-    return lambda v: type(v) is int and low <= v <= high, f"a whole number, {low}..{high}"
-
-
-NAME = matches(r"[A-Za-z]\w*", "a name of letters, digits and _")
-DOC = (lambda v: isinstance(v, str) and v.isprintable() and "*/" not in v,
-       "a text of one line without */")
-INTEGER = whole(-1 << 31, 1 << 31)
-FLAG = (lambda v: isinstance(v, bool), "true or false")
-ID = matches("0x[0-9A-Fa-f]{1,4}", 'four digits, as "0x4C45"')
-BITS = {"name": NAME, "lsb": whole(0, 31), "width": whole(1, 32), "doc": DOC, "reset?": ID}
-# The parts of a description; those with ? may be missing.
-PARTS = {
-    "block": NAME, "doc": DOC, "type?": ID, "version?": ID,
-    "registers": [{"word": INTEGER, "name": NAME, "access": matches(".*", "a text"), "doc": DOC,
-                   "width?": INTEGER, "page?": INTEGER, "fields?": [BITS]}],
-    "constants?": [{"name": NAME, "value": whole(0, 0xFFFFFFFF), "doc": DOC}],
-    "events?": [{"name": NAME, "bit": whole(0, 31), "doc": DOC}],
-    "pins?": [{"name": matches(r"[A-Za-z]\w*[io]", "a name that ends with i or o"),
-               "width?": whole(1, 32), "internal?": FLAG}],
-    "memory_port?": FLAG, "memory_bytes?": whole(0, 0xFFFFFFFF), "probe?": FLAG,
-    "own_clock?": whole(0, 10**9),
-    "servant?": {"type": NAME, "header": matches(r"\w[\w.]*", "a file's name"), "waits?": FLAG}}
-
-
 def fit(value, part, where):
-    """Checks a part of a description, and the parts of it."""
-    if isinstance(part, tuple):
-        holds, meaning = part
-        if not holds(value):
-            raise Wrong(f"{where} is {json.dumps(value)[:40]}: it is to be {meaning}")
-    elif isinstance(part, list):
+    """Checks a part of a description by its part of the schema."""
+    part = SCHEMA["$defs"].get(part.get("$ref", "").rpartition("/")[2], part)
+    kind = part["type"]
+    if kind == "object":
+        check(isinstance(value, dict), f"{where} is no object with names and values")
+        for name in part["required"]:
+            check(name in value, f"{where} has no '{name}'")
+        for name, inner in part["properties"].items():
+            if name in value:
+                fit(value[name], inner, name if part is SCHEMA else f"{where}.{name}")
+    elif kind == "array":
         check(isinstance(value, list), f"{where} is no list")
         for i, each in enumerate(value):
-            fit(each, part[0], f"{where}[{i}]")
+            fit(each, part["items"], f"{where}[{i}]")
     else:
-        check(isinstance(value, dict), f"{where} is no object with names and values")
-        for key, inner in part.items():
-            name = key.rstrip("?")
-            check(name in value or key != name, f"{where} has no '{name}'")
-            if name in value:
-                fit(value[name], inner, name if part is PARTS else f"{where}.{name}")
+        holds = type(value) is {"string": str, "integer": int, "boolean": bool}[kind] and (
+            re.fullmatch(part.get("pattern", ".*"), value, re.A | re.S) if kind == "string" else
+            part.get("minimum", 0) <= value <= part.get("maximum", 1))
+        check(holds, f"{where} is {json.dumps(value)[:40]}: it is to be {part['description']}")
 
 
 def range_of(lsb, width):
@@ -134,7 +109,7 @@ class Block:
     """A block's description, checked."""
 
     def __init__(self, description):
-        fit(description, PARTS, "the description")
+        fit(description, SCHEMA, "the description")
         check(("type" in description) == ("version" in description),
               "a slot has a type and a version")
         self.description = description

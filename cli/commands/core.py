@@ -169,13 +169,11 @@ def new(values):
 
 def foreign_words(values):
     """The words of ip/new_foreign.py."""
-    words = [values.name, values.top, values.bus, f"ip/{values.name}"]
-    words += [
-        f"{key}={value}" for key, value in (("CLOCK", values.clock), ("LIBRARY", values.library),
-                                            ("ADDRESS", values.address)) if value]
-    words += [f"PARAM:{each}"
-              for each in values.params] + [f"DEFINE:{each}" for each in values.defines]
-    return words + values.ports + values.files
+    given = {name: getattr(values, name.lower()) for name in ("CLOCK", "LIBRARY", "ADDRESS")}
+    return [values.name, values.top, values.bus, f"ip/{values.name}",
+            *(f"{name}={value}" for name, value in given.items() if value),
+            *(f"PARAM:{each}" for each in values.params),
+            *(f"DEFINE:{each}" for each in values.defines), *values.ports, *values.files]
 
 
 @command("core foreign", [
@@ -309,8 +307,7 @@ def wave(values):
 
 def users_of(name):
     """Cores with an input that this one drives. An input for other cores only ("internal") becomes
-    0; any other would
-    become a pin of the chip."""
+    0; any other would become a pin of the chip."""
     for line in Path("ip/cores.list").read_text().splitlines():
         user, *words = line.partition("#")[0].split() or [""]
         text = "".join(path.read_text()
@@ -355,18 +352,18 @@ def remove(values):
         f"the line of {name} in ip/cores.list is gone; {core} stays, and is no part of the build")
 
 
-# Cores that new_foreign.py puts into slots: slot, module, bus, repository, and Hz of their own
-# clock.
-EXAMPLES = [("foreign_aes", "aes", "memory", "aes", ""),
-            ("foreign_uart", "wbuart", "wishbone", "wbuart32", "24000000"),
-            ("foreign_axil", "axiluart", "axil", "wbuart32", ""),
-            ("foreign_i2c", "i2c_master_top", "wishbone", "i2c", ""),
-            ("foreign_cobs", "axis_cobs_encode", "axis", "verilog-axis", "")]
-SPI_PORTS = """strobe=bus_req_i_stb write=bus_req_i_rw address=bus_req_i_addr enables=bus_req_i_ben
-wdata=bus_req_i_data
- rdata=bus_rsp_o_data ack=bus_rsp_o_ack error=bus_rsp_o_err high=clkgen_i low=bus_req_i_meta
- low=bus_req_i_amo low=bus_req_i_amoop
- low=bus_req_i_burst low=bus_req_i_lock""".split()
+# Words of new_foreign.py for each third-party core: slot, module, bus, files, and more.
+EXAMPLES = [("foreign_spi", "neorv32_spi", "own", "neorv32/*.vhd", "LIBRARY=neorv32",
+             "PARAM:IO_SPI_FIFO=4", *"""strobe=bus_req_i_stb write=bus_req_i_rw
+             address=bus_req_i_addr enables=bus_req_i_ben wdata=bus_req_i_data rdata=bus_rsp_o_data
+             ack=bus_rsp_o_ack error=bus_rsp_o_err high=clkgen_i low=bus_req_i_meta
+             low=bus_req_i_amo low=bus_req_i_amoop low=bus_req_i_burst
+             low=bus_req_i_lock""".split()),
+            ("foreign_aes", "aes", "memory", "aes/*.v"),
+            ("foreign_uart", "wbuart", "wishbone", "wbuart32/*.v", "CLOCK=24000000"),
+            ("foreign_axil", "axiluart", "axil", "wbuart32/*.v"),
+            ("foreign_i2c", "i2c_master_top", "wishbone", "i2c/*.v"),
+            ("foreign_cobs", "axis_cobs_encode", "axis", "verilog-axis/*.v")]
 
 
 @command("core examples", [
@@ -389,16 +386,11 @@ def examples(values):
 
     def into_slot(slot, module, bus, files, *words):
         run(["ip/new_foreign.py", slot, module, bus, cores / "slots" / slot, *words,
-             *sorted(files)], stdout=-3, env={"GHDL": cores / "ghdl/ghdl"})
+             *sorted(cores.glob(files))], stdout=-3, env={"GHDL": cores / "ghdl/ghdl"})
         return cores / "slots" / slot
 
-    slots = [] if missing else [
-        "examples/foreign/olo_spi",
-        into_slot("foreign_spi", "neorv32_spi", "own", (cores / "neorv32").glob("*.vhd"),
-                  "LIBRARY=neorv32", "PARAM:IO_SPI_FIFO=4", *SPI_PORTS),
-        *(into_slot(slot, module, bus, (cores / repository).glob("*.v"),
-                    *([f"CLOCK={clock}"] if clock else []))
-          for slot, module, bus, repository, clock in EXAMPLES)]
+    slots = [] if missing else ["examples/foreign/olo_spi",
+                                *(into_slot(*each) for each in EXAMPLES)]
     return run(["examples/foreign/orders.sh", "tests/e2e/cores/servo", "tests/e2e/cores/crc32",
                 *slots], check=False, env={
                     "IMAGE": values.image, "JOBS": values.jobs, "SEED": values.seed,

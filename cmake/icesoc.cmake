@@ -145,7 +145,8 @@ function(icesoc_regmap json)
            ${GEN_DIR}/${block}_regs.md)
   add_custom_command(OUTPUT ${outs}
     COMMAND ${REGMAP} ${path} --output-dir ${GEN_DIR}
-    DEPENDS ${REGMAP} ${path} VERBATIM COMMENT "Registers of ${block}")
+    DEPENDS ${REGMAP} ${CMAKE_SOURCE_DIR}/bus/regs.schema.json ${path}
+    VERBATIM COMMENT "Registers of ${block}")
   add_custom_target(regmap_${block} ALL DEPENDS ${outs})
   set_property(GLOBAL APPEND PROPERTY ICESOC_REGMAP_TARGETS regmap_${block})
   set_property(GLOBAL APPEND PROPERTY ICESOC_REGS_FILES ${path})

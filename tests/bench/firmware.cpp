@@ -292,15 +292,15 @@ int main(int argc, char** argv) {
             }
         }
         MeasuredFlight f(elf, hclk / (SocModel::clkHz * hclkPerClk));
-        measureCalls(f, figures.brief ? 1 : 20, "call", 11970, 1);
+        measureCalls(f, figures.brief ? 1 : 20, "call in the clear", 11970, 1);
         if (!figures.brief)
-            measureStream(f, "full stream");
+            measureStream(f, "full stream in the clear");
         measureStacks(f);
         if (!figures.brief) {
             MeasuredFlight keyed(elf, hclk / (SocModel::clkHz * hclkPerClk),
                                  std::vector<uint8_t>(LINK_KEY_BYTES, 1));
-            measureCalls(keyed, 20, "call under a key", 0, 2);
-            measureStream(keyed, "full stream under a key");
+            measureCalls(keyed, 20, "call with a key", 0, 2);
+            measureStream(keyed, "full stream with a key");
         }
     });
 }

@@ -60,9 +60,8 @@ def fit(value, part, where):
     kind = part["type"]
     if kind == "object":
         check(isinstance(value, dict), f"{where} is no object with names and values")
-        for name in part["required"]:
-            check(name in value, f"{where} has no '{name}'")
         for name, inner in part["properties"].items():
+            check(name in value or name not in part["required"], f"{where} has no '{name}'")
             if name in value:
                 fit(value[name], inner, name if part is SCHEMA else f"{where}.{name}")
     elif kind == "array":

@@ -117,10 +117,6 @@ def targets(test, copy):
         return [f"{rest}_vectors"]
     if kind == "slice":
         return ["slice2c"] + ["ghdl"] * rest.startswith("hardware.vhdl.")
-    if kind == "interop":  # the programs that its command names
-        shown = subprocess.run(["ctest", "--test-dir", "build/main", "--show-only=json-v1", "-R",
-                                f"^{re.escape(test)}$"], cwd=copy, capture_output=True, text=True)
-        return re.findall(f'^ *"{re.escape(str(copy))}/build/main/([^"]*)"', shown.stdout, re.M)
     return ["regmaps"]
 
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # check: golden|hardware|errors|compile slice2c file.ice-or-folder work-folder source-folder
 # What is expected stands at the end of the file: the compiler's messages behind `//> `, and behind
-# `//= ` lines of the generated header, or of the registers, in their order.
+# `//= ` lines of the generated header, then of the server's C, or of the registers, in their order.
 # golden: the C has no warnings.
 # hardware: the wrappers and new cores are Verilog without warnings, and without latches.
 # errors: nothing is written.
@@ -44,7 +44,7 @@ golden)
         -include "$work"/*.h -x c++ /dev/null
     sed -i "s|^.*/||" "$work/messages"
     has_messages
-    has_lines "$work"/*.h
+    has_lines "$work"/*.h "$work"/*_server.c
     ;;
 hardware)
     "$slice2c" "$ice" --output-dir "$work/c" $hardware

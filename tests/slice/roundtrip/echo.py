@@ -213,6 +213,9 @@ def server(module):
     with communicator() as ic:
         adapter = ic.createObjectAdapterWithEndpoints("Echo", "tcp -h 127.0.0.1")
         adapter.add(type("Echoes", (module.Echo,), operations)(), Ice.stringToIdentity("echo"))
+        square = {"area": lambda self, side, current: side * side,
+                  "label": lambda self, current: "square"}
+        adapter.add(type("Squares", (module.SquareDisp,), square)(), Ice.stringToIdentity("square"))
         adapter.activate()
         print(adapter.getEndpoints()[0].getInfo().port, flush=True)
         ic.waitForShutdown()
@@ -235,7 +238,14 @@ def client(module, port):
         own = adapter.addWithUUID(thrower)
         adapter.activate()
         for encoding in ("1.1", "1.0"):
-            echo = module.EchoPrx.uncheckedCast(ic.stringToProxy("echo -e %s:tcp -h 127.0.0.1 -p %s" % (encoding, port)))
+            def at(name):
+                return ic.stringToProxy("%s -e %s:tcp -h 127.0.0.1 -p %s" % (name, encoding, port))
+
+            echo = module.EchoPrx.uncheckedCast(at("echo"))
+            square = module.SquarePrx.checkedCast(at("square"))
+            check("a class that is called", square.area(3) == 9 and
+                  module.LabelledPrx.checkedCast(square).label() == "square" and
+                  square.ice_ids()[1:] == ["::T::Labelled", "::T::Named", "::T::Square"])
             for i, t in enumerate(model.types):
                 for _ in range(12):
                     for form in model.formats(t):

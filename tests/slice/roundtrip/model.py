@@ -132,11 +132,14 @@ class Model:
         out += [self.members(e) for e in self.exceptions]
         if hidden:
             out.append("class Lone { int number; Lone next; optional(1) string text; Object any; };")
-        out.append("interface Echo {")
+        out += ["interface Labelled { string label(); }; class Named { string name; };",
+                "class Square extends Named implements Labelled { int area(int side); };",
+                "interface Echo {"]
         for i, t in enumerate(self.types):
             for form in self.formats(t):
-                out.append('%s%s plain%d%s(%s v, out %s w);' % (self.meta(form), t.slice(), i, form,
-                                                                t.slice(), t.slice()))
+                meta = self.meta(form).replace("]", ', "amd"]' if i % 3 == 0 else "]")
+                out.append('%s%s plain%d%s(%s v, out %s w);' % (
+                    (meta, t.slice(), i, form) + (t.slice(),) * 2))
             out.append("optional(3) %s maybe%d(optional(1) %s v, out optional(2) %s w);" %
                        ((t.slice(), i) + (t.slice(),) * 2))
         for e in self.exceptions:
@@ -155,7 +158,7 @@ class Model:
             out.append("exception Hidden%s extends %s { string more; Lone other; optional(200) "
                        "int last; };" % (e.name, e.name))
         out.append("};")
-        return '[["underscore"]]\n' + "\n".join(out) + "\n"
+        return '[["underscore", "suppress-warning:deprecated"]]\n' + "\n".join(out) + "\n"
 
     def classes(self):
         return [t for t in self.declared if t.kind == "class"]

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 # roundtrip: slice2c sw-folder work-folder test-folder-of-IceC
 # Random Slice types and values (SEED) by stock ZeroC Ice through generated C servants and proxies,
-# to stock Ice and back; with sanitizers.
+# to stock Ice and back; with sanitizers. Wireshark's ICEP dissector sees nothing malformed on
+# either side of the C.
 set -eu
 slice2c=$1 sw=$2 work=$3 icec=$4
 here=$(dirname "$0")
@@ -25,4 +26,14 @@ cc -O0 -w -ftrivial-auto-var-init=pattern ${COVERAGE_DIR:+--coverage} -fsanitize
     "$sw"/icec/*.c "$sw"/icec/endpoints/tcp_*.c
 echo="/usr/bin/python3 $here/echo.py"
 # shellcheck disable=SC2086
-"$icec/interop.sh" $echo server "$seed" "$work" -- "$work/bridge" -- $echo client "$seed" "$work"
+"$icec/interop.sh" $echo server "$seed" "$work" -- "$here/relay.py" "$work/client.pcap" \
+    -- "$work/bridge" -- "$here/relay.py" "$work/server.pcap" -- $echo client "$seed" "$work"
+for file in client server; do
+    messages=$(tshark -r "$work/$file.pcap" -Y icep -T fields -e icep.message_type 2>/dev/null |
+        tr ',' '\n' | grep -c .)
+    bad=$(tshark -r "$work/$file.pcap" -Y '_ws.malformed || _ws.unreassembled ||
+        (icep && _ws.expert.severity >= error)' 2>/dev/null | head)
+    echo "$file: $messages ICEP messages"
+    [ -z "$bad" ] || { echo "malformed, says tshark: $bad" && exit 1; }
+    [ "$messages" -ge 1000 ] || exit 1
+done

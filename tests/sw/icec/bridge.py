@@ -11,6 +11,7 @@ import sys
 SERVANT = re.compile(r"^typedef struct (\w+) \{\n    Ice_Object base;", re.M)
 OPERATION = re.compile(r"^Ice_Status (\w+)\((\w+ self)((?:, [^;]*)?), const Ice_Current "
                        r"\*current\);")
+RESPONSE = re.compile(r"^Ice_Status (\w+)_response\(Ice_Reply \*reply((?:, [^;]*)?)\);")
 CALL = re.compile(r"^Ice_Status (\w+Prx_\w+)\(\w+ self((?:, [^;]*)?)\);")
 
 
@@ -18,7 +19,7 @@ def name_of(parameter):
     return re.search(r"\w+$", parameter)[0]
 
 
-def operation(name, self, parameters, calls, servants):
+def operation(name, self, parameters, calls, servants, responses):
     """Writes an operation. What only the call gives back is sent later: it answers
     asynchronously."""
     owner = max((s for s in servants if name.startswith(s + "_")), key=len)
@@ -37,8 +38,11 @@ def operation(name, self, parameters, calls, servants):
     print(f"    status = {call}({', '.join(arguments)});")
     if later:
         names = [name_of(p) for p in later]
-        results = ", ".join(["&reply"] + [f"has_{n} ? &{n} : 0" if "has_" + n in names else n
-                                          for n in names if n != "ex" and n[:4] != "has_"])
+        own = {name_of(p) for p in later if p.count("*") == 1}  # no classes, which are pointers
+        own &= {name_of(p) for p in responses[name].split(", ") if "*" in p}
+        results = ", ".join(["&reply"] + [
+            f"has_{n} ? &{n} : 0" if "has_" + n in names else "&" * (n in own) + n
+            for n in names if n != "ex" and n[:4] != "has_"])
         answer = [f"status == ICE_OK ? {name}_response({results})"]
         answer += [f"{name}_exception(&reply, &ex)" for p in later if name_of(p) == "ex"]
         print("    if (status <= ICE_USER_EXCEPTION) {\n        Ice_Reply reply;\n"
@@ -49,7 +53,7 @@ def operation(name, self, parameters, calls, servants):
 
 
 def main():
-    servants, operations, calls = [], {}, {}
+    servants, operations, calls, responses = [], {}, {}, {}
     for header in sys.argv[1:]:
         print(f'#include "{header}"')
         text = open(header).read()
@@ -60,9 +64,11 @@ def main():
                 operations[match[1]] = match.groups()
             elif match := CALL.match(flat):
                 calls[match[1]] = match[2]
+            elif match := RESPONSE.match(flat):
+                responses[match[1]] = match[2]
     print('#include "bridge.h"\n\n#include <string.h>')
     for each in operations.values():
-        operation(*each, calls, servants)
+        operation(*each, calls, servants, responses)
     print("\nIce_ObjectPtr Bridge_servant(int number) {\n    switch (number) {")
     for number, servant in enumerate(servants):
         print(f"    case {number}: {{\n        static {servant} v;\n        {servant}_init(&v);\n"

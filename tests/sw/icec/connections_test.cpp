@@ -1,9 +1,37 @@
 // SPDX-License-Identifier: MIT
 //
-// connections_test: connections that end, calls back on them, time-outs, signs of life, and the
-// properties that adapters and proxies are made from.
+// connections_test: connections that end, calls back on them, time-outs, signs of life, the
+// properties that adapters and proxies are made from, and addresses of names.
 
 #include "pair.h"
+
+#include <dlfcn.h>
+#include <netdb.h>
+#include <netinet/in.h>
+
+extern "C" {
+#include "tcp_private.h"
+}
+
+// A resolver in place of the system's: "twofold.test" is 127.0.0.2 and 127.0.0.1, "mixed.test" is
+// ::1 and 127.0.0.1.
+static const auto real = reinterpret_cast<decltype(&getaddrinfo)>(dlsym(RTLD_NEXT, "getaddrinfo"));
+static addrinfo* inFront(const char* address, const char* port, addrinfo* rest) {
+    addrinfo numeric = {}, *one = nullptr;
+    numeric.ai_flags = AI_NUMERICHOST;
+    numeric.ai_socktype = SOCK_STREAM;
+    if (real(address, port, &numeric, &one) == 0)
+        one->ai_next = rest;
+    return one;
+}
+extern "C" int getaddrinfo(const char* name, const char* port, const addrinfo* hints,
+                           addrinfo** list) {
+    bool isTwofold = name && std::string(name) == "twofold.test";
+    if (!isTwofold && (!name || std::string(name) != "mixed.test"))
+        return real(name, port, hints, list);
+    *list = inFront(isTwofold ? "127.0.0.2" : "::1", port, inFront("127.0.0.1", port, nullptr));
+    return 0;
+}
 
 namespace {
 
@@ -149,6 +177,18 @@ TEST_F(Calls, PropertiesMakeAdaptersAndProxies) {
     ASSERT_EQ(Ice_Communicator_propertyToProxy(&here().ic, "Thing.Proxy", &prx), ICE_OK);
     EXPECT_EQ(call(prx, "op"), ICE_OK);
     EXPECT_EQ(prx.connection, 2);
+}
+
+TEST(TcpAddresses, IPv4ComesFirstAsInIce) {
+    TcpEndpoint_Address address = {};
+    address.host.data = "mixed.test";
+    address.host.size = 10;
+    address.port = 4061;
+    TcpEndpoint_Place places[TCP_PLACES];
+    ASSERT_EQ(TcpEndpoint_resolve(&address, places), 2);
+    EXPECT_EQ(places[0].at.ss_family, AF_INET);
+    EXPECT_EQ(reinterpret_cast<sockaddr_in&>(places[0].at).sin_port, htons(4061));
+    EXPECT_EQ(places[1].at.ss_family, AF_INET6);
 }
 
 } // namespace

@@ -86,6 +86,12 @@ TEST_F(Wire, WhatDoesNotExistIsNamedInTheReply) {
     EXPECT_EQ(back[0], message(2, body));
 }
 
+TEST_F(Wire, AFacetThatIsNotThereDoesNotExist) {
+    auto back = exchange(request(1, "thing", "ice_ping", {}, "side"));
+    ASSERT_EQ(back.size(), 1u);
+    EXPECT_EQ(back[0][18], ICEC_FULL ? ICE_FACET_NOT_EXIST : ICE_OBJECT_NOT_EXIST);
+}
+
 TEST_F(Wire, CompressionThatIsOnlyOfferedDoesNotMatter) {
     Bytes m = request(1, requestBody("thing", "ice_ping"));
     m[9] = 1;

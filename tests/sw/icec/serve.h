@@ -9,7 +9,5 @@
 
 /* Adds the servants to an adapter. */
 Ice_Status Suite_serve(Ice_ObjectAdapterPtr adapter);
-/* Does what is due between two events. */
-void Suite_work(void);
 
 #endif

@@ -20,13 +20,8 @@ int main(void) {
     Ice_ObjectAdapter_activate(&adapter);
     printf("%d\n", tcp.port);
     fflush(stdout);
-    while (!ic.stopping) {
-        (void)Ice_Communicator_poll(&ic, 100);
-        Suite_work();
-    }
-#ifndef ICEC_MINIMAL
+    Ice_Communicator_waitForShutdown(&ic);
     Ice_Communicator_destroy(&ic, 2000);
-#endif
     TcpEndpoint_destroy(&tcp);
     return 0;
 }

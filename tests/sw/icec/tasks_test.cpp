@@ -248,8 +248,8 @@ TEST_F(Tasks, MayCallTheirOwnProgramsObjects) {
     EXPECT_EQ(ask(prx, "later", 4), 12);
 }
 
-// The server listens on the second of the name's addresses only (tcp_test.cpp resolves it); the
-// next call finds the connection.
+// The server listens on the second of the name's addresses only (connections_test.cpp resolves it);
+// the next call finds the connection.
 TEST_F(Tasks, TryEachAddressOfAName) {
     Ice_ObjectPrx prx = proxy("thing", "twofold.test");
     for (int i = 0; i < 3; ++i)
@@ -325,6 +325,34 @@ private:
     Graph_Maker maker_;
     std::atomic<int> made_{0};
 };
+
+TEST_F(Results, OfAnAsynchronousCallAreThereWhenItIsCompleted) {
+    Graph_MakerPrx prx = proxy("maker");
+    Graph_Node sent;
+    Graph_Node_init(&sent);
+    sent.has_text = 1;
+    sent.text = text("mine");
+    for (sent.id = 0; sent.id < 2; ++sent.id) { // an exception for an odd number
+        static bool isRight;
+        isRight = false;
+        Graph_Maker_make_Async async;
+        async.completed = [](Graph_Maker_make_Async* self) {
+            const Graph_Node* node = self->status == ICE_OK ? self->result : nullptr;
+            if (self->status == ICE_USER_EXCEPTION && str(self->exception.u.Failure.why) == "mine")
+                node = self->exception.u.Failure.node;
+            isRight = node && str(node->text) == "mine";
+        };
+        ASSERT_EQ(Graph_MakerPrx_make_async(&prx, &sent, nullptr, &async), ICE_OK);
+        while (!async.done)
+            Ice_Communicator_poll(&client_->ic, 1000);
+        EXPECT_TRUE(isRight) << sent.id;
+    }
+}
+
+TEST_F(Results, NeedTheModeOfTheirOperation) {
+    Graph_MakerPrx prx = proxy("maker");
+    EXPECT_EQ(::call(prx, "echo", 0, nullptr, 2), ICE_UNKNOWN_LOCAL_EXCEPTION) << "not idempotent";
+}
 
 TEST_F(Results, AreTheirTasksOfFour) {
     fromThreads(4);

@@ -91,6 +91,43 @@ TEST_F(Transports, AnAdaptersProxyHasAnEndpointOfEachTransportItListensOn) {
     EXPECT_EQ(print(prx), "thing -t -e 1.1:loop -c 0");
 }
 
+// As stock Ice's proxyToString(stringToProxy(...)) gives them.
+TEST_F(Transports, StringsOfProxiesAreReadAndPrintedAsByIce) {
+    const std::pair<const char*, const char*> cases[] = {
+        {"plain", "plain -t -e 1.1"},
+        {"plain -t", "plain -t -e 1.1"},
+        {" leading", "leading -t -e 1.1"},
+        {"cat/name -o", "cat/name -o -e 1.1"},
+        {"a\\/b/c -O", "a\\/b/c -O -e 1.1"},
+        {"/name", "name -t -e 1.1"},
+        {"-t", "-t -t -e 1.1"},
+        {"name -f facet", "name -f facet -t -e 1.1"},
+        {"name -f \"a facet\" -s", "name -f \"a facet\" -t -s -e 1.1"},
+        {"name -e 1.0", "name -t -e 1.0"},
+        {"name -p 1.0 -t", "name -t -e 1.1"},
+        {"name -t -o", "name -o -e 1.1"},
+        {"'single quoted' -d", "\"single quoted\" -d -e 1.1"},
+        {"name @ adapter", "name -t -e 1.1 @ adapter"},
+        {"cat/name -o @ \"an adapter\"", "cat/name -o -e 1.1 @ \"an adapter\""},
+        {"tab\\tand\\nnewline", "tab\\tand\\nnewline -t -e 1.1"},
+        {"octal\\101\\7", "octalA\\a -t -e 1.1"},
+        {"back\\\\slash", "back\\\\slash -t -e 1.1"},
+        {"n:opaque -t 99 -e 1.0 -v QUJD", "n -t -e 1.1:opaque -t 99 -e 1.0 -v QUJD"},
+        {"\"with space\":tcp -h a -p 1", "\"with space\" -t -e 1.1:tcp -h a -p 1 -t 60000"},
+        {"n -o -s:tcp -h host -p 1 -t 500", "n -o -s -e 1.1:tcp -h host -p 1 -t 500"},
+        {"n:tcp -h \"::1\" -p 65535 -t infinite",
+         "n -t -e 1.1:tcp -h \"::1\" -p 65535 -t infinite"},
+        {"n:opaque -e 1.1 -t 99 -v QUI=:tcp -h x -p 2:tcp -h b -p 2",
+         "n -t -e 1.1:opaque -t 99 -e 1.1 -v QUI=:tcp -h x -p 2 -t 60000:tcp -h b -p 2 -t 60000"}};
+    for (const auto& [read, printed] : cases)
+        EXPECT_EQ(print(proxy(read)), printed);
+    for (const char* text : {"quote\\\"s and \\'single", "name -x", "name/", "a/b/c",
+                             "name:", "name:tcp -h", "name @", "\"unclosed", "name -f"}) {
+        Ice_ObjectPrx prx;
+        EXPECT_NE(Ice_Communicator_stringToProxy(&here_->ic, text, &prx), ICE_OK) << text;
+    }
+}
+
 TEST_F(Transports, WhereOneFailsTheNextEndpointIsTried) {
     Ice_ObjectPrx prx = proxy("thing:tcp -h 127.0.0.1 -p 1:loop");
     EXPECT_EQ(callBy(prx), LOOP);

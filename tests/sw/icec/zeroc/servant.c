@@ -4,8 +4,6 @@
  */
 #include "servant.h"
 
-void Suite_work(void) {}
-
 void* Suite_joined(const Ice_Current* current, const void* a, Ice_Int countA, const void* b,
                    Ice_Int countB, size_t element) {
     size_t first = (size_t)countA * element, second = (size_t)countB * element;

@@ -75,14 +75,6 @@ TEST_P(LinkOverModems, WhatAModemAcknowledgesAndThenDropsIsSentAgain) {
     EXPECT_GT(b_.modem.counters().packetsDropped, 2u);
 }
 
-TEST_P(LinkOverModems, InThePublishedWeathersNothingIsLostOrDoubled) {
-    for (auto& [what, weather] : RfWeather::published()) {
-        SCOPED_TRACE(what);
-        air_.weather = weather;
-        expectAll(24, 120);
-    }
-}
-
 // Returns whether a packet is made of whole frames and of bytes that fill it up.
 bool isWhole(const std::vector<uint8_t>& bytes) {
     size_t at = 0;

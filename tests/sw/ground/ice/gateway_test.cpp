@@ -48,12 +48,6 @@ TEST_F(Gateway, TheUavCallsTheStationBehindIt) {
     EXPECT_TRUE(says("nobody listens at 127.0.0.1"));
 }
 
-TEST_F(Gateway, PythonWithoutThePlugin) {
-    start();
-    std::string command = PYTHON " '" CLIENT "' '" SLICE "' '' '" + endpoint() + "' 0";
-    EXPECT_EQ(std::system(command.c_str()), 0) << "the gateway said:\n" << said();
-}
-
 TEST_F(Gateway, AModemThatComesBackIsUsedAgain) {
     start({"-t", "1"});
     world_.rig.with([&] { world_.rig.ground->power(false, world_.rig.ns()); });

@@ -35,6 +35,7 @@ TEST_P(OsHostCases, SaysWhatTheManualSays) {
                             }
                         }});
     OSInit();
+    OsCase_begin();
     c.prepare();
     OsHost::run();
     EXPECT_STREQ(os_said, c.expected);

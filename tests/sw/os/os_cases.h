@@ -11,17 +11,17 @@
 
 typedef struct OsCase {
     const char* name;
-    void (*prepare)(void); /* between OSInit and OSStart */
-    void (*interrupt)(
-        void);            /* the interrupt routine's part, between OSIntEnter and OSIntExit; or 0 */
-    unsigned ticks;       /* length of the case */
-    const char* expected; /* the expected output */
+    void (*prepare)(void);   /* between OSInit and OSStart */
+    void (*interrupt)(void); /* its routine, between OSIntEnter and OSIntExit; or 0 */
+    unsigned ticks;          /* length of the case */
+    const char* expected;    /* the expected output */
 } OsCase;
 
 extern const OsCase os_cases[];
 extern const unsigned os_caseCount;
 extern char os_said[512]; /* by the case that ran last */
 
+void OsCase_begin(void); /* before `prepare`: nothing is said, no stack is used */
 /* Makes an interrupt arrive now; implemented by the runner. */
 void Runner_interrupt(void);
 /* Serves an interrupt that has become possible (a real processor does so at once); implemented by

@@ -10,9 +10,8 @@ static INT8U err;
 
 /* ---- time-outs count ticks ---- */
 
-static void timesOut(void* p) {
+static void timesOut(void) {
     INT32U start;
-    (void)p;
     start = OSTimeGet();
     OSSemPend(sem, 7, &err);
     OsCase_sayNumber(err);
@@ -27,17 +26,13 @@ static void timesOut(void* p) {
     OsCase_sayNumber((unsigned)(OSTimeGet() - start));
     OSTimeDly(0); /* no delay */
     OsCase_sayNumber((unsigned)(OSTimeGet() - start));
-    OsCase_end();
 }
 
-static void holdsMutex(void* p) {
-    (void)p;
+static void holdsMutex(void) {
     OSMutexPend(mutex, 0, &err);
-    OsCase_end();
 }
 
 void OsCase_timing(void) {
-    OsCase_begin();
     sem = OSSemCreate(0);
     mutex = OSMutexCreate(3, &err);
     queue = OSQCreate(slots, 3);
@@ -47,8 +42,7 @@ void OsCase_timing(void) {
 
 /* ---- semaphores count to 65535; of several tasks the highest gets the unit ---- */
 
-static void countsSem(void* p) {
-    (void)p;
+static void countsSem(void) {
     OsCase_sayNumber(OSSemAccept(sem));
     OsCase_sayNumber(OSSemAccept(sem));
     OsCase_sayNumber(OSSemAccept(sem));
@@ -63,11 +57,9 @@ static void countsSem(void* p) {
     OSSemPend(mutex, 0, &err);
     OsCase_sayNumber(err);
     OsCase_sayNumber(OSSemAccept(mutex));
-    OsCase_end();
 }
 
 void OsCase_counting(void) {
-    OsCase_begin();
     sem = OSSemCreate(2);
     sem2 = OSSemCreate(65535);
     mutex = OSMutexCreate(3, &err);
@@ -75,25 +67,20 @@ void OsCase_counting(void) {
     (void)OsCase_task(countsSem, 9);
 }
 
-static void takesUnit(void* p) {
-    (void)p;
+static void takesUnit(void) {
     OSSemPend(sem, 0, &err);
     OsCase_sayNumber(OSPrioCur);
-    OsCase_end();
 }
 
-static void givesUnits(void* p) {
-    (void)p;
+static void givesUnits(void) {
     OsCase_say("gives");
     (void)OSSemPost(sem);
     (void)OSSemPost(sem);
     (void)OSSemPost(sem);
     OsCase_say("gave");
-    OsCase_end();
 }
 
 void OsCase_choosing(void) {
-    OsCase_begin();
     sem = OSSemCreate(0);
     (void)OsCase_task(takesUnit, 12);
     (void)OsCase_task(takesUnit, 7);
@@ -110,9 +97,8 @@ static void sayMessage(void* message) {
     OsCase_say(message ? names[(char*)message - messages] : "none");
 }
 
-static void usesQueue(void* p) {
+static void usesQueue(void) {
     int i;
-    (void)p;
     for (i = 0; i < 4; ++i)
         OsCase_sayNumber(OSQPost(queue, &messages[i])); /* the fourth does not fit */
     for (i = 0; i < 3; ++i)
@@ -125,35 +111,28 @@ static void usesQueue(void* p) {
     OsCase_sayNumber(OSQPost(sem, &messages[0]));
     sayMessage(OSQPend(sem, 1, &err));
     OsCase_sayNumber(err);
-    OsCase_end();
 }
 
 void OsCase_queueing(void) {
-    OsCase_begin();
     queue = OSQCreate(slots, 3);
     sem = OSSemCreate(0);
     (void)OsCase_task(usesQueue, 9);
 }
 
-static void getsMessage(void* p) {
+static void getsMessage(void) {
     void* message;
-    (void)p;
     message = OSQPend(queue, 0, &err);
     OsCase_sayNumber(OSPrioCur);
     sayMessage(message);
-    OsCase_end();
 }
 
-static void postsMessages(void* p) {
-    (void)p;
+static void postsMessages(void) {
     (void)OSQPost(queue, &messages[1]);
     (void)OSQPost(queue, &messages[2]);
     OsCase_say("posted");
-    OsCase_end();
 }
 
 void OsCase_handingOver(void) {
-    OsCase_begin();
     queue = OSQCreate(slots, 3);
     (void)OsCase_task(getsMessage, 12);
     (void)OsCase_task(getsMessage, 7);

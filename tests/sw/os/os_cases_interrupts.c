@@ -28,16 +28,13 @@ void OsCase_interruptRoutine(void) {
     OsCase_say("irq");
 }
 
-static void interrupted(void* p) {
-    (void)p;
+static void interrupted(void) {
     OsCase_say("background");
     Runner_interrupt();
     OsCase_say("ends");
-    OsCase_end();
 }
 
 void OsCase_interrupting(void) {
-    OsCase_begin();
     osCase_sem = OSSemCreate(0);
     mutex = OSMutexCreate(3, &err);
     queue = OSQCreate(slots, 3);
@@ -49,19 +46,16 @@ void OsCase_saysIrq(void) {
     OsCase_say("irq");
 }
 
-static void disablesInterrupts(void* p) {
+static void disablesInterrupts(void) {
     OS_CPU_SR cpu_sr;
-    (void)p;
     OS_ENTER_CRITICAL();
     Runner_interrupt();
     OsCase_say("critical");
     OS_EXIT_CRITICAL();
     Runner_passTime();
     OsCase_say("after");
-    OsCase_end();
 }
 
 void OsCase_masking(void) {
-    OsCase_begin();
     (void)OsCase_task(disablesInterrupts, 6);
 }

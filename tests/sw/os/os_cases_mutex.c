@@ -9,8 +9,7 @@ static INT8U err;
 
 /* ---- priority inheritance ---- */
 
-static void lowOwner(void* p) {
-    (void)p;
+static void lowOwner(void) {
     OSMutexPend(mutex, 0, &err);
     OSTimeDly(2);
     OsCase_say("low-works-at");
@@ -18,28 +17,22 @@ static void lowOwner(void* p) {
     (void)OSMutexPost(mutex);
     OsCase_say("low-ends-at");
     OsCase_sayNumber(OSPrioCur);
-    OsCase_end();
 }
 
-static void highWants(void* p) {
-    (void)p;
+static void highWants(void) {
     OSTimeDly(1);
     OsCase_say("high-wants");
     OSMutexPend(mutex, 0, &err);
     OsCase_say("high-has");
     (void)OSMutexPost(mutex);
-    OsCase_end();
 }
 
-static void middle(void* p) {
-    (void)p;
+static void middle(void) {
     OSTimeDly(2);
     OsCase_say("middle");
-    OsCase_end();
 }
 
 void OsCase_inheriting(void) {
-    OsCase_begin();
     mutex = OSMutexCreate(2, &err);
     (void)OsCase_task(lowOwner, 20);
     (void)OsCase_task(highWants, 5);
@@ -47,41 +40,32 @@ void OsCase_inheriting(void) {
 }
 
 /* The owner waits for something else while it inherits: it is moved in that list, too. */
-static void ownerWaits(void* p) {
-    (void)p;
+static void ownerWaits(void) {
     OSMutexPend(mutex, 0, &err);
     OSSemPend(sem, 0, &err);
     OsCase_say("owner");
     (void)OSMutexPost(mutex);
-    OsCase_end();
 }
 
-static void rivalWaits(void* p) {
-    (void)p;
+static void rivalWaits(void) {
     OSSemPend(sem, 0, &err);
     OsCase_say("rival");
-    OsCase_end();
 }
 
-static void wantsMutex(void* p) {
-    (void)p;
+static void wantsMutex(void) {
     OSTimeDly(1);
     OSMutexPend(mutex, 0, &err);
     OsCase_say("high-has");
     (void)OSMutexPost(mutex);
-    OsCase_end();
 }
 
-static void postsLate(void* p) {
-    (void)p;
+static void postsLate(void) {
     OSTimeDly(2);
     (void)OSSemPost(sem);
     (void)OSSemPost(sem);
-    OsCase_end();
 }
 
 void OsCase_inheritingInAList(void) {
-    OsCase_begin();
     mutex = OSMutexCreate(2, &err);
     sem = OSSemCreate(0);
     (void)OsCase_task(ownerWaits, 20);
@@ -92,18 +76,15 @@ void OsCase_inheritingInAList(void) {
 
 /* ---- mutexes: errors ---- */
 
-static void mutexOwner(void* p) {
-    (void)p;
+static void mutexOwner(void) {
     OSMutexPend(mutex, 0, &err);
     OsCase_sayNumber(err);
     OSMutexPend(mutex2, 0, &err); /* its ceiling is below this task's priority */
     OsCase_sayNumber(err);
     OsCase_sayNumber(OSMutexPost(mutex2));
-    OsCase_end();
 }
 
-static void mutexStranger(void* p) {
-    (void)p;
+static void mutexStranger(void) {
     OsCase_sayNumber(OSMutexPost(mutex));
     OsCase_sayNumber(OSMutexPost(sem));
     OsCase_sayNumber(OSMutexPost(0));
@@ -117,11 +98,9 @@ static void mutexStranger(void* p) {
     OsCase_sayNumber(err);
     (void)OSMutexCreate(OS_LOWEST_PRIO, &err);
     OsCase_sayNumber(err);
-    OsCase_end();
 }
 
 void OsCase_mutexErrors(void) {
-    OsCase_begin();
     mutex = OSMutexCreate(3, &err);
     mutex2 = OSMutexCreate(8, &err);
     sem = OSSemCreate(0);

@@ -9,19 +9,17 @@
 
 #define OS_CASE_WORDS 128 /* of a task's stack */
 
-void OsCase_begin(void); /* of a case: nothing is said, no stack is used */
 void OsCase_say(const char* word);
 void OsCase_sayNumber(unsigned value);
 /* Creates a task on a stack of its own, with its priority as its number. Returns OSTaskCreateExt's
  * result. */
-INT8U OsCase_task(void (*body)(void*), INT8U priority);
-void OsCase_end(void);      /* of a task */
-OS_STK* OsCase_stack(void); /* the top of one that is free */
+INT8U OsCase_task(void (*body)(void), INT8U priority);
+INT8U OsCase_uncheckedTask(void (*body)(void), INT8U priority); /* without the stack's options */
 
 /* Tasks of several cases. */
 extern OS_EVENT* osCase_sem;
-void OsCase_waitsForSem(void* p);
-void OsCase_created(void* p);
+void OsCase_waitsForSem(void);
+void OsCase_created(void);
 
 /* Prepare a case, or are its interrupt routine. */
 void OsCase_choosing(void);

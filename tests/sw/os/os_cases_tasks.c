@@ -9,16 +9,13 @@ static INT8U err;
 
 /* ---- a post lets the task of higher priority go on at once ---- */
 
-static void postsSem(void* p) {
-    (void)p;
+static void postsSem(void) {
     OsCase_say("low-posts");
     OsCase_sayNumber(OSSemPost(osCase_sem));
     OsCase_say("low-ends");
-    OsCase_end();
 }
 
 void OsCase_preempting(void) {
-    OsCase_begin();
     osCase_sem = OSSemCreate(0);
     (void)OsCase_task(postsSem, 10);
     (void)OsCase_task(OsCase_waitsForSem, 5);
@@ -26,26 +23,22 @@ void OsCase_preempting(void) {
 
 /* ---- a task that creates one of higher priority is preempted by it ---- */
 
-static void creates(void* p) {
-    (void)p;
+static void creates(void) {
     OsCase_say("creates");
     OsCase_sayNumber(OsCase_task(OsCase_created, 4));
     OsCase_sayNumber(OsCase_task(OsCase_created, 4)); /* the priority is taken */
     OsCase_say("goes-on");
     OsCase_sayNumber(OsCase_task(OsCase_created, 20));
     OsCase_say("ends");
-    OsCase_end();
 }
 
 void OsCase_creating(void) {
-    OsCase_begin();
     (void)OsCase_task(creates, 8);
 }
 
 /* ---- the scheduler's lock ---- */
 
-static void locks(void* p) {
-    (void)p;
+static void locks(void) {
     OSSchedLock();
     OSSchedLock();
     (void)OSSemPost(osCase_sem);
@@ -57,11 +50,9 @@ static void locks(void* p) {
     OsCase_say("still-locked");
     OSSchedUnlock();
     OsCase_say("ends");
-    OsCase_end();
 }
 
 void OsCase_locking(void) {
-    OsCase_begin();
     osCase_sem = OSSemCreate(0);
     sem2 = OSSemCreate(0);
     (void)OsCase_task(OsCase_waitsForSem, 5);
@@ -70,27 +61,23 @@ void OsCase_locking(void) {
 
 /* ---- delays, and who runs when they end ---- */
 
-static void pulses(void* p) {
+static void pulses(void) {
     int i;
-    (void)p;
     for (i = 0; i < 3; ++i) {
         OsCase_sayNumber(OSPrioCur);
         OSTimeDly(OSPrioCur == 9 ? 2U : 3U);
     }
-    OsCase_end();
 }
 
 void OsCase_delaying(void) {
-    OsCase_begin();
     (void)OsCase_task(pulses, 10);
     (void)OsCase_task(pulses, 9);
 }
 
 /* ---- stacks ---- */
 
-static void looksAtStacks(void* p) {
+static void looksAtStacks(void) {
     OS_STK_DATA data;
-    (void)p;
     OsCase_sayNumber(OSTaskStkChk(9, &data));
     OsCase_sayNumber(data.OSFree + data.OSUsed);
     OsCase_sayNumber(OSTaskStkChk(33, &data)); /* nobody */
@@ -98,14 +85,12 @@ static void looksAtStacks(void* p) {
     OsCase_sayNumber(OSTaskStkChk(9, 0));
     OsCase_sayNumber(OSTaskStkChk(12, &data)); /* created without the option */
     OsCase_sayNumber(OSTaskStkChk(OS_LOWEST_PRIO + 1, &data));
-    OsCase_end();
 }
 
 void OsCase_stackChecking(void) {
-    OsCase_begin();
     mutex = OSMutexCreate(3, &err);
     (void)OsCase_task(looksAtStacks, 9);
-    (void)OSTaskCreate(OsCase_created, 0, OsCase_stack(), 12);
+    (void)OsCase_uncheckedTask(OsCase_created, 12);
 }
 
 /* ---- a computation that needs all registers, and a task that may come in between anywhere ---- */
@@ -130,14 +115,11 @@ static unsigned scramble(unsigned a) {
 
 static unsigned disturbances;
 
-static void computes(void* p) {
-    (void)p;
+static void computes(void) {
     OsCase_sayNumber(scramble(1));
-    OsCase_end();
 }
 
-static void disturbs(void* p) {
-    (void)p;
+static void disturbs(void) {
     for (;;) {
         OSSemPend(osCase_sem, 0, &err);
         disturbances += scramble(disturbances);
@@ -149,7 +131,6 @@ void OsCase_postsFromInterrupt(void) {
 }
 
 void OsCase_computing(void) {
-    OsCase_begin();
     osCase_sem = OSSemCreate(0);
     (void)OsCase_task(computes, 10);
     (void)OsCase_task(disturbs, 5);

@@ -4,15 +4,12 @@
 // every written page, and there is always a bitstream that configures the FPGA.
 
 #include "keys.h"
-#include "random.h"
 #include "spartan6_boot.h"
 #include "spi_flash.h"
 #include <cstring>
-#include <gtest/gtest.h>
 #include <map>
 
 extern "C" {
-#include "receiver.h"
 #include "signature.h"
 #include "spi_nor.h"
 }
@@ -21,44 +18,29 @@ namespace {
 
 using Bytes = std::vector<uint8_t>;
 constexpr uint32_t product = 0x46504731, chunk = 4096;
-const Keys ours(1), second(2);
 const uint32_t golden = Slots_at(&slots_fpga, 0) + SLOTS_IMAGE_AT,
                multiBoot = Slots_at(&slots_fpga, 1) + SLOTS_IMAGE_AT;
 
 // The bitstream of a version, without its sync word, and with its header.
-struct Image {
-    explicit Image(uint32_t version, uint32_t slot = 1, uint32_t frameWords = 33'200)
-        : bytes(standInBitstream(version, frameWords)) {
+const Image& bitstream(uint32_t version, uint32_t slot = 1) {
+    static std::map<std::pair<uint32_t, uint32_t>, Image> images;
+    auto at = images.find({version, slot});
+    if (at == images.end()) {
+        Bytes bytes = standInBitstream(version, 33'200);
         std::fill_n(bytes.begin() + SLOTS_SYNC_AT, 4, uint8_t{0xFF});
         bytes.resize((bytes.size() + 3) / 4 * 4, 0xFF);
-        header = {SLOTS_MAGIC,
-                  product,
-                  version,
-                  static_cast<uint32_t>(bytes.size()),
-                  Slots_at(&slots_fpga, slot) + SLOTS_IMAGE_AT,
-                  {board[0], board[1]},
-                  0,
-                  {},
-                  {}};
-        crypto_hash_sha512(header.digest, bytes.data(), bytes.size());
-        ours.sign(header);
+        at = images
+                 .try_emplace({version, slot}, slots_fpga, product, version, slot, std::move(bytes),
+                              ours)
+                 .first;
     }
-    Bytes bytes;
-    Slots_Header header;
-};
-
-// The same, made once.
-const Image& imageOf(uint32_t version, uint32_t slot = 1) {
-    static std::map<std::pair<uint32_t, uint32_t>, Image> images;
-    return images.try_emplace({version, slot}, version, slot).first->second;
+    return at->second;
 }
-
-struct PowerCut {};
 
 // The FPGA's flash, the FPGA, and the processor that both are wired to.
 class Fpga : public ::testing::Test, public Updated {
-protected:
-    Fpga() {
+public:
+    Fpga() : Updated(chunk) {
         lists[0].list = ours.list(1, ours, ours);
         fill(1);
     }
@@ -68,13 +50,8 @@ protected:
     void fill(uint64_t seed) {
         flash = SpiFlash([] { return now_; }, seed);
         flash_ = &flash;
-        flash.onOperation = [this] {
-            if (flash.operations() == cutAt) {
-                now_ += flash.busyNs() / 2;
-                throw PowerCut();
-            }
-        };
-        const Image& image = imageOf(1, 0);
+        cutPowerOf(flash, now_);
+        const Image& image = bitstream(1, 0);
         const auto at = [&](uint32_t offset) { return flash.memory.begin() + offset; };
         std::memcpy(&*at(golden - SLOTS_IMAGE_AT), &image.header, sizeof image.header);
         std::copy(image.bytes.begin(), image.bytes.end(), at(golden));
@@ -93,7 +70,7 @@ protected:
     }
     // Switches the power on, or restarts the processor; returns the version that configures the
     // FPGA.
-    uint32_t boot() {
+    uint32_t boot() override {
         if (Slots_settleFpga(&port, 0))
             fpga.configure(flash.memory);
         EXPECT_TRUE(fpga.running.has_value()) << (fpga.isStuck ? "stuck" : "nothing configures");
@@ -102,22 +79,14 @@ protected:
         Receiver_init(&receiver, &port, product, slot);
         return receiver.version;
     }
-    uint32_t powerOn() {
+    uint32_t powerOn() override {
         flash.powerOff();
         fpga.configure(flash.memory); // before the processor has done anything
         EXPECT_TRUE(fpga.running.has_value()) << (fpga.isStuck ? "stuck" : "nothing configures");
         return boot();
     }
-    Receiver_Reason send(const Image& image) { return Updated::send(image, chunk); }
-    // Does the ground's part until this version is confirmed, whatever runs now.
-    void updateTo(uint32_t version) {
-        const Image& image = imageOf(version);
-        for (uint32_t runs = powerOn(); runs != version; runs = boot()) {
-            ASSERT_EQ(begin(image), RECEIVER_OK);
-            ASSERT_EQ(send(image), RECEIVER_OK);
-        }
-        ASSERT_EQ(Receiver_confirm(&receiver), RECEIVER_OK);
-    }
+    uint64_t operations() const override { return flash.operations(); }
+    Image imageOf(uint32_t version, const Keys& = ours) override { return bitstream(version); }
 
     static inline uint64_t now_ = 0;
     static inline SpiFlash* flash_ = nullptr;
@@ -125,7 +94,6 @@ protected:
                                     [](U8 byte) { return flash_->transfer(byte); },
                                     [] { now_ += flash_->busyNs(); }};
     SpiFlash flash{[] { return now_; }};
-    uint64_t cutAt = 0;
     Spartan6Boot fpga;
     std::vector<Slots_Keys> lists = std::vector<Slots_Keys>(SLOTS_LISTS);
     Slots_Port port{&slots_fpga,      const_cast<SpiNor_Bus*>(&bus),
@@ -137,35 +105,20 @@ protected:
 
 TEST_F(Fpga, ANewBitstreamIsTriedAndStaysWhenItIsConfirmed) {
     EXPECT_EQ(powerOn(), 1u);
-    updateTo(2);
-    EXPECT_EQ(powerOn(), 2u);
-    updateTo(3);
-    EXPECT_EQ(powerOn(), 3u);
-    EXPECT_EQ(receiver.isOnTrial, 0);
+    expectTriedAndConfirmed();
 }
 
 TEST_F(Fpga, ABitstreamThatIsNotConfirmedIsTriedOnce) {
-    powerOn();
-    const Image image(2);
-    EXPECT_EQ(begin(image), RECEIVER_OK);
-    EXPECT_EQ(send(image), RECEIVER_OK);
-    EXPECT_EQ(boot(), 2u);
-    EXPECT_EQ(receiver.isOnTrial, 1);
-    EXPECT_EQ(begin(Image(3)), RECEIVER_ON_TRIAL);
-    EXPECT_EQ(boot(), 1u);
-    EXPECT_EQ(receiver.reason, RECEIVER_WENT_BACK);
-    EXPECT_EQ(powerOn(), 1u);
+    expectTriedOnce();
 }
 
 // Signed, but made wrongly: the FPGA hangs on it, and the processor's next start takes it back.
 TEST_F(Fpga, ABitstreamThatHangsTheFpgaIsTakenBack) {
     powerOn();
-    Image image(2);
+    Image image = imageOf(2);
     image.bytes[SLOTS_SYNC_AT + 4] = 0; // no packet
-    crypto_hash_sha512(image.header.digest, image.bytes.data(), image.bytes.size());
-    ours.sign(image.header);
-    EXPECT_EQ(begin(image), RECEIVER_OK);
-    EXPECT_EQ(send(image), RECEIVER_OK);
+    image.sign(ours);
+    receive(image);
     EXPECT_EQ(Slots_settleFpga(&port, 0), 1);
     fpga.configure(flash.memory);
     EXPECT_TRUE(fpga.isStuck);
@@ -174,9 +127,7 @@ TEST_F(Fpga, ABitstreamThatHangsTheFpgaIsTakenBack) {
 
 TEST_F(Fpga, ABitstreamThatTheFpgaRefusesIsNamedAndDoesNotCountAsRunning) {
     powerOn();
-    const Image image(2);
-    EXPECT_EQ(begin(image), RECEIVER_OK);
-    EXPECT_EQ(send(image), RECEIVER_OK);
+    receive(imageOf(2));
     EXPECT_EQ(Slots_settleFpga(&port, 0), 1);
     EXPECT_EQ(Slots_settleFpga(&port, 1), 1);
     EXPECT_EQ(powerOn(), 1u);
@@ -192,28 +143,28 @@ TEST_F(Fpga, WhatIsNotForItLeavesItUntouched) {
     updateTo(5);
     powerOn();
     const Bytes before = flash.memory;
-    Image foreign(6), changed(6);
+    Image foreign = imageOf(6), changed = imageOf(6);
     foreign.header.product ^= 1;
     ours.sign(foreign.header);
     ++changed.header.version;
     EXPECT_EQ(begin(foreign), RECEIVER_FOREIGN);
-    EXPECT_EQ(begin(Image(6, 0)), RECEIVER_FOREIGN); // over the golden one
-    EXPECT_EQ(begin(Image(5)), RECEIVER_OLD);
+    EXPECT_EQ(begin(bitstream(6, 0)), RECEIVER_FOREIGN); // over the golden one
+    EXPECT_EQ(begin(imageOf(5)), RECEIVER_OLD);
     EXPECT_EQ(begin(changed), RECEIVER_UNSIGNED);
     EXPECT_EQ(flash.memory, before);
 }
 
 TEST_F(Fpga, AVersionThatWasConfirmedIsRememberedWhenItIsErased) {
     updateTo(5);
-    EXPECT_EQ(begin(Image(6)), RECEIVER_OK);
+    EXPECT_EQ(begin(imageOf(6)), RECEIVER_OK);
     EXPECT_EQ(powerOn(), 1u); // 5 is gone, 6 has not come
-    EXPECT_EQ(begin(Image(4)), RECEIVER_OLD);
+    EXPECT_EQ(begin(imageOf(4)), RECEIVER_OLD);
     updateTo(6);
 }
 
 TEST_F(Fpga, ADamagedBitstreamNeverGetsItsSyncWord) {
     powerOn();
-    Image image(2);
+    Image image = imageOf(2);
     EXPECT_EQ(begin(image), RECEIVER_OK);
     image.bytes[60'000] ^= 4;
     EXPECT_EQ(send(image), RECEIVER_DAMAGED);
@@ -236,42 +187,22 @@ TEST_F(Fpga, OnlyWhatIsSignedAndWholeIsLoaded) {
     EXPECT_FALSE(Slots_isLoadable(&port, product));
 }
 
-// Cuts the power at each operation of an update in turn, over an older bitstream, and once more at
-// a random one later.
+// Over an older bitstream.
 TEST_F(Fpga, WhereverThePowerIsCutABitstreamConfiguresIt) {
     updateTo(2);
     const uint64_t before = flash.operations();
     updateTo(3);
     const uint64_t all = flash.operations() - before;
     ASSERT_GT(all, 250u);
-    uint64_t cuts = 0, toGolden = 0;
-    Random random(testSeed());
-    const uint64_t often = 5, times = 12; // the first ones are erases, which leave anything
-    for (uint64_t i = 0; i < all + often * times; ++i) {
-        const uint64_t first = 1 + (i < all ? i : i % often);
-        fill(testSeed() * 1000 + i);
-        cutAt = 0;
-        updateTo(2);
-        cutAt = flash.operations() + first;
-        for (;;) {
-            try {
-                updateTo(3);
-                break;
-            } catch (const PowerCut&) {
-                ++cuts;
-                cutAt = cuts % 2
-                            ? 0
-                            : flash.operations() + 1 + random.below(static_cast<unsigned>(all));
-                toGolden += powerOn() == 1;
-            }
-        }
-        cutAt = 0;
-        ASSERT_EQ(powerOn(), 3u) << "cut at operation " << first << " of " << all;
-    }
-    EXPECT_GE(cuts, all);
-    EXPECT_GT(toGolden, 0u);
-    RecordProperty("operations", static_cast<int>(all));
-    RecordProperty("cuts", static_cast<int>(cuts));
+    cutAtEach(
+        3, all, all + 60,
+        [this](uint64_t seed) -> Fpga& {
+            fill(seed);
+            cutAt = 0;
+            updateTo(2);
+            return *this;
+        },
+        [](Fpga& cut) { return cut.powerOn() == 1; }); // the golden one
 }
 
 } // namespace

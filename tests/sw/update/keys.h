@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
-// keys: a pair of keys that signs images, and the ground's part of an update.
+// keys: a pair of keys that signs images, and the ground's part of an update, of firmware as of a
+// bitstream.
 
 #ifndef UPDATE_KEYS_H
 #define UPDATE_KEYS_H
 
+#include "random.h"
 #include <algorithm>
 #include <array>
+#include <gtest/gtest.h>
 #include <sodium.h>
+#include <vector>
 
 extern "C" {
 #include "receiver.h"
@@ -38,28 +42,136 @@ struct Keys {
     std::array<uint8_t, crypto_sign_SECRETKEYBYTES> secret;
 };
 
-// A vehicle's receiver, and what the ground does with it. An image has `header` and `bytes`.
-struct Updated {
+const Keys ours(1), others(2), second(3), third(4);
+
+struct Image {
+    Image(const Slots_Layout& layout, uint32_t product, uint32_t version, uint32_t slot,
+          std::vector<uint8_t> content, const Keys& signer)
+        : bytes(std::move(content)), header{SLOTS_MAGIC,
+                                            product,
+                                            version,
+                                            static_cast<uint32_t>(bytes.size()),
+                                            Slots_at(&layout, slot) + SLOTS_IMAGE_AT,
+                                            {board[0], board[1]},
+                                            0,
+                                            {},
+                                            {}} {
+        sign(signer);
+    }
+    void sign(const Keys& signer) {
+        crypto_hash_sha512(header.digest, bytes.data(), bytes.size());
+        signer.sign(header);
+    }
+    std::vector<uint8_t> bytes;
+    Slots_Header header;
+};
+
+struct PowerCut {};
+
+// A vehicle with a receiver, version 1 confirmed, and what the ground does with it.
+class Updated {
+public:
+    explicit Updated(uint32_t chunk) : chunk_(chunk) {}
+    virtual ~Updated() = default;
+    // The processor starts again, or the power comes; returns the version that runs.
+    virtual uint32_t boot() = 0;
+    virtual uint32_t powerOn() { return boot(); }
+    virtual uint64_t operations() const = 0;
+    virtual Image imageOf(uint32_t version, const Keys& signer = ours) = 0;
+
     void work() {
         while (Receiver_work(&receiver))
             ;
     }
-    template <class Image> Receiver_Reason begin(const Image& image) {
-        const Receiver_Reason reason = Receiver_begin(&receiver, &image.header);
-        work();
-        return reason == RECEIVER_OK ? receiver.reason : reason;
+    Receiver_Reason begin(const Image& image) {
+        return outcome(Receiver_begin(&receiver, &image.header));
     }
-    template <class Image> Receiver_Reason send(const Image& image, uint32_t chunk) {
+    Receiver_Reason send(const Image& image) {
         while (receiver.received < image.header.bytes) {
-            const uint32_t at = receiver.received, size = std::min(chunk, image.header.bytes - at);
+            const uint32_t at = receiver.received, size = std::min(chunk_, image.header.bytes - at);
             if (auto reason = Receiver_write(&receiver, at, &image.bytes[at], size))
                 return reason;
         }
-        const Receiver_Reason reason = Receiver_finish(&receiver);
+        return outcome(Receiver_finish(&receiver));
+    }
+    void receive(const Image& image) {
+        EXPECT_EQ(begin(image), RECEIVER_OK);
+        EXPECT_EQ(send(image), RECEIVER_OK);
+    }
+    // Does the ground's part until this version is confirmed, whatever runs now.
+    void updateTo(uint32_t version, const Keys& signer = ours) {
+        for (uint32_t runs = powerOn(); runs != version && !::testing::Test::HasFailure();
+             runs = boot())
+            receive(imageOf(version, signer));
+        ASSERT_EQ(Receiver_confirm(&receiver), RECEIVER_OK);
+    }
+    void expectTriedAndConfirmed() {
+        for (uint32_t version : {2u, 3u}) { // and back into the first slot
+            updateTo(version);
+            EXPECT_EQ(powerOn(), version);
+            EXPECT_EQ(receiver.isOnTrial, 0);
+        }
+    }
+    void expectTriedOnce() {
+        powerOn();
+        receive(imageOf(2));
+        EXPECT_EQ(boot(), 2u);
+        EXPECT_EQ(receiver.isOnTrial, 1);
+        EXPECT_EQ(begin(imageOf(3)), RECEIVER_ON_TRIAL); // it would erase the way back
+        EXPECT_EQ(boot(), 1u);
+        EXPECT_EQ(receiver.reason, RECEIVER_WENT_BACK);
+        EXPECT_EQ(powerOn(), 1u);
+    }
+    Receiver receiver{};
+    uint64_t cutAt = 0; // operation of the flash
+
+protected:
+    Receiver_Reason outcome(Receiver_Reason reason) {
         work();
         return reason == RECEIVER_OK ? receiver.reason : reason;
     }
-    Receiver receiver{};
+    template <class Flash> void cutPowerOf(Flash& flash, uint64_t& now) {
+        flash.onOperation = [this, &flash, &now] {
+            if (flash.operations() == cutAt) {
+                now += flash.busyNs() / 2;
+                throw PowerCut();
+            }
+        };
+    }
+
+private:
+    const uint32_t chunk_;
 };
+
+// Cuts the power at each of `all` operations of an update of the vehicles that `fresh` makes, and
+// once more at a random one later; then again at the first ones, to `tries` in all. `wentBack`: has
+// the last cut led to the version before?
+template <class Fresh, class WentBack>
+void cutAtEach(uint32_t version, uint64_t all, uint64_t tries, Fresh fresh, WentBack wentBack) {
+    uint64_t cuts = 0, back = 0;
+    Random random(testSeed());
+    for (uint64_t i = 0; i < tries; ++i) {
+        const uint64_t first = 1 + (i < all ? i : i % 5); // erases, which leave anything
+        auto&& vehicle = fresh(testSeed() * 1000 + i);
+        vehicle.cutAt = vehicle.operations() + first;
+        for (;;) {
+            try {
+                vehicle.updateTo(version);
+                break;
+            } catch (const PowerCut&) {
+                vehicle.cutAt = ++cuts % 2 ? 0
+                                           : vehicle.operations() + 1 +
+                                                 random.below(static_cast<unsigned>(all));
+                back += wentBack(vehicle);
+            }
+        }
+        vehicle.cutAt = 0;
+        ASSERT_EQ(vehicle.powerOn(), version) << "cut at operation " << first << " of " << all;
+    }
+    EXPECT_GE(cuts, all);
+    EXPECT_GT(back, 0u);
+    ::testing::Test::RecordProperty("operations", static_cast<int>(all));
+    ::testing::Test::RecordProperty("cuts", static_cast<int>(cuts));
+}
 
 #endif

@@ -4,15 +4,10 @@
 // erase and every written word, and there is always an image that boots.
 
 #include "keys.h"
-#include "random.h"
 #include "stm32_flash.h"
-#include <algorithm>
 #include <cstring>
-#include <gtest/gtest.h>
-#include <vector>
 
 extern "C" {
-#include "receiver.h"
 #include "signature.h"
 }
 
@@ -21,35 +16,14 @@ namespace {
 using Bytes = std::vector<uint8_t>;
 constexpr uint32_t product = 0x55415631, imageBytes = 1024, chunk = 256;
 
-const Keys ours(1), others(2), second(3), third(4);
-
-struct Image {
-    Slots_Header header;
-    Bytes bytes;
-};
-
 Image makeImage(uint32_t version, uint32_t slot, uint32_t size = imageBytes,
                 const Keys& signer = ours) {
-    Image image;
-    image.bytes.resize(size);
+    Bytes bytes(size);
     Random random(testSeed() + version);
-    for (uint8_t& b : image.bytes)
+    for (uint8_t& b : bytes)
         b = static_cast<uint8_t>(random.below(256));
-    image.header = {SLOTS_MAGIC,
-                    product,
-                    version,
-                    size,
-                    Slots_at(&slots_firmware, slot) + SLOTS_IMAGE_AT,
-                    {board[0], board[1]},
-                    0,
-                    {},
-                    {}};
-    crypto_hash_sha512(image.header.digest, image.bytes.data(), size);
-    signer.sign(image.header);
-    return image;
+    return {slots_firmware, product, version, slot, bytes, signer};
 }
-
-struct PowerCut {};
 
 // The flash with its power, and the firmware that boots from it.
 class Vehicle : public Updated {
@@ -57,8 +31,8 @@ public:
     // As a programmer leaves it, at its first start: slot 0 has a confirmed image, slot 1 something
     // else.
     explicit Vehicle(uint32_t version = 1, uint64_t seed = 1)
-        : flash_(
-              memory.data(), [this] { return now_; }, seed),
+        : Updated(chunk), flash_(
+                              memory.data(), [this] { return now_; }, seed),
           port{&slots_firmware,
                this,
                read,
@@ -70,12 +44,7 @@ public:
                memory.data()} {
         const Slots_Header list = ours.list(1, second, ours);
         std::memcpy(&memory[SLOTS_KEYS_AT], &list, sizeof list);
-        flash_.onOperation = [this] {
-            if (flash_.operations() == cutAt) {
-                now_ += flash_.busyNs() / 2;
-                throw PowerCut();
-            }
-        };
+        cutPowerOf(flash_, now_);
         put(0, makeImage(version, 0));
         for (Slots_State state : {SLOTS_READY, SLOTS_TRIED, SLOTS_CONFIRMED})
             set(0, state);
@@ -92,7 +61,7 @@ public:
         std::memcpy(&memory[Slots_at(&slots_firmware, slot) + state], &value, 4);
     }
     // Switches the power on; returns the version that runs.
-    uint32_t boot() {
+    uint32_t boot() override {
         flash_.reset();
         const uint32_t slot = Slots_choose(&port, product, 1);
         EXPECT_NE(slot, SLOTS_NONE);
@@ -106,26 +75,16 @@ public:
                                memory.begin() + Slots_at(&slots_firmware, slot) + SLOTS_IMAGE_AT));
         return header.version;
     }
-    Receiver_Reason send(const Image& image) { return Updated::send(image, chunk); }
+    Image imageOf(uint32_t version, const Keys& signer = ours) override {
+        return makeImage(version, receiver.slot, imageBytes, signer);
+    }
     // Sends a list of keys.
     Receiver_Reason take(const Slots_Header& list) {
-        const Receiver_Reason reason = Receiver_begin(&receiver, &list);
-        work();
-        return reason == RECEIVER_OK ? receiver.reason : reason;
+        return outcome(Receiver_begin(&receiver, &list));
     }
-    // Does the ground's part until this version is confirmed, whatever runs now.
-    void updateTo(uint32_t version, const Keys& signer = ours) {
-        for (uint32_t runs = boot(); runs != version; runs = boot()) {
-            const Image image = makeImage(version, receiver.slot, imageBytes, signer);
-            ASSERT_EQ(begin(image), RECEIVER_OK);
-            ASSERT_EQ(send(image), RECEIVER_OK);
-        }
-        ASSERT_EQ(Receiver_confirm(&receiver), RECEIVER_OK);
-    }
-    uint64_t operations() const { return flash_.operations(); }
+    uint64_t operations() const override { return flash_.operations(); }
 
     Bytes memory = Bytes(Stm32Flash::bytes, 0xFF);
-    uint64_t cutAt = 0;
 
 private:
     uint64_t now_ = 0;
@@ -184,24 +143,11 @@ TEST(Signature, IsEd25519AsInRfc8032) {
 }
 
 TEST(Update, ANewImageIsTriedAndStaysWhenItIsConfirmed) {
-    Vehicle vehicle;
-    vehicle.updateTo(2);
-    EXPECT_EQ(vehicle.boot(), 2u);
-    vehicle.updateTo(3); // and back into the first slot
-    EXPECT_EQ(vehicle.boot(), 3u);
+    Vehicle().expectTriedAndConfirmed();
 }
 
 TEST(Update, AnImageThatIsNotConfirmedIsTriedOnce) {
-    Vehicle vehicle;
-    const Image image = makeImage(2, 1);
-    EXPECT_EQ(vehicle.begin(image), RECEIVER_OK);
-    EXPECT_EQ(vehicle.send(image), RECEIVER_OK);
-    EXPECT_EQ(vehicle.boot(), 2u);
-    EXPECT_TRUE(vehicle.receiver.isOnTrial);
-    EXPECT_EQ(vehicle.begin(makeImage(3, 0)), RECEIVER_ON_TRIAL); // it would erase the way back
-    EXPECT_EQ(vehicle.boot(), 1u);
-    EXPECT_EQ(vehicle.receiver.reason, RECEIVER_WENT_BACK);
-    EXPECT_EQ(vehicle.boot(), 1u);
+    Vehicle().expectTriedOnce();
 }
 
 TEST(Update, WhatIsNotForThisVehicleLeavesItUntouched) {
@@ -320,9 +266,7 @@ TEST(Update, NoListStopsWhatRuns) {
     Vehicle vehicle;
     const Slots_Header list = second.list(2, third, second);
     EXPECT_EQ(vehicle.take(list), RECEIVER_NEEDS_OTHER); // the firmware is signed with our key
-    const Image image = makeImage(2, 1, imageBytes, second);
-    EXPECT_EQ(vehicle.begin(image), RECEIVER_OK);
-    EXPECT_EQ(vehicle.send(image), RECEIVER_OK);
+    vehicle.receive(makeImage(2, 1, imageBytes, second));
     EXPECT_EQ(vehicle.take(list), RECEIVER_BUSY);
     EXPECT_EQ(vehicle.boot(), 2u);
     EXPECT_EQ(vehicle.take(list), RECEIVER_ON_TRIAL);
@@ -426,36 +370,14 @@ TEST(Update, AnOlderImageThatWasNeverTriedIsNotStarted) {
     EXPECT_EQ(vehicle.boot(), 6u);
 }
 
-// Cuts the power at each operation of an update in turn, and once more at a random one later.
 TEST(Update, WhereverThePowerIsCutThereIsAnImageThatBoots) {
     Vehicle whole;
     whole.updateTo(2);
     const uint64_t all = whole.operations();
     ASSERT_GT(all, imageBytes / 4);
-    uint64_t cuts = 0, wentBack = 0;
-    Random random(testSeed());
-    for (uint64_t first = 1; first <= all; ++first) {
-        Vehicle vehicle(1, testSeed() * 1000 + first);
-        vehicle.cutAt = first;
-        for (;;) {
-            try {
-                vehicle.updateTo(2);
-                break;
-            } catch (const PowerCut&) {
-                ++cuts;
-                vehicle.cutAt =
-                    cuts % 2 ? 0
-                             : vehicle.operations() + 1 + random.below(static_cast<unsigned>(all));
-                wentBack += vehicle.receiver.running == 1;
-            }
-        }
-        vehicle.cutAt = 0;
-        ASSERT_EQ(vehicle.boot(), 2u) << "cut at operation " << first << " of " << all;
-    }
-    EXPECT_GE(cuts, all);
-    RecordProperty("operations", static_cast<int>(all));
-    RecordProperty("cuts", static_cast<int>(cuts));
-    EXPECT_GT(wentBack, 0u); // some cuts are in the trial
+    cutAtEach(
+        2, all, all, [](uint64_t seed) { return Vehicle(1, seed); },
+        [](Vehicle& vehicle) { return vehicle.receiver.running == 1; }); // some are in the trial
 }
 
 } // namespace

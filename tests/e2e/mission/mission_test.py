@@ -31,6 +31,7 @@ INTERFACE = ("--plugin", BUILD / "ground", "--slice", TREE / "sw/apps/uav/Autopi
 UPDATES = (CLIENTS / "update.py", "new.update", "--device", "{device}", "--plugin",
            BUILD / "ground", "--slice", TREE / "sw/apps/uav/Update.ice")
 LOADER, FIRMWARE = BUILD / "firmware/loader.elf", BUILD / "firmware/uav.elf"
+KEY = "000102030405060708090a0b0c0d0e0f"
 DEVICE = 'hwengine1:xbee-at -d "{device}" -a 0x0001 '
 
 
@@ -47,9 +48,12 @@ class Cases(Script):
     def fly(self, *options, out=None):
         """A mission that succeeds."""
         self.ask(*self.words(*options, out=out))
+        self.flew(out or self.out)
+
+    def flew(self, folder):
         for name in "after.png", "before.png":
-            self.assertTrue(((out or self.out) / name).stat().st_size)
-        self.has("isAlive", file=(out or self.out) / "report.md")
+            self.assertTrue((folder / name).stat().st_size)
+        self.has("isAlive", file=folder / "report.md")
 
     def fails(self, said, *words):
         """A command fails, with this text and no Python traceback."""
@@ -72,9 +76,7 @@ class Cases(Script):
     def test_plain(self):
         """Secure by default; only the user may read its recording and its key."""
         self.make("run", f"IMAGE={IMAGE}", "SIZE=96x64", f"OUT={self.out}", build=BUILD)
-        for name in "after.png", "before.png":
-            self.assertTrue(Path(name).stat().st_size)
-        self.has("isAlive", file="report.md")
+        self.flew(self.out)
         self.has("121 corners leave much of the core untried: make ip-test IP=vision")
         # It waits for the modem's set-up first, then for the vehicle.
         steps = re.findall("modem ready on .* after [0-9]* ms|link connecting|link up, secure|"
@@ -86,17 +88,15 @@ class Cases(Script):
 
     def test_open(self):
         """Without encryption, by an option; of a picture of noise, with some 29,700 corners."""
-        dots = random.Random(1).randbytes(640 * 480)
-        (self.out / "noise.pgm").write_bytes(b"P5 640 480 255\n" + dots)
+        Path("noise.pgm").write_bytes(b"P5 640 480 255\n" + random.Random(1).randbytes(307200))
         self.fly("--open", "--image", self.out / "noise.pgm", "--size", "640x480")
         self.has('"key":""', file="flight.jsonl")
 
     def test_keys(self):
         """Messages of the ground, the vehicle and their start about unfit keys."""
         os.umask(0o077)
-        write("a.key", "000102030405060708090a0b0c0d0e0f\n")
-        write("b.key", "000102030405060708090a0b0c0d0e0e\n")
-        write("short.key", "0001020304\n")
+        for name, text in ("a", KEY), ("b", KEY[:-1] + "e"), ("short", KEY[:10]):
+            write(f"{name}.key", text + "\n")
         shutil.copy("a.key", "others.key")
         os.chmod("others.key", 0o644)
         for name, said in (("short", "32 hexadecimal digits"), ("others", "chmod 600"),
@@ -142,8 +142,7 @@ class Cases(Script):
         self.has(*(rf"{part}\." for part in parts), file="report.md")
 
     def test_sensor(self):
-        """The picture goes through the camera's pins and the vision core, and never through the
-        processor."""
+        """Camera pins and the vision core see the picture, the processor never does."""
         self.fly("--camera", "--cpu", "m3")
         self.has(r"camera.capture\(96, 64\)", file="report.md")
 
@@ -178,8 +177,7 @@ class Cases(Script):
     def test_other_chip(self):
         """Firmware built for other registers of the vision core: it does not serve the core and
         tells the ground why."""
-        table = (BUILD / "gen/soc_cores.c").read_text().split("hw_contracts[")[1]
-        lines = table.split("\n")[1:]
+        lines = (BUILD / "gen/soc_cores.c").read_text().split("hw_contracts[")[1].split("\n")[1:]
         row = 1 + next(n for n, line in enumerate(lines) if '"vision"' in line)
         self.patched("other.elf", "hw_contracts", 20 * row - 4, b"\xff" * 4)  # a row's last word
         self.refused("no object 'hwengine1'; vision: its registers have the hash 0x.* in the chip, "
@@ -211,8 +209,8 @@ class Cases(Script):
         Path("cut.update").write_bytes(Path("new.update").read_bytes()[:50000])
         self.fails("is cut short", CLIENTS / "update.py", "cut.update", "--slice", UPDATES[-1])
         self.pack(*vehicle, self.keys / "update.key", flash)
-        self.ask(SIMULATOR, "--image", IMAGE, "--size", "96x64", "--out", self.out, "--cpu", "m3",
-                 "--flash", flash, "--duration", "8", "--", *UPDATES, status=None)
+        stored = "--cpu", "m3", "--flash", flash
+        self.simulate(*UPDATES, options=(*stored, "--duration", "8"), status=None)
         self.has("the vehicle runs version 1$")
         self.assertNotEqual(flash.read_bytes(), before)
         for _ in range(2):
@@ -227,9 +225,8 @@ class Cases(Script):
                  self.keys / "spare.pub")
         with open("spare.update", "ab") as file:
             file.write(Path("list.update").read_bytes())
-        self.ask(SIMULATOR, "--image", IMAGE, "--size", "96x64", "--out", self.out, "--cpu", "m3",
-                 "--flash", flash, "--", *(str(word).replace("new.update", "spare.update")
-                                           for word in UPDATES))
+        self.simulate(*(str(word).replace("new.update", "spare.update") for word in UPDATES),
+                      options=stored)
         self.has("runs and is confirmed", "takes what the keys of list 2 sign")
         self.update(FIRMWARE, "not signed with this vehicle's keys", status=None)
         # 256 KiB into three full sectors, within 30 s of air.
@@ -255,16 +252,14 @@ class Cases(Script):
         self.update("damaged.bin", "the FPGA did not take it", status=None)
         self.pack("bitstream", "new.bin", str(int(time.time())), self.keys / "update.key",
                   "new.update")
-        self.ask(SIMULATOR, "--image", IMAGE, "--size", "96x64", "--out", self.out, "--cpu", "m3",
-                 "--flash", flash, "--fpga-flash", "fpga.bin", "--", *UPDATES, "--rehearse")
+        self.simulate(*UPDATES, "--rehearse", options=(*stored, "--fpga-flash", "fpga.bin"))
         self.has("runs, and is not confirmed", "the vehicle runs version 1$")
         self.ask(stand_in, "full.bin", "3")
         for bits in "new.bin", "full.bin":
             self.update(bits, "runs and is confirmed")
 
     def test_cpp(self):
-        """The C++11 library of the plugin, a C++ client, and a proxy that goes through its string
-        form."""
+        """The C++11 library of the plugin, a C++ client, a proxy that goes through its string."""
         self.simulate(PING, DEVICE + "-p 2 -g {guard} -t 300000", "3")
         self.has("it is a ::Autopilot::HwProcessingEngine", "-a 0x1 .*-p 2")
 
@@ -294,8 +289,7 @@ class Cases(Script):
             process.wait()
 
     def test_stopped(self):
-        """The ground's program is stopped for four seconds during the set-up: simulated time waits
-        for it."""
+        """Simulated time waits for a ground that is stopped for four seconds during the set-up."""
         with self.until("+++ at 9600 baud: OK", SIMULATOR, "--image", IMAGE, "--size", "96x64",
                         "--out", self.out, "--guard", str(GUARD), "--", PING,
                         DEVICE + "-t 300000", "3", "--XBeeAT.Trace=2") as simulator:
@@ -318,7 +312,7 @@ class Cases(Script):
     def test_new_key(self):
         """A key follows another over the link, and the old one opens nothing any more."""
         os.umask(0o077)
-        write("the.key", "0x0001 000102030405060708090a0b0c0d0e0f\n")
+        write("the.key", f"0x0001 {KEY}\n")
         self.simulate("/usr/bin/python3", CLIENTS / "change_key.py", "--device", "{device}",
                       "--guard", "{guard}", "--key", "the.key", *INTERFACE,
                       options=("--key", "the.key"))
@@ -346,8 +340,7 @@ class Cases(Script):
             first = subprocess.Popen(self.words(out=self.out / "a"), stdout=log, stderr=log)
         self.fly("--threshold", "50", out=self.out / "b")
         self.assertEqual(first.wait(), 0, Path("a.log").read_text())
-        self.assertTrue(Path("a/after.png").stat().st_size)
-        self.has("isAlive", file="a/report.md")
+        self.flew(self.out / "a")
 
     def test_odd_names(self):
         """A folder's name has special characters of the shell, of make and of the simulator."""

@@ -131,61 +131,6 @@ TEST_F(Heads, TablesAreEmptyInANewSession) {
     call(3);
 }
 
-TEST_F(Heads, LossAndCorruptionDoNotConfuseTheTables) {
-    setWeather({0.2, 0.1, 0.05});
-    Random random(testSeed());
-    Messages sent;
-    uint32_t ids[2] = {0, 0};
-    until(
-        [&] {
-            const int channel = static_cast<int>(random.below(2));
-            Bytes parameters(random.below(120), static_cast<uint8_t>(random.next()));
-            Bytes m = random.below(4) == 0
-                          ? reply(random.below(1000), parameters)
-                          : request(random.below(3) ? ++ids[channel] : 0,
-                                    "o" + std::to_string(random.below(24)), "op", parameters);
-            if (sent.size() < 2000 && a.send(channel, m, tag_) == LINK_OK) {
-                ++tag_;
-                sent.emplace_back(channel, m);
-            }
-            return b.received.size() == 2000;
-        },
-        600'000'000);
-    // A short one of the other channel may overtake a long one.
-    for (auto* list : {&b.received, &sent})
-        std::stable_sort(list->begin(), list->end(),
-                         [](auto& x, auto& y) { return x.first < y.first; });
-    EXPECT_EQ(b.received, sent) << "seed " << testSeed();
-}
-
-// From any bytes the decoder makes a message within the limits, or none.
-TEST_F(Heads, NonsenseIsRefusedWithinTheLimits) {
-    Random random(testSeed());
-    call(1);
-    Link_Heads& heads = b.link()->receiver.heads;
-    Bytes message(LINK_HEAD_ROOM + LINK_MAX_MESSAGE + 1);
-    U8* const at = message.data() + LINK_HEAD_ROOM;
-    unsigned refused = 0, taken = 0;
-    for (int i = 0; i < 300000; ++i) {
-        U32 size = 1 + random.below(random.below(8) ? 20 : LINK_MAX_MESSAGE + 1);
-        for (U32 k = 0; k < std::min(size, 40u); ++k)
-            at[k] = static_cast<U8>(random.next());
-        if (random.below(4))
-            at[0] = static_cast<U8>(0x80 + random.below(0x48));
-        U8* start = link_decompress(&heads, static_cast<int>(random.below(4)), at, size);
-        if (!start) {
-            ++refused;
-            continue;
-        }
-        ++taken;
-        ASSERT_GE(start, message.data());
-        ASSERT_GE(at + size - start, 1);
-        ASSERT_LE(at + size - start, static_cast<int>(LINK_MAX_MESSAGE));
-    }
-    EXPECT_GT(refused, 10000u);
-    EXPECT_GT(taken, 10000u);
-}
-
 // A peer that breaks the rules: both sides start a new session, and go on.
 TEST_F(Heads, ATokenThatMakesNoSenseEndsTheSession) {
     send(a, b, {0x41});                    // crosses unchanged

@@ -3,8 +3,7 @@
 // ascon_bytes: keys, messages and their hexadecimal digits, for the tests of the core and of its
 // servant.
 
-#ifndef ASCON_BYTES_H
-#define ASCON_BYTES_H
+#pragma once
 
 #include "ascon_model.h"
 #include <cstdio>
@@ -31,5 +30,3 @@ template <class Bytes> std::string hex(const Bytes& bytes) {
     }
     return text;
 }
-
-#endif

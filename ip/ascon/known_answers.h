@@ -3,8 +3,7 @@
 // known_answers: NIST SP 800-232's known answers. A test's own answers are written in the format of
 // the standard's authors, and the text's SHA-256 must be that of the published file.
 
-#ifndef KNOWN_ANSWERS_H
-#define KNOWN_ANSWERS_H
+#pragma once
 
 #include "ascon_bytes.h"
 #include <array>
@@ -46,5 +45,3 @@ inline std::string hashAnswers(const std::function<AsconBytes(const AsconBytes& 
                 "\nMD = " + hex(hash(counted(0, size))) + "\n\n";
     return sha256(text);
 }
-
-#endif

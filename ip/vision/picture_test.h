@@ -2,8 +2,7 @@
 //
 // picture: grey-scale frames to look for corners in.
 
-#ifndef PICTURE_H
-#define PICTURE_H
+#pragma once
 
 #include "random.h"
 #include <algorithm>
@@ -25,5 +24,3 @@ inline std::vector<uint8_t> picture(int width, int height, Random& random) {
     }
     return pixels;
 }
-
-#endif

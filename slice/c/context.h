@@ -2,8 +2,7 @@
 //
 // context: what the generated files of a unit share, and one function for each of them.
 
-#ifndef SLICE_C_CONTEXT_H
-#define SLICE_C_CONTEXT_H
+#pragma once
 
 #include "c/generator.h"
 #include "c/operations.h"
@@ -71,5 +70,3 @@ std::vector<Slot> memberSlots(const Declaration& d);
 void writeWithValues(Writer& w, const std::vector<Slot>& slots, const std::string& table);
 void readWithValues(Writer& w, const CContext& c, const std::vector<Slot>& slots,
                     const std::string& table);
-
-#endif

@@ -2,8 +2,7 @@
 //
 // generator: writes a unit as C90 for IceC: a header and four sources (docs/slice-mapping.md).
 
-#ifndef SLICE_C_GENERATOR_H
-#define SLICE_C_GENERATOR_H
+#pragma once
 
 #include "front/ast.h"
 #include "text/writer.h"
@@ -34,5 +33,3 @@ void scopeEnumerators(Unit& unit);
 void checkC(const Unit& unit, const CFileNames& names, Diagnostics& diagnostics);
 
 std::vector<GeneratedFile> generateC(const Unit& unit, const CFileNames& names);
-
-#endif

@@ -2,8 +2,7 @@
 //
 // names: names and spellings of the C90 mapping (docs/slice-mapping.md).
 
-#ifndef SLICE_C_NAMES_H
-#define SLICE_C_NAMES_H
+#pragma once
 
 #include "c/generator.h"
 #include <string>
@@ -36,5 +35,3 @@ std::string cFileName(const CFileNames& names, const std::string& what);
 bool isRuntimeType(const Declaration& d);
 // The elements that a sequence or dictionary has room for; 0 if its data lies elsewhere.
 int statedMaximum(const Declaration& d);
-
-#endif

@@ -2,8 +2,7 @@
 //
 // operations: operations and exceptions in C: signatures, lists of parameters.
 
-#ifndef SLICE_C_OPERATIONS_H
-#define SLICE_C_OPERATIONS_H
+#pragma once
 
 #include "c/types.h"
 #include "front/ast.h"
@@ -57,5 +56,3 @@ std::vector<Slot> inSlots(const Operation& o);
 std::vector<Slot> inVariables(const Operation& o);
 std::vector<Slot> outSlots(const Operation& o, const std::string& object);
 std::vector<Slot> responseSlots(const Operation& o);
-
-#endif

@@ -2,8 +2,7 @@
 //
 // types: pieces of C that pass, write and read values, which the generators put together.
 
-#ifndef SLICE_C_TYPES_H
-#define SLICE_C_TYPES_H
+#pragma once
 
 #include "front/ast.h"
 #include "text/writer.h"
@@ -31,5 +30,3 @@ struct Slot {
 // Write or read slots in the order of the wire.
 void writeSlots(Writer& w, const std::vector<Slot>& slots);
 void readSlots(Writer& w, const std::vector<Slot>& slots);
-
-#endif

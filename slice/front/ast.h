@@ -7,8 +7,7 @@
 //   Declaration  one enum, struct, sequence, dictionary, interface, class, exception or constant
 //   Operation    of an interface;  Field: a member or a parameter;  Type: of a field
 
-#ifndef SLICE_FRONT_AST_H
-#define SLICE_FRONT_AST_H
+#pragma once
 
 #include "front/diagnostics.h"
 #include <cstdint>
@@ -128,5 +127,3 @@ Declaration::Facts factsOf(const Type& type);
 // True if the directive is there; the text behind "prefix:", empty if there is none.
 bool hasMetadata(const std::vector<std::string>& metadata, const std::string& directive);
 std::string metadataValue(const std::vector<std::string>& metadata, const std::string& prefix);
-
-#endif

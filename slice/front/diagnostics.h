@@ -2,8 +2,7 @@
 //
 // diagnostics: errors and warnings with file, line, column, the source line and a caret.
 
-#ifndef SLICE_FRONT_DIAGNOSTICS_H
-#define SLICE_FRONT_DIAGNOSTICS_H
+#pragma once
 
 #include <map>
 #include <ostream>
@@ -47,5 +46,3 @@ private:
     std::set<std::pair<std::string_view, Category>> suppressed_;
     std::map<std::string_view, std::vector<std::string>> files_;
 };
-
-#endif

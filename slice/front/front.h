@@ -18,8 +18,7 @@
 //
 // A step reports errors and goes on; a unit is valid if no error was counted.
 
-#ifndef SLICE_FRONT_FRONT_H
-#define SLICE_FRONT_FRONT_H
+#pragma once
 
 #include "front/ast.h"
 #include "front/names.h"
@@ -27,5 +26,3 @@
 // The unit of a preprocessed file; errors are in `diagnostics`.
 Unit compileUnit(const std::string& text, const std::string& file, NameRules rules,
                  Diagnostics& diagnostics);
-
-#endif

@@ -2,8 +2,7 @@
 //
 // lexer: turns preprocessed Slice text into tokens, with their places in the original files.
 
-#ifndef SLICE_FRONT_LEXER_H
-#define SLICE_FRONT_LEXER_H
+#pragma once
 
 #include "front/diagnostics.h"
 #include <string_view>
@@ -21,5 +20,3 @@ struct Token {
 
 // Tokens point into `text`. The last one is End.
 std::vector<Token> tokenize(std::string_view text, std::string_view file, Diagnostics& diagnostics);
-
-#endif

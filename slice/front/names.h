@@ -2,8 +2,7 @@
 //
 // names: Slice's keywords, and the identifiers that Slice allows.
 
-#ifndef SLICE_FRONT_NAMES_H
-#define SLICE_FRONT_NAMES_H
+#pragma once
 
 #include "front/diagnostics.h"
 #include <string>
@@ -21,5 +20,3 @@ void checkName(std::string_view name, const NameRules& rules, const Location& at
                Diagnostics& diagnostics);
 
 std::string lowerCase(std::string_view text);
-
-#endif

@@ -3,8 +3,7 @@
 // parser: turns tokens into the declarations of a unit, every name resolved. It reports errors and
 // goes on.
 
-#ifndef SLICE_FRONT_PARSER_H
-#define SLICE_FRONT_PARSER_H
+#pragma once
 
 #include "front/ast.h"
 #include "front/lexer.h"
@@ -17,5 +16,3 @@ std::string typeName(const Type& type);
 // `mainFile` is the file on the command line; declarations of others are marked fromInclude.
 Unit parse(const std::vector<Token>& tokens, const std::string& mainFile, NameRules rules,
            Diagnostics& diagnostics);
-
-#endif

@@ -2,8 +2,7 @@
 //
 // parser_private: the parser's own parts: one method a rule of the grammar.
 
-#ifndef SLICE_FRONT_PARSER_PRIVATE_H
-#define SLICE_FRONT_PARSER_PRIVATE_H
+#pragma once
 
 #include "front/parser.h"
 #include "front/symbols.h"
@@ -149,5 +148,3 @@ template <class Rule> void Parser::braces(const Declaration& d, Rule rule) {
     expectEnd("'}' at the end of " + std::string(kindName(d.kind)) + " '" + d.name + "'");
     accept(";");
 }
-
-#endif

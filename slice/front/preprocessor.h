@@ -2,8 +2,7 @@
 //
 // preprocessor: #include, #define and #if by libmcpp.
 
-#ifndef SLICE_FRONT_PREPROCESSOR_H
-#define SLICE_FRONT_PREPROCESSOR_H
+#pragma once
 
 #include <string>
 #include <vector>
@@ -18,5 +17,3 @@ struct Preprocessed {
 
 // `options`: -I, -D, -U as for the C preprocessor.
 Preprocessed preprocess(const std::string& file, const std::vector<std::string>& options);
-
-#endif

@@ -3,8 +3,7 @@
 // symbols: the table of declared names. Slice forbids names that differ in capitals only, so the
 // table ignores capitals and compares them itself.
 
-#ifndef SLICE_FRONT_SYMBOLS_H
-#define SLICE_FRONT_SYMBOLS_H
+#pragma once
 
 #include "front/ast.h"
 #include <string>
@@ -50,5 +49,3 @@ private:
     std::unordered_map<std::string, std::string>
         used_; // first components used in a scope, with their meaning
 };
-
-#endif

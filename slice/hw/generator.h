@@ -3,8 +3,7 @@
 // generator: the files of a hardware interface, one function a file (docs/hw-mapping.md), and what
 // wrappers in both languages share.
 
-#ifndef SLICE_HW_GENERATOR_H
-#define SLICE_HW_GENERATOR_H
+#pragma once
 
 #include "hw/map.h"
 #include "text/writer.h"
@@ -60,5 +59,3 @@ void sequenceMembers(Writer& w, const Block& b);
 void checkLayouts(Writer& w, const Block& b);
 
 } // namespace hw
-
-#endif

@@ -2,8 +2,7 @@
 //
 // map: the register of a slot that holds each value of a [":hw"] interface (docs/hw-mapping.md).
 
-#ifndef SLICE_HW_MAP_H
-#define SLICE_HW_MAP_H
+#pragma once
 
 #include "front/ast.h"
 #include <string>
@@ -135,5 +134,3 @@ bool isSequence(const Type& type);
 unsigned elementBytes(const Type& type);
 
 } // namespace hw
-
-#endif

@@ -2,8 +2,7 @@
 //
 // doc_comment: doc comments of Slice as comments of C.
 
-#ifndef SLICE_TEXT_DOC_COMMENT_H
-#define SLICE_TEXT_DOC_COMMENT_H
+#pragma once
 
 #include "front/ast.h"
 #include "text/writer.h"
@@ -14,5 +13,3 @@
 std::vector<std::string> docLines(const std::string& doc);
 // Writes it, with a line for ["deprecate"]; nothing where there is neither.
 void writeDoc(Writer& w, const std::string& doc, const std::vector<std::string>& metadata = {});
-
-#endif

@@ -2,8 +2,7 @@
 //
 // writer: indented text for generators: templates look like their output, {name} is filled in.
 
-#ifndef SLICE_TEXT_WRITER_H
-#define SLICE_TEXT_WRITER_H
+#pragma once
 
 #include <string>
 #include <string_view>
@@ -51,5 +50,3 @@ private:
     size_t indent_ = 0;
     std::string out_;
 };
-
-#endif

@@ -3,8 +3,7 @@
 // elf_image: a program for the Cortex-M3 as its ELF file describes it: bytes of flash, symbols,
 // checksum.
 
-#ifndef ELF_IMAGE_H
-#define ELF_IMAGE_H
+#pragma once
 
 #include <cstdint>
 #include <elf.h>
@@ -53,5 +52,3 @@ private:
     std::map<std::string, uint32_t> symbols_, sizes_;
     std::map<uint32_t, std::string> functions_;
 };
-
-#endif

@@ -4,8 +4,7 @@
 //
 // Drive inputs after tick(), sample outputs before it: outputs are settled when tick() returns.
 
-#ifndef BENCH_H
-#define BENCH_H
+#pragma once
 
 #include "observer.h"
 #include <cstdint>
@@ -95,5 +94,3 @@ private:
     std::function<void()> half_;
     uint64_t cycles_ = 0;
 };
-
-#endif

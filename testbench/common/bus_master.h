@@ -2,8 +2,7 @@
 //
 // bus_master: drives the register bus of a module with the slave ports of docs/bus.md.
 
-#ifndef BUS_MASTER_H
-#define BUS_MASTER_H
+#pragma once
 
 #include "bench.h"
 
@@ -47,5 +46,3 @@ private:
     static constexpr unsigned slowest = 256; // clocks: an adapter's TIMEOUT and one (docs/bus.md)
     Bench<Module>& bench_;
 };
-
-#endif

@@ -3,8 +3,7 @@
 // core_slot: a core behind its generated wrapper in slot 5, for the FSMC driver and a generated
 // servant: the driver's port, the interrupt, the wait (docs/hw-mapping.md).
 
-#ifndef CORE_SLOT_H
-#define CORE_SLOT_H
+#pragma once
 
 #include "bus_master.h"
 #include "npi_memory.h"
@@ -199,5 +198,3 @@ private:
                                  static_cast<uint8_t>(value >> (8 * i)));
     }
 };
-
-#endif

@@ -2,8 +2,7 @@
 //
 // files: whole files, and their hashes.
 
-#ifndef FILES_H
-#define FILES_H
+#pragma once
 
 #include <cstdint>
 #include <filesystem>
@@ -30,5 +29,3 @@ inline std::string hexHash(const std::string& content) {
         digits += "0123456789abcdef"[hash >> shift & 15];
     return digits;
 }
-
-#endif

@@ -3,8 +3,7 @@
 // npi_memory: the memory behind one NPI port (docs/memory.md), with random stalls, for block tests.
 // It checks the requester's rules and throws where one is broken.
 
-#ifndef NPI_MEMORY_H
-#define NPI_MEMORY_H
+#pragma once
 
 #include "bench.h"
 #include "random.h"
@@ -173,5 +172,3 @@ private:
     std::unordered_map<uint32_t, uint8_t> bytes_;
     uint64_t reads_ = 0, writes_ = 0;
 };
-
-#endif

@@ -7,8 +7,7 @@
 // CDC_SEED, a number in the environment, makes the model's synchronisers uncertain
 // (hdl/cdc/cdc_random.vh); the draws follow from it and from SEED.
 
-#ifndef OBSERVER_H
-#define OBSERVER_H
+#pragma once
 
 #include "observed_clock.h"
 #include "random.h"
@@ -79,5 +78,3 @@ private:
     std::unique_ptr<VerilatedFstC> wave_;
 #endif
 };
-
-#endif

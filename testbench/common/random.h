@@ -3,8 +3,7 @@
 // random: a small generator with the same numbers on every machine (xorshift64*), and the seed of a
 // test.
 
-#ifndef RANDOM_H
-#define RANDOM_H
+#pragma once
 
 #include <cstdint>
 #include <cstdlib>
@@ -42,5 +41,3 @@ inline uint64_t testSeed(uint64_t fallback = 1) {
     const char* seed = std::getenv("SEED");
     return seed && *seed ? std::strtoull(seed, nullptr, 0) : fallback;
 }
-
-#endif

@@ -6,8 +6,7 @@
 // addresses repeats them at a distance. A note names each register and says whether it was read
 // back (tests/ctest.py prints notes). Another tells of a core that moves while nobody calls it.
 
-#ifndef REGISTERS_APART_H
-#define REGISTERS_APART_H
+#pragma once
 
 #include "core_slot.h"
 #include <cstdlib>
@@ -86,5 +85,3 @@ void expectRegistersApart(CoreSlot<Module>& slot, const Hw_Register (&table)[N],
         }
     }
 }
-
-#endif

@@ -3,8 +3,7 @@
 // tell_on_abort: states of models, printed when the program is aborted, as the regression does with
 // a test that hangs.
 
-#ifndef TELL_ON_ABORT_H
-#define TELL_ON_ABORT_H
+#pragma once
 
 #include <csignal>
 #include <cstdio>
@@ -24,5 +23,3 @@ inline void tellOnAbort(const void* model, std::function<std::string()> tell) {
         std::raise(signal);
     });
 }
-
-#endif

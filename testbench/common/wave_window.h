@@ -3,8 +3,7 @@
 // wave_window: the waveform that the environment requests: WAVE=file, WAVE_FROM and WAVE_TO in
 // clocks.
 
-#ifndef WAVE_WINDOW_H
-#define WAVE_WINDOW_H
+#pragma once
 
 #include <cstdint>
 #include <cstdlib>
@@ -25,5 +24,3 @@ struct WaveWindow {
             file = name;
     }
 };
-
-#endif

@@ -7,8 +7,7 @@
 // stays. Connections are shared, so the debugger notices nothing. The first process ends when the
 // last one does, with its status; all others end with their parent.
 
-#ifndef CHECKPOINTS_H
-#define CHECKPOINTS_H
+#pragma once
 
 #include <cerrno>
 #include <csignal>
@@ -176,5 +175,3 @@ private:
     Shared* shared_; // by all these processes
     bool hasCopies_ = false;
 };
-
-#endif

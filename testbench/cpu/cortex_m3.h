@@ -3,8 +3,7 @@
 // cortex_m3: a Cortex-M3: libunicorn executes the instructions; this adds exceptions, their
 // priorities, the system registers, cycles and faults. Its contract and limits: docs/models.md.
 
-#ifndef CORTEX_M3_H
-#define CORTEX_M3_H
+#pragma once
 
 #include "exceptions.h"
 #include "instruction.h"
@@ -227,5 +226,3 @@ private:
     uint32_t maskedAt_ = 0;
     Masked longest_;
 };
-
-#endif

@@ -5,8 +5,7 @@
 // ARMv7-M Architecture Reference Manual, B1.5. Numbers: 1 Reset .. 15 SysTick, 16 + n is interrupt
 // n.
 
-#ifndef EXCEPTIONS_H
-#define EXCEPTIONS_H
+#pragma once
 
 #include <algorithm>
 #include <array>
@@ -150,5 +149,3 @@ private:
     int bestPriority_ = none, activePriority_ = none, runningPriority_ = none,
         sleepPriority_ = none;
 };
-
-#endif

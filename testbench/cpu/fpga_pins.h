@@ -4,8 +4,7 @@
 // which the FPGA drives while it configures itself, PROGRAM_B and DONE. Without a flash the FPGA is
 // always configured.
 
-#ifndef FPGA_PINS_H
-#define FPGA_PINS_H
+#pragma once
 
 #include "spartan6_boot.h"
 #include "spi_flash.h"
@@ -95,5 +94,3 @@ private:
     uint64_t begunAt_ = 0, doneAt_ = 0; // ns
     bool isProgramLow_ = false;
 };
-
-#endif

@@ -4,8 +4,7 @@
 // TCP on the loopback interface. Registers, memory, breakpoints, step, continue, interrupt,
 // `monitor reset`.
 
-#ifndef GDB_STUB_H
-#define GDB_STUB_H
+#pragma once
 
 #include "cortex_m3.h"
 #include <cstdint>
@@ -65,5 +64,3 @@ private:
     uint16_t port_ = 0;
     bool over_ = false, detached_ = false, served_ = false, noAcknowledgement_ = false;
 };
-
-#endif

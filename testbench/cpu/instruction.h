@@ -5,8 +5,7 @@
 // where the pipeline would hide one; divisions and long products take the middle of the range that
 // the TRM gives, for the real ones depend on their operands.
 
-#ifndef INSTRUCTION_H
-#define INSTRUCTION_H
+#pragma once
 
 #include <cstdint>
 
@@ -105,5 +104,3 @@ inline Instruction decodeInstruction(uint16_t first, uint16_t second) {
         i.kind = Instruction::Barrier;
     return i;
 }
-
-#endif

@@ -2,8 +2,7 @@
 //
 // plain_bus: surroundings for programs that need only the processor and its memory.
 
-#ifndef PLAIN_BUS_H
-#define PLAIN_BUS_H
+#pragma once
 
 #include "cortex_m3.h"
 #include "elf_image.h"
@@ -67,5 +66,3 @@ struct PlainCpu {
     ElfImage image;
     CortexM3 cpu;
 };
-
-#endif

@@ -7,8 +7,7 @@
 // together. Functions are written from WAVE_FROM to WAVE_TO, tasks and interrupts a tenth of a
 // second before, too.
 
-#ifndef PROGRAM_TRACE_H
-#define PROGRAM_TRACE_H
+#pragma once
 
 #include "stm32f2.h"
 #include "wave_window.h"
@@ -113,5 +112,3 @@ private:
     uint64_t time_ = ~0ull;
     bool isNear_ = false; // the window has begun, or begins soon
 };
-
-#endif

@@ -7,8 +7,7 @@
 //   4  SR  bit 0 DRDY, 1 CECS, 2 SECS: now; 5 CEIS, 6 SEIS: since they were written 0
 //   8  DR  the number; 0 while there is none
 
-#ifndef RANDOM_BLOCK_H
-#define RANDOM_BLOCK_H
+#pragma once
 
 #include <cstdint>
 
@@ -61,5 +60,3 @@ private:
     uint64_t state_, readyNs_ = 0;
     uint32_t control_ = 0, errors_ = 0;
 };
-
-#endif

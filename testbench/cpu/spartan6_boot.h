@@ -6,8 +6,7 @@
 // other fault behind the sync word stops it for good (AMD's answer 58249): such a bitstream must
 // never be in flash.
 
-#ifndef SPARTAN6_BOOT_H
-#define SPARTAN6_BOOT_H
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -42,5 +41,3 @@ private:
 // A bitstream that configures the model, instead of ISE's: frames of random words.
 std::vector<uint8_t> standInBitstream(uint32_t seed, uint32_t frameWords,
                                       uint32_t idCode = Spartan6Boot::idCode);
-
-#endif

@@ -4,8 +4,7 @@
 // SPI master clocks them, with the times of erases and writes. Programming only clears bits. An
 // operation cut by a loss of power leaves bits that a seed decides.
 
-#ifndef SPI_FLASH_H
-#define SPI_FLASH_H
+#pragma once
 
 #include <cstdint>
 #include <functional>
@@ -136,5 +135,3 @@ private:
     uint32_t at_ = 0, size_ = 0; // of the operation under way
     uint64_t end_ = 0, operations_ = 0;
 };
-
-#endif

@@ -5,8 +5,7 @@
 // waits until an erase or a write is done. Programming only clears bits. An operation cut by a
 // reset or a loss of power leaves bits that a seed decides.
 
-#ifndef STM32_FLASH_H
-#define STM32_FLASH_H
+#pragma once
 
 #include <cstdint>
 #include <cstring>
@@ -211,5 +210,3 @@ private:
     uint32_t optionStep_ = 0, optcr_ = erasedOptions | 0xAA01;
     uint8_t protection_ = 0xAA;
 };
-
-#endif

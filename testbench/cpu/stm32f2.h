@@ -5,8 +5,7 @@
 // with a bus fault, and so does a peripheral whose clock is off, or the FSMC while one of its pins
 // is not switched to it.
 
-#ifndef STM32F2_H
-#define STM32F2_H
+#pragma once
 
 #include "cortex_m3.h"
 #include "elf_image.h"
@@ -115,5 +114,3 @@ private:
     } watchdog_;
     Resets resets_;
 };
-
-#endif

@@ -2,8 +2,7 @@
 //
 // stm32f2_map: addresses and bits of Stm32F2's registers (RM0033), for its own files.
 
-#ifndef STM32F2_MAP_H
-#define STM32F2_MAP_H
+#pragma once
 
 #include "stm32f2.h"
 
@@ -29,5 +28,3 @@ constexpr bool isPeripheral(uint32_t address) {
 }
 
 } // namespace stm32f2
-
-#endif

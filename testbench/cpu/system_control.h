@@ -4,8 +4,7 @@
 // SCB, the MPU for regions that are inaccessible or read-only, and DWT's cycle counter. ARMv7-M
 // ARM, chapter B3.
 
-#ifndef SYSTEM_CONTROL_H
-#define SYSTEM_CONTROL_H
+#pragma once
 
 #include "exceptions.h"
 #include <cstdint>
@@ -86,5 +85,3 @@ private:
     Region region_[regions];
     unsigned guards_ = 0; // enabled regions with restrictions
 };
-
-#endif

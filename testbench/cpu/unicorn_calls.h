@@ -2,8 +2,7 @@
 //
 // unicorn_calls: libunicorn's C callbacks, and its register names.
 
-#ifndef UNICORN_CALLS_H
-#define UNICORN_CALLS_H
+#pragma once
 
 #include "cortex_m3.h"
 
@@ -36,5 +35,3 @@ struct UnicornCalls {
     }
     static int registerId(int number);
 };
-
-#endif

@@ -7,8 +7,7 @@
 // (MT41J64M16; 09005aef826aa906), "Speed Bins" and "Electrical Characteristics and AC
 // Operating Conditions", rounded up to clocks of 2.5 ns as its note on tCK demands.
 
-#ifndef DDR3_TIMING_H
-#define DDR3_TIMING_H
+#pragma once
 
 #include <algorithm>
 #include <cstdint>
@@ -141,5 +140,3 @@ private:
     uint64_t lastCas_ = 0, nextRefresh_;
     bool lastRead_ = true, anyCas_ = false;
 };
-
-#endif

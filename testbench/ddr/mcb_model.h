@@ -18,8 +18,7 @@
 // default. The way through the FIFOs, both clock crossings and the PHY is estimated by two
 // constants (Timing): UG388 gives the read latency as a range that depends on the configuration.
 
-#ifndef MCB_MODEL_H
-#define MCB_MODEL_H
+#pragma once
 
 #include "ddr3_timing.h"
 #include <cstddef>
@@ -161,5 +160,3 @@ private:
     Ring<Word, 1024> coming_;      // on their way from the memory
     Ring<uint64_t, dataDepth> read_;
 };
-
-#endif

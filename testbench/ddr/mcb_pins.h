@@ -2,8 +2,7 @@
 //
 // mcb_pins: connects a Verilated module's MCB user port with an McbModel, around one clock edge.
 
-#ifndef MCB_PINS_H
-#define MCB_PINS_H
+#pragma once
 
 #include "mcb_model.h"
 
@@ -34,5 +33,3 @@ template <class Module> void driveMcb(Module& top, const McbModel& memory) {
     top.mcb_rd_data_i = m.rdData;
     top.mcb_calib_done_i = m.calibDone;
 }
-
-#endif

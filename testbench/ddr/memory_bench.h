@@ -2,8 +2,7 @@
 //
 // memory_bench: a memory controller with PORTS requesters in front and the MCB's model behind.
 
-#ifndef MEMORY_BENCH_H
-#define MEMORY_BENCH_H
+#pragma once
 
 #include "bench.h"
 #include "mcb_pins.h"
@@ -56,5 +55,3 @@ private:
         sampleMcb(bench.top(), memory);
     }
 };
-
-#endif

@@ -6,8 +6,7 @@
 // Each acknowledgement, which is the order in memory (docs/memory.md), updates the reference. Every
 // read word and its place are compared with it at once. A difference throws.
 
-#ifndef NPI_REQUESTER_H
-#define NPI_REQUESTER_H
+#pragma once
 
 #include "random.h"
 #include <cstring>
@@ -283,5 +282,3 @@ private:
     bool stopped_ = false;
     uint64_t now_ = 0;
 };
-
-#endif

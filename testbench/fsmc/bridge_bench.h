@@ -3,8 +3,7 @@
 // bridge_bench: the FSMC bridge alone between the processor's pins, a bus slave, which has the
 // system slot's ID, and a memory.
 
-#ifndef BRIDGE_BENCH_H
-#define BRIDGE_BENCH_H
+#pragma once
 
 #include "bus_slave.h"
 #include "driver_port.h"
@@ -99,5 +98,3 @@ private:
         far->nwaitN = top.fsmc_nwait_n_o;
     }
 };
-
-#endif

@@ -3,8 +3,7 @@
 // bus_slave: a slave with 1024 words at a master of the register bus (docs/bus.md), with random
 // stalls, errors and a hang. It checks the master's rules and throws where one is broken.
 
-#ifndef BUS_SLAVE_H
-#define BUS_SLAVE_H
+#pragma once
 
 #include "bench.h"
 #include "random.h"
@@ -78,5 +77,3 @@ private:
     unsigned addr_ = 0;
     uint32_t wdata_ = 0;
 };
-
-#endif

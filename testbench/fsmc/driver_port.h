@@ -3,8 +3,7 @@
 // driver_port: the FSMC driver's loads and stores (sw/fsmc) on the model of the FSMC; context is
 // the FsmcMaster.
 
-#ifndef DRIVER_PORT_H
-#define DRIVER_PORT_H
+#pragma once
 
 #include "fsmc_master.h"
 
@@ -21,5 +20,3 @@ inline const FSMC_Port driverPort = {[](void* c, U32 a) -> U8 { return masterOf(
                                      [](void* c, U32 a, U16 v) { masterOf(c).write16(a, v); },
                                      [](void* c, U32 a) -> U32 { return masterOf(c).read32(a); },
                                      [](void* c, U32 a, U32 v) { masterOf(c).write32(a, v); }};
-
-#endif

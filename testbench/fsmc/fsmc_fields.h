@@ -2,8 +2,7 @@
 //
 // fsmc_fields: addresses and bits of the STM32F2's FSMC registers (RM0033, 31.5.6).
 
-#ifndef FSMC_FIELDS_H
-#define FSMC_FIELDS_H
+#pragma once
 
 #include <cstdint>
 
@@ -26,5 +25,3 @@ constexpr uint32_t timing(unsigned addset, unsigned datast, unsigned busturn = 0
 }
 
 } // namespace fsmc
-
-#endif

@@ -11,8 +11,7 @@
 // driving it in a read, read data that moves within its set-up time, NWAIT too late to be seen or
 // low for ever, reserved values in registers, a bank that is not enabled.
 
-#ifndef FSMC_MASTER_H
-#define FSMC_MASTER_H
+#pragma once
 
 #include <cstdint>
 #include <functional>
@@ -130,5 +129,3 @@ private:
     unsigned lastIndex_ = 0, lastBusturn_ = 0;
     uint64_t accesses_ = 0, hclks_ = 0;
 };
-
-#endif

@@ -3,8 +3,7 @@
 // pin_delays: the wires between the FSMC and the design: each change of each pin has its own delay,
 // and a flip-flop whose data moves in its set-up or hold time throws.
 
-#ifndef PIN_DELAYS_H
-#define PIN_DELAYS_H
+#pragma once
 
 #include "fsmc_master.h"
 #include <algorithm>
@@ -192,5 +191,3 @@ private:
     int64_t last_[64] = {}, lastOut_[18] = {};
     std::multimap<int64_t, Change> changes_;
 };
-
-#endif

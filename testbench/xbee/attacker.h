@@ -3,8 +3,7 @@
 // attacker: a foreign modem on the air. It hears every packet, keeps all, and sends anything in
 // anybody's name.
 
-#ifndef ATTACKER_H
-#define ATTACKER_H
+#pragma once
 
 #include "rf_channel.h"
 
@@ -129,5 +128,3 @@ private:
     bool hinders_ = false;
     unsigned toHinder_ = 0; // packets heard, and not yet hindered
 };
-
-#endif

@@ -2,8 +2,7 @@
 //
 // cable: joins two serial lines by a wire each way, where no modems are between them.
 
-#ifndef CABLE_H
-#define CABLE_H
+#pragma once
 
 #include "serial_line.h"
 
@@ -57,5 +56,3 @@ private:
     };
     End ends_[2];
 };
-
-#endif

@@ -3,8 +3,7 @@
 // ground_step: makes simulated time wait for the program on the ground that keeps step with it
 // (sim_status.h), however seldom a busy machine lets that program run.
 
-#ifndef GROUND_STEP_H
-#define GROUND_STEP_H
+#pragma once
 
 #include "serial_line.h"
 #include "sim_status.h"
@@ -111,5 +110,3 @@ private:
     double patience_;
     uint64_t waitedNs_ = 0;
 };
-
-#endif

@@ -3,8 +3,7 @@
 // rf_channel: the air between modems, half duplex and shared: carrier sense, random waits,
 // collisions, tries and acknowledgements of the MAC, and the weather (rf_weather.h), by seed.
 
-#ifndef RF_CHANNEL_H
-#define RF_CHANNEL_H
+#pragma once
 
 #include "random.h"
 #include "rf_weather.h"
@@ -80,5 +79,3 @@ private:
     Counters counters_;
     Listener listener_;
 };
-
-#endif

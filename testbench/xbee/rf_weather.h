@@ -2,8 +2,7 @@
 //
 // rf_weather: the conditions on the air, as numbers, or row by row from a recorded trace.
 
-#ifndef RF_WEATHER_H
-#define RF_WEATHER_H
+#pragma once
 
 #include "random.h"
 #include <algorithm>
@@ -141,5 +140,3 @@ struct RfWeather {
         return -lossOfFirstMetre - 20 * std::log10(std::max(distance, 1.0));
     }
 };
-
-#endif

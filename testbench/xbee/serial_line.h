@@ -2,8 +2,7 @@
 //
 // serial_line: the modem's side of a serial port: UART pins of a design, or a pty for a program.
 
-#ifndef SERIAL_LINE_H
-#define SERIAL_LINE_H
+#pragma once
 
 #include <algorithm>
 #include <cstdint>
@@ -220,5 +219,3 @@ private:
     uint64_t fetched_ = 0;      // of the counted bytes
     std::deque<uint8_t> ahead_; // read, but the wire has not carried them yet
 };
-
-#endif

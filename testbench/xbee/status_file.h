@@ -2,8 +2,7 @@
 //
 // status_file: a simulator's counters (sim_status.h) in a file that other programs map.
 
-#ifndef STATUS_FILE_H
-#define STATUS_FILE_H
+#pragma once
 
 #include "sim_status.h"
 #include <cerrno>
@@ -53,5 +52,3 @@ private:
     }
     SimStatus* status_;
 };
-
-#endif

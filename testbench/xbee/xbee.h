@@ -6,8 +6,7 @@
 // Time is in nanoseconds. advance(now) handles due events; nextEvent() returns the next time. The
 // serial side is a SerialLine (pins or a pty), the radio side an RfChannel.
 
-#ifndef XBEE_H
-#define XBEE_H
+#pragma once
 
 #include "serial_line.h"
 #include <array>
@@ -169,5 +168,3 @@ private:
     uint8_t apiId_ = 0; // of the packet in flight
     Counters counters_;
 };
-
-#endif

@@ -4,8 +4,7 @@
 // bytes before the payload, frame counter and key sequence counter, and no check. So a packet has
 // 95 bytes instead of 100, and another key gives garbage, not silence.
 
-#ifndef XBEE_CRYPT_H
-#define XBEE_CRYPT_H
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -71,5 +70,3 @@ private:
         return out;
     }
 };
-
-#endif

@@ -3,8 +3,7 @@
 // xbee_parameters: the modem's parameters: factory values and limits, after the XBee 802.15.4
 // manual.
 
-#ifndef XBEE_PARAMETERS_H
-#define XBEE_PARAMETERS_H
+#pragma once
 
 #include <cstdint>
 #include <map>
@@ -51,5 +50,3 @@ inline double xbeeBaud(uint32_t bd) {
     unsigned divisor = static_cast<unsigned>(1e6 / bd + 0.5);
     return 1e6 / (divisor ? divisor : 1);
 }
-
-#endif

@@ -3,8 +3,7 @@
 // ascon_model: Ascon-AEAD128 and Ascon-Hash256 on the host, written from NIST SP 800-232: the
 // core's reference.
 
-#ifndef ASCON_MODEL_H
-#define ASCON_MODEL_H
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -24,5 +23,3 @@ AsconSealed asconEncrypt(const AsconKey& key, const AsconKey& nonce, const Ascon
 std::optional<AsconBytes> asconDecrypt(const AsconKey& key, const AsconKey& nonce,
                                        const AsconBytes& associated, const AsconSealed& sealed);
 std::array<uint8_t, 32> asconHash(const AsconBytes& message);
-
-#endif

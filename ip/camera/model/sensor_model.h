@@ -3,8 +3,7 @@
 // sensor_model: the parallel port of an image sensor: its pins at each pixel clock, with faults on
 // request.
 
-#ifndef SENSOR_MODEL_H
-#define SENSOR_MODEL_H
+#pragma once
 
 #include <cstdint>
 #include <deque>
@@ -63,5 +62,3 @@ private:
     Blanking blanking_;
     std::deque<Pins> pins_;
 };
-
-#endif

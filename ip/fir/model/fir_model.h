@@ -3,8 +3,7 @@
 // fir_model: the FIR filter's results on the host, bit by bit: the sum as the definition has it
 // (ip/fir/README.md).
 
-#ifndef FIR_MODEL_H
-#define FIR_MODEL_H
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -44,5 +43,3 @@ private:
     };
     std::deque<Past> history_; // newest first
 };
-
-#endif

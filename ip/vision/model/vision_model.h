@@ -3,8 +3,7 @@
 // vision_model: the vision core's result, computed on the host, bit by bit (ip/vision/README.md):
 // FAST-9 and non-maximum suppression, written for clearness.
 
-#ifndef VISION_MODEL_H
-#define VISION_MODEL_H
+#pragma once
 
 #include <algorithm>
 #include <cstddef>
@@ -76,5 +75,3 @@ inline std::vector<Feature> strongest(std::vector<Feature> features, size_t coun
         features.resize(count);
     return features;
 }
-
-#endif

@@ -5,8 +5,7 @@
 // A machine (the simulator, or a test) says how time passes. Interrupts are delivered by
 // OsHost::interruptPoint(), which the machine calls wherever simulated time has passed.
 
-#ifndef OS_HOST_H
-#define OS_HOST_H
+#pragma once
 
 #include <functional>
 
@@ -35,5 +34,3 @@ void run();
 void interruptPoint();
 
 } // namespace OsHost
-
-#endif

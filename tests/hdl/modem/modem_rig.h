@@ -3,8 +3,7 @@
 // modem_rig: the modem controller, its memory, the modem at its pins, the air, and a modem far
 // away.
 
-#ifndef MODEM_RIG_H
-#define MODEM_RIG_H
+#pragma once
 
 #include "bench.h"
 #include "bus_master.h"
@@ -155,5 +154,3 @@ private:
     }
     bool txd_ = true, rtsN_ = false;
 };
-
-#endif

@@ -2,8 +2,7 @@
 //
 // modem_test: the fixtures of the modem controller's tests: the XBee model at its pins.
 
-#ifndef MODEM_TEST_H
-#define MODEM_TEST_H
+#pragma once
 
 #include "VModem.h"
 #include "modem_rig.h"
@@ -34,5 +33,3 @@ protected:
     }
     Random random_{testSeed()};
 };
-
-#endif

@@ -2,8 +2,7 @@
 //
 // pair: two modems, `a` at address 1 and `b` at address 2, the air between them, and their hosts.
 
-#ifndef PAIR_H
-#define PAIR_H
+#pragma once
 
 #include "rf_channel.h"
 #include <algorithm>
@@ -83,5 +82,3 @@ protected:
     std::unique_ptr<XBee> a, b;
     std::vector<Seen> packets; // as they landed
 };
-
-#endif

@@ -73,8 +73,7 @@ TEST_F(TrueAir, AnEncryptedFrameCarriesItsSendersAddressAndFiveBytes) {
     perfect = true;
     power({{"EE", 1}, {"RO", 0}}, {{"EE", 1}});
     uint64_t begin = now;
-    send("x");
-    run(10 * ms);
+    send("x", 10 * ms);
     EXPECT_EQ(packets[0].time - begin, RfChannel::airTimeNs(1 + 5 + 6));
 }
 
@@ -93,8 +92,7 @@ TEST_F(Retries, ABroadcastGoesRRAndTwoTimesAndArrivesOnce) {
     for (uint32_t rr : {0u, 2u}) {
         power({{"DL", 0xFFFF}, {"RR", rr}, {"RO", 0}});
         uint64_t before = air.counters().airNs;
-        send("x");
-        run(100 * ms);
+        send("x", 100 * ms);
         EXPECT_EQ((air.counters().airNs - before) / (RfChannel::airTimeNs(1) - 544'000),
                   rr ? rr + 2 : 1);
         EXPECT_EQ(heardB(), "x");
@@ -103,8 +101,7 @@ TEST_F(Retries, ABroadcastGoesRRAndTwoTimesAndArrivesOnce) {
 
 TEST_F(Retries, AModemThatIsNotThereCostsAllTries) {
     power({{"DL", 9}, {"RO", 0}});
-    send("x");
-    run(100 * ms);
+    send("x", 100 * ms);
     EXPECT_EQ(air.counters().retries, 3u);
     EXPECT_EQ(a->parameter("EA"), 4u);
 }
@@ -123,8 +120,7 @@ TEST_F(Retries, WithRRAFailureHasAStatusOfItsOwn) {
 
 TEST_F(TrueAir, A64BitSourceComesInFrames80) {
     power({{"MY", 0xFFFE}, {"RO", 0}}, {{"AP", 1}});
-    send("x");
-    run(50 * ms);
+    send("x", 50 * ms);
     std::string frame = heardB();
     ASSERT_EQ(frame.size(), 16u);
     EXPECT_EQ(static_cast<uint8_t>(frame[3]), 0x80);
@@ -146,15 +142,13 @@ TEST_F(TrueAir, StrengthFallsWithDistanceAndTriesFade) {
     power({{"RO", 0}});
     air.weather.distance = 100; // 80 dB: 12 dB above the sensitivity
     for (int i = 0; i < 200; ++i) {
-        send("x");
-        run(50 * ms);
+        send("x", 50 * ms);
     }
     double missed = static_cast<double>(air.counters().retries) /
                     (200.0 + static_cast<double>(air.counters().retries));
     EXPECT_NEAR(missed, 0.06, 0.04) << "Rayleigh: 1 - exp(-10^-1.2)";
     air.weather.distance = 10000;
-    send("y");
-    run(50 * ms);
+    send("y", 50 * ms);
     EXPECT_EQ(heardB().find('y'), std::string::npos);
 }
 
@@ -186,18 +180,12 @@ TEST_F(Traces, AreFollowedRowByRow) {
     air.weather.trace = std::make_shared<RfTrace>(
         write("time_s,loss,rssi_dbm,delay_ms\n0,0,-50,0\n1,1,-90,0\n2,0,-70,30\n"));
     now = second / 2;
-    send("a");
-    run(50 * ms);
-    EXPECT_EQ(heardB(), "a");
+    EXPECT_EQ(across("a", 50 * ms), "a");
     EXPECT_EQ(b->parameter("DB"), 50u);
     run(second);
-    send("b");
-    run(50 * ms);
-    EXPECT_EQ(heardB(), "");
+    EXPECT_EQ(across("b", 50 * ms), "");
     run(second);
-    send("c");
-    run(30 * ms);
-    EXPECT_EQ(heardB(), "") << "delayed";
+    EXPECT_EQ(across("c", 30 * ms), "") << "delayed";
     run(30 * ms);
     EXPECT_EQ(heardB(), "c");
     EXPECT_EQ(b->parameter("DB"), 70u);

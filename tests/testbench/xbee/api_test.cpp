@@ -29,45 +29,42 @@ protected:
         return out;
     }
     void SetUp() override { power({{"AP", GetParam()}}); }
-    void api(Bytes contents) { lineA.send(framed(std::move(contents)), now); }
+    void api(Bytes contents, uint64_t ns = 0) {
+        lineA.send(framed(std::move(contents)), now);
+        run(ns);
+    }
     Bytes answer() { return std::exchange(lineA.received, {}); }
     Bytes command(Bytes contents) {
-        api(std::move(contents));
-        run(ms);
+        api(std::move(contents), ms);
         return answer();
     }
 };
 
 TEST_P(Api, ATransmitRequestIsSentAndItsStatusReported) {
-    api({0x01, 0x52, 0x00, 0x02, 0x00, 'h', 0x7E, 0x11, 'i'});
-    run(20 * ms);
+    api({0x01, 0x52, 0x00, 0x02, 0x00, 'h', 0x7E, 0x11, 'i'}, 20 * ms);
     EXPECT_EQ(heardB(), "h\x7E\x11i");
     EXPECT_EQ(answer(), framed({0x89, 0x52, 0x00}));
 }
 
 TEST_P(Api, NobodyThereGivesStatus1) {
-    api({0x01, 0x07, 0x99, 0x99, 0x00, 'x'});
-    run(100 * ms);
+    api({0x01, 0x07, 0x99, 0x99, 0x00, 'x'}, 100 * ms);
     EXPECT_EQ(answer(), framed({0x89, 0x07, 0x01}));
 }
 
 TEST_P(Api, FrameId0AsksForNoStatus) {
-    api({0x01, 0x00, 0x00, 0x02, 0x00, 'x'});
-    run(20 * ms);
+    api({0x01, 0x00, 0x00, 0x02, 0x00, 'x'}, 20 * ms);
     EXPECT_EQ(heardB(), "x");
     EXPECT_EQ(answer(), Bytes{});
 }
 
 TEST_P(Api, TheOptionWithoutAckIsNotTriedAgain) {
     air.weather.tryLoss = 1;
-    api({0x01, 0x01, 0x00, 0x02, 0x01, 'x'});
-    run(100 * ms);
+    api({0x01, 0x01, 0x00, 0x02, 0x01, 'x'}, 100 * ms);
     EXPECT_EQ(air.counters().retries, 0u);
 }
 
 TEST_P(Api, SerialNumbersAreAddressedBy0x00) {
-    api({0x00, 0x01, 0x00, 0x13, 0xA2, 0x00, 0x00, 0x00, 0x00, 0x0B, 0x00, 'x'});
-    run(20 * ms);
+    api({0x00, 0x01, 0x00, 0x13, 0xA2, 0x00, 0x00, 0x00, 0x00, 0x0B, 0x00, 'x'}, 20 * ms);
     EXPECT_EQ(heardB(), "x");
 }
 
@@ -111,8 +108,7 @@ TEST_P(Api, BadFramesAreCountedAndTheNextIsRead) {
     longPayload.resize(longPayload.size() + 101, 'x');
     api(longPayload);
     EXPECT_EQ(a->counters().badFrames, 4u);
-    api({0x01, 0x00, 0x00, 0x02, 0x00, 'o', 'k'});
-    run(20 * ms);
+    api({0x01, 0x00, 0x00, 0x02, 0x00, 'o', 'k'}, 20 * ms);
     EXPECT_EQ(heardB(), "ok");
 }
 
@@ -135,8 +131,7 @@ TEST_P(Api, WithEscapesALostByteCostsOneFrameOnly) {
     Bytes cut = framed({0x01, 0x00, 0x00, 0x02, 0x00, 'x', 'y', 'z'});
     cut.pop_back();
     lineA.send(cut, now);
-    api({0x01, 0x00, 0x00, 0x02, 0x00, 'o', 'k'});
-    run(20 * ms);
+    api({0x01, 0x00, 0x00, 0x02, 0x00, 'o', 'k'}, 20 * ms);
     EXPECT_EQ(heardB(), escapes() ? "ok" : "");
 }
 

@@ -7,7 +7,14 @@
 namespace {
 
 using CommandMode = Pair;
-using Commands = Pair;
+
+class Commands : public Pair {
+protected:
+    void SetUp() override {
+        power();
+        enter();
+    }
+};
 
 TEST_F(CommandMode, SequenceBetweenGuardTimesIsAnswered) {
     power();
@@ -19,8 +26,7 @@ TEST_F(CommandMode, SequenceBetweenGuardTimesIsAnswered) {
 TEST_F(CommandMode, DefaultGuardTimeIsASecond) {
     power({{"GT", 1000}});
     run(1000 * ms);
-    send("+++");
-    run(999 * ms);
+    send("+++", 999 * ms);
     EXPECT_FALSE(a->inCommandMode());
     run(2 * ms);
     EXPECT_TRUE(a->inCommandMode());
@@ -29,10 +35,8 @@ TEST_F(CommandMode, DefaultGuardTimeIsASecond) {
 TEST_F(CommandMode, WithoutSilenceBeforeItIsData) {
     power();
     run(11 * ms);
-    send("x");
-    run(5 * ms);
-    send("+++");
-    run(30 * ms);
+    send("x", 5 * ms);
+    send("+++", 30 * ms);
     EXPECT_FALSE(a->inCommandMode());
     EXPECT_EQ(heardB(), "x+++");
 }
@@ -40,10 +44,8 @@ TEST_F(CommandMode, WithoutSilenceBeforeItIsData) {
 TEST_F(CommandMode, WithoutSilenceAfterItIsData) {
     power();
     run(11 * ms);
-    send("+++");
-    run(5 * ms);
-    send("y");
-    run(30 * ms);
+    send("+++", 5 * ms);
+    send("y", 30 * ms);
     EXPECT_FALSE(a->inCommandMode());
     EXPECT_EQ(heardB(), "+++y");
 }
@@ -51,12 +53,10 @@ TEST_F(CommandMode, WithoutSilenceAfterItIsData) {
 TEST_F(CommandMode, TheThreeCharactersComeWithinASecond) {
     power({{"GT", 2000}});
     run(2001 * ms);
-    send("+");
-    run(900 * ms);
+    send("+", 900 * ms);
     send("+");
     run(200 * ms); // 1.1 s after the first
-    send("+");
-    run(2100 * ms);
+    send("+", 2100 * ms);
     EXPECT_FALSE(a->inCommandMode());
     EXPECT_EQ(heardB(), "+++");
 }
@@ -64,29 +64,23 @@ TEST_F(CommandMode, TheThreeCharactersComeWithinASecond) {
 TEST_F(CommandMode, FewerCharactersAreData) {
     power();
     run(11 * ms);
-    send("++");
-    run(30 * ms);
-    EXPECT_EQ(heardB(), "++");
+    EXPECT_EQ(across("++", 30 * ms), "++");
 }
 
 TEST_F(CommandMode, TheCharacterIsCC) {
     power({{"CC", '-'}});
     EXPECT_EQ(enter(), "");
     run(11 * ms);
-    send("---");
-    run(11 * ms);
+    send("---", 11 * ms);
     EXPECT_EQ(heard(), "OK\r");
 }
 
 TEST_F(CommandMode, WhatWasWrittenBeforeIsSentByRadio) {
     power({{"RO", 0xFF}}); // nothing would leave by itself for 265 ms
     run(11 * ms);
-    send("before");
-    run(11 * ms);
+    send("before", 11 * ms);
     EXPECT_TRUE(packets.empty());
-    send("+++");
-    run(20 * ms);
-    EXPECT_EQ(heardB(), "before");
+    EXPECT_EQ(across("+++", 20 * ms), "before");
 }
 
 TEST_F(CommandMode, EndsByCN) {
@@ -94,9 +88,7 @@ TEST_F(CommandMode, EndsByCN) {
     enter();
     EXPECT_EQ(command("ATCN"), "OK\r");
     EXPECT_FALSE(a->inCommandMode());
-    send("data");
-    run(20 * ms);
-    EXPECT_EQ(heardB(), "data");
+    EXPECT_EQ(across("data", 20 * ms), "data");
 }
 
 TEST_F(CommandMode, EndsAfterCTWithoutAValidCommand) {
@@ -117,8 +109,7 @@ TEST_F(CommandMode, OkWaitsUntilReceivedDataHasDrained) {
     lineB.send(Bytes(100, 'r'), now);
     run(20 * ms);
     run(11 * ms);
-    send("+++");
-    run(20 * ms);
+    send("+++", 20 * ms);
     EXPECT_TRUE(a->inCommandMode());
     EXPECT_EQ(heard(), "");
     lineA.paused = false;
@@ -127,8 +118,6 @@ TEST_F(CommandMode, OkWaitsUntilReceivedDataHasDrained) {
 }
 
 TEST_F(Commands, AreReadAndWrittenInHex) {
-    power();
-    enter();
     const std::vector<std::pair<std::string, std::string>> values = {
         {"MY", "1A2B"}, {"DH", "13A200"}, {"DL", "FFFF"}, {"ID", "BEEF"}, {"CH", "1A"},
         {"BD", "7"},    {"RO", "0"},      {"RN", "3"},    {"MM", "2"},    {"RR", "6"},
@@ -141,8 +130,6 @@ TEST_F(Commands, AreReadAndWrittenInHex) {
 }
 
 TEST_F(Commands, OutOfRangeAreRefusedAndChangeNothing) {
-    power();
-    enter();
     for (std::string line :
          {"ATMY10000", "ATCH0A", "ATCH1B", "ATRN4", "ATMM4", "ATRR7", "ATEE2", "ATGT1", "ATGTCE5",
           "ATAP3", "ATBD3D091", "ATD66", "ATFT10", "ATMYG", "ATMY123456789"}) {
@@ -153,16 +140,12 @@ TEST_F(Commands, OutOfRangeAreRefusedAndChangeNothing) {
 }
 
 TEST_F(Commands, UnknownAndMalformedAreRefused) {
-    power();
-    enter();
     for (std::string line : {"ATZZ", "ATZZ1", "AT", "A", "", "MY", "XXMY"})
         EXPECT_EQ(command(line), "ERROR\r") << line;
     EXPECT_EQ(command("atmy"), "1\r") << "letters may be small";
 }
 
 TEST_F(Commands, SerialNumberAndSignalAreReadOnly) {
-    power();
-    enter();
     EXPECT_EQ(command("ATSH"), "13A200\r");
     EXPECT_EQ(command("ATSL"), "A\r");
     EXPECT_EQ(command("ATDB"), "28\r");
@@ -171,8 +154,6 @@ TEST_F(Commands, SerialNumberAndSignalAreReadOnly) {
 }
 
 TEST_F(Commands, TheKeyIsWriteOnly) {
-    power();
-    enter();
     EXPECT_EQ(command("ATKY00112233445566778899AABBCCDDEEFF"), "OK\r");
     EXPECT_EQ(a->key(), "00112233445566778899AABBCCDDEEFF");
     EXPECT_EQ(command("ATKY1"), "OK\r");
@@ -182,8 +163,6 @@ TEST_F(Commands, TheKeyIsWriteOnly) {
 }
 
 TEST_F(Commands, ChangesAreInForceAfterACOrCN) {
-    power();
-    enter();
     command("ATMY99");
     EXPECT_EQ(a->parameter("MY"), 1u);
     command("ATAC");
@@ -194,8 +173,6 @@ TEST_F(Commands, ChangesAreInForceAfterACOrCN) {
 }
 
 TEST_F(Commands, WRSurvivesAResetAndOthersDoNot) {
-    power();
-    enter();
     command("ATMY55");
     command("ATWR");
     command("ATMY66");
@@ -208,8 +185,6 @@ TEST_F(Commands, WRSurvivesAResetAndOthersDoNot) {
 }
 
 TEST_F(Commands, REGivesTheFactorysSettings) {
-    power();
-    enter();
     EXPECT_EQ(command("ATRE"), "OK\r");
     EXPECT_EQ(command("ATMY"), "0\r");
     EXPECT_EQ(command("ATGT"), "3E8\r");
@@ -217,17 +192,11 @@ TEST_F(Commands, REGivesTheFactorysSettings) {
 }
 
 TEST_F(Commands, FRAnswersAndThenBoots) {
-    power();
-    enter();
     command("ATMY66");
     EXPECT_EQ(command("ATFR"), "OK\r");
     EXPECT_EQ(a->parameter("MY"), 1u);
-    send("lost");
-    run(60 * ms);
-    EXPECT_EQ(heardB(), "") << "deaf while it boots";
-    send("data");
-    run(20 * ms);
-    EXPECT_EQ(heardB(), "data");
+    EXPECT_EQ(across("lost", 60 * ms), "") << "deaf while it boots";
+    EXPECT_EQ(across("data", 20 * ms), "data");
 }
 
 TEST_F(Commands, BD7Is111111Baud) {
@@ -237,8 +206,6 @@ TEST_F(Commands, BD7Is111111Baud) {
 }
 
 TEST_F(Commands, ALiteralRateIsKeptAsTheNearest) {
-    power();
-    enter();
     EXPECT_EQ(command("ATBD3D090"), "OK\r");
     EXPECT_EQ(command("ATBD"), "3D090\r") << "250,000 is exact";
     EXPECT_EQ(command("ATBD1C200"), "OK\r"); // 115,200

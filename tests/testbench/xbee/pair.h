@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <memory>
+#include <utility>
 
 class Pair : public ::testing::Test {
 protected:
@@ -45,27 +46,25 @@ protected:
     }
     static Bytes bytes(const std::string& text) { return {text.begin(), text.end()}; }
     static std::string text(const Bytes& data) { return {data.begin(), data.end()}; }
-    void send(const std::string& data) { lineA.send(bytes(data), now); }
-    // Returns what `a` has given its host since the last call.
-    std::string heard() {
-        std::string data = text(lineA.received);
-        lineA.received.clear();
-        return data;
+    void send(const std::string& data, uint64_t ns = 0) {
+        lineA.send(bytes(data), now);
+        run(ns);
     }
-    std::string heardB() {
-        std::string data = text(lineB.received);
-        lineB.received.clear();
-        return data;
+    // Returns what `a` has given its host since the last call.
+    std::string heard() { return text(std::exchange(lineA.received, {})); }
+    std::string heardB() { return text(std::exchange(lineB.received, {})); }
+    // Returns what `b` has given its host by the given time after `data` went to `a`.
+    std::string across(const std::string& data, uint64_t ns) {
+        send(data, ns);
+        return heardB();
     }
     std::string enter() {
         run(11 * ms);
-        send("+++");
-        run(11 * ms);
+        send("+++", 11 * ms);
         return heard();
     }
     std::string command(const std::string& line) {
-        send(line + "\r");
-        run(ms);
+        send(line + "\r", ms);
         return heard();
     }
     uint64_t charNs(double baud = 9600) const { return static_cast<uint64_t>(10e9 / baud); }

@@ -30,9 +30,7 @@ using Air = Pair;
 TEST_F(Addresses, ChannelNetworkAndAddressMustAgree) {
     for (auto& [letters, value] : Settings{{"CH", 0x0D}, {"ID", 0x1111}, {"MY", 3}}) {
         power({}, {{letters, value}});
-        send("x");
-        run(30 * ms);
-        EXPECT_EQ(heardB(), "") << letters;
+        EXPECT_EQ(across("x", 30 * ms), "") << letters;
         EXPECT_EQ(packets.back().outcome, RfChannel::Outcome::Nobody);
     }
 }
@@ -40,20 +38,15 @@ TEST_F(Addresses, ChannelNetworkAndAddressMustAgree) {
 TEST_F(Addresses, FFFFReachesEverybodyOnceAndWithoutAck) {
     power({{"DL", 0xFFFF}});
     air.weather.tryLoss = 1;
-    send("x");
-    run(60 * ms);
+    send("x", 60 * ms);
     EXPECT_EQ(air.counters().retries, 0u);
     air.weather.tryLoss = 0;
-    send("y");
-    run(30 * ms);
-    EXPECT_EQ(heardB(), "y");
+    EXPECT_EQ(across("y", 30 * ms), "y");
 }
 
 TEST_F(Addresses, SerialNumbersReachAModemWithoutAShortAddress) {
     power({{"DH", 0x0013A200}, {"DL", 0xB}}, {{"MY", 0xFFFE}});
-    send("x");
-    run(30 * ms);
-    EXPECT_EQ(heardB(), "x");
+    EXPECT_EQ(across("x", 30 * ms), "x");
 }
 
 TEST_F(Mac, AirTimeIsTheFormulas) {
@@ -61,8 +54,7 @@ TEST_F(Mac, AirTimeIsTheFormulas) {
     EXPECT_EQ(RfChannel::airTimeNs(0), 2'112'000u);
     power({{"RO", 0}});
     uint64_t begin = now;
-    send("x");
-    run(10 * ms);
+    send("x", 10 * ms);
     EXPECT_EQ(packets[0].time - begin, RfChannel::airTimeNs(1));
 }
 
@@ -78,8 +70,7 @@ class MacTries : public Pair, public ::testing::WithParamInterface<Tries> {};
 TEST_P(MacTries, AreFourTimesRRAndOneMore) {
     power({{"RR", GetParam().rr}, {"MM", GetParam().mm}});
     air.weather.tryLoss = 1;
-    send("x");
-    run(2000 * ms);
+    send("x", 2000 * ms);
     EXPECT_EQ(air.counters().retries, GetParam().tries - 1);
     EXPECT_EQ(packets.back().outcome, RfChannel::Outcome::Lost);
     bool acks = GetParam().mm == 0 || GetParam().mm == 2;
@@ -93,8 +84,7 @@ TEST_F(Mac, RetriesHideLossOfSingleTries) {
     power({{"RR", 2}});
     air.weather.tryLoss = 0.3;
     for (int i = 0; i < 200; ++i) {
-        send("x");
-        run(600 * ms);
+        send("x", 600 * ms);
     }
     EXPECT_EQ(heardB(), std::string(200, 'x'));
     EXPECT_GT(air.counters().retries, 40u);
@@ -104,34 +94,25 @@ TEST_F(Mac, RetriesHideLossOfSingleTries) {
 TEST_F(Mac, ALostAckMakesADuplicate) {
     power();
     air.weather.ackLoss = 1;
-    send("x");
-    run(100 * ms);
-    EXPECT_EQ(heardB(), "xxxx");
+    EXPECT_EQ(across("x", 100 * ms), "xxxx");
     EXPECT_EQ(a->parameter("EA"), 4u);
 }
 
 TEST_F(Mac, WithRRAndTheHeaderDuplicatesAreDropped) {
     power({{"RR", 1}});
     air.weather.ackLoss = 1;
-    send("x");
-    run(400 * ms);
-    EXPECT_EQ(heardB(), "x");
+    EXPECT_EQ(across("x", 400 * ms), "x");
     EXPECT_EQ(b->counters().duplicatesDropped, 7u);
 }
 
 TEST_F(Mac, MMMustSuit) {
     power({{"MM", 2}});
-    send("x");
-    run(30 * ms);
-    EXPECT_EQ(heardB(), "") << "no header, which MM 0 wants";
+    EXPECT_EQ(across("x", 30 * ms), "") << "no header, which MM 0 wants";
     power({{"MM", 0}}, {{"MM", 2}});
-    send("x");
-    run(30 * ms);
+    send("x", 30 * ms);
     EXPECT_EQ(heardB().size(), 3u) << "two bytes of header before the data";
     power({{"MM", 2}}, {{"MM", 1}});
-    send("x");
-    run(30 * ms);
-    EXPECT_EQ(heardB(), "x");
+    EXPECT_EQ(across("x", 30 * ms), "x");
 }
 
 TEST_F(Encryption, AnotherKeyGivesGarbageNotSilence) {
@@ -139,8 +120,7 @@ TEST_F(Encryption, AnotherKeyGivesGarbageNotSilence) {
     enter();
     command("ATKY1");
     command("ATCN");
-    send("secret");
-    run(30 * ms);
+    send("secret", 30 * ms);
     std::string got = heardB();
     EXPECT_EQ(got.size(), 6u);
     EXPECT_NE(got, "secret");
@@ -149,9 +129,7 @@ TEST_F(Encryption, AnotherKeyGivesGarbageNotSilence) {
 TEST_F(Encryption, WhereEEDiffersNothingComesOutAndTheSenderIsAcknowledged) {
     for (uint32_t ee : {0u, 1u}) {
         power({{"EE", ee}}, {{"EE", 1 - ee}});
-        send("secret");
-        run(60 * ms);
-        EXPECT_EQ(heardB(), "");
+        EXPECT_EQ(across("secret", 60 * ms), "");
         EXPECT_EQ(b->counters().packetsUnreadable, 1u);
         EXPECT_EQ(a->parameter("EA"), 0u);
     }
@@ -165,8 +143,7 @@ TEST_F(Encryption, OnTheAirItIsAesInCounterModeOf802154) {
     command("ATKY000102030405060708090A0B0C0D0E0F");
     command("ATCN");
     const std::string plain = "forty bytes of text, so three AES blocks";
-    send(plain);
-    run(100 * ms);
+    send(plain, 100 * ms);
     const Bytes& onAir = packets.back().bytes;
     ASSERT_EQ(onAir.size(), 5 + plain.size());
     const Bytes counter(onAir.begin(), onAir.begin() + 4);
@@ -187,11 +164,8 @@ TEST_F(Encryption, OnTheAirItIsAesInCounterModeOf802154) {
 
 TEST_F(Encryption, TheSameTextLooksDifferentEachTime) {
     power({{"EE", 1}}, {{"EE", 1}});
-    send("again");
-    run(30 * ms);
-    send("again");
-    run(30 * ms);
-    EXPECT_EQ(heardB(), "againagain");
+    send("again", 30 * ms);
+    EXPECT_EQ(across("again", 30 * ms), "againagain");
     EXPECT_NE(packets[0].bytes, packets[1].bytes);
 }
 
@@ -199,8 +173,7 @@ TEST_F(Air, LossIsAsAsked) {
     power({{"RO", 0}});
     air.weather.loss = 0.25;
     for (int i = 0; i < 2000; ++i) {
-        send("x");
-        run(3 * ms);
+        send("x", 3 * ms);
     }
     double lost = static_cast<double>(air.counters().lost) / 2000;
     EXPECT_NEAR(lost, 0.25, 0.04);
@@ -215,8 +188,7 @@ TEST_F(Air, BurstsHaveTheirLengthAndShare) {
     unsigned bursts = 0, lost = 0;
     for (int i = 0; i < 6000; ++i) {
         uint64_t before = air.counters().lost;
-        send("x");
-        run(3 * ms);
+        send("x", 3 * ms);
         bool now_lost = air.counters().lost > before;
         bursts += now_lost && (packets.size() < 2 ||
                                packets[packets.size() - 2].outcome != RfChannel::Outcome::Lost);
@@ -230,24 +202,20 @@ TEST_F(Air, DelayIsAddedToTheAirTime) {
     power({{"RO", 0}});
     air.weather.delayNs = 7 * ms;
     uint64_t begin = now;
-    send("x");
-    run(20 * ms);
+    send("x", 20 * ms);
     EXPECT_EQ(packets[0].time - begin, RfChannel::airTimeNs(1) + 7 * ms);
 }
 
 TEST_F(Air, DuplicationDeliversTwice) {
     power();
     air.weather.duplication = 1;
-    send("ab");
-    run(30 * ms);
-    EXPECT_EQ(heardB(), "abab");
+    EXPECT_EQ(across("ab", 30 * ms), "abab");
 }
 
 TEST_F(Air, CorruptionChangesOneByte) {
     power();
     air.weather.corruption = 1;
-    send("abcdefgh");
-    run(30 * ms);
+    send("abcdefgh", 30 * ms);
     std::string got = heardB();
     ASSERT_EQ(got.size(), 8u);
     int different = 0;
@@ -264,8 +232,7 @@ TEST_F(Air, TheSameSeedGivesTheSameWeatherAndAnotherSeedAnother) {
         air.weather.loss = 0.5;
         std::vector<RfChannel::Outcome> outcomes;
         for (int i = 0; i < 64; ++i) {
-            send("x");
-            run(4 * ms);
+            send("x", 4 * ms);
             outcomes.push_back(packets.back().outcome);
         }
         a.reset();
@@ -306,8 +273,7 @@ TEST_F(Air, CarrierSenseWaitsForTheOther) {
     air.weather.perfect = false;
     lineB.send(Bytes(30, 'y'), now);
     run(3 * charNs() + ms); // well on the air
-    send("x");
-    run(50 * ms);
+    send("x", 50 * ms);
     EXPECT_EQ(air.counters().collisions, 0u);
     EXPECT_EQ(heard(), std::string(30, 'y'));
     EXPECT_EQ(heardB(), "x");

@@ -13,8 +13,7 @@ using Reset = Pair;
 
 TEST_F(Packetizing, APacketLeavesAfterROOfSilence) {
     power(); // RO 3 at 9600 baud: 3.125 ms
-    send("abc");
-    run(3 * charNs() - 1000);
+    send("abc", 3 * charNs() - 1000);
     EXPECT_EQ(a->counters().packetsSent, 0u);
     run(2000);
     EXPECT_EQ(a->counters().packetsSent, 1u);
@@ -22,20 +21,16 @@ TEST_F(Packetizing, APacketLeavesAfterROOfSilence) {
 
 TEST_F(Packetizing, APauseBelowRODoesNotSplit) {
     power();
-    send("abc");
-    run(2 * charNs());
-    send("def");
-    run(30 * ms);
+    send("abc", 2 * charNs());
+    send("def", 30 * ms);
     ASSERT_EQ(packets.size(), 1u);
     EXPECT_EQ(text(packets[0].bytes), "abcdef");
 }
 
 TEST_F(Packetizing, APauseAboveROSplits) {
     power();
-    send("abc");
-    run(4 * charNs());
-    send("def");
-    run(30 * ms);
+    send("abc", 4 * charNs());
+    send("def", 30 * ms);
     ASSERT_EQ(packets.size(), 2u);
 }
 
@@ -55,8 +50,7 @@ TEST_F(Packetizing, AHundredBytesLeaveAtOnce) {
 
 TEST_F(Packetizing, NinetyFiveBytesWithEncryption) {
     power({{"EE", 1}, {"RO", 0xFF}}, {{"EE", 1}});
-    send(std::string(100, 'x'));
-    run(400 * ms);
+    send(std::string(100, 'x'), 400 * ms);
     ASSERT_EQ(packets.size(), 2u);
     EXPECT_EQ(packets[0].bytes.size(), 5 + 95u) << "on the air, with the cipher's five";
     EXPECT_EQ(packets[1].bytes.size(), 5 + 5u);
@@ -121,12 +115,9 @@ TEST_F(Buffers, WithoutD7CTSStaysOn) {
 TEST_F(Buffers, TheOutputBufferHolds202BytesAndWhatComesThenIsAcknowledgedAndLost) {
     power();
     lineB.paused = true;
-    send(std::string(100, 'x'));
-    run(120 * ms);
-    send(std::string(100, 'y'));
-    run(120 * ms);
-    send(std::string(100, 'z'));
-    run(200 * ms);
+    send(std::string(100, 'x'), 120 * ms);
+    send(std::string(100, 'y'), 120 * ms);
+    send(std::string(100, 'z'), 200 * ms);
     EXPECT_EQ(b->counters().packetsDropped, 1u);
     EXPECT_EQ(packets.back().outcome, RfChannel::Outcome::NoRoom);
     EXPECT_EQ(a->parameter("EA"), 0u);

@@ -3,7 +3,6 @@
 // fsmc_master: accesses as sequences of pin changes and HCLK cycles.
 
 #include "fsmc_master.h"
-#include "fsmc_fields.h"
 #include "pin_delays.h"
 #include <cstdio>
 

@@ -4,14 +4,9 @@
 // and hang.
 
 #include "VFsmcBridge.h"
-#include "bridge_bench.h"
-#include "fsmc_fields.h"
-#include <gtest/gtest.h>
-#include <map>
+#include "traffic.h"
 
 namespace {
-
-constexpr uint32_t ddr = MAP_DDR_WINDOW, control = MAP_CONTROL_WINDOW;
 
 class Bridge : public ::testing::Test {
 protected:
@@ -66,56 +61,7 @@ TEST_F(Bridge, HalfAWrittenWordChangesNothing) {
 }
 
 TEST_F(Bridge, MemoryEqualsAReferenceWithAllWidths) {
-    Random random(testSeed());
-    std::map<uint32_t, uint8_t> reference;
-    auto value = [&](uint32_t a, unsigned bytes) {
-        uint32_t v = 0;
-        for (unsigned i = 0; i < bytes; ++i)
-            v |= static_cast<uint32_t>(reference[a + i]) << (8 * i);
-        return v;
-    };
-    auto set = [&](uint32_t a, unsigned bytes, uint32_t v) {
-        for (unsigned i = 0; i < bytes; ++i)
-            reference[a + i] = static_cast<uint8_t>(v >> (8 * i));
-    };
-    uint32_t places[16], place = 0; // anywhere in the window
-    for (uint32_t& each : places)
-        each = random.below(0x3FF00) << 8;
-    for (int i = 0; i < 6000; ++i) {
-        if (i == 0 || random.chance(0.03))
-            place = places[random.below(16)] + random.below(256); // runs, with jumps between them
-        uint32_t v = random.next(), a = place;
-        switch (random.below(8)) {
-        case 0:
-            fsmc_.write8(ddr + a, static_cast<uint8_t>(v)), set(a, 1, v), place += 1;
-            break;
-        case 1:
-            a &= ~1u, fsmc_.write16(ddr + a, static_cast<uint16_t>(v)), set(a, 2, v), place += 2;
-            break;
-        case 2:
-            a &= ~3u, fsmc_.write32(ddr + a, v), set(a, 4, v), place += 4;
-            break;
-        case 3:
-            EXPECT_EQ(fsmc_.read8(ddr + a), value(a, 1)) << "access " << i;
-            break;
-        case 4:
-            a &= ~3u;
-            EXPECT_EQ(fsmc_.read32(ddr + a), value(a, 4)) << "access " << i;
-            break;
-        case 5:
-            EXPECT_EQ(fsmc_.read32(at(0)), SYSTEM_ID_VALUE);
-            break;
-        default:
-            a &= ~1u;
-            EXPECT_EQ(fsmc_.read16(ddr + a), value(a, 2)) << "access " << i;
-            place += 2;
-        }
-        ASSERT_FALSE(HasFailure()) << "SEED=" << testSeed();
-    }
-    doorbell();
-    for (auto& [a, v] : reference)
-        EXPECT_EQ(b_.memory.byte(a), v) << std::hex << a;
-    EXPECT_EQ(b_.errors, 0u);
+    traffic(b_, testSeed(), 3000);
 }
 
 TEST_F(Bridge, TheDriverCopiesAnyLengthToAnyAddress) {

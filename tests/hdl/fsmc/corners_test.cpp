@@ -4,15 +4,10 @@
 // each corner, at several HCLK, with both readings of when the FSMC looks at NWAIT.
 
 #include "VFsmcBridge.h"
-#include "bridge_bench.h"
-#include "fsmc_fields.h"
 #include "pin_delays.h"
-#include <gtest/gtest.h>
-#include <map>
+#include "traffic.h"
 
 namespace {
-
-constexpr uint32_t ddr = MAP_DDR_WINDOW, control = MAP_CONTROL_WINDOW;
 
 // A corner. With late synchronisers (tests cdc.*) the address comes no later than NOE, and NWE's
 // way into the chip is as long at each edge: the lateness, a whole clock, stands for all delays of
@@ -47,47 +42,11 @@ template <class Case> void inEveryCorner(double stall, Case&& run) {
             }
 }
 
-// Words to a slow slave, so that each write waits for the one before; memory in between.
-void traffic(BridgeBench<VFsmcBridge>& b, uint64_t seed) {
-    Random random(seed);
-    std::map<uint32_t, uint16_t> memory;
-    std::map<uint32_t, uint32_t> words;
-    uint32_t place = 0;
-    for (int i = 0; i < 300 && !testing::Test::HasFailure(); ++i) {
-        if (random.chance(0.1))
-            place = 2 * random.below(0x1FF0000);
-        uint32_t word = 64 + random.below(900), v = random.next();
-        switch (random.below(5)) {
-        case 0:
-            for (unsigned k = 0; k < 8; ++k) // one right behind the other
-                b.master.write32(control + 4 * (word + k), words[word + k] = v + k);
-            break;
-        case 1:
-            EXPECT_EQ(b.master.read32(control + 4 * word), words[word]) << "register " << word;
-            break;
-        case 2:
-        case 3:
-            for (unsigned k = 1 + random.below(20); k; --k, place += 2)
-                b.master.write16(ddr + place, memory[place] = static_cast<uint16_t>(v * k));
-            break;
-        default:
-            place = place < 20 ? place : place - 2 * random.below(10);
-            EXPECT_EQ(b.master.read16(ddr + place), memory[place]) << "access " << i;
-        }
-    }
-    b.master.read32(control);
-    EXPECT_EQ(b.errors, 0u);
-    for (auto [at, value] : memory)
-        EXPECT_EQ(b.memory.byte(at) | b.memory.byte(at + 1) << 8, value) << std::hex << at;
-    for (auto [at, value] : words)
-        EXPECT_EQ(b.slave.words[at], value) << "register " << at;
-}
-
 TEST(Corners, NoAccessIsLostWithTheDriversTiming) {
     for (double stall : {0.3, 0.95})
         inEveryCorner(stall, [](BridgeBench<VFsmcBridge>& b, unsigned hclk) {
             ASSERT_EQ(b.init(), FSMC_OK);
-            traffic(b, testSeed() + hclk);
+            traffic(b, testSeed() + hclk, 300);
         });
 }
 
@@ -97,7 +56,7 @@ TEST(Corners, EveryModeWithTimeForNwait) {
         inEveryCorner(0.9, [mode](BridgeBench<VFsmcBridge>& b, unsigned hclk) {
             const FSMC_Bank bank = {mode, mode, 0, 0, 1, 0, 1, {2, 2, 6}, {2, 2, 6}};
             ASSERT_EQ(b.init(bank), FSMC_OK);
-            traffic(b, testSeed() + hclk);
+            traffic(b, testSeed() + hclk, 300);
         });
 }
 

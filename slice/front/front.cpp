@@ -52,7 +52,8 @@ void addClassInterfaces(Unit& unit) {
 
 Unit compileUnit(const std::string& text, const std::string& file, NameRules rules,
                  Diagnostics& diagnostics) {
-    Unit unit = parse(tokenize(text, file, diagnostics), file, rules, diagnostics);
+    const std::vector<Token> tokens = tokenize(text, file, diagnostics);
+    Unit unit = Parser(tokens, file, rules, diagnostics).run();
     if (diagnostics.errors() == 0)
         addClassInterfaces(unit);
     return unit;

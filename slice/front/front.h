@@ -9,8 +9,9 @@
 //   parser         tokens into declarations by recursive descent: parser.cpp has tokens, recovery
 //                  and modules, parser_data, parser_interface and parser_types one method a rule;
 //                  each declaration is checked when its rule is through
-//   names          identifiers that Slice allows
-//   symbols        meaning of a name in its scope; the parser resolves every name at once
+//   symbols        identifiers that Slice allows, and the meaning of a name in its scope; the
+//   parser
+//                  resolves every name at once
 //   literals       numbers and strings as written into values
 //   ast            the result: a Unit of declarations, in the source's order, all names resolved
 //   front          an interface beside each class that can be called
@@ -20,8 +21,7 @@
 
 #pragma once
 
-#include "front/ast.h"
-#include "front/names.h"
+#include "front/symbols.h"
 
 // The unit of a preprocessed file; errors are in `diagnostics`.
 Unit compileUnit(const std::string& text, const std::string& file, NameRules rules,

@@ -2,7 +2,7 @@
 //
 // literals: numbers by the C library, strings by hand.
 
-#include "front/parser_private.h"
+#include "front/parser.h"
 #include <cerrno>
 #include <cmath>
 #include <cstdlib>

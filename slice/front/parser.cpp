@@ -2,7 +2,7 @@
 //
 // parser: tokens, recovery, modules, and the choice of a definition's rule.
 
-#include "front/parser_private.h"
+#include "front/parser.h"
 #include <algorithm>
 #include <filesystem>
 #include <sstream>
@@ -25,8 +25,6 @@ Unit Parser::run() {
         guarded([&] { definition(); });
     return std::move(unit_);
 }
-
-// ---- tokens
 
 bool Parser::accept(std::string_view symbol) {
     if (!isSymbol(symbol))
@@ -122,8 +120,6 @@ void Parser::readMetadata(std::string& text, Metadata& found) {
         text = doc();
 }
 
-// ---- files and metadata
-
 // The preprocessor may spell the main file's name in another way than the command line.
 bool Parser::isMain(std::string_view file) {
     auto [it, isNew] = isMain_.try_emplace(file, false);
@@ -188,8 +184,6 @@ void Parser::fileMetadata() {
         unit_.metadata.push_back(m);
     }
 }
-
-// ---- definitions
 
 void Parser::definition() {
     static const char* const expected = "a definition: module, enum, struct, sequence, dictionary, "
@@ -312,9 +306,4 @@ Declaration& Parser::declareType(Declaration::Kind kind, bool mayBeForward) {
     unit_.declarations.erase(it);
     unit_.declarations.back() = std::move(kept);
     return *unit_.declarations.back();
-}
-
-Unit parse(const std::vector<Token>& tokens, const std::string& mainFile, NameRules rules,
-           Diagnostics& diagnostics) {
-    return Parser(tokens, mainFile, rules, diagnostics).run();
 }

@@ -5,14 +5,152 @@
 
 #pragma once
 
-#include "front/ast.h"
 #include "front/lexer.h"
-#include "front/names.h"
+#include "front/symbols.h"
+#include <map>
+#include <set>
 
 // "struct"; "int", "::M::I*"
 const char* kindName(Declaration::Kind kind);
 std::string typeName(const Type& type);
 
-// `mainFile` is the file on the command line; declarations of others are marked fromInclude.
-Unit parse(const std::vector<Token>& tokens, const std::string& mainFile, NameRules rules,
+// ---- values of tokens (literals.cpp)
+
+// Decimal, 0octal or 0xhex, signed; out of range or malformed is an error, and 0.
+int64_t integerValue(const Token& token, Diagnostics& diagnostics);
+double floatingValue(const Token& token, Diagnostics& diagnostics);
+// Returns the bytes of a string literal, its escapes replaced; \u and \U become UTF-8.
+std::string stringValue(const Token& token, Diagnostics& diagnostics);
+
+class Parser {
+public:
+    // `mainFile` is the file on the command line; declarations of others are marked fromInclude.
+    Parser(const std::vector<Token>& tokens, const std::string& mainFile, NameRules rules,
            Diagnostics& diagnostics);
+    Unit run();
+
+private:
+    struct SyntaxError {};
+    struct Optional {
+        bool present = false;
+        int tag = 0;
+    };
+    using Metadata = std::vector<std::string>;
+
+    // ---- tokens (parser.cpp)
+    const Token& token(size_t ahead = 0) const {
+        return tokens_[std::min(position_ + ahead, tokens_.size() - 1)];
+    }
+    bool at(Token::Kind kind) const { return token().kind == kind; }
+    bool isSymbol(std::string_view text, size_t ahead = 0) const {
+        return token(ahead).kind == Token::Kind::Symbol && token(ahead).text == text;
+    }
+    bool isWord(std::string_view text, size_t ahead = 0) const {
+        return token(ahead).kind == Token::Kind::Identifier && token(ahead).text == text &&
+               !token(ahead).escaped;
+    }
+    bool accept(std::string_view symbol);
+    bool acceptWord(std::string_view word);
+    void expect(std::string_view symbol);
+    void expectEnd(const std::string& what); // a '}'
+    [[noreturn]] void fail(const std::string& expected);
+    void error(const Location& at, const std::string& text) { diagnostics_.error(at, text); }
+    // Reads a name that this declares, and checks it.
+    std::string name(const std::string& what);
+    std::string scopedName(const std::string& what);
+    void recover();
+    // Runs a rule; after a syntax error continues behind the next ';' or '}'.
+    template <class Rule> void guarded(Rule rule);
+    template <class Rule> void braces(const Declaration& d, Rule rule);
+    std::string doc();
+
+    // ---- files and metadata (parser.cpp)
+    bool isMain(std::string_view file);
+    void metadataStrings(Metadata& found, std::string_view end);
+    Metadata metadata();
+    void readMetadata(std::string& text, Metadata& found);
+    void fileMetadata();
+    void suppressWarnings(const std::string& metadata, std::string_view file);
+
+    // ---- definitions (parser.cpp, parser_data.cpp, parser_interface.cpp)
+    void definition();
+    void module();
+    Declaration& add(Declaration::Kind kind, const std::string& name, const Location& at);
+    Declaration& declareType(Declaration::Kind kind, bool mayBeForward);
+    void checkGlobal(const std::string& name, const Location& at);
+    void enumeration();
+    void structure();
+    void exception();
+    void classDefinition();
+    void sequence();
+    void dictionary();
+    void constant();
+    void interface();
+
+    // ---- their parts
+    void member(Declaration& d, bool mayBeOptional);
+    void checkMember(const Declaration& d, const Field& f);
+    void checkMemberOfClass(const Declaration& d, const Field& f);
+    void operation(Declaration& d);
+    void parameters(Operation& o, const Declaration& owner);
+    void throwsClause(Operation& o, const Declaration& owner);
+    void checkOperation(const Declaration& d, const Operation& o);
+    std::vector<const Declaration*> baseList(const Declaration& d, Declaration::Kind wanted,
+                                             bool many);
+    void checkBases(const Declaration& d);
+
+    // ---- types and values (parser_types.cpp)
+    Type type();
+    Type namedType();
+    Optional optional();
+    Literal literal(const Type& type, const std::string& what);
+    Symbol* ownEnumerator(const Declaration& d, const std::string& name, const Location& at);
+    Literal namedLiteral(const Type& type, const std::string& what);
+    Literal convert(Literal value, const Type& type, const std::string& what, const Location& at);
+    // Reads a number from 0 on; -1 after an error.
+    int32_t number(const std::string& what, bool mayBeEnumerator);
+    Symbol* resolve(const std::string& written, const Location& at);
+    Symbol* resolveValue(const std::string& written, const Location& at);
+    void checkLocal(const Type& type, bool local, const std::string& what, const Location& at);
+
+    const std::vector<Token>& tokens_;
+    std::string mainFile_;
+    NameRules rules_;
+    Diagnostics& diagnostics_;
+    Symbols symbols_;
+    size_t position_ = 0;
+    std::vector<std::string> scope_;
+    std::string scopeId_; // "::A::B"
+    std::string user_;    // the enclosing type: it uses names for itself, not for the module
+    std::map<std::string_view, bool> isMain_;
+    std::set<std::string_view> begun_; // files whose definitions have begun
+    std::map<int, std::string> compactIds_;
+    std::set<std::string> unknown_; // names of types that have been reported
+    // State of the definition under way.
+    Metadata metadata_;
+    std::string doc_;
+    bool local_ = false;
+    Unit unit_;
+};
+
+template <class Rule> void Parser::guarded(Rule rule) {
+    size_t before = position_;
+    try {
+        rule();
+    } catch (const SyntaxError&) {
+        recover();
+    }
+    if (position_ == before)
+        ++position_; // a stray '}': reported and skipped
+}
+
+// { rule rule ... } with an optional ';' behind it.
+template <class Rule> void Parser::braces(const Declaration& d, Rule rule) {
+    expect("{");
+    user_ = d.id();
+    while (!isSymbol("}") && !at(Token::Kind::End))
+        guarded(rule);
+    user_.clear();
+    expectEnd("'}' at the end of " + std::string(kindName(d.kind)) + " '" + d.name + "'");
+    accept(";");
+}

@@ -2,7 +2,7 @@
 //
 // parser_data: enums, structs, exceptions, classes, sequences, dictionaries and constants.
 
-#include "front/parser_private.h"
+#include "front/parser.h"
 
 void Parser::enumeration() {
     Declaration& d = declareType(Declaration::Kind::Enum, false);

@@ -2,7 +2,7 @@
 //
 // parser_interface: interfaces, operations, and what may be inherited.
 
-#include "front/parser_private.h"
+#include "front/parser.h"
 #include <algorithm>
 
 std::vector<const Declaration*> Parser::baseList(const Declaration& d, Declaration::Kind wanted,

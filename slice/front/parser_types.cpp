@@ -2,7 +2,7 @@
 //
 // parser_types: types, tags and values of constants.
 
-#include "front/parser_private.h"
+#include "front/parser.h"
 #include <algorithm>
 #include <cfloat>
 #include <cmath>

@@ -1,14 +1,29 @@
 // SPDX-License-Identifier: MIT
 //
-// symbols: the table of declared names. Slice forbids names that differ in capitals only, so the
-// table ignores capitals and compares them itself.
+// symbols: Slice's keywords, the identifiers that Slice allows, and the table of declared names.
+// Slice forbids names that differ in capitals only, so the table ignores capitals and compares them
+// itself.
 
 #pragma once
 
 #include "front/ast.h"
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <vector>
+
+struct NameRules {
+    bool underscore = false; // underscores are allowed
+    bool icePrefix = false;  // names may begin with "ice"
+};
+
+bool isKeyword(std::string_view word);
+
+// Reports what is wrong with the name of a declaration.
+void checkName(std::string_view name, const NameRules& rules, const Location& at,
+               Diagnostics& diagnostics);
+
+std::string lowerCase(std::string_view text);
 
 struct Symbol {
     enum class Kind { Module, Declaration, Enumerator };

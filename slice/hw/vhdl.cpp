@@ -3,7 +3,7 @@
 // vhdl: the wrapper in VHDL, for designs that are VHDL throughout: an entity with the Verilog
 // wrapper's ports that does the same clock by clock, in VHDL-93 and later.
 
-#include "front/names.h"
+#include "front/symbols.h"
 #include "hw/generator.h"
 #include "hw/map.h"
 #include "text/writer.h"

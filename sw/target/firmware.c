@@ -9,8 +9,6 @@
 #include "fpga.h"
 #include "loader.h"
 #include "map_regs.h"
-#include "provision.h"
-#include "secrets.h"
 #include "stm32f2.h"
 #include "system_regs.h"
 #include "uav.h"

@@ -1,14 +1,25 @@
 /* SPDX-License-Identifier: MIT
  *
- * firmware: the program: kernel, application, watchdog task. The differences between kernels are in
- * own_kernel.c and ucos2/.
+ * firmware: the program: kernel, application, watchdog task, and the vehicle's keys. The
+ * differences between kernels are in own_kernel.c and ucos2/.
  */
 #ifndef FIRMWARE_H
 #define FIRMWARE_H
 
+#include "uav_keys.h"
 #include "ucos_ii.h"
 
 /* Runs the program after reset, once memory is set up. Does not return. */
 void Firmware_run(void);
+
+/* Returns at once where nobody asks. Else says whether read protection is off, and listens for ten
+ * seconds for a line: "key" and 32 hexadecimal digits, or "open" (UAV_provide); where there is a
+ * key, a present one's digits behind it, or PC2 wired to ground. "protect" sets read protection. */
+void Provision_listen(void);
+
+/* The random number generator, and the first words of the backup SRAM; the context is not used. */
+extern const UAV_Board secrets_board;
+/* Starts both; needs the clocks of Board_start. */
+void Secrets_start(void);
 
 #endif

@@ -2,10 +2,9 @@
  *
  * provision: polls the port, since no task runs yet. SysTick tells that 10 ms have passed.
  */
-#include "provision.h"
 #include "ascon.h"
+#include "firmware.h"
 #include "stm32f2.h"
-#include "uav_keys.h"
 
 #include <string.h>
 

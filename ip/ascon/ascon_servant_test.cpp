@@ -3,8 +3,8 @@
 // ascon_servant_test: Cores::Ascon by the core, through the FSMC driver, against the model.
 
 #include "Vascon_slot.h"
-#include "ascon_bytes.h"
 #include "core_slot.h"
+#include "known_answers.h"
 extern "C" {
 #include "ascon_regs.h"
 #include "ascon_servant.h"

@@ -21,24 +21,16 @@ protected:
         bus_.write(ASCON_MASK, 3);
         place();
     }
-    // Buffers anywhere in the address space, 64 KiB apart at least.
+    // Buffers anywhere in the address space, 64 KiB apart at least: each in a quarter of its own.
     void place() {
-        std::array<uint32_t, 4> at;
-        auto apart = [&] {
-            for (size_t i = 0; i < at.size(); ++i)
-                for (size_t k = 0; k < at.size(); ++k)
-                    if (i != k && at[i] - at[k] < 0x10000)
-                        return false;
-            return true;
-        };
-        do
-            for (auto& base : at)
-                base = random_.next() & ~(ASCON_ALIGNMENT - 1u);
-        while (!apart());
-        bus_.write(ASCON_AD_BASE, adBase_ = at[0]);
-        bus_.write(ASCON_SOURCE, source_ = at[1]);
-        bus_.write(ASCON_TARGET, target_ = at[2]);
-        bus_.write(ASCON_TAG, tagBase_ = at[3]);
+        uint32_t quarter = random_.next();
+        for (auto [word, base] : {std::pair(ASCON_AD_BASE, &adBase_),
+                                  {ASCON_SOURCE, &source_},
+                                  {ASCON_TARGET, &target_},
+                                  {ASCON_TAG, &tagBase_}}) {
+            *base = (quarter++ << 30 | random_.below(0x3FFF0000)) & ~(ASCON_ALIGNMENT - 1u);
+            bus_.write(word, *base);
+        }
     }
     void put(unsigned word, const AsconKey& value) {
         for (size_t i = 0; i < 16; i += 4)

@@ -1,14 +1,40 @@
 // SPDX-License-Identifier: MIT
 //
-// known_answers: NIST SP 800-232's known answers. A test's own answers are written in the format of
-// the standard's authors, and the text's SHA-256 must be that of the published file.
+// known_answers: the tests' bytes, and NIST SP 800-232's known answers. A test's own answers are
+// written in the format of the standard's authors, and the text's SHA-256 must be that of the
+// published file.
 
 #pragma once
 
-#include "ascon_bytes.h"
+#include "ascon_model.h"
 #include <array>
+#include <cstdio>
 #include <functional>
 #include <openssl/sha.h>
+#include <string>
+
+// Keys, messages and their hexadecimal digits.
+inline AsconBytes counted(uint8_t first, size_t size) {
+    AsconBytes bytes(size);
+    for (size_t i = 0; i < size; ++i)
+        bytes[i] = static_cast<uint8_t>(first + i);
+    return bytes;
+}
+inline AsconKey sixteen(uint8_t first) {
+    AsconKey key;
+    for (size_t i = 0; i < key.size(); ++i)
+        key[i] = static_cast<uint8_t>(first + i);
+    return key;
+}
+template <class Bytes> std::string hex(const Bytes& bytes) {
+    std::string text;
+    char digits[3];
+    for (uint8_t b : bytes) {
+        std::snprintf(digits, sizeof digits, "%02X", b);
+        text += digits;
+    }
+    return text;
+}
 
 // The files of github.com/ascon/ascon-c: 1089 answers of crypto_aead/asconaead128,
 // LWC_AEAD_KAT_128_128.txt, and 1025 of crypto_hash/asconhash256, LWC_HASH_KAT_128_256.txt.

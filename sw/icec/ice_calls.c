@@ -43,8 +43,6 @@ void icec_wakeCalls(Ice_CommunicatorPtr ic) {
             ic->os->wake(ic->osContext, c);
 }
 
-/* ---- the end of a call ---- */
-
 static const Ice_Byte nothing[1] = {0}; /* the reply of calls that get none */
 
 /* Ends the call `id` if it still waits: tells the waiting task, or calls back. */
@@ -111,8 +109,6 @@ void icec_expireCall(Ice_CommunicatorPtr ic, Ice_Call* call, Ice_Int id) {
     Ice_InputStream_init(&none, nothing, 0);
     finish(ic, call, id, ICE_TIMEOUT, &none);
 }
-
-/* ---- replies ---- */
 
 /* Reads a reply's status, and what a failed one says. */
 static Ice_Status readReply(Ice_Call* call, Ice_InputStreamPtr is) {

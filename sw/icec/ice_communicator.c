@@ -77,8 +77,6 @@ void Ice_Communicator_destroy(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
         }
 }
 
-/* ---- one connection: bound proxies, its end ---- */
-
 Ice_Status Ice_Connection_createProxy(Ice_CommunicatorPtr ic, int connection, const char* identity,
                                       Ice_ObjectPrxPtr prx) {
     Ice_Identity id = icec_parseIdentity(identity);

@@ -205,8 +205,6 @@ Ice_Status icec_dispatchBatch(Ice_CommunicatorPtr ic, int connection, Ice_InputS
     return status;
 }
 
-/* ---- replies after their operation's end ---- */
-
 void Ice_Current_later(const Ice_Current* current, Ice_Reply* reply) {
     reply->communicator = current->communicator;
     reply->id = current->requestId;
@@ -237,8 +235,6 @@ Ice_Status Ice_Reply_end(Ice_Reply* reply, Ice_Status status) {
     icec_unlock(ic, ICE_LOCK_SEND);
     return sent;
 }
-
-/* ---- a servant's questions about the call ---- */
 
 Ice_Bool Ice_Current_contextAt(const Ice_Current* current, Ice_Int index, Ice_String* key,
                                Ice_String* value) {

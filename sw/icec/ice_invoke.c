@@ -13,8 +13,6 @@ static Ice_Status fail(Ice_ObjectPrxPtr self, Ice_Status status, int why, const 
     return status;
 }
 
-/* ---- connecting ---- */
-
 static int isValidating(Ice_CommunicatorPtr ic, int connection) {
     return icec_connectionState(ic, connection) == ICE_CONNECTION_VALIDATING;
 }
@@ -73,8 +71,6 @@ Ice_Status Ice_ObjectPrx_ice_getConnection(Ice_ObjectPrxPtr self, int* connectio
     *connection = self->connection;
     return Ice_ObjectPrx_end(self, (Ice_Status)self->status);
 }
-
-/* ---- requests ---- */
 
 static void writeContext(Ice_OutputStreamPtr os, const Ice_ContextEntry* context) {
     Ice_Int n = 0;
@@ -168,8 +164,6 @@ static Ice_Status sendAndUnlock(Ice_ObjectPrxPtr self, Ice_Callback callback, vo
     icec_unlock(self->communicator, ICE_LOCK_SEND);
     return status;
 }
-
-/* ---- replies ---- */
 
 static int isWaiting(Ice_CommunicatorPtr ic, int slot) {
     return icec_callState(ic, slot) == ICE_CALL_WAITING;

@@ -139,8 +139,6 @@ void Ice_InputStream_readPrx(Ice_InputStreamPtr is, Ice_CommunicatorPtr ic, Ice_
         is->failed = ICE_FAILED_MALFORMED;
 }
 
-/* ---- changes of one property of a copy ---- */
-
 Ice_Identity icec_parseIdentity(const char* text) {
     Ice_Identity id;
     const char* slash = strchr(text, '/');

@@ -25,8 +25,6 @@ void Ice_OutputStream_endSize(Ice_OutputStreamPtr os, Ice_Int begin) {
     icec_patchInt(os, begin, os->size - begin - 4);
 }
 
-/* ---- writing ---- */
-
 void Ice_OutputStream_startException(Ice_OutputStreamPtr os, Ice_Bool usesClasses) {
     if (os->minor == 0)
         Ice_OutputStream_writeBool(os, usesClasses);
@@ -88,8 +86,6 @@ Ice_Bool Ice_OutputStream_writeOptional(Ice_OutputStreamPtr os, Ice_Int tag, Ice
     }
     return 1;
 }
-
-/* ---- reading ---- */
 
 void Ice_InputStream_startException(Ice_InputStreamPtr is) {
     if (is->minor == 0) {

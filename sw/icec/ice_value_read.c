@@ -140,8 +140,6 @@ static void readTable(Ice_InputStreamPtr is) {
     values->patchEnd = first;
 }
 
-/* ---- slices of unknown types ---- */
-
 /* Keeps the current slice, in 1.1, and goes behind it. 0: it has no end, or there is no room. */
 static Ice_UnknownSlice* keepSlice(Ice_InputStreamPtr is, Ice_String id, Ice_Int compactId) {
     Ice_Byte flags = is->sliceFlags, optionals = (flags & ICE_SLICE_OPTIONALS) != 0;
@@ -193,8 +191,6 @@ static void endUnknown(Ice_InputStreamPtr is) {
         for (i = 0; i < slice->count; ++i)
             slice->values[i].value = values->known[slice->values[i].number - 1];
 }
-
-/* ---- instances ---- */
 
 typedef struct SliceHead {
     Ice_String id;

@@ -7,6 +7,7 @@
 #include "unicorn_calls.h"
 #include <cstdlib>
 #include <cstring>
+#include <utility>
 
 namespace {
 
@@ -85,8 +86,6 @@ CortexM3::~CortexM3() {
 void CortexM3::map(uint32_t base, uint32_t bytes, void* host, uint32_t rights) {
     check(uc_mem_map_ptr(uc_, base, bytes, rights, host), "memory");
 }
-
-// ---- memory and registers for the loader and the debugger ----
 
 bool CortexM3::readMemory(uint32_t address, void* data, uint32_t bytes) const {
     auto inside = [&](uint32_t base, uint32_t size) {
@@ -167,8 +166,6 @@ void CortexM3::reset() {
     updateAttention();
 }
 
-// ---- entry and return ----
-
 void CortexM3::jumpTo(unsigned number) {
     setReg(Xpsr, (reg(Xpsr) & ~exceptionMask) | thumb | number);
     setReg(Control, reg(Control) & ~2u);
@@ -207,7 +204,7 @@ void CortexM3::enter(unsigned number) {
 }
 
 void CortexM3::leave() {
-    uint32_t number = currentException(), how = raised_ ? pc_ | 1 : 0;
+    uint32_t number = currentException(), how = pc_ | 1;
     uint32_t kind = how & 0xF;
     bool valid = number && (kind == 1 || kind == 9 || kind == 13) &&
                  (kind == 1) == (exceptions_.activeCount() > 1);
@@ -247,8 +244,6 @@ void CortexM3::leave() {
     expected_ = 0;
     pass(exitCycles);
 }
-
-// ---- faults ----
 
 // The fault of a buffered store: it waits for its priority.
 void CortexM3::reportStoreFault(const std::string& text) {
@@ -309,14 +304,9 @@ void CortexM3::handleRaised() {
         NoCoprocessor = 17,
         State = 18
     };
-    uint32_t raised = raised_;
-    if (raised == ExceptionReturn) {
-        leave();
-        raised_ = 0;
-        return;
-    }
-    raised_ = 0;
-    switch (raised) {
+    switch (std::exchange(raised_, 0)) {
+    case ExceptionReturn:
+        return leave();
     case Software:
         if (exceptions_.priorityOf(SupervisorCall) < exceptions_.runningPriority()) {
             exceptions_.pend(SupervisorCall);

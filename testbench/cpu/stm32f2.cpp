@@ -72,8 +72,6 @@ void Stm32F2::resetPeripherals() {
     }
 }
 
-// ---- time ----
-
 void Stm32F2::pass(unsigned cycles) {
     carry_ += cycles;
     if (carry_ >= config_.coreCyclesPerHclk) {
@@ -128,8 +126,6 @@ unsigned Stm32F2::takeWaited() {
     waited_ = 0;
     return waited;
 }
-
-// ---- the bus ----
 
 uint32_t Stm32F2::read(uint32_t address, unsigned bytes) {
     if (isPeripheral(address)) {

@@ -164,8 +164,6 @@ void Stm32F2::writeWatchdog(uint32_t offset, uint32_t value) {
     }
 }
 
-// ---- external interrupts ----
-
 void Stm32F2::setPin(unsigned port, unsigned pin, bool high) {
     const bool was = pins_[port] >> pin & 1;
     pins_[port] = (pins_[port] & ~(1u << pin)) | uint32_t(high) << pin;
@@ -181,8 +179,6 @@ void Stm32F2::updateExti() {
     for (unsigned line = 0; line < 5; ++line)
         cpu_.setInterrupt(extiVector + line, (pendingExti_ & stored(exti)) >> line & 1);
 }
-
-// ---- the FPGA's configuration ----
 
 bool Stm32F2::drivesLow(uint32_t port, unsigned pin) const {
     const uint32_t base = gpio + 0x400 * port;

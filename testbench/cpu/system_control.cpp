@@ -51,8 +51,6 @@ void SystemControl::reset() {
     exceptions_->reset();
 }
 
-// ---- SysTick ----
-
 void SystemControl::startSysTick(uint64_t ticks) {
     tickDue_ = cycles_ + ticks * tickUnit();
 }
@@ -71,8 +69,6 @@ uint32_t SystemControl::currentTicks() const {
         return stoppedAt_;
     return static_cast<uint32_t>((tickDue_ - cycles_) / tickUnit()) & 0xFFFFFF;
 }
-
-// ---- access by size ----
 
 bool SystemControl::read(uint32_t address, unsigned size, uint32_t& value) {
     uint32_t word;
@@ -206,8 +202,6 @@ bool SystemControl::writeWord(uint32_t address, uint32_t value) {
         }
     return writeScb(at, value);
 }
-
-// ---- SCB and MPU ----
 
 bool SystemControl::takeResetRequest() {
     bool was = resetRequested_;

@@ -31,8 +31,6 @@ void OSTimeDly(INT32U ticks) {
         Minimal_sleep();
 }
 
-/* ---- the link, polled ---- */
-
 static U32 nowMs(void* context) {
     (void)context;
     return minimal_ticks;
@@ -79,8 +77,6 @@ static const Link_Port linkPort = {Radio_transmit,
                                    0,
                                    0};
 
-/* ---- the servant: registers of the vision core, through the FSMC ---- */
-
 Ice_Status Autopilot_HwProcessingEngine_setParameterA(Autopilot_HwProcessingEnginePtr self,
                                                       Ice_Short value, const Ice_Current* current) {
     (void)self;
@@ -118,8 +114,6 @@ Ice_Status Autopilot_HwProcessingEngine_getResult(Autopilot_HwProcessingEnginePt
     res->cycles = (Ice_Int)FSMC_read(MAP_SLOT_VISION, VISION_CYCLES);
     return ICE_OK;
 }
-
-/* ---- the program ---- */
 
 int main(void) {
     static const XBeeInitTypeDef xbeeConf = {XBEE_BD_115200, 0x0001, 0x0000, 0, 0, 0, 0};

@@ -142,8 +142,6 @@ void UAV_radioTask(void* argument) {
     }
 }
 
-/* ---- IceC's tasks ---- */
-
 static OS_EVENT* callDone[ICE_CALLS + 1]; /* the last is for tasks that want to receive */
 static OS_EVENT* iceMutex[2];             /* by ICE_LOCK_STATE and ICE_LOCK_SEND */
 

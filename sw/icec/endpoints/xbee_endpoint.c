@@ -60,8 +60,6 @@ static void unlock(XBeeATEndpoint* self) {
     tell(self, self->port->unlock);
 }
 
-/* ---- events ---- */
-
 static void report(XBeeATEndpoint* self, Ice_EventKind kind, int channel) {
     self->events |= EVENT(kind, channel);
     tell(self, self->port->signal);

@@ -22,8 +22,6 @@ static Ice_Status send(Ice_CommunicatorPtr ic, int connection) {
     return ic->endpoint->send(ic->endpointContext, connection, os->data, os->size);
 }
 
-/* ---- requests that come in ---- */
-
 static Ice_ObjectPtr find(const Ice_Current* current) {
     Ice_ObjectAdapterPtr adapter = current->adapter;
     int s;
@@ -91,8 +89,6 @@ static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStre
     return ICE_OK;
 }
 
-/* ---- what arrives ---- */
-
 /* Handles a message. Returns ICE_OK, or why the connection must be closed: a malformed message
  * loses it. */
 static Ice_Status takeMessage(Ice_CommunicatorPtr ic, int connection, Ice_Int size) {
@@ -142,8 +138,6 @@ Ice_Status Ice_Communicator_poll(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
         ic->call = (Ice_Byte)end;
     return ICE_OK;
 }
-
-/* ---- calls ---- */
 
 /* Receives until `status` is no longer ICE_LATER. */
 static Ice_Status await(Ice_ObjectPrxPtr self, const volatile Ice_Byte* status) {
@@ -212,8 +206,6 @@ Ice_Status Ice_ObjectPrx_end(Ice_ObjectPrxPtr self, Ice_Status status) {
     return status <= ICE_USER_EXCEPTION && self->communicator->is.failed ? ICE_MARSHAL : status;
 }
 
-/* ---- proxies' strings ---- */
-
 U32 Ice_numberOption(const char* options, char letter, U32 otherwise) {
     for (; options && *options; ++options)
         if (options[0] == '-' && options[1] == letter) { /* there are no quotes here */
@@ -262,8 +254,6 @@ Ice_Status Ice_ObjectAdapter_createProxy(Ice_ObjectAdapterPtr adapter, const cha
                                          Ice_ObjectPrxPtr prx) {
     return parse(adapter->communicator, identity, prx);
 }
-
-/* ---- adapter and communicator ---- */
 
 Ice_Status Ice_Communicator_createObjectAdapterWithEndpoints(Ice_CommunicatorPtr ic,
                                                              const char* name,

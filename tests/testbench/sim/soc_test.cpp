@@ -72,28 +72,22 @@ TEST_F(Soc, MemoryEqualsAReferenceUnderRandomAccesses) {
     Random random(testSeed());
     std::map<uint32_t, uint8_t> reference;
     for (int i = 0; i < 4000; ++i) {
-        uint32_t a = 0x2000 + random.below(64); // few words: merging and re-reading happen often
+        // few words: merging and re-reading happen often
+        const uint32_t a = 0x2000 + random.below(64), half = a & ~1u, v = random.next();
         switch (random.below(6)) {
-        case 0: {
-            uint8_t v = static_cast<uint8_t>(random.next());
-            fsmc_.write8(ddr + a, v);
-            reference[a] = v;
+        case 0:
+            fsmc_.write8(ddr + a, reference[a] = static_cast<uint8_t>(v));
             break;
-        }
-        case 1: {
-            a &= ~1u;
-            uint16_t v = static_cast<uint16_t>(random.next());
-            fsmc_.write16(ddr + a, v);
-            reference[a] = static_cast<uint8_t>(v);
-            reference[a + 1] = static_cast<uint8_t>(v >> 8);
+        case 1:
+            fsmc_.write16(ddr + half, static_cast<uint16_t>(v));
+            reference[half] = static_cast<uint8_t>(v);
+            reference[half + 1] = static_cast<uint8_t>(v >> 8);
             break;
-        }
         case 2:
             EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_ID), SYSTEM_ID_VALUE);
             break;
         default:
-            a &= ~1u;
-            EXPECT_EQ(fsmc_.read16(ddr + a), reference[a] | reference[a + 1] << 8)
+            EXPECT_EQ(fsmc_.read16(ddr + half), reference[half] | reference[half + 1] << 8)
                 << "access " << i;
         }
     }

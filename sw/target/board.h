@@ -2,8 +2,7 @@
  *
  * board: the STM32F2 around the firmware: clock, pins, FSMC, interrupts, watchdog, stack guard.
  */
-#ifndef BOARD_H
-#define BOARD_H
+#pragma once
 
 #include "fsmc.h"
 
@@ -26,5 +25,3 @@ U32 Board_task(void);
 /* Interrupt routines, for the vectors. */
 void EXTI0_Handler(void);
 void SysTick_Handler(void);
-
-#endif

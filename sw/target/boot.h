@@ -8,8 +8,7 @@
  *   15..8   Boot_Reason
  *    7..0   detail: for faults the priority of the task that ran (63 the idle task, 255 none)
  */
-#ifndef BOOT_H
-#define BOOT_H
+#pragma once
 
 #include "base.h"
 
@@ -55,5 +54,3 @@ void Boot_note(Boot_Reason reason);
 void Boot_fail(Boot_Reason reason, U32 pc, U32 lr, U32 address);
 /* Reports a corrupt image in SCRATCH, and sleeps for ever. */
 void Boot_refuse(void);
-
-#endif

@@ -3,8 +3,7 @@
  * firmware: the program: kernel, application, watchdog task, and the vehicle's keys. The
  * differences between kernels are in own_kernel.c and ucos2/.
  */
-#ifndef FIRMWARE_H
-#define FIRMWARE_H
+#pragma once
 
 #include "uav_keys.h"
 #include "ucos_ii.h"
@@ -21,5 +20,3 @@ void Provision_listen(void);
 extern const UAV_Board secrets_board;
 /* Starts both; needs the clocks of Board_start. */
 void Secrets_start(void);
-
-#endif

@@ -3,8 +3,7 @@
  * flash: erases and programs the STM32F2's flash (PM0059). It has one bank, so the processor stands
  * still meanwhile: 16 us for a word, up to 2 s for a sector of 128 KiB.
  */
-#ifndef FLASH_H
-#define FLASH_H
+#pragma once
 
 #include "base.h"
 
@@ -15,5 +14,3 @@
 void Flash_read(void* context, U32 offset, U8* bytes, U32 count);
 int Flash_erase(void* context, U32 offset);
 int Flash_program(void* context, U32 offset, const U8* bytes, U32 count);
-
-#endif

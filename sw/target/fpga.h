@@ -3,8 +3,7 @@
  * fpga: the FPGA's configuration flash, which it shares with the processor, and its pins PROGRAM_B
  * and DONE (docs/update.md).
  */
-#ifndef FPGA_H
-#define FPGA_H
+#pragma once
 
 #include "slots.h"
 
@@ -17,5 +16,3 @@
  * whole. One that is not is refused; where that is the golden one, the FPGA stays empty. `running`
  * becomes the slot of the bitstream that the FPGA runs. */
 const Slots_Port* Fpga_slots(const Slots_Port* firmware, int mustLoad, int mayTry, U32* running);
-
-#endif

@@ -3,8 +3,7 @@
  * loader: the boot loader in flash sectors 0 and 1, which starts the firmware of a slot, and what
  * it offers to that firmware (docs/update.md).
  */
-#ifndef LOADER_H
-#define LOADER_H
+#pragma once
 
 #include "slots.h"
 
@@ -22,5 +21,3 @@ typedef struct Loader_Services {
 
 /* The slots as the firmware sees them; 0: no loader has started it. `running` becomes its slot. */
 const Slots_Port* Loader_slots(U32* running);
-
-#endif

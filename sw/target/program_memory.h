@@ -3,8 +3,7 @@
  * program_memory: symbols that firmware.ld places, and the first step of a program, which gives its
  * variables their values.
  */
-#ifndef PROGRAM_MEMORY_H
-#define PROGRAM_MEMORY_H
+#pragma once
 
 #include "base.h"
 
@@ -21,5 +20,3 @@ static void startMemory(void) {
     for (to = bss_begin; to < bss_end;)
         *to++ = 0;
 }
-
-#endif

@@ -3,8 +3,7 @@
  * stm32f2: the registers of an STM32F2 that the firmware uses. Source: RM0033 (chapter and page
  * names at each block), and the ARMv7-M Architecture Reference Manual for the core's own.
  */
-#ifndef STM32F2_H
-#define STM32F2_H
+#pragma once
 
 #include "base.h"
 
@@ -164,5 +163,3 @@
 #define MPU_CTRL_ON 5UL /* on, with the default map for privileged code as background */
 #define MPU_RBAR REG(0xE000ED9CUL)
 #define MPU_RASR REG(0xE000EDA0UL)
-
-#endif

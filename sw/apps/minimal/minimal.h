@@ -2,8 +2,7 @@
  *
  * minimal: what the smallest program shares with its start-up code.
  */
-#ifndef MINIMAL_H
-#define MINIMAL_H
+#pragma once
 
 #include "base.h"
 
@@ -14,5 +13,3 @@ void Minimal_sleep(void);
 
 /* The program; returns where the FPGA or the modem does not answer. */
 int main(void);
-
-#endif

@@ -2,8 +2,7 @@
  *
  * paper: what the paper's figures leave out: start and interrupt of a program with one main task.
  */
-#ifndef PAPER_H
-#define PAPER_H
+#pragma once
 
 #include "fsmc.h"
 #include "icec.h"
@@ -20,5 +19,3 @@ void PAPER_start(const FSMC_Port* port, void* context);
 /* Handles the FPGA's interrupt, which is a level. */
 void PAPER_irqHandler(void);
 int PAPER_irqEnabled(void);
-
-#endif

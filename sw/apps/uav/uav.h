@@ -2,8 +2,7 @@
  *
  * uav: the application on the UAV, in the shape of the paper's Figure 5.
  */
-#ifndef UAV_H
-#define UAV_H
+#pragma once
 
 #include "fsmc.h"
 
@@ -38,5 +37,3 @@ UAV_Status UAV_start(const FSMC_Port* port, void* context);
 /* Handles the FPGA's interrupt, which is a level. */
 void UAV_irqHandler(void);
 int UAV_irqEnabled(void);
-
-#endif

@@ -5,8 +5,7 @@
  * purpose. Power may fail at any word: the slot then has its old content, none, or its new one, and
  * the other slot is not touched.
  */
-#ifndef UAV_KEYS_H
-#define UAV_KEYS_H
+#pragma once
 
 #include "link.h"
 
@@ -62,5 +61,3 @@ int UAV_setNextKey(Link* link, const U8* key);
 /* Removes the old key once a session is up under the next one, which the peer then has. Returns 1
  * where it did. */
 int UAV_confirmKey(Link* link);
-
-#endif

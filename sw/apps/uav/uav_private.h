@@ -2,8 +2,7 @@
  *
  * uav_private: what the application's files share.
  */
-#ifndef UAV_PRIVATE_H
-#define UAV_PRIVATE_H
+#pragma once
 
 #include "Autopilot.h"
 #include "link.h"
@@ -48,5 +47,3 @@ void UAV_startCores(Ice_ObjectAdapterPtr adapter);
 void UAV_coresTask(void* argument);
 void UAV_coresInterrupt(const U32 lines[2]);
 U32 UAV_waitFrame(U32* corners);
-
-#endif

@@ -2,8 +2,7 @@
  *
  * uav_update: the board's part in new firmware and bitstreams over the air.
  */
-#ifndef UAV_UPDATE_H
-#define UAV_UPDATE_H
+#pragma once
 
 #include "slots.h"
 
@@ -20,5 +19,3 @@ extern UAV_Update uav_update[UAV_UPDATABLES];
 
 /* Resets the processor. */
 extern void (*uav_restart)(void);
-
-#endif

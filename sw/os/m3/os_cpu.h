@@ -3,8 +3,7 @@
  * os_cpu: what the kernel needs of a processor, as uC/OS-II names it: Cortex-M3. Critical sections
  * set PRIMASK; the switch is PendSV, of the lowest priority, so that it runs behind all interrupts.
  */
-#ifndef OS_CPU_H
-#define OS_CPU_H
+#pragma once
 
 typedef unsigned int OS_STK;
 typedef unsigned int OS_CPU_SR;
@@ -25,5 +24,3 @@ OS_INLINE OS_CPU_SR OS_CPU_SR_Save(void) {
 OS_INLINE void OS_CPU_SR_Restore(OS_CPU_SR cpu_sr) {
     __asm__ volatile("msr primask, %0\n\tisb" : : "r"(cpu_sr) : "memory");
 }
-
-#endif

@@ -2,8 +2,7 @@
  *
  * os_m3: what the Cortex-M3 port asks of the board (sw/target), besides an idle hook.
  */
-#ifndef OS_M3_H
-#define OS_M3_H
+#pragma once
 
 #include "ucos_ii.h"
 
@@ -14,5 +13,3 @@ void OS_TaskSwitched(OS_STK* bottom);
 /* The task with this priority has run over the end of its stack (255: a task has returned). Does
  * not return. */
 void OS_StackFault(INT8U priority);
-
-#endif

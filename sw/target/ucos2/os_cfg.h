@@ -3,8 +3,7 @@
  * os_cfg: configuration of uC/OS-II 2.9x for the firmware: tasks, semaphores, mutexes, queues,
  * time. Names and meanings are those of uC/OS-II's manual, chapter 17.
  */
-#ifndef OS_CFG_H
-#define OS_CFG_H
+#pragma once
 
 #define OS_APP_HOOKS_EN 1u
 #define OS_ARG_CHK_EN 1u
@@ -85,5 +84,3 @@
 #define OS_TIME_TICK_HOOK_EN 0u
 
 #define OS_TMR_EN 0u
-
-#endif

@@ -4,8 +4,7 @@
  * small letter and leaves as a capital ('a' is interrupt 0), other handlers have letters of their
  * own.
  */
-#ifndef CPU_CASES_H
-#define CPU_CASES_H
+#pragma once
 
 #include "stm32f2.h"
 
@@ -36,5 +35,3 @@ U32 Work_asm(U32 rounds);
 /* clang-format on */
 #define DECLARED(name) void Case_##name(void);
 CASES(DECLARED)
-
-#endif

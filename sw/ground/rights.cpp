@@ -31,19 +31,26 @@ Rights::Rights(const std::string& path) : isOpen_(false) {
     std::ifstream file(path);
     if (!file)
         throw std::runtime_error("the file of rights '" + path + "' cannot be read");
-    try {
-        for (const auto& rule : nlohmann::json::parse(file)) {
-            for (const auto& [key, value] : rule.items())
-                if (key != "who" && key != "identities" && key != "operations")
-                    throw std::runtime_error("a rule has no '" + key + "'");
-            rules_.push_back({rule.at("who"), rule.at("identities"), rule.at("operations")});
-        }
-    } catch (const std::exception& e) {
+    const auto refuse = [&path](const std::string& why) {
         throw std::runtime_error(
             "the file of rights '" + path +
             "' must hold rules such as [{\"who\": \"CN=pilot*\", \"identities\": [\"*\"], "
             "\"operations\": [\"*\"]}]: " +
-            e.what());
+            why);
+    };
+    try {
+        const auto rules = nlohmann::json::parse(file);
+        if (!rules.is_array())
+            refuse("it is no list");
+        for (const auto& rule : rules) {
+            rules_.push_back({rule.at("who"), rule.at("identities"), rule.at("operations")});
+            if (rule.size() != 3)
+                refuse("rule " + std::to_string(rules_.size()) + " has more than these");
+        }
+    } catch (const nlohmann::json::parse_error& e) {
+        refuse("it is no JSON at byte " + std::to_string(e.byte));
+    } catch (const nlohmann::json::exception&) {
+        refuse("rule " + std::to_string(rules_.size() + 1) + " has another form");
     }
 }
 

@@ -236,7 +236,7 @@ def gdb(values):
            "one's and 1"),
     Option("by", FILE, "the private key that signs the list, one of the last list"),
     Option("first", FILE, "a public key of the list"),
-    Option("second", FILE, "another"), BUILD, JOBS],
+    Option("second", FILE, "another"), BUILD, JOBS], make="key",
          brief=("key build/brief/my.key", "key build/brief/pilot.pem --certificate",
                 "key build/brief/spare.key --signing",
                 "key build/brief/next.update --list 2 --by build/brief/spare.key --first "
@@ -249,8 +249,12 @@ def key(values):
     that signs updates and lists of these (docs/update.md)"""
     if not values.file:
         raise Stop("key needs the name of a file: ./icesoc key my.key", 2)
-    if values.list and not (values.by and values.first):
-        raise Stop("a list of keys needs --by, a private key, and --first, a public one", 2)
+    parts = values.list, values.by, values.first
+    if any((*parts, values.second)) and not all(parts):
+        raise Stop("a list of keys needs --list, its number, --by, a private key, and --first, a "
+                   "public one", 2)
+    if sum(map(bool, (values.certificate, values.signing, values.list))) > 1:
+        raise Stop("give one of --certificate, --signing and --list", 2)
     if values.signing or values.list:
         pack = configured(values, "pack_update") / "sw/target/pack_update"
         public = Path(values.file).with_suffix(".pub")

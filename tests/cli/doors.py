@@ -87,6 +87,41 @@ class Values(Work):
                 self.assertEqual(getattr(given, o.field), getattr(made, o.field),
                                  f"{each.name} {o.name}")
 
+    def test_keys_and_lists_of_keys_are_made_at_both_doors(self):
+        for name in ("tree/build/main/sw/target", "files"):
+            (self.work / name).mkdir(parents=True)
+        self.script("tree/build/main/sw/target/pack_update", 'echo "$@"\n')
+        made, by, first, second = (str(self.work / "files" / name) for name in (
+            "a key", "by.key", "first.pub", "second.pub"))
+        for name in (by, first, second):
+            Path(name).touch()
+        every = {"LIST": "3", "BY": by, "FIRST": first}
+        for given, status, said in (
+                ({}, 0, "nobody but you may read"), ({}, 1, "never overwritten"),
+                ({"SIGNING": "1"}, 0, f"public {made} {made}.pub\n"),
+                (every, 0, f"keys 3 {by} {first} {made}\n"),
+                ({**every, "SECOND": second}, 0, f"keys 3 {by} {first} {second} {made}\n"),
+                ({**every, "BY": ""}, 2, "needs --list, its number, --by"),
+                ({**every, "LIST": ""}, 2, "needs --list, its number, --by"),
+                ({"SECOND": second}, 2, "needs --list, its number, --by"),
+                ({**every, "FIRST": "/none"}, 2, "cannot read '/none': No such file"),
+                ({**every, "LIST": "0"}, 2, "is a whole number from 1 on, not '0'"),
+                ({**every, "SIGNING": "1"}, 2, "give one of --certificate"),
+                ({"CERTIFICATE": "1", "SIGNING": "1"}, 2, "give one of --certificate")):
+            words = [word for name, value in given.items() if value for word in (
+                f"--{name.lower()}", value)[:1 if name in ("SIGNING", "CERTIFICATE") else 2]]
+            doors = ["./icesoc", "key", made, *words, "--built"], [
+                "make", "-s", "key", f"FILE={made}", "BUILT=1",
+                *(f"{name}={value}" for name, value in given.items())]
+            for door in doors[:1 if status else 2]:
+                if not given and not status:
+                    Path(made).unlink(missing_ok=True)
+                answer = ask(*door, ICESOC_TREE=str(self.work / "tree"))
+                self.assertEqual(answer[0], status, answer[1])
+                self.assertIn(said, answer[1])
+        self.assertRegex(Path(made).read_text(), r"^[0-9a-f]{32}\n$")
+        self.assertEqual(Path(made).stat().st_mode & 0o777, 0o600)
+
     def test_the_environment_gives_defaults(self):
         for words, given, said in (
                 ("make -s fly", {"SEED": "x"}, "SEED is a whole number from 0 on, not 'x'"),

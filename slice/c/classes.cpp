@@ -10,8 +10,7 @@ void classFunctions(Writer& w, const Declaration& d) {
     Writer::Values v = {{"c", cName(d)}, {"id", d.id()}};
     auto function = [&](std::string_view head, std::string_view object, const char* unused,
                         auto body) {
-        w.blank();
-        w.block(head, v, [&] {
+        w.function(head, v, [&] {
             w.line(d.fields.empty() ? "(void)object;" : object, v);
             if (d.fields.empty())
                 w.line(unused);
@@ -66,13 +65,11 @@ static std::set<const Declaration*> mentioned(const Unit& unit) {
 static void interfaceTypes(Writer& w, const std::vector<const Declaration*>& interfaces) {
     if (interfaces.empty())
         return;
-    w.blank();
-    w.block("static void ice_write(const void *object, Ice_OutputStreamPtr os)", {}, [&] {
+    w.function("static void ice_write(const void *object, Ice_OutputStreamPtr os)", {}, [&] {
         w.line("(void)object;");
         w.line("(void)os;");
     });
-    w.blank();
-    w.block("static void ice_read(void *object, Ice_InputStreamPtr is)", {}, [&] {
+    w.function("static void ice_read(void *object, Ice_InputStreamPtr is)", {}, [&] {
         w.line("(void)object;");
         w.line("(void)is;");
     });

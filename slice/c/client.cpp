@@ -21,8 +21,7 @@ void beginCall(Writer& w, const Operation& o) {
 }
 
 void writeParameters(Writer& w, const Declaration& d, const Operation& o) {
-    w.line("if (!os)");
-    w.nested("return (Ice_Status)self->status;");
+    w.single("if (!os)", "return (Ice_Status)self->status;");
     if (sendsClasses(o) && isSliced(d, o))
         w.line("os->sliced = 1;");
     writeWithValues(w, inSlots(o), "ice_values");
@@ -60,12 +59,11 @@ void syncFunction(Writer& w, const CContext& c, const Declaration& d, const Oper
 
 void casts(Writer& w, const Declaration& d) {
     Writer::Values v = {{"p", cProxy(d)}, {"c", cName(d.ofClass ? *d.ofClass : d)}};
-    w.blank();
-    w.block("Ice_Status {p}_checkedCast({p}Ptr self, const Ice_ObjectPrx *from)", v,
-            [&] { w.line("return Ice_ObjectPrx_checkedCast(self, from, {c}_ice_staticId);", v); });
-    w.blank();
-    w.block("void {p}_uncheckedCast({p}Ptr self, const Ice_ObjectPrx *from)", v,
-            [&] { w.line("*self = *from;"); });
+    w.function("Ice_Status {p}_checkedCast({p}Ptr self, const Ice_ObjectPrx *from)", v, [&] {
+        w.line("return Ice_ObjectPrx_checkedCast(self, from, {c}_ice_staticId);", v);
+    });
+    w.function("void {p}_uncheckedCast({p}Ptr self, const Ice_ObjectPrx *from)", v,
+               [&] { w.line("*self = *from;"); });
 }
 
 void completedFunction(Writer& w, const CContext& c, const Declaration& d, const Operation& o) {
@@ -79,8 +77,7 @@ void completedFunction(Writer& w, const CContext& c, const Declaration& d, const
                         if (returnsClasses(o))
                             w.line("Ice_InputValues values;");
                         readWithValues(w, c, outSlots(o, "call->"), "values");
-                        w.line("if (is->failed)");
-                        w.nested("status = ICE_MARSHAL;");
+                        w.single("if (is->failed)", "status = ICE_MARSHAL;");
                     });
                 }
                 readException(w, c, o, "&call->exception");
@@ -88,16 +85,14 @@ void completedFunction(Writer& w, const CContext& c, const Declaration& d, const
                     w.line("(void)is;");
                 w.line("call->status = status;");
                 w.line("call->done = 1;");
-                w.line("if (call->completed)");
-                w.nested("call->completed(call);");
+                w.single("if (call->completed)", "call->completed(call);");
             });
 }
 
 void asyncFunction(Writer& w, const CContext& c, const Declaration& d, const Operation& o) {
     w.blank();
     completedFunction(w, c, d, o);
-    w.blank();
-    w.block(asyncSignature(d, o), {}, [&] {
+    w.function(asyncSignature(d, o), {}, [&] {
         if (sendsClasses(o))
             w.line("Ice_OutputValues ice_values;");
         beginCall(w, o);

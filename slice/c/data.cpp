@@ -47,23 +47,22 @@ static void overBound(Writer& w, const Declaration& d, const std::string& stream
 void writeFunction(Writer& w, const Declaration& d) {
     bool bytes = d.kind == DKind::Sequence && d.element.kind == Type::Kind::Byte;
     int maximum = statedMaximum(d);
-    w.blank();
-    w.block("void {c}_writeToOutputStream(const {c} *v, Ice_OutputStreamPtr os)", {{"c", cName(d)}},
-            [&] {
-                if (!bytes)
-                    w.line("Ice_Int i;");
-                if (maximum) {
-                    w.block("if (v->size > " + std::to_string(maximum) + ")", {}, [&] {
-                        overBound(w, d, "os");
-                        w.line("return;");
-                    });
-                }
-                w.line("Ice_OutputStream_writeSize(os, v->size);");
-                if (bytes)
-                    w.line("Ice_OutputStream_writeBlob(os, v->data, v->size);");
-                else
-                    loop(w, d, writeSlots);
-            });
+    w.function("void {c}_writeToOutputStream(const {c} *v, Ice_OutputStreamPtr os)",
+               {{"c", cName(d)}}, [&] {
+                   if (!bytes)
+                       w.line("Ice_Int i;");
+                   if (maximum) {
+                       w.block("if (v->size > " + std::to_string(maximum) + ")", {}, [&] {
+                           overBound(w, d, "os");
+                           w.line("return;");
+                       });
+                   }
+                   w.line("Ice_OutputStream_writeSize(os, v->size);");
+                   if (bytes)
+                       w.line("Ice_OutputStream_writeBlob(os, v->data, v->size);");
+                   else
+                       loop(w, d, writeSlots);
+               });
 }
 
 void readElsewhere(Writer& w, const Declaration& d) {
@@ -71,49 +70,45 @@ void readElsewhere(Writer& w, const Declaration& d) {
     w.line("v->data = ({e}" + std::string(v[0].second.back() == '*' ? "*" : " *") +
                ")Ice_InputStream_allocate(is, v->size, (Ice_Int)sizeof *v->data);",
            v);
-    w.line("if (!v->data)");
-    w.nested("v->size = 0;");
+    w.single("if (!v->data)", "v->size = 0;");
 }
 
 void readFunction(Writer& w, const Declaration& d) {
     bool bytes = d.kind == DKind::Sequence && d.element.kind == Type::Kind::Byte;
     int maximum = statedMaximum(d);
-    w.blank();
-    w.block("void {c}_readFromInputStream({c} *v, Ice_InputStreamPtr is)", {{"c", cName(d)}}, [&] {
-        if (bytes && maximum)
-            w.line("const Ice_Byte *bytes;");
-        else if (!bytes)
-            w.line("Ice_Int i;");
-        w.line("v->size = Ice_InputStream_readSequence(is, " + std::to_string(leastElementSize(d)) +
-               ");");
-        if (maximum)
-            w.block("if (v->size > " + std::to_string(maximum) + ")", {}, [&] {
-                w.line("v->size = 0;");
-                overBound(w, d, "is");
-            });
-        if (bytes && maximum) {
-            w.line("bytes = Ice_InputStream_readBlob(is, v->size);");
-            w.line("if (bytes)");
-            w.nested("memcpy(v->data, bytes, (size_t)v->size);");
-        } else if (bytes) {
-            w.line("/* In place: the bytes stay in the message. */");
-            w.line("v->data = (Ice_Byte *)Ice_InputStream_readBlob(is, v->size);");
-            w.line("if (!v->data)");
-            w.nested("v->size = 0;");
-        } else {
-            if (!maximum)
-                readElsewhere(w, d);
-            loop(w, d, readSlots);
-        }
-    });
+    w.function("void {c}_readFromInputStream({c} *v, Ice_InputStreamPtr is)", {{"c", cName(d)}},
+               [&] {
+                   if (bytes && maximum)
+                       w.line("const Ice_Byte *bytes;");
+                   else if (!bytes)
+                       w.line("Ice_Int i;");
+                   w.line("v->size = Ice_InputStream_readSequence(is, " +
+                          std::to_string(leastElementSize(d)) + ");");
+                   if (maximum)
+                       w.block("if (v->size > " + std::to_string(maximum) + ")", {}, [&] {
+                           w.line("v->size = 0;");
+                           overBound(w, d, "is");
+                       });
+                   if (bytes && maximum) {
+                       w.line("bytes = Ice_InputStream_readBlob(is, v->size);");
+                       w.single("if (bytes)", "memcpy(v->data, bytes, (size_t)v->size);");
+                   } else if (bytes) {
+                       w.line("/* In place: the bytes stay in the message. */");
+                       w.line("v->data = (Ice_Byte *)Ice_InputStream_readBlob(is, v->size);");
+                       w.single("if (!v->data)", "v->size = 0;");
+                   } else {
+                       if (!maximum)
+                           readElsewhere(w, d);
+                       loop(w, d, readSlots);
+                   }
+               });
 }
 
 void findFunction(Writer& w, const Declaration& d) {
     std::string signature = findSignature(d);
     if (signature.empty())
         return;
-    w.blank();
-    w.block(signature, {}, [&] {
+    w.function(signature, {}, [&] {
         w.line("Ice_Int i;");
         w.line("for (i = 0; i < v->size; ++i)");
         w.line(d.key.kind == Type::Kind::String ? "    if (Ice_String_same(&v->data[i].key, &key))"
@@ -126,12 +121,10 @@ void findFunction(Writer& w, const Declaration& d) {
 void structFunctions(Writer& w, const Declaration& d) {
     if (!isRuntimeType(d) || !d.fields.empty())
         initFunction(w, d);
-    w.blank();
-    w.block("void {c}_writeToOutputStream(const {c} *v, Ice_OutputStreamPtr os)", {{"c", cName(d)}},
-            [&] { writeSlots(w, memberSlots(d)); });
-    w.blank();
-    w.block("void {c}_readFromInputStream({c} *v, Ice_InputStreamPtr is)", {{"c", cName(d)}},
-            [&] { readSlots(w, memberSlots(d)); });
+    w.function("void {c}_writeToOutputStream(const {c} *v, Ice_OutputStreamPtr os)",
+               {{"c", cName(d)}}, [&] { writeSlots(w, memberSlots(d)); });
+    w.function("void {c}_readFromInputStream({c} *v, Ice_InputStreamPtr is)", {{"c", cName(d)}},
+               [&] { readSlots(w, memberSlots(d)); });
 }
 
 } // namespace

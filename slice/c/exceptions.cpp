@@ -37,8 +37,7 @@ void slicesFunctions(Writer& w, const Declaration& d, const Writer::Values& v) {
         else if (d.fields.empty())
             w.line("(void)v;");
     });
-    w.blank();
-    w.block("void {c}_readSlices({c} *v, Ice_InputStreamPtr is)", v, [&] {
+    w.function("void {c}_readSlices({c} *v, Ice_InputStreamPtr is)", v, [&] {
         readSlots(w, memberSlots(d));
         w.line("Ice_InputStream_endSlice(is);");
         if (d.base()) {
@@ -95,20 +94,17 @@ void thrownFunctions(Writer& w, const CContext& c, const Declaration& d, const O
                                  {"member", exceptionMember(o, family, *e)}});
         }
     };
-    w.blank();
-    w.block("void {t}_writeToOutputStream(const {t} *v, Ice_OutputStreamPtr os)", v, [&] {
+    w.function("void {t}_writeToOutputStream(const {t} *v, Ice_OutputStreamPtr os)", v, [&] {
         w.line("switch (v->type) {");
         eachOf([&](const Declaration&, const Writer::Values& names) {
             w.line("case {op}_{label}:", names);
             w.nested("{e}_writeToOutputStream(&v->u.{member}, os);", names);
             w.nested("break;");
         });
-        w.line("default:");
-        w.nested("os->failed = 1; /* the servant has not said which */");
+        w.single("default:", "os->failed = 1; /* the servant has not said which */");
         w.line("}");
     });
-    w.blank();
-    w.block("Ice_Status {t}_readFromInputStream({t} *v, Ice_InputStreamPtr is)", v, [&] {
+    w.function("Ice_Status {t}_readFromInputStream({t} *v, Ice_InputStreamPtr is)", v, [&] {
         if (classes)
             w.line("Ice_InputValues values;");
         if (preserves) {
@@ -140,8 +136,7 @@ void thrownFunctions(Writer& w, const CContext& c, const Declaration& d, const O
             v);
         if (classes)
             w.line("Ice_InputStream_endValues(is);");
-        w.line("if (is->failed)");
-        w.nested("return ICE_MARSHAL;");
+        w.single("if (is->failed)", "return ICE_MARSHAL;");
         w.line("return v->type == {op}_none ? ICE_UNKNOWN_USER_EXCEPTION : ICE_USER_EXCEPTION;", v);
     });
 }

@@ -50,8 +50,7 @@ std::vector<Slot> memberSlots(const Declaration& d) {
 }
 
 void initFunction(Writer& w, const Declaration& d) {
-    w.blank();
-    w.block("void {c}_init({c} *v)", {{"c", cName(d)}}, [&] {
+    w.function("void {c}_init({c} *v)", {{"c", cName(d)}}, [&] {
         w.line("memset(v, 0, sizeof *v);");
         if (d.base())
             w.line(cName(*d.base()) + "_init(&v->base);");

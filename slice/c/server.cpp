@@ -55,8 +55,7 @@ void readParameters(Writer& w, const CContext& c, const Operation& o) {
         return;
     }
     readWithValues(w, c, inVariables(o), "ice_values");
-    w.line("if (is->failed)");
-    w.nested("return ICE_MARSHAL;");
+    w.single("if (is->failed)", "return ICE_MARSHAL;");
 }
 
 void writeResults(Writer& w, const CContext& c, const Declaration& d, const Operation& o) {
@@ -67,8 +66,8 @@ void writeResults(Writer& w, const CContext& c, const Declaration& d, const Oper
     if (!outs.empty())
         w.block("if (status == ICE_OK)", {}, [&] { writeWithValues(w, outs, "ice_sent"); });
     if (!o.throws.empty()) {
-        w.line("if (status == ICE_USER_EXCEPTION)");
-        w.nested(c.thrownAs(o) + "_Exception_writeToOutputStream(&ex, os);");
+        w.single("if (status == ICE_USER_EXCEPTION)",
+                 c.thrownAs(o) + "_Exception_writeToOutputStream(&ex, os);");
     }
     if (outs.empty() && o.throws.empty())
         w.line("(void)os;");
@@ -81,8 +80,8 @@ void dispatchOperation(Writer& w, const CContext& c, const Declaration& d, const
     w.line("        const Ice_Current *current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {");
     w.indented([&] {
         declareVariables(w, d, o);
-        w.line("if (!ice_operations->" + cIdentifier(o.name) + ")");
-        w.nested("return ICE_OPERATION_NOT_EXIST;");
+        w.single("if (!ice_operations->" + cIdentifier(o.name) + ")",
+                 "return ICE_OPERATION_NOT_EXIST;");
         readParameters(w, c, o);
         if (!isAmd(d, o)) {
             for (const Slot& s : outSlots(o, ""))
@@ -111,13 +110,11 @@ void dispatchOperation(Writer& w, const CContext& c, const Declaration& d, const
 void responseFunctions(Writer& w, const CContext& c, const Declaration& d, const Operation& o) {
     auto begin = [&] {
         w.line("Ice_OutputStreamPtr os = Ice_Reply_begin(reply);");
-        w.line("if (!os)");
-        w.nested("return ICE_CONNECTION_LOST;");
+        w.single("if (!os)", "return ICE_CONNECTION_LOST;");
         if (isSliced(d, o) && (!o.throws.empty() || returnsClasses(o)))
             w.line("os->sliced = 1;");
     };
-    w.blank();
-    w.block(responseSignature(d, o), {}, [&] {
+    w.function(responseSignature(d, o), {}, [&] {
         if (returnsClasses(o))
             w.line("Ice_OutputValues ice_sent;");
         begin();
@@ -126,13 +123,12 @@ void responseFunctions(Writer& w, const CContext& c, const Declaration& d, const
     });
     if (o.throws.empty())
         return;
-    w.blank();
-    w.block("Ice_Status {n}_exception(Ice_Reply *reply, const {n}_Exception *ex)",
-            {{"n", operationName(d, o)}}, [&] {
-                begin();
-                w.line(c.thrownAs(o) + "_Exception_writeToOutputStream(ex, os);");
-                w.line("return Ice_Reply_end(reply, ICE_USER_EXCEPTION);");
-            });
+    w.function("Ice_Status {n}_exception(Ice_Reply *reply, const {n}_Exception *ex)",
+               {{"n", operationName(d, o)}}, [&] {
+                   begin();
+                   w.line(c.thrownAs(o) + "_Exception_writeToOutputStream(ex, os);");
+                   w.line("return Ice_Reply_end(reply, ICE_USER_EXCEPTION);");
+               });
 }
 
 void interfaceTable(Writer& w, const Declaration& d) {
@@ -180,8 +176,7 @@ void initFunctions(Writer& w, const Declaration& d) {
     w.line("    return Ice_Object_dispatch(&{c}_ice_interface, operations, self, current, is, os);",
            v);
     w.line("}");
-    w.blank();
-    w.block("void {c}_initWith({c}Ptr self, const {c}_Operations *operations)", v, [&] {
+    w.function("void {c}_initWith({c}Ptr self, const {c}_Operations *operations)", v, [&] {
         w.line("static const char *const ids[] = {");
         for (const std::string& id : ids)
             w.line("    \"" + id + "\",");
@@ -191,8 +186,7 @@ void initFunctions(Writer& w, const Declaration& d) {
         w.line("self->base.id = \"{id}\";", v);
         w.line("self->operations = operations;");
     });
-    w.blank();
-    w.block("void {c}_init({c}Ptr self)", v, [&] {
+    w.function("void {c}_init({c}Ptr self)", v, [&] {
         w.line("static const {c}_Operations operations = {" + defaultOperations(d, d) + "};", v);
         w.line("{c}_initWith(self, &operations);", v);
     });

@@ -165,8 +165,7 @@ void readSlots(Writer& w, const std::vector<Slot>& slots) {
                            : !sizeBefore(s).empty() ? "(void)Ice_InputStream_readSize(is);"
                                                     : "";
         if (skip.empty()) {
-            w.line("if (" + s.has + ")");
-            w.nested(statement);
+            w.single("if (" + s.has + ")", statement);
         } else {
             w.block("if (" + s.has + ")", {}, [&] {
                 w.line(skip);

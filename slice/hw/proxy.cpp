@@ -67,8 +67,8 @@ void event(Writer& w, const Block& b, const Call& c) {
         arguments += ", " + s.value;
     }
     w.block("bool " + cIdentifier(c.operation->name) + "(" + parameters + ")", {}, [&] {
-        w.line("if (!Hw_Core_event(&core_.core, " + std::to_string(c.bit) + "))");
-        w.nested("return false;");
+        w.single("if (!Hw_Core_event(&core_.core, " + std::to_string(c.bit) + "))",
+                 "return false;");
         w.line("this->hw_check(" + coreType(b) + "_" + cOperation(c.operation->name) +
                "_take(&core_" + arguments + "));");
         w.line("return true;");

@@ -23,25 +23,19 @@ std::string initSignature(const std::string& type) {
 }
 
 void statusFunction(Writer& w) {
-    w.blank();
-    w.block("static Ice_Status hwStatus(Hw_Status status)", {}, [&] {
+    w.function("static Ice_Status hwStatus(Hw_Status status)", {}, [&] {
         w.line("switch (status) {");
-        w.line("case HW_OK:");
-        w.nested("return ICE_OK;");
-        w.line("case HW_TIMEOUT:");
-        w.nested("return ICE_TIMEOUT;");
-        w.line("case HW_BUSY:");
-        w.nested("return ICE_LIMIT;");
-        w.line("default:");
-        w.nested("return ICE_UNKNOWN_EXCEPTION; /* refused */");
+        w.single("case HW_OK:", "return ICE_OK;");
+        w.single("case HW_TIMEOUT:", "return ICE_TIMEOUT;");
+        w.single("case HW_BUSY:", "return ICE_LIMIT;");
+        w.single("default:", "return ICE_UNKNOWN_EXCEPTION; /* refused */");
         w.line("}");
     });
 }
 
 void initFunction(Writer& w, const Block& b) {
     std::string type = coreType(b), prefix = upperCase(b.name);
-    w.blank();
-    w.block(initSignature(type), {}, [&] {
+    w.function(initSignature(type), {}, [&] {
         w.line("Hw_Status status = Hw_Core_init(&self->core, slot, " + prefix +
                "_ID_VALUE, port, context);");
         w.line(cName(*b.interface) + "_init(&self->servant);");
@@ -49,19 +43,18 @@ void initFunction(Writer& w, const Block& b) {
             w.line("Hw_Listener_init(&self->" + l.name + ");");
         w.line("self->core.memory = memory;");
         if (b.memoryWord) {
-            w.line("if (memory & " + std::to_string(b.memoryBytes - 1) + "U)");
-            w.nested("return HW_UNALIGNED;");
-            w.line("if (status == HW_OK)");
-            w.nested((b.isPaged(b.memoryWord) ? "Hw_Core_write(&self->core, " + prefix +
+            w.single("if (memory & " + std::to_string(b.memoryBytes - 1) + "U)",
+                     "return HW_UNALIGNED;");
+            w.single("if (status == HW_OK)",
+                     (b.isPaged(b.memoryWord) ? "Hw_Core_write(&self->core, " + prefix +
                                                     "_MEMORY, " + prefix + "_MEMORY_PAGE"
                                               : "FSMC_write(slot, " + prefix + "_MEMORY") +
-                     ", memory >> " + std::to_string(b.memoryLsb()) + ");");
+                         ", memory >> " + std::to_string(b.memoryLsb()) + ");");
         }
         w.line("return status;");
     });
-    w.blank();
-    w.block("void " + type + "_interrupt(" + type + " *self)", {},
-            [&] { w.line("Hw_Core_interrupt(&self->core);"); });
+    w.function("void " + type + "_interrupt(" + type + " *self)", {},
+               [&] { w.line("Hw_Core_interrupt(&self->core);"); });
 }
 
 std::string number(unsigned n) {
@@ -96,40 +89,38 @@ std::string arguments(const std::vector<Slot>& slots) {
 
 void failUnlessOk(Writer& w, const std::string& call) {
     w.line("hw_status = hwStatus(" + call + ");");
-    w.line("if (hw_status != ICE_OK)");
-    w.nested("return hw_status;");
+    w.single("if (hw_status != ICE_OK)", "return hw_status;");
 }
 
 void answerFunction(Writer& w, const Block& b, const Call& c) {
     const Operation& o = *c.operation;
-    w.blank();
-    w.block("static void " + c.name + "_answer(" + coreType(b) + " *hw_core, Ice_Status hw_status)",
-            {}, [&] {
-                std::string pointers;
-                for (const Slot& s : outSlots(o, "")) {
-                    w.line("static " + cVariable(*s.type, s.value) + "; /* off the stack */");
-                    pointers += ", &" + s.value;
-                }
-                if (!o.throws.empty()) {
-                    w.line("static " + exceptionType(*b.interface, o) + " ex;");
-                    pointers += ", &ex";
-                }
-                w.line("Ice_Reply hw_reply = hw_core->" + c.name + "_reply;");
-                w.line("if (hw_status == ICE_OK)");
-                w.nested("hw_status = " + part(b, c, "end") + "(hw_core" + pointers + ");");
-                w.line("hw_core->core.later[" + std::to_string(c.bit) + "] = 0;");
-                w.line("if (hw_status == ICE_OK)");
-                w.nested("(void)" + nameOf(b, c) + "_response(&hw_reply" +
-                         arguments(outSlots(o, "")) + ");");
-                if (!o.throws.empty()) {
-                    w.line("else if (hw_status == ICE_USER_EXCEPTION)");
-                    w.nested("(void)" + nameOf(b, c) + "_exception(&hw_reply, &ex);");
-                }
-                w.block("else", {}, [&] {
-                    w.line("(void)Ice_Reply_begin(&hw_reply);");
-                    w.line("(void)Ice_Reply_end(&hw_reply, hw_status);");
-                });
+    w.function(
+        "static void " + c.name + "_answer(" + coreType(b) + " *hw_core, Ice_Status hw_status)", {},
+        [&] {
+            std::string pointers;
+            for (const Slot& s : outSlots(o, "")) {
+                w.line("static " + cVariable(*s.type, s.value) + "; /* off the stack */");
+                pointers += ", &" + s.value;
+            }
+            if (!o.throws.empty()) {
+                w.line("static " + exceptionType(*b.interface, o) + " ex;");
+                pointers += ", &ex";
+            }
+            w.line("Ice_Reply hw_reply = hw_core->" + c.name + "_reply;");
+            w.single("if (hw_status == ICE_OK)",
+                     "hw_status = " + part(b, c, "end") + "(hw_core" + pointers + ");");
+            w.line("hw_core->core.later[" + std::to_string(c.bit) + "] = 0;");
+            w.single("if (hw_status == ICE_OK)", "(void)" + nameOf(b, c) + "_response(&hw_reply" +
+                                                     arguments(outSlots(o, "")) + ");");
+            if (!o.throws.empty()) {
+                w.line("else if (hw_status == ICE_USER_EXCEPTION)");
+                w.nested("(void)" + nameOf(b, c) + "_exception(&hw_reply, &ex);");
+            }
+            w.block("else", {}, [&] {
+                w.line("(void)Ice_Reply_begin(&hw_reply);");
+                w.line("(void)Ice_Reply_end(&hw_reply, hw_status);");
             });
+        });
 }
 
 std::string takeSignature(const Block& b, const Call& c) {
@@ -141,26 +132,24 @@ std::string takeSignature(const Block& b, const Call& c) {
 
 void eventFunctions(Writer& w, const Block& b, const Listener& l, const Call& c) {
     const Operation& o = *c.operation;
-    w.blank();
-    w.block(takeSignature(b, c), {}, [&] {
+    w.function(takeSignature(b, c), {}, [&] {
         resultVariables(w, c);
         readResults(w, b, c);
         w.line("Hw_Core_act(&hw_core->core, " + number(c.bit) +
                "); /* taken: the next may come */");
         w.line("return ICE_OK;");
     });
-    w.blank();
-    w.block("static void " + c.name + "_event(" + coreType(b) + " *hw_core)", {}, [&] {
+    w.function("static void " + c.name + "_event(" + coreType(b) + " *hw_core)", {}, [&] {
         std::string pointers;
         w.line("Ice_ObjectPrx hw_proxy;");
         for (const Slot& s : inVariables(o)) {
             w.line(cVariable(*s.type, s.value) + ";");
             pointers += ", " + s.pointer;
         }
-        w.line("if (" + part(b, c, "take") + "(hw_core" + pointers +
-               ") == ICE_OK && Hw_Listener_get(&hw_core->" + l.name + ", &hw_proxy))");
-        w.nested("(void)" + cProxy(*c.owner) + "_" + cOperation(o.name) + "(&hw_proxy" +
-                 arguments(inVariables(o)) + ");");
+        w.single("if (" + part(b, c, "take") + "(hw_core" + pointers +
+                     ") == ICE_OK && Hw_Listener_get(&hw_core->" + l.name + ", &hw_proxy))",
+                 "(void)" + cProxy(*c.owner) + "_" + cOperation(o.name) + "(&hw_proxy" +
+                     arguments(inVariables(o)) + ");");
     });
 }
 
@@ -177,31 +166,27 @@ void eventDeclaration(Writer& w, const Block& b, const Call& c) {
 
 void amdFunctions(Writer& w, const Block& b, const Call& c) {
     std::string bit = number(c.bit);
-    w.blank();
-    w.block(beginSignature(b, c), {}, [&] {
+    w.function(beginSignature(b, c), {}, [&] {
         w.line("Ice_Status hw_status;");
-        w.line("if (hw_core->core.later[" + std::to_string(c.bit) + "])");
-        w.nested("return ICE_LIMIT; /* the call before is not answered yet */");
+        w.single("if (hw_core->core.later[" + std::to_string(c.bit) + "])",
+                 "return ICE_LIMIT; /* the call before is not answered yet */");
         failUnlessOk(w, "Hw_Core_ready(&hw_core->core, " + bit + ")");
         writeParameters(w, b, c);
         w.line("Hw_Core_begin(&hw_core->core, " + bit + ", " + number(c.timeout) + ");");
         w.line("return ICE_OK;");
     });
-    w.blank();
-    w.block(endSignature(b, c), {}, [&] {
+    w.function(endSignature(b, c), {}, [&] {
         resultVariables(w, c);
         if (!hasResults(*c.operation) && c.thrown.empty())
             w.line("(void)hw_core;");
         readResults(w, b, c);
         w.line("return ICE_OK;");
     });
-    w.blank();
-    w.block(servantSignature(*b.interface, *c.operation, nameOf(b, c)), {}, [&] {
+    w.function(servantSignature(*b.interface, *c.operation, nameOf(b, c)), {}, [&] {
         w.line(coreType(b) + " *hw_core = (" + coreType(b) + " *)self;");
         w.line("Ice_Status hw_status = " + part(b, c, "begin") + "(hw_core" +
                arguments(inSlots(*c.operation)) + ");");
-        w.line("if (hw_status != ICE_OK)");
-        w.nested("return hw_status;");
+        w.single("if (hw_status != ICE_OK)", "return hw_status;");
         w.line("Ice_Current_later(current, &hw_core->" + c.name + "_reply);");
         w.line("Hw_Core_later(&hw_core->core, " + bit + ");");
         w.line("return ICE_LATER;");
@@ -210,8 +195,7 @@ void amdFunctions(Writer& w, const Block& b, const Call& c) {
 }
 
 void operation(Writer& w, const Block& b, const Call& c) {
-    w.blank();
-    w.block(servantSignature(*b.interface, *c.operation, nameOf(b, c)), {}, [&] {
+    w.function(servantSignature(*b.interface, *c.operation, nameOf(b, c)), {}, [&] {
         w.line(coreType(b) + " *hw_core = (" + coreType(b) + " *)self;");
         resultVariables(w, c);
         if (c.isLong)
@@ -234,14 +218,14 @@ void operation(Writer& w, const Block& b, const Call& c) {
 
 void listenerFunctions(Writer& w, const Block& b, const Listener& l) {
     const Field& p = l.operation->parameters.front();
-    w.blank();
-    w.block(servantSignature(*b.interface, *l.operation, operationName(*b.interface, *l.operation)),
-            {}, [&] {
-                w.line("(void)current;");
-                w.line("Hw_Listener_set(&((" + coreType(b) + " *)self)->" + l.name + ", " +
-                       cParameter(*l.operation, p) + ");");
-                w.line("return ICE_OK;");
-            });
+    w.function(
+        servantSignature(*b.interface, *l.operation, operationName(*b.interface, *l.operation)), {},
+        [&] {
+            w.line("(void)current;");
+            w.line("Hw_Listener_set(&((" + coreType(b) + " *)self)->" + l.name + ", " +
+                   cParameter(*l.operation, p) + ");");
+            w.line("return ICE_OK;");
+        });
     for (size_t i = l.first; i < l.first + l.count; ++i)
         eventFunctions(w, b, l, b.calls[i]);
 }
@@ -252,8 +236,7 @@ void pollFunction(Writer& w, const Block& b) {
         hasAmd |= c.isAmd;
         hasEvents |= c.isEvent;
     }
-    w.blank();
-    w.block("U32 " + coreType(b) + "_poll(" + coreType(b) + " *self, U32 nowMs)", {}, [&] {
+    w.function("U32 " + coreType(b) + "_poll(" + coreType(b) + " *self, U32 nowMs)", {}, [&] {
         w.line("U32 next = HW_NEVER;");
         if (hasAmd)
             w.line("Hw_Status status;");
@@ -263,13 +246,13 @@ void pollFunction(Writer& w, const Block& b) {
             w.line("(void)self;");
         for (const Call& c : b.calls) {
             if (c.isAmd) {
-                w.line("if (Hw_Core_ended(&self->core, " + number(c.bit) +
-                       ", nowMs, &status, &next))");
-                w.nested(c.name + "_answer(self, hwStatus(status));");
+                w.single("if (Hw_Core_ended(&self->core, " + number(c.bit) +
+                             ", nowMs, &status, &next))",
+                         c.name + "_answer(self, hwStatus(status));");
             }
             if (c.isEvent) {
-                w.line("if (Hw_Core_event(&self->core, " + number(c.bit) + "))");
-                w.nested(c.name + "_event(self);");
+                w.single("if (Hw_Core_event(&self->core, " + number(c.bit) + "))",
+                         c.name + "_event(self);");
             }
         }
         w.line("return next;");

@@ -282,8 +282,7 @@ GeneratedFile testSkeleton(const Block& b) {
             continue;
         std::string name = c.operation->name, arguments;
         name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
-        w.line();
-        w.block("TEST(" + b.interface->name + "Core, Answers" + name + ")", {}, [&] {
+        w.function("TEST(" + b.interface->name + "Core, Answers" + name + ")", {}, [&] {
             w.line(b.interface->name + "Proxy<V" + b.name + "_slot> core;");
             for (const Slot& s : inVariables(*c.operation)) {
                 if (unsigned count = shown(c, *s.type, s.value)) {

@@ -76,8 +76,8 @@ std::string roomOf(const Call& c, const Piece& p) {
 void readSequence(Writer& w, const Call& c, const Piece& p, const std::string& count) {
     std::string sequence = lvalue(p), bytes = std::to_string(p.elementBytes) + "U";
     w.line(sequence + ".size = (Ice_Int)" + count + ";");
-    w.line("if (" + sequence + ".size > " + std::to_string(p.most) + ")");
-    w.nested("return ICE_UNKNOWN_EXCEPTION; /* more than the buffer holds */");
+    w.single("if (" + sequence + ".size > " + std::to_string(p.most) + ")",
+             "return ICE_UNKNOWN_EXCEPTION; /* more than the buffer holds */");
     if (statedMaximum(*p.type.declaration) <= 0)
         w.line(sequence + ".data = hw_core->" + roomOf(c, p) + ";");
     w.line("FSMC_readMemory(" + address(p) + ", (U8 *)" + sequence + ".data, (U32)" + sequence +
@@ -109,8 +109,8 @@ void readPiece(Writer& w, const Block& b, const Call& c, const Word& word, const
         for (const Enumerator& e : p.type.declaration->enumerators)
             largest = std::max(largest, e.value);
         if (largest + 1 < int64_t(1) << p.width) {
-            w.line("if (" + whole + " > " + std::to_string(largest) + "U)");
-            w.nested("return ICE_UNKNOWN_EXCEPTION; /* no such enumerator */");
+            w.single("if (" + whole + " > " + std::to_string(largest) + "U)",
+                     "return ICE_UNKNOWN_EXCEPTION; /* no such enumerator */");
         }
         break;
     }
@@ -143,8 +143,7 @@ void readException(Writer& w, const Block& b, const Call& c) {
                 w.line("switch ((hw_word & " + macro(b, word, p, "MASK") + ") >> " +
                        macro(b, word, p, "LSB") + ") {");
             }
-    w.line("case 0:");
-    w.nested("break;");
+    w.single("case 0:", "break;");
     for (size_t i = 0; i < c.thrown.size(); ++i) {
         w.line("case " + std::to_string(i + 1) + ":");
         w.indented([&] {
@@ -153,8 +152,7 @@ void readException(Writer& w, const Block& b, const Call& c) {
             w.line("return ICE_USER_EXCEPTION;");
         });
     }
-    w.line("default:");
-    w.nested("return ICE_UNKNOWN_EXCEPTION; /* no such exception */");
+    w.single("default:", "return ICE_UNKNOWN_EXCEPTION; /* no such exception */");
     w.line("}");
 }
 
@@ -169,8 +167,8 @@ void writeParameters(Writer& w, const Block& b, const Call& c) {
         for (const Piece& p : word.pieces)
             if (!word.isOut && p.isCount) {
                 std::string sequence = lvalue(p);
-                w.line("if (" + sequence + ".size > " + std::to_string(p.most) + ")");
-                w.nested("return ICE_LIMIT; /* more than the buffer holds */");
+                w.single("if (" + sequence + ".size > " + std::to_string(p.most) + ")",
+                         "return ICE_LIMIT; /* more than the buffer holds */");
                 w.line("FSMC_writeMemory(" + address(p) + ", (const U8 *)" + sequence +
                        ".data, (U32)" + sequence + ".size * " + std::to_string(p.elementBytes) +
                        "U);");

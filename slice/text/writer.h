@@ -33,6 +33,11 @@ public:
         indented(body);
         line(tail, values);
     }
+    // A block behind an empty line.
+    template <class Body> void function(std::string_view head, const Values& values, Body body) {
+        blank();
+        block(head, values, body);
+    }
     // Writes `typedef KIND NAME { ... } NAME;`.
     template <class Body> void type(const std::string& kind, const std::string& name, Body body) {
         block("typedef " + kind + " " + name, {}, body, "} " + name + ";");
@@ -40,6 +45,11 @@ public:
     // The one statement of an `if` or a loop.
     void nested(std::string_view text, const Values& values = {}) {
         indented([&] { line(text, values); });
+    }
+    // An `if`, a loop or a case with its one statement.
+    void single(std::string_view head, std::string_view statement, const Values& values = {}) {
+        line(head, values);
+        nested(statement, values);
     }
     void blank() { out_ += '\n'; }
     const std::string& text() const { return out_; }

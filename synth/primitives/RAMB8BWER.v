@@ -1,22 +1,18 @@
 // SPDX-License-Identifier: MIT
 //
-// RAMB8BWER: the 8-Kbit block RAM of Spartan-6 (Xilinx UG383, Block RAM) as the port FIFOs have it:
-// port A writes and port B reads words of 36 bits. For simulation of netlists, with the ports that
-// Yosys gives it; a netlist with another mode or with output registers does not build.
-//
-// Data that is read where A writes at the same edge is not valid (UG383, "Conflict Avoidance"),
-// unless A is READ_FIRST: here half of its bits are not the old ones, half not the new ones.
-// Collisions of ports with different clocks are not modelled.
+// RAMB8BWER: the 8-Kbit block RAM of Spartan-6 (UG383), with the ports that Yosys gives it.
 `default_nettype none
 
 module RAMB8BWER #(
-    parameter integer DATA_WIDTH_A = 36, DATA_WIDTH_B = 36, // Yosys gives all of these
-    parameter integer DOA_REG = 0, DOB_REG = 0,
+    parameter integer DATA_WIDTH_A = 0, // bits of a word with its parity; 0: the port is not used
+    parameter integer DATA_WIDTH_B = 0,
+    parameter integer DOA_REG = 0,      // output registers: not modelled
+    parameter integer DOB_REG = 0,
     parameter EN_RSTRAM_A = "TRUE", EN_RSTRAM_B = "TRUE",
-    parameter RSTTYPE = "SYNC", // "ASYNC" acts at the next edge here: Yosys ties the reset low
+    parameter RSTTYPE = "SYNC",
     parameter RST_PRIORITY_A = "CE", RST_PRIORITY_B = "CE",
     parameter WRITE_MODE_A = "WRITE_FIRST", WRITE_MODE_B = "WRITE_FIRST",
-    parameter RAM_MODE = "SDP",
+    parameter RAM_MODE = "TDP", // "SDP": A writes and B reads, both 36 bits wide
     parameter [17:0] INIT_A = 18'd0, INIT_B = 18'd0, SRVAL_A = 18'd0, SRVAL_B = 18'd0,
     parameter [255:0]
         INITP_00 = 256'd0, INITP_01 = 256'd0, INITP_02 = 256'd0, INITP_03 = 256'd0,
@@ -46,44 +42,40 @@ module RAMB8BWER #(
     output wire [1:0]  DOPBDOP
 );
     generate
-        if (RAM_MODE != "SDP" || DATA_WIDTH_A != 36 || DATA_WIDTH_B != 36 || DOA_REG != 0 ||
-            DOB_REG != 0 || EN_RSTRAM_A != "TRUE" || EN_RSTRAM_B != "TRUE")
+        if (DOA_REG != 0 || DOB_REG != 0 || EN_RSTRAM_A != "TRUE" || EN_RSTRAM_B != "TRUE" ||
+            (RAM_MODE == "SDP" && (DATA_WIDTH_A != 36 || DATA_WIDTH_B != 36)))
             block_ram_has_no_model_of_this_mode u_none();
     endgenerate
+    // A reset of RSTTYPE "ASYNC" acts at the next edge here: Yosys ties it low.
+    wire unused = &{1'b0, REGCEA, REGCEBREGCE};
 
-    localparam [1023:0] INIT_P = {INITP_03, INITP_02, INITP_01, INITP_00};
-    localparam [8191:0] INIT = {
-        INIT_1F, INIT_1E, INIT_1D, INIT_1C, INIT_1B, INIT_1A, INIT_19, INIT_18,
-        INIT_17, INIT_16, INIT_15, INIT_14, INIT_13, INIT_12, INIT_11, INIT_10,
-        INIT_0F, INIT_0E, INIT_0D, INIT_0C, INIT_0B, INIT_0A, INIT_09, INIT_08,
-        INIT_07, INIT_06, INIT_05, INIT_04, INIT_03, INIT_02, INIT_01, INIT_00};
-    reg [35:0] rows [0:255]; // {parity, data}
-    reg [35:0] out;
-    integer i;
-    initial begin
-        for (i = 0; i < 256; i = i + 1)
-            rows[i] = {INIT_P[4*i +: 4], INIT[32*i +: 32]};
-        out = {INIT_B[17:16], INIT_A[17:16], INIT_B[15:0], INIT_A[15:0]};
-    end
+    localparam SDP = RAM_MODE == "SDP";
+    wire [35:0] out_a, out_b;
+    assign {DOPADOP, DOADO} = SDP ? {out_b[33:32], out_b[15:0]} : {out_a[33:32], out_a[15:0]};
+    assign {DOPBDOP, DOBDO} = SDP ? {out_b[35:34], out_b[31:16]} : {out_b[33:32], out_b[15:0]};
 
-    wire [7:0]  to = ADDRAWRADDR[12:5], from = ADDRBRDADDR[12:5];
-    wire [3:0]  bytes_written = {WEBWEU, WEAWEL} & {4{ENAWREN}};
-    wire [35:0] mask = {bytes_written, {8{bytes_written[3]}}, {8{bytes_written[2]}},
-                        {8{bytes_written[1]}}, {8{bytes_written[0]}}};
-    wire [35:0] written = (rows[to] & ~mask) | ({DIPBDIP, DIPADIP, DIBDI, DIADI} & mask);
-    wire [35:0] lost    = to == from && WRITE_MODE_A != "READ_FIRST" ? mask : 36'd0;
-    wire [35:0] wrong   = (~rows[from] & 36'h555555555) | (~written & 36'haaaaaaaaa);
-    assign {DOPBDOP, DOPADOP, DOBDO, DOADO} = out;
-    wire unused = &{1'b0, REGCEA, REGCEBREGCE, RSTA};
-
-    always @(posedge CLKAWRCLK)
-        if (mask != 0)
-            rows[to] <= written;
-    always @(posedge CLKBRDCLK)
-        if (RSTBRST && (ENBRDEN || RST_PRIORITY_B == "SR"))
-            out <= {SRVAL_B[17:16], SRVAL_A[17:16], SRVAL_B[15:0], SRVAL_A[15:0]};
-        else if (ENBRDEN)
-            out <= (rows[from] & ~lost) | (wrong & lost);
+    block_ram #(
+        .ADDR_BITS(13), .WIDTH_A(DATA_WIDTH_A), .WIDTH_B(DATA_WIDTH_B), .MODE_A(WRITE_MODE_A),
+        .MODE_B(WRITE_MODE_B), .START_A({2'd0, INIT_A[17:16], 16'd0, INIT_A[15:0]}),
+        .START_B({SDP ? INIT_B[17:16] : 2'd0, SDP ? INIT_A[17:16] : INIT_B[17:16],
+                  SDP ? INIT_B[15:0] : 16'd0, SDP ? INIT_A[15:0] : INIT_B[15:0]}),
+        .RESET_A({2'd0, SRVAL_A[17:16], 16'd0, SRVAL_A[15:0]}),
+        .RESET_B({SDP ? SRVAL_B[17:16] : 2'd0, SDP ? SRVAL_A[17:16] : SRVAL_B[17:16],
+                  SDP ? SRVAL_B[15:0] : 16'd0, SDP ? SRVAL_A[15:0] : SRVAL_B[15:0]}),
+        .PRIORITY_A(RST_PRIORITY_A), .PRIORITY_B(RST_PRIORITY_B),
+        .INIT_P({INITP_03, INITP_02, INITP_01, INITP_00}),
+        .INIT({INIT_1F, INIT_1E, INIT_1D, INIT_1C, INIT_1B, INIT_1A, INIT_19, INIT_18,
+               INIT_17, INIT_16, INIT_15, INIT_14, INIT_13, INIT_12, INIT_11, INIT_10,
+               INIT_0F, INIT_0E, INIT_0D, INIT_0C, INIT_0B, INIT_0A, INIT_09, INIT_08,
+               INIT_07, INIT_06, INIT_05, INIT_04, INIT_03, INIT_02, INIT_01, INIT_00})
+    ) u_ram (
+        .clk_a_i(CLKAWRCLK), .en_a_i(ENAWREN), .rst_a_i(RSTA),
+        .we_a_i(SDP ? {WEBWEU, WEAWEL} : {2'd0, WEAWEL}), .addr_a_i(ADDRAWRADDR),
+        .data_a_i(SDP ? {DIPBDIP, DIPADIP, DIBDI, DIADI} : {2'd0, DIPADIP, 16'd0, DIADI}),
+        .data_a_o(out_a),
+        .clk_b_i(CLKBRDCLK), .en_b_i(ENBRDEN), .rst_b_i(RSTBRST),
+        .we_b_i(SDP ? 4'd0 : {2'd0, WEBWEU}), .addr_b_i(ADDRBRDADDR),
+        .data_b_i({2'd0, DIPBDIP, 16'd0, DIBDI}), .data_b_o(out_b));
 endmodule
 
 `default_nettype wire

@@ -111,11 +111,15 @@ macro(icesoc_core_test)
   endif()
   file(GLOB test CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}_test.cpp)
   if(test AND "testbench" IN_LIST ROOMS)
-    icesoc_verilate(${name}_slot TOP ${top} SOURCES ${files} DEPENDS ${targets}
-                    FLAGS ${A_FLAGS} ${CORE_TEST_FLAGS}
-                    PARAMS ${clock} INCLUDES ${CMAKE_SOURCE_DIR}/bus ${CMAKE_SOURCE_DIR}/hdl/ddr
-                      ${CMAKE_SOURCE_DIR}/hdl/system ${CMAKE_SOURCE_DIR}/hdl/cdc
-                      ${CMAKE_CURRENT_SOURCE_DIR})
+    if(NETLIST AND NOT A_CLOCK)
+      icesoc_netlist(${name}_slot DESIGN ${top} DEPENDS ${targets})
+    else()
+      icesoc_verilate(${name}_slot TOP ${top} SOURCES ${files} DEPENDS ${targets}
+                      FLAGS ${A_FLAGS} ${CORE_TEST_FLAGS}
+                      PARAMS ${clock} INCLUDES ${CMAKE_SOURCE_DIR}/bus ${CMAKE_SOURCE_DIR}/hdl/ddr
+                        ${CMAKE_SOURCE_DIR}/hdl/system ${CMAKE_SOURCE_DIR}/hdl/cdc
+                        ${CMAKE_CURRENT_SOURCE_DIR})
+    endif()
     set(labels rtl)
     if(A_VHDL)
       list(APPEND labels vhdl)

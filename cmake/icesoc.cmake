@@ -237,10 +237,12 @@ function(icesoc_verilate name)
   target_link_libraries(${name} INTERFACE ${lib} verilator_runtime)
 endfunction()
 
-# icesoc_netlist(NAME DESIGN design): the Verilated model, as above, of the netlist that the figures
-# of a design of `make synth` are of, with what each of its primitives does.
+# icesoc_netlist(NAME DESIGN design [PARAMS NAME=value...] [DEPENDS target...]): the Verilated model,
+# as above, of the netlist that the figures of a design of `make synth` are of, or of one with other
+# parameters, with what each of its primitives does.
 function(icesoc_netlist name)
-  cmake_parse_arguments(A "" "DESIGN" "" ${ARGN})
+  cmake_parse_arguments(A "" "DESIGN" "PARAMS;DEPENDS" ${ARGN})
+  list(TRANSFORM A_PARAMS PREPEND "--set=")
   set(here ${CMAKE_SOURCE_DIR})
   set(netlist ${CMAKE_CURRENT_BINARY_DIR}/netlist_${name}/${A_DESIGN}.v)
   file(GLOB rtl CONFIGURE_DEPENDS ${here}/bus/*.v ${here}/hdl/*.v ${here}/hdl/*/*.v
@@ -248,8 +250,9 @@ function(icesoc_netlist name)
   get_property(made GLOBAL PROPERTY ICESOC_REGMAP_TARGETS)
   add_custom_command(OUTPUT ${netlist}
     COMMAND ${CMAKE_BINARY_DIR}/synth/utilisation --source ${here} --generated ${GEN_DIR}
-      --output ${CMAKE_BINARY_DIR}/netlists --netlist ${A_DESIGN} --to ${netlist}
-    DEPENDS ${rtl} ${made} VERBATIM COMMENT "Netlist of ${A_DESIGN}")
+      --output ${CMAKE_BINARY_DIR}/netlists --netlist ${A_DESIGN} ${A_PARAMS}
+      --to ${netlist}
+    DEPENDS ${rtl} ${made} ${A_DEPENDS} VERBATIM COMMENT "Netlist of ${A_DESIGN}")
   # Lint is of the RTL: this is Yosys' style.
   icesoc_verilate(${name} TOP ${A_DESIGN} SOURCES ${netlist}
     FLAGS -Wno-lint -Wno-style -Wno-UNOPTFLAT)

@@ -11,6 +11,7 @@ from cli.options import (BLOCK, BUILD, COUNT, FRESH, JOBS, MINUTES, NAME, PATH, 
 from cli.runner import Stop, output, run, say
 
 GROUPS["check"] = "what takes minutes to hours"
+NETLISTS = ["test_fsmc_bridge", "test_modem", "test_ip_ascon", "test_ip_fir", "test_ip_vision"]
 GUARDED = ["test_engine", "gateway", "test_radio_ice", "test_icec"]
 
 
@@ -26,6 +27,20 @@ def proofs(values):
     build.ctest("-L", "formal", tests=values.jobs, FRESH="1")
     spent = [float(path.read_text()) for path in (build / "tests/hdl/formal").glob("*/cpu")]
     say(f"{len(spent)} proofs, {sum(spent):.0f} s of a processor")
+
+
+@command("check netlist", [NAME, TESTS, JOBS], make="netlist", brief="check netlist --name vision",
+         long="check netlist", examples=["check netlist --name 'fir|modem'"])
+def netlist(values):
+    """run the tests of the bridge, the modem and the cores on their netlists"""
+    programs = [name for name in NETLISTS if re.search(values.name or "", name)]
+    if not programs:
+        raise Stop(f"no test of a netlist matches '{values.name}': {', '.join(NETLISTS)}", 2)
+    build = BuildFolder("build/netlist", values).prepare(
+        "-DNETLIST=ON", "-DCLK_HZ=2000000", tests=True)
+    build.ninja(*programs)
+    return build.ctest("-R", f"^({'|'.join(programs)})[.]", tests=values.tests or values.jobs,
+                       check=False)
 
 
 @command("check sanitizers",

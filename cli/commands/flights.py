@@ -19,11 +19,15 @@ from cli.runner import Interrupted, Stop, end, lock, run, say, start, until, wai
 FROM = Option("from", SECONDS, "begin of the waveform, in simulated time")
 TO = Option("to", SECONDS, "end of the waveform, in simulated time")
 DESCRIPTORS = 64  # of a process; the ground's program has some thirty
+NETLIST = Option("netlist", SWITCH, "flies the chip as Yosys made it, by the models of its "
+                 "primitives; each clock is evaluated, of 2 MHz")
+NETLIST_HZ = 2000000
 DEBUGGED = [option for option in flight.FIELDS if option.name in ("image", "size", "seed")]
 
 
-@command("run", [*flight.OPTIONS, BUILD, JOBS], make="run",
-         brief="run --size 96x64 --guard 20 --out build/brief/run", examples=[
+@command("run", [*flight.OPTIONS, NETLIST, BUILD, JOBS], make="run",
+         brief="run --size 96x64 --guard 20 --out build/brief/run",
+         long="run --netlist --size 96x64 --guard 20 --out build/netlist/run", examples=[
              "run --image photo.jpg --size 640x480", "run --loss 0.1 --seed 7 --cores ascon fir",
              "run --again build/run/flight.json"])
 def fly_mission(values):
@@ -37,6 +41,11 @@ def fly_mission(values):
                    f"ulimit -n {DESCRIPTORS}")
     flight.complete(values)
     build = BuildFolder(values.build, values).prepare()
+    if values.netlist:
+        values.clk_hz = min(values.clk_hz, NETLIST_HZ)
+        chip, build = build, BuildFolder("build/netlist", values).prepare(
+            "-DNETLIST=ON")
+        build.follow(chip)
     if not build.built:
         build.set(CLK_HZ=str(values.clk_hz))
     build.ninja("mission", *(["firmware_minimal"] if values.app == "minimal" else []))

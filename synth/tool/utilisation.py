@@ -109,6 +109,7 @@ def edif(plan, library, options, o):
 
 def netlist(plan, library, options, o):
     design = next(design for design in plan.designs if design.name == o.netlist)
+    design.parameters.update(o.set)
     runner.write_for_simulation(design, library, options, o.to, o.source / "synth/primitives")
     return 0
 
@@ -172,6 +173,9 @@ def options_of(words):
                         help="only write this design as EDIF for ISE, into the folder ise")
     parser.add_argument("--netlist", metavar="DESIGN",
                         help="only write this design's netlist as Verilog for a simulator")
+    parser.add_argument("--set", metavar="NAME=VALUE", action="append", default=[],
+                        type=lambda text: text.split("=", 1),
+                        help="a parameter of --netlist's top module (may be repeated)")
     parser.add_argument("--to", **path, default="build/synth/netlist.v",
                         help="the file of --netlist (%(default)s)")
     o = parser.parse_args(words)

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+//
+// never_quiet: a QuietSpan for a netlist of the chip, which lacks the names of quiet_span.cpp's
+// counters: each clock is evaluated.
+
+#include "quiet_span.h"
+
+QuietSpan::QuietSpan(VSoc& top, uint64_t) : top_(top), timerLast_(0) {}
+
+void QuietSpan::sample() {}
+
+uint64_t QuietSpan::look(uint64_t) {
+    return 0;
+}
+
+uint64_t QuietSpan::pass(uint64_t clocks) {
+    return clocks;
+}
+
+std::string QuietSpan::mover() const {
+    return {};
+}

@@ -1,17 +1,25 @@
 // SPDX-License-Identifier: MIT
 //
-// clock_test: the engine's clock, from a simulator's counters and from the machine.
+// clock_test: the engine's clock, from a simulator's counters and from the machine; and a program
+// that keeps step with simulated time, on a machine that lets it run seldom: no simulated time
+// passes while it works, and no byte is late.
 
 #include "clock.h"
 #include "clock_file.h"
-#include <chrono>
+#include "ground_step.h"
+#include "random.h"
+#include "serial_port.h"
+#include <atomic>
+#include <csignal>
+#include <cstring>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <system_error>
 #include <thread>
 #include <unistd.h>
 
-using XBeeAT::Clock;
+using namespace XBeeAT;
 
 namespace {
 
@@ -81,6 +89,171 @@ TEST_F(SimulatedClock, EnvironmentNamesIt) {
     pollfd fds[] = {{pipe_[0], POLLIN, 0}};
     EXPECT_EQ(machine.wait(fds, 1, 1000), 0);
     EXPECT_GE(machine.nowUs() - begin, 1000u);
+}
+
+// A simulation of nothing but the pty, whose modem answers each byte by the next higher one.
+class Step : public testing::Test, public SerialClient {
+protected:
+    Step() {
+        std::strncpy(status_->device, pty_.path().c_str(), sizeof status_->device - 1);
+        pty_.attach(this);
+        pty_.setBitTime(1e9 / 111'111);
+    }
+    void fromHost(uint8_t byte, uint64_t now) override {
+        answer_.push_back(static_cast<uint8_t>(byte + 1));
+        pty_.wake(now);
+    }
+    void framingError(uint64_t) override { ADD_FAILURE() << "a framing error"; }
+    bool nextToHost(uint8_t& byte) override {
+        if (answer_.empty())
+            return false;
+        byte = answer_.front();
+        answer_.erase(answer_.begin());
+        return true;
+    }
+    // Simulated time as fast as it goes, until `done`.
+    void simulate(const std::function<bool()>& done, double patience = 60) {
+        GroundStep step(*status_, pty_, [&] { return !done(); }, patience);
+        while (!done()) {
+            status_.set(status_->ns + 10'000);
+            pty_.advance(status_->ns);
+            step.wait(status_->ns);
+        }
+    }
+    // Runs a program that keeps step beside it, until it returns.
+    void beside(const std::function<void(Clock&, SerialPort&)>& program) {
+        std::atomic<bool> over{false};
+        std::thread thread([&] {
+            struct AtEnd {
+                ~AtEnd() { over = true; }
+                std::atomic<bool>& over;
+            } atEnd{over};
+            Clock clock(status_.path());
+            SerialPort port(clock);
+            port.open(pty_.path());
+            port.setSpeed(115200);
+            clock.keepStep(port.fd(), pty_.path());
+            ASSERT_EQ(clock.wait(&none_, 1, 1000), 0); // the pty knows by then
+            program(clock, port);
+        });
+        simulate([&] { return over.load(); });
+        thread.join();
+    }
+    ClockFile status_;
+    PtyLine pty_;
+    std::vector<uint8_t> answer_;
+    pollfd none_ = {-1, 0, 0};
+};
+
+TEST_F(Step, NoTimePassesWhileTheProgramWorksAndNoByteIsLate) {
+    beside([&](Clock& clock, SerialPort& port) {
+        Random random(testSeed());
+        for (uint8_t i = 0; i < 60; ++i) {
+            const uint32_t begin = clock.nowUs();
+            if (i % 4 == 0) // the machine does other things
+                std::this_thread::sleep_for(std::chrono::milliseconds(random.below(20)));
+            ASSERT_EQ(clock.nowUs(), begin) << "time passed while the program worked";
+            ASSERT_EQ(port.write(&i, 1), 1);
+            pollfd fds[] = {{port.fd(), POLLIN, 0}};
+            // A byte takes 90 us each way, and the pty is looked at every 100 us.
+            ASSERT_EQ(clock.wait(fds, 1, 1'000'000), 1);
+            ASSERT_LE(clock.nowUs() - begin, 500u);
+            uint8_t byte = 0;
+            ASSERT_EQ(port.read(&byte, 1), 1);
+            ASSERT_EQ(byte, i + 1);
+            const uint32_t from = clock.nowUs();
+            ASSERT_EQ(clock.wait(&none_, 1, 1000), 0);
+            ASSERT_LE(clock.nowUs() - from, 1010u) << "it overslept";
+        }
+    });
+}
+
+// An engine that gave up and tries again follows the other between two looks at the pty.
+TEST_F(Step, WhoKeepsStepNextIsHeardFromTheFirstByte) {
+    beside([&](Clock& clock, SerialPort& port) {
+        for (uint8_t i = 0; i < 240; ++i) {
+            if (i % 4 == 3)
+                clock.keepStep(port.fd(), pty_.path());
+            ASSERT_EQ(port.write(&i, 1), 1);
+            pollfd fds[] = {{port.fd(), POLLIN, 0}};
+            ASSERT_EQ(clock.wait(fds, 1, 1'000'000), 1) << "byte " << int(i);
+            uint8_t byte = 0;
+            ASSERT_EQ(port.read(&byte, 1), 1);
+            ASSERT_EQ(byte, i + 1);
+        }
+    });
+}
+
+TEST_F(Step, AProgramThatWasKilledHoldsNothing) {
+    pid_t child = fork();
+    if (child == 0) {
+        Clock clock(status_.path());
+        clock.keepStep(-1, pty_.path());
+        _exit(0); // without good-bye
+    }
+    int status;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    ASSERT_NE(status_->keeper, 0u);
+    const uint64_t end = status_->ns + 5'000'000;
+    simulate([&] { return status_->ns >= end; });
+    EXPECT_EQ(status_->keeper, 0u);
+}
+
+TEST_F(Step, AnotherPortsProgramIsNotWaitedFor) {
+    Clock clock(status_.path());
+    clock.keepStep(-1, "/dev/null");
+    EXPECT_EQ(status_->keeper, 0u);
+    const uint64_t end = status_->ns + 5'000'000;
+    simulate([&] { return status_->ns >= end; });
+}
+
+// The program lives, and does nothing: time goes on without it, and stderr reports it.
+TEST_F(Step, WhoHoldsTimeForTooLongIsWaitedForNoLonger) {
+    Clock clock(status_.path());
+    SerialPort port(clock);
+    port.open(pty_.path());
+    clock.keepStep(port.fd(), pty_.path());
+    testing::internal::CaptureStderr();
+    simulate([&] { return status_->ns > 1'000'000; }, 0.3);
+    EXPECT_NE(testing::internal::GetCapturedStderr().find("process " + std::to_string(getpid())),
+              std::string::npos);
+}
+
+// A debugger, or SIGSTOP, may hold it as long as it likes.
+TEST_F(Step, WhoIsHeldByADebuggerIsWaitedFor) {
+    int ready[2];
+    ASSERT_EQ(pipe(ready), 0);
+    const pid_t program = fork();
+    if (program == 0) {
+        Clock clock(status_.path());
+        clock.keepStep(0, pty_.path());
+        (void)!write(ready[1], "", 1);
+        raise(SIGSTOP);
+        _exit(0);
+    }
+    char byte;
+    ASSERT_EQ(read(ready[0], &byte, 1), 1);
+    ASSERT_EQ(waitpid(program, nullptr, WUNTRACED), program);
+    const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(500);
+    simulate([&] { return std::chrono::steady_clock::now() > end; }, 0.1);
+    EXPECT_LT(status_->ns, 1'000'000u) << "time went on";
+    kill(program, SIGKILL);
+    waitpid(program, nullptr, 0);
+    close(ready[0]);
+    close(ready[1]);
+}
+
+// A simulation that must end asks once whether it goes on, and waits for nobody from then on.
+TEST_F(Step, NobodyIsWaitedForAfterTheStop) {
+    Clock clock(status_.path());
+    SerialPort port(clock);
+    port.open(pty_.path());
+    clock.keepStep(port.fd(), pty_.path());
+    int asked = 0;
+    GroundStep step(*status_, pty_, [&] { return ++asked < 1; });
+    for (int i = 1; i <= 1000; ++i)
+        step.wait(static_cast<uint64_t>(i) * 1000);
+    EXPECT_EQ(asked, 1);
 }
 
 } // namespace

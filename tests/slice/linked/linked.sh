@@ -20,7 +20,7 @@ build() { # name, flags
         arm-none-eabi-gcc -std=c90 -mcpu=cortex-m3 -mthumb -Os -ffunction-sections -fdata-sections \
         "$@" \
             -I"$sw/base" -I"$sw/icec" -I.. -c $(sed "s,^,$sw/icec/," \
-            "$sw/icec/minimal/sources.txt") ../Linked_*.c "$here/$name.c")
+            "$sw/icec/minimal/sources.txt") ../Linked_*.c "$here/program.c")
     arm-none-eabi-gcc -mcpu=cortex-m3 -mthumb -nostartfiles --specs=nosys.specs --specs=nano.specs \
         -Wl,--gc-sections -Wl,-e,main \
         -o "$work/$name.elf" "$work/$name"/*.o 2>"$work/$name.log" || { cat "$work/$name.log" &&
@@ -36,8 +36,8 @@ build() { # name, flags
 (mkdir -p "$work/host" && cd "$work/host" &&
     # shellcheck disable=SC2046 # a list of words
     gcc -std=c90 -Os -fsanitize=address --param asan-globals=0 -ffunction-sections -fdata-sections \
-        -DICEC_MINIMAL -I"$sw/base" -I"$sw/icec" -I.. \
-        -c $(sed "s,^,$sw/icec/," "$sw/icec/minimal/sources.txt") ../Linked_*.c "$here/server.c" &&
+        -DICEC_MINIMAL -DSERVER -I"$sw/base" -I"$sw/icec" -I.. \
+        -c $(sed "s,^,$sw/icec/," "$sw/icec/minimal/sources.txt") ../Linked_*.c "$here/program.c" &&
     gcc -fsanitize=address -Wl,--gc-sections -o server ./*.o)
 bad=0
 classes=$(sed -n 's/^    &\(.*\)_type,$/\1/p' "$work/Linked_types.c")
@@ -52,7 +52,7 @@ lacks() { # program, pattern
         { echo "linked: $1 has what it does not use (above: $2)" && bad=1; }
 }
 build client -DICEC_MINIMAL
-build server -DICEC_MINIMAL
+build server -DICEC_MINIMAL -DSERVER
 has client Linked_CounterPrx_add
 has server Linked_Lamp_light
 lacks client '^Linked_([^C]|Counter_|CounterPrx_([^a]|a[^d]))'

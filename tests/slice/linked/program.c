@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * server: one servant of a file that declares more.
+ * program: a client of one operation of an interface that has more; with -DSERVER, one servant of a
+ * file that declares more.
  */
 #include "Linked.h"
 
 static Ice_Communicator ic;
+
+#ifdef SERVER
 static Ice_ObjectAdapter adapter;
 static Linked_Lamp lamp;
 static Ice_Bool isOn;
@@ -23,3 +26,13 @@ int main(void) {
     Ice_Communicator_waitForShutdown(&ic);
     return (int)isOn;
 }
+#else
+int main(void) {
+    Linked_CounterPrx counter;
+    Ice_Int sum = 0;
+    Ice_initialize(&ic);
+    (void)Ice_Communicator_stringToProxy(&ic, "counter:tcp -p 1", &counter);
+    (void)Linked_CounterPrx_add(&counter, 1, 2, &sum);
+    return (int)sum;
+}
+#endif

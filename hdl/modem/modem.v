@@ -8,7 +8,7 @@
 
 module modem #(
     parameter CLK_HZ = 100000000, // Hz, a multiple of 16000 from 2 MHz on
-    parameter API    = 0          // 0 the modem is transparent, 1 it speaks API frames
+    parameter API    = 0          // 0 only a transparent modem, 1 NET.API may choose API frames
 ) (
     `include "slot_ports.vh"
     `include "memory_ports.vh"
@@ -58,8 +58,9 @@ module modem #(
     wire        bit_tick; // eight a bit time
     wire [3:0]  bd_now;
 
-    reg         ready, reset_n, pulse_ends, encrypt, by_wire;
-    reg  [7:0]  framing_errors, overruns, retries, unsents;
+    reg         ready, reset_n, pulse_ends, encrypt, by_wire, frames;
+    wire        api = API != 0 && frames;
+    reg  [7:0]  framing_errors, overruns, retries;
     wire        cts_n_sync;
     wire        cts = !cts_n_sync;
     cdc_bit #(.INITIAL(1'b1)) u_cts (.clk_i(clk_i), .bit_async_i(modem_cts_n_i), .bit_sync_o(cts_n_sync));
@@ -79,7 +80,6 @@ module modem #(
     // Bytes between the packet blocks and the API frames, in transparent mode the UART.
     wire        body_valid, body_last, body_ready, in_valid, in_error, in_end, in_bad, silent;
     wire [7:0]  body_data;
-    wire        unsent; // one cycle: the modem gave a packet up
     wire [4:0]  tx_free, rx_free;
     wire [3:0]  tx_next, tx_buffer, rx_next, rx_buffer;
     wire [6:0]  tx_bytes, rx_bytes;
@@ -90,7 +90,8 @@ module modem #(
     reg         rx_full;
     wire [7:0]  put_bytes = reg_wdata[7:0];
     wire        put      = reg_write && reg_addr == MODEM_TX_PUT;
-    wire        put_ok   = put && ready && tx_free != 5'd0 && put_bytes != 8'd0 && put_bytes <= 8'd100;
+    wire        put_ok   = put && ready && tx_free != 5'd0 && put_bytes != 8'd0 &&
+                           put_bytes <= (api ? 8'd105 : 8'd100);
     wire        release_ok = reg_write && reg_addr == MODEM_RX_RELEASE && rx_waits;
 
     // Memory
@@ -121,7 +122,7 @@ module modem #(
         .ID_VALUE (32'd0), // words[0]
         .WORDS    (16'hFFF8),
         .ZERO     (1),
-        .EVENTS   (7)
+        .EVENTS   (6)
     ) u_wrapper (
         .clk_i(clk_i), .rst_i(rst_i),
         .bus_valid_i(turn), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
@@ -129,7 +130,7 @@ module modem #(
         .bus_error_o(bus_error_o),
         .reg_write_o(reg_write), .reg_read_o(reg_read), .reg_addr_o(reg_addr),
         .reg_wdata_o(reg_wdata), .reg_rdata_i(reg_rdata),
-        .event_i({unsent, put && !put_ok, rx_overrun, at_failed, at_done, rx_push, tx_sent}),
+        .event_i({put && !put_ok, rx_overrun, at_failed, at_done, rx_push, tx_sent}),
         .irq_o(irq_o)
     );
 
@@ -152,7 +153,7 @@ module modem #(
         .valid_o(rx_valid), .data_o(rx_data), .framing_error_o(rx_error), .idle_o(rx_idle)
     );
 
-    modem_at #(.API(API)) u_at (
+    modem_at u_at (
         .clk_i(clk_i), .rst_i(rings_reset), .clear_o(at_clear), .time_i(waited),
         .start_i(configure && reset_n), .wire_i(by_wire), .busy_o(at_busy), .done_o(at_done),
         .failed_o(at_failed), .retried_o(at_retried), .step_o(at_step), .bd_o(bd_now),
@@ -175,50 +176,45 @@ module modem #(
 
     generate
         if (API != 0) begin : g_api
-            reg [15:0] target;
-            wire       frame_bad;
+            wire       frame_valid, frame_bad;
             wire [7:0] frame_data;
             assign packet_tx_data = packet_tx_valid ? frame_data : 8'd0;
-            always @(posedge clk_i)
-                if (reg_write && reg_addr == MODEM_ADDR)
-                    target <= reg_wdata[MODEM_ADDR_TARGET_LSB +: 16];
 
             modem_api_tx u_api_tx (
-                .clk_i(clk_i), .rst_i(rings_reset || configure), .target_i(target),
+                .clk_i(clk_i), .rst_i(rings_reset || configure), .api_i(api),
                 .valid_i(body_valid), .data_i(body_data), .last_i(body_last),
                 .bytes_i(tx_bytes), .ready_o(body_ready), .cts_i(cts),
                 .valid_o(packet_tx_valid), .data_o(frame_data), .ready_i(tx_ready)
             );
             modem_api_rx u_api_rx (
-                .clk_i(clk_i), .rst_i(rst_i || !ready), .valid_i(rx_valid), .data_i(rx_data),
+                .clk_i(clk_i), .rst_i(rst_i || !ready || !api), .valid_i(rx_valid), .data_i(rx_data),
                 .error_i(rx_error), .silent_i(silent),
-                .valid_o(in_valid), .end_o(in_end), .bad_o(frame_bad), .unsent_o(unsent)
+                .valid_o(frame_valid), .end_o(in_end), .bad_o(frame_bad)
             );
-            assign in_error = 1'b0;
-            assign in_bad   = frame_bad || !ready; // a set-up cuts off the frame under way
+            assign in_valid = api ? frame_valid : rx_valid && ready;
+            assign in_bad   = frame_bad || (api && !ready); // a set-up cuts off the frame under way
         end else begin : g_transparent
             assign packet_tx_valid = body_valid;
             assign packet_tx_data  = body_data;
             assign body_ready      = tx_ready;
             assign in_valid        = rx_valid && ready;
-            assign in_error        = rx_error && ready;
             assign in_end          = 1'b0;
             assign in_bad          = 1'b0;
-            assign unsent          = 1'b0;
             wire unused_api = &{1'b0, body_last, silent, 1'b0};
         end
     endgenerate
+    assign in_error = rx_error && ready && !api;
 
-    modem_tx #(.API(API)) u_tx (
-        .clk_i(clk_i), .rst_i(rings_reset), .enable_i(ready), .encrypt_i(encrypt),
+    modem_tx u_tx (
+        .clk_i(clk_i), .rst_i(rings_reset), .enable_i(ready), .encrypt_i(encrypt), .api_i(api),
         .packet_valid_i(tx_waits), .packet_bytes_i(tx_bytes), .sent_o(tx_sent),
         .rd_valid_o(rd_valid), .rd_index_o(rd_index), .rd_done_i(rd_done), .rd_data_i(rd_data),
         .tx_valid_o(body_valid), .tx_data_o(body_data), .tx_ready_i(body_ready), .tx_last_o(body_last),
         .cts_i(cts)
     );
 
-    modem_rx #(.API(API)) u_rx (
-        .clk_i(clk_i), .rst_i(rings_reset), .tick_i(bit_tick),
+    modem_rx u_rx (
+        .clk_i(clk_i), .rst_i(rings_reset), .tick_i(bit_tick), .api_i(api),
         .rx_valid_i(in_valid), .rx_data_i(rx_data), .rx_error_i(in_error),
         .rx_end_i(in_end), .rx_bad_i(in_bad), .silent_o(silent),
         .rx_idle_i(rx_idle && !modem_rts_n_o), // a pause that RTS caused ends no packet
@@ -257,7 +253,7 @@ module modem #(
         if (reg_addr == MODEM_RX_GET)
             reg_rdata = reg_rdata | {rx_waits, 19'd0, rx_buffer, 1'b0, rx_bytes};
         if (reg_addr == MODEM_ERRORS)
-            reg_rdata = reg_rdata | {unsents, retries, overruns, framing_errors};
+            reg_rdata = reg_rdata | {8'd0, retries, overruns, framing_errors};
     end
 
     always @(posedge clk_i) begin
@@ -271,8 +267,10 @@ module modem #(
         if (key_write || (reg_write && stored))
             words[{key_write, reg_addr[3:2], key_write ? key_index : reg_addr[1:0]}] <= reg_wdata;
         key_index <= key_index + {1'b0, key_write};
-        if (reg_write && reg_addr == MODEM_NET)
+        if (reg_write && reg_addr == MODEM_NET) begin
             encrypt <= reg_wdata[MODEM_NET_ENCRYPT_LSB];
+            frames  <= reg_wdata[MODEM_NET_API_LSB];
+        end
         if (reg_write && reg_addr == MODEM_BAUD)
             by_wire <= reg_wdata[MODEM_BAUD_WIRE_LSB];
 
@@ -293,9 +291,6 @@ module modem #(
         if (at_retried && retries != 8'hFF)
             retries <= retries + 8'd1;
 
-        if (unsent && unsents != 8'hFF)
-            unsents <= unsents + 8'd1;
-
         if (configure || reset_modem) begin
             ready     <= 1'b0;
             key_index <= 2'd0;
@@ -308,7 +303,6 @@ module modem #(
             framing_errors <= 8'd0;
             overruns       <= 8'd0;
             retries        <= 8'd0;
-            unsents        <= 8'd0;
         end
         if (rst_i) begin
             ready      <= 1'b0;

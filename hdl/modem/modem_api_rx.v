@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_api_rx: takes packets out of API frames 0x81, received from a 16-bit address, and reads
-// frames 0x89, the status of a sent packet. It skips other frames; silence ends any frame.
+// modem_api_rx: takes the contents of API frames: 1..111 bytes, of which the first is the type.
+// Frames of another length are passed over; silence ends any frame.
 //
-//   7E length(2) 81 source(2) signal options, the packet, checksum      7E 00 03 89 id status checksum
+//   7E length(2), the contents, checksum
 
 `default_nettype none
 
@@ -15,112 +15,84 @@ module modem_api_rx (
     input  wire [7:0] data_i,
     input  wire       error_i,  // a byte was lost
     input  wire       silent_i, // the line has been idle for three characters
-    // packet out
-    output wire       valid_o,  // data_i is the packet's
-    output reg        end_o,    // one cycle: it is complete
-    output reg        bad_o,    // one cycle: drop its bytes so far
-    // one cycle: a packet was given up by the modem
-    output reg        unsent_o
+    // contents out
+    output wire       valid_o,  // data_i is one of their bytes
+    output reg        end_o,    // one cycle: they are complete
+    output reg        bad_o     // one cycle: drop their bytes so far
 );
-    localparam [2:0] DELIMITER = 3'd0, HIGH = 3'd1, LOW = 3'd2, TYPE = 3'd3, HEAD = 3'd4, DATA = 3'd5,
-                     CHECKSUM = 3'd6;
-    localparam [7:0] RECEIVED = 8'h81, STATUS = 8'h89;
-    localparam [7:0] LONGEST = 8'd105;
+    localparam [2:0] DELIMITER = 3'd0, HIGH = 3'd1, LOW = 3'd2, DATA = 3'd3, CHECKSUM = 3'd4;
 
     reg [2:0] state;
-    reg [7:0] left;     // bytes before the checksum
-    reg [2:0] head;     // bytes of the head to pass over
-    reg       received; // the frame is a packet
-    reg       status;   // the frame is the status of a packet
-    reg       failed;   // the status says that it was not sent
+    reg [6:0] left; // bytes before the checksum
     reg [7:0] sum;
 
-    assign valid_o = valid_i && state == DATA && received;
+    wire fits  = data_i != 8'd0 && !data_i[7] && data_i[6:4] != 3'd7; // as a length
+    wire right = sum + data_i == 8'hFF;
+
+    assign valid_o = valid_i && state == DATA;
 
     always @(posedge clk_i) begin
-        end_o    <= 1'b0;
-        bad_o    <= 1'b0;
-        unsent_o <= 1'b0;
+        end_o <= valid_i && state == CHECKSUM && right;
+        bad_o <= valid_i && state == CHECKSUM && !right;
         if (valid_i) begin
-            left <= left - 8'd1;
-            sum  <= sum + data_i;
+            left <= state == LOW ? data_i[6:0] : left - 7'd1;
+            sum  <= state == LOW ? 8'd0 : sum + data_i;
             case (state)
                 DELIMITER: if (data_i == 8'h7E)
                     state <= HIGH;
-                HIGH: state <= data_i == 8'd0 ? LOW : DELIMITER;
-                LOW: begin
-                    left  <= data_i;
-                    sum   <= 8'd0;
-                    state <= data_i > 8'd2 && data_i <= LONGEST ? TYPE : DELIMITER;
-                end
-                TYPE: begin
-                    received <= data_i == RECEIVED;
-                    status   <= data_i == STATUS;
-                    head     <= data_i == STATUS ? 3'd1 : 3'd4;
-                    state    <= HEAD;
-                end
-                HEAD: begin
-                    head <= head - 3'd1;
-                    if (left == 8'd1)
-                        state <= CHECKSUM;
-                    else if (head == 3'd1)
-                        state <= DATA;
-                end
-                DATA: begin
-                    failed <= data_i != 8'd0;
-                    if (left == 8'd1)
-                        state <= CHECKSUM;
-                end
-                default: begin
-                    state    <= DELIMITER;
-                    end_o    <= received && sum + data_i == 8'hFF;
-                    bad_o    <= received && sum + data_i != 8'hFF;
-                    unsent_o <= status && failed && sum + data_i == 8'hFF;
-                end
+                HIGH:    state <= data_i == 8'd0 ? LOW : DELIMITER;
+                LOW:     state <= fits ? DATA : DELIMITER;
+                DATA: if (left == 7'd1)
+                    state <= CHECKSUM;
+                default: state <= DELIMITER;
             endcase
         end
-        if ((error_i || silent_i) && state != DELIMITER) begin
+        if (error_i || silent_i) begin
             state <= DELIMITER;
-            bad_o <= received;
+            bad_o <= state == DATA || state == CHECKSUM;
             end_o <= 1'b0;
         end
-        if (state == DELIMITER) begin
-            received <= 1'b0;
-            status   <= 1'b0;
-        end
         if (rst_i) begin
-            state    <= DELIMITER;
-            end_o    <= 1'b0;
-            bad_o    <= 1'b0;
-            unsent_o <= 1'b0;
+            state <= DELIMITER;
+            end_o <= 1'b0;
+            bad_o <= 1'b0;
         end
     end
 
 `ifdef FORMAL
-    // Each packet ends once, complete or bad.
+    // Contents end once, complete or bad, and have as many bytes as the frame says.
     reg past = 1'b0;
     initial assume (rst_i);
-    reg open = 1'b0; // a packet has begun and not ended
+    reg       open = 1'b0;  // a frame's contents have begun and not ended
+    reg [6:0] given = 7'd0; // bytes of them
+    reg [6:0] length = 7'd0;
     always @(posedge clk_i) begin
         past <= 1'b1;
         open <= !rst_i && !end_o && !bad_o && (open || valid_o);
+        if (valid_i && state == LOW) begin
+            length <= data_i[6:0];
+            given  <= 7'd0;
+        end else
+            given <= given + valid_o;
         if (past && !$past(rst_i)) begin
             assert (!(end_o && bad_o));
             // Bytes are given inside a frame only, and a frame that gave some ends good or bad.
             if (open && !end_o && !bad_o)
-                assert (received && (state == DATA || state == CHECKSUM));
-            assert (!(unsent_o && end_o));
-            assert (state != TYPE || (left > 8'd2 && left <= LONGEST)); // no frame of another length is opened
+                assert (state == DATA || state == CHECKSUM);
+            assert (!(end_o || bad_o) || state == DELIMITER);
+            if (state == DATA || state == CHECKSUM)
+                assert (length != 7'd0 && length < 7'd112 && given + left == length &&
+                        (state == DATA) == (left != 7'd0));
+            if (end_o)
+                assert (given == length && length != 7'd0);
         end
-        cover (past && !rst_i && end_o && open);
-        cover (past && !rst_i && unsent_o);
+        cover (past && !rst_i && end_o && given == 7'd2);
+        cover (past && !rst_i && bad_o && open);
     end
 `endif
 `ifdef COVER_POINTS
-    wrong_checksum: cover property (@(posedge clk_i) bad_o && state == DELIMITER);
-    packet_given_up: cover property (@(posedge clk_i) unsent_o);
-    other_frame: cover property (@(posedge clk_i) valid_i && state == HEAD && !received && !status);
-    too_long: cover property (@(posedge clk_i) valid_i && state == LOW && data_i > LONGEST);
+    wrong_checksum: cover property (@(posedge clk_i) valid_i && state == CHECKSUM && !right);
+    too_long: cover property (@(posedge clk_i) valid_i && state == LOW && !fits);
     cut_off: cover property (@(posedge clk_i) (error_i || silent_i) && state != DELIMITER);
     delimiter_within_packet: cover property (@(posedge clk_i) valid_o && data_i == 8'h7E);
 `endif

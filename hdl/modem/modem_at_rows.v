@@ -7,9 +7,7 @@
 
 `default_nettype none
 
-module modem_at_rows #(
-    parameter API = 0 // the modem's mode: 0 transparent, 1 API frames
-) (
+module modem_at_rows (
     input  wire       clk_i,
     input  wire       clear_i, // the next row is 0
     input  wire [3:0] step_i,
@@ -47,7 +45,7 @@ module modem_at_rows #(
             10:      letters = "RO3";
             11:      letters = "D61"; // the modem heeds RTS
             12:      letters = "D71"; // the modem drives CTS
-            13:      letters = API != 0 ? "AP1" : "AP0";
+            13:      letters = {8'd0, "AP"};
             RATE_OF: letters = {8'd0, "BD"};
             default: letters = {8'd0, "CN"};
         endcase
@@ -69,7 +67,7 @@ module modem_at_rows #(
         case (step)
             2, 4, 6: digit_count = 4;
             5:       digit_count = 2;
-            7:       digit_count = 1;
+            7, 13:   digit_count = 1;
             KEY:     digit_count = 32;
             RATE_OF: digit_count = 5;
             default: digit_count = 0;
@@ -82,6 +80,7 @@ module modem_at_rows #(
             5:       digit = {1'b0, MODEM_NET, left[2:0]};
             6:       digit = {1'b0, MODEM_NET, 1'b1, left[1:0]};
             7:       digit = {1'b0, MODEM_NET, 3'd2};
+            13:      digit = {1'b0, MODEM_NET, 3'd3};
             KEY:     digit = {3'b111, ~left[4:3], left[2:0]};
             default: digit = {1'b0, MODEM_BAUD, left[2:0]};
         endcase

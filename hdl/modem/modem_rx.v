@@ -3,19 +3,19 @@
 // modem_rx: writes bytes from the modem into the receive ring, a packet a buffer.
 //
 // A packet ends after the length that its first byte announces ((byte & 127) + 5, if at most 100),
-// at 100 bytes, after 3.2 characters of silence, or at a framing error. It is in memory before it
+// at 100 bytes, after 3.2 characters of silence, or at a framing error; in API mode it is a frame's
+// contents, and ends with them. It is in memory before it
 // is published. With no buffer free it is dropped whole. A memory that is more than a byte time
 // late costs the packet under way and the bytes that follow without a pause; earlier packets are
 // kept.
 
 `default_nettype none
 
-module modem_rx #(
-    parameter API = 0 // 1: packets end as modem_api_rx says, at rx_end_i or rx_error_i
-) (
+module modem_rx (
     input  wire       clk_i,
     input  wire       rst_i,      // also drops the packet under way
     input  wire       tick_i,     // eight a bit time
+    input  wire       api_i,      // packets end as modem_api_rx says, at rx_end_i or rx_bad_i
     // bytes in
     input  wire       rx_valid_i,
     input  wire [7:0] rx_data_i,
@@ -52,9 +52,10 @@ module modem_rx #(
     wire       late    = (rx_valid_i || rx_error_i || rx_end_i || rx_bad_i) && pending && !taken && !deaf;
     wire       done    = ending && !wr_busy_i;
     // The index is at most 100, so four of its bits tell 99.
-    wire       longest = (wr_index_o[6] && wr_index_o[5] && wr_index_o[1] && wr_index_o[0]) ||
-                         (API == 0 && !first && {1'b0, count} == length);
-    wire       cut     = API == 0 ? rx_error_i || silent : rx_end_i || rx_bad_i;
+    wire       longest = api_i ? &wr_index_o[6:4] : // modem_api_rx gives none so long
+                         (wr_index_o[6] && wr_index_o[5] && wr_index_o[1] && wr_index_o[0]) ||
+                         (!first && {1'b0, count} == length);
+    wire       cut     = api_i ? rx_end_i || rx_bad_i : rx_error_i || silent;
 
     assign wr_valid_o = pending && !ending && !drop;
     assign silent_o   = silent;
@@ -84,7 +85,7 @@ module modem_rx #(
         end
         if (cut && (!pending || taken) && (!first || taken)) begin
             ending <= 1'b1;
-            if (API != 0 && rx_bad_i)
+            if (rx_bad_i)
                 dropping <= 1'b1;
         end
         if (done) begin
@@ -118,7 +119,7 @@ module modem_rx #(
 
 `ifdef FORMAL
     // A packet is published once, after all its bytes are in memory.
-    localparam [6:0] LONGEST = 7'd100;
+    wire [6:0] most = api_i ? 7'd113 : 7'd100;
     reg past = 1'b0;
     initial assume (rst_i);
     (* anyseq *) reg acknowledge;
@@ -130,6 +131,8 @@ module modem_rx #(
     wire      write = wr_valid_o && wr_ready_i;
     always @(posedge clk_i) begin
         past <= 1'b1;
+        if (past)
+            assume ($stable(api_i));
         // modem_npi has one write at a time, whatever becomes of the packet.
         assume (!wr_ready_i || (wr_valid_o && !owed));
         assume (wr_busy_i == owed);
@@ -150,13 +153,13 @@ module modem_rx #(
         if (past && !rst_i && !$past(rst_i)) begin
             // An unreleased packet is never overwritten: nothing is written while the ring is full, and
             // nothing beyond the longest packet; bytes go in turn, each to its place.
-            assert (!wr_valid_o || (!full_i && wr_index_o < LONGEST));
+            assert (!wr_valid_o || (!full_i && wr_index_o < most));
             assert (wr_be_o == 8'd1 << wr_index_o[2:0]);
             assert (!wr_valid_o || (wr_data_o == latest && wr_index_o == wrote && !lost));
             // A packet that is published was written whole, was acknowledged, and has a free buffer.
             if (push_o)
                 assert (!owed && !wr_valid_o && !full_i && !lost &&
-                        wrote == wr_index_o && wrote != 7'd0 && wrote <= LONGEST);
+                        wrote == wr_index_o && wrote != 7'd0 && wrote <= most);
             // A dropped packet counts, once, and is never published.
             assert (!(push_o && done && dropping));
             assert (!$past(done && dropping) || overrun_o);
@@ -176,8 +179,8 @@ module modem_rx #(
     memory_late_for_the_last_byte: cover property (@(posedge clk_i) late && ending);
     byte_while_deaf: cover property (@(posedge clk_i) rx_valid_i && deaf);
     longest_packet: cover property (@(posedge clk_i) push_o && wr_index_o == 7'd100);
-    ends_as_announced: cover property (@(posedge clk_i) API == 0 && taken && longest && wr_index_o != 7'd99);
-    ends_in_silence: cover property (@(posedge clk_i) API == 0 && silent && !first && !ending);
+    ends_as_announced: cover property (@(posedge clk_i) !api_i && taken && longest && wr_index_o != 7'd99);
+    ends_in_silence: cover property (@(posedge clk_i) !api_i && silent && !first && !ending);
     ends_with_a_byte: cover property (@(posedge clk_i) cut && taken);
 `endif
 endmodule

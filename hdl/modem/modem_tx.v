@@ -7,13 +7,12 @@
 
 `default_nettype none
 
-module modem_tx #(
-    parameter API = 0 // 1: frames end by themselves
-) (
+module modem_tx (
     input  wire       clk_i,
     input  wire       rst_i,        // also drops the packet under way
     input  wire       enable_i,     // the modem is set up
     input  wire       encrypt_i,    // the modem encrypts
+    input  wire       api_i,        // frames end by themselves
     // oldest packet of the ring
     input  wire       packet_valid_i,
     input  wire [6:0] packet_bytes_i,
@@ -37,10 +36,9 @@ module modem_tx #(
     reg [8:0] rest; // ticks of silence
 
     wire last   = rd_index_o == packet_bytes_i;                // all its bytes are out
-    wire rested = (rest[8] && rest[6]) || packet_bytes_i == longest ||
-                  API != 0; // 320 ticks
+    wire rested = (rest[8] && rest[6]) || packet_bytes_i == longest || api_i; // 320 ticks
 
-    wire ends   = state == REST && (tx_ready_i || API != 0) && rested;
+    wire ends   = state == REST && (tx_ready_i || api_i) && rested;
 
     // The set-up restarts the transmitter: a packet that it interrupts is sent again, whole.
     wire begin_anew = rst_i || !enable_i;
@@ -87,10 +85,12 @@ module modem_tx #(
     wire      left = tx_valid_o && tx_ready_i;
     always @(posedge clk_i) begin
         past <= 1'b1;
-        // The ring keeps its oldest packet, of 1..100 bytes (modem.v), until it is sent.
+        if (past)
+            assume ($stable(api_i));
+        // The ring keeps its oldest packet, of 1..105 bytes (modem.v), until it is sent.
         if (past && $past(packet_valid_i) && !$past(sent_o) && !$past(rst_i))
             assume (packet_valid_i && $stable(packet_bytes_i));
-        assume (packet_bytes_i >= 7'd1 && packet_bytes_i <= 7'd100);
+        assume (packet_bytes_i >= 7'd1 && packet_bytes_i <= 7'd105);
         assume (!rd_done_i || rd_valid_o); // modem_npi
         out <= out + left;
         if (rd_done_i)
@@ -109,7 +109,7 @@ module modem_tx #(
             // After a packet that the modem does not send at once by its length, the line rests for
             // 320 ticks.
             if (state == REST && tx_ready_i)
-                assert (ends == (API != 0 || packet_bytes_i == (encrypt_i ? 7'd95 : 7'd100) || (rest[8] && rest[6])));
+                assert (ends == (api_i || packet_bytes_i == (encrypt_i ? 7'd95 : 7'd100) || (rest[8] && rest[6])));
         end
         if (past) // each state is at a known byte; the induction rests on this
             case (state)
@@ -125,8 +125,8 @@ module modem_tx #(
 `endif
 `ifdef COVER_POINTS
     modem_takes_none: cover property (@(posedge clk_i) state == SEND && !cts_i);
-    needs_no_rest: cover property (@(posedge clk_i) API == 0 && ends && packet_bytes_i == longest);
-    rests: cover property (@(posedge clk_i) API == 0 && ends && packet_bytes_i != longest);
+    needs_no_rest: cover property (@(posedge clk_i) !api_i && ends && packet_bytes_i == longest);
+    rests: cover property (@(posedge clk_i) !api_i && ends && packet_bytes_i != longest);
     set_up_interrupts: cover property (@(posedge clk_i) begin_anew && rd_index_o != 7'd0);
 `endif
 endmodule

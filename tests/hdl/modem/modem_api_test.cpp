@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_api_test: the modem controller in API mode (parameter API), at 250,000 baud.
+// modem_api_test: the modem controller with API frames (parameter API), at 250,000 baud.
 
 #include "VModemApi.h"
 #include "modem_rig.h"
@@ -9,8 +9,9 @@ namespace {
 
 class ModemApi : public ModemRig<VModemApi, 250> {
 protected:
-    void ready() {
+    void ready(unsigned mode = 1) {
         power(quick());
+        bus_.write(MODEM_NET, 0x3332u << MODEM_NET_PAN_LSB | mode << MODEM_NET_API_LSB | 0x0C);
         configure(250000);
         ASSERT_EQ(takeEvents(), MODEM_EVENT_CONFIGURED_MASK);
     }
@@ -33,10 +34,26 @@ protected:
         bytes.push_back(sum);
         return bytes;
     }
+    static std::vector<uint8_t> join(std::vector<uint8_t> head, const std::vector<uint8_t>& rest) {
+        head.insert(head.end(), rest.begin(), rest.end());
+        return head;
+    }
+    // The contents of frames: a packet to a target, a packet from modem 0.
+    static std::vector<uint8_t> sent(const std::vector<uint8_t>& packet, uint16_t target = 0,
+                                     uint8_t id = 0) {
+        return join({0x01, id, static_cast<uint8_t>(target >> 8), static_cast<uint8_t>(target), 0},
+                    packet);
+    }
     static std::vector<uint8_t> received(const std::vector<uint8_t>& packet) {
-        std::vector<uint8_t> body = {0x81, 0x00, 0x00, 40, 0x00};
-        body.insert(body.end(), packet.begin(), packet.end());
-        return apiFrame(body);
+        return join({0x81, 0x00, 0x00, 40, 0x00}, packet);
+    }
+    // Returns the oldest packet that came, without what its frame says of it.
+    std::vector<uint8_t> takePacket() {
+        auto contents = take();
+        EXPECT_GT(contents.size(), 5u);
+        EXPECT_EQ(contents[0] << 16 | contents[1] << 8 | contents[2], 0x810000);
+        contents.erase(contents.begin(), contents.begin() + 5);
+        return contents;
     }
 };
 
@@ -52,7 +69,7 @@ TEST_F(ModemApi, PacketsLeaveWithoutAPauseEachAsOneRfPacket) {
     const std::vector<unsigned> lengths = {1, 7, 8, 9, 100, 100, 64, 33, 5};
     for (unsigned i = 0; i < lengths.size(); ++i) {
         auto bytes = packet(lengths[i], static_cast<uint8_t>(i * 0x31));
-        put(i, bytes);
+        put(i, sent(bytes));
         expected.insert(expected.end(), bytes.begin(), bytes.end());
     }
     runMs(80);
@@ -62,12 +79,11 @@ TEST_F(ModemApi, PacketsLeaveWithoutAPauseEachAsOneRfPacket) {
     EXPECT_EQ(near_->counters().badFrames, 0u);
 }
 
-TEST_F(ModemApi, EachPacketGoesToTheTargetOfItsTime) {
+TEST_F(ModemApi, EachPacketGoesToItsTarget) {
     ready();
     const std::vector<uint16_t> wanted = {0x5A5A, 0xA5A5, 0x0000, 0xFF00};
     for (unsigned i = 0; i < wanted.size(); ++i) {
-        bus_.write(MODEM_ADDR, uint32_t(wanted[i]) << MODEM_ADDR_TARGET_LSB | 0x0001);
-        put(i, packet(16 + i, static_cast<uint8_t>(i)));
+        put(i, sent(packet(16 + i, static_cast<uint8_t>(i)), wanted[i]));
         runMs(30);
     }
     EXPECT_EQ(targets_, wanted);
@@ -80,17 +96,41 @@ TEST_F(ModemApi, PacketsArriveEachInItsBuffer) {
         plain_.send(bytes, now());
         runMs(14);
         EXPECT_EQ(takeEvents(), MODEM_EVENT_RX_PACKET_MASK) << i;
-        EXPECT_EQ(take(), bytes) << i;
+        EXPECT_EQ(takePacket(), bytes) << i;
     }
 }
 
-TEST_F(ModemApi, APacketThatTheModemGaveUpIsReported) {
+TEST_F(ModemApi, OfEachPacketTheModemSaysWhetherItWasDelivered) {
     ready();
-    far_->power(false, now());
-    put(0, packet(10, 1));
+    put(0, sent(packet(10, 1), 0, 0x7E));
     runMs(60);
-    EXPECT_EQ(takeEvents(), MODEM_EVENT_TX_DONE_MASK | MODEM_EVENT_UNSENT_MASK);
-    EXPECT_EQ(bus_.read(MODEM_ERRORS) >> MODEM_ERRORS_UNSENT_LSB, 1u);
+    EXPECT_EQ(take(), (std::vector<uint8_t>{0x89, 0x7E, 0}));
+    far_->power(false, now());
+    put(1, sent(packet(100, 1), 0, 0xFF));
+    runMs(60);
+    EXPECT_EQ(takeEvents(), MODEM_EVENT_TX_DONE_MASK | MODEM_EVENT_RX_PACKET_MASK);
+    EXPECT_EQ(take(), (std::vector<uint8_t>{0x89, 0xFF, 1}));
+}
+
+TEST_F(ModemApi, SetUpMayLeaveTheModemTransparent) {
+    ready(0);
+    EXPECT_EQ(near_->parameter("AP"), 0u);
+    const auto out = frame(37, 0x7E), in = frame(100, 0x7E);
+    put(0, out);
+    plain_.send(in, now());
+    runMs(30);
+    EXPECT_EQ(plain_.received, out);
+    EXPECT_EQ(take(), in);
+}
+
+TEST_F(ModemApi, PacketsOfWrongLengthsAreRefused) {
+    ready();
+    for (size_t size : {0, 106, 128}) {
+        put(0, packet(size, 1));
+        EXPECT_EQ(takeEvents(), MODEM_EVENT_TX_REFUSED_MASK) << size;
+    }
+    put(0, sent(packet(100, 1)));
+    EXPECT_EQ(takeEvents(), 0u);
 }
 
 TEST_F(ModemApi, ASpoiltFrameIsDroppedAndTheNextIsWhole) {
@@ -105,12 +145,12 @@ TEST_F(ModemApi, ASpoiltFrameIsDroppedAndTheNextIsWhole) {
     EXPECT_GE(bus_.read(MODEM_ERRORS) >> MODEM_ERRORS_OVERRUN_LSB & 0xFF, 1u);
     plain_.send(packet(30, 8), now());
     runMs(14);
-    EXPECT_EQ(take(), packet(30, 8));
+    EXPECT_EQ(takePacket(), packet(30, 8));
 }
 
 // Frames follow without pauses, so that only a frame's own end brings the receiver back to the
 // next.
-TEST_F(ModemApi, FramesOfOtherTypesAndTooLongOnesArePassedOver) {
+TEST_F(ModemApi, FramesOfAllTypesAreTakenAndTooLongOnesPassedOver) {
     ready();
     Random random(testSeed());
     auto other = [&](uint8_t type, size_t size) {
@@ -118,25 +158,27 @@ TEST_F(ModemApi, FramesOfOtherTypesAndTooLongOnesArePassedOver) {
         for (uint8_t& byte : body)
             byte = static_cast<uint8_t>(1 + random.below(0x7D)); // no delimiter
         body[0] = type;
-        return apiFrame(body);
+        return body;
     };
     const std::vector<std::vector<uint8_t>> strangers = {
-        other(0x8A, 2),                     // the modem's status
-        other(0x88, 3),                     // a reply; its third byte would be a 0x89's failure
-        other(0x80, 11 + random.below(95)), // a packet from a 64-bit address
-        other(0x83, 105),                   // with its inputs
-        received(packet(101, 3)),           // more than a buffer is for
+        other(0x8A, 1 + random.below(2)),   // the modem's status, or less
+        other(0x88, 5),                     // a reply
+        other(0x80, 12 + random.below(98)), // a packet from a 64-bit address
+        other(0x80, 111),                   // the longest of them
+        other(0x81, 112),                   // more than a modem sends
         other(0x81, 255),                   // the longest that one byte says
         other(0x81, 0x105),                 // its low byte alone would do
     };
     for (size_t i = 0; i < strangers.size(); ++i) {
         auto before = packet(1 + random.below(100), 1), after = packet(1 + random.below(100), 2);
-        bytesIn(received(before), bitClocks);
-        bytesIn(strangers[i], bitClocks);
-        bytesIn(received(after), bitClocks);
+        bytesIn(apiFrame(received(before)), bitClocks);
+        bytesIn(apiFrame(strangers[i]), bitClocks);
+        bytesIn(apiFrame(received(after)), bitClocks);
         runMs(0.1);
-        EXPECT_EQ(take(), before) << i << ", SEED " << testSeed();
-        EXPECT_EQ(take(), after) << i << ", SEED " << testSeed();
+        EXPECT_EQ(takePacket(), before) << i << ", SEED " << testSeed();
+        if (strangers[i].size() < 112)
+            EXPECT_EQ(take(), strangers[i]) << i << ", SEED " << testSeed();
+        EXPECT_EQ(takePacket(), after) << i << ", SEED " << testSeed();
         EXPECT_TRUE(take().empty()) << i;
         EXPECT_EQ(takeEvents(), MODEM_EVENT_RX_PACKET_MASK) << i;
     }
@@ -157,7 +199,7 @@ TEST_F(ModemApi, AModemThatLostItsPowerIsSetUpAgain) {
         << "step " << (bus_.read(MODEM_STATUS) >> MODEM_STATUS_STEP_LSB & 15);
     plain_.send(packet(30, 8), now());
     runMs(14);
-    EXPECT_EQ(take(), packet(30, 8));
+    EXPECT_EQ(takePacket(), packet(30, 8));
 }
 
 } // namespace

@@ -251,16 +251,16 @@ void measurePings(MeasuredFlight& f, const std::string& program) {
 }
 
 // High-water marks: stacks are filled with zeros at the start.
-void measureStacks(MeasuredFlight& f) {
+void measureStacks(MeasuredFlight& f, const std::string& what) {
     const ElfImage& image = *f.machine.stm32().image();
-    for (const char* name :
-         {"radioStack", "serverStack", "clientStack", "watchStack", "idleStack", "OSTaskIdleStk"}) {
+    for (const char* name : {"radioStack", "serverStack", "clientStack", "coresStack", "watchStack",
+                             "idleStack", "OSTaskIdleStk"}) {
         if (!image.has(name)) // another name in the real uC/OS-II
             continue;
         uint32_t words = image.size(name) / 4, free = 0;
         while (free < words && f.cpu().word(image.symbol(name) + 4 * free) == 0)
             ++free;
-        say(std::string("stack used: ") + name, 4.0 * (words - free), "bytes", 4.0 * words);
+        say(what + ": " + name, 4.0 * (words - free), "bytes", 4.0 * words);
     }
 }
 
@@ -295,12 +295,13 @@ int main(int argc, char** argv) {
         measureCalls(f, figures.brief ? 1 : 20, "call in the clear", 11970, 1);
         if (!figures.brief)
             measureStream(f, "full stream in the clear");
-        measureStacks(f);
+        measureStacks(f, "stack used in the clear");
         if (!figures.brief) {
             MeasuredFlight keyed(elf, hclk / (SocModel::clkHz * hclkPerClk),
                                  std::vector<uint8_t>(LINK_KEY_BYTES, 1));
             measureCalls(keyed, 20, "call with a key", 0, 2);
             measureStream(keyed, "full stream with a key");
+            measureStacks(keyed, "stack used with a key");
         }
     });
 }

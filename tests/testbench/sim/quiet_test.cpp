@@ -184,6 +184,11 @@ TEST(Quiet, TheChipIsTheSameInWhateverClockItIsLookedAt) {
     RfChannel air(testSeed());
     SocModel quick(air, Ground::uavModem()), slow(air, Ground::uavModem());
     slow.evaluateAll(true);
+    for (SocModel* soc : {&quick, &slow})
+        soc->onClock([soc, next = uint64_t{0}]() mutable {
+            EXPECT_EQ(soc->cycles(), next); // as it asked for
+            return next += 77'777;
+        });
     quick.reset(true);
     slow.reset(true);
     Random random(testSeed());
@@ -201,12 +206,16 @@ TEST(Quiet, TheChipIsTheSameInWhateverClockItIsLookedAt) {
     EXPECT_LT(quick.evaluated() * 2, quick.cycles());
 }
 
-// Returns whether the memory is ready this many clocks after its start.
+// Returns whether the memory is ready this many clocks after its start, in a chip that was quiet.
 bool isMemoryReady(uint64_t clocks) {
     RfChannel air(testSeed());
     SocModel soc(air, Ground::uavModem());
+    soc.reset();
+    while (soc.cycles() < 20'000)
+        soc.tick();
+    const uint64_t ready = soc.cycles() + clocks;
     soc.reset(true);
-    while (soc.cycles() < clocks)
+    while (soc.cycles() < ready)
         soc.tick();
     return soc.memory().pins.calibDone;
 }

@@ -225,14 +225,6 @@ def disk_full(start, name, moment, deaths):
     return "fails with a message" if status else "has room enough"
 
 
-def fails_or_succeeds(m):
-    status = m.wait(LONGEST)
-    expect(status is not None, m, "it hangs")
-    expect(status != 0 or m.succeeded(), m, "it says that it succeeded")
-    expect(status == 0 or m.text().strip(), m, "it fails without a word")
-    return "fails with a message" if status else "succeeds"
-
-
 def no_descriptors(start, name, moment, deaths):
     m = start(prefix=["prlimit", f"--nofile={8 + int(25 * moment / LAST)}"])
     expect(m.wait(LONGEST), m, "it succeeds, or hangs")
@@ -255,12 +247,15 @@ def port_taken(start, name, moment, deaths):
 def no_memory(start, name, moment, deaths):
     """Limits each process to 8 to 800 MB of addresses."""
     m = start(prefix=["prlimit", "--as=%d" % (8e6 * 100**(moment / LAST))])
-    said = fails_or_succeeds(m)
+    status = m.wait(LONGEST)
+    expect(status is not None, m, "it hangs")
+    expect(status != 0 or m.succeeded(), m, "it says that it succeeded")
+    expect(status == 0 or m.text().strip(), m, "it fails without a word")
     # An interpreter that cannot even start says so by itself, with a traceback of its own.
     expect("Fatal Python error: init" in m.text() or
            not re.search("bad_alloc|Traceback", m.text()), m, "that is no message")
     expect(is_whole(m.out), m, "a file is cut short")
-    return said
+    return "fails with a message" if status else "succeeds"
 
 
 def clock_step(start, name, moment, deaths):

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * bridge: IceC as server and as client between two stock programs: bridge PORT [...]. Prints its
- * own port; each request goes through generated code to the server on PORT. Ends with `shutdown`.
+ * bridge: IceC as server and as client between two stock programs, with server.c: each request goes
+ * through generated code to the server on the port that is the argument. Ends with `shutdown`.
  */
 #include "bridge.h"
-#include "tcp_endpoint.h"
+#include "serve.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -120,27 +120,11 @@ static Ice_Status pass(Ice_ObjectPtr self, const Ice_Current* current, Ice_Input
     return status;
 }
 
-int main(int argc, char** argv) {
-    static Ice_Communicator ic;
-    static TcpEndpoint tcp;
-    static Ice_ObjectAdapter adapter;
+Ice_Status Suite_serve(Ice_ObjectAdapterPtr adapter) {
     static Ice_Object passer = {pass, 0, 0};
     char text[64];
-    if (argc < 2)
-        return 2;
-    Ice_initialize(&ic);
-    sprintf(text, "server:tcp -h 127.0.0.1 -p %.8s", argv[1]);
-    if (TcpEndpoint_init(&ic, &tcp) != ICE_OK ||
-        Ice_Communicator_stringToProxy(&ic, text, &server) != ICE_OK ||
-        Ice_Communicator_createObjectAdapterWithEndpoints(&ic, "A", "tcp -h 127.0.0.1", &adapter) !=
-            ICE_OK ||
-        Ice_ObjectAdapter_addDefaultServant(&adapter, &passer, "") != ICE_OK)
-        return 1;
-    Ice_ObjectAdapter_activate(&adapter);
-    printf("%d\n", tcp.port);
-    fflush(stdout);
-    Ice_Communicator_waitForShutdown(&ic);
-    Ice_Communicator_destroy(&ic, 2000);
-    TcpEndpoint_destroy(&tcp);
-    return 0;
+    sprintf(text, "server:tcp -h 127.0.0.1 -p %.8s", suite_argument);
+    if (Ice_Communicator_stringToProxy(adapter->communicator, text, &server) != ICE_OK)
+        return ICE_PARSE;
+    return Ice_ObjectAdapter_addDefaultServant(adapter, &passer, "");
 }

@@ -9,5 +9,6 @@
 
 /* Adds the servants to an adapter. */
 Ice_Status Suite_serve(Ice_ObjectAdapterPtr adapter);
+extern const char* suite_argument; /* the first one of server.c's program */
 
 #endif

@@ -7,10 +7,14 @@
 
 #include <stdio.h>
 
-int main(void) {
+const char* suite_argument = "";
+
+int main(int argc, char** argv) {
     static Ice_Communicator ic;
     static TcpEndpoint tcp;
     static Ice_ObjectAdapter adapter;
+    if (argc > 1)
+        suite_argument = argv[1];
     Ice_initialize(&ic);
     if (TcpEndpoint_init(&ic, &tcp) != ICE_OK ||
         Ice_Communicator_createObjectAdapterWithEndpoints(&ic, "A", "tcp -h 127.0.0.1", &adapter) !=

@@ -196,6 +196,11 @@ class Regression:
         history.add({**make_run(chosen, results, commit, time.monotonic() - start),
                      "subject": "" if subject[0] else subject[1].strip(), "tree": changes.tree,
                      "reasons": list(reversed(reasons.values()))[:5]})
+        if failures:  # waveforms may take minutes
+            write_reports(gather(history, tests, results, failures, o.source), failures,
+                          o.build / "page", o.out)
+            print(f"{o.out}/report.html is there; waveforms come into it, if there are any",
+                  flush=True)
         add_waves(failures, known, o.source, o.build, o.jobs, o.waves)
         data = gather(history, tests, results, failures, o.source)
         summary(data, failures, o.out)

@@ -88,6 +88,7 @@ Its end, and backwards from there: make gdb REPLAY='fly'
 """
 SIMULATOR = """#!/bin/sh
 echo "$@" >asked
+cp build/regress/report.html page
 while [ "$1" != --wave ]; do shift; done
 vcd2fst - "$2" <<'END'
 $timescale 1ps $end
@@ -267,6 +268,7 @@ add_custom_target(test_w)
         left = "build/regress/failures/mission.x-1"
         self.has(f"^--replay fly --out {left}.replay --wave .*mission.x-1.fst --from 1.498500 "
                  "--to 1.500500$", file="asked")
+        self.has("141 corners", file="page")  # it was there before any waveform
         self.ask("fst2vcd", f"{left}.fst")
         self.assertRegex(self.said.replace("\n", " "),
                          "#3 .*sidleTask .*#10 .*0. .*#20 .*1. .*sradioTask .*#33 sidleTask")

@@ -34,7 +34,11 @@ module camera (
     reg        stopping;             // no further frame
     reg        whole;                // the frame that ends, or has ended, is whole
     reg        again;                // the next frame has begun already
-    reg [15:0] width, height, x, y;
+    reg [8:0]  width, words;         // words of a line; number of the one under way, from 1
+    reg [11:0] height, y;
+    reg [2:0]  x;                    // of the next pixel in its word
+    reg        room;                 // for one more pixel of this line
+    reg        last_word;            // words == width, a clock later
     reg [31:0] base, stride;         // of the buffers in use
     reg [31:0] size, set_base, set_stride;
     reg [15:0] frames, dropped;
@@ -104,8 +108,7 @@ module camera (
     wire [31:0] write_base = base + (writing == 2'd2 ? stride : writing == 2'd3 ? {stride[30:0], 1'b0} : 32'd0);
     wire        no_data, read_idle;
     wire [63:0] no_words;
-    wire        room   = x != width; // for one more pixel of this line
-    wire        eighth = capturing && !empty && !lost && is_pixel && room && x[2:0] == 3'd7;
+    wire        eighth = capturing && !empty && !lost && is_pixel && room && x == 3'd7;
     npi_stream #(.ADDR_BITS(32), .WORD_BITS(4)) u_stream (
         `include "memory_connect.vh"
         .clk_i(clk_i), .rst_i(rst_i),
@@ -123,7 +126,7 @@ module camera (
     wire begins = pop && starts;
     wire token_in_frame = pop && capturing;
     wire bad    = lost || (is_pixel && !room) || (ends_line && room) || starts;
-    wire last   = ends_line && y + 16'd1 == height;
+    wire last   = ends_line && y + 12'd1 == height;
     wire kept   = state == WAIT_FOR_MEMORY && write_idle && whole; // all of it is in memory
     camera_buffers u_buffers (.clk_i(clk_i), .rst_i(rst_i), .active_i(state != OFF), .kept_i(kept),
                               .writing_o(writing), .newest_o(newest), .offered_o(offered), .take_i(frame_take_i));
@@ -139,7 +142,11 @@ module camera (
     endtask
 
     always @(posedge clk_i) begin
-        events <= 7'd0;
+        events    <= 7'd0;
+        last_word <= words == width;
+        // Also by a line's end, whose byte the next seven pixels push out: 56 enables hang on this.
+        if (capturing && has_token && x != 3'd7)
+            pixels <= {token[7:0], pixels[55:8]};
         if (stop && state != OFF)
             stopping <= 1'b1;
         case (state)
@@ -148,8 +155,8 @@ module camera (
                 events[CAMERA_EVENT_REFUSED_LSB] <= asked && !good;
                 if (asked && good) begin
                     enter(WAIT_FOR_FRAME);
-                    width      <= size[15:0];
-                    height     <= size[31:16];
+                    width      <= size[11:3];
+                    height     <= size[27:16];
                     base       <= set_base;
                     stride     <= set_stride;
                     frames     <= 16'd0;
@@ -168,20 +175,26 @@ module camera (
                 events[CAMERA_EVENT_LONG_FRAME_LSB] <= pop && ends_line && whole;
             end
             WAIT_FOR_BUFFER: begin // the clock of the choice; the frame before is in memory
-                x     <= 16'd0;
-                y     <= 16'd0;
+                x     <= 3'd0;
+                y     <= 12'd0;
+                words <= 9'd1;
+                room  <= 1'b1;
                 whole <= 1'b0;
                 again <= 1'b0;
                 enter(CAPTURE);
             end
             CAPTURE: if (token_in_frame) begin
                 if (is_pixel) begin
-                    pixels <= {token[7:0], pixels[55:8]};
-                    x      <= x + 16'd1;
+                    x <= x + 3'd1;
+                    if (x == 3'd7) begin
+                        words <= words + 9'd1;
+                        room  <= !last_word;
+                    end
                 end
                 if (ends_line) begin
-                    x <= 16'd0;
-                    y <= y + 16'd1;
+                    words <= 9'd1;
+                    room  <= 1'b1;
+                    y     <= y + 12'd1;
                 end
                 events[CAMERA_EVENT_OVERFLOW_LSB]    <= lost;
                 events[CAMERA_EVENT_LONG_LINE_LSB]   <= !lost && is_pixel && !room;

@@ -62,6 +62,7 @@ module npi_stream #(
     assign read_valid_o = !npi_rd_empty_i && to_give != {WORD_BITS{1'b0}};
     assign read_data_o  = npi_rd_data_i;
     assign npi_rd_pop_o = !npi_rd_empty_i && (read_take_i || to_give == {WORD_BITS{1'b0}});
+    wire popped_burst   = npi_rd_pop_o && outstanding[2:0] == 3'd0;
 
     // ---- write ----
     wire push = !npi_wr_almost_full_i && !bursts[2] && (padding || write_valid_i);
@@ -101,8 +102,8 @@ module npi_stream #(
         write_idle_o <= filled == 3'd0 && bursts == 3'd0 && !push;
         // Words and bursts apart: no carry chain comes after the core's take.
         outstanding[2:0] <= outstanding[2:0] - {2'd0, npi_rd_pop_o};
-        outstanding[5:3] <= outstanding[5:3] + {2'd0, acked_read}
-                            - {2'd0, npi_rd_pop_o && outstanding[2:0] == 3'd0};
+        if (acked_read != popped_burst)
+            outstanding[5:3] <= acked_read ? outstanding[5:3] + 3'd1 : outstanding[5:3] - 3'd1;
         if (acked_read) begin
             read_addr <= read_addr + 1'b1;
             to_ask    <= to_ask > {{(WORD_BITS - 4){1'b0}}, 4'd8} ? to_ask - {{(WORD_BITS - 4){1'b0}}, 4'd8}
@@ -123,7 +124,8 @@ module npi_stream #(
         if (push)
             filled <= filled + 3'd1;
         padding <= padding ? !full : write_flush_i && filled != 3'd0;
-        bursts  <= bursts + {2'd0, full} - {2'd0, acked_write};
+        if (full != acked_write)
+            bursts <= acked_write ? bursts - 3'd1 : bursts + 3'd1;
         if (acked_write)
             write_addr <= write_addr + 1'b1;
         if (write_start_i)

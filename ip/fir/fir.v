@@ -81,11 +81,12 @@ module fir (
             busy        <= 1'b1;
             to_send     <= count;
             to_take     <= count;
+        end
+        if (go) begin // not at start, whose path is long
+            begun       <= 1'b1;
             saturations <= 32'd0;
             place       <= 2'd0;
         end
-        if (go)
-            begun <= 1'b1;
         if (sent) begin
             to_send <= to_send - 9'd1;
             place   <= place + 2'd1;

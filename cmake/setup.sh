@@ -62,6 +62,7 @@ clang-format-19 holds the source to .clang-format
 libxml2-utils checks the generated SVD file and pages
 lcov coverage pages
 chromium opens the report pages in tests
+zeroc-icebridge a forwarder, beside the gateway in a test
 zeroc-glacier2 a router, in front of the gateway in a test
 tshark reads the messages on the wire in tests
 strace sees which files a proof reads, so that its verdict holds until one changes

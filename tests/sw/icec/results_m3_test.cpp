@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+//
+// results_m3_test: what a call returned on a Cortex-M3 is its task's, wherever the kernel lets
+// other tasks call meanwhile.
+
+#include "plain_bus.h"
+#include "random.h"
+#include <cstdlib>
+#include <gtest/gtest.h>
+
+namespace {
+
+enum Counted { ALL, LOOKING }; // every instruction, or those of the function that looks at results
+
+// Runs a case, and pends the interrupt before the instruction `where` of those counted, from the
+// begin of the first caller on. Returns how many there were.
+uint64_t run(unsigned number, Counted counted, uint64_t where) {
+    PlainCpu m3(RESULTS_ELF);
+    const uint32_t first = m3.image.symbol("callsOnce") & ~1u;
+    const uint32_t looks = m3.image.symbol("call") & ~1u, end = looks + m3.image.size("call");
+    bool begun = false;
+    uint64_t n = 0;
+    m3.cpu.listener.instruction = [&](uint32_t at) {
+        begun = begun || at == first;
+        if (!begun || (counted == LOOKING && (at < looks || at >= end)))
+            return;
+        if (n++ == where)
+            m3.cpu.pendInterrupt(0);
+    };
+    m3.setVariable("selected_case", number);
+    EXPECT_EQ(m3.run(4'000'000), 1)
+        << m3.cpu.lastFault << " pc in " << m3.image.functionAt(m3.cpu.reg(CortexM3::Pc))
+        << ", interrupted at instruction " << where;
+    EXPECT_EQ(m3.text("os_said"), "ended ") << "interrupted at instruction " << where;
+    return n;
+}
+
+class ResultsM3 : public ::testing::TestWithParam<unsigned> {
+protected:
+    void interruptEach(Counted counted, uint64_t step) {
+        uint64_t whole = run(GetParam(), counted, ~0ull);
+        EXPECT_GT(whole, 100u);
+        for (uint64_t where = testSeed(0) % step; where < whole && !HasFailure(); where += step)
+            run(GetParam(), counted, where);
+    }
+};
+
+TEST_P(ResultsM3, StayWhileTheirTaskLooksAtThemAndOthersCall) {
+    interruptEach(LOOKING, 2);
+}
+
+// Another seed interrupts at other instructions; RESULTS_M3_STEP=1 at each of them.
+TEST_P(ResultsM3, ComeWhereverOthersCall) {
+    const char* step = std::getenv("RESULTS_M3_STEP");
+    interruptEach(ALL, step ? std::strtoull(step, nullptr, 10) : 1499);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ResultsM3, ::testing::Values(0u, 1u),
+                         [](auto& c) { return c.param ? "OfFourTasks" : "OfTwoTasks"; });
+
+} // namespace

@@ -16,6 +16,11 @@ module soc #(
     input  wire [31:0] core_pins_i,
     output wire [31:0] core_pins_o,
     output reg         irq_o
+`ifdef VERILATOR
+    ,
+    input  wire        rests_i, // the platform has no clock, its memory excepted
+    output wire        stirs_o  // it needs one, by what cores and memory tell it
+`endif
 );
     `include "map_regs.vh"
 
@@ -29,16 +34,25 @@ module soc #(
     // logic (a simulator would follow it whenever an input moves: 1.07 times slower).
     wire rst, irq;
     cdc_reset u_rst (.clk_i(clk_i), .rst_async_i(rst_i), .rst_o(rst));
+    `include "wiring.vh"
+`ifdef VERILATOR
+    wire platform_clk = clk_i && !rests_i;
+`endif
     // The processor's interrupt input sees edges, so no glitch of a LUT may reach it.
-    always @(posedge clk_i) irq_o <= irq;
+    always @(posedge `PLATFORM_CLOCK) irq_o <= irq;
 
     `include "platform.vh"
 
     // Cores and the hashes of all slots' registers: generated from ip/cores.list.
     `include "soc_cores.vh"
+`ifdef VERILATOR
+    // A probe would see the counters of a platform that rests stand still.
+    assign stirs_o = PROBES != 0 || !calib_done || bus_valid || irq != irq_o ||
+                     |((npi_addr_ack | ~npi_rd_empty) & NO_READ_FIFO[PORTS-1:0]);
+`endif
 
     system_slot #(.SLOTS(SLOTS), .CLK_HZ(CLK_HZ), .CONTRACTS(CONTRACTS)) u_system_slot (
-        .clk_i(clk_i), .rst_i(rst),
+        .clk_i(`PLATFORM_CLOCK), .rst_i(rst),
         `SLOT(MAP_SLOT_SYSTEM),
         .slot_irq_i(slot_irq), .irq_o(irq), .page_o(page),
         .access_error_i(access_error), .error_memory_i(error_memory),

@@ -36,7 +36,7 @@ memory_mcb #(.PORTS(PORTS), .READ_FIFO(READ_FIFO)) u_memory (
 );
 
 fsmc_bridge u_fsmc_bridge (
-    .clk_i(clk_i), .rst_i(rst),
+    .clk_i(`PLATFORM_CLOCK), .rst_i(rst),
     .fsmc_a_i(fsmc_a_i), .fsmc_d_i(fsmc_d_i), .fsmc_d_o(fsmc_d_o), .fsmc_d_oe_o(fsmc_d_oe_o),
     .fsmc_ne_n_i(fsmc_ne_n_i), .fsmc_noe_n_i(fsmc_noe_n_i), .fsmc_nwe_n_i(fsmc_nwe_n_i),
     .fsmc_nbl_n_i(fsmc_nbl_n_i), .fsmc_nadv_n_i(fsmc_nadv_n_i),
@@ -51,7 +51,7 @@ fsmc_bridge u_fsmc_bridge (
 );
 
 bus_decoder #(.SLOTS(SLOTS)) u_bus_decoder (
-    .clk_i(clk_i),
+    .clk_i(`PLATFORM_CLOCK),
     .bus_valid_i(bus_valid), .bus_write_i(bus_write), .bus_addr_i(bus_addr),
     .bus_wdata_i(bus_wdata), .bus_ready_o(bus_ready), .bus_rdata_o(bus_rdata),
     .bus_error_o(bus_error),
@@ -61,7 +61,7 @@ bus_decoder #(.SLOTS(SLOTS)) u_bus_decoder (
 );
 
 modem #(.CLK_HZ(CLK_HZ)) u_modem (
-    .clk_i(clk_i), .rst_i(rst),
+    .clk_i(`PLATFORM_CLOCK), .rst_i(rst),
     `SLOT(MAP_SLOT_MODEM),
     .irq_o(slot_irq[MAP_SLOT_MODEM]),
     `NPI(MAP_NPI_PORT_MODEM),

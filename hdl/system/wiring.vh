@@ -4,6 +4,14 @@
 // that wire blocks together: the chip, its generated cores, and the synthesis of Table I
 // (docs/bus.md, docs/memory.md).
 
+// PLATFORM_CLOCK is the clock of bridge, decoder, modem and system slot. In the simulator it may
+// rest while cores and memory work (quiet_span.h).
+`ifdef VERILATOR
+`define PLATFORM_CLOCK platform_clk
+`else
+`define PLATFORM_CLOCK clk_i
+`endif
+
 // SLOT_WIRES declares the wires between the bus decoder and `count` slots; interrupt lines are those of slots 1 and up.
 `define SLOT_WIRES(count) \
     wire [(count)-1:0]    slot_valid, slot_ready, slot_error; \

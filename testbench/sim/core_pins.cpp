@@ -134,7 +134,7 @@ void connectSensor(SocModel& soc, const Frame& frame, std::function<bool()> send
                              uint32_t(pins.vsync) << MAP_PIN_CAMERA_VSYNC_I |
                              uint32_t(pins.href) << MAP_PIN_CAMERA_HREF_I |
                              uint32_t(pins.data) << MAP_PIN_CAMERA_DATA_I;
-        soc.setCorePins(all);
+        soc.setCorePins(all, true);
         note(all);
         // VSYNC goes high after the last line, and some more clocks show it to the core.
         still = sensor.isIdle() && pins.vsync ? still + 1 : 0;

@@ -21,6 +21,7 @@ constexpr uint8_t lastTick = 7;         // modem_uart_rx.v, modem_uart_tx.v
 constexpr uint64_t worth = 4;           // fewer clocks than these are evaluated
 constexpr uint64_t margin = 2;          // clocks before an event that are evaluated
 constexpr uint64_t settling = 8; // clocks after a carry in which its tick may still have effects
+constexpr uint64_t least = 8;    // clocks that a platform rests alone at first
 constexpr unsigned longest = 32; // clocks between two tests of a busy chip
 constexpr uint64_t blameEvery = 256; // tests of a busy chip
 const std::set<std::string> platform = {"u_fsmc_bridge", "u_bus_decoder", "u_modem",
@@ -69,7 +70,18 @@ std::vector<std::string> SocState::differences(const Image& a, const Image& b) {
 
 QuietSpan::QuietSpan(VSoc& top, uint64_t clkHz)
     : top_(top), timerLast_(static_cast<uint32_t>(clkHz / 16000 * 17 - 2)),
-      image_(sizeof(VSoc___024root)) {}
+      image_(sizeof(VSoc___024root)) {
+    bool joins = false; // the member before is the platform's, too
+    for (const Member& m : members) {
+        const std::string path = m.path, block = path.substr(0, path.find('.'));
+        const bool is = platform.count(block) && block != "u_memory";
+        if (is && joins)
+            platform_.back().second = m.offset + m.size;
+        else if (is)
+            platform_.emplace_back(m.offset, m.offset + m.size);
+        joins = is;
+    }
+}
 
 QuietSpan::Counters QuietSpan::counters() const {
     const VSoc___024root& r = *top_.rootp;
@@ -80,13 +92,15 @@ void QuietSpan::takeImage() {
     std::memcpy(image_.data(), top_.rootp, image_.size());
     before_ = counters();
     hasImage_ = true;
-    isFixed_ = false;
+    isFixed_ = isAllFixed_ = false;
+    since_ = 0;
+    rest_ = least;
     ticks_ = 0;
     nullAge_ = 0;
 }
 
-// True if all state except the counters is that of the image.
-bool QuietSpan::isLikeImage() {
+// True if all state of the platform except the counters is that of the image.
+bool QuietSpan::isPlatformLikeImage() {
     const VSoc___024root& r = *top_.rootp;
     copyInto(image_, r, r.CYCLES);
     copyInto(image_, r, r.PHASE);
@@ -94,7 +108,11 @@ bool QuietSpan::isLikeImage() {
     copyInto(image_, r, r.TIMER);
     copyInto(image_, r, r.RX);
     copyInto(image_, r, r.TX);
-    return std::memcmp(image_.data(), &r, image_.size()) == 0;
+    const auto* now = reinterpret_cast<const unsigned char*>(&r);
+    return std::all_of(platform_.begin(), platform_.end(), [&](const auto& range) {
+        const auto [from, to] = range;
+        return std::memcmp(image_.data() + from, now + from, to - from) == 0;
+    });
 }
 
 void QuietSpan::beginPause() {
@@ -132,11 +150,11 @@ uint64_t QuietSpan::age(uint64_t phase) const {
 }
 
 // Clocks until a counter has its event, less the margin.
-uint64_t QuietSpan::untilEvent(const Counters& now, uint64_t most) const {
+uint64_t QuietSpan::untilEvent(const Counters& now, uint64_t most, bool passesTicks) const {
     uint64_t clocks = most;
     if (timerRuns_)
         clocks = std::min<uint64_t>(clocks, timerLast_ - std::min(now.timer, timerLast_));
-    uint64_t carries = nullAge_ ? ~0ull >> 32 : 0; // that may be passed
+    uint64_t carries = nullAge_ && passesTicks ? ~0ull >> 32 : 0; // that may be passed
     if (rxStep_)
         carries = std::min<uint64_t>(carries, lastTick - now.rx);
     if (txStep_)
@@ -171,35 +189,48 @@ bool QuietSpan::learn(const Counters& now) {
 
 void QuietSpan::sample() {
     ticks_ += top_.rootp->TICK;
+    ++since_;
 }
 
-uint64_t QuietSpan::look(uint64_t most) {
+QuietSpan::Clocks QuietSpan::look(Clocks most) {
     if (pause_) {
         --pause_;
-        return 0;
+        return {};
     }
-    if (most < worth)
-        return 0;
+    if (most.platform < worth)
+        return {};
     Counters now = counters();
     if (now.phase & phaseCarry || top_.rootp->TICK)
-        return 0; // a tick is on its way
+        return {}; // a tick is on its way
     if (!hasImage_) {
         takeImage();
-        return 0;
+        return {};
     }
-    if (!isLikeImage() || !learn(now)) {
+    if (!isPlatformLikeImage() || !learn(now)) {
         blame();
         if (isFixed_ && age(now.phase) < settling) // the tick had an effect
             takeImage();
         else
             beginPause();
-        return 0;
+        return {};
     }
     patience_ = 0;
     before_ = now;
     ticks_ = 0;
-    uint64_t clocks = untilEvent(now, most);
-    return clocks >= worth ? clocks : 0;
+    Clocks clocks = {untilEvent(now, most.chip, true), untilEvent(now, most.platform, false)};
+    if (clocks.chip < worth)
+        return {0, clocks.platform};
+    const bool isLike = std::memcmp(image_.data(), top_.rootp, image_.size()) == 0;
+    isAllFixed_ = isLike && (isAllFixed_ || since_ == 1);
+    since_ = 0;
+    if (isLike) {
+        rest_ = least;
+        return isAllFixed_ ? clocks : Clocks{}; // else once more, in the next clock
+    }
+    blame();
+    std::memcpy(image_.data(), top_.rootp, image_.size());
+    rest_ = std::min(2 * rest_, 8 * uint64_t(longest));
+    return {0, std::min(clocks.platform, rest_)};
 }
 
 uint64_t QuietSpan::pass(uint64_t clocks) {

@@ -13,6 +13,9 @@
 //   phase of the baud rate      a step a clock; a carry is its event: an eighth of a bit time
 //   ticks of the UART's halves  one a tick of the baud rate, or held; the tick at 7 is an event
 //
+// Where cores or the memory move while the platform (bridge, decoder, modem, system slot) does not,
+// the platform alone is quiet, up to the next tick of the baud rate.
+//
 // A tick of the baud rate is skipped, too, once the chip has been seen to come back to the very
 // same state after one, but for these counters (proven: formal.modem_uart_rx,
 // formal.modem_uart_tx).
@@ -23,6 +26,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 class VSoc;
@@ -44,9 +48,14 @@ public:
     // Records the chip's state; to be called after each evaluated clock.
     void sample();
 
-    // Returns for how many clocks, at most `most`, the chip is quiet from here on; 0 if it is not,
-    // or if that is unknown.
-    uint64_t look(uint64_t most);
+    // For how many clocks from here on the chip is quiet, or the platform alone; 0 if it is not, or
+    // if that is unknown.
+    struct Clocks {
+        uint64_t chip, platform;
+    };
+    // The result is at most `most`: clocks until an input of the chip, or of the platform, may
+    // move.
+    Clocks look(Clocks most);
 
     // Adds `clocks`, at most look()'s result, to the counters. Returns how many are left: those
     // with a tick of the baud rate on its way, which must be evaluated.
@@ -68,20 +77,24 @@ private:
 
     Counters counters() const;
     void takeImage();
-    bool isLikeImage();
+    bool isPlatformLikeImage();
     void beginPause();
     void blame();
     bool learn(const Counters& now);
     uint64_t age(uint64_t phase) const; // clocks since the last carry
-    uint64_t untilEvent(const Counters& now, uint64_t most) const;
+    uint64_t untilEvent(const Counters& now, uint64_t most, bool passesTicks) const;
 
     VSoc& top_;
     uint32_t timerLast_;
     std::vector<unsigned char> image_; // a state of the chip
     bool hasImage_ = false;
-    Counters before_{};    // the counters when it was last compared
-    bool isFixed_ = false; // nothing but counters moves in the image
-    uint32_t step_ = 0;    // of the phase, a clock
+    Counters before_{};       // the counters when it was last compared
+    bool isFixed_ = false;    // nothing but counters moves in the image's platform
+    bool isAllFixed_ = false; // nor elsewhere
+    unsigned since_ = 0;      // evaluated clocks since the whole image was last compared
+    uint64_t rest_ = 0;       // clocks of the platform alone before the next look
+    std::vector<std::pair<size_t, size_t>> platform_; // offsets in an image: from, to
+    uint32_t step_ = 0;                               // of the phase, a clock
     bool timerRuns_ = false;
     unsigned ticks_ = 0;   // of the baud rate, since the image was last compared
     uint64_t nullAge_ = 0; // clocks after a carry the chip is back at the image; 0: not known

@@ -76,16 +76,22 @@ void SocModel::timeModels() {
     top_->modem_cts_n_i = line_.ctsN();
 }
 
-// Clocks until a model outside of the chip is due.
-uint64_t SocModel::mayBeQuiet() const {
-    if (!skips_ || now() >= nextEvent_ || (drive_ && cycles_ >= driveAt_))
-        return 0;
-    uint64_t clocks = std::min((nextEvent_ - now() - 1) / clkNs, memory_.untilEvent());
-    return drive_ ? std::min(clocks, driveAt_ - cycles_) : clocks;
+// Clocks until a model outside of the chip is due, or one at the platform's pins.
+QuietSpan::Clocks SocModel::mayBeQuiet() const {
+    if (!skips_ || now() >= nextEvent_)
+        return {};
+    const uint64_t platform = (nextEvent_ - now() - 1) / clkNs;
+    uint64_t clocks = std::min(platform, memory_.untilEvent());
+    if (drive_)
+        clocks = std::min(clocks, std::max(driveAt_, cycles_) - cycles_);
+    return {clocks, platform};
 }
 
 // Gives the chip its owed clocks.
 void SocModel::pay() {
+    if (rested_)
+        (void)span_.pass(rested_); // no tick of the baud rate is among them
+    rested_ = 0;
     if (!owed_)
         return;
     uint64_t left = span_.pass(owed_);
@@ -100,7 +106,7 @@ void SocModel::pay() {
 // Ends a quiet span: an input is about to change.
 void SocModel::wake() {
     pay();
-    quiet_ = 0;
+    quiet_ = resting_ = 0;
     span_.forget();
 }
 
@@ -126,19 +132,31 @@ void SocModel::tick() {
         (void)passQuiet(cycles_ + 1);
         return;
     }
-    pay();
+    if (top_->stirs_o)
+        resting_ = 0;
+    if (!resting_)
+        pay();
     if (drive_ && cycles_ >= driveAt_)
         driveAt_ = drive_();
+    if (resting_) {
+        --resting_;
+        ++rested_;
+        evaluate(true);
+        return;
+    }
     evaluate();
-    quiet_ = span_.look(mayBeQuiet());
+    const QuietSpan::Clocks clocks = span_.look(mayBeQuiet());
+    quiet_ = clocks.chip;
+    resting_ = quiet_ ? 0 : clocks.platform;
 }
 
-void SocModel::evaluate() {
+void SocModel::evaluate(bool rests) {
     // The design is settled: by settle() if the processor's pins have changed, else by the last
     // tick.
     VSoc& top = *top_;
     sampleMcb(top, memory_);
 
+    top.rests_i = rests;
     top.clk_i = 1;
     top.eval();
     ++cycles_;

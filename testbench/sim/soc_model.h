@@ -68,9 +68,15 @@ public:
     uint64_t now() const { return cycles_ * clkNs; }
     bool irq() const { return top_->irq_o; }
 
-    // Sets the input pins of cores (MAP_PIN_...), from the next settling on.
-    void setCorePins(uint32_t value) {
-        wake();
+    // Sets the input pins of cores (MAP_PIN_...), from the next settling on. With `sampled` they
+    // lead to flip-flops alone, as a sensor's: a platform that rests goes on to do so.
+    void setCorePins(uint32_t value, bool sampled = false) {
+        if (!sampled) {
+            wake();
+        } else if (!resting_) {
+            pay();
+            quiet_ = 0;
+        }
         top_->core_pins_i = value;
     }
     uint32_t corePins() const { return top_->core_pins_o; }
@@ -102,18 +108,20 @@ public:
 private:
     void timeModels();
     void settle();
-    void evaluate();
+    void evaluate(bool rests = false);
     void pay();
     void wake();
-    uint64_t mayBeQuiet() const;
+    QuietSpan::Clocks mayBeQuiet() const;
 
     std::unique_ptr<VerilatedContext> context_;
     Observer<VSoc> observer_;
     std::unique_ptr<VSoc> top_;
     QuietSpan span_;
     bool skips_ = true;
-    uint64_t quiet_ = 0; // clocks ahead that need not be evaluated
-    uint64_t owed_ = 0;  // clocks that have passed and were not
+    uint64_t quiet_ = 0;   // clocks ahead that need not be evaluated
+    uint64_t owed_ = 0;    // clocks that have passed and were not
+    uint64_t resting_ = 0; // clocks ahead in which the platform need not be evaluated
+    uint64_t rested_ = 0;  // clocks that have passed in which it was not
     uint64_t evaluated_ = 0;
     FsmcPins pins_;
     FsmcMaster fsmc_;

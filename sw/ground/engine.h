@@ -7,6 +7,7 @@
 #ifndef GROUND_ENGINE_H
 #define GROUND_ENGINE_H
 
+#include "api_modem.h"
 #include "clock.h"
 #include "frame_pacer.h"
 #include "serial_port.h"
@@ -113,6 +114,7 @@ private:
     std::unique_ptr<Link> link_;
     std::vector<U8> serialOut_; // the frame's bytes that the port has not taken yet
     FramePacer pacer_;
+    std::unique_ptr<ApiModem> api_; // in API mode; else the pacer makes packets
     U32 upAt_ = 0, patienceUs_ = 0; // when the link was last up; how long it may be down
     mutable std::mutex mutex_;
     std::condition_variable changed_; // of stop_, listening_, requests for streams

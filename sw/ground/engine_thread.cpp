@@ -28,8 +28,11 @@ constexpr U32 briefBytes = 128; // of a message that one fragment takes, its hea
 int Engine::onTransmit(void* context, const U8* frame, U32 size) {
     Engine& e = self(context);
     U32 now = e.clock_.nowUs();
-    if (!e.serialOut_.empty() || e.serial_.waiting() || !e.pacer_.offer(frame, size, now))
+    if (!e.serialOut_.empty() ||
+        (!e.api_ && (e.serial_.waiting() || !e.pacer_.offer(frame, size, now))))
         return 1;
+    if (e.api_)
+        e.serialOut_ = e.api_->packet(frame, size, now);
     e.writeSerial(now);
     return 0;
 }
@@ -147,9 +150,13 @@ std::string Engine::prepareModem(const Settings& settings) {
     pacer_.clear(clock_.nowUs());
     serialOut_.clear();
     Link_limitFrame(link_.get(), longest);
+    api_.reset();
+    if (setup.isApi())
+        api_ = std::make_unique<ApiModem>(setup.escapes(), settings.target, setup.encrypts());
+    Link_expectAnswers(link_.get(), setup.isApi());
     log_(1, "modem ready on " + device_ + " after " +
                 std::to_string((clock_.nowUs() - begin) / 1000) + " ms" +
-                (setup.encrypts() ? ", it encrypts" : ""));
+                (setup.isApi() ? ", in API mode" : "") + (setup.encrypts() ? ", it encrypts" : ""));
     return "";
 }
 
@@ -231,7 +238,14 @@ bool Engine::downTooLong(U32 now) {
 void Engine::readSerial(U32 now) {
     U8 bytes[512];
     ssize_t count = serial_.read(bytes, sizeof bytes);
-    if (count > 0)
+    if (count > 0 && api_)
+        api_->feed(
+            bytes, static_cast<size_t>(count), now,
+            [&](const U8* data, size_t size) {
+                Link_receive(link_.get(), data, static_cast<U32>(size), now);
+            },
+            [&](bool isThere) { Link_answer(link_.get(), isThere, now); });
+    else if (count > 0)
         Link_receive(link_.get(), bytes, static_cast<U32>(count), now);
     else if (count == 0 || (errno != EAGAIN && errno != EINTR))
         fail("serial port '" + device_ + "': " + (count == 0 ? "closed" : std::strerror(errno)));

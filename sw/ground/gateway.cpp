@@ -30,7 +30,7 @@ struct Options {
     std::string listen = "127.0.0.1:10000";
     int baud = 115200, target = 1, source = 0, rfChannel = 0x0C, pan = 0x3332, guardMs = 1000;
     int trace = 0, wait = 30;
-    bool setUp = true, isWire = false;
+    bool setUp = true, isApi = true, isWire = false;
 };
 
 // Objects that change keys or programs; only --maintenance opens them.
@@ -182,6 +182,7 @@ void setProperties(const std::shared_ptr<Ice::Properties>& p, const Options& o) 
     preset("XBeeAT.Statistics", "1");
     preset("XBeeAT.Trace", std::to_string(o.trace));
     p->setProperty("XBeeAT.Setup", o.setUp ? "1" : "0");
+    p->setProperty("XBeeAT.Api", o.isApi ? "1" : "0");
     p->setProperty("XBeeAT.KeyFile", o.keyFile);
     p->setProperty("Ice.Override.ConnectTimeout", "30000"); // the modem is set up meanwhile
     if (!o.modemKeyFile.empty())
@@ -208,7 +209,7 @@ std::string radioEndpoint(const Options& o) {
 void addOptions(CLI::App& app, Options& o) {
     app.add_option("-d,--device", o.device, "serial port of the modem")->required();
     app.add_option("-b,--baud", o.baud, "baud rate (115200 is the modem's BD 7)")
-        ->check(CLI::IsMember({1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200}));
+        ->check(CLI::IsMember({1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200, 250000}));
     app.add_option("-a,--address", o.target, "the UAV's 16-bit address")
         ->check(CLI::Range(0, 0xFFFF));
     app.add_option("-s,--source", o.source, "own 16-bit address")->check(CLI::Range(0, 0xFFFF));
@@ -223,6 +224,7 @@ void addOptions(CLI::App& app, Options& o) {
     app.add_option("-g,--guard", o.guardMs, "guard time of the modem as it is, ms")
         ->check(CLI::Range(2, 3300));
     app.add_flag("!--no-setup", o.setUp, "the modem is set up already");
+    app.add_flag("!--transparent", o.isApi, "the modem is used in transparent mode, not API mode");
     app.add_flag("--wire", o.isWire,
                  "no modems: the port is wired to the vehicle's board, whose jumper says so");
     app.add_option("-l,--listen", o.listen,

@@ -3,6 +3,7 @@
 // modem_setup: AT commands, each reply checked.
 
 #include "modem_setup.h"
+#include "api_frames.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -14,14 +15,16 @@ namespace XBeeAT {
 namespace {
 
 const int rates[] = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200};
-constexpr int factoryRate = 9600, replyMs = 500, tries = 3;
+constexpr int factoryRate = 9600, fastestRate = 250000, replyMs = 500, tries = 3;
+constexpr int apiReplyMs = 100; // beside the time on the line
 constexpr int mostGuard = 3300; // ms, of ATGT
 
+// Returns the value of BD: a code, or the rate itself.
 int codeOf(int baud) {
     for (int code = 0; code < 8; ++code)
         if (rates[code] == baud)
             return code;
-    return 7;
+    return baud;
 }
 
 std::string hex(int value) {
@@ -79,6 +82,8 @@ bool ModemSetup::enterCommandMode(int guardMs) {
 }
 
 std::string ModemSetup::ask(const std::string& text, std::initializer_list<std::string> words) {
+    if (isApi_)
+        return askApi(text.substr(0, 2), text.substr(2), replyMs);
     serial_.drop();
     std::string line = "AT" + text + "\r";
     if (serial_.write(line.data(), line.size()) != static_cast<ssize_t>(line.size()))
@@ -86,6 +91,46 @@ std::string ModemSetup::ask(const std::string& text, std::initializer_list<std::
     std::string reply = readReply(replyMs, words);
     // A key is secret: its command is not logged.
     log_(2, "AT" + (text.compare(0, 2, "KY") ? text : text.substr(0, 2)) + ": " + reply);
+    return reply;
+}
+
+// Sets a parameter, or reads it (no value), of a modem in API mode. Returns OK, ERROR or the value
+// in hexadecimal; "": no answer came in time.
+std::string ModemSetup::askApi(const std::string& letters, const std::string& value,
+                               int timeoutMs) {
+    constexpr uint8_t id = 0xA5;
+    ApiFrames frames(escapes_);
+    const std::string digits = (value.size() % 2 ? "0" : "") + value;
+    ApiFrames::Bytes bytes;
+    for (size_t i = 0; i < digits.size(); i += 2)
+        bytes.push_back(static_cast<uint8_t>(std::stoi(digits.substr(i, 2), nullptr, 16)));
+    serial_.drop();
+    const auto request = frames.command(id, letters, bytes);
+    if (serial_.write(request.data(), request.size()) != static_cast<ssize_t>(request.size()))
+        return "";
+    std::string reply;
+    for (int leftUs = timeoutMs * 1000; reply.empty();) {
+        uint8_t byte;
+        while (reply.empty() && serial_.read(&byte, 1) == 1)
+            frames.feed(
+                &byte, 1, [](int, const uint8_t*, size_t) {},
+                [&](const ApiFrames::Bytes& answer) {
+                    if (answer.size() < 5 || answer[0] != ApiFrames::Answer || answer[1] != id ||
+                        letters != std::string{char(answer[2]), char(answer[3])})
+                        return;
+                    reply = answer[4] ? "ERROR" : answer.size() == 5 ? "OK" : "";
+                    for (size_t i = 5; i < answer.size() && !answer[4]; ++i)
+                        reply += hex(answer[i]);
+                });
+        if (!reply.empty() || leftUs <= 0)
+            break;
+        const int passed = wait_((leftUs + 999) / 1000, true);
+        stopped_ = passed < 0;
+        if (stopped_)
+            return "";
+        leftUs -= passed;
+    }
+    log_(2, "AT" + letters + (letters == "KY" ? "" : value) + ", API: " + reply);
     return reply;
 }
 
@@ -100,6 +145,17 @@ bool ModemSetup::command(const std::string& text) {
     return false;
 }
 
+// Returns whether a modem in API mode answers at a rate. The question has no byte to be escaped.
+bool ModemSetup::findApi(int baud) {
+    serial_.setSpeed(rate_ = baud);
+    const int ms = apiReplyMs + 180000 / baud;
+    const std::string mode = askApi("AP", "", ms);
+    silentMs_ = mode.empty() ? ms : 0;
+    isApi_ = mode == "1" || mode == "2";
+    escapes_ = mode == "2";
+    return isApi_;
+}
+
 // Tries the target rate first, where a modem is that this has set up before, then the factory's.
 // Then it tries both with a longer guard time, because a modem keeps its ATGT and a simulated one
 // may be slower than the clock, then all rates. Times: docs/modem.md.
@@ -112,14 +168,20 @@ bool ModemSetup::find() {
     for (int i = 7; i >= 0; --i)
         if (rates[i] != settings_.baud && rates[i] != factoryRate)
             candidates.emplace_back(rates[i], guard);
-    silentMs_ = 0;
+    // A modem in API mode knows no +++. The wait in vain is a part of the silence before it.
+    if (findApi(settings_.baud) || stopped_)
+        return !stopped_;
     for (auto [baud, guardMs] : candidates) {
-        serial_.setSpeed(baud);
+        serial_.setSpeed(rate_ = baud);
         bool found = enterCommandMode(guardMs);
         log_(2, "+++ at " + std::to_string(baud) + " baud: " + (found ? "OK" : "no answer"));
         if (found || stopped_)
             return found;
     }
+    for (int baud : {fastestRate, rates[7], rates[6], rates[5], rates[4], factoryRate, rates[2],
+                     rates[1], rates[0]})
+        if (findApi(baud) || stopped_)
+            return !stopped_;
     trouble_ =
         "no modem answers on '" + settings_.device +
         "': check its power and cable, the guard time (-g), or set XBeeAT.Setup=0 if it must "
@@ -128,7 +190,7 @@ bool ModemSetup::find() {
 }
 
 bool ModemSetup::run() {
-    stopped_ = false;
+    stopped_ = isApi_ = escapes_ = false;
     const Settings& s = settings_;
     if (!find() || !command("MY" + hex(s.source)) || !command("DH0") ||
         !command("DL" + hex(s.target)) || !command("CH" + hex(s.rfChannel)) ||
@@ -136,10 +198,39 @@ bool ModemSetup::run() {
         (!s.modemKey.empty() && (!command("EE1") || !command("KY" + s.modemKey))))
         return false;
     encrypts_ = ask("EE", {"0", "1"}) == "1";
-    if (!command("BD" + hex(codeOf(s.baud))) || !command("CN"))
+    return isApi_ ? finishApi() : finish();
+}
+
+// Leaves command mode, into API mode if that is wanted and the modem has it.
+bool ModemSetup::finish() {
+    const bool api = settings_.isApi && ask("AP1", {"OK", "ERROR"}) == "OK";
+    if (!command("BD" + hex(codeOf(settings_.baud))) || !command("CN"))
         return false;
-    serial_.setSpeed(rates[codeOf(s.baud)]);
+    serial_.setSpeed(rate_ = settings_.baud);
+    isApi_ = api;
     return pause(10); // the modem changes its rate after the last OK has left
+}
+
+// Sets rate and mode of a modem that was found in API mode; AP 2 stays. Each is in force at once,
+// so the answer may come at either rate.
+bool ModemSetup::finishApi() {
+    const int found = rate_;
+    for (int attempt = 0; attempt < tries && rate_ != settings_.baud; ++attempt) {
+        (void)askApi("BD", hex(codeOf(settings_.baud)), apiReplyMs);
+        if (stopped_ || !pause(10) || (!findApi(settings_.baud) && !findApi(found) && stopped_))
+            return false;
+    }
+    if (!isApi_ || rate_ != settings_.baud) {
+        trouble_ = "the modem on '" + settings_.device + "' does not answer at " +
+                   std::to_string(settings_.baud) + " baud";
+        return false;
+    }
+    if (settings_.isApi)
+        return true;
+    if (!command("AP0"))
+        return false;
+    isApi_ = escapes_ = false;
+    return true;
 }
 
 } // namespace XBeeAT

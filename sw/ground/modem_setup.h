@@ -23,15 +23,22 @@ public:
     // Sets the modem up. False: `trouble()` says why, or `wait` gave up and it is empty. About two
     // guard times at the right rate at once, one more for each rate tried in vain.
     bool run();
-    bool encrypts() const { return encrypts_; } // EE, after run()
+    // After run(): EE; AP is not 0, and is 2.
+    bool encrypts() const { return encrypts_; }
+    bool isApi() const { return isApi_; }
+    bool escapes() const { return escapes_; }
     const std::string& trouble() const { return trouble_; }
 
 private:
     bool find();
+    bool findApi(int baud);
     bool enterCommandMode(int guardMs);
     bool pause(int ms);
     bool command(const std::string& text);
     std::string ask(const std::string& text, std::initializer_list<std::string> words);
+    std::string askApi(const std::string& letters, const std::string& value, int timeoutMs);
+    bool finish();
+    bool finishApi();
     std::string readReply(int timeoutMs, std::initializer_list<std::string> words);
 
     SerialPort& serial_;
@@ -39,7 +46,8 @@ private:
     const Log& log_;
     Wait wait_;
     std::string trouble_;
-    bool stopped_ = false, encrypts_ = false;
+    bool stopped_ = false, encrypts_ = false, isApi_ = false, escapes_ = false;
+    int rate_ = 0;     // of the port
     int silentMs_ = 0; // how long nothing was sent
 };
 

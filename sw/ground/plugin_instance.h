@@ -55,6 +55,7 @@ public:
         }
         defaults_.serial.downMs = 1000 * p->getPropertyAsIntWithDefault("XBeeAT.Down", 15);
         defaults_.serial.idleMs = 1000 * p->getPropertyAsIntWithDefault("XBeeAT.Idle", 60);
+        defaults_.serial.isApi = p->getPropertyAsIntWithDefault("XBeeAT.Api", 1) > 0;
         defaults_.serial.setUp = p->getPropertyAsIntWithDefault("XBeeAT.Setup", 1) > 0;
     }
     const EndpointOptions& defaults() const { return defaults_; }

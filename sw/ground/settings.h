@@ -24,6 +24,7 @@ struct Settings {
     std::string modemKey; // AES, up to 32 hexadecimal digits; empty: the modem's setting stays
     int guardMs = 1000;   // the modem's present guard time
     bool setUp = true;    // by AT commands
+    bool isApi = true;    // API mode, if the modem is set up and has it
     bool isWire = false;  // no modems: the port is wired to the vehicle's board
     int downMs = 15000;   // without a link, until the modem is set up again
     int idleMs = 60000;   // a program silent this long makes room for one that waits; 0: never

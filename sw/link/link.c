@@ -152,9 +152,38 @@ void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs) {
     link_takeBytes(&link->input, bytes, size);
 }
 
+#if LINK_ANSWERS
+
+void Link_expectAnswers(Link* link, int isOn) {
+    link->output.isAnswered = (U8)isOn;
+    link->output.answered = link->output.handed;
+}
+
+void Link_answer(Link* link, int isDelivered, U32 nowUs) {
+    Link_Output* output = &link->output;
+    output->now = nowUs;
+    if (!LINK_UNANSWERED(output))
+        return;
+    output->handedAt = nowUs;
+    link_onAnswer(&link->sender, output->answered++, isDelivered);
+}
+
+/* Gives up packets whose answers do not come. */
+static void pollAnswers(Link* link) {
+    const Link_Output* output = &link->output;
+    if (output->now - output->handedAt >= LINK_ANSWER_LAST)
+        while (LINK_UNANSWERED(output))
+            Link_answer(link, 0, output->now);
+}
+
+#endif
+
 void Link_poll(Link* link, U32 nowUs) {
     Link_Sender* sender = link->session.sender;
     link->output.now = nowUs;
+#if LINK_ANSWERS
+    pollAnswers(link);
+#endif
     link_pollInput(&link->input);
     if (!link_pollSession(&link->session))
         return;
@@ -184,6 +213,8 @@ U32 Link_deadline(const Link* link, U32 nowUs) {
     U32 soon = nowUs + LINK_POLL_EVERY;
     U32 open = output->paceUntil - output->slack;
     U32 ask = output->heardAt + LINK_PING_AFTER;
+    int waits = LINK_UNANSWERED(output) != 0; /* the radio's next answer decides what goes again */
+    int isFull = LINK_UNANSWERED(output) >= LINK_MOST_UNANSWERED;
     U32 first = sooner(input->count, input->at + LINK_FRAME_GAP, nowUs + FAR);
     first =
         sooner(session->state == LINK_STATE_CONNECTING || (LINK_SECURE && session->isUnconfirmed),
@@ -194,10 +225,14 @@ U32 Link_deadline(const Link* link, U32 nowUs) {
     }
     if (session->state == LINK_STATE_UP) {
         first = sooner(1, LATER(ask, session->pingAt), first);
-        first = sooner(output->packed, soon, first);
-        first = sooner(sender->base != sender->next, sender->timerAt, first);
-        first = sooner(sender->hasWork, LATER(open, soon), first);
-        first = sooner(receiver->ackDue, receiver->ackNow ? soon : receiver->ackAt, first);
+#if LINK_ANSWERS
+        first = sooner(waits, output->handedAt + LINK_ANSWER_LAST, first);
+#endif
+        first = sooner(!isFull && output->packed, soon, first);
+        first = sooner(!waits && sender->base != sender->next, sender->timerAt, first);
+        first = sooner(!isFull && sender->hasWork, LATER(open, soon), first);
+        first =
+            sooner(!isFull && receiver->ackDue, receiver->ackNow ? soon : receiver->ackAt, first);
         first = sooner(receiver->isHeld, nowUs + LINK_OFFER_EVERY, first);
     }
     if (first == nowUs + FAR)

@@ -77,6 +77,16 @@ Link_Status Link_openChannel(Link* link, int channel);
  * Returns LINK_OK, LINK_DOWN, or LINK_CLOSED: it was not open. */
 Link_Status Link_closeChannel(Link* link, int channel);
 
+#if LINK_ANSWERS
+/* Says whether the radio answers for each packet from now on (Link_answer). Then the answers pace
+ * packets, and what a lost one held goes out again at once. */
+void Link_expectAnswers(Link* link, int isOn);
+
+/* Reports the radio's answer for the oldest packet that has none: its peer has it, or it is lost.
+ */
+void Link_answer(Link* link, int isDelivered, U32 nowUs);
+#endif
+
 /* Queues a copy of a message of 1..LINK_MAX_MESSAGE bytes. `tag` is for the `outcome` callback. */
 Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag);
 

@@ -91,7 +91,21 @@ struct Link_Output {
     Link_Statistics statistics;
     Link_Identity present;
     U8 packet[LINK_MAX_FRAME]; /* frames that leave together */
+#if LINK_ANSWERS
+    U8 isAnswered;       /* the radio answers for each packet */
+    U8 handed, answered; /* packets handed over, and those of them with an answer, modulo 256 */
+    U32 handedAt;        /* when the last one was handed over, or answered */
+#endif
 };
+
+/* Whether the radio answers for each packet, and the packets that it has not answered for yet. */
+#if LINK_ANSWERS
+#define LINK_IS_ANSWERED(output) ((output)->isAnswered)
+#define LINK_UNANSWERED(output) ((U8)((output)->handed - (output)->answered))
+#else
+#define LINK_IS_ANSWERED(output) 0
+#define LINK_UNANSWERED(output) 0U
+#endif
 
 /* True if a fragment may go out now: the packet has room, or the modem has for a new one. */
 int link_isOpen(Link_Output* output);

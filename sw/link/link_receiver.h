@@ -29,6 +29,7 @@ typedef struct Link_Receiver {
     U8 longChannel;  /* and of the long one that is being put together */
     U8 ackDue, ackNow;
     U8 waiting; /* slots in use */
+    U8 packet;  /* that took the last acknowledgement along, as Link_Output.handed counts */
     U16 size;   /* of the two, as channel */
     U16 longSize;
     U32 ackAt;

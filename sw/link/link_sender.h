@@ -18,6 +18,7 @@ typedef struct Link_Fragment {
     U32 order;           /* number of its last transmission */
     U8 tries;            /* 0, 1, more */
     U8 state;            /* Link_FragmentState */
+    U8 packet;           /* of its last transmission, as Link_Output.handed counts */
 } Link_Fragment;
 
 typedef struct Link_Sender {
@@ -46,6 +47,8 @@ Link_Entry* link_offer(Link_Sender* sender, U32 flags, U32 size);
 void link_resetSender(Link_Sender* sender);
 /* `bitmap` has `size` bytes, as in the frame. */
 void link_onAck(Link_Sender* sender, U32 cumulative, U32 credit, const U8* bitmap, U32 size);
+/* Takes the radio's answer for a packet: what was in one that is lost goes out again. */
+void link_onAnswer(Link_Sender* sender, U32 packet, int isDelivered);
 /* Sends fragments that are due. Returns 0: one is so old that the session must end. */
 int link_pollSender(Link_Sender* sender);
 

@@ -10,6 +10,7 @@
 namespace {
 
 unsigned leastExponent = 2;            // RN, as controller and ground set it
+unsigned apiEnds = 0, apiRate = 7;     // modems in API mode: none, the ground's, both; their BD
 constexpr int pictures = 0, calls = 1; // channels
 const char* const key = "0123456789ABCDEF0123456789ABCDEF";
 
@@ -20,7 +21,7 @@ const char* const names[] = {"in the clear", "encrypted", "with a key"};
 class End : public ModemEnd {
 public:
     End(RfChannel& air, unsigned address, uint64_t seed, Mode mode)
-        : ModemEnd(air, options(address, mode), seed) {
+        : ModemEnd(air, options(address, mode, address < apiEnds), seed) {
         if (mode == Keyed)
             Link_setKey(link(), 0, reinterpret_cast<const U8*>(key), address ? 0 : LINK_GROUND);
     }
@@ -42,8 +43,10 @@ public:
     }
 
 private:
-    static XBee::Options options(unsigned address, Mode mode) {
-        XBee::Options o = modemOptions(address, mode == Encrypted, leastExponent);
+    static XBee::Options options(unsigned address, Mode mode, bool isApi) {
+        XBee::Options o = modemOptions(address, mode == Encrypted, leastExponent, isApi);
+        if (isApi)
+            o.set["BD"] = apiRate;
         if (mode == Encrypted)
             o.key = key;
         return o;
@@ -207,6 +210,9 @@ void headOfLine(Mode mode) {
 
 int main(int argc, char** argv) {
     figures.app.add_option("--rn", leastExponent, "RN of both modems")->check(CLI::Range(0u, 3u));
+    figures.app.add_option("--api", apiEnds, "Modems in API mode: none, the ground's, both")
+        ->check(CLI::Range(0u, 2u));
+    figures.app.add_option("--api-rate", apiRate, "their BD, or their rate in baud");
     std::string only;
     const std::map<std::string, void (*)(Mode)> parts = {{"goodput", allGoodput},
                                                          {"round-trips", roundTrips},

@@ -6,6 +6,7 @@
 #ifndef MODEM_PAIR_H
 #define MODEM_PAIR_H
 
+#include "api_modem.h"
 #include "frame_pacer.h"
 #include "rf_channel.h"
 #include "serial_line.h"
@@ -68,12 +69,13 @@ private:
     uint8_t byte_ = 0;
 };
 
-// The settings of modem 0 or 1, which talks to the other; RN is `leastExponent`.
+// The settings of modem 0 or 1, which talks to the other; RN is `leastExponent`, unless the modem
+// is in API mode, where the end changes it.
 inline XBee::Options modemOptions(unsigned address, bool encrypts = false,
-                                  unsigned leastExponent = 2) {
+                                  unsigned leastExponent = 2, bool isApi = false) {
     XBee::Options o;
-    o.set = {{"BD", 7}, {"MY", address},  {"DL", 1 - address},
-             {"D7", 1}, {"EE", encrypts}, {"RN", leastExponent}};
+    o.set = {{"BD", 7},        {"MY", address},       {"DL", 1 - address}, {"D7", 1},
+             {"EE", encrypts}, {"RN", leastExponent}, {"AP", isApi}};
     return o;
 }
 
@@ -82,7 +84,9 @@ inline XBee::Options modemOptions(unsigned address, bool encrypts = false,
 class ModemEnd {
 public:
     ModemEnd(RfChannel& air, const XBee::Options& options, uint64_t seed)
-        : modem(line, air, options),
+        : modem(line, air, options), isApi_(modem.parameter("AP") != 0),
+          api_(modem.parameter("AP") == 2, static_cast<int>(modem.parameter("DL")),
+               options.set.at("EE") != 0),
           pacer_(90, options.set.at("EE") ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME), random_(seed) {
         static const Link_Port port = {
             [](void* c, const U8* f, U32 n) { return self(c).transmit(f, n); },
@@ -98,6 +102,7 @@ public:
         Link_init(link(), &port, this, 1440);
         if (options.set.at("EE"))
             Link_limitFrame(link(), LINK_MAX_ENCRYPTED);
+        Link_expectAnswers(link(), isApi_);
     }
     virtual ~ModemEnd() = default;
     ModemEnd(const ModemEnd&) = delete;
@@ -114,8 +119,7 @@ public:
         write();
         if (now >= nextPoll_ || !line.received.empty()) {
             const U32 us = static_cast<U32>(now / 1000);
-            Link_receive(link(), line.received.data(), static_cast<U32>(line.received.size()), us);
-            line.received.clear();
+            receive(us);
             Link_poll(link(), us);
             nextPoll_ =
                 now + std::min(Link_deadline(link(), us), longestRestUs) * 1000ull + 100'000;
@@ -131,7 +135,26 @@ protected:
 
 private:
     static ModemEnd& self(void* c) { return *static_cast<ModemEnd*>(c); }
+    void receive(U32 us) {
+        const U8* bytes = line.received.data();
+        const U32 size = static_cast<U32>(line.received.size());
+        if (isApi_)
+            api_.feed(
+                bytes, size, us,
+                [&](const U8* data, size_t count) {
+                    Link_receive(link(), data, static_cast<U32>(count), us);
+                },
+                [&](bool isThere) { Link_answer(link(), isThere, us); });
+        else
+            Link_receive(link(), bytes, size, us);
+        line.received.clear();
+    }
     int transmit(const U8* frame, U32 size) {
+        if (isApi_) {
+            const auto bytes = api_.packet(frame, size, static_cast<U32>(now_ / 1000));
+            line.send(bytes.data(), bytes.size(), now_);
+            return 0;
+        }
         if (line.waiting() || !pacer_.offer(frame, size, static_cast<U32>(now_ / 1000)))
             return 1;
         write();
@@ -144,6 +167,8 @@ private:
         const U32 wait = pacer_.deadline(us);
         nextWrite_ = wait == 0xFFFFFFFFu ? never : now_ + wait * 1000ull;
     }
+    const bool isApi_;
+    XBeeAT::ApiModem api_;
     XBeeAT::FramePacer pacer_;
     std::unique_ptr<Link> link_{new Link};
     Random random_;

@@ -121,7 +121,7 @@ TEST_F(EngineTest, AModemThatIsResetInFlightIsSetUpAgain) {
     echoes(fd, 2);
     close(fd);
     EXPECT_EQ(rig_.with([&] { return rig_.ground->parameter("BD"); }), 7u);
-    EXPECT_EQ(rig_.with([&] { return rig_.ground->parameter("RN"); }), 2u);
+    EXPECT_EQ(rig_.with([&] { return rig_.ground->parameter("AP"); }), 1u);
     EXPECT_TRUE(logged("Setting the modem up again"));
 }
 
@@ -216,6 +216,38 @@ TEST_F(EngineTest, HeartbeatsTakeNoAir) {
     });
     EXPECT_EQ(readAll(fd, 30)[8], 2);
     close(fd);
+}
+
+// A modem may be in any mode and at any rate when it is found; AP 2 is its user's choice.
+TEST_F(EngineTest, AModemInAnyModeIsSetToTheWantedOne) {
+    rig_.with([&] { rig_.echo = true; });
+    const auto fly = [&](const XBeeAT::Settings& s, uint32_t mode, uint32_t rate) {
+        SCOPED_TRACE("AP " + std::to_string(mode));
+        auto engine = start(s);
+        const int fd = engine->connect(0);
+        for (unsigned tag : {0x7Du, 0x7Eu, 0x11u, 0x13u})
+            echoes(fd, static_cast<uint8_t>(tag), 200);
+        close(fd);
+        rig_.with([&] {
+            EXPECT_EQ(rig_.ground->parameter("AP"), mode);
+            EXPECT_EQ(rig_.ground->parameter("BD"), rate);
+        });
+    };
+    XBeeAT::Settings s = settings(), plain = settings(), fast = settings(), slow = settings();
+    plain.isApi = false;
+    fast.baud = 250000;
+    slow.baud = 57600;
+    fly(s, 1, 7);
+    fly(s, 1, 7); // found in API mode
+    fly(slow, 1, 6);
+    fly(fast, 1, 250000);
+    fly(plain, 0, 7);
+    fly(plain, 0, 7);
+    rig_.replaceGround({{"AP", 2}, {"BD", 4}});
+    fly(s, 2, 7);
+    rig_.replaceGround({});
+    rig_.with([&] { rig_.ground->refuseCommand("AP"); });
+    fly(s, 0, 7);
 }
 
 TEST_F(EngineTest, TheModemsKeyIsSetAndNeverLogged) {

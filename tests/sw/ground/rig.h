@@ -27,12 +27,10 @@ public:
     using Bytes = std::vector<uint8_t>;
 
     explicit Rig(uint64_t seed) : air(seed), random_(seed), link_(new Link) {
-        XBee::Options g, u;
-        g.name = "ground";
-        g.set = {{"GT", guardMs}, {"D6", 1}};
+        XBee::Options u;
         u.name = "uav";
         u.set = {{"BD", 7}, {"MY", 1}, {"DL", 0}};
-        ground = std::make_unique<XBee>(pty, air, g);
+        replaceGround({});
         uav = std::make_unique<XBee>(line_, air, u);
         bootUav();
         thread_ = std::thread([this] { run(); });
@@ -40,6 +38,16 @@ public:
     ~Rig() {
         stop_ = true;
         thread_.join();
+    }
+    // Puts another modem in the ground's place.
+    void replaceGround(std::map<std::string, uint32_t> set) {
+        std::lock_guard<std::mutex> lock(mutex_);
+        XBee::Options g;
+        g.name = "ground";
+        g.set = std::move(set);
+        g.set.insert({{"GT", guardMs}, {"D6", 1}});
+        ground.reset();
+        ground = std::make_unique<XBee>(pty, air, g);
     }
     // Runs `f` between two steps of the models.
     template <class F> auto with(F f) {

@@ -12,8 +12,9 @@ constexpr uint64_t ms = 1'000'000;
 
 class End : public ModemEnd {
 public:
-    End(RfChannel& air, unsigned address, uint64_t seed, bool hasKey)
-        : ModemEnd(air, modemOptions(address), seed) {
+    // `apiEnds`: ends in API mode: none, the first, both.
+    End(RfChannel& air, unsigned address, uint64_t seed, bool hasKey, unsigned apiEnds)
+        : ModemEnd(air, modemOptions(address, false, 2, address < apiEnds), seed) {
         static const U8 key[LINK_KEY_BYTES] = {1, 2, 3};
         if (hasKey)
             Link_setKey(link(), 0, key, address ? 0 : LINK_GROUND);
@@ -26,7 +27,7 @@ private:
     }
 };
 
-class LinkOverModems : public ::testing::TestWithParam<bool> {
+class LinkOverModems : public ::testing::TestWithParam<std::pair<bool, unsigned>> {
 protected:
     // Sends messages each way, and expects all of them, once, in order.
     void expectAll(unsigned count, unsigned seconds, const std::function<void()>& meanwhile = {}) {
@@ -53,7 +54,7 @@ protected:
         a_.received.clear();
         b_.received.clear();
     }
-    ModemPair<End> pair_{RfWeather(), testSeed(), 1, GetParam()};
+    ModemPair<End> pair_{RfWeather(), testSeed(), 1, GetParam().first, GetParam().second};
     RfChannel& air_ = pair_.air;
     End &a_ = pair_.a, &b_ = pair_.b;
 };
@@ -114,7 +115,7 @@ TEST_P(LinkOverModems, AnIdleSessionLastsInBadWeather) {
     const U32 before = a_.statistics().bytesSent + b_.statistics().bytesSent;
     pair_.pass(3600 * 1000 * ms);
     EXPECT_LE((a_.statistics().bytesSent + b_.statistics().bytesSent - before) / 720,
-              GetParam() ? 44u : 11u); // in five seconds
+              GetParam().first ? 44u : 11u); // in five seconds
     auto weathers = RfWeather::published();
     weathers.emplace_back("loss", RfWeather()).second.loss = 0.3;
     for (auto& [what, weather] : weathers) {
@@ -125,7 +126,37 @@ TEST_P(LinkOverModems, AnIdleSessionLastsInBadWeather) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Keys, LinkOverModems, ::testing::Bool(),
-                         [](auto& test) { return test.param ? "WithAKey" : "InTheClear"; });
+// A modem in API mode says what was lost: that goes again at once, once, though the receiver has
+// said nothing yet; nothing else does.
+TEST(LinkOverApi, WhatTheModemSaysIsLostAndNothingElseIsSentAgain) {
+    ModemPair<End> pair(RfWeather(), testSeed(), 1, false, 1u);
+    pair.air.weather.loss = 0.3;
+    unsigned lost = 0;
+    pair.air.onPacket([&](uint64_t, const RfPacket& packet, RfChannel::Outcome outcome) {
+        lost += packet.from == 0 && outcome != RfChannel::Outcome::Delivered;
+    });
+    const std::vector<U8> message(LINK_MAX_MESSAGE, 1);
+    unsigned sent = 0;
+    ASSERT_TRUE(pair.until(
+        [&] {
+            while (sent < 10 &&
+                   Link_send(pair.a.link(), 0, message.data(), LINK_MAX_MESSAGE, 0) == LINK_OK)
+                ++sent;
+            return pair.b.received.size() == 10;
+        },
+        20)); // the lost packets included, these take 13 s of the air's time
+    EXPECT_GT(lost, 250u);
+    EXPECT_NEAR(pair.a.statistics().fragmentsResent, lost, lost * 0.05);
+}
+
+INSTANTIATE_TEST_SUITE_P(Keys, LinkOverModems,
+                         ::testing::Values(std::make_pair(false, 0u), std::make_pair(true, 0u),
+                                           std::make_pair(false, 1u), std::make_pair(true, 2u)),
+                         [](auto& test) {
+                             return std::string(test.param.first ? "WithAKey" : "InTheClear") +
+                                    (test.param.second == 0   ? ""
+                                     : test.param.second == 1 ? "OneInApiMode"
+                                                              : "BothInApiMode");
+                         });
 
 } // namespace

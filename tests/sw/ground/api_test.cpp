@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+//
+// api_test: frames of a modem in API mode, its answers, and the choice of RN.
+
+#include "api_modem.h"
+#include "random.h"
+#include <gtest/gtest.h>
+
+namespace {
+
+using XBeeAT::ApiFrames;
+using XBeeAT::ApiModem;
+using Bytes = ApiFrames::Bytes;
+
+// What a modem in API mode said: data, '+' for a packet that arrived, '-' for a lost one.
+struct Heard {
+    Bytes data;
+    std::string answers;
+    void feed(ApiModem& modem, const Bytes& bytes) {
+        for (uint8_t byte : bytes) // one at a time
+            modem.feed(
+                &byte, 1, 0,
+                [&](const uint8_t* d, size_t count) { data.insert(data.end(), d, d + count); },
+                [&](bool isThere) { answers += isThere ? '+' : '-'; });
+    }
+};
+
+Bytes packetFrom(const ApiFrames& frames, uint16_t source, const Bytes& data) {
+    Bytes contents = {0x81, static_cast<uint8_t>(source >> 8), static_cast<uint8_t>(source), 40, 0};
+    contents.insert(contents.end(), data.begin(), data.end());
+    return frames.pack(contents);
+}
+
+TEST(Api, PacketsOfAllBytesArriveWithAndWithoutEscapes) {
+    for (bool escapes : {false, true}) {
+        const ApiFrames frames(escapes);
+        ApiModem modem(escapes, 1);
+        Heard heard;
+        Bytes all;
+        for (int first = 0; first < 256; first += 64) {
+            Bytes data;
+            for (int i = 0; i < 64; ++i)
+                data.push_back(static_cast<uint8_t>(first + i));
+            heard.feed(modem, packetFrom(frames, 1, data));
+            all.insert(all.end(), data.begin(), data.end());
+        }
+        EXPECT_EQ(heard.data, all);
+    }
+    const Bytes bytes = ApiFrames(true).packet(0x11, 0x7E13, Bytes{0x7D}.data(), 1);
+    EXPECT_EQ(std::count(bytes.begin(), bytes.end(), 0x7E), 1);
+    EXPECT_EQ(std::count(bytes.begin(), bytes.end(), 0x11), 0);
+    EXPECT_EQ(std::count(bytes.begin(), bytes.end(), 0x13), 0);
+}
+
+// The frame under way is heard at once: a short one at its head need not wait for the others.
+TEST(Api, DataAreGivenAsTheyCome) {
+    ApiModem modem(false, 1);
+    Heard heard;
+    Bytes bytes = packetFrom(ApiFrames(), 1, {1, 2, 3, 4});
+    bytes.resize(bytes.size() - 3);
+    heard.feed(modem, bytes);
+    EXPECT_EQ(heard.data, (Bytes{1, 2}));
+}
+
+TEST(Api, OthersPacketsAreDropped) {
+    ApiModem modem(false, 1), open(false, 0xFFFF);
+    Heard heard, all;
+    for (uint16_t source : {uint16_t(2), uint16_t(1)}) {
+        heard.feed(modem, packetFrom(ApiFrames(), source, {static_cast<uint8_t>(source)}));
+        all.feed(open, packetFrom(ApiFrames(), source, {static_cast<uint8_t>(source)}));
+    }
+    EXPECT_EQ(heard.data, Bytes{1});
+    EXPECT_EQ(all.data, (Bytes{2, 1}));
+}
+
+// A packet whose answer the line lost counts as lost, as soon as a later one is answered.
+TEST(Api, AnswersComeInTheOrderOfPacketsAndALostOneCountsAsALoss) {
+    ApiModem modem(false, 1);
+    Heard heard;
+    for (int i = 0; i < 300; ++i) // numbers go round
+        modem.packet(Bytes{1}.data(), 1, 0);
+    for (int i = 0; i < 296; ++i)
+        heard.feed(modem, ApiFrames().pack({0x89, static_cast<uint8_t>(i % 255 + 1), 0}));
+    EXPECT_EQ(heard.answers, std::string(296, '+'));
+    heard.answers.clear();
+    heard.feed(modem, ApiFrames().pack({0x89, 298 % 255, 2}));
+    heard.feed(modem, ApiFrames().pack({0x89, 298 % 255, 0})); // nobody waits for it
+    Bytes spoilt = ApiFrames().pack({0x89, 299 % 255, 0});
+    spoilt.back() ^= 1;
+    heard.feed(modem, spoilt);
+    heard.feed(modem, ApiFrames().pack({0x89, 300 % 255, 0}));
+    EXPECT_EQ(heard.answers, "---+");
+}
+
+TEST(Api, AfterNoiseFramesAreReadAgain) {
+    Random random(testSeed());
+    for (bool escapes : {false, true}) {
+        const ApiFrames frames(escapes);
+        ApiModem modem(escapes, 1);
+        for (int turn = 0; turn < 300; ++turn) {
+            Heard heard;
+            for (uint32_t i = random.below(40); i; --i)
+                heard.feed(modem, {static_cast<uint8_t>(random.below(4) ? random.next() : 0x7E)});
+            for (int i = 0; i < 3; ++i) // a false frame holds at most the first ones back
+                heard.feed(modem, packetFrom(frames, 1, Bytes(60, 0x55)));
+            heard.data.clear();
+            heard.feed(modem, packetFrom(frames, 1, {1, 2, 3}));
+            ASSERT_GE(heard.data.size(), 3u);
+            EXPECT_EQ(Bytes(heard.data.end() - 3, heard.data.end()), (Bytes{1, 2, 3}));
+        }
+    }
+}
+
+TEST(Api, WhoTalksAloneDoesNotWaitAndTwoThatTalkDo) {
+    XBeeAT::Contention contention; // as set-up leaves it: 2
+    uint32_t now = 0;
+    EXPECT_TRUE(contention.changes(now));
+    EXPECT_EQ(contention.exponent(), 0);
+    XBeeAT::Contention encrypts(true);
+    EXPECT_TRUE(encrypts.changes(now));
+    EXPECT_EQ(encrypts.exponent(), 1);
+    for (; now < 2'000'000; now += 100'000) // acknowledgements, and answers to calls
+        contention.heard(100, now);
+    EXPECT_FALSE(contention.changes(now));
+    for (; now < 3'000'000; now += 20'000) // a stream
+        contention.heard(100, now);
+    EXPECT_TRUE(contention.changes(now));
+    EXPECT_EQ(contention.exponent(), 2);
+    now += 2'000'000;
+    EXPECT_TRUE(contention.changes(now));
+    EXPECT_EQ(contention.exponent(), 0);
+}
+
+TEST(Api, WhoSendsLittleWaitsWherePacketsAreLost) {
+    XBeeAT::Contention contention;
+    uint32_t now = 20'000'000;
+    EXPECT_TRUE(contention.changes(now));
+    contention.lost(now);
+    EXPECT_TRUE(contention.changes(now));
+    EXPECT_EQ(contention.exponent(), 2);
+    for (; now < 21'000'000; now += 20'000) {
+        contention.sent(100, now);
+        contention.lost(now);
+    }
+    EXPECT_TRUE(contention.changes(now)); // a stream has a packet for each quiet moment
+    EXPECT_EQ(contention.exponent(), 0);
+    EXPECT_TRUE(contention.changes(now += 1'000'000));
+    EXPECT_EQ(contention.exponent(), 2);
+    EXPECT_TRUE(contention.changes(now += 10'000'000));
+    EXPECT_EQ(contention.exponent(), 0);
+}
+
+} // namespace

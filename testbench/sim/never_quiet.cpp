@@ -9,9 +9,15 @@ QuietSpan::QuietSpan(VSoc& top, uint64_t) : top_(top), timerLast_(0) {}
 
 void QuietSpan::sample() {}
 
-uint64_t QuietSpan::look(uint64_t) {
-    return 0;
+QuietSpan::Clocks QuietSpan::look(Clocks) {
+    return {};
 }
+
+bool QuietSpan::stirs() const {
+    return true;
+}
+
+void QuietSpan::rest(bool) {}
 
 uint64_t QuietSpan::pass(uint64_t clocks) {
     return clocks;

@@ -233,6 +233,14 @@ QuietSpan::Clocks QuietSpan::look(Clocks most) {
     return {0, std::min(clocks.platform, rest_)};
 }
 
+bool QuietSpan::stirs() const {
+    return top_.stirs_o;
+}
+
+void QuietSpan::rest(bool rests) {
+    top_.rests_i = rests;
+}
+
 uint64_t QuietSpan::pass(uint64_t clocks) {
     VSoc___024root& r = *top_.rootp;
     const uint64_t low = r.PHASE & phaseMask;

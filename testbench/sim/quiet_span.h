@@ -57,6 +57,10 @@ public:
     // move.
     Clocks look(Clocks most);
 
+    // Whether the platform needs a clock, by what cores and memory tell it; whether it gets none.
+    bool stirs() const;
+    void rest(bool rests);
+
     // Adds `clocks`, at most look()'s result, to the counters. Returns how many are left: those
     // with a tick of the baud rate on its way, which must be evaluated.
     uint64_t pass(uint64_t clocks);

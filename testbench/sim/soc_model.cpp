@@ -132,7 +132,7 @@ void SocModel::tick() {
         (void)passQuiet(cycles_ + 1);
         return;
     }
-    if (top_->stirs_o)
+    if (span_.stirs())
         resting_ = 0;
     if (!resting_)
         pay();
@@ -156,7 +156,7 @@ void SocModel::evaluate(bool rests) {
     VSoc& top = *top_;
     sampleMcb(top, memory_);
 
-    top.rests_i = rests;
+    span_.rest(rests);
     top.clk_i = 1;
     top.eval();
     ++cycles_;

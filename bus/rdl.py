@@ -26,6 +26,7 @@ ACCESS = {"r": "ro", "w": "ws", "rw": "rw", "wr": "rw", "rw1": "rw", "w1": "ws"}
 
 
 def number(text):
+    check(len(text) <= 80, f"a number of {len(text)} digits")
     text = text.replace("_", "").lower()
     if "'" in text:
         digits = text.split("'")[1]

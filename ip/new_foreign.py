@@ -62,7 +62,8 @@ class Request:
 
     def check(self):
         """Ends the program if what is asked for cannot be."""
-        if self.clock and not (self.clock.isdigit() and 3000000 <= int(self.clock) <= 100000000):
+        if self.clock and not (re.fullmatch("[0-9]{7,9}", self.clock)
+                               and 3000000 <= int(self.clock) <= 100000000):
             fail(f"CLOCK={self.clock}: the frequency of the core's own clock, 3000000 to "
                  "100000000 Hz")
         if self.clock and self.bus == "axis":

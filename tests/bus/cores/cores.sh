@@ -216,6 +216,7 @@ refused 'memory=0x8000000: buffers' 'mover memory=0x8000000\n'
 refused '2: error: memory=0x1000800 is within the buffers of line 1' \
     'mover memory=0x1000800\nmover name=b memory=0x1000800\n'
 refused 'memory=1x: a byte address' 'mover memory=1x\n'
+refused 'a byte address in DDR3' "mover memory=1$(printf '%05000d' 0)\n"
 refused 'memory=0x1000000: a byte address in DDR3, for a core with buffers' 'led memory=0x1000000\n'
 refused "1: error: there is no core 'nobody'" 'nobody\n'
 refused "2: error: 'led' is on line 1 already; name=" 'led\nled\n'

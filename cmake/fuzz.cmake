@@ -34,7 +34,7 @@ function(icesoc_fuzz name)
   endforeach()
   add_custom_command(OUTPUT ${dir}/run
     COMMAND ${CLANGXX} -fsanitize=fuzzer,address,undefined -o ${dir}/run ${objects} ${A_LIBS}
-    DEPENDS ${objects} VERBATIM COMMENT "Fuzzer ${name}")
+    DEPENDS ${objects} ${A_DEPENDS} VERBATIM COMMENT "Fuzzer ${name}")
   add_custom_target(fuzz_${name} ALL DEPENDS ${dir}/run ${A_DEPENDS})
   if(NOT A_LENGTH)
     set(A_LENGTH 400)

@@ -16,7 +16,7 @@ module soc #(
     input  wire [31:0] core_pins_i,
     output wire [31:0] core_pins_o,
     output reg         irq_o
-`ifdef VERILATOR
+`ifdef PLATFORM_RESTS
     ,
     input  wire        rests_i, // the platform has no clock, its memory excepted
     output wire        stirs_o  // it needs one, by what cores and memory tell it
@@ -35,7 +35,7 @@ module soc #(
     wire rst, irq;
     cdc_reset u_rst (.clk_i(clk_i), .rst_async_i(rst_i), .rst_o(rst));
     `include "wiring.vh"
-`ifdef VERILATOR
+`ifdef PLATFORM_RESTS
     wire platform_clk = clk_i && !rests_i;
 `endif
     // The processor's interrupt input sees edges, so no glitch of a LUT may reach it.
@@ -45,7 +45,7 @@ module soc #(
 
     // Cores and the hashes of all slots' registers: generated from ip/cores.list.
     `include "soc_cores.vh"
-`ifdef VERILATOR
+`ifdef PLATFORM_RESTS
     // A probe would see the counters of a platform that rests stand still.
     assign stirs_o = PROBES != 0 || !calib_done || bus_valid || irq != irq_o ||
                      |((npi_addr_ack | ~npi_rd_empty) & NO_READ_FIFO[PORTS-1:0]);

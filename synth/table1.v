@@ -27,9 +27,6 @@ module table1 #(
     localparam MAP_SLOT_MODEM = 1, MAP_NPI_PORT_FSMC = 0, MAP_NPI_PORT_MODEM = 1;
 
     wire rst = rst_i;
-`ifdef VERILATOR
-    wire platform_clk = clk_i;
-`endif
     `include "platform.vh"
 
     assign page = page_i;

@@ -6,7 +6,7 @@
 
 // PLATFORM_CLOCK is the clock of bridge, decoder, modem and system slot. In the simulator it may
 // rest while cores and memory work (quiet_span.h).
-`ifdef VERILATOR
+`ifdef PLATFORM_RESTS
 `define PLATFORM_CLOCK platform_clk
 `else
 `define PLATFORM_CLOCK clk_i

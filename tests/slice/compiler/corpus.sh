@@ -6,7 +6,7 @@
 set -eu
 rm -rf "$1"
 mkdir -p "$1"
-grep -o '"[A-Za-z]*"' "$2/../../slice/front/symbols.cpp" >"$1.dict"
+grep -o '"[A-Za-z][A-Za-z]*"' "$2/../../slice/front/symbols.cpp" >"$1.dict"
 find "$2" -name '*.ice' | while read -r file; do
     awk -v to="$1/$(basename "$file" .ice)" \
         '/^\/\/ (ok|warning|error): / { n++ } { print > (to "_" n ".ice") }' "$file"

@@ -176,8 +176,9 @@ TEST_F(ModemApi, FramesOfAllTypesAreTakenAndTooLongOnesPassedOver) {
         bytesIn(apiFrame(received(after)), bitClocks);
         runMs(0.1);
         EXPECT_EQ(takePacket(), before) << i << ", SEED " << testSeed();
-        if (strangers[i].size() < 112)
+        if (strangers[i].size() < 112) {
             EXPECT_EQ(take(), strangers[i]) << i << ", SEED " << testSeed();
+        }
         EXPECT_EQ(takePacket(), after) << i << ", SEED " << testSeed();
         EXPECT_TRUE(take().empty()) << i;
         EXPECT_EQ(takeEvents(), MODEM_EVENT_RX_PACKET_MASK) << i;

@@ -180,7 +180,8 @@ def verilog_of(chip, slots):
                if p.direction == "o"]
     s = (f"// {HAND} Cores in their slots, for soc.v.\n\n"
          f"    localparam [32*{chip.slots}-1:0] CONTRACTS = {{{hashes}}};\n"
-         f"    localparam PROBES = {sum(c.is_probe for c in chip.cores)};\n\n")
+         "`ifdef PLATFORM_RESTS\n"
+         f"    localparam PROBES = {sum(c.is_probe for c in chip.cores)};\n`endif\n\n")
     s += "".join(f"    {declared(pin.width, net)};\n" for net, pin in outputs)
     s += probed(chip)
     s += "".join(instance(core) + "\n" for core in chip.cores)

@@ -180,7 +180,8 @@ class Chip:
             core.check(self.first <= core.slot < SLOT_LIMIT,
                        f"slot={value}: {self.first}..{SLOT_LIMIT - 1} are for cores")
         elif key == "memory":
-            core.check(core.memory_bytes and re.fullmatch("0[xX][0-9a-fA-F]{1,8}|0|[1-9][0-9]{0,9}", value),
+            digits = "0[xX][0-9a-fA-F]{1,8}|0|[1-9][0-9]{0,9}"
+            core.check(core.memory_bytes and re.fullmatch(digits, value),
                        f"memory={value}: a byte address in DDR3, for a core with buffers")
             core.memory, core.is_placed = int(value, 0), True
         elif key == "signals" and core.is_probe:

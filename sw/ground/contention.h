@@ -47,7 +47,7 @@ public:
 
 private:
     static constexpr uint32_t lossUs = 10000000; // in which a loss counts
-    // Of the 5,000 bytes that the air carries in such a span.
+    // The air carries some 5,000 bytes in a span; these many or few of them tell a stream.
     static constexpr uint32_t spanUs = 500000;
     static constexpr size_t manyBytes = 1000, fewBytes = 500;
 

@@ -89,7 +89,7 @@ private:
     const int fd_;
 };
 
-// Where a server listens that is no Ice program.
+// A server listens here that is no Ice program.
 struct Listener {
     Listener() {
         sockaddr_in at = local(0);

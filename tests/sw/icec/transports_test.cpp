@@ -91,7 +91,7 @@ TEST_F(Transports, AnAdaptersProxyHasAnEndpointOfEachTransportItListensOn) {
     EXPECT_EQ(print(prx), "thing -t -e 1.1:loop -c 0");
 }
 
-// As stock Ice's proxyToString(stringToProxy(...)) gives them.
+// These are as stock Ice's proxyToString(stringToProxy(...)) gives them.
 TEST_F(Transports, StringsOfProxiesAreReadAndPrintedAsByIce) {
     const std::pair<const char*, const char*> cases[] = {
         {"plain", "plain -t -e 1.1"},

@@ -25,6 +25,10 @@ OF_FILE = re.compile(
 # A test's message about a value; an exception of Python, of Ice
 OF_VALUE = re.compile(r"\berror\b|(?<!as )\bexpected\b|\bdiffers?\b|"
                       r"^(\S+: )*(\w+\.)*(::\w+)*\w*(Error|Exception):|^what\(\): ", re.I)
+# GoogleTest's lines about two values, and about a condition
+EQUALITY = re.compile(r"(?m)^Expected equality of these values:"
+                      r"\n +(.*)(?:\n +Which is: (.*))?\n +(.*)(?:\n +Which is: (.*))?$")
+CONDITION = re.compile(r"(?m)^Value of: (.*)\n +Actual: (.*)\nExpected: (.*)$")
 
 
 @dataclasses.dataclass
@@ -44,11 +48,20 @@ class Failure:
     clock: int = 0  # of the failure, in that waveform; 0: its end
 
 
+def comparison(match):
+    """status is 5, not ICE_OK, which is 0: a literal stands behind what is none."""
+    a, of_a, b, of_b = match.groups()
+    if not of_a:
+        a, of_a, b, of_b = b, of_b, a, of_a
+    return (f"{a} is {of_a}" if of_a else a) + f", not {b}" + (f", which is {of_b}" if of_b else "")
+
+
 def reason_of(log):
     """The reason in the test's log: GoogleTest's lines after the first "Failure", else a compiler's
     first message about a file, else the first line about an error, else the last line. An exception
     that ends in a colon takes the next line with it, a diff its first two lines."""
     last, of_file, of_value, failure = "", "", "", None
+    log = CONDITION.sub(r"\1 is \2, not \3", EQUALITY.sub(comparison, log))
     log = re.sub(r"((?:Error|Exception)\b.*:)\n+ *(?=\S)", r"\1 ", log)
     log = re.sub(r"(?m)^@@ .*\n(?: .*\n)*(-.*)\n([+].*)", r"differs: \1 \2", log)
     for line in log.splitlines():

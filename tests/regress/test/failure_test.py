@@ -26,8 +26,16 @@ RUDE = {
 IDEMPOTENT = "! error: unexpected operation mode. expected Normal, received Idempotent"
 # The reason, and the log in which a tool writes it; {} in the log is the reason.
 REASONS = {
-    "Value of: busy Actual: true Expected: false":
+    "busy is true, not false":
         "g.cpp:4: Failure\nValue of: busy\n  Actual: true\nExpected: false\ng.cpp:7: Failure",
+    "status is 5, not 0 after the call":
+        "g.cpp:4: Failure\nExpected equality of these values:\n  status\n    Which is: 5\n  0\n"
+        "after the call",
+    "call(1) is 5, not Ok, which is 0":
+        "g.cpp:4: Failure\nExpected equality of these values:\n  call(1)\n    Which is: 5\n  Ok\n"
+        "    Which is: 0\n",
+    "status is 5, not 0":
+        "g.cpp:4: Failure\nExpected equality of these values:\n  0\n  status\n    Which is: 5\n",
     'C++ exception with description "waited for ready" thrown in the test body.':
         "one error before\nunknown file: Failure\n{}\n[  FAILED  ] A.Throws (7 ms)",
     "a.c:1:10: fatal error: none.h: No such file or directory":

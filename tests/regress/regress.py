@@ -5,21 +5,26 @@ Exit status 0: all passed; 1: some failed; 2: it could not run."""
 import argparse
 import collections
 import datetime
+import functools
 import pathlib
 import random
 import re
 import sys
 import time
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "testbench/page"))
+TREE = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(TREE / "testbench/page"))
+sys.path.append(str(TREE))
 import tool
 from changes import Changes
+from cli.build_folder import run_ninja
+from cli.runner import lock
 from failures import examine
 from history import History, make_run
 from lights import text_of
 from report import gather, write_reports
 from runner import run_tests, write_junit
-from tests import fingerprint, list_tests, read_plan, targets_of, unmatched
+from tests import Graph, fingerprint, list_tests, read_plan, targets_of, unmatched
 from tool import Stop
 from waves import add_waves
 
@@ -76,6 +81,10 @@ class Regression:
                                options.source / "tests/costs.txt")
         self.changes = options.changed and self._changes()
 
+    @functools.cached_property
+    def graph(self):
+        return Graph(self.options.source, self.options.build)
+
     def _changes(self):
         return Changes(self.options.source, self.options.build, self.options.out)
 
@@ -90,13 +99,20 @@ class Regression:
                     (test.labels or not test.unbuilt):
                 continue
             if test.unbuilt:  # its cases are not known
-                named = not exact and test.may_hold(o.name.pattern)
+                named = not exact and (not o.name.pattern or
+                                       test.may_hold(o.name, self._sources(test)))
             else:
                 named = test.name == o.name.pattern if exact else o.name.search(test.name)
             if named and not (o.changed and not self._changed(test, built)) and \
                     not (o.rerun_failed and self.history.last(test.name) != "f"):
                 chosen.append(test)
         return chosen
+
+    def _sources(self, test):
+        """The texts of a program's C++ files."""
+        files = [self.options.source / file for file in self.graph.inputs(test.program)]
+        return [file.read_text(errors="replace") for file in files
+                if file.suffix == ".cpp" and file.exists()]
 
     def _changed(self, test, built):
         """Chooses tests that failed last in any case, not those that passed last with these
@@ -125,9 +141,10 @@ class Regression:
             return
         print(f"Building {len(targets)} targets ..." if len(targets) > 8 else
               f"Building {' '.join(targets)} ...", flush=True)
-        status, text = tool.run(["flock", "-o", o.build, "ninja", "-C", o.build, *targets])
-        if status:
-            raise Stop(f"it does not build:\n{text}")
+        log = o.build / "build.log"
+        with lock(o.build, busy=f"waiting for another build in {o.build} ..."):
+            if run_ninja(["ninja", "-C", o.build, *targets], log, check=False):
+                raise Stop(f"it does not build (above); all of it is in {log}")
         if self.changes:
             self.changes.forget_graph()
 

@@ -57,18 +57,24 @@ class Test:
         more = rest if kind in ("formal", "lint", "wave") else ""
         return set(re.findall("[A-Za-z0-9]+", f"{self.place}/{kind}/{more}"))
 
-    def may_hold(self, name):
-        """Whether cases of a program that is not built may match `name`, a regular expression.
-
-        A case is called program.Suite.Case, and suites begin with a capital letter."""
-        word = re.fullmatch(r"(\^?)([a-z0-9_]+)(\\?\.)?.*", name)
-        if not word or re.search(r"[|?*{]", name):
+    def may_hold(self, name, sources):
+        """Whether a case of a program that is not built may match `name`, a regular expression, by
+        the texts of its sources. Of cases for several values or types the words of `name` stand in
+        these. Suites and cases begin with capitals."""
+        text = re.sub("//.*", "", "\n".join(sources))
+        cases = re.findall(r"(?m)^ *(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)", text)
+        if any(name.search(f"{self.program}.{suite}.{case}") for suite, case in cases):
             return True
-        head, program = word[2], self.program + "."
-        anchored = word[1] or head.startswith("test_")
-        if word[3]:  # the program's name ends here
-            return program == head + "." if anchored else head + "." in program
-        return not anchored or program.startswith(head)
+        if cases and not re.search(r"INSTANTIATE_TEST_SUITE_P|TYPED_TEST", text):
+            return False
+        for some in re.sub(r"\[.*?\]|\\(?!\.)|.[?*{]", " ", name.pattern).split("|"):
+            ends = re.findall(r"([a-z0-9_]+)\\?\.", some)
+            words = re.findall(r"[A-Za-z]{3,}", some) if cases else []
+            if self.program.startswith(re.match(r"\^?(test_\w+|)", some)[1]) and \
+                    all(map(self.program.endswith, ends)) and \
+                    all(word in self.program + text for word in words):
+                return True
+        return False
 
 
 def list_tests(build):
@@ -147,7 +153,7 @@ class Graph:
             if line.startswith("build "):
                 outs, _, ins = re.sub(r"\$([ :$])", r"\\\1", line[6:]).partition(": ")
                 ins = ins.split()[1:]
-                for out in outs.split():
+                for out in set(outs.split()) - {"|"}:
                     self.made.setdefault(out.removeprefix(f"{self.build}/"), []).extend(ins)
         for line in run(["ninja", "-C", self.build, "-t", "deps"])[1].splitlines():
             if line.startswith("    "):
@@ -157,14 +163,14 @@ class Graph:
 
     @functools.cache
     def inputs(self, target):
-        """The files of the tree from which a target is made."""
-        seen, left, build, source = set(), [target], f"{self.build}/", f"{self.source}/"
+        """The files of the tree from which a target is made, those of the build among them."""
+        seen, left, build, source = {"|", "||"}, [target], f"{self.build}/", f"{self.source}/"
         while left:
             path = left.pop().removeprefix(build)
             if path not in seen:
                 seen.add(path)
                 left += self.made.get(path, [])
-        real = (os.path.normpath(path) for path in seen if path[0] == "/")
+        real = (os.path.normpath(self.build / path) for path in seen)  # ccache's are relative
         return {path[len(source):] for path in real if path.startswith(source)}
 
 

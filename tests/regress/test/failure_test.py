@@ -179,8 +179,11 @@ class Cases(Project):
         for name, text in files.items():
             write(name, text)
         edit("CMakeLists.txt", "small NONE", "small C")
-        self.tests("add_executable(test_u ${CMAKE_SOURCE_DIR}/hdl/fifo/test.c)\n"
-                   "add_test(NAME test_u.Unit COMMAND test_u)\n")
+        write("other.c", "int main(void) { return 0; }\n")  # of another program
+        self.tests("add_test(NAME test_u.Unit COMMAND test_u)\n" + "".join(
+            f"add_executable({name} ${{CMAKE_SOURCE_DIR}}/{source})\n"
+            f"add_custom_command(TARGET {name} POST_BUILD BYPRODUCTS {name}.list COMMAND true)\n"
+            for name, source in (("test_u", "hdl/fifo/test.c"), ("test_v", "other.c"))))
         self.ask("ninja", "-C", "build/main", "test_u")
         self.regress("--name 'a.One|u.Unit'")
         write("docs/page.md", "0\n")  # no commit has the tree that was noted
@@ -191,6 +194,7 @@ class Cases(Project):
                  r"tests/room/t.sh:3 \(1 line\)$")
         write("hdl/fifo/fifo.v", "a\nB\nc\nD\nE\n")
         write("docs/page.md", "2\n")
+        append("other.c", "// changed\n")
         Path("hdl/old.v").unlink()
         commit("three")
         self.regress("--changed --prepare --list --name u.Unit")

@@ -31,7 +31,8 @@ set_tests_properties(script.says PROPERTIES ENVIRONMENT "NEEDS=other tools")
 add_test(NAME script.after COMMAND ${t})
 set_tests_properties(script.tool PROPERTIES FIXTURES_SETUP f)
 set_tests_properties(script.after PROPERTIES FIXTURES_REQUIRED f)
-foreach(n soon radio)
+add_custom_target(test_tame DEPENDS ${CMAKE_SOURCE_DIR}/tame.cpp)
+foreach(n soon radio tame)
   add_test(NAME test_${n}_NOT_BUILT COMMAND false)
   set(labels ${CMAKE_CURRENT_BINARY_DIR}/test_${n}_labels.cmake)
   file(WRITE ${labels} "PROPERTIES LABELS \\"${n};x\\"")
@@ -183,12 +184,14 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.tests("add_test(NAME test_a.OneMore COMMAND true)\n")
         self.regress("--name test_a.One")
         self.has("^1 passed")  # an exact name is one test
+        write("tame.cpp", "// nobody\nTEST_F(Tame, Eats) {}\n")
         self.tests(NEEDS)
         for words, programs in (
             ("--name '^script.whole'", "all"), ("--name '^script.says'", "other tools"),
             ("--name '^test_a'", ""), ("--name 'soon\\.'", "test_soon"),
             ("--name 'script\\.after'", "tool"),  # by what goes before it
-            ("--name One", "test_radio test_soon"),  # any may have such a case
+            ("--name One", "test_radio test_soon"),  # whose cases nobody knows
+            ("--name '^test_tame.*Eat'", "test_tame"),
             ("--label 'rtl|radio'", "test_radio")):
             self.needs(words, programs)
         self.regress("--prepare --name script.tool")

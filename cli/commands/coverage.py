@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
 """coverage: lines, branches and toggles that the tests reach, of C, C++, Verilog and VHDL."""
-import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -26,8 +25,8 @@ def coverage(values):
     below tests/regress/coverage_gates.json
 
     Builds models, C and C++ that count what ran (build/coverage), runs all tests but proofs, lint
-    and those of tools, and merges Verilator's, GHDL's and gcov's counts. Leaves html/index.html,
-    summary.json, history (a line a run)."""
+    and those of tools, and merges Verilator's, GHDL's and gcov's counts. Leaves html/index.html
+    and summary.json."""
     build = configured(values, tests=True)
     build.ninja("regress")
     counted = BuildFolder("build/coverage", values)
@@ -51,7 +50,6 @@ def coverage(values):
          work / "merged.info"])
     status = run(["tests/regress/coverage.py", gates, work], check=False)
     (work / "tree").write_text(tree)
-    note(work)
     return status
 
 
@@ -114,12 +112,3 @@ def of_vhdl(work, points):
         if counts:
             run([work / "ghdl/ghdl", "coverage", "--format=lcov", *counts], stdout=file)
     return [info] if info.stat().st_size else []
-
-
-def note(work):
-    """Adds the share of this commit to the history, which `synth report --base` reads."""
-    commit = output(["git", "describe", "--always", "--dirty=+", "--abbrev=10"], check=False,
-                    stderr=subprocess.DEVNULL) or "unknown"
-    total = re.search(r'^ "total": (\d+\.?\d?)', (work / "summary.json").read_text(), re.M)
-    with open(work / "history", "a") as file:
-        file.write(f"{commit.strip()} {total[1]} % of lines\n" if total else "")

@@ -98,27 +98,17 @@ def named(base):
     return output([*GIT, "log", "-1", "--format=%h (%s)", base]).strip()
 
 
-def measured(name):
-    """A commit's kept run with most tests in the regression, {} if none is known; its coverage."""
-    def kept(file):
-        path = Path("build", file)
-        return path.read_text().splitlines() if path.exists() else []
-
-    runs = [
-        each for each in map(json.loads, kept("regress/history.jsonl")) if each["commit"] == name]
-    covered = [
-        line.split(" ", 1)[1] for line in kept("coverage/history") if line.startswith(name + " ")]
-    return (max(runs, key=lambda each: each["passed"] + each["failed"], default={}),
-            covered[-1] if covered else "not measured")
-
-
-def tests_and_coverage(names):
-    """Both of two commits, and the tests that end otherwise."""
-    runs, coverage = zip(*map(measured, names))
-    lines = ["| commit | tests | coverage |", "|---|---|---|"]
-    for name, best, covered in zip(names, runs, coverage):
+def tests_of(names):
+    """The tests of two commits, each by its kept run with most tests, and those that end
+    otherwise."""
+    history = Path("build/regress/history.jsonl")
+    kept = list(map(json.loads, history.read_text().splitlines())) if history.exists() else []
+    runs = [max((each for each in kept if each["commit"] == name), default={},
+                key=lambda each: each["passed"] + each["failed"]) for name in names]
+    lines = ["| commit | tests |", "|---|---|"]
+    for name, best in zip(names, runs):
         tests = f"{best['passed']} passed, {best['failed']} failed" if best else "not measured"
-        lines.append(f"| {name} | {tests} | {covered} |")
+        lines.append(f"| {name} | {tests} |")
     then, now = ({end[0]: end[1] for end in run.get("ends", [])} for run in runs)
     if then and now:
         for text, some in (
@@ -133,8 +123,8 @@ def tests_and_coverage(names):
 
 
 def compare(build, jobs, base, head=None):
-    """The changes since a commit, or between two, of utilisation, registers, tests and coverage, as
-    Markdown for a pull request."""
+    """The changes since a commit, or between two, of utilisation, registers and tests, as Markdown
+    for a pull request."""
     program, folder = (build / "synth/utilisation").absolute(), Path("build/synth")
     folder.mkdir(parents=True, exist_ok=True)
     with lock(folder / "base.lock", busy="waiting for another comparison in this folder ..."):
@@ -153,7 +143,7 @@ def compare(build, jobs, base, head=None):
                 program, "--output", after, "--compare",
                 folder / "base/build/synth/report.json"]).rstrip("\n"), "",
             "Registers:", "", "```", registers.rstrip("\n"), "```", "",
-            *tests_and_coverage([
+            *tests_of([
                 output([*GIT, "describe", "--always", "--abbrev=10", which]).strip()
                 for which in (base, head or "--dirty=+")])]
         text = "\n".join(lines) + "\n"

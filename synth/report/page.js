@@ -7,8 +7,7 @@ const share = (part, whole) => (100 * part / whole).toFixed(1) + " %";
 // Today's figures: measured, or accepted for the same sources; none for a design that has neither.
 const shown = d => d.figures ?? (d.state === "as accepted" ? d.accepted : undefined);
 const signed = n => n > 0 ? "+" + n : String(n);
-// A clock as the terminal rounds it, too (baseline.py): of tenths, halves up.
-const clockText = mhz => (Math.round(10 * mhz) / 10).toFixed(0);
+const clockText = mhz => mhz.toFixed(1); // as the terminal (baseline.py)
 const sum = values => values.reduce((a, b) => a + b, 0);
 const parent = p => p.slice(0, Math.max(0, p.lastIndexOf(".")));
 // "#design/instance.path" opens the page there.

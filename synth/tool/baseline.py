@@ -39,8 +39,8 @@ def short_version(yosys):
 
 
 def clock_text(mhz):
-    """A clock as the page rounds it, too: of tenths, halves up."""
-    return str(int(round(mhz, 1) + 0.5))
+    """A clock as terminal, page and accepted figures round it."""
+    return f"{mhz:.1f}"
 
 
 def accepted_from(figures, sources=""):

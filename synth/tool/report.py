@@ -254,16 +254,12 @@ def differences(before, after):
 
 
 def page_figures(f):
-    """The figures for the page: times are rounded here, and only here."""
-    def rounded(paths):
-        return [p | {"ns": round(p["ns"], 3)} for p in paths]
-
-    times = {key: rounded(value) if key != "ends" else value for key, value in f["timing"].items()}
+    """The figures for the page, which rounds them as the terminal does."""
     costs = {path: {signal: [c.lut, c.ff, c.memory]
                     for signal, c in signals.items() if c.lut or c.ff}
              for path, signals in f["costs"].items()}
-    return f | {"mhz": round(f["mhz"], 1), "clock": clock_of(f), "lut6": f["cells"].get("LUT6", 0),
-                "levels": f["timing"]["paths"][0]["levels"] if f["mhz"] else 0, "timing": times,
+    return f | {"clock": clock_of(f), "lut6": f["cells"].get("LUT6", 0),
+                "levels": f["timing"]["paths"][0]["levels"] if f["mhz"] else 0,
                 "costs": {path: signals for path, signals in costs.items() if signals}}
 
 

@@ -36,6 +36,8 @@ class Run:
     figures: dict = None
     error: str = ""  # why there are no figures
     known: bool = False  # another state of its sources was synthesised here
+    begun: float = 0  # when, by time.monotonic()
+    spent: float = None  # seconds; 0: nothing was to be synthesised
 
     @property
     def orders(self):
@@ -48,6 +50,7 @@ class Options:
     cache: pathlib.Path
     yosys: str = "yosys"
     jobs: int = 1
+    luts: dict = dataclasses.field(default_factory=dict)  # of designs, as far as they are known
 
 
 def version_of(yosys):
@@ -187,34 +190,69 @@ def carry_out_one(run, library, options, version):
     return is_new
 
 
+def time_left(runs, options, now):
+    """"11 of 55 designs, about 3:20 left: soc, vision". By its LUTs a design takes a time that is
+    that of an idle machine; those that have ended say how much slower this one is. A netlist in
+    several orders says how many of them it has."""
+    def expected(run):
+        return 1 + options.luts.get(run.design.name, 100) * (1 + run.orders) / 200
+
+    def rest(run):
+        files = [f"{run.netlist}.part"] + [netlist_of_order(run.netlist, n + 1)
+                                           for n in range(run.orders)]
+        age, written = now - run.begun, sum(map(os.path.exists, files))
+        return (age * (len(files) - written) / written if written else
+                max(slowness * expected(run) - age, age / 10))
+
+    ended = [run for run in runs if run.spent is not None]
+    new = [run for run in ended if run.spent]
+    slowness = sum(run.spent for run in new) / sum(map(expected, new)) if new else 1
+    running = [run for run in runs if run.begun and run.spent is None]
+    rests = list(map(rest, running))
+    waiting = slowness * sum(expected(run) for run in runs if not run.begun)
+    left = round(max([0, (waiting + sum(rests)) / options.jobs, *rests]))
+    return (f"{len(ended)} of {len(runs)} designs, about {left // 60}:{left % 60:02} left: "
+            f"{', '.join(run.design.name for run in running)}")
+
+
 def carry_out(runs, library, options):
-    """Carries out all runs, names finished ones on stderr. A failed run does not stop others."""
+    """Carries out all runs, names finished ones on stderr, and each ten seconds what is left. A
+    failed run does not stop others."""
     version = version_of(options.yosys)
     options.cache.mkdir(parents=True, exist_ok=True)
-    total, done, terminal = sum(run.wanted for run in runs), 0, threading.Lock()
+    wanted, terminal, over = [r for r in runs if r.wanted], threading.Lock(), threading.Event()
+
+    def tell():
+        while not over.wait(10):
+            with terminal:
+                print(time_left(wanted, options, time.monotonic()), file=sys.stderr)
 
     def work(run):
-        nonlocal done
-        begin = time.monotonic()
+        run.begun = time.monotonic()
         try:
             is_new = carry_out_one(run, library, options, version)
         except (Stop, ValueError, KeyError, OSError) as error:
             run.error, is_new = str(error), True
+        run.spent = time.monotonic() - run.begun if is_new else 0
         with terminal:
-            done += run.wanted
             if is_new and run.wanted:
                 told = (f"{run.figures['lut']} LUT, {run.figures['ff']} FF" if run.figures
                         else "failed")
-                print(f"[{done}/{total}] {run.design.name} for {run.family}: {told} "
-                      f"({time.monotonic() - begin:.1f} s)", file=sys.stderr)
+                done = sum(each.spent is not None for each in wanted)
+                print(f"[{done}/{len(wanted)}] {run.design.name} for {run.family}: {told} "
+                      f"({run.spent:.1f} s)", file=sys.stderr)
 
     def size(run):  # those with limits first, since these are looked at; then the largest
         files = library.files_of(run.design.top)
         return (not run.design.limits, -sum(file.stat().st_size for file in files))
 
+    threading.Thread(target=tell, daemon=True).start()
     sys.setrecursionlimit(1 << 20)  # as deep as a design's logic
     threading.stack_size(512 << 20)
-    in_parallel(options.jobs, work, sorted(runs, key=size))
+    try:
+        in_parallel(options.jobs, work, sorted(runs, key=size))
+    finally:
+        over.set()
 
 
 def in_parallel(jobs, work, items):

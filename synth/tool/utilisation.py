@@ -122,7 +122,8 @@ def run(o, libraries):
         if name not in names:
             raise Stop(f"there is no design {name}; there are {', '.join(sorted(names))}")
     accepted = baseline.read_baseline(o.source / "synth/baseline.json")
-    options = runner.Options(o.source / "synth/yosys", o.output / "cache", o.yosys, o.jobs)
+    options = runner.Options(o.source / "synth/yosys", o.output / "cache", o.yosys, o.jobs,
+                             {name: a["lut"] for name, a in accepted["designs"].items()})
     if o.edif:
         return edif(plan, library, options, o)
     if o.netlist:

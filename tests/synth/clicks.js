@@ -41,7 +41,7 @@ seen.push("step " + all("#paths a").pop().textContent);
 seen.push("on the way to " + stepsOf({ steps: [["a", "x"], ["b", ""], ["c", "y"]], pin: "D",
   to: "z" }).map(row => row.at));
 const read = id => all(`#${id} .u-value`).map(value => value.textContent).join(" ");
-picked.figures.clocks[0] = 104.46; // tenths, then halves up: 105
+picked.figures.clocks[0] = 104.46;
 document.getElementById("order").click();
 seen.push("slow " + document.getElementById("longest").textContent);
 document.querySelector("#chip a").click();
@@ -49,7 +49,7 @@ await rest();
 seen.push("clock " + document.querySelector("#chip a").textContent + " " +
   document.getElementById("longest").textContent + ", by " + all("#paths details[open] a").length);
 seen.push("wider " + all(".tabulator-tableholder").filter(t => t.scrollWidth > t.clientWidth).length);
-seen.push("rounded " + [104.5, 104.44, 104].map(clockText));
+seen.push("rounded " + [104.46, 104.44, 104].map(clockText));
 let slack = read("slack");
 for (let left = 20; left && / 0 *$/.test(slack); left--) { // to the last bar
   key(document.getElementById("slack"), "ArrowLeft");

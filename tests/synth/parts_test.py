@@ -150,10 +150,35 @@ class Timing(unittest.TestCase):
         self.assertEqual(f["timing"], {"paths": [105], "slowest": [102]})
         self.assertEqual(f["luts"], [10, 11, 12, 13, 14])
         self.assertEqual(f["clocks"], [102, 104, 105, 108, 109])
-        self.assertEqual(report.clock_of(f), "105 (102-109)")
+        self.assertEqual(report.clock_of(f), "105.0 (102.0-109.0)")
         # It is rounded as the page does.
-        self.assertEqual([baseline.clock_text(mhz) for mhz in (104.5, 104.46, 104.44, 104.0)],
-                         ["105", "105", "104", "104"])
+        self.assertEqual([baseline.clock_text(mhz) for mhz in (104.46, 104.44, 104.0)],
+                         ["104.5", "104.4", "104.0"])
+
+    def test_what_is_left_is_told_by_luts_and_by_what_has_ended(self):
+        work = tempfile.TemporaryDirectory()
+        self.addCleanup(work.cleanup)
+        folder = pathlib.Path(work.name)
+
+        def run(name, begun=0, spent=None, orders=0):
+            return runner.Run(sources.Design(name, name, orders=orders), "xc6s", begun=begun,
+                              spent=spent, netlist=folder / name)
+        options = runner.Options(None, None, jobs=2,
+                                 luts={"chip": 5800, "large": 2000, "small": 200})
+        chip, large, small = run("chip", orders=4), run("large"), run("small")
+
+        def says(text):
+            self.assertEqual(runner.time_left([chip, large, small], options, 30), text)
+        says("0 of 3 designs, about 1:20 left: ")  # 146, 11 and 2 s by two
+        chip.begun = 10
+        says("0 of 3 designs, about 2:06 left: chip")
+        large.begun, large.spent = 1, 22  # twice as long
+        says("1 of 3 designs, about 4:32 left: chip")
+        for suffix in ".part", ".1":  # two orders of five
+            (folder / f"chip{suffix}").touch()
+        says("1 of 3 designs, about 0:30 left: chip")
+        chip.begun, chip.spent, small.begun, small.spent = 1, 290, 1, 0  # it was kept
+        says("3 of 3 designs, about 0:00 left: ")
 
 
 class Baseline(unittest.TestCase):

@@ -20,12 +20,11 @@ public:
     Connector(const InstancePtr& instance, const EndpointOptions& options)
         : instance_(instance), options_(options) {}
     IceInternal::TransceiverPtr connect() override {
-        auto engine = instance_->engine(options_);
-        int fd =
-            engine->connect(options_.channel == 255 ? -1 : options_.channel, options_.timeoutMs);
+        auto peer = instance_->peer(options_);
+        int fd = peer->connect(options_.channel == 255 ? -1 : options_.channel, options_.timeoutMs);
         if (fd < 0) // no descriptor is left
             throw Ice::ConnectFailedException(__FILE__, __LINE__, errno);
-        return new Transceiver(engine, fd);
+        return new Transceiver(peer, fd);
     }
     Ice::Short type() const override { return endpointType; }
     std::string toString() const override { return options_.serial.device; }
@@ -51,31 +50,31 @@ class Acceptor : public IceInternal::Acceptor, public IceInternal::NativeInfo {
 public:
     Acceptor(const InstancePtr& instance, const EndpointOptions& options,
              const EndpointIPtr& endpoint)
-        : engine_(instance->engine(options)), endpoint_(endpoint) {}
+        : peer_(instance->peer(options)), endpoint_(endpoint) {}
     IceInternal::NativeInfoPtr getNativeInfo() override { return this; }
     void close() override {
         if (_fd != INVALID_SOCKET)
-            engine_->stopListening();
+            peer_->stopListening();
         _fd = INVALID_SOCKET;
     }
     EndpointIPtr listen() override {
-        _fd = engine_->listen();
+        _fd = peer_->listen();
         if (_fd < 0)
             throw Ice::SocketException(__FILE__, __LINE__, EADDRINUSE);
         return endpoint_;
     }
     IceInternal::TransceiverPtr accept() override {
-        int fd = engine_->accept();
+        int fd = peer_->accept();
         if (fd < 0)
             throw Ice::SocketException(__FILE__, __LINE__, EAGAIN);
-        return new Transceiver(engine_, fd);
+        return new Transceiver(peer_, fd);
     }
     std::string protocol() const override { return protocolName; }
-    std::string toString() const override { return protocolName + " " + engine_->device(); }
+    std::string toString() const override { return protocolName + " " + peer_->device(); }
     std::string toDetailedString() const override { return toString(); }
 
 private:
-    std::shared_ptr<Engine> engine_;
+    std::shared_ptr<Peer> peer_;
     EndpointIPtr endpoint_;
 };
 

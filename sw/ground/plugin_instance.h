@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// plugin_instance: what the endpoints of one communicator share: defaults, logger, engine.
+// plugin_instance: what the endpoints of one communicator share: defaults, logger, peers.
 
 #ifndef GROUND_PLUGIN_INSTANCE_H
 #define GROUND_PLUGIN_INSTANCE_H
@@ -9,6 +9,7 @@
 
 #include <Ice/Ice.h>
 #include <mutex>
+#include <set>
 #include <string>
 #include <system_error>
 
@@ -61,7 +62,7 @@ public:
     const EndpointOptions& defaults() const { return defaults_; }
 
     // A thread may ask for a connection while another destroys the communicator.
-    std::shared_ptr<Engine> engine(const EndpointOptions& o) {
+    std::shared_ptr<Peer> peer(const EndpointOptions& o) {
         std::lock_guard<std::mutex> lock(mutex_);
         if (!communicator_)
             throw Ice::CommunicatorDestroyedException(__FILE__, __LINE__);
@@ -70,12 +71,14 @@ public:
         try {
             Settings settings = o.serial;
             settings.keys = keys_.of(settings.target);
-            engine_ = Engine::get(settings, [logger, trace](int level, const std::string& text) {
+            auto peer = Engine::get(settings, [logger, trace](int level, const std::string& text) {
                 if (level == 0)
                     logger->error("xbee-at: " + text);
                 else if (level <= trace)
                     logger->trace("XBeeAT", text);
             });
+            peers_.insert(peer);
+            return peer;
         } catch (const std::system_error& e) {
             logger->error(std::string("xbee-at: ") + e.what());
             throw Ice::ConnectFailedException(__FILE__, __LINE__, e.code().value());
@@ -83,24 +86,24 @@ public:
             logger->error(std::string("xbee-at: ") + e.what());
             throw Ice::ConnectFailedException(__FILE__, __LINE__, EACCES);
         }
-        return engine_;
     }
     void destroy() {
         std::lock_guard<std::mutex> lock(mutex_);
-        if (engine_ && statistics_)
-            communicator_->getLogger()->print("xbee-at: " + engine_->statistics());
-        engine_.reset();
+        for (const auto& peer : peers_)
+            if (statistics_)
+                communicator_->getLogger()->print("xbee-at: " + peer->statistics());
+        peers_.clear();
         communicator_ = ICE_NULLPTR;
     }
 
 private:
-    std::mutex mutex_; // guards communicator_ and engine_
+    std::mutex mutex_; // guards communicator_ and peers_
     Ice::CommunicatorPtr communicator_;
     EndpointOptions defaults_;
     KeyFile keys_;
     int trace_ = 0;
     bool statistics_ = false;
-    std::shared_ptr<Engine> engine_; // kept while the communicator lives: set-up takes seconds
+    std::set<std::shared_ptr<Peer>> peers_; // kept while the communicator lives: set-up takes time
 };
 typedef IceUtil::Handle<Instance> InstancePtr;
 

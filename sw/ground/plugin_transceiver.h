@@ -20,8 +20,8 @@ namespace XBeeAT {
 
 class Transceiver : public IceInternal::Transceiver, public IceInternal::NativeInfo {
 public:
-    Transceiver(const std::shared_ptr<Engine>& engine, int fd)
-        : IceInternal::NativeInfo(fd), engine_(engine) {}
+    Transceiver(const std::shared_ptr<Peer>& peer, int fd)
+        : IceInternal::NativeInfo(fd), peer_(peer) {}
     IceInternal::NativeInfoPtr getNativeInfo() override { return this; }
     IceInternal::SocketOperation initialize(IceInternal::Buffer&, IceInternal::Buffer&) override {
         // Ice waits for the peer's first message next, under the connect time-out: that is "link
@@ -62,7 +62,7 @@ public:
         return IceInternal::SocketOperationNone;
     }
     std::string protocol() const override { return protocolName; }
-    std::string toString() const override { return protocolName + " " + engine_->device(); }
+    std::string toString() const override { return protocolName + " " + peer_->device(); }
     std::string toDetailedString() const override { return toString(); }
     Ice::ConnectionInfoPtr getInfo() const override { return ICE_MAKE_SHARED(Ice::ConnectionInfo); }
     void checkSendSize(const IceInternal::Buffer& buf) override {
@@ -79,7 +79,7 @@ private:
             throw Ice::ConnectionLostException(__FILE__, __LINE__, 0);
         throw Ice::ConnectFailedException(__FILE__, __LINE__, ENOLINK);
     }
-    std::shared_ptr<Engine> engine_;
+    std::shared_ptr<Peer> peer_;
     bool heard_ = false;
 };
 

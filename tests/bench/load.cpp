@@ -93,7 +93,7 @@ private:
     }
 
     Wire wire_;
-    std::shared_ptr<XBeeAT::Engine> engine_ = wire_.engine();
+    std::shared_ptr<XBeeAT::Peer> engine_ = wire_.engine();
     const unsigned programs_, calls_;
     std::vector<float> latencies_; // as long from the start: memory is measured
     std::atomic<unsigned> next_{0}, answered_{0}, ended_{0};

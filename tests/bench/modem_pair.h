@@ -85,8 +85,8 @@ class ModemEnd {
 public:
     ModemEnd(RfChannel& air, const XBee::Options& options, uint64_t seed)
         : modem(line, air, options), isApi_(modem.parameter("AP") != 0),
-          api_(modem.parameter("AP") == 2, static_cast<int>(modem.parameter("DL")),
-               options.set.at("EE") != 0),
+          target_(static_cast<int>(modem.parameter("DL"))),
+          api_(modem.parameter("AP") == 2, options.set.at("EE") != 0),
           pacer_(90, options.set.at("EE") ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME), random_(seed) {
         static const Link_Port port = {
             [](void* c, const U8* f, U32 n) { return self(c).transmit(f, n); },
@@ -141,17 +141,18 @@ private:
         if (isApi_)
             api_.feed(
                 bytes, size, us,
-                [&](const U8* data, size_t count) {
-                    Link_receive(link(), data, static_cast<U32>(count), us);
+                [&](int source, const U8* data, size_t count) {
+                    if (source == target_)
+                        Link_receive(link(), data, static_cast<U32>(count), us);
                 },
-                [&](bool isThere) { Link_answer(link(), isThere, us); });
+                [&](int, bool isThere) { Link_answer(link(), isThere, us); });
         else
             Link_receive(link(), bytes, size, us);
         line.received.clear();
     }
     int transmit(const U8* frame, U32 size) {
         if (isApi_) {
-            const auto bytes = api_.packet(frame, size, static_cast<U32>(now_ / 1000));
+            const auto bytes = api_.packet(target_, frame, size, static_cast<U32>(now_ / 1000));
             line.send(bytes.data(), bytes.size(), now_);
             return 0;
         }
@@ -168,6 +169,7 @@ private:
         nextWrite_ = wait == 0xFFFFFFFFu ? never : now_ + wait * 1000ull;
     }
     const bool isApi_;
+    const int target_;
     XBeeAT::ApiModem api_;
     XBeeAT::FramePacer pacer_;
     std::unique_ptr<Link> link_{new Link};

@@ -12,16 +12,25 @@ using XBeeAT::ApiFrames;
 using XBeeAT::ApiModem;
 using Bytes = ApiFrames::Bytes;
 
-// What a modem in API mode said: data, '+' for a packet that arrived, '-' for a lost one.
+// What a modem in API mode said: data and their source, '+' for a packet that arrived, '-' for a
+// lost one, and targets of these.
 struct Heard {
     Bytes data;
+    int source = 0;
     std::string answers;
+    std::vector<int> targets;
     void feed(ApiModem& modem, const Bytes& bytes) {
         for (uint8_t byte : bytes) // one at a time
             modem.feed(
                 &byte, 1, 0,
-                [&](const uint8_t* d, size_t count) { data.insert(data.end(), d, d + count); },
-                [&](bool isThere) { answers += isThere ? '+' : '-'; });
+                [&](int from, const uint8_t* d, size_t count) {
+                    data.insert(data.end(), d, d + count);
+                    source = from;
+                },
+                [&](int target, bool isThere) {
+                    answers += isThere ? '+' : '-';
+                    targets.push_back(target);
+                });
     }
 };
 
@@ -34,7 +43,7 @@ Bytes packetFrom(const ApiFrames& frames, uint16_t source, const Bytes& data) {
 TEST(Api, PacketsOfAllBytesArriveWithAndWithoutEscapes) {
     for (bool escapes : {false, true}) {
         const ApiFrames frames(escapes);
-        ApiModem modem(escapes, 1);
+        ApiModem modem(escapes);
         Heard heard;
         Bytes all;
         for (int first = 0; first < 256; first += 64) {
@@ -54,7 +63,7 @@ TEST(Api, PacketsOfAllBytesArriveWithAndWithoutEscapes) {
 
 // The frame under way is heard at once: a short one at its head need not wait for the others.
 TEST(Api, DataAreGivenAsTheyCome) {
-    ApiModem modem(false, 1);
+    ApiModem modem(false);
     Heard heard;
     Bytes bytes = packetFrom(ApiFrames(), 1, {1, 2, 3, 4});
     bytes.resize(bytes.size() - 3);
@@ -62,23 +71,37 @@ TEST(Api, DataAreGivenAsTheyCome) {
     EXPECT_EQ(heard.data, (Bytes{1, 2}));
 }
 
-TEST(Api, OthersPacketsAreDropped) {
-    ApiModem modem(false, 1), open(false, 0xFFFF);
-    Heard heard, all;
-    for (uint16_t source : {uint16_t(2), uint16_t(1)}) {
-        heard.feed(modem, packetFrom(ApiFrames(), source, {static_cast<uint8_t>(source)}));
-        all.feed(open, packetFrom(ApiFrames(), source, {static_cast<uint8_t>(source)}));
+TEST(Api, DataAndAnswersSayWhoseTheyAre) {
+    ApiModem modem(false);
+    Heard heard;
+    for (uint16_t address : {uint16_t(2), uint16_t(0xFFFE)}) {
+        heard.feed(modem, packetFrom(ApiFrames(), address, {7}));
+        EXPECT_EQ(heard.source, address);
+        modem.packet(address, Bytes{1}.data(), 1, 0);
     }
-    EXPECT_EQ(heard.data, Bytes{1});
-    EXPECT_EQ(all.data, (Bytes{2, 1}));
+    heard.feed(modem, ApiFrames().pack({0x80, 0, 0, 0, 0, 0, 0, 0, 9, 40, 0, 7}));
+    EXPECT_EQ(heard.source, ApiFrames::nobody);
+    heard.feed(modem, ApiFrames().pack({0x89, 2, 0}));
+    EXPECT_EQ(heard.answers, "-+");
+    EXPECT_EQ(heard.targets, (std::vector<int>{2, 0xFFFE}));
+}
+
+TEST(Api, APacketThatIsNotAnsweredForThreeSecondsIsLost) {
+    ApiModem modem(false);
+    for (uint32_t at : {0u, 1'000'000u})
+        modem.packet(5, Bytes{1}.data(), 1, at);
+    std::vector<int> lost;
+    modem.expire(3'500'000, [&](int target) { lost.push_back(target); });
+    EXPECT_EQ(lost, std::vector<int>{5});
+    EXPECT_EQ(modem.unanswered(), 1u);
 }
 
 // A packet whose answer the line lost counts as lost, as soon as a later one is answered.
 TEST(Api, AnswersComeInTheOrderOfPacketsAndALostOneCountsAsALoss) {
-    ApiModem modem(false, 1);
+    ApiModem modem(false);
     Heard heard;
     for (int i = 0; i < 300; ++i) // numbers go round
-        modem.packet(Bytes{1}.data(), 1, 0);
+        modem.packet(1, Bytes{1}.data(), 1, 0);
     for (int i = 0; i < 296; ++i)
         heard.feed(modem, ApiFrames().pack({0x89, static_cast<uint8_t>(i % 255 + 1), 0}));
     EXPECT_EQ(heard.answers, std::string(296, '+'));
@@ -96,7 +119,7 @@ TEST(Api, AfterNoiseFramesAreReadAgain) {
     Random random(testSeed());
     for (bool escapes : {false, true}) {
         const ApiFrames frames(escapes);
-        ApiModem modem(escapes, 1);
+        ApiModem modem(escapes);
         for (int turn = 0; turn < 300; ++turn) {
             Heard heard;
             for (uint32_t i = random.below(40); i; --i)

@@ -63,7 +63,7 @@ protected:
         EXPECT_FALSE(program.cutOff);
     }
     Wire wire_;
-    std::shared_ptr<XBeeAT::Engine> engine_ = wire_.engine();
+    std::shared_ptr<XBeeAT::Peer> engine_ = wire_.engine();
 };
 
 TEST_F(Crowd, WhoNeverReadsIsCutOffAndNobodyIsBehindIt) {
@@ -178,7 +178,7 @@ protected:
             keepers_.push_back(std::make_unique<Program>(engine_->connect(i)));
     }
     Wire wire_;
-    std::shared_ptr<XBeeAT::Engine> engine_ = wire_.engine(300);
+    std::shared_ptr<XBeeAT::Peer> engine_ = wire_.engine(300);
     std::vector<std::unique_ptr<Program>> keepers_;
 };
 

@@ -26,8 +26,8 @@ protected:
         s.downMs = 300;
         return s;
     }
-    std::shared_ptr<XBeeAT::Engine> start() { return start(settings()); }
-    std::shared_ptr<XBeeAT::Engine> start(const XBeeAT::Settings& settings) {
+    std::shared_ptr<XBeeAT::Peer> start() { return start(settings()); }
+    std::shared_ptr<XBeeAT::Peer> start(const XBeeAT::Settings& settings) {
         return XBeeAT::Engine::get(settings, [this](int level, const std::string& text) {
             std::lock_guard<std::mutex> lock(logMutex_);
             log_ += std::to_string(level) + " " + text + "\n";
@@ -50,7 +50,7 @@ protected:
             << log();
     }
     // A call of the UAV's reaches the listener.
-    void isCalled(XBeeAT::Engine& engine, int ready) {
+    void isCalled(XBeeAT::Peer& engine, int ready) {
         rig_.with([&] {
             Link_openChannel(rig_.link(), 3);
             Bytes m = message(5);

@@ -38,7 +38,7 @@ void expect(bool condition) {
 class Program {
 public:
     ~Program() { leave(); }
-    void come(XBeeAT::Engine& engine) {
+    void come(XBeeAT::Peer& engine) {
         if (fd_ < 0)
             fd_ = engine.connect(-1);
     }
@@ -231,7 +231,7 @@ private:
     uint8_t harm_ = 0;
     std::vector<Bytes> frames_;
     std::unique_ptr<Link> peer_{new Link};
-    std::shared_ptr<XBeeAT::Engine> engine_;
+    std::shared_ptr<XBeeAT::Peer> engine_;
     Program programs_[3];
     std::mutex mutex_;
     std::condition_variable changed_;

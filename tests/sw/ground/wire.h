@@ -91,7 +91,7 @@ public:
         close(master_);
     }
     // An engine at the other end of the wire, as fast as the machine.
-    std::shared_ptr<XBeeAT::Engine> engine(int idleMs = 0) {
+    std::shared_ptr<XBeeAT::Peer> engine(int idleMs = 0) {
         XBeeAT::Settings s;
         s.device = name_;
         s.setUp = false;

@@ -1,0 +1,427 @@
+// SPDX-License-Identifier: MIT
+//
+// peer: calls of programs, callbacks of the link, and what goes between both.
+
+#include "peer.h"
+
+#include "clock.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <system_error>
+#include <unistd.h>
+
+namespace XBeeAT {
+
+namespace {
+
+constexpr U32 lookUs = 50000;   // interval of looking for a channel while programs wait
+constexpr U32 briefBytes = 128; // of a message that one fragment takes, its head compressed
+
+// Small buffers, so that back-pressure reaches the caller.
+bool makePair(int ends[2]) {
+    constexpr int bytes = 4096;
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends) != 0)
+        return false;
+    for (int end : {ends[0], ends[1]})
+        setsockopt(end, SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes);
+    return true;
+}
+
+// Returns whether the program has closed its end and left no bytes to read.
+bool hasLeft(int fd) {
+    pollfd end{fd, POLLRDHUP, 0};
+    char byte;
+    return poll(&end, 1, 0) > 0 && recv(fd, &byte, 1, MSG_PEEK | MSG_DONTWAIT) <= 0;
+}
+
+} // namespace
+
+void makePipe(int pipeEnds[2]) {
+    if (pipe2(pipeEnds, O_CLOEXEC | O_NONBLOCK) != 0)
+        throw std::system_error(errno, std::generic_category(), "pipe");
+}
+
+Peer::Peer(Host& host, int address, const LinkKeys& keys)
+    : host_(host), address_(address), keys_(keys), link_(new Link) {
+    makePipe(acceptPipe_);
+    static const Link_Port port = {onTransmit, onRandom,  onMessage, onChannel,
+                                   onState,    onOutcome, onWritable};
+    Link_init(link_.get(), &port, this, static_cast<U32>(host.settings.characterUs() * 16));
+    for (size_t slot = 0; slot < keys_.size(); ++slot)
+        Link_setKey(link_.get(), static_cast<int>(slot), keys_[slot].data(),
+                    LINK_GROUND | static_cast<U32>(address_));
+}
+
+Peer::~Peer() {
+    for (size_t slot = 0; slot < keys_.size(); ++slot) {
+        Link_setKey(link_.get(), static_cast<int>(slot), nullptr, LINK_GROUND);
+        explicit_bzero(keys_[slot].data(), keys_[slot].size());
+    }
+    for (const Waiting& program : waiting_)
+        close(program.fd);
+    for (int fd : acceptPipe_)
+        close(fd);
+}
+
+void Peer::log(int level, const std::string& text) const {
+    char vehicle[16] = "";
+    if (host_.hasMany)
+        std::snprintf(vehicle, sizeof vehicle, "0x%04X: ", static_cast<unsigned>(address_));
+    host_.log(level, vehicle + text);
+}
+
+// ---- calls of programs ----
+
+// Returns a channel for a program, `wanted` or (-1) any: a free one, else that of the program that
+// has been silent longest, if that is long enough to make room. -1 if there is none.
+int Peer::freeChannel(int wanted, U32 now) {
+    U32 longest =
+        host_.settings.idleMs ? static_cast<U32>(host_.settings.idleMs) * 1000 - 1 : 0xFFFFFFFFu;
+    int idlest = -1;
+    for (int i = 0; i < ownChannels; ++i) {
+        const int channel = wanted >= 0 ? wanted : (nextChannel_ + i) % ownChannels;
+        Stream& s = streams_[channel];
+        if (s.is(Stream::State::Wanted) && hasLeft(s.fd())) // it gave up before the link was up
+            s.close();
+        if (s.is(Stream::State::Closed)) {
+            nextChannel_ = (channel + 1) % ownChannels;
+            return channel;
+        }
+        if (s.silentUs(now) > longest) {
+            longest = s.silentUs(now);
+            idlest = channel;
+        }
+    }
+    if (idlest >= 0) {
+        streams_[idlest].sayGoodbye(now);
+        end(idlest, 1, "is idle, and another program waits");
+    }
+    return idlest;
+}
+
+// Gives waiting programs a channel, in their order. One that has left gets none.
+void Peer::placePrograms(U32 now) {
+    for (auto program = waiting_.begin(); program != waiting_.end();) {
+        const bool isGone = hasLeft(program->fd);
+        const int channel = isGone ? -1 : freeChannel(program->channel, now);
+        if (channel < 0 && !isGone) {
+            ++program;
+            continue;
+        }
+        log(1, isGone ? "a program has left before it got a channel"
+                      : "a program is connected, channel " + std::to_string(channel));
+        if (isGone)
+            ::close(program->fd);
+        else
+            streams_[channel].want(program->fd, "the program on channel " + std::to_string(channel),
+                                   program->lateUs);
+        program = waiting_.erase(program);
+    }
+}
+
+int Peer::connect(int channel, int lateMs) {
+    int ends[2];
+    if (!makePair(ends))
+        return -1;
+    std::lock_guard<std::mutex> lock(host_.mutex);
+    const U32 lateUs = static_cast<U32>(lateMs) < Stream::never / 1000
+                           ? static_cast<U32>(lateMs) * 1000
+                           : Stream::never;
+    waiting_.push_back({ends[0], channel, lateUs});
+    placePrograms(host_.clock.nowUs());
+    host_.wake();
+    return ends[1];
+}
+
+size_t Peer::waiting() const {
+    std::lock_guard<std::mutex> lock(host_.mutex);
+    return waiting_.size();
+}
+
+bool Peer::isWanted() const {
+    bool wanted = false;
+    for (const Stream& s : streams_)
+        wanted = wanted || s.is(Stream::State::Wanted);
+    return wanted;
+}
+
+int Peer::listen() {
+    std::lock_guard<std::mutex> lock(host_.mutex);
+    if (listening_)
+        return -1;
+    listening_ = true;
+    host_.wake();
+    return acceptPipe_[0];
+}
+
+int Peer::calledChannel() const {
+    char byte;
+    (void)!read(acceptPipe_[0], &byte, 1);
+    for (int channel = ownChannels; channel < LINK_CHANNELS; ++channel)
+        if (streams_[channel].is(Stream::State::Called))
+            return channel;
+    return -1;
+}
+
+int Peer::accept() {
+    std::lock_guard<std::mutex> lock(host_.mutex);
+    const int channel = calledChannel();
+    int ends[2];
+    if (channel < 0)
+        return -1;
+    if (!makePair(ends)) { // nobody answers the UAV
+        log(0, std::string("the UAV calls, and no socket can be made: ") + std::strerror(errno));
+        end(channel, 1, "is refused");
+        host_.wake();
+        return -1;
+    }
+    streams_[channel].accept(ends[0], "the program on channel " + std::to_string(channel));
+    host_.wake();
+    return ends[1];
+}
+
+void Peer::stopListening() {
+    std::lock_guard<std::mutex> lock(host_.mutex);
+    listening_ = false;
+}
+
+std::string Peer::statistics() const {
+    std::lock_guard<std::mutex> lock(host_.mutex);
+    const Link_Statistics& s = *Link_statistics(link_.get());
+    char text[320];
+    std::snprintf(
+        text, sizeof text,
+        "%s 0x%04X: %u bytes in %u frames sent (%u sent again), %u bytes in %u frames received, "
+        "%u messages out, %u in, round trip %.1f ms, %u sessions, %u bytes skipped, %u saved",
+        host_.device.c_str(), static_cast<unsigned>(address_), s.bytesSent, s.framesSent,
+        s.fragmentsResent, s.bytesReceived, s.framesReceived, s.messagesSent, s.messagesReceived,
+        s.roundTripUs / 1000.0, s.sessions, s.bytesSkipped, s.headBytesSaved);
+    return text;
+}
+
+// ---- callbacks of the link, in the engine's thread, mutex held ----
+
+int Peer::onTransmit(void* context, const U8* frame, U32 size) {
+    return self(context).host_.transmit(self(context), frame, size) ? 0 : 1;
+}
+
+U32 Peer::onRandom(void* context) {
+    return self(context).host_.settings.random();
+}
+
+int Peer::onMessage(void* context, int channel, const U8* data, U32 size) {
+    Peer& e = self(context);
+    Stream& s = e.streams_[channel];
+    U32 now = e.host_.clock.nowUs();
+    bool isWanted = s.is(Stream::State::Open) || s.is(Stream::State::Called);
+    // The link delivers in order, so a message held back would hold all other programs' back.
+    if (isWanted && !s.give(data, size, now))
+        e.end(channel, 0,
+              "does not read: " + std::to_string(Stream::mostUnread) + " bytes wait for it");
+    return 0;
+}
+
+void Peer::onChannel(void* context, int channel, int isOpen) {
+    Peer& e = self(context);
+    Stream& s = e.streams_[channel];
+    if (!isOpen) {
+        if (!s.is(Stream::State::Wanted))
+            e.lost_ += s.leave(e.host_.clock.nowUs());
+        return;
+    }
+    if (channel < ownChannels || !e.listening_) {
+        e.log(1, "the peer opened channel " + std::to_string(channel) + ", and nobody listens");
+        Link_closeChannel(e.link_.get(), channel);
+        return;
+    }
+    s.call();
+    char byte = 0;
+    (void)!write(e.acceptPipe_[1], &byte, 1);
+}
+
+void Peer::onState(void* context, Link_State state) {
+    Peer& e = self(context);
+    static const char* const names[] = {"idle", "connecting", "up"};
+    const bool isSecure = Link_keyInUse(e.link_.get()) >= 0;
+    e.log(1, "link " + std::string(names[state]) +
+                 (state != LINK_STATE_UP ? ""
+                  : isSecure             ? ", secure"
+                                         : ", in the clear"));
+    if (state == LINK_STATE_UP)
+        return;
+    for (Stream& s : e.streams_)
+        if (!s.is(Stream::State::Wanted))
+            e.lost_ += s.leave(e.host_.clock.nowUs());
+}
+
+void Peer::onOutcome(void* context, int channel, U32 isCall, Link_Outcome outcome) {
+    const Stream& s = self(context).streams_[channel];
+    self(context).late_[channel].pop_front();
+    bool hasLeft = !s.is(Stream::State::Open) || s.ended();
+    self(context).lost_ += hasLeft && isCall && outcome == LINK_UNKNOWN;
+}
+
+void Peer::onWritable(void* context) {
+    self(context).full_ = 0;
+}
+
+// Ends a program's connection: `why` completes a sentence about it.
+void Peer::end(int channel, int level, const std::string& why) {
+    Stream& s = streams_[channel];
+    log(level, s.name() + " " + why + ": connection closed");
+    s.close();
+    Link_closeChannel(link_.get(), channel);
+}
+
+// Sends the next message of a program. True: it went to the link.
+bool Peer::sendMessage(int channel, U32 now) {
+    Stream& s = streams_[channel];
+    if (!s.is(Stream::State::Open))
+        return false;
+    switch (s.next(LINK_MAX_MESSAGE)) {
+    case Stream::Next::Senseless:
+        end(channel, 0,
+            "sent a message of " + std::to_string(s.size()) +
+                " bytes, which does not fit the radio link (at most " +
+                std::to_string(LINK_MAX_MESSAGE) + ")");
+        return false;
+    case Stream::Next::None:
+        if (s.ended())
+            end(channel, 1, "has ended");
+        return false;
+    case Stream::Next::Message:
+        break;
+    }
+    const bool mustWait = full_ && s.size() > briefBytes;
+    const Link_Status status =
+        mustWait ? LINK_FULL : Link_send(link_.get(), channel, s.data(), s.size(), s.isCall());
+    if (status == LINK_FULL) {
+        if (!full_)
+            turn_ = channel;
+        full_ |= 1u << channel;
+    } else if (status == LINK_OK) {
+        late_[channel].push_back(s.lateAt());
+        s.taken(now);
+    } else
+        end(channel, 1, "has no channel any more");
+    return status == LINK_OK;
+}
+
+// Sends what the programs have written. They take turns, a message each, so that a flood leaves
+// room for others. While one waits for room the others send only short ones, for which the link has
+// a reserve.
+void Peer::sendMessages(U32 now) {
+    for (int idle = 0, channel = turn_; idle < LINK_CHANNELS; ++idle) {
+        if (!full_)
+            turn_ = (channel + 1) % LINK_CHANNELS;
+        if (!(full_ >> channel & 1) && sendMessage(channel, now))
+            idle = -1;
+        channel = (channel + 1) % LINK_CHANNELS;
+    }
+}
+
+void Peer::openWanted(U32 now) {
+    if (Link_state(link_.get()) != LINK_STATE_UP)
+        return;
+    for (int channel = 0; channel < ownChannels; ++channel)
+        if (streams_[channel].is(Stream::State::Wanted) &&
+            Link_openChannel(link_.get(), channel) == LINK_OK)
+            streams_[channel].open(now);
+}
+
+// Logs the calls of programs that have left: nobody else can be told.
+void Peer::reportLost() {
+    if (lost_)
+        log(0, "calls of programs that have left, and may not have reached the UAV: " +
+                   std::to_string(lost_));
+    lost_ = 0;
+}
+
+// Withdraws what is late, so that nobody carries out what its caller has given up. Returns when to
+// look again, in microseconds.
+U32 Peer::withdrawLate(U32 now) {
+    U32 wait = 0xFFFFFFFFu;
+    const auto isLate = [&wait, now](U32 at) {
+        const bool is = static_cast<int32_t>(at - now) <= 0;
+        wait = std::min(wait, is ? 0 : at - now);
+        return is;
+    };
+    for (int channel = 0; channel < LINK_CHANNELS; ++channel) {
+        const Stream& s = streams_[channel];
+        if (!late_[channel].empty() && isLate(late_[channel].front())) {
+            log(0, s.name() + " has a message that nobody took in time: the session ends");
+            Link_stop(link_.get(), now);
+            Link_start(link_.get(), now);
+            return 0;
+        }
+        if (s.is(Stream::State::Open) && (full_ >> channel & 1) && isLate(s.lateAt()))
+            end(channel, 0, "waits for room longer than its time-out");
+    }
+    return wait;
+}
+
+// ---- calls of the engine, mutex held ----
+
+void Peer::start(U32 longest, bool isApi, U32 now) {
+    Link_limitFrame(link_.get(), longest);
+    Link_expectAnswers(link_.get(), isApi);
+    Link_start(link_.get(), now);
+}
+
+void Peer::stop(U32 now) {
+    Link_stop(link_.get(), now);
+    reportLost();
+}
+
+void Peer::fail() {
+    stop(host_.clock.nowUs());
+    for (Stream& s : streams_)
+        s.close();
+    for (const Waiting& program : waiting_)
+        close(program.fd);
+    waiting_.clear();
+    reportLost();
+}
+
+void Peer::receive(const U8* bytes, size_t size, U32 now) {
+    Link_receive(link_.get(), bytes, static_cast<U32>(size), now);
+}
+
+void Peer::answer(bool isThere, U32 now) {
+    Link_answer(link_.get(), isThere, now);
+}
+
+U32 Peer::poll(U32 now) {
+    reportLost();
+    placePrograms(now);
+    Link_poll(link_.get(), now);
+    U32 wait = std::min({withdrawLate(now), Link_deadline(link_.get(), now),
+                         waiting_.empty() ? 0xFFFFFFFFu : lookUs});
+    for (Stream& s : streams_)
+        wait = std::min(wait, s.beat(now));
+    return wait;
+}
+
+void Peer::addInterest(std::vector<pollfd>& fds) const {
+    for (const Stream& s : streams_)
+        fds.push_back(s.interest(!(full_ >> (&s - streams_) & 1)));
+}
+
+void Peer::servePrograms(const pollfd* fds, U32 now) {
+    for (Stream& s : streams_) {
+        s.write(now);
+        const pollfd& p = *fds++;
+        if (p.fd >= 0 && p.fd == s.fd() && (p.events & POLLIN) && p.revents)
+            s.read(now);
+    }
+    openWanted(now);
+    sendMessages(now);
+}
+
+} // namespace XBeeAT

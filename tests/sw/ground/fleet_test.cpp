@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: MIT
+//
+// fleet_test: several vehicles on one modem of the ground.
+
+#include "engine.h"
+#include "rig.h"
+#include "wire.h"
+#include <gtest/gtest.h>
+#include <map>
+
+namespace {
+
+// A vehicle that answers a message with its first bytes, and its address as their last byte.
+class Vehicle {
+public:
+    Vehicle(Rig& rig, int address) : rig_(rig), address_(address), random_(address) {
+        XBee::Options options;
+        options.name = "vehicle " + std::to_string(address);
+        options.set = {{"BD", 7}, {"MY", static_cast<uint32_t>(address)}, {"DL", 0}};
+        modem = std::make_unique<XBee>(line_, rig.air, options);
+        static const Link_Port port = {
+            [](void* c, const U8* f, U32 n) {
+                self(c).line_.send({f, f + n}, self(c).rig_.ns());
+                return 0;
+            },
+            [](void* c) { return self(c).random_.next(); },
+            [](void* c, int channel, const U8* d, U32 n) { return self(c).take(channel, d, n); },
+            [](void*, int, int) {},
+            [](void*, Link_State) {},
+            nullptr,
+            nullptr};
+        Link_init(link.get(), &port, this, 1440);
+    }
+    void step() {
+        modem->advance(rig_.ns());
+        if (!line_.received.empty())
+            Link_receive(link.get(), line_.received.data(), static_cast<U32>(line_.received.size()),
+                         rig_.us());
+        line_.received.clear();
+        Link_poll(link.get(), rig_.us());
+    }
+
+    std::unique_ptr<XBee> modem;
+    std::unique_ptr<Link> link{new Link};
+    size_t bytes = 0; // of messages that came
+
+private:
+    static Vehicle& self(void* c) { return *static_cast<Vehicle*>(c); }
+    int take(int channel, const U8* data, U32 size) {
+        Bytes answer = message(data[size - 1], 30);
+        answer.back() = static_cast<uint8_t>(address_);
+        if (Link_send(link.get(), channel, answer.data(), 30, 0) == LINK_FULL)
+            return 1;
+        bytes += size;
+        return 0;
+    }
+
+    Rig& rig_;
+    const int address_;
+    Random random_;
+    HostLine line_;
+};
+
+class FleetTest : public ::testing::Test {
+protected:
+    FleetTest() {
+        rig_.with([&] {
+            rig_.uav->power(false, rig_.ns()); // this file's vehicles are its own
+            rig_.step = [this] {
+                for (auto& [address, vehicle] : vehicles_)
+                    vehicle->step();
+            };
+        });
+    }
+    ~FleetTest() override {
+        rig_.with([&] { rig_.step = nullptr; });
+    }
+    void fly(int address) {
+        rig_.with([&] { vehicles_[address] = std::make_unique<Vehicle>(rig_, address); });
+    }
+    std::shared_ptr<XBeeAT::Peer> peer(int address, XBeeAT::LinkKeys keys = {}) {
+        XBeeAT::Settings s;
+        s.device = rig_.pty.path();
+        s.guardMs = Rig::guardMs;
+        s.target = address;
+        s.isApi = isApi_;
+        s.keys = keys;
+        return XBeeAT::Engine::get(s, [this](int level, const std::string& text) {
+            std::lock_guard<std::mutex> lock(logMutex_);
+            log_ += std::to_string(level) + " " + text + "\n";
+        });
+    }
+    std::string log() {
+        std::lock_guard<std::mutex> lock(logMutex_);
+        return log_;
+    }
+    // A call, whose answer says which vehicle has it.
+    int answerer(int fd) {
+        writeAll(fd, message(1));
+        const Bytes answer = readAll(fd, 30);
+        return answer.empty() ? -1 : answer.back();
+    }
+    // Seconds of simulated time in which the vehicles take so many bytes, all programs writing as
+    // much as is taken.
+    double secondsFor(const std::vector<int>& fds, size_t bytes) {
+        std::atomic<bool> stop{false};
+        std::vector<std::thread> programs;
+        for (int fd : fds)
+            programs.emplace_back([fd, &stop] {
+                const Bytes m = message(1, 900);
+                while (!stop) {
+                    writeAll(fd, m);
+                    U8 sink[4096];
+                    (void)!recv(fd, sink, sizeof sink, MSG_DONTWAIT);
+                }
+            });
+        const auto taken = [this] {
+            size_t sum = 0;
+            for (auto& [address, vehicle] : vehicles_)
+                sum += vehicle->bytes;
+            return sum;
+        };
+        const size_t from = rig_.with(taken);
+        const uint64_t begun = rig_.with([&] { return rig_.ns(); });
+        EXPECT_TRUE(rig_.until([&] { return taken() >= from + bytes; }, 300)) << log();
+        const double seconds = double(rig_.with([&] { return rig_.ns(); }) - begun) / 1e9;
+        stop = true;
+        for (int fd : fds)
+            shutdown(fd, SHUT_RDWR);
+        for (std::thread& program : programs)
+            program.join();
+        return seconds;
+    }
+
+    bool isApi_ = true;
+    std::mutex logMutex_;
+    std::string log_;
+    Rig rig_{testSeed()};
+    std::map<int, std::unique_ptr<Vehicle>> vehicles_;
+};
+
+TEST_F(FleetTest, EachVehicleAnswersItsOwnCallsUnderItsOwnKey) {
+    const std::map<int, XBeeAT::LinkKeys> keys = {{1, {{{1}}}}, {2, {}}, {0x0102, {{{2}}}}};
+    std::map<int, std::shared_ptr<XBeeAT::Peer>> peers;
+    std::map<int, int> fds;
+    for (const auto& [address, key] : keys) {
+        fly(address);
+        if (!key.empty())
+            rig_.with([&, address = address, &key = key] {
+                Link_setKey(vehicles_[address]->link.get(), 0, key[0].data(),
+                            static_cast<U32>(address));
+            });
+        peers[address] = peer(address, key);
+        fds[address] = peers[address]->connect(-1);
+    }
+    for (int turn = 0; turn < 3; ++turn)
+        for (const auto& [address, fd] : fds)
+            EXPECT_EQ(answerer(fd), address & 0xFF) << log();
+    EXPECT_NE(log().find("1 0x0102: link up, secure"), std::string::npos) << log();
+    EXPECT_THROW(peer(2, keys.at(1)), std::system_error) << "another key for the same vehicle";
+    for (const auto& [address, fd] : fds)
+        close(fd);
+}
+
+TEST_F(FleetTest, VehiclesShareTheAirAlikeAndOneThatIsAwayCostsTheOthersLittle) {
+    std::vector<std::shared_ptr<XBeeAT::Peer>> peers;
+    std::vector<int> fds;
+    for (int address : {1, 2, 3}) {
+        fly(address);
+        peers.push_back(peer(address));
+        fds.push_back(peers.back()->connect(-1));
+        EXPECT_EQ(answerer(fds.back()), address) << log();
+    }
+    rig_.with([&] {
+        for (auto& [address, vehicle] : vehicles_)
+            vehicle->bytes = 0;
+    });
+    const double together = secondsFor(fds, 60'000);
+    rig_.with([&] {
+        for (auto& [address, vehicle] : vehicles_)
+            EXPECT_NEAR(double(vehicle->bytes), 20'000, 2'000) << address;
+    });
+    std::printf("fleet: three vehicles take %.0f bytes/s\n", 60'000 / together);
+    for (int fd : fds)
+        close(fd);
+    rig_.with([&] { vehicles_[2]->modem->power(false, rig_.ns()); });
+    const auto isSought = [&] {
+        return log().rfind("0x0002: link connecting") > log().rfind("0x0002: link up");
+    };
+    ASSERT_TRUE(rig_.until(isSought));
+    const uint64_t since = rig_.with([&] { return rig_.ns(); });
+    const auto passed = [&](uint64_t ns) {
+        return rig_.until([&] { return rig_.ns() - since > ns; });
+    };
+    ASSERT_TRUE(passed(4'500'000'000)); // the first HELLOs follow one another sooner
+    const uint64_t before = rig_.with([&] { return rig_.air.counters().airNs; });
+    ASSERT_TRUE(passed(12'500'000'000));
+    const double share =
+        double(rig_.with([&] { return rig_.air.counters().airNs; }) - before) / 8e9;
+    std::printf("fleet: one that is away takes %.2f %% of the air\n", 100 * share);
+    EXPECT_LT(share, 0.02);
+    EXPECT_GT(share, 0.0001) << "it is sought";
+}
+
+TEST_F(FleetTest, AModemWithoutApiModeTalksToOneVehicle) {
+    isApi_ = false;
+    fly(1);
+    fly(2);
+    auto one = peer(1), two = peer(2);
+    const int fd = one->connect(-1);
+    EXPECT_EQ(answerer(fd), 1) << log();
+    const int other = two->connect(-1);
+    EXPECT_EQ(answerer(other), -1);
+    EXPECT_NE(log().find("has no API mode: it talks to one vehicle only"), std::string::npos);
+    EXPECT_EQ(answerer(fd), 1);
+    close(fd);
+    close(other);
+}
+
+TEST_F(FleetTest, AModemServesAsManyVehiclesAsItMay) {
+    std::vector<std::shared_ptr<XBeeAT::Peer>> peers;
+    for (int address = 1; address <= int(XBeeAT::mostPeers); ++address)
+        peers.push_back(peer(address));
+    EXPECT_THROW(peer(99), std::system_error);
+    EXPECT_NO_THROW(peer(1));
+    fly(7);
+    const int fd = peers[6]->connect(-1);
+    EXPECT_EQ(answerer(fd), 7) << log();
+    close(fd);
+}
+
+} // namespace

@@ -71,6 +71,7 @@ function table(place, columns, rows, options = {}) {
   });
   const tabulator = place.drawn = new Tabulator(box, {
     data: rows.map(record), layout: "fitColumns", maxHeight: "560px", renderVertical: rows.length > 100 ? "virtual" : "basic",
+    responsiveLayout: narrow < 1 && !options.children ? "collapse" : false,
     dataTree: Boolean(options.children), dataTreeFilter: true, dataTreeStartExpanded: row => options.open?.(row.getData().row) ?? false,
     columnDefaults: {headerSortTristate: true, sorter: (a, b) => a < b ? -1 : a > b ? 1 : 0}, placeholder: "nothing",
     columns: columns.map((column, i) => {
@@ -78,7 +79,7 @@ function table(place, columns, rows, options = {}) {
       const plain = rows.slice(0, 1).map(row => content(row, column)).every(seen => !seen.childElementCount && /^[-+\d.]*( |$)/.test(seen.textContent));
       return {title: column[0], field: `c${i}`, widthGrow: Math.min(wide, 700) / 50, ...(number ? {headerSortStartingDir: "desc"} : {}),
         formatter: cell => content(cell.getData().row, column), cssClass: number && plain ? "n" : "", ...column[3],
-        minWidth: Math.min(column[3]?.minWidth ?? wide, narrow * (column[3]?.minWidth ?? 160))};
+        minWidth: Math.max(...column[0].split(" ").map(word => pen.measureText(word).width + 30), Math.min(column[3]?.minWidth ?? wide, narrow * (column[3]?.minWidth ?? 160)))};
     }),
     rowFormatter: row => {
       const node = row.getElement();

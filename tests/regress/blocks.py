@@ -3,6 +3,7 @@
 this run, the lines covered, the mutants caught, the LUTs, and the last commit without a failure."""
 import collections
 import pathlib
+import re
 
 from lights import below_gate
 from tool import tracked
@@ -21,18 +22,19 @@ class Blocks:
         return "/".join(path.split("/")[:-1][:2])
 
     def of_module(self, name):
-        """The block of a module, or of the one that a test's name begins with; "": none."""
+        """The block of a module, or of the one that a test's name begins with, else of one that
+        begins with its first word; "": none."""
+        first = name.partition("_")[0] + "_"
         while name and name not in self.modules:
             name = name.rpartition("_")[0]
+        name = name or next((each for each in sorted(self.modules) if each.startswith(first)), "")
         return self.of_file(self.modules[name]) if name else ""
 
     def of_test(self, name, place):
-        kind, _, case = name.partition(".")
+        about = re.match(r"((formal|lint|vhdl|cdc)[.])?(test_|idle_|crossings_)?(\w+)", name)[4]
         if f"ip/{place}" in self.folders:
             return f"ip/{place}"
-        if place.split("/")[0] in ("hdl", "bus") and (
-                block := self.of_module(case if kind in ("formal", "lint", "vhdl")
-                                        else kind.removeprefix("test_"))):
+        if place.split("/")[0] in ("hdl", "bus") and (block := self.of_module(about)):
             return block
         words = place.split("/")[:2]
         return "/".join(words) if "/".join(words) in self.folders else words[0]

@@ -16,7 +16,7 @@ RUNNERS = re.compile(
     r"^The mission failed|^Its end|^icesoc-sim: Cortex-M3: |^icesoc-sim: [0-9.]+ s simulated|"
     r"^-- \S+ \S+ XBeeAT: |^[\s{}()\[\];=-]*$|^(ERROR|FAIL): test_|^FAILED[ :]|^Ran \d+ test|"
     r"^g?make(\[\d+\])?: \*\*\*|^ninja: build stopped|^collect2: |^terminate called|as expected$|"
-    r"^#\d|^Thread \d|^Stack of |stands at clock", re.I)
+    r"^#\d|^Thread \d|^Stack of |^Google Test trace:|stands at clock", re.I)
 # A message of a compiler or a lint about a line of a file
 OF_FILE = re.compile(
     r"^%(Error|Warning)[^ ]*: [^ ]+:\d+:|"
@@ -73,14 +73,14 @@ def reason_of(log):
         if not line or RUNNERS.search(line) or (below and failure is None):
             continue
         if failure is not None:
-            failure.append(line)
+            failure.append(re.sub(r"^(\.\./)+", "", line))
             continue
         if line.endswith("Failure"):
             failure = []
         last = line
         of_file = of_file or (line if OF_FILE.search(line) else "")
         of_value = of_value or (line if OF_VALUE.search(line) else "")
-    return " ".join(failure) if failure is not None else of_file or of_value or last
+    return "; ".join(failure) if failure is not None else of_file or of_value or last
 
 
 def find_assertion(failure):

@@ -192,8 +192,8 @@ def read_vcd(text):
 def drawing_of(failure, room):
     """{from, to, signals: [[name, bits, [time, value, ...]], ...], first: how many of them stand
     before the tree of instances, more: signals left out}: the program's, those that the failure's
-    text names, those that move below its instance; then others that move, constant ones; in each
-    group the outermost first. Signals that a converter has named are left out. A drawing of more
+    text names, those that move below its instance, but no words of memories; then others that move,
+    constant ones; in each group the outermost first. Signals that a converter has named are left out. A drawing of more
     than `room` bytes loses its older changes, then the last signals."""
     try:
         signals, moments = read_vcd(run(["fst2vcd", "-f", failure.wave])[1]
@@ -210,7 +210,7 @@ def drawing_of(failure, room):
         within = f".{failure.scope}." in signal.name if failure.scope else signal.depth <= 3
         named = signal.name.rpartition(".")[2] in words and (within or signal.depth <= 3)
         moves = len(signal.changes) > 1
-        blamed = bool(moves and failure.scope and within)
+        blamed = bool(moves and failure.scope and within and not signal.name.endswith("]"))
         return (signal.bits != 0, not named, not blamed, not moves, signal.depth, signal.name)
     total = len(signals)
     signals = sorted((s for s in signals if not NAMELESS.search(s.name)), key=rank)

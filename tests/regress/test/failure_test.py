@@ -28,9 +28,9 @@ IDEMPOTENT = "! error: unexpected operation mode. expected Normal, received Idem
 REASONS = {
     "busy is true, not false":
         "g.cpp:4: Failure\nValue of: busy\n  Actual: true\nExpected: false\ng.cpp:7: Failure",
-    "status is 5, not 0 after the call":
+    "status is 5, not 0; after the call; a.cpp:7: the mode":
         "g.cpp:4: Failure\nExpected equality of these values:\n  status\n    Which is: 5\n  0\n"
-        "after the call",
+        "after the call\nGoogle Test trace:\n../../a.cpp:7: the mode\n",
     "call(1) is 5, not Ok, which is 0":
         "g.cpp:4: Failure\nExpected equality of these values:\n  call(1)\n    Which is: 5\n  Ok\n"
         "    Which is: 0\n",
@@ -240,15 +240,16 @@ add_test(NAME formal.damaged COMMAND sh -c "echo 'damaged: trace: ${damaged}'; e
 add_custom_target(test_w)
 """)
         wire, up = "$var wire 1 {0} {0} $end ", "$upscope $end "
+        word = "$var wire 1 @ !memory[3] $end "
         wave = ("$timescale 1ns $end $scope module top $end $var wire 1 ! clk_i $end "
                 f"$scope module u_a $end {wire.format('&')}{up}"
-                f"$scope module u_post $end {wire.format('#')}{up}{up}"
-                "$enddefinitions $end #0 0! 0& 0# #5 1! 1& 1# #10 0! ")
+                f"$scope module u_post $end {wire.format('#')}{word}{up}{up}"
+                "$enddefinitions $end #0 0! 0& 0# 0@ #5 1! 1& 1# 1@ #10 0! ")
         write("ip/core/core.v", "module core;\n    post #(.N(1)) u_post (.b(b));\nendmodule\n")
         write("ip/core/post.v", "module post;\nendmodule\n")
         commit("two modules")
         append("ip/core/post.v", "// a bug\n")
-        write("ip/core/t.vcd", re.sub(r"(end|#\d+|\d[!&#]) ", r"\1\n", wave))  # for vcd2fst
+        write("ip/core/t.vcd", re.sub(r"(end|#\d+|\d[!&#@]) ", r"\1\n", wave))  # for vcd2fst
         write("ip/core/damaged.vcd", wave.replace("#5", "#five"))
         write("build/trace/ip/core/verilated_core/Vcore.h", "VL_IN8(&clk_i,0,0);\n")
         append("CMakeLists.txt", "add_subdirectory(ip/core)\n")

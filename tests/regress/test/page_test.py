@@ -84,6 +84,15 @@ class Cases(Project):
         self.has("Requirements: 1 of 1 that were tested proven", ">It works<",
                  "<summary>1 whose tests did not run with these sources</summary>")
         self.lacks(">It waits<")
+        # At 420 pixels columns that have no room go below their row.
+        write("small.html", page.replace("</body>", """<script>setTimeout(() =>
+top.document.body.append("wider: " + [...document.querySelectorAll(".tabulator-col, h2")]
+  .filter(e => e.getBoundingClientRect().right > 421).map(e => e.innerText) + ";"), 1000);
+</script></body>"""))
+        write("frame.html", '<iframe src="small.html" width="420" height="3000"></iframe>')
+        self.said = look.browse(Path("frame.html").resolve().as_uri(),
+                                "--allow-file-access-from-files")[0]
+        self.has("wider: ;")
         self.assertEqual(look.fault(written), "")
         write("wrong.html", page.replace("of data.lights", "of data.lihgts"))
         self.assertRegex(look.fault("wrong.html"), "^wrong.html:[0-9]*: Uncaught TypeError: "
@@ -97,12 +106,15 @@ class Cases(Project):
     def test_blocks(self):
         """A test, a module and a file belong to the block of the folder; the last green commit is
         that of the last run with a test of the block after which none is left that had failed."""
-        for file in "hdl/fifo/fifo.v", "hdl/fifo/fifo_proof.vh", "ip/fir/fir.v", "sw/link/test/l.c":
+        for file in ("hdl/fifo/fifo.v", "hdl/fifo/fifo_proof.vh", "hdl/wire/wire_in.v",
+                     "ip/fir/fir.v", "sw/link/test/l.c"):
             write(file, "\n")
         known = blocks.Blocks(Path("."))
         for name, place, block in (
                 ("test_fifo_deep.Fifo.One", "hdl", "hdl/fifo"), ("formal.fifo_2", "hdl/formal",
-                "hdl/fifo"), ("test_ip_fir.Fir.One", "fir", "ip/fir"), ("test_x.One", "hdl", "hdl"),
+                "hdl/fifo"), ("cdc.test_fifo.1", "hdl", "hdl/fifo"), ("test_wire_modes.Modes.One", "hdl",
+                "hdl/wire"), ("formal.idle_fir", "hdl/formal", "ip/fir"),
+                ("test_ip_fir.Fir.One", "fir", "ip/fir"), ("test_x.One", "hdl", "hdl"),
                 ("test_link.Link.One", "sw/link", "sw/link"), ("mission.plain", "e2e/mission",
                 "e2e")):
             self.assertEqual(known.of_test(name, place), block)

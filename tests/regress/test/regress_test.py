@@ -94,7 +94,7 @@ class Cases(Project):
     def test_ages(self):
         """A test that takes three times its usual time is named with its age, and once more when
         it is twice as old; without history at 60 s."""
-        usual = {"quick": 0.1, "slow": 20.0, "new": None}
+        usual = {"quick": 0.1, "slow": 20.0, "new": None, "formal.long": 40.0}
         tests = [types.SimpleNamespace(name=name) for name in usual]
         progress = runner.Progress(tests, types.SimpleNamespace(seconds=usual.get,
                                                                   usual=usual.get), 2)

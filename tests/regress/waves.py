@@ -193,8 +193,8 @@ def drawing_of(failure, room):
     """{from, to, signals: [[name, bits, [time, value, ...]], ...], first: how many of them stand
     before the tree of instances, more: signals left out}: the program's, those that the failure's
     text names, those that move below its instance, but no words of memories; then others that move,
-    constant ones; in each group the outermost first. Signals that a converter has named are left out. A drawing of more
-    than `room` bytes loses its older changes, then the last signals."""
+    constant ones; in each group the outermost first. Signals that a converter has named are left
+    out. A drawing of more than `room` bytes loses its older changes, then the last signals."""
     try:
         signals, moments = read_vcd(run(["fst2vcd", "-f", failure.wave])[1]
                                     if failure.wave.endswith(".fst")

@@ -6,7 +6,6 @@
 #define GROUND_API_MODEM_H
 
 #include "api_frames.h"
-#include "contention.h"
 
 #include <deque>
 
@@ -20,15 +19,15 @@ class ApiModem {
 public:
     static constexpr int everybody = 0xFFFF; // as a target
 
-    explicit ApiModem(bool escapes, bool encrypts = false)
-        : frames_(escapes), contention_(encrypts) {}
+    explicit ApiModem(bool escapes) : frames_(escapes) {}
 
-    // Returns the bytes for the line that send a packet, and first set RN if it must change.
-    ApiFrames::Bytes packet(int target, const uint8_t* data, size_t size, uint32_t now) {
+    // Returns the bytes for the line that send a packet, and first set RN if it changes.
+    ApiFrames::Bytes packet(int target, const uint8_t* data, size_t size, uint32_t rn,
+                            uint32_t now) {
         ApiFrames::Bytes bytes;
-        contention_.sent(size, now);
-        if (contention_.changes(now))
-            bytes = frames_.command(0, "RN", {contention_.exponent()});
+        if (rn != rn_)
+            bytes = frames_.command(0, "RN", {static_cast<uint8_t>(rn)});
+        rn_ = rn;
         id_ = id_ == 0xFF ? 1 : id_ + 1; // 0 would ask for no answer
         waiting_.push_back({id_, target, now});
         const auto frame = frames_.packet(id_, static_cast<uint16_t>(target), data, size);
@@ -40,20 +39,15 @@ public:
     // `answer(target, isThere)` for each packet that was sent, in their order: the target's modem
     // has it, or it is lost.
     template <class Data, class Answer>
-    void feed(const uint8_t* bytes, size_t count, uint32_t now, Data data, Answer answer) {
+    void feed(const uint8_t* bytes, size_t count, Data data, Answer answer) {
         frames_.feed(
             bytes, count,
-            [&](int source, const uint8_t* heard, size_t size) {
-                contention_.heard(size, now);
-                data(source, heard, size);
-            },
+            [&](int source, const uint8_t* heard, size_t size) { data(source, heard, size); },
             [&](const ApiFrames::Bytes& frame) {
                 if (frame[0] != ApiFrames::Status || frame.size() != 3 ||
                     std::none_of(waiting_.begin(), waiting_.end(),
                                  [&](const Packet& p) { return p.id == frame[1]; }))
                     return;
-                if (frame[2])
-                    contention_.lost(now);
                 for (bool isLast = false; !isLast;) {
                     const Packet first = waiting_.front();
                     isLast = first.id == frame[1]; // the line lost the others' answers
@@ -78,7 +72,7 @@ private:
         uint32_t at; // when it was handed over
     };
     ApiFrames frames_;
-    Contention contention_;
+    uint32_t rn_ = LINK_WAIT_SHARED; // as set-up leaves it
     uint8_t id_ = 0;
     std::deque<Packet> waiting_; // without an answer
 };

@@ -25,11 +25,15 @@ constexpr std::chrono::seconds retryEvery{5}; // while only a listener waits for
 // gives it, whoever they are for.
 bool Engine::transmit(Peer& peer, const U8* frame, U32 size) {
     const U32 now = clock_.nowUs();
-    if (!serialOut_.empty() || (api_ ? api_->unanswered() >= LINK_MOST_UNANSWERED
+    if (!serialOut_.empty() || (api_ ? api_->unanswered() >= settings.mostWaiting()
                                      : serial_.waiting() || !pacer_.offer(frame, size, now)))
         return false;
-    if (api_)
-        serialOut_ = api_->packet(peer.address(), frame, size, now);
+    if (api_) {
+        U32 rn = peer.randomWait();
+        for (auto& [address, other] : peers_)
+            rn = other->isUp() ? std::max(rn, other->randomWait()) : rn;
+        serialOut_ = api_->packet(peer.address(), frame, size, rn, now);
+    }
     peer.airUs = std::max(peer.airUs, airUs_);
     airUs_ = peer.airUs;
     peer.airUs += LINK_PACKET_US + size * LINK_BYTE_US;
@@ -87,7 +91,7 @@ std::string Engine::prepareModem(const Settings& wanted) {
     serialOut_.clear();
     api_.reset();
     if (setup.isApi())
-        api_ = std::make_unique<ApiModem>(setup.escapes(), setup.encrypts());
+        api_ = std::make_unique<ApiModem>(setup.escapes());
     log(1, "modem ready on " + device + " after " +
                std::to_string((clock_.nowUs() - begin) / 1000) + " ms" +
                (setup.isApi() ? ", in API mode" : "") + (setup.encrypts() ? ", it encrypts" : ""));
@@ -189,7 +193,7 @@ void Engine::readSerial(U32 now) {
     const size_t size = static_cast<size_t>(count);
     if (count > 0 && api_)
         api_->feed(
-            bytes, size, now,
+            bytes, size,
             [&](int source, const U8* data, size_t heard) { deliver(source, data, heard, now); },
             [&](int target, bool isThere) { peers_.at(target)->answer(isThere, now); });
     else if (count > 0)

@@ -370,7 +370,7 @@ U32 Peer::withdrawLate(U32 now) {
 
 void Peer::start(U32 longest, bool isApi, U32 now) {
     Link_limitFrame(link_.get(), longest);
-    Link_expectAnswers(link_.get(), isApi);
+    Link_expectAnswers(link_.get(), isApi ? host_.settings.mostWaiting() : 0);
     Link_start(link_.get(), now);
 }
 

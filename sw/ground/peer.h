@@ -77,6 +77,7 @@ public:
     void start(U32 longest, bool isApi, U32 now);
     void stop(U32 now); // tells the vehicle
     void fail();        // ends all connections and those that wait for one
+    U32 randomWait() { return Link_randomWait(link_.get()); }
     void receive(const U8* bytes, size_t size, U32 now);
     void answer(bool isThere, U32 now); // of the modem, for the oldest packet without one
     // Does what is due. Returns when to call again, in microseconds.

@@ -32,6 +32,8 @@ struct Settings {
     // Returns a random number for sessions; a test may set its own source.
     std::function<unsigned()> random = [] { return std::random_device()(); };
 
+    // Packets that may wait for the modem's answer (Link_expectAnswers).
+    unsigned mostWaiting() const { return baud > 115200 ? 2 : 3; }
     double characterUs() const { return 1e7 / (baud == 115200 ? 111111 : baud); }
 };
 

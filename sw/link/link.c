@@ -152,10 +152,8 @@ void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs) {
     link_takeBytes(&link->input, bytes, size);
 }
 
-#if LINK_ANSWERS
-
-void Link_expectAnswers(Link* link, int isOn) {
-    link->output.isAnswered = (U8)isOn;
+void Link_expectAnswers(Link* link, U32 packets) {
+    link->output.mostWaiting = (U8)packets;
     link->output.answered = link->output.handed;
 }
 
@@ -165,7 +163,42 @@ void Link_answer(Link* link, int isDelivered, U32 nowUs) {
     if (!LINK_UNANSWERED(output))
         return;
     output->handedAt = nowUs;
+    if (!isDelivered) {
+        output->contention.hasLost = 1;
+        output->contention.lostAt = nowUs;
+    }
     link_onAnswer(&link->sender, output->answered++, isDelivered);
+}
+
+/* Judges whether a side sends much, by the bytes of so many whole spans, or of a part of one. */
+static void judge(Link_Talk* talk, U32 bytes, U32 spans) {
+    U32 more = bytes - talk->before;
+    if (more >= LINK_SPAN_MANY * (spans ? spans : 1U))
+        talk->isMuch = 1;
+    else if (more < LINK_SPAN_FEW * spans)
+        talk->isMuch = 0;
+    if (spans)
+        talk->before = bytes;
+}
+
+U32 Link_randomWait(Link* link) {
+    Link_Output* output = &link->output;
+    Link_Contention* c = &output->contention;
+    U32 messages = output->statistics.messagesReceived;
+    U32 spans = (output->now - c->since) / LINK_SPAN;
+    judge(&c->own, output->statistics.bytesSent, spans);
+    judge(&c->peers, output->statistics.bytesReceived, spans);
+    if (c->own.isMuch && messages != c->messages)
+        c->peers.isMuch = 1;
+    if (spans) {
+        c->since = output->now;
+        c->messages = messages;
+    }
+    if (output->now - c->lostAt >= LINK_LOSS_COUNTS)
+        c->hasLost = 0;
+    if (c->peers.isMuch || (c->hasLost && !c->own.isMuch))
+        return LINK_WAIT_SHARED;
+    return output->longest + LINK_CODEC(output)->overhead <= LINK_MAX_ENCRYPTED;
 }
 
 /* Gives up packets whose answers do not come. */
@@ -176,14 +209,10 @@ static void pollAnswers(Link* link) {
             Link_answer(link, 0, output->now);
 }
 
-#endif
-
 void Link_poll(Link* link, U32 nowUs) {
     Link_Sender* sender = link->session.sender;
     link->output.now = nowUs;
-#if LINK_ANSWERS
     pollAnswers(link);
-#endif
     link_pollInput(&link->input);
     if (!link_pollSession(&link->session))
         return;
@@ -214,7 +243,7 @@ U32 Link_deadline(const Link* link, U32 nowUs) {
     U32 open = output->paceUntil - output->slack;
     U32 ask = output->heardAt + LINK_PING_AFTER;
     int waits = LINK_UNANSWERED(output) != 0; /* the radio's next answer decides what goes again */
-    int isFull = LINK_UNANSWERED(output) >= LINK_MOST_UNANSWERED;
+    int isFull = waits && LINK_UNANSWERED(output) >= output->mostWaiting;
     U32 first = sooner(input->count, input->at + LINK_FRAME_GAP, nowUs + FAR);
     first =
         sooner(session->state == LINK_STATE_CONNECTING || (LINK_SECURE && session->isUnconfirmed),
@@ -225,9 +254,7 @@ U32 Link_deadline(const Link* link, U32 nowUs) {
     }
     if (session->state == LINK_STATE_UP) {
         first = sooner(1, LATER(ask, session->pingAt), first);
-#if LINK_ANSWERS
         first = sooner(waits, output->handedAt + LINK_ANSWER_LAST, first);
-#endif
         first = sooner(!isFull && output->packed, soon, first);
         first = sooner(!waits && sender->base != sender->next, sender->timerAt, first);
         first = sooner(!isFull && sender->hasWork, LATER(open, soon), first);

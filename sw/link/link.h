@@ -77,10 +77,21 @@ Link_Status Link_openChannel(Link* link, int channel);
  * Returns LINK_OK, LINK_DOWN, or LINK_CLOSED: it was not open. */
 Link_Status Link_closeChannel(Link* link, int channel);
 
-#if LINK_ANSWERS
-/* Says whether the radio answers for each packet from now on (Link_answer). Then the answers pace
- * packets, and what a lost one held goes out again at once. */
-void Link_expectAnswers(Link* link, int isOn);
+#ifndef LINK_MINIMAL
+/* Says how many packets may wait for the radio's answer (Link_answer) from now on; 0: it gives
+ * none. The answers pace packets, and what a lost one held goes out again at once. Two fill the
+ * air, if the line to the modem is faster: one is on the air, one behind it. A line of 111,111 baud
+ * needs three. A call waits for all of them. */
+void Link_expectAnswers(Link* link, U32 packets);
+
+/* Returns the modem's RN that suits what is sent and heard now: the least exponent of its random
+ * wait before the first try. Who talks alone does not wait (next to nothing where the modem
+ * encrypts: a packet takes 16 ms instead of 10 then, and one that an interferer of a fixed period
+ * has hit would be hit again and again). Two that talk at once wait at random, or they would begin
+ * together; so does a stream during which the peer calls, or the calls would find no room. So does
+ * who sends little where packets are lost: an interferer would meet all that is sent at fixed
+ * times. `transmit` may call it. */
+U32 Link_randomWait(Link* link);
 
 /* Reports the radio's answer for the oldest packet that has none: its peer has it, or it is lost.
  */

@@ -23,9 +23,6 @@
 #ifndef LINK_OUTCOMES /* minimal layer, 1: it calls `outcome` and `writable` */
 #define LINK_OUTCOMES 0
 #endif
-#ifndef LINK_ANSWERS /* 1: Link_answer, for a radio that answers for each packet; 0: left out */
-#define LINK_ANSWERS 0
-#endif
 #ifndef LINK_MAX_MESSAGE /* of one message (1..32,000); a longer one ends the session */
 #define LINK_MAX_MESSAGE (LINK_IS_FULL ? 8192U : 1024U)
 #endif
@@ -113,10 +110,16 @@
 /* Extra wait behind a short packet, or a modem that still holds it joins the two. */
 #define LINK_SHORT_MARGIN 1500U
 
-/* A radio that answers: packets that it has not answered for, at most: one on the air, one that
- * waits and one on the line; and the silence after which these are lost. */
-#define LINK_MOST_UNANSWERED 3U
+/* Silence of a radio that answers, after which the packets that wait for an answer are lost. */
 #define LINK_ANSWER_LAST 3000000U
+
+/* The choice of RN (Link_randomWait): each span its bytes are counted, of which the air carries
+ * some 5,000; these many make a stream, fewer than these end it. A loss counts for a while. */
+#define LINK_WAIT_SHARED 2U /* as set-up leaves it */
+#define LINK_SPAN 500000U
+#define LINK_SPAN_MANY 1000U
+#define LINK_SPAN_FEW 500U
+#define LINK_LOSS_COUNTS 10000000U
 
 #define LINK_SILENCE 4U /* characters of silence after which the modem sends a short packet */
 

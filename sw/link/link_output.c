@@ -27,10 +27,9 @@ U32 link_room(const Link_Output* output) {
     return (U32)output->longest - output->packed;
 }
 
-#if LINK_ANSWERS
 /* Hands the packet to a radio that answers. */
 static int handOverAnswered(Link_Output* output) {
-    if (LINK_UNANSWERED(output) >= LINK_MOST_UNANSWERED ||
+    if (LINK_UNANSWERED(output) >= output->mostWaiting ||
         output->port->transmit(output->context, output->packet, output->packed) != 0)
         return 0;
     ++output->handed;
@@ -38,7 +37,6 @@ static int handOverAnswered(Link_Output* output) {
     output->packed = output->heard = 0;
     return 1;
 }
-#endif
 
 /* Hands the packet to the radio, filled up if another may follow while the modem holds it: the
  * modem joins two packets unless the first is full, and from then on all begin inside a frame. */
@@ -47,10 +45,8 @@ static int handOver(Link_Output* output, int isFollowed) {
     U32 full = (U32)output->longest + LINK_CODEC(output)->overhead;
     if (!size)
         return 1;
-#if LINK_ANSWERS
-    if (output->isAnswered)
+    if (output->mostWaiting)
         return handOverAnswered(output);
-#endif
     if (isFollowed && output->slow && (output->present.features & LINK_FEATURE_PIGGYBACK)) {
         memset(output->packet + size, (int)LINK_FILL, full - size);
         size = full;
@@ -91,10 +87,8 @@ void link_hear(Link_Output* output, U32 size) {
 int link_isOpen(Link_Output* output) {
     if (output->packed && output->packed + LEAST(output) > output->longest && !link_flush(output))
         return 0;
-#if LINK_ANSWERS
-    if (output->isAnswered)
-        return output->packed || LINK_UNANSWERED(output) < LINK_MOST_UNANSWERED;
-#endif
+    if (output->mostWaiting)
+        return output->packed || LINK_UNANSWERED(output) < output->mostWaiting;
     return output->packed || !LINK_BEFORE(output->now + output->slack, output->paceUntil);
 }
 

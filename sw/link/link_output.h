@@ -66,6 +66,19 @@ typedef struct Link_Identity {
     U8 open[LINK_OPEN_BYTES]; /* and what they carry: the half of the own pair */
 } Link_Identity;
 
+/* Who talks (Link_randomWait). */
+typedef struct Link_Talk {
+    U32 before; /* bytes before the present span */
+    U8 isMuch;
+} Link_Talk;
+
+typedef struct Link_Contention {
+    Link_Talk own, peers; /* the peer's is also much if it calls during a stream */
+    U32 since, messages;  /* begin of the span, and messages heard before it */
+    U32 lostAt;
+    U8 hasLost; /* a packet, at lostAt */
+} Link_Contention;
+
 /* Small members that are often used come first in each part: short instructions reach them. */
 struct Link_Output {
     U8 longest;  /* payload of the longest frame that is sent */
@@ -91,21 +104,14 @@ struct Link_Output {
     Link_Statistics statistics;
     Link_Identity present;
     U8 packet[LINK_MAX_FRAME]; /* frames that leave together */
-#if LINK_ANSWERS
-    U8 isAnswered;       /* the radio answers for each packet */
+    U8 mostWaiting;            /* packets that may wait for the radio's answer; 0: it gives none */
     U8 handed, answered; /* packets handed over, and those of them with an answer, modulo 256 */
     U32 handedAt;        /* when the last one was handed over, or answered */
-#endif
+    Link_Contention contention;
 };
 
-/* Whether the radio answers for each packet, and the packets that it has not answered for yet. */
-#if LINK_ANSWERS
-#define LINK_IS_ANSWERED(output) ((output)->isAnswered)
+/* The packets that the radio has not answered for yet. */
 #define LINK_UNANSWERED(output) ((U8)((output)->handed - (output)->answered))
-#else
-#define LINK_IS_ANSWERED(output) 0
-#define LINK_UNANSWERED(output) 0U
-#endif
 
 /* True if a fragment may go out now: the packet has room, or the modem has for a new one. */
 int link_isOpen(Link_Output* output);

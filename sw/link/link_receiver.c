@@ -216,9 +216,7 @@ int link_ackMayRide(const Link_Receiver* receiver) {
 void link_ackIsSent(Link_Receiver* receiver) {
     ++receiver->output->statistics.acksSent;
     receiver->ackDue = receiver->ackNow = 0;
-#if LINK_ANSWERS
     receiver->packet = receiver->output->handed;
-#endif
 }
 
 int link_pollReceiver(Link_Receiver* receiver) {

@@ -93,7 +93,7 @@ static int cut(Link_Sender* sender, int onlyAhead) {
  * or where short messages fill the queue before the window. */
 static U32 askEvery(const Link_Sender* sender) {
     U32 ahead = sender->ahead;
-    if (!LINK_IS_ANSWERED(sender->output) &&
+    if (!sender->output->mostWaiting &&
         (sender->isLossy || (ahead - sender->base < IN_FLIGHT(sender) &&
                              FRAGMENT(sender, ahead)->state != LINK_ACKED)))
         return 5U;
@@ -107,7 +107,7 @@ static U32 askEvery(const Link_Sender* sender) {
 static int mustAsk(const Link_Sender* sender, U32 seq) {
     if (sender->unasked + 1U >= askEvery(sender) || seq - sender->base + 1U >= sender->credit)
         return 1;
-    if (!FRAGMENT(sender, seq)->tries || LINK_IS_ANSWERED(sender->output))
+    if (!FRAGMENT(sender, seq)->tries || sender->output->mostWaiting)
         return 0;
     while (++seq != sender->next)
         if (FRAGMENT(sender, seq)->state == LINK_TO_SEND)
@@ -174,9 +174,7 @@ static int transmit(Link_Sender* sender, U32 seq) {
     f->order = ++sender->order;
     f->sentAt = output->now;
     f->state = LINK_SENT;
-#if LINK_ANSWERS
     f->packet = output->handed;
-#endif
     sender->unasked = (U8)(isAsked ? 0U : sender->unasked + 1U);
     if (IN_FLIGHT(sender) >= sender->fullCredit && wait > sender->srtt) /* only an answer helps */
         wait = sender->srtt < LINK_RTO_MIN ? LINK_RTO_MIN : sender->srtt;
@@ -271,7 +269,6 @@ void link_onAck(Link_Sender* sender, U32 cumulative, U32 credit, const U8* bitma
     }
 }
 
-#if LINK_ANSWERS
 void link_onAnswer(Link_Sender* sender, U32 packet, int isDelivered) {
     U32 seq;
     if (isDelivered) {
@@ -288,7 +285,6 @@ void link_onAnswer(Link_Sender* sender, U32 packet, int isDelivered) {
     if (sender->receiver->packet == packet)
         link_oweAck(sender->receiver);
 }
-#endif
 
 /* Finds the next fragment to send: a short message that overtakes, a lost one, or a new one.
  * Returns 0: none. */
@@ -314,8 +310,7 @@ static int pollWindow(Link_Sender* sender, U32 now) {
     U32 age = oldest->tries ? now - oldest->firstAt : 0;
     if (age >= LINK_AGE_LAST)
         return 0;
-    if (LINK_BEFORE(now, sender->timerAt) ||
-        (LINK_IS_ANSWERED(sender->output) && LINK_UNANSWERED(sender->output)))
+    if (LINK_BEFORE(now, sender->timerAt) || LINK_UNANSWERED(sender->output))
         return 1;
     oldest->state = LINK_TO_SEND; /* its answer tells about the others */
     sender->hasWork = sender->isLate = 1;

@@ -85,8 +85,7 @@ class ModemEnd {
 public:
     ModemEnd(RfChannel& air, const XBee::Options& options, uint64_t seed)
         : modem(line, air, options), isApi_(modem.parameter("AP") != 0),
-          target_(static_cast<int>(modem.parameter("DL"))),
-          api_(modem.parameter("AP") == 2, options.set.at("EE") != 0),
+          target_(static_cast<int>(modem.parameter("DL"))), api_(modem.parameter("AP") == 2),
           pacer_(90, options.set.at("EE") ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME), random_(seed) {
         static const Link_Port port = {
             [](void* c, const U8* f, U32 n) { return self(c).transmit(f, n); },
@@ -102,7 +101,7 @@ public:
         Link_init(link(), &port, this, 1440);
         if (options.set.at("EE"))
             Link_limitFrame(link(), LINK_MAX_ENCRYPTED);
-        Link_expectAnswers(link(), isApi_);
+        Link_expectAnswers(link(), !isApi_ ? 0 : options.set.at("BD") > 7 ? 2 : 3);
     }
     virtual ~ModemEnd() = default;
     ModemEnd(const ModemEnd&) = delete;
@@ -140,7 +139,7 @@ private:
         const U32 size = static_cast<U32>(line.received.size());
         if (isApi_)
             api_.feed(
-                bytes, size, us,
+                bytes, size,
                 [&](int source, const U8* data, size_t count) {
                     if (source == target_)
                         Link_receive(link(), data, static_cast<U32>(count), us);
@@ -152,7 +151,8 @@ private:
     }
     int transmit(const U8* frame, U32 size) {
         if (isApi_) {
-            const auto bytes = api_.packet(target_, frame, size, static_cast<U32>(now_ / 1000));
+            const auto bytes = api_.packet(target_, frame, size, Link_randomWait(link()),
+                                           static_cast<U32>(now_ / 1000));
             line.send(bytes.data(), bytes.size(), now_);
             return 0;
         }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// soak: two link layers over two XBee models and a bad radio, for any time: random messages both
-// ways, loss, bursts, corruption, duplication; reboots of the UAV, of the ground and of modems;
-// with --attacked a key on both sides, and a hostile third modem. No message may be wrong, doubled
-// or out of order, and each is delivered or reported: the first violation ends the program.
+// soak: two link layers over two XBee models in API mode and a bad radio, for any time: random
+// messages both ways, loss, bursts, corruption, duplication; reboots of the UAV, of the ground and
+// of modems; with --attacked a key on both sides, and a hostile third modem. No message may be
+// wrong, doubled or out of order, and each is delivered or reported: the first violation ends the
+// program.
 
+#include "api_modem.h"
 #include "attacker.h"
 #include "ice_messages.h"
 #include "rf_channel.h"
@@ -60,7 +62,7 @@ public:
         : side_(side), random_(random), totals_(totals), hasKey_(hasKey), link_(new Link) {
         XBee::Options options;
         options.name = side ? "uav" : "ground";
-        options.set = {{"BD", 7}, {"MY", side}, {"DL", 1 - side}, {"D7", 1}};
+        options.set = {{"BD", 7}, {"MY", side}, {"DL", 1 - side}, {"D7", 1}, {"AP", 1}};
         modem_ = std::make_unique<XBee>(line_, air, options);
         boot(0);
     }
@@ -78,6 +80,7 @@ public:
         now_ = now;
         line_.received.clear();
         out_.clear();
+        api_ = XBeeAT::ApiModem(false);
         // Messages on their way at the power's loss: their program calls them unknown.
         totals_.unknown += outstanding_.size();
         outstanding_.clear();
@@ -85,6 +88,7 @@ public:
         static const U8 key[LINK_KEY_BYTES] = {1, 2, 3};
         if (hasKey_)
             Link_setKey(link_.get(), 0, key, side_ ? 0 : LINK_GROUND);
+        Link_expectAnswers(link_.get(), 2 + side_);
         Link_start(link_.get(), us());
     }
     void advance(uint64_t now, double rate) {
@@ -92,8 +96,12 @@ public:
         modem_->advance(now);
         for (; !out_.empty() && line_.cts(); out_.pop_front()) // as both drivers do
             line_.send({out_.front()}, now);
-        Link_receive(link_.get(), line_.received.data(), static_cast<U32>(line_.received.size()),
-                     us());
+        api_.feed(
+            line_.received.data(), line_.received.size(),
+            [&](int, const uint8_t* data, size_t size) {
+                Link_receive(link_.get(), data, static_cast<U32>(size), us());
+            },
+            [&](int, bool isThere) { Link_answer(link_.get(), isThere, us()); });
         line_.received.clear();
         Link_poll(link_.get(), us());
         if (isUp() && random_.chance(rate))
@@ -118,7 +126,9 @@ private:
     int transmit(const U8* frame, U32 size) {
         if (out_.size() > 2 * LINK_MAX_FRAME)
             return 1;
-        out_.insert(out_.end(), frame, frame + size);
+        const auto bytes = api_.packet(static_cast<int>(1 - side_), frame, size,
+                                       Link_randomWait(link_.get()), us());
+        out_.insert(out_.end(), bytes.begin(), bytes.end());
         return 0;
     }
     void offer() {
@@ -178,6 +188,7 @@ private:
     HostLine line_;
     std::deque<uint8_t> out_; // handed over, not yet on the line
     std::unique_ptr<XBee> modem_;
+    XBeeAT::ApiModem api_{false};
     std::unique_ptr<Link> link_;
     End* peer_ = nullptr;
     uint64_t now_ = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// api_test: frames of a modem in API mode, its answers, and the choice of RN.
+// api_test: frames of a modem in API mode, and its answers.
 
 #include "api_modem.h"
 #include "random.h"
@@ -22,7 +22,7 @@ struct Heard {
     void feed(ApiModem& modem, const Bytes& bytes) {
         for (uint8_t byte : bytes) // one at a time
             modem.feed(
-                &byte, 1, 0,
+                &byte, 1,
                 [&](int from, const uint8_t* d, size_t count) {
                     data.insert(data.end(), d, d + count);
                     source = from;
@@ -77,7 +77,7 @@ TEST(Api, DataAndAnswersSayWhoseTheyAre) {
     for (uint16_t address : {uint16_t(2), uint16_t(0xFFFE)}) {
         heard.feed(modem, packetFrom(ApiFrames(), address, {7}));
         EXPECT_EQ(heard.source, address);
-        modem.packet(address, Bytes{1}.data(), 1, 0);
+        modem.packet(address, Bytes{1}.data(), 1, 2, 0);
     }
     heard.feed(modem, ApiFrames().pack({0x80, 0, 0, 0, 0, 0, 0, 0, 9, 40, 0, 7}));
     EXPECT_EQ(heard.source, ApiFrames::nobody);
@@ -86,10 +86,25 @@ TEST(Api, DataAndAnswersSayWhoseTheyAre) {
     EXPECT_EQ(heard.targets, (std::vector<int>{2, 0xFFFE}));
 }
 
+TEST(Api, RNIsSetWhenItChanges) {
+    ApiModem modem(false);
+    const ApiFrames frames;
+    auto packet = [&](uint8_t id, uint32_t rn) {
+        Bytes bytes = modem.packet(5, Bytes{1}.data(), 1, rn, 0);
+        const Bytes end = frames.packet(id, 5, Bytes{1}.data(), 1);
+        EXPECT_EQ(Bytes(bytes.end() - static_cast<std::ptrdiff_t>(end.size()), bytes.end()), end);
+        bytes.resize(bytes.size() - end.size());
+        return bytes;
+    };
+    EXPECT_EQ(packet(1, 2), Bytes());
+    EXPECT_EQ(packet(2, 0), frames.command(0, "RN", {0}));
+    EXPECT_EQ(packet(3, 0), Bytes());
+}
+
 TEST(Api, APacketThatIsNotAnsweredForThreeSecondsIsLost) {
     ApiModem modem(false);
     for (uint32_t at : {0u, 1'000'000u})
-        modem.packet(5, Bytes{1}.data(), 1, at);
+        modem.packet(5, Bytes{1}.data(), 1, 2, at);
     std::vector<int> lost;
     modem.expire(3'500'000, [&](int target) { lost.push_back(target); });
     EXPECT_EQ(lost, std::vector<int>{5});
@@ -101,7 +116,7 @@ TEST(Api, AnswersComeInTheOrderOfPacketsAndALostOneCountsAsALoss) {
     ApiModem modem(false);
     Heard heard;
     for (int i = 0; i < 300; ++i) // numbers go round
-        modem.packet(1, Bytes{1}.data(), 1, 0);
+        modem.packet(1, Bytes{1}.data(), 1, 2, 0);
     for (int i = 0; i < 296; ++i)
         heard.feed(modem, ApiFrames().pack({0x89, static_cast<uint8_t>(i % 255 + 1), 0}));
     EXPECT_EQ(heard.answers, std::string(296, '+'));
@@ -132,45 +147,6 @@ TEST(Api, AfterNoiseFramesAreReadAgain) {
             EXPECT_EQ(Bytes(heard.data.end() - 3, heard.data.end()), (Bytes{1, 2, 3}));
         }
     }
-}
-
-TEST(Api, WhoTalksAloneDoesNotWaitAndTwoThatTalkDo) {
-    XBeeAT::Contention contention; // as set-up leaves it: 2
-    uint32_t now = 0;
-    EXPECT_TRUE(contention.changes(now));
-    EXPECT_EQ(contention.exponent(), 0);
-    XBeeAT::Contention encrypts(true);
-    EXPECT_TRUE(encrypts.changes(now));
-    EXPECT_EQ(encrypts.exponent(), 1);
-    for (; now < 2'000'000; now += 100'000) // acknowledgements, and answers to calls
-        contention.heard(100, now);
-    EXPECT_FALSE(contention.changes(now));
-    for (; now < 3'000'000; now += 20'000) // a stream
-        contention.heard(100, now);
-    EXPECT_TRUE(contention.changes(now));
-    EXPECT_EQ(contention.exponent(), 2);
-    now += 2'000'000;
-    EXPECT_TRUE(contention.changes(now));
-    EXPECT_EQ(contention.exponent(), 0);
-}
-
-TEST(Api, WhoSendsLittleWaitsWherePacketsAreLost) {
-    XBeeAT::Contention contention;
-    uint32_t now = 20'000'000;
-    EXPECT_TRUE(contention.changes(now));
-    contention.lost(now);
-    EXPECT_TRUE(contention.changes(now));
-    EXPECT_EQ(contention.exponent(), 2);
-    for (; now < 21'000'000; now += 20'000) {
-        contention.sent(100, now);
-        contention.lost(now);
-    }
-    EXPECT_TRUE(contention.changes(now)); // a stream has a packet for each quiet moment
-    EXPECT_EQ(contention.exponent(), 0);
-    EXPECT_TRUE(contention.changes(now += 1'000'000));
-    EXPECT_EQ(contention.exponent(), 2);
-    EXPECT_TRUE(contention.changes(now += 10'000'000));
-    EXPECT_EQ(contention.exponent(), 0);
 }
 
 } // namespace

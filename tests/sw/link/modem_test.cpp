@@ -13,8 +13,9 @@ constexpr uint64_t ms = 1'000'000;
 class End : public ModemEnd {
 public:
     // `apiEnds`: ends in API mode: none, the first, both.
-    End(RfChannel& air, unsigned address, uint64_t seed, bool hasKey, unsigned apiEnds)
-        : ModemEnd(air, modemOptions(address, false, 2, address < apiEnds), seed) {
+    End(RfChannel& air, unsigned address, uint64_t seed, bool hasKey, unsigned apiEnds,
+        bool encrypts = false)
+        : ModemEnd(air, modemOptions(address, encrypts, 2, address < apiEnds), seed) {
         static const U8 key[LINK_KEY_BYTES] = {1, 2, 3};
         if (hasKey)
             Link_setKey(link(), 0, key, address ? 0 : LINK_GROUND);
@@ -147,6 +148,59 @@ TEST(LinkOverApi, WhatTheModemSaysIsLostAndNothingElseIsSentAgain) {
         20)); // the lost packets included, these take 13 s of the air's time
     EXPECT_GT(lost, 250u);
     EXPECT_NEAR(pair.a.statistics().fragmentsResent, lost, lost * 0.05);
+}
+
+// Two modems in API mode, and the RN that the links have set.
+class RandomWait : public ::testing::Test {
+protected:
+    unsigned rn(End& end) { return end.modem.parameter("RN"); }
+    static void send(End& end, U32 size) {
+        const std::vector<U8> message(size, 1);
+        while (Link_send(end.link(), 0, message.data(), size, 0) == LINK_OK && size > 1)
+            continue;
+    }
+    // For two seconds the first end sends long messages or short ones, and so does the second.
+    void talk(ModemPair<End>& pair, U32 first, U32 second) {
+        for (int i = 0; i < 10; ++i, pair.pass(200 * ms)) {
+            if (first)
+                send(pair.a, first);
+            if (second)
+                send(pair.b, second);
+        }
+    }
+};
+
+TEST_F(RandomWait, WhoTalksAloneDoesNotWaitAndTwoThatTalkDo) {
+    ModemPair<End> pair(RfWeather(), testSeed(), 1, false, 2u);
+    talk(pair, 1, 0);
+    EXPECT_EQ(rn(pair.a), 0u);
+    talk(pair, 2000, 0);
+    EXPECT_EQ(rn(pair.a), 0u);
+    EXPECT_EQ(rn(pair.b), 2u);
+    talk(pair, 2000, 1); // the other calls
+    EXPECT_EQ(rn(pair.a), 2u);
+    talk(pair, 2000, 2000);
+    EXPECT_EQ(rn(pair.a), 2u);
+    EXPECT_EQ(rn(pair.b), 2u);
+    pair.pass(20'000 * ms);
+    talk(pair, 1, 0);
+    EXPECT_EQ(rn(pair.a), 0u);
+    ModemPair<End> encrypted(RfWeather(), testSeed(), 1, false, 2u, true);
+    talk(encrypted, 1, 0);
+    EXPECT_EQ(rn(encrypted.a), 1u);
+}
+
+TEST_F(RandomWait, WhoSendsLittleWaitsWherePacketsAreLost) {
+    ModemPair<End> pair(RfWeather(), testSeed(), 1, false, 2u);
+    pair.air.weather.loss = 0.5;
+    talk(pair, 1, 0);
+    EXPECT_EQ(rn(pair.a), 2u);
+    talk(pair, 2000, 0); // a stream has a packet for each quiet moment
+    EXPECT_EQ(rn(pair.a), 0u);
+    pair.air.weather.loss = 0;
+    pair.pass(20'000 * ms);
+    talk(pair, 1, 0);
+    EXPECT_EQ(rn(pair.a), 0u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Keys, LinkOverModems,

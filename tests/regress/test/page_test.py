@@ -114,7 +114,8 @@ top.document.body.append("wider: " + [...document.querySelectorAll(".tabulator-c
                 ("test_fifo_deep.Fifo.One", "hdl", "hdl/fifo"), ("formal.fifo_2", "hdl/formal",
                 "hdl/fifo"), ("cdc.test_fifo.1", "hdl", "hdl/fifo"),
                 ("test_wire_modes.Modes.One", "hdl", "hdl/wire"),
-                ("formal.idle_fir", "hdl/formal", "ip/fir"), ("test_ip_fir.Fir.One", "fir", "ip/fir"), ("test_x.One", "hdl", "hdl"),
+                ("formal.idle_fir", "hdl/formal", "ip/fir"),
+                ("test_ip_fir.Fir.One", "fir", "ip/fir"), ("test_x.One", "hdl", "hdl"),
                 ("test_link.Link.One", "sw/link", "sw/link"), ("mission.plain", "e2e/mission",
                 "e2e")):
             self.assertEqual(known.of_test(name, place), block)

@@ -54,13 +54,19 @@ if [ -n "$whole" ]; then
     xst_includes="-vlgincdir $soc"
     for file in "$soc"/*.v; do echo "verilog work \"$file\"" >>chip.prj; done
 fi
+cat >chip.xcf <<XCF
+BEGIN MODEL "chip"
+NET "sys_clk_i" PERIOD = 10 ns;
+NET "clk" PERIOD = 10 ns;
+END;
+XCF
 cat >chip.xst <<XST
 run
 -ifn chip.prj
 -ofn chip.ngc
 -top chip
 -p $part
--uc $source/chip.xcf
+-uc chip.xcf
 -opt_mode Area
 -read_cores optimize
 ${xst_includes:--sd $(dirname "$soc")}

@@ -172,3 +172,78 @@ def read_netlist(file):
     for names in n.names.values():
         names.sort(key=lambda name: rank(name.name))
     return n
+
+
+# Ports of Spartan-6's block RAMs, in the order of those of synth/primitives/block_ram.v; of the
+# last kind port A writes words of 36 bits, and B reads them.
+RAM_PORTS = {
+    "RAMB16BWER": "CLKA ENA RSTA WEA ADDRA DIA+DIPA DOA+DOPA "
+                  "CLKB ENB RSTB WEB ADDRB DIB+DIPB DOB+DOPB",
+    "RAMB8BWER": "CLKAWRCLK ENAWREN RSTA WEAWEL ADDRAWRADDR DIADI+DIPADIP DOADO+DOPADOP "
+                 "CLKBRDCLK ENBRDEN RSTBRST WEBWEU ADDRBRDADDR DIBDI+DIPBDIP DOBDO+DOPBDOP",
+    "SDP": "CLKAWRCLK ENAWREN RSTA WEAWEL+WEBWEU ADDRAWRADDR DIADI+DIBDI+DIPADIP+DIPBDIP - "
+           "CLKBRDCLK ENBRDEN RSTBRST - ADDRBRDADDR - DOADO+DOBDO+DOPADOP+DOPBDOP"}
+RAM_NAMES = [name.format(port) for port in "ab" for name in (
+    "clk_{}_i", "en_{}_i", "rst_{}_i", "we_{}_i", "addr_{}_i", "data_{}_i", "data_{}_o")]
+RAM_SIZES = {"clk": 1, "en": 1, "rst": 1, "we": 4, "data": 36}
+
+
+def with_block_rams(file):
+    """The text of a netlist (write_json) in which each block RAM is a block_ram."""
+    whole = json.loads(pathlib.Path(file).read_text())
+    (module,) = whole["modules"].values()
+    free = 1 + max((bit for net in module["netnames"].values() for bit in net["bits"]
+                    if isinstance(bit, int)), default=1)
+    for cell in module["cells"].values():
+        if cell["type"] in ("RAMB16BWER", "RAMB8BWER"):
+            free = make_block_ram(cell, free)
+    return json.dumps(whole)
+
+
+def make_block_ram(cell, free):
+    """Changes the cell. Bits of the netlist are below `free`; returns that of the changed one."""
+    given, log2 = cell["parameters"], 14 if cell["type"] == "RAMB16BWER" else 13
+    is_wide, lanes = given.get("RAM_MODE") == "SDP", 4 if log2 == 14 else 2
+
+    def bits(name, size):
+        return given.get(name, "").rjust(size, "0")[-size:]
+
+    def word(name, port):
+        """36 bits, the highest first: parity and data."""
+        if log2 == 14:
+            return bits(f"{name}_{port}", 36)
+        a, own = bits(f"{name}_A", 18), bits(f"{name}_{port}", 18)
+        return own[:2] + a[:2] + own[2:] + a[2:] if is_wide and port == "B" else \
+            "00" + own[:2] + "0" * 16 + own[2:]
+
+    def rows(name, count):
+        return "".join(bits(f"{name}_{n:02X}", 256) for n in reversed(range(count)))
+
+    made = {"ADDR_BITS": f"{log2:032b}", "INIT": rows("INIT", 1 << log2 - 8),
+            "INIT_P": rows("INITP", 1 << log2 - 11)}
+    for port in "AB":
+        if int(bits(f"DO{port}_REG", 32), 2) or given.get(f"EN_RSTRAM_{port}", "TRUE") != "TRUE" \
+                or (is_wide and int(bits(f"DATA_WIDTH_{port}", 32), 2) != 36):
+            raise ValueError(f"block RAM {cell['type']} has a mode without a model")
+        made |= {f"WIDTH_{port}": bits(f"DATA_WIDTH_{port}", 32),
+                 f"MODE_{port}": given.get(f"WRITE_MODE_{port}", "WRITE_FIRST"),
+                 f"PRIORITY_{port}": given.get(f"RST_PRIORITY_{port}", "CE"),
+                 f"START_{port}": word("INIT", port), f"RESET_{port}": word("SRVAL", port)}
+    connections = {}
+    for port, names in zip(RAM_NAMES, RAM_PORTS["SDP" if is_wide else cell["type"]].split()):
+        size, joined = RAM_SIZES.get(port.partition("_")[0], log2), []
+        for name in names.split("+"):  # Yosys may give a port more bits than it has
+            room = lanes if name[:3] in ("DIP", "DOP") or name[:2] == "WE" else \
+                8 * lanes if size == 36 else size
+            joined += cell["connections"].get(name, [])[:room]
+        if size == 36 and len(joined) == 18:  # two bytes of four, and their parity
+            joined[16:16] = [None] * 16
+        joined = (joined + [None] * size)[:size]
+        is_output = port.endswith("_o")
+        connections[port] = [bit if isinstance(bit, int) or bit and not is_output else
+                             free + n if is_output else "0" for n, bit in enumerate(joined)]
+        free += size
+    cell |= {"type": "block_ram", "parameters": made, "connections": connections,
+             "port_directions": {port: "output" if port.endswith("_o") else "input"
+                                 for port in connections}}
+    return free

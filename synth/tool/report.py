@@ -297,6 +297,6 @@ def html(report, parts, libraries):
                 for name, a in commit["designs"].items()}} for commit in report.commits]}
     style, script = page_parts(libraries)
     return filled((parts / "page.html").read_text(),
-                  {"@STYLE@": style + (parts / "page.css").read_text(),
+                  {"@STYLE@": style,
                    "@SCRIPT@": script + (parts / "page.js").read_text(),
                    "@DATA@": script_safe(data)})

@@ -277,7 +277,7 @@ def write_for_simulation(design, library, options, file, models):
             break
     else:
         synthesise(run, library, options)
-    words = {"NETLIST": run.netlist, "TOP": design.top,
+    words = {"NETLIST": file.with_suffix(".json"), "TOP": design.top,
              "MODELS": " ".join(map(str, sorted(models.glob("*.v"))))}
 
     def script(part):
@@ -287,6 +287,7 @@ def write_for_simulation(design, library, options, file, models):
         return text
 
     file.parent.mkdir(parents=True, exist_ok=True)
+    write(file.with_suffix(".json"), netlist.with_block_rams(run.netlist))
     yosys_by(script, file, options)
 
 

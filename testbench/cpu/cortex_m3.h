@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // cortex_m3: a Cortex-M3: libunicorn executes the instructions; this adds exceptions, their
-// priorities, the system registers, cycles and faults. Its contract and limits: docs/models.md.
+// priorities, the system registers, cycles and faults. Its contract and limits: docs/simulation.md.
 
 #pragma once
 

@@ -10,11 +10,22 @@ namespace {
 constexpr uint32_t dwt = 0xE0001000, scs = 0xE000E000;
 constexpr uint32_t keyIn = 0x05FA, keyOut = 0xFA05;
 
-// Exceptions 4..15 have their priorities in SHPR1..3; those that exist:
+// Exceptions 4..15 have their priorities in SHPR1..3; those that exist, and interrupts:
 bool hasPriority(unsigned number) {
-    return (number >= MemManage && number <= UsageFault) || number == SupervisorCall ||
-           number == DebugMonitor || number == PendSv || number == SysTick;
+    return number >= FirstInterrupt || (number >= MemManage && number <= UsageFault) ||
+           number == SupervisorCall || number == DebugMonitor || number == PendSv ||
+           number == SysTick;
 }
+
+// Bits of ICSR that make an exception pending, or take that back.
+constexpr struct {
+    unsigned bit, number;
+    bool on;
+} pends[] = {{31, NonMaskable, true},
+             {28, PendSv, true},
+             {27, PendSv, false},
+             {26, SysTick, true},
+             {25, SysTick, false}};
 
 // RASR.AP for privileged code: 0 no access; 5 to 7 read only.
 bool forbids(uint32_t rasr, bool write) {
@@ -72,7 +83,7 @@ uint32_t SystemControl::currentTicks() const {
 
 bool SystemControl::read(uint32_t address, unsigned size, uint32_t& value) {
     uint32_t word;
-    if (!readWord(address & ~3u, word))
+    if (!accessWord(address & ~3u, false, word))
         return false;
     value = word >> 8 * (address & 3);
     if (size < 4)
@@ -82,125 +93,77 @@ bool SystemControl::read(uint32_t address, unsigned size, uint32_t& value) {
 
 bool SystemControl::write(uint32_t address, unsigned size, uint32_t value) {
     if (size == 4)
-        return writeWord(address, value);
+        return accessWord(address, true, value);
     // Only the priority registers may be written in bytes (B3.1.1).
     uint32_t at = address & 0xFFF;
     bool priorities = (at >= 0x400 && at < 0x4F0) || (at >= 0xD18 && at < 0xD24);
     uint32_t word;
-    if (address < scs || !priorities || !readWord(address & ~3u, word))
+    if (address < scs || !priorities || !accessWord(address & ~3u, false, word))
         return false;
     uint32_t mask = ((1u << 8 * size) - 1) << 8 * (address & 3);
-    return writeWord(address & ~3u, (word & ~mask) | (value << 8 * (address & 3) & mask));
+    word = (word & ~mask) | (value << 8 * (address & 3) & mask);
+    return accessWord(address & ~3u, true, word);
 }
 
-bool SystemControl::readWord(uint32_t address, uint32_t& value) {
-    if (address == dwt || address == dwt + 4) {
-        value = address == dwt ? dwtControl_ : static_cast<uint32_t>(cycles_ - cycleCountFrom_);
+bool SystemControl::accessWord(uint32_t address, bool write, uint32_t& value) {
+    if (address == dwt) {
+        (write ? dwtControl_ : value) = write ? value : dwtControl_;
         return true;
     }
-    if (address < scs)
-        return false;
-    uint32_t at = address - scs;
-    if (at >= 0x100 && at < 0x380) { // ISER, ICER, ISPR, ICPR, IABR
-        constexpr auto enabled = &Exceptions::State::enabled, pending = &Exceptions::State::pending;
-        constexpr bool Exceptions::State::* views[] = {enabled, enabled, pending, pending,
-                                                       &Exceptions::State::active};
-        const unsigned first = (at & 0x7F) * 8;
-        value = 0;
-        for (unsigned b = 0; b < 32 && first + b < Exceptions::interrupts; ++b)
-            value |=
-                uint32_t((*exceptions_)[FirstInterrupt + first + b].*views[(at - 0x100) / 0x80])
-                << b;
-        return true;
-    }
-    if (at >= 0x400 && at < 0x400 + ((Exceptions::interrupts + 3) & ~3u)) {
-        value = 0;
-        for (unsigned b = 0; b < 4 && at - 0x400 + b < Exceptions::interrupts; ++b)
-            value |= uint32_t(priorityByte(FirstInterrupt + at - 0x400 + b)) << 8 * b;
-        return true;
-    }
-    switch (at) {
-    case 0x004:
-        value = (Exceptions::interrupts - 1) / 32;
-        return true; // ICTR
-    case 0x010:
-        value = control_ | uint32_t(countFlag_) << 16;
-        countFlag_ = false;
-        return true;
-    case 0x018:
-        value = currentTicks();
-        return true;
-    case 0x01C:
-        value = calibration_;
-        return true;
-    }
-    if (at >= 0xD90 && at < 0xDA8)
-        return accessMpu(at - 0xD90, false, value);
-    for (const Stored& r : stored)
-        if (r.at == at) {
-            value = this->*r.value;
-            return true;
-        }
-    return readScb(at, value);
-}
-
-bool SystemControl::writeWord(uint32_t address, uint32_t value) {
-    if (address == dwt || address == dwt + 4) {
-        if (address == dwt)
-            dwtControl_ = value;
-        else
+    if (address == dwt + 4) {
+        if (write)
             cycleCountFrom_ = cycles_ - value;
+        else
+            value = static_cast<uint32_t>(cycles_ - cycleCountFrom_);
         return true;
     }
     if (address < scs)
         return false;
     uint32_t at = address - scs;
-    if (at >= 0x100 && at < 0x300) { // ISER, ICER, ISPR, ICPR
-        const bool on = !(at & 0x80);
-        const unsigned first = (at & 0x7F) * 8;
-        for (unsigned b = 0; b < 32 && first + b < Exceptions::interrupts; ++b) {
-            const unsigned number = FirstInterrupt + first + b;
-            if (value >> b & 1)
-                at < 0x200 ? exceptions_->enable(number, on) : exceptions_->pend(number, on);
-        }
-        return true;
-    }
-    if (at >= 0x400 && at < 0x400 + ((Exceptions::interrupts + 3) & ~3u)) {
-        for (unsigned b = 0; b < 4 && at - 0x400 + b < Exceptions::interrupts; ++b)
-            exceptions_->setPriority(FirstInterrupt + at - 0x400 + b,
-                                     static_cast<uint8_t>(value >> 8 * b));
-        return true;
-    }
-    switch (at) {
-    case 0x010: {
-        stoppedAt_ = currentTicks();
-        bool wasOn = control_ & 1;
-        control_ = value & 7;
-        if (!(control_ & 1))
-            tickDue_ = ~0ull;
-        else if (!wasOn)
-            startSysTick(stoppedAt_ ? stoppedAt_ : uint64_t(load_) + 1);
-        return true;
-    }
-    case 0x018: // any value clears it: it is loaded at the next tick
-        stoppedAt_ = 0;
-        countFlag_ = false;
-        if (control_ & 1)
-            startSysTick(uint64_t(load_) + 1);
-        return true;
-    case 0xF00: // STIR
-        if ((value & 0x1FF) < Exceptions::interrupts)
-            exceptions_->pend(FirstInterrupt + (value & 0x1FF));
-        return true;
-    }
+    if (at >= 0x100 && at < (write ? 0x300 : 0x380)) // ISER, ICER, ISPR, ICPR, IABR
+        return accessInterrupts(at - 0x100, write, value);
+    if (at >= 0x400 && at < 0x400 + ((Exceptions::interrupts + 3) & ~3u))
+        return accessPriorities(FirstInterrupt + at - 0x400, write, value);
+    if (at >= 0xD18 && at < 0xD24)
+        return accessPriorities(at - 0xD14, write, value);
     if (at >= 0xD90 && at < 0xDA8)
-        return accessMpu(at - 0xD90, true, value);
+        return accessMpu(at - 0xD90, write, value);
     for (const Stored& r : stored)
         if (r.at == at) {
-            this->*r.value = r.clears ? this->*r.value & ~value : value & r.kept;
-            return !(value & r.unknown);
+            uint32_t& own = this->*r.value;
+            const bool isKnown = !write || !(value & r.unknown);
+            if (write)
+                own = r.clears ? own & ~value : value & r.kept;
+            else
+                value = own;
+            return isKnown;
         }
-    return writeScb(at, value);
+    return accessOther(at, write, value);
+}
+
+bool SystemControl::accessInterrupts(uint32_t at, bool write, uint32_t& value) {
+    const unsigned first = FirstInterrupt + (at & 0x7F) * 8, kind = at / 0x80;
+    const bool on = !(kind & 1);
+    uint32_t shown = 0;
+    for (unsigned b = 0; b < 32 && first + b < Exceptions::count; ++b) {
+        const Exceptions::State& s = (*exceptions_)[first + b];
+        shown |= uint32_t(kind < 2 ? s.enabled : kind < 4 ? s.pending : s.active) << b;
+        if (write && (value >> b & 1))
+            kind < 2 ? exceptions_->enable(first + b, on) : exceptions_->pend(first + b, on);
+    }
+    value = write ? value : shown;
+    return true;
+}
+
+bool SystemControl::accessPriorities(unsigned first, bool write, uint32_t& value) {
+    uint32_t shown = 0;
+    for (unsigned b = 0; b < 4 && first + b < Exceptions::count; ++b) {
+        if (write && hasPriority(first + b))
+            exceptions_->setPriority(first + b, static_cast<uint8_t>(value >> 8 * b));
+        shown |= uint32_t((*exceptions_)[first + b].priority) << 8 * b;
+    }
+    value = write ? value : shown;
+    return true;
 }
 
 bool SystemControl::takeResetRequest() {
@@ -214,83 +177,89 @@ void SystemControl::setFaultAddress(uint32_t cfsrBits, uint32_t address) {
     (cfsrBits & mmfarValid ? mmfar_ : bfar_) = address;
 }
 
-bool SystemControl::readScb(uint32_t at, uint32_t& value) {
+bool SystemControl::accessOther(uint32_t at, bool write, uint32_t& value) {
+    const uint32_t given = write ? value : 0;
+    uint32_t shown = 0;
     auto flag = [&](unsigned number, unsigned bit, bool Exceptions::State::* what) {
-        value |= uint32_t((*exceptions_)[number].*what) << bit;
+        shown |= uint32_t((*exceptions_)[number].*what) << bit;
     };
     constexpr auto active = &Exceptions::State::active, pending = &Exceptions::State::pending,
                    enabled = &Exceptions::State::enabled;
-    value = 0;
     switch (at) {
-    case 0xD00:
-        value = 0x412FC230;
-        return true; // CPUID: r2p0, an STM32F2's
-    case 0xD04:      // ICSR; VECTACTIVE is the processor's IPSR
+    case 0x004: // ICTR
+        shown = (Exceptions::interrupts - 1) / 32;
+        break;
+    case 0x010: // SysTick
+        shown = control_ | uint32_t(countFlag_) << 16;
+        if (write)
+            controlSysTick(given);
+        else
+            countFlag_ = false;
+        break;
+    case 0x018: // any value that is written clears it: it is loaded at the next tick
+        shown = currentTicks();
+        if (!write)
+            break;
+        stoppedAt_ = 0;
+        countFlag_ = false;
+        if (control_ & 1)
+            startSysTick(uint64_t(load_) + 1);
+        break;
+    case 0x01C:
+        shown = calibration_;
+        break;
+    case 0xD00: // CPUID: r2p0, an STM32F2's
+        shown = 0x412FC230;
+        break;
+    case 0xD04: // ICSR; VECTACTIVE is the processor's IPSR
         for (unsigned n = 1; n < Exceptions::count; ++n)
             if ((*exceptions_)[n].active &&
                 exceptions_->priorityOf(n) <= exceptions_->runningPriority())
-                value = n;
-        value |= uint32_t(exceptions_->activeCount() <= 1) << 11 | exceptions_->firstPending()
+                shown = n;
+        shown |= uint32_t(exceptions_->activeCount() <= 1) << 11 | exceptions_->firstPending()
                                                                        << 12;
         flag(SysTick, 26, pending);
         flag(PendSv, 28, pending);
         flag(NonMaskable, 31, pending);
-        return true;
+        for (const auto& [bit, number, on] : pends)
+            if (given >> bit & 1)
+                exceptions_->pend(number, on);
+        break;
     case 0xD0C:
-        value = keyOut << 16 | exceptions_->grouping() << 8;
-        return true;
-    case 0xD18:
-    case 0xD1C:
-    case 0xD20:
-        for (unsigned b = 0, n = at - 0xD14; b < 4; ++b)
-            value |= uint32_t(priorityByte(n + b)) << 8 * b;
-        return true;
+        shown = keyOut << 16 | exceptions_->grouping() << 8;
+        if (given >> 16 != keyIn)
+            break; // ignored without the key
+        exceptions_->setGrouping(given >> 8);
+        resetRequested_ = resetRequested_ || (given & 4);
+        break;
     case 0xD24:
         flag(MemManage, 0, active), flag(BusFault, 1, active), flag(UsageFault, 3, active);
         flag(SupervisorCall, 7, active), flag(PendSv, 10, active), flag(SysTick, 11, active);
         flag(UsageFault, 12, pending), flag(MemManage, 13, pending), flag(BusFault, 14, pending);
         flag(MemManage, 16, enabled), flag(BusFault, 17, enabled), flag(UsageFault, 18, enabled);
-        return true;
+        for (unsigned number : {MemManage, BusFault, UsageFault})
+            if (write)
+                exceptions_->enable(number, given >> (12 + number) & 1);
+        break;
+    case 0xF00: // STIR
+        if (write && (given & 0x1FF) < Exceptions::interrupts)
+            exceptions_->pend(FirstInterrupt + (given & 0x1FF));
+        return write;
     default:
         return false;
     }
+    value = write ? value : shown;
+    return !(write && (at == 0x004 || at == 0x01C || at == 0xD00)); // these are read only
 }
 
-bool SystemControl::writeScb(uint32_t at, uint32_t value) {
-    switch (at) {
-    case 0xD04:
-        if (value >> 31)
-            exceptions_->pend(NonMaskable);
-        if (value >> 28 & 1)
-            exceptions_->pend(PendSv);
-        if (value >> 27 & 1)
-            exceptions_->pend(PendSv, false);
-        if (value >> 26 & 1)
-            exceptions_->pend(SysTick);
-        if (value >> 25 & 1)
-            exceptions_->pend(SysTick, false);
-        return true;
-    case 0xD0C:
-        if (value >> 16 != keyIn)
-            return true; // ignored without the key
-        exceptions_->setGrouping(value >> 8);
-        resetRequested_ = resetRequested_ || (value & 4);
-        return true;
-    case 0xD18:
-    case 0xD1C:
-    case 0xD20:
-        for (unsigned b = 0, n = at - 0xD14; b < 4; ++b)
-            if (hasPriority(n + b))
-                exceptions_->setPriority(n + b, static_cast<uint8_t>(value >> 8 * b));
-        return true;
-    case 0xD24:
-        exceptions_->enable(MemManage, value >> 16 & 1);
-        exceptions_->enable(BusFault, value >> 17 & 1);
-        exceptions_->enable(UsageFault, value >> 18 & 1);
-        return true;
-    default:
-        return false;
-    }
+void SystemControl::controlSysTick(uint32_t value) {
+    stoppedAt_ = currentTicks();
+    bool wasOn = control_ & 1;
+    control_ = value & 7;
+    if (!(control_ & 1))
+        tickDue_ = ~0ull;
+    else if (!wasOn)
+        startSysTick(stoppedAt_ ? stoppedAt_ : uint64_t(load_) + 1);
 }
 
 bool SystemControl::accessMpu(uint32_t at, bool write, uint32_t& value) {

@@ -57,18 +57,19 @@ private:
     struct Region {
         uint32_t rbar = 0, rasr = 0;
     };
-    bool readWord(uint32_t address, uint32_t& value);
-    bool writeWord(uint32_t address, uint32_t value);
-    bool readScb(uint32_t offset, uint32_t& value);
-    bool writeScb(uint32_t offset, uint32_t value);
+    // Read into `value`, or write it.
+    bool accessWord(uint32_t address, bool write, uint32_t& value);
+    bool accessInterrupts(uint32_t offset, bool write, uint32_t& value);
+    bool accessPriorities(unsigned first, bool write, uint32_t& value);
+    bool accessOther(uint32_t offset, bool write, uint32_t& value);
     bool accessMpu(uint32_t offset, bool write, uint32_t& value);
     void tick();
     void startSysTick(uint64_t ticks);
+    void controlSysTick(uint32_t value);
     uint64_t tickUnit() const { return control_ & 4 ? 1 : 8; } // CLKSOURCE: HCLK or HCLK/8
     uint32_t currentTicks() const;
     bool hitsGuard(uint32_t start, uint32_t bytes, bool write) const;
     void updateGuards();
-    uint8_t priorityByte(unsigned number) const { return (*exceptions_)[number].priority; }
 
     static constexpr unsigned regions = 8;
     Exceptions* exceptions_;

@@ -7,7 +7,7 @@ Wrapper, servant and proxies are generated from its Slice interface; axis_filter
 """
 import re
 
-from foreign_verilog import ADAPTER, head, overrides, pin_name, vector
+from foreign_files import ADAPTER, head, overrides, pin_name, vector
 
 SIGNALS = ("tdata", "tvalid", "tready", "tkeep", "tstrb", "tlast", "tuser", "tid", "tdest")
 NEEDED = ["s_tdata", "s_tvalid", "m_tdata", "m_tvalid", "m_tready"]

@@ -8,7 +8,7 @@ import json
 import re
 
 from foreign_roles import AXI, is_answer
-from foreign_verilog import ADAPTER, head, overrides, pin_name, vector
+from foreign_files import ADAPTER, head, overrides, pin_name, vector
 
 BUSES = {"wishbone": "Wishbone", "apb": "APB", "axil": "AXI4-Lite",
          "memory": "select, address and data",

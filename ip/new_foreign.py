@@ -26,10 +26,8 @@ import foreign_axis
 import foreign_bus
 from cli.reserved import REFUSAL, RESERVED
 from foreign_files import (FLAGS, check_names, copies_for_verilator, fail, folders_of, is_vhdl,
-                           kind_of,
-                           names_of, packages_first, read_module)
+                           kind_of, names_of, packages_first, pin_name, read_module)
 from foreign_roles import NEEDED, roles_of
-from foreign_verilog import pin_name
 
 USAGE = ("usage: make new-foreign NAME=my_uart TOP=module BUS=wishbone|axil|apb|memory|own|axis "
          "FILES='a.v b.v' "

@@ -6,9 +6,9 @@ import re
 import sys
 from pathlib import Path
 
-from cli import command, version
+from cli import command
 from cli.commands import (  # noqa: F401 (each declares its own)
-    flights, core, synth, contract, build, regression, checks, coverage, fresh, tree)
+    flights, core, synth, build, regression, checks, coverage, fresh, tree)
 from cli.runner import Interrupted, Stop, hear_signals, say, warn
 
 
@@ -50,7 +50,7 @@ def act(words):
     elif words[0] in ("help", "-h", "--help"):
         return say(command.overview())
     elif words[0] == "--version":
-        return say(version.text())
+        return say(tree.version())
     else:
         found, values = command.by_words(words, place)
     # Programs do not see these variables; a command passes on the necessary ones.

@@ -13,8 +13,7 @@ from cli.build_folder import ROOMS_OF_PROGRAMS, BuildFolder, configured
 from cli.command import COMMANDS, command
 from cli.options import (BLOCK, BUILD, CORE_FOLDERS, COUNT, FRESH, JOBS, LABEL, NAME, SEED,
                          SWITCH, TESTS, TEXT, UCOS2, WORDS, Option, matching, number)
-from cli.runner import Stop, commit, lock, output, run, say
-from cli.table import Table
+from cli.runner import Stop, Table, commit, lock, output, run, say
 
 WAVES = Option("waves", number(0), "failures of which a waveform is written", 3)
 

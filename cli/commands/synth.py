@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""synth: utilisation of the chip, and its changes between commits."""
+"""synth: utilisation of the chip, registers of its blocks, and their changes between commits."""
 import contextlib
 import json
 import subprocess
@@ -7,11 +7,12 @@ from pathlib import Path
 
 from cli.build_folder import configured
 from cli.command import DEFAULTS, GROUPS, command
-from cli.options import BUILD, CORE_FOLDERS, JOBS, TEXT, WORDS, Option
+from cli.options import BUILD, CORE_FOLDERS, FILE, FOLDER, JOBS, TEXT, WORDS, Option
 from cli.runner import Stop, commit, lock, logged, output, run, warn
 
 GROUPS["synth"] = "utilisation of the chip"
 DEFAULTS["synth"] = "synth report"
+GROUPS["contract"] = "registers of cores"
 SHOWN = 10  # tests in a line of a pull request
 DESIGN = Option("design", WORDS,
                 "these designs only, such as modem, table1 or soc; of the others what is known")
@@ -150,3 +151,22 @@ def compare(build, jobs, base, head=None):
         Path("build/summary.md").write_text(text)
         print(text, end="")
     return 0
+
+
+@command("contract diff",
+         [Option("base", TEXT, "the commit to compare with", "", positional=True), BUILD, JOBS],
+         make="contract-diff", brief="contract diff HEAD", examples=["contract diff main"])
+def contract_diff(values):
+    """what changed in the cores' registers since a commit; exit status 1: software of then would
+    break"""
+    build = configured(values, "slice2c")
+    return run([DIFF, build / "slice/slice2c", ".", values.base], check=False)
+
+
+@command("contract from-rdl", [Option("rdl", FILE, "the SystemRDL file", "", positional=True),
+                               Option("out", FOLDER, "folder that they are written to", "")],
+         make="from-rdl", brief="contract from-rdl build/main/gen/icesoc.rdl --out build/brief/rdl",
+         examples=["contract from-rdl spi.rdl --out ip/spi"])
+def from_rdl(values):
+    """register descriptions (*.regs.json) of SystemRDL"""
+    return run(["bus/rdl.py", values.rdl, values.out], check=False)

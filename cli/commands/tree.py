@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""tree: set-up, clean-up, and the list of commands."""
+"""tree: set-up, clean-up, versions, and the list of commands."""
+import json
 import os
+import re
 import shlex
 import shutil
 import sys
@@ -8,11 +10,11 @@ import time
 from pathlib import Path
 
 from cli import command as doors
-from cli import flight, keys, version
+from cli import flight, keys
+from cli.build_folder import TREE
 from cli.command import COMMANDS, command
 from cli.options import PATH, SWITCH, TEXT, Option
-from cli.runner import run, say
-from cli.table import SKIPPED, Table
+from cli.runner import SKIPPED, Table, run, say
 
 
 @command("setup", [
@@ -90,13 +92,27 @@ def run_all(only):
     return table.end()
 
 
+def version():
+    """The versions of the project (CHANGELOG.md), of the protocol on the air, and of the chip's
+    blocks."""
+    newest = re.search(r"^## (\d+\.\d+\.\d+)", (TREE / "CHANGELOG.md").read_text(), re.M)[1]
+    link = re.search(r"LINK_VERSION (\d+)", (TREE / "sw/link/link_wire.h").read_text())[1]
+    blocks = []
+    for path in sorted([*(TREE / "hdl").rglob("*.regs.json"), *(TREE / "ip").rglob("*.regs.json")]):
+        block = json.loads(path.read_text())
+        if "version" in block:
+            number = int(block["version"], 16)
+            blocks.append(f"{block['block']} {number >> 8}.{number & 255}")
+    return f"icesoc {newest}\nlink protocol {link}\ncontracts: {', '.join(blocks)}"
+
+
 def manual():
     """The manual page, made of the commands' help."""
     def plain(text):
         return "".join(
             f"\\&{line}\n" for line in text.replace("\\", "\\e").replace("-", "\\-").splitlines())
 
-    parts = [f'.TH ICESOC 1 "" "{version.text().partition(chr(10))[0]}"', ".SH NAME",
+    parts = [f'.TH ICESOC 1 "" "{version().partition(chr(10))[0]}"', ".SH NAME",
              "icesoc \\- every command of the IceSoC project", ".SH SYNOPSIS",
              "\\&./icesoc COMMAND [option...]", ".SH COMMANDS", ".nf",
              plain(doors.overview()) + ".fi"]

@@ -7,7 +7,7 @@ from pathlib import Path
 
 TREE = Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(TREE))
-from cli import build_folder, command, flight, main, runner, table  # noqa: E402, F401
+from cli import build_folder, command, flight, main, runner  # noqa: E402, F401
 from cli.commands.tree import manual  # noqa: E402
 from cli.options import FLIGHT, SWITCH  # noqa: E402
 
@@ -411,7 +411,7 @@ class Lists(unittest.TestCase):
     def test_a_table_tells_what_failed_and_what_lacks_a_network(self):
         with tempfile.TemporaryDirectory() as work, contextlib.redirect_stdout(
                 io.StringIO()) as out:
-            rows = table.Table(f"{work}/rows")
+            rows = runner.Table(f"{work}/rows")
             rows.add("good", 0, 1.5, "a | b")
             rows.add("far", 77, 0)
             rows.end()

@@ -255,7 +255,7 @@ def gdb(values):
                    "key next.update --list 2 --by spare.key --first spare.pub --second next.pub"])
 def key(values):
     """make a key of the link, for vehicle and ground, a certificate (docs/security.md), or a key
-    that signs updates and lists of these (docs/update.md)"""
+    that signs updates and lists of these (docs/firmware.md)"""
     if not values.file:
         raise Stop("key needs the name of a file: ./icesoc key my.key", 2)
     parts = values.list, values.by, values.first

@@ -98,7 +98,7 @@
 #define LINK_POLL_EVERY 1000U  /* while the radio has no room */
 #define LINK_OFFER_EVERY 5000U /* while the program does not take a message */
 
-/* Pacing (docs/models.md): a modem's time for a packet without its bytes, the same where it
+/* Pacing (docs/simulation.md): a modem's time for a packet without its bytes, the same where it
  * encrypts, and for a byte on the air. */
 #define LINK_PACKET_US 7250U
 #define LINK_PACKET_ENCRYPTED_US 13450U

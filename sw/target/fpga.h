@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * fpga: the FPGA's configuration flash, which it shares with the processor, and its pins PROGRAM_B
- * and DONE (docs/update.md).
+ * and DONE (docs/firmware.md).
  */
 #pragma once
 

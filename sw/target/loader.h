@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * loader: the boot loader in flash sectors 0 and 1, which starts the firmware of a slot, and what
- * it offers to that firmware (docs/update.md).
+ * it offers to that firmware (docs/firmware.md).
  */
 #pragma once
 

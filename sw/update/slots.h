@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * slots: two places in flash for firmware, and which of their images may run (docs/update.md).
+ * slots: two places in flash for firmware, and which of their images may run (docs/firmware.md).
  *
  * A slot begins with a signed header that has the digest of the image behind it, and with state
  * words, which are written once after an erase. A state word counts only if it is exactly its

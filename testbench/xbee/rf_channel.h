@@ -40,7 +40,7 @@ public:
     uint64_t nextEvent() const { return events_.empty() ? never : events_.begin()->first; }
 
     // Time on the air of n payload bytes from one 16-bit address to another, with the maker's
-    // header, carrier sense, the MAC's acknowledgement and the gap after it: docs/models.md.
+    // header, carrier sense, the MAC's acknowledgement and the gap after it: docs/simulation.md.
     static uint64_t airTimeNs(size_t bytes);
 
 private:

@@ -89,7 +89,7 @@ struct RfWeather {
     bool perfect = false;
 
     // Losses in bursts as on flights, and tries lost as in the field; distance in the clear; an
-    // interferer. Sources: docs/models.md.
+    // interferer. Sources: docs/simulation.md.
     static const std::vector<std::pair<std::string, RfWeather>>& published() {
         static const auto all = [] {
             std::vector<std::pair<std::string, RfWeather>> list;

@@ -18,7 +18,7 @@ constexpr size_t packetBytes = 100, packetBytesEncrypted = 95;
 constexpr uint64_t msNs = 1'000'000, resetNs = 200;
 // The modem's time for each packet that it sends (before it senses the carrier) or has received
 // (before it handles the next). With it and the time on the air full packets leave at 80 and,
-// encrypted, at 47 kb/s, the maker's measurement (docs/models.md).
+// encrypted, at 47 kb/s, the maker's measurement (docs/simulation.md).
 constexpr uint64_t processingNs = 4'688'000, processingEncryptedNs = 10'666'000;
 constexpr uint64_t plusWindowNs = 1000 * msNs; // the three characters come within a second
 

@@ -15,7 +15,7 @@ extern "C" {
 namespace {
 
 const char* const modes[] = {"in the clear", "with a key"}; // by hasKey
-// The limit one way: full packets through the modem and RN 2 (docs/models.md).
+// The limit one way: full packets through the modem and RN 2 (docs/simulation.md).
 constexpr double mostBytesPerSecond = 100 / (4.688 + 1.5 * 0.320 + 5.312) * 1000;
 constexpr int size = 7900, messages = 6; // bytes of a sequence; a message has up to 8192
 

@@ -10,7 +10,12 @@
  *   [4] XBeeATEndpoint_init(&ic, "xbee-at"), with the link that it stands on, and its task
  *   [5] Figure 3's Vehicle is served as well
  *
- * getResult, which the figure leaves out ("[...]"), follows the same pattern.
+ * getResult, which the figure leaves out ("[...]"), follows the same pattern. Figure 3 is
+ * Figure3.ice, the client figure5.py; `make test NAME=paper_figures` flies all over the simulated
+ * radio. Figure 4 prints Autopilot_Vehicle_vehicleState for an operation of Station: here it is
+ * Autopilot_StationPrx_vehicleState (build/main/gen/slice/Figure3/Figure3_client.c), since the
+ * servant's function has the name without Prx; it returns a status, and the run time has the parts
+ * that the figure repeats in every function.
  */
 #include "Figure3.h"
 #include "fsmc.h"

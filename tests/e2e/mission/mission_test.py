@@ -172,7 +172,7 @@ class Cases(Script):
         with open(name, "r+b") as file:
             file.seek(at + offset - int(text[1], 16) + int(text[2], 16))
             file.write(value)
-        self.ask(BUILD / "sw/target/stamp_image", name)
+        self.ask(BUILD / "sw/target/pack_update", "stamp", name)
 
     def test_other_chip(self):
         """Firmware built for other registers of the vision core: it does not serve the core and

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // air_test: the properties of the air: one direction at a time, the modem's own time, retries by
-// RR, fading, interference, recorded traces. Sources of the figures: docs/models.md.
+// RR, fading, interference, recorded traces. Sources of the figures: docs/simulation.md.
 
 #include "pair.h"
 #include <cstdio>

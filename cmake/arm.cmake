@@ -53,9 +53,9 @@ function(icesoc_arm_program name)
     COMMAND ${ARM_GCC} -mcpu=cortex-m3 -mthumb -nostartfiles --specs=nano.specs
             -T ${A_SCRIPT} ${A_OPTIONS} -Wl,--gc-sections -Wl,-Map=${dir}/${name}.map
             -Wl,--fatal-warnings -o ${dir}/${name}.elf ${A_OBJECTS}
-    COMMAND stamp_image ${dir}/${name}.elf
+    COMMAND pack_update stamp ${dir}/${name}.elf
     COMMAND ${ARM_OBJCOPY} -O binary ${dir}/${name}.elf ${dir}/${name}.bin
-    DEPENDS ${A_OBJECTS} ${A_SCRIPT} stamp_image BYPRODUCTS ${dir}/${name}.map ${dir}/${name}.bin
+    DEPENDS ${A_OBJECTS} ${A_SCRIPT} pack_update BYPRODUCTS ${dir}/${name}.map ${dir}/${name}.bin
     VERBATIM COMMENT "Firmware: ${name}.elf")
   add_custom_target(firmware_${name} DEPENDS ${dir}/${name}.elf)
 endfunction()

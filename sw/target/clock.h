@@ -1,9 +1,27 @@
 /* SPDX-License-Identifier: MIT
  *
- * clock: the STM32F2's clock tree.
+ * clock: the STM32F2's clock tree: oscillator, PLL, dividers (RM0033, 5.2).
  */
 #pragma once
 
+#include "stm32f2.h"
+
 /* Switches to 120 MHz, from a crystal of 25 MHz, with the flash's wait states. Does nothing where
  * this has been done. Uses no RAM. */
-void Clock_start(void);
+static void Clock_start(void) {
+    if ((RCC_CFGR & RCC_CFGR_SWS_MASK) == RCC_CFGR_SWS_PLL)
+        return; /* the boot loader has done it */
+    RCC_CR |= RCC_CR_HSEON;
+    while (!(RCC_CR & RCC_CR_HSERDY))
+        ;
+    /* The PLL makes 25 MHz / 25 * 240 / 2 = 120 MHz, and / 5 = 48 MHz for the random number
+     * generator. */
+    RCC_PLLCFGR = 25UL | 240UL << 6 | 0UL << 16 | 1UL << 22 | 5UL << 24;
+    RCC_CR |= RCC_CR_PLLON;
+    while (!(RCC_CR & RCC_CR_PLLRDY))
+        ;
+    FLASH_ACR = FLASH_ACR_120MHZ;
+    RCC_CFGR = RCC_CFGR_APB1_DIV4 | RCC_CFGR_APB2_DIV2 | RCC_CFGR_SW_PLL;
+    while ((RCC_CFGR & RCC_CFGR_SWS_MASK) != RCC_CFGR_SWS_PLL)
+        ;
+}

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * loader: checks the slots' images and starts one. It has no variables: its stack is at the end of
- * RAM, where the firmware keeps nothing across a reset.
+ * RAM, where the firmware keeps nothing across a reset. At the end are the few functions of
+ * libsodium's other files that signature checks need.
  */
 #include "loader.h"
 #include "clock.h"
@@ -9,6 +10,9 @@
 #include "signature.h"
 #include "stm32f2.h"
 #include "uav_keys.h"
+
+#include <sodium/crypto_hash_sha512.h>
+#include <sodium/utils.h>
 
 #define TRIAL_PRESCALER 6UL /* LSI / 256: 8 ms */
 #define TRIAL_RELOAD 1250UL /* 10 s until the new firmware serves the watchdog itself */
@@ -64,4 +68,34 @@ void Reset_Handler(void) {
     }
     SCB_VTOR = FLASH_BASE + Slots_at(&slots_firmware, slot) + SLOTS_IMAGE_AT;
     jump((const U32*)SCB_VTOR);
+}
+
+void _crypto_sign_ed25519_ref10_hinit(crypto_hash_sha512_state* state, int prehashed);
+
+void _crypto_sign_ed25519_ref10_hinit(crypto_hash_sha512_state* state, int prehashed) {
+    (void)prehashed;
+    (void)crypto_hash_sha512_init(state);
+}
+
+int sodium_memcmp(const void* a, const void* b, size_t bytes) {
+    const volatile unsigned char* x = (const volatile unsigned char*)a;
+    const volatile unsigned char* y = (const volatile unsigned char*)b;
+    int difference = 0;
+    while (bytes--)
+        difference |= *x++ ^ *y++;
+    return difference ? -1 : 0;
+}
+
+int sodium_is_zero(const unsigned char* bytes, const size_t count) {
+    size_t i;
+    unsigned all = 0;
+    for (i = 0; i < count; ++i)
+        all |= bytes[i];
+    return all == 0;
+}
+
+/* libsodium calls this to wipe intermediate results; what is checked here is public. */
+void sodium_memzero(void* const at, const size_t bytes) {
+    (void)at;
+    (void)bytes;
 }

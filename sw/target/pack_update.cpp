@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// pack_update: signs a firmware for both slots of a vehicle, or the next list of keys, or fills the
-// flash of a new vehicle.
+// pack_update: signs a firmware for both slots of a vehicle, or the next list of keys, fills the
+// flash of a new vehicle, or writes a firmware's checksum.
 //
 // A package is, for each slot, the signed header (sw/update/slots.h) and the image linked for it. A
 // list of keys is a header alone.
@@ -36,6 +36,7 @@ constexpr char usage[] =
     "       pack_update fpga GOLDEN.bit VERSION KEYFILE FLASH.bin\n"
     "       pack_update public KEYFILE KEY.pub\n"
     "       pack_update keys NUMBER KEYFILE KEY.pub [SECOND.pub] NEW.update\n"
+    "       pack_update stamp FIRMWARE.elf\n"
     "image, bitstream: signs firmware, or the FPGA's .bit or .bin, to be sent to a vehicle.\n"
     "vehicle: the flash of a new vehicle, with boot loader, public key and a confirmed firmware.\n"
     "fpga: the FPGA's, with the bitstream that is always there. KEYFILE is the private key, which "
@@ -44,6 +45,7 @@ constexpr char usage[] =
     "public: writes a key's public half. keys: signs a vehicle's next list of public keys, which "
     "has one or\n"
     "two; NUMBER is the last one's and 1. A new vehicle's has number 1, KEYFILE's and --second's.\n"
+    "stamp: writes a firmware's checksum into its file, as the build does.\n"
     "Behind these: --vendor N and --board N (1 and 1), which vehicle and image have in common;\n"
     "--second KEY.pub: a second key, of a new vehicle;\n"
     "--needs VERSION: of the bitstream that a firmware needs, or the firmware that a bitstream "
@@ -297,6 +299,8 @@ int main(int argc, char** argv) {
             fillFpga(word[1], versionOf(word[2]), word[3], word[4]);
         else if (word.size() == 3 && word[0] == "public")
             savePublic(word[1], word[2]);
+        else if (word.size() == 2 && word[0] == "stamp")
+            ElfImage(word[1]).stamp();
         else if ((word.size() == 5 || word.size() == 6) && word[0] == "keys") {
             std::vector<Bytes> open;
             for (size_t i = 3; i + 1 < word.size(); ++i)

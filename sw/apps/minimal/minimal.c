@@ -4,13 +4,15 @@
  *
  * `make size` measures it (docs/icec.md), and it flies: `make run CPU=m3 APP=minimal`. It has the
  * Slice of the paper's Figure 3, the engine's servant as in its Figure 5, and calls to the ground
- * station, two-way and one-way, over the xbee-at endpoint, the link, the modem and the FSMC.
+ * station, two-way and one-way, over the xbee-at endpoint, the link, the modem and the FSMC. There
+ * is no interrupt but a tick of 1 kHz: the program polls.
  */
-#include "minimal.h"
 #include "Autopilot.h"
 #include "board.h"
 #include "map_regs.h"
+#include "program_memory.h"
 #include "radio.h"
+#include "stm32f2.h"
 #include "uav.h"
 #include "ucos_ii.h"
 #include "vision_regs.h"
@@ -23,22 +25,28 @@ static Ice_ObjectAdapter adapter;
 static Autopilot_HwProcessingEngine servant;
 static XBeeATEndpoint endpoint;
 static Link radioLink;
+static volatile U32 now; /* milliseconds since the start */
+
+/* Sleeps until the next tick. */
+static void sleep(void) {
+    __asm__ volatile("wfi");
+}
 
 /* Sleeps. The radio driver needs no more of an OS. */
 void OSTimeDly(INT32U ticks) {
-    INT32U begin = minimal_ticks;
-    while (minimal_ticks - begin < ticks)
-        Minimal_sleep();
+    INT32U begin = now;
+    while (now - begin < ticks)
+        sleep();
 }
 
 static U32 nowMs(void* context) {
     (void)context;
-    return minimal_ticks;
+    return now;
 }
 
 static U32 nowUs(void* context) {
     (void)context;
-    return minimal_ticks * 1000U;
+    return now * 1000U;
 }
 
 static void onPacket(void* context, const U8* bytes, U32 size) {
@@ -51,11 +59,11 @@ static void pollLink(void) {
 }
 
 static int work(void* context, Ice_Int timeoutMs) {
-    INT32U begin = minimal_ticks;
+    INT32U begin = now;
     (void)context;
     pollLink();
-    while (endpoint.events == 0 && (Ice_Int)(minimal_ticks - begin) < timeoutMs) {
-        Minimal_sleep();
+    while (endpoint.events == 0 && (Ice_Int)(now - begin) < timeoutMs) {
+        sleep();
         pollLink();
     }
     return 0;
@@ -66,7 +74,7 @@ static const XBeeATEndpoint_Port endpointPort = {0, 0, 0, work, 0, nowMs};
 static U32 randomWord(void* context) {
     static U32 state;
     (void)context;
-    return state = state * 1664525U + 1013904223U + minimal_ticks;
+    return state = state * 1664525U + 1013904223U + now;
 }
 
 static const Link_Port linkPort = {Radio_transmit,
@@ -115,6 +123,7 @@ Ice_Status Autopilot_HwProcessingEngine_getResult(Autopilot_HwProcessingEnginePt
     return ICE_OK;
 }
 
+/* Returns where the FPGA or the modem does not answer. */
 int main(void) {
     static const XBeeInitTypeDef xbeeConf = {XBEE_BD_115200, 0x0001, 0x0000, 0, 0, 0, 0};
     static const Radio_Memory rings = {0x00000000U, 0x00001000U};
@@ -143,4 +152,29 @@ int main(void) {
 
     Ice_Communicator_waitForShutdown(&ic);
     return 0;
+}
+
+void Reset_Handler(void);
+
+static void countTick(void) {
+    ++now;
+}
+
+static void halt(void) {
+    for (;;)
+        sleep();
+}
+
+__attribute__((section(".vectors"), used)) static const Vector vectors[16] = {
+    stack_top, /* not a function: the first word is the stack pointer */
+    Reset_Handler, halt, halt, halt, halt, halt, 0, 0, 0, 0, halt, halt, 0, halt, countTick};
+
+void Reset_Handler(void) {
+    Board_start();
+    startMemory();
+    SYST_RVR = SYST_MS - 1UL;
+    SYST_CVR = 0;
+    SYST_CSR = SYST_CSR_ON;
+    (void)main();
+    halt();
 }

@@ -3,8 +3,8 @@
  * uav_cores: starts the servants of the cores in ip/cores.list, handles their interrupts and errors
  * on their bus, and has the task that answers calls which take time.
  */
-#include "hw_contracts.h"
 #include "hw_instance.h"
+#include "hw_registers.h"
 #include "system_regs.h"
 #include "uav.h"
 #include "uav_private.h"

@@ -5,6 +5,8 @@
  */
 #include "hw_registers.h"
 #include "fsmc.h"
+#include "map_regs.h"
+#include "system_regs.h"
 
 #include <string.h>
 
@@ -293,4 +295,21 @@ U32 Hw_Registers_Core_poll(Hw_Registers_Core* self, U32 nowMs) {
     self->waits = 0; /* the next call may come once this one is answered */
     (void)Hw_Registers_wait_response(&reply, &events);
     return HW_NEVER;
+}
+
+void Hw_Contracts_read(Hw_Contract* found, const Hw_Contract* built, U32 count) {
+    U32 i;
+    for (i = 0; i < count; ++i) {
+        found[i] = built[i];
+        FSMC_write(MAP_SLOT_SYSTEM, SYSTEM_CONTRACT, built[i].slot);
+        found[i].chip = (Ice_Int)FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_CONTRACT);
+    }
+}
+
+int Hw_Contracts_hold(const Hw_Contract* found, U32 count, U32 slot) {
+    U32 i;
+    for (i = 0; i < count; ++i)
+        if (found[i].slot == slot)
+            return found[i].chip == found[i].firmware;
+    return 0;
 }

@@ -10,7 +10,6 @@
 #include <optional>
 extern "C" {
 #include "fsmc.h"
-#include "hw_contracts.h"
 #include "hw_registers.h"
 #include "map_regs.h"
 #include "my_port_regs.h"

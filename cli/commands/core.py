@@ -63,7 +63,6 @@ def write_own(build, name, lang, ice, folder):
         shutil.copy(path, folder)
     shutil.copy(ice, folder / f"{name}.ice")
     template = Path("ip/template")
-    fill(template / lang / "CMakeLists.txt.in", folder, name)
     ground = fill(template / "interface/ground.py.in", folder, name)
     module, proxy = interface_of(Path(ice).read_text())
     ground.write_text(ground.read_text().replace("@OWN@", module).replace("@PROXY@", proxy))
@@ -143,6 +142,10 @@ def new(values):
             for template in [
                     *Path("ip/template").glob("*.in"), *Path("ip/template", lang).glob("*.in")]:
                 fill(template, folder, name)
+        source = {"verilog": f"{name}.v", "vhdl": f"{name}.vhd"}[lang]
+        (folder / "CMakeLists.txt").write_text(
+            "# SPDX-License-Identifier: MIT\n"
+            f"icesoc_core({name} ICE {name}.ice {lang.upper()} {source})\n")
         if values.repository:
             put_into_repository(Path(room).absolute(), name, folder)
         os.makedirs(room, exist_ok=True)

@@ -54,7 +54,7 @@ function showChip() {
     byId("chip").append(box);
   }
   const box = element("div");
-  const clock = element("a", f.clock ? `${f.clock} MHz` : "no path", f.mhz < data.chip.mhz ? "bad" : "good"), number = element("b");
+  const clock = element("a", f.mhz ? clockText(f.mhz) : "no path", f.mhz < data.chip.mhz ? "bad" : "good"), number = element("b");
   clock.href = "#longest"; // the path that sets it
   clock.onclick = () => {
     [picked, path, isSlowest] = [d, "", false];
@@ -62,7 +62,7 @@ function showChip() {
     byId("paths").querySelector("details").open = true;
   };
   number.append(clock);
-  box.append(number, element("div", `${data.chip.mhz} are wanted; median and range of the netlist's orders`, "soft"));
+  box.append(number, f.mhz ? " MHz" : "", element("div", `${data.chip.mhz} are wanted; the netlist's orders have ${clockText(f.clocks[0])} to ${clockText(f.clocks.at(-1))}`, "soft"));
   byId("chip").append(box);
 }
 // A table as the terminal has it: [titles, row, row, ...].
@@ -100,7 +100,7 @@ function showDesigns() {
   table(byId("designs"), [
     ["design", r => r.folder ?? r.name, r => r.members ? `${r.folder}, ${r.members.length} ${r.members.length === 1 ? "module" : "modules"}` : r.name, { minWidth: 200 }],
     [...count("LUT", "lut", f => bar(f.lut, data.chip.lut)), { minWidth: 130 }], change("lut"), count("FF", "ff"), change("ff"),
-    count("MHz", "mhz", f => f.mhz ? element("span", f.clock ?? clockText(f.mhz), f.mhz < data.chip.mhz ? "bad" : "") : ""),
+    count("MHz", "mhz", f => f.mhz ? element("span", clockText(f.mhz), f.mhz < data.chip.mhz ? "bad" : "") : ""),
     count("slices", "slices"), count("RAM16", "ram"), count("DSP", "dsp"), ["state", r => r.state ?? ""],
     ["file", r => r.file ? `${r.file} ${r.title}` : "", r => link(r.file), { minWidth: 250 }],
   ], rows, { filter: "filter by name, folder or title", children: r => r.members, picked: r => r === picked,

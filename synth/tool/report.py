@@ -258,7 +258,7 @@ def page_figures(f):
     costs = {path: {signal: [c.lut, c.ff, c.memory]
                     for signal, c in signals.items() if c.lut or c.ff}
              for path, signals in f["costs"].items()}
-    return f | {"clock": clock_of(f), "lut6": f["cells"].get("LUT6", 0),
+    return f | {"lut6": f["cells"].get("LUT6", 0),
                 "levels": f["timing"]["paths"][0]["levels"] if f["mhz"] else 0,
                 "costs": {path: signals for path, signals in costs.items() if signals}}
 

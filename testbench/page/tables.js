@@ -71,13 +71,12 @@ function table(place, columns, rows, options = {}) {
   });
   const tabulator = place.drawn = new Tabulator(box, {
     data: rows.map(record), layout: "fitColumns", maxHeight: "560px", renderVertical: rows.length > 100 ? "virtual" : "basic",
-    responsiveLayout: narrow < 1 && !options.children ? "collapse" : false,
-    dataTree: Boolean(options.children), dataTreeFilter: true, dataTreeStartExpanded: row => options.open?.(row.getData().row) ?? false,
+    responsiveLayout: place.clientWidth < 800 && "collapse", dataTree: Boolean(options.children), dataTreeFilter: true, dataTreeStartExpanded: row => options.open?.(row.getData().row) ?? false,
     columnDefaults: {headerSortTristate: true, sorter: (a, b) => a < b ? -1 : a > b ? 1 : 0}, placeholder: "nothing",
     columns: columns.map((column, i) => {
       const number = rows.length > 0 && rows.every(row => typeof column[1](row) === "number"), wide = widest(column) + (number ? 32 : 28);
       const plain = rows.slice(0, 1).map(row => content(row, column)).every(seen => !seen.childElementCount && /^[-+\d.]*( |$)/.test(seen.textContent));
-      return {title: column[0], field: `c${i}`, widthGrow: Math.min(wide, 700) / 50, ...(number ? {headerSortStartingDir: "desc"} : {}),
+      return {title: column[0], field: `c${i}`, widthGrow: Math.min(wide, 700) / 50, responsive: column[0] ? 1 : 0, ...(number ? {headerSortStartingDir: "desc"} : {}),
         formatter: cell => content(cell.getData().row, column), cssClass: number && plain ? "n" : "", ...column[3],
         minWidth: Math.max(...column[0].split(" ").map(word => pen.measureText(word).width + 30), Math.min(column[3]?.minWidth ?? wide, narrow * (column[3]?.minWidth ?? 160)))};
     }),

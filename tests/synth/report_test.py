@@ -219,7 +219,7 @@ class Cases(Script):
                 "sorted hdl/blocks, 2 modules,wide,store,whole; picked 1 Inside whole: ",
                 "tree pair u_storestore u_countercounter; here Signals of u_store;",
                 "paths 1; step project/hdl/blocks/[a-z]*.v:1[23]; on the way to x,y,y,z; "
-                r"slow Longest paths, at 104.5 MHz; clock ([0-9.]+) MHz Longest paths, at \1 MHz, "
+                r"slow Longest paths, at 104.5 MHz; clock ([0-9.]+) Longest paths, at \1 MHz, "
                 r"by [1-9]\d*; wider 0; rounded 104.5,104.4,104.0; "  # as parts_test.py has it
                 r"slack [0-9.]+ to [0-9.]+ ns left of 10 [1-9]\d* ; "
                 "history now  this run 15 11 6;"):

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """echo: stock ZeroC Ice on both sides of a bridge of generated C.
 
-echo.py generate SEED FOLDER     writes Random.ice
+echo.py generate SEED FOLDER     writes Random.ice, Hidden.ice and Definer.ice
 echo.py server SEED FOLDER       gives back what it gets; prints its port
 echo.py client SEED FOLDER PORT  sends random values of every type, in both encodings, and compares
 """
@@ -159,6 +159,19 @@ def lone(echo, module, encoding):
     check("Object", echo.any(None) == (None, None))
 
 
+def declared(echo, module, encoding):
+    """Sends a class that the operation's file only declares, and interfaces by value, whose names
+    the compact format does not take from strangers. (In 1.0 Python does not send them on.)"""
+    for form in ("Compact", "Sliced"):
+        sent = module.Later(7)
+        sent.next = sent
+        for names in (["::T::Marker", "::T::Tag"], ["::T::Marker", "::T::SubTag"]):
+            tags = [Ice.InterfaceByValue(n) if encoding == "1.1" else None for n in names]
+            (got,), *back = getattr(echo, "declared" + form)(sent, *tags)
+            check("declared in %s, %s" % (encoding, form), got.id == 7 and got.next is got
+                  and [b is None for b in back] == [t is None for t in tags], got, back)
+
+
 class Thrower:
     """Throws `what` when the server forwards a call here."""
 
@@ -202,7 +215,11 @@ def server(module):
     def echo(self, v, current):
         return v, v
 
-    operations = {"any": echo, "shutdown": lambda self, current: ic.shutdown()}
+    def declared(self, v, m, t, current):
+        return [v], m, t
+
+    operations = {"any": echo, "shutdown": lambda self, current: ic.shutdown(),
+                  "declaredCompact": declared, "declaredSliced": declared}
     for i, t in enumerate(model.types):
         names = ["plain%d%s" % (i, form) for form in model.formats(t)]
         operations.update((name, echo) for name in names + ["maybe%d" % i])
@@ -256,6 +273,7 @@ def client(module, port):
                 unknown(echo, module, ic, encoding, t)
                 calls += 1
             lone(echo, module, encoding)
+            declared(echo, module, encoding)
             for e in model.exceptions:
                 for form in ("Compact", "Sliced"):
                     for _ in range(12):
@@ -274,7 +292,9 @@ if sys.argv[1] == "generate":
     for name, hidden in (("Random.ice", False), ("Hidden.ice", True)):
         with open(os.path.join(sys.argv[3], name), "w") as f:
             f.write(model.slice_text(hidden))
+    with open(os.path.join(sys.argv[3], "Definer.ice"), "w") as f:
+        f.write(Model.DEFINER)
 else:
-    Ice.loadSlice("", [os.path.join(sys.argv[3], "Hidden.ice")])
+    Ice.loadSlice("", [os.path.join(sys.argv[3], name) for name in ("Definer.ice", "Hidden.ice")])
     import T
     server(T) if sys.argv[1] == "server" else client(T, sys.argv[4])

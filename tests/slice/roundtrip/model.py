@@ -132,7 +132,9 @@ class Model:
         out += [self.members(e) for e in self.exceptions]
         if hidden:
             out.append("class Lone { int number; Lone next; optional(1) string text; Object any; };")
-        out += ["interface Labelled { string label(); }; class Named { string name; };",
+        out += ["class Later; sequence<Later> Laters; interface Marker; interface Tag {};",
+                "interface SubTag extends Tag {};",
+                "interface Labelled { string label(); }; class Named { string name; };",
                 "class Square extends Named implements Labelled { int area(int side); };",
                 "interface Echo {"]
         for i, t in enumerate(self.types):
@@ -149,6 +151,9 @@ class Model:
                     ", ".join(self.parameter(f) for f in e.all_fields()), self.root(e).name))
             out.append('["format:sliced"] void forward%s(Object* to) throws %s;' %
                        (e.name, self.root(e).name))
+        for form in ("Compact", "Sliced"):
+            out.append("%sLaters declared%s(Later v, Marker m, Tag t, out Marker n, out Tag u);" %
+                       (self.meta(form), form))
         out += ['["format:sliced"] Object any(Object v, out Object w);', "void shutdown();", "};"]
         for t in self.classes() if hidden else []:
             out.append("class Hidden%s%s extends %s { string more; %s other; optional(200) int "
@@ -159,6 +164,13 @@ class Model:
                        "int last; };" % (e.name, e.name))
         out.append("};")
         return '[["underscore", "suppress-warning:deprecated"]]\n' + "\n".join(out) + "\n"
+
+    # Defines what the other file only declares.
+    DEFINER = """module T {
+class Later { int id; Later next; };
+interface Marker { void op(); };
+};
+"""
 
     def classes(self):
         return [t for t in self.declared if t.kind == "class"]

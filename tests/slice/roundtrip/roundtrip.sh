@@ -12,7 +12,7 @@ echo "SEED=$seed"
 rm -rf "$work"
 mkdir -p "$work"
 /usr/bin/python3 "$here/echo.py" generate "$seed" "$work"
-"$slice2c" "$work/Random.ice" --output-dir "$work"
+"$slice2c" "$work/Random.ice" "$work/Definer.ice" --output-dir "$work"
 "$icec/bridge.py" "$work/Random.h" >"$work/bridged.c"
 # In a coverage run (COVERAGE_DIR) it counts lines, too. With room for graphs and long sequences;
 # -O0, since most of the time goes into compiling. Variables without a value hold a pattern, not by
@@ -21,7 +21,7 @@ cc -O0 -w -ftrivial-auto-var-init=pattern ${COVERAGE_DIR:+--coverage} -fsanitize
     -fno-sanitize-recover=undefined -DICE_ARENA_BYTES=262144 -DICE_MESSAGE_MAX=65536 \
     -DICE_REPLY_MAX=262144 -DICE_VALUES_MAX=64 -DICE_VALUE_TYPES_MAX=64 \
     -DICE_IDENTITY_MAX=255 -I"$sw/base" -I"$sw/icec" -I"$sw/icec/endpoints" -I"$work" -I"$icec" \
-    -o "$work/bridge" "$icec/server.c" "$icec/bridge.c" "$work/bridged.c" "$work/Random_types.c" \
+    -o "$work/bridge" "$icec/server.c" "$icec/bridge.c" "$work/bridged.c" "$work"/*_types.c \
     "$work/Random_server.c" "$work/Random_client.c" \
     "$sw"/icec/*.c "$sw"/icec/endpoints/tcp_*.c
 echo="/usr/bin/python3 $here/echo.py"

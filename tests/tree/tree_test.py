@@ -1,0 +1,82 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""tree_test: set-up, skipped tests, a copy that is no clone, what editors read.
+
+Usage: tree_test.py CASE WORK-FOLDER BUILD-FOLDER
+"""
+import os
+import sys
+import tempfile
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from script import TREE, Script, append, fresh, main, write  # noqa: E402
+
+WORK, BUILD = map(Path, sys.argv[2:4])
+TINY = r"""cmake_minimum_required(VERSION 3.25)
+project(tiny NONE)
+enable_testing()
+add_test(NAME passes COMMAND true)
+add_test(NAME by_script COMMAND sh -c "echo 'no right to mount'; exit 77")
+add_test(NAME by_gtest COMMAND printf
+         "[ RUN      ] A.B\\nfile.cpp:1: Skipped\\nno IPv6\\n\\n[  SKIPPED ] A.B\\n")
+set_tests_properties(by_script by_gtest PROPERTIES SKIP_RETURN_CODE 77
+                     SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\]")
+"""
+
+
+class Cases(Script):
+    def test_setup(self):
+        """On a terminal set-up says what it would install and asks before it calls sudo; elsewhere
+        it goes on. The machine has no package yet, and the user is not root."""
+        work, setup = fresh(WORK), TREE / "cmake/setup.sh"
+        for name, does in (("dpkg-query", ""), ("id", "echo 1000"),
+                           ("sudo", f'echo "$*" >>{work}/sudo')):
+            write(work / "bin" / name, f"#!/bin/sh\n{does}\n")
+        path = {"env": {**os.environ, "PATH": f"{work}/bin:{os.environ['PATH']}"}}
+        asked = f"script -qec {setup} said >/dev/null || true"
+        self.ask("sh", "-c", f"echo n | {asked}", **path)
+        self.has("    verilator: turns", r"sudo apt-get\? \[Y/n\]", file="said")
+        self.assertFalse(Path("sudo").exists(), "sudo was called after a no")
+        for command in f"echo y | {asked}", setup:
+            self.ask("sh", "-c", command, **path)
+            self.has("apt-get install .* verilator", file="sudo")
+            Path("sudo").unlink()
+
+    def test_skipped(self):
+        """Skipped tests are named at the end with their reasons (tests/ctest.py)."""
+        fresh(WORK)
+        write("CMakeLists.txt", TINY)
+        self.ask("cmake", "-B", "build", "-G", "Ninja")
+        self.ask(TREE / "tests/ctest.py", "--test-dir", "build")
+        self.assertTrue(self.said.endswith("Skipped, 2:\n    by_script: no right to mount\n"
+                                           "    by_gtest: no IPv6\n"), self.said)
+        append("CMakeLists.txt", "add_test(NAME fails COMMAND false)\n")
+        self.ask("cmake", "build")
+        self.ask(TREE / "tests/ctest.py", "--test-dir", "build", status=None)
+
+    def test_tarball(self):
+        """What lists the tree's files does so in a copy that is no clone."""
+        states = set()
+        with tempfile.TemporaryDirectory() as copy:
+            self.ask("sh", "-c", "git grep --no-index --exclude-standard --no-color -lz '' |"
+                     f" xargs -0 cp --parents -t {copy}", cwd=TREE)
+            for program in "arrows", "pages":
+                self.ask(f"{copy}/tests/tree/{program}.py", copy)
+            for tree in TREE, copy:
+                self.ask(BUILD / "tests/regress/regress", "--source", tree, "--tree", "bus hdl")
+                states.add(self.said)
+        self.assertEqual(len(states), 1, "the copy has another state")
+
+    def test_files(self):
+        """The list of a model's Verilog files is enough to elaborate its top, and the list of C
+        and C++ compilations is there."""
+        for files in BUILD.glob("files/*.f"):
+            self.has("^// top: ", file=files)
+            top = files.read_text().partition("// top: ")[2].split()[0]
+            self.ask("verilator", "--lint-only", "--no-timing", "-Wno-lint", "-Wno-style",
+                     "-Wno-fatal", "-f", files, "--top-module", top)
+        self.has("sw/icec", file=BUILD / "compile_commands.json")
+
+
+main(Cases)

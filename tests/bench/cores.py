@@ -11,7 +11,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from measured import figure, leave
+from figures import figure, leave
 
 FIGURES = (  # name, test, case, expression of the figure, bytes a clock for that figure
     ("vision core, frame read", "vision", "OnePixelAClock", "^(.*) clocks a pixel",

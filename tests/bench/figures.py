@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """figures: writes docs/figures.md, a table for each JSON file that `make bench`, `size` and
-`firmware` have left.
+`firmware` have left; benches in Python make theirs with `figure` and `leave`.
 
     figures.py OUTPUT.md FILE.json...
 
@@ -15,6 +15,7 @@ import re
 import subprocess
 import sys
 import textwrap
+from pathlib import Path
 
 TITLES = {
     "simulator": "Simulator", "air": "Radio link on the half-duplex air",
@@ -34,6 +35,22 @@ Written by `make bench`: one run on one machine, each figure beside its limit or
 same run. What each one means, and how it is measured, is said on the page of its subject.
 `a of b, c %` is a measured, and c % of the limit b.
 """
+
+
+def figure(name, value, unit, limit=None, peer=None, ratio=None):
+    """A figure, beside the limit that it is measured by, or beside a peer's."""
+    entry = {"name": name, "value": value, "unit": unit, "command": "make bench"}
+    if limit:
+        entry.update(limit=limit, share=round(value / limit, 3))
+    if peer:
+        entry.update(peer=peer, ratio=round(ratio, 2))
+    return entry
+
+
+def leave(output, content):
+    Path(output).parent.mkdir(parents=True, exist_ok=True)
+    Path(output).write_text(json.dumps(content, indent=1) + "\n")
+    print(f"Written: {output}")
 
 
 def number(value):
@@ -103,4 +120,5 @@ def main(words):
         page.write("\n".join(lines) + "\n")
 
 
-main(sys.argv[1:])
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -11,7 +11,7 @@ import subprocess
 import sys
 import tempfile
 
-from measured import figure, leave
+from figures import figure, leave
 
 IMAGE = "--image", "/usr/share/xplanet/images/earth.jpg"
 

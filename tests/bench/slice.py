@@ -13,7 +13,7 @@ import subprocess
 import sys
 import tempfile
 
-from measured import figure, leave
+from figures import figure, leave
 
 SLICES = pathlib.Path("/usr/share/ice/slice")
 

@@ -11,7 +11,7 @@ import subprocess
 import sys
 import tempfile
 
-from measured import figure, leave
+from figures import figure, leave
 
 CALL = "Tags/CallBytes.ACallAndItsReplyTakeFewerThanMavlink/"
 HOSTILE = "Vehicles/Attacked.NothingHostileIsAcceptedAndNothingLegalLostOrDoubled/"

@@ -192,7 +192,7 @@ def foreign_words(values):
     Option("address", one_of("words", "bytes"),
            "what its address counts; found out, unless given"), BUILD, JOBS
 ], make="new-foreign", brief=(
-    "core foreign brief_foreign --top req_words --bus own --files tests/ip/new_foreign/req_words.v "
+    "core foreign brief_foreign --top req_words --bus own --files tests/ip/new_foreign/cores.v "
     "--ports select=req write=wr address=where wdata=value rdata=held ack=gnt",
     "core remove brief_foreign --force"), examples=[
         "core foreign my_uart --top wbuart --bus wishbone --files wbuart.v ufifo.v"])

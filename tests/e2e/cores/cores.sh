@@ -10,6 +10,13 @@ fresh() {
     diff -r "$work/fresh/$1" "$work/$1" >/dev/null 2>&1 ||
         { rm -rf "${work:?}/$1" && mv "$work/fresh/$1" "$work/$1"; }
 }
+# A core of the mapping's tests: its folder for the list.
+mapped() {
+    mkdir -p "$work/fresh/$1"
+    echo "icesoc_core($1 ICE $source/tests/slice/hardware/golden/$1.ice
+        VERILOG $source/tests/slice/hardware/$1.v)" >"$work/fresh/$1/CMakeLists.txt"
+    fresh "$1"
+}
 logged() { "$@" >"$work/log" 2>&1 || { tail -40 "$work/log" && exit 1; }; }
 rm -rf "$work/fresh" && mkdir "$work/fresh"
 signals=''
@@ -34,8 +41,10 @@ samples=$build/tests/ip/new
 foreign=$build/tests/ip/new_foreign
 here=$source/tests/e2e/cores
 golden=$source/tests/slice/hardware/golden
-folders="$samples/sample_verilog;$samples/sample_vhdl;$here/scaler;$here/servo;$here/crc32"
-folders="$folders;$here/many;$foreign/my_port;$foreign/my_requests;$work/my_lamps"
+folders="$samples/sample_verilog;$samples/sample_vhdl;$work/scaler;$here/servo;$here/crc32"
+folders="$folders;$work/many;$foreign/my_port;$foreign/my_requests;$work/my_lamps"
+mapped scaler # sequences, exceptions and events
+mapped many   # 46 words, of which a slot has 16
 # A core in VHDL, as make new-foreign puts it into a slot. GHDL is fetched once.
 lamps=$source/tests/ip/new_foreign/lamps
 logged env GHDL="$build/ghdl/ghdl" "$source/ip/new_foreign.py" my_lamps lamps own \

@@ -80,9 +80,14 @@ $(echo $aiger) assert.map assert.aig
 design -load gates
 select -write cover.names t:\$cover
 chformal -assert -live -fair -remove
-techmap -map $here/cover.v t:\$cover
+techmap -map cover.v t:\$cover
 simplemap
 $(echo $aiger) cover.map cover.aig
+END
+cat >cover.v <<'END' # a cover as an assertion that must fail
+module \$cover (input A, input EN);
+    \$assert _TECHMAP_REPLACE_ (.A(~A), .EN(EN));
+endmodule
 END
 yosys -q prove.ys >yosys.log 2>&1 || {
     cat yosys.log

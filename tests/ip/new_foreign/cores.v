@@ -117,3 +117,40 @@ module axis_twice (
         else if (out_tvalid && out_tready)
             second <= !second;
 endmodule
+
+// req_words: a core with a request that lasts until the grant, two clocks later; word 3 gets none.
+module req_words (
+    input             clock, nrst,
+    input             req, wr,
+    input      [3:2]  where,
+    input      [31:0] value,
+    output reg [31:0] held,
+    output reg        gnt
+);
+    reg [31:0] words [0:3];
+    reg        seen;
+    always @(posedge clock) begin
+        seen <= req && !gnt;
+        gnt  <= req && seen && !gnt && where != 2'd3;
+        held <= words[where];
+        if (req && wr)
+            words[where] <= value;
+        if (!nrst)
+            {seen, gnt} <= 2'b00;
+    end
+endmodule
+
+// wbs_names: Wishbone's signals by names as others write them, without strobe and acknowledge, of a
+// core that is a master, too.
+module wbs_names (
+    input         wbs_clk, rst_ni, gate_clk_pad_i,
+    input  [3:0]  clk_div,
+    input         wbs_cyc_i, wbs_we_i,
+    input  [2:0]  wbs_cti_i,
+    input  [1:0]  wbs_adr_i,
+    input  [31:0] wbs_dat_i,
+    output [31:0] wbs_dat_o,
+    output        intr, spare
+);
+    assign {wbs_dat_o, intr, spare} = 34'd0;
+endmodule

@@ -95,16 +95,6 @@ TEST(Axi4Lite, AChannelIsReadyAndAnsweredWhenItLikes) {
             }
 }
 
-TEST(Axi4Lite, EveryWordIsARegisterOfItsOwn) {
-    CoreSlot<Vmy_words_slot> slot;
-    slot.bench_.top().aw_late_i = slot.bench_.top().w_late_i = slot.bench_.top().late_i = 0;
-    for (uint32_t i = 0; i < 4; ++i)
-        slot.bus_.write(MY_WORDS_REG0 + i, 0x1000 + i);
-    for (uint32_t i = 0; i < 4; ++i)
-        EXPECT_EQ(slot.bus_.read(MY_WORDS_REG0 + i), 0x1000 + i);
-    EXPECT_EQ(slot.bus_.read(1), 0u);
-}
-
 TEST(Apb, TransfersBeginWithoutEnableAndEndWithReady) {
     CoreSlot<Va_bridge_slot> slot;
     slot.bench_.top().waits_i = 1;

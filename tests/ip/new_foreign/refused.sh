@@ -52,14 +52,14 @@ refused "TOP is the name of a module or an entity, not 'wb_port; x'" my_port 'wb
     "$work/out" "$here/wb_port.v"
 refused "no entity 'lamp' in FILES; there is lamps" my_port lamp own "$work/out" "$here/lamps.vhd"
 refused 'no port for write, wdata, rdata: .*PORTS=' my_port req_words own "$work/out" \
-    "$here/req_words.v"
+    "$here/cores.v"
 refused "'grant' is none of .*select, strobe" my_port req_words own "$work/out" grant=gnt \
-    "$here/req_words.v"
-refused "has no port 'go'" my_port req_words own "$work/out" write=go "$here/req_words.v"
+    "$here/cores.v"
+refused "has no port 'go'" my_port req_words own "$work/out" write=go "$here/cores.v"
 refused "ack is an output of a core, and 'req' is not" my_port req_words own "$work/out" ack=req \
-    "$here/req_words.v"
+    "$here/cores.v"
 refused 'a strobe of one clock needs an ack' my_port req_words own "$work/out" strobe=req write=wr \
-    wdata=value rdata=held clock=clock "$here/req_words.v"
+    wdata=value rdata=held clock=clock "$here/cores.v"
 refused "FILES lacks the file with module 'inner'" my_port outer wishbone "$work/out" \
     "$work/outer.v"
 refused "PARAMS: axil_words has no 'WIDTH'" my_port axil_words axil "$work/out" PARAM:WIDTH=8 \
@@ -68,9 +68,9 @@ refused "'my_wide' of .* has 64 bits" my_port wide own "$work/out" select=clk_en
     address=a wdata=my_wide rdata=q "$work/wide.v"
 refused 'include looks for timescale.v' my_port apb_words apb "$work/out" "$here/apb_words.v"
 refused 'Verilator does not elaborate odd' my_port odd memory "$work/out" "$work/odd.sv"
-refused "no port for ack: .*ack=1" my_port wbs_names wishbone "$work/out" "$here/wbs_names.v"
+refused "no port for ack: .*ack=1" my_port wbs_names wishbone "$work/out" "$here/cores.v"
 refused "more than one port for rdata: wbs_dat_o, spare" my_port wbs_names wishbone "$work/out" \
-    rdata=spare ack=1 "$here/wbs_names.v"
+    rdata=spare ack=1 "$here/cores.v"
 echo 'module two(input clk, input [7:0] a_tdata, b_tdata, input a_tvalid, output [7:0] o_tdata, output o_tvalid, input o_tready); endmodule' >"$work/two.v"
 echo 'module odd(input clk, input [23:0] i_tdata, input i_tvalid, output [7:0] o_tdata, output o_tvalid, input o_tready); endmodule' >"$work/odd.v"
 refused 'more than one port for s_tdata: a_tdata, b_tdata' my_port two axis "$work/out" \
@@ -87,9 +87,9 @@ refused 'ack= is not for it' my_port apb_words apb "$work/out" ack=1 pin=PREADY 
 refused 'CLOCK: a core with AXI-Streams' my_port axis_scale axis "$work/out" CLOCK=24000000 \
     "$here/cores.v"
 refused 'LIBRARY: .* these are Verilog' my_port req_words own "$work/out" LIBRARY=lights \
-    "$here/req_words.v"
+    "$here/cores.v"
 refused 'a setting is for BUS=axis' my_port req_words own "$work/out" setting=value \
-    "$here/req_words.v"
+    "$here/cores.v"
 refused "setting is an input of a core, and 'over' is not" my_port axis_scale axis "$work/out" \
     setting=over "$here/cores.v"
 # Of two cores in one chip.
@@ -97,7 +97,7 @@ refused "setting is an input of a core, and 'over' is not" my_port axis_scale ax
     grep -q "again.v:6: module 'wb_port' is in .*a chip has one of each" "$work/log" ||
     { cat "$work/log" && exit 1; }
 # Meanings of names.
-"$new" my_port wbs_names wishbone "$work/names" ack=2 open=spare "$here/wbs_names.v" >"$work/log"
+"$new" my_port wbs_names wishbone "$work/names" ack=2 open=spare "$here/cores.v" >"$work/log"
 for line in 'wbs_clk: clock' 'rst_ni: resetn' 'gate_clk_pad_i: pin' 'clk_div: pin' \
     'wbs_cyc_i: cyc' 'wbs_adr_i: adr, counts words: it has 2 bits; if not, ADDRESS=bytes' \
     'wbs_cti_i: low' 'intr: interrupt' 'spare: open'; do
@@ -146,7 +146,7 @@ echo 'module narrow(input clk, we, input [16:0] d, output [12:0] q); assign q = 
 mkdir -p "$work/tree/ip"
 ln -s "$new" "$work/tree/ip"
 made() { "${new%/ip/*}/tests/regress/test/make_in.sh" "${new%/ip/*}" "$work/tree" build \
-    new-foreign NAME=my_port TOP=req_words BUS=own FILES="$here/req_words.v" "$@" >"$work/log" \
+    new-foreign NAME=my_port TOP=req_words BUS=own FILES="$here/cores.v" "$@" >"$work/log" \
     2>&1; }
 ! made && grep -q "PORTS=" "$work/log" || { cat "$work/log" && exit 1; }
 made CLOCK=24000000 PORTS='select=req write=wr address=where wdata=value rdata=held ack=gnt' &&

@@ -3,7 +3,6 @@
  * bridge: IceC as server and as client between two stock programs, with server.c: each request goes
  * through generated code to the server on the port that is the argument. Ends with `shutdown`.
  */
-#include "bridge.h"
 #include "serve.h"
 
 #include <stdio.h>

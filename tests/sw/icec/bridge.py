@@ -66,7 +66,7 @@ def main():
                 calls[match[1]] = match[2]
             elif match := RESPONSE.match(flat):
                 responses[match[1]] = match[2]
-    print('#include "bridge.h"\n\n#include <string.h>')
+    print('#include "serve.h"\n\n#include <string.h>')
     for each in operations.values():
         operation(*each, calls, servants, responses)
     print("\nIce_ObjectPtr Bridge_servant(int number) {\n    switch (number) {")

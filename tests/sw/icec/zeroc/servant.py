@@ -32,27 +32,23 @@ def echo(found, classes):
     """Copies in parameters to the out parameters of their types, in order."""
     plain = lambda t: t.replace("const", "").replace("*", "").strip()
     isOut = lambda t: "**" in t if plain(t) in classes else "const" not in t and "*" in t
-    optional = {n[4:] for t, n in found if n.startswith("has_")}
     sources = [(t, n) for t, n in found if not isOut(t)]
     used, lines = {}, []
     for kind, name in found:
-        if not isOut(kind) or name.startswith("has_"):
+        if not isOut(kind):
             continue
         same = [s for s in sources if plain(s[0]) == plain(kind)]
         source, value = same[min(used.get(plain(kind), 0), len(same) - 1)]
         used[plain(kind)] = used.get(plain(kind), 0) + 1
         levels = source.count("*") - (kind.count("*") - 1)  # a class is a pointer on both sides
-        copy = "*%s = %s%s;" % (name, "*" * levels, value)
-        if name in optional:
-            copy = "if ((*has_%s = %s != 0))\n        %s" % (name, value, copy)
-        lines.append(copy)
+        lines.append("*%s = %s%s;" % (name, "*" * levels, value))
     return "\n    ".join(lines)
 
 
 def main():
     head, rest = open(sys.argv[1]).read().split("\n%%\n")
     rest = re.sub(r"\n[ \t]+", "\n ", rest)
-    signatures, classes = {}, {"Ice_Value"}
+    signatures, classes = {}, set()
     for header in sys.argv[2:]:
         text = open(header).read()
         classes.update(re.findall(r"#define (\w+)_cast\(", text))

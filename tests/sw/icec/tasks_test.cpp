@@ -260,8 +260,7 @@ TEST_F(Tasks, TryEachAddressOfAName) {
     EXPECT_EQ(open, 1);
 }
 
-// What a call returned stays while other tasks call: each looks at its result when another task has
-// had one. Returns what was wrong.
+// (While other tasks call, what a call returned stays: results_m3.)
 class Results : public Tasks {
 protected:
     Results() {
@@ -269,61 +268,7 @@ protected:
         EXPECT_EQ(Ice_ObjectAdapter_add(&server_->adapter, (Ice_ObjectPtr)&maker_, "maker"),
                   ICE_OK);
     }
-    void fromThreads(int count) {
-        std::vector<std::thread> callers;
-        for (int t = 0; t < count; ++t)
-            callers.emplace_back([this, t] { call(t); });
-        for (auto& c : callers)
-            c.join();
-    }
-
-private:
-    static constexpr int calls = 150;
-    void awaitOthers() {
-        int before = ++made_;
-        for (int i = 0; i < 10 && made_ == before; ++i)
-            std::this_thread::yield();
-    }
-    void call(int task) {
-        Graph_MakerPrx prx = proxy("maker");
-        int wrong = 0;
-        for (int i = 0; i < calls; ++i) {
-            std::string mine = std::string(20, static_cast<char>('a' + task)) + std::to_string(i);
-            wrong += !(i % 3 == 0 ? string(prx, mine) : instance(prx, mine, i));
-        }
-        EXPECT_EQ(wrong, 0);
-    }
-    bool string(Graph_MakerPrx& prx, const std::string& mine) {
-        Ice_String result;
-        Ice_Status status = Graph_MakerPrx_echo(&prx, text(mine.c_str()), &result);
-        awaitOthers();
-        return status == ICE_OK && str(result) == mine;
-    }
-    // Two instances, or, of an odd number, an exception that holds them.
-    bool instance(Graph_MakerPrx& prx, const std::string& mine, int number) {
-        Graph_Node sent, next, *result = nullptr;
-        Graph_Maker_make_Exception ex;
-        Graph_Node_init(&sent);
-        Graph_Node_init(&next);
-        sent.id = number;
-        sent.next = &next;
-        sent.has_text = 1;
-        sent.text = text(mine.c_str());
-        next.id = -number;
-        Ice_Status status = Graph_MakerPrx_make(&prx, &sent, nullptr, &result, &ex);
-        awaitOthers();
-        if (number % 2) {
-            if (status != ICE_USER_EXCEPTION || str(ex.u.Failure.why) != mine)
-                return false;
-            result = ex.u.Failure.node;
-        } else if (status != ICE_OK)
-            return false;
-        return result && result->id == number && str(result->text) == mine && result->next &&
-               result->next->id == -number;
-    }
-
     Graph_Maker maker_;
-    std::atomic<int> made_{0};
 };
 
 TEST_F(Results, OfAnAsynchronousCallAreThereWhenItIsCompleted) {
@@ -352,14 +297,6 @@ TEST_F(Results, OfAnAsynchronousCallAreThereWhenItIsCompleted) {
 TEST_F(Results, NeedTheModeOfTheirOperation) {
     Graph_MakerPrx prx = proxy("maker");
     EXPECT_EQ(::call(prx, "echo", 0, nullptr, 2), ICE_UNKNOWN_LOCAL_EXCEPTION) << "not idempotent";
-}
-
-TEST_F(Results, AreTheirTasksOfFour) {
-    fromThreads(4);
-}
-
-TEST_F(Results, AreTheirTasksWhileAnotherOneServes) {
-    whileServing(1, [this] { fromThreads(4); });
 }
 
 TEST_F(Tasks, ReceiveInTurnsWhereNobodyElseDoes) {

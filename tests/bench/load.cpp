@@ -8,9 +8,7 @@
 #include "../sw/ground/wire.h"
 #include "figures.h"
 #include <atomic>
-#include <csignal>
 #include <fstream>
-#include <sys/wait.h>
 #include <thread>
 
 namespace {
@@ -103,31 +101,24 @@ private:
 // and air.
 class Clients {
 public:
-    Clients(const std::string& gateway, unsigned clients) : clients_(clients) {
-        start(gateway);
-        Ice::InitializationData data;
-        data.properties = Ice::createProperties();
-        data.properties->setProperty("Ice.Default.InvocationTimeout", "600000");
-        ic_ = Ice::initialize(data);
-        echo_ = Ice::uncheckedCast<RadioTest::EchoPrx>(
-            ic_->stringToProxy("echo:tcp -h 127.0.0.1 -t 600000 -p " + std::to_string(port_)));
-    }
-    ~Clients() {
-        ic_->destroy();
-        kill(process_, SIGTERM);
-        waitpid(process_, nullptr, 0);
+    Clients(const std::string& gateway, unsigned clients)
+        : clients_(clients),
+          gateway_({gateway, "-d", world_.rig.pty.path(), "-g", std::to_string(Rig::guardMs), "-l",
+                    "127.0.0.1:0", "--wait", "3600"}) {
+        echo_ = Ice::uncheckedCast<RadioTest::EchoPrx>(ic_->stringToProxy(
+            "echo:tcp -h 127.0.0.1 -t 600000 -p " + std::to_string(gateway_.port())));
     }
     void run(Figures& figures, unsigned callsEach) {
         echo_->ice_ping(); // the modem is set up
         std::vector<double> alone, together;
         call(0, 20, alone);
-        const double before = residentKiB(std::to_string(process_));
+        const double before = residentKiB(std::to_string(gateway_.pid()));
         std::vector<std::thread> threads;
         for (unsigned client = 1; client <= clients_; ++client)
             threads.emplace_back([&, client] { call(client, callsEach, together); });
         for (auto& thread : threads)
             thread.join();
-        const double grown = residentKiB(std::to_string(process_)) - before;
+        const double grown = residentKiB(std::to_string(gateway_.pid())) - before;
         std::sort(alone.begin(), alone.end());
         std::sort(together.begin(), together.end());
         const double last = together.empty() ? 0 : together[together.size() * 99 / 100];
@@ -160,30 +151,10 @@ private:
             took.push_back(time.count());
         }
     }
-    void start(const std::string& gateway) {
-        int ends[2];
-        if (pipe(ends) != 0 || (process_ = fork()) < 0)
-            throw std::runtime_error("no pipe or no process");
-        if (process_ == 0) {
-            dup2(ends[1], 1);
-            close_range(3, ~0u, 0);
-            const std::string guard = std::to_string(Rig::guardMs);
-            execl(gateway.c_str(), gateway.c_str(), "-d", world_.rig.pty.path().c_str(), "-g",
-                  guard.c_str(), "-l", "127.0.0.1:0", "--wait", "3600",
-                  static_cast<char*>(nullptr));
-            _exit(127);
-        }
-        close(ends[1]);
-        FILE* said = fdopen(ends[0], "r");
-        if (std::fscanf(said, "gateway: port %hu", &port_) != 1)
-            throw std::runtime_error(gateway + " does not say its port");
-        std::fclose(said);
-    }
     World world_{testSeed()};
     const unsigned clients_;
-    pid_t process_ = 0;
-    unsigned short port_ = 0;
-    Ice::CommunicatorPtr ic_;
+    Server gateway_;
+    const Ice::CommunicatorHolder ic_{program({{"Ice.Default.InvocationTimeout", "600000"}})};
     std::shared_ptr<RadioTest::EchoPrx> echo_;
     std::mutex mutex_;
 };

@@ -1,14 +1,33 @@
 // SPDX-License-Identifier: MIT
 //
 // clock_file: simulated time that programs on the ground keep step with: a file that XBEEAT_CLOCK
-// names while this object lives.
+// names while this object lives; and such a file without a name.
 
 #ifndef CLOCK_FILE_H
 #define CLOCK_FILE_H
 
 #include "status_file.h"
-#include "unnamed_file.h"
 #include <cstdlib>
+#include <string>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+// A file in memory, mode 0600, that this process and its children open by a path. A test that is
+// killed leaves nothing of it.
+class UnnamedFile {
+public:
+    UnnamedFile() { fchmod(fd_, 0600); }
+    ~UnnamedFile() { close(fd_); }
+    UnnamedFile(const UnnamedFile&) = delete;
+    UnnamedFile& operator=(const UnnamedFile&) = delete;
+    int fd() const { return fd_; }
+    const std::string& path() const { return path_; }
+
+private:
+    const int fd_ = memfd_create("icesoc-test", MFD_CLOEXEC);
+    const std::string path_ = "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(fd_);
+};
 
 class ClockFile : public UnnamedFile, public StatusFile {
 public:

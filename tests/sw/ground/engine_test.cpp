@@ -4,7 +4,6 @@
 
 #include "engine.h"
 #include "rig.h"
-#include "unnamed_file.h"
 #include "wire.h"
 #include <csignal>
 #include <cstdlib>

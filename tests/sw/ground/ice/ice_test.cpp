@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // ice_test: stock Ice over the radio: callbacks, long messages, time-outs, shared channels. Many
-// calls from threads of several proxies, in bad weather, are test_chip_soak's.
+// calls from threads of several proxies, in bad weather, and the UAV's calls of the ground are
+// test_chip_soak's.
 
 #include "world.h"
 #include <future>
@@ -41,26 +42,6 @@ TEST_F(StockIce, TheUavCallsBackOnTheSameConnectionWhileItIsCalled) {
     });
     EXPECT_EQ(echo->callBack(20), 380);
     other.get();
-}
-
-TEST_F(StockIce, TheUavCallsAnObjectAdapterOfTheGroundOnItsOwnConnection) {
-    Ice::CommunicatorHolder ic(world_.client());
-    auto adapter =
-        ic->createObjectAdapterWithEndpoints("Station", "xbee-at -d " + world_.rig.pty.path());
-    adapter->add(std::make_shared<ListenerServant>(), Ice::stringToIdentity("station"));
-    adapter->activate();
-    auto echo = world_.proxy(ic.communicator());
-    EXPECT_EQ(echo->callStation(10), 90);
-    world_.relay->reboot(); // the UAV starts again, and calls again
-    for (int tries = 0;; ++tries) {
-        try {
-            EXPECT_EQ(echo->callStation(10), 90);
-            break;
-        } catch (const Ice::Exception& e) { // the call under way when it went
-            ASSERT_LT(tries, 100) << e.what();
-            std::this_thread::sleep_for(std::chrono::milliseconds(100));
-        }
-    }
 }
 
 // A closing goes to the UAV and back, and takes its channel that long.

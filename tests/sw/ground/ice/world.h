@@ -11,12 +11,97 @@
 #include <Ice/Ice.h>
 #include <arpa/inet.h>
 #include <cerrno>
+#include <csignal>
+#include <cstdlib>
 #include <fcntl.h>
 #include <netinet/tcp.h>
 #include <set>
 #include <stdexcept>
 #include <sys/socket.h>
+#include <sys/wait.h>
 #include <unistd.h>
+
+// A program with these properties.
+inline Ice::CommunicatorPtr program(const std::map<std::string, std::string>& properties) {
+    Ice::InitializationData data;
+    data.properties = Ice::createProperties();
+    for (const auto& [name, value] : properties)
+        data.properties->setProperty(name, value);
+    return Ice::initialize(data);
+}
+
+// A server program, its output read as far as it is asked for.
+class Server {
+public:
+    explicit Server(std::vector<std::string> arguments) {
+        int ends[2];
+        if (pipe2(ends, O_CLOEXEC) != 0)
+            throw std::runtime_error("no pipe");
+        std::vector<char*> argv;
+        for (auto& argument : arguments)
+            argv.push_back(argument.data());
+        argv.push_back(nullptr);
+        pid_ = fork();
+        if (pid_ == 0) {
+            dup2(ends[1], 1);
+            dup2(ends[1], 2);
+            close_range(3, ~0u, 0); // Ice's sockets are inherited otherwise
+            execvp(argv[0], argv.data());
+            _exit(127);
+        }
+        close(ends[1]);
+        out_ = ends[0];
+    }
+    ~Server() {
+        if (pid_ > 0)
+            stop();
+        close(out_);
+    }
+    // Returns the port that it prints between these words; -1: it ended without.
+    int port(const std::string& before = "gateway: port ", const std::string& after = " leads") {
+        if (!hear(before))
+            return -1;
+        const size_t at = heard_;
+        return hear(after) ? std::atoi(said_.c_str() + at) : -1;
+    }
+    // Ends it; its exit status.
+    int stop() {
+        kill(pid_, SIGINT);
+        return wait();
+    }
+    int wait() {
+        while (read())
+            ;
+        int status = 0;
+        waitpid(pid_, &status, 0);
+        pid_ = 0;
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    }
+    pid_t pid() const { return pid_; }
+    const std::string& said() const { return said_; }
+    // Reads until it prints `text` once more. Returns false where it ends without.
+    bool hear(const std::string& text) {
+        size_t at;
+        while ((at = said_.find(text, heard_)) == std::string::npos)
+            if (!read())
+                return false;
+        heard_ = at + text.size();
+        return true;
+    }
+
+private:
+    bool read() {
+        char bytes[512];
+        ssize_t count = ::read(out_, bytes, sizeof bytes);
+        if (count > 0)
+            said_.append(bytes, static_cast<size_t>(count));
+        return count > 0;
+    }
+    pid_t pid_ = 0;
+    int out_ = -1;
+    std::string said_;
+    size_t heard_ = 0; // of said_, by hear
+};
 
 // The rig's UAV hands each channel of its link to an Ice server on 127.0.0.1, and a connection of
 // that server's to the ground on channel 3. It runs in the rig's thread.
@@ -46,20 +131,14 @@ public:
             rig_.opening = nullptr;
             rig_.step = nullptr;
         });
-        reset();
+        for (Line& line : lines_)
+            end(line);
         close(listener_);
     }
     Relay(const Relay&) = delete;
     Relay& operator=(const Relay&) = delete;
 
     int port() const { return port_; } // where the UAV's server reaches the ground
-    // The UAV's processor starts again.
-    void reboot() {
-        rig_.with([this] {
-            reset();
-            rig_.bootUav();
-        });
-    }
 
 private:
     static constexpr int ownChannel = 3;
@@ -74,10 +153,6 @@ private:
         a.sin_port = htons(static_cast<uint16_t>(port));
         a.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
         return a;
-    }
-    void reset() {
-        for (Line& line : lines_)
-            end(line);
     }
     static void end(Line& line) {
         if (line.fd >= 0)
@@ -215,11 +290,7 @@ public:
 class World {
 public:
     explicit World(uint64_t seed) : rig(seed) {
-        Ice::InitializationData data;
-        data.properties = Ice::createProperties();
-        data.properties->setProperty("Ice.ThreadPool.Server.Size", "4");
-        data.properties->setProperty("Ice.Warn.Connections", "0");
-        server_ = Ice::initialize(data);
+        server_ = program({{"Ice.ThreadPool.Server.Size", "4"}, {"Ice.Warn.Connections", "0"}});
         uav = server_->createObjectAdapterWithEndpoints("Uav", "tcp -h 127.0.0.1");
         uav->add(echo, Ice::stringToIdentity("echo"));
         uav->activate();
@@ -232,21 +303,14 @@ public:
 
     // A program on the ground; several share the serial port's engine.
     Ice::CommunicatorPtr client(std::map<std::string, std::string> more = {}) {
-        Ice::InitializationData data;
-        data.properties = Ice::createProperties();
-        auto set = [&](const std::string& name, const std::string& value) {
-            data.properties->setProperty(name, value);
-        };
-        set("Ice.Plugin.XBeeAT", PLUGIN_FOLDER "/xbeeat:createXBeeAT");
-        set("Ice.Default.InvocationTimeout", "60000");
-        set("Ice.RetryIntervals", "-1"); // a call is made once, whatever becomes of it
-        set("Ice.ThreadPool.Client.Size", "4");
-        set("Ice.Warn.Connections", "0");
-        set("XBeeAT.Guard", std::to_string(Rig::guardMs));
-        set("XBeeAT.Down", "1");
-        for (auto& [name, value] : more)
-            set(name, value);
-        return Ice::initialize(data);
+        more.insert({{"Ice.Plugin.XBeeAT", PLUGIN_FOLDER "/xbeeat:createXBeeAT"},
+                     {"Ice.Default.InvocationTimeout", "60000"},
+                     {"Ice.RetryIntervals", "-1"}, // a call is made once, whatever becomes of it
+                     {"Ice.ThreadPool.Client.Size", "4"},
+                     {"Ice.Warn.Connections", "0"},
+                     {"XBeeAT.Guard", std::to_string(Rig::guardMs)},
+                     {"XBeeAT.Down", "1"}});
+        return program(more);
     }
     std::string endpoint() const { return "xbee-at -t 60000 -d " + rig.pty.path(); }
     std::shared_ptr<RadioTest::UavPrx> proxy(const Ice::CommunicatorPtr& ic,

@@ -68,22 +68,6 @@ protected:
     Rig rig_{testSeed()};
 };
 
-TEST_F(EngineTest, MessagesGoBothWaysOnSeveralConnections) {
-    rig_.with([&] { rig_.echo = true; });
-    auto engine = start();
-    int fds[3];
-    for (int& fd : fds) {
-        fd = engine->connect(-1);
-        ASSERT_GE(fd, 0);
-    }
-    for (uint8_t tag = 1; tag < 4; ++tag)
-        for (int fd : fds)
-            echoes(fd, tag, 20u * tag);
-    echoes(fds[1], 9, 8192);
-    for (int fd : fds)
-        close(fd);
-}
-
 TEST_F(EngineTest, MoreProgramsThanChannelsWaitTheirTurn) {
     rig_.with([&] { rig_.echo = true; });
     auto engine = start();

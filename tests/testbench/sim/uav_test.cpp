@@ -57,26 +57,6 @@ TEST_F(Uav, CorruptionAndDuplicationAreNotNoticed) {
     EXPECT_EQ(ground.replies.size(), 40u);
 }
 
-TEST_F(Uav, TheGroundGoesAwayAndComesBack) {
-    uint64_t since = 0;
-    fly(inOrder({ground.pinging(3),
-                 [&] {
-                     ground.running = false; // the program is killed
-                     since = soc.now();
-                     machine_->hurry(10);
-                     return true;
-                 },
-                 [&] { return soc.now() - since > 1'200'000'000; }, // 12 s by the UAV's clock
-                 [&] {
-                     EXPECT_NE(Link_state(&uav_link), LINK_STATE_UP) << "the UAV has not noticed";
-                     machine_->hurry(1);
-                     ground.start();
-                     return true;
-                 },
-                 ground.pinging(3)}),
-        20);
-}
-
 TEST_F(Uav, AModemResetInMidPacketIsRecoveredFrom) {
     uint64_t since = 0;
     auto hurry = [&](unsigned times) {
@@ -112,21 +92,6 @@ TEST_F(Uav, AModemResetInMidPacketIsRecoveredFrom) {
                  ground.pinging(3)}),
         20);
     EXPECT_EQ(soc.modem().parameter("BD"), 7u);
-}
-
-TEST_F(Uav, GarbageOnTheGroundsSerialLineIsSurvived) {
-    Random random(testSeed());
-    auto ping = ground.pinging(20);
-    uint64_t next = 0;
-    fly(
-        [&] {
-            if (ground.isUp() && soc.now() > next) {
-                ground.noise(random.items<uint8_t>(1 + random.below(40)));
-                next = soc.now() + 150'000'000;
-            }
-            return ping();
-        },
-        60);
 }
 
 TEST_F(Uav, TheSameSeedGivesTheSameRun) {

@@ -14,6 +14,7 @@ import re
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "testbench/page"))
+from lights import below_gate
 from tool import Stop, write
 
 
@@ -131,8 +132,7 @@ def report(files, gates, out):
         print(f"{name:<44} {lines.percent:6.1f} % of {lines.total:5} lines "
               f"{of_toggles if toggles.total else '':>22}{of_points if points.total else '':>16}"
               f"{row['why'] and '  (' + row['why'] + ')'}")
-        if lines.percent < row["gate"] or points.percent < row["point_gate"] or \
-                toggles.percent < row["toggle_gate"]:
+        if below_gate(row):
             below.append(
                 f"below its gate: {name}: lines {lines.percent:.1f} (gate {row['gate']:.0f}), "
                 f"toggles {toggles.percent:.1f} (gate {row['toggle_gate']:.0f}), points "

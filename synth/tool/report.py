@@ -282,8 +282,8 @@ def page_design(report, row):
     return d
 
 
-def html(report, parts, libraries):
-    """The page of the folder `parts`: "@STYLE@", "@SCRIPT@" and "@DATA@" in it are replaced.
+def html(report, page, libraries):
+    """The page of the file `page`: "@STYLE@", "@SCRIPT@" and "@DATA@" in it are replaced.
     `libraries`: the folder of the pages' libraries from npm."""
     data = {"yosys": short_version(report.yosys), "commit": report.commit,
             "paper": report.plan.paper, "chip": report.plan.chip, "slowGrade": timing.SLOW_GRADE,
@@ -296,7 +296,5 @@ def html(report, parts, libraries):
                 name: {key: a[key] for key in baseline.KEYS}
                 for name, a in commit["designs"].items()}} for commit in report.commits]}
     style, script = page_parts(libraries)
-    return filled((parts / "page.html").read_text(),
-                  {"@STYLE@": style,
-                   "@SCRIPT@": script + (parts / "page.js").read_text(),
-                   "@DATA@": script_safe(data)})
+    return filled(page.read_text(), {"@STYLE@": style, "@SCRIPT@": script,
+                                     "@DATA@": script_safe(data)})

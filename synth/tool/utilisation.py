@@ -94,7 +94,7 @@ def cores_of(rows, library, options, o):
 
 def write_reports(r, o, libraries):
     write(o.output / "report.json", json.dumps(report.entries(r), indent=1) + "\n")
-    write(o.output / "report.html", report.html(r, o.source / "synth/report", libraries))
+    write(o.output / "report.html", report.html(r, o.source / "synth/page.html", libraries))
     print(f"Page: {o.output / 'report.html'}")
 
 

@@ -58,8 +58,8 @@ class Cases(Script):
         shutil.copytree(TREE / "tests/synth/project", "project")
         for folder in "bus", "ip":
             write(f"project/{folder}/none", "")
-        for folder in "yosys", "report":
-            shutil.copytree(TREE / "synth" / folder, f"project/synth/{folder}")
+        shutil.copytree(TREE / "synth/yosys", "project/synth/yosys")
+        shutil.copy(TREE / "synth/page.html", "project/synth")
         Path("gen").mkdir()
         Path("out").mkdir()
         if CASE != "counts":

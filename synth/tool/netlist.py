@@ -161,7 +161,7 @@ def read_netlist(file):
         n.add(Cell(name, cell["type"], pins, cell["hide_name"] == 0,
                    files_of(cell["attributes"].get("src", ""))))
     for name, net in sorted(module["netnames"].items()):
-        if net["hide_name"] != 0:
+        if net["hide_name"] != 0 or "$func$" in name:  # a call of a function
             continue
         n.sources[name] = net["attributes"].get("src", "")
         bits = bits_of(net["bits"])

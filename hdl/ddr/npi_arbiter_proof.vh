@@ -15,7 +15,7 @@
 // it begins. With it all assertions together are inductive: runs of any length are proven.
 
     // The state of the arbiter's parts, for two ports.
-    localparam KIND = PORT_BITS + 4, ADDR_BITS = ADDR_WIDTH - 3, X = 2 * (FIFO_LOG2 + 1);
+    localparam KIND = PORT_BITS + 4, ADDR_BITS = ADDR_WIDTH - 3, X = 2 * FIFO_LOG2;
     (* hierconn *) wire [PORTS-1:0]                 \u_select.f_later ;
     (* hierconn *) wire [(KIND<<QUEUE_LOG2)-1:0]    \u_queue.f_kinds ;
     (* hierconn *) wire [(ADDR_BITS<<QUEUE_LOG2)-1:0] \u_queue.f_addrs ;
@@ -326,14 +326,16 @@
             assert (t_stream == (t_read ? s_r[W*mark +: W] : s_w[W*mark +: W]));
             assert (!t_mine || (!t_read && n_mark < n_move) || t_own == (t_read ? s_ro[W*mark +: W] : s_wo[W*mark +: W]));
         end
-        assert (w_indexes == {w_pushed[F:0], w_moved[F:0]});
+        assert (w_indexes == {w_pushed[F-1:0], w_moved[F-1:0]});
+        assert (BLOCK_RAM == 0 || !w_empty || w_level <= 1);
         if (w_have) begin
             assert (w_word == w_value);
             if (w_moved == w_mark && !w_empty)
                 assert (head_word == w_value);
         end
         if (has_fifo) begin
-            assert (r_indexes == {r_pushed[F:0], r_popped[F:0]});
+            assert (r_indexes == {r_pushed[F-1:0], r_popped[F-1:0]});
+            assert (BLOCK_RAM == 0 || !r_empty || r_level <= 1);
             assert (r_level <= DEPTH);
             assert (eager || r_claimed - r_popped <= DEPTH);
             if (eager) begin

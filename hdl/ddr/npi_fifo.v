@@ -7,6 +7,7 @@
 // where the FIFO is used.
 
 `default_nettype none
+`include "shift_order.vh"
 
 module npi_fifo #(
     parameter WIDTH = 72,
@@ -22,37 +23,41 @@ module npi_fifo #(
     output wire             empty_o,
     output wire             full_o
 );
-    reg  [LOG2:0] write_index, read_index;
-    // The index after the word on data_o; pop_i only decides whether to go there, so it may come late.
-    wire [LOG2:0] next = read_index + {{LOG2{1'b0}}, BLOCK == 0 || !empty_o};
+    `SHIFT_ORDER(after, LOG2)
+    // Places of the next word to write, and of the one that goes to data_o next (in LUT RAM: that
+    // is on data_o).
+    reg  [LOG2-1:0] write_place, read_place;
+    wire [LOG2-1:0] write_next = after(write_place);
 
     // full_o is a register, because requesters' paths begin here.
-    wire [LOG2:0] after = write_index + 1'b1;
-    wire          nearly = after[LOG2-1:0] == read_index[LOG2-1:0]; // room for one, of any count but the full one
-    reg           full;
+    wire nearly; // room for one, of any count but the full one
+    wire moves;  // the word at read_place does not wait any more
+    reg  full;
     assign full_o = full;
 
     always @(posedge clk_i) begin
         if (push_i)
-            write_index <= after;
-        if (pop_i)
-            read_index <= next;
+            write_place <= write_next;
+        if (moves)
+            read_place <= after(read_place);
         full <= !pop_i && (full || (push_i && nearly));
         if (rst_i) begin
             full        <= 1'b0;
-            write_index <= 0;
-            read_index  <= 0;
+            write_place <= 0;
+            read_place  <= 0;
         end
     end
 
     generate
         if (BLOCK == 0) begin : g_lut
             reg [WIDTH-1:0] words [0:(1<<LOG2)-1];
-            assign empty_o = write_index == read_index;
-            assign data_o  = words[read_index[LOG2-1:0]];
+            assign nearly  = write_next == read_place;
+            assign moves   = pop_i;
+            assign empty_o = write_place == read_place && !full;
+            assign data_o  = words[read_place];
             always @(posedge clk_i)
                 if (push_i)
-                    words[write_index[LOG2-1:0]] <= data_i;
+                    words[write_place] <= data_i;
         end else begin : g_block
             // no_rw_check (Yosys): no word is read in the clock of its write (see below). Without it, chips whose RAM
             // does not give the old word, such as ECP5, spend 150 flip-flops and 80 LUTs on holding it.
@@ -61,16 +66,18 @@ module npi_fifo #(
             reg [WIDTH-1:0] word;
             reg             empty;
             // The RAM gives only words of earlier clocks: it is never read where it is being
-            // written.
+            // written. pop_i only enables, so it may come late.
             wire fetch = empty || pop_i;
-            wire ready = next != write_index;
+            wire ready = read_place != write_place;
+            assign moves   = fetch && ready;
+            assign nearly  = after(write_next) == read_place; // the one on data_o counts, too
             assign empty_o = empty;
             assign data_o  = word;
             always @(posedge clk_i) begin
                 if (push_i)
-                    words[write_index[LOG2-1:0]] <= data_i;
-                if (fetch && ready)
-                    word <= words[next[LOG2-1:0]];
+                    words[write_place] <= data_i;
+                if (moves)
+                    word <= words[read_place];
                 empty <= rst_i || (fetch && !ready);
             end
         end
@@ -80,16 +87,20 @@ module npi_fifo #(
     // Words come out as they went in, in order; flags tell the count.
     parameter PROOF = 0; // 1 where the FIFO itself is proven: its user's errors are assumed away
 
-    // The FIFO's words and indexes, for proofs of its users.
+    // The FIFO's words, numbered, and which of them are the next to write and to pop, for proofs of
+    // its users.
+    `SHIFT_NUMBERS(place_of, number_of, after, LOG2)
+    wire [LOG2-1:0] f_write = number_of(write_place);
+    wire [LOG2-1:0] f_read  = number_of(read_place) - {{(LOG2-1){1'b0}}, BLOCK != 0 && !empty_o};
+    wire [2*LOG2-1:0]        f_indexes = {f_write, f_read};
     wire [(WIDTH<<LOG2)-1:0] f_words;
-    wire [2*LOG2+1:0]        f_indexes = {write_index, read_index};
     genvar f;
     generate
         for (f = 0; f < (1 << LOG2); f = f + 1) begin : g_words
             if (BLOCK == 0) begin : g_lut_word
-                assign f_words[WIDTH*f +: WIDTH] = g_lut.words[f];
+                assign f_words[WIDTH*f +: WIDTH] = g_lut.words[place_of(f)];
             end else begin : g_block_word
-                assign f_words[WIDTH*f +: WIDTH] = g_block.words[f];
+                assign f_words[WIDTH*f +: WIDTH] = g_block.words[place_of(f)];
             end
         end
     endgenerate
@@ -106,29 +117,33 @@ module npi_fifo #(
         end else begin : g_proof
             initial assume (rst_i);
             // Any one word comes out as it went in, in its place.
-            (* anyconst *) reg [LOG2:0] place;
+            (* anyconst *) reg [LOG2-1:0] place;
             reg [WIDTH-1:0] value;
             reg inside = 1'b0;
-            wire [LOG2:0] count = write_index - read_index;
+            wire [LOG2-1:0] from_read = place - f_read, used = f_write - f_read;
+            wire [LOG2:0]   count = {full_o, used};
             always @(posedge clk_i) begin
                 assume (!(push_i && full_o));
                 assume (!(pop_i && empty_o));
-                if (push_i && write_index == place) begin
+                if (push_i && f_write == place) begin
                     value  <= data_i;
                     inside <= 1'b1;
                 end
-                if ((pop_i && read_index == place) || rst_i)
+                if ((pop_i && f_read == place) || rst_i)
                     inside <= 1'b0;
                 if (past) begin
-                    assert (count <= (1 << LOG2));
-                    assert (full_o == (count == (1 << LOG2)));
+                    assert (!full_o || used == 0);
                     assert (empty_o || count != 0);
                     if (BLOCK == 0)
                         assert (empty_o == (count == 0));
                     else if ($past(count) != 0 && !$past(pop_i) && !$past(rst_i))
                         assert (!empty_o); // a clock later, not more
-                    assert (inside == ((place - read_index) < count));
-                    if (inside && read_index == place && !empty_o)
+                    if (BLOCK != 0 && empty_o)
+                        assert (count <= 1);
+                    assert (inside == ({1'b0, from_read} < count));
+                    if (inside)
+                        assert (f_words[WIDTH*place +: WIDTH] == value);
+                    if (inside && f_read == place && !empty_o)
                         assert (data_o == value);
                     cover (full_o);
                     cover ($past(full_o) && $past(pop_i) && !empty_o && inside);
@@ -140,6 +155,6 @@ module npi_fifo #(
 `ifdef COVER_POINTS
     is_full: cover property (@(posedge clk_i) full_o);
     both_at_once: cover property (@(posedge clk_i) push_i && pop_i);
-    empties: cover property (@(posedge clk_i) pop_i && next == write_index && !push_i);
+    empties: cover property (@(posedge clk_i) pop_i && !push_i && write_place == (BLOCK != 0 ? read_place : after(read_place)));
 `endif
 endmodule

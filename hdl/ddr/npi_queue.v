@@ -11,6 +11,7 @@
 // Commands go in the order of acceptance.
 
 `default_nettype none
+`include "shift_order.vh"
 
 module npi_queue #(
     parameter PORT_BITS = 1,  // width of a port's number
@@ -51,16 +52,32 @@ module npi_queue #(
     reg [LOG2-1:0] head = 0, move = 0, issue = 0, back = 0;
     reg [4:0]      move_index, back_index;
 
+    `SHIFT_ORDER(after, LOG2)
+    `SHIFT_ORDER(moved_after, 5)
+    `SHIFT_NUMBERS(moved_of, moved_number, moved_after, 5)
+
     // words - 1 of a size; 6 and 7 count as 5
     function [4:0] last_of;
         input [2:0] size;
         last_of = {size[2] && |size[1:0], size[2], size[2] || &size[1:0], size[2] || size[1],
                    |size};
     endfunction
+    // The same as move_index has it.
+    function [4:0] move_last_of;
+        input [2:0] size;
+        case (size)
+            3'd0:    move_last_of = moved_of(0);
+            3'd1:    move_last_of = moved_of(1);
+            3'd2:    move_last_of = moved_of(3);
+            3'd3:    move_last_of = moved_of(7);
+            3'd4:    move_last_of = moved_of(15);
+            default: move_last_of = moved_of(31);
+        endcase
+    endfunction
 
     // Full means that all places but one are in use; a register, because requests wait for it.
-    wire [LOG2-1:0] head_next = head + 1'b1;
-    wire            nearly    = head + {{(LOG2-2){1'b0}}, 2'd2} == back;
+    wire [LOG2-1:0] head_next = after(head);
+    wire            nearly    = after(head_next) == back;
     reg             full;
     assign full_o = full;
 
@@ -69,7 +86,7 @@ module npi_queue #(
     reg             moving;
     reg [KIND-1:0]  move_kind;
     wire [KIND-1:0] push_kind = {push_port_i, push_read_i, push_size_i};
-    wire [LOG2-1:0] move_next = move + 1'b1;
+    wire [LOG2-1:0] move_next = after(move);
     wire            fresh     = !moving || move_next == head;
     wire            next_is   = !fresh || push_i;
     wire [KIND-1:0] next_kind = fresh ? push_kind : kinds[move_next];
@@ -81,7 +98,7 @@ module npi_queue #(
     assign {issue_port, issue_read, issue_size} = kinds[issue];
     assign {back_port_o, back_read, back_size} = kinds[back];
 
-    wire       move_last  = move_index == last_of(move_size);
+    wire       move_last  = move_index == move_last_of(move_size);
     wire       move_ends  = moving && (move_read || (move_done_i && move_last));
 
     assign cmd_valid_o = issue != move;
@@ -102,7 +119,7 @@ module npi_queue #(
             head        <= head_next;
         end
         if (move_done_i)
-            move_index <= move_index + 5'd1;
+            move_index <= moved_after(move_index);
         if (move_ends)
             move <= move_next;
         if (move_ends || !moving) begin
@@ -111,11 +128,11 @@ module npi_queue #(
             move_at_o <= {{((1<<PORT_BITS)-1){1'b0}}, next_is && !next_kind[3]} << next_kind[KIND-1:4];
         end
         if (cmd_valid_o && cmd_ready_i)
-            issue <= issue + 1'b1;
+            issue <= after(issue);
         if (back_done_i)
             back_index <= back_index + 5'd1;
         if (back_ends)
-            back <= back + 1'b1;
+            back <= after(back);
         full <= !back_ends && (full || (push_i && nearly));
         if (rst_i) begin
             full  <= 1'b0;
@@ -136,17 +153,18 @@ module npi_queue #(
 
 `ifdef FORMAL
     // The four places never pass each other, and a request keeps its kind.
-    // The queue's registers, for npi_arbiter_proof.
+    // The queue's registers, for npi_arbiter_proof; requests are numbered by their places.
+    `SHIFT_NUMBERS(place_of, number_of, after, LOG2)
     wire [(KIND<<LOG2)-1:0]      f_kinds;
     wire [(ADDR_BITS<<LOG2)-1:0] f_addrs;
-    wire [4*LOG2-1:0]            f_places = {head, move, issue, back};
-    wire [4:0]                   f_moved  = move_index;
+    wire [4*LOG2-1:0]            f_places = {number_of(head), number_of(move), number_of(issue), number_of(back)};
+    wire [4:0]                   f_moved  = moved_number(move_index);
     wire [KIND:0]                f_moving = {moving, move_kind};
     genvar f;
     generate
         for (f = 0; f < (1 << LOG2); f = f + 1) begin : g_places
-            assign f_kinds[KIND*f +: KIND] = kinds[f];
-            assign f_addrs[ADDR_BITS*f +: ADDR_BITS] = addrs[f];
+            assign f_kinds[KIND*f +: KIND] = kinds[place_of(f)];
+            assign f_addrs[ADDR_BITS*f +: ADDR_BITS] = addrs[place_of(f)];
         end
     endgenerate
     wire move_valid = |move_at_o;
@@ -162,8 +180,10 @@ module npi_queue #(
     wire           is_read   = kind[3];
     wire [5:0]     all_words = {1'b0, last_of(kind[2:0])} + 6'd1;
     // distances from `back`, the oldest
-    wire [LOG2-1:0] n_head = head - back, n_move = move - back, n_issue = issue - back,
-                    n_place = place - back;
+    wire [LOG2-1:0] f_head, f_move, f_issue, f_back;
+    assign {f_head, f_move, f_issue, f_back} = f_places;
+    wire [LOG2-1:0] n_head = f_head - f_back, n_move = f_move - f_back, n_issue = f_issue - f_back,
+                    n_place = number_of(place) - f_back;
 
     always @(posedge clk_i) begin
         past <= 1'b1;
@@ -197,7 +217,7 @@ module npi_queue #(
             assert (full == (head_next == back));
             assert (!moving || move != place || move_kind == kind);
             assert (move_at_o == (moving && !move_read ? {{((1<<PORT_BITS)-1){1'b0}}, 1'b1} << move_port_o : 0));
-            assert (move_index <= last_of(move_size) || !moving || move_read);
+            assert (f_moved <= last_of(move_size) || !moving || move_read);
             assert (back_index <= last_of(back_size) || !coming || !back_read);
             if (!moving || move_read)
                 assert (move_index == 5'd0);
@@ -210,7 +230,7 @@ module npi_queue #(
                 if (n_place > n_move)
                     assert (moved == 6'd0);
                 if (move == place && moving)
-                    assert (moved == (is_read ? 6'd0 : {1'b0, move_index}));
+                    assert (moved == (is_read ? 6'd0 : {1'b0, f_moved}));
                 if (n_place < n_move)
                     assert (moved == (is_read ? 6'd0 : all_words));
                 // No word of a read before its command; its words are counted.

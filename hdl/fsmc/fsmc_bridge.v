@@ -8,6 +8,7 @@
 // An access that has waited for 2**TIMEOUT_LOG2 clocks is let go with access_error_o, so NWAIT is never low for ever.
 
 `default_nettype none
+`include "shift_order.vh"
 
 module fsmc_bridge #(
     parameter MUXED        = 0, // 1: address bits 15..0 come on the data pins while NADV is low
@@ -117,17 +118,24 @@ module fsmc_bridge #(
 
     // ---- Time-out: an access to memory that has waited too long is let go, until its strobe rises; fsmc_registers does so for
     // registers.
-    reg [TIMEOUT_LOG2:0] patience;
+    localparam PATIENCE = TIMEOUT_LOG2 > 1 ? TIMEOUT_LOG2 : 2;
+    `SHIFT_ORDER(after, PATIENCE)
+    localparam [PATIENCE-1:0] LAST = 1 << (TIMEOUT_LOG2 - 1);
+    reg [PATIENCE-1:0] patience;
+    reg  ran_out;
     wire reg_restart;
-    wire expired = patience[TIMEOUT_LOG2];
+    wire expired = ran_out;
     wire waiting = (mem_reading && !hit_seen) || (writing && !room);
     assign excuse = expired && clear_sync && waiting && !excused_read && !excused_write;
 
-    always @(posedge clk_i)
-        if (rst_i || expired || (reg_restart && (busy || !waiting)))
+    always @(posedge clk_i) begin
+        ran_out  <= patience == LAST;
+        patience <= after(patience);
+        if (rst_i || expired || (reg_restart && (busy || !waiting))) begin
+            ran_out  <= 1'b0;
             patience <= 0;
-        else
-            patience <= patience + 1'b1;
+        end
+    end
 
     // ---- NWAIT follows NE and NOE: an access counts as a write until NOE falls, so that NWAIT is valid an address phase
     // before a write's data phase begins. No access waits while reset is active, even without a clock.

@@ -9,6 +9,7 @@
 // time of the next try. Any other command that is refused or not answered is sent twice again.
 
 `default_nettype none
+`include "shift_order.vh"
 
 module modem_at (
     input  wire        clk_i,
@@ -42,6 +43,7 @@ module modem_at (
     localparam [3:0] FACTORY_BD = 4'd3, HIGHEST_BD = 4'd7;
 
     reg [5:0] place;    // row of the step
+    `SHIFT_ORDER(after, 6)
     reg       fresh;    // the line is not idle yet, so no time passes
     reg       steady;   // the character to send is there
     reg [3:0] value;    // last digit
@@ -120,7 +122,7 @@ module modem_at (
         end
 
         if (next)
-            place <= place + 6'd1;
+            place <= after(place);
         if (passed || missed || start)
             place <= {5'd0, missed && enters};
         if (passed) // after EE without encryption: no KY

@@ -6,12 +6,13 @@
 // A row has flags and eight bits of data: a character, or {word of the settings, its nibble}. Without flags it does nothing.
 
 `default_nettype none
+`include "shift_order.vh"
 
 module modem_at_rows (
     input  wire       clk_i,
     input  wire       clear_i, // the next row is 0
     input  wire [3:0] step_i,
-    input  wire [5:0] place_i,
+    input  wire [5:0] place_i, // in the order of a shift register
     // the row, a cycle later
     output wire       send_o,   // send a character
     output wire       digit_o,  // the character is the hex digit of a nibble
@@ -86,31 +87,40 @@ module modem_at_rows (
         endcase
     endfunction
 
+    `SHIFT_ORDER(after, 6)
+
     (* rom_style = "block", ram_style = "block" *)
     reg [16:0] rows [0:1023];
-    integer i, k, last;
+    reg [5:0] at;
+    integer i, k;
     initial begin
         for (i = 0; i < 1024; i = i + 1)
             rows[i] = 17'd0;
         // +++ between two guard times
-        rows[64]     = {GUARD | RATE, SETTINGS};
-        rows[64 + 1] = {SEND, "+"};
-        rows[64 + 2] = {SEND, "+"};
-        rows[64 + 3] = {SEND, "+"};
-        rows[64 + 4] = {GUARD | HEAR, SETTINGS};
-        rows[64 + 5] = {HEAR | LIMIT, 8'd0};
+        rows[64] = {GUARD | RATE, SETTINGS};
+        at = after(6'd0);
+        for (k = 0; k < 3; k = k + 1) begin
+            rows[{4'd1, at}] = {SEND, "+"};
+            at = after(at);
+        end
+        rows[{4'd1, at}] = {GUARD | HEAR, SETTINGS};
+        rows[{4'd1, after(at)}] = {HEAR | LIMIT, 8'd0};
         // "AT", letters, digits, return; then the answer
         for (i = 2; i <= LEAVE; i = i + 1) begin
-            rows[64*i]     = {SEND, "A"};
+            rows[64*i] = {SEND, "A"};
             rows[64*i + 1] = {SEND, "T"};
-            last = 64*i + 1 + letter_count(i);
-            for (k = 0; k < letter_count(i); k = k + 1)
-                rows[last - k] = {SEND, letter(letters(i), k)};
-            last = last + digit_count(i);
-            for (k = 0; k < digit_count(i); k = k + 1)
-                rows[last - k] = {SEND | DIGIT, digit(i, k[4:0])};
-            rows[last + 1] = {SEND, 8'h0D};
-            rows[last + 2] = {HEAR | LIMIT | REFUSE | (i == KEY - 1 ? SKIP : 9'd0), 8'd0};
+            at = after(6'd1);
+            for (k = letter_count(i) - 1; k >= 0; k = k - 1) begin
+                rows[{i[3:0], at}] = {SEND, letter(letters(i), k)};
+                at = after(at);
+            end
+            for (k = digit_count(i) - 1; k >= 0; k = k - 1) begin
+                rows[{i[3:0], at}] = {SEND | DIGIT, digit(i, k[4:0])};
+                at = after(at);
+            end
+            rows[{i[3:0], at}] = {SEND, 8'h0D};
+            rows[{i[3:0], after(at)}] =
+                {HEAR | LIMIT | REFUSE | (i == KEY - 1 ? SKIP : 9'd0), 8'd0};
         end
         rows[0] = {SETTLE | RATE, SETTINGS};
     end

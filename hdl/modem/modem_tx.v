@@ -19,7 +19,7 @@ module modem_tx (
     output reg        sent_o,       // one cycle: it has left and its buffer is free
     // memory
     output wire       rd_valid_o,
-    output reg  [6:0] rd_index_o,   // byte of the packet
+    output wire [6:0] rd_index_o,   // byte of the packet
     input  wire       rd_done_i,
     input  wire [7:0] rd_data_i,
     // bytes out
@@ -33,42 +33,40 @@ module modem_tx (
     wire [6:0] longest = encrypt_i ? 7'd95 : 7'd100;
 
     reg [1:0] state;
-    reg [8:0] rest; // ticks of silence
+    reg [8:0] count; // bytes read; in REST ticks of silence
 
     wire last   = rd_index_o == packet_bytes_i;                // all its bytes are out
-    wire rested = (rest[8] && rest[6]) || packet_bytes_i == longest || api_i; // 320 ticks
+    wire rested = (count[8] && count[6]) || packet_bytes_i == longest || api_i; // 320 ticks
 
+    wire leaves = tx_valid_o && tx_ready_i;
     wire ends   = state == REST && (tx_ready_i || api_i) && rested;
 
     // The set-up restarts the transmitter: a packet that it interrupts is sent again, whole.
     wire begin_anew = rst_i || !enable_i;
 
     assign rd_valid_o = state == FETCH && packet_valid_i && enable_i && !sent_o;
+    assign rd_index_o = count[6:0];
     assign tx_last_o  = last;
     assign tx_valid_o = state == SEND && cts_i;
 
     always @(posedge clk_i) begin
         sent_o <= 1'b0;
-        rest   <= 9'd0;
         case (state)
             FETCH: if (rd_done_i) begin
                 tx_data_o <= rd_data_i;
                 state     <= SEND;
             end
-            SEND: if (tx_valid_o && tx_ready_i)
+            SEND: if (leaves)
                 state <= last ? REST : FETCH;
-            default: begin
-                rest <= rest + {8'd0, tx_ready_i};
-                if (ends) begin
-                    sent_o <= 1'b1;
-                    state  <= FETCH;
-                end
+            default: if (ends) begin
+                sent_o <= 1'b1;
+                state  <= FETCH;
             end
         endcase
-        if (rd_done_i) // only in FETCH
-            rd_index_o <= rd_index_o + 7'd1;
-        if (begin_anew || ends)
-            rd_index_o <= 7'd0;
+        if (rd_done_i || (state == REST && tx_ready_i)) // rd_done_i only in FETCH
+            count <= count + 9'd1;
+        if (begin_anew || ends || (leaves && last))
+            count <= 9'd0;
         if (begin_anew) begin
             state     <= FETCH;
             sent_o    <= 1'b0;
@@ -82,7 +80,7 @@ module modem_tx (
     initial assume (rst_i);
     reg [6:0] out  = 7'd0; // bytes of this packet that have left
     reg [7:0] read = 8'd0; // the latest byte read
-    wire      left = tx_valid_o && tx_ready_i;
+    reg [8:0] rest;        // ticks since the last one left
     always @(posedge clk_i) begin
         past <= 1'b1;
         if (past)
@@ -92,7 +90,8 @@ module modem_tx (
             assume (packet_valid_i && $stable(packet_bytes_i));
         assume (packet_bytes_i >= 7'd1 && packet_bytes_i <= 7'd105);
         assume (!rd_done_i || rd_valid_o); // modem_npi
-        out <= out + left;
+        out <= out + leaves;
+        rest <= leaves ? 9'd0 : rest + {8'd0, tx_ready_i && state == REST};
         if (rd_done_i)
             read <= rd_data_i;
         if (sent_o || begin_anew)
@@ -109,14 +108,15 @@ module modem_tx (
             // After a packet that the modem does not send at once by its length, the line rests for
             // 320 ticks.
             if (state == REST && tx_ready_i)
-                assert (ends == (api_i || packet_bytes_i == (encrypt_i ? 7'd95 : 7'd100) || (rest[8] && rest[6])));
+                assert (ends == (api_i || packet_bytes_i == (encrypt_i ? 7'd95 : 7'd100) || rest >= 9'd320));
+            assert (state != REST || count == rest);
         end
         if (past) // each state is at a known byte; the induction rests on this
             case (state)
                 FETCH:   assert (sent_o ? packet_valid_i && rd_index_o == 7'd0 && out == packet_bytes_i :
                                  rd_index_o == out && (out == 7'd0 || (packet_valid_i && out < packet_bytes_i)));
                 SEND:    assert (!sent_o && packet_valid_i && rd_index_o == out + 7'd1 && out < packet_bytes_i);
-                REST:    assert (!sent_o && packet_valid_i && rd_index_o == out && out == packet_bytes_i);
+                REST:    assert (!sent_o && packet_valid_i && out == packet_bytes_i);
                 default: assert (0);
             endcase
         cover (past && !rst_i && out == 7'd3 && state == REST);

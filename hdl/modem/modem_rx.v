@@ -36,7 +36,8 @@ module modem_rx (
     output wire       push_o,     // the packet is complete: wr_index_o bytes
     output reg        overrun_o   // one cycle: dropped
 );
-    reg [7:0] length;   // bytes announced; a number above 100 does not count
+    reg [6:0] length;   // bytes announced, less 5; above 95 it does not count
+    reg       near;     // wr_index_o / 4 is length / 4 + 1
     reg [8:0] silence;  // ticks; 256 are 3.2 characters
     reg       pending;  // wr_data_o waits
     reg       ending;   // the last byte is in wr_data_o or written
@@ -54,7 +55,7 @@ module modem_rx (
     // The index is at most 100, so four of its bits tell 99.
     wire       longest = api_i ? &wr_index_o[6:4] : // modem_api_rx gives none so long
                          (wr_index_o[6] && wr_index_o[5] && wr_index_o[1] && wr_index_o[0]) ||
-                         (!first && {1'b0, count} == length);
+                         (near && wr_index_o[1:0] == length[1:0]);
     wire       cut     = api_i ? rx_end_i || rx_bad_i : rx_error_i || silent;
 
     assign wr_valid_o = pending && !ending && !drop;
@@ -79,7 +80,9 @@ module modem_rx (
             if (!rx_valid_i || deaf)
                 pending <= 1'b0;
             if (first)
-                length <= {1'b0, wr_data_o[6:0]} + 8'd5;
+                length <= wr_data_o[6:0];
+            if (&wr_index_o[1:0])
+                near <= wr_index_o[6:2] == length[6:2];
             if (longest)
                 ending <= 1'b1;
         end
@@ -88,6 +91,8 @@ module modem_rx (
             if (rx_bad_i)
                 dropping <= 1'b1;
         end
+        if (done || rst_i)
+            near <= 1'b0;
         if (done) begin
             ending     <= 1'b0;
             dropping   <= 1'b0;
@@ -128,6 +133,7 @@ module modem_rx (
     reg [8:0] ticks = 9'd0; // 80 a character, since the latest byte
     reg       lost  = 1'b0; // a byte of this packet was replaced before it was taken
     reg [7:0] latest = 8'd0; // the latest byte
+    reg [6:0] announced;     // by the first byte written
     wire      write = wr_valid_o && wr_ready_i;
     always @(posedge clk_i) begin
         past <= 1'b1;
@@ -141,6 +147,8 @@ module modem_rx (
         if (past)
             assume (!full_i || $past(full_i) || $past(push_o));
         wrote <= wrote + write;
+        if (write && wrote == 7'd0)
+            announced <= wr_data_o[6:0];
         if (rx_valid_i && !deaf)
             latest <= rx_data_i;
         if (rx_valid_i && !deaf && pending && !taken && !ending)
@@ -167,6 +175,12 @@ module modem_rx (
             assert (!(overrun_o && $past(push_o && !late)));
             assert (!lost || (ending && dropping));
             assert (silence == ticks); // 256 are 3.2 characters
+            // It ends with the length that its first byte announced.
+            if (wrote != 7'd0 && !dropping)
+                assert (length == announced);
+            assert (near == ({1'b0, wr_index_o[6:2]} == {1'b0, length[6:2]} + 6'd1));
+            if (taken && !first && !api_i && {1'b0, count} == {1'b0, length} + 8'd5)
+                assert (longest);
         end
         cover (past && !rst_i && push_o && wrote == 7'd3);
         cover (past && !rst_i && overrun_o && $past(full_i));

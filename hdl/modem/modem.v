@@ -61,6 +61,10 @@ module modem #(
     reg         ready, reset_n, pulse_ends, encrypt, by_wire, frames;
     wire        api = API != 0 && frames;
     reg  [7:0]  framing_errors, overruns, retries;
+    reg         framing_waits, retry_waits; // a clock after it happened, or more: one is counted at a time
+    wire        counts_retry = retry_waits && !rx_overrun;
+    wire        counts_framing = framing_waits && !rx_overrun && !retry_waits;
+    wire [8:0]  counted = {1'b0, rx_overrun ? overruns : retry_waits ? retries : framing_errors} + 9'd1;
     wire        cts_n_sync;
     wire        cts = !cts_n_sync;
     cdc_bit #(.INITIAL(1'b1)) u_cts (.clk_i(clk_i), .bit_async_i(modem_cts_n_i), .bit_sync_o(cts_n_sync));
@@ -284,12 +288,14 @@ module modem #(
                 reset_n <= 1'b1;
         end
 
-        if (rx_error && ready && framing_errors != 8'hFF)
-            framing_errors <= framing_errors + 8'd1;
-        if (rx_overrun && overruns != 8'hFF)
-            overruns <= overruns + 8'd1;
-        if (at_retried && retries != 8'hFF)
-            retries <= retries + 8'd1;
+        framing_waits <= (rx_error && ready) || (framing_waits && !counts_framing);
+        retry_waits   <= at_retried || (retry_waits && !counts_retry);
+        if (!counted[8] && rx_overrun)
+            overruns <= counted[7:0];
+        if (!counted[8] && counts_retry)
+            retries <= counted[7:0];
+        if (!counted[8] && counts_framing)
+            framing_errors <= counted[7:0];
 
         if (configure || reset_modem) begin
             ready     <= 1'b0;
@@ -300,6 +306,8 @@ module modem #(
             pulse_ends <= 1'b0;
         end
         if (rings_reset) begin
+            framing_waits  <= 1'b0;
+            retry_waits    <= 1'b0;
             framing_errors <= 8'd0;
             overruns       <= 8'd0;
             retries        <= 8'd0;

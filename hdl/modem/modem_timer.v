@@ -14,19 +14,20 @@ module modem_timer #(
     output reg  [11:0] time_o  // since clear_i
 );
     localparam [31:0] CLOCKS = CLK_HZ / 16000 * 17;
-    localparam [16:0] LAST   = CLOCKS[16:0] - 17'd2;
+    localparam [16:0] FIRST  = 17'd1 - CLOCKS[16:0]; // two clocks before the tick it is 2**17 - 1
 
     reg [16:0] clocks;
 
     wire unused = &{1'b0, CLOCKS[31:17], 1'b0};
 
     always @(posedge clk_i) begin
-        clocks <= clocks + 17'd1;
-        tick_o <= clocks == LAST && !clear_i;
+        {tick_o, clocks} <= {1'b0, clocks} + 18'd1;
         if (tick_o)
             time_o <= time_o + 12'd1;
         if (rst_i || clear_i || tick_o)
-            clocks <= 17'd0;
+            clocks <= FIRST;
+        if (clear_i)
+            tick_o <= 1'b0;
         if (rst_i || clear_i)
             time_o <= 12'd0;
     end
@@ -39,6 +40,8 @@ module modem_timer #(
     reg [16:0] then, n;
     reg [11:0] time_then;
     wire [17:0] sum = {1'b0, then} + {1'b0, n};
+    wire [16:0] passed = clocks - FIRST;
+    localparam [16:0] LAST = CLOCKS[16:0] - 17'd2;
     initial assume (rst_i);
     always @(posedge clk_i) begin
         past <= 1'b1;
@@ -47,20 +50,20 @@ module modem_timer #(
             spans <= 1'b0;
         if (begins && !rst_i && !clear_i && !tick_o) begin
             spans     <= 1'b1;
-            then      <= clocks;
+            then      <= passed;
             time_then <= time_o;
             n         <= 17'd1;
         end
         if (past) begin
             // A unit begins with clear_i and with each tick, which counts.
-            assert (clocks == 17'd0 || !$past(rst_i || clear_i || tick_o));
+            assert (passed == 17'd0 || !$past(rst_i || clear_i || tick_o));
             assert (time_o == ($past(rst_i || clear_i) ? 12'd0 : $past(time_o) + {11'd0, $past(tick_o)}));
             assert (!tick_o || !$past(clear_i));
             // States the registers, so that the prover need not find them.
-            assert (clocks <= LAST + 17'd1 && (tick_o || clocks != LAST + 17'd1));
+            assert (passed <= LAST + 17'd1 && (tick_o || passed != LAST + 17'd1));
             if (spans) begin
                 assert (n != 17'd0 && sum <= {1'b0, LAST} + 18'd1);
-                assert ({1'b0, clocks} == sum && time_o == time_then);
+                assert ({1'b0, passed} == sum && time_o == time_then);
                 assert (tick_o == (sum == {1'b0, LAST} + 18'd1)); // not earlier, and not a clock late
             end
         end

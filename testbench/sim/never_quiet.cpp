@@ -5,7 +5,7 @@
 
 #include "quiet_span.h"
 
-QuietSpan::QuietSpan(VSoc& top, uint64_t) : top_(top), timerLast_(0) {}
+QuietSpan::QuietSpan(VSoc& top) : top_(top) {}
 
 void QuietSpan::sample() {}
 

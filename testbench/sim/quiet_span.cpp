@@ -16,6 +16,7 @@
 namespace {
 
 constexpr uint32_t phaseMask = (1u << 18) - 1, phaseCarry = 1u << 18; // modem_baud.v
+constexpr uint32_t timerLast = (1u << 17) - 1; // modem_timer.v: its tick comes then
 constexpr unsigned everyCarryTicks = 5; // from this code of the baud rate on
 constexpr uint8_t lastTick = 7;         // modem_uart_rx.v, modem_uart_tx.v
 constexpr uint64_t worth = 4;           // fewer clocks than these are evaluated
@@ -68,9 +69,7 @@ std::vector<std::string> SocState::differences(const Image& a, const Image& b) {
     return paths;
 }
 
-QuietSpan::QuietSpan(VSoc& top, uint64_t clkHz)
-    : top_(top), timerLast_(static_cast<uint32_t>(clkHz / 16000 * 17 - 2)),
-      image_(sizeof(VSoc___024root)) {
+QuietSpan::QuietSpan(VSoc& top) : top_(top), image_(sizeof(VSoc___024root)) {
     bool joins = false; // the member before is the platform's, too
     for (const Member& m : members) {
         const std::string path = m.path, block = path.substr(0, path.find('.'));
@@ -153,7 +152,7 @@ uint64_t QuietSpan::age(uint64_t phase) const {
 uint64_t QuietSpan::untilEvent(const Counters& now, uint64_t most, bool passesTicks) const {
     uint64_t clocks = most;
     if (timerRuns_)
-        clocks = std::min<uint64_t>(clocks, timerLast_ - std::min(now.timer, timerLast_));
+        clocks = std::min<uint64_t>(clocks, timerLast - now.timer);
     uint64_t carries = nullAge_ && passesTicks ? ~0ull >> 32 : 0; // that may be passed
     if (rxStep_)
         carries = std::min<uint64_t>(carries, lastTick - now.rx);

@@ -43,7 +43,7 @@ struct SocState {
 
 class QuietSpan {
 public:
-    QuietSpan(VSoc& top, uint64_t clkHz);
+    explicit QuietSpan(VSoc& top);
 
     // Records the chip's state; to be called after each evaluated clock.
     void sample();
@@ -89,7 +89,6 @@ private:
     uint64_t untilEvent(const Counters& now, uint64_t most, bool passesTicks) const;
 
     VSoc& top_;
-    uint32_t timerLast_;
     std::vector<unsigned char> image_; // a state of the chip
     bool hasImage_ = false;
     Counters before_{};       // the counters when it was last compared

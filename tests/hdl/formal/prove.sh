@@ -122,7 +122,26 @@ abc() { limited yosys-abc -c "$1" >"$2" 2>&1 || true; }
 step() {
     abc "read_aiger assert.aig; fold; strash; orpos; frames -F $(($1 + 1)); comb;
         write_blif frames.blif" step.log
-    awk -v bads=$(($1 + 1)) -f "$here/step.awk" frames.blif >step.blif
+    # The model's first outputs say whether an assertion fails in each clock; they become one, step:
+    # only the last clock failed.
+    awk -v bads=$(($1 + 1)) '
+        /\\$/ { # a line goes on in the next
+            sub(/\\$/, "")
+            line = line $0
+            next
+        }
+        { $0 = line $0; line = "" }
+        $1 == ".outputs" {
+            for (i = 2; i < 2 + bads; i++) inputs = inputs " " $i
+            print ".outputs step"
+            next
+        }
+        $1 == ".end" {
+            for (i = 1; i < bads; i++) zeros = zeros "0"
+            print ".names" inputs " step"
+            print zeros "1 1"
+        }
+        { print }' frames.blif >step.blif
     rm -f step.cnf
     abc "read_blif step.blif; strash; write_cnf step.cnf" step.log
     limited cadical -q step.cnf >step.log 2>&1

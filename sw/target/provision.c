@@ -12,7 +12,7 @@
 #define TRANSMIT 9U
 #define RECEIVE 10U
 #define LIMIT 1000U /* of 10 ms */
-#define LINE_BYTES 72U
+#define LINE_BYTES 80U
 #define JUMPER_PORT 2U /* PC2: wired to ground, it proves that the vehicle is open */
 #define JUMPER 2U
 
@@ -59,14 +59,13 @@ static int digitOf(char c) {
     return found ? (int)(found - digits) : -1;
 }
 
-/* Reads a key's digits. Returns their end, 0 where they are none. */
-static const char* readKey(const char* text, U8* key) {
-    U32 i;
-    for (i = 0; i < LINK_KEY_BYTES; ++i, text += 2) {
+/* Reads two digits a byte. Returns their end, 0 where they are none. */
+static const char* readBytes(const char* text, U8* bytes, U32 count) {
+    for (; text && count; --count, text += 2) {
         const int high = digitOf(text[0]), low = high < 0 ? -1 : digitOf(text[1]);
         if (low < 0)
             return 0;
-        key[i] = (U8)((U32)high << 4 | (U32)low);
+        *bytes++ = (U8)((U32)high << 4 | (U32)low);
     }
     return text;
 }
@@ -91,24 +90,28 @@ static void protect(void) {
 /* Executes the line. Returns the answer. */
 static const char* obey(const char* line) {
     const char *end, *answer = "ok\r\n";
-    U8 key[LINK_KEY_BYTES], old[LINK_KEY_BYTES];
+    U8 key[LINK_KEY_BYTES], old[LINK_KEY_BYTES], address[2];
     const int isKey = strncmp(line, "key ", 4) == 0;
     int isProven = UAV_countKeys() == 0 || !(GPIO_IDR(JUMPER_PORT) >> JUMPER & 1UL);
     if (strcmp(line, "protect") == 0) {
         protect();
         return answer;
     }
-    end = isKey ? readKey(line + 4, key) : strncmp(line, "open", 4) == 0 ? line + 4 : 0;
+    end = isKey                           ? readBytes(line + 4, key, sizeof key)
+          : strncmp(line, "open", 4) == 0 ? line + 4
+                                          : 0;
+    end = end && *end == ' ' ? readBytes(end + 1, address, sizeof address) : 0;
     if (end && *end == ' ') {
-        end = readKey(end + 1, old);
+        end = readBytes(end + 1, old, sizeof old);
         isProven |= end && UAV_isKey(old);
     }
     if (!end || *end)
-        answer = "no: key or open, the key's 32 of 0..9a..f, a present key's; or protect\r\n";
+        answer = "no: key or open, the key's 32 of 0..9a..f, the address's 4, a present key's; "
+                 "or protect\r\n";
     else if (!isProven)
         answer = "no: it has a key; give that, too, or wire the jumper\r\n";
     else
-        UAV_provide(isKey ? key : 0);
+        UAV_provide((U32)address[0] << 8 | address[1], isKey ? key : 0);
     Ascon_wipe(key, sizeof key);
     Ascon_wipe(old, sizeof old);
     return answer;

@@ -25,10 +25,10 @@ public:
     }
     // Gives it to the firmware.
     void use() { UAV_useBoard(&port(), this); }
-    // Gives the vehicle its key, 16 bytes, as its factory does; none: opens it.
-    void provide(const std::vector<uint8_t>& key) {
+    // Gives the vehicle its key, 16 bytes, and its address, as its factory does; none: opens it.
+    void provide(const std::vector<uint8_t>& key, uint32_t address = 1) {
         use();
-        UAV_provide(key.empty() ? nullptr : key.data());
+        UAV_provide(address, key.empty() ? nullptr : key.data());
     }
     Words words{};
 

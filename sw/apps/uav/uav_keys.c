@@ -10,6 +10,7 @@
 #define SLOT_WORDS 5U
 #define CHECK 4U     /* a slot's check: detects words that are not whole */
 #define STATE_AT 10U /* the state word, or nothing */
+#define ADDRESS_AT 12U
 #define STATE_OPEN 0x4F50454EU
 #define STATE_NEXT 0x4E455830U /* + slot of the next key, if both have one */
 #define CHECK_SEED 0x4B455931U
@@ -69,10 +70,19 @@ static void writeKey(int slot, const U8* key) {
     Ascon_wipe(words, sizeof words);
 }
 
-void UAV_provide(const U8* key) {
+void UAV_provide(U32 address, const U8* key) {
+    board->store(boardContext, ADDRESS_AT, address);
     board->store(boardContext, STATE_AT, key ? 0 : STATE_OPEN);
     writeKey(1, 0);
     writeKey(0, key);
+}
+
+U32 UAV_address(void) {
+    return board->load(boardContext, ADDRESS_AT);
+}
+
+static void giveKey(Link* link, int slot, const U8* key) {
+    Link_setKey(link, slot, key, UAV_address());
 }
 
 int UAV_countKeys(void) {
@@ -108,7 +118,7 @@ int UAV_giveKeys(Link* link) {
     int slot, count = 0;
     for (slot = 0; slot < UAV_KEY_SLOTS; ++slot)
         if (UAV_readKey(slot, key)) {
-            Link_setKey(link, slot, key, UAV_ADDRESS);
+            giveKey(link, slot, key);
             ++count;
         }
     Ascon_wipe(key, sizeof key);
@@ -129,7 +139,7 @@ int UAV_setNextKey(Link* link, const U8* key) {
     writeKey(slot, 0);
     board->store(boardContext, STATE_AT, STATE_NEXT + (U32)slot);
     writeKey(slot, key);
-    Link_setKey(link, slot, key, UAV_ADDRESS);
+    giveKey(link, slot, key);
     nextSlot = slot;
     return 1;
 }
@@ -138,7 +148,7 @@ int UAV_confirmKey(Link* link) {
     if (nextSlot < 0 || Link_keyInUse(link) != nextSlot)
         return 0;
     writeKey(1 - nextSlot, 0);
-    Link_setKey(link, 1 - nextSlot, 0, UAV_ADDRESS);
+    giveKey(link, 1 - nextSlot, 0);
     nextSlot = -1;
     return 1;
 }

@@ -9,11 +9,8 @@
 
 #include "link.h"
 
-#ifndef UAV_ADDRESS /* of the vehicle: its modem's MY, to which its keys are bound */
-#define UAV_ADDRESS 0x0001U
-#endif
 #define UAV_KEY_SLOTS 2
-#define UAV_KEY_WORDS 12U /* a slot: four words of key, its check; then two states */
+#define UAV_KEY_WORDS 13U /* a slot: four words of key, its check; two states; the address */
 #define UAV_FLIGHT_WORD 11U
 #define UAV_FLYING 0x464C5921U /* in that word; anything else: on the ground */
 
@@ -32,8 +29,12 @@ void UAV_useBoard(const UAV_Board* board, void* context);
 /* Returns 32 bits that nobody can guess. */
 U32 UAV_random(void* unused);
 
-/* Provides the vehicle, in its factory, with this key alone. 0: no key; anyone may call. */
-void UAV_provide(const U8* key);
+/* Provides the vehicle, in its factory, with its address and this key alone. 0: no key; anyone may
+ * call. */
+void UAV_provide(U32 address, const U8* key);
+
+/* Returns the vehicle's address: its modem's MY, to which its keys are bound. */
+U32 UAV_address(void);
 
 /* Whether the vehicle flies; a restart in flight does not change it. */
 int UAV_isFlying(void);

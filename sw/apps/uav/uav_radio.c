@@ -96,10 +96,11 @@ int UAV_nextKey(const U8* key) {
 }
 
 static void setUpModem(void) {
-    XBeeInitTypeDef xbeeConf = {XBEE_BD_115200, UAV_ADDRESS, 0x0000, 0, 0, 0, 0};
+    XBeeInitTypeDef xbeeConf = {XBEE_BD_115200, 0x0001, 0x0000, 0, 0, 0, 0};
     static const Radio_Memory rings = {UAV_TRANSMIT_RING, UAV_RECEIVE_RING};
     if (uav_wire)
         xbeeConf.baud = RADIO_WIRE_115200;
+    xbeeConf.source = (U16)UAV_address();
     xbeeConf.key = uav_modemKey;
     xbeeConf.guardMs = uav_guardMs;
     Link_limitFrame(&uav_link, uav_modemKey ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME);

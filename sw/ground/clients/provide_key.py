@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""provide_key: gives a vehicle its key over the processor's own serial port, in the factory or
+"""provide_key: gives a vehicle its address and its key over the processor's own serial port, in the factory or
 after a key was lost.
 
 Wire the port to PA9 and PA10, start this, and switch the vehicle on: it listens if the line is in a
@@ -98,13 +98,14 @@ def main():
     parser.add_argument("--old", help="file with the vehicle's present key, if it has one, and its "
                         "jumper is not wired")
     parser.add_argument("--address", type=address, default=1,
-                        help="of the vehicle, whose line of the file it is (default: 0x0001)")
+                        help="that the vehicle gets, and its line in the file (default: 0x0001)")
     parser.add_argument("--patience", type=int, default=120,
                         help="seconds without a vehicle until it gives up")
     args = parser.parse_args()
     try:
-        command = ("protect" if args.protect else "open" if args.open else
-                   "key " + read_key(args.key, args.address))
+        command = ("protect" if args.protect else "%s %04x" %
+                   ("open" if args.open else "key " + read_key(args.key, args.address),
+                    args.address))
         if args.old:
             command += " " + read_key(args.old, args.address)
         port = os.open(args.port, os.O_RDWR | os.O_NOCTTY)

@@ -19,13 +19,14 @@ constexpr Key oldKey = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16},
               newKey = {101, 102, 103, 104, 105, 106, 107, 108,
                         109, 110, 111, 112, 113, 114, 115, 116},
               foreignKey = {9};
+constexpr U32 address = 0x1234;
 
 // A vehicle (b) with its slots, and a ground (a) with a key file.
 class Vehicle : public Pair {
 public:
     explicit Vehicle(uint64_t seed) : Pair(seed) {
         UAV_useBoard(&board, this);
-        UAV_provide(oldKey.data());
+        UAV_provide(address, oldKey.data());
         bootVehicle();
     }
     void bootVehicle() {
@@ -39,8 +40,7 @@ public:
     bool meets(const std::vector<Key>& file, uint64_t patienceUs = 20'000'000) {
         a.boot();
         for (size_t slot = 0; slot < file.size(); ++slot)
-            Link_setKey(a.link(), static_cast<int>(slot), file[slot].data(),
-                        LINK_GROUND | UAV_ADDRESS);
+            Link_setKey(a.link(), static_cast<int>(slot), file[slot].data(), LINK_GROUND | address);
         a.start();
         const U32 sessions = Link_statistics(b.link())->sessions;
         auto isOver = [&] { // the vehicle, too, is in the new session
@@ -92,7 +92,7 @@ TEST(Keys, AVehicleHasAKeyOrIsOpenOrNeither) {
     Vehicle vehicle(1);
     EXPECT_EQ(UAV_countKeys(), 1);
     EXPECT_FALSE(UAV_isOpen());
-    UAV_provide(nullptr);
+    UAV_provide(address, nullptr);
     EXPECT_EQ(UAV_countKeys(), 0);
     EXPECT_TRUE(UAV_isOpen());
     vehicle.words = {}; // the battery was empty

@@ -46,14 +46,14 @@ protected:
         chip.serialIn.insert(chip.serialIn.end(), line.begin(), line.end());
         return run();
     }
-    // The words in which the firmware keeps a key (uav_keys.h); none: it is open.
-    bool has(const std::vector<uint8_t>& key) {
+    // The words in which the firmware keeps a key (uav_keys.h), none: it is open; and its address.
+    bool has(const std::vector<uint8_t>& key, uint32_t address = 0x2A) {
         std::array<uint32_t, 4> words = {};
         for (size_t i = 0; i < key.size(); ++i)
             words[i / 4] |= uint32_t(key[i]) << 8 * (i % 4);
         constexpr uint32_t open = 0x4F50454E;
         return std::equal(words.begin(), words.end(), chip.backup().begin()) &&
-               (chip.backup()[10] == open) == key.empty();
+               (chip.backup()[10] == open) == key.empty() && chip.backup()[12] == address;
     }
 
     std::string said;
@@ -65,25 +65,25 @@ protected:
 
 const std::string prompt = "icesoc: key? (read protection is off: whoever opens the vehicle can "
                            "read its key)\r\n";
-const std::string digits = "00112233445566778899aabbccddeeff";
+const std::string digits = "00112233445566778899aabbccddeeff", at = " 002a";
 const std::vector<uint8_t> key = {0x00, 0x11, 0x22, 0x33, 0x44, 0x55, 0x66, 0x77,
                                   0x88, 0x99, 0xAA, 0xBB, 0xCC, 0xDD, 0xEE, 0xFF};
 
 TEST_F(Provision, TakesAKeyOrOpensTheVehicle) {
     EXPECT_EQ(start(), prompt);
-    EXPECT_EQ(answerTo("key " + digits + "\n"), "ok\r\n");
+    EXPECT_EQ(answerTo("key " + digits + at + "\n"), "ok\r\n");
     EXPECT_TRUE(has(key));
     EXPECT_EQ(start(), prompt);
-    EXPECT_EQ(answerTo("open " + digits + "\r\n"), "ok\r\n");
-    EXPECT_TRUE(has({}));
+    EXPECT_EQ(answerTo("open beef " + digits + "\r\n"), "ok\r\n");
+    EXPECT_TRUE(has({}, 0xBEEF));
 }
 
 TEST_F(Provision, WhoHasNeitherTheOldKeyNorTheJumperChangesNothing) {
     const std::string other(32, 'a');
     start();
-    answerTo("key " + digits + "\n");
-    for (const std::string& line :
-         {"key " + other, std::string("open"), "key " + other + " " + other, "open " + other}) {
+    answerTo("key " + digits + at + "\n");
+    for (const std::string& line : {"key " + other + at, "open" + at,
+                                    "key " + other + at + " " + other, "open" + at + " " + other}) {
         start();
         EXPECT_EQ(answerTo(line + "\n"), "no: it has a key; give that, too, or wire the jumper\r\n")
             << line;
@@ -91,11 +91,11 @@ TEST_F(Provision, WhoHasNeitherTheOldKeyNorTheJumperChangesNothing) {
     }
     chip.isJumperWired = true;
     start();
-    EXPECT_EQ(answerTo("key " + other + "\n"), "ok\r\n");
+    EXPECT_EQ(answerTo("key " + other + at + "\n"), "ok\r\n");
     EXPECT_TRUE(has(std::vector<uint8_t>(16, 0xAA)));
     chip.isJumperWired = false;
     start();
-    EXPECT_EQ(answerTo("key " + digits + " " + other + "\n"), "ok\r\n");
+    EXPECT_EQ(answerTo("key " + digits + at + " " + other + "\n"), "ok\r\n");
     EXPECT_TRUE(has(key));
 }
 
@@ -103,18 +103,20 @@ TEST_F(Provision, SaysThatReadProtectionIsOffAndSetsIt) {
     EXPECT_EQ(start(), prompt);
     EXPECT_EQ(answerTo("protect\n"), "ok\r\n");
     EXPECT_EQ(start(), "icesoc: key?\r\n");
-    answerTo("key " + digits + "\n");
+    answerTo("key " + digits + at + "\n");
     EXPECT_EQ(chip.flash().protection(), 0x55);
     EXPECT_TRUE(has(key));
 }
 
 TEST_F(Provision, WhatMakesNoSenseChangesNothing) {
     start();
-    answerTo("key " + digits + "\n");
+    answerTo("key " + digits + at + "\n");
     for (const std::string& line :
-         {"key " + digits.substr(1), "key " + digits + "0", "key x" + digits.substr(1),
-          "key " + digits + " ", "open" + digits, "open  " + digits, "protect " + digits,
-          "Open" + digits, std::string("key"), std::string(""), std::string(200, 'k')}) {
+         {"key " + digits.substr(1) + at, "key " + digits + "0" + at,
+          "key x" + digits.substr(1) + at, "key " + digits, "key " + digits + " ",
+          "key " + digits + " 02a", "key " + digits + at + "0", "key " + digits + at + " ",
+          "open " + digits, std::string("open  002a"), "protect " + digits, "Open" + at,
+          std::string("key"), std::string(""), std::string(200, 'k')}) {
         EXPECT_EQ(start(), prompt);
         EXPECT_EQ(answerTo(line + "\n").substr(0, 3), "no:") << line;
         EXPECT_TRUE(has(key)) << line;
@@ -124,14 +126,14 @@ TEST_F(Provision, WhatMakesNoSenseChangesNothing) {
 
 TEST_F(Provision, NobodyIsListenedToWithoutABreak) {
     chip.powerOn();
-    EXPECT_EQ(answerTo("key " + digits + "\n"), "");
+    EXPECT_EQ(answerTo("key " + digits + at + "\n"), "");
     EXPECT_FALSE(has(key));
 }
 
 // The model stands still while the program is waited for: nothing depends on how fast that is.
 TEST_F(Provision, TheGroundsProgramGivesIt) {
     const std::string file = FOLDER + std::to_string(getpid()) + ".key";
-    std::ofstream(file) << "# demo\n0x0002 " << std::string(32, 'a') << "\n0x0001 " << digits
+    std::ofstream(file) << "# demo\n0x0001 " << std::string(32, 'a') << "\n0x002A " << digits
                         << "\n";
     ::chmod(file.c_str(), 0600);
     const std::string other = std::string("/usr/bin/python3 ") + PROVIDE_KEY + " --key " + file +
@@ -149,7 +151,7 @@ TEST_F(Provision, TheGroundsProgramGivesIt) {
     const pid_t child = fork();
     if (child == 0) {
         execl("/usr/bin/python3", "python3", PROVIDE_KEY, "--port", name.c_str(), "--key",
-              file.c_str(), nullptr);
+              file.c_str(), "--address", "0x002a", nullptr);
         _exit(127);
     }
     usleep(1'000'000); // no prompt: the program holds the line in a break

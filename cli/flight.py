@@ -54,6 +54,8 @@ FIELDS = [
     Option("key", KEY_FILE, "file with the link's key, of vehicle and ground; without: a demo key",
            ""),
     Option("open", SWITCH, "flies in the clear"),
+    Option("vehicles", number(1, 32), "that fly on one channel, all but the first with the ARM "
+           "binary", 1),
     Option("update", FILE, "firmware (ELF) or bitstream (.bit, .bin) that is sent to the vehicle "
            "in place of the mission", ""),
     Option("clk-hz", COUNT, "the simulated chip's clock in Hz", 100000000),
@@ -163,6 +165,10 @@ def complete(values):
     if values.wire and other:
         raise Stop("WIRE=1 flies the mission without modems and air: leave out "
                    + ", ".join(f"--{name}" for name in other), 2)
+    single = [name for name in ("wire", "update", "pins") if getattr(values, name)]
+    if values.vehicles > 1 and (single or values.app == "minimal"):
+        raise Stop(f"VEHICLES={values.vehicles}: vehicles that share the air fly the mission; "
+                   "leave out " + ", ".join(f"--{name}" for name in single or ["app"]), 2)
     if values.camera and values.pins:
         raise Stop("CAMERA=1 and PINS=file both drive the inputs of cores: give one of them", 2)
     if values.camera and "camera" not in values.cores:

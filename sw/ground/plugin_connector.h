@@ -39,8 +39,9 @@ public:
 
 private:
     std::string key() const {
-        return options_.serial.device + " " + std::to_string(options_.channel) + " " +
-               std::to_string(options_.timeoutMs) + " " + options_.connectionId;
+        return options_.serial.device + " " + std::to_string(options_.serial.target) + " " +
+               std::to_string(options_.channel) + " " + std::to_string(options_.timeoutMs) + " " +
+               options_.connectionId;
     }
     InstancePtr instance_;
     EndpointOptions options_;

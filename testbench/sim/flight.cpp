@@ -38,6 +38,13 @@ Frame pictureFor(const Flight::Options& o) {
     return loadFrame(o.image, width, height);
 }
 
+// Returns the picture from another place: its columns moved to the left, round its end.
+Frame movedBy(Frame frame, int columns) {
+    for (auto row = frame.pixels.begin(); row != frame.pixels.end(); row += frame.width)
+        std::rotate(row, row + columns, row + frame.width);
+    return frame;
+}
+
 // The counters' file, in a folder that has the picture.
 std::string prepared(const Flight::Options& o, const Frame& frame) {
     std::filesystem::create_directories(o.out);
@@ -60,9 +67,8 @@ void loadCamera(SocModel& soc, const Frame& frame) {
     std::memcpy(memory + UAV_FRAME, frame.pixels.data(), frame.pixels.size());
 }
 
-// Returns the vehicle's key; with a next key on its way, the old one.
-std::vector<uint8_t> keyOf(const Flight::Options& o) {
-    constexpr int address = 1;
+// Returns a vehicle's key; with a next key on its way, the old one.
+std::vector<uint8_t> keyOf(const Flight::Options& o, int address) {
     if (o.keyFile.empty())
         return {};
     const XBeeAT::LinkKey key = XBeeAT::KeyFile(o.keyFile).of(address).back();
@@ -117,7 +123,7 @@ void reportProcessor(M3Machine& machine) {
 } // namespace
 
 Flight::Flight(const Options& options)
-    : o_(options), frame_(pictureFor(o_)), key_(keyOf(o_)), status_(prepared(o_, frame_)),
+    : o_(options), frame_(pictureFor(o_)), key_(keyOf(o_, 1)), status_(prepared(o_, frame_)),
       air_(o_.seed), recorded_(record(o_, pty_)),
       ground_(groundLine(), air_, modem("ground", o_.guard)), soc_(air_, modem("uav", o_.guard)),
       step_(*status_, pty_, [this] { return isWanted(); }), events_(o_.out + "/events.jsonl"),
@@ -129,7 +135,8 @@ Flight::Flight(const Options& options)
     connectModels();
     if (!o_.pins.empty())
         connectPins(soc_, o_.pins, o_.out + "/pins.log");
-    placePicture();
+    placePicture(soc_, frame_);
+    callFollowers();
     if (o_.everyClock)
         soc_.ungate();
     soc_.evaluateAll(o_.everyClock);
@@ -160,23 +167,45 @@ void Flight::connectModels() {
                          std::max(step_.nextEvent(), now + 1), now + clockStepNs});
     });
     air_.onPacket([this](uint64_t now, const RfPacket& packet, RfChannel::Outcome outcome) {
-        (packet.from == 1 ? status_->bytesDown : status_->bytesUp) += packet.bytes.size();
+        const bool isGrounds = packet.from == 0;
+        (isGrounds ? status_->bytesUp : status_->bytesDown) += packet.bytes.size();
         ++status_->packets;
         const bool lost = outcome != RfChannel::Outcome::Delivered;
         status_->lost += lost;
-        events_.packet(now, packet.bytes.size(), packet.from != 1, lost);
+        events_.packet(now, packet.bytes.size(), isGrounds, lost);
     });
 }
 
-void Flight::placePicture() {
+void Flight::placePicture(SocModel& soc, const Frame& frame) {
     if (o_.sensor)
-        connectSensor(soc_, frame_, [this, next = uint64_t(0)]() mutable {
-            const bool sends = soc_.cycles() >= next;
-            next = sends ? soc_.cycles() + SocModel::clkHz / 4 : next;
+        connectSensor(soc, frame, [&soc, next = uint64_t(0)]() mutable {
+            const bool sends = soc.cycles() >= next;
+            next = sends ? soc.cycles() + SocModel::clkHz / 4 : next;
             return sends;
         });
     else
-        loadCamera(soc_, frame_);
+        loadCamera(soc, frame);
+}
+
+void Flight::callFollowers() {
+    for (unsigned address = 2; address <= o_.vehicles; ++address) {
+        M3Machine::Config config;
+        config.firmware = o_.firmware;
+        config.guardMs = o_.guard;
+        config.address = address;
+        config.key = keyOf(o_, static_cast<int>(address));
+        config.seed = o_.seed + address;
+        followers_.push_back(std::make_unique<Follower>(air_, modem("follower", o_.guard), config));
+        const Frame seen = movedBy(frame_, static_cast<int>(address - 1) * frame_.width /
+                                               static_cast<int>(o_.vehicles));
+        savePng(o_.out + "/before" + std::to_string(address) + ".png", seen);
+        placePicture(followers_.back()->soc, seen);
+    }
+    soc_.onAir([this](uint64_t now) {
+        for (const auto& follower : followers_)
+            follower->advance(now);
+        air_.advance(now);
+    });
 }
 
 void Flight::watchRegisters() {

@@ -9,6 +9,7 @@
 #include "camera.h"
 #include "child.h"
 #include "events.h"
+#include "follower.h"
 #include "ground_step.h"
 #include "m3_machine.h"
 #include "recording.h"
@@ -60,6 +61,7 @@ public:
         std::string image, size = "320x240", out = ".", speed = "real", cpu = "host",
                            firmware = FIRMWARE_ELF;
         uint16_t guard = 1000;
+        unsigned vehicles = 1;
         int gdb = -1;
         std::string pins, trace, flash, fpgaFlash; // files
         RfWeather weather;
@@ -92,7 +94,8 @@ private:
     SerialLine& groundLine(); // the pty, recorded; in a replay the recording
     void connectModels();
     void watchRegisters();
-    void placePicture();
+    void placePicture(SocModel& soc, const Frame& frame);
+    void callFollowers();
     void startProgram();
     void runProcessor();
     void runOnHost();
@@ -114,7 +117,8 @@ private:
     std::unique_ptr<RecordedLine> recorded_; // none in a replay
     XBee ground_;
     SocModel soc_;
-    std::unique_ptr<Cable> cable_; // in place of the modems and the air
+    std::vector<std::unique_ptr<Follower>> followers_; // addresses 2 and up
+    std::unique_ptr<Cable> cable_;                     // in place of the modems and the air
     Child child_;
     GroundStep step_;
     Events events_;

@@ -42,7 +42,7 @@ M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> 
       stm32_(soc.fsmc(), [&soc] { return soc.now(); }, configOf(config.hclkHz, config.seed)) {
     stm32_.load(config.firmware);
     SimulatedBoard board;
-    board.provide(config.key);
+    board.provide(config.key, config.address);
     std::copy(board.words.begin(), board.words.end(), stm32_.backup().begin());
     stm32_.setPinB(1, !config.isWired);
     if (config.flash.empty())
@@ -57,8 +57,10 @@ M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> 
     const bool asks = config.guardMs && config.flash.empty() && stm32_.image()->has("uav_guardMs");
     uint32_t guardAt = asks ? stm32_.image()->symbol("uav_guardMs") : 0;
     stm32_.onTime([this, guardAt, guardMs = config.guardMs] {
+        if (soc_.now() >= until_)
+            cpu().stop();
         if (soc_.cycles() < nextPoll_)
-            return nextPoll_ * SocModel::clkNs;
+            return std::min(nextPoll_ * SocModel::clkNs, until_);
         nextPoll_ = soc_.cycles() + SocModel::clkHz / 1000;
         if (guardAt)
             cpu().writeMemory(guardAt, &guardMs, sizeof guardMs);
@@ -66,7 +68,7 @@ M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> 
         isAsked_ = isAsked_ || (stub_ && stub_->wantsStop());
         if (over_ || isAsked_ || (checkpoints_ && soc_.now() >= nextCopyNs_))
             cpu().stop();
-        return nextPoll_ * SocModel::clkNs;
+        return std::min(nextPoll_ * SocModel::clkNs, until_);
     });
     soc_.onIrq([this](bool high) { stm32_.setPinB(0, high); });
     tellOnAbort(this, [this] { return stackOf(stm32_); });
@@ -87,6 +89,14 @@ void M3Machine::powerOn() {
 void M3Machine::run() {
     powerOn();
     while (!over_)
+        stm32_.run();
+}
+
+void M3Machine::advance(uint64_t ns) {
+    if (!powered_)
+        powerOn();
+    until_ = ns;
+    while (!over_ && soc_.now() < ns)
         stm32_.run();
 }
 

@@ -33,6 +33,7 @@ public:
         // The FPGA's configuration flash; none: it needs no configuration.
         std::vector<uint8_t> fpgaFlash = {};
         bool isWired = false; // the jumper of PB1 (board.h)
+        uint32_t address = 1; // of the vehicle, from the factory, too
     };
     // `poll` is called about once a simulated millisecond; when it returns false, run() ends.
     M3Machine(SocModel& soc, const Config& config, std::function<bool()> poll);
@@ -41,6 +42,8 @@ public:
     // Runs until poll says so; the first call begins with power-on. Exceptions of the models come
     // through.
     void run();
+    // Runs up to this time, or an instruction beyond; the first call begins with power-on.
+    void advance(uint64_t ns);
 
     // Runs as a debugger commands. It begins when one connects, runs freely when it detaches, and
     // obeys the next one. `canGoBack`: nothing outside of this process takes part, so the debugger
@@ -66,7 +69,7 @@ private:
     std::function<bool()> poll_;
     SpiFlash fpgaFlash_;
     Stm32F2 stm32_;
-    uint64_t nextPoll_ = 0;
+    uint64_t nextPoll_ = 0, until_ = never;
     bool powered_ = false, over_ = false;
     std::unique_ptr<Checkpoints> checkpoints_; // while a debugger may go back
     uint64_t nextCopyNs_ = 0;

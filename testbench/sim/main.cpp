@@ -124,6 +124,7 @@ Flight::Options optionsOf(const json& flight) {
     take("duration", o.duration);
     take("cpu", o.cpu);
     take("firmware", o.firmware);
+    take("vehicles", o.vehicles);
     take("flash", o.flash);
     take("fpga_flash", o.fpgaFlash);
     take("gdb", o.gdb);

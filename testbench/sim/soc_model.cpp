@@ -63,9 +63,9 @@ void SocModel::timeModels() {
         cable_->advance(time);
         nextEvent_ = cable_->nextEvent();
     } else {
-        air_.advance(time);
+        advanceAir_(time);
         modem_.advance(time);
-        air_.advance(time);
+        advanceAir_(time);
         nextEvent_ = std::min(air_.nextEvent(), modem_.nextEvent());
     }
     if (others_)

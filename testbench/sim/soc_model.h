@@ -99,6 +99,8 @@ public:
     UartPins& line() { return line_; }
     void plugIn(Cable& cable) { cable_ = &cable; }
 
+    // Replaces what is done at each look at the models: the air advances. Several chips share one.
+    void onAir(std::function<void(uint64_t now)> advance) { advanceAir_ = std::move(advance); }
     // Adds a model with events in simulated time (the ground's modem): it is called when due.
     void onTime(std::function<uint64_t(uint64_t now)> advance) { others_ = std::move(advance); }
 
@@ -127,6 +129,7 @@ private:
     FsmcMaster fsmc_;
     McbModel memory_;
     RfChannel& air_;
+    std::function<void(uint64_t)> advanceAir_ = [this](uint64_t now) { air_.advance(now); };
     UartPins line_;
     XBee modem_;
     Cable* cable_ = nullptr;

@@ -142,7 +142,8 @@ def parse_arguments():
     try:
         with open(args.flight) as file:
             flight = json.load(file)
-        for name in ("threshold", "loss", "guard", "patience", "key", "camera", "out", "wire"):
+        for name in ("threshold", "loss", "guard", "patience", "key", "camera", "out", "wire",
+                     "vehicles"):
             setattr(args, name, flight[name])
         args.endpoint = "%s -d %s -a 0x0001 -s 0x0000" % (
             "serial" if args.wire else "xbee-at", args.device)
@@ -214,6 +215,45 @@ def check_against_reference(args, result):
             text += "; the first that differs, by their scores, is number %d: [x, y, score] %s, not %s" % (number, here, there)
             break
     raise RuntimeError(text)
+
+
+class Follower(threading.Thread):
+    """Calls the vision core of one more vehicle, while others are called."""
+
+    def __init__(self, args, communicator, log, address):
+        super().__init__(daemon=True)
+        self.args = argparse.Namespace(**vars(args))
+        self.args.frame = os.path.join(args.out, "before%d.png" % address)
+        self.log, self.address, self.failure = log, address, None
+        where = "%s -t %d" % (args.endpoint.replace("0x0001", "0x%04x" % address),
+                              1000 * args.patience // 2)
+        self.engine = communicator.stringToProxy("hwengine1:" + where)
+        self.start()
+
+    def run(self):
+        try:
+            self.fly()
+        except (Ice.Exception, RuntimeError, OSError, subprocess.CalledProcessError) as failure:
+            self.failure = failure
+
+    def fly(self):
+        import Autopilot
+        engine = Autopilot.HwProcessingEnginePrx.uncheckedCast(self.engine)
+        name = "uav%d.hwengine1" % self.address
+        for what, call in (("setParameterA(%d)" % self.args.threshold,
+                            lambda: engine.setParameterA(self.args.threshold)),
+                           ("startProcessing()", engine.startProcessing),
+                           ("getResult()", engine.getResult)):
+            result = self.log.call("ground -> UAV", "%s.%s" % (name, what), call)
+        if self.args.reference:
+            check_against_reference(self.args, result)
+        draw(self.args.frame, result, os.path.join(self.args.out, "after%d.png" % self.address))
+        self.log.note("%s: %d corners" % (name, result.found))
+
+    def land(self):
+        self.join()
+        if self.failure:
+            raise self.failure
 
 
 def report(args, log, result, station, air):
@@ -308,6 +348,8 @@ def fly(args, communicator):
     log.say("%d corners; the core took %d cycles" % (result.found, result.cycles))
     log.follow({"features": [[f.x, f.y, f.score] for f in result.best], "found": result.found})
 
+    followers = [Follower(args, communicator, log, address)
+               for address in range(2, args.vehicles + 1)]
     if not station.called.wait(args.patience):
         raise RuntimeError("the UAV did not call Station.vehicleState within %d s" % args.patience)
     if not station.alive:
@@ -327,6 +369,8 @@ def fly(args, communicator):
     for end in filter(None, ends):
         end()
     draw(args.frame, result, os.path.join(args.out, "after.png"))
+    for follower in followers:
+        follower.land()
     report(args, log, result, station, air)
 
 

@@ -335,6 +335,19 @@ class Cases(Script):
                       self.out, "--wire", options=["--wire"])
         self.refused("without modems and air: leave out --loss", "--wire", "--loss", "0.1")
 
+    def test_fleet(self):
+        """Three vehicles at one modem, the first by the firmware's host build; then again."""
+        Path("fleet.key").write_text("".join(f"0x000{at} {str(at) * 32}\n" for at in (1, 2, 3)))
+        os.chmod("fleet.key", 0o600)
+        self.fly("--vehicles", "3", "--key", self.out / "fleet.key")
+        for address in 2, 3:
+            self.has(f"XBeeAT: 0x000{address}: link up, secure",
+                     rf"uav{address}\.hwengine1: \d+ corners")
+            self.assertTrue(Path(f"after{address}.png").exists())
+        self.replay(self.out)
+        self.has("bit by bit the flight that was recorded")
+        self.refused("leave out --wire", "--vehicles", "2", "--wire")
+
     def test_twice(self):
         with open("a.log", "w") as log:
             first = subprocess.Popen(self.words(out=self.out / "a"), stdout=log, stderr=log)

@@ -44,6 +44,14 @@ TEST_F(StockIce, TheUavCallsBackOnTheSameConnectionWhileItIsCalled) {
     other.get();
 }
 
+TEST_F(StockIce, WhatIsMeantForAnotherVehicleDoesNotReachThisOne) {
+    Ice::CommunicatorHolder ic(world_.client());
+    EXPECT_EQ(world_.proxy(ic.communicator())->repeat(1, {}).size(), 0u);
+    auto other = ic->stringToProxy("echo:" + world_.endpoint() + " -a 0x0002");
+    EXPECT_THROW(other->ice_invocationTimeout(1500)->ice_ping(), Ice::TimeoutException);
+    EXPECT_EQ(world_.proxy(ic.communicator())->repeat(2, {}).size(), 0u);
+}
+
 // A closing goes to the UAV and back, and takes its channel that long.
 TEST_F(StockIce, WhoOpensWhileTheLastConnectionsStillCloseWaitsItsTurn) {
     Ice::CommunicatorHolder ic(world_.client());

@@ -56,8 +56,8 @@ def last_green(history, block_of):
 
 def blocks_of(data, tests, history, source):
     """Rows of report.py's data: {block, tests and proofs: [passed, failed, did not run], lines:
-    [covered, of, files below their gate], mutants: [caught, of], luts: [used, budget, designs
-    beyond it], green}; what is not known is left out."""
+    [covered, of, files below their gate], mutants: [caught, of], luts of the largest design, which
+    has the others: [used, budget, designs beyond theirs], green}; what is not known is left out."""
     blocks, rows = Blocks(source), collections.defaultdict(dict)
 
     def add(block, what, *numbers):
@@ -78,11 +78,13 @@ def blocks_of(data, tests, history, source):
     for _, result, _, _, *place in data["mutants"]:
         if place:
             add(blocks.of_file(place[0]), "mutants", result == "caught", 1)
+    luts = collections.defaultdict(list)
     for each in data.get("utilisation", {}).get("entries", []):
         design, _, figure = each["name"].rpartition(" ")
         if figure == "lut" and "limit" in each and design in blocks.modules:
-            add(blocks.of_module(design), "luts", each["value"], each["limit"],
-                each["value"] > each["limit"])
+            luts[blocks.of_module(design)].append((each["value"], each["limit"]))
+    for block, designs in luts.items():
+        rows[block]["luts"] = [*max(designs), sum(value > limit for value, limit in designs)]
     green = last_green(history, block_of)
     return [{"block": block, "green": green.get(block, ""), **row}
             for block, row in sorted(rows.items())]

@@ -120,6 +120,13 @@ top.document.body.append("wider: " + [...document.querySelectorAll(".tabulator-c
                 "e2e")):
             self.assertEqual(known.of_test(name, place), block)
 
+        write("hdl/fifo/fifo_in.v", "\n")
+        entries = [{"name": f"{name} lut", "value": value, "limit": 9}
+                   for name, value in (("fifo", 8), ("fifo_in", 4))]
+        self.assertEqual(blocks.blocks_of({"results": [], "mutants": [], "utilisation": {
+            "entries": entries}}, [], SimpleNamespace(runs=[]), Path(".")),
+            [{"block": "hdl/fifo", "green": "", "luts": [8, 9, 0]}])
+
         def run(commit, *ends):
             return {"commit": commit, "ends": [[*end.split(), 0, "", "1"] for end in ends]}
         runs = [run("one", "a p", "b p"), run("two", "a f"), run("three", "b p"),

@@ -192,15 +192,17 @@ def git(source, *words):
 
 
 def history(source, count=30):
-    """Commits that changed synth/baseline.json, newest first: {"id", "date", "subject",
-    "designs"}."""
+    """Commits that changed synth/baseline.json, newest first: {"id", "date", "subject", "designs":
+    {name: {key: figure}}}."""
     commits = []
     lines = git(source, "log", f"-n{count}", "--format=%h%x09%cs%x09%s", "--",
                 "synth/baseline.json")
     for line in lines.splitlines():
         id, date, subject = line.split("\t", 2)
         try:
-            designs = parse(json.loads(git(source, "show", f"{id}:synth/baseline.json")))["designs"]
+            text = git(source, "show", f"{id}:synth/baseline.json")
+            designs = {name: {key: design[key] for key in KEYS}
+                       for name, design in json.loads(text)["designs"].items()}
         except (ValueError, LookupError, TypeError, AttributeError):
             continue  # of another format, or the file was taken away: nothing to show
         if designs:

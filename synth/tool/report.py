@@ -292,9 +292,7 @@ def html(report, page, libraries):
             "table1": next((paper_table(report.plan, row).rows for row in report.rows
                             if row.design.paper and row.figures), []),
             "designs": [page_design(report, row) for row in report.rows],
-            "history": [commit | {"designs": {
-                name: {key: a[key] for key in baseline.KEYS}
-                for name, a in commit["designs"].items()}} for commit in report.commits]}
+            "history": report.commits}
     style, script = page_parts(libraries)
     return filled(page.read_text(), {"@STYLE@": style, "@SCRIPT@": script,
                                      "@DATA@": script_safe(data)})

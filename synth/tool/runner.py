@@ -192,8 +192,8 @@ def carry_out_one(run, library, options, version):
 
 def time_left(runs, options, now):
     """"11 of 55 designs, about 3:20 left: soc, vision". By its LUTs a design takes a time that is
-    that of an idle machine; those that have ended say how much slower this one is. A netlist in
-    several orders says how many of them it has."""
+    that of an idle machine; those that have ended, or the load, say how much slower this one is. A
+    netlist in several orders says how many of them it has."""
     def expected(run):
         return 1 + options.luts.get(run.design.name, 100) * (1 + run.orders) / 200
 
@@ -206,7 +206,8 @@ def time_left(runs, options, now):
 
     ended = [run for run in runs if run.spent is not None]
     new = [run for run in ended if run.spent]
-    slowness = sum(run.spent for run in new) / sum(map(expected, new)) if new else 1
+    slowness = sum(run.spent for run in new) / sum(map(expected, new)) if new else \
+        max(1, os.getloadavg()[0] / os.cpu_count())
     running = [run for run in runs if run.begun and run.spent is None]
     rests = list(map(rest, running))
     waiting = slowness * sum(expected(run) for run in runs if not run.begun)
@@ -223,7 +224,7 @@ def carry_out(runs, library, options):
     wanted, terminal, over = [r for r in runs if r.wanted], threading.Lock(), threading.Event()
 
     def tell():
-        while not over.wait(10):
+        while not over.wait(10) and any(run.spent is None for run in wanted):
             with terminal:
                 print(time_left(wanted, options, time.monotonic()), file=sys.stderr)
 

@@ -15,6 +15,7 @@ TOKEN = re.compile(r'//[^\n]*|/\*.*?(?:\*/|$)|"([^"]*)"?|(`?[\w$]+|`)|([()#;])',
 PROPERTIES = {"FORMAL", "RULES", "COVER_POINTS"}  # what is under these is no hardware
 
 
+@functools.cache
 def tokens(text):
     """The words and punctuation without properties; an include directive becomes the token `include
     and the name."""

@@ -30,9 +30,10 @@ def rtl_of(o):
     # Files of all cores of the build, wherever they are; include files lie beside the modules.
     list = o.generated / "cores.files"
     files = [pathlib.Path(line) for line in list.read_text().splitlines()] if list.exists() else []
-    files = [file for file in files if file.exists()]
+    files = [sources.relative_to(file, pathlib.Path()) for file in files if file.exists()]
     verilog = [file for file in files if re.fullmatch(r"\.s?v", file.suffix, re.I)]
-    return sources.Library(folders, folders + [file.parent for file in files], verilog)
+    parents = [file.parent for file in files]
+    return sources.Library(folders, dict.fromkeys(folders + parents), verilog)
 
 
 def synthesise(plan, library, options, o):

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """parts_test: the parts of the utilisation report, against published reports of Xilinx' tools and
 figures that can be added up by hand."""
-import pathlib, sys, tempfile, unittest
+import os, pathlib, sys, tempfile, unittest, unittest.mock
 
 sys.dont_write_bytecode = True
 sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[2] / folder)
@@ -167,9 +167,11 @@ class Timing(unittest.TestCase):
                                  luts={"chip": 5800, "large": 2000, "small": 200})
         chip, large, small = run("chip", orders=4), run("large"), run("small")
 
-        def says(text):
-            self.assertEqual(runner.time_left([chip, large, small], options, 30), text)
+        def says(text, load=0):
+            with unittest.mock.patch("os.getloadavg", lambda: (load * os.cpu_count(), 0, 0)):
+                self.assertEqual(runner.time_left([chip, large, small], options, 30), text)
         says("0 of 3 designs, about 1:20 left: ")  # 146, 11 and 2 s by two
+        says("0 of 3 designs, about 3:58 left: ", load=3)
         chip.begun = 10
         says("0 of 3 designs, about 2:06 left: chip")
         large.begun, large.spent = 1, 22  # twice as long

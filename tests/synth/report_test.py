@@ -83,7 +83,10 @@ class Cases(Script):
 
     def test_counts(self):
         """Figures are those that the blocks' sources promise, and Yosys' own `stat` counts them."""
+        write("gen/cores.files", f"{(BLOCKS / 'store.v').resolve()}\n")
         self.run_program()
+        # A checkout elsewhere, of the same sources, has the same netlists.
+        self.lacks(str(Path.cwd()), file=next(Path("out/cache").glob("store.xc6s.*.ys")))
         # The clock, and from where to where it goes in other orders; and the LUTs.
         self.has(r"^wide .* [0-9.]+ \([0-9.]*-[0-9.]*\)$", r"^wide +[0-9]+ \([0-9]*-[0-9]*\) ")
 

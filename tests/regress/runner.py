@@ -107,8 +107,10 @@ def end_hang(process, build):
         below += children(pid)
     stacks = ""
     for pid in below:
-        program = os.readlink(f"/proc/{pid}/exe")
-        if program.startswith(f"{build}/"):
+        with contextlib.suppress(OSError):  # it has ended because of one before it
+            program = os.readlink(f"/proc/{pid}/exe")
+            if not program.startswith(f"{build}/"):
+                continue
             text = run(["timeout", 60, "gdb-multiarch", "-nx", "-batch", "-p", pid, "-ex",
                         "thread apply all backtrace 40"])[1]
             frames = re.findall(r"(?m)^(?:#|Thread ).*", text) or text.splitlines()[-1:]

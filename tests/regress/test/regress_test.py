@@ -120,7 +120,8 @@ class Cases(Project):
         write("hang.c", HANG)
         edit("CMakeLists.txt", "small NONE", "small C")
         self.tests("""add_executable(test_h ${CMAKE_SOURCE_DIR}/hang.c)
-add_test(NAME script.Wraps COMMAND sh -c "$<TARGET_FILE:test_h>; exit 0")
+add_test(NAME script.Wraps COMMAND sh -c
+  "p=$<TARGET_FILE:test_h>; $p & one=$!; $p & wait $one; kill -9 $! 2>/dev/null; exit 0")
 """)
         self.ask("ninja", "-C", "build/main", "test_h")
         self.regress("--name 'Wraps|a.One'")

@@ -25,17 +25,21 @@ module ascon (
                       LOAD_TAG = 4'd10, TAG_WORD = 4'd11, DIGEST = 4'd12, FLUSH = 4'd13, DRAIN = 4'd14, CLEAR = 4'd15;
 
     reg [3:0]   state, after;   // after: the state behind ROUNDS
-    // state is ROUNDS, WORD, LOAD_SOURCE, LOAD_TAG, WAIT_FOR_START: flip-flops, for their fan-out
-    reg         in_rounds, in_word, in_source, in_tag, idle;
+    // state is ROUNDS, WORD, LOAD_SOURCE, LOAD_TAG, TAG_WORD, WAIT_FOR_START: flip-flops, for their
+    // fan-out; busy is !idle
+    reg         in_rounds, in_word, in_source, in_tag, in_tag_word, idle, busy;
+    reg         keyed, from_memory; // the operand is a word of the key; one of memory
+    reg         deciphers;          // that is ciphertext
     reg [1:0]   pass;
     reg         decrypt, hash;
     reg [319:0] s;              // S4 .. S0; while idle 0, except for the nonce in S4, S3
     reg [127:0] key;
     reg [2:0]   key_words, nonce_words; // written, 4 at most
+    reg         key_came;       // a word of the key was written: key_words follows a clock later
     reg [3:0]   round;
     reg [23:0]  left;           // bytes
     reg         few, none;      // in WORD: fewer than eight; none, so the word is padding only
-    reg [1:0]   index;          // of the word in its block, key, tag or digest
+    reg [1:0]   index;          // of the word in its block, tag or digest; 1, 2: of the key
     reg         differs, valid, aborted, wipe;
     reg         clear, acting;  // s becomes 0; that, or a command: an access waits
     reg [4:0]   command;        // the write to CONTROL, in the clock after
@@ -43,7 +47,7 @@ module ascon (
     reg [7:0]   bad;            // of those, misaligned or too long
 
     // ---- registers ----
-    wire        reg_write, reg_read, ready, done, refused;
+    wire        reg_write, reg_read, ready, drained, done, refused;
     wire [3:0]  reg_addr;
     wire [31:0] reg_wdata;
     wire        is_size = reg_addr == ASCON_AD_SIZE || reg_addr == ASCON_SIZE;
@@ -74,7 +78,7 @@ module ascon (
 
     wire control = reg_write && reg_addr == ASCON_CONTROL;
     wire put_job = reg_write && is_job && idle;
-    wire clears  = (go && !aead) || forget || (idle && abort) || done;
+    wire clears  = (go && !aead) || forget || (idle && abort) || drained; // zeros go out in WIPE
     always @(posedge clk_i) begin
         command <= control && !rst_i ? reg_wdata[4:0] : 5'd0;
         clear   <= rst_i || clears;
@@ -95,7 +99,7 @@ module ascon (
 
     wire        read_valid, read_idle, write_ready, write_idle;
     wire [63:0] read_data;
-    wire        both_idle = read_idle && write_idle;
+    reg         both_idle; // a clock ago: no state asks in the clock after a start or a word
     wire [23:0] words = in_tag ? 24'd2 : {3'd0, left[23:3]} + {23'd0, |left[2:0]};
 
     // Bytes of this word: all eight, or the remaining ones, padded by a one.
@@ -105,10 +109,10 @@ module ascon (
     wire [63:0] mask = {{8{be[7]}}, {8{be[6]}}, {8{be[5]}}, {8{be[4]}},
                         {8{be[3]}}, {8{be[2]}}, {8{be[1]}}, {8{be[0]}}};
 
-    wire writes = pass == WIPE || (pass == MESSAGE && !hash);
-    wire reads  = pass != WIPE && !none;
+    wire writes = pass[1] || (pass[0] && !hash); // WIPE, MESSAGE
+    wire reads  = !pass[1] && !none;
     wire step   = in_word && (!reads || read_valid) && (!writes || none || write_ready);
-    wire tag_step    = state == TAG_WORD && (decrypt ? read_valid : write_ready);
+    wire tag_step    = in_tag_word && (decrypt ? read_valid : write_ready);
     wire digest_step = state == DIGEST && write_ready;
 
     npi_stream #(.ADDR_BITS(32), .WORD_BITS(24)) u_stream (
@@ -121,32 +125,32 @@ module ascon (
         .write_start_i((state == LOAD_TARGET || (in_tag && !decrypt)) && both_idle),
         .write_base_i(setting[31:6]),
         .write_valid_i((step && writes && !none) || (tag_step && !decrypt) || digest_step),
-        .write_data_i(pass == WIPE ? 64'd0 : sum), .write_be_i(be),
+        .write_data_i(sum), .write_be_i(be),
         .write_ready_o(write_ready), .write_flush_i(state == FLUSH || state == FINAL_KEY), .write_idle_o(write_idle));
-    assign idle_o         = idle && both_idle;
+    assign idle_o         = idle && both_idle && read_idle && write_idle;
 
     // ---- state of 320 bits: a round, or one of its words plus an operand ----
     // The operand is a word of the message, the key, the nonce or a constant. When decrypting, the
     // sum makes the rate equal to the ciphertext. It is kept as a net, which saves 72 LUTs.
-    wire        key_high = state == FIRST_WORDS ? index[1] : index[0];
-    wire        use_key  = state == ADD_KEY || state == FINAL_KEY || (state == FIRST_WORDS && index != 2'd0);
     wire        use_iv   = state == FIRST_WORDS && index == 2'd0;
-    wire [63:0] operand  = (in_word || (state == TAG_WORD && decrypt) ? read_data : 64'd0) | (idle ? {2{reg_wdata}} : 64'd0) |
-                           (use_key && !key_high ? key[63:0] : 64'd0) | (use_key && key_high ? key[127:64] : 64'd0) |
+    wire [63:0] operand  = (from_memory ? read_data : 64'd0) | (busy ? 64'd0 : {2{reg_wdata}}) |
+                           (keyed && index[0] ? key[63:0] : 64'd0) |
+                           (keyed && index[1] ? key[127:64] : 64'd0) |
                            (use_iv && !hash ? IV_AEAD : 64'd0) | (use_iv && hash ? IV_HASH : 64'd0) |
                            {state == SEPARATE, 63'd0};
-    wire        second   = index[0] && state != DIGEST;
-    wire [63:0] chosen   = state == TAG_WORD ? (second ? s[319:256] : s[255:192]) : second ? s[127:64] : s[63:0];
+    wire        second   = index[0] && !hash;
+    wire [63:0] chosen   = in_tag_word ? (second ? s[319:256] : s[255:192])
+                                       : second ? s[127:64] : s[63:0];
     wire [63:0] sum      = chosen ^ operand; // encrypted or decrypted bytes, a tag (its difference) or a digest
-    (* keep *) wire [63:0] added    = ((decrypt && in_word && pass == MESSAGE ? sum : operand) & mask) ^ pad;
+    (* keep *) wire [63:0] added    = ((deciphers ? sum : operand) & mask) ^ pad;
 
     // The bits of `takes` choose the halves of words that take the sum.
-    wire absorbs = step && pass != WIPE;
-    wire [9:0] takes = {{2{(state == ADD_KEY && index[0]) || state == SEPARATE}} | {put_nonce && nonce_words[1:0] == 2'd3,
+    wire absorbs = step && !pass[1];
+    wire [9:0] takes = {{2{(state == ADD_KEY && index[1]) || state == SEPARATE}} | {put_nonce && nonce_words[1:0] == 2'd3,
                                                                                    put_nonce && nonce_words[1:0] == 2'd2},
-                        {2{(state == ADD_KEY && !index[0]) || (state == FINAL_KEY && index[0])}} |
+                        {2{(state == ADD_KEY && index[0]) || (state == FINAL_KEY && index[1])}} |
                             {put_nonce && nonce_words[1:0] == 2'd1, put_nonce && nonce_words[1:0] == 2'd0},
-                        {2{(state == FIRST_WORDS && index == 2'd2) || (state == FINAL_KEY && !index[0])}},
+                        {2{(state == FIRST_WORDS && index == 2'd2) || (state == FINAL_KEY && index[0])}},
                         {2{(state == FIRST_WORDS && index == 2'd1) || (absorbs && index[0])}},
                         {2{use_iv || (absorbs && !index[0])}}};
 
@@ -166,7 +170,8 @@ module ascon (
     end
 
     // ---- control ----
-    assign done = state == DRAIN && both_idle && !wipe;
+    assign drained = state == DRAIN && both_idle;
+    assign done    = drained && !wipe;
 
     task enter(input [3:0] to);
         begin
@@ -175,10 +180,16 @@ module ascon (
             in_word   <= to == WORD;
             in_source <= to == LOAD_SOURCE;
             in_tag    <= to == LOAD_TAG;
+            in_tag_word <= to == TAG_WORD;
             idle      <= to == WAIT_FOR_START;
+            busy      <= to != WAIT_FOR_START;
+            keyed     <= to == FIRST_WORDS || to == ADD_KEY || to == FINAL_KEY;
+            from_memory <= (to == WORD && !pass[1]) || (to == TAG_WORD && decrypt);
+            deciphers <= to == WORD && pass[0] && decrypt;
         end
     endtask
 
+    integer b;
     always @(posedge clk_i) begin
         few  <= left[23:3] == {20'd0, step};
         none <= left[23:3] == {20'd0, step} && left[2:0] == 3'd0;
@@ -198,8 +209,8 @@ module ascon (
             FIRST_WORDS: begin
                 index <= index + 2'd1;
                 after <= hash ? LOAD_SIZE : ADD_KEY;
-                if (hash || index == 2'd2) begin
-                    index <= 2'd0;
+                if (hash || index[1]) begin
+                    index <= 2'd1;
                     enter(ROUNDS);
                 end
             end
@@ -209,8 +220,8 @@ module ascon (
                     enter(after);
             end
             ADD_KEY: begin
-                index <= {1'b0, !index[0]};
-                if (index[0])
+                index <= {index[0], 1'b0};
+                if (index[1])
                     enter(pass == MESSAGE ? LOAD_TAG : LOAD_SIZE);
             end
             LOAD_SIZE: begin
@@ -228,7 +239,7 @@ module ascon (
             LOAD_SOURCE: enter(pass == ASSOCIATED && left == 24'd0 ? SEPARATE : WORD);
             WORD: if (step) begin
                 left  <= last ? 24'd0 : left - 24'd8;
-                index <= hash || pass == WIPE ? 2'd0 : {1'b0, !last && !index[0]};
+                index <= hash || pass == WIPE ? 2'd0 : {1'b0, last || !index[0]};
                 round <= hash ? TWELVE_ROUNDS : EIGHT_ROUNDS;
                 after <= !last ? WORD : hash ? DIGEST : SEPARATE;
                 if (pass == WIPE)
@@ -239,10 +250,10 @@ module ascon (
                     enter(ROUNDS);
             end
             FINAL_KEY: begin
-                index <= {1'b0, !index[0]};
+                index <= {index[0], index[1]};
                 round <= TWELVE_ROUNDS;
                 after <= ADD_KEY;
-                if (index[0])
+                if (index[1])
                     enter(ROUNDS);
             end
             LOAD_TAG: if (both_idle)
@@ -264,7 +275,7 @@ module ascon (
                 enter(index == 2'd3 ? FLUSH : ROUNDS);
             end
             FLUSH: enter(DRAIN);
-            DRAIN: if (both_idle) begin
+            DRAIN: if (drained) begin
                 wipe  <= 1'b0;
                 pass  <= wipe ? WIPE : ASSOCIATED;
                 after <= WAIT_FOR_START;
@@ -279,7 +290,9 @@ module ascon (
             enter(FLUSH);
         end
 
-        if (put_key && !key_words[2])
+        both_idle <= read_idle && write_idle;
+        key_came  <= put_key && !rst_i;
+        if (key_came && !key_words[2])
             key_words <= key_words + 3'd1;
         if (put_nonce)
             nonce_words <= nonce_words + 3'd1;
@@ -287,8 +300,9 @@ module ascon (
             nonce_words <= 3'd0;
         if (forget)
             key_words <= 3'd0;
-        if (put_job)
-            bad[reg_addr[2:0]] <= is_size ? |reg_wdata[31:24] : |reg_wdata[5:0];
+        for (b = 0; b < 8; b = b + 1) // one for all would be a shift by a negated index
+            if (put_job && reg_addr[2:0] == b[2:0])
+                bad[b] <= is_size ? |reg_wdata[31:24] : |reg_wdata[5:0];
         if (rst_i) begin
             enter(WAIT_FOR_START);
             pass        <= ASSOCIATED;
@@ -319,7 +333,12 @@ module ascon (
     always @* if (past && !rst_i) begin
         assert (in_rounds == (state == ROUNDS) && in_word == (state == WORD));
         assert (in_source == (state == LOAD_SOURCE) && in_tag == (state == LOAD_TAG));
-        assert (idle == (state == WAIT_FOR_START));
+        assert (in_tag_word == (state == TAG_WORD));
+        assert (idle == (state == WAIT_FOR_START) && busy == !idle);
+        assert (keyed == (state == FIRST_WORDS || state == ADD_KEY || state == FINAL_KEY));
+        assert (pass <= WIPE);
+        assert (!in_word || from_memory == (pass != WIPE));
+        assert (!in_word || deciphers == (pass == MESSAGE && decrypt));
         assert (!in_rounds || to_source || after == WORD || after == SEPARATE || after == DIGEST);
         assert (state != CLEAR || after == WAIT_FOR_START ||
                 (after == FIRST_WORDS && pass == MESSAGE));

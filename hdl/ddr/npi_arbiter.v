@@ -71,14 +71,16 @@ module npi_arbiter #(
 
     // The bit of a request is still high in the cycle of its acknowledgement.
     wire             full, granted;
-    wire [PORTS-1:0] grant;
+    wire [PORTS-1:0] choice;
     npi_select #(.PORTS(PORTS), .URGENT(URGENT), .URGENT_RUN(URGENT_RUN)) u_select (
         .clk_i(clk_i), .rst_i(rst_i),
-        .req_i(npi_addr_req_i), .enable_i(!full), .grant_o(grant), .any_o(granted), .ack_o(npi_addr_ack_o)
+        .req_i(npi_addr_req_i), .enable_i(!full), .choice_o(choice), .any_o(granted),
+        .ack_o(npi_addr_ack_o)
     );
 
-    // The chosen request is an OR, so that the last port is no slower than the first. Of two ports one bit tells.
-    wire [PORTS-1:0]    pick = PORTS == 2 ? {grant[PORTS-1:1], !grant[1]} : grant;
+    // The chosen request is an OR, so that the last port is no slower than the first. Of two ports
+    // one bit tells. Without a grant it goes nowhere.
+    wire [PORTS-1:0]    pick = PORTS == 2 ? {choice[PORTS-1:1], !choice[1]} : choice;
     reg [ADDR_WIDTH-1:0] addr;
     reg [2:0]           size;
     reg [PORT_BITS-1:0] port;
@@ -104,7 +106,7 @@ module npi_arbiter #(
     wire [ADDR_WIDTH-4:0] cmd_word;
     npi_queue #(.PORT_BITS(PORT_BITS), .ADDR_BITS(ADDR_WIDTH - 3), .LOG2(QUEUE_LOG2)) u_queue (
         .clk_i(clk_i), .rst_i(rst_i),
-        .push_i(granted), .push_port_i(port), .push_read_i(|(grant & npi_rnw_i)),
+        .push_i(granted), .push_port_i(port), .push_read_i(|(choice & npi_rnw_i)),
         .push_size_i(size), .push_addr_i(start), .full_o(full),
         .move_at_o(move_at), .move_port_o(move_port),
         .move_done_i(wr_valid_o && wr_ready_i),

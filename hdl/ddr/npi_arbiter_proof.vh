@@ -16,7 +16,8 @@
 
     // The state of the arbiter's parts, for two ports.
     localparam KIND = PORT_BITS + 4, ADDR_BITS = ADDR_WIDTH - 3, X = 2 * FIFO_LOG2;
-    (* hierconn *) wire [PORTS-1:0]                 \u_select.f_later ;
+    (* hierconn *) wire [PORTS-1:0]                 \u_select.f_later , \u_select.f_served ;
+    wire [PORTS-1:0] grant = choice & {PORTS{granted}};
     (* hierconn *) wire [(KIND<<QUEUE_LOG2)-1:0]    \u_queue.f_kinds ;
     (* hierconn *) wire [(ADDR_BITS<<QUEUE_LOG2)-1:0] \u_queue.f_addrs ;
     (* hierconn *) wire [4*QUEUE_LOG2-1:0]          \u_queue.f_places ;
@@ -307,7 +308,8 @@
         end
     endgenerate
     always @* if (!rst_i) begin
-        assert ((\u_select.f_later & npi_addr_ack_o) == 0);
+        assert ((\u_select.f_later & \u_select.f_served ) == 0);
+        assert ((npi_addr_ack_o & ~\u_select.f_served ) == 0);
         assert (full == ({1'b0, n_head} == SLOTS - 1));
         assert (\u_queue.f_moving [KIND] == (move != head) && (move == head || \u_queue.f_moving [KIND-1:0] == move_kind));
         assert (move_at == (move != head && !move_kind[3] ? {{((1<<PORT_BITS)-1){1'b0}}, 1'b1} << move_kind[KIND-1:4] : 0));

@@ -21,15 +21,19 @@ module npi_select #(
     input  wire             rst_i,
     input  wire [PORTS-1:0] req_i,    // until the cycle of ack_o
     input  wire             enable_i, // a grant can be taken in this cycle
-    output wire [PORTS-1:0] grant_o,  // one-hot, or 0
+    output wire [PORTS-1:0] choice_o, // who is served with any_o: one-hot, or 0
     output wire             any_o,    // a grant is given
     output reg  [PORTS-1:0] ack_o     // the grant of the cycle before
 );
     // `later` are the ports after the one of their class that was served last.
     reg [PORTS-1:0] later;
     reg [2:0]       run;
+    // ack_o has many ends and paths from many ports are long: they begin at a copy of it. That is
+    // not reset, or the two would be made one.
+    reg [PORTS-1:0] copy;
+    wire [PORTS-1:0] served = PORTS > 2 ? copy : ack_o;
 
-    wire [PORTS-1:0] asking  = req_i & ~ack_o;
+    wire [PORTS-1:0] asking  = req_i & ~served;
     wire [PORTS-1:0] urgent  = asking & URGENT;
     wire [PORTS-1:0] normal  = asking & ~URGENT;
     wire             overdue = run == URGENT_RUN;
@@ -53,11 +57,14 @@ module npi_select #(
     end
     wire [PORTS-1:0] chosen = |first ? first_low : turn_low;
 
-    assign grant_o = enable_i ? chosen : {PORTS{1'b0}};
-    assign any_o   = enable_i && |asking;
+    wire [PORTS-1:0] grant  = enable_i ? chosen : {PORTS{1'b0}};
+
+    assign choice_o = chosen;
+    assign any_o    = enable_i && |asking;
 
     always @(posedge clk_i) begin
-        ack_o <= grant_o;
+        ack_o <= grant;
+        copy  <= grant;
         if (any_o) begin
             later <= (later & ~members) | (above & members);
             if (!(|(chosen & URGENT)))
@@ -74,7 +81,7 @@ module npi_select #(
 
 `ifdef FORMAL
     // One grant a clock, only to a requester, within a bound.
-    wire [PORTS-1:0] f_later = later; // for npi_arbiter_proof
+    wire [PORTS-1:0] f_later = later, f_served = served; // for npi_arbiter_proof
     reg past = 1'b0;
     initial assume (rst_i);
 
@@ -101,21 +108,22 @@ module npi_select #(
         assume (me != 0 && (me & (me - 1'b1)) == 0);
         // A request stays until it is granted.
         if (past && !rst_i && !$past(rst_i))
-            assume ((asking | ~$past(asking) | $past(grant_o)) == {PORTS{1'b1}});
-        if (rst_i || !me_asks || |(grant_o & me))
+            assume ((asking | ~$past(asking) | $past(grant)) == {PORTS{1'b1}});
+        if (rst_i || !me_asks || |(grant & me))
             waited <= 6'd0;
-        else if (|grant_o)
+        else if (|grant)
             waited <= waited + 6'd1;
         if (past && !rst_i) begin
-            assert ((grant_o & (grant_o - 1'b1)) == 0);     // at most one
-            assert ((grant_o & ~asking) == 0);              // only to a requester
-            assert (|grant_o == (enable_i && |asking));     // no cycle is lost
-            assert (any_o == |grant_o);
-            assert ((later & ack_o) == 0);
+            assert ((grant & (grant - 1'b1)) == 0);   // at most one
+            assert ((grant & ~asking) == 0);          // only to a requester
+            assert (|grant == (enable_i && |asking)); // no cycle is lost
+            assert (!any_o || grant == choice_o);
+            assert (any_o == |grant);
+            assert ((later & served) == 0 && (ack_o & ~served) == 0);
             assert (run <= URGENT_RUN);
             assert (waited <= bound);
             cover (waited == bound);
-            cover (&asking && |(grant_o & me));
+            cover (&asking && |(grant & me));
         end
     end
 `endif

@@ -40,7 +40,7 @@ module fsmc_post #(
     reg [WORD-1:0] addrs [0:(1<<LOG2)-1];
     // `count` words from `head` on are closed. The initial value keeps Yosys from keeping head twice (npi_queue).
     reg [LOG2-1:0] head = 0, count;
-    reg            open;
+    reg            open, none; // none: count == 0
     reg [WORD-1:0] open_addr;
     reg [7:0]      open_be;
 
@@ -55,7 +55,7 @@ module fsmc_post #(
     assign room_o       = !(&count[LOG2-1:1] || (open && count == (1 << LOG2) - 3));
     localparam [LOG2-1:0] LOW = 3;
     assign more_room_o  = !(&(count | LOW) && (count[0] || count[1] || open));
-    assign word_valid_o = |count;
+    assign word_valid_o = !none;
     assign idle_o       = !open && !word_valid_o;
     assign word_addr_o  = addrs[head];
     assign push_o       = close;
@@ -76,7 +76,9 @@ module fsmc_post #(
         if (close)
             addrs[tail] <= open_addr;
         if (close != word_taken_i)
-            count <= close ? count + 1'b1 : count - 1'b1;
+            count <= word_taken_i ? count - 1'b1 : count + 1'b1; // close comes late
+        if (close || word_taken_i)
+            none <= !close && count == 1;
         if (close || accept)
             open <= accept;
         open_be <= take | (open && !close ? open_be : 8'd0);
@@ -87,6 +89,7 @@ module fsmc_post #(
         if (rst_i) begin
             head <= 0;
             count <= 0;
+            none <= 1'b1;
             open <= 1'b0;
         end
     end
@@ -162,6 +165,7 @@ module fsmc_post #(
             // Two writes may come before the processor can see that there is no room.
             assert (!wr_lost_o || !$past(room_o));
             assert (!(wr_lost_o && more)); // or three
+            assert (none == (count == 0));
             // A word that has all its bytes does not wait for another, or for a flush.
             assert (push_o || !(open && push_be_o == 8'hFF && count != DEPTH - 1));
             // The oldest word does not change until it is taken.

@@ -74,11 +74,12 @@ module modem_npi (
     always @(posedge clk_i) begin
         wanted <= rd_valid_i && (wanted || state == IDLE);
         case (state)
-            IDLE: if (start) begin
+            IDLE: begin
+                // not with `start`, which comes late
                 addr <= {base_i, wr_valid_i ? wr_addr_i[10:3] : rd_addr_i[10:3]};
-                if (wr_valid_i)
+                if (start && wr_valid_i)
                     state <= WRITE;
-                else if (rd_valid_i)
+                else if (start && rd_valid_i)
                     state <= READ;
             end
             WRITE: if (npi_addr_ack_i)

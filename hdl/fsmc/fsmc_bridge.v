@@ -174,7 +174,8 @@ module fsmc_bridge #(
         .wr_i(taken && taken_ne[0]), .wr_addr_i(taken_addr), .wr_data_i(taken_data), .wr_be_i(taken_be),
         .wr_lost_o(wr_lost), .room_o(room), .more_room_o(more_room),
         .rd_addr_async_i(address), .rd_at_i(at), .rd_used_i(mem_reading && hit_seen),
-        .rd_miss_i(mem_reading && !hit_seen && clear_sync),
+        // not while a register is accessed; its answer may still be under way
+        .rd_miss_i(mem_reading && !hit_seen && !wr_sync && !reg_flush && !bus_valid_o),
         .rd_hit_o(hit), .rd_safe_o(hit_safe), .rd_data_o(mem_data),
         .flush_i(reg_flush), .drop_i(reg_access), .idle_o(mem_idle),
         .npi_addr_o(npi_addr_o), .npi_addr_req_o(npi_addr_req_o), .npi_addr_ack_i(npi_addr_ack_i),

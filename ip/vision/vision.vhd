@@ -68,7 +68,8 @@ architecture rtl of vision is
   signal found, stored : unsigned(15 downto 0);
   -- settings of the frame under way, from START
   signal threshold     : unsigned(7 downto 0);
-  signal width, height, result_max : unsigned(15 downto 0);
+  signal last_column   : unsigned(9 downto 0);
+  signal height, result_max : unsigned(15 downto 0);
   signal cycles        : unsigned(31 downto 0);
   signal aborted, stop : std_logic;
   signal word          : natural range 0 to 15;
@@ -99,13 +100,16 @@ architecture rtl of vision is
   signal window        : std_logic_vector(391 downto 0);
   signal raw_score, score, centre_score : unsigned(11 downto 0);
   signal kept, is_corner, record_ready, record_push, quiet : std_logic;
+  -- kept_y was in the frame a step ago: only a line's first column sees a difference, and there all
+  -- scores are 0
+  signal in_frame      : std_logic;
   signal data          : std_logic_vector(63 downto 0);
   signal frame_x, frame_y : unsigned(15 downto 0);
 
   procedure advance(signal px : inout unsigned(9 downto 0); signal py : inout unsigned(16 downto 0);
-                    w : unsigned(15 downto 0)) is
+                    last_column : unsigned(9 downto 0)) is
   begin
-    if resize(px, 16) + 1 = w then
+    if px = last_column then
       px <= to_unsigned(0, 10);
       py <= py + 1;
     else
@@ -249,7 +253,7 @@ begin
       step_pixel <= pixel and (7 downto 0 => real_pixel);
       if take = '1' then
         x <= x + 1;
-        if resize(x, 16) + 1 = width then
+        if x = last_column then
           x          <= to_unsigned(0, 10);
           lines_left <= lines_left - 1;
           if lines_left = 1 then
@@ -276,8 +280,7 @@ begin
   frame_x     <= resize(kept_x, 16) - 3;
   frame_y     <= resize(kept_y, 16) - 3;
   -- The block RAMs hold lines of an older frame until the first lines have gone through.
-  is_corner   <= decide and kept when fill = SCORE_DELAY + KEPT_DELAY and kept_y >= 6 and
-                                      kept_y < resize(height, 17) else '0';
+  is_corner   <= decide and kept and in_frame when fill = SCORE_DELAY + KEPT_DELAY else '0';
   record_push <= is_corner when stored < result_max else '0';
   data        <= x"00000" & std_logic_vector(centre_score) &
                  std_logic_vector(frame_y) & std_logic_vector(frame_x);
@@ -302,7 +305,7 @@ begin
             score_y <= to_unsigned(0, 17);
           else
             threshold  <= set_threshold;
-            width      <= set_width;
+            last_column <= resize(set_width - 1, 10);
             height     <= set_height;
             result_max <= set_result_max;
           end if;
@@ -326,8 +329,12 @@ begin
       end case;
 
       if decide = '1' then
+        in_frame <= '0';
+        if kept_y >= 6 and kept_y < resize(height, 17) then
+          in_frame <= '1';
+        end if;
         if fill >= SCORE_DELAY then
-          advance(score_x, score_y, width);
+          advance(score_x, score_y, last_column);
         end if;
         if fill /= SCORE_DELAY + KEPT_DELAY then
           fill <= fill + 1;
@@ -357,10 +364,10 @@ begin
     if rising_edge(clk_i) then
       if go = '1' then
         -- Column and line of the first centre: one before (0, -1), counted from line 0 for unsigned.
-        kept_x <= resize(width - 1, 10);
+        kept_x <= last_column;
         kept_y <= to_unsigned(131070, 17); -- -2
       elsif decide = '1' and fill = SCORE_DELAY + KEPT_DELAY then
-        advance(kept_x, kept_y, width);
+        advance(kept_x, kept_y, last_column);
       end if;
     end if;
   end process;

@@ -48,7 +48,7 @@ module camera (
     wire       offered;
 
     // ---- sensor ----
-    wire        push, full, waits, empty, pop;
+    wire        push, full, waits, pop;
     wire [10:0] token_in, token_out;
     camera_sensor u_sensor (.pclk_i(pclk_i), .vsync_i(vsync_i), .href_i(href_i), .data_i(data_i),
                             .push_o(push), .token_o(token_in), .full_i(full));
@@ -59,7 +59,6 @@ module camera (
     reg [10:0] token;
     reg        has_token;
     wire       fetch = !waits && (!has_token || pop);
-    assign empty = !has_token;
     always @(posedge clk_i) begin
         if (fetch)
             token <= token_out;
@@ -108,7 +107,7 @@ module camera (
     wire [31:0] write_base = base + (writing == 2'd2 ? stride : writing == 2'd3 ? {stride[30:0], 1'b0} : 32'd0);
     wire        no_data, read_idle;
     wire [63:0] no_words;
-    wire        eighth = capturing && !empty && !lost && is_pixel && room && x == 3'd7;
+    wire        eighth = capturing && has_token && !lost && is_pixel && room && x == 3'd7;
     npi_stream #(.ADDR_BITS(32), .WORD_BITS(4)) u_stream (
         `include "memory_connect.vh"
         .clk_i(clk_i), .rst_i(rst_i),
@@ -120,11 +119,11 @@ module camera (
 
     // ---- frames ----
     // Tokens wait while a buffer is chosen and while a frame is finished; a token that waits too
-    // long is lost and reported.
-    wire frozen = !listening || (eighth && !write_ready);
-    assign pop  = !empty && !frozen;
+    // long is lost and reported. All kinds wait where an eighth pixel would: the kind comes late.
+    wire ready  = x != 3'd7 || write_ready;
+    assign pop  = has_token && listening && ready;
     wire begins = pop && starts;
-    wire token_in_frame = pop && capturing;
+    wire token_in_frame = has_token && capturing && ready;
     wire bad    = lost || (is_pixel && !room) || (ends_line && room) || starts;
     wire last   = ends_line && y + 12'd1 == height;
     wire kept   = state == WAIT_FOR_MEMORY && write_idle && whole; // all of it is in memory

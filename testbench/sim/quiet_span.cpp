@@ -17,10 +17,10 @@ namespace {
 
 constexpr uint32_t phaseMask = (1u << 18) - 1, phaseCarry = 1u << 18; // modem_baud.v
 constexpr uint32_t timerLast = (1u << 17) - 1; // modem_timer.v: its tick comes then
-constexpr unsigned everyCarryTicks = 5; // from this code of the baud rate on
-constexpr uint8_t lastTick = 7;         // modem_uart_rx.v, modem_uart_tx.v
-constexpr uint64_t worth = 4;           // fewer clocks than these are evaluated
-constexpr uint64_t margin = 2;          // clocks before an event that are evaluated
+constexpr unsigned everyCarryTicks = 5;        // from this code of the baud rate on
+constexpr uint8_t lastTick = 7;                // modem_uart_rx.v, modem_uart_tx.v
+constexpr uint64_t worth = 4;                  // fewer clocks than these are evaluated
+constexpr uint64_t margin = 2;                 // clocks before an event that are evaluated
 constexpr uint64_t settling = 8; // clocks after a carry in which its tick may still have effects
 constexpr uint64_t least = 8;    // clocks that a platform rests alone at first
 constexpr unsigned longest = 32; // clocks between two tests of a busy chip

@@ -20,13 +20,13 @@ VerilatedContext* oneThread() {
 
 SocModel::SocModel(RfChannel& air, XBee::Options modemOptions, unsigned hclkPerUnit,
                    unsigned clkPerUnit)
-    : context_(oneThread()), observer_(*context_), top_(new VSoc(context_.get())),
-      span_(*top_), fsmc_(pins_,
-                          {[this] { tick(); }, [this] { settle(); },
-                           [this](uint64_t clocks, uint64_t ns) {
-                               return passQuiet(cycles_ + std::min(clocks, ns / clkNs));
-                           }},
-                          hclkPerUnit, clkPerUnit),
+    : context_(oneThread()), observer_(*context_), top_(new VSoc(context_.get())), span_(*top_),
+      fsmc_(pins_,
+            {[this] { tick(); }, [this] { settle(); },
+             [this](uint64_t clocks, uint64_t ns) {
+                 return passQuiet(cycles_ + std::min(clocks, ns / clkNs));
+             }},
+            hclkPerUnit, clkPerUnit),
       air_(air), modem_(line_, air, std::move(modemOptions)) {
     top_->modem_rxd_i = 1;
     tellOnAbort(this, [this] {

@@ -91,7 +91,7 @@ void QuietSpan::takeImage() {
     std::memcpy(image_.data(), top_.rootp, image_.size());
     before_ = counters();
     hasImage_ = true;
-    isFixed_ = isAllFixed_ = false;
+    isFixed_ = isAllFixed_ = isCalm_ = false;
     since_ = 0;
     rest_ = least;
     ticks_ = 0;
@@ -189,6 +189,8 @@ bool QuietSpan::learn(const Counters& now) {
 void QuietSpan::sample() {
     ticks_ += top_.rootp->TICK;
     ++since_;
+    stirred_ = stirs_;
+    stirs_ = top_.stirs_o;
 }
 
 QuietSpan::Clocks QuietSpan::look(Clocks most) {
@@ -214,9 +216,11 @@ QuietSpan::Clocks QuietSpan::look(Clocks most) {
         return {};
     }
     patience_ = 0;
+    isCalm_ |= !stirred_ && now.cycles - before_.cycles == 1;
     before_ = now;
     ticks_ = 0;
-    Clocks clocks = {untilEvent(now, most.chip, true), untilEvent(now, most.platform, false)};
+    Clocks clocks = {untilEvent(now, most.chip, true),
+                     isCalm_ ? untilEvent(now, most.platform, false) : 0};
     if (clocks.chip < worth)
         return {0, clocks.platform};
     const bool isLike = std::memcmp(image_.data(), top_.rootp, image_.size()) == 0;

@@ -14,7 +14,8 @@
 //   ticks of the UART's halves  one a tick of the baud rate, or held; the tick at 7 is an event
 //
 // Where cores or the memory move while the platform (bridge, decoder, modem, system slot) does not,
-// the platform alone is quiet, up to the next tick of the baud rate.
+// the platform alone is quiet, up to the next tick of the baud rate, while stirs_o of hdl/soc.v is
+// low (proven: formal.platform_rests).
 //
 // A tick of the baud rate is skipped, too, once the chip has been seen to come back to the very
 // same state after one, but for these counters (proven: formal.modem_uart_rx,
@@ -94,6 +95,9 @@ private:
     Counters before_{};       // the counters when it was last compared
     bool isFixed_ = false;    // nothing but counters moves in the image's platform
     bool isAllFixed_ = false; // nor elsewhere
+    bool isCalm_ = false;     // nor in the platform in a clock in which it did not stir
+    bool stirs_ = true;       // before the next clock
+    bool stirred_ = true;     // before the last one
     unsigned since_ = 0;      // evaluated clocks since the whole image was last compared
     uint64_t rest_ = 0;       // clocks of the platform alone before the next look
     std::vector<std::pair<size_t, size_t>> platform_; // offsets in an image: from, to

@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: MIT
-// A flip-flop whose value stays when its clock's gate closes: techmap for idle_proof.
+// A flip-flop whose value stays when its clock's gate closes: techmap for idle_proof. In rest_proof
+// it has stayed before, too (REST), or its clock stands still (HELD).
 module \$dff (input CLK, input [WIDTH-1:0] D, output [WIDTH-1:0] Q);
     parameter WIDTH = 1;
     parameter CLK_POLARITY = 1'b1;
+`ifdef HELD
+    \$anyconst #(.WIDTH(WIDTH)) _TECHMAP_REPLACE_ (.Y(Q));
+`else
+`ifdef REST
+    \$assume u_before (.A(D == Q), .EN(!CLK));
+`endif
     \$assert _TECHMAP_REPLACE_ (.A(D == Q), .EN(CLK));
     genvar b;
     generate
@@ -10,6 +17,7 @@ module \$dff (input CLK, input [WIDTH-1:0] D, output [WIDTH-1:0] Q);
             \$_DFF_P_ u_bit (.C(CLK), .D(D[b]), .Q(Q[b]));
         end
     endgenerate
+`endif
 endmodule
 
 // A memory that nothing writes then; what it gives is free.

@@ -47,6 +47,20 @@ techmap -map $here/idle_registers.v c:*u_core* w:*.f_* %ci1 %d"
     ! grep -q 'memory_ports\|npi_addr_o' ${own% *} || read="-DMEMORY $read"
     [ ! -e "$rules" ] || read="-DIDLE_RULES=\"$rules\" $read"
 }
+# A platform that rests begins in any state. What cores, memory and pins see of it does not depend
+# on its counters. Its flip-flops on a pin's edge are held.
+[ "$module" != rest_proof ] || {
+    counters='w:*.cycles w:*.phase w:*.clocks %u %u'
+    onward="$counters %co*:-\$dff"
+    seen='w:u_soc.slot_* w:u_soc.npi_* w:u_soc.fsmc_* w:u_soc.modem_* w:u_soc.stirs_o %u %u %u %u'
+    flat="memory_map
+opt_clean
+setattr -unset init w:* w:later w:last %u %d
+select -assert-any $onward w:u_soc.slot_rdata %i
+select -assert-none $onward $seen w:u_soc.slot_rdata %d %i
+techmap -D HELD -map $here/idle_registers.v w:*u_write.src_data_o w:*u_cdc_pulse.turned %u %ci1
+techmap -D REST -map $here/idle_registers.v c:*u_soc* $counters %ci1 %d c:*u_calib_done* %d"
+}
 # -nosdff -nodffe: AIGER has plain flip-flops only. The module's outputs are dropped: abc would take
 # them for properties. What became undefined (a flip-flop without a clock) is free: newer AIGER
 # backends refuse it.
@@ -55,7 +69,7 @@ dfflegalize -cell $_DFF_P_ 01; delete -output w:*'
 aiger='opt_clean; abc -g AND -fast; opt_clean; write_aiger -zinit -map'
 # shellcheck disable=SC2086
 cat >prove.ys <<END
-verilog_defaults -add -I${GEN_DIR:-.} -I$source/bus -I$source/hdl/ddr
+verilog_defaults -add -I${GEN_DIR:-.} -I$source/bus -I$source/hdl/ddr -I$source/hdl/system
 read_verilog -formal -sv -DRULES $read $(echo $files)
 $parameters
 hierarchy -top $module

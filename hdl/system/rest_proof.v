@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+//
+// rest_proof: the chip's platform, whose clock rests in the simulator while stirs_o is low
+// (testbench/sim/quiet_span.h); only for the prover.
+//
+// In the first clock the platform, in any state, does not move, but for its counters. Then it does
+// not in any later clock, and the counters keep their steps, as long as stirs_o is low, its pins
+// stand still, and no counter has its event: whatever cores and memory do. What it shows them does
+// not depend on the counters (prove.sh). The chip's clock is `later` here: rest_registers.v makes
+// an assumption and an assertion of each flip-flop with this clock.
+
+`default_nettype none
+
+`ifdef PLATFORM_RESTS
+module rest_proof (
+    input wire        clk_i,
+    input wire [31:0] core_pins_i,
+    output reg        later // than the first clock
+);
+    initial later = 1'b0;
+    always @(posedge clk_i)
+        later <= 1'b1;
+
+    (* anyconst *) reg [24:0] a;
+    (* anyconst *) reg [15:0] d;
+    (* anyconst *) reg [1:0]  ne_n, nbl_n;
+    (* anyconst *) reg        noe_n, nwe_n, nadv_n, rxd, cts_n;
+    wire stirs, reads, txd;
+    soc u_soc (
+        .clk_i(later), .rst_i(1'b0), .rests_i(1'b0), .stirs_o(stirs), .core_pins_i(core_pins_i),
+        .fsmc_a_i(a), .fsmc_d_i(d), .fsmc_ne_n_i(ne_n), .fsmc_noe_n_i(noe_n),
+        .fsmc_nwe_n_i(nwe_n), .fsmc_nbl_n_i(nbl_n), .fsmc_nadv_n_i(nadv_n), .fsmc_d_oe_o(reads),
+        .modem_rxd_i(rxd), .modem_cts_n_i(cts_n), .modem_txd_o(txd)
+    );
+    always @* assume (!stirs);
+
+    // The counters, and those whose event is a tick.
+    (* hierconn *) wire [63:0] \u_soc.u_system_slot.cycles ;
+    (* hierconn *) wire [18:0] \u_soc.u_modem.u_baud.phase ;
+    (* hierconn *) wire [16:0] \u_soc.u_modem.u_timer.clocks ;
+    wire [18:0] phase  = \u_soc.u_modem.u_baud.phase ;
+    wire [16:0] clocks = \u_soc.u_modem.u_timer.clocks ;
+    localparam [16:0] FIRST = 17'd1 - 17'd106250; // modem_timer.v: of the board's 100 MHz
+    always @* assume (!phase[18] && clocks >= FIRST && !(&clocks));
+
+    wire [98:0] now = {\u_soc.u_system_slot.cycles , phase[17:0], clocks};
+    reg  [98:0] before, older;
+    reg         last = 1'b0; // later than the second clock
+    always @(posedge clk_i) begin
+        {older, before} <= {before, now};
+        last            <= later;
+    end
+    always @* assume (!later || last || now[16:0] - before[16:0] <= 17'd1); // it counts, or is held
+    always @* if (last) begin
+        assert (now[98:35] - before[98:35] == before[98:35] - older[98:35]);
+        assert (now[34:17] - before[34:17] == before[34:17] - older[34:17]);
+        assert (now[16:0] - before[16:0] == before[16:0] - older[16:0]);
+        cover (!txd && rxd && now[16:0] != before[16:0]);
+        cover (reads && !txd);
+    end
+endmodule
+`endif

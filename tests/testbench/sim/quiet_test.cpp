@@ -6,6 +6,7 @@
 
 #include "VSoc___024root.h"
 #include "core_pins.h"
+#include "driver_port.h"
 #include "ground.h"
 #include "map_regs.h"
 #include "quiet_span.h"
@@ -223,6 +224,82 @@ bool isMemoryReady(uint64_t clocks) {
 TEST(Quiet, TheMemoryIsReadyInItsClock) {
     EXPECT_FALSE(isMemoryReady(McbModel::startClocks - 1));
     EXPECT_TRUE(isMemoryReady(McbModel::startClocks));
+}
+
+// Two chips that do the same, one of which evaluates each clock.
+struct Pair {
+    Pair() {
+        slow.evaluateAll(true);
+        for (SocModel* soc : {&quick, &slow}) {
+            soc->reset(true);
+            EXPECT_EQ(FSMC_init(&driverPort, &soc->fsmc()), FSMC_OK);
+        }
+    }
+    // Has a word written to the memory; another closes it.
+    static void write(SocModel& soc) {
+        for (uint32_t word = 0; word < 2; ++word)
+            soc.fsmc().write16(fsmc::windowsAt + 8 * word, 1);
+    }
+    static void passUntil(SocModel& soc, uint64_t clock) {
+        while (soc.cycles() < clock)
+            soc.tick();
+    }
+
+    RfChannel air{testSeed()};
+    SocModel quick{air, Ground::uavModem()}, slow{air, Ground::uavModem()};
+};
+
+// A platform that waits for the memory to be ready is still, and moves as soon as it is.
+TEST(Quiet, WhatWaitsForTheMemoryGoesWhenItIsReady) {
+    Pair pair;
+    for (SocModel* soc : {&pair.quick, &pair.slow}) {
+        Pair::write(*soc);
+        Pair::passUntil(*soc, McbModel::startClocks);
+    }
+    for (unsigned clock = 0; clock < 200; ++clock) {
+        pair.quick.tick();
+        pair.slow.tick();
+        EXPECT_THAT(SocState::differences(SocState::of(*pair.quick.chip().rootp),
+                                          SocState::of(*pair.slow.chip().rootp)),
+                    testing::IsEmpty())
+            << "in clock " << pair.quick.cycles();
+    }
+    EXPECT_EQ(pair.quick.memory().wordsWritten, 1u);
+}
+
+TEST(Quiet, AMemoryThatHungGoesOnInItsClock) {
+    Pair pair;
+    auto written = [](SocModel& soc) {
+        Pair::passUntil(soc, 2 * McbModel::startClocks);
+        soc.memory().hang(true);
+        Pair::write(soc);
+        Pair::passUntil(soc, 3 * McbModel::startClocks);
+        soc.memory().hang(false);
+        while (!soc.memory().wordsWritten && soc.cycles() < 4 * McbModel::startClocks)
+            soc.tick();
+        return soc.cycles();
+    };
+    EXPECT_EQ(written(pair.quick), written(pair.slow));
+    EXPECT_EQ(pair.quick.memory().wordsWritten, 1u);
+}
+
+// Modem and air act in the clock in which they are due, whenever one looks.
+TEST(Quiet, NothingOutsideOfTheChipIsLate) {
+    GroundAndChip world;
+    auto& [air, ground, soc] = world;
+    soc.reset(true);
+    Random random(testSeed());
+    soc.onClock([&air = air, &soc = soc, &random] {
+        EXPECT_GT(air.nextEvent(), soc.now());
+        EXPECT_GT(soc.modem().nextEvent(), soc.now());
+        EXPECT_EQ(soc.chip().modem_rxd_i, soc.line().rxd());
+        EXPECT_EQ(soc.chip().modem_cts_n_i, soc.line().ctsN());
+        return soc.cycles() + 1 + random.below(5000);
+    });
+    Script calls = ground.pinging(3);
+    UavMachine machine(soc, [&] { return !calls() && world.within(5); });
+    machine.run();
+    EXPECT_EQ(ground.replies.size(), 3u);
 }
 
 } // namespace

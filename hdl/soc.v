@@ -26,6 +26,7 @@ module soc #(
 
     localparam SLOTS = MAP_SLOT_COUNT;
     localparam PORTS = MAP_NPI_PORT_COUNT;
+    localparam MODEM_API = 1; // set-up chooses the modem's mode
     // The bridge and the modem take read words in the cycle they come, so they need no FIFO.
     localparam [31:0] NO_READ_FIFO = 1 << MAP_NPI_PORT_FSMC | 1 << MAP_NPI_PORT_MODEM;
     localparam [PORTS-1:0] READ_FIFO = ~NO_READ_FIFO[PORTS-1:0];

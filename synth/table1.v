@@ -23,7 +23,7 @@ module table1 #(
     output wire        late_o,
     output reg         irq_o
 );
-    localparam SLOTS = 2, PORTS = 2, READ_FIFO = 2'b00;
+    localparam SLOTS = 2, PORTS = 2, READ_FIFO = 2'b00, MODEM_API = 0;
     localparam MAP_SLOT_MODEM = 1, MAP_NPI_PORT_FSMC = 0, MAP_NPI_PORT_MODEM = 1;
 
     wire rst = rst_i;

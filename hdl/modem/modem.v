@@ -157,7 +157,7 @@ module modem #(
         .valid_o(rx_valid), .data_o(rx_data), .framing_error_o(rx_error), .idle_o(rx_idle)
     );
 
-    modem_at u_at (
+    modem_at #(.API(API)) u_at (
         .clk_i(clk_i), .rst_i(rings_reset), .clear_o(at_clear), .time_i(waited),
         .start_i(configure && reset_n), .wire_i(by_wire), .busy_o(at_busy), .done_o(at_done),
         .failed_o(at_failed), .retried_o(at_retried), .step_o(at_step), .bd_o(bd_now),
@@ -246,7 +246,8 @@ module modem #(
     integer w;
     initial
         for (w = 0; w < 32; w = w + 1)
-            words[w] = w == 0 ? MODEM_ID_VALUE : 32'd0;
+            words[w] = w == 0 ? MODEM_ID_VALUE :
+                       w == {28'd0, MODEM_STATUS} && API != 0 ? 32'd1 << MODEM_STATUS_API_LSB : 32'd0;
     always @* begin
         reg_rdata = word; // 0 where nothing is stored
         if (reg_addr == MODEM_STATUS)

@@ -11,7 +11,9 @@
 `default_nettype none
 `include "shift_order.vh"
 
-module modem_at (
+module modem_at #(
+    parameter API = 1 // 0: the modem's mode is always the transparent one
+) (
     input  wire        clk_i,
     input  wire        rst_i,
     // time waited, in units of a millisecond and a sixteenth
@@ -66,7 +68,7 @@ module modem_at (
     wire gives_up = missed && walks && (!enters || bd_o[3]);
     wire goes   = next || passed || missed || ended;
 
-    modem_at_rows u_rows (
+    modem_at_rows #(.API(API)) u_rows (
         .clk_i(clk_i), .clear_i(goes || !busy_o || rst_i), .step_i(step_o), .place_i(place),
         .send_o(send), .digit_o(digit), .rate_o(rate), .guard_o(guard), .hear_o(hear),
         .limit_o(limit), .refuse_o(refuse), .skip_o(skip), .settle_o(settle), .data_o(data)

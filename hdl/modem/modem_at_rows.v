@@ -8,7 +8,9 @@
 `default_nettype none
 `include "shift_order.vh"
 
-module modem_at_rows (
+module modem_at_rows #(
+    parameter API = 1
+) (
     input  wire       clk_i,
     input  wire       clear_i, // the next row is 0
     input  wire [3:0] step_i,
@@ -46,7 +48,7 @@ module modem_at_rows (
             10:      letters = "RO3";
             11:      letters = "D61"; // the modem heeds RTS
             12:      letters = "D71"; // the modem drives CTS
-            13:      letters = {8'd0, "AP"};
+            13:      letters = API != 0 ? {8'd0, "AP"} : "AP0";
             RATE_OF: letters = {8'd0, "BD"};
             default: letters = {8'd0, "CN"};
         endcase
@@ -68,7 +70,8 @@ module modem_at_rows (
         case (step)
             2, 4, 6: digit_count = 4;
             5:       digit_count = 2;
-            7, 13:   digit_count = 1;
+            7:       digit_count = 1;
+            13:      digit_count = API != 0 ? 1 : 0;
             KEY:     digit_count = 32;
             RATE_OF: digit_count = 5;
             default: digit_count = 0;

@@ -3,9 +3,10 @@
 // platform: the part that every chip has: FSMC bridge, register bus, modem, memory, and the wires
 // between them.
 //
-// An item of a module that has clk_i, platform_ports.vh, the reset `rst`, CLK_HZ, SLOTS, PORTS, READ_FIFO (a bit
-// for each memory port), and the numbers MAP_* of the modem's slot and of the bridge's and modem's ports. It leaves
-// to that module: `page` (in), the errors of accesses, the slots' and ports' wires of wiring.vh.
+// An item of a module that has clk_i, platform_ports.vh, the reset `rst`, CLK_HZ, SLOTS, PORTS,
+// MODEM_API (modem's API), READ_FIFO (a bit for each memory port), and the numbers MAP_* of the
+// modem's slot and of the bridge's and modem's ports. It leaves to that module: `page` (in), the
+// errors of accesses, the slots' and ports' wires of wiring.vh.
 
 `include "wiring.vh"
 
@@ -60,7 +61,7 @@ bus_decoder #(.SLOTS(SLOTS)) u_bus_decoder (
     .slot_error_i(slot_error)
 );
 
-modem #(.CLK_HZ(CLK_HZ)) u_modem (
+modem #(.CLK_HZ(CLK_HZ), .API(MODEM_API)) u_modem (
     .clk_i(`PLATFORM_CLOCK), .rst_i(rst),
     `SLOT(MAP_SLOT_MODEM),
     .irq_o(slot_irq[MAP_SLOT_MODEM]),

@@ -114,6 +114,7 @@ TEST_F(ModemApi, OfEachPacketTheModemSaysWhetherItWasDelivered) {
 
 TEST_F(ModemApi, SetUpMayLeaveTheModemTransparent) {
     ready(0);
+    EXPECT_TRUE(bus_.read(MODEM_STATUS) & MODEM_STATUS_API_MASK);
     EXPECT_EQ(near_->parameter("AP"), 0u);
     const auto out = frame(37, 0x7E), in = frame(100, 0x7E);
     put(0, out);

@@ -34,6 +34,18 @@ TEST_F(ModemTest, SetUpFindsAModemAtAnUnexpectedRate) {
     EXPECT_EQ(near_->parameter("BD"), 7u);
 }
 
+TEST_F(ModemTest, AControllerWithoutApiModeSaysSoAndLeavesTheModemTransparent) {
+    power(quick({{"AP", 0}}));
+    bus_.write(MODEM_NET, 0x3332u << MODEM_NET_PAN_LSB | 1u << MODEM_NET_API_LSB | 0x0C);
+    configure();
+    EXPECT_EQ(takeEvents(), MODEM_EVENT_CONFIGURED_MASK);
+    EXPECT_EQ(near_->parameter("AP"), 0u);
+    EXPECT_FALSE(bus_.read(MODEM_STATUS) & MODEM_STATUS_API_MASK);
+    put(0, frame(37, 0x7E));
+    runMs(30);
+    EXPECT_EQ(plain_.received, frame(37, 0x7E));
+}
+
 TEST_F(ModemTest, AWireNeedsNoSetUp) {
     power(quick({{"BD", 6}}));
     near_->power(false, now());

@@ -154,20 +154,19 @@ void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs) {
 
 void Link_expectAnswers(Link* link, U32 packets) {
     link->output.mostWaiting = (U8)packets;
-    link->output.answered = link->output.handed;
+    link->output.waiting = 0;
 }
 
 void Link_answer(Link* link, int isDelivered, U32 nowUs) {
     Link_Output* output = &link->output;
     output->now = nowUs;
-    if (!LINK_UNANSWERED(output))
+    if (!output->waiting)
         return;
-    output->handedAt = nowUs;
     if (!isDelivered) {
         output->contention.hasLost = 1;
         output->contention.lostAt = nowUs;
     }
-    link_onAnswer(&link->sender, output->answered++, isDelivered);
+    link_onAnswer(&link->sender, (U8)(output->handed - output->waiting--), isDelivered);
 }
 
 /* Judges whether a side sends much, by the bytes of so many whole spans, or of a part of one. */
@@ -201,18 +200,9 @@ U32 Link_randomWait(Link* link) {
     return output->longest + LINK_CODEC(output)->overhead <= LINK_MAX_ENCRYPTED;
 }
 
-/* Gives up packets whose answers do not come. */
-static void pollAnswers(Link* link) {
-    const Link_Output* output = &link->output;
-    if (output->now - output->handedAt >= LINK_ANSWER_LAST)
-        while (LINK_UNANSWERED(output))
-            Link_answer(link, 0, output->now);
-}
-
 void Link_poll(Link* link, U32 nowUs) {
     Link_Sender* sender = link->session.sender;
     link->output.now = nowUs;
-    pollAnswers(link);
     link_pollInput(&link->input);
     if (!link_pollSession(&link->session))
         return;
@@ -242,8 +232,6 @@ U32 Link_deadline(const Link* link, U32 nowUs) {
     U32 soon = nowUs + LINK_POLL_EVERY;
     U32 open = output->paceUntil - output->slack;
     U32 ask = output->heardAt + LINK_PING_AFTER;
-    int waits = LINK_UNANSWERED(output) != 0; /* the radio's next answer decides what goes again */
-    int isFull = waits && LINK_UNANSWERED(output) >= output->mostWaiting;
     U32 first = sooner(input->count, input->at + LINK_FRAME_GAP, nowUs + FAR);
     first =
         sooner(session->state == LINK_STATE_CONNECTING || (LINK_SECURE && session->isUnconfirmed),
@@ -254,12 +242,13 @@ U32 Link_deadline(const Link* link, U32 nowUs) {
     }
     if (session->state == LINK_STATE_UP) {
         first = sooner(1, LATER(ask, session->pingAt), first);
-        first = sooner(waits, output->handedAt + LINK_ANSWER_LAST, first);
-        first = sooner(!isFull && output->packed, soon, first);
-        first = sooner(!waits && sender->base != sender->next, sender->timerAt, first);
-        first = sooner(!isFull && sender->hasWork, LATER(open, soon), first);
-        first =
-            sooner(!isFull && receiver->ackDue, receiver->ackNow ? soon : receiver->ackAt, first);
+        if (!output->waiting) /* else the radio's next answer decides what goes again */
+            first = sooner(sender->base != sender->next, sender->timerAt, first);
+        if (!output->waiting || output->waiting < output->mostWaiting) {
+            first = sooner(output->packed, soon, first);
+            first = sooner(sender->hasWork, LATER(open, soon), first);
+            first = sooner(receiver->ackDue, receiver->ackNow ? soon : receiver->ackAt, first);
+        }
         first = sooner(receiver->isHeld, nowUs + LINK_OFFER_EVERY, first);
     }
     if (first == nowUs + FAR)

@@ -94,7 +94,7 @@ void Link_expectAnswers(Link* link, U32 packets);
 U32 Link_randomWait(Link* link);
 
 /* Reports the radio's answer for the oldest packet that has none: its peer has it, or it is lost.
- */
+ * The driver says so, too, if the radio does not answer (LINK_ANSWER_LAST). */
 void Link_answer(Link* link, int isDelivered, U32 nowUs);
 #endif
 

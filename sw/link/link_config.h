@@ -110,7 +110,7 @@
 /* Extra wait behind a short packet, or a modem that still holds it joins the two. */
 #define LINK_SHORT_MARGIN 1500U
 
-/* Silence of a radio that answers, after which the packets that wait for an answer are lost. */
+/* Drivers: the time without an answer after which a packet counts as lost. */
 #define LINK_ANSWER_LAST 3000000U
 
 /* The choice of RN (Link_randomWait): each span its bytes are counted, of which the air carries

@@ -29,11 +29,11 @@ U32 link_room(const Link_Output* output) {
 
 /* Hands the packet to a radio that answers. */
 static int handOverAnswered(Link_Output* output) {
-    if (LINK_UNANSWERED(output) >= output->mostWaiting ||
+    if (output->waiting >= output->mostWaiting ||
         output->port->transmit(output->context, output->packet, output->packed) != 0)
         return 0;
     ++output->handed;
-    output->handedAt = output->now;
+    ++output->waiting;
     output->packed = output->heard = 0;
     return 1;
 }
@@ -88,7 +88,7 @@ int link_isOpen(Link_Output* output) {
     if (output->packed && output->packed + LEAST(output) > output->longest && !link_flush(output))
         return 0;
     if (output->mostWaiting)
-        return output->packed || LINK_UNANSWERED(output) < output->mostWaiting;
+        return output->packed || output->waiting < output->mostWaiting;
     return output->packed || !LINK_BEFORE(output->now + output->slack, output->paceUntil);
 }
 

@@ -81,14 +81,16 @@ typedef struct Link_Contention {
 
 /* Small members that are often used come first in each part: short instructions reach them. */
 struct Link_Output {
-    U8 longest;  /* payload of the longest frame that is sent */
-    U8 packed;   /* bytes in the packet */
-    U8 heard;    /* bytes of a frame that came since the last packet left */
-    U8 open;     /* a bit a channel: messages may be sent */
-    U8 closing;  /* closed here, the peer's closing has not come yet */
-    U8 closeDue; /* the own closing is not queued yet */
-    U8 isStream; /* several fragments are on their way: packets follow each other */
-    U8 slow;     /* not 0: the modem waits for the air now and then, and may hold packets */
+    U8 longest;         /* payload of the longest frame that is sent */
+    U8 packed;          /* bytes in the packet */
+    U8 heard;           /* bytes of a frame that came since the last packet left */
+    U8 open;            /* a bit a channel: messages may be sent */
+    U8 closing;         /* closed here, the peer's closing has not come yet */
+    U8 closeDue;        /* the own closing is not queued yet */
+    U8 isStream;        /* several fragments are on their way: packets follow each other */
+    U8 slow;            /* not 0: the modem waits for the air now and then, and may hold packets */
+    U8 mostWaiting;     /* packets that may wait for the radio's answer; 0: it gives none */
+    U8 handed, waiting; /* packets handed over, modulo 256, and those without an answer */
     U32 now;
     const Link_Codec* codec;
     const Link_Port* port;
@@ -104,14 +106,8 @@ struct Link_Output {
     Link_Statistics statistics;
     Link_Identity present;
     U8 packet[LINK_MAX_FRAME]; /* frames that leave together */
-    U8 mostWaiting;            /* packets that may wait for the radio's answer; 0: it gives none */
-    U8 handed, answered; /* packets handed over, and those of them with an answer, modulo 256 */
-    U32 handedAt;        /* when the last one was handed over, or answered */
     Link_Contention contention;
 };
-
-/* The packets that the radio has not answered for yet. */
-#define LINK_UNANSWERED(output) ((U8)((output)->handed - (output)->answered))
 
 /* True if a fragment may go out now: the packet has room, or the modem has for a new one. */
 int link_isOpen(Link_Output* output);

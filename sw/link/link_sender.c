@@ -200,8 +200,8 @@ static void sample(Link_Sender* sender, U32 roundTrip) {
     sender->output->statistics.roundTripUs = sender->srtt;
 }
 
-/* Sets the time-out anew, since the peer has answered. */
-static void setTimer(Link_Sender* sender) {
+/* Sets the time-out anew, since the peer has answered. Inline, as often as it is called. */
+__attribute__((always_inline)) static __inline__ void setTimer(Link_Sender* sender) {
     U32 rto = sender->hasSample ? sender->srtt + 2U * sender->rttvar : LINK_RTO_FIRST;
     if (rto < LINK_RTO_MIN)
         rto = LINK_RTO_MIN;
@@ -310,7 +310,7 @@ static int pollWindow(Link_Sender* sender, U32 now) {
     U32 age = oldest->tries ? now - oldest->firstAt : 0;
     if (age >= LINK_AGE_LAST)
         return 0;
-    if (LINK_BEFORE(now, sender->timerAt) || LINK_UNANSWERED(sender->output))
+    if (LINK_BEFORE(now, sender->timerAt) || sender->output->waiting)
         return 1;
     oldest->state = LINK_TO_SEND; /* its answer tells about the others */
     sender->hasWork = sender->isLate = 1;

@@ -13,7 +13,23 @@
 #define DEFAULT_CHANNEL 0x0CU
 #define DEFAULT_PAN 0x3332U
 #define DEFAULT_GUARD_MS 1000U
+#define ANSWERS (RADIO_API && radio.onAnswer)
 #define POLL_TICKS (OS_TICKS_PER_SEC / 100U)
+
+/* API mode: a buffer holds a frame's contents: its type, and here four bytes more before a packet.
+ *   01 ID TARGET TARGET 00 DATA...          a packet to be sent
+ *   89 ID STATUS                            its fate: 0 the target's modem has it
+ *   08 00 'R' 'N' VALUE                     a setting, which is not answered
+ *   81 SOURCE SOURCE RSSI OPTIONS DATA...   a packet that came */
+#define TRANSMIT 0x01U
+#define COMMAND 0x08U
+#define STATUS 0x89U
+#define PACKET 0x81U
+#define HEAD 5U
+#define EVERYBODY 0xFFFFU
+#define ID_BASE 0x80U /* so that none is 0, which would ask for no answer */
+#define ID_MASK 0x7FU
+#define SILENT_TICKS (3U * OS_TICKS_PER_SEC) /* without an answer: there will be none */
 
 typedef enum BufferState { BUFFER_FREE, BUFFER_SENDING } BufferState;
 
@@ -29,6 +45,11 @@ static struct {
     Radio_Memory memory;
     Radio_Counters counters;
     U32 failedStep;
+    Radio_OnAnswer onAnswer; /* 0: transparent mode */
+    U16 target;
+    U8 handed, answered; /* packets handed over, and those of them with an answer, modulo 256 */
+    U8 wait;             /* RN */
+    U32 handedAt;        /* when the last packet was handed over */
 } radio;
 
 static U32 get(U32 word) {
@@ -50,11 +71,14 @@ static void setKey(const U8* key) {
 static void setUpController(const XBeeInitTypeDef* conf) {
     U32 guard = conf->guardMs ? conf->guardMs : DEFAULT_GUARD_MS;
     U32 encrypt = conf->key ? 1U << MODEM_NET_ENCRYPT_LSB : 0U;
+    U32 api = ANSWERS ? 1U << MODEM_NET_API_LSB : 0U;
     set(MODEM_CONTROL, MODEM_CONTROL_RESET_MODEM_MASK);
     OSTimeDly(OS_TICKS_PER_SEC / 2U); /* the modem boots in 50 to 500 ms */
-    set(MODEM_BAUD, guard << MODEM_BAUD_GUARD_MS_LSB | (U32)conf->baud);
+    set(MODEM_BAUD, guard << MODEM_BAUD_GUARD_MS_LSB |
+                        (RADIO_API && !api && conf->baud == RADIO_250000 ? (U32)XBEE_BD_115200
+                                                                         : (U32)conf->baud));
     set(MODEM_ADDR, (U32)conf->target << MODEM_ADDR_TARGET_LSB | conf->source);
-    set(MODEM_NET, (U32)(conf->pan ? conf->pan : DEFAULT_PAN) << MODEM_NET_PAN_LSB | encrypt |
+    set(MODEM_NET, (U32)(conf->pan ? conf->pan : DEFAULT_PAN) << MODEM_NET_PAN_LSB | encrypt | api |
                        (conf->channel ? conf->channel : DEFAULT_CHANNEL));
     if (encrypt)
         setKey(conf->key);
@@ -71,6 +95,12 @@ Radio_Status xbeeInit(const XBeeInitTypeDef* conf, const Radio_Memory* memory) {
     if (get(MODEM_ID) >> 16 != MODEM_ID_VALUE >> 16)
         return RADIO_NO_DEVICE;
     radio.memory = *memory;
+    if (RADIO_API) {
+        radio.onAnswer = get(MODEM_STATUS) & MODEM_STATUS_API_MASK ? conf->onAnswer : 0;
+        radio.target = conf->target;
+        radio.answered = radio.handed;
+        radio.wait = RADIO_WAIT;
+    }
     radio.head = radio.used = 0;
     for (i = 0; i < BUFFERS; ++i)
         radio.output[i].state = BUFFER_FREE;
@@ -87,6 +117,10 @@ Radio_Status xbeeInit(const XBeeInitTypeDef* conf, const Radio_Memory* memory) {
     }
     set(MODEM_MASK, MODEM_MASK_RX_PACKET_MASK | MODEM_MASK_RX_OVERRUN_MASK);
     return RADIO_OK;
+}
+
+int Radio_answers(void) {
+    return ANSWERS != 0;
 }
 
 U32 Radio_failedStep(void) {
@@ -107,9 +141,23 @@ static void reclaim(void) {
     }
 }
 
-int Radio_transmit(void* context, const U8* frame, U32 size) {
-    U32 buffer;
-    (void)context;
+/* Writes what a frame's contents have before the packet. Returns its size. */
+static U32 writeHead(U32 address) {
+    U8 head[HEAD];
+    head[0] = TRANSMIT;
+    head[1] = (U8)(ID_BASE | (radio.handed++ & ID_MASK));
+    head[2] = (U8)(radio.target >> 8);
+    head[3] = (U8)radio.target;
+    head[4] = 0;
+    FSMC_writeMemory(address, head, HEAD);
+    radio.handedAt = OSTimeGet();
+    return HEAD;
+}
+
+/* Puts a packet, or the contents of a frame, into the output ring. Returns 0, or 1 where no buffer
+ * is free. */
+static int put(const U8* bytes, U32 size, int isPacket) {
+    U32 buffer, address, head = 0;
     buffer = (radio.head + radio.used) % BUFFERS;
     if (radio.output[buffer].state != BUFFER_FREE)
         reclaim();
@@ -117,19 +165,76 @@ int Radio_transmit(void* context, const U8* frame, U32 size) {
         ++radio.counters.ringFull;
         return 1;
     }
-    FSMC_writeMemory(radio.memory.transmitRing + buffer * MODEM_BUFFER_BYTES, frame, size);
+    address = radio.memory.transmitRing + buffer * MODEM_BUFFER_BYTES;
+    if (ANSWERS && isPacket)
+        head = writeHead(address);
+    FSMC_writeMemory(address + head, bytes, size);
     radio.output[buffer].state = BUFFER_SENDING;
     radio.output[buffer].bytes = (U8)size;
     ++radio.used;
-    set(MODEM_TX_PUT, size);
+    set(MODEM_TX_PUT, head + size);
     ++radio.counters.framesSent;
     radio.counters.bytesCopiedOut += size;
     return 0;
 }
 
+int Radio_transmit(void* context, const U8* frame, U32 size) {
+    (void)context;
+    return put(frame, size, 1);
+}
+
+#if RADIO_API
+
+void Radio_setWait(U32 exponent) {
+    U8 command[5] = {COMMAND, 0, 'R', 'N', 0};
+    command[4] = (U8)exponent;
+    if (ANSWERS && exponent != radio.wait && put(command, sizeof command, 0) == 0)
+        radio.wait = command[4];
+}
+
+#endif
+
+/* Gives the answer for a packet; earlier ones without an answer are lost, since answers come in the
+ * order of packets. */
+static void takeStatus(U8 id, int isDelivered) {
+    U32 before = (U32)(id - radio.answered) & ID_MASK;
+    if (before >= (U8)(radio.handed - radio.answered))
+        return;
+    for (;; --before) {
+        int isIt = before == 0 && isDelivered;
+        ++radio.answered;
+        ++*(isIt ? &radio.counters.delivered : &radio.counters.lost);
+        radio.onAnswer(isIt);
+        if (!before)
+            return;
+    }
+}
+
+/* Calls all packets lost whose answers do not come. */
+static void expire(void) {
+    if (radio.handed != radio.answered && OSTimeGet() - radio.handedAt >= SILENT_TICKS)
+        takeStatus((U8)(radio.handed - 1U), 0);
+}
+
+/* Takes the contents of a frame. */
+static void takeFrame(const U8* frame, U32 bytes, Radio_OnPacket onPacket, void* context) {
+    if (frame[0] == STATUS && bytes == 3U) {
+        takeStatus(frame[1], frame[2] == 0);
+    } else if (frame[0] == PACKET && bytes > HEAD) {
+        U32 source = (U32)frame[1] << 8 | frame[2];
+        radio.counters.signal = frame[3];
+        if (source == radio.target || radio.target == EVERYBODY)
+            onPacket(context, frame + HEAD, bytes - HEAD);
+        else
+            ++radio.counters.strangers;
+    }
+}
+
 U32 Radio_receive(Radio_OnPacket onPacket, void* context) {
     U8 packet[MODEM_BUFFER_BYTES];
     U32 packets = 0;
+    if (ANSWERS)
+        expire();
     for (; packets < 2U * BUFFERS; ++packets) {
         U32 entry = get(MODEM_RX_GET);
         U32 bytes = entry & MODEM_RX_GET_BYTES_MASK;
@@ -142,7 +247,10 @@ U32 Radio_receive(Radio_OnPacket onPacket, void* context) {
         set(MODEM_RX_RELEASE, 1);
         ++radio.counters.framesReceived;
         radio.counters.bytesCopiedIn += bytes;
-        onPacket(context, packet, bytes);
+        if (ANSWERS)
+            takeFrame(packet, bytes, onPacket, context);
+        else
+            onPacket(context, packet, bytes);
     }
     return packets;
 }

@@ -2,7 +2,7 @@
  *
  * radio: driver of the modem controller (hdl/modem).
  *
- *     static const XBeeInitTypeDef conf = {XBEE_BD_115200, 0x0001, 0x0000, 0, 0, 0, 0};
+ *     static const XBeeInitTypeDef conf = {XBEE_BD_115200, 0x0001, 0x0000, 0, 0, 0, 0, 0};
  *     static const Radio_Memory rings = {0x0000, 0x1000};
  *     if (xbeeInit(&conf, &rings) != RADIO_OK)
  *         ...                                     (Radio_failedStep says where)
@@ -21,6 +21,10 @@
 
 #include "base.h"
 
+#ifndef RADIO_API /* 1: API mode can be chosen; 0: it is left out */
+#define RADIO_API 1
+#endif
+
 /* Baud rates, as the modem's BD command codes them. The names XBEE_BD_..., XBeeInitTypeDef and
  * xbeeInit are the paper's (Figure 5). */
 typedef enum Radio_Baud {
@@ -32,8 +36,12 @@ typedef enum Radio_Baud {
     XBEE_BD_38400,
     XBEE_BD_57600,
     XBEE_BD_115200,
+    RADIO_250000 = 0x3D090,     /* in API mode; where the controller has none, 111,111 is taken */
     RADIO_WIRE_115200 = 0x80007 /* no modem: a wire to a serial port, at 111,111 baud as well */
 } Radio_Baud;
+
+/* Takes the modem's answer for a packet that was sent: the target's modem has it, or it is lost. */
+typedef void (*Radio_OnAnswer)(int isDelivered);
 
 /* Settings of the modem. The paper gives the first three; a zero in the others means the default.
  */
@@ -47,6 +55,10 @@ typedef struct XBeeInitTypeDef {
     /* KY, the network's AES key of 16 bytes; 0: EE is 0, nothing is encrypted. An encrypted packet
      * carries 95 bytes instead of 100 (Link_limitFrame). */
     const U8* key;
+    /* 0: transparent mode. Else API mode, if the controller has it (Radio_answers): Radio_receive
+     * calls this for each packet that was sent, oldest first, and passes over what comes from other
+     * addresses than `target`. */
+    Radio_OnAnswer onAnswer;
 } XBeeInitTypeDef;
 
 typedef enum Radio_Status {
@@ -63,6 +75,9 @@ typedef struct Radio_Counters {
     U32 ringFull;                        /* frames that found no free buffer */
     U32 interrupts;                      /* calls of Radio_interrupt */
     U32 hardwareOverruns, framingErrors; /* as the controller counts them (docs/modem.md) */
+    U32 delivered, lost;                 /* API mode: packets sent, by the modem's answers */
+    U32 strangers;                       /* API mode: packets from other addresses */
+    U8 signal;                           /* API mode: RSSI of the last packet, -dBm */
 } Radio_Counters;
 
 /* DDR3 byte addresses of the rings; each ring has 2 KiB and begins at a multiple of 128. */
@@ -75,6 +90,9 @@ typedef struct Radio_Memory {
  * copied. */
 Radio_Status xbeeInit(const XBeeInitTypeDef* conf, const Radio_Memory* memory);
 
+/* Returns whether API mode was chosen by xbeeInit, and the controller has it. */
+int Radio_answers(void);
+
 /* Returns the step of the set-up that failed, after RADIO_NO_MODEM or RADIO_REFUSED, as STATUS.STEP
  * of the controller counts them (docs/modem.md). */
 U32 Radio_failedStep(void);
@@ -82,6 +100,11 @@ U32 Radio_failedStep(void);
 /* Copies a frame of 1..128 bytes into the output ring. Returns 0, or 1 where no buffer is free.
  * `context` is not used: the function fits Link_Port.transmit. */
 int Radio_transmit(void* context, const U8* frame, U32 size);
+
+/* Sets the modem's RN, the exponent of its random wait, in API mode: behind the packets handed over
+ * so far. Set-up leaves it at RADIO_WAIT. */
+#define RADIO_WAIT 2U
+void Radio_setWait(U32 exponent);
 
 /* Returns the packets in the output ring that have not left. They wait where the modem does. */
 U32 Radio_waiting(void);

@@ -56,7 +56,8 @@ M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> 
     }
     const bool asks = config.guardMs && config.flash.empty() && stm32_.image()->has("uav_guardMs");
     uint32_t guardAt = asks ? stm32_.image()->symbol("uav_guardMs") : 0;
-    stm32_.onTime([this, guardAt, guardMs = config.guardMs] {
+    uint32_t modeAt = asks && config.isTransparent ? stm32_.image()->symbol("uav_transparent") : 0;
+    stm32_.onTime([this, guardAt, modeAt, guardMs = config.guardMs] {
         if (soc_.now() >= until_)
             cpu().stop();
         if (soc_.cycles() < nextPoll_)
@@ -64,6 +65,8 @@ M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> 
         nextPoll_ = soc_.cycles() + SocModel::clkHz / 1000;
         if (guardAt)
             cpu().writeMemory(guardAt, &guardMs, sizeof guardMs);
+        if (modeAt)
+            cpu().writeMemory(modeAt, "\1", 1);
         over_ = !poll_();
         isAsked_ = isAsked_ || (stub_ && stub_->wantsStop());
         if (over_ || isAsked_ || (checkpoints_ && soc_.now() >= nextCopyNs_))

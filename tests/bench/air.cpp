@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
 // air: the radio link over two modems and the air between them, without chip and kernel: goodput
-// one way and both ways at once, round trips, in the clear and encrypted (docs/link.md). Both ends
-// are as the ground's: link layer, pacer, serial line of 111,111 baud.
+// one way and both ways at once, round trips, in the clear and encrypted (docs/link.md). Both
+// modems are in API mode, unless --api says how many; the ground's at 111,111 baud, the vehicle's
+// as the firmware's at 250,000. What one way goes is sent by the ground, what comes behind pictures
+// by the vehicle.
 
 #include "figures.h"
 #include "modem_pair.h"
@@ -10,7 +12,8 @@
 namespace {
 
 unsigned leastExponent = 2;            // RN, as controller and ground set it
-unsigned apiEnds = 0, apiRate = 7;     // modems in API mode: none, the ground's, both; their BD
+unsigned apiEnds = 2;                  // modems in API mode: none, the ground's, both
+unsigned rates[2] = {7, 250000};       // their BD in API mode: the ground's, the vehicle's
 constexpr int pictures = 0, calls = 1; // channels
 const char* const key = "0123456789ABCDEF0123456789ABCDEF";
 
@@ -46,7 +49,7 @@ private:
     static XBee::Options options(unsigned address, Mode mode, bool isApi) {
         XBee::Options o = modemOptions(address, mode == Encrypted, leastExponent, isApi);
         if (isApi)
-            o.set["BD"] = apiRate;
+            o.set["BD"] = rates[address];
         if (mode == Encrypted)
             o.key = key;
         return o;
@@ -209,10 +212,12 @@ void headOfLine(Mode mode) {
 } // namespace
 
 int main(int argc, char** argv) {
-    figures.app.add_option("--rn", leastExponent, "RN of both modems")->check(CLI::Range(0u, 3u));
+    figures.app.add_option("--rn", leastExponent, "RN of modems in transparent mode")
+        ->check(CLI::Range(0u, 3u));
     figures.app.add_option("--api", apiEnds, "Modems in API mode: none, the ground's, both")
         ->check(CLI::Range(0u, 2u));
-    figures.app.add_option("--api-rate", apiRate, "their BD, or their rate in baud");
+    figures.app.add_option("--ground-rate", rates[0], "the ground's BD, or its rate in baud");
+    figures.app.add_option("--vehicle-rate", rates[1], "the vehicle's, in API mode");
     std::string only;
     const std::map<std::string, void (*)(Mode)> parts = {{"goodput", allGoodput},
                                                          {"round-trips", roundTrips},

@@ -26,12 +26,11 @@ const Ground::Call isAlive = {"uav", "isAlive", 0, {7, 0}};
 class MeasuredFlight : public GroundAndChip {
 public:
     // `scaled` 1: the board's ratio of clocks; 50: the processor's time in the radio's. `key`: the
-    // link's, if any.
-    MeasuredFlight(const std::string& elf, double scaled, const std::vector<uint8_t>& key = {})
+    // link's, if any. `isTransparent`: the vehicle's modem.
+    MeasuredFlight(const std::string& elf, double scaled, const std::vector<uint8_t>& key = {},
+                   bool isTransparent = false)
         : GroundAndChip(1), warp(scaled),
-          machine(soc,
-                  {elf, scaled > 1 ? static_cast<uint32_t>(hclk) : 0, Ground::guardMs, {}, key},
-                  [this] { return poll(); }) {
+          machine(soc, configOf(elf, scaled, key, isTransparent), [this] { return poll(); }) {
         ground.key = key;
         ground.start();
         soc.reset();
@@ -73,6 +72,16 @@ public:
     M3Machine machine;
 
 private:
+    static M3Machine::Config configOf(const std::string& elf, double scaled,
+                                      const std::vector<uint8_t>& key, bool isTransparent) {
+        M3Machine::Config config;
+        config.firmware = elf;
+        config.hclkHz = scaled > 1 ? static_cast<uint32_t>(hclk) : 0;
+        config.guardMs = Ground::guardMs;
+        config.key = key;
+        config.isTransparent = isTransparent;
+        return config;
+    }
     bool poll() {
         late_ = soc.now() > end_;
         return !late_ && !done_();
@@ -291,14 +300,21 @@ int main(int argc, char** argv) {
                 measureMinimal(minimal);
             }
         }
-        MeasuredFlight f(elf, hclk / (SocModel::clkHz * hclkPerClk));
-        measureCalls(f, figures.brief ? 1 : 20, "call in the clear", 11970, 1);
+        const double scaled = hclk / (SocModel::clkHz * hclkPerClk);
+        const std::vector<uint8_t> key(LINK_KEY_BYTES, 1);
+        MeasuredFlight plain(elf, scaled, {}, true);
+        measureCalls(plain, figures.brief ? 1 : 20, "call, transparent, in the clear", 11970, 1);
+        if (!figures.brief)
+            measureStream(plain, "full stream, transparent, in the clear");
+        MeasuredFlight f(elf, scaled);
+        measureCalls(f, figures.brief ? 1 : 20, "call in the clear", 0, 1);
         if (!figures.brief)
             measureStream(f, "full stream in the clear");
         measureStacks(f, "stack used in the clear");
         if (!figures.brief) {
-            MeasuredFlight keyed(elf, hclk / (SocModel::clkHz * hclkPerClk),
-                                 std::vector<uint8_t>(LINK_KEY_BYTES, 1));
+            MeasuredFlight keyedPlain(elf, scaled, key, true);
+            measureCalls(keyedPlain, 20, "call, transparent, with a key", 17700, 2);
+            MeasuredFlight keyed(elf, scaled, key);
             measureCalls(keyed, 20, "call with a key", 0, 2);
             measureStream(keyed, "full stream with a key");
             measureStacks(keyed, "stack used with a key");

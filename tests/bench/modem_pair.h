@@ -137,6 +137,7 @@ private:
     void receive(U32 us) {
         const U8* bytes = line.received.data();
         const U32 size = static_cast<U32>(line.received.size());
+        api_.expire(us, [&](int) { Link_answer(link(), 0, us); });
         if (isApi_)
             api_.feed(
                 bytes, size,

@@ -125,7 +125,7 @@ Ice_Status Autopilot_HwProcessingEngine_getResult(Autopilot_HwProcessingEnginePt
 
 /* Returns where the FPGA or the modem does not answer. */
 int main(void) {
-    static const XBeeInitTypeDef xbeeConf = {XBEE_BD_115200, 0x0001, 0x0000, 0, 0, 0, 0};
+    static const XBeeInitTypeDef xbeeConf = {XBEE_BD_115200, 0x0001, 0x0000, 0, 0, 0, 0, 0};
     static const Radio_Memory rings = {0x00000000U, 0x00001000U};
     static Ice_ObjectPrx station, stationOneway, self;
     Autopilot_ParamSeq params = {0, 0};

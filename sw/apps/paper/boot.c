@@ -6,6 +6,7 @@
 #include "paper.h"
 #include "radio.h"
 #include "system_regs.h"
+#include "uav.h"
 #include "uav_private.h"
 
 #define STACK_WORDS 1024
@@ -33,6 +34,7 @@ void PAPER_useRadio(Ice_CommunicatorPtr ic) {
 
 void PAPER_start(const FSMC_Port* port, void* context) {
     irqEnabled = 0;
+    uav_transparent = 1;
     if (FSMC_init(port, context) != FSMC_OK)
         return;
     UAV_initRadio();

@@ -24,6 +24,10 @@ extern U16 uav_guardMs;
  * modem. Read when the tasks start. */
 extern U8 uav_wire;
 
+/* 1: the modem is used in transparent mode; 0, the initial value: in API mode, where it reports of
+ * each packet whether the ground's modem has it. Read when the tasks start. */
+extern U8 uav_transparent;
+
 typedef enum UAV_Status {
     UAV_OK,
     UAV_NO_FPGA, /* the FPGA does not answer */

@@ -15,10 +15,12 @@ OS_EVENT* uav_radioWork;
 const U8* uav_modemKey;
 U16 uav_guardMs;
 U8 uav_wire;
+U8 uav_transparent;
 
 static XBeeATEndpoint endpoint;
 static OS_EVENT* linkMutex;
 static OS_EVENT* iceEvent;
+static U8 isAnswered; /* the radio answers for each packet */
 
 U32 UAV_nowUs(void) {
     return OSTimeGet() * (1000000U / OS_TICKS_PER_SEC);
@@ -63,6 +65,8 @@ static const XBeeATEndpoint_Port endpointPort = {lockLink,  unlockLink,  kick,
 /* Hands a packet over while at most one waits for the line. So the link layer knows how fast the
  * modem is, and chooses late what goes next. */
 static int transmit(void* context, const U8* frame, U32 size) {
+    if (isAnswered)
+        Radio_setWait(Link_randomWait(&uav_link));
     return Radio_waiting() > 1U || Radio_transmit(context, frame, size);
 }
 
@@ -95,11 +99,17 @@ int UAV_nextKey(const U8* key) {
     return isSet;
 }
 
+static void onAnswer(int isDelivered) {
+    Link_answer(&uav_link, isDelivered, UAV_nowUs());
+}
+
 static void setUpModem(void) {
-    XBeeInitTypeDef xbeeConf = {XBEE_BD_115200, 0x0001, 0x0000, 0, 0, 0, 0};
+    XBeeInitTypeDef xbeeConf = {RADIO_250000, 0x0001, 0x0000, 0, 0, 0, 0, onAnswer};
     static const Radio_Memory rings = {UAV_TRANSMIT_RING, UAV_RECEIVE_RING};
-    if (uav_wire)
-        xbeeConf.baud = RADIO_WIRE_115200;
+    if (uav_wire || uav_transparent) {
+        xbeeConf.baud = uav_wire ? RADIO_WIRE_115200 : XBEE_BD_115200;
+        xbeeConf.onAnswer = 0;
+    }
     xbeeConf.source = (U16)UAV_address();
     xbeeConf.key = uav_modemKey;
     xbeeConf.guardMs = uav_guardMs;
@@ -107,6 +117,8 @@ static void setUpModem(void) {
     /* The vehicle flies on without its modem, and tries again. */
     while (xbeeInit(&xbeeConf, &rings) != RADIO_OK)
         OSTimeDly(OS_TICKS_PER_SEC);
+    isAnswered = (U8)Radio_answers();
+    Link_expectAnswers(&uav_link, isAnswered ? 2U : 0U);
 }
 
 static void onPacket(void* context, const U8* bytes, U32 size) {
@@ -124,18 +136,19 @@ void UAV_radioTask(void* argument) {
     Link_start(&uav_link, UAV_nowUs());
     unlockLink(0);
     for (;;) {
-        U32 wait;
-        if (OSTimeGet() - upAt > DOWN_LIMIT) {
+        U32 wait, now, ticks = OSTimeGet();
+        if (ticks - upAt > DOWN_LIMIT) {
             setUpModem();
-            upAt = OSTimeGet();
+            upAt = ticks = OSTimeGet();
         }
         lockLink(0);
         (void)Radio_receive(onPacket, 0);
-        Link_poll(&uav_link, UAV_nowUs());
+        now = UAV_nowUs();
+        Link_poll(&uav_link, now);
         (void)UAV_confirmKey(&uav_link);
-        wait = Link_deadline(&uav_link, UAV_nowUs());
+        wait = Link_deadline(&uav_link, now);
         if (Link_state(&uav_link) == LINK_STATE_UP)
-            upAt = OSTimeGet();
+            upAt = ticks;
         unlockLink(0);
         /* The wait is at least a tick, so that a full ring is not polled. */
         wait = wait > 1000000U ? OS_TICKS_PER_SEC : wait * OS_TICKS_PER_SEC / 1000000U;

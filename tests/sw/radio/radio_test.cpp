@@ -10,6 +10,7 @@
 extern "C" {
 #include "link.h"
 #include "map_regs.h"
+#include "modem_regs.h"
 #include "radio.h"
 #include "ucos_ii.h"
 }
@@ -103,8 +104,10 @@ protected:
         machine.run();
         ASSERT_TRUE(done) << "the task did not end within 60 simulated seconds";
     }
-    Radio_Status init(uint8_t channel = 0, uint16_t pan = 0, const U8* key = nullptr) {
-        const XBeeInitTypeDef conf = {XBEE_BD_115200, 0x0001, 0x0000, channel, pan, guardMs, key};
+    Radio_Status init(uint8_t channel = 0, uint16_t pan = 0, const U8* key = nullptr,
+                      Radio_OnAnswer onAnswer = nullptr) {
+        const XBeeInitTypeDef conf = {XBEE_BD_115200, 0x0001, 0x0000,  channel, pan,
+                                      guardMs,        key,    onAnswer};
         const Radio_Memory rings = {0x0000, 0x1000};
         Radio_Status status = xbeeInit(&conf, &rings);
         irqOn_ = status == RADIO_OK;
@@ -274,6 +277,110 @@ TEST_F(Radio, AModemThatWasResetIsSetUpAgain) {
         Link_send(nearPeer_.link(), 0, bytes, 3, 0);
         EXPECT_TRUE(talk([&] { return farPeer_.received.size() == 1; }, 10000));
     });
+}
+
+class ApiRadio : public Radio {
+protected:
+    Radio_Status initApi() {
+        answers_.clear();
+        return init(0, 0, nullptr, [](int isDelivered) { answers_ += isDelivered ? '+' : '-'; });
+    }
+    // Sends a packet, and waits until packets so far have answers.
+    void sendOne(size_t answers) {
+        const U8 frame[3] = {'a', 'b', 'c'};
+        ASSERT_EQ(Radio_transmit(nullptr, frame, 3), 0);
+        for (int i = 0; i < 200 && answers_.size() < answers; ++i) {
+            OSTimeDly(OS_TICKS_PER_SEC / 1000);
+            Radio_receive([](void*, const U8*, U32) {}, nullptr);
+        }
+    }
+    static std::string answers_;
+};
+std::string ApiRadio::answers_;
+
+TEST_F(ApiRadio, ALinkRunsOverItBothWays) {
+    run([&] {
+        ASSERT_EQ(initApi(), RADIO_OK);
+        EXPECT_EQ(soc_.modem().parameter("AP"), 1u);
+        ASSERT_TRUE(connect());
+        ASSERT_EQ(Link_openChannel(nearPeer_.link(), 0), LINK_OK);
+        const std::vector<uint8_t> message(700, 0x7E);
+        for (U32 tag = 0; tag < 5; ++tag)
+            ASSERT_EQ(Link_send(nearPeer_.link(), 0, message.data(), 700, tag), LINK_OK);
+        ASSERT_TRUE(talk([&] { return !farPeer_.received.empty(); }, 5000));
+        for (U32 tag = 0; tag < 5; ++tag)
+            ASSERT_EQ(Link_send(farPeer_.link(), 0, message.data(), 700, tag), LINK_OK);
+        ASSERT_TRUE(
+            talk([&] { return farPeer_.received.size() == 5 && nearPeer_.received.size() == 5; },
+                 20000)); // the far end's packets hold parts of two frames
+        talk([] { return false; }, 100);
+        EXPECT_EQ(nearPeer_.received[4], message);
+        EXPECT_EQ(farPeer_.received[4], message);
+        EXPECT_EQ(Radio_counters()->signal, 40u);
+        EXPECT_EQ(Radio_counters()->framingErrors, 0u);
+        EXPECT_EQ(Radio_counters()->hardwareOverruns, 0u);
+    });
+    EXPECT_GT(answers_.size(), 35u);
+}
+
+TEST_F(ApiRadio, EachPacketIsAnsweredForAndAnAnswerThatIsLostCountsAsALoss) {
+    air_.weather.perfect = true;
+    run([&] {
+        ASSERT_EQ(initApi(), RADIO_OK);
+        const U32 delivered = Radio_counters()->delivered, lost = Radio_counters()->lost;
+        for (size_t i = 1; i <= 300; ++i) // their numbers go round twice
+            sendOne(i);
+        EXPECT_EQ(answers_, std::string(300, '+'));
+        const U8 frame[3] = {'a', 'b', 'c'};
+        ASSERT_EQ(Radio_transmit(nullptr, frame, 3), 0);
+        OSTimeDly(OS_TICKS_PER_SEC / 20);
+        FSMC_write(MAP_SLOT_MODEM, MODEM_RX_RELEASE, 1); // as if the line had spoilt it
+        sendOne(302);
+        far_.power(false, soc_.now());
+        sendOne(303);
+        EXPECT_EQ(answers_.substr(300), "-+-");
+        soc_.modem().power(false, soc_.now());
+        sendOne(304);
+        OSTimeDly(3 * OS_TICKS_PER_SEC); // a modem that says nothing has lost what it had
+        Radio_receive([](void*, const U8*, U32) {}, nullptr);
+        EXPECT_EQ(answers_.substr(303), "-");
+        sendOne(305);
+        soc_.modem().power(true, soc_.now());
+        ASSERT_EQ(initApi(), RADIO_OK); // what had no answer gets none
+        far_.power(true, soc_.now());
+        OSTimeDly(OS_TICKS_PER_SEC / 10);
+        sendOne(1);
+        EXPECT_EQ(answers_, "+");
+        EXPECT_EQ(Radio_counters()->delivered - delivered, 302u);
+        EXPECT_EQ(Radio_counters()->lost - lost, 3u);
+    });
+}
+
+TEST_F(ApiRadio, PacketsOfOtherAddressesArePassedOver) {
+    HostLine line;
+    XBee stranger(line, air_, quick({{"BD", 7}, {"MY", 2}, {"DL", 1}}));
+    soc_.onTime([&](uint64_t now) {
+        far_.advance(now);
+        stranger.advance(now);
+        return now + 1'000'000;
+    });
+    std::vector<uint8_t> heard;
+    run([&] {
+        ASSERT_EQ(initApi(), RADIO_OK);
+        const U32 strangers = Radio_counters()->strangers;
+        line.send({1, 2, 3}, soc_.now());
+        OSTimeDly(OS_TICKS_PER_SEC / 20);
+        farLine_.send({4, 5, 6}, soc_.now());
+        OSTimeDly(OS_TICKS_PER_SEC / 20);
+        Radio_receive(
+            [](void* all, const U8* bytes, U32 size) {
+                auto& h = *static_cast<std::vector<uint8_t>*>(all);
+                h.insert(h.end(), bytes, bytes + size);
+            },
+            &heard);
+        EXPECT_EQ(Radio_counters()->strangers - strangers, 1u);
+    });
+    EXPECT_EQ(heard, (std::vector<uint8_t>{4, 5, 6}));
 }
 
 const U8 key[16] = {0x00, 0x11, 0x22, 0x33, 0x44, 0x55, 0x66, 0x77,

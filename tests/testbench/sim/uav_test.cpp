@@ -91,7 +91,7 @@ TEST_F(Uav, AModemResetInMidPacketIsRecoveredFrom) {
                  },
                  ground.pinging(3)}),
         20);
-    EXPECT_EQ(soc.modem().parameter("BD"), 7u);
+    EXPECT_EQ(soc.modem().parameter("BD"), 250000u);
 }
 
 TEST_F(Uav, TheSameSeedGivesTheSameRun) {

@@ -109,7 +109,7 @@ module ascon (
     wire [63:0] mask = {{8{be[7]}}, {8{be[6]}}, {8{be[5]}}, {8{be[4]}},
                         {8{be[3]}}, {8{be[2]}}, {8{be[1]}}, {8{be[0]}}};
 
-    wire writes = pass[1] || (pass[0] && !hash); // WIPE, MESSAGE
+    reg  writes; // WIPE, MESSAGE; since before the first word
     wire reads  = !pass[1] && !none;
     wire step   = in_word && (!reads || read_valid) && (!writes || none || write_ready);
     wire tag_step    = in_tag_word && (decrypt ? read_valid : write_ready);
@@ -291,6 +291,7 @@ module ascon (
         end
 
         both_idle <= read_idle && write_idle;
+        writes    <= pass[1] || (pass[0] && !hash);
         key_came  <= put_key && !rst_i;
         if (key_came && !key_words[2])
             key_words <= key_words + 3'd1;

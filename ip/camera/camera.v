@@ -38,7 +38,7 @@ module camera (
     reg [11:0] height, y;
     reg [2:0]  x;                    // of the next pixel in its word
     reg        room;                 // for one more pixel of this line
-    reg        last_word;            // words == width, a clock later
+    reg        last_word, last_line; // words == width, y + 1 == height, a clock later
     reg [31:0] base, stride;         // of the buffers in use
     reg [31:0] size, set_base, set_stride;
     reg [15:0] frames, dropped;
@@ -125,7 +125,7 @@ module camera (
     wire begins = pop && starts;
     wire token_in_frame = has_token && capturing && ready;
     wire bad    = lost || (is_pixel && !room) || (ends_line && room) || starts;
-    wire last   = ends_line && y + 12'd1 == height;
+    wire last   = ends_line && last_line;
     wire kept   = state == WAIT_FOR_MEMORY && write_idle && whole; // all of it is in memory
     camera_buffers u_buffers (.clk_i(clk_i), .rst_i(rst_i), .active_i(state != OFF), .kept_i(kept),
                               .writing_o(writing), .newest_o(newest), .offered_o(offered), .take_i(frame_take_i));
@@ -143,6 +143,7 @@ module camera (
     always @(posedge clk_i) begin
         events    <= 7'd0;
         last_word <= words == width;
+        last_line <= y + 12'd1 == height;
         // Also by a line's end, whose byte the next seven pixels push out: 56 enables hang on this.
         if (capturing && has_token && x != 3'd7)
             pixels <= {token[7:0], pixels[55:8]};

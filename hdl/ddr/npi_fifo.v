@@ -11,7 +11,7 @@
 
 module npi_fifo #(
     parameter WIDTH = 72,
-    parameter LOG2  = 5, // 2**LOG2 words
+    parameter LOG2  = 5, // 2**LOG2 words: 2..24
     parameter BLOCK = 0  // 1: words in block RAM
 ) (
     input  wire             clk_i,

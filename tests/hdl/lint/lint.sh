@@ -30,7 +30,7 @@ bus_window)
 bus_to_axi4lite) variants='ADDR_WIDTH=3 ADDR_WIDTH=32' ;;
 bus_to_wishbone) variants='ADDR_WIDTH=3 ADDR_WIDTH=32 PIPELINED=1' ;;
 async_fifo) variants='LOG2=2 LOG2=6' ;;
-npi_fifo) variants='LOG2=1 LOG2=5 BLOCK=1' ;;
+npi_fifo) variants='LOG2=2 LOG2=24,BLOCK=1 LOG2=5 BLOCK=1' ;;
 modem) variants='CLK_HZ=2000000 CLK_HZ=100000000 API=1' ;;
 fsmc_bridge)
     variants='MUXED=1 WAIT_HIGH=1,TIMEOUT_LOG2=24 TIMEOUT_LOG2=1 POST_LOG2=2,BLOCK_LOG2=4'

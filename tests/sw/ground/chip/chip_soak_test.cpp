@@ -6,9 +6,11 @@
 //
 //   SOAK_SECONDS=600 build/main/tests/sw/ground/chip/test_chip_soak (simulated seconds; default 5)
 // SOAK_REST=10 makes each caller rest for this many seconds on average, with accidents rarer by as
-// much. That is a flight (make fly): most of its clocks pass at once.
+// much. That is a flight (make fly): most of its clocks pass at once. The camera's sensor sends a
+// picture a second then, and the cores are called in turn.
 
 #include "chip_world.h"
+#include "core_pins.h"
 #include "random.h"
 #include <cstdlib>
 #include <future>
@@ -169,11 +171,53 @@ protected:
                 ++calls_;
                 const auto answer = echo->repeat(id + 1, data);
                 ++(answer == data ? answered_ : wrong_);
+                if (rest() > 0)
+                    callCore(ground, worker);
             } catch (const Ice::Exception& e) {
                 note(ground, e);
             }
             world_.sleep(rest(random));
         }
+    }
+    // ---- a flight's cores ----
+    void connectCamera() {
+        Frame frame{320, 240, {}};
+        for (int i = 0; i < frame.width * frame.height; ++i) // a chessboard
+            frame.pixels.push_back((i / 32 + i / frame.width / 24) % 2 ? 200 : 50);
+        world_.with([&] {
+            connectSensor(world_.soc, frame, [this, next = uint64_t(0)]() mutable {
+                const bool sends = world_.soc.now() >= next;
+                next = sends ? world_.soc.now() + 1'000'000'000 : next;
+                return sends;
+            });
+        });
+    }
+    // Calls the core whose turn it is; two-way, so that it works before the next call.
+    void callCore(const Ice::CommunicatorPtr& ground, int worker) {
+        using Bytes = std::vector<Ice::Byte>;
+        static const Bytes size = {64, 1, 240, 0}, one = {0, 0, 0, 1, 0}, key(17, 16), text(41, 40),
+                           samples(49, 24);
+        static const struct {
+            const char *object, *operation;
+            Ice::OperationMode mode;
+            const Bytes parameters;
+        } calls[] = {{"camera", "capture", Ice::OperationMode::Idempotent, size},
+                     {"hwengine1", "startProcessing", Ice::OperationMode::Normal, {}},
+                     {"fir", "setCoefficient", Ice::OperationMode::Idempotent, one},
+                     {"fir", "filter", Ice::OperationMode::Normal, samples},
+                     {"ascon", "setKey", Ice::OperationMode::Idempotent, key},
+                     {"ascon", "hash", Ice::OperationMode::Idempotent, text}};
+        const auto& call = calls[coreCalls_++ % std::size(calls)];
+        Ice::OutputStream out(ground);
+        out.startEncapsulation();
+        for (Ice::Byte b : call.parameters)
+            out.write(b);
+        out.endEncapsulation();
+        Bytes in, result;
+        out.finished(in);
+        const auto core = ground->stringToProxy(call.object + (":" + world_.endpoint()));
+        coreAnswers_ += core->ice_connectionId(std::to_string(worker))
+                            ->ice_invoke(call.operation, call.mode, in, result);
     }
     void note(const Ice::CommunicatorPtr& ground, const Ice::Exception& e) {
         {
@@ -255,6 +299,7 @@ protected:
         // A reboot takes the call under way with it.
         EXPECT_LE(uavAnswered_ + uavReported_, static_cast<unsigned>(uavSent_));
         EXPECT_GE(uavAnswered_ + uavReported_ + reboots_ + 1, static_cast<unsigned>(uavSent_));
+        EXPECT_GE(2 * coreAnswers_ + 5, coreCalls_) << "cores that do not answer";
         for (auto& fault : faults_)
             ADD_FAILURE() << "a call ended with " << fault << "; SEED " << testSeed();
     }
@@ -263,16 +308,18 @@ protected:
                     "executed; UAV to "
                     "ground: %u sent, %u answered, %u reported, %u executed; %u reboots of the "
                     "UAV, %u resets "
-                    "of modems, %u starts of the ground\n",
+                    "of modems, %u starts of the ground; cores: %u calls, %u answered\n",
                     static_cast<double>(world_.ns()) / 1e9, calls_.load(), answered_.load(),
                     up_.executed, uavSent_, uavAnswered_.load(), uavReported_.load(),
-                    down_.executed, reboots_, modemResets_, groundStarts_);
+                    down_.executed, reboots_, modemResets_, groundStarts_, coreCalls_.load(),
+                    coreAnswers_.load());
         std::fflush(stdout);
     }
 
     Book up_, down_;
     std::atomic<bool> stop_{false}, uavStops_{false};
     std::atomic<unsigned> calls_{0}, answered_{0}, wrong_{0};
+    std::atomic<unsigned> coreCalls_{0}, coreAnswers_{0};
     std::atomic<unsigned> uavAnswered_{0}, uavReported_{0}, uavWrong_{0};
     Random uavRandom_{testSeed() + 7};
     RadioTest::Bytes uavMessage_;
@@ -298,6 +345,8 @@ TEST_F(ChipSoak, EveryMessageIsRightOnceInOrderOrReported) {
     for (int w = 1; w <= 3; ++w)
         workers.push_back(std::async(std::launch::async, [this, w] { work(w); }));
     AtEnd atEnd{stop_};
+    if (rest() > 0)
+        connectCamera();
     world_.sleep(2); // set-up, and some good weather
     endure();
     stop_ = true;

@@ -60,7 +60,6 @@ uint64_t ChipWorld::advance(uint64_t now) {
 void ChipWorld::run() {
     UavMachine::Firmware firmware;
     firmware.start = EchoUav_start;
-    firmware.irqHandler = EchoUav_irqHandler;
     firmware.irqEnabled = [] { return EchoUav_irqEnabled() != 0; };
     try {
         for (uint64_t boots = 0; !stop_; ++boots) {

@@ -4,9 +4,6 @@
  */
 #include "echo_uav.h"
 #include "Echo.h"
-#include "map_regs.h"
-#include "radio.h"
-#include "system_regs.h"
 #include "uav.h"
 #include "uav_private.h"
 
@@ -14,7 +11,8 @@
 #define PAUSE_TICKS (OS_TICKS_PER_SEC / 100U) /* while there is no message to send */
 #define TIMEOUT_MS 20000                      /* of a call of the ground */
 
-static OS_STK serverStack[STACK_WORDS], clientStack[STACK_WORDS], radioStack[STACK_WORDS];
+static OS_STK serverStack[STACK_WORDS], clientStack[STACK_WORDS], radioStack[STACK_WORDS],
+    coresStack[STACK_WORDS];
 static Ice_Communicator ic;
 static Ice_ObjectAdapter adapter;
 static RadioTest_Echo servant;
@@ -102,19 +100,14 @@ static void mainTask(void* argument) {
     (void)Ice_Communicator_createObjectAdapterWithEndpoints(&ic, "Adapter", "xbee-at", &adapter);
     RadioTest_Echo_init(&servant);
     (void)Ice_ObjectAdapter_add(&adapter, (Ice_ObjectPtr)&servant, "echo");
+    UAV_startCores(&adapter);
     Ice_ObjectAdapter_activate(&adapter);
+    (void)OSTaskCreate(UAV_coresTask, 0, &coresStack[STACK_WORDS - 1], PRIO_CORES);
     (void)OSTaskCreate(UAV_radioTask, 0, &radioStack[STACK_WORDS - 1], PRIO_RADIO);
     (void)OSTaskCreate(clientTask, 0, &clientStack[STACK_WORDS - 1], PRIO_CLIENT);
     Ice_Communicator_waitForShutdown(&ic);
     for (;;)
         OSTimeDly(OS_TICKS_PER_SEC);
-}
-
-void EchoUav_irqHandler(void) {
-    if (FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_IRQ_LO) >> MAP_SLOT_MODEM & 1U) {
-        (void)Radio_interrupt();
-        (void)OSSemPost(uav_radioWork);
-    }
 }
 
 int EchoUav_irqEnabled(void) {
@@ -127,6 +120,7 @@ void EchoUav_start(const FSMC_Port* fsmc, void* context) {
         return;
     UAV_initRadio();
     UAV_initIceOs();
+    UAV_initCores();
     irqEnabled = 1;
     (void)OSTaskCreate(mainTask, 0, &serverStack[STACK_WORDS - 1], PRIO_SERVER);
 }

@@ -28,7 +28,6 @@ void EchoUav_setPort(const EchoUav_Port* port, void* context);
 
 /* These do what UAV_start and its like do (uav.h). */
 void EchoUav_start(const FSMC_Port* fsmc, void* context);
-void EchoUav_irqHandler(void);
 int EchoUav_irqEnabled(void);
 
 #endif

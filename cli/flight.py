@@ -16,7 +16,7 @@ from cli.options import (CORE_FOLDERS, COUNT, FILE, FOLDER, FRAME, KEY_FILE, PAT
                          SWITCH, TEXT, UCOS2, WORDS, Option, matching, number, one_of)
 from cli.runner import Stop, say
 
-VERSION = 2
+VERSION = 3
 FIELDS = [
     Option("image", FILE, "picture for the camera: PNG, JPEG or PGM",
            "/usr/share/xplanet/images/earth.jpg"),

@@ -152,7 +152,7 @@ MISTAKES = {
     "./icesoc run --key no.key": "./icesoc key",
     "./icesoc run --again Makefile": "cannot read the flight",
     "./icesoc run --again cli/flight.schema.json":
-    "describes no flight: it is not of version 2",
+    "describes no flight: it is not of version 3",
     "./icesoc contract": "contract has the commands diff, from-rdl",
     "./icesoc bench --only airr": "there is no bench 'airr': simulator, air",
     "./icesoc nightly --steps nothing --built": "there is no step 'nothing': kept, random",

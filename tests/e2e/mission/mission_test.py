@@ -383,7 +383,7 @@ class Cases(Script):
         """The ground's program, with a flight's description but without a simulator."""
         write("flight.json", json.dumps(
             dict(threshold=24, loss=0, guard=20, patience=300, key="", camera=False, cores=[],
-                 wire=False, out=str(self.out))))
+                 wire=False, vehicles=1, out=str(self.out))))
         return ("/usr/bin/python3", CLIENTS / "mission.py", "flight.json", *INTERFACE, "--frame",
                 "none", *words)
 

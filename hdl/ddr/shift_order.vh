@@ -5,35 +5,33 @@
 // Where only the places count, not their numbers, such a counter takes one to four LUTs in all, not
 // one for each bit. BITS is 2..24. The order begins with 0, 1 and ends with the highest bit alone.
 
-// SHIFT_ORDER declares the function after(from): the next place. The taps are those of Xilinx'
-// XAPP052, to whose 2**BITS - 1 places it adds 0.
+// SHIFT_TAPS is a constant: the taps of Xilinx' XAPP052, to whose 2**BITS - 1 places the order adds
+// 0.
+`define SHIFT_TAPS(BITS) \
+    ((BITS) == 5  ? 24'h000014 : \
+     (BITS) == 8  ? 24'h0000B8 : \
+     (BITS) == 9  ? 24'h000110 : \
+     (BITS) == 10 ? 24'h000240 : \
+     (BITS) == 11 ? 24'h000500 : \
+     (BITS) == 12 ? 24'h000829 : \
+     (BITS) == 13 ? 24'h00100D : \
+     (BITS) == 14 ? 24'h002015 : \
+     (BITS) == 16 ? 24'h00D008 : \
+     (BITS) == 17 ? 24'h012000 : \
+     (BITS) == 18 ? 24'h020400 : \
+     (BITS) == 19 ? 24'h040023 : \
+     (BITS) == 20 ? 24'h090000 : \
+     (BITS) == 21 ? 24'h140000 : \
+     (BITS) == 23 ? 24'h420000 : \
+     (BITS) == 24 ? 24'hE10000 : \
+     24'd3 << (BITS) - 2)
+
+// SHIFT_ORDER declares the function after(from): the next place.
 `define SHIFT_ORDER(after, BITS) \
     function [(BITS)-1:0] after; \
         input [(BITS)-1:0] from; \
-        reg [23:0] taps; \
-        begin \
-            case (BITS) \
-                5:       taps = 24'h000014; \
-                8:       taps = 24'h0000B8; \
-                9:       taps = 24'h000110; \
-                10:      taps = 24'h000240; \
-                11:      taps = 24'h000500; \
-                12:      taps = 24'h000829; \
-                13:      taps = 24'h00100D; \
-                14:      taps = 24'h002015; \
-                16:      taps = 24'h00D008; \
-                17:      taps = 24'h012000; \
-                18:      taps = 24'h020400; \
-                19:      taps = 24'h040023; \
-                20:      taps = 24'h090000; \
-                21:      taps = 24'h140000; \
-                23:      taps = 24'h420000; \
-                24:      taps = 24'hE10000; \
-                default: taps = 24'd3 << (BITS) - 2; \
-            endcase \
-            after = {from[(BITS)-2:0], \
-                     ^(taps & {{24-(BITS){1'b0}}, from}) ^ !(|from[(BITS)-2:0])}; \
-        end \
+        after = {from[(BITS)-2:0], \
+                 ^(`SHIFT_TAPS(BITS) & {{24-(BITS){1'b0}}, from}) ^ !(|from[(BITS)-2:0])}; \
     endfunction
 
 // SHIFT_NUMBERS declares place_of(number) and number_of(from), for constants and proofs.

@@ -98,7 +98,7 @@ Radio_Status xbeeInit(const XBeeInitTypeDef* conf, const Radio_Memory* memory) {
     if (RADIO_API) {
         radio.onAnswer = get(MODEM_STATUS) & MODEM_STATUS_API_MASK ? conf->onAnswer : 0;
         radio.target = conf->target;
-        radio.answered = radio.handed;
+        radio.handed = radio.answered = 0; /* the modem forgets what it has, too */
         radio.wait = RADIO_WAIT;
     }
     radio.head = radio.used = 0;

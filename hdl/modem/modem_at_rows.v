@@ -107,7 +107,8 @@ module modem_at_rows #(
             at = after(at);
         end
         rows[{4'd1, at}] = {GUARD | HEAR, SETTINGS};
-        rows[{4'd1, after(at)}] = {HEAR | LIMIT, 8'd0};
+        at = after(at);
+        rows[{4'd1, at}] = {HEAR | LIMIT, 8'd0};
         // "AT", letters, digits, return; then the answer
         for (i = 2; i <= LEAVE; i = i + 1) begin
             rows[64*i] = {SEND, "A"};
@@ -122,7 +123,8 @@ module modem_at_rows #(
                 at = after(at);
             end
             rows[{i[3:0], at}] = {SEND, 8'h0D};
-            rows[{i[3:0], after(at)}] =
+            at = after(at);
+            rows[{i[3:0], at}] =
                 {HEAR | LIMIT | REFUSE | (i == KEY - 1 ? SKIP : 9'd0), 8'd0};
         end
         rows[0] = {SETTLE | RATE, SETTINGS};

@@ -66,7 +66,8 @@ void PtyLine::readAhead(uint64_t now) {
     if (counter != counter_)
         fetched_ = 0;
     counter_ = counter;
-    for (int looks = 0; counter && looks < patience; ++looks) {
+    int looks = 0;
+    for (; counter && looks < patience; ++looks) {
         uint8_t bytes[512];
         ssize_t count = read(master_, bytes, sizeof bytes);
         if (count > 0) {        // also bytes of a program that counts no longer
@@ -80,6 +81,8 @@ void PtyLine::readAhead(uint64_t now) {
             sched_yield();
         }
     }
+    if (looks == patience) // they were read as those of the session before
+        fetched_ = std::max(fetched_, count_.fromProgram());
 }
 
 size_t PtyLine::fetch(uint8_t* bytes, size_t room) {

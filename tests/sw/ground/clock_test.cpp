@@ -145,6 +145,22 @@ protected:
     pollfd none_ = {-1, 0, 0};
 };
 
+// A program that begins may have bytes read as those of the one before.
+TEST(Pty, BytesThatNeverComeAreWaitedForOnce) {
+    struct Modem : SerialClient {
+        void fromHost(uint8_t, uint64_t) override {}
+        void framingError(uint64_t) override {}
+        bool nextToHost(uint8_t&) override { return false; }
+    } modem;
+    PtyLine line;
+    line.attach(&modem);
+    unsigned looks = 0;
+    line.keepCount({[] { return 1; }, [](uint64_t, size_t) {}, [&] { return ++looks, 3; }});
+    for (uint64_t now = 0; now < 10'000'000; now += 100'000)
+        line.advance(now);
+    EXPECT_LT(looks, 30'000u);
+}
+
 TEST_F(Step, NoTimePassesWhileTheProgramWorksAndNoByteIsLate) {
     beside([&](Clock& clock, SerialPort& port) {
         Random random(testSeed());

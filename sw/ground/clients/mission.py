@@ -69,9 +69,11 @@ class Log:
     def __init__(self, air, out, build):
         self.air, self.out, self.build = air, out, build  # folders: of the results, of the build
         self.rows = []
-        for name in RESULTS:  # of the mission before; a link is removed, and what it leads to stays
+        followers = glob.glob(os.path.join(glob.escape(out), "after[0-9]*.png"))
+        # Those of the mission before; a link is removed, and what it leads to stays.
+        for path in [*(os.path.join(out, name) for name in RESULTS), *followers]:
             with contextlib.suppress(FileNotFoundError):
-                os.remove(os.path.join(out, name))
+                os.remove(path)
         self.live = open(os.path.join(out, "calls.jsonl"), "x")  # the page of `make run` follows it
         self.lock = threading.Lock()
         self.start = time.monotonic()

@@ -66,7 +66,7 @@ typedef struct Link_Identity {
     U8 open[LINK_OPEN_BYTES]; /* and what they carry: the half of the own pair */
 } Link_Identity;
 
-/* Who talks (Link_randomWait). */
+/* Link_Talk is how much one side has sent; Link_randomWait decides by both sides'. */
 typedef struct Link_Talk {
     U32 before; /* bytes before the present span */
     U8 isMuch;

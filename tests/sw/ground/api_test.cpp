@@ -12,8 +12,8 @@ using XBeeAT::ApiFrames;
 using XBeeAT::ApiModem;
 using Bytes = ApiFrames::Bytes;
 
-// What a modem in API mode said: data and their source, '+' for a packet that arrived, '-' for a
-// lost one, and targets of these.
+// Heard is what a modem in API mode said: data and their source, '+' for a packet that arrived, '-'
+// for a lost one, and targets of these.
 struct Heard {
     Bytes data;
     int source = 0;

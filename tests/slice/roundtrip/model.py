@@ -142,8 +142,8 @@ class Model:
                 meta = self.meta(form).replace("]", ', "amd"]' if i % 3 == 0 else "]")
                 out.append('%s%s plain%d%s(%s v, out %s w);' % (
                     (meta, t.slice(), i, form) + (t.slice(),) * 2))
-            out.append("optional(3) %s maybe%d(optional(1) %s v, out optional(2) %s w);" %
-                       ((t.slice(), i) + (t.slice(),) * 2))
+            out.append("idempotent optional(3) %s maybe%d(optional(1) %s v, out optional(2) %s "
+                       "w);" % ((t.slice(), i) + (t.slice(),) * 2))
         for e in self.exceptions:
             for form in ("Compact", "Sliced"):
                 out.append("%svoid raise%s%s(%s) throws %s;" % (

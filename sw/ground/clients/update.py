@@ -154,10 +154,9 @@ class Vehicle:
             self.expect(status.last)
         return status
 
-    def send(self, image, dictionary, say, clock):
+    def send(self, image, dictionary, say):
         """Sends the missing pieces, several at a time."""
-        received = first = self.status().received
-        begun, air = clock.read()
+        received = self.status().received
         on_the_way, at, shown = [], received, 0
         while at < len(image) or on_the_way:
             while at < len(image) and len(on_the_way) < PIECES_ON_THE_WAY:
@@ -174,10 +173,6 @@ class Vehicle:
             if received == len(image) or received - shown >= len(image) // 10:
                 shown = received
                 say("%d of %d bytes" % (received, len(image)))
-        end, air_end = clock.read()
-        say("sent %d bytes in %.2f s%s; the vehicle checks them" % (
-            len(image) - first, end - begun, ", %d bytes on the air" % (air_end - air)
-            if air_end else ""))
 
 
 def send_keys(vehicle, lists, say):
@@ -211,10 +206,17 @@ def update(vehicle, images, say, clock, rehearses):
         watch = Watch(vehicle.proxy, clock)
         watch.start()
         vehicle.expect(vehicle.persist(lambda: vehicle.proxy.begin(header)))
+        begun = None
         while True:
             try:
-                vehicle.wait_while("preparing", "erasing")
-                vehicle.send(image, dictionary, say, clock)
+                received = vehicle.wait_while("preparing", "erasing").received
+                begun = begun or (received, *clock.read())
+                vehicle.send(image, dictionary, say)
+                first, start, air = begun
+                end, air_end = clock.read()
+                say("sent %d bytes in %.2f s%s; the vehicle checks them" % (
+                    len(image) - first, end - start,
+                    ", %d bytes on the air" % (air_end - air) if air_end else ""))
                 vehicle.expect(vehicle.proxy.finish())
                 break
             except Ice.LocalException as e:

@@ -4,8 +4,7 @@
  * ("MicroC/OS-II, The Real-Time Kernel", chapter 16). They run on the host's port, on the
  * Cortex-M3's, and on request on the real uC/OS-II, with one expected text.
  */
-#ifndef OS_CASES_H
-#define OS_CASES_H
+#pragma once
 
 #include "ucos_ii.h"
 
@@ -27,5 +26,3 @@ void Runner_interrupt(void);
 /* Serves an interrupt that has become possible (a real processor does so at once); implemented by
  * the runner. */
 void Runner_passTime(void);
-
-#endif

@@ -2,8 +2,7 @@
  *
  * os_cases_private: shared by the files of cases: tasks that print their steps.
  */
-#ifndef OS_CASES_PRIVATE_H
-#define OS_CASES_PRIVATE_H
+#pragma once
 
 #include "os_cases.h"
 
@@ -22,24 +21,11 @@ void OsCase_waitsForSem(void);
 void OsCase_created(void);
 
 /* Prepare a case, or are its interrupt routine. */
-void OsCase_choosing(void);
-void OsCase_computing(void);
-void OsCase_counting(void);
-void OsCase_creating(void);
-void OsCase_delaying(void);
-void OsCase_handingOver(void);
-void OsCase_inheriting(void);
-void OsCase_inheritingInAList(void);
-void OsCase_interruptRoutine(void);
-void OsCase_interrupting(void);
-void OsCase_locking(void);
-void OsCase_masking(void);
-void OsCase_mutexErrors(void);
-void OsCase_postsFromInterrupt(void);
-void OsCase_preempting(void);
-void OsCase_queueing(void);
-void OsCase_saysIrq(void);
-void OsCase_stackChecking(void);
-void OsCase_timing(void);
-
-#endif
+/* clang-format off */
+#define OS_CASES(X) \
+    X(choosing) X(computing) X(counting) X(creating) X(delaying) X(handingOver) X(inheriting) \
+    X(inheritingInAList) X(interruptRoutine) X(interrupting) X(locking) X(masking) X(mutexErrors) \
+    X(postsFromInterrupt) X(preempting) X(queueing) X(saysIrq) X(stackChecking) X(timing)
+/* clang-format on */
+#define OS_CASE_DECLARED(name) void OsCase_##name(void);
+OS_CASES(OS_CASE_DECLARED)

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_cases_tasks: creation, preemption, delays, the scheduler's lock, stacks, registers.
+ * os_cases_tasks: creation, preemption, delays, the scheduler's lock, stacks, registers,
+ * interrupts.
  */
 #include "os_cases_private.h"
 
-static OS_EVENT *sem2, *mutex;
+static OS_EVENT *sem2, *mutex, *queue;
+static void* slots[3];
 static INT8U err;
 
 /* ---- a post lets the task of higher priority go on at once ---- */
@@ -91,6 +93,58 @@ void OsCase_stackChecking(void) {
     mutex = OSMutexCreate(3, &err);
     (void)OsCase_task(looksAtStacks, 9);
     (void)OsCase_uncheckedTask(OsCase_created, 12);
+}
+
+/* ---- interrupts and critical sections ---- */
+
+void OsCase_interruptRoutine(void) {
+    INT8U e;
+    OSSemPend(osCase_sem, 0, &e);
+    OsCase_sayNumber(e);
+    OSMutexPend(mutex, 0, &e);
+    OsCase_sayNumber(e);
+    OsCase_sayNumber(OSMutexPost(mutex));
+    (void)OSQPend(queue, 0, &e);
+    OsCase_sayNumber(e);
+    OsCase_sayNumber(OsCase_task(OsCase_created, 30));
+    OsCase_sayNumber(OSSemCreate(0) == 0);
+    (void)OSMutexCreate(4, &e);
+    OsCase_sayNumber(e);
+    OSTimeDly(5);
+    (void)OSSemPost(osCase_sem);
+    OsCase_say("irq");
+}
+
+static void interrupted(void) {
+    OsCase_say("background");
+    Runner_interrupt();
+    OsCase_say("ends");
+}
+
+void OsCase_interrupting(void) {
+    osCase_sem = OSSemCreate(0);
+    mutex = OSMutexCreate(3, &err);
+    queue = OSQCreate(slots, 3);
+    (void)OsCase_task(OsCase_waitsForSem, 5);
+    (void)OsCase_task(interrupted, 6);
+}
+
+void OsCase_saysIrq(void) {
+    OsCase_say("irq");
+}
+
+static void disablesInterrupts(void) {
+    OS_CPU_SR cpu_sr;
+    OS_ENTER_CRITICAL();
+    Runner_interrupt();
+    OsCase_say("critical");
+    OS_EXIT_CRITICAL();
+    Runner_passTime();
+    OsCase_say("after");
+}
+
+void OsCase_masking(void) {
+    (void)OsCase_task(disablesInterrupts, 6);
 }
 
 /* ---- a computation that needs all registers, and a task that may come in between anywhere ---- */

@@ -95,9 +95,7 @@ AsconBytes together(const AsconSealed& sealed) {
 
 TEST(AsconModel, GivesTheKnownAnswers) {
     EXPECT_EQ(aeadAnswers([](const AsconBytes& associated, const AsconBytes& message) {
-                  auto sealed = asconEncrypt(sixteen(0), sixteen(0x10), associated, message);
-                  EXPECT_EQ(asconDecrypt(sixteen(0), sixteen(0x10), associated, sealed), message);
-                  return together(sealed);
+                  return together(asconEncrypt(sixteen(0), sixteen(0x10), associated, message));
               }),
               aeadFile);
     EXPECT_EQ(hashAnswers([](const AsconBytes& message) {

@@ -4,6 +4,8 @@
 
 #include "ascon_model.h"
 
+#include <cstddef>
+
 namespace {
 
 // The S-box as the standard's table 6; the core uses the formula.
@@ -48,18 +50,14 @@ private:
     }
 };
 
-enum class Direction { Absorb, Encrypt, Decrypt };
-
-// Passes all of `in`, padded, `rate` bytes at a time, with `rounds` between. Returns the output,
-// which is empty if `in` is only absorbed.
-AsconBytes pass(State& state, const AsconBytes& in, size_t rate, int rounds, Direction direction) {
+// Passes all of `in`, padded, `rate` bytes at a time, with `rounds` between. Returns the output.
+AsconBytes pass(State& state, const AsconBytes& in, size_t rate, int rounds) {
     AsconBytes out;
     for (size_t i = 0; i < in.size(); ++i) {
         if (i > 0 && i % rate == 0)
             state.permute(rounds);
-        uint8_t other = static_cast<uint8_t>(state.byte(i % rate) ^ in[i]);
-        out.push_back(other);
-        state.add(i % rate, direction == Direction::Decrypt ? other : in[i]);
+        state.add(i % rate, in[i]);
+        out.push_back(state.byte(i % rate));
     }
     if (!in.empty() && in.size() % rate == 0)
         state.permute(rounds);
@@ -75,7 +73,7 @@ State begin(const AsconKey& key, const AsconKey& nonce, const AsconBytes& associ
     state.permute(12);
     state.addAt(24, key);
     if (!associated.empty()) {
-        pass(state, associated, 16, 8, Direction::Absorb);
+        pass(state, associated, 16, 8);
         state.permute(8);
     }
     state.word[4] ^= 0x8000000000000000;
@@ -97,24 +95,15 @@ AsconKey finish(State& state, const AsconKey& key) {
 AsconSealed asconEncrypt(const AsconKey& key, const AsconKey& nonce, const AsconBytes& associated,
                          const AsconBytes& message) {
     State state = begin(key, nonce, associated);
-    AsconBytes text = pass(state, message, 16, 8, Direction::Encrypt);
+    AsconBytes text = pass(state, message, 16, 8);
     return {text, finish(state, key)};
-}
-
-std::optional<AsconBytes> asconDecrypt(const AsconKey& key, const AsconKey& nonce,
-                                       const AsconBytes& associated, const AsconSealed& sealed) {
-    State state = begin(key, nonce, associated);
-    AsconBytes message = pass(state, sealed.text, 16, 8, Direction::Decrypt);
-    if (finish(state, key) != sealed.tag)
-        return std::nullopt;
-    return message;
 }
 
 std::array<uint8_t, 32> asconHash(const AsconBytes& message) {
     State state;
     state.word[0] = 0x0000080100cc0002;
     state.permute(12);
-    pass(state, message, 8, 12, Direction::Absorb);
+    pass(state, message, 8, 12);
     std::array<uint8_t, 32> digest;
     for (size_t i = 0; i < digest.size(); ++i) {
         if (i % 8 == 0)

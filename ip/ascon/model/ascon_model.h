@@ -7,7 +7,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 using AsconBytes = std::vector<uint8_t>;
@@ -19,7 +18,4 @@ struct AsconSealed {
 
 AsconSealed asconEncrypt(const AsconKey& key, const AsconKey& nonce, const AsconBytes& associated,
                          const AsconBytes& message);
-// Returns the message, or nothing if the tag is wrong.
-std::optional<AsconBytes> asconDecrypt(const AsconKey& key, const AsconKey& nonce,
-                                       const AsconBytes& associated, const AsconSealed& sealed);
 std::array<uint8_t, 32> asconHash(const AsconBytes& message);

@@ -24,25 +24,9 @@ TEST_F(Calls, EveryObjectAnswersThePingAndItsTypes) {
     EXPECT_EQ(servant_.calls, 0);
 }
 
-TEST_F(Calls, WhatDoesNotExistIsSaidWithItsName) {
-    Ice_ObjectPrx nobody = here().proxy("cat/nobody -f side:loop");
-    Ice_Failure failure;
-    EXPECT_EQ(call(nobody, "op"), ICE_OBJECT_NOT_EXIST);
-    Ice_ObjectPrx_failure(&nobody, &failure);
-    EXPECT_EQ(str(failure.identity.name), "nobody");
-    EXPECT_EQ(str(failure.identity.category), "cat");
-    EXPECT_EQ(str(failure.facet), "side");
-    EXPECT_EQ(str(failure.operation), "op");
-    Ice_ObjectPrx facet = here().proxy("thing -f side:loop");
-    EXPECT_EQ(call(facet, "op"), ICE_FACET_NOT_EXIST);
-    servant_.run = returns(ICE_OPERATION_NOT_EXIST);
-    Ice_ObjectPrx thing = here().proxy("thing:loop");
-    EXPECT_EQ(call(thing, "none"), ICE_OPERATION_NOT_EXIST);
-}
-
 TEST_F(Calls, AFailureIsToldOfItsProxyWhateverOthersCall) {
-    Ice_ObjectPrx nobody = here().proxy("nobody:loop"), fails = here().proxy("thing:loop"),
-                  works = fails;
+    Ice_ObjectPrx nobody = here().proxy("cat/nobody -f side:loop"),
+                  fails = here().proxy("thing:loop"), works = fails;
     Ice_Failure failure;
     EXPECT_EQ(call(nobody, "first"), ICE_OBJECT_NOT_EXIST);
     servant_.run = [](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
@@ -57,6 +41,8 @@ TEST_F(Calls, AFailureIsToldOfItsProxyWhateverOthersCall) {
     EXPECT_EQ(failure.unknown.size + failure.identity.name.size + failure.operation.size, 0);
     Ice_ObjectPrx_failure(&nobody, &failure);
     EXPECT_EQ(str(failure.identity.name), "nobody");
+    EXPECT_EQ(str(failure.identity.category), "cat");
+    EXPECT_EQ(str(failure.facet), "side");
     EXPECT_EQ(str(failure.operation), "first");
     EXPECT_EQ(failure.unknown.size, 0);
     Ice_ObjectPrx_failure(&fails, &failure);
@@ -277,67 +263,6 @@ TEST_F(Calls, EveryLimitIsSaidWithItsNameAndValue) {
     EXPECT_EQ(reason(prx_), "::Ice::MemoryLimitException: over ICE_CALLS (4)");
     for (Ice_ObjectPrx& each : busy)
         here().ic.calls[each.call].state = ICE_CALL_FREE;
-}
-
-// ---- later answers, calls in flight, calls from within operations ----
-
-TEST_F(Calls, AServantMayAnswerLaterAndOthersAreServedMeanwhile) {
-    Ice_Reply later{};
-    servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
-        if (str(current.operation) == "slow") {
-            Ice_Current_later(&current, &later);
-            return ICE_LATER;
-        }
-        Ice_OutputStream_writeInt(os, Ice_InputStream_readInt(is));
-        return ICE_OK;
-    };
-    struct Answer {
-        Ice_Status status = ICE_LATER;
-        Ice_Int value = 0;
-        static void take(void* cookie, Ice_Status status, Ice_InputStreamPtr is) {
-            auto* self = static_cast<Answer*>(cookie);
-            self->status = status;
-            if (status == ICE_OK)
-                self->value = Ice_InputStream_readInt(is);
-        }
-    } slow;
-    ASSERT_NE(Ice_ObjectPrx_begin(&prx_, "slow", ICE_RESULTS), nullptr);
-    ASSERT_EQ(Ice_ObjectPrx_invokeAsync(&prx_, &Answer::take, &slow), ICE_OK);
-    EXPECT_EQ(ask(prx_, "quick", 5), 5);
-    EXPECT_EQ(slow.status, ICE_LATER);
-    Ice_OutputStreamPtr os = Ice_Reply_begin(&later);
-    Ice_OutputStream_writeInt(os, 42);
-    EXPECT_EQ(Ice_Reply_end(&later, ICE_OK), ICE_OK);
-    settle();
-    EXPECT_EQ(slow.status, ICE_OK);
-    EXPECT_EQ(slow.value, 42);
-}
-
-TEST_F(Calls, SeveralCallsAreInFlightUpToTheLimit) {
-    std::vector<Ice_Reply> later;
-    servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
-        later.emplace_back();
-        Ice_Current_later(&current, &later.back());
-        return ICE_LATER;
-    };
-    std::vector<Ice_Status> answers;
-    auto take = [](void* cookie, Ice_Status status, Ice_InputStreamPtr) {
-        static_cast<std::vector<Ice_Status>*>(cookie)->push_back(status);
-    };
-    for (int i = 0; i < ICE_CALLS; ++i) {
-        ASSERT_NE(Ice_ObjectPrx_begin(&prx_, "op", 0), nullptr);
-        ASSERT_EQ(Ice_ObjectPrx_invokeAsync(&prx_, take, &answers), ICE_OK);
-    }
-    EXPECT_EQ(Ice_ObjectPrx_begin(&prx_, "op", 0), nullptr);
-    EXPECT_EQ(prx_.status, ICE_LIMIT);
-    settle();
-    ASSERT_EQ(later.size(), static_cast<size_t>(ICE_CALLS));
-    for (size_t i = later.size(); i-- > 0;) { // in the reverse order
-        (void)Ice_Reply_begin(&later[i]);
-        EXPECT_EQ(Ice_Reply_end(&later[i], ICE_OK), ICE_OK);
-    }
-    settle();
-    EXPECT_EQ(answers, std::vector<Ice_Status>(ICE_CALLS, ICE_OK));
 }
 
 TEST_F(Calls, AnOperationMayCallBackBeforeItAnswers) {

@@ -107,14 +107,6 @@ TEST_F(Calls, WhoWaitsForALongOperationGetsSignsOfLife) {
     EXPECT_EQ(beats, 0);
 }
 
-TEST_F(Calls, DestroyClosesInGoodOrder) {
-    ASSERT_EQ(call(prx_, "op"), ICE_OK);
-    U32 begin = here().loop.nowMs();
-    Ice_Communicator_destroy(&here().ic, 1000);
-    EXPECT_LT(here().loop.nowMs() - begin, 1000u) << "the peer closed";
-    EXPECT_FALSE(there().loop.open[0]);
-}
-
 TEST_F(Calls, AfterShutdownNothingIsExecutedAndCallersKnowIt) {
     Ice_ObjectPrx prx = here().proxy("thing:loop"), other = here().proxy("thing:loop -c 1");
     ASSERT_EQ(call(prx, "op"), ICE_OK);

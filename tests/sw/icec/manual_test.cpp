@@ -45,17 +45,6 @@ TEST_F(Manual, ACopyIsChangedAndTheProxyIsNot) {
     EXPECT_EQ(ask(other, "op", 0), 5) << "two-way again";
 }
 
-TEST_F(Manual, AConnectionIsOpenedBeforeACallAndUsedByIt) {
-    Ice_ObjectPrx prx = here().proxy("thing:loop -c 1");
-    int connection = -1;
-    ASSERT_EQ(Ice_ObjectPrx_ice_getConnection(&prx, &connection), ICE_OK);
-    EXPECT_EQ(connection, 2);
-    EXPECT_TRUE(there().loop.open[connection]);
-    EXPECT_EQ(servant_.calls, 0);
-    EXPECT_EQ(call(prx, "op"), ICE_OK);
-    EXPECT_EQ(prx.connection, connection);
-}
-
 TEST_F(Manual, AnAdaptersProxyLeadsToItsObjectWhereverItIsSent) {
     servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr os) {
         Ice_ObjectPrx self;
@@ -173,18 +162,6 @@ TEST_F(Manual, AServantHasRoomForItsResults) {
     EXPECT_EQ(ask(prx_, "op", ICE_ARENA_BYTES), 0x55);
     EXPECT_EQ(ask(prx_, "op", ICE_ARENA_BYTES + 8), -1) << "the servant says what then";
     EXPECT_EQ(ask(prx_, "op", 1), 0x55) << "each call has all of it";
-}
-
-TEST_F(Manual, AProxyIsMadeFromTheIdentityThatIsAskedFor) {
-    Ice_ObjectPrx self{};
-    servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
-        Ice_Identity id = {current.name, current.category};
-        return Ice_ObjectAdapter_createProxyTo(current.adapter, &id, &self);
-    };
-    EXPECT_EQ(Ice_ObjectAdapter_add(&there().adapter, &servant_.base, "cat/x"), ICE_OK);
-    Ice_ObjectPrx prx = here().proxy("cat/x:loop");
-    EXPECT_EQ(call(prx, "op"), ICE_OK);
-    EXPECT_EQ(written(self), "cat/x -t -e 1.1:loop -c 0");
 }
 
 TEST_F(Manual, ALocatorTellsWhereAnIndirectProxyLeads) {

@@ -239,15 +239,6 @@ TEST_F(Tasks, AServerTakesTheRoleFromACallThatWaits) {
     server.join();
 }
 
-// By the transport, as if the object were elsewhere: there is no short cut within a program.
-TEST_F(Tasks, MayCallTheirOwnProgramsObjects) {
-    Ice_ObjectPrx prx;
-    ASSERT_EQ(Ice_ObjectAdapter_createProxy(&server_->adapter, "thing", &prx), ICE_OK);
-    prx.timeoutMs = 60000;
-    EXPECT_EQ(ask(prx, "now", 4), 8);
-    EXPECT_EQ(ask(prx, "later", 4), 12);
-}
-
 // The server listens on the second of the name's addresses only (connections_test.cpp resolves it);
 // the next call finds the connection.
 TEST_F(Tasks, TryEachAddressOfAName) {

@@ -79,14 +79,6 @@ TYPED_TEST(Memory, ReadersThatTakeTheirWordsAtOnceMayAskForMoreThanAFifoHolds) {
     this->run(20000);
 }
 
-TYPED_TEST(Memory, SingleWordsAtFullSpeedEqualTheReference) {
-    NpiTraffic traffic;
-    traffic.maxSize = 0;
-    traffic.bytes = 512;
-    this->all(traffic);
-    this->run(10000);
-}
-
 TYPED_TEST(Memory, RequestersThatTakeTheirWordsSlowlyLoseNone) {
     NpiTraffic traffic;
     traffic.writes = 0.1;

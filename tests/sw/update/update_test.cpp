@@ -352,13 +352,6 @@ TEST(Update, ItGoesOnWhereTheLossOfPowerLeftIt) {
     EXPECT_EQ(vehicle.boot(), 2u);
 }
 
-TEST(Update, AnImageThatRotsIsNotStarted) {
-    Vehicle vehicle;
-    vehicle.updateTo(2);
-    vehicle.memory[Slots_at(&slots_firmware, 1) + SLOTS_IMAGE_AT + 99] ^= 1;
-    EXPECT_EQ(vehicle.boot(), 1u); // better than nothing
-}
-
 TEST(Update, AnOlderImageThatWasNeverTriedIsNotStarted) {
     Vehicle vehicle(5);
     std::fill_n(vehicle.memory.begin() + Slots_at(&slots_firmware, 1), slots_firmware.bytes,

@@ -4,13 +4,11 @@
 // core against the model with a memory that stalls.
 
 #include "Vascon_slot.h"
+#include "ascon_regs.h"
 #include "core_slot.h"
 #include "known_answers.h"
 #include <array>
 #include <gtest/gtest.h>
-extern "C" {
-#include "ascon_regs.h"
-}
 
 namespace {
 

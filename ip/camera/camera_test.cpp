@@ -6,12 +6,10 @@
 #include "Vcamera_slot.h"
 #include "bench.h"
 #include "bus_master.h"
+#include "camera_regs.h"
 #include "model/sensor_model.h"
 #include "npi_memory.h"
 #include <gtest/gtest.h>
-extern "C" {
-#include "camera_regs.h"
-}
 
 namespace {
 

@@ -5,12 +5,10 @@
 #include "Vfir_slot.h"
 #include "core_slot.h"
 #include "fir_proxy.h"
+#include "fir_regs.h"
 #include "model/fir_model.h"
 #include "random.h"
 #include <vector>
-extern "C" {
-#include "fir_regs.h"
-}
 
 namespace {
 

@@ -7,7 +7,6 @@ extern "C" {
 #include <mcpp_lib.h>
 }
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <set>

@@ -24,7 +24,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
-#include <string>
 #include <vector>
 
 class McbError : public std::runtime_error {

@@ -18,7 +18,6 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 // Addresses and bits of its registers (RM0033, 31.5.6).
 namespace fsmc {

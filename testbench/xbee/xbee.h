@@ -9,7 +9,6 @@
 #pragma once
 
 #include "serial_line.h"
-#include <array>
 #include <cstdint>
 #include <deque>
 #include <map>

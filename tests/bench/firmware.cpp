@@ -12,10 +12,6 @@
 #include <array>
 #include <cstdio>
 
-extern "C" {
-#include "uav.h"
-}
-
 namespace {
 
 constexpr double hclk = 120e6; // the board's

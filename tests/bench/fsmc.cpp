@@ -5,14 +5,11 @@
 
 #include "driver_port.h"
 #include "figures.h"
+#include "map_regs.h"
 #include "random.h"
 #include "soc_model.h"
-#include <fmt/format.h>
-
-extern "C" {
-#include "map_regs.h"
 #include "system_regs.h"
-}
+#include <fmt/format.h>
 
 namespace {
 

@@ -4,7 +4,6 @@
 
 #include "VSystemSlot.h"
 #include "bus_master.h"
-#include "random.h"
 #include "system_regs.h"
 #include <gtest/gtest.h>
 

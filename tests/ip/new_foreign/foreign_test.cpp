@@ -15,16 +15,14 @@
 #include "Vmy_requests_slot.h"
 #include "Vmy_slow_memory_slot.h"
 #include "Vmy_words_slot.h"
-#include "registers_apart.h"
-#include <gtest/gtest-spi.h>
-extern "C" {
 #include "a_bridge_regs.h"
 #include "my_late_regs.h"
 #include "my_memory_regs.h"
 #include "my_port_regs.h"
 #include "my_requests_regs.h"
 #include "my_words_regs.h"
-}
+#include "registers_apart.h"
+#include <gtest/gtest-spi.h>
 
 namespace {
 

@@ -7,14 +7,12 @@
 #include "m3_machine.h"
 #include "uav_machine.h"
 #include <algorithm>
-#include <cstring>
 #include <gtest/gtest.h>
 
 extern "C" {
 #include "boot.h"
 #include "map_regs.h"
 #include "system_regs.h"
-#include "uav.h"
 }
 
 namespace {

@@ -5,9 +5,7 @@
 
 #include "Vcrc32_slot.h"
 #include "crc32_proxy.h"
-extern "C" {
 #include "crc32_regs.h"
-}
 
 namespace {
 

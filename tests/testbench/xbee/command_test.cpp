@@ -199,12 +199,6 @@ TEST_F(Commands, FRAnswersAndThenBoots) {
     EXPECT_EQ(across("data", 20 * ms), "data");
 }
 
-TEST_F(Commands, BD7Is111111Baud) {
-    power({{"BD", 7}});
-    EXPECT_NEAR(a->baud(), 111111.1, 0.1);
-    EXPECT_NEAR(a->baud() / 115200 - 1, -0.0355, 0.0001);
-}
-
 TEST_F(Commands, ALiteralRateIsKeptAsTheNearest) {
     EXPECT_EQ(command("ATBD3D090"), "OK\r");
     EXPECT_EQ(command("ATBD"), "3D090\r") << "250,000 is exact";

@@ -19,19 +19,15 @@ TEST_F(Packetizing, APacketLeavesAfterROOfSilence) {
     EXPECT_EQ(a->counters().packetsSent, 1u);
 }
 
-TEST_F(Packetizing, APauseBelowRODoesNotSplit) {
-    power();
-    send("abc", 2 * charNs());
-    send("def", 30 * ms);
-    ASSERT_EQ(packets.size(), 1u);
-    EXPECT_EQ(text(packets[0].bytes), "abcdef");
-}
-
-TEST_F(Packetizing, APauseAboveROSplits) {
-    power();
-    send("abc", 4 * charNs());
-    send("def", 30 * ms);
-    ASSERT_EQ(packets.size(), 2u);
+TEST_F(Packetizing, OnlyAPauseAboveROSplits) {
+    for (uint64_t characters : {2, 4}) {
+        packets.clear();
+        power();
+        send("abc", characters * charNs());
+        send("def", 30 * ms);
+        ASSERT_EQ(packets.size(), characters / 2);
+        EXPECT_EQ(text(packets[0].bytes), characters == 2 ? "abcdef" : "abc");
+    }
 }
 
 TEST_F(Packetizing, RO0SendsAtOnce) {
@@ -136,7 +132,7 @@ protected:
         air_.onPacket([&](uint64_t, const RfPacket& p, RfChannel::Outcome) {
             sent_.assign(p.bytes.begin(), p.bytes.end());
         });
-        step(3'000'000);
+        step(now_ + 3'000'000);
     }
     void step(uint64_t until) {
         for (; now_ < until; now_ += 200) {
@@ -209,24 +205,19 @@ TEST_F(Wire, RepliesHaveTheModemsRateAndBDChangesAfterTheOK) {
     EXPECT_EQ(sent_, "data") << "and the new rate holds";
 }
 
-TEST_F(Wire, WithD6TheModemWaitsForRTS) {
-    connect({{"BD", 7}, {"GT", 2}, {"D6", 1}});
-    pins_.setRts(false, now_);
-    send("+++", 111111);
-    step(now_ + 5'000'000);
-    EXPECT_TRUE(modem_->inCommandMode());
-    EXPECT_TRUE(edges_.empty());
-    pins_.setRts(true, now_);
-    step(now_ + 5'000'000);
-    EXPECT_FALSE(edges_.empty());
-}
-
-TEST_F(Wire, WithoutD6TheModemTakesNoNoticeOfRTS) {
-    connect({{"BD", 7}, {"GT", 2}});
-    pins_.setRts(false, now_);
-    send("+++", 111111);
-    step(now_ + 5'000'000);
-    EXPECT_FALSE(edges_.empty());
+TEST_F(Wire, OnlyWithD6TheModemWaitsForRTS) {
+    for (uint32_t d6 : {0u, 1u}) {
+        connect({{"BD", 7}, {"GT", 2}, {"D6", d6}});
+        edges_.clear();
+        pins_.setRts(false, now_);
+        send("+++", 111111);
+        step(now_ + 5'000'000);
+        EXPECT_TRUE(modem_->inCommandMode());
+        EXPECT_EQ(edges_.empty(), d6 == 1);
+        pins_.setRts(true, now_);
+        step(now_ + 5'000'000);
+        EXPECT_FALSE(edges_.empty());
+    }
 }
 
 TEST_F(Reset, APulseOf200NsResets) {

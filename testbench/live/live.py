@@ -23,12 +23,14 @@ import argparse
 import http.server
 import json
 import os
+import re
 import signal
 import struct
 from http import HTTPStatus
 
 PATIENCE = 10  # seconds
 NEWEST = 128 << 10  # bytes of events.jsonl that a page shows: a long flight does not make it large
+MOST_VEHICLES = 32  # of a modem of the ground
 HERE = os.path.dirname(os.path.abspath(__file__))
 FILES = {  # path: MIME type, file
     "/": ("text/html; charset=utf-8", HERE + "/page/index.html"),
@@ -74,6 +76,12 @@ def newest(path):
             return file.readlines()
     except OSError:
         return []
+
+
+def picture(folder, address):
+    """Path of a vehicle's picture of this flight: with corners, once it has answered."""
+    paths = (f"{folder}/{name}{address}.png" for name in ("after", "before"))
+    return next(filter(os.path.exists, paths), "")
 
 
 def blocks_by_slot(registers):
@@ -147,6 +155,8 @@ def state(folder, slots):
     changed = {name: os.stat(path).st_mtime_ns for name in ("before.png", "report.json")
                if os.path.exists(path := f"{folder}/{name}")}
     shown["frame"] = "before.png" in changed
+    others = ((address, picture(folder, address)) for address in range(2, MOST_VEHICLES + 1))
+    shown["others"] = [[address, os.path.basename(path)] for address, path in others if path]
     # A report older than the picture is of the previous mission.
     shown["over"] = len(changed) == 2 and changed["report.json"] >= changed["before.png"]
     return shown
@@ -166,6 +176,8 @@ class Page(http.server.BaseHTTPRequestHandler):
             return self.send_error(HTTPStatus.FORBIDDEN)
         path = self.path.partition("?")[0]
         frame = self.folder + "/before.png" if path == "/frame.png" else ""
+        if vehicle := re.fullmatch(r"/vehicle(\d{1,2})\.png", path):
+            frame = picture(self.folder, vehicle[1])
         kind, file = FILES.get(path, ("image/png", frame))
         if path == "/state":
             kind, content = "application/json", json.dumps(state(self.folder, self.slots)).encode()

@@ -38,6 +38,20 @@ function showFrame(state) {
     canvas.dataset.features = state.features.length;
 }
 
+// The other vehicles, each as its newest picture.
+function showOthers(others) {
+    const shown = $('others').dataset;
+    if (shown.names === String(others)) return;
+    shown.names = String(others);
+    $('others').replaceChildren(...others.map(([address, name]) => {
+        const figure = element('figure'), image = new Image();
+        image.src = `vehicle${address}.png?${name}`;
+        image.alt = `the frame of vehicle ${address}`;
+        figure.append(image, element('figcaption', `uav${address}${name.startsWith('after') ? ', corners drawn' : ''}`));
+        return figure;
+    }));
+}
+
 function showAir(air) {
     if (!air) return;
     const mega = n => (n / 1e6).toFixed(2);
@@ -132,6 +146,7 @@ async function look() {
         const state = await (await fetch('state', {cache: 'no-store'})).json();
         $('flight').textContent = state.flight;
         showFrame(state);
+        showOthers(state.others);
         showAir(state.air);
         showTimeline(state);
         showCalls(state.calls);

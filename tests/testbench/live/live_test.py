@@ -8,6 +8,7 @@ import contextlib
 import http.client
 import json
 import re
+import shutil
 import socket
 import subprocess
 import sys
@@ -163,6 +164,11 @@ setTimeout(() => top.document.body.append("cut: " + [...document.querySelectorAl
         Path("calls.jsonl").write_bytes(b'7\n[1, 2]\n"text"\n{"what": "\xff"}\n'
                                         b'{"at": 1.0, "who": "a", "what": "b"}\n{"half')
         self.assertEqual([call["who"] for call in state()["calls"]], ["a"])
+        for name in "before2.png", "before3.png", "after3.png":
+            shutil.copy(TREE / "docs/pictures/mission.png", name)
+        self.said = look.browse(base)[0]
+        self.has("uav2</figcaption>", "uav3, corners drawn</figcaption>")
+        self.assertEqual(urllib.request.urlopen(base + "vehicle3.png?after3.png").status, 200)
         crowd = [connect() for _ in range(400)]
         for connection in crowd[-20:]:
             connection.send(b"GET / HTTP/1.1\r\nHost: ")

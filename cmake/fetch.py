@@ -15,6 +15,7 @@ import hashlib
 import json
 import os
 import pathlib
+import platform
 import re
 import shlex
 import shutil
@@ -107,16 +108,17 @@ def unpack(archive, folder, target, suffix=""):
                 file.write_bytes(tar.extractfile(member).read())
 
 
-def packages(name, wanted):
-    """The folder of these packages of Debian 13, unpacked in the cache."""
+def packages(name, wanted, release="trixie"):
+    """The folder of these packages of a Debian release, unpacked in the cache."""
     folder = CACHE / name
     if not (folder / "done").exists():
-        print(f"Fetching {name} from Debian 13, kept apart from the system ...", flush=True)
+        print(f"Fetching {name} from Debian's {release}, kept apart from the system ...",
+              flush=True)
         with tempfile.TemporaryDirectory(dir=CACHE) as work:
             os.makedirs(f"{work}/lists/partial")
             os.makedirs(f"{work}/archives/partial")
             pathlib.Path(work, "private.sources").write_text(
-                f"Types: deb\nURIs: {mirror()}\nSuites: trixie\nComponents: main\n"
+                f"Types: deb\nURIs: {mirror()}\nSuites: {release}\nComponents: main\n"
                 f"Signed-By: {KEYRING}\n")
             own = [f"Dir::Etc::sourcelist={work}/private.sources",
                    "Dir::Etc::sourceparts=/dev/null", f"Dir::State::lists={work}/lists",
@@ -151,6 +153,17 @@ def ghdl(target):
     words = [f"GHDL_PREFIX={root}/usr/lib/ghdl/mcode/vhdl", loader, "--library-path",
              root / f"usr/lib/{os.uname().machine}-linux-gnu", root / "usr/bin/ghdl-mcode"]
     program(target / "ghdl", f'exec env {shlex.join(map(str, words))} "$@"\n')
+
+
+def icegrid(target):
+    """IceGrid's registry and IceStorm (installed, they would start services); two programs"""
+    release = platform.freedesktop_os_release()["VERSION_CODENAME"]
+    library = "libzeroc-icestorm3.7" + ("" if release == "bookworm" else "t64")
+    root = packages(f"icegrid-{release}", ["zeroc-icegrid", "zeroc-icebox", library], release)
+    libraries = root / f"usr/lib/{os.uname().machine}-linux-gnu"
+    for name in ("icegridregistry", "icebox"):
+        program(target / name, f'export LD_LIBRARY_PATH={shlex.quote(str(libraries))}\n'
+                f'exec {shlex.quote(str(root / "usr/bin" / name))} "$@"\n')
 
 
 def ice_source(version):
@@ -227,7 +240,7 @@ def page(target):
 OPTIONAL = {zeroc: "Only these suites need it", svd: "Only the check of icesoc.svd needs it",
             foreign: "Only the examples of foreign cores need it"}
 THINGS = {thing.__name__: thing
-          for thing in (ice, ghdl, lz4, sodium, page, foreign, svd, zeroc)}
+          for thing in (ice, ghdl, icegrid, lz4, sodium, page, foreign, svd, zeroc)}
 
 
 def main():

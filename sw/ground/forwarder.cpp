@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <iterator>
 
 namespace gateway {
 
@@ -30,8 +31,8 @@ void Request::sendTo(const std::shared_ptr<Ice::ObjectPrx>& target, Response onR
                             std::move(onError), std::move(sent), current.ctx);
 }
 
-Forwarder::Forwarder(std::shared_ptr<Ice::ObjectPrx> vehicle, std::chrono::seconds wait)
-    : vehicle_(std::move(vehicle)), wait_(wait) {}
+Forwarder::Forwarder(const std::shared_ptr<Ice::ObjectPrx>& vehicle, std::chrono::seconds wait)
+    : vehicle_(vehicle->ice_connectionCached(false)), wait_(wait) {} // else it gives a lost one
 
 void Forwarder::setCallbacks(std::shared_ptr<Ice::ObjectAdapter> adapter) {
     callbacks_ = std::move(adapter);
@@ -73,6 +74,8 @@ void Forwarder::take(std::shared_ptr<Request> request) {
         room_.wait(lock, [&] { return stopped_ || clientAt(from).bytes < mostQueued; });
         if (stopped_)
             throw Ice::CommunicatorDestroyedException(__FILE__, __LINE__);
+        if (holds_ && !connection_)
+            throw Ice::ObjectNotExistException(__FILE__, __LINE__);
         Client& client = clientAt(from);
         client.bytes += request->parameters.size();
         client.requests.push_back(std::move(request));
@@ -125,6 +128,7 @@ void Forwarder::send() {
         const auto request = nextRequest();
         if (!request)
             break;
+        sent_.insert(request);
         ++underWay_;
         bytesUnderWay_ += request->parameters.size();
         room_.notify_all();
@@ -137,24 +141,26 @@ void Forwarder::send() {
 }
 
 void Forwarder::sendOne(const Connection& connection, const std::shared_ptr<Request>& request) {
-    const auto done = [this, size = request->parameters.size()] {
+    const auto done = [this, request](const std::function<void()>& answer) {
+        bool isAwaited; // else it was given up
         {
             std::lock_guard<std::mutex> lock(mutex_);
             --underWay_;
-            bytesUnderWay_ -= size;
+            bytesUnderWay_ -= request->parameters.size();
+            isAwaited = sent_.erase(request) != 0;
         }
+        if (isAwaited)
+            answer();
         send();
     };
     const auto failed = [request, done](std::exception_ptr why) {
-        fail({request}, why);
-        done();
+        done([&] { fail({request}, why); });
     };
     try {
         request->sendTo(
             connection->createProxy(request->current.id),
             [request, done](bool isOk, const Parameters& out) {
-                request->response(isOk, out);
-                done();
+                done([&] { request->response(isOk, out); });
             },
             failed);
     } catch (const Ice::Exception&) {
@@ -165,19 +171,24 @@ void Forwarder::sendOne(const Connection& connection, const std::shared_ptr<Requ
 void Forwarder::connect() {
     const auto opened = [this](const Connection& connection) {
         connection->setAdapter(callbacks_);
-        connection->setCloseCallback([this](const Connection& closed) {
-            {
-                std::lock_guard<std::mutex> lock(mutex_);
-                if (connection_ == closed)
-                    connection_ = nullptr;
-            }
-            send();
-        });
         {
             std::lock_guard<std::mutex> lock(mutex_);
             connection_ = connection;
             isConnecting_ = false;
+            ++connections_;
         }
+        connection->setCloseCallback([this](const Connection& closed) { // may be at once
+            bool refuses;
+            {
+                std::lock_guard<std::mutex> lock(mutex_);
+                if (connection_ == closed)
+                    connection_ = nullptr;
+                refuses = holds_;
+            }
+            if (refuses)
+                refuseWaiting();
+            send();
+        });
         send();
     };
     try {
@@ -232,6 +243,45 @@ void Forwarder::failAll(std::exception_ptr why) {
     const Requests all = takeOut(std::chrono::steady_clock::time_point::max());
     lock.unlock();
     fail(all, why);
+}
+
+void Forwarder::hold() {
+    {
+        std::lock_guard<std::mutex> lock(mutex_);
+        holds_ = true;
+        if (connection_ || isConnecting_ || stopped_)
+            return;
+        isConnecting_ = true;
+    }
+    connect();
+}
+
+unsigned Forwarder::session() const {
+    std::lock_guard<std::mutex> lock(mutex_);
+    return connection_ ? connections_ : 0;
+}
+
+void Forwarder::refuseWaiting() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    const Requests all = takeOut(std::chrono::steady_clock::time_point::max());
+    lock.unlock();
+    fail(all, std::make_exception_ptr(Ice::ObjectNotExistException(__FILE__, __LINE__)));
+}
+
+void Forwarder::giveUp(std::chrono::milliseconds age) {
+    Requests old;
+    {
+        std::lock_guard<std::mutex> lock(mutex_);
+        const auto due = std::chrono::steady_clock::now() - age;
+        std::copy_if(sent_.begin(), sent_.end(), std::back_inserter(old),
+                     [due](const auto& request) { return request->since < due; });
+        for (const auto& request : old)
+            sent_.erase(request);
+    }
+    fail(old, std::make_exception_ptr(Ice::UnknownException(
+                  __FILE__, __LINE__,
+                  "icesoc-gateway: the vehicle went to another ground meanwhile; whether it has "
+                  "carried this call out is unknown")));
 }
 
 void Forwarder::failLateRequests() {

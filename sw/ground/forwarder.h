@@ -16,6 +16,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 
 namespace gateway {
 
@@ -45,7 +46,7 @@ class Forwarder {
 public:
     // `vehicle`: a proxy with the vehicle's endpoint. `wait`: a request fails if its turn does not
     // come within this time.
-    Forwarder(std::shared_ptr<Ice::ObjectPrx> vehicle, std::chrono::seconds wait);
+    Forwarder(const std::shared_ptr<Ice::ObjectPrx>& vehicle, std::chrono::seconds wait);
 
     // Takes a client's request. Blocks while that client has 256 KiB waiting here.
     void take(std::shared_ptr<Request> request);
@@ -55,6 +56,13 @@ public:
     // This adapter dispatches the vehicle's requests on the clients' connection.
     void setCallbacks(std::shared_ptr<Ice::ObjectAdapter> adapter);
 
+    // Holds a connection to the vehicle from now on; the caller calls it now and then. While there
+    // is none no request waits: the object does not exist here.
+    void hold();
+    unsigned session() const; // which connection is held; 0: none is
+    void refuseWaiting();     // as for an object that does not exist: they were not sent
+    // Fails requests under way that are older: it is unknown whether they were carried out.
+    void giveUp(std::chrono::milliseconds age);
     void failLateRequests(); // the caller calls it now and then
     void stop();             // ends the waiting
 
@@ -80,12 +88,14 @@ private:
     const std::shared_ptr<Ice::ObjectPrx> vehicle_;
     const std::chrono::seconds wait_;
     std::shared_ptr<Ice::ObjectAdapter> callbacks_;
-    std::mutex mutex_; // guards all members below
+    mutable std::mutex mutex_; // guards all members below
     std::condition_variable room_;
     std::map<Connection, Client> clients_;
     std::map<Ice::Identity, Connection> owners_; // of objects that the vehicle calls
     Connection lastServed_, connection_;         // of a client; to the vehicle
-    bool isConnecting_ = false, isSending_ = false, stopped_ = false;
+    std::set<std::shared_ptr<Request>> sent_;    // without an answer
+    bool isConnecting_ = false, isSending_ = false, stopped_ = false, holds_ = false;
+    unsigned connections_ = 0; // to the vehicle, so far
     size_t underWay_ = 0, bytesUnderWay_ = 0;
 };
 

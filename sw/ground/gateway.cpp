@@ -6,16 +6,20 @@
 //
 // Endpoints, TLS, WebSocket, compression and connections are Ice's; forwarder.h shares the radio.
 
-#include "forwarder.h"
+#include "door.h"
 #include "key_file.h"
 #include "rights.h"
 
 #include <CLI/CLI.hpp>
 #include <Ice/Ice.h>
 #include <IceSSL/IceSSL.h>
+#include <IceStorm/IceStorm.h>
 #include <algorithm>
 #include <csignal>
 #include <iostream>
+#include <list>
+#include <optional>
+#include <regex>
 #include <sstream>
 
 extern "C" Ice::Plugin* createXBeeAT(const std::shared_ptr<Ice::Communicator>&, const std::string&,
@@ -26,7 +30,8 @@ namespace {
 using namespace gateway;
 
 struct Options {
-    std::string device, keyFile, modemKeyFile, rights, station, maintenance;
+    std::string device, keyFile, modemKeyFile, rights, station, maintenance, topics;
+    std::vector<std::string> vehicles; // NAME=ADDRESS
     std::string listen = "127.0.0.1:10000";
     int baud = 115200, target = 1, source = 0, rfChannel = 0x0C, pan = 0x3332, guardMs = 1000;
     int trace = 0, wait = 30;
@@ -85,10 +90,13 @@ private:
 // ToStation serves the vehicle's calls on its own connection.
 class ToStation : public Ice::BlobjectArrayAsync {
 public:
-    ToStation(std::shared_ptr<Ice::ObjectPrx> station, std::string where)
-        : station_(std::move(station)), where_(std::move(where)) {}
+    // `events`: they go there, not to `station`, if a topic is given.
+    ToStation(std::shared_ptr<Ice::ObjectPrx> station, std::string where, const Events* events)
+        : station_(std::move(station)), where_(std::move(where)), events_(events) {}
     void ice_invokeAsync(Parameters in, Response response, Failure failed,
                          const Ice::Current& current) override {
+        if (events_)
+            return events_->pass(Request(in, response, failed, current), response, failed);
         if (!station_)
             throw Ice::ObjectNotExistException(__FILE__, __LINE__, current.id, current.facet,
                                                current.operation);
@@ -108,6 +116,7 @@ public:
 private:
     const std::shared_ptr<Ice::ObjectPrx> station_;
     const std::string where_;
+    const Events* const events_;
 };
 
 // Returns Ice's endpoints of "HOST:PORT" or "[::1]:PORT"; other words are endpoints already.
@@ -194,13 +203,13 @@ void setProperties(const std::shared_ptr<Ice::Properties>& p, const Options& o) 
 }
 
 // Returns the endpoint of the vehicle, and of its calls, at the serial port.
-std::string radioEndpoint(const Options& o) {
+std::string radioEndpoint(const Options& o, int address) {
     std::ostringstream s;
     if (o.isWire)
-        s << "serial -d \"" << o.device << "\" -b " << o.baud << " -a " << o.target << " -s "
+        s << "serial -d \"" << o.device << "\" -b " << o.baud << " -a " << address << " -s "
           << o.source;
     else
-        s << "xbee-at -d \"" << o.device << "\" -b " << o.baud << " -a " << o.target << " -s "
+        s << "xbee-at -d \"" << o.device << "\" -b " << o.baud << " -a " << address << " -s "
           << o.source << " -c " << o.rfChannel << " -i " << o.pan << " -g " << o.guardMs;
     s << " -t " << o.wait * 1000;
     return s.str();
@@ -210,8 +219,12 @@ void addOptions(CLI::App& app, Options& o) {
     app.add_option("-d,--device", o.device, "serial port of the modem")->required();
     app.add_option("-b,--baud", o.baud, "baud rate (115200 is the modem's BD 7)")
         ->check(CLI::IsMember({1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200, 250000}));
-    app.add_option("-a,--address", o.target, "the UAV's 16-bit address")
-        ->check(CLI::Range(0, 0xFFFF));
+    const auto one = app.add_option("-a,--address", o.target, "the UAV's 16-bit address")
+                         ->check(CLI::Range(0, 0xFFFF));
+    app.add_option("--vehicle", o.vehicles,
+                   "NAME=ADDRESS, as uav7=0x0007, for each of several vehicles; their ports follow "
+                   "one another in the order of names")
+        ->excludes(one);
     app.add_option("-s,--source", o.source, "own 16-bit address")->check(CLI::Range(0, 0xFFFF));
     app.add_option("-c,--channel", o.rfChannel, "RF channel")->check(CLI::Range(0x0B, 0x1A));
     app.add_option("-i,--pan", o.pan, "network id")->check(CLI::Range(0, 0xFFFF));
@@ -230,8 +243,12 @@ void addOptions(CLI::App& app, Options& o) {
     app.add_option("-l,--listen", o.listen,
                    "HOST:PORT of this machine for clients, [::1]:PORT too; port 0: any, it is "
                    "printed. Or Ice's endpoints, e.g. \"ssl -p 10001\"");
-    app.add_option("--station", o.station,
-                   "HOST:PORT, or Ice's endpoints, of the server that the UAV calls");
+    const auto station = app.add_option(
+        "--station", o.station, "HOST:PORT, or Ice's endpoints, of the server that the UAV calls");
+    app.add_option("--topics", o.topics,
+                   "proxy of IceStorm's topic manager: the UAVs' calls go to the topic 'vehicles', "
+                   "and who comes and goes")
+        ->excludes(station);
     app.add_option("--maintenance", o.maintenance,
                    "HOST:PORT, or Ice's endpoints, at which the objects 'keys' and 'update' are "
                    "reached, too. Without: nowhere");
@@ -243,47 +260,156 @@ void addOptions(CLI::App& app, Options& o) {
         ->check(CLI::Range(1, 3600));
     app.add_option("-t,--trace", o.trace, "0 errors, 1 link and connections, 2 AT commands")
         ->check(CLI::Range(0, 2));
-    app.footer("Ice's properties are options, too, e.g. --IceSSL.CertFile=gateway.p12");
+    app.footer("Ice's properties are options, too, e.g. --IceSSL.CertFile=gateway.p12. With "
+               "--Ice.Default.Locator\neach vehicle is in IceGrid's registry by its name, uav1 for "
+               "address 1, while it is here.");
 }
+
+// Returns the vehicles' names and addresses. Throws if they make no sense.
+std::map<std::string, int> fleetOf(const Options& o) {
+    std::map<std::string, int> fleet;
+    for (const std::string& text : o.vehicles) {
+        const size_t equals = text.find('=');
+        const std::string name = text.substr(0, equals);
+        size_t end = 0;
+        const std::string number = equals < text.size() ? text.substr(equals + 1) : "";
+        const int address =
+            number.empty() || !std::isdigit(number[0]) ? -1 : std::stoi(number, &end, 0);
+        if (name.empty() || address < 0 || address > 0xFFFF || end < number.size())
+            throw std::runtime_error("'" + text + "': give NAME=ADDRESS, as uav7=0x0007");
+        if (!fleet.emplace(name, address).second)
+            throw std::runtime_error("'" + name + "' is the name of two vehicles");
+    }
+    if (fleet.empty())
+        fleet["uav" + std::to_string(o.target)] = o.target;
+    return fleet;
+}
+
+// Returns endpoints whose ports are `place` above the given ones; 0 stays: any.
+std::string portsAbove(const std::string& endpoints, int place) {
+    static const std::regex port(R"(-p ([1-9]\d*))");
+    std::string text;
+    std::smatch at;
+    auto from = endpoints.begin();
+    for (; std::regex_search(from, endpoints.end(), at, port); from = at.suffix().first)
+        text += at.prefix().str() + "-p " + std::to_string(std::stoi(at[1]) + place);
+    return text + std::string(from, endpoints.end());
+}
+
+// Returns what publishes to the topic "vehicles" of an IceStorm service; null: none is given.
+std::shared_ptr<Ice::ObjectPrx> publisherOf(const std::shared_ptr<Ice::Communicator>& ic,
+                                            const std::string& topics) {
+    if (topics.empty())
+        return nullptr;
+    const auto manager = Ice::checkedCast<IceStorm::TopicManagerPrx>(ic->stringToProxy(topics));
+    try {
+        return manager->create("vehicles")->getPublisher();
+    } catch (const IceStorm::TopicExists&) {
+        return manager->retrieve("vehicles")->getPublisher();
+    }
+}
+
+std::shared_ptr<Ice::ObjectAdapter> adapterOf(const std::shared_ptr<Ice::Communicator>& ic,
+                                              const std::string& name, const std::string& endpoints,
+                                              const std::shared_ptr<Ice::Object>& servant) {
+    const auto made = endpoints.empty() ? ic->createObjectAdapter(name)
+                                        : ic->createObjectAdapterWithEndpoints(name, endpoints);
+    made->addDefaultServant(servant, "");
+    return made;
+}
+
+// Vehicle is one vehicle behind the modem, and the doors that lead to it.
+class Vehicle {
+public:
+    // `place`: of the vehicle in the fleet; its ports are that many above the given ones.
+    Vehicle(const std::shared_ptr<Ice::Communicator>& ic, const Options& o, const Rights& rights,
+            const std::string& name, int address, int place,
+            const std::shared_ptr<Ice::ObjectPrx>& publisher)
+        : forwarder(ic->stringToProxy("any:" + radioEndpoint(o, address)),
+                    std::chrono::seconds(o.wait)),
+          events(name, publisher),
+          door(name, forwarder, events,
+               [=, &o, &rights] {
+                   const auto servant = std::make_shared<ToVehicle>(forwarder, rights, false);
+                   return adapterOf(ic, named("Clients"), portsAbove(endpointsOf(o.listen), place),
+                                    servant);
+               }),
+          place_(place) {
+        const auto opened = door.open();
+        const int port = checkedPort(opened);
+        if (ic->getDefaultLocator())
+            opened->destroy(); // until the vehicle is here
+        else
+            doors_.push_back(opened);
+        if (!o.maintenance.empty())
+            doors_.push_back(adapterOf(ic, named("Maintenance"),
+                                       portsAbove(endpointsOf(o.maintenance), place),
+                                       std::make_shared<ToVehicle>(forwarder, rights, true)));
+        const int maintenance = o.maintenance.empty() ? 0 : checkedPort(doors_.back());
+        forwarder.setCallbacks(adapterOf(ic, "", "", std::make_shared<ToClients>(forwarder)));
+        std::shared_ptr<Ice::ObjectPrx> station;
+        if (!o.station.empty())
+            station = ic->stringToProxy("station:" + endpointsOf(o.station));
+        adapterOf(ic, named("Radio"), radioEndpoint(o, address),
+                  std::make_shared<ToStation>(station, o.station, publisher ? &events : nullptr))
+            ->activate();
+        const std::string what = o.vehicles.empty() ? "the UAV" : name;
+        if (!ic->getDefaultLocator())
+            std::cout << "gateway: port " << port << " leads to " << what << " behind " << o.device
+                      << std::endl;
+        if (maintenance)
+            std::cout << "gateway: maintenance at port " << maintenance << std::endl;
+        for (const auto& open : doors_)
+            open->activate();
+    }
+
+    Forwarder forwarder;
+    const Events events;
+    Door door;
+
+private:
+    std::string named(const char* adapter) const {
+        return adapter + (place_ ? std::to_string(place_) : "");
+    }
+    const int place_;
+    std::vector<std::shared_ptr<Ice::ObjectAdapter>> doors_;
+};
 
 // Passes requests until the signal to stop.
 void serve(const std::shared_ptr<Ice::Communicator>& ic, const Options& o) {
     const Rights rights = o.rights.empty() ? Rights() : Rights(o.rights);
-    const std::string radio = radioEndpoint(o);
-    Forwarder forwarder(ic->stringToProxy("any:" + radio), std::chrono::seconds(o.wait));
-    const auto adapter = [&](const std::string& name, const std::string& endpoints,
-                             const std::shared_ptr<Ice::Object>& servant) {
-        const auto made = endpoints.empty() ? ic->createObjectAdapter(name)
-                                            : ic->createObjectAdapterWithEndpoints(name, endpoints);
-        made->addDefaultServant(servant, "");
-        return made;
+    const auto publisher = publisherOf(ic, o.topics);
+    std::list<Vehicle> vehicles;
+    for (const auto& [name, address] : fleetOf(o))
+        vehicles.emplace_back(ic, o, rights, name, address, int(vehicles.size()), publisher);
+    const auto locator = ic->getDefaultLocator();
+    const auto ask = [&](void (Door::*question)(const std::shared_ptr<Ice::LocatorPrx>&)) {
+        std::string trouble;
+        try {
+            for (Vehicle& vehicle : vehicles)
+                (vehicle.door.*question)(locator);
+        } catch (const Ice::Exception& e) {
+            trouble = e.ice_id();
+        }
+        return trouble;
     };
-    const auto servant = [&](bool allowsMaintenance) {
-        return std::make_shared<ToVehicle>(forwarder, rights, allowsMaintenance);
-    };
-    std::vector<std::shared_ptr<Ice::ObjectAdapter>> doors;
-    doors.push_back(adapter("Clients", endpointsOf(o.listen), servant(false)));
-    if (!o.maintenance.empty())
-        doors.push_back(adapter("Maintenance", endpointsOf(o.maintenance), servant(true)));
-    const int port = checkedPort(doors.front());
-    checkedPort(doors.back());
-    forwarder.setCallbacks(adapter("", "", std::make_shared<ToClients>(forwarder)));
-    std::shared_ptr<Ice::ObjectPrx> station;
-    if (!o.station.empty())
-        station = ic->stringToProxy("station:" + endpointsOf(o.station));
-    adapter("Radio", radio, std::make_shared<ToStation>(station, o.station))->activate();
-    std::cout << "gateway: port " << port << " leads to the UAV behind " << o.device << std::endl;
-    if (doors.size() > 1)
-        std::cout << "gateway: maintenance at port " << checkedPort(doors.back()) << std::endl;
-    for (const auto& door : doors)
-        door->activate();
     sigset_t signals;
     sigemptyset(&signals);
     for (int signal : {SIGINT, SIGTERM, SIGHUP})
         sigaddset(&signals, signal);
-    for (const timespec second{1, 0}; sigtimedwait(&signals, nullptr, &second) < 0;)
-        forwarder.failLateRequests();
-    forwarder.stop();
+    const timespec pause{0, Door::lookMs * 1'000'000};
+    for (std::string before; sigtimedwait(&signals, nullptr, &pause) < 0;) {
+        for (Vehicle& vehicle : vehicles)
+            vehicle.forwarder.failLateRequests();
+        const std::string trouble = locator ? ask(&Door::look) : "";
+        if (!trouble.empty() && before.empty())
+            std::cerr << "gateway: the registry does not answer: " + trouble + "\n";
+        before = trouble;
+    }
+    if (locator)
+        ask(&Door::leave);
+    for (Vehicle& vehicle : vehicles)
+        vehicle.forwarder.stop();
     ic->destroy(); // while the objects that its callbacks use exist
 }
 

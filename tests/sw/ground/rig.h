@@ -27,11 +27,8 @@ public:
     using Bytes = std::vector<uint8_t>;
 
     explicit Rig(uint64_t seed) : air(seed), random_(seed), link_(new Link) {
-        XBee::Options u;
-        u.name = "uav";
-        u.set = {{"BD", 7}, {"MY", 1}, {"DL", 0}};
         replaceGround({});
-        uav = std::make_unique<XBee>(line_, air, u);
+        move(air);
         bootUav();
         thread_ = std::thread([this] { run(); });
     }
@@ -48,6 +45,14 @@ public:
         g.set.insert({{"GT", guardMs}, {"D6", 1}});
         ground.reset();
         ground = std::make_unique<XBee>(pty, air, g);
+    }
+    // The UAV flies to where the modems of an air hear it.
+    void move(RfChannel& to) {
+        XBee::Options u;
+        u.name = "uav";
+        u.set = {{"BD", 7}, {"MY", 1}, {"DL", 0}};
+        uav.reset();
+        uav = std::make_unique<XBee>(line_, to, u);
     }
     // Runs `f` between two steps of the models.
     template <class F> auto with(F f) {
@@ -129,14 +134,14 @@ private:
                 air.advance(now_);
                 ground->advance(now_);
                 uav->advance(now_);
+                Bytes heard;
+                heard.swap(line_.received);
                 if (uavRuns) {
-                    Link_receive(link(), line_.received.data(),
-                                 static_cast<U32>(line_.received.size()), us());
+                    Link_receive(link(), heard.data(), static_cast<U32>(heard.size()), us());
                     if (step)
                         step();
                     Link_poll(link(), us());
                 }
-                line_.received.clear();
             }
             std::this_thread::sleep_for(std::chrono::microseconds(300));
         }

@@ -219,6 +219,8 @@ TEST(GatewayOptions, WrongOnesAreRefusedByName) {
         {{{"--rights", "/no/such/file"}}, "cannot be read"},
         {{{"-l", "0.0.0.0:0"}}, "every machine of the network"},
         {{{"--maintenance", "tcp -p 0"}}, "every machine of the network"},
+        {{{"--vehicle", "uav7=x"}}, "give NAME=ADDRESS"},
+        {{{"--topics", "t:tcp -h 127.0.0.1 -p 1"}}, "refused"},
         {{{"--station", "x"}}, "give HOST:PORT"}};
     for (auto [options, said] : cases) {
         options.insert({{"-d", "/dev/null"}, {"-l", "127.0.0.1:0"}});

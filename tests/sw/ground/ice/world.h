@@ -17,6 +17,7 @@
 #include <netinet/tcp.h>
 #include <set>
 #include <stdexcept>
+#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -43,6 +44,7 @@ public:
         argv.push_back(nullptr);
         pid_ = fork();
         if (pid_ == 0) {
+            prctl(PR_SET_PDEATHSIG, SIGKILL); // a test that is killed leaves no server
             dup2(ends[1], 1);
             dup2(ends[1], 2);
             close_range(3, ~0u, 0); // Ice's sockets are inherited otherwise

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: MIT
+//
+// directory_test: gateways beside IceGrid's registries and IceStorm, all real processes: stock
+// clients find a vehicle by its name, follow it from one ground to another, and hear of it.
+
+#include "gateway_rig.h"
+#include <IceStorm/IceStorm.h>
+#include <filesystem>
+#include <optional>
+
+namespace {
+
+// Returns a port of 127.0.0.1 that is free, below those that the system gives away by itself.
+int freePort() {
+    static int port = 20000 + getpid() % 1000 * 12;
+    for (;;) {
+        const int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+        sockaddr_in a{};
+        a.sin_family = AF_INET;
+        a.sin_port = htons(static_cast<uint16_t>(++port));
+        a.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        const bool isFree = bind(fd, reinterpret_cast<sockaddr*>(&a), sizeof a) == 0;
+        close(fd);
+        if (isFree)
+            return port;
+    }
+}
+
+// A registry of IceGrid; it may be killed and started again.
+class Registry {
+public:
+    // `master`: endpoint of the registry that this one replicates; empty: this one is the master.
+    explicit Registry(const std::string& name, std::string master = "")
+        : name_(name), master_(std::move(master)),
+          folder_(testing::TempDir() + "registry." + std::to_string(getpid()) + "." + name) {
+        std::filesystem::create_directories(folder_);
+        start();
+    }
+    ~Registry() {
+        process_.reset();
+        std::filesystem::remove_all(folder_);
+    }
+    void start() {
+        std::vector<std::string> words = {PROGRAMS "/icegridregistry",
+                                          "--IceGrid.InstanceName=IceGrid",
+                                          "--IceGrid.Registry.ReplicaName=" + name_,
+                                          "--IceGrid.Registry.Client.Endpoints=" + endpoint(),
+                                          "--IceGrid.Registry.Server.Endpoints=tcp -h 127.0.0.1",
+                                          "--IceGrid.Registry.Internal.Endpoints=tcp -h 127.0.0.1",
+                                          "--IceGrid.Registry.Discovery.Enabled=0",
+                                          "--IceGrid.Registry.DynamicRegistration=1",
+                                          "--IceGrid.Registry.LMDB.Path=" + folder_,
+                                          "--IceGrid.Registry.LMDB.MapSize=8",
+                                          "--Ice.PrintAdapterReady=1"};
+        if (!master_.empty())
+            words.push_back("--Ice.Default.Locator=IceGrid/Locator:" + master_);
+        process_ = std::make_unique<Server>(words);
+        if (!process_->hear("Registry.Client ready"))
+            throw std::runtime_error("no registry: " + process_->said());
+    }
+    void kill() {
+        ::kill(process_->pid(), SIGKILL);
+        process_->wait();
+    }
+    std::string endpoint() const { return "tcp -h 127.0.0.1 -p " + std::to_string(port_); }
+
+private:
+    const std::string name_, master_, folder_;
+    const int port_ = freePort();
+    std::unique_ptr<Server> process_;
+};
+
+class Directory : public Gateway {
+protected:
+    Directory() {
+        XBee::Options options;
+        options.name = "the other ground";
+        options.set = {{"GT", Rig::guardMs}, {"D6", 1}};
+        ground_ = std::make_unique<XBee>(pty_, air_, options);
+        world_.rig.with([this, relay = world_.rig.step] {
+            world_.rig.step = [this, relay] {
+                air_.advance(world_.rig.ns());
+                ground_->advance(world_.rig.ns());
+                relay();
+            };
+        });
+    }
+    ~Directory() override {
+        world_.rig.with([&] { world_.rig.step = nullptr; });
+        fly(true);
+    }
+    // The vehicle is where the first ground hears it, or where the other one does.
+    void fly(bool isHome) {
+        world_.rig.with([&] { world_.rig.move(isHome ? world_.rig.air : air_); });
+    }
+    std::string locator() const {
+        return "IceGrid/Locator:" + master_.endpoint() + ":" + replica_.endpoint();
+    }
+    std::unique_ptr<Server> ground(const std::string& port, std::vector<std::string> more = {}) {
+        more.insert(more.begin(), {GATEWAY, "-d", port, "-g", std::to_string(Rig::guardMs), "-l",
+                                   "127.0.0.1:0", "--Ice.Default.Locator=" + locator()});
+        return std::make_unique<Server>(more);
+    }
+    Ice::CommunicatorPtr client() const {
+        return program({{"Ice.Default.Locator", locator()},
+                        {"Ice.Default.InvocationTimeout", "60000"},
+                        {"Ice.RetryIntervals", "0 100 200 400 800"}});
+    }
+    // Calls until one is answered; how many may have been carried out or not.
+    int callOn(const std::shared_ptr<RadioTest::UavPrx>& echo) {
+        for (int unknown = 0;;)
+            try {
+                ++id_;
+                EXPECT_EQ(echo->repeat(id_, {1, 2}), (RadioTest::Bytes{1, 2}));
+                return unknown;
+            } catch (const Ice::NotRegisteredException&) {
+            } catch (const Ice::UnknownException&) {
+                ++unknown;
+            }
+    }
+
+    Registry master_{"Master"}, replica_{"Replica", master_.endpoint()};
+    RfChannel air_{testSeed()};
+    PtyLine pty_;
+    std::unique_ptr<XBee> ground_;
+    int id_ = 0;
+};
+
+TEST_F(Directory, ClientsFollowAVehicleFromOneGroundToAnother) {
+    auto home =
+        ground(world_.rig.pty.path(), {"-t", "1", "--vehicle", "uav7=1", "--vehicle", "uav8=8"});
+    auto other = ground(pty_.path(), {"--vehicle", "uav7=1"});
+    ASSERT_TRUE(home->hear("uav7 is here")) << home->said();
+    Ice::CommunicatorHolder ic(client());
+    const auto echo = Ice::uncheckedCast<RadioTest::UavPrx>(ic->stringToProxy("echo@uav7"));
+    EXPECT_EQ(callOn(echo), 0);
+    EXPECT_THROW(ic->stringToProxy("echo@uav8")->ice_ping(), Ice::NotRegisteredException) << "away";
+    Server python({"/usr/bin/python3", "-c",
+                   "import Ice, sys; ic = Ice.initialize(sys.argv)\n"
+                   "ic.stringToProxy('echo@uav7').ice_ping(); ic.destroy()",
+                   "--Ice.Default.Locator=" + locator()});
+    EXPECT_EQ(python.wait(), 0) << python.said();
+    for (bool isHome : {false, true}) {
+        fly(isHome);
+        const auto now = [this] { return world_.rig.with([&] { return world_.rig.ns(); }); };
+        const uint64_t since = now();
+        if (isHome)
+            EXPECT_NO_THROW(echo->ice_ping()) << "idempotent: Ice calls again";
+        else
+            EXPECT_LE(callOn(echo), 1) << "only a call under way";
+        const double seconds = double(now() - since) / 1e9;
+        std::printf("directory: handed over after %.2f s\n", seconds);
+        EXPECT_LT(seconds, 5);
+        ASSERT_TRUE(isHome || home->hear("0x0001: link connecting")) << home->said();
+    }
+    EXPECT_EQ(world_.echo->twice(), 0);
+    EXPECT_EQ(home->stop() + other->stop(), 0);
+    EXPECT_THROW(echo->ice_ping(), Ice::NotRegisteredException) << "both grounds have ended";
+}
+
+TEST_F(Directory, OneOfTwoRegistriesIsKilledAndComesBack) {
+    auto home = ground(world_.rig.pty.path()), other = ground(pty_.path());
+    ASSERT_TRUE(home->hear("uav1 is here")) << home->said();
+    Ice::CommunicatorHolder ic(client());
+    const auto echoOf = [](const Ice::CommunicatorPtr& by) {
+        return Ice::uncheckedCast<RadioTest::UavPrx>(by->stringToProxy("echo@uav1"));
+    };
+    EXPECT_EQ(callOn(echoOf(ic.communicator())), 0);
+    master_.kill();
+    EXPECT_EQ(callOn(echoOf(ic.communicator())), 0) << "a client that knows the way";
+    {
+        Ice::CommunicatorHolder late(client());
+        EXPECT_EQ(callOn(echoOf(late.communicator())), 0) << "one that asks the replica";
+    }
+    fly(false); // no registry can be told before the master is back
+    ASSERT_TRUE(other->hear("does not answer")) << other->said();
+    master_.start();
+    ASSERT_TRUE(other->hear("uav1 is here")) << other->said();
+    Ice::CommunicatorHolder late(client());
+    EXPECT_EQ(callOn(echoOf(late.communicator())), 0);
+    callOn(echoOf(ic.communicator()));
+    EXPECT_EQ(world_.echo->twice(), 0);
+}
+
+// Subscriber notes what it hears: the vehicle's name, and how a client reaches it, and bytes of the
+// other parameters.
+class Subscriber : public Ice::Blobject {
+public:
+    bool ice_invoke(std::vector<Ice::Byte> in, std::vector<Ice::Byte>&,
+                    const Ice::Current& current) override {
+        const auto ic = current.adapter->getCommunicator();
+        Ice::InputStream parameters(ic, in);
+        std::shared_ptr<Ice::ObjectPrx> vehicle;
+        parameters.startEncapsulation();
+        parameters.read(vehicle);
+        std::lock_guard<std::mutex> lock(mutex_);
+        heard_ += current.operation + " " + current.ctx.at("vehicle") + " " +
+                  (vehicle ? Ice::identityToString(vehicle->ice_getIdentity()) + "@" +
+                                 vehicle->ice_getAdapterId()
+                           : "none") +
+                  " " + std::to_string(parameters.b.end() - parameters.i) + "\n";
+        return true;
+    }
+    std::string heard() {
+        std::lock_guard<std::mutex> lock(mutex_);
+        return heard_;
+    }
+
+private:
+    std::mutex mutex_;
+    std::string heard_;
+};
+
+TEST_F(Directory, ATopicTellsWhichVehiclesComeAndGo) {
+    const std::string topics =
+        "IceStorm/TopicManager:tcp -h 127.0.0.1 -p " + std::to_string(freePort());
+    Server storm({PROGRAMS "/icebox",
+                  "--IceBox.Service.IceStorm=IceStormService,37:createIceStorm "
+                  "--IceStorm.TopicManager.Endpoints='" +
+                      topics.substr(topics.find(':') + 1) +
+                      "' --IceStorm.Publish.Endpoints='tcp -h 127.0.0.1' --IceStorm.Transient=1",
+                  "--IceBox.PrintServicesReady=IceStorm"});
+    ASSERT_TRUE(storm.hear("IceStorm ready")) << storm.said();
+    Ice::CommunicatorHolder ic(client());
+    const auto subscriber = std::make_shared<Subscriber>();
+    const auto adapter = ic->createObjectAdapterWithEndpoints("", "tcp -h 127.0.0.1");
+    adapter->activate();
+    Ice::checkedCast<IceStorm::TopicManagerPrx>(ic->stringToProxy(topics))
+        ->create("vehicles")
+        ->subscribeAndGetPublisher({{"reliability", "ordered"}}, adapter->addWithUUID(subscriber));
+    auto home = ground(world_.rig.pty.path(), {"--topics", topics});
+    ASSERT_TRUE(home->hear("uav1 is here")) << home->said();
+    const auto uav = world_.uav;
+    const auto station = uav->getCommunicator()->stringToProxy(world_.echo->station);
+    Ice::OutputStream out(uav->getCommunicator());
+    out.startEncapsulation();
+    out.write(std::shared_ptr<Ice::ObjectPrx>(uav->createProxy({"uav", ""})));
+    out.write(std::string("parameters"));
+    out.endEncapsulation();
+    std::vector<Ice::Byte> parameters, answer;
+    out.finished(parameters);
+    EXPECT_TRUE(
+        station->ice_invoke("vehicleState", Ice::OperationMode::Normal, parameters, answer));
+    world_.rig.with([&] { world_.rig.uav->power(false, world_.rig.ns()); });
+    ASSERT_TRUE(home->hear("uav1 has left")) << home->said();
+    const std::string events = "vehicleState uav1 uav@uav1 1\n"
+                               "vehicleState uav1 uav@uav1 11\n"
+                               "vehicleState uav1 none 1\n";
+    world_.rig.until([&] { return subscriber->heard().size() >= events.size(); });
+    EXPECT_EQ(subscriber->heard(), events);
+    world_.rig.with([&] { world_.rig.uav->power(true, world_.rig.ns()); });
+    ASSERT_TRUE(home->hear("uav1 is here")) << home->said();
+}
+
+} // namespace

@@ -22,6 +22,7 @@ TITLES = {
     "plugin": "Stock Ice through the plugin",
     "trust": "Attacks, losses of power in updates, bytes of a key",
     "load": "Load on the ground's engine and gateway", "modem": "Modem set-up",
+    "directory": "IceGrid's registry and IceStorm",
     "fsmc": "FSMC bridge", "memory": "Memory ports", "firmware": "Firmware on the Cortex-M3",
     "cores": "Cores", "slice": "Slice compiler", "size": "Bytes of the firmware's layers",
 }

@@ -1,0 +1,129 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""directory: what IceGrid's registry and IceStorm take: look-ups, registrations and events in a
+second of a processor, which whatever else the machine does hardly changes.
+
+    directory.py FOLDER OUTPUT.json [--brief]      FOLDER: where cmake/fetch.py icegrid put both
+"""
+import os
+import pathlib
+import random
+import re
+import subprocess
+import sys
+import tempfile
+import time
+
+import Ice
+
+from figures import figure, leave
+
+Ice.loadSlice(f"-I{Ice.getSliceDir()} {Ice.getSliceDir()}/IceStorm/IceStorm.ice")
+import IceStorm  # the module that the line above has made
+
+UNDER_WAY = 64  # calls without an answer
+HERE = "tcp -h 127.0.0.1"
+
+
+class Service:
+    """A program with an object adapter, whose endpoint it prints as Ice traces it."""
+
+    def __init__(self, adapter, *words):
+        self.process = subprocess.Popen([*words], text=True, stdout=subprocess.PIPE,
+                                        stderr=subprocess.STDOUT)
+        said = ""
+        while not (found := re.search(f"for object adapter .*{adapter}':\n +(tcp.*)\n", said)):
+            line = self.process.stdout.readline()
+            if not line:
+                sys.exit(f"directory: {words[0]} has ended: {said}")
+            said += line
+        self.endpoint = found[1]
+
+    def spent(self):
+        """Seconds of a processor so far."""
+        words = pathlib.Path(f"/proc/{self.process.pid}/stat").read_text().rsplit(") ")[1].split()
+        return (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")
+
+    def end(self):
+        self.process.terminate()
+        self.process.communicate()
+
+
+def rate(service, calls):
+    """Of calls that are given as functions: how many the service takes in its second."""
+    begin, waiting = service.spent(), []
+    for call in calls:
+        if len(waiting) == UNDER_WAY:
+            waiting.pop(0).result()
+        waiting.append(call())
+    for answer in waiting:
+        answer.result()
+    return len(calls) / max(service.spent() - begin, 0.01)
+
+
+def registry(ic, folder, work, count, calls):
+    """Registers `count` vehicles, and looks them up."""
+    service = Service("Registry.Client", folder / "icegridregistry",
+                      "--IceGrid.InstanceName=IceGrid", "--IceGrid.Registry.DynamicRegistration=1",
+                      *(f"--IceGrid.Registry.{door}.Endpoints={HERE}"
+                        for door in ("Internal", "Server", "Client")),
+                      "--IceGrid.Registry.Discovery.Enabled=0", "--Ice.Trace.Network=2",
+                      f"--IceGrid.Registry.LMDB.Path={work}")
+    locator = Ice.LocatorPrx.checkedCast(ic.stringToProxy(f"IceGrid/Locator:{service.endpoint}"))
+    book, door = locator.getRegistry(), ic.stringToProxy(f"any:{HERE} -p 10000")
+    told = rate(service, [lambda name=f"uav{i}": book.setAdapterDirectProxyAsync(name, door)
+                          for i in range(count)])
+    names = [f"uav{random.randrange(count)}" for _ in range(calls)]
+    found = rate(service, [lambda name=name: locator.findAdapterByIdAsync(name) for name in names])
+    if locator.findAdapterById("uav1") != door:
+        sys.exit("directory: the registry leads elsewhere")
+    service.end()
+    of = f"with {count} vehicles, a second of a processor"
+    return [figure(f"{what} {of}", round(value), "")
+            for what, value in (("registrations", told), ("look-ups", found))]
+
+
+class Counter(Ice.Blobject):
+    heard = 0
+
+    def ice_invoke(self, parameters, current):
+        self.heard += 1
+        return True, b""
+
+
+def storm(ic, folder, subscribers, events):
+    """Publishes events as long as a vehicle's, and counts them where they arrive."""
+    service = Service("TopicManager", folder / "icebox",
+                      "--IceBox.Service.IceStorm=IceStormService,37:createIceStorm "
+                      f"--IceStorm.TopicManager.Endpoints='{HERE}' --Ice.Trace.Network=2 "
+                      f"--IceStorm.Publish.Endpoints='{HERE}' --IceStorm.Transient=1")
+    topic = IceStorm.TopicManagerPrx.checkedCast(
+        ic.stringToProxy(f"IceStorm/TopicManager:{service.endpoint}")).create("vehicles")
+    counters = [Counter() for _ in range(subscribers)]
+    adapter = ic.createObjectAdapterWithEndpoints("", HERE)
+    for counter in counters:
+        topic.subscribeAndGetPublisher({"reliability": "ordered"}, adapter.addWithUUID(counter))
+    adapter.activate()
+    publisher, event = topic.getPublisher(), bytes([106, 0, 0, 0, 1, 1]) + bytes(100)
+    begin = service.spent()
+    rate(service, [lambda: publisher.ice_invokeAsync(
+        "vehicleState", Ice.OperationMode.Normal, event, {"vehicle": "uav7"})] * events)
+    while any(counter.heard < events for counter in counters):
+        time.sleep(0.01)
+    taken = events / max(service.spent() - begin, 0.01)
+    adapter.destroy()
+    service.end()
+    return figure(f"events to {subscribers} subscribers, a second of a processor", round(taken), "")
+
+
+def main(folder, output, brief=""):
+    folder, many = pathlib.Path(folder), 1 if brief else 20
+    with tempfile.TemporaryDirectory() as work, Ice.initialize() as ic:
+        figures = registry(ic, folder, work, 500 * many, 2000 * many)
+        figures += [storm(ic, folder, subscribers, 500 * many) for subscribers in (1, 10)]
+    for entry in figures:
+        print(f"{entry['value']:10,.0f} {entry['name']}")
+    leave(output, figures)
+
+
+main(*sys.argv[1:]) if len(sys.argv) > 2 else sys.exit(__doc__)

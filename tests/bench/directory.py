@@ -44,7 +44,10 @@ class Service:
         words = pathlib.Path(f"/proc/{self.process.pid}/stat").read_text().rsplit(") ")[1].split()
         return (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")
 
-    def end(self):
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
         self.process.terminate()
         self.process.communicate()
 
@@ -63,21 +66,21 @@ def rate(service, calls):
 
 def registry(ic, folder, work, count, calls):
     """Registers `count` vehicles, and looks them up."""
-    service = Service("Registry.Client", folder / "icegridregistry",
-                      "--IceGrid.InstanceName=IceGrid", "--IceGrid.Registry.DynamicRegistration=1",
-                      *(f"--IceGrid.Registry.{door}.Endpoints={HERE}"
-                        for door in ("Internal", "Server", "Client")),
-                      "--IceGrid.Registry.Discovery.Enabled=0", "--Ice.Trace.Network=2",
-                      f"--IceGrid.Registry.LMDB.Path={work}")
-    locator = Ice.LocatorPrx.checkedCast(ic.stringToProxy(f"IceGrid/Locator:{service.endpoint}"))
-    book, door = locator.getRegistry(), ic.stringToProxy(f"any:{HERE} -p 10000")
-    told = rate(service, [lambda name=f"uav{i}": book.setAdapterDirectProxyAsync(name, door)
-                          for i in range(count)])
-    names = [f"uav{random.randrange(count)}" for _ in range(calls)]
-    found = rate(service, [lambda name=name: locator.findAdapterByIdAsync(name) for name in names])
-    if locator.findAdapterById("uav1") != door:
-        sys.exit("directory: the registry leads elsewhere")
-    service.end()
+    with Service("Registry.Client", folder / "icegridregistry", "--IceGrid.InstanceName=IceGrid",
+                 "--IceGrid.Registry.DynamicRegistration=1",
+                 *(f"--IceGrid.Registry.{door}.Endpoints={HERE}"
+                   for door in ("Internal", "Server", "Client")),
+                 "--IceGrid.Registry.Discovery.Enabled=0", "--Ice.Trace.Network=2",
+                 f"--IceGrid.Registry.LMDB.Path={work}") as service:
+        locator = Ice.LocatorPrx.checkedCast(
+            ic.stringToProxy(f"IceGrid/Locator:{service.endpoint}"))
+        book, door = locator.getRegistry(), ic.stringToProxy(f"any:{HERE} -p 10000")
+        told = rate(service, [lambda i=i: book.setAdapterDirectProxyAsync(f"uav{i}", door)
+                              for i in range(count)])
+        found = rate(service, [lambda i=random.randrange(count):
+                               locator.findAdapterByIdAsync(f"uav{i}") for _ in range(calls)])
+        if locator.findAdapterById("uav1") != door:
+            sys.exit("directory: the registry leads elsewhere")
     of = f"with {count} vehicles, a second of a processor"
     return [figure(f"{what} {of}", round(value), "")
             for what, value in (("registrations", told), ("look-ups", found))]
@@ -93,26 +96,26 @@ class Counter(Ice.Blobject):
 
 def storm(ic, folder, subscribers, events):
     """Publishes events as long as a vehicle's, and counts them where they arrive."""
-    service = Service("TopicManager", folder / "icebox",
-                      "--IceBox.Service.IceStorm=IceStormService,37:createIceStorm "
-                      f"--IceStorm.TopicManager.Endpoints='{HERE}' --Ice.Trace.Network=2 "
-                      f"--IceStorm.Publish.Endpoints='{HERE}' --IceStorm.Transient=1")
-    topic = IceStorm.TopicManagerPrx.checkedCast(
-        ic.stringToProxy(f"IceStorm/TopicManager:{service.endpoint}")).create("vehicles")
-    counters = [Counter() for _ in range(subscribers)]
-    adapter = ic.createObjectAdapterWithEndpoints("", HERE)
-    for counter in counters:
-        topic.subscribeAndGetPublisher({"reliability": "ordered"}, adapter.addWithUUID(counter))
+    adapter, counters = ic.createObjectAdapterWithEndpoints("", HERE), []
     adapter.activate()
-    publisher, event = topic.getPublisher(), bytes([106, 0, 0, 0, 1, 1]) + bytes(100)
-    begin = service.spent()
-    rate(service, [lambda: publisher.ice_invokeAsync(
-        "vehicleState", Ice.OperationMode.Normal, event, {"vehicle": "uav7"})] * events)
-    while any(counter.heard < events for counter in counters):
-        time.sleep(0.01)
-    taken = events / max(service.spent() - begin, 0.01)
+    with Service("TopicManager", folder / "icebox",
+                 "--IceBox.Service.IceStorm=IceStormService,37:createIceStorm "
+                 f"--IceStorm.TopicManager.Endpoints='{HERE}' --Ice.Trace.Network=2 "
+                 f"--IceStorm.Publish.Endpoints='{HERE}' --IceStorm.Transient=1") as service:
+        topic = IceStorm.TopicManagerPrx.checkedCast(
+            ic.stringToProxy(f"IceStorm/TopicManager:{service.endpoint}")).create("vehicles")
+        for _ in range(subscribers):
+            counters.append(Counter())
+            topic.subscribeAndGetPublisher({"reliability": "ordered"},
+                                           adapter.addWithUUID(counters[-1]))
+        publisher, event = topic.getPublisher(), bytes([106, 0, 0, 0, 1, 1]) + bytes(100)
+        begin = service.spent()
+        rate(service, [lambda: publisher.ice_invokeAsync(
+            "vehicleState", Ice.OperationMode.Normal, event, {"vehicle": "uav7"})] * events)
+        while any(counter.heard < events for counter in counters):
+            time.sleep(0.01)
+        taken = events / max(service.spent() - begin, 0.01)
     adapter.destroy()
-    service.end()
     return figure(f"events to {subscribers} subscribers, a second of a processor", round(taken), "")
 
 

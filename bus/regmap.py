@@ -191,8 +191,7 @@ def table(b):
 
 
 def c_header(b):
-    s = (f"/* Generated from {b.name}.regs.json: do not edit.\n * {b.doc} */\n"
-         f"#ifndef {b.prefix}_REGS_H\n#define {b.prefix}_REGS_H\n\n")
+    s = f"/* Generated from {b.name}.regs.json: do not edit.\n * {b.doc} */\n#pragma once\n\n"
     for c in b.constants:
         s += f"#define {b.prefix}_{c['name']} 0x{c['value']:X}U /* {c['doc']} */\n"
     for r in b.registers:
@@ -203,7 +202,7 @@ def c_header(b):
         for f in r["fields"]:
             s += (f"#define {name}_{f['name']}_LSB {f['lsb']}U /* {f['doc']} */\n"
                   f"#define {name}_{f['name']}_MASK 0x{mask_of(f):X}U\n")
-    return s + (table(b) if b.is_slot else "") + "\n#endif\n"
+    return s + (table(b) if b.is_slot else "")
 
 
 def vhdl(b):

@@ -3,8 +3,7 @@
  * ascon_servant: Cores::Ascon (Ascon.ice) by the core in a slot. It does the processor's part:
  * buffers in DDR3, registers, the wait.
  */
-#ifndef ASCON_SERVANT_H
-#define ASCON_SERVANT_H
+#pragma once
 
 #include "Ascon.h"
 #include "hw_core.h"
@@ -20,5 +19,3 @@ typedef struct Ascon_Core {
 
 Hw_Status Ascon_Core_init(Ascon_Core* self, U32 slot, U32 memory, const Hw_Port* port,
                           void* context);
-
-#endif

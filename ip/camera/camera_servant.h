@@ -3,8 +3,7 @@
  * camera_servant: Cores::Camera (Camera.ice) by the core in a slot. Pixels never pass the
  * processor.
  */
-#ifndef CAMERA_SERVANT_H
-#define CAMERA_SERVANT_H
+#pragma once
 
 #include "Camera.h"
 #include "hw_core.h"
@@ -16,5 +15,3 @@ typedef struct Camera_Core {
 
 Hw_Status Camera_Core_init(Camera_Core* self, U32 slot, U32 memory, const Hw_Port* port,
                            void* context);
-
-#endif

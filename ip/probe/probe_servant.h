@@ -2,8 +2,7 @@
  *
  * probe_servant: Probes::Probe (Probe.ice) by the core in a slot.
  */
-#ifndef PROBE_SERVANT_H
-#define PROBE_SERVANT_H
+#pragma once
 
 #include "Probe.h"
 #include "hw_core.h"
@@ -18,5 +17,3 @@ typedef struct Probe_Core {
 
 Hw_Status Probe_Core_init(Probe_Core* self, U32 slot, U32 memory, const Hw_Port* port,
                           void* context);
-
-#endif

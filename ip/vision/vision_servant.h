@@ -3,8 +3,7 @@
  * vision_servant: HwProcessingEngine (sw/apps/uav/Autopilot.ice) by the vision core in a slot, with
  * the functions of a generated servant (docs/hw-mapping.md).
  */
-#ifndef VISION_SERVANT_H
-#define VISION_SERVANT_H
+#pragma once
 
 #include "Autopilot.h"
 #include "hw_core.h"
@@ -23,5 +22,3 @@ Hw_Status Vision_Core_init(Vision_Core* self, U32 slot, U32 memory, const Hw_Por
                            void* context);
 void Vision_Core_interrupt(Vision_Core* self);
 U32 Vision_Core_poll(Vision_Core* self, U32 nowMs);
-
-#endif

@@ -10,14 +10,6 @@ namespace {
 
 using DKind = Declaration::Kind;
 
-// "ICE_METRICS_ICE_H" of Ice/Metrics.ice
-std::string guardOf(const CContext& c) {
-    std::string guard = cFileName(c.names, "_ICE_" + c.names.headerExtension);
-    for (char& ch : guard)
-        ch = ch >= 'a' && ch <= 'z' ? static_cast<char>(ch - 32) : ch;
-    return guard;
-}
-
 // Several files may declare an interface or class: C90 allows one typedef.
 void forwardDeclarations(Writer& w, const CContext& c) {
     for (const auto& d : c.unit.declarations) {
@@ -295,9 +287,7 @@ void declareInterface(Writer& w, const CContext& c, const Declaration& d) {
 
 std::string headerFile(const CContext& c) {
     Writer w = c.begin("Types, proxies and servants. Mapping: docs/slice-mapping.md.");
-    std::string guard = guardOf(c);
-    w.line("#ifndef " + guard);
-    w.line("#define " + guard);
+    w.line("#pragma once");
     w.blank();
     w.line("#include \"ice_operation.h\"");
     if (c.usesClasses())
@@ -323,8 +313,6 @@ std::string headerFile(const CContext& c) {
     w.blank();
     w.line("#ifdef __cplusplus");
     w.line("}");
-    w.line("#endif");
-    w.blank();
     w.line("#endif");
     return w.text();
 }

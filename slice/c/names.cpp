@@ -49,7 +49,7 @@ std::string cIdentifier(const std::string& name) {
         "hwStatus", "memcpy", "memset",
         // parameters and variables of generated functions
         "call", "current", "ex", "is", "os", "reply", "result", "self", "status"};
-    bool isOurs = name.find("_ICE_") != std::string::npos; // include guards of headers
+    bool isOurs = false;
     for (const char* prefix : {"ice_", "Ice_", "ICE_", "hw_", "Hw_", "HW_"})
         isOurs = isOurs || name.rfind(prefix, 0) == 0;
     return isOurs || reserved.count(name) ? name + "_" : name;

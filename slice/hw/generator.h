@@ -25,15 +25,6 @@ GeneratedFile testSkeleton(const Block& b);
 
 // ---- the head and the ports of a wrapper ----
 
-struct Port {
-    std::string name; // with _i or _o
-    bool isOut = false;
-    unsigned width = 1;
-    std::string group;          // of the first port of a group: the group's heading
-    const Call* call = nullptr; // 0: a port that each wrapper has
-};
-
-std::vector<Port> wrapperPorts(const Block& b);
 // Writes a wrapper's first comment; `mark` begins its lines.
 void wrapperHead(Writer& w, const Block& b, const std::string& mark);
 

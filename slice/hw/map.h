@@ -97,6 +97,17 @@ struct Block {
     std::vector<const Word*> words() const;
 };
 
+// A port of a wrapper.
+struct Port {
+    std::string name; // with _i or _o
+    bool isOut = false;
+    unsigned width = 1;
+    std::string group;          // of the first port of a group: the group's heading
+    const Call* call = nullptr; // 0: a port that each wrapper has
+};
+
+std::vector<Port> wrapperPorts(const Block& b);
+
 // Maps all hardware interfaces of the unit's main file; errors are in `diagnostics`.
 std::vector<Block> mapHardware(const Unit& unit, Diagnostics& diagnostics);
 

@@ -5,7 +5,6 @@
 #include "c/names.h"
 #include "hw/generator.h"
 #include "text/doc_comment.h"
-#include "text/writer.h"
 #include <algorithm>
 #include <cstdio>
 

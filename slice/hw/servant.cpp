@@ -263,9 +263,8 @@ void pollFunction(Writer& w, const Block& b) {
 
 GeneratedFile servantHeader(const Block& b) {
     Writer w = begin(b, b.interface->id() + ", done by the core in a slot.");
-    std::string guard = upperCase(b.name) + "_SERVANT_H", type = coreType(b);
-    w.line("#ifndef " + guard);
-    w.line("#define " + guard);
+    std::string type = coreType(b);
+    w.line("#pragma once");
     w.blank();
     w.line("#include \"" + b.header + "\"");
     w.line("#include \"hw_core.h\"");
@@ -302,8 +301,6 @@ GeneratedFile servantHeader(const Block& b) {
             amdDeclarations(w, b, c);
         else if (c.isEvent)
             eventDeclaration(w, b, c);
-    w.blank();
-    w.line("#endif");
     return {b.name + "_servant.h", w.text()};
 }
 

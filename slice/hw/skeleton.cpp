@@ -6,7 +6,6 @@
 #include "c/names.h"
 #include "c/operations.h"
 #include "hw/generator.h"
-#include "text/writer.h"
 #include <algorithm>
 #include <cctype>
 #include <sstream>

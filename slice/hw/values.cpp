@@ -5,7 +5,6 @@
 #include "c/names.h"
 #include "c/operations.h"
 #include "hw/generator.h"
-#include "hw/map.h"
 #include <algorithm>
 #include <set>
 

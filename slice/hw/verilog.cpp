@@ -3,8 +3,6 @@
 // verilog: the wrapper over bus_registers: from words to ports with the interface's names.
 
 #include "hw/generator.h"
-#include "hw/map.h"
-#include "text/writer.h"
 #include <cstdio>
 #include <map>
 

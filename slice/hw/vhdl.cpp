@@ -5,8 +5,6 @@
 
 #include "front/symbols.h"
 #include "hw/generator.h"
-#include "hw/map.h"
-#include "text/writer.h"
 #include <algorithm>
 #include <cstdio>
 

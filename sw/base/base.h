@@ -2,8 +2,7 @@
  *
  * base: integer types of stated width for C90, which has no <stdint.h>.
  */
-#ifndef BASE_H
-#define BASE_H
+#pragma once
 
 typedef unsigned char U8;
 typedef unsigned short U16;
@@ -14,5 +13,3 @@ typedef signed int S32;
 /* Fails to compile on a machine whose integers have other widths. */
 typedef char base_check_u16[sizeof(U16) == 2 ? 1 : -1];
 typedef char base_check_u32[sizeof(U32) == 4 ? 1 : -1];
-
-#endif

@@ -10,8 +10,7 @@
  *
  * A nonce must never be used twice with one key. Neither branches nor addresses depend on secrets.
  */
-#ifndef ASCON_H
-#define ASCON_H
+#pragma once
 
 #include "base.h"
 
@@ -42,5 +41,3 @@ int Ascon_isSame(const U8* a, const U8* b, U32 size);
 
 /* Overwrites with zeros, also where the compiler sees no later read. */
 void Ascon_wipe(void* bytes, U32 size);
-
-#endif

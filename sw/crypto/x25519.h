@@ -9,8 +9,7 @@
  * bits on a Cortex-M3, whose multiplications of 32 bits into 64 end early. A call takes 480 bytes
  * of stack.
  */
-#ifndef X25519_H
-#define X25519_H
+#pragma once
 
 #include "base.h"
 
@@ -18,5 +17,3 @@
 
 /* Multiplies a point by a number, both of 32 bytes; `point` 0: the curve's base point. */
 void X25519(U8* result, const U8* number, const U8* point);
-
-#endif

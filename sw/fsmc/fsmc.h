@@ -16,8 +16,7 @@
  * one page of 64 MiB (the driver moves the page register where one does not): else the callers
  * lock.
  */
-#ifndef FSMC_H
-#define FSMC_H
+#pragma once
 
 #include "base.h"
 
@@ -68,5 +67,3 @@ U32 FSMC_streamRead(U32 address, U16* data, U32 halfwords);
 /* Reads and clears the bridge's error event. Returns FSMC_OK, or FSMC_BUS_ERROR: then `where`, if
  * not 0, becomes slot * 16 + word of the last such access, with bit 16 set for a write. */
 FSMC_Status FSMC_checkError(U32* where);
-
-#endif

@@ -3,8 +3,7 @@
  * fsmc_bank: the FSMC's other modes by name, for bridges that are built for them: contents of a
  * bank's BCR, BTR and BWTR (RM0033, 31.5.6). FSMC_init needs none of this.
  */
-#ifndef FSMC_BANK_H
-#define FSMC_BANK_H
+#pragma once
 
 #include "fsmc.h"
 
@@ -39,5 +38,3 @@ typedef struct FSMC_Bank {
  * Streams (FSMC_streamRead, FSMC_streamWrite) are for the plain bridge and FSMC_init's settings
  * only. */
 FSMC_Status FSMC_initBanks(const FSMC_Port* port, void* context, const FSMC_Bank banks[2]);
-
-#endif

@@ -2,8 +2,7 @@
  *
  * fsmc_private: registers of the FSMC, and the mode and times that FSMC_init gives it.
  */
-#ifndef FSMC_PRIVATE_H
-#define FSMC_PRIVATE_H
+#pragma once
 
 #include "fsmc.h"
 
@@ -48,5 +47,3 @@ FSMC_Status fsmc_identify(void);
 
 /* Turns a DDR3 address into one in the window, and moves the page register where it must. */
 U32 fsmc_windowAddress(U32 address);
-
-#endif

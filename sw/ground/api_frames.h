@@ -10,8 +10,7 @@
 //   88 ID LETTER LETTER STATUS VALUE...     its answer
 //   8A STATUS                               the modem has started, or the like
 
-#ifndef GROUND_API_FRAMES_H
-#define GROUND_API_FRAMES_H
+#pragma once
 
 #include <algorithm>
 #include <cstddef>
@@ -157,5 +156,3 @@ private:
 };
 
 } // namespace XBeeAT
-
-#endif

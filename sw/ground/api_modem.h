@@ -2,8 +2,7 @@
 //
 // api_modem: a modem in API mode: packets go to it with a target, and it answers for each.
 
-#ifndef GROUND_API_MODEM_H
-#define GROUND_API_MODEM_H
+#pragma once
 
 #include "api_frames.h"
 
@@ -78,5 +77,3 @@ private:
 };
 
 } // namespace XBeeAT
-
-#endif

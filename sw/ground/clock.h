@@ -4,8 +4,7 @@
 // mission slow and no time-out early. A simulator gives the programs that it starts the name of its
 // counters' file (sim_status.h) in the environment variable XBEEAT_CLOCK.
 
-#ifndef GROUND_CLOCK_H
-#define GROUND_CLOCK_H
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -55,5 +54,3 @@ private:
 };
 
 } // namespace XBeeAT
-
-#endif

@@ -6,8 +6,7 @@
 // A ground has a vehicle once a connection to it stands, and loses it with the link's session. The
 // ground that got it last is in the registry; another that still hears it stands by.
 
-#ifndef GROUND_DOOR_H
-#define GROUND_DOOR_H
+#pragma once
 
 #include "forwarder.h"
 
@@ -67,5 +66,3 @@ private:
 };
 
 } // namespace gateway
-
-#endif

@@ -4,8 +4,7 @@
 // reached by it. An engine has one thread. All communicators of the process that name one device
 // share its engine.
 
-#ifndef GROUND_ENGINE_H
-#define GROUND_ENGINE_H
+#pragma once
 
 #include "api_modem.h"
 #include "clock.h"
@@ -72,5 +71,3 @@ private:
 };
 
 } // namespace XBeeAT
-
-#endif

@@ -6,8 +6,7 @@
 // The clients take turns, a request each, and a few requests are under way at a time: so a client
 // that sends much, or never reads, delays the others only a little. A request goes at most once.
 
-#ifndef GROUND_FORWARDER_H
-#define GROUND_FORWARDER_H
+#pragma once
 
 #include <Ice/Ice.h>
 #include <chrono>
@@ -100,5 +99,3 @@ private:
 };
 
 } // namespace gateway
-
-#endif

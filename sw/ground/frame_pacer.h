@@ -7,8 +7,7 @@
 // and each loss would cost two. One frame may wait for the silence to end, so that the line does
 // not rest longer.
 
-#ifndef GROUND_FRAME_PACER_H
-#define GROUND_FRAME_PACER_H
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -65,5 +64,3 @@ private:
 };
 
 } // namespace XBeeAT
-
-#endif

@@ -7,8 +7,7 @@
 // The line without an address (0x0001) is for every vehicle that has none of its own; # begins a
 // comment. No key is ever printed.
 
-#ifndef GROUND_KEY_FILE_H
-#define GROUND_KEY_FILE_H
+#pragma once
 
 #include <array>
 #include <map>
@@ -39,5 +38,3 @@ private:
 };
 
 } // namespace XBeeAT
-
-#endif

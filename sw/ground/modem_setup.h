@@ -2,8 +2,7 @@
 //
 // modem_setup: finds a modem's baud rate on a serial port and sets it up by AT commands.
 
-#ifndef GROUND_MODEM_SETUP_H
-#define GROUND_MODEM_SETUP_H
+#pragma once
 
 #include "serial_port.h"
 #include "settings.h"
@@ -52,5 +51,3 @@ private:
 };
 
 } // namespace XBeeAT
-
-#endif

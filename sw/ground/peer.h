@@ -2,8 +2,7 @@
 //
 // peer: one vehicle, as programs of the ground see it: the link with it, and their connections.
 
-#ifndef GROUND_PEER_H
-#define GROUND_PEER_H
+#pragma once
 
 #include "settings.h"
 #include "stream.h"
@@ -132,5 +131,3 @@ private:
 void makePipe(int pipeEnds[2]);
 
 } // namespace XBeeAT
-
-#endif

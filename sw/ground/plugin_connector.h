@@ -2,8 +2,7 @@
 //
 // plugin_connector: lets Ice open connections and accept those of the UAV.
 
-#ifndef GROUND_PLUGIN_CONNECTOR_H
-#define GROUND_PLUGIN_CONNECTOR_H
+#pragma once
 
 #include "plugin_transceiver.h"
 
@@ -80,5 +79,3 @@ private:
 };
 
 } // namespace XBeeAT
-
-#endif

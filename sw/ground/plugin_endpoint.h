@@ -3,8 +3,7 @@
 // plugin_endpoint: an xbee-at endpoint: its options as text and on the wire, and the factory that
 // makes it.
 
-#ifndef GROUND_PLUGIN_ENDPOINT_H
-#define GROUND_PLUGIN_ENDPOINT_H
+#pragma once
 
 #include "plugin_connector.h"
 
@@ -232,5 +231,3 @@ private:
 };
 
 } // namespace XBeeAT
-
-#endif

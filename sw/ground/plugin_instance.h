@@ -2,8 +2,7 @@
 //
 // plugin_instance: what the endpoints of one communicator share: defaults, logger, peers.
 
-#ifndef GROUND_PLUGIN_INSTANCE_H
-#define GROUND_PLUGIN_INSTANCE_H
+#pragma once
 
 #include "engine.h"
 
@@ -108,5 +107,3 @@ private:
 typedef IceUtil::Handle<Instance> InstancePtr;
 
 } // namespace XBeeAT
-
-#endif

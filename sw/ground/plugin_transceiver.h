@@ -2,8 +2,7 @@
 //
 // plugin_transceiver: a connection, as Ice sees it: the program's end of a stream.
 
-#ifndef GROUND_PLUGIN_TRANSCEIVER_H
-#define GROUND_PLUGIN_TRANSCEIVER_H
+#pragma once
 
 #include "engine.h"
 #include "plugin_instance.h"
@@ -84,5 +83,3 @@ private:
 };
 
 } // namespace XBeeAT
-
-#endif

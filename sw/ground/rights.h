@@ -9,8 +9,7 @@
 // certificate has the subject "". A call passes if one rule allows it. Every caller of an
 // object may ask it for its type and ping it.
 
-#ifndef GROUND_RIGHTS_H
-#define GROUND_RIGHTS_H
+#pragma once
 
 #include <Ice/Ice.h>
 
@@ -38,5 +37,3 @@ private:
 std::string subjectOf(const std::shared_ptr<Ice::Connection>& connection);
 
 } // namespace gateway
-
-#endif

@@ -2,8 +2,7 @@
 //
 // serial_port: the modem's serial port; the clock counts its bytes.
 
-#ifndef GROUND_SERIAL_PORT_H
-#define GROUND_SERIAL_PORT_H
+#pragma once
 
 #include "clock.h"
 
@@ -39,5 +38,3 @@ private:
 };
 
 } // namespace XBeeAT
-
-#endif

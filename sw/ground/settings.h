@@ -2,8 +2,7 @@
 //
 // settings: an engine's settings of its serial port and its modem.
 
-#ifndef GROUND_SETTINGS_H
-#define GROUND_SETTINGS_H
+#pragma once
 
 #include "key_file.h"
 
@@ -41,5 +40,3 @@ struct Settings {
 using Log = std::function<void(int level, const std::string& text)>;
 
 } // namespace XBeeAT
-
-#endif

@@ -6,8 +6,7 @@
 // A program may keep step with simulated time (clock.h). Time then stands still while the program
 // works, and until it has read what its serial port was given.
 
-#ifndef GROUND_SIM_STATUS_H
-#define GROUND_SIM_STATUS_H
+#pragma once
 
 #include <cstdint>
 #include <cstring>
@@ -50,5 +49,3 @@ constexpr uint64_t simCount(uint64_t toGround) {
 constexpr uint64_t simSession(uint64_t keeper) {
     return keeper * 0x9E3779B97F4A7C15u >> simCountBits << simCountBits;
 }
-
-#endif

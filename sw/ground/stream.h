@@ -3,8 +3,7 @@
 // stream: one connection of a program: its socket, the Ice messages on it, and its state between
 // program and link. Of Ice it knows only the 14 bytes before each message and a request's number.
 
-#ifndef GROUND_STREAM_H
-#define GROUND_STREAM_H
+#pragma once
 
 #include <poll.h>
 #include <string>
@@ -99,5 +98,3 @@ private:
 };
 
 } // namespace XBeeAT
-
-#endif

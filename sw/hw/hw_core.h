@@ -5,8 +5,7 @@
  * A core has the registers of its interface in one slot. Each operation has a bit, 0..15. Calls of
  * different operations may come from different tasks; those of one operation come one at a time.
  */
-#ifndef HW_CORE_H
-#define HW_CORE_H
+#pragma once
 
 #include "base.h"
 
@@ -92,5 +91,3 @@ U32 Hw_floatBits(float value);
 float Hw_float(U32 bits);
 U32 Hw_doubleBits(double value, int high);
 double Hw_double(U32 low, U32 high);
-
-#endif

@@ -3,8 +3,7 @@
  * hw_instance: the chip's cores with their servants; the table is generated from ip/cores.list
  * (soc_cores.c).
  */
-#ifndef HW_INSTANCE_H
-#define HW_INSTANCE_H
+#pragma once
 
 #include "Registers.h"
 #include "hw_core.h"
@@ -25,5 +24,3 @@ extern const Hw_Instance hw_instances[];
 
 /* The hashes of the registers that the firmware was built with, a line a slot; `chip` is 0. */
 extern const Hw_Contract hw_contracts[MAP_CONTRACTS];
-
-#endif

@@ -2,8 +2,7 @@
  *
  * hw_listener: the proxy that a core's events go to. One task sets it, another one uses it.
  */
-#ifndef HW_LISTENER_H
-#define HW_LISTENER_H
+#pragma once
 
 #include "icec.h"
 
@@ -17,5 +16,3 @@ void Hw_Listener_init(Hw_Listener* self);
 void Hw_Listener_set(Hw_Listener* self, const Ice_ObjectPrx* proxy);
 /* Copies the proxy. Returns 0 if there is none. */
 int Hw_Listener_get(const Hw_Listener* self, Ice_ObjectPrx* proxy);
-
-#endif

@@ -7,8 +7,7 @@
  * the minimal run time (docs/icec.md): minimal/ice_minimal.c instead of the full one's files.
  * Those of the link are in link.h; what a TCP server bears is set at run time (tcp_endpoint.h).
  */
-#ifndef ICE_CONFIG_H
-#define ICE_CONFIG_H
+#pragma once
 
 /* Bytes of a message that comes in, header included: 8192, from 64. The radio link takes up to
  * LINK_MAX_MESSAGE. A communicator has ICE_NESTING buffers of this size. */
@@ -99,6 +98,4 @@
  * a silent connection up after 60 s. */
 #ifndef ICE_HEARTBEAT_MS
 #define ICE_HEARTBEAT_MS 15000
-#endif
-
 #endif

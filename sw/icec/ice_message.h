@@ -3,8 +3,7 @@
  * ice_message: what the full and the minimal run time share: IceP's messages as bytes (their heads,
  * their check, requests, replies, encapsulations), and functions that make proxies.
  */
-#ifndef ICE_MESSAGE_H
-#define ICE_MESSAGE_H
+#pragma once
 
 #include "icec.h"
 
@@ -63,5 +62,3 @@ void icec_put(Ice_OutputStreamPtr os, const char* text);
 void icec_putNumber(Ice_OutputStreamPtr os, U32 value);
 /* Splits "category/name", or "name". */
 Ice_Identity icec_parseIdentity(const char* text);
-
-#endif

@@ -2,8 +2,7 @@
  *
  * ice_objects: the members of communicators and adapters. Included by icec.h only.
  */
-#ifndef ICE_OBJECTS_H
-#define ICE_OBJECTS_H
+#pragma once
 
 #define ICEC_FULL 1 /* the run time has all features, and serves several tasks */
 
@@ -90,5 +89,3 @@ struct Ice_Communicator {
     Ice_Byte requestData[ICE_REQUEST_MAX];
     Ice_Byte in[ICE_NESTING][ICE_MESSAGE_MAX], out[ICE_RESULT_MAX];
 };
-
-#endif

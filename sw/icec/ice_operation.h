@@ -2,8 +2,7 @@
  *
  * ice_operation: the tables by which generated code describes an interface.
  */
-#ifndef ICE_OPERATION_H
-#define ICE_OPERATION_H
+#pragma once
 
 #include "icec.h"
 
@@ -36,5 +35,3 @@ struct Ice_Base {
 Ice_Status Ice_Object_dispatch(const Ice_Interface* interface, const void* table,
                                Ice_ObjectPtr self, const Ice_Current* current,
                                Ice_InputStreamPtr is, Ice_OutputStreamPtr os);
-
-#endif

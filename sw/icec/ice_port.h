@@ -2,8 +2,7 @@
  *
  * ice_port: IceC's needs from below: a transport, and tasks where there are several.
  */
-#ifndef ICE_PORT_H
-#define ICE_PORT_H
+#pragma once
 
 #include "ice_stream.h"
 
@@ -103,5 +102,3 @@ typedef struct Ice_Os {
 } Ice_Os;
 
 extern const Ice_Os Ice_Os_none;
-
-#endif

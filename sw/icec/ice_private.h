@@ -3,8 +3,7 @@
  * ice_private: declares the functions that the full run time's files share, from the bottom to the
  * top.
  */
-#ifndef ICE_PRIVATE_H
-#define ICE_PRIVATE_H
+#pragma once
 
 #include "ice_message.h"
 
@@ -91,5 +90,3 @@ Ice_Status icec_await(Ice_CommunicatorPtr ic, int (*waits)(Ice_CommunicatorPtr i
 
 /* The slot of Ice_Os in which tasks sleep that want to receive; 0..ICE_CALLS-1 belong to calls. */
 #define ICEC_SERVER_SLOT ICE_CALLS
-
-#endif

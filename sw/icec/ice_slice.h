@@ -2,8 +2,7 @@
  *
  * ice_slice: shared by slices of exceptions and of classes.
  */
-#ifndef ICE_SLICE_H
-#define ICE_SLICE_H
+#pragma once
 
 #include "ice_value.h"
 
@@ -30,5 +29,3 @@ Ice_Int icec_readSliceEnd(Ice_InputStreamPtr is, Ice_Byte flags);
 void icec_finishSlice(Ice_OutputStreamPtr os, Ice_Int flags, Ice_Int size);
 /* Fills in the size of four bytes at `begin`; it counts itself. */
 void icec_patchSize(Ice_OutputStreamPtr os, Ice_Int begin);
-
-#endif

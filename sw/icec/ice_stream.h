@@ -6,8 +6,7 @@
  * Streams do not allocate and share nothing: a stream is used by one task, different streams by
  * any.
  */
-#ifndef ICE_STREAM_H
-#define ICE_STREAM_H
+#pragma once
 
 #include "base.h"
 #include "ice_config.h"
@@ -191,5 +190,3 @@ Ice_String Ice_InputStream_startSlice(Ice_InputStreamPtr is);
  */
 Ice_Bool Ice_InputStream_skipSlice(Ice_InputStreamPtr is);
 void Ice_InputStream_endSlice(Ice_InputStreamPtr is);
-
-#endif

@@ -8,8 +8,7 @@
  * one with ["preserve-slice"]. They go on with the instance (or exception) where it is written in
  * the sliced format, as in Ice's other peers.
  */
-#ifndef ICE_VALUE_H
-#define ICE_VALUE_H
+#pragma once
 
 #include "ice_stream.h"
 
@@ -108,5 +107,3 @@ void Ice_InputStream_endValues(Ice_InputStreamPtr is);
 Ice_Bool Ice_InputStream_keepSlice(Ice_InputStreamPtr is, Ice_String id, Ice_UnknownSlice** list);
 /* Writes kept slices before the exception's own; nothing where the format is not the sliced one. */
 void Ice_OutputStream_writeUnknown(Ice_OutputStreamPtr os, const Ice_UnknownSlice* list);
-
-#endif

@@ -21,8 +21,7 @@
  * waitForShutdown), whatever other tasks do; with Ice_ObjectPrx_setReplyBuffer, until the next call
  * through that proxy. Names follow the paper's figures; docs/icec.md tells the rest.
  */
-#ifndef ICEC_H
-#define ICEC_H
+#pragma once
 
 #include "ice_port.h"
 
@@ -308,6 +307,4 @@ void Ice_Connection_close(Ice_CommunicatorPtr ic, int connection);
 #include "minimal/ice_minimal.h"
 #else
 #include "ice_objects.h"
-#endif
-
 #endif

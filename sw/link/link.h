@@ -22,8 +22,7 @@
  * One Link is used by one thread at a time. A callback may call Link_send, Link_openChannel and
  * Link_closeChannel, and no other function of this layer.
  */
-#ifndef LINK_H
-#define LINK_H
+#pragma once
 
 #include "link_port.h"
 #include "link_wire.h"
@@ -127,6 +126,4 @@ struct Link {
     Link_Receiver receiver;
     Link_Sender sender;
 };
-#endif
-
 #endif

@@ -7,8 +7,7 @@
  * in the manual of ZeroC Ice 3.7). It does not change one that it does not recognise. Tokens, and
  * why both sides' tables stay equal: docs/link.md.
  */
-#ifndef LINK_COMPRESSION_H
-#define LINK_COMPRESSION_H
+#pragma once
 
 #include "link_wire.h"
 
@@ -41,5 +40,3 @@ void link_note(Link_Heads* heads, int channel, const U8* m, U32 size, U32 head);
 /* Restores the message of `size` bytes at `start`, with LINK_HEAD_ROOM bytes in front of it.
  * Returns where it begins now; it ends where it did. 0: it is malformed. */
 U8* link_decompress(Link_Heads* heads, int channel, U8* start, U32 size);
-
-#endif

@@ -4,8 +4,7 @@
  * #ifndef, on the compiler's command line. Layers with other numbers understand each other, unless
  * "both sides" is said. Times are in us, sizes in bytes, limits in parentheses.
  */
-#ifndef LINK_CONFIG_H
-#define LINK_CONFIG_H
+#pragma once
 
 /* LINK_MINIMAL, if defined, chooses the minimal layer (minimal/link_minimal.h). */
 #ifdef LINK_MINIMAL
@@ -138,6 +137,4 @@
 #error "LINK_RTO_FIRST lies between LINK_RTO_MIN and LINK_RTO_MAX"
 #elif LINK_PING_AFTER >= LINK_DEAD_AFTER || LINK_PROOF_AFTER >= LINK_PROOF_LAST
 #error "A peer is asked before it is given up"
-#endif
-
 #endif

@@ -2,8 +2,7 @@
  *
  * link_input: keeps bytes until a frame is whole, and gives each good frame to its part.
  */
-#ifndef LINK_INPUT_H
-#define LINK_INPUT_H
+#pragma once
 
 #include "link_session.h"
 
@@ -32,5 +31,3 @@ int link_isPlausible(const Link_Output* output, const U8* frame);
 void link_accept(Link_Input* input, const U8* frame, U32 size);
 /* Counts a byte where no frame begins. */
 void link_skip(Link_Input* input, const U8* frame, U32 left);
-
-#endif

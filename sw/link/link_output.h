@@ -3,8 +3,7 @@
  * link_output: the lowest part: puts frames into packets, and hands these to the radio as fast as
  * the modem sends them.
  */
-#ifndef LINK_OUTPUT_H
-#define LINK_OUTPUT_H
+#pragma once
 
 #include "link_port.h"
 #include "link_wire.h"
@@ -123,5 +122,3 @@ int link_sendFrame(Link_Output* output, U8* frame, U32 header, U32 number);
 /* Sends at once a control frame whose payload of `size` bytes is in place; byte 1 is the lowest
  * byte of `number`. Returns 1: taken. */
 int link_sendControl(Link_Output* output, U8* frame, U32 byte2, U32 number, U32 size);
-
-#endif

@@ -2,8 +2,7 @@
  *
  * link_port: what the link layer needs from its caller, reports to him, and counts.
  */
-#ifndef LINK_PORT_H
-#define LINK_PORT_H
+#pragma once
 
 #include "base.h"
 
@@ -53,5 +52,3 @@ typedef struct Link_Statistics {
     U32 roundTripUs;                    /* the smoothed estimate, not a count */
     U32 headBytesSaved;                 /* bytes saved by compression of heads sent */
 } Link_Statistics;
-
-#endif

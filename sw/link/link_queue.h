@@ -3,8 +3,7 @@
  * link_queue: holds messages, openings and closings until they are delivered, and cuts them into
  * pieces for fragments: in their order, except that a short one may overtake a long one.
  */
-#ifndef LINK_QUEUE_H
-#define LINK_QUEUE_H
+#pragma once
 
 #include "link_wire.h"
 
@@ -54,5 +53,3 @@ void link_copy(const Link_Queue* queue, const Link_Piece* piece, U8* to);
 void link_dequeue(Link_Queue* queue, U32 entry);
 /* Forgets the bytes of an empty queue. */
 void link_rewind(Link_Queue* queue);
-
-#endif

@@ -4,8 +4,7 @@
  * int returns 0 if the peer broke the rules: then nothing it sent can be trusted, and the session
  * must end.
  */
-#ifndef LINK_RECEIVER_H
-#define LINK_RECEIVER_H
+#pragma once
 
 #include "link_compression.h"
 #include "link_output.h"
@@ -51,5 +50,3 @@ void link_oweAck(Link_Receiver* receiver);
 int link_ackMayRide(const Link_Receiver* receiver);
 void link_ackIsSent(Link_Receiver* receiver);
 void link_pollAck(Link_Receiver* receiver);
-
-#endif

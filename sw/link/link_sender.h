@@ -3,8 +3,7 @@
  * link_sender: cuts queued messages into fragments, keeps a window of them in flight, and repeats
  * lost ones.
  */
-#ifndef LINK_SENDER_H
-#define LINK_SENDER_H
+#pragma once
 
 #include "link_queue.h"
 #include "link_receiver.h"
@@ -51,5 +50,3 @@ void link_onAck(Link_Sender* sender, U32 cumulative, U32 credit, const U8* bitma
 void link_onAnswer(Link_Sender* sender, U32 packet, int isDelivered);
 /* Sends fragments that are due. Returns 0: one is so old that the session must end. */
 int link_pollSender(Link_Sender* sender);
-
-#endif

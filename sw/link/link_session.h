@@ -2,8 +2,7 @@
  *
  * link_session: makes and ends sessions: handshake, reboots, a peer that has vanished.
  */
-#ifndef LINK_SESSION_H
-#define LINK_SESSION_H
+#pragma once
 
 #include "link_sender.h"
 
@@ -53,5 +52,3 @@ void link_abort(Link_Session* session);
 /* Calls or asks the peer; ends a session that is silent or has lasted too long. Returns 1: there is
  * one. */
 int link_pollSession(Link_Session* session);
-
-#endif

@@ -3,8 +3,7 @@
  * link_wire: names the fields of a frame, and declares checksums and numbers of the wire format
  * (docs/link.md). The full layer and the minimal one share it.
  */
-#ifndef LINK_WIRE_H
-#define LINK_WIRE_H
+#pragma once
 
 #include "base.h"
 #include "link_config.h"
@@ -159,5 +158,3 @@ U32 link_protect(U8* frame, U32 header, const U8* key, U32 number, U32 acked);
 /* Decrypts the payload of a whole frame, of LINK_SECURE_OVERHEAD bytes at least, in its place, and
  * gives its header the payload's length. Returns 0: its tag is wrong; then the text is wiped. */
 int link_unprotect(U8* frame, const U8* key, U32 number, U32 acked);
-
-#endif

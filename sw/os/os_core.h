@@ -3,8 +3,7 @@
  * os_core: what the kernel's own files share, and the processor's port (os_cpu). Not for
  * applications.
  */
-#ifndef OS_CORE_H
-#define OS_CORE_H
+#pragma once
 
 #include "ucos_ii.h"
 
@@ -74,5 +73,3 @@ OS_STK* OSTaskStkInit(void (*task)(void* p_arg), void* p_arg, OS_STK* ptos, INT1
 void OSStartHighRdy(void);                /* first switch: to os_kernel.current */
 void OSCtxSw(OS_Task* from, OS_Task* to); /* also from OSIntExit */
 void OSTaskIdleHook(void);                /* the idle task, again and again */
-
-#endif

@@ -4,8 +4,7 @@
  * orders, error codes and blocking rules, so that the real kernel drops in. Manual: "MicroC/OS-II,
  * The Real-Time Kernel", chapter 16. Time-outs and delays count ticks of 1/OS_TICKS_PER_SEC s.
  */
-#ifndef UCOS_II_H
-#define UCOS_II_H
+#pragma once
 
 #include "base.h"
 #include "os_cfg.h"
@@ -96,5 +95,3 @@ void OSIntEnter(void);
 void OSIntExit(void);
 void OSSchedLock(void);
 void OSSchedUnlock(void);
-
-#endif

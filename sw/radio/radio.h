@@ -16,8 +16,7 @@
  * the controller sends them; it copies incoming packets out of the receive ring. All functions but
  * Radio_interrupt belong to one task.
  */
-#ifndef RADIO_H
-#define RADIO_H
+#pragma once
 
 #include "base.h"
 
@@ -122,5 +121,3 @@ U32 Radio_interrupt(void);
 
 /* Returns the counters, which go on counting. */
 const Radio_Counters* Radio_counters(void);
-
-#endif

@@ -4,8 +4,7 @@
  * long work (checks, erases) only request it. Receiver_work does it, in a task of low priority;
  * meanwhile nothing else uses the flash.
  */
-#ifndef RECEIVER_H
-#define RECEIVER_H
+#pragma once
 
 #include "slots.h"
 
@@ -62,5 +61,3 @@ Receiver_Reason Receiver_finish(Receiver* self);
 Receiver_Reason Receiver_confirm(Receiver* self);
 /* Does a step: one signature, one sector, one digest. Returns 1 if there is more to do. */
 int Receiver_work(Receiver* self);
-
-#endif

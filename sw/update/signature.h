@@ -2,8 +2,7 @@
  *
  * signature: Ed25519 and SHA-512 by libsodium, as functions of a Slots_Port.
  */
-#ifndef SIGNATURE_H
-#define SIGNATURE_H
+#pragma once
 
 #include "slots.h"
 
@@ -12,5 +11,3 @@
 int Signature_isGood(const U8* signature, const U8* message, U32 bytes, const U8* key);
 /* Writes the digest, 64 bytes, of the bytes that `read` reads from an offset on. */
 void Signature_digest(Slots_Read read, void* context, U32 offset, U32 bytes, U8* digest);
-
-#endif

@@ -6,8 +6,7 @@
  * words, which are written once after an erase. A state word counts only if it is exactly its
  * value, and writing it again completes one that a loss of power has cut.
  */
-#ifndef SLOTS_H
-#define SLOTS_H
+#pragma once
 
 #include "base.h"
 
@@ -123,5 +122,3 @@ int Slots_isLoadable(const Slots_Port* port, U32 product);
  * tried once. One that was tried and not confirmed is retired, and so is one that the FPGA has
  * refused: it hangs, or runs the golden one. Returns 1 where the FPGA must load again. */
 int Slots_settleFpga(const Slots_Port* port, int isRefused);
-
-#endif

@@ -3,8 +3,7 @@
  * spi_nor: a Slots_Port on a serial NOR flash with the usual instructions (W25Q, M25P: 03, 02, D8,
  * 05, 06, 9F). Its context is the bus.
  */
-#ifndef SPI_NOR_H
-#define SPI_NOR_H
+#pragma once
 
 #include "base.h"
 
@@ -22,5 +21,3 @@ void SpiNor_read(void* bus, U32 offset, U8* bytes, U32 count);
 int SpiNor_erase(void* bus, U32 offset);
 /* Programs up to 256 bytes of a page. Returns 1 when done. */
 int SpiNor_program(void* bus, U32 offset, const U8* bytes, U32 count);
-
-#endif

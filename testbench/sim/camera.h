@@ -2,8 +2,7 @@
 //
 // camera: reads a grey-scale frame from a picture file (PNG, JPEG, PGM and others of stb_image).
 
-#ifndef CAMERA_H
-#define CAMERA_H
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -18,5 +17,3 @@ struct Frame {
 // wanted size. The width becomes a multiple of 8. Throws std::runtime_error with the reason.
 Frame loadFrame(const std::string& path, int width, int height);
 void savePng(const std::string& path, const Frame& frame);
-
-#endif

@@ -3,8 +3,7 @@
 // child: the ground's program that the simulator starts; it ends with the simulator, however that
 // ends.
 
-#ifndef CHILD_H
-#define CHILD_H
+#pragma once
 
 #include <cerrno>
 #include <chrono>
@@ -100,5 +99,3 @@ private:
     int status_ = 0;
     bool asked_ = false;
 };
-
-#endif

@@ -2,8 +2,7 @@
 //
 // core_pins: drives the inputs of cores by a script, and records their outputs.
 
-#ifndef CORE_PINS_H
-#define CORE_PINS_H
+#pragma once
 
 #include "camera.h"
 #include "soc_model.h"
@@ -21,5 +20,3 @@ void connectPins(SocModel& soc, const std::string& script, const std::string& lo
 void connectSensor(
     SocModel& soc, const Frame& frame, std::function<bool()> sends,
     std::function<void(uint32_t pins)> note = [](uint32_t) {});
-
-#endif

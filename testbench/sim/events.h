@@ -7,8 +7,7 @@
 //   {"ns": t, "task": name}    this task of the firmware goes on (Cortex-M3 only)
 //   {"ns": t, "accesses": {"n": count}}    register accesses to slots in the 10 ms from t on
 
-#ifndef EVENTS_H
-#define EVENTS_H
+#pragma once
 
 #include <array>
 #include <fstream>
@@ -58,5 +57,3 @@ private:
     uint64_t begin_ = 0;
     std::array<unsigned, 64> accesses_{};
 };
-
-#endif

@@ -3,8 +3,7 @@
 // flight: one run of the simulated UAV with its modem, the air, and the ground's modem on a pty;
 // and, as its child, the program that uses that pty.
 
-#ifndef FLIGHT_H
-#define FLIGHT_H
+#pragma once
 
 #include "camera.h"
 #include "child.h"
@@ -127,5 +126,3 @@ private:
     AccessDigest accesses_;
     uint64_t nextDigest_ = 0;
 };
-
-#endif

@@ -3,8 +3,7 @@
 // follower: one more vehicle in the air of a flight: a chip of its own, with the firmware's ARM
 // binary. It follows the first vehicle, which runs the air: pins would move too early otherwise.
 
-#ifndef FOLLOWER_H
-#define FOLLOWER_H
+#pragma once
 
 #include "m3_machine.h"
 
@@ -27,5 +26,3 @@ private:
     M3Machine machine_;
     uint64_t until_ = 0;
 };
-
-#endif

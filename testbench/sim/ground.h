@@ -3,8 +3,7 @@
 // ground: a ground station in this process: a modem, a link and hand-written IceP messages; and
 // scripts for flights, which are called again and again until they return true.
 
-#ifndef GROUND_H
-#define GROUND_H
+#pragma once
 
 #include "random.h"
 #include "soc_model.h"
@@ -197,5 +196,3 @@ struct GroundAndChip {
     Ground ground;
     SocModel soc{air, Ground::uavModem()};
 };
-
-#endif

@@ -3,8 +3,7 @@
 // m3_machine: runs the firmware's ARM binary on a SocModel: the Cortex-M3, its FSMC on the RTL's
 // pins.
 
-#ifndef M3_MACHINE_H
-#define M3_MACHINE_H
+#pragma once
 
 #include "checkpoints.h"
 #include "gdb_stub.h"
@@ -77,5 +76,3 @@ private:
     bool isAsked_ = false; // the debugger wants the processor to stop
     bool isAtBegin_ = false;
 };
-
-#endif

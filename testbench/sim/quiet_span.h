@@ -21,8 +21,7 @@
 // same state after one, but for these counters (proven: formal.modem_uart_rx,
 // formal.modem_uart_tx).
 
-#ifndef QUIET_SPAN_H
-#define QUIET_SPAN_H
+#pragma once
 
 #include <cstdint>
 #include <map>
@@ -111,5 +110,3 @@ private:
     unsigned blamed_ = 0;                    // of these, in which movers were recorded
     std::map<std::string, unsigned> movers_; // cores, by the looks in which they had moved
 };
-
-#endif

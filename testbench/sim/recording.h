@@ -12,8 +12,7 @@
 //   {"ns": time, "digest": "hexadecimal"}    of all bus accesses until then, each 100 ms
 //   {"ns": time, "end": {...}}               the flight's final state; missing if it was killed
 
-#ifndef RECORDING_H
-#define RECORDING_H
+#pragma once
 
 #include "serial_line.h"
 #include <cerrno>
@@ -210,5 +209,3 @@ private:
     uint64_t endNs_ = 0, agreedNs_ = 0;
     bool whole_ = false;
 };
-
-#endif

@@ -4,8 +4,7 @@
 // numbers by a seed, from the Cortex-M3 model's generator, and words that keep their values without
 // power. Initially it is open.
 
-#ifndef SIMULATED_BOARD_H
-#define SIMULATED_BOARD_H
+#pragma once
 
 #include "random_block.h"
 #include <array>
@@ -43,5 +42,3 @@ private:
     }
     uint64_t random_;
 };
-
-#endif

@@ -5,8 +5,7 @@
 // Clocks in which only counters of the chip would move are not evaluated but owed: they count at
 // once, and are added to the chip's counters before anything reads it (quiet_span.h).
 
-#ifndef SOC_MODEL_H
-#define SOC_MODEL_H
+#pragma once
 
 #include "VSoc.h"
 #include "cable.h"
@@ -142,5 +141,3 @@ private:
     std::function<void(bool)> irqEdge_;
     bool irq_ = false, txd_ = true, resetN_ = true, rtsN_ = false;
 };
-
-#endif

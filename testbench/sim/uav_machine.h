@@ -3,8 +3,7 @@
 // uav_machine: runs the firmware's host build on a SocModel: bus accesses, interrupts, the tick. A
 // table of entrances selects the firmware, by default the UAV's application.
 
-#ifndef UAV_MACHINE_H
-#define UAV_MACHINE_H
+#pragma once
 
 #include "os_host.h"
 #include "simulated_board.h"
@@ -60,5 +59,3 @@ private:
 // `modemKey`: 16 bytes of the modem's AES key, or none; `isSecure`: the link has a key. Throws if
 // the firmware cannot encrypt.
 UavMachine::Firmware simulatedFirmware(const std::vector<uint8_t>& modemKey, bool isSecure);
-
-#endif

@@ -11,8 +11,7 @@
 //
 // Usage of every bench: PROGRAM OUTPUT.json [--brief]
 
-#ifndef FIGURES_H
-#define FIGURES_H
+#pragma once
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -74,5 +73,3 @@ private:
     std::string output_, missed_;
     nlohmann::json entries_ = nlohmann::json::array();
 };
-
-#endif

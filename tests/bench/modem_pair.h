@@ -3,8 +3,7 @@
 // modem_pair: two link layers over two modem models and the air between them, from event to event.
 // Both ends are as the ground's: link layer, pacer, serial line of 111,111 baud.
 
-#ifndef MODEM_PAIR_H
-#define MODEM_PAIR_H
+#pragma once
 
 #include "api_modem.h"
 #include "frame_pacer.h"
@@ -296,5 +295,3 @@ inline double mostBytesPerSecond(const RfWeather& weather, bool both, bool isEnc
     }
     return static_cast<double>(arrived) / static_cast<double>(seconds);
 }
-
-#endif

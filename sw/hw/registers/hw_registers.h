@@ -3,8 +3,7 @@
  * hw_registers: Hw::Registers (Registers.ice) by the registers of a core in a slot; shaped as
  * slice2c's servants are (docs/hw-mapping.md). The table is <BLOCK>_TABLE of <block>_regs.h.
  */
-#ifndef HW_REGISTERS_H
-#define HW_REGISTERS_H
+#pragma once
 
 #include "Registers.h"
 #include "hw_core.h"
@@ -39,5 +38,3 @@ U32 Hw_Registers_Core_poll(Hw_Registers_Core* self, U32 nowMs);
  * the hashes that the chip gives. hold: returns 1 if the slot is in the list, and both agree. */
 void Hw_Contracts_read(Hw_Contract* found, const Hw_Contract* built, U32 count);
 int Hw_Contracts_hold(const Hw_Contract* found, U32 count, U32 slot);
-
-#endif

@@ -13,8 +13,7 @@
  * A message that is too long, or compressed, is refused and named on standard error; the caller
  * gets the limit in an UnknownLocalException where its request can be told from the rest.
  */
-#ifndef TCP_ENDPOINT_H
-#define TCP_ENDPOINT_H
+#pragma once
 
 #include "icec.h"
 
@@ -52,5 +51,3 @@ typedef struct TcpEndpoint {
 /* Makes "tcp" known to the communicator. ICE_NO_ENDPOINT: the system refuses. */
 Ice_Status TcpEndpoint_init(Ice_CommunicatorPtr ic, TcpEndpoint* self);
 void TcpEndpoint_destroy(TcpEndpoint* self);
-
-#endif

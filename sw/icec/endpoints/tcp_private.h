@@ -2,8 +2,7 @@
  *
  * tcp_private: declares what the files of the tcp transport share.
  */
-#ifndef TCP_PRIVATE_H
-#define TCP_PRIVATE_H
+#pragma once
 
 #include "tcp_endpoint.h"
 
@@ -60,5 +59,3 @@ int TcpEndpoint_idlest(TcpEndpoint* self, Ice_Int* left);
 /* Returns the listener if a connection can be accepted now; else -1, and timeoutMs is shortened to
  * when one may be. */
 int TcpEndpoint_listenerFor(TcpEndpoint* self, Ice_Int* timeoutMs);
-
-#endif

@@ -5,8 +5,7 @@
  * The ground opens channels 0..2, this side channel 3. On the wire an endpoint is type 0x4158 with
  * a remote address (short), a channel (byte, 255: any) and a time-out in milliseconds (int).
  */
-#ifndef XBEE_ENDPOINT_H
-#define XBEE_ENDPOINT_H
+#pragma once
 
 #include "icec.h"
 #include "link.h"
@@ -47,5 +46,3 @@ void XBeeATEndpoint_init(Ice_CommunicatorPtr ic, const char* name, XBeeATEndpoin
 int XBeeATEndpoint_onMessage(void* self, int channel, const U8* data, U32 size);
 void XBeeATEndpoint_onChannel(void* self, int channel, int isOpen);
 void XBeeATEndpoint_onState(void* self, Link_State state);
-
-#endif

@@ -2,8 +2,7 @@
  *
  * ice_minimal: communicator and adapter of the minimal run time. Included by icec.h only.
  */
-#ifndef ICE_MINIMAL_H
-#define ICE_MINIMAL_H
+#pragma once
 
 #define ICEC_FULL 0
 
@@ -33,5 +32,3 @@ struct Ice_Communicator {
     U32 arena[ICE_ARENA_BYTES / 4];
     Ice_Byte in[ICE_MESSAGE_MAX], out[ICE_RESULT_MAX];
 };
-
-#endif

@@ -2,8 +2,7 @@
  *
  * link_minimal: defines a Link in the minimal layer. Only link.h includes it.
  */
-#ifndef LINK_MINIMAL_H
-#define LINK_MINIMAL_H
+#pragma once
 
 #include "link_wire.h"
 
@@ -79,5 +78,3 @@ void link_forgetKeys(Link* link);
 void link_transmitKeyed(Link* link, U32 header, U32 number);
 /* Takes the frame in link->input. Returns 1 if it is of the session, not a PING, and decrypted. */
 int link_takeKeyed(Link* link);
-
-#endif

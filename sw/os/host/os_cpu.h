@@ -3,8 +3,7 @@
  * os_cpu: what the kernel needs of a processor, as uC/OS-II names it. Host: tasks are coroutines of
  * one thread, and interrupts arrive only where simulated time passes, so runs repeat exactly.
  */
-#ifndef OS_CPU_H
-#define OS_CPU_H
+#pragma once
 
 typedef unsigned long OS_STK;
 typedef unsigned int OS_CPU_SR;
@@ -16,5 +15,3 @@ typedef unsigned int OS_CPU_SR;
 
 OS_CPU_SR OS_CPU_SR_Save(void);
 void OS_CPU_SR_Restore(OS_CPU_SR cpu_sr);
-
-#endif

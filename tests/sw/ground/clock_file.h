@@ -3,8 +3,7 @@
 // clock_file: simulated time that programs on the ground keep step with: a file that XBEEAT_CLOCK
 // names while this object lives; and such a file without a name.
 
-#ifndef CLOCK_FILE_H
-#define CLOCK_FILE_H
+#pragma once
 
 #include "status_file.h"
 #include <cstdlib>
@@ -34,5 +33,3 @@ public:
     ClockFile() : StatusFile(fd()) { setenv("XBEEAT_CLOCK", path().c_str(), 1); }
     ~ClockFile() { unsetenv("XBEEAT_CLOCK"); }
 };
-
-#endif

@@ -4,8 +4,7 @@
 // modem and a link layer. Its thread follows the machine's clock, but waits for an engine that
 // keeps step with it: where many tests run at once, time passes slowly and no time-out is early.
 
-#ifndef RIG_H
-#define RIG_H
+#pragma once
 
 #include "clock_file.h"
 #include "ground_step.h"
@@ -163,5 +162,3 @@ private:
     std::mutex mutex_;
     std::thread thread_;
 };
-
-#endif

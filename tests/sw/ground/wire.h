@@ -3,8 +3,7 @@
 // wire: a serial port with a link layer behind it and no modem, as fast as bytes are taken; and
 // helpers for programs' sockets.
 
-#ifndef WIRE_H
-#define WIRE_H
+#pragma once
 
 #include "engine.h"
 #include "random.h"
@@ -160,5 +159,3 @@ private:
     Random random_{testSeed()};
     std::unique_ptr<Link> link_{new Link};
 };
-
-#endif

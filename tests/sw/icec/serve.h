@@ -2,8 +2,7 @@
  *
  * serve: the servants of a test, for server.c over tcp and radio.c over the air.
  */
-#ifndef SERVE_H
-#define SERVE_H
+#pragma once
 
 #include "icec.h"
 
@@ -15,5 +14,3 @@ extern const char* suite_argument; /* the first one of server.c's program */
 extern Ice_ObjectPrx Bridge_far;
 /* Returns the servant of an interface that bridge.py writes, from 0; 0: there are no more. */
 Ice_ObjectPtr Bridge_servant(int number);
-
-#endif

@@ -2,8 +2,7 @@
 //
 // ice_messages: IceP messages, byte by byte as the manual of ZeroC Ice 3.7 describes them.
 
-#ifndef ICE_MESSAGES_H
-#define ICE_MESSAGES_H
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -87,5 +86,3 @@ inline Bytes closing() {
 }
 
 } // namespace IceMessages
-
-#endif

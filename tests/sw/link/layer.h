@@ -3,8 +3,7 @@
  * layer: a table of a link layer's functions and sizes, so that a test can join layers that were
  * compiled with different options.
  */
-#ifndef LAYER_H
-#define LAYER_H
+#pragma once
 
 #include "link.h"
 
@@ -26,5 +25,3 @@ typedef struct Layer {
 
 /* The layer that this file is compiled with. */
 extern const Layer layer;
-
-#endif

@@ -2,8 +2,7 @@
 //
 // link_pair: two link layers joined by a radio that loses, doubles, spoils and delays packets.
 
-#ifndef LINK_PAIR_H
-#define LINK_PAIR_H
+#pragma once
 
 extern "C" {
 #include "layer.h"
@@ -175,5 +174,3 @@ private:
         }
     }
 };
-
-#endif

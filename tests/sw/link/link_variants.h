@@ -3,8 +3,7 @@
 // link_variants: the fixture of tests that hold for link layers of different kinds, and messages
 // both ways between them.
 
-#ifndef LINK_VARIANTS_H
-#define LINK_VARIANTS_H
+#pragma once
 
 #include "link_pair.h"
 #include <algorithm>
@@ -132,5 +131,3 @@ inline std::vector<Bytes> framesOf(const Bytes& packet) {
     }
     return frames;
 }
-
-#endif

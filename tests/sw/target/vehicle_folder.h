@@ -2,8 +2,7 @@
 //
 // vehicle_folder: a test's own folder, since tests run side by side, in which pack_update works.
 
-#ifndef VEHICLE_FOLDER_H
-#define VEHICLE_FOLDER_H
+#pragma once
 
 #include <cstdint>
 #include <cstdlib>
@@ -36,5 +35,3 @@ struct VehicleFolder {
     }
     std::string path = FOLDER + std::to_string(getpid());
 };
-
-#endif

@@ -3,8 +3,7 @@
 // keys: a pair of keys that signs images, and the ground's part of an update, of firmware as of a
 // bitstream.
 
-#ifndef UPDATE_KEYS_H
-#define UPDATE_KEYS_H
+#pragma once
 
 #include "random.h"
 #include <algorithm>
@@ -173,5 +172,3 @@ void cutAtEach(uint32_t version, uint64_t all, uint64_t tries, Fresh fresh, Went
     ::testing::Test::RecordProperty("operations", static_cast<int>(all));
     ::testing::Test::RecordProperty("cuts", static_cast<int>(cuts));
 }
-
-#endif

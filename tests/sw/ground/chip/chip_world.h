@@ -3,8 +3,7 @@
 // chip_world: the real thing under stock Ice: RTL, DDR3, firmware with IceC, two modems, the air,
 // and a pty for the plugin; in a thread of its own, in simulated time that waits for the plugin.
 
-#ifndef CHIP_WORLD_H
-#define CHIP_WORLD_H
+#pragma once
 
 #include "../clock_file.h"
 #include "Echo.h"
@@ -68,5 +67,3 @@ private:
     std::vector<std::function<void()>> wanted_;
     std::thread thread_;
 };
-
-#endif

@@ -3,8 +3,7 @@
  * echo_uav: a firmware that serves Echo over the radio and calls the ground's Echo, on IceC, link,
  * driver and kernel as the UAV's application has them.
  */
-#ifndef ECHO_UAV_H
-#define ECHO_UAV_H
+#pragma once
 
 #include "fsmc.h"
 
@@ -29,5 +28,3 @@ void EchoUav_setPort(const EchoUav_Port* port, void* context);
 /* These do what UAV_start and its like do (uav.h). */
 void EchoUav_start(const FSMC_Port* fsmc, void* context);
 int EchoUav_irqEnabled(void);
-
-#endif

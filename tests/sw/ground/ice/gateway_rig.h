@@ -2,8 +2,7 @@
 //
 // gateway_rig: icesoc-gateway between the radio and programs without the plugin.
 
-#ifndef GATEWAY_RIG_H
-#define GATEWAY_RIG_H
+#pragma once
 
 #include "world.h"
 #include <gtest/gtest.h>
@@ -50,5 +49,3 @@ protected:
     Ice::CommunicatorHolder ic_{plain()};
     std::shared_ptr<RadioTest::UavPrx> echo_;
 };
-
-#endif

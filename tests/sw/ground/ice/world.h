@@ -3,8 +3,7 @@
 // world: stock Ice at both ends of the radio: a client with the plugin, the rig's modems and air,
 // and a stock Ice server as the UAV's objects.
 
-#ifndef WORLD_H
-#define WORLD_H
+#pragma once
 
 #include "../rig.h"
 #include "Echo.h"
@@ -336,5 +335,3 @@ public:
 private:
     Ice::CommunicatorPtr server_;
 };
-
-#endif

@@ -16,7 +16,7 @@ SLOW_GRADE = 1.2
 CLOCK_TO_OUT, LUT, SETUP, ENABLE_SETUP, RESET_SETUP = 0.447, 0.205, 0.102, 0.322, 0.430
 CARRY_IN, CARRY_BIT, CARRY_OUT, WIDE_MUX = 0.172, 0.019, 0.180, 0.140
 RAM_CLOCK, RAM_SETUP, LUT_RAM_CLOCK, LUT_RAM_SETUP = 1.850, 0.400, 0.900, 0.300
-MULTIPLIER_CLOCK, MULTIPLIER_SETUP = 4.700, 1.500
+MULTIPLIER_CLOCK, MULTIPLIER_SETUP, MULTIPLY, MULTIPLIER_ADD = 4.700, 1.500, 4.560, 2.687
 # Fan-out and delay of a net: points between which it is interpolated.
 NET_DELAYS = ((0, 0.0), (1, 0.580), (2, 0.617), (5, 0.715), (16, 1.004), (26, 1.207), (88, 1.799))
 
@@ -33,6 +33,11 @@ def is_block_ram(type):
 
 def is_combinational(type):
     return type in LUT_INPUTS or type.startswith("MUXF") or type == "CARRY4"
+
+
+def is_unclocked(cell):
+    """True for logic: a multiplier without any of its registers is, too."""
+    return is_combinational(cell.type) or (cell.type.startswith("DSP48") and cell.bit("CLK") < 0)
 
 
 def is_read(address, output):
@@ -71,6 +76,8 @@ def end_delay(type, port):
 def through_delay(cell, pin, i, to, o):
     """The delay of a combinational cell from bit i of a pin to bit o of an output, None without
     such a path."""
+    if cell.type.startswith("DSP48"):
+        return MULTIPLIER_ADD if pin.port == "C" else MULTIPLY
     if cell.type != "CARRY4":
         return WIDE_MUX if cell.type.startswith("MUXF") else LUT
     single = pin.port in ("CI", "CYINIT")
@@ -118,7 +125,7 @@ class Analysis:
         index = self.n.driver[bit]
         cell = self.n.cells[index]
         memory, best = netlist.is_memory(cell.type), None
-        if not is_combinational(cell.type):
+        if not is_unclocked(cell):
             delay = start_delay(cell.type)
             best = Arrival(delay, 0, index, None, delay)
             if not memory:
@@ -179,7 +186,7 @@ def timing_of(n, owners, count=10):
     analysis, ends, by_clock = Analysis(n), [], {}
     worst = {}  # register -> (ns, its name, pin, levels, bit, cell)
     for index, cell in enumerate(n.cells):
-        if is_combinational(cell.type):
+        if is_unclocked(cell):
             continue
         longest = None
         for port, bit in path_ends(cell):

@@ -134,6 +134,14 @@ class Timing(unittest.TestCase):
             self.assertEqual(p["levels"], levels, address)
             self.assertEqual(p["from"] == "from", levels == 1, address)
 
+    def test_a_multiplier_without_registers_is_logic(self):
+        for pins, levels, ns in ({"B": 10}, 1, 0.447 + 0.58 + 4.56 + 0.58 + 0.102), \
+                                ({"C": 10}, 1, 0.447 + 0.58 + 2.687 + 0.58 + 0.102), \
+                                ({"B": 10, "CLK": 2}, 0, 4.7 + 0.58 + 0.102):
+            p = longest(chain([1, 1], "D", cell("DSP48A1", pins, {"P": 11})))
+            self.assertEqual(p["levels"], levels)
+            self.assertAlmostEqual(p["ns"], ns)
+
     def test_a_loop_of_logic_ends_the_search_and_more_fan_out_is_never_faster(self):
         # The LUT reads itself.
         self.assertEqual(longest(chain([1, 1], "D", lut([10, 11], 11)))["levels"], 1)

@@ -65,14 +65,18 @@ class Table:
         return "\n".join(lines) + "\n"
 
 
+# What the ranges mean
+ERRORS = (f"as mapped, routed: nine of ten of {slices.MAPPED.count} published reports of map, of "
+          f"{timing.ROUTED.count} of TRCE, are in this; their medians are "
+          f"{slices.MAPPED.median:.2f} and {timing.ROUTED.median:.2f} of the estimate")
+
+
 def percent(part, whole):
     return f"{100 * part / whole:.1f} %"
 
 
 def sites_of_map(f):
-    """Sites of LUTs, route-throughs included, two functions in some of them."""
-    memory = f["lutRam"] + f["shift"]
-    return int(memory + (1 - slices.USUAL_PAIRING) * (f["lut"] - memory + f["through"]) + 0.5)
+    return int(slices.map_sites(f["lut"], f["lutRam"] + f["shift"], f["through"]) + 0.5)
 
 
 def paper_table(plan, row):
@@ -80,7 +84,7 @@ def paper_table(plan, row):
     lines = [("flip-flops", "ff", f["ff"]), ("LUTs of the netlist", "lut", f["lut"]),
              ("LUTs and route-throughs, before map pairs them", "lut", f["lut"] + f["through"]),
              ("LUTs as map counts them (estimate)", "lut", sites_of_map(f)),
-             (f"slices (estimate, {100 * slices.ERROR:.0f} % off on average)", "slices",
+             (f"slices (estimate; as mapped {slices.MAPPED.of(f['slices'])})", "slices",
               f["slices"])]
     table = []
     for name, key, value in lines:
@@ -117,12 +121,13 @@ def design_row(plan, row, accepted):
             luts[0] + f["cells"].get("INV", 0) + luts[1], *luts[2:], f["lutRam"], f["shift"],
             f["through"], f["ff"], change("ff"), f["sets"], f["carry"], f"{f['ram']:g}", f["dsp"],
             f["pins"], f["slices"], f"{f['low']}-{f['high']}",
-            f["timing"]["paths"][0]["levels"] if f["mhz"] else "", clock_of(f), *others]
+            f["timing"]["paths"][0]["levels"] if f["mhz"] else "", clock_of(f),
+            timing.ROUTED.of(f["mhz"]) if f["mhz"] else "", *others]
 
 
 def design_table(plan, rows, accepted):
     head = ("design LUT change chip 1-2 3 4 5 6 RAM SRL thru FF change sets carry RAM16 DSP pins "
-            "slices low-high levels MHz").split()
+            "slices low-high levels MHz routed").split()
     for other in rows[0].others if rows else ():
         head += [f"{other.family} LUT", "FF"]
     return Table(head, [design_row(plan, row, accepted.get(row.design.name)) for row in rows])
@@ -176,6 +181,7 @@ def show(report):
         print(report.cores.plain())
     accepted = report.baseline["designs"]
     print(design_table(report.plan, wanted, accepted).plain(), end="")
+    print(ERRORS)
     if len(wanted) < len(report.rows):
         print(f"Designs: {states_text(report.rows)}")
     versions = short_version(report.baseline["yosys"]), short_version(report.yosys)
@@ -205,7 +211,7 @@ def entries(report):
             found.append({"name": f"{name} {key}", "value": value, "unit": unit,
                           "command": f"make synth DESIGN={name}", **more})
 
-        estimated = f"slices, estimated, {100 * slices.ERROR:.0f} % off on average"
+        estimated = f"slices, estimated; as mapped {slices.MAPPED.of(f['slices'])}"
         for key, unit in (("lut", "LUT"), ("ff", "flip-flops"), ("slices", estimated)):
             limit, more = (budgets | row.design.limits).get(key), {}
             if limit is not None:
@@ -216,7 +222,8 @@ def entries(report):
             add(key, f[key], unit, more)
         goal = report.plan.chip["mhz"]
         if f["mhz"]:
-            add("clock", round(f["mhz"], 1), "MHz, estimated, at least",
+            add("clock", round(f["mhz"], 1),
+                f"MHz, estimated; as routed {timing.ROUTED.of(f['mhz'])}; at least",
                 {"limit": goal, "share": round(f["mhz"] / goal, 3)})
         for other in row.others:
             if other.figures:
@@ -287,6 +294,7 @@ def html(report, page, libraries):
     `libraries`: the folder of the pages' libraries from npm."""
     data = {"yosys": short_version(report.yosys), "commit": report.commit,
             "paper": report.plan.paper, "chip": report.plan.chip, "slowGrade": timing.SLOW_GRADE,
+            "routed": timing.ROUTED._asdict(),
             "states": states_text(report.rows),
             "cores": report.cores.rows if report.cores else [],
             "table1": next((paper_table(report.plan, row).rows for row in report.rows

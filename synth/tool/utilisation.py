@@ -10,6 +10,7 @@ import sys
 import baseline
 import cores
 import report
+import reports
 import runner
 import sources
 from report import Report, Row
@@ -171,6 +172,8 @@ def options_of(words):
                              "repeated); with --design soc in the chip of now")
     parser.add_argument("--compare", **path, metavar="REPORT.JSON",
                         help="only tell how the last report differs from this one")
+    parser.add_argument("--reports", action="store_true",
+                        help="only hold the estimates against published reports")
     parser.add_argument("--edif", metavar="DESIGN",
                         help="only write this design as EDIF for ISE, into the folder ise")
     parser.add_argument("--netlist", metavar="DESIGN",
@@ -189,6 +192,9 @@ def main(words, build):
     """`build`: the folder of the build that has the libraries of pages."""
     o = options_of(words)
     try:
+        if o.reports:
+            print(reports.text(reports.read(o.source / "synth/reports.json")), end="")
+            return 0
         if o.compare:
             before, after = (json.loads(file.read_text())
                              for file in (o.compare, o.output / "report.json"))

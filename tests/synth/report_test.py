@@ -88,7 +88,9 @@ class Cases(Script):
         # A checkout elsewhere, of the same sources, has the same netlists.
         self.lacks(str(Path.cwd()), file=next(Path("out/cache").glob("store.xc6s.*.ys")))
         # The clock, and from where to where it goes in other orders; and the LUTs.
-        self.has(r"^wide .* [0-9.]+ \([0-9.]*-[0-9.]*\)$", r"^wide +[0-9]+ \([0-9]*-[0-9]*\) ")
+        self.has(r"^wide .* [0-9.]+ \([0-9.]*-[0-9.]*\) +[0-9]+-[0-9]+$",
+                 r"nine of ten of [0-9]+ published reports of map, of [0-9]+ of TRCE",
+                 r"^wide +[0-9]+ \([0-9]*-[0-9]*\) ")
 
         def figures(design):
             return json.loads(next(Path("out/cache").glob(f"{design}.xc6s.*.figures")).read_text())
@@ -202,12 +204,13 @@ class Cases(Script):
         self.said = re.sub(r"\s+", " ", re.sub("<[^>]*>", " ", seen))
         self.has("Tabulator and uPlot could not be fetched. With a network")
         self.lacks("NaN|undefined")
-        self.has(r" flip-flops 11 .* 50 \(0.3 %\) .* wide 1 .* store \d+ .* of the chip's LUTs "
+        self.has("as routed [0-9]+ to [0-9]+: nine of ten of [0-9]+ published designs lie in this",
+                 r" flip-flops 11 .* 50 \(0.3 %\) .* wide 1 .* store \d+ .* of the chip's LUTs "
                  r"0.2 %, slices \d+ to \d+, .* ecp5 LUT \d+, ecp5 FF \d+ .* pair 15 .* "
                  r"u_store .* read_addr_i 5 0 project/hdl/blocks/store.v:12 .* clk_i 11 12 [0-9.]+ "
                  r"project/hdl/blocks/pair.v:8 .* rst_i synchronous 5 project/hdl/blocks/pair.v:9 ")
         self.has(r" 8 to 8.5 ns left of 10 1 .* u_counter.count_o.4. 9 FDRE "
-                 r"project/hdl/blocks/counter.v:13 .* now 15 11 6 [0-9.]+ this run ")
+                 r"project/hdl/blocks/counter.v:13 .* now 15 11 7 [0-9.]+ this run ")
         if not (PROGRAM.parents[1] / "page/libraries.js").stat().st_size:
             self.skipTest("Tabulator and uPlot could not be fetched")
         # A second script clicks as a user does and writes what it then sees.
@@ -225,7 +228,7 @@ class Cases(Script):
                 r"slow Longest paths, at 104.5 MHz; clock ([0-9.]+) Longest paths, at \1 MHz, "
                 r"by [1-9]\d*; wider 0; rounded 104.5,104.4,104.0; "  # as parts_test.py has it
                 r"slack [0-9.]+ to [0-9.]+ ns left of 10 [1-9]\d* ; "
-                "history now  this run 15 11 6;"):
+                "history now  this run 15 11 7;"):
             self.has(part)
         self.assertEqual(fault(page), "")
         self.has('"peer": 100', file="out/report.json")

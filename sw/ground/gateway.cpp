@@ -6,8 +6,8 @@
 //
 // Endpoints, TLS, WebSocket, compression and connections are Ice's; forwarder.h shares the radio.
 
-#include "door.h"
 #include "key_file.h"
+#include "registration.h"
 #include "rights.h"
 
 #include <CLI/CLI.hpp>
@@ -318,7 +318,7 @@ std::shared_ptr<Ice::ObjectAdapter> adapterOf(const std::shared_ptr<Ice::Communi
     return made;
 }
 
-// Vehicle is one vehicle behind the modem, and the doors that lead to it.
+// Vehicle is one vehicle behind the modem, and the adapters that lead to it.
 class Vehicle {
 public:
     // `place`: of the vehicle in the fleet; its ports are that many above the given ones.
@@ -328,24 +328,25 @@ public:
         : forwarder(ic->stringToProxy("any:" + radioEndpoint(o, address)),
                     std::chrono::seconds(o.wait)),
           events(name, publisher),
-          door(name, forwarder, events,
-               [=, &o, &rights] {
-                   const auto servant = std::make_shared<ToVehicle>(forwarder, rights, false);
-                   return adapterOf(ic, named("Clients"), portsAbove(endpointsOf(o.listen), place),
-                                    servant);
-               }),
+          registration(name, forwarder, events,
+                       [=, &o, &rights] {
+                           const auto servant =
+                               std::make_shared<ToVehicle>(forwarder, rights, false);
+                           return adapterOf(ic, named("Clients"),
+                                            portsAbove(endpointsOf(o.listen), place), servant);
+                       }),
           place_(place) {
-        const auto opened = door.open();
+        const auto opened = registration.open();
         const int port = checkedPort(opened);
         if (ic->getDefaultLocator())
             opened->destroy(); // until the vehicle is here
         else
-            doors_.push_back(opened);
+            adapters_.push_back(opened);
         if (!o.maintenance.empty())
-            doors_.push_back(adapterOf(ic, named("Maintenance"),
-                                       portsAbove(endpointsOf(o.maintenance), place),
-                                       std::make_shared<ToVehicle>(forwarder, rights, true)));
-        const int maintenance = o.maintenance.empty() ? 0 : checkedPort(doors_.back());
+            adapters_.push_back(adapterOf(ic, named("Maintenance"),
+                                          portsAbove(endpointsOf(o.maintenance), place),
+                                          std::make_shared<ToVehicle>(forwarder, rights, true)));
+        const int maintenance = o.maintenance.empty() ? 0 : checkedPort(adapters_.back());
         forwarder.setCallbacks(adapterOf(ic, "", "", std::make_shared<ToClients>(forwarder)));
         std::shared_ptr<Ice::ObjectPrx> station;
         if (!o.station.empty())
@@ -359,20 +360,20 @@ public:
                       << std::endl;
         if (maintenance)
             std::cout << "gateway: maintenance at port " << maintenance << std::endl;
-        for (const auto& open : doors_)
+        for (const auto& open : adapters_)
             open->activate();
     }
 
     Forwarder forwarder;
     const Events events;
-    Door door;
+    Registration registration;
 
 private:
     std::string named(const char* adapter) const {
         return adapter + (place_ ? std::to_string(place_) : "");
     }
     const int place_;
-    std::vector<std::shared_ptr<Ice::ObjectAdapter>> doors_;
+    std::vector<std::shared_ptr<Ice::ObjectAdapter>> adapters_;
 };
 
 // Passes requests until the signal to stop.
@@ -383,11 +384,11 @@ void serve(const std::shared_ptr<Ice::Communicator>& ic, const Options& o) {
     for (const auto& [name, address] : fleetOf(o))
         vehicles.emplace_back(ic, o, rights, name, address, int(vehicles.size()), publisher);
     const auto locator = ic->getDefaultLocator();
-    const auto ask = [&](void (Door::*question)(const std::shared_ptr<Ice::LocatorPrx>&)) {
+    const auto ask = [&](void (Registration::*question)(const std::shared_ptr<Ice::LocatorPrx>&)) {
         std::string trouble;
         try {
             for (Vehicle& vehicle : vehicles)
-                (vehicle.door.*question)(locator);
+                (vehicle.registration.*question)(locator);
         } catch (const Ice::Exception& e) {
             trouble = e.ice_id();
         }
@@ -397,17 +398,17 @@ void serve(const std::shared_ptr<Ice::Communicator>& ic, const Options& o) {
     sigemptyset(&signals);
     for (int signal : {SIGINT, SIGTERM, SIGHUP})
         sigaddset(&signals, signal);
-    const timespec pause{0, Door::lookMs * 1'000'000};
+    const timespec pause{0, Registration::lookMs * 1'000'000};
     for (std::string before; sigtimedwait(&signals, nullptr, &pause) < 0;) {
         for (Vehicle& vehicle : vehicles)
             vehicle.forwarder.failLateRequests();
-        const std::string trouble = locator ? ask(&Door::look) : "";
+        const std::string trouble = locator ? ask(&Registration::look) : "";
         if (!trouble.empty() && before.empty())
             std::cerr << "gateway: the registry does not answer: " + trouble + "\n";
         before = trouble;
     }
     if (locator)
-        ask(&Door::leave);
+        ask(&Registration::leave);
     for (Vehicle& vehicle : vehicles)
         vehicle.forwarder.stop();
     ic->destroy(); // while the objects that its callbacks use exist

@@ -68,18 +68,18 @@ def registry(ic, folder, work, count, calls):
     """Registers `count` vehicles, and looks them up."""
     with Service("Registry.Client", folder / "icegridregistry", "--IceGrid.InstanceName=IceGrid",
                  "--IceGrid.Registry.DynamicRegistration=1",
-                 *(f"--IceGrid.Registry.{door}.Endpoints={HERE}"
-                   for door in ("Internal", "Server", "Client")),
+                 *(f"--IceGrid.Registry.{side}.Endpoints={HERE}"
+                   for side in ("Internal", "Server", "Client")),
                  "--IceGrid.Registry.Discovery.Enabled=0", "--Ice.Trace.Network=2",
                  f"--IceGrid.Registry.LMDB.Path={work}") as service:
         locator = Ice.LocatorPrx.checkedCast(
             ic.stringToProxy(f"IceGrid/Locator:{service.endpoint}"))
-        book, door = locator.getRegistry(), ic.stringToProxy(f"any:{HERE} -p 10000")
-        told = rate(service, [lambda i=i: book.setAdapterDirectProxyAsync(f"uav{i}", door)
+        book, entry = locator.getRegistry(), ic.stringToProxy(f"any:{HERE} -p 10000")
+        told = rate(service, [lambda i=i: book.setAdapterDirectProxyAsync(f"uav{i}", entry)
                               for i in range(count)])
         found = rate(service, [lambda i=random.randrange(count):
                                locator.findAdapterByIdAsync(f"uav{i}") for _ in range(calls)])
-        if locator.findAdapterById("uav1") != door:
+        if locator.findAdapterById("uav1") != entry:
             sys.exit("directory: the registry leads elsewhere")
     of = f"with {count} vehicles, a second of a processor"
     return [figure(f"{what} {of}", round(value), "")

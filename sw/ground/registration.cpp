@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// door: opens and closes by what the forwarder and the registry say.
+// registration: registers and withdraws a vehicle by what the forwarder and the registry say.
 
-#include "door.h"
+#include "registration.h"
 
 #include <iostream>
 
@@ -14,9 +14,9 @@ constexpr int patienceMs = 2000;               // with a registry, or another gr
 constexpr std::chrono::milliseconds late{500}; // of a call under way to a vehicle that has moved
 
 // Returns whether nobody listens at the endpoints of a proxy.
-bool isDead(const std::shared_ptr<Ice::ObjectPrx>& door) {
+bool isDead(const std::shared_ptr<Ice::ObjectPrx>& proxy) {
     try {
-        door->ice_invocationTimeout(patienceMs)->ice_getConnection();
+        proxy->ice_invocationTimeout(patienceMs)->ice_getConnection();
     } catch (const Ice::ConnectFailedException&) {
         return true;
     } catch (const Ice::Exception&) {
@@ -75,9 +75,10 @@ void Events::pass(const Request& request, Response onResponse, Failure onError) 
     named.sendTo(publisher_, std::move(onResponse), std::move(onError));
 }
 
-// ---- the door ----
+// ---- the registration ----
 
-std::shared_ptr<Ice::ObjectPrx> Door::find(const std::shared_ptr<Ice::LocatorPrx>& locator) const {
+std::shared_ptr<Ice::ObjectPrx>
+Registration::find(const std::shared_ptr<Ice::LocatorPrx>& locator) const {
     try {
         return locator->ice_invocationTimeout(patienceMs)->findAdapterById(name_);
     } catch (const Ice::AdapterNotFoundException&) {
@@ -85,20 +86,20 @@ std::shared_ptr<Ice::ObjectPrx> Door::find(const std::shared_ptr<Ice::LocatorPrx
     }
 }
 
-void Door::tell(const std::shared_ptr<Ice::LocatorPrx>& locator,
-                const std::shared_ptr<Ice::ObjectPrx>& door) const {
+void Registration::tell(const std::shared_ptr<Ice::LocatorPrx>& locator,
+                        const std::shared_ptr<Ice::ObjectPrx>& proxy) const {
     locator->ice_invocationTimeout(patienceMs)
         ->getRegistry()
         ->ice_invocationTimeout(patienceMs)
-        ->setAdapterDirectProxy(name_, door);
+        ->setAdapterDirectProxy(name_, proxy);
 }
 
-bool Door::isOwn(const std::shared_ptr<Ice::ObjectPrx>& found) const {
+bool Registration::isOwn(const std::shared_ptr<Ice::ObjectPrx>& found) const {
     return found && own_ && found->ice_toString() == own_->ice_toString();
 }
 
 // Opens, if it is not open, and writes this ground into the registry.
-void Door::enter(const std::shared_ptr<Ice::LocatorPrx>& locator) {
+void Registration::enter(const std::shared_ptr<Ice::LocatorPrx>& locator) {
     const unsigned session = forwarder_.session();
     if (!adapter_) {
         if (closing_)
@@ -118,7 +119,7 @@ void Door::enter(const std::shared_ptr<Ice::LocatorPrx>& locator) {
 }
 
 // Closes: clients ask the registry again. What waits was not sent, and may go elsewhere.
-void Door::close() {
+void Registration::close() {
     if (!adapter_)
         return;
     closing_ = adapter_;
@@ -127,7 +128,7 @@ void Door::close() {
     forwarder_.refuseWaiting();
 }
 
-void Door::look(const std::shared_ptr<Ice::LocatorPrx>& locator) {
+void Registration::look(const std::shared_ptr<Ice::LocatorPrx>& locator) {
     forwarder_.hold();
     const unsigned session = forwarder_.session();
     const bool isNew = session && session != entered_;
@@ -152,7 +153,7 @@ void Door::look(const std::shared_ptr<Ice::LocatorPrx>& locator) {
 }
 
 // Removes this ground from the registry, unless another one is there by now.
-void Door::leave(const std::shared_ptr<Ice::LocatorPrx>& locator) {
+void Registration::leave(const std::shared_ptr<Ice::LocatorPrx>& locator) {
     if (!isEntered_)
         return;
     const bool isGone = isOwn(find(locator));

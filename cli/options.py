@@ -150,6 +150,7 @@ JOBS = Option("jobs", COUNT, "processes of a build at a time", len(os.sched_geta
 TESTS = Option("tests", COUNT,
                "tests at a time: some wait for a clock, so two more than processors", None)
 SEED = Option("seed", number(0), "seed of everything that is drawn", 1)
+FAMILY = Option("family", TEXT, "the chip that netlists are for: xc6s (Spartan-6) or ecp5", "xc6s")
 NAME = Option("name", TEXT, "regular expression: tests of which a part of the name matches")
 LABEL = Option("label", TEXT,
                "tests of this label: rtl, vhdl, formal, lint, firmware, slice, interop, e2e, ...")

@@ -251,7 +251,7 @@ function(icesoc_netlist name)
   add_custom_command(OUTPUT ${netlist}
     COMMAND ${CMAKE_BINARY_DIR}/synth/utilisation --source ${here} --generated ${GEN_DIR}
       --output ${CMAKE_BINARY_DIR}/netlists --netlist ${A_DESIGN} ${A_PARAMS}
-      --to ${netlist}
+      --family ${NETLIST_FAMILY} --to ${netlist}
     DEPENDS ${rtl} ${made} ${A_DEPENDS} VERBATIM COMMENT "Netlist of ${A_DESIGN}")
   # Lint is of the RTL: this is Yosys' style.
   icesoc_verilate(${name} TOP ${A_DESIGN} SOURCES ${netlist}

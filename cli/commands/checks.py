@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: MIT
 """check: proofs, sanitizers, seeded bugs, faults, hours of radio, measurements."""
+import json
 import re
 import shutil
 from pathlib import Path
 
-from cli.build_folder import ROOMS_OF_PROGRAMS, BuildFolder, configured
+from cli.build_folder import ROOMS_OF_PROGRAMS, BuildFolder, configured, netlists
 from cli.command import GROUPS, command
-from cli.options import (BLOCK, BUILD, COUNT, FRESH, JOBS, MINUTES, NAME, PATH, SEED, TESTS, WORDS,
-                         Option)
+from cli.options import (BLOCK, BUILD, COUNT, FAMILY, FRESH, JOBS, MINUTES, NAME, PATH, SEED,
+                         TESTS, WORDS, Option)
 from cli.runner import Stop, output, run, say
 
 GROUPS["check"] = "what takes minutes to hours"
-NETLISTS = ["test_fsmc_bridge", "test_modem", "test_ip_ascon", "test_ip_fir", "test_ip_vision"]
 GUARDED = ["test_engine", "gateway", "test_radio_ice", "test_icec"]
 
 
@@ -29,18 +29,30 @@ def proofs(values):
     say(f"{len(spent)} proofs, {sum(spent):.0f} s of a processor")
 
 
-@command("check netlist", [NAME, TESTS, JOBS], make="netlist", brief="check netlist --name vision",
-         long="check netlist", examples=["check netlist --name 'fir|modem'"])
+@command("check netlist", [NAME, FAMILY, TESTS, JOBS], make="netlist",
+         brief="check netlist --name 'cdc_bit|probe'",
+         long=("check netlist", "check netlist --family ecp5"),
+         examples=["check netlist --name 'fir|modem'", "check netlist --family ecp5"])
 def netlist(values):
-    """run the tests of the bridge, the modem and the cores on their netlists"""
-    programs = [name for name in NETLISTS if re.search(values.name or "", name)]
-    if not programs:
-        raise Stop(f"no test of a netlist matches '{values.name}': {', '.join(NETLISTS)}", 2)
-    build = BuildFolder("build/netlist", values).prepare(
-        "-DNETLIST=ON", "-DCLK_HZ=2000000", tests=True)
-    build.ninja(*programs)
-    return build.ctest("-R", f"^({'|'.join(programs)})[.]", tests=values.tests or values.jobs,
-                       check=False)
+    """prove each netlist of `synth` equivalent to its RTL, or run its block's tests on it; print a
+    table"""
+    simulated = json.loads(Path("synth/designs.json").read_text())["simulated"]
+    build = netlists(values, "-DCLK_HZ=2000000", tests=True)
+    build.ninja("synth_inputs")
+    tool = [build / "synth/utilisation", "--generated", build / "gen", "--jobs", values.jobs,
+            "--output", build / "netlists", "--family", values.family]
+    names = output([*tool, "--list"]).split()
+    chosen = [name for name in names if re.search(values.name or "", name)]
+    if not chosen:
+        raise Stop(f"no netlist matches '{values.name}': {', '.join(names)}", 2)
+    tests = [test for name in chosen for test in simulated.get(name, "").split()]
+    words = ["--equivalent", *(word for name in chosen for word in ("--design", name))]
+    if tests:
+        build.ninja(*{test.partition(".")[0] for test in tests})
+        build.ctest("-R", f"^({'|'.join(tests)})[^a-z_]", tests=values.tests or values.jobs,
+                    check=False)
+        words += ["--junit", build / "junit.xml"]
+    return run([*tool, *words], check=False)
 
 
 @command("check sanitizers",

@@ -10,10 +10,10 @@ import time
 from pathlib import Path
 
 from cli import flight, keys
-from cli.build_folder import BuildFolder, configured
+from cli.build_folder import BuildFolder, configured, netlists
 from cli.command import command
-from cli.options import (BUILD, COUNT, FILE, FLIGHT, FOLDER, JOBS, MINUTES, PATH, SECONDS, SEED,
-                         SWITCH, Option)
+from cli.options import (BUILD, COUNT, FAMILY, FILE, FLIGHT, FOLDER, JOBS, MINUTES, PATH, SECONDS,
+                         SEED, SWITCH, Option)
 from cli.runner import Interrupted, Stop, end, lock, run, say, start, until, wait, warn
 
 FROM = Option("from", SECONDS, "begin of the waveform, in simulated time")
@@ -25,9 +25,11 @@ NETLIST_HZ = 2000000
 DEBUGGED = [option for option in flight.FIELDS if option.name in ("image", "size", "seed")]
 
 
-@command("run", [*flight.OPTIONS, NETLIST, BUILD, JOBS], make="run",
+@command("run", [*flight.OPTIONS, NETLIST, FAMILY, BUILD, JOBS], make="run",
          brief="run --size 96x64 --guard 20 --out build/brief/run",
-         long="run --netlist --size 96x64 --guard 20 --out build/netlist/run", examples=[
+         long=("run --netlist --size 96x64 --guard 20 --out build/netlist/run",
+               "run --netlist --family ecp5 --size 96x64 --guard 20 --out build/netlist_ecp5/run"),
+         examples=[
              "run --image photo.jpg --size 640x480", "run --loss 0.1 --seed 7 --cores ascon fir",
              "run --again build/run/flight.json"])
 def fly_mission(values):
@@ -43,8 +45,7 @@ def fly_mission(values):
     build = BuildFolder(values.build, values).prepare()
     if values.netlist:
         values.clk_hz = min(values.clk_hz, NETLIST_HZ)
-        chip, build = build, BuildFolder("build/netlist", values).prepare(
-            "-DNETLIST=ON")
+        chip, build = build, netlists(values)
         build.follow(chip)
     if not build.built:
         build.set(CLK_HZ=str(values.clk_hz))

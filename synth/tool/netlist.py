@@ -188,15 +188,22 @@ RAM_NAMES = [name.format(port) for port in "ab" for name in (
 RAM_SIZES = {"clk": 1, "en": 1, "rst": 1, "we": 4, "data": 36}
 
 
-def with_block_rams(file):
-    """The text of a netlist (write_json) in which each block RAM is a block_ram."""
+def with_models(file):
+    """The text of a netlist (write_json) in which each block RAM is a block_ram, and each
+    multiplier of ECP5 is Yosys' own."""
     whole = json.loads(pathlib.Path(file).read_text())
     (module,) = whole["modules"].values()
     free = 1 + max((bit for net in module["netnames"].values() for bit in net["bits"]
                     if isinstance(bit, int)), default=1)
+    for net in module["netnames"].values():
+        net["attributes"].pop("init", None)  # flip-flops have it as a parameter
     for cell in module["cells"].values():
         if cell["type"] in ("RAMB16BWER", "RAMB8BWER"):
             free = make_block_ram(cell, free)
+        elif cell["type"] == "DP16KD":
+            free = make_block_ram_of_ecp5(cell, free)
+        elif cell["type"] == "MULT18X18D":
+            make_product(cell)
     return json.dumps(whole)
 
 
@@ -219,7 +226,7 @@ def make_block_ram(cell, free):
     def rows(name, count):
         return "".join(bits(f"{name}_{n:02X}", 256) for n in reversed(range(count)))
 
-    made = {"ADDR_BITS": f"{log2:032b}", "INIT": rows("INIT", 1 << log2 - 8),
+    made = {"INIT": rows("INIT", 1 << log2 - 8),
             "INIT_P": rows("INITP", 1 << log2 - 11)}
     for port in "AB":
         if int(bits(f"DO{port}_REG", 32), 2) or given.get(f"EN_RSTRAM_{port}", "TRUE") != "TRUE" \
@@ -243,7 +250,86 @@ def make_block_ram(cell, free):
         connections[port] = [bit if isinstance(bit, int) or bit and not is_output else
                              free + n if is_output else "0" for n, bit in enumerate(joined)]
         free += size
+    finish_block_ram(cell, made, connections)
+    return free
+
+
+def finish_block_ram(cell, made, connections):
+    """The cell becomes a block_ram. Rows that no address reaches are left out: a proof and a
+    simulator are quicker."""
+    used = max([6] + [place + 1 for port in "ab" if int(made[f"WIDTH_{port.upper()}"], 2)
+                      for place, bit in enumerate(connections[f"addr_{port}_i"]) if bit != "0"])
+    connections |= {port: connections[port][:used] for port in ("addr_a_i", "addr_b_i")}
+    made |= {"ADDR_BITS": f"{used:032b}", "INIT": made["INIT"][-(1 << used):],
+             "INIT_P": made["INIT_P"][-(1 << used - 3):]}
     cell |= {"type": "block_ram", "parameters": made, "connections": connections,
              "port_directions": {port: "output" if port.endswith("_o") else "input"
                                  for port in connections}}
+
+
+# Lattice FPGA-TN-02204 (ECP5 memory): what a port shows of a word that it writes.
+ECP5_MODES = {"NORMAL": "NO_CHANGE", "WRITETHROUGH": "WRITE_FIRST",
+              "READBEFOREWRITE": "READ_FIRST"}
+
+
+def make_block_ram_of_ecp5(cell, free):
+    """As make_block_ram, of bytes of nine bits each. Words of 36 bits have the data pins of both
+    ports. Bits 0 to 3 of such a word's address enable its bytes."""
+    given, pins, made, connections = cell["parameters"], cell["connections"], {}, {}
+    number = lambda name, low, count: given.get(name, "").replace("x", "0")[::-1][
+        low:low + count].ljust(count, "0")  # noqa: E731
+    words = [number(f"INITVAL_{n // 16:02X}", n % 16 * 20, 18) for n in range(1024)]
+    made["INIT"] = "".join(word[0:8] + word[9:17] for word in words)[::-1]
+    made["INIT_P"] = "".join(word[8] + word[17] for word in words)[::-1]
+
+    def pin(name):
+        return pins.get(name, ["0"])[0]
+
+    for port in "AB":
+        width, own = int(given.get(f"DATA_WIDTH_{port}", "10010"), 2), port.lower()
+        address = [pin(f"AD{port}{n}") for n in range(14)]
+        enable, bytes = pin(f"WE{port}"), max(1, width // 9)
+        resets = pin(f"RST{port}")  # which blocks a write
+        if given.get(f"REGMODE_{port}", "NOREG") != "NOREG" or width < 9 or \
+                "0" not in (resets, enable) or given.get(f"CLK{port}MUX") == "INV":
+            raise ValueError("block RAM DP16KD has a mode without a model")
+        lanes = address[:bytes] if width > 9 and enable != "0" else ["1"] * bytes
+        if enable != "1" and lanes != ["1"] * bytes:
+            raise ValueError("block RAM DP16KD has two kinds of enables")
+        written = lanes if enable == "1" else [enable] * bytes
+        names = [f"{p}{n}" for p in ("AB" if width == 36 else port) for n in range(18)][:width]
+        places = [8 * (n // 9) + n % 9 if n % 9 < 8 else 32 + n // 9 for n in range(width)]
+        data, shown = ["0"] * 36, list(range(free, free + 36))
+        for name, place in zip(names, places):
+            data[place], shown[place] = pin(f"DI{name}"), pins.get(f"DO{name}", [shown[place]])[0]
+        free += 36
+        low = {9: 3, 18: 4, 36: 5}[width]
+        used = width if pin(f"CE{port}") != "0" else 0
+        made |= {f"WIDTH_{port}": f"{used:032b}", f"PRIORITY_{port}": "SR",
+                 f"MODE_{port}": ECP5_MODES[given.get(f"WRITEMODE_{port}", "NORMAL")]}
+        connections |= {
+            f"clk_{own}_i": [pin(f"CLK{port}")], f"en_{own}_i": [pin(f"CE{port}")],
+            f"rst_{own}_i": [resets], f"we_{own}_i": (written + ["0"] * 4)[:4],
+            f"addr_{own}_i": ["0"] * low + address[low:], f"data_{own}_i": data,
+            f"data_{own}_o": shown}
+    finish_block_ram(cell, made, connections)
     return free
+
+
+def make_product(cell):
+    """Changes a multiplier of ECP5 without registers to Yosys' own."""
+    pins, given = cell["connections"], cell["parameters"]
+    signs = {pins.get(f"SIGNED{port}", ["0"])[0] for port in "AB"}
+    if signs not in ({"0"}, {"1"}) or any(
+            given.get(f"REG_{part}_CLK", "NONE") != "NONE"
+            for part in ("INPUTA", "INPUTB", "INPUTC", "PIPELINE", "OUTPUT")):
+        raise ValueError("MULT18X18D has a mode without a model")
+    (sign,) = signs
+    ports = {"A": ("A", 18), "B": ("B", 18), "Y": ("P", 36)}
+    cell |= {
+        "type": "$mul",
+        "parameters": {f"{port}_SIGNED": f"{sign:>032}" for port in "AB"} |
+                      {f"{port}_WIDTH": f"{width:032b}" for port, (_, width) in ports.items()},
+        "connections": {port: [pins[f"{name}{n}"][0] for n in range(width)]
+                        for port, (name, width) in ports.items()},
+        "port_directions": {"A": "input", "B": "input", "Y": "output"}}

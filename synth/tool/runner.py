@@ -267,29 +267,38 @@ def in_parallel(jobs, work, items):
             raise
 
 
-def write_for_simulation(design, library, options, file, models):
-    """Writes the netlist of a design's figures as Verilog, for primitives with models."""
+# Yosys' models of a family's primitives.
+SIMULATION = {"xc6s": "+/xilinx/cells_sim.v", "ecp5": "+/ecp5/cells_sim.v"}
+
+
+def filled(script, words):
+    for name, value in words.items():
+        script = script.replace(f"@{name}@", str(value))
+    return script
+
+
+def mapped(design, family, library, options):
+    """The run of a design whose netlist is there: of all orders the first, else that without."""
     options.cache.mkdir(parents=True, exist_ok=True)
     version = version_of(options.yosys)
-    for orders in (design.orders, 0):  # the first of all orders is the netlist without others
-        run = Run(dataclasses.replace(design, orders=orders), "xc6s")
+    for orders in (design.orders, 0):
+        run = Run(dataclasses.replace(design, orders=orders), family)
         place(run, library, options, version)
         if run.netlist.exists():
-            break
-    else:
-        synthesise(run, library, options)
+            return run
+    synthesise(run, library, options)
+    return run
+
+
+def write_for_simulation(design, family, library, options, file, models):
+    """Writes the netlist of a design's figures as Verilog, for primitives with models."""
+    run = mapped(design, family, library, options)
     words = {"NETLIST": file.with_suffix(".json"), "TOP": design.top,
-             "MODELS": " ".join(map(str, sorted(models.glob("*.v"))))}
-
-    def script(part):
-        text = (options.scripts / "simulate.ys").read_text()
-        for name, value in {**words, "OUTPUT": part}.items():
-            text = text.replace(f"@{name}@", str(value))
-        return text
-
+             "SIMULATION": SIMULATION[run.family], "MODELS": " ".join(map(str, sorted(models)))}
     file.parent.mkdir(parents=True, exist_ok=True)
-    write(file.with_suffix(".json"), netlist.with_block_rams(run.netlist))
-    yosys_by(script, file, options)
+    write(file.with_suffix(".json"), netlist.with_models(run.netlist))
+    scripts = (options.scripts / "simulate.ys").read_text()
+    yosys_by(lambda part: filled(scripts, {**words, "OUTPUT": part}), file, options)
 
 
 def write_edif(design, library, options, folder):

@@ -171,6 +171,7 @@ class Plan:
     chip: dict
     paper: dict  # Table I: "lut", "ff", "slices"
     designs: list
+    simulated: dict  # design -> prefixes of the tests that run on its netlist; others are proven
 
 
 def sentence_of(file, module):
@@ -204,7 +205,7 @@ def read_plan(file, library, root):
             designs.append(Design(name, name, sentence_of(module.file, name)))
     for design in designs:
         design.file = str(relative_to(library.modules[design.top].file, root))
-    return Plan(j["chip"], j["paper"], designs)
+    return Plan(j["chip"], j["paper"], designs, j.get("simulated", {}))
 
 
 def relative_to(file, root):

@@ -9,6 +9,7 @@ import sys
 
 import baseline
 import cores
+import equivalence
 import report
 import reports
 import runner
@@ -112,8 +113,18 @@ def edif(plan, library, options, o):
 def netlist(plan, library, options, o):
     design = next(design for design in plan.designs if design.name == o.netlist)
     design.parameters.update(o.set)
-    runner.write_for_simulation(design, library, options, o.to, o.source / "synth/primitives")
+    runner.write_for_simulation(design, o.family[-1], library, options, o.to, models_of(o))
     return 0
+
+
+def models_of(o):
+    return (o.source / "synth/primitives").glob("*.v")
+
+
+def equivalent(plan, library, options, o):
+    table, failed = equivalence.table_of(plan, library, options, list(models_of(o)), o)
+    print(table.plain(), end="")
+    return int(failed > 0)
 
 
 def run(o, libraries):
@@ -126,10 +137,15 @@ def run(o, libraries):
     accepted = baseline.read_baseline(o.source / "synth/baseline.json")
     options = runner.Options(o.source / "synth/yosys", o.output / "cache", o.yosys, o.jobs,
                              {name: a["lut"] for name, a in accepted["designs"].items()})
+    if o.list:
+        print(*(design.name for design in plan.designs))
+        return 0
     if o.edif:
         return edif(plan, library, options, o)
     if o.netlist:
         return netlist(plan, library, options, o)
+    if o.equivalent:
+        return equivalent(plan, library, options, o)
     if o.core:
         for design in plan.designs:
             design.orders = 0  # they are there for the median of clocks
@@ -176,6 +192,12 @@ def options_of(words):
                         help="only hold the estimates against published reports")
     parser.add_argument("--edif", metavar="DESIGN",
                         help="only write this design as EDIF for ISE, into the folder ise")
+    parser.add_argument("--list", action="store_true", help="only print the designs' names")
+    parser.add_argument("--equivalent", action="store_true",
+                        help="only prove that netlists are equivalent to their RTL, or tell tests")
+    parser.add_argument("--junit", **path, help="results of the tests that --equivalent tells")
+    parser.add_argument("--seconds", type=int, default=300,
+                        help="limit of a proof of --equivalent (%(default)s)")
     parser.add_argument("--netlist", metavar="DESIGN",
                         help="only write this design's netlist as Verilog for a simulator")
     parser.add_argument("--set", metavar="NAME=VALUE", action="append", default=[],

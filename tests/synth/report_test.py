@@ -301,6 +301,34 @@ class Cases(Script):
         self.made("ip-synth", "IP=nobody", status=None)
         self.has("there is no core 'nobody': store")
 
+    def test_equivalent(self):
+        """A netlist is proven equivalent to its RTL, and one with a fault is not."""
+        self.run_program("--equivalent")
+        for name in "store", "whole", "wide":
+            self.has(rf"(?m)^{name} +proven")
+        file, = Path("out/cache").glob("whole.xc6s.????????????????.json")
+        good = file.read_text()
+
+        def differs(fault):
+            netlist = json.loads(good)
+            (module,) = netlist["modules"].values()
+            fault(module["cells"].values())
+            write(file, json.dumps(netlist))
+            self.run_program("--equivalent", "--design", "whole", status=1)
+            self.has("(?m)^whole +differs after")
+
+        def function(cells):
+            cell = next(cell for cell in cells if cell["type"] == "LUT2")
+            cell["parameters"]["INIT"] = cell["parameters"]["INIT"].translate({48: 49, 49: 48})
+
+        def enable(cells):
+            cell = next(cell for cell in cells if cell["type"] == "FDRE" and
+                        cell["connections"]["CE"] != ["1"])
+            cell["connections"]["CE"] = ["1"]
+
+        differs(function)
+        differs(enable)
+
     def test_edif(self):
         """The netlist that ISE reads has every cell that Yosys counts, once, and well-formed
         parentheses."""

@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: MIT
+"""equivalence: proves that a netlist does in each clock what its RTL does, from the first one on.
+
+Yosys puts both side by side, with one output that says whether any of theirs differ
+(synth/yosys/equivalence.ys); abc finds registers that are always equal (scorr), then the proof or
+the clock of a difference (pdr). What RTL leaves undefined, flip-flops have by the netlist at the
+start, else 0. Where there are several clocks, edges are inputs: any order of them is proven.
+"""
+import json
+import re
+import sys
+import time
+import xml.etree.ElementTree
+
+import netlist
+import report
+import runner
+from tool import Stop, run as command, write
+
+BOXES = {"DCM_CLKGEN", "BUFGCE"}  # clock parts of both copies; what is around them is proven
+SOLVE = """read_rtlil {file}
+splitnets
+setattr -unset init w:*
+{initial}
+{clocks}
+setundef -init -zero
+setundef -zero
+opt_clean
+simplemap
+techmap
+simplemap
+setundef -zero
+dfflegalize -cell $_DFF_P_ 01
+aigmap
+opt_clean
+write_aiger -zinit {file}.aig
+"""
+# One clock in reset: states of one-hot code may begin with none, which RTL does not have.
+IN_RESET = "sim -clock in_clk_i -reset in_rst_i -rstlen 1 -n 1 -zinit -w miter"
+
+
+def attributes_of(module):
+    """Yosys commands that let registers begin with 1: by the RTL, and where it says nothing, by the
+    netlist; and whether all registers have one clock's rising edge."""
+    begin, ones, nets = {}, {}, module["netnames"]
+    for net in nets.values():
+        for bit, value in zip(net["bits"], reversed(net["attributes"].get("init", ""))):
+            if value in "01":
+                begin[bit] = value
+    for name, net in nets.items():
+        twin = nets.get(name.replace("gold.", "gate.", 1), net)
+        for place, bit in enumerate(net["bits"]):
+            other = twin["bits"][place] if len(twin["bits"]) == len(net["bits"]) else bit
+            if begin.get(bit, other if other in ("0", "1") else begin.get(other)) == "1":
+                index = net.get("offset", 0) + place
+                ones[bit] = f"{name}[{index}]" if len(net["bits"]) > 1 else name
+    commands = [f"setattr -set init 1'1 w:{name}" for bit, name in ones.items() if bit != "1"]
+    kinds = {(*c["connections"].get("CLK", [None]), c["parameters"].get("CLK_POLARITY", "")[-1:])
+             for c in module["cells"].values() if re.match(r"\$a?l?dff", c["type"])}
+    plain = not any(re.match(r"\$(a|al)dff|\$dlatch", c["type"]) for c in module["cells"].values())
+    return commands, len(kinds) <= 1 and plain and all(kind[1] == "1" for kind in kinds)
+
+
+def prove(design, family, library, options, models, seconds):
+    """(What is known, whether the netlist is equivalent), of a proof of at most so many seconds."""
+    run = runner.mapped(design, family, library, options)
+    file, text = options.cache / f"{design.name}.{family}.miter", netlist.with_models(run.netlist)
+    write(file.with_suffix(".netlist"), text)
+    boxes = BOXES & set(re.findall(r'"type": "(\w+)"', text))
+    words = {
+        "NETLIST": file.with_suffix(".netlist"), "MODELS": " ".join(map(str, sorted(models))),
+        "SIMULATION": runner.SIMULATION[family],
+        "BOXES": "read_verilog -lib +/xilinx/cells_xtra.v" if boxes else ""}
+
+    def script(part):
+        return runner.filled(runner.script_of(
+            runner.Run(design, "equivalence", netlist=file), library, options, part), words)
+
+    runner.yosys_by(script, file, options)
+    part = json.loads((file.parent / f"{file.name}.part.json").read_text())["modules"]["miter"]
+    commands, is_plain = attributes_of(part)
+    said = solved(file, commands, is_plain, options, seconds)
+    if said and is_plain and "in_rst_i" in part["ports"]:
+        again = solved(file, [*commands, IN_RESET], is_plain, options, seconds)
+        return again or "proven from a reset on", not again
+    return said or "proven", not said
+
+
+def solved(file, commands, is_plain, options, seconds):
+    """"" if the output is never high, else what is known."""
+    write(solve := file.with_suffix(".solve.ys"),
+          SOLVE.format(file=file, initial="\n".join(commands),
+                       clocks="" if is_plain else "clk2fflogic"))
+    status, said = command([options.yosys, "-q", "-s", solve])
+    if status:
+        raise Stop(said)
+    with open(f"{file}.aig", "rb") as aiger:
+        has_state = aiger.readline().split()[3] != b"0"
+    steps = f"scorr; pdr -T {seconds}" if has_state else "ifraig; iprove; sat"
+    said = command(["sh", "-c", f"ulimit -t {seconds + 60}; {options.yosys}-abc -c "
+                    f"'read_aiger {file}.aig; strash; {steps}'"])[1]
+    write(file.with_suffix(".abc.log"), said)
+    if re.search("Property proved|UNSATISFIABLE", said):
+        return ""
+    differs = re.search(r"asserted in frame (\d+)", said)
+    return (f"differs after {differs[1]} clocks" if differs else
+            "differs" if "SATISFIABLE" in said else f"no proof in {seconds} s")
+
+
+def seconds_of_tests(junit, prefix):
+    """(how many tests of this prefix ran, how many failed, their seconds) by a JUnit file."""
+    cases = [case for case in xml.etree.ElementTree.parse(junit).iter("testcase")
+             if re.match(rf"{prefix}[^a-z_]", case.get("name"))] if junit else []
+    return (len(cases), sum(case.get("status") != "run" for case in cases),
+            sum(float(case.get("time")) for case in cases))
+
+
+def table_of(plan, library, options, models, o):
+    """(A row for each design: its proof, or its block's tests on its netlist; how many failed)."""
+    rows, failed = {}, []
+
+    def work(design):
+        begin, tests = time.monotonic(), plan.simulated.get(design.name, "")
+        if tests:
+            count, red, spent = map(sum, zip(*(seconds_of_tests(o.junit, prefix)
+                                               for prefix in tests.split())))
+            said, good = f"{count} tests: {tests}", count and not red
+            said += f", {red} failed" * bool(red)
+        else:
+            try:
+                said, good = prove(design, o.family[-1], library, options, models, o.seconds)
+            except (Stop, ValueError) as error:
+                said, good = str(error).partition("\n")[0], False
+            spent = time.monotonic() - begin
+            print(f"{design.name}: {said}", file=sys.stderr)
+        rows[design.name] = [design.name, said, f"{spent:.1f}"]
+        failed.extend([design.name] * (not good))
+
+    designs = [design for design in plan.designs if not o.design or design.name in o.design]
+    runner.in_parallel(options.jobs, work, designs)
+    return report.Table(["module", "proof or tests", "seconds"],
+                        [rows[name] for name in sorted(rows)]), len(failed)

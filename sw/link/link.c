@@ -204,15 +204,13 @@ void Link_poll(Link* link, U32 nowUs) {
     Link_Sender* sender = link->session.sender;
     link->output.now = nowUs;
     link_pollInput(&link->input);
-    if (!link_pollSession(&link->session))
-        return;
-    if (!link_pollReceiver(&link->receiver) || !link_pollSender(sender)) {
-        link_abort(&link->session);
-        return;
+    if (link_pollSession(&link->session)) {
+        if (!link_pollReceiver(&link->receiver) || !link_pollSender(sender))
+            link_abort(&link->session);
+        else if (!sender->hasWork) /* else the next fragment takes it along */
+            link_pollAck(&link->receiver);
     }
-    if (!sender->hasWork) /* else the next fragment takes it along */
-        link_pollAck(&link->receiver);
-    (void)link_flush(&link->output);
+    (void)link_flush(&link->output); /* a frame of the handshake, too, for which there was no room */
 }
 
 /* Returns the earlier of two times, if the first is due at all. */

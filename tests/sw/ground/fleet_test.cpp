@@ -202,6 +202,91 @@ TEST_F(FleetTest, VehiclesShareTheAirAlikeAndOneThatIsAwayCostsTheOthersLittle) 
     EXPECT_GT(share, 0.0001) << "it is sought";
 }
 
+TEST_F(FleetTest, OneThatComesWhileOthersAreCalledAtFullRateIsServedSoon) {
+    std::vector<std::shared_ptr<XBeeAT::Peer>> peers;
+    std::vector<int> fds;
+    for (int address : {1, 2, 3}) {
+        if (address < 3)
+            fly(address);
+        peers.push_back(peer(address));
+        fds.push_back(peers.back()->connect(-1));
+    }
+    EXPECT_EQ(answerer(fds[0]), 1) << log();
+    EXPECT_EQ(answerer(fds[1]), 2) << log();
+    uint64_t cameAt = 0;
+    std::thread late([&] {
+        rig_.until([&] { return vehicles_[1]->bytes > 4'000; });
+        fly(3);
+        cameAt = rig_.with([&] { return rig_.ns(); });
+        EXPECT_EQ(answerer(fds[2]), 3) << log();
+        cameAt = rig_.with([&] { return rig_.ns(); }) - cameAt;
+    });
+    secondsFor({fds[0], fds[1]}, 50'000);
+    late.join();
+    EXPECT_LT(double(cameAt) / 1e9, 3.5);
+    close(fds[2]);
+}
+
+TEST_F(FleetTest, AnotherOfOneAddressABabblerAndAChangeOfKeysDisturbNobodyElse) {
+    const XBeeAT::LinkKeys present = {{{1}}}, next = {{{9}}}, others = {{{2}}};
+    const auto give = [this](int place, int slot, const XBeeAT::LinkKey* key) {
+        rig_.with([&] {
+            Link_setKey(vehicles_[place]->link.get(), slot, key ? key->data() : nullptr,
+                        static_cast<U32>(place == 2 ? 2 : 1));
+        });
+    };
+    fly(1);
+    give(1, 0, &present[0]);
+    fly(2);
+    give(2, 0, &others[0]);
+    auto one = peer(1, {next[0], present[0]}), two = peer(2, others);
+    const int first = one->connect(-1), second = two->connect(-1);
+    EXPECT_EQ(answerer(first), 1) << log();
+    EXPECT_EQ(answerer(second), 2) << log();
+
+    give(1, 1, &next[0]);
+    give(1, 0, nullptr); // its session ends, and the next one is under the next key
+    EXPECT_EQ(answerer(second), 2) << log();
+    const std::string isUp = "0x0001: link up";
+    ASSERT_TRUE(rig_.until([&] { return log().find(isUp) != log().rfind(isUp); })) << log();
+    const int again = one->connect(-1);
+    EXPECT_EQ(answerer(again), 1) << log();
+
+    HostLine line;
+    XBee::Options options;
+    options.set = {{"BD", 7}, {"MY", 3}, {"DL", 0}};
+    XBee babbler(line, rig_.air, options);
+    Random random(testSeed());
+    rig_.with([&] {
+        vehicles_[101] = std::make_unique<Vehicle>(rig_, 1);
+        Link_start(vehicles_[101]->link.get(), rig_.us());
+        rig_.step = [&, at = uint64_t(0), step = rig_.step]() mutable {
+            step();
+            babbler.advance(rig_.ns());
+            if (rig_.ns() < at)
+                return;
+            at = rig_.ns() + 40'000'000;
+            Bytes words(90);
+            for (auto& byte : words)
+                byte = static_cast<uint8_t>(random.next());
+            line.send(words, rig_.ns());
+        };
+    });
+    give(101, 0, &others[0]);
+    for (int call = 0; call < 20; ++call)
+        EXPECT_EQ(answerer(second), 2) << log();
+    rig_.with([&] {
+        EXPECT_EQ(Link_statistics(vehicles_[2]->link.get())->sessions, 1u);
+        EXPECT_EQ(Link_statistics(vehicles_[101]->link.get())->sessions, 0u);
+        rig_.step = [this] {
+            for (auto& [address, vehicle] : vehicles_)
+                vehicle->step();
+        };
+    });
+    for (int fd : {first, again, second})
+        close(fd);
+}
+
 TEST_F(FleetTest, AModemWithoutApiModeTalksToOneVehicle) {
     isApi_ = false;
     fly(1);

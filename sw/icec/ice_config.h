@@ -51,8 +51,8 @@
 #define ICE_ENDPOINT_MAX 96
 #endif
 
-/* Connections of a transport, of both directions: 4, from 1; over the radio at most the link's
- * channels. */
+/* Connections of a transport, of both directions: 4, from 1; over the radio 4 for each ground that
+ * a vehicle serves, of which there are two at most. */
 #ifndef ICE_CONNECTIONS
 #define ICE_CONNECTIONS 4
 #endif

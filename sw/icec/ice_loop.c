@@ -75,9 +75,10 @@ static int heartbeatDue(Ice_CommunicatorPtr ic, U32 now, Ice_Int* waitMs) {
     int c, due = -1;
     for (c = 0; c < ICE_TRANSPORTS * ICE_CONNECTIONS && due < 0; ++c) {
         Ice_Connection* connection = &ic->connections[c];
-        Ice_Int left = ICE_HEARTBEAT_MS - (Ice_Int)(now - connection->signMs);
-        if (connection->state != ICE_CONNECTION_OPEN || !connection->pending)
+        Ice_Int left;
+        if (!connection->pending || connection->state != ICE_CONNECTION_OPEN)
             continue;
+        left = ICE_HEARTBEAT_MS - (Ice_Int)(now - connection->signMs);
         if (left <= 0) {
             due = c;
             connection->signMs = now;

@@ -8,7 +8,7 @@
 
 void Link_init(Link* link, const Link_Port* port, void* context, U32 byteTimeUs16) {
     Link_Output* output = &link->output;
-    memset(link, 0, sizeof *link);
+    memset(link, 0, LINK_FIXED);
     output->port = port;
     output->context = context;
     output->byteTimeUs16 = byteTimeUs16;
@@ -20,8 +20,21 @@ void Link_init(Link* link, const Link_Port* port, void* context, U32 byteTimeUs1
     link->session.receiver = link->sender.receiver = &link->receiver;
     link->session.sender = &link->sender;
     link->input.session = &link->session;
+#if LINK_SIZES
+    Link_shrink(link, LINK_SEND_BYTES, LINK_MAX_MESSAGE);
+#endif
     link_endSession(&link->session, LINK_STATE_IDLE);
 }
+
+#if LINK_SIZES
+
+void Link_shrink(Link* link, U32 sendBytes, U32 maxMessage) {
+    link->sender.queue.mask = sendBytes - 1U;
+    link->receiver.message = link->sender.queue.bytes + sendBytes;
+    link->receiver.longest = LINK_ARRIVING(maxMessage);
+}
+
+#endif
 
 void Link_limitFrame(Link* link, U32 bytes) {
     link->output.longest = (U8)(bytes - LINK_CODEC(&link->output)->overhead);
@@ -128,7 +141,9 @@ Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag
     checkSize = total > LINK_UNCHECKED ? LINK_CODEC(output)->check : 0U;
     entry = link_offer(sender, LINK_FIRST | (U32)channel, total + checkSize);
     if (!entry)
-        return LINK_FULL;
+        return LINK_SIZES && total + checkSize + LINK_RESERVE > LINK_MASK(queue) + 1U
+                   ? LINK_TOO_LONG
+                   : LINK_FULL;
     entry->tag = tag;
     if (packed.middle)
         entry->flags |= LINK_ENTRY_LEARNS;
@@ -210,7 +225,8 @@ void Link_poll(Link* link, U32 nowUs) {
         else if (!sender->hasWork) /* else the next fragment takes it along */
             link_pollAck(&link->receiver);
     }
-    (void)link_flush(&link->output); /* a frame of the handshake, too, for which there was no room */
+    (void)link_flush(
+        &link->output); /* a frame of the handshake, too, for which there was no room */
 }
 
 /* Returns the earlier of two times, if the first is due at all. */

@@ -27,6 +27,8 @@
 #include "link_port.h"
 #include "link_wire.h"
 
+#include <stddef.h>
+
 typedef enum Link_Status {
     LINK_OK = 0,
     LINK_DOWN, /* no session with the peer */
@@ -40,6 +42,15 @@ typedef struct Link Link; /* complete below, so that callers can place it; its f
 /* Prepares `link`. `port` must stay valid; `byteTimeUs16` is the time of one byte on the slowest
  * part of the way, in 1/16 microseconds (111,111 baud: 1440), used for pacing and timers. */
 void Link_init(Link* link, const Link_Port* port, void* context, U32 byteTimeUs16);
+
+#if LINK_SIZES
+/* Gives a link smaller sizes, after Link_init; it may have LINK_SIZE(sendBytes, maxMessage) bytes
+ * only, aligned as a Link. `sendBytes`, a power of two, takes the place of LINK_SEND_BYTES, so that
+ * it sends messages of sendBytes - LINK_RESERVE - LINK_CHECK bytes at most; `maxMessage` that of
+ * LINK_MAX_MESSAGE for messages that come. */
+void Link_shrink(Link* link, U32 sendBytes, U32 maxMessage);
+#define LINK_SIZE(sendBytes, maxMessage) (LINK_FIXED + (sendBytes) + LINK_ROOM(maxMessage))
+#endif
 
 /* Limits frames to `bytes` from now on, 32 (under a key 59) to LINK_MAX_FRAME: a modem that
  * encrypts splits packets longer than LINK_MAX_ENCRYPTED. The two sides may differ. */
@@ -125,5 +136,10 @@ struct Link {
     Link_Input input;
     Link_Receiver receiver;
     Link_Sender sender;
+#if LINK_SIZES
+    U8 message[LINK_ROOM(LINK_MAX_MESSAGE)]; /* Link_Receiver.message, unless it is smaller */
+#endif
 };
+/* Bytes of a link but its queue's, and the long message's. */
+#define LINK_FIXED (offsetof(Link, sender) + offsetof(Link_Sender, queue.bytes))
 #endif

@@ -39,6 +39,9 @@
 #ifndef LINK_SEND_MESSAGES /* messages, openings and closings in that queue (1..128) */
 #define LINK_SEND_MESSAGES 32U
 #endif
+#ifndef LINK_SIZES /* 1: a link may have smaller sizes than these (Link_shrink); 0: none has */
+#define LINK_SIZES 0
+#endif
 #ifndef LINK_LONGEST /* minimal layer: payload of a frame; 90 where the modem encrypts (27..95) */
 #define LINK_LONGEST 95U
 #endif

@@ -4,16 +4,15 @@
  */
 #include "link_queue.h"
 
-#define RING(at) ((at) & (LINK_SEND_BYTES - 1U))
-
 static Link_Entry* entryAt(Link_Queue* queue, U32 index) {
     return &queue->entries[(queue->first + index) % LINK_SEND_MESSAGES];
 }
 
 Link_Entry* link_enqueue(Link_Queue* queue, U32 flags, U32 size, U32 longest) {
     Link_Entry* entry;
-    if (queue->count == LINK_SEND_MESSAGES || size + (size > longest ? LINK_RESERVE : 0U) >
-                                                  LINK_SEND_BYTES - (queue->tail - queue->head)) {
+    if (queue->count == LINK_SEND_MESSAGES ||
+        size + (size > longest ? LINK_RESERVE : 0U) >
+            LINK_MASK(queue) + 1U - (queue->tail - queue->head)) {
         queue->wasFull = 1;
         return 0;
     }
@@ -24,17 +23,19 @@ Link_Entry* link_enqueue(Link_Queue* queue, U32 flags, U32 size, U32 longest) {
 }
 
 void link_put(Link_Queue* queue, const U8* data, U32 size) {
+    U32 mask = LINK_MASK(queue);
     if (queue->isSummed)
         queue->sums = link_sum(queue->sums, data, size);
     while (size--)
-        queue->bytes[RING(queue->tail++)] = *data++;
+        queue->bytes[queue->tail++ & mask] = *data++;
 }
 
 void link_copy(const Link_Queue* queue, const Link_Piece* piece, U8* to) {
     U32 at = piece->start;
     U32 size = piece->size;
+    U32 mask = LINK_MASK(queue);
     while (size--)
-        *to++ = queue->bytes[RING(at++)];
+        *to++ = queue->bytes[at++ & mask];
 }
 
 void link_dequeue(Link_Queue* queue, U32 entry) {

@@ -62,7 +62,7 @@ static int append(Link_Receiver* receiver, U32 flags, const U8* data, U32 size) 
             receiver->longChannel = receiver->channel;
         }
         if (receiver->channel != receiver->longChannel ||
-            size > LINK_MAX_MESSAGE + LINK_ESCAPE + LINK_CHECK - receiver->longSize)
+            size > LINK_LONGEST_OF(receiver) - receiver->longSize)
             return 0;
         receiver->start = receiver->message + LINK_HEAD_ROOM;
         to = receiver->start + receiver->longSize;

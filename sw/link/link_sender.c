@@ -314,7 +314,7 @@ static int pollWindow(Link_Sender* sender, U32 now) {
         return 1;
     sender->timerAt = now + sender->rto;
     if (sender->output->mostWaiting && sender->output->packed)
-        return 1; /* it has not left yet */
+        return 1;                 /* it has not left yet */
     oldest->state = LINK_TO_SEND; /* its answer tells about the others */
     sender->hasWork = sender->isLate = 1;
     sender->rto += sender->rto / 4U;

@@ -26,30 +26,23 @@
 #define STATUS 0x89U
 #define PACKET 0x81U
 #define HEAD 5U
-#define EVERYBODY 0xFFFFU
 #define ID_BASE 0x80U /* so that none is 0, which would ask for no answer */
 #define ID_MASK 0x7FU
 #define SILENT_TICKS (3U * OS_TICKS_PER_SEC) /* without an answer: there will be none */
 
 typedef enum BufferState { BUFFER_FREE, BUFFER_SENDING } BufferState;
 
-/* The fixed control vector of the output buffer: one entry a DDR3 buffer. */
-typedef struct OutputBuffer {
-    BufferState state;
-    U8 bytes;
-} OutputBuffer;
-
 static struct {
-    OutputBuffer output[BUFFERS];
-    U32 head, used; /* oldest being sent; how many are */
+    BufferState output[BUFFERS]; /* the fixed control vector: one entry a DDR3 buffer */
+    U32 head, used;              /* oldest being sent; how many are */
     Radio_Memory memory;
     Radio_Counters counters;
     U32 failedStep;
     Radio_OnAnswer onAnswer; /* 0: transparent mode */
-    U16 target;
-    U8 handed, answered; /* packets handed over, and those of them with an answer, modulo 256 */
-    U8 wait;             /* RN */
-    U32 handedAt;        /* when the last packet was handed over */
+    U16 target, source;      /* of the next packet; of the one that came last */
+    U8 handed, answered;     /* packets handed over, and those of them with an answer, modulo 256 */
+    U8 wait;                 /* RN */
+    U32 handedAt;            /* when the last packet was handed over */
 } radio;
 
 static U32 get(U32 word) {
@@ -103,7 +96,7 @@ Radio_Status xbeeInit(const XBeeInitTypeDef* conf, const Radio_Memory* memory) {
     }
     radio.head = radio.used = 0;
     for (i = 0; i < BUFFERS; ++i)
-        radio.output[i].state = BUFFER_FREE;
+        radio.output[i] = BUFFER_FREE;
     setUpController(conf);
     /* The controller always ends: with all rates tried, after about 40 s. */
     while (!(events & (MODEM_EVENT_CONFIGURED_MASK | MODEM_EVENT_CONFIGURE_FAILED_MASK))) {
@@ -135,7 +128,7 @@ U32 Radio_waiting(void) {
 static void reclaim(void) {
     U32 busy = BUSY;
     while (radio.used > busy) {
-        radio.output[radio.head].state = BUFFER_FREE;
+        radio.output[radio.head] = BUFFER_FREE;
         radio.head = (radio.head + 1U) % BUFFERS;
         --radio.used;
     }
@@ -159,9 +152,9 @@ static U32 writeHead(U32 address) {
 static int put(const U8* bytes, U32 size, int isPacket) {
     U32 buffer, address, head = 0;
     buffer = (radio.head + radio.used) % BUFFERS;
-    if (radio.output[buffer].state != BUFFER_FREE)
+    if (radio.output[buffer] != BUFFER_FREE)
         reclaim();
-    if (radio.output[buffer].state != BUFFER_FREE) {
+    if (radio.output[buffer] != BUFFER_FREE) {
         ++radio.counters.ringFull;
         return 1;
     }
@@ -169,8 +162,7 @@ static int put(const U8* bytes, U32 size, int isPacket) {
     if (ANSWERS && isPacket)
         head = writeHead(address);
     FSMC_writeMemory(address + head, bytes, size);
-    radio.output[buffer].state = BUFFER_SENDING;
-    radio.output[buffer].bytes = (U8)size;
+    radio.output[buffer] = BUFFER_SENDING;
     ++radio.used;
     set(MODEM_TX_PUT, head + size);
     ++radio.counters.framesSent;
@@ -190,6 +182,14 @@ void Radio_setWait(U32 exponent) {
     command[4] = (U8)exponent;
     if (ANSWERS && exponent != radio.wait && put(command, sizeof command, 0) == 0)
         radio.wait = command[4];
+}
+
+void Radio_setTarget(U16 target) {
+    radio.target = target;
+}
+
+U16 Radio_source(void) {
+    return radio.source;
 }
 
 #endif
@@ -221,12 +221,9 @@ static void takeFrame(const U8* frame, U32 bytes, Radio_OnPacket onPacket, void*
     if (frame[0] == STATUS && bytes == 3U) {
         takeStatus(frame[1], frame[2] == 0);
     } else if (frame[0] == PACKET && bytes > HEAD) {
-        U32 source = (U32)frame[1] << 8 | frame[2];
+        radio.source = (U16)(frame[1] << 8 | frame[2]);
         radio.counters.signal = frame[3];
-        if (source == radio.target || radio.target == EVERYBODY)
-            onPacket(context, frame + HEAD, bytes - HEAD);
-        else
-            ++radio.counters.strangers;
+        onPacket(context, frame + HEAD, bytes - HEAD);
     }
 }
 

@@ -55,8 +55,8 @@ typedef struct XBeeInitTypeDef {
      * carries 95 bytes instead of 100 (Link_limitFrame). */
     const U8* key;
     /* 0: transparent mode. Else API mode, if the controller has it (Radio_answers): Radio_receive
-     * calls this for each packet that was sent, oldest first, and passes over what comes from other
-     * addresses than `target`. */
+     * calls this for each packet that was sent, oldest first, and each packet that comes has a
+     * source (Radio_source), whoever it is. */
     Radio_OnAnswer onAnswer;
 } XBeeInitTypeDef;
 
@@ -75,7 +75,6 @@ typedef struct Radio_Counters {
     U32 interrupts;                      /* calls of Radio_interrupt */
     U32 hardwareOverruns, framingErrors; /* as the controller counts them (docs/modem.md) */
     U32 delivered, lost;                 /* API mode: packets sent, by the modem's answers */
-    U32 strangers;                       /* API mode: packets from other addresses */
     U8 signal;                           /* API mode: RSSI of the last packet, -dBm */
 } Radio_Counters;
 
@@ -104,6 +103,12 @@ int Radio_transmit(void* context, const U8* frame, U32 size);
  * so far. Set-up leaves it at RADIO_WAIT. */
 #define RADIO_WAIT 2U
 void Radio_setWait(U32 exponent);
+
+/* API mode: has the next packets go to this address. */
+void Radio_setTarget(U16 target);
+
+/* API mode: returns the address that the packet is from which onPacket is called with. */
+U16 Radio_source(void);
 
 /* Returns the packets in the output ring that have not left. They wait where the modem does. */
 U32 Radio_waiting(void);

@@ -91,27 +91,35 @@ static void protect(void) {
 static const char* obey(const char* line) {
     const char *end, *answer = "ok\r\n";
     U8 key[LINK_KEY_BYTES], old[LINK_KEY_BYTES], address[2];
-    const int isKey = strncmp(line, "key ", 4) == 0;
-    int isProven = UAV_countKeys() == 0 || !(GPIO_IDR(JUMPER_PORT) >> JUMPER & 1UL);
+    const int isGround = strncmp(line, "ground ", 7) == 0;
+    int isKey = strncmp(line, "key ", 4) == 0;
+    int isProven = UAV_countKeys(0) == 0 || !(GPIO_IDR(JUMPER_PORT) >> JUMPER & 1UL);
     if (strcmp(line, "protect") == 0) {
         protect();
         return answer;
     }
-    end = isKey                           ? readBytes(line + 4, key, sizeof key)
-          : strncmp(line, "open", 4) == 0 ? line + 4
-                                          : 0;
-    end = end && *end == ' ' ? readBytes(end + 1, address, sizeof address) : 0;
+    if (isGround) {
+        end = readBytes(line + 7, address, sizeof address);
+        isKey = end && *end == ' ';
+        end = isKey ? readBytes(end + 1, key, sizeof key) : end;
+    } else {
+        end = isKey                           ? readBytes(line + 4, key, sizeof key)
+              : strncmp(line, "open", 4) == 0 ? line + 4
+                                              : 0;
+        end = end && *end == ' ' ? readBytes(end + 1, address, sizeof address) : 0;
+    }
     if (end && *end == ' ') {
         end = readBytes(end + 1, old, sizeof old);
         isProven |= end && UAV_isKey(old);
     }
     if (!end || *end)
         answer = "no: key or open, the key's 32 of 0..9a..f, the address's 4, a present key's; "
-                 "or protect\r\n";
+                 "ground, its address, its key; or protect\r\n";
     else if (!isProven)
         answer = "no: it has a key; give that, too, or wire the jumper\r\n";
     else
-        UAV_provide((U32)address[0] << 8 | address[1], isKey ? key : 0);
+        (isGround ? UAV_provideGround : UAV_provide)((U32)address[0] << 8 | address[1],
+                                                     isKey ? key : 0);
     Ascon_wipe(key, sizeof key);
     Ascon_wipe(old, sizeof old);
     return answer;

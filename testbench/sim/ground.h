@@ -45,10 +45,11 @@ public:
         options.set = {{"GT", guardMs}};
         return options;
     }
-    Ground(RfChannel& air, uint64_t seed) : random_(seed), link_(new Link) {
+    // `address`: of its modem.
+    Ground(RfChannel& air, uint64_t seed, uint32_t address = 0) : random_(seed), link_(new Link) {
         XBee::Options options;
         options.name = "ground";
-        options.set = {{"BD", 7}, {"MY", 0}, {"DL", 1}};
+        options.set = {{"BD", 7}, {"MY", address}, {"DL", 1}};
         modem_ = std::make_unique<XBee>(line_, air, options);
         start();
     }

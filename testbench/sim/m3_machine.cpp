@@ -43,6 +43,8 @@ M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> 
     stm32_.load(config.firmware);
     SimulatedBoard board;
     board.provide(config.key, config.address);
+    if (config.secondGround >= 0)
+        board.provideGround(static_cast<uint32_t>(config.secondGround), config.secondKey);
     std::copy(board.words.begin(), board.words.end(), stm32_.backup().begin());
     stm32_.setPinB(1, !config.isWired);
     if (config.flash.empty())

@@ -29,6 +29,11 @@ public:
         use();
         UAV_provide(address, key.empty() ? nullptr : key.data());
     }
+    // Has it serve a second ground, by its modem's address and its key.
+    void provideGround(uint32_t address, const std::vector<uint8_t>& key) {
+        use();
+        UAV_provideGround(address, key.empty() ? nullptr : key.data());
+    }
     Words words{};
 
 private:

@@ -52,20 +52,18 @@ Ice_Status Autopilot_KeyRing_setNextKey(Autopilot_KeyRingPtr self, const Autopil
                                         Autopilot_KeyRing_setNextKey_Exception* ex,
                                         const Ice_Current* current) {
     (void)self;
-    (void)current;
     if (UAV_isFlying()) {
         ex->type = Autopilot_KeyRing_setNextKey_InFlight;
         return ICE_USER_EXCEPTION;
     }
-    *result = key->size == (Ice_Int)LINK_KEY_BYTES && UAV_nextKey(key->data);
+    *result = key->size == (Ice_Int)LINK_KEY_BYTES && UAV_nextKey(UAV_groundOf(current), key->data);
     return ICE_OK;
 }
 
 Ice_Status Autopilot_KeyRing_count(Autopilot_KeyRingPtr self, Ice_Int* result,
                                    const Ice_Current* current) {
     (void)self;
-    (void)current;
-    *result = UAV_countKeys();
+    *result = UAV_countKeys(UAV_groundOf(current));
     return ICE_OK;
 }
 

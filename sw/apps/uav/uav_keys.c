@@ -9,8 +9,9 @@
 
 #define SLOT_WORDS 5U
 #define CHECK 4U     /* a slot's check: detects words that are not whole */
-#define STATE_AT 10U /* the state word, or nothing */
+#define STATE_AT 10U /* a ground's state word, or nothing */
 #define ADDRESS_AT 12U
+#define GROUND_AT (UAV_GROUND_WORDS + 11U) /* the second ground's address, inverted: 0 is none */
 #define STATE_OPEN 0x4F50454EU
 #define STATE_NEXT 0x4E455830U /* + slot of the next key, if both have one */
 #define CHECK_SEED 0x4B455931U
@@ -18,7 +19,7 @@
 
 static const UAV_Board* board;
 static void* boardContext;
-static int nextSlot; /* slot of the next key; -1: there is one key */
+static int nextSlot[UAV_GROUNDS]; /* slot of the next key; -1: there is one key */
 
 void UAV_useBoard(const UAV_Board* ours, void* context) {
     board = ours;
@@ -30,12 +31,17 @@ U32 UAV_random(void* unused) {
     return board->random(boardContext);
 }
 
-static U32 load(int slot, U32 word) {
-    return board->load(boardContext, (U32)slot * SLOT_WORDS + word);
+/* Returns the place of a ground's word. */
+static U32 at(int ground, U32 word) {
+    return (U32)ground * UAV_GROUND_WORDS + word;
 }
 
-static void store(int slot, U32 word, U32 value) {
-    board->store(boardContext, (U32)slot * SLOT_WORDS + word, value);
+static U32 load(U32 word) {
+    return board->load(boardContext, word);
+}
+
+static void store(U32 word, U32 value) {
+    board->store(boardContext, word, value);
 }
 
 /* Returns the check of a key: against lost power, not against attackers. Never 0. */
@@ -46,12 +52,12 @@ static U32 checkOf(const U32* words) {
     return check | 1U;
 }
 
-int UAV_readKey(int slot, U8* key) {
-    U32 words[KEY_WORDS], i;
+int UAV_readKey(int ground, int slot, U8* key) {
+    U32 from = at(ground, (U32)slot * SLOT_WORDS), words[KEY_WORDS], i;
     int isKey;
     for (i = 0; i < KEY_WORDS; ++i)
-        words[i] = load(slot, i);
-    isKey = load(slot, CHECK) == checkOf(words);
+        words[i] = load(from + i);
+    isKey = load(from + CHECK) == checkOf(words);
     for (i = 0; i < LINK_KEY_BYTES; ++i)
         key[i] = isKey ? (U8)(words[i / 4U] >> 8U * (i % 4U)) : 0;
     Ascon_wipe(words, sizeof words);
@@ -59,35 +65,48 @@ int UAV_readKey(int slot, U8* key) {
 }
 
 /* Writes a slot; without a key, empties it. */
-static void writeKey(int slot, const U8* key) {
-    U32 words[KEY_WORDS], i;
+static void writeKey(int ground, int slot, const U8* key) {
+    U32 from = at(ground, (U32)slot * SLOT_WORDS), words[KEY_WORDS], i;
     memset(words, 0, sizeof words);
     for (i = 0; key && i < LINK_KEY_BYTES; ++i)
         words[i / 4U] |= (U32)key[i] << 8U * (i % 4U);
     for (i = 0; i < KEY_WORDS; ++i)
-        store(slot, i, words[i]);
-    store(slot, CHECK, key ? checkOf(words) : 0);
+        store(from + i, words[i]);
+    store(from + CHECK, key ? checkOf(words) : 0);
     Ascon_wipe(words, sizeof words);
 }
 
 void UAV_provide(U32 address, const U8* key) {
-    board->store(boardContext, ADDRESS_AT, address);
-    board->store(boardContext, STATE_AT, key ? 0 : STATE_OPEN);
-    writeKey(1, 0);
-    writeKey(0, key);
+    UAV_provideGround(UAV_NO_GROUND, 0);
+    store(ADDRESS_AT, address);
+    store(STATE_AT, key ? 0 : STATE_OPEN);
+    writeKey(0, 1, 0);
+    writeKey(0, 0, key);
+}
+
+void UAV_provideGround(U32 address, const U8* key) {
+    store(GROUND_AT, 0);
+    store(at(1, STATE_AT), 0);
+    writeKey(1, 1, 0);
+    writeKey(1, 0, key);
+    store(GROUND_AT, ~address);
 }
 
 U32 UAV_address(void) {
-    return board->load(boardContext, ADDRESS_AT);
+    return load(ADDRESS_AT);
+}
+
+U32 UAV_secondGround(void) {
+    return UAV_countKeys(1) || UAV_isOpen() ? ~load(GROUND_AT) : UAV_NO_GROUND;
 }
 
 static void giveKey(Link* link, int slot, const U8* key) {
     Link_setKey(link, slot, key, UAV_address());
 }
 
-int UAV_countKeys(void) {
+int UAV_countKeys(int ground) {
     U8 key[LINK_KEY_BYTES];
-    int count = UAV_readKey(0, key) + UAV_readKey(1, key);
+    int count = UAV_readKey(ground, 0, key) + UAV_readKey(ground, 1, key);
     Ascon_wipe(key, sizeof key);
     return count;
 }
@@ -96,59 +115,60 @@ int UAV_isKey(const U8* key) {
     U8 ours[LINK_KEY_BYTES];
     int slot, isOurs = 0;
     for (slot = 0; slot < UAV_KEY_SLOTS; ++slot)
-        isOurs |= UAV_readKey(slot, ours) & Ascon_isSame(ours, key, sizeof ours);
+        isOurs |= UAV_readKey(0, slot, ours) & Ascon_isSame(ours, key, sizeof ours);
     Ascon_wipe(ours, sizeof ours);
     return isOurs;
 }
 
 int UAV_isFlying(void) {
-    return board->load(boardContext, UAV_FLIGHT_WORD) == UAV_FLYING;
+    return load(UAV_FLIGHT_WORD) == UAV_FLYING;
 }
 
 void UAV_setFlying(int isFlying) {
-    board->store(boardContext, UAV_FLIGHT_WORD, isFlying ? UAV_FLYING : 0);
+    store(UAV_FLIGHT_WORD, isFlying ? UAV_FLYING : 0);
 }
 
 int UAV_isOpen(void) {
-    return UAV_countKeys() == 0 && board->load(boardContext, STATE_AT) == STATE_OPEN;
+    return UAV_countKeys(0) == 0 && load(STATE_AT) == STATE_OPEN;
 }
 
-int UAV_giveKeys(Link* link) {
+int UAV_giveKeys(int ground, Link* link) {
     U8 key[LINK_KEY_BYTES];
     int slot, count = 0;
     for (slot = 0; slot < UAV_KEY_SLOTS; ++slot)
-        if (UAV_readKey(slot, key)) {
+        if (UAV_readKey(ground, slot, key)) {
             giveKey(link, slot, key);
             ++count;
         }
     Ascon_wipe(key, sizeof key);
-    nextSlot = count < UAV_KEY_SLOTS ? -1 : (int)(board->load(boardContext, STATE_AT) - STATE_NEXT);
+    nextSlot[ground] = count < UAV_KEY_SLOTS ? -1 : (int)(load(at(ground, STATE_AT)) - STATE_NEXT);
     return count;
 }
 
-int UAV_setNextKey(Link* link, const U8* key) {
+int UAV_setNextKey(int ground, Link* link, const U8* key) {
     U8 present[LINK_KEY_BYTES];
     int inUse = Link_keyInUse(link), slot = 1 - inUse, isSame;
     if (inUse < 0)
         return 0;
-    isSame = UAV_readKey(inUse, present) && memcmp(present, key, sizeof present) == 0;
+    isSame = UAV_readKey(ground, inUse, present) && memcmp(present, key, sizeof present) == 0;
     Ascon_wipe(present, sizeof present);
     if (isSame)
         return 1;
     /* The state comes first: where both slots have a key, it says which is the next one. */
-    writeKey(slot, 0);
-    board->store(boardContext, STATE_AT, STATE_NEXT + (U32)slot);
-    writeKey(slot, key);
+    writeKey(ground, slot, 0);
+    store(at(ground, STATE_AT), STATE_NEXT + (U32)slot);
+    writeKey(ground, slot, key);
     giveKey(link, slot, key);
-    nextSlot = slot;
+    nextSlot[ground] = slot;
     return 1;
 }
 
-int UAV_confirmKey(Link* link) {
-    if (nextSlot < 0 || Link_keyInUse(link) != nextSlot)
+int UAV_confirmKey(int ground, Link* link) {
+    int slot = nextSlot[ground];
+    if (slot < 0 || Link_keyInUse(link) != slot)
         return 0;
-    writeKey(1 - nextSlot, 0);
-    giveKey(link, 1 - nextSlot, 0);
-    nextSlot = -1;
+    writeKey(ground, 1 - slot, 0);
+    giveKey(link, 1 - slot, 0);
+    nextSlot[ground] = -1;
     return 1;
 }

@@ -1,16 +1,20 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_keys: the vehicle's keys, in memory that keeps them without power. Of two slots one is in use
- * and the other takes the next key. A vehicle without a key starts only if it was opened on
- * purpose. Power may fail at any word: the slot then has its old content, none, or its new one, and
- * the other slot is not touched.
+ * uav_keys: the vehicle's keys, in memory that keeps them without power. Each ground that it serves
+ * has two slots, one in use and one that takes the next key. A vehicle without a key starts only if
+ * it was opened on purpose. Power may fail at any word: the slot then has its old content, none, or
+ * its new one, and the other slot is not touched.
  */
 #pragma once
 
 #include "link.h"
 
 #define UAV_KEY_SLOTS 2
-#define UAV_KEY_WORDS 13U /* a slot: four words of key, its check; two states; the address */
+/* A ground: two slots of four words of key and their check, then states and addresses. */
+#define UAV_GROUND_WORDS 16U
+#define UAV_GROUNDS 2
+#define UAV_KEY_WORDS (UAV_GROUNDS * UAV_GROUND_WORDS)
+#define UAV_NO_GROUND 0xFFFFFFFFU /* in place of an address */
 #define UAV_FLIGHT_WORD 11U
 #define UAV_FLYING 0x464C5921U /* in that word; anything else: on the ground */
 
@@ -33,6 +37,13 @@ U32 UAV_random(void* unused);
  * call. */
 void UAV_provide(U32 address, const U8* key);
 
+/* Provides it with a second ground, by its modem's address, and with that one's key. 0: no key, for
+ * an open vehicle. UAV_NO_GROUND: it has none, as after UAV_provide. */
+void UAV_provideGround(U32 address, const U8* key);
+
+/* Returns the second ground's address, or UAV_NO_GROUND. */
+U32 UAV_secondGround(void);
+
 /* Returns the vehicle's address: its modem's MY, to which its keys are bound. */
 U32 UAV_address(void);
 
@@ -40,25 +51,26 @@ U32 UAV_address(void);
 int UAV_isFlying(void);
 void UAV_setFlying(int isFlying);
 
-/* Reads a slot's key. Returns 0 where it has none. */
-int UAV_readKey(int slot, U8* key);
+/* Grounds are numbered from 0 on. Reads the key of a ground's slot. Returns 0 where it has none. */
+int UAV_readKey(int ground, int slot, U8* key);
 
-/* Returns 1 if this is one of the vehicle's keys, in the same time for any other. */
+/* Returns 1 if this is one of the first ground's keys, in the same time for any other. */
 int UAV_isKey(const U8* key);
 
-/* Returns how many slots have a key. */
-int UAV_countKeys(void);
+/* Returns how many slots of a ground have a key. */
+int UAV_countKeys(int ground);
 
 /* Returns 1 if the vehicle has no key and was opened. */
 int UAV_isOpen(void);
 
-/* Gives the link the keys of both slots; returns how many there are. */
-int UAV_giveKeys(Link* link);
+/* Gives a ground's link the keys of both slots; returns how many there are. */
+int UAV_giveKeys(int ground, Link* link);
 
-/* Puts the next key into the slot that is not in use. Returns 0 where the session has no key, since
- * everybody on the air would read the new one. The present key is accepted and changes nothing. */
-int UAV_setNextKey(Link* link, const U8* key);
+/* Puts a ground's next key into the slot that is not in use. Returns 0 where the session has no
+ * key, since everybody on the air would read the new one. The present key is accepted and changes
+ * nothing. */
+int UAV_setNextKey(int ground, Link* link, const U8* key);
 
 /* Removes the old key once a session is up under the next one, which the peer then has. Returns 1
  * where it did. */
-int UAV_confirmKey(Link* link);
+int UAV_confirmKey(int ground, Link* link);

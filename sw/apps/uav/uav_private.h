@@ -22,15 +22,16 @@
 #define UAV_SERVANTS 5
 
 extern Ice_Communicator uav_ic;
-extern Link uav_link;
+extern Link uav_link;           /* the first ground's */
 extern OS_EVENT* uav_radioWork; /* the radio task has something to do */
 
 /* Microseconds since the start, from the OS's ticks. */
 U32 UAV_nowUs(void);
 
 /* Radio task: sets the modem up, runs the link, and sets it up again if the link stays down. */
-int UAV_initRadio(void);        /* 0: the vehicle has no key, and was not opened */
-int UAV_nextKey(const U8* key); /* UAV_setNextKey for a servant */
+int UAV_initRadio(void); /* 0: the vehicle has no key, and was not opened */
+int UAV_groundOf(const Ice_Current* current);
+int UAV_nextKey(int ground, const U8* key); /* UAV_setNextKey for a servant */
 void UAV_radioTask(void* argument);
 void UAV_useRadio(Ice_CommunicatorPtr ic);
 extern const Ice_Os uav_iceOs;

@@ -1,14 +1,19 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_radio: the radio task, and what IceC's endpoint needs from it.
+ * uav_radio: the radio task, its links with one ground or two, and what IceC's endpoint needs from
+ * it.
  */
 #include "radio.h"
 #include "uav.h"
 #include "uav_keys.h"
 #include "uav_private.h"
 
-#define BYTE_TIME_US16 1440U                /* 111,111 baud */
-#define DOWN_LIMIT (15U * OS_TICKS_PER_SEC) /* the modem may have lost its settings then */
+#define BYTE_TIME_US16 1440U /* 111,111 baud */
+#define DOWN_LIMIT 15000000U /* us without a link: the modem may have lost its settings then */
+#define MOST_UNANSWERED 2U   /* packets that the modem has */
+#define FIRST_GROUND 0x0000U /* its address */
+#define SECOND_SENDS 8192U   /* bytes of the second ground's queue, */
+#define SECOND_TAKES 1024U   /* and of a message from there */
 
 Link uav_link;
 OS_EVENT* uav_radioWork;
@@ -21,6 +26,21 @@ static XBeeATEndpoint endpoint;
 static OS_EVENT* linkMutex;
 static OS_EVENT* iceEvent;
 static U8 isAnswered; /* the radio answers for each packet */
+static U32 now;       /* time of the radio task's present turn, in us */
+
+/* The second ground's link, if the vehicle serves one: in API mode only, which tells it from the
+ * first. That ground calls by itself: one that is away is not sought. */
+static union {
+    Link_Output alignment;
+    U8 bytes[LINK_SIZE(SECOND_SENDS, SECOND_TAKES)];
+} secondMemory;
+#define SECOND ((Link*)(void*)&secondMemory)
+static U8 hasSecond;
+static U8 isSecondsTurn; /* to be polled first */
+static U8 areUp;         /* grounds with a session, a bit each */
+static U8 isSpecial; /* there is a second ground, or a session whose key may have to be confirmed */
+static U16 secondAddress;
+static U32 unanswered, owners; /* with two: packets that the modem has; a bit each, whose it is */
 
 U32 UAV_nowUs(void) {
     return OSTimeGet() * (1000000U / OS_TICKS_PER_SEC);
@@ -70,37 +90,106 @@ static int transmit(void* context, const U8* frame, U32 size) {
     return Radio_waiting() > 1U || Radio_transmit(context, frame, size);
 }
 
-static const Link_Port linkPort = {transmit,
-                                   UAV_random,
-                                   XBeeATEndpoint_onMessage,
-                                   XBeeATEndpoint_onChannel,
-                                   XBeeATEndpoint_onState,
-                                   0,
-                                   0};
+/* The same for either of two grounds, which share what the modem may have. */
+static int transmitTo(U32 ground, const U8* frame, U32 size) {
+    U32 wait = Link_randomWait(&uav_link), other = Link_randomWait(SECOND);
+    if (unanswered == MOST_UNANSWERED || Radio_waiting() > 1U)
+        return 1;
+    Radio_setWait(areUp >> 1 && other > wait ? other : wait);
+    Radio_setTarget(ground ? secondAddress : FIRST_GROUND);
+    if (Radio_transmit(0, frame, size))
+        return 1;
+    owners |= ground << unanswered++;
+    return 0;
+}
+
+static int transmitOfTwo(void* context, const U8* frame, U32 size) {
+    return isAnswered ? transmitTo(0, frame, size) : transmit(context, frame, size);
+}
+
+static int transmitToSecond(void* context, const U8* frame, U32 size) {
+    (void)context;
+    return transmitTo(1U, frame, size);
+}
+
+static void noteState(U32 ground, Link_State state) {
+    areUp = (U8)((areUp & ~(1U << ground)) | (U32)(state == LINK_STATE_UP) << ground);
+    isSpecial = 1;
+}
+
+static void onState(void* context, Link_State state) {
+    noteState(0, state);
+    XBeeATEndpoint_onState(context, state);
+}
+
+static int onSecondsMessage(void* context, int channel, const U8* data, U32 size) {
+    return XBeeATEndpoint_onMessage(context, LINK_CHANNELS + channel, data, size);
+}
+
+static void onSecondsChannel(void* context, int channel, int isOpen) {
+    XBeeATEndpoint_onChannel(context, LINK_CHANNELS + channel, isOpen);
+}
+
+static void onSecondsState(void* context, Link_State state) {
+    noteState(1U, state);
+    if (state != LINK_STATE_UP)
+        XBeeATEndpoint_onDown(context, 1);
+}
+
+static const Link_Port linkPort = {
+    transmit, UAV_random, XBeeATEndpoint_onMessage, XBeeATEndpoint_onChannel, onState, 0, 0};
+static const Link_Port firstOfTwo = {
+    transmitOfTwo, UAV_random, XBeeATEndpoint_onMessage, XBeeATEndpoint_onChannel, onState, 0, 0};
+static const Link_Port second = {
+    transmitToSecond, UAV_random, onSecondsMessage, onSecondsChannel, onSecondsState, 0, 0};
 
 int UAV_initRadio(void) {
+    const U32 ground = UAV_secondGround();
     INT8U error;
     uav_radioWork = OSSemCreate(0);
     iceEvent = OSSemCreate(0);
     linkMutex = OSMutexCreate(PRIO_MUTEX, &error);
-    Link_init(&uav_link, &linkPort, &endpoint, BYTE_TIME_US16);
-    return UAV_giveKeys(&uav_link) || UAV_isOpen();
+    areUp = isSecondsTurn = 0;
+    hasSecond = ground != UAV_NO_GROUND;
+    secondAddress = (U16)ground;
+    Link_init(&uav_link, hasSecond ? &firstOfTwo : &linkPort, &endpoint, BYTE_TIME_US16);
+    if (hasSecond) {
+        Link_init(SECOND, &second, &endpoint, BYTE_TIME_US16);
+        Link_shrink(SECOND, SECOND_SENDS, SECOND_TAKES);
+        (void)UAV_giveKeys(1, SECOND);
+    }
+    return UAV_giveKeys(0, &uav_link) || UAV_isOpen();
 }
 
 void UAV_useRadio(Ice_CommunicatorPtr ic) {
-    XBeeATEndpoint_init(ic, "xbee-at", &endpoint, &uav_link, 1, &endpointPort, 0);
+    XBeeATEndpoint_init(ic, "xbee-at", &endpoint, &uav_link, (U16)UAV_address(), &endpointPort, 0);
+    if (hasSecond)
+        XBeeATEndpoint_addGround(&endpoint, 1, SECOND, secondAddress);
 }
 
-int UAV_nextKey(const U8* key) {
+int UAV_groundOf(const Ice_Current* current) {
+    return current->connection / LINK_CHANNELS;
+}
+
+int UAV_nextKey(int ground, const U8* key) {
     int isSet;
     lockLink(0);
-    isSet = UAV_setNextKey(&uav_link, key);
+    isSet = UAV_setNextKey(ground, ground ? SECOND : &uav_link, key);
     unlockLink(0);
     return isSet;
 }
 
 static void onAnswer(int isDelivered) {
-    Link_answer(&uav_link, isDelivered, UAV_nowUs());
+    Link* link = owners & 1U ? SECOND : &uav_link;
+    owners >>= 1;
+    if (unanswered)
+        --unanswered;
+    Link_answer(link, isDelivered, now);
+}
+
+static void setUpLink(Link* link) {
+    Link_limitFrame(link, uav_modemKey ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME);
+    Link_expectAnswers(link, isAnswered ? MOST_UNANSWERED : 0U);
 }
 
 static void setUpModem(void) {
@@ -113,17 +202,51 @@ static void setUpModem(void) {
     xbeeConf.source = (U16)UAV_address();
     xbeeConf.key = uav_modemKey;
     xbeeConf.guardMs = uav_guardMs;
-    Link_limitFrame(&uav_link, uav_modemKey ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME);
     /* The vehicle flies on without its modem, and tries again. */
     while (xbeeInit(&xbeeConf, &rings) != RADIO_OK)
         OSTimeDly(OS_TICKS_PER_SEC);
     isAnswered = (U8)Radio_answers();
-    Link_expectAnswers(&uav_link, isAnswered ? 2U : 0U);
+    unanswered = owners = 0;
+    setUpLink(&uav_link);
+    if (hasSecond)
+        setUpLink(SECOND);
 }
 
 static void onPacket(void* context, const U8* bytes, U32 size) {
     (void)context;
-    Link_receive(&uav_link, bytes, size, UAV_nowUs());
+    Link_receive(&uav_link, bytes, size, now);
+}
+
+/* Gives a packet to the link of the ground that it is from; nobody else is served. */
+static void onPacketOf(void* context, const U8* bytes, U32 size) {
+    U32 source = Radio_source();
+    if (source == FIRST_GROUND)
+        onPacket(context, bytes, size);
+    else if (hasSecond && source == secondAddress)
+        Link_receive(SECOND, bytes, size, now);
+}
+
+/* Does what is due on a ground's link. Returns the time until it must be called again, in us. */
+static U32 pollLink(int ground, Link* link) {
+    Link_poll(link, now);
+    (void)UAV_confirmKey(ground, link);
+    return Link_deadline(link, now);
+}
+
+/* The same for both, of which each comes first in turn. */
+static U32 pollSpecial(void) {
+    U32 wait = isSecondsTurn ? pollLink(1, SECOND) : 0xFFFFFFFFU;
+    U32 other = pollLink(0, &uav_link);
+    if (other < wait)
+        wait = other;
+    if (hasSecond && !isSecondsTurn) {
+        other = pollLink(1, SECOND);
+        if (other < wait)
+            wait = other;
+    }
+    isSecondsTurn = hasSecond && !isSecondsTurn;
+    isSpecial = hasSecond;
+    return wait;
 }
 
 void UAV_radioTask(void* argument) {
@@ -131,25 +254,28 @@ void UAV_radioTask(void* argument) {
     U32 upAt;
     (void)argument;
     setUpModem();
-    upAt = OSTimeGet();
+    upAt = UAV_nowUs();
     lockLink(0);
     Link_start(&uav_link, UAV_nowUs());
     unlockLink(0);
     for (;;) {
-        U32 wait, now, ticks = OSTimeGet();
-        if (ticks - upAt > DOWN_LIMIT) {
-            setUpModem();
-            upAt = ticks = OSTimeGet();
-        }
+        U32 wait;
         lockLink(0);
-        (void)Radio_receive(onPacket, 0);
         now = UAV_nowUs();
-        Link_poll(&uav_link, now);
-        (void)UAV_confirmKey(&uav_link);
-        wait = Link_deadline(&uav_link, now);
-        if (Link_state(&uav_link) == LINK_STATE_UP)
-            upAt = ticks;
+        (void)Radio_receive(isAnswered ? onPacketOf : onPacket, 0);
+        if (isSpecial) {
+            wait = pollSpecial();
+        } else {
+            Link_poll(&uav_link, now);
+            wait = Link_deadline(&uav_link, now);
+        }
+        if (areUp)
+            upAt = now;
         unlockLink(0);
+        if (now - upAt > DOWN_LIMIT) {
+            setUpModem();
+            upAt = UAV_nowUs();
+        }
         /* The wait is at least a tick, so that a full ring is not polled. */
         wait = wait > 1000000U ? OS_TICKS_PER_SEC : wait * OS_TICKS_PER_SEC / 1000000U;
         OSSemPend(uav_radioWork, wait ? wait : 1U, &error);

@@ -99,13 +99,16 @@ def main():
                         "jumper is not wired")
     parser.add_argument("--address", type=address, default=1,
                         help="that the vehicle gets, and its line in the file (default: 0x0001)")
+    parser.add_argument("--ground", type=address, help="address of a second ground's modem, which "
+                        "the vehicle serves, too, under this key of its own")
     parser.add_argument("--patience", type=int, default=120,
                         help="seconds without a vehicle until it gives up")
     args = parser.parse_args()
     try:
-        command = ("protect" if args.protect else "%s %04x" %
-                   ("open" if args.open else "key " + read_key(args.key, args.address),
-                    args.address))
+        key = "" if args.protect or args.open else read_key(args.key, args.address)
+        command = ("protect" if args.protect else
+                   ("ground %04x %s" % (args.ground, key)).strip() if args.ground is not None else
+                   "%s %04x" % ("key " + key if key else "open", args.address))
         if args.old:
             command += " " + read_key(args.old, args.address)
         port = os.open(args.port, os.O_RDWR | os.O_NOCTTY)
@@ -115,7 +118,8 @@ def main():
         termios.tcsetattr(port, termios.TCSANOW, mode)
         provide(port, command, args.patience)
         print("provide_key: the vehicle %s" %
-              ("is protected" if args.protect else "is open" if args.open else
+              ("is protected" if args.protect else
+               "serves a second ground" if args.ground is not None else "is open" if args.open else
                "has this key, and no other"))
         return 0
     except (Failed, OSError, termios.error) as e:

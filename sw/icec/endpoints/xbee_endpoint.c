@@ -15,6 +15,7 @@
  * nobody takes the session ends, and with it every other connection. Two answers of 8 KB take 4 s
  * where three packets of ten are lost. */
 #define RETRIES 1000
+#define OTHER_RETRIES 100 /* the same of another ground, for whom the first one waits */
 
 /* The head of an encoded endpoint: type, 13 bytes of encapsulation, encoding 1.1. */
 static const Ice_Byte head[HEAD] = {
@@ -22,7 +23,22 @@ static const Ice_Byte head[HEAD] = {
 
 /* Pending events, one bit each, delivered lowest bit first. */
 #define EVENT(kind, channel) \
-    (1U << (((U32)(kind) - ICE_EVENT_MESSAGE) * LINK_CHANNELS + (U32)(channel)))
+    (1U << (((U32)(kind) - ICE_EVENT_MESSAGE) * XBEE_CONNECTIONS + (U32)(channel)))
+
+/* A connection's ground and its channel there; a ground's connection that this side opens. */
+#define GROUND_OF(connection) (XBEE_GROUNDS > 1 ? (int)((U32)(connection) / LINK_CHANNELS) : 0)
+#define CHANNEL_OF(connection) \
+    (XBEE_GROUNDS > 1 ? (int)((U32)(connection) % LINK_CHANNELS) : (connection))
+#define OWN_OF(ground) ((ground) * LINK_CHANNELS + XBEE_OWN_CHANNEL)
+
+static int isOwnOpen(const XBeeATEndpoint* self, int ground) {
+    return XBEE_GROUNDS > 1 ? self->ownOpen >> ground & 1 : self->ownOpen;
+}
+
+static void setOwnOpen(XBeeATEndpoint* self, int ground, int isOpen) {
+    const int others = XBEE_GROUNDS > 1 ? self->ownOpen & ~(1 << ground) : 0;
+    self->ownOpen = (Ice_Byte)(XBEE_GROUNDS > 1 ? others | isOpen << ground : isOpen);
+}
 
 /* ---- several tasks ----
  * The minimal run time has one, which polls the link itself while it waits: it needs none of this.
@@ -76,8 +92,8 @@ static int takeBack(XBeeATEndpoint* self, Ice_EventKind kind, int channel) {
 /* Records that a connection is over: nothing more may be sent on its channel, which may soon belong
  * to another one. */
 static void end(XBeeATEndpoint* self, int channel) {
-    if (channel == XBEE_OWN_CHANNEL)
-        self->ownOpen = 0;
+    if (CHANNEL_OF(channel) == XBEE_OWN_CHANNEL)
+        setOwnOpen(self, GROUND_OF(channel), 0);
     if (isOffered(self, channel))
         setOffered(self, NOBODY);
 }
@@ -98,7 +114,7 @@ int XBeeATEndpoint_onMessage(void* context, int channel, const U8* data, U32 siz
 
 void XBeeATEndpoint_onChannel(void* context, int channel, int isOpen) {
     XBeeATEndpoint* self = context;
-    if (channel == XBEE_OWN_CHANNEL && isOpen)
+    if (CHANNEL_OF(channel) == XBEE_OWN_CHANNEL && isOpen)
         return;
     if (!isOpen)
         end(self, channel);
@@ -110,9 +126,23 @@ void XBeeATEndpoint_onChannel(void* context, int channel, int isOpen) {
 
 void XBeeATEndpoint_onState(void* context, Link_State state) {
     XBeeATEndpoint* self = context;
-    if (state != LINK_STATE_UP && self->ownOpen)
+    if (state != LINK_STATE_UP && isOwnOpen(self, 0))
         XBeeATEndpoint_onChannel(self, XBEE_OWN_CHANNEL, 0);
 }
+
+#if XBEE_GROUNDS > 1
+
+void XBeeATEndpoint_addGround(XBeeATEndpoint* self, int ground, Link* link, U16 address) {
+    self->links[ground] = link;
+    self->grounds[ground] = address;
+}
+
+void XBeeATEndpoint_onDown(XBeeATEndpoint* self, int ground) {
+    if (isOwnOpen(self, ground))
+        XBeeATEndpoint_onChannel(self, OWN_OF(ground), 0);
+}
+
+#endif
 
 /* Waits for one event. The link may write `buffer` only meanwhile; at other times the link keeps
  * messages. */
@@ -134,21 +164,22 @@ static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ic
         while (!(self->events >> first & 1U))
             ++first;
         self->events &= self->events - 1U; /* without the lowest one */
-        event->kind = (Ice_EventKind)(ICE_EVENT_MESSAGE + first / LINK_CHANNELS);
-        event->connection = (int)(first % LINK_CHANNELS);
+        event->kind = (Ice_EventKind)(ICE_EVENT_MESSAGE + first / XBEE_CONNECTIONS);
+        event->connection = (int)(first % XBEE_CONNECTIONS);
         event->size = self->size;
     }
     unlock(self);
     return ICE_OK;
 }
 
-static Link_Status openOwn(XBeeATEndpoint* self) {
+static Link_Status openOwn(XBeeATEndpoint* self, int own) {
     Link_Status status = LINK_OK;
-    if (!self->ownOpen) {
-        status = Link_openChannel(self->link, XBEE_OWN_CHANNEL);
-        if (status == LINK_OK) {
-            self->ownOpen = 1; /* and the end of the last connection is not the end of this one */
-            self->events &= ~EVENT(ICE_EVENT_CLOSED, XBEE_OWN_CHANNEL);
+    int ground = GROUND_OF(own);
+    if (!isOwnOpen(self, ground)) {
+        status = Link_openChannel(self->links[ground], XBEE_OWN_CHANNEL);
+        if (status == LINK_OK) { /* and the end of the last connection is not the end of this one */
+            setOwnOpen(self, ground, 1);
+            self->events &= ~EVENT(ICE_EVENT_CLOSED, own);
         }
     }
     return status;
@@ -163,9 +194,13 @@ static int hasEnded(const XBeeATEndpoint* self, int connection) {
 /* Ends a connection for whose message the link has no room: the minimal run time's caller may. */
 static void giveUp(XBeeATEndpoint* self, int connection) {
     if (ICEC_FULL) {
-        (void)Link_closeChannel(self->link, connection);
+        (void)Link_closeChannel(self->links[GROUND_OF(connection)], CHANNEL_OF(connection));
         XBeeATEndpoint_onChannel(self, connection, 0);
     }
+}
+
+static int mostTries(int connection) {
+    return GROUND_OF(connection) ? OTHER_RETRIES : RETRIES;
 }
 
 /* Sends, or opens the own channel (no message). While the link has no room it tries again, and in
@@ -173,28 +208,29 @@ static void giveUp(XBeeATEndpoint* self, int connection) {
 static Ice_Status offer(XBeeATEndpoint* self, int connection, const Ice_Byte* message,
                         Ice_Int size) {
     Link_Status status;
-    int tries = RETRIES;
+    int tries = 0;
     lock(self);
     if (message)
         setOffered(self, connection);
     for (;;) {
         if (!message)
-            status = openOwn(self);
+            status = openOwn(self, connection);
         else if (hasEnded(self, connection))
             status = LINK_CLOSED;
         else
-            status = Link_send(self->link, connection, message, (U32)size, 0);
-        if (status == LINK_FULL && message && !tries)
+            status = Link_send(self->links[GROUND_OF(connection)], CHANNEL_OF(connection), message,
+                               (U32)size, 0);
+        if (status == LINK_FULL && message && tries == mostTries(connection))
             giveUp(self, connection);
         unlock(self);
         tell(self, self->port->kick);
-        if (status != LINK_FULL || !tries--)
+        if (status != LINK_FULL || tries++ == mostTries(connection))
             break;
         (void)self->port->wait(self->context, 20);
         lock(self);
     }
     /* A wait here may have taken an event that the receiver waits for. */
-    if (tries != RETRIES)
+    if (tries)
         tell(self, self->port->signal);
     return status == LINK_OK ? ICE_OK : status == LINK_TOO_LONG ? ICE_LIMIT : ICE_CONNECTION_LOST;
 }
@@ -204,11 +240,21 @@ static Ice_Status sendMessage(void* context, int connection, const Ice_Byte* mes
     return offer(context, connection, message, size);
 }
 
+/* Returns the ground whose address an encoded endpoint has. */
+static int groundOf(const XBeeATEndpoint* self, const Ice_Byte* encoded, Ice_Int size) {
+    int ground = size < HEAD + 2 ? 0 : XBEE_GROUNDS - 1;
+    while (ground && (!self->links[ground] ||
+                      self->grounds[ground] != (encoded[HEAD] | encoded[HEAD + 1] << 8)))
+        --ground;
+    return ground;
+}
+
 static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size, int* connection) {
     if (size < 2 || encoded[0] != head[0] || encoded[1] != head[1])
         return ICE_NO_ENDPOINT;
-    *connection = XBEE_OWN_CHANNEL;
-    return offer(context, 0, 0, 0); /* the last closing may still be on its way */
+    *connection = XBEE_GROUNDS > 1 ? OWN_OF(groundOf(context, encoded, size)) : XBEE_OWN_CHANNEL;
+    /* The last closing may still be on its way. */
+    return offer(context, XBEE_GROUNDS > 1 ? *connection : 0, 0, 0);
 }
 
 static void closeChannel(void* context, int connection) {
@@ -216,7 +262,7 @@ static void closeChannel(void* context, int connection) {
     lock(self);
     /* The peer may have closed already; the channel may be a new one by now. */
     if (!takeBack(self, ICE_EVENT_CLOSED, connection)) {
-        (void)Link_closeChannel(self->link, connection);
+        (void)Link_closeChannel(self->links[GROUND_OF(connection)], CHANNEL_OF(connection));
         end(self, connection);
     }
     unlock(self);
@@ -276,7 +322,7 @@ void XBeeATEndpoint_init(Ice_CommunicatorPtr ic, const char* name, XBeeATEndpoin
         listenTo,  encode,  wakeUp,      nowMs,     ICEC_FULL ? print : 0};
     (void)name;
     memset(self, 0, sizeof *self);
-    self->link = link;
+    self->links[0] = link;
     self->address = address;
     self->port = port;
     self->context = context;

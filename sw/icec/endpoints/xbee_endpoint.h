@@ -3,7 +3,8 @@
  * xbee_endpoint: IceC's transport over the radio link: a connection is a channel of the link.
  *
  * The ground opens channels 0..2, this side channel 3. On the wire an endpoint is type 0x4158 with
- * a remote address (short), a channel (byte, 255: any) and a time-out in milliseconds (int).
+ * a remote address (short), a channel (byte, 255: any) and a time-out in milliseconds (int). Of
+ * several grounds each has a link and LINK_CHANNELS connections, one ground's behind the other's.
  */
 #pragma once
 
@@ -12,6 +13,8 @@
 
 #define XBEE_ENDPOINT_TYPE 0x4158
 #define XBEE_OWN_CHANNEL 3 /* opened by this side, the UAV; the ground opens 0..2 */
+#define XBEE_GROUNDS (ICE_CONNECTIONS < 2 * LINK_CHANNELS ? 1 : 2) /* at most */
+#define XBEE_CONNECTIONS (XBEE_GROUNDS * LINK_CHANNELS)
 
 /* The endpoint's port to the application, whose radio task owns the link. The minimal run time has
  * one task, which polls the link in `wait`; lock, unlock, kick and signal are not called, and may
@@ -26,14 +29,15 @@ typedef struct XBeeATEndpoint_Port {
 } XBeeATEndpoint_Port;
 
 typedef struct XBeeATEndpoint {
-    Link* link;
+    Link* links[XBEE_GROUNDS]; /* 0: there is no such ground */
     const XBeeATEndpoint_Port* port;
     void* context;
-    U16 address;      /* own, MY */
-    U32 events;       /* events to be delivered; 0: none */
-    Ice_Int size;     /* of the pending message */
+    U16 address;               /* own, MY */
+    U16 grounds[XBEE_GROUNDS]; /* addresses of the others, from 1 on */
+    U32 events;                /* events to be delivered; 0: none */
+    Ice_Int size;              /* of the pending message */
     Ice_Byte* buffer; /* the receiving task's; 0: nobody receives, the link keeps the message */
-    Ice_Byte ownOpen;
+    Ice_Byte ownOpen; /* the own channel is, a bit a ground */
     Ice_Byte held;    /* the link keeps a message that was not taken */
     Ice_Byte offered; /* connection of the message that is being sent, unless it has ended */
 } XBeeATEndpoint;
@@ -42,7 +46,15 @@ typedef struct XBeeATEndpoint {
 void XBeeATEndpoint_init(Ice_CommunicatorPtr ic, const char* name, XBeeATEndpoint* self, Link* link,
                          U16 address, const XBeeATEndpoint_Port* port, void* context);
 
-/* Callbacks for Link_Port, to be called under the lock; `self` is the XBeeATEndpoint. */
+#if XBEE_GROUNDS > 1
+/* Adds another ground's link. A proxy whose address is not a ground's leads to the first ground. */
+void XBeeATEndpoint_addGround(XBeeATEndpoint* self, int ground, Link* link, U16 address);
+#endif
+
+/* Callbacks for Link_Port, to be called under the lock; `self` is the XBeeATEndpoint. These are the
+ * first ground's: another one's add LINK_CHANNELS for each ground to the channel, and call
+ * XBeeATEndpoint_onDown where its link is not up any more. */
 int XBeeATEndpoint_onMessage(void* self, int channel, const U8* data, U32 size);
 void XBeeATEndpoint_onChannel(void* self, int channel, int isOpen);
 void XBeeATEndpoint_onState(void* self, Link_State state);
+void XBeeATEndpoint_onDown(XBeeATEndpoint* self, int ground);

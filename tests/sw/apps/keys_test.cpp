@@ -33,7 +33,7 @@ public:
         cutAfter = never;
         isDead = false;
         b.boot();
-        keys = UAV_giveKeys(b.link());
+        keys = UAV_giveKeys(0, b.link());
         b.start();
     }
     // The ground's program starts with this key file; true: a session has come up.
@@ -44,11 +44,11 @@ public:
         a.start();
         const U32 sessions = Link_statistics(b.link())->sessions;
         auto isOver = [&] { // the vehicle, too, is in the new session
-            UAV_confirmKey(b.link());
+            UAV_confirmKey(0, b.link());
             return isDead || (bothUp() && Link_statistics(b.link())->sessions != sessions);
         };
         const bool isMet = until(isOver, patienceUs) && !isDead;
-        UAV_confirmKey(b.link());
+        UAV_confirmKey(0, b.link());
         return isMet && !isDead;
     }
     // The whole change, as sw/ground/clients/change_key.py makes it, or its first steps. Returns
@@ -57,14 +57,14 @@ public:
         const std::vector<Key> before = {oldKey}, both = {newKey, oldKey}, after = {newKey};
         if (steps < 1)
             return before;
-        if (steps < 2 || !meets(before) || !UAV_setNextKey(b.link(), newKey.data()) || isDead)
+        if (steps < 2 || !meets(before) || !UAV_setNextKey(0, b.link(), newKey.data()) || isDead)
             return both;
-        return steps < 3 || !meets(after) || UAV_countKeys() != 1 ? both : after;
+        return steps < 3 || !meets(after) || UAV_countKeys(0) != 1 ? both : after;
     }
     bool hasKey(const Key& wanted) {
         Key key{};
         for (int slot = 0; slot < UAV_KEY_SLOTS; ++slot)
-            if (UAV_readKey(slot, key.data()) && key == wanted)
+            if (UAV_readKey(0, slot, key.data()) && key == wanted)
                 return true;
         return false;
     }
@@ -90,13 +90,13 @@ private:
 
 TEST(Keys, AVehicleHasAKeyOrIsOpenOrNeither) {
     Vehicle vehicle(1);
-    EXPECT_EQ(UAV_countKeys(), 1);
+    EXPECT_EQ(UAV_countKeys(0), 1);
     EXPECT_FALSE(UAV_isOpen());
     UAV_provide(address, nullptr);
-    EXPECT_EQ(UAV_countKeys(), 0);
+    EXPECT_EQ(UAV_countKeys(0), 0);
     EXPECT_TRUE(UAV_isOpen());
     vehicle.words = {}; // the battery was empty
-    EXPECT_EQ(UAV_countKeys(), 0);
+    EXPECT_EQ(UAV_countKeys(0), 0);
     EXPECT_FALSE(UAV_isOpen());
 }
 
@@ -104,10 +104,10 @@ TEST(Keys, ASlotThatWasSpoiltIsEmpty) {
     Vehicle vehicle(1);
     for (U32 bit = 0; bit < 5 * 32; ++bit) {
         vehicle.words[bit / 32] ^= 1u << bit % 32;
-        EXPECT_EQ(UAV_countKeys(), 0) << bit;
+        EXPECT_EQ(UAV_countKeys(0), 0) << bit;
         vehicle.words[bit / 32] ^= 1u << bit % 32;
     }
-    EXPECT_EQ(UAV_countKeys(), 1);
+    EXPECT_EQ(UAV_countKeys(0), 1);
 }
 
 TEST(Keys, OneFollowsAnotherAndTheOldOneOpensNothing) {
@@ -121,11 +121,29 @@ TEST(Keys, OneFollowsAnotherAndTheOldOneOpensNothing) {
     EXPECT_TRUE(vehicle.meets({newKey}));
 }
 
+TEST(Keys, ASecondGroundHasKeysOfItsOwn) {
+    Vehicle vehicle(testSeed());
+    EXPECT_EQ(UAV_secondGround(), UAV_NO_GROUND);
+    UAV_provideGround(0xF0, nullptr);
+    EXPECT_EQ(UAV_secondGround(), UAV_NO_GROUND) << "in the clear, of a vehicle with a key";
+    UAV_provideGround(0xF0, foreignKey.data());
+    EXPECT_EQ(UAV_secondGround(), 0xF0u);
+    EXPECT_EQ(vehicle.change(), std::vector<Key>{newKey});
+    Key key{};
+    EXPECT_TRUE(UAV_readKey(1, 0, key.data()) && key == foreignKey);
+    EXPECT_EQ(UAV_countKeys(1), 1);
+    EXPECT_FALSE(UAV_isKey(foreignKey.data())) << "it opens no serial port";
+    UAV_provide(address, nullptr);
+    EXPECT_EQ(UAV_countKeys(1), 0);
+    UAV_provideGround(0xF0, nullptr);
+    EXPECT_EQ(UAV_secondGround(), 0xF0u) << "of an open vehicle";
+}
+
 TEST(Keys, AGroundWithoutTheKeyIsRefused) {
     Vehicle vehicle(testSeed());
     EXPECT_FALSE(vehicle.meets({}, 5'000'000)) << "in the clear";
     EXPECT_FALSE(vehicle.meets({foreignKey}, 5'000'000));
-    EXPECT_FALSE(UAV_setNextKey(vehicle.b.link(), newKey.data())) << "without a session";
+    EXPECT_FALSE(UAV_setNextKey(0, vehicle.b.link(), newKey.data())) << "without a session";
     EXPECT_TRUE(vehicle.meets({foreignKey, oldKey})) << "one of two serves";
 }
 
@@ -135,19 +153,19 @@ TEST(Keys, ASessionUnderTheOldKeyKeepsBoth) {
     vehicle.bootVehicle();
     EXPECT_EQ(vehicle.keys, 2);
     ASSERT_TRUE(vehicle.meets({oldKey}));
-    EXPECT_EQ(UAV_countKeys(), 2);
+    EXPECT_EQ(UAV_countKeys(0), 2);
     ASSERT_TRUE(vehicle.meets({newKey}));
-    EXPECT_EQ(UAV_countKeys(), 1);
+    EXPECT_EQ(UAV_countKeys(0), 1);
     EXPECT_TRUE(vehicle.hasKey(newKey));
 }
 
 TEST(Keys, TheKeyInUseAgainIsNoChangeAndAnotherNextKeyReplacesTheFirst) {
     Vehicle vehicle(testSeed());
     ASSERT_TRUE(vehicle.meets({oldKey}));
-    EXPECT_TRUE(UAV_setNextKey(vehicle.b.link(), oldKey.data()));
-    EXPECT_EQ(UAV_countKeys(), 1);
-    EXPECT_TRUE(UAV_setNextKey(vehicle.b.link(), foreignKey.data()));
-    EXPECT_TRUE(UAV_setNextKey(vehicle.b.link(), newKey.data()));
+    EXPECT_TRUE(UAV_setNextKey(0, vehicle.b.link(), oldKey.data()));
+    EXPECT_EQ(UAV_countKeys(0), 1);
+    EXPECT_TRUE(UAV_setNextKey(0, vehicle.b.link(), foreignKey.data()));
+    EXPECT_TRUE(UAV_setNextKey(0, vehicle.b.link(), newKey.data()));
     EXPECT_FALSE(vehicle.hasKey(foreignKey));
     EXPECT_TRUE(vehicle.hasKey(newKey) && vehicle.hasKey(oldKey));
 }
@@ -175,13 +193,13 @@ TEST(Keys, PowerThatFailsAtAnyWordLeavesAKeyThatWorks) {
         vehicle.bootVehicle();
         if (vehicle.hasKey(newKey)) { // the old key goes, as in a complete change
             ASSERT_TRUE(vehicle.meets({newKey})) << "after " << cut << " words";
-            EXPECT_EQ(UAV_countKeys(), 1) << "after " << cut << " words";
+            EXPECT_EQ(UAV_countKeys(0), 1) << "after " << cut << " words";
         }
         // And the change can be made again.
         ASSERT_TRUE(vehicle.meets({newKey, oldKey})) << "after " << cut << " words";
-        ASSERT_TRUE(UAV_setNextKey(vehicle.b.link(), newKey.data()));
+        ASSERT_TRUE(UAV_setNextKey(0, vehicle.b.link(), newKey.data()));
         ASSERT_TRUE(vehicle.meets({newKey})) << "after " << cut << " words";
-        EXPECT_EQ(UAV_countKeys(), 1);
+        EXPECT_EQ(UAV_countKeys(0), 1);
     }
 }
 

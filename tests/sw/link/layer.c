@@ -4,11 +4,24 @@
  */
 #include "layer.h"
 
+#ifdef LINK_SHRUNK
+#define SENDS 2048U
+#define TAKES 1024U
+static void initShrunk(Link* link, const Link_Port* port, void* context, U32 byteTimeUs16) {
+    Link_init(link, port, context, byteTimeUs16);
+    Link_shrink(link, SENDS, TAKES);
+}
+#define Link_init initShrunk
+#define SIZE LINK_SIZE(SENDS, TAKES)
+#else
+#define TAKES LINK_MAX_MESSAGE
+#define SIZE sizeof(Link)
+#endif
+
 #if !LINK_SECURE
 #define Link_setKey 0
 #endif
 
-const Layer layer = {sizeof(Link),      LINK_MAX_MESSAGE, Link_init,    Link_setKey,
-                     Link_start,        Link_stop,        Link_state,   Link_openChannel,
-                     Link_closeChannel, Link_send,        Link_receive, Link_poll,
-                     Link_deadline,     Link_statistics};
+const Layer layer = {SIZE,         TAKES,      Link_init,        Link_setKey,       Link_start,
+                     Link_stop,    Link_state, Link_openChannel, Link_closeChannel, Link_send,
+                     Link_receive, Link_poll,  Link_deadline,    Link_statistics};

@@ -191,6 +191,31 @@ TEST_F(RadioEndpoint, AMessageForAConnectionThatHasEndedNeverReachesTheNextOnIts
     EXPECT_EQ(send(), ICE_CONNECTION_LOST);
 }
 
+TEST_F(RadioEndpoint, ASecondGroundHasConnectionsOfItsOwn) {
+    Pair other(testSeed() + 1);
+    XBeeATEndpoint_addGround(&endpoint_, 1, other.b.link(), 0x00F0);
+    ASSERT_TRUE(pair_.connect() && other.connect());
+    const auto connectTo = [&](Ice_Byte address) {
+        const Ice_Byte encoded[] = {0x58, 0x41, 13, 0, 0, 0, 1, 1, address, 0, 255, 0, 0, 0, 0};
+        int connection = -1;
+        EXPECT_EQ(ops().connect(ic_.transports[0].context, encoded, sizeof encoded, &connection),
+                  ICE_OK);
+        return connection;
+    };
+    EXPECT_EQ(connectTo(0xF0), 7);
+    EXPECT_EQ(connectTo(0), 3);
+    EXPECT_EQ(connectTo(0xF1), 3) << "who is not known is the first ground";
+    const Bytes call(20, 9);
+    EXPECT_EQ(ops().send(ic_.transports[0].context, 7, call.data(), 20), ICE_OK);
+    other.run(500'000);
+    pair_.run(500'000);
+    EXPECT_EQ(other.a.received, (Messages{{3, call}}));
+    EXPECT_EQ(pair_.a.received, Messages{});
+    XBeeATEndpoint_onDown(&endpoint_, 1);
+    EXPECT_EQ(events(), (Kinds{{ICE_EVENT_CLOSED, 7}}));
+    EXPECT_EQ(ops().send(ic_.transports[0].context, 3, call.data(), 20), ICE_OK);
+}
+
 // Options are written as the ground's plugin writes them (test_radio_ice,
 // EndpointsKeepTheirOptionsAsText...), so far as the UAV has them.
 TEST_F(RadioEndpoint, AnEndpointsOptionsAreInTheProxysTextAgain) {

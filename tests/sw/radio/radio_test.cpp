@@ -356,7 +356,7 @@ TEST_F(ApiRadio, EachPacketIsAnsweredForAndAnAnswerThatIsLostCountsAsALoss) {
     });
 }
 
-TEST_F(ApiRadio, PacketsOfOtherAddressesArePassedOver) {
+TEST_F(ApiRadio, EachPacketSaysWhoseItIsAndGoesToItsTarget) {
     HostLine line;
     XBee stranger(line, air_, quick({{"BD", 7}, {"MY", 2}, {"DL", 1}}));
     soc_.onTime([&](uint64_t now) {
@@ -364,23 +364,31 @@ TEST_F(ApiRadio, PacketsOfOtherAddressesArePassedOver) {
         stranger.advance(now);
         return now + 1'000'000;
     });
-    std::vector<uint8_t> heard;
+    std::map<U16, std::vector<uint8_t>> heard;
     run([&] {
         ASSERT_EQ(initApi(), RADIO_OK);
-        const U32 strangers = Radio_counters()->strangers;
+        farLine_.received.clear();
+        line.received.clear();
         line.send({1, 2, 3}, soc_.now());
         OSTimeDly(OS_TICKS_PER_SEC / 20);
         farLine_.send({4, 5, 6}, soc_.now());
         OSTimeDly(OS_TICKS_PER_SEC / 20);
         Radio_receive(
             [](void* all, const U8* bytes, U32 size) {
-                auto& h = *static_cast<std::vector<uint8_t>*>(all);
-                h.insert(h.end(), bytes, bytes + size);
+                auto& h = *static_cast<std::map<U16, std::vector<uint8_t>>*>(all);
+                h[Radio_source()].insert(h[Radio_source()].end(), bytes, bytes + size);
             },
             &heard);
-        EXPECT_EQ(Radio_counters()->strangers - strangers, 1u);
+        const U8 packet[] = {7, 8};
+        for (U16 target : {U16(2), U16(0)}) {
+            Radio_setTarget(target);
+            EXPECT_EQ(Radio_transmit(nullptr, packet + (target == 0), 1), 0);
+        }
+        OSTimeDly(OS_TICKS_PER_SEC / 10);
     });
-    EXPECT_EQ(heard, (std::vector<uint8_t>{4, 5, 6}));
+    EXPECT_EQ(heard, (std::map<U16, std::vector<uint8_t>>{{2, {1, 2, 3}}, {0, {4, 5, 6}}}));
+    EXPECT_EQ(line.received, (std::vector<uint8_t>{7}));
+    EXPECT_EQ(farLine_.received, (std::vector<uint8_t>{8}));
 }
 
 const U8 key[16] = {0x00, 0x11, 0x22, 0x33, 0x44, 0x55, 0x66, 0x77,

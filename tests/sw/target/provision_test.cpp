@@ -99,6 +99,23 @@ TEST_F(Provision, WhoHasNeitherTheOldKeyNorTheJumperChangesNothing) {
     EXPECT_TRUE(has(key));
 }
 
+TEST_F(Provision, TakesASecondGroundWithAKeyOfItsOwn) {
+    const std::string other(32, 'a');
+    start();
+    answerTo("key " + digits + at + "\n");
+    start();
+    EXPECT_EQ(answerTo("ground 00f0 " + other + "\n").substr(0, 3), "no:");
+    EXPECT_EQ(chip.backup()[27], 0u);
+    start();
+    EXPECT_EQ(answerTo("ground 00f0 " + other + " " + digits + "\n"), "ok\r\n");
+    EXPECT_EQ(chip.backup()[27], ~0xF0u);
+    EXPECT_EQ(chip.backup()[16], 0xAAAAAAAAu);
+    EXPECT_TRUE(has(key));
+    start();
+    EXPECT_EQ(answerTo("ground 00f0 " + other + " " + other + "\n").substr(0, 3), "no:")
+        << "the second ground's key proves nothing here";
+}
+
 TEST_F(Provision, SaysThatReadProtectionIsOffAndSetsIt) {
     EXPECT_EQ(start(), prompt);
     EXPECT_EQ(answerTo("protect\n"), "ok\r\n");

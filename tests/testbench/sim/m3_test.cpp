@@ -3,8 +3,8 @@
 // m3_test: the firmware's ARM binary on the RTL: the same mission as the host build's, bit by bit,
 // and its failures: watchdog, faults, a corrupt image.
 
-#include "ground.h"
 #include "m3_machine.h"
+#include "two_grounds.h"
 #include "uav_machine.h"
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -107,6 +107,22 @@ TEST(CortexM3Firmware, LosesNothingAtTenPercentLossAndAtTheBoardsCycleRatio) {
     machine.run();
     EXPECT_EQ(f.ground.replies.size(), 27u);
     EXPECT_GT(f.air.counters().lost, 0u);
+}
+
+TEST(CortexM3Firmware, ServesTwoGroundsAtOnceEachUnderItsOwnKey) {
+    TwoGrounds world;
+    auto script = world.flight();
+    bool done = false;
+    M3Machine::Config config = firmware;
+    config.key = world.pilotsKey;
+    config.secondGround = world.observersAddress;
+    config.secondKey = world.observersKey;
+    M3Machine machine(world.soc, config, [&] {
+        done = script();
+        return !done && world.within(60);
+    });
+    machine.run();
+    EXPECT_TRUE(done);
 }
 
 // One flight, several accidents: a core that hangs, a processor that hangs, the FSMC switched off,

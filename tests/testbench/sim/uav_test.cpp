@@ -3,7 +3,7 @@
 // uav_test: RTL, modems, radio and firmware together, deterministic: the ground is the same link
 // layer in this process, and requests are written byte by byte.
 
-#include "ground.h"
+#include "two_grounds.h"
 #include "uav_machine.h"
 #include <gtest/gtest.h>
 
@@ -92,6 +92,20 @@ TEST_F(Uav, AModemResetInMidPacketIsRecoveredFrom) {
                  ground.pinging(3)}),
         20);
     EXPECT_EQ(soc.modem().parameter("BD"), 250000u);
+}
+
+TEST(Grounds, TwoAreServedAtOnceEachUnderItsOwnKeyAndNobodyElse) {
+    TwoGrounds world;
+    auto script = world.flight();
+    bool done = false;
+    UavMachine machine(world.soc, [&] {
+        done = script();
+        return !done && world.within(60);
+    });
+    machine.board.provide(world.pilotsKey);
+    machine.board.provideGround(world.observersAddress, world.observersKey);
+    machine.run();
+    EXPECT_TRUE(done);
 }
 
 TEST_F(Uav, TheSameSeedGivesTheSameRun) {

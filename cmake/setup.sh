@@ -87,10 +87,14 @@ if ! command -v dpkg-query >/dev/null 2>&1; then
     exit 1
 fi
 
+# shellcheck disable=SC2046 # a list of words
+there=$(dpkg-query -W -f '${db:Status-Status} ${Package};' $(echo "$packages" | sed 's/ .*//') \
+    2>/dev/null) || true # some are not known
 list=$(echo "$packages" | while read -r name why; do
-    [ -z "$name" ] ||
-        [ "$(dpkg-query -W -f '${db:Status-Status}' "$name" 2>/dev/null)" = installed ] ||
-        echo "$name: $why"
+    case "$name;$there" in
+    ";"* | *"installed $name;"*) ;;
+    *) echo "$name: $why" ;;
+    esac
 done)
 [ -n "$list" ] || exit 0
 echo "Missing packages:"

@@ -22,16 +22,16 @@ ADDRESSES = ("adr", "words", "bytes", "awaddr", "araddr")
 class Core:
     """A third-party core: its ports by their roles; `latency`: the clocks after which it answers,
     if it has no ack;
-    `address`: "words", "bytes" or None."""
+    `address`: "words", "bytes" or None; `macros`: of macros_of."""
 
-    def __init__(self, name, top, bus, ports, roles, latency, params, clock, address):
+    def __init__(self, name, top, bus, ports, roles, latency, params, clock, address, macros):
         self.name, self.top, self.bus, self.ports, self.roles = name, top, bus, ports, roles
-        self.latency, self.params, self.clock = latency, params, clock
+        self.latency, self.params, self.clock, self.macros = latency, params, clock, macros
         self.by_role = {r: p for n, p in ports.items() if (r := roles[n])}
         self.pins = [(pin_name(n, p), p) for n, p in ports.items() if not roles[n]]
         self.data_width = max(len(self.by_role[r]["bits"]) for r in ("wdata", "rdata"))
         self.signals = AXI if bus == "axil" else WISHBONE
-        self.adr_bits, self.word_bits, self.unit = 6, 0, ""
+        self.adr_bits, self.word_bits, self.unit, self.counts_bytes = 6, 0, "", False
         for n, p in ports.items():
             if roles[n] in ADDRESSES:
                 self.count_words(roles[n], p, address)
@@ -45,6 +45,8 @@ class Core:
             unit, reason = "bytes", f"{BUSES[self.bus]} does"
         elif lsb:
             unit, reason = "bytes", f"it begins at bit {lsb}"
+        elif self.macros:
+            unit, reason = "bytes", f"{', '.join(self.macros)} are multiples of 4"
         elif width < 16 or width == 30:
             unit, reason = "words", f"it has {width} bits"
         elif width < 30 and self.data_width < 32:
@@ -53,6 +55,7 @@ class Core:
             unit, reason = "bytes", f"it has {width} bits"
         self.unit = f"counts {unit}: {reason}" + ("" if reason == "as you say" else
                                                   f"; if not, ADDRESS={'bytes' if unit == 'words' else 'words'}")
+        self.counts_bytes = unit == "bytes"
         self.word_bits = width if unit == "words" else max(0, width + lsb - 2)
         self.adr_bits = max(self.adr_bits, self.word_bits + 2, width + lsb)
         self.slice = f"[{width + 1}:2]" if unit == "words" else f"[{width + lsb - 1}:{lsb}]"

@@ -162,7 +162,7 @@ def ports_by_verilator(top, words):
     module = next(m for m in tree.iter("module") if m.get("topModule"))
     return {v.get("name"): {"direction": v.get("dir"), "bits": [0] * width(v.get("dtype_id")),
                             "offset": int(types[v.get("dtype_id")].get("right") or 0)}
-            for v in module.iter("var") if v.get("dir")}
+            for v in module.findall("var") if v.get("dir")}
 
 
 def read_module(top, files, headers=(), params=(), defines=(), is_whole=True):
@@ -232,18 +232,33 @@ def copies_for_verilator(top, files, headers, defines):
     run_tool("Verilator does not read", top, [*lint, "--lint-only", *files])
 
 
-def names_of(top, files, bits):
+def macros_of(files):
+    """Macros that are byte addresses of registers, by their values: those with a size in
+    hexadecimal, if all have the same and are different multiples of 4; else none."""
+    found = re.findall(r"^\s*`define\s+(\w+)\s+(\d+)'h([0-9a-fA-F_]+)\s*(?://.*)?$",
+                       "\n".join(map(text_of, files)), re.M)
+    values = {n: int(digits, 16) for n, _, digits in found}
+    return values if len({size for _, size, _ in found}) == 1 and \
+        1 < len(values) == len(set(values.values())) and not any(
+            value % 4 for value in values.values()) else {}
+
+
+def names_of(top, files, core):
     """Names of the core's words by their addresses: the constants of the file with `top` that are
-    as wide as its address. KEY0 and KEY7 at a distance of 7 stand for those between, too."""
+    as wide as its address, else its macros. KEY0 and KEY7 at a distance of 7 stand for those
+    between, too."""
     text = next((t for t in map(text_of, files) if re.search(rf"^\s*module\s+{top}\b", t, re.M)),
                 "")
     text = re.sub(r"//.*", "", text)
     base = {"h": 16, "d": 10, "b": 2}
     found = [(n, int(digits, base[b.lower()]))
              for part in re.findall(r"\blocalparam\b([^;]*);", text)
-             for n, b, digits in re.findall(rf"(\w+)\s*=\s*{bits}'([hdb])([0-9a-fA-F_]+)", part,
-                                            re.I)]
+             for n, b, digits in re.findall(
+                 rf"(\w+)\s*=\s*{core.word_bits}'([hdb])([0-9a-fA-F_]+)", part, re.I)]
     if len(found) < 2 or len({v for _, v in found}) < len(found):
+        found = [(n, v // 4) for n, v in core.macros.items()
+                 if core.counts_bytes and v < 4 << core.word_bits]
+    if len(found) < 2:
         return {}
     prefix = os.path.commonprefix([n for n, _ in found])
     prefix = prefix[:prefix.rfind("_") + 1]

@@ -26,9 +26,10 @@ import foreign_axis
 import foreign_bus
 from cli.reserved import REFUSAL, RESERVED
 from foreign_files import (FLAGS, check_names, copies_for_verilator, fail, folders_of, is_vhdl,
-                           kind_of, names_of, packages_first, pin_name, read_module)
+                           kind_of, macros_of, names_of, packages_first, pin_name, read_module)
 from foreign_roles import NEEDED, roles_of
 
+HEAD = "# SPDX-License-Identifier: MIT\n"
 USAGE = ("usage: make new-foreign NAME=my_uart TOP=module BUS=wishbone|axil|apb|memory|own|axis "
          "FILES='a.v b.v' "
          "[PORTS='write=we ...']")
@@ -124,6 +125,10 @@ def slot_texts(asked, ports, params):
     """Returns the slot's files by their names, what CMake calls its interface, and lines that say
     what was taken."""
     roles, latency = roles_of(asked.top, asked.bus, ports, asked.ports)
+    if wide := [n for n, p in ports.items() if not roles[n] and len(p["bits"]) > 32]:
+        word = "open" if ports[wide[0]]["direction"] == "output" else "low"
+        fail(f"'{wide[0]}' of {asked.top} has {len(ports[wide[0]]['bits'])} bits, and a pin at most "
+             f"32: PORTS='{word}={wide[0]}' leaves it out")
     said = {n: roles[n] or "pin " + pin_name(n, p) for n, p in ports.items()}
     for n, p in ports.items():
         if not roles[n] and p["direction"] == "output" and ASKED.search(n):
@@ -137,13 +142,22 @@ def slot_texts(asked, ports, params):
         return foreign_axis.texts(asked.name, asked.top, params, ports,
                                   roles), f"ICE {asked.name}.ice", said, operations
     core = foreign_bus.Core(asked.name, asked.top, asked.bus, ports, roles, latency, params,
-                            int(asked.clock or 0), asked.address)
+                            int(asked.clock or 0), asked.address,
+                            macros_of([*asked.files, *asked.headers]))
     for n in ports:
         if roles[n] in foreign_bus.ADDRESSES:
             said[n] += ", " + core.unit
-    texts, registers = foreign_bus.texts(core, names_of(asked.top, asked.files, core.word_bits))
+    texts, registers = foreign_bus.texts(core, names_of(asked.top, asked.files, core))
     return texts, f"REGS {asked.name}.regs.json" + (f" CLOCK {asked.clock}"
                                                     if asked.clock else ""), said, registers
+
+
+def from_here(text, folder):
+    """Names what lies in the same room as the core's folder from there: a repository may move."""
+    room = re.escape(os.path.dirname(os.path.abspath(folder)))
+    found = re.sub(rf"{room}(?=[/\s)])", "${here}/..", text)
+    return found if found == text else found.replace(
+        HEAD, HEAD + "get_filename_component(here ${CMAKE_CURRENT_LIST_DIR} REALPATH)\n")
 
 
 def cmake_lists(asked, interface, copies):
@@ -152,16 +166,14 @@ def cmake_lists(asked, interface, copies):
     if asked.is_vhdl:
         options = (f" LIBRARY {asked.library}" if asked.library else "") + (
             f" GENERICS {' '.join(asked.params)}" if asked.params else "")
-        return f"""# SPDX-License-Identifier: MIT
-icesoc_vhdl(NAME {top}{options} SOURCES
+        return f"""{HEAD}icesoc_vhdl(NAME {top}{options} SOURCES
   {separator.join(asked.files)})
 icesoc_core({name} {interface} FLAGS -Wno-lint -Wno-style DEPENDS {top}_verilog
   VERILOG {name}.v ${{GEN_DIR}}/{top}.v)
 """
     files = [copies.get(f, f) for f in asked.files]
     folders = " ".join("-I" + d for d in folders_of([*files, *copies, *asked.headers]))
-    return f"""# SPDX-License-Identifier: MIT
-icesoc_core({name} {interface} FLAGS {' '.join(FLAGS)} {folders}
+    return f"""{HEAD}icesoc_core({name} {interface} FLAGS {' '.join(FLAGS)} {folders}
   VERILOG {name}.v {separator.join([*files, *asked.headers])})
 """
 
@@ -174,7 +186,7 @@ def main(words):
     texts, interface, said, last = slot_texts(asked, ports, params)
     copies = {f: "copy_" + os.path.basename(f) for f in copied}  # beside the slot
     texts.update({copies[f]: text for f, text in copied.items()})
-    texts["CMakeLists.txt"] = cmake_lists(asked, interface, copies)
+    texts["CMakeLists.txt"] = from_here(cmake_lists(asked, interface, copies), asked.folder)
     folder = Path(asked.folder)
     folder.mkdir(parents=True)
     for file, text in texts.items():

@@ -91,9 +91,14 @@ def fill(template, folder, name):
     return path
 
 
-def put_into_repository(room, name, core):
+REPOSITORY = Option("repository", FOLDER, "a repository of your own cores, which is begun or gets "
+                    "this one, in place of ip/")
+
+
+def put_into_repository(room, name):
     """Writes what the repository of the user's cores lacks; the workflows are those of this
     tree."""
+    room = Path(room).absolute()
     origin = output(["git", "remote", "get-url", "origin"], check=False, stderr=-3).strip()
     origin = re.sub("(?<=://)[^/@]*@", "", origin)  # a name and a password stay here
     commit = output(["git", "rev-parse", "HEAD"], check=False, stderr=-3).strip()
@@ -109,16 +114,12 @@ def put_into_repository(room, name, core):
             (room / file).write_text(text)
     with open(room / "cores.list", "a") as listed:
         listed.write(f"{name}\n")
-    readme = core / "README.md"
-    text = readme.read_text().replace("../../docs", "../build/icesoc/docs")
-    readme.write_text(text.replace(f"make ip-test IP={name}", "make test"))
+    say(f"Next: make -C {room} test; make -C {room} run calls it by radio")
 
 
 @command("core new", [NAME, Option("lang", one_of("verilog", "vhdl"), "the core's language"),
                       Option("ice", FILE, "Slice file with its interface; without: an example"),
-                      Option("repository", FOLDER,
-                             "a repository of your own cores, which is begun or gets this one, "
-                             "in place of ip/"), BUILD, JOBS], make="new-ip",
+                      REPOSITORY, BUILD, JOBS], make="new-ip",
          brief=("core new brief_core --lang vhdl", "core remove brief_core --force"),
          examples=["core new low_pass --lang vhdl", "core new lamp --lang verilog --ice lamp.ice",
                    "core new low_pass --lang verilog --repository ~/cores"])
@@ -147,13 +148,15 @@ def new(values):
             "# SPDX-License-Identifier: MIT\n"
             f"icesoc_core({name} ICE {name}.ice {lang.upper()} {source})\n")
         if values.repository:
-            put_into_repository(Path(room).absolute(), name, folder)
+            readme = folder / "README.md"
+            text = readme.read_text().replace("../../docs", "../build/icesoc/docs")
+            readme.write_text(text.replace(f"make ip-test IP={name}", "make test"))
         os.makedirs(room, exist_ok=True)
         shutil.move(folder, f"{room}/{name}")  # the folder takes its place when it is complete
     written = f"{room}/{name}: {' '.join(sorted(os.listdir(f'{room}/{name}')))}"
     if values.repository:
         say(written)
-        return say(f"Next: make -C {room} test; make -C {room} run calls it by radio")
+        return put_into_repository(room, name)
     # A build folder would notice the new one by itself; it must now, while the folder can still be
     # removed.
     if (build / "build.ninja").exists():
@@ -173,7 +176,7 @@ def new(values):
 def foreign_words(values):
     """The words of ip/new_foreign.py."""
     given = {name: getattr(values, name.lower()) for name in ("CLOCK", "LIBRARY", "ADDRESS")}
-    return [values.name, values.top, values.bus, f"ip/{values.name}",
+    return [values.name, values.top, values.bus, f"{values.repository or 'ip'}/{values.name}",
             *(f"{name}={value}" for name, value in given.items() if value),
             *(f"PARAM:{each}" for each in values.params),
             *(f"DEFINE:{each}" for each in values.defines), *values.ports, *values.files]
@@ -190,19 +193,22 @@ def foreign_words(values):
     Option("clock", COUNT, "Hz of a clock of its own"),
     Option("library", TEXT, "library of its VHDL", ""),
     Option("address", one_of("words", "bytes"),
-           "what its address counts; found out, unless given"), BUILD, JOBS
+           "what its address counts; found out, unless given"), REPOSITORY, BUILD, JOBS
 ], make="new-foreign", brief=(
     "core foreign brief_foreign --top req_words --bus own --files tests/ip/new_foreign/cores.v "
     "--ports select=req write=wr address=where wdata=value rdata=held ack=gnt",
     "core remove brief_foreign --force"), examples=[
         "core foreign my_uart --top wbuart --bus wishbone --files wbuart.v ufifo.v"])
 def foreign_core(values):
-    """put a third-party core into a slot: writes ip/NAME"""
+    """put a third-party core into a slot: writes ip/NAME; its files in a repository of yours are
+    found from there"""
     build = BuildFolder(values.build, values).prepare()
     if any(file.lower().endswith((".vhd", ".vhdl")) for file in values.files):
         build.ninja("ghdl")
-    return run(["ip/new_foreign.py", *foreign_words(values)], check=False, env={
+    status = run(["ip/new_foreign.py", *foreign_words(values)], check=False, env={
         "GHDL": build / "ghdl/ghdl"})
+    return status or (put_into_repository(values.repository, values.name) if values.repository
+                      else 0)
 
 
 def known(values):

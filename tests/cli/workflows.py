@@ -108,8 +108,8 @@ class Cases(Script):
         icesoc, mine = work / "icesoc", work / "mine"
         icesoc.mkdir()
         linked(icesoc)
-        new = [TREE / "icesoc", "core", "new", "--lang", "verilog", "--repository", mine,
-               "--built", "--build", work / "none"]
+        built = ["--built", "--build", work / "none"]
+        new = [TREE / "icesoc", "core", "new", "--lang", "verilog", "--repository", mine, *built]
         self.ask(*new, "sample_verilog")
         self.has(f"^Next: make -C {mine} test")
         (mine / "build/main").mkdir(parents=True)
@@ -131,6 +131,16 @@ class Cases(Script):
         self.has("^changed$", file=mine / ".gitlab-ci.yml")
         self.ask(*new, "second", status=1)
         self.has("second is there already")
+        # So does somebody else's, whose files are found wherever the repository is.
+        (mine / "others").mkdir()
+        shutil.copy(TREE / "tests/ip/new_foreign/wb_port.v", mine / "others")
+        self.ask(TREE / "icesoc", "core", "foreign", "third", "--top", "wb_port", "--bus",
+                 "wishbone", "--files", mine / "others/wb_port.v", "--repository", mine, *built)
+        self.has(f"^Next: make -C {mine} test")
+        self.has("^third$", file=mine / "cores.list")
+        self.has(r"VERILOG third.v \$\{here\}/../others/wb_port.v",
+                 file=mine / "third/CMakeLists.txt")
+        self.lacks(str(mine), file=mine / "third/CMakeLists.txt")
         # The clone is of this tree's origin, at its commit; one without that commit is not kept.
         if (TREE / ".git").exists():
             commit = git(f"-C {shlex.quote(str(TREE))} rev-parse HEAD")

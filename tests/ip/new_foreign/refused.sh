@@ -66,6 +66,9 @@ refused "PARAMS: axil_words has no 'WIDTH'" my_port axil_words axil "$work/out" 
     "$here/axil_words.v"
 refused "'my_wide' of .* has 64 bits" my_port wide own "$work/out" select=clk_en write=we \
     address=a wdata=my_wide rdata=q "$work/wide.v"
+echo 'module broad(input clk, we, input [31:0] d, output [31:0] q, output [127:0] pads); endmodule' >"$work/broad.v"
+refused "'pads' of broad has 128 bits, and a pin at most 32: PORTS='open=pads'" my_port broad own \
+    "$work/out" write=we wdata=d rdata=q "$work/broad.v"
 refused 'include looks for timescale.v' my_port apb_words apb "$work/out" "$here/apb_words.v"
 refused 'Verilator does not elaborate odd' my_port odd memory "$work/out" "$work/odd.sv"
 refused "no port for ack: .*ack=1" my_port wbs_names wishbone "$work/out" "$here/cores.v"
@@ -103,6 +106,14 @@ for line in 'wbs_clk: clock' 'rst_ni: resetn' 'gate_clk_pad_i: pin' 'clk_div: pi
     'wbs_cti_i: low' 'intr: interrupt' 'spare: open'; do
     grep -q "^  $line" "$work/log" || { cat "$work/log" && echo "'$line' is not said" && exit 1; }
 done
+# Macros that are multiples of 4 are byte addresses.
+printf '`define PORT_MODE 8\047h0\n  `define PORT_MODE_BITS 2\n`define PORT_LEVEL 8\047h8 // of pins\n' >"$work/macros.vh"
+echo 'module macros(input clk, we, input [7:0] a, input [31:0] d, output [31:0] q); assign q = d ^ a; endmodule' >"$work/macros.v"
+"$new" my_port macros own "$work/macros" write=we address=a wdata=d rdata=q "$work/macros.vh" \
+    "$work/macros.v" >"$work/log"
+grep -q 'a: adr, counts bytes: PORT_MODE, PORT_LEVEL are multiples of 4; if not' "$work/log" &&
+    grep -q 'registers: MODE LEVEL' "$work/log" && grep -q '"word": 10' "$work/macros/my_port.regs.json" ||
+    { cat "$work/log" && exit 1; }
 # Outputs that may be interrupts are asked about; one that is active low is told.
 echo 'module asked(input clk, we, input [31:0] d, output [31:0] q, output TIMERINT, irq_no, point, output [3:0] rx_events); endmodule' >"$work/asked.v"
 "$new" my_port asked own "$work/asked" write=we wdata=d rdata=q "$work/asked.v" >"$work/log"
@@ -120,7 +131,8 @@ module system import sizes::*; #(parameter EXTRA = 1) (
     logic [0:2][31:0] held;
     always_ff @(posedge clk) if (we) held <= '{default: widths::W'(d)};
     assign q = held[1][15:0];
-    assign state_o = IDLE;
+    function automatic logic is_odd(input logic [3:0] number); return number[0]; endfunction
+    assign state_o = is_odd(d[0][3:0]) ? RUN : IDLE;
 endmodule
 END
 printf 'package sizes; import widths::*;
@@ -133,10 +145,11 @@ echo 'package widths; localparam W = 8; endpackage' >"$work/widths.sv"
 for line in 'state_o: pin state_o' "sv2v --top=system .*/widths.sv .*/sizes.sv .*/system.sv >system.v"; do
     grep -q "^  $line" "$work/log" || { cat "$work/log" && echo "'$line' is not said" && exit 1; }
 done
-grep -q 'input  wire \[2:0\] more_i' "$work/system/my_port.v" &&
+! grep -q 'is_odd\|number' "$work/log" && # what belongs to functions is no port
+    grep -q 'input  wire \[2:0\] more_i' "$work/system/my_port.v" &&
     grep -q '"width": 16' "$work/system/my_port.regs.json" &&
     ! grep -q UNOPTFLAT "$work/system/CMakeLists.txt" ||
-    { cat "$work/system/my_port.v" && exit 1; }
+    { cat "$work/log" "$work/system/my_port.v" && exit 1; }
 # A register is as wide as its written, or read, data.
 echo 'module narrow(input clk, we, input [16:0] d, output [12:0] q); assign q = d[12:0]; endmodule' >"$work/narrow.v"
 "$new" my_port narrow own "$work/narrow" write=we wdata=d rdata=q "$work/narrow.v" >"$work/log" &&

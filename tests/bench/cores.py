@@ -1,14 +1,18 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""cores: what the cores' block tests measure, beside what a memory port gives.
+"""cores: what the cores' block tests measure, beside what a memory port gives; and how long the
+first `ip-test` in a fresh clone takes, beside Verilator alone.
 
     cores.py BUILD-FOLDER OUTPUT.json [--brief]
 
 A port moves 8 bytes a clock in each direction (docs/memory.md); the fabric's clock is 100 MHz.
 """
+import os
 import re
 import subprocess
 import sys
+import tempfile
+import time
 from pathlib import Path
 
 from figures import figure, leave
@@ -21,10 +25,47 @@ FIGURES = (  # name, test, case, expression of the figure, bytes a clock for tha
     ("FIR filter, each direction", "fir", "OneSampleAClock", "^(.*) clocks a sample",
      lambda clocks: 2 / clocks),
     ("camera, written", "camera", "APixelEach", "^(.*) pixels a clock", float))
+# A clock, as little as a program of Verilator's can do.
+PROGRAM = """#include "Vfir.h"
+int main() {
+    Vfir top;
+    for (int i = 0; i < 20000; ++i, top.clk_i = i & 1) top.eval();
+}
+"""
 
 
-def main(build, output, *_):
-    entries = []
+def seconds(*words):
+    """Seconds that a command takes, without what ccache keeps."""
+    begin = time.monotonic()
+    done = subprocess.run(list(map(str, words)), stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          text=True, env={**os.environ, "CCACHE_DISABLE": "1"})
+    return sys.exit(done.stdout[-4000:]) if done.returncode else time.monotonic() - begin
+
+
+def first_test(build, brief):
+    """How long the test of fir takes in a fresh clone, and Verilator alone with the same core and a
+    program that clocks it. Brief: the test in this build."""
+    source = Path(__file__).resolve().parents[2]
+    with tempfile.TemporaryDirectory() as work:
+        clone, words = Path(work, "icesoc"), []
+        if brief:
+            clone, words = source, ["--built", "--build", build]
+        else:
+            seconds("git", "clone", "--quiet", source, clone)
+            build = clone / "build/main"
+        ours = seconds(clone / "icesoc", "core", "test", "fir", *words)
+        program = Path(work, "main.cpp")
+        program.write_text(PROGRAM)
+        alone = seconds(*"verilator --cc --exe --build -Wno-fatal --top-module fir --Mdir".split(),
+                        f"{work}/model", "-f", f"{build}/files/fir_slot.f", program)
+        alone += seconds(f"{work}/model/Vfir")
+    print(f"the first test of fir in a fresh clone: {ours:.1f} s, Verilator alone {alone:.1f} s")
+    return figure("first test of fir in a fresh clone, no compiler cache", round(ours, 1), "s",
+                  peer=f"Verilator and a program of one loop: {alone:.1f} s", ratio=ours / alone)
+
+
+def main(build, output, *brief):
+    entries = [first_test(build, brief)] if Path(build, "ip/fir/test_ip_fir").exists() else []
     for name, core, case, expression, bytes_of in FIGURES:
         program = Path(build, f"ip/{core}/test_ip_{core}")
         if not program.exists():  # a core that is not there

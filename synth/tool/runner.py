@@ -61,7 +61,9 @@ def netlist_of_order(file, order):
     return pathlib.Path(f"{file}.{order}")
 
 
-def script_of(run, library, options, output):
+def script_of(run, library, options, output, more=""):
+    """The script of a run; `more`: a further library of what its sources instantiate. A design with
+    limits keeps Yosys' whole libraries: with fewer modules its mapping is another, by chance."""
     sources, system = [], []  # SystemVerilog has words of its own
     for file in library.files_of(run.design.top):
         (system if file.suffix.lower() == ".sv" else sources).append(f' "{file}"')
@@ -70,7 +72,10 @@ def script_of(run, library, options, output):
     parameters = "".join(f"chparam -set {name} {value} {run.design.top}\n"
                          for name, value in sorted(run.design.parameters.items()))
     script = (options.scripts / f"{run.family}.ys").read_text()
-    mapping = (options.scripts / "xilinx_map.ys").read_text()
+    cells, mapping = ((options.scripts / f"xilinx_{name}.ys").read_text()
+                      for name in ("cells", "map"))
+    if run.design.limits:
+        cells, script = "", script.replace("prepare:", "begin:")
     orders = ""
     if run.orders:  # elaborated anew: a copy made before would change the first mapping
         orders = f"design -reset\n{script.partition('@MAP@')[0]}design -save unmapped\n"
@@ -79,7 +84,8 @@ def script_of(run, library, options, output):
         orders += (f"design -load unmapped\n{permuted}select A:top\n"
                    f"json -o {netlist_of_order(run.netlist, order)}\nselect -clear\n")
     for place, text in (("MAP", mapping.replace("@ORDER@", "")), ("ORDERS", orders),
-                        ("SOURCES", sources), ("INCLUDES", includes), ("PARAMETERS", parameters),
+                        ("CELLS", cells), ("MORE", more), ("SOURCES", sources),
+                        ("INCLUDES", includes), ("PARAMETERS", parameters),
                         ("TOP", run.design.top), ("OUTPUT", output)):
         script = script.replace(f"@{place}@", str(text))
     return script
@@ -98,7 +104,15 @@ def yosys_by(script, output, options):
 
 
 def synthesise(run, library, options):
-    yosys_by(lambda part: script_of(run, library, options, part), run.netlist, options)
+    def by(more=""):
+        yosys_by(lambda part: script_of(run, library, options, part, more), run.netlist, options)
+
+    try:
+        by()
+    except Stop as stop:
+        if "referenced in module" not in str(stop):
+            raise
+        by("+/xilinx/cells_xtra.v")
 
 
 def figures_of(n, spartan6, files_along):

@@ -84,6 +84,12 @@ class Cases(Script):
     def test_counts(self):
         """Figures are those that the blocks' sources promise, and Yosys' own `stat` counts them."""
         write("gen/cores.files", f"{(BLOCKS / 'store.v').resolve()}\n")
+        write("gen/clocks.v", """module clocks (input clk_i, output pll_o, output reg q_o);
+            wire clk;
+            PLL_BASE u_pll (.CLKIN(clk_i), .CLKOUT0(pll_o)); // in Yosys' second library
+            BUFG u_buffer (.I(pll_o), .O(clk)); // in the first, but none of the mapping
+            always @(posedge clk) q_o <= !q_o;
+            endmodule\n""")
         self.run_program()
         # A checkout elsewhere, of the same sources, has the same netlists.
         self.lacks(str(Path.cwd()), file=next(Path("out/cache").glob("store.xc6s.*.ys")))
@@ -95,6 +101,8 @@ class Cases(Script):
         def figures(design):
             return json.loads(next(Path("out/cache").glob(f"{design}.xc6s.*.figures")).read_text())
 
+        self.assertEqual(figures("clocks")["cells"], {"BUFG": 1, "FDRE": 1, "INV": 1,
+                                                      "PLL_BASE": 1})
         self.assertEqual(figures("wide")["cells"]["CARRY4"], 4, "a counter of 16 bits")
         store, whole = figures("store"), figures("whole")
         self.assertEqual((store["cells"]["RAM32M"], store["lutRam"]), (1, 4), "32 x 6 bits")

@@ -159,7 +159,7 @@ endfunction()
 macro(icesoc_verilate_observed)
   set(definitions) # observer.h reads them
   if(TRACE)
-    list(APPEND flags --trace-fst)
+    list(APPEND flags --trace-fst -DTRACED)
     list(APPEND definitions ICESOC_TRACE)
   endif()
   if(COVERAGE)
@@ -170,7 +170,7 @@ macro(icesoc_verilate_observed)
     list(APPEND definitions ICESOC_COVERAGE)
     if(A_FAST)
       file(WRITE ${dir}.vlt
-        "`verilator_config\ncoverage_off -file \"*\"\ncoverage_on -file \"*/${A_TOP}.v\"\n")
+        "`verilator_config\ncoverage_off -file \"*\"\ncoverage_on -file \"*/soc.v\"\n")
       list(APPEND flags ${dir}.vlt)
     endif()
   endif()
@@ -180,7 +180,7 @@ endmacro()
 #                 [REGS block...] [DEPENDS target-or-file...] [FLAGS ...] [FAST])
 # Verilated model of a module as a library NAME with the class V<NAME>. Lint is on (-Wall) and
 # fatal. FAST, the whole chip: compiled by clang (measured: 1.18 times the speed of g++'s code).
-# A model with COVERAGE counts its top module only: each block's own tests count the block, and with
+# A model with COVERAGE counts soc.v only: each block's own tests count the block, and with
 # all counters seconds of flight took minutes.
 function(icesoc_verilate name)
   cmake_parse_arguments(A "FAST" "TOP" "SOURCES;PARAMS;INCLUDES;REGS;DEPENDS;FLAGS" ${ARGN})
@@ -237,11 +237,15 @@ function(icesoc_verilate name)
   target_link_libraries(${name} INTERFACE ${lib} verilator_runtime)
 endfunction()
 
-# icesoc_netlist(NAME DESIGN design [PARAMS NAME=value...] [DEPENDS target...]): the Verilated model,
-# as above, of the netlist that the figures of a design of `make synth` are of, or of one with other
-# parameters, with what each of its primitives does.
+# icesoc_netlist(NAME DESIGN design [PARAMS NAME=value...] [DEPENDS target...] [TOP module SOURCES
+#                file... INCLUDES dir...]): the Verilated model, as above, of the netlist that the
+# figures of a design of `make synth` are of, or of one with other parameters, with what each of its
+# primitives does; or of a module around it.
 function(icesoc_netlist name)
-  cmake_parse_arguments(A "" "DESIGN" "PARAMS;DEPENDS" ${ARGN})
+  cmake_parse_arguments(A "" "DESIGN;TOP" "PARAMS;DEPENDS;SOURCES;INCLUDES" ${ARGN})
+  if(NOT A_TOP)
+    set(A_TOP ${A_DESIGN})
+  endif()
   list(TRANSFORM A_PARAMS PREPEND "--set=")
   set(here ${CMAKE_SOURCE_DIR})
   set(netlist ${CMAKE_CURRENT_BINARY_DIR}/netlist_${name}/${A_DESIGN}.v)
@@ -254,7 +258,7 @@ function(icesoc_netlist name)
       --family ${NETLIST_FAMILY} --to ${netlist}
     DEPENDS ${rtl} ${made} ${A_DEPENDS} VERBATIM COMMENT "Netlist of ${A_DESIGN}")
   # Lint is of the RTL: this is Yosys' style.
-  icesoc_verilate(${name} TOP ${A_DESIGN} SOURCES ${netlist}
+  icesoc_verilate(${name} TOP ${A_TOP} SOURCES ${A_SOURCES} ${netlist} INCLUDES ${A_INCLUDES}
     FLAGS -Wno-lint -Wno-style -Wno-UNOPTFLAT)
 endfunction()
 

@@ -18,7 +18,7 @@ module soc #(
     output reg         irq_o
 `ifdef PLATFORM_RESTS
     ,
-    input  wire        rests_i, // the platform has no clock, its memory excepted
+    input  wire        rests_i, memory_clk_i, // the platform has no clock, its memory one of its own
     output wire        stirs_o  // it needs one, by what cores and memory tell it
 `endif
 );

@@ -25,7 +25,7 @@ wire calib_done;
 cdc_bit u_calib_done (.clk_i(clk_i), .bit_async_i(mcb_calib_done_i), .bit_sync_o(calib_done));
 
 memory_mcb #(.PORTS(PORTS), .READ_FIFO(READ_FIFO)) u_memory (
-    .clk_i(clk_i), .rst_i(rst),
+    .clk_i(`MEMORY_CLOCK), .rst_i(rst),
     `NPI_MEMORY,
     .mcb_cmd_en_o(mcb_cmd_en_o), .mcb_cmd_instr_o(mcb_cmd_instr_o),
     .mcb_cmd_bl_o(mcb_cmd_bl_o), .mcb_cmd_byte_addr_o(mcb_cmd_byte_addr_o),

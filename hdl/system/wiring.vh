@@ -5,11 +5,13 @@
 // (docs/bus.md, docs/memory.md).
 
 // PLATFORM_CLOCK is the clock of bridge, decoder, modem and system slot. In the simulator it may
-// rest while cores and memory work (quiet_span.h).
+// rest while cores and memory work (quiet_span.h), and the memory's while that is idle (sim_soc.v).
 `ifdef PLATFORM_RESTS
 `define PLATFORM_CLOCK platform_clk
+`define MEMORY_CLOCK memory_clk_i
 `else
 `define PLATFORM_CLOCK clk_i
+`define MEMORY_CLOCK clk_i
 `endif
 
 // SLOT_WIRES declares the wires between the bus decoder and `count` slots; interrupt lines are those of slots 1 and up.
@@ -57,3 +59,10 @@
     .npi_wr_almost_full_o(npi_wr_almost_full), .npi_wr_flush_i(npi_wr_flush), \
     .npi_rd_data_o(npi_rd_data), .npi_rd_word_o(npi_rd_word), .npi_rd_pop_i(npi_rd_pop), \
     .npi_rd_empty_o(npi_rd_empty), .npi_rd_flush_i(npi_rd_flush), .npi_init_done_o(npi_init_done)
+
+// MEMORY_RESTS: nobody asks the memory_mcb `memory` for anything, and it owes nothing: then it does not move
+// (memory_rest_proof.v).
+`define MEMORY_RESTS(memory) \
+    !(|{memory.npi_addr_req_i, memory.npi_wr_push_i, memory.npi_wr_flush_i, memory.npi_rd_pop_i, \
+        memory.npi_rd_flush_i, memory.u_arbiter.u_queue.moving, memory.u_arbiter.u_queue.coming, \
+        memory.u_arbiter.u_queue.cmd_valid_o})

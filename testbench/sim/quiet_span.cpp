@@ -28,14 +28,14 @@ constexpr uint64_t blameEvery = 256; // tests of a busy chip
 const std::set<std::string> platform = {"u_fsmc_bridge", "u_bus_decoder", "u_modem",
                                         "u_system_slot", "u_memory"}; // soc.v
 
-#define PHASE soc__DOT__u_modem__DOT__u_baud__DOT__phase
-#define PRESCALER soc__DOT__u_modem__DOT__u_baud__DOT__count
-#define RATE soc__DOT__u_modem__DOT__u_baud__DOT__bd_i
-#define TICK soc__DOT__u_modem__DOT__u_baud__DOT__tick_o
-#define TIMER soc__DOT__u_modem__DOT__u_timer__DOT__clocks
-#define RX soc__DOT__u_modem__DOT__u_uart_rx__DOT__ticks
-#define TX soc__DOT__u_modem__DOT__u_uart_tx__DOT__ticks
-#define CYCLES soc__DOT__u_system_slot__DOT__cycles
+#define PHASE sim_soc__DOT__soc__DOT__u_modem__DOT__u_baud__DOT__phase
+#define PRESCALER sim_soc__DOT__soc__DOT__u_modem__DOT__u_baud__DOT__count
+#define RATE sim_soc__DOT__soc__DOT__u_modem__DOT__u_baud__DOT__bd_i
+#define TICK sim_soc__DOT__soc__DOT__u_modem__DOT__u_baud__DOT__tick_o
+#define TIMER sim_soc__DOT__soc__DOT__u_modem__DOT__u_timer__DOT__clocks
+#define RX sim_soc__DOT__soc__DOT__u_modem__DOT__u_uart_rx__DOT__ticks
+#define TX sim_soc__DOT__soc__DOT__u_modem__DOT__u_uart_tx__DOT__ticks
+#define CYCLES sim_soc__DOT__soc__DOT__u_system_slot__DOT__cycles
 
 const struct Member {
     size_t offset, size;
@@ -101,6 +101,8 @@ void QuietSpan::takeImage() {
 // True if all state of the platform except the counters is that of the image.
 bool QuietSpan::isPlatformLikeImage() {
     const VSoc___024root& r = *top_.rootp;
+    copyInto(image_, r, r.tick_i);
+    copyInto(image_, r, r.sim_soc__DOT__ticked);
     copyInto(image_, r, r.CYCLES);
     copyInto(image_, r, r.PHASE);
     copyInto(image_, r, r.PRESCALER);

@@ -65,7 +65,6 @@ void SocModel::timeModels() {
     } else {
         advanceAir_(time);
         modem_.advance(time);
-        advanceAir_(time);
         nextEvent_ = std::min(air_.nextEvent(), modem_.nextEvent());
     }
     if (others_)
@@ -151,18 +150,22 @@ void SocModel::tick() {
 }
 
 void SocModel::evaluate(bool rests) {
-    // The design is settled: by settle() if the processor's pins have changed, else by the last
-    // tick.
+    // The design is settled. The memory's pins get what they have after this clock.
     VSoc& top = *top_;
     sampleMcb(top, memory_);
-
+    driveMcb(top, memory_);
     span_.rest(rests);
-    top.clk_i = 1;
-    top.eval();
     ++cycles_;
     ++evaluated_;
-    observer_.step(top, cycles_, 0);
-    driveMcb(top, memory_);
+#ifdef ICESOC_TRACE // a waveform has both halves of a clock (sim_soc.v)
+    for (unsigned half : {0u, 1u}) {
+#else
+    for (unsigned half : {0u}) {
+#endif
+        top.tick_i = !top.tick_i;
+        top.eval();
+        observer_.step(top, cycles_, half);
+    }
     if (top.modem_txd_o != txd_) {
         txd_ = top.modem_txd_o;
         line_.setTxd(txd_, now());
@@ -187,10 +190,6 @@ void SocModel::evaluate(bool rests) {
     }
     if (now() >= nextEvent_)
         timeModels();
-    top.clk_i = 0;
-    top.eval();
-    observer_.step(top, cycles_, 1);
-
     pins_.dFromDesign = top.fsmc_d_o;
     pins_.dDriven = top.fsmc_d_oe_o;
     pins_.nwaitN = top.fsmc_nwait_n_o;

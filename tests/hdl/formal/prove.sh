@@ -35,11 +35,13 @@ clocks=async2sync
 ! grep -q gclk "$file" || clocks='memory_map; clk2fflogic'
 # A core that says it is idle: its registers, without those of proofs, may not move.
 flat='' read=${PROVE_READ:-}
-[ "$module" != idle_proof ] || {
+case $module in idle_proof | memory_rest_proof)
     flat="techmap -map $here/idle_registers.v r:SIZE>=256 # lines of pictures
 memory_map
 opt_clean
-techmap -map $here/idle_registers.v c:*u_core* w:*.f_* %ci1 %d"
+techmap -map $here/idle_registers.v c:*u_core* w:*.f_* %ci1 %d" ;;
+esac
+[ "$module" != idle_proof ] || {
     core=${read#-DCORE=}
     rules=$source/ip/${core%% *}/idle_rules.vh # of a core in VHDL
     own=${read#* } # files of the core, and npi_stream.v

@@ -9,6 +9,7 @@
 #include "driver_port.h"
 #include "ground.h"
 #include "map_regs.h"
+#include "modem_regs.h"
 #include "quiet_span.h"
 #include "uav_machine.h"
 #include <cstdlib>
@@ -300,6 +301,46 @@ TEST(Quiet, NothingOutsideOfTheChipIsLate) {
     UavMachine machine(soc, [&] { return !calls() && world.within(5); });
     machine.run();
     EXPECT_EQ(ground.replies.size(), 3u);
+}
+
+// A processor that takes no packets fills the ring: RTS holds back what follows.
+TEST(Quiet, WhatRtsHoldsBackGoesOnInItsClock) {
+    constexpr unsigned bytes = 2500, fill = 14 * 100; // RTS rises at 14 packets of 16
+    constexpr uint64_t bitNs = 4000, byteNs = 10 * bitNs;
+    RfChannel air(testSeed());
+    SocModel soc(air, Ground::uavModem());
+    HostLine host;
+    Cable cable(soc.line(), host, bitNs, [](const SerialLine&) {});
+    soc.plugIn(cable);
+    soc.onTime([&host, begin = uint64_t{50'000'000}](uint64_t now) mutable {
+        if (now < begin)
+            return begin;
+        host.send(std::vector<uint8_t>(bytes, 0xFF), now);
+        begin = ~uint64_t{0};
+        return now + 1;
+    });
+    soc.reset();
+    ASSERT_EQ(FSMC_init(&driverPort, &soc.fsmc()), FSMC_OK);
+    FSMC_write(MAP_SLOT_MODEM, MODEM_RX_BASE, 0x10000);
+    FSMC_write(MAP_SLOT_MODEM, MODEM_BAUD, 0x3D090 | MODEM_BAUD_WIRE_MASK);
+    FSMC_write(MAP_SLOT_MODEM, MODEM_CONTROL, MODEM_CONTROL_CONFIGURE_MASK);
+    Random random(testSeed());
+    auto pass = [&](uint64_t ns) {
+        for (const uint64_t end = soc.now() + ns; soc.now() < end;) {
+            Pair::passUntil(soc, soc.cycles() + 1 + random.below(5000));
+            EXPECT_EQ(soc.chip().modem_rxd_i, soc.line().rxd()) << "in clock " << soc.cycles();
+        }
+    };
+    pass(50'000'000 + bytes * byteNs);
+    EXPECT_TRUE(soc.chip().modem_rts_n_o);
+    unsigned taken = 0;
+    for (U32 get; (get = FSMC_read(MAP_SLOT_MODEM, MODEM_RX_GET)) & MODEM_RX_GET_VALID_MASK;) {
+        taken += get & MODEM_RX_GET_BYTES_MASK;
+        FSMC_write(MAP_SLOT_MODEM, MODEM_RX_RELEASE, 1);
+        pass((bytes - taken < fill ? 200 : random.below(200)) * byteNs);
+    }
+    EXPECT_EQ(taken, bytes);
+    EXPECT_FALSE(soc.chip().modem_rts_n_o);
 }
 
 } // namespace

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+//
+// memory_rest_proof: the memory, whose clock stops in the simulator while nobody asks it for
+// anything and it owes nothing (hdl/sim_soc.v); only for the prover.
+//
+// When the gate closes, no register of the memory takes another value, whatever the inputs are, as
+// of a core in idle_proof.v.
+
+`default_nettype none
+
+module memory_rest_proof #(
+    parameter PORTS = 3
+) (
+    input wire                clk_i,
+    input wire                rst_i,
+    input wire [32*PORTS-1:0] npi_addr_i,
+    input wire [PORTS-1:0]    npi_addr_req_i, npi_rnw_i, npi_rmw_i, npi_wr_push_i, npi_wr_flush_i,
+    input wire [4*PORTS-1:0]  npi_size_i,
+    input wire [64*PORTS-1:0] npi_wr_data_i,
+    input wire [8*PORTS-1:0]  npi_wr_be_i,
+    input wire [PORTS-1:0]    npi_rd_pop_i, npi_rd_flush_i,
+    input wire                mcb_cmd_full_i, mcb_wr_full_i, mcb_rd_empty_i, mcb_calib_done_i,
+    input wire [63:0]         mcb_rd_data_i
+);
+    `include "wiring.vh"
+    (* hierconn *) wire [PORTS-1:0] \u_core.npi_addr_req_i ;
+    (* hierconn *) wire [PORTS-1:0] \u_core.npi_wr_push_i ;
+    (* hierconn *) wire [PORTS-1:0] \u_core.npi_wr_flush_i ;
+    (* hierconn *) wire [PORTS-1:0] \u_core.npi_rd_pop_i ;
+    (* hierconn *) wire [PORTS-1:0] \u_core.npi_rd_flush_i ;
+    (* hierconn *) wire \u_core.u_arbiter.u_queue.moving ;
+    (* hierconn *) wire \u_core.u_arbiter.u_queue.coming ;
+    (* hierconn *) wire \u_core.u_arbiter.u_queue.cmd_valid_o ;
+
+    reg  [4:0] rest; // clocks of rest, 17 at most: the gate closes at 16
+    wire       active = rst_i || !`MEMORY_RESTS(u_core);
+    wire       closes = !active && rest == 5'd16;
+    always @(posedge clk_i)
+        rest <= active ? 5'd0 : rest + {4'd0, rest != 5'd17};
+    initial assume (rst_i);
+    always @(posedge clk_i)
+        cover (closes);
+
+    memory_mcb #(.PORTS(PORTS), .READ_FIFO(~{{PORTS-1{1'b0}}, 1'b1})) u_core (
+        .clk_i(closes), .rst_i(rst_i),
+        .npi_addr_i(npi_addr_i), .npi_addr_req_i(npi_addr_req_i), .npi_rnw_i(npi_rnw_i),
+        .npi_size_i(npi_size_i), .npi_rmw_i(npi_rmw_i), .npi_wr_data_i(npi_wr_data_i),
+        .npi_wr_be_i(npi_wr_be_i), .npi_wr_push_i(npi_wr_push_i),
+        .npi_wr_flush_i(npi_wr_flush_i), .npi_rd_pop_i(npi_rd_pop_i),
+        .npi_rd_flush_i(npi_rd_flush_i),
+        .mcb_cmd_full_i(mcb_cmd_full_i), .mcb_wr_full_i(mcb_wr_full_i),
+        .mcb_rd_data_i(mcb_rd_data_i), .mcb_rd_empty_i(mcb_rd_empty_i),
+        .mcb_calib_done_i(mcb_calib_done_i));
+endmodule

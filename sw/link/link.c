@@ -172,16 +172,31 @@ void Link_expectAnswers(Link* link, U32 packets) {
     link->output.waiting = 0;
 }
 
+/* Counts losses that took the radio no longer than other packets: then no tries failed, as they do
+ * when two begin together. */
+static void note(Link_Contention* c, int isDelivered, U32 now) {
+    U32 took = now - c->answeredAt;
+    c->quick -= c->quick / 128U;
+    c->answeredAt = now;
+    if (isDelivered) {
+        if (c->isBusy)
+            c->usualUs += took / 16U - c->usualUs / 16U;
+        return;
+    }
+    if (took < c->usualUs + c->usualUs / 4U)
+        c->quick += 65536U / 128U;
+    c->hasLost = 1;
+    c->lostAt = now;
+}
+
 void Link_answer(Link* link, int isDelivered, U32 nowUs) {
     Link_Output* output = &link->output;
     output->now = nowUs;
     if (!output->waiting)
         return;
-    if (!isDelivered) {
-        output->contention.hasLost = 1;
-        output->contention.lostAt = nowUs;
-    }
+    note(&output->contention, isDelivered, nowUs);
     link_onAnswer(&link->sender, (U8)(output->handed - output->waiting--), isDelivered);
+    output->contention.isBusy = output->waiting != 0;
 }
 
 /* Judges whether a side sends much, by the bytes of so many whole spans, or of a part of one. */
@@ -200,19 +215,24 @@ U32 Link_randomWait(Link* link) {
     Link_Contention* c = &output->contention;
     U32 messages = output->statistics.messagesReceived;
     U32 spans = (output->now - c->since) / LINK_SPAN;
+    U32 isSlow = output->longest + LINK_CODEC(output)->overhead <= LINK_MAX_ENCRYPTED;
     judge(&c->own, output->statistics.bytesSent, spans);
     judge(&c->peers, output->statistics.bytesReceived, spans);
+    if (spans && !c->peers.isMuch)
+        c->isCalled = 0;
     if (c->own.isMuch && messages != c->messages)
-        c->peers.isMuch = 1;
+        c->isCalled = 1;
     if (spans) {
         c->since = output->now;
         c->messages = messages;
     }
     if (output->now - c->lostAt >= LINK_LOSS_COUNTS)
         c->hasLost = 0;
-    if (c->peers.isMuch || (c->hasLost && !c->own.isMuch))
+    if (c->own.isMuch && c->peers.isMuch)
+        return c->quick <= LINK_QUICK_MANY ? LINK_WAIT_BOTH : isSlow ? LINK_WAIT_SHARED : 0U;
+    if (c->peers.isMuch || c->isCalled || (c->hasLost && !c->own.isMuch))
         return LINK_WAIT_SHARED;
-    return output->longest + LINK_CODEC(output)->overhead <= LINK_MAX_ENCRYPTED;
+    return isSlow;
 }
 
 void Link_poll(Link* link, U32 nowUs) {

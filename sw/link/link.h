@@ -97,10 +97,11 @@ void Link_expectAnswers(Link* link, U32 packets);
 /* Returns the modem's RN that suits what is sent and heard now: the least exponent of its random
  * wait before the first try. Who talks alone does not wait (next to nothing where the modem
  * encrypts: a packet takes 16 ms instead of 10 then, and one that an interferer of a fixed period
- * has hit would be hit again and again). Two that talk at once wait at random, or they would begin
- * together; so does a stream during which the peer calls, or the calls would find no room. So does
- * who sends little where packets are lost: an interferer would meet all that is sent at fixed
- * times. `transmit` may call it. */
+ * has hit would be hit again and again). Two streams wait longest, or they would begin together;
+ * but not where many packets are lost without failed tries: the far modem had no work with them,
+ * so the two seldom begin together. A stream during which the peer calls leaves room for the
+ * calls. So does who sends little where packets are lost: an interferer would meet all that is
+ * sent at fixed times. `transmit` may call it. */
 U32 Link_randomWait(Link* link);
 
 /* Reports the radio's answer for the oldest packet that has none: its peer has it, or it is lost.

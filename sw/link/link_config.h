@@ -117,7 +117,9 @@
 
 /* The choice of RN (Link_randomWait): each span its bytes are counted, of which the air carries
  * some 5,000; these many make a stream, fewer than these end it. A loss counts for a while. */
-#define LINK_WAIT_SHARED 2U /* as set-up leaves it */
+#define LINK_WAIT_SHARED 2U    /* as set-up leaves it */
+#define LINK_WAIT_BOTH 3U      /* two streams */
+#define LINK_QUICK_MANY 12288U /* of 65,536 packets lost without failed tries: many */
 #define LINK_SPAN 500000U
 #define LINK_SPAN_MANY 1000U
 #define LINK_SPAN_FEW 500U

@@ -72,10 +72,15 @@ typedef struct Link_Talk {
 } Link_Talk;
 
 typedef struct Link_Contention {
-    Link_Talk own, peers; /* the peer's is also much if it calls during a stream */
-    U32 since, messages;  /* begin of the span, and messages heard before it */
+    Link_Talk own, peers;
+    U32 since, messages; /* begin of the span, and messages heard before it */
     U32 lostAt;
-    U8 hasLost; /* a packet, at lostAt */
+    U8 hasLost;  /* a packet, at lostAt */
+    U8 isCalled; /* by the peer, during a stream */
+    U8 isBusy;   /* the radio has had a packet since its last answer, at answeredAt */
+    U32 answeredAt;
+    U32 usualUs; /* mean time of a packet that arrives */
+    U32 quick;   /* share of the last packets, of 65,536, lost in no more than that time */
 } Link_Contention;
 
 /* Small members that are often used come first in each part: short instructions reach them. */

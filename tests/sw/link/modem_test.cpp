@@ -180,8 +180,8 @@ TEST_F(RandomWait, WhoTalksAloneDoesNotWaitAndTwoThatTalkDo) {
     talk(pair, 2000, 1); // the other calls
     EXPECT_EQ(rn(pair.a), 2u);
     talk(pair, 2000, 2000);
-    EXPECT_EQ(rn(pair.a), 2u);
-    EXPECT_EQ(rn(pair.b), 2u);
+    EXPECT_EQ(rn(pair.a), 3u);
+    EXPECT_EQ(rn(pair.b), 3u);
     pair.pass(20'000 * ms);
     talk(pair, 1, 0);
     EXPECT_EQ(rn(pair.a), 0u);
@@ -201,6 +201,22 @@ TEST_F(RandomWait, WhoSendsLittleWaitsWherePacketsAreLost) {
     pair.pass(20'000 * ms);
     talk(pair, 1, 0);
     EXPECT_EQ(rn(pair.a), 0u);
+}
+
+// Tries that fail tell of collisions, packets that are lost without any do not.
+TEST_F(RandomWait, TwoStreamsDoNotWaitWherePacketsAreLostWithoutFailedTries) {
+    ModemPair<End> pair(RfWeather(), testSeed(), 1, false, 2u);
+    const auto stream = [&] {
+        for (int i = 0; i < 3; ++i)
+            talk(pair, 8000, 8000);
+        return std::max(rn(pair.a), rn(pair.b));
+    };
+    pair.air.weather.loss = 0.35;
+    EXPECT_EQ(stream(), 0u);
+    pair.air.weather = RfWeather();
+    EXPECT_EQ(stream(), 3u);
+    pair.air.weather.distance = 400; // a third is lost, each after four tries
+    EXPECT_EQ(stream(), 3u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Keys, LinkOverModems,

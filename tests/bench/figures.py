@@ -6,7 +6,7 @@
     figures.py OUTPUT.md FILE.json...
 
 A file is a list of entries, or an object with the list in "entries": name, value, unit, and where
-there is one limit and share (measured by limit), or peer and ratio.
+there is one limit and share (measured by limit; gross, by a limit with more), or peer and ratio.
 """
 import datetime
 import json
@@ -34,7 +34,8 @@ HEAD = """# Figures
 
 Written by `make bench`: one run on one machine, each figure beside its limit or its peer of the
 same run. What each one means, and how it is measured, is said on the page of its subject.
-`a of b, c %` is a measured, and c % of the limit b.
+`a of b, c %` is a measured, and c % of the limit b. A goodput and its limit are bytes of programs;
+`(d %)` behind them is the share of all bytes that the modems could carry.
 """
 
 
@@ -61,6 +62,7 @@ def number(value):
 def beside(entry):
     if "limit" in entry:
         share = f", {100 * entry['share']:.1f} %" if "share" in entry else ""
+        share += f" ({100 * entry['gross']:.1f} %)" if "gross" in entry else ""
         return f"limit {number(entry['limit'])}{share}"
     if "peer" in entry:
         return f"{entry['peer']}, {number(entry['ratio'])} times"

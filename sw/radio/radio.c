@@ -15,6 +15,7 @@
 #define DEFAULT_GUARD_MS 1000U
 #define ANSWERS (RADIO_API && radio.onAnswer)
 #define POLL_TICKS (OS_TICKS_PER_SEC / 100U)
+#define MODE_STEP 13U /* of the set-up: ATAP */
 
 /* API mode: a buffer holds a frame's contents: its type, and here four bytes more before a packet.
  *   01 ID TARGET TARGET 00 DATA...          a packet to be sent
@@ -106,6 +107,11 @@ Radio_Status xbeeInit(const XBeeInitTypeDef* conf, const Radio_Memory* memory) {
     set(MODEM_EVENT, events);
     if (events & MODEM_EVENT_CONFIGURE_FAILED_MASK) {
         radio.failedStep = (get(MODEM_STATUS) & MODEM_STATUS_STEP_MASK) >> MODEM_STATUS_STEP_LSB;
+        if (ANSWERS && radio.failedStep == MODE_STEP) {
+            XBeeInitTypeDef transparent = *conf;
+            transparent.onAnswer = 0;
+            return xbeeInit(&transparent, memory);
+        }
         return radio.failedStep <= 1U ? RADIO_NO_MODEM : RADIO_REFUSED;
     }
     set(MODEM_MASK, MODEM_MASK_RX_PACKET_MASK | MODEM_MASK_RX_OVERRUN_MASK);

@@ -54,9 +54,9 @@ typedef struct XBeeInitTypeDef {
     /* KY, the network's AES key of 16 bytes; 0: EE is 0, nothing is encrypted. An encrypted packet
      * carries 95 bytes instead of 100 (Link_limitFrame). */
     const U8* key;
-    /* 0: transparent mode. Else API mode, if the controller has it (Radio_answers): Radio_receive
-     * calls this for each packet that was sent, oldest first, and each packet that comes has a
-     * source (Radio_source), whoever it is. */
+    /* 0: transparent mode. Else API mode, if controller and modem have it (Radio_answers):
+     * Radio_receive calls this for each packet that was sent, oldest first, and each packet that
+     * comes has a source (Radio_source), whoever it is. */
     Radio_OnAnswer onAnswer;
 } XBeeInitTypeDef;
 
@@ -88,7 +88,7 @@ typedef struct Radio_Memory {
  * copied. */
 Radio_Status xbeeInit(const XBeeInitTypeDef* conf, const Radio_Memory* memory);
 
-/* Returns whether API mode was chosen by xbeeInit, and the controller has it. */
+/* Returns whether API mode was chosen by xbeeInit, and controller and modem have it. */
 int Radio_answers(void);
 
 /* Returns the step of the set-up that failed, after RADIO_NO_MODEM or RADIO_REFUSED, as STATUS.STEP

@@ -102,7 +102,7 @@ std::string XBee::execute(const std::string& line, uint64_t now) {
     value.erase(0, value.find_first_not_of(' '));
     for (char& c : letters)
         c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-    if (letters == refuse_)
+    if (letters == refuse_ || letters + value == refuse_) // or with one value alone
         return "ERROR\r";
     std::string answer = value.empty() ? order(letters, now) : "";
     if (answer.empty() && letters == "KY")

@@ -105,13 +105,26 @@ protected:
         ASSERT_TRUE(done) << "the task did not end within 60 simulated seconds";
     }
     Radio_Status init(uint8_t channel = 0, uint16_t pan = 0, const U8* key = nullptr,
-                      Radio_OnAnswer onAnswer = nullptr) {
-        const XBeeInitTypeDef conf = {XBEE_BD_115200, 0x0001, 0x0000,  channel, pan,
-                                      guardMs,        key,    onAnswer};
+                      Radio_OnAnswer onAnswer = nullptr, Radio_Baud baud = XBEE_BD_115200) {
+        const XBeeInitTypeDef conf = {baud, 0x0001, 0x0000, channel, pan, guardMs, key, onAnswer};
         const Radio_Memory rings = {0x0000, 0x1000};
         Radio_Status status = xbeeInit(&conf, &rings);
         irqOn_ = status == RADIO_OK;
         return status;
+    }
+    // Lets a register of the controller read without these bits, until FSMC_init.
+    void hide(U32 word, U32 bits) {
+        static const FSMC_Port* real;
+        static FSMC_Port lying;
+        static U32 hiddenAt, hidden;
+        real = realPort_;
+        lying = *real;
+        hiddenAt = MAP_CONTROL_WINDOW + 64U * MAP_SLOT_MODEM + 4U * word;
+        hidden = bits;
+        lying.read32 = [](void* c, U32 address) {
+            return real->read32(c, address) & ~(address == hiddenAt ? hidden : 0U);
+        };
+        ASSERT_EQ(FSMC_init(&lying, &soc_), FSMC_OK);
     }
     static U32 us() { return OSTimeGet() * (1000000U / OS_TICKS_PER_SEC); }
     // Runs the near link on the driver until `done`.
@@ -175,17 +188,9 @@ TEST_F(Radio, ARefusedCommandIsReportedWithItsStep) {
 
 TEST_F(Radio, ASlotThatIsNoModemControllerIsReported) {
     run([&] {
-        static const FSMC_Port* real;
-        static FSMC_Port lying;
-        real = realPort_;
-        lying = *real;
-        lying.read32 = [](void* c, U32 address) {
-            return address == MAP_CONTROL_WINDOW + 64U * MAP_SLOT_MODEM ? 0x12345678U
-                                                                        : real->read32(c, address);
-        };
-        ASSERT_EQ(FSMC_init(&lying, &soc_), FSMC_OK);
+        hide(MODEM_ID, 0xFFFF0000U);
         EXPECT_EQ(init(), RADIO_NO_DEVICE);
-        ASSERT_EQ(FSMC_init(real, &soc_), FSMC_OK);
+        ASSERT_EQ(FSMC_init(realPort_, &soc_), FSMC_OK);
     });
 }
 
@@ -279,11 +284,15 @@ TEST_F(Radio, AModemThatWasResetIsSetUpAgain) {
     });
 }
 
+const U8 key[16] = {0x00, 0x11, 0x22, 0x33, 0x44, 0x55, 0x66, 0x77,
+                    0x88, 0x99, 0xAA, 0xBB, 0xCC, 0xDD, 0xEE, 0xFF};
+
 class ApiRadio : public Radio {
 protected:
-    Radio_Status initApi() {
+    Radio_Status initApi(Radio_Baud baud = XBEE_BD_115200) {
         answers_.clear();
-        return init(0, 0, nullptr, [](int isDelivered) { answers_ += isDelivered ? '+' : '-'; });
+        return init(
+            0, 0, nullptr, [](int isDelivered) { answers_ += isDelivered ? '+' : '-'; }, baud);
     }
     // Sends a packet, and waits until packets so far have answers.
     void sendOne(size_t answers) {
@@ -356,6 +365,30 @@ TEST_F(ApiRadio, EachPacketIsAnsweredForAndAnAnswerThatIsLostCountsAsALoss) {
     });
 }
 
+// A controller, or a modem, without API mode is used in transparent mode at the rate of that.
+TEST_F(ApiRadio, WhereControllerOrModemHaveNoApiModeALinkRunsInTransparentMode) {
+    for (bool isModem : {true, false})
+        run([&] {
+            if (isModem)
+                soc_.modem().refuseCommand("AP1");
+            else
+                hide(MODEM_STATUS, MODEM_STATUS_API_MASK);
+            ASSERT_EQ(initApi(RADIO_250000), RADIO_OK);
+            EXPECT_FALSE(Radio_answers());
+            EXPECT_EQ(soc_.modem().parameter("AP"), 0u);
+            EXPECT_EQ(soc_.modem().parameter("BD"), 7u);
+            ASSERT_TRUE(connect());
+            ASSERT_EQ(Link_openChannel(nearPeer_.link(), 0), LINK_OK);
+            const size_t before = farPeer_.received.size();
+            ASSERT_EQ(Link_send(nearPeer_.link(), 0, key, 16, 0), LINK_OK);
+            EXPECT_TRUE(talk([&] { return farPeer_.received.size() > before; }, 5000));
+            EXPECT_EQ(answers_, "");
+            Link_stop(nearPeer_.link(), us());
+            soc_.modem().refuseCommand("");
+            ASSERT_EQ(FSMC_init(realPort_, &soc_), FSMC_OK);
+        });
+}
+
 TEST_F(ApiRadio, EachPacketSaysWhoseItIsAndGoesToItsTarget) {
     HostLine line;
     XBee stranger(line, air_, quick({{"BD", 7}, {"MY", 2}, {"DL", 1}}));
@@ -390,9 +423,6 @@ TEST_F(ApiRadio, EachPacketSaysWhoseItIsAndGoesToItsTarget) {
     EXPECT_EQ(line.received, (std::vector<uint8_t>{7}));
     EXPECT_EQ(farLine_.received, (std::vector<uint8_t>{8}));
 }
-
-const U8 key[16] = {0x00, 0x11, 0x22, 0x33, 0x44, 0x55, 0x66, 0x77,
-                    0x88, 0x99, 0xAA, 0xBB, 0xCC, 0xDD, 0xEE, 0xFF};
 
 class EncryptedRadio : public Radio {
 protected:

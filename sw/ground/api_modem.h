@@ -5,8 +5,10 @@
 #pragma once
 
 #include "api_frames.h"
+#include "packet_line.h"
 
 #include <deque>
+#include <utility>
 
 extern "C" {
 #include "link_config.h"
@@ -14,16 +16,16 @@ extern "C" {
 
 namespace XBeeAT {
 
-class ApiModem {
+class ApiModem : public PacketLine {
 public:
     static constexpr int everybody = 0xFFFF; // as a target
 
-    explicit ApiModem(bool escapes) : frames_(escapes) {}
+    // `most`: packets that may be without an answer, whoever they are for.
+    explicit ApiModem(bool escapes, size_t most = 255) : frames_(escapes), most_(most) {}
 
     // Returns the bytes for the line that send a packet, and first set RN if it changes.
-    ApiFrames::Bytes packet(int target, const uint8_t* data, size_t size, uint32_t rn,
-                            uint32_t now) {
-        ApiFrames::Bytes bytes;
+    Bytes packet(int target, const uint8_t* data, size_t size, uint32_t rn, uint32_t now) {
+        Bytes bytes;
         if (rn != rn_)
             bytes = frames_.command(0, "RN", {static_cast<uint8_t>(rn)});
         rn_ = rn;
@@ -34,33 +36,36 @@ public:
         return bytes;
     }
     size_t unanswered() const { return waiting_.size(); } // packets
-    // Takes bytes from the line. Calls `data(source, bytes, count)` with those of packets, and
-    // `answer(target, isThere)` for each packet that was sent, in their order: the target's modem
-    // has it, or it is lost.
-    template <class Data, class Answer>
-    void feed(const uint8_t* bytes, size_t count, Data data, Answer answer) {
-        frames_.feed(
-            bytes, count,
-            [&](int source, const uint8_t* heard, size_t size) { data(source, heard, size); },
-            [&](const ApiFrames::Bytes& frame) {
-                if (frame[0] != ApiFrames::Status || frame.size() != 3 ||
-                    std::none_of(waiting_.begin(), waiting_.end(),
-                                 [&](const Packet& p) { return p.id == frame[1]; }))
-                    return;
-                for (bool isLast = false; !isLast;) {
-                    const Packet first = waiting_.front();
-                    isLast = first.id == frame[1]; // the line lost the others' answers
-                    waiting_.pop_front();
-                    answer(first.target, isLast && frame[2] == 0);
-                }
-            });
+    bool answers() const override { return true; }
+    bool offer(int target, const uint8_t* data, uint32_t size, uint32_t rn, size_t,
+               uint32_t now) override {
+        if (unanswered() >= most_)
+            return false;
+        const Bytes bytes = packet(target, data, size, rn, now);
+        out_.insert(out_.end(), bytes.begin(), bytes.end());
+        return true;
     }
-    // Calls `lost(target)` for each packet that the modem will not answer for any more.
-    template <class Lost> void expire(uint32_t now, Lost lost) {
+    Bytes due(uint32_t) override { return std::exchange(out_, {}); }
+    uint32_t deadline(uint32_t) const override { return out_.empty() ? 0xFFFFFFFFu : 0; }
+    void feed(const uint8_t* bytes, size_t count, const Data& data, const Answer& answer) override {
+        frames_.feed(bytes, count, data, [&](const Bytes& frame) {
+            if (frame[0] != ApiFrames::Status || frame.size() != 3 ||
+                std::none_of(waiting_.begin(), waiting_.end(),
+                             [&](const Packet& p) { return p.id == frame[1]; }))
+                return;
+            for (bool isLast = false; !isLast;) {
+                const Packet first = waiting_.front();
+                isLast = first.id == frame[1]; // the line lost the others' answers
+                waiting_.pop_front();
+                answer(first.target, isLast && frame[2] == 0);
+            }
+        });
+    }
+    void expire(uint32_t now, const Answer& answer) override {
         while (!waiting_.empty() && now - waiting_.front().at >= LINK_ANSWER_LAST) {
             const int target = waiting_.front().target;
             waiting_.pop_front();
-            lost(target);
+            answer(target, false);
         }
     }
 
@@ -71,6 +76,8 @@ private:
         uint32_t at; // when it was handed over
     };
     ApiFrames frames_;
+    size_t most_;
+    Bytes out_;                      // for the line
     uint32_t rn_ = LINK_WAIT_SHARED; // as set-up leaves it
     uint8_t id_ = 0;
     std::deque<Packet> waiting_; // without an answer

@@ -71,7 +71,8 @@ Peer& Engine::peer(const Settings& wanted) {
 }
 
 Engine::Engine(const Settings& s, const Log& l)
-    : Host(s, l, clock_), pacer_(s.characterUs(), LINK_MAX_FRAME) {
+    : Host(s, l, clock_),
+      line_(std::make_unique<FramePacer>(s.target, s.characterUs(), LINK_MAX_FRAME, 0)) {
     serial_.open(device);
     makePipe(wakePipe_);
     thread_ = std::thread([this] { run(); });

@@ -62,11 +62,10 @@ private:
     int target_ = 0;                             // DL of the modem
     std::map<int, std::unique_ptr<Peer>> peers_; // by address; they stay
     uint64_t airUs_ = 0;                         // of the peer that sent last
-    std::vector<U8> serialOut_; // the frame's bytes that the port has not taken yet
-    FramePacer pacer_;
-    std::unique_ptr<ApiModem> api_;   // in API mode; else the pacer makes packets
-    U32 upAt_ = 0, patienceUs_ = 0;   // when a link was last up; how long all may be down
-    std::condition_variable changed_; // of stop_ and what programs want
+    std::vector<U8> serialOut_;        // the frame's bytes that the port has not taken yet
+    std::unique_ptr<PacketLine> line_; // a mode of the modem
+    U32 upAt_ = 0, patienceUs_ = 0;    // when a link was last up; how long all may be down
+    std::condition_variable changed_;  // of stop_ and what programs want
     std::thread thread_;
 };
 

@@ -21,19 +21,15 @@ constexpr std::chrono::seconds retryEvery{5}; // while only a listener waits for
 
 } // namespace
 
-// Takes a frame while the line is free. In API mode the modem holds no more packets than one link
-// gives it, whoever they are for.
+// Takes a frame while the line is free.
 bool Engine::transmit(Peer& peer, const U8* frame, U32 size) {
     const U32 now = clock_.nowUs();
-    if (!serialOut_.empty() || (api_ ? api_->unanswered() >= settings.mostWaiting()
-                                     : serial_.waiting() || !pacer_.offer(frame, size, now)))
+    U32 rn = peer.randomWait();
+    for (auto& [address, other] : peers_)
+        rn = other->isUp() ? std::max(rn, other->randomWait()) : rn;
+    if (!serialOut_.empty() ||
+        !line_->offer(peer.address(), frame, size, rn, serial_.waiting(), now))
         return false;
-    if (api_) {
-        U32 rn = peer.randomWait();
-        for (auto& [address, other] : peers_)
-            rn = other->isUp() ? std::max(rn, other->randomWait()) : rn;
-        serialOut_ = api_->packet(peer.address(), frame, size, rn, now);
-    }
     peer.airUs = std::max(peer.airUs, airUs_);
     airUs_ = peer.airUs;
     peer.airUs += LINK_PACKET_US + size * LINK_BYTE_US;
@@ -86,12 +82,12 @@ std::string Engine::prepareModem(const Settings& wanted) {
     }
     std::lock_guard<std::mutex> lock(mutex);
     longest_ = setup.encrypts() ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME;
-    pacer_ = FramePacer(wanted.characterUs(), longest_);
-    pacer_.clear(clock_.nowUs());
     serialOut_.clear();
-    api_.reset();
     if (setup.isApi())
-        api_ = std::make_unique<ApiModem>(setup.escapes());
+        line_ = std::make_unique<ApiModem>(setup.escapes(), wanted.mostWaiting());
+    else
+        line_ =
+            std::make_unique<FramePacer>(target_, wanted.characterUs(), longest_, clock_.nowUs());
     log(1, "modem ready on " + device + " after " +
                std::to_string((clock_.nowUs() - begin) / 1000) + " ms" +
                (setup.isApi() ? ", in API mode" : "") + (setup.encrypts() ? ", it encrypts" : ""));
@@ -101,8 +97,8 @@ std::string Engine::prepareModem(const Settings& wanted) {
 // Starts the link with a peer, if the modem is ready. One without API mode talks to the peer alone
 // that it was set up for.
 void Engine::start(Peer& peer) {
-    if (longest_ && (api_ || peer.address() == target_))
-        peer.start(longest_, api_ != nullptr, clock_.nowUs());
+    if (longest_ && (line_->answers() || peer.address() == target_))
+        peer.start(longest_, line_->answers(), clock_.nowUs());
 }
 
 bool Engine::any(bool (Peer::*is)() const) const {
@@ -191,13 +187,11 @@ void Engine::readSerial(U32 now) {
     U8 bytes[512];
     const ssize_t count = serial_.read(bytes, sizeof bytes);
     const size_t size = static_cast<size_t>(count);
-    if (count > 0 && api_)
-        api_->feed(
+    if (count > 0)
+        line_->feed(
             bytes, size,
             [&](int source, const U8* data, size_t heard) { deliver(source, data, heard, now); },
             [&](int target, bool isThere) { peers_.at(target)->answer(isThere, now); });
-    else if (count > 0)
-        deliver(target_, bytes, size, now);
     else if (count == 0 || (errno != EAGAIN && errno != EINTR))
         fail("serial port '" + device + "': " + (count == 0 ? "closed" : std::strerror(errno)));
 }
@@ -213,7 +207,7 @@ void Engine::deliver(int source, const U8* bytes, size_t size, U32 now) {
 
 void Engine::writeSerial(U32 now) {
     if (serialOut_.empty())
-        serialOut_ = pacer_.due(now);
+        serialOut_ = line_->due(now);
     if (serialOut_.empty())
         return;
     ssize_t count = serial_.write(serialOut_.data(), serialOut_.size());
@@ -229,9 +223,9 @@ U32 Engine::pollPeers(U32 now) {
         order.push_back(peer.get());
     std::sort(order.begin(), order.end(),
               [](const Peer* a, const Peer* b) { return a->airUs < b->airUs; });
-    U32 wait = pacer_.deadline(now);
+    U32 wait = line_->deadline(now);
     for (Peer* peer : order) {
-        if (!api_ && peer->address() != target_ && peer->isWanted()) {
+        if (!line_->answers() && peer->address() != target_ && peer->isWanted()) {
             log(0, "the modem on '" + device + "' has no API mode: it talks to one vehicle only");
             peer->fail();
         }
@@ -246,8 +240,7 @@ void Engine::loop(std::unique_lock<std::mutex>& lock) {
         U32 now = clock_.nowUs();
         if (downTooLong(now))
             return;
-        if (api_)
-            api_->expire(now, [&](int target) { peers_.at(target)->answer(false, now); });
+        line_->expire(now, [&](int target, bool) { peers_.at(target)->answer(false, now); });
         const U32 deadline = pollPeers(now);
         std::vector<pollfd> fds = {
             {wakePipe_[0], POLLIN, 0},

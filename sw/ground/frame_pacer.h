@@ -9,28 +9,27 @@
 
 #pragma once
 
-#include <cstdint>
-#include <vector>
+#include "packet_line.h"
 
 namespace XBeeAT {
 
-// Times in microseconds, 32 bits that may wrap.
-class FramePacer {
+class FramePacer : public PacketLine {
 public:
-    // `longest`: bytes of a frame that the modem sends off without a silence.
-    FramePacer(double characterUs, uint32_t longest)
-        : characterUs_(characterUs), longest_(longest) {}
+    // `target`: the modem's; `longest`: bytes of a frame that it sends off without a silence.
+    FramePacer(int target, double characterUs, uint32_t longest, uint32_t now)
+        : target_(target), characterUs_(characterUs), longest_(longest), lineFree_(now),
+          quietUntil_(now) {}
 
-    // Returns false where a frame waits already.
-    bool offer(const uint8_t* frame, uint32_t size, uint32_t now) {
-        if (!waiting_.empty() || before(now + characters(longest_), lineFree_))
+    bool answers() const override { return false; }
+    bool offer(int, const uint8_t* frame, uint32_t size, uint32_t, size_t onLine,
+               uint32_t now) override {
+        if (onLine || !waiting_.empty() || before(now + characters(longest_), lineFree_))
             return false;
         waiting_.assign(frame, frame + size);
         return true;
     }
-    // Returns the frame to be written now; empty: none.
-    std::vector<uint8_t> due(uint32_t now) {
-        std::vector<uint8_t> frame;
+    Bytes due(uint32_t now) override {
+        Bytes frame;
         if (waiting_.empty() || before(now, quietUntil_))
             return frame;
         frame.swap(waiting_);
@@ -39,16 +38,15 @@ public:
         quietUntil_ = size < longest_ ? lineFree_ + characters(rest) : now;
         return frame;
     }
-    // Microseconds until a frame is due; 0xFFFFFFFF: none waits.
-    uint32_t deadline(uint32_t now) const {
+    uint32_t deadline(uint32_t now) const override {
         if (waiting_.empty())
             return 0xFFFFFFFFu;
         return before(now, quietUntil_) ? quietUntil_ - now : 0;
     }
-    void clear(uint32_t now) {
-        waiting_.clear();
-        lineFree_ = quietUntil_ = now;
+    void feed(const uint8_t* bytes, size_t count, const Data& data, const Answer&) override {
+        data(target_, bytes, count);
     }
+    void expire(uint32_t, const Answer&) override {}
 
 private:
     static constexpr uint32_t rest = 4; // characters, more than the modem's RO
@@ -57,10 +55,11 @@ private:
         return static_cast<uint32_t>(count * characterUs_ + 0.5);
     }
 
-    double characterUs_;
-    uint32_t longest_;
-    std::vector<uint8_t> waiting_;
-    uint32_t lineFree_ = 0, quietUntil_ = 0; // when the line has sent all; when it may send again
+    const int target_;
+    const double characterUs_;
+    const uint32_t longest_;
+    Bytes waiting_;
+    uint32_t lineFree_, quietUntil_; // when the line has sent all; when it may send again
 };
 
 } // namespace XBeeAT

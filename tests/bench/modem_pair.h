@@ -83,9 +83,13 @@ inline XBee::Options modemOptions(unsigned address, bool encrypts = false,
 class ModemEnd {
 public:
     ModemEnd(RfChannel& air, const XBee::Options& options, uint64_t seed)
-        : modem(line, air, options), isApi_(modem.parameter("AP") != 0),
-          target_(static_cast<int>(modem.parameter("DL"))), api_(modem.parameter("AP") == 2),
-          pacer_(90, options.set.at("EE") ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME), random_(seed) {
+        : modem(line, air, options), target_(static_cast<int>(modem.parameter("DL"))),
+          random_(seed) {
+        if (modem.parameter("AP"))
+            packets_ = std::make_unique<XBeeAT::ApiModem>(modem.parameter("AP") == 2);
+        else
+            packets_ = std::make_unique<XBeeAT::FramePacer>(
+                target_, 90, options.set.at("EE") ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME, 0);
         static const Link_Port port = {
             [](void* c, const U8* f, U32 n) { return self(c).transmit(f, n); },
             [](void* c) { return self(c).random_.next(); },
@@ -100,7 +104,7 @@ public:
         Link_init(link(), &port, this, 1440);
         if (options.set.at("EE"))
             Link_limitFrame(link(), LINK_MAX_ENCRYPTED);
-        Link_expectAnswers(link(), !isApi_ ? 0 : options.set.at("BD") > 7 ? 2 : 3);
+        Link_expectAnswers(link(), !packets_->answers() ? 0 : options.set.at("BD") > 7 ? 2 : 3);
     }
     virtual ~ModemEnd() = default;
     ModemEnd(const ModemEnd&) = delete;
@@ -134,44 +138,33 @@ protected:
 private:
     static ModemEnd& self(void* c) { return *static_cast<ModemEnd*>(c); }
     void receive(U32 us) {
-        const U8* bytes = line.received.data();
-        const U32 size = static_cast<U32>(line.received.size());
-        api_.expire(us, [&](int) { Link_answer(link(), 0, us); });
-        if (isApi_)
-            api_.feed(
-                bytes, size,
-                [&](int source, const U8* data, size_t count) {
-                    if (source == target_)
-                        Link_receive(link(), data, static_cast<U32>(count), us);
-                },
-                [&](int, bool isThere) { Link_answer(link(), isThere, us); });
-        else
-            Link_receive(link(), bytes, size, us);
+        const auto answer = [&](int, bool isThere) { Link_answer(link(), isThere, us); };
+        packets_->expire(us, answer);
+        packets_->feed(
+            line.received.data(), line.received.size(),
+            [&](int source, const U8* data, size_t count) {
+                if (source == target_)
+                    Link_receive(link(), data, static_cast<U32>(count), us);
+            },
+            answer);
         line.received.clear();
     }
     int transmit(const U8* frame, U32 size) {
-        if (isApi_) {
-            const auto bytes = api_.packet(target_, frame, size, Link_randomWait(link()),
-                                           static_cast<U32>(now_ / 1000));
-            line.send(bytes.data(), bytes.size(), now_);
-            return 0;
-        }
-        if (line.waiting() || !pacer_.offer(frame, size, static_cast<U32>(now_ / 1000)))
+        if (!packets_->offer(target_, frame, size, Link_randomWait(link()), line.waiting(),
+                             static_cast<U32>(now_ / 1000)))
             return 1;
         write();
         return 0;
     }
     void write() {
         const U32 us = static_cast<U32>(now_ / 1000);
-        const auto frame = pacer_.due(us);
+        const auto frame = packets_->due(us);
         line.send(frame.data(), frame.size(), now_);
-        const U32 wait = pacer_.deadline(us);
+        const U32 wait = packets_->deadline(us);
         nextWrite_ = wait == 0xFFFFFFFFu ? never : now_ + wait * 1000ull;
     }
-    const bool isApi_;
     const int target_;
-    XBeeAT::ApiModem api_;
-    XBeeAT::FramePacer pacer_;
+    std::unique_ptr<XBeeAT::PacketLine> packets_;
     std::unique_ptr<Link> link_{new Link};
     Random random_;
     uint64_t nextPoll_ = 0, nextWrite_ = never;

@@ -96,7 +96,7 @@ public:
         modem_->advance(now);
         for (; !out_.empty() && line_.cts(); out_.pop_front()) // as both drivers do
             line_.send({out_.front()}, now);
-        api_.expire(us(), [&](int) { Link_answer(link_.get(), 0, us()); });
+        api_.expire(us(), [&](int, bool) { Link_answer(link_.get(), 0, us()); });
         api_.feed(
             line_.received.data(), line_.received.size(),
             [&](int, const uint8_t* data, size_t size) {

@@ -106,7 +106,7 @@ TEST(Api, APacketThatIsNotAnsweredForThreeSecondsIsLost) {
     for (uint32_t at : {0u, 1'000'000u})
         modem.packet(5, Bytes{1}.data(), 1, 2, at);
     std::vector<int> lost;
-    modem.expire(3'500'000, [&](int target) { lost.push_back(target); });
+    modem.expire(3'500'000, [&](int target, bool) { lost.push_back(target); });
     EXPECT_EQ(lost, std::vector<int>{5});
     EXPECT_EQ(modem.unanswered(), 1u);
 }

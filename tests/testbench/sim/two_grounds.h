@@ -15,8 +15,8 @@ public:
                                observersKey = std::vector<uint8_t>(LINK_KEY_BYTES, 0x22);
 
     TwoGrounds() {
-        ground.key = stranger.key = pilotsKey;
-        observer.key = observersKey;
+        ground.key = pilotsKey;
+        observer.key = stranger.key = observersKey;
         for (Ground* g : {&ground, &observer, &stranger})
             g->start();
         soc.onTime([this](uint64_t now) {

@@ -106,6 +106,8 @@ TEST(Grounds, TwoAreServedAtOnceEachUnderItsOwnKeyAndNobodyElse) {
     machine.board.provideGround(world.observersAddress, world.observersKey);
     machine.run();
     EXPECT_TRUE(done);
+    EXPECT_EQ(Link_statistics(&uav_link)->bytesSkipped, 0u)
+        << "the stranger's, on the pilot's link";
 }
 
 TEST_F(Uav, TheSameSeedGivesTheSameRun) {

@@ -19,7 +19,7 @@ from pathlib import Path
 
 TITLES = {
     "simulator": "Simulator", "air": "Radio link on the half-duplex air",
-    "plugin": "Stock Ice through the plugin",
+    "fleet": "Several vehicles on one channel", "plugin": "Stock Ice through the plugin",
     "trust": "Attacks, losses of power in updates, bytes of a key",
     "load": "Load on the ground's engine and gateway", "modem": "Modem set-up",
     "directory": "IceGrid's registry and IceStorm",
@@ -28,7 +28,7 @@ TITLES = {
 }
 
 # Parts of a name that become columns of a row, where there are two to six
-AXES = [r"loss \d\.\d\d", r"bursts, \w+", r"\d+ m, fading", r"interferer \d+ %",
+AXES = [r"of \d+ vehicles", r"loss \d\.\d\d", r"bursts, \w+", r"\d+ m, fading", r"interferer \d+ %",
         "in the clear|encrypted|with a key", r"of \d+ bytes", r"\d+ ports", r"HCLK \d+ MHz"]
 HEAD = """# Figures
 

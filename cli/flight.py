@@ -54,6 +54,8 @@ FIELDS = [
     Option("key", KEY_FILE, "file with the link's key, of vehicle and ground; without: a demo key",
            ""),
     Option("open", SWITCH, "flies in the clear"),
+    Option("observer", KEY_FILE, "file with the keys of a second ground, which several vehicles "
+           "serve; without: a demo key of its own", ""),
     Option("vehicles", number(1, 32), "that fly on one channel, all but the first with the ARM "
            "binary", 1),
     Option("update", FILE, "firmware (ELF) or bitstream (.bit, .bin) that is sent to the vehicle "
@@ -209,6 +211,13 @@ def take_key(values, build):
     if make_key(values.key):
         say(f"made a demo key, {values.key}: ground and vehicle share it; KEY=file takes yours, "
             "OPEN=1 none")
+
+
+def take_observers_key(values):
+    """A demo key for the second ground of several vehicles that have keys."""
+    if values.vehicles > 1 and values.key and not values.observer:
+        values.observer = str(keys.folder() / "observer.key")
+        make_key(values.observer)
 
 
 def make_key(path):

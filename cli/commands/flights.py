@@ -52,6 +52,7 @@ def fly_mission(values):
     build.ninja("mission", *(["firmware_minimal"] if values.app == "minimal" else []))
     flight.check_chip(values, build)
     flight.take_key(values, build)
+    flight.take_observers_key(values)
     busy = (f"another flight is under way in {values.out}; give this one a folder of its own: "
             "OUT=build/other (--out)")
     with lock(Path(values.out) / "lock", refuse=busy) as held:  # until the last program has ended
@@ -120,7 +121,8 @@ def mission(values, build, held):
     sim = simulator(values, build, held, [], [
         "sw/ground/clients/mission.py", "{out}/flight.json", "--device", "{device}", "--frame",
         "{frame}", "--status", "{status}", "--plugin", build / "ground", "--slice",
-        "sw/apps/uav/Autopilot.ice", "--reference", build / "testbench/sim/vision-reference"])
+        "sw/apps/uav/Autopilot.ice", "--reference", build / "testbench/sim/vision-reference",
+        *(["--observer-device", "{device2}"] if values.vehicles > 1 else [])])
     shown = None
     try:
         # The page starts after the simulator has accepted its options: its address would hide a

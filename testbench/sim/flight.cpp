@@ -67,11 +67,11 @@ void loadCamera(SocModel& soc, const Frame& frame) {
     std::memcpy(memory + UAV_FRAME, frame.pixels.data(), frame.pixels.size());
 }
 
-// Returns a vehicle's key; with a next key on its way, the old one.
-std::vector<uint8_t> keyOf(const Flight::Options& o, int address) {
-    if (o.keyFile.empty())
+// Returns a vehicle's key in a file, if any; with a next key on its way, the old one.
+std::vector<uint8_t> keyOf(const std::string& file, int address) {
+    if (file.empty())
         return {};
-    const XBeeAT::LinkKey key = XBeeAT::KeyFile(o.keyFile).of(address).back();
+    const XBeeAT::LinkKey key = XBeeAT::KeyFile(file).of(address).back();
     return {key.begin(), key.end()};
 }
 
@@ -123,8 +123,8 @@ void reportProcessor(M3Machine& machine) {
 } // namespace
 
 Flight::Flight(const Options& options)
-    : o_(options), frame_(pictureFor(o_)), key_(keyOf(o_, 1)), status_(prepared(o_, frame_)),
-      air_(o_.seed), recorded_(record(o_, pty_)),
+    : o_(options), frame_(pictureFor(o_)), key_(keyOf(o_.keyFile, 1)),
+      status_(prepared(o_, frame_)), air_(o_.seed), recorded_(record(o_, pty_)),
       ground_(groundLine(), air_, modem("ground", o_.guard)), soc_(air_, modem("uav", o_.guard)),
       step_(*status_, pty_, [this] { return isWanted(); }), events_(o_.out + "/events.jsonl"),
       pace_(o_.speed == "real"  ? 1
@@ -164,6 +164,7 @@ void Flight::connectModels() {
         status_.set(now); // the ground's clock
         step_.wait(now);
         return std::min({o_.wire ? never : ground_.nextEvent(),
+                         second_ ? second_->advance(now) : never,
                          std::max(step_.nextEvent(), now + 1), now + clockStepNs});
     });
     air_.onPacket([this](uint64_t now, const RfPacket& packet, RfChannel::Outcome outcome) {
@@ -188,12 +189,20 @@ void Flight::placePicture(SocModel& soc, const Frame& frame) {
 }
 
 void Flight::callFollowers() {
+    if (o_.vehicles > 1) {
+        XBee::Options options = modem("observer", o_.guard);
+        options.set["MY"] = SecondGround::address;
+        second_ = std::make_unique<SecondGround>(
+            air_, options, o_.out, o_.flight.value("replay", ""), [this] { return isWanted(); });
+    }
     for (unsigned address = 2; address <= o_.vehicles; ++address) {
         M3Machine::Config config;
         config.firmware = o_.firmware;
         config.guardMs = o_.guard;
         config.address = address;
-        config.key = keyOf(o_, static_cast<int>(address));
+        config.key = keyOf(o_.keyFile, static_cast<int>(address));
+        config.secondGround = SecondGround::address;
+        config.secondKey = keyOf(o_.observer, static_cast<int>(address));
         config.seed = o_.seed + address;
         followers_.push_back(std::make_unique<Follower>(air_, modem("follower", o_.guard), config));
         const Frame seen = movedBy(frame_, static_cast<int>(address - 1) * frame_.width /
@@ -225,6 +234,7 @@ void Flight::startProgram() {
     setenv("XBEEAT_CLOCK", std::filesystem::absolute(o_.out + "/status").c_str(), 1);
     if (!o_.command.empty())
         child_.start(o_.command, {{"{device}", pty_.path()},
+                                  {"{device2}", second_ ? second_->device() : ""},
                                   {"{frame}", o_.out + "/before.png"},
                                   {"{status}", o_.out + "/status"},
                                   {"{guard}", std::to_string(o_.guard)},
@@ -299,15 +309,21 @@ void Flight::runOnHost() {
         soc_, [this] { return poll(); }, simulatedFirmware(keyBytes(o_.modemKey), !key_.empty()));
     machine.board = SimulatedBoard(o_.seed);
     machine.board.provide(key_);
+    if (second_)
+        machine.board.provideGround(SecondGround::address, keyOf(o_.observer, 1));
     machine.run();
 }
 
 void Flight::runOnCortexM3() {
     const std::vector<uint8_t> flash = flashOf(o_.flash, Stm32Flash::bytes, "the chip's"),
                                fpga = flashOf(o_.fpgaFlash, SpiFlash::bytes, "the FPGA's");
-    M3Machine machine(soc_,
-                      {o_.firmware, 120'000'000, o_.guard, flash, key_, o_.seed, fpga, o_.wire},
-                      [this] { return poll(); });
+    M3Machine::Config config{o_.firmware, 120'000'000, o_.guard, flash,
+                             key_,        o_.seed,     fpga,     o_.wire};
+    if (second_) {
+        config.secondGround = SecondGround::address;
+        config.secondKey = keyOf(o_.observer, 1);
+    }
+    M3Machine machine(soc_, config, [this] { return poll(); });
     if (machine.program)
         machine.program->onTask = [this](const std::string& name) {
             events_.task(soc_.now(), name);

@@ -12,6 +12,7 @@
 #include "ground_step.h"
 #include "m3_machine.h"
 #include "recording.h"
+#include "second_ground.h"
 #include "soc_model.h"
 #include "status_file.h"
 #include <chrono>
@@ -57,6 +58,7 @@ public:
     struct Options {
         std::string modemKey; // 32 hexadecimal digits
         std::string keyFile;  // of the link; none: the vehicle is open
+        std::string observer; // the same of the second ground, where there are several vehicles
         std::string image, size = "320x240", out = ".", speed = "real", cpu = "host",
                            firmware = FIRMWARE_ELF;
         uint16_t guard = 1000;
@@ -117,6 +119,7 @@ private:
     XBee ground_;
     SocModel soc_;
     std::vector<std::unique_ptr<Follower>> followers_; // addresses 2 and up
+    std::unique_ptr<SecondGround> second_;             // of several vehicles
     std::unique_ptr<Cable> cable_;                     // in place of the modems and the air
     Child child_;
     GroundStep step_;

@@ -114,6 +114,7 @@ Flight::Options optionsOf(const json& flight) {
     take("trace", o.trace);
     take("seed", o.seed);
     take("key", o.keyFile);
+    take("observer", o.observer);
     take("modem_key", o.modemKey);
     take("guard", o.guard);
     take("from", o.from);

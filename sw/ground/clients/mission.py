@@ -138,6 +138,8 @@ def parse_arguments():
     parser.add_argument("--slice", required=True, help="Autopilot.ice")
     parser.add_argument("--frame", required=True, help="the camera's frame, to draw on")
     parser.add_argument("--status", help="the simulator's counters")
+    parser.add_argument("--observer-device", help="the same of a second ground, which looks at all "
+                        "vehicles meanwhile")
     parser.add_argument("--reference", help="program that computes the corners on the host")
     parser.add_argument("--trace", type=int, default=1, help="XBeeAT.Trace: 0, 1 or 2")
     args = parser.parse_args()
@@ -145,7 +147,7 @@ def parse_arguments():
         with open(args.flight) as file:
             flight = json.load(file)
         for name in ("threshold", "loss", "guard", "patience", "key", "camera", "out", "wire",
-                     "vehicles"):
+                     "vehicles", "observer"):
             setattr(args, name, flight[name])
         args.endpoint = "%s -d %s -a 0x0001 -s 0x0000" % (
             "serial" if args.wire else "xbee-at", args.device)
@@ -163,6 +165,8 @@ def initialize(args):
         "Ice.Default.InvocationTimeout": str(1000 * args.patience),
         "Ice.ACM.Close": "0",
         "Station.Endpoints": args.endpoint,
+        # of two devices in one process: where a proxy of the UAV leads
+        **({"XBeeAT.Device": args.device} if args.observer_device else {}),
     }, args.plugin, args.guard, args.key)
 
 
@@ -256,6 +260,33 @@ class Follower(threading.Thread):
         self.join()
         if self.failure:
             raise self.failure
+
+
+class Observer(Follower):
+    """A second ground with a modem and keys of its own: asks each vehicle for its state."""
+
+    def __init__(self, args, log):
+        os.environ["XBEEAT_CLOCK"] = args.status + "2"  # its engine's clock
+        self.communicator = plugged.initialize(
+            {"XBeeAT.Trace": str(args.trace), "Ice.ACM.Close": "0",
+             "XBeeAT.Device": args.observer_device}, args.plugin, args.guard, args.observer)
+        super().__init__(args, self.communicator, log, 1)
+
+    def fly(self):
+        import Autopilot
+        for address in range(1, self.args.vehicles + 1):
+            where = "xbee-at -d %s -a 0x%04x -s 0x00f0 -t %d" % (
+                self.args.observer_device, address, 1000 * self.args.patience // 2)
+            vehicle = Autopilot.VehiclePrx.uncheckedCast(
+                self.communicator.stringToProxy("uav:" + where))
+            what = "uav%d.getFlightState()" % address
+            state = self.log.call("observer -> UAV", what, vehicle.getFlightState)
+            self.log.note("the observer sees uav%d: %s" % (address, state))
+
+    def land(self):
+        self.join()
+        self.communicator.destroy()
+        super().land()
 
 
 def report(args, log, result, station, air):
@@ -352,6 +383,8 @@ def fly(args, communicator):
 
     followers = [Follower(args, communicator, log, address)
                for address in range(2, args.vehicles + 1)]
+    if args.observer_device:
+        followers.append(Observer(args, log))
     if not station.called.wait(args.patience):
         raise RuntimeError("the UAV did not call Station.vehicleState within %d s" % args.patience)
     if not station.alive:

@@ -340,6 +340,8 @@ class Cases(Script):
         Path("fleet.key").write_text("".join(f"0x000{at} {str(at) * 32}\n" for at in (1, 2, 3)))
         os.chmod("fleet.key", 0o600)
         self.fly("--vehicles", "3", "--key", self.out / "fleet.key")
+        for address in 1, 2, 3:
+            self.has(f"the observer sees uav{address}: onGround")
         for address in 2, 3:
             self.has(f"XBeeAT: 0x000{address}: link up, secure",
                      rf"uav{address}\.hwengine1: \d+ corners")
@@ -383,7 +385,7 @@ class Cases(Script):
         """The ground's program, with a flight's description but without a simulator."""
         write("flight.json", json.dumps(
             dict(threshold=24, loss=0, guard=20, patience=300, key="", camera=False, cores=[],
-                 wire=False, vehicles=1, out=str(self.out))))
+                 wire=False, vehicles=1, observer="", out=str(self.out))))
         return ("/usr/bin/python3", CLIENTS / "mission.py", "flight.json", *INTERFACE, "--frame",
                 "none", *words)
 

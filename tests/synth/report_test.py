@@ -336,6 +336,10 @@ class Cases(Script):
 
         differs(function)
         differs(enable)
+        edit("project/synth/designs.json", '"designs"', '"unproven": {"whole": "it is in store"}, '
+             '"designs"')
+        self.run_program("--equivalent", "--design", "whole")
+        self.has("(?m)^whole +not proven: it is in store")
 
     def test_edif(self):
         """The netlist that ISE reads has every cell that Yosys counts, once, and well-formed

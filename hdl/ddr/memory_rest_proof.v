@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // memory_rest_proof: the memory, whose clock stops in the simulator while nobody asks it for
-// anything and it owes nothing (hdl/sim_soc.v); only for the prover.
+// anything and it owes nothing (testbench/sim/sim_soc.v); only for the prover.
 //
 // When the gate closes, no register of the memory takes another value, whatever the inputs are, as
 // of a core in idle_proof.v.

@@ -14,7 +14,8 @@
 `define MEMORY_CLOCK clk_i
 `endif
 
-// SLOT_WIRES declares the wires between the bus decoder and `count` slots; interrupt lines are those of slots 1 and up.
+// SLOT_WIRES declares the wires between the bus decoder and `count` slots; interrupt lines are those
+// of slots 1 and up.
 `define SLOT_WIRES(count) \
     wire [(count)-1:0]    slot_valid, slot_ready, slot_error; \
     wire [32*(count)-1:0] slot_rdata; \
@@ -60,8 +61,8 @@
     .npi_rd_data_o(npi_rd_data), .npi_rd_word_o(npi_rd_word), .npi_rd_pop_i(npi_rd_pop), \
     .npi_rd_empty_o(npi_rd_empty), .npi_rd_flush_i(npi_rd_flush), .npi_init_done_o(npi_init_done)
 
-// MEMORY_RESTS: nobody asks the memory_mcb `memory` for anything, and it owes nothing: then it does not move
-// (memory_rest_proof.v).
+// MEMORY_RESTS says that nobody asks the memory_mcb `memory` for anything, and that it owes nothing:
+// then it does not move (memory_rest_proof.v).
 `define MEMORY_RESTS(memory) \
     !(|{memory.npi_addr_req_i, memory.npi_wr_push_i, memory.npi_wr_flush_i, memory.npi_rd_pop_i, \
         memory.npi_rd_flush_i, memory.u_arbiter.u_queue.moving, memory.u_arbiter.u_queue.coming, \

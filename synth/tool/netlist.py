@@ -294,9 +294,9 @@ def make_block_ram_of_ecp5(cell, free):
                 "0" not in (resets, enable) or given.get(f"CLK{port}MUX") == "INV":
             raise ValueError("block RAM DP16KD has a mode without a model")
         lanes = address[:bytes] if width > 9 and enable != "0" else ["1"] * bytes
-        if enable != "1" and lanes != ["1"] * bytes:
+        if enable != "1" and not {"0", "1", enable}.issuperset(lanes):
             raise ValueError("block RAM DP16KD has two kinds of enables")
-        written = lanes if enable == "1" else [enable] * bytes
+        written = [lane if enable == "1" or lane == "0" else enable for lane in lanes]
         names = [f"{p}{n}" for p in ("AB" if width == 36 else port) for n in range(18)][:width]
         places = [8 * (n // 9) + n % 9 if n % 9 < 8 else 32 + n // 9 for n in range(width)]
         data, shown = ["0"] * 36, list(range(free, free + 36))

@@ -27,8 +27,9 @@ DEBUGGED = [option for option in flight.FIELDS if option.name in ("image", "size
 
 @command("run", [*flight.OPTIONS, NETLIST, FAMILY, BUILD, JOBS], make="run",
          brief="run --size 96x64 --guard 20 --out build/brief/run",
-         long=("run --netlist --size 96x64 --guard 20 --out build/netlist/run",
-               "run --netlist --family ecp5 --size 96x64 --guard 20 --out build/netlist_ecp5/run"),
+         long=("run --netlist --size 96x64 --guard 20 --patience 3000 --out build/netlist/run",
+               "run --netlist --family ecp5 --size 96x64 --guard 20 --patience 3000 "
+               "--out build/netlist_ecp5/run"),
          examples=[
              "run --image photo.jpg --size 640x480", "run --loss 0.1 --seed 7 --cores ascon fir",
              "run --again build/run/flight.json"])

@@ -79,7 +79,8 @@ def read_vcd(path):
         elif kind == "upscope":
             scope.pop()
         else:
-            name = ".".join(scope[2:] + [words[3]])
+            below = scope.index("soc") + 1 if "soc" in scope else 2
+            name = ".".join(scope[below:] + [words[3]])
             signals.setdefault(words[2], []).append((name, int(words[1])))
     for line in body.split("\n"):
         if line.startswith("#"):

@@ -245,8 +245,8 @@ void Link_poll(Link* link, U32 nowUs) {
         else if (!sender->hasWork) /* else the next fragment takes it along */
             link_pollAck(&link->receiver);
     }
-    (void)link_flush(
-        &link->output); /* a frame of the handshake, too, for which there was no room */
+    /* A frame of the handshake, too, for which there was no room. */
+    (void)link_flush(&link->output);
 }
 
 /* Returns the earlier of two times, if the first is due at all. */

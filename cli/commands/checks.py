@@ -31,7 +31,8 @@ def proofs(values):
 
 @command("check netlist", [NAME, FAMILY, TESTS, JOBS], make="netlist",
          brief="check netlist --name 'cdc_bit|probe'",
-         long=("check netlist", "check netlist --family ecp5"),
+         long=("check netlist", "check netlist --family ecp5 --name "
+               "'^(cdc_bit|modem_uart_tx|bus_wrapper|modem_at_rows)$'"),
          examples=["check netlist --name 'fir|modem'", "check netlist --family ecp5"])
 def netlist(values):
     """prove each netlist of `synth` equivalent to its RTL, or run its block's tests on it; print a

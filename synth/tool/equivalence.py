@@ -96,7 +96,8 @@ def solved(file, commands, is_plain, options, seconds):
         raise Stop(said)
     with open(f"{file}.aig", "rb") as aiger:
         has_state = aiger.readline().split()[3] != b"0"
-    steps = f"scorr; pdr -T {seconds}" if has_state else "ifraig; iprove; sat"
+    # Where scorr has left no register, newer versions of pdr decide nothing: sat does.
+    steps = f"scorr; pdr -T {seconds}; sat" if has_state else "ifraig; iprove; sat"
     said = command(["sh", "-c", f"ulimit -t {seconds + 60}; {options.yosys}-abc -c "
                     f"'read_aiger {file}.aig; strash; {steps}'"])[1]
     write(file.with_suffix(".abc.log"), said)

@@ -16,6 +16,7 @@
 #include <IceStorm/IceStorm.h>
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
 #include <iostream>
 #include <list>
 #include <optional>
@@ -271,13 +272,12 @@ std::map<std::string, int> fleetOf(const Options& o) {
     for (const std::string& text : o.vehicles) {
         const size_t equals = text.find('=');
         const std::string name = text.substr(0, equals);
-        size_t end = 0;
         const std::string number = equals < text.size() ? text.substr(equals + 1) : "";
-        const int address =
-            number.empty() || !std::isdigit(number[0]) ? -1 : std::stoi(number, &end, 0);
-        if (name.empty() || address < 0 || address > 0xFFFF || end < number.size())
+        char* end = nullptr; // a number that is too large for a long becomes the largest one
+        const long address = std::strtol(number.c_str(), &end, 0);
+        if (name.empty() || number.empty() || !std::isdigit(number[0]) || address > 0xFFFF || *end)
             throw std::runtime_error("'" + text + "': give NAME=ADDRESS, as uav7=0x0007");
-        if (!fleet.emplace(name, address).second)
+        if (!fleet.emplace(name, int(address)).second)
             throw std::runtime_error("'" + name + "' is the name of two vehicles");
     }
     if (fleet.empty())

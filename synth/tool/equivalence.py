@@ -96,7 +96,7 @@ def solved(file, commands, is_plain, options, seconds):
         raise Stop(said)
     with open(f"{file}.aig", "rb") as aiger:
         has_state = aiger.readline().split()[3] != b"0"
-    # Where scorr has left no register, newer versions of pdr decide nothing: sat does.
+    # sat decides what newer versions of pdr do not: a miter in which scorr has left no register.
     steps = f"scorr; pdr -T {seconds}; sat" if has_state else "ifraig; iprove; sat"
     said = command(["sh", "-c", f"ulimit -t {seconds + 60}; {options.yosys}-abc -c "
                     f"'read_aiger {file}.aig; strash; {steps}'"])[1]

@@ -65,7 +65,7 @@ class Table:
         return "\n".join(lines) + "\n"
 
 
-# What the ranges mean
+# ERRORS says what the ranges in the tables are.
 ERRORS = (f"as mapped, routed: nine of ten of {slices.MAPPED.count} published reports of map, of "
           f"{timing.ROUTED.count} of TRCE, are in this; their medians are "
           f"{slices.MAPPED.median:.2f} and {timing.ROUTED.median:.2f} of the estimate")

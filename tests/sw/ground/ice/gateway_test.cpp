@@ -220,6 +220,7 @@ TEST(GatewayOptions, WrongOnesAreRefusedByName) {
         {{{"-l", "0.0.0.0:0"}}, "every machine of the network"},
         {{{"--maintenance", "tcp -p 0"}}, "every machine of the network"},
         {{{"--vehicle", "uav7=x"}}, "give NAME=ADDRESS"},
+        {{{"--vehicle", "uav7=99999999999999999999"}}, "give NAME=ADDRESS"},
         {{{"--topics", "t:tcp -h 127.0.0.1 -p 1"}}, "refused"},
         {{{"--station", "x"}}, "give HOST:PORT"}};
     for (auto [options, said] : cases) {

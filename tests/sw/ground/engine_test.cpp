@@ -43,7 +43,7 @@ protected:
     // A call and its answer, byte by byte.
     void echoes(int fd, uint8_t tag, size_t size = 30) {
         writeAll(fd, message(tag, size));
-        Bytes got = readAll(fd, size);
+        Bytes got = rig_.read(fd, size);
         EXPECT_TRUE(got == message(tag, size))
             << got.size() << " of " << size << " bytes; the engine's log:\n"
             << log();
@@ -55,11 +55,10 @@ protected:
             Bytes m = message(5);
             Link_send(rig_.link(), 3, m.data(), static_cast<U32>(m.size()), 0);
         });
-        pollfd p{ready, POLLIN, 0};
-        ASSERT_EQ(poll(&p, 1, 60000), 1);
+        ASSERT_TRUE(rig_.isReadable(ready));
         int fd = engine.accept();
         ASSERT_GE(fd, 0);
-        EXPECT_EQ(readAll(fd, 30), message(5));
+        EXPECT_EQ(rig_.read(fd, 30), message(5));
         close(fd);
     }
 
@@ -98,7 +97,7 @@ TEST_F(EngineTest, AModemThatIsResetInFlightIsSetUpAgain) {
         rig_.ground->resetPin(false, rig_.ns() + 1000);
         EXPECT_EQ(rig_.ground->parameter("BD"), 3u);
     });
-    EXPECT_TRUE(readAll(fd, 1).empty()); // the connection is reported lost ...
+    EXPECT_TRUE(rig_.read(fd, 1).empty()); // the connection is reported lost ...
     close(fd);
     fd = engine->connect(0); // ... and the next one waits until the link is back
     echoes(fd, 2);
@@ -114,7 +113,7 @@ TEST_F(EngineTest, AMessageThatIsTooLongEndsItsConnectionOnly) {
     int good = engine->connect(0), bad = engine->connect(1);
     echoes(good, 1);
     writeAll(bad, message(2, 9000));
-    EXPECT_TRUE(readAll(bad, 1).empty());
+    EXPECT_TRUE(rig_.read(bad, 1).empty());
     EXPECT_TRUE(logged("does not fit the radio link"));
     echoes(good, 3);
     close(good);
@@ -130,8 +129,8 @@ TEST_F(EngineTest, WhatIsLateIsWithdrawnAndItsSenderIsTold) {
     const uint64_t begun = rig_.with([&] { return rig_.ns(); });
     writeAll(fd, message(1));
     writeAll(fd, message(2));
-    EXPECT_TRUE(readAll(fd, 1).empty());
-    EXPECT_TRUE(readAll(other, 1).empty()) << "all share the session";
+    EXPECT_TRUE(rig_.read(fd, 1).empty());
+    EXPECT_TRUE(rig_.read(other, 1).empty()) << "all share the session";
     const double seconds = double(rig_.with([&] { return rig_.ns(); }) - begun) / 1e9;
     EXPECT_GE(seconds, 2.0);
     EXPECT_LT(seconds, 2.5);
@@ -159,7 +158,7 @@ TEST_F(EngineTest, WhatTheLinkHasNoRoomForInTimeGoesWithItsConnection) {
     writeAll(other, message(2, 8000));
     ASSERT_TRUE(rig_.until([&] { return Link_statistics(rig_.link())->framesReceived > 80; }));
     writeAll(fd, message(3, 4000));
-    EXPECT_TRUE(readAll(fd, 1).empty());
+    EXPECT_TRUE(rig_.read(fd, 1).empty());
     EXPECT_TRUE(logged("waits for room longer than its time-out: connection closed")) << log();
     rig_.with([&] { rig_.refuse = false; });
     EXPECT_TRUE(rig_.until([&] { return rig_.received.size() == 2; })) << "the others' arrive";
@@ -190,14 +189,14 @@ TEST_F(EngineTest, HeartbeatsTakeNoAir) {
     ASSERT_TRUE(rig_.until([&] { return rig_.received.size() == 1; }));
     for (int i = 0; i < 10; ++i)
         writeAll(fd, heartbeat);
-    EXPECT_EQ(readAll(fd, 14), heartbeat); // after 5 s, from the engine, for the UAV says nothing
+    EXPECT_EQ(rig_.read(fd, 14), heartbeat); // after 5 s, from the engine, for the UAV says nothing
     rig_.with([&] {
         EXPECT_EQ(rig_.received.size(), 1u) << "a heartbeat crossed the air";
         Bytes reply = message(1, 30);
         reply[8] = 2;
         Link_send(rig_.link(), 0, reply.data(), 30, 0);
     });
-    EXPECT_EQ(readAll(fd, 30)[8], 2);
+    EXPECT_EQ(rig_.read(fd, 30)[8], 2);
     close(fd);
 }
 
@@ -248,8 +247,7 @@ TEST_F(EngineTest, ACallOfTheUavThatNoDescriptorIsLeftForIsRefusedAndReported) {
     const int ready = engine->listen();
     ASSERT_TRUE(rig_.until([&] { return rig_.isUp(); }));
     rig_.with([&] { Link_openChannel(rig_.link(), 3); });
-    pollfd p{ready, POLLIN, 0};
-    ASSERT_EQ(poll(&p, 1, 60000), 1);
+    ASSERT_TRUE(rig_.isReadable(ready));
     rlimit limit;
     ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &limit), 0);
     const rlimit none = {0, limit.rlim_max};
@@ -272,7 +270,7 @@ TEST_F(EngineTest, AModemThatWasGivenUpIsTriedAgainAndTheListenerIsCalled) {
     int ready = engine->listen();
     EXPECT_EQ(engine->listen(), -1) << "a second listener";
     int fd = engine->connect(0);
-    EXPECT_TRUE(readAll(fd, 1).empty()); // nobody answers: the waiting program is told
+    EXPECT_TRUE(rig_.read(fd, 1).empty()); // nobody answers: the waiting program is told
     close(fd);
     EXPECT_TRUE(logged("0 no modem answers"));
     rig_.with([&] { rig_.ground->power(true, rig_.ns()); });
@@ -289,7 +287,7 @@ TEST_F(EngineTest, ARefusedCommandIsToldAsWhatItIs) {
     s.pan = 0x1FFFF;
     auto engine = start(s);
     const int fd = engine->connect(0);
-    EXPECT_TRUE(readAll(fd, 1).empty());
+    EXPECT_TRUE(rig_.read(fd, 1).empty());
     close(fd);
     EXPECT_TRUE(logged("refuses ATID; the next connection tries again"));
     EXPECT_FALSE(logged("no modem answers"));

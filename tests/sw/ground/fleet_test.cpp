@@ -97,7 +97,7 @@ protected:
     // A call, whose answer says which vehicle has it.
     int answerer(int fd) {
         writeAll(fd, message(1));
-        const Bytes answer = readAll(fd, 30);
+        const Bytes answer = rig_.read(fd, 30);
         return answer.empty() ? -1 : answer.back();
     }
     // Seconds of simulated time in which the vehicles take so many bytes, all programs writing as

@@ -11,10 +11,13 @@
 #include "rf_channel.h"
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <poll.h>
+#include <sys/socket.h>
 #include <thread>
 
 extern "C" {
@@ -58,15 +61,35 @@ public:
         std::lock_guard<std::mutex> lock(mutex_);
         return f();
     }
-    // Waits until `done`; the limit only keeps a broken test from hanging.
-    template <class F> bool until(F done, int seconds = 60) {
-        auto end = std::chrono::steady_clock::now() + std::chrono::seconds(seconds);
-        while (!with(done)) {
-            if (std::chrono::steady_clock::now() > end)
+    // Waits until `done`, for so many simulated seconds at most: a busy machine takes longer.
+    template <class F> bool until(F done, uint64_t seconds = 60) {
+        const uint64_t end = with([&] { return now_ + seconds * 1'000'000'000; });
+        bool isLate = false;
+        while (!with([&] { return isLate = now_ > end, done(); })) {
+            if (isLate)
                 return false;
             std::this_thread::sleep_for(std::chrono::milliseconds(2));
         }
         return true;
+    }
+    bool isReadable(int fd) {
+        return until([fd] {
+            pollfd p{fd, POLLIN, 0};
+            return poll(&p, 1, 0) == 1;
+        });
+    }
+    // Reads `size` bytes; fewer if the stream ends, or nothing comes for a simulated minute.
+    Bytes read(int fd, size_t size) {
+        Bytes bytes(size);
+        size_t got = 0;
+        while (got < size && isReadable(fd)) {
+            ssize_t count = recv(fd, bytes.data() + got, size - got, 0);
+            if (count == 0 || (count < 0 && errno != EAGAIN))
+                break;
+            got += count > 0 ? static_cast<size_t>(count) : 0;
+        }
+        bytes.resize(got);
+        return bytes;
     }
     // The UAV's processor starts again: all that its link knew is gone.
     void bootUav() {

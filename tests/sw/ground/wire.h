@@ -32,28 +32,10 @@ inline Bytes message(uint8_t tag, size_t size = 30) {
     return m;
 }
 
-// Reads `size` bytes; fewer if the stream ends, or nothing comes for this long.
-inline Bytes readAll(int fd, size_t size, int patienceMs = 60'000) {
-    Bytes bytes(size);
-    size_t got = 0;
-    while (got < size) {
-        pollfd p{fd, POLLIN, 0};
-        if (poll(&p, 1, patienceMs) <= 0)
-            break;
-        ssize_t count = recv(fd, bytes.data() + got, size - got, 0);
-        if (count == 0 || (count < 0 && errno != EAGAIN))
-            break;
-        got += count > 0 ? static_cast<size_t>(count) : 0;
-    }
-    bytes.resize(got);
-    return bytes;
-}
-
 inline void writeAll(int fd, const Bytes& bytes) {
     for (size_t done = 0; done < bytes.size();) {
         pollfd p{fd, POLLOUT, 0};
-        if (poll(&p, 1, 60000) <= 0)
-            break;
+        poll(&p, 1, -1);
         ssize_t count = send(fd, bytes.data() + done, bytes.size() - done, MSG_NOSIGNAL);
         if (count < 0 && errno != EAGAIN)
             break;
@@ -110,21 +92,20 @@ public:
     void flood(const Bytes& bytes) {
         for (size_t done = 0; done < bytes.size();) {
             pollfd p{master_, POLLIN | POLLOUT, 0};
-            poll(&p, 1, 60000);
+            poll(&p, 1, -1);
             U8 sink[512];
             (void)!read(master_, sink, sizeof sink);
             ssize_t count = write(master_, bytes.data() + done, bytes.size() - done);
             done += count > 0 ? static_cast<size_t>(count) : 0;
         }
     }
-    // The peer's link runs until `done`.
-    template <class F> bool until(F done, int seconds = 60) {
-        for (auto end = std::chrono::steady_clock::now() + std::chrono::seconds(seconds);
-             !done();) {
-            if (std::chrono::steady_clock::now() > end)
-                return false;
+    // The peer's link runs until `done`. False: so often it had nothing to read for 2 ms, which a
+    // busy machine makes longer.
+    template <class F> bool until(F done, int rests = 30'000) {
+        while (!done()) {
             pollfd p{master_, POLLIN, 0};
-            poll(&p, 1, 2);
+            if (poll(&p, 1, 2) == 0 && --rests < 0)
+                return false;
             U8 bytes[512];
             ssize_t count = read(master_, bytes, sizeof bytes);
             if (count > 0)

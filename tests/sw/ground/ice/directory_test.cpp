@@ -103,7 +103,7 @@ protected:
     }
     Ice::CommunicatorPtr client() const {
         return program({{"Ice.Default.Locator", locator()},
-                        {"Ice.Default.InvocationTimeout", "60000"},
+                        {"Ice.Default.InvocationTimeout", "1800000"},
                         {"Ice.RetryIntervals", "0 100 200 400 800"}});
     }
     // Calls until one is answered; how many may have been carried out or not.

@@ -25,10 +25,11 @@ protected:
     bool says(const std::string& text) const { return said().find(text) != std::string::npos; }
     // A program without the plugin.
     static Ice::CommunicatorPtr plain() {
-        return program({{"Ice.Default.InvocationTimeout", "60000"}, {"Ice.RetryIntervals", "-1"}});
+        return program(
+            {{"Ice.Default.InvocationTimeout", "1800000"}, {"Ice.RetryIntervals", "-1"}});
     }
     std::string endpoint(int port = 0) const {
-        return "tcp -h 127.0.0.1 -t 60000 -p " + std::to_string(port ? port : port_);
+        return "tcp -h 127.0.0.1 -t 1800000 -p " + std::to_string(port ? port : port_);
     }
     std::shared_ptr<RadioTest::UavPrx> proxy(const Ice::CommunicatorPtr& ic) const {
         return Ice::uncheckedCast<RadioTest::UavPrx>(ic->stringToProxy("echo:" + endpoint()));

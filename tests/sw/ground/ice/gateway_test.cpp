@@ -32,7 +32,7 @@ TEST_F(Gateway, ListensAtAnIPv6Address) {
         GTEST_SKIP() << "this machine has no IPv6";
     start({}, "[::1]:0");
     echo_ = Ice::uncheckedCast<RadioTest::UavPrx>(
-        ic_->stringToProxy("echo:tcp -h \"::1\" -t 60000 -p " + std::to_string(port_)));
+        ic_->stringToProxy("echo:tcp -h \"::1\" -t 1800000 -p " + std::to_string(port_)));
     expectAnswer();
 }
 
@@ -127,7 +127,7 @@ TEST_F(Gateway, ACertificateSaysWhoAsks) {
             properties["IceSSL.CertFile"] = folder + "/" + name + ".pem";
         Ice::CommunicatorHolder ic(program(properties));
         auto echo = Ice::uncheckedCast<RadioTest::UavPrx>(
-            ic->stringToProxy("echo:ssl -h 127.0.0.1 -t 60000 -p " + std::to_string(port_)));
+            ic->stringToProxy("echo:ssl -h 127.0.0.1 -t 1800000 -p " + std::to_string(port_)));
         return whyFails([&] {
             if (repeats)
                 echo->repeat(1, {1, 2});

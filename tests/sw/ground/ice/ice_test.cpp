@@ -87,7 +87,7 @@ TEST_F(StockIce, AUavThatIsOffIsAConnectTimeout) {
 }
 
 TEST_F(StockIce, ACallThatHasTimedOutIsNeverCarriedOut) {
-    Ice::CommunicatorHolder ic(world_.client({{"Ice.Override.ConnectTimeout", "60000"}}));
+    Ice::CommunicatorHolder ic(world_.client({{"Ice.Override.ConnectTimeout", "1800000"}}));
     auto echo = world_.proxy(ic.communicator())->ice_timeout(2000)->ice_invocationTimeout(-2);
     echo->ice_ping();
     const auto take = world_.rig.take;

@@ -298,14 +298,14 @@ public:
         uavPort = std::dynamic_pointer_cast<Ice::TCPEndpointInfo>(uav->getEndpoints()[0]->getInfo())
                       ->port;
         relay = std::make_unique<Relay>(rig, uavPort);
-        echo->station = "station:tcp -h 127.0.0.1 -t 60000 -p " + std::to_string(relay->port());
+        echo->station = "station:tcp -h 127.0.0.1 -t 1800000 -p " + std::to_string(relay->port());
     }
     ~World() { server_->destroy(); }
 
     // A program on the ground; several share the serial port's engine.
     Ice::CommunicatorPtr client(std::map<std::string, std::string> more = {}) {
         more.insert({{"Ice.Plugin.XBeeAT", PLUGIN_FOLDER "/xbeeat:createXBeeAT"},
-                     {"Ice.Default.InvocationTimeout", "60000"},
+                     {"Ice.Default.InvocationTimeout", "1800000"},
                      {"Ice.RetryIntervals", "-1"}, // a call is made once, whatever becomes of it
                      {"Ice.ThreadPool.Client.Size", "4"},
                      {"Ice.Warn.Connections", "0"},
@@ -313,7 +313,7 @@ public:
                      {"XBeeAT.Down", "1"}});
         return program(more);
     }
-    std::string endpoint() const { return "xbee-at -t 60000 -d " + rig.pty.path(); }
+    std::string endpoint() const { return "xbee-at -t 1800000 -d " + rig.pty.path(); }
     std::shared_ptr<RadioTest::UavPrx> proxy(const Ice::CommunicatorPtr& ic,
                                              const std::string& connection = "") {
         return Ice::uncheckedCast<RadioTest::UavPrx>(

@@ -135,13 +135,12 @@ std::string ModemSetup::askApi(const std::string& letters, const std::string& va
 }
 
 bool ModemSetup::command(const std::string& text) {
-    std::string reply;
     for (int attempt = 0; attempt < tries && !stopped_; ++attempt)
-        if ((reply = ask(text, {"OK", "ERROR"})) == "OK")
+        if ((reply_ = ask(text, {"OK", "ERROR"})) == "OK")
             return true;
     if (!stopped_)
         trouble_ = "the modem on '" + settings_.device + "' " +
-                   (reply == "ERROR" ? "refuses AT" : "does not answer to AT") + text.substr(0, 2);
+                   (reply_ == "ERROR" ? "refuses AT" : "does not answer to AT") + text.substr(0, 2);
     return false;
 }
 
@@ -211,7 +210,8 @@ bool ModemSetup::finish() {
     return pause(10); // the modem changes its rate after the last OK has left
 }
 
-// Sets rate and mode of a modem that was found in API mode; AP 2 stays. Each is in force at once,
+// Sets rate and mode of a modem that was found in API mode; AP 2 stays, and so does the mode of a
+// modem that refuses the other. Each is in force at once,
 // so the answer may come at either rate.
 bool ModemSetup::finishApi() {
     const int found = rate_;
@@ -227,10 +227,11 @@ bool ModemSetup::finishApi() {
     }
     if (settings_.isApi)
         return true;
-    if (!command("AP0"))
-        return false;
-    isApi_ = escapes_ = false;
-    return true;
+    if (command("AP0"))
+        isApi_ = escapes_ = false;
+    else if (reply_ == "ERROR")
+        log_(0, trouble_ + "0 and stays in API mode, which the vehicle need not know");
+    return !isApi_ || reply_ == "ERROR";
 }
 
 } // namespace XBeeAT

@@ -44,7 +44,7 @@ private:
     const Settings& settings_;
     const Log& log_;
     Wait wait_;
-    std::string trouble_;
+    std::string trouble_, reply_; // to the last command
     bool stopped_ = false, encrypts_ = false, isApi_ = false, escapes_ = false;
     int rate_ = 0;     // of the port
     int silentMs_ = 0; // how long nothing was sent

@@ -117,7 +117,9 @@ void XBee::apiCommand(const Bytes& frame, uint64_t now) {
     }
     Bytes answer = {0x88, frame[1], frame[2], frame[3], 0};
     auto parameter = pending_.find(letters);
-    bool known = parameter != pending_.end() && letters != refuse_;
+    const bool isRefused =
+        letters == refuse_ || (frame.size() > 4 && letters + std::to_string(value) == refuse_);
+    const bool known = parameter != pending_.end() && !isRefused;
     if (letters == "KY") {
         answer[4] = setKey(key) ? 0 : 3;
     } else if (frame.size() > 4) {
@@ -130,7 +132,7 @@ void XBee::apiCommand(const Bytes& frame, uint64_t now) {
                                                                        : 1;
         while (bytes--)
             answer.push_back(static_cast<uint8_t>(parameter->second >> (8 * bytes)));
-    } else if (letters == refuse_ || order(letters, now).empty()) {
+    } else if (isRefused || order(letters, now).empty()) {
         answer[4] = 2;
     }
     counters_.refused += answer[4] != 0;

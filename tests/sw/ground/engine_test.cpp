@@ -230,6 +230,10 @@ TEST_F(EngineTest, AModemInAnyModeIsSetToTheWantedOne) {
     rig_.replaceGround({});
     rig_.with([&] { rig_.ground->refuseCommand("AP"); });
     fly(s, 0, 7);
+    rig_.replaceGround({{"AP", 1}, {"BD", 7}});
+    rig_.with([&] { rig_.ground->refuseCommand("AP0"); });
+    fly(plain, 1, 7);
+    EXPECT_TRUE(logged("refuses ATAP0 and stays in API mode")) << log();
 }
 
 TEST_F(EngineTest, TheModemsKeyIsSetAndNeverLogged) {

@@ -389,6 +389,17 @@ TEST_F(ApiRadio, WhereControllerOrModemHaveNoApiModeALinkRunsInTransparentMode) 
         });
 }
 
+TEST_F(ApiRadio, AModemThatRefusesBothModesIsToldAsThat) {
+    run([&] {
+        soc_.modem().refuseCommand("AP");
+        EXPECT_EQ(initApi(RADIO_250000), RADIO_REFUSED);
+        EXPECT_EQ(Radio_failedStep(), 13u) << "ATAP";
+        soc_.modem().refuseCommand("");
+        EXPECT_EQ(initApi(RADIO_250000), RADIO_OK) << "and tried again";
+        EXPECT_TRUE(Radio_answers());
+    });
+}
+
 TEST_F(ApiRadio, EachPacketSaysWhoseItIsAndGoesToItsTarget) {
     HostLine line;
     XBee stranger(line, air_, quick({{"BD", 7}, {"MY", 2}, {"DL", 1}}));

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from cli import command
 from cli.commands import (  # noqa: F401 (each declares its own)
-    flights, core, synth, build, regression, checks, coverage, fresh, tree)
+    flights, core, foreign, synth, build, regression, checks, coverage, fresh, tree)
 from cli.runner import Interrupted, Stop, hear_signals, say, warn
 
 

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+//
+// gateway_options: the gateway's options, and what Ice gets of them: properties and endpoints.
+
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <Ice/Ice.h>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace gateway {
+
+struct Options {
+    std::string device, keyFile, modemKeyFile, rights, station, maintenance, topics;
+    std::vector<std::string> vehicles; // NAME=ADDRESS
+    std::string listen = "127.0.0.1:10000";
+    int baud = 115200, target = 1, source = 0, rfChannel = 0x0C, pan = 0x3332, guardMs = 1000;
+    int trace = 0, wait = 30;
+    bool setUp = true, isApi = true, isWire = false;
+};
+
+void addOptions(CLI::App& app, Options& o);
+// Sets Ice's properties, those of the radio included, where the command line leaves them open.
+void setProperties(const std::shared_ptr<Ice::Properties>& p, const Options& o);
+
+// Returns the vehicles' names and addresses. Throws if they make no sense.
+std::map<std::string, int> fleetOf(const Options& o);
+// Returns the endpoint of the vehicle, and of its calls, at the serial port.
+std::string radioEndpoint(const Options& o, int address);
+// Returns Ice's endpoints of "HOST:PORT" or "[::1]:PORT", or of other words, which are endpoints
+// already, with ports that are `place` above the given ones; 0 stays: any.
+std::string endpointsOf(const std::string& text, int place = 0);
+
+} // namespace gateway

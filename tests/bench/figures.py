@@ -14,7 +14,6 @@ import os
 import re
 import subprocess
 import sys
-import textwrap
 from pathlib import Path
 
 TITLES = {
@@ -113,12 +112,6 @@ def main(words):
         name = os.path.splitext(os.path.basename(path))[0]
         rows = [(e["name"], number(e["value"]), e["unit"], beside(e)) for e in entries]
         lines += ["", f"## {TITLES.get(name, name)}", *tables(rows)]
-    headings = [line[3:] for line in lines if line.startswith("## ")]
-    anchors = [re.sub(r"[^\w -]", "", h).lower().replace(" ", "-") for h in headings]
-    links = ", ".join(f"[{h}](#{a})" for h, a in zip(headings, anchors))
-    contents = textwrap.wrap(f"Contents: {links}.", 100, break_long_words=False,
-                             break_on_hyphens=False)
-    lines[6:6] = [*contents, ""]
     with open(words[0], "w") as page:
         page.write("\n".join(lines) + "\n")
 

@@ -151,6 +151,9 @@ std::map<std::string, int> fleetOf(const Options& o) {
         const long address = std::strtol(number.c_str(), &end, 0);
         if (name.empty() || number.empty() || !std::isdigit(number[0]) || address > 0xFFFF || *end)
             throw std::runtime_error("'" + text + "': give NAME=ADDRESS, as uav7=0x0007");
+        for (const auto& [other, taken] : fleet)
+            if (taken == address && other != name)
+                throw std::runtime_error("'" + text + "': '" + other + "' has this address");
         if (!fleet.emplace(name, int(address)).second)
             throw std::runtime_error("'" + name + "' is the name of two vehicles");
     }

@@ -234,4 +234,12 @@ TEST(GatewayOptions, WrongOnesAreRefusedByName) {
     }
 }
 
+TEST(GatewayOptions, OneAddressUnderTwoNamesIsRefused) {
+    Server gateway({GATEWAY, "-d", "/dev/null", "-l", "127.0.0.1:0", "--vehicle", "uav8=0x0007",
+                    "--vehicle", "uav7=7"});
+    EXPECT_GT(gateway.wait(), 0);
+    EXPECT_NE(gateway.said().find("'uav7=7': 'uav8' has this address"), std::string::npos)
+        << gateway.said();
+}
+
 } // namespace

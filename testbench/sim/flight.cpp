@@ -75,6 +75,14 @@ std::vector<uint8_t> keyOf(const std::string& file, int address) {
     return {key.begin(), key.end()};
 }
 
+// Whom a vehicle serves besides the first ground, and under which key: of four and more vehicles
+// the first two each other, all others the second ground.
+std::pair<uint32_t, std::vector<uint8_t>> secondOf(const Flight::Options& o, unsigned vehicle) {
+    const bool isPaired = o.vehicles > 3 && vehicle < 3;
+    return {isPaired ? UAV_FELLOW | (3 - vehicle) : SecondGround::address,
+            keyOf(o.observer, isPaired ? 1 : static_cast<int>(vehicle))};
+}
+
 // The first line of the recording; empty in a replay.
 std::unique_ptr<RecordedLine> record(const Flight::Options& o, SerialLine& line) {
     if (o.replayed)
@@ -201,8 +209,7 @@ void Flight::callFollowers() {
         config.guardMs = o_.guard;
         config.address = address;
         config.key = keyOf(o_.keyFile, static_cast<int>(address));
-        config.secondGround = SecondGround::address;
-        config.secondKey = keyOf(o_.observer, static_cast<int>(address));
+        std::tie(config.secondGround, config.secondKey) = secondOf(o_, address);
         config.seed = o_.seed + address;
         followers_.push_back(std::make_unique<Follower>(air_, modem("follower", o_.guard), config));
         const Frame seen = movedBy(frame_, static_cast<int>(address - 1) * frame_.width /
@@ -310,7 +317,7 @@ void Flight::runOnHost() {
     machine.board = SimulatedBoard(o_.seed);
     machine.board.provide(key_);
     if (second_)
-        machine.board.provideGround(SecondGround::address, keyOf(o_.observer, 1));
+        machine.board.provideGround(secondOf(o_, 1).first, secondOf(o_, 1).second);
     machine.run();
 }
 
@@ -319,10 +326,8 @@ void Flight::runOnCortexM3() {
                                fpga = flashOf(o_.fpgaFlash, SpiFlash::bytes, "the FPGA's");
     M3Machine::Config config{o_.firmware, 120'000'000, o_.guard, flash,
                              key_,        o_.seed,     fpga,     o_.wire};
-    if (second_) {
-        config.secondGround = SecondGround::address;
-        config.secondKey = keyOf(o_.observer, 1);
-    }
+    if (second_)
+        std::tie(config.secondGround, config.secondKey) = secondOf(o_, 1);
     M3Machine machine(soc_, config, [this] { return poll(); });
     if (machine.program)
         machine.program->onTask = [this](const std::string& name) {

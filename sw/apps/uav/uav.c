@@ -11,6 +11,7 @@
 #include "uav_private.h"
 
 #define STACK_WORDS 512
+#define FELLOW_MS 3000 /* for which a report waits for the fellow's answer */
 
 Ice_Communicator uav_ic;
 
@@ -77,16 +78,30 @@ static void setParam(Autopilot_Param* param, Ice_Byte* data, Autopilot_ParamId i
     param->data.data = data;
 }
 
-/* Tells the ground station about the vehicle whenever a frame is done. */
+/* Makes a proxy to the vehicle that this one calls, if there is one. */
+static int findFellow(Ice_ObjectPrxPtr fellow) {
+    static char text[] = "uav:xbee-at -a 0x0000";
+    const U32 address = UAV_secondGround();
+    U32 i;
+    for (i = 0; i < 4U; ++i)
+        text[sizeof text - 2U - i] = "0123456789abcdef"[address >> 4U * i & 15U];
+    (void)Ice_Communicator_stringToProxy(&uav_ic, text, fellow);
+    Ice_ObjectPrx_ice_invocationTimeout(fellow, FELLOW_MS);
+    return address != UAV_NO_GROUND && (address & UAV_FELLOW);
+}
+
+/* Tells the ground station about the vehicle whenever a frame is done; with a fellow, how that one
+ * is, too, unless it does not answer. */
 static void clientTask(void* argument) {
-    static Ice_ObjectPrx station, self;
-    Autopilot_Param params[5];
-    Ice_Byte data[5][4];
+    static Ice_ObjectPrx station, self, fellow;
+    Autopilot_Param params[6];
+    Ice_Byte data[6][4];
     Autopilot_ParamSeq list;
+    Autopilot_FlightState state;
+    const int hasFellow = findFellow(&fellow);
     (void)argument;
     (void)Ice_Communicator_stringToProxy(&uav_ic, "station:xbee-at -a 0x0000", &station);
     (void)Ice_ObjectAdapter_createProxy(&adapter, "uav", &self);
-    list.size = 5;
     list.data = params;
     for (;;) {
         U32 corners, frames = UAV_waitFrame(&corners);
@@ -96,6 +111,9 @@ static void clientTask(void* argument) {
         setParam(&params[2], data[2], Autopilot_cornersFound, corners);
         setParam(&params[3], data[3], Autopilot_radioBytesSent, radio->bytesCopiedOut);
         setParam(&params[4], data[4], Autopilot_radioBytesReceived, radio->bytesCopiedIn);
+        list.size = 5;
+        if (hasFellow && Autopilot_VehiclePrx_getFlightState(&fellow, &state) == ICE_OK)
+            setParam(&params[list.size++], data[5], Autopilot_fellowState, (U32)state);
         /* The result is ignored: a station that does not listen yet is told with the next frame. */
         (void)Autopilot_StationPrx_vehicleState(&station, &self, &list);
     }

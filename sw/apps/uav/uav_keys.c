@@ -100,8 +100,16 @@ U32 UAV_secondGround(void) {
     return UAV_countKeys(1) || UAV_isOpen() ? ~load(GROUND_AT) : UAV_NO_GROUND;
 }
 
-static void giveKey(Link* link, int slot, const U8* key) {
-    Link_setKey(link, slot, key, UAV_address());
+int UAV_hasGroundsPart(void) {
+    const U32 fellow = ~load(GROUND_AT) - UAV_FELLOW;
+    return fellow < UAV_FELLOW && UAV_address() < fellow;
+}
+
+/* Their sessions are bound to the address of the vehicle that has the vehicle's part. */
+static void giveKey(int ground, Link* link, int slot, const U8* key) {
+    Link_setKey(link, slot, key,
+                ground && UAV_hasGroundsPart() ? LINK_GROUND | (U16)~load(GROUND_AT)
+                                               : UAV_address());
 }
 
 int UAV_countKeys(int ground) {
@@ -137,7 +145,7 @@ int UAV_giveKeys(int ground, Link* link) {
     int slot, count = 0;
     for (slot = 0; slot < UAV_KEY_SLOTS; ++slot)
         if (UAV_readKey(ground, slot, key)) {
-            giveKey(link, slot, key);
+            giveKey(ground, link, slot, key);
             ++count;
         }
     Ascon_wipe(key, sizeof key);
@@ -158,7 +166,7 @@ int UAV_setNextKey(int ground, Link* link, const U8* key) {
     writeKey(ground, slot, 0);
     store(at(ground, STATE_AT), STATE_NEXT + (U32)slot);
     writeKey(ground, slot, key);
-    giveKey(link, slot, key);
+    giveKey(ground, link, slot, key);
     nextSlot[ground] = slot;
     return 1;
 }
@@ -168,7 +176,7 @@ int UAV_confirmKey(int ground, Link* link) {
     if (slot < 0 || Link_keyInUse(link) != slot)
         return 0;
     writeKey(ground, 1 - slot, 0);
-    giveKey(link, 1 - slot, 0);
+    giveKey(ground, link, 1 - slot, 0);
     nextSlot[ground] = -1;
     return 1;
 }

@@ -15,6 +15,7 @@
 #define UAV_GROUNDS 2
 #define UAV_KEY_WORDS (UAV_GROUNDS * UAV_GROUND_WORDS)
 #define UAV_NO_GROUND 0xFFFFFFFFU /* in place of an address */
+#define UAV_FELLOW 0x10000U       /* with an address: it is another vehicle's */
 #define UAV_FLIGHT_WORD 11U
 #define UAV_FLYING 0x464C5921U /* in that word; anything else: on the ground */
 
@@ -38,11 +39,16 @@ U32 UAV_random(void* unused);
 void UAV_provide(U32 address, const U8* key);
 
 /* Provides it with a second ground, by its modem's address, and with that one's key. 0: no key, for
- * an open vehicle. UAV_NO_GROUND: it has none, as after UAV_provide. */
+ * an open vehicle. UAV_NO_GROUND: it has none, as after UAV_provide. With UAV_FELLOW that is
+ * another vehicle, which has the same key and this one's address. */
 void UAV_provideGround(U32 address, const U8* key);
 
-/* Returns the second ground's address, or UAV_NO_GROUND. */
+/* Returns the second ground's address, as it was provided, or UAV_NO_GROUND. */
 U32 UAV_secondGround(void);
+
+/* Returns 1 if the second ground is a vehicle, and this one has the ground's part in their
+ * sessions: of the two it has the lower address. */
+int UAV_hasGroundsPart(void);
 
 /* Returns the vehicle's address: its modem's MY, to which its keys are bound. */
 U32 UAV_address(void);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_radio: the radio task, its links with one ground or two, and what IceC's endpoint needs from
- * it.
+ * uav_radio: the radio task, its links with one ground or two, of which the second may be another
+ * vehicle, and what IceC's endpoint needs from it.
  */
 #include "radio.h"
 #include "uav.h"
@@ -36,6 +36,7 @@ static union {
 } secondMemory;
 #define SECOND ((Link*)(void*)&secondMemory)
 static U8 hasSecond;
+static U8 isFellow;      /* it is a vehicle, which is sought while this one calls it */
 static U8 isSecondsTurn; /* to be polled first */
 static U8 areUp;         /* grounds with a session, a bit each */
 static U8 isSpecial; /* there is a second ground, or a session whose key may have to be confirmed */
@@ -151,6 +152,7 @@ int UAV_initRadio(void) {
     linkMutex = OSMutexCreate(PRIO_MUTEX, &error);
     areUp = isSecondsTurn = 0;
     hasSecond = ground != UAV_NO_GROUND;
+    isFellow = hasSecond && (ground & UAV_FELLOW);
     secondAddress = (U16)ground;
     Link_init(&uav_link, hasSecond ? &firstOfTwo : &linkPort, &endpoint, BYTE_TIME_US16);
     if (hasSecond) {
@@ -165,6 +167,8 @@ void UAV_useRadio(Ice_CommunicatorPtr ic) {
     XBeeATEndpoint_init(ic, "xbee-at", &endpoint, &uav_link, (U16)UAV_address(), &endpointPort, 0);
     if (hasSecond)
         XBeeATEndpoint_addGround(&endpoint, 1, SECOND, secondAddress);
+    if (isFellow)
+        XBeeATEndpoint_setVehicle(&endpoint, 1, UAV_hasGroundsPart());
 }
 
 int UAV_groundOf(const Ice_Current* current) {
@@ -235,8 +239,11 @@ static U32 pollLink(int ground, Link* link) {
 
 /* The same for both, of which each comes first in turn. */
 static U32 pollSpecial(void) {
-    U32 wait = isSecondsTurn ? pollLink(1, SECOND) : 0xFFFFFFFFU;
-    U32 other = pollLink(0, &uav_link);
+    U32 wait, other;
+    if (isFellow && isAnswered)
+        XBeeATEndpoint_seek(&endpoint, 1, now);
+    wait = isSecondsTurn ? pollLink(1, SECOND) : 0xFFFFFFFFU;
+    other = pollLink(0, &uav_link);
     if (other < wait)
         wait = other;
     if (hasSecond && !isSecondsTurn) {

@@ -263,7 +263,8 @@ class Follower(threading.Thread):
 
 
 class Observer(Follower):
-    """A second ground with a modem and keys of its own: asks each vehicle for its state."""
+    """A second ground with a modem and keys of its own: asks each vehicle for its state, but those
+    two that have each other in its place."""
 
     def __init__(self, args, log):
         os.environ["XBEEAT_CLOCK"] = args.status + "2"  # its engine's clock
@@ -274,7 +275,7 @@ class Observer(Follower):
 
     def fly(self):
         import Autopilot
-        for address in range(1, self.args.vehicles + 1):
+        for address in range(1 if self.args.vehicles < 4 else 3, self.args.vehicles + 1):
             where = "xbee-at -d %s -a 0x%04x -s 0x00f0 -t %d" % (
                 self.args.observer_device, address, 1000 * self.args.patience // 2)
             vehicle = Autopilot.VehiclePrx.uncheckedCast(
@@ -365,8 +366,9 @@ def fly(args, communicator):
     oneway = Autopilot.HwProcessingEnginePrx.uncheckedCast(
         communicator.stringToProxy("hwengine1 -o:" + where))
 
-    def proxy(identity):
-        return communicator.stringToProxy(identity + ":" + where)
+    def proxy(identity, vehicle=1):
+        return communicator.stringToProxy(
+            identity + ":" + where.replace("0x0001", "0x%04x" % vehicle))
 
     if args.camera:
         size = Image.open(args.frame).size
@@ -374,6 +376,10 @@ def fly(args, communicator):
             if hasattr(part, "prepare"):
                 part.prepare(log, proxy, *size)
 
+    if args.vehicles > 3:  # the first one asks the second for its state, and reports that
+        fellow = Autopilot.VehiclePrx.uncheckedCast(proxy("uav", 2))
+        log.call("ground -> UAV", "uav2.setFlightState(flying)",
+                 lambda: fellow.setFlightState(Autopilot.FlightState.flying))
     log.call("ground -> UAV", "hwengine1.setParameterA(%d), oneway" % args.threshold,
              lambda: oneway.setParameterA(args.threshold))
     log.call("ground -> UAV", "hwengine1.startProcessing(), oneway", oneway.startProcessing)

@@ -99,8 +99,11 @@ def main():
                         "jumper is not wired")
     parser.add_argument("--address", type=address, default=1,
                         help="that the vehicle gets, and its line in the file (default: 0x0001)")
-    parser.add_argument("--ground", type=address, help="address of a second ground's modem, which "
+    second = parser.add_mutually_exclusive_group()
+    second.add_argument("--ground", type=address, help="address of a second ground's modem, which "
                         "the vehicle serves, too, under this key of its own")
+    second.add_argument("--fellow", type=address, help="address of another vehicle, which it calls "
+                        "and serves, under this key of the two, in place of a second ground")
     parser.add_argument("--patience", type=int, default=120,
                         help="seconds without a vehicle until it gives up")
     args = parser.parse_args()
@@ -108,6 +111,7 @@ def main():
         key = "" if args.protect or args.open else read_key(args.key, args.address)
         command = ("protect" if args.protect else
                    ("ground %04x %s" % (args.ground, key)).strip() if args.ground is not None else
+                   ("fellow %04x %s" % (args.fellow, key)).strip() if args.fellow is not None else
                    "%s %04x" % ("key " + key if key else "open", args.address))
         if args.old:
             command += " " + read_key(args.old, args.address)
@@ -119,7 +123,8 @@ def main():
         provide(port, command, args.patience)
         print("provide_key: the vehicle %s" %
               ("is protected" if args.protect else
-               "serves a second ground" if args.ground is not None else "is open" if args.open else
+               "serves a second ground" if args.ground is not None else
+               "has a fellow" if args.fellow is not None else "is open" if args.open else
                "has this key, and no other"))
         return 0
     except (Failed, OSError, termios.error) as e:

@@ -29,8 +29,6 @@ static const Ice_Byte head[HEAD] = {
 #define GROUND_OF(connection) (XBEE_GROUNDS > 1 ? (int)((U32)(connection) / LINK_CHANNELS) : 0)
 #define CHANNEL_OF(connection) \
     (XBEE_GROUNDS > 1 ? (int)((U32)(connection) % LINK_CHANNELS) : (connection))
-#define OWN_OF(ground) ((ground) * LINK_CHANNELS + XBEE_OWN_CHANNEL)
-
 static int isOwnOpen(const XBeeATEndpoint* self, int ground) {
     return XBEE_GROUNDS > 1 ? self->ownOpen >> ground & 1 : self->ownOpen;
 }
@@ -38,6 +36,39 @@ static int isOwnOpen(const XBeeATEndpoint* self, int ground) {
 static void setOwnOpen(XBeeATEndpoint* self, int ground, int isOpen) {
     const int others = XBEE_GROUNDS > 1 ? self->ownOpen & ~(1 << ground) : 0;
     self->ownOpen = (Ice_Byte)(XBEE_GROUNDS > 1 ? others | isOpen << ground : isOpen);
+}
+
+#if XBEE_GROUNDS > 1
+#define OWN_OF(self, ground) ((self)->own[ground])
+
+/* Seeks a vehicle for a call's time from now on, or no more. Returns 0: a ground is not sought. */
+static int setSought(XBeeATEndpoint* self, int ground, int isSought) {
+    const int bit = isSought ? self->vehicles & 1 << ground : 0;
+    self->sought = (Ice_Byte)((self->sought & ~(1 << ground)) | bit);
+    self->soughtAt[ground] = self->port->nowMs(self->context);
+    self->seen[ground] = Link_statistics(self->links[ground])->messagesReceived;
+    return bit;
+}
+
+/* Returns 1 if a vehicle's session has ended before anything came in it, as where both have begun
+ * one: it is sought on, and nobody is told. */
+static int isSoughtOn(XBeeATEndpoint* self, int ground) {
+    const Link* link = self->links[ground];
+    if (!(self->sought >> ground & 1) || Link_state(link) == LINK_STATE_UP ||
+        Link_statistics(link)->messagesReceived != self->seen[ground])
+        return 0;
+    setOwnOpen(self, ground, 0);
+    return 1;
+}
+#else
+#define OWN_OF(self, ground) XBEE_OWN_CHANNEL
+#define setSought(self, ground, isSought) 0
+#define isSoughtOn(self, ground) 0
+#endif
+
+static int isOwn(const XBeeATEndpoint* self, int connection) {
+    (void)self;
+    return connection == OWN_OF(self, GROUND_OF(connection));
 }
 
 /* ---- several tasks ----
@@ -92,8 +123,10 @@ static int takeBack(XBeeATEndpoint* self, Ice_EventKind kind, int channel) {
 /* Records that a connection is over: nothing more may be sent on its channel, which may soon belong
  * to another one. */
 static void end(XBeeATEndpoint* self, int channel) {
-    if (CHANNEL_OF(channel) == XBEE_OWN_CHANNEL)
+    if (isOwn(self, channel)) {
         setOwnOpen(self, GROUND_OF(channel), 0);
+        (void)setSought(self, GROUND_OF(channel), 0);
+    }
     if (isOffered(self, channel))
         setOffered(self, NOBODY);
 }
@@ -114,7 +147,7 @@ int XBeeATEndpoint_onMessage(void* context, int channel, const U8* data, U32 siz
 
 void XBeeATEndpoint_onChannel(void* context, int channel, int isOpen) {
     XBeeATEndpoint* self = context;
-    if (CHANNEL_OF(channel) == XBEE_OWN_CHANNEL && isOpen)
+    if (isOwn(self, channel) && (isOpen || isSoughtOn(self, GROUND_OF(channel))))
         return;
     if (!isOpen)
         end(self, channel);
@@ -135,11 +168,18 @@ void XBeeATEndpoint_onState(void* context, Link_State state) {
 void XBeeATEndpoint_addGround(XBeeATEndpoint* self, int ground, Link* link, U16 address) {
     self->links[ground] = link;
     self->grounds[ground] = address;
+    self->own[ground] = (Ice_Byte)(ground * LINK_CHANNELS + XBEE_OWN_CHANNEL);
+}
+
+void XBeeATEndpoint_setVehicle(XBeeATEndpoint* self, int ground, int isGround) {
+    self->vehicles = (Ice_Byte)(self->vehicles | 1 << ground);
+    if (isGround)
+        self->own[ground] = (Ice_Byte)(ground * LINK_CHANNELS);
 }
 
 void XBeeATEndpoint_onDown(XBeeATEndpoint* self, int ground) {
     if (isOwnOpen(self, ground))
-        XBeeATEndpoint_onChannel(self, OWN_OF(ground), 0);
+        XBeeATEndpoint_onChannel(self, OWN_OF(self, ground), 0);
 }
 
 #endif
@@ -172,18 +212,41 @@ static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ic
     return ICE_OK;
 }
 
-static Link_Status openOwn(XBeeATEndpoint* self, int own) {
+/* Opens a ground's own channel. A vehicle without a session is sought, and has the channel later:
+ * its first message ends the caller's wait. */
+static Link_Status openOwn(XBeeATEndpoint* self, int ground) {
     Link_Status status = LINK_OK;
-    int ground = GROUND_OF(own);
+    int own = OWN_OF(self, ground);
     if (!isOwnOpen(self, ground)) {
-        status = Link_openChannel(self->links[ground], XBEE_OWN_CHANNEL);
+        status = Link_openChannel(self->links[ground], CHANNEL_OF(own));
         if (status == LINK_OK) { /* and the end of the last connection is not the end of this one */
             setOwnOpen(self, ground, 1);
             self->events &= ~EVENT(ICE_EVENT_CLOSED, own);
         }
+        if (status == LINK_DOWN && setSought(self, ground, 1))
+            status = LINK_OK;
     }
     return status;
 }
+
+#if XBEE_GROUNDS > 1
+
+void XBeeATEndpoint_seek(XBeeATEndpoint* self, int ground, U32 nowUs) {
+    Link* link = self->links[ground];
+    Link_State state = Link_state(link);
+    const U32 tookMs = self->port->nowMs(self->context) - self->soughtAt[ground];
+    if (tookMs >= (U32)ICE_TIMEOUT_MS)
+        (void)setSought(self, ground, 0);
+    if (self->sought >> ground & 1) {
+        if (state == LINK_STATE_UP)
+            (void)openOwn(self, ground);
+        Link_start(link, nowUs);
+    } else if (state == LINK_STATE_CONNECTING) {
+        Link_stop(link, nowUs);
+    }
+}
+
+#endif
 
 /* Returns whether the connection of the offered message has ended, seen by the receiver or not: its
  * channel may belong to another one by now. */
@@ -214,7 +277,7 @@ static Ice_Status offer(XBeeATEndpoint* self, int connection, const Ice_Byte* me
         setOffered(self, connection);
     for (;;) {
         if (!message)
-            status = openOwn(self, connection);
+            status = openOwn(self, GROUND_OF(connection));
         else if (hasEnded(self, connection))
             status = LINK_CLOSED;
         else
@@ -240,19 +303,22 @@ static Ice_Status sendMessage(void* context, int connection, const Ice_Byte* mes
     return offer(context, connection, message, size);
 }
 
-/* Returns the ground whose address an encoded endpoint has. */
+/* Returns the ground whose address an encoded endpoint has; -1: nobody has it. */
 static int groundOf(const XBeeATEndpoint* self, const Ice_Byte* encoded, Ice_Int size) {
-    int ground = size < HEAD + 2 ? 0 : XBEE_GROUNDS - 1;
-    while (ground && (!self->links[ground] ||
-                      self->grounds[ground] != (encoded[HEAD] | encoded[HEAD + 1] << 8)))
+    int ground = XBEE_GROUNDS - 1;
+    if (size < HEAD + 2)
+        return 0;
+    while (ground >= 0 && (!self->links[ground] ||
+                           self->grounds[ground] != (encoded[HEAD] | encoded[HEAD + 1] << 8)))
         --ground;
     return ground;
 }
 
 static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size, int* connection) {
-    if (size < 2 || encoded[0] != head[0] || encoded[1] != head[1])
+    int ground = XBEE_GROUNDS > 1 ? groundOf(context, encoded, size) : 0;
+    if (size < 2 || encoded[0] != head[0] || encoded[1] != head[1] || ground < 0)
         return ICE_NO_ENDPOINT;
-    *connection = XBEE_GROUNDS > 1 ? OWN_OF(groundOf(context, encoded, size)) : XBEE_OWN_CHANNEL;
+    *connection = OWN_OF((XBeeATEndpoint*)context, ground);
     /* The last closing may still be on its way. */
     return offer(context, XBEE_GROUNDS > 1 ? *connection : 0, 0, 0);
 }
@@ -323,6 +389,9 @@ void XBeeATEndpoint_init(Ice_CommunicatorPtr ic, const char* name, XBeeATEndpoin
     (void)name;
     memset(self, 0, sizeof *self);
     self->links[0] = link;
+#if XBEE_GROUNDS > 1
+    self->own[0] = XBEE_OWN_CHANNEL;
+#endif
     self->address = address;
     self->port = port;
     self->context = context;

@@ -5,6 +5,8 @@
  * The ground opens channels 0..2, this side channel 3. On the wire an endpoint is type 0x4158 with
  * a remote address (short), a channel (byte, 255: any) and a time-out in milliseconds (int). Of
  * several grounds each has a link and LINK_CHANNELS connections, one ground's behind the other's.
+ * Another vehicle may have a ground's place: of the two, one has the ground's part, and opens
+ * channel 0. A call begins their session, and seeks it for ICE_TIMEOUT_MS.
  */
 #pragma once
 
@@ -33,13 +35,19 @@ typedef struct XBeeATEndpoint {
     const XBeeATEndpoint_Port* port;
     void* context;
     U16 address;               /* own, MY */
-    U16 grounds[XBEE_GROUNDS]; /* addresses of the others, from 1 on */
+    U16 grounds[XBEE_GROUNDS]; /* the grounds' addresses, the first one's is 0 */
     U32 events;                /* events to be delivered; 0: none */
     Ice_Int size;              /* of the pending message */
     Ice_Byte* buffer; /* the receiving task's; 0: nobody receives, the link keeps the message */
     Ice_Byte ownOpen; /* the own channel is, a bit a ground */
     Ice_Byte held;    /* the link keeps a message that was not taken */
     Ice_Byte offered; /* connection of the message that is being sent, unless it has ended */
+#if XBEE_GROUNDS > 1
+    Ice_Byte own[XBEE_GROUNDS]; /* connections that this side opens */
+    Ice_Byte vehicles, sought;  /* those grounds that are vehicles, and are sought, a bit each */
+    U32 soughtAt[XBEE_GROUNDS]; /* since when, in ms, */
+    U32 seen[XBEE_GROUNDS];     /* and how many messages had come before */
+#endif
 } XBeeATEndpoint;
 
 /* Makes `name` (always "xbee-at") known to the communicator. */
@@ -47,8 +55,13 @@ void XBeeATEndpoint_init(Ice_CommunicatorPtr ic, const char* name, XBeeATEndpoin
                          U16 address, const XBeeATEndpoint_Port* port, void* context);
 
 #if XBEE_GROUNDS > 1
-/* Adds another ground's link. A proxy whose address is not a ground's leads to the first ground. */
+/* Adds another ground's link. A proxy whose address is not a ground's has no endpoint here. */
 void XBeeATEndpoint_addGround(XBeeATEndpoint* self, int ground, Link* link, U16 address);
+/* Makes that ground a vehicle; `isGround`: this side has the ground's part. */
+void XBeeATEndpoint_setVehicle(XBeeATEndpoint* self, int ground, int isGround);
+/* Starts a vehicle's link while a call waits for its session, and stops it where none does; to be
+ * called under the lock before each Link_poll. */
+void XBeeATEndpoint_seek(XBeeATEndpoint* self, int ground, U32 nowUs);
 #endif
 
 /* Callbacks for Link_Port, to be called under the lock; `self` is the XBeeATEndpoint. These are the

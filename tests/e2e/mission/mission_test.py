@@ -336,13 +336,16 @@ class Cases(Script):
         self.refused("without modems and air: leave out --loss", "--wire", "--loss", "0.1")
 
     def test_fleet(self):
-        """Three vehicles at one modem, the first by the firmware's host build; then again."""
-        Path("fleet.key").write_text("".join(f"0x000{at} {str(at) * 32}\n" for at in (1, 2, 3)))
+        """Four vehicles at one modem, the first by the firmware's host build; then again. The first
+        asks the second, and tells its station."""
+        vehicles = 1, 2, 3, 4
+        Path("fleet.key").write_text("".join(f"0x000{at} {str(at) * 32}\n" for at in vehicles))
         os.chmod("fleet.key", 0o600)
-        self.fly("--vehicles", "3", "--key", self.out / "fleet.key")
-        for address in 1, 2, 3:
+        self.fly("--vehicles", "4", "--key", self.out / "fleet.key")
+        self.has("vehicleState.*, fellowState 1")
+        for address in vehicles[2:]:
             self.has(f"the observer sees uav{address}: onGround")
-        for address in 2, 3:
+        for address in vehicles[1:]:
             self.has(f"XBeeAT: 0x000{address}: link up, secure",
                      rf"uav{address}\.hwengine1: \d+ corners")
             self.assertTrue(Path(f"after{address}.png").exists())

@@ -139,6 +139,23 @@ TEST(Keys, ASecondGroundHasKeysOfItsOwn) {
     EXPECT_EQ(UAV_secondGround(), 0xF0u) << "of an open vehicle";
 }
 
+TEST(Keys, OfTwoVehiclesTheOneWithTheLowerAddressHasTheGroundsPart) {
+    Vehicle vehicle(testSeed());
+    for (U32 fellow : {address - 1, address + 1}) {
+        UAV_provideGround(UAV_FELLOW | fellow, foreignKey.data());
+        EXPECT_EQ(UAV_secondGround(), UAV_FELLOW | fellow);
+        EXPECT_EQ(UAV_hasGroundsPart(), fellow > address);
+        vehicle.a.boot();
+        vehicle.b.boot();
+        UAV_giveKeys(1, vehicle.b.link());
+        Link_setKey(vehicle.a.link(), 0, foreignKey.data(),
+                    fellow > address ? fellow : LINK_GROUND | address);
+        EXPECT_TRUE(vehicle.connect());
+    }
+    UAV_provideGround(0xFFFF, foreignKey.data());
+    EXPECT_FALSE(UAV_hasGroundsPart());
+}
+
 TEST(Keys, AGroundWithoutTheKeyIsRefused) {
     Vehicle vehicle(testSeed());
     EXPECT_FALSE(vehicle.meets({}, 5'000'000)) << "in the clear";

@@ -112,6 +112,9 @@ TEST_F(Provision, TakesASecondGroundWithAKeyOfItsOwn) {
     EXPECT_EQ(chip.backup()[16], 0xAAAAAAAAu);
     EXPECT_TRUE(has(key));
     start();
+    EXPECT_EQ(answerTo("fellow 0007 " + other + " " + digits + "\n"), "ok\r\n");
+    EXPECT_EQ(chip.backup()[27], ~0x10007u);
+    start();
     EXPECT_EQ(answerTo("ground 00f0 " + other + " " + other + "\n").substr(0, 3), "no:")
         << "the second ground's key proves nothing here";
 }

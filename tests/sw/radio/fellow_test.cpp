@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: MIT
+//
+// fellow_test: vehicles that call each other's objects through IceC's radio endpoint, while one of
+// them serves its ground. All have links and communicators of their own, in simulated time.
+
+#include "random.h"
+#include <deque>
+#include <functional>
+#include <gtest/gtest.h>
+#include <memory>
+#include <string>
+#include <vector>
+
+extern "C" {
+#include "xbee_endpoint.h"
+}
+
+namespace {
+
+using Key = std::vector<U8>;
+struct Craft;
+
+// The parties and their time, which passes while one of them waits.
+struct World {
+    void step();
+    void run(U32 times) {
+        while (times--)
+            step();
+    }
+    U32 ms = 0xFFFFFC00u; // so that the links' time wraps
+    std::vector<Craft*> crafts;
+    std::function<void()> atStep = [] {};
+};
+
+// One of two links, and what is on its way to it.
+struct End {
+    Craft* craft = nullptr;
+    int first = 0; // of its connections
+    Link link;
+    End* peer = nullptr;
+    std::deque<std::pair<U32, Key>> coming; // time of arrival, packet
+    unsigned sent = 0;                      // packets
+};
+
+// A vehicle or a ground: a communicator with two links, the second to the one that it may call.
+struct Craft {
+    Craft(World& w, U16 address) : world(w), random(testSeed() + w.crafts.size()) {
+        static const Link_Port linkPort = {transmit, draw,    onMessage, onChannel,
+                                           onState,  nullptr, nullptr};
+        static const XBeeATEndpoint_Port port = {
+            [](void*) {},
+            [](void*) {},
+            [](void*) {},
+            [](void* c, Ice_Int ms) { return static_cast<Craft*>(c)->wait(ms); },
+            [](void* c) { static_cast<Craft*>(c)->isSignalled = true; },
+            [](void* c) { return static_cast<Craft*>(c)->world.ms; }};
+        for (End& end : ends) {
+            end.craft = this;
+            end.first = &end == ends ? 0 : LINK_CHANNELS;
+            Link_init(&end.link, &linkPort, &end, 1440);
+        }
+        Ice_initialize(&ic);
+        XBeeATEndpoint_init(&ic, "xbee-at", &endpoint, &ends[0].link, address, &port, this);
+        Ice_Communicator_createObjectAdapterWithEndpoints(&ic, "A", "xbee-at", &adapter);
+        Ice_ObjectAdapter_activate(&adapter);
+        servant.object.dispatch = [](Ice_ObjectPtr object, const Ice_Current*, Ice_InputStreamPtr,
+                                     Ice_OutputStreamPtr) {
+            ++reinterpret_cast<Servant*>(object)->calls;
+            return ICE_OK;
+        };
+        Ice_ObjectAdapter_add(&adapter, &servant.object, "it");
+        w.crafts.push_back(this);
+    }
+    // Has a link to the party of this address.
+    void meets(Craft& other, U16 address, int place, bool isGround, const Key& key, U32 side) {
+        XBeeATEndpoint_addGround(&endpoint, 1, &ends[1].link, address);
+        XBeeATEndpoint_setVehicle(&endpoint, 1, isGround);
+        ends[1].peer = &other.ends[place];
+        other.ends[place].peer = &ends[1];
+        if (!key.empty())
+            Link_setKey(&ends[1].link, 0, key.data(), side);
+    }
+    Ice_ObjectPrx proxy(const char* text, Ice_Int timeoutMs = 10000) {
+        Ice_ObjectPrx prx;
+        EXPECT_EQ(Ice_Communicator_stringToProxy(&ic, text, &prx), ICE_OK);
+        Ice_ObjectPrx_ice_invocationTimeout(&prx, timeoutMs);
+        return prx;
+    }
+    Ice_Status call(const char* text, Ice_Int timeoutMs = 10000) {
+        Ice_ObjectPrx prx = proxy(text, timeoutMs);
+        Ice_InputStreamPtr is = nullptr;
+        (void)Ice_ObjectPrx_begin(&prx, "op", 0);
+        return Ice_ObjectPrx_end(&prx, Ice_ObjectPrx_invoke(&prx, &is));
+    }
+    // Calls without waiting for the reply, which is counted.
+    void callAsync(const char* text) {
+        Ice_ObjectPrx prx = proxy(text);
+        isIdle = false;
+        ASSERT_TRUE(Ice_ObjectPrx_begin(&prx, "op", 0));
+        const auto done = [](void* c, Ice_Status status, Ice_InputStreamPtr) {
+            EXPECT_EQ(status, ICE_OK);
+            ++static_cast<Craft*>(c)->replies;
+            static_cast<Craft*>(c)->isIdle = true;
+        };
+        EXPECT_EQ(Ice_ObjectPrx_invokeAsync(&prx, done, this), ICE_OK);
+    }
+    U32 sessions() { return Link_statistics(&ends[1].link)->sessions; }
+    void advance() {
+        const U32 us = world.ms * 1000;
+        for (End& end : ends) {
+            while (!end.coming.empty() && S32(world.ms - end.coming.front().first) >= 0) {
+                const Key bytes = end.coming.front().second;
+                end.coming.pop_front();
+                Link_receive(&end.link, bytes.data(), U32(bytes.size()), us);
+            }
+            if (end.first && end.peer)
+                XBeeATEndpoint_seek(&endpoint, 1, us);
+            Link_poll(&end.link, us);
+        }
+    }
+    int wait(Ice_Int ms) {
+        isBusy = true;
+        advance(); // the link offers a kept message again
+        for (; ms > 0 && !isSignalled; --ms)
+            world.step();
+        isBusy = false;
+        return std::exchange(isSignalled, false);
+    }
+    static int transmit(void* context, const U8* frame, U32 size) {
+        End& end = *static_cast<End*>(context);
+        ++end.sent;
+        if (end.peer && !end.craft->isAway && !end.peer->craft->isAway)
+            end.peer->coming.emplace_back(end.craft->world.ms + 10, Key(frame, frame + size));
+        return 0;
+    }
+    static U32 draw(void* end) { return static_cast<End*>(end)->craft->random.next(); }
+    static int onMessage(void* context, int channel, const U8* data, U32 size) {
+        End& end = *static_cast<End*>(context);
+        return XBeeATEndpoint_onMessage(&end.craft->endpoint, end.first + channel, data, size);
+    }
+    static void onChannel(void* context, int channel, int isOpen) {
+        End& end = *static_cast<End*>(context);
+        XBeeATEndpoint_onChannel(&end.craft->endpoint, end.first + channel, isOpen);
+    }
+    static void onState(void* context, Link_State state) {
+        End& end = *static_cast<End*>(context);
+        if (state != LINK_STATE_UP)
+            XBeeATEndpoint_onDown(&end.craft->endpoint, end.first / LINK_CHANNELS);
+    }
+
+    struct Servant {
+        Ice_Object object{};
+        unsigned calls = 0;
+    };
+    World& world;
+    Random random;
+    End ends[2];
+    Ice_Communicator ic;
+    XBeeATEndpoint endpoint;
+    Ice_ObjectAdapter adapter;
+    Servant servant;
+    unsigned replies = 0;
+    bool isAway = false, isIdle = true, isBusy = false, isSignalled = false;
+};
+
+void World::step() {
+    ++ms;
+    for (Craft* craft : crafts)
+        craft->advance();
+    for (Craft* craft : crafts)
+        while (!craft->isBusy && Ice_Communicator_poll(&craft->ic, 0) == ICE_OK) {
+        }
+    atStep();
+}
+
+// Vehicles 5 and 7, of which 5 has the ground's part, and the ground of 5.
+struct Team : World {
+    explicit Team(const Key& key = {}, const Key& keyOf7 = {}) {
+        five.meets(seven, 7, 1, true, key, LINK_GROUND | 7);
+        seven.meets(five, 5, 1, false, keyOf7.empty() ? key : keyOf7, 7);
+        ground.meets(five, 5, 0, true, {}, 0);
+    }
+    const std::unique_ptr<Craft> made[3] = {std::make_unique<Craft>(*this, 0),
+                                            std::make_unique<Craft>(*this, 5),
+                                            std::make_unique<Craft>(*this, 7)};
+    Craft &ground = *made[0], &five = *made[1], &seven = *made[2];
+};
+
+const Key theKey(LINK_KEY_BYTES, 0x33), otherKey(LINK_KEY_BYTES, 0x44);
+
+TEST(Fellows, CallEachOtherTwowayAndOnewayInOneSessionWithAKeyAndWithout) {
+    for (const Key& key : {Key(), theKey}) {
+        Team world(key);
+        world.run(5000);
+        EXPECT_EQ(world.five.ends[1].sent + world.seven.ends[1].sent, 0u) << "nobody calls yet";
+        EXPECT_EQ(world.five.call("it:xbee-at -a 7"), ICE_OK);
+        EXPECT_EQ(world.seven.call("it:xbee-at -a 0x0005"), ICE_OK);
+        EXPECT_EQ(world.five.call("it -o:xbee-at -a 7"), ICE_OK);
+        EXPECT_EQ(world.seven.call("it -o:xbee-at -a 5"), ICE_OK);
+        world.run(1000);
+        EXPECT_EQ(world.seven.servant.calls, 2u);
+        EXPECT_EQ(world.five.servant.calls, 2u);
+        EXPECT_EQ(world.five.sessions(), 1u);
+    }
+}
+
+TEST(Fellows, WhoBeginAtOnceAreBothAnswered) {
+    for (U32 offset = 0; offset < 60; ++offset) {
+        Team world(offset % 2 ? theKey : Key());
+        for (Craft* craft : {&world.five, &world.seven}) {
+            const Ice_Byte to = craft == &world.five ? 7 : 5;
+            const Ice_Byte at[] = {0x58, 0x41, 13, 0, 0, 0, 1, 1, to, 0, 255, 0, 0, 0, 0};
+            const Ice_Transport& radio = craft->ic.transports[0];
+            int connection = -1;
+            EXPECT_EQ(radio.endpoint->connect(radio.context, at, sizeof at, &connection), ICE_OK);
+            EXPECT_EQ(connection, to == 7 ? 4 : 7);
+            world.run(offset / 2);
+        }
+        world.run(5000);
+        EXPECT_EQ(world.five.ic.connections[4].state, ICE_CONNECTION_OPEN) << offset;
+        EXPECT_EQ(world.seven.ic.connections[7].state, ICE_CONNECTION_OPEN) << offset;
+        world.five.callAsync("it:xbee-at -a 7");
+        world.seven.callAsync("it:xbee-at -a 5");
+        world.run(1000);
+        EXPECT_EQ(world.five.replies, 1u) << offset;
+        EXPECT_EQ(world.seven.replies, 1u) << offset;
+    }
+}
+
+TEST(Fellows, OneThatIsAwayEndsTheCallInTimeAndTheGroundIsServedMeanwhile) {
+    for (const Key& key : {Key(), theKey}) {
+        Team world(key);
+        world.seven.isAway = true;
+        EXPECT_EQ(world.ground.call("it:xbee-at -a 5"), ICE_OK);
+        world.atStep = [&] {
+            if (world.ground.isIdle)
+                world.ground.callAsync("it:xbee-at -a 5");
+        };
+        for (const char* to : {"it:xbee-at -a 7", "it -o:xbee-at -a 7"}) {
+            const unsigned replies = world.ground.replies;
+            const U32 since = world.ms;
+            EXPECT_EQ(world.five.call(to, 3000), ICE_TIMEOUT);
+            EXPECT_NEAR(world.ms - since, 3000, 20);
+            EXPECT_GT(world.ground.replies - replies, 60u) << "each takes two packets of 10 ms";
+        }
+        for (int n = 0; n < 50; ++n)
+            EXPECT_EQ(world.five.call("it:xbee-at -a 7", 200), ICE_TIMEOUT);
+        EXPECT_LE(world.five.ends[1].sent, 11u) << "HELLO each 2.4 s, however many call it";
+        world.run(11000);
+        const unsigned sent = world.five.ends[1].sent;
+        world.run(20000);
+        EXPECT_EQ(world.five.ends[1].sent, sent) << "nobody calls it any more";
+        world.seven.isAway = false;
+        EXPECT_EQ(world.five.call("it:xbee-at -a 7"), ICE_OK);
+        EXPECT_EQ(world.seven.servant.calls, 1u) << "what was given up is not carried out later";
+    }
+}
+
+TEST(Fellows, OneThatGoesInMidCallIsSoughtAgainOnlyByACall) {
+    Team world(theKey);
+    EXPECT_EQ(world.five.call("it:xbee-at -a 7"), ICE_OK);
+    world.seven.isAway = true;
+    EXPECT_EQ(world.five.call("it:xbee-at -a 7", 2000), ICE_TIMEOUT);
+    world.run(60000);
+    const unsigned sent = world.five.ends[1].sent;
+    world.run(60000);
+    EXPECT_EQ(world.five.ends[1].sent, sent);
+    world.seven.isAway = false;
+    EXPECT_EQ(world.five.call("it:xbee-at -a 7"), ICE_OK);
+    EXPECT_EQ(world.five.sessions(), 2u);
+}
+
+TEST(Fellows, WithoutTheKeyThereIsNoSession) {
+    Team world(theKey, otherKey);
+    EXPECT_EQ(world.five.call("it:xbee-at -a 7"), ICE_TIMEOUT);
+    EXPECT_EQ(world.seven.call("it:xbee-at -a 5"), ICE_TIMEOUT);
+    EXPECT_EQ(world.five.sessions() + world.seven.sessions(), 0u);
+}
+
+TEST(Fellows, WhoHasNoLinkIsNoEndpointAndNeverTheGround) {
+    Team world;
+    EXPECT_EQ(world.ground.call("it:xbee-at -a 5"), ICE_OK);
+    for (const char* to : {"it:xbee-at -a 9", "it:xbee-at -a 5", "it -o:xbee-at -a 0xfff0"})
+        EXPECT_EQ(world.five.call(to), ICE_NO_ENDPOINT) << to;
+    EXPECT_EQ(world.five.call("it:xbee-at -a 0"), ICE_OK);
+    EXPECT_EQ(world.ground.servant.calls, 1u);
+}
+
+} // namespace

@@ -7,10 +7,12 @@
 // list of keys is a header alone.
 
 #include "elf_image.h"
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <iostream>
 #include <iterator>
 #include <limits>
@@ -28,28 +30,6 @@ extern "C" {
 namespace {
 
 using Bytes = std::vector<uint8_t>;
-
-constexpr char usage[] =
-    "Usage: pack_update image NEW.elf VERSION KEYFILE NEW.update\n"
-    "       pack_update bitstream NEW.bit VERSION KEYFILE NEW.update\n"
-    "       pack_update vehicle LOADER.elf FIRMWARE.elf VERSION KEYFILE FLASH.bin\n"
-    "       pack_update fpga GOLDEN.bit VERSION KEYFILE FLASH.bin\n"
-    "       pack_update public KEYFILE KEY.pub\n"
-    "       pack_update keys NUMBER KEYFILE KEY.pub [SECOND.pub] NEW.update\n"
-    "       pack_update stamp FIRMWARE.elf\n"
-    "image, bitstream: signs firmware, or the FPGA's .bit or .bin, to be sent to a vehicle.\n"
-    "vehicle: the flash of a new vehicle, with boot loader, public key and a confirmed firmware.\n"
-    "fpga: the FPGA's, with the bitstream that is always there. KEYFILE is the private key, which "
-    "is made,\n"
-    "and kept from other users, if there is none. VERSION: 1 to 4294967294.\n"
-    "public: writes a key's public half. keys: signs a vehicle's next list of public keys, which "
-    "has one or\n"
-    "two; NUMBER is the last one's and 1. A new vehicle's has number 1, KEYFILE's and --second's.\n"
-    "stamp: writes a firmware's checksum into its file, as the build does.\n"
-    "Behind these: --vendor N and --board N (1 and 1), which vehicle and image have in common;\n"
-    "--second KEY.pub: a second key, of a new vehicle;\n"
-    "--needs VERSION: of the bitstream that a firmware needs, or the firmware that a bitstream "
-    "does.\n";
 
 uint32_t board[2] = {1, 1}, needs = 0; // of the command line
 std::string second;
@@ -273,46 +253,55 @@ void fillVehicle(const std::string& loader, const std::string& elf, uint32_t ver
 } // namespace
 
 int main(int argc, char** argv) {
-    std::vector<std::string> word(argv + 1, argv + argc);
+    CLI::App app{
+        "Signs what is sent to a vehicle, and fills the flash of a new one. KEYFILE is the "
+        "private key,\nwhich is made, and kept from other users, if there is none. "
+        "VERSION: 1 to 4294967294."};
+    std::vector<std::string> word;
+    const auto add = [&](const char* name, const char* names, int least, int most, const char* what,
+                         const std::function<void()>& run) {
+        CLI::App* command = app.add_subcommand(name, what)->fallthrough();
+        command->add_option("words", word, names)->required()->expected(least, most);
+        command->callback(run);
+    };
+    const auto number = [&](const char* name, uint32_t& to, const char* what) {
+        app.add_option_function<std::string>(
+            name, [&to](const std::string& text) { to = versionOf(text); }, what);
+    };
+    add("image", "NEW.elf VERSION KEYFILE NEW.update", 4, 4, "signs firmware",
+        [&] { packImage(word[0], versionOf(word[1]), word[2], word[3]); });
+    add("bitstream", "NEW.bit VERSION KEYFILE NEW.update", 4, 4, "signs the FPGA's .bit or .bin",
+        [&] { packBitstream(word[0], versionOf(word[1]), word[2], word[3]); });
+    add("vehicle", "LOADER.elf FIRMWARE.elf VERSION KEYFILE FLASH.bin", 5, 5,
+        "fills a new vehicle's flash: boot loader, public key, a confirmed firmware",
+        [&] { fillVehicle(word[0], word[1], versionOf(word[2]), word[3], word[4]); });
+    add("fpga", "GOLDEN.bit VERSION KEYFILE FLASH.bin", 4, 4,
+        "fills the FPGA's flash, with the bitstream that is always there",
+        [&] { fillFpga(word[0], versionOf(word[1]), word[2], word[3]); });
+    add("public", "KEYFILE KEY.pub", 2, 2, "writes a key's public half",
+        [&] { savePublic(word[0], word[1]); });
+    add("keys", "NUMBER KEYFILE KEY.pub [SECOND.pub] NEW.update", 4, 5,
+        "signs the next list of public keys; NUMBER is the last one's and 1, of a new vehicle 1",
+        [&] {
+            std::vector<Bytes> open;
+            std::transform(word.begin() + 2, word.end() - 1, std::back_inserter(open), readPublic);
+            save(word.back(), listOf(open, versionOf(word[0]), Keys(word[1])));
+        });
+    add("stamp", "FIRMWARE.elf", 1, 1,
+        "writes a firmware's checksum into its file, as the build does",
+        [&] { ElfImage(word[0]).stamp(); });
+    number("--vendor", board[0], "which vehicle and image have in common (1)");
+    number("--board", board[1], "the same (1)");
+    number("--needs", needs,
+           "version of the bitstream that a firmware needs, or the firmware that a bitstream does");
+    app.add_option("--second", second, "KEY.pub: a second key, of a new vehicle");
+    app.require_subcommand(1);
     try {
-        while (word.size() > 2 && word[word.size() - 2].rfind("--", 0) == 0) {
-            const std::string option = word[word.size() - 2];
-            uint32_t* to = option == "--vendor"  ? &board[0]
-                           : option == "--board" ? &board[1]
-                           : option == "--needs" ? &needs
-                                                 : nullptr;
-            if (option == "--second")
-                second = word.back();
-            else if (!to)
-                fail("there is no option '" + option + "'");
-            else
-                *to = versionOf(word.back());
-            word.resize(word.size() - 2);
-        }
         if (sodium_init() < 0)
             fail("libsodium does not start");
-        if (word.size() == 5 && word[0] == "image")
-            packImage(word[1], versionOf(word[2]), word[3], word[4]);
-        else if (word.size() == 5 && word[0] == "bitstream")
-            packBitstream(word[1], versionOf(word[2]), word[3], word[4]);
-        else if (word.size() == 5 && word[0] == "fpga")
-            fillFpga(word[1], versionOf(word[2]), word[3], word[4]);
-        else if (word.size() == 3 && word[0] == "public")
-            savePublic(word[1], word[2]);
-        else if (word.size() == 2 && word[0] == "stamp")
-            ElfImage(word[1]).stamp();
-        else if ((word.size() == 5 || word.size() == 6) && word[0] == "keys") {
-            std::vector<Bytes> open;
-            for (size_t i = 3; i + 1 < word.size(); ++i)
-                open.push_back(readPublic(word[i]));
-            save(word.back(), listOf(open, versionOf(word[1]), Keys(word[2])));
-        } else if (word.size() == 6 && word[0] == "vehicle")
-            fillVehicle(word[1], word[2], versionOf(word[3]), word[4], word[5]);
-        else {
-            const bool asked = word.size() == 1 && word[0] == "--help";
-            (asked ? std::cout : std::cerr) << usage;
-            return asked ? 0 : 2;
-        }
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+        return app.exit(e) ? 2 : 0;
     } catch (const std::exception& e) {
         std::cerr << "pack_update: error: " << e.what() << "\n";
         return 1;

@@ -7,10 +7,11 @@
 
 extern "C" {
 #include "paper.h"
+#include "uav.h"
 }
 
 UavMachine::Firmware simulatedFirmware(const std::vector<uint8_t>& modemKey, bool isSecure) {
     if (!modemKey.empty() || isSecure)
         throw std::runtime_error("--key, --modem-key: the paper's firmware talks in the clear");
-    return {PAPER_start, PAPER_irqHandler, [] { return PAPER_irqEnabled() != 0; }};
+    return {PAPER_start, UAV_irqHandler, [] { return PAPER_irqEnabled() != 0; }};
 }

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * boot: starts a program that is one main task, the radio task, and the modem's interrupt.
+ * boot: starts a program that is one main task and the radio task.
  */
-#include "map_regs.h"
 #include "paper.h"
-#include "radio.h"
-#include "system_regs.h"
 #include "uav.h"
 #include "uav_private.h"
 
@@ -14,12 +11,9 @@
 static OS_STK stack[STACK_WORDS], radioStack[STACK_WORDS];
 static U8 irqEnabled;
 
-void PAPER_irqHandler(void) {
-    U32 lines = FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_IRQ_LO);
-    if (lines >> MAP_SLOT_MODEM & 1U) {
-        (void)Radio_interrupt();
-        (void)OSSemPost(uav_radioWork);
-    }
+/* The program's own servant of its core waits for no interrupt. */
+void UAV_coresInterrupt(const U32 lines[2]) {
+    (void)lines;
 }
 
 int PAPER_irqEnabled(void) {

@@ -16,6 +16,4 @@ void PAPER_useRadio(Ice_CommunicatorPtr ic);
 /* Creates the task; call between OSInit and OSStart. */
 void PAPER_start(const FSMC_Port* port, void* context);
 
-/* Handles the FPGA's interrupt, which is a level. */
-void PAPER_irqHandler(void);
-int PAPER_irqEnabled(void);
+int PAPER_irqEnabled(void); /* the interrupt itself is handled by UAV_irqHandler */

@@ -3,10 +3,7 @@
  * uav: tasks of the application: server, client, radio.
  */
 #include "uav.h"
-#include "map_regs.h"
-#include "modem_regs.h"
 #include "radio.h"
-#include "system_regs.h"
 #include "uav_keys.h"
 #include "uav_private.h"
 
@@ -150,17 +147,6 @@ static void appMainTask(void* argument) {
     Ice_Communicator_waitForShutdown(&uav_ic);
     for (;;)
         OSTimeDly(OS_TICKS_PER_SEC);
-}
-
-void UAV_irqHandler(void) {
-    U32 lines[2];
-    lines[0] = FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_IRQ_LO);
-    lines[1] = MAP_SLOT_COUNT > 32U ? FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_IRQ_HI) : 0U;
-    if (lines[0] >> MAP_SLOT_MODEM & 1U) {
-        (void)Radio_interrupt();
-        (void)OSSemPost(uav_radioWork);
-    }
-    UAV_coresInterrupt(lines);
 }
 
 int UAV_irqEnabled(void) {

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_radio: the radio task, its links with one ground or two, of which the second may be another
- * vehicle, and what IceC's endpoint needs from it.
+ * uav_radio: the FPGA's interrupt, the radio task, its links with one ground or two, of which the
+ * second may be another vehicle, and what IceC's endpoint needs from it.
  */
+#include "map_regs.h"
 #include "radio.h"
+#include "system_regs.h"
 #include "uav.h"
 #include "uav_keys.h"
 #include "uav_private.h"
@@ -287,6 +289,17 @@ void UAV_radioTask(void* argument) {
         wait = wait > 1000000U ? OS_TICKS_PER_SEC : wait * OS_TICKS_PER_SEC / 1000000U;
         OSSemPend(uav_radioWork, wait ? wait : 1U, &error);
     }
+}
+
+void UAV_irqHandler(void) {
+    U32 lines[2];
+    lines[0] = FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_IRQ_LO);
+    lines[1] = MAP_SLOT_COUNT > 32U ? FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_IRQ_HI) : 0U;
+    if (lines[0] >> MAP_SLOT_MODEM & 1U) {
+        (void)Radio_interrupt();
+        (void)OSSemPost(uav_radioWork);
+    }
+    UAV_coresInterrupt(lines);
 }
 
 static OS_EVENT* callDone[ICE_CALLS + 1]; /* the last is for tasks that want to receive */

@@ -231,13 +231,10 @@ def main():
     except KeyboardInterrupt:
         return 130
     except Ice.ObjectNotExistException:
-        print("probe: the vehicle has no probe '%s': ip/cores.list needs its line, the chip and "
-              "the firmware a build"
-              % signals.identity, file=sys.stderr)
-        return 1
+        sys.exit("probe: the vehicle has no probe '%s': ip/cores.list needs its line, the chip and "
+                 "the firmware a build" % signals.identity)
     except (Failed, Ice.Exception, OSError) as e:
-        print("probe: %s" % e, file=sys.stderr)
-        return 1
+        sys.exit("probe: %s" % e)
     finally:
         if communicator:
             communicator.destroy()

@@ -96,12 +96,10 @@ def main():
         change(args)
         return 0
     except Ice.UserException as e:
-        print("change_key: %s" % ("the vehicle flies: it takes no key before it has landed"
-                                  if e.ice_id() == "::Autopilot::InFlight" else e), file=sys.stderr)
-        return 1
+        sys.exit("change_key: %s" % ("the vehicle flies: it takes no key before it has landed"
+                                     if e.ice_id() == "::Autopilot::InFlight" else e))
     except (Ice.Exception, provide_key.Failed, RuntimeError, OSError) as e:
-        print("change_key: %s" % e, file=sys.stderr)
-        return 1
+        sys.exit("change_key: %s" % e)
 
 
 if __name__ == "__main__":

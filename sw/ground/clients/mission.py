@@ -429,15 +429,12 @@ def main():
     except KeyboardInterrupt:
         return 130
     except Ice.ObjectNotExistException as e:
-        print("mission: " + explain(communicator, args, e), file=sys.stderr)
-        return 1
+        sys.exit("mission: " + explain(communicator, args, e))
     except Ice.TimeoutException:
-        print("mission: no answer for %d s: is the UAV on, in reach, and has it the same key?" %
-              args.patience, file=sys.stderr)
-        return 1
+        sys.exit("mission: no answer for %d s: is the UAV on, in reach, and has it the same key?" %
+                 args.patience)
     except (Ice.Exception, RuntimeError, OSError, subprocess.CalledProcessError) as e:
-        print("mission: %s" % e, file=sys.stderr)
-        return 1
+        sys.exit("mission: %s" % e)
     finally:
         communicator.destroy()
 

@@ -128,8 +128,7 @@ def main():
                "has this key, and no other"))
         return 0
     except (Failed, OSError, termios.error) as e:
-        print("provide_key: %s" % e, file=sys.stderr)
-        return 1
+        sys.exit("provide_key: %s" % e)
     except KeyboardInterrupt:
         return 130
 

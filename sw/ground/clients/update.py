@@ -287,12 +287,9 @@ def main():
     except KeyboardInterrupt:
         return 130
     except Ice.UserException as e:
-        print("update: %s" % (IN_FLIGHT if e.ice_id() == "::Update::InFlight" else e),
-              file=sys.stderr)
-        return 1
+        sys.exit("update: %s" % (IN_FLIGHT if e.ice_id() == "::Update::InFlight" else e))
     except (Failed, Ice.Exception, OSError) as e:
-        print("update: %s" % e, file=sys.stderr)
-        return 1
+        sys.exit("update: %s" % e)
     finally:
         if communicator:
             communicator.destroy()

@@ -10,7 +10,8 @@ add_custom_command(OUTPUT ${GHDL}
 add_custom_target(ghdl DEPENDS ${GHDL})
 
 # icesoc_vhdl(NAME entity SOURCES file... [REGS block...] [LIBRARY name] [GENERICS name=value...]):
-# ${GEN_DIR}/<entity>.v, target <entity>_verilog. The files come in any order.
+# ${GEN_DIR}/<entity>.v, target <entity>_verilog. The files come in any order. GHDL names them as it
+# gets them: relative to the tree, so that copies of it elsewhere get the same Verilog.
 function(icesoc_vhdl)
   cmake_parse_arguments(A "" "NAME;LIBRARY" "SOURCES;REGS;GENERICS" ${ARGN})
   list(TRANSFORM A_GENERICS PREPEND -g)
@@ -24,12 +25,21 @@ function(icesoc_vhdl)
     list(APPEND packages ${GEN_DIR}/${r}_regs_pkg.vhd)
     list(APPEND deps regmap_${r})
   endforeach()
+  set(named)
+  foreach(file IN LISTS packages A_SOURCES)
+    cmake_path(IS_PREFIX CMAKE_SOURCE_DIR "${file}" NORMALIZE inside)
+    if(inside)
+      cmake_path(RELATIVE_PATH file BASE_DIRECTORY ${CMAKE_SOURCE_DIR})
+    endif()
+    list(APPEND named ${file})
+  endforeach()
   set(work ${CMAKE_CURRENT_BINARY_DIR}/ghdl_${A_NAME})
   file(MAKE_DIRECTORY ${work})
   add_custom_command(OUTPUT ${GEN_DIR}/${A_NAME}.v
     COMMAND ${CMAKE_COMMAND} -E env VHDL_LIBRARY=${A_LIBRARY} "VHDL_GENERICS=${generics}"
             ${CMAKE_SOURCE_DIR}/cmake/vhdl_to_verilog.sh ${GHDL} ${work} ${A_NAME}
-            ${GEN_DIR}/${A_NAME}.v ${packages} ${A_SOURCES}
+            ${GEN_DIR}/${A_NAME}.v ${named}
+    WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}
     DEPENDS ${GHDL} ghdl ${packages} ${A_SOURCES} ${deps}
       ${CMAKE_SOURCE_DIR}/cmake/vhdl_to_verilog.sh
     VERBATIM COMMENT "VHDL to Verilog: ${A_NAME}")

@@ -93,6 +93,9 @@ class Cases(Script):
         self.run_program()
         # A checkout elsewhere, of the same sources, has the same netlists.
         self.lacks(str(Path.cwd()), file=next(Path("out/cache").glob("store.xc6s.*.ys")))
+        # Nor has its generated Verilog, by which the accepted figures know their sources.
+        for file in (PROGRAM.parents[1] / "gen").glob("*.v"):
+            self.lacks(re.escape(f"{TREE}/"), file=file)
         # The clock, and from where to where it goes in other orders; and the LUTs.
         self.has(r"^wide .* [0-9.]+ \([0-9.]*-[0-9.]*\) +[0-9]+-[0-9]+$",
                  r"nine of ten of [0-9]+ published reports of map, of [0-9]+ of TRCE",

@@ -110,6 +110,49 @@ TEST(Grounds, TwoAreServedAtOnceEachUnderItsOwnKeyAndNobodyElse) {
         << "the stranger's, on the pilot's link";
 }
 
+TEST(Fellow, OneThatIsAwayCostsLittleOfTheAirAndTheVehicleServesItsGroundMeanwhile) {
+    const std::vector<uint8_t> key(LINK_KEY_BYTES, 0x11), keyOfTwo(LINK_KEY_BYTES, 0x22);
+    GroundAndChip world;
+    world.ground.key = key;
+    world.ground.start();
+    world.soc.reset(true);
+    world.provide(48, 32, [](uint32_t i) { return static_cast<uint8_t>(i * 37); });
+    // After a frame the vehicle asks its fellow.
+    const std::vector<Ground::Call> frame = {{"hwengine1", "startProcessing"},
+                                             {"hwengine1", "getResult"}};
+    std::vector<Ground::Call> calls(20, {"hwengine1", "ice_ping", 2});
+    calls.insert(calls.begin(), frame.begin(), frame.end());
+    uint64_t since = 0, airNs = 0;
+    auto script = inOrder({world.ground.calling(frame),
+                           [&] {
+                               since = world.soc.now();
+                               airNs = world.air.counters().airNs;
+                               return true;
+                           },
+                           [&] { return world.soc.now() - since > 8'000'000'000; },
+                           [&] {
+                               airNs = world.air.counters().airNs - airNs;
+                               since = world.soc.now();
+                               world.ground.replies.clear();
+                               return true;
+                           },
+                           world.ground.calling(calls)});
+    bool done = false;
+    UavMachine machine(world.soc, [&] {
+        done = script();
+        return !done && world.within(30);
+    });
+    machine.board.provide(key);
+    machine.board.provideGround(UAV_FELLOW | 2, keyOfTwo);
+    machine.run();
+    EXPECT_TRUE(done);
+    EXPECT_LT(double(world.soc.now() - since) / 1e9, 22 * 0.045) << "the ground was delayed";
+    const double share = double(airNs) / 8e9;
+    std::printf("a fellow that is away takes %.2f %% of the air\n", 100 * share);
+    EXPECT_LT(share, 0.02);
+    EXPECT_GT(share, 0.004) << "it is not sought: the idle sessions take 0.0015";
+}
+
 TEST_F(Uav, TheSameSeedGivesTheSameRun) {
     fly(ground.pinging(5), 20);
     GroundAndChip again;

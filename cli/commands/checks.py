@@ -149,7 +149,8 @@ def soak(values):
     """endurance of the radio: messages and stock Ice's calls, bad weather, reboots, noise
 
     Half of the time it is the link alone (half of that attacked), then stock Ice through the
-    plugin to IceC on the chip's RTL.
+    plugin to IceC on the chip's RTL. Ten vehicles and two grounds fly as many minutes of simulated
+    time, which take a twentieth of a processor's.
     """
     build = configured(values, "soak", "test_chip_soak", "test_engine", "test_modem_soak",
                        "test_link")
@@ -157,6 +158,8 @@ def soak(values):
     link = [build / "tests/soak/soak", "--minutes", values.minutes / 4, "--seed", values.seed]
     run(link)
     run([*link, "--attacked"])
+    run([build / "tests/soak/soak", "--seconds", 60 * values.minutes, "--seed", values.seed,
+         "--vehicles", 10, "--grounds", 2])
     run([build / "tests/sw/ground/chip/test_chip_soak", "--gtest_brief=1"],
         env={**seed, "SOAK_SECONDS": 30 * values.minutes})
     run([build / "tests/sw/link/test_link", "--gtest_brief=1", "--gtest_filter=*TenMillion*"],

@@ -35,8 +35,9 @@ public:
         air_.transmit(&modem_, packet, now);
     }
     // Does one of the things that are possible without a key, drawn at random: repeats a packet,
-    // recent or old; reflects it to its sender; changes a bit; cuts it; joins two; makes up
-    // handshakes, resets, ends, acknowledgements and data, with tags or CRCs; makes noise.
+    // recent or old; reflects it to its sender, or sends it to another in another's name; changes a
+    // bit; cuts it; joins two; makes up handshakes, resets, ends, acknowledgements and data, with
+    // tags or CRCs; makes noise.
     void doMischief(uint64_t now) {
         if (heard_.empty() || random_.below(4) == 0) {
             const bool up = random_.below(2);
@@ -46,7 +47,7 @@ public:
         Bytes bytes = packet.bytes;
         uint16_t from = packet.from, to = packet.to;
         const auto size = static_cast<uint32_t>(bytes.size());
-        switch (random_.below(6)) {
+        switch (random_.below(7)) {
         case 0:
             std::swap(from, to);
             break;
@@ -62,6 +63,10 @@ public:
             bytes.insert(bytes.begin(), more.begin(), more.end());
             break;
         }
+        case 4:
+            from = recalled().from;
+            to = recalled().to;
+            break;
         default: // unchanged
             break;
         }

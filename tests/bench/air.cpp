@@ -54,7 +54,7 @@ private:
             o.key = key;
         return o;
     }
-    void onMessage(int channel, const U8* message, U32 size) override {
+    int onMessage(size_t, int channel, const U8* message, U32 size) override {
         static const U8 answer[LINK_MAX_PAYLOAD] = {1};
         if (channel == pictures) {
             const std::vector<U8> expected(size, static_cast<U8>(received_++));
@@ -62,12 +62,13 @@ private:
                 throw std::runtime_error("a message was lost, doubled or changed");
             bytes += size;
             lastAt = now_;
-            return;
+            return 0;
         }
         ++called;
         calledAt = now_;
         if (echoSize)
             Link_send(link(), channel, answer, echoSize, 0);
+        return 0;
     }
     unsigned sent_ = 0, received_ = 0; // pictures
 };

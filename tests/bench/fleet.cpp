@@ -14,140 +14,74 @@ Figures figures("Calls a second of several vehicles on one channel.");
 
 constexpr U32 callBytes = 3; // setParameterA(short), its head compressed
 
-// A modem and the links that it carries, one for each station that it talks to. A ground calls on
-// each link as soon as the call before is answered; a vehicle answers with the call.
-class Station {
+// A ground calls on each of its links as soon as the call before is answered; a vehicle answers
+// with the call.
+class Station : public ModemEnd {
 public:
     Station(RfChannel& air, int address, bool isGround, bool isKeyed,
             const std::vector<int>& targets, uint64_t seed)
-        : modem_(line_, air, options(address, isGround)), isGround_(isGround), random_(seed) {
-        static const Link_Port port = {
-            [](void* c, const U8* f, U32 n) { return of(c).station.transmit(of(c), f, n); },
-            [](void* c) { return of(c).station.random_.next(); },
-            [](void* c, int, const U8* m, U32 n) { return of(c).station.take(of(c), m, n); },
-            [](void*, int, int) {},
-            [](void*, Link_State) {},
-            nullptr,
-            nullptr};
-        for (int target : targets) {
-            peers_.push_back(std::make_unique<Peer>(Peer{*this, target}));
-            Link* link = peers_.back()->link.get();
-            Link_init(link, &port, peers_.back().get(), 1440);
-            const int vehicle = isGround ? target : address; // each has a key of its own
+        : ModemEnd(air, options(address, isGround), seed, targets), isGround_(isGround),
+          calls_(targets.size()) {
+        for (size_t i = 0; i < peers(); ++i) {
+            const int vehicle = isGround ? targets[i] : address; // each has a key of its own
             const std::vector<U8> key(LINK_KEY_BYTES, static_cast<U8>(vehicle));
             if (isKeyed)
-                Link_setKey(link, 0, key.data(),
+                Link_setKey(link(i), 0, key.data(),
                             static_cast<U32>(vehicle) | (isGround ? LINK_GROUND : 0));
-            Link_expectAnswers(link, mostWaiting());
             if (isGround)
-                Link_start(link, 0);
+                Link_start(link(i), 0);
         }
     }
     uint64_t advance(uint64_t now) {
-        now_ = now;
-        modem_.advance(now);
-        if (now >= nextPoll_ || !line_.received.empty())
-            work(static_cast<U32>(now / 1000));
-        return std::min(modem_.nextEvent(), nextPoll_);
+        for (size_t i = 0; calls && isGround_ && i < peers(); ++i)
+            call(i);
+        return ModemEnd::advance(now);
     }
-    bool isUp() const {
-        return std::all_of(peers_.begin(), peers_.end(), [](const auto& p) {
-            return Link_state(p->link.get()) == LINK_STATE_UP;
-        });
+    bool areUp() const {
+        for (size_t i = 0; i < peers(); ++i)
+            if (!isUp(i))
+                return false;
+        return true;
     }
     std::vector<double> times; // of calls, in ms
     bool calls = false;
 
 private:
-    struct Peer {
-        Station& station;
-        int target;
-        std::unique_ptr<Link> link{new Link};
-        uint64_t airUs = 0, calledAt = 0;
-        U16 calls = 0;
+    struct Call {
+        uint64_t at = 0;
+        U16 number = 0;
         bool isOpen = false, isWaiting = false;
     };
-    static Peer& of(void* c) { return *static_cast<Peer*>(c); }
     static XBee::Options options(int address, bool isGround) {
         XBee::Options o = modemOptions(static_cast<unsigned>(address), false, 2, true);
         o.set["DL"] = 0;
         o.set["BD"] = isGround ? 7 : 250000;
         return o;
     }
-    unsigned mostWaiting() const { return isGround_ ? 3 : 2; }
-    void work(U32 us) {
-        api_.feed(
-            line_.received.data(), line_.received.size(),
-            [&](int source, const U8* data, size_t count) {
-                for (auto& p : peers_)
-                    if (p->target == source)
-                        Link_receive(p->link.get(), data, static_cast<U32>(count), us);
-            },
-            [&](int target, bool isThere) {
-                for (auto& p : peers_)
-                    if (p->target == target)
-                        Link_answer(p->link.get(), isThere, us);
-            });
-        line_.received.clear();
-        std::vector<Peer*> order;
-        for (auto& p : peers_)
-            order.push_back(p.get());
-        std::sort(order.begin(), order.end(),
-                  [](const Peer* a, const Peer* b) { return a->airUs < b->airUs; });
-        U32 wait = 1000;
-        for (Peer* p : order) {
-            call(*p);
-            Link_poll(p->link.get(), us);
-            wait = std::min(wait, Link_deadline(p->link.get(), us));
-        }
-        nextPoll_ = now_ + wait * 1000ull + 100'000;
-    }
-    void call(Peer& p) {
-        if (!isGround_ || p.isWaiting || !calls)
+    void call(size_t peer) {
+        Call& c = calls_[peer];
+        if (c.isWaiting)
             return;
-        p.isOpen = p.isOpen || Link_openChannel(p.link.get(), 0) == LINK_OK;
-        const U16 number = static_cast<U16>(p.calls + 1);
-        const U8 message[callBytes] = {static_cast<U8>(p.target), static_cast<U8>(number),
+        c.isOpen = c.isOpen || Link_openChannel(link(peer), 0) == LINK_OK;
+        const U16 number = static_cast<U16>(c.number + 1);
+        const U8 message[callBytes] = {static_cast<U8>(target(peer)), static_cast<U8>(number),
                                        static_cast<U8>(number >> 8)};
-        if (!p.isOpen || Link_send(p.link.get(), 0, message, callBytes, 0) != LINK_OK)
-            return;
-        p.calls = number;
-        p.isWaiting = true;
-        p.calledAt = now_;
+        if (c.isOpen && Link_send(link(peer), 0, message, callBytes, 0) == LINK_OK)
+            c = {now_, number, true, true};
     }
-    int take(Peer& p, const U8* m, U32 size) {
+    int onMessage(size_t peer, int, const U8* m, U32 size) override {
         if (!isGround_)
-            return Link_send(p.link.get(), 0, m, size, 0) == LINK_FULL;
-        if (m[0] != p.target || (m[1] | m[2] << 8) != p.calls || !p.isWaiting)
+            return Link_send(link(peer), 0, m, size, 0) == LINK_FULL;
+        Call& c = calls_[peer];
+        if (m[0] != target(peer) || (m[1] | m[2] << 8) != c.number || !c.isWaiting)
             throw std::runtime_error("an answer is another vehicle's, or another call's");
-        times.push_back(static_cast<double>(now_ - p.calledAt) / 1e6);
-        p.isWaiting = false;
-        nextPoll_ = now_;
+        times.push_back(static_cast<double>(now_ - c.at) / 1e6);
+        c.isWaiting = false;
+        call(peer);
         return 0;
     }
-    int transmit(Peer& p, const U8* frame, U32 size) {
-        if (api_.unanswered() >= mostWaiting())
-            return 1;
-        U32 rn = Link_randomWait(p.link.get());
-        for (auto& other : peers_)
-            if (Link_state(other->link.get()) == LINK_STATE_UP)
-                rn = std::max(rn, Link_randomWait(other->link.get()));
-        const auto bytes =
-            api_.packet(p.target, frame, size, rn, static_cast<uint32_t>(now_ / 1000));
-        line_.send(bytes.data(), bytes.size(), now_);
-        p.airUs = std::max(p.airUs, airUs_); // as the engine's peers
-        airUs_ = p.airUs;
-        p.airUs += LINK_PACKET_US + size * LINK_BYTE_US;
-        return 0;
-    }
-
-    TimedLine line_;
-    XBee modem_;
     const bool isGround_;
-    XBeeAT::ApiModem api_{false};
-    std::vector<std::unique_ptr<Peer>> peers_;
-    Random random_;
-    uint64_t now_ = 0, nextPoll_ = 0, airUs_ = 0;
+    std::vector<Call> calls_; // of each peer
 };
 
 // So many grounds call so many vehicles, each ground its own ones.
@@ -187,7 +121,7 @@ void measure(const std::string& what, int grounds, int vehicles, bool isKeyed,
             if (now > 120'000'000'000)
                 throw std::runtime_error("no session within two minutes");
             return std::all_of(stations.begin(), stations.end(),
-                               [](const auto& s) { return s->isUp(); });
+                               [](const auto& s) { return s->areUp(); });
         });
         for (auto& s : stations)
             s->calls = true;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_pair: two link layers over two modem models and the air between them, from event to event.
-// Both ends are as the ground's: link layer, pacer, serial line of 111,111 baud.
+// modem_pair: link layers over modem models and the air between them, from event to event. All ends
+// are as the ground's: link layer, pacer, serial line of 111,111 baud.
 
 #pragma once
 
@@ -11,6 +11,7 @@
 #include "serial_line.h"
 #include <algorithm>
 #include <deque>
+#include <memory>
 #include <stdexcept>
 
 extern "C" {
@@ -26,6 +27,10 @@ public:
         out_.insert(out_.end(), bytes, bytes + count);
     }
     size_t waiting() const { return out_.size(); }
+    void forget() { // a host that starts anew
+        out_.clear();
+        received.clear();
+    }
     std::vector<uint8_t> received;
     bool hangs = false; // its host: nothing moves
 
@@ -78,53 +83,81 @@ inline XBee::Options modemOptions(unsigned address, bool encrypts = false,
     return o;
 }
 
-// One end. A derived class handles the messages; it calls Link_setKey before time passes, if at
-// all.
+// One end: a modem and the links that it carries, one for each that it talks to; as the engine
+// does, the one that has had least of the air comes first. A derived class handles the messages; it
+// calls Link_setKey and Link_start.
 class ModemEnd {
 public:
-    ModemEnd(RfChannel& air, const XBee::Options& options, uint64_t seed)
-        : modem(line, air, options), target_(static_cast<int>(modem.parameter("DL"))),
-          random_(seed) {
-        if (modem.parameter("AP"))
-            packets_ = std::make_unique<XBeeAT::ApiModem>(modem.parameter("AP") == 2);
-        else
-            packets_ = std::make_unique<XBeeAT::FramePacer>(
-                target_, 90, options.set.at("EE") ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME, 0);
-        static const Link_Port port = {
-            [](void* c, const U8* f, U32 n) { return self(c).transmit(f, n); },
-            [](void* c) { return self(c).random_.next(); },
-            [](void* c, int channel, const U8* m, U32 n) {
-                self(c).onMessage(channel, m, n);
-                return 0;
-            },
-            [](void*, int, int) {},
-            [](void*, Link_State) {},
-            nullptr,
-            nullptr};
-        Link_init(link(), &port, this, 1440);
-        if (options.set.at("EE"))
-            Link_limitFrame(link(), LINK_MAX_ENCRYPTED);
-        Link_expectAnswers(link(), !packets_->answers() ? 0 : options.set.at("BD") > 7 ? 2 : 3);
+    // `targets`: addresses of those it talks to; none: its modem's DL.
+    ModemEnd(RfChannel& air, const XBee::Options& options, uint64_t seed,
+             std::vector<int> targets = {})
+        : modem(line, air, options), encrypts_(options.set.at("EE") != 0),
+          mostWaiting_(options.set.at("BD") > 7 ? 2 : 3), random_(seed) {
+        if (targets.empty())
+            targets.push_back(static_cast<int>(modem.parameter("DL")));
+        for (int target : targets)
+            peers_.push_back(std::make_unique<Peer>(Peer{*this, peers_.size(), target}));
+        for (auto& p : peers_)
+            order_.push_back(p.get());
+        begin();
     }
     virtual ~ModemEnd() = default;
     ModemEnd(const ModemEnd&) = delete;
     ModemEnd& operator=(const ModemEnd&) = delete;
-    virtual void onMessage(int channel, const U8* message, U32 size) = 0;
+    // A message of the peer with this number in `targets`. Returns 0: it is taken.
+    virtual int onMessage(size_t peer, int channel, const U8* message, U32 size) = 0;
+    virtual void onOutcome(size_t, U32, Link_Outcome) {}
 
-    Link* link() { return link_.get(); }
-    const Link_Statistics& statistics() const { return *Link_statistics(link_.get()); }
-    bool isUp() const { return Link_state(link_.get()) == LINK_STATE_UP; }
+    // Begins as a fresh program, without earlier state.
+    void begin() {
+        static const Link_Port port = {
+            [](void* c, const U8* f, U32 n) { return of(c).end.transmit(of(c), f, n); },
+            [](void* c) { return of(c).end.random_.next(); },
+            [](void* c, int channel, const U8* m, U32 n) {
+                return of(c).end.onMessage(of(c).number, channel, m, n);
+            },
+            [](void*, int, int) {},
+            [](void*, Link_State) {},
+            [](void* c, int, U32 tag, Link_Outcome o) {
+                of(c).end.onOutcome(of(c).number, tag, o);
+            },
+            nullptr};
+        if (modem.parameter("AP"))
+            packets_ = std::make_unique<XBeeAT::ApiModem>(modem.parameter("AP") == 2, mostWaiting_);
+        else
+            packets_ = std::make_unique<XBeeAT::FramePacer>(
+                peers_[0]->target, 90, encrypts_ ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME, 0);
+        line.forget();
+        for (auto& p : peers_) {
+            Link_init(p->link.get(), &port, p.get(), 1440);
+            if (encrypts_)
+                Link_limitFrame(p->link.get(), LINK_MAX_ENCRYPTED);
+            Link_expectAnswers(p->link.get(), packets_->answers() ? mostWaiting_ : 0);
+        }
+    }
+    size_t peers() const { return peers_.size(); }
+    int target(size_t peer) const { return peers_[peer]->target; }
+    Link* link(size_t peer = 0) const { return peers_[peer]->link.get(); }
+    const Link_Statistics& statistics(size_t peer = 0) const {
+        return *Link_statistics(link(peer));
+    }
+    bool isUp(size_t peer = 0) const { return Link_state(link(peer)) == LINK_STATE_UP; }
     // Returns the time of its next call.
     uint64_t advance(uint64_t now) {
         now_ = now;
         modem.advance(now);
         write();
         if (now >= nextPoll_ || !line.received.empty()) {
-            const U32 us = static_cast<U32>(now / 1000);
+            const U32 us = this->us();
             receive(us);
-            Link_poll(link(), us);
-            nextPoll_ =
-                now + std::min(Link_deadline(link(), us), longestRestUs) * 1000ull + 100'000;
+            U32 wait = longestRestUs;
+            std::sort(order_.begin(), order_.end(),
+                      [](const Peer* a, const Peer* b) { return a->airUs < b->airUs; });
+            for (Peer* p : order_) {
+                Link_poll(p->link.get(), us);
+                wait = std::min(wait, Link_deadline(p->link.get(), us));
+            }
+            nextPoll_ = now + wait * 1000ull + 100'000;
         }
         return std::min({modem.nextEvent(), nextPoll_, nextWrite_});
     }
@@ -133,41 +166,61 @@ public:
     U32 longestRestUs = 1000; // between two polls
 
 protected:
+    U32 us() const { return static_cast<U32>(now_ / 1000); }
     uint64_t now_ = 0;
 
 private:
-    static ModemEnd& self(void* c) { return *static_cast<ModemEnd*>(c); }
+    struct Peer {
+        ModemEnd& end;
+        size_t number;
+        int target;
+        std::unique_ptr<Link> link{new Link};
+        uint64_t airUs = 0;
+    };
+    static Peer& of(void* c) { return *static_cast<Peer*>(c); }
     void receive(U32 us) {
-        const auto answer = [&](int, bool isThere) { Link_answer(link(), isThere, us); };
+        const auto answer = [&](int target, bool isThere) {
+            for (auto& p : peers_)
+                if (p->target == target)
+                    Link_answer(p->link.get(), isThere, us);
+        };
         packets_->expire(us, answer);
         packets_->feed(
             line.received.data(), line.received.size(),
             [&](int source, const U8* data, size_t count) {
-                if (source == target_)
-                    Link_receive(link(), data, static_cast<U32>(count), us);
+                for (auto& p : peers_)
+                    if (p->target == source)
+                        Link_receive(p->link.get(), data, static_cast<U32>(count), us);
             },
             answer);
         line.received.clear();
     }
-    int transmit(const U8* frame, U32 size) {
-        if (!packets_->offer(target_, frame, size, Link_randomWait(link()), line.waiting(),
-                             static_cast<U32>(now_ / 1000)))
+    int transmit(Peer& peer, const U8* frame, U32 size) {
+        U32 rn = Link_randomWait(peer.link.get());
+        for (size_t i = 0; i < peers(); ++i)
+            if (isUp(i))
+                rn = std::max(rn, Link_randomWait(link(i)));
+        if (!packets_->offer(peer.target, frame, size, rn, line.waiting(), us()))
             return 1;
         write();
+        peer.airUs = std::max(peer.airUs, airUs_);
+        airUs_ = peer.airUs;
+        peer.airUs += LINK_PACKET_US + size * LINK_BYTE_US;
         return 0;
     }
     void write() {
-        const U32 us = static_cast<U32>(now_ / 1000);
-        const auto frame = packets_->due(us);
+        const auto frame = packets_->due(us());
         line.send(frame.data(), frame.size(), now_);
-        const U32 wait = packets_->deadline(us);
+        const U32 wait = packets_->deadline(us());
         nextWrite_ = wait == 0xFFFFFFFFu ? never : now_ + wait * 1000ull;
     }
-    const int target_;
+    const bool encrypts_;
+    const unsigned mostWaiting_;
     std::unique_ptr<XBeeAT::PacketLine> packets_;
-    std::unique_ptr<Link> link_{new Link};
+    std::vector<std::unique_ptr<Peer>> peers_;
+    std::vector<Peer*> order_;
     Random random_;
-    uint64_t nextPoll_ = 0, nextWrite_ = never;
+    uint64_t nextPoll_ = 0, nextWrite_ = never, airUs_ = 0;
 };
 
 // Two ends of a class derived from ModemEnd, and the air; the first has called, and both are up

@@ -23,8 +23,9 @@ public:
     std::vector<std::vector<U8>> received;
 
 private:
-    void onMessage(int, const U8* message, U32 size) override {
+    int onMessage(size_t, int, const U8* message, U32 size) override {
         received.emplace_back(message, message + size);
+        return 0;
     }
 };
 

@@ -189,6 +189,10 @@ void checkC(const Unit& unit, const CFileNames& files, Diagnostics& diagnostics)
         checkText(d->value, d->at, diagnostics);
         for (const Field& f : d->fields)
             checkText(f.value, f.at, diagnostics);
+        for (const Operation& o : d->operations)
+            if (hasMetadata(o.metadata, ":broadcast") && (hasResults(o) || !o.throws.empty()))
+                diagnostics.error(o.at, "[\":broadcast\"]: '" + o.name +
+                                            "' has a result or an exception, which nobody gets");
     }
     for (const std::string& m : unit.metadata)
         if (m.compare(0, 2, "c:") == 0 && m.compare(0, 10, "c:include:") != 0)

@@ -134,11 +134,15 @@ void responseFunctions(Writer& w, const CContext& c, const Declaration& d, const
 void interfaceTable(Writer& w, const Declaration& d) {
     Writer::Values v = {{"c", cName(d)}};
     w.line("static const Ice_Operation operations_{c}[] = {", v);
-    for (const Operation& o : d.operations)
-        w.line("    {\"{op}\", dispatch_{n}, {mode}},",
-               {{"op", o.name},
-                {"n", operationName(d, o)},
-                {"mode", o.idempotent ? "ICE_IDEMPOTENT" : "ICE_NORMAL"}});
+    for (const Operation& o : d.operations) {
+        const std::string modes = o.idempotent ? "ICE_TAKES_IDEMPOTENT" : "ICE_TAKES_NORMAL";
+        w.line(
+            "    {\"{op}\", dispatch_{n}, {modes}},",
+            {{"op", o.name},
+             {"n", operationName(d, o)},
+             {"modes", hasMetadata(o.metadata, ":broadcast") ? "ICE_TAKES_BROADCAST(" + modes + ")"
+                                                             : modes}});
+    }
     w.line("    {0, 0, 0}};");
     if (!d.bases.empty()) {
         w.line("static const Ice_Base bases_{c}[] = {", v);

@@ -2,6 +2,7 @@
  *
  * ice_dispatch: brings a request to its servant, and the answer back.
  */
+#include "ice_operation.h"
 #include "ice_private.h"
 
 #include <string.h>
@@ -203,6 +204,19 @@ Ice_Status icec_dispatchBatch(Ice_CommunicatorPtr ic, int connection, Ice_InputS
         is->failed = 0;
     }
     return status;
+}
+
+int Ice_markBroadcast(Ice_Byte* message, Ice_Int size) {
+    Ice_InputStream is;
+    Ice_InputStream_init(&is, message, size);
+    if (icec_readHead(&is) != ICEC_REQUEST || Ice_InputStream_readInt(&is) != 0)
+        return 0;
+    icec_skipStrings(&is, 2); /* identity, facet, operation */
+    icec_skipStrings(&is, (U32)Ice_InputStream_readSize(&is) + 1U);
+    if (is.failed || is.position == size)
+        return 0;
+    message[is.position] |= ICE_BROADCAST;
+    return 1;
 }
 
 void Ice_Current_later(const Ice_Current* current, Ice_Reply* reply) {

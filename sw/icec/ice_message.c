@@ -113,7 +113,7 @@ Ice_Status Ice_Object_dispatch(const Ice_Interface* interface, const void* table
     const Ice_Base* base;
     for (o = interface->operations; o->name; ++o)
         if (Ice_String_is(&current->operation, o->name)) {
-            if ((current->mode == ICE_NORMAL) != (o->mode == ICE_NORMAL))
+            if (!(o->modes >> (current->mode & 7U) & 1))
                 return ICE_PROTOCOL;
             return o->dispatch(self, table, current, is, os);
         }

@@ -10,12 +10,23 @@
 
 enum { ICE_NORMAL = 0, ICE_NONMUTATING = 1, ICE_IDEMPOTENT = 2 };
 
+/* Added to the mode of a request that came by broadcast (Ice_markBroadcast). */
+#define ICE_BROADCAST 4
+
+/* Modes of requests that an operation takes, a bit each; with metadata [":broadcast"], such by
+ * broadcast, too. */
+enum {
+    ICE_TAKES_NORMAL = 1 << ICE_NORMAL,
+    ICE_TAKES_IDEMPOTENT = 1 << ICE_NONMUTATING | 1 << ICE_IDEMPOTENT
+};
+#define ICE_TAKES_BROADCAST(modes) ((modes) | (modes) << ICE_BROADCAST)
+
 typedef struct Ice_Operation {
     const char* name; /* 0 ends a table */
     /* `table`: the servant's M_I_Operations */
     Ice_Status (*dispatch)(Ice_ObjectPtr self, const void* table, const Ice_Current* current,
                            Ice_InputStreamPtr is, Ice_OutputStreamPtr os);
-    Ice_Byte mode; /* ICE_NORMAL or ICE_IDEMPOTENT */
+    Ice_Byte modes;
 } Ice_Operation;
 
 typedef struct Ice_Base Ice_Base;
@@ -31,7 +42,7 @@ struct Ice_Base {
 };
 
 /* Calls the operation that `current` names. ICE_PROTOCOL: it was called as idempotent and is not,
- * or the reverse. */
+ * or the reverse, or by broadcast and is not meant to be. */
 Ice_Status Ice_Object_dispatch(const Ice_Interface* interface, const void* table,
                                Ice_ObjectPtr self, const Ice_Current* current,
                                Ice_InputStreamPtr is, Ice_OutputStreamPtr os);

@@ -102,6 +102,10 @@ typedef struct Ice_Reply {
     Ice_Byte minor;
 } Ice_Reply;
 
+/* Marks a request that came by broadcast, for a transport: operations with the metadata
+ * [":broadcast"] take it, and no others. Returns 0: it is no request, or one that wants a reply. */
+int Ice_markBroadcast(Ice_Byte* message, Ice_Int size);
+
 /* Fills `reply`; to be called while the operation runs. */
 void Ice_Current_later(const Ice_Current* current, Ice_Reply* reply);
 /* Returns the stream for the results, or for a user exception; Ice_Reply_end must follow. */

@@ -122,12 +122,13 @@ void link_accept(Link_Input* input, const U8* frame, U32 size) {
 }
 
 /* The first byte behind a frame may be of an unknown session, whose peer gets an answer, but not
- * too often. */
+ * too often. With a length that no frame has it is none, as a call to all vehicles. */
 void link_skip(Link_Input* input, const U8* frame, U32 left) {
     Link_Output* output = input->output;
     Link_Session* session = input->session;
-    if (!input->outOfStep && left >= LINK_CODEC(output)->overhead &&
-        session->state == LINK_STATE_IDLE && output->now - session->pingAt >= LINK_HELLO_FIRST) {
+    if (!input->outOfStep && LINK_LENGTH(frame) <= LINK_MAX_PAYLOAD &&
+        left >= LINK_CODEC(output)->overhead && session->state == LINK_STATE_IDLE &&
+        output->now - session->pingAt >= LINK_HELLO_FIRST) {
         session->pingAt = output->now;
         LINK_CODEC(output)->call(session, frame);
     }

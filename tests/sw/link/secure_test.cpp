@@ -5,6 +5,10 @@
 
 #include "link_variants.h"
 
+extern "C" {
+#include "link_broadcast.h"
+}
+
 namespace {
 
 // A ground with the full layer, a vehicle with the full or the minimal one, and the attacker
@@ -134,6 +138,7 @@ TEST_P(Attacked, NothingHostileIsAcceptedAndNothingLegalLostOrDoubled) {
                 static_cast<unsigned long long>(hostile_), sentA.size(), sentB.size());
 }
 
+// Recordings of earlier sessions, before reboots of both sides, have no effect either.
 TEST_P(Attacked, RecordingsOfEarlierSessionsAreWorthNothing) {
     for (unsigned boot = 0; boot < 6; ++boot) {
         size_t before[2] = {a.received.size(), b.received.size()};
@@ -206,6 +211,7 @@ TEST_P(Attacked, AFrameWithAnyBitWrongIsRefused) {
         EXPECT_TRUE(kinds.count(kind)) << "no frame of kind " << kind << " has crossed";
 }
 
+// The session survives a flood of HELLOs that were once good, and few get an answer.
 TEST_P(Attacked, AFloodOfHellosCostsFewAnswersAndNoSession) {
     std::vector<Bytes> hellos;
     for (unsigned boot = 0; boot < 12; ++boot) {
@@ -535,5 +541,32 @@ INSTANTIATE_TEST_SUITE_P(
                       Meeting{"full", ground1, ground1, false}, Meeting{"full", ground1, 2, false},
                       Meeting{"full", 1, 1, false}, Meeting{"minimal", ground1, 1, true},
                       Meeting{"minimal", ground1, 2, false}));
+
+// ---- calls to all vehicles ----
+
+TEST(Broadcasts, AreOpenedUnderTheGroupsKeyOnceAndWithNoBitWrong) {
+    const Bytes text = {'r', 'e', 't', 'u', 'r', 'n'}, key(LINK_KEY_BYTES, 0x5A);
+    Bytes packet(LINK_MAX_FRAME, 0x77);
+    std::copy(text.begin(), text.end(), packet.begin() + LINK_BROADCAST_HEAD);
+    packet.resize(Link_sealBroadcast(packet.data(), U32(text.size()), key.data(), 0x01020304));
+    EXPECT_EQ(packet.size(), text.size() + LINK_BROADCAST_OVERHEAD);
+    EXPECT_EQ(std::search(packet.begin(), packet.end(), text.begin(), text.end()), packet.end());
+    const auto open = [](Bytes copy, const Bytes& with, U32 newest) {
+        const auto from = copy.begin() + LINK_BROADCAST_HEAD;
+        return Bytes(from,
+                     from + Link_openBroadcast(copy.data(), U32(copy.size()), with.data(), newest));
+    };
+    EXPECT_EQ(open(packet, key, 0x01020303), text);
+    for (U32 newest : {0x01020304u, 0x01020305u, 0xFFFFFFFFu})
+        EXPECT_TRUE(open(packet, key, newest).empty()) << newest;
+    EXPECT_TRUE(open(packet, Bytes(LINK_KEY_BYTES), 0).empty()) << "another key";
+    for (size_t bit = 0; bit < 8 * packet.size(); ++bit) {
+        Bytes wrong = packet;
+        wrong[bit / 8] ^= static_cast<uint8_t>(1u << bit % 8);
+        EXPECT_TRUE(open(wrong, key, 0).empty()) << bit;
+    }
+    for (size_t cut = LINK_BROADCAST_HEAD; cut < packet.size(); ++cut)
+        EXPECT_TRUE(open({packet.begin(), packet.begin() + long(cut)}, key, 0).empty()) << cut;
+}
 
 } // namespace

@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * link_broadcast: one packet for all vehicles on the channel, under the group's key.
+ *
+ *     byte 0        LINK_BROADCAST, with which no frame of a link begins
+ *     1..4          number, the low byte first: quarters of a second since 2026 began
+ *     5..12         salt, random: no nonce is used twice, even where a clock was set back
+ *     13..          the message, encrypted
+ *     last LINK_TAG tag
+ *
+ * Nobody acknowledges it, so the ground sends copies. A vehicle keeps the newest number that it has
+ * taken, without power too, and takes newer ones only: each message at most once. Without keys the
+ * key is all zeros.
+ */
+#pragma once
+
+#include "link_wire.h"
+
+#define LINK_BROADCAST 0x7EU
+#define LINK_BROADCAST_HEAD 13U
+#define LINK_BROADCAST_OVERHEAD (LINK_BROADCAST_HEAD + LINK_TAG)
+
+/* Makes a packet around a message of `size` bytes, which is in its place already, as is the salt.
+ * Returns the packet's size. */
+U32 Link_sealBroadcast(U8* packet, U32 size, const U8* key, U32 number);
+
+/* Decrypts the message in its place. Returns its size; 0: the packet is not newer than `newest`, or
+ * not authentic. */
+U32 Link_openBroadcast(U8* packet, U32 size, const U8* key, U32 newest);
+#define LINK_BROADCAST_NUMBER(packet) link_get32((packet) + 1)

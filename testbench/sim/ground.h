@@ -83,9 +83,11 @@ public:
         return std::min(modem_->nextEvent(), nextPoll_);
     }
     bool isUp() const { return Link_state(link_.get()) == LINK_STATE_UP; }
-    // Makes a two-way call of an object; `parameters` are encoded. Mode 0 is normal, 2 idempotent.
-    void call(int id, const std::string& object, const std::string& operation, int mode = 0,
-              const std::vector<uint8_t>& parameters = {}) {
+    // Returns a call of an object; `parameters` are encoded. Mode 0 is normal, 2 idempotent; id 0
+    // is oneway.
+    static std::vector<uint8_t> request(int id, const std::string& object,
+                                        const std::string& operation, int mode = 0,
+                                        const std::vector<uint8_t>& parameters = {}) {
         std::vector<uint8_t> m = {'I', 'c', 'e', 'P', 1, 0, 1, 0, 0, 0, 0, 0, 0, 0};
         auto number = [&](size_t value) {
             for (int i = 0; i < 4; ++i)
@@ -108,7 +110,12 @@ public:
         m.insert(m.end(), parameters.begin(), parameters.end());
         for (int i = 0; i < 4; ++i)
             m[static_cast<size_t>(10 + i)] = static_cast<uint8_t>(m.size() >> (8 * i));
-        U32 size = static_cast<U32>(m.size());
+        return m;
+    }
+    void call(int id, const std::string& object, const std::string& operation, int mode = 0,
+              const std::vector<uint8_t>& parameters = {}) {
+        const auto m = request(id, object, operation, mode, parameters);
+        const U32 size = static_cast<U32>(m.size());
         if (Link_send(link_.get(), 0, m.data(), size, size) == LINK_OK)
             backlog_ += size;
     }

@@ -4,6 +4,7 @@
  */
 #include "uav_keys.h"
 #include "ascon.h"
+#include "link_broadcast.h"
 
 #include <string.h>
 
@@ -11,7 +12,8 @@
 #define CHECK 4U     /* a slot's check: detects words that are not whole */
 #define STATE_AT 10U /* a ground's state word, or nothing */
 #define ADDRESS_AT 12U
-#define GROUND_AT (UAV_GROUND_WORDS + 11U) /* the second ground's address, inverted: 0 is none */
+#define GROUND_AT (UAV_GROUND_WORDS + 11U)  /* the second ground's address, inverted: 0 is none */
+#define NEWEST_AT (at(UAV_GROUP, STATE_AT)) /* number of the newest call to all vehicles */
 #define STATE_OPEN 0x4F50454EU
 #define STATE_NEXT 0x4E455830U /* + slot of the next key, if both have one */
 #define CHECK_SEED 0x4B455931U
@@ -78,6 +80,8 @@ static void writeKey(int ground, int slot, const U8* key) {
 
 void UAV_provide(U32 address, const U8* key) {
     UAV_provideGround(UAV_NO_GROUND, 0);
+    UAV_provideGround(UAV_EVERYBODY, 0);
+    store(NEWEST_AT, 0);
     store(ADDRESS_AT, address);
     store(STATE_AT, key ? 0 : STATE_OPEN);
     writeKey(0, 1, 0);
@@ -85,6 +89,10 @@ void UAV_provide(U32 address, const U8* key) {
 }
 
 void UAV_provideGround(U32 address, const U8* key) {
+    if (address == UAV_EVERYBODY) { /* a recorded call stays old, also under the same key */
+        writeKey(UAV_GROUP, 0, key);
+        return;
+    }
     store(GROUND_AT, 0);
     store(at(1, STATE_AT), 0);
     writeKey(1, 1, 0);
@@ -98,6 +106,28 @@ U32 UAV_address(void) {
 
 U32 UAV_secondGround(void) {
     return UAV_countKeys(1) || UAV_isOpen() ? ~load(GROUND_AT) : UAV_NO_GROUND;
+}
+
+/* Reads the group's key: zeros, as of any slot without a key, where the vehicle is open. */
+static int readGroupKey(U8* key) {
+    return UAV_readKey(UAV_GROUP, 0, key) || UAV_isOpen();
+}
+
+int UAV_isOfGroup(void) {
+    U8 key[LINK_KEY_BYTES];
+    int is = readGroupKey(key);
+    Ascon_wipe(key, sizeof key);
+    return is;
+}
+
+U32 UAV_openBroadcast(U8* packet, U32 size) {
+    U8 key[LINK_KEY_BYTES];
+    (void)readGroupKey(key);
+    size = Link_openBroadcast(packet, size, key, load(NEWEST_AT));
+    Ascon_wipe(key, sizeof key);
+    if (size)
+        store(NEWEST_AT, LINK_BROADCAST_NUMBER(packet));
+    return size;
 }
 
 int UAV_hasGroundsPart(void) {

@@ -13,7 +13,9 @@
 /* A ground: two slots of four words of key and their check, then states and addresses. */
 #define UAV_GROUND_WORDS 16U
 #define UAV_GROUNDS 2
-#define UAV_KEY_WORDS (UAV_GROUNDS * UAV_GROUND_WORDS)
+#define UAV_GROUP UAV_GROUNDS /* in a ground's place: the group's key, of calls to all vehicles */
+#define UAV_KEY_WORDS ((UAV_GROUNDS + 1) * UAV_GROUND_WORDS)
+#define UAV_EVERYBODY 0xFFFFU     /* the group's address */
 #define UAV_NO_GROUND 0xFFFFFFFFU /* in place of an address */
 #define UAV_FELLOW 0x10000U       /* with an address: it is another vehicle's */
 #define UAV_FLIGHT_WORD 11U
@@ -40,8 +42,16 @@ void UAV_provide(U32 address, const U8* key);
 
 /* Provides it with a second ground, by its modem's address, and with that one's key. 0: no key, for
  * an open vehicle. UAV_NO_GROUND: it has none, as after UAV_provide. With UAV_FELLOW that is
- * another vehicle, which has the same key and this one's address. */
+ * another vehicle, which has the same key and this one's address. UAV_EVERYBODY: the group's
+ * key. */
 void UAV_provideGround(U32 address, const U8* key);
+
+/* Returns 1 if the vehicle takes calls to all vehicles: it has the group's key, or is open. */
+int UAV_isOfGroup(void);
+
+/* Decrypts such a call, unless it is one that this vehicle has seen (Link_openBroadcast), and
+ * remembers its number. Returns the message's size; 0: it is not to be carried out. */
+U32 UAV_openBroadcast(U8* packet, U32 size);
 
 /* Returns the second ground's address, as it was provided, or UAV_NO_GROUND. */
 U32 UAV_secondGround(void);

@@ -3,12 +3,15 @@
  * uav_radio: the FPGA's interrupt, the radio task, its links with one ground or two, of which the
  * second may be another vehicle, and what IceC's endpoint needs from it.
  */
+#include "link_broadcast.h"
 #include "map_regs.h"
 #include "radio.h"
 #include "system_regs.h"
 #include "uav.h"
 #include "uav_keys.h"
 #include "uav_private.h"
+
+#include <string.h>
 
 #define BYTE_TIME_US16 1440U /* 111,111 baud */
 #define DOWN_LIMIT 15000000U /* us without a link: the modem may have lost its settings then */
@@ -43,6 +46,9 @@ static U8 isSecondsTurn; /* to be polled first */
 static U8 areUp;         /* grounds with a session, a bit each */
 static U8 isSpecial; /* there is a second ground, or a session whose key may have to be confirmed */
 static U16 secondAddress;
+static U8 receiver;              /* of packets (receivers) */
+static U8 toAll[LINK_MAX_FRAME]; /* a call to all vehicles, and its bytes while it waits; else 0 */
+static U8 toAllSize;
 static U32 unanswered, owners; /* with two: packets that the modem has; a bit each, whose it is */
 
 U32 UAV_nowUs(void) {
@@ -153,6 +159,7 @@ int UAV_initRadio(void) {
     iceEvent = OSSemCreate(0);
     linkMutex = OSMutexCreate(PRIO_MUTEX, &error);
     areUp = isSecondsTurn = 0;
+    toAllSize = 0;
     hasSecond = ground != UAV_NO_GROUND;
     isFellow = hasSecond && (ground & UAV_FELLOW);
     secondAddress = (U16)ground;
@@ -212,6 +219,7 @@ static void setUpModem(void) {
     while (xbeeInit(&xbeeConf, &rings) != RADIO_OK)
         OSTimeDly(OS_TICKS_PER_SEC);
     isAnswered = (U8)Radio_answers();
+    receiver = (U8)(isAnswered + (isAnswered && UAV_isOfGroup()));
     unanswered = owners = 0;
     setUpLink(&uav_link);
     if (hasSecond)
@@ -231,6 +239,21 @@ static void onPacketOf(void* context, const U8* bytes, U32 size) {
     else if (hasSecond && source == secondAddress)
         Link_receive(SECOND, bytes, size, now);
 }
+
+/* Takes a call to all vehicles, once. While one waits for IceC no other is looked at: a later copy
+ * of that may come in time. */
+static void onAnyPacket(void* context, const U8* bytes, U32 size) {
+    if (*bytes != LINK_BROADCAST) {
+        onPacketOf(context, bytes, size);
+    } else if (!toAllSize && size <= sizeof toAll) {
+        memcpy(toAll, bytes, size);
+        size = UAV_openBroadcast(toAll, size);
+        if (size && Ice_markBroadcast(toAll + LINK_BROADCAST_HEAD, (Ice_Int)size))
+            toAllSize = isSpecial = (U8)size;
+    }
+}
+
+static const Radio_OnPacket receivers[] = {onPacket, onPacketOf, onAnyPacket};
 
 /* Does what is due on a ground's link. Returns the time until it must be called again, in us. */
 static U32 pollLink(int ground, Link* link) {
@@ -254,7 +277,10 @@ static U32 pollSpecial(void) {
             wait = other;
     }
     isSecondsTurn = hasSecond && !isSecondsTurn;
-    isSpecial = hasSecond;
+    if (toAllSize && XBeeATEndpoint_onMessage(&endpoint, XBEE_OWN_CHANNEL,
+                                              toAll + LINK_BROADCAST_HEAD, toAllSize) == 0)
+        toAllSize = 0;
+    isSpecial = (U8)(hasSecond | toAllSize); /* the endpoint kicks this task when it takes one */
     return wait;
 }
 
@@ -271,7 +297,7 @@ void UAV_radioTask(void* argument) {
         U32 wait;
         lockLink(0);
         now = UAV_nowUs();
-        (void)Radio_receive(isAnswered ? onPacketOf : onPacket, 0);
+        (void)Radio_receive(receivers[receiver], 0);
         if (isSpecial) {
             wait = pollSpecial();
         } else {

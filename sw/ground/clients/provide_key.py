@@ -18,6 +18,7 @@ import time
 import tty
 
 TIOCSBRK, TIOCCBRK = 0x5427, 0x5428  # Linux' ioctl_tty(2); Python 3.11's termios lacks both
+GROUP = 0xFFFF  # in place of a vehicle's address, or a ground's
 BREAK, PAUSE = 1.5, 0.5  # s; a vehicle without a key starts again each second
 
 
@@ -52,7 +53,7 @@ def read_key(path, vehicle):
     if not keys:
         raise Failed("'%s' has no key, 32 hexadecimal digits: openssl rand -hex 16 makes one" %
                      path)
-    key = keys.get(vehicle, keys.get(None))
+    key = keys.get(vehicle, None if vehicle == GROUP else keys.get(None))
     if not key:
         raise Failed("'%s' has no line for the vehicle 0x%04x" % (path, vehicle))
     return key
@@ -104,11 +105,14 @@ def main():
                         "the vehicle serves, too, under this key of its own")
     second.add_argument("--fellow", type=address, help="address of another vehicle, which it calls "
                         "and serves, under this key of the two, in place of a second ground")
+    second.add_argument("--group", action="store_const", dest="ground", const=GROUP,
+                        help="gives it the key of calls to all vehicles, in the line 0xffff")
     parser.add_argument("--patience", type=int, default=120,
                         help="seconds without a vehicle until it gives up")
     args = parser.parse_args()
     try:
-        key = "" if args.protect or args.open else read_key(args.key, args.address)
+        whose = GROUP if args.ground == GROUP else args.address
+        key = "" if args.protect or args.open else read_key(args.key, whose)
         command = ("protect" if args.protect else
                    ("ground %04x %s" % (args.ground, key)).strip() if args.ground is not None else
                    ("fellow %04x %s" % (args.fellow, key)).strip() if args.fellow is not None else
@@ -123,6 +127,7 @@ def main():
         provide(port, command, args.patience)
         print("provide_key: the vehicle %s" %
               ("is protected" if args.protect else
+               "has the group's key" if args.ground == GROUP else
                "serves a second ground" if args.ground is not None else
                "has a fellow" if args.fellow is not None else "is open" if args.open else
                "has this key, and no other"))

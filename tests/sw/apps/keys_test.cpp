@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 extern "C" {
+#include "link_broadcast.h"
 #include "uav_keys.h"
 }
 
@@ -110,6 +111,30 @@ TEST(Keys, ASlotThatWasSpoiltIsEmpty) {
     EXPECT_EQ(UAV_countKeys(0), 1);
 }
 
+TEST(Keys, TheGroupsKeyOpensEachCallOnceAndGoesWithANewVehiclesKey) {
+    Vehicle vehicle(1);
+    const auto opens = [](const Key& key, U32 number) {
+        U8 packet[LINK_MAX_FRAME] = {};
+        return UAV_openBroadcast(packet, Link_sealBroadcast(packet, 5, key.data(), number)) == 5;
+    };
+    EXPECT_FALSE(UAV_isOfGroup()) << "it has a key, and not the group's";
+    UAV_provideGround(UAV_EVERYBODY, newKey.data());
+    EXPECT_TRUE(UAV_isOfGroup());
+    EXPECT_EQ(UAV_countKeys(0), 1);
+    EXPECT_EQ(UAV_secondGround(), UAV_NO_GROUND);
+    EXPECT_FALSE(opens(oldKey, 77));
+    EXPECT_TRUE(opens(newKey, 77));
+    UAV_provideGround(UAV_EVERYBODY, newKey.data());
+    EXPECT_FALSE(opens(newKey, 77)) << "recorded, under the same key";
+    EXPECT_TRUE(opens(newKey, 78));
+    UAV_provide(address, nullptr);
+    EXPECT_TRUE(UAV_isOfGroup()) << "it is open";
+    EXPECT_FALSE(opens(newKey, 80));
+    EXPECT_TRUE(opens(Key{}, 1));
+    vehicle.words = {};
+    EXPECT_FALSE(UAV_isOfGroup());
+}
+
 TEST(Keys, OneFollowsAnotherAndTheOldOneOpensNothing) {
     Vehicle vehicle(testSeed());
     EXPECT_EQ(vehicle.change(), std::vector<Key>{newKey});
@@ -152,7 +177,7 @@ TEST(Keys, OfTwoVehiclesTheOneWithTheLowerAddressHasTheGroundsPart) {
                     fellow > address ? fellow : LINK_GROUND | address);
         EXPECT_TRUE(vehicle.connect());
     }
-    UAV_provideGround(0xFFFF, foreignKey.data());
+    UAV_provideGround(0xFFFE, foreignKey.data());
     EXPECT_FALSE(UAV_hasGroundsPart());
 }
 
@@ -187,6 +212,7 @@ TEST(Keys, TheKeyInUseAgainIsNoChangeAndAnotherNextKeyReplacesTheFirst) {
     EXPECT_TRUE(vehicle.hasKey(newKey) && vehicle.hasKey(oldKey));
 }
 
+// Wherever the ground gives up, its file's keys open the vehicle.
 TEST(Keys, AGroundThatGivesUpKeepsAKeyThatWorks) {
     for (int steps = 0; steps <= 3; ++steps) {
         Vehicle vehicle(testSeed());

@@ -119,6 +119,16 @@ TEST_F(Provision, TakesASecondGroundWithAKeyOfItsOwn) {
         << "the second ground's key proves nothing here";
 }
 
+TEST_F(Provision, TakesTheGroupsKey) {
+    start();
+    answerTo("key " + digits + at + "\n");
+    start();
+    EXPECT_EQ(answerTo("ground ffff " + std::string(32, 'a') + " " + digits + "\n"), "ok\r\n");
+    EXPECT_EQ(chip.backup()[32], 0xAAAAAAAAu);
+    EXPECT_EQ(chip.backup()[27], ~0xFFFFFFFFu) << "no second ground";
+    EXPECT_TRUE(has(key));
+}
+
 TEST_F(Provision, SaysThatReadProtectionIsOffAndSetsIt) {
     EXPECT_EQ(start(), prompt);
     EXPECT_EQ(answerTo("protect\n"), "ok\r\n");
@@ -164,6 +174,9 @@ TEST_F(Provision, TheGroundsProgramGivesIt) {
     const std::string senseless = std::string("/usr/bin/python3 ") + PROVIDE_KEY + " --key " +
                                   file + ".wrong --port /dev/null 2>&1 | grep -q 'line 2: give'";
     EXPECT_EQ(std::system(senseless.c_str()), 0);
+    const std::string group = std::string("/usr/bin/python3 ") + PROVIDE_KEY + " --key " + file +
+                              " --port /dev/null --group 2>&1 | grep -q 'no line.* 0xffff'";
+    EXPECT_EQ(std::system(group.c_str()), 0) << "no vehicle's line is the group's";
     const int port = posix_openpt(O_RDWR | O_NOCTTY);
     ASSERT_TRUE(port >= 0 && grantpt(port) == 0 && unlockpt(port) == 0);
     const std::string name = ptsname(port);

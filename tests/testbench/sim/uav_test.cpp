@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
 // uav_test: RTL, modems, radio and firmware together, deterministic: the ground is the same link
-// layer in this process, and requests are written byte by byte. A third modem on the air does its
-// worst: with a key nothing comes of it; in the clear a session ends.
+// layer in this process, and requests are written byte by byte.
 
-#include "attacker.h"
-#include "ground.h"
 #include "two_grounds.h"
 #include "uav_machine.h"
 #include <gtest/gtest.h>
 
 extern "C" {
+#include "link_broadcast.h"
 extern Link uav_link; // the firmware's
 }
 
@@ -34,20 +32,30 @@ protected:
     UavMachine* machine_ = nullptr; // while it flies
 };
 
+TEST_F(Uav, AnswersPings) {
+    fly(ground.pinging(20), 20);
+    for (auto& [id, status] : ground.replies)
+        EXPECT_EQ(status, 0) << id;
+}
+
 TEST_F(Uav, AnObjectThatDoesNotExistIsSaidNotToExist) {
     fly(ground.pinging(1, "nobody"), 20);
     EXPECT_EQ(ground.replies[1], 2);
 }
 
-TEST_F(Uav, LossCorruptionAndDuplicationAreNotNoticed) {
+TEST_F(Uav, TenPercentLossIsNotNoticed) {
     air.weather.loss = 0.1;
+    fly(ground.pinging(40), 60);
+    for (auto& [id, status] : ground.replies)
+        EXPECT_EQ(status, 0) << id;
+    EXPECT_GT(air.counters().lost, 0u);
+}
+
+TEST_F(Uav, CorruptionAndDuplicationAreNotNoticed) {
     air.weather.corruption = 0.03;
     air.weather.duplication = 0.1;
     fly(ground.pinging(40), 60);
     EXPECT_EQ(ground.replies.size(), 40u);
-    for (auto& [id, status] : ground.replies)
-        EXPECT_EQ(status, 0) << id;
-    EXPECT_GT(air.counters().lost, 0u);
 }
 
 TEST_F(Uav, AModemResetInMidPacketIsRecoveredFrom) {
@@ -146,6 +154,116 @@ TEST(Fellow, OneThatIsAwayCostsLittleOfTheAirAndTheVehicleServesItsGroundMeanwhi
     EXPECT_GT(share, 0.004) << "it is not sought: the idle sessions take 0.0015";
 }
 
+// A vehicle that the pilot calls, and a modem that sends calls to all vehicles. Of the picture's
+// corners a threshold of 10 finds some, one of 200 none.
+class ToAll : public GroundAndChip {
+public:
+    using Key = std::vector<uint8_t>;
+    using Call = Ground::Call;
+    const Key groups = Key(LINK_KEY_BYTES, 0x66), open = Key(LINK_KEY_BYTES);
+    const Call low = {"hwengine1", "setParameterA", 0, {10, 0}},
+               high = {"hwengine1", "setParameterA", 0, {200, 0}},
+               start = {"hwengine1", "startProcessing"}, result = {"hwengine1", "getResult"};
+
+    explicit ToAll(const Key& pilots) {
+        ground.key = pilots;
+        XBee::Options options;
+        options.set = {{"BD", 7}, {"MY", 5}, {"DL", 0xFFFF}};
+        modem_ = std::make_unique<XBee>(line_, air, options);
+        soc.onTime([this](uint64_t now) {
+            modem_->advance(now);
+            return std::min(ground.advance(now), modem_->nextEvent());
+        });
+        provide(64, 64, [](uint32_t i) { return i % 8 < 3 && i / 64 % 8 < 3 ? 150 : 100; });
+    }
+    // Boots the vehicle with what its memory keeps, and flies.
+    void fly(std::vector<Script> steps, const std::function<void(SimulatedBoard&)>& provide) {
+        auto script = inOrder(std::move(steps));
+        bool done = false;
+        soc.reset(true);
+        ground.start();
+        UavMachine machine(soc, [&] {
+            done = script();
+            return !done && within(60);
+        });
+        provide(machine.board);
+        machine.run();
+        kept = machine.board.words;
+        EXPECT_TRUE(done);
+    }
+    // Sends a new call, in three copies, since one may meet a packet of the link.
+    Script send(const Key& key, U32 number, const Call& call) {
+        const auto m = Ground::request(0, call.object, call.operation, call.mode, call.parameters);
+        Key packet(LINK_MAX_FRAME, 0x55);
+        std::copy(m.begin(), m.end(), packet.begin() + LINK_BROADCAST_HEAD);
+        packet.resize(Link_sealBroadcast(packet.data(), U32(m.size()), key.data(), number));
+        sent.push_back(packet);
+        return send({packet, packet, packet});
+    }
+    Script send(std::vector<Key> packets) {
+        return [this, packets, begun = uint64_t(0), at = size_t(0)]() mutable {
+            if (soc.now() - begun < 100'000'000)
+                return false;
+            if (at < packets.size())
+                line_.send(packets[at], begun = soc.now());
+            return at++ == packets.size();
+        };
+    }
+    // The pilot's calls; the first byte of the last one's result is 0 or not.
+    Script calls(std::vector<Call> these, bool some = false, const char* what = "") {
+        const int last = static_cast<int>(these.size());
+        return inOrder({[this] { return ground.replies.clear(), true; },
+                        ground.calling(std::move(these)),
+                        [=] {
+                            const auto& reply = ground.messages[last];
+                            EXPECT_EQ(reply.size() > 25 && reply[25] != 0, some) << what;
+                            return true;
+                        }});
+    }
+
+    std::vector<Key> sent;
+    SimulatedBoard::Words kept{};
+
+private:
+    HostLine line_;
+    std::unique_ptr<XBee> modem_;
+};
+
+TEST(CallsToAll, AreCarriedOutOnceIfTheirOperationsAllowItAlsoAfterARestart) {
+    const ToAll::Key pilots(LINK_KEY_BYTES, 0x11), others(LINK_KEY_BYTES, 0x67);
+    ToAll w(pilots);
+    w.fly({w.calls({w.high}), w.send(w.groups, 10, w.low), w.send(w.groups, 11, w.start),
+           w.calls({w.result}, true, "both are carried out"), w.calls({w.high}), w.send(w.sent),
+           w.send(others, 12, w.low), w.send(w.open, 12, w.low),
+           w.calls({w.start, w.result}, false, "recorded, and of other keys"),
+           w.send(w.groups, 13, {"uav", "setFlightState", 2, {1}}),
+           w.calls({{"uav", "getFlightState", 2}}, false, "setFlightState is not marked"),
+           w.send(w.groups, 14, w.low), w.calls({w.start, w.result}, true, "a new one")},
+          [&](SimulatedBoard& board) {
+              board.provide(pilots);
+              board.provideGround(UAV_EVERYBODY, w.groups);
+          });
+    w.fly({w.calls({w.high}), w.send(w.sent),
+           w.calls({w.start, w.result}, false, "recorded before the restart"),
+           w.send(w.groups, 15, w.low), w.calls({w.start, w.result}, true, "a new one")},
+          [&](SimulatedBoard& board) { board.words = w.kept; });
+    EXPECT_EQ(Link_statistics(&uav_link)->bytesSkipped, 0u);
+}
+
+TEST(CallsToAll, AreRefusedWithAKeyButWithoutTheGroupsAndTakenByAnOpenVehicle) {
+    for (const bool isOpen : {false, true}) {
+        const ToAll::Key pilots(isOpen ? 0 : LINK_KEY_BYTES, 0x11);
+        ToAll w(pilots);
+        w.fly({w.calls({w.high}), w.send(w.groups, 10, w.low),
+               w.calls({w.start, w.result}, false, "under a key that it has not"),
+               w.send(w.open, 11, w.low), w.calls({w.start, w.result}, isOpen, "in the clear"),
+               w.calls({w.high}), w.send({w.sent.back()}),
+               w.calls({w.start, w.result}, false, "a copy")},
+              [&](SimulatedBoard& board) { board.provide(pilots); });
+        EXPECT_EQ(w.ground.statistics().sessions, 1u);
+    }
+}
+
 TEST_F(Uav, TheSameSeedGivesTheSameRun) {
     fly(ground.pinging(5), 20);
     GroundAndChip again;
@@ -153,118 +271,6 @@ TEST_F(Uav, TheSameSeedGivesTheSameRun) {
     UavMachine machine(again.soc, [script = again.ground.pinging(5)] { return !script(); });
     machine.run();
     EXPECT_EQ(again.soc.cycles(), soc.cycles());
-}
-
-using Bytes = std::vector<uint8_t>;
-
-const Bytes vehicleKey = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-constexpr uint64_t ms = 1'000'000;
-
-class Attack : public ::testing::Test, protected GroundAndChip {
-protected:
-    void start(const Bytes& key) {
-        key_ = ground.key = key;
-        ground.start();
-        soc.onTime([this](uint64_t now) {
-            attacker_.advance(now);
-            return std::min(ground.advance(now), attacker_.nextEvent());
-        });
-    }
-    // The vehicle starts, and flies until the script, which is called each millisecond, is over.
-    void fly(const Script& script, double limitSeconds) {
-        bool done = false;
-        const uint64_t limit = soc.now() + static_cast<uint64_t>(limitSeconds * 1e9);
-        UavMachine machine(soc, [&] {
-            if (period_ && soc.now() >= nextMischief_) {
-                attacker_.doMischief(soc.now());
-                nextMischief_ = soc.now() + period_;
-            }
-            done = script();
-            return !done && soc.now() < limit;
-        });
-        machine.board = SimulatedBoard(++boots_);
-        machine.board.provide(key_);
-        soc.reset();
-        machine.run();
-        EXPECT_TRUE(done) << "not done after " << limitSeconds << " simulated seconds";
-    }
-    void expectAllAnswered(size_t count) {
-        EXPECT_EQ(ground.replies.size(), count);
-        for (auto& [id, status] : ground.replies)
-            EXPECT_EQ(status, 0) << id;
-        EXPECT_EQ(ground.unknown, 0) << "a message was lost with its session";
-    }
-
-    Attacker attacker_{air, testSeed() + 9};
-    Bytes key_;
-    uint64_t period_ = 0, nextMischief_ = 0, boots_ = 0;
-};
-
-// Eight of them, one for each epoch, ended a session in the clear, 60 times of 60.
-Bytes blindResets() {
-    Bytes all;
-    for (U32 epoch = 0; epoch < 8; ++epoch) {
-        U8 frame[LINK_OVERHEAD];
-        frame[0] = LINK_CONTROL;
-        frame[1] = 0;
-        frame[2] = static_cast<U8>(LINK_KIND_BITS(LINK_KIND_RST) | epoch << 2);
-        const U32 crc = link_crc(LINK_NO_SEED, frame, LINK_HEADER);
-        frame[3] = static_cast<U8>(crc >> 8);
-        frame[4] = static_cast<U8>(crc);
-        all.insert(all.end(), frame, frame + sizeof frame);
-    }
-    return all;
-}
-
-TEST_F(Attack, InTheClearEightBlindResetsEndASession) {
-    start({});
-    fly(inOrder({ground.pinging(3),
-                 [&] {
-                     attacker_.send(0, 1, blindResets(), soc.now());
-                     return true;
-                 },
-                 [] { return Link_state(&uav_link) != LINK_STATE_UP; }}),
-        20);
-}
-
-// Twenty bytes to each packet, when the vehicle starts, when the ground does, and in flight.
-TEST_F(Attack, WithAKeyWhoAddsBytesToEachPacketPreventsNoSession) {
-    start(vehicleKey);
-    attacker_.hinder(true);
-    fly(inOrder({ground.pinging(5),
-                 [&] {
-                     ground.start();
-                     return true;
-                 },
-                 ground.pinging(5)}),
-        60);
-    expectAllAnswered(5);
-}
-
-// Everything that is possible without the key, while the ground and then the vehicle start anew;
-// then earlier packets are repeated.
-TEST_F(Attack, WithAKeyNothingComesOfAnyMischief) {
-    start(vehicleKey);
-    period_ = 25 * ms;
-    fly(inOrder({ground.pinging(15),
-                 [&] {
-                     expectAllAnswered(15);
-                     EXPECT_EQ(Link_statistics(&uav_link)->sessions, 1u);
-                     EXPECT_EQ(ground.statistics().sessions, 1u);
-                     ground.start();
-                     return true;
-                 },
-                 ground.pinging(15)}),
-        120);
-    expectAllAnswered(15);
-    EXPECT_EQ(Link_statistics(&uav_link)->sessions, 2u);
-    ground.start();
-    fly(ground.pinging(15), 120);
-    expectAllAnswered(15);
-    EXPECT_EQ(Link_statistics(&uav_link)->sessions, 1u);
-    EXPECT_EQ(ground.statistics().sessions, 1u);
-    std::printf("%llu hostile packets, %zu packets known to the attacker\n",
-                static_cast<unsigned long long>(attacker_.sent()), attacker_.heard());
 }
 
 } // namespace

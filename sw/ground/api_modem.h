@@ -18,8 +18,6 @@ namespace XBeeAT {
 
 class ApiModem : public PacketLine {
 public:
-    static constexpr int everybody = 0xFFFF; // as a target
-
     // `most`: packets that may be without an answer, whoever they are for.
     explicit ApiModem(bool escapes, size_t most = 255) : frames_(escapes), most_(most) {}
 

@@ -95,9 +95,9 @@ std::string Engine::prepareModem(const Settings& wanted) {
 }
 
 // Starts the link with a peer, if the modem is ready. One without API mode talks to the peer alone
-// that it was set up for.
+// that it was set up for, and not to all.
 void Engine::start(Peer& peer) {
-    if (longest_ && (line_->answers() || peer.address() == target_))
+    if (longest_ && (line_->answers() || (peer.address() == target_ && !peer.isAll())))
         peer.start(longest_, line_->answers(), clock_.nowUs());
 }
 
@@ -174,7 +174,7 @@ void Engine::fly(std::unique_lock<std::mutex>& lock) {
 }
 
 bool Engine::downTooLong(U32 now) {
-    if (any(&Peer::isUp)) {
+    if (any(&Peer::isUp) || !any(&Peer::hasLink)) {
         upAt_ = now;
         patienceUs_ = static_cast<U32>(settings.downMs) * 1000;
     }
@@ -196,12 +196,11 @@ void Engine::readSerial(U32 now) {
         fail("serial port '" + device + "': " + (count == 0 ? "closed" : std::strerror(errno)));
 }
 
-// Gives bytes to the peer that they are from. One that is addressed as all hears all; a modem
-// without an address of 16 bits can only be that of a single peer.
+// Gives bytes to the peer that they are from. A modem without an address of 16 bits can only be
+// that of a single peer.
 void Engine::deliver(int source, const U8* bytes, size_t size, U32 now) {
     for (auto& [address, peer] : peers_)
-        if (address == source || address == ApiModem::everybody ||
-            (source == ApiFrames::nobody && !hasMany))
+        if (address == source || (source == ApiFrames::nobody && !hasMany))
             peer->receive(bytes, size, now);
 }
 
@@ -225,7 +224,8 @@ U32 Engine::pollPeers(U32 now) {
               [](const Peer* a, const Peer* b) { return a->airUs < b->airUs; });
     U32 wait = line_->deadline(now);
     for (Peer* peer : order) {
-        if (!line_->answers() && peer->address() != target_ && peer->isWanted()) {
+        if (!line_->answers() && (peer->address() != target_ || peer->isAll()) &&
+            peer->isWanted()) {
             log(0, "the modem on '" + device + "' has no API mode: it talks to one vehicle only");
             peer->fail();
         }

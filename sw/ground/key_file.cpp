@@ -18,7 +18,7 @@ namespace XBeeAT {
 
 namespace {
 
-constexpr int anyVehicle = -1;
+constexpr int anyVehicle = -1, everybody = 0xFFFF;
 constexpr size_t mostBytes = 65536;
 const char* const hexadecimal = "0123456789abcdefABCDEF";
 
@@ -117,11 +117,12 @@ LinkKeys KeyFile::of(int address) const {
     if (path_.empty())
         return {};
     auto found = keys_.find(address);
-    if (found == keys_.end())
+    if (found == keys_.end() && address != everybody)
         found = keys_.find(anyVehicle);
     if (found == keys_.end()) {
         char text[64];
-        std::snprintf(text, sizeof text, " has no line for the vehicle 0x%04x", address);
+        std::snprintf(text, sizeof text, " has no line for %s 0x%04x",
+                      address == everybody ? "all vehicles," : "the vehicle", address);
         refuse(path_, text);
     }
     return found->second;

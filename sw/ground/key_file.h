@@ -4,8 +4,8 @@
 //
 //   [ADDRESS] KEY [NEXT]      KEY: 32 hexadecimal digits; NEXT: the key that follows it
 //
-// The line without an address (0x0001) is for every vehicle that has none of its own; # begins a
-// comment. No key is ever printed.
+// The line without an address (0x0001) is for every vehicle that has none of its own, and that of
+// 0xffff for calls to all of them; # begins a comment. No key is ever printed.
 
 #pragma once
 

@@ -53,7 +53,9 @@ Peer::Peer(Host& host, int address, const LinkKeys& keys)
     static const Link_Port port = {onTransmit, onRandom,  onMessage, onChannel,
                                    onState,    onOutcome, onWritable};
     Link_init(link_.get(), &port, this, static_cast<U32>(host.settings.characterUs() * 16));
-    for (size_t slot = 0; slot < keys_.size(); ++slot)
+    if (address == Broadcast::everybody)
+        broadcast_ = std::make_unique<Broadcast>(host.settings, keys_);
+    for (size_t slot = 0; !isAll() && slot < keys_.size(); ++slot)
         Link_setKey(link_.get(), static_cast<int>(slot), keys_[slot].data(),
                     LINK_GROUND | static_cast<U32>(address_));
 }
@@ -142,6 +144,13 @@ int Peer::connect(int channel, int lateMs) {
 size_t Peer::waiting() const {
     std::lock_guard<std::mutex> lock(host_.mutex);
     return waiting_.size();
+}
+
+U32 Peer::mostBytes() const {
+    if (!isAll())
+        return LINK_MAX_MESSAGE;
+    std::lock_guard<std::mutex> lock(host_.mutex);
+    return broadcast_->most();
 }
 
 bool Peer::isWanted() const {
@@ -279,17 +288,49 @@ void Peer::end(int channel, int level, const std::string& why) {
     Link_closeChannel(link_.get(), channel);
 }
 
+// Notes that a program's message waits for room.
+void Peer::waitForRoom(int channel) {
+    if (!full_)
+        turn_ = channel;
+    full_ |= 1u << channel;
+}
+
+// Sends the next message of a program to all vehicles. True: it was taken. A program that closes
+// waits until its calls are on the air.
+bool Peer::sendToAll(int channel, U32 now) {
+    Stream& s = streams_[channel];
+    if (s.kind() == Stream::Kind::Twoway) {
+        s.refuse("xbee-at: a call to all vehicles (-a 0xFFFF) has no answer: use a oneway proxy",
+                 now);
+        return true;
+    }
+    if (broadcast_->isBusy())
+        waitForRoom(channel);
+    else if (s.kind() == Stream::Kind::Goodbye)
+        end(channel, 1, "has ended");
+    else if (s.kind() != Stream::Kind::Oneway)
+        end(channel, 0, "sent a batch, and one call at a time goes to all vehicles");
+    else if (!broadcast_->take(s.data(), s.size(), now))
+        end(channel, 0, "calls all vehicles, and the clock of this machine is not set");
+    else {
+        s.taken(now);
+        return true;
+    }
+    return false;
+}
+
 // Sends the next message of a program. True: it went to the link.
 bool Peer::sendMessage(int channel, U32 now) {
     Stream& s = streams_[channel];
     if (!s.is(Stream::State::Open))
         return false;
-    switch (s.next(LINK_MAX_MESSAGE)) {
+    const U32 most = isAll() ? broadcast_->most() : LINK_MAX_MESSAGE;
+    switch (s.next(most)) {
     case Stream::Next::Senseless:
         end(channel, 0,
-            "sent a message of " + std::to_string(s.size()) +
-                " bytes, which does not fit the radio link (at most " +
-                std::to_string(LINK_MAX_MESSAGE) + ")");
+            "sent a message of " + std::to_string(s.size()) + " bytes, which does not fit the " +
+                (isAll() ? "packet to all vehicles" : "radio link") + " (at most " +
+                std::to_string(most) + ")");
         return false;
     case Stream::Next::None:
         if (s.ended())
@@ -298,13 +339,13 @@ bool Peer::sendMessage(int channel, U32 now) {
     case Stream::Next::Message:
         break;
     }
+    if (isAll())
+        return sendToAll(channel, now);
     const bool mustWait = full_ && s.size() > briefBytes;
     const Link_Status status =
         mustWait ? LINK_FULL : Link_send(link_.get(), channel, s.data(), s.size(), s.isCall());
     if (status == LINK_FULL) {
-        if (!full_)
-            turn_ = channel;
-        full_ |= 1u << channel;
+        waitForRoom(channel);
     } else if (status == LINK_OK) {
         late_[channel].push_back(s.lateAt());
         s.taken(now);
@@ -327,12 +368,15 @@ void Peer::sendMessages(U32 now) {
 }
 
 void Peer::openWanted(U32 now) {
-    if (Link_state(link_.get()) != LINK_STATE_UP)
+    if (isAll() ? broadcast_->most() == 0 : !isUp())
         return;
     for (int channel = 0; channel < ownChannels; ++channel)
         if (streams_[channel].is(Stream::State::Wanted) &&
-            Link_openChannel(link_.get(), channel) == LINK_OK)
+            (isAll() || Link_openChannel(link_.get(), channel) == LINK_OK)) {
             streams_[channel].open(now);
+            if (isAll())
+                streams_[channel].greet(now);
+        }
 }
 
 // Logs the calls of programs that have left: nobody else can be told.
@@ -369,13 +413,20 @@ U32 Peer::withdrawLate(U32 now) {
 // ---- calls of the engine, mutex held ----
 
 void Peer::start(U32 longest, bool isApi, U32 now) {
+    if (isAll()) {
+        broadcast_->limitPacket(longest);
+        return;
+    }
     Link_limitFrame(link_.get(), longest);
     Link_expectAnswers(link_.get(), isApi ? host_.settings.mostWaiting() : 0);
     Link_start(link_.get(), now);
 }
 
 void Peer::stop(U32 now) {
-    Link_stop(link_.get(), now);
+    if (isAll())
+        broadcast_->stop();
+    else
+        Link_stop(link_.get(), now);
     reportLost();
 }
 
@@ -390,19 +441,30 @@ void Peer::fail() {
 }
 
 void Peer::receive(const U8* bytes, size_t size, U32 now) {
-    Link_receive(link_.get(), bytes, static_cast<U32>(size), now);
+    if (hasLink())
+        Link_receive(link_.get(), bytes, static_cast<U32>(size), now);
 }
 
 void Peer::answer(bool isThere, U32 now) {
     Link_answer(link_.get(), isThere, now);
 }
 
+U32 Peer::pollBroadcast(U32 now) {
+    openWanted(now);
+    const U32 due = broadcast_->poll(
+        now, [this](const U8* packet, U32 size) { return host_.transmit(*this, packet, size); });
+    if (broadcast_->isBusy() || !full_)
+        return due;
+    full_ = 0;
+    return 0;
+}
+
 U32 Peer::poll(U32 now) {
     reportLost();
     placePrograms(now);
     Link_poll(link_.get(), now);
-    U32 wait = std::min({withdrawLate(now), Link_deadline(link_.get(), now),
-                         waiting_.empty() ? 0xFFFFFFFFu : lookUs});
+    const U32 due = isAll() ? pollBroadcast(now) : Link_deadline(link_.get(), now);
+    U32 wait = std::min({withdrawLate(now), due, waiting_.empty() ? 0xFFFFFFFFu : lookUs});
     for (Stream& s : streams_)
         wait = std::min(wait, s.beat(now));
     return wait;

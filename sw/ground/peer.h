@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// peer: one vehicle, as programs of the ground see it: the link with it, and their connections.
+// peer: one vehicle, as programs of the ground see it: the link with it, and their connections; or
+// all vehicles, by one-way calls without a link.
 
 #pragma once
 
-#include "settings.h"
+#include "broadcast.h"
 #include "stream.h"
 
 #include <deque>
@@ -64,6 +65,9 @@ public:
     void stopListening();
     std::string statistics() const; // one line of text
     const std::string& device() const { return host_.device; }
+    bool isAll() const { return broadcast_ != nullptr; }
+    bool hasLink() const { return !isAll(); }
+    U32 mostBytes() const; // of a message
 
     // ---- of the engine ----
 
@@ -76,7 +80,7 @@ public:
     void start(U32 longest, bool isApi, U32 now);
     void stop(U32 now); // tells the vehicle
     void fail();        // ends all connections and those that wait for one
-    U32 randomWait() { return Link_randomWait(link_.get()); }
+    U32 randomWait() { return isAll() ? LINK_WAIT_SHARED : Link_randomWait(link_.get()); }
     void receive(const U8* bytes, size_t size, U32 now);
     void answer(bool isThere, U32 now); // of the modem, for the oldest packet without one
     // Does what is due. Returns when to call again, in microseconds.
@@ -98,6 +102,9 @@ private:
     int calledChannel() const;
     void sendMessages(U32 now);
     bool sendMessage(int channel, U32 now);
+    bool sendToAll(int channel, U32 now);
+    void waitForRoom(int channel);
+    U32 pollBroadcast(U32 now);
     void end(int channel, int level, const std::string& why);
     void openWanted(U32 now);
     U32 withdrawLate(U32 now);
@@ -125,6 +132,7 @@ private:
     std::deque<U32> late_[LINK_CHANNELS]; // when each message of the link's will be late
     std::deque<Waiting> waiting_;
     std::unique_ptr<Link> link_;
+    std::unique_ptr<Broadcast> broadcast_; // in its place, to all vehicles
 };
 
 // Returns both ends of a pipe that does not block. Throws std::system_error.

@@ -65,10 +65,13 @@ public:
     std::string toDetailedString() const override { return toString(); }
     Ice::ConnectionInfoPtr getInfo() const override { return ICE_MAKE_SHARED(Ice::ConnectionInfo); }
     void checkSendSize(const IceInternal::Buffer& buf) override {
-        if (buf.b.size() > LINK_MAX_MESSAGE)
-            throw Ice::MemoryLimitException(__FILE__, __LINE__,
-                                            "message too long for the radio link (at most " +
-                                                std::to_string(LINK_MAX_MESSAGE) + " bytes)");
+        const size_t most = peer_->mostBytes();
+        if (buf.b.size() > most)
+            throw Ice::MemoryLimitException(
+                __FILE__, __LINE__,
+                std::string("message too long for ") +
+                    (peer_->isAll() ? "one packet to all vehicles" : "the radio link") +
+                    " (at most " + std::to_string(most) + " bytes)");
     }
     void setBufferSize(int, int) override {}
 

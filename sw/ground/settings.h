@@ -6,6 +6,7 @@
 
 #include "key_file.h"
 
+#include <chrono>
 #include <functional>
 #include <random>
 #include <string>
@@ -30,6 +31,13 @@ struct Settings {
 
     // Returns a random number for sessions; a test may set its own source.
     std::function<unsigned()> random = [] { return std::random_device()(); };
+
+    // Returns quarters of a second since 2026 began (link_broadcast.h); a test may set its own.
+    std::function<int64_t()> quarters = [] {
+        using namespace std::chrono;
+        const auto now = system_clock::now().time_since_epoch();
+        return duration_cast<milliseconds>(now).count() / 250 - 1767225600LL * 4;
+    };
 
     // Packets that may wait for the modem's answer (Link_expectAnswers).
     unsigned mostWaiting() const { return baud > 115200 ? 2 : 3; }

@@ -129,10 +129,15 @@ bool Stream::isCall() const {
     return out_[typeAt] == request || out_[typeAt] == batch;
 }
 
+Stream::Kind Stream::kind() const {
+    if (out_[typeAt] != request || out_.size() < idAt + 4)
+        return out_[typeAt] == closeConnection ? Kind::Goodbye : Kind::Other;
+    const bool hasId = out_[idAt] | out_[idAt + 1] | out_[idAt + 2] | out_[idAt + 3];
+    return hasId ? Kind::Twoway : Kind::Oneway;
+}
+
 void Stream::taken(U32 nowUs) {
-    bool wantsReply = out_[typeAt] == request && out_.size() >= idAt + 4 &&
-                      (out_[idAt] | out_[idAt + 1] | out_[idAt + 2] | out_[idAt + 3]);
-    if (wantsReply && pending_++ == 0)
+    if (kind() == Kind::Twoway && pending_++ == 0)
         heardAt_ = nowUs;
     out_.erase(out_.begin(), out_.begin() + messageSize());
     since_ = readAt_;
@@ -165,7 +170,6 @@ void Stream::write(U32 nowUs) {
 }
 
 U32 Stream::beat(U32 nowUs) {
-    static const U8 heartbeat[headerBytes] = {'I', 'c', 'e', 'P', 1, 0, 1, 0, validate, 0, 14};
     if (is(State::Leaving)) {
         if (nowUs - leftAt_ < leavingUs)
             return leavingUs - (nowUs - leftAt_);
@@ -180,7 +184,7 @@ U32 Stream::beat(U32 nowUs) {
     pollfd end{fd_, POLLRDHUP, 0};
     if (in_.empty() && poll(&end, 1, 0) == 0) { // it has not ended its writing
         const U32 activeAt = activeAt_;
-        (void)give(heartbeat, headerBytes, nowUs);
+        (void)giveHead(validate, nowUs);
         activeAt_ = activeAt;
     }
     return 100000u;
@@ -190,9 +194,29 @@ U32 Stream::silentUs(U32 nowUs) const {
     return is(State::Open) && !pending_ ? nowUs - activeAt_ : 0;
 }
 
+bool Stream::giveHead(U8 type, U32 nowUs) {
+    const U8 head[headerBytes] = {'I', 'c', 'e', 'P', 1, 0, 1, 0, type, 0, headerBytes};
+    return give(head, headerBytes, nowUs);
+}
+
 void Stream::sayGoodbye(U32 nowUs) {
-    static const U8 goodbye[headerBytes] = {'I', 'c', 'e', 'P', 1, 0, 1, 0, closeConnection, 0, 14};
-    (void)give(goodbye, headerBytes, nowUs);
+    (void)giveHead(closeConnection, nowUs);
+}
+
+void Stream::greet(U32 nowUs) {
+    (void)giveHead(validate, nowUs);
+}
+
+void Stream::refuse(const std::string& why, U32 nowUs) {
+    constexpr U8 unknownLocalException = 5;
+    std::vector<U8> answer = {'I', 'c', 'e', 'P', 1, 0, 1, 0, reply, 0, 0, 0, 0, 0};
+    answer.insert(answer.end(), out_.begin() + idAt, out_.begin() + idAt + 4);
+    answer.push_back(unknownLocalException);
+    answer.push_back(static_cast<U8>(why.size()));
+    answer.insert(answer.end(), why.begin(), why.end());
+    answer[sizeAt] = static_cast<U8>(answer.size());
+    taken(nowUs);
+    (void)give(answer.data(), static_cast<U32>(answer.size()), nowUs);
 }
 
 } // namespace XBeeAT

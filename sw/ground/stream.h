@@ -56,7 +56,9 @@ public:
     // Finds the next whole message, at most `longest` bytes. Heartbeats are left out: the link
     // knows whether the peer is there.
     Next next(U32 longest);
-    bool isCall() const; // whether the message is a call
+    bool isCall() const;                                // whether the message is a call
+    enum class Kind { Twoway, Oneway, Goodbye, Other }; // Oneway: one call without an answer
+    Kind kind() const;
     const U8* data() const { return out_.data(); }
     U32 size() const { return messageSize(); }      // also of a message that makes no sense
     U32 lateAt() const { return since_ + lateUs_; } // when the next message will be late
@@ -77,11 +79,15 @@ public:
     U32 silentUs(U32 nowUs) const;
     // Tells the program, in Ice's words, that the connection closes and it may open another one.
     void sayGoodbye(U32 nowUs);
+    void greet(U32 nowUs); // as a server does
+    // Takes the next message, a call that waits for an answer, which is an error with this text.
+    void refuse(const std::string& why, U32 nowUs);
 
     static constexpr size_t mostUnread = 64 * 1024; // bytes
 
 private:
     U32 messageSize() const;
+    bool giveHead(U8 type, U32 nowUs); // a message that is a head only
 
     State state_ = State::Closed;
     std::string name_;

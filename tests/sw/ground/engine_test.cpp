@@ -8,6 +8,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -263,6 +264,7 @@ TEST_F(EngineTest, ACallOfTheUavThatNoDescriptorIsLeftForIsRefusedAndReported) {
     }));
 }
 
+// A modem that was given up may return: the same listener is called then.
 TEST_F(EngineTest, AModemThatWasGivenUpIsTriedAgainAndTheListenerIsCalled) {
     rig_.with([&] {
         rig_.echo = true;
@@ -321,6 +323,7 @@ TEST_F(EngineTest, TheModemIsSetUpWhileTheUavSends) {
     EXPECT_GE(commands, 9u);
 }
 
+// For a listener alone the modem is tried again, though nobody connects.
 TEST_F(EngineTest, AListenerAloneHasTheModemTriedAgain) {
     rig_.with([&] { rig_.ground->power(false, rig_.ns()); });
     auto engine = start();

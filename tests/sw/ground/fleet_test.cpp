@@ -3,7 +3,7 @@
 // fleet_test: several vehicles on one modem of the ground.
 
 #include "engine.h"
-#include "rig.h"
+#include "hearer.h"
 #include "wire.h"
 #include <gtest/gtest.h>
 #include <map>
@@ -69,6 +69,8 @@ protected:
             rig_.step = [this] {
                 for (auto& [address, vehicle] : vehicles_)
                     vehicle->step();
+                for (auto& hearer : hearers_)
+                    hearer->step();
             };
         });
     }
@@ -85,6 +87,7 @@ protected:
         s.target = address;
         s.isApi = isApi_;
         s.keys = keys;
+        s.quarters = quarters_;
         return XBeeAT::Engine::get(s, [this](int level, const std::string& text) {
             std::lock_guard<std::mutex> lock(logMutex_);
             log_ += std::to_string(level) + " " + text + "\n";
@@ -137,6 +140,8 @@ protected:
     std::string log_;
     Rig rig_{testSeed()};
     std::map<int, std::unique_ptr<Vehicle>> vehicles_;
+    std::vector<std::unique_ptr<Hearer>> hearers_; // of calls to all vehicles
+    std::function<int64_t()> quarters_ = XBeeAT::Settings().quarters;
 };
 
 TEST_F(FleetTest, EachVehicleAnswersItsOwnCallsUnderItsOwnKey) {
@@ -312,6 +317,101 @@ TEST_F(FleetTest, AModemServesAsManyVehiclesAsItMay) {
     const int fd = peers[6]->connect(-1);
     EXPECT_EQ(answerer(fd), 7) << log();
     close(fd);
+}
+
+// ---- calls to all vehicles ----
+
+const XBeeAT::LinkKey groupKey = {7, 7, 7};
+
+// A call of so many bytes in Ice's framing; `id`: 0 oneway; `type`: 1 batch, 4 goodbye.
+Bytes callOf(uint8_t tag, uint8_t id = 0, size_t size = 40, uint8_t type = 0) {
+    Bytes m = message(tag, size);
+    m[8] = type;
+    for (size_t at = 14; at < 18 && at < size; ++at)
+        m[at] = at == 14 ? id : 0;
+    return m;
+}
+
+// Five hearers, of whom the last has another key, and programs that call all vehicles.
+class BroadcastTest : public FleetTest {
+protected:
+    BroadcastTest() {
+        rig_.with([&] {
+            for (int address = 1; address <= 5; ++address)
+                hearers_.push_back(std::make_unique<Hearer>(
+                    rig_, address, address == 5 ? XBeeAT::LinkKey{1} : groupKey));
+        });
+    }
+    // What is read after these messages, until the connection ends, which it does when what was
+    // sent is on the air; without the greeting.
+    std::string say(const std::vector<Bytes>& messages) {
+        auto all = peer(0xFFFF, {groupKey});
+        const int fd = all->connect(-1);
+        (void)rig_.read(fd, 14);
+        for (const Bytes& m : messages)
+            writeAll(fd, m);
+        const Bytes answer = rig_.read(fd, 4096);
+        close(fd);
+        const uint64_t end = rig_.with([&] { return rig_.ns(); }) + 600'000'000;
+        EXPECT_TRUE(rig_.until([&] { return rig_.ns() >= end; }));
+        return {answer.begin(), answer.end()};
+    }
+    const Bytes goodbye = callOf(0, 0, 14, 4);
+};
+
+TEST_F(BroadcastTest, EachVehicleTakesACallOnceInOrderAndNoneThatIsRecordedOrChanged) {
+    fly(9);
+    auto one = peer(9);
+    const int fd = one->connect(-1);
+    EXPECT_EQ(answerer(fd), 9) << log();
+    std::vector<Bytes> calls;
+    for (uint8_t call = 1; call <= 25; ++call)
+        calls.push_back(callOf(call));
+    calls.push_back(goodbye);
+    rig_.with([&] { rig_.air.weather.loss = 0.3; });
+    say(calls);
+    rig_.with([&] {
+        rig_.air.weather.loss = 0;
+        for (size_t h = 0; h < 4; ++h) {
+            const auto& heard = hearers_[h]->calls;
+            EXPECT_GE(heard.size(), 23u) << "five copies miss once in 400";
+            EXPECT_TRUE(std::includes(calls.begin(), calls.end(), heard.begin(), heard.end()));
+            EXPECT_GT(hearers_[h]->packets.size(), 2 * heard.size());
+        }
+        EXPECT_TRUE(hearers_[4]->calls.empty()) << "it has another key";
+        for (auto& hearer : hearers_)
+            hearer->calls.clear();
+        const Bytes last = hearers_[4]->packets.back();
+        hearers_[4]->say(last);
+        for (size_t at : {size_t(1), size_t(9), size_t(20), last.size() - 1}) {
+            Bytes changed = last;
+            changed[at] ^= 0x80;
+            hearers_[4]->say(changed);
+        }
+    });
+    say({callOf(26), goodbye});
+    rig_.with([&] {
+        for (size_t h = 0; h < 4; ++h)
+            EXPECT_EQ(hearers_[h]->calls, std::vector<Bytes>{callOf(26)});
+        EXPECT_EQ(Link_statistics(vehicles_[9]->link.get())->sessions, 1u) << "it hears them, too";
+    });
+    EXPECT_EQ(answerer(fd), 9) << log();
+    close(fd);
+}
+
+TEST_F(BroadcastTest, WhatCannotGoToAllIsRefusedAtOnceInWords) {
+    EXPECT_NE(say({callOf(1, 5), goodbye}).find("use a oneway proxy"), std::string::npos) << log();
+    say({callOf(1, 0, 80)});
+    EXPECT_NE(log().find("the packet to all vehicles (at most 79)"), std::string::npos) << log();
+    say({callOf(1, 0, 40, 1)});
+    EXPECT_NE(log().find("sent a batch"), std::string::npos) << log();
+    quarters_ = [] { return int64_t(-1); };
+    say({callOf(1)});
+    EXPECT_NE(log().find("the clock of this machine is not set"), std::string::npos) << log();
+    isApi_ = false;
+    say({callOf(1)});
+    EXPECT_NE(log().find("has no API mode"), std::string::npos) << log();
+    EXPECT_TRUE(rig_.with([&] { return hearers_[0]->packets.empty(); }));
 }
 
 } // namespace

@@ -39,7 +39,7 @@ protected:
 
 TEST_F(KeyFiles, OneKeyServesEveryVehicle) {
     const KeyFile file = read(a + "\n");
-    for (int address : {0, 1, 0xFFFF}) {
+    for (int address : {0, 1, 0xFFFE}) {
         ASSERT_EQ(file.of(address).size(), 1u);
         EXPECT_EQ(file.of(address)[0][1], 0x11);
         EXPECT_EQ(file.of(address)[0][15], 0xFF);
@@ -53,6 +53,11 @@ TEST_F(KeyFiles, EachVehicleHasItsLineAndTheNextKeyComesFirst) {
     EXPECT_EQ(file.of(0xBEEF)[0], file.of(1)[0]);
     EXPECT_EQ(file.of(0xBEEF)[1][0], 1);
     EXPECT_THROW(file.of(2), std::runtime_error);
+}
+
+TEST_F(KeyFiles, NoVehiclesKeyIsTheGroups) {
+    EXPECT_THROW(read(a + "\n").of(0xFFFF), std::runtime_error);
+    EXPECT_EQ(read(a + "\n0xffff " + b + "\n").of(0xFFFF)[0][0], 1);
 }
 
 TEST_F(KeyFiles, WithoutAFileThereAreNoKeys) {

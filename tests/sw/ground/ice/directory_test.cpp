@@ -6,6 +6,7 @@
 #include "gateway_rig.h"
 #include <IceStorm/IceStorm.h>
 #include <filesystem>
+#include <optional>
 
 namespace {
 

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+//
+// broadcast: one call at a time to all vehicles on the channel: its copies, spread in time, since
+// nobody acknowledges them.
+
+#pragma once
+
+#include "settings.h"
+
+#include <algorithm>
+#include <cstring>
+
+extern "C" {
+#include "link_broadcast.h"
+}
+
+namespace XBeeAT {
+
+class Broadcast {
+public:
+    static constexpr int everybody = 0xFFFF; // as a modem's address
+
+    // `keys`: the group's, the present one last; none: in the clear.
+    Broadcast(const Settings& settings, const LinkKeys& keys)
+        : settings_(settings), key_(keys.empty() ? LinkKey{} : keys.back()) {}
+    ~Broadcast() { explicit_bzero(key_.data(), key_.size()); }
+
+    // The modem is ready, and a packet has `bytes` at most.
+    void limitPacket(U32 bytes) { most_ = bytes - LINK_BROADCAST_OVERHEAD; }
+    void stop() { most_ = copies_ = 0; } // nothing goes out later
+    U32 most() const { return most_; }   // bytes of a message; 0: the modem is not ready
+    bool isBusy() const { return copies_ != 0; }
+    // Takes a message, unless it is busy. False: this machine's clock stands before 2026.
+    bool take(const U8* message, U32 size, U32 now) {
+        const int64_t number = settings_.quarters();
+        if (number <= 0)
+            return false;
+        number_ = std::max(number_ + 1, static_cast<U32>(number));
+        for (U32 at = LINK_BROADCAST_HEAD - 8; at < LINK_BROADCAST_HEAD; at += 4)
+            link_put32(packet_ + at, settings_.random());
+        std::memcpy(packet_ + LINK_BROADCAST_HEAD, message, size);
+        size_ = Link_sealBroadcast(packet_, size, key_.data(), number_);
+        copies_ = copies;
+        dueAt_ = now;
+        return true;
+    }
+    // Gives `transmit` the copy that is due. Returns when to call again, in microseconds.
+    template <class Transmit> U32 poll(U32 now, Transmit transmit) {
+        if (copies_ && !LINK_BEFORE(now, dueAt_)) {
+            if (!transmit(packet_, size_))
+                return LINK_POLL_EVERY;
+            --copies_;
+            dueAt_ = now + leastUs + settings_.random() % spreadUs;
+        }
+        return copies_ ? dueAt_ - now : 0xFFFFFFFFu;
+    }
+
+private:
+    // With 30 % loss all copies miss a vehicle once in 400 calls. They take longer than a quarter
+    // of a second, so numbers do not run ahead of the clock. Each waits a random time: what
+    // disturbs one does not meet all.
+    static constexpr unsigned copies = 5;
+    static constexpr U32 leastUs = 70000, spreadUs = 80000;
+
+    const Settings& settings_;
+    LinkKey key_;
+    U8 packet_[LINK_MAX_FRAME];
+    U32 size_ = 0, most_ = 0, number_ = 0, dueAt_ = 0;
+    unsigned copies_ = 0; // of the packet, to be sent yet
+};
+
+} // namespace XBeeAT

@@ -32,11 +32,10 @@ module memory_rest_proof #(
     (* hierconn *) wire \u_core.u_arbiter.u_queue.coming ;
     (* hierconn *) wire \u_core.u_arbiter.u_queue.cmd_valid_o ;
 
-    reg  [4:0] rest; // clocks of rest, 17 at most: the gate closes at 16
-    wire       active = rst_i || !`MEMORY_RESTS(u_core);
-    wire       closes = !active && rest == 5'd16;
-    always @(posedge clk_i)
-        rest <= active ? 5'd0 : rest + {4'd0, rest != 5'd17};
+    wire closes;
+    core_gate #(.GATED(1)) u_gate ( // as in sim_soc.v
+        .clk_i(clk_i), .rst_i(rst_i), .access_i(1'b0), .idle_i(`MEMORY_RESTS(u_core)),
+        .clk_o(closes));
     initial assume (rst_i);
     always @(posedge clk_i)
         cover (closes);

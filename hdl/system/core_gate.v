@@ -36,7 +36,11 @@ module core_gate #(
                     open = run;
             assign clk_o = clk_i && (open || ungated);
 `elsif FORMAL
-            assign clk_o = clk_i;
+            // A proof of what stands still behind a gate sees one edge, when the gate has closed.
+            reg closed;
+            always @(posedge clk_i)
+                closed <= !run;
+            assign clk_o = !run && !closed;
             // The gate is open while the core is active and 16 clocks longer, then closed.
             reg [4:0] since = 5'd16; // clocks since the core was active
             wire f_active = rst_i || access_i || !idle_i;

@@ -16,11 +16,9 @@ module idle_proof (
 `endif
     output wire idle_o
 );
-    reg  [4:0] rest; // clocks of rest, 17 at most: the gate closes at 16
-    wire       active = rst_i || bus_valid_i || !idle_o;
-    wire       closes = !active && rest == 5'd16;
-    always @(posedge clk_i)
-        rest <= active ? 5'd0 : rest + {4'd0, rest != 5'd17};
+    wire closes;
+    core_gate #(.GATED(1)) u_gate (
+        .clk_i(clk_i), .rst_i(rst_i), .access_i(bus_valid_i), .idle_i(idle_o), .clk_o(closes));
     initial assume (rst_i);
     always @(posedge clk_i)
         cover (closes);

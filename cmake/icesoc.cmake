@@ -177,17 +177,21 @@ macro(icesoc_verilate_observed)
 endmacro()
 
 # icesoc_verilate(NAME TOP module SOURCES file... [PARAMS NAME=value...] [INCLUDES dir...]
-#                 [REGS block...] [DEPENDS target-or-file...] [FLAGS ...] [FAST])
-# Verilated model of a module as a library NAME with the class V<NAME>. Lint is on (-Wall) and
-# fatal. FAST, the whole chip: compiled by clang (measured: 1.18 times the speed of g++'s code).
-# A model with COVERAGE counts soc.v only: each block's own tests count the block, and with
-# all counters seconds of flight took minutes.
+#                 [REGS block...] [DEPENDS target-or-file...] [FLAGS ...] [FAST] [CLASS class])
+# Verilated model of a module as a library NAME with the class V<NAME>, or V<CLASS>. Lint is on
+# (-Wall) and fatal. FAST, the whole chip: compiled by clang (measured: 1.18 times the speed of
+# g++'s code). A model with COVERAGE counts soc.v only: each block's own tests count the block, and
+# with all counters seconds of flight took minutes.
 function(icesoc_verilate name)
-  cmake_parse_arguments(A "FAST" "TOP" "SOURCES;PARAMS;INCLUDES;REGS;DEPENDS;FLAGS" ${ARGN})
+  cmake_parse_arguments(A "FAST" "TOP;CLASS" "SOURCES;PARAMS;INCLUDES;REGS;DEPENDS;FLAGS" ${ARGN})
   set(dir ${CMAKE_CURRENT_BINARY_DIR}/verilated_${name})
-  set(lib ${dir}/V${name}__ALL.a)
+  set(class V${name})
+  if(A_CLASS)
+    set(class V${A_CLASS})
+  endif()
+  set(lib ${dir}/${class}__ALL.a)
   set(flags --cc -Wall --x-assign unique --x-initial unique -O3 --top-module ${A_TOP}
-            --prefix V${name} --Mdir ${dir} -y ${GEN_DIR} -I${GEN_DIR} ${A_FLAGS})
+            --prefix ${class} --Mdir ${dir} -y ${GEN_DIR} -I${GEN_DIR} ${A_FLAGS})
   set(library) # modules that -y may find
   foreach(i IN LISTS A_INCLUDES)
     list(APPEND flags -y ${i} -I${i})
@@ -213,10 +217,10 @@ function(icesoc_verilate name)
   # Verilator's own makefile appends -Os; OPT_FAST is the way in (measured: twice the speed). The
   # headers are said to be made here, so that what includes them is compiled again in the same run
   # of ninja, not in the next one.
-  add_custom_command(OUTPUT ${lib} BYPRODUCTS ${dir}/V${name}.h ${dir}/V${name}___024root.h
+  add_custom_command(OUTPUT ${lib} BYPRODUCTS ${dir}/${class}.h ${dir}/${class}___024root.h
     COMMAND ${VERILATOR} ${flags} ${A_PARAMS} ${sources}
     COMMAND ${CMAKE_COMMAND} -E env CCACHE_DIR=$ENV{CCACHE_DIR}
-            make -s -C ${dir} -f V${name}.mk V${name}__ALL.a
+            make -s -C ${dir} -f ${class}.mk ${class}__ALL.a
             "CXX=${CCACHE} ${compiler}" "OPT_FAST=-O3 -march=native" OPT_GLOBAL=-O2
             "OPT_SLOW=${slow}" "USER_CPPFLAGS=-fPIC" ARCHIVE=1
     DEPENDS ${deps} VERBATIM COMMENT "Verilating ${A_TOP} as ${name}")
@@ -225,7 +229,7 @@ function(icesoc_verilate name)
   list(TRANSFORM defines REPLACE "^-D" "+define+")
   set(files ${CMAKE_BINARY_DIR}/files/${name}.f)
   add_custom_command(OUTPUT ${files}
-    COMMAND ${CMAKE_COMMAND} -DREAD=${dir}/V${name}__ver.d -DTO=${files} -DTOP=${A_TOP}
+    COMMAND ${CMAKE_COMMAND} -DREAD=${dir}/${class}__ver.d -DTO=${files} -DTOP=${A_TOP}
             "-DDEFINES=${defines}" -P ${CMAKE_SOURCE_DIR}/cmake/files.cmake
     DEPENDS ${lib} ${CMAKE_SOURCE_DIR}/cmake/files.cmake VERBATIM COMMENT "Files of ${name}")
   add_custom_target(verilated_${name} DEPENDS ${lib} ${files})

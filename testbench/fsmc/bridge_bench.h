@@ -66,6 +66,7 @@ private:
         // Valid only with ready high; else noise.
         top_.bus_rdata_i = random_.next();
         top_.bus_error_i = random_.chance(0.5);
+        answer(); // comes in the first half of a clock, as a decoder's
     }
 
 public:

@@ -30,6 +30,7 @@ protected:
             targets_.push_back(packet.to);
         });
         bench_.addModel([this] { sample(); }, [this] { drive(); });
+        bench_.addClock([this] { movePins(); });
         bench_.reset();
         bus_.write(MODEM_MASK, 0x7F);
         bus_.write(MODEM_ADDR, 0x0000u << 16 | 0x0001u);
@@ -132,6 +133,7 @@ protected:
     std::vector<uint16_t> targets_;
     bool pinsIgnoreRts_ = false;
     bool noise_ = false; // the line to the controller is held low
+    bool ctsWavers_ = false;
 
 private:
     void sample() {
@@ -149,8 +151,14 @@ private:
         air_.advance(now());
         near_->advance(now());
         far_->advance(now());
-        bench_.top().modem_rxd_i = pins_.rxd() && !noise_;
-        bench_.top().modem_cts_n_i = pins_.ctsN();
     }
+    // Pins move in the second half of a clock, as any other clock's (tests/hdl/reader.v).
+    void movePins() {
+        if (bench_.top().clk_i)
+            return;
+        bench_.top().modem_rxd_i = pins_.rxd() && !noise_;
+        bench_.top().modem_cts_n_i = pins_.ctsN() || (ctsWavers_ && wavering_.chance(0.5));
+    }
+    Random wavering_{testSeed()};
     bool txd_ = true, rtsN_ = false;
 };

@@ -159,6 +159,19 @@ TEST_F(ModemRingsMeet, APutInTheClockInWhichAPacketHasBeenSent) {
     EXPECT_EQ(plain_.received, expected) << "each once, in turn";
 }
 
+TEST_F(ModemTest, PacketsLeaveWholeThoughCtsMovesInAnyClock) {
+    ready();
+    ctsWavers_ = true;
+    std::vector<uint8_t> sent;
+    for (unsigned i = 0; i < 4; ++i) {
+        const auto packet = frame(100, static_cast<uint8_t>(0x35 + i));
+        sent.insert(sent.end(), packet.begin(), packet.end());
+        put(i, packet);
+    }
+    runMs(100);
+    EXPECT_EQ(plain_.received, sent);
+}
+
 TEST_F(ModemTest, AModemThatIsFullHoldsTheControllerBack) {
     ready();
     air_.weather.delayNs = 200'000'000; // each packet keeps the modem busy

@@ -5,10 +5,12 @@
 
 #pragma once
 
+#include "ice_messages.h"
 #include "link_pair.h"
 #include <algorithm>
 #include <dlfcn.h>
 #include <gtest/gtest.h>
+#include <tuple>
 
 // Names of the layers of a and b (CMakeLists.txt), and whether both have a key.
 struct Variant {
@@ -50,15 +52,24 @@ protected:
 
     static bool isMinimal() { return GetParam().b.find("minimal") == 0; }
 
-    // Offers a side's next message of random bytes on a random channel.
+    // Offers a side's next message on a random channel: of random bytes, or with them as parameters
+    // of Ice's, whose numbers count up, and whose operations the peer has often heard of.
     void offer(Side& from, Messages& sent, size_t most) {
         if (sent.size() >= most)
             return;
         const int channel = static_cast<int>(random.below(LINK_CHANNELS));
+        const uint32_t kind = random.below(3), number = static_cast<U32>(sent.size());
         Bytes m(1 + random.below(random.below(4) ? usualSize : longestSize));
         for (auto& byte : m)
             byte = static_cast<uint8_t>(random.next());
-        const Link_Status status = from.send(channel, m, static_cast<U32>(sent.size()));
+        uint32_t& id = ids_[{&from, channel, kind}];
+        if (kind && m.size() + 60 <= longestSize)
+            m = kind == 1
+                    ? IceMessages::reply(id + 1, m)
+                    : IceMessages::request(id + 1, "uav",
+                                           random.below(9) ? "known" : std::to_string(number), m);
+        const Link_Status status = from.send(channel, m, number);
+        id += status == LINK_OK;
         if (status == LINK_OK)
             sent.emplace_back(channel, m);
         else if (status == LINK_CLOSED) // a new session
@@ -113,6 +124,9 @@ protected:
     Messages sentA, sentB;
     uint32_t usualSize = 60, longestSize = 500;
     Random random{testSeed() * 77 + GetParam().seed};
+
+private:
+    std::map<std::tuple<const Side*, int, uint32_t>, uint32_t> ids_; // the last of each kind
 };
 
 // Returns the Link_Kind of a frame.

@@ -138,7 +138,6 @@ TEST_P(Attacked, NothingHostileIsAcceptedAndNothingLegalLostOrDoubled) {
                 static_cast<unsigned long long>(hostile_), sentA.size(), sentB.size());
 }
 
-// Recordings of earlier sessions, before reboots of both sides, have no effect either.
 TEST_P(Attacked, RecordingsOfEarlierSessionsAreWorthNothing) {
     for (unsigned boot = 0; boot < 6; ++boot) {
         size_t before[2] = {a.received.size(), b.received.size()};
@@ -211,7 +210,6 @@ TEST_P(Attacked, AFrameWithAnyBitWrongIsRefused) {
         EXPECT_TRUE(kinds.count(kind)) << "no frame of kind " << kind << " has crossed";
 }
 
-// The session survives a flood of HELLOs that were once good, and few get an answer.
 TEST_P(Attacked, AFloodOfHellosCostsFewAnswersAndNoSession) {
     std::vector<Bytes> hellos;
     for (unsigned boot = 0; boot < 12; ++boot) {

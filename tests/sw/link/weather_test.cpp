@@ -14,7 +14,8 @@ TEST_P(Met, NothingIsLostDoubledOrReorderedInBadWeather) {
     longestSize = std::min(a.layer.maxMessage, b.layer.maxMessage);
     ASSERT_TRUE(connect());
     setWeather({0.1, 0.05, 0.03});
-    EXPECT_TRUE(traffic(400, 1'000'000'000)) << "seed " << testSeed();
+    EXPECT_TRUE(traffic(400, 1'000'000'000, [&] { b.refuse = random.below(3) == 0; }))
+        << "seed " << testSeed();
     expectAllDelivered();
 }
 

@@ -59,6 +59,17 @@ protected:
         return status;
     }
 
+    // The vehicle has a connection of its own.
+    void open() {
+        ASSERT_TRUE(pair_.connect());
+        ASSERT_EQ(connect(), ICE_OK);
+        pair_.run(500000);
+    }
+    Ice_Status send(int channel, const Bytes& message) {
+        return ops().send(ic_.transports[0].context, channel, message.data(),
+                          static_cast<Ice_Int>(message.size()));
+    }
+
     Pair pair_{testSeed()};
     Ice_Communicator ic_;
     XBeeATEndpoint endpoint_;
@@ -105,9 +116,7 @@ TEST_F(RadioEndpoint, AMessageIsTakenOnceAndOnlyWhileSomebodyReceives) {
 }
 
 TEST_F(RadioEndpoint, TheEndOfTheLastOwnConnectionDoesNotEndTheNext) {
-    ASSERT_TRUE(pair_.connect());
-    ASSERT_EQ(connect(), ICE_OK);
-    pair_.run(500000);
+    open();
     pair_.a.close(3);
     pair_.run(500000);
     XBeeATEndpoint_onChannel(&endpoint_, 3, 0); // nobody has looked yet
@@ -116,39 +125,29 @@ TEST_F(RadioEndpoint, TheEndOfTheLastOwnConnectionDoesNotEndTheNext) {
 }
 
 TEST_F(RadioEndpoint, ConnectingWaitsUntilTheLastClosingIsAnswered) {
-    ASSERT_TRUE(pair_.connect());
-    ASSERT_EQ(connect(), ICE_OK);
-    pair_.run(500000);
+    open();
     ops().close(ic_.transports[0].context, 3);
     EXPECT_EQ(pair_.b.open(3), LINK_FULL);
     EXPECT_EQ(connect(), ICE_OK);
 }
 
 TEST_F(RadioEndpoint, AnswersThatTheLinkHasNoRoomForWaitForASlowLink) {
-    ASSERT_TRUE(pair_.connect());
-    ASSERT_EQ(connect(), ICE_OK);
-    pair_.run(500000);
+    open();
     pair_.setWeather({0.4});
     const Bytes answer(7930, 7);
     for (int n = 0; n < 5; ++n)
-        EXPECT_EQ(ops().send(ic_.transports[0].context, 3, answer.data(),
-                             static_cast<Ice_Int>(answer.size())),
-                  ICE_OK)
-            << n;
+        EXPECT_EQ(send(3, answer), ICE_OK) << n;
     run(30000);
     EXPECT_EQ(pair_.a.received, (Messages(5, {3, answer})));
 }
 
 TEST_F(RadioEndpoint, AConnectionThatTheLinkHasNoRoomForTooLongIsClosedOnBothSides) {
-    ASSERT_TRUE(pair_.connect());
-    ASSERT_EQ(connect(), ICE_OK);
-    pair_.run(500000);
+    open();
     pair_.a.refuse = true; // the link lives, and makes no way
     const Bytes answer(7930, 7);
     Ice_Status status = ICE_OK;
     for (int n = 0; n < 10 && status == ICE_OK; ++n)
-        status = ops().send(ic_.transports[0].context, 3, answer.data(),
-                            static_cast<Ice_Int>(answer.size()));
+        status = send(3, answer);
     EXPECT_EQ(status, ICE_CONNECTION_LOST);
     EXPECT_EQ(events(), (Kinds{{ICE_EVENT_CLOSED, 3}}));
     pair_.a.refuse = false;
@@ -164,10 +163,6 @@ TEST_F(RadioEndpoint, AConnectionThatTheLinkHasNoRoomForTooLongIsClosedOnBothSid
 TEST_F(RadioEndpoint, AMessageForAConnectionThatHasEndedNeverReachesTheNextOnItsChannel) {
     ASSERT_TRUE(pair_.connect());
     const Bytes answer(7930, 7);
-    auto send = [&] {
-        return ops().send(ic_.transports[0].context, 1, answer.data(),
-                          static_cast<Ice_Int>(answer.size()));
-    };
     auto again = [&] { // another program takes the ground's channel
         for (int isOpen : {0, 1})
             XBeeATEndpoint_onChannel(&endpoint_, 1, isOpen);
@@ -184,11 +179,11 @@ TEST_F(RadioEndpoint, AMessageForAConnectionThatHasEndedNeverReachesTheNextOnIts
         EXPECT_EQ(events(), (Kinds{{ICE_EVENT_CLOSED, 1}, {ICE_EVENT_OPENED, 1}}));
         pair_.a.refuse = false;
     };
-    EXPECT_EQ(send(), ICE_CONNECTION_LOST);
+    EXPECT_EQ(send(1, answer), ICE_CONNECTION_LOST);
     run(10000);
-    EXPECT_EQ(send(), ICE_OK);
+    EXPECT_EQ(send(1, answer), ICE_OK);
     again(); // and nobody has looked yet
-    EXPECT_EQ(send(), ICE_CONNECTION_LOST);
+    EXPECT_EQ(send(1, answer), ICE_CONNECTION_LOST);
 }
 
 TEST_F(RadioEndpoint, ASecondGroundHasConnectionsOfItsOwn) {
@@ -205,14 +200,14 @@ TEST_F(RadioEndpoint, ASecondGroundHasConnectionsOfItsOwn) {
     EXPECT_EQ(connectTo(0xF0), 7);
     EXPECT_EQ(connectTo(0), 3);
     const Bytes call(20, 9);
-    EXPECT_EQ(ops().send(ic_.transports[0].context, 7, call.data(), 20), ICE_OK);
+    EXPECT_EQ(send(7, call), ICE_OK);
     other.run(500'000);
     pair_.run(500'000);
     EXPECT_EQ(other.a.received, (Messages{{3, call}}));
     EXPECT_EQ(pair_.a.received, Messages{});
     XBeeATEndpoint_onDown(&endpoint_, 1);
     EXPECT_EQ(events(), (Kinds{{ICE_EVENT_CLOSED, 7}}));
-    EXPECT_EQ(ops().send(ic_.transports[0].context, 3, call.data(), 20), ICE_OK);
+    EXPECT_EQ(send(3, call), ICE_OK);
 }
 
 // Options are written as the ground's plugin writes them (test_radio_ice,

@@ -144,6 +144,25 @@ protected:
         return talk([&] { return nearPeer_.isUp() && farPeer_.isUp(); }, limitMs);
     }
 
+    // Sends five messages of this byte each way, at once.
+    void exchange(uint8_t byte) {
+        const std::vector<uint8_t> message(700, byte);
+        ASSERT_TRUE(connect());
+        ASSERT_EQ(Link_openChannel(nearPeer_.link(), 0), LINK_OK);
+        for (U32 tag = 0; tag < 5; ++tag)
+            ASSERT_EQ(Link_send(nearPeer_.link(), 0, message.data(), 700, tag), LINK_OK);
+        ASSERT_TRUE(talk([&] { return !farPeer_.received.empty(); }, 5000));
+        for (U32 tag = 0; tag < 5; ++tag)
+            ASSERT_EQ(Link_send(farPeer_.link(), 0, message.data(), 700, tag), LINK_OK);
+        ASSERT_TRUE(
+            talk([&] { return farPeer_.received.size() == 5 && nearPeer_.received.size() == 5; },
+                 20000)); // the far end's packets hold parts of two frames
+        talk([] { return false; }, 100);
+        EXPECT_EQ(nearPeer_.received[4], message);
+        EXPECT_EQ(farPeer_.received[4], message);
+        EXPECT_EQ(Radio_counters()->framingErrors, 0u);
+    }
+
     RfChannel air_{testSeed()};
     HostLine farLine_;
     XBee far_;
@@ -159,7 +178,10 @@ protected:
     const FSMC_Port* realPort_ = nullptr;
 };
 
-TEST_F(Radio, SetsTheModemUpAsItIsToldTo) {
+TEST_F(Radio, SetsTheModemUpAsItIsToldToAndZeroMeansTheDefault) {
+    run([&] { EXPECT_EQ(init(), RADIO_OK); });
+    EXPECT_EQ(soc_.modem().parameter("CH"), 0x0Cu);
+    EXPECT_EQ(soc_.modem().parameter("ID"), 0x3332u);
     run([&] { EXPECT_EQ(init(0x14, 0x1234), RADIO_OK); });
     EXPECT_EQ(soc_.modem().parameter("MY"), 0x0001u);
     EXPECT_EQ(soc_.modem().parameter("DL"), 0x0000u);
@@ -167,12 +189,6 @@ TEST_F(Radio, SetsTheModemUpAsItIsToldTo) {
     EXPECT_EQ(soc_.modem().parameter("ID"), 0x1234u);
     EXPECT_EQ(soc_.modem().parameter("BD"), 7u);
     EXPECT_FALSE(soc_.modem().inCommandMode());
-}
-
-TEST_F(Radio, ZeroMeansTheDefaultChannelAndNetwork) {
-    run([&] { EXPECT_EQ(init(), RADIO_OK); });
-    EXPECT_EQ(soc_.modem().parameter("CH"), 0x0Cu);
-    EXPECT_EQ(soc_.modem().parameter("ID"), 0x3332u);
 }
 
 TEST_F(Radio, AModemThatIsOffIsReported) {
@@ -229,22 +245,11 @@ TEST_F(Radio, ALinkRunsOverItBothWays) {
         true; // a modem that keeps up with its line: no packet holds parts of two frames
     run([&] {
         ASSERT_EQ(init(), RADIO_OK);
-        ASSERT_TRUE(connect());
         const U32 before = Radio_counters()->bytesCopiedIn;
         const uint64_t fromModem = soc_.modem().counters().bytesToHost;
-        ASSERT_EQ(Link_openChannel(nearPeer_.link(), 0), LINK_OK);
-        std::vector<uint8_t> message(700, 0x5A);
-        for (U32 tag = 0; tag < 5; ++tag)
-            ASSERT_EQ(Link_send(nearPeer_.link(), 0, message.data(), 700, tag), LINK_OK);
-        ASSERT_TRUE(talk([&] { return farPeer_.received.size() == 5; }, 5000));
-        for (U32 tag = 0; tag < 5; ++tag)
-            ASSERT_EQ(Link_send(farPeer_.link(), 0, message.data(), 700, tag), LINK_OK);
-        ASSERT_TRUE(talk([&] { return nearPeer_.received.size() == 5; }, 5000));
-        talk([] { return false; }, 100);
-        EXPECT_EQ(nearPeer_.received[4], message);
+        exchange(0x5A);
         EXPECT_EQ(Radio_counters()->bytesCopiedIn - before,
                   soc_.modem().counters().bytesToHost - fromModem);
-        EXPECT_EQ(Radio_counters()->framingErrors, 0u);
         EXPECT_EQ(Link_statistics(nearPeer_.link())->bytesSkipped, 0u);
     });
 }
@@ -265,22 +270,6 @@ TEST_F(Radio, ATaskThatSleepsLosesNoMessage) {
         // RTS stopped the modem before the ring was full. (The modem itself drops RF packets then,
         // and a packet may hold the end of one frame and the beginning of the next.)
         EXPECT_EQ(Radio_counters()->hardwareOverruns, 0u);
-    });
-}
-
-TEST_F(Radio, AModemThatWasResetIsSetUpAgain) {
-    run([&] {
-        ASSERT_EQ(init(), RADIO_OK);
-        ASSERT_TRUE(connect());
-        soc_.modem().resetPin(true, soc_.now());
-        soc_.modem().resetPin(false, soc_.now() + 1000);
-        EXPECT_EQ(soc_.modem().parameter("BD"), 3u);
-        ASSERT_EQ(init(), RADIO_OK);
-        EXPECT_EQ(soc_.modem().parameter("BD"), 7u);
-        Link_openChannel(nearPeer_.link(), 0);
-        const U8 bytes[3] = {1, 2, 3};
-        Link_send(nearPeer_.link(), 0, bytes, 3, 0);
-        EXPECT_TRUE(talk([&] { return farPeer_.received.size() == 1; }, 10000));
     });
 }
 
@@ -311,22 +300,8 @@ TEST_F(ApiRadio, ALinkRunsOverItBothWays) {
     run([&] {
         ASSERT_EQ(initApi(), RADIO_OK);
         EXPECT_EQ(soc_.modem().parameter("AP"), 1u);
-        ASSERT_TRUE(connect());
-        ASSERT_EQ(Link_openChannel(nearPeer_.link(), 0), LINK_OK);
-        const std::vector<uint8_t> message(700, 0x7E);
-        for (U32 tag = 0; tag < 5; ++tag)
-            ASSERT_EQ(Link_send(nearPeer_.link(), 0, message.data(), 700, tag), LINK_OK);
-        ASSERT_TRUE(talk([&] { return !farPeer_.received.empty(); }, 5000));
-        for (U32 tag = 0; tag < 5; ++tag)
-            ASSERT_EQ(Link_send(farPeer_.link(), 0, message.data(), 700, tag), LINK_OK);
-        ASSERT_TRUE(
-            talk([&] { return farPeer_.received.size() == 5 && nearPeer_.received.size() == 5; },
-                 20000)); // the far end's packets hold parts of two frames
-        talk([] { return false; }, 100);
-        EXPECT_EQ(nearPeer_.received[4], message);
-        EXPECT_EQ(farPeer_.received[4], message);
+        exchange(0x7E);
         EXPECT_EQ(Radio_counters()->signal, 40u);
-        EXPECT_EQ(Radio_counters()->framingErrors, 0u);
         EXPECT_EQ(Radio_counters()->hardwareOverruns, 0u);
     });
     EXPECT_GT(answers_.size(), 35u);
@@ -365,7 +340,6 @@ TEST_F(ApiRadio, EachPacketIsAnsweredForAndAnAnswerThatIsLostCountsAsALoss) {
     });
 }
 
-// A controller, or a modem, without API mode is used in transparent mode at the rate of that.
 TEST_F(ApiRadio, WhereControllerOrModemHaveNoApiModeALinkRunsInTransparentMode) {
     for (bool isModem : {true, false})
         run([&] {
@@ -476,23 +450,18 @@ TEST_F(EncryptedRadio, WithTheSameKeyMessagesArriveAndNoFrameIsSplit) {
     EXPECT_EQ(nearPeer_.received[0], message);
 }
 
-TEST_F(EncryptedRadio, WithAnotherKeyThereIsNoSession) {
+TEST_F(EncryptedRadio, WithAnotherKeyOrNoneThereIsNoSession) {
     static U8 other[16];
     std::copy(key, key + 16, other);
     other[15] ^= 1;
-    run([&] {
-        limitFrames();
-        ASSERT_EQ(init(0, 0, other), RADIO_OK);
-        EXPECT_FALSE(connect(3000));
-    });
+    for (const U8* ours : {static_cast<const U8*>(other), static_cast<const U8*>(nullptr)})
+        run([&] {
+            limitFrames();
+            ASSERT_EQ(init(0, 0, ours), RADIO_OK);
+            EXPECT_FALSE(connect(3000));
+            Link_stop(nearPeer_.link(), us());
+        });
     EXPECT_GT(far_.counters().packetsReceived, 3u) << "garbage, not silence";
-}
-
-TEST_F(EncryptedRadio, InTheClearThereIsNoSession) {
-    run([&] {
-        ASSERT_EQ(init(), RADIO_OK);
-        EXPECT_FALSE(connect(1000));
-    });
 }
 
 } // namespace

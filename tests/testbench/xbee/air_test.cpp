@@ -35,12 +35,9 @@ protected:
 };
 using Retries = TrueAir;
 
-TEST_F(TrueAir, FullPacketsLeaveAt80KilobitsASecond) {
+TEST_F(TrueAir, FullPacketsLeaveAt80KilobitsASecondAndAt47WithEncryption) {
     power({{"BD", 7}}, {{"BD", 7}});
     EXPECT_NEAR(throughput(false), 80e3, 2e3);
-}
-
-TEST_F(TrueAir, AndAt47WithEncryption) {
     power({{"BD", 7}, {"EE", 1}}, {{"BD", 7}, {"EE", 1}});
     EXPECT_NEAR(throughput(false), 47e3, 1e3);
 }
@@ -54,7 +51,6 @@ TEST_F(TrueAir, BothDirectionsAtOnceShareWhatOneHas) {
     EXPECT_NEAR(heardA / static_cast<double>(lineB.received.size()), 1, 0.15);
 }
 
-// Hosts that write in step: without RN most packets are lost, with RN 3 hardly any.
 TEST_F(TrueAir, RNSavesModemsThatWriteInStep) {
     for (uint32_t rn : {0u, 3u}) {
         power({{"BD", 7}, {"RN", rn}}, {{"BD", 7}, {"RN", rn}});
@@ -97,13 +93,6 @@ TEST_F(Retries, ABroadcastGoesRRAndTwoTimesAndArrivesOnce) {
                   rr ? rr + 2 : 1);
         EXPECT_EQ(heardB(), "x");
     }
-}
-
-TEST_F(Retries, AModemThatIsNotThereCostsAllTries) {
-    power({{"DL", 9}, {"RO", 0}});
-    send("x", 100 * ms);
-    EXPECT_EQ(air.counters().retries, 3u);
-    EXPECT_EQ(a->parameter("EA"), 4u);
 }
 
 TEST_F(Retries, WithRRAFailureHasAStatusOfItsOwn) {

@@ -1,10 +1,14 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# check: golden|hardware|errors|compile slice2c file.ice-or-folder work-folder source-folder
+# check: golden|hardware|equal|errors|compile slice2c file.ice-or-folder work-folder source-folder
+#        [ghdl]
 # What is expected stands at the end of the file: the compiler's messages behind `//> `, and behind
 # `//= ` lines of the generated header, then of the server's C, or of the registers, in their order.
 # golden: the C has no warnings.
 # hardware: the wrappers and new cores are Verilog without warnings, and without latches.
+# equal: each interface's VHDL wrapper, and the new core around it, are taken as VHDL-93 and -2008
+# without a warning. The wrapper does what the Verilog one does: from reset on, whatever comes,
+# their outputs are the same in every clock (proven, not bounded).
 # errors: nothing is written.
 # A message's source line and caret are compared where the file has them.
 # UPDATE_GOLDENS=1 rewrites messages.
@@ -60,6 +64,45 @@ hardware)
         yosys -q -p "read_verilog -I$source/bus -I$source/hdl/ddr $out/*.v \
             $source/bus/bus_registers.v $source/bus/bus_wrapper.v $source/hdl/ddr/npi_stream.v; \
             hierarchy -check -top $module; proc; opt; check -assert; select -assert-none t:\$dlatch"
+    done
+    ;;
+equal)
+    ghdl=$6
+    "$slice2c" "$ice" --output-dir "$work/c" --hw-verilog "$work" --hw-vhdl "$work" \
+        --hw-new-vhdl "$work"
+    cd "$work"
+    for file in *_wrapper.v; do
+        module=$(basename "$file" .v)
+        for standard in 93 08; do
+            rm -f ./*.cf
+            "$ghdl" -a -Wall -Werror -Wno-default-binding --std=$standard \
+                "$source/hdl/ddr/npi_stream_pkg.vhd" \
+                "$module.vhd" "${module%_wrapper}.vhd"
+            "$ghdl" -e -Wall -Werror -Wno-binding -Wno-default-binding --std=$standard \
+                "${module%_wrapper}"
+        done
+        "$ghdl" --synth --std=08 --out=verilog "$module" >converted
+        # AIGER has flip-flops without enable only; both begin with zeros, as after a reset
+        yosys -q -l "$module.log" -p "
+            read_verilog converted; hierarchy -top $module; proc; flatten; opt_clean
+            select -assert-none t:\$dlatch; rename $module from_vhdl; design -stash vhdl
+            read_verilog $file $source/bus/bus_registers.v $source/bus/bus_wrapper.v
+            hierarchy -top $module; proc; flatten; opt_clean; rename $module from_verilog
+            design -copy-from vhdl -as from_vhdl from_vhdl
+            miter -equiv -flatten -make_assert from_verilog from_vhdl both
+            hierarchy -top both; proc; opt_clean; setundef -zero -init; opt -full; techmap
+            opt -fast -nosdff -nodffe; dfflegalize -cell \$_DFF_P_ 01
+            abc -g AND -fast; opt_clean; delete -output w:*; write_aiger -zinit both.aig"
+        # sat: where scorr alone has found the output constant, newer versions of abc have nothing
+        # left to prove
+        timeout 100 yosys-abc -c 'read_aiger both.aig; fold; strash; scorr; pdr; sat' >proof.log \
+            2>&1 || true
+        grep -q 'Property proved\|UNSATISFIABLE' proof.log || {
+            cat proof.log >&2
+            echo "equal: $module: the VHDL wrapper is not shown to do what the Verilog one does" >&2
+            exit 1
+        }
+        echo "$module: equal in both languages, $(head -1 both.aig | cut -d' ' -f4) flip-flops"
     done
     ;;
 errors)

@@ -23,15 +23,8 @@ moments, tools = int(sys.argv[4]), sys.argv[5:]
 
 def members(session):
     """Processes of a session, but for those that have ended."""
-    found = []
-    for stat in pathlib.Path("/proc").glob("[0-9]*/stat"):
-        try:
-            fields = stat.read_text().rsplit(")", 1)[1].split()
-        except OSError:
-            continue
-        if int(fields[3]) == session and fields[0] != "Z":
-            found.append(int(stat.parent.name))
-    return found
+    return subprocess.run(["pgrep", "--session", str(session), "--runstates", "D,I,R,S,T,t"],
+                          stdout=subprocess.PIPE, text=True).stdout.split()
 
 
 def interrupt(command, number, moment, where):

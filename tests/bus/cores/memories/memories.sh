@@ -8,7 +8,15 @@ slice2c=$1 source=$2 work=$3
 here=$(cd "$(dirname "$0")" && pwd)
 rm -rf "$work"
 mkdir -p "$work"
-"$slice2c" "$here/fillers.ice" --output-dir "$work/c" --hw-verilog "$work" --hw-regs "$work"
+cat >"$work/fillers.ice" <<'ICE'
+module Fill {
+    sequence<byte> Bytes;
+    [":hw"] interface Little { ["hw:long", "hw:max:128"] Bytes fill(byte value); };
+    [":hw"] interface Middle { ["hw:long", "hw:max:4096"] Bytes fill(byte value); };
+    [":hw"] interface Big { ["hw:long", "hw:max:16384"] Bytes fill(byte value); };
+};
+ICE
+"$slice2c" "$work/fillers.ice" --output-dir "$work/c" --hw-verilog "$work" --hw-regs "$work"
 for order in 'little middle big' 'little big middle' 'middle little big' 'middle big little' \
     'big little middle' 'big middle little'; do
     echo "$order" | tr ' ' '\n' >"$work/cores.list"

@@ -212,7 +212,6 @@ TEST(Keys, TheKeyInUseAgainIsNoChangeAndAnotherNextKeyReplacesTheFirst) {
     EXPECT_TRUE(vehicle.hasKey(newKey) && vehicle.hasKey(oldKey));
 }
 
-// Wherever the ground gives up, its file's keys open the vehicle.
 TEST(Keys, AGroundThatGivesUpKeepsAKeyThatWorks) {
     for (int steps = 0; steps <= 3; ++steps) {
         Vehicle vehicle(testSeed());

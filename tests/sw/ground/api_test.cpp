@@ -111,7 +111,6 @@ TEST(Api, APacketThatIsNotAnsweredForThreeSecondsIsLost) {
     EXPECT_EQ(modem.unanswered(), 1u);
 }
 
-// A packet whose answer the line lost counts as lost, as soon as a later one is answered.
 TEST(Api, AnswersComeInTheOrderOfPacketsAndALostOneCountsAsALoss) {
     ApiModem modem(false);
     Heard heard;

@@ -264,7 +264,6 @@ TEST_F(EngineTest, ACallOfTheUavThatNoDescriptorIsLeftForIsRefusedAndReported) {
     }));
 }
 
-// A modem that was given up may return: the same listener is called then.
 TEST_F(EngineTest, AModemThatWasGivenUpIsTriedAgainAndTheListenerIsCalled) {
     rig_.with([&] {
         rig_.echo = true;
@@ -323,7 +322,6 @@ TEST_F(EngineTest, TheModemIsSetUpWhileTheUavSends) {
     EXPECT_GE(commands, 9u);
 }
 
-// For a listener alone the modem is tried again, though nobody connects.
 TEST_F(EngineTest, AListenerAloneHasTheModemTriedAgain) {
     rig_.with([&] { rig_.ground->power(false, rig_.ns()); });
     auto engine = start();

@@ -2,7 +2,7 @@
 //
 // minimal_test: calls of the minimal run time, and its refusals.
 
-#include "wire.h"
+#include "pair.h"
 
 namespace {
 

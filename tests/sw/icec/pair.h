@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// pair: two communicators joined by the loop-back transport, and a servant that the tests steer.
+// pair: two communicators joined by the loop-back transport, or one and messages as bytes, and a
+// servant that the tests steer.
 
 #pragma once
 
+#include "../link/ice_messages.h"
 #include "loop.h"
 
 #include <cstring>
@@ -134,3 +136,31 @@ private:
 
 // Tests of several files are of this suite.
 class Calls : public Pair {};
+
+using namespace IceMessages;
+
+// Sends messages as bytes to a communicator, and returns its answers.
+class Wire : public ::testing::Test {
+protected:
+    Wire() : side_(std::make_unique<Side>()) {
+        EXPECT_EQ(Ice_ObjectAdapter_add(&side_->adapter, &servant_.base, "thing"), ICE_OK);
+        side_->loop.tap = [this](const Bytes& m) { sent_.push_back(m); };
+    }
+    // Opens a connection, sends the message, returns the answer after the validation.
+    std::vector<Bytes> exchange(const Bytes& m) {
+        inject(ICE_EVENT_OPENED, {});
+        EXPECT_EQ(sent_, std::vector<Bytes>({message(3, {})}));
+        inject(ICE_EVENT_MESSAGE, m);
+        return std::move(sent_);
+    }
+    void inject(Ice_EventKind kind, const Bytes& m) {
+        sent_.clear();
+        side_->loop.inject(kind, 1, m);
+        (void)Ice_Communicator_poll(&side_->ic, 0);
+    }
+    bool isOpen() const { return side_->loop.open[1]; }
+
+    std::unique_ptr<Side> side_;
+    Servant servant_;
+    std::vector<Bytes> sent_;
+};

@@ -3,7 +3,7 @@
 // requests_test: calls, and messages as bytes: answered, malformed, refused or skipped; the same
 // for the full and for the minimal run time.
 
-#include "wire.h"
+#include "pair.h"
 
 namespace {
 

@@ -239,7 +239,7 @@ TEST_F(Tasks, AServerTakesTheRoleFromACallThatWaits) {
     server.join();
 }
 
-// The server listens on the second of the name's addresses only (connections_test.cpp resolves it);
+// The server listens on the second of the name's addresses only (manual_test.cpp resolves it);
 // the next call finds the connection.
 TEST_F(Tasks, TryEachAddressOfAName) {
     Ice_ObjectPrx prx = proxy("thing", "twofold.test");

@@ -3,7 +3,7 @@
 // tcp_test: IceC's tcp transport and peers: many at once, silent, dead or greedy ones, and those
 // that cut a silent connection (Ice 3.8).
 
-#include "wire.h"
+#include "pair.h"
 
 #include <arpa/inet.h>
 #include <atomic>

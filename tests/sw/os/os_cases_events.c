@@ -2,7 +2,7 @@
  *
  * os_cases_events: semaphores, queues, mutexes and time-outs.
  */
-#include "os_cases_private.h"
+#include "os_cases.h"
 
 static OS_EVENT *sem, *sem2, *mutex, *mutex2, *queue;
 static void* slots[3];

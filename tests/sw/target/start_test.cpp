@@ -1,0 +1,351 @@
+// SPDX-License-Identifier: MIT
+//
+// start_test: what the ARM binaries start, on the chip's model, from flash as a programmer fills
+// it: the boot loader its firmware, and the firmware, which hears the addresses of the FPGA's reads
+// in flash, a bitstream.
+
+#include "stm32f2.h"
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <iterator>
+#include <sys/stat.h>
+#include <unistd.h>
+
+extern "C" {
+#include "loader.h"
+#include "slots.h"
+#include "uav_keys.h"
+}
+
+namespace {
+
+using Bytes = std::vector<uint8_t>;
+constexpr uint32_t flashBase = 0x08000000;
+
+// A test's own folder, since tests run side by side, in which pack_update works.
+struct VehicleFolder {
+    VehicleFolder() { std::filesystem::create_directories(path); }
+    ~VehicleFolder() { std::filesystem::remove_all(path); }
+    int pack(const std::string& words) const {
+        return std::system(("cd " + path + " && " PACK_UPDATE " " + words + " >said 2>&1").c_str());
+    }
+    Bytes read(const std::string& name) const {
+        std::ifstream in(path + "/" + name, std::ios::binary);
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+    void save(const std::string& name, const Bytes& bytes) const {
+        std::ofstream(path + "/" + name, std::ios::binary)
+            .write(reinterpret_cast<const char*>(bytes.data()),
+                   static_cast<std::streamsize>(bytes.size()));
+    }
+    std::string said() const {
+        const Bytes text = read("said");
+        return {text.begin(), text.end()};
+    }
+    std::string path = FOLDER + std::to_string(getpid());
+};
+
+class Vehicle : public ::testing::Test {
+protected:
+    void fill(const std::string& more = "") {
+        ASSERT_EQ(
+            folder.pack("vehicle " FIRMWARE "loader.elf " FIRMWARE "uav.elf 7 key flash" + more), 0)
+            << folder.said();
+        chip.cpu().loadFlash(flashBase, folder.read("flash"));
+    }
+    uint64_t now() const { return fsmc.hclks() * 25 / 3; } // ns
+
+    VehicleFolder folder;
+    FsmcPins pins;
+    FsmcMaster fsmc{
+        pins,
+        {[] {}, [] {}, [](uint64_t clocks, uint64_t ns) { return std::min(clocks, ns / 10); }}};
+    Stm32F2 chip{fsmc, [this] { return now(); }, {}};
+};
+
+class Loader : public Vehicle {
+protected:
+    // Leaves a complete update in the second slot.
+    void receive(int version, const char* key = "key", const char* more = "") {
+        ASSERT_EQ(folder.pack("image " FIRMWARE "uav.elf " + std::to_string(version) + " " + key +
+                              " update" + more),
+                  0)
+            << folder.said();
+        const Bytes package = folder.read("update");
+        const auto half = package.begin() + static_cast<std::ptrdiff_t>(package.size() / 2);
+        const auto image = half + sizeof(Slots_Header);
+        const uint32_t at = flashBase + Slots_at(&slots_firmware, 1);
+        chip.cpu().loadFlash(at, Bytes(SLOTS_IMAGE_AT, 0xFF));
+        chip.cpu().loadFlash(at, {half, image});
+        chip.cpu().loadFlash(at + SLOTS_IMAGE_AT, {image, package.end()});
+        const uint32_t isTrue = SLOTS_TRUE;
+        chip.cpu().writeMemory(at + SLOTS_READY, &isTrue, 4);
+    }
+    // Power comes; returns the slot whose firmware's first instruction is reached, -1: none is.
+    int boot() {
+        chip.powerOn();
+        const uint64_t begun = chip.cpu().cycles();
+        chip.cpu().breakpoints.clear();
+        for (uint32_t slot = 0; slot < SLOTS_COUNT; ++slot)
+            chip.cpu().breakpoints.insert(entry(slot));
+        chip.onTime([&] {
+            if (chip.cpu().cycles() - begun > 100'000'000)
+                chip.cpu().stop();
+            return uint64_t(0);
+        });
+        const auto why = chip.run();
+        cycles = chip.cpu().cycles() - begun;
+        if (why != CortexM3::Stop::Breakpoint)
+            return -1;
+        return chip.cpu().reg(CortexM3::Pc) == entry(0) ? 0 : 1;
+    }
+    uint32_t entry(uint32_t slot) {
+        return chip.cpu().word(flashBase + Slots_at(&slots_firmware, slot) + SLOTS_IMAGE_AT + 4) &
+               ~1u;
+    }
+    uint32_t vectorTable() {
+        uint32_t vtor = 0;
+        chip.cpu().debugRead(0xE000ED08, &vtor, 4);
+        return vtor;
+    }
+
+    uint64_t cycles = 0;
+};
+
+TEST_F(Loader, StartsTheFirmwareOfANewVehicle) {
+    fill();
+    EXPECT_EQ(boot(), 0);
+    EXPECT_EQ(vectorTable(), flashBase + Slots_at(&slots_firmware, 0) + SLOTS_IMAGE_AT);
+    EXPECT_EQ(chip.cpu().reg(CortexM3::Sp), chip.cpu().word(vectorTable()));
+    EXPECT_LT(cycles, 60'000'000u); // half a second
+    RecordProperty("cycles", static_cast<int>(cycles));
+}
+
+TEST_F(Loader, TriesANewOneOnceAndGoesBack) {
+    fill();
+    receive(8);
+    EXPECT_EQ(boot(), 1);
+    EXPECT_EQ(boot(), 0);
+    EXPECT_EQ(boot(), 0);
+}
+
+// The time for one that the second key has signed is one more check of a signature.
+TEST_F(Loader, StartsOneOfEitherKeyUntilItIsWithdrawn) {
+    ASSERT_EQ(folder.pack("public spare spare.pub"), 0) << folder.said();
+    fill(" --second spare.pub");
+    EXPECT_EQ(boot(), 0);
+    const uint64_t before = cycles;
+    receive(8, "spare");
+    EXPECT_EQ(boot(), 1);
+    EXPECT_LT(cycles, before * 2);
+    RecordProperty("cycles", static_cast<int>(cycles));
+    const uint32_t isTrue = SLOTS_TRUE;
+    chip.cpu().writeMemory(flashBase + Slots_at(&slots_firmware, 1) + SLOTS_CONFIRMED, &isTrue, 4);
+    ASSERT_EQ(folder.pack("keys 2 spare spare.pub list"), 0) << folder.said();
+    const uint32_t at = flashBase + SLOTS_KEYS_AT + sizeof(Slots_Keys);
+    chip.cpu().loadFlash(at, folder.read("list"));
+    receive(9, "key");    // over the one that is confirmed
+    EXPECT_EQ(boot(), 1); // the list does not count yet
+    receive(9, "key");
+    chip.cpu().writeMemory(at + offsetof(Slots_Keys, isComplete), &isTrue, 4);
+    EXPECT_EQ(boot(), -1);
+    receive(9, "spare");
+    EXPECT_EQ(boot(), 1);
+}
+
+TEST_F(Loader, TriesNothingInFlight) {
+    fill();
+    receive(8);
+    chip.backup()[UAV_FLIGHT_WORD] = UAV_FLYING;
+    EXPECT_EQ(boot(), 0);
+    chip.backup()[UAV_FLIGHT_WORD] = 0;
+    EXPECT_EQ(boot(), 1);
+}
+
+TEST_F(Loader, StartsNoneThatIsOlderOrOfAnotherKeyOrForAnotherBoard) {
+    fill();
+    receive(6);
+    EXPECT_EQ(boot(), 0);
+    receive(8, "foreignKey");
+    EXPECT_EQ(boot(), 0);
+    receive(8, "key", " --board 2");
+    EXPECT_EQ(boot(), 0);
+}
+
+TEST_F(Loader, OfAnEmptyChipStartsNothing) {
+    const ElfImage loader(FIRMWARE "loader.elf");
+    chip.cpu().loadFlash(flashBase, Bytes(Stm32Flash::bytes, 0xFF));
+    for (const ElfImage::Segment& s : loader.segments())
+        chip.cpu().loadFlash(s.address, s.bytes);
+    EXPECT_EQ(boot(), -1);
+    EXPECT_GT(chip.cpu().sleepingCycles(), 1'000'000u);
+}
+
+TEST_F(Loader, OffersItsChecksToTheFirmware) {
+    fill();
+    const Loader_Services* services = LOADER_SERVICES;
+    const auto at = static_cast<uint32_t>(reinterpret_cast<uintptr_t>(services));
+    EXPECT_EQ(chip.cpu().word(at), LOADER_MAGIC);
+    const ElfImage loader(FIRMWARE "loader.elf");
+    EXPECT_EQ(chip.cpu().word(at + 4), loader.symbol("Signature_isGood") | 1);
+    EXPECT_EQ(chip.cpu().word(at + 8), loader.symbol("Signature_digest") | 1);
+}
+
+TEST(PackUpdate, SaysWhatIsWrong) {
+    VehicleFolder folder;
+    auto refuses = [&](const std::string& words, const char* why) {
+        EXPECT_NE(folder.pack(words), 0);
+        EXPECT_NE(folder.said().find(why), std::string::npos) << folder.said();
+    };
+    refuses("image /dev/null 2 key update", "/dev/null");
+    refuses("image " FIRMWARE "uav.elf 0 key update", "give 1 to 4294967294");
+    refuses("image " FIRMWARE "loader.elf 2 key update", "--emit-relocs");
+    EXPECT_EQ(folder.pack("image " FIRMWARE "uav.elf 2 key update"), 0);
+    struct stat key{};
+    EXPECT_EQ(stat((folder.path + "/key").c_str(), &key), 0);
+    EXPECT_EQ(key.st_mode & 0777, 0600u);
+    ::chmod((folder.path + "/key").c_str(), 0644);
+    refuses("image " FIRMWARE "uav.elf 2 key update", "chmod 600");
+    refuses("keys 2 other said list", "no public key");
+}
+
+constexpr uint32_t frameWords = 2000;
+const uint32_t slot = Slots_at(&slots_fpga, 1), multiBoot = slot + SLOTS_IMAGE_AT,
+               golden = Slots_at(&slots_fpga, 0) + SLOTS_IMAGE_AT;
+
+class FpgaStart : public Vehicle {
+protected:
+    FpgaStart() {
+        folder.save("golden.bin", standInBitstream(1, frameWords));
+        fill();
+        EXPECT_EQ(folder.pack("fpga golden.bin 1 key fpga"), 0) << folder.said();
+        flash.memory = folder.read("fpga");
+        chip.fpga.wire(flash);
+        const ElfImage firmware(FIRMWARE "uav.elf");
+        running = firmware.symbol("uav_update") + 16; // of UAV_BITSTREAM
+        chip.cpu().breakpoints.insert((firmware.symbol("Provision_listen") & ~1u) +
+                                      Slots_at(&slots_firmware, 0) + SLOTS_IMAGE_AT);
+        chip.onTime([this] {
+            if (chip.cpu().cycles() > limit)
+                chip.cpu().stop();
+            return now() + 1'000'000;
+        });
+    }
+    // Leaves in the FPGA's flash what a complete update does.
+    void receive(const Bytes& bits) {
+        folder.save("new.bin", bits);
+        ASSERT_EQ(folder.pack("bitstream new.bin 2 key update"), 0) << folder.said();
+        const auto package = folder.read("update");
+        const auto image = package.begin() + sizeof(Slots_Header);
+        std::copy(package.begin(), image, at(slot));
+        std::copy(image, package.end(), at(multiBoot));
+        const uint8_t sync[] = {0xAA, 0x99, 0x55, 0x66};
+        std::copy(std::begin(sync), std::end(sync), at(multiBoot + SLOTS_SYNC_AT));
+    }
+    Bytes::iterator at(uint32_t offset) { return flash.memory.begin() + offset; }
+    bool is(Slots_State state) {
+        uint32_t word;
+        std::memcpy(&word, &*at(slot + state), 4);
+        return word == SLOTS_TRUE;
+    }
+    void confirm() {
+        const uint32_t isTrue = SLOTS_TRUE;
+        std::memcpy(&*at(slot + SLOTS_TRIED), &isTrue, 4);
+        std::memcpy(&*at(slot + SLOTS_CONFIRMED), &isTrue, 4);
+    }
+    // Switches the power on. Returns the slot of the running bitstream, in the firmware's words and
+    // the FPGA's.
+    uint32_t start() {
+        chip.powerOn();
+        limit = chip.cpu().cycles() + 3'000'000'000;
+        EXPECT_EQ(chip.run(), CortexM3::Stop::Breakpoint);
+        EXPECT_EQ(chip.fpga.boot().running.value_or(0),
+                  chip.cpu().word(running) ? multiBoot : golden);
+        EXPECT_TRUE(chip.fpga.isDone());
+        return chip.cpu().word(running);
+    }
+
+    SpiFlash flash{[this] { return now(); }};
+    uint32_t running = 0;
+    uint64_t limit = 0;
+};
+
+TEST_F(FpgaStart, ANewBitstreamIsTriedAndOneNotConfirmedGoes) {
+    EXPECT_EQ(start(), 0u);
+    receive(standInBitstream(2, frameWords));
+    EXPECT_EQ(start(), 1u);
+    EXPECT_TRUE(is(SLOTS_TRIED));
+    EXPECT_EQ(start(), 0u);
+    EXPECT_FALSE(is(SLOTS_REFUSED));
+}
+
+// Somebody has written to the flash: what he wrote would run, its CRC is right.
+TEST_F(FpgaStart, ABitstreamThatIsNotSignedNeverRuns) {
+    receive(standInBitstream(2, frameWords));
+    confirm();
+    EXPECT_EQ(start(), 1u);
+    const auto changed = standInBitstream(3, frameWords);
+    std::copy(changed.begin(), changed.end(), at(multiBoot));
+    EXPECT_EQ(start(), 0u);
+    EXPECT_TRUE(is(SLOTS_REFUSED));
+    std::copy(changed.begin(), changed.end(), at(golden));
+    chip.powerOn();
+    EXPECT_EQ(chip.run(), CortexM3::Stop::Breakpoint);
+    EXPECT_FALSE(chip.fpga.isDone());
+    EXPECT_FALSE(chip.fpga.boot().running.has_value());
+}
+
+TEST_F(FpgaStart, NoBitstreamIsTriedInFlightButOneThatIsRefusedGoes) {
+    receive(standInBitstream(2, frameWords));
+    chip.backup()[UAV_FLIGHT_WORD] = UAV_FLYING;
+    *at(multiBoot + 1000) ^= 8;
+    EXPECT_EQ(start(), 0u);
+    EXPECT_TRUE(is(SLOTS_REFUSED));
+    receive(standInBitstream(2, frameWords));
+    std::fill(at(slot + SLOTS_READY), at(multiBoot), uint8_t{0xFF});
+    (void)start();
+    EXPECT_FALSE(is(SLOTS_TRIED));
+    chip.backup()[UAV_FLIGHT_WORD] = 0;
+    EXPECT_EQ(start(), 1u);
+    EXPECT_TRUE(is(SLOTS_TRIED));
+}
+
+TEST_F(FpgaStart, ABitstreamForAnotherDeviceIsKnownNotToRun) {
+    receive(standInBitstream(2, frameWords, 0x04001093)); // an XC6SLX9
+    EXPECT_EQ(start(), 0u);
+    EXPECT_TRUE(is(SLOTS_REFUSED));
+    EXPECT_EQ(start(), 0u);
+}
+
+TEST_F(FpgaStart, AConfirmedBitstreamThatHasRottedIsKnownNotToRun) {
+    receive(standInBitstream(2, frameWords));
+    confirm();
+    EXPECT_EQ(start(), 1u);
+    *at(multiBoot + 1000) ^= 8;
+    EXPECT_EQ(start(), 0u);
+    EXPECT_TRUE(is(SLOTS_REFUSED));
+}
+
+TEST_F(FpgaStart, ABitstreamThatHangsTheFpgaGoesAtOnce) {
+    auto bits = standInBitstream(2, frameWords);
+    bits[SLOTS_SYNC_AT + 4] = 0; // no packet
+    receive(bits);
+    confirm();
+    EXPECT_EQ(start(), 0u);
+    EXPECT_TRUE(is(SLOTS_REFUSED));
+}
+
+// It would take four tries, 16 s, to know that the FPGA hangs; but this one reads no more.
+TEST_F(FpgaStart, ABoardWithoutDoneStartsSoonAndItsFpgaRuns) {
+    chip.fpga.isDoneWired = false;
+    chip.powerOn();
+    limit = chip.cpu().cycles() + 3'000'000'000;
+    EXPECT_EQ(chip.run(), CortexM3::Stop::Breakpoint);
+    EXPECT_EQ(chip.fpga.boot().running.value_or(0), golden);
+    EXPECT_LT(now(), 1'500'000'000u);
+}
+
+} // namespace

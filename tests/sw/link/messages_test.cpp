@@ -211,29 +211,6 @@ TEST_P(FullOvertaking, OnlyAcrossChannelsAndTheLongOneComesWhole) {
     EXPECT_EQ(b.events.back(), "close 2");
 }
 
-// Both sides number the heads of requests alike only if they pass in the order of Link_send.
-TEST_P(FullOvertaking, NothingOvertakesAHeadThatThePeerLearns) {
-    auto request = [](uint32_t id, const char* operation, size_t size) {
-        return IceMessages::request(id, "uav", operation, Bytes(size, 5));
-    };
-    send(1, request(1, "known", 1));
-    run(300'000);
-    b.received.clear();
-    send(0, request(1, "picture", 500));
-    send(1, request(2, "picture", 1)); // it uses the head that the picture brings
-    send(0, request(2, "picture", 700));
-    send(1, request(3, "fresh", 1)); // brings one
-    send(2, request(0, "known", 2));
-    send(0, request(3, "picture", 900));
-    send(1, request(4, "known", 3)); // overtakes only that one
-    (void)arrived();
-    const Messages expected = {{0, request(1, "picture", 500)}, {1, request(2, "picture", 1)},
-                               {0, request(2, "picture", 700)}, {1, request(3, "fresh", 1)},
-                               {2, request(0, "known", 2)},     {1, request(4, "known", 3)},
-                               {0, request(3, "picture", 900)}};
-    EXPECT_EQ(b.received, expected);
-}
-
 TEST_P(FullOvertaking, ManyShortOnesLeaveTheLongOneHalf) {
     send(0, Bytes(800, 1));
     EXPECT_TRUE(until(

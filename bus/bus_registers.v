@@ -99,7 +99,10 @@ module bus_registers #(
             localparam LSB = 32 * (f - 3);
             wire [31:0] bits = 32'hFFFFFFFF >> (6'd32 - WIDTHS[6*f +: 6]);
             wire [31:0] now  = value_o[LSB +: 32];
-            always @(posedge clk_i) if (past && !rst_i && !$past(rst_i)) begin
+            always @(posedge clk_i) if (past && $past(rst_i)) begin
+                if (RW[f] || W1C[f])
+                    assert (now == 32'd0);
+            end else if (past && !rst_i) begin
                 if (RW[f])
                     assert (now == ($past(strobe_o[f-3]) ? $past(wdata_o) & bits : $past(now)));
                 if (W1C[f])
@@ -107,7 +110,7 @@ module bus_registers #(
                                             | $past(value_i[LSB +: 32]))));
             end
             always @* begin
-                assert (!strobe_o[f-3] || (bus_valid_i && bus_write_i && bus_addr_i == f && !RO[f]));
+                assert (strobe_o[f-3] == (bus_valid_i && bus_write_i && bus_addr_i == f && (RW[f] || W1C[f] || WS[f])));
                 if (bus_valid_i && !bus_write_i && bus_addr_i == f)
                     assert (bus_rdata_o == (RW[f] || W1C[f] ? now : RO[f] ? value_i[LSB +: 32] & bits : 32'd0));
             end

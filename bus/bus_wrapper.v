@@ -78,27 +78,25 @@ module bus_wrapper #(
     always @(posedge clk_i) begin
         past <= 1'b1;
         if (past && !$past(rst_i)) begin
-            // No event is lost, whatever is cleared at the same time.
-            assert (($past(event_i) & ~sticky) == {EVENTS{1'b0}});
-            // A bit falls only where it was cleared.
-            assert (($past(sticky) & ~sticky & ~$past(clear)) == {EVENTS{1'b0}});
-            // The mask follows writes only.
-            if (!($past(write) && $past(bus_addr_i) == MASK))
-                assert (mask == $past(mask));
+            // No event is lost, whatever is cleared at the same time; the mask follows writes only.
+            assert (sticky == (($past(sticky) & ~$past(clear)) | $past(event_i)));
+            assert (mask == ($past(write && bus_addr_i == MASK) ? $past(bus_wdata_i[EVENTS-1:0]) : $past(mask)));
         end
         if (past && $past(rst_i))
-            assert (!irq_o);
+            assert ({sticky, mask} == {2*EVENTS{1'b0}});
         cover (past && !rst_i && irq_o && write && bus_addr_i == EVENT && |(event_i & clear));
     end
     always @* begin
-        // Another block's register is never strobed by a word that does not exist.
+        // Another block's register is never strobed by a word that does not exist: that is an error.
         assert (!(reg_write_o && bus_error_o));
+        assert (bus_error_o == (bus_addr_i > MASK && !WORDS[bus_addr_i]));
         // A read gives the wrapper's word, the block's, or 0.
         if (bus_addr_i > MASK)
             assert (bus_rdata_o == (exists ? reg_rdata_i : 32'd0));
         else if (ZERO == 0)
             assert (bus_rdata_o == (bus_addr_i == ID ? ID_VALUE : {{32-EVENTS{1'b0}}, bus_addr_i == EVENT ? sticky : mask}));
         assert (bus_ready_o);
+        assert (irq_o == |(sticky & mask));
     end
 `endif
 `ifdef COVER_POINTS

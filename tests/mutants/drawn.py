@@ -13,7 +13,6 @@ from concurrent.futures import ThreadPoolExecutor
 
 GATE = 95  # per cent
 TESTS = {
-    "bus_decoder": "test_bus_decoder", "bus_(registers|wrapper)": "test_bus_registers",
     "bus_(to_wishbone|window|to_axi4lite)": "test_bus_adapters",
     "system_slot": "test_system_slot", "npi_|mcb_": "test_memory",
     "axis_filter": "test_ip_foreign_axis", "bus_crossing": "test_ip_new_foreign",

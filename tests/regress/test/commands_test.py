@@ -235,7 +235,7 @@ class Cases(Project):
         # One block's tests need its programs, and no more.
         self.ask(BUILD / "tests/regress/regress", "--build", BUILD, "--prepare", "--list",
                  "--block", "bus")
-        self.has("^(tests/bus/)?test_bus_decoder$")
+        self.has("^(tests/bus/)?test_bus_adapters$")
         self.assertLess(self.said.count("\n"), 20)
         # Programs that `make test` runs with sanitizers: one without the label would be missed.
         for program in "test_os_cases", "test_link", "test_engine", "test_icec":

@@ -80,7 +80,15 @@ private:
             wanted[20 + i] = static_cast<uint8_t>(number >> 8 * i);
         const auto begin = std::chrono::steady_clock::now();
         writeAll(fd, wanted);
-        const bool isRight = readAll(fd, callBytes, patienceMs) == wanted;
+        Bytes got;
+        uint8_t bytes[callBytes];
+        for (pollfd p{fd, POLLIN, 0}; got.size() < callBytes && poll(&p, 1, patienceMs) > 0;) {
+            const ssize_t count = read(fd, bytes, callBytes - got.size());
+            if (count <= 0)
+                break;
+            got.insert(got.end(), bytes, bytes + count);
+        }
+        const bool isRight = got == wanted;
         const std::chrono::duration<float, std::micro> took =
             std::chrono::steady_clock::now() - begin;
         answered_ += isRight;

@@ -35,12 +35,6 @@ protected:
     UavMachine* machine_ = nullptr; // while it flies
 };
 
-TEST_F(Uav, AnswersPings) {
-    fly(ground.pinging(20), 20);
-    for (auto& [id, status] : ground.replies)
-        EXPECT_EQ(status, 0) << id;
-}
-
 TEST_F(Uav, AnObjectThatDoesNotExistIsSaidNotToExist) {
     fly(ground.pinging(1, "nobody"), 20);
     EXPECT_EQ(ground.replies[1], 2);

@@ -6,7 +6,6 @@
 #include "gateway_rig.h"
 #include <IceStorm/IceStorm.h>
 #include <filesystem>
-#include <optional>
 
 namespace {
 

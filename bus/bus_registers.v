@@ -116,8 +116,22 @@ module bus_registers #(
             end
         end
     endgenerate
-    always @*
+    // EVENT and MASK.
+    reg  [EVENTS-1:0] seen, masked;
+    wire [EVENTS-1:0] cleared = {EVENTS{bus_valid_i && bus_write_i && bus_addr_i == 4'd1}} & bus_wdata_i[EVENTS-1:0];
+    always @(posedge clk_i) begin
+        seen <= rst_i ? {EVENTS{1'b0}} : (seen & ~cleared) | event_i;
+        if (rst_i)
+            masked <= {EVENTS{1'b0}};
+        else if (bus_valid_i && bus_write_i && bus_addr_i == 4'd2)
+            masked <= bus_wdata_i[EVENTS-1:0];
+    end
+    wire [15:0] words = RW | RO | W1C | WS | 16'h0007;
+    always @* begin
         assert (strobe_o == 13'd0 || wdata_o == bus_wdata_i);
+        assert (bus_ready_o && bus_error_o == !words[bus_addr_i]);
+        assert (!past || irq_o == |(seen & masked));
+    end
     always @(posedge clk_i)
         cover (past && !rst_i && $past(|strobe_o) && irq_o);
 `endif

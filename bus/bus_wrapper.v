@@ -74,13 +74,15 @@ module bus_wrapper #(
         .addr_i({6'd0, bus_addr_i}), .wdata_i(bus_wdata_i), .ready_i(bus_ready_o),
         .rdata_i(bus_rdata_o), .error_i(bus_error_o));
     reg past = 1'b0;
+    wire writes = bus_valid_i && bus_write_i;
     initial assume (rst_i);
     always @(posedge clk_i) begin
         past <= 1'b1;
         if (past && !$past(rst_i)) begin
             // No event is lost, whatever is cleared at the same time; the mask follows writes only.
-            assert (sticky == (($past(sticky) & ~$past(clear)) | $past(event_i)));
-            assert (mask == ($past(write && bus_addr_i == MASK) ? $past(bus_wdata_i[EVENTS-1:0]) : $past(mask)));
+            assert (sticky == (($past(sticky) & ~($past(writes && bus_addr_i == EVENT) ? $past(bus_wdata_i[EVENTS-1:0]) : {EVENTS{1'b0}}))
+                               | $past(event_i)));
+            assert (mask == ($past(writes && bus_addr_i == MASK) ? $past(bus_wdata_i[EVENTS-1:0]) : $past(mask)));
         end
         if (past && $past(rst_i))
             assert ({sticky, mask} == {2*EVENTS{1'b0}});
@@ -88,7 +90,7 @@ module bus_wrapper #(
     end
     always @* begin
         // Another block's register is never strobed by a word that does not exist: that is an error.
-        assert (!(reg_write_o && bus_error_o));
+        assert ({reg_write_o, reg_read_o} == ({writes, bus_valid_i && !bus_write_i} & {2{bus_addr_i > MASK && !bus_error_o}}));
         assert (bus_error_o == (bus_addr_i > MASK && !WORDS[bus_addr_i]));
         // A read gives the wrapper's word, the block's, or 0.
         if (bus_addr_i > MASK)

@@ -2,9 +2,10 @@
 """equivalence: proves that a netlist does in each clock what its RTL does, from the first one on.
 
 Yosys puts both side by side, with one output that says whether any of theirs differ
-(synth/yosys/equivalence.ys); abc finds registers that are always equal (scorr), then the proof or
-the clock of a difference (pdr). What RTL leaves undefined, flip-flops have by the netlist at the
-start, else 0. Where there are several clocks, edges are inputs: any order of them is proven.
+(synth/yosys/equivalence.ys); abc finds registers that are always equal (lcorr), then other signals
+(scorr), then the proof or the clock of a difference (pdr). What RTL leaves undefined, flip-flops
+have by the netlist at the start, else 0. Where there are several clocks, edges are inputs: any
+order of them is proven.
 """
 import json
 import re
@@ -97,7 +98,7 @@ def solved(file, commands, is_plain, options, seconds):
     with open(f"{file}.aig", "rb") as aiger:
         has_state = aiger.readline().split()[3] != b"0"
     # sat decides what newer versions of pdr do not: a miter in which scorr has left no register.
-    steps = f"scorr; pdr -T {seconds}; sat" if has_state else "ifraig; iprove; sat"
+    steps = f"lcorr; scorr; pdr -T {seconds}; sat" if has_state else "ifraig; iprove; sat"
     said = command(["sh", "-c", f"ulimit -t {seconds + 60}; {options.yosys}-abc -c "
                     f"'read_aiger {file}.aig; strash; {steps}'"])[1]
     write(file.with_suffix(".abc.log"), said)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """utilisation: reports the chip's and its parts' use of the FPGA, beside limits and the paper."""
 import argparse
+import concurrent.futures
 import json
 import os
 import pathlib
@@ -153,8 +154,10 @@ def run(o, libraries):
         return tell_cores(library, options, o, accepted, runs)
     tree = tree_state(o.source, STATE_OF)
     yosys = runner.version_of(o.yosys)
-    rows = rows_of(plan, synthesise(plan, library, options, o), library, accepted, yosys)
-    r = Report(plan, library, rows, accepted, yosys, baseline.history(o.source),
+    with concurrent.futures.ThreadPoolExecutor() as pool:  # Git tells the past meanwhile
+        past = pool.submit(baseline.history, o.source)
+        rows = rows_of(plan, synthesise(plan, library, options, o), library, accepted, yosys)
+    r = Report(plan, library, rows, accepted, yosys, past.result(),
                baseline.current_commit(o.source))
     if o.accept:
         baseline.accept(r, o.source / "synth/baseline.json")

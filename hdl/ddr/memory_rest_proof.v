@@ -20,7 +20,8 @@ module memory_rest_proof #(
     input wire [8*PORTS-1:0]  npi_wr_be_i,
     input wire [PORTS-1:0]    npi_rd_pop_i, npi_rd_flush_i,
     input wire                mcb_cmd_full_i, mcb_wr_full_i, mcb_rd_empty_i, mcb_calib_done_i,
-    input wire [63:0]         mcb_rd_data_i
+    input wire [63:0]         mcb_rd_data_i,
+    output wire [PORTS-1:0]   npi_rd_empty_o, npi_wr_almost_full_o // keep the FIFOs in the proof
 );
     `include "wiring.vh"
     (* hierconn *) wire [PORTS-1:0] \u_core.npi_addr_req_i ;
@@ -46,7 +47,8 @@ module memory_rest_proof #(
         .npi_size_i(npi_size_i), .npi_rmw_i(npi_rmw_i), .npi_wr_data_i(npi_wr_data_i),
         .npi_wr_be_i(npi_wr_be_i), .npi_wr_push_i(npi_wr_push_i),
         .npi_wr_flush_i(npi_wr_flush_i), .npi_rd_pop_i(npi_rd_pop_i),
-        .npi_rd_flush_i(npi_rd_flush_i),
+        .npi_rd_flush_i(npi_rd_flush_i), .npi_rd_empty_o(npi_rd_empty_o),
+        .npi_wr_almost_full_o(npi_wr_almost_full_o),
         .mcb_cmd_full_i(mcb_cmd_full_i), .mcb_wr_full_i(mcb_wr_full_i),
         .mcb_rd_data_i(mcb_rd_data_i), .mcb_rd_empty_i(mcb_rd_empty_i),
         .mcb_calib_done_i(mcb_calib_done_i));

@@ -78,6 +78,9 @@ INNER = {name: {**kind, "description": text} for name, kind, text in [
     ("wave", _TEXT, "file for the waveform (FST) of a replay"),
     ("from", _TIME, "begin of the waveform, s"),
     ("to", _TIME, "end of the waveform, s"),
+    ("trouble", {**_TEXT, "pattern": "(away|twin|babble):[0-9]+:[0-9.]+:[0-9.]+"},
+     "what befalls several vehicles: away:2:1.5:3 takes the modem with the address 2 out of reach "
+     "after 1.5 s, for 3 s; twin:2:... brings another vehicle of this address; babble:2:... noise"),
     ("every_clock", _FLAG, "evaluates each clock, quiet ones and those of idle cores, too (slow)"),
     ("speed", _SPEED, "real: simulated time follows the clock; 0.25: at a quarter of its speed; "
      "max: as fast as it goes"),

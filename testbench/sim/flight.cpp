@@ -8,6 +8,9 @@
 #include "key_file.h"
 #include "map_regs.h"
 #include "uav_machine.h"
+#ifdef MAP_SLOT_VISION
+#include "vision_regs.h"
+#endif
 
 extern "C" {
 #include "uav.h"
@@ -173,6 +176,7 @@ void Flight::connectModels() {
         step_.wait(now);
         return std::min({o_.wire ? never : ground_.nextEvent(),
                          second_ ? second_->advance(now) : never,
+                         trouble_ ? trouble_->advance(now) : never,
                          std::max(step_.nextEvent(), now + 1), now + clockStepNs});
     });
     air_.onPacket([this](uint64_t now, const RfPacket& packet, RfChannel::Outcome outcome) {
@@ -203,20 +207,10 @@ void Flight::callFollowers() {
         second_ = std::make_unique<SecondGround>(
             air_, options, o_.out, o_.flight.value("replay", ""), [this] { return isWanted(); });
     }
-    for (unsigned address = 2; address <= o_.vehicles; ++address) {
-        M3Machine::Config config;
-        config.firmware = o_.firmware;
-        config.guardMs = o_.guard;
-        config.address = address;
-        config.key = keyOf(o_.keyFile, static_cast<int>(address));
-        std::tie(config.secondGround, config.secondKey) = secondOf(o_, address);
-        config.seed = o_.seed + address;
-        followers_.push_back(std::make_unique<Follower>(air_, modem("follower", o_.guard), config));
-        const Frame seen = movedBy(frame_, static_cast<int>(address - 1) * frame_.width /
-                                               static_cast<int>(o_.vehicles));
-        savePng(o_.out + "/before" + std::to_string(address) + ".png", seen);
-        placePicture(followers_.back()->soc, seen);
-    }
+    for (unsigned address = 2; address <= o_.vehicles; ++address)
+        callFollower(address, keyOf(o_.keyFile, static_cast<int>(address)));
+    if (!o_.trouble.empty())
+        bringTrouble();
     soc_.onAir([this](uint64_t now) {
         for (const auto& follower : followers_)
             follower->advance(now);
@@ -224,8 +218,56 @@ void Flight::callFollowers() {
     });
 }
 
+void Flight::callFollower(unsigned address, const std::vector<uint8_t>& key) {
+    M3Machine::Config config;
+    config.firmware = o_.firmware;
+    config.guardMs = o_.guard;
+    config.address = address;
+    config.key = key;
+    std::tie(config.secondGround, config.secondKey) = secondOf(o_, address);
+    config.seed = o_.seed + followers_.size() + 2;
+    followers_.push_back(std::make_unique<Follower>(air_, modem("follower", o_.guard), config));
+    SocModel& soc = followers_.back()->soc;
+    soc.fsmc().onWord = [this, &soc](uint32_t at, uint32_t value, bool isWrite) {
+        countStarts(soc, at, value, isWrite);
+    };
+    const Frame seen = movedBy(frame_, static_cast<int>(address - 1) * frame_.width /
+                                           static_cast<int>(o_.vehicles));
+    savePng(o_.out + "/before" + std::to_string(address) + ".png", seen);
+    placePicture(soc, seen);
+}
+
+void Flight::bringTrouble() {
+    trouble_ = std::make_unique<Trouble>(o_.trouble);
+    const auto address = static_cast<unsigned>(trouble_->address);
+    if (address > o_.vehicles)
+        throw std::runtime_error("trouble '" + o_.trouble + "': there are " +
+                                 std::to_string(o_.vehicles) + " vehicles, and 0, the ground");
+    const XBee* modem = nullptr;
+    if (trouble_->kind == "twin") {
+        callFollower(address, std::vector<uint8_t>(LINK_KEY_BYTES, 0xEE));
+        modem = &followers_.back()->soc.modem();
+    } else if (trouble_->kind == "away") {
+        modem = !address       ? &ground_
+                : address == 1 ? &soc_.modem()
+                               : &followers_[address - 2]->soc.modem();
+    }
+    trouble_->begin(air_, modem);
+}
+
+// Counts how often a vehicle's vision core is told to start: once a call.
+void Flight::countStarts(SocModel& soc, uint32_t address, uint32_t value, bool isWrite) {
+#ifdef MAP_SLOT_VISION
+    constexpr uint32_t control = MAP_CONTROL_WINDOW + 4 * (16 * MAP_SLOT_VISION + VISION_CONTROL);
+    starts_[&soc] += isWrite && address == control && (value & VISION_CONTROL_START_MASK);
+#else
+    (void)soc, (void)address, (void)value, (void)isWrite;
+#endif
+}
+
 void Flight::watchRegisters() {
     soc_.fsmc().onWord = [this](uint32_t address, uint32_t value, bool isWrite) {
+        countStarts(soc_, address, value, isWrite);
         constexpr uint32_t control = MAP_CONTROL_WINDOW, bytes = 4096;
         accesses_.add(soc_.cycles(), address, value, isWrite);
         if (address - control >= bytes)
@@ -360,6 +402,12 @@ void Flight::report() {
                 100 * static_cast<double>(soc_.evaluated()) / static_cast<double>(soc_.cycles()),
                 static_cast<unsigned long long>(status_->packets),
                 static_cast<unsigned long long>(status_->lost));
+    if (!followers_.empty()) {
+        std::printf("icesoc-sim: the vision cores were started %u", starts_[&soc_]);
+        for (const auto& follower : followers_)
+            std::printf(", %u", starts_[&follower->soc]);
+        std::puts(" times");
+    }
     if (o_.replayed && o_.gdb < 0 && !stopSignal)
         std::puts(o_.replayed->isWhole()
                       ? "icesoc-sim: bit by bit the flight that was recorded"

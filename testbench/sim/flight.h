@@ -15,6 +15,7 @@
 #include "second_ground.h"
 #include "soc_model.h"
 #include "status_file.h"
+#include "trouble.h"
 #include <chrono>
 #include <csignal>
 #include <memory>
@@ -59,6 +60,7 @@ public:
         std::string modemKey; // 32 hexadecimal digits
         std::string keyFile;  // of the link; none: the vehicle is open
         std::string observer; // the same of the second ground, where there are several vehicles
+        std::string trouble;  // of several vehicles (trouble.h)
         std::string image, size = "320x240", out = ".", speed = "real", cpu = "host",
                            firmware = FIRMWARE_ELF;
         uint16_t guard = 1000;
@@ -97,6 +99,9 @@ private:
     void watchRegisters();
     void placePicture(SocModel& soc, const Frame& frame);
     void callFollowers();
+    void callFollower(unsigned address, const std::vector<uint8_t>& key);
+    void bringTrouble();
+    void countStarts(SocModel& soc, uint32_t address, uint32_t value, bool isWrite);
     void startProgram();
     void runProcessor();
     void runOnHost();
@@ -120,6 +125,8 @@ private:
     SocModel soc_;
     std::vector<std::unique_ptr<Follower>> followers_; // addresses 2 and up
     std::unique_ptr<SecondGround> second_;             // of several vehicles
+    std::unique_ptr<Trouble> trouble_;                 // of several vehicles, if any
+    std::map<const SocModel*, unsigned> starts_;       // of each vehicle's vision core
     std::unique_ptr<Cable> cable_;                     // in place of the modems and the air
     Child child_;
     GroundStep step_;

@@ -115,6 +115,7 @@ Flight::Options optionsOf(const json& flight) {
     take("seed", o.seed);
     take("key", o.keyFile);
     take("observer", o.observer);
+    take("trouble", o.trouble);
     take("modem_key", o.modemKey);
     take("guard", o.guard);
     take("from", o.from);
@@ -209,6 +210,8 @@ int main(int argc, char** argv) {
                 "--wave needs --replay: a flight is recorded, then looked at");
         if (o.sensor && !o.pins.empty())
             throw std::invalid_argument("--camera and --pins: both drive the inputs of cores");
+        if (!o.trouble.empty() && o.vehicles < 2)
+            throw std::invalid_argument("--trouble needs --vehicles: it befalls one of several");
         if (o.cpu == "m3" && !o.modemKey.empty())
             throw std::invalid_argument("--modem-key needs --cpu host: the ARM binary has its own");
         if (!o.flash.empty() && (o.cpu != "m3" || o.guard != 1000))

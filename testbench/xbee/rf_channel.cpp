@@ -43,6 +43,13 @@ void RfChannel::leave(XBee* modem) {
             flight.sender = nullptr;
 }
 
+void RfChannel::carryAway(const XBee* modem, bool isAway) {
+    if (isAway)
+        away_.insert(modem);
+    else
+        away_.erase(modem);
+}
+
 RfChannel::Outcome RfChannel::fate(uint64_t now) {
     // A step for this packet, and one for each missed packet time: a burst passes while nobody
     // sends, too.
@@ -187,7 +194,8 @@ void RfChannel::finish(Flight& flight, Outcome outcome, uint64_t now) {
 RfChannel::Outcome RfChannel::deliver(Flight& flight, uint64_t now) {
     Outcome outcome = Outcome::Nobody;
     for (XBee* modem : modems_) {
-        if (modem == flight.sender || !modem->hears(flight.packet))
+        if (modem == flight.sender || !modem->hears(flight.packet) || away_.count(modem) ||
+            away_.count(flight.sender))
             continue;
         XBee::Reception reception = modem->receive(flight.packet, now);
         if (reception == XBee::Reception::Taken)

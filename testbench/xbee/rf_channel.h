@@ -11,6 +11,7 @@
 #include <functional>
 #include <list>
 #include <memory>
+#include <set>
 
 class RfChannel {
 public:
@@ -31,6 +32,8 @@ public:
 
     void join(XBee* modem) { modems_.push_back(modem); }
     void leave(XBee* modem);
+    // Puts a modem out of reach of all others, or brings it back.
+    void carryAway(const XBee* modem, bool isAway);
     // Sends a packet when its modem is free; the sender's transmitted() is called when the packet
     // has left or was given up.
     void transmit(XBee* sender, RfPacket packet, uint64_t now);
@@ -74,6 +77,7 @@ private:
     bool inBurst_ = false;
     uint64_t fateAt_ = 0; // of the last packet
     std::vector<XBee*> modems_;
+    std::set<const XBee*> away_;
     std::multimap<uint64_t, Flight> events_;
     std::list<std::shared_ptr<OnAir>> onAir_;
     Counters counters_;

@@ -55,15 +55,16 @@ class Mission:
     NAMES = {"ground": "clients/mission.py", "simulator": "sim/icesoc-sim",
              "page": "live/live.py(?!.* --try)", "page's trial": "live/live.py.* --try"}
 
-    def __init__(self, source, build, out, prefix=(), options=()):
-        self.out = out
+    def __init__(self, source, build, out, prefix=(), options=(), words=None):
+        """words: makes the command in place of `./icesoc run` with its options."""
+        self.out, self.source, self.build = out, source, build
         os.makedirs(out, exist_ok=True)
         self.log = open(out + ".log", "w+")
         self.begin = time.monotonic()
+        run = [source + "/icesoc", "run", "--built", "--build", build, "--image", IMAGE, "--size",
+               "48x32", "--guard", "20", "--out", out, *options]
         self.run = subprocess.Popen(
-            [*(word.replace("$0", out) for word in prefix), source + "/icesoc", "run", "--built",
-             "--build", build, "--image", IMAGE, "--size", "48x32", "--guard", "20", "--out", out,
-             *options],
+            [*(word.replace("$0", out) for word in prefix), *(words(self) if words else run)],
             stdout=self.log, stderr=subprocess.STDOUT, start_new_session=True,
             env={**os.environ, "XDG_CONFIG_HOME": build + "/config"})  # keys of the tests' own
 
@@ -112,7 +113,8 @@ class Mission:
         for path in (self.out, self.out + ".kept"):
             shutil.rmtree(path, ignore_errors=True)
         self.log.close()
-        os.remove(self.out + ".log")
+        for left in Path(self.out).parent.glob(Path(self.out).name + ".*"):
+            left.unlink()
 
     def kill(self):
         """Ends all processes that are left, when the test ends."""
@@ -279,11 +281,64 @@ def air(loss):
     return bad_air
 
 
+# What befalls a fleet: the simulator's trouble, and seconds of it at least and at most.
+# The vehicle 1 runs the firmware's host build, the others the ARM binary.
+TROUBLE = {"vehicle away": ("away:2", 0.5, 3), "vehicle gone": ("away:3", 11, 13),
+           "twin": ("twin:2", 1, 3), "babbler": ("babble:1", 1, 3),
+           "other ground": ("away:0", 2, 4), "new key": ("away:2", 11, 13)}
+VEHICLES, NEXT = 3, "7" * 32
+
+
+def fleet_words(m, name, begin, end):
+    """The simulator with several vehicles that are called all the time, each under its own key."""
+    keys = {}
+    for file, digits in (("fleet", "123"), ("observer", "456")):
+        keys[file] = f"{m.out}.{file}.key"
+        with open(os.open(keys[file], os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "w") as f:
+            for at, digit in enumerate(digits, 1):
+                more = " " + NEXT if (name, file, at) == ("new key", "fleet", 2) else ""
+                f.write(f"0x{at:04x} {digit * 32}{more}\n")
+    return [m.build + "/testbench/sim/icesoc-sim", "--image", IMAGE, "--size", "48x32", "--guard",
+            "20", "--out", m.out, "--speed", "max", "--vehicles", str(VEHICLES), "--key",
+            keys["fleet"], "--observer", keys["observer"], "--trouble",
+            f"{TROUBLE[name][0]}:{begin:.3f}:{end - begin:.3f}", "--", "/usr/bin/python3",
+            m.source + "/tests/e2e/mission/fleet_ground.py", "--device", "{device}", "--device2",
+            "{device2}", "--status", "{status}", "--guard", "{guard}", "--out", "{out}",
+            "--vehicles", str(VEHICLES), "--plugin", m.build + "/ground", "--slice",
+            m.source + "/sw/apps/uav/Autopilot.ice", "--reference",
+            m.build + "/testbench/sim/vision-reference", "--key", keys["fleet"], "--key2",
+            keys["observer"], "--until", str(end + 1),
+            *(["--changed", "2", "--new-key", NEXT] if name == "new key" else [])]
+
+
+def fleet(start, name, moment, deaths):
+    """Nothing is lost, doubled, or another vehicle's, and who is not concerned notices nothing."""
+    trouble, least, most = TROUBLE[name]
+    begin = 2 + moment  # all have sessions
+    end = begin + least + (most - least) * moment / LAST
+    m = start(words=lambda m: fleet_words(m, name, begin, end))
+    expect(m.wait(5 * LONGEST) == 0, m, "a vehicle does not answer at the end, or it hangs")
+    told = json.loads(Path(m.out, "fleet.json").read_text())
+    cores = re.search("vision cores were started ([0-9, ]+) times", m.text())[1].split(", ")
+    away, gone_ = int(trouble[-1]) if trouble.startswith("away") else None, least > 9
+    for address in range(1, VEHICLES + 1):
+        t, ran = told[str(address)], int(cores[address - 1])
+        expect(not t["wrong"], m, f"vehicle {address}: the result is of another picture")
+        expect(t["answered"] <= ran <= t["started"], m, f"vehicle {address}: {t}, and {ran} frames")
+        expect(bool(t["reported"]) == (gone_ and address == away), m, f"vehicle {address}: {t}")
+    seen = {at for at, second in told["seen"] if away != 0 or begin <= second < end}
+    expect(seen == set(range(1, VEHICLES + 1)), m, f"the other ground saw only {seen}")
+    return "%d calls, %d of them reported" % tuple(
+        sum(count) for count in zip(*((t["started"], len(t["reported"]))
+                                      for at, t in told.items() if at != "seen")))
+
+
 FAULTS = [(killed, n) for n in ("ground", "simulator", "run", "page")] + \
          [(killed_early, n) for n in ("page", "page's trial")] + \
          [(stopped, n) for n in ("ground", "simulator", "page")] + \
          [(f, "") for f in (disk_full, no_descriptors, no_memory, clock_step, port_taken,
-                             air("0.9"), air("1"))]
+                             air("0.9"), air("1"))] + \
+         [(fleet, n) for n in TROUBLE]
 
 
 def undergo(args, fault, name, seed, number, moment):
@@ -291,9 +346,9 @@ def undergo(args, fault, name, seed, number, moment):
     title = (fault.__name__ + " " + name).strip()
     missions = []
 
-    def start(prefix=(), options=()):
+    def start(prefix=(), options=(), words=None):
         out = f"{args.out}/{seed}-{title.replace(' ', '-')}-{number}"
-        missions.append(Mission(args.source, args.build, out, prefix, options))
+        missions.append(Mission(args.source, args.build, out, prefix, options, words))
         return missions[-1]
 
     try:

@@ -1,0 +1,156 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""fleet_ground: calls the vision cores of several vehicles again and again, and from a second
+ground their states, until a simulated time; then each has to answer once more.
+
+OUT/fleet.json tells for each how many frames were started, answered and reported, and what the
+second ground saw when. With --new-key a vehicle is given its next key first, and has to have it
+alone at the end."""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import Ice
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "sw/ground/clients"))
+import mission  # noqa: E402
+import plugged  # noqa: E402
+
+THRESHOLD = 40
+REST = 0.2  # simulated seconds between two frames
+
+
+class Caller(threading.Thread):
+    """Calls one vehicle, each call once, whatever becomes of it."""
+
+    def __init__(self, ground, address):
+        super().__init__(daemon=True)
+        self.ground, self.address = ground, address
+        self.started = self.answered = self.wrong = 0
+        self.reported, self.failure = [], None
+        args = ground.args
+        out = subprocess.run([args.reference, f"{args.out}/before{address if address > 1 else ''}"
+                              ".png", str(THRESHOLD)], check=True, stdout=subprocess.PIPE).stdout
+        self.want = json.loads(out)
+        self.start()
+
+    def proxy(self, kind, name):
+        return kind.uncheckedCast(self.ground.pilot.stringToProxy(
+            f"{name}:xbee-at -d {self.ground.args.device} -a 0x{self.address:04x} -t 120000"))
+
+    def frame(self, engine):
+        engine.setParameterA(THRESHOLD)
+        self.started += 1
+        engine.startProcessing()
+        self.answered += 1
+        result = engine.getResult()
+        best = [[f.x, f.y, f.score] for f in result.best]
+        self.wrong += [result.found, best] != [self.want["found"], self.want["best"]]
+
+    def frames(self):
+        """Calls until the flight's end; then, 20 times at most, until an answer comes."""
+        import Autopilot  # made by loadSlice
+        engine = self.proxy(Autopilot.HwProcessingEnginePrx, "hwengine1")
+        late = 0
+        while True:
+            due = self.ground.seconds() + REST
+            isLate = due >= self.ground.args.until
+            try:
+                self.frame(engine)
+                if isLate:
+                    return
+            except Ice.Exception as e:
+                self.reported.append(e.ice_id())
+                late += isLate
+                if late == 20:
+                    raise
+            while self.ground.seconds() < due:
+                time.sleep(0.005)
+
+    def run(self):
+        import Autopilot
+        try:
+            ring = self.proxy(Autopilot.KeyRingPrx, "keys")
+            isChanged = self.address == self.ground.args.changed
+            if isChanged and not ring.setNextKey(bytes.fromhex(self.ground.args.new_key)):
+                raise RuntimeError("the vehicle refuses a new key")
+            self.frames()
+            if isChanged and ring.count() != 1:
+                raise RuntimeError("the vehicle still has its old key")
+        except (Ice.Exception, RuntimeError) as failure:
+            self.failure = failure
+
+    def told(self):
+        return {"started": self.started, "answered": self.answered, "reported": self.reported,
+                "wrong": self.wrong}
+
+
+class Ground:
+    def __init__(self, args):
+        self.args, self.air = args, mission.Air(args.status)
+        self.pilot = self.communicator(args.device, args.key)
+        self.seen = []  # (address, simulated seconds) of what the second ground heard
+
+    def seconds(self):
+        return self.air.read()["ns"] / 1e9
+
+    def communicator(self, device, key):
+        return plugged.initialize(
+            {"Ice.Default.InvocationTimeout": "120000", "Ice.RetryIntervals": "-1",
+             "Ice.ACM.Close": "0", "XBeeAT.Device": device, "XBeeAT.Trace": "1"},
+            self.args.plugin, self.args.guard, key)
+
+    def observe(self):
+        """Asks each vehicle for its state, one after the other, from the second ground."""
+        import Autopilot
+        os.environ["XBEEAT_CLOCK"] = self.args.status + "2"
+        observer = self.communicator(self.args.device2, self.args.key2)
+        while self.seconds() < self.args.until:
+            for address in range(1, self.args.vehicles + 1):
+                vehicle = Autopilot.VehiclePrx.uncheckedCast(observer.stringToProxy(
+                    f"uav:xbee-at -d {self.args.device2} -a 0x{address:04x} -s 0x00f0 -t 120000"))
+                try:
+                    vehicle.getFlightState()
+                    self.seen.append((address, self.seconds()))
+                except Ice.Exception:
+                    time.sleep(0.01)
+        observer.destroy()
+
+    def fly(self):
+        callers = [Caller(self, address) for address in range(1, self.args.vehicles + 1)]
+        while not any(caller.answered for caller in callers) and any(
+                caller.is_alive() for caller in callers):
+            time.sleep(0.01)
+        self.observe()
+        for caller in callers:
+            caller.join()
+        self.pilot.destroy()
+        told = {caller.address: caller.told() for caller in callers}
+        Path(self.args.out, "fleet.json").write_text(json.dumps({**told, "seen": self.seen}))
+        failed = [f"vehicle {c.address}: {c.failure}" for c in callers if c.failure]
+        if failed:
+            sys.exit("fleet_ground: " + "; ".join(failed))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    for name in "out", "device", "device2", "status", "plugin", "slice", "reference", "key", "key2":
+        parser.add_argument("--" + name, required=True)
+    parser.add_argument("--vehicles", type=int, required=True)
+    parser.add_argument("--guard", type=int, required=True)
+    parser.add_argument("--until", type=float, required=True, help="simulated seconds")
+    parser.add_argument("--changed", type=int, default=0, help="address of a vehicle that gets")
+    parser.add_argument("--new-key", default="", help="this key, the next one of the file")
+    args = parser.parse_args()
+    Ice.loadSlice("", ["-I" + (Ice.getSliceDir() or "."), args.slice])
+    Ground(args).fly()
+
+
+if __name__ == "__main__":
+    main()

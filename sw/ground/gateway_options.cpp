@@ -56,7 +56,7 @@ void addOptions(CLI::App& app, Options& o) {
     app.add_option("-b,--baud", o.baud, "baud rate (115200 is the modem's BD 7)")
         ->check(CLI::IsMember({1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200, 250000}));
     const auto one = app.add_option("-a,--address", o.target, "the UAV's 16-bit address")
-                         ->check(CLI::Range(0, 0xFFFF));
+                         ->check(CLI::Range(0, 0xFFFE));
     app.add_option("--vehicle", o.vehicles,
                    "NAME=ADDRESS, as uav7=0x0007, for each of several vehicles; their ports follow "
                    "one another in the order of names")
@@ -151,6 +151,8 @@ std::map<std::string, int> fleetOf(const Options& o) {
         const long address = std::strtol(number.c_str(), &end, 0);
         if (name.empty() || number.empty() || !std::isdigit(number[0]) || address > 0xFFFF || *end)
             throw std::runtime_error("'" + text + "': give NAME=ADDRESS, as uav7=0x0007");
+        if (address == 0xFFFF) // docs/fleet.md: a oneway proxy of the plugin's endpoint
+            throw std::runtime_error("'" + text + "': 0xFFFF is all vehicles, give each its own");
         for (const auto& [other, taken] : fleet)
             if (taken == address && other != name)
                 throw std::runtime_error("'" + text + "': '" + other + "' has this address");

@@ -238,8 +238,15 @@ static void markAcked(Link_Sender* sender, U32 advance, const U8* bitmap, U32 si
             continue;
         f->state = LINK_ACKED;
         sender->output->heardAt = sender->output->now;
-        if (f->tries != 1U && elapsed < sender->srtt - sender->srtt / 4U)
-            continue; /* too soon for a round trip: it answers an earlier transmission */
+        if (f->tries != 1U && elapsed < sender->srtt - sender->srtt / 4U) {
+            /* Too soon for a round trip: it answers an earlier transmission. Where the radio says
+             * what is lost, that was the first one, and the peer of a call takes longer now. */
+            elapsed = sender->output->now - f->firstAt;
+            if (sender->output->mostWaiting && !sender->output->contention.own.isMuch &&
+                elapsed < LINK_RTO_FIRST)
+                sample(sender, elapsed);
+            continue;
+        }
         if (!newest || LINK_BEFORE(newest->order, f->order))
             newest = f;
     }

@@ -56,15 +56,15 @@ def layers(source, generated, build, output):
         return sum(size for name, _, size, file in image if f"/minimal_{layer}.arm/" in file
                    and re.match(wanted, name))
 
-    def whole(files, *options):
+    def whole(files):
         """(text and read-only data, RAM) of all that these files hold."""
         with tempfile.TemporaryDirectory() as work:
             paths = [str(path) for pattern in files
                      for path in pathlib.Path(source, "sw").glob(pattern)]
             subprocess.run(["arm-none-eabi-gcc", "-std=c90", "-mcpu=cortex-m3", "-mthumb", "-Os",
                             "-ffunction-sections", "-fdata-sections",
-                            "-fno-merge-constants", *(f"-I{i}" for i in includes), *options, "-c",
-                            *paths], cwd=work, check=True)
+                            "-fno-merge-constants", *(f"-I{i}" for i in includes), "-c", *paths],
+                           cwd=work, check=True)
             table = subprocess.run(["arm-none-eabi-size", *os.listdir(work)], cwd=work, check=True,
                                    capture_output=True, text=True).stdout
         rows = [line.split() for line in table.splitlines()[1:]]
@@ -102,13 +102,6 @@ def layers(source, generated, build, output):
         small_all, large_all = small_all + small, large_all + large
     print("%-10s %8d %8d %8d" % ("all", small_all, sum(PAPER.values()), large_all))
     entry("minimal.all", small_all, sum(PAPER.values()), is_held=False)
-    unkeyed = whole(["link/*.c"], "-DLINK_SECURE=0")[0]
-    keyed = whole(["link/minimal/*.c", "link/link_wire.c", "link/link_secure.c"], "-DLINK_MINIMAL",
-                  "-DLINK_SECURE=1")[0]
-    entry("full.link without keys", unkeyed)
-    entry("minimal.link with keys", keyed)
-    print(f"The full link without keys (LINK_SECURE=0): {unkeyed}; the minimal one with them "
-          f"(LINK_SECURE=1): {keyed}, and crypto")
     print(f"RAM of the minimal program with all objects: {linked('app', r'[.](data|bss)|COMMON')} "
           "bytes, of generated code and servants: "
           f"{linked('app', r'[.](text|rodata)')} bytes of text")

@@ -70,9 +70,7 @@ Peer& Engine::peer(const Settings& wanted) {
     return *peer;
 }
 
-Engine::Engine(const Settings& s, const Log& l)
-    : Host(s, l, clock_),
-      line_(std::make_unique<FramePacer>(s.target, s.characterUs(), LINK_MAX_FRAME, 0)) {
+Engine::Engine(const Settings& s, const Log& l) : Host(s, l, clock_) {
     serial_.open(device);
     makePipe(wakePipe_);
     thread_ = std::thread([this] { run(); });

@@ -8,7 +8,6 @@
 
 #include "api_modem.h"
 #include "clock.h"
-#include "frame_pacer.h"
 #include "peer.h"
 #include "serial_port.h"
 
@@ -51,7 +50,7 @@ private:
     bool any(bool (Peer::*is)() const) const;
     void readSerial(U32 now);
     void deliver(int source, const U8* bytes, size_t size, U32 now);
-    void writeSerial(U32 now);
+    void writeSerial();
 
     Clock clock_;
     SerialPort serial_{clock_};
@@ -62,10 +61,10 @@ private:
     int target_ = 0;                             // DL of the modem
     std::map<int, std::unique_ptr<Peer>> peers_; // by address; they stay
     uint64_t airUs_ = 0;                         // of the peer that sent last
-    std::vector<U8> serialOut_;        // the frame's bytes that the port has not taken yet
-    std::unique_ptr<PacketLine> line_; // a mode of the modem
-    U32 upAt_ = 0, patienceUs_ = 0;    // when a link was last up; how long all may be down
-    std::condition_variable changed_;  // of stop_ and what programs want
+    std::vector<U8> serialOut_;       // the packet's bytes that the port has not taken yet
+    std::unique_ptr<ApiModem> api_;   // none: transparent mode
+    U32 upAt_ = 0, patienceUs_ = 0;   // when a link was last up; how long all may be down
+    std::condition_variable changed_; // of stop_ and what programs want
     std::thread thread_;
 };
 

@@ -21,19 +21,20 @@ constexpr std::chrono::seconds retryEvery{5}; // while only a listener waits for
 
 } // namespace
 
-// Takes a frame while the line is free.
+// Takes a packet while the line is free.
 bool Engine::transmit(Peer& peer, const U8* frame, U32 size) {
     const U32 now = clock_.nowUs();
     U32 rn = peer.randomWait();
     for (auto& [address, other] : peers_)
         rn = other->isUp() ? std::max(rn, other->randomWait()) : rn;
-    if (!serialOut_.empty() ||
-        !line_->offer(peer.address(), frame, size, rn, serial_.waiting(), now))
+    if (!serialOut_.empty() || (!api_ && serial_.waiting()))
         return false;
+    serialOut_ = api_ ? api_->packet(peer.address(), frame, size, rn, now)
+                      : ApiModem::Bytes(frame, frame + size);
     peer.airUs = std::max(peer.airUs, airUs_);
     airUs_ = peer.airUs;
     peer.airUs += LINK_PACKET_US + size * LINK_BYTE_US;
-    writeSerial(now);
+    writeSerial();
     return true;
 }
 
@@ -83,11 +84,7 @@ std::string Engine::prepareModem(const Settings& wanted) {
     std::lock_guard<std::mutex> lock(mutex);
     longest_ = setup.encrypts() ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME;
     serialOut_.clear();
-    if (setup.isApi())
-        line_ = std::make_unique<ApiModem>(setup.escapes(), wanted.mostWaiting());
-    else
-        line_ =
-            std::make_unique<FramePacer>(target_, wanted.characterUs(), longest_, clock_.nowUs());
+    api_ = setup.isApi() ? std::make_unique<ApiModem>(setup.escapes()) : nullptr;
     log(1, "modem ready on " + device + " after " +
                std::to_string((clock_.nowUs() - begin) / 1000) + " ms" +
                (setup.isApi() ? ", in API mode" : "") + (setup.encrypts() ? ", it encrypts" : ""));
@@ -97,8 +94,8 @@ std::string Engine::prepareModem(const Settings& wanted) {
 // Starts the link with a peer, if the modem is ready. One without API mode talks to the peer alone
 // that it was set up for, and not to all.
 void Engine::start(Peer& peer) {
-    if (longest_ && (line_->answers() || (peer.address() == target_ && !peer.isAll())))
-        peer.start(longest_, line_->answers(), clock_.nowUs());
+    if (longest_ && (api_ || (peer.address() == target_ && !peer.isAll())))
+        peer.start(longest_, api_ != nullptr, clock_.nowUs());
 }
 
 bool Engine::any(bool (Peer::*is)() const) const {
@@ -187,11 +184,13 @@ void Engine::readSerial(U32 now) {
     U8 bytes[512];
     const ssize_t count = serial_.read(bytes, sizeof bytes);
     const size_t size = static_cast<size_t>(count);
-    if (count > 0)
-        line_->feed(
+    if (count > 0 && api_)
+        api_->feed(
             bytes, size,
             [&](int source, const U8* data, size_t heard) { deliver(source, data, heard, now); },
-            [&](int target, bool isThere) { peers_.at(target)->answer(isThere, now); });
+            [&](bool isThere) { Link_answer(radio, isThere, now); });
+    else if (count > 0)
+        deliver(target_, bytes, size, now);
     else if (count == 0 || (errno != EAGAIN && errno != EINTR))
         fail("serial port '" + device + "': " + (count == 0 ? "closed" : std::strerror(errno)));
 }
@@ -204,9 +203,7 @@ void Engine::deliver(int source, const U8* bytes, size_t size, U32 now) {
             peer->receive(bytes, size, now);
 }
 
-void Engine::writeSerial(U32 now) {
-    if (serialOut_.empty())
-        serialOut_ = line_->due(now);
+void Engine::writeSerial() {
     if (serialOut_.empty())
         return;
     ssize_t count = serial_.write(serialOut_.data(), serialOut_.size());
@@ -222,10 +219,9 @@ U32 Engine::pollPeers(U32 now) {
         order.push_back(peer.get());
     std::sort(order.begin(), order.end(),
               [](const Peer* a, const Peer* b) { return a->airUs < b->airUs; });
-    U32 wait = line_->deadline(now);
+    U32 wait = 0xFFFFFFFFu;
     for (Peer* peer : order) {
-        if (!line_->answers() && (peer->address() != target_ || peer->isAll()) &&
-            peer->isWanted()) {
+        if (!api_ && (peer->address() != target_ || peer->isAll()) && peer->isWanted()) {
             log(0, "the modem on '" + device + "' has no API mode: it talks to one vehicle only");
             peer->fail();
         }
@@ -240,7 +236,8 @@ void Engine::loop(std::unique_lock<std::mutex>& lock) {
         U32 now = clock_.nowUs();
         if (downTooLong(now))
             return;
-        line_->expire(now, [&](int target, bool) { peers_.at(target)->answer(false, now); });
+        if (api_)
+            api_->expire(now, [&] { Link_answer(radio, 0, now); });
         const U32 deadline = pollPeers(now);
         std::vector<pollfd> fds = {
             {wakePipe_[0], POLLIN, 0},
@@ -260,14 +257,14 @@ void Engine::loop(std::unique_lock<std::mutex>& lock) {
         }
         if (fds[1].revents & (POLLIN | POLLERR | POLLHUP))
             readSerial(now);
-        writeSerial(now);
+        writeSerial();
         for (size_t i = 0; i < served.size(); ++i)
             served[i]->servePrograms(&fds[2 + i * LINK_CHANNELS], now);
     }
     if (!failed_)
         for (auto& [address, peer] : peers_)
             peer->stop(clock_.nowUs());
-    writeSerial(clock_.nowUs());
+    writeSerial();
 }
 
 } // namespace XBeeAT

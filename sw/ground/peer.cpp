@@ -53,6 +53,9 @@ Peer::Peer(Host& host, int address, const LinkKeys& keys)
     static const Link_Port port = {onTransmit, onRandom,  onMessage, onChannel,
                                    onState,    onOutcome, onWritable};
     Link_init(link_.get(), &port, this, static_cast<U32>(host.settings.characterUs() * 16));
+    if (!host.radio)
+        host.radio = link_.get();
+    Link_shareRadio(link_.get(), host.radio);
     if (address == Broadcast::everybody)
         broadcast_ = std::make_unique<Broadcast>(host.settings, keys_);
     for (size_t slot = 0; !isAll() && slot < keys_.size(); ++slot)
@@ -443,10 +446,6 @@ void Peer::fail() {
 void Peer::receive(const U8* bytes, size_t size, U32 now) {
     if (hasLink())
         Link_receive(link_.get(), bytes, static_cast<U32>(size), now);
-}
-
-void Peer::answer(bool isThere, U32 now) {
-    Link_answer(link_.get(), isThere, now);
 }
 
 U32 Peer::pollBroadcast(U32 now) {

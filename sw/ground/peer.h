@@ -32,7 +32,8 @@ public:
         Log log;
         Clock& clock;
         std::mutex mutex;
-        bool hasMany = false; // peers: log lines say which
+        bool hasMany = false;  // peers: log lines say which
+        Link* radio = nullptr; // one of the links, which share the modem's answers
 
         Host(const Settings& s, const Log& l, Clock& c)
             : device(s.device), settings(s), log(l), clock(c) {}
@@ -82,7 +83,6 @@ public:
     void fail();        // ends all connections and those that wait for one
     U32 randomWait() { return isAll() ? LINK_WAIT_SHARED : Link_randomWait(link_.get()); }
     void receive(const U8* bytes, size_t size, U32 now);
-    void answer(bool isThere, U32 now); // of the modem, for the oldest packet without one
     // Does what is due. Returns when to call again, in microseconds.
     U32 poll(U32 now);
     // Adds what poll(2) must wait for: a descriptor for each channel.

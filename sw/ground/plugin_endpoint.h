@@ -9,6 +9,7 @@
 
 #include <Ice/EndpointFactory.h>
 #include <cstdlib>
+#include <map>
 #include <sstream>
 
 namespace XBeeAT {
@@ -146,33 +147,14 @@ private:
                 __FILE__, __LINE__,
                 std::string("'") + argument + "' is no value for option '-" + option +
                     "' in endpoint '" + endpoint + "' (0.." + std::to_string(most) + ")");
-        int v = static_cast<int>(value);
-        switch (option) {
-        case 'b':
-            o_.serial.baud = v;
-            break;
-        case 'a':
-            o_.serial.target = v;
-            break;
-        case 's':
-            o_.serial.source = v;
-            break;
-        case 'c':
-            o_.serial.rfChannel = v;
-            break;
-        case 'i':
-            o_.serial.pan = v;
-            break;
-        case 'p':
-            o_.channel = v;
-            break;
-        case 'g':
-            o_.serial.guardMs = v;
-            break;
-        default:
-            o_.timeoutMs = v;
-            break;
-        }
+        static const std::map<char, int Settings::*> ofSerial = {
+            {'b', &Settings::baud},      {'a', &Settings::target}, {'s', &Settings::source},
+            {'c', &Settings::rfChannel}, {'i', &Settings::pan},    {'g', &Settings::guardMs}};
+        const auto found = ofSerial.find(option);
+        int& field = found != ofSerial.end() ? o_.serial.*found->second
+                     : option == 'p'         ? o_.channel
+                                             : o_.timeoutMs;
+        field = static_cast<int>(value);
     }
     static std::string quoted(const std::string& s) {
         return s.find_first_of(" :@\t") == std::string::npos ? s : '"' + s + '"';

@@ -13,20 +13,16 @@ void Link_init(Link* link, const Link_Port* port, void* context, U32 byteTimeUs1
     output->context = context;
     output->byteTimeUs16 = byteTimeUs16;
     output->longest = LINK_MAX_PAYLOAD;
-    if (LINK_SECURE)
-        output->codec = &link_clear;
+    output->pacer = &output->own;
+    output->codec = &link_clear;
     link->receiver.output = link->sender.output = output;
     link->session.output = link->input.output = output;
     link->session.receiver = link->sender.receiver = &link->receiver;
     link->session.sender = &link->sender;
     link->input.session = &link->session;
-#if LINK_SIZES
     Link_shrink(link, LINK_SEND_BYTES, LINK_MAX_MESSAGE);
-#endif
     link_endSession(&link->session, LINK_STATE_IDLE);
 }
-
-#if LINK_SIZES
 
 void Link_shrink(Link* link, U32 sendBytes, U32 maxMessage) {
     link->sender.queue.mask = sendBytes - 1U;
@@ -34,13 +30,9 @@ void Link_shrink(Link* link, U32 sendBytes, U32 maxMessage) {
     link->receiver.longest = LINK_ARRIVING(maxMessage);
 }
 
-#endif
-
 void Link_limitFrame(Link* link, U32 bytes) {
-    link->output.longest = (U8)(bytes - LINK_CODEC(&link->output)->overhead);
+    link->output.longest = (U8)(bytes - link->output.codec->overhead);
 }
-
-#if LINK_SECURE
 
 void Link_setKey(Link* link, int slot, const U8* key, U32 side) {
     Link_Output* output = &link->output;
@@ -60,8 +52,6 @@ int Link_keyInUse(const Link* link) {
                ? link->output.present.slot
                : -1;
 }
-
-#endif
 
 void Link_start(Link* link, U32 nowUs) {
     link->output.now = nowUs;
@@ -138,12 +128,10 @@ Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag
     if (isCompressed)
         link_compress(&sender->heads, channel, data, size, &packed);
     total = packed.prefix + packed.middle + size - packed.tailAt;
-    checkSize = total > LINK_UNCHECKED ? LINK_CODEC(output)->check : 0U;
+    checkSize = total > LINK_UNCHECKED ? output->codec->check : 0U;
     entry = link_offer(sender, LINK_FIRST | (U32)channel, total + checkSize);
     if (!entry)
-        return LINK_SIZES && total + checkSize + LINK_RESERVE > LINK_MASK(queue) + 1U
-                   ? LINK_TOO_LONG
-                   : LINK_FULL;
+        return total + checkSize + LINK_RESERVE > queue->mask + 1U ? LINK_TOO_LONG : LINK_FULL;
     entry->tag = tag;
     if (packed.middle)
         entry->flags |= LINK_ENTRY_LEARNS;
@@ -167,9 +155,15 @@ void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs) {
     link_takeBytes(&link->input, bytes, size);
 }
 
+void Link_shareRadio(Link* link, Link* with) {
+    link->output.pacer = with->output.pacer;
+}
+
 void Link_expectAnswers(Link* link, U32 packets) {
-    link->output.mostWaiting = (U8)packets;
-    link->output.waiting = 0;
+    Link_Output* output = &link->output;
+    output->mostWaiting = (U8)packets;
+    output->pacer->waiting = (U8)(output->pacer->waiting - output->waiting);
+    output->waiting = 0;
 }
 
 /* Counts losses that took the radio no longer than other packets: then no tries failed, as they do
@@ -190,10 +184,14 @@ static void note(Link_Contention* c, int isDelivered, U32 now) {
 }
 
 void Link_answer(Link* link, int isDelivered, U32 nowUs) {
-    Link_Output* output = &link->output;
-    output->now = nowUs;
-    if (!output->waiting)
+    Link_Pacer* pacer = link->output.pacer;
+    Link_Output* output = pacer->owners[pacer->first];
+    if (!pacer->waiting)
         return;
+    --pacer->waiting;
+    pacer->first = (U8)((pacer->first + 1U) % LINK_MOST_WAITING);
+    link = (Link*)(void*)output; /* whose first part it is */
+    output->now = nowUs;
     note(&output->contention, isDelivered, nowUs);
     link_onAnswer(&link->sender, (U8)(output->handed - output->waiting--), isDelivered);
     output->contention.isBusy = output->waiting != 0;
@@ -215,7 +213,7 @@ U32 Link_randomWait(Link* link) {
     Link_Contention* c = &output->contention;
     U32 messages = output->statistics.messagesReceived;
     U32 spans = (output->now - c->since) / LINK_SPAN;
-    U32 isSlow = output->longest + LINK_CODEC(output)->overhead <= LINK_MAX_ENCRYPTED;
+    U32 isSlow = output->longest + output->codec->overhead <= LINK_MAX_ENCRYPTED;
     judge(&c->own, output->statistics.bytesSent, spans);
     judge(&c->peers, output->statistics.bytesReceived, spans);
     if (spans && !c->peers.isMuch)
@@ -245,8 +243,8 @@ void Link_poll(Link* link, U32 nowUs) {
         else if (!sender->hasWork) /* else the next fragment takes it along */
             link_pollAck(&link->receiver);
     }
-    /* A frame of the handshake, too, for which there was no room. */
-    (void)link_flush(&link->output);
+    if (link->output.packed) /* a frame of the handshake, too, for which there was no room */
+        (void)link_flush(&link->output);
 }
 
 /* Returns the earlier of two times, if the first is due at all. */
@@ -267,18 +265,15 @@ U32 Link_deadline(const Link* link, U32 nowUs) {
     U32 open = output->paceUntil - output->slack;
     U32 ask = output->heardAt + LINK_PING_AFTER;
     U32 first = sooner(input->count, input->at + LINK_FRAME_GAP, nowUs + FAR);
-    first =
-        sooner(session->state == LINK_STATE_CONNECTING || (LINK_SECURE && session->isUnconfirmed),
-               session->helloAt, first);
-    if (LINK_SECURE) {
-        ask = sooner(1, session->watch.provenAt + LINK_PROOF_AFTER, ask);
-        first = sooner(session->isAnswered, session->firstAnswer + LINK_NONCE_LIFE, first);
-    }
+    first = sooner(session->state == LINK_STATE_CONNECTING || session->isUnconfirmed,
+                   session->helloAt, first);
+    ask = sooner(1, session->watch.provenAt + LINK_PROOF_AFTER, ask);
+    first = sooner(session->isAnswered, session->firstAnswer + LINK_NONCE_LIFE, first);
     if (session->state == LINK_STATE_UP) {
         first = sooner(1, LATER(ask, session->pingAt), first);
         if (!output->waiting) /* else the radio's next answer decides what goes again */
             first = sooner(sender->base != sender->next, sender->timerAt, first);
-        if (!output->waiting || output->waiting < output->mostWaiting) {
+        if (!output->mostWaiting || output->pacer->waiting < output->mostWaiting) {
             first = sooner(output->packed, soon, first);
             first = sooner(sender->hasWork, LATER(open, soon), first);
             first = sooner(receiver->ackDue, receiver->ackNow ? soon : receiver->ackAt, first);

@@ -43,14 +43,13 @@ typedef struct Link Link; /* complete below, so that callers can place it; its f
  * part of the way, in 1/16 microseconds (111,111 baud: 1440), used for pacing and timers. */
 void Link_init(Link* link, const Link_Port* port, void* context, U32 byteTimeUs16);
 
-#if LINK_SIZES
+#ifndef LINK_MINIMAL
 /* Gives a link smaller sizes, after Link_init; it may have LINK_SIZE(sendBytes, maxMessage) bytes
  * only, aligned as a Link. `sendBytes`, a power of two, takes the place of LINK_SEND_BYTES, so that
  * it sends messages of sendBytes - LINK_RESERVE - LINK_CHECK bytes at most; `maxMessage` that of
  * LINK_MAX_MESSAGE for messages that come. */
 void Link_shrink(Link* link, U32 sendBytes, U32 maxMessage);
 #define LINK_SIZE(sendBytes, maxMessage) (LINK_FIXED + (sendBytes) + LINK_ROOM(maxMessage))
-#endif
 
 /* Limits frames to `bytes` from now on, 32 (under a key 59) to LINK_MAX_FRAME: a modem that
  * encrypts splits packets longer than LINK_MAX_ENCRYPTED. The two sides may differ. */
@@ -68,6 +67,7 @@ void Link_setKey(Link* link, int slot, const U8* key, U32 side);
 /* Returns the slot of the key that the present session was made with; -1: there is no session, or
  * one without a key. */
 int Link_keyInUse(const Link* link);
+#endif
 
 /* Starts the handshake. Both sides may do so; either one's HELLO makes the session. A side that
  * never calls it still answers a HELLO. After the peer has vanished the layer goes back to
@@ -93,6 +93,11 @@ Link_Status Link_closeChannel(Link* link, int channel);
  * air, if the line to the modem is faster: one is on the air, one behind it. A line of 111,111 baud
  * needs three. A call waits for all of them. */
 void Link_expectAnswers(Link* link, U32 packets);
+
+/* Has a link use the same radio as another: their packets wait for its answers together, and a call
+ * of Link_answer for either is for the oldest of all. It follows Link_init of both; each one's
+ * Link_expectAnswers says the same. */
+void Link_shareRadio(Link* link, Link* with);
 
 /* Returns the modem's RN that suits what is sent and heard now: the least exponent of its random
  * wait before the first try. Who talks alone does not wait (next to nothing where the modem
@@ -137,9 +142,7 @@ struct Link {
     Link_Input input;
     Link_Receiver receiver;
     Link_Sender sender;
-#if LINK_SIZES
     U8 message[LINK_ROOM(LINK_MAX_MESSAGE)]; /* Link_Receiver.message, unless it is smaller */
-#endif
 };
 /* Bytes of a link but its queue's, and the long message's. */
 #define LINK_FIXED (offsetof(Link, sender) + offsetof(Link_Sender, queue.bytes))

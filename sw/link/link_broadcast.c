@@ -4,8 +4,6 @@
  */
 #include "link_broadcast.h"
 
-#if LINK_SECURE
-
 #include "ascon.h"
 
 #include <string.h>
@@ -38,5 +36,3 @@ U32 Link_openBroadcast(U8* packet, U32 size, const U8* key, U32 newest) {
     crypt(packet, size, key, 1, tag);
     return Ascon_isSame(tag, packet + LINK_BROADCAST_HEAD + size, LINK_TAG) ? size : 0;
 }
-
-#endif

@@ -7,7 +7,7 @@
 /* The party whose checksum a frame has. */
 typedef enum Owner { NOBODY, HANDSHAKE, SESSION, CANDIDATE } Owner;
 
-U32 link_sealClear(const Link_Output* output, U8* frame, U32 header, U32 number) {
+static U32 seal(const Link_Output* output, U8* frame, U32 header, U32 number) {
     U32 key = output->present.key;
     (void)number;
     if ((header & LINK_CONTROL) && LINK_IS_HANDSHAKE(header >> 21 & 7U))
@@ -52,7 +52,7 @@ static int isConfirmed(const Link_Session* session, const U8* next, U32 left, in
     return ownerOf(session, next) != NOBODY;
 }
 
-U32 link_parseClear(Link_Input* input, const U8* bytes, U32 count, int isEnd) {
+static U32 parse(Link_Input* input, const U8* bytes, U32 count, int isEnd) {
     Link_Output* output = input->output;
     U32 used = 0;
     while (used < count) {
@@ -99,7 +99,7 @@ static void onHello(Link_Session* session, const U8* peerNonce, U32 features) {
     link_sendHandshake(session, of, LINK_KIND_HELLO_ACK, LINK_VERSION);
 }
 
-void link_onClearHandshake(Link_Session* session, const U8* frame, Link_Kind kind) {
+static void onHandshake(Link_Session* session, const U8* frame, Link_Kind kind) {
     const U8* payload = frame + LINK_HEADER;
     if (kind == LINK_KIND_RST) { /* it may answer a frame with LINK_READY */
         if (session->state == LINK_STATE_UP &&
@@ -117,7 +117,7 @@ void link_onClearHandshake(Link_Session* session, const U8* frame, Link_Kind kin
     }
 }
 
-void link_callClear(Link_Session* session, const U8* unknown) {
+static void call(Link_Session* session, const U8* unknown) {
     U8 reset[LINK_MAX_OVERHEAD];
     if (!unknown) {
         link_sendHandshake(session, 0, LINK_KIND_HELLO, LINK_VERSION);
@@ -127,3 +127,6 @@ void link_callClear(Link_Session* session, const U8* unknown) {
     (void)link_sendControl(session->output, reset, LINK_KIND_BITS(LINK_KIND_RST) | LINK_FEATURES, 0,
                            0);
 }
+
+const Link_Codec link_clear = {LINK_OVERHEAD, 4U,    LINK_CHECK,  0, {1, 4, 8, 0, 0, 0},
+                               seal,          parse, onHandshake, 0, call};

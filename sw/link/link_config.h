@@ -13,9 +13,6 @@
 #define LINK_IS_FULL 1
 #endif
 
-#ifndef LINK_SECURE /* 1: Link_setKey, frames that are encrypted and authenticated; 0: left out */
-#define LINK_SECURE LINK_IS_FULL
-#endif
 #ifndef LINK_TAG /* bytes of such a frame's tag, both sides (4..16; docs/link.md: risk of 4) */
 #define LINK_TAG 8U
 #endif
@@ -38,9 +35,6 @@
 
 #ifndef LINK_SEND_MESSAGES /* messages, openings and closings in that queue (1..128) */
 #define LINK_SEND_MESSAGES 32U
-#endif
-#ifndef LINK_SIZES /* 1: a link may have smaller sizes than these (Link_shrink); 0: none has */
-#define LINK_SIZES 0
 #endif
 #ifndef LINK_LONGEST /* minimal layer: payload of a frame; 90 where the modem encrypts (27..95) */
 #define LINK_LONGEST 95U
@@ -70,8 +64,7 @@
 #define LINK_PROOF_LAST 27000000U
 
 /* Age of a fragment without acknowledgement at which the session ends, so that nobody carries out
- * later what its caller has given up (more than LINK_PING_AFTER, below 2^31). The minimal layer
- * ends it under a key, after LINK_DEAD_AFTER. */
+ * later what its caller has given up (more than LINK_PING_AFTER, below 2^31). */
 #define LINK_AGE_LAST 27000000U
 
 /* Under a key: between answers to HELLO while a session is up; and how long the nonce of such an
@@ -111,6 +104,8 @@
 
 /* Extra wait behind a short packet, or a modem that still holds it joins the two. */
 #define LINK_SHORT_MARGIN 1500U
+
+#define LINK_MOST_WAITING 4U /* packets without an answer of the radio, of all its links */
 
 /* Drivers: the time without an answer after which a packet counts as lost. */
 #define LINK_ANSWER_LAST 3000000U

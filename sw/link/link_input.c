@@ -8,7 +8,7 @@
 
 /* Parses the kept bytes, `count` now, and keeps an incomplete frame. */
 static void parseKept(Link_Input* input, U32 count, int isEnd) {
-    U32 used = LINK_CODEC(input->output)->parse(input, input->bytes, count, isEnd);
+    U32 used = input->output->codec->parse(input, input->bytes, count, isEnd);
     input->count = (U8)(count - used);
     memmove(input->bytes, input->bytes + used, input->count);
 }
@@ -18,7 +18,7 @@ void link_pollInput(Link_Input* input) {
         return;
     if (input->count)
         parseKept(input, input->count, 1);
-    if (LINK_CODEC(input->output)->isSure)
+    if (input->output->codec->isSure)
         input->outOfStep = 0;
 }
 
@@ -28,7 +28,7 @@ void link_takeBytes(Link_Input* input, const U8* bytes, U32 size) {
         return; /* or no silence would ever be seen; bytes may be null */
     input->at = input->output->now;
     if (input->count == 0) { /* the usual case: a whole frame is read in place; the rest fits */
-        U32 used = LINK_CODEC(input->output)->parse(input, bytes, size, 0);
+        U32 used = input->output->codec->parse(input, bytes, size, 0);
         input->count = (U8)(size - used);
         memcpy(input->bytes, bytes + used, input->count);
         return;
@@ -57,7 +57,7 @@ int link_isOfEpoch(const U8* frame, U32 key) {
 }
 
 int link_isPlausible(const Link_Output* output, const U8* frame) {
-    const Link_Codec* codec = LINK_CODEC(output);
+    const Link_Codec* codec = output->codec;
     U32 payload = LINK_LENGTH(frame) + LINK_OVERHEAD - codec->overhead;
     Link_Kind kind = LINK_KIND_OF(frame);
     if (kind == LINK_KIND_DATA)
@@ -93,7 +93,7 @@ void link_accept(Link_Input* input, const U8* frame, U32 size) {
     ++output->statistics.framesReceived;
     output->statistics.bytesReceived += size;
     if (LINK_IS_HANDSHAKE(kind)) {
-        LINK_CODEC(output)->onHandshake(session, frame, kind);
+        output->codec->onHandshake(session, frame, kind);
         return;
     }
     session->isUnconfirmed = 0;
@@ -106,8 +106,8 @@ void link_accept(Link_Input* input, const U8* frame, U32 size) {
         link_onAck(session->sender, frame[1], payload[0], payload + 1, LINK_LENGTH(frame) - 1U);
     } else if (kind == LINK_KIND_BYE) {
         link_lose(session);
-    } else if (kind == LINK_KIND_PING && LINK_CODEC(output)->onPing) {
-        LINK_CODEC(output)->onPing(session, frame);
+    } else if (kind == LINK_KIND_PING && output->codec->onPing) {
+        output->codec->onPing(session, frame);
     } else if (kind == LINK_KIND_PING) {
         link_oweAck(session->receiver);
     } else {
@@ -127,10 +127,10 @@ void link_skip(Link_Input* input, const U8* frame, U32 left) {
     Link_Output* output = input->output;
     Link_Session* session = input->session;
     if (!input->outOfStep && LINK_LENGTH(frame) <= LINK_MAX_PAYLOAD &&
-        left >= LINK_CODEC(output)->overhead && session->state == LINK_STATE_IDLE &&
+        left >= output->codec->overhead && session->state == LINK_STATE_IDLE &&
         output->now - session->pingAt >= LINK_HELLO_FIRST) {
         session->pingAt = output->now;
-        LINK_CODEC(output)->call(session, frame);
+        output->codec->call(session, frame);
     }
     input->outOfStep = 1;
     ++output->statistics.bytesSkipped;

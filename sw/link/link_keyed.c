@@ -5,8 +5,6 @@
  */
 #include "link_input.h"
 
-#if LINK_SECURE
-
 #include "ascon.h"
 
 #include <string.h>
@@ -282,5 +280,3 @@ const Link_Codec link_keyed = {LINK_SECURE_OVERHEAD,
                                onHandshake,
                                onPing,
                                call};
-
-#endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_output: the lowest part: puts frames into packets, and hands these to the radio as fast as
- * the modem sends them.
+ * link_output: the lowest part: puts frames into packets, and says when each is handed to the
+ * radio: while few wait for its answer, or else when the modem has sent those before.
  */
 #pragma once
 
@@ -34,24 +34,7 @@ typedef struct Link_Codec {
     void (*call)(struct Link_Session* session, const U8* unknown);
 } Link_Codec;
 
-extern const Link_Codec link_keyed;
-U32 link_sealClear(const Link_Output* output, U8* frame, U32 header, U32 number);
-U32 link_parseClear(struct Link_Input* input, const U8* bytes, U32 count, int isEnd);
-void link_onClearHandshake(struct Link_Session* session, const U8* frame, Link_Kind kind);
-void link_callClear(struct Link_Session* session, const U8* unknown);
-
-/* It stands here so that the compiler knows it where it is the only one. */
-static const Link_Codec link_clear = {LINK_OVERHEAD,
-                                      4U,
-                                      LINK_CHECK,
-                                      0,
-                                      {1, 4, 8, 0, 0, 0},
-                                      link_sealClear,
-                                      link_parseClear,
-                                      link_onClearHandshake,
-                                      0,
-                                      link_callClear};
-#define LINK_CODEC(output) (LINK_SECURE ? (output)->codec : &link_clear)
+extern const Link_Codec link_clear, link_keyed;
 
 /* The identity of a session: both nonces, and the values that follow from them. */
 typedef struct Link_Identity {
@@ -83,6 +66,12 @@ typedef struct Link_Contention {
     U32 quick;   /* share of the last packets, of 65,536, lost in no more than that time */
 } Link_Contention;
 
+/* Packets that wait for a radio's answers. Links over one radio share a pacer. */
+typedef struct Link_Pacer {
+    U8 first, waiting;                             /* number of the oldest; how many there are */
+    struct Link_Output* owners[LINK_MOST_WAITING]; /* by their numbers, whose they are */
+} Link_Pacer;
+
 /* Small members that are often used come first in each part: short instructions reach them. */
 struct Link_Output {
     U8 longest;         /* payload of the longest frame that is sent */
@@ -93,9 +82,10 @@ struct Link_Output {
     U8 closeDue;        /* the own closing is not queued yet */
     U8 isStream;        /* several fragments are on their way: packets follow each other */
     U8 slow;            /* not 0: the modem waits for the air now and then, and may hold packets */
-    U8 mostWaiting;     /* packets that may wait for the radio's answer; 0: it gives none */
-    U8 handed, waiting; /* packets handed over, modulo 256, and those without an answer */
+    U8 mostWaiting;     /* packets that may wait in the pacer; 0: the radio gives no answers */
+    U8 handed, waiting; /* own packets handed over, modulo 256, and those without an answer */
     U32 now;
+    Link_Pacer* pacer;
     const Link_Codec* codec;
     const Link_Port* port;
     void* context;
@@ -106,10 +96,12 @@ struct Link_Output {
     U32 slack;      /* the next packet is handed over that long before paceUntil */
     U32 paceUntil;  /* when the modem will have sent everything handed over */
     U32 early;      /* a heard packet shortens the wait by this at most */
+    U32 quietUntil; /* the silence behind a short packet ends, so that the modem sends it */
     const U8* call; /* key of the frame of the handshake that is being sent */
     Link_Statistics statistics;
     Link_Identity present;
     U8 packet[LINK_MAX_FRAME]; /* frames that leave together */
+    Link_Pacer own;            /* unless another link's is used */
     Link_Contention contention;
 };
 
@@ -119,7 +111,8 @@ int link_isOpen(Link_Output* output);
 void link_hear(Link_Output* output, U32 size);
 /* Bytes of payload that a frame may have to fit into the packet, at least if link_isOpen. */
 U32 link_room(const Link_Output* output);
-/* Hands the packet to the radio. Returns 0: it had no room, the packet stays. */
+/* Hands the packet, in which there is a frame, to the radio. Returns 0: it had no room, the packet
+ * stays. */
 int link_flush(Link_Output* output);
 /* Puts a frame whose payload is in place into the packet. `number` has byte 1 of the header as its
  * lowest byte. Returns 1: taken. */

@@ -10,9 +10,8 @@ static Link_Entry* entryAt(Link_Queue* queue, U32 index) {
 
 Link_Entry* link_enqueue(Link_Queue* queue, U32 flags, U32 size, U32 longest) {
     Link_Entry* entry;
-    if (queue->count == LINK_SEND_MESSAGES ||
-        size + (size > longest ? LINK_RESERVE : 0U) >
-            LINK_MASK(queue) + 1U - (queue->tail - queue->head)) {
+    if (queue->count == LINK_SEND_MESSAGES || size + (size > longest ? LINK_RESERVE : 0U) >
+                                                  queue->mask + 1U - (queue->tail - queue->head)) {
         queue->wasFull = 1;
         return 0;
     }
@@ -23,7 +22,7 @@ Link_Entry* link_enqueue(Link_Queue* queue, U32 flags, U32 size, U32 longest) {
 }
 
 void link_put(Link_Queue* queue, const U8* data, U32 size) {
-    U32 mask = LINK_MASK(queue);
+    U32 mask = queue->mask;
     if (queue->isSummed)
         queue->sums = link_sum(queue->sums, data, size);
     while (size--)
@@ -33,7 +32,7 @@ void link_put(Link_Queue* queue, const U8* data, U32 size) {
 void link_copy(const Link_Queue* queue, const Link_Piece* piece, U8* to) {
     U32 at = piece->start;
     U32 size = piece->size;
-    U32 mask = LINK_MASK(queue);
+    U32 mask = queue->mask;
     while (size--)
         *to++ = queue->bytes[at++ & mask];
 }

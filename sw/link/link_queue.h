@@ -34,17 +34,10 @@ typedef struct Link_Queue {
     U32 cutAt;      /* where that piece begins */
     U32 sums;       /* that check */
     U32 head, tail; /* byte counts, not reduced modulo LINK_SEND_BYTES */
-#if LINK_SIZES
     U32 mask;
-#endif
     Link_Entry entries[LINK_SEND_MESSAGES];
     U8 bytes[LINK_SEND_BYTES]; /* a smaller link has mask + 1 of them, then its other memory */
 } Link_Queue;
-#if LINK_SIZES
-#define LINK_MASK(queue) ((queue)->mask)
-#else
-#define LINK_MASK(queue) (LINK_SEND_BYTES - 1U)
-#endif
 
 /* Adds an entry for `size` bytes, which the caller puts in. `longest`: bytes of one piece at most.
  * Returns 0: there is no room. */

@@ -62,7 +62,7 @@ static int append(Link_Receiver* receiver, U32 flags, const U8* data, U32 size) 
             receiver->longChannel = receiver->channel;
         }
         if (receiver->channel != receiver->longChannel ||
-            size > LINK_LONGEST_OF(receiver) - receiver->longSize)
+            size > receiver->longest - receiver->longSize)
             return 0;
         receiver->start = receiver->message + LINK_HEAD_ROOM;
         to = receiver->start + receiver->longSize;
@@ -76,7 +76,7 @@ static int append(Link_Receiver* receiver, U32 flags, const U8* data, U32 size) 
 /* Takes the check off the whole message. Returns 0: it is wrong. */
 static int uncheck(Link_Receiver* receiver) {
     U32 size = receiver->size - LINK_CHECK;
-    if (receiver->size <= LINK_UNCHECKED || !LINK_CODEC(receiver->output)->check)
+    if (receiver->size <= LINK_UNCHECKED || !receiver->output->codec->check)
         return 1;
     receiver->size = (U16)size;
     return link_sum(0, receiver->start, size) == LINK_CHECK_AT(receiver->start + size);

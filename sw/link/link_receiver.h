@@ -22,11 +22,6 @@ typedef struct Link_Slot {
 /* Bytes for a message as it comes, and before it for its head. */
 #define LINK_ROOM(maxMessage) (LINK_HEAD_ROOM + LINK_ARRIVING(maxMessage))
 #define LINK_ARRIVING(maxMessage) ((maxMessage) + LINK_ESCAPE + LINK_CHECK)
-#if LINK_SIZES
-#define LINK_LONGEST_OF(receiver) ((receiver)->longest)
-#else
-#define LINK_LONGEST_OF(receiver) LINK_ARRIVING(LINK_MAX_MESSAGE)
-#endif
 
 typedef struct Link_Receiver {
     Link_Output* output;
@@ -45,12 +40,8 @@ typedef struct Link_Receiver {
     Link_Slot slots[LINK_WINDOW];
     Link_Heads heads; /* of messages that came */
     /* End of the fields that begin at 0. */
-#if LINK_SIZES
     U8* message; /* LINK_ROOM of the link's longest message, at its end */
     U32 longest; /* bytes of a long message as it comes */
-#else
-    U8 message[LINK_ROOM(LINK_MAX_MESSAGE)]; /* the long message */
-#endif
     U8 brief[LINK_HEAD_ROOM + LINK_MAX_PAYLOAD]; /* a message of one fragment */
 } Link_Receiver;
 

@@ -5,8 +5,6 @@
  */
 #include "link_wire.h"
 
-#if LINK_SECURE
-
 #include "ascon.h"
 #include "x25519.h"
 
@@ -148,5 +146,3 @@ U32 link_extend(U32 expected, U32 byte) {
     U32 ahead = (byte - expected) & 0xFFU;
     return expected + ahead - (ahead & 0x80U) * 2U;
 }
-
-#endif

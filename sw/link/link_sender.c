@@ -12,7 +12,7 @@
 #define LEAST_WINDOW 8U
 
 /* Bytes of the longest acknowledgement. */
-#define ACK_ROOM(output) (LINK_CODEC(output)->overhead + 1U + LINK_BITMAP)
+#define ACK_ROOM(output) (output->codec->overhead + 1U + LINK_BITMAP)
 
 /* Fragments in flight that make a stream. */
 #define STREAM 3U

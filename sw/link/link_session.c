@@ -10,7 +10,7 @@ void link_makeCandidate(Link_Session* session, const U8* peerNonce, U32 features
     Link_Identity* candidate = &session->candidate;
     memcpy(candidate->nonce, session->nonce, LINK_NONCE_BYTES);
     memset(candidate->peerNonce, 0, LINK_NONCE_BYTES);
-    memcpy(candidate->peerNonce, peerNonce, LINK_CODEC(session->output)->nonceBytes);
+    memcpy(candidate->peerNonce, peerNonce, session->output->codec->nonceBytes);
     candidate->key = link_sessionKey(link_get32(candidate->nonce), link_get32(peerNonce));
     candidate->features = (U8)(features & LINK_FEATURES);
 }
@@ -18,7 +18,7 @@ void link_makeCandidate(Link_Session* session, const U8* peerNonce, U32 features
 void link_drawNonce(Link_Session* session) {
     const Link_Output* output = session->output;
     U32 i;
-    for (i = 0; i < LINK_CODEC(output)->nonceBytes; i += 4U)
+    for (i = 0; i < output->codec->nonceBytes; i += 4U)
         link_put32(session->nonce + i, output->port->random(output->context));
     session->isAnswered = 0;
 }
@@ -27,16 +27,15 @@ void link_sendHandshake(Link_Session* session, const Link_Identity* of, Link_Kin
                         U32 version) {
     Link_Output* output = session->output;
     U8 frame[LINK_MAX_OVERHEAD + LINK_ANSWER_BYTES];
-    U32 bytes = LINK_CODEC(output)->nonceBytes;
+    U32 bytes = output->codec->nonceBytes;
     memcpy(frame + LINK_HEADER, of ? of->nonce : session->nonce, bytes);
     if (of)
         memcpy(frame + LINK_HEADER + bytes, of->peerNonce, bytes);
-    if (LINK_SECURE && of)
+    if (of)
         memcpy(frame + LINK_OPEN_AT, of->open, LINK_OPEN_BYTES);
-    if (LINK_SECURE)
-        output->call = of ? of->shake.send : session->secrets.hello[session->slot];
+    output->call = of ? of->shake.send : session->secrets.hello[session->slot];
     (void)link_sendControl(output, frame, LINK_KIND_BITS(kind) | LINK_FEATURES, version,
-                           of ? LINK_CODEC(output)->sizes[LINK_KIND_HELLO_ACK] : bytes);
+                           of ? output->codec->sizes[LINK_KIND_HELLO_ACK] : bytes);
 }
 
 void link_endSession(Link_Session* session, Link_State next) {
@@ -92,31 +91,30 @@ int link_pollSession(Link_Session* session) {
     Link_Watch* watch = &session->watch;
     U32 now = output->now;
     U32 silence = now - output->heardAt;
-    U32 proof = LINK_SECURE ? now - watch->provenAt : silence;
-    if (LINK_SECURE && session->isAnswered && now - session->firstAnswer >= LINK_NONCE_LIFE)
+    U32 proof = now - watch->provenAt;
+    if (session->isAnswered && now - session->firstAnswer >= LINK_NONCE_LIFE)
         link_drawNonce(session);
-    if ((session->state == LINK_STATE_CONNECTING || (LINK_SECURE && session->isUnconfirmed)) &&
+    if ((session->state == LINK_STATE_CONNECTING || session->isUnconfirmed) &&
         !LINK_BEFORE(now, session->helloAt)) {
-        if (LINK_SECURE && session->isUnconfirmed)
+        if (session->isUnconfirmed)
             link_sendHandshake(session, &output->present, LINK_KIND_CONFIRM, LINK_VERSION);
         else
-            LINK_CODEC(output)->call(session, 0);
+            output->codec->call(session, 0);
         session->helloAt = now + session->helloEvery;
         if (session->helloEvery < LINK_HELLO_LAST)
             session->helloEvery *= 2U;
     }
     if (session->state != LINK_STATE_UP)
         return 0;
-    if (LINK_SECURE &&
-        (watch->failures >= LINK_MOST_FAILURES || session->sender->next >= LINK_LAST_NUMBER)) {
+    if (watch->failures >= LINK_MOST_FAILURES || session->sender->next >= LINK_LAST_NUMBER) {
         link_abort(session);
     } else if (silence >= LINK_DEAD_AFTER || proof >= LINK_PROOF_LAST) {
         link_lose(session);
     } else if ((silence >= LINK_PING_AFTER || proof >= LINK_PROOF_AFTER) &&
                !LINK_BEFORE(now, session->pingAt)) {
-        if (LINK_SECURE && watch->pingsAnswered == watch->pingsSent)
+        if (watch->pingsAnswered == watch->pingsSent)
             watch->askedAt = now;
-        watch->pingsSent += LINK_CODEC(output)->isSure;
+        watch->pingsSent += output->codec->isSure;
         (void)link_sendControl(output, frame, LINK_KIND_BITS(LINK_KIND_PING), watch->pingsSent, 0);
         session->pingAt = now + (silence >= LINK_PING_AFTER ? LINK_PING_EVERY : LINK_PROOF_EVERY);
     }

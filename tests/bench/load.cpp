@@ -42,7 +42,7 @@ public:
                     before = residentKiB(process);
                 return ended_ == threads;
             },
-            3600);
+            1'800'000);
         for (auto& worker : workers)
             worker.join();
         const double grown = residentKiB(process) - before;

@@ -6,7 +6,6 @@
 #pragma once
 
 #include "api_modem.h"
-#include "frame_pacer.h"
 #include "rf_channel.h"
 #include "serial_line.h"
 #include <algorithm>
@@ -123,16 +122,14 @@ public:
             },
             nullptr};
         if (modem.parameter("AP"))
-            packets_ = std::make_unique<XBeeAT::ApiModem>(modem.parameter("AP") == 2, mostWaiting_);
-        else
-            packets_ = std::make_unique<XBeeAT::FramePacer>(
-                peers_[0]->target, 90, encrypts_ ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME, 0);
+            api_ = std::make_unique<XBeeAT::ApiModem>(modem.parameter("AP") == 2);
         line.forget();
         for (auto& p : peers_) {
             Link_init(p->link.get(), &port, p.get(), 1440);
             if (encrypts_)
                 Link_limitFrame(p->link.get(), LINK_MAX_ENCRYPTED);
-            Link_expectAnswers(p->link.get(), packets_->answers() ? mostWaiting_ : 0);
+            Link_shareRadio(p->link.get(), link());
+            Link_expectAnswers(p->link.get(), api_ ? mostWaiting_ : 0);
         }
     }
     size_t peers() const { return peers_.size(); }
@@ -146,7 +143,6 @@ public:
     uint64_t advance(uint64_t now) {
         now_ = now;
         modem.advance(now);
-        write();
         if (now >= nextPoll_ || !line.received.empty()) {
             const U32 us = this->us();
             receive(us);
@@ -159,7 +155,7 @@ public:
             }
             nextPoll_ = now + wait * 1000ull + 100'000;
         }
-        return std::min({modem.nextEvent(), nextPoll_, nextWrite_});
+        return std::min(modem.nextEvent(), nextPoll_);
     }
     TimedLine line;
     XBee modem;
@@ -179,20 +175,18 @@ private:
     };
     static Peer& of(void* c) { return *static_cast<Peer*>(c); }
     void receive(U32 us) {
-        const auto answer = [&](int target, bool isThere) {
+        const auto take = [&](int source, const U8* data, size_t count) {
             for (auto& p : peers_)
-                if (p->target == target)
-                    Link_answer(p->link.get(), isThere, us);
+                if (p->target == source)
+                    Link_receive(p->link.get(), data, static_cast<U32>(count), us);
         };
-        packets_->expire(us, answer);
-        packets_->feed(
-            line.received.data(), line.received.size(),
-            [&](int source, const U8* data, size_t count) {
-                for (auto& p : peers_)
-                    if (p->target == source)
-                        Link_receive(p->link.get(), data, static_cast<U32>(count), us);
-            },
-            answer);
+        if (!api_) {
+            take(peers_[0]->target, line.received.data(), line.received.size());
+        } else {
+            api_->expire(us, [&] { Link_answer(link(), 0, us); });
+            api_->feed(line.received.data(), line.received.size(), take,
+                       [&](bool isThere) { Link_answer(link(), isThere, us); });
+        }
         line.received.clear();
     }
     int transmit(Peer& peer, const U8* frame, U32 size) {
@@ -200,27 +194,23 @@ private:
         for (size_t i = 0; i < peers(); ++i)
             if (isUp(i))
                 rn = std::max(rn, Link_randomWait(link(i)));
-        if (!packets_->offer(peer.target, frame, size, rn, line.waiting(), us()))
+        if (!api_ && line.waiting())
             return 1;
-        write();
+        const auto bytes = api_ ? api_->packet(peer.target, frame, size, rn, us())
+                                : std::vector<uint8_t>(frame, frame + size);
+        line.send(bytes.data(), bytes.size(), now_);
         peer.airUs = std::max(peer.airUs, airUs_);
         airUs_ = peer.airUs;
         peer.airUs += LINK_PACKET_US + size * LINK_BYTE_US;
         return 0;
     }
-    void write() {
-        const auto frame = packets_->due(us());
-        line.send(frame.data(), frame.size(), now_);
-        const U32 wait = packets_->deadline(us());
-        nextWrite_ = wait == 0xFFFFFFFFu ? never : now_ + wait * 1000ull;
-    }
     const bool encrypts_;
     const unsigned mostWaiting_;
-    std::unique_ptr<XBeeAT::PacketLine> packets_;
+    std::unique_ptr<XBeeAT::ApiModem> api_; // none: transparent mode
     std::vector<std::unique_ptr<Peer>> peers_;
     std::vector<Peer*> order_;
     Random random_;
-    uint64_t nextPoll_ = 0, nextWrite_ = never, airUs_ = 0;
+    uint64_t nextPoll_ = 0, airUs_ = 0;
 };
 
 // Two ends of a class derived from ModemEnd, and the air; the first has called, and both are up

@@ -77,7 +77,7 @@ def stale(tree):
     def count(name):
         return int(row(name).split()[0].replace(",", ""))
 
-    hostile = sum(count(f"hostile packets, {which} link layer") for which in ("full", "minimal"))
+    hostile = count("hostile packets")
     firmware, bitstream = (count(f"new {what}: losses of power, in each operation and later")
                            for what in ("firmware", "bitstream"))
     for said in (str(count("minimal.all")),

@@ -49,7 +49,6 @@ static U16 secondAddress;
 static U8 receiver;              /* of packets (receivers) */
 static U8 toAll[LINK_MAX_FRAME]; /* a call to all vehicles, and its bytes while it waits; else 0 */
 static U8 toAllSize;
-static U32 unanswered, owners; /* with two: packets that the modem has; a bit each, whose it is */
 
 U32 UAV_nowUs(void) {
     return OSTimeGet() * (1000000U / OS_TICKS_PER_SEC);
@@ -91,25 +90,22 @@ static U32 nowMsOf(void* context) {
 static const XBeeATEndpoint_Port endpointPort = {lockLink,  unlockLink,  kick,
                                                  waitEvent, signalEvent, nowMsOf};
 
-/* Hands a packet over while at most one waits for the line. So the link layer knows how fast the
- * modem is, and chooses late what goes next. */
+/* Hands a packet over; in transparent mode while at most one waits for the line. So the link layer
+ * knows how fast the modem is, and chooses late what goes next. */
 static int transmit(void* context, const U8* frame, U32 size) {
     if (isAnswered)
         Radio_setWait(Link_randomWait(&uav_link));
-    return Radio_waiting() > 1U || Radio_transmit(context, frame, size);
+    else if (Radio_waiting() > 1U)
+        return 1;
+    return Radio_transmit(context, frame, size);
 }
 
-/* The same for either of two grounds, which share what the modem may have. */
+/* The same for either of two grounds. */
 static int transmitTo(U32 ground, const U8* frame, U32 size) {
     U32 wait = Link_randomWait(&uav_link), other = Link_randomWait(SECOND);
-    if (unanswered == MOST_UNANSWERED || Radio_waiting() > 1U)
-        return 1;
     Radio_setWait(areUp >> 1 && other > wait ? other : wait);
     Radio_setTarget(ground ? secondAddress : FIRST_GROUND);
-    if (Radio_transmit(0, frame, size))
-        return 1;
-    owners |= ground << unanswered++;
-    return 0;
+    return Radio_transmit(0, frame, size);
 }
 
 static int transmitOfTwo(void* context, const U8* frame, U32 size) {
@@ -167,6 +163,7 @@ int UAV_initRadio(void) {
     if (hasSecond) {
         Link_init(SECOND, &second, &endpoint, BYTE_TIME_US16);
         Link_shrink(SECOND, SECOND_SENDS, SECOND_TAKES);
+        Link_shareRadio(SECOND, &uav_link);
         (void)UAV_giveKeys(1, SECOND);
     }
     return UAV_giveKeys(0, &uav_link) || UAV_isOpen();
@@ -193,11 +190,7 @@ int UAV_nextKey(int ground, const U8* key) {
 }
 
 static void onAnswer(int isDelivered) {
-    Link* link = owners & 1U ? SECOND : &uav_link;
-    owners >>= 1;
-    if (unanswered)
-        --unanswered;
-    Link_answer(link, isDelivered, now);
+    Link_answer(&uav_link, isDelivered, now);
 }
 
 static void setUpLink(Link* link) {
@@ -220,7 +213,6 @@ static void setUpModem(void) {
         OSTimeDly(OS_TICKS_PER_SEC);
     isAnswered = (U8)Radio_answers();
     receiver = (U8)(isAnswered + (isAnswered && UAV_isOfGroup()));
-    unanswered = owners = 0;
     setUpLink(&uav_link);
     if (hasSecond)
         setUpLink(SECOND);

@@ -14,14 +14,11 @@
 #define CLOSING 2U /* closed here, the peer's closing has not come yet */
 #define DUE (LINK_FIRST | LINK_LAST)
 
-/* Sends link->frame, which holds its payload (link_seal); `number`: link_transmitKeyed. A frame for
- * which the radio has no room is lost, as on the air. */
-static void transmit(Link* link, U32 header, U32 number) {
-    if (LINK_IS_SECURE(link))
-        link_transmitKeyed(link, header, number);
-    else
-        (void)link->port->transmit(link->context, link->frame,
-                                   link_seal(link->frame, header, link->key));
+/* Sends link->frame, which holds its payload (link_seal). A frame for which the radio has no room
+ * is lost, as on the air. */
+static void transmit(Link* link, U32 header) {
+    (void)link->port->transmit(link->context, link->frame,
+                               link_seal(link->frame, header, link->key));
 }
 
 static void report(Link* link, Link_Outcome outcome) {
@@ -33,13 +30,12 @@ static void report(Link* link, Link_Outcome outcome) {
         link->port->writable(link->context);
 }
 
-void link_lose(Link* link) {
+/* Ends the session, if there is one: clears its fields and reports its end. */
+static void lose(Link* link) {
     int channel;
     if (link->state != LINK_STATE_UP)
         return;
     link->state = LINK_STATE_IDLE;
-    if (LINK_IS_SECURE(link))
-        link_forgetKeys(link);
     report(link, LINK_UNKNOWN);
     for (channel = 0; channel < LINK_CHANNELS; ++channel)
         if (link->channels[channel] & OPEN)
@@ -53,7 +49,7 @@ void link_lose(Link* link) {
 static void onHello(Link* link, const U8* frame) {
     U32 peerNonce = link_get32(frame + LINK_HEADER);
     if (peerNonce != link->peerNonce) { /* equal nonces: our answer was lost */
-        link_lose(link);
+        lose(link);
         link->peerNonce = peerNonce;
         link->nonce = link->port->random(link->context);
         link->heardAt = link->inputAt;
@@ -63,7 +59,7 @@ static void onHello(Link* link, const U8* frame) {
     link->key = LINK_NO_SEED;
     link_put32(link->frame + LINK_HEADER, link->nonce);
     link_put32(link->frame + LINK_HEADER + 4, peerNonce);
-    transmit(link, LINK_CONTROL_HEADER(LINK_KIND_HELLO_ACK, LINK_VERSION, 8), 0);
+    transmit(link, LINK_CONTROL_HEADER(LINK_KIND_HELLO_ACK, LINK_VERSION, 8));
     link->key = link_sessionKey(link->nonce, peerNonce);
 }
 
@@ -87,15 +83,15 @@ static void onData(Link* link, const U8* frame, U32 size) {
         onChannel(link, channel, flags >> 7);
     } else {
         if (have > sizeof link->message) {
-            link_lose(link);
+            lose(link);
             return;
         }
         memcpy(link->message + link->messageSize, frame + LINK_HEADER, size);
         if (flags & LINK_LAST) {
-            if (have > LINK_UNCHECKED && !LINK_IS_SECURE(link)) {
+            if (have > LINK_UNCHECKED) {
                 have -= LINK_CHECK;
                 if (link_sum(0, link->message, have) != LINK_CHECK_AT(link->message + have)) {
-                    link_lose(link);
+                    lose(link);
                     return;
                 }
             }
@@ -125,21 +121,17 @@ static void takeFrame(Link* link, const U8* frame, U32 size) {
     int isControl = frame[0] >> 7;
     U32 kind = frame[2] >> 5;
     U32 epoch = LINK_EPOCH(frame);
-    U32 before = link->sendNext + link->receiveNext;
-    if (LINK_IS_SECURE(link)) {
-        if (!link_takeKeyed(link))
-            return;
-    } else if (isControl && LINK_IS_HANDSHAKE(kind)) {
+    if (isControl && LINK_IS_HANDSHAKE(kind)) {
         if (link_crc(LINK_NO_SEED, frame, size) != 0)
             return;
         if (kind == LINK_KIND_HELLO && frame[1] == LINK_VERSION)
             onHello(link, frame);
         else if (kind == LINK_KIND_RST && epoch == LINK_KEY_EPOCH(link->key))
-            link_lose(link);
+            lose(link);
         return;
     } else if (link->state != LINK_STATE_UP) { /* the peer is in an earlier session */
         link->key = LINK_EPOCH_KEY(epoch) | LINK_NO_SEED;
-        transmit(link, LINK_CONTROL_HEADER(LINK_KIND_RST, 0, 0U), 0);
+        transmit(link, LINK_CONTROL_HEADER(LINK_KIND_RST, 0, 0U));
         return;
     } else if (epoch != LINK_KEY_EPOCH(link->key) || link_crc(link->key, frame, size) != 0) {
         return;
@@ -147,15 +139,13 @@ static void takeFrame(Link* link, const U8* frame, U32 size) {
     if (isControl && kind == LINK_KIND_ACK) {
         onAck(link, frame[1]);
     } else if (isControl && kind == LINK_KIND_BYE) {
-        link_lose(link);
+        lose(link);
     } else {
         link->ackDue = 1;
         if (!isControl && frame[1] == (U8)link->receiveNext)
-            onData(link, frame, size - LINK_OVERHEAD_OF(link));
+            onData(link, frame, size - LINK_OVERHEAD);
     }
-    /* With a key, a repeated frame may be an attacker's recording, and is no sign of life. */
-    if (!LINK_IS_SECURE(link) || link->sendNext + link->receiveNext != before)
-        link->heardAt = link->inputAt;
+    link->heardAt = link->inputAt;
 }
 
 void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs) {
@@ -193,8 +183,8 @@ static U32 cut(Link* link) {
     flags = link->channel;
     if (!link->outAt)
         flags |= LINK_FIRST;
-    if (size > LINK_LONGEST + LINK_OVERHEAD - LINK_OVERHEAD_OF(link))
-        size = LINK_LONGEST + LINK_OVERHEAD - LINK_OVERHEAD_OF(link);
+    if (size > LINK_LONGEST)
+        size = LINK_LONGEST;
     else
         flags |= LINK_LAST;
     link->size = size;
@@ -204,31 +194,23 @@ static U32 cut(Link* link) {
 void Link_poll(Link* link, U32 nowUs) {
     if (link->state != LINK_STATE_UP)
         return;
-    if (nowUs - link->heardAt >= LINK_DEAD_AFTER ||
-        (LINK_IS_SECURE(link) && link->sendNext >= LINK_LAST_NUMBER)) {
-        link_lose(link);
-        return;
-    }
-    if (LINK_IS_SECURE(link) && link->flags && nowUs - link->cutAt >= LINK_DEAD_AFTER) {
-        Link_stop(link, nowUs);
+    if (nowUs - link->heardAt >= LINK_DEAD_AFTER) {
+        lose(link);
         return;
     }
     if (link->ackDue) {
         link->ackDue = 0;
         link->frame[LINK_HEADER] = 1; /* credit */
-        transmit(link, LINK_CONTROL_HEADER(LINK_KIND_ACK, (U8)link->receiveNext, 1U),
-                 link->receiveNext);
+        transmit(link, LINK_CONTROL_HEADER(LINK_KIND_ACK, (U8)link->receiveNext, 1U));
     }
     if (!link->flags) {
         link->flags = (U8)cut(link);
         link->timerAt = nowUs;
-        if (LINK_SECURE)
-            link->cutAt = nowUs;
     }
     if (link->flags && !LINK_BEFORE(nowUs, link->timerAt)) {
         link->timerAt = nowUs + link->retryUs;
         memcpy(link->frame + LINK_HEADER, link->out + link->outAt, link->size);
-        transmit(link, LINK_HEADER_OF(link->size, (U8)link->sendNext, link->flags), link->sendNext);
+        transmit(link, LINK_HEADER_OF(link->size, (U8)link->sendNext, link->flags));
     }
 }
 
@@ -250,7 +232,6 @@ U32 Link_deadline(const Link* link, U32 nowUs) {
 
 void Link_init(Link* link, const Link_Port* port, void* context, U32 byteTimeUs16) {
     memset(link, 0, sizeof *link);
-    link->overhead = LINK_OVERHEAD;
     link->port = port;
     link->context = context;
     link->retryUs = byteTimeUs16 * LINK_MAX_FRAME; /* the time of 16 of the longest frames */
@@ -264,8 +245,8 @@ void Link_start(Link* link, U32 nowUs) {
 void Link_stop(Link* link, U32 nowUs) {
     (void)nowUs;
     if (link->state == LINK_STATE_UP)
-        transmit(link, LINK_CONTROL_HEADER(LINK_KIND_BYE, 0, 0U), 0);
-    link_lose(link);
+        transmit(link, LINK_CONTROL_HEADER(LINK_KIND_BYE, 0, 0U));
+    lose(link);
 }
 
 Link_State Link_state(const Link* link) {
@@ -313,7 +294,7 @@ Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag
     if (link->outSize)
         return LINK_FULL;
     memcpy(link->out, data, size);
-    if (size > LINK_UNCHECKED && !LINK_IS_SECURE(link)) {
+    if (size > LINK_UNCHECKED) {
         U32 sums = link_sum(0, data, size);
         link->out[size++] = (U8)sums;
         link->out[size++] = (U8)(sums >> 8);

@@ -134,7 +134,7 @@ private:
 #ifdef LINK_MINIMAL
     U32 sessionKey() const { return a_.link->key; }
     U32 expected() const { return a_.link->receiveNext; }
-    U32 overhead() const { return a_.link->overhead; }
+    U32 overhead() const { return LINK_OVERHEAD; }
     Bytes sealed(Bytes bytes, bool) const { return bytes; }
 #else
     U32 sessionKey() const { return a_.link->output.present.key; }

@@ -18,7 +18,7 @@ static void initShrunk(Link* link, const Link_Port* port, void* context, U32 byt
 #define SIZE sizeof(Link)
 #endif
 
-#if !LINK_SECURE
+#ifdef LINK_MINIMAL
 #define Link_setKey 0
 #endif
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // link_test: sessions, channels and messages, one fault at a time: of a ground with the full layer
-// and vehicles with the full and the minimal one, in the clear and under a key.
+// and vehicles with the full one, in the clear and under a key, or the minimal one.
 
 #include "link_variants.h"
 
@@ -244,8 +244,7 @@ TEST_P(MinimalLayer, TheDeadlineIsWhenSomethingIsToBeDone) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Vehicles, MinimalLayer,
-                         ::testing::Values(Variant{"full", "minimal", false},
-                                           Variant{"full", "minimal", true}));
+                         ::testing::Values(Variant{"full", "minimal", false}));
 
 // Layers whose session ends at 60 fragments in a direction, or at 50 wrong tags.
 class Limits : public Variants {
@@ -301,9 +300,39 @@ TEST_P(Limits, ASessionEndsAtTooManyWrongTagsAndBeginsAnew) {
     EXPECT_EQ(b.sessions(), 2u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Vehicles, Limits,
-                         ::testing::Values(Variant{"limits", "limits", true},
-                                           Variant{"limits", "minimal_limits", true}));
+INSTANTIATE_TEST_SUITE_P(Vehicles, Limits, ::testing::Values(Variant{"limits", "limits", true}));
+
+TEST(FullLayer, LinksOverOneRadioShareWhatMayWaitForItsAnswers) {
+    static const Link_Port port = {[](void* c, const U8*, U32) {
+                                       ++*static_cast<unsigned*>(c);
+                                       return 0;
+                                   },
+                                   [](void*) { return U32(7); },
+                                   [](void*, int, const U8*, U32) { return 0; },
+                                   [](void*, int, int) {},
+                                   [](void*, Link_State) {},
+                                   nullptr,
+                                   nullptr};
+    std::vector<Link> links(2);
+    std::vector<unsigned> packets(2);
+    const auto poll = [&](U32 now) {
+        for (Link& link : links)
+            Link_poll(&link, now);
+        return packets;
+    };
+    for (size_t i = 0; i < 2; ++i) {
+        Link_init(&links[i], &port, &packets[i], 1440);
+        Link_shareRadio(&links[i], &links[0]);
+        Link_expectAnswers(&links[i], 1);
+        Link_start(&links[i], 0);
+    }
+    EXPECT_EQ(poll(0), (std::vector<unsigned>{1, 0})); // each calls
+    Link_answer(&links[1], 1, 1000);                   // the first one's packet
+    EXPECT_EQ(poll(1000), (std::vector<unsigned>{1, 1}));
+    EXPECT_EQ(poll(400'000), (std::vector<unsigned>{1, 1})); // the first one calls again
+    Link_answer(&links[0], 0, 400'000);
+    EXPECT_EQ(poll(400'000), (std::vector<unsigned>{2, 1}));
+}
 
 TEST(FullLayer, TheQueueHasAReserveForShortMessages) {
     Pair pair(testSeed());

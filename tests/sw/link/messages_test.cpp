@@ -227,8 +227,7 @@ TEST_P(FullOvertaking, ManyShortOnesLeaveTheLongOneHalf) {
 INSTANTIATE_TEST_SUITE_P(Peers, FullOvertaking,
                          ::testing::Values(Variant{"full", "full", false},
                                            Variant{"full", "full", true},
-                                           Variant{"full", "small", false},
-                                           Variant{"full", "open", false}));
+                                           Variant{"full", "small", false}));
 
 TEST_P(Overtaking, NothingOvertakesTowardsTheMinimalLayer) {
     send(0, Bytes(900, 1));
@@ -237,8 +236,6 @@ TEST_P(Overtaking, NothingOvertakesTowardsTheMinimalLayer) {
     EXPECT_EQ(arrived(), (Arrived{{0, 900}, {1, 10}}));
 }
 
-INSTANTIATE_TEST_SUITE_P(Peers, Overtaking,
-                         ::testing::Values(Variant{"full", "minimal", false},
-                                           Variant{"full", "minimal", true}));
+INSTANTIATE_TEST_SUITE_P(Peers, Overtaking, ::testing::Values(Variant{"full", "minimal", false}));
 
 } // namespace

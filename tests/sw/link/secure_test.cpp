@@ -11,8 +11,7 @@ extern "C" {
 
 namespace {
 
-// A ground with the full layer, a vehicle with the full or the minimal one, and the attacker
-// between.
+// Ground, vehicle, and the attacker between.
 class Attacked : public Variants {
 protected:
     // The attacker hears all new packets of a side.
@@ -99,10 +98,8 @@ protected:
         }
         attack(to, frame);
     }
-    // Sends hostile packets as often as the layer can bear: the minimal one finds the next frame
-    // only after 25 ms of silence.
     void maybeHostile() {
-        if (!recorded_.empty() && random.chance(isMinimal() ? 0.02 : 0.5))
+        if (!recorded_.empty() && random.chance(0.5))
             hostile();
     }
     // Messages both ways.
@@ -122,11 +119,10 @@ protected:
     uint64_t hostile_ = 0;
 };
 
-// HOSTILE=10000000 sends more, nearly all of them to the full layer.
+// HOSTILE=10000000 sends more.
 TEST_P(Attacked, NothingHostileIsAcceptedAndNothingLegalLostOrDoubled) {
     const char* more = std::getenv("HOSTILE");
-    const uint64_t most =
-        (more ? std::strtoull(more, nullptr, 10) : 60000) / (isMinimal() ? 20 : 2);
+    const uint64_t most = (more ? std::strtoull(more, nullptr, 10) : 60000) / 2;
     ASSERT_TRUE(connect());
     for (size_t messages = 20; hostile_ < most; messages += 20)
         ASSERT_TRUE(attackedTraffic(messages, 600'000'000)) << hostile_ << " hostile packets";
@@ -181,7 +177,6 @@ TEST_P(Attacked, AFrameWithAnyBitWrongIsRefused) {
                         Bytes wrong = frame;
                         wrong[bit / 8] ^= static_cast<uint8_t>(1u << bit % 8);
                         size_t had = to->received.size(), events = to->events.size();
-                        // (The minimal layer does not count.)
                         U32 good = to->statistics().framesReceived;
                         attack(*to, wrong);
                         EXPECT_EQ(to->received.size(), had) << "kind " << kind << ", bit " << bit;
@@ -310,8 +305,7 @@ TEST_P(Attacked, AMessageThatIsHeldBackIsReportedAndNeverTaken) {
         const uint64_t start = now;
         ASSERT_TRUE(until([&] { return hold(), !from.outcomes.empty(); }, 60'000'000));
         EXPECT_EQ(from.outcomes[1], LINK_UNKNOWN);
-        const uint64_t age = isFromA || !isMinimal() ? 27'000'000 : 0x890000;
-        EXPECT_NEAR(double(now - start), double(age), 300'000);
+        EXPECT_NEAR(double(now - start), 27e6, 300'000);
         until([&] { return hold(), false; }, 2'000'000);
         ASSERT_FALSE(held.empty());
         for (const Bytes& packet : held)
@@ -340,7 +334,7 @@ TEST_P(Attacked, WhoLearnsTheKeyLaterOpensNoRecordedSession) {
     a.start();
     ASSERT_TRUE(until(
         [&] {
-            if (!isMinimal() && b.link()->session.pair.isMade)
+            if (b.link()->session.pair.isMade)
                 pair = b.link()->session.pair;
             return listen(), bothUp();
         },
@@ -370,24 +364,20 @@ TEST_P(Attacked, WhoLearnsTheKeyLaterOpensNoRecordedSession) {
     EXPECT_GE(handshakes, 2);
     ASSERT_GE(frames.size(), 20u);
     EXPECT_EQ(opened(frames, keys), 0);
-    if (!isMinimal()) {
-        Link_Keys vehicles = {};
-        memcpy(vehicles.send, keys.receive, LINK_KEY_BYTES);
-        memcpy(vehicles.receive, keys.send, LINK_KEY_BYTES);
-        link_mixKeys(&vehicles, &pair, open.data(), 0);
-        memcpy(keys.send, vehicles.receive, LINK_KEY_BYTES);
-        memcpy(keys.receive, vehicles.send, LINK_KEY_BYTES);
-        EXPECT_EQ(opened(frames, keys), int(frames.size()));
-        const Link_Pair& left = a.link()->session.pair;
-        EXPECT_FALSE(left.isMade);
-        EXPECT_EQ(Bytes(left.own, left.own + LINK_OPEN_BYTES), Bytes(LINK_OPEN_BYTES, 0));
-    }
+    Link_Keys vehicles = {};
+    memcpy(vehicles.send, keys.receive, LINK_KEY_BYTES);
+    memcpy(vehicles.receive, keys.send, LINK_KEY_BYTES);
+    link_mixKeys(&vehicles, &pair, open.data(), 0);
+    memcpy(keys.send, vehicles.receive, LINK_KEY_BYTES);
+    memcpy(keys.receive, vehicles.send, LINK_KEY_BYTES);
+    EXPECT_EQ(opened(frames, keys), int(frames.size()));
+    const Link_Pair& left = a.link()->session.pair;
+    EXPECT_FALSE(left.isMade);
+    EXPECT_EQ(Bytes(left.own, left.own + LINK_OPEN_BYTES), Bytes(LINK_OPEN_BYTES, 0));
 }
 
 // The recordings of HELLOs, each with another nonce, make a side compute a pair once, and no key.
 TEST_P(Attacked, OldHellosMakeNobodyMultiplyPoints) {
-    if (isMinimal())
-        return;
     std::vector<Bytes> hellos;
     for (unsigned boot = 0; boot < 5; ++boot) {
         recorded_.clear();
@@ -482,10 +472,6 @@ TEST_P(Hindered, OldHellosDelayARestartByLessThanASecond) {
                 next = start = now;
                 EXPECT_TRUE(until(
                     [&] {
-                        if (now % 100'000 < 1000) { // the minimal layer calls when it hears some
-                            a.open(1);
-                            a.send(1, {1}, static_cast<U32>(now));
-                        }
                         for (auto& packet : side.air)
                             if (restart < 2 && kindOf(packet.bytes) == LINK_KIND_HELLO)
                                 old.push_back(packet.bytes);
@@ -505,40 +491,36 @@ TEST_P(Hindered, OldHellosDelayARestartByLessThanASecond) {
         }
 }
 
-INSTANTIATE_TEST_SUITE_P(Vehicles, Attacked, ::testing::ValuesIn(vehicles(2, false)));
-INSTANTIATE_TEST_SUITE_P(Vehicles, Hindered, ::testing::ValuesIn(vehicles(2, false)));
+INSTANTIATE_TEST_SUITE_P(Vehicles, Attacked, ::testing::ValuesIn(keyed(2)));
+INSTANTIATE_TEST_SUITE_P(Vehicles, Hindered, ::testing::ValuesIn(keyed(2)));
 
 // Whoever meets, both have the key.
 struct Meeting {
-    const char* vehicle; // its layer
     U32 sideA, sideB;
     bool isOfSides; // a ground and the vehicle that it means
 };
 
 void PrintTo(const Meeting& m, std::ostream* out) {
-    *out << m.vehicle << std::hex << "_" << m.sideA << "_" << m.sideB;
+    *out << std::hex << m.sideA << "_" << m.sideB;
 }
 
 class Meetings : public ::testing::TestWithParam<Meeting>, public Pair {
 protected:
     Meetings()
-        : Pair(testSeed(), Bytes(LINK_KEY_BYTES, 0x5A), loadLayer("full"),
-               loadLayer(GetParam().vehicle), GetParam().sideA, GetParam().sideB) {}
+        : Pair(testSeed(), Bytes(LINK_KEY_BYTES, 0x5A), loadLayer("full"), loadLayer("full"),
+               GetParam().sideA, GetParam().sideB) {}
 };
 
 TEST_P(Meetings, OnlyAGroundAndTheVehicleThatItMeansMakeASession) {
-    if (&b.layer == &a.layer)
-        b.start();
+    b.start();
     EXPECT_EQ(connect(), GetParam().isOfSides);
 }
 
 constexpr U32 ground1 = LINK_GROUND | 1;
-INSTANTIATE_TEST_SUITE_P(
-    All, Meetings,
-    ::testing::Values(Meeting{"full", ground1, 1, true}, Meeting{"full", 1, ground1, true},
-                      Meeting{"full", ground1, ground1, false}, Meeting{"full", ground1, 2, false},
-                      Meeting{"full", 1, 1, false}, Meeting{"minimal", ground1, 1, true},
-                      Meeting{"minimal", ground1, 2, false}));
+INSTANTIATE_TEST_SUITE_P(All, Meetings,
+                         ::testing::Values(Meeting{ground1, 1, true}, Meeting{1, ground1, true},
+                                           Meeting{ground1, ground1, false},
+                                           Meeting{ground1, 2, false}, Meeting{1, 1, false}));
 
 // ---- calls to all vehicles ----
 

@@ -59,11 +59,9 @@ INSTANTIATE_TEST_SUITE_P(
                       Variant{"small", "full", false}, Variant{"small", "small", false},
                       Variant{"window32", "full", false}, Variant{"small", "window32", false},
                       Variant{"full", "minimal", false}, Variant{"window32", "minimal", false},
-                      Variant{"small", "minimal", false}, Variant{"open", "full", false},
-                      Variant{"shrunk", "full", true}, Variant{"full", "full", true},
-                      Variant{"full", "small", true}, Variant{"window32", "full", true},
-                      Variant{"full", "minimal", true}, Variant{"small", "minimal", true},
-                      Variant{"tag4", "tag4", true}, Variant{"tag4", "minimal_tag4", true}));
+                      Variant{"small", "minimal", false}, Variant{"shrunk", "full", true},
+                      Variant{"full", "full", true}, Variant{"full", "small", true},
+                      Variant{"window32", "full", true}, Variant{"tag4", "tag4", true}));
 
 class Seeds : public Variants {};
 

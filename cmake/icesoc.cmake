@@ -129,7 +129,7 @@ function(icesoc_uncertain program seeds)
       COMMAND ${program} --gtest_brief=1 "--gtest_filter=${filter}")
     # A filter that matches nothing fails.
     set_tests_properties(cdc.${program}.${seed} PROPERTIES LABELS "rtl;cdc"
-                         ENVIRONMENT CDC_SEED=${seed}
+                         ENVIRONMENT "CDC_SEED=${seed};NEEDS=${program}"
                          FAIL_REGULAR_EXPRESSION "[^0-9]0 tests from")
   endforeach()
 endfunction()

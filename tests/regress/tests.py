@@ -112,6 +112,8 @@ def targets_of(test, build, outputs):
         return ["regmaps"]
     if test.targets is not None:
         return test.targets
+    if not test.command:  # CTest does not tell that of a program which is not built
+        return ["all"]
     targets = []
     for path in re.findall(re.escape(str(build)) + "([^ '\":;,<>]*)", " ".join(test.command)):
         target = path.lstrip("/")

@@ -29,6 +29,7 @@ add_test(NAME script.whole COMMAND ${t} ${CMAKE_BINARY_DIR})
 add_test(NAME script.says COMMAND ${t} ${CMAKE_BINARY_DIR})
 set_tests_properties(script.says PROPERTIES ENVIRONMENT "NEEDS=other tools")
 add_test(NAME script.after COMMAND ${t})
+add_test(NAME absent.program COMMAND ${CMAKE_BINARY_DIR}/absent)
 set_tests_properties(script.tool PROPERTIES FIXTURES_SETUP f)
 set_tests_properties(script.after PROPERTIES FIXTURES_REQUIRED f)
 add_custom_target(test_tame DEPENDS ${CMAKE_SOURCE_DIR}/tame.cpp)
@@ -189,7 +190,7 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.tests(NEEDS)
         for words, programs in (
             ("--name '^script.whole'", "all"), ("--name '^script.says'", "other tools"),
-            ("--name '^test_a'", ""), ("--name 'soon\\.'", "test_soon"),
+            ("--name '^absent'", "all"), ("--name '^test_a'", ""), ("--name 'soon\\.'", "test_soon"),
             ("--name 'script\\.after'", "tool"),  # by what goes before it
             ("--name One", "test_radio test_soon"),  # whose cases nobody knows
             ("--name '^test_tame.*Eat'", "test_tame"),

@@ -190,7 +190,8 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.tests(NEEDS)
         for words, programs in (
             ("--name '^script.whole'", "all"), ("--name '^script.says'", "other tools"),
-            ("--name '^absent'", "all"), ("--name '^test_a'", ""), ("--name 'soon\\.'", "test_soon"),
+            ("--name '^test_a'", ""), ("--name '^absent'", "all"),
+            ("--name 'soon\\.'", "test_soon"),
             ("--name 'script\\.after'", "tool"),  # by what goes before it
             ("--name One", "test_radio test_soon"),  # whose cases nobody knows
             ("--name '^test_tame.*Eat'", "test_tame"),

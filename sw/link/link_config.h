@@ -50,8 +50,8 @@
 #define LINK_ACK_DELAY 30000U
 #define LINK_ACK_WITHIN 80000U
 
-#define LINK_HELLO_FIRST 300000U /* between HELLOs, at least, */
-#define LINK_HELLO_LAST 2000000U /* and at most */
+#define LINK_HELLO_FIRST 300000U /* between HELLOs, at first; doubled from one to the next */
+#define LINK_HELLO_LAST 2000000U /* until it is no less than this: 2.4 s */
 #define LINK_PING_AFTER 5000000U /* silence after which the peer is asked, */
 #define LINK_PING_EVERY 200000U  /* again, */
 /* and given up (more than LINK_PING_AFTER, below 2^31); the minimal layer's times have few one

@@ -9,6 +9,7 @@
 #else
 #include "key_file.h"
 #endif
+#include <cstdint>
 #include <cstdlib>
 #include <regex>
 #include <stdexcept>

@@ -20,8 +20,7 @@ static U32 lineOf(const Link_Output* output, U32 size) {
 
 /* The time of a packet: on the line, or in the modem, whichever is longer. `full`: bytes of the
  * longest one. */
-static U32 timeOf(const Link_Output* output, U32 size, U32 full) {
-    U32 line = lineOf(output, size);
+static U32 timeOf(U32 line, U32 size, U32 full) {
     U32 modem = size * LINK_BYTE_US +
                 (full > LINK_MAX_ENCRYPTED ? LINK_PACKET_US : LINK_PACKET_ENCRYPTED_US);
     return line > modem ? line : modem;
@@ -50,7 +49,7 @@ static int handOverAnswered(Link_Output* output) {
 static int handOver(Link_Output* output, int isFollowed) {
     U32 size = output->packed;
     U32 full = (U32)output->longest + output->codec->overhead;
-    U32 time;
+    U32 line, time, slack;
     if (output->mostWaiting)
         return handOverAnswered(output);
     if (isFollowed && output->slow && (output->present.features & LINK_FEATURE_PIGGYBACK)) {
@@ -68,17 +67,18 @@ static int handOver(Link_Output* output, int isFollowed) {
     output->statistics.bytesSent += size - output->packed;
     if (LINK_BEFORE(output->paceUntil, output->now))
         output->paceUntil = output->now;
-    time = timeOf(output, size, full);
+    line = lineOf(output, size);
+    time = slack = timeOf(line, size, full);
     output->paceUntil += time;
-    output->slack = time;
     if (size < full) {
-        U32 line = lineOf(output, size);
-        output->slack -= line > LINK_SHORT_MARGIN ? line : LINK_SHORT_MARGIN;
+        slack -= line > LINK_SHORT_MARGIN ? line : LINK_SHORT_MARGIN;
         output->quietUntil = output->now + line;
     }
+    output->slack = slack;
     output->early = 0;
     if (output->heard && output->fastest > LINK_PACKET_US) { /* a wire needs no turns */
-        U32 wait = timeOf(output, output->heard, full) * LINK_HEARD_QUARTERS >> 2;
+        U32 heard = output->heard;
+        U32 wait = timeOf(lineOf(output, heard), heard, full) * LINK_HEARD_QUARTERS >> 2;
         output->early = (time + wait) / 2U;
         output->paceUntil += wait;
     }

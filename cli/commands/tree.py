@@ -14,7 +14,7 @@ from cli import flight, keys
 from cli.build_folder import TREE
 from cli.command import COMMANDS, command
 from cli.options import PATH, SWITCH, TEXT, Option
-from cli.runner import SKIPPED, Table, run, say
+from cli.runner import SKIPPED, Table, lock, run, say
 
 
 @command("setup", [
@@ -63,8 +63,13 @@ def commands(values):
         Path(values.man).write_text(manual())
     if values.schema:
         Path(values.schema).write_text(flight.schema_text())
-    if values.brief:
+    if values.only and values.brief:
         return run_all(values.only)
+    if values.brief:
+        Path("build").mkdir(exist_ok=True)
+        with lock("build/commands.lock", refuse="all commands run in this folder already"):
+            shutil.rmtree("build/brief", ignore_errors=True)
+            return run_all("")
     if not values.man and not values.schema:
         for name, each in COMMANDS.items():
             say(f"{name:<18} {'make ' + each.make if each.make else '':<18} "
@@ -74,8 +79,6 @@ def commands(values):
 def run_all(only):
     """Runs every brief form to its end, and writes a table of them. Stops at no failure."""
     table, folder = Table("build/commands"), Path("build/brief")
-    if not only:
-        shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True, exist_ok=True)
     for name, each in COMMANDS.items():
         if only not in name:

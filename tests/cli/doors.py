@@ -312,6 +312,14 @@ class Trees(Work):
         self.assertEqual({key.stat().st_mode & 0o777
                           for key in (config / "icesoc").iterdir()}, {0o600})
 
+    def test_of_two_runs_of_all_commands_one_is_refused(self):
+        build = self.work / "tree/build"
+        build.mkdir(parents=True)
+        with runner.lock(build / "commands.lock"):
+            status, said = ask("./icesoc", "commands", "--brief",
+                               ICESOC_TREE=str(self.work / "tree"))
+        self.assertEqual((status, said), (1, "icesoc: all commands run in this folder already\n"))
+
     def test_programs_have_one_environment(self):
         self.script("tree/cmake/setup.sh", 'echo "$HOME $LC_ALL $CCACHE_BASEDIR ${SEED:-none} '
                     '${MAKEFLAGS:-none} ${NAME:-none}"\nexit 1\n')

@@ -250,10 +250,10 @@ def gdb(values):
     Option("by", FILE, "the private key that signs the list, one of the last list"),
     Option("first", FILE, "a public key of the list"),
     Option("second", FILE, "another"), BUILD, JOBS], make="key",
-         brief=("key build/brief/my.key", "key build/brief/pilot.pem --certificate",
-                "key build/brief/spare.key --signing",
-                "key build/brief/next.update --list 2 --by build/brief/spare.key --first "
-                "build/brief/spare.pub"),
+         brief=("key build/brief/key/my.key", "key build/brief/key/pilot.pem --certificate",
+                "key build/brief/key/spare.key --signing",
+                "key build/brief/key/next.update --list 2 --by build/brief/key/spare.key --first "
+                "build/brief/key/spare.pub"),
          examples=["key my.key", "run --key my.key", "key certificates/pilot.pem --certificate",
                    "key spare.key --signing",
                    "key next.update --list 2 --by spare.key --first spare.pub --second next.pub"])

@@ -79,11 +79,13 @@ def commands(values):
 def run_all(only):
     """Runs every brief form to its end, and writes a table of them. Stops at no failure."""
     table, folder = Table("build/commands"), Path("build/brief")
-    folder.mkdir(parents=True, exist_ok=True)
     for name, each in COMMANDS.items():
         if only not in name:
             continue
-        log, begin, status = folder / f"{name.replace(' ', '-')}.log", time.monotonic(), 0
+        own, begin, status = folder / name.replace(" ", "-"), time.monotonic(), 0
+        shutil.rmtree(own, ignore_errors=True)  # what it made the last time
+        own.mkdir(parents=True)
+        log = own.with_suffix(".log")
         with open(log, "w") as file, open(os.devnull) as nothing:
             for line in each.brief:
                 status = status or run([sys.executable, "icesoc", *shlex.split(line)], check=False,

@@ -88,11 +88,11 @@ if ! command -v dpkg-query >/dev/null 2>&1; then
 fi
 
 # shellcheck disable=SC2046 # a list of words
-there=$(dpkg-query -W -f '${db:Status-Status} ${Package};' $(echo "$packages" | sed 's/ .*//') \
-    2>/dev/null) || true # some are not known
+there=$(dpkg-query -W -f ';${db:Status-Status} ${Package};' $(echo "$packages" | sed 's/ .*//') \
+    2>/dev/null) || true # some are not known, or not-installed, if another package names them
 list=$(echo "$packages" | while read -r name why; do
     case "$name;$there" in
-    ";"* | *"installed $name;"*) ;;
+    ";"* | *";installed $name;"*) ;;
     *) echo "$name: $why" ;;
     esac
 done)

@@ -28,15 +28,17 @@ set_tests_properties(by_script by_gtest PROPERTIES SKIP_RETURN_CODE 77
 class Cases(Script):
     def test_setup(self):
         """On a terminal set-up says what it would install and asks before it calls sudo; elsewhere
-        it goes on. The machine has no package yet, and the user is not root."""
+        it goes on. The machine has one package, and knows of another; the user is not root."""
         work, setup = fresh(WORK), TREE / "cmake/setup.sh"
-        for name, does in (("dpkg-query", ""), ("id", "echo 1000"),
+        for name, does in (("dpkg-query", "echo ';installed cmake;;not-installed verilator;'"),
+                           ("id", "echo 1000"),
                            ("sudo", f'echo "$*" >>{work}/sudo')):
             write(work / "bin" / name, f"#!/bin/sh\n{does}\n")
         path = {"env": {**os.environ, "PATH": f"{work}/bin:{os.environ['PATH']}"}}
         asked = f"script -qec {setup} said >/dev/null || true"
         self.ask("sh", "-c", f"echo n | {asked}", **path)
         self.has("    verilator: turns", r"sudo apt-get\? \[Y/n\]", file="said")
+        self.assertNotIn("    cmake:", Path("said").read_text())
         self.assertFalse(Path("sudo").exists(), "sudo was called after a no")
         for command in f"echo y | {asked}", setup:
             self.ask("sh", "-c", command, **path)

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "api_frames.h"
+#include "key_file.h"
 
 #include <deque>
 
@@ -18,7 +19,6 @@ namespace XBeeAT {
 class ApiModem {
 public:
     using Bytes = ApiFrames::Bytes;
-    static constexpr int everybody = 0xFFFF; // as a target
 
     explicit ApiModem(bool escapes) : frames_(escapes) {}
 

@@ -18,8 +18,6 @@ namespace XBeeAT {
 
 class Broadcast {
 public:
-    static constexpr int everybody = 0xFFFF; // as a modem's address
-
     // `keys`: the group's, the present one last; none: in the clear.
     Broadcast(const Settings& settings, const LinkKeys& keys)
         : settings_(settings), key_(keys.empty() ? LinkKey{} : keys.back()) {}

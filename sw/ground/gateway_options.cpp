@@ -151,7 +151,7 @@ std::map<std::string, int> fleetOf(const Options& o) {
         const long address = std::strtol(number.c_str(), &end, 0);
         if (name.empty() || number.empty() || !std::isdigit(number[0]) || address > 0xFFFF || *end)
             throw std::runtime_error("'" + text + "': give NAME=ADDRESS, as uav7=0x0007");
-        if (address == 0xFFFF) // docs/fleet.md: a oneway proxy of the plugin's endpoint
+        if (address == XBeeAT::everybody) // docs/fleet.md: a oneway proxy of the plugin's endpoint
             throw std::runtime_error("'" + text + "': 0xFFFF is all vehicles, give each its own");
         for (const auto& [other, taken] : fleet)
             if (taken == address && other != name)

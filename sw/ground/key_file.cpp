@@ -18,7 +18,7 @@ namespace XBeeAT {
 
 namespace {
 
-constexpr int anyVehicle = -1, everybody = 0xFFFF;
+constexpr int anyVehicle = -1;
 constexpr size_t mostBytes = 65536;
 const char* const hexadecimal = "0123456789abcdefABCDEF";
 

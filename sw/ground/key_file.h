@@ -16,6 +16,8 @@
 
 namespace XBeeAT {
 
+constexpr int everybody = 0xFFFF; // the address of all vehicles
+
 using LinkKey = std::array<unsigned char, 16>;
 using LinkKeys = std::vector<LinkKey>; // at most two, the next one first; none: in the clear
 

@@ -211,8 +211,7 @@ bool ModemSetup::finish() {
 }
 
 // Sets rate and mode of a modem that was found in API mode; AP 2 stays, and so does the mode of a
-// modem that refuses the other. Each is in force at once,
-// so the answer may come at either rate.
+// modem that refuses the other. Each is in force at once, so the answer may come at either rate.
 bool ModemSetup::finishApi() {
     const int found = rate_;
     for (int attempt = 0; attempt < tries && rate_ != settings_.baud; ++attempt) {

@@ -56,7 +56,7 @@ Peer::Peer(Host& host, int address, const LinkKeys& keys)
     if (!host.radio)
         host.radio = link_.get();
     Link_shareRadio(link_.get(), host.radio);
-    if (address == Broadcast::everybody)
+    if (address == everybody)
         broadcast_ = std::make_unique<Broadcast>(host.settings, keys_);
     for (size_t slot = 0; !isAll() && slot < keys_.size(); ++slot)
         Link_setKey(link_.get(), static_cast<int>(slot), keys_[slot].data(),

@@ -358,8 +358,10 @@ void Flight::runOnHost() {
         soc_, [this] { return poll(); }, simulatedFirmware(keyBytes(o_.modemKey), !key_.empty()));
     machine.board = SimulatedBoard(o_.seed);
     machine.board.provide(key_);
-    if (second_)
-        machine.board.provideGround(secondOf(o_, 1).first, secondOf(o_, 1).second);
+    if (second_) {
+        const auto [address, key] = secondOf(o_, 1);
+        machine.board.provideGround(address, key);
+    }
     machine.run();
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// apb_rules: APB's transfers as properties of a requester (ARM IHI 0024, 3.1 to 3.3, 4.1).
+// apb_rules: APB's transfers as properties of a requester (ARM IHI 0024, 3.1 to 3.4, 4.1).
 //
 // The completer is free: PREADY may be high at any time, also in the set-up phase.
 
@@ -16,6 +16,7 @@ module apb_rules #(
     input wire                  pwrite_i,
     input wire [ADDR_WIDTH-1:0] paddr_i,
     input wire [31:0]           pwdata_i,
+    input wire [3:0]            pstrb_i,
     input wire                  pready_i,
     input wire                  abort_i // the requester may end the transfer in the next clock
 );
@@ -26,10 +27,11 @@ module apb_rules #(
             // A set-up phase of one clock, then the access phase, which lasts until PREADY.
             assert (psel_i || !penable_i);
             assert (!penable_i || $past(psel_i));
+            assert (!psel_i || pwrite_i || pstrb_i == 4'd0); // no strobe in a read
             if ($past(psel_i && !abort_i && !(penable_i && pready_i))) begin
                 assert (psel_i && penable_i);
                 assert (pwrite_i == $past(pwrite_i) && paddr_i == $past(paddr_i));
-                assert (!pwrite_i || pwdata_i == $past(pwdata_i));
+                assert (pstrb_i == $past(pstrb_i) && (!pwrite_i || pwdata_i == $past(pwdata_i)));
             end
             if ($past(psel_i && penable_i && pready_i))
                 assert (!penable_i);

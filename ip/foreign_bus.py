@@ -14,8 +14,8 @@ BUSES = {"wishbone": "Wishbone", "apb": "APB", "axil": "AXI4-Lite",
          "memory": "select, address and data",
          "own": "a bus of its own"}
 WISHBONE = ["cyc", "stb", "we", "adr", "sel", "wdata", "rdata", "ack", "err", "rty", "stall"]
-WIDTHS = {"sel": 4, "wdata": 32, "rdata": 32, "wstrb": 4, "bresp": 2, "rresp": 2, "awprot": 3,
-          "arprot": 3}
+WIDTHS = {"sel": 4, "strobes": 4, "wdata": 32, "rdata": 32, "wstrb": 4, "bresp": 2, "rresp": 2,
+          "awprot": 3, "arprot": 3}
 ADDRESSES = ("adr", "words", "bytes", "awaddr", "araddr")
 
 
@@ -81,9 +81,9 @@ def connection(core, role, port, interrupts):
         return wire
     if role in ADDRESSES:
         return ("adr" if role in ("words", "bytes") else role) + core.slice
-    if role in ("ack", "err") and "enable" in core.by_role:
-        return {"ack": "ready", "err": "refused"}[role]
-    if role in ("wdata", "sel", "wstrb", "rdata") and width < core.width(role):
+    if "enable" in core.by_role:
+        role = {"ack": "ready", "err": "refused", "sel": "strobes"}.get(role, role)
+    if role in ("wdata", "sel", "strobes", "wstrb", "rdata") and width < core.width(role):
         return f"{role}[{width - 1}:0]"
     fixed = {"clock": "clk_i", "reset": "rst_i", "resetn": "!rst_i", "low": f"{width}'d0",
              "open": "",
@@ -107,9 +107,11 @@ def answers(core):
                 if role not in core.by_role]
         return (["    reg access; // APB's access phase, from a transfer's second clock on; ready "
                  "counts only in it",
-                 "    wire enable, ready, refused;"],
+                 "    wire enable, ready, refused;",
+                 "    wire [3:0] strobes;"],
                 ["    always @(posedge clk_i) access <= stb && !rst_i;",
-                 "    assign enable = stb && access;", *made],
+                 "    assign enable = stb && access;",
+                 "    assign strobes = sel & {4{we}}; // none in a read", *made],
                 {"ack": "enable && ready && !refused", "err": "enable && ready && refused"})
     return [], [], {"ack": "stb"} if core.bus in ("memory",
                                                   "own") and "ack" not in core.by_role else {}
@@ -120,7 +122,7 @@ def rules(core):
     return f"""`ifdef RULES
     apb_rules #(.ADDR_WIDTH({core.adr_bits})) u_rules (
         .clk_i(clk_i), .rst_i(rst_i), .psel_i(stb), .penable_i(enable), .pwrite_i(we), .paddr_i(adr), .pwdata_i(wdata),
-        .pready_i(ready), .abort_i(!bus_valid_i || bus_ready_o));
+        .pstrb_i(strobes), .pready_i(ready), .abort_i(!bus_valid_i || bus_ready_o));
 `endif
 """ if core.bus == "apb" else ""
 

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: MIT
 """foreign_roles: finds the role of each port of a third-party core, by its name and by PORTS."""
+import fnmatch
 import re
 
 import foreign_axis
 from foreign_files import fail
 
-CLOCK = r"[aph]?(clk|clock)"
+CLOCK = r"[aph]?(clk|clock)g?"
 RESET = r"[aph]?n?(rst|reset)[nb]?"
 # Parts of a signal's name that make it another signal than these words: clk_en, gate_clk_pad_i.
 NO_CLOCK = {"en", "ena", "enable", "ce", "sel", "div", "gate", "ext", "pad"}
@@ -18,15 +19,17 @@ WISHBONE = {"input": {"cyc": "cyc", "stb": "stb", "we": "we", "adr": "adr", "add
                       "data": "wdata"},
             "output": {"ack": "ack", "err": "err", "rty": "rty", "stall": "stall", "dat": "rdata",
                        "data": "rdata"}}
-# "apb": AMBA APB 2 to 4 (ARM IHI 0024), without waking and user signals.
+# "apb": AMBA APB 2 to 5 (ARM IHI 0024), without parity.
 APB = {"psel": "stb", "penable": "enable", "pwrite": "we", "paddr": "adr", "pwdata": "wdata",
-       "pstrb": "sel", "pwstrb": "sel", "pprot": "low",
-       "prdata": "rdata", "pready": "ack", "pslverr": "err"}
+       "pstrb": "sel", "pwstrb": "sel", "prdata": "rdata", "pready": "ack", "pslverr": "err"}
 # Optional signals of a bus, tied off for single transfers of whole words; outputs are left open.
-TIED = {"axil": {**dict.fromkeys("awid awlen awlock awcache awqos awregion awuser wuser arid "
+TIED = {"axil": {**dict.fromkeys("awid awlen awlock awcache awqos awregion awuser wid wuser arid "
                                  "arlen arlock arcache arqos arregion aruser".split(), "low"),
-                 "wlast": "high", "awburst": "1", "arburst": "1", "awsize": "2", "arsize": "2",
+                 "awakeup": "high", "wlast": "high", "awburst": "1", "arburst": "1",
+                 "awsize": "2", "arsize": "2",
                  **dict.fromkeys(("bid", "buser", "rid", "rlast", "ruser"), "open")},
+        "apb": {**dict.fromkeys(("pprot", "pnse", "pauser", "pwuser"), "low"), "pwakeup": "high",
+                **dict.fromkeys(("pruser", "pbuser"), "open")},
         "wishbone": dict.fromkeys(("cti", "bte", "lock"), "low")}
 # "memory": chip select, write enable, address of a word, data; read data is there in the same
 # clock.
@@ -106,9 +109,14 @@ def roles_of(top, bus, ports, given):
         if what == "ack" and re.fullmatch("[1-9]", port):
             latency = int(port)
             continue
+        is_output = words[what] in OUTPUTS or is_answer(words[what])
+        if "*" in port:  # those of its direction that would be pins
+            found = [n for n, p in ports.items() if not roles[n] and fnmatch.fnmatch(n, port)
+                     and is_output == (p["direction"] == "output")]
+            roles.update(dict.fromkeys(found, words[what]))
+            port = next(iter(found), port)
         if port not in ports:
             fail(f"PORTS: {top} has no port '{port}': {known}")
-        is_output = words[what] in OUTPUTS or is_answer(words[what])
         if words[what] and is_output != (ports[port]["direction"] == "output"):
             fail(f"PORTS: {what} is an {'output' if is_output else 'input'} of a core, and "
                  f"'{port}' is not")

@@ -126,9 +126,10 @@ def slot_texts(asked, ports, params):
     what was taken."""
     roles, latency = roles_of(asked.top, asked.bus, ports, asked.ports)
     if wide := [n for n, p in ports.items() if not roles[n] and len(p["bits"]) > 32]:
-        word = "open" if ports[wide[0]]["direction"] == "output" else "low"
+        left_out = " ".join(f"{'open' if ports[n]['direction'] == 'output' else 'low'}={n}"
+                            for n in wide)
         fail(f"'{wide[0]}' of {asked.top} has {len(ports[wide[0]]['bits'])} bits, and a pin at most "
-             f"32: PORTS='{word}={wide[0]}' leaves it out")
+             f"32: PORTS='{left_out}' leaves out all of those")
     said = {n: roles[n] or "pin " + pin_name(n, p) for n, p in ports.items()}
     for n, p in ports.items():
         if not roles[n] and p["direction"] == "output" and ASKED.search(n):

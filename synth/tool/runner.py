@@ -11,6 +11,7 @@ import dataclasses
 import json
 import os
 import pathlib
+import re
 import shutil
 import sys
 import threading
@@ -64,11 +65,14 @@ def netlist_of_order(file, order):
 def script_of(run, library, options, output, more=""):
     """The script of a run; `more`: a further library of what its sources instantiate. A design with
     limits keeps Yosys' whole libraries: with fewer modules its mapping is another, by chance."""
-    sources, system = [], []  # SystemVerilog has words of its own
-    for file in library.files_of(run.design.top):
-        (system if file.suffix.lower() == ".sv" else sources).append(f' "{file}"')
     includes = "".join(f" -I{folder}" for folder in library.include_folders)
-    sources = "".join(sources) + ("\nread_verilog -sv @INCLUDES@" + "".join(system)) * bool(system)
+    files, listed = library.files_of(run.design.top), [m.file for m in library.modules.values()]
+    # SystemVerilog has words of its own, and packages are listed before those that use them.
+    system = sorted((f for f in files if f.suffix.lower() == ".sv"), key=listed.index)
+    sources = "".join(f' "{file}"' for file in files if file not in system)
+    if system:
+        sources += "\nread_verilog @INCLUDES@" * bool(sources) + " -sv" + "".join(
+            f' "{file}"' for file in system)
     parameters = "".join(f"chparam -set {name} {value} {run.design.top}\n"
                          for name, value in sorted(run.design.parameters.items()))
     script = (options.scripts / f"{run.family}.ys").read_text()
@@ -99,6 +103,9 @@ def yosys_by(script, output, options):
     write(log, said)
     if status:
         errors = [line for line in said.splitlines() if "ERROR" in line] or said.splitlines()[-1:]
+        if re.search(r"\.sv:\d+: ERROR: syntax error", errors[0], re.I):
+            errors.append("SystemVerilog that this Yosys does not read: tests and flights have it "
+                          "as it is; a netlist needs what sv2v makes of it (docs/recipes.md)")
         raise Stop("\n".join([*errors, f"whole log: {log}"]))
     part.replace(output)
 

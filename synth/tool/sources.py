@@ -10,7 +10,7 @@ import re
 from tool import Stop, digest
 
 # A comment, a string, a word or directive, or the punctuation that instances are recognised by.
-TOKEN = re.compile(r'//[^\n]*|/\*.*?(?:\*/|$)|"([^"]*)"?|(`?[\w$]+|`)|([()#;])', re.S)
+TOKEN = re.compile(r'//[^\n]*|/\*.*?(?:\*/|$)|"([^"]*)"?|(`?[\w$]+|`)|([()#;]|::)', re.S)
 
 PROPERTIES = {"FORMAL", "RULES", "COVER_POINTS"}  # what is under these is no hardware
 
@@ -58,7 +58,9 @@ def read(file):
 
 @dataclasses.dataclass
 class Module:
+    """A module, or a package of SystemVerilog, which is as an instance of those that use it."""
     file: pathlib.Path
+    is_package: bool = False
     # Instance name -> module names: several in branches of `ifdef or generate.
     instances: dict = dataclasses.field(default_factory=dict)
     includes: set = dataclasses.field(default_factory=set)
@@ -99,14 +101,16 @@ class Library:
 
     def scan(self, file):
         t = self.all_tokens(file) + ["", ""]
-        current = None
+        current, outside = None, {}  # what is imported outside of modules counts for all behind it
         for i, token in enumerate(t[:-2]):
-            if token == "module" and is_name(t[i + 1]):
+            if token in ("module", "package") and is_name(t[i + 1]):
                 current = None
                 if t[i + 1] not in self.modules:
-                    current = self.modules[t[i + 1]] = Module(file)
-            elif token == "endmodule":
+                    current = self.modules[t[i + 1]] = Module(file, token == "package", {**outside})
+            elif token in ("endmodule", "endpackage"):
                 current = None
+            elif token == "::":
+                (current.instances if current else outside)["::" + t[i - 1]] = [t[i - 1]]
             elif current and token == "`include":
                 current.includes.add(t[i + 1])
             elif current and is_name(token):
@@ -200,7 +204,7 @@ def read_plan(file, library, root):
             raise Stop(f"{file}: there is no module {design.top}")
     tops = {design.top for design in designs}
     for name, module in sorted(library.modules.items()):
-        is_hardware = not name.endswith(("_rules", "_proof"))
+        is_hardware = not name.endswith(("_rules", "_proof")) and not module.is_package
         # Of a converted core only the core itself.
         if name not in tops and is_hardware and module.file.stem == name:
             designs.append(Design(name, name, sentence_of(module.file, name)))

@@ -415,6 +415,14 @@ class Files(unittest.TestCase):
         self.assertEqual(self.files_of("top"), ["top.v"])
         self.assertEqual(self.files_of("top", far), ["part.v", "top.v"])
 
+    def test_a_package_comes_with_what_uses_it(self):
+        files = [self.write(f"far/{name}.sv", text) for name, text in (
+            ("widths", "package widths; localparam W = 4; endpackage"),
+            ("sizes", "package sizes; import widths::*; localparam S = W; endpackage"),
+            ("core", "import sizes::*; module core; endmodule module bare; endmodule"),
+            ("other", "package other; endpackage"))]
+        self.assertEqual(self.files_of("core", *files), ["core.sv", "sizes.sv", "widths.sv"])
+
     def test_a_place_is_that_of_the_declaration_and_not_of_an_instance(self):
         n = Netlist()
         n.sources["u_a.g[1].count_o"] = "top.v:62.26-69.2|./hdl/a.v:97.8-97.15|top.v:3.1-3.40"

@@ -83,7 +83,12 @@ class Cases(Script):
 
     def test_counts(self):
         """Figures are those that the blocks' sources promise, and Yosys' own `stat` counts them."""
-        write("gen/cores.files", f"{(BLOCKS / 'store.v').resolve()}\n")
+        # A package is read before the module that uses it, and is no design.
+        write("far/typed_sizes.sv", "package typed_sizes; typedef logic [2:0] t; endpackage\n")
+        write("far/typed.sv", "module typed(input logic clk_i, input typed_sizes::t d_i, output "
+              "typed_sizes::t q_o); always_ff @(posedge clk_i) q_o <= d_i; endmodule\n")
+        write("gen/cores.files", "".join(f"{Path(file).resolve()}\n" for file in (
+            BLOCKS / "store.v", "far/typed_sizes.sv", "far/typed.sv")))
         write("gen/clocks.v", """module clocks (input clk_i, output pll_o, output reg q_o);
             wire clk;
             PLL_BASE u_pll (.CLKIN(clk_i), .CLKOUT0(pll_o)); // in Yosys' second library
@@ -106,6 +111,8 @@ class Cases(Script):
 
         self.assertEqual(figures("clocks")["cells"], {"BUFG": 1, "FDRE": 1, "INV": 1,
                                                       "PLL_BASE": 1})
+        self.assertEqual(figures("typed")["cells"], {"FDRE": 3})
+        self.lacks("^typed_sizes ")
         self.assertEqual(figures("wide")["cells"]["CARRY4"], 4, "a counter of 16 bits")
         store, whole = figures("store"), figures("whole")
         self.assertEqual((store["cells"]["RAM32M"], store["lutRam"]), (1, 4), "32 x 6 bits")
@@ -172,8 +179,11 @@ class Cases(Script):
 
     def test_broken(self):
         write(BLOCKS / "broken.v", "module broken(input wire a_i); assign b = ; endmodule\n")
+        write("gen/typed.sv", "module typed(input logic a_i); assign b = ; endmodule\n")
+        write("gen/cores.files", "gen/typed.sv\n")
         self.run_program(status=None)
-        self.has("broken.v:1: ERROR: syntax error", "^wide ", "^broken .*failed")
+        self.has("broken.v:1: ERROR: syntax error", "^wide ", "^broken .*failed",
+                 "typed.sv:1: ERROR: syntax error.*\n.*needs what sv2v makes of it")
         self.has('"broken: synthesis failed"', file="out/report.json")
         for name in "baseline", "designs":  # as a merge leaves it
             write(f"project/synth/{name}.json", "{\n<<<<<<< HEAD\n")

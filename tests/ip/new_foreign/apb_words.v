@@ -1,19 +1,22 @@
 `include "timescale.v"
 // SPDX-License-Identifier: MIT
 //
-// apb_words: an APB core as others write them: old Verilog with a delay and a signal named int, a parameter, several
-// interrupts. It waits `waits` clocks in each access, with PREADY high at rest if 0, takes data for a read in the set-up
-// phase, and refuses word 3. Word 0 counts the transfers that begin as they must.
+// apb_words: an APB 5 core as others write them: old Verilog with a delay and a signal named int, a parameter, several
+// interrupts, a gated clock. It waits `waits` clocks in each access, with PREADY high at rest if 0, takes data for a read
+// in the set-up phase, and refuses word 3. Word 0 counts the transfers that begin as they must, awake, and of which only a
+// write has strobes. What it answers while it is not ready means nothing.
 
 module apb_words #(parameter WORDS = 1) (
-    input             PCLK, PRESETn,
+    input             PCLK, PCLKG, PRESETn, PWAKEUP,
     input             PSEL, PENABLE, PWRITE,
     input      [3:0]  PADDR,
     input      [2:0]  PPROT,
+    input      [7:0]  PAUSER,
     input      [3:0]  PSTRB,
     input      [31:0] PWDATA,
     output reg [31:0] PRDATA,
     output            PREADY, PSLVERR,
+    output     [7:0]  PBUSER,
     input      [2:0]  waits,
     input      [1:0]  clk_div,
     output reg [1:0]  irq
@@ -24,15 +27,16 @@ module apb_words #(parameter WORDS = 1) (
     reg        int;
     wire [1:0] word = PADDR[3:2];
     assign PREADY  = waited == waits;
-    assign PSLVERR = PREADY && word > WORDS;
-    always @(posedge PCLK or negedge PRESETn)
+    assign PSLVERR = !PREADY || word > WORDS;
+    assign PBUSER  = PAUSER;
+    always @(posedge PCLKG or negedge PRESETn)
         if (!PRESETn) begin
             {waited, int, irq} <= 6'd0;
             begun <= 32'd0;
         end else begin
             waited <= #1 PSEL && PENABLE && !PREADY ? waited + 1 : 0;
             int    <= #1 PSEL && !PENABLE;
-            if (PSEL && PENABLE && int)
+            if (PSEL && PENABLE && int && PWAKEUP && PSTRB == {4{PWRITE}})
                 begun <= #1 begun + 1;
             if (PSEL && !PENABLE)
                 PRDATA <= #1 word == 2'd0 ? begun : words[word];

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
 // axil_words: an AXI4-Lite core as others write them: four words, capitals, a reset that is low. It takes an address after
-// `aw_late` clocks (before data if that is later), data after `w_late`, and answers `late` clocks later.
+// `aw_late` clocks (before data if that is later), data after `w_late`, and answers `late` clocks later, if it is awake.
 
 module axil_words (
-    input             S_AXI_ACLK, S_AXI_ARESETN,
+    input             S_AXI_ACLK, S_AXI_ARESETN, S_AXI_AWAKEUP,
     input             S_AXI_AWVALID,
     output            S_AXI_AWREADY,
     input      [3:0]  S_AXI_AWADDR,
@@ -36,7 +36,7 @@ module axil_words (
     assign S_AXI_ARREADY = !has_ar && aw_waited == aw_late;
     assign S_AXI_WREADY  = !has_w && w_waited == w_late;
     assign {S_AXI_BRESP, S_AXI_RRESP} = 4'd0;
-    wire has_all = has_ar || (has_aw && has_w);
+    wire has_all = S_AXI_AWAKEUP && (has_ar || (has_aw && has_w));
     always @(posedge S_AXI_ACLK) begin
         aw_waited <= (S_AXI_AWVALID && !S_AXI_AWREADY && !has_aw) || (S_AXI_ARVALID && !S_AXI_ARREADY && !has_ar) ? aw_waited + 1 : 0;
         w_waited  <= S_AXI_WVALID && !S_AXI_WREADY && !has_w ? w_waited + 1 : 0;

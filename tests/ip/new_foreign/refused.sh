@@ -66,9 +66,9 @@ refused "PARAMS: axil_words has no 'WIDTH'" my_port axil_words axil "$work/out" 
     "$here/axil_words.v"
 refused "'my_wide' of .* has 64 bits" my_port wide own "$work/out" select=clk_en write=we \
     address=a wdata=my_wide rdata=q "$work/wide.v"
-echo 'module broad(input clk, we, input [31:0] d, output [31:0] q, output [127:0] pads); endmodule' >"$work/broad.v"
-refused "'pads' of broad has 128 bits, and a pin at most 32: PORTS='open=pads'" my_port broad own \
-    "$work/out" write=we wdata=d rdata=q "$work/broad.v"
+echo 'module broad(input clk, we, input [31:0] d, output [31:0] q, output [127:0] pads, input [32:0] more); endmodule' >"$work/broad.v"
+refused "'pads' of broad has 128 bits, and a pin at most 32: PORTS='open=pads low=more'" my_port \
+    broad own "$work/out" write=we wdata=d rdata=q "$work/broad.v"
 refused 'include looks for timescale.v' my_port apb_words apb "$work/out" "$here/apb_words.v"
 refused 'Verilator does not elaborate odd' my_port odd memory "$work/out" "$work/odd.sv"
 refused "no port for ack: .*ack=1" my_port wbs_names wishbone "$work/out" "$here/cores.v"
@@ -122,6 +122,12 @@ for line in "TIMERINT: pin timerint_o; if it is an interrupt: PORTS='interrupt=T
     'irq_no: interruptn$' 'point: pin point_o$'; do
     grep -q "^  $line" "$work/log" || { cat "$work/log" && echo "'$line' is not said" && exit 1; }
 done
+"$new" my_port asked own "$work/open" write=we wdata=d rdata=q 'open=*t*' "$work/asked.v" >"$work/log"
+for line in 'TIMERINT: pin' 'rx_events: open' 'point: open' 'irq_no: interruptn'; do
+    grep -q "^  $line" "$work/log" || { cat "$work/log" && echo "'$line' is not said" && exit 1; }
+done
+refused "has no port 'TIMER\*'" my_port asked own "$work/out" write=we wdata=d rdata=q \
+    'low=TIMER*' "$work/asked.v"
 grep -q 'interrupt = !interrupt_0;' "$work/asked/my_port.v"
 # SystemVerilog with packages, in any order, and a loop that Verilator reports.
 cat >"$work/system.sv" <<'END'

@@ -1,22 +1,58 @@
 /* SPDX-License-Identifier: MIT
  *
- * fsmc: set-up of the FSMC, register words, and memory copies through the DDR3 window.
+ * fsmc: set-up of the FSMC, register words, and memory copies through the DDR3 window: by NWAIT,
+ * and blocks at the bridge's full speed without it, which are checked, and repeated where needed.
  */
-#include "fsmc_private.h"
+#include "fsmc.h"
+
 #include "map_regs.h"
 #include "system_regs.h"
 
+/* Registers of the FSMC (RM0033, 31.5.6); bank 0 is NE1. */
+#define FSMC_REGISTERS 0xA0000000U
+#define FSMC_BCR(bank) (FSMC_REGISTERS + 8U * (bank))
+#define FSMC_BTR(bank) (FSMC_REGISTERS + 8U * (bank) + 0x004U)
+#define FSMC_BWTR(bank) (FSMC_REGISTERS + 8U * (bank) + 0x104U)
+
+#define BCR_MBKEN (1U << 0)
+#define BCR_MUXEN (1U << 1)
+#define BCR_MTYP_PSRAM (1U << 2)
+#define BCR_MTYP_NOR (2U << 2)
+#define BCR_MWID_16 (1U << 4)
+#define BCR_FACCEN (1U << 6)
+#define BCR_RESERVED (1U << 7) /* reads 1, and is kept so */
+#define BCR_WAITPOL (1U << 9)
+#define BCR_WREN (1U << 12)
+#define BCR_EXTMOD (1U << 14)
+#define BCR_ASYNCWAIT (1U << 15)
+
+/* BTR and BWTR; times in HCLK. */
+#define BTR_ADDSET(n) ((U32)(n))
+#define BTR_ADDHLD(n) ((U32)(n) << 4)
+#define BTR_DATAST(n) ((U32)(n) << 8)
+#define BTR_BUSTURN(n) ((U32)(n) << 16)
+#define BTR_ACCMOD(n) ((U32)(n) << 28)
+
+/* The bits that all modes set: bank on, 16 bits, write enable. */
+#define BCR_ALWAYS (BCR_MBKEN | BCR_MWID_16 | BCR_RESERVED | BCR_WREN)
+/* FSMC_init's settings: mode 1 with NWAIT, active low. ADDSET 2: NWAIT, which follows the pins in
+ * less than 16 ns, is valid when the data phase begins; DATAST 4 is the least with NWAIT
+ * (docs/fsmc.md). */
+#define BCR_VALUE (BCR_ALWAYS | BCR_ASYNCWAIT)
+#define BTR_VALUE (BTR_ADDSET(2) | BTR_DATAST(4) | BTR_BUSTURN(1))
+
 #define WINDOW_MASK ((1U << MAP_DDR_WINDOW_LOG2) - 1U)
 
-const FSMC_Port* fsmc_port;
-void* fsmc_context;
+static const FSMC_Port* fsmcPort;
+static void* fsmcContext;
 static U32 fsmcPage;
 
 static U32 wordAddress(U32 slot, U32 word) {
     return MAP_CONTROL_WINDOW + ((slot & 63U) << 6 | (word & 15U) << 2);
 }
 
-FSMC_Status fsmc_identify(void) {
+/* Looks for the system slot, the last step of setting up. Returns FSMC_OK or FSMC_NO_DEVICE. */
+static FSMC_Status identify(void) {
     if (FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_ID) >> 16 != SYSTEM_ID_VALUE >> 16)
         return FSMC_NO_DEVICE;
     fsmcPage = 0;
@@ -26,24 +62,25 @@ FSMC_Status fsmc_identify(void) {
 
 FSMC_Status FSMC_init(const FSMC_Port* port, void* context) {
     U32 bank;
-    fsmc_port = port;
-    fsmc_context = context;
+    fsmcPort = port;
+    fsmcContext = context;
     for (bank = 0; bank < 2U; ++bank) {
         port->write32(context, FSMC_BTR(bank), BTR_VALUE);
         port->write32(context, FSMC_BCR(bank), BCR_VALUE);
     }
-    return fsmc_identify();
+    return identify();
 }
 
 U32 FSMC_read(U32 slot, U32 word) {
-    return fsmc_port->read32(fsmc_context, wordAddress(slot, word));
+    return fsmcPort->read32(fsmcContext, wordAddress(slot, word));
 }
 
 void FSMC_write(U32 slot, U32 word, U32 value) {
-    fsmc_port->write32(fsmc_context, wordAddress(slot, word), value);
+    fsmcPort->write32(fsmcContext, wordAddress(slot, word), value);
 }
 
-U32 fsmc_windowAddress(U32 address) {
+/* Turns a DDR3 address into one in the window, and moves the page register where it must. */
+static U32 windowAddress(U32 address) {
     U32 page = address >> MAP_DDR_WINDOW_LOG2;
     if (page != fsmcPage) {
         FSMC_write(MAP_SLOT_SYSTEM, SYSTEM_PAGE, page);
@@ -54,13 +91,13 @@ U32 fsmc_windowAddress(U32 address) {
 
 void FSMC_readMemory(U32 address, U8* data, U32 bytes) {
     while (bytes) {
-        U32 at = fsmc_windowAddress(address);
+        U32 at = windowAddress(address);
         if ((address & 1U) || bytes == 1U) {
-            *data++ = fsmc_port->read8(fsmc_context, at);
+            *data++ = fsmcPort->read8(fsmcContext, at);
             ++address;
             --bytes;
         } else {
-            U16 half = fsmc_port->read16(fsmc_context, at);
+            U16 half = fsmcPort->read16(fsmcContext, at);
             *data++ = (U8)half;
             *data++ = (U8)(half >> 8);
             address += 2U;
@@ -71,13 +108,13 @@ void FSMC_readMemory(U32 address, U8* data, U32 bytes) {
 
 void FSMC_writeMemory(U32 address, const U8* data, U32 bytes) {
     while (bytes) {
-        U32 at = fsmc_windowAddress(address);
+        U32 at = windowAddress(address);
         if ((address & 1U) || bytes == 1U) {
-            fsmc_port->write8(fsmc_context, at, *data++);
+            fsmcPort->write8(fsmcContext, at, *data++);
             ++address;
             --bytes;
         } else {
-            fsmc_port->write16(fsmc_context, at, (U16)(data[0] | (U32)data[1] << 8));
+            fsmcPort->write16(fsmcContext, at, (U16)(data[0] | (U32)data[1] << 8));
             data += 2;
             address += 2U;
             bytes -= 2U;
@@ -92,4 +129,191 @@ FSMC_Status FSMC_checkError(U32* where) {
         *where = FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_ERROR_ADDR);
     FSMC_write(MAP_SLOT_SYSTEM, SYSTEM_EVENT, SYSTEM_EVENT_BUS_ERROR_MASK);
     return FSMC_BUS_ERROR;
+}
+
+/* ---- streams ---- */
+
+/* Mode A without NWAIT: an access takes ADDSET + DATAST + 1 HCLK. A write's data phase is 2 HCLK.
+ * Its BUSTURN is 0, since some FSMCs insert it between two writes, too. A read is all data phase,
+ * so that NOE falls with the address. */
+#define STREAM_BCR (BCR_ALWAYS | BCR_EXTMOD)
+#define WRITE_DATAST 2U
+/* Accesses/s at most (docs/fsmc.md): 33.3 ns between edges of NWE; a read has its data 15 ns after
+ * HCLK's edge that moves its address, and the FSMC wants it HCLK + 4 ns before the end. */
+#define WRITE_HZ 30000000UL
+#define READ_HZ 25000000UL
+#define REGION 4096U /* bytes: the bridge does not read ahead beyond their multiples */
+#define BLOCK 64U
+
+static U8 writeAddset = 15, readDatast = 17; /* until FSMC_setHclk: slow, but right */
+
+/* HCLK cycles of an access, 4 at least. */
+static U32 cyclesFor(U32 hclkHz, U32 accessHz) {
+    U32 cycles = (U32)((hclkHz + accessHz - 1U) / accessHz);
+    return cycles < 4U ? 4U : cycles > 18U ? 18U : cycles;
+}
+
+void FSMC_setHclk(U32 hz) {
+    writeAddset = (U8)(cyclesFor(hz, WRITE_HZ) - WRITE_DATAST - 1U);
+    readDatast = (U8)(cyclesFor(hz, READ_HZ) - 1U);
+}
+
+static void setBank(int fast) {
+    if (fast) {
+        fsmcPort->write32(fsmcContext, FSMC_BTR(0), BTR_DATAST(readDatast) | BTR_BUSTURN(1));
+        fsmcPort->write32(fsmcContext, FSMC_BWTR(0),
+                          BTR_DATAST(WRITE_DATAST) | BTR_ADDSET(writeAddset));
+        fsmcPort->write32(fsmcContext, FSMC_BCR(0), STREAM_BCR);
+    } else {
+        fsmcPort->write32(fsmcContext, FSMC_BCR(0), BCR_VALUE);
+        fsmcPort->write32(fsmcContext, FSMC_BTR(0), BTR_VALUE);
+    }
+}
+
+/* Returns 1 if an access was too early since the last call. The register access also flushes posted
+ * writes.
+ */
+static int wasLate(void) {
+    if (!(FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_EVENT) & SYSTEM_EVENT_LATE_MASK))
+        return 0;
+    FSMC_write(MAP_SLOT_SYSTEM, SYSTEM_EVENT, SYSTEM_EVENT_LATE_MASK);
+    return 1;
+}
+
+/* Returns the bytes up to the next multiple of `size`, at most `bytes`. */
+static U32 upTo(U32 address, U32 size, U32 bytes) {
+    U32 left = size - (address & (size - 1U));
+    return left < bytes ? left : bytes;
+}
+
+U32 FSMC_streamWrite(U32 address, const U16* data, U32 halfwords) {
+    U32 repeated = 0;
+    (void)wasLate();
+    while (halfwords) {
+        U32 i, part = upTo(address, 8U * REGION, 2U * halfwords) / 2U;
+        U32 at = windowAddress(address);
+        (void)FSMC_read(MAP_SLOT_SYSTEM,
+                        SYSTEM_ID); /* register writes are posted, and NWAIT is off now */
+        setBank(1);
+        for (i = 0; i < part; ++i)
+            fsmcPort->write16(fsmcContext, at + 2U * i, data[i]);
+        setBank(0);
+        if (wasLate()) {
+            repeated += part;
+            for (i = 0; i < part; ++i)
+                fsmcPort->write16(fsmcContext, at + 2U * i, data[i]);
+        }
+        address += 2U * part;
+        data += part;
+        halfwords -= part;
+    }
+    return repeated;
+}
+
+/* Reads with the bank's present timing. */
+static void readHalfwords(U32 at, U16* data, U32 halfwords) {
+    U32 i;
+    for (i = 0; i < halfwords; ++i)
+        data[i] = fsmcPort->read16(fsmcContext, at + 2U * i);
+}
+
+U32 FSMC_streamRead(U32 address, U16* data, U32 halfwords) {
+    U32 repeated = 0;
+    (void)wasLate();
+    while (halfwords) {
+        U32 part = upTo(address, REGION, 2U * halfwords) / 2U;
+        U32 at = windowAddress(address);
+        if (address & (BLOCK - 1U)) {
+            /* A block is read from its beginning: only then the bridge has time to fetch the next
+             * one. */
+            part = upTo(address, BLOCK, 2U * part) / 2U;
+            readHalfwords(at, data, part);
+        } else {
+            /* Two reads in a block make the bridge fetch it; the one at its end waits until all of
+             * it is there. */
+            (void)fsmcPort->read16(fsmcContext, at);
+            (void)fsmcPort->read16(fsmcContext, at + BLOCK - 2U);
+            setBank(1);
+            readHalfwords(at, data, part);
+            setBank(0);
+            if (wasLate()) {
+                repeated += part;
+                readHalfwords(at, data, part);
+            }
+        }
+        address += 2U * part;
+        data += part;
+        halfwords -= part;
+    }
+    return repeated;
+}
+
+/* ---- other modes ---- */
+
+#define BWTR_RESET 0x0FFFFFFFU
+
+typedef struct Values {
+    U32 bcr, btr, bwtr;
+} Values;
+
+static int isExtended(FSMC_Mode mode) {
+    return mode >= FSMC_MODE_A && mode <= FSMC_MODE_D;
+}
+
+static int timingIsBad(const FSMC_Bank* bank, const FSMC_Timing* time, FSMC_Mode mode) {
+    int holds = bank->muxed || mode == FSMC_MODE_D;
+    return time->addset > 15U || time->addhld > 15U || (holds && time->addhld == 0U) ||
+           time->datast < (bank->wait ? 4U : 1U);
+}
+
+static int isBad(const FSMC_Bank* bank) {
+    if (bank->mode > FSMC_MODE_D || bank->busturn == 0U || bank->busturn > 15U ||
+        timingIsBad(bank, &bank->read, bank->mode))
+        return 1;
+    return isExtended(bank->mode) &&
+           (!isExtended(bank->writeMode) || timingIsBad(bank, &bank->write, bank->writeMode));
+}
+
+/* Returns a BTR or BWTR; its ACCMOD 0..3 are the modes A to D. */
+static U32 timing(const FSMC_Timing* time, U32 busturn, FSMC_Mode mode) {
+    U32 accmod = isExtended(mode) ? (U32)mode - (U32)FSMC_MODE_A : 0U;
+    return BTR_ADDSET(time->addset) | BTR_ADDHLD(time->addhld) | BTR_DATAST(time->datast) |
+           BTR_BUSTURN(busturn) | BTR_ACCMOD(accmod);
+}
+
+static Values valuesOf(const FSMC_Bank* bank) {
+    Values v;
+    v.bcr = BCR_ALWAYS;
+    if (bank->muxed)
+        v.bcr |= BCR_MUXEN;
+    if (bank->waitHigh)
+        v.bcr |= BCR_WAITPOL;
+    v.bwtr = BWTR_RESET;
+    v.btr = timing(&bank->read, bank->busturn, bank->mode);
+    if (bank->wait)
+        v.bcr |= BCR_ASYNCWAIT;
+    if (bank->mode == FSMC_MODE_1 || bank->mode == FSMC_MODE_A)
+        v.bcr |= bank->psram ? BCR_MTYP_PSRAM : 0U;
+    else
+        v.bcr |= BCR_MTYP_NOR | BCR_FACCEN;
+    if (isExtended(bank->mode)) {
+        v.bcr |= BCR_EXTMOD;
+        v.bwtr = timing(&bank->write, bank->busturn, bank->writeMode);
+    }
+    return v;
+}
+
+FSMC_Status FSMC_initBanks(const FSMC_Port* port, void* context, const FSMC_Bank banks[2]) {
+    U32 i;
+    if (isBad(&banks[0]) || isBad(&banks[1]))
+        return FSMC_BAD_SETTING;
+    fsmcPort = port;
+    fsmcContext = context;
+    for (i = 0; i < 2U; ++i) {
+        Values v = valuesOf(&banks[i]);
+        port->write32(context, FSMC_BTR(i), v.btr);
+        port->write32(context, FSMC_BWTR(i), v.bwtr);
+        port->write32(context, FSMC_BCR(i), v.bcr);
+    }
+    return identify();
 }

@@ -1,19 +1,166 @@
 // SPDX-License-Identifier: MIT
 //
-// api_modem: a modem in API mode: packets go to it with a target, and it answers for each.
+// api_modem: a modem in API mode: packets go to it with a target, and it answers for each. Its
+// frames: 0x7E, length (2 bytes), contents, checksum. With AP 2 four bytes are escaped.
+//
+//   01 ID TARGET TARGET 00 DATA...          a packet to be sent
+//   89 ID STATUS                            its fate: 0 the other modem has it
+//   81 SOURCE SOURCE RSSI OPTIONS DATA...   a packet that came
+//   08 ID LETTER LETTER VALUE...            an AT command
+//   88 ID LETTER LETTER STATUS VALUE...     its answer
+//   8A STATUS                               the modem has started, or the like
 
 #pragma once
 
-#include "api_frames.h"
 #include "key_file.h"
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <deque>
+#include <string>
+#include <vector>
 
 extern "C" {
 #include "link_config.h"
 }
 
 namespace XBeeAT {
+
+class ApiFrames {
+public:
+    using Bytes = std::vector<uint8_t>;
+    enum Type : uint8_t {
+        Transmit = 0x01,
+        Command = 0x08,
+        Wide = 0x80, // as Packet, from a modem without a 16-bit address
+        Packet = 0x81,
+        Answer = 0x88,
+        Status = 0x89,
+        Event = 0x8A
+    };
+    static constexpr int nobody = -1; // a source without a 16-bit address
+
+    // `escapes`: AP is 2.
+    explicit ApiFrames(bool escapes = false) : escapes_(escapes) {}
+
+    // Returns the frame of these contents.
+    Bytes pack(const Bytes& contents) const {
+        Bytes frame = {delimiter};
+        put(frame, static_cast<uint8_t>(contents.size() >> 8));
+        put(frame, static_cast<uint8_t>(contents.size()));
+        uint8_t sum = 0xFF;
+        for (uint8_t byte : contents) {
+            put(frame, byte);
+            sum = static_cast<uint8_t>(sum - byte);
+        }
+        put(frame, sum);
+        return frame;
+    }
+    Bytes packet(uint8_t id, uint16_t target, const uint8_t* data, size_t size) const {
+        Bytes contents = {Transmit, id, static_cast<uint8_t>(target >> 8),
+                          static_cast<uint8_t>(target), 0};
+        contents.insert(contents.end(), data, data + size);
+        return pack(contents);
+    }
+    Bytes command(uint8_t id, const std::string& letters, const Bytes& value) const {
+        Bytes contents = {Command, id};
+        contents.insert(contents.end(), letters.begin(), letters.end());
+        contents.insert(contents.end(), value.begin(), value.end());
+        return pack(contents);
+    }
+    // Takes bytes from the modem. Calls `data(source, bytes, count)` with those of packets, as they
+    // come: what a packet holds has checks of its own. Calls `frame` with the contents of each
+    // other frame. Behind a wrong checksum the search goes on at the byte after the delimiter.
+    template <class Data, class Frame>
+    void feed(const uint8_t* bytes, size_t count, Data data, Frame frame) {
+        in_.insert(in_.end(), bytes, bytes + count);
+        size_t at = 0;
+        while (at < in_.size()) {
+            if (in_[at] != delimiter) {
+                ++at;
+                continue;
+            }
+            size_t used = read(at);
+            const size_t end = contents_.size(), head = headOf(end ? contents_[0] : 0);
+            if (head && end > std::max(head, given_)) {
+                const size_t from = std::max(head, given_);
+                data(sourceOf(head), contents_.data() + from, end - from);
+                given_ = end;
+            }
+            if (used == 0)
+                break;
+            at += used;
+            given_ = 0;
+            if (!head && isWhole_)
+                frame(contents_);
+        }
+        in_.erase(in_.begin(), in_.begin() + static_cast<std::ptrdiff_t>(at));
+    }
+    void clear() {
+        in_.clear();
+        given_ = 0;
+    }
+
+private:
+    static constexpr uint8_t delimiter = 0x7E, escape = 0x7D, escapeXor = 0x20;
+    static constexpr size_t longest = 120; // contents: a packet from a 64-bit address, and more
+
+    // Returns where the data of a packet begin; 0: it is another frame.
+    static size_t headOf(uint8_t type) { return type == Packet ? 5 : type == Wide ? 11 : 0; }
+    int sourceOf(size_t head) const {
+        return head == 5 ? contents_[1] << 8 | contents_[2] : nobody;
+    }
+    void put(Bytes& frame, uint8_t byte) const {
+        const bool isEscaped =
+            escapes_ && (byte == delimiter || byte == escape || byte == 0x11 || byte == 0x13);
+        if (isEscaped)
+            frame.push_back(escape);
+        frame.push_back(isEscaped ? byte ^ escapeXor : byte);
+    }
+    // Reads the contents, as far as they have come, of the frame whose delimiter stands at `at`.
+    // Returns the bytes used; 0: it is incomplete.
+    size_t read(size_t at) {
+        Bytes& plain = contents_; // with length and checksum, until the end
+        isWhole_ = false;
+        plain.clear();
+        size_t length = 0, used = 0, i = at + 1;
+        for (; i < in_.size() && !used; ++i) {
+            uint8_t byte = in_[i];
+            if (escapes_ && byte == delimiter) {
+                used = i - at; // another frame begins
+                break;
+            }
+            if (escapes_ && byte == escape) {
+                if (++i == in_.size())
+                    break;
+                byte = in_[i] ^ escapeXor;
+            }
+            plain.push_back(byte);
+            if (plain.size() == 2) {
+                length = size_t(plain[0]) << 8 | plain[1];
+                if (length == 0 || length > longest)
+                    used = 1;
+            } else if (plain.size() == length + 3 && plain.size() > 2) {
+                uint8_t sum = 0;
+                for (size_t b = 2; b < plain.size(); ++b)
+                    sum = static_cast<uint8_t>(sum + plain[b]);
+                isWhole_ = sum == 0xFF;
+                used = isWhole_ ? i + 1 - at : 1;
+                plain.pop_back();
+            }
+        }
+        plain.erase(plain.begin(),
+                    plain.begin() + std::min<std::ptrdiff_t>(2, std::ptrdiff_t(plain.size())));
+        return used;
+    }
+
+    bool escapes_;
+    Bytes in_;             // from the delimiter of the frame under way on
+    Bytes contents_;       // of the frame that was read last
+    bool isWhole_ = false; // and its checksum is right
+    size_t given_ = 0;     // contents up to here have been given, of the frame under way
+};
 
 // Times in microseconds, 32 bits that may wrap.
 class ApiModem {

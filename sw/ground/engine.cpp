@@ -1,17 +1,24 @@
 // SPDX-License-Identifier: MIT
 //
-// engine: the devices that are in use, and their peers.
+// engine: the devices that are in use, and an engine's thread: its serial port, the modem there,
+// and the peers in turn.
 
 #include "engine.h"
+#include "modem_setup.h"
 
+#include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
+#include <poll.h>
 #include <system_error>
 #include <unistd.h>
 
 namespace XBeeAT {
 
 namespace {
+
+constexpr std::chrono::seconds retryEvery{5}; // while only a listener waits for the modem
 
 std::mutex registryMutex;
 std::map<std::string, std::weak_ptr<Engine>>& registry() {
@@ -94,6 +101,252 @@ void Engine::wake() {
     char byte = 0;
     (void)!write(wakePipe_[1], &byte, 1);
     changed_.notify_all();
+}
+
+// Takes a packet while the line is free.
+bool Engine::transmit(Peer& peer, const U8* frame, U32 size) {
+    const U32 now = clock_.nowUs();
+    U32 rn = peer.randomWait();
+    for (auto& [address, other] : peers_)
+        rn = other->isUp() ? std::max(rn, other->randomWait()) : rn;
+    if (!serialOut_.empty() || (!api_ && serial_.waiting()))
+        return false;
+    serialOut_ = api_ ? api_->packet(peer.address(), frame, size, rn, now)
+                      : ApiModem::Bytes(frame, frame + size);
+    peer.airUs = std::max(peer.airUs, airUs_);
+    airUs_ = peer.airUs;
+    peer.airUs += LINK_PACKET_US + size * LINK_BYTE_US;
+    writeSerial();
+    return true;
+}
+
+// ---- the modem's life ----
+
+int Engine::waitMs(int ms, bool forBytes) {
+    // The wait also ends when the port is lost: where its simulator has ended, time stands still.
+    pollfd fds[] = {{wakePipe_[0], POLLIN, 0},
+                    {serial_.fd(), static_cast<short>(forBytes ? POLLIN : 0), 0}};
+    const U32 begin = clock_.nowUs(), us = static_cast<U32>(ms) * 1000;
+    for (;;) {
+        {
+            std::lock_guard<std::mutex> lock(mutex);
+            if (stop_)
+                return -1;
+        }
+        U32 passed = clock_.nowUs() - begin;
+        if (passed >= us || (fds[1].revents & POLLIN))
+            return static_cast<int>(passed);
+        char bytes[64];
+        if (clock_.wait(fds, 2, us - passed) > 0 && fds[0].revents)
+            (void)!read(wakePipe_[0], bytes, sizeof bytes);
+        if (fds[1].revents & ~POLLIN)
+            return -1;
+    }
+}
+
+// Ends all connections and those that wait for one, since the port or the modem is lost.
+void Engine::fail(const std::string& text) {
+    log(complained_ ? 1 : 0, text);
+    complained_ = failed_ = true;
+    longest_ = 0;
+    for (auto& [address, peer] : peers_)
+        peer->fail();
+}
+
+// Returns why the modem cannot be used; empty: it can.
+std::string Engine::prepareModem(const Settings& wanted) {
+    const U32 begin = clock_.nowUs();
+    ModemSetup setup(serial_, wanted, log,
+                     [this](int ms, bool forBytes) { return waitMs(ms, forBytes); });
+    if (!wanted.setUp) {
+        serial_.setSpeed(wanted.baud);
+    } else if (!setup.run()) {
+        return setup.trouble().empty() ? "the port '" + device + "' is lost" : setup.trouble();
+    }
+    std::lock_guard<std::mutex> lock(mutex);
+    longest_ = setup.encrypts() ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME;
+    serialOut_.clear();
+    api_ = setup.isApi() ? std::make_unique<ApiModem>(setup.escapes()) : nullptr;
+    log(1, "modem ready on " + device + " after " +
+               std::to_string((clock_.nowUs() - begin) / 1000) + " ms" +
+               (setup.isApi() ? ", in API mode" : "") + (setup.encrypts() ? ", it encrypts" : ""));
+    return "";
+}
+
+// Starts the link with a peer, if the modem is ready. One without API mode talks to the peer alone
+// that it was set up for, and not to all.
+void Engine::start(Peer& peer) {
+    if (longest_ && (api_ || (peer.address() == target_ && !peer.isAll())))
+        peer.start(longest_, api_ != nullptr, clock_.nowUs());
+}
+
+bool Engine::any(bool (Peer::*is)() const) const {
+    return std::any_of(peers_.begin(), peers_.end(),
+                       [is](const auto& p) { return (*p.second.*is)(); });
+}
+
+// Runs the links again and again: a lost port or a silent modem is tried again for a program that
+// connects or listens.
+void Engine::run() {
+    std::unique_lock<std::mutex> lock(mutex);
+    while (!stop_) {
+        if (failed_)
+            waitForReason(lock);
+        if (!stop_)
+            fly(lock);
+    }
+}
+
+void Engine::waitForReason(std::unique_lock<std::mutex>& lock) {
+    auto reason = [this] { return stop_ || any(&Peer::isWanted); };
+    if (!any(&Peer::listens))
+        changed_.wait(lock, [&] { return reason() || any(&Peer::listens); });
+    else
+        changed_.wait_for(lock, retryEvery, reason);
+}
+
+// Runs the links from an open port to a lost one. A modem that was reset in flight has its own
+// settings again, since nothing is written to its memory. It looks like a silent peer. So the modem
+// is set up again after a while, less and less often while nothing changes.
+void Engine::fly(std::unique_lock<std::mutex>& lock) {
+    const Settings wanted = settings;
+    const U32 down = static_cast<U32>(wanted.downMs) * 1000;
+    target_ = wanted.target;
+    patienceUs_ = down;
+    try {
+        if (failed_)
+            serial_.open(device);
+    } catch (const std::system_error& e) {
+        return fail(e.what());
+    }
+    // Keeps step: a simulator waits for this thread while it runs.
+    struct Step {
+        Step(Clock& c, int serial, const std::string& device) : clock(c) {
+            clock.keepStep(serial, device);
+        }
+        ~Step() { clock.leaveStep(); }
+        Clock& clock;
+    } step(clock_, serial_.fd(), device);
+    for (bool first = true;; first = false) {
+        lock.unlock();
+        const std::string trouble = prepareModem(wanted);
+        lock.lock();
+        if (stop_)
+            return;
+        if (!trouble.empty() && first)
+            return fail(trouble + "; the next connection tries again");
+        if (!trouble.empty())
+            log(0, trouble);
+        failed_ = complained_ = false;
+        for (auto& [address, peer] : peers_)
+            start(*peer);
+        upAt_ = clock_.nowUs();
+        loop(lock);
+        if (stop_ || failed_)
+            return;
+        log(0, "no link for " + std::to_string((clock_.nowUs() - upAt_) / 1000000) +
+                   " s: is the UAV on, in reach, and " +
+                   (wanted.keys.empty() ? "without a key as this side is" : "has it this key") +
+                   "? Setting the modem up again");
+        patienceUs_ = std::min(patienceUs_ * 2, 4 * down);
+    }
+}
+
+bool Engine::downTooLong(U32 now) {
+    if (any(&Peer::isUp) || !any(&Peer::hasLink)) {
+        upAt_ = now;
+        patienceUs_ = static_cast<U32>(settings.downMs) * 1000;
+    }
+    return settings.setUp && now - upAt_ >= patienceUs_;
+}
+
+// ---- bytes ----
+
+void Engine::readSerial(U32 now) {
+    U8 bytes[512];
+    const ssize_t count = serial_.read(bytes, sizeof bytes);
+    const size_t size = static_cast<size_t>(count);
+    if (count > 0 && api_)
+        api_->feed(
+            bytes, size,
+            [&](int source, const U8* data, size_t heard) { deliver(source, data, heard, now); },
+            [&](bool isThere) { Link_answer(radio, isThere, now); });
+    else if (count > 0)
+        deliver(target_, bytes, size, now);
+    else if (count == 0 || (errno != EAGAIN && errno != EINTR))
+        fail("serial port '" + device + "': " + (count == 0 ? "closed" : std::strerror(errno)));
+}
+
+// Gives bytes to the peer that they are from. A modem without an address of 16 bits can only be
+// that of a single peer.
+void Engine::deliver(int source, const U8* bytes, size_t size, U32 now) {
+    for (auto& [address, peer] : peers_)
+        if (address == source || (source == ApiFrames::nobody && !hasMany))
+            peer->receive(bytes, size, now);
+}
+
+void Engine::writeSerial() {
+    if (serialOut_.empty())
+        return;
+    ssize_t count = serial_.write(serialOut_.data(), serialOut_.size());
+    if (count > 0)
+        serialOut_.erase(serialOut_.begin(), serialOut_.begin() + count);
+}
+
+// Polls all peers, first the one that has had least of the air. Returns when to call again, in
+// microseconds.
+U32 Engine::pollPeers(U32 now) {
+    std::vector<Peer*> order;
+    for (auto& [address, peer] : peers_)
+        order.push_back(peer.get());
+    std::sort(order.begin(), order.end(),
+              [](const Peer* a, const Peer* b) { return a->airUs < b->airUs; });
+    U32 wait = 0xFFFFFFFFu;
+    for (Peer* peer : order) {
+        if (!api_ && (peer->address() != target_ || peer->isAll()) && peer->isWanted()) {
+            log(0, "the modem on '" + device + "' has no API mode: it talks to one vehicle only");
+            peer->fail();
+        }
+        wait = std::min(wait, peer->poll(now));
+    }
+    return wait;
+}
+
+// Moves bytes until the engine must stop, has failed, or all links have been down for too long.
+void Engine::loop(std::unique_lock<std::mutex>& lock) {
+    while (!stop_ && !failed_) {
+        U32 now = clock_.nowUs();
+        if (downTooLong(now))
+            return;
+        if (api_)
+            api_->expire(now, [&] { Link_answer(radio, 0, now); });
+        const U32 deadline = pollPeers(now);
+        std::vector<pollfd> fds = {
+            {wakePipe_[0], POLLIN, 0},
+            {serial_.fd(), static_cast<short>(serialOut_.empty() ? POLLIN : POLLIN | POLLOUT), 0}};
+        std::vector<Peer*> served; // another may come while this thread waits
+        for (auto& [address, peer] : peers_) {
+            served.push_back(peer.get());
+            peer->addInterest(fds);
+        }
+        lock.unlock();
+        clock_.wait(fds.data(), fds.size(), deadline);
+        lock.lock();
+        now = clock_.nowUs();
+        if (fds[0].revents) {
+            char bytes[64];
+            (void)!read(wakePipe_[0], bytes, sizeof bytes);
+        }
+        if (fds[1].revents & (POLLIN | POLLERR | POLLHUP))
+            readSerial(now);
+        writeSerial();
+        for (size_t i = 0; i < served.size(); ++i)
+            served[i]->servePrograms(&fds[2 + i * LINK_CHANNELS], now);
+    }
+    if (!failed_)
+        for (auto& [address, peer] : peers_)
+            peer->stop(clock_.nowUs());
+    writeSerial();
 }
 
 } // namespace XBeeAT

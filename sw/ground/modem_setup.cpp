@@ -3,7 +3,7 @@
 // modem_setup: AT commands, each reply checked.
 
 #include "modem_setup.h"
-#include "api_frames.h"
+#include "api_modem.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -133,7 +133,7 @@ const Link_Statistics* Link_statistics(const Link* link);
 #ifdef LINK_MINIMAL
 #include "minimal/link_minimal.h"
 #else
-#include "link_input.h"
+#include "link_session.h"
 
 /* The parts, from the bottom to the top: each knows those below it only. */
 struct Link {

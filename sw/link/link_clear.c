@@ -2,7 +2,7 @@
  *
  * link_clear: the codec without a key: frames end with a CRC.
  */
-#include "link_input.h"
+#include "link_session.h"
 
 /* The party whose checksum a frame has. */
 typedef enum Owner { NOBODY, HANDSHAKE, SESSION, CANDIDATE } Owner;

@@ -2,7 +2,7 @@
  *
  * link_compression: recognises Ice's messages, and writes and reads the tokens for them.
  */
-#include "link_compression.h"
+#include "link_receiver.h"
 
 #include <string.h>
 

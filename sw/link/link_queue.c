@@ -2,7 +2,7 @@
  *
  * link_queue: a ring of entries and a ring of their bytes.
  */
-#include "link_queue.h"
+#include "link_sender.h"
 
 static Link_Entry* entryAt(Link_Queue* queue, U32 index) {
     return &queue->entries[(queue->first + index) % LINK_SEND_MESSAGES];

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_secure: encrypts and authenticates frames by Ascon-AEAD128, and derives the keys.
- * All parts of a frame that are not encrypted belong to its nonce (docs/link.md).
+ * link_secure: derives the keys of handshakes and sessions (docs/link.md).
  */
 #include "link_wire.h"
 
@@ -9,67 +8,6 @@
 #include "x25519.h"
 
 #include <string.h>
-
-#define CLEAR_AT 11U  /* start of the payload in clear in a nonce, ... */
-#define CLEAR_MOST 5U /* and its greatest size there */
-
-/* Returns the number of payload bytes in clear, which come first: all of a control frame, the
- * acknowledgement of a PIGGYBACK, the nonces of HELLO-ACK and CONFIRM. */
-static U32 clearOf(const U8* frame) {
-    U32 most = frame[2] >> 5 >= LINK_KIND_PIGGYBACK ? 1U : 2U * LINK_NONCE_BYTES;
-    if (!(frame[0] & LINK_CONTROL))
-        return 0;
-    return LINK_LENGTH(frame) < most ? LINK_LENGTH(frame) : most;
-}
-
-static void makeNonce(U8* nonce, const U8* frame, U32 clear, U32 number, U32 acked) {
-    U32 kind = (U32)frame[2] >> 5;
-    memset(nonce, 0, ASCON_NONCE_BYTES);
-    link_put32(nonce, number);
-    link_put32(nonce + 4, acked);
-    if ((frame[0] & LINK_CONTROL) && LINK_IS_HANDSHAKE(kind))
-        memcpy(nonce, frame + LINK_HEADER, LINK_NONCE_BYTES);
-    else if (clear > CLEAR_MOST) /* an acknowledgement's: 9 bytes at most */
-        memcpy(nonce + 4, frame + LINK_HEADER + CLEAR_MOST,
-               clear < LINK_BITMAP + 1U ? clear - CLEAR_MOST : LINK_BITMAP + 1U - CLEAR_MOST);
-    memcpy(nonce + 8, frame, LINK_HEADER);
-    memcpy(nonce + CLEAR_AT, frame + LINK_HEADER, clear < CLEAR_MOST ? clear : CLEAR_MOST);
-}
-
-/* Encrypts or decrypts the payload, and computes its tag. */
-static void crypt(U8* frame, const U8* key, U32 number, U32 acked, int isDecryption, U8* tag) {
-    U8 nonce[ASCON_NONCE_BYTES];
-    U32 clear = clearOf(frame);
-    Ascon ascon;
-    makeNonce(nonce, frame, clear, number, acked);
-    Ascon_begin(&ascon, key, nonce);
-    Ascon_crypt(&ascon, frame + LINK_HEADER + clear, LINK_LENGTH(frame) - clear, isDecryption);
-    Ascon_end(&ascon, key, tag);
-}
-
-U32 link_protect(U8* frame, U32 header, const U8* key, U32 number, U32 acked) {
-    U32 size = LINK_LENGTH_OF(header) + LINK_HEADER;
-    U8 tag[ASCON_TAG_BYTES];
-    frame[0] = (U8)header;
-    frame[1] = (U8)(header >> 8);
-    frame[2] = (U8)(header >> 16);
-    crypt(frame, key, number, acked, 0, tag);
-    memcpy(frame + size, tag, LINK_TAG);
-    frame[0] = (U8)(frame[0] + LINK_TAG_MORE);
-    return size + LINK_TAG;
-}
-
-int link_unprotect(U8* frame, const U8* key, U32 number, U32 acked) {
-    U32 size = LINK_LENGTH(frame) - LINK_TAG_MORE;
-    U8 tag[ASCON_TAG_BYTES];
-    frame[0] = (U8)(frame[0] - LINK_TAG_MORE);
-    crypt(frame, key, number, acked, 1, tag);
-    if (Ascon_isSame(tag, frame + LINK_HEADER + size, LINK_TAG))
-        return 1;
-    Ascon_wipe(frame + LINK_HEADER + clearOf(frame), size - clearOf(frame));
-    frame[0] = (U8)(frame[0] + LINK_TAG_MORE);
-    return 0;
-}
 
 /* Makes the keystream of a nonce. It is never sent as such, so an attacker who learns one learns
  * nothing of another. */
@@ -140,9 +78,4 @@ void link_setSecret(Link_Secrets* secrets, int slot, const U8* key, U32 side) {
     memset(nonce, 0, sizeof nonce);
     derive(secrets->key[slot], nonce, secrets->hello[slot], LINK_KEY_BYTES);
     secrets->set = (U8)(secrets->set | 1U << slot);
-}
-
-U32 link_extend(U32 expected, U32 byte) {
-    U32 ahead = (byte - expected) & 0xFFU;
-    return expected + ahead - (ahead & 0x80U) * 2U;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_session: makes and ends sessions: handshake, reboots, a peer that has vanished.
+ * link_session: makes and ends sessions: handshake, reboots, a peer that has vanished; and gives
+ * each frame that comes to its part of the layer.
  */
 #include "link_session.h"
 
@@ -119,4 +120,134 @@ int link_pollSession(Link_Session* session) {
         session->pingAt = now + (silence >= LINK_PING_AFTER ? LINK_PING_EVERY : LINK_PROOF_EVERY);
     }
     return session->state == LINK_STATE_UP;
+}
+
+/* Parses the kept bytes, `count` now, and keeps an incomplete frame. */
+static void parseKept(Link_Input* input, U32 count, int isEnd) {
+    U32 used = input->output->codec->parse(input, input->bytes, count, isEnd);
+    input->count = (U8)(count - used);
+    memmove(input->bytes, input->bytes + used, input->count);
+}
+
+void link_pollInput(Link_Input* input) {
+    if (LINK_BEFORE(input->output->now, input->at + LINK_FRAME_GAP))
+        return;
+    if (input->count)
+        parseKept(input, input->count, 1);
+    if (input->output->codec->isSure)
+        input->outOfStep = 0;
+}
+
+void link_takeBytes(Link_Input* input, const U8* bytes, U32 size) {
+    link_pollInput(input);
+    if (size == 0)
+        return; /* or no silence would ever be seen; bytes may be null */
+    input->at = input->output->now;
+    if (input->count == 0) { /* the usual case: a whole frame is read in place; the rest fits */
+        U32 used = input->output->codec->parse(input, bytes, size, 0);
+        input->count = (U8)(size - used);
+        memcpy(input->bytes, bytes + used, input->count);
+        return;
+    }
+    while (size) {
+        U32 had = input->count;
+        U32 part = sizeof input->bytes - had;
+        if (part > size)
+            part = size;
+        memcpy(input->bytes + had, bytes, part);
+        bytes += part;
+        size -= part;
+        parseKept(input, had + part, 0);
+    }
+}
+
+/* Tells in which bits of EPOCH a frame differs from a session's key. */
+static U32 differs(const U8* frame, U32 key) {
+    return (frame[2] ^ LINK_KEY_EPOCH(key) << 2) & 0x1CU;
+}
+
+int link_isOfEpoch(const U8* frame, U32 key) {
+    U32 bits = differs(frame, key);
+    U32 whole = LINK_FIRST | LINK_LAST; /* the bits of a kind that rides, too */
+    return bits == 0 || (bits == LINK_READY && (frame[2] & whole) == whole);
+}
+
+int link_isPlausible(const Link_Output* output, const U8* frame) {
+    const Link_Codec* codec = output->codec;
+    U32 payload = LINK_LENGTH(frame) + LINK_OVERHEAD - codec->overhead;
+    Link_Kind kind = LINK_KIND_OF(frame);
+    if (kind == LINK_KIND_DATA)
+        return payload != 0 || (frame[2] & LINK_LAST);
+    if (kind > LINK_KIND_PING)
+        return payload >= 2U;
+    if (kind == LINK_KIND_ACK)
+        return payload - 1U <= LINK_BITMAP;
+    return payload == codec->sizes[kind];
+}
+
+static int onPiggyback(const Link_Session* session, const U8* frame, U32 early) {
+    Link_Sender* sender = session->sender;
+    const U8* payload = frame + LINK_HEADER;
+    U32 flags = early | LINK_FIRST | LINK_LAST | LINK_CHANNEL(frame[2]);
+    if (LINK_KIND_OF(frame) == LINK_KIND_PIGGYBACK_ASK)
+        flags |= LINK_ACK_NOW;
+    /* A peer sends no such frame while a message is held: the whole window is open. */
+    link_onAck(sender, payload[0], sender->fullCredit, 0, 0);
+    return link_onData(session->receiver, frame[1], flags, payload + 1, LINK_LENGTH(frame) - 1U);
+}
+
+void link_accept(Link_Input* input, const U8* frame, U32 size) {
+    Link_Output* output = input->output;
+    Link_Session* session = input->session;
+    const U8* payload = frame + LINK_HEADER;
+    U32 duplicates = output->statistics.duplicates;
+    U32 early = differs(frame, output->present.key) << 4;
+    Link_Kind kind = LINK_KIND_OF(frame);
+    int isFair = 1;
+    input->outOfStep = 0;
+    link_hear(output, size);
+    ++output->statistics.framesReceived;
+    output->statistics.bytesReceived += size;
+    if (LINK_IS_HANDSHAKE(kind)) {
+        output->codec->onHandshake(session, frame, kind);
+        return;
+    }
+    session->isUnconfirmed = 0;
+    if (!LINK_BEFORE(output->now, session->pingAt))
+        session->pingAt = output->now; /* or it would in time read as a future time */
+    if (kind == LINK_KIND_DATA) {
+        isFair =
+            link_onData(session->receiver, frame[1], early | frame[2], payload, LINK_LENGTH(frame));
+    } else if (kind == LINK_KIND_ACK) {
+        link_onAck(session->sender, frame[1], payload[0], payload + 1, LINK_LENGTH(frame) - 1U);
+    } else if (kind == LINK_KIND_BYE) {
+        link_lose(session);
+    } else if (kind == LINK_KIND_PING && output->codec->onPing) {
+        output->codec->onPing(session, frame);
+    } else if (kind == LINK_KIND_PING) {
+        link_oweAck(session->receiver);
+    } else {
+        isFair = onPiggyback(session, frame, early);
+    }
+    /* What was heard before may be an attacker's recording, and is no sign of life; link_onAck and
+     * the codec look themselves. */
+    if (kind >= LINK_KIND_PIGGYBACK && duplicates == output->statistics.duplicates)
+        output->heardAt = output->now;
+    if (!isFair)
+        link_abort(session);
+}
+
+/* The first byte behind a frame may be of an unknown session, whose peer gets an answer, but not
+ * too often. With a length that no frame has it is none, as a call to all vehicles. */
+void link_skip(Link_Input* input, const U8* frame, U32 left) {
+    Link_Output* output = input->output;
+    Link_Session* session = input->session;
+    if (!input->outOfStep && LINK_LENGTH(frame) <= LINK_MAX_PAYLOAD &&
+        left >= output->codec->overhead && session->state == LINK_STATE_IDLE &&
+        output->now - session->pingAt >= LINK_HELLO_FIRST) {
+        session->pingAt = output->now;
+        output->codec->call(session, frame);
+    }
+    input->outOfStep = 1;
+    ++output->statistics.bytesSkipped;
 }

@@ -105,7 +105,7 @@ void link_put32(U8* p, U32 value);
 /* Returns the key of the session of two nonces, in either order. */
 U32 link_sessionKey(U32 nonce, U32 peerNonce);
 
-/* link_secure: encryption of frames, and derivation of a session's keys (docs/link.md). */
+/* link_secure derives a session's keys, link_keyed encrypts frames under them (docs/link.md). */
 
 #define LINK_NONCE_BYTES 8U /* of each side's nonce in a secure handshake */
 #define LINK_OPEN_BYTES 32U /* of the open half of a pair, which HELLO-ACK and CONFIRM carry */

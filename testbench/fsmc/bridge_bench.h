@@ -11,7 +11,7 @@
 #include "random.h"
 #include <array>
 extern "C" {
-#include "fsmc_bank.h"
+#include "fsmc.h"
 #include "map_regs.h"
 #include "system_regs.h"
 }

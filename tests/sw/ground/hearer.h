@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "api_frames.h"
+#include "api_modem.h"
 #include "key_file.h"
 #include "rig.h"
 

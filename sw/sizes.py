@@ -46,68 +46,75 @@ def written(path, entries):
     print(f"Written: {path}")
 
 
-def layers(source, generated, build, output):
-    source, generated = os.path.abspath(source), os.path.abspath(generated)
-    image = list(sections(f"{build}/firmware/minimal.map"))
+def linked(image, layer, wanted):
+    return sum(size for name, _, size, file in image if f"/minimal_{layer}.arm/" in file
+               and re.match(wanted, name))
+
+
+def whole(files, source, generated):
+    """(text and read-only data, RAM) of all that these files hold."""
     includes = [generated, f"{generated}/slice/Autopilot"] + [f"{source}/sw/{d}" for d in (
         "base", "os", "os/host", "fsmc", "radio", "crypto", "link", "icec", "icec/endpoints")]
+    with tempfile.TemporaryDirectory() as work:
+        paths = map(str, pathlib.Path(source, "sw").glob(files))
+        subprocess.run(["arm-none-eabi-gcc", "-std=c90", "-mcpu=cortex-m3", "-mthumb", "-Os",
+                        "-ffunction-sections", "-fdata-sections", "-fno-merge-constants",
+                        *(f"-I{i}" for i in includes), "-c", *paths], cwd=work, check=True)
+        table = subprocess.run(["arm-none-eabi-size", *os.listdir(work)], cwd=work, check=True,
+                               capture_output=True, text=True).stdout
+    rows = [line.split() for line in table.splitlines()[1:]]
+    return sum(int(row[0]) for row in rows), sum(int(row[1]) + int(row[2]) for row in rows)
 
-    def linked(layer, wanted):
-        return sum(size for name, _, size, file in image if f"/minimal_{layer}.arm/" in file
-                   and re.match(wanted, name))
 
-    def whole(files):
-        """(text and read-only data, RAM) of all that these files hold."""
-        with tempfile.TemporaryDirectory() as work:
-            paths = [str(path) for pattern in files
-                     for path in pathlib.Path(source, "sw").glob(pattern)]
-            subprocess.run(["arm-none-eabi-gcc", "-std=c90", "-mcpu=cortex-m3", "-mthumb", "-Os",
-                            "-ffunction-sections", "-fdata-sections",
-                            "-fno-merge-constants", *(f"-I{i}" for i in includes), "-c", *paths],
-                           cwd=work, check=True)
-            table = subprocess.run(["arm-none-eabi-size", *os.listdir(work)], cwd=work, check=True,
-                                   capture_output=True, text=True).stdout
-        rows = [line.split() for line in table.splitlines()[1:]]
-        return sum(int(row[0]) for row in rows), sum(int(row[1]) + int(row[2]) for row in rows)
+def deepest(build, layer):
+    """(bytes, function) of the minimal program's largest frame."""
+    lines = [line.split("\t")
+             for su in pathlib.Path(build, "sw/apps").glob(f"minimal_{layer}.arm/**/*.su")
+             for line in open(su)]
+    return max(((int(size), where.split(":")[3]) for where, size, *_ in lines), default=(0, ""))
 
-    def deepest(layer):
-        """(bytes, function) of the minimal program's largest frame."""
-        lines = [line.split("\t")
-                 for su in pathlib.Path(build, "sw/apps").glob(f"minimal_{layer}.arm/**/*.su")
-                 for line in open(su)]
-        return max(((int(size), where.split(":")[3]) for where, size, *_ in lines), default=(0, ""))
 
-    budget, over, entries = json.load(open(f"{source}/sw/size_budget.json")), [], []
+def excess(entries, source):
+    """Sentences about what sw/size_budget.json does not allow."""
+    budget = json.load(open(f"{source}/sw/size_budget.json"))
+    for name, size in ((entry["name"], entry["value"]) for entry in entries):
+        if name not in budget:
+            yield f'size: sw/size_budget.json has no "{name}" (it is {size})'
+        elif size > budget[name]:
+            yield (f"size: {name} has grown to {size} bytes, its budget is {budget[name]} "
+                   "(sw/size_budget.json)")
 
-    def entry(name, size, limit=0, is_held=True):
+
+def layers(source, generated, build, output):
+    source, generated = os.path.abspath(source), os.path.abspath(generated)
+    image, entries = list(sections(f"{build}/firmware/minimal.map")), []
+
+    def entry(name, size, limit=0):
         entries.append({"name": name, "value": size, "unit": "bytes",
                         **({"limit": limit} if limit else {}), "command": "make size"})
-        if is_held and name not in budget:
-            over.append(f'sw/size_budget.json has no "{name}" (it is {size})')
-        elif is_held and size > budget[name]:
-            over.append(f"{name} has grown to {size} bytes, its budget is {budget[name]} "
-                        "(sw/size_budget.json)")
 
     print("%-10s %8s %8s %8s %8s %9s %s" % ("layer", "minimal", "paper's", "full", "RAM min",
                                             "RAM full", "largest frame (minimal)"))
     small_all = large_all = 0
     for layer, paper in PAPER.items():
-        small, ram = linked(layer, r"\.(text|rodata)"), linked(layer, r"\.(data|bss)|COMMON")
-        large, large_ram = whole(["icec/endpoints/xbee_endpoint.c"
-                                  if layer == "endpoint" else f"{layer}/*.c"])
+        small, ram = (linked(image, layer, wanted)
+                      for wanted in (r"\.(text|rodata)", r"\.(data|bss)|COMMON"))
+        large, large_ram = whole("icec/endpoints/xbee_endpoint.c" if layer == "endpoint" else
+                                 f"{layer}/*.c", source, generated)
         print("%-10s %8d %8s %8d %8d %9d %d %s" % (layer, small, paper or "-", large, ram,
-                                                   large_ram, *deepest(layer)))
+                                                   large_ram, *deepest(build, layer)))
         entry(f"minimal.{layer}", small, paper)
         entry(f"full.{layer}", large)
         small_all, large_all = small_all + small, large_all + large
+    over = list(excess(entries, source))
     print("%-10s %8d %8d %8d" % ("all", small_all, sum(PAPER.values()), large_all))
-    entry("minimal.all", small_all, sum(PAPER.values()), is_held=False)
-    print(f"RAM of the minimal program with all objects: {linked('app', r'[.](data|bss)|COMMON')} "
-          "bytes, of generated code and servants: "
-          f"{linked('app', r'[.](text|rodata)')} bytes of text")
+    entry("minimal.all", small_all, sum(PAPER.values()))
+    print("RAM of the minimal program with all objects: "
+          f"{linked(image, 'app', r'[.](data|bss)|COMMON')} bytes, of generated code and servants: "
+          f"{linked(image, 'app', r'[.](text|rodata)')} bytes of text")
     written(output, entries)
     if over:
-        sys.exit("\n".join("size: " + what for what in over))
+        sys.exit("\n".join(over))
 
 
 def firmware(path, objects, output):

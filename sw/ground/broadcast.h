@@ -54,9 +54,9 @@ public:
     }
 
 private:
-    // With 30 % loss all copies miss a vehicle once in 400 calls. They take longer than a quarter
-    // of a second, so numbers do not run ahead of the clock. Each waits a random time: what
-    // disturbs one does not meet all.
+    // Copies of a call all miss a vehicle once in 400 calls where 30 % is lost. They take longer
+    // than a quarter of a second, so numbers do not run ahead of the clock. Each waits a random
+    // time: what disturbs one does not meet all.
     static constexpr unsigned copies = 5;
     static constexpr U32 leastUs = 70000, spreadUs = 80000;
 

@@ -12,120 +12,21 @@ import glob
 import importlib.util
 import itertools
 import json
-import mmap
 import os
-import struct
 import subprocess
 import sys
 import threading
-import time
 
 import Ice
 
 import plugged
+from mission_log import Air, Log, report, whole
 from PIL import Image, ImageDraw
 
-
-class Air:
-    """The simulator's counters (sw/ground/sim_status.h); real hardware has none."""
-
-    FORMAT = struct.Struct("<8s7Q")
-
-    def __init__(self, path):
-        self.map = None
-        if path:
-            with open(path, "rb") as f:
-                self.map = mmap.mmap(f.fileno(), self.FORMAT.size, access=mmap.ACCESS_READ)
-
-    def read(self):
-        if not self.map:
-            return None
-        fields = self.FORMAT.unpack(self.map[: self.FORMAT.size])
-        names = ("ns", "cycles", "up", "down", "packets", "lost", "wall")
-        return dict(zip(names, fields[1:]))
-
-
-# corners: a core that takes a pixel at the threshold for a brighter one passed with 121, and failed with 313
+# Corners: a core that takes a pixel at the threshold for a brighter one passed with 121 of them,
+# and failed with 313.
 ENOUGH = 300
 IP = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../../ip")
-RESULTS = ("after.png", "report.md", "report.json", "calls.jsonl")
-
-
-@contextlib.contextmanager
-def whole(path):
-    """Returns a temporary name for a file that takes the name `path` when it is complete."""
-    beside = path + ".new"
-    try:
-        yield beside
-        os.replace(beside, path)
-    finally:
-        with contextlib.suppress(FileNotFoundError):
-            os.remove(beside)
-
-
-class Log:
-    """Writes a line a call for people, and rows for the report."""
-
-    def __init__(self, air, out, build):
-        self.air, self.out, self.build = air, out, build  # folders: of the results, of the build
-        self.rows = []
-        followers = glob.glob(os.path.join(glob.escape(out), "after[0-9]*.png"))
-        # Those of the mission before; a link is removed, and what it leads to stays.
-        for path in [*(os.path.join(out, name) for name in RESULTS), *followers]:
-            with contextlib.suppress(FileNotFoundError):
-                os.remove(path)
-        self.live = open(os.path.join(out, "calls.jsonl"), "x")  # the page of `make run` follows it
-        self.lock = threading.Lock()
-        self.start = time.monotonic()
-
-    def say(self, text):
-        with self.lock:
-            print("%7.3f s  %s" % (time.monotonic() - self.start, text), flush=True)
-
-    def follow(self, row):
-        with self.lock:
-            self.live.write(json.dumps(dict(row, at=round(time.monotonic() - self.start, 3),
-                                            ns=(self.air.read() or {}).get("ns"))) + "\n")
-            self.live.flush()
-
-    def note(self, text):
-        """Prints a line that is no call, on the terminal and on the page."""
-        self.say(text)
-        self.follow({"who": "ground", "what": text})
-
-    def remind(self, what, answered):
-        seconds = 0
-        while not answered.wait(15):
-            seconds += 15
-            self.say("no answer to %s for %d s" % (what, seconds))
-
-    def call(self, who, what, function):
-        """Runs the call and returns its result; records the bytes on the air."""
-        before, wall = self.air.read(), time.monotonic()
-        answered = threading.Event()
-        threading.Thread(target=self.remind, args=(what, answered), daemon=True).start()
-        try:
-            result = function()
-            outcome = ""
-        except Ice.Exception as e:
-            outcome = " failed: " + type(e).__name__
-            raise
-        finally:
-            answered.set()
-            ms = (time.monotonic() - wall) * 1000
-            after = self.air.read()
-            row = {"who": who, "what": what + outcome, "wall_ms": round(ms, 1)}
-            text = "%-16s %-48s %7.1f ms" % (who, what + outcome, ms)
-            if before:
-                row["simulated_ms"] = round((after["ns"] - before["ns"]) / 1e6, 1)
-                row["bytes_up"] = after["up"] - before["up"]
-                row["bytes_down"] = after["down"] - before["down"]
-                text += " wall, %7.1f ms simulated, %4d bytes up, %4d down" % (
-                    row["simulated_ms"], row["bytes_up"], row["bytes_down"])
-            self.rows.append(row)
-            self.follow(row)
-            self.say(text)
-        return result
 
 
 def parse_arguments():
@@ -215,10 +116,12 @@ def check_against_reference(args, result):
     best = [[f.x, f.y, f.score] for f in result.best]
     if [result.found, best] == [want["found"], want["best"]]:
         return
-    text = "the vision core's result differs from the C++ reference: %d corners, not %d" % (result.found, want["found"])
+    text = ("the vision core's result differs from the C++ reference: "
+            f"{result.found} corners, not {want['found']}")
     for number, (here, there) in enumerate(itertools.zip_longest(best, want["best"]), 1):
         if here != there:
-            text += "; the first that differs, by their scores, is number %d: [x, y, score] %s, not %s" % (number, here, there)
+            text += (f"; the first that differs, by their scores, is number {number}: "
+                     f"[x, y, score] {here}, not {there}")
             break
     raise RuntimeError(text)
 
@@ -290,28 +193,6 @@ class Observer(Follower):
         super().land()
 
 
-def report(args, log, result, station, air):
-    lines = ["# Mission report", "",
-             "Frame `%s`, threshold %d, loss on the air %s: %d corners, %d cycles in the core." % (
-                 os.path.basename(args.frame), args.threshold, args.loss, result.found,
-                 result.cycles), "",
-             "| who | call | wall ms | simulated ms | bytes up | bytes down |",
-             "|---|---|---|---|---|---|"]
-    for r in log.rows:
-        lines.append("| %s | %s | %s | %s | %s | %s |" % (
-            r["who"], r["what"], r["wall_ms"], r.get("simulated_ms", ""), r.get("bytes_up", ""),
-            r.get("bytes_down", "")))
-    lines += ["", "| corner | x | y | score |", "|---|---|---|---|"]
-    lines += ["| %d | %d | %d | %d |" % (i + 1, f.x, f.y, f.score)
-              for i, f in enumerate(result.best)]
-    with whole(os.path.join(args.out, "report.md")) as beside, open(beside, "w") as f:
-        f.write("\n".join(lines) + "\n")
-    totals = air.read() or {}
-    with whole(os.path.join(args.out, "report.json")) as beside, open(beside, "w") as f:
-        json.dump({"calls": log.rows, "found": result.found, "cycles": result.cycles,
-                   "vehicle": station.params, "air": totals}, f, indent=2)
-
-
 def part_of(folder):
     """Imports FOLDER/ground.py."""
     path = os.path.join(folder, "ground.py")
@@ -340,79 +221,109 @@ def explain(communicator, args, failure):
         found = differences(Hw.ChipPrx.uncheckedCast(communicator.stringToProxy(
             "chip:" + args.endpoint)))
         if found:
-            text += "; ".join(["",
-                               *found]) + ": build both anew from one ip/cores.list, the firmware by make firmware, " \
-                "the chip by make synth-edif (docs/utilisation.md)"
+            text += "; ".join(["", *found]) + (
+                ": build both anew from one ip/cores.list, the firmware by make firmware, the chip "
+                "by make synth-edif (docs/utilisation.md)")
     return text
 
 
-def fly(args, communicator):
-    import Autopilot  # made by loadSlice
-    parts = [part_of(folder) for folder in args.cores]
-    air = Air(args.status)
-    log = Log(air, args.out, os.path.dirname(os.path.abspath(args.plugin)))
-    station = make_station(Autopilot, log)
-    adapter = communicator.createObjectAdapter("Station")
-    adapter.add(station, communicator.stringToIdentity("station"))
-    adapter.activate()
-    begun = "calling over the wire at" if args.wire else "setting the ground's modem up on"
-    log.say("%s %s; the UAV has %d s to answer" % (begun, args.device, args.patience))
+class Mission:
+    """The calls of a mission, step by step, to the vehicle 1 unless a step says otherwise."""
 
-    where = "%s -t %d" % (args.endpoint, 1000 * args.patience // 2)  # Ice tries twice
-    base = communicator.stringToProxy("hwengine1:" + where)
-    engine = log.call("ground -> UAV", "checkedCast(hwengine1)",
-                      lambda: Autopilot.HwProcessingEnginePrx.checkedCast(base))
-    # As in the paper's Figure 5: -o is a oneway proxy.
-    oneway = Autopilot.HwProcessingEnginePrx.uncheckedCast(
-        communicator.stringToProxy("hwengine1 -o:" + where))
+    def __init__(self, args, communicator):
+        import Autopilot  # made by loadSlice
+        self.args, self.communicator, self.autopilot = args, communicator, Autopilot
+        self.parts = [part_of(folder) for folder in args.cores]
+        self.air = Air(args.status)
+        self.log = Log(self.air, args.out, os.path.dirname(os.path.abspath(args.plugin)))
+        self.station = make_station(Autopilot, self.log)
 
-    def proxy(identity, vehicle=1):
-        return communicator.stringToProxy(
-            identity + ":" + where.replace("0x0001", "0x%04x" % vehicle))
+    def proxy(self, identity, vehicle=1):
+        endpoint = self.args.endpoint.replace("0x0001", f"0x{vehicle:04x}")
+        return self.communicator.stringToProxy(  # Ice tries twice
+            f"{identity}:{endpoint} -t {1000 * self.args.patience // 2}")
 
-    if args.camera:
-        size = Image.open(args.frame).size
-        for part in parts:
-            if hasattr(part, "prepare"):
-                part.prepare(log, proxy, *size)
+    def call(self, what, function):
+        return self.log.call("ground -> UAV", what, function)
 
-    if args.vehicles > 3:  # the first one asks the second for its state, and reports that
-        fellow = Autopilot.VehiclePrx.uncheckedCast(proxy("uav", 2))
-        log.call("ground -> UAV", "uav2.setFlightState(flying)",
-                 lambda: fellow.setFlightState(Autopilot.FlightState.flying))
-    log.call("ground -> UAV", "hwengine1.setParameterA(%d), oneway" % args.threshold,
-             lambda: oneway.setParameterA(args.threshold))
-    log.call("ground -> UAV", "hwengine1.startProcessing(), oneway", oneway.startProcessing)
-    result = log.call("ground -> UAV", "hwengine1.getResult()", engine.getResult)
-    log.say("%d corners; the core took %d cycles" % (result.found, result.cycles))
-    log.follow({"features": [[f.x, f.y, f.score] for f in result.best], "found": result.found})
+    def serve(self):
+        adapter = self.communicator.createObjectAdapter("Station")
+        adapter.add(self.station, self.communicator.stringToIdentity("station"))
+        adapter.activate()
+        begun = "calling over the wire at" if self.args.wire else "setting the ground's modem up on"
+        self.log.say(f"{begun} {self.args.device}; the UAV has {self.args.patience} s to answer")
 
-    followers = [Follower(args, communicator, log, address)
-               for address in range(2, args.vehicles + 1)]
-    if args.observer_device:
-        followers.append(Observer(args, log))
-    if not station.called.wait(args.patience):
-        raise RuntimeError("the UAV did not call Station.vehicleState within %d s" % args.patience)
-    if not station.alive:
-        raise RuntimeError("uav.isAlive answered %r" % station.alive)
-    if args.reference:
+    def prepare(self):
+        """Tells the cores of the frame's size, and the first vehicle of four and more that the
+        second one, whose state it asks for and reports, flies."""
+        if self.args.camera:
+            size = Image.open(self.args.frame).size
+            for part in self.parts:
+                if hasattr(part, "prepare"):
+                    part.prepare(self.log, self.proxy, *size)
+        if self.args.vehicles > 3:
+            fellow = self.autopilot.VehiclePrx.uncheckedCast(self.proxy("uav", 2))
+            self.call("uav2.setFlightState(flying)",
+                      lambda: fellow.setFlightState(self.autopilot.FlightState.flying))
+
+    def find_corners(self):
+        """Returns the corners that the vision core finds, by the calls of the paper's Figure 5."""
+        prx, threshold = self.autopilot.HwProcessingEnginePrx, self.args.threshold
+        engine = self.call("checkedCast(hwengine1)",
+                           lambda: prx.checkedCast(self.proxy("hwengine1")))
+        oneway = prx.uncheckedCast(self.proxy("hwengine1 -o"))
+        self.prepare()
+        self.call(f"hwengine1.setParameterA({threshold}), oneway",
+                  lambda: oneway.setParameterA(threshold))
+        self.call("hwengine1.startProcessing(), oneway", oneway.startProcessing)
+        result = self.call("hwengine1.getResult()", engine.getResult)
+        self.log.say(f"{result.found} corners; the core took {result.cycles} cycles")
+        self.log.follow({"features": [[f.x, f.y, f.score] for f in result.best],
+                         "found": result.found})
+        return result
+
+    def call_others(self):
+        """Begins to call the other vehicles, and by the second ground all."""
+        followers = [Follower(self.args, self.communicator, self.log, address)
+                     for address in range(2, self.args.vehicles + 1)]
+        if self.args.observer_device:
+            followers.append(Observer(self.args, self.log))
+        return followers
+
+    def hear(self):
+        if not self.station.called.wait(self.args.patience):
+            raise RuntimeError("the UAV did not call Station.vehicleState within "
+                               f"{self.args.patience} s")
+        if not self.station.alive:
+            raise RuntimeError(f"uav.isAlive answered {self.station.alive!r}")
+
+    def check(self, result):
+        if not self.args.reference:
+            return
         try:
-            check_against_reference(args, result)
+            check_against_reference(self.args, result)
         except RuntimeError as e:
-            log.follow({"who": "ground", "what": "the mission failed: %s" % e})
+            self.log.follow({"who": "ground", "what": f"the mission failed: {e}"})
             raise
-        log.note("the result equals the C++ reference, bit by bit")
+        self.log.note("the result equals the C++ reference, bit by bit")
         if result.found < ENOUGH:
-            log.note("%d corners leave much of the core untried: make ip-test IP=vision tries all "
-                     "of it" % result.found)
-    # A part may return a function to be called after all parts.
-    ends = [part.fly(log, proxy, "%d corners" % result.found) for part in parts]
-    for end in filter(None, ends):
-        end()
-    draw(args.frame, result, os.path.join(args.out, "after.png"))
-    for follower in followers:
-        follower.land()
-    report(args, log, result, station, air)
+            self.log.note(f"{result.found} corners leave much of the core untried: make ip-test "
+                          "IP=vision tries all of it")
+
+    def fly(self):
+        self.serve()
+        result = self.find_corners()
+        followers = self.call_others()
+        self.hear()
+        self.check(result)
+        # A part may return a function to be called after all parts.
+        ends = [part.fly(self.log, self.proxy, f"{result.found} corners") for part in self.parts]
+        for end in filter(None, ends):
+            end()
+        draw(self.args.frame, result, os.path.join(self.args.out, "after.png"))
+        for follower in followers:
+            follower.land()
+        report(self.args, self.log, result, self.station, self.air)
 
 
 def main():
@@ -424,7 +335,7 @@ def main():
         for file in [args.slice, registers, *(file for core in args.cores
                                               for file in glob.glob(os.path.join(core, "*.ice")))]:
             Ice.loadSlice("", ["-I" + (Ice.getSliceDir() or "."), file])
-        fly(args, communicator)
+        Mission(args, communicator).fly()
         return 0
     except KeyboardInterrupt:
         return 130

@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: MIT
+"""mission_log: what a mission prints, and keeps in the folder of its results."""
+
+import contextlib
+import glob
+import json
+import mmap
+import os
+import struct
+import threading
+import time
+
+import Ice
+
+RESULTS = ("after.png", "report.md", "report.json", "calls.jsonl")
+
+
+class Air:
+    """The simulator's counters (sw/ground/sim_status.h); real hardware has none."""
+
+    FORMAT = struct.Struct("<8s7Q")
+
+    def __init__(self, path):
+        self.map = None
+        if path:
+            with open(path, "rb") as f:
+                self.map = mmap.mmap(f.fileno(), self.FORMAT.size, access=mmap.ACCESS_READ)
+
+    def read(self):
+        if not self.map:
+            return None
+        fields = self.FORMAT.unpack(self.map[: self.FORMAT.size])
+        return dict(zip(("ns", "cycles", "up", "down", "packets", "lost", "wall"), fields[1:]))
+
+
+@contextlib.contextmanager
+def whole(path):
+    """Returns a temporary name for a file that takes the name `path` when it is complete."""
+    beside = path + ".new"
+    try:
+        yield beside
+        os.replace(beside, path)
+    finally:
+        with contextlib.suppress(FileNotFoundError):
+            os.remove(beside)
+
+
+class Log:
+    """Writes a line a call for people, and rows for the report."""
+
+    def __init__(self, air, out, build):
+        self.air, self.out, self.build = air, out, build  # folders: of the results, of the build
+        self.rows = []
+        followers = glob.glob(os.path.join(glob.escape(out), "after[0-9]*.png"))
+        # Those of the mission before; a link is removed, and what it leads to stays.
+        for path in [*(os.path.join(out, name) for name in RESULTS), *followers]:
+            with contextlib.suppress(FileNotFoundError):
+                os.remove(path)
+        self.live = open(os.path.join(out, "calls.jsonl"), "x")  # the page of `make run` follows it
+        self.lock = threading.Lock()
+        self.start = time.monotonic()
+
+    def say(self, text):
+        with self.lock:
+            print("%7.3f s  %s" % (time.monotonic() - self.start, text), flush=True)
+
+    def follow(self, row):
+        with self.lock:
+            self.live.write(json.dumps(dict(row, at=round(time.monotonic() - self.start, 3),
+                                            ns=(self.air.read() or {}).get("ns"))) + "\n")
+            self.live.flush()
+
+    def note(self, text):
+        """Prints a line that is no call, on the terminal and on the page."""
+        self.say(text)
+        self.follow({"who": "ground", "what": text})
+
+    def remind(self, what, answered):
+        seconds = 0
+        while not answered.wait(15):
+            seconds += 15
+            self.say("no answer to %s for %d s" % (what, seconds))
+
+    def call(self, who, what, function):
+        """Runs the call and returns its result; records the bytes on the air."""
+        before, wall = self.air.read(), time.monotonic()
+        answered = threading.Event()
+        threading.Thread(target=self.remind, args=(what, answered), daemon=True).start()
+        outcome = ""
+        try:
+            return function()
+        except Ice.Exception as e:
+            outcome = " failed: " + type(e).__name__
+            raise
+        finally:
+            answered.set()
+            ms = (time.monotonic() - wall) * 1000
+            after = self.air.read()
+            row = {"who": who, "what": what + outcome, "wall_ms": round(ms, 1)}
+            text = f"{who:<16} {what + outcome:<48} {ms:7.1f} ms"
+            if before:
+                row.update(simulated_ms=round((after["ns"] - before["ns"]) / 1e6, 1),
+                           bytes_up=after["up"] - before["up"],
+                           bytes_down=after["down"] - before["down"])
+                text += (f" wall, {row['simulated_ms']:7.1f} ms simulated, {row['bytes_up']:4} "
+                         f"bytes up, {row['bytes_down']:4} down")
+            self.rows.append(row)
+            self.follow(row)
+            self.say(text)
+
+
+def report(args, log, result, station, air):
+    lines = ["# Mission report", "", f"Frame `{os.path.basename(args.frame)}`, threshold "
+             f"{args.threshold}, loss on the air {args.loss}: {result.found} corners, "
+             f"{result.cycles} cycles in the core.", "",
+             "| who | call | wall ms | simulated ms | bytes up | bytes down |",
+             "|---|---|---|---|---|---|"]
+    for row in log.rows:
+        cells = (row.get(name, "") for name in ("who", "what", "wall_ms", "simulated_ms",
+                                                "bytes_up", "bytes_down"))
+        lines.append(f"| {' | '.join(map(str, cells))} |")
+    lines += ["", "| corner | x | y | score |", "|---|---|---|---|"]
+    lines += [f"| {i} | {f.x} | {f.y} | {f.score} |" for i, f in enumerate(result.best, 1)]
+    with whole(os.path.join(args.out, "report.md")) as beside, open(beside, "w") as f:
+        f.write("\n".join(lines) + "\n")
+    with whole(os.path.join(args.out, "report.json")) as beside, open(beside, "w") as f:
+        json.dump({"calls": log.rows, "found": result.found, "cycles": result.cycles,
+                   "vehicle": station.params, "air": air.read() or {}}, f, indent=2)

@@ -26,7 +26,7 @@ import tempfile
 import urllib.request
 
 CACHE = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "icesoc"
-LIST = pathlib.Path(__file__).resolve().parent.parent / "examples/foreign/files.json"
+LIST = pathlib.Path(__file__).resolve().parent.parent / "examples/foreign/cores.json"
 GITHUB = os.environ.get("ICESOC_RAW") or "https://raw.githubusercontent.com"
 NPM = os.environ.get("ICESOC_NPM") or "https://registry.npmjs.org"
 KEYRING = "/usr/share/keyrings/debian-archive-keyring.gpg"
@@ -199,13 +199,35 @@ def sodium(target):
     unpack(released(*SODIUM), "libsodium-1.0.18/src/libsodium/", target)
 
 
+def source_of_cores(its, target):
+    """One source that examples/foreign/cores.json names: an archive of Debian's, or files."""
+    if "debian" in its:
+        return unpack(released(its["debian"], its["sha256"]), its["folder"], target)
+    target.mkdir(parents=True)
+    for path, checksum in its["files"].items():
+        shutil.copyfile(kept(f"{GITHUB}/{its['github']}/{path}", checksum),
+                        target / os.path.basename(path))
+
+
 def foreign(target):
-    """the third-party cores that examples/foreign/files.json names"""
-    for repository, its in json.loads(LIST.read_text()).items():
-        for path, checksum in its["files"].items():
-            file = target / repository.split("/")[1] / os.path.basename(path)
-            file.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(kept(f"{GITHUB}/{repository}/{its['commit']}/{path}", checksum), file)
+    """the third-party cores that examples/foreign/cores.json names, as far as they are reached"""
+    reached = 0
+    for name, its in json.loads(LIST.read_text()).items():
+        folder, sums = target / name, json.dumps({n: its[n] for n in its if n != "cores"})
+        note = target / f"{name}.done"  # what is there already
+        if its.keys() == {"cores"} or (note.exists() and note.read_text() == sums):
+            reached += its.keys() != {"cores"}
+            continue
+        shutil.rmtree(folder, ignore_errors=True)
+        note.unlink(missing_ok=True)
+        try:
+            source_of_cores(its, folder)
+            note.write_text(sums)
+            reached += 1
+        except Unreachable as error:
+            print(f"fetch: without {', '.join(its['cores'])}: {error}", file=sys.stderr)
+    if not reached:
+        raise Unreachable("no source of a third-party core")
 
 
 def svd(target):

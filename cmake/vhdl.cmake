@@ -9,15 +9,19 @@ add_custom_command(OUTPUT ${GHDL}
   DEPENDS ${CMAKE_SOURCE_DIR}/cmake/fetch.py VERBATIM COMMENT "GHDL 5")
 add_custom_target(ghdl DEPENDS ${GHDL})
 
-# icesoc_vhdl(NAME entity SOURCES file... [REGS block...] [LIBRARY name] [GENERICS name=value...]):
-# ${GEN_DIR}/<entity>.v, target <entity>_verilog. The files come in any order. GHDL names them as it
+# icesoc_vhdl(NAME entity SOURCES file... [REGS block...] [LIBRARY name] [GENERICS name=value...]
+# [FOREIGN]): ${GEN_DIR}/<entity>.v, target <entity>_verilog. The files come in any order. GHDL names them as it
 # gets them: relative to the tree, so that copies of it elsewhere get the same Verilog.
 function(icesoc_vhdl)
-  cmake_parse_arguments(A "" "NAME;LIBRARY" "SOURCES;REGS;GENERICS" ${ARGN})
+  cmake_parse_arguments(A "FOREIGN" "NAME;LIBRARY" "SOURCES;REGS;GENERICS" ${ARGN})
   list(TRANSFORM A_GENERICS PREPEND -g)
   list(JOIN A_GENERICS " " generics)
   if(NOT A_LIBRARY)
     set(A_LIBRARY work)
+  endif()
+  set(foreign)
+  if(A_FOREIGN)
+    set(foreign VHDL_FOREIGN=1)
   endif()
   set(packages)
   set(deps)
@@ -37,7 +41,7 @@ function(icesoc_vhdl)
   file(MAKE_DIRECTORY ${work})
   add_custom_command(OUTPUT ${GEN_DIR}/${A_NAME}.v
     COMMAND ${CMAKE_COMMAND} -E env VHDL_LIBRARY=${A_LIBRARY} "VHDL_GENERICS=${generics}"
-            ${CMAKE_SOURCE_DIR}/cmake/vhdl_to_verilog.sh ${GHDL} ${work} ${A_NAME}
+            ${foreign} ${CMAKE_SOURCE_DIR}/cmake/vhdl_to_verilog.sh ${GHDL} ${work} ${A_NAME}
             ${GEN_DIR}/${A_NAME}.v ${named}
     WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}
     DEPENDS ${GHDL} ghdl ${packages} ${A_SOURCES} ${deps}

@@ -4,15 +4,19 @@
 # vhdl_to_verilog: GHDL work-folder entity output.v file.vhd ...   A latch in the result is an
 # error.
 # The files come in any order. VHDL_LIBRARY: their library, if they refer to themselves by its name.
-# VHDL_GENERICS: "-gNAME=value ..." of the entity.
+# VHDL_GENERICS: "-gNAME=value ..." of the entity. VHDL_FOREIGN: third-party sources, which may use
+# Synopsys' packages and what other tools allow; their assertions are for their own simulations.
 
 set -eu
 ghdl=$1 work=$2 entity=$3 output=$4
 shift 4
-library=${VHDL_LIBRARY:-work}
+library=${VHDL_LIBRARY:-work} options='--std=08'
+[ -z "${VHDL_FOREIGN:-}" ] || options='--std=08 -frelaxed -fsynopsys'
 rm -f "$work"/*.cf
-"$ghdl" -i --std=08 --work="$library" --workdir="$work" "$@"
-"$ghdl" -m --std=08 --work="$library" --workdir="$work" "$entity" >"$work/messages" 2>&1 || {
+# shellcheck disable=SC2086 # a list of words
+"$ghdl" -i $options --work="$library" --workdir="$work" "$@"
+# shellcheck disable=SC2086
+"$ghdl" -m $options --work="$library" --workdir="$work" "$entity" >"$work/messages" 2>&1 || {
     cat "$work/messages" >&2
     exit 1
 }
@@ -21,8 +25,8 @@ rm -f "$work"/*.cf
     echo "/* verilator lint_off UNUSEDSIGNAL */ // a generated netlist names what nobody uses"
     echo "/* verilator lint_off DECLFILENAME */ // all entities of a core are in one file"
     # shellcheck disable=SC2086 # a list of words
-    "$ghdl" --synth --std=08 --work="$library" --workdir="$work" ${VHDL_GENERICS:-} \
-        --out=verilog "$entity" 2>"$work/messages" &&
+    "$ghdl" --synth $options --work="$library" --workdir="$work" ${VHDL_GENERICS:-} \
+        ${VHDL_FOREIGN:+--no-formal} --out=verilog "$entity" 2>"$work/messages" &&
         echo "/* verilator lint_on UNUSEDSIGNAL */" &&
         echo "/* verilator lint_on DECLFILENAME */"
 } >"$output.tmp" || {

@@ -10,6 +10,7 @@ import re
 from foreign_files import ADAPTER, head, overrides, pin_name, vector
 
 SIGNALS = ("tdata", "tvalid", "tready", "tkeep", "tstrb", "tlast", "tuser", "tid", "tdest")
+ROLES = [f"{stream}_{signal}" for stream in "sm" for signal in SIGNALS]
 NEEDED = ["s_tdata", "s_tvalid", "m_tdata", "m_tvalid", "m_tready"]
 ELEMENTS = {8: "byte", 16: "short", 32: "int", 64: "long"}
 BYTES = 1024  # of a packet, in and out
@@ -17,11 +18,13 @@ BYTES = 1024  # of a packet, in and out
 
 def role(name, port):
     """Returns s_ and the signal of the stream into the core, m_ of the one out of it, or None."""
-    found = re.search(f"({'|'.join(SIGNALS)})(_[io])?$", name.lower())
+    found = re.search(f"({'|'.join(SIGNALS)})(_[io])?$", name.lower()) or re.fullmatch(
+        "[sm](?:_axis)?_(data|valid|ready|rdy|keep|strb|last)", name.lower())
     if not found:
         return None
-    goes_in = (port["direction"] == "input") != (found.group(1) == "tready")
-    return ("s_" if goes_in else "m_") + found.group(1)
+    signal = "t" + found.group(1).removeprefix("t").replace("rdy", "ready")
+    goes_in = (port["direction"] == "input") != (signal == "tready")
+    return ("s_" if goes_in else "m_") + signal
 
 
 def problem(top, ports, roles):

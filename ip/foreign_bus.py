@@ -7,12 +7,12 @@ core without acknowledge answers at once, after some clocks, or in APB's access 
 import json
 import re
 
-from foreign_roles import AXI, is_answer
+from foreign_roles import AXI, LOW, is_answer
 from foreign_files import ADAPTER, head, overrides, pin_name, vector
 
 BUSES = {"wishbone": "Wishbone", "apb": "APB", "axil": "AXI4-Lite",
          "memory": "select, address and data",
-         "own": "a bus of its own"}
+         "own": "a bus of its own", "avalon": "Avalon-MM"}
 WISHBONE = ["cyc", "stb", "we", "adr", "sel", "wdata", "rdata", "ack", "err", "rty", "stall"]
 WIDTHS = {"sel": 4, "strobes": 4, "wdata": 32, "rdata": 32, "wstrb": 4, "bresp": 2, "rresp": 2,
           "awprot": 3, "arprot": 3}
@@ -25,12 +25,17 @@ class Core:
     `address`: "words", "bytes" or None; `macros`: of macros_of."""
 
     def __init__(self, name, top, bus, ports, roles, latency, params, clock, address, macros):
-        self.name, self.top, self.bus, self.ports, self.roles = name, top, bus, ports, roles
+        acks = [n for n in ports if roles[n] == "ack"]  # one of reads and one of writes, or both
+        self.acks = {n: f"ack_{i}" for i, n in enumerate(acks)} if len(acks) > 1 else {}
+        self.name, self.top, self.bus, self.ports = name, top, bus, ports
+        self.roles = {**roles, **self.acks}
+        roles = self.roles
         self.latency, self.params, self.clock, self.macros = latency, params, clock, macros
-        self.by_role = {r: p for n, p in ports.items() if (r := roles[n])}
+        self.by_role = {r.removesuffix("_n"): p for n, p in ports.items() if (r := roles[n])}
         self.pins = [(pin_name(n, p), p) for n, p in ports.items() if not roles[n]]
         self.data_width = max(len(self.by_role[r]["bits"]) for r in ("wdata", "rdata"))
         self.signals = AXI if bus == "axil" else WISHBONE
+        self.has_strobes = bus == "avalon" or {"stb", "strobe"}.isdisjoint(self.by_role)
         self.adr_bits, self.word_bits, self.unit, self.counts_bytes = 6, 0, "", False
         for n, p in ports.items():
             if roles[n] in ADDRESSES:
@@ -41,8 +46,9 @@ class Core:
         width, lsb = len(port["bits"]), port.get("offset", 0)
         if address or role in ("words", "bytes"):
             unit, reason = address or role, "as you say"
-        elif self.bus in ("apb", "axil"):
-            unit, reason = "bytes", f"{BUSES[self.bus]} does"
+        elif self.bus in ("apb", "axil", "avalon"):
+            unit = "words" if self.bus == "avalon" else "bytes"
+            reason = f"{BUSES[self.bus]} does"
         elif lsb:
             unit, reason = "bytes", f"it begins at bit {lsb}"
         elif self.macros:
@@ -67,12 +73,13 @@ class Core:
 def connection(core, role, port, interrupts):
     """Returns what a port with a role is connected to; appends the wire of an interrupt."""
     width = len(port["bits"])
-    # without a select, read and write are strobes
-    strobes = {"stb", "strobe"}.isdisjoint(core.by_role)
+    if role in LOW:
+        return f"{{{width}{{!({connection(core, role[:-2], {'bits': [0]}, interrupts)})}}}}"
+    strobes = core.has_strobes  # without a select, read and write are strobes
     own = {"strobe": "stb", "re": "stb && !we" if strobes else "!we",
            "we": "stb && we" if strobes else "we"}
     if role in ("stb", "strobe", "re", "we"):  # one bit per byte, all of them driven
-        to = own.get(role, role) if core.bus == "own" else role
+        to = own.get(role, role) if core.bus in ("own", "avalon") else role
         return f"{{{width}{{{to}}}}}" if width > 1 else to
     if role in ("interrupt", "interruptn"):
         wire, of_many = f"interrupt_{len(interrupts)}", width > 1
@@ -94,9 +101,15 @@ def connection(core, role, port, interrupts):
 def answers(core):
     """Returns declarations and lines that a core's missing answers need, and how ack and err are
     made."""
+    if core.acks:
+        acks = list(core.acks.values())
+        return [f"    wire {', '.join(acks)};"], [], {"ack": " || ".join(acks)}
+    taken = "stb && !stall" if "stall" in core.by_role else "stb"
+    if "valid" in core.by_role:
+        return ["    wire valid;"], [], {"ack": f"{taken} && we || valid"}
     if core.latency:
         last = core.latency - 1
-        shift = f"{{answered[{last - 1}:0], stb}}" if last else "stb"
+        shift = f"{{answered[{last - 1}:0], {taken}}}" if last else taken
         return ([f"    reg [{last}:0] answered; // the core answers {core.latency} clocks after "
                  "its strobe"],
                 [f"    always @(posedge clk_i) answered <= rst_i ? {core.latency}'d0 : {shift};"],
@@ -113,8 +126,8 @@ def answers(core):
                  "    assign enable = stb && access;",
                  "    assign strobes = sel & {4{we}}; // none in a read", *made],
                 {"ack": "enable && ready && !refused", "err": "enable && ready && refused"})
-    return [], [], {"ack": "stb"} if core.bus in ("memory",
-                                                  "own") and "ack" not in core.by_role else {}
+    return [], [], {"ack": taken} if core.bus in (
+        "memory", "own", "avalon") and "ack" not in core.by_role else {}
 
 
 def rules(core):
@@ -148,7 +161,9 @@ def module(core):
     adapter = ",\n        ".join([f"{ADAPTER}, .irq_i(interrupt)",
                                   *(f".{names[s]}_{'i' if is_answer(s) else 'o'}({s})"
                                     for s in core.signals)])
-    options = ", .PIPELINED(1)" if {"stall", "strobe"} & set(core.by_role) or core.latency else ""
+    takes_strobes = core.bus == "own" and core.has_strobes or {"stall", "valid", "strobe"} & set(
+        core.by_role)
+    options = ", .PIPELINED(1)" if takes_strobes or core.latency else ""
     # the adapter gives a core up before bus_crossing does, after 250 clocks of the chip
     if core.clock:
         options += f", .TIMEOUT({max(2, 250 * core.clock // 100000000 - 6)})"
@@ -242,7 +257,7 @@ def fly(log, proxy, report):
 
 def texts(core, words):
     """Returns the files by their names; `words` as names_of gives them, or nothing."""
-    words = words or {a: f"REG{a}" for a in range(min(8, 1 << core.word_bits))}
+    words = words or {a: f"REG{a}" for a in range(min(32, 1 << core.word_bits))}
     first = next(iter(words.values()))
     return {f"{core.name}.v": module(core), f"{core.name}_test.cpp": test(core.name, first),
             f"{core.name}.regs.json": json.dumps(description(core, words), indent=2) + "\n",

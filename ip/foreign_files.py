@@ -166,15 +166,15 @@ def ports_by_verilator(top, words):
 
 
 def read_module(top, files, headers=(), params=(), defines=(), is_whole=True):
-    """The module `top`: its ports in order, and the names of its parameters; these are None if only
-    Verilator reads it. A port that resets registers asynchronously has "reset", the level at which
-    it does. `headers`: files in whose folders `include finds more. `params`: NAME=value of
-    parameters or generics; `defines`: NAME or NAME=value of macros. `is_whole`: all of its modules
-    are in the files."""
+    """The module `top`: its ports in order, and whether Yosys reads it, not Verilator alone. A port
+    that resets registers asynchronously has "reset", the level at which it does. `headers`: files
+    in whose folders `include finds more. `params`: NAME=value of parameters or generics; `defines`:
+    NAME or NAME=value of macros. `is_whole`: all of its modules are in the files."""
     with tempfile.TemporaryDirectory() as work:
         out = os.path.join(work, top + ".v")
         chosen = " ".join("-chparam {} {}".format(*p.split("=", 1)) for p in params)
         if is_vhdl(files[0]):
+            os.environ["VHDL_FOREIGN"] = "1"
             os.environ["VHDL_GENERICS"] = " ".join("-g" + p for p in params)
             run_tool("GHDL does not convert", top,
                      [os.path.join(HERE, "../cmake/vhdl_to_verilog.sh"),
@@ -184,19 +184,19 @@ def read_module(top, files, headers=(), params=(), defines=(), is_whole=True):
         reads = [f"read_verilog -defer {'-sv' if end_of(f) == '.sv' else ''} {' '.join(folders)} "
                  f"{f}" for f in files]
         script = "; ".join([*reads, f"hierarchy {'-check' if is_whole else ''} -top {top} {chosen}",
-                            "proc", "flatten", f"write_json {out}.json"])
+                            "proc", "flatten", "opt_expr", f"write_json {out}.json"])
         is_system = any(end_of(f) == ".sv" for f in files)
         if not run_tool("" if is_system else "Yosys does not elaborate", top,
                         ["yosys", "-q", "-p", script]):
             return ports_by_verilator(top, [*lint_of(top, [*files, *headers], defines),
-                                            *("-G" + p for p in params), *files]), None
+                                            *("-G" + p for p in params), *files]), False
         modules = json.loads(text_of(out + ".json"))["modules"]
     module = next(m for n, m in modules.items() if m["attributes"].get("top") or n == top)
     for cell in module["cells"].values():
         for port in module["ports"].values():
             if cell["connections"].get("ARST") == port["bits"] and "ARST_POLARITY" in cell["parameters"]:
                 port["reset"] = cell["parameters"]["ARST_POLARITY"][-1]
-    return module["ports"], module.get("parameter_default_values", {})
+    return module["ports"], True
 
 
 def filled(file, defines):

@@ -30,12 +30,18 @@ TIED = {"axil": {**dict.fromkeys("awid awlen awlock awcache awqos awregion awuse
                  **dict.fromkeys(("bid", "buser", "rid", "rlast", "ruser"), "open")},
         "apb": {**dict.fromkeys(("pprot", "pnse", "pauser", "pwuser"), "low"), "pwakeup": "high",
                 **dict.fromkeys(("pruser", "pbuser"), "open")},
-        "wishbone": dict.fromkeys(("cti", "bte", "lock"), "low")}
+        "wishbone": dict.fromkeys(("cti", "bte", "lock"), "low"),
+        "avalon": {"burstcount": "1", "debugaccess": "low", "lock": "low", "response": "open",
+                   "writeresponsevalid": "open"}}
 # "memory": chip select, write enable, address of a word, data; read data is there in the same
 # clock.
 MEMORY = {"cs": "stb", "ce": "stb", "we": "we", "address": "adr", "addr": "adr",
           "write_data": "wdata", "wdata": "wdata",
           "din": "wdata", "read_data": "rdata", "rdata": "rdata", "dout": "rdata"}
+# "avalon": Avalon-MM (Intel MNL-AVABUSREF), single transfers.
+AVALON = {"chipselect": "stb", "read": "re", "write": "we", "address": "adr", "addr": "adr",
+          "writedata": "wdata", "byteenable": "sel", "readdata": "rdata", "waitrequest": "stall",
+          "readdatavalid": "valid"}
 # Words for ROLE=port. select is high until the answer, strobe for one clock; read and write beside
 # neither are both.
 ROLES = {"select": "stb", "strobe": "strobe", "read": "re", "write": "we", "address": "adr",
@@ -44,17 +50,20 @@ ROLES = {"select": "stb", "strobe": "strobe", "read": "re", "write": "we", "addr
          "reset": "reset",
          "resetn": "resetn", "interrupt": "interrupt", "interruptn": "interruptn", "pin": "",
          "setting": "setting", "low": "low", "high": "high",
-         "open": "open", "words": "words", "bytes": "bytes", "enable": "enable"}
+         "open": "open", "words": "words", "bytes": "bytes", "enable": "enable", "wait": "stall",
+         "valid": "valid", "selectn": "stb_n", "readn": "re_n", "writen": "we_n"}
+LOW = ("stb_n", "re_n", "we_n")  # active low
 OUTPUTS = ("rdata", "ack", "err", "interrupt", "interruptn", "open")
 NEEDED = {"memory": ["stb", "we", "adr", "wdata", "rdata"],
           "wishbone": ["stb", "we", "wdata", "rdata", "ack"],
           "apb": ["stb", "enable", "we", "wdata", "rdata"],
           "axil": [n for n in AXI if not n.endswith("prot")], "own": ["we", "wdata", "rdata"],
+          "avalon": ["we", "wdata", "rdata", "ack"],
           "axis": foreign_axis.NEEDED}
 
 
 def is_answer(signal):
-    return signal in ("rdata", "ack", "err", "rty", "stall", "awready", "wready", "bvalid", "bresp",
+    return signal in ("rdata", "ack", "err", "rty", "stall", "valid", "awready", "wready", "bvalid", "bresp",
                       "arready", "rvalid", "rresp",
                       "s_tready", "m_tdata", "m_tvalid")
 
@@ -81,6 +90,9 @@ def role(name, port, bus):
         found = [MEMORY[base]] if base in MEMORY else []
     elif bus == "axil":
         found = [t for t in tokens if t in AXI]
+    elif bus == "avalon":
+        found = [AVALON[t] for t in tokens if t in AVALON]
+        found = [r + "_n" if "n" in tokens and r + "_n" in LOW else r for r in found]
     elif bus == "apb":
         found = [APB[t] for t in tokens if t in APB]
     elif bus == "wishbone" and (len(tokens) <= 2 or any(t.startswith("wb") for t in tokens)):
@@ -99,10 +111,11 @@ def roles_of(top, bus, ports, given):
     is ROLE=port."""
     roles = {n: role(n, p, bus) for n, p in ports.items()}
     # The bus' own names, too, where they are no role's word.
-    words = {**{r: r for r in NEEDED[bus] + (AXI if bus == "axil" else [])}, **ROLES}
+    words = {**{r: r for r in NEEDED[bus] + {"axil": AXI, "axis": foreign_axis.ROLES}.get(bus, [])},
+             **ROLES}
     say = {v: k for k, v in ROLES.items()} if bus != "axis" else {}
-    known, latency = ", ".join(ports), None
-    for word in given:
+    known, latency, named = ", ".join(ports), None, set()
+    for word in sorted(given, key=lambda word: "*" in word):
         what, port = word.split("=", 1)
         if what not in words:
             fail(f"PORTS: '{what}' is none of {', '.join(words)}")
@@ -112,7 +125,7 @@ def roles_of(top, bus, ports, given):
         is_output = words[what] in OUTPUTS or is_answer(words[what])
         if "*" in port:  # those of its direction that would be pins
             found = [n for n, p in ports.items() if not roles[n] and fnmatch.fnmatch(n, port)
-                     and is_output == (p["direction"] == "output")]
+                     and n not in named and is_output == (p["direction"] == "output")]
             roles.update(dict.fromkeys(found, words[what]))
             port = next(iter(found), port)
         if port not in ports:
@@ -123,7 +136,9 @@ def roles_of(top, bus, ports, given):
         if what == "setting" and bus != "axis":
             fail("PORTS: a setting is for BUS=axis; here an input that is none of the bus is a pin")
         roles[port] = words[what]
-    there = {*roles.values(), *(["ack"] if latency else []),
+        named.add(port)
+    there = {*(r.removesuffix("_n") for r in roles.values()),
+             *(["ack"] if latency or {"stall", "valid"} & set(roles.values()) else []),
              *(["adr"] if {"words", "bytes"} & set(roles.values()) else []),
              *(["stb"] if bus == "wishbone" and "cyc" in roles.values() else [])}
     missing = [say.get(r, r) for r in NEEDED[bus] + ["clock"] if r not in there]
@@ -132,8 +147,9 @@ def roles_of(top, bus, ports, given):
              f"PORTS='{missing[0]}=port ...'"
              + (", or by ack=1 that what is read is there a clock later"
                 if "ack" in missing else ""))
-    for r in there - {"", "clock", "reset", "resetn", "interrupt", "interruptn", "setting", "low",
-                      "high", "open", "1", "2"}:
+    often = {"", "clock", "reset", "resetn", "interrupt", "interruptn", "setting", "low", "high",
+             "open", "1", "2", *(("adr", "ack") if bus == "own" else ())}
+    for r in there - often:
         if len(same := [n for n in ports if roles[n] == r]) > 1:
             fail(f"{top} has more than one port for {say.get(r, r)}: {', '.join(same)}; what the "
                  f"others are by PORTS='pin={same[-1]} ...'")

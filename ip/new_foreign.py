@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: MIT
 """new_foreign: puts a third-party core in Verilog or VHDL into a slot (docs/recipes.md).
 
-    new_foreign.py NAME TOP wishbone|axil|apb|memory|own|axis FOLDER [CLOCK=Hz] [LIBRARY=name]
-                   [ADDRESS=words|bytes] [PARAM:NAME=value...] [DEFINE:NAME...] [ROLE=port...]
-                   FILE...
+    new_foreign.py NAME TOP wishbone|axil|apb|avalon|memory|own|axis FOLDER [CLOCK=Hz]
+                   [LIBRARY=name] [ADDRESS=words|bytes] [PARAM:NAME=value...] [DEFINE:NAME...]
+                   [ROLE=port...] FILE...
 
 Reads the ports of the module or entity TOP and writes into FOLDER, which must not exist: NAME.v,
 which connects TOP to the slot; its registers, with the names that TOP has for their addresses; a
@@ -30,9 +30,8 @@ from foreign_files import (FLAGS, check_names, copies_for_verilator, fail, folde
 from foreign_roles import NEEDED, roles_of
 
 HEAD = "# SPDX-License-Identifier: MIT\n"
-USAGE = ("usage: make new-foreign NAME=my_uart TOP=module BUS=wishbone|axil|apb|memory|own|axis "
-         "FILES='a.v b.v' "
-         "[PORTS='write=we ...']")
+USAGE = ("usage: make new-foreign NAME=my_uart TOP=module "
+         "BUS=wishbone|axil|apb|avalon|memory|own|axis FILES='a.v b.v' [PORTS='write=we ...']")
 
 
 # Names that may be an interrupt's.
@@ -104,7 +103,8 @@ def read_core(asked):
     Verilator does not take."""
     if asked.library:
         os.environ["VHDL_LIBRARY"] = asked.library  # for vhdl_to_verilog.sh
-    ports, known = read_module(asked.top, asked.files, asked.headers, asked.params, asked.defines)
+    ports, is_synthesised = read_module(asked.top, asked.files, asked.headers, asked.params,
+                                        asked.defines)
     if odd := [n for n in ports if not re.fullmatch(r"\w+", n)]:
         fail(f"{asked.top} has the port '{odd[0]}', an escaped name: put a module with plain "
              "names around it")
@@ -113,12 +113,9 @@ def read_core(asked):
              "pads; take a top without")
     if asked.is_vhdl:
         return ports, [], {}
-    # OpenCores' cores have this level as a parameter.
-    level = [] if "ARST_LVL" not in (known or {}) or any(
-        p.startswith("ARST_LVL=") for p in asked.params) else ["ARST_LVL=1'b1"]
-    asked.is_synthesised = known is not None
-    return ports, asked.params + level, copies_for_verilator(asked.top, asked.files, asked.headers,
-                                                             asked.defines)
+    asked.is_synthesised = is_synthesised
+    return ports, asked.params, copies_for_verilator(asked.top, asked.files, asked.headers,
+                                                     asked.defines)
 
 
 def slot_texts(asked, ports, params):
@@ -167,7 +164,7 @@ def cmake_lists(asked, interface, copies):
     if asked.is_vhdl:
         options = (f" LIBRARY {asked.library}" if asked.library else "") + (
             f" GENERICS {' '.join(asked.params)}" if asked.params else "")
-        return f"""{HEAD}icesoc_vhdl(NAME {top}{options} SOURCES
+        return f"""{HEAD}icesoc_vhdl(NAME {top} FOREIGN{options} SOURCES
   {separator.join(asked.files)})
 icesoc_core({name} {interface} FLAGS -Wno-lint -Wno-style DEPENDS {top}_verilog
   VERILOG {name}.v ${{GEN_DIR}}/{top}.v)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """foreign: puts third-party cores into slots (docs/recipes.md)."""
+import json
 import shutil
 from pathlib import Path
 
@@ -8,7 +9,7 @@ from cli.command import command
 from cli.commands.core import NAME, REPOSITORY, put_into_repository
 from cli.flight import FIELDS
 from cli.options import BUILD, COUNT, FILES, JOBS, SEED, SWITCH, TEXT, WORDS, Option, one_of
-from cli.runner import run
+from cli.runner import Stop, run
 
 
 def foreign_words(values):
@@ -23,7 +24,7 @@ def foreign_words(values):
 @command("core foreign", [
     NAME,
     Option("top", TEXT, "its module", ""),
-    Option("bus", TEXT, "wishbone, axil, apb, memory, own or axis", ""),
+    Option("bus", TEXT, "wishbone, axil, apb, avalon, memory, own or axis", ""),
     Option("files", FILES, "its files, of Verilog or VHDL"),
     Option("ports", WORDS, "what its ports are, such as write=we ack=done"),
     Option("params", WORDS, "its parameters, such as depth=16"),
@@ -49,46 +50,57 @@ def foreign_core(values):
                       else 0)
 
 
-# Words of new_foreign.py for each third-party core: slot, module, bus, files, and more.
-EXAMPLES = [("foreign_spi", "neorv32_spi", "own", "neorv32/*.vhd", "LIBRARY=neorv32",
-             "PARAM:IO_SPI_FIFO=4", *"""strobe=bus_req_i_stb write=bus_req_i_rw
-             address=bus_req_i_addr enables=bus_req_i_ben wdata=bus_req_i_data rdata=bus_rsp_o_data
-             ack=bus_rsp_o_ack error=bus_rsp_o_err high=clkgen_i low=bus_req_i_meta
-             low=bus_req_i_amo low=bus_req_i_amoop low=bus_req_i_burst
-             low=bus_req_i_lock""".split()),
-            ("foreign_aes", "aes", "memory", "aes/*.v"),
-            ("foreign_uart", "wbuart", "wishbone", "wbuart32/*.v", "CLOCK=24000000"),
-            ("foreign_axil", "axiluart", "axil", "wbuart32/*.v"),
-            ("foreign_i2c", "i2c_master_top", "wishbone", "i2c/*.v"),
-            ("foreign_cobs", "axis_cobs_encode", "axis", "verilog-axis/*.v")]
+def into_slot(source, slot, words, folder, ghdl):
+    """Lets new_foreign.py write a slot's folder. `words`: module, bus, more; patterns of its files
+    in the source's folder."""
+    top, bus, *more = words.split()
+    is_file = [not ("=" in word or word.startswith("DEFINE:")) for word in more]
+    files = [file for word, its in zip(more, is_file) if its for file in sorted(source.glob(word))]
+    run(["ip/new_foreign.py", slot, top, bus, folder / slot,
+         *(word for word, its in zip(more, is_file) if not its), *files],
+        stdout=-3, env={"GHDL": ghdl})
+    return folder / slot
 
 
 @command("core examples", [
+    Option("cores", WORDS, "these of examples/foreign/cores.json alone, in one order"),
     Option("chip", SWITCH, "and what each costs in the chip"), SEED,
-    *(o for o in FIELDS if o.name == "image"), BUILD, JOBS], make="foreign", brief="core examples",
+    *(o for o in FIELDS if o.name == "image"), BUILD, JOBS], make="foreign",
+         brief="core examples --cores foreign_i2c foreign_arbiter foreign_queue",
          long="core examples --chip")
 def examples(values):
     """put third-party cores and two of one's own through the recipe, in three orders, test them and
     call them by radio
 
-    Wishbone, AXI4-Lite, AXI-Stream and plain buses in Verilog, records in VHDL. Downloads them;
-    without a network only this project's two are tested, and the status says so: 77."""
+    Wishbone, Avalon-MM, AXI4-Lite, AXI-Stream and plain buses, in Verilog and VHDL. Downloads them
+    from Debian's mirror and GitHub, and leaves out what it cannot reach. The status is 77 if that
+    is every third-party core."""
+    listed = json.loads(Path("examples/foreign/cores.json").read_text())
+    known = {name for source in listed.values() for name in source["cores"]}
+    if unknown := set(values.cores) - known:
+        raise Stop(f"CORES: there is no '{sorted(unknown)[0]}': {' '.join(sorted(known))}", 2)
     if not values.built:
         run(["cmake/setup.sh", "--tests"])
-    cores = Path("build/foreign-cores").absolute()
-    missing = fetch("foreign", cores, check=False)
-    if not missing:
-        fetch("ghdl", cores / "ghdl")
-    shutil.rmtree(cores / "slots", ignore_errors=True)
-
-    def into_slot(slot, module, bus, files, *words):
-        run(["ip/new_foreign.py", slot, module, bus, cores / "slots" / slot, *words,
-             *sorted(cores.glob(files))], stdout=-3, env={"GHDL": cores / "ghdl/ghdl"})
-        return cores / "slots" / slot
-
-    slots = [] if missing else ["examples/foreign/olo_spi",
-                                *(into_slot(*each) for each in EXAMPLES)]
-    return run(["examples/foreign/orders.sh", "tests/e2e/cores/servo", "tests/e2e/cores/crc32",
-                *slots], check=False, env={
-                    "IMAGE": values.image, "JOBS": values.jobs, "SEED": values.seed,
-                    "CHIP": "1" if values.chip else ""}) or missing
+    folder = Path("build/foreign-cores").absolute()
+    missing = fetch("foreign", folder, check=False)
+    fetch("ghdl", folder / "ghdl5")
+    shutil.rmtree(folder / "slots", ignore_errors=True)
+    chips = {}  # numbers of chips: folders of cores
+    for source, its in listed.items():
+        for name, core in its["cores"].items():
+            if name not in (values.cores or known) or not (
+                    (folder / f"{source}.done").exists() or its.keys() == {"cores"}):
+                continue
+            chips.setdefault(core.get("chip", 1), {})[name] = core, core.get("folder") or into_slot(
+                folder / source, name, core["new"], folder / "slots", folder / "ghdl5/ghdl")
+    status = 0
+    for number, cores in sorted(chips.items()):
+        names = folder / f"chip{number}.list"
+        names.write_text("".join(f"{name} {core.get('list', '')}\n"
+                                 for name, (core, _) in cores.items()))
+        status = run(["examples/foreign/orders.sh", names, *(where for _, where in cores.values())],
+                     check=False, env={
+                         "IMAGE": values.image, "JOBS": values.jobs, "SEED": values.seed,
+                         "ORDERS": "listed" if values.cores else "backwards shuffled listed",
+                         "CHIP": "1" if values.chip else ""}) or status
+    return status or missing

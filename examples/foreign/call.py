@@ -1,22 +1,26 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Calls third-party cores and two of one's own by radio: call.py DEVICE GUARD STATUS PLUGIN
-"NAME ..." Registers.ice File.ice ...
- An AES key and block of FIPS 197, appendix B; a byte through each UART and the SPI controller,
-whose outputs lead to their inputs, and of the I2C master on lines that nobody else pulls low;
-packets through the COBS encoder's AXI-Streams; a CRC-32 of buffers in DDR3; a servo's pulses, which
-orders.sh measures at the pins. With stock ZeroC Ice. """
+"NAME ..." cores.json Registers.ice File.ice ...
+ The "calls" of each core in cores.json; keys and blocks of FIPS 197 for AES; packets through the
+COBS encoder's AXI-Streams; a CRC-32 of buffers in DDR3; a servo's pulses, which orders.sh measures
+at the pins. With stock ZeroC Ice. """
+import ast
+import json
+import re
 import sys
 import zlib
+from pathlib import Path
 
 import Ice
 
-device, guard, status, plugin, names, *files = sys.argv[1:]
+device, guard, status, plugin, names, cores, *files = sys.argv[1:]
+names = names.split()
 for file in files:
     Ice.loadSlice("", [file])
-import Cores  # noqa: E402
-import Demo  # noqa: E402
 import Hw  # noqa: E402
+
+Cores, Demo = sys.modules.get("Cores"), sys.modules.get("Demo")  # of the chip's cores
 
 # Keys, blocks and ciphers of FIPS 197: appendices B, C.1 and C.3.
 AES = [
@@ -55,33 +59,6 @@ def aes(core):
     return answers, [words(cipher) for _, _, cipher in AES]
 
 
-def uart(core):
-    core.set("SETUP", 20)  # clocks a bit
-    core.wait(0)  # takes earlier events
-    core.set("TXREG", 0xA5)
-    events = core.wait(1000)
-    return (events, core.get("RXREG") & 0x1FF), (["CORE"], 0xA5)
-
-
-def spi(core):
-    core.set("REG0", 1)  # enabled
-    core.set("REG1", 0x5A)
-    until(core, "REG0", lambda v: not v >> 31)
-    return core.get("REG1") & 0xFF, 0x5A
-
-
-def i2c(core):
-    core.set("REG0", 9)  # prescaler
-    core.set("REG2", 0x80)  # enabled
-    core.set("REG3", 0xA6)
-    core.set("REG4", 0x90)  # start, write
-    status, line = until(core, "REG4", lambda v: not v & 2), core.get("REG3")
-    core.set("REG4", 0x40)  # stop
-    until(core, "REG4", lambda v: not v & 0x40)
-    # Nobody acknowledges; behind the byte's last bit stand the others, as they were on the line.
-    return (status, line), (0xC1, 0x53)
-
-
 def cobs(data):
     """Consistent overhead byte stuffing (Cheshire and Baker, 1999), and the zero at its end."""
     out = bytearray()
@@ -93,9 +70,26 @@ def cobs(data):
     return bytes(out) + b"\0"
 
 
-CORES = {
-    "foreign_aes": aes, "foreign_uart": uart, "foreign_axil": uart, "foreign_spi": spi,
-    "foreign_i2c": i2c}
+def call(core, word):
+    """One word of a core's "calls": REGISTER=value sets it; REGISTER==value waits for that, and
+    REGISTER&mask==value for some bits; operation(arguments) calls, and ==result compares."""
+    name, ending, arguments, value = re.fullmatch(r"(\w+)(&\w+==|==?|\((.*?)\)(?:==)?)(.*)",
+                                                  word).groups()
+    if ending == "=":
+        core.set(name, int(value, 0))
+    elif arguments is None:
+        mask, wanted = int(ending[1:-2] or "-1", 0), int(value, 0)
+        until(core, name, lambda v: v & mask == wanted)
+    else:
+        answer = getattr(core, name)(*ast.literal_eval(f"({arguments},)" if arguments else "()"))
+        if value and answer != ast.literal_eval(value):
+            sys.exit(f"{word}: the answer is {answer!r}")
+
+
+def camel(name):
+    return "".join(word.capitalize() for word in name.split("_"))
+
+
 data = Ice.InitializationData()
 data.properties = Ice.createProperties()
 data.properties.setProperty("Ice.Plugin.XBeeAT", plugin)
@@ -107,15 +101,25 @@ with Ice.initialize(data) as ic:
         return kind.checkedCast(
             ic.stringToProxy("%s:xbee-at -d %s -a 0x0001 -t 300000" % (name, device)))
 
-    servo = proxy(Demo.ServoPrx, "servo")
-    servo.setPulse(2, 1500)
-    for name in sorted(CORES.keys() & names.split()):
-        core = proxy(Hw.RegistersPrx, name)
-        value, wanted = CORES[name](core)
+    servo = proxy(Demo.ServoPrx, "servo") if "servo" in names else None
+    if servo:
+        servo.setPulse(2, 1500)
+    calls = {n: c.get("calls", "") for its in json.loads(Path(cores).read_text()).values()
+             for n, c in its["cores"].items()}
+    for name in names:
+        kind = getattr(Cores, camel(name) + "Prx", Hw.RegistersPrx)
+        if name == "servo" or not calls[name] and kind is not Hw.RegistersPrx:
+            continue
+        core = proxy(kind, name)
+        for word in calls[name].split():
+            call(core, word)
+        print(f"{name}: " + (f"{len(core.list())} registers and fields, "
+                             if kind is Hw.RegistersPrx else "") + "called by radio: as expected")
+    if "foreign_aes" in names:
+        value, wanted = aes(proxy(Hw.RegistersPrx, "foreign_aes"))
         if value != wanted:
-            sys.exit("%s: %r, expected %r" % (name, value, wanted))
-        print("%s: %d registers and fields, called by radio: as expected" %
-              (name, len(core.list())))
+            sys.exit("foreign_aes: %r, expected %r" % (value, wanted))
+        print("foreign_aes: three keys of FIPS 197: as expected")
     if "foreign_cobs" in names:
         encoder = proxy(Cores.ForeignCobsPrx, "foreign_cobs")
         for packet in (b"\x11\x22\x00\x33", b"\0" * 9, bytes(range(1, 201))):
@@ -123,15 +127,12 @@ with Ice.initialize(data) as ic:
                 sys.exit("foreign_cobs: %r came of %r, expected %r" %
                          (encoder.process(packet), packet, cobs(packet)))
         print("foreign_cobs: packets encoded, called by radio: as expected")
-    crc = proxy(Cores.Crc32Prx, "crc32")
-    for packet in (b"", b"123456789", bytes(range(256)) * 16):
-        if crc.crc(packet) & 0xFFFFFFFF != zlib.crc32(packet):
-            sys.exit("crc32: 0x%08X, expected 0x%08X" %
-                     (crc.crc(packet) & 0xFFFFFFFF, zlib.crc32(packet)))
-    print("crc32: of up to 4096 bytes in DDR3, called by radio: as zlib's")
-    if "olo_spi" in names:
-        if proxy(Cores.OloSpiPrx, "olo_spi").transfer(0x5AC3F00D) != 0x5AC3F00D:
-            sys.exit("olo_spi: what was sent did not come back")
-        print("olo_spi: 32 bits sent and received, called by radio: as expected")
-    if servo.fault():
+    if "crc32" in names:
+        crc = proxy(Cores.Crc32Prx, "crc32")
+        for packet in (b"", b"123456789", bytes(range(256)) * 16):
+            if crc.crc(packet) & 0xFFFFFFFF != zlib.crc32(packet):
+                sys.exit("crc32: 0x%08X, expected 0x%08X" %
+                         (crc.crc(packet) & 0xFFFFFFFF, zlib.crc32(packet)))
+        print("crc32: of up to 4096 bytes in DDR3, called by radio: as zlib's")
+    if servo and servo.fault():
         sys.exit("servo: a fault, of a pin that is low")

@@ -79,6 +79,8 @@ void expectRegistersApart(CoreSlot<Module>& slot, const Hw_Register (&table)[N],
         if (holds)
             hold.push_back(r);
     }
+    if (hold.empty())
+        std::cout << "note: no register keeps what is written: is its reset active low, or high?\n";
     for (const Register& r : hold)
         access(true, r);
     for (const Register& r : hold) {

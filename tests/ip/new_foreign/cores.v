@@ -154,3 +154,67 @@ module wbs_names (
 );
     assign {wbs_dat_o, intr, spare} = 34'd0;
 endmodule
+
+// avalon_words: Avalon-MM as a pipelined slave has it: it holds each request up for `waits` clocks,
+// and gives what is read `late` clocks after it took the request, in the same clock if 0.
+module avalon_words (
+    input             csi_clk, rsi_reset_n,
+    input             avs_read, avs_write_n,
+    input      [1:0]  avs_address,
+    input      [31:0] avs_writedata,
+    input      [3:0]  avs_byteenable,
+    input      [3:0]  avs_burstcount,
+    output     [31:0] avs_readdata,
+    output            avs_waitrequest, avs_readdatavalid,
+    input      [2:0]  waits, late
+);
+    reg  [31:0] words [0:3];
+    reg  [2:0]  waited, left;
+    reg  [1:0]  word;
+    reg         reads;
+    wire        takes = (avs_read || !avs_write_n) && !avs_waitrequest;
+    assign avs_waitrequest   = waited < waits;
+    assign avs_readdatavalid = late == 3'd0 ? takes && avs_read : reads && left == 3'd0;
+    assign avs_readdata      = avs_readdatavalid ? words[late == 3'd0 ? avs_address : word]
+                                                 : 32'hBAD0BAD0;
+    always @(posedge csi_clk) begin
+        waited <= (avs_read || !avs_write_n) && avs_waitrequest ? waited + 1 : 0;
+        left   <= takes ? late - 1 : left - 1;
+        reads  <= takes ? avs_read : reads && !avs_readdatavalid;
+        if (takes)
+            word <= avs_address;
+        if (takes && !avs_write_n && &avs_byteenable && avs_burstcount == 4'd1)
+            words[avs_address] <= avs_writedata;
+        if (!rsi_reset_n) begin
+            waited <= 0;
+            reads  <= 0;
+        end
+    end
+endmodule
+
+// two_ways: an address, a request of one clock and an acknowledge for reads, and others for writes,
+// which it counts.
+module two_ways (
+    input             up_clk, up_rstn,
+    input             up_wreq, up_rreq,
+    input      [2:0]  up_waddr, up_raddr,
+    input      [31:0] up_wdata,
+    output reg [31:0] up_rdata,
+    output reg        up_wack, up_rack,
+    output     [39:0] lane_rates
+);
+    reg [31:0] words [0:3];
+    reg [31:0] writes;
+    assign lane_rates = 40'd0;
+    always @(posedge up_clk)
+        if (!up_rstn) begin
+            {up_wack, up_rack} <= 2'b00;
+            writes             <= 32'd0;
+        end else begin
+            {up_wack, up_rack} <= {up_wreq, up_rreq};
+            up_rdata           <= up_raddr[2] ? writes : words[up_raddr[1:0]];
+            writes             <= writes + up_wreq;
+            if (up_wreq && !up_waddr[2])
+                words[up_waddr[1:0]] <= up_wdata;
+        end
+endmodule

@@ -6,7 +6,9 @@
 
 #include "Va_bridge_slot.h"
 #include "Vmy_apb2_slot.h"
+#include "Vmy_avalon_slot.h"
 #include "Vmy_classic_slot.h"
+#include "Vmy_fixed_slot.h"
 #include "Vmy_late_slot.h"
 #include "Vmy_memory_slot.h"
 #include "Vmy_pipelined_slot.h"
@@ -14,6 +16,7 @@
 #include "Vmy_port_slot___024root.h"
 #include "Vmy_requests_slot.h"
 #include "Vmy_slow_memory_slot.h"
+#include "Vmy_ways_slot.h"
 #include "Vmy_words_slot.h"
 #include "a_bridge_regs.h"
 #include "my_late_regs.h"
@@ -68,6 +71,27 @@ TEST(Wishbone, ACoreStallsAndAnswersWhenItLikes) {
         classic.bench_.top().stalls_i = 0;
         holdsRegisters(classic, 8, "classic, answer after " + std::to_string(late));
     }
+}
+
+TEST(Avalon, ACoreWaitsAndAnswersWhenItLikes) {
+    CoreSlot<Vmy_avalon_slot> slot;
+    for (uint8_t late = 0; late < 6; ++late)
+        for (uint8_t waits = 0; waits < 6; ++waits) {
+            slot.bench_.top().late_i = late;
+            slot.bench_.top().waits_i = waits;
+            holdsRegisters(slot, 8,
+                           std::to_string(waits) + " waits, data after " + std::to_string(late));
+        }
+    CoreSlot<Vmy_fixed_slot> fixed; // it has neither waitrequest nor readdatavalid
+    fixed.bench_.top().waits_i = 0;
+    fixed.bench_.top().late_i = 3;
+    holdsRegisters(fixed, 8, "data after 3");
+}
+
+TEST(Own, ARequestWithAnAcknowledgeLastsOneClock) {
+    CoreSlot<Vmy_ways_slot> slot;
+    holdsRegisters(slot, 8, "two addresses, two acknowledges");
+    EXPECT_EQ(slot.bus_.read(12), 4u) << "each write once";
 }
 
 TEST(Memory, WhatIsReadIsThereAtOnceOrNineClocksLater) {
@@ -142,6 +166,11 @@ TEST(RegistersApart, EachThatIsNotReadBackIsNamed) {
     EXPECT_EQ(::testing::internal::GetCapturedStdout(),
               "note: LEVELS: not read back: 0xc was written, 0x0 read\n"
               "note: DRIVEN: written and read back\n");
+    const Hw_Register input[] = {{{6, "LEVELS"}, Hw_rw, 8, 0, 8, 0}};
+    ::testing::internal::CaptureStdout();
+    expectRegistersApart(slot, input, MY_PORT_PAGE);
+    EXPECT_NE(::testing::internal::GetCapturedStdout().find("no register keeps"),
+              std::string::npos);
 }
 
 // A Verilated model of a counter, which counts in every `every`th clock.

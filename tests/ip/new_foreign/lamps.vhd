@@ -1,9 +1,11 @@
 -- SPDX-License-Identifier: MIT
 --
 -- lamps: a core in VHDL with a strobe for reading and one for writing, in a record of lamps_types.vhd; it counts what is read.
+-- Its habits: a package of Synopsys', an attribute of an output, an assertion for a simulation.
 library ieee, lights; -- the second one is its own
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;
+use ieee.std_logic_misc.all;
 use lights.lamps_types.all;
 
 entity lamps is
@@ -18,6 +20,8 @@ end entity;
 
 architecture rtl of lamps is
   signal lit, reads : unsigned(15 downto 0);
+  attribute preserve : boolean;
+  attribute preserve of lamp : signal is true;
 begin
   lamp <= std_logic_vector(lit(lamp'range));
   q    <= std_logic_vector(lit) when request.a = "0" else std_logic_vector(reads);
@@ -31,6 +35,7 @@ begin
       if request.rd = '1' then
         reads <= reads + 1;
       end if;
+      assert or_reduce(request.d) = '0' or request.wr = '1' report "data without a write";
       if reset = '1' then
         lit   <= (others => '0');
         reads <= (others => '0');

@@ -129,6 +129,19 @@ done
 refused "has no port 'TIMER\*'" my_port asked own "$work/out" write=we wdata=d rdata=q \
     'low=TIMER*' "$work/asked.v"
 grep -q 'interrupt = !interrupt_0;' "$work/asked/my_port.v"
+# Many pins that nobody needs.
+"$new" my_port asked own "$work/spared" write=we wdata=d rdata=q 'open=*' pin=point "$work/asked.v" >"$work/log"
+grep -q 'irq_no: interruptn$' "$work/log" && grep -q 'rx_events: open$' "$work/log" &&
+    grep -q 'point: pin point_o$' "$work/log" ||
+    { cat "$work/log" && exit 1; }
+# OpenCores' level of a reset, whatever else has it for a name.
+echo 'module level #(parameter ARST_LVL = 0) (input clk, arst_i, we, input [31:0] d, output reg [31:0] q);
+    wire rst = arst_i ^ ARST_LVL[0];
+    always @(posedge clk or negedge rst) if (!rst) q <= 0; else if (we) q <= d;
+endmodule' >"$work/level.v"
+"$new" my_port level own "$work/level" write=we wdata=d rdata=q "$work/level.v" >"$work/log"
+grep -q '^  arst_i: resetn' "$work/log" && grep -q 'level u_core' "$work/level/my_port.v" ||
+    { cat "$work/log" && echo 'the level of a reset is wrong' && exit 1; }
 # SystemVerilog with packages, in any order, and a loop that Verilator reports.
 cat >"$work/system.sv" <<'END'
 module system import sizes::*; #(parameter EXTRA = 1) (

@@ -19,6 +19,7 @@ import Ice
 import lz4.block
 
 import plugged
+from mission_log import Air
 
 HEADER = struct.Struct("<8I64s64s")  # sw/update/slots.h
 MAGIC = 0x1CE50C05
@@ -40,8 +41,6 @@ TEXT = {
     "refused": "the FPGA did not take it: its CRC is wrong, or it is for another device; the "
                "golden one runs",
 }
-
-
 IN_FLIGHT = "the vehicle flies: it takes no update before it has landed"
 
 
@@ -74,36 +73,28 @@ def read_package(path):
     return name, images, before, behind
 
 
-class Clock:
-    """Returns the vehicle's time in s and the bytes on the air to it: the simulator's
-    (sim_status.h), else the wall clock's and none."""
-
-    FORMAT = struct.Struct("<8s3Q")
-
-    def __init__(self, path):
-        self.path = path
-
-    def read(self):
-        if not self.path:
-            return time.monotonic(), 0
-        with open(self.path, "rb") as f:
-            _, ns, _, up = self.FORMAT.unpack(f.read(self.FORMAT.size))
-        return ns / 1e9, up
+def read_clock(air):
+    """Returns the vehicle's time in s and the bytes on the air to it: the simulator's, else the
+    wall clock's and none."""
+    counters = air.read()
+    return (counters["ns"] / 1e9, counters["up"]) if counters else (time.monotonic(), 0)
 
 
 class Watch(threading.Thread):
     """Calls the vehicle during an update, and records the longest time to an answer."""
 
-    def __init__(self, proxy, clock):
+    def __init__(self, proxy, air):
         super().__init__(daemon=True)
-        self.proxy, self.clock, self.answers, self.longest, self.over = proxy, clock, 0, 0.0, threading.Event()
+        self.proxy, self.air, self.over = proxy, air, threading.Event()
+        self.answers, self.longest = 0, 0.0
+        self.start()
 
     def run(self):
         while not self.over.wait(0.05):
             try:
-                begun = self.clock.read()[0]
+                begun = read_clock(self.air)[0]
                 self.proxy.getStatus()
-                self.longest = max(self.longest, self.clock.read()[0] - begun)
+                self.longest = max(self.longest, read_clock(self.air)[0] - begun)
                 self.answers += 1
             except Ice.Exception:
                 pass  # the sender reports the error
@@ -187,52 +178,59 @@ def send_keys(vehicle, lists, say):
         say("the vehicle takes what the keys of list %d sign" % number)
 
 
-def update(vehicle, images, say, clock, rehearses):
+def transfer(vehicle, header, image, say, air):
+    """Sends an image, over links that are lost, too, until the vehicle has begun to check it."""
+    # The vehicle's processor cannot read the FPGA's flash as memory.
+    dictionary = DICTIONARY if vehicle.proxy.ice_getIdentity().name == "update" else 0
+
+    def begin():
+        vehicle.expect(vehicle.persist(lambda: vehicle.proxy.begin(header)))
+
+    begin()
+    begun = None
+    while True:
+        try:
+            received = vehicle.wait_while("preparing", "erasing").received
+            begun = begun or (received, *read_clock(air))
+            vehicle.send(image, dictionary, say)
+            first, start, sent = begun
+            end, sent_end = read_clock(air)
+            say("sent %d bytes in %.2f s%s; the vehicle checks them" % (
+                len(image) - first, end - start,
+                ", %d bytes on the air" % (sent_end - sent) if sent_end else ""))
+            vehicle.expect(vehicle.proxy.finish())
+            return
+        except Ice.LocalException as e:
+            say("the link was lost (%s): going on where it was" % type(e).__name__)
+            if str(vehicle.status().phase) == "idle":
+                begin()
+
+
+def await_start(vehicle, version):
+    while (status := vehicle.status()).running != version:
+        if str(status.last) != "none":
+            vehicle.expect(status.last)
+        time.sleep(0.2)
+
+
+def update(vehicle, images, say, air, rehearses):
     """Brings the vehicle to the package's version, confirmed. A rehearsal sees it start and go
     back."""
     version = HEADER.unpack(next(iter(images.values()))[0])[2]
     status = vehicle.status()
     say("the vehicle runs version %d%s" % (status.running, ", on trial" if status.trial else ""))
-    if status.running == version:
-        if not status.trial:
-            say("version %d is confirmed already" % version)
-            return
-    else:
+    if status.running == version and not status.trial:
+        say("version %d is confirmed already" % version)
+        return
+    if status.running != version:
         if status.slot not in images:
             raise Failed("the package has no image for the vehicle's free slot")
-        header, image = images[status.slot]
-        # The vehicle's processor cannot read the FPGA's flash as memory.
-        dictionary = DICTIONARY if vehicle.proxy.ice_getIdentity().name == "update" else 0
-        watch = Watch(vehicle.proxy, clock)
-        watch.start()
-        vehicle.expect(vehicle.persist(lambda: vehicle.proxy.begin(header)))
-        begun = None
-        while True:
-            try:
-                received = vehicle.wait_while("preparing", "erasing").received
-                begun = begun or (received, *clock.read())
-                vehicle.send(image, dictionary, say)
-                first, start, air = begun
-                end, air_end = clock.read()
-                say("sent %d bytes in %.2f s%s; the vehicle checks them" % (
-                    len(image) - first, end - start,
-                    ", %d bytes on the air" % (air_end - air) if air_end else ""))
-                vehicle.expect(vehicle.proxy.finish())
-                break
-            except Ice.LocalException as e:
-                say("the link was lost (%s): going on where it was" % type(e).__name__)
-                if str(vehicle.status().phase) == "idle":
-                    vehicle.expect(vehicle.persist(lambda: vehicle.proxy.begin(header)))
+        watch = Watch(vehicle.proxy, air)
+        transfer(vehicle, *images[status.slot], say, air)
         vehicle.wait_while("checking")
         say(watch.stop())
         say("version %d is signed and whole; it starts" % version)
-        while True:
-            status = vehicle.status()
-            if status.running == version:
-                break
-            if str(status.last) != "none":
-                vehicle.expect(status.last)
-            time.sleep(0.2)
+        await_start(vehicle, version)
     if rehearses:
         say("version %d runs, and is not confirmed: within a minute it goes back" % version)
         while vehicle.status().running == version:
@@ -280,7 +278,7 @@ def main():
         keyring.proxy = Update.FirmwarePrx.uncheckedCast(keyring.proxy)
         send_keys(keyring, before, say)
         if images:
-            update(vehicle, images, say, Clock(args.status), args.rehearse)
+            update(vehicle, images, say, Air(args.status), args.rehearse)
         if not args.rehearse:
             send_keys(keyring, behind, say)
         return 0

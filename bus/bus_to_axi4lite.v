@@ -141,6 +141,12 @@ module bus_to_axi4lite #(
                             : axi_rvalid_i && !axi_rresp_i[1] && bus_rdata_o == axi_rdata_i);
         assert (bus_write_i ? write_open : ar_taken);
     end
+    always @* begin // whole words of data
+        assert (axi_wstrb_o == 4'hF && {axi_awprot_o, axi_arprot_o} == 6'd0);
+        assert ({axi_awaddr_o[1:0], axi_araddr_o[1:0]} == 4'd0);
+        if (!rst_i && bus_valid_i && bus_addr_i[3] && busy && open && (bus_write_i ? axi_bvalid_i : axi_rvalid_i))
+            assert (bus_ready_o); // the first response ends the access
+    end
     reg was_late = 1'b0; // a late response has been thrown away
     always @(posedge clk_i)
         was_late <= !rst_i && (was_late || (!busy && response));
@@ -149,10 +155,5 @@ module bus_to_axi4lite #(
         cover (window && !bus_write_i && was_late);
         cover (bus_valid_i && bus_ready_o && bus_error_o && axi_rvalid_i && open);
     end
-`endif
-`ifdef COVER_POINTS
-    data_before_address: cover property (@(posedge clk_i) axi_wvalid_o && axi_wready_i && axi_awvalid_o && !axi_awready_i);
-    address_before_data: cover property (@(posedge clk_i) axi_awvalid_o && axi_awready_i && axi_wvalid_o && !axi_wready_i);
-    late_answer: cover property (@(posedge clk_i) response && !busy);
 `endif
 endmodule

@@ -107,6 +107,12 @@ module bus_to_wishbone #(
         assert (wb_we_o == bus_write_i && wb_adr_o[4:2] == bus_addr_i[2:0]);
         assert (wb_stb_o || outstanding);
     end
+    always @* if (!rst_i) begin // whole words of the window
+        assert (wb_sel_o == 4'hF && wb_adr_o[1:0] == 2'd0);
+        assert (!wb_cyc_o || (bus_valid_i && bus_addr_i[3]));
+        if (bus_valid_i && bus_addr_i[3] && wb_cyc_o)
+            assert (bus_ready_o || !(wb_ack_i || wb_err_i)); // each answer ends the access
+    end
     reg retry = 1'b0;
     always @(posedge clk_i)
         retry <= !rst_i && wb_cyc_o && wb_rty_i && !wb_ack_i && !wb_err_i && !(bus_valid_i && bus_ready_o);
@@ -118,9 +124,5 @@ module bus_to_wishbone #(
         cover (bus_valid_i && bus_ready_o && wb_err_i && wb_cyc_o);
         cover (pause);
     end
-`endif
-`ifdef COVER_POINTS
-    retry: cover property (@(posedge clk_i) pause);
-    stall: cover property (@(posedge clk_i) PIPELINED != 0 && wb_stb_o && wb_stall_i);
 `endif
 endmodule

@@ -112,6 +112,8 @@ module bus_window #(
         .rdata_i(bus_rdata_o), .error_i(bus_error_o));
     reg past = 1'b0;
     reg [15:0] used = 16'd0; // clocks the access has waited before this one
+    (* hierconn *) wire [1:0] \u_wrapper.event_i ;
+    wire answered = busy_o && done_i;
     always @(posedge clk_i)
         used <= wanted && !bus_ready_o && !rst_i ? used + 16'd1 : 16'd0;
     initial assume (rst_i);
@@ -123,21 +125,28 @@ module bus_window #(
             assert ($past(idle_i));
         if (past && !rst_i && !$past(rst_i) && ADDR_WIDTH > 5)
             assert (page == ($past(bus_valid_i && bus_write_i && bus_addr_i == PAGE) ? $past(bus_wdata_i[WIDTH-1:5]) : $past(page)));
+        if (past && $past(rst_i))
+            assert (!busy_o && page == 0);
         cover (past && !rst_i && $past(given_up) && irq_o);
+        cover (past && !rst_i && given_up && answered && !error_i);
     end
     always @* if (!rst_i) begin
         assert (!busy_o || wanted);          // it never outlives the access
         assert (patience + used == TIMEOUT);
         if (bus_valid_i && !bus_write_i && bus_addr_i == PAGE)
             assert (bus_rdata_o == page_value);
-        if (wanted && bus_ready_o && !bus_error_o)
-            assert (bus_rdata_o == rdata_i && wdata_o == bus_wdata_i);
+        assert (!busy_o || (write_o == bus_write_i && addr_o == {page, bus_addr_i[2:0], 2'b00} && wdata_o == bus_wdata_i));
+        // It ends by the core's answer, which may be an error, or by the time-out, which is an event.
+        if (wanted) begin
+            assert (bus_ready_o == (answered || used == TIMEOUT));
+            assert (bus_error_o == !(answered && !error_i));
+            assert (bus_rdata_o == (bus_error_o ? 32'd0 : rdata_i));
+        end
+        assert (\u_wrapper.event_i == {wanted && used == TIMEOUT && !answered, irq_i});
+        if (bus_valid_i && !window) begin
+            assert (bus_ready_o && bus_error_o == bus_addr_i[2]); // there are no words 4..7
+            assert (bus_write_i || bus_addr_i != 4'd0 || bus_rdata_o == ID_VALUE);
+        end
     end
-`endif
-`ifdef COVER_POINTS
-    times_out: cover property (@(posedge clk_i) given_up && !(busy_o && done_i));
-    answers_in_the_last_clock: cover property (@(posedge clk_i) given_up && busy_o && done_i);
-    core_refuses: cover property (@(posedge clk_i) end_now && busy_o && done_i && error_i);
-    core_not_idle: cover property (@(posedge clk_i) wanted && !busy_o && !idle_i);
 `endif
 endmodule

@@ -17,7 +17,7 @@ LEFT_OUT = "NOT_BUILT|^fuzz|^e2e.cores"
 @command("check coverage", [
     Option("name", NAME.kind,
            "only tests of which a part of the name matches this; no gate holds then", ""), BUILD,
-    JOBS], make="coverage", brief=["check coverage --name ^test_bus_adapters[.]",
+    JOBS], make="coverage", brief=["check coverage --name ^test_fsmc_corners[.]",
                              "check coverage --name ^vhdl[.]fir"],
          long="check coverage")
 def coverage(values):

@@ -182,6 +182,5 @@ module npi_arbiter #(
     port_holds_up_back_end: cover property (@(posedge clk_i) rd_valid_i && |back_at && !rd_ready_o);
     write_waits_for_its_words: cover property (@(posedge clk_i) |move_at && !wr_valid_o);
     back_end_holds_words: cover property (@(posedge clk_i) wr_valid_o && !wr_ready_i);
-    flush_drops_words: cover property (@(posedge clk_i) |(npi_wr_flush_i & ~npi_wr_empty_o));
 `endif
 endmodule

@@ -92,5 +92,17 @@ module modem_baud #(
         end
         cover (past && spans && bd_i == rate && tick_o);
     end
+    // So many carries a second as eight ticks a bit time have, within 0.1 %; each tick is of so many.
+    localparam [63:0] SECOND = CLK_HZ;
+    function near(input [31:0] phase_step, input [63:0] wanted); // carries a second, times 2**WIDTH
+        near = {32'd0, phase_step} * SECOND * 64'd1000 >= wanted * 64'd999 && {32'd0, phase_step} * SECOND * 64'd1000 <= wanted * 64'd1001;
+    endfunction
+    localparam [63:0] BAUD = 64'd8 << WIDTH;
+    always @* begin
+        assert (near(BASE, BAUD * 38400) && near(BD6, BAUD * 57600));
+        assert (near(BD7, BAUD * 1000000 / 9) && near(BD8, BAUD * 250000));
+        assert (step == (bd_i >= 4'd8 ? BD8 : bd_i == 4'd7 ? BD7 : bd_i == 4'd6 ? BD6 : BASE));
+        assert (hide == 5'h1F >> bd_i);
+    end
 `endif
 endmodule

@@ -134,29 +134,52 @@ module system_slot #(
         cover (past && spans && n == 16'd9);
     end
     initial assume (rst_i);
+    wire wrote = bus_valid_i && bus_write_i;
     always @(posedge clk_i) begin
         past <= 1'b1;
-        if (past && !rst_i && !$past(rst_i)) begin
+        if (past && $past(rst_i)) begin
+            assert ({cycles, cycles_high_latched, page_o, scratch, error_open, error_addr, error_write} == 0);
+            assert (contract == CONTRACTS[31:0]);
+        end else if (past && !rst_i) begin
             // The place shown is that of the oldest error since the event was last clear.
             if ($past(access_error_i && (!error_open || clearing)))
                 assert ({error_addr, error_write} == $past({error_addr_i | {10{error_memory_i}}, error_write_i}));
             else
                 assert ({error_addr, error_write} == $past({error_addr, error_write}));
             assert (error_open == ($past(access_error_i) || $past(error_open && !clearing)));
+            assert (\u_wrapper.sticky [1] == $past(late_i || (\u_wrapper.sticky [1] && !(wrote && bus_addr_i == SYSTEM_EVENT && bus_wdata_i[1]))));
             // The high word stays as it was when the low word was read.
             assert (cycles_high_latched == $past(reg_read && reg_addr == SYSTEM_CYCLES_LO ? cycles[63:32] : cycles_high_latched));
+            assert (page_o == $past(wrote && bus_addr_i == SYSTEM_PAGE ? bus_wdata_i[5:0] : page_o));
+            assert (scratch == $past(wrote && bus_addr_i == SYSTEM_SCRATCH ? bus_wdata_i : scratch));
+            if ($past(wrote && bus_addr_i == SYSTEM_CONTRACT)) // 0 where there is no slot
+                assert (contract == ((CONTRACTS >> {$past(bus_wdata_i[5:0]), 5'd0}) & 32'hFFFFFFFF));
+            else
+                assert ($stable(contract));
         end
         cover (past && !rst_i && $past(access_error_i && clearing && error_open));
     end
     always @* begin
         assert (!past || rst_i || error_open == \u_wrapper.sticky [0]); // so that the prover need not find it
-        assert (irq_o == (own_irq || |slot_irq_i));
-        if (bus_valid_i && !bus_write_i && !rst_i && bus_addr_i == SYSTEM_EVENT)
-            assert ({bus_rdata_o[31:2], bus_rdata_o[0]} == {30'd0, error_open}); // both of one error
+        assert (irq_o == (|(\u_wrapper.sticky & \u_wrapper.mask ) || |slot_irq_i));
+        if (bus_valid_i && !rst_i)
+            assert (bus_error_o == (bus_addr_i > SYSTEM_CONTRACT));
+        if (bus_valid_i && !bus_write_i && !rst_i)
+            case (bus_addr_i)
+                SYSTEM_ID:         assert (bus_rdata_o == SYSTEM_ID_VALUE);
+                SYSTEM_EVENT:      assert (bus_rdata_o == {30'd0, \u_wrapper.sticky [1], error_open}); // both of one error
+                SYSTEM_SLOTS:      assert (bus_rdata_o == SLOTS);
+                SYSTEM_IRQ_LO:     assert (bus_rdata_o == {slot_irq_i[31:1], own_irq});
+                SYSTEM_IRQ_HI:     assert (bus_rdata_o == {{(64-SLOTS){1'b0}}, slot_irq_i[SLOTS-1:32]});
+                SYSTEM_PAGE:       assert (bus_rdata_o == {26'd0, page_o});
+                SYSTEM_CLK_HZ:     assert (bus_rdata_o == CLK_HZ);
+                SYSTEM_ERROR_ADDR: assert (bus_rdata_o == {15'd0, error_write, 6'd0, error_addr});
+                SYSTEM_SCRATCH:    assert (bus_rdata_o == scratch);
+                SYSTEM_CYCLES_LO:  assert (bus_rdata_o == cycles[31:0]);
+                SYSTEM_CYCLES_HI:  assert (bus_rdata_o == cycles_high_latched);
+                SYSTEM_CONTRACT:   assert (bus_rdata_o == contract);
+                default: ;
+            endcase
     end
-`endif
-`ifdef COVER_POINTS
-    first_error_is_kept: cover property (@(posedge clk_i) access_error_i && error_open && !clearing);
-    error_with_its_clear: cover property (@(posedge clk_i) access_error_i && error_open && clearing);
 `endif
 endmodule

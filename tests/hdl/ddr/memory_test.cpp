@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // memory_test: the memory controller with random traffic from all ports against a reference memory;
-// and one port by hand: flags, flushes, InitDone.
+// and a port before the calibration.
 
 #include "VMemoryMcb2.h"
 #include "VMemoryMcb3.h"
@@ -128,119 +128,31 @@ TYPED_TEST(Memory, AddressesOfTheWholeMemoryAndBitsAboveIt) {
     ASSERT_NO_THROW(memory->run(5000); memory->drain()) << "SEED=" << seed;
 }
 
-class NpiPort : public ::testing::Test {
-protected:
-    void SetUp() override {
-        bench_.addModel([this] { sampleMcb(top_, memory_); }, [this] { driveMcb(top_, memory_); });
-        driveMcb(top_, memory_);
-        bench_.reset();
-    }
-    void start() {
-        bench_.waitFor([this] { return top_.npi_init_done_o == 3; }, "InitDone");
-    }
-    void push(uint64_t data) {
-        setBits(top_.npi_wr_data_i, 0, 64, data);
-        setBits(top_.npi_wr_be_i, 0, 8, 0xFF);
-        top_.npi_wr_push_i = 1;
-        bench_.tick();
-        top_.npi_wr_push_i = 0;
-        top_.eval();
-    }
-    void request(bool read, uint32_t address, unsigned size) {
-        setBits(top_.npi_addr_i, 0, 32, address);
-        setBits(top_.npi_size_i, 0, 4, size);
-        top_.npi_rnw_i = read;
-        top_.npi_rmw_i = 1;
-        top_.npi_addr_req_i = 1;
-        bench_.waitFor([this] { return top_.npi_addr_ack_o == 1; }, "the acknowledgement");
-        bench_.tick();
-        top_.npi_addr_req_i = 0;
-        top_.eval();
-    }
-    uint64_t pop() {
-        bench_.waitFor([this] { return !(top_.npi_rd_empty_o & 1); }, "a word");
-        uint64_t data = getBits(top_.npi_rd_data_o, 0, 64);
-        top_.npi_rd_pop_i = 1;
-        bench_.tick();
-        top_.npi_rd_pop_i = 0;
-        top_.eval();
-        return data;
-    }
-    void wait(unsigned cycles) { bench_.tick(cycles); }
-    uint64_t inMemory(uint32_t address) {
-        uint64_t value;
-        std::memcpy(&value, memory_.data() + address, 8);
-        return value;
-    }
-
-    Bench<VMemoryMcb2> bench_;
-    VMemoryMcb2& top_ = bench_.top();
-    McbModel memory_{1 << 20};
-};
-
-TEST_F(NpiPort, InitDoneComesWithTheMemorysCalibration) {
-    EXPECT_EQ(top_.npi_init_done_o, 0);
-    start();
-    EXPECT_TRUE(memory_.pins.calibDone);
-}
-
-TEST_F(NpiPort, ARequestBeforeTheCalibrationWaitsForIt) {
-    push(0x1122334455667788);
-    request(false, 0x40, 0);
-    EXPECT_EQ(top_.npi_init_done_o, 0);
-    start();
-    wait(60);
-    EXPECT_EQ(inMemory(0x40), 0x1122334455667788u);
-}
-
-TEST_F(NpiPort, TheWriteFifoIsFullWithThirtyTwoWordsAndEmptyAgain) {
-    start();
-    for (unsigned i = 0; i < 32; ++i) {
-        EXPECT_FALSE(top_.npi_wr_almost_full_o & 1) << i;
-        push(i);
-    }
-    EXPECT_TRUE(top_.npi_wr_almost_full_o & 1);
-    wait(2);
-    EXPECT_FALSE(top_.npi_wr_empty_o & 1);
-    request(false, 0x1000, 5);
-    wait(60);
-    EXPECT_TRUE(top_.npi_wr_empty_o & 1);
-    for (unsigned i = 0; i < 32; ++i)
-        EXPECT_EQ(inMemory(0x1000 + 8 * i), i);
-}
-
-TEST_F(NpiPort, AFlushDropsWordsThatNoRequestHasClaimed) {
-    start();
-    for (unsigned i = 0; i < 3; ++i)
-        push(0xDEAD);
-    top_.npi_wr_flush_i = 1;
-    wait(1);
-    top_.npi_wr_flush_i = 0;
-    top_.eval();
-    EXPECT_TRUE(top_.npi_wr_empty_o & 1);
-    push(0x600D);
-    request(false, 0x20, 0);
-    wait(30);
-    EXPECT_EQ(inMemory(0x20), 0x600Du);
-    EXPECT_EQ(inMemory(0x28), 0u);
-}
-
-TEST_F(NpiPort, AFlushDropsReadWordsThatHaveCome) {
-    start();
-    memory_.data()[0x40] = 1;
-    memory_.data()[0x80] = 2;
-    request(true, 0x40, 2);
-    wait(60);
-    EXPECT_FALSE(top_.npi_rd_empty_o & 1);
-    top_.npi_rd_flush_i = 1;
-    wait(1);
-    top_.npi_rd_flush_i = 0;
-    top_.eval();
-    EXPECT_TRUE(top_.npi_rd_empty_o & 1);
-    request(true, 0x80, 0);
-    EXPECT_EQ(pop(), 2u);
-    wait(60);
-    EXPECT_TRUE(top_.npi_rd_empty_o & 1);
+TEST(Calibration, ARequestWaitsForItAndInitDoneTellsOfIt) {
+    constexpr uint64_t data = 0x1122334455667788;
+    constexpr uint32_t address = 0x40;
+    Bench<VMemoryMcb2> bench;
+    VMemoryMcb2& top = bench.top();
+    McbModel memory{1 << 20};
+    bench.addModel([&] { sampleMcb(top, memory); }, [&] { driveMcb(top, memory); });
+    driveMcb(top, memory);
+    bench.reset();
+    setBits(top.npi_wr_data_i, 0, 64, data);
+    setBits(top.npi_wr_be_i, 0, 8, 0xFF);
+    setBits(top.npi_addr_i, 0, 32, address);
+    top.npi_rmw_i = top.npi_wr_push_i = 1;
+    bench.tick();
+    top.npi_wr_push_i = 0;
+    top.npi_addr_req_i = 1;
+    top.eval();
+    bench.waitFor([&] { return top.npi_addr_ack_o == 1; }, "the acknowledgement");
+    bench.tick();
+    top.npi_addr_req_i = 0;
+    EXPECT_EQ(top.npi_init_done_o, 0);
+    bench.waitFor([&] { return top.npi_init_done_o == 3; }, "InitDone");
+    EXPECT_TRUE(memory.pins.calibDone);
+    bench.tick(60);
+    EXPECT_EQ(std::memcmp(memory.data() + address, &data, 8), 0);
 }
 
 } // namespace

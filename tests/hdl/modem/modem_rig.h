@@ -83,25 +83,6 @@ protected:
         return packet;
     }
 
-    // The far modem sends both frames in one RF packet, so they come without a pause. Memory is
-    // held from the write of the first one's last byte until this many bytes of the second have
-    // begun.
-    void sendAndHold(std::vector<uint8_t> first, const std::vector<uint8_t>& second,
-                     uint64_t bytes) {
-        const uint64_t end = near_->counters().bytesToHost + first.size();
-        auto begun = [&](uint64_t byte) {
-            bench_.waitFor([&] { return near_->counters().bytesToHost >= byte; },
-                           "byte " + std::to_string(byte), 100'000);
-        };
-        first.insert(first.end(), second.begin(), second.end());
-        plain_.send(first, now());
-        begun(end);
-        runMs(0.02); // the byte before is in memory, however slow that was
-        memory_.hold(true);
-        begun(end + bytes);
-        memory_.hold(false);
-    }
-
     // Returns the counted errors without the set-up's retries, since it may have to search the
     // rate.
     uint32_t errors() { return bus_.read(MODEM_ERRORS) & ~MODEM_ERRORS_RETRIES_MASK; }
@@ -152,7 +133,7 @@ private:
         near_->advance(now());
         far_->advance(now());
     }
-    // Pins move in the second half of a clock, as any other clock's (tests/hdl/reader.v).
+    // Pins move in the second half of a clock, as any other clock's.
     void movePins() {
         if (bench_.top().clk_i)
             return;

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_tx_test: setting the modem up, resets, puts that are refused, and packets to the modem, pin
-// by pin.
+// modem_test: setting the modem up, resets, puts that are refused, and packets to the modem and
+// from it, pin by pin. What meets in one clock is proven (formal.modem_*).
 
-#include "modem_test.h"
+#include "VModem.h"
+#include "modem_rig.h"
 
 namespace {
 
-TEST_F(ModemTest, SetUpFromFactorySettings) {
-    power(quick());
-    configure();
-    EXPECT_EQ(takeEvents(), MODEM_EVENT_CONFIGURED_MASK);
-    EXPECT_EQ(near_->parameter("MY"), 0x0001u);
-    EXPECT_EQ(near_->parameter("DL"), 0x0000u);
-    EXPECT_EQ(near_->parameter("CH"), 0x0Cu);
-    EXPECT_EQ(near_->parameter("ID"), 0x3332u);
-    EXPECT_EQ(near_->parameter("BD"), 7u);
-    EXPECT_FALSE(near_->inCommandMode());
-    EXPECT_TRUE(bus_.read(MODEM_STATUS) & MODEM_STATUS_READY_MASK);
-    EXPECT_EQ(near_->counters().refused, 0u);
-}
+class ModemTest : public ModemRig<VModem, 500> {
+protected:
+    static constexpr unsigned bitClocks = 18; // at 111,111 baud
+
+    void ready() {
+        power(quick());
+        configure();
+        EXPECT_EQ(takeEvents(), MODEM_EVENT_CONFIGURED_MASK);
+        EXPECT_TRUE(bus_.read(MODEM_STATUS) & MODEM_STATUS_READY_MASK);
+        EXPECT_EQ(near_->counters().refused, 0u);
+    }
+};
 
 TEST_F(ModemTest, SetUpWithDefaultGuardTimes) {
     power({});
@@ -157,15 +157,6 @@ TEST_F(ModemTest, APacketThatASetUpInterruptsIsSentAgainWhole) {
     EXPECT_EQ(bus_.read(MODEM_TX_STATE) & MODEM_TX_STATE_FREE_MASK, 16u);
 }
 
-// Bytes that count up from `tag`, behind the length.
-std::vector<uint8_t> ramp(unsigned size, uint8_t tag) {
-    std::vector<uint8_t> bytes(size);
-    bytes[0] = static_cast<uint8_t>(size - 5);
-    for (unsigned i = 1; i < size; ++i)
-        bytes[i] = static_cast<uint8_t>(tag + i);
-    return bytes;
-}
-
 TEST_F(ModemTest, PacketsLeaveEachAsOneRfPacket) {
     ready();
     std::vector<uint8_t> expected;
@@ -209,107 +200,6 @@ TEST_F(ModemTest, ShortPacketsInARowAreNotJoined) {
     EXPECT_EQ(sizes_, (std::vector<size_t>{40, 40}));
 }
 
-// A word that memory gives for an abandoned packet must not become a byte of the current one, even
-// if it comes after the set-up.
-class ModemWithdrawnRead : public ModemTest {
-protected:
-    // CONTROL is written this many clocks after the read of the packet's second word has begun.
-    // If `hangs`, memory gives that word only when the packet is awaited (sentAgain).
-    void interrupt(unsigned buffer, unsigned clocks, uint32_t control, bool hangs = false) {
-        packet_ = ramp(20, static_cast<uint8_t>(16 * buffer));
-        uint32_t second = txRing + 128 * buffer + 8;
-        plain_.received.clear();
-        put(buffer, packet_);
-        bench_.waitFor(
-            [&] { return bench_.top().npi_addr_req_o && bench_.top().npi_addr_o == second; },
-            "the second word");
-        memory_.hold(hangs);
-        bench_.tick(clocks);
-        bus_.write(MODEM_CONTROL, control);
-    }
-    void setUp() {
-        bench_.waitFor([&] { return bench_.top().irq_o; }, "the end of the set-up", 1'000'000);
-        EXPECT_TRUE(takeEvents() & MODEM_EVENT_CONFIGURED_MASK);
-    }
-    // The bytes that had left, and the packet.
-    void sentAgain(const std::string& when) {
-        memory_.hold(false);
-        runMs(12);
-        size_t left = plain_.received.size() - packet_.size();
-        ASSERT_TRUE(left == 8 || left == 9) << plain_.received.size() << when;
-        std::vector<uint8_t> expected(packet_.begin(), packet_.begin() + static_cast<long>(left));
-        expected.insert(expected.end(), packet_.begin(), packet_.end());
-        EXPECT_EQ(plain_.received, expected) << when;
-        EXPECT_EQ(bus_.read(MODEM_TX_STATE) & MODEM_TX_STATE_FREE_MASK, 16u) << when;
-        EXPECT_EQ(takeEvents(), MODEM_EVENT_TX_DONE_MASK) << when;
-    }
-    std::vector<uint8_t> packet_;
-};
-
-TEST_F(ModemWithdrawnRead, ASetUpAtAnyClockOfIt) {
-    ready();
-    memory_.setStall(0.8);
-    for (unsigned clocks = 0; clocks < 10; ++clocks) {
-        interrupt(clocks, clocks, MODEM_CONTROL_CONFIGURE_MASK);
-        setUp();
-        sentAgain(", clock " + std::to_string(clocks) + ", SEED " + std::to_string(testSeed()));
-    }
-}
-
-TEST_F(ModemWithdrawnRead, ItsWordComesAfterTheSetUp) {
-    ready();
-    interrupt(0, 0, MODEM_CONTROL_CONFIGURE_MASK, true);
-    setUp();
-    sentAgain("");
-}
-
-TEST_F(ModemWithdrawnRead, ItsWordComesAfterAResetForAnotherPacket) {
-    power(quick({{"BD", 7}})); // at once found after the reset
-    configure();
-    takeEvents();
-    interrupt(0, 0, MODEM_CONTROL_RESET_MODEM_MASK, true);
-    runMs(60);
-    configure();
-    takeEvents();
-    plain_.received.clear();
-    put(0, ramp(30, 100));
-    memory_.hold(false);
-    runMs(12);
-    EXPECT_EQ(plain_.received, ramp(30, 100));
-    EXPECT_EQ(bus_.read(MODEM_TX_STATE), 1u << 8 | 16u);
-}
-
-TEST_F(ModemRingsMeet, APutInTheClockInWhichAPacketHasBeenSent) {
-    readyAtOnce();
-    put(0, {1});
-    uint64_t begin = bench_.cycles();
-    bench_.waitFor([&] { return bench_.top().irq_o; }, "the end of a packet");
-    uint64_t lasts = bench_.cycles() - begin;
-    takeEvents();
-    std::vector<uint8_t> expected = {1};
-    for (unsigned i = 0; i < 16 * rounds; ++i) {
-        unsigned before = i % 16; // clocks
-        std::string when = std::to_string(before) + ", SEED " + std::to_string(testSeed());
-        unsigned buffer = expected.size() % 16, after = (buffer + 2) % 16;
-        level(true, random_.below(9));
-        for (unsigned packet = 0; packet < 2; ++packet) {
-            memory_.setByte(txRing + 128 * ((buffer + packet) % 16),
-                            static_cast<uint8_t>(expected.size()));
-            expected.push_back(static_cast<uint8_t>(expected.size()));
-        }
-        bus_.write(MODEM_TX_PUT, 1);
-        tickUntil(bench_.cycles() + lasts - before);
-        bus_.write(MODEM_TX_PUT, 1);
-        runMs(0.1); // the first has left
-        EXPECT_EQ(bus_.read(MODEM_TX_STATE), after << 8 | 15u) << when;
-        runMs(0.5);
-        EXPECT_EQ(bus_.read(MODEM_TX_STATE), after << 8 | 16u) << when;
-    }
-    EXPECT_EQ(takeEvents(), MODEM_EVENT_TX_DONE_MASK);
-    runMs(20);
-    EXPECT_EQ(plain_.received, expected) << "each once, in turn";
-}
-
 TEST_F(ModemTest, PacketsLeaveWholeThoughCtsMovesInAnyClock) {
     ready();
     ctsWavers_ = true;
@@ -331,6 +221,89 @@ TEST_F(ModemTest, AModemThatIsFullHoldsTheControllerBack) {
     runMs(1500);
     EXPECT_EQ(near_->counters().overflow, 0u);
     EXPECT_EQ(plain_.received.size(), 600u);
+}
+
+TEST_F(ModemTest, PacketsArriveEachInItsBuffer) {
+    ready();
+    std::vector<std::vector<uint8_t>> sent;
+    for (unsigned i = 0; i < 20; ++i) {
+        sent.push_back(frame(5 + i * 13 % 96, static_cast<uint8_t>(i)));
+        plain_.send(sent.back(), now());
+        runMs(16);
+        EXPECT_EQ(takeEvents(), MODEM_EVENT_RX_PACKET_MASK) << i;
+        EXPECT_EQ(take(), sent.back()) << i;
+    }
+}
+
+TEST_F(ModemTest, ThreeCharactersOfSilenceEndAPacket) {
+    ready();
+    std::vector<uint8_t> cut = frame(60, 9);
+    cut.resize(21);
+    plain_.send(cut, now());
+    runMs(10);
+    EXPECT_EQ(take(), cut);
+}
+
+TEST_F(ModemTest, AFullRingDropsWholePacketsAndNothingElse) {
+    ready();
+    pinsIgnoreRts_ = true; // a modem that ignores RTS
+    for (unsigned i = 0; i < 18; ++i) {
+        plain_.send(frame(50, static_cast<uint8_t>(i + 1)), now());
+        runMs(10);
+    }
+    EXPECT_TRUE(bench_.top().modem_rts_n_o);
+    EXPECT_EQ(takeEvents(), MODEM_EVENT_RX_PACKET_MASK | MODEM_EVENT_RX_OVERRUN_MASK);
+    EXPECT_EQ(bus_.read(MODEM_ERRORS) >> MODEM_ERRORS_OVERRUN_LSB & 0xFF, 2u);
+    for (unsigned i = 0; i < 16; ++i)
+        EXPECT_EQ(take(), frame(50, static_cast<uint8_t>(i + 1))) << i;
+    EXPECT_TRUE(take().empty());
+    plain_.send(frame(50, 99), now());
+    runMs(10);
+    EXPECT_EQ(take(), frame(50, 99)) << "it goes on";
+}
+
+TEST_F(ModemTest, RTSHoldsTheModemInMidPacketAndThePacketIsWhole) {
+    ready();
+    for (unsigned i = 0; i < 13; ++i) {
+        plain_.send(frame(20, static_cast<uint8_t>(i + 1)), now());
+        runMs(10);
+    }
+    // Both frames are in one RF packet, so they come without a pause. Memory takes the first one's
+    // last byte when the second has begun.
+    auto both = frame(50, 14);
+    const auto second = frame(50, 15);
+    both.insert(both.end(), second.begin(), second.end());
+    const uint64_t end = near_->counters().bytesToHost + 50;
+    plain_.send(both, now());
+    for (uint64_t byte : {end, end + 1}) {
+        bench_.waitFor([&] { return near_->counters().bytesToHost >= byte; }, "a byte", 100'000);
+        runMs(byte == end ? 0.02 : 0); // the byte before is in memory, however slow that was
+        memory_.hold(byte == end);
+    }
+    runMs(50);
+    EXPECT_TRUE(bench_.top().modem_rts_n_o);
+    for (unsigned i = 0; i < 13; ++i)
+        EXPECT_EQ(take(), frame(20, static_cast<uint8_t>(i + 1))) << i;
+    EXPECT_FALSE(bench_.top().modem_rts_n_o);
+    runMs(10);
+    EXPECT_EQ(take(), frame(50, 14));
+    EXPECT_EQ(take(), frame(50, 15));
+}
+
+TEST_F(ModemTest, AFramingErrorEndsThePacketAndIsCounted) {
+    ready();
+    plain_.send(frame(50, 7), now());
+    runMs(5.5);
+    noise_ = true; // a break in the middle
+    runMs(0.3);
+    noise_ = false;
+    runMs(10);
+    EXPECT_GE(bus_.read(MODEM_ERRORS) & 0xFF, 1u);
+    while (!take().empty()) {
+    }
+    plain_.send(frame(30, 8), now());
+    runMs(10);
+    EXPECT_EQ(take(), frame(30, 8));
 }
 
 } // namespace

@@ -7,8 +7,6 @@
 
 namespace {
 
-using CommandMode = Pair;
-
 class Commands : public Pair {
 protected:
     void SetUp() override {
@@ -17,93 +15,60 @@ protected:
     }
 };
 
-TEST_F(CommandMode, SequenceBetweenGuardTimesIsAnswered) {
-    power();
-    EXPECT_EQ(enter(), "OK\r");
-    EXPECT_TRUE(a->inCommandMode());
-    EXPECT_TRUE(packets.empty()) << "the sequence itself is not sent";
-}
+// What `a` is sent, each with the milliseconds until the next; what becomes of it.
+struct Sequence {
+    const char* name;
+    std::map<std::string, uint32_t> set;
+    std::vector<std::pair<const char*, uint64_t>> sent;
+    bool isCommandMode;
+    const char *answers, *atB; // what the hosts of `a` and `b` hear
+};
+const Sequence sequences[] = {
+    {"BetweenGuardTimes", {}, {{"", 11}, {"+++", 11}}, true, "OK\r", ""},
+    {"InADefaultGuardTime", {{"GT", 1000}}, {{"", 1000}, {"+++", 999}}, false, "", ""},
+    {"AfterADefaultGuardTime", {{"GT", 1000}}, {{"", 1000}, {"+++", 1001}}, true, "OK\r", ""},
+    {"WithoutSilenceBefore", {}, {{"", 11}, {"x", 5}, {"+++", 30}}, false, "", "x+++"},
+    {"WithoutSilenceBehind", {}, {{"", 11}, {"+++", 5}, {"y", 30}}, false, "", "+++y"},
+    {"InMoreThanASecond",
+     {{"GT", 2000}},
+     {{"", 2001}, {"+", 900}, {"+", 200}, {"+", 2100}},
+     false,
+     "",
+     "+++"},
+    {"OfFewerCharacters", {}, {{"", 11}, {"++", 30}}, false, "", "++"},
+    {"OfAnotherCharacterThanCC", {{"CC", '-'}}, {{"", 11}, {"+++", 11}}, false, "", "+++"},
+    {"OfCC", {{"CC", '-'}}, {{"", 11}, {"---", 11}}, true, "OK\r", ""},
+    // RO 0xFF: nothing would leave by itself for 265 ms
+    {"ThatDoesNotCome", {{"RO", 0xFF}}, {{"", 11}, {"before", 11}}, false, "", ""},
+    {"BehindData", {{"RO", 0xFF}}, {{"", 11}, {"before", 11}, {"+++", 20}}, true, "OK\r", "before"},
+    {"ThenCN", {}, {{"", 11}, {"+++", 11}, {"ATCN\r", 1}, {"data", 20}}, false, "OK\rOK\r", "data"},
+    {"WithinCT", // 500 ms
+     {{"CT", 5}},
+     {{"", 11}, {"+++", 411}, {"ATMY\r", 401}},
+     true,
+     "OK\r1\r",
+     ""},
+    {"BeyondCTByAWrongCommand", // which does not count
+     {{"CT", 5}},
+     {{"", 11}, {"+++", 411}, {"ATMY\r", 401}, {"ATXX\r", 106}},
+     false,
+     "OK\r1\rERROR\r",
+     ""}};
 
-TEST_F(CommandMode, DefaultGuardTimeIsASecond) {
-    power({{"GT", 1000}});
-    run(1000 * ms);
-    send("+++", 999 * ms);
-    EXPECT_FALSE(a->inCommandMode());
-    run(2 * ms);
-    EXPECT_TRUE(a->inCommandMode());
-}
+class Sequences : public Pair, public ::testing::WithParamInterface<Sequence> {};
 
-TEST_F(CommandMode, WithoutSilenceBeforeItIsData) {
-    power();
-    run(11 * ms);
-    send("x", 5 * ms);
-    send("+++", 30 * ms);
-    EXPECT_FALSE(a->inCommandMode());
-    EXPECT_EQ(heardB(), "x+++");
+TEST_P(Sequences, BeginAndEndCommandMode) {
+    power(GetParam().set);
+    for (const auto& [text, then] : GetParam().sent)
+        send(text, then * ms);
+    EXPECT_EQ(a->inCommandMode(), GetParam().isCommandMode);
+    EXPECT_EQ(heard(), GetParam().answers);
+    EXPECT_EQ(heardB(), GetParam().atB);
 }
+INSTANTIATE_TEST_SUITE_P(CommandMode, Sequences, ::testing::ValuesIn(sequences),
+                         [](auto& s) { return std::string(s.param.name); });
 
-TEST_F(CommandMode, WithoutSilenceAfterItIsData) {
-    power();
-    run(11 * ms);
-    send("+++", 5 * ms);
-    send("y", 30 * ms);
-    EXPECT_FALSE(a->inCommandMode());
-    EXPECT_EQ(heardB(), "+++y");
-}
-
-TEST_F(CommandMode, TheThreeCharactersComeWithinASecond) {
-    power({{"GT", 2000}});
-    run(2001 * ms);
-    send("+", 900 * ms);
-    send("+");
-    run(200 * ms); // 1.1 s after the first
-    send("+", 2100 * ms);
-    EXPECT_FALSE(a->inCommandMode());
-    EXPECT_EQ(heardB(), "+++");
-}
-
-TEST_F(CommandMode, FewerCharactersAreData) {
-    power();
-    run(11 * ms);
-    EXPECT_EQ(across("++", 30 * ms), "++");
-}
-
-TEST_F(CommandMode, TheCharacterIsCC) {
-    power({{"CC", '-'}});
-    EXPECT_EQ(enter(), "");
-    run(11 * ms);
-    send("---", 11 * ms);
-    EXPECT_EQ(heard(), "OK\r");
-}
-
-TEST_F(CommandMode, WhatWasWrittenBeforeIsSentByRadio) {
-    power({{"RO", 0xFF}}); // nothing would leave by itself for 265 ms
-    run(11 * ms);
-    send("before", 11 * ms);
-    EXPECT_TRUE(packets.empty());
-    EXPECT_EQ(across("+++", 20 * ms), "before");
-}
-
-TEST_F(CommandMode, EndsByCN) {
-    power();
-    enter();
-    EXPECT_EQ(command("ATCN"), "OK\r");
-    EXPECT_FALSE(a->inCommandMode());
-    EXPECT_EQ(across("data", 20 * ms), "data");
-}
-
-TEST_F(CommandMode, EndsAfterCTWithoutAValidCommand) {
-    power({{"CT", 5}}); // 500 ms
-    enter();
-    run(400 * ms);
-    EXPECT_EQ(command("ATMY"), "1\r");
-    run(400 * ms);
-    EXPECT_TRUE(a->inCommandMode());
-    EXPECT_EQ(command("ATXX"), "ERROR\r"); // does not count
-    run(105 * ms);
-    EXPECT_FALSE(a->inCommandMode());
-}
-
+using CommandMode = Pair;
 TEST_F(CommandMode, OkWaitsUntilReceivedDataHasDrained) {
     power();
     lineA.paused = true; // the host's line is slow
@@ -240,32 +205,27 @@ protected:
     }
 };
 
-TEST_P(Api, ATransmitRequestIsSentAndItsStatusReported) {
-    api({0x01, 0x52, 0x00, 0x02, 0x00, 'h', 0x7E, 0x11, 'i'}, 20 * ms);
-    EXPECT_EQ(heardB(), "h\x7E\x11i");
-    EXPECT_EQ(answer(), framed({0x89, 0x52, 0x00}));
-}
-
-TEST_P(Api, NobodyThereGivesStatus1) {
-    api({0x01, 0x07, 0x99, 0x99, 0x00, 'x'}, 100 * ms);
-    EXPECT_EQ(answer(), framed({0x89, 0x07, 0x01}));
-}
-
-TEST_P(Api, FrameId0AsksForNoStatus) {
-    api({0x01, 0x00, 0x00, 0x02, 0x00, 'x'}, 20 * ms);
-    EXPECT_EQ(heardB(), "x");
-    EXPECT_EQ(answer(), Bytes{});
+TEST_P(Api, TransmitRequestsAreSentAndTheirStatusReported) {
+    const struct {
+        Bytes sent;
+        std::string atB;
+        Bytes answer;
+    } cases[] = {
+        {{0x01, 0x52, 0, 2, 0, 'h', 0x7E, 0x11, 'i'}, "h\x7E\x11i", framed({0x89, 0x52, 0})},
+        {{0x01, 0x07, 0x99, 0x99, 0, 'x'}, "", framed({0x89, 0x07, 1})}, // nobody is there
+        {{0x01, 0x00, 0, 2, 0, 'x'}, "x", {}},                           // asks for no status
+        {{0x00, 0x01, 0, 0x13, 0xA2, 0, 0, 0, 0, 0x0B, 0, 'x'}, "x", framed({0x89, 0x01, 0})}};
+    for (const auto& c : cases) {
+        api(c.sent, 100 * ms);
+        EXPECT_EQ(heardB(), c.atB);
+        EXPECT_EQ(answer(), c.answer) << c.atB;
+    }
 }
 
 TEST_P(Api, TheOptionWithoutAckIsNotTriedAgain) {
     air.weather.tryLoss = 1;
     api({0x01, 0x01, 0x00, 0x02, 0x01, 'x'}, 100 * ms);
     EXPECT_EQ(air.counters().retries, 0u);
-}
-
-TEST_P(Api, SerialNumbersAreAddressedBy0x00) {
-    api({0x00, 0x01, 0x00, 0x13, 0xA2, 0x00, 0x00, 0x00, 0x00, 0x0B, 0x00, 'x'}, 20 * ms);
-    EXPECT_EQ(heardB(), "x");
 }
 
 TEST_P(Api, AReceivedPacketHasSourceAndSignal) {

@@ -30,7 +30,8 @@ CLIENTS = TREE / "sw/ground/clients"
 INTERFACE = ("--plugin", BUILD / "ground", "--slice", TREE / "sw/apps/uav/Autopilot.ice")
 UPDATES = (CLIENTS / "update.py", "new.update", "--device", "{device}", "--plugin",
            BUILD / "ground", "--slice", TREE / "sw/apps/uav/Update.ice")
-LOADER, FIRMWARE = BUILD / "firmware/loader.elf", BUILD / "firmware/uav.elf"
+FIRMWARE, STAND_IN = BUILD / "firmware/uav.elf", BUILD / "testbench/cpu/stand_in_bitstream"
+VEHICLE = "vehicle", BUILD / "firmware/loader.elf", FIRMWARE, "1"
 KEY = "000102030405060708090a0b0c0d0e0f"
 DEVICE = 'hwengine1:xbee-at -d "{device}" -a 0x0001 '
 
@@ -193,14 +194,11 @@ class Cases(Script):
         self.lacks("Traceback")
 
     def test_update(self):
-        """New firmware: a wrong file, a vehicle with another key, a loss of power during it, a slot
-        that must be erased, a crash; good and bad bitstreams."""
+        """New firmware: a wrong file, a vehicle with another key, a loss of power during it."""
         self.update(TREE / "Makefile", "no 32-bit ARM ELF file", status=None)
         flash = Path("flash.bin")
-        vehicle = "vehicle", LOADER, FIRMWARE, "1"
-        self.pack(*vehicle, "other.key", flash)
-        stand_in = BUILD / "testbench/cpu/stand_in_bitstream"
-        self.ask(stand_in, "golden.bin", "1", "10000")
+        self.pack(*VEHICLE, "other.key", flash)
+        self.ask(STAND_IN, "golden.bin", "1", "10000")
         self.pack("fpga", "golden.bin", "1", "other.key", "fpga.bin")
         before = flash.read_bytes()
         self.update(FIRMWARE, "not signed with this vehicle's key", status=None)
@@ -208,18 +206,23 @@ class Cases(Script):
         Path("fpga.bin").unlink()
         Path("cut.update").write_bytes(Path("new.update").read_bytes()[:50000])
         self.fails("is cut short", CLIENTS / "update.py", "cut.update", "--slice", UPDATES[-1])
-        self.pack(*vehicle, self.keys / "update.key", flash)
+        self.pack(*VEHICLE, self.keys / "update.key", flash)
         stored = "--cpu", "m3", "--flash", flash
         self.simulate(*UPDATES, options=(*stored, "--duration", "8"), status=None)
         self.has("the vehicle runs version 1$")
         self.assertNotEqual(flash.read_bytes(), before)
         for _ in range(2):
             self.update(FIRMWARE, "runs and is confirmed", "1 software, 0 watchdog")
-        # The first key is stolen: firmware that the second has signed, then a list without it.
+        self.a_stolen_key(flash, stored)
+        self.big_and_broken(flash)
+        self.bitstreams(stored)
+
+    def a_stolen_key(self, flash, stored):
+        """Firmware that the second key has signed, then a list without the first."""
         signing = self.keys / "spare.key"
         key = TREE / "icesoc", "key", "--built", "--build", BUILD
         self.ask(*key, signing, "--signing")
-        self.pack(*vehicle, self.keys / "update.key", flash, "--second", self.keys / "spare.pub")
+        self.pack(*VEHICLE, self.keys / "update.key", flash, "--second", self.keys / "spare.pub")
         self.pack("image", FIRMWARE, str(int(time.time())), signing, "spare.update")
         self.ask(*key, self.out / "list.update", "--list", "2", "--by", signing, "--first",
                  self.keys / "spare.pub")
@@ -229,23 +232,27 @@ class Cases(Script):
                       options=stored)
         self.has("runs and is confirmed", "takes what the keys of list 2 sign")
         self.update(FIRMWARE, "not signed with this vehicle's keys", status=None)
-        # 256 KiB into three full sectors, within 30 s of air.
+
+    def big_and_broken(self, flash):
+        """256 KiB into three full sectors, within 30 s of air; firmware that crashes at its start,
+        from which the vehicle returns to the one before by itself."""
         self.ask(TREE / "tests/e2e/mission/big_firmware.sh", BUILD, self.out / "big.elf", "262144")
-        self.pack(*vehicle, self.keys / "update.key", flash)
+        self.pack(*VEHICLE, self.keys / "update.key", flash)
         with open(flash, "r+b") as file:
             file.seek(4 * 128 * 1024)
             file.write(os.urandom(3 * 128 * 1024))
         self.update("big.elf", "runs and is confirmed")
         sent = re.search(r"sent 262144 bytes in (.*)", self.said)[1]
         self.assertLessEqual(float(re.search(r"[\d.]+", sent)[0]), 30)
-        # Firmware that crashes at its start: the vehicle returns to the one before by itself.
         self.patched("crashes.elf", "Firmware_run", 0, b"\xff\xde")  # UDF
         self.update("crashes.elf", "is signed and whole; it starts", "was started and went back",
                     "2 software, 0 watchdog", status=None)
-        # Bitstreams: no bitstream at all, one that the FPGA refuses, one that nobody confirms, and
-        # one of full size.
+
+    def bitstreams(self, stored):
+        """No bitstream at all, one that the FPGA refuses, one that nobody confirms, and one of full
+        size."""
         self.update(BUILD / "firmware/uav.bin", "has a sync word, AA 99 55 66", status=None)
-        self.ask(stand_in, "new.bin", "2", "10000")
+        self.ask(STAND_IN, "new.bin", "2", "10000")
         damaged = bytearray(Path("new.bin").read_bytes())
         damaged[9000] = ord("x")
         Path("damaged.bin").write_bytes(damaged)
@@ -254,7 +261,7 @@ class Cases(Script):
                   "new.update")
         self.simulate(*UPDATES, "--rehearse", options=(*stored, "--fpga-flash", "fpga.bin"))
         self.has("runs, and is not confirmed", "the vehicle runs version 1$")
-        self.ask(stand_in, "full.bin", "3")
+        self.ask(STAND_IN, "full.bin", "3")
         for bits in "new.bin", "full.bin":
             self.update(bits, "runs and is confirmed")
 

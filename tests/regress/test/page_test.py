@@ -65,6 +65,9 @@ def measured(name, folders):
     write(f"build/{name}/tree", tree(folders))
 
 
+WRITTEN = "build/regress/report.html"
+
+
 class Cases(Project):
     def browse(self, page):
         self.said = look.browse(Path(page).resolve().as_uri())[0]
@@ -77,9 +80,8 @@ class Cases(Project):
         write("build/coverage/summary.json",
               json.dumps({"total": 97, "toggles": 95, "files": [FIFO]}))
         self.regress("", 1)
-        written = "build/regress/report.html"
-        page = Path(written).read_text()
-        self.lacks('src="http|href="http', written)  # offline
+        page = Path(WRITTEN).read_text()
+        self.lacks('src="http|href="http', WRITTEN)  # offline
         # If the libraries could not be fetched, the page is complete and says how to get them.
         write("plain.html", re.sub("(?m)^(!function.*Tabulator=|.*var uPlot=).*\n", "", page))
         self.browse("plain.html")
@@ -87,6 +89,11 @@ class Cases(Project):
                  "<td>test_c.Flicker</td>", 'class="dot dp"')
         if not (BUILD / "page/libraries.js").stat().st_size:
             self.skipTest("Tabulator and uPlot could not be fetched")
+        self.clicks(page)
+        self.part_of_a_run()
+        self.small_and_wrong(page)
+
+    def clicks(self, page):
         clicks = Path(__file__).with_name("clicks.js").read_text()
         write("clicked.html", page.replace("</body>", f"<script>\n{clicks}</script></body>"))
         self.browse("clicked.html")
@@ -119,16 +126,21 @@ class Cases(Project):
             {"block": "hdl/fifo", "green": "", "lines": [194, 200, 0]},
             {"block": "room", "green": "", "tests": [3, 2, 0], "proofs": [1, 1, 0]}])
         self.has('id="blocks".*>97.0 %<.*>2 failed of 5<.*>1 failed of 2<')
+
+    def part_of_a_run(self):
         write("tests/plan.toml", '[a]\n"It works" = "test_a.One"\n"It waits" = "test_c.*"\n')
         write("tests/room/other", "new\n")
         self.regress("--name a.One")
-        self.browse(written)
+        self.browse(WRITTEN)
         self.has('id="seeds"', ">1 passed, 4 did not run<", ">2 did not run<",
                  "<summary>1 of which no test ran</summary>")
         self.has("Requirements: 1 of 1 that were tested proven", ">It works<",
                  "<summary>1 whose tests did not run with these sources</summary>")
         self.lacks(">It waits<")
-        # At 420 pixels columns that have no room go below their row.
+
+    def small_and_wrong(self, page):
+        """At 420 pixels columns that have no room go below their row; a fault of a script is
+        found."""
         write("small.html", page.replace("</body>", """<script>setTimeout(() =>
 top.document.body.append("wider: " + [...document.querySelectorAll(".tabulator-col, h2")]
   .filter(e => e.getBoundingClientRect().right > 421).map(e => e.innerText) + ";"), 1000);
@@ -137,7 +149,7 @@ top.document.body.append("wider: " + [...document.querySelectorAll(".tabulator-c
         self.said = look.browse(Path("frame.html").resolve().as_uri(),
                                 "--allow-file-access-from-files")[0]
         self.has("wider: ;")
-        self.assertEqual(look.fault(written), "")
+        self.assertEqual(look.fault(WRITTEN), "")
         write("wrong.html", page.replace("of data.lights", "of data.lihgts"))
         self.assertRegex(look.fault("wrong.html"), "^wrong.html:[0-9]*: Uncaught TypeError: "
                          "data.lihgts is not iterable: for [(]const light")

@@ -6,7 +6,6 @@
 
 #include "attacker.h"
 #include "ground.h"
-#include "two_grounds.h"
 #include "uav_machine.h"
 #include <gtest/gtest.h>
 
@@ -34,22 +33,6 @@ protected:
 
     UavMachine* machine_ = nullptr; // while it flies
 };
-
-TEST_F(Uav, AnObjectThatDoesNotExistIsSaidNotToExist) {
-    fly(ground.pinging(1, "nobody"), 20);
-    EXPECT_EQ(ground.replies[1], 2);
-}
-
-TEST_F(Uav, LossCorruptionAndDuplicationAreNotNoticed) {
-    air.weather.loss = 0.1;
-    air.weather.corruption = 0.03;
-    air.weather.duplication = 0.1;
-    fly(ground.pinging(40), 60);
-    EXPECT_EQ(ground.replies.size(), 40u);
-    for (auto& [id, status] : ground.replies)
-        EXPECT_EQ(status, 0) << id;
-    EXPECT_GT(air.counters().lost, 0u);
-}
 
 TEST_F(Uav, AModemResetInMidPacketIsRecoveredFrom) {
     uint64_t since = 0;
@@ -87,6 +70,84 @@ TEST_F(Uav, AModemResetInMidPacketIsRecoveredFrom) {
         20);
     EXPECT_EQ(soc.modem().parameter("BD"), 250000u);
 }
+
+// A vehicle with two grounds, each under a key of its own, and a stranger.
+class TwoGrounds : public GroundAndChip {
+public:
+    static constexpr uint32_t observersAddress = 0x00F0;
+    const std::vector<uint8_t> pilotsKey = std::vector<uint8_t>(LINK_KEY_BYTES, 0x11),
+                               observersKey = std::vector<uint8_t>(LINK_KEY_BYTES, 0x22);
+
+    TwoGrounds() {
+        ground.key = pilotsKey;
+        observer.key = stranger.key = observersKey;
+        for (Ground* g : {&ground, &observer, &stranger})
+            g->start();
+        soc.onTime([this](uint64_t now) {
+            return std::min({ground.advance(now), observer.advance(now), stranger.advance(now)});
+        });
+        soc.reset(true);
+    }
+    // Both call at once; the observer vanishes in mid-call, and comes again with the pilot's key,
+    // then with its own.
+    Script flight() {
+        const auto vanish = [this] {
+            since_ = soc.now();
+            observer.ping(100, "hwengine1");
+            observer.running = false;
+            return true;
+        };
+        return inOrder(
+            {[this] { return ground.validated && observer.validated; },
+             [this, both = together(15)]() mutable { return both(); }, vanish,
+             [this, calls = ground.calling(std::vector<Ground::Call>(40, ping))]() mutable {
+                 if (soc.now() - since_ < 1'000'000)
+                     ground.replies.clear();
+                 return calls();
+             },
+             [this] {
+                 EXPECT_LT(double(soc.now() - since_) / 1e9, 40 * 0.045) << "the pilot was delayed";
+                 observer.key = pilotsKey;
+                 observer.start();
+                 since_ = soc.now();
+                 return true;
+             },
+             [this] { return soc.now() - since_ > 4'000'000'000; },
+             [this] {
+                 EXPECT_FALSE(observer.isUp()) << "under the pilot's key";
+                 observer.key = observersKey;
+                 observer.start();
+                 return true;
+             },
+             [this] { return observer.validated; },
+             [this] {
+                 ground.replies.clear();
+                 return true;
+             },
+             [this, both = together(5)]() mutable { return both(); },
+             [this] {
+                 EXPECT_EQ(ground.statistics().sessions, 1u) << "the pilot's session went on";
+                 EXPECT_EQ(stranger.statistics().sessions, 0u) << "has the key, not the address";
+                 for (const Ground* g : {&ground, &observer})
+                     for (const auto& [id, status] : g->replies)
+                         EXPECT_EQ(status, 0) << id;
+                 return true;
+             }});
+    }
+
+    Ground observer{air, testSeed() + 6, observersAddress}, stranger{air, testSeed() + 7, 0x0BAD};
+
+private:
+    const Ground::Call ping = {"hwengine1", "ice_ping", 2};
+
+    Script together(size_t calls) {
+        return [pilots = ground.pinging(calls), others = observer.pinging(calls)]() mutable {
+            const bool isDone = pilots();
+            return others() && isDone;
+        };
+    }
+    uint64_t since_ = 0;
+};
 
 TEST(Grounds, TwoAreServedAtOnceEachUnderItsOwnKeyAndNobodyElse) {
     TwoGrounds world;
@@ -257,15 +318,6 @@ TEST(CallsToAll, AreRefusedWithAKeyButWithoutTheGroupsAndTakenByAnOpenVehicle) {
     }
 }
 
-TEST_F(Uav, TheSameSeedGivesTheSameRun) {
-    fly(ground.pinging(5), 20);
-    GroundAndChip again;
-    again.soc.reset(true);
-    UavMachine machine(again.soc, [script = again.ground.pinging(5)] { return !script(); });
-    machine.run();
-    EXPECT_EQ(again.soc.cycles(), soc.cycles());
-}
-
 using Bytes = std::vector<uint8_t>;
 
 const Bytes vehicleKey = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
@@ -338,24 +390,11 @@ TEST_F(Attack, InTheClearEightBlindResetsEndASession) {
         20);
 }
 
-// Twenty bytes to each packet, when the vehicle starts, when the ground does, and in flight.
-TEST_F(Attack, WithAKeyWhoAddsBytesToEachPacketPreventsNoSession) {
-    start(vehicleKey);
-    attacker_.hinder(true);
-    fly(inOrder({ground.pinging(5),
-                 [&] {
-                     ground.start();
-                     return true;
-                 },
-                 ground.pinging(5)}),
-        60);
-    expectAllAnswered(5);
-}
-
-// Everything that is possible without the key, while the ground and then the vehicle start anew;
-// then earlier packets are repeated.
+// Everything that is possible without the key, and twenty bytes to each packet, while the ground
+// and then the vehicle start anew; then earlier packets are repeated.
 TEST_F(Attack, WithAKeyNothingComesOfAnyMischief) {
     start(vehicleKey);
+    attacker_.hinder(true);
     period_ = 25 * ms;
     fly(inOrder({ground.pinging(15),
                  [&] {

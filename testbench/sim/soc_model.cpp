@@ -113,17 +113,17 @@ void SocModel::wake() {
 void SocModel::settle() {
     wake();
     VSoc& top = *top_;
-    top.fsmc_a_i = pins_.a;
-    top.fsmc_d_i = pins_.d;
-    top.fsmc_ne_n_i = pins_.neN & 3;
-    top.fsmc_nbl_n_i = pins_.nblN;
-    top.fsmc_noe_n_i = pins_.noeN;
-    top.fsmc_nwe_n_i = pins_.nweN;
-    top.fsmc_nadv_n_i = pins_.nadvN;
+    top.fsmc_a_i = far_->a;
+    top.fsmc_d_i = far_->d;
+    top.fsmc_ne_n_i = far_->neN & 3;
+    top.fsmc_nbl_n_i = far_->nblN;
+    top.fsmc_noe_n_i = far_->noeN;
+    top.fsmc_nwe_n_i = far_->nweN;
+    top.fsmc_nadv_n_i = far_->nadvN;
     top.eval();
-    pins_.dFromDesign = top.fsmc_d_o;
-    pins_.dDriven = top.fsmc_d_oe_o;
-    pins_.nwaitN = top.fsmc_nwait_n_o;
+    far_->dFromDesign = top.fsmc_d_o;
+    far_->dDriven = top.fsmc_d_oe_o;
+    far_->nwaitN = top.fsmc_nwait_n_o;
 }
 
 void SocModel::tick() {
@@ -190,8 +190,8 @@ void SocModel::evaluate(bool rests) {
     }
     if (now() >= nextEvent_)
         timeModels();
-    pins_.dFromDesign = top.fsmc_d_o;
-    pins_.dDriven = top.fsmc_d_oe_o;
-    pins_.nwaitN = top.fsmc_nwait_n_o;
+    far_->dFromDesign = top.fsmc_d_o;
+    far_->dDriven = top.fsmc_d_oe_o;
+    far_->nwaitN = top.fsmc_nwait_n_o;
     span_.sample();
 }

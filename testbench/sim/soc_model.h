@@ -89,6 +89,13 @@ public:
     }
 
     FsmcMaster& fsmc() { return fsmc_; }
+    // Gives the FSMC's wires delays from now on, at a clock of 100 MHz.
+    void delay(const FsmcCorner& corner, uint64_t seed, bool looksTwice) {
+        delayed_ = pins_;
+        far_ = &delayed_;
+        fsmc_.delay(corner, delayed_, seed, looksTwice);
+        fsmc_.pauseWrites(looksTwice);
+    }
     McbModel& memory() {
         wake(); // it may be about to hang, or no longer
         return memory_;
@@ -124,7 +131,8 @@ private:
     uint64_t resting_ = 0; // clocks ahead in which the platform need not be evaluated
     uint64_t rested_ = 0;  // clocks that have passed in which it was not
     uint64_t evaluated_ = 0;
-    FsmcPins pins_;
+    FsmcPins pins_, delayed_;
+    FsmcPins* far_ = &pins_; // at the chip
     FsmcMaster fsmc_;
     McbModel memory_;
     RfChannel& air_;

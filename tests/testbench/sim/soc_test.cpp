@@ -2,12 +2,17 @@
 //
 // soc_test: the whole chip through its FSMC pins: registers, memory, errors.
 
+#include "driver_port.h"
 #include "map_regs.h"
 #include "modem_regs.h"
+#include "pin_delays.h"
+#include "random.h"
 #include "soc_model.h"
 #include "system_regs.h"
+#include <cstring>
 #include <gtest/gtest.h>
 #include <map>
+#include <vector>
 
 namespace {
 
@@ -125,6 +130,42 @@ TEST_F(Soc, AnAccessWhileTheMemoryStartsIsToldAndLaterOnesAreRight) {
     write(MAP_SLOT_SYSTEM, SYSTEM_EVENT, SYSTEM_EVENT_BUS_ERROR_MASK | SYSTEM_EVENT_LATE_MASK);
     EXPECT_EQ(fsmc_.read16(ddr + 0x100), 0x1234);
     EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_EVENT), 0u);
+}
+
+// The chip, or its netlist, at the end of real wires: registers and memory in each corner of their
+// delays.
+TEST(SocCorners, NoAccessIsLostInAnyOfThem) {
+    for (const FsmcCorner& corner : fsmcCorners)
+        for (unsigned hclk : {60u, 100u, 120u})
+            for (bool looksTwice : {false, true}) {
+                SCOPED_TRACE(std::string(corner.name) + ", HCLK " + std::to_string(hclk) +
+                             " MHz, looks " + (looksTwice ? "twice" : "once"));
+                RfChannel air(testSeed());
+                SocModel soc(air, {}, hclk, 100);
+                FsmcMaster& m = soc.fsmc();
+                soc.reset();
+                soc.delay(corner, testSeed() + hclk, looksTwice);
+                ASSERT_EQ(FSMC_init(&driverPort, &m), FSMC_OK);
+                Random random(testSeed() + hclk);
+                std::vector<uint8_t> memory(256);
+                for (int i = 0; i < 100; ++i) {
+                    const uint32_t v = random.next(), place = random.below(64) * 4;
+                    const uint32_t scratch = control + 64 * MAP_SLOT_SYSTEM + 4 * SYSTEM_SCRATCH;
+                    m.write32(ddr + place, v);
+                    std::memcpy(&memory[place], &v, 4);
+                    m.write8(ddr + (v & 0xFF), memory[v & 0xFF] = static_cast<uint8_t>(i));
+                    m.write32(scratch, ~v);
+                    EXPECT_EQ(m.read32(scratch), ~v);
+                    uint16_t half;
+                    std::memcpy(&half, &memory[v & 0xFE], 2);
+                    EXPECT_EQ(m.read16(ddr + (v & 0xFE)), half);
+                }
+                EXPECT_EQ(m.read32(control + 64 * MAP_SLOT_SYSTEM + 4 * SYSTEM_EVENT) &
+                              SYSTEM_EVENT_BUS_ERROR_MASK,
+                          0u);
+                if (HasFailure())
+                    return;
+            }
 }
 
 } // namespace

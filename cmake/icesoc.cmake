@@ -242,11 +242,11 @@ function(icesoc_verilate name)
 endfunction()
 
 # icesoc_netlist(NAME DESIGN design [PARAMS NAME=value...] [DEPENDS target...] [TOP module SOURCES
-#                file... INCLUDES dir...]): the Verilated model, as above, of the netlist that the
+#                file... INCLUDES dir... FLAGS ... CLASS class]): the Verilated model, as above, of the netlist that the
 # figures of a design of `make synth` are of, or of one with other parameters, with what each of its
 # primitives does; or of a module around it.
 function(icesoc_netlist name)
-  cmake_parse_arguments(A "" "DESIGN;TOP" "PARAMS;DEPENDS;SOURCES;INCLUDES" ${ARGN})
+  cmake_parse_arguments(A "" "DESIGN;TOP;CLASS" "PARAMS;DEPENDS;SOURCES;INCLUDES;FLAGS" ${ARGN})
   if(NOT A_TOP)
     set(A_TOP ${A_DESIGN})
   endif()
@@ -263,7 +263,7 @@ function(icesoc_netlist name)
     DEPENDS ${rtl} ${made} ${A_DEPENDS} VERBATIM COMMENT "Netlist of ${A_DESIGN}")
   # Lint is of the RTL: this is Yosys' style.
   icesoc_verilate(${name} TOP ${A_TOP} SOURCES ${A_SOURCES} ${netlist} INCLUDES ${A_INCLUDES}
-    FLAGS -Wno-lint -Wno-style -Wno-UNOPTFLAT)
+    CLASS ${A_CLASS} FLAGS ${A_FLAGS} -Wno-lint -Wno-style -Wno-UNOPTFLAT)
 endfunction()
 
 # Verilator's run time, compiled once for all models.

@@ -3,11 +3,12 @@
 
 Yosys puts both side by side, with one output that says whether any of theirs differ
 (synth/yosys/equivalence.ys); abc finds registers that are always equal (lcorr), then other signals
-(scorr), then the proof or the clock of a difference (pdr). What RTL leaves undefined, flip-flops
-have by the netlist at the start, else 0. Where there are several clocks, edges are inputs: any
-order of them is proven.
+(scorr), then the clock of a difference (bmc3) or the proof (pdr). What RTL leaves undefined,
+flip-flops have by the netlist at the start, else 0. Where there are several clocks, edges are
+inputs: any order of them is proven.
 """
 import json
+import pathlib
 import re
 import sys
 import time
@@ -16,7 +17,7 @@ import xml.etree.ElementTree
 import netlist
 import report
 import runner
-from tool import Stop, run as command, write
+from tool import Stop, digest, run as command, write
 
 BOXES = {"DCM_CLKGEN", "BUFGCE"}  # clock parts of both copies; what is around them is proven
 SOLVE = """read_rtlil {file}
@@ -63,14 +64,30 @@ def attributes_of(module):
 
 
 def prove(design, family, library, options, models, seconds):
-    """(What is known, whether the netlist is equivalent), of a proof of at most so many seconds."""
-    run = runner.mapped(design, family, library, options)
-    file, text = options.cache / f"{design.name}.{family}.miter", netlist.with_models(run.netlist)
+    """(What is known, whether the netlist is equivalent, seconds that it took), of a proof of at
+    most so many seconds. What is decided is kept: a second run takes it from there."""
+    begin, run = time.monotonic(), runner.mapped(design, family, library, options)
+    files = (run.netlist, *models, pathlib.Path(__file__), pathlib.Path(netlist.__file__),
+             options.scripts / "equivalence.ys", options.scripts / "product.v")
+    known = digest([library.hash_of(design.top), runner.version_of(options.yosys),
+                    *(file.read_text() for file in files)])
+    kept = run.netlist.with_suffix(f".{known}.proof")
+    if kept.exists():
+        return json.loads(kept.read_text())
+    said, good = proof(run.netlist, design, family, library, options, models, seconds)
+    result = said, good, time.monotonic() - begin
+    if not said.startswith("undecided"):
+        write(kept, json.dumps(result))
+    return result
+
+
+def proof(mapped, design, family, library, options, models, seconds):
+    file, text = options.cache / f"{design.name}.{family}.miter", netlist.with_models(mapped)
     write(file.with_suffix(".netlist"), text)
     boxes = BOXES & set(re.findall(r'"type": "(\w+)"', text))
     words = {
-        "NETLIST": file.with_suffix(".netlist"), "MODELS": " ".join(map(str, sorted(models))),
-        "SIMULATION": runner.SIMULATION[family],
+        "NETLIST": file.with_suffix(".netlist"), "MODELS": " ".join(map(str, models)),
+        "SIMULATION": runner.SIMULATION[family], "PRODUCT": options.scripts / "product.v",
         "BOXES": "read_verilog -lib +/xilinx/cells_xtra.v" if boxes else ""}
 
     def script(part):
@@ -97,50 +114,52 @@ def solved(file, commands, is_plain, options, seconds):
         raise Stop(said)
     with open(f"{file}.aig", "rb") as aiger:
         has_state = aiger.readline().split()[3] != b"0"
-    # sat decides what newer versions of pdr do not: a miter in which scorr has left no register.
-    steps = f"lcorr; scorr; pdr -T {seconds}; sat" if has_state else "ifraig; iprove; sat"
-    said = command(["sh", "-c", f"ulimit -t {seconds + 60}; {options.yosys}-abc -c "
-                    f"'read_aiger {file}.aig; strash; {steps}'"])[1]
-    write(file.with_suffix(".abc.log"), said)
-    if re.search("Property proved|UNSATISFIABLE", said):
-        return ""
-    differs = re.search(r"asserted in frame (\d+)", said)
-    return (f"differs after {differs[1]} clocks" if differs else
-            "differs" if "SATISFIABLE" in said else f"no proof in {seconds} s")
+    # bmc3 finds a difference soon, where pdr seeks a proof; sat decides what newer versions of pdr
+    # do not: a miter in which scorr has left no register.
+    less = f"{file}.less.aig"
+    steps = ([f"lcorr -C 30000; scorr; write_aiger {less}; bmc3 -F 50 -T {seconds // 5}",
+              f"pdr -T {seconds}; sat"] if has_state else ["ifraig; iprove; sat"])
+    for source, step in zip((f"{file}.aig", less), steps):
+        said = command(["sh", "-c", f"ulimit -t {seconds + 60}; {options.yosys}-abc -c "
+                        f"'read_aiger {source}; strash; {step}'"])[1]
+        write(file.with_suffix(".abc.log"), said)
+        differs = re.search(r"asserted in frame (\d+)", said)
+        if differs:
+            return f"differs after {differs[1]} clocks"
+        if re.search("Property proved|UNSATISFIABLE", said):
+            return ""
+    return "differs" if "SATISFIABLE" in said else f"undecided in {seconds} s"
 
 
-def seconds_of_tests(junit, prefix):
-    """(how many tests of this prefix ran, how many failed, their seconds) by a JUnit file."""
+def simulated(tests, junit):
+    """(What these tests, by prefixes, show by a JUnit file, whether all passed, their seconds)."""
     cases = [case for case in xml.etree.ElementTree.parse(junit).iter("testcase")
-             if re.match(rf"{prefix}[^a-z_]", case.get("name"))] if junit else []
-    return (len(cases), sum(case.get("status") != "run" for case in cases),
-            sum(float(case.get("time")) for case in cases))
+             if re.match(rf"({'|'.join(tests.split())})[^a-z_]", case.get("name"))] if junit else []
+    red = sum(case.get("status") != "run" for case in cases)
+    return (f"simulated by {tests}: {len(cases)} tests" + f", {red} failed" * bool(red),
+            bool(cases) and not red, sum(float(case.get("time")) for case in cases))
 
 
 def table_of(plan, library, options, models, o):
-    """(A row for each design: its proof, or its block's tests on its netlist; how many failed)."""
+    """(A row for each design: its proof, or its block's tests on its netlist; how many failed). The
+    small ones are first; each proof is told when it ends."""
     rows, failed = {}, []
 
     def work(design):
-        begin, tests = time.monotonic(), plan.simulated.get(design.name, "")
-        if tests:
-            count, red, spent = map(sum, zip(*(seconds_of_tests(o.junit, prefix)
-                                               for prefix in tests.split())))
-            said, good = f"{count} tests: {tests}", count and not red
-            said += f", {red} failed" * bool(red)
-        elif design.name in plan.unproven:
-            said, good, spent = f"not proven: {plan.unproven[design.name]}", True, 0
-        else:
-            try:
-                said, good = prove(design, o.family[-1], library, options, models, o.seconds)
-            except (Stop, ValueError) as error:
-                said, good = str(error).partition("\n")[0], False
-            spent = time.monotonic() - begin
-            print(f"{design.name}: {said}", file=sys.stderr)
+        begin = time.monotonic()
+        try:
+            tests = plan.simulated.get(design.name)
+            said, good, spent = simulated(tests, o.junit) if tests else prove(
+                design, o.family[-1], library, options, models, o.seconds)
+        except (Stop, ValueError) as error:
+            said, good, spent = str(error).partition("\n")[0], False, time.monotonic() - begin
         rows[design.name] = [design.name, said, f"{spent:.1f}"]
         failed.extend([design.name] * (not good))
+        print(f"[{len(rows)}/{len(designs)}] {design.name}: {said} ({spent:.1f} s)",
+              file=sys.stderr)
 
     designs = [design for design in plan.designs if not o.design or design.name in o.design]
-    runner.in_parallel(options.jobs, work, designs)
+    runner.in_parallel(options.jobs, work, sorted(
+        designs, key=lambda design: options.luts.get(design.name, 0)))
     return report.Table(["module", "proof or tests", "seconds"],
                         [rows[name] for name in sorted(rows)]), len(failed)

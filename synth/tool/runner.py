@@ -315,7 +315,7 @@ def write_for_simulation(design, family, library, options, file, models):
     """Writes the netlist of a design's figures as Verilog, for primitives with models."""
     run = mapped(design, family, library, options)
     words = {"NETLIST": file.with_suffix(".json"), "TOP": design.top,
-             "SIMULATION": SIMULATION[run.family], "MODELS": " ".join(map(str, sorted(models)))}
+             "SIMULATION": SIMULATION[run.family], "MODELS": " ".join(map(str, models))}
     file.parent.mkdir(parents=True, exist_ok=True)
     write(file.with_suffix(".json"), netlist.with_models(run.netlist))
     scripts = (options.scripts / "simulate.ys").read_text()

@@ -176,7 +176,6 @@ class Plan:
     paper: dict  # Table I: "lut", "ff", "slices"
     designs: list
     simulated: dict  # design -> prefixes of the tests that run on its netlist; others are proven
-    unproven: dict  # design -> what stands for it: no proof ends, and no test runs on its netlist
 
 
 def sentence_of(file, module):
@@ -210,7 +209,7 @@ def read_plan(file, library, root):
             designs.append(Design(name, name, sentence_of(module.file, name)))
     for design in designs:
         design.file = str(relative_to(library.modules[design.top].file, root))
-    return Plan(j["chip"], j["paper"], designs, j.get("simulated", {}), j.get("unproven", {}))
+    return Plan(j["chip"], j["paper"], designs, j.get("simulated", {}))
 
 
 def relative_to(file, root):

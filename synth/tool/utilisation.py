@@ -119,11 +119,11 @@ def netlist(plan, library, options, o):
 
 
 def models_of(o):
-    return (o.source / "synth/primitives").glob("*.v")
+    return sorted((o.source / "synth/primitives").glob("*.v"))
 
 
 def equivalent(plan, library, options, o):
-    table, failed = equivalence.table_of(plan, library, options, list(models_of(o)), o)
+    table, failed = equivalence.table_of(plan, library, options, models_of(o), o)
     print(table.plain(), end="")
     return int(failed > 0)
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// sim_soc: soc.v, or its netlist, as the simulator clocks it.
+// sim_soc: soc.v, its netlist, or that of table1.v (TABLE1), as the simulator clocks it.
 //
 // A clock is a change of tick_i: clk_i rises with it and falls as soon as its edge is taken, so that
 // both edges pass in one evaluation. The memory's pins have flip-flops here, with what they have
@@ -50,9 +50,17 @@ module sim_soc #(
         .clk_o(memory_clk_i));
 
     soc #(.CLK_HZ(CLK_HZ), .GATES(1))
+`elsif TABLE1
+    assign core_pins_o = 32'd0;
+    table1
 `else
     soc
 `endif
-    soc (.*, .mcb_cmd_full_i(cmd_full), .mcb_wr_full_i(wr_full), .mcb_rd_empty_i(rd_empty),
+    soc (.*,
+`ifdef TABLE1
+         .page_i(6'd0), .access_error_o(), .error_memory_o(), .error_addr_o(), .error_write_o(),
+         .late_o(),
+`endif
+         .mcb_cmd_full_i(cmd_full), .mcb_wr_full_i(wr_full), .mcb_rd_empty_i(rd_empty),
          .mcb_rd_data_i(rd_data), .mcb_calib_done_i(calib_done));
 endmodule

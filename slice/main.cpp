@@ -2,9 +2,8 @@
 //
 // slice2c: Slice files into C90 stubs and skeletons for IceC.
 
-#include "c/names.h"
+#include "c/context.h"
 #include "front/front.h"
-#include "front/preprocessor.h"
 #include "hw/generator.h"
 #include <CLI/CLI.hpp>
 #include <filesystem>

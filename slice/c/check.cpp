@@ -2,10 +2,8 @@
 //
 // check: rejects Slice that is valid but cannot become C90.
 
+#include "c/context.h"
 #include "c/generator.h"
-#include "c/names.h"
-#include "c/operations.h"
-#include "c/types.h"
 #include <algorithm>
 #include <map>
 #include <set>

@@ -3,7 +3,6 @@
 // client: proxies: synchronous calls in one file, asynchronous ones in another.
 
 #include "c/context.h"
-#include "c/names.h"
 
 namespace {
 

@@ -1,13 +1,123 @@
 // SPDX-License-Identifier: MIT
 //
-// context: what the generated files of a unit share, and one function for each of them.
+// context: what the generators of C share, by the source that has it, and one function for each
+// generated file.
 
 #pragma once
 
 #include "c/generator.h"
-#include "c/operations.h"
+#include "front/ast.h"
 #include "text/writer.h"
 #include <map>
+#include <string>
+#include <vector>
+
+// ---- names: names and spellings of the C90 mapping (docs/slice-mapping.md) ----
+
+// True if IceC's headers use this name of C.
+bool isRuntimeName(const std::string& c);
+// Module_Sub_Name, with an underscore behind what would be a name of IceC
+std::string cName(const Declaration& d);
+// Module_Sub_NamePrx, of an interface or a class
+std::string cProxy(const Declaration& d);
+// Names in a scope that they share with names of generated code. These are listed in names.cpp, or
+// begin with "ice_" or "Ice_". A user's name that equals one of them, or a word of C, gets an
+// underscore at its end. No name in Slice ends with an underscore.
+std::string cIdentifier(const std::string& name);
+// The name of a member of struct, class or exception `d`.
+std::string cMember(const Declaration& d, const Field& member);
+// The name of a parameter: of functions, as a member of the asynchronous call, as a variable.
+std::string cParameter(const Operation& o, const Field& parameter);
+// The part of an operation's functions' names behind the interface's.
+std::string cOperation(const std::string& name);
+// The C type of a value.
+std::string cType(const Type& type);
+// The name of an enumerator's constant.
+std::string cEnumerator(const Declaration& owner, const std::string& name);
+// A constant's value as an expression; a Long's is an initialiser {low, high}.
+std::string cValue(const Literal& value, const Type& type);
+// The name of a thing that a Slice file has once: "Folder_File_what".
+std::string cFileName(const CFileNames& names, const std::string& what);
+// True if icec.h declares the type itself; only its stream functions are generated.
+bool isRuntimeType(const Declaration& d);
+// The elements that a sequence or dictionary has room for; 0 if its data lies elsewhere.
+int statedMaximum(const Declaration& d);
+
+// ---- types: pieces of C that pass, write and read values ----
+
+// True if it is passed by const pointer: all types except scalars, strings, enums and classes.
+bool isByPointer(const Type& type);
+bool isEnum(const Type& type);
+bool isClass(const Type& type); // a pointer to an Ice_Value
+
+// A declaration of `name`: "Ice_Int x", "M_Node *x".
+std::string cVariable(const Type& type, const std::string& name);
+
+// A value in a list of members or parameters for writing or reading.
+struct Slot {
+    const Type* type = nullptr;
+    std::string value;   // its lvalue
+    std::string pointer; // its address
+    bool isOptional = false;
+    int tag = 0;
+    std::string has; // whether it is there: a condition when writing, an lvalue when reading
+};
+
+// Write or read slots in the order of the wire.
+void writeSlots(Writer& w, const std::vector<Slot>& slots);
+void readSlots(Writer& w, const std::vector<Slot>& slots);
+
+// ---- operations: operations and exceptions in C: signatures, lists of parameters ----
+
+// Base interfaces first, without repetition; the interface itself comes last.
+std::vector<const Declaration*> lineage(const Declaration& interface);
+
+// The exceptions that an operation may throw: its own, and those derived from them in this unit.
+std::vector<const Declaration*> mayThrow(const Unit& unit, const Operation& o);
+// The label of an exception in M_I_op_Exception, whose constant is M_I_op_<label>; and its member
+// in the union.
+std::string exceptionLabel(const Operation& o, const std::vector<const Declaration*>& family,
+                           const Declaration& exception);
+std::string exceptionMember(const Operation& o, const std::vector<const Declaration*>& family,
+                            const Declaration& exception);
+
+bool hasResults(const Operation& o);
+bool isAmd(const Declaration& owner, const Operation& o);
+bool isSliced(const Declaration& owner, const Operation& o);
+// True if classes are among the in parameters (sends), among the results (returns).
+bool sendsClasses(const Operation& o);
+bool returnsClasses(const Operation& o);
+// True if one of the slots holds a class; if a required one does (encoding 1.0 has a list of
+// instances then).
+bool anyClass(const std::vector<Slot>& slots);
+bool anyRequiredClass(const std::vector<Slot>& slots);
+
+// "M_I_op"
+std::string operationName(const Declaration& owner, const Operation& o);
+std::string exceptionType(const Declaration& owner, const Operation& o);
+
+// Lists of C parameters, each with a comma before it (", Ice_Int a, const M_S *b"): the in
+// parameters; out parameters and the result as pointers. A servant's instances, which are sent, may
+// be const.
+std::string inParameters(const Operation& o);
+std::string outParameters(const Declaration& owner, const Operation& o, bool isSent);
+
+std::string proxySignature(const Declaration& d, const Operation& o);
+std::string asyncSignature(const Declaration& d, const Operation& o);
+// True if it may throw an exception that keeps unknown slices.
+bool throwsPreserved(const Unit& unit, const Operation& o);
+// `name` is a function, or "(*op)"; `self` the servant's type.
+std::string servantSignature(const Declaration& owner, const Operation& o, const std::string& name);
+std::string responseSignature(const Declaration& d, const Operation& o);
+
+// Parameters as slots: in parameters of the proxy's function; as variables; results behind `object`
+// ("*" for pointers, "call->" for members, "" for variables); results of a response.
+std::vector<Slot> inSlots(const Operation& o);
+std::vector<Slot> inVariables(const Operation& o);
+std::vector<Slot> outSlots(const Operation& o, const std::string& object);
+std::vector<Slot> responseSlots(const Operation& o);
+
+// ---- context: what belongs to a whole unit ----
 
 struct CContext {
     const Unit& unit;

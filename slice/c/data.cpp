@@ -3,7 +3,6 @@
 // data: the types file: marshalling of structs, sequences and dictionaries, defaults, constants.
 
 #include "c/context.h"
-#include "c/names.h"
 
 namespace {
 

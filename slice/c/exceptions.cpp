@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// exceptions: marshalling of exceptions, and of operations' exception unions.
+// exceptions: marshalling of exceptions, of operations' exception unions, and of classes.
 
 #include "c/context.h"
-#include "c/names.h"
+#include <algorithm>
+#include <set>
 
 namespace {
 
@@ -78,32 +79,64 @@ void exceptionFunctions(Writer& w, const Declaration& d) {
     writeFunction(w, d, v);
 }
 
-void thrownFunctions(Writer& w, const CContext& c, const Declaration& d, const Operation& o) {
-    auto family = mayThrow(c.unit, o);
-    Writer::Values v = {{"t", exceptionType(d, o)}, {"op", operationName(d, o)}};
-    bool classes = false, preserves = throwsPreserved(c.unit, o);
+namespace {
+
+// An exception that an operation may throw, with the names of its templates.
+struct Thrown {
+    const Declaration* exception;
+    Writer::Values names;
+};
+
+std::vector<Thrown> thrownBy(const Unit& unit, const Declaration& d, const Operation& o) {
+    std::vector<Thrown> all;
+    auto family = mayThrow(unit, o);
     for (const Declaration* e : family)
-        classes = classes || needsTables(*e);
-    auto eachOf = [&](auto f) {
-        for (const Declaration* e : family) {
-            f(*e, Writer::Values{{"t", exceptionType(d, o)},
-                                 {"op", operationName(d, o)},
-                                 {"e", cName(*e)},
-                                 {"id", e->id()},
-                                 {"label", exceptionLabel(o, family, *e)},
-                                 {"member", exceptionMember(o, family, *e)}});
-        }
-    };
-    w.function("void {t}_writeToOutputStream(const {t} *v, Ice_OutputStreamPtr os)", v, [&] {
-        w.line("switch (v->type) {");
-        eachOf([&](const Declaration&, const Writer::Values& names) {
-            w.line("case {op}_{label}:", names);
-            w.nested("{e}_writeToOutputStream(&v->u.{member}, os);", names);
-            w.nested("break;");
-        });
-        w.single("default:", "os->failed = 1; /* the servant has not said which */");
-        w.line("}");
-    });
+        all.push_back({e,
+                       {{"t", exceptionType(d, o)},
+                        {"op", operationName(d, o)},
+                        {"e", cName(*e)},
+                        {"id", e->id()},
+                        {"label", exceptionLabel(o, family, *e)},
+                        {"member", exceptionMember(o, family, *e)}}});
+    return all;
+}
+
+void writeThrown(Writer& w, const std::vector<Thrown>& family) {
+    w.line("switch (v->type) {");
+    for (const Thrown& e : family) {
+        w.line("case {op}_{label}:", e.names);
+        w.nested("{e}_writeToOutputStream(&v->u.{member}, os);", e.names);
+        w.nested("break;");
+    }
+    w.single("default:", "os->failed = 1; /* the servant has not said which */");
+    w.line("}");
+}
+
+// Reads a slice, which belongs to one of the exceptions or to none.
+void readOneSlice(Writer& w, const std::vector<Thrown>& family, bool preserves) {
+    w.line(std::string(preserves ? "" : "Ice_String ") + "id = Ice_InputStream_startSlice(is);");
+    const char* otherwise = "";
+    for (const Thrown& e : family) {
+        w.line(std::string(otherwise) + "if (Ice_String_equals(id, \"{id}\")) {", e.names);
+        w.nested("v->type = {op}_{label};", e.names);
+        w.nested("{e}_readSlices(&v->u.{member}, is);", e.names);
+        if (e.exception->preserves())
+            w.nested("v->u.{member}." + unknownOf(*e.exception) + " = unknown;", e.names);
+        otherwise = "} else ";
+    }
+    w.line("}");
+}
+
+} // namespace
+
+void thrownFunctions(Writer& w, const CContext& c, const Declaration& d, const Operation& o) {
+    const std::vector<Thrown> family = thrownBy(c.unit, d, o);
+    Writer::Values v = {{"t", exceptionType(d, o)}, {"op", operationName(d, o)}};
+    bool preserves = throwsPreserved(c.unit, o);
+    bool classes = std::any_of(family.begin(), family.end(),
+                               [](const Thrown& e) { return needsTables(*e.exception); });
+    w.function("void {t}_writeToOutputStream(const {t} *v, Ice_OutputStreamPtr os)", v,
+               [&] { writeThrown(w, family); });
     w.function("Ice_Status {t}_readFromInputStream({t} *v, Ice_InputStreamPtr is)", v, [&] {
         if (classes)
             w.line("Ice_InputValues values;");
@@ -116,27 +149,106 @@ void thrownFunctions(Writer& w, const CContext& c, const Declaration& d, const O
             w.line("Ice_InputStream_beginValues(is, &values, " + c.valueTable() + ");");
         w.line("Ice_InputStream_startException(is);");
         w.line("do {");
-        w.nested(std::string(preserves ? "" : "Ice_String ") +
-                 "id = Ice_InputStream_startSlice(is);");
-        bool first = true;
-        eachOf([&](const Declaration& e, const Writer::Values& names) {
-            w.nested(std::string(first ? "" : "} else ") + "if (Ice_String_equals(id, \"{id}\")) {",
-                     names);
-            w.nested("    v->type = {op}_{label};", names);
-            w.nested("    {e}_readSlices(&v->u.{member}, is);", names);
-            if (e.preserves())
-                w.nested("    v->u.{member}." + unknownOf(e) + " = unknown;", names);
-            first = false;
-        });
-        w.nested("}");
-        w.line(
-            preserves
-                ? "} while (v->type == {op}_none && Ice_InputStream_keepSlice(is, id, &unknown));"
-                : "} while (v->type == {op}_none && Ice_InputStream_skipSlice(is));",
-            v);
+        w.indented([&] { readOneSlice(w, family, preserves); });
+        w.line("} while (v->type == {op}_none && Ice_InputStream_" +
+                   std::string(preserves ? "keepSlice(is, id, &unknown));" : "skipSlice(is));"),
+               v);
         if (classes)
             w.line("Ice_InputStream_endValues(is);");
         w.single("if (is->failed)", "return ICE_MARSHAL;");
         w.line("return v->type == {op}_none ? ICE_UNKNOWN_USER_EXCEPTION : ICE_USER_EXCEPTION;", v);
     });
+}
+
+void classFunctions(Writer& w, const Declaration& d) {
+    Writer::Values v = {{"c", cName(d)}, {"id", d.id()}};
+    auto function = [&](std::string_view head, std::string_view object, const char* unused,
+                        auto body) {
+        w.function(head, v, [&] {
+            w.line(d.fields.empty() ? "(void)object;" : object, v);
+            if (d.fields.empty())
+                w.line(unused);
+            body(w, memberSlots(d));
+        });
+    };
+    initFunction(w, d);
+    function("static void {c}_write(const void *object, Ice_OutputStreamPtr os)",
+             "const {c} *v = (const {c} *)object;", "(void)os;", writeSlots);
+    function("static void {c}_read(void *object, Ice_InputStreamPtr is)", "{c} *v = ({c} *)object;",
+             "(void)is;", readSlots);
+    w.blank();
+    std::string base = d.base() ? "&" + cName(*d.base()) + "_type" : "0";
+    w.line("const Ice_ValueType {c}_type = {", v);
+    w.line("    \"{id}\", " + base + ", " + std::to_string(d.compactId) +
+               ", (Ice_Int)sizeof({c}), " + (d.preserves() ? "1" : "0") + ", {c}_write, {c}_read};",
+           v);
+}
+
+// The classes that the main file's types mention and do not define, the interfaces that they
+// mention by value, and types derived from these.
+static std::set<const Declaration*> mentioned(const Unit& unit) {
+    std::set<const Declaration*> found;
+    auto add = [&](const Type& t) {
+        bool isValue =
+            t.kind == Type::Kind::Value ||
+            (t.kind == Type::Kind::Named && t.declaration->kind == Declaration::Kind::Class);
+        if (isValue && t.declaration)
+            found.insert(t.declaration);
+    };
+    for (const auto& d : unit.declarations) {
+        if (d->fromInclude || d->isLocal)
+            continue;
+        add(d->key);
+        add(d->element);
+        for (const Field& f : d->fields)
+            add(f.type);
+        for (const Operation& o : d->operations) {
+            add(o.result);
+            for (const Field& p : o.parameters)
+                add(p.type);
+        }
+    }
+    for (const auto& d : unit.declarations) // bases come before derived types
+        for (const Declaration* base : d->bases)
+            if (d->kind == Declaration::Kind::Interface && found.count(base))
+                found.insert(d.get());
+    return found;
+}
+
+// Writes the types of interfaces passed by value: instances without members.
+static void interfaceTypes(Writer& w, const std::vector<const Declaration*>& interfaces) {
+    if (interfaces.empty())
+        return;
+    w.function("static void ice_write(const void *object, Ice_OutputStreamPtr os)", {}, [&] {
+        w.line("(void)object;");
+        w.line("(void)os;");
+    });
+    w.function("static void ice_read(void *object, Ice_InputStreamPtr is)", {}, [&] {
+        w.line("(void)object;");
+        w.line("(void)is;");
+    });
+    w.blank();
+    for (const Declaration* d : interfaces) {
+        w.line("static const Ice_ValueType {c}_ice_type = {", {{"c", cName(*d)}});
+        w.line("    \"" + d->id() +
+               "\", 0, -1, (Ice_Int)sizeof(Ice_Value), 0, ice_write, ice_read};");
+    }
+}
+
+void valueTypeTable(Writer& w, const CContext& c) {
+    std::set<const Declaration*> used = mentioned(c.unit);
+    std::vector<const Declaration*> interfaces;
+    for (const auto& d : c.unit.declarations)
+        if (d->kind == Declaration::Kind::Interface && used.count(d.get()))
+            interfaces.push_back(d.get());
+    interfaceTypes(w, interfaces);
+    w.blank();
+    w.line("const Ice_ValueType *const " + c.valueTable() + "[] = {");
+    for (const auto& d : c.unit.declarations)
+        if (d->kind == Declaration::Kind::Class && !d->isLocal &&
+            (!d->isForward || used.count(d.get())))
+            w.line("    &" + cName(*d) + "_type,");
+    for (const Declaration* d : interfaces)
+        w.line("    &" + cName(*d) + "_ice_type,");
+    w.line("    0};");
 }

@@ -3,7 +3,6 @@
 // header: the header: types, constants, proxies, servants. The list of all generated files.
 
 #include "c/context.h"
-#include "c/names.h"
 #include "text/doc_comment.h"
 
 namespace {

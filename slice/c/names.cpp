@@ -2,7 +2,7 @@
 //
 // names: spells the C names of Slice names.
 
-#include "c/names.h"
+#include "c/context.h"
 #include <cstdio>
 #include <cstdlib>
 #include <unordered_set>

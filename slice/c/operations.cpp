@@ -2,8 +2,7 @@
 //
 // operations: from operations to lists of C parameters.
 
-#include "c/operations.h"
-#include "c/names.h"
+#include "c/context.h"
 #include <algorithm>
 #include <set>
 

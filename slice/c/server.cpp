@@ -3,7 +3,6 @@
 // server: dispatch: from requests to servants.
 
 #include "c/context.h"
-#include "c/names.h"
 #include <set>
 
 namespace {

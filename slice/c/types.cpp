@@ -2,8 +2,7 @@
 //
 // types: the mapping, type by type.
 
-#include "c/types.h"
-#include "c/names.h"
+#include "c/context.h"
 #include <algorithm>
 
 namespace {

@@ -2,7 +2,7 @@
 //
 // diagnostics: printing.
 
-#include "front/diagnostics.h"
+#include "front/ast.h"
 #include <fstream>
 
 void Diagnostics::error(const Location& at, const std::string& text) {

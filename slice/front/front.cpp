@@ -5,7 +5,6 @@
 // and served as in Ice's C++11 mapping.
 
 #include "front/front.h"
-#include "front/lexer.h"
 #include "front/parser.h"
 #include <map>
 

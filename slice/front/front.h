@@ -9,8 +9,7 @@
 //   parser         tokens into declarations by recursive descent: parser.cpp has tokens, recovery
 //                  and modules, parser_data, parser_interface and parser_types one method a rule;
 //                  each declaration is checked when its rule is through
-//   symbols        identifiers that Slice allows, and the meaning of a name in its scope; the
-//   parser
+//   symbols        identifiers that Slice allows, and what a name means in its scope; the parser
 //                  resolves every name at once
 //   literals       numbers and strings as written into values
 //   ast            the result: a Unit of declarations, in the source's order, all names resolved
@@ -22,6 +21,20 @@
 #pragma once
 
 #include "front/symbols.h"
+#include <string>
+#include <vector>
+
+// What #include, #define and #if make of a file, by libmcpp.
+struct Preprocessed {
+    bool ok = false;
+    std::string text;                  // with #line markers and comments
+    std::string messages;              // the preprocessor's own
+    std::vector<std::string> files;    // the file and all that it includes, at any depth
+    std::vector<std::string> includes; // those that it includes directly
+};
+
+// `options`: -I, -D, -U as for the C preprocessor.
+Preprocessed preprocess(const std::string& file, const std::vector<std::string>& options);
 
 // The unit of a preprocessed file; errors are in `diagnostics`.
 Unit compileUnit(const std::string& text, const std::string& file, NameRules rules,

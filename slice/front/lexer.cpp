@@ -2,7 +2,7 @@
 //
 // lexer: one pass over the text.
 
-#include "front/lexer.h"
+#include "front/parser.h"
 #include <algorithm>
 #include <cstdlib>
 #include <string>

@@ -5,10 +5,26 @@
 
 #pragma once
 
-#include "front/lexer.h"
+#include "front/ast.h"
 #include "front/symbols.h"
 #include <map>
 #include <set>
+#include <string_view>
+#include <vector>
+
+// A token of preprocessed Slice text, with its place in the original file.
+struct Token {
+    enum class Kind { Identifier, Integer, Float, String, Symbol, End };
+    Kind kind;
+    std::string_view text; // as written; of a string, the text between the quotes
+    std::string_view doc;  // the doc comment before it, without /** and */
+    std::string comment;   // lines of // that stand directly above it
+    Location at;
+    bool escaped; // identifier written with a backslash
+};
+
+// Tokens point into `text`. The last one is End.
+std::vector<Token> tokenize(std::string_view text, std::string_view file, Diagnostics& diagnostics);
 
 // "struct"; "int", "::M::I*"
 const char* kindName(Declaration::Kind kind);

@@ -2,7 +2,7 @@
 //
 // preprocessor: one run of libmcpp over a file, output in memory.
 
-#include "front/preprocessor.h"
+#include "front/front.h"
 extern "C" {
 #include <mcpp_lib.h>
 }

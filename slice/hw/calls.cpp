@@ -3,9 +3,8 @@
 // calls: maps operations and events of a hardware interface to words and buffers; checks what is
 // allowed.
 
-#include "c/names.h"
-#include "c/operations.h"
-#include "hw/map.h"
+#include "c/context.h"
+#include "hw/generator.h"
 #include <algorithm>
 
 namespace hw {

@@ -2,7 +2,7 @@
 //
 // map: maps interfaces to slots: checks what is allowed, and gives out words.
 
-#include "hw/map.h"
+#include "hw/generator.h"
 #include <algorithm>
 #include <filesystem>
 #include <map>

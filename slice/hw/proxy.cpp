@@ -3,8 +3,7 @@
 // proxy: for test benches in C++: the core in a simulated slot, called as an object with the
 // interface's operations.
 
-#include "c/names.h"
-#include "c/operations.h"
+#include "c/context.h"
 #include "hw/generator.h"
 
 namespace hw {

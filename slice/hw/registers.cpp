@@ -2,7 +2,7 @@
 //
 // registers: the register description that regmap turns into headers and pages.
 
-#include "c/names.h"
+#include "c/context.h"
 #include "hw/generator.h"
 #include "text/doc_comment.h"
 #include <algorithm>

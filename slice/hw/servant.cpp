@@ -3,8 +3,7 @@
 // servant: the servant's two files in C90: operations that are answered at once, waited for, or
 // answered later; events.
 
-#include "c/names.h"
-#include "c/operations.h"
+#include "c/context.h"
 #include "hw/generator.h"
 
 namespace hw {

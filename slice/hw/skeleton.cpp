@@ -3,8 +3,7 @@
 // skeleton: a core to begin with, in Verilog or VHDL, which answers every call of its interface
 // with zeros, and a test that calls them all. For make new-ip; from then on the author owns it.
 
-#include "c/names.h"
-#include "c/operations.h"
+#include "c/context.h"
 #include "hw/generator.h"
 #include <algorithm>
 #include <cctype>

@@ -2,8 +2,7 @@
 //
 // values: the servant's values: C into registers and buffers, and back.
 
-#include "c/names.h"
-#include "c/operations.h"
+#include "c/context.h"
 #include "hw/generator.h"
 #include <algorithm>
 #include <set>

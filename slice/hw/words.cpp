@@ -2,8 +2,8 @@
 //
 // words: scalars into words, words into the slot.
 
-#include "c/names.h"
-#include "hw/map.h"
+#include "c/context.h"
+#include "hw/generator.h"
 #include <algorithm>
 #include <cctype>
 

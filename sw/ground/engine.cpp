@@ -253,7 +253,7 @@ void Engine::fly(std::unique_lock<std::mutex>& lock) {
 }
 
 bool Engine::downTooLong(U32 now) {
-    if (any(&Peer::isUp) || !any(&Peer::hasLink)) {
+    if (any(&Peer::isHeard) || !any(&Peer::hasLink)) {
         upAt_ = now;
         patienceUs_ = static_cast<U32>(settings.downMs) * 1000;
     }

@@ -20,8 +20,10 @@ namespace XBeeAT {
 
 namespace {
 
-constexpr U32 lookUs = 50000;   // interval of looking for a channel while programs wait
-constexpr U32 briefBytes = 128; // of a message that one fragment takes, its head compressed
+constexpr U32 lookUs = 50000;          // interval of looking for a channel while programs wait
+constexpr U32 briefBytes = 128;        // of a message that one fragment takes, its head compressed
+constexpr U32 quietUs = LINK_AGE_LAST; // of a vehicle that has left whoever took it
+constexpr U32 longestUs = 60'000'000;  // a vehicle does not call a second ground, which calls again
 
 // Small buffers, so that back-pressure reaches the caller.
 bool makePair(int ends[2]) {
@@ -132,9 +134,11 @@ void Peer::placePrograms(U32 now) {
 
 int Peer::connect(int channel, int lateMs) {
     int ends[2];
-    if (!makePair(ends))
-        return -1;
     std::lock_guard<std::mutex> lock(host_.mutex);
+    if (isTaken_)
+        errno = EBUSY;
+    if (isTaken_ || !makePair(ends))
+        return -1;
     const U32 lateUs = static_cast<U32>(lateMs) < Stream::never / 1000
                            ? static_cast<U32>(lateMs) * 1000
                            : Stream::never;
@@ -265,6 +269,7 @@ void Peer::onState(void* context, Link_State state) {
                  (state != LINK_STATE_UP ? ""
                   : isSecure             ? ", secure"
                                          : ", in the clear"));
+    e.isLost_ = state != LINK_STATE_UP && e.hearsOther_;
     if (state == LINK_STATE_UP)
         return;
     for (Stream& s : e.streams_)
@@ -416,6 +421,7 @@ U32 Peer::withdrawLate(U32 now) {
 // ---- calls of the engine, mutex held ----
 
 void Peer::start(U32 longest, bool isApi, U32 now) {
+    isTaken_ = isLost_ = hearsOther_ = false;
     if (isAll()) {
         broadcast_->limitPacket(longest);
         return;
@@ -437,15 +443,61 @@ void Peer::fail() {
     stop(host_.clock.nowUs());
     for (Stream& s : streams_)
         s.close();
-    for (const Waiting& program : waiting_)
-        close(program.fd);
-    waiting_.clear();
+    refuse();
     reportLost();
 }
 
+// Ends the connections of programs that have not yet got one.
+void Peer::refuse() {
+    for (Stream& s : streams_)
+        if (s.is(Stream::State::Wanted))
+            s.close();
+    for (const Waiting& program : waiting_)
+        close(program.fd);
+    waiting_.clear();
+}
+
+// Gives a packet to the link. While another ground has the vehicle the link gets none, for it would
+// call: only the vehicle's own call, which says that it has no session any more.
 void Peer::receive(const U8* bytes, size_t size, U32 now) {
-    if (hasLink())
-        Link_receive(link_.get(), bytes, static_cast<U32>(size), now);
+    if (!hasLink())
+        return;
+    heardAt_ = now;
+    if (isTaken_) {
+        if (size < LINK_HEADER || LINK_KIND_OF(bytes) != LINK_KIND_HELLO ||
+            bytes[1] != LINK_VERSION)
+            return;
+        seekAgain(now);
+    }
+    const Link_Statistics& s = *Link_statistics(link_.get());
+    const U32 frames = s.framesReceived, skipped = s.bytesSkipped;
+    Link_receive(link_.get(), bytes, static_cast<U32>(size), now);
+    if (s.framesReceived != frames || s.bytesSkipped != skipped)
+        hearsOther_ = s.framesReceived == frames;
+}
+
+// Leaves the vehicle to another ground with this address, which has it: the session ended while the
+// vehicle went on speaking, and not to this side. Two that called would take it from each other
+// for ever.
+void Peer::standBy(U32 now) {
+    if (isLost_ && Link_state(link_.get()) == LINK_STATE_CONNECTING) {
+        Link_stop(link_.get(), now);
+        isTaken_ = true;
+        heardAt_ = takenAt_ = now;
+        log(0,
+            "another ground with this one's address has the vehicle now: this one waits until it "
+            "calls; who wants it sooner starts this one again");
+        refuse();
+    }
+    isLost_ = false;
+    if (isTaken_ &&
+        (now - heardAt_ >= quietUs || (host_.settings.source && now - takenAt_ >= longestUs)))
+        seekAgain(now);
+}
+
+void Peer::seekAgain(U32 now) {
+    isTaken_ = hearsOther_ = false;
+    Link_start(link_.get(), now);
 }
 
 U32 Peer::pollBroadcast(U32 now) {
@@ -460,10 +512,12 @@ U32 Peer::pollBroadcast(U32 now) {
 
 U32 Peer::poll(U32 now) {
     reportLost();
+    standBy(now);
     placePrograms(now);
     Link_poll(link_.get(), now);
     const U32 due = isAll() ? pollBroadcast(now) : Link_deadline(link_.get(), now);
-    U32 wait = std::min({withdrawLate(now), due, waiting_.empty() ? 0xFFFFFFFFu : lookUs});
+    U32 wait =
+        std::min({withdrawLate(now), due, waiting_.empty() && !isTaken_ ? 0xFFFFFFFFu : lookUs});
     for (Stream& s : streams_)
         wait = std::min(wait, s.beat(now));
     return wait;

@@ -55,6 +55,7 @@ public:
     // a channel is free; programs wait their turn. A lost port is opened again. The socket ends if
     // there is no modem. A message that the peer has not taken in `lateMs` is withdrawn by the end
     // of the session; one that the link had no room for, by that of the connection. -1: never.
+    // Returns -1 with EBUSY while another ground with this one's address has the vehicle.
     int connect(int channel, int lateMs = -1);
     size_t waiting() const; // programs without a channel
     // Lets the peer open connections. Each makes the returned descriptor readable, also after the
@@ -75,6 +76,7 @@ public:
     int address() const { return address_; }
     const LinkKeys& keys() const { return keys_; }
     bool isUp() const { return Link_state(link_.get()) == LINK_STATE_UP; }
+    bool isHeard() const { return isUp() || isTaken_; }
     bool isWanted() const; // by a program that connects
     bool listens() const { return listening_; }
     // The modem is ready: frames have `longest` bytes at most; `isApi`: it answers for each packet.
@@ -108,6 +110,9 @@ private:
     void end(int channel, int level, const std::string& why);
     void openWanted(U32 now);
     U32 withdrawLate(U32 now);
+    void standBy(U32 now);
+    void refuse();
+    void seekAgain(U32 now);
     void log(int level, const std::string& text) const;
 
     static Peer& self(void* context) { return *static_cast<Peer*>(context); }
@@ -124,10 +129,14 @@ private:
     LinkKeys keys_;
     int acceptPipe_[2] = {-1, -1};
     bool listening_ = false;
-    int nextChannel_ = 0; // where `connect` begins to search
-    int turn_ = 0;        // the channel whose program sends next
-    unsigned full_ = 0;   // a bit a channel: the link has no room for its message
-    unsigned lost_ = 0;   // unconfirmed calls of programs that have left
+    int nextChannel_ = 0;     // where `connect` begins to search
+    int turn_ = 0;            // the channel whose program sends next
+    unsigned full_ = 0;       // a bit a channel: the link has no room for its message
+    unsigned lost_ = 0;       // unconfirmed calls of programs that have left
+    bool hearsOther_ = false; // what was heard last is of a session that this side has not
+    bool isLost_ = false;     // the own session ended meanwhile,
+    bool isTaken_ = false;    // and another ground has the vehicle
+    U32 heardAt_ = 0, takenAt_ = 0;
     Stream streams_[LINK_CHANNELS];
     std::deque<U32> late_[LINK_CHANNELS]; // when each message of the link's will be late
     std::deque<Waiting> waiting_;

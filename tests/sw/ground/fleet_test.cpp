@@ -80,9 +80,11 @@ protected:
     void fly(int address) {
         rig_.with([&] { vehicles_[address] = std::make_unique<Vehicle>(rig_, address); });
     }
-    std::shared_ptr<XBeeAT::Peer> peer(int address, XBeeAT::LinkKeys keys = {}) {
+    // `device`: of another ground.
+    std::shared_ptr<XBeeAT::Peer> peer(int address, XBeeAT::LinkKeys keys = {},
+                                       const std::string& device = "") {
         XBeeAT::Settings s;
-        s.device = rig_.pty.path();
+        s.device = device.empty() ? rig_.pty.path() : device;
         s.guardMs = Rig::guardMs;
         s.target = address;
         s.isApi = isApi_;
@@ -291,6 +293,59 @@ TEST_F(FleetTest, AnotherOfOneAddressABabblerAndAChangeOfKeysDisturbNobodyElse) 
     for (int fd : {first, again, second})
         close(fd);
 }
+
+// Two grounds with one address and, where the links have keys, one key.
+class TwinGrounds : public FleetTest, public ::testing::WithParamInterface<XBeeAT::LinkKeys> {};
+
+TEST_P(TwinGrounds, TheNewerOneKeepsTheVehicleAndTheOlderOneHasItAgainAfterIt) {
+    PtyLine pty;
+    XBee::Options options;
+    options.set = {{"GT", Rig::guardMs}, {"D6", 1}};
+    XBee modem(pty, rig_.air, options);
+    fly(1);
+    rig_.with([&] {
+        Link* link = vehicles_[1]->link.get();
+        if (!GetParam().empty())
+            Link_setKey(link, 0, GetParam()[0].data(), 1);
+        Link_start(link, rig_.us());
+        rig_.step = [&, step = rig_.step] {
+            step();
+            modem.advance(rig_.ns());
+        };
+    });
+    const auto sessions = [&] { return Link_statistics(vehicles_[1]->link.get())->sessions; };
+    auto older = peer(1, GetParam());
+    const int before = older->connect(-1);
+    EXPECT_EQ(answerer(before), 1) << log();
+    auto newer = peer(1, GetParam(), pty.path());
+    const int fd = newer->connect(-1);
+    EXPECT_EQ(answerer(fd), 1) << log();
+    EXPECT_TRUE(rig_.read(before, 1).empty()) << "the older one's connection ends";
+    const unsigned made = rig_.with(sessions);
+    for (int second = 0; second < 6; ++second) {
+        const uint64_t end = rig_.with([&] { return rig_.ns(); }) + 1'000'000'000;
+        ASSERT_TRUE(rig_.until([&] { return rig_.ns() >= end; }));
+        EXPECT_EQ(answerer(fd), 1) << log();
+        errno = 0;
+        EXPECT_EQ(older->connect(-1), -1);
+        EXPECT_EQ(errno, EBUSY);
+    }
+    EXPECT_EQ(rig_.with(sessions), made) << log();
+    const std::string why = "another ground with this one's address has the vehicle";
+    EXPECT_EQ(log().find(why), log().rfind(why)) << log();
+    EXPECT_NE(log().find(why), std::string::npos) << log();
+    newer.reset();
+    close(fd);
+    ASSERT_TRUE(rig_.until([&] { return sessions() > made; })) << log();
+    const int after = older->connect(-1);
+    EXPECT_EQ(answerer(after), 1) << log();
+    for (int end : {before, after})
+        close(end);
+    rig_.with([&] { rig_.step = nullptr; });
+}
+
+INSTANTIATE_TEST_SUITE_P(Fleet, TwinGrounds,
+                         ::testing::Values(XBeeAT::LinkKeys{{{1}}}, XBeeAT::LinkKeys{}));
 
 TEST_F(FleetTest, AModemWithoutApiModeTalksToOneVehicle) {
     isApi_ = false;

@@ -4,8 +4,10 @@
 // clients find a vehicle by its name, follow it from one ground to another, and hear of it.
 
 #include "gateway_rig.h"
+#include <IceSSL/IceSSL.h>
 #include <IceStorm/IceStorm.h>
 #include <filesystem>
+#include <fstream>
 
 namespace {
 
@@ -25,32 +27,40 @@ int freePort() {
     }
 }
 
+// A folder that is removed with it.
+struct Folder {
+    explicit Folder(const std::string& name)
+        : path(testing::TempDir() + name + "." + std::to_string(getpid())) {
+        std::filesystem::create_directories(path);
+    }
+    ~Folder() { std::filesystem::remove_all(path); }
+    const std::string path;
+};
+
 // A registry of IceGrid; it may be killed and started again.
 class Registry {
 public:
-    // `master`: endpoint of the registry that this one replicates; empty: this one is the master.
-    explicit Registry(const std::string& name, std::string master = "")
-        : name_(name), master_(std::move(master)),
-          folder_(testing::TempDir() + "registry." + std::to_string(getpid()) + "." + name) {
-        std::filesystem::create_directories(folder_);
+    // `protocol`: tcp or ssl, for which `more` has the certificate. `master`: endpoint of the
+    // registry that this one replicates; empty: this one is the master.
+    Registry(const std::string& name, std::string protocol, std::vector<std::string> more,
+             std::string master = "")
+        : name_(name), here_(std::move(protocol) + " -h 127.0.0.1"), more_(std::move(more)),
+          master_(std::move(master)), folder_("registry." + name) {
         start();
-    }
-    ~Registry() {
-        process_.reset();
-        std::filesystem::remove_all(folder_);
     }
     void start() {
         std::vector<std::string> words = {PROGRAMS "/icegridregistry",
                                           "--IceGrid.InstanceName=IceGrid",
                                           "--IceGrid.Registry.ReplicaName=" + name_,
                                           "--IceGrid.Registry.Client.Endpoints=" + endpoint(),
-                                          "--IceGrid.Registry.Server.Endpoints=tcp -h 127.0.0.1",
-                                          "--IceGrid.Registry.Internal.Endpoints=tcp -h 127.0.0.1",
+                                          "--IceGrid.Registry.Server.Endpoints=" + here_,
+                                          "--IceGrid.Registry.Internal.Endpoints=" + here_,
                                           "--IceGrid.Registry.Discovery.Enabled=0",
                                           "--IceGrid.Registry.DynamicRegistration=1",
-                                          "--IceGrid.Registry.LMDB.Path=" + folder_,
+                                          "--IceGrid.Registry.LMDB.Path=" + folder_.path,
                                           "--IceGrid.Registry.LMDB.MapSize=8",
                                           "--Ice.PrintAdapterReady=1"};
+        words.insert(words.end(), more_.begin(), more_.end());
         if (!master_.empty())
             words.push_back("--Ice.Default.Locator=IceGrid/Locator:" + master_);
         process_ = std::make_unique<Server>(words);
@@ -61,21 +71,22 @@ public:
         ::kill(process_->pid(), SIGKILL);
         process_->wait();
     }
-    std::string endpoint() const { return "tcp -h 127.0.0.1 -p " + std::to_string(port_); }
+    std::string endpoint() const { return here_ + " -p " + std::to_string(port_); }
 
 private:
-    const std::string name_, master_, folder_;
+    const std::string name_, here_;
+    const std::vector<std::string> more_;
+    const std::string master_;
+    const Folder folder_;
     const int port_ = freePort();
     std::unique_ptr<Server> process_;
 };
 
 class Directory : public Gateway {
 protected:
-    Directory() {
-        XBee::Options options;
-        options.name = "the other ground";
-        options.set = {{"GT", Rig::guardMs}, {"D6", 1}};
-        ground_ = std::make_unique<XBee>(pty_, air_, options);
+    // `isSecure`: between machines by TLS, to the vehicle under a key.
+    explicit Directory(bool isSecure = false) : isSecure_(isSecure) {
+        placeOther(air_);
         world_.rig.with([this, relay = world_.rig.step] {
             world_.rig.step = [this, relay] {
                 air_.advance(world_.rig.ns());
@@ -88,6 +99,35 @@ protected:
         world_.rig.with([&] { world_.rig.step = nullptr; });
         fly(true);
     }
+    void placeOther(RfChannel& air) {
+        XBee::Options options;
+        options.name = "the other ground";
+        options.set = {{"GT", Rig::guardMs}, {"D6", 1}};
+        ground_.reset();
+        ground_ = std::make_unique<XBee>(pty_, air, options);
+    }
+    // A certificate that IceSSL takes, as Ice's options; none in the clear.
+    std::vector<std::string> certificate() const {
+        if (!isSecure_)
+            return {};
+        Ice::registerIceSSL();
+        const std::string pem = secrets_.path + "/fleet.pem";
+        if (!std::filesystem::exists(pem) &&
+            std::system((ICESOC " key " + pem + " --certificate >" + pem + ".said").c_str()) != 0)
+            throw std::runtime_error("no certificate");
+        return {"--Ice.Plugin.IceSSL=IceSSL:createIceSSL",
+                "--IceSSL.CAs=" + secrets_.path + "/authority.pem", "--IceSSL.CertFile=" + pem};
+    }
+    // Gives the vehicle a key; returns its file.
+    std::string key() {
+        const std::string path = secrets_.path + "/my.key";
+        std::ofstream(path) << std::string(32, '5');
+        std::filesystem::permissions(path, std::filesystem::perms(0600));
+        const U8 key[LINK_KEY_BYTES] = {0x55, 0x55, 0x55, 0x55, 0x55, 0x55, 0x55, 0x55,
+                                        0x55, 0x55, 0x55, 0x55, 0x55, 0x55, 0x55, 0x55};
+        world_.rig.with([&] { Link_setKey(world_.rig.link(), 0, key, 1); });
+        return path;
+    }
     // The vehicle is where the first ground hears it, or where the other one does.
     void fly(bool isHome) {
         world_.rig.with([&] { world_.rig.move(isHome ? world_.rig.air : air_); });
@@ -96,15 +136,23 @@ protected:
         return "IceGrid/Locator:" + master_.endpoint() + ":" + replica_.endpoint();
     }
     std::unique_ptr<Server> ground(const std::string& port, std::vector<std::string> more = {}) {
-        more.insert(more.begin(), {GATEWAY, "-d", port, "-g", std::to_string(Rig::guardMs), "-l",
-                                   "127.0.0.1:0", "--Ice.Default.Locator=" + locator()});
+        more.insert(more.begin(),
+                    {GATEWAY, "-d", port, "-g", std::to_string(Rig::guardMs), "-l",
+                     protocol_ + " -h 127.0.0.1 -p 0", "--Ice.Default.Locator=" + locator()});
+        const auto tls = certificate();
+        more.insert(more.end(), tls.begin(), tls.end());
         return std::make_unique<Server>(more);
     }
     Ice::CommunicatorPtr client() const {
-        return program({{"Ice.Default.Locator", locator()},
-                        {"Ice.Default.InvocationTimeout", "1800000"},
-                        {"Ice.RetryIntervals", "0 100 200 400 800"}});
+        auto data = Ice::InitializationData();
+        data.properties = Ice::createProperties();
+        data.properties->parseCommandLineOptions("", certificate());
+        data.properties->setProperty("Ice.Default.Locator", locator());
+        data.properties->setProperty("Ice.Default.InvocationTimeout", "1800000");
+        data.properties->setProperty("Ice.RetryIntervals", "0 100 200 400 800");
+        return Ice::initialize(data);
     }
+    void followAVehicle(const std::vector<std::string>& more);
     // Calls until one is answered; how many may have been carried out or not.
     int callOn(const std::shared_ptr<RadioTest::UavPrx>& echo) {
         for (int unknown = 0;;)
@@ -118,26 +166,41 @@ protected:
             }
     }
 
-    Registry master_{"Master"}, replica_{"Replica", master_.endpoint()};
+    const bool isSecure_;
+    const std::string protocol_ = isSecure_ ? "ssl" : "tcp";
+    const Folder secrets_{"fleet"};
+    Registry master_{"Master", protocol_, certificate()},
+        replica_{"Replica", protocol_, certificate(), master_.endpoint()};
     RfChannel air_{testSeed()};
     PtyLine pty_;
     std::unique_ptr<XBee> ground_;
     int id_ = 0;
 };
 
-TEST_F(Directory, ClientsFollowAVehicleFromOneGroundToAnother) {
-    auto home =
-        ground(world_.rig.pty.path(), {"-t", "1", "--vehicle", "uav7=1", "--vehicle", "uav8=8"});
-    auto other = ground(pty_.path(), {"--vehicle", "uav7=1"});
+struct SecureDirectory : Directory {
+    SecureDirectory() : Directory(true) {}
+};
+
+void Directory::followAVehicle(const std::vector<std::string>& more) {
+    const auto with = [&more](std::vector<std::string> words) {
+        words.insert(words.end(), more.begin(), more.end());
+        return words;
+    };
+    auto home = ground(world_.rig.pty.path(),
+                       with({"-t", "1", "--vehicle", "uav7=1", "--vehicle", "uav8=8"}));
+    auto other = ground(pty_.path(), with({"--vehicle", "uav7=1"}));
     ASSERT_TRUE(home->hear("uav7 is here")) << home->said();
     Ice::CommunicatorHolder ic(client());
     const auto echo = Ice::uncheckedCast<RadioTest::UavPrx>(ic->stringToProxy("echo@uav7"));
     EXPECT_EQ(callOn(echo), 0);
     EXPECT_THROW(ic->stringToProxy("echo@uav8")->ice_ping(), Ice::NotRegisteredException) << "away";
-    Server python({"/usr/bin/python3", "-c",
-                   "import Ice, sys; ic = Ice.initialize(sys.argv)\n"
-                   "ic.stringToProxy('echo@uav7').ice_ping(); ic.destroy()",
-                   "--Ice.Default.Locator=" + locator()});
+    std::vector<std::string> words = {"/usr/bin/python3", "-c",
+                                      "import Ice, sys; ic = Ice.initialize(sys.argv)\n"
+                                      "ic.stringToProxy('echo@uav7').ice_ping(); ic.destroy()",
+                                      "--Ice.Default.Locator=" + locator()};
+    const auto tls = certificate();
+    words.insert(words.end(), tls.begin(), tls.end());
+    Server python(words);
     EXPECT_EQ(python.wait(), 0) << python.said();
     for (bool isHome : {false, true}) {
         fly(isHome);
@@ -155,6 +218,42 @@ TEST_F(Directory, ClientsFollowAVehicleFromOneGroundToAnother) {
     EXPECT_EQ(world_.echo->twice(), 0);
     EXPECT_EQ(home->stop() + other->stop(), 0);
     EXPECT_THROW(echo->ice_ping(), Ice::NotRegisteredException) << "both grounds have ended";
+}
+
+TEST_F(Directory, ClientsFollowAVehicleFromOneGroundToAnother) {
+    followAVehicle({});
+}
+
+TEST_F(SecureDirectory, ClientsFollowAVehicleFromOneGroundToAnother) {
+    followAVehicle({"--key", key()});
+    Ice::CommunicatorHolder stranger(program({{"Ice.Plugin.IceSSL", "IceSSL:createIceSSL"}}));
+    EXPECT_THROW(stranger->stringToProxy(locator())->ice_ping(), Ice::LocalException)
+        << "without a certificate";
+}
+
+// Both hear the vehicle, and have one address and one key.
+TEST_F(Directory, AGroundThatTakesOverKeepsTheVehicleUntilItEnds) {
+    world_.rig.with([&] { placeOther(world_.rig.air); });
+    const std::string file = key();
+    auto home = ground(world_.rig.pty.path(), {"-t", "1", "--key", file});
+    ASSERT_TRUE(home->hear("uav1 is here")) << home->said();
+    Ice::CommunicatorHolder ic(client());
+    const auto echo = Ice::uncheckedCast<RadioTest::UavPrx>(ic->stringToProxy("echo@uav1"));
+    EXPECT_EQ(callOn(echo), 0);
+    auto other = ground(pty_.path(), {"--key", file});
+    ASSERT_TRUE(other->hear("uav1 is here")) << other->said();
+    EXPECT_LE(callOn(echo), 1);
+    ASSERT_TRUE(home->hear("uav1 is elsewhere")) << home->said();
+    const auto now = [this] { return world_.rig.with([&] { return world_.rig.ns(); }); };
+    for (const uint64_t end = now() + 15'000'000'000; now() < end;)
+        EXPECT_EQ(callOn(echo), 0);
+    EXPECT_EQ(other->stop(), 0);
+    EXPECT_EQ(other->said().find("elsewhere"), std::string::npos)
+        << other->said() << (home->stop(), home->said());
+    ASSERT_TRUE(home->hear("another ground with this one's address")) << home->said();
+    ASSERT_TRUE(home->hear("uav1 is here")) << home->said();
+    callOn(echo);
+    EXPECT_EQ(world_.echo->twice(), 0);
 }
 
 TEST_F(Directory, OneOfTwoRegistriesIsKilledAndComesBack) {

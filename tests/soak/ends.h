@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: MIT
+//
+// ends: vehicles and grounds of the soak, and the messages between them, which say whether they are
+// right.
+
+#pragma once
+
+#include "ice_messages.h"
+#include "modem_pair.h"
+#include <array>
+#include <fmt/format.h>
+#include <unordered_map>
+
+using Bytes = std::vector<uint8_t>;
+
+constexpr uint64_t msNs = 1'000'000, secondNs = 1000 * msNs;
+
+class Fault : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+struct Totals {
+    uint64_t sent = 0, delivered = 0, unknown = 0, received = 0;
+    uint64_t reboots = 0, modemResets = 0, absences = 0, twins = 0, keys = 0;
+    uint64_t babbles = 0, rivals = 0;
+};
+
+// Mail is what one end sends to another: messages with numbers, of which a channel has each fourth.
+class Mail {
+public:
+    Mail(int from, int to, Totals& totals) : from_(from), to_(to), totals_(totals) {}
+    // The next message, until `sent`.
+    Bytes next() const { return message(next_); }
+    U32 number() const { return next_; }
+    int channel() const { return static_cast<int>(next_ % LINK_CHANNELS); }
+    void sent() {
+        outstanding_.emplace(next_++, false);
+        hasCome_.push_back(false);
+        ++totals_.sent;
+    }
+    void report(uint32_t id, Link_Outcome outcome) {
+        auto it = outstanding_.find(id);
+        if (it == outstanding_.end())
+            fault("reported twice, or never sent", id);
+        if (outcome == LINK_DELIVERED && !it->second)
+            fault("reported delivered, and it was not", id);
+        ++(outcome == LINK_DELIVERED ? totals_.delivered : totals_.unknown);
+        outstanding_.erase(it);
+    }
+    // Messages on their way at the power's loss: their program calls them unknown.
+    void forget() {
+        totals_.unknown += outstanding_.size();
+        outstanding_.clear();
+    }
+    // Checks a message for the receiver: it is the next or a later one of this mail and channel,
+    // and whole, and the receiver's rival has not had it. False: it is none.
+    bool arrived(int channel, const Bytes& bytes, bool isRival) {
+        uint32_t& expected = expected_[isRival][channel];
+        uint32_t id = expected;
+        while (id < next_ && bytes != message(id))
+            id += LINK_CHANNELS;
+        if (id >= next_ || hasCome_[id])
+            return false;
+        hasCome_[id] = true;
+        auto it = outstanding_.find(id);
+        if (it != outstanding_.end())
+            it->second = true;
+        // A skipped message must no longer be on its way for the sender.
+        for (; expected < id; expected += LINK_CHANNELS)
+            if (outstanding_.count(expected))
+                fault("was skipped", expected);
+        expected += LINK_CHANNELS;
+        ++totals_.received;
+        return true;
+    }
+    bool isQuiet() const { return outstanding_.empty(); }
+
+private:
+    [[noreturn]] void fault(const std::string& what, uint32_t id) const {
+        throw Fault(fmt::format("from 0x{:04x} to 0x{:04x}: message {} {}", from_, to_, id, what));
+    }
+    // Every byte follows from the sides and the number.
+    Bytes message(uint32_t id) const {
+        Random r(uint64_t(from_) << 48 | uint64_t(to_) << 32 | uint64_t(from_ >> 16) << 31 | id);
+        uint32_t kind = r.below(10);
+        uint32_t size = r.below(40) ? r.below(60) : r.below(LINK_MAX_MESSAGE - 100);
+        Bytes body;
+        IceMessages::put32(body, id);
+        for (uint32_t i = 0; i < size; ++i)
+            body.push_back(static_cast<uint8_t>(r.next()));
+        std::string object = "object" + std::to_string(r.below(20));
+        if (kind < 5)
+            return IceMessages::request(kind < 2 ? 0 : id, object, "operation", body);
+        if (kind < 8)
+            return IceMessages::reply(id, body, kind == 7);
+        body.push_back(body[0]);
+        body[0] = static_cast<uint8_t>(r.next()); // any first byte
+        return body;
+    }
+
+    const int from_, to_;
+    Totals& totals_;
+    uint32_t next_ = 0, expected_[2][LINK_CHANNELS] = {{0, 1, 2, 3}, {0, 1, 2, 3}};
+    std::vector<bool> hasCome_;                      // each message
+    std::unordered_map<uint32_t, bool> outstanding_; // not reported, with whether it has arrived
+};
+
+// End is a vehicle or a ground, and its program. It knows what others send only to check it.
+class End : public ModemEnd {
+public:
+    using MailOf = std::function<Mail*(int from, int to)>; // null: there is none
+    End(RfChannel& air, Random& random, int name, bool isGround, const std::vector<int>& targets,
+        const MailOf& mailOf)
+        : ModemEnd(air, options(name & 0xFFFF), random.next(), targets), random_(random),
+          isGround_(isGround), isRival_(name == rival), address_(name & 0xFFFF),
+          keys_(targets.size(), 0) {
+        for (int target : targets) {
+            in_.push_back({mailOf(target, address_), mailOf(target | rival, address_)});
+            out_.push_back(mailOf(name, target));
+        }
+    }
+    static constexpr int rival = 0x10000; // name of the one with the first ground's address, 0
+    // `hasKeys`: one of each vehicle and ground, with the number of its changes.
+    void boot(uint64_t now, bool hasKeys) {
+        now_ = now;
+        begin();
+        for (size_t peer = 0; peer < peers(); ++peer) {
+            if (out_[peer])
+                out_[peer]->forget();
+            if (hasKeys)
+                setKey(peer, keys_[peer], true);
+            if (hasKeys && isGround_ && keys_[peer])
+                setKey(peer, keys_[peer] - 1, true);
+            Link_start(link(peer), us());
+        }
+    }
+    unsigned keyOf(size_t peer) const { return keys_[peer]; } // its number
+    // The ground has two keys, the present and the next one; the vehicle's session ends.
+    void takeNextKey(size_t peer) {
+        setKey(peer, ++keys_[peer], true);
+        if (!isGround_)
+            setKey(peer, keys_[peer] - 1, false);
+    }
+    // Makes one step of a program: with this chance it sends a message to each peer.
+    void work(double rate) {
+        for (size_t peer = 0; peer < peers(); ++peer)
+            if (out_[peer] && isUp(peer) && random_.chance(rate))
+                offer(peer);
+        if (random_.chance(0.002))
+            isBusy_ = random_.chance(0.1); // takes no message for a while
+    }
+    bool isWell() const {
+        for (size_t peer = 0; peer < peers(); ++peer)
+            if (!isUp(peer) || !out_[peer]->isQuiet())
+                return false;
+        return true;
+    }
+    void wakeUp() { isBusy_ = false; }
+    uint64_t awayUntil = 0;
+
+private:
+    static XBee::Options options(int address) {
+        XBee::Options o = modemOptions(static_cast<unsigned>(address), false, 2, true);
+        o.name = fmt::format("0x{:04x}", address);
+        o.set["DL"] = 0;
+        return o;
+    }
+    void setKey(size_t peer, unsigned number, bool isGiven) {
+        const int vehicle = isGround_ ? target(peer) : address_;
+        const int ground = isGround_ ? address_ : target(peer);
+        const U8 key[LINK_KEY_BYTES] = {static_cast<U8>(vehicle), static_cast<U8>(ground),
+                                        static_cast<U8>(number), static_cast<U8>(!out_[peer])};
+        Link_setKey(link(peer), number % 2, isGiven ? key : nullptr,
+                    static_cast<U32>(vehicle) | (isGround_ ? LINK_GROUND : 0));
+    }
+    void offer(size_t peer) {
+        Mail& mail = *out_[peer];
+        const Bytes m = mail.next();
+        const auto status = Link_send(link(peer), mail.channel(), m.data(),
+                                      static_cast<U32>(m.size()), mail.number());
+        if (status == LINK_CLOSED)
+            Link_openChannel(link(peer), mail.channel());
+        else if (status == LINK_OK)
+            mail.sent();
+    }
+    void onOutcome(size_t peer, U32 id, Link_Outcome outcome) override {
+        out_[peer]->report(id, outcome);
+    }
+    // The link's and the program's acceptance of a message are one step here, unless the program is
+    // busy.
+    int onMessage(size_t peer, int channel, const U8* data, U32 size) override {
+        if (isBusy_)
+            return 1;
+        for (Mail* mail : in_[peer])
+            if (mail && mail->arrived(channel, Bytes(data, data + size), isRival_))
+                return 0;
+        throw Fault(fmt::format("{}: a message of 0x{:04x} came that is wrong, came before, is out "
+                                "of order, or for another one of this address",
+                                modem.name(), target(peer)));
+    }
+
+    Random& random_;
+    const bool isGround_, isRival_;
+    const int address_;
+    std::vector<std::array<Mail*, 2>> in_; // of each peer, and of its rival
+    std::vector<Mail*> out_;
+    std::vector<unsigned> keys_; // how often each was changed
+    bool isBusy_ = false;
+};

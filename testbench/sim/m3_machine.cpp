@@ -45,6 +45,8 @@ M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> 
     board.provide(config.key, config.address);
     if (config.secondGround >= 0)
         board.provideGround(static_cast<uint32_t>(config.secondGround), config.secondKey);
+    if (!config.groupKey.empty())
+        board.provideGround(UAV_EVERYBODY, config.groupKey);
     std::copy(board.words.begin(), board.words.end(), stm32_.backup().begin());
     stm32_.setPinB(1, !config.isWired);
     if (config.flash.empty())

@@ -35,6 +35,7 @@ public:
         uint32_t address = 1;                // of the vehicle, from the factory, too
         int64_t secondGround = -1;           // address of a second ground that it serves; -1: none
         std::vector<uint8_t> secondKey = {}; // and that one's key
+        std::vector<uint8_t> groupKey = {};  // of calls to all vehicles
         bool isTransparent = false;          // written to uav_transparent, as guardMs is
     };
     // `poll` is called about once a simulated millisecond; when it returns false, run() ends.

@@ -3,8 +3,8 @@
 // m3_test: the firmware's ARM binary on the RTL: the same mission as the host build's, bit by bit,
 // and its failures: watchdog, faults, a corrupt image.
 
-#include "ground.h"
 #include "m3_machine.h"
+#include "to_all.h"
 #include "uav_machine.h"
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -110,6 +110,21 @@ TEST(CortexM3Firmware, LosesNothingInBadWeatherAndAtTheBoardsCycleRatio) {
     for (auto& [id, status] : f.ground.replies)
         EXPECT_EQ(status, id < 27 ? 0 : 2) << id; // the last one asks for nobody
     EXPECT_GT(f.air.counters().lost, 0u);
+}
+
+TEST(CortexM3Firmware, CarriesACallToAllVehiclesOutOnce) {
+    M3Machine::Config config = firmware;
+    config.key = ToAll::Key(LINK_KEY_BYTES, 0x11);
+    ToAll w(config.key);
+    config.groupKey = w.groups;
+    M3Machine machine(
+        w.soc, config,
+        w.flight({w.calls({w.high}), w.send(w.groups, 10, w.low), w.send(w.groups, 11, w.start),
+                  w.calls({w.result}, true), w.calls({w.high}), w.send(w.sent),
+                  w.send(w.open, 12, w.low),
+                  w.calls({w.start, w.result}, false, "recorded, and in the clear")}));
+    machine.run();
+    EXPECT_TRUE(w.isDone);
 }
 
 // One flight, several accidents: a core that hangs, a processor that hangs, the FSMC switched off,

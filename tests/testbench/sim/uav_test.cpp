@@ -5,12 +5,11 @@
 // worst: with a key nothing comes of it; in the clear a session ends.
 
 #include "attacker.h"
-#include "ground.h"
+#include "to_all.h"
 #include "uav_machine.h"
 #include <gtest/gtest.h>
 
 extern "C" {
-#include "link_broadcast.h"
 extern Link uav_link; // the firmware's
 }
 
@@ -208,99 +207,37 @@ TEST(Fellow, OneThatIsAwayCostsLittleOfTheAirAndTheVehicleServesItsGroundMeanwhi
     EXPECT_GT(share, 0.004) << "it is not sought: the idle sessions take 0.0015";
 }
 
-// A vehicle that the pilot calls, and a modem that sends calls to all vehicles. Of the picture's
-// corners a threshold of 10 finds some, one of 200 none.
-class ToAll : public GroundAndChip {
-public:
-    using Key = std::vector<uint8_t>;
-    using Call = Ground::Call;
-    const Key groups = Key(LINK_KEY_BYTES, 0x66), open = Key(LINK_KEY_BYTES);
-    const Call low = {"hwengine1", "setParameterA", 0, {10, 0}},
-               high = {"hwengine1", "setParameterA", 0, {200, 0}},
-               start = {"hwengine1", "startProcessing"}, result = {"hwengine1", "getResult"};
-
-    explicit ToAll(const Key& pilots) {
-        ground.key = pilots;
-        XBee::Options options;
-        options.set = {{"BD", 7}, {"MY", 5}, {"DL", 0xFFFF}};
-        modem_ = std::make_unique<XBee>(line_, air, options);
-        soc.onTime([this](uint64_t now) {
-            modem_->advance(now);
-            return std::min(ground.advance(now), modem_->nextEvent());
-        });
-        provide(64, 64, [](uint32_t i) { return i % 8 < 3 && i / 64 % 8 < 3 ? 150 : 100; });
-    }
-    // Boots the vehicle with what its memory keeps, and flies.
-    void fly(std::vector<Script> steps, const std::function<void(SimulatedBoard&)>& provide) {
-        auto script = inOrder(std::move(steps));
-        bool done = false;
-        soc.reset(true);
-        ground.start();
-        UavMachine machine(soc, [&] {
-            done = script();
-            return !done && within(60);
-        });
-        provide(machine.board);
-        machine.run();
-        kept = machine.board.words;
-        EXPECT_TRUE(done);
-    }
-    // Sends a new call, in three copies, since one may meet a packet of the link.
-    Script send(const Key& key, U32 number, const Call& call) {
-        const auto m = Ground::request(0, call.object, call.operation, call.mode, call.parameters);
-        Key packet(LINK_MAX_FRAME, 0x55);
-        std::copy(m.begin(), m.end(), packet.begin() + LINK_BROADCAST_HEAD);
-        packet.resize(Link_sealBroadcast(packet.data(), U32(m.size()), key.data(), number));
-        sent.push_back(packet);
-        return send({packet, packet, packet});
-    }
-    Script send(std::vector<Key> packets) {
-        return [this, packets, begun = uint64_t(0), at = size_t(0)]() mutable {
-            if (soc.now() - begun < 100'000'000)
-                return false;
-            if (at < packets.size())
-                line_.send(packets[at], begun = soc.now());
-            return at++ == packets.size();
-        };
-    }
-    // The pilot's calls; the first byte of the last one's result is 0 or not.
-    Script calls(std::vector<Call> these, bool some = false, const char* what = "") {
-        const int last = static_cast<int>(these.size());
-        return inOrder({[this] { return ground.replies.clear(), true; },
-                        ground.calling(std::move(these)),
-                        [=] {
-                            const auto& reply = ground.messages[last];
-                            EXPECT_EQ(reply.size() > 25 && reply[25] != 0, some) << what;
-                            return true;
-                        }});
-    }
-
-    std::vector<Key> sent;
-    SimulatedBoard::Words kept{};
-
-private:
-    HostLine line_;
-    std::unique_ptr<XBee> modem_;
-};
+// Boots the vehicle with what its memory keeps, and flies. Returns what its memory keeps then.
+SimulatedBoard::Words fly(ToAll& w, std::vector<Script> steps,
+                          const std::function<void(SimulatedBoard&)>& provide) {
+    UavMachine machine(w.soc, w.flight(std::move(steps)));
+    provide(machine.board);
+    machine.run();
+    EXPECT_TRUE(w.isDone);
+    return machine.board.words;
+}
 
 TEST(CallsToAll, AreCarriedOutOnceIfTheirOperationsAllowItAlsoAfterARestart) {
     const ToAll::Key pilots(LINK_KEY_BYTES, 0x11), others(LINK_KEY_BYTES, 0x67);
     ToAll w(pilots);
-    w.fly({w.calls({w.high}), w.send(w.groups, 10, w.low), w.send(w.groups, 11, w.start),
-           w.calls({w.result}, true, "both are carried out"), w.calls({w.high}), w.send(w.sent),
-           w.send(others, 12, w.low), w.send(w.open, 12, w.low),
-           w.calls({w.start, w.result}, false, "recorded, and of other keys"),
-           w.send(w.groups, 13, {"uav", "setFlightState", 2, {1}}),
-           w.calls({{"uav", "getFlightState", 2}}, false, "setFlightState is not marked"),
-           w.send(w.groups, 14, w.low), w.calls({w.start, w.result}, true, "a new one")},
-          [&](SimulatedBoard& board) {
-              board.provide(pilots);
-              board.provideGround(UAV_EVERYBODY, w.groups);
-          });
-    w.fly({w.calls({w.high}), w.send(w.sent),
-           w.calls({w.start, w.result}, false, "recorded before the restart"),
-           w.send(w.groups, 15, w.low), w.calls({w.start, w.result}, true, "a new one")},
-          [&](SimulatedBoard& board) { board.words = w.kept; });
+    const auto kept =
+        fly(w,
+            {w.calls({w.high}), w.send(w.groups, 10, w.low), w.send(w.groups, 11, w.start),
+             w.calls({w.result}, true, "both are carried out"), w.calls({w.high}), w.send(w.sent),
+             w.send(others, 12, w.low), w.send(w.open, 12, w.low),
+             w.calls({w.start, w.result}, false, "recorded, and of other keys"),
+             w.send(w.groups, 13, {"uav", "setFlightState", 2, {1}}),
+             w.calls({{"uav", "getFlightState", 2}}, false, "setFlightState is not marked"),
+             w.send(w.groups, 14, w.low), w.calls({w.start, w.result}, true, "a new one")},
+            [&](SimulatedBoard& board) {
+                board.provide(pilots);
+                board.provideGround(UAV_EVERYBODY, w.groups);
+            });
+    fly(w,
+        {w.calls({w.high}), w.send(w.sent),
+         w.calls({w.start, w.result}, false, "recorded before the restart"),
+         w.send(w.groups, 15, w.low), w.calls({w.start, w.result}, true, "a new one")},
+        [&](SimulatedBoard& board) { board.words = kept; });
     EXPECT_EQ(Link_statistics(&uav_link)->bytesSkipped, 0u);
 }
 
@@ -308,12 +245,13 @@ TEST(CallsToAll, AreRefusedWithAKeyButWithoutTheGroupsAndTakenByAnOpenVehicle) {
     for (const bool isOpen : {false, true}) {
         const ToAll::Key pilots(isOpen ? 0 : LINK_KEY_BYTES, 0x11);
         ToAll w(pilots);
-        w.fly({w.calls({w.high}), w.send(w.groups, 10, w.low),
-               w.calls({w.start, w.result}, false, "under a key that it has not"),
-               w.send(w.open, 11, w.low), w.calls({w.start, w.result}, isOpen, "in the clear"),
-               w.calls({w.high}), w.send({w.sent.back()}),
-               w.calls({w.start, w.result}, false, "a copy")},
-              [&](SimulatedBoard& board) { board.provide(pilots); });
+        fly(w,
+            {w.calls({w.high}), w.send(w.groups, 10, w.low),
+             w.calls({w.start, w.result}, false, "under a key that it has not"),
+             w.send(w.open, 11, w.low), w.calls({w.start, w.result}, isOpen, "in the clear"),
+             w.calls({w.high}), w.send({w.sent.back()}),
+             w.calls({w.start, w.result}, false, "a copy")},
+            [&](SimulatedBoard& board) { board.provide(pilots); });
         EXPECT_EQ(w.ground.statistics().sessions, 1u);
     }
 }

@@ -78,6 +78,15 @@ std::vector<uint8_t> keyOf(const std::string& file, int address) {
     return {key.begin(), key.end()};
 }
 
+// Returns the key of calls to all vehicles; none: the file has no line for it.
+std::vector<uint8_t> groupKeyOf(const std::string& file) {
+    try {
+        return keyOf(file, XBeeAT::everybody);
+    } catch (const std::exception&) {
+        return {};
+    }
+}
+
 // Whom a vehicle serves besides the first ground, and under which key: of four and more vehicles
 // the first two each other, all others the second ground.
 std::pair<uint32_t, std::vector<uint8_t>> secondOf(const Flight::Options& o, unsigned vehicle) {
@@ -225,6 +234,7 @@ void Flight::callFollower(unsigned address, const std::vector<uint8_t>& key) {
     config.address = address;
     config.key = key;
     std::tie(config.secondGround, config.secondKey) = secondOf(o_, address);
+    config.groupKey = groupKeyOf(o_.keyFile);
     config.seed = o_.seed + followers_.size() + 2;
     followers_.push_back(std::make_unique<Follower>(air_, modem("follower", o_.guard), config));
     SocModel& soc = followers_.back()->soc;
@@ -362,6 +372,8 @@ void Flight::runOnHost() {
         const auto [address, key] = secondOf(o_, 1);
         machine.board.provideGround(address, key);
     }
+    if (const auto key = groupKeyOf(o_.keyFile); !key.empty())
+        machine.board.provideGround(UAV_EVERYBODY, key);
     machine.run();
 }
 
@@ -372,6 +384,7 @@ void Flight::runOnCortexM3() {
                              key_,        o_.seed,     fpga,     o_.wire};
     if (second_)
         std::tie(config.secondGround, config.secondKey) = secondOf(o_, 1);
+    config.groupKey = groupKeyOf(o_.keyFile);
     M3Machine machine(soc_, config, [this] { return poll(); });
     if (machine.program)
         machine.program->onTask = [this](const std::string& name) {

@@ -7,6 +7,7 @@ seconds, about 1.7 per flight. So each moment is within the flight at any speed 
 
 import argparse
 import concurrent.futures
+import contextlib
 import json
 import os
 import random
@@ -19,6 +20,9 @@ import sys
 import time
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "testbench/page"))
+import tool  # noqa: E402
+
 IMAGE = "/usr/share/xplanet/images/earth.jpg"
 LONGEST = 240.0  # seconds of a mission on a busy machine
 REAL = 0.3  # seconds of a moment before the simulated ones
@@ -26,20 +30,15 @@ LAST = 2.0  # moment; its share of this is the quantity of faults that have no m
 
 
 def proc(pid, name):
-    """A file of a process; "": it has ended."""
+    """Returns the text of a process' file; "": it has ended."""
     try:
         return Path(f"/proc/{pid}/{name}").read_text()
     except (FileNotFoundError, ProcessLookupError):
         return ""
 
 
-def children(of):
-    """Ids of a process' descendants, by the kernel's lists."""
-    found = []
-    for task in Path(f"/proc/{of}/task").glob("*"):
-        for child in proc(of, f"task/{task.name}/children").split():
-            found += [int(child)] + children(child)
-    return found
+def descendants(of):
+    return [pid for child in tool.children(of) for pid in (child, *descendants(child))]
 
 
 def command_of(pid):
@@ -60,7 +59,6 @@ class Mission:
         self.out, self.source, self.build = out, source, build
         os.makedirs(out, exist_ok=True)
         self.log = open(out + ".log", "w+")
-        self.begin = time.monotonic()
         run = [source + "/icesoc", "run", "--built", "--build", build, "--image", IMAGE, "--size",
                "48x32", "--guard", "20", "--out", out, *options]
         self.run = subprocess.Popen(
@@ -69,12 +67,12 @@ class Mission:
             env={**os.environ, "XDG_CONFIG_HOME": build + "/config"})  # keys of the tests' own
 
     def all(self):
-        return [self.run.pid] + children(self.run.pid)
+        return [self.run.pid] + descendants(self.run.pid)
 
     def find(self, name):
-        """The process of that name, as soon as it is there; None: the mission ended first."""
+        """Returns the process of that name, once it is there; None: the mission ended first."""
         while name != "run" and self.run.poll() is None:
-            for pid in children(self.run.pid):
+            for pid in descendants(self.run.pid):
                 command = command_of(pid)
                 if re.search(self.NAMES[name], command) and "setpriv" not in command:
                     return pid
@@ -88,17 +86,15 @@ class Mission:
             time.sleep(0.002)
 
     def simulated(self):
-        """Simulated seconds, from the simulator's counters (sw/ground/sim_status.h)."""
+        """Returns simulated seconds, from the simulator's counters (sw/ground/sim_status.h)."""
         try:
             return struct.unpack("<8sQ", Path(self.out, "status").read_bytes()[:16])[1] / 1e9
         except (FileNotFoundError, struct.error):
             return 0
 
     def wait(self, seconds):
-        try:
+        with contextlib.suppress(subprocess.TimeoutExpired):
             return self.run.wait(seconds)
-        except subprocess.TimeoutExpired:
-            return None
 
     def text(self):
         self.log.seek(0)
@@ -119,20 +115,9 @@ class Mission:
     def kill(self):
         """Ends all processes that are left, when the test ends."""
         for pid in self.all():
-            try:
+            with contextlib.suppress(ProcessLookupError):
                 os.kill(pid, signal.SIGKILL)
-            except ProcessLookupError:
-                pass
         self.run.wait()
-
-
-def gone(pids, seconds):
-    end = time.monotonic() + seconds
-    while any(map(lives, pids)):
-        if time.monotonic() > end:
-            return False
-        time.sleep(0.01)
-    return True
 
 
 class Fault(AssertionError):
@@ -157,22 +142,34 @@ def is_whole(out):
 
 
 def caught(start, name, moment):
-    """A mission at a moment, and the process of that name; None: too late."""
+    """Returns a mission at a moment, and the process of that name; None: it is too late."""
     m = start()
     pid = m.find(name)
     m.pass_time(moment)
     return m, pid if pid and m.run.poll() is None and lives(pid) else None
 
 
-def without_page(m):
-    """The page is only a view."""
-    expect(m.wait(LONGEST) == 0 and m.succeeded(), m, "the mission needs the page")
-    expect(re.search("page.*signal 9", m.text()), m, "nobody says that the page is gone")
+def goes_on(m, otherwise):
+    expect(m.wait(LONGEST) == 0 and m.succeeded(), m, otherwise)
     return "the mission goes on"
 
 
+def without_page(m):
+    """The page is only a view."""
+    said = goes_on(m, "the mission needs the page")
+    expect(re.search("page.*signal 9", m.text()), m, "nobody says that the page is gone")
+    return said
+
+
+def refused(m, why):
+    expect(m.wait(LONGEST), m, "it flies, or hangs")
+    expect(re.search(why, m.text()), m, "nobody says why")
+    expect(m.simulated() == 0, m, "it is refused after it flew")
+    return "refused before it flies"
+
+
 def killed_early(start, name, moment, deaths):
-    """Within its first 10 ms."""
+    """Kills a process within its first 10 ms."""
     m = start()
     pid = m.find(name)
     time.sleep(0.01 * moment / LAST)
@@ -191,8 +188,10 @@ def killed(start, name, moment, deaths):
     if name == "page":
         return without_page(m)
     begin = time.monotonic()
-    left = [command_of(p) for p in everybody if lives(p)] if not gone(everybody, deaths) else []
-    expect(not left, m, f"still there after {deaths:.0f} s: {left}")
+    while any(map(lives, everybody)):
+        expect(time.monotonic() < begin + deaths, m, "still there after %.0f s: %s" %
+               (deaths, [command_of(p) for p in everybody if lives(p)]))
+        time.sleep(0.01)
     took = time.monotonic() - begin
     m.run.wait()
     if name != "run":
@@ -208,8 +207,7 @@ def stopped(start, name, moment, deaths):
     os.kill(pid, signal.SIGSTOP)
     time.sleep(3)
     os.kill(pid, signal.SIGCONT)
-    expect(m.wait(LONGEST) == 0 and m.succeeded(), m, "it did not survive a pause of 3 s")
-    return "goes on"
+    return goes_on(m, "it did not survive a pause of 3 s")
 
 
 def disk_full(start, name, moment, deaths):
@@ -228,22 +226,14 @@ def disk_full(start, name, moment, deaths):
 
 
 def no_descriptors(start, name, moment, deaths):
-    m = start(prefix=["prlimit", f"--nofile={8 + int(25 * moment / LAST)}"])
-    expect(m.wait(LONGEST), m, "it succeeds, or hangs")
-    expect(re.search("64 file descriptors, the limit is [0-9]+: ulimit -n 64", m.text()), m,
-           "nobody says what is missing")
-    expect(m.simulated() == 0, m, "it is refused after it flew")
-    return "refused before it flies"
+    return refused(start(prefix=["prlimit", f"--nofile={8 + int(25 * moment / LAST)}"]),
+                   "64 file descriptors, the limit is [0-9]+: ulimit -n 64")
 
 
 def port_taken(start, name, moment, deaths):
     import socket
     with socket.create_server(("127.0.0.1", 0)) as s:
-        m = start(options=["--port", str(s.getsockname()[1])])
-        expect(m.wait(LONGEST), m, "it flies without the page that was asked for, or hangs")
-        expect("is the port taken" in m.text(), m, "nobody says why")
-        expect(m.simulated() == 0, m, "it is refused after it flew")
-    return "refused before it flies"
+        return refused(start(options=["--port", str(s.getsockname()[1])]), "is the port taken")
 
 
 def no_memory(start, name, moment, deaths):
@@ -263,71 +253,81 @@ def no_memory(start, name, moment, deaths):
 def clock_step(start, name, moment, deaths):
     """Steps the clock of the day an hour forward and two back, again and again."""
     m = start(prefix=["env", "LD_PRELOAD=" + CLOCK_STEP])
-    expect(m.wait(LONGEST) == 0 and m.succeeded(), m, "it lives by the clock of the day")
+    said = goes_on(m, "it lives by the clock of the day")
     expect("cannot be preloaded" not in m.text(), m, "no clock was stepped")
-    return "goes on"
+    return said
 
 
-def air(loss):
-    def bad_air(start, name, moment, deaths):
-        m = start(options=["--loss", loss, "--patience", "16", "--seed", str(int(1000 * moment))])
-        status = m.wait(LONGEST)
-        expect(status is not None, m, "it goes on without end")
-        told = re.search("mission: .*(no answer for 16 s|Exception)", m.text())
-        expect(status == 0 and m.succeeded() or told, m, "nobody says what is missing")
-        return "fails after its patience" if status else "succeeds"
-
-    bad_air.__name__ = "loss of " + loss
-    return bad_air
+def loss(start, name, moment, deaths):
+    """name: the share of packets that are lost."""
+    m = start(options=["--loss", name, "--patience", "16", "--seed", str(int(1000 * moment))])
+    status = m.wait(LONGEST)
+    expect(status is not None, m, "it goes on without end")
+    told = re.search("mission: .*(no answer for 16 s|Exception)", m.text())
+    expect(status == 0 and m.succeeded() or told, m, "nobody says what is missing")
+    return "fails after its patience" if status else "succeeds"
 
 
-# What befalls a fleet: the simulator's trouble, and seconds of it at least and at most.
-# The vehicle 1 runs the firmware's host build, the others the ARM binary.
+# Each trouble of a fleet has its name, the simulator's words for it ("": a program makes it), and
+# the seconds that it lasts at least and at most. Vehicle 1 runs the firmware's host build, and the
+# others run the ARM binary.
 TROUBLE = {"vehicle away": ("away:2", 0.5, 3), "vehicle gone": ("away:3", 11, 13),
            "twin": ("twin:2", 1, 3), "babbler": ("babble:1", 1, 3),
-           "other ground": ("away:0", 2, 4), "new key": ("away:2", 11, 13)}
+           "other ground": ("away:0", 2, 4), "new key": ("away:2", 11, 13),
+           "rival ground": ("", 20, 22)}
 VEHICLES, NEXT = 3, "7" * 32
 
 
 def fleet_words(m, name, begin, end):
-    """The simulator with several vehicles that are called all the time, each under its own key."""
-    keys = {}
+    """Returns the simulator's command, with several vehicles that are called all the time, each
+    under its own key."""
+    keys, isRival = {}, name == "rival ground"
     for file, digits in (("fleet", "123"), ("observer", "456")):
+        lines = [f"0x{at:04x} {digit * 32}" for at, digit in enumerate(digits, 1)]
+        if (name, file) == ("new key", "fleet"):
+            lines[1] += " " + NEXT
         keys[file] = f"{m.out}.{file}.key"
         with open(os.open(keys[file], os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "w") as f:
-            for at, digit in enumerate(digits, 1):
-                more = " " + NEXT if (name, file, at) == ("new key", "fleet", 2) else ""
-                f.write(f"0x{at:04x} {digit * 32}{more}\n")
-    return [m.build + "/testbench/sim/icesoc-sim", "--image", IMAGE, "--size", "48x32", "--guard",
-            "20", "--out", m.out, "--speed", "max", "--vehicles", str(VEHICLES), "--key",
-            keys["fleet"], "--observer", keys["observer"], "--trouble",
-            f"{TROUBLE[name][0]}:{begin:.3f}:{end - begin:.3f}", "--", "/usr/bin/python3",
-            m.source + "/tests/e2e/mission/fleet_ground.py", "--device", "{device}", "--device2",
-            "{device2}", "--status", "{status}", "--guard", "{guard}", "--out", "{out}",
-            "--vehicles", str(VEHICLES), "--plugin", m.build + "/ground", "--slice",
-            m.source + "/sw/apps/uav/Autopilot.ice", "--reference",
-            m.build + "/testbench/sim/vision-reference", "--key", keys["fleet"], "--key2",
-            keys["observer"], "--until", str(end + 1),
-            *(["--changed", "2", "--new-key", NEXT] if name == "new key" else [])]
+            f.write("\n".join([*lines, f"0xffff {'9' * 32}"]))
+    flight = {"image": IMAGE, "size": "48x32", "out": m.out, "speed": "max", "key": keys["fleet"],
+              "observer": keys["observer"]}
+    if TROUBLE[name][0]:
+        flight["trouble"] = f"{TROUBLE[name][0]}:{begin:.3f}:{end - begin:.3f}"
+    calls = {"device": "{device}", "device2": "{device2}", "status": "{status}", "out": "{out}",
+             "plugin": m.build + "/ground", "slice": m.source + "/sw/apps/uav/Autopilot.ice",
+             "reference": m.build + "/testbench/sim/vision-reference", "key": keys["fleet"],
+             "key2": keys["fleet" if isRival else "observer"], "until": end + 1,
+             "rival": begin if isRival else 0}
+    if name == "new key":
+        calls.update({"changed": 2, "new-key": NEXT})
+    words = ([str(word) for option, value in {**options, "guard": 20, "vehicles": VEHICLES}.items()
+              for word in ("--" + option, value)] for options in (flight, calls))
+    return [m.build + "/testbench/sim/icesoc-sim", *next(words), "--", "/usr/bin/python3",
+            m.source + "/tests/e2e/mission/fleet_ground.py", *next(words)]
 
 
 def fleet(start, name, moment, deaths):
-    """Nothing is lost, doubled, or another vehicle's, and who is not concerned notices nothing."""
+    """Nothing is lost, doubled, or another vehicle's, and who is not concerned notices nothing. A
+    ground with the first one's address and key has all vehicles until it ends, and then the first
+    one has them again."""
     trouble, least, most = TROUBLE[name]
-    begin = 2 + moment  # all have sessions
+    begin = 4 + moment  # all have sessions
     end = begin + least + (most - least) * moment / LAST
     m = start(words=lambda m: fleet_words(m, name, begin, end))
     expect(m.wait(5 * LONGEST) == 0, m, "a vehicle does not answer at the end, or it hangs")
     told = json.loads(Path(m.out, "fleet.json").read_text())
     cores = re.search("vision cores were started ([0-9, ]+) times", m.text())[1].split(", ")
-    away, gone_ = int(trouble[-1]) if trouble.startswith("away") else None, least > 9
+    away, isLong = int(trouble[-1]) if trouble.startswith("away") else None, least > 9
     for address in range(1, VEHICLES + 1):
         t, ran = told[str(address)], int(cores[address - 1])
         expect(not t["wrong"], m, f"vehicle {address}: the result is of another picture")
         expect(t["answered"] <= ran <= t["started"], m, f"vehicle {address}: {t}, and {ran} frames")
-        expect(bool(t["reported"]) == (gone_ and address == away), m, f"vehicle {address}: {t}")
+        expect(bool(t["reported"]) == (isLong and away in (None, address)), m,
+               f"vehicle {address}: {t}")
     seen = {at for at, second in told["seen"] if away != 0 or begin <= second < end}
     expect(seen == set(range(1, VEHICLES + 1)), m, f"the other ground saw only {seen}")
+    sessions = m.text().count("link up, secure")
+    expect(trouble or sessions == 3 * VEHICLES, m, f"{sessions} sessions: the grounds go on vying")
     return "%d calls, %d of them reported" % tuple(
         sum(count) for count in zip(*((t["started"], len(t["reported"]))
                                       for at, t in told.items() if at != "seen")))
@@ -336,9 +336,8 @@ def fleet(start, name, moment, deaths):
 FAULTS = [(killed, n) for n in ("ground", "simulator", "run", "page")] + \
          [(killed_early, n) for n in ("page", "page's trial")] + \
          [(stopped, n) for n in ("ground", "simulator", "page")] + \
-         [(f, "") for f in (disk_full, no_descriptors, no_memory, clock_step, port_taken,
-                             air("0.9"), air("1"))] + \
-         [(fleet, n) for n in TROUBLE]
+         [(f, "") for f in (disk_full, no_descriptors, no_memory, clock_step, port_taken)] + \
+         [(loss, n) for n in ("0.9", "1")] + [(fleet, n) for n in TROUBLE]
 
 
 def undergo(args, fault, name, seed, number, moment):
@@ -368,9 +367,8 @@ def undergo(args, fault, name, seed, number, moment):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("source")
-    parser.add_argument("build")
-    parser.add_argument("out")
+    for name in "source", "build", "out":
+        parser.add_argument(name)
     parser.add_argument("--seed", type=int, default=1, help="the first")
     parser.add_argument("--seeds", type=int, default=1, help="how many")
     parser.add_argument("--moments", type=int, default=1, help="of each fault and seed")

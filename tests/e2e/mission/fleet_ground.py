@@ -1,11 +1,13 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """fleet_ground: calls the vision cores of several vehicles again and again, and from a second
-ground their states, until a simulated time; then each has to answer once more.
+ground their states, until a simulated time; then each has to answer once more. One call to all
+vehicles starts the first frame of each.
 
 OUT/fleet.json tells for each how many frames were started, answered and reported, and what the
 second ground saw when. With --new-key a vehicle is given its next key first, and has to have it
-alone at the end."""
+alone at the end. With --rival the second ground comes then, and has the first one's address and
+key."""
 
 import argparse
 import json
@@ -32,7 +34,7 @@ class Caller(threading.Thread):
     def __init__(self, ground, address):
         super().__init__(daemon=True)
         self.ground, self.address = ground, address
-        self.started = self.answered = self.wrong = 0
+        self.started, self.answered, self.wrong = 1, 0, 0  # the call to all started one
         self.reported, self.failure = [], None
         args = ground.args
         out = subprocess.run([args.reference, f"{args.out}/before{address if address > 1 else ''}"
@@ -49,6 +51,9 @@ class Caller(threading.Thread):
         self.started += 1
         engine.startProcessing()
         self.answered += 1
+        self.take(engine)
+
+    def take(self, engine):
         result = engine.getResult()
         best = [[f.x, f.y, f.score] for f in result.best]
         self.wrong += [result.found, best] != [self.want["found"], self.want["best"]]
@@ -57,6 +62,7 @@ class Caller(threading.Thread):
         """Calls until the flight's end; then, 20 times at most, until an answer comes."""
         import Autopilot  # made by loadSlice
         engine = self.proxy(Autopilot.HwProcessingEnginePrx, "hwengine1")
+        self.take(engine)
         late = 0
         while True:
             due = self.ground.seconds() + REST
@@ -111,10 +117,14 @@ class Ground:
         import Autopilot
         os.environ["XBEEAT_CLOCK"] = self.args.status + "2"
         observer = self.communicator(self.args.device2, self.args.key2)
+        source = 0x0000 if self.args.rival else 0x00f0
+        while self.seconds() < self.args.rival:
+            time.sleep(0.01)
         while self.seconds() < self.args.until:
             for address in range(1, self.args.vehicles + 1):
                 vehicle = Autopilot.VehiclePrx.uncheckedCast(observer.stringToProxy(
-                    f"uav:xbee-at -d {self.args.device2} -a 0x{address:04x} -s 0x00f0 -t 120000"))
+                    f"uav:xbee-at -d {self.args.device2} -a 0x{address:04x} -s {source} "
+                    "-t 120000"))
                 try:
                     vehicle.getFlightState()
                     self.seen.append((address, self.seconds()))
@@ -122,7 +132,22 @@ class Ground:
                     time.sleep(0.01)
         observer.destroy()
 
+    def call_all(self):
+        """Starts a frame in each vehicle, once each has a session. They are on the air when their
+        communicator has ended."""
+        import Autopilot
+        for address in range(1, self.args.vehicles + 1):
+            self.pilot.stringToProxy(
+                f"uav:xbee-at -d {self.args.device} -a 0x{address:04x} -t 120000").ice_ping()
+        ic = self.communicator(self.args.device, self.args.key)
+        engines = Autopilot.HwProcessingEnginePrx.uncheckedCast(ic.stringToProxy(
+            f"hwengine1 -o:xbee-at -d {self.args.device} -a 0xFFFF"))
+        engines.setParameterA(THRESHOLD)
+        engines.startProcessing()
+        ic.destroy()
+
     def fly(self):
+        self.call_all()
         callers = [Caller(self, address) for address in range(1, self.args.vehicles + 1)]
         while not any(caller.answered for caller in callers) and any(
                 caller.is_alive() for caller in callers):
@@ -145,6 +170,7 @@ def main():
     parser.add_argument("--vehicles", type=int, required=True)
     parser.add_argument("--guard", type=int, required=True)
     parser.add_argument("--until", type=float, required=True, help="simulated seconds")
+    parser.add_argument("--rival", type=float, default=0, help="simulated seconds")
     parser.add_argument("--changed", type=int, default=0, help="address of a vehicle that gets")
     parser.add_argument("--new-key", default="", help="this key, the next one of the file")
     args = parser.parse_args()

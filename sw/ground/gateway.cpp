@@ -26,64 +26,53 @@ bool isMaintenance(const Ice::Identity& id) {
     return id.category.empty() && (id.name == "keys" || id.name == "update");
 }
 
-// ToVehicle serves the clients' calls: every object of the vehicle.
-class ToVehicle : public Ice::BlobjectArrayAsync {
+using Take = std::function<void(std::shared_ptr<Request>)>;
+
+// Servant is every object of an adapter.
+class Servant : public Ice::BlobjectArrayAsync {
 public:
-    ToVehicle(Forwarder& forwarder, const Rights& rights, bool allowsMaintenance)
-        : forwarder_(forwarder), rights_(rights), allowsMaintenance_(allowsMaintenance) {}
+    explicit Servant(Take take) : take_(std::move(take)) {}
     void ice_invokeAsync(Parameters in, Response response, Failure failed,
                          const Ice::Current& current) override {
+        take_(std::make_shared<Request>(in, std::move(response), std::move(failed), current));
+    }
+
+private:
+    const Take take_;
+};
+
+// The clients' calls go to the vehicle, if they may.
+Take toVehicle(Forwarder& forwarder, const Rights& rights, bool allowsMaintenance) {
+    return [&forwarder, &rights, allowsMaintenance](std::shared_ptr<Request> request) {
+        const Ice::Current& current = request->current;
         const std::string identity = Ice::identityToString(current.id);
-        if (isMaintenance(current.id) && !allowsMaintenance_)
-            return refuse(failed, "'" + identity +
-                                      "' is for maintenance: it is reached at the endpoint that "
-                                      "--maintenance gives");
         const std::string subject = subjectOf(current.con);
-        if (!rights_.permit(subject, identity, current.operation))
-            return refuse(failed, "'" + subject + "' has no right to call " + current.operation +
-                                      " of '" + identity + "'");
-        forwarder_.take(
-            std::make_shared<Request>(in, std::move(response), std::move(failed), current));
-    }
-
-private:
-    static void refuse(const Failure& failed, const std::string& why) {
-        failed(std::make_exception_ptr(
+        std::string why;
+        if (isMaintenance(current.id) && !allowsMaintenance)
+            why = "'" + identity +
+                  "' is for maintenance: it is reached at the endpoint that "
+                  "--maintenance gives";
+        else if (!rights.permit(subject, identity, current.operation))
+            why = "'" + subject + "' has no right to call " + current.operation + " of '" +
+                  identity + "'";
+        if (why.empty())
+            return forwarder.take(std::move(request));
+        request->failed(std::make_exception_ptr(
             Ice::UnknownException(__FILE__, __LINE__, "icesoc-gateway: " + why)));
-    }
-    Forwarder& forwarder_;
-    const Rights& rights_;
-    const bool allowsMaintenance_;
-};
+    };
+}
 
-// ToClients serves the vehicle's calls on the connection of the clients.
-class ToClients : public Ice::BlobjectArrayAsync {
-public:
-    explicit ToClients(Forwarder& forwarder) : forwarder_(forwarder) {}
-    void ice_invokeAsync(Parameters in, Response response, Failure failed,
-                         const Ice::Current& current) override {
-        forwarder_.takeCallback(
-            std::make_shared<Request>(in, std::move(response), std::move(failed), current));
-    }
-
-private:
-    Forwarder& forwarder_;
-};
-
-// ToStation serves the vehicle's calls on its own connection.
-class ToStation : public Ice::BlobjectArrayAsync {
-public:
-    // `events`: they go there, not to `station`, if a topic is given.
-    ToStation(std::shared_ptr<Ice::ObjectPrx> station, std::string where, const Events* events)
-        : station_(std::move(station)), where_(std::move(where)), events_(events) {}
-    void ice_invokeAsync(Parameters in, Response response, Failure failed,
-                         const Ice::Current& current) override {
-        if (events_)
-            return events_->pass(Request(in, response, failed, current), response, failed);
-        if (!station_)
+// The vehicle's calls on its own connection go to the station at `where`, or to a topic.
+Take toStation(const std::shared_ptr<Ice::ObjectPrx>& station, const std::string& where,
+               const Events* events) {
+    return [station, where, events](const std::shared_ptr<Request>& request) {
+        if (events)
+            return events->pass(*request, request->response, request->failed);
+        const Ice::Current& current = request->current;
+        if (!station)
             throw Ice::ObjectNotExistException(__FILE__, __LINE__, current.id, current.facet,
                                                current.operation);
-        const auto complain = [failed, where = where_](std::exception_ptr why) {
+        request->sendTo(station, request->response, [request, where](std::exception_ptr why) {
             try {
                 std::rethrow_exception(why);
             } catch (const Ice::SocketException& e) {
@@ -91,16 +80,10 @@ public:
                                  e.what() + "\n";
             } catch (...) {
             }
-            failed(why);
-        };
-        Request(in, response, failed, current).sendTo(station_, response, complain);
-    }
-
-private:
-    const std::shared_ptr<Ice::ObjectPrx> station_;
-    const std::string where_;
-    const Events* const events_;
-};
+            request->failed(why);
+        });
+    };
+}
 
 // Returns the port of an adapter's first endpoint. Throws if one of them lets other machines call
 // in the clear.
@@ -141,10 +124,10 @@ std::shared_ptr<Ice::ObjectPrx> publisherOf(const std::shared_ptr<Ice::Communica
 
 std::shared_ptr<Ice::ObjectAdapter> adapterOf(const std::shared_ptr<Ice::Communicator>& ic,
                                               const std::string& name, const std::string& endpoints,
-                                              const std::shared_ptr<Ice::Object>& servant) {
+                                              Take take) {
     const auto made = endpoints.empty() ? ic->createObjectAdapter(name)
                                         : ic->createObjectAdapterWithEndpoints(name, endpoints);
-    made->addDefaultServant(servant, "");
+    made->addDefaultServant(std::make_shared<Servant>(std::move(take)), "");
     return made;
 }
 
@@ -158,12 +141,11 @@ public:
         : forwarder(ic->stringToProxy("any:" + radioEndpoint(o, address)),
                     std::chrono::seconds(o.wait)),
           events(name, publisher),
-          registration(
-              name, forwarder, events,
-              [=, &o, &rights] {
-                  const auto servant = std::make_shared<ToVehicle>(forwarder, rights, false);
-                  return adapterOf(ic, named("Clients"), endpointsOf(o.listen, place), servant);
-              }),
+          registration(name, forwarder, events,
+                       [=, &o, &rights] {
+                           return adapterOf(ic, named("Clients"), endpointsOf(o.listen, place),
+                                            toVehicle(forwarder, rights, false));
+                       }),
           place_(place) {
         const auto opened = registration.open();
         const int port = checkedPort(opened);
@@ -174,14 +156,16 @@ public:
         if (!o.maintenance.empty())
             adapters_.push_back(adapterOf(ic, named("Maintenance"),
                                           endpointsOf(o.maintenance, place),
-                                          std::make_shared<ToVehicle>(forwarder, rights, true)));
+                                          toVehicle(forwarder, rights, true)));
         const int maintenance = o.maintenance.empty() ? 0 : checkedPort(adapters_.back());
-        forwarder.setCallbacks(adapterOf(ic, "", "", std::make_shared<ToClients>(forwarder)));
+        forwarder.setCallbacks(adapterOf(ic, "", "", [this](std::shared_ptr<Request> request) {
+            forwarder.takeCallback(std::move(request));
+        }));
         std::shared_ptr<Ice::ObjectPrx> station;
         if (!o.station.empty())
             station = ic->stringToProxy("station:" + endpointsOf(o.station));
         adapterOf(ic, named("Radio"), radioEndpoint(o, address),
-                  std::make_shared<ToStation>(station, o.station, publisher ? &events : nullptr))
+                  toStation(station, o.station, publisher ? &events : nullptr))
             ->activate();
         const std::string what = o.vehicles.empty() ? "the UAV" : name;
         if (!ic->getDefaultLocator())
@@ -205,6 +189,15 @@ private:
     std::vector<std::shared_ptr<Ice::ObjectAdapter>> adapters_;
 };
 
+// Returns the signals to stop.
+sigset_t endings() {
+    sigset_t signals;
+    sigemptyset(&signals);
+    for (int signal : {SIGINT, SIGTERM, SIGHUP})
+        sigaddset(&signals, signal);
+    return signals;
+}
+
 // Passes requests until the signal to stop.
 void serve(const std::shared_ptr<Ice::Communicator>& ic, const Options& o) {
     const Rights rights = o.rights.empty() ? Rights() : Rights(o.rights);
@@ -223,10 +216,7 @@ void serve(const std::shared_ptr<Ice::Communicator>& ic, const Options& o) {
         }
         return trouble;
     };
-    sigset_t signals;
-    sigemptyset(&signals);
-    for (int signal : {SIGINT, SIGTERM, SIGHUP})
-        sigaddset(&signals, signal);
+    const sigset_t signals = endings();
     const timespec pause{0, Registration::lookMs * 1'000'000};
     for (std::string before; sigtimedwait(&signals, nullptr, &pause) < 0;) {
         for (Vehicle& vehicle : vehicles)
@@ -246,10 +236,7 @@ void serve(const std::shared_ptr<Ice::Communicator>& ic, const Options& o) {
 } // namespace
 
 int main(int argc, char** argv) {
-    sigset_t signals; // every thread leaves them to sigtimedwait
-    sigemptyset(&signals);
-    for (int signal : {SIGINT, SIGTERM, SIGHUP})
-        sigaddset(&signals, signal);
+    const sigset_t signals = endings(); // every thread leaves them to sigtimedwait
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
     CLI::App app{"A stock Ice server that passes requests to the UAV: Ice programs reach its "

@@ -59,22 +59,20 @@ class Caller(threading.Thread):
         self.wrong += [result.found, best] != [self.want["found"], self.want["best"]]
 
     def frames(self):
-        """Calls until the flight's end; then, 20 times at most, until an answer comes."""
+        """Calls until the flight's end; then, for 20 seconds at most, until an answer comes."""
         import Autopilot  # made by loadSlice
         engine = self.proxy(Autopilot.HwProcessingEnginePrx, "hwengine1")
         self.take(engine)
-        late = 0
         while True:
             due = self.ground.seconds() + REST
-            isLate = due >= self.ground.args.until
+            late = due - self.ground.args.until
             try:
                 self.frame(engine)
-                if isLate:
+                if late >= 0:
                     return
             except Ice.Exception as e:
                 self.reported.append(e.ice_id())
-                late += isLate
-                if late == 20:
+                if late > 20:
                     raise
             while self.ground.seconds() < due:
                 time.sleep(0.005)

@@ -72,9 +72,9 @@ def examples(values):
     """put third-party cores and two of one's own through the recipe, in three orders, test them and
     call them by radio
 
-    Wishbone, Avalon-MM, AXI4-Lite, AXI-Stream and plain buses, in Verilog and VHDL. Downloads them
-    from Debian's mirror and GitHub, and leaves out what it cannot reach. The status is 77 if that
-    is every third-party core."""
+    Wishbone, Avalon-MM, AXI4-Lite, AXI-Stream and plain buses, in Verilog, SystemVerilog (in a chip
+    without a netlist) and VHDL. Downloads them from Debian's mirror and GitHub, and leaves out what
+    it cannot reach. The status is 77 if that is every third-party core."""
     listed = json.loads(Path("examples/foreign/cores.json").read_text())
     known = {name for source in listed.values() for name in source["cores"]}
     if unknown := set(values.cores) - known:
@@ -101,6 +101,9 @@ def examples(values):
         status = run(["examples/foreign/orders.sh", names, *(where for _, where in cores.values())],
                      check=False, env={
                          "IMAGE": values.image, "JOBS": values.jobs, "SEED": values.seed,
-                         "ORDERS": "listed" if values.cores else "backwards shuffled listed",
-                         "CHIP": "1" if values.chip else ""}) or status
+                         "ORDERS": "backwards shuffled listed" if len(cores) > 1
+                                   and not values.cores else "listed",
+                         "CHIP": "1" if values.chip and all(
+                             core.get("netlist", True) for core, _ in cores.values()) else ""
+                     }) or status
     return status or missing

@@ -457,17 +457,23 @@ void Peer::refuse() {
     waiting_.clear();
 }
 
-// Gives a packet to the link. While another ground has the vehicle the link gets none, for it would
-// call: only the vehicle's own call, which says that it has no session any more.
+// Gives bytes to the link, which come as the line brings them. While another ground has the vehicle
+// the link gets none, for it would call: only the vehicle's own call, at the beginning of a packet,
+// which says that it has no session any more.
 void Peer::receive(const U8* bytes, size_t size, U32 now) {
     if (!hasLink())
         return;
+    if (now - heardAt_ >= LINK_FRAME_GAP)
+        headSize_ = 0;
     heardAt_ = now;
     if (isTaken_) {
-        if (size < LINK_HEADER || LINK_KIND_OF(bytes) != LINK_KIND_HELLO ||
-            bytes[1] != LINK_VERSION)
+        for (; size && headSize_ < LINK_HEADER; --size)
+            head_[headSize_++] = *bytes++;
+        if (headSize_ < LINK_HEADER || LINK_KIND_OF(head_) != LINK_KIND_HELLO ||
+            head_[1] != LINK_VERSION)
             return;
         seekAgain(now);
+        Link_receive(link_.get(), head_, LINK_HEADER, now);
     }
     const Link_Statistics& s = *Link_statistics(link_.get());
     const U32 frames = s.framesReceived, skipped = s.bytesSkipped;
@@ -484,6 +490,8 @@ void Peer::standBy(U32 now) {
         Link_stop(link_.get(), now);
         isTaken_ = true;
         heardAt_ = takenAt_ = now;
+        headSize_ = LINK_HEADER; // of a packet under way, which is no call
+        head_[0] = 0;
         log(0,
             "another ground with this one's address has the vehicle now: this one waits until it "
             "calls; who wants it sooner starts this one again");

@@ -137,6 +137,8 @@ private:
     bool isLost_ = false;     // the own session ended meanwhile,
     bool isTaken_ = false;    // and another ground has the vehicle
     U32 heardAt_ = 0, takenAt_ = 0;
+    U8 head_[LINK_HEADER]; // of the packet under way, while isTaken_
+    U32 headSize_ = 0;
     Stream streams_[LINK_CHANNELS];
     std::deque<U32> late_[LINK_CHANNELS]; // when each message of the link's will be late
     std::deque<Waiting> waiting_;

@@ -328,7 +328,7 @@ def fleet(start, name, moment, deaths):
     expect(seen == set(range(1, VEHICLES + 1)), m, f"the other ground saw only {seen}")
     sessions = m.text().count("link up, secure")
     expect(trouble or sessions == 3 * VEHICLES, m, f"{sessions} sessions: the grounds go on vying")
-    return "%d calls, %d of them reported" % tuple(
+    return "%d frames started, %d calls reported" % tuple(
         sum(count) for count in zip(*((t["started"], len(t["reported"]))
                                       for at, t in told.items() if at != "seen")))
 

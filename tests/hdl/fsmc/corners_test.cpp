@@ -9,19 +9,6 @@
 
 namespace {
 
-// A corner. With late synchronisers (tests cdc.*) the address comes no later than NOE, and NWE's
-// way into the chip is as long at each edge: the lateness, a whole clock, stands for all delays of
-// the two (docs/fsmc.md).
-FsmcCorner cornerOf(unsigned index) {
-    FsmcCorner corner = fsmcCorners[index];
-    if (std::getenv("CDC_SEED")) {
-        corner.address = {0, 0};
-        corner.padIn.most = corner.padIn.least;
-        corner.clockIn.least = corner.clockIn.most;
-    }
-    return corner;
-}
-
 // Runs each case in a bench of its own, with its name in every message.
 template <class Case> void inEveryCorner(double stall, Case&& run) {
     for (unsigned corner = 0; corner < std::size(fsmcCorners); ++corner)

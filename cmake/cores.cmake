@@ -120,11 +120,16 @@ macro(icesoc_core_test)
                         ${CMAKE_SOURCE_DIR}/hdl/system ${CMAKE_SOURCE_DIR}/hdl/cdc
                         ${CMAKE_CURRENT_SOURCE_DIR})
     endif()
+    set(state ${CMAKE_CURRENT_BINARY_DIR}/verilated_${name}_slot/V${name}_slot)
+    add_custom_command(OUTPUT ${state}_state.h
+      COMMAND awk -v top=${top}__DOT__ -v class=V${name}_slot___024root -f ${STATE_MEMBERS}
+        ${state}___024root.h > ${state}_state.h
+      DEPENDS ${STATE_MEMBERS} ${state}___024root.h VERBATIM)
     set(labels rtl)
     if(A_VHDL)
       list(APPEND labels vhdl)
     endif()
-    icesoc_test(test_ip_${name} SOURCES ${name}_test.cpp
+    icesoc_test(test_ip_${name} SOURCES ${name}_test.cpp ${state}_state.h
       LIBS ${libs} ${name}_slot bench fsmc hw_core icec LABELS ${labels})
     if(A_CLK_HZ)
       set(clock CORE_CLK_HZ=100000000)

@@ -241,6 +241,9 @@ function(icesoc_verilate name)
   target_link_libraries(${name} INTERFACE ${lib} verilator_runtime)
 endfunction()
 
+# Lists the signals in a Verilated model's state.
+set(STATE_MEMBERS ${CMAKE_SOURCE_DIR}/testbench/common/state_members.awk)
+
 # icesoc_netlist(NAME DESIGN design [PARAMS NAME=value...] [DEPENDS target...] [TOP module SOURCES
 #                file... INCLUDES dir... FLAGS ... CLASS class]): the Verilated model, as above, of the netlist that the
 # figures of a design of `make synth` are of, or of one with other parameters, with what each of its
@@ -254,7 +257,10 @@ function(icesoc_netlist name)
   set(here ${CMAKE_SOURCE_DIR})
   set(netlist ${CMAKE_CURRENT_BINARY_DIR}/netlist_${name}/${A_DESIGN}.v)
   file(GLOB rtl CONFIGURE_DEPENDS ${here}/bus/*.v ${here}/hdl/*.v ${here}/hdl/*/*.v
-       ${here}/synth/tool/*.py ${here}/synth/*/*.v ${here}/synth/*/*.ys)
+       ${here}/synth/*/*.v ${here}/synth/*/*.ys)
+  foreach(part netlist runner sources)
+    list(APPEND rtl ${here}/synth/tool/${part}.py)
+  endforeach()
   get_property(made GLOBAL PROPERTY ICESOC_REGMAP_TARGETS)
   add_custom_command(OUTPUT ${netlist}
     COMMAND ${CMAKE_BINARY_DIR}/synth/utilisation --source ${here} --generated ${GEN_DIR}

@@ -212,6 +212,7 @@ def test(name, first):
 #include "V{name}_slot.h"
 #include "V{name}_slot___024root.h"
 #include "registers_apart.h"
+#include "V{name}_slot_state.h" // names of the model's signals
 extern "C" {{
 #include "{name}_regs.h"
 }}

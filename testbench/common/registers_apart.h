@@ -4,14 +4,20 @@
 // as far as they can be written. It finds a lost write, and an address whose words are taken for
 // bytes or bytes for words: then neighbours are one register. A core with fewer registers than
 // addresses repeats them at a distance. A note names each register and says whether it was read
-// back (tests/ctest.py prints notes). Another tells of a core that moves while nobody calls it.
+// back (tests/ctest.py prints notes). Another tells of a core that moves while nobody calls it, and
+// by which signals.
 
 #pragma once
 
 #include "core_slot.h"
+#include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <iostream>
+#include <map>
+#include <string>
+#include <utility>
 #include <vector>
 extern "C" {
 #include "hw_registers.h"
@@ -25,26 +31,55 @@ template <class Module> bool saysIdle(Module&, long) {
     return false;
 }
 
+// A signal in a model's state, by its path in the slot; V<core>_slot_state.h, made by
+// state_members.awk, says those of a core.
+struct StateMember {
+    template <class Root, class T>
+    StateMember(const Root& root, const T& member, const char* name)
+        : offset(reinterpret_cast<const char*>(&member) - reinterpret_cast<const char*>(&root)),
+          size(sizeof member), path(name) {}
+    std::ptrdiff_t offset;
+    size_t size;
+    const char* path;
+};
+template <class Root> std::vector<StateMember> stateOf(const Root&) {
+    return {};
+}
+
 // A flight passes clocks at once in which nothing but its own counters moves (docs/simulation.md).
 // The generated test includes the header of the model's state.
 template <class Module> void noteWhetherItRests(Bench<Module>& bench) {
-    constexpr unsigned settling = 64, clocks = 1000;
+    constexpr unsigned settling = 64, clocks = 1000, named = 3;
     const auto& state = *bench.top().rootp;
+    const auto* now = reinterpret_cast<const unsigned char*>(&state);
+    const std::vector<StateMember> members = stateOf(state);
+    std::map<std::string, unsigned> movers; // by the clocks in which they moved
     for (unsigned i = 0; i < settling; ++i)
         bench.tick();
     unsigned moved = 0;
     for (unsigned i = 0; i < clocks; ++i) {
-        std::vector<unsigned char> before(sizeof state);
-        std::memcpy(before.data(), &state, sizeof state);
+        const std::vector<unsigned char> before(now, now + sizeof state);
         bench.tick();
-        moved += std::memcmp(before.data(), &state, sizeof state) != 0;
+        moved += std::memcmp(before.data(), now, sizeof state) != 0;
+        for (const StateMember& m : members)
+            if (std::memcmp(before.data() + m.offset, now + m.offset, m.size) != 0)
+                ++movers[m.path];
     }
-    if (moved > clocks / 10 && !saysIdle(bench.top(), 0))
-        std::cout << "note: it does not rest: it moves in " << moved << " of " << clocks
-                  << " clocks in which nobody calls it, so that a flight evaluates each clock, 5 "
-                  << "million a second, and not 600. If it may stand still then, let its slot say "
-                  << "so by idle_o (docs/hw-mapping.md#idle); else make run CLK_HZ=2000000 is "
-                  << "quicker\n";
+    if (moved <= clocks / 10 || saysIdle(bench.top(), 0))
+        return;
+    std::vector<std::pair<unsigned, std::string>> most;
+    for (const auto& [path, times] : movers)
+        most.emplace_back(clocks - times, path); // the first moves most often
+    std::sort(most.begin(), most.end());
+    std::string which;
+    for (size_t i = 0; i < most.size() && i < named; ++i)
+        which += (i ? ", " : " (most often ") + most[i].second;
+    which += most.size() > named ? ", ...)" : most.empty() ? "" : ")";
+    std::cout << "note: it does not rest: it moves in " << moved << " of " << clocks
+              << " clocks in which nobody calls it" << which
+              << ", so that a flight evaluates each clock, 5 million a second, and not 600. If it "
+              << "may stand still then, let its slot say so by idle_o "
+              << "(docs/hw-mapping.md#idle); else make run CLK_HZ=2000000 is quicker\n";
 }
 
 template <class Module, size_t N>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // quiet_span: compares the chip's state over a clock, and adds skipped clocks to its counters. The
-// members of Verilator's class are found in a table made from its header (soc_members.awk).
+// members of Verilator's class are found in a table made from its header (state_members.awk).
 
 #include "quiet_span.h"
 #include "VSoc.h"

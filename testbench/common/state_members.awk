@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: MIT
+#
+# state_members: lists signals in the header of a Verilated model's state, those whose names begin
+# with `top`, a line each: MEMBER(name, "path"). With `class`, that of the state, they stand in the
+# function stateOf (registers_apart.h).
+# Random values that it reads beyond an array's end, and the scratch of writes there, are no state.
+
+BEGIN {
+    if (class) {
+        print "inline std::vector<StateMember> stateOf(const " class "& root) {\n    return {"
+        print "#define MEMBER(name, path) {root, root.name, path},"
+    }
+}
+END {
+    if (class)
+        print "#undef MEMBER\n    };\n}"
+}
+/__DOT____V/ && class { next } # Verilator's own copies
+/__DOT____V(xrand|lvbound)/ { next }
+/;$/ && match($0, "[ ]" top "[A-Za-z0-9_]*;$") {
+    name = substr($0, RSTART + 1, RLENGTH - 2)
+    path = substr(name, length(top) + 1)
+    gsub(/__DOT__/, ".", path)
+    gsub(/__BRA__/, "[", path)
+    gsub(/__KET__/, "]", path)
+    printf "MEMBER(%s, \"%s\")\n", name, path
+}

@@ -57,10 +57,22 @@ class Test:
         more = rest if kind in ("formal", "lint", "wave") else ""
         return set(re.findall("[A-Za-z0-9]+", f"{self.place}/{kind}/{more}"))
 
+    def _may_begin(self, pattern):
+        """Whether a name that begins with the program's can match, where the pattern says by `^`
+        and letters how it begins."""
+        for some in re.findall(r"(?:\([^()]*\)|[^|()])+", pattern):
+            begins = re.match(r"\^(?:\(([\w|]+)\)(?![?*{])|((?:\w(?![?*{]))+))", some)
+            if not begins or any(word.startswith(self.program) or self.program.startswith(word)
+                                 for word in (begins[1] or begins[2]).split("|")):
+                return True
+        return False
+
     def may_hold(self, name, sources):
         """Whether a case of a program that is not built may match `name`, a regular expression, by
         the texts of its sources. Of cases for several values or types the words of `name` stand in
         these. Suites and cases begin with capitals."""
+        if not self._may_begin(name.pattern):
+            return False
         text = re.sub("//.*", "", "\n".join(sources))
         cases = re.findall(r"(?m)^ *(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)", text)
         if any(name.search(f"{self.program}.{suite}.{case}") for suite, case in cases):

@@ -73,7 +73,9 @@ class Cases(Script):
     def test_files(self):
         """The list of a model's Verilog files is enough to elaborate its top, and the list of C
         and C++ compilations is there."""
-        for files in BUILD.glob("files/*.f"):
+        lists = list(BUILD.glob("files/*.f"))
+        self.assertTrue(lists, "no model is built")
+        for files in lists:
             self.has("^// top: ", file=files)
             top = files.read_text().partition("// top: ")[2].split()[0]
             self.ask("verilator", "--lint-only", "--no-timing", "-Wno-lint", "-Wno-style",

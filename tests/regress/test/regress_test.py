@@ -194,6 +194,7 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
             ("--name 'soon\\.'", "test_soon"),
             ("--name 'script\\.after'", "tool"),  # by what goes before it
             ("--name One", "test_radio test_soon"),  # whose cases nobody knows
+            ("--name '^One|^(script|docs).says'", "other tools"),  # a name does not begin so
             ("--name '^test_tame.*Eat'", "test_tame"),
             ("--label 'rtl|radio'", "test_radio")):
             self.needs(words, programs)

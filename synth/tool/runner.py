@@ -8,6 +8,7 @@ that is judged, the median of all orders; "clocks" are those of all orders, risi
 """
 import concurrent.futures
 import dataclasses
+import functools
 import json
 import os
 import pathlib
@@ -25,7 +26,9 @@ import timing
 from sources import Design
 from tool import Stop, digest, run as command, write
 
-TOOL = digest(file.read_text() for file in sorted(pathlib.Path(__file__).parent.glob("*.py")))
+# What figures of a netlist follow from.
+TOOL = digest(pathlib.Path(module.__file__).read_text() for module in (
+    nets, netlist, owners, slices, timing, sys.modules[__name__]))
 
 
 @dataclasses.dataclass
@@ -54,6 +57,7 @@ class Options:
     luts: dict = dataclasses.field(default_factory=dict)  # of designs, as far as they are known
 
 
+@functools.cache
 def version_of(yosys):
     return command([yosys, "-V"])[1].partition("\n")[0]
 
@@ -107,7 +111,10 @@ def yosys_by(script, output, options):
             errors.append("SystemVerilog that this Yosys does not read: tests and flights have it "
                           "as it is; a netlist needs what sv2v makes of it (docs/recipes.md)")
         raise Stop("\n".join([*errors, f"whole log: {log}"]))
-    part.replace(output)
+    if output.exists() and output.read_bytes() == part.read_bytes():
+        part.unlink()  # what is made of it stays
+    else:
+        part.replace(output)
 
 
 def synthesise(run, library, options):

@@ -113,7 +113,7 @@ class Library:
                 (current.instances if current else outside)["::" + t[i - 1]] = [t[i - 1]]
             elif current and token == "`include":
                 current.includes.add(t[i + 1])
-            elif current and is_name(token):
+            elif current and t[i + 2] == "(" and is_name(token):
                 k = i + 1  # TYPE [#(...)] NAME (
                 if t[k] == "#" and t[k + 1] == "(":
                     k = closing(t, k + 1)

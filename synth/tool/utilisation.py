@@ -152,9 +152,9 @@ def run(o, libraries):
             design.orders = 0  # they are there for the median of clocks
         runs = synthesise(plan, library, options, o) if o.design else []
         return tell_cores(library, options, o, accepted, runs)
-    tree = tree_state(o.source, STATE_OF)
     yosys = runner.version_of(o.yosys)
-    with concurrent.futures.ThreadPoolExecutor() as pool:  # Git tells the past meanwhile
+    with concurrent.futures.ThreadPoolExecutor() as pool:  # Git tells state and past meanwhile
+        tree = pool.submit(tree_state, o.source, STATE_OF)
         past = pool.submit(baseline.history, o.source)
         rows = rows_of(plan, synthesise(plan, library, options, o), library, accepted, yosys)
     r = Report(plan, library, rows, accepted, yosys, past.result(),
@@ -165,7 +165,7 @@ def run(o, libraries):
     r.cores = cores_of(rows, library, options, o)
     report.show(r)
     write_reports(r, o, libraries)
-    write(o.output / "tree", f"{tree}\n")
+    write(o.output / "tree", f"{tree.result()}\n")
     return 1 if r.failures else 0
 
 

@@ -8,6 +8,7 @@ Usage: report_test.py case utilisation-program work-folder kept-folder
 """
 import contextlib
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -348,6 +349,12 @@ class Cases(Script):
         self.assertEqual(list(Path("out/cache").glob("*.miter*")), [], "proven again")
         file, = Path("out/cache").glob("whole.xc6s.????????????????.json")
         good = file.read_text()
+        # A netlist for a simulator that comes out as it was stays, and what is made of it.
+        for age in 100, None:
+            self.run_program("--netlist", "whole", "--to", "out/sim/whole.v")
+            if age:
+                os.utime("out/sim/whole.v", (age, age))
+        self.assertEqual(Path("out/sim/whole.v").stat().st_mtime, 100)
 
         def differs(fault):
             netlist = json.loads(good)

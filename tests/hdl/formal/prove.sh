@@ -162,9 +162,10 @@ step() {
     abc "read_blif step.blif; strash; write_cnf step.cnf" step.log
     limited cadical -q step.cnf >step.log 2>&1
 }
-# bounded clocks: does an assertion fail within them?
+# bounded clocks [seconds]: does an assertion fail within them, as far as these seconds lead?
 bounded() {
-    abc "read_aiger assert.aig; fold; strash; bmc3 -F $1; write_cex -a assert.aiw" bounded.log
+    abc "read_aiger assert.aig; fold; strash; bmc3 -F $1 ${2:+-T $2};
+        write_cex -a assert.aiw" bounded.log
     all='Explored all reachable states'
     grep -q "output failed\|output asserted\|was asserted\|$all" bounded.log || {
         cat bounded.log
@@ -173,7 +174,7 @@ bounded() {
     }
     grep -q "No output failed\|No output asserted\|$all" bounded.log ||
         failed bounded.log "an assertion fails within $1 clocks"
-    echo "$module: bounded, $1 clocks"
+    [ -n "${2:-}" ] || echo "$module: bounded, $1 clocks"
 }
 latches() { head -1 "$1" | cut -d' ' -f4; }
 
@@ -203,6 +204,7 @@ else
         }
     fi
     if [ -z "$carried" ]; then
+        bounded "$depth" 5 # what fails within seconds here may take pdr minutes
         # sat: scorr alone may find the output constant; newer versions of abc then have nothing to
         # prove
         abc "read_aiger assert.aig; fold; strash; scorr -F 2; pdr ${PROVE_PDR:-};

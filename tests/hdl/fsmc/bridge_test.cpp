@@ -89,7 +89,7 @@ TEST_F(Bridge, ADoorbellMakesWritesVisibleAndReadsFresh) {
 }
 
 // The read begins one HCLK after NWE's edge, sooner than the driver's BUSTURN allows. Where the
-// write's synchroniser is late and the read's is not (cdc.test_fsmc_bridge), it still sees the
+// write's synchroniser is late and the read's is not (cdc.test_fsmc_pins), it still sees the
 // written value.
 TEST_F(Bridge, ARegisterReadRightBehindAWriteComesAfterIt) {
     Random random(testSeed());

@@ -14,7 +14,7 @@ template <class Case> void inEveryCorner(double stall, Case&& run) {
     for (unsigned corner = 0; corner < std::size(fsmcCorners); ++corner)
         for (unsigned hclk : {60u, 100u, 120u})
             for (bool looksTwice : {false, true}) {
-                const FsmcCorner delays = cornerOf(corner);
+                const FsmcCorner delays = cornerOf(corner, hclk);
                 SCOPED_TRACE(std::string(delays.name) + ", HCLK " + std::to_string(hclk) +
                              " MHz, looks " +
                              (looksTwice ? "twice, pauses between writes" : "once") +

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+//
+// reader: a flip-flop that sees a pin, or a register of another clock, past hdl/cdc. For Yosys, the
+// map to it (CMakeLists.txt).
+//
+// Each bit that has moved since the clock's falling edge is taken old or new, by itself
+// (cdc_random.vh). Benches move synchronous inputs before that edge, pins after it.
+
+`default_nettype none
+
+`ifdef VERILATOR
+module reader #(
+    parameter             WIDTH   = 1,
+    parameter [WIDTH-1:0] INITIAL = 0
+) (
+    input  wire             clk_i,
+    input  wire [WIDTH-1:0] bits_i,
+    output reg  [WIDTH-1:0] bits_o
+);
+    localparam TOGETHER = 0;
+    `include "cdc_random.vh"
+    reg [WIDTH-1:0] early;
+    initial bits_o = INITIAL;
+    always @(negedge clk_i)
+        early <= bits_i;
+    always @(posedge clk_i)
+        bits_o <= bits_i ^ late(bits_i ^ early);
+endmodule
+`else
+module \$dff (input CLK, input [WIDTH-1:0] D, output [WIDTH-1:0] Q);
+    parameter WIDTH = 1, CLK_POLARITY = 1'b1;
+    parameter [WIDTH-1:0] _TECHMAP_WIREINIT_Q_ = 0;
+    wire [WIDTH-1:0] _TECHMAP_REMOVEINIT_Q_ = ~0;
+    reader #(.WIDTH(WIDTH), .INITIAL(_TECHMAP_WIREINIT_Q_)) _TECHMAP_REPLACE_ (
+        .clk_i(CLK), .bits_i(D), .bits_o(Q));
+endmodule
+`endif

@@ -74,7 +74,7 @@ def examples(values):
 
     Wishbone, Avalon-MM, AXI4-Lite, AXI-Stream and plain buses, in Verilog, SystemVerilog (in a chip
     without a netlist) and VHDL. Downloads them from Debian's mirror and GitHub, and leaves out what
-    it cannot reach. The status is 77 if that is every third-party core."""
+    it cannot reach. The status is 77 if that is every third-party core, or one of CORES."""
     listed = json.loads(Path("examples/foreign/cores.json").read_text())
     known = {name for source in listed.values() for name in source["cores"]}
     if unknown := set(values.cores) - known:
@@ -83,7 +83,8 @@ def examples(values):
         run(["cmake/setup.sh", "--tests"])
     folder = Path("build/foreign-cores").absolute()
     missing = fetch("foreign", folder, check=False)
-    fetch("ghdl", folder / "ghdl5")
+    if not missing:
+        fetch("ghdl", folder / "ghdl5")
     shutil.rmtree(folder / "slots", ignore_errors=True)
     chips = {}  # numbers of chips: folders of cores
     for source, its in listed.items():
@@ -93,6 +94,8 @@ def examples(values):
                 continue
             chips.setdefault(core.get("chip", 1), {})[name] = core, core.get("folder") or into_slot(
                 folder / source, name, core["new"], folder / "slots", folder / "ghdl5/ghdl")
+    if set(values.cores) - {name for cores in chips.values() for name in cores}:
+        missing = missing or 77
     status = 0
     for number, cores in sorted(chips.items()):
         names = folder / f"chip{number}.list"

@@ -86,21 +86,14 @@ protected:
     // Returns the counted errors without the set-up's retries, since it may have to search the
     // rate.
     uint32_t errors() { return bus_.read(MODEM_ERRORS) & ~MODEM_ERRORS_RETRIES_MASK; }
-    // Drive the line from the modem's side to the clock, also in ways that the model, which is
-    // silent then, would not.
-    void level(bool high, unsigned clocks) {
-        noise_ = !high;
-        bench_.tick(clocks);
-    }
-    void byteIn(uint8_t byte, unsigned bitClocks, unsigned stopClocks) {
-        level(false, bitClocks);
-        for (int bit = 0; bit < 8; ++bit)
-            level(byte >> bit & 1, bitClocks);
-        level(true, stopClocks);
-    }
+    // Drives the line from the modem's side bit by bit, as the model, which is silent then, would
+    // not.
     void bytesIn(const std::vector<uint8_t>& bytes, unsigned bitClocks) {
         for (uint8_t byte : bytes)
-            byteIn(byte, bitClocks, bitClocks);
+            for (unsigned bits = byte << 1 | 0x200; bits > 0; bits >>= 1) {
+                noise_ = !(bits & 1);
+                bench_.tick(bitClocks);
+            }
     }
 
     Bench<Module> bench_;

@@ -138,7 +138,4 @@ module modem_npi (
         cover (past && !rst_i && npi_rd_pop_o && !rd_done_o);
     end
 `endif
-`ifdef COVER_POINTS
-    read_withdrawn: cover property (@(posedge clk_i) npi_rd_pop_o && !rd_done_o);
-`endif
 endmodule

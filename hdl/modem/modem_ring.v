@@ -69,11 +69,11 @@ module modem_ring (
                 assert (bytes_o == length && oldest_o == place[3:0]);
             cover (free_o == 5'd0);
             cover ($past(free_o) == 5'd0 && free_o == 5'd1 && inside);
+            cover (push_i && pop_i && inside);
         end
     end
 `endif
 `ifdef COVER_POINTS
     is_full: cover property (@(posedge clk_i) free_o == 5'd0);
-    both_at_once: cover property (@(posedge clk_i) push_i && pop_i);
 `endif
 endmodule

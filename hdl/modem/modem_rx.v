@@ -185,6 +185,7 @@ module modem_rx (
         cover (past && !rst_i && push_o && wrote == 7'd3);
         cover (past && !rst_i && overrun_o && $past(full_i));
         cover (past && !rst_i && lost && owed);
+        cover (past && !rst_i && cut && taken);
     end
 `endif
 `ifdef COVER_POINTS
@@ -195,6 +196,5 @@ module modem_rx (
     longest_packet: cover property (@(posedge clk_i) push_o && wr_index_o == 7'd100);
     ends_as_announced: cover property (@(posedge clk_i) !api_i && taken && longest && wr_index_o != 7'd99);
     ends_in_silence: cover property (@(posedge clk_i) !api_i && silent && !first && !ending);
-    ends_with_a_byte: cover property (@(posedge clk_i) cut && taken);
 `endif
 endmodule

@@ -144,6 +144,10 @@ TEST_F(ModemApi, ASpoiltFrameIsDroppedAndTheNextIsWhole) {
     runMs(10);
     EXPECT_TRUE(take().empty());
     EXPECT_GE(bus_.read(MODEM_ERRORS) >> MODEM_ERRORS_OVERRUN_LSB & 0xFF, 1u);
+    auto wrong = apiFrame(received(packet(30, 7)));
+    wrong.back() ^= 1;
+    bytesIn(wrong, bitClocks);
+    EXPECT_TRUE(take().empty());
     plain_.send(packet(30, 8), now());
     runMs(14);
     EXPECT_EQ(takePacket(), packet(30, 8));

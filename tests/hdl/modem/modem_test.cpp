@@ -69,6 +69,13 @@ TEST_F(ModemTest, AWireNeedsNoSetUp) {
     const uint64_t begin = bench_.cycles();
     bench_.waitFor([&] { return bench_.top().modem_txd_o; }, "the first bit", 100);
     EXPECT_NEAR(static_cast<double>(bench_.cycles() - begin), bitClocks, 1);
+    memory_.hold(true); // both directions wait for it
+    put(1, packet);
+    bytesIn({packet[0]}, bitClocks);
+    memory_.hold(false);
+    bytesIn({packet.begin() + 1, packet.end()}, bitClocks);
+    runMs(2);
+    EXPECT_EQ(take(), packet);
 }
 
 TEST_F(ModemTest, NoModemIsReportedWithItsStep) {

@@ -2,7 +2,6 @@
 //
 // clock_listener: adds the model's clock to a failed assertion, and prints it on an abort.
 
-#include "observed_clock.h"
 #include "tell_on_abort.h"
 #include <cstdio>
 #include <gtest/gtest.h>

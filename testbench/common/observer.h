@@ -9,8 +9,8 @@
 
 #pragma once
 
-#include "observed_clock.h"
 #include "random.h"
+#include "tell_on_abort.h"
 #include "wave_window.h"
 #include <cstdlib>
 #include <memory>

@@ -6,10 +6,14 @@
 #pragma once
 
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <functional>
 #include <map>
 #include <string>
+
+// The clock of the model that ran last, for failed assertions.
+inline uint64_t observedClock = 0;
 
 // A line of each model that is alive, by its address; a model removes its own at its end.
 inline std::map<const void*, std::function<std::string()>> tellers;

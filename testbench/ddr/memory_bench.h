@@ -5,7 +5,7 @@
 #pragma once
 
 #include "bench.h"
-#include "mcb_pins.h"
+#include "mcb_model.h"
 #include "npi_requester.h"
 #include <algorithm>
 

@@ -7,15 +7,11 @@
 
 #include "camera.h"
 #include "child.h"
-#include "events.h"
-#include "follower.h"
 #include "ground_step.h"
 #include "m3_machine.h"
 #include "recording.h"
-#include "second_ground.h"
 #include "soc_model.h"
-#include "status_file.h"
-#include "trouble.h"
+#include "vehicles.h"
 #include <chrono>
 #include <csignal>
 #include <memory>
@@ -60,7 +56,7 @@ public:
         std::string modemKey; // 32 hexadecimal digits
         std::string keyFile;  // of the link; none: the vehicle is open
         std::string observer; // the same of the second ground, where there are several vehicles
-        std::string trouble;  // of several vehicles (trouble.h)
+        std::string trouble;  // of several vehicles (vehicles.h)
         std::string image, size = "320x240", out = ".", speed = "real", cpu = "host",
                            firmware = FIRMWARE_ELF;
         uint16_t guard = 1000;

@@ -3,7 +3,7 @@
 // soc_model: the simulator's innermost loop. Slow events are looked at only when they are due.
 
 #include "soc_model.h"
-#include "mcb_pins.h"
+#include "mcb_model.h"
 #include "tell_on_abort.h"
 #include <algorithm>
 

@@ -8,12 +8,12 @@
 #pragma once
 
 #include "VSoc.h"
-#include "cable.h"
 #include "fsmc_master.h"
 #include "mcb_model.h"
 #include "observer.h"
 #include "quiet_span.h"
 #include "rf_channel.h"
+#include "serial_line.h"
 #include <algorithm>
 #include <functional>
 #include <memory>

@@ -3,7 +3,7 @@
 """make_trace: prints a trace: out to 300 m at 10 m/s, most of a minute there, and back.
 
 It is made up, not recorded: free space and Rayleigh fading of the four tries of a packet, as in
-rf_weather.h, and bursts as frequent as "bursts, long" (docs/simulation.md), drawn anew each
+rf_channel.h, and bursts as frequent as "bursts, long" (docs/simulation.md), drawn anew each
 second."""
 import math
 import random

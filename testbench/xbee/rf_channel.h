@@ -1,17 +1,150 @@
 // SPDX-License-Identifier: MIT
 //
 // rf_channel: the air between modems, half duplex and shared: carrier sense, random waits,
-// collisions, tries and acknowledgements of the MAC, and the weather (rf_weather.h), by seed.
+// collisions, tries and acknowledgements of the MAC, and the weather, by seed.
 
 #pragma once
 
 #include "random.h"
-#include "rf_weather.h"
 #include "xbee.h"
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <fstream>
 #include <functional>
 #include <list>
 #include <memory>
 #include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+// A link's record: CSV with the heading `time_s,loss,rssi_dbm,delay_ms`. A row holds from its time
+// to that of the next one; the last row stays.
+class RfTrace {
+public:
+    struct Row {
+        uint64_t ns;
+        double loss;      // share of packets that are lost after the MAC's tries
+        double rssi;      // dBm
+        uint64_t delayNs; // beyond the time on the air
+    };
+    // Reads a file; throws std::runtime_error that names file, line and fault.
+    explicit RfTrace(const std::string& path) {
+        std::ifstream file(path);
+        std::string line;
+        size_t number = 1;
+        auto fail = [&](const std::string& what) {
+            throw std::runtime_error(path + ":" + std::to_string(number) + ": " + what);
+        };
+        if (!file || !std::getline(file, line))
+            throw std::runtime_error(path + ": no such trace, or it is empty");
+        if (line != heading)
+            fail(std::string("the heading is not '") + heading + "'");
+        while (++number, std::getline(file, line)) {
+            if (line.empty() || line[0] == '#')
+                continue;
+            double time, loss, rssi, delay;
+            char more;
+            if (std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf%c", &time, &loss, &rssi, &delay,
+                            &more) != 4)
+                fail("not four numbers");
+            if (time < 0 || loss < 0 || loss > 1 || delay < 0)
+                fail("time and delay are not negative, loss is from 0 to 1");
+            uint64_t ns = static_cast<uint64_t>(time * 1e9);
+            if (!rows_.empty() && ns <= rows_.back().ns)
+                fail("time does not grow");
+            rows_.push_back({ns, loss, rssi, static_cast<uint64_t>(delay * 1e6)});
+        }
+        if (rows_.empty())
+            fail("there is no row");
+    }
+    const Row& at(uint64_t ns) const {
+        auto next = std::upper_bound(rows_.begin(), rows_.end(), ns,
+                                     [](uint64_t time, const Row& row) { return time < row.ns; });
+        return next == rows_.begin() ? *next : *std::prev(next);
+    }
+
+private:
+    static constexpr const char* heading = "time_s,loss,rssi_dbm,delay_ms";
+
+    std::vector<Row> rows_;
+};
+
+// The weather of the air; each is a probability unless it says otherwise.
+struct RfWeather {
+    // Residual loss of a packet in one direction, after the MAC's tries; costs no more air time.
+    double loss = 0;
+    double burstBegin = 0, burstEnd = 0.2, burstLoss = 0.9; // Gilbert-Elliott, per packet or 10 ms
+    double duplication = 0, corruption = 0;
+    uint64_t delayNs = 0; // beyond the time on the air
+    // The MAC itself: one try is lost, or its acknowledgement, and it tries again.
+    double tryLoss = 0, ackLoss = 0;
+    // Free space and Rayleigh fading over this many metres, each try by itself; 0: none.
+    double distance = 0;
+    // An interferer is on for this share of each of its periods: the channel is busy then, and a
+    // try that meets it is lost. A microwave oven: about half of 20 ms (50 Hz).
+    double interference = 0;
+    uint64_t interferencePeriodNs = 20'000'000;
+    // A link's record, instead of loss and delay above.
+    std::shared_ptr<const RfTrace> trace;
+    // Perfect air, for unit tests: both directions at once, no carrier sense, no collisions, and
+    // modems that need no time of their own. No radio has this air.
+    bool perfect = false;
+
+    // Losses in bursts as on flights, and tries lost as in the field; distance in the clear; an
+    // interferer. Sources: docs/simulation.md.
+    static const std::vector<std::pair<std::string, RfWeather>>& published() {
+        static const auto all = [] {
+            std::vector<std::pair<std::string, RfWeather>> list;
+            auto add = [&](const std::string& name) -> RfWeather& {
+                return list.emplace_back(name, RfWeather()).second;
+            };
+            auto bursts = [&](const char* name, double begin, double end, double inside,
+                              double outside) {
+                RfWeather& w = add(name);
+                w.burstBegin = begin, w.burstEnd = end, w.burstLoss = inside, w.loss = outside;
+            };
+            bursts("bursts, long", 0.01, 0.08, 1, 0.02);
+            bursts("bursts, mean", 0.03, 0.4, 0.95, 0.01);
+            bursts("bursts, frequent", 0.08, 0.5, 0.9, 0);
+            add("a quarter of the tries lost").tryLoss = 0.25;
+            for (unsigned metres : {100u, 200u, 300u, 400u})
+                add(std::to_string(metres) + " m, fading").distance = metres;
+            for (unsigned percent : {10u, 25u, 50u})
+                add("interferer " + std::to_string(percent) + " %").interference = percent / 100.0;
+            return list;
+        }();
+        return all;
+    }
+    // Draws one of these, independent losses below `mostLoss` percent, or none; now and then with
+    // doubled and damaged packets.
+    static RfWeather drawn(Random& random, unsigned mostLoss) {
+        RfWeather w;
+        const size_t kind = random.below(static_cast<uint32_t>(3 * published().size()));
+        if (kind < published().size())
+            w = published()[kind].second;
+        else if (kind < 2 * published().size())
+            w.loss = random.below(mostLoss) / 100.0;
+        w.duplication = random.below(2) ? 0 : 0.1;
+        w.corruption = random.below(2) ? 0 : 0.03;
+        return w;
+    }
+
+    bool interferes(uint64_t from, uint64_t to) const {
+        if (interference <= 0)
+            return false;
+        auto on = static_cast<uint64_t>(interference * static_cast<double>(interferencePeriodNs));
+        uint64_t phase = from % interferencePeriodNs;
+        return phase < on || phase + (to - from) >= interferencePeriodNs;
+    }
+    // Returns the strength in dBm of a modem of 0 dBm at `distance`.
+    double meanRssi() const {
+        constexpr double lossOfFirstMetre = 40; // dB, free space at 2.4 GHz
+        return -lossOfFirstMetre - 20 * std::log10(std::max(distance, 1.0));
+    }
+};
 
 class RfChannel {
 public:

@@ -13,7 +13,7 @@
 #include "VMemoryMcb8.h"
 #include "VMemoryMcbNetlist.h"
 #include "bench.h"
-#include "mcb_pins.h"
+#include "mcb_model.h"
 #include "memory_bench.h"
 #include "npi_requester.h"
 #include <cstring>

@@ -5,7 +5,7 @@
 
 #pragma once
 
-#include "status_file.h"
+#include "ground_step.h"
 #include <cstdlib>
 #include <string>
 #include <sys/mman.h>

@@ -311,7 +311,7 @@ def fleet(start, name, moment, deaths):
     ground with the first one's address and key has all vehicles until it ends, and then the first
     one has them again."""
     trouble, least, most = TROUBLE[name]
-    begin = 4 + moment  # all have sessions
+    begin = 7 + moment  # all have sessions, with the second ground, too
     end = begin + least + (most - least) * moment / LAST
     m = start(words=lambda m: fleet_words(m, name, begin, end))
     expect(m.wait(5 * LONGEST) == 0, m, "a vehicle does not answer at the end, or it hangs")

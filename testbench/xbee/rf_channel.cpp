@@ -10,6 +10,7 @@ namespace {
 
 constexpr uint64_t ccaNs = 128'000, turnaroundNs = 192'000, backoffUnitNs = 320'000;
 constexpr uint64_t byteNs = 32'000, ackNs = turnaroundNs + 11 * byteNs, gapNs = 640'000; // LIFS
+constexpr uint64_t ackWaitNs = 864'000; // macAckWaitDuration: 54 symbols behind the frame
 constexpr unsigned longestBackoff = 5, mostBackoffs = 4; // 802.15.4: macMaxBE, macMaxCSMABackoffs
 constexpr uint64_t roundNs = 200'000'000;                // RR: the wait for an acknowledgement
 constexpr uint32_t roundSpreadUs = 48'000;               // and at most this much more, at random
@@ -126,11 +127,14 @@ void RfChannel::begin(Flight flight, uint64_t now) {
         return;
     }
     if (!weather.perfect) {
-        onAir_.remove_if([&](auto& other) { return other->end <= now; });
+        onAir_.remove_if([&](auto& other) { // nobody acknowledges what has collided
+            return (other->collided ? other->frameEnd : other->end) <= now;
+        });
         auto mine = std::make_shared<OnAir>();
         mine->channel = flight.packet.channel;
         mine->begin = now + ccaNs + turnaroundNs;
         mine->end = end;
+        mine->frameEnd = flight.packet.acknowledged ? end - ackNs : end;
         bool busy = weather.interferes(now, now + ccaNs);
         for (auto& other : onAir_)
             busy = busy || (other->channel == mine->channel && other->begin < now + ccaNs);
@@ -138,9 +142,9 @@ void RfChannel::begin(Flight flight, uint64_t now) {
             return finish(flight, Outcome::NoClearChannel, now);
         if (busy) {
             unsigned exponent = std::min(flight.packet.backoff + flight.backoffs, longestBackoff);
-            uint64_t wait = (1 + random_.below(1u << exponent)) * backoffUnitNs;
             flight.begins = true;
-            events_.emplace(now + wait, std::move(flight));
+            events_.emplace(now + ccaNs + random_.below(1u << exponent) * backoffUnitNs,
+                            std::move(flight));
             return;
         }
         for (auto& other : onAir_)
@@ -157,9 +161,10 @@ void RfChannel::begin(Flight flight, uint64_t now) {
     events_.emplace(end + gapNs + delayNs(now), std::move(flight));
 }
 
-// The MAC's next try, or, with RR, the first of its next round.
+// The MAC's next try, whose random wait begins where that for an acknowledgement has ended, or,
+// with RR, the first of its next round.
 void RfChannel::retry(Flight flight, uint64_t now) {
-    uint64_t ready = now - delayNs(now);
+    uint64_t ready = now - delayNs(now) - (ackNs + gapNs - ackWaitNs);
     ++counters_.retries;
     if (flight.triesLeft) {
         --flight.triesLeft;

@@ -182,7 +182,7 @@ public:
 private:
     struct OnAir { // one try
         uint8_t channel;
-        uint64_t begin, end; // of the frame; of its acknowledgement
+        uint64_t begin, frameEnd, end; // of the frame; of its acknowledgement
         bool collided = false;
     };
     struct Flight {

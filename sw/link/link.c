@@ -167,18 +167,29 @@ void Link_expectAnswers(Link* link, U32 packets) {
 }
 
 /* Counts losses that took the radio no longer than other packets: then no tries failed, as they do
- * when two begin together. */
-static void note(Link_Contention* c, int isDelivered, U32 now) {
-    U32 took = now - c->answeredAt;
+ * when two begin together. A side that sends little rests after a loss, at random: twice as long
+ * after the next one, a quarter after a packet that arrives; longest where the peer is silent. */
+static void note(Link_Output* output, int isDelivered) {
+    Link_Contention* c = &output->contention;
+    U32 now = output->now, took = now - c->answeredAt;
+    U32 last = LINK_REST_LAST + 4U * (now - output->heardAt);
     c->quick -= c->quick / 128U;
-    c->answeredAt = now;
+    c->answeredAt = output->paceUntil = now;
     if (isDelivered) {
+        c->rest /= 4U;
         if (c->isBusy)
             c->usualUs += took / 16U - c->usualUs / 16U;
         return;
     }
     if (took < c->usualUs + c->usualUs / 4U)
         c->quick += 65536U / 128U;
+    c->rest = 2U * c->rest + LINK_REST_FIRST;
+    if (c->rest > last)
+        c->rest = last;
+    if (!c->own.isMuch && !c->peers.isMuch) {
+        output->paceUntil += output->port->random(output->context) % c->rest;
+        output->early = 0xFFFFFFFFU; /* a frame of the peer ends the rest */
+    }
     c->hasLost = 1;
     c->lostAt = now;
 }
@@ -192,7 +203,7 @@ void Link_answer(Link* link, int isDelivered, U32 nowUs) {
     pacer->first = (U8)((pacer->first + 1U) % LINK_MOST_WAITING);
     link = (Link*)(void*)output; /* whose first part it is */
     output->now = nowUs;
-    note(&output->contention, isDelivered, nowUs);
+    note(output, isDelivered);
     link_onAnswer(&link->sender, (U8)(output->handed - output->waiting--), isDelivered);
     output->contention.isBusy = output->waiting != 0;
 }

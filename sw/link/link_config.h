@@ -120,6 +120,11 @@
 #define LINK_SPAN_FEW 500U
 #define LINK_LOSS_COUNTS 10000000U
 
+/* Rest after a loss, of a side that sends little: at most this much at first, and at last, where
+ * four times the peer's silence is added. */
+#define LINK_REST_FIRST 8000U
+#define LINK_REST_LAST 200000U
+
 #define LINK_SILENCE 4U /* characters of silence after which the modem sends a short packet */
 
 #if LINK_TAG < 4 || LINK_TAG > 16

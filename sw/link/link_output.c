@@ -99,8 +99,8 @@ void link_hear(Link_Output* output, U32 size) {
 int link_isOpen(Link_Output* output) {
     if (output->packed && output->packed + LEAST(output) > output->longest && !link_flush(output))
         return 0;
-    if (output->mostWaiting)
-        return output->packed || output->pacer->waiting < output->mostWaiting;
+    if (output->mostWaiting && !output->packed && output->pacer->waiting >= output->mostWaiting)
+        return 0;
     return output->packed || !LINK_BEFORE(output->now + output->slack, output->paceUntil);
 }
 

@@ -62,6 +62,7 @@ typedef struct Link_Contention {
     U8 isCalled; /* by the peer, during a stream */
     U8 isBusy;   /* the radio has had a packet since its last answer, at answeredAt */
     U32 answeredAt;
+    U32 rest;    /* after the next loss, at most */
     U32 usualUs; /* mean time of a packet that arrives */
     U32 quick;   /* share of the last packets, of 65,536, lost in no more than that time */
 } Link_Contention;

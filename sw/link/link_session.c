@@ -117,7 +117,8 @@ int link_pollSession(Link_Session* session) {
             watch->askedAt = now;
         watch->pingsSent += output->codec->isSure;
         (void)link_sendControl(output, frame, LINK_KIND_BITS(LINK_KIND_PING), watch->pingsSent, 0);
-        session->pingAt = now + (silence >= LINK_PING_AFTER ? LINK_PING_EVERY : LINK_PROOF_EVERY);
+        session->pingAt = now + output->contention.rest / 16U +
+                          (silence >= LINK_PING_AFTER ? LINK_PING_EVERY : LINK_PROOF_EVERY);
     }
     return session->state == LINK_STATE_UP;
 }

@@ -151,6 +151,25 @@ TEST(LinkOverApi, WhatTheModemSaysIsLostAndNothingElseIsSentAgain) {
     EXPECT_NEAR(pair.a.statistics().fragmentsResent, lost, lost * 0.05);
 }
 
+TEST(LinkOverApi, APeerThatVanishesInMidSessionTakesLittleOfTheAir) {
+    for (bool isCalled : {false, true}) {
+        ModemPair<End> pair(RfWeather(), testSeed(), 1, true, 2u);
+        const U8 message[10] = {};
+        pair.pass(1000 * ms);
+        EXPECT_EQ(Link_send(pair.a.link(), 0, message, isCalled ? 10 : 0, 0),
+                  isCalled ? LINK_OK : LINK_TOO_LONG);
+        pair.air.carryAway(&pair.b.modem, true);
+        Link_stop(pair.b.link(), static_cast<U32>(pair.now / 1000));
+        const uint64_t before = pair.air.counters().airNs;
+        pair.pass(10'000 * ms);
+        EXPECT_FALSE(pair.a.isUp());
+        const double share = static_cast<double>(pair.air.counters().airNs - before) / 1e10;
+        std::printf("a peer that vanishes takes %.2f %% of the air\n", 100 * share);
+        EXPECT_LT(share, 0.02) << (isCalled ? "in a call" : "idle");
+        EXPECT_GT(share, 0.002) << "it is sought";
+    }
+}
+
 // Two modems in API mode, and the RN that the links have set.
 class RandomWait : public ::testing::Test {
 protected:

@@ -118,8 +118,10 @@ fi
 echo "Installing them with apt-get (a minute or two) ..."
 $sudo apt-get update -qq ||
     echo "setup: apt-get update failed: is there a network, and a mirror in /etc/apt?" >&2
+# Another apt, such as unattended upgrades, is waited for.
 # shellcheck disable=SC2086 # a list of words
 $sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
+    -o DPkg::Lock::Timeout=600 \
     $missing >/dev/null || {
     echo "setup: apt-get could not install the packages above, and says why. Then run again." >&2
     exit 1

@@ -9,7 +9,7 @@ from cli.command import command
 from cli.commands.core import NAME, REPOSITORY, put_into_repository
 from cli.flight import FIELDS
 from cli.options import BUILD, COUNT, FILES, JOBS, SEED, SWITCH, TEXT, WORDS, Option, one_of
-from cli.runner import Stop, run
+from cli.runner import Stop, lock, run
 
 
 def foreign_words(values):
@@ -62,25 +62,8 @@ def into_slot(source, slot, words, folder, ghdl):
     return folder / slot
 
 
-@command("core examples", [
-    Option("cores", WORDS, "these of examples/foreign/cores.json alone, in one order"),
-    Option("chip", SWITCH, "and what each costs in the chip"), SEED,
-    *(o for o in FIELDS if o.name == "image"), BUILD, JOBS], make="foreign",
-         brief="core examples --cores foreign_i2c foreign_arbiter foreign_queue",
-         long="core examples --chip")
-def examples(values):
-    """put third-party cores and two of one's own through the recipe, in three orders, test them and
-    call them by radio
-
-    Wishbone, Avalon-MM, AXI4-Lite, AXI-Stream and plain buses, in Verilog, SystemVerilog (in a chip
-    without a netlist) and VHDL. Downloads them from Debian's mirror and GitHub, and leaves out what
-    it cannot reach. The status is 77 if that is every third-party core, or one of CORES."""
-    listed = json.loads(Path("examples/foreign/cores.json").read_text())
-    known = {name for source in listed.values() for name in source["cores"]}
-    if unknown := set(values.cores) - known:
-        raise Stop(f"CORES: there is no '{sorted(unknown)[0]}': {' '.join(sorted(known))}", 2)
-    if not values.built:
-        run(["cmake/setup.sh", "--tests"])
+def put_and_fly(values, listed, known):
+    """Puts the chosen cores into slots, tests and flies them. Returns the status."""
     folder = Path("build/foreign-cores").absolute()
     missing = fetch("foreign", folder, check=False)
     if not missing:
@@ -110,3 +93,27 @@ def examples(values):
                              core.get("netlist", True) for core, _ in cores.values()) else ""
                      }) or status
     return status or missing
+
+
+@command("core examples", [
+    Option("cores", WORDS, "these of examples/foreign/cores.json alone, in one order"),
+    Option("chip", SWITCH, "and what each costs in the chip"), SEED,
+    *(o for o in FIELDS if o.name == "image"), BUILD, JOBS], make="foreign",
+         brief="core examples --cores foreign_i2c foreign_arbiter foreign_queue",
+         long="core examples --chip")
+def examples(values):
+    """put third-party cores and two of one's own through the recipe, in three orders, test them and
+    call them by radio
+
+    Wishbone, Avalon-MM, AXI4-Lite, AXI-Stream and plain buses, in Verilog, SystemVerilog (in a chip
+    without a netlist) and VHDL. Downloads them from Debian's mirror and GitHub, and leaves out what
+    it cannot reach. The status is 77 if that is every third-party core, or one of CORES."""
+    listed = json.loads(Path("examples/foreign/cores.json").read_text())
+    known = {name for source in listed.values() for name in source["cores"]}
+    if unknown := set(values.cores) - known:
+        raise Stop(f"CORES: there is no '{sorted(unknown)[0]}': {' '.join(sorted(known))}", 2)
+    if not values.built:
+        run(["cmake/setup.sh", "--tests"])
+    Path("build").mkdir(exist_ok=True)
+    with lock("build/foreign.lock", refuse="another one puts cores into slots in this folder"):
+        return put_and_fly(values, listed, known)

@@ -137,6 +137,7 @@ private:
             txLevel_ = levelAfter(txBit_);
         } else {
             txBit_ = 0;
+            setBitTime(wantedBitNs_);
             if (mayTalk())
                 startByte(at);
             return;

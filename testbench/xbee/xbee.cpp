@@ -310,6 +310,7 @@ bool XBee::nextToHost(uint8_t& byte) {
         return false;
     byte = output_.front();
     output_.pop_front();
+    atOldRate_ -= atOldRate_ > 0;
     ++counters_.bytesToHost;
     return true;
 }
@@ -341,6 +342,10 @@ void XBee::advance(uint64_t now) {
         leaveCommandMode();
     if (mode_ == Mode::Data)
         silence(now);
-    if (output_.empty())
-        line_.setBitTime(1e9 / baud());
+    if (baud() != nextBaud_) {
+        nextBaud_ = baud();
+        atOldRate_ = output_.size();
+    }
+    if (!atOldRate_ || output_.empty())
+        line_.setBitTime(1e9 / nextBaud_);
 }

@@ -149,6 +149,8 @@ private:
     std::deque<uint8_t> input_;  // from the host, to be sent
     size_t flushCount_ = 0;      // bytes of it that must leave now
     std::deque<uint8_t> output_; // to the host
+    double nextBaud_ = 0;        // of the line, as soon as what was held for the host has left:
+    size_t atOldRate_ = 0;       // this many bytes, the OK of the change last
     bool inFlight_ = false, cts_ = true;
     uint64_t busyUntil_ = 0;
     uint16_t sequence_ = 0;

@@ -125,7 +125,7 @@ std::string XBee::execute(const std::string& line, uint64_t now) {
     return answer;
 }
 
-// BD takes effect after the OK has left: the line's bit time changes when it is idle.
+// BD takes effect after the OK has left (XBee::advance).
 void XBee::apply() {
     active_ = pending_;
     line_.setHeedRts(active_.at("D6") == 1);

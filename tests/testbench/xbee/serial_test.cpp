@@ -137,6 +137,8 @@ protected:
     void step(uint64_t until) {
         for (; now_ < until; now_ += 200) {
             air_.advance(now_);
+            if (!crowd_.bytes.empty())
+                modem_->receive(crowd_, now_);
             modem_->advance(now_);
             watch();
         }
@@ -165,6 +167,7 @@ protected:
     bool level_ = true;
     std::vector<uint64_t> edges_;
     std::string sent_; // the last packet
+    RfPacket crowd_;   // comes all the time, unless it is empty
 };
 
 class BaudTolerance : public Wire, public ::testing::WithParamInterface<double> {};
@@ -203,6 +206,22 @@ TEST_F(Wire, RepliesHaveTheModemsRateAndBDChangesAfterTheOK) {
     send("data", 111111);
     step(now_ + 20'000'000);
     EXPECT_EQ(sent_, "data") << "and the new rate holds";
+}
+
+TEST_F(Wire, BDChangesAfterTheOKThoughMoreComesThanTheOldRateCarries) {
+    connect({{"BD", 3}, {"GT", 2}});
+    crowd_.header = true;
+    crowd_.bytes.assign(20, 'U'); // an edge a bit
+    step(now_ + 1'000'000);
+    send("+++", 9600);
+    step(now_ + 5'000'000);
+    ASSERT_TRUE(modem_->inCommandMode());
+    send("ATBD7\rATCN\r", 9600);
+    step(now_ + 250'000'000); // a full buffer takes 210 ms
+    edges_.clear();
+    step(now_ + 2'000'000);
+    ASSERT_GT(edges_.size(), 2u);
+    EXPECT_NEAR(static_cast<double>(edges_[1] - edges_[0]), 9000, 500);
 }
 
 TEST_F(Wire, OnlyWithD6TheModemWaitsForRTS) {

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: MIT
+//
+// peer_programs: what programs call of a peer, from their own threads.
+
+#include "peer.h"
+
+#include "clock.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace XBeeAT {
+
+namespace {
+
+// Small buffers, so that back-pressure reaches the caller.
+bool makePair(int ends[2]) {
+    constexpr int bytes = 4096;
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends) != 0)
+        return false;
+    for (int end : {ends[0], ends[1]})
+        setsockopt(end, SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes);
+    return true;
+}
+
+// Returns whether the program has closed its end and left no bytes to read.
+bool hasLeft(int fd) {
+    pollfd end{fd, POLLRDHUP, 0};
+    char byte;
+    return poll(&end, 1, 0) > 0 && recv(fd, &byte, 1, MSG_PEEK | MSG_DONTWAIT) <= 0;
+}
+
+} // namespace
+
+// Returns a channel for a program, `wanted` or (-1) any: a free one, else that of the program that
+// has been silent longest, if that is long enough to make room. -1 if there is none.
+int Peer::freeChannel(int wanted, U32 now) {
+    U32 longest =
+        host_.settings.idleMs ? static_cast<U32>(host_.settings.idleMs) * 1000 - 1 : 0xFFFFFFFFu;
+    int idlest = -1;
+    for (int i = 0; i < ownChannels; ++i) {
+        const int channel = wanted >= 0 ? wanted : (nextChannel_ + i) % ownChannels;
+        Stream& s = streams_[channel];
+        if (s.is(Stream::State::Wanted) && hasLeft(s.fd())) // it gave up before the link was up
+            s.close();
+        if (s.is(Stream::State::Closed)) {
+            nextChannel_ = (channel + 1) % ownChannels;
+            return channel;
+        }
+        if (s.silentUs(now) > longest) {
+            longest = s.silentUs(now);
+            idlest = channel;
+        }
+    }
+    if (idlest >= 0) {
+        streams_[idlest].sayGoodbye(now);
+        end(idlest, 1, "is idle, and another program waits");
+    }
+    return idlest;
+}
+
+// Gives waiting programs a channel, in their order. One that has left gets none.
+void Peer::placePrograms(U32 now) {
+    for (auto program = waiting_.begin(); program != waiting_.end();) {
+        const bool isGone = hasLeft(program->fd);
+        const int channel = isGone ? -1 : freeChannel(program->channel, now);
+        if (channel < 0 && !isGone) {
+            ++program;
+            continue;
+        }
+        log(1, isGone ? "a program has left before it got a channel"
+                      : "a program is connected, channel " + std::to_string(channel));
+        if (isGone)
+            ::close(program->fd);
+        else
+            streams_[channel].want(program->fd, "the program on channel " + std::to_string(channel),
+                                   program->lateUs);
+        program = waiting_.erase(program);
+    }
+}
+
+int Peer::connect(int channel, int lateMs) {
+    int ends[2];
+    std::lock_guard<std::mutex> lock(host_.mutex);
+    if (isTaken_)
+        errno = EBUSY;
+    if (isTaken_ || !makePair(ends))
+        return -1;
+    const U32 lateUs = static_cast<U32>(lateMs) < Stream::never / 1000
+                           ? static_cast<U32>(lateMs) * 1000
+                           : Stream::never;
+    waiting_.push_back({ends[0], channel, lateUs});
+    placePrograms(host_.clock.nowUs());
+    host_.wake();
+    return ends[1];
+}
+
+size_t Peer::waiting() const {
+    std::lock_guard<std::mutex> lock(host_.mutex);
+    return waiting_.size();
+}
+
+U32 Peer::mostBytes() const {
+    if (!isAll())
+        return LINK_MAX_MESSAGE;
+    std::lock_guard<std::mutex> lock(host_.mutex);
+    return broadcast_->most();
+}
+
+bool Peer::isWanted() const {
+    bool wanted = false;
+    for (const Stream& s : streams_)
+        wanted = wanted || s.is(Stream::State::Wanted);
+    return wanted;
+}
+
+int Peer::listen() {
+    std::lock_guard<std::mutex> lock(host_.mutex);
+    if (listening_)
+        return -1;
+    listening_ = true;
+    host_.wake();
+    return acceptPipe_[0];
+}
+
+int Peer::calledChannel() const {
+    char byte;
+    (void)!read(acceptPipe_[0], &byte, 1);
+    for (int channel = ownChannels; channel < LINK_CHANNELS; ++channel)
+        if (streams_[channel].is(Stream::State::Called))
+            return channel;
+    return -1;
+}
+
+int Peer::accept() {
+    std::lock_guard<std::mutex> lock(host_.mutex);
+    const int channel = calledChannel();
+    int ends[2];
+    if (channel < 0)
+        return -1;
+    if (!makePair(ends)) { // nobody answers the UAV
+        log(0, std::string("the UAV calls, and no socket can be made: ") + std::strerror(errno));
+        end(channel, 1, "is refused");
+        host_.wake();
+        return -1;
+    }
+    streams_[channel].accept(ends[0], "the program on channel " + std::to_string(channel));
+    host_.wake();
+    return ends[1];
+}
+
+void Peer::stopListening() {
+    std::lock_guard<std::mutex> lock(host_.mutex);
+    listening_ = false;
+}
+
+std::string Peer::statistics() const {
+    std::lock_guard<std::mutex> lock(host_.mutex);
+    const Link_Statistics& s = *Link_statistics(link_.get());
+    char text[320];
+    std::snprintf(
+        text, sizeof text,
+        "%s 0x%04X: %u bytes in %u frames sent (%u sent again), %u bytes in %u frames received, "
+        "%u messages out, %u in, round trip %.1f ms, %u sessions, %u bytes skipped, %u saved",
+        host_.device.c_str(), static_cast<unsigned>(address_), s.bytesSent, s.framesSent,
+        s.fragmentsResent, s.bytesReceived, s.framesReceived, s.messagesSent, s.messagesReceived,
+        s.roundTripUs / 1000.0, s.sessions, s.bytesSkipped, s.headBytesSaved);
+    return text;
+}
+
+} // namespace XBeeAT

@@ -234,8 +234,8 @@ class Cases(Project):
         self.has(f"{archive} is not the file that was tested")
         # One block's tests need its programs, and no more.
         self.ask(BUILD / "tests/regress/regress", "--build", BUILD, "--prepare", "--list",
-                 "--block", "hdl/ddr")
-        self.has("^(tests/hdl/)?test_memory$")
+                 "--block", "fir")
+        self.has("^(ip/fir/)?test_ip_fir$")
         self.assertLess(self.said.count("\n"), 20)
         # Programs that `make test` runs with sanitizers: one without the label would be missed.
         for program in "test_os_cases", "test_link", "test_engine", "test_icec":

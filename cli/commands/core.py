@@ -314,6 +314,7 @@ def remove(values):
     listed = Path("ip/cores.list")
     listed.write_text(re.sub(rf"^[ \t]*{name}(?![^\s#]).*\n?", "", listed.read_text(), flags=re.M))
     if (build / "build.ninja").exists():
+        (build / f"files/{name}_slot.f").unlink(missing_ok=True)
         others = ";".join(str(folder) for folder in others if folder != core)
         logged(["cmake", f"-DCORE_FOLDERS={others}", build.folder], build / "rm-ip.log",
                "the build cannot be configured without it")

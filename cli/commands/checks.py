@@ -107,7 +107,7 @@ def fuzz(values):
     BLOCK,
     Option("draw", COUNT,
            "mutants that Yosys draws, for each proof, in place of those of tests/mutants"), SEED,
-    FRESH, BUILD, JOBS], make="mutants", brief="check mutants --block bus/axi_late_response",
+    FRESH, BUILD, JOBS], make="mutants", brief="check mutants --block bus/decoder_error_of_all",
          long=("check mutants", "check mutants --draw 8 --seed {day}"), examples=[
              "check mutants --block bus", "check mutants --draw 20"])
 def mutants(values):

@@ -245,9 +245,9 @@ endfunction()
 set(STATE_MEMBERS ${CMAKE_SOURCE_DIR}/testbench/common/state_members.awk)
 
 # icesoc_netlist(NAME DESIGN design [PARAMS NAME=value...] [DEPENDS target...] [TOP module SOURCES
-#                file... INCLUDES dir... FLAGS ... CLASS class]): the Verilated model, as above, of the netlist that the
-# figures of a design of `make synth` are of, or of one with other parameters, with what each of its
-# primitives does; or of a module around it.
+#                file... INCLUDES dir...] [FLAGS ...] [CLASS class]): the Verilated model, as above,
+# of the netlist that the figures of a design of `make synth` are of, or of one with other
+# parameters, with what each of its primitives does; or of a module around it.
 function(icesoc_netlist name)
   cmake_parse_arguments(A "" "DESIGN;TOP;CLASS" "PARAMS;DEPENDS;SOURCES;INCLUDES;FLAGS" ${ARGN})
   if(NOT A_TOP)

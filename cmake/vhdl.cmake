@@ -10,8 +10,9 @@ add_custom_command(OUTPUT ${GHDL}
 add_custom_target(ghdl DEPENDS ${GHDL})
 
 # icesoc_vhdl(NAME entity SOURCES file... [REGS block...] [LIBRARY name] [GENERICS name=value...]
-# [FOREIGN]): ${GEN_DIR}/<entity>.v, target <entity>_verilog. The files come in any order. GHDL names them as it
-# gets them: relative to the tree, so that copies of it elsewhere get the same Verilog.
+#             [FOREIGN]): ${GEN_DIR}/<entity>.v, target <entity>_verilog. The files come in any
+# order. GHDL names them as it gets them: relative to the tree, so that copies of it elsewhere get
+# the same Verilog.
 function(icesoc_vhdl)
   cmake_parse_arguments(A "FOREIGN" "NAME;LIBRARY" "SOURCES;REGS;GENERICS" ${ARGN})
   list(TRANSFORM A_GENERICS PREPEND -g)

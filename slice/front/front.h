@@ -24,7 +24,7 @@
 #include <string>
 #include <vector>
 
-// What #include, #define and #if make of a file, by libmcpp.
+// The text that libmcpp makes of a file with its #include, #define and #if.
 struct Preprocessed {
     bool ok = false;
     std::string text;                  // with #line markers and comments

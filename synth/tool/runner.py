@@ -26,7 +26,7 @@ import timing
 from sources import Design
 from tool import Stop, digest, run as command, write
 
-# What figures of a netlist follow from.
+# A netlist's figures follow from these.
 TOOL = digest(pathlib.Path(module.__file__).read_text() for module in (
     nets, netlist, owners, slices, timing, sys.modules[__name__]))
 

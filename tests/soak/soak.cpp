@@ -96,7 +96,7 @@ private:
         guest.awayUntil = isHere ? 0 : never;
         guest.modem.power(isHere, now_);
     }
-    // What the rival has under way when it leaves is unknown.
+    // Nobody knows what became of the messages that the rival has under way when it leaves.
     void visitOfRival(bool isHere) {
         if (!rival_)
             return;

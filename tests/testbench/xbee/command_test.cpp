@@ -15,7 +15,7 @@ protected:
     }
 };
 
-// What `a` is sent, each with the milliseconds until the next; what becomes of it.
+// A sequence: what `a` is sent, each with the milliseconds until the next, and what becomes of it.
 struct Sequence {
     const char* name;
     std::map<std::string, uint32_t> set;

@@ -125,6 +125,7 @@ void checkKeys(const std::vector<std::string>& metadata, const std::vector<std::
 
 std::string snakeCase(const std::string& name);
 std::string upperCase(std::string text);
+std::string hexDigits(unsigned value, unsigned digits);
 
 // ---- words: the part that knows the types ----
 

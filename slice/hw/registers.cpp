@@ -6,159 +6,111 @@
 #include "hw/generator.h"
 #include "text/doc_comment.h"
 #include <algorithm>
-#include <cstdio>
+#include <nlohmann/json.hpp>
 
 namespace hw {
 namespace {
 
-// Quotes a string for JSON; its text may also stand in a comment of C.
-std::string quoted(const std::string& text) {
-    std::string s = "\"";
-    for (size_t i = 0; i < text.size(); ++i) {
-        char c = text[i];
-        if (c == '"' || c == '\\')
-            s += '\\';
-        s += static_cast<unsigned char>(c) < 32 ? ' ' : c;
-        if (c == '*' && i + 1 < text.size() && text[i + 1] == '/')
-            s += ' ';
-    }
-    return s + '"';
-}
+using json = nlohmann::ordered_json;
 
-std::string hex(unsigned value) {
-    char text[16];
-    std::snprintf(text, sizeof text, "0x%04X", value);
-    return text;
-}
-
+// A doc comment's first line, in which nothing ends a comment of C.
 std::string firstLine(const std::string& doc, const std::string& otherwise) {
     auto lines = docLines(doc);
     return lines.empty() ? otherwise : lines.front();
 }
 
-struct Bits {
-    std::string name, doc;
-    unsigned lsb, width;
-};
+json field(const std::string& name, unsigned lsb, unsigned width, const std::string& doc) {
+    return {{"name", name}, {"lsb", lsb}, {"width", width}, {"doc", doc}};
+}
 
-struct Register {
-    unsigned number;
-    std::string name, access, doc;
-    std::vector<Bits> fields;
-};
+json registerOf(const Block& b, unsigned number, const std::string& name, const char* access,
+                const char* doc, const json& fields) {
+    json r = {{"word", number % slotWords}};
+    if (b.isPaged(number))
+        r["page"] = number / slotWords * 32;
+    r.update({{"name", name}, {"access", access}, {"doc", doc}, {"fields", fields}});
+    return r;
+}
 
-std::vector<Register> registers(const Block& b) {
-    std::vector<Register> list;
-    Register act{control, "CONTROL", "ws", "1 in an operation's bit: it begins", {}};
-    Register state{status, "STATUS", "ro", "of operations that take time", {}};
+json fieldsOf(const Word& word) {
+    json fields = json::array();
+    for (const Piece& p : word.pieces) {
+        std::string half = p.portWidth <= 32 ? "" : p.portLsb ? "_HIGH" : "_LOW", doc = p.name;
+        if (p.isCode)
+            doc = "0: none; else which exception";
+        if (p.isCount)
+            doc = "elements, at most " + std::to_string(p.most) + ", in the buffer at byte " +
+                  std::to_string(p.offset);
+        fields.push_back(field(upperCase(p.name) + half, p.lsb, p.width, doc));
+    }
+    return fields;
+}
+
+json registers(const Block& b) {
+    json act = json::array(), busy = json::array(), refused = json::array(), list = json::array();
+    std::string reset = "RESET"; // unless an operation has that name
     for (const Call& c : b.calls) {
         std::string name = upperCase(c.name);
         std::string what = (c.isEvent ? "the event was taken: " : "begins ") + c.operation->name;
-        act.fields.push_back(
-            {name, c.isEvent ? what : firstLine(c.operation->doc, what), c.bit, 1});
+        act.push_back(field(name, c.bit, 1, c.isEvent ? what : firstLine(c.operation->doc, what)));
         if (c.isLong)
-            state.fields.push_back({name + "_BUSY", "has begun, and is not done", c.bit, 1});
+            busy.push_back(field(name + "_BUSY", c.bit, 1, "has begun, and is not done"));
+        if (c.isLong)
+            refused.push_back(
+                field(name + "_REFUSED", refusedLsb + c.bit, 1, "the core refused the last call"));
     }
-    for (const Call& c : b.calls)
-        if (c.isLong)
-            state.fields.push_back({upperCase(c.name) + "_REFUSED",
-                                    "the core refused the last call", refusedLsb + c.bit, 1});
-    std::string reset = "RESET"; // unless an operation has that name
-    while (std::any_of(act.fields.begin(), act.fields.end(),
-                       [&](const Bits& f) { return f.name == reset; }))
+    while (std::any_of(act.begin(), act.end(), [&](const json& f) { return f["name"] == reset; }))
         reset = "CORE_" + reset;
-    act.fields.push_back({reset, "the core, and what is under way", resetBit, 1});
-    list.push_back(act);
+    act.push_back(field(reset, resetBit, 1, "the core, and what is under way"));
+    busy.insert(busy.end(), refused.begin(), refused.end());
+    auto add = [&](unsigned number, const std::string& name, const char* access, const char* doc,
+                   const json& fields) {
+        list.push_back(registerOf(b, number, name, access, doc, fields));
+    };
+    add(control, "CONTROL", "ws", "1 in an operation's bit: it begins", act);
     if (b.hasLong())
-        list.push_back(state);
+        add(status, "STATUS", "ro", "of operations that take time", busy);
     if (b.pageBits)
-        list.push_back({page,
-                        "PAGE",
-                        "rw",
-                        "which words 8..15 are",
-                        {{"ADDRESS", "a multiple of 32", 0, pageLsb + b.pageBits}}});
+        add(page, "PAGE", "rw", "which words 8..15 are",
+            json::array({field("ADDRESS", 0, pageLsb + b.pageBits, "a multiple of 32")}));
+    unsigned lsb = b.memoryLsb();
     if (b.memoryWord)
-        list.push_back(
-            {b.memoryWord,
-             "MEMORY",
-             "rw",
-             "where the buffers are in DDR3",
-             {{"ADDRESS", "byte address from bit " + std::to_string(b.memoryLsb()) + " on", 0,
-               32 - b.memoryLsb()}}});
-    for (const Word* w : b.words()) {
-        Register r{
-            w->number, w->name, w->isOut ? "ro" : "rw", w->isOut ? "results" : "parameters", {}};
-        for (const Piece& p : w->pieces) {
-            if (p.isCount || p.isCode) {
-                r.fields.push_back({upperCase(p.name),
-                                    p.isCode
-                                        ? "0: none; else which exception"
-                                        : "elements, at most " + std::to_string(p.most) +
-                                              ", in the buffer at byte " + std::to_string(p.offset),
-                                    p.lsb, p.width});
-                continue;
-            }
-            std::string half = p.portWidth <= 32 ? "" : p.portLsb ? "_HIGH" : "_LOW";
-            r.fields.push_back({upperCase(p.name) + half, p.name, p.lsb, p.width});
-        }
-        list.push_back(r);
-    }
+        add(b.memoryWord, "MEMORY", "rw", "where the buffers are in DDR3",
+            json::array({field("ADDRESS", 0, 32 - lsb,
+                               "byte address from bit " + std::to_string(lsb) + " on")}));
+    for (const Word* w : b.words())
+        add(w->number, w->name, w->isOut ? "ro" : "rw", w->isOut ? "results" : "parameters",
+            fieldsOf(*w));
     return list;
+}
+
+json eventsOf(const Block& b) {
+    json events = json::array();
+    for (const Call& c : b.calls)
+        if (c.isEvent || c.isLong)
+            events.push_back(
+                {{"name", upperCase(c.name) + (c.isEvent ? "" : "_DONE")},
+                 {"bit", c.bit},
+                 {"doc", c.isEvent ? firstLine(c.operation->doc, "event " + c.operation->name)
+                                   : c.operation->name + " is done, or refused"}});
+    return events;
 }
 
 } // namespace
 
 GeneratedFile registersFile(const Block& b) {
-    Writer w;
-    w.line("{");
-    w.line("  \"block\": \"" + b.name + "\",");
-    w.line("  \"doc\": " +
-           quoted(firstLine(b.interface->doc, "Registers of " + b.interface->id() + ".")) + ",");
-    w.line("  \"type\": \"" + hex(b.type) + "\",");
-    w.line("  \"version\": \"" + hex(b.version) + "\",");
-    if (b.memoryBytes) {
-        w.line("  \"memory_port\": true,");
-        w.line("  \"memory_bytes\": " + std::to_string(b.memoryBytes) + ",");
-    }
-    std::string pins;
+    json file = {{"block", b.name},
+                 {"doc", firstLine(b.interface->doc, "Registers of " + b.interface->id() + ".")},
+                 {"type", "0x" + hexDigits(b.type, 4)},
+                 {"version", "0x" + hexDigits(b.version, 4)}};
+    if (b.memoryBytes)
+        file.update({{"memory_port", true}, {"memory_bytes", b.memoryBytes}});
     for (const Pin& p : b.pins)
-        pins += (pins.empty() ? "" : ", ") +
-                ("{\"name\": \"" + p.name + "\", \"width\": " + std::to_string(p.width) + "}");
-    if (!pins.empty())
-        w.line("  \"pins\": [" + pins + "],");
-    w.line("  \"servant\": {\"type\": \"" + cName(*b.interface) + "_Core\", \"header\": \"" +
-           b.name + "_servant.h\"},");
-    w.line("  \"registers\": [");
-    auto list = registers(b);
-    for (const Register& r : list) {
-        std::string behind = b.isPaged(r.number)
-                                 ? "\"page\": " + std::to_string(r.number / slotWords * 32) + ", "
-                                 : "";
-        w.line("    {\"word\": " + std::to_string(r.number % slotWords) + ", " + behind +
-               "\"name\": \"" + r.name + "\", \"access\": \"" + r.access +
-               "\", \"doc\": " + quoted(r.doc) + ", \"fields\": [");
-        for (const Bits& f : r.fields)
-            w.line("      {\"name\": \"" + f.name + "\", \"lsb\": " + std::to_string(f.lsb) +
-                   ", \"width\": " + std::to_string(f.width) + ", \"doc\": " + quoted(f.doc) + "}" +
-                   (&f == &r.fields.back() ? "]}" : ",") +
-                   (&f == &r.fields.back() && &r != &list.back() ? "," : ""));
-    }
-    w.line("  ],");
-    w.line("  \"events\": [");
-    std::vector<std::string> events;
-    for (const Call& c : b.calls)
-        if (c.isEvent || c.isLong) {
-            std::string name = upperCase(c.name) + (c.isEvent ? "" : "_DONE"),
-                        doc = c.isEvent ? firstLine(c.operation->doc, "event " + c.operation->name)
-                                        : c.operation->name + " is done, or refused";
-            events.push_back("    {\"name\": \"" + name + "\", \"bit\": " + std::to_string(c.bit) +
-                             ", \"doc\": " + quoted(doc) + "}");
-        }
-    for (const std::string& e : events)
-        w.line(e + (&e == &events.back() ? "" : ","));
-    w.line("  ]");
-    w.line("}");
-    return {b.name + ".regs.json", w.text()};
+        file["pins"].push_back({{"name", p.name}, {"width", p.width}});
+    file["servant"] = {{"type", coreType(b)}, {"header", b.name + "_servant.h"}};
+    file["registers"] = registers(b);
+    file["events"] = eventsOf(b);
+    return {b.name + ".regs.json", file.dump(1, ' ', false, json::error_handler_t::replace) + "\n"};
 }
 
 } // namespace hw

@@ -3,16 +3,13 @@
 // verilog: the wrapper over bus_registers: from words to ports with the interface's names.
 
 #include "hw/generator.h"
-#include <cstdio>
 #include <map>
 
 namespace hw {
 namespace {
 
 std::string mask(unsigned bits) {
-    char text[16];
-    std::snprintf(text, sizeof text, "16'h%04X", bits);
-    return text;
+    return "16'h" + hexDigits(bits, 4);
 }
 
 std::string slice(const std::string& vector, unsigned lsb, unsigned width) {
@@ -65,17 +62,15 @@ void registers(Writer& w, const Block& b, unsigned first) {
     std::string widths;
     for (unsigned n = slotWords; n-- > 0;)
         widths += "6'd" + std::to_string(widthOf.count(n) ? widthOf[n] : 32) + (n ? ", " : "");
-    char id[16];
-    std::snprintf(id, sizeof id, "32'h%08X", first ? 0 : b.type << 16 | b.version);
+    std::string id = "32'h" + hexDigits(first ? 0 : b.type << 16 | b.version, 8);
     unsigned events = !first && b.events() ? b.events() : 1;
     std::string n = std::to_string(first / slotWords);
     auto bus = [&](const std::string& name, const std::string& ofPage) {
         return "." + name + "(" + (b.pageBits ? ofPage : name) + ")";
     };
     w.line("    bus_registers #(");
-    w.line("        .ID_VALUE(" + std::string(id) + "), .EVENTS(" + std::to_string(events) +
-           "), .RW(" + mask(rw) + "), .RO(" + mask(ro) + "), .WS(" +
-           mask(first ? 0 : 1u << control) + "),");
+    w.line("        .ID_VALUE(" + id + "), .EVENTS(" + std::to_string(events) + "), .RW(" +
+           mask(rw) + "), .RO(" + mask(ro) + "), .WS(" + mask(first ? 0 : 1u << control) + "),");
     w.line("        .WIDTHS({" + widths + "})");
     w.line("    ) u_registers" + suffix(first) + " (");
     w.line("        .clk_i(clk_i), .rst_i(rst_i),");

@@ -6,7 +6,6 @@
 #include "front/symbols.h"
 #include "hw/generator.h"
 #include <algorithm>
-#include <cstdio>
 
 namespace hw {
 namespace {
@@ -71,9 +70,7 @@ std::string addressed(const Block& b) {
 }
 
 std::string hex(unsigned value) {
-    char text[16];
-    std::snprintf(text, sizeof text, "X\"%08X\"", value);
-    return text;
+    return "X\"" + hexDigits(value, 8) + '"';
 }
 
 // The port of a piece, or the piece's bits of the port.

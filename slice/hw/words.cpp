@@ -124,6 +124,13 @@ std::string upperCase(std::string text) {
     return text;
 }
 
+std::string hexDigits(unsigned value, unsigned digits) {
+    std::string text;
+    while (digits-- > 0)
+        text += "0123456789ABCDEF"[value >> 4 * digits & 15];
+    return text;
+}
+
 bool isMappable(const Type& t) {
     if (t.kind == Kind::Named && t.declaration->kind == DKind::Struct)
         return std::all_of(t.declaration->fields.begin(), t.declaration->fields.end(),

@@ -54,7 +54,15 @@ hardware)
     "$slice2c" "$ice" --output-dir "$work/c" $hardware
     # The registers are a contract; test_slice_hardware runs wrappers, servants and proxies,
     # test_ip_sample new cores.
-    has_lines "$out"/*.regs.json
+    python3 - "$out"/*.regs.json >"$work/registers" <<'PYTHON' # a line for each thing
+import json, sys
+for path in sys.argv[1:]:
+    for key, value in json.load(open(path)).items():
+        for one in value if key in ("registers", "events") else [{key: value}]:
+            fields = one.pop("fields", [])
+            print(*map(json.dumps, [one, *fields]), sep="\n")
+PYTHON
+    has_lines "$work/registers"
     folders="-y $source/bus -y $source/hdl/ddr -y $out"
     for file in "$out"/*.v; do
         module=$(basename "$file" .v)

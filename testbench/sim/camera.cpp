@@ -52,6 +52,12 @@ Frame loadFrame(const std::string& path, int width, int height) {
     return frame;
 }
 
+Frame movedBy(Frame frame, int columns) {
+    for (auto row = frame.pixels.begin(); row != frame.pixels.end(); row += frame.width)
+        std::rotate(row, row + columns, row + frame.width);
+    return frame;
+}
+
 void savePng(const std::string& path, const Frame& frame) {
     const std::string beside = path + ".new";
     std::ofstream file(beside, std::ios::binary);

@@ -5,7 +5,6 @@
 #include "flight.h"
 #include "core_pins.h"
 #include "files.h"
-#include "key_file.h"
 #include "map_regs.h"
 #include "uav_machine.h"
 #ifdef MAP_SLOT_VISION
@@ -20,6 +19,7 @@ extern "C" {
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <fmt/format.h>
 #include <fstream>
 #include <iostream>
 #include <unistd.h>
@@ -41,18 +41,21 @@ Frame pictureFor(const Flight::Options& o) {
     return loadFrame(o.image, width, height);
 }
 
-// Returns the picture from another place: its columns moved to the left, round its end.
-Frame movedBy(Frame frame, int columns) {
-    for (auto row = frame.pixels.begin(); row != frame.pixels.end(); row += frame.width)
-        std::rotate(row, row + columns, row + frame.width);
-    return frame;
-}
-
-// The counters' file, in a folder that has the picture.
+// Returns the folder of the flight's files, which has the picture.
 std::string prepared(const Flight::Options& o, const Frame& frame) {
     std::filesystem::create_directories(o.out);
     savePng(o.out + "/before.png", frame);
-    return o.out + "/status";
+    return o.out;
+}
+
+RfWeather weatherOf(const Flight::Options& o) {
+    RfWeather weather;
+    weather.loss = o.loss;
+    weather.interference = o.interference;
+    weather.distance = o.distance;
+    if (!o.trace.empty())
+        weather.trace = std::make_shared<RfTrace>(o.trace);
+    return weather;
 }
 
 XBee::Options modem(const char* name, uint16_t guard) {
@@ -70,41 +73,14 @@ void loadCamera(SocModel& soc, const Frame& frame) {
     std::memcpy(memory + UAV_FRAME, frame.pixels.data(), frame.pixels.size());
 }
 
-// Returns a vehicle's key in a file, if any; with a next key on its way, the old one.
-std::vector<uint8_t> keyOf(const std::string& file, int address) {
-    if (file.empty())
-        return {};
-    const XBeeAT::LinkKey key = XBeeAT::KeyFile(file).of(address).back();
-    return {key.begin(), key.end()};
-}
-
-// Returns the key of calls to all vehicles; none: the file has no line for it.
-std::vector<uint8_t> groupKeyOf(const std::string& file) {
-    try {
-        return keyOf(file, XBeeAT::everybody);
-    } catch (const std::exception&) {
-        return {};
-    }
-}
-
-// Whom a vehicle serves besides the first ground, and under which key: of four and more vehicles
-// the first two each other, all others the second ground.
-std::pair<uint32_t, std::vector<uint8_t>> secondOf(const Flight::Options& o, unsigned vehicle) {
-    const bool isPaired = o.vehicles > 3 && vehicle < 3;
-    return {isPaired ? UAV_FELLOW | (3 - vehicle) : SecondGround::address,
-            keyOf(o.observer, isPaired ? 1 : static_cast<int>(vehicle))};
-}
-
-// The first line of the recording; empty in a replay.
-std::unique_ptr<RecordedLine> record(const Flight::Options& o, SerialLine& line) {
-    if (o.replayed)
-        return nullptr;
+// Returns the first line of the recording.
+nlohmann::json headOf(const Flight::Options& o) {
     nlohmann::json head = {{"flight", o.flight}, {"clkHz", SocModel::clkHz}};
     for (const std::string& file :
-         {o.pins, o.trace, o.flash, o.fpgaFlash, o.cpu == "m3" ? o.firmware : ""})
+         {o.pins, o.trace, o.flash, o.fpga_flash, o.cpu == "m3" ? o.firmware : ""})
         if (!file.empty())
             head["hashes"][std::filesystem::absolute(file)] = hexHash(readFile(file));
-    return std::make_unique<RecordedLine>(line, o.out + "/flight.jsonl", head);
+    return head;
 }
 
 std::vector<uint8_t> keyBytes(const std::string& digits) {
@@ -123,49 +99,28 @@ std::vector<uint8_t> flashOf(const std::string& file, size_t size, const std::st
     return {bytes.begin(), bytes.end()};
 }
 
-// Prints what the processor did, and what stopped it, if anything did.
-void reportProcessor(M3Machine& machine) {
-    CortexM3& cpu = machine.cpu();
-    const Stm32F2::Resets& resets = machine.stm32().resets();
-    double cycles = std::max(1.0, static_cast<double>(cpu.cycles()));
-    std::printf("icesoc-sim: Cortex-M3: %llu instructions; asleep %.1f %% of the time, %.2f %% in "
-                "bus accesses; "
-                "resets: %u software, %u watchdog\n",
-                static_cast<unsigned long long>(cpu.instructions()),
-                100 * static_cast<double>(cpu.sleepingCycles()) / cycles,
-                100 * static_cast<double>(cpu.busCycles()) / cycles, resets.software,
-                resets.watchdog);
-    if (!cpu.lastFault.empty())
-        std::printf("icesoc-sim: last fault: %s in %s\n", cpu.lastFault.c_str(),
-                    machine.stm32().image()->functionAt(cpu.reg(CortexM3::Pc)).c_str());
-}
-
 } // namespace
 
 Flight::Flight(const Options& options)
-    : o_(options), frame_(pictureFor(o_)), key_(keyOf(o_.keyFile, 1)),
-      status_(prepared(o_, frame_)), air_(o_.seed), recorded_(record(o_, pty_)),
-      ground_(groundLine(), air_, modem("ground", o_.guard)), soc_(air_, modem("uav", o_.guard)),
-      step_(*status_, pty_, [this] { return isWanted(); }), events_(o_.out + "/events.jsonl"),
+    : o_(options), frame_(pictureFor(o_)), key_(keyOf(o_.key, 1)), weather_(weatherOf(o_)),
+      air_(o_.seed), ground_(air_, modem("ground", o_.guard), prepared(o_, frame_), "", o_.replayed,
+                             headOf(o_), [this] { return isWanted(); }),
+      soc_(air_, modem("uav", o_.guard)), events_(o_.out + "/events.jsonl"),
       pace_(o_.speed == "real"  ? 1
             : o_.speed == "max" ? 0
                                 : std::stod(o_.speed)) {
-    air_.weather = o_.weather;
+    air_.weather = weather_;
     uav_guardMs = o_.guard;
     connectModels();
     if (!o_.pins.empty())
         connectPins(soc_, o_.pins, o_.out + "/pins.log");
     placePicture(soc_, frame_);
     callFollowers();
-    if (o_.everyClock)
+    if (o_.every_clock)
         soc_.ungate();
-    soc_.evaluateAll(o_.everyClock);
+    soc_.evaluateAll(o_.every_clock);
     soc_.reset(true);
     watchRegisters();
-}
-
-SerialLine& Flight::groundLine() {
-    return recorded_ ? static_cast<SerialLine&>(*recorded_) : *o_.replayed;
 }
 
 void Flight::connectModels() {
@@ -173,33 +128,29 @@ void Flight::connectModels() {
     if (o_.wire) {
         uav_wire = 1;
         cable_ = std::make_unique<Cable>(
-            soc_.line(), groundLine(), bitNs, [this](const SerialLine& from) {
-                ++(&from == &soc_.line() ? status_->bytesDown : status_->bytesUp);
+            soc_.line(), ground_.line(), bitNs, [this](const SerialLine& from) {
+                ++(&from == &soc_.line() ? ground_.status->bytesDown : ground_.status->bytesUp);
             });
         soc_.plugIn(*cable_);
     }
     soc_.onTime([this](uint64_t now) {
-        if (!o_.wire)
-            ground_.advance(now);
-        status_.set(now); // the ground's clock
-        step_.wait(now);
-        return std::min({o_.wire ? never : ground_.nextEvent(),
-                         second_ ? second_->advance(now) : never,
-                         trouble_ ? trouble_->advance(now) : never,
-                         std::max(step_.nextEvent(), now + 1), now + clockStepNs});
+        const uint64_t next = ground_.advance(now, o_.wire);
+        return std::min({next, second_ ? second_->advance(now) : never,
+                         trouble_ ? trouble_->advance(now) : never, now + clockStepNs});
     });
     air_.onPacket([this](uint64_t now, const RfPacket& packet, RfChannel::Outcome outcome) {
         const bool isGrounds = packet.from == 0;
-        (isGrounds ? status_->bytesUp : status_->bytesDown) += packet.bytes.size();
-        ++status_->packets;
+        SimStatus& status = *ground_.status;
+        (isGrounds ? status.bytesUp : status.bytesDown) += packet.bytes.size();
+        ++status.packets;
         const bool lost = outcome != RfChannel::Outcome::Delivered;
-        status_->lost += lost;
+        status.lost += lost;
         events_.packet(now, packet.bytes.size(), isGrounds, lost);
     });
 }
 
 void Flight::placePicture(SocModel& soc, const Frame& frame) {
-    if (o_.sensor)
+    if (o_.camera)
         connectSensor(soc, frame, [&soc, next = uint64_t(0)]() mutable {
             const bool sends = soc.cycles() >= next;
             next = sends ? soc.cycles() + SocModel::clkHz / 4 : next;
@@ -212,12 +163,17 @@ void Flight::placePicture(SocModel& soc, const Frame& frame) {
 void Flight::callFollowers() {
     if (o_.vehicles > 1) {
         XBee::Options options = modem("observer", o_.guard);
-        options.set["MY"] = SecondGround::address;
-        second_ = std::make_unique<SecondGround>(
-            air_, options, o_.out, o_.flight.value("replay", ""), [this] { return isWanted(); });
+        options.set["MY"] = Station::second;
+        std::shared_ptr<ReplayedLine> replayed;
+        if (o_.replayed)
+            replayed =
+                std::make_shared<ReplayedLine>(o_.flight.value("replay", "") + "/flight2.jsonl");
+        second_ = std::make_unique<Station>(air_, options, o_.out, "2", replayed,
+                                            nlohmann::json{{"flight", nlohmann::json::object()}},
+                                            [this] { return isWanted(); });
     }
     for (unsigned address = 2; address <= o_.vehicles; ++address)
-        callFollower(address, keyOf(o_.keyFile, static_cast<int>(address)));
+        callFollower(address);
     if (!o_.trouble.empty())
         bringTrouble();
     soc_.onAir([this](uint64_t now) {
@@ -227,14 +183,14 @@ void Flight::callFollowers() {
     });
 }
 
-void Flight::callFollower(unsigned address, const std::vector<uint8_t>& key) {
+void Flight::callFollower(unsigned address, const std::vector<uint8_t>& otherKey) {
     M3Machine::Config config;
     config.firmware = o_.firmware;
     config.guardMs = o_.guard;
     config.address = address;
-    config.key = key;
-    std::tie(config.secondGround, config.secondKey) = secondOf(o_, address);
-    config.groupKey = groupKeyOf(o_.keyFile);
+    giveKeys(config, o_.vehicles, o_.key, o_.observer);
+    if (!otherKey.empty())
+        config.key = otherKey;
     config.seed = o_.seed + followers_.size() + 2;
     followers_.push_back(std::make_unique<Follower>(air_, modem("follower", o_.guard), config));
     SocModel& soc = followers_.back()->soc;
@@ -258,7 +214,7 @@ void Flight::bringTrouble() {
         callFollower(address, std::vector<uint8_t>(LINK_KEY_BYTES, 0xEE));
         modem = &followers_.back()->soc.modem();
     } else if (trouble_->kind == "away") {
-        modem = !address       ? &ground_
+        modem = !address       ? &ground_.modem
                 : address == 1 ? &soc_.modem()
                                : &followers_[address - 2]->soc.modem();
     }
@@ -283,8 +239,8 @@ void Flight::watchRegisters() {
         if (address - control >= bytes)
             return;
         const uint32_t word = (address - control) / 4;
-        status_->registers[word] = value;
-        status_->seen[word] = isWrite ? 2 : 1;
+        ground_.status->registers[word] = value;
+        ground_.status->seen[word] = isWrite ? 2 : 1;
         events_.access(soc_.now(), word, value, isWrite);
     };
 }
@@ -292,8 +248,8 @@ void Flight::watchRegisters() {
 void Flight::startProgram() {
     setenv("XBEEAT_CLOCK", std::filesystem::absolute(o_.out + "/status").c_str(), 1);
     if (!o_.command.empty())
-        child_.start(o_.command, {{"{device}", pty_.path()},
-                                  {"{device2}", second_ ? second_->device() : ""},
+        child_.start(o_.command, {{"{device}", ground_.pty.path()},
+                                  {"{device2}", second_ ? second_->pty.path() : ""},
                                   {"{frame}", o_.out + "/before.png"},
                                   {"{status}", o_.out + "/status"},
                                   {"{guard}", std::to_string(o_.guard)},
@@ -306,27 +262,28 @@ bool Flight::isWanted() {
 
 double Flight::millionsPerSecond() const {
     return static_cast<double>(soc_.cycles()) * 1e3 /
-           static_cast<double>(pace_.workedNs() - step_.waitedNs());
+           static_cast<double>(pace_.workedNs() - ground_.step.waitedNs());
 }
 
 // Reports once if the chip is hardly ever quiet: the core that causes it, and the flight's speed.
 void Flight::adviseOnClock() {
     constexpr uint64_t enough = 2'000'000, slow = 2'000'000;
-    if (o_.quiet || o_.everyClock || advised_ || soc_.evaluated() < enough ||
+    if (o_.quiet || o_.every_clock || advised_ || soc_.evaluated() < enough ||
         2 * soc_.evaluated() < soc_.cycles() || soc_.mover().empty())
         return;
     advised_ = true;
-    std::printf("icesoc-sim: '%s' moves in nearly every clock, so that hardly any is skipped: %.2f "
-                "million clocks/s (real time is %.1f)%s\n",
-                soc_.mover().c_str(), millionsPerSecond(), SocModel::clkHz / 1e6,
-                SocModel::clkHz > slow ? "; make run CLK_HZ=2000000 is quicker" : "");
+    fmt::print(
+        "icesoc-sim: '{}' moves in nearly every clock, so that hardly any is skipped: {:.2f} "
+        "million clocks/s (real time is {:.1f}){}\n",
+        soc_.mover(), millionsPerSecond(), SocModel::clkHz / 1e6,
+        SocModel::clkHz > slow ? "; make run CLK_HZ=2000000 is quicker" : "");
     std::fflush(stdout);
 }
 
 // Records the flight's progress, or compares it with the recording.
 void Flight::mark(const char* what, const nlohmann::json& value) {
-    if (recorded_)
-        recorded_->note(soc_.now(), what, value);
+    if (ground_.recorded)
+        ground_.recorded->note(soc_.now(), what, value);
     else if (o_.gdb < 0) // a debugger may change what it looks at
         o_.replayed->compare(soc_.now(), what, value);
 }
@@ -340,7 +297,7 @@ void Flight::watch() {
     const double seconds = static_cast<double>(soc_.now()) / 1e9, pollSeconds = 1e-3;
     const bool looks = seconds >= o_.from - pollSeconds && seconds <= o_.to;
     if (looks != looks_)
-        soc_.evaluateAll(looks || o_.everyClock);
+        soc_.evaluateAll(looks || o_.every_clock);
     looks_ = looks;
 }
 
@@ -348,43 +305,33 @@ void Flight::watch() {
 bool Flight::poll() {
     adviseOnClock();
     watch();
-    status_->cycles = soc_.cycles();
-    status_->wallNs = pace_.workedNs() - step_.waitedNs();
+    ground_.status->cycles = soc_.cycles();
+    ground_.status->wallNs = pace_.workedNs() - ground_.step.waitedNs();
     pace_.keep(soc_.now());
     bool over = o_.duration > 0 && static_cast<double>(soc_.now()) >= o_.duration * 1e9;
     over = over || (o_.replayed && soc_.now() >= o_.replayed->endNs());
     return !over && isWanted();
 }
 
-void Flight::runProcessor() {
-    if (o_.cpu == "m3")
-        runOnCortexM3();
-    else
-        runOnHost();
-}
-
 void Flight::runOnHost() {
     UavMachine machine(
-        soc_, [this] { return poll(); }, simulatedFirmware(keyBytes(o_.modemKey), !key_.empty()));
+        soc_, [this] { return poll(); }, simulatedFirmware(keyBytes(o_.modem_key), !key_.empty()));
+    M3Machine::Config config;
+    giveKeys(config, o_.vehicles, o_.key, o_.observer);
     machine.board = SimulatedBoard(o_.seed);
-    machine.board.provide(key_);
-    if (second_) {
-        const auto [address, key] = secondOf(o_, 1);
-        machine.board.provideGround(address, key);
-    }
-    if (const auto key = groupKeyOf(o_.keyFile); !key.empty())
-        machine.board.provideGround(UAV_EVERYBODY, key);
+    provideKeys(machine.board, config);
     machine.run();
 }
 
 void Flight::runOnCortexM3() {
-    const std::vector<uint8_t> flash = flashOf(o_.flash, Stm32Flash::bytes, "the chip's"),
-                               fpga = flashOf(o_.fpgaFlash, SpiFlash::bytes, "the FPGA's");
-    M3Machine::Config config{o_.firmware, 120'000'000, o_.guard, flash,
-                             key_,        o_.seed,     fpga,     o_.wire};
-    if (second_)
-        std::tie(config.secondGround, config.secondKey) = secondOf(o_, 1);
-    config.groupKey = groupKeyOf(o_.keyFile);
+    M3Machine::Config config;
+    config.firmware = o_.firmware;
+    config.guardMs = o_.guard;
+    config.flash = flashOf(o_.flash, Stm32Flash::bytes, "the chip's");
+    config.fpgaFlash = flashOf(o_.fpga_flash, SpiFlash::bytes, "the FPGA's");
+    config.seed = o_.seed;
+    config.isWired = o_.wire;
+    giveKeys(config, o_.vehicles, o_.key, o_.observer);
     M3Machine machine(soc_, config, [this] { return poll(); });
     if (machine.program)
         machine.program->onTask = [this](const std::string& name) {
@@ -403,25 +350,25 @@ void Flight::runOnCortexM3() {
         std::ofstream(o_.flash, std::ios::binary)
             .write(reinterpret_cast<const char*>(machine.cpu().flash()), Stm32Flash::bytes);
     }
-    if (!o_.fpgaFlash.empty())
-        std::ofstream(o_.fpgaFlash, std::ios::binary)
+    if (!o_.fpga_flash.empty())
+        std::ofstream(o_.fpga_flash, std::ios::binary)
             .write(reinterpret_cast<const char*>(machine.fpgaFlash().data()), SpiFlash::bytes);
     if (!o_.quiet)
-        reportProcessor(machine);
+        machine.report();
 }
 
 void Flight::report() {
-    std::printf("icesoc-sim: %.1f s simulated, %.2f million clocks/s while it worked (real time is "
-                "%.1f; %.2f %% of the clocks were evaluated), %llu packets on the air, %llu lost\n",
-                static_cast<double>(soc_.now()) / 1e9, millionsPerSecond(), SocModel::clkHz / 1e6,
-                100 * static_cast<double>(soc_.evaluated()) / static_cast<double>(soc_.cycles()),
-                static_cast<unsigned long long>(status_->packets),
-                static_cast<unsigned long long>(status_->lost));
+    fmt::print(
+        "icesoc-sim: {:.1f} s simulated, {:.2f} million clocks/s while it worked (real time is "
+        "{:.1f}; {:.2f} % of the clocks were evaluated), {} packets on the air, {} lost\n",
+        static_cast<double>(soc_.now()) / 1e9, millionsPerSecond(), SocModel::clkHz / 1e6,
+        100 * static_cast<double>(soc_.evaluated()) / static_cast<double>(soc_.cycles()),
+        ground_.status->packets, ground_.status->lost);
     if (!followers_.empty()) {
-        std::printf("icesoc-sim: the vision cores were started %u", starts_[&soc_]);
+        fmt::print("icesoc-sim: the vision cores were started {}", starts_[&soc_]);
         for (const auto& follower : followers_)
-            std::printf(", %u", starts_[&follower->soc]);
-        std::puts(" times");
+            fmt::print(", {}", starts_[&follower->soc]);
+        fmt::print(" times\n");
     }
     if (o_.replayed && o_.gdb < 0 && !stopSignal)
         std::puts(o_.replayed->isWhole()
@@ -433,16 +380,17 @@ int Flight::run() {
     if (!o_.quiet)
         std::cout << "icesoc-sim: UAV is up, frame " << frame_.width << " x " << frame_.height
                   << ", "
-                  << (recorded_ ? "the ground's modem is " + pty_.path() : "the flight is replayed")
+                  << (o_.replayed ? "the flight is replayed"
+                                  : "the ground's modem is " + ground_.pty.path())
                   << std::endl;
     startProgram();
-    runProcessor();
+    o_.cpu == "m3" ? runOnCortexM3() : runOnHost();
     child_.stop();
     events_.flush();
-    if (recorded_ || !stopSignal)
+    if (!o_.replayed || !stopSignal)
         mark("end", {{"clocks", soc_.cycles()},
-                     {"packets", status_->packets},
-                     {"lost", status_->lost},
+                     {"packets", ground_.status->packets},
+                     {"lost", ground_.status->lost},
                      {"accesses", accesses_.text()}});
     if (!o_.quiet)
         report();

@@ -53,26 +53,24 @@ private:
 class Flight {
 public:
     struct Options {
-        std::string modemKey; // 32 hexadecimal digits
-        std::string keyFile;  // of the link; none: the vehicle is open
-        std::string observer; // the same of the second ground, where there are several vehicles
-        std::string trouble;  // of several vehicles (vehicles.h)
+        // Fields of the flight's description, by their names there (cli/flight.schema.json).
         std::string image, size = "320x240", out = ".", speed = "real", cpu = "host",
-                           firmware = FIRMWARE_ELF;
+                           firmware = FIRMWARE_ELF, key, observer, trouble, modem_key, pins, trace,
+                           flash, fpga_flash;
         uint16_t guard = 1000;
         unsigned vehicles = 1;
         int gdb = -1;
-        std::string pins, trace, flash, fpgaFlash; // files
-        RfWeather weather;
-        double duration = 0;
+        double loss = 0, interference = 0, distance = 0, duration = 0, from = 0, to = 0;
         uint64_t seed = 1;
-        bool everyClock = false, quiet = false, sensor = false, wire = false;
+        bool camera = false, wire = false, every_clock = false, quiet = false;
+        NLOHMANN_DEFINE_TYPE_INTRUSIVE_WITH_DEFAULT(Options, image, size, out, speed, cpu, firmware,
+                                                    key, observer, trouble, modem_key, pins, trace,
+                                                    flash, fpga_flash, guard, vehicles, gdb, loss,
+                                                    interference, distance, duration, from, to,
+                                                    seed, camera, wire, every_clock, quiet)
+        nlohmann::json flight; // the description, which the recording keeps
         std::vector<std::string> command;
-        nlohmann::json flight; // its description, which the recording keeps
-        // The flight to be replayed, if any; and the span of a waveform in s, each of whose clocks
-        // is evaluated.
-        std::shared_ptr<ReplayedLine> replayed;
-        double from = 0, to = 0;
+        std::shared_ptr<ReplayedLine> replayed; // the flight to be flown again, if any
     };
 
     // Makes the folder and the ground's files in it: the counters, before.png; and the recording,
@@ -90,16 +88,14 @@ public:
     static volatile sig_atomic_t stopSignal;
 
 private:
-    SerialLine& groundLine(); // the pty, recorded; in a replay the recording
     void connectModels();
     void watchRegisters();
     void placePicture(SocModel& soc, const Frame& frame);
     void callFollowers();
-    void callFollower(unsigned address, const std::vector<uint8_t>& key);
+    void callFollower(unsigned address, const std::vector<uint8_t>& otherKey = {});
     void bringTrouble();
     void countStarts(SocModel& soc, uint32_t address, uint32_t value, bool isWrite);
     void startProgram();
-    void runProcessor();
     void runOnHost();
     void runOnCortexM3();
     bool isWanted();
@@ -113,19 +109,16 @@ private:
     const Options o_;
     const Frame frame_;
     const std::vector<uint8_t> key_; // of the link
-    StatusFile status_;
+    const RfWeather weather_;
     RfChannel air_;
-    PtyLine pty_;
-    std::unique_ptr<RecordedLine> recorded_; // none in a replay
-    XBee ground_;
+    Station ground_;
     SocModel soc_;
     std::vector<std::unique_ptr<Follower>> followers_; // addresses 2 and up
-    std::unique_ptr<SecondGround> second_;             // of several vehicles
+    std::unique_ptr<Station> second_;                  // of several vehicles
     std::unique_ptr<Trouble> trouble_;                 // of several vehicles, if any
     std::map<const SocModel*, unsigned> starts_;       // of each vehicle's vision core
     std::unique_ptr<Cable> cable_;                     // in place of the modems and the air
     Child child_;
-    GroundStep step_;
     Events events_;
     Pace pace_;
     bool advised_ = false, looks_ = false;

@@ -4,10 +4,9 @@
 // pins.
 
 #include "m3_machine.h"
-#include "simulated_board.h"
 #include "tell_on_abort.h"
 #include <algorithm>
-#include <cstdio>
+#include <fmt/format.h>
 
 namespace {
 
@@ -37,16 +36,20 @@ std::string stackOf(Stm32F2& stm32) {
 
 } // namespace
 
-M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> poll)
-    : soc_(soc), poll_(std::move(poll)), fpgaFlash_([&soc] { return soc.now(); }, config.seed),
-      stm32_(soc.fsmc(), [&soc] { return soc.now(); }, configOf(config.hclkHz, config.seed)) {
-    stm32_.load(config.firmware);
-    SimulatedBoard board;
+void provideKeys(SimulatedBoard& board, const M3Machine::Config& config) {
     board.provide(config.key, config.address);
     if (config.secondGround >= 0)
         board.provideGround(static_cast<uint32_t>(config.secondGround), config.secondKey);
     if (!config.groupKey.empty())
         board.provideGround(UAV_EVERYBODY, config.groupKey);
+}
+
+M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> poll)
+    : soc_(soc), poll_(std::move(poll)), fpgaFlash_([&soc] { return soc.now(); }, config.seed),
+      stm32_(soc.fsmc(), [&soc] { return soc.now(); }, configOf(config.hclkHz, config.seed)) {
+    stm32_.load(config.firmware);
+    SimulatedBoard board;
+    provideKeys(board, config);
     std::copy(board.words.begin(), board.words.end(), stm32_.backup().begin());
     stm32_.setPinB(1, !config.isWired);
     if (config.flash.empty())
@@ -107,6 +110,19 @@ void M3Machine::advance(uint64_t ns) {
         stm32_.run();
 }
 
+void M3Machine::report() {
+    const Stm32F2::Resets& resets = stm32_.resets();
+    const double cycles = std::max(1.0, static_cast<double>(cpu().cycles()));
+    fmt::print("icesoc-sim: Cortex-M3: {} instructions; asleep {:.1f} % of the time, {:.2f} % in "
+               "bus accesses; resets: {} software, {} watchdog\n",
+               cpu().instructions(), 100 * static_cast<double>(cpu().sleepingCycles()) / cycles,
+               100 * static_cast<double>(cpu().busCycles()) / cycles, resets.software,
+               resets.watchdog);
+    if (!cpu().lastFault.empty())
+        fmt::print("icesoc-sim: last fault: {} in {}\n", cpu().lastFault,
+                   stm32_.image()->functionAt(cpu().reg(CortexM3::Pc)));
+}
+
 // ---- under a debugger ----
 
 GdbStub::Target M3Machine::target() {
@@ -116,13 +132,9 @@ GdbStub::Target M3Machine::target() {
         [this] { stm32_.powerOn(); },
         [this] { return over_; },
         [this] {
-            char text[160];
-            std::snprintf(text, sizeof text,
-                          "%.6f s simulated, %llu instructions, %llu cycles; last fault: ",
-                          static_cast<double>(soc_.now()) / 1e9,
-                          static_cast<unsigned long long>(cpu().instructions()),
-                          static_cast<unsigned long long>(cpu().cycles()));
-            return text + (cpu().lastFault.empty() ? std::string("none") : cpu().lastFault) + "\n";
+            return fmt::format("{:.6f} s simulated, {} instructions, {} cycles; last fault: {}\n",
+                               static_cast<double>(soc_.now()) / 1e9, cpu().instructions(),
+                               cpu().cycles(), cpu().lastFault.empty() ? "none" : cpu().lastFault);
         },
         nullptr,
         [this] {

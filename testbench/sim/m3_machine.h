@@ -8,6 +8,7 @@
 #include "checkpoints.h"
 #include "gdb_stub.h"
 #include "program_trace.h"
+#include "simulated_board.h"
 #include "soc_model.h"
 #include "stm32f2.h"
 #include <memory>
@@ -47,6 +48,8 @@ public:
     void run();
     // Runs up to this time, or an instruction beyond; the first call begins with power-on.
     void advance(uint64_t ns);
+    // Prints what the processor did, and what stopped it, if anything did.
+    void report();
 
     // Runs as a debugger commands. It begins when one connects, runs freely when it detaches, and
     // obeys the next one. `canGoBack`: nothing outside of this process takes part, so the debugger
@@ -79,3 +82,6 @@ private:
     bool isAsked_ = false; // the debugger wants the processor to stop
     bool isAtBegin_ = false;
 };
+
+// Gives a board the keys and the address of a vehicle, as its factory does.
+void provideKeys(SimulatedBoard& board, const M3Machine::Config& config);

@@ -95,45 +95,6 @@ std::string flightHelp() {
     return text;
 }
 
-// Takes the fields that the simulator reads; those that are missing stay as they are.
-Flight::Options optionsOf(const json& flight) {
-    Flight::Options o;
-    o.flight = flight;
-    auto take = [&flight](const char* name, auto& value) {
-        if (flight.contains(name))
-            flight.at(name).get_to(value);
-    };
-    take("image", o.image);
-    take("size", o.size);
-    take("camera", o.sensor);
-    take("pins", o.pins);
-    take("wire", o.wire);
-    take("loss", o.weather.loss);
-    take("interference", o.weather.interference);
-    take("distance", o.weather.distance);
-    take("trace", o.trace);
-    take("seed", o.seed);
-    take("key", o.keyFile);
-    take("observer", o.observer);
-    take("trouble", o.trouble);
-    take("modem_key", o.modemKey);
-    take("guard", o.guard);
-    take("from", o.from);
-    take("to", o.to);
-    take("every_clock", o.everyClock);
-    take("out", o.out);
-    take("speed", o.speed);
-    take("duration", o.duration);
-    take("cpu", o.cpu);
-    take("firmware", o.firmware);
-    take("vehicles", o.vehicles);
-    take("flash", o.flash);
-    take("fpga_flash", o.fpgaFlash);
-    take("gdb", o.gdb);
-    take("quiet", o.quiet);
-    return o;
-}
-
 void writeWave(const Flight::Options& o) {
     const std::string wave = o.flight.value("wave", "");
     if (wave.empty())
@@ -161,7 +122,10 @@ Flight::Options recorded(const Flight::Options& now, const std::string& folder) 
         throw std::runtime_error("that flight had a clock of " + head.at("clkHz").dump() +
                                  " Hz: make run REPLAY=" + folder +
                                  " CLK_HZ=" + head.at("clkHz").dump());
-    Flight::Options o = optionsOf(head.at("flight"));
+    json fields = head.at("flight"), view = now;
+    for (const char* ofThisView : {"out", "gdb", "every_clock", "quiet", "from", "to"})
+        fields[ofThisView] = view[ofThisView];
+    Flight::Options o = fields;
     for (const auto& [file, hash] : head.value("hashes", std::map<std::string, std::string>()))
         if (hexHash(readFile(file)) != hash)
             throw std::runtime_error("'" + file +
@@ -172,13 +136,7 @@ Flight::Options recorded(const Flight::Options& now, const std::string& folder) 
     o.flight = now.flight;
     o.image = folder + "/before.png";
     o.replayed = replayed;
-    o.out = now.out;
     o.speed = now.flight.value("speed", "max");
-    o.gdb = now.gdb;
-    o.everyClock = now.everyClock;
-    o.quiet = now.quiet;
-    o.from = now.from;
-    o.to = now.to;
     return o;
 }
 
@@ -196,7 +154,9 @@ int main(int argc, char** argv) {
     for (int signal : {SIGINT, SIGTERM, SIGHUP})
         sigaction(signal, &action, nullptr);
     try {
-        Flight::Options o = optionsOf(flightOf(words));
+        const json flight = flightOf(words);
+        Flight::Options o = flight;
+        o.flight = flight;
         const std::string replay = o.flight.value("replay", "");
         if (!replay.empty())
             o = recorded(o, replay);
@@ -208,15 +168,15 @@ int main(int argc, char** argv) {
         if (replay.empty() && o.flight.contains("wave"))
             throw std::invalid_argument(
                 "--wave needs --replay: a flight is recorded, then looked at");
-        if (o.sensor && !o.pins.empty())
+        if (o.camera && !o.pins.empty())
             throw std::invalid_argument("--camera and --pins: both drive the inputs of cores");
         if (!o.trouble.empty() && o.vehicles < 2)
             throw std::invalid_argument("--trouble needs --vehicles: it befalls one of several");
-        if (o.cpu == "m3" && !o.modemKey.empty())
+        if (o.cpu == "m3" && !o.modem_key.empty())
             throw std::invalid_argument("--modem-key needs --cpu host: the ARM binary has its own");
         if (!o.flash.empty() && (o.cpu != "m3" || o.guard != 1000))
             throw std::invalid_argument("--flash needs --cpu m3, and the modems' usual guard time");
-        if (!o.fpgaFlash.empty() && o.flash.empty())
+        if (!o.fpga_flash.empty() && o.flash.empty())
             throw std::invalid_argument("--fpga-flash needs --flash: the boot loader's checks");
         if (o.cpu != "m3" && o.gdb >= 0)
             throw std::invalid_argument(
@@ -224,8 +184,6 @@ int main(int argc, char** argv) {
                              "the ARM binary: make run CPU=m3"
                            : "--gdb needs --cpu m3");
         writeWave(o);
-        if (!o.trace.empty())
-            o.weather.trace = std::make_shared<RfTrace>(o.trace);
         return Flight(o).run();
     } catch (const std::invalid_argument& e) {
         std::cerr << "icesoc-sim: " << e.what() << "\n";

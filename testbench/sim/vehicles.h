@@ -5,6 +5,7 @@
 #pragma once
 
 #include "ground_step.h"
+#include "key_file.h"
 #include "m3_machine.h"
 #include "random.h"
 #include "recording.h"
@@ -35,44 +36,62 @@ private:
     uint64_t until_ = 0;
 };
 
-// One more ground in the air of a flight: a modem on a pty of its own, with a clock
-// and a recording of its own, for which simulated time waits as for the first one.
-class SecondGround {
-public:
-    static constexpr uint32_t address = 0x00F0; // of its modem
+// A ground in the air of a flight: a modem on a pty, or on the recording of the flight that is
+// flown again, with a clock and a recording of its own. Simulated time waits for its program.
+struct Station {
+    static constexpr uint32_t second = 0x00F0; // address of a second one's modem
 
-    // `out`: folder of its files; `replayed`: folder of the flight that is flown again, or none.
-    SecondGround(RfChannel& air, const XBee::Options& modem, const std::string& out,
-                 const std::string& replayed, std::function<bool()> goOn)
-        : status_(out + "/status2"), replayed_(replayed.empty() ? nullptr : open(replayed)),
-          recorded_(replayed_ ? nullptr
-                              : std::make_unique<RecordedLine>(
-                                    pty_, out + "/" + recording,
-                                    nlohmann::json{{"flight", nlohmann::json::object()}})),
-          modem_(replayed_ ? static_cast<SerialLine&>(*replayed_) : *recorded_, air, modem),
-          step_(*status_, pty_, std::move(goOn)) {}
-    const std::string& device() const { return pty_.path(); }
-    // Returns the time of its next call.
-    uint64_t advance(uint64_t now) {
-        modem_.advance(now);
-        status_.set(now);
-        step_.wait(now);
-        return std::min(modem_.nextEvent(), std::max(step_.nextEvent(), now + 1));
+    // `out`: folder of its files; `number`: behind their names; `head`: first line of the
+    // recording.
+    Station(RfChannel& air, const XBee::Options& options, const std::string& out,
+            const std::string& number, std::shared_ptr<ReplayedLine> from,
+            const nlohmann::json& head, std::function<bool()> goOn)
+        : status(out + "/status" + number), replayed(std::move(from)),
+          recorded(replayed ? nullptr
+                            : std::make_unique<RecordedLine>(
+                                  pty, out + "/flight" + number + ".jsonl", head)),
+          modem(line(), air, options), step(*status, pty, std::move(goOn)) {}
+    SerialLine& line() { return replayed ? static_cast<SerialLine&>(*replayed) : *recorded; }
+    // Returns the time of its next call. A cable may be in the modem's place.
+    uint64_t advance(uint64_t now, bool isWired = false) {
+        if (!isWired)
+            modem.advance(now);
+        status.set(now); // its program's clock
+        step.wait(now);
+        return std::min(isWired ? never : modem.nextEvent(), std::max(step.nextEvent(), now + 1));
     }
 
-private:
-    static constexpr const char* recording = "flight2.jsonl";
-    static std::unique_ptr<ReplayedLine> open(const std::string& folder) {
-        return std::make_unique<ReplayedLine>(folder + "/" + recording);
-    }
-
-    StatusFile status_;
-    PtyLine pty_;
-    std::unique_ptr<ReplayedLine> replayed_;
-    std::unique_ptr<RecordedLine> recorded_;
-    XBee modem_;
-    GroundStep step_;
+    StatusFile status;
+    PtyLine pty;
+    const std::shared_ptr<ReplayedLine> replayed;
+    const std::unique_ptr<RecordedLine> recorded; // none in a replay
+    XBee modem;
+    GroundStep step;
 };
+
+// Returns a vehicle's key in a file, if any; with a next key on its way, the old one.
+inline std::vector<uint8_t> keyOf(const std::string& file, int address) {
+    if (file.empty())
+        return {};
+    const XBeeAT::LinkKey key = XBeeAT::KeyFile(file).of(address).back();
+    return {key.begin(), key.end()};
+}
+
+// Gives a vehicle its keys, from the ground's file and from the observer's, and a second ground
+// where there are several vehicles: of four and more the first two serve each other.
+inline void giveKeys(M3Machine::Config& config, unsigned vehicles, const std::string& file,
+                     const std::string& observer) {
+    config.key = keyOf(file, static_cast<int>(config.address));
+    try {
+        config.groupKey = keyOf(file, XBeeAT::everybody);
+    } catch (const std::exception&) { // the file has no line for calls to all vehicles
+    }
+    const bool isPaired = vehicles > 3 && config.address < 3;
+    if (vehicles < 2)
+        return;
+    config.secondGround = isPaired ? UAV_FELLOW | (3 - config.address) : Station::second;
+    config.secondKey = keyOf(observer, isPaired ? 1 : static_cast<int>(config.address));
+}
 
 // Trouble takes effect by a text: `away:2:1.5:3` takes the modem with the
 // address 2 out of reach, 1.5 s after the beginning, for 3 s; `twin:2:...` brings one more vehicle

@@ -61,35 +61,31 @@ void Spartan6Boot::configure(const std::vector<uint8_t>& flash) {
 
 Spartan6Boot::End Spartan6Boot::load(const std::vector<uint8_t>& flash, uint32_t address) {
     size_t at = address;
-    const auto byte = [&] {
-        clocks += 8;
-        return at < flash.size() ? flash[at++] : uint8_t(0xFF);
-    };
-    const auto word = [&] {
-        const uint8_t high = byte();
-        return static_cast<uint16_t>(high << 8 | byte());
+    const auto read = [&](unsigned bytes) {
+        uint32_t value = 0;
+        for (; bytes; --bytes, clocks += 8)
+            value = value << 8 | (at < flash.size() ? flash[at++] : 0xFF);
+        return value;
     };
     uint32_t last = 0;
-    for (const uint64_t begun = clocks; last != 0xAA995566; last = last << 8 | byte())
+    for (const uint64_t begun = clocks; last != 0xAA995566; last = last << 8 | read(1))
         if (clocks - begun > watchdogClocks)
             return End::Failed;
     uint32_t crc = 0;
     bool isStarted = false, hasCrc = true, isOurs = false;
     while (at < flash.size()) {
-        const uint16_t header = word();
+        const uint32_t header = read(2);
         const unsigned type = header >> 13, operation = header >> 11 & 3, reg = header >> 5 & 63;
         uint32_t count = header & 31;
         if (type == 1 && operation == 0)
             continue; // NOP
         if ((type != 1 && type != 2) || operation != 2)
             return End::Stuck;
-        if (type == 2) {
-            count = uint32_t(word()) << 16;
-            count |= word();
-        }
+        if (type == 2)
+            count = read(4);
         uint32_t value = 0;
         for (uint32_t i = 0; i < count && at < flash.size(); ++i) {
-            const uint16_t data = word();
+            const auto data = static_cast<uint16_t>(read(2));
             value = value << 16 | data;
             if (reg != Crc && reg != Lout && reg != Csbo)
                 addCrc(crc, reg, data);
@@ -97,8 +93,7 @@ Spartan6Boot::End Spartan6Boot::load(const std::vector<uint8_t>& flash, uint32_t
         if (reg == Fdri) { // its CRC follows without a command
             if (!isOurs)
                 return End::Failed;
-            value = uint32_t(word()) << 16;
-            value |= word();
+            value = read(4);
         }
         if (reg == Crc || reg == Fdri) {
             if (value != (hasCrc ? crc : noCrc))

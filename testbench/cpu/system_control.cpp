@@ -177,14 +177,34 @@ void SystemControl::setFaultAddress(uint32_t cfsrBits, uint32_t address) {
     (cfsrBits & mmfarValid ? mmfar_ : bfar_) = address;
 }
 
-bool SystemControl::accessOther(uint32_t at, bool write, uint32_t& value) {
-    const uint32_t given = write ? value : 0;
+uint32_t SystemControl::interruptState() const {
+    const Exceptions& all = *exceptions_;
+    uint32_t shown = 0;
+    for (unsigned n = 1; n < Exceptions::count; ++n)
+        if (all[n].active && all.priorityOf(n) <= all.runningPriority())
+            shown = n;
+    return shown | uint32_t(all.activeCount() <= 1) << 11 | all.firstPending() << 12 |
+           uint32_t(all[SysTick].pending) << 26 | uint32_t(all[PendSv].pending) << 28 |
+           uint32_t(all[NonMaskable].pending) << 31;
+}
+
+uint32_t SystemControl::handlerState() const {
     uint32_t shown = 0;
     auto flag = [&](unsigned number, unsigned bit, bool Exceptions::State::* what) {
         shown |= uint32_t((*exceptions_)[number].*what) << bit;
     };
     constexpr auto active = &Exceptions::State::active, pending = &Exceptions::State::pending,
                    enabled = &Exceptions::State::enabled;
+    flag(MemManage, 0, active), flag(BusFault, 1, active), flag(UsageFault, 3, active);
+    flag(SupervisorCall, 7, active), flag(PendSv, 10, active), flag(SysTick, 11, active);
+    flag(UsageFault, 12, pending), flag(MemManage, 13, pending), flag(BusFault, 14, pending);
+    flag(MemManage, 16, enabled), flag(BusFault, 17, enabled), flag(UsageFault, 18, enabled);
+    return shown;
+}
+
+bool SystemControl::accessOther(uint32_t at, bool write, uint32_t& value) {
+    const uint32_t given = write ? value : 0;
+    uint32_t shown = 0;
     switch (at) {
     case 0x004: // ICTR
         shown = (Exceptions::interrupts - 1) / 32;
@@ -212,15 +232,7 @@ bool SystemControl::accessOther(uint32_t at, bool write, uint32_t& value) {
         shown = 0x412FC230;
         break;
     case 0xD04: // ICSR; VECTACTIVE is the processor's IPSR
-        for (unsigned n = 1; n < Exceptions::count; ++n)
-            if ((*exceptions_)[n].active &&
-                exceptions_->priorityOf(n) <= exceptions_->runningPriority())
-                shown = n;
-        shown |= uint32_t(exceptions_->activeCount() <= 1) << 11 | exceptions_->firstPending()
-                                                                       << 12;
-        flag(SysTick, 26, pending);
-        flag(PendSv, 28, pending);
-        flag(NonMaskable, 31, pending);
+        shown = interruptState();
         for (const auto& [bit, number, on] : pends)
             if (given >> bit & 1)
                 exceptions_->pend(number, on);
@@ -233,10 +245,7 @@ bool SystemControl::accessOther(uint32_t at, bool write, uint32_t& value) {
         resetRequested_ = resetRequested_ || (given & 4);
         break;
     case 0xD24:
-        flag(MemManage, 0, active), flag(BusFault, 1, active), flag(UsageFault, 3, active);
-        flag(SupervisorCall, 7, active), flag(PendSv, 10, active), flag(SysTick, 11, active);
-        flag(UsageFault, 12, pending), flag(MemManage, 13, pending), flag(BusFault, 14, pending);
-        flag(MemManage, 16, enabled), flag(BusFault, 17, enabled), flag(UsageFault, 18, enabled);
+        shown = handlerState();
         for (unsigned number : {MemManage, BusFault, UsageFault})
             if (write)
                 exceptions_->enable(number, given >> (12 + number) & 1);

@@ -205,6 +205,8 @@ private:
     bool accessWord(uint32_t address, bool write, uint32_t& value);
     bool accessInterrupts(uint32_t offset, bool write, uint32_t& value);
     bool accessPriorities(unsigned first, bool write, uint32_t& value);
+    uint32_t interruptState() const; // ICSR
+    uint32_t handlerState() const;   // SHCSR
     bool accessOther(uint32_t offset, bool write, uint32_t& value);
     bool accessMpu(uint32_t offset, bool write, uint32_t& value);
     void tick();

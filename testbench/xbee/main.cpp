@@ -21,7 +21,15 @@ volatile std::sig_atomic_t stopped = 0;
 struct Settings {
     std::string link; // a path that points to the pty
     std::vector<std::string> set;
-    uint64_t bootMs = 50;
+};
+
+struct Options {
+    Settings a, b;
+    RfChannel::Weather weather;
+    double delayMs = 0, duration = 0;
+    uint64_t seed = testSeed(), bootMs = 50;
+    bool verbose = false;
+    std::string trace;
 };
 
 struct Modem {
@@ -38,18 +46,13 @@ struct Modem {
 // Parses "MY=1" into a parameter; throws CLI::ValidationError with the reason.
 void setParameter(std::map<std::string, uint32_t>& set, const std::string& text) {
     std::string letters = text.substr(0, text.find('='));
+    std::string digits = text.substr(std::min(letters.size() + 1, text.size()));
     auto parameter = xbeeParameters().find(letters);
-    size_t used = 0;
-    unsigned long value = 0;
-    try {
-        if (letters.size() + 1 < text.size())
-            value = std::stoul(text.substr(letters.size() + 1), &used, 16);
-    } catch (const std::exception&) {
-        used = 0;
-    }
+    char* end = nullptr;
+    unsigned long value = std::strtoul(digits.c_str(), &end, 16);
     if (parameter == xbeeParameters().end())
         throw CLI::ValidationError("'" + text + "'", "there is no parameter " + letters);
-    if (used == 0 || letters.size() + 1 + used != text.size())
+    if (digits.empty() || *end)
         throw CLI::ValidationError("'" + text + "'", "give it as in MY=1A2B, in hex");
     if (value < parameter->second.lowest || value > parameter->second.highest)
         throw CLI::ValidationError("'" + text + "'", fmt::format("{} is from {:X} to {:X}", letters,
@@ -59,10 +62,10 @@ void setParameter(std::map<std::string, uint32_t>& set, const std::string& text)
 }
 
 void power(Modem& modem, RfChannel& air, const std::string& name, const Settings& settings,
-           std::map<std::string, uint32_t> set) {
+           uint64_t bootMs, std::map<std::string, uint32_t> set) {
     XBee::Options options;
     options.name = name;
-    options.bootNs = settings.bootMs * 1'000'000;
+    options.bootNs = bootMs * 1'000'000;
     for (auto& text : settings.set)
         setParameter(set, text);
     options.set = std::move(set);
@@ -98,13 +101,6 @@ void report(const RfChannel& air) {
                c.noClearChannel, static_cast<double>(c.airNs) / 1e6);
 }
 
-void addSettings(CLI::App& app, const std::string& name, Settings& settings) {
-    app.add_option("--" + name, settings.set,
-                   "Parameter of modem " + name + ", in hex, as MY=1 or BD=7; may be repeated")
-        ->type_name("XX=HEX");
-    app.add_option("--link-" + name, settings.link, "Symbolic link to its pty")->type_name("PATH");
-}
-
 void say(uint64_t now, const RfPacket& packet, RfChannel::Outcome outcome) {
     static const char* const outcomes[] = {"delivered",    "lost",    "corrupted",
                                            "nobody there", "no room", "channel not clear"};
@@ -132,62 +128,68 @@ void run(RfChannel& air, XBee& a, XBee& b, double duration) {
     report(air);
 }
 
+void addSettings(CLI::App& app, const std::string& name, Settings& settings) {
+    app.add_option("--" + name, settings.set,
+                   "Parameter of modem " + name + ", in hex, as MY=1 or BD=7; may be repeated")
+        ->type_name("XX=HEX");
+    app.add_option("--link-" + name, settings.link, "Symbolic link to its pty")->type_name("PATH");
+}
+
+void describe(CLI::App& app, Options& o) {
+    addSettings(app, "a", o.a);
+    addSettings(app, "b", o.b);
+    auto chance = [&app](const char* option, double& value, const char* what) {
+        app.add_option(option, value, what)->check(CLI::Range(0.0, 1.0))->capture_default_str();
+    };
+    chance("--loss", o.weather.loss, "Residual loss of a packet");
+    chance("--burst-begin", o.weather.burstBegin,
+           "Chance that a burst of loss begins (Gilbert-Elliott)");
+    chance("--burst-end", o.weather.burstEnd, "Chance that it ends, each packet");
+    chance("--burst-loss", o.weather.burstLoss, "Loss in a burst");
+    chance("--duplication", o.weather.duplication, "Packets that arrive twice");
+    chance("--corruption", o.weather.corruption, "Packets with a wrong byte");
+    chance("--try-loss", o.weather.tryLoss, "Loss of one try; the MAC tries again");
+    chance("--ack-loss", o.weather.ackLoss, "Loss of an acknowledgement: duplicates");
+    chance("--interference", o.weather.interference,
+           "Share of each 20 ms in which others are heard");
+    app.add_option("--distance", o.weather.distance, "Metres in free space, with fading; 0: none")
+        ->check(CLI::Range(0.0, 1e5));
+    app.add_option("--trace", o.trace, "CSV of loss, RSSI and delay, in place of these")
+        ->check(CLI::ExistingFile);
+    app.add_flag("--perfect", o.weather.perfect,
+                 "Both directions at once, no collisions, modems that need no time");
+    app.add_option("--delay", o.delayMs, "Delay beyond the time on the air, ms")
+        ->check(CLI::Range(0.0, 10000.0));
+    app.add_option("--boot", o.bootMs, "Boot time of the modems, ms")->check(CLI::Range(0, 5000));
+    app.add_option("--seed", o.seed, "Seed of the weather (default: SEED, or 1)");
+    app.add_option("--duration", o.duration, "Seconds until it ends by itself (0: never)")
+        ->check(CLI::Range(0.0, 1e6));
+    app.add_flag("-v,--verbose", o.verbose, "A line for each packet");
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
     CLI::App app{"Two XBee 802.15.4 modems on pseudo-terminals, and the air between them.\n"
                  "Open the printed devices as serial ports; Ctrl-C ends it and prints statistics.\n"
                  "Modem a has address 1 and sends to 2, modem b the other way round."};
-    Settings settingsA, settingsB;
-    RfChannel::Weather weather;
-    double delayMs = 0, duration = 0;
-    uint64_t seed = testSeed(), bootMs = 50;
-    bool verbose = false;
-    std::string trace;
-    addSettings(app, "a", settingsA);
-    addSettings(app, "b", settingsB);
-    auto chance = [&](const char* option, double& value, const char* what) {
-        app.add_option(option, value, what)->check(CLI::Range(0.0, 1.0))->capture_default_str();
-    };
-    chance("--loss", weather.loss, "Residual loss of a packet");
-    chance("--burst-begin", weather.burstBegin,
-           "Chance that a burst of loss begins (Gilbert-Elliott)");
-    chance("--burst-end", weather.burstEnd, "Chance that it ends, each packet");
-    chance("--burst-loss", weather.burstLoss, "Loss in a burst");
-    chance("--duplication", weather.duplication, "Packets that arrive twice");
-    chance("--corruption", weather.corruption, "Packets with a wrong byte");
-    chance("--try-loss", weather.tryLoss, "Loss of one try; the MAC tries again");
-    chance("--ack-loss", weather.ackLoss, "Loss of an acknowledgement: duplicates");
-    chance("--interference", weather.interference, "Share of each 20 ms in which others are heard");
-    app.add_option("--distance", weather.distance, "Metres in free space, with fading; 0: none")
-        ->check(CLI::Range(0.0, 1e5));
-    app.add_option("--trace", trace, "CSV of loss, RSSI and delay, in place of these")
-        ->check(CLI::ExistingFile);
-    app.add_flag("--perfect", weather.perfect,
-                 "Both directions at once, no collisions, modems that need no time");
-    app.add_option("--delay", delayMs, "Delay beyond the time on the air, ms")
-        ->check(CLI::Range(0.0, 10000.0));
-    app.add_option("--boot", bootMs, "Boot time of the modems, ms")->check(CLI::Range(0, 5000));
-    app.add_option("--seed", seed, "Seed of the weather (default: SEED, or 1)");
-    app.add_option("--duration", duration, "Seconds until it ends by itself (0: never)")
-        ->check(CLI::Range(0.0, 1e6));
-    app.add_flag("-v,--verbose", verbose, "A line for each packet");
+    Options o;
+    describe(app, o);
     CLI11_PARSE(app, argc, argv);
 
-    weather.delayNs = static_cast<uint64_t>(delayMs * 1e6);
-    settingsA.bootMs = settingsB.bootMs = bootMs;
-    RfChannel air(seed);
-    air.weather = weather;
-    if (verbose)
+    RfChannel air(o.seed);
+    air.weather = o.weather;
+    air.weather.delayNs = static_cast<uint64_t>(o.delayMs * 1e6);
+    if (o.verbose)
         air.onPacket(say);
     std::setvbuf(stdout, nullptr, _IOLBF, 0);
     try {
-        if (!trace.empty())
-            air.weather.trace = std::make_shared<RfTrace>(trace);
+        if (!o.trace.empty())
+            air.weather.trace = std::make_shared<RfTrace>(o.trace);
         Modem a, b;
-        power(a, air, "a", settingsA, {{"MY", 1}, {"DL", 2}});
-        power(b, air, "b", settingsB, {{"MY", 2}, {"DL", 1}});
-        run(air, *a.xbee, *b.xbee, duration);
+        power(a, air, "a", o.a, o.bootMs, {{"MY", 1}, {"DL", 2}});
+        power(b, air, "b", o.b, o.bootMs, {{"MY", 2}, {"DL", 1}});
+        run(air, *a.xbee, *b.xbee, o.duration);
     } catch (const CLI::Error& error) {
         fmt::print(stderr, "icesoc-xbee: {}\n", error.what());
         return 2;

@@ -230,8 +230,8 @@ void link_accept(Link_Input* input, const U8* frame, U32 size) {
     } else {
         isFair = onPiggyback(session, frame, early);
     }
-    /* What was heard before may be an attacker's recording, and is no sign of life; link_onAck and
-     * the codec look themselves. */
+    /* A frame that was heard before may be an attacker's recording, and is no sign of life:
+     * link_onAck and the codec look themselves. */
     if (kind >= LINK_KIND_PIGGYBACK && duplicates == output->statistics.duplicates)
         output->heardAt = output->now;
     if (!isFair)

@@ -12,6 +12,7 @@ module mcb_backend #(
 ) (
     input  wire        clk_i,
     input  wire        rst_i,
+    `include "mcb_ports.vh"
     // from the arbiter
     input  wire        cmd_valid_i,
     input  wire        cmd_read_i,
@@ -24,21 +25,7 @@ module mcb_backend #(
     output wire        wr_ready_o,
     output wire        rd_valid_o,
     output wire [63:0] rd_data_o,
-    input  wire        rd_ready_i,
-    // MCB user port
-    output wire        mcb_cmd_en_o,
-    output wire [2:0]  mcb_cmd_instr_o,
-    output wire [5:0]  mcb_cmd_bl_o,
-    output wire [29:0] mcb_cmd_byte_addr_o,
-    input  wire        mcb_cmd_full_i,
-    output wire        mcb_wr_en_o,
-    output wire [7:0]  mcb_wr_mask_o,
-    output wire [63:0] mcb_wr_data_o,
-    input  wire        mcb_wr_full_i,
-    output wire        mcb_rd_en_o,
-    input  wire [63:0] mcb_rd_data_i,
-    input  wire        mcb_rd_empty_i,
-    input  wire        mcb_calib_done_i
+    input  wire        rd_ready_i
 );
     generate
         if (ADDR_WIDTH < 9 || ADDR_WIDTH > 30) begin : g_refused

@@ -15,39 +15,9 @@ module memory_mcb #(
 ) (
     input  wire                clk_i,
     input  wire                rst_i,
-    // memory ports, packed
-    input  wire [32*PORTS-1:0] npi_addr_i,
-    input  wire [PORTS-1:0]    npi_addr_req_i,
-    output wire [PORTS-1:0]    npi_addr_ack_o,
-    input  wire [PORTS-1:0]    npi_rnw_i,
-    input  wire [4*PORTS-1:0]  npi_size_i,
-    input  wire [PORTS-1:0]    npi_rmw_i,
-    input  wire [64*PORTS-1:0] npi_wr_data_i,
-    input  wire [8*PORTS-1:0]  npi_wr_be_i,
-    input  wire [PORTS-1:0]    npi_wr_push_i,
-    output wire [PORTS-1:0]    npi_wr_empty_o,
-    output wire [PORTS-1:0]    npi_wr_almost_full_o,
-    input  wire [PORTS-1:0]    npi_wr_flush_i,
-    output wire [64*PORTS-1:0] npi_rd_data_o,
-    output wire [4*PORTS-1:0]  npi_rd_word_o,
-    input  wire [PORTS-1:0]    npi_rd_pop_i,
-    output wire [PORTS-1:0]    npi_rd_empty_o,
-    input  wire [PORTS-1:0]    npi_rd_flush_i,
-    output wire [PORTS-1:0]    npi_init_done_o,
-    // MCB user port
-    output wire                mcb_cmd_en_o,
-    output wire [2:0]          mcb_cmd_instr_o,
-    output wire [5:0]          mcb_cmd_bl_o,
-    output wire [29:0]         mcb_cmd_byte_addr_o,
-    input  wire                mcb_cmd_full_i,
-    output wire                mcb_wr_en_o,
-    output wire [7:0]          mcb_wr_mask_o,
-    output wire [63:0]         mcb_wr_data_o,
-    input  wire                mcb_wr_full_i,
-    output wire                mcb_rd_en_o,
-    input  wire [63:0]         mcb_rd_data_i,
-    input  wire                mcb_rd_empty_i,
-    input  wire                mcb_calib_done_i
+    `include "npi_ports.vh"
+    `include "mcb_ports.vh"
+    output wire [PORTS-1:0]    npi_init_done_o
 );
     wire        cmd_valid, cmd_read, cmd_ready, wr_valid, wr_ready, rd_valid, rd_ready;
     wire [ADDR_WIDTH-1:0] cmd_addr;

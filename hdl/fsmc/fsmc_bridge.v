@@ -82,7 +82,7 @@ module fsmc_bridge #(
         end
     endgenerate
 
-    wire        wr_async, wr_sync, wr_ne2_async, taken, writing;
+    wire        wr_async, wr_sync, taken, writing;
     wire [1:0]  taken_ne, taken_be, seen;
     wire [24:0] taken_addr, at;
     wire [15:0] taken_data;
@@ -95,15 +95,30 @@ module fsmc_bridge #(
     wire clear      = !wr_async && !busy;
     wire clear_sync = !wr_sync && !busy;
 
-    fsmc_async u_fsmc_async (
-        .clk_i(clk_i),
-        .fsmc_a_i(address), .fsmc_d_i(fsmc_d_i), .fsmc_ne_n_i(fsmc_ne_n_i),
-        .fsmc_noe_n_i(fsmc_noe_n_i), .fsmc_nwe_n_i(fsmc_nwe_n_i), .fsmc_nbl_n_i(fsmc_nbl_n_i),
-        .wr_o(taken), .wr_ne_o(taken_ne), .wr_addr_o(taken_addr), .wr_data_o(taken_data), .wr_be_o(taken_be),
-        .wr_sync_o(wr_sync), .wr_async_o(wr_async), .wr_ne2_async_o(wr_ne2_async),
-        .hit_async_i(hit && clear), .safe_async_i(hit_safe && clear),
-        .reading_o(seen), .hit_o(hit_seen), .safe_o(safe_seen), .writing_o(writing), .at_o(at)
+    // A write happens when NWE rises while NE is low, as in an SRAM: that very edge registers address, data and byte
+    // lanes (the STM32 holds them for one HCLK after it). An access that is given up, NE rising first, therefore
+    // writes nothing, and NWE has no minimum high time.
+    // taken follows two to three clocks later, for one cycle. The next edge may come when cdc_bus has copied the write,
+    // which is two clocks and the paths' skew later, so 33.3 ns leave 13 ns for delays.
+    wire [1:0]  ne = ~fsmc_ne_n_i;
+    wire [44:0] held; // the write that NWE's edge has registered; wr_async is high until a clock after taken
+    cdc_bus #(.WIDTH(45)) u_write (
+        .src_clk_i(fsmc_nwe_n_i), .src_valid_i(|ne), .src_data_i({ne, ~fsmc_nbl_n_i, address, fsmc_d_i}),
+        .src_data_o(held), .pending_sync_o(wr_sync), .pending_async_o(wr_async),
+        .dst_clk_i(clk_i), .dst_valid_o(taken), .dst_data_o({taken_ne, taken_be, taken_addr, taken_data})
     );
+    wire wr_ne2_async = wr_async && held[44];
+
+    // A read of a register is hidden until the write before it has been handed over; else a late
+    // synchroniser would let it go first. A read of memory is not, since a write drops the read
+    // buffer.
+    wire [1:0] reads = ne & {!fsmc_noe_n_i && !wr_async, !fsmc_noe_n_i};
+    cdc_bit #(.WIDTH(5), .TOGETHER(3)) u_access (
+        .clk_i(clk_i),
+        .bit_async_i({reads, ne[0] && !fsmc_nwe_n_i, hit && clear, hit_safe && clear}),
+        .bit_sync_o({seen, writing, hit_seen, safe_seen})
+    );
+    cdc_copy #(.WIDTH(25)) u_at (.clk_i(clk_i), .bus_async_i(address), .bus_sync_o(at)); // a clock later than seen
 
     always @(posedge clk_i or posedge fsmc_noe_n_i)
         if (fsmc_noe_n_i)
@@ -213,7 +228,7 @@ module fsmc_bridge #(
         early     <= !starts && (second ? !safe_seen : early && !good[1]);
     end
 
-    wire unused = &{1'b0, npi_wr_empty_i, npi_wr_almost_full_i, npi_rd_word_i, 1'b0};
+    wire unused = &{1'b0, held[43:0], npi_wr_empty_i, npi_wr_almost_full_i, npi_rd_word_i, 1'b0};
 `ifdef COVER_POINTS
     read_excused: cover property (@(posedge clk_i) excuse && mem_reading);
     write_excused: cover property (@(posedge clk_i) excuse && !mem_reading);
@@ -221,5 +236,9 @@ module fsmc_bridge #(
     memory_read_waits: cover property (@(posedge clk_i) ne1 && !fsmc_noe_n_i && waits);
     memory_write_waits: cover property (@(posedge clk_i) ne1 && !fsmc_nwe_n_i && waits);
     register_waits: cover property (@(posedge clk_i) ne2 && waits);
+    memory_write: cover property (@(posedge clk_i) taken && taken_ne[0]);
+    register_write: cover property (@(posedge clk_i) taken && taken_ne[1]);
+    next_access_while_write_is_handed_on: cover property (@(posedge clk_i) wr_async && |ne && !fsmc_noe_n_i);
+    half_a_halfword: cover property (@(posedge clk_i) taken && taken_be != 2'b11);
 `endif
 endmodule

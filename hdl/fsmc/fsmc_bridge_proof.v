@@ -71,33 +71,33 @@ module fsmc_bridge_proof #(
     (* hierconn *) wire [24:0] \u_fsmc_bridge.taken_addr ;
     (* hierconn *) wire [15:0] \u_fsmc_bridge.taken_data ;
     (* hierconn, init = 1'b0 *) // flatten keeps no initial value of the joined wire
-                   wire \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.turned ,
-                        \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.u_cdc_bit.bit_meta ,
-                        \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.turned_sync ,
-                        \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.last ,
-                        \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.earlier ;
-    (* hierconn *) wire [44:0] \u_fsmc_bridge.u_fsmc_async.taken ;
-    (* hierconn, init = 5'd0 *) wire [4:0] \u_fsmc_bridge.u_fsmc_async.u_access.bit_meta , \u_fsmc_bridge.u_fsmc_async.u_access.bit_sync ;
+                   wire \u_fsmc_bridge.u_write.u_cdc_pulse.turned ,
+                        \u_fsmc_bridge.u_write.u_cdc_pulse.u_cdc_bit.bit_meta ,
+                        \u_fsmc_bridge.u_write.u_cdc_pulse.turned_sync ,
+                        \u_fsmc_bridge.u_write.u_cdc_pulse.last ,
+                        \u_fsmc_bridge.u_write.u_cdc_pulse.earlier ;
+    (* hierconn *) wire [44:0] \u_fsmc_bridge.held ;
+    (* hierconn, init = 5'd0 *) wire [4:0] \u_fsmc_bridge.u_access.bit_meta , \u_fsmc_bridge.u_access.bit_sync ;
     (* hierconn *) wire \u_fsmc_bridge.u_fsmc_registers.flushing , \u_fsmc_bridge.u_fsmc_registers.give ,
                         \u_fsmc_bridge.u_fsmc_registers.answering , \u_fsmc_bridge.u_fsmc_registers.half_read ,
                         \u_fsmc_bridge.u_fsmc_registers.half_write , \u_fsmc_bridge.u_fsmc_registers.asked_high ,
                         \u_fsmc_bridge.u_fsmc_registers.given_up , \u_fsmc_bridge.u_fsmc_registers.seen ;
     (* hierconn, init = 1'b0 *) wire \u_fsmc_bridge.u_fsmc_registers.u_done.bit_meta , \u_fsmc_bridge.u_fsmc_registers.u_done.bit_sync ;
     (* hierconn *) wire [31:0] \u_fsmc_bridge.u_fsmc_registers.word ;
-    (* hierconn *) wire \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.u_cdc_bit.late , \u_fsmc_bridge.u_fsmc_registers.u_done.late ;
-    (* hierconn *) wire [4:0] \u_fsmc_bridge.u_fsmc_async.u_access.late ;
+    (* hierconn *) wire \u_fsmc_bridge.u_write.u_cdc_pulse.u_cdc_bit.late , \u_fsmc_bridge.u_fsmc_registers.u_done.late ;
+    (* hierconn *) wire [4:0] \u_fsmc_bridge.u_access.late ;
     (* anyseq *) reg late_write, late_done, late_access;
-    assign \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.u_cdc_bit.late = late_write && LATE != 0;
+    assign \u_fsmc_bridge.u_write.u_cdc_pulse.u_cdc_bit.late = late_write && LATE != 0;
     assign \u_fsmc_bridge.u_fsmc_registers.u_done.late = late_done && LATE != 0;
-    assign \u_fsmc_bridge.u_fsmc_async.u_access.late = {5{late_access && LATE != 0}};
+    assign \u_fsmc_bridge.u_access.late = {5{late_access && LATE != 0}};
     wire clear = \u_fsmc_bridge.clear , excuse = \u_fsmc_bridge.excuse ;
     // `turns` is a write's toggle on its way through cdc_pulse: the source's flip-flop first, then those in clk_i to the last.
-    wire [4:0]  turns = {\u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.turned ,
-                         \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.u_cdc_bit.bit_meta ,
-                         \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.turned_sync ,
-                         \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.last ,
-                         \u_fsmc_bridge.u_fsmc_async.u_write.u_cdc_pulse.earlier };
-    wire [44:0] taken = \u_fsmc_bridge.u_fsmc_async.taken ; // registered by NWE's edge
+    wire [4:0]  turns = {\u_fsmc_bridge.u_write.u_cdc_pulse.turned ,
+                         \u_fsmc_bridge.u_write.u_cdc_pulse.u_cdc_bit.bit_meta ,
+                         \u_fsmc_bridge.u_write.u_cdc_pulse.turned_sync ,
+                         \u_fsmc_bridge.u_write.u_cdc_pulse.last ,
+                         \u_fsmc_bridge.u_write.u_cdc_pulse.earlier };
+    wire [44:0] taken = \u_fsmc_bridge.held ; // registered by NWE's edge
     wire [42:0] copy  = {\u_fsmc_bridge.taken_ne , \u_fsmc_bridge.taken_addr , \u_fsmc_bridge.taken_data };
 
     // ---- These registers hold the pins of a step ago, and the history of the access
@@ -165,7 +165,7 @@ module fsmc_bridge_proof #(
         assume (!(was_strobe && !was_selected) || !strobe || !selected);
         assume (!held || !strobe);
         assume (!ended || wrote); // a read ends with NE and NOE together, at least two clocks after NWAIT (FSMC: 4 HCLK)
-        // Edges of NWE are at least three clocks apart (fsmc_async), and four after an access that was given up.
+        // Edges of NWE are at least three clocks apart (fsmc_bridge), and four after an access that was given up.
         assume (!wrote || rest >= 3'd3);
         assume (!(given_up && access) || rest >= 3'd4);
     end

@@ -116,7 +116,7 @@
 
     // ---- The harness's notes agree with the bridge's registers, all of this step
     wire [3:0]  turn = turns[4:1] ^ turns[3:0];
-    wire        s0 = \u_fsmc_bridge.u_fsmc_async.u_access.bit_meta [4], s1 = \u_fsmc_bridge.u_fsmc_async.u_access.bit_sync [4];
+    wire        s0 = \u_fsmc_bridge.u_access.bit_meta [4], s1 = \u_fsmc_bridge.u_access.bit_sync [4];
     wire        flushing   = \u_fsmc_bridge.u_fsmc_registers.flushing , give = \u_fsmc_bridge.u_fsmc_registers.give ;
     wire        answering  = \u_fsmc_bridge.u_fsmc_registers.answering , seen = \u_fsmc_bridge.u_fsmc_registers.seen ;
     wire        half_read  = \u_fsmc_bridge.u_fsmc_registers.half_read , half_write = \u_fsmc_bridge.u_fsmc_registers.half_write ;
@@ -159,7 +159,7 @@
         assert (!gone2_n || (!half_sure_n && !low_sure_n));
     end
     always @* if (up) begin
-        // A write's toggle moves through fsmc_async by one flip-flop a clock.
+        // A write's toggle moves through cdc_pulse by one flip-flop a clock.
         case (since_n)
             3'd0:    assert (turn == 4'b1000 || turn == 4'b1001);
             3'd1:    assert (turn == 4'b0100);

@@ -19,17 +19,4 @@
     input  wire        modem_cts_n_i,
     output wire        modem_rts_n_o,
     output wire        modem_reset_n_o,
-    // MCB user port
-    output wire        mcb_cmd_en_o,
-    output wire [2:0]  mcb_cmd_instr_o,
-    output wire [5:0]  mcb_cmd_bl_o,
-    output wire [29:0] mcb_cmd_byte_addr_o,
-    input  wire        mcb_cmd_full_i,
-    output wire        mcb_wr_en_o,
-    output wire [7:0]  mcb_wr_mask_o,
-    output wire [63:0] mcb_wr_data_o,
-    input  wire        mcb_wr_full_i,
-    output wire        mcb_rd_en_o,
-    input  wire [63:0] mcb_rd_data_i,
-    input  wire        mcb_rd_empty_i,
-    input  wire        mcb_calib_done_i,
+    `include "mcb_ports.vh"

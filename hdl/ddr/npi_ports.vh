@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+//
+// npi_ports: PORTS memory ports (docs/memory.md) on the memory's side, packed: port p in bits p, 64p+63..64p, ...
+// A module's port list has them before other ports.
+
+    input  wire [32*PORTS-1:0] npi_addr_i,
+    input  wire [PORTS-1:0]    npi_addr_req_i,
+    output wire [PORTS-1:0]    npi_addr_ack_o,
+    input  wire [PORTS-1:0]    npi_rnw_i,
+    input  wire [4*PORTS-1:0]  npi_size_i,
+    input  wire [PORTS-1:0]    npi_rmw_i,
+    input  wire [64*PORTS-1:0] npi_wr_data_i,
+    input  wire [8*PORTS-1:0]  npi_wr_be_i,
+    input  wire [PORTS-1:0]    npi_wr_push_i,
+    output wire [PORTS-1:0]    npi_wr_empty_o,
+    output wire [PORTS-1:0]    npi_wr_almost_full_o,
+    input  wire [PORTS-1:0]    npi_wr_flush_i,
+    output wire [64*PORTS-1:0] npi_rd_data_o,
+    output wire [4*PORTS-1:0]  npi_rd_word_o,
+    input  wire [PORTS-1:0]    npi_rd_pop_i,
+    output wire [PORTS-1:0]    npi_rd_empty_o,
+    input  wire [PORTS-1:0]    npi_rd_flush_i,

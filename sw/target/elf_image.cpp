@@ -19,10 +19,14 @@ template <class T> T at(const std::vector<uint8_t>& file, size_t offset) {
     return value;
 }
 
-uint32_t addWord(uint32_t crc, uint32_t word) {
-    crc ^= word;
-    for (int bit = 0; bit < 32; ++bit)
-        crc = crc & 0x80000000 ? crc << 1 ^ 0x04C11DB7 : crc << 1;
+// CRC of the STM32's unit (RM0033, 3.2) over all words but the last, its own.
+uint32_t checksum(const std::vector<uint8_t>& image) {
+    uint32_t crc = 0xFFFFFFFF;
+    for (size_t offset = 0; offset + 4 < image.size(); offset += 4) {
+        crc ^= at<uint32_t>(image, offset);
+        for (int bit = 0; bit < 32; ++bit)
+            crc = crc & 0x80000000 ? crc << 1 ^ 0x04C11DB7 : crc << 1;
+    }
     return crc;
 }
 
@@ -100,18 +104,13 @@ std::string ElfImage::functionAt(uint32_t address) const {
     return after == functions_.begin() ? "?" : std::prev(after)->second;
 }
 
-uint32_t ElfImage::wordAt(uint32_t address) const {
+std::vector<uint8_t> ElfImage::image() const {
+    const uint32_t begin = symbol("image_begin");
+    std::vector<uint8_t> image(symbol("image_end") + 4 - begin, 0xFF); // erased
     for (const Segment& s : segments_)
-        if (address >= s.address && address + 4 <= s.address + s.bytes.size())
-            return at<uint32_t>(s.bytes, address - s.address);
-    return 0xFFFFFFFF; // erased
-}
-
-uint32_t ElfImage::checksum() const {
-    uint32_t crc = 0xFFFFFFFF;
-    for (uint32_t a = symbol("image_begin"); a < symbol("image_end"); a += 4)
-        crc = addWord(crc, wordAt(a));
-    return crc;
+        if (s.address >= begin && s.address + s.bytes.size() <= begin + image.size())
+            std::copy(s.bytes.begin(), s.bytes.end(), image.begin() + (s.address - begin));
+    return image;
 }
 
 std::vector<uint8_t> ElfImage::movedTo(uint32_t address) const {
@@ -119,11 +118,7 @@ std::vector<uint8_t> ElfImage::movedTo(uint32_t address) const {
     if (relocations_.empty())
         throw std::runtime_error("firmware '" + path_ +
                                  "' was linked without --emit-relocs: it cannot be moved");
-    std::vector<uint8_t> image(end + 4 - begin, 0xFF);
-    const auto word = [&image](uint32_t offset) { return image.data() + offset; };
-    for (const Segment& s : segments_)
-        if (s.address >= begin && s.address + s.bytes.size() <= begin + image.size())
-            std::copy(s.bytes.begin(), s.bytes.end(), word(s.address - begin));
+    std::vector<uint8_t> image = this->image();
     for (const Relocation& r : relocations_) {
         if (r.type == R_ARM_THM_PC22 || r.type == R_ARM_THM_JUMP24 || r.type == R_ARM_NONE)
             continue; // a relative address does not change
@@ -134,21 +129,18 @@ std::vector<uint8_t> ElfImage::movedTo(uint32_t address) const {
             continue; // RAM and registers stay where they are
         for (const Segment& s : segments_)
             if (r.at >= s.runAt && r.at + 4 <= s.runAt + s.bytes.size()) {
-                uint8_t* where = word(s.address - begin + (r.at - s.runAt));
-                uint32_t value = at<uint32_t>(image, static_cast<size_t>(where - image.data()));
-                value += address - begin;
-                std::memcpy(where, &value, sizeof value);
+                const uint32_t where = s.address - begin + (r.at - s.runAt);
+                const uint32_t value = at<uint32_t>(image, where) + address - begin;
+                std::memcpy(&image[where], &value, sizeof value);
             }
     }
-    uint32_t crc = 0xFFFFFFFF;
-    for (uint32_t offset = 0; offset < end - begin; offset += 4)
-        crc = addWord(crc, at<uint32_t>(image, offset));
-    std::memcpy(word(end - begin), &crc, sizeof crc);
+    const uint32_t crc = checksum(image);
+    std::memcpy(&image[end - begin], &crc, sizeof crc);
     return image;
 }
 
 void ElfImage::stamp() const {
-    uint32_t end = symbol("image_end"), crc = checksum();
+    const uint32_t end = symbol("image_end"), crc = checksum(image());
     std::fstream out(path_, std::ios::in | std::ios::out | std::ios::binary);
     for (const Segment& s : segments_)
         if (end >= s.address && end + 4 <= s.address + s.bytes.size()) {

@@ -29,9 +29,7 @@ public:
     // Name of the function at an address, "?" where there is none.
     std::string functionAt(uint32_t address) const;
 
-    // CRC of the STM32's unit (RM0033, 3.2) over the words image_begin .. image_end.
-    uint32_t checksum() const;
-    // Writes the checksum into the file, where image_end is.
+    // Writes the checksum of the words image_begin .. image_end into the file, where image_end is.
     void stamp() const;
 
     // The bytes of flash from image_begin on, relocated to another address, checksum included. For
@@ -44,7 +42,7 @@ private:
     };
     void readRelocations(const std::vector<uint8_t>& file, const Elf32_Ehdr& header,
                          const Elf32_Shdr& section);
-    uint32_t wordAt(uint32_t address) const;
+    std::vector<uint8_t> image() const; // from image_begin on, with the checksum's word
 
     std::string path_;
     std::vector<Segment> segments_;

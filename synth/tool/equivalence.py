@@ -133,12 +133,17 @@ def solved(file, commands, is_plain, options, seconds):
 
 
 def simulated(tests, junit):
-    """(What these tests, by prefixes, show by a JUnit file, whether all passed, their seconds)."""
-    cases = [case for case in xml.etree.ElementTree.parse(junit).iter("testcase")
-             if re.match(rf"({'|'.join(tests.split())})[^a-z_]", case.get("name"))] if junit else []
+    """(What these tests, by prefixes, show by a JUnit file, whether each ran and all passed, their
+    seconds)."""
+    cases = list(xml.etree.ElementTree.parse(junit).iter("testcase")) if junit else []
+    of = {prefix: [case for case in cases if re.match(f"{prefix}[^a-z_]", case.get("name"))]
+          for prefix in tests.split()}
+    cases = [case for some in of.values() for case in some]
     red = sum(case.get("status") != "run" for case in cases)
-    return (f"simulated by {tests}: {len(cases)} tests" + f", {red} failed" * bool(red),
-            bool(cases) and not red, sum(float(case.get("time")) for case in cases))
+    missing = [prefix for prefix, some in of.items() if not some]
+    said = f"simulated by {tests}: {len(cases)} tests" + f", {red} failed" * bool(red)
+    return (said + f", none of {', '.join(missing)}" * bool(missing), not red and not missing,
+            sum(float(case.get("time")) for case in cases))
 
 
 def table_of(plan, library, options, models, o):

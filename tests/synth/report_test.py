@@ -267,9 +267,6 @@ class Cases(Script):
         self.assertEqual(fault(page), "")
         self.has('"peer": 100', file="out/report.json")
 
-    def compare(self, base, status=0):
-        self.made("synth", f"BASE={base}", status=status)
-
     def test_compare(self):
         """What has changed since another commit, or between two, as Markdown."""
         self.users_tree()
@@ -283,14 +280,14 @@ class Cases(Script):
             repository()
             commit("The first one")
         self.ask(PROGRAM, cwd=here)
-        self.compare("HEAD..")
+        self.made("synth", "BASE=HEAD..")
         self.has("^No figure of any design differs", "^no breaking change")
         designs = here / "synth/designs.json"
         edit(designs, '"WIDTH": 16', '"WIDTH": 17')
         edit(designs, '"name": "wide"', '"name": "wider"')
         grow(here / "hdl/blocks")
         self.ask(PROGRAM, cwd=here)
-        self.compare("HEAD..")
+        self.made("synth", "BASE=HEAD..")
         grown = r"^\| whole \| .* \| \d+ -> \d+ \(\+12\) \|"
         # Nobody knows what was measured of files without a commit.
         self.has(r"^Utilisation since .* \(The first one\):", grown, r"^\| wide \| gone \| gone \|",
@@ -299,7 +296,7 @@ class Cases(Script):
         # Over budget the difference matters most: it is told, and the status is that of the budget.
         kept = designs.read_text()
         edit(designs, '"ff": 30', '"ff": 20')
-        self.compare("HEAD", status=None)
+        self.made("synth", "BASE=HEAD", status=None)
         self.has("^FAILED whole", grown)
         write(designs, kept)
         # The same between two commits, whatever is here now; tests are those of each.
@@ -314,14 +311,14 @@ class Cases(Script):
                                (names[1], ["ap", "bf", "dp", "ep"]))))
         write(here / "hdl/blocks/pair.v", "module pair\n")
         (here / "build/synth/report.json").unlink()
-        self.compare("HEAD~1..HEAD")
+        self.made("synth", "BASE=HEAD~1..HEAD")
         self.has(r"^Utilisation since .* \(The first one\), at .* \(The second one\):", grown,
                  r"^\| \w+ \| 4 passed, 1 failed \|",
                  "^breaking   pair: MODE .word 0. is gone$", "^Tests that fail now: test_a.X$",
                  "^Tests that pass again: test_b.X$", "^Tests that are new: test_c.X$",
                  "^Tests that did not run: test_d.X$")
         for wrong in "nonsense", "HEAD..nonsense":
-            self.compare(wrong, status=None)
+            self.made("synth", f"BASE={wrong}", status=None)
             self.has("there is no commit BASE=nonsense")
 
     def test_made(self):
@@ -357,14 +354,6 @@ class Cases(Script):
                 os.utime("out/sim/whole.v", (age, age))
         self.assertEqual(Path("out/sim/whole.v").stat().st_mtime, 100)
 
-        def differs(fault):
-            netlist = json.loads(good)
-            (module,) = netlist["modules"].values()
-            fault(module["cells"].values())
-            write(file, json.dumps(netlist))
-            self.run_program("--equivalent", "--design", "whole", status=1)
-            self.has("(?m)^whole +differs after")
-
         def function(cells):
             cell = next(cell for cell in cells if cell["type"] == "LUT2")
             cell["parameters"]["INIT"] = cell["parameters"]["INIT"].translate({48: 49, 49: 48})
@@ -379,7 +368,12 @@ class Cases(Script):
             pins["DIA"].reverse()
 
         for fault in function, enable, pins:
-            differs(fault)
+            netlist = json.loads(good)
+            (module,) = netlist["modules"].values()
+            fault(module["cells"].values())
+            write(file, json.dumps(netlist))
+            self.run_program("--equivalent", "--design", "whole", status=1)
+            self.has("(?m)^whole +differs after")
 
     def test_edif(self):
         """The netlist that ISE reads has every cell that Yosys counts, once, and well-formed

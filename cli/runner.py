@@ -123,8 +123,9 @@ def logged(words, log, failed, env=None, cwd=None):
 
 @contextlib.contextmanager
 def lock(path, busy=None, refuse=None):
-    """Holds a lock, and returns its descriptor. If it is taken: prints `busy` and waits, or ends
-    with `refuse`."""
+    """Holds a lock, a file whose folder it makes, or a folder, and returns its descriptor. If it is
+    taken: prints `busy` and waits, or ends with `refuse`."""
+    Path(path).parent.mkdir(parents=True, exist_ok=True)
     fd = os.open(path, os.O_RDONLY if os.path.isdir(path) else os.O_RDWR | os.O_CREAT, 0o666)
     try:
         try:

@@ -54,11 +54,9 @@ def into_slot(source, slot, words, folder, ghdl):
     """Lets new_foreign.py write a slot's folder. `words`: module, bus, more; patterns of its files
     in the source's folder."""
     top, bus, *more = words.split()
-    is_file = [not ("=" in word or word.startswith("DEFINE:")) for word in more]
-    files = [file for word, its in zip(more, is_file) if its for file in sorted(source.glob(word))]
-    run(["ip/new_foreign.py", slot, top, bus, folder / slot,
-         *(word for word, its in zip(more, is_file) if not its), *files],
-        stdout=-3, env={"GHDL": ghdl})
+    rest = [part for word in more for part in (
+        [word] if "=" in word or word.startswith("DEFINE:") else sorted(source.glob(word)))]
+    run(["ip/new_foreign.py", slot, top, bus, folder / slot, *rest], stdout=-3, env={"GHDL": ghdl})
     return folder / slot
 
 
@@ -114,6 +112,5 @@ def examples(values):
         raise Stop(f"CORES: there is no '{sorted(unknown)[0]}': {' '.join(sorted(known))}", 2)
     if not values.built:
         run(["cmake/setup.sh", "--tests"])
-    Path("build").mkdir(exist_ok=True)
     with lock("build/foreign.lock", refuse="another one puts cores into slots in this folder"):
         return put_and_fly(values, listed, known)

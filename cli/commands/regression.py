@@ -114,7 +114,6 @@ def bisect(values):
         return run(["git", "log", "--oneline", f"{good}..{bad}"])
     program = (configured(values, "regress", tests=True) / "tests/regress/regress").absolute()
     tree = Path("build/bisect/tree").absolute()
-    tree.parent.mkdir(parents=True, exist_ok=True)
     with lock("build/bisect/lock", refuse="another one runs in this folder"):
         run(["git", "worktree", "remove", "--force", tree], check=False, stderr=-3)
         run(["git", "worktree", "prune"])

@@ -127,7 +127,6 @@ def compare(build, jobs, base, head=None):
     """The changes since a commit, or between two, of utilisation, registers and tests, as Markdown
     for a pull request."""
     program, folder = (build / "synth/utilisation").absolute(), Path("build/synth")
-    folder.mkdir(parents=True, exist_ok=True)
     with lock(folder / "base.lock", busy="waiting for another comparison in this folder ..."):
         run([*GIT, "worktree", "prune"])
         synthesise(program, jobs, base, folder / "base")

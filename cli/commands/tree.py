@@ -66,7 +66,6 @@ def commands(values):
     if values.only and values.brief:
         return run_all(values.only)
     if values.brief:
-        Path("build").mkdir(exist_ok=True)
         with lock("build/commands.lock", refuse="all commands run in this folder already"):
             shutil.rmtree("build/brief", ignore_errors=True)
             return run_all("")

@@ -1,0 +1,123 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""lists: the commands there are, their help and manual, and what files and terminal get of them."""
+import contextlib, io, re, shlex, shutil, subprocess, sys, tempfile, unittest
+from pathlib import Path
+
+from doors import TREE, ask
+from cli import build_folder, command, flight, runner
+from cli.commands.tree import manual
+
+
+class Lists(unittest.TestCase):
+    def test_every_command_has_a_short_form_and_the_list_is_short(self):
+        self.assertEqual([name for name, each in command.COMMANDS.items() if not each.brief], [])
+        self.assertLessEqual(len({name.split()[0] for name in command.COMMANDS}), 20)
+        for name, each in command.COMMANDS.items():
+            for words in [*each.brief, *each.examples]:
+                found, rest = command.find(shlex.split(words.partition(" && ")[0]))
+                found.parser().parse_args(rest)
+                self.assertTrue(found)
+            self.assertTrue(each.help and name in command.find(name.split())[0].name)
+
+    def test_pages_name_commands_that_there_are(self):
+        value = r"""[A-Z][A-Z0-9_]*=(?:'[^']*'|"[^"]*"|[^\s`'"]*)"""
+        verbs = {each.make for each in command.COMMANDS.values()} | set(command.ALIASES)
+        for page in [TREE / "README.md", TREE / "CONTRIBUTING.md", *sorted(TREE.glob("docs/*.md"))]:
+            quoted = "\n\n".join(re.findall(r"```.*?```|``.*?``|`[^`]+`", page.read_text(), re.S))
+            for before, verb, after in re.findall(
+                    rf"\bmake ((?:{value} )*)([a-z][a-z-]*)((?:[ \n]+\[?{value})*)", quoted):
+                self.assertIn(verb, verbs, page.name)
+                known = {o.variable for each in command.COMMANDS.values() if each.make == verb
+                         for o in each.options}
+                self.assertLessEqual(
+                    set(re.findall(r"(?<![\w$])([A-Z][A-Z0-9_]*)=", before + after)), known,
+                    f"{page.name}: make {verb}")
+            for words in re.findall(r"\./icesoc ([a-z][^`\n#|]*)", quoted):
+                command.find(words.split())
+
+    def test_the_schema_is_that_of_the_options_and_holds_a_flight(self):
+        self.assertEqual((TREE / "cli/flight.schema.json").read_text(), flight.schema_text())
+        good = {"version": flight.VERSION, **{o.field: rule["default"] for o in flight.FIELDS
+                                 if (rule := flight.schema()["properties"][o.field])}}
+        self.assertIsNone(flight.wrong(good))
+        for change in ({"loss": 2}, {"loss": "0"}, {"cpu": "z80"}, {"cores": "fir"}, {
+                "version": 1}, {"more": 1}, {"open": 1}):
+            self.assertTrue(flight.wrong({**good, **change}), change)
+        del good["seed"]
+        self.assertIn("'seed' is missing", flight.wrong(good))
+
+    def test_a_recording_that_is_cut_has_no_span(self):
+        with tempfile.TemporaryDirectory() as work:
+            for text, span in (('{"ns":0,"digest":1}\n{"ns":3000000000,"down":2}\n',
+                                "FROM=0.000 TO=3.000"), ('{"ns":0,"digest":1}\n{"ns":30', None)):
+                Path(work, "flight.jsonl").write_text(text)
+                self.assertEqual(flight.last_span(work), span)
+
+    def test_a_long_subject_is_refused(self):
+        with tempfile.TemporaryDirectory() as work:
+            for length, status in ((72, 0), (73, 1)):
+                Path(work, "message").write_text("# a comment\n" + "x" * length + "\n\nWhy.\n")
+                self.assertEqual(ask(".ci/hooks/commit-msg", f"{work}/message")[0], status)
+
+    def test_a_certificate_is_signed_by_the_authority_beside_it(self):
+        with tempfile.TemporaryDirectory() as work:
+            for name in ("pilot", "observer"):
+                status, _ = ask("./icesoc", "key", f"{work}/{name}.pem", "--certificate")
+                self.assertEqual(status, 0)
+            status, said = ask("openssl", "verify", "-CAfile", f"{work}/authority.pem",
+                               f"{work}/pilot.pem", f"{work}/observer.pem")
+            self.assertEqual((status, said.count("OK")), (0, 2), said)
+            subject = ask("openssl", "x509", "-noout", "-subject", "-in", f"{work}/pilot.pem")[1]
+            self.assertRegex(subject, "subject=CN ?= ?pilot")
+            # It signs no other.
+            self.assertIn("CA:FALSE", ask("openssl", "x509", "-noout", "-text", "-in",
+                                          f"{work}/pilot.pem")[1])
+            self.assertEqual(Path(work, "pilot.pem").stat().st_mode & 0o777, 0o600)
+            self.assertIn("never overwritten", ask("./icesoc", "key", f"{work}/pilot.pem",
+                                                   "--certificate")[1])
+            Path(work, "authority.key").unlink()
+            self.assertIn("one is missing", ask("./icesoc", "key", f"{work}/new.pem",
+                                                "--certificate")[1])
+
+    def test_a_build_is_one_line_and_a_file(self):
+        with tempfile.TemporaryDirectory() as work:
+            tool, log = Path(work, "tool"), Path(work, "log")
+            tool.write_text("#!/bin/sh\necho '[1/2] first'\necho 'odd: a warning'\n"
+                            "echo '[2/2] second'\nexit 3\n")
+            tool.chmod(0o755)
+            code = f"from cli.build_folder import *; run_ninja(['{tool}'], '{log}', check=False)"
+            words = [sys.executable, "-c", code]
+            self.assertEqual(ask(*words)[1], "odd: a warning\n")
+            shown = ask("script", "-qec", shlex.join(words), "/dev/null")[1]
+            self.assertEqual(re.sub(r"\s*\x1b\[K", "|", shown),
+                             "|[1/2] 0:00 left first|odd: a warning|[2/2] 0:00 left second|")
+            self.assertIn("[2/2] second", log.read_text())
+            self.assertRaisesRegex(runner.Stop, f"the build failed .* {log}",
+                                   build_folder.run_ninja, [str(tool)], log)
+
+    def test_a_table_tells_what_failed_and_what_lacks_a_network(self):
+        with tempfile.TemporaryDirectory() as work, contextlib.redirect_stdout(
+                io.StringIO()) as out:
+            rows = runner.Table(f"{work}/rows")
+            rows.add("good", 0, 1.5, "a | b")
+            rows.add("far", 77, 0)
+            rows.end()
+            self.assertRegex(out.getvalue(), "(?s)skipped: far.*1 commands, 2 s")
+            rows.add("bad", 3, 0)
+            self.assertRaisesRegex(runner.Stop, "failed: bad ", rows.end)
+            self.assertIn("| good | 0 | 1.5 | a / b |", Path(work, "rows.md").read_text())
+
+    def test_version_and_manual_are_there(self):
+        self.assertRegex(ask("./icesoc", "--version")[1], r"^icesoc \d+\.\d+\.\d+\n")
+        said = subprocess.run(["groff", "-man", "-ww", "-Tutf8", "-z"], input=manual(),
+                              capture_output=True, text=True).stderr \
+            if shutil.which("groff") else ""
+        self.assertEqual(said, "")
+        shown = ask("./icesoc", "run", "--help")[1]
+        for option in command.COMMANDS["run"].options:
+            self.assertTrue(not option.listed or f"--{option.name}" in shown, option.name)
+
+
+if __name__ == "__main__":
+    unittest.main()

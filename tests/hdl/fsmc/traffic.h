@@ -10,6 +10,22 @@
 
 constexpr uint32_t ddr = MAP_DDR_WINDOW, control = MAP_CONTROL_WINDOW;
 
+// What the memory was given, byte by byte.
+struct Written {
+    std::map<uint32_t, uint8_t> bytes;
+
+    void set(uint32_t a, unsigned size, uint32_t v) {
+        for (unsigned i = 0; i < size; ++i)
+            bytes[a + i] = static_cast<uint8_t>(v >> (8 * i));
+    }
+    uint32_t value(uint32_t a, unsigned size) {
+        uint32_t v = 0;
+        for (unsigned i = 0; i < size; ++i)
+            v |= static_cast<uint32_t>(bytes[a + i]) << (8 * i);
+        return v;
+    }
+};
+
 // Accesses of all widths to both windows and to another chip's: to memory in runs with jumps
 // between them; registers also one right behind the other, so that each write waits for the one
 // before.
@@ -19,18 +35,8 @@ void traffic(BridgeBench<Bridge>& b, uint64_t seed, int accesses, uint32_t page 
     for (uint32_t reg : {0xA0000000u, 0xA0000004u, 0xA0000104u}) // NE3, another chip, as NE1
         m.write32(reg + 0x10, m.read32(reg));
     Random random(seed);
-    std::map<uint32_t, uint8_t> memory;
+    Written memory;
     std::map<uint32_t, uint32_t> words;
-    auto set = [&](uint32_t a, unsigned bytes, uint32_t v) {
-        for (unsigned i = 0; i < bytes; ++i)
-            memory[a + i] = static_cast<uint8_t>(v >> (8 * i));
-    };
-    auto value = [&](uint32_t a, unsigned bytes) {
-        uint32_t v = 0;
-        for (unsigned i = 0; i < bytes; ++i)
-            v |= static_cast<uint32_t>(memory[a + i]) << (8 * i);
-        return v;
-    };
     uint32_t places[16], place = 0; // anywhere in the window
     for (uint32_t& each : places)
         each = random.below(0x3FF00) << 8;
@@ -41,21 +47,21 @@ void traffic(BridgeBench<Bridge>& b, uint64_t seed, int accesses, uint32_t page 
         uint32_t half = place & ~1u, whole = place & ~3u;
         switch (random.below(10)) {
         case 0:
-            m.write8(ddr + place, static_cast<uint8_t>(v)), set(place, 1, v), place += 1;
+            m.write8(ddr + place, static_cast<uint8_t>(v)), memory.set(place, 1, v), place += 1;
             break;
         case 1:
             for (unsigned k = 1 + random.below(20); k; --k, half += 2)
-                m.write16(ddr + half, static_cast<uint16_t>(v * k)), set(half, 2, v * k);
+                m.write16(ddr + half, static_cast<uint16_t>(v * k)), memory.set(half, 2, v * k);
             place = half;
             break;
         case 2:
-            m.write32(ddr + whole, v), set(whole, 4, v), place += 4;
+            m.write32(ddr + whole, v), memory.set(whole, 4, v), place += 4;
             break;
         case 3:
-            EXPECT_EQ(m.read8(ddr + place), value(place, 1)) << "access " << i;
+            EXPECT_EQ(m.read8(ddr + place), memory.value(place, 1)) << "access " << i;
             break;
         case 4:
-            EXPECT_EQ(m.read32(ddr + whole), value(whole, 4)) << "access " << i;
+            EXPECT_EQ(m.read32(ddr + whole), memory.value(whole, 4)) << "access " << i;
             break;
         case 5:
             for (unsigned k = 0; k < 8; ++k)
@@ -70,7 +76,7 @@ void traffic(BridgeBench<Bridge>& b, uint64_t seed, int accesses, uint32_t page 
             break;
         default:
             half -= half % 256 < 20 ? 0 : 2 * random.below(10);
-            EXPECT_EQ(m.read16(ddr + half), value(half, 2)) << "access " << i;
+            EXPECT_EQ(m.read16(ddr + half), memory.value(half, 2)) << "access " << i;
             place += 2;
         }
         if (random.chance(0.1))
@@ -78,7 +84,7 @@ void traffic(BridgeBench<Bridge>& b, uint64_t seed, int accesses, uint32_t page 
     }
     m.read32(control); // after which all writes have reached the memory
     EXPECT_EQ(b.errors, 0u);
-    for (auto [at, v] : memory)
+    for (auto [at, v] : memory.bytes)
         EXPECT_EQ(b.memory.byte(page | at), v) << std::hex << at;
     for (auto [at, v] : words)
         EXPECT_EQ(b.slave.words[at], v) << "register " << at;

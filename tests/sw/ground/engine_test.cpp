@@ -17,6 +17,9 @@ namespace {
 
 class EngineTest : public ::testing::Test {
 protected:
+    EngineTest() {
+        rig_.with([&] { rig_.uav.echo = true; });
+    }
     XBeeAT::Settings settings() {
         XBeeAT::Settings s;
         s.device = rig_.pty.path();
@@ -26,18 +29,7 @@ protected:
     }
     std::shared_ptr<XBeeAT::Peer> start() { return start(settings()); }
     std::shared_ptr<XBeeAT::Peer> start(const XBeeAT::Settings& settings) {
-        return XBeeAT::Engine::get(settings, [this](int level, const std::string& text) {
-            std::lock_guard<std::mutex> lock(logMutex_);
-            log_ += std::to_string(level) + " " + text + "\n";
-        });
-    }
-    std::string log() {
-        std::lock_guard<std::mutex> lock(logMutex_);
-        return log_;
-    }
-    bool logged(const std::string& text) {
-        std::lock_guard<std::mutex> lock(logMutex_);
-        return log_.find(text) != std::string::npos;
+        return XBeeAT::Engine::get(settings, log_.taker());
     }
     // A call and its answer, byte by byte.
     void echoes(int fd, uint8_t tag, size_t size = 30) {
@@ -45,14 +37,14 @@ protected:
         Bytes got = rig_.read(fd, size);
         EXPECT_TRUE(got == message(tag, size))
             << got.size() << " of " << size << " bytes; the engine's log:\n"
-            << log();
+            << log_.text();
     }
     // A call of the UAV's reaches the listener.
     void isCalled(XBeeAT::Peer& engine, int ready) {
         rig_.with([&] {
-            Link_openChannel(rig_.link(), 3);
+            Link_openChannel(rig_.uav.link(), 3);
             Bytes m = message(5);
-            Link_send(rig_.link(), 3, m.data(), static_cast<U32>(m.size()), 0);
+            Link_send(rig_.uav.link(), 3, m.data(), static_cast<U32>(m.size()), 0);
         });
         ASSERT_TRUE(rig_.isReadable(ready));
         int fd = engine.accept();
@@ -61,13 +53,11 @@ protected:
         close(fd);
     }
 
-    std::mutex logMutex_;
-    std::string log_;
+    EngineLog log_;
     Rig rig_{testSeed()};
 };
 
 TEST_F(EngineTest, MoreProgramsThanChannelsWaitTheirTurn) {
-    rig_.with([&] { rig_.echo = true; });
     auto engine = start();
     int fds[3];
     for (int& fd : fds)
@@ -80,14 +70,13 @@ TEST_F(EngineTest, MoreProgramsThanChannelsWaitTheirTurn) {
     close(fds[0]);
     close(fds[1]);
     echoes(last, 3);
-    rig_.with([&] { EXPECT_EQ(rig_.opened.back(), std::make_pair(1, 1)); });
+    rig_.with([&] { EXPECT_EQ(rig_.uav.opened.back(), std::make_pair(1, 1)); });
     EXPECT_EQ(engine->waiting(), 0u);
     close(next);
     close(last);
 }
 
 TEST_F(EngineTest, AModemThatIsResetInFlightIsSetUpAgain) {
-    rig_.with([&] { rig_.echo = true; });
     auto engine = start();
     int fd = engine->connect(0);
     echoes(fd, 1);
@@ -103,17 +92,16 @@ TEST_F(EngineTest, AModemThatIsResetInFlightIsSetUpAgain) {
     close(fd);
     EXPECT_EQ(rig_.with([&] { return rig_.ground->parameter("BD"); }), 7u);
     EXPECT_EQ(rig_.with([&] { return rig_.ground->parameter("AP"); }), 1u);
-    EXPECT_TRUE(logged("Setting the modem up again"));
+    EXPECT_TRUE(log_.has("Setting the modem up again"));
 }
 
 TEST_F(EngineTest, AMessageThatIsTooLongEndsItsConnectionOnly) {
-    rig_.with([&] { rig_.echo = true; });
     auto engine = start();
     int good = engine->connect(0), bad = engine->connect(1);
     echoes(good, 1);
     writeAll(bad, message(2, 9000));
     EXPECT_TRUE(rig_.read(bad, 1).empty());
-    EXPECT_TRUE(logged("does not fit the radio link"));
+    EXPECT_TRUE(log_.has("does not fit the radio link"));
     echoes(good, 3);
     close(good);
     close(bad);
@@ -123,50 +111,48 @@ TEST_F(EngineTest, AMessageThatIsTooLongEndsItsConnectionOnly) {
 TEST_F(EngineTest, WhatIsLateIsWithdrawnAndItsSenderIsTold) {
     auto engine = start();
     const int other = engine->connect(0), fd = engine->connect(1, 2000);
-    ASSERT_TRUE(rig_.until([&] { return rig_.opened.size() == 2; }));
-    rig_.with([&] { rig_.refuse = true; });
-    const uint64_t begun = rig_.with([&] { return rig_.ns(); });
+    ASSERT_TRUE(rig_.until([&] { return rig_.uav.opened.size() == 2; }));
+    rig_.with([&] { rig_.uav.refuse = true; });
+    const double begun = rig_.seconds();
     writeAll(fd, message(1));
     writeAll(fd, message(2));
     EXPECT_TRUE(rig_.read(fd, 1).empty());
     EXPECT_TRUE(rig_.read(other, 1).empty()) << "all share the session";
-    const double seconds = double(rig_.with([&] { return rig_.ns(); }) - begun) / 1e9;
+    const double seconds = rig_.seconds() - begun;
     EXPECT_GE(seconds, 2.0);
     EXPECT_LT(seconds, 2.5);
-    EXPECT_TRUE(logged("0 the program on channel 1 has a message that nobody took in time"))
-        << log();
+    EXPECT_TRUE(log_.has("0 the program on channel 1 has a message that nobody took in time"))
+        << log_.text();
     close(fd);
     close(other);
-    EXPECT_TRUE(rig_.until([&] { return rig_.opened.size() == 4; })) << "the end is heard";
-    rig_.with([&] {
-        rig_.refuse = false;
-        rig_.echo = true;
-    });
+    EXPECT_TRUE(rig_.until([&] { return rig_.uav.opened.size() == 4; })) << "the end is heard";
+    rig_.with([&] { rig_.uav.refuse = false; });
     const int next = engine->connect(1, 2000);
     echoes(next, 3);
-    rig_.with([&] { EXPECT_EQ(rig_.received, decltype(rig_.received)(1, {1, message(3)})); });
+    rig_.with(
+        [&] { EXPECT_EQ(rig_.uav.received, decltype(rig_.uav.received)(1, {1, message(3)})); });
     close(next);
 }
 
 TEST_F(EngineTest, WhatTheLinkHasNoRoomForInTimeGoesWithItsConnection) {
     auto engine = start();
     const int other = engine->connect(0), fd = engine->connect(1, 2000);
-    ASSERT_TRUE(rig_.until([&] { return rig_.opened.size() == 2; }));
-    rig_.with([&] { rig_.refuse = true; });
+    ASSERT_TRUE(rig_.until([&] { return rig_.uav.opened.size() == 2; }));
+    rig_.with([&] { rig_.uav.refuse = true; });
     writeAll(other, message(1, 8000));
     writeAll(other, message(2, 8000));
-    ASSERT_TRUE(rig_.until([&] { return Link_statistics(rig_.link())->framesReceived > 80; }));
+    ASSERT_TRUE(rig_.until([&] { return Link_statistics(rig_.uav.link())->framesReceived > 80; }));
     writeAll(fd, message(3, 4000));
     EXPECT_TRUE(rig_.read(fd, 1).empty());
-    EXPECT_TRUE(logged("waits for room longer than its time-out: connection closed")) << log();
-    rig_.with([&] { rig_.refuse = false; });
-    EXPECT_TRUE(rig_.until([&] { return rig_.received.size() == 2; })) << "the others' arrive";
+    EXPECT_TRUE(log_.has("waits for room longer than its time-out: connection closed"))
+        << log_.text();
+    rig_.with([&] { rig_.uav.refuse = false; });
+    EXPECT_TRUE(rig_.until([&] { return rig_.uav.received.size() == 2; })) << "the others' arrive";
     close(fd);
     close(other);
 }
 
 TEST_F(EngineTest, WhoGivesUpBeforeTheLinkIsUpFreesItsChannel) {
-    rig_.with([&] { rig_.echo = true; });
     auto engine = start();
     int fd = engine->connect(1);
     int next = engine->connect(1);
@@ -177,23 +163,24 @@ TEST_F(EngineTest, WhoGivesUpBeforeTheLinkIsUpFreesItsChannel) {
 }
 
 TEST_F(EngineTest, HeartbeatsTakeNoAir) {
+    rig_.with([&] { rig_.uav.echo = false; });
     auto engine = start();
     int fd = engine->connect(0);
-    ASSERT_TRUE(rig_.until([&] { return rig_.isUp() && !rig_.opened.empty(); }));
+    ASSERT_TRUE(rig_.until([&] { return rig_.uav.isUp() && !rig_.uav.opened.empty(); }));
     // Ice sends a two-way request, then heartbeats while the answer takes its time.
     Bytes request = message(1, 40), heartbeat = message(0, 14);
     request[8] = 0;
     heartbeat[8] = 3;
     writeAll(fd, request);
-    ASSERT_TRUE(rig_.until([&] { return rig_.received.size() == 1; }));
+    ASSERT_TRUE(rig_.until([&] { return rig_.uav.received.size() == 1; }));
     for (int i = 0; i < 10; ++i)
         writeAll(fd, heartbeat);
     EXPECT_EQ(rig_.read(fd, 14), heartbeat); // after 5 s, from the engine, for the UAV says nothing
     rig_.with([&] {
-        EXPECT_EQ(rig_.received.size(), 1u) << "a heartbeat crossed the air";
+        EXPECT_EQ(rig_.uav.received.size(), 1u) << "a heartbeat crossed the air";
         Bytes reply = message(1, 30);
         reply[8] = 2;
-        Link_send(rig_.link(), 0, reply.data(), 30, 0);
+        Link_send(rig_.uav.link(), 0, reply.data(), 30, 0);
     });
     EXPECT_EQ(rig_.read(fd, 30)[8], 2);
     close(fd);
@@ -201,7 +188,6 @@ TEST_F(EngineTest, HeartbeatsTakeNoAir) {
 
 // A modem may be in any mode and at any rate when it is found; AP 2 is its user's choice.
 TEST_F(EngineTest, AModemInAnyModeIsSetToTheWantedOne) {
-    rig_.with([&] { rig_.echo = true; });
     const auto fly = [&](const XBeeAT::Settings& s, uint32_t mode, uint32_t rate) {
         SCOPED_TRACE("AP " + std::to_string(mode));
         auto engine = start(s);
@@ -232,7 +218,7 @@ TEST_F(EngineTest, AModemInAnyModeIsSetToTheWantedOne) {
     rig_.replaceGround({{"AP", 1}, {"BD", 7}});
     rig_.with([&] { rig_.ground->refuseCommand("AP0"); });
     fly(plain, 1, 7);
-    EXPECT_TRUE(logged("refuses ATAP0 and stays in API mode")) << log();
+    EXPECT_TRUE(log_.has("refuses ATAP0 and stays in API mode")) << log_.text();
 }
 
 TEST_F(EngineTest, TheModemsKeyIsSetAndNeverLogged) {
@@ -241,15 +227,15 @@ TEST_F(EngineTest, TheModemsKeyIsSetAndNeverLogged) {
     auto engine = start(s);
     ASSERT_TRUE(rig_.until([&] { return rig_.ground->parameter("EE") == 1; }));
     ASSERT_TRUE(rig_.until([&] { return !rig_.ground->inCommandMode(); }));
-    EXPECT_TRUE(logged("ATKY: OK"));
-    EXPECT_FALSE(logged("0123456789ABCDEF"));
+    EXPECT_TRUE(log_.has("ATKY: OK"));
+    EXPECT_FALSE(log_.has("0123456789ABCDEF"));
 }
 
 TEST_F(EngineTest, ACallOfTheUavThatNoDescriptorIsLeftForIsRefusedAndReported) {
     auto engine = start();
     const int ready = engine->listen();
-    ASSERT_TRUE(rig_.until([&] { return rig_.isUp(); }));
-    rig_.with([&] { Link_openChannel(rig_.link(), 3); });
+    ASSERT_TRUE(rig_.until([&] { return rig_.uav.isUp(); }));
+    rig_.with([&] { Link_openChannel(rig_.uav.link(), 3); });
     ASSERT_TRUE(rig_.isReadable(ready));
     rlimit limit;
     ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &limit), 0);
@@ -257,24 +243,22 @@ TEST_F(EngineTest, ACallOfTheUavThatNoDescriptorIsLeftForIsRefusedAndReported) {
     ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);
     EXPECT_EQ(engine->accept(), -1);
     ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &limit), 0);
-    EXPECT_TRUE(logged("0 the UAV calls, and no socket can be made: Too many open files"));
+    EXPECT_TRUE(log_.has("0 the UAV calls, and no socket can be made: Too many open files"));
     EXPECT_TRUE(rig_.until([&] {
-        return std::count(rig_.opened.begin(), rig_.opened.end(), std::make_pair(3, 0)) == 1;
+        return std::count(rig_.uav.opened.begin(), rig_.uav.opened.end(), std::make_pair(3, 0)) ==
+               1;
     }));
 }
 
 TEST_F(EngineTest, AModemThatWasGivenUpIsTriedAgainAndTheListenerIsCalled) {
-    rig_.with([&] {
-        rig_.echo = true;
-        rig_.ground->power(false, rig_.ns());
-    });
+    rig_.with([&] { rig_.ground->power(false, rig_.ns()); });
     auto engine = start();
     int ready = engine->listen();
     EXPECT_EQ(engine->listen(), -1) << "a second listener";
     int fd = engine->connect(0);
     EXPECT_TRUE(rig_.read(fd, 1).empty()); // nobody answers: the waiting program is told
     close(fd);
-    EXPECT_TRUE(logged("0 no modem answers"));
+    EXPECT_TRUE(log_.has("0 no modem answers"));
     rig_.with([&] { rig_.ground->power(true, rig_.ns()); });
     fd = engine->connect(0);
     ASSERT_GE(fd, 0);
@@ -291,8 +275,8 @@ TEST_F(EngineTest, ARefusedCommandIsToldAsWhatItIs) {
     const int fd = engine->connect(0);
     EXPECT_TRUE(rig_.read(fd, 1).empty());
     close(fd);
-    EXPECT_TRUE(logged("refuses ATID; the next connection tries again"));
-    EXPECT_FALSE(logged("no modem answers"));
+    EXPECT_TRUE(log_.has("refuses ATID; the next connection tries again"));
+    EXPECT_FALSE(log_.has("no modem answers"));
 }
 
 // A vehicle that is up before the ground's program: its frames leave the modem between the replies,
@@ -300,7 +284,6 @@ TEST_F(EngineTest, ARefusedCommandIsToldAsWhatItIs) {
 TEST_F(EngineTest, TheModemIsSetUpWhileTheUavSends) {
     uint64_t commands = 0;
     rig_.with([&] {
-        rig_.echo = true;
         rig_.step = [&] {
             if (!rig_.ground->inCommandMode() || rig_.ground->counters().commands == commands)
                 return;
@@ -315,8 +298,8 @@ TEST_F(EngineTest, TheModemIsSetUpWhileTheUavSends) {
     const int fd = engine->connect(0);
     echoes(fd, 1);
     close(fd);
-    EXPECT_FALSE(logged("refuses")) << log();
-    EXPECT_FALSE(logged("does not answer")) << log();
+    EXPECT_FALSE(log_.has("refuses")) << log_.text();
+    EXPECT_FALSE(log_.has("does not answer")) << log_.text();
     rig_.with([&] { rig_.step = nullptr; });
     EXPECT_GE(commands, 9u);
 }
@@ -325,10 +308,10 @@ TEST_F(EngineTest, AListenerAloneHasTheModemTriedAgain) {
     rig_.with([&] { rig_.ground->power(false, rig_.ns()); });
     auto engine = start();
     ASSERT_GE(engine->listen(), 0);
-    while (!logged("the next connection tries again"))
+    while (!log_.has("the next connection tries again"))
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     rig_.with([&] { rig_.ground->power(true, rig_.ns()); });
-    EXPECT_TRUE(rig_.until([&] { return rig_.isUp(); }));
+    EXPECT_TRUE(rig_.until([&] { return rig_.uav.isUp(); }));
 }
 
 // BYTES=10000000 from the line, and noise from a program for each 64 KiB of them: nothing hangs or

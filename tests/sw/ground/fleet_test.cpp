@@ -1,117 +1,92 @@
 // SPDX-License-Identifier: MIT
 //
-// fleet_test: several vehicles on one modem of the ground.
+// fleet_test: several vehicles on one modem of the ground, and calls to all of them.
 
 #include "engine.h"
 #include "hearer.h"
 #include "wire.h"
 #include <gtest/gtest.h>
+#include <list>
 #include <map>
 
 namespace {
 
-// A vehicle that answers a message with its first bytes, and its address as their last byte.
-class Vehicle {
-public:
-    Vehicle(Rig& rig, int address) : rig_(rig), address_(address), random_(address) {
-        XBee::Options options;
-        options.name = "vehicle " + std::to_string(address);
-        options.set = {{"BD", 7}, {"MY", static_cast<uint32_t>(address)}, {"DL", 0}};
-        modem = std::make_unique<XBee>(line_, rig.air, options);
-        static const Link_Port port = {
-            [](void* c, const U8* f, U32 n) {
-                self(c).line_.send({f, f + n}, self(c).rig_.ns());
-                return 0;
-            },
-            [](void* c) { return self(c).random_.next(); },
-            [](void* c, int channel, const U8* d, U32 n) { return self(c).take(channel, d, n); },
-            [](void*, int, int) {},
-            [](void*, Link_State) {},
-            nullptr,
-            nullptr};
-        Link_init(link.get(), &port, this, 1440);
-    }
-    void step() {
-        modem->advance(rig_.ns());
-        if (!line_.received.empty())
-            Link_receive(link.get(), line_.received.data(), static_cast<U32>(line_.received.size()),
-                         rig_.us());
-        line_.received.clear();
-        Link_poll(link.get(), rig_.us());
-    }
+using XBeeAT::LinkKeys;
 
-    std::unique_ptr<XBee> modem;
-    std::unique_ptr<Link> link{new Link};
-    size_t bytes = 0; // of messages that came
-
-private:
-    static Vehicle& self(void* c) { return *static_cast<Vehicle*>(c); }
-    int take(int channel, const U8* data, U32 size) {
-        Bytes answer = message(data[size - 1], 30);
-        answer.back() = static_cast<uint8_t>(address_);
-        if (Link_send(link.get(), channel, answer.data(), 30, 0) == LINK_FULL)
-            return 1;
-        bytes += size;
-        return 0;
-    }
-
-    Rig& rig_;
-    const int address_;
-    Random random_;
-    HostLine line_;
+// A program that connects to a vehicle.
+struct Program {
+    explicit Program(std::shared_ptr<XBeeAT::Peer> of) : peer(std::move(of)) {}
+    ~Program() { close(fd); }
+    Program(const Program&) = delete;
+    Program& operator=(const Program&) = delete;
+    std::shared_ptr<XBeeAT::Peer> peer;
+    const int fd = peer->connect(-1);
 };
 
 class FleetTest : public ::testing::Test {
 protected:
     FleetTest() {
+        settings_.device = rig_.pty.path();
+        settings_.guardMs = Rig::guardMs;
         rig_.with([&] {
-            rig_.uav->power(false, rig_.ns()); // this file's vehicles are its own
+            rig_.uav.modem->power(false, rig_.ns()); // this file's vehicles are its own
             rig_.step = [this] {
-                for (auto& [address, vehicle] : vehicles_)
-                    vehicle->step();
+                for (auto& [place, vehicle] : vehicles_)
+                    vehicle->advance(rig_.ns());
                 for (auto& hearer : hearers_)
-                    hearer->step();
+                    hearer.step();
             };
         });
     }
     ~FleetTest() override {
         rig_.with([&] { rig_.step = nullptr; });
     }
-    void fly(int address) {
-        rig_.with([&] { vehicles_[address] = std::make_unique<Vehicle>(rig_, address); });
-    }
-    // `device`: of another ground.
-    std::shared_ptr<XBeeAT::Peer> peer(int address, XBeeAT::LinkKeys keys = {},
-                                       const std::string& device = "") {
-        XBeeAT::Settings s;
-        s.device = device.empty() ? rig_.pty.path() : device;
-        s.guardMs = Rig::guardMs;
-        s.target = address;
-        s.isApi = isApi_;
-        s.keys = keys;
-        s.quarters = quarters_;
-        return XBeeAT::Engine::get(s, [this](int level, const std::string& text) {
-            std::lock_guard<std::mutex> lock(logMutex_);
-            log_ += std::to_string(level) + " " + text + "\n";
+    // A vehicle comes. It answers a message with its first bytes, and its address as their last
+    // byte. `place`: its number in `vehicles_`, if another one has its address.
+    void fly(int address, const LinkKeys& keys = {}, int place = 0) {
+        rig_.with([&] {
+            auto& v = vehicles_[place ? place : address];
+            v = std::make_unique<Uav>(rig_.air, address, static_cast<uint64_t>(address));
+            if (!keys.empty())
+                Link_setKey(v->link(), 0, keys[0].data(), static_cast<U32>(address));
+            v->take = [this, link = v->link(), address](int channel, const U8* data, U32 size) {
+                Bytes answer = message(data[size - 1], 30);
+                answer.back() = static_cast<uint8_t>(address);
+                if (Link_send(link, channel, answer.data(), 30, 0) == LINK_FULL)
+                    return 1;
+                taken_[address] += size;
+                return 0;
+            };
         });
     }
-    std::string log() {
-        std::lock_guard<std::mutex> lock(logMutex_);
-        return log_;
+    std::shared_ptr<XBeeAT::Peer> peer(int address, const LinkKeys& keys = {}) {
+        XBeeAT::Settings s = settings_;
+        s.target = address;
+        s.keys = keys;
+        return XBeeAT::Engine::get(s, log_.taker());
     }
-    // A call, whose answer says which vehicle has it.
-    int answerer(int fd) {
+    unsigned sessions(int place) {
+        return rig_.with([&] { return vehicles_[place]->sessions(); });
+    }
+    // A call, whose answer says which vehicle has it; -1: there is none.
+    void answers(int fd, int vehicle) {
         writeAll(fd, message(1));
         const Bytes answer = rig_.read(fd, 30);
-        return answer.empty() ? -1 : answer.back();
+        EXPECT_EQ(answer.empty() ? -1 : answer.back(), vehicle) << log_.text();
+    }
+    size_t taken() const {
+        size_t sum = 0;
+        for (auto& [address, bytes] : taken_)
+            sum += bytes;
+        return sum;
     }
     // Seconds of simulated time in which the vehicles take so many bytes, all programs writing as
-    // much as is taken.
-    double secondsFor(const std::vector<int>& fds, size_t bytes) {
+    // much as is taken. Their connections end.
+    double secondsFor(const std::list<Program>& programs, size_t bytes) {
         std::atomic<bool> stop{false};
-        std::vector<std::thread> programs;
-        for (int fd : fds)
-            programs.emplace_back([fd, &stop] {
+        std::list<std::thread> writers;
+        for (const Program& program : programs)
+            writers.emplace_back([fd = program.fd, &stop] {
                 const Bytes m = message(1, 900);
                 while (!stop) {
                     writeAll(fd, m);
@@ -119,247 +94,169 @@ protected:
                     (void)!recv(fd, sink, sizeof sink, MSG_DONTWAIT);
                 }
             });
-        const auto taken = [this] {
-            size_t sum = 0;
-            for (auto& [address, vehicle] : vehicles_)
-                sum += vehicle->bytes;
-            return sum;
-        };
-        const size_t from = rig_.with(taken);
-        const uint64_t begun = rig_.with([&] { return rig_.ns(); });
-        EXPECT_TRUE(rig_.until([&] { return taken() >= from + bytes; }, 300)) << log();
-        const double seconds = double(rig_.with([&] { return rig_.ns(); }) - begun) / 1e9;
+        const double begun = rig_.seconds();
+        rig_.with([&] { taken_.clear(); });
+        EXPECT_TRUE(rig_.until([&] { return taken() >= bytes; }, 300)) << log_.text();
+        const double seconds = rig_.seconds() - begun;
         stop = true;
-        for (int fd : fds)
-            shutdown(fd, SHUT_RDWR);
-        for (std::thread& program : programs)
-            program.join();
+        for (const Program& program : programs)
+            shutdown(program.fd, SHUT_RDWR);
+        for (std::thread& writer : writers)
+            writer.join();
         return seconds;
     }
 
-    bool isApi_ = true;
-    std::mutex logMutex_;
-    std::string log_;
+    EngineLog log_;
+    XBeeAT::Settings settings_;
     Rig rig_{testSeed()};
-    std::map<int, std::unique_ptr<Vehicle>> vehicles_;
-    std::vector<std::unique_ptr<Hearer>> hearers_; // of calls to all vehicles
-    std::function<int64_t()> quarters_ = XBeeAT::Settings().quarters;
+    std::map<int, size_t> taken_; // bytes, by address
+    std::map<int, std::unique_ptr<Uav>> vehicles_;
+    std::list<Hearer> hearers_; // of calls to all vehicles
+    std::list<Program> programs_;
 };
 
 TEST_F(FleetTest, EachVehicleAnswersItsOwnCallsUnderItsOwnKey) {
-    const std::map<int, XBeeAT::LinkKeys> keys = {{1, {{{1}}}}, {2, {}}, {0x0102, {{{2}}}}};
-    std::map<int, std::shared_ptr<XBeeAT::Peer>> peers;
-    std::map<int, int> fds;
+    const std::map<int, LinkKeys> keys = {{1, {{{1}}}}, {2, {}}, {0x0102, {{{2}}}}};
+    std::map<int, Program> programs;
     for (const auto& [address, key] : keys) {
-        fly(address);
-        if (!key.empty())
-            rig_.with([&, address = address, &key = key] {
-                Link_setKey(vehicles_[address]->link.get(), 0, key[0].data(),
-                            static_cast<U32>(address));
-            });
-        peers[address] = peer(address, key);
-        fds[address] = peers[address]->connect(-1);
+        fly(address, key);
+        programs.try_emplace(address, peer(address, key));
     }
     for (int turn = 0; turn < 3; ++turn)
-        for (const auto& [address, fd] : fds)
-            EXPECT_EQ(answerer(fd), address & 0xFF) << log();
-    EXPECT_NE(log().find("1 0x0102: link up, secure"), std::string::npos) << log();
+        for (const auto& [address, program] : programs)
+            answers(program.fd, address & 0xFF);
+    EXPECT_TRUE(log_.has("1 0x0102: link up, secure")) << log_.text();
     EXPECT_THROW(peer(2, keys.at(1)), std::system_error) << "another key for the same vehicle";
-    for (const auto& [address, fd] : fds)
-        close(fd);
 }
 
 TEST_F(FleetTest, VehiclesShareTheAirAlikeAndOneThatIsAwayCostsTheOthersLittle) {
-    std::vector<std::shared_ptr<XBeeAT::Peer>> peers;
-    std::vector<int> fds;
     for (int address : {1, 2, 3}) {
         fly(address);
-        peers.push_back(peer(address));
-        fds.push_back(peers.back()->connect(-1));
-        EXPECT_EQ(answerer(fds.back()), address) << log();
+        answers(programs_.emplace_back(peer(address)).fd, address);
     }
-    rig_.with([&] {
-        for (auto& [address, vehicle] : vehicles_)
-            vehicle->bytes = 0;
-    });
-    const double together = secondsFor(fds, 60'000);
-    rig_.with([&] {
-        for (auto& [address, vehicle] : vehicles_)
-            EXPECT_NEAR(double(vehicle->bytes), 20'000, 2'000) << address;
-    });
+    const double together = secondsFor(programs_, 60'000);
+    for (const auto& [address, bytes] : rig_.with([&] { return taken_; }))
+        EXPECT_NEAR(double(bytes), 20'000, 2'000) << address;
     std::printf("fleet: three vehicles take %.0f bytes/s\n", 60'000 / together);
-    for (int fd : fds)
-        close(fd);
     rig_.with([&] { vehicles_[2]->modem->power(false, rig_.ns()); });
     const auto isSought = [&] {
-        return log().rfind("0x0002: link connecting") > log().rfind("0x0002: link up");
+        const std::string log = log_.text();
+        return log.rfind("0x0002: link connecting") > log.rfind("0x0002: link up");
     };
     ASSERT_TRUE(rig_.until(isSought));
-    const uint64_t since = rig_.with([&] { return rig_.ns(); });
-    const auto passed = [&](uint64_t ns) {
-        return rig_.until([&] { return rig_.ns() - since > ns; });
-    };
-    ASSERT_TRUE(passed(4'500'000'000)); // the first HELLOs follow one another sooner
-    const uint64_t before = rig_.with([&] { return rig_.air.counters().airNs; });
-    ASSERT_TRUE(passed(12'500'000'000));
-    const double share =
-        double(rig_.with([&] { return rig_.air.counters().airNs; }) - before) / 8e9;
+    rig_.pass(4.5); // the first HELLOs follow one another sooner
+    const auto airNs = [&] { return double(rig_.air.counters().airNs); };
+    const double before = rig_.with(airNs);
+    rig_.pass(8);
+    const double share = (rig_.with(airNs) - before) / 8e9;
     std::printf("fleet: one that is away takes %.2f %% of the air\n", 100 * share);
     EXPECT_LT(share, 0.02);
     EXPECT_GT(share, 0.0001) << "it is sought";
 }
 
 TEST_F(FleetTest, OneThatComesWhileOthersAreCalledAtFullRateIsServedSoon) {
-    std::vector<std::shared_ptr<XBeeAT::Peer>> peers;
-    std::vector<int> fds;
-    for (int address : {1, 2, 3}) {
-        if (address < 3)
-            fly(address);
-        peers.push_back(peer(address));
-        fds.push_back(peers.back()->connect(-1));
+    for (int address : {1, 2}) {
+        fly(address);
+        answers(programs_.emplace_back(peer(address)).fd, address);
     }
-    EXPECT_EQ(answerer(fds[0]), 1) << log();
-    EXPECT_EQ(answerer(fds[1]), 2) << log();
-    uint64_t cameAt = 0;
+    const Program third(peer(3));
+    double took = 0;
     std::thread late([&] {
-        rig_.until([&] { return vehicles_[1]->bytes > 4'000; });
+        rig_.until([&] { return taken_[1] > 4'000; });
         fly(3);
-        cameAt = rig_.with([&] { return rig_.ns(); });
-        EXPECT_EQ(answerer(fds[2]), 3) << log();
-        cameAt = rig_.with([&] { return rig_.ns(); }) - cameAt;
+        const double cameAt = rig_.seconds();
+        answers(third.fd, 3);
+        took = rig_.seconds() - cameAt;
     });
-    secondsFor({fds[0], fds[1]}, 50'000);
+    secondsFor(programs_, 50'000);
     late.join();
-    EXPECT_LT(double(cameAt) / 1e9, 3.5);
-    close(fds[2]);
+    EXPECT_LT(took, 3.5);
 }
 
 TEST_F(FleetTest, AnotherOfOneAddressABabblerAndAChangeOfKeysDisturbNobodyElse) {
-    const XBeeAT::LinkKeys present = {{{1}}}, next = {{{9}}}, others = {{{2}}};
-    const auto give = [this](int place, int slot, const XBeeAT::LinkKey* key) {
-        rig_.with([&] {
-            Link_setKey(vehicles_[place]->link.get(), slot, key ? key->data() : nullptr,
-                        static_cast<U32>(place == 2 ? 2 : 1));
-        });
-    };
-    fly(1);
-    give(1, 0, &present[0]);
-    fly(2);
-    give(2, 0, &others[0]);
-    auto one = peer(1, {next[0], present[0]}), two = peer(2, others);
-    const int first = one->connect(-1), second = two->connect(-1);
-    EXPECT_EQ(answerer(first), 1) << log();
-    EXPECT_EQ(answerer(second), 2) << log();
+    const LinkKeys present = {{{1}}}, next = {{{9}}}, others = {{{2}}};
+    fly(1, present);
+    fly(2, others);
+    auto one = peer(1, {next[0], present[0]});
+    const Program first(one), second(peer(2, others));
+    answers(first.fd, 1);
+    answers(second.fd, 2);
 
-    give(1, 1, &next[0]);
-    give(1, 0, nullptr); // its session ends, and the next one is under the next key
-    EXPECT_EQ(answerer(second), 2) << log();
-    const std::string isUp = "0x0001: link up";
-    ASSERT_TRUE(rig_.until([&] { return log().find(isUp) != log().rfind(isUp); })) << log();
-    const int again = one->connect(-1);
-    EXPECT_EQ(answerer(again), 1) << log();
+    rig_.with([&] { // the session ends, and the next one is under the next key
+        Link_setKey(vehicles_[1]->link(), 1, next[0].data(), 1);
+        Link_setKey(vehicles_[1]->link(), 0, nullptr, 1);
+    });
+    answers(second.fd, 2);
+    ASSERT_TRUE(rig_.until([&] { return vehicles_[1]->sessions() == 2; })) << log_.text();
+    answers(Program(one).fd, 1);
 
+    fly(1, others, 101);
     HostLine line;
     XBee::Options options;
     options.set = {{"BD", 7}, {"MY", 3}, {"DL", 0}};
     XBee babbler(line, rig_.air, options);
     Random random(testSeed());
+    const auto step = rig_.step;
     rig_.with([&] {
-        vehicles_[101] = std::make_unique<Vehicle>(rig_, 1);
-        Link_start(vehicles_[101]->link.get(), rig_.us());
-        rig_.step = [&, at = uint64_t(0), step = rig_.step]() mutable {
+        Link_start(vehicles_[101]->link(), rig_.us());
+        rig_.step = [&, at = uint64_t(0)]() mutable {
             step();
             babbler.advance(rig_.ns());
             if (rig_.ns() < at)
                 return;
             at = rig_.ns() + 40'000'000;
-            Bytes words(90);
-            for (auto& byte : words)
-                byte = static_cast<uint8_t>(random.next());
-            line.send(words, rig_.ns());
+            line.send(random.items<uint8_t>(90), rig_.ns());
         };
     });
-    give(101, 0, &others[0]);
     for (int call = 0; call < 20; ++call)
-        EXPECT_EQ(answerer(second), 2) << log();
-    rig_.with([&] {
-        EXPECT_EQ(Link_statistics(vehicles_[2]->link.get())->sessions, 1u);
-        EXPECT_EQ(Link_statistics(vehicles_[101]->link.get())->sessions, 0u);
-        rig_.step = [this] {
-            for (auto& [address, vehicle] : vehicles_)
-                vehicle->step();
-        };
-    });
-    for (int fd : {first, again, second})
-        close(fd);
+        answers(second.fd, 2);
+    rig_.with([&] { rig_.step = step; });
+    EXPECT_EQ(sessions(2), 1u);
+    EXPECT_EQ(sessions(101), 0u);
 }
 
 // Two grounds with one address and, where the links have keys, one key.
-class TwinGrounds : public FleetTest, public ::testing::WithParamInterface<XBeeAT::LinkKeys> {};
+class TwinGrounds : public FleetTest, public ::testing::WithParamInterface<LinkKeys> {};
 
 TEST_P(TwinGrounds, TheNewerOneKeepsTheVehicleAndTheOlderOneHasItAgainAfterIt) {
-    PtyLine pty;
-    XBee::Options options;
-    options.set = {{"GT", Rig::guardMs}, {"D6", 1}};
-    XBee modem(pty, rig_.air, options);
-    fly(1);
-    rig_.with([&] {
-        Link* link = vehicles_[1]->link.get();
-        if (!GetParam().empty())
-            Link_setKey(link, 0, GetParam()[0].data(), 1);
-        Link_start(link, rig_.us());
-        rig_.step = [&, step = rig_.step] {
-            step();
-            modem.advance(rig_.ns());
-        };
-    });
-    const auto sessions = [&] { return Link_statistics(vehicles_[1]->link.get())->sessions; };
-    auto older = peer(1, GetParam());
-    const int before = older->connect(-1);
-    EXPECT_EQ(answerer(before), 1) << log();
-    auto newer = peer(1, GetParam(), pty.path());
-    const int fd = newer->connect(-1);
-    EXPECT_EQ(answerer(fd), 1) << log();
-    EXPECT_TRUE(rig_.read(before, 1).empty()) << "the older one's connection ends";
-    const unsigned made = rig_.with(sessions);
+    rig_.placeOther(rig_.air);
+    fly(1, GetParam());
+    rig_.with([&] { Link_start(vehicles_[1]->link(), rig_.us()); });
+    const auto older = peer(1, GetParam());
+    const Program before(older);
+    answers(before.fd, 1);
+    settings_.device = rig_.otherPty.path();
+    auto newer = std::make_unique<Program>(peer(1, GetParam()));
+    answers(newer->fd, 1);
+    EXPECT_TRUE(rig_.read(before.fd, 1).empty()) << "the older one's connection ends";
+    const unsigned made = sessions(1);
     for (int second = 0; second < 6; ++second) {
-        const uint64_t end = rig_.with([&] { return rig_.ns(); }) + 1'000'000'000;
-        ASSERT_TRUE(rig_.until([&] { return rig_.ns() >= end; }));
-        EXPECT_EQ(answerer(fd), 1) << log();
+        rig_.pass(1);
+        answers(newer->fd, 1);
         errno = 0;
         EXPECT_EQ(older->connect(-1), -1);
         EXPECT_EQ(errno, EBUSY);
     }
-    EXPECT_EQ(rig_.with(sessions), made) << log();
+    EXPECT_EQ(sessions(1), made) << log_.text();
     const std::string why = "another ground with this one's address has the vehicle";
-    EXPECT_EQ(log().find(why), log().rfind(why)) << log();
-    EXPECT_NE(log().find(why), std::string::npos) << log();
+    EXPECT_TRUE(log_.has(why)) << log_.text();
+    EXPECT_EQ(log_.text().find(why), log_.text().rfind(why)) << log_.text();
     newer.reset();
-    close(fd);
-    ASSERT_TRUE(rig_.until([&] { return sessions() > made; })) << log();
-    const int after = older->connect(-1);
-    EXPECT_EQ(answerer(after), 1) << log();
-    for (int end : {before, after})
-        close(end);
-    rig_.with([&] { rig_.step = nullptr; });
+    ASSERT_TRUE(rig_.until([&] { return vehicles_[1]->sessions() > made; })) << log_.text();
+    answers(Program(older).fd, 1);
 }
 
-INSTANTIATE_TEST_SUITE_P(Fleet, TwinGrounds,
-                         ::testing::Values(XBeeAT::LinkKeys{{{1}}}, XBeeAT::LinkKeys{}));
+INSTANTIATE_TEST_SUITE_P(Fleet, TwinGrounds, ::testing::Values(LinkKeys{{{1}}}, LinkKeys{}));
 
 TEST_F(FleetTest, AModemWithoutApiModeTalksToOneVehicle) {
-    isApi_ = false;
+    settings_.isApi = false;
     fly(1);
     fly(2);
-    auto one = peer(1), two = peer(2);
-    const int fd = one->connect(-1);
-    EXPECT_EQ(answerer(fd), 1) << log();
-    const int other = two->connect(-1);
-    EXPECT_EQ(answerer(other), -1);
-    EXPECT_NE(log().find("has no API mode: it talks to one vehicle only"), std::string::npos);
-    EXPECT_EQ(answerer(fd), 1);
-    close(fd);
-    close(other);
+    const Program one(peer(1));
+    answers(one.fd, 1);
+    answers(Program(peer(2)).fd, -1);
+    EXPECT_TRUE(log_.has("has no API mode: it talks to one vehicle only"));
+    answers(one.fd, 1);
 }
 
 TEST_F(FleetTest, AModemServesAsManyVehiclesAsItMay) {
@@ -369,9 +266,7 @@ TEST_F(FleetTest, AModemServesAsManyVehiclesAsItMay) {
     EXPECT_THROW(peer(99), std::system_error);
     EXPECT_NO_THROW(peer(1));
     fly(7);
-    const int fd = peers[6]->connect(-1);
-    EXPECT_EQ(answerer(fd), 7) << log();
-    close(fd);
+    answers(Program(peers[6]).fd, 7);
 }
 
 // ---- calls to all vehicles ----
@@ -393,32 +288,27 @@ protected:
     BroadcastTest() {
         rig_.with([&] {
             for (int address = 1; address <= 5; ++address)
-                hearers_.push_back(std::make_unique<Hearer>(
-                    rig_, address, address == 5 ? XBeeAT::LinkKey{1} : groupKey));
+                hearers_.emplace_back(rig_, address, address == 5 ? XBeeAT::LinkKey{1} : groupKey);
         });
     }
     // What is read after these messages, until the connection ends, which it does when what was
     // sent is on the air; without the greeting.
     std::string say(const std::vector<Bytes>& messages) {
-        auto all = peer(0xFFFF, {groupKey});
-        const int fd = all->connect(-1);
-        (void)rig_.read(fd, 14);
+        const Program all(peer(XBeeAT::everybody, {groupKey}));
+        (void)rig_.read(all.fd, 14);
         for (const Bytes& m : messages)
-            writeAll(fd, m);
-        const Bytes answer = rig_.read(fd, 4096);
-        close(fd);
-        const uint64_t end = rig_.with([&] { return rig_.ns(); }) + 600'000'000;
-        EXPECT_TRUE(rig_.until([&] { return rig_.ns() >= end; }));
+            writeAll(all.fd, m);
+        const Bytes answer = rig_.read(all.fd, 4096);
+        rig_.pass(0.6);
         return {answer.begin(), answer.end()};
     }
     const Bytes goodbye = callOf(0, 0, 14, 4);
 };
 
-TEST_F(BroadcastTest, EachVehicleTakesACallOnceInOrderAndNoneThatIsRecordedOrChanged) {
+TEST_F(BroadcastTest, EachVehicleTakesACallOnceInOrder) {
     fly(9);
-    auto one = peer(9);
-    const int fd = one->connect(-1);
-    EXPECT_EQ(answerer(fd), 9) << log();
+    const Program one(peer(9));
+    answers(one.fd, 9);
     std::vector<Bytes> calls;
     for (uint8_t call = 1; call <= 25; ++call)
         calls.push_back(callOf(call));
@@ -427,46 +317,32 @@ TEST_F(BroadcastTest, EachVehicleTakesACallOnceInOrderAndNoneThatIsRecordedOrCha
     say(calls);
     rig_.with([&] {
         rig_.air.weather.loss = 0;
-        for (size_t h = 0; h < 4; ++h) {
-            const auto& heard = hearers_[h]->calls;
-            EXPECT_GE(heard.size(), 23u) << "five copies miss once in 400";
-            EXPECT_TRUE(std::includes(calls.begin(), calls.end(), heard.begin(), heard.end()));
-            EXPECT_GT(hearers_[h]->packets.size(), 2 * heard.size());
-        }
-        EXPECT_TRUE(hearers_[4]->calls.empty()) << "it has another key";
-        for (auto& hearer : hearers_)
-            hearer->calls.clear();
-        const Bytes last = hearers_[4]->packets.back();
-        hearers_[4]->say(last);
-        for (size_t at : {size_t(1), size_t(9), size_t(20), last.size() - 1}) {
-            Bytes changed = last;
-            changed[at] ^= 0x80;
-            hearers_[4]->say(changed);
+        for (const Hearer& h : hearers_) {
+            EXPECT_TRUE(std::includes(calls.begin(), calls.end(), h.calls.begin(), h.calls.end()));
+            EXPECT_GT(h.packets.size(), 2 * h.calls.size());
+            if (&h == &hearers_.back())
+                EXPECT_TRUE(h.calls.empty()) << "it has another key";
+            else
+                EXPECT_GE(h.calls.size(), 23u) << "five copies miss once in 400";
         }
     });
-    say({callOf(26), goodbye});
-    rig_.with([&] {
-        for (size_t h = 0; h < 4; ++h)
-            EXPECT_EQ(hearers_[h]->calls, std::vector<Bytes>{callOf(26)});
-        EXPECT_EQ(Link_statistics(vehicles_[9]->link.get())->sessions, 1u) << "it hears them, too";
-    });
-    EXPECT_EQ(answerer(fd), 9) << log();
-    close(fd);
+    EXPECT_EQ(sessions(9), 1u) << "it hears them, too";
+    answers(one.fd, 9);
 }
 
 TEST_F(BroadcastTest, WhatCannotGoToAllIsRefusedAtOnceInWords) {
-    EXPECT_NE(say({callOf(1, 5), goodbye}).find("use a oneway proxy"), std::string::npos) << log();
+    EXPECT_NE(say({callOf(1, 5), goodbye}).find("use a oneway proxy"), std::string::npos);
     say({callOf(1, 0, 80)});
-    EXPECT_NE(log().find("the packet to all vehicles (at most 79)"), std::string::npos) << log();
+    EXPECT_TRUE(log_.has("the packet to all vehicles (at most 79)")) << log_.text();
     say({callOf(1, 0, 40, 1)});
-    EXPECT_NE(log().find("sent a batch"), std::string::npos) << log();
-    quarters_ = [] { return int64_t(-1); };
+    EXPECT_TRUE(log_.has("sent a batch")) << log_.text();
+    settings_.quarters = [] { return int64_t(-1); };
     say({callOf(1)});
-    EXPECT_NE(log().find("the clock of this machine is not set"), std::string::npos) << log();
-    isApi_ = false;
+    EXPECT_TRUE(log_.has("the clock of this machine is not set")) << log_.text();
+    settings_.isApi = false;
     say({callOf(1)});
-    EXPECT_NE(log().find("has no API mode"), std::string::npos) << log();
-    EXPECT_TRUE(rig_.with([&] { return hearers_[0]->packets.empty(); }));
+    EXPECT_TRUE(log_.has("has no API mode")) << log_.text();
+    EXPECT_TRUE(rig_.with([&] { return hearers_.front().packets.empty(); }));
 }
 
 } // namespace

@@ -27,9 +27,6 @@ public:
             [](const Rig::Bytes&) {});
         line_.received.clear();
     }
-    void say(const Rig::Bytes& packet) { // to all, as an attacker
-        line_.send(frames_.packet(1, 0xFFFF, packet.data(), packet.size()), rig_.ns());
-    }
 
     std::vector<Rig::Bytes> packets, calls; // what was heard, and what is to be carried out
 

@@ -24,14 +24,86 @@ extern "C" {
 #include "link.h"
 }
 
-class Rig {
+// Uav is a modem, and a link layer behind it.
+class Uav {
 public:
     using Bytes = std::vector<uint8_t>;
 
-    explicit Rig(uint64_t seed) : air(seed), random_(seed), link_(new Link) {
-        replaceGround({});
+    Uav(RfChannel& air, int address, uint64_t seed) : address_(address), random_(seed) {
+        static const Link_Port port = {onTransmit, onRandom, onMessage, onChannel,
+                                       onState,    nullptr,  nullptr};
         move(air);
-        bootUav();
+        Link_init(link(), &port, this, 1440);
+    }
+    // Flies to where the modems of an air hear it.
+    void move(RfChannel& to) {
+        XBee::Options options;
+        options.name = "uav " + std::to_string(address_);
+        options.set = {{"BD", 7}, {"MY", static_cast<uint32_t>(address_)}, {"DL", 0}};
+        modem.reset();
+        modem = std::make_unique<XBee>(line_, to, options);
+    }
+    void advance(uint64_t now) {
+        now_ = now;
+        modem->advance(now);
+        Bytes heard;
+        heard.swap(line_.received);
+        if (!runs)
+            return;
+        const U32 us = static_cast<U32>(now / 1000);
+        Link_receive(link(), heard.data(), static_cast<U32>(heard.size()), us);
+        Link_poll(link(), us);
+    }
+    Link* link() { return link_.get(); }
+    unsigned sessions() { return Link_statistics(link())->sessions; }
+    bool isUp() { return Link_state(link()) == LINK_STATE_UP; }
+
+    std::unique_ptr<XBee> modem;
+    std::vector<std::pair<int, Bytes>> received;
+    std::vector<std::pair<int, int>> opened; // channel, 1 open, 0 close
+    bool echo = false, refuse = false, runs = true;
+    // If set, takes messages in place of this one; called in the rig's thread, locked.
+    std::function<int(int channel, const U8* data, U32 size)> take;
+    std::function<void(int channel, bool isOpen)> opening;
+
+private:
+    static Uav& self(void* c) { return *static_cast<Uav*>(c); }
+    static int onTransmit(void* c, const U8* frame, U32 size) {
+        self(c).line_.send({frame, frame + size}, self(c).now_);
+        return 0;
+    }
+    static U32 onRandom(void* c) { return self(c).random_.next(); }
+    static int onMessage(void* c, int channel, const U8* data, U32 size) {
+        Uav& u = self(c);
+        if (u.take)
+            return u.take(channel, data, size);
+        if (u.refuse || (u.echo && Link_send(u.link(), channel, data, size, 0) == LINK_FULL))
+            return 1;
+        u.received.emplace_back(channel, Bytes(data, data + size));
+        return 0;
+    }
+    static void onChannel(void* c, int channel, int isOpen) {
+        if (self(c).opening)
+            self(c).opening(channel, isOpen != 0);
+        else
+            self(c).opened.emplace_back(channel, isOpen);
+    }
+    static void onState(void*, Link_State) {}
+
+    const int address_;
+    HostLine line_;
+    Random random_;
+    std::unique_ptr<Link> link_{new Link};
+    uint64_t now_ = 0;
+};
+
+class Rig {
+public:
+    using Bytes = Uav::Bytes;
+
+    explicit Rig(uint64_t seed) : air(seed), elsewhere(seed), uav(air, 1, seed) {
+        replaceGround({});
+        Link_start(uav.link(), us());
         thread_ = std::thread([this] { run(); });
     }
     ~Rig() {
@@ -40,22 +112,10 @@ public:
     }
     // Puts another modem in the ground's place.
     void replaceGround(std::map<std::string, uint32_t> set) {
-        std::lock_guard<std::mutex> lock(mutex_);
-        XBee::Options g;
-        g.name = "ground";
-        g.set = std::move(set);
-        g.set.insert({{"GT", guardMs}, {"D6", 1}});
-        ground.reset();
-        ground = std::make_unique<XBee>(pty, air, g);
+        place(ground, pty, air, std::move(set));
     }
-    // The UAV flies to where the modems of an air hear it.
-    void move(RfChannel& to) {
-        XBee::Options u;
-        u.name = "uav";
-        u.set = {{"BD", 7}, {"MY", 1}, {"DL", 0}};
-        uav.reset();
-        uav = std::make_unique<XBee>(line_, to, u);
-    }
+    // Puts another ground's modem into an air.
+    void placeOther(RfChannel& where) { place(other, otherPty, where, {}); }
     // Runs `f` between two steps of the models.
     template <class F> auto with(F f) {
         std::lock_guard<std::mutex> lock(mutex_);
@@ -71,6 +131,14 @@ public:
             std::this_thread::sleep_for(std::chrono::milliseconds(2));
         }
         return true;
+    }
+    double seconds() { // simulated
+        return with([this] { return static_cast<double>(now_) / 1e9; });
+    }
+    void pass(double time) {
+        const double end = seconds() + time;
+        while (seconds() < end)
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     bool isReadable(int fd) {
         return until([fd] {
@@ -91,56 +159,27 @@ public:
         bytes.resize(got);
         return bytes;
     }
-    // The UAV's processor starts again: all that its link knew is gone.
-    void bootUav() {
-        static const Link_Port port = {onTransmit, onRandom, onMessage, onChannel,
-                                       onState,    nullptr,  nullptr};
-        Link_init(link_.get(), &port, this, 1440);
-        Link_start(link_.get(), us());
-        opened.clear();
-    }
-    Link* link() { return link_.get(); }
     U32 us() const { return static_cast<U32>(now_ / 1000); }
     uint64_t ns() const { return now_; }
-    unsigned sessions() const { return Link_statistics(link_.get())->sessions; }
-    bool isUp() const { return Link_state(link_.get()) == LINK_STATE_UP; }
 
     static constexpr uint32_t guardMs = 20;
-    RfChannel air;
-    PtyLine pty;
-    std::unique_ptr<XBee> ground, uav;
-    std::vector<std::pair<int, Bytes>> received;
-    std::vector<std::pair<int, int>> opened; // channel, 1 open, 0 close
-    bool echo = false, refuse = false, uavRuns = true;
-    // If set, takes messages instead of the UAV; called in the rig's thread, locked.
-    std::function<int(int channel, const U8* data, U32 size)> take;
-    std::function<void(int channel, bool isOpen)> opening;
-    std::function<void()> step;
+    RfChannel air, elsewhere; // the second is out of the first one's reach
+    PtyLine pty, otherPty;
+    std::unique_ptr<XBee> ground, other; // the second: none, until it is placed
+    Uav uav;
+    std::function<void()> step; // called in the rig's thread, locked
 
 private:
-    static Rig& self(void* c) { return *static_cast<Rig*>(c); }
-    static int onTransmit(void* c, const U8* frame, U32 size) {
-        self(c).line_.send({frame, frame + size}, self(c).now_);
-        return 0;
+    void place(std::unique_ptr<XBee>& modem, PtyLine& line, RfChannel& where,
+               std::map<std::string, uint32_t> set) {
+        std::lock_guard<std::mutex> lock(mutex_);
+        XBee::Options options;
+        options.name = "ground";
+        options.set = std::move(set);
+        options.set.insert({{"GT", guardMs}, {"D6", 1}});
+        modem.reset();
+        modem = std::make_unique<XBee>(line, where, options);
     }
-    static U32 onRandom(void* c) { return self(c).random_.next(); }
-    static int onMessage(void* c, int channel, const U8* data, U32 size) {
-        Rig& r = self(c);
-        if (r.take)
-            return r.take(channel, data, size);
-        if (r.refuse || (r.echo && Link_send(r.link(), channel, data, size, 0) == LINK_FULL))
-            return 1;
-        r.received.emplace_back(channel, Bytes(data, data + size));
-        return 0;
-    }
-    static void onChannel(void* c, int channel, int isOpen) {
-        if (self(c).opening)
-            self(c).opening(channel, isOpen != 0);
-        else
-            self(c).opened.emplace_back(channel, isOpen);
-    }
-    static void onState(void*, Link_State) {}
-
     void run() {
         using Steady = std::chrono::steady_clock;
         constexpr uint64_t longestNs = 1'000'000; // between two looks at the models
@@ -154,16 +193,13 @@ private:
                 last = now;
                 clock_.set(now_);
                 air.advance(now_);
+                elsewhere.advance(now_);
                 ground->advance(now_);
-                uav->advance(now_);
-                Bytes heard;
-                heard.swap(line_.received);
-                if (uavRuns) {
-                    Link_receive(link(), heard.data(), static_cast<U32>(heard.size()), us());
-                    if (step)
-                        step();
-                    Link_poll(link(), us());
-                }
+                if (other)
+                    other->advance(now_);
+                if (step)
+                    step();
+                uav.advance(now_);
             }
             std::this_thread::sleep_for(std::chrono::microseconds(300));
         }
@@ -174,9 +210,6 @@ private:
         return !stop_ && std::chrono::steady_clock::now() - waiting_ < std::chrono::seconds(5);
     }
 
-    HostLine line_;
-    Random random_;
-    std::unique_ptr<Link> link_;
     std::atomic<bool> stop_{false};
     uint64_t now_ = 0;
     ClockFile clock_;

@@ -43,6 +43,26 @@ inline void writeAll(int fd, const Bytes& bytes) {
     }
 }
 
+// What engines have logged: a line each, which begins with the level.
+class EngineLog {
+public:
+    XBeeAT::Log taker() {
+        return [this](int level, const std::string& text) {
+            std::lock_guard<std::mutex> lock(mutex_);
+            text_ += std::to_string(level) + " " + text + "\n";
+        };
+    }
+    std::string text() {
+        std::lock_guard<std::mutex> lock(mutex_);
+        return text_;
+    }
+    bool has(const std::string& part) { return text().find(part) != std::string::npos; }
+
+private:
+    std::mutex mutex_;
+    std::string text_;
+};
+
 class Wire {
 public:
     Wire() {
@@ -78,16 +98,10 @@ public:
         s.setUp = false;
         s.baud = 10'000'000;
         s.idleMs = idleMs;
-        return XBeeAT::Engine::get(s, [this](int level, const std::string& text) {
-            std::lock_guard<std::mutex> lock(logMutex_);
-            log_ += std::to_string(level) + " " + text + "\n";
-        });
+        return XBeeAT::Engine::get(s, log_.taker());
     }
     std::string path() const { return name_; }
-    std::string log() {
-        std::lock_guard<std::mutex> lock(logMutex_);
-        return log_;
-    }
+    std::string log() { return log_.text(); }
     // Puts bytes on the wire, drops the answer.
     void flood(const Bytes& bytes) {
         for (size_t done = 0; done < bytes.size();) {
@@ -133,8 +147,7 @@ private:
                                     .count());
     }
     int put(const U8* f, U32 n) { return write(master_, f, n) == static_cast<ssize_t>(n) ? 0 : 1; }
-    std::mutex logMutex_;
-    std::string log_;
+    EngineLog log_;
     int master_ = -1, slave_ = -1;
     char name_[128];
     Random random_{testSeed()};

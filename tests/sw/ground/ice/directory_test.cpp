@@ -11,20 +11,24 @@
 
 namespace {
 
+using Words = std::vector<std::string>;
+
+Words with(Words words, const Words& more) {
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+}
+
 // Returns a port of 127.0.0.1 that is free, below those that the system gives away by itself.
 int freePort() {
     static int port = 20000 + getpid() % 1000 * 12;
-    for (;;) {
-        const int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-        sockaddr_in a{};
-        a.sin_family = AF_INET;
-        a.sin_port = htons(static_cast<uint16_t>(++port));
-        a.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-        const bool isFree = bind(fd, reinterpret_cast<sockaddr*>(&a), sizeof a) == 0;
-        close(fd);
-        if (isFree)
+    const Ice::CommunicatorHolder ic(Ice::initialize());
+    for (;;)
+        try {
+            ic->createObjectAdapterWithEndpoints("",
+                                                 "tcp -h 127.0.0.1 -p " + std::to_string(++port));
             return port;
-    }
+        } catch (const Ice::SocketException&) {
+        }
 }
 
 // A folder that is removed with it.
@@ -40,30 +44,23 @@ struct Folder {
 // A registry of IceGrid; it may be killed and started again.
 class Registry {
 public:
-    // `protocol`: tcp or ssl, for which `more` has the certificate. `master`: endpoint of the
-    // registry that this one replicates; empty: this one is the master.
-    Registry(const std::string& name, std::string protocol, std::vector<std::string> more,
-             std::string master = "")
-        : name_(name), here_(std::move(protocol) + " -h 127.0.0.1"), more_(std::move(more)),
-          master_(std::move(master)), folder_("registry." + name) {
+    // `protocol`: tcp or ssl. `more`: the certificate; in a replica, the master's locator.
+    Registry(const std::string& name, const std::string& protocol, const Words& more)
+        : here_(protocol + " -h 127.0.0.1"), folder_("registry." + name),
+          words_(with({PROGRAMS "/icegridregistry", "--IceGrid.InstanceName=IceGrid",
+                       "--IceGrid.Registry.ReplicaName=" + name,
+                       "--IceGrid.Registry.Client.Endpoints=" + endpoint(),
+                       "--IceGrid.Registry.Server.Endpoints=" + here_,
+                       "--IceGrid.Registry.Internal.Endpoints=" + here_,
+                       "--IceGrid.Registry.Discovery.Enabled=0",
+                       "--IceGrid.Registry.DynamicRegistration=1",
+                       "--IceGrid.Registry.LMDB.Path=" + folder_.path,
+                       "--IceGrid.Registry.LMDB.MapSize=8", "--Ice.PrintAdapterReady=1"},
+                      more)) {
         start();
     }
     void start() {
-        std::vector<std::string> words = {PROGRAMS "/icegridregistry",
-                                          "--IceGrid.InstanceName=IceGrid",
-                                          "--IceGrid.Registry.ReplicaName=" + name_,
-                                          "--IceGrid.Registry.Client.Endpoints=" + endpoint(),
-                                          "--IceGrid.Registry.Server.Endpoints=" + here_,
-                                          "--IceGrid.Registry.Internal.Endpoints=" + here_,
-                                          "--IceGrid.Registry.Discovery.Enabled=0",
-                                          "--IceGrid.Registry.DynamicRegistration=1",
-                                          "--IceGrid.Registry.LMDB.Path=" + folder_.path,
-                                          "--IceGrid.Registry.LMDB.MapSize=8",
-                                          "--Ice.PrintAdapterReady=1"};
-        words.insert(words.end(), more_.begin(), more_.end());
-        if (!master_.empty())
-            words.push_back("--Ice.Default.Locator=IceGrid/Locator:" + master_);
-        process_ = std::make_unique<Server>(words);
+        process_ = std::make_unique<Server>(words_);
         if (!process_->hear("Registry.Client ready"))
             throw std::runtime_error("no registry: " + process_->said());
     }
@@ -74,11 +71,10 @@ public:
     std::string endpoint() const { return here_ + " -p " + std::to_string(port_); }
 
 private:
-    const std::string name_, here_;
-    const std::vector<std::string> more_;
-    const std::string master_;
-    const Folder folder_;
+    const std::string here_;
     const int port_ = freePort();
+    const Folder folder_;
+    const Words words_;
     std::unique_ptr<Server> process_;
 };
 
@@ -86,28 +82,10 @@ class Directory : public Gateway {
 protected:
     // `isSecure`: between machines by TLS, to the vehicle under a key.
     explicit Directory(bool isSecure = false) : isSecure_(isSecure) {
-        placeOther(air_);
-        world_.rig.with([this, relay = world_.rig.step] {
-            world_.rig.step = [this, relay] {
-                air_.advance(world_.rig.ns());
-                ground_->advance(world_.rig.ns());
-                relay();
-            };
-        });
-    }
-    ~Directory() override {
-        world_.rig.with([&] { world_.rig.step = nullptr; });
-        fly(true);
-    }
-    void placeOther(RfChannel& air) {
-        XBee::Options options;
-        options.name = "the other ground";
-        options.set = {{"GT", Rig::guardMs}, {"D6", 1}};
-        ground_.reset();
-        ground_ = std::make_unique<XBee>(pty_, air, options);
+        rig_.placeOther(rig_.elsewhere);
     }
     // A certificate that IceSSL takes, as Ice's options; none in the clear.
-    std::vector<std::string> certificate() const {
+    Words certificate() const {
         if (!isSecure_)
             return {};
         Ice::registerIceSSL();
@@ -123,36 +101,34 @@ protected:
         const std::string path = secrets_.path + "/my.key";
         std::ofstream(path) << std::string(32, '5');
         std::filesystem::permissions(path, std::filesystem::perms(0600));
-        const U8 key[LINK_KEY_BYTES] = {0x55, 0x55, 0x55, 0x55, 0x55, 0x55, 0x55, 0x55,
-                                        0x55, 0x55, 0x55, 0x55, 0x55, 0x55, 0x55, 0x55};
-        world_.rig.with([&] { Link_setKey(world_.rig.link(), 0, key, 1); });
+        const std::vector<U8> key(LINK_KEY_BYTES, 0x55);
+        rig_.with([&] { Link_setKey(rig_.uav.link(), 0, key.data(), 1); });
         return path;
     }
     // The vehicle is where the first ground hears it, or where the other one does.
     void fly(bool isHome) {
-        world_.rig.with([&] { world_.rig.move(isHome ? world_.rig.air : air_); });
+        rig_.with([&] { rig_.uav.move(isHome ? rig_.air : rig_.elsewhere); });
     }
     std::string locator() const {
         return "IceGrid/Locator:" + master_.endpoint() + ":" + replica_.endpoint();
     }
-    std::unique_ptr<Server> ground(const std::string& port, std::vector<std::string> more = {}) {
-        more.insert(more.begin(),
-                    {GATEWAY, "-d", port, "-g", std::to_string(Rig::guardMs), "-l",
-                     protocol_ + " -h 127.0.0.1 -p 0", "--Ice.Default.Locator=" + locator()});
-        const auto tls = certificate();
-        more.insert(more.end(), tls.begin(), tls.end());
-        return std::make_unique<Server>(more);
+    std::unique_ptr<Server> ground(const std::string& port, const Words& more = {}) {
+        return std::make_unique<Server>(
+            with(with({GATEWAY, "-d", port, "-g", std::to_string(Rig::guardMs), "-l",
+                       protocol_ + " -h 127.0.0.1 -p 0", "--Ice.Default.Locator=" + locator()},
+                      certificate_),
+                 more));
     }
     Ice::CommunicatorPtr client() const {
         auto data = Ice::InitializationData();
         data.properties = Ice::createProperties();
-        data.properties->parseCommandLineOptions("", certificate());
+        data.properties->parseCommandLineOptions("", certificate_);
         data.properties->setProperty("Ice.Default.Locator", locator());
         data.properties->setProperty("Ice.Default.InvocationTimeout", "1800000");
         data.properties->setProperty("Ice.RetryIntervals", "0 100 200 400 800");
         return Ice::initialize(data);
     }
-    void followAVehicle(const std::vector<std::string>& more);
+    void followAVehicle(const Words& more);
     // Calls until one is answered; how many may have been carried out or not.
     int callOn(const std::shared_ptr<RadioTest::UavPrx>& echo) {
         for (int unknown = 0;;)
@@ -169,11 +145,12 @@ protected:
     const bool isSecure_;
     const std::string protocol_ = isSecure_ ? "ssl" : "tcp";
     const Folder secrets_{"fleet"};
-    Registry master_{"Master", protocol_, certificate()},
-        replica_{"Replica", protocol_, certificate(), master_.endpoint()};
-    RfChannel air_{testSeed()};
-    PtyLine pty_;
-    std::unique_ptr<XBee> ground_;
+    const Words certificate_ = certificate();
+    Registry master_{"Master", protocol_, certificate_};
+    Registry replica_{
+        "Replica", protocol_,
+        with(certificate_, {"--Ice.Default.Locator=IceGrid/Locator:" + master_.endpoint()})};
+    Rig& rig_ = world_.rig;
     int id_ = 0;
 };
 
@@ -181,36 +158,29 @@ struct SecureDirectory : Directory {
     SecureDirectory() : Directory(true) {}
 };
 
-void Directory::followAVehicle(const std::vector<std::string>& more) {
-    const auto with = [&more](std::vector<std::string> words) {
-        words.insert(words.end(), more.begin(), more.end());
-        return words;
-    };
-    auto home = ground(world_.rig.pty.path(),
-                       with({"-t", "1", "--vehicle", "uav7=1", "--vehicle", "uav8=8"}));
-    auto other = ground(pty_.path(), with({"--vehicle", "uav7=1"}));
+void Directory::followAVehicle(const Words& more) {
+    auto home = ground(rig_.pty.path(),
+                       with({"-t", "1", "--vehicle", "uav7=1", "--vehicle", "uav8=8"}, more));
+    auto other = ground(rig_.otherPty.path(), with({"--vehicle", "uav7=1"}, more));
     ASSERT_TRUE(home->hear("uav7 is here")) << home->said();
     Ice::CommunicatorHolder ic(client());
     const auto echo = Ice::uncheckedCast<RadioTest::UavPrx>(ic->stringToProxy("echo@uav7"));
     EXPECT_EQ(callOn(echo), 0);
     EXPECT_THROW(ic->stringToProxy("echo@uav8")->ice_ping(), Ice::NotRegisteredException) << "away";
-    std::vector<std::string> words = {"/usr/bin/python3", "-c",
-                                      "import Ice, sys; ic = Ice.initialize(sys.argv)\n"
-                                      "ic.stringToProxy('echo@uav7').ice_ping(); ic.destroy()",
-                                      "--Ice.Default.Locator=" + locator()};
-    const auto tls = certificate();
-    words.insert(words.end(), tls.begin(), tls.end());
-    Server python(words);
+    Server python(with({"/usr/bin/python3", "-c",
+                        "import Ice, sys; ic = Ice.initialize(sys.argv)\n"
+                        "ic.stringToProxy('echo@uav7').ice_ping(); ic.destroy()",
+                        "--Ice.Default.Locator=" + locator()},
+                       certificate_));
     EXPECT_EQ(python.wait(), 0) << python.said();
     for (bool isHome : {false, true}) {
         fly(isHome);
-        const auto now = [this] { return world_.rig.with([&] { return world_.rig.ns(); }); };
-        const uint64_t since = now();
+        const double since = rig_.seconds();
         if (isHome)
             EXPECT_NO_THROW(echo->ice_ping()) << "idempotent: Ice calls again";
         else
             EXPECT_LE(callOn(echo), 1) << "only a call under way";
-        const double seconds = double(now() - since) / 1e9;
+        const double seconds = rig_.seconds() - since;
         std::printf("directory: handed over after %.2f s\n", seconds);
         EXPECT_LT(seconds, 5);
         ASSERT_TRUE(isHome || home->hear("0x0001: link connecting")) << home->said();
@@ -233,19 +203,18 @@ TEST_F(SecureDirectory, ClientsFollowAVehicleFromOneGroundToAnother) {
 
 // Both hear the vehicle, and have one address and one key.
 TEST_F(Directory, AGroundThatTakesOverKeepsTheVehicleUntilItEnds) {
-    world_.rig.with([&] { placeOther(world_.rig.air); });
+    rig_.placeOther(rig_.air);
     const std::string file = key();
-    auto home = ground(world_.rig.pty.path(), {"-t", "1", "--key", file});
+    auto home = ground(rig_.pty.path(), {"-t", "1", "--key", file});
     ASSERT_TRUE(home->hear("uav1 is here")) << home->said();
     Ice::CommunicatorHolder ic(client());
     const auto echo = Ice::uncheckedCast<RadioTest::UavPrx>(ic->stringToProxy("echo@uav1"));
     EXPECT_EQ(callOn(echo), 0);
-    auto other = ground(pty_.path(), {"--key", file});
+    auto other = ground(rig_.otherPty.path(), {"--key", file});
     ASSERT_TRUE(other->hear("uav1 is here")) << other->said();
     EXPECT_LE(callOn(echo), 1);
     ASSERT_TRUE(home->hear("uav1 is elsewhere")) << home->said();
-    const auto now = [this] { return world_.rig.with([&] { return world_.rig.ns(); }); };
-    for (const uint64_t end = now() + 15'000'000'000; now() < end;)
+    for (const double end = rig_.seconds() + 15; rig_.seconds() < end;)
         EXPECT_EQ(callOn(echo), 0);
     EXPECT_EQ(other->stop(), 0);
     EXPECT_EQ(other->said().find("elsewhere"), std::string::npos)
@@ -257,7 +226,7 @@ TEST_F(Directory, AGroundThatTakesOverKeepsTheVehicleUntilItEnds) {
 }
 
 TEST_F(Directory, OneOfTwoRegistriesIsKilledAndComesBack) {
-    auto home = ground(world_.rig.pty.path()), other = ground(pty_.path());
+    auto home = ground(rig_.pty.path()), other = ground(rig_.otherPty.path());
     ASSERT_TRUE(home->hear("uav1 is here")) << home->said();
     Ice::CommunicatorHolder ic(client());
     const auto echoOf = [](const Ice::CommunicatorPtr& by) {
@@ -326,7 +295,7 @@ TEST_F(Directory, ATopicTellsWhichVehiclesComeAndGo) {
     Ice::checkedCast<IceStorm::TopicManagerPrx>(ic->stringToProxy(topics))
         ->create("vehicles")
         ->subscribeAndGetPublisher({{"reliability", "ordered"}}, adapter->addWithUUID(subscriber));
-    auto home = ground(world_.rig.pty.path(), {"--topics", topics});
+    auto home = ground(rig_.pty.path(), {"--topics", topics});
     ASSERT_TRUE(home->hear("uav1 is here")) << home->said();
     const auto uav = world_.uav;
     const auto station = uav->getCommunicator()->stringToProxy(world_.echo->station);
@@ -339,14 +308,14 @@ TEST_F(Directory, ATopicTellsWhichVehiclesComeAndGo) {
     out.finished(parameters);
     EXPECT_TRUE(
         station->ice_invoke("vehicleState", Ice::OperationMode::Normal, parameters, answer));
-    world_.rig.with([&] { world_.rig.uav->power(false, world_.rig.ns()); });
+    rig_.with([&] { rig_.uav.modem->power(false, rig_.ns()); });
     ASSERT_TRUE(home->hear("uav1 has left")) << home->said();
     const std::string events = "vehicleState uav1 uav@uav1 1\n"
                                "vehicleState uav1 uav@uav1 11\n"
                                "vehicleState uav1 none 1\n";
-    world_.rig.until([&] { return subscriber->heard().size() >= events.size(); });
+    rig_.until([&] { return subscriber->heard().size() >= events.size(); });
     EXPECT_EQ(subscriber->heard(), events);
-    world_.rig.with([&] { world_.rig.uav->power(true, world_.rig.ns()); });
+    rig_.with([&] { rig_.uav.modem->power(true, rig_.ns()); });
     ASSERT_TRUE(home->hear("uav1 is here")) << home->said();
 }
 

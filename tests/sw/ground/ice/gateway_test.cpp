@@ -178,7 +178,7 @@ TEST_F(Gateway, CompressedCallsArrive) {
 TEST_F(Gateway, AOnewayThatWaitsTooLongIsNeverCarriedOut) {
     start({"--wait", "3"});
     const auto power = [&](bool isOn) {
-        world_.rig.with([&] { world_.rig.uav->power(isOn, world_.rig.ns()); });
+        world_.rig.with([&] { world_.rig.uav.modem->power(isOn, world_.rig.ns()); });
     };
     power(false);
     {

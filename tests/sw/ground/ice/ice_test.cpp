@@ -79,11 +79,11 @@ TEST_F(StockIce, MoreProgramsThanChannelsShareThem) {
 }
 
 TEST_F(StockIce, AUavThatIsOffIsAConnectTimeout) {
-    world_.rig.with([&] { world_.rig.uavRuns = false; });
+    world_.rig.with([&] { world_.rig.uav.runs = false; });
     Ice::CommunicatorHolder ic(world_.client());
     auto echo = world_.proxy(ic.communicator())->ice_timeout(1500);
     EXPECT_THROW(echo->ice_ping(), Ice::ConnectTimeoutException);
-    world_.rig.with([&] { world_.rig.uavRuns = true; });
+    world_.rig.with([&] { world_.rig.uav.runs = true; });
     EXPECT_NO_THROW(world_.proxy(ic.communicator())->ice_ping());
 }
 
@@ -91,11 +91,11 @@ TEST_F(StockIce, ACallThatHasTimedOutIsNeverCarriedOut) {
     Ice::CommunicatorHolder ic(world_.client({{"Ice.Override.ConnectTimeout", "1800000"}}));
     auto echo = world_.proxy(ic.communicator())->ice_timeout(2000)->ice_invocationTimeout(-2);
     echo->ice_ping();
-    const auto take = world_.rig.take;
-    world_.rig.with([&] { world_.rig.take = [](int, const U8*, U32) { return 1; }; });
+    const auto take = world_.rig.uav.take;
+    world_.rig.with([&] { world_.rig.uav.take = [](int, const U8*, U32) { return 1; }; });
     EXPECT_THROW(echo->note(1), Ice::LocalException);
-    EXPECT_TRUE(world_.rig.until([&] { return world_.rig.sessions() == 2; }));
-    world_.rig.with([&] { world_.rig.take = take; });
+    EXPECT_TRUE(world_.rig.until([&] { return world_.rig.uav.sessions() == 2; }));
+    world_.rig.with([&] { world_.rig.uav.take = take; });
     EXPECT_EQ(world_.proxy(ic.communicator())->noted(), 0);
 }
 

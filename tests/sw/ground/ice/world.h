@@ -119,17 +119,17 @@ public:
             throw std::runtime_error("relay: no TCP port");
         port_ = ntohs(any.sin_port);
         rig_.with([this] {
-            rig_.take = [this](int channel, const U8* data, U32 count) {
+            rig_.uav.take = [this](int channel, const U8* data, U32 count) {
                 return take(lines_[channel], data, count);
             };
-            rig_.opening = [this](int channel, bool isOpen) { opening(channel, isOpen); };
+            rig_.uav.opening = [this](int channel, bool isOpen) { opening(channel, isOpen); };
             rig_.step = [this] { step(); };
         });
     }
     ~Relay() {
         rig_.with([this] {
-            rig_.take = nullptr;
-            rig_.opening = nullptr;
+            rig_.uav.take = nullptr;
+            rig_.uav.opening = nullptr;
             rig_.step = nullptr;
         });
         for (Line& line : lines_)
@@ -188,7 +188,7 @@ private:
     void step() {
         if (lines_[ownChannel].fd < 0) {
             int fd = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
-            if (fd >= 0 && Link_openChannel(rig_.link(), ownChannel) == LINK_OK)
+            if (fd >= 0 && Link_openChannel(rig_.uav.link(), ownChannel) == LINK_OK)
                 begin(lines_[ownChannel], fd);
             else if (fd >= 0)
                 close(fd);
@@ -196,7 +196,7 @@ private:
         for (int channel = 0; channel < LINK_CHANNELS; ++channel) {
             Line& line = lines_[channel];
             if (line.fd >= 0 && !(move(line) && sendMessages(channel))) {
-                Link_closeChannel(rig_.link(), channel);
+                Link_closeChannel(rig_.uav.link(), channel);
                 end(line);
             }
         }
@@ -221,7 +221,7 @@ private:
             U32 size = static_cast<U32>(in[10] | in[11] << 8 | in[12] << 16 | in[13] << 24);
             if (in.size() < size)
                 return true;
-            Link_Status status = Link_send(rig_.link(), channel, in.data(), size, 0);
+            Link_Status status = Link_send(rig_.uav.link(), channel, in.data(), size, 0);
             if (status != LINK_OK)
                 return status == LINK_FULL;
             in.erase(in.begin(), in.begin() + size);

@@ -157,6 +157,7 @@ public:
         return true;
     }
     void wakeUp() { isBusy_ = false; }
+    bool isGone() const { return awayUntil == never; }
     uint64_t awayUntil = 0;
 
 private:

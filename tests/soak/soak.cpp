@@ -48,35 +48,32 @@ public:
                 ends_.push_back(std::make_unique<End>(air_, random_, address, isGround,
                                                       all[!isGround], mailOf));
         vehicles_ = all[0].size();
-        twin_ = std::make_unique<End>(air_, random_, all[0].back(), false, all[1],
-                                      [](int, int) { return nullptr; });
+        grounds_ = all[1].size();
+        ends_.push_back(std::make_unique<End>(air_, random_, all[0].back(), false, all[1],
+                                              [](int, int) { return nullptr; }));
         if (isFleet_)
-            rival_ = std::make_unique<End>(air_, random_, End::rival, true, all[0], mailOf);
+            ends_.push_back(std::make_unique<End>(air_, random_, End::rival, true, all[0], mailOf));
         for (auto& end : ends_)
             end->boot(now_, attacked_);
-        twin_->boot(now_, attacked_);
-        visit(*twin_, false);
-        visitOfRival(false);
+        sendGuestsAway();
     }
     // Passes one simulated second with random events.
     void second() {
         weather();
         misfortune();
-        pass(rate_ / static_cast<double>(2 * vehicles_ * grounds()));
+        pass(rate_ / static_cast<double>(2 * vehicles_ * grounds_));
     }
     // Good weather, nothing new: everything that is under way must be reported.
     void settle() {
         air_.weather = {};
         attacker_.hinder(false);
-        visit(*twin_, false);
-        visitOfRival(false);
+        sendGuestsAway();
         babblesUntil_ = 0;
-        for (auto& end : ends_)
-            end->awayUntil = 0;
         for (int s = 0; s < 120 && !isWell(); ++s) {
-            for (auto& end : ends_) {
-                end->wakeUp();
-                end->modem.power(true, now_);
+            for (size_t host = 0; host < vehicles_ + grounds_; ++host) {
+                ends_[host]->awayUntil = 0;
+                ends_[host]->wakeUp();
+                ends_[host]->modem.power(true, now_);
             }
             pass(0);
         }
@@ -90,22 +87,25 @@ public:
     const RfChannel::Counters& air() const { return air_.counters(); }
 
 private:
-    size_t grounds() const { return ends_.size() - vehicles_; }
-    bool isRivalHere() const { return rival_ && !rival_->awayUntil; }
-    void visit(End& guest, bool isHere) {
-        guest.awayUntil = isHere ? 0 : never;
-        guest.modem.power(isHere, now_);
+    // A guest comes; if it is here, it leaves, and nobody knows what became of the messages that it
+    // has under way. Returns how many have come.
+    unsigned visit(size_t number) {
+        End& guest = *ends_[vehicles_ + grounds_ + number];
+        const bool comes = guest.isGone();
+        if (!comes)
+            guest.boot(now_, attacked_);
+        guest.awayUntil = comes ? 0 : never;
+        guest.modem.power(comes, now_);
+        return comes;
     }
-    // Nobody knows what became of the messages that the rival has under way when it leaves.
-    void visitOfRival(bool isHere) {
-        if (!rival_)
-            return;
-        if (!isHere)
-            rival_->boot(now_, true);
-        visit(*rival_, isHere);
+    void sendGuestsAway() {
+        for (size_t at = vehicles_ + grounds_; at < ends_.size(); ++at)
+            if (!ends_[at]->isGone())
+                visit(at - vehicles_ - grounds_);
     }
     bool isWell() const {
-        return std::all_of(ends_.begin(), ends_.end(), [](auto& end) { return end->isWell(); });
+        return std::all_of(ends_.begin(), ends_.end(),
+                           [](auto& end) { return end->isGone() || end->isWell(); });
     }
     // Passes a second, in which programs and the attacker act each millisecond.
     void pass(double rate) {
@@ -117,11 +117,7 @@ private:
                 next = std::min(next, attacker_.nextEvent());
             }
             for (auto& e : ends_)
-                next = std::min(next, e->advance(now_));
-            if (!twin_->awayUntil)
-                next = std::min(next, twin_->advance(now_));
-            if (isRivalHere())
-                next = std::min(next, rival_->advance(now_));
+                next = e->isGone() ? next : std::min(next, e->advance(now_));
             if (now_ >= nextWork_)
                 work(rate);
             now_ = std::max(now_ + 1, std::min(next, air_.nextEvent()));
@@ -130,9 +126,8 @@ private:
     void work(double rate) {
         nextWork_ = now_ + msNs;
         for (auto& end : ends_)
-            end->work(rate);
-        if (isRivalHere())
-            rival_->work(rate);
+            if (!end->isGone())
+                end->work(rate);
         if (attacked_ && rate > 0 && random_.chance(now_ < babblesUntil_ ? 0.1 : 0.02))
             attacker_.doMischief(now_);
     }
@@ -152,9 +147,10 @@ private:
                 end->awayUntil = 0;
                 end->modem.power(true, now_);
             }
-        if (random_.below(60) >= 2 * ends_.size())
+        const auto hosts = static_cast<uint32_t>(vehicles_ + grounds_);
+        if (random_.below(60) >= 2 * hosts)
             return;
-        End& end = *ends_[random_.below(static_cast<uint32_t>(ends_.size()))];
+        End& end = *ends_[random_.below(hosts)];
         switch (random_.below(isFleet_ ? 7 : attacked_ ? 6 : 3)) {
         case 0:
             ++totals_.reboots; // of a vehicle, or another program takes the ground over
@@ -175,25 +171,23 @@ private:
             babblesUntil_ = now_ + random_.below(5) * secondNs;
             break;
         case 4:
-            totals_.twins += twin_->awayUntil != 0;
-            visit(*twin_, twin_->awayUntil != 0);
+            totals_.twins += visit(0);
             break;
         case 5:
             changeKey();
             break;
         case 6: // the first ground still believes that it has the vehicles
-            totals_.rivals += !isRivalHere();
-            visitOfRival(!isRivalHere());
+            totals_.rivals += visit(1);
         }
     }
     // A ground takes the next key of a vehicle; the vehicle does, some time later.
     void changeKey() {
         const size_t vehicle = random_.below(static_cast<uint32_t>(vehicles_));
-        const size_t ground = random_.below(static_cast<uint32_t>(grounds()));
+        const size_t ground = random_.below(static_cast<uint32_t>(grounds_));
         End &v = *ends_[vehicle], &g = *ends_[vehicles_ + ground];
         if (g.keyOf(vehicle) == v.keyOf(ground)) {
-            if (ground == 0 && rival_)
-                rival_->takeNextKey(vehicle);
+            if (ground == 0 && isFleet_)
+                ends_.back()->takeNextKey(vehicle);
             return g.takeNextKey(vehicle);
         }
         v.takeNextKey(ground);
@@ -206,11 +200,11 @@ private:
     const bool attacked_;
     Attacker attacker_;
     std::map<std::pair<int, int>, Mail> mail_;
-    std::vector<std::unique_ptr<End>> ends_; // the vehicles, then the grounds
-    size_t vehicles_;
+    // The vehicles, the grounds, and guests: one that has a vehicle's address and no key of it and,
+    // in a fleet, one that has the first ground's address and keys.
+    std::vector<std::unique_ptr<End>> ends_;
+    size_t vehicles_, grounds_;
     bool isFleet_ = false;
-    std::unique_ptr<End> twin_;  // has a vehicle's address, and no key of it
-    std::unique_ptr<End> rival_; // has the first ground's address and keys
     uint64_t now_ = 0, nextWork_ = 0, babblesUntil_ = 0;
     double rate_ = 0.1;
 };

@@ -221,9 +221,10 @@ void Forwarder::fail(const Requests& requests, std::exception_ptr why) {
     }
 }
 
-// Takes out the requests that came before `due`; the mutex is held.
-Forwarder::Requests Forwarder::takeOut(std::chrono::steady_clock::time_point due) {
+// Fails the waiting requests that came before `due`.
+void Forwarder::failWaiting(std::chrono::steady_clock::time_point due, std::exception_ptr why) {
     Requests out;
+    std::unique_lock<std::mutex> lock(mutex_);
     for (auto client = clients_.begin(); client != clients_.end();) {
         auto& [requests, bytes, hasLeft] = client->second;
         for (; !requests.empty() && requests.front()->since < due; requests.pop_front()) {
@@ -233,16 +234,17 @@ Forwarder::Requests Forwarder::takeOut(std::chrono::steady_clock::time_point due
         client = hasLeft && requests.empty() ? clients_.erase(client) : std::next(client);
     }
     room_.notify_all();
-    return out;
+    lock.unlock();
+    fail(out, why);
 }
 
 // Fails all waiting requests, since the vehicle cannot be reached.
 void Forwarder::failAll(std::exception_ptr why) {
-    std::unique_lock<std::mutex> lock(mutex_);
-    isConnecting_ = false;
-    const Requests all = takeOut(std::chrono::steady_clock::time_point::max());
-    lock.unlock();
-    fail(all, why);
+    {
+        std::lock_guard<std::mutex> lock(mutex_);
+        isConnecting_ = false;
+    }
+    failWaiting(std::chrono::steady_clock::time_point::max(), why);
 }
 
 void Forwarder::hold() {
@@ -262,10 +264,8 @@ unsigned Forwarder::session() const {
 }
 
 void Forwarder::refuseWaiting() {
-    std::unique_lock<std::mutex> lock(mutex_);
-    const Requests all = takeOut(std::chrono::steady_clock::time_point::max());
-    lock.unlock();
-    fail(all, std::make_exception_ptr(Ice::ObjectNotExistException(__FILE__, __LINE__)));
+    failWaiting(std::chrono::steady_clock::time_point::max(),
+                std::make_exception_ptr(Ice::ObjectNotExistException(__FILE__, __LINE__)));
 }
 
 void Forwarder::giveUp(std::chrono::milliseconds age) {
@@ -285,13 +285,11 @@ void Forwarder::giveUp(std::chrono::milliseconds age) {
 }
 
 void Forwarder::failLateRequests() {
-    std::unique_lock<std::mutex> lock(mutex_);
-    const Requests late = takeOut(std::chrono::steady_clock::now() - wait_);
-    lock.unlock();
-    fail(late, std::make_exception_ptr(Ice::UnknownException(
-                   __FILE__, __LINE__,
-                   "icesoc-gateway: waited " + std::to_string(wait_.count()) +
-                       " s for the radio (--wait); the vehicle has not got this call")));
+    failWaiting(std::chrono::steady_clock::now() - wait_,
+                std::make_exception_ptr(Ice::UnknownException(
+                    __FILE__, __LINE__,
+                    "icesoc-gateway: waited " + std::to_string(wait_.count()) +
+                        " s for the radio (--wait); the vehicle has not got this call")));
 }
 
 void Forwarder::stop() {

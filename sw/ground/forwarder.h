@@ -79,7 +79,7 @@ private:
     void send();
     void sendOne(const Connection& connection, const std::shared_ptr<Request>& request);
     void connect();
-    Requests takeOut(std::chrono::steady_clock::time_point due);
+    void failWaiting(std::chrono::steady_clock::time_point due, std::exception_ptr why);
     static void fail(const Requests& requests, std::exception_ptr why);
     void failAll(std::exception_ptr why);
     void tryClients(std::shared_ptr<Request> request, std::vector<Connection> clients);

@@ -141,11 +141,13 @@ public:
         : forwarder(ic->stringToProxy("any:" + radioEndpoint(o, address)),
                     std::chrono::seconds(o.wait)),
           events(name, publisher),
-          registration(name, forwarder, events,
-                       [=, &o, &rights] {
-                           return adapterOf(ic, named("Clients"), endpointsOf(o.listen, place),
-                                            toVehicle(forwarder, rights, false));
-                       }),
+          registration(
+              name, forwarder, events,
+              [=, &o, &rights] {
+                  return adapterOf(ic, named("Clients"), endpointsOf(o.listen, place),
+                                   toVehicle(forwarder, rights, false));
+              },
+              ic->getDefaultLocator()),
           place_(place) {
         const auto opened = registration.open();
         const int port = checkedPort(opened);
@@ -205,29 +207,28 @@ void serve(const std::shared_ptr<Ice::Communicator>& ic, const Options& o) {
     std::list<Vehicle> vehicles;
     for (const auto& [name, address] : fleetOf(o))
         vehicles.emplace_back(ic, o, rights, name, address, int(vehicles.size()), publisher);
-    const auto locator = ic->getDefaultLocator();
-    const auto ask = [&](void (Registration::*question)(const std::shared_ptr<Ice::LocatorPrx>&)) {
-        std::string trouble;
+    // Returns why the registry does not answer; empty: it does, or there is none.
+    const auto ask = [&](void (Registration::*question)()) -> std::string {
         try {
             for (Vehicle& vehicle : vehicles)
-                (vehicle.registration.*question)(locator);
+                if (ic->getDefaultLocator())
+                    (vehicle.registration.*question)();
+            return "";
         } catch (const Ice::Exception& e) {
-            trouble = e.ice_id();
+            return e.ice_id();
         }
-        return trouble;
     };
     const sigset_t signals = endings();
     const timespec pause{0, Registration::lookMs * 1'000'000};
     for (std::string before; sigtimedwait(&signals, nullptr, &pause) < 0;) {
         for (Vehicle& vehicle : vehicles)
             vehicle.forwarder.failLateRequests();
-        const std::string trouble = locator ? ask(&Registration::look) : "";
+        const std::string trouble = ask(&Registration::look);
         if (!trouble.empty() && before.empty())
             std::cerr << "gateway: the registry does not answer: " + trouble + "\n";
         before = trouble;
     }
-    if (locator)
-        ask(&Registration::leave);
+    ask(&Registration::leave);
     for (Vehicle& vehicle : vehicles)
         vehicle.forwarder.stop();
     ic->destroy(); // while the objects that its callbacks use exist

@@ -10,13 +10,12 @@ namespace gateway {
 
 namespace {
 
-constexpr int patienceMs = 2000;               // with a registry, or another ground
 constexpr std::chrono::milliseconds late{500}; // of a call under way to a vehicle that has moved
 
 // Returns whether nobody listens at the endpoints of a proxy.
 bool isDead(const std::shared_ptr<Ice::ObjectPrx>& proxy) {
     try {
-        proxy->ice_invocationTimeout(patienceMs)->ice_getConnection();
+        proxy->ice_invocationTimeout(Registration::patienceMs)->ice_getConnection();
     } catch (const Ice::ConnectFailedException&) {
         return true;
     } catch (const Ice::Exception&) {
@@ -28,32 +27,19 @@ bool isDead(const std::shared_ptr<Ice::ObjectPrx>& proxy) {
 
 // ---- events ----
 
-std::shared_ptr<Ice::ObjectPrx>
-Events::byName(const std::shared_ptr<Ice::ObjectPrx>& object) const {
-    return object ? object->ice_adapterId(vehicle_) : nullptr;
-}
-
-void Events::tell(const std::shared_ptr<Ice::ObjectPrx>& vehicle) const {
+void Events::tell(bool isHere) const {
     if (!publisher_)
         return;
-    Ice::OutputStream out(publisher_->ice_getCommunicator());
+    const auto ic = publisher_->ice_getCommunicator();
+    Ice::OutputStream out(ic);
     out.startEncapsulation();
-    out.write(vehicle);
+    out.write(isHere ? ic->stringToProxy("uav@" + vehicle_) : nullptr);
     out.writeSize(0);
     out.endEncapsulation();
     const auto in = out.finished();
     const auto ignored = [](std::exception_ptr) {}; // the next event tells
     publisher_->ice_invokeAsync("vehicleState", Ice::OperationMode::Normal, in, nullptr, ignored,
                                 nullptr, {{"vehicle", vehicle_}});
-}
-
-void Events::came() const {
-    if (publisher_)
-        tell(publisher_->ice_getCommunicator()->stringToProxy("uav@" + vehicle_));
-}
-
-void Events::went() const {
-    tell(nullptr);
 }
 
 void Events::pass(const Request& request, Response onResponse, Failure onError) const {
@@ -67,7 +53,7 @@ void Events::pass(const Request& request, Response onResponse, Failure onError) 
         out.startEncapsulation(in.startEncapsulation(), Ice::FormatType::DefaultFormat);
         std::shared_ptr<Ice::ObjectPrx> vehicle;
         in.read(vehicle);
-        out.write(byName(vehicle));
+        out.write(vehicle ? vehicle->ice_adapterId(vehicle_) : nullptr);
         out.writeBlob(in.i, in.b.end() - in.i);
         out.endEncapsulation();
         out.finished(named.parameters);
@@ -77,21 +63,18 @@ void Events::pass(const Request& request, Response onResponse, Failure onError) 
 
 // ---- the registration ----
 
-std::shared_ptr<Ice::ObjectPrx>
-Registration::find(const std::shared_ptr<Ice::LocatorPrx>& locator) const {
+std::shared_ptr<Ice::ObjectPrx> Registration::find() const {
     try {
-        return locator->ice_invocationTimeout(patienceMs)->findAdapterById(name_);
+        return locator_->findAdapterById(name_);
     } catch (const Ice::AdapterNotFoundException&) {
         return nullptr;
     }
 }
 
-void Registration::tell(const std::shared_ptr<Ice::LocatorPrx>& locator,
-                        const std::shared_ptr<Ice::ObjectPrx>& proxy) const {
-    locator->ice_invocationTimeout(patienceMs)
-        ->getRegistry()
-        ->ice_invocationTimeout(patienceMs)
-        ->setAdapterDirectProxy(name_, proxy);
+// Writes into the registry where the vehicle is; null: nowhere.
+void Registration::enter(const std::shared_ptr<Ice::ObjectPrx>& proxy) const {
+    const auto registry = locator_->getRegistry();
+    registry->ice_invocationTimeout(patienceMs)->setAdapterDirectProxy(name_, proxy);
 }
 
 bool Registration::isOwn(const std::shared_ptr<Ice::ObjectPrx>& found) const {
@@ -99,7 +82,7 @@ bool Registration::isOwn(const std::shared_ptr<Ice::ObjectPrx>& found) const {
 }
 
 // Opens, if it is not open, and writes this ground into the registry.
-void Registration::enter(const std::shared_ptr<Ice::LocatorPrx>& locator) {
+void Registration::come() {
     const unsigned session = forwarder_.session();
     if (!adapter_) {
         if (closing_)
@@ -109,13 +92,13 @@ void Registration::enter(const std::shared_ptr<Ice::LocatorPrx>& locator) {
         own_ = adapter_->createDirectProxy({"any", ""});
         adapter_->activate();
     }
-    tell(locator, own_);
+    enter(own_);
     entered_ = session;
     isEntered_ = true;
     std::cout << "gateway: " + name_ + " is here, at " + own_->ice_getEndpoints()[0]->toString() +
                      "\n"
               << std::flush;
-    events_.came();
+    events_.tell(true);
 }
 
 // Closes: clients ask the registry again. What waits was not sent, and may go elsewhere.
@@ -128,7 +111,7 @@ void Registration::close() {
     forwarder_.refuseWaiting();
 }
 
-void Registration::look(const std::shared_ptr<Ice::LocatorPrx>& locator) {
+void Registration::look() {
     forwarder_.hold();
     const unsigned session = forwarder_.session();
     const bool isNew = session && session != entered_;
@@ -139,30 +122,28 @@ void Registration::look(const std::shared_ptr<Ice::LocatorPrx>& locator) {
     if (!isNew && session == entered_ && ++looks_ < looksBetweenQuestions)
         return;
     looks_ = 0;
-    if (!session && !isEntered_)
-        return;
-    const auto found = find(locator);
     if (!session)
-        return leave(locator);
+        return leave();
+    const auto found = find();
     if (isNew || !found || (!adapter_ && isDead(found)))
-        return enter(locator);
+        return come();
     if (adapter_ && !isOwn(found)) {
         close();
-        leave(locator);
+        leave();
     }
 }
 
 // Removes this ground from the registry, unless another one is there by now.
-void Registration::leave(const std::shared_ptr<Ice::LocatorPrx>& locator) {
+void Registration::leave() {
     if (!isEntered_)
         return;
-    const bool isGone = isOwn(find(locator));
+    const bool isGone = isOwn(find());
     if (isGone)
-        tell(locator, nullptr);
+        enter(nullptr);
     isEntered_ = false;
     std::cout << "gateway: " + name_ + (isGone ? " has left\n" : " is elsewhere\n") << std::flush;
     if (isGone)
-        events_.went();
+        events_.tell(false);
 }
 
 } // namespace gateway

@@ -21,14 +21,11 @@ public:
     // `publisher`: of the topic; null: nobody is told.
     Events(std::string vehicle, std::shared_ptr<Ice::ObjectPrx> publisher)
         : vehicle_(std::move(vehicle)), publisher_(std::move(publisher)) {}
-    void came() const; // the vehicle "uav" by its name, without parameters
-    void went() const; // no vehicle
+    void tell(bool isHere) const; // the vehicle "uav" by its name, or none; without parameters
     // Passes a call of the vehicle on. A vehicleState names it as clients reach it.
     void pass(const Request& request, Response onResponse, Failure onError) const;
 
 private:
-    void tell(const std::shared_ptr<Ice::ObjectPrx>& vehicle) const;
-    std::shared_ptr<Ice::ObjectPrx> byName(const std::shared_ptr<Ice::ObjectPrx>& object) const;
     const std::string vehicle_;
     const std::shared_ptr<Ice::ObjectPrx> publisher_;
 };
@@ -36,28 +33,32 @@ private:
 class Registration {
 public:
     using Open = std::function<std::shared_ptr<Ice::ObjectAdapter>()>;
-    // `open` makes the adapter, which is not yet active.
-    Registration(std::string name, Forwarder& forwarder, const Events& events, Open open)
-        : open(std::move(open)), name_(std::move(name)), forwarder_(forwarder), events_(events) {}
+    // `open` makes the adapter, which is not yet active. `locator`: null where there is no
+    // registry; then nothing else is called.
+    Registration(std::string name, Forwarder& forwarder, const Events& events, Open open,
+                 const std::shared_ptr<Ice::LocatorPrx>& locator)
+        : open(std::move(open)), name_(std::move(name)), forwarder_(forwarder), events_(events),
+          locator_(locator ? locator->ice_invocationTimeout(patienceMs) : nullptr) {}
     // Looks whether the vehicle is here, and who is in the registry; the caller calls it each
     // `lookMs`. Throws Ice's exceptions where no registry answers.
-    void look(const std::shared_ptr<Ice::LocatorPrx>& locator);
-    void leave(const std::shared_ptr<Ice::LocatorPrx>& locator); // the program ends
+    void look();
+    void leave(); // the program ends
 
     static constexpr int lookMs = 250, looksBetweenQuestions = 4;
+    static constexpr int patienceMs = 2000; // with a registry, or another ground
     const Open open;
 
 private:
-    std::shared_ptr<Ice::ObjectPrx> find(const std::shared_ptr<Ice::LocatorPrx>& locator) const;
-    void tell(const std::shared_ptr<Ice::LocatorPrx>& locator,
-              const std::shared_ptr<Ice::ObjectPrx>& proxy) const; // null: there is none
+    std::shared_ptr<Ice::ObjectPrx> find() const;
+    void enter(const std::shared_ptr<Ice::ObjectPrx>& proxy) const;
     bool isOwn(const std::shared_ptr<Ice::ObjectPrx>& found) const;
-    void enter(const std::shared_ptr<Ice::LocatorPrx>& locator);
+    void come();
     void close();
 
     const std::string name_;
     Forwarder& forwarder_;
     const Events& events_;
+    const std::shared_ptr<Ice::LocatorPrx> locator_;
     std::shared_ptr<Ice::ObjectAdapter> adapter_, closing_;
     std::shared_ptr<Ice::ObjectPrx> own_; // the adapter's endpoints
     unsigned entered_ = 0;                // the connection that the registry has been told of

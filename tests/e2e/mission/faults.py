@@ -290,20 +290,18 @@ def fleet_words(m, name, begin, end):
         with open(os.open(keys[file], os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "w") as f:
             f.write("\n".join([*lines, f"0xffff {'9' * 32}"]))
     flight = {"image": IMAGE, "size": "48x32", "out": m.out, "speed": "max", "key": keys["fleet"],
-              "observer": keys["observer"]}
+              "observer": keys["observer"], "guard": 20, "vehicles": VEHICLES}
     if TROUBLE[name][0]:
         flight["trouble"] = f"{TROUBLE[name][0]}:{begin:.3f}:{end - begin:.3f}"
     calls = {"device": "{device}", "device2": "{device2}", "status": "{status}", "out": "{out}",
              "plugin": m.build + "/ground", "slice": m.source + "/sw/apps/uav/Autopilot.ice",
              "reference": m.build + "/testbench/sim/vision-reference", "key": keys["fleet"],
              "key2": keys["fleet" if isRival else "observer"], "until": end + 1,
-             "rival": begin if isRival else 0}
-    if name == "new key":
-        calls.update({"changed": 2, "new-key": NEXT})
-    words = ([str(word) for option, value in {**options, "guard": 20, "vehicles": VEHICLES}.items()
-              for word in ("--" + option, value)] for options in (flight, calls))
-    return [m.build + "/testbench/sim/icesoc-sim", *next(words), "--", "/usr/bin/python3",
-            m.source + "/tests/e2e/mission/fleet_ground.py", *next(words)]
+             "rival": begin if isRival else 0, "changed": 2 if name == "new key" else 0,
+             "new_key": NEXT, "guard": 20, "vehicles": VEHICLES}
+    options = [str(word) for option, value in flight.items() for word in ("--" + option, value)]
+    return [m.build + "/testbench/sim/icesoc-sim", *options, "--", "/usr/bin/python3",
+            m.source + "/tests/e2e/mission/fleet_ground.py", json.dumps(calls)]
 
 
 def fleet(start, name, moment, deaths):

@@ -4,12 +4,13 @@
 ground their states, until a simulated time; then each has to answer once more. One call to all
 vehicles starts the first frame of each.
 
-OUT/fleet.json tells for each how many frames were started, answered and reported, and what the
-second ground saw when. With --new-key a vehicle is given its next key first, and has to have it
-alone at the end. With --rival the second ground comes then, and has the first one's address and
-key."""
+    fleet_ground.py '{"out": FOLDER, ...}'      faults.py has all of them
 
-import argparse
+FOLDER/fleet.json tells for each how many frames were started, answered and reported, and what the
+second ground saw when. With "new_key" the vehicle "changed" is given its next key first, and has to
+have it alone at the end. With "rival" the second ground comes then, and has the first one's address
+and key."""
+
 import json
 import os
 import subprocess
@@ -17,6 +18,7 @@ import sys
 import threading
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import Ice
 
@@ -37,14 +39,9 @@ class Caller(threading.Thread):
         self.started, self.answered, self.wrong = 1, 0, 0  # the call to all started one
         self.reported, self.failure = [], None
         args = ground.args
-        out = subprocess.run([args.reference, f"{args.out}/before{address if address > 1 else ''}"
-                              ".png", str(THRESHOLD)], check=True, stdout=subprocess.PIPE).stdout
-        self.want = json.loads(out)
+        picture = f"{args.out}/before{address if address > 1 else ''}.png"
+        self.want = json.loads(subprocess.check_output([args.reference, picture, str(THRESHOLD)]))
         self.start()
-
-    def proxy(self, kind, name):
-        return kind.uncheckedCast(self.ground.pilot.stringToProxy(
-            f"{name}:xbee-at -d {self.ground.args.device} -a 0x{self.address:04x} -t 120000"))
 
     def frame(self, engine):
         engine.setParameterA(THRESHOLD)
@@ -60,8 +57,8 @@ class Caller(threading.Thread):
 
     def frames(self):
         """Calls until the flight's end; then, for 20 seconds at most, until an answer comes."""
-        import Autopilot  # made by loadSlice
-        engine = self.proxy(Autopilot.HwProcessingEnginePrx, "hwengine1")
+        engine = Autopilot.HwProcessingEnginePrx.uncheckedCast(
+            self.ground.proxy("hwengine1", self.address))
         self.take(engine)
         while True:
             due = self.ground.seconds() + REST
@@ -78,11 +75,11 @@ class Caller(threading.Thread):
                 time.sleep(0.005)
 
     def run(self):
-        import Autopilot
+        ground = self.ground
         try:
-            ring = self.proxy(Autopilot.KeyRingPrx, "keys")
-            isChanged = self.address == self.ground.args.changed
-            if isChanged and not ring.setNextKey(bytes.fromhex(self.ground.args.new_key)):
+            ring = Autopilot.KeyRingPrx.uncheckedCast(ground.proxy("keys", self.address))
+            isChanged = self.address == ground.args.changed
+            if isChanged and not ring.setNextKey(bytes.fromhex(ground.args.new_key)):
                 raise RuntimeError("the vehicle refuses a new key")
             self.frames()
         except (Ice.Exception, RuntimeError) as failure:
@@ -108,9 +105,12 @@ class Ground:
              "Ice.ACM.Close": "0", "XBeeAT.Device": device, "XBeeAT.Trace": "1"},
             self.args.plugin, self.args.guard, key)
 
+    def proxy(self, name, address, ic=None):
+        return (ic or self.pilot).stringToProxy(
+            f"{name}:xbee-at -d {self.args.device} -a 0x{address:04x} -t 120000")
+
     def observe(self):
         """Asks each vehicle for its state, one after the other, from the second ground."""
-        import Autopilot
         os.environ["XBEEAT_CLOCK"] = self.args.status + "2"
         observer = self.communicator(self.args.device2, self.args.key2)
         source = 0x0000 if self.args.rival else 0x00f0
@@ -131,13 +131,11 @@ class Ground:
     def call_all(self):
         """Starts a frame in each vehicle, once each has a session. They are on the air when their
         communicator has ended."""
-        import Autopilot
         for address in range(1, self.args.vehicles + 1):
-            self.pilot.stringToProxy(
-                f"uav:xbee-at -d {self.args.device} -a 0x{address:04x} -t 120000").ice_ping()
+            self.proxy("uav", address).ice_ping()
         ic = self.communicator(self.args.device, self.args.key)
-        engines = Autopilot.HwProcessingEnginePrx.uncheckedCast(ic.stringToProxy(
-            f"hwengine1 -o:xbee-at -d {self.args.device} -a 0xFFFF"))
+        engines = Autopilot.HwProcessingEnginePrx.uncheckedCast(
+            self.proxy("hwengine1 -o", 0xFFFF, ic))
         engines.setParameterA(THRESHOLD)
         engines.startProcessing()
         ic.destroy()
@@ -145,14 +143,12 @@ class Ground:
     def keep_new_key(self):
         """Talks to the changed vehicle under its new key alone, as change_key.py does: from then on
         it has but this one. Returns what is wrong."""
-        import Autopilot
         lines = Path(self.args.key).read_text().split("\n")
         lines[self.args.changed - 1] = f"0x{self.args.changed:04x} {self.args.new_key}"
         Path(self.args.key).write_text("\n".join(lines))
         ic = self.communicator(self.args.device, self.args.key)
         try:
-            ring = Autopilot.KeyRingPrx.uncheckedCast(ic.stringToProxy(
-                f"keys:xbee-at -d {self.args.device} -a 0x{self.args.changed:04x} -t 120000"))
+            ring = Autopilot.KeyRingPrx.uncheckedCast(self.proxy("keys", self.args.changed, ic))
             return None if ring.count() == 1 else "the vehicle still has its old key"
         except Ice.Exception as failure:
             return failure
@@ -179,17 +175,10 @@ class Ground:
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    for name in "out", "device", "device2", "status", "plugin", "slice", "reference", "key", "key2":
-        parser.add_argument("--" + name, required=True)
-    parser.add_argument("--vehicles", type=int, required=True)
-    parser.add_argument("--guard", type=int, required=True)
-    parser.add_argument("--until", type=float, required=True, help="simulated seconds")
-    parser.add_argument("--rival", type=float, default=0, help="simulated seconds")
-    parser.add_argument("--changed", type=int, default=0, help="address of a vehicle that gets")
-    parser.add_argument("--new-key", default="", help="this key, the next one of the file")
-    args = parser.parse_args()
+    global Autopilot
+    args = SimpleNamespace(**json.loads(sys.argv[1]))
     Ice.loadSlice("", ["-I" + (Ice.getSliceDir() or "."), args.slice])
+    import Autopilot
     Ground(args).fly()
 
 

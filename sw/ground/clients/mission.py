@@ -7,6 +7,7 @@ over the picture, and serves Station, which the UAV calls. All of it over the ra
 """
 
 import argparse
+import concurrent.futures
 import contextlib
 import glob
 import importlib.util
@@ -108,9 +109,9 @@ def draw(frame, result, path):
         picture.save(beside, format="PNG")
 
 
-def check_against_reference(args, result):
-    """Returns the same corners, computed by a C++ program from the same frame."""
-    out = subprocess.run([args.reference, args.frame, str(args.threshold)],
+def check_against_reference(args, frame, result):
+    """Compares with the corners that a C++ program computes from the same frame."""
+    out = subprocess.run([args.reference, frame, str(args.threshold)],
                          check=True, stdout=subprocess.PIPE).stdout
     want = json.loads(out)
     best = [[f.x, f.y, f.score] for f in result.best]
@@ -126,71 +127,18 @@ def check_against_reference(args, result):
     raise RuntimeError(text)
 
 
-class Follower(threading.Thread):
-    """Calls the vision core of one more vehicle, while others are called."""
+def begin(function, *args):
+    """Calls a function in a thread. Returns the future of what becomes of it."""
+    future = concurrent.futures.Future()
 
-    def __init__(self, args, communicator, log, address):
-        super().__init__(daemon=True)
-        self.args = argparse.Namespace(**vars(args))
-        self.args.frame = os.path.join(args.out, "before%d.png" % address)
-        self.log, self.address, self.failure = log, address, None
-        where = "%s -t %d" % (args.endpoint.replace("0x0001", "0x%04x" % address),
-                              1000 * args.patience // 2)
-        self.engine = communicator.stringToProxy("hwengine1:" + where)
-        self.start()
-
-    def run(self):
+    def run():
         try:
-            self.fly()
-        except (Ice.Exception, RuntimeError, OSError, subprocess.CalledProcessError) as failure:
-            self.failure = failure
+            future.set_result(function(*args))
+        except Exception as failure:
+            future.set_exception(failure)
 
-    def fly(self):
-        import Autopilot
-        engine = Autopilot.HwProcessingEnginePrx.uncheckedCast(self.engine)
-        name = "uav%d.hwengine1" % self.address
-        for what, call in (("setParameterA(%d)" % self.args.threshold,
-                            lambda: engine.setParameterA(self.args.threshold)),
-                           ("startProcessing()", engine.startProcessing),
-                           ("getResult()", engine.getResult)):
-            result = self.log.call("ground -> UAV", "%s.%s" % (name, what), call)
-        if self.args.reference:
-            check_against_reference(self.args, result)
-        draw(self.args.frame, result, os.path.join(self.args.out, "after%d.png" % self.address))
-        self.log.note("%s: %d corners" % (name, result.found))
-
-    def land(self):
-        self.join()
-        if self.failure:
-            raise self.failure
-
-
-class Observer(Follower):
-    """A second ground with a modem and keys of its own: asks each vehicle for its state, but those
-    two that have each other in its place."""
-
-    def __init__(self, args, log):
-        os.environ["XBEEAT_CLOCK"] = args.status + "2"  # its engine's clock
-        self.communicator = plugged.initialize(
-            {"XBeeAT.Trace": str(args.trace), "Ice.ACM.Close": "0",
-             "XBeeAT.Device": args.observer_device}, args.plugin, args.guard, args.observer)
-        super().__init__(args, self.communicator, log, 1)
-
-    def fly(self):
-        import Autopilot
-        for address in range(1 if self.args.vehicles < 4 else 3, self.args.vehicles + 1):
-            where = "xbee-at -d %s -a 0x%04x -s 0x00f0 -t %d" % (
-                self.args.observer_device, address, 1000 * self.args.patience // 2)
-            vehicle = Autopilot.VehiclePrx.uncheckedCast(
-                self.communicator.stringToProxy("uav:" + where))
-            what = "uav%d.getFlightState()" % address
-            state = self.log.call("observer -> UAV", what, vehicle.getFlightState)
-            self.log.note("the observer sees uav%d: %s" % (address, state))
-
-    def land(self):
-        self.join()
-        self.communicator.destroy()
-        super().land()
+    threading.Thread(target=run, daemon=True).start()
+    return future
 
 
 def part_of(folder):
@@ -284,11 +232,41 @@ class Mission:
 
     def call_others(self):
         """Begins to call the other vehicles, and by the second ground all."""
-        followers = [Follower(self.args, self.communicator, self.log, address)
-                     for address in range(2, self.args.vehicles + 1)]
+        others = [begin(self.call_vehicle, address)
+                  for address in range(2, self.args.vehicles + 1)]
         if self.args.observer_device:
-            followers.append(Observer(self.args, self.log))
-        return followers
+            others.append(begin(self.observe))
+        return others
+
+    def call_vehicle(self, address):
+        """Calls the vision core of one more vehicle, while others are called."""
+        frame = os.path.join(self.args.out, f"before{address}.png")
+        engine = self.autopilot.HwProcessingEnginePrx.uncheckedCast(
+            self.proxy("hwengine1", address))
+        name, threshold = f"uav{address}.hwengine1", self.args.threshold
+        self.call(f"{name}.setParameterA({threshold})", lambda: engine.setParameterA(threshold))
+        self.call(f"{name}.startProcessing()", engine.startProcessing)
+        result = self.call(f"{name}.getResult()", engine.getResult)
+        if self.args.reference:
+            check_against_reference(self.args, frame, result)
+        draw(frame, result, os.path.join(self.args.out, f"after{address}.png"))
+        self.log.note(f"{name}: {result.found} corners")
+
+    def observe(self):
+        """Is a second ground with a modem and keys of its own: asks each vehicle for its state, but
+        those two that have each other in its place."""
+        args, device = self.args, self.args.observer_device
+        os.environ["XBEEAT_CLOCK"] = args.status + "2"  # its engine's clock
+        with plugged.initialize({"XBeeAT.Trace": str(args.trace), "Ice.ACM.Close": "0",
+                                 "XBeeAT.Device": device},
+                                args.plugin, args.guard, args.observer) as communicator:
+            for address in range(1 if args.vehicles < 4 else 3, args.vehicles + 1):
+                vehicle = self.autopilot.VehiclePrx.uncheckedCast(communicator.stringToProxy(
+                    f"uav:xbee-at -d {device} -a 0x{address:04x} -s 0x00f0 "
+                    f"-t {1000 * args.patience // 2}"))
+                state = self.log.call("observer -> UAV", f"uav{address}.getFlightState()",
+                                      vehicle.getFlightState)
+                self.log.note(f"the observer sees uav{address}: {state}")
 
     def hear(self):
         if not self.station.called.wait(self.args.patience):
@@ -301,7 +279,7 @@ class Mission:
         if not self.args.reference:
             return
         try:
-            check_against_reference(self.args, result)
+            check_against_reference(self.args, self.args.frame, result)
         except RuntimeError as e:
             self.log.follow({"who": "ground", "what": f"the mission failed: {e}"})
             raise
@@ -313,7 +291,7 @@ class Mission:
     def fly(self):
         self.serve()
         result = self.find_corners()
-        followers = self.call_others()
+        others = self.call_others()
         self.hear()
         self.check(result)
         # A part may return a function to be called after all parts.
@@ -321,8 +299,8 @@ class Mission:
         for end in filter(None, ends):
             end()
         draw(self.args.frame, result, os.path.join(self.args.out, "after.png"))
-        for follower in followers:
-            follower.land()
+        for other in others:
+            other.result()
         report(self.args, self.log, result, self.station, self.air)
 
 

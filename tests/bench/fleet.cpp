@@ -6,7 +6,7 @@
 
 #include "figures.h"
 #include "modem_pair.h"
-#include <numeric>
+#include <list>
 
 namespace {
 
@@ -36,12 +36,6 @@ public:
         for (size_t i = 0; calls && isGround_ && i < peers(); ++i)
             call(i);
         return ModemEnd::advance(now);
-    }
-    bool areUp() const {
-        for (size_t i = 0; i < peers(); ++i)
-            if (!isUp(i))
-                return false;
-        return true;
     }
     std::vector<double> times; // of calls, in ms
     bool calls = false;
@@ -95,44 +89,36 @@ void measure(const std::string& what, int grounds, int vehicles, bool isKeyed,
         const uint64_t seed = testSeed() + static_cast<uint64_t>(100 * run);
         constexpr int firstGround = 0x0100;
         RfChannel air(seed);
-        std::vector<std::unique_ptr<Station>> stations;
+        std::list<Station> stations;
         for (int g = 0; g < grounds; ++g) {
             std::vector<int> own;
             for (int v = g; v < vehicles; v += grounds)
                 own.push_back(v + 1);
-            stations.push_back(
-                std::make_unique<Station>(air, firstGround + g, true, isKeyed, own, seed + 1));
+            stations.emplace_back(air, firstGround + g, true, isKeyed, own, seed + 1);
             for (int v : own)
-                stations.push_back(std::make_unique<Station>(air, v, false, isKeyed,
-                                                             std::vector<int>{firstGround + g},
-                                                             seed + 1 + static_cast<uint64_t>(v)));
+                stations.emplace_back(air, v, false, isKeyed, std::vector<int>{firstGround + g},
+                                      seed + 1 + static_cast<uint64_t>(v));
         }
         uint64_t now = 0;
-        const auto pass = [&](auto isDone) {
-            while (!isDone()) {
-                air.advance(now);
-                uint64_t next = never;
-                for (auto& s : stations)
-                    next = std::min(next, s->advance(now));
-                now = std::max(now + 1, std::min(next, air.nextEvent()));
-            }
-        };
-        pass([&] {
-            if (now > 120'000'000'000)
-                throw std::runtime_error("no session within two minutes");
+        const auto areUp = [&] {
             return std::all_of(stations.begin(), stations.end(),
-                               [](const auto& s) { return s->areUp(); });
-        });
-        for (auto& s : stations)
-            s->calls = true;
+                               [](const Station& s) { return s.areUp(); });
+        };
+        if (!passUntil(now, 120'000'000'000, air, stations, areUp))
+            throw std::runtime_error("no session within two minutes");
+        const auto pass = [&](uint64_t end) {
+            passUntil(now, never, air, stations, [&] { return now >= end; });
+        };
+        for (Station& s : stations)
+            s.calls = true;
         const uint64_t begin = now + 2'000'000'000;
-        pass([&] { return now >= begin; });
-        for (auto& s : stations)
-            s->times.clear();
-        pass([&] { return now >= begin + spanNs; });
-        for (auto& s : stations) {
-            rate += static_cast<double>(s->times.size()) * 1e9 / static_cast<double>(spanNs) / runs;
-            times.insert(times.end(), s->times.begin(), s->times.end());
+        pass(begin);
+        for (Station& s : stations)
+            s.times.clear();
+        pass(begin + spanNs);
+        for (const Station& s : stations) {
+            rate += static_cast<double>(s.times.size()) * 1e9 / static_cast<double>(spanNs) / runs;
+            times.insert(times.end(), s.times.begin(), s.times.end());
         }
     }
     std::sort(times.begin(), times.end());

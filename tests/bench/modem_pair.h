@@ -139,6 +139,10 @@ public:
         return *Link_statistics(link(peer));
     }
     bool isUp(size_t peer = 0) const { return Link_state(link(peer)) == LINK_STATE_UP; }
+    bool areUp() const {
+        return std::all_of(peers_.begin(), peers_.end(),
+                           [this](const auto& p) { return isUp(p->number); });
+    }
     // Returns the time of its next call.
     uint64_t advance(uint64_t now) {
         now_ = now;
@@ -213,13 +217,28 @@ private:
     uint64_t nextPoll_ = 0, airUs_ = 0;
 };
 
+// Lets time pass until `done`, or else until `end`. Returns whether it is done.
+template <class Ends, class Done>
+bool passUntil(uint64_t& now, uint64_t end, RfChannel& air, Ends& ends, Done done) {
+    while (!done()) {
+        if (now > end)
+            return false;
+        air.advance(now);
+        uint64_t next = never;
+        for (auto& e : ends)
+            next = std::min(next, e.advance(now));
+        now = std::max(now + 1, std::min(next, air.nextEvent()));
+    }
+    return true;
+}
+
 // Two ends of a class derived from ModemEnd, and the air; the first has called, and both are up
 // with the channels 0 to `channels` - 1 open.
 template <class End> class ModemPair {
 public:
     template <class... Arguments>
     ModemPair(const RfWeather& weather, uint64_t seed, int channels, const Arguments&... arguments)
-        : air(seed), a(air, 0, seed + 1, arguments...), b(air, 1, seed + 2, arguments...) {
+        : air(seed), ends_{{air, 0, seed + 1, arguments...}, {air, 1, seed + 2, arguments...}} {
         air.weather = weather;
         Link_start(a.link(), 0);
         need([&] { return a.isUp() && b.isUp(); });
@@ -231,14 +250,7 @@ public:
     }
     // Lets time pass until `done`. Returns whether that is within this many seconds.
     template <class Done> bool until(Done done, double seconds) {
-        for (const uint64_t end = now + static_cast<uint64_t>(seconds * 1e9); !done();) {
-            if (now > end)
-                return false;
-            air.advance(now);
-            const uint64_t next = std::min(a.advance(now), b.advance(now));
-            now = std::max(now + 1, std::min(next, air.nextEvent()));
-        }
-        return true;
+        return passUntil(now, now + static_cast<uint64_t>(seconds * 1e9), air, ends_, done);
     }
     template <class Done> void need(Done done) {
         if (!until(done, 60))
@@ -250,7 +262,12 @@ public:
     }
     uint64_t now = 0;
     RfChannel air;
-    End a, b;
+
+private:
+    End ends_[2];
+
+public:
+    End &a = ends_[0], &b = ends_[1];
 };
 
 // Two modems with their serial lines of 111,111 baud and the air, nothing else: what a link could

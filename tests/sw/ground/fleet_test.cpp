@@ -3,11 +3,15 @@
 // fleet_test: several vehicles on one modem of the ground, and calls to all of them.
 
 #include "engine.h"
-#include "hearer.h"
+#include "rig.h"
 #include "wire.h"
 #include <gtest/gtest.h>
 #include <list>
 #include <map>
+
+extern "C" {
+#include "link_broadcast.h"
+}
 
 namespace {
 
@@ -21,6 +25,43 @@ struct Program {
     Program& operator=(const Program&) = delete;
     std::shared_ptr<XBeeAT::Peer> peer;
     const int fd = peer->connect(-1);
+};
+
+// A vehicle that hears calls to all vehicles; its modem is in API mode.
+class Hearer {
+public:
+    Hearer(Rig& rig, int address, const XBeeAT::LinkKey& key) : rig_(rig), key_(key) {
+        XBee::Options options;
+        options.set = {{"BD", 7}, {"MY", static_cast<uint32_t>(address)}, {"AP", 1}};
+        modem_ = std::make_unique<XBee>(line_, rig.air, options);
+    }
+    void step() {
+        modem_->advance(rig_.ns());
+        frames_.feed(
+            line_.received.data(), line_.received.size(),
+            [this](int, const uint8_t* data, size_t size) { take({data, data + size}); },
+            [](const Rig::Bytes&) {});
+        line_.received.clear();
+    }
+
+    std::vector<Rig::Bytes> packets, calls; // what was heard, and what is to be carried out
+
+private:
+    void take(Rig::Bytes packet) {
+        packets.push_back(packet);
+        const U32 size =
+            Link_openBroadcast(packet.data(), U32(packet.size()), key_.data(), newest_);
+        newest_ = size ? LINK_BROADCAST_NUMBER(packet.data()) : newest_;
+        const auto from = packet.begin() + LINK_BROADCAST_HEAD;
+        if (size)
+            calls.emplace_back(from, from + size);
+    }
+    Rig& rig_;
+    XBeeAT::LinkKey key_;
+    HostLine line_;
+    std::unique_ptr<XBee> modem_;
+    XBeeAT::ApiFrames frames_;
+    U32 newest_ = 0;
 };
 
 class FleetTest : public ::testing::Test {

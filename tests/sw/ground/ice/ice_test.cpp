@@ -4,7 +4,6 @@
 // calls from threads of several proxies, in bad weather, and the UAV's calls of the ground are
 // test_chip_soak's.
 
-#include "../hearer.h"
 #include "world.h"
 #include <future>
 #include <gtest/gtest.h>
@@ -99,23 +98,13 @@ TEST_F(StockIce, ACallThatHasTimedOutIsNeverCarriedOut) {
     EXPECT_EQ(world_.proxy(ic.communicator())->noted(), 0);
 }
 
-TEST_F(StockIce, AOnewayCallGoesToAllVehiclesAndWhatCannotIsRefusedInTheCaller) {
-    Hearer hearer(world_.rig, 4, {});
-    world_.rig.with([&] { world_.rig.step = [&] { hearer.step(); }; });
-    {
-        Ice::CommunicatorHolder ic(world_.client());
-        auto all = Ice::uncheckedCast<RadioTest::UavPrx>(
-            ic->stringToProxy("echo -o:" + world_.endpoint() + " -a 0xFFFF"));
-        all->note(7);
-        EXPECT_THROW(all->ice_twoway()->ice_ping(), Ice::UnknownLocalException);
-        EXPECT_THROW(all->take(8, World::pattern(1, 79)), Ice::MemoryLimitException);
-        all->note(9);
-    } // the program leaves when both are on the air
-    world_.rig.with([&] {
-        world_.rig.step = nullptr;
-        ASSERT_EQ(hearer.calls.size(), 2u);
-        EXPECT_EQ(*(hearer.calls[1].end() - 4), 9);
-    });
+TEST_F(StockIce, WhatCannotGoToAllVehiclesIsRefusedInTheCaller) {
+    Ice::CommunicatorHolder ic(world_.client());
+    auto all = Ice::uncheckedCast<RadioTest::UavPrx>(
+        ic->stringToProxy("echo -o:" + world_.endpoint() + " -a 0xFFFF"));
+    EXPECT_THROW(all->ice_twoway()->ice_ping(), Ice::UnknownLocalException);
+    EXPECT_THROW(all->take(8, World::pattern(1, 79)), Ice::MemoryLimitException);
+    EXPECT_NO_THROW(all->note(9)) << "and it goes on";
 }
 
 TEST_F(StockIce, EndpointsKeepTheirOptionsAsTextAndWrongOnesAreRefused) {

@@ -5,6 +5,7 @@
 
 #pragma once
 
+#include "ice_messages.h"
 #include "random.h"
 #include "soc_model.h"
 #include <cstring>
@@ -88,29 +89,9 @@ public:
     static std::vector<uint8_t> request(int id, const std::string& object,
                                         const std::string& operation, int mode = 0,
                                         const std::vector<uint8_t>& parameters = {}) {
-        std::vector<uint8_t> m = {'I', 'c', 'e', 'P', 1, 0, 1, 0, 0, 0, 0, 0, 0, 0};
-        auto number = [&](size_t value) {
-            for (int i = 0; i < 4; ++i)
-                m.push_back(static_cast<uint8_t>(value >> (8 * i)));
-        };
-        auto text = [&](const std::string& s) {
-            m.push_back(static_cast<uint8_t>(s.size()));
-            m.insert(m.end(), s.begin(), s.end());
-        };
-        number(static_cast<size_t>(id));
-        text(object);
-        text("");       // category
-        m.push_back(0); // facet
-        text(operation);
-        m.push_back(static_cast<uint8_t>(mode));
-        m.push_back(0); // context
-        number(6 + parameters.size());
-        m.push_back(1); // encoding 1.1
-        m.push_back(1);
-        m.insert(m.end(), parameters.begin(), parameters.end());
-        for (int i = 0; i < 4; ++i)
-            m[static_cast<size_t>(10 + i)] = static_cast<uint8_t>(m.size() >> (8 * i));
-        return m;
+        return IceMessages::request(static_cast<uint32_t>(id),
+                                    IceMessages::requestBody(object, operation, 1, parameters, "",
+                                                             static_cast<uint8_t>(mode)));
     }
     void call(int id, const std::string& object, const std::string& operation, int mode = 0,
               const std::vector<uint8_t>& parameters = {}) {

@@ -8,7 +8,7 @@
 // its own string and its own encoding. Afterwards the communicator must still answer a ping. With
 // ICEC_MINIMAL the same of the minimal run time, without the strings.
 
-#include "../link/ice_messages.h"
+#include "ice_messages.h"
 #include "loop.h"
 
 #include <cstdint>

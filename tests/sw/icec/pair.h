@@ -5,7 +5,7 @@
 
 #pragma once
 
-#include "../link/ice_messages.h"
+#include "ice_messages.h"
 #include "loop.h"
 
 #include <cstring>

@@ -57,6 +57,19 @@ TEST_F(Calls, OnewayCallsReturnAtOnceAndRefuseResults) {
     EXPECT_EQ(servant_.calls, 10);
 }
 
+TEST_F(Calls, AnAdapterIsFullAtItsLimitAndDeafUntilActive) {
+    std::vector<std::string> names(ICE_SERVANTS, "n");
+    for (size_t i = 1; i < names.size(); ++i)
+        add((names[i] += std::to_string(i)).c_str());
+    EXPECT_EQ(Ice_ObjectAdapter_add(&there().adapter, &servant_.base, "more"), ICE_LIMIT);
+    Ice_ObjectPrx prx = here().proxy((names.back() + ":loop").c_str());
+    EXPECT_EQ(call(prx, "op"), ICE_OK);
+    Ice_ObjectAdapter_deactivate(&there().adapter);
+    EXPECT_EQ(call(prx, "op"), ICE_OBJECT_NOT_EXIST);
+    Ice_ObjectAdapter_activate(&there().adapter);
+    EXPECT_EQ(call(prx, "op"), ICE_OK);
+}
+
 // The figures of the protocol's description: a ping is 39 bytes out and 25 back.
 TEST_F(Wire, APingIsAnsweredAsIceDoes) {
     auto back = exchange(request(7, requestBody("thing", "ice_ping")));

@@ -188,13 +188,12 @@ protected:
     std::thread serving_, answering_;
 };
 
-TEST_F(Tasks, CallAtOnceWhileOneReceives) {
-    whileServing(1, [this] { callFromThreads(ICE_CALLS); });
+// Where nobody serves, those that call receive in turns.
+class TasksThatServe : public Tasks, public ::testing::WithParamInterface<int> {};
+TEST_P(TasksThatServe, LetOthersCallAtOnce) {
+    whileServing(GetParam(), [this] { callFromThreads(ICE_CALLS); });
 }
-
-TEST_F(Tasks, CallWhileTwoServe) {
-    whileServing(2, [this] { callFromThreads(ICE_CALLS); });
-}
+INSTANTIATE_TEST_SUITE_P(Tasks, TasksThatServe, ::testing::Values(0, 1, 2));
 
 // A task that polls takes the leader's role from one that waits for a reply, and gives it back,
 // over and over.
@@ -288,10 +287,6 @@ TEST_F(Results, OfAnAsynchronousCallAreThereWhenItIsCompleted) {
 TEST_F(Results, NeedTheModeOfTheirOperation) {
     Graph_MakerPrx prx = proxy("maker");
     EXPECT_EQ(::call(prx, "echo", 0, nullptr, 2), ICE_UNKNOWN_LOCAL_EXCEPTION) << "not idempotent";
-}
-
-TEST_F(Tasks, ReceiveInTurnsWhereNobodyElseDoes) {
-    callFromThreads(ICE_CALLS);
 }
 
 } // namespace

@@ -43,7 +43,8 @@ inline void putString(Bytes& m, const std::string& s) {
 
 // A request from the identity on.
 inline Bytes requestBody(const std::string& object, const std::string& operation, uint8_t minor = 1,
-                         const Bytes& parameters = {}, const std::string& facet = "") {
+                         const Bytes& parameters = {}, const std::string& facet = "",
+                         uint8_t mode = 0) {
     Bytes m;
     putString(m, object);
     putString(m, ""); // category
@@ -51,7 +52,7 @@ inline Bytes requestBody(const std::string& object, const std::string& operation
     if (!facet.empty())
         putString(m, facet);
     putString(m, operation);
-    m.push_back(0); // mode
+    m.push_back(mode);
     m.push_back(0); // context
     encapsulate(m, parameters, minor);
     return m;

@@ -4,6 +4,7 @@
 // everything and sends any bytes.
 
 #include "link_variants.h"
+#include "mischief.h"
 
 extern "C" {
 #include "link_broadcast.h"
@@ -33,70 +34,12 @@ protected:
         to.receive(bytes);
         ++hostile_;
     }
-    const Bytes& any() {
-        return recorded_[random.below(static_cast<uint32_t>(recorded_.size()))].bytes;
-    }
-
-    // One hostile packet of a random kind to a random side. Nothing in it is a frame that its
-    // receiver has not heard from its peer before, but for what `replay` may bring: exact copies.
+    // One hostile packet to a random side.
     void hostile() {
         Side& to = random.below(2) ? a : b;
-        Bytes frame = any();
-        switch (random.below(8)) {
-        case 0: // replay, reflection, reordering: an unchanged packet of either side, at any time
-            break;
-        case 1: // several of them in a row
-            for (const Bytes& more : {any(), any()})
-                frame.insert(frame.end(), more.begin(), more.end());
-            break;
-        case 2: // one bit
-            frame[random.below(static_cast<uint32_t>(frame.size()))] ^=
-                static_cast<uint8_t>(1u << random.below(8));
-            break;
-        case 3: // cut
-            frame.resize(1 + random.below(static_cast<uint32_t>(frame.size())));
-            break;
-        case 4: // the attacker's header around a heard payload
-            for (size_t i = 0; i < LINK_HEADER && i < frame.size(); ++i)
-                if (random.below(2))
-                    frame[i] = static_cast<uint8_t>(random.next());
-            break;
-        case 5: { // a control frame: ACK, HELLO, HELLO-ACK, CONFIRM (or RST), BYE, PING; guessed
-                  // tag
-            static const uint8_t sizes[] = {
-                1, LINK_NONCE_BYTES, LINK_ANSWER_BYTES, LINK_ANSWER_BYTES, 0, 0};
-            uint32_t kind = random.below(6);
-            frame = {static_cast<uint8_t>(0x80 | (sizes[kind] + LINK_TAG_MORE)),
-                     static_cast<uint8_t>(LINK_IS_HANDSHAKE(kind) ? LINK_VERSION : random.next()),
-                     static_cast<uint8_t>(kind << 5 | (random.next() & 0x1F))};
-            const Bytes& heard = any();
-            for (size_t i = 0; i < sizes[kind] + LINK_TAG; ++i)
-                frame.push_back(i < sizes[kind] && i + 3 < heard.size()
-                                    ? heard[i + 3]
-                                    : static_cast<uint8_t>(random.next()));
-            break;
-        }
-        case 6: // a data frame in order, guessed
-            frame = Bytes(LINK_SECURE_OVERHEAD +
-                          random.below(LINK_MAX_FRAME - LINK_SECURE_OVERHEAD + 1));
-            for (auto& byte : frame)
-                byte = static_cast<uint8_t>(random.next());
-            frame[0] = static_cast<uint8_t>(frame.size() - LINK_OVERHEAD);
-            break;
-        default: // the open protocol's RST, HELLO and PING
-            frame = {static_cast<uint8_t>(random.below(2) ? 0x80 : 0x84),
-                     LINK_VERSION,
-                     static_cast<uint8_t>(random.next()),
-                     1,
-                     2,
-                     3,
-                     4};
-            frame.resize(LINK_LENGTH(frame) ? 7 : 3);
-            U32 crc = link_crc(LINK_NO_SEED, frame.data(), static_cast<U32>(frame.size()));
-            frame.push_back(static_cast<uint8_t>(crc >> 8));
-            frame.push_back(static_cast<uint8_t>(crc));
-        }
-        attack(to, frame);
+        attack(to, mischief(random, [this]() -> const Bytes& {
+                   return recorded_[random.below(static_cast<uint32_t>(recorded_.size()))].bytes;
+               }));
     }
     void maybeHostile() {
         if (!recorded_.empty() && random.chance(0.5))
@@ -400,18 +343,10 @@ TEST_P(Attacked, OldHellosMakeNobodyMultiplyPoints) {
     EXPECT_FALSE(b.isUp());
 }
 
-// An attack on new sessions: the attacker hears the traffic and adds 20 bytes to each packet, or
-// sends them blindly. They are a byte of no frame and a seeming HELLO, of this version or another.
+// An attack on new sessions: the attacker hears the traffic and adds a lure to each packet, or
+// sends it blindly.
 class Hindered : public Attacked {
 protected:
-    static Bytes lure(uint8_t version) {
-        Bytes bytes = {0xFF};
-        while (bytes.size() < 20)
-            bytes.insert(bytes.end(), {LINK_CONTROL | (LINK_NONCE_BYTES + LINK_TAG_MORE), version,
-                                       LINK_KIND_BITS(LINK_KIND_HELLO)});
-        bytes.resize(20);
-        return bytes;
-    }
     void restart(bool bothCall) {
         for (Side* side : {&a, &b}) {
             side->boot();

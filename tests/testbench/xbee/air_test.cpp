@@ -85,14 +85,15 @@ TEST_F(Retries, WithRRTheTriesAreMadeAgainAfter200To248Milliseconds) {
 }
 
 TEST_F(Retries, ABroadcastGoesRRAndTwoTimesAndArrivesOnce) {
-    for (uint32_t rr : {0u, 2u}) {
-        power({{"DL", 0xFFFF}, {"RR", rr}, {"RO", 0}});
-        uint64_t before = air.counters().airNs;
-        send("x", 100 * ms);
-        EXPECT_EQ((air.counters().airNs - before) / (RfChannel::airTimeNs(1) - 544'000),
-                  rr ? rr + 2 : 1);
-        EXPECT_EQ(heardB(), "x");
-    }
+    for (uint32_t rr : {0u, 2u})
+        for (double loss : {1, 0}) { // nobody acknowledges it
+            power({{"DL", 0xFFFF}, {"RR", rr}, {"RO", 0}});
+            air.weather.tryLoss = loss;
+            uint64_t before = air.counters().airNs;
+            EXPECT_EQ(across("x", 100 * ms), loss ? "" : "x");
+            EXPECT_EQ((air.counters().airNs - before) / (RfChannel::airTimeNs(1) - 544'000),
+                      rr ? rr + 2 : 1);
+        }
 }
 
 TEST_F(Retries, WithRRAFailureHasAStatusOfItsOwn) {

@@ -5,6 +5,7 @@
 
 #pragma once
 
+#include "mischief.h"
 #include "rf_channel.h"
 
 class Attacker {
@@ -15,7 +16,7 @@ public:
     Attacker(RfChannel& air, uint64_t seed)
         : air_(air), random_(seed), modem_(line_, air, modemOfNobody()) {
         air.onPacket([this](uint64_t, const RfPacket& packet, RfChannel::Outcome) {
-            toHinder_ += hinders_ && packet.bytes != lure();
+            toHinder_ += hinders_ && packet.bytes != lure_;
             // Its own packets arrive as the link's: the air does not tell them apart.
             if (heard_.size() < 100'000)
                 heard_.push_back(packet);
@@ -34,53 +35,26 @@ public:
         ++sent_;
         air_.transmit(&modem_, packet, now);
     }
-    // Does one of the things that are possible without a key, drawn at random: repeats a packet,
-    // recent or old; reflects it to its sender, or sends it to another in another's name; changes a
-    // bit; cuts it; joins two; makes up handshakes, resets, ends, acknowledgements and data, with
-    // tags or CRCs; makes noise.
+    // Does one of the things that are possible without a key, drawn at random: mischief, in the
+    // name of a packet's sender, of its receiver or of another's.
     void doMischief(uint64_t now) {
-        if (heard_.empty() || random_.below(4) == 0) {
-            const bool up = random_.below(2);
-            return send(up ? ground : uav, up ? uav : ground, invented(), now);
-        }
-        const RfPacket& packet = recalled();
-        Bytes bytes = packet.bytes;
-        uint16_t from = packet.from, to = packet.to;
-        const auto size = static_cast<uint32_t>(bytes.size());
-        switch (random_.below(7)) {
-        case 0:
-            std::swap(from, to);
-            break;
-        case 1:
-            if (size)
-                bytes[random_.below(size)] ^= static_cast<uint8_t>(1u << random_.below(8));
-            break;
-        case 2:
-            bytes.resize(random_.below(size + 1));
-            break;
-        case 3: {
-            const Bytes& more = recalled().bytes;
-            bytes.insert(bytes.begin(), more.begin(), more.end());
-            break;
-        }
-        case 4:
-            from = recalled().from;
-            to = recalled().to;
-            break;
-        default: // unchanged
-            break;
-        }
-        if (!bytes.empty())
-            send(from, to, bytes, now);
+        if (heard_.empty())
+            return;
+        RfPacket as = recalled();
+        if (random_.below(7) == 0)
+            std::swap(as.from, as.to);
+        else if (random_.below(7) == 0)
+            as = recalled();
+        const auto any = [this]() -> const Bytes& { return recalled().bytes; };
+        send(as.from, as.to, mischief(random_, any), now);
     }
-    // Adds 20 bytes to each packet from now on, or adds no more: what looks like six HELLOs, so
-    // that a receiver looks for frames there, and pays for it, while the true next one waits.
+    // Adds a lure to each packet from now on, or adds no more.
     void hinder(bool isOn) { hinders_ = isOn; }
     void advance(uint64_t now) {
         modem_.advance(now);
         for (; toHinder_; --toHinder_) {
-            send(ground, uav, lure(), now);
-            send(uav, ground, lure(), now);
+            send(ground, uav, lure_, now);
+            send(uav, ground, lure_, now);
         }
     }
     uint64_t nextEvent() const { return modem_.nextEvent(); }
@@ -98,32 +72,13 @@ private:
         options.set = {{"MY", 0x0BAD}, {"DL", uav}};
         return options;
     }
-    static Bytes lure() {
-        Bytes bytes = {0xFF};
-        for (int i = 0; i < 6; ++i)
-            bytes.insert(bytes.end(), {0x8E, 6, 0x20}); // a HELLO's header, protocol version 6
-        bytes.push_back(0x8E);
-        return bytes;
-    }
     // One of the newest half of the time, else any.
     const RfPacket& recalled() {
         const auto count = static_cast<uint32_t>(heard_.size());
         const uint32_t span = random_.below(2) ? count : std::min(count, 20u);
         return heard_[count - 1 - random_.below(span)];
     }
-    // Control frames of every kind and epoch, and data, whose tag is a guess.
-    Bytes invented() {
-        Bytes bytes;
-        while (bytes.size() < mostBytes && (bytes.empty() || random_.below(4))) {
-            const uint32_t size = random_.below(2) ? random_.below(20) : 0;
-            bytes.push_back(static_cast<uint8_t>(size | (random_.below(4) ? 0x80 : 0)));
-            bytes.push_back(static_cast<uint8_t>(random_.below(2) ? 3 : random_.next()));
-            for (uint32_t i = 0; i < 1 + size + 8; ++i)
-                bytes.push_back(static_cast<uint8_t>(random_.next()));
-        }
-        return bytes;
-    }
-
+    const Bytes lure_ = lure(LINK_VERSION);
     RfChannel& air_;
     Random random_;
     HostLine line_;

@@ -36,15 +36,6 @@ TEST_F(Addresses, ChannelNetworkAndAddressMustAgree) {
     }
 }
 
-TEST_F(Addresses, FFFFReachesEverybodyOnceAndWithoutAck) {
-    power({{"DL", 0xFFFF}});
-    air.weather.tryLoss = 1;
-    send("x", 60 * ms);
-    EXPECT_EQ(air.counters().retries, 0u);
-    air.weather.tryLoss = 0;
-    EXPECT_EQ(across("y", 30 * ms), "y");
-}
-
 TEST_F(Addresses, SerialNumbersReachAModemWithoutAShortAddress) {
     power({{"DH", 0x0013A200}, {"DL", 0xB}}, {{"MY", 0xFFFE}});
     EXPECT_EQ(across("x", 30 * ms), "x");
@@ -92,16 +83,12 @@ TEST_F(Mac, RetriesHideLossOfSingleTries) {
     EXPECT_LT(air.counters().retries, 140u);
 }
 
-TEST_F(Mac, ALostAckMakesADuplicate) {
-    power();
+TEST_F(Mac, ALostAckMakesADuplicateThatRRAndTheHeaderTell) {
     air.weather.ackLoss = 1;
+    power();
     EXPECT_EQ(across("x", 100 * ms), "xxxx");
     EXPECT_EQ(a->parameter("EA"), 4u);
-}
-
-TEST_F(Mac, WithRRAndTheHeaderDuplicatesAreDropped) {
     power({{"RR", 1}});
-    air.weather.ackLoss = 1;
     EXPECT_EQ(across("x", 400 * ms), "x");
     EXPECT_EQ(b->counters().duplicatesDropped, 7u);
 }

@@ -11,12 +11,21 @@ using Packetizing = Pair;
 using Buffers = Pair;
 using Reset = Pair;
 
-TEST_F(Packetizing, APacketLeavesAfterROOfSilence) {
-    power(); // RO 3 at 9600 baud: 3.125 ms
-    send("abc", 3 * charNs() - 1000);
-    EXPECT_EQ(a->counters().packetsSent, 0u);
-    run(2000);
-    EXPECT_EQ(a->counters().packetsSent, 1u);
+TEST_F(Packetizing, APacketLeavesAfterROOfSilenceOrAtOnceWithRO0OrAHundredBytes) {
+    const struct {
+        Settings set;
+        size_t bytes;
+        uint64_t ns, sent;
+    } cases[] = {{{}, 3, 3 * charNs() - 1000, 0}, // RO 3 at 9600 baud: 3.125 ms
+                 {{}, 3, 3 * charNs() + 1000, 1},
+                 {{{"RO", 0}}, 1, 0, 1},
+                 {{{"RO", 0xFF}}, 99, 0, 0},
+                 {{{"RO", 0xFF}}, 100, 0, 1}};
+    for (const auto& c : cases) {
+        power(c.set);
+        send(std::string(c.bytes, 'x'), c.ns);
+        EXPECT_EQ(a->counters().packetsSent, c.sent) << c.bytes << " bytes, " << c.ns << " ns";
+    }
 }
 
 TEST_F(Packetizing, OnlyAPauseAboveROSplits) {
@@ -28,20 +37,6 @@ TEST_F(Packetizing, OnlyAPauseAboveROSplits) {
         ASSERT_EQ(packets.size(), characters / 2);
         EXPECT_EQ(text(packets[0].bytes), characters == 2 ? "abcdef" : "abc");
     }
-}
-
-TEST_F(Packetizing, RO0SendsAtOnce) {
-    power({{"RO", 0}});
-    send("a");
-    EXPECT_EQ(a->counters().packetsSent, 1u);
-}
-
-TEST_F(Packetizing, AHundredBytesLeaveAtOnce) {
-    power({{"RO", 0xFF}});
-    send(std::string(99, 'x'));
-    EXPECT_EQ(a->counters().packetsSent, 0u);
-    send("x");
-    EXPECT_EQ(a->counters().packetsSent, 1u);
 }
 
 TEST_F(Packetizing, NinetyFiveBytesWithEncryption) {

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+//
+// mischief: what may be sent without the key: copies of what was heard, changed, cut or joined;
+// control frames and data with a guessed tag; the open protocol's.
+
+#pragma once
+
+#include "random.h"
+#include <functional>
+#include <vector>
+
+extern "C" {
+#include "link.h"
+}
+
+// Returns hostile bytes of a random kind; `any` gives some that were heard. No frame in them has a
+// good tag but for copies.
+inline std::vector<uint8_t> mischief(Random& random,
+                                     const std::function<const std::vector<uint8_t>&()>& any) {
+    auto byte = [&] { return static_cast<uint8_t>(random.next()); };
+    std::vector<uint8_t> frame = any();
+    switch (random.below(8)) {
+    case 0: // replay, reflection, reordering: unchanged, at any time
+        break;
+    case 1: // several of them in a row
+        for (const std::vector<uint8_t>& more : {any(), any()})
+            frame.insert(frame.end(), more.begin(), more.end());
+        break;
+    case 2: // one bit
+        frame[random.below(static_cast<uint32_t>(frame.size()))] ^=
+            static_cast<uint8_t>(1u << random.below(8));
+        break;
+    case 3: // cut
+        frame.resize(1 + random.below(static_cast<uint32_t>(frame.size())));
+        break;
+    case 4: // the attacker's header around a heard payload
+        for (size_t i = 0; i < LINK_HEADER && i < frame.size(); ++i)
+            if (random.below(2))
+                frame[i] = byte();
+        break;
+    case 5: { // a control frame: ACK, HELLO, HELLO-ACK, CONFIRM (or RST), BYE, PING; guessed tag
+        static const uint8_t sizes[] = {
+            1, LINK_NONCE_BYTES, LINK_ANSWER_BYTES, LINK_ANSWER_BYTES, 0, 0};
+        uint32_t kind = random.below(6);
+        frame = {static_cast<uint8_t>(0x80 | (sizes[kind] + LINK_TAG_MORE)),
+                 LINK_IS_HANDSHAKE(kind) ? static_cast<uint8_t>(LINK_VERSION) : byte(),
+                 static_cast<uint8_t>(kind << 5 | (byte() & 0x1F))};
+        const std::vector<uint8_t>& heard = any();
+        for (size_t i = 0; i < sizes[kind] + LINK_TAG; ++i)
+            frame.push_back(i < sizes[kind] && i + 3 < heard.size() ? heard[i + 3] : byte());
+        break;
+    }
+    case 6: // a data frame in order, guessed
+        frame.resize(LINK_SECURE_OVERHEAD +
+                     random.below(LINK_MAX_FRAME - LINK_SECURE_OVERHEAD + 1));
+        for (uint8_t& each : frame)
+            each = byte();
+        frame[0] = static_cast<uint8_t>(frame.size() - LINK_OVERHEAD);
+        break;
+    default: // the open protocol's RST, HELLO and PING
+        frame = {
+            static_cast<uint8_t>(random.below(2) ? 0x80 : 0x84), LINK_VERSION, byte(), 1, 2, 3, 4};
+        frame.resize(LINK_LENGTH(frame) ? 7 : 3);
+        U32 crc = link_crc(LINK_NO_SEED, frame.data(), static_cast<U32>(frame.size()));
+        frame.push_back(static_cast<uint8_t>(crc >> 8));
+        frame.push_back(static_cast<uint8_t>(crc));
+    }
+    return frame;
+}
+
+// Returns 20 bytes to be added to packets: one of no frame, and what looks like HELLOs of this
+// version, so that a receiver looks for frames there, and pays for it, while the next one waits.
+inline std::vector<uint8_t> lure(uint8_t version) {
+    std::vector<uint8_t> bytes = {0xFF};
+    while (bytes.size() < 20)
+        bytes.insert(bytes.end(), {LINK_CONTROL | (LINK_NONCE_BYTES + LINK_TAG_MORE), version,
+                                   LINK_KIND_BITS(LINK_KIND_HELLO)});
+    bytes.resize(20);
+    return bytes;
+}

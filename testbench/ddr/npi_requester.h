@@ -63,9 +63,7 @@ struct NpiTraffic {
 template <class Module> class NpiRequesters {
 public:
     struct Counters {
-        uint64_t readWords = 0, writeWords = 0, requests = 0, waitSum = 0, waitMax = 0;
-        uint64_t latencySum = 0, latencyMax = 0, latencyMin = ~0ull, reads = 0;
-        uint64_t othersMax = 0; // acknowledgements of other ports while it waited
+        uint64_t readWords = 0, writeWords = 0, requests = 0, latencySum = 0, reads = 0;
     };
 
     NpiRequesters(Module& top, unsigned ports, size_t bytes, uint64_t seed)
@@ -103,8 +101,6 @@ public:
             takeWord(port);
             if (acks >> port.number & 1)
                 acknowledged(port);
-            else if (port.raised)
-                port.others += acks != 0;
         }
         ++now_;
     }
@@ -124,7 +120,6 @@ public:
             if (asks && !port.raised) {
                 port.raised = true;
                 port.since = now_;
-                port.others = 0;
             }
             setBits(top_.npi_addr_req_i, p, 1, asks);
             setBits(top_.npi_addr_i, 32 * p, 32, r.address | r.above);
@@ -166,7 +161,7 @@ private:
         Request now, ahead; // the words of a write may be pushed before its turn comes
         bool raised = false, willing = false, popping = false;
         uint32_t next = 0; // address of a sequential stream
-        uint64_t since = 0, others = 0;
+        uint64_t since = 0;
         std::deque<Expected> expected; // words of reads, in their order
     };
 
@@ -239,10 +234,6 @@ private:
             log->push_back({from, r.words, r.read});
         Counters& c = port.counters;
         ++c.requests;
-        uint64_t wait = now_ - port.since;
-        c.waitSum += wait;
-        c.waitMax = std::max(c.waitMax, wait);
-        c.othersMax = std::max(c.othersMax, port.others);
         c.writeWords += r.read ? 0 : r.words;
         r.valid = port.raised = false;
     }
@@ -266,8 +257,6 @@ private:
             Counters& c = port.counters;
             ++c.reads;
             c.latencySum += latency;
-            c.latencyMax = std::max(c.latencyMax, latency);
-            c.latencyMin = std::min(c.latencyMin, latency);
         }
     }
 

@@ -30,7 +30,6 @@ public:
     unsigned firstError = 1024; // words from here on answer with error
     bool hung = false;          // never answers
     unsigned clearWord = 1024;  // writing 1 clears there
-    uint64_t reads = 0, writes = 0;
 
 private:
     [[noreturn]] static void broken(const std::string& what) {
@@ -53,11 +52,8 @@ private:
         write_ = top_.bus_write_o;
         wdata_ = top_.bus_wdata_o;
         waiting_ = valid && !top_.bus_ready_i;
-        if (valid && top_.bus_ready_i) {
-            ++(write_ ? writes : reads);
-            if (write_ && addr_ < firstError)
-                words[addr_] = addr_ == clearWord ? words[addr_] & ~wdata_ : wdata_;
-        }
+        if (valid && top_.bus_ready_i && write_ && addr_ < firstError)
+            words[addr_] = addr_ == clearWord ? words[addr_] & ~wdata_ : wdata_;
     }
 
     void drive() {

@@ -23,43 +23,6 @@ protected:
     FsmcMaster& fsmc_ = b_.master;
 };
 
-TEST_F(Bridge, RegisterWordsAreTransferredInOnePiece) {
-    Random random(testSeed());
-    for (int i = 0; i < 300; ++i) {
-        unsigned word = 1 + random.below(1023);
-        uint32_t value = random.next();
-        uint64_t writes = b_.slave.writes, reads = b_.slave.reads;
-        fsmc_.write32(at(word), value);
-        EXPECT_EQ(fsmc_.read32(at(word)), value) << "SEED=" << testSeed();
-        EXPECT_EQ(b_.slave.words[word], value);
-        EXPECT_EQ(b_.slave.writes, writes + 1);
-        EXPECT_EQ(b_.slave.reads, reads + 1);
-    }
-    EXPECT_EQ(b_.errors, 0u);
-}
-
-TEST_F(Bridge, AReadWordIsOneMomentsValue) {
-    b_.slave.words[77] = 0x11112222;
-    EXPECT_EQ(fsmc_.read16(at(77)), 0x2222);
-    b_.slave.words[77] = 0x33334444;
-    EXPECT_EQ(fsmc_.read16(at(77) + 2), 0x1111)
-        << "the high half belongs to the low half read before";
-    EXPECT_EQ(fsmc_.read16(at(77) + 2), 0x3333) << "a high half alone is read afresh";
-    b_.slave.words[78] = 0x55556666;
-    EXPECT_EQ(fsmc_.read16(at(77)), 0x4444);
-    EXPECT_EQ(fsmc_.read16(at(78) + 2), 0x5555) << "another word's is its own";
-}
-
-TEST_F(Bridge, HalfAWrittenWordChangesNothing) {
-    b_.slave.words[5] = 1;
-    fsmc_.write16(at(5), 0xFFFF);
-    fsmc_.write16(at(6) + 2, 0xFFFF); // the other half of another word
-    doorbell();
-    EXPECT_EQ(b_.slave.writes, 1u) << "only FSMC_init's";
-    EXPECT_EQ(b_.errors, 1u) << "a high half without its low half is an error";
-    EXPECT_EQ(b_.slave.words[5], 1u);
-}
-
 TEST_F(Bridge, MemoryEqualsAReferenceWithAllWidths) {
     traffic(b_, testSeed(), 3000);
 }

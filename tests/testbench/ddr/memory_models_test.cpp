@@ -190,16 +190,6 @@ TEST_F(Mcb, ReadWordsThatDoNotFitAreLost) {
     EXPECT_TRUE(memory_.pins.rdOverflow);
 }
 
-TEST(McbStart, AStartOfTheMemoryTakesAMillisecondOfThisClock) {
-    McbModel memory(1 << 20);
-    memory.restart(McbModel::startClocks);
-    for (unsigned i = 1; i < McbModel::startClocks; ++i)
-        memory.cycle();
-    EXPECT_FALSE(memory.pins.calibDone);
-    memory.cycle();
-    EXPECT_TRUE(memory.pins.calibDone);
-}
-
 TEST(McbStart, NoCommandBeforeCalibration) {
     McbModel memory(1 << 20);
     memory.pins.cmdEn = true;

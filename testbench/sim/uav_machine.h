@@ -55,6 +55,21 @@ private:
     uint64_t nextTick_ = 0, tickCycles_;
 };
 
+// Boots the UAV's application and flies until the script is done, or until this simulated second.
+// Returns whether it is done.
+inline bool flies(
+    SocModel& soc, const std::function<bool()>& script, double until,
+    const std::function<void(UavMachine&)>& prepare = [](UavMachine&) {}) {
+    bool done = false;
+    UavMachine machine(soc, [&] {
+        done = script();
+        return !done && static_cast<double>(soc.now()) < until * 1e9;
+    });
+    prepare(machine);
+    machine.run();
+    return done;
+}
+
 // The firmware that the simulator runs on the host: each program that links sim_main answers.
 // `modemKey`: 16 bytes of the modem's AES key, or none; `isSecure`: the link has a key. Throws if
 // the firmware cannot encrypt.

@@ -49,6 +49,23 @@ uint64_t comparedNs() {
     return static_cast<uint64_t>(1e6 * (text ? std::atof(text) : 40));
 }
 
+// Has the camera's sensor send frames: at first, each millisecond, and one while a call waits for
+// it.
+void sendFrames(GroundAndChip& world, size_t framedAfter, std::function<void(uint32_t)> note) {
+    Frame frame{16, 8, {}};
+    for (int i = 0; i < 16 * 8; ++i)
+        frame.pixels.push_back(static_cast<uint8_t>(i * i * 37));
+    auto sends = [&world, framedAfter, framed = false, next = uint64_t{0}]() mutable {
+        const uint64_t now = world.soc.now();
+        const bool waits = world.ground.replies.size() == framedAfter && !framed;
+        const bool first = now < 4'000'000 && now >= next;
+        framed |= waits;
+        next = first ? now + 900'000 : next;
+        return waits || first;
+    };
+    connectSensor(world.soc, frame, sends, std::move(note));
+}
+
 // Flies until each call has been answered, and for the time that is compared.
 Flight fly(const Plan& plan, bool slow) {
     Flight f;
@@ -71,22 +88,8 @@ Flight fly(const Plan& plan, bool slow) {
         note(1, static_cast<uint32_t>(packet.bytes.size() << 8) | static_cast<uint32_t>(outcome));
     });
     world.provide(16, 16, [](uint32_t i) { return static_cast<uint8_t>(i * i * 37); });
-    bool framed = false; // the frame for the call was sent
-    uint64_t nextFrame = 0;
-    if (plan.framedAfter) {
-        Frame frame{16, 8, {}};
-        for (int i = 0; i < 16 * 8; ++i)
-            frame.pixels.push_back(static_cast<uint8_t>(i * i * 37));
-        // At first, each millisecond, and while a call waits for one.
-        auto sends = [&] {
-            const bool waits = ground.replies.size() == plan.framedAfter && !framed;
-            const bool first = soc.now() < 4'000'000 && soc.now() >= nextFrame;
-            framed |= waits;
-            nextFrame = first ? soc.now() + 900'000 : nextFrame;
-            return waits || first;
-        };
-        connectSensor(soc, frame, sends, [&](uint32_t pins) { note(3, pins); });
-    }
+    if (plan.framedAfter)
+        sendFrames(world, plan.framedAfter, [&](uint32_t pins) { note(3, pins); });
     soc.reset(true);
     soc.evaluateAll(slow);
     size_t sent = 0;
@@ -182,6 +185,18 @@ TEST(Quiet, VerilatorsScratchIsNoStateOfTheChip) {
                            testing::HasSubstr("__Vxrand"), testing::HasSubstr("__Vlvbound")))));
 }
 
+void expectSameState(SocModel& quick, SocModel& slow) {
+    EXPECT_THAT(
+        SocState::differences(SocState::of(*quick.chip().rootp), SocState::of(*slow.chip().rootp)),
+        testing::IsEmpty())
+        << "in clock " << quick.cycles();
+}
+
+void passUntil(SocModel& soc, uint64_t clock) {
+    while (soc.cycles() < clock)
+        soc.tick();
+}
+
 TEST(Quiet, TheChipIsTheSameInWhateverClockItIsLookedAt) {
     RfChannel air(testSeed());
     SocModel quick(air, Ground::uavModem()), slow(air, Ground::uavModem());
@@ -198,12 +213,8 @@ TEST(Quiet, TheChipIsTheSameInWhateverClockItIsLookedAt) {
         for (look += 100 + random.below(400); quick.cycles() < look;)
             if (!quick.passQuiet(look))
                 quick.tick();
-        while (slow.cycles() < quick.cycles())
-            slow.tick();
-        EXPECT_THAT(SocState::differences(SocState::of(*quick.chip().rootp),
-                                          SocState::of(*slow.chip().rootp)),
-                    testing::IsEmpty())
-            << "in clock " << quick.cycles();
+        passUntil(slow, quick.cycles());
+        expectSameState(quick, slow);
     }
     EXPECT_LT(quick.evaluated() * 2, quick.cycles());
 }
@@ -213,12 +224,10 @@ bool isMemoryReady(uint64_t clocks) {
     RfChannel air(testSeed());
     SocModel soc(air, Ground::uavModem());
     soc.reset();
-    while (soc.cycles() < 20'000)
-        soc.tick();
+    passUntil(soc, 20'000);
     const uint64_t ready = soc.cycles() + clocks;
     soc.reset(true);
-    while (soc.cycles() < ready)
-        soc.tick();
+    passUntil(soc, ready);
     return soc.memory().pins.calibDone;
 }
 
@@ -241,10 +250,6 @@ struct Pair {
         for (uint32_t word = 0; word < 2; ++word)
             soc.fsmc().write16(fsmc::windowsAt + 8 * word, 1);
     }
-    static void passUntil(SocModel& soc, uint64_t clock) {
-        while (soc.cycles() < clock)
-            soc.tick();
-    }
 
     RfChannel air{testSeed()};
     SocModel quick{air, Ground::uavModem()}, slow{air, Ground::uavModem()};
@@ -255,15 +260,12 @@ TEST(Quiet, WhatWaitsForTheMemoryGoesWhenItIsReady) {
     Pair pair;
     for (SocModel* soc : {&pair.quick, &pair.slow}) {
         Pair::write(*soc);
-        Pair::passUntil(*soc, McbModel::startClocks);
+        passUntil(*soc, McbModel::startClocks);
     }
     for (unsigned clock = 0; clock < 200; ++clock) {
         pair.quick.tick();
         pair.slow.tick();
-        EXPECT_THAT(SocState::differences(SocState::of(*pair.quick.chip().rootp),
-                                          SocState::of(*pair.slow.chip().rootp)),
-                    testing::IsEmpty())
-            << "in clock " << pair.quick.cycles();
+        expectSameState(pair.quick, pair.slow);
     }
     EXPECT_EQ(pair.quick.memory().wordsWritten, 1u);
 }
@@ -271,10 +273,10 @@ TEST(Quiet, WhatWaitsForTheMemoryGoesWhenItIsReady) {
 TEST(Quiet, AMemoryThatHungGoesOnInItsClock) {
     Pair pair;
     auto written = [](SocModel& soc) {
-        Pair::passUntil(soc, 2 * McbModel::startClocks);
+        passUntil(soc, 2 * McbModel::startClocks);
         soc.memory().hang(true);
         Pair::write(soc);
-        Pair::passUntil(soc, 3 * McbModel::startClocks);
+        passUntil(soc, 3 * McbModel::startClocks);
         soc.memory().hang(false);
         while (!soc.memory().wordsWritten && soc.cycles() < 4 * McbModel::startClocks)
             soc.tick();
@@ -327,7 +329,7 @@ TEST(Quiet, WhatRtsHoldsBackGoesOnInItsClock) {
     Random random(testSeed());
     auto pass = [&](uint64_t ns) {
         for (const uint64_t end = soc.now() + ns; soc.now() < end;) {
-            Pair::passUntil(soc, soc.cycles() + 1 + random.below(5000));
+            passUntil(soc, soc.cycles() + 1 + random.below(5000));
             EXPECT_EQ(soc.chip().modem_rxd_i, soc.line().rxd()) << "in clock " << soc.cycles();
         }
     };

@@ -15,33 +15,20 @@ extern Link uav_link; // the firmware's
 
 namespace {
 
-class Uav : public ::testing::Test, protected GroundAndChip {
-protected:
-    Uav() { soc.reset(true); }
-    // Runs the firmware with a script, called each millisecond.
-    void fly(const Script& script, double limitSeconds) {
-        bool done = false;
-        UavMachine machine(soc, [&] {
-            done = script();
-            return !done && within(limitSeconds);
-        });
-        machine_ = &machine;
-        machine.run();
-        EXPECT_TRUE(done) << "not done after " << limitSeconds << " simulated seconds";
-    }
-
-    UavMachine* machine_ = nullptr; // while it flies
-};
+class Uav : public ::testing::Test, protected GroundAndChip {};
 
 TEST_F(Uav, AModemResetInMidPacketIsRecoveredFrom) {
     uint64_t since = 0;
+    UavMachine* machine = nullptr;
     auto hurry = [&](unsigned times) {
         EXPECT_EQ(soc.modem().parameter("BD"), 3u);
-        machine_->hurry(times);
+        machine->hurry(times);
         ground.hurry = times;
         return true;
     };
-    fly(inOrder({ground.pinging(3),
+    soc.reset(true);
+    auto script =
+        inOrder({ground.pinging(3),
                  [&] {
                      ground.ping(100, "hwengine1"); // while this is on its way ...
                      since = soc.now();
@@ -65,8 +52,8 @@ TEST_F(Uav, AModemResetInMidPacketIsRecoveredFrom) {
                      ground.replies.clear();
                      return ground.isUp();
                  },
-                 ground.pinging(3)}),
-        20);
+                 ground.pinging(3)});
+    EXPECT_TRUE(flies(soc, script, 20, [&](UavMachine& m) { machine = &m; }));
     EXPECT_EQ(soc.modem().parameter("BD"), 250000u);
 }
 
@@ -150,16 +137,10 @@ private:
 
 TEST(Grounds, TwoAreServedAtOnceEachUnderItsOwnKeyAndNobodyElse) {
     TwoGrounds world;
-    auto script = world.flight();
-    bool done = false;
-    UavMachine machine(world.soc, [&] {
-        done = script();
-        return !done && world.within(60);
-    });
-    machine.board.provide(world.pilotsKey);
-    machine.board.provideGround(world.observersAddress, world.observersKey);
-    machine.run();
-    EXPECT_TRUE(done);
+    EXPECT_TRUE(flies(world.soc, world.flight(), 60, [&](UavMachine& machine) {
+        machine.board.provide(world.pilotsKey);
+        machine.board.provideGround(world.observersAddress, world.observersKey);
+    }));
     EXPECT_EQ(Link_statistics(&uav_link)->bytesSkipped, 0u)
         << "the stranger's, on the pilot's link";
 }
@@ -191,15 +172,10 @@ TEST(Fellow, OneThatIsAwayCostsLittleOfTheAirAndTheVehicleServesItsGroundMeanwhi
                                return true;
                            },
                            world.ground.calling(calls)});
-    bool done = false;
-    UavMachine machine(world.soc, [&] {
-        done = script();
-        return !done && world.within(30);
-    });
-    machine.board.provide(key);
-    machine.board.provideGround(UAV_FELLOW | 2, keyOfTwo);
-    machine.run();
-    EXPECT_TRUE(done);
+    EXPECT_TRUE(flies(world.soc, script, 30, [&](UavMachine& machine) {
+        machine.board.provide(key);
+        machine.board.provideGround(UAV_FELLOW | 2, keyOfTwo);
+    }));
     EXPECT_LT(double(world.soc.now() - since) / 1e9, 22 * 0.045) << "the ground was delayed";
     const double share = double(airNs) / 8e9;
     std::printf("a fellow that is away takes %.2f %% of the air\n", 100 * share);
@@ -272,22 +248,20 @@ protected:
         });
     }
     // The vehicle starts, and flies until the script, which is called each millisecond, is over.
-    void fly(const Script& script, double limitSeconds) {
-        bool done = false;
-        const uint64_t limit = soc.now() + static_cast<uint64_t>(limitSeconds * 1e9);
-        UavMachine machine(soc, [&] {
+    void fly(const Script& script, double seconds) {
+        const Script withMischief = [&] {
             if (period_ && soc.now() >= nextMischief_) {
                 attacker_.doMischief(soc.now());
                 nextMischief_ = soc.now() + period_;
             }
-            done = script();
-            return !done && soc.now() < limit;
-        });
-        machine.board = SimulatedBoard(++boots_);
-        machine.board.provide(key_);
-        soc.reset();
-        machine.run();
-        EXPECT_TRUE(done) << "not done after " << limitSeconds << " simulated seconds";
+            return script();
+        };
+        const double now = static_cast<double>(soc.now()) / 1e9;
+        EXPECT_TRUE(flies(soc, withMischief, now + seconds, [&](UavMachine& machine) {
+            machine.board = SimulatedBoard(++boots_);
+            machine.board.provide(key_);
+            soc.reset();
+        }));
     }
     void expectAllAnswered(size_t count) {
         EXPECT_EQ(ground.replies.size(), count);

@@ -4,12 +4,11 @@
 // this process.
 
 #include "ground.h"
+#include "keys.h"
 #include "uav_machine.h"
-#include <algorithm>
 #include <cstring>
 #include <gmock/gmock.h>
 #include <lz4.h>
-#include <sodium.h>
 
 extern "C" {
 #include "signature.h"
@@ -49,12 +48,8 @@ struct Flash {
 class UavUpdate : public ::testing::Test, protected GroundAndChip {
 protected:
     void SetUp() override {
-        Bytes open(crypto_sign_PUBLICKEYBYTES), seed(crypto_sign_SEEDBYTES, 9);
-        crypto_sign_seed_keypair(open.data(), secret.data(), seed.data());
-        Slots_Header list = listOf(1);
-        std::copy(open.begin(), open.end(), list.digest);
+        const Slots_Header list = ours.list(1, ours, ours), running = headerOf(5, 0);
         std::memcpy(&flash.bytes[SLOTS_KEYS_AT], &list, sizeof list);
-        const Slots_Header running = headerOf(5, 0);
         std::memcpy(&flash.bytes[Slots_at(&slots_firmware, 0)], &running, sizeof running);
         Slots_set(&flash.port, 0, SLOTS_CONFIRMED);
         flash.bytes[Slots_at(&slots_firmware, 1) + 3] = 0; // the slot must be erased
@@ -69,26 +64,7 @@ protected:
     void TearDown() override { uav_update[UAV_FIRMWARE] = uav_update[UAV_BITSTREAM] = {}; }
 
     Slots_Header headerOf(uint32_t version, uint32_t slot) {
-        Slots_Header header{SLOTS_MAGIC,
-                            product,
-                            version,
-                            imageBytes,
-                            Slots_at(&slots_firmware, slot) + SLOTS_IMAGE_AT,
-                            {1, 2},
-                            0,
-                            {},
-                            {}};
-        crypto_hash_sha512(header.digest, image.data(), imageBytes);
-        crypto_sign_detached(header.signature, nullptr, reinterpret_cast<uint8_t*>(&header),
-                             SLOTS_SIGNED_BYTES, secret.data());
-        return header;
-    }
-    // A list of keys, none of which signs anything.
-    Slots_Header listOf(uint32_t version) {
-        Slots_Header list{SLOTS_MAGIC, SLOTS_KEYS, version, 0, 0, {1, 2}, 0, {}, {}};
-        crypto_sign_detached(list.signature, nullptr, reinterpret_cast<uint8_t*>(&list),
-                             SLOTS_SIGNED_BYTES, secret.data());
-        return list;
+        return Image(slots_firmware, product, version, slot, image, ours).header;
     }
     Bytes encoded(const Slots_Header& header) {
         Bytes bytes(1 + sizeof header, static_cast<uint8_t>(sizeof header));
@@ -129,11 +105,10 @@ protected:
     void fly(const std::vector<Step>& steps, const std::function<bool()>& over) {
         size_t step = 0;
         int sent = 0;
-        bool done = false;
         const auto isStatus = [&](size_t at) {
             return std::strcmp(steps[at].operation, "getStatus") == 0;
         };
-        UavMachine machine(soc, [&] {
+        const auto script = [&] {
             if (ground.validated && step < steps.size() &&
                 sent == static_cast<int>(ground.replies.size())) {
                 if (sent) {
@@ -148,15 +123,13 @@ protected:
                     ground.call(++sent, "update", steps[step].operation, isStatus(step) ? 2 : 0,
                                 steps[step].parameters);
             }
-            done = step == steps.size() && over();
-            return !done && !HasFailure() && within(4);
-        });
-        machine.run();
-        EXPECT_TRUE(done) << "at step " << step;
+            return (step == steps.size() && over()) || HasFailure();
+        };
+        EXPECT_TRUE(flies(soc, script, 4)) << "at step " << step;
     }
 
     Flash flash;
-    Bytes image = Bytes(imageBytes), secret = Bytes(crypto_sign_SECRETKEYBYTES);
+    Bytes image = Bytes(imageBytes);
 };
 
 // Numbers of Update.ice.
@@ -199,10 +172,8 @@ TEST_F(UavUpdate, WhatIsRefusedChangesNothing) {
 TEST_F(UavUpdate, FirmwareThatNobodyConfirmsGoesAfterAMinute) {
     std::fill_n(flash.bytes.begin() + Slots_at(&slots_firmware, 0) + SLOTS_CONFIRMED, 4,
                 uint8_t{0xFF});
-    UavMachine machine(soc, [&] { return !restarted && within(2); });
-    machine.hurry(100);
-    machine.run();
-    EXPECT_TRUE(restarted);
+    EXPECT_TRUE(
+        flies(soc, [] { return restarted; }, 2, [](UavMachine& machine) { machine.hurry(100); }));
     EXPECT_GT(static_cast<double>(soc.now()), 0.6e9);
 }
 
@@ -254,9 +225,7 @@ TEST_F(UavUpdate, InFlightImagesAndKeysAreRefusedAlsoAfterARestart) {
 // "keys" is added last: the adapter has room for all servants of the vehicle beside the cores'.
 TEST_F(UavUpdate, WhereBothKindsOfImageAreTakenTheKeysAreServedToo) {
     uav_update[UAV_BITSTREAM] = {&flash.port, 0, product};
-    const auto script = ground.pinging(1, "keys");
-    UavMachine machine(soc, [&] { return !script() && within(4); });
-    machine.run();
+    EXPECT_TRUE(flies(soc, ground.pinging(1, "keys"), 4));
     EXPECT_THAT(ground.replies, testing::ElementsAre(testing::Pair(1, 0)));
 }
 

@@ -23,7 +23,6 @@
 #include "my_memory_regs.h"
 #include "my_port_regs.h"
 #include "my_requests_regs.h"
-#include "my_words_regs.h"
 #include "registers_apart.h"
 #include <gtest/gtest-spi.h>
 

@@ -16,6 +16,12 @@ refused() { # words of the message, arguments
     [ ! -e "$work/out" ] || { echo "something was written: $*" && exit 1; }
 }
 : >"$work/timescale.v"
+says() { # each line of the log
+    for line; do
+        grep -q "^  $line" "$work/log" || { cat "$work/log" && echo "'$line' is not said" &&
+            exit 1; }
+    done
+}
 echo 'module pads(input clk, inout sda); endmodule' >"$work/pads.v"
 echo 'module outer(input clk); inner u(clk); endmodule' >"$work/outer.v"
 echo 'module wide(input clk, clk_en, we, input [1:0] a, input [63:0] my_wide, output [31:0] q); assign q = my_wide[31:0]; endmodule' >"$work/wide.v"
@@ -101,11 +107,9 @@ refused "setting is an input of a core, and 'over' is not" my_port axis_scale ax
     { cat "$work/log" && exit 1; }
 # Meanings of names.
 "$new" my_port wbs_names wishbone "$work/names" ack=2 open=spare "$here/cores.v" >"$work/log"
-for line in 'wbs_clk: clock' 'rst_ni: resetn' 'gate_clk_pad_i: pin' 'clk_div: pin' \
+says 'wbs_clk: clock' 'rst_ni: resetn' 'gate_clk_pad_i: pin' 'clk_div: pin' \
     'wbs_cyc_i: cyc' 'wbs_adr_i: adr, counts words: it has 2 bits; if not, ADDRESS=bytes' \
-    'wbs_cti_i: low' 'intr: interrupt' 'spare: open'; do
-    grep -q "^  $line" "$work/log" || { cat "$work/log" && echo "'$line' is not said" && exit 1; }
-done
+    'wbs_cti_i: low' 'intr: interrupt' 'spare: open'
 # Macros that are multiples of 4 are byte addresses.
 printf '`define PORT_MODE 8\047h0\n  `define PORT_MODE_BITS 2\n`define PORT_LEVEL 8\047h8 // of pins\n' >"$work/macros.vh"
 echo 'module macros(input clk, we, input [7:0] a, input [31:0] d, output [31:0] q); assign q = d ^ a; endmodule' >"$work/macros.v"
@@ -117,15 +121,11 @@ grep -q 'a: adr, counts bytes: PORT_MODE, PORT_LEVEL are multiples of 4; if not'
 # Outputs that may be interrupts are asked about; one that is active low is told.
 echo 'module asked(input clk, we, input [31:0] d, output [31:0] q, output TIMERINT, irq_no, point, output [3:0] rx_events); endmodule' >"$work/asked.v"
 "$new" my_port asked own "$work/asked" write=we wdata=d rdata=q "$work/asked.v" >"$work/log"
-for line in "TIMERINT: pin timerint_o; if it is an interrupt: PORTS='interrupt=TIMERINT'" \
+says "TIMERINT: pin timerint_o; if it is an interrupt: PORTS='interrupt=TIMERINT'" \
     "rx_events: pin rx_events_o; if it is an interrupt: PORTS='interrupt=rx_events'" \
-    'irq_no: interruptn$' 'point: pin point_o$'; do
-    grep -q "^  $line" "$work/log" || { cat "$work/log" && echo "'$line' is not said" && exit 1; }
-done
+    'irq_no: interruptn$' 'point: pin point_o$'
 "$new" my_port asked own "$work/open" write=we wdata=d rdata=q 'open=*t*' "$work/asked.v" >"$work/log"
-for line in 'TIMERINT: pin' 'rx_events: open' 'point: open' 'irq_no: interruptn'; do
-    grep -q "^  $line" "$work/log" || { cat "$work/log" && echo "'$line' is not said" && exit 1; }
-done
+says 'TIMERINT: pin' 'rx_events: open' 'point: open' 'irq_no: interruptn'
 refused "has no port 'TIMER\*'" my_port asked own "$work/out" write=we wdata=d rdata=q \
     'low=TIMER*' "$work/asked.v"
 grep -q 'interrupt = !interrupt_0;' "$work/asked/my_port.v"
@@ -161,9 +161,7 @@ endpackage' >"$work/sizes.sv"
 echo 'package widths; localparam W = 8; endpackage' >"$work/widths.sv"
 "$new" my_port system own "$work/system" PARAM:EXTRA=2 write=we wdata=d rdata=q \
     "$work/system.sv" "$work/sizes.sv" "$work/widths.sv" >"$work/log"
-for line in 'state_o: pin state_o' "sv2v --top=system .*/widths.sv .*/sizes.sv .*/system.sv >system.v"; do
-    grep -q "^  $line" "$work/log" || { cat "$work/log" && echo "'$line' is not said" && exit 1; }
-done
+says 'state_o: pin state_o' "sv2v --top=system .*/widths.sv .*/sizes.sv .*/system.sv >system.v"
 ! grep -q 'is_odd\|number' "$work/log" && # what belongs to functions is no port
     grep -q 'input  wire \[2:0\] more_i' "$work/system/my_port.v" &&
     grep -q '"width": 16' "$work/system/my_port.regs.json" &&

@@ -46,6 +46,11 @@ protected:
         chip.serialIn.insert(chip.serialIn.end(), line.begin(), line.end());
         return run();
     }
+    // The same, of a firmware that starts with the line in a break.
+    std::string startAndAnswer(const std::string& line) {
+        start();
+        return answerTo(line + "\n");
+    }
     // The words in which the firmware keeps a key (uav_keys.h), none: it is open; and its address.
     bool has(const std::vector<uint8_t>& key, uint32_t address = 0x2A) {
         std::array<uint32_t, 4> words = {};
@@ -80,50 +85,39 @@ TEST_F(Provision, TakesAKeyOrOpensTheVehicle) {
 
 TEST_F(Provision, WhoHasNeitherTheOldKeyNorTheJumperChangesNothing) {
     const std::string other(32, 'a');
-    start();
-    answerTo("key " + digits + at + "\n");
+    startAndAnswer("key " + digits + at);
     for (const std::string& line : {"key " + other + at, "open" + at,
                                     "key " + other + at + " " + other, "open" + at + " " + other}) {
-        start();
-        EXPECT_EQ(answerTo(line + "\n"), "no: it has a key; give that, too, or wire the jumper\r\n")
+        EXPECT_EQ(startAndAnswer(line), "no: it has a key; give that, too, or wire the jumper\r\n")
             << line;
         EXPECT_TRUE(has(key)) << line;
     }
     chip.isJumperWired = true;
-    start();
-    EXPECT_EQ(answerTo("key " + other + at + "\n"), "ok\r\n");
+    EXPECT_EQ(startAndAnswer("key " + other + at), "ok\r\n");
     EXPECT_TRUE(has(std::vector<uint8_t>(16, 0xAA)));
     chip.isJumperWired = false;
-    start();
-    EXPECT_EQ(answerTo("key " + digits + at + " " + other + "\n"), "ok\r\n");
+    EXPECT_EQ(startAndAnswer("key " + digits + at + " " + other), "ok\r\n");
     EXPECT_TRUE(has(key));
 }
 
 TEST_F(Provision, TakesASecondGroundWithAKeyOfItsOwn) {
     const std::string other(32, 'a');
-    start();
-    answerTo("key " + digits + at + "\n");
-    start();
-    EXPECT_EQ(answerTo("ground 00f0 " + other + "\n").substr(0, 3), "no:");
+    startAndAnswer("key " + digits + at);
+    EXPECT_EQ(startAndAnswer("ground 00f0 " + other).substr(0, 3), "no:");
     EXPECT_EQ(chip.backup()[27], 0u);
-    start();
-    EXPECT_EQ(answerTo("ground 00f0 " + other + " " + digits + "\n"), "ok\r\n");
+    EXPECT_EQ(startAndAnswer("ground 00f0 " + other + " " + digits), "ok\r\n");
     EXPECT_EQ(chip.backup()[27], ~0xF0u);
     EXPECT_EQ(chip.backup()[16], 0xAAAAAAAAu);
     EXPECT_TRUE(has(key));
-    start();
-    EXPECT_EQ(answerTo("fellow 0007 " + other + " " + digits + "\n"), "ok\r\n");
+    EXPECT_EQ(startAndAnswer("fellow 0007 " + other + " " + digits), "ok\r\n");
     EXPECT_EQ(chip.backup()[27], ~0x10007u);
-    start();
-    EXPECT_EQ(answerTo("ground 00f0 " + other + " " + other + "\n").substr(0, 3), "no:")
+    EXPECT_EQ(startAndAnswer("ground 00f0 " + other + " " + other).substr(0, 3), "no:")
         << "the second ground's key proves nothing here";
 }
 
 TEST_F(Provision, TakesTheGroupsKey) {
-    start();
-    answerTo("key " + digits + at + "\n");
-    start();
-    EXPECT_EQ(answerTo("ground ffff " + std::string(32, 'a') + " " + digits + "\n"), "ok\r\n");
+    startAndAnswer("key " + digits + at);
+    EXPECT_EQ(startAndAnswer("ground ffff " + std::string(32, 'a') + " " + digits), "ok\r\n");
     EXPECT_EQ(chip.backup()[32], 0xAAAAAAAAu);
     EXPECT_EQ(chip.backup()[27], ~0xFFFFFFFFu) << "no second ground";
     EXPECT_TRUE(has(key));
@@ -139,8 +133,7 @@ TEST_F(Provision, SaysThatReadProtectionIsOffAndSetsIt) {
 }
 
 TEST_F(Provision, WhatMakesNoSenseChangesNothing) {
-    start();
-    answerTo("key " + digits + at + "\n");
+    startAndAnswer("key " + digits + at);
     for (const std::string& line :
          {"key " + digits.substr(1) + at, "key " + digits + "0" + at,
           "key x" + digits.substr(1) + at, "key " + digits, "key " + digits + " ",

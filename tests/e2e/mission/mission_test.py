@@ -65,14 +65,18 @@ class Cases(Script):
     def refused(self, said, *options, **how):
         self.fails(said, *self.words(*options, **how))
 
-    def simulate(self, *words, options=(), **how):
+    def simulator(self, *words, options=()):
         """A vehicle in the simulator, and a program of the ground."""
-        self.ask(SIMULATOR, "--image", IMAGE, "--size", "96x64", "--out", self.out, "--guard",
-                 str(GUARD), *options, "--", *words, **how)
+        return (SIMULATOR, "--image", IMAGE, "--size", "96x64", "--out", self.out, "--guard",
+                str(GUARD), *options, "--", *words)
 
-    def replay(self, folder, *options, **how):
+    def simulate(self, *words, options=(), **how):
+        self.ask(*self.simulator(*words, options=options), **how)
+
+    def replay(self, folder, *options, says="bit by bit the flight that was recorded"):
         """Repeats the flight in a folder from its recording."""
-        self.ask(SIMULATOR, "--out", "replay", "--replay", folder, *options, **how)
+        self.ask(SIMULATOR, "--out", "replay", "--replay", folder, *options)
+        self.has(says)
 
     def test_plain(self):
         """Secure by default; only the user may read its recording and its key."""
@@ -116,7 +120,6 @@ class Cases(Script):
         """Again from its recording, in which a user looks for the cause."""
         self.fly("--loss", "0.1", "--seed", os.environ.get("SEED", "1"))
         self.replay(self.out, "--from", "0.5", "--to", "0.51")
-        self.has("bit by bit the flight that was recorded")
         # Recordings cut short by a kill, altered, of another file, repeated into their own folder;
         # waveforms need another build.
         flight = Path("flight.jsonl").read_text()
@@ -124,8 +127,7 @@ class Cases(Script):
                              ("other", flight.replace('"up":"2b', '"up":"2c'))):
             write(f"{folder}/flight.jsonl", text)
             shutil.copy("before.png", folder)
-        self.replay("cut")
-        self.has("the recording ends here")
+        self.replay("cut", says="the recording ends here")
         replay = SIMULATOR, "--out", "replay", "--replay"
         self.fails("not the flight that was recorded: it departs between", *replay, "other")
         write("other/flight.jsonl", '{"no": "flight"}\n')
@@ -158,7 +160,6 @@ class Cases(Script):
         os.environ.update(WAVE=str(wave), WAVE_FROM=str(start - 20000),
                           WAVE_TO=str(start + 200000))
         self.replay(self.out, "--from", "0.5", "--to", "0.51")
-        self.has("bit by bit the flight that was recorded")
         self.has("^sEXTI0_Handler.program.interrupt$", "^sPendSV_Handler.program.function$",
                  "^sUAV_coresTask.program.task$", "^sFSMC_read.*.program.function$",
                  file=f"{wave}.program.vcd")
@@ -166,13 +167,9 @@ class Cases(Script):
     def patched(self, name, symbol, offset, value):
         """The firmware with other bytes at a symbol."""
         shutil.copy(FIRMWARE, name)
-        table = subprocess.check_output(["arm-none-eabi-nm", name], text=True)
-        headers = subprocess.check_output(["arm-none-eabi-objdump", "-h", name], text=True)
-        text = re.search(r" \.text +\w+ +(\w+) +\w+ +(\w+)", headers)
-        at = int(re.search(rf"^(\w+) [RT] {symbol}$", table, re.M)[1], 16)
-        with open(name, "r+b") as file:
-            file.seek(at + offset - int(text[1], 16) + int(text[2], 16))
-            file.write(value)
+        there = f"{{unsigned char[{len(value)}]}}((char*)&{symbol} + {offset})"
+        self.ask("gdb-multiarch", "-nx", "-batch", "--write", name, "-ex",
+                 f"set var {there} = {{{', '.join(map(str, value))}}}")
         self.ask(BUILD / "sw/target/pack_update", "stamp", name)
 
     def test_other_chip(self):
@@ -265,11 +262,6 @@ class Cases(Script):
         for bits in "new.bin", "full.bin":
             self.update(bits, "runs and is confirmed")
 
-    def test_cpp(self):
-        """The C++11 library of the plugin, a C++ client, a proxy that goes through its string."""
-        self.simulate(PING, DEVICE + "-p 2 -g {guard} -t 300000", "3")
-        self.has("it is a ::Autopilot::HwProcessingEngine", "-a 0x1 .*-p 2")
-
     def test_slow(self):
         """A machine that is four times too slow: the ground uses the simulator's clock, so it finds
         the modem as fast."""
@@ -297,9 +289,8 @@ class Cases(Script):
 
     def test_stopped(self):
         """Simulated time waits for a ground that is stopped for four seconds during the set-up."""
-        with self.until("+++ at 9600 baud: OK", SIMULATOR, "--image", IMAGE, "--size", "96x64",
-                        "--out", self.out, "--guard", str(GUARD), "--", PING,
-                        DEVICE + "-t 300000", "3", "--XBeeAT.Trace=2") as simulator:
+        with self.until("+++ at 9600 baud: OK", *self.simulator(
+                PING, DEVICE + "-t 300000", "3", "--XBeeAT.Trace=2")) as simulator:
             ground = int(subprocess.check_output(["pgrep", "-P", str(simulator.pid)]))
             os.kill(ground, signal.SIGSTOP)
             time.sleep(4)
@@ -309,11 +300,12 @@ class Cases(Script):
         self.assertLess(float(seconds[1]), 5)
 
     def test_encrypted(self):
-        """Both modems by the same AES key: the controller sets one, the endpoint's -k the other."""
+        """Both modems by the same AES key: the controller sets one, the endpoint's -k the other.
+        By the C++11 library of the plugin, a C++ client, a proxy that goes through its string."""
         key = "00112233445566778899AABBCCDDEEFF"
-        self.simulate(PING, f"{DEVICE}-k {key} -g {{guard}} -t 60000", "3",
+        self.simulate(PING, f"{DEVICE}-k {key} -p 2 -g {{guard}} -t 300000", "3",
                       options=("--modem-key", key))
-        self.has("it is a ::Autopilot::HwProcessingEngine")
+        self.has("it is a ::Autopilot::HwProcessingEngine", "-a 0x1 .*-p 2")
         self.lacks(key)
 
     def test_new_key(self):
@@ -337,7 +329,7 @@ class Cases(Script):
         gateway, with the firmware's host build."""
         self.fly("--wire", "--cpu", "m3")
         self.replay(self.out)
-        self.has("bit by bit the flight that was recorded", " 0 packets on the air")
+        self.has(" 0 packets on the air")
         self.simulate(TREE / "tests/e2e/mission/gateway.sh", BUILD, "{device}", "{guard}",
                       self.out, "--wire", options=["--wire"])
         self.refused("without modems and air: leave out --loss", "--wire", "--loss", "0.1")
@@ -357,14 +349,12 @@ class Cases(Script):
                      rf"uav{address}\.hwengine1: \d+ corners")
             self.assertTrue(Path(f"after{address}.png").exists())
         self.replay(self.out)
-        self.has("bit by bit the flight that was recorded")
         self.refused("leave out --wire", "--vehicles", "2", "--wire")
 
     def test_twice(self):
-        with open("a.log", "w") as log:
-            first = subprocess.Popen(self.words(out=self.out / "a"), stdout=log, stderr=log)
-        self.fly("--threshold", "50", out=self.out / "b")
-        self.assertEqual(first.wait(), 0, Path("a.log").read_text())
+        with self.until("", *self.words(out=self.out / "a")) as first:
+            self.fly("--threshold", "50", out=self.out / "b")
+            self.assertEqual(first.wait(), 0, Path("log").read_text())
         self.flew(self.out / "a")
 
     def test_odd_names(self):
@@ -374,38 +364,29 @@ class Cases(Script):
         self.fly(out=self.out / odd)
         self.assertFalse(hit.exists())
 
-    def test_picture_bad(self):
+    def test_mistakes(self):
+        """A refused start changes nothing in the folder. Neither picture, description, port nor
+        modem are what they should be; the last two without a simulator."""
         write("mine/report.md", "mine\n")
         shutil.copy("mine/report.md", ".")
         os.symlink(self.out / "mine/report.md", "calls.jsonl")
         write("bad.png", "this is no picture\n")
         self.refused("is no picture that can be read", image="bad.png")
         self.lacks("127.0.0.1")  # a page's address before what is refused
-        # A refused start changes nothing in the folder.
         for name in "report.md", "calls.jsonl":
             self.assertEqual(Path(name).read_text(), "mine\n")
-
-    def test_description_bad(self):
         for text in '"text"', "[", "[{}]":
             write("bad.json", text)
             self.fails("'bad.json' describes no flight", SIMULATOR, "--flight", "bad.json")
             self.lacks("exception")
-
-    def described(self, *words):
-        """The ground's program, with a flight's description but without a simulator."""
         write("flight.json", json.dumps(
             dict(threshold=24, loss=0, guard=20, patience=300, key="", camera=False, cores=[],
                  wire=False, vehicles=1, observer="", out=str(self.out))))
-        return ("/usr/bin/python3", CLIENTS / "mission.py", "flight.json", *INTERFACE, "--frame",
-                "none", *words)
-
-    def test_device_missing(self):
-        self.fails("cannot open serial port '/dev/no-such-port'",
-                   *self.described("--device", "/dev/no-such-port"))
-
-    def test_modem_silent(self):
-        _, slave = pty.openpty()  # which only this test holds: no modem answers
-        self.fails("no modem answers on", *self.described("--device", os.ttyname(slave)))
+        _, silent = pty.openpty()  # which only this test holds
+        for device, said in (("/dev/no-such-port", "cannot open serial port '/dev/no-such-port'"),
+                             (os.ttyname(silent), "no modem answers on")):
+            self.fails(said, "/usr/bin/python3", CLIENTS / "mission.py", "flight.json", *INTERFACE,
+                       "--frame", "none", "--device", device)
 
     def test_interrupted(self):
         with self.until("setting the ground", *self.words()) as run:
@@ -416,8 +397,8 @@ class Cases(Script):
         # The command that it prints shows its end.
         span = re.search(f"^Its end as a waveform: make run REPLAY='{self.out}' "
                          r"FROM=([\d.]+) TO=([\d.]+)$", Path("log").read_text(), re.M)
-        self.replay(self.out, "--from", span[1], "--to", span[2])
-        self.has("the recording ends here|bit by bit")
+        self.replay(self.out, "--from", span[1], "--to", span[2],
+                    says="the recording ends here|bit by bit")
         self.ask("pgrep", "-f", f"mission.py.*{self.out}", status=1)  # no ground station runs
 
 

@@ -22,6 +22,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "testbench/page"))
 import tool  # noqa: E402
+from fleet_ground import TROUBLE, VEHICLES, words_of  # noqa: E402
 
 IMAGE = "/usr/share/xplanet/images/earth.jpg"
 LONGEST = 240.0  # seconds of a mission on a busy machine
@@ -268,42 +269,6 @@ def loss(start, name, moment, deaths):
     return "fails after its patience" if status else "succeeds"
 
 
-# Each trouble of a fleet has its name, the simulator's words for it ("": a program makes it), and
-# the seconds that it lasts at least and at most. Vehicle 1 runs the firmware's host build, and the
-# others run the ARM binary.
-TROUBLE = {"vehicle away": ("away:2", 0.5, 3), "vehicle gone": ("away:3", 11, 13),
-           "twin": ("twin:2", 1, 3), "babbler": ("babble:1", 1, 3),
-           "other ground": ("away:0", 2, 4), "new key": ("away:2", 11, 13),
-           "rival ground": ("", 20, 22)}
-VEHICLES, NEXT = 3, "7" * 32
-
-
-def fleet_words(m, name, begin, end):
-    """Returns the simulator's command, with several vehicles that are called all the time, each
-    under its own key."""
-    keys, isRival = {}, name == "rival ground"
-    for file, digits in (("fleet", "123"), ("observer", "456")):
-        lines = [f"0x{at:04x} {digit * 32}" for at, digit in enumerate(digits, 1)]
-        if (name, file) == ("new key", "fleet"):
-            lines[1] += " " + NEXT
-        keys[file] = f"{m.out}.{file}.key"
-        with open(os.open(keys[file], os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "w") as f:
-            f.write("\n".join([*lines, f"0xffff {'9' * 32}"]))
-    flight = {"image": IMAGE, "size": "48x32", "out": m.out, "speed": "max", "key": keys["fleet"],
-              "observer": keys["observer"], "guard": 20, "vehicles": VEHICLES}
-    if TROUBLE[name][0]:
-        flight["trouble"] = f"{TROUBLE[name][0]}:{begin:.3f}:{end - begin:.3f}"
-    calls = {"device": "{device}", "device2": "{device2}", "status": "{status}", "out": "{out}",
-             "plugin": m.build + "/ground", "slice": m.source + "/sw/apps/uav/Autopilot.ice",
-             "reference": m.build + "/testbench/sim/vision-reference", "key": keys["fleet"],
-             "key2": keys["fleet" if isRival else "observer"], "until": end + 1,
-             "rival": begin if isRival else 0, "changed": 2 if name == "new key" else 0,
-             "new_key": NEXT, "guard": 20, "vehicles": VEHICLES}
-    options = [str(word) for option, value in flight.items() for word in ("--" + option, value)]
-    return [m.build + "/testbench/sim/icesoc-sim", *options, "--", "/usr/bin/python3",
-            m.source + "/tests/e2e/mission/fleet_ground.py", json.dumps(calls)]
-
-
 def fleet(start, name, moment, deaths):
     """Nothing is lost, doubled, or another vehicle's, and who is not concerned notices nothing. A
     ground with the first one's address and key has all vehicles until it ends, and then the first
@@ -311,7 +276,7 @@ def fleet(start, name, moment, deaths):
     trouble, least, most = TROUBLE[name]
     begin = 7 + moment  # all have sessions, with the second ground, too
     end = begin + least + (most - least) * moment / LAST
-    m = start(words=lambda m: fleet_words(m, name, begin, end))
+    m = start(words=lambda m: words_of(m, IMAGE, name, begin, end))
     expect(m.wait(5 * LONGEST) == 0, m, "a vehicle does not answer at the end, or it hangs")
     told = json.loads(Path(m.out, "fleet.json").read_text())
     cores = re.search("vision cores were started ([0-9, ]+) times", m.text())[1].split(", ")

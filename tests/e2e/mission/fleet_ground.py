@@ -4,7 +4,7 @@
 ground their states, until a simulated time; then each has to answer once more. One call to all
 vehicles starts the first frame of each.
 
-    fleet_ground.py '{"out": FOLDER, ...}'      faults.py has all of them
+    fleet_ground.py '{"out": FOLDER, ...}'      words_of has all of them
 
 FOLDER/fleet.json tells for each how many frames were started, answered and reported, and what the
 second ground saw when. With "new_key" the vehicle "changed" is given its next key first, and has to
@@ -28,6 +28,42 @@ import plugged  # noqa: E402
 
 THRESHOLD = 40
 REST = 0.2  # simulated seconds between two frames
+
+
+# Each trouble of a fleet has its name, the simulator's words for it ("": a program makes it), and
+# the seconds that it lasts at least and at most. Vehicle 1 runs the firmware's host build, and the
+# others run the ARM binary.
+TROUBLE = {"vehicle away": ("away:2", 0.5, 3), "vehicle gone": ("away:3", 11, 13),
+           "twin": ("twin:2", 1, 3), "babbler": ("babble:1", 1, 3),
+           "other ground": ("away:0", 2, 4), "new key": ("away:2", 11, 13),
+           "rival ground": ("", 20, 22)}
+VEHICLES, NEXT = 3, "7" * 32
+
+
+def words_of(m, image, name, begin, end):
+    """Returns the simulator's command, with several vehicles that are called all the time, each
+    under its own key."""
+    keys, isRival = {}, name == "rival ground"
+    for file, digits in (("fleet", "123"), ("observer", "456")):
+        lines = [f"0x{at:04x} {digit * 32}" for at, digit in enumerate(digits, 1)]
+        if (name, file) == ("new key", "fleet"):
+            lines[1] += " " + NEXT
+        keys[file] = f"{m.out}.{file}.key"
+        with open(os.open(keys[file], os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "w") as f:
+            f.write("\n".join([*lines, f"0xffff {'9' * 32}"]))
+    flight = {"image": image, "size": "48x32", "out": m.out, "speed": "max", "key": keys["fleet"],
+              "observer": keys["observer"], "guard": 20, "vehicles": VEHICLES}
+    if TROUBLE[name][0]:
+        flight["trouble"] = f"{TROUBLE[name][0]}:{begin:.3f}:{end - begin:.3f}"
+    calls = {"device": "{device}", "device2": "{device2}", "status": "{status}", "out": "{out}",
+             "plugin": m.build + "/ground", "slice": m.source + "/sw/apps/uav/Autopilot.ice",
+             "reference": m.build + "/testbench/sim/vision-reference", "key": keys["fleet"],
+             "key2": keys["fleet" if isRival else "observer"], "until": end + 1,
+             "rival": begin if isRival else 0, "changed": 2 if name == "new key" else 0,
+             "new_key": NEXT, "guard": 20, "vehicles": VEHICLES}
+    options = [str(word) for option, value in flight.items() for word in ("--" + option, value)]
+    return [m.build + "/testbench/sim/icesoc-sim", *options, "--", "/usr/bin/python3",
+            __file__, json.dumps(calls)]
 
 
 class Caller(threading.Thread):

@@ -286,7 +286,6 @@ void Peer::fail() {
     for (Stream& s : streams_)
         s.close();
     refuse();
-    reportLost();
 }
 
 // Ends the connections of programs that have not yet got one.

@@ -7,143 +7,125 @@ new=$1 work=$2
 here=$(cd "$(dirname "$0")" && pwd)
 rm -rf "$work"
 mkdir -p "$work"
-refused() { # words of the message, arguments
-    words=$1
-    shift
-    ! "$new" "$@" >"$work/log" 2>&1 || { echo "accepted: $*" && exit 1; }
-    grep -q -- "$words" "$work/log" && ! grep -q Traceback "$work/log" || { cat "$work/log" &&
-        echo "'$words' is not said: $*" && exit 1; }
-    [ ! -e "$work/out" ] || { echo "something was written: $*" && exit 1; }
+cd "$work"
+for file in wb_port.v cores.v axil_words.v lamps.vhd; do cp "$here/$file" .; done
+named() { # name of the core, words of the message, top, bus, options and files
+    name=$1 words=$2 top=$3 bus=$4
+    shift 4
+    ! "$new" "$name" "$top" "$bus" out "$@" >log 2>&1 ||
+        { echo "accepted: $name $top $bus $*" && exit 1; }
+    grep -q -- "$words" log && ! grep -q Traceback log || { cat log &&
+        echo "'$words' is not said: $name $top $bus $*" && exit 1; }
+    [ ! -e out ] || { echo "something was written: $name $top $bus $*" && exit 1; }
 }
-: >"$work/timescale.v"
+refused() { named my_port "$@"; }
 says() { # each line of the log
     for line; do
-        grep -q "^  $line" "$work/log" || { cat "$work/log" && echo "'$line' is not said" &&
-            exit 1; }
+        grep -q "^  $line" log || { cat log && echo "'$line' is not said" && exit 1; }
     done
 }
-echo 'module pads(input clk, inout sda); endmodule' >"$work/pads.v"
-echo 'module outer(input clk); inner u(clk); endmodule' >"$work/outer.v"
-echo 'module wide(input clk, clk_en, we, input [1:0] a, input [63:0] my_wide, output [31:0] q); assign q = my_wide[31:0]; endmodule' >"$work/wide.v"
-echo 'module odd(input clk, input type_t [1:0] a); endmodule' >"$work/odd.sv"
-echo 'module broken(input clk;' >"$work/broken.v"
-refused 'usage: make new-foreign' my_port wb_port wishbone "$work/out"
-refused "not 'spi'" my_port wb_port spi "$work/out" "$here/wb_port.v"
-refused 'is there already' my_port wb_port wishbone "$work" "$here/wb_port.v"
-refused 'small letters' My wb_port wishbone "$work/out" "$here/wb_port.v"
-refused "'event' is a reserved word" event wb_port wishbone "$work/out" "$here/wb_port.v"
-refused "'npi_fifo' is the name of this project's module in hdl" npi_fifo wb_port wishbone \
-    "$work/out" "$here/wb_port.v"
-refused "'wb_port' is the name of a module of the core" wb_port wb_port wishbone "$work/out" \
-    "$here/wb_port.v"
-refused 'no Verilog or VHDL file' my_port wb_port wishbone "$work/out" "$work/none.v"
-refused "no module 'nobody' in FILES; there is wb_port" my_port nobody wishbone "$work/out" \
-    "$here/wb_port.v"
-refused 'does not elaborate broken' my_port broken wishbone "$work/out" "$work/broken.v"
-refused "inout port 'sda'" my_port pads wishbone "$work/out" "$work/pads.v"
-refused 'has no port for awvalid' my_port wb_port axil "$work/out" "$here/wb_port.v"
-refused 'has a space in its name' my_port wb_port wishbone "$work/out" "$work/a b.v"
-sed '1i // module wb_port' "$here/wb_port.v" >"$work/again.v"
-refused "again.v:6: module 'wb_port' is in .*/wb_port.v:5, too" my_port wb_port wishbone \
-    "$work/out" "$here/wb_port.v" "$work/again.v"
-echo 'module npi_fifo(input clk); endmodule' >"$work/ours.v"
-refused "ours.v:1: module 'npi_fifo' has the name of .*hdl/ddr/npi_fifo.v:" my_port wb_port \
-    wishbone "$work/out" "$here/wb_port.v" "$work/ours.v"
-sed '1i `include "sizes.vh"' "$here/wb_port.v" >"$work/head.v"
-refused "sizes.vh.*" my_port wb_port wishbone "$work/out" "$work/head.v"
-refused 'FILES may name headers' my_port wb_port wishbone "$work/out" "$work/head.v"
-refused 'all Verilog or all VHDL' my_port wb_port wishbone "$work/out" "$here/wb_port.v" \
-    "$here/lamps.vhd"
-refused "TOP is the name of a module or an entity, not 'wb_port; x'" my_port 'wb_port; x' wishbone \
-    "$work/out" "$here/wb_port.v"
-refused "no entity 'lamp' in FILES; there is lamps" my_port lamp own "$work/out" "$here/lamps.vhd"
-refused 'no port for write, wdata, rdata: .*PORTS=' my_port req_words own "$work/out" \
-    "$here/cores.v"
-refused "'grant' is none of .*select, strobe" my_port req_words own "$work/out" grant=gnt \
-    "$here/cores.v"
-refused "has no port 'go'" my_port req_words own "$work/out" write=go "$here/cores.v"
-refused "ack is an output of a core, and 'req' is not" my_port req_words own "$work/out" ack=req \
-    "$here/cores.v"
-refused 'a strobe of one clock needs an ack' my_port req_words own "$work/out" strobe=req write=wr \
-    wdata=value rdata=held clock=clock "$here/cores.v"
-refused "FILES lacks the file with module 'inner'" my_port outer wishbone "$work/out" \
-    "$work/outer.v"
-refused "PARAMS: axil_words has no 'WIDTH'" my_port axil_words axil "$work/out" PARAM:WIDTH=8 \
-    "$here/axil_words.v"
-refused "'my_wide' of .* has 64 bits" my_port wide own "$work/out" select=clk_en write=we \
-    address=a wdata=my_wide rdata=q "$work/wide.v"
-echo 'module broad(input clk, we, input [31:0] d, output [31:0] q, output [127:0] pads, input [32:0] more); endmodule' >"$work/broad.v"
-refused "'pads' of broad has 128 bits, and a pin at most 32: PORTS='open=pads low=more'" my_port \
-    broad own "$work/out" write=we wdata=d rdata=q "$work/broad.v"
-refused 'include looks for timescale.v' my_port apb_words apb "$work/out" "$here/apb_words.v"
-refused 'Verilator does not elaborate odd' my_port odd memory "$work/out" "$work/odd.sv"
-refused "no port for ack: .*ack=1" my_port wbs_names wishbone "$work/out" "$here/cores.v"
-refused "more than one port for rdata: wbs_dat_o, spare" my_port wbs_names wishbone "$work/out" \
-    rdata=spare ack=1 "$here/cores.v"
-echo 'module two(input clk, input [7:0] a_tdata, b_tdata, input a_tvalid, output [7:0] o_tdata, output o_tvalid, input o_tready); endmodule' >"$work/two.v"
-echo 'module odd(input clk, input [23:0] i_tdata, input i_tvalid, output [7:0] o_tdata, output o_tvalid, input o_tready); endmodule' >"$work/odd.v"
-refused 'more than one port for s_tdata: a_tdata, b_tdata' my_port two axis "$work/out" \
-    "$work/two.v"
-refused 'odd has 24 and 8 bits: it must be 8, 16, 32 or 64' my_port odd axis "$work/out" \
-    "$work/odd.v"
-refused 'has no port for s_tdata' my_port wb_port axis "$work/out" "$here/wb_port.v"
-refused "CLOCK=fast: the frequency" my_port wb_port wishbone "$work/out" CLOCK=fast \
-    "$here/wb_port.v"
-refused 'ADDRESS=fast: words or bytes' my_port wb_port wishbone "$work/out" ADDRESS=fast \
-    "$here/wb_port.v"
-refused 'ack= is not for it' my_port apb_words apb "$work/out" ack=1 pin=PREADY \
-    "$here/apb_words.v" "$work/timescale.v"
-refused 'CLOCK: a core with AXI-Streams' my_port axis_scale axis "$work/out" CLOCK=24000000 \
-    "$here/cores.v"
-refused 'LIBRARY: .* these are Verilog' my_port req_words own "$work/out" LIBRARY=lights \
-    "$here/cores.v"
-refused 'a setting is for BUS=axis' my_port req_words own "$work/out" setting=value \
-    "$here/cores.v"
-refused "setting is an input of a core, and 'over' is not" my_port axis_scale axis "$work/out" \
-    setting=over "$here/cores.v"
+echo 'module pads(input clk, inout sda); endmodule' >pads.v
+echo 'module outer(input clk); inner u(clk); endmodule' >outer.v
+echo 'module wide(input clk, clk_en, we, input [1:0] a, input [63:0] my_wide, output [31:0] q); assign q = my_wide[31:0]; endmodule' >wide.v
+echo 'module odd(input clk, input type_t [1:0] a); endmodule' >odd.sv
+echo 'module broken(input clk;' >broken.v
+refused 'usage: make new-foreign' wb_port wishbone
+refused "not 'spi'" wb_port spi wb_port.v
+mkdir out
+! "$new" my_port wb_port wishbone out wb_port.v >log 2>&1 && grep -q 'is there already' log ||
+    { cat log && exit 1; }
+rmdir out
+named My 'small letters' wb_port wishbone wb_port.v
+named event "'event' is a reserved word" wb_port wishbone wb_port.v
+named npi_fifo "'npi_fifo' is the name of this project's module in hdl" wb_port wishbone wb_port.v
+named wb_port "'wb_port' is the name of a module of the core" wb_port wishbone wb_port.v
+refused 'no Verilog or VHDL file' wb_port wishbone none.v
+refused "no module 'nobody' in FILES; there is wb_port" nobody wishbone wb_port.v
+refused 'does not elaborate broken' broken wishbone broken.v
+refused "inout port 'sda'" pads wishbone pads.v
+refused 'has no port for awvalid' wb_port axil wb_port.v
+refused 'has a space in its name' wb_port wishbone 'a b.v'
+sed '1i // module wb_port' wb_port.v >again.v
+refused "again.v:6: module 'wb_port' is in .*/wb_port.v:5, too" wb_port wishbone wb_port.v again.v
+echo 'module npi_fifo(input clk); endmodule' >ours.v
+refused "ours.v:1: module 'npi_fifo' has the name of .*hdl/ddr/npi_fifo.v:" wb_port wishbone \
+    wb_port.v ours.v
+sed '1i `include "sizes.vh"' wb_port.v >head.v
+refused "sizes.vh.*" wb_port wishbone head.v
+refused 'FILES may name headers' wb_port wishbone head.v
+refused 'all Verilog or all VHDL' wb_port wishbone wb_port.v lamps.vhd
+refused "TOP is the name of a module or an entity, not 'wb_port; x'" 'wb_port; x' wishbone wb_port.v
+refused "no entity 'lamp' in FILES; there is lamps" lamp own lamps.vhd
+refused 'no port for write, wdata, rdata: .*PORTS=' req_words own cores.v
+refused "'grant' is none of .*select, strobe" req_words own grant=gnt cores.v
+refused "has no port 'go'" req_words own write=go cores.v
+refused "ack is an output of a core, and 'req' is not" req_words own ack=req cores.v
+refused 'a strobe of one clock needs an ack' req_words own strobe=req write=wr wdata=value \
+    rdata=held clock=clock cores.v
+refused "FILES lacks the file with module 'inner'" outer wishbone outer.v
+refused "PARAMS: axil_words has no 'WIDTH'" axil_words axil PARAM:WIDTH=8 axil_words.v
+refused "'my_wide' of .* has 64 bits" wide own select=clk_en write=we address=a wdata=my_wide \
+    rdata=q wide.v
+echo 'module broad(input clk, we, input [31:0] d, output [31:0] q, output [127:0] pads, input [32:0] more); endmodule' >broad.v
+refused "'pads' of broad has 128 bits, and a pin at most 32: PORTS='open=pads low=more'" broad \
+    own write=we wdata=d rdata=q broad.v
+refused 'include looks for timescale.v' apb_words apb "$here/apb_words.v"
+: >timescale.v
+refused 'Verilator does not elaborate odd' odd memory odd.sv
+refused "no port for ack: .*ack=1" wbs_names wishbone cores.v
+refused "more than one port for rdata: wbs_dat_o, spare" wbs_names wishbone rdata=spare ack=1 \
+    cores.v
+echo 'module two(input clk, input [7:0] a_tdata, b_tdata, input a_tvalid, output [7:0] o_tdata, output o_tvalid, input o_tready); endmodule' >two.v
+echo 'module odd(input clk, input [23:0] i_tdata, input i_tvalid, output [7:0] o_tdata, output o_tvalid, input o_tready); endmodule' >odd.v
+refused 'more than one port for s_tdata: a_tdata, b_tdata' two axis two.v
+refused 'odd has 24 and 8 bits: it must be 8, 16, 32 or 64' odd axis odd.v
+refused 'has no port for s_tdata' wb_port axis wb_port.v
+refused "CLOCK=fast: the frequency" wb_port wishbone CLOCK=fast wb_port.v
+refused 'ADDRESS=fast: words or bytes' wb_port wishbone ADDRESS=fast wb_port.v
+refused 'ack= is not for it' apb_words apb ack=1 pin=PREADY "$here/apb_words.v" timescale.v
+refused 'CLOCK: a core with AXI-Streams' axis_scale axis CLOCK=24000000 cores.v
+refused 'LIBRARY: .* these are Verilog' req_words own LIBRARY=lights cores.v
+refused 'a setting is for BUS=axis' req_words own setting=value cores.v
+refused "setting is an input of a core, and 'over' is not" axis_scale axis setting=over cores.v
 # Of two cores in one chip.
-! "${new%/*}/foreign_files.py" "$here/wb_port.v" "$work/again.v" 2>"$work/log" &&
-    grep -q "again.v:6: module 'wb_port' is in .*a chip has one of each" "$work/log" ||
-    { cat "$work/log" && exit 1; }
+! "${new%/*}/foreign_files.py" wb_port.v again.v 2>log &&
+    grep -q "again.v:6: module 'wb_port' is in .*a chip has one of each" log ||
+    { cat log && exit 1; }
 # Meanings of names.
-"$new" my_port wbs_names wishbone "$work/names" ack=2 open=spare "$here/cores.v" >"$work/log"
+"$new" my_port wbs_names wishbone names ack=2 open=spare cores.v >log
 says 'wbs_clk: clock' 'rst_ni: resetn' 'gate_clk_pad_i: pin' 'clk_div: pin' \
     'wbs_cyc_i: cyc' 'wbs_adr_i: adr, counts words: it has 2 bits; if not, ADDRESS=bytes' \
     'wbs_cti_i: low' 'intr: interrupt' 'spare: open'
 # Macros that are multiples of 4 are byte addresses.
-printf '`define PORT_MODE 8\047h0\n  `define PORT_MODE_BITS 2\n`define PORT_LEVEL 8\047h8 // of pins\n' >"$work/macros.vh"
-echo 'module macros(input clk, we, input [7:0] a, input [31:0] d, output [31:0] q); assign q = d ^ a; endmodule' >"$work/macros.v"
-"$new" my_port macros own "$work/macros" write=we address=a wdata=d rdata=q "$work/macros.vh" \
-    "$work/macros.v" >"$work/log"
-grep -q 'a: adr, counts bytes: PORT_MODE, PORT_LEVEL are multiples of 4; if not' "$work/log" &&
-    grep -q 'registers: MODE LEVEL' "$work/log" && grep -q '"word": 10' "$work/macros/my_port.regs.json" ||
-    { cat "$work/log" && exit 1; }
+printf '`define PORT_MODE 8\047h0\n  `define PORT_MODE_BITS 2\n`define PORT_LEVEL 8\047h8 // of pins\n' >macros.vh
+echo 'module macros(input clk, we, input [7:0] a, input [31:0] d, output [31:0] q); assign q = d ^ a; endmodule' >macros.v
+"$new" my_port macros own macros write=we address=a wdata=d rdata=q macros.vh macros.v >log
+grep -q 'a: adr, counts bytes: PORT_MODE, PORT_LEVEL are multiples of 4; if not' log &&
+    grep -q 'registers: MODE LEVEL' log && grep -q '"word": 10' macros/my_port.regs.json ||
+    { cat log && exit 1; }
 # Outputs that may be interrupts are asked about; one that is active low is told.
-echo 'module asked(input clk, we, input [31:0] d, output [31:0] q, output TIMERINT, irq_no, point, output [3:0] rx_events); endmodule' >"$work/asked.v"
-"$new" my_port asked own "$work/asked" write=we wdata=d rdata=q "$work/asked.v" >"$work/log"
+echo 'module asked(input clk, we, input [31:0] d, output [31:0] q, output TIMERINT, irq_no, point, output [3:0] rx_events); endmodule' >asked.v
+"$new" my_port asked own asked write=we wdata=d rdata=q asked.v >log
 says "TIMERINT: pin timerint_o; if it is an interrupt: PORTS='interrupt=TIMERINT'" \
     "rx_events: pin rx_events_o; if it is an interrupt: PORTS='interrupt=rx_events'" \
     'irq_no: interruptn$' 'point: pin point_o$'
-"$new" my_port asked own "$work/open" write=we wdata=d rdata=q 'open=*t*' "$work/asked.v" >"$work/log"
+"$new" my_port asked own open write=we wdata=d rdata=q 'open=*t*' asked.v >log
 says 'TIMERINT: pin' 'rx_events: open' 'point: open' 'irq_no: interruptn'
-refused "has no port 'TIMER\*'" my_port asked own "$work/out" write=we wdata=d rdata=q \
-    'low=TIMER*' "$work/asked.v"
-grep -q 'interrupt = !interrupt_0;' "$work/asked/my_port.v"
+refused "has no port 'TIMER\*'" asked own write=we wdata=d rdata=q 'low=TIMER*' asked.v
+grep -q 'interrupt = !interrupt_0;' asked/my_port.v
 # Many pins that nobody needs.
-"$new" my_port asked own "$work/spared" write=we wdata=d rdata=q 'open=*' pin=point "$work/asked.v" >"$work/log"
-grep -q 'irq_no: interruptn$' "$work/log" && grep -q 'rx_events: open$' "$work/log" &&
-    grep -q 'point: pin point_o$' "$work/log" ||
-    { cat "$work/log" && exit 1; }
+"$new" my_port asked own spared write=we wdata=d rdata=q 'open=*' pin=point asked.v >log
+says 'irq_no: interruptn$' 'rx_events: open$' 'point: pin point_o$'
 # OpenCores' level of a reset, whatever else has it for a name.
 echo 'module level #(parameter ARST_LVL = 0) (input clk, arst_i, we, input [31:0] d, output reg [31:0] q);
     wire rst = arst_i ^ ARST_LVL[0];
     always @(posedge clk or negedge rst) if (!rst) q <= 0; else if (we) q <= d;
-endmodule' >"$work/level.v"
-"$new" my_port level own "$work/level" write=we wdata=d rdata=q "$work/level.v" >"$work/log"
-grep -q '^  arst_i: resetn' "$work/log" && grep -q 'level u_core' "$work/level/my_port.v" ||
-    { cat "$work/log" && echo 'the level of a reset is wrong' && exit 1; }
+endmodule' >level.v
+"$new" my_port level own level write=we wdata=d rdata=q level.v >log
+grep -q '^  arst_i: resetn' log && grep -q 'level u_core' level/my_port.v ||
+    { cat log && echo 'the level of a reset is wrong' && exit 1; }
 # SystemVerilog with packages, in any order, and a loop that Verilator reports.
-cat >"$work/system.sv" <<'END'
+cat >system.sv <<'END'
 module system import sizes::*; #(parameter EXTRA = 1) (
     input logic clk, input logic we, input logic [1:0][7:0] d, output pair_t q,
     output state_t state_o, input logic [EXTRA:0] more_i);
@@ -157,32 +139,31 @@ END
 printf 'package sizes; import widths::*;
 typedef enum logic [1:0] {IDLE, RUN} state_t;
 typedef struct packed {logic [W-1:0] a; logic [7:0] b;} pair_t;
-endpackage' >"$work/sizes.sv"
-echo 'package widths; localparam W = 8; endpackage' >"$work/widths.sv"
-"$new" my_port system own "$work/system" PARAM:EXTRA=2 write=we wdata=d rdata=q \
-    "$work/system.sv" "$work/sizes.sv" "$work/widths.sv" >"$work/log"
+endpackage' >sizes.sv
+echo 'package widths; localparam W = 8; endpackage' >widths.sv
+"$new" my_port system own system PARAM:EXTRA=2 write=we wdata=d rdata=q \
+    system.sv sizes.sv widths.sv >log
 says 'state_o: pin state_o' "sv2v --top=system .*/widths.sv .*/sizes.sv .*/system.sv >system.v"
-! grep -q 'is_odd\|number' "$work/log" && # what belongs to functions is no port
-    grep -q 'input  wire \[2:0\] more_i' "$work/system/my_port.v" &&
-    grep -q '"width": 16' "$work/system/my_port.regs.json" &&
-    ! grep -q UNOPTFLAT "$work/system/CMakeLists.txt" ||
-    { cat "$work/log" "$work/system/my_port.v" && exit 1; }
+! grep -q 'is_odd\|number' log && # what belongs to functions is no port
+    grep -q 'input  wire \[2:0\] more_i' system/my_port.v &&
+    grep -q '"width": 16' system/my_port.regs.json &&
+    ! grep -q UNOPTFLAT system/CMakeLists.txt ||
+    { cat log system/my_port.v && exit 1; }
 # A register is as wide as its written, or read, data.
-echo 'module narrow(input clk, we, input [16:0] d, output [12:0] q); assign q = d[12:0]; endmodule' >"$work/narrow.v"
-"$new" my_port narrow own "$work/narrow" write=we wdata=d rdata=q "$work/narrow.v" >"$work/log" &&
-    grep -q '"width": 17' "$work/narrow/my_port.regs.json" ||
-    { cat "$work/log" && echo 'a register has not 17 bits' && exit 1; }
+echo 'module narrow(input clk, we, input [16:0] d, output [12:0] q); assign q = d[12:0]; endmodule' >narrow.v
+"$new" my_port narrow own narrow write=we wdata=d rdata=q narrow.v >log &&
+    grep -q '"width": 17' narrow/my_port.regs.json ||
+    { cat log && echo 'a register has not 17 bits' && exit 1; }
 # The same by make, and one that is taken.
 mkdir -p "$work/tree/ip"
 ln -s "$new" "$work/tree/ip"
 made() { "${new%/ip/*}/tests/regress/test/make_in.sh" "${new%/ip/*}" "$work/tree" build \
-    new-foreign NAME=my_port TOP=req_words BUS=own FILES="$here/cores.v" "$@" >"$work/log" \
-    2>&1; }
-! made && grep -q "PORTS=" "$work/log" || { cat "$work/log" && exit 1; }
+    new-foreign NAME=my_port TOP=req_words BUS=own FILES="$work/cores.v" "$@" >log 2>&1; }
+! made && grep -q "PORTS=" log || { cat log && exit 1; }
 made CLOCK=24000000 PORTS='select=req write=wr address=where wdata=value rdata=held ack=gnt' &&
     [ -s "$work/tree/ip/my_port/my_port.regs.json" ] ||
-    { cat "$work/log" && exit 1; }
+    { cat log && exit 1; }
 made NAME=my_bridge TOP=apb_words BUS=apb FILES="$here/apb_words.v $work/timescale.v" \
     PARAMS=WORDS=3 PORTS= && grep -q 'WORDS(3)' "$work/tree/ip/my_bridge/my_bridge.v" ||
-    { cat "$work/log" && exit 1; }
+    { cat log && exit 1; }
 echo 'refused: all as expected'

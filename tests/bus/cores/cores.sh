@@ -43,8 +43,13 @@ refused() { # words of the message, the list
         fail "'$1' is not said: $2"; }
     [ ! -f "$work/refused/soc_cores.vh" ] || fail "files were written in spite of: $1"
 }
-is() { grep -q "^#define MAP_$1 $2U" "$out/map_regs.h" || { grep "$1" "$out/map_regs.h" || true;
-fail "$1 is not $2"; }; }
+has() { # file of the chip, line by line what it has
+    file=$1
+    shift
+    for line; do grep -q -- "$line" "$out/$file" || fail "$file has no '$line'"; done
+}
+lacks() { ! grep -E -- "$2" "$out/$1" || fail "$1 has what it must not have (above: $2)"; }
+is() { has map_regs.h "^#define MAP_$1 $2U"; }
 
 accepted none '# nothing\n\n'
 is SLOT_COUNT 0x2
@@ -81,25 +86,19 @@ done | uniq | wc -l | grep -qx 1 || { cat "$work/back/led.regs.json" &&
 [ "$(xmllint --xpath 'string(//*[local-name()="memoryMap"][*[local-name()="name"]="LED_PAGES"]//*[local-name()="register"][1]/*[local-name()="addressOffset"])' "$out/icesoc.ipxact.xml")" = "'h44" ] ||
     fail 'IP-XACT has not the words behind PAGE'
 is PIN_CAMERA_SEEN_O 0xB
-grep -q '"eye"' "$out/soc_cores.c" || fail 'the identity is not in the table'
-grep -q '{"camera", MAP_SLOT_CAMERA, .*core_camera_start' "$out/soc_cores.c" &&
-    grep -q 'core_camera_table\[\] = {MOVER_TABLE}' "$out/soc_cores.c" ||
-    fail 'a core without a servant has not that of its registers'
+# The identity, and the servant of registers for a core that has none.
+has soc_cores.c '"eye"' '{"camera", MAP_SLOT_CAMERA, .*core_camera_start' \
+    'core_camera_table\[\] = {MOVER_TABLE}'
 accepted unwired 'mover\nmover name=a\nmover name=b level_o=none\nled button_i=none\nmover name=c level_o=none\n'
-grep -q '"a.level_o"' "$out/soc_pins.h" && ! grep -Eq '"(c.level_o|led.button_i)"' \
-    "$out/soc_pins.h" && grep -q "button_i(1'd0)" "$out/soc_cores.vh" ||
-    { grep button_i "$out/soc_cores.vh" && fail 'what is no pin has a place'; }
+has soc_pins.h '"a.level_o"'
+lacks soc_pins.h '"(c.level_o|led.button_i)"' # what is no pin has no place
+has soc_cores.vh "button_i(1'd0)"
 accepted pins 'led name=eye button_i=@A4\nmover seen_o=@B1 level_o=@C1,C2,C3,C4,C5,C6,C7,C8,C9\n'
-grep -qx '    {"eye.button_i", 0, 1, false},' "$out/soc_pins.h" ||
-    fail 'the pin is not in the table'
-grep -qx 'NET "core_pins_i<0>" LOC = "A4"; # eye.button_i\[0\]' "$out/core_pins.ucf" ||
-    fail 'the place is not in the constraints'
-grep -qx '# NET "core_pins_o<0>" LOC = "..."; # eye.led_o\[0\]' "$out/core_pins.ucf" ||
-    fail 'the pin without a place is not listed'
-grep -qx 'NET "core_pins_o<10>" LOC = "C9"; # mover.level_o\[8\]' "$out/core_pins.ucf" ||
-    fail 'the last bit has not its place'
-grep -q 'led u_eye' "$out/soc_cores.vh" && grep -q 'mover #(.CLK_HZ(CLK_HZ)) u_mover' \
-    "$out/soc_cores.vh" || fail 'the clock goes to the wrong cores'
+has soc_pins.h '^    {"eye.button_i", 0, 1, false},$'
+has core_pins.ucf '^NET "core_pins_i<0>" LOC = "A4"; # eye.button_i\[0\]$' \
+    '^# NET "core_pins_o<0>" LOC = "..."; # eye.led_o\[0\]$' \
+    '^NET "core_pins_o<10>" LOC = "C9"; # mover.level_o\[8\]$'
+has soc_cores.vh 'led u_eye' 'mover #(.CLK_HZ(CLK_HZ)) u_mover'
 # Chip and firmware have the same hash of a core's registers, which says when these change, and not
 # when their words do.
 contract() { sed -n "s/.*\"$1\"}, [0-9]*, 0, (Ice_Int)0x\([0-9A-F]*\)U.*/\1/p" "$out/soc_cores.c"; }
@@ -131,30 +130,20 @@ grep -q '^    Hw_Core_interrupt(&core_adder.core);' "$work/soc_cores.c" &&
     fail 'a servant that waits for nothing is asked for its interrupt or poll'
 # Only a core with idle_o can have a gate; one with a gate in the list has it on the board, too.
 accepted gates 'adder gate=on\nadder name=other\nled\n'
-grep -q 'core_gate #(.GATED(1)) u_gate_adder .*slot_valid\[2\].*clk_adder' "$out/soc_cores.vh" &&
-    grep -q '.clk_i(clk_adder)' "$out/soc_cores.vh" ||
-    fail 'the core that asked for a gate has none'
-grep -q 'core_gate #(.GATED(GATES)) u_gate_other' "$out/soc_cores.vh" ||
-    fail 'a core that asked for no gate has one on the board'
-grep -q '^NET "u_soc/u_gate_adder.g_gate.run" MAXDELAY' "$out/core_pins.ucf" ||
-    fail 'the way to the gate is not constrained'
-! grep -q u_gate_led "$out/soc_cores.vh" ||
-    fail 'a core that does not say when it is idle has a gate'
+has soc_cores.vh 'core_gate #(.GATED(1)) u_gate_adder .*slot_valid\[2\].*clk_adder' \
+    '.clk_i(clk_adder)' 'core_gate #(.GATED(GATES)) u_gate_other'
+lacks soc_cores.vh u_gate_led
+has core_pins.ucf '^NET "u_soc/u_gate_adder.g_gate.run" MAXDELAY'
 # A clock of a core's own comes from a pin, from another core, or is made of the chip's; ISE is told
 # its period, and what crosses.
 accepted clocks 'led\ntuner clock_i=@A9\ntuner name=other clock_i=led.led_o\ntuner name=made clock=6/25\n'
 is PIN_TUNER_CLOCK_I 0x2
-grep -q '^    tuner_clocked u_tuner' "$out/soc_cores.vh" && grep -q 'clock_i(pin_led_led_o)' \
-    "$out/soc_cores.vh" || fail 'a core has not its own clock'
-grep -q 'core_clock #(.MULTIPLY(6), .DIVIDE(25)) u_clock_made' "$out/soc_cores.vh" ||
-    fail 'the clock is not made'
-grep -qx 'NET "core_pins_i<2>" TNM_NET = "tuner_clk";' "$out/core_pins.ucf" &&
-    grep -qx 'TIMESPEC "TS_tuner_clk" = PERIOD "tuner_clk" 20.833 ns HIGH 50%;' \
-    "$out/core_pins.ucf" &&
-    grep -qx 'TIMESPEC "TS_made_clk" = PERIOD "made_clk" 41.667 ns HIGH 50%;' \
-    "$out/core_pins.ucf" &&
-    grep -qx 'TIMESPEC "TS_soc_to_other" = FROM "soc_clk" TO "other_clk" 8 ns DATAPATHONLY;' \
-    "$out/core_pins.ucf" || fail 'the constraints of a clock'
+has soc_cores.vh '^    tuner_clocked u_tuner' 'clock_i(pin_led_led_o)' \
+    'core_clock #(.MULTIPLY(6), .DIVIDE(25)) u_clock_made'
+has core_pins.ucf '^NET "core_pins_i<2>" TNM_NET = "tuner_clk";$' \
+    '^TIMESPEC "TS_tuner_clk" = PERIOD "tuner_clk" 20.833 ns HIGH 50%;$' \
+    '^TIMESPEC "TS_made_clk" = PERIOD "made_clk" 41.667 ns HIGH 50%;$' \
+    '^TIMESPEC "TS_soc_to_other" = FROM "soc_clk" TO "other_clk" 8 ns DATAPATHONLY;$'
 refused 'clock=3/4: 75000000 Hz' 'tuner clock=3/4\n'
 refused 'clock=2/99: 2020202 Hz' 'tuner clock=2/99\n'
 refused 'clock=9/8: a part of' 'tuner clock=9/8\n'

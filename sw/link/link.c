@@ -36,15 +36,23 @@ void Link_limitFrame(Link* link, U32 bytes) {
 
 void Link_setKey(Link* link, int slot, const U8* key, U32 side) {
     Link_Output* output = &link->output;
+    Link_Session* session = &link->session;
     if (output->codec != &link_keyed) {
         output->longest = (U8)(output->longest + LINK_OVERHEAD - LINK_SECURE_OVERHEAD);
         output->codec = &link_keyed;
-        link->session.slot = 1;         /* the first HELLO uses slot 0 */
-        link_drawNonce(&link->session); /* a longer nonce */
+        session->slot = 1;       /* the first HELLO uses slot 0 */
+        link_drawNonce(session); /* a longer nonce */
     }
     if (Link_keyInUse(link) == slot)
-        link_lose(&link->session);
-    link_setSecret(&link->session.secrets, slot, key, side);
+        link_lose(session);
+    session->keys = (U8)(session->keys & ~(1U << slot));
+    if (key) {
+        output->isGround = (side & LINK_GROUND) != 0;
+        link_makeSecret(&session->secrets[slot], key, side & ~LINK_GROUND);
+        session->keys = (U8)(session->keys | 1U << slot);
+    } else {
+        memset(&session->secrets[slot], 0, sizeof session->secrets[slot]);
+    }
 }
 
 int Link_keyInUse(const Link* link) {
@@ -115,7 +123,6 @@ Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag
     Link_Sender* sender = link->session.sender;
     Link_Queue* queue = &sender->queue;
     Link_Status status = check(link, channel, 1);
-    int isCompressed = output->present.features & LINK_FEATURE_COMPRESSION;
     Link_Packed packed;
     Link_Entry* entry;
     U8 trailer[LINK_CHECK];
@@ -124,8 +131,8 @@ Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag
         return LINK_TOO_LONG;
     if (status != LINK_OK)
         return status;
-    packed.prefix = packed.middle = packed.tailAt = 0;
-    if (isCompressed)
+    packed.prefix = packed.middle = packed.tailAt = packed.head = 0;
+    if (output->present.features & LINK_FEATURE_COMPRESSION)
         link_compress(&sender->heads, channel, data, size, &packed);
     total = packed.prefix + packed.middle + size - packed.tailAt;
     checkSize = total > LINK_UNCHECKED ? output->codec->check : 0U;
@@ -140,10 +147,9 @@ Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag
     link_put(queue, packed.bytes, packed.prefix);
     link_put(queue, data + LINK_HEAD_AT, packed.middle);
     link_put(queue, data + packed.tailAt, size - packed.tailAt);
-    if (isCompressed) {
-        link_note(&sender->heads, channel, data, size, packed.head);
-        output->statistics.headBytesSaved += size - total;
-    }
+    if (packed.head)
+        link_note(&sender->heads, channel, data, packed.head);
+    output->statistics.headBytesSaved += size - total;
     trailer[0] = (U8)queue->sums;
     trailer[1] = (U8)(queue->sums >> 8);
     link_put(queue, trailer, checkSize);

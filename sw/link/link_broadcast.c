@@ -10,12 +10,9 @@
 
 static void crypt(U8* packet, U32 size, const U8* key, int isDecryption, U8* tag) {
     U8 nonce[ASCON_NONCE_BYTES];
-    Ascon ascon;
     memset(nonce, 0xFF, sizeof nonce); /* no nonce of a link ends so */
     memcpy(nonce, packet, LINK_BROADCAST_HEAD);
-    Ascon_begin(&ascon, key, nonce);
-    Ascon_crypt(&ascon, packet + LINK_BROADCAST_HEAD, size, isDecryption);
-    Ascon_end(&ascon, key, tag);
+    link_cipher(key, nonce, packet + LINK_BROADCAST_HEAD, size, isDecryption, tag);
 }
 
 U32 Link_sealBroadcast(U8* packet, U32 size, const U8* key, U32 number) {

@@ -22,25 +22,32 @@
 
 enum { REQUEST = 0, REPLY = 2, VALIDATE = 3, CLOSE = 4 };
 
-/* Returns 1 for a whole message of this type with at least `least` bytes. */
-static int isMessage(const U8* m, U32 size, U32 type, U32 least) {
-    return size >= least && m[8] == type && link_get32(m) == MAGIC &&
-           link_get32(m + 4) == VERSIONS && link_get32(m + 10) == size;
+#define IS_REPLY 1U /* in place of a head's size, which is more */
+
+/* Returns the type of a whole message; -1: it is none of Ice's. */
+static int typeOf(const U8* m, U32 size) {
+    return size >= HEADER && link_get32(m) == MAGIC && link_get32(m + 4) == VERSIONS &&
+                   link_get32(m + 10) == size
+               ? m[8]
+               : -1;
 }
 
-/* Returns the length of a request's head, identity to context; 0: the peer cannot learn it. */
-static U32 headOf(const U8* m, U32 size) {
+/* Returns what the peer learns from a message: the size of a request's head, identity to context,
+ * or IS_REPLY; 0: nothing. */
+static U32 headOf(const U8* m, U32 size, int type) {
     U32 at = LINK_HEAD_AT;
     int strings;
-    if (!isMessage(m, size, REQUEST, LINK_HEAD_AT) || m[9] != 0)
+    if (type == REPLY)
+        return size > LINK_HEAD_AT ? IS_REPLY : 0;
+    if (type != REQUEST || size < LINK_HEAD_AT || m[9] != 0)
         return 0;
     for (strings = 0; strings < 4; ++strings) { /* name, category, facet, operation */
-        if (at >= size || m[at] == 255)
-            return 0;
-        if (strings == 2 && m[at] > 1)
-            return 0;
-        if (strings == 2 && m[at++] == 0)
-            continue;
+        if (strings == 2) {
+            if (at >= size || m[at] > 1)
+                return 0;
+            if (m[at++] == 0)
+                continue;
+        }
         if (at >= size || m[at] == 255)
             return 0;
         at += 1U + m[at];
@@ -63,20 +70,21 @@ static U32 find(const Link_Heads* heads, const U8* head, U32 size, const U8* ver
     return slot;
 }
 
-void link_note(Link_Heads* heads, int channel, const U8* m, U32 size, U32 head) {
+void link_note(Link_Heads* heads, int channel, const U8* m, U32 head) {
     const U8* version = m + LINK_HEAD_AT + head + 4;
-    if (head) {
-        if (link_get32(m + HEADER))
-            heads->lastRequest[channel] = link_get32(m + HEADER);
-        if (find(heads, m + LINK_HEAD_AT, head, version) == LINK_HEADS) {
-            U8* entry = heads->head[heads->next];
-            heads->size[heads->next] = (U8)(head + 2U);
-            memcpy(entry, m + LINK_HEAD_AT, head);
-            memcpy(entry + head, version, 2);
-            heads->next = (U8)((heads->next + 1U) % LINK_HEADS);
-        }
-    } else if (isMessage(m, size, REPLY, LINK_HEAD_AT + 1U)) {
-        heads->lastReply[channel] = link_get32(m + HEADER);
+    U32 id = link_get32(m + HEADER);
+    if (head == IS_REPLY) {
+        heads->lastReply[channel] = id;
+        return;
+    }
+    if (id)
+        heads->lastRequest[channel] = id;
+    if (find(heads, m + LINK_HEAD_AT, head, version) == LINK_HEADS) {
+        U8* entry = heads->head[heads->next];
+        heads->size[heads->next] = (U8)(head + 2U);
+        memcpy(entry, m + LINK_HEAD_AT, head);
+        memcpy(entry + head, version, 2);
+        heads->next = (U8)((heads->next + 1U) % LINK_HEADS);
     }
 }
 
@@ -116,17 +124,15 @@ static void packReply(const Link_Heads* heads, int channel, const U8* m, U32 siz
 
 void link_compress(const Link_Heads* heads, int channel, const U8* m, U32 size,
                    Link_Packed* packed) {
-    U32 head = headOf(m, size);
-    packed->head = head;
-    if (head) {
-        packRequest(heads, channel, m, head, packed);
-    } else if (isMessage(m, size, REPLY, LINK_HEAD_AT + 1U) && m[9] == 0) {
+    int type = typeOf(m, size);
+    packed->head = headOf(m, size, type);
+    if (packed->head > IS_REPLY) {
+        packRequest(heads, channel, m, packed->head, packed);
+    } else if (packed->head && m[9] == 0) {
         packReply(heads, channel, m, size, packed);
-    } else if (size == HEADER && m[9] < 2 &&
-               (isMessage(m, size, CLOSE, HEADER) ||
-                (m[9] == 0 && isMessage(m, size, VALIDATE, HEADER)))) {
+    } else if (size == HEADER && ((type == CLOSE && m[9] < 2) || (type == VALIDATE && m[9] == 0))) {
         packed->tailAt = size;
-        setToken(packed, m[8] == VALIDATE ? TOKEN_VALIDATE : TOKEN_CLOSE + m[9], 0, 0);
+        setToken(packed, type == VALIDATE ? TOKEN_VALIDATE : TOKEN_CLOSE + m[9], 0, 0);
     } else if (m[0] >= TOKEN_REQUEST) {
         setToken(packed, TOKEN_AS_IT_IS, 0, 0);
     }
@@ -228,10 +234,12 @@ U8* link_decompress(Link_Heads* heads, int channel, U8* start, U32 size) {
     U8* end = start + size;
     int hasKnownHead = *start >= TOKEN_REQUEST && *start < TOKEN_LITERAL;
     U8* p = unpack(heads, (U32)channel, start, end);
+    U32 head;
     if (!p || p == end || (U32)(end - p) > LINK_MAX_MESSAGE)
         return 0;
     size = (U32)(end - p);
-    if (!hasKnownHead)
-        link_note(heads, channel, p, size, headOf(p, size));
+    head = hasKnownHead ? 0 : headOf(p, size, typeOf(p, size));
+    if (head)
+        link_note(heads, channel, p, head);
     return p;
 }

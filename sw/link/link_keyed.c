@@ -46,11 +46,9 @@ static void makeNonce(U8* nonce, const U8* frame, U32 clear, U32 number, U32 ack
 static void crypt(U8* frame, const U8* key, U32 number, U32 acked, int isDecryption, U8* tag) {
     U8 nonce[ASCON_NONCE_BYTES];
     U32 clear = clearOf(frame);
-    Ascon ascon;
     makeNonce(nonce, frame, clear, number, acked);
-    Ascon_begin(&ascon, key, nonce);
-    Ascon_crypt(&ascon, frame + LINK_HEADER + clear, LINK_LENGTH(frame) - clear, isDecryption);
-    Ascon_end(&ascon, key, tag);
+    link_cipher(key, nonce, frame + LINK_HEADER + clear, LINK_LENGTH(frame) - clear, isDecryption,
+                tag);
 }
 
 U32 link_protect(U8* frame, U32 header, const U8* key, U32 number, U32 acked) {
@@ -96,10 +94,11 @@ static int isOfSession(const Link_Session* session, const U8* nonces) {
 /* Prepares the session with the peer's nonce under the key of a slot. */
 static void makeKeyed(Link_Session* session, int slot, const U8* frame) {
     Link_Identity* candidate = &session->candidate;
+    int isGround = session->output->isGround;
     link_makeCandidate(session, frame + LINK_HEADER, frame[2]);
     candidate->slot = (U8)slot;
-    link_deriveKeys(&session->secrets, slot, candidate->nonce, candidate->peerNonce,
-                    &candidate->shake);
+    link_deriveKeys(&session->secrets[slot], isGround ? candidate->peerNonce : candidate->nonce,
+                    isGround ? candidate->nonce : candidate->peerNonce, &candidate->shake);
 }
 
 static void forgetCandidate(Link_Session* session) {
@@ -110,13 +109,13 @@ static void forgetCandidate(Link_Session* session) {
 /* Returns whether a frame has a good tag under the key of a slot, which the candidate then notes.
  */
 static int isUnder(Link_Session* session, int slot, U8* frame, Link_Kind kind) {
-    const U8* key = session->secrets.hello[slot];
-    if (!(session->secrets.set >> slot & 1))
+    const U8* key = session->secrets[slot].hello;
+    if (!(session->keys >> slot & 1))
         return 0;
     session->candidate.slot = (U8)slot;
     if (kind != LINK_KIND_HELLO) {
         makeKeyed(session, slot, frame);
-        key = session->candidate.shake.receive;
+        key = LINK_PEERS_KEY(session->output, session->candidate.shake);
     }
     return link_unprotect(frame, key, 0, 0);
 }
@@ -137,9 +136,10 @@ static int isOfUse(const Link_Session* session, const U8* frame, Link_Kind kind)
 
 /* Returns whether such a frame is authentic, and decrypts its copy. */
 static int isGenuine(Link_Session* session, const U8* frame, U8* copy, Link_Kind kind) {
+    const Link_Output* output = session->output;
     int slot;
     if (kind == LINK_KIND_CONFIRM && isOfSession(session, copy + LINK_HEADER))
-        return link_unprotect(copy, session->output->present.shake.receive, 0, 0);
+        return link_unprotect(copy, LINK_PEERS_KEY(output, output->present.shake), 0, 0);
     for (slot = 0; slot < LINK_KEYS; ++slot) {
         if (isUnder(session, slot, copy, kind))
             return 1;
@@ -176,7 +176,8 @@ static int decrypt(Link_Session* session, U8* frame) {
         number = frame[2] & LINK_PING_ANSWER ? session->watch.pingsSent : session->watch.pingsSeen;
     if (kind == LINK_KIND_BYE)
         number = frame[1];
-    if (link_unprotect(frame, output->present.keys.receive, link_extend(number, frame[1]), acked))
+    if (link_unprotect(frame, LINK_PEERS_KEY(output, output->present.keys),
+                       link_extend(number, frame[1]), acked))
         return 1;
     ++session->watch.failures;
     return 0;
@@ -239,8 +240,9 @@ static U32 parse(Link_Input* input, const U8* bytes, U32 count, int isEnd) {
 static U32 seal(const Link_Output* output, U8* frame, U32 header, U32 number) {
     U32 kind = header & LINK_CONTROL ? header >> 21 & 7U : LINK_KIND_DATA;
     return link_protect(frame, header ^ LINK_KEY_EPOCH(output->present.key) << 18,
-                        LINK_IS_HANDSHAKE(kind) ? output->call : output->present.keys.send, number,
-                        LINK_IS_RIDE(kind) ? output->expected : 0);
+                        LINK_IS_HANDSHAKE(kind) ? output->call
+                                                : LINK_OWN_KEY(output, output->present.keys),
+                        number, LINK_IS_RIDE(kind) ? output->expected : 0);
 }
 
 /* Takes the own pair, as it is sent to the peer. */
@@ -255,7 +257,7 @@ static void begin(Link_Session* session, const U8* frame) {
     Link_Identity* candidate = &session->candidate;
     offerPair(session);
     candidate->keys = candidate->shake;
-    link_mixKeys(&candidate->keys, &session->pair, frame + LINK_OPEN_AT, session->secrets.isGround);
+    link_mixKeys(&candidate->keys, &session->pair, frame + LINK_OPEN_AT);
     link_confirmCandidate(session);
     forgetCandidate(session);
     link_drawNonce(session);
@@ -307,11 +309,11 @@ static void onHandshake(Link_Session* session, const U8* frame, Link_Kind kind) 
 /* Sends HELLO; where both slots have a key, under each in turn. A peer in an unknown session gets
  * the same, since its answer makes a new session. */
 static void call(Link_Session* session, const U8* unknown) {
-    U32 set = session->secrets.set;
+    U32 keys = session->keys;
     (void)unknown;
-    if (!set)
+    if (!keys)
         return;
-    session->slot = (U8)(set == 3U ? !session->slot : set >> 1);
+    session->slot = (U8)(keys == 3U ? !session->slot : keys >> 1);
     link_sendHandshake(session, 0, LINK_KIND_HELLO, LINK_VERSION);
 }
 

@@ -73,6 +73,10 @@ typedef struct Link_Pacer {
     struct Link_Output* owners[LINK_MOST_WAITING]; /* by their numbers, whose they are */
 } Link_Pacer;
 
+/* A key that this side sends with, or its peer. */
+#define LINK_OWN_KEY(output, keys) ((keys).bytes + LINK_KEY_BYTES * (U32)(output)->isGround)
+#define LINK_PEERS_KEY(output, keys) ((keys).bytes + LINK_KEY_BYTES * (1U ^ (output)->isGround))
+
 /* Small members that are often used come first in each part: short instructions reach them. */
 struct Link_Output {
     U8 longest;         /* payload of the longest frame that is sent */
@@ -84,6 +88,7 @@ struct Link_Output {
     U8 isStream;        /* several fragments are on their way: packets follow each other */
     U8 slow;            /* not 0: the modem waits for the air now and then, and may hold packets */
     U8 mostWaiting;     /* packets that may wait in the pacer; 0: the radio gives no answers */
+    U8 isGround;        /* under a key: this side is */
     U8 handed, waiting; /* own packets handed over, modulo 256, and those without an answer */
     U32 now;
     Link_Pacer* pacer;

@@ -30,7 +30,7 @@ typedef struct Link_Heads {
 } Link_Heads;
 
 /* A compressed message: bytes[0..prefix), `middle` bytes of its head, the rest from tailAt. `head`
- * is the size of its head; 0: nothing to remember. */
+ * is what both sides are to remember of it; 0: nothing. */
 typedef struct Link_Packed {
     U8 bytes[8];
     U32 prefix, middle, tailAt, head;
@@ -40,7 +40,7 @@ typedef struct Link_Packed {
 void link_compress(const Link_Heads* heads, int channel, const U8* m, U32 size,
                    Link_Packed* packed);
 /* Remembers the head of a message that has passed, on both sides alike. */
-void link_note(Link_Heads* heads, int channel, const U8* m, U32 size, U32 head);
+void link_note(Link_Heads* heads, int channel, const U8* m, U32 head);
 /* Restores the message of `size` bytes at `start`, with LINK_HEAD_ROOM bytes in front of it.
  * Returns where it begins now; it ends where it did. 0: it is malformed. */
 U8* link_decompress(Link_Heads* heads, int channel, U8* start, U32 size);

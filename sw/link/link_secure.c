@@ -9,29 +9,27 @@
 
 #include <string.h>
 
+void link_cipher(const U8* key, const U8* nonce, U8* bytes, U32 size, int isDecryption, U8* tag) {
+    Ascon ascon;
+    Ascon_begin(&ascon, key, nonce);
+    Ascon_crypt(&ascon, bytes, size, isDecryption);
+    Ascon_end(&ascon, key, tag);
+}
+
 /* Makes the keystream of a nonce. It is never sent as such, so an attacker who learns one learns
  * nothing of another. */
 static void derive(const U8* secret, const U8* nonce, U8* text, U32 size) {
     U8 tag[ASCON_TAG_BYTES];
-    Ascon ascon;
     memset(text, 0, size);
-    Ascon_begin(&ascon, secret, nonce);
-    Ascon_crypt(&ascon, text, size, 0);
-    Ascon_end(&ascon, secret, tag);
+    link_cipher(secret, nonce, text, size, 0, tag);
 }
 
-/* The vehicle's nonce and key come first: two sides of one role make different keys. */
-void link_deriveKeys(const Link_Secrets* secrets, int slot, const U8* nonce, const U8* peerNonce,
+void link_deriveKeys(const Link_Secret* secret, const U8* vehicles, const U8* grounds,
                      Link_Keys* keys) {
-    U8 both[ASCON_NONCE_BYTES];
-    U8 text[2U * LINK_KEY_BYTES];
-    int isFirst = !secrets->isGround;
-    memcpy(both, isFirst ? nonce : peerNonce, LINK_NONCE_BYTES);
-    memcpy(both + LINK_NONCE_BYTES, isFirst ? peerNonce : nonce, LINK_NONCE_BYTES);
-    derive(secrets->key[slot], both, text, sizeof text);
-    memcpy(isFirst ? keys->send : keys->receive, text, LINK_KEY_BYTES);
-    memcpy(isFirst ? keys->receive : keys->send, text + LINK_KEY_BYTES, LINK_KEY_BYTES);
-    Ascon_wipe(text, sizeof text);
+    U8 nonce[ASCON_NONCE_BYTES];
+    memcpy(nonce, vehicles, LINK_NONCE_BYTES);
+    memcpy(nonce + LINK_NONCE_BYTES, grounds, LINK_NONCE_BYTES);
+    derive(secret->key, nonce, keys->bytes, sizeof keys->bytes);
 }
 
 void link_makePair(Link_Pair* pair, const Link_Port* port, void* context) {
@@ -46,17 +44,13 @@ void link_makePair(Link_Pair* pair, const Link_Port* port, void* context) {
 
 /* Both inputs are needed: the handshake's keys follow from the secret, `shared` from an own half.
  */
-void link_mixKeys(Link_Keys* keys, Link_Pair* pair, const U8* peerOpen, int isGround) {
-    U8 shared[X25519_BYTES], text[2U * LINK_KEY_BYTES];
-    U8* send = text + (isGround ? LINK_KEY_BYTES : 0);
-    U8* receive = text + (isGround ? 0 : LINK_KEY_BYTES);
+void link_mixKeys(Link_Keys* keys, Link_Pair* pair, const U8* peerOpen) {
+    U8 shared[X25519_BYTES], text[sizeof keys->bytes];
     U32 i;
     X25519(shared, pair->own, peerOpen);
     derive(shared, shared + LINK_KEY_BYTES, text, sizeof text);
-    for (i = 0; i < LINK_KEY_BYTES; ++i) {
-        keys->send[i] = (U8)(keys->send[i] ^ send[i]);
-        keys->receive[i] = (U8)(keys->receive[i] ^ receive[i]);
-    }
+    for (i = 0; i < sizeof text; ++i)
+        keys->bytes[i] = (U8)(keys->bytes[i] ^ text[i]);
     Ascon_wipe(shared, sizeof shared);
     Ascon_wipe(text, sizeof text);
     Ascon_wipe(pair->own, sizeof pair->own);
@@ -64,18 +58,11 @@ void link_mixKeys(Link_Keys* keys, Link_Pair* pair, const U8* peerOpen, int isGr
 }
 
 /* The key of HELLOs comes from the nonces 0, which no session has. */
-void link_setSecret(Link_Secrets* secrets, int slot, const U8* key, U32 side) {
+void link_makeSecret(Link_Secret* secret, const U8* key, U32 address) {
     U8 nonce[ASCON_NONCE_BYTES];
-    Ascon_wipe(secrets->key[slot], LINK_KEY_BYTES);
-    Ascon_wipe(secrets->hello[slot], LINK_KEY_BYTES);
-    secrets->set = (U8)(secrets->set & ~(1U << slot));
-    if (!key)
-        return;
-    secrets->isGround = (side & LINK_GROUND) != 0;
     memset(nonce, 0, sizeof nonce);
-    link_put32(nonce, side & ~LINK_GROUND);
-    derive(key, nonce, secrets->key[slot], LINK_KEY_BYTES);
-    memset(nonce, 0, sizeof nonce);
-    derive(secrets->key[slot], nonce, secrets->hello[slot], LINK_KEY_BYTES);
-    secrets->set = (U8)(secrets->set | 1U << slot);
+    link_put32(nonce, address);
+    derive(key, nonce, secret->key, LINK_KEY_BYTES);
+    link_put32(nonce, 0);
+    derive(secret->key, nonce, secret->hello, LINK_KEY_BYTES);
 }

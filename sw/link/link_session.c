@@ -30,13 +30,14 @@ void link_sendHandshake(Link_Session* session, const Link_Identity* of, Link_Kin
     U8 frame[LINK_MAX_OVERHEAD + LINK_ANSWER_BYTES];
     U32 bytes = output->codec->nonceBytes;
     memcpy(frame + LINK_HEADER, of ? of->nonce : session->nonce, bytes);
-    if (of)
+    output->call = session->secrets[session->slot].hello;
+    if (of) {
         memcpy(frame + LINK_HEADER + bytes, of->peerNonce, bytes);
-    if (of)
         memcpy(frame + LINK_OPEN_AT, of->open, LINK_OPEN_BYTES);
-    output->call = of ? of->shake.send : session->secrets.hello[session->slot];
-    (void)link_sendControl(output, frame, LINK_KIND_BITS(kind) | LINK_FEATURES, version,
-                           of ? output->codec->sizes[LINK_KIND_HELLO_ACK] : bytes);
+        output->call = LINK_OWN_KEY(output, of->shake);
+        bytes = output->codec->sizes[LINK_KIND_HELLO_ACK];
+    }
+    (void)link_sendControl(output, frame, LINK_KIND_BITS(kind) | LINK_FEATURES, version, bytes);
 }
 
 void link_endSession(Link_Session* session, Link_State next) {

@@ -23,7 +23,8 @@ typedef struct Link_Session {
     U8 state;  /* Link_State */
     U8 wanted; /* Link_start was called */
     U8 hasCandidate;
-    U8 slot;          /* with a key: that of the last HELLO */
+    U8 keys;          /* slots with a key, a bit each */
+    U8 slot;          /* of the key of the last HELLO */
     U8 isAnswered;    /* a HELLO was answered with `nonce`, ... */
     U8 isUnconfirmed; /* the peer may not know of the session yet */
     U32 firstAnswer;  /* ... first at this time, ... */
@@ -32,7 +33,7 @@ typedef struct Link_Session {
     Link_Watch watch;
     U8 nonce[LINK_NONCE_BYTES]; /* own, of the next session */
     Link_Identity candidate; /* of a HELLO that was answered; its sender has not confirmed it yet */
-    Link_Secrets secrets;
+    Link_Secret secrets[LINK_KEYS];
     Link_Pair pair; /* of the next session */
 } Link_Session;
 

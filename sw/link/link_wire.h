@@ -112,18 +112,16 @@ U32 link_sessionKey(U32 nonce, U32 peerNonce);
 #define LINK_OPEN_AT (LINK_HEADER + 2U * LINK_NONCE_BYTES)          /* its place there, encrypted */
 #define LINK_ANSWER_BYTES (2U * LINK_NONCE_BYTES + LINK_OPEN_BYTES) /* of their payload */
 
-/* The keys of a session, one a direction. */
+/* The keys of a session: of what the vehicle sends, then of what the ground sends. */
 typedef struct Link_Keys {
-    U8 send[LINK_KEY_BYTES], receive[LINK_KEY_BYTES];
+    U8 bytes[2U * LINK_KEY_BYTES];
 } Link_Keys;
 
-/* The secrets of a Link, which follow from its given keys and the vehicle's address. */
-typedef struct Link_Secrets {
-    U8 set; /* a bit a slot */
-    U8 isGround;
-    U8 key[LINK_KEYS][LINK_KEY_BYTES];
-    U8 hello[LINK_KEYS][LINK_KEY_BYTES]; /* the keys of HELLOs, which follow from them */
-} Link_Secrets;
+/* A secret of a Link, which follows from a given key and the vehicle's address. */
+typedef struct Link_Secret {
+    U8 key[LINK_KEY_BYTES];
+    U8 hello[LINK_KEY_BYTES]; /* of HELLOs; it follows from the first */
+} Link_Secret;
 
 /* A pair makes the keys of one session, and is wiped then: who learns the secrets later, from
  * either side, cannot make them. */
@@ -132,11 +130,11 @@ typedef struct Link_Pair {
     U8 own[LINK_OPEN_BYTES], open[LINK_OPEN_BYTES];
 } Link_Pair;
 
-/* Sets a slot, or wipes it (`key` 0); `side` is Link_setKey's. */
-void link_setSecret(Link_Secrets* secrets, int slot, const U8* key, U32 side);
+/* Makes a secret of the vehicle's key and address. */
+void link_makeSecret(Link_Secret* secret, const U8* key, U32 address);
 
-/* Makes the keys of the handshake of two different nonces, LINK_NONCE_BYTES each. */
-void link_deriveKeys(const Link_Secrets* secrets, int slot, const U8* nonce, const U8* peerNonce,
+/* Makes the keys of the handshake of both sides' nonces, LINK_NONCE_BYTES each. */
+void link_deriveKeys(const Link_Secret* secret, const U8* vehicles, const U8* grounds,
                      Link_Keys* keys);
 
 /* Makes a pair, if there is none, of 32 random bytes. It takes long (docs/link.md), and so does
@@ -145,7 +143,10 @@ void link_makePair(Link_Pair* pair, const Link_Port* port, void* context);
 
 /* Makes the handshake's keys those of the session, with the peer's half of its pair. Wipes the own
  * half; `open` stays. */
-void link_mixKeys(Link_Keys* keys, Link_Pair* pair, const U8* peerOpen, int isGround);
+void link_mixKeys(Link_Keys* keys, Link_Pair* pair, const U8* peerOpen);
+
+/* Encrypts or decrypts bytes in their place, and computes their tag of 16 bytes. */
+void link_cipher(const U8* key, const U8* nonce, U8* bytes, U32 size, int isDecryption, U8* tag);
 
 /* Returns the number whose lowest byte is `byte`, as near to the expected one as can be. */
 U32 link_extend(U32 expected, U32 byte);

@@ -144,7 +144,7 @@ private:
     // nonce of now, from a peer whose nonce is in the input.
     Bytes sealed(Bytes bytes, bool isHandshake) const {
         const Link* link = a_.link.get();
-        const U8* under = link->output.present.keys.receive;
+        const U8* under = LINK_PEERS_KEY(&link->output, link->output.present.keys);
         Link_Keys keys;
         U32 kind = bytes[2] >> 5 & 7;
         U32 number = expected(), acked = 0;
@@ -155,12 +155,12 @@ private:
             bytes[0] = static_cast<uint8_t>(0x80 | (bytes.size() - LINK_HEADER));
             bytes[1] = LINK_VERSION;
             bytes[2] = static_cast<uint8_t>((bytes[2] & 3) | kind << 5);
-            under = link->session.secrets.hello[0];
+            under = link->session.secrets[0].hello;
             if (kind != LINK_KIND_HELLO) {
                 std::memcpy(&bytes[LINK_HEADER + 8], link->session.nonce, LINK_NONCE_BYTES);
-                link_deriveKeys(&link->session.secrets, 0, link->session.nonce, &bytes[LINK_HEADER],
+                link_deriveKeys(&link->session.secrets[0], &bytes[LINK_HEADER], link->session.nonce,
                                 &keys);
-                under = keys.receive;
+                under = keys.bytes; // the peer is the vehicle
             }
         } else if (bytes[0] & LINK_CONTROL) {
             if (kind == LINK_KIND_ACK)

@@ -258,14 +258,13 @@ TEST_P(Attacked, AMessageThatIsHeldBackIsReportedAndNeverTaken) {
     }
 }
 
-// Counts those of the recorded frames of a session, all but the handshake's, that keys open. They
-// are the ground's keys.
+// Counts those of the recorded frames of a session, all but the handshake's, that keys open.
 int opened(const std::vector<std::pair<bool, Bytes>>& frames, const Link_Keys& keys) {
     int count = 0;
     for (auto [isFromGround, frame] : frames) {
         const U32 acked = LINK_IS_RIDE(kindOf(frame)) ? frame[LINK_HEADER] : 0;
-        count +=
-            link_unprotect(frame.data(), isFromGround ? keys.send : keys.receive, frame[1], acked);
+        count += link_unprotect(frame.data(), &keys.bytes[isFromGround ? LINK_KEY_BYTES : 0],
+                                frame[1], acked);
     }
     return count;
 }
@@ -284,8 +283,8 @@ TEST_P(Attacked, WhoLearnsTheKeyLaterOpensNoRecordedSession) {
         5'000'000));
     ASSERT_TRUE(traffic(10, 60'000'000, [&] { listen(); }));
 
-    Link_Secrets stolen = {};
-    link_setSecret(&stolen, 0, Bytes(LINK_KEY_BYTES, 0x5A).data(), LINK_GROUND | 1);
+    Link_Secret stolen;
+    link_makeSecret(&stolen, Bytes(LINK_KEY_BYTES, 0x5A).data(), 1);
     Link_Keys keys = {};
     Bytes open;
     std::vector<std::pair<bool, Bytes>> frames;
@@ -295,10 +294,10 @@ TEST_P(Attacked, WhoLearnsTheKeyLaterOpensNoRecordedSession) {
         U8* nonces = &frame[LINK_HEADER];
         const int kind = kindOf(frame);
         if (kind == LINK_KIND_HELLO_ACK) { // the vehicle's
-            link_deriveKeys(&stolen, 0, nonces + LINK_NONCE_BYTES, nonces, &keys);
-            handshakes += link_unprotect(frame.data(), keys.receive, 0, 0);
+            link_deriveKeys(&stolen, nonces, nonces + LINK_NONCE_BYTES, &keys);
+            handshakes += link_unprotect(frame.data(), keys.bytes, 0, 0);
         } else if (kind == LINK_KIND_CONFIRM) {
-            handshakes += link_unprotect(frame.data(), keys.send, 0, 0);
+            handshakes += link_unprotect(frame.data(), &keys.bytes[LINK_KEY_BYTES], 0, 0);
             open.assign(&frame[LINK_OPEN_AT], &frame[LINK_OPEN_AT] + LINK_OPEN_BYTES);
         } else if (kind != LINK_KIND_HELLO) {
             frames.emplace_back(isFromA, bytes);
@@ -307,12 +306,7 @@ TEST_P(Attacked, WhoLearnsTheKeyLaterOpensNoRecordedSession) {
     EXPECT_GE(handshakes, 2);
     ASSERT_GE(frames.size(), 20u);
     EXPECT_EQ(opened(frames, keys), 0);
-    Link_Keys vehicles = {};
-    memcpy(vehicles.send, keys.receive, LINK_KEY_BYTES);
-    memcpy(vehicles.receive, keys.send, LINK_KEY_BYTES);
-    link_mixKeys(&vehicles, &pair, open.data(), 0);
-    memcpy(keys.send, vehicles.receive, LINK_KEY_BYTES);
-    memcpy(keys.receive, vehicles.send, LINK_KEY_BYTES);
+    link_mixKeys(&keys, &pair, open.data());
     EXPECT_EQ(opened(frames, keys), int(frames.size()));
     const Link_Pair& left = a.link()->session.pair;
     EXPECT_FALSE(left.isMade);

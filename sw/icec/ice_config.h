@@ -52,7 +52,7 @@
 #endif
 
 /* Connections of a transport, of both directions: 4, from 1; over the radio 4 for each ground that
- * a vehicle serves, of which there are two at most. */
+ * a vehicle serves, of which there are three at most. */
 #ifndef ICE_CONNECTIONS
 #define ICE_CONNECTIONS 4
 #endif

@@ -7,7 +7,15 @@
 #include <string.h>
 
 void Link_init(Link* link, const Link_Port* port, void* context, U32 byteTimeUs16) {
+    Link_initSmall(link, port, context, byteTimeUs16, LINK_SEND_BYTES, LINK_MAX_MESSAGE,
+                   LINK_WINDOW);
+}
+
+void Link_initSmall(Link* link, const Link_Port* port, void* context, U32 byteTimeUs16,
+                    U32 sendBytes, U32 maxMessage, U32 window) {
     Link_Output* output = &link->output;
+    Link_Sender* sender = &link->sender;
+    Link_Receiver* receiver = &link->receiver;
     memset(link, 0, LINK_FIXED);
     output->port = port;
     output->context = context;
@@ -15,19 +23,18 @@ void Link_init(Link* link, const Link_Port* port, void* context, U32 byteTimeUs1
     output->longest = LINK_MAX_PAYLOAD;
     output->pacer = &output->own;
     output->codec = &link_clear;
-    link->receiver.output = link->sender.output = output;
+    receiver->output = sender->output = output;
     link->session.output = link->input.output = output;
-    link->session.receiver = link->sender.receiver = &link->receiver;
-    link->session.sender = &link->sender;
+    link->session.receiver = sender->receiver = receiver;
+    link->session.sender = sender;
     link->input.session = &link->session;
-    Link_shrink(link, LINK_SEND_BYTES, LINK_MAX_MESSAGE);
+    sender->queue.mask = sendBytes - 1U;
+    sender->window = (Link_Fragment*)(void*)(sender->queue.bytes + sendBytes);
+    receiver->slots = (Link_Slot*)(sender->window + window);
+    receiver->message = (U8*)(receiver->slots + window);
+    receiver->longest = LINK_ARRIVING(maxMessage);
+    sender->mask = receiver->mask = (U8)(window - 1U);
     link_endSession(&link->session, LINK_STATE_IDLE);
-}
-
-void Link_shrink(Link* link, U32 sendBytes, U32 maxMessage) {
-    link->sender.queue.mask = sendBytes - 1U;
-    link->receiver.message = link->sender.queue.bytes + sendBytes;
-    link->receiver.longest = LINK_ARRIVING(maxMessage);
 }
 
 void Link_limitFrame(Link* link, U32 bytes) {

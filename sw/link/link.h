@@ -44,12 +44,15 @@ typedef struct Link Link; /* complete below, so that callers can place it; its f
 void Link_init(Link* link, const Link_Port* port, void* context, U32 byteTimeUs16);
 
 #ifndef LINK_MINIMAL
-/* Gives a link smaller sizes, after Link_init; it may have LINK_SIZE(sendBytes, maxMessage) bytes
- * only, aligned as a Link. `sendBytes`, a power of two, takes the place of LINK_SEND_BYTES, so that
- * it sends messages of sendBytes - LINK_RESERVE - LINK_CHECK bytes at most; `maxMessage` that of
- * LINK_MAX_MESSAGE for messages that come. */
-void Link_shrink(Link* link, U32 sendBytes, U32 maxMessage);
-#define LINK_SIZE(sendBytes, maxMessage) (LINK_FIXED + (sendBytes) + LINK_ROOM(maxMessage))
+/* Prepares a link of other sizes, which may have LINK_SIZE of them only, aligned as a Link.
+ * `sendBytes`, a power of two, takes the place of LINK_SEND_BYTES, so that it sends messages of
+ * sendBytes - LINK_RESERVE - LINK_CHECK bytes at most; `maxMessage` that of LINK_MAX_MESSAGE for
+ * messages that come; `window` that of LINK_WINDOW. */
+void Link_initSmall(Link* link, const Link_Port* port, void* context, U32 byteTimeUs16,
+                    U32 sendBytes, U32 maxMessage, U32 window);
+#define LINK_SIZE(sendBytes, maxMessage, window)                                         \
+    (LINK_FIXED + (sendBytes) + (window) * (sizeof(Link_Fragment) + sizeof(Link_Slot)) + \
+     LINK_ROOM(maxMessage))
 
 /* Limits frames to `bytes` from now on, 32 (under a key 59) to LINK_MAX_FRAME: a modem that
  * encrypts splits packets longer than LINK_MAX_ENCRYPTED. The two sides may differ. */
@@ -142,8 +145,11 @@ struct Link {
     Link_Input input;
     Link_Receiver receiver;
     Link_Sender sender;
-    U8 message[LINK_ROOM(LINK_MAX_MESSAGE)]; /* Link_Receiver.message, unless it is smaller */
+    /* In a small link these are behind its shorter queue. */
+    Link_Fragment window[LINK_WINDOW];
+    Link_Slot slots[LINK_WINDOW];
+    U8 message[LINK_ROOM(LINK_MAX_MESSAGE)];
 };
-/* Bytes of a link but its queue's, and the long message's. */
+/* Bytes of a link that has none of those, and no queue. */
 #define LINK_FIXED (offsetof(Link, sender) + offsetof(Link_Sender, queue.bytes))
 #endif

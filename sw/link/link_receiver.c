@@ -7,10 +7,13 @@
 #include <stddef.h>
 #include <string.h>
 
+#define SLOT(receiver, seq) (&(receiver)->slots[(seq) & (receiver)->mask])
+
 void link_resetReceiver(Link_Receiver* receiver) {
     Link_Output* output = receiver->output;
     memset(&receiver->isAssembling, 0,
            offsetof(Link_Receiver, message) - offsetof(Link_Receiver, isAssembling));
+    memset(receiver->slots, 0, (receiver->mask + 1U) * sizeof *receiver->slots);
     output->expected = 0;
     output->open = output->closing = output->closeDue = 0;
 }
@@ -120,14 +123,14 @@ static int accept(Link_Receiver* receiver, U32 flags, const U8* data, U32 size) 
  * take it now. Returns 0: the peer broke the rules. */
 static int takeEarly(Link_Receiver* receiver, U32 seq) {
     Link_Heads* heads = &receiver->heads;
-    Link_Slot* slot = &receiver->slots[LINK_SLOT(seq)];
+    Link_Slot* slot = SLOT(receiver, seq);
     U32 channel = LINK_CHANNEL(slot->flags);
     U32 request = heads->lastRequest[channel];
     U32 reply = heads->lastReply[channel];
     U32 expected = receiver->output->expected;
     U32 at;
-    for (at = expected; LINK_SLOT(at) != LINK_SLOT(seq); ++at) {
-        const Link_Slot* other = &receiver->slots[LINK_SLOT(at)];
+    for (at = expected; SLOT(receiver, at) != slot; ++at) {
+        const Link_Slot* other = SLOT(receiver, at);
         if (other->flags && other->size != LINK_TAKEN && LINK_CHANNEL(other->flags) == channel)
             return 1;
     }
@@ -149,7 +152,7 @@ static int takeEarly(Link_Receiver* receiver, U32 seq) {
  * the rules. */
 static int drain(Link_Receiver* receiver) {
     for (;;) {
-        Link_Slot* slot = &receiver->slots[LINK_SLOT(receiver->output->expected)];
+        Link_Slot* slot = SLOT(receiver, receiver->output->expected);
         U32 flags = slot->flags;
         if (receiver->isHeld || !flags)
             return 1;
@@ -164,7 +167,7 @@ static int drain(Link_Receiver* receiver) {
 
 int link_onData(Link_Receiver* receiver, U32 seq, U32 flags, const U8* data, U32 size) {
     U32 ahead = (U8)(seq - receiver->output->expected);
-    Link_Slot* slot = &receiver->slots[LINK_SLOT(seq)];
+    Link_Slot* slot = SLOT(receiver, seq);
     receiver->ackDue = 1;
     receiver->ackAt =
         receiver->output->now + (flags & LINK_LAST ? LINK_ACK_DELAY : LINK_ACK_WITHIN);
@@ -172,7 +175,7 @@ int link_onData(Link_Receiver* receiver, U32 seq, U32 flags, const U8* data, U32
         receiver->ackNow = 1;
     if (ahead == 0 && !receiver->isHeld) /* the usual case: straight into the message */
         return accept(receiver, flags, data, size) && drain(receiver);
-    if (ahead != 0 && ahead < LINK_WINDOW && !slot->flags) {
+    if (ahead != 0 && ahead <= receiver->mask && !slot->flags) {
         ++receiver->waiting;
         slot->flags = (U8)(flags | LINK_ACK_NOW);
         slot->size = (U8)size;
@@ -196,8 +199,8 @@ static U32 gaps(const Link_Receiver* receiver, U8* bitmap) {
     U32 size = 0;
     U32 i;
     memset(bitmap, 0, LINK_BITMAP);
-    for (i = 0; i < LINK_WINDOW - 1U; ++i)
-        if (receiver->slots[LINK_SLOT(receiver->output->expected + 1U + i)].flags) {
+    for (i = 0; i < receiver->mask; ++i)
+        if (SLOT(receiver, receiver->output->expected + 1U + i)->flags) {
             size = i / 8U + 1U;
             bitmap[i / 8U] = (U8)(bitmap[i / 8U] | 1U << i % 8U);
         }
@@ -241,7 +244,7 @@ void link_pollAck(Link_Receiver* receiver) {
     output = receiver->output;
     size = gaps(receiver, payload + 1);
     /* A message that the program does not take stops the window. */
-    payload[0] = (U8)(receiver->isHeld ? receiver->waiting + 1U : LINK_WINDOW);
+    payload[0] = (U8)((receiver->isHeld ? receiver->waiting : receiver->mask) + 1U);
     if (link_sendControl(output, frame, LINK_KIND_BITS(LINK_KIND_ACK), output->expected, size + 1U))
         link_ackIsSent(receiver);
 }

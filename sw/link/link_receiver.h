@@ -45,8 +45,6 @@ void link_note(Link_Heads* heads, int channel, const U8* m, U32 head);
  * Returns where it begins now; it ends where it did. 0: it is malformed. */
 U8* link_decompress(Link_Heads* heads, int channel, U8* start, U32 size);
 
-#define LINK_SLOT(seq) ((seq) & (LINK_WINDOW - 1U))
-
 /* A fragment that arrived before its turn. */
 typedef struct Link_Slot {
     U8 flags; /* as in the frame, with LINK_ACK_NOW; 0: the slot is free */
@@ -61,6 +59,8 @@ typedef struct Link_Slot {
 
 typedef struct Link_Receiver {
     Link_Output* output;
+    Link_Slot* slots;
+    U8 mask; /* slots less one */
     /* The fields from here on are 0 when a session begins. */
     U8 isAssembling; /* between F and L */
     U8 isHeld;       /* the message is whole, but the program has not taken it */
@@ -72,8 +72,7 @@ typedef struct Link_Receiver {
     U16 size;   /* of the two, as channel */
     U16 longSize;
     U32 ackAt;
-    U8* start; /* of the whole message */
-    Link_Slot slots[LINK_WINDOW];
+    U8* start;        /* of the whole message */
     Link_Heads heads; /* of messages that came */
     /* End of the fields that begin at 0. */
     U8* message; /* LINK_ROOM of the link's longest message, at its end */

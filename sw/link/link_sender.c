@@ -18,7 +18,7 @@
 #define STREAM 3U
 
 #define IN_FLIGHT(sender) ((sender)->next - (sender)->base)
-#define FRAGMENT(sender, seq) (&(sender)->window[LINK_SLOT(seq)])
+#define FRAGMENT(sender, seq) (&(sender)->window[(seq) & (sender)->mask])
 
 Link_Entry* link_offer(Link_Sender* sender, U32 flags, U32 size) {
     Link_Entry* entry = link_enqueue(&sender->queue, flags, size, sender->output->longest);
@@ -61,7 +61,7 @@ void link_resetSender(Link_Sender* sender) {
     while (sender->queue.count)
         endEntry(sender, sender->queue.first, LINK_UNKNOWN);
     link_rewind(&sender->queue);
-    memset(&sender->credit, 0, offsetof(Link_Sender, window) - offsetof(Link_Sender, credit));
+    memset(&sender->credit, 0, offsetof(Link_Sender, queue) - offsetof(Link_Sender, credit));
     sender->credit = sender->fullCredit = LEAST_WINDOW;
     sender->output->fastest = sender->rto = LINK_RTO_FIRST;
 }
@@ -76,7 +76,7 @@ static int cut(Link_Sender* sender, int onlyAhead) {
     /* An acknowledgement that is due leaves in the same packet. */
     U32 reduced = sender->receiver->ackNow ? room - ACK_ROOM(output) : room;
     /* One fragment goes out even without credit: its acknowledgement brings news of credit. */
-    if ((inFlight && inFlight >= sender->credit) || inFlight >= LINK_WINDOW ||
+    if ((inFlight && inFlight >= sender->credit) ||
         !link_cut(&sender->queue, &f->piece, room, onlyAhead ? 0 : reduced,
                   output->present.features & LINK_FEATURE_PIGGYBACK ? output->longest : 0U))
         return 0;
@@ -263,7 +263,7 @@ void link_onAck(Link_Sender* sender, U32 cumulative, U32 credit, const U8* bitma
     U32 advance = (U8)(cumulative - sender->base);
     if (advance > IN_FLIGHT(sender))
         return; /* an old acknowledgement came late */
-    sender->credit = (U8)(credit < LINK_WINDOW ? credit : LINK_WINDOW);
+    sender->credit = (U8)(credit <= sender->mask ? credit : sender->mask + 1U);
     if (sender->fullCredit < sender->credit)
         sender->fullCredit = sender->credit;
     sender->hasWork = 1;

@@ -71,6 +71,8 @@ typedef struct Link_Fragment {
 typedef struct Link_Sender {
     Link_Output* output;
     Link_Receiver* receiver; /* its acknowledgements ride on fragments */
+    Link_Fragment* window;
+    U8 mask; /* fragments in the window less one */
     /* The fields from here on are 0 when a session begins. */
     U8 credit, fullCredit; /* fragments that may be in flight: now, and at most so far */
     U8 hasWork;            /* there may be something to send */
@@ -85,7 +87,6 @@ typedef struct Link_Sender {
     U32 order;             /* transmissions so far */
     Link_Heads heads;      /* of messages that were sent */
     /* End of the fields that begin at 0. */
-    Link_Fragment window[LINK_WINDOW];
     Link_Queue queue;
 } Link_Sender;
 

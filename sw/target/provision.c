@@ -90,10 +90,11 @@ static void protect(void) {
 /* Executes the line. Returns the answer. */
 static const char* obey(const char* line) {
     const char *end, *answer = "ok\r\n";
-    U8 key[LINK_KEY_BYTES], old[LINK_KEY_BYTES], address[2];
+    U8 key[LINK_KEY_BYTES], old[LINK_KEY_BYTES], address[2] = {0, 0};
     const int isFellow = strncmp(line, "fellow ", 7) == 0;
     const int isGround = isFellow || strncmp(line, "ground ", 7) == 0;
     int isKey = strncmp(line, "key ", 4) == 0;
+    U32 number;
     int isProven = UAV_countKeys(0) == 0 || !(GPIO_IDR(JUMPER_PORT) >> JUMPER & 1UL);
     if (strcmp(line, "protect") == 0) {
         protect();
@@ -113,14 +114,19 @@ static const char* obey(const char* line) {
         end = readBytes(end + 1, old, sizeof old);
         isProven |= end && UAV_isKey(old);
     }
+    number = (U32)address[0] << 8 | address[1];
     if (!end || *end)
         answer = "no: key or open, the key's 32 of 0..9a..f, the address's 4, a present key's; "
                  "ground or fellow, its address, its key; or protect\r\n";
     else if (!isProven)
         answer = "no: it has a key; give that, too, or wire the jumper\r\n";
+    else if (isGround)
+        UAV_provideGround(isFellow                  ? UAV_FELLOW
+                          : number == UAV_EVERYBODY ? UAV_GROUP
+                                                    : UAV_SECOND,
+                          number, isKey ? key : 0);
     else
-        (isGround ? UAV_provideGround : UAV_provide)(
-            (isFellow ? UAV_FELLOW : 0U) | (U32)address[0] << 8 | address[1], isKey ? key : 0);
+        UAV_provide(number, isKey ? key : 0);
     Ascon_wipe(key, sizeof key);
     Ascon_wipe(old, sizeof old);
     return answer;

@@ -38,10 +38,7 @@ std::string stackOf(Stm32F2& stm32) {
 
 void provideKeys(SimulatedBoard& board, const M3Machine::Config& config) {
     board.provide(config.key, config.address);
-    if (config.secondGround >= 0)
-        board.provideGround(static_cast<uint32_t>(config.secondGround), config.secondKey);
-    if (!config.groupKey.empty())
-        board.provideGround(UAV_EVERYBODY, config.groupKey);
+    board.providePeers(config.peers);
 }
 
 M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> poll)

@@ -32,12 +32,10 @@ public:
         uint64_t seed = 1; // of the random number generator
         // The FPGA's configuration flash; none: it needs no configuration.
         std::vector<uint8_t> fpgaFlash = {};
-        bool isWired = false;                // the jumper of PB1 (board.h)
-        uint32_t address = 1;                // of the vehicle, from the factory, too
-        int64_t secondGround = -1;           // address of a second ground that it serves; -1: none
-        std::vector<uint8_t> secondKey = {}; // and that one's key
-        std::vector<uint8_t> groupKey = {};  // of calls to all vehicles
-        bool isTransparent = false;          // written to uav_transparent, as guardMs is
+        bool isWired = false;                         // the jumper of PB1 (board.h)
+        uint32_t address = 1;                         // of the vehicle, from the factory, too
+        std::vector<SimulatedBoard::Peer> peers = {}; // whom it serves besides its ground
+        bool isTransparent = false;                   // written to uav_transparent, as guardMs is
     };
     // `poll` is called about once a simulated millisecond; when it returns false, run() ends.
     M3Machine(SocModel& soc, const Config& config, std::function<bool()> poll);

@@ -29,10 +29,16 @@ public:
         use();
         UAV_provide(address, key.empty() ? nullptr : key.data());
     }
-    // Has it serve a second ground, by its modem's address and its key.
-    void provideGround(uint32_t address, const std::vector<uint8_t>& key) {
+    // Whom it serves besides its ground.
+    struct Peer {
+        int ground; // UAV_SECOND, UAV_FELLOW, UAV_GROUP
+        uint32_t address;
+        std::vector<uint8_t> key;
+    };
+    void providePeers(const std::vector<Peer>& peers) {
         use();
-        UAV_provideGround(address, key.empty() ? nullptr : key.data());
+        for (const auto& [ground, address, key] : peers)
+            UAV_provideGround(ground, address, key.empty() ? nullptr : key.data());
     }
     Words words{};
 

@@ -77,20 +77,21 @@ inline std::vector<uint8_t> keyOf(const std::string& file, int address) {
     return {key.begin(), key.end()};
 }
 
-// Gives a vehicle its keys, from the ground's file and from the observer's, and a second ground
-// where there are several vehicles: of four and more the first two serve each other.
+// Gives a vehicle its keys, from the ground's file and from the observer's: a second ground where
+// there are several vehicles; of four and more the first two each other.
 inline void giveKeys(M3Machine::Config& config, unsigned vehicles, const std::string& file,
                      const std::string& observer) {
     config.key = keyOf(file, static_cast<int>(config.address));
     try {
-        config.groupKey = keyOf(file, XBeeAT::everybody);
-    } catch (const std::exception&) { // the file has no line for calls to all vehicles
+        if (auto key = keyOf(file, XBeeAT::everybody); !key.empty())
+            config.peers.push_back({UAV_GROUP, UAV_EVERYBODY, key});
+    } catch (const std::exception&) { // the file has no line for it
     }
-    const bool isPaired = vehicles > 3 && config.address < 3;
-    if (vehicles < 2)
-        return;
-    config.secondGround = isPaired ? UAV_FELLOW | (3 - config.address) : Station::second;
-    config.secondKey = keyOf(observer, isPaired ? 1 : static_cast<int>(config.address));
+    if (vehicles > 1)
+        config.peers.push_back(
+            {UAV_SECOND, Station::second, keyOf(observer, static_cast<int>(config.address))});
+    if (vehicles > 3 && config.address < 3)
+        config.peers.push_back({UAV_FELLOW, 3 - config.address, keyOf(observer, 1)});
 }
 
 // Trouble takes effect by a text: `away:2:1.5:3` takes the modem with the

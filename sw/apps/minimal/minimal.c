@@ -77,13 +77,13 @@ static U32 randomWord(void* context) {
     return state = state * 1664525U + 1013904223U + now;
 }
 
-static const Link_Port linkPort = {Radio_transmit,
-                                   randomWord,
-                                   XBeeATEndpoint_onMessage,
-                                   XBeeATEndpoint_onChannel,
-                                   XBeeATEndpoint_onState,
-                                   0,
-                                   0};
+static void onState(void* context, Link_State state) {
+    (void)context;
+    (void)state; /* the endpoint hears of each channel */
+}
+
+static const Link_Port linkPort = {
+    Radio_transmit, randomWord, XBeeATEndpoint_onMessage, XBeeATEndpoint_onChannel, onState, 0, 0};
 
 Ice_Status Autopilot_HwProcessingEngine_setParameterA(Autopilot_HwProcessingEnginePtr self,
                                                       Ice_Short value, const Ice_Current* current) {

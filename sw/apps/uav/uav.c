@@ -78,13 +78,13 @@ static void setParam(Autopilot_Param* param, Ice_Byte* data, Autopilot_ParamId i
 /* Makes a proxy to the vehicle that this one calls, if there is one. */
 static int findFellow(Ice_ObjectPrxPtr fellow) {
     static char text[] = "uav:xbee-at -a 0x0000";
-    const U32 address = UAV_secondGround();
+    const U32 address = UAV_addressOf(UAV_FELLOW);
     U32 i;
     for (i = 0; i < 4U; ++i)
         text[sizeof text - 2U - i] = "0123456789abcdef"[address >> 4U * i & 15U];
     (void)Ice_Communicator_stringToProxy(&uav_ic, text, fellow);
     Ice_ObjectPrx_ice_invocationTimeout(fellow, FELLOW_MS);
-    return address != UAV_NO_GROUND && (address & UAV_FELLOW);
+    return address != UAV_NO_GROUND;
 }
 
 /* Tells the ground station about the vehicle whenever a frame is done; with a fellow, how that one

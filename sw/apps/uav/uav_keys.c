@@ -12,7 +12,7 @@
 #define CHECK 4U     /* a slot's check: detects words that are not whole */
 #define STATE_AT 10U /* a ground's state word, or nothing */
 #define ADDRESS_AT 12U
-#define GROUND_AT (UAV_GROUND_WORDS + 11U)  /* the second ground's address, inverted: 0 is none */
+#define GROUND_AT 11U                       /* another ground's address, inverted: 0 is none */
 #define NEWEST_AT (at(UAV_GROUP, STATE_AT)) /* number of the newest call to all vehicles */
 #define STATE_OPEN 0x4F50454EU
 #define STATE_NEXT 0x4E455830U /* + slot of the next key, if both have one */
@@ -79,8 +79,9 @@ static void writeKey(int ground, int slot, const U8* key) {
 }
 
 void UAV_provide(U32 address, const U8* key) {
-    UAV_provideGround(UAV_NO_GROUND, 0);
-    UAV_provideGround(UAV_EVERYBODY, 0);
+    int ground;
+    for (ground = UAV_SECOND; ground <= UAV_GROUP; ++ground)
+        UAV_provideGround(ground, UAV_NO_GROUND, 0);
     store(NEWEST_AT, 0);
     store(ADDRESS_AT, address);
     store(STATE_AT, key ? 0 : STATE_OPEN);
@@ -88,24 +89,21 @@ void UAV_provide(U32 address, const U8* key) {
     writeKey(0, 0, key);
 }
 
-void UAV_provideGround(U32 address, const U8* key) {
-    if (address == UAV_EVERYBODY) { /* a recorded call stays old, also under the same key */
-        writeKey(UAV_GROUP, 0, key);
-        return;
-    }
-    store(GROUND_AT, 0);
-    store(at(1, STATE_AT), 0);
-    writeKey(1, 1, 0);
-    writeKey(1, 0, key);
-    store(GROUND_AT, ~address);
+void UAV_provideGround(int ground, U32 address, const U8* key) {
+    store(at(ground, GROUND_AT), 0);
+    if (ground != UAV_GROUP) /* or a recorded call would be new again */
+        store(at(ground, STATE_AT), 0);
+    writeKey(ground, 1, 0);
+    writeKey(ground, 0, key);
+    store(at(ground, GROUND_AT), ~address);
 }
 
 U32 UAV_address(void) {
     return load(ADDRESS_AT);
 }
 
-U32 UAV_secondGround(void) {
-    return UAV_countKeys(1) || UAV_isOpen() ? ~load(GROUND_AT) : UAV_NO_GROUND;
+U32 UAV_addressOf(int ground) {
+    return UAV_countKeys(ground) || UAV_isOpen() ? ~load(at(ground, GROUND_AT)) : UAV_NO_GROUND;
 }
 
 /* Reads the group's key: zeros, as of any slot without a key, where the vehicle is open. */
@@ -131,15 +129,15 @@ U32 UAV_openBroadcast(U8* packet, U32 size) {
 }
 
 int UAV_hasGroundsPart(void) {
-    const U32 fellow = ~load(GROUND_AT) - UAV_FELLOW;
-    return fellow < UAV_FELLOW && UAV_address() < fellow;
+    return UAV_address() < UAV_addressOf(UAV_FELLOW);
 }
 
 /* Their sessions are bound to the address of the vehicle that has the vehicle's part. */
 static void giveKey(int ground, Link* link, int slot, const U8* key) {
     Link_setKey(link, slot, key,
-                ground && UAV_hasGroundsPart() ? LINK_GROUND | (U16)~load(GROUND_AT)
-                                               : UAV_address());
+                ground == UAV_FELLOW && UAV_hasGroundsPart()
+                    ? LINK_GROUND | UAV_addressOf(UAV_FELLOW)
+                    : UAV_address());
 }
 
 int UAV_countKeys(int ground) {

@@ -12,12 +12,14 @@
 #define UAV_KEY_SLOTS 2
 /* A ground: two slots of four words of key and their check, then states and addresses. */
 #define UAV_GROUND_WORDS 16U
-#define UAV_GROUNDS 2
+/* Whom a vehicle serves: the first ground, a second one, and a vehicle that it calls, too. */
+#define UAV_GROUNDS 3
+#define UAV_SECOND 1
+#define UAV_FELLOW 2
 #define UAV_GROUP UAV_GROUNDS /* in a ground's place: the group's key, of calls to all vehicles */
 #define UAV_KEY_WORDS ((UAV_GROUNDS + 1) * UAV_GROUND_WORDS)
 #define UAV_EVERYBODY 0xFFFFU     /* the group's address */
 #define UAV_NO_GROUND 0xFFFFFFFFU /* in place of an address */
-#define UAV_FELLOW 0x10000U       /* with an address: it is another vehicle's */
 #define UAV_FLIGHT_WORD 11U
 #define UAV_FLYING 0x464C5921U /* in that word; anything else: on the ground */
 
@@ -40,11 +42,10 @@ U32 UAV_random(void* unused);
  * call. */
 void UAV_provide(U32 address, const U8* key);
 
-/* Provides it with a second ground, by its modem's address, and with that one's key. 0: no key, for
- * an open vehicle. UAV_NO_GROUND: it has none, as after UAV_provide. With UAV_FELLOW that is
- * another vehicle, which has the same key and this one's address. UAV_EVERYBODY: the group's
- * key. */
-void UAV_provideGround(U32 address, const U8* key);
+/* Provides it with a UAV_SECOND ground, by its modem's address, and with that one's key; or with a
+ * UAV_FELLOW, which has the same key and this one's address; or with the key of its UAV_GROUP. 0:
+ * no key, for an open vehicle. UAV_NO_GROUND: it has none, as after UAV_provide. */
+void UAV_provideGround(int ground, U32 address, const U8* key);
 
 /* Returns 1 if the vehicle takes calls to all vehicles: it has the group's key, or is open. */
 int UAV_isOfGroup(void);
@@ -53,11 +54,11 @@ int UAV_isOfGroup(void);
  * remembers its number. Returns the message's size; 0: it is not to be carried out. */
 U32 UAV_openBroadcast(U8* packet, U32 size);
 
-/* Returns the second ground's address, as it was provided, or UAV_NO_GROUND. */
-U32 UAV_secondGround(void);
+/* Returns the address of the second ground or fellow, as it was provided, or UAV_NO_GROUND. */
+U32 UAV_addressOf(int ground);
 
-/* Returns 1 if the second ground is a vehicle, and this one has the ground's part in their
- * sessions: of the two it has the lower address. */
+/* Returns 1 if this vehicle has the ground's part in sessions with its fellow: of the two it has
+ * the lower address. */
 int UAV_hasGroundsPart(void);
 
 /* Returns the vehicle's address: its modem's MY, to which its keys are bound. */

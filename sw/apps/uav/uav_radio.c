@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_radio: the FPGA's interrupt, the radio task, its links with one ground or two, of which the
- * second may be another vehicle, and what IceC's endpoint needs from it.
+ * uav_radio: the FPGA's interrupt, the radio task, its links with a ground or two and another
+ * vehicle, the fellow, and what IceC's endpoint needs from it.
  */
 #include "link_broadcast.h"
 #include "map_regs.h"
@@ -17,8 +17,13 @@
 #define DOWN_LIMIT 15000000U /* us without a link: the modem may have lost its settings then */
 #define MOST_UNANSWERED 2U   /* packets that the modem has */
 #define FIRST_GROUND 0x0000U /* its address */
-#define SECOND_SENDS 8192U   /* bytes of the second ground's queue, */
-#define SECOND_TAKES 1024U   /* and of a message from there */
+/* The smaller links: bytes of the queue and of a message that comes, fragments in flight. */
+#define SECOND_SENDS 8192U
+#define SECOND_TAKES 1024U
+#define SECOND_WINDOW 16U
+#define FELLOW_SENDS 2048U
+#define FELLOW_TAKES 1024U
+#define FELLOW_WINDOW 8U
 
 Link uav_link;
 OS_EVENT* uav_radioWork;
@@ -33,20 +38,29 @@ static OS_EVENT* iceEvent;
 static U8 isAnswered; /* the radio answers for each packet */
 static U32 now;       /* time of the radio task's present turn, in us */
 
-/* The second ground's link, if the vehicle serves one: in API mode only, which tells it from the
- * first. That ground calls by itself: one that is away is not sought. */
+/* The links of the second ground and of the fellow, which a vehicle may have in API mode only: it
+ * tells them apart by their addresses. A second ground calls by itself and is not sought, a fellow
+ * only while this vehicle calls it. */
 static union {
     Link_Output alignment;
-    U8 bytes[LINK_SIZE(SECOND_SENDS, SECOND_TAKES)];
+    U8 bytes[LINK_SIZE(SECOND_SENDS, SECOND_TAKES, SECOND_WINDOW)];
 } secondMemory;
-#define SECOND ((Link*)(void*)&secondMemory)
-static U8 hasSecond;
-static U8 isFellow;      /* it is a vehicle, which is sought while this one calls it */
-static U8 isSecondsTurn; /* to be polled first */
-static U8 areUp;         /* grounds with a session, a bit each */
-static U8 isSpecial; /* there is a second ground, or a session whose key may have to be confirmed */
-static U16 secondAddress;
-static U8 receiver;              /* of packets (receivers) */
+static union {
+    Link_Output alignment;
+    U8 bytes[LINK_SIZE(FELLOW_SENDS, FELLOW_TAKES, FELLOW_WINDOW)];
+} fellowMemory;
+
+/* The grounds by their numbers; those that there are not have no link. */
+typedef struct Peer {
+    Link* link;
+    U16 address;
+} Peer;
+static Peer peers[UAV_GROUNDS] = {{&uav_link, FIRST_GROUND}};
+static U8 hasOthers; /* than the first ground */
+static U8 turn;      /* the one that is polled first */
+static U8 areUp;     /* grounds with a session, a bit each */
+static U8 isSpecial; /* there are others, or a session whose key may have to be confirmed */
+static U8 receiver;  /* of packets (receivers) */
 static U8 toAll[LINK_MAX_FRAME]; /* a call to all vehicles, and its bytes while it waits; else 0 */
 static U8 toAllSize;
 
@@ -90,31 +104,25 @@ static U32 nowMsOf(void* context) {
 static const XBeeATEndpoint_Port endpointPort = {lockLink,  unlockLink,  kick,
                                                  waitEvent, signalEvent, nowMsOf};
 
-/* Hands a packet over; in transparent mode while at most one waits for the line. So the link layer
- * knows how fast the modem is, and chooses late what goes next. */
-static int transmit(void* context, const U8* frame, U32 size) {
-    if (isAnswered)
-        Radio_setWait(Link_randomWait(&uav_link));
-    else if (Radio_waiting() > 1U)
-        return 1;
-    return Radio_transmit(context, frame, size);
-}
-
-/* The same for either of two grounds. */
-static int transmitTo(U32 ground, const U8* frame, U32 size) {
-    U32 wait = Link_randomWait(&uav_link), other = Link_randomWait(SECOND);
-    Radio_setWait(areUp >> 1 && other > wait ? other : wait);
-    Radio_setTarget(ground ? secondAddress : FIRST_GROUND);
+/* Hands a packet over, in API mode. */
+static int transmitTo(void* peer, const U8* frame, U32 size) {
+    U32 wait = Link_randomWait(&uav_link), ground;
+    for (ground = 1; areUp >> ground; ++ground)
+        if (areUp >> ground & 1) {
+            const U32 other = Link_randomWait(peers[ground].link);
+            wait = other > wait ? other : wait;
+        }
+    Radio_setWait(wait);
+    Radio_setTarget(((const Peer*)peer)->address);
     return Radio_transmit(0, frame, size);
 }
 
-static int transmitOfTwo(void* context, const U8* frame, U32 size) {
-    return isAnswered ? transmitTo(0, frame, size) : transmit(context, frame, size);
-}
-
-static int transmitToSecond(void* context, const U8* frame, U32 size) {
-    (void)context;
-    return transmitTo(1U, frame, size);
+/* The same of the first ground; in transparent mode while at most one waits for the line. So the
+ * link layer knows how fast the modem is, and chooses late what goes next. */
+static int transmit(void* context, const U8* frame, U32 size) {
+    if (isAnswered)
+        return transmitTo(peers, frame, size);
+    return Radio_waiting() > 1U || Radio_transmit(context, frame, size);
 }
 
 static void noteState(U32 ground, Link_State state) {
@@ -123,58 +131,67 @@ static void noteState(U32 ground, Link_State state) {
 }
 
 static void onState(void* context, Link_State state) {
+    (void)context;
     noteState(0, state);
-    XBeeATEndpoint_onState(context, state);
 }
 
-static int onSecondsMessage(void* context, int channel, const U8* data, U32 size) {
-    return XBeeATEndpoint_onMessage(context, LINK_CHANNELS + channel, data, size);
+static int groundOf(const void* peer) {
+    return (int)((const Peer*)peer - peers);
 }
 
-static void onSecondsChannel(void* context, int channel, int isOpen) {
-    XBeeATEndpoint_onChannel(context, LINK_CHANNELS + channel, isOpen);
+static int onPeersMessage(void* peer, int channel, const U8* data, U32 size) {
+    return XBeeATEndpoint_onMessage(&endpoint, groundOf(peer) * LINK_CHANNELS + channel, data,
+                                    size);
 }
 
-static void onSecondsState(void* context, Link_State state) {
-    noteState(1U, state);
-    if (state != LINK_STATE_UP)
-        XBeeATEndpoint_onDown(context, 1);
+static void onPeersChannel(void* peer, int channel, int isOpen) {
+    XBeeATEndpoint_onChannel(&endpoint, groundOf(peer) * LINK_CHANNELS + channel, isOpen);
+}
+
+static void onPeersState(void* peer, Link_State state) {
+    noteState((U32)groundOf(peer), state);
 }
 
 static const Link_Port linkPort = {
     transmit, UAV_random, XBeeATEndpoint_onMessage, XBeeATEndpoint_onChannel, onState, 0, 0};
-static const Link_Port firstOfTwo = {
-    transmitOfTwo, UAV_random, XBeeATEndpoint_onMessage, XBeeATEndpoint_onChannel, onState, 0, 0};
-static const Link_Port second = {
-    transmitToSecond, UAV_random, onSecondsMessage, onSecondsChannel, onSecondsState, 0, 0};
+static const Link_Port peersPort = {
+    transmitTo, UAV_random, onPeersMessage, onPeersChannel, onPeersState, 0, 0};
+
+/* Adds the second ground or the fellow, if the vehicle has one. */
+static void addPeer(int ground, void* memory, U32 sends, U32 takes, U32 window) {
+    Peer* peer = &peers[ground];
+    const U32 address = UAV_addressOf(ground);
+    peer->link = 0;
+    if (address == UAV_NO_GROUND)
+        return;
+    peer->link = memory;
+    peer->address = (U16)address;
+    hasOthers = 1;
+    Link_initSmall(peer->link, &peersPort, peer, BYTE_TIME_US16, sends, takes, window);
+    Link_shareRadio(peer->link, &uav_link);
+    (void)UAV_giveKeys(ground, peer->link);
+}
 
 int UAV_initRadio(void) {
-    const U32 ground = UAV_secondGround();
     INT8U error;
     uav_radioWork = OSSemCreate(0);
     iceEvent = OSSemCreate(0);
     linkMutex = OSMutexCreate(PRIO_MUTEX, &error);
-    areUp = isSecondsTurn = 0;
-    toAllSize = 0;
-    hasSecond = ground != UAV_NO_GROUND;
-    isFellow = hasSecond && (ground & UAV_FELLOW);
-    secondAddress = (U16)ground;
-    Link_init(&uav_link, hasSecond ? &firstOfTwo : &linkPort, &endpoint, BYTE_TIME_US16);
-    if (hasSecond) {
-        Link_init(SECOND, &second, &endpoint, BYTE_TIME_US16);
-        Link_shrink(SECOND, SECOND_SENDS, SECOND_TAKES);
-        Link_shareRadio(SECOND, &uav_link);
-        (void)UAV_giveKeys(1, SECOND);
-    }
+    areUp = hasOthers = toAllSize = 0;
+    Link_init(&uav_link, &linkPort, &endpoint, BYTE_TIME_US16);
+    addPeer(UAV_SECOND, &secondMemory, SECOND_SENDS, SECOND_TAKES, SECOND_WINDOW);
+    addPeer(UAV_FELLOW, &fellowMemory, FELLOW_SENDS, FELLOW_TAKES, FELLOW_WINDOW);
     return UAV_giveKeys(0, &uav_link) || UAV_isOpen();
 }
 
 void UAV_useRadio(Ice_CommunicatorPtr ic) {
+    int ground;
     XBeeATEndpoint_init(ic, "xbee-at", &endpoint, &uav_link, (U16)UAV_address(), &endpointPort, 0);
-    if (hasSecond)
-        XBeeATEndpoint_addGround(&endpoint, 1, SECOND, secondAddress);
-    if (isFellow)
-        XBeeATEndpoint_setVehicle(&endpoint, 1, UAV_hasGroundsPart());
+    for (ground = UAV_SECOND; ground < UAV_GROUNDS; ++ground)
+        if (peers[ground].link)
+            XBeeATEndpoint_addGround(&endpoint, ground, peers[ground].link, peers[ground].address);
+    if (peers[UAV_FELLOW].link)
+        XBeeATEndpoint_setVehicle(&endpoint, UAV_FELLOW, UAV_hasGroundsPart());
 }
 
 int UAV_groundOf(const Ice_Current* current) {
@@ -184,7 +201,7 @@ int UAV_groundOf(const Ice_Current* current) {
 int UAV_nextKey(int ground, const U8* key) {
     int isSet;
     lockLink(0);
-    isSet = UAV_setNextKey(ground, ground ? SECOND : &uav_link, key);
+    isSet = UAV_setNextKey(ground, peers[ground].link, key);
     unlockLink(0);
     return isSet;
 }
@@ -193,14 +210,10 @@ static void onAnswer(int isDelivered) {
     Link_answer(&uav_link, isDelivered, now);
 }
 
-static void setUpLink(Link* link) {
-    Link_limitFrame(link, uav_modemKey ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME);
-    Link_expectAnswers(link, isAnswered ? MOST_UNANSWERED : 0U);
-}
-
 static void setUpModem(void) {
     XBeeInitTypeDef xbeeConf = {RADIO_250000, 0x0001, 0x0000, 0, 0, 0, 0, onAnswer};
     static const Radio_Memory rings = {UAV_TRANSMIT_RING, UAV_RECEIVE_RING};
+    const Peer* peer;
     if (uav_wire || uav_transparent) {
         xbeeConf.baud = uav_wire ? RADIO_WIRE_115200 : XBEE_BD_115200;
         xbeeConf.onAnswer = 0;
@@ -213,9 +226,11 @@ static void setUpModem(void) {
         OSTimeDly(OS_TICKS_PER_SEC);
     isAnswered = (U8)Radio_answers();
     receiver = (U8)(isAnswered + (isAnswered && UAV_isOfGroup()));
-    setUpLink(&uav_link);
-    if (hasSecond)
-        setUpLink(SECOND);
+    for (peer = peers; peer < peers + UAV_GROUNDS; ++peer)
+        if (peer->link) {
+            Link_limitFrame(peer->link, uav_modemKey ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME);
+            Link_expectAnswers(peer->link, isAnswered ? MOST_UNANSWERED : 0U);
+        }
 }
 
 static void onPacket(void* context, const U8* bytes, U32 size) {
@@ -225,11 +240,13 @@ static void onPacket(void* context, const U8* bytes, U32 size) {
 
 /* Gives a packet to the link of the ground that it is from; nobody else is served. */
 static void onPacketOf(void* context, const U8* bytes, U32 size) {
-    U32 source = Radio_source();
-    if (source == FIRST_GROUND)
-        onPacket(context, bytes, size);
-    else if (hasSecond && source == secondAddress)
-        Link_receive(SECOND, bytes, size, now);
+    const U32 source = Radio_source();
+    const Peer* peer = peers;
+    (void)context;
+    while (peer->address != source || !peer->link)
+        if (++peer == peers + UAV_GROUNDS)
+            return;
+    Link_receive(peer->link, bytes, size, now);
 }
 
 /* Takes a call to all vehicles, once. While one waits for IceC no other is looked at: a later copy
@@ -247,32 +264,28 @@ static void onAnyPacket(void* context, const U8* bytes, U32 size) {
 
 static const Radio_OnPacket receivers[] = {onPacket, onPacketOf, onAnyPacket};
 
-/* Does what is due on a ground's link. Returns the time until it must be called again, in us. */
-static U32 pollLink(int ground, Link* link) {
-    Link_poll(link, now);
-    (void)UAV_confirmKey(ground, link);
-    return Link_deadline(link, now);
-}
-
-/* The same for both, of which each comes first in turn. */
+/* Does what is due on all links, of which each comes first in turn. Returns the time until it must
+ * be called again, in us. */
 static U32 pollSpecial(void) {
-    U32 wait, other;
-    if (isFellow && isAnswered)
-        XBeeATEndpoint_seek(&endpoint, 1, now);
-    wait = isSecondsTurn ? pollLink(1, SECOND) : 0xFFFFFFFFU;
-    other = pollLink(0, &uav_link);
-    if (other < wait)
-        wait = other;
-    if (hasSecond && !isSecondsTurn) {
-        other = pollLink(1, SECOND);
-        if (other < wait)
-            wait = other;
+    U32 wait = 0xFFFFFFFFU, due;
+    int left, ground = turn;
+    if (peers[UAV_FELLOW].link && isAnswered)
+        XBeeATEndpoint_seek(&endpoint, UAV_FELLOW, now);
+    for (left = UAV_GROUNDS; left; --left) {
+        Link* link = peers[ground].link;
+        if (link) {
+            Link_poll(link, now);
+            (void)UAV_confirmKey(ground, link);
+            due = Link_deadline(link, now);
+            wait = due < wait ? due : wait;
+        }
+        ground = (ground + 1) % UAV_GROUNDS;
     }
-    isSecondsTurn = hasSecond && !isSecondsTurn;
+    turn = (U8)((turn + 1U) % UAV_GROUNDS);
     if (toAllSize && XBeeATEndpoint_onMessage(&endpoint, XBEE_OWN_CHANNEL,
                                               toAll + LINK_BROADCAST_HEAD, toAllSize) == 0)
         toAllSize = 0;
-    isSpecial = (U8)(hasSecond | toAllSize); /* the endpoint kicks this task when it takes one */
+    isSpecial = (U8)(hasOthers | toAllSize); /* the endpoint kicks this task when it takes one */
     return wait;
 }
 

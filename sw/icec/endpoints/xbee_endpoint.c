@@ -21,9 +21,9 @@
 static const Ice_Byte head[HEAD] = {
     XBEE_ENDPOINT_TYPE & 0xFF, XBEE_ENDPOINT_TYPE >> 8, 6 + BODY, 0, 0, 0, 1, 1};
 
-/* Pending events, one bit each, delivered lowest bit first. */
+/* Pending events, one bit each, delivered lowest bit first: a message has bit 0. */
 #define EVENT(kind, channel) \
-    (1U << (((U32)(kind) - ICE_EVENT_MESSAGE) * XBEE_CONNECTIONS + (U32)(channel)))
+    (2U << (((U32)(kind) - ICE_EVENT_CLOSED) * XBEE_CONNECTIONS + (U32)(channel)))
 
 /* A connection's ground and its channel there; a ground's connection that this side opens. */
 #define GROUND_OF(connection) (XBEE_GROUNDS > 1 ? (int)((U32)(connection) / LINK_CHANNELS) : 0)
@@ -107,8 +107,8 @@ static void unlock(XBeeATEndpoint* self) {
     tell(self, self->port->unlock);
 }
 
-static void report(XBeeATEndpoint* self, Ice_EventKind kind, int channel) {
-    self->events |= EVENT(kind, channel);
+static void report(XBeeATEndpoint* self, U32 events) {
+    self->events |= events;
     tell(self, self->port->signal);
 }
 
@@ -141,7 +141,8 @@ int XBeeATEndpoint_onMessage(void* context, int channel, const U8* data, U32 siz
     memcpy(self->buffer, data, size);
     self->buffer = 0;
     self->size = (Ice_Int)size;
-    report(self, ICE_EVENT_MESSAGE, channel);
+    self->from = (Ice_Byte)channel;
+    report(self, 1U);
     return 0;
 }
 
@@ -154,13 +155,7 @@ void XBeeATEndpoint_onChannel(void* context, int channel, int isOpen) {
     /* A closing takes an unseen opening back, so at most a closing and then an opening wait for a
      * channel, however often the ground restarts. */
     if (isOpen || !takeBack(self, ICE_EVENT_OPENED, channel))
-        report(self, isOpen ? ICE_EVENT_OPENED : ICE_EVENT_CLOSED, channel);
-}
-
-void XBeeATEndpoint_onState(void* context, Link_State state) {
-    XBeeATEndpoint* self = context;
-    if (state != LINK_STATE_UP && isOwnOpen(self, 0))
-        XBeeATEndpoint_onChannel(self, XBEE_OWN_CHANNEL, 0);
+        report(self, EVENT(isOpen ? ICE_EVENT_OPENED : ICE_EVENT_CLOSED, channel));
 }
 
 #if XBEE_GROUNDS > 1
@@ -175,11 +170,6 @@ void XBeeATEndpoint_setVehicle(XBeeATEndpoint* self, int ground, int isGround) {
     self->vehicles = (Ice_Byte)(self->vehicles | 1 << ground);
     if (isGround)
         self->own[ground] = (Ice_Byte)(ground * LINK_CHANNELS);
-}
-
-void XBeeATEndpoint_onDown(XBeeATEndpoint* self, int ground) {
-    if (isOwnOpen(self, ground))
-        XBeeATEndpoint_onChannel(self, OWN_OF(self, ground), 0);
 }
 
 #endif
@@ -204,6 +194,7 @@ static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ic
         while (!(self->events >> first & 1U))
             ++first;
         self->events &= self->events - 1U; /* without the lowest one */
+        first = first ? first + XBEE_CONNECTIONS - 1U : self->from;
         event->kind = (Ice_EventKind)(ICE_EVENT_MESSAGE + first / XBEE_CONNECTIONS);
         event->connection = (int)(first % XBEE_CONNECTIONS);
         event->size = self->size;

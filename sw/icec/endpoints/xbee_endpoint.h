@@ -15,7 +15,9 @@
 
 #define XBEE_ENDPOINT_TYPE 0x4158
 #define XBEE_OWN_CHANNEL 3 /* opened by this side, the UAV; the ground opens 0..2 */
-#define XBEE_GROUNDS (ICE_CONNECTIONS < 2 * LINK_CHANNELS ? 1 : 2) /* at most */
+/* Grounds at most; of more than three the events would not fit into 32 bits. */
+#define XBEE_GROUNDS \
+    (ICE_CONNECTIONS < 3 * LINK_CHANNELS ? ICE_CONNECTIONS < 2 * LINK_CHANNELS ? 1 : 2 : 3)
 #define XBEE_CONNECTIONS (XBEE_GROUNDS * LINK_CHANNELS)
 
 /* The endpoint's port to the application, whose radio task owns the link. The minimal run time has
@@ -39,6 +41,7 @@ typedef struct XBeeATEndpoint {
     U32 events;                /* events to be delivered; 0: none */
     Ice_Int size;              /* of the pending message */
     Ice_Byte* buffer; /* the receiving task's; 0: nobody receives, the link keeps the message */
+    Ice_Byte from;    /* connection of the pending message */
     Ice_Byte ownOpen; /* the own channel is, a bit a ground */
     Ice_Byte held;    /* the link keeps a message that was not taken */
     Ice_Byte offered; /* connection of the message that is being sent, unless it has ended */
@@ -65,9 +68,6 @@ void XBeeATEndpoint_seek(XBeeATEndpoint* self, int ground, U32 nowUs);
 #endif
 
 /* Callbacks for Link_Port, to be called under the lock; `self` is the XBeeATEndpoint. These are the
- * first ground's: another one's add LINK_CHANNELS for each ground to the channel, and call
- * XBeeATEndpoint_onDown where its link is not up any more. */
+ * first ground's: another one's add LINK_CHANNELS for each ground to the channel. */
 int XBeeATEndpoint_onMessage(void* self, int channel, const U8* data, U32 size);
 void XBeeATEndpoint_onChannel(void* self, int channel, int isOpen);
-void XBeeATEndpoint_onState(void* self, Link_State state);
-void XBeeATEndpoint_onDown(XBeeATEndpoint* self, int ground);

@@ -7,12 +7,12 @@
 #ifdef LINK_SHRUNK
 #define SENDS 2048U
 #define TAKES 1024U
+#define WINDOW 8U
 static void initShrunk(Link* link, const Link_Port* port, void* context, U32 byteTimeUs16) {
-    Link_init(link, port, context, byteTimeUs16);
-    Link_shrink(link, SENDS, TAKES);
+    Link_initSmall(link, port, context, byteTimeUs16, SENDS, TAKES, WINDOW);
 }
 #define Link_init initShrunk
-#define SIZE LINK_SIZE(SENDS, TAKES)
+#define SIZE LINK_SIZE(SENDS, TAKES, WINDOW)
 #else
 #define TAKES LINK_MAX_MESSAGE
 #define SIZE sizeof(Link)

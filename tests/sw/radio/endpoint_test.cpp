@@ -205,7 +205,7 @@ TEST_F(RadioEndpoint, ASecondGroundHasConnectionsOfItsOwn) {
     pair_.run(500'000);
     EXPECT_EQ(other.a.received, (Messages{{3, call}}));
     EXPECT_EQ(pair_.a.received, Messages{});
-    XBeeATEndpoint_onDown(&endpoint_, 1);
+    XBeeATEndpoint_onChannel(&endpoint_, 7, 0); // as where its session has ended
     EXPECT_EQ(events(), (Kinds{{ICE_EVENT_CLOSED, 7}}));
     EXPECT_EQ(send(3, call), ICE_OK);
 }

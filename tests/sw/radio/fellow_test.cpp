@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // fellow_test: vehicles that call each other's objects through IceC's radio endpoint, while one of
-// them serves its ground. All have links and communicators of their own, in simulated time.
+// them serves two grounds. All have links and communicators of their own, in simulated time.
 
 #include "random.h"
 #include <deque>
@@ -32,21 +32,23 @@ struct World {
     std::function<void()> atStep = [] {};
 };
 
-// One of two links, and what is on its way to it.
+// One of three links, and what is on its way to it.
 struct End {
     Craft* craft = nullptr;
     int first = 0; // of its connections
     Link link;
     End* peer = nullptr;
+    bool isVehicles = false;
     std::deque<std::pair<U32, Key>> coming; // time of arrival, packet
     unsigned sent = 0;                      // packets
 };
 
-// A vehicle or a ground: a communicator with two links, the second to the one that it may call.
+// A vehicle or a ground: a communicator with three links, of which the last is as small as that of
+// the vehicle to its fellow.
 struct Craft {
     Craft(World& w, U16 address) : world(w), random(testSeed() + w.crafts.size()) {
-        static const Link_Port linkPort = {transmit, draw,    onMessage, onChannel,
-                                           onState,  nullptr, nullptr};
+        static const Link_Port linkPort = {
+            transmit, draw, onMessage, onChannel, [](void*, Link_State) {}, nullptr, nullptr};
         static const XBeeATEndpoint_Port port = {
             [](void*) {},
             [](void*) {},
@@ -56,9 +58,10 @@ struct Craft {
             [](void* c) { return static_cast<Craft*>(c)->world.ms; }};
         for (End& end : ends) {
             end.craft = this;
-            end.first = &end == ends ? 0 : LINK_CHANNELS;
+            end.first = static_cast<int>(&end - ends) * LINK_CHANNELS;
             Link_init(&end.link, &linkPort, &end, 1440);
         }
+        Link_initSmall(&ends[fellow].link, &linkPort, &ends[fellow], 1440, 2048, 1024, 8);
         Ice_initialize(&ic);
         XBeeATEndpoint_init(&ic, "xbee-at", &endpoint, &ends[0].link, address, &port, this);
         Ice_Communicator_createObjectAdapterWithEndpoints(&ic, "A", "xbee-at", &adapter);
@@ -71,14 +74,16 @@ struct Craft {
         Ice_ObjectAdapter_add(&adapter, &servant.object, "it");
         w.crafts.push_back(this);
     }
-    // Has a link to the party of this address.
+    // Has a link to the vehicle of this address.
     void meets(Craft& other, U16 address, int place, bool isGround, const Key& key, U32 side) {
-        XBeeATEndpoint_addGround(&endpoint, 1, &ends[1].link, address);
-        XBeeATEndpoint_setVehicle(&endpoint, 1, isGround);
-        ends[1].peer = &other.ends[place];
-        other.ends[place].peer = &ends[1];
+        End& end = ends[fellow];
+        XBeeATEndpoint_addGround(&endpoint, fellow, &end.link, address);
+        XBeeATEndpoint_setVehicle(&endpoint, fellow, isGround);
+        end.isVehicles = true;
+        end.peer = &other.ends[place];
+        other.ends[place].peer = &end;
         if (!key.empty())
-            Link_setKey(&ends[1].link, 0, key.data(), side);
+            Link_setKey(&end.link, 0, key.data(), side);
     }
     Ice_ObjectPrx proxy(const char* text, Ice_Int timeoutMs = 10000) {
         Ice_ObjectPrx prx;
@@ -104,7 +109,7 @@ struct Craft {
         };
         EXPECT_EQ(Ice_ObjectPrx_invokeAsync(&prx, done, this), ICE_OK);
     }
-    U32 sessions() { return Link_statistics(&ends[1].link)->sessions; }
+    U32 sessions() { return Link_statistics(&ends[fellow].link)->sessions; }
     void advance() {
         const U32 us = world.ms * 1000;
         for (End& end : ends) {
@@ -113,8 +118,8 @@ struct Craft {
                 end.coming.pop_front();
                 Link_receive(&end.link, bytes.data(), U32(bytes.size()), us);
             }
-            if (end.first && end.peer)
-                XBeeATEndpoint_seek(&endpoint, 1, us);
+            if (end.isVehicles)
+                XBeeATEndpoint_seek(&endpoint, fellow, us);
             Link_poll(&end.link, us);
         }
     }
@@ -142,11 +147,6 @@ struct Craft {
         End& end = *static_cast<End*>(context);
         XBeeATEndpoint_onChannel(&end.craft->endpoint, end.first + channel, isOpen);
     }
-    static void onState(void* context, Link_State state) {
-        End& end = *static_cast<End*>(context);
-        if (state != LINK_STATE_UP)
-            XBeeATEndpoint_onDown(&end.craft->endpoint, end.first / LINK_CHANNELS);
-    }
 
     struct Servant {
         Ice_Object object{};
@@ -154,7 +154,8 @@ struct Craft {
     };
     World& world;
     Random random;
-    End ends[2];
+    static constexpr int fellow = 2;
+    End ends[3];
     Ice_Communicator ic;
     XBeeATEndpoint endpoint;
     Ice_ObjectAdapter adapter;
@@ -173,17 +174,19 @@ void World::step() {
     atStep();
 }
 
-// Vehicles 5 and 7, of which 5 has the ground's part, and the ground of 5.
+// Vehicles 5 and 7, of which 5 has the ground's part, and the two grounds of 5.
 struct Team : World {
     explicit Team(const Key& key = {}, const Key& keyOf7 = {}) {
-        five.meets(seven, 7, 1, true, key, LINK_GROUND | 7);
-        seven.meets(five, 5, 1, false, keyOf7.empty() ? key : keyOf7, 7);
+        five.meets(seven, 7, Craft::fellow, true, key, LINK_GROUND | 7);
+        seven.meets(five, 5, Craft::fellow, false, keyOf7.empty() ? key : keyOf7, 7);
         ground.meets(five, 5, 0, true, {}, 0);
+        observer.meets(five, 5, 1, true, {}, 0);
+        XBeeATEndpoint_addGround(&five.endpoint, 1, &five.ends[1].link, 0xF0);
     }
-    const std::unique_ptr<Craft> made[3] = {std::make_unique<Craft>(*this, 0),
-                                            std::make_unique<Craft>(*this, 5),
-                                            std::make_unique<Craft>(*this, 7)};
-    Craft &ground = *made[0], &five = *made[1], &seven = *made[2];
+    const std::unique_ptr<Craft> made[4] = {
+        std::make_unique<Craft>(*this, 0), std::make_unique<Craft>(*this, 0xF0),
+        std::make_unique<Craft>(*this, 5), std::make_unique<Craft>(*this, 7)};
+    Craft &ground = *made[0], &observer = *made[1], &five = *made[2], &seven = *made[3];
 };
 
 const Key theKey(LINK_KEY_BYTES, 0x33), otherKey(LINK_KEY_BYTES, 0x44);
@@ -192,7 +195,8 @@ TEST(Fellows, CallEachOtherTwowayAndOnewayInOneSessionWithAKeyAndWithout) {
     for (const Key& key : {Key(), theKey}) {
         Team world(key);
         world.run(5000);
-        EXPECT_EQ(world.five.ends[1].sent + world.seven.ends[1].sent, 0u) << "nobody calls yet";
+        EXPECT_EQ(world.five.ends[Craft::fellow].sent + world.seven.ends[Craft::fellow].sent, 0u)
+            << "nobody calls yet";
         EXPECT_EQ(world.five.call("it:xbee-at -a 7"), ICE_OK);
         EXPECT_EQ(world.seven.call("it:xbee-at -a 0x0005"), ICE_OK);
         EXPECT_EQ(world.five.call("it -o:xbee-at -a 7"), ICE_OK);
@@ -204,6 +208,31 @@ TEST(Fellows, CallEachOtherTwowayAndOnewayInOneSessionWithAKeyAndWithout) {
     }
 }
 
+TEST(Fellows, AVehicleServesTwoGroundsAndItsFellowAndCallsItAtOnce) {
+    Team world(theKey);
+    for (Craft* craft : {&world.ground, &world.observer, &world.seven})
+        EXPECT_EQ(craft->call("it:xbee-at -a 5"), ICE_OK);
+    EXPECT_EQ(world.five.call("it:xbee-at -a 7"), ICE_OK);
+    world.five.servant.calls = world.seven.servant.calls = 0;
+    world.atStep = [&] {
+        for (Craft* craft : {&world.ground, &world.observer, &world.seven})
+            if (craft->isIdle)
+                craft->callAsync("it:xbee-at -a 5");
+        if (world.five.isIdle)
+            world.five.callAsync("it:xbee-at -a 7");
+    };
+    world.run(6000);
+    world.atStep = [] {};
+    world.run(1000);
+    for (const Craft* craft : {&world.ground, &world.observer, &world.seven, &world.five})
+        EXPECT_GT(craft->replies, 100u);
+    EXPECT_EQ(world.five.servant.calls,
+              world.ground.replies + world.observer.replies + world.seven.replies);
+    EXPECT_EQ(world.seven.servant.calls, world.five.replies);
+    for (End& end : world.five.ends)
+        EXPECT_EQ(Link_statistics(&end.link)->sessions, 1u) << end.first;
+}
+
 TEST(Fellows, WhoBeginAtOnceAreBothAnswered) {
     for (U32 offset = 0; offset < 60; ++offset) {
         Team world(offset % 2 ? theKey : Key());
@@ -213,12 +242,12 @@ TEST(Fellows, WhoBeginAtOnceAreBothAnswered) {
             const Ice_Transport& radio = craft->ic.transports[0];
             int connection = -1;
             EXPECT_EQ(radio.endpoint->connect(radio.context, at, sizeof at, &connection), ICE_OK);
-            EXPECT_EQ(connection, to == 7 ? 4 : 7);
+            EXPECT_EQ(connection, to == 7 ? 8 : 11);
             world.run(offset / 2);
         }
         world.run(5000);
-        EXPECT_EQ(world.five.ic.connections[4].state, ICE_CONNECTION_OPEN) << offset;
-        EXPECT_EQ(world.seven.ic.connections[7].state, ICE_CONNECTION_OPEN) << offset;
+        EXPECT_EQ(world.five.ic.connections[8].state, ICE_CONNECTION_OPEN) << offset;
+        EXPECT_EQ(world.seven.ic.connections[11].state, ICE_CONNECTION_OPEN) << offset;
         world.five.callAsync("it:xbee-at -a 7");
         world.seven.callAsync("it:xbee-at -a 5");
         world.run(1000);
@@ -245,11 +274,12 @@ TEST(Fellows, OneThatIsAwayEndsTheCallInTimeAndTheGroundIsServedMeanwhile) {
         }
         for (int n = 0; n < 50; ++n)
             EXPECT_EQ(world.five.call("it:xbee-at -a 7", 200), ICE_TIMEOUT);
-        EXPECT_LE(world.five.ends[1].sent, 11u) << "HELLO each 2.4 s, however many call it";
+        EXPECT_LE(world.five.ends[Craft::fellow].sent, 11u)
+            << "HELLO each 2.4 s, however many call it";
         world.run(11000);
-        const unsigned sent = world.five.ends[1].sent;
+        const unsigned sent = world.five.ends[Craft::fellow].sent;
         world.run(20000);
-        EXPECT_EQ(world.five.ends[1].sent, sent) << "nobody calls it any more";
+        EXPECT_EQ(world.five.ends[Craft::fellow].sent, sent) << "nobody calls it any more";
         world.seven.isAway = false;
         EXPECT_EQ(world.five.call("it:xbee-at -a 7"), ICE_OK);
         EXPECT_EQ(world.seven.servant.calls, 1u) << "what was given up is not carried out later";
@@ -262,9 +292,9 @@ TEST(Fellows, OneThatGoesInMidCallIsSoughtAgainOnlyByACall) {
     world.seven.isAway = true;
     EXPECT_EQ(world.five.call("it:xbee-at -a 7", 2000), ICE_TIMEOUT);
     world.run(60000);
-    const unsigned sent = world.five.ends[1].sent;
+    const unsigned sent = world.five.ends[Craft::fellow].sent;
     world.run(60000);
-    EXPECT_EQ(world.five.ends[1].sent, sent);
+    EXPECT_EQ(world.five.ends[Craft::fellow].sent, sent);
     world.seven.isAway = false;
     EXPECT_EQ(world.five.call("it:xbee-at -a 7"), ICE_OK);
     EXPECT_EQ(world.five.sessions(), 2u);

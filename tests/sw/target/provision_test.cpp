@@ -110,7 +110,9 @@ TEST_F(Provision, TakesASecondGroundWithAKeyOfItsOwn) {
     EXPECT_EQ(chip.backup()[16], 0xAAAAAAAAu);
     EXPECT_TRUE(has(key));
     EXPECT_EQ(startAndAnswer("fellow 0007 " + other + " " + digits), "ok\r\n");
-    EXPECT_EQ(chip.backup()[27], ~0x10007u);
+    EXPECT_EQ(chip.backup()[43], ~7u);
+    EXPECT_EQ(chip.backup()[32], 0xAAAAAAAAu);
+    EXPECT_EQ(chip.backup()[27], ~0xF0u) << "the second ground stays";
     EXPECT_EQ(startAndAnswer("ground 00f0 " + other + " " + other).substr(0, 3), "no:")
         << "the second ground's key proves nothing here";
 }
@@ -118,7 +120,7 @@ TEST_F(Provision, TakesASecondGroundWithAKeyOfItsOwn) {
 TEST_F(Provision, TakesTheGroupsKey) {
     startAndAnswer("key " + digits + at);
     EXPECT_EQ(startAndAnswer("ground ffff " + std::string(32, 'a') + " " + digits), "ok\r\n");
-    EXPECT_EQ(chip.backup()[32], 0xAAAAAAAAu);
+    EXPECT_EQ(chip.backup()[48], 0xAAAAAAAAu);
     EXPECT_EQ(chip.backup()[27], ~0xFFFFFFFFu) << "no second ground";
     EXPECT_TRUE(has(key));
 }

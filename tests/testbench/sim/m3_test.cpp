@@ -120,7 +120,7 @@ TEST(CortexM3Firmware, CarriesACallToAllVehiclesOutOnce) {
     M3Machine::Config config = firmware;
     config.key = ToAll::Key(LINK_KEY_BYTES, 0x11);
     ToAll w(config.key);
-    config.groupKey = w.groups;
+    config.peers = {{UAV_GROUP, UAV_EVERYBODY, w.groups}};
     M3Machine machine(
         w.soc, config,
         w.flight({w.calls({w.high}), w.send(w.groups, 10, w.low), w.send(w.groups, 11, w.start),

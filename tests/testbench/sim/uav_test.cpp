@@ -139,7 +139,7 @@ TEST(Grounds, TwoAreServedAtOnceEachUnderItsOwnKeyAndNobodyElse) {
     TwoGrounds world;
     EXPECT_TRUE(flies(world.soc, world.flight(), 60, [&](UavMachine& machine) {
         machine.board.provide(world.pilotsKey);
-        machine.board.provideGround(world.observersAddress, world.observersKey);
+        machine.board.providePeers({{UAV_SECOND, world.observersAddress, world.observersKey}});
     }));
     EXPECT_EQ(Link_statistics(&uav_link)->bytesSkipped, 0u)
         << "the stranger's, on the pilot's link";
@@ -174,7 +174,7 @@ TEST(Fellow, OneThatIsAwayCostsLittleOfTheAirAndTheVehicleServesItsGroundMeanwhi
                            world.ground.calling(calls)});
     EXPECT_TRUE(flies(world.soc, script, 30, [&](UavMachine& machine) {
         machine.board.provide(key);
-        machine.board.provideGround(UAV_FELLOW | 2, keyOfTwo);
+        machine.board.providePeers({{UAV_FELLOW, 2, keyOfTwo}});
     }));
     EXPECT_LT(double(world.soc.now() - since) / 1e9, 22 * 0.045) << "the ground was delayed";
     const double share = double(airNs) / 8e9;
@@ -207,7 +207,7 @@ TEST(CallsToAll, AreCarriedOutOnceIfTheirOperationsAllowItAlsoAfterARestart) {
              w.send(w.groups, 14, w.low), w.calls({w.start, w.result}, true, "a new one")},
             [&](SimulatedBoard& board) {
                 board.provide(pilots);
-                board.provideGround(UAV_EVERYBODY, w.groups);
+                board.providePeers({{UAV_GROUP, UAV_EVERYBODY, w.groups}});
             });
     fly(w,
         {w.calls({w.high}), w.send(w.sent),

@@ -43,13 +43,15 @@ void icec_wakeCalls(Ice_CommunicatorPtr ic) {
             ic->os->wake(ic->osContext, c);
 }
 
-static const Ice_Byte nothing[1] = {0}; /* the reply of calls that get none */
-
-/* Ends the call `id` if it still waits: tells the waiting task, or calls back. */
+/* Ends the call `id` if it still waits: tells the waiting task, or calls back; `is` 0: without a
+ * reply. */
 static void finish(Ice_CommunicatorPtr ic, Ice_Call* call, Ice_Int id, Ice_Status status,
                    Ice_InputStreamPtr is) {
+    static const Ice_Byte nothing[1] = {0};
+    Ice_InputStream none;
     Ice_Callback callback = 0;
     void* cookie = 0;
+    Ice_InputStream_init(&none, nothing, 0);
     icec_lock(ic, ICE_LOCK_STATE);
     if (call->state == ICE_CALL_WAITING && call->id == id) {
         callback = call->callback;
@@ -64,13 +66,11 @@ static void finish(Ice_CommunicatorPtr ic, Ice_Call* call, Ice_Int id, Ice_Statu
     }
     icec_unlock(ic, ICE_LOCK_STATE);
     if (callback)
-        callback(cookie, status, is);
+        callback(cookie, status, is ? is : &none);
 }
 
 void icec_loseConnection(Ice_CommunicatorPtr ic, int connection, Ice_Status status) {
-    Ice_InputStream none;
     int c;
-    Ice_InputStream_init(&none, nothing, 0);
     icec_lock(ic, ICE_LOCK_STATE);
     ic->connections[connection].state = ICE_CONNECTION_NONE;
     icec_wakeCalls(ic); /* some may wait for the connection */
@@ -84,7 +84,7 @@ void icec_loseConnection(Ice_CommunicatorPtr ic, int connection, Ice_Status stat
         id = call->id;
         icec_unlock(ic, ICE_LOCK_STATE);
         if (isLost)
-            finish(ic, call, id, status, &none);
+            finish(ic, call, id, status, 0);
     }
 }
 
@@ -105,9 +105,7 @@ Ice_Call* icec_expiredCall(Ice_CommunicatorPtr ic, U32 now, Ice_Int* id, Ice_Int
 }
 
 void icec_expireCall(Ice_CommunicatorPtr ic, Ice_Call* call, Ice_Int id) {
-    Ice_InputStream none;
-    Ice_InputStream_init(&none, nothing, 0);
-    finish(ic, call, id, ICE_TIMEOUT, &none);
+    finish(ic, call, id, ICE_TIMEOUT, 0);
 }
 
 /* Reads a reply's status, and what a failed one says. */

@@ -48,15 +48,17 @@ static Ice_Status takeEvent(Ice_CommunicatorPtr ic, const Ice_Byte* in, const Ic
     Ice_Status end = ICE_CONNECTION_LOST;
     if (event->kind == ICE_EVENT_NONE)
         return ICE_TIMEOUT;
-    if (event->kind == ICE_EVENT_OPENED && icec_isStopping(ic)) {
-        icec_closeConnection(ic, connection);
-        return ICE_OK;
-    }
     if (event->kind == ICE_EVENT_OPENED) { /* the side that accepts a connection speaks first */
+        int isRefused;
         icec_lock(ic, ICE_LOCK_STATE);
-        icec_openConnection(ic, connection, ICE_CONNECTION_OPEN);
+        isRefused = ic->stopping;
+        if (!isRefused)
+            icec_openConnection(ic, connection, ICE_CONNECTION_OPEN);
         icec_unlock(ic, ICE_LOCK_STATE);
-        (void)icec_sendHead(ic, connection, ICEC_VALIDATE);
+        if (isRefused)
+            icec_closeConnection(ic, connection);
+        else
+            (void)icec_sendHead(ic, connection, ICEC_VALIDATE);
         return ICE_OK;
     }
     if (event->kind == ICE_EVENT_MESSAGE) {
@@ -89,24 +91,25 @@ static int heartbeatDue(Ice_CommunicatorPtr ic, U32 now, Ice_Int* waitMs) {
     return due;
 }
 
-/* Sends the heartbeats that are due, and ends the asynchronous calls whose time is over. Returns
- * the time until the next, at most `waitMs`. */
-static Ice_Int keepTimes(Ice_CommunicatorPtr ic, Ice_Int waitMs) {
+/* Sends the heartbeats that are due, and ends the asynchronous calls whose time is over. Shortens
+ * `waitMs` to the time until the next. Returns whether shutdown was called. */
+static int keepTimes(Ice_CommunicatorPtr ic, Ice_Int* waitMs) {
     for (;;) {
         U32 now = icec_nowMs(ic);
         Ice_Int id = 0;
         Ice_Call* call;
-        int due;
+        int due, isStopping;
         icec_lock(ic, ICE_LOCK_STATE);
-        due = heartbeatDue(ic, now, &waitMs);
-        call = icec_expiredCall(ic, now, &id, &waitMs);
+        due = heartbeatDue(ic, now, waitMs);
+        call = icec_expiredCall(ic, now, &id, waitMs);
+        isStopping = ic->stopping;
         icec_unlock(ic, ICE_LOCK_STATE);
         if (due >= 0)
             (void)icec_sendHead(ic, due, ICEC_VALIDATE);
         if (call)
             icec_expireCall(ic, call, id);
         if (due < 0 && !call)
-            return waitMs;
+            return isStopping;
     }
 }
 
@@ -131,19 +134,25 @@ static Ice_Status receive(Ice_CommunicatorPtr ic, Ice_Byte* in, Ice_Int timeoutM
     return status;
 }
 
+#define SERVE (-1) /* in place of a time: until shutdown is called */
+#define POLL_MS 1000
+
 /* Handles at most one event, of the transport whose turn it is; for the task that has the role of
- * the receiver. ICE_TIMEOUT: there was none; ICE_LIMIT: ICE_NESTING. */
+ * the receiver. ICE_TIMEOUT: there was none; ICE_LIMIT: ICE_NESTING; ICE_CONNECTION_CLOSED: the end
+ * of SERVE. */
 static Ice_Status receiveOne(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
     Ice_Event event;
     Ice_Status status;
     Ice_Byte* in;
+    Ice_Int waitMs = timeoutMs < 0 ? POLL_MS : timeoutMs;
+    if (keepTimes(ic, &waitMs) && timeoutMs < 0)
+        return ICE_CONNECTION_CLOSED;
     if (ic->depth == ICE_NESTING)
         return ICE_LIMIT;
     in = ic->in[ic->depth];
-    timeoutMs = keepTimes(ic, timeoutMs);
     event.kind = ICE_EVENT_NONE;
     ++ic->depth;
-    status = receive(ic, in, timeoutMs, &event);
+    status = receive(ic, in, waitMs, &event);
     if (status == ICE_OK)
         status = takeEvent(ic, in, &event);
     --ic->depth;
@@ -162,7 +171,6 @@ typedef enum Role {
     ROLE_HAD    /* this task already had it: an operation calls this */
 } Role;
 #define FOREVER 0x7FFFFFFF /* a time-out: until the role is free, or shutdown is called */
-#define POLL_MS 1000
 
 /* Gives the role up, and wakes a task that may want it; under the state lock. */
 static void giveUp(Ice_CommunicatorPtr ic) {
@@ -231,8 +239,8 @@ static int mayReceive(Ice_CommunicatorPtr ic, int* leads) {
 
 void Ice_Communicator_waitForShutdown(Ice_CommunicatorPtr ic) {
     Role role = takeRole(ic, FOREVER);
-    while (role != ROLE_NONE && !icec_isStopping(ic))
-        (void)receiveOne(ic, POLL_MS);
+    while (role != ROLE_NONE && receiveOne(ic, SERVE) != ICE_CONNECTION_CLOSED) {
+    }
     if (role == ROLE_TAKEN)
         giveRole(ic); /* a task that waits for a reply receives it now */
 }

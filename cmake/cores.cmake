@@ -21,7 +21,7 @@ endforeach()
 list(REMOVE_DUPLICATES CHIP_CORES)
 # The object adapter has room for every core's servant beside the vehicle's own: 8 servants by
 # default (sw/icec/ice_config.h), more where there are more, on the host (the library icec) and, by
-# ARM_DEFINES, in the firmware. A vehicle serves two grounds, the second by a smaller link.
+# ARM_DEFINES, in the firmware. Four connections each are for a ground, a second one and a fellow.
 set(ARM_DEFINES ICE_CONNECTIONS=12)
 set(header ${CMAKE_SOURCE_DIR}/sw/apps/uav/uav_private.h)
 set_property(DIRECTORY ${CMAKE_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${header})

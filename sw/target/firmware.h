@@ -13,7 +13,7 @@ void Firmware_run(void);
 
 /* Returns at once where nobody asks. Else says whether read protection is off, and listens for ten
  * seconds for a line: "key" and 32 hexadecimal digits, or "open", and the vehicle's address, four
- * (UAV_provide), or "ground", its address and, unless the vehicle is open, its key
+ * (UAV_provide), or "ground" or "fellow", its address and, unless the vehicle is open, its key
  * (UAV_provideGround); where there is a key, a present one's digits behind it, or PC2 wired to
  * ground. "protect" sets read protection. */
 void Provision_listen(void);

@@ -253,14 +253,13 @@ class Mission:
         self.log.note(f"{name}: {result.found} corners")
 
     def observe(self):
-        """Is a second ground with a modem and keys of its own: asks each vehicle for its state, but
-        those two that have each other in its place."""
+        """Is a second ground with a modem and keys of its own: asks each vehicle for its state."""
         args, device = self.args, self.args.observer_device
         os.environ["XBEEAT_CLOCK"] = args.status + "2"  # its engine's clock
         with plugged.initialize({"XBeeAT.Trace": str(args.trace), "Ice.ACM.Close": "0",
                                  "XBeeAT.Device": device},
                                 args.plugin, args.guard, args.observer) as communicator:
-            for address in range(1 if args.vehicles < 4 else 3, args.vehicles + 1):
+            for address in range(1, args.vehicles + 1):
                 vehicle = self.autopilot.VehiclePrx.uncheckedCast(communicator.stringToProxy(
                     f"uav:xbee-at -d {device} -a 0x{address:04x} -s 0x00f0 "
                     f"-t {1000 * args.patience // 2}"))

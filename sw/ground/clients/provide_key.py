@@ -104,7 +104,7 @@ def main():
     second.add_argument("--ground", type=address, help="address of a second ground's modem, which "
                         "the vehicle serves, too, under this key of its own")
     second.add_argument("--fellow", type=address, help="address of another vehicle, which it calls "
-                        "and serves, under this key of the two, in place of a second ground")
+                        "and serves, under this key of the two")
     second.add_argument("--group", action="store_const", dest="ground", const=GROUP,
                         help="gives it the key of calls to all vehicles, in the line 0xffff")
     parser.add_argument("--patience", type=int, default=120,

@@ -342,8 +342,8 @@ class Cases(Script):
         os.chmod("fleet.key", 0o600)
         self.fly("--vehicles", "4", "--key", self.out / "fleet.key")
         self.has("vehicleState.*, fellowState 1")
-        for address in vehicles[2:]:
-            self.has(f"the observer sees uav{address}: onGround")
+        for address in vehicles:
+            self.has(f"the observer sees uav{address}: {'flying' if address == 2 else 'onGround'}")
         for address in vehicles[1:]:
             self.has(f"XBeeAT: 0x000{address}: link up, secure",
                      rf"uav{address}\.hwengine1: \d+ corners")

@@ -53,13 +53,12 @@ void Link_setKey(Link* link, int slot, const U8* key, U32 side) {
     if (Link_keyInUse(link) == slot)
         link_lose(session);
     session->keys = (U8)(session->keys & ~(1U << slot));
-    if (key) {
-        output->isGround = (side & LINK_GROUND) != 0;
-        link_makeSecret(&session->secrets[slot], key, side & ~LINK_GROUND);
-        session->keys = (U8)(session->keys | 1U << slot);
-    } else {
-        memset(&session->secrets[slot], 0, sizeof session->secrets[slot]);
-    }
+    memset(&session->secrets[slot], 0, sizeof session->secrets[slot]);
+    if (!key)
+        return;
+    output->isGround = (side & LINK_GROUND) != 0;
+    link_makeSecret(&session->secrets[slot], key, side & ~LINK_GROUND);
+    session->keys = (U8)(session->keys | 1U << slot);
 }
 
 int Link_keyInUse(const Link* link) {

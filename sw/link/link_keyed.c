@@ -70,7 +70,7 @@ int link_unprotect(U8* frame, const U8* key, U32 number, U32 acked) {
     crypt(frame, key, number, acked, 1, tag);
     if (Ascon_isSame(tag, frame + LINK_HEADER + size, LINK_TAG))
         return 1;
-    Ascon_wipe(frame + LINK_HEADER + clearOf(frame), size - clearOf(frame));
+    Ascon_wipe(frame + LINK_HEADER, size);
     frame[0] = (U8)(frame[0] + LINK_TAG_MORE);
     return 0;
 }
@@ -129,9 +129,10 @@ static int isOfUse(const Link_Session* session, const U8* frame, Link_Kind kind)
         return (frame[1] & ~LINK_VERSION_UP) == LINK_VERSION;
     if (frame[1] != LINK_VERSION)
         return 0;
-    if (kind == LINK_KIND_CONFIRM && (isOfSession(session, nonces) || !session->isAnswered))
-        return isOfSession(session, nonces);
-    return isSameNonce(nonces + LINK_NONCE_BYTES, session->nonce);
+    if (kind == LINK_KIND_CONFIRM && isOfSession(session, nonces))
+        return 1;
+    return (kind != LINK_KIND_CONFIRM || session->isAnswered) &&
+           isSameNonce(nonces + LINK_NONCE_BYTES, session->nonce);
 }
 
 /* Returns whether such a frame is authentic, and decrypts its copy. */

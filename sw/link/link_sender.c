@@ -200,8 +200,8 @@ static void sample(Link_Sender* sender, U32 roundTrip) {
     sender->output->statistics.roundTripUs = sender->srtt;
 }
 
-/* Sets the time-out anew, since the peer has answered. Inline, as often as it is called. */
-__attribute__((always_inline)) static __inline__ void setTimer(Link_Sender* sender) {
+/* Sets the time-out anew, since the peer has answered. */
+static void setTimer(Link_Sender* sender) {
     U32 rto = sender->hasSample ? sender->srtt + 2U * sender->rttvar : LINK_RTO_FIRST;
     if (rto < LINK_RTO_MIN)
         rto = LINK_RTO_MIN;

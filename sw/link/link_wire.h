@@ -157,5 +157,5 @@ U32 link_extend(U32 expected, U32 byte);
 U32 link_protect(U8* frame, U32 header, const U8* key, U32 number, U32 acked);
 
 /* Decrypts the payload of a whole frame, of LINK_SECURE_OVERHEAD bytes at least, in its place, and
- * gives its header the payload's length. Returns 0: its tag is wrong; then the text is wiped. */
+ * gives its header the payload's length. Returns 0: its tag is wrong; then all of it is wiped. */
 int link_unprotect(U8* frame, const U8* key, U32 number, U32 acked);

@@ -104,9 +104,14 @@ static U32 nowMsOf(void* context) {
 static const XBeeATEndpoint_Port endpointPort = {lockLink,  unlockLink,  kick,
                                                  waitEvent, signalEvent, nowMsOf};
 
-/* Hands a packet over, in API mode. */
-static int transmitTo(void* peer, const U8* frame, U32 size) {
-    U32 wait = Link_randomWait(&uav_link), ground;
+/* Hands a packet over; in transparent mode, which serves the first ground only, while at most one
+ * waits for the line. So the link layer knows how fast the modem is, and chooses late what goes
+ * next. */
+static int transmit(void* peer, const U8* frame, U32 size) {
+    U32 wait, ground;
+    if (!isAnswered)
+        return Radio_waiting() > 1U || Radio_transmit(0, frame, size);
+    wait = Link_randomWait(&uav_link);
     for (ground = 1; areUp >> ground; ++ground)
         if (areUp >> ground & 1) {
             const U32 other = Link_randomWait(peers[ground].link);
@@ -117,45 +122,26 @@ static int transmitTo(void* peer, const U8* frame, U32 size) {
     return Radio_transmit(0, frame, size);
 }
 
-/* The same of the first ground; in transparent mode while at most one waits for the line. So the
- * link layer knows how fast the modem is, and chooses late what goes next. */
-static int transmit(void* context, const U8* frame, U32 size) {
-    if (isAnswered)
-        return transmitTo(peers, frame, size);
-    return Radio_waiting() > 1U || Radio_transmit(context, frame, size);
-}
-
-static void noteState(U32 ground, Link_State state) {
-    areUp = (U8)((areUp & ~(1U << ground)) | (U32)(state == LINK_STATE_UP) << ground);
-    isSpecial = 1;
-}
-
-static void onState(void* context, Link_State state) {
-    (void)context;
-    noteState(0, state);
-}
-
 static int groundOf(const void* peer) {
     return (int)((const Peer*)peer - peers);
 }
 
-static int onPeersMessage(void* peer, int channel, const U8* data, U32 size) {
+static int onMessage(void* peer, int channel, const U8* data, U32 size) {
     return XBeeATEndpoint_onMessage(&endpoint, groundOf(peer) * LINK_CHANNELS + channel, data,
                                     size);
 }
 
-static void onPeersChannel(void* peer, int channel, int isOpen) {
+static void onChannel(void* peer, int channel, int isOpen) {
     XBeeATEndpoint_onChannel(&endpoint, groundOf(peer) * LINK_CHANNELS + channel, isOpen);
 }
 
-static void onPeersState(void* peer, Link_State state) {
-    noteState((U32)groundOf(peer), state);
+static void onState(void* peer, Link_State state) {
+    const U32 ground = (U32)groundOf(peer);
+    areUp = (U8)((areUp & ~(1U << ground)) | (U32)(state == LINK_STATE_UP) << ground);
+    isSpecial = 1;
 }
 
-static const Link_Port linkPort = {
-    transmit, UAV_random, XBeeATEndpoint_onMessage, XBeeATEndpoint_onChannel, onState, 0, 0};
-static const Link_Port peersPort = {
-    transmitTo, UAV_random, onPeersMessage, onPeersChannel, onPeersState, 0, 0};
+static const Link_Port port = {transmit, UAV_random, onMessage, onChannel, onState, 0, 0};
 
 /* Adds the second ground or the fellow, if the vehicle has one. */
 static void addPeer(int ground, void* memory, U32 sends, U32 takes, U32 window) {
@@ -167,7 +153,7 @@ static void addPeer(int ground, void* memory, U32 sends, U32 takes, U32 window) 
     peer->link = memory;
     peer->address = (U16)address;
     hasOthers = 1;
-    Link_initSmall(peer->link, &peersPort, peer, BYTE_TIME_US16, sends, takes, window);
+    Link_initSmall(peer->link, &port, peer, BYTE_TIME_US16, sends, takes, window);
     Link_shareRadio(peer->link, &uav_link);
     (void)UAV_giveKeys(ground, peer->link);
 }
@@ -178,7 +164,7 @@ int UAV_initRadio(void) {
     iceEvent = OSSemCreate(0);
     linkMutex = OSMutexCreate(PRIO_MUTEX, &error);
     areUp = hasOthers = toAllSize = 0;
-    Link_init(&uav_link, &linkPort, &endpoint, BYTE_TIME_US16);
+    Link_init(&uav_link, &port, peers, BYTE_TIME_US16);
     addPeer(UAV_SECOND, &secondMemory, SECOND_SENDS, SECOND_TAKES, SECOND_WINDOW);
     addPeer(UAV_FELLOW, &fellowMemory, FELLOW_SENDS, FELLOW_TAKES, FELLOW_WINDOW);
     return UAV_giveKeys(0, &uav_link) || UAV_isOpen();

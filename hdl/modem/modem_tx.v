@@ -34,9 +34,10 @@ module modem_tx (
 
     reg [1:0] state;
     reg [8:0] count; // bytes read; in REST ticks of silence
+    reg       whole; // in REST: the modem sends this packet by itself; a register, for the clock's sake
 
     wire last   = rd_index_o == packet_bytes_i;                // all its bytes are out
-    wire rested = (count[8] && count[6]) || packet_bytes_i == longest || api_i; // 320 ticks
+    wire rested = (count[8] && count[6]) || whole || api_i; // 320 ticks
 
     wire leaves = tx_valid_o && tx_ready_i;
     wire ends   = state == REST && (tx_ready_i || api_i) && rested;
@@ -56,8 +57,11 @@ module modem_tx (
                 tx_data_o <= rd_data_i;
                 state     <= SEND;
             end
-            SEND: if (leaves)
-                state <= last ? REST : FETCH;
+            SEND: begin
+                whole <= packet_bytes_i == longest;
+                if (leaves)
+                    state <= last ? REST : FETCH;
+            end
             default: if (ends) begin
                 sent_o <= 1'b1;
                 state  <= FETCH;
@@ -81,6 +85,7 @@ module modem_tx (
     reg [6:0] out  = 7'd0; // bytes of this packet that have left
     reg [7:0] read = 8'd0; // the latest byte read
     reg [8:0] rest;        // ticks since the last one left
+    reg       full;        // it left a packet that the modem sends at once by its length
     always @(posedge clk_i) begin
         past <= 1'b1;
         if (past)
@@ -92,6 +97,8 @@ module modem_tx (
         assume (!rd_done_i || rd_valid_o); // modem_npi
         out <= out + leaves;
         rest <= leaves ? 9'd0 : rest + {8'd0, tx_ready_i && state == REST};
+        if (leaves)
+            full <= packet_bytes_i == (encrypt_i ? 7'd95 : 7'd100);
         if (rd_done_i)
             read <= rd_data_i;
         if (sent_o || begin_anew)
@@ -108,8 +115,8 @@ module modem_tx (
             // After a packet that the modem does not send at once by its length, the line rests for
             // 320 ticks.
             if (state == REST && tx_ready_i)
-                assert (ends == (api_i || packet_bytes_i == (encrypt_i ? 7'd95 : 7'd100) || rest >= 9'd320));
-            assert (state != REST || count == rest);
+                assert (ends == (api_i || full || rest >= 9'd320));
+            assert (state != REST || (count == rest && whole == full));
         end
         if (past) // each state is at a known byte; the induction rests on this
             case (state)
@@ -125,8 +132,8 @@ module modem_tx (
 `endif
 `ifdef COVER_POINTS
     modem_takes_none: cover property (@(posedge clk_i) state == SEND && !cts_i);
-    needs_no_rest: cover property (@(posedge clk_i) !api_i && ends && packet_bytes_i == longest);
-    rests: cover property (@(posedge clk_i) !api_i && ends && packet_bytes_i != longest);
+    needs_no_rest: cover property (@(posedge clk_i) !api_i && ends && whole);
+    rests: cover property (@(posedge clk_i) !api_i && ends && !whole);
     set_up_interrupts: cover property (@(posedge clk_i) begin_anew && rd_index_o != 7'd0);
 `endif
 endmodule

@@ -156,12 +156,19 @@ def try_bug(bug, copy):
     return [bug.name, result, bug.test, seconds, bug.place(copy) if planted else ""]
 
 
-def check(chosen):
-    """Whether each bug fits today's tree; builds nothing."""
-    bad = 0
+def check(chosen, build):
+    """Whether each bug fits today's tree, and its test is one of a build folder; builds nothing."""
+    bad, tests = 0, ""
+    if build:
+        tests = subprocess.run(["ctest", "--test-dir", build, "-N"], stdout=subprocess.PIPE,
+                               check=True, text=True).stdout
     for bug in chosen:
         try:
             bug.planted(TOP)
+            program = bug.test.split(".")[0]
+            if build and f": {program}_NOT_BUILT\n" not in tests and not re.search(
+                    rf": {re.escape(bug.test)}(\.|$)", tests, re.M):
+                raise ValueError(f"there is no test {bug.test}")
         except (OSError, ValueError) as error:
             print(f"{bug.name}: does not apply: {error}")
             bad = 1
@@ -226,13 +233,13 @@ def main():
         help="the bugs of one block or core, or a single one as block/name (default: all)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(),
                         help="how many are tried at once")
-    parser.add_argument("--check", action="store_true",
-                        help="only look whether each is found in its file")
+    parser.add_argument("--check", nargs="?", const="", metavar="BUILD",
+                        help="only look whether each is found in its file, and its test in BUILD")
     options = parser.parse_args()
     os.chdir(TOP)
     chosen = bugs(options.block)
-    if options.check:
-        return check(chosen)
+    if options.check is not None:
+        return check(chosen, options.check)
     with tool.only_one(WORK, "mutants"):
         if options.block == "*":
             # The state that all blocks were measured from, for the regression's light

@@ -22,6 +22,7 @@ struct Sequence {
     std::vector<std::pair<const char*, uint64_t>> sent;
     bool isCommandMode;
     const char *answers, *atB; // what the hosts of `a` and `b` hear
+    friend void PrintTo(const Sequence& s, std::ostream* out) { *out << s.name; }
 };
 const Sequence sequences[] = {
     {"BetweenGuardTimes", {}, {{"", 11}, {"+++", 11}}, true, "OK\r", ""},
@@ -65,8 +66,7 @@ TEST_P(Sequences, BeginAndEndCommandMode) {
     EXPECT_EQ(heard(), GetParam().answers);
     EXPECT_EQ(heardB(), GetParam().atB);
 }
-INSTANTIATE_TEST_SUITE_P(CommandMode, Sequences, ::testing::ValuesIn(sequences),
-                         [](auto& s) { return std::string(s.param.name); });
+INSTANTIATE_TEST_SUITE_P(CommandMode, Sequences, ::testing::ValuesIn(sequences));
 
 using CommandMode = Pair;
 TEST_F(CommandMode, OkWaitsUntilReceivedDataHasDrained) {

@@ -164,7 +164,8 @@ def table_of(plan, library, options, models, o):
         print(f"[{len(rows)}/{len(designs)}] {design.name}: {said} ({spent:.1f} s)",
               file=sys.stderr)
 
-    designs = [design for design in plan.designs if not o.design or design.name in o.design]
+    designs = [design for design in plan.designs if plan.has(design, o.family[-1])
+               and (not o.design or design.name in o.design)]
     runner.in_parallel(options.jobs, work, sorted(
         designs, key=lambda design: options.luts.get(design.name, 0)))
     return report.Table(["module", "proof or tests", "seconds"],

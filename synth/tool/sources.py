@@ -176,6 +176,10 @@ class Plan:
     paper: dict  # Table I: "lut", "ff", "slices"
     designs: list
     simulated: dict  # design -> prefixes of the tests that run on its netlist; others are proven
+    xilinx: list  # designs of parts that only Xilinx's FPGAs have
+
+    def has(self, design, family):
+        return family != "ecp5" or design.name not in self.xilinx
 
 
 def sentence_of(file, module):
@@ -209,7 +213,7 @@ def read_plan(file, library, root):
             designs.append(Design(name, name, sentence_of(module.file, name)))
     for design in designs:
         design.file = str(relative_to(library.modules[design.top].file, root))
-    return Plan(j["chip"], j["paper"], designs, j.get("simulated", {}))
+    return Plan(j["chip"], j["paper"], designs, j.get("simulated", {}), j.get("xilinx", []))
 
 
 def relative_to(file, root):

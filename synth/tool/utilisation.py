@@ -41,7 +41,8 @@ def rtl_of(o):
 
 def synthesise(plan, library, options, o):
     """Runs of the wanted designs for each family; the others come from the cache."""
-    runs = [runner.Run(design, family, not o.design or design.name in o.design)
+    runs = [runner.Run(design, family, plan.has(design, family)
+                       and (not o.design or design.name in o.design))
             for family in o.family for design in plan.designs]
     runner.carry_out(runs, library, options)
     for run in runs:

@@ -21,9 +21,9 @@
 #define SECOND_SENDS 8192U
 #define SECOND_TAKES 1024U
 #define SECOND_WINDOW 16U
-#define FELLOW_SENDS 2048U
-#define FELLOW_TAKES 1024U
-#define FELLOW_WINDOW 8U
+#define FELLOW_SENDS 1024U
+#define FELLOW_TAKES 512U
+#define FELLOW_WINDOW 4U
 
 Link uav_link;
 OS_EVENT* uav_radioWork;

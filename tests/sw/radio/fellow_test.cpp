@@ -61,7 +61,7 @@ struct Craft {
             end.first = static_cast<int>(&end - ends) * LINK_CHANNELS;
             Link_init(&end.link, &linkPort, &end, 1440);
         }
-        Link_initSmall(&ends[fellow].link, &linkPort, &ends[fellow], 1440, 2048, 1024, 8);
+        Link_initSmall(&ends[fellow].link, &linkPort, &ends[fellow], 1440, 1024, 512, 4);
         Ice_initialize(&ic);
         XBeeATEndpoint_init(&ic, "xbee-at", &endpoint, &ends[0].link, address, &port, this);
         Ice_Communicator_createObjectAdapterWithEndpoints(&ic, "A", "xbee-at", &adapter);

@@ -301,7 +301,9 @@ def make_block_ram_of_ecp5(cell, free):
         places = [8 * (n // 9) + n % 9 if n % 9 < 8 else 32 + n // 9 for n in range(width)]
         data, shown = ["0"] * 36, list(range(free, free + 36))
         for name, place in zip(names, places):
-            data[place], shown[place] = pin(f"DI{name}"), pins.get(f"DO{name}", [shown[place]])[0]
+            data[place] = pin(f"DI{name}")
+            if enable != "1":  # else it writes or does nothing: the pins show what the other reads
+                shown[place] = pins.get(f"DO{name}", [shown[place]])[0]
         free += 36
         low = {9: 3, 18: 4, 36: 5}[width]
         used = width if pin(f"CE{port}") != "0" else 0

@@ -72,7 +72,7 @@ def initialize(args):
     }, args.plugin, args.guard, args.key)
 
 
-def make_station(Autopilot, log):
+def make_station(Autopilot, log, timeout):
     class StationI(Autopilot.Station):
         def __init__(self):
             self.called = threading.Event()
@@ -85,6 +85,7 @@ def make_station(Autopilot, log):
             what = "Station.vehicleState(%s)" % ", ".join("%s %d" % i for i in self.params.items())
             log.say("%-16s %s" % ("UAV -> ground", what))
             log.follow({"who": "UAV -> ground", "what": what})
+            uav = uav.ice_timeout(timeout)
             try:
                 self.alive = log.call("ground -> UAV", "uav.isAlive(7)", lambda: uav.isAlive(7))
             finally:
@@ -184,12 +185,12 @@ class Mission:
         self.parts = [part_of(folder) for folder in args.cores]
         self.air = Air(args.status)
         self.log = Log(self.air, args.out, os.path.dirname(os.path.abspath(args.plugin)))
-        self.station = make_station(Autopilot, self.log)
+        self.timeout = 1000 * args.patience // 2  # Ice tries twice
+        self.station = make_station(Autopilot, self.log, self.timeout)
 
     def proxy(self, identity, vehicle=1):
         endpoint = self.args.endpoint.replace("0x0001", f"0x{vehicle:04x}")
-        return self.communicator.stringToProxy(  # Ice tries twice
-            f"{identity}:{endpoint} -t {1000 * self.args.patience // 2}")
+        return self.communicator.stringToProxy(f"{identity}:{endpoint} -t {self.timeout}")
 
     def call(self, what, function):
         return self.log.call("ground -> UAV", what, function)
@@ -262,7 +263,7 @@ class Mission:
             for address in range(1, args.vehicles + 1):
                 vehicle = self.autopilot.VehiclePrx.uncheckedCast(communicator.stringToProxy(
                     f"uav:xbee-at -d {device} -a 0x{address:04x} -s 0x00f0 "
-                    f"-t {1000 * args.patience // 2}"))
+                    f"-t {self.timeout}"))
                 state = self.log.call("observer -> UAV", f"uav{address}.getFlightState()",
                                       vehicle.getFlightState)
                 self.log.note(f"the observer sees uav{address}: {state}")

@@ -10,7 +10,7 @@
 
 constexpr uint32_t ddr = MAP_DDR_WINDOW, control = MAP_CONTROL_WINDOW;
 
-// What the memory was given, byte by byte.
+// Written keeps each byte that the memory was given.
 struct Written {
     std::map<uint32_t, uint8_t> bytes;
 

@@ -43,7 +43,7 @@ inline void writeAll(int fd, const Bytes& bytes) {
     }
 }
 
-// What engines have logged: a line each, which begins with the level.
+// EngineLog keeps what engines have logged: a line each, which begins with the level.
 class EngineLog {
 public:
     XBeeAT::Log taker() {

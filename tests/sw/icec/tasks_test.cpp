@@ -188,7 +188,7 @@ protected:
     std::thread serving_, answering_;
 };
 
-// Where nobody serves, those that call receive in turns.
+// The parameter is how many tasks serve; where none does, those that call receive in turns.
 class TasksThatServe : public Tasks, public ::testing::WithParamInterface<int> {};
 TEST_P(TasksThatServe, LetOthersCallAtOnce) {
     whileServing(GetParam(), [this] { callFromThreads(ICE_CALLS); });

@@ -21,6 +21,9 @@ constexpr U32 lookUs = 50000;          // interval of looking for a channel whil
 constexpr U32 briefBytes = 128;        // of a message that one fragment takes, its head compressed
 constexpr U32 quietUs = LINK_AGE_LAST; // of a vehicle that has left whoever took it
 constexpr U32 longestUs = 60'000'000;  // a vehicle does not call a second ground, which calls again
+// A vehicle with a session speaks at least this often, for it is asked when it is silent. What was
+// heard before is of a frame that a reset has cut.
+constexpr U32 speaksWithinUs = LINK_PING_AFTER + 4 * LINK_PING_EVERY;
 
 } // namespace
 
@@ -111,7 +114,8 @@ void Peer::onState(void* context, Link_State state) {
                  (state != LINK_STATE_UP ? ""
                   : isSecure             ? ", secure"
                                          : ", in the clear"));
-    e.isLost_ = state != LINK_STATE_UP && e.hearsOther_;
+    e.isLost_ = state != LINK_STATE_UP && e.hearsOther_ &&
+                e.host_.clock.nowUs() - e.heardAt_ < speaksWithinUs;
     if (state == LINK_STATE_UP)
         return;
     for (Stream& s : e.streams_)

@@ -287,6 +287,37 @@ TEST_P(TwinGrounds, TheNewerOneKeepsTheVehicleAndTheOlderOneHasItAgainAfterIt) {
     answers(Program(older).fd, 1);
 }
 
+// What a vehicle sends while it loses its power is of no session.
+TEST_P(TwinGrounds, AVehicleThatFallsSilentInAFrameHasNoOtherGround) {
+    fly(1, GetParam());
+    const auto ground = peer(1, GetParam());
+    const Program before(ground);
+    answers(before.fd, 1);
+    HostLine line;
+    XBee::Options options;
+    options.set = {{"BD", 7}, {"MY", 1}, {"DL", 0}};
+    XBee dying(line, rig_.air, options);
+    const auto step = rig_.step;
+    rig_.with([&] {
+        vehicles_[1]->modem->power(false, rig_.ns());
+        dying.advance(rig_.ns());
+        line.send(Bytes(50, 0xFE), rig_.ns());
+        rig_.step = [&] {
+            step();
+            dying.advance(rig_.ns());
+        };
+    });
+    EXPECT_TRUE(rig_.read(before.fd, 1).empty()) << "its connection ends";
+    rig_.pass(1);
+    rig_.with([&] {
+        rig_.step = step;
+        vehicles_[1]->modem->power(true, rig_.ns());
+    });
+    const Program after(ground);
+    ASSERT_NE(after.fd, -1) << log_.text();
+    answers(after.fd, 1);
+}
+
 INSTANTIATE_TEST_SUITE_P(Fleet, TwinGrounds, ::testing::Values(LinkKeys{{{1}}}, LinkKeys{}));
 
 TEST_F(FleetTest, AModemWithoutApiModeTalksToOneVehicle) {

@@ -23,7 +23,7 @@ import netlist
 import owners
 import slices
 import timing
-from sources import Design
+from sources import Design, read
 from tool import Stop, digest, run as command, write
 
 # A netlist's figures follow from these.
@@ -66,9 +66,14 @@ def netlist_of_order(file, order):
     return pathlib.Path(f"{file}.{order}")
 
 
-def script_of(run, library, options, output, more=""):
-    """The script of a run; `more`: a further library of what its sources instantiate. A design with
-    limits keeps Yosys' whole libraries: with fewer modules its mapping is another, by chance."""
+NO_MEMORY = "select -assert-none t:$mem*"
+DECLARES_MEMORY = re.compile(r"\b(?:reg|logic|bit)\b[^;]*?\w\s*\[[^];]*\]\s*[;,=]")
+
+
+def script_of(run, library, options, output, more="", memory=False):
+    """The script of a run; `more`: a further library of what its sources instantiate; `memory`: it
+    has one that they do not declare. A design with limits keeps Yosys' whole libraries: with fewer
+    modules its mapping is another, by chance."""
     includes = "".join(f" -I{folder}" for folder in library.include_folders)
     files, listed = library.files_of(run.design.top), [m.file for m in library.modules.values()]
     # SystemVerilog has words of its own, and packages are listed before those that use them.
@@ -84,6 +89,9 @@ def script_of(run, library, options, output, more=""):
                       for name in ("cells", "map"))
     if run.design.limits:
         cells, script = "", script.replace("prepare:", "begin:")
+    if not memory and not any(DECLARES_MEMORY.search(read(file)) for file in files):
+        script = script.replace("@NO_MEMORY@", NO_MEMORY).replace("-run map_memory:",
+                                                                  "-run map_ffram:")
     orders = ""
     if run.orders:  # elaborated anew: a copy made before would change the first mapping
         orders = f"design -reset\n{script.partition('@MAP@')[0]}design -save unmapped\n"
@@ -91,8 +99,8 @@ def script_of(run, library, options, output, more=""):
         permuted = mapping.replace("@ORDER@", f"permute,-S,{order};strash;")
         orders += (f"design -load unmapped\n{permuted}select A:top\n"
                    f"json -o {netlist_of_order(run.netlist, order)}\nselect -clear\n")
-    for place, text in (("MAP", mapping.replace("@ORDER@", "")), ("ORDERS", orders),
-                        ("CELLS", cells), ("MORE", more), ("SOURCES", sources),
+    for place, text in (("NO_MEMORY", ""), ("MAP", mapping.replace("@ORDER@", "")),
+                        ("ORDERS", orders), ("CELLS", cells), ("MORE", more), ("SOURCES", sources),
                         ("INCLUDES", includes), ("PARAMETERS", parameters),
                         ("TOP", run.design.top), ("OUTPUT", output)):
         script = script.replace(f"@{place}@", str(text))
@@ -118,15 +126,19 @@ def yosys_by(script, output, options):
 
 
 def synthesise(run, library, options):
-    def by(more=""):
-        yosys_by(lambda part: script_of(run, library, options, part, more), run.netlist, options)
-
-    try:
-        by()
-    except Stop as stop:
-        if "referenced in module" not in str(stop):
-            raise
-        by("+/xilinx/cells_xtra.v")
+    more, memory = "", False
+    while True:
+        try:
+            yosys_by(lambda part: script_of(run, library, options, part, more, memory),
+                     run.netlist, options)
+            return
+        except Stop as stop:
+            if "referenced in module" in str(stop) and not more:
+                more = "+/xilinx/cells_xtra.v"
+            elif "Assertion failed" in str(stop) and not memory:
+                memory = True
+            else:
+                raise
 
 
 def figures_of(n, spartan6, files_along):

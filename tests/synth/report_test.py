@@ -109,6 +109,9 @@ class Cases(Script):
             BUFG u_buffer (.I(pll_o), .O(clk)); // in the first, but none of the mapping
             always @(posedge clk) q_o <= !q_o;
             endmodule\n""")
+        cases = " ".join(f"{n}: o <= {n * n % 509};" for n in range(1024))  # a memory without an array
+        write("gen/squares.v", "module squares (input clk_i, input [9:0] n_i, output reg [8:0] o); "
+              f"always @(posedge clk_i) case (n_i) {cases} endcase endmodule\n")
         edit("project/synth/designs.json", '"designs"', '"xilinx": ["clocks"], "designs"')
         self.run_program("--family", "ecp5", "--design", "clocks")
         self.run_program()
@@ -128,6 +131,7 @@ class Cases(Script):
         self.assertEqual(figures("clocks")["cells"], {"BUFG": 1, "FDRE": 1, "INV": 1,
                                                       "PLL_BASE": 1})
         self.assertEqual(figures("typed")["cells"], {"FDRE": 3})
+        self.assertEqual(figures("squares")["cells"], {"RAMB8BWER": 1})
         self.lacks("^typed_sizes ")
         self.assertEqual(figures("wide")["cells"]["CARRY4"], 4, "a counter of 16 bits")
         store, whole = figures("store"), figures("whole")

@@ -153,8 +153,10 @@ class BuildFolder:
             warn(f"{self.folder} was made for the tree in {home}: made anew")
             keys.rescue(self.folder)
             shutil.rmtree(self.folder)
-        if not (self / "build.ninja").exists():
-            run(["cmake", "-S", ".", "-B", self.folder, "-G", "Ninja", *arguments])
+            self.folder.mkdir()
+        with self.alone():
+            if not (self / "build.ninja").exists():
+                run(["cmake", "-S", ".", "-B", self.folder, "-G", "Ninja", *arguments])
         commands = Path("compile_commands.json")
         if not commands.exists():  # an editor looks for it here; in another's tree it stays away
             with contextlib.suppress(OSError):
@@ -174,12 +176,13 @@ class BuildFolder:
         the old values."""
         if all(self.cached(name) == value for name, value in variables.items()):
             return
-        cache = (self / "CMakeCache.txt").read_bytes()
         words = ["cmake", *(f"-D{name}={value}" for name, value in variables.items()), self.folder]
-        with open(self / "set.log", "w") as log:
+        with self.alone(), open(self / "set.log", "w") as log:
+            cache = (self / "CMakeCache.txt").read_bytes()
             status = run(words, check=False, stdout=log, stderr=log)
+            if status:
+                (self / "CMakeCache.txt").write_bytes(cache)
         if status:
-            (self / "CMakeCache.txt").write_bytes(cache)
             reasons = re.findall(r"^CMake Error.*?(?=^$|\Z)", (self / "set.log").read_text(),
                                  re.M | re.S)
             raise Stop("CMake refuses " + " ".join(words[1:-1]) + "\n" + "\n".join(reasons))
@@ -204,11 +207,15 @@ class BuildFolder:
             variables["CORES"] = other.cached("CORES")
         self.set(**variables)
 
+    def alone(self):
+        """Holds the folder: two that configure or build it would spoil each other's files."""
+        return lock(self.folder, busy=f"waiting for another build in {self.folder} ...")
+
     def ninja(self, *words, check=True, env=None, jobs=None):
-        """Builds targets, one build at a time: two would spoil each other's files."""
+        """Builds targets."""
         if self.built:
             return 0
-        with lock(self.folder, busy=f"waiting for another build in {self.folder} ..."):
+        with self.alone():
             return run_ninja(["ninja", "-C", self.folder, "-j", jobs or self.jobs, *words],
                              self.folder / "build.log", check, env)
 

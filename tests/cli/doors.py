@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """doors: ./icesoc and make take the same options, refuse what is wrong in words that help, and give
 no value to a shell; lists.py tests what they list."""
-import json, os, shutil, subprocess, sys, tempfile, time, unittest
+import concurrent.futures, json, os, shutil, subprocess, sys, tempfile, time, unittest
 from pathlib import Path
 
 TREE = Path(__file__).resolve().parent.parent.parent
@@ -293,6 +293,15 @@ class Trees(Work):
                            "build", ICESOC_TREE=str(new))
         self.assertIn("CORE_FOLDERS is /here", text)
         self.assertEqual(ask("cmake", str(new / "build"))[0], 0)
+
+    def test_of_two_at_once_in_a_new_tree_one_configures(self):
+        (self.work / "tree/CMakeLists.txt").write_text(
+            "cmake_minimum_required(VERSION 3.25)\nproject(twice NONE)\n"
+            "execute_process(COMMAND sleep 0.5)\nfile(APPEND ${CMAKE_BINARY_DIR}/times x)\n")
+        with concurrent.futures.ThreadPoolExecutor() as two:
+            ends = list(two.map(self.configure, 2 * [self.work / "tree"]))
+        self.assertEqual([status for status, said in ends], [0, 0], ends)
+        self.assertEqual((self.work / "tree/build/times").read_text(), "x")
 
     def test_keys_are_outside_of_what_is_built_and_nothing_removes_them(self):
         tree, config = self.work / "tree", self.work / "config"

@@ -58,7 +58,7 @@ protected:
             return program.got >= want || program.cutOff;
         })) << "no answer; the engine's log:\n"
             << wire_.log();
-        EXPECT_FALSE(program.cutOff);
+        EXPECT_FALSE(program.cutOff) << wire_.log();
     }
     Wire wire_;
     std::shared_ptr<XBeeAT::Peer> engine_ = wire_.engine();

@@ -256,17 +256,18 @@ function(icesoc_netlist name)
   list(TRANSFORM A_PARAMS PREPEND "--set=")
   set(here ${CMAKE_SOURCE_DIR})
   set(netlist ${CMAKE_CURRENT_BINARY_DIR}/netlist_${name}/${A_DESIGN}.v)
-  file(GLOB rtl CONFIGURE_DEPENDS ${here}/bus/*.v ${here}/hdl/*.v ${here}/hdl/*/*.v
-       ${here}/synth/*/*.v ${here}/synth/*/*.ys)
+  file(GLOB scripts CONFIGURE_DEPENDS ${here}/synth/*/*.v ${here}/synth/*/*.ys)
   foreach(part netlist runner sources)
-    list(APPEND rtl ${here}/synth/tool/${part}.py)
+    list(APPEND scripts ${here}/synth/tool/${part}.py)
   endforeach()
   get_property(made GLOBAL PROPERTY ICESOC_REGMAP_TARGETS)
   add_custom_command(OUTPUT ${netlist}
     COMMAND ${CMAKE_BINARY_DIR}/synth/utilisation --source ${here} --generated ${GEN_DIR}
       --output ${CMAKE_BINARY_DIR}/netlists --netlist ${A_DESIGN} ${A_PARAMS}
       --family ${NETLIST_FAMILY} --to ${netlist}
-    DEPENDS ${rtl} ${made} ${A_DEPENDS} VERBATIM COMMENT "Netlist of ${A_DESIGN}")
+    DEPENDS ${scripts} ${made} ${A_DEPENDS}
+    DEPFILE ${CMAKE_CURRENT_BINARY_DIR}/netlist_${name}/${A_DESIGN}.d
+    VERBATIM COMMENT "Netlist of ${A_DESIGN}")
   # Lint is of the RTL: this is Yosys' style.
   icesoc_verilate(${name} TOP ${A_TOP} SOURCES ${A_SOURCES} ${netlist} INCLUDES ${A_INCLUDES}
     CLASS ${A_CLASS} FLAGS ${A_FLAGS} -Wno-lint -Wno-style -Wno-UNOPTFLAT)

@@ -134,12 +134,15 @@ class Library:
     def files_of(self, top):
         return sorted({self.modules[module].file for module in self.reach(top)})
 
+    def all_files_of(self, top):
+        """The files of the module, and those that they include."""
+        names = sorted(set().union(*(self.modules[module].includes for module in self.reach(top))))
+        return self.files_of(top) + [file for name in names if (file := self.included(name))]
+
     @functools.cache
     def hash_of(self, top):
-        """A hash that changes with any file of the module, include files too."""
-        names = sorted(set().union(*(self.modules[module].includes for module in self.reach(top))))
-        files = self.files_of(top) + [file for name in names if (file := self.included(name))]
-        return digest(map(read, files))
+        """A hash that changes with any of these files."""
+        return digest(map(read, self.all_files_of(top)))
 
     def module_at(self, top, path):
         """Module of the instance at the end of a path of instance names, "" if unknown."""

@@ -116,6 +116,8 @@ def netlist(plan, library, options, o):
     design = next(design for design in plan.designs if design.name == o.netlist)
     design.parameters.update(o.set)
     runner.write_for_simulation(design, o.family[-1], library, options, o.to, models_of(o))
+    files = " ".join(str(file.absolute()) for file in library.all_files_of(design.top))
+    write(o.to.with_suffix(".d"), f"{o.to.absolute()}: {files}\n")
     return 0
 
 

@@ -1,9 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# cores: source-folder build-folder work-folder   Builds a simulator with the cores of a list of its
-# own, and calls them by radio.
+# cores: source-folder build-folder work-folder TRACE|NETLIST   Builds a simulator with the cores of
+# a list of its own, of RTL that is traced or of the chip's netlist, and calls them by radio.
 set -eu
-source=$1 build=$2 work=$3
+source=$1 build=$2 work=$3 chip=$4
 mkdir -p "$work/build"
 # Puts fresh/NAME in the place of NAME if they differ: what is as it was is not built again.
 fresh() {
@@ -19,6 +19,8 @@ mapped() {
 }
 logged() { "$@" >"$work/log" 2>&1 || { tail -40 "$work/log" && exit 1; }; }
 rm -rf "$work/fresh" && mkdir "$work/fresh"
+clocked='my_requests clock=6/25'
+[ "$chip" = TRACE ] || clocked='# no core in a clock of its own: its DCM_CLKGEN has no model'
 signals=''
 for signal in valid_i write_i addr_i:4 wdata_i:32 ready_o rdata_o:32; do
     signals=$signals,u_sample_verilog.bus_$signal
@@ -31,7 +33,7 @@ scaler
 servo fault_i=@B4
 crc32
 my_port name=port
-my_requests clock=6/25
+$clocked
 my_lamps
 many
 probe signals=${signals#,}
@@ -53,10 +55,10 @@ logged env GHDL="$build/ghdl/ghdl" "$source/ip/new_foreign.py" my_lamps lamps ow
     wdata=request_d rdata=q "$lamps.vhd" "${lamps}_types.vhd"
 fresh my_lamps
 [ -e "$work/build/ghdl" ] || ln -s "$build/ghdl" "$work/build/ghdl"
-# CLK_HZ: the servo core counts in every clock, so no clock is skipped. TRACE: the probe is compared
-# with it.
-logged cmake -S "$source" -B "$work/build" -G Ninja -DTRACE=ON -DCLK_HZ=2000000 \
-    "-DCORES=$work/cores.list" "-DCORE_FOLDERS=$folders" "-DROOMS=bus;slice;ip;sw;hdl;testbench"
+# CLK_HZ: the servo core counts in every clock, so no clock is skipped.
+logged cmake -S "$source" -B "$work/build" -G Ninja "-D$chip=ON" -DCLK_HZ=2000000 \
+    "-DCORES=$work/cores.list" "-DCORE_FOLDERS=$folders" \
+    "-DROOMS=bus;slice;ip;sw;hdl;synth;testbench"
 tested='test_ip_servo test_ip_crc32 test_ip_my_lamps'
 # shellcheck disable=SC2086 # a list of words
 logged ninja -C "$work/build" icesoc-sim firmware_uav $tested
@@ -68,7 +70,7 @@ echo '500 port.port_in_i 0x83' >>"$work/pins"
 simulator=$work/build/testbench/sim/icesoc-sim
 logged "$simulator" --pins "$work/pins" --size 96x64 --image /usr/share/xplanet/images/earth.jpg \
     --out "$work" --seed "${SEED:-1}" --guard 20 -- /usr/bin/python3 "$here/client.py" '{device}' \
-    '{guard}' '{status}' "$build/ground/xbeeat:createXBeeAT" "$work" \
+    '{guard}' '{status}' "$build/ground/xbeeat:createXBeeAT" "$work" "$chip" \
     "$samples/sample_verilog/sample_verilog.ice" "$golden/scaler.ice" "$golden/many.ice" \
     "$here/servo/servo.ice" "$here/crc32/crc32.ice" "$samples/sample_vhdl/sample_vhdl.ice" \
     "$source/sw/hw/registers/Registers.ice" "$source/ip/probe/Probe.ice"
@@ -79,24 +81,27 @@ awk '$2 != "servo.pwm_o" { next }
      $3 == 0 && up { n += $1 - up > 1.499 && $1 - up < 1.501; all++ }
      END { exit !(n > 10 && all - n <= 1 && frames >= n - 2) }' "$work/pins.log" ||
     { tail "$work/pins.log" && echo 'the pulses are not 1.5 ms long, 20 ms apart' && exit 1; }
-# The simulator names a core that keeps the chip from being quiet: two never rest.
-for said in "'(my_requests|servo)' moves in nearly every clock" 'cores: all as expected'; do
-    grep -Eq "$said" "$work/log" || { cat "$work/log" && echo "not said: $said" && exit 1; }
-done
+says() { grep -Eq "$1" "$work/log" || { cat "$work/log" && echo "not said: $1" && exit 1; }; }
+says 'cores: all as expected'
 
-# The probe's capture by radio, read by GTKWave's tools, equals the simulator's trace of the
-# replayed flight, as far as that goes.
-vcd2fst "$work/probe.vcd" "$work/probe.fst" >"$work/log"
-fst2vcd "$work/probe.fst" >"$work/captured.vcd"
-span=$(awk '/^#/ { t = substr($1, 2) / 1e9; if (!n++) first = t }
-    END { printf "--from %.6f --to %.6f", first - 2e-5, t + 2e-5 }' "$work/probe.vcd")
-mkdir -p "$work/begin" && cp "$work/before.png" "$work/begin"
-awk -v end="${span##* }" -F '"ns":' 'NR > 1 && $2 / 1e9 > end + 0.1 { exit } 1' \
-    "$work/flight.jsonl" >"$work/begin/flight.jsonl"
-# shellcheck disable=SC2086 # options
-logged "$simulator" --replay "$work/begin" --out "$work/again" --wave "$work/trace.fst" $span
-fst2vcd "$work/trace.fst" >"$work/trace.vcd"
-"$here/same.py" "$work/captured.vcd" "$work/trace.vcd" 500
+# The simulator names a core that keeps the chip from being quiet: two never rest. The probe's
+# capture by radio, read by GTKWave's tools, equals the simulator's trace of the replayed flight, as
+# far as that goes.
+traced() {
+    says "'(my_requests|servo)' moves in nearly every clock"
+    vcd2fst "$work/probe.vcd" "$work/probe.fst" >"$work/log"
+    fst2vcd "$work/probe.fst" >"$work/captured.vcd"
+    span=$(awk '/^#/ { t = substr($1, 2) / 1e9; if (!n++) first = t }
+        END { printf "--from %.6f --to %.6f", first - 2e-5, t + 2e-5 }' "$work/probe.vcd")
+    mkdir -p "$work/begin" && cp "$work/before.png" "$work/begin"
+    awk -v end="${span##* }" -F '"ns":' 'NR > 1 && $2 / 1e9 > end + 0.1 { exit } 1' \
+        "$work/flight.jsonl" >"$work/begin/flight.jsonl"
+    # shellcheck disable=SC2086 # options
+    logged "$simulator" --replay "$work/begin" --out "$work/again" --wave "$work/trace.fst" $span
+    fst2vcd "$work/trace.fst" >"$work/trace.vcd"
+    "$here/same.py" "$work/captured.vcd" "$work/trace.vcd" 500
+}
+[ "$chip" = NETLIST ] || traced # a netlist has other names
 # Its inputs, given to the core alone, bring forth its outputs.
 "$source/ip/probe/replay.py" "$work/probe.vcd" --scope u_sample_verilog --top sample_verilog \
     --out "$work/replay" -I "$work/build/gen" -I "$source/bus" \

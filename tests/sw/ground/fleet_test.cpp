@@ -287,7 +287,7 @@ TEST_P(TwinGrounds, TheNewerOneKeepsTheVehicleAndTheOlderOneHasItAgainAfterIt) {
     answers(Program(older).fd, 1);
 }
 
-// What a vehicle sends while it loses its power is of no session.
+// A vehicle that loses its power leaves a cut frame, which is of no session.
 TEST_P(TwinGrounds, AVehicleThatFallsSilentInAFrameHasNoOtherGround) {
     fly(1, GetParam());
     const auto ground = peer(1, GetParam());

@@ -100,7 +100,7 @@ def version():
     """The versions of the project (CHANGELOG.md), of the protocol on the air, and of the chip's
     blocks."""
     newest = re.search(r"^## (\d+\.\d+\.\d+)", (TREE / "CHANGELOG.md").read_text(), re.M)[1]
-    link = re.search(r"LINK_VERSION (\d+)", (TREE / "sw/link/link_wire.h").read_text())[1]
+    link = re.search(r"LINK_VERSION (\d+)", (TREE / "sw/link/link_frame.h").read_text())[1]
     blocks = []
     for path in sorted([*(TREE / "hdl").rglob("*.regs.json"), *(TREE / "ip").rglob("*.regs.json")]):
         block = json.loads(path.read_text())

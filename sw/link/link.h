@@ -24,8 +24,8 @@
  */
 #pragma once
 
+#include "link_frame.h"
 #include "link_port.h"
-#include "link_wire.h"
 
 #include <stddef.h>
 

@@ -4,7 +4,7 @@
  * int returns 0 if the peer broke the rules: then nothing it sent can be trusted, and the session
  * must end.
  *
- * link_compression: compresses the heads of IceP messages: each is sent once, and named by a byte
+ * link_header_cache: compresses the heads of IceP messages: each is sent once, and named by a byte
  * afterwards.
  *
  * It is the only part of this layer that knows what an Ice message looks like ("The Ice Protocol"
@@ -13,7 +13,7 @@
  */
 #pragma once
 
-#include "link_output.h"
+#include "link_pacing.h"
 
 #define LINK_HEAD_AT 18U    /* start of the head in a request: behind header and request id */
 #define LINK_HEADS 16U      /* request heads that each direction keeps */

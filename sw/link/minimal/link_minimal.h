@@ -4,7 +4,7 @@
  */
 #pragma once
 
-#include "link_wire.h"
+#include "link_frame.h"
 
 /* No length that a frame may claim goes beyond. */
 #define LINK_INPUT_BYTES (0x7FU + LINK_OVERHEAD)

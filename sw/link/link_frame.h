@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_wire: names the fields of a frame, and declares checksums and numbers of the wire format
+ * link_frame: names the fields of a frame, and declares checksums and numbers of the wire format
  * (docs/link.md). The full layer and the minimal one share it.
  */
 #pragma once
@@ -30,7 +30,7 @@
 
 /* Byte 0. */
 #define LINK_CONTROL 0x80U
-#define LINK_LENGTH_OF(header) ((header) & 0x7FU)
+#define LINK_LENGTH_OF(header) ((header)&0x7FU)
 #define LINK_LENGTH(frame) LINK_LENGTH_OF((frame)[0])
 #define LINK_FILL 0xFFU /* in its place: no frame, but a byte that fills a packet up */
 
@@ -40,7 +40,7 @@
 #define LINK_ACK_NOW 0x20U
 #define LINK_READY 0x10U  /* inverted: a whole message that may be taken before its turn */
 #define LINK_EARLY 0x100U /* the same among the flags of a frame that came */
-#define LINK_CHANNEL(flags) ((flags) & 3U)
+#define LINK_CHANNEL(flags) ((flags)&3U)
 #define LINK_EPOCH(frame) ((U32)(frame)[2] >> 2 & 7U)
 #define LINK_KIND_BITS(kind) ((U32)(kind) << 5)
 
@@ -105,7 +105,8 @@ void link_put32(U8* p, U32 value);
 /* Returns the key of the session of two nonces, in either order. */
 U32 link_sessionKey(U32 nonce, U32 peerNonce);
 
-/* link_secure derives a session's keys, link_keyed encrypts frames under them (docs/link.md). */
+/* link_crypto derives a session's keys, link_codec_keyed encrypts frames under them (docs/link.md).
+ */
 
 #define LINK_NONCE_BYTES 8U /* of each side's nonce in a secure handshake */
 #define LINK_OPEN_BYTES 32U /* of the open half of a pair, which HELLO-ACK and CONFIRM carry */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_clear: the codec without a key: frames end with a CRC.
+ * link_codec_clear: the codec without a key: frames end with a CRC.
  */
 #include "link_session.h"
 

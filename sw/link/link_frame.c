@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_wire: computes the checksums of the wire format, and reads and writes its numbers.
+ * link_frame: computes the checksums of the wire format, and reads and writes its numbers.
  */
-#include "link_wire.h"
+#include "link_frame.h"
 
 /* This is CRC-16/CCITT, polynomial 0x1021, MSB first. x ^= x >> 4 replaces Sarwate's table by
  * shifts. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_compression: recognises Ice's messages, and writes and reads the tokens for them.
+ * link_header_cache: recognises Ice's messages, and writes and reads the tokens for them.
  */
 #include "link_receiver.h"
 

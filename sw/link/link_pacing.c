@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_output: paces packets, and counts.
+ * link_pacing: paces packets, and counts.
  */
-#include "link_output.h"
+#include "link_pacing.h"
 
 #include <string.h>
 

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_output: the lowest part: puts frames into packets, and says when each is handed to the
+ * link_pacing: the lowest part: puts frames into packets, and says when each is handed to the
  * radio: while few wait for its answer, or else when the modem has sent those before.
  */
 #pragma once
 
+#include "link_frame.h"
 #include "link_port.h"
-#include "link_wire.h"
 
 #define LINK_FEATURES (LINK_FEATURE_COMPRESSION | LINK_FEATURE_PIGGYBACK)
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_keyed: encrypts and authenticates frames by Ascon-AEAD128, makes sessions with a peer that
- * has the key, and sees that it is alive. All parts of a frame that are not encrypted belong to its
- * nonce.
- * A HELLO may be a recording: it changes nothing here, and costs an answer only (docs/link.md).
+ * link_codec_keyed: encrypts and authenticates frames by Ascon-AEAD128, makes sessions with a peer
+ * that has the key, and sees that it is alive. All parts of a frame that are not encrypted belong
+ * to its nonce. A HELLO may be a recording: it changes nothing here, and costs an answer only
+ * (docs/link.md).
  */
 #include "link_session.h"
 

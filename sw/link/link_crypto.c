@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_secure: derives the keys of handshakes and sessions (docs/link.md).
+ * link_crypto: derives the keys of handshakes and sessions (docs/link.md).
  */
-#include "link_wire.h"
+#include "link_frame.h"
 
 #include "ascon.h"
 #include "x25519.h"

@@ -90,7 +90,7 @@ def update(values, build, held):
         run([pack, "vehicle", build / "firmware/loader.elf", flight.firmware(values, build), 1,
              signing, out / "flash.bin"])
     if not (out / "fpga.bin").exists():  # a stand-in for ISE's golden bitstream
-        run([build / "testbench/cpu/stand_in_bitstream", out / "golden.bin", 1, 10000])
+        run([build / "testbench/stm32/stand_in_bitstream", out / "golden.bin", 1, 10000])
         run([pack, "fpga", out / "golden.bin", 1, signing, out / "fpga.bin"])
     kind = "bitstream" if values.update.endswith((".bit", ".bin")) else "image"
     run([pack, kind, values.update, int(time.time()), signing, out / "new.update"])

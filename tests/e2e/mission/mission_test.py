@@ -30,7 +30,7 @@ CLIENTS = TREE / "sw/ground/clients"
 INTERFACE = ("--plugin", BUILD / "ground", "--slice", TREE / "sw/apps/uav/Autopilot.ice")
 UPDATES = (CLIENTS / "update.py", "new.update", "--device", "{device}", "--plugin",
            BUILD / "ground", "--slice", TREE / "sw/apps/uav/Update.ice")
-FIRMWARE, STAND_IN = BUILD / "firmware/uav.elf", BUILD / "testbench/cpu/stand_in_bitstream"
+FIRMWARE, STAND_IN = BUILD / "firmware/uav.elf", BUILD / "testbench/stm32/stand_in_bitstream"
 VEHICLE = "vehicle", BUILD / "firmware/loader.elf", FIRMWARE, "1"
 KEY = "000102030405060708090a0b0c0d0e0f"
 DEVICE = 'hwengine1:xbee-at -d "{device}" -a 0x0001 '

@@ -185,7 +185,7 @@ public:
     const std::string& path() const { return path_; }
 
     // A program may report how many bytes it has written and read: then no byte is late because the
-    // machine is busy (testbench/xbee/ground_step.h).
+    // machine is busy (testbench/radio/ground_step.h).
     struct Count {
         std::function<uint64_t()> keeper; // its session, 0: none; each from 0
         std::function<void(uint64_t keeper, size_t bytes)> toProgram;

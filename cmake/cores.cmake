@@ -5,7 +5,7 @@
 set(CORES ${CMAKE_SOURCE_DIR}/ip/cores.list CACHE FILEPATH "The cores in the chip, one a line")
 set(CORE_FOLDERS "" CACHE STRING "Folders of cores besides those in ip/")
 set(FOREIGN_CORES ${CMAKE_BINARY_DIR}/foreign
-  CACHE PATH "Where cmake/fetch.py foreign put third-party cores")
+  CACHE PATH "Where icesoc.util.fetch put third-party cores")
 
 # Names in the list, for parts that are built only with a core: if("vision" IN_LIST CHIP_CORES)
 set(CHIP_CORES)
@@ -98,7 +98,7 @@ macro(icesoc_core_clock)
     endif()
     add_custom_command(OUTPUT ${GEN_DIR}/${top}.v
                        COMMAND ${REGMAP} ${regs} --clocked ${flag} --output-dir ${GEN_DIR}
-                       DEPENDS ${REGMAP} ${regs} VERBATIM COMMENT "${name} in its own clock")
+                       DEPENDS ${REGMAP_FILES} ${regs} VERBATIM COMMENT "${name} in its own clock")
     add_custom_target(${top}_verilog DEPENDS ${GEN_DIR}/${top}.v)
     list(APPEND files ${GEN_DIR}/${top}.v)
     list(APPEND targets ${top}_verilog)
@@ -245,7 +245,7 @@ function(icesoc_chip)
     list(APPEND inputs ${regs} ${own})
   endforeach()
   icesoc_chip_property(files files)
-  execute_process(COMMAND ${CMAKE_SOURCE_DIR}/ip/foreign_files.py ${files} RESULT_VARIABLE status
+  execute_process(COMMAND ${PYTHON} -m icesoc.cores.foreign_files ${files} RESULT_VARIABLE status
     ERROR_VARIABLE said)
   if(status)
     string(REPLACE "new-foreign: " "" said "${said}")
@@ -268,12 +268,12 @@ function(icesoc_chip)
                      ${GEN_DIR}/soc_pins.h ${GEN_DIR}/core_pins.ucf ${GEN_DIR}/icesoc.svd
                      ${GEN_DIR}/probes.json ${GEN_DIR}/icesoc.rdl ${GEN_DIR}/icesoc.ipxact.xml
                      ${check}
-    COMMAND ${CMAKE_SOURCE_DIR}/bus/coremap.py ${CORES}
+    COMMAND ${PYTHON} -m icesoc.chip.coremap ${CORES}
             --base ${CMAKE_SOURCE_DIR}/bus/map.regs.json ${options} ${chip}
             --block 0=system=${CMAKE_SOURCE_DIR}/hdl/system/system.regs.json
             --block 1=modem=${CMAKE_SOURCE_DIR}/hdl/modem/modem.regs.json --output-dir ${GEN_DIR}
-    DEPENDS ${REGMAP} ${CMAKE_SOURCE_DIR}/bus/coremap.py ${CMAKE_SOURCE_DIR}/bus/core_output.py
-            ${CMAKE_SOURCE_DIR}/bus/core_exchange.py ${CORES} ${CMAKE_SOURCE_DIR}/bus/map.regs.json
+    DEPENDS ${REGMAP_FILES} ${TOOLS}/chip/coremap.py ${TOOLS}/chip/core_output.py
+            ${TOOLS}/regs/core_exchange.py ${CORES} ${CMAKE_SOURCE_DIR}/bus/map.regs.json
             ${inputs} ${CMAKE_SOURCE_DIR}/hdl/system/system.regs.json
             ${CMAKE_SOURCE_DIR}/hdl/modem/modem.regs.json ${slice_files}
     COMMAND_EXPAND_LISTS VERBATIM COMMENT "Cores of the chip: ${CHIP_CORES}")

@@ -36,6 +36,12 @@ icesoc_needs(clang CLANGXX program clang++)
 find_package(GTest REQUIRED)
 include(GoogleTest)
 
+# Python with the package of our tools: ${PYTHON} -m icesoc.regs.regmap
+set(PYTHON ${CMAKE_SOURCE_DIR}/tools/python)
+set(TOOLS ${CMAKE_SOURCE_DIR}/tools/icesoc)
+set(FETCH ${PYTHON} -m icesoc.util.fetch)
+set(FETCH_FILES ${TOOLS}/__init__.py ${TOOLS}/util/fetch.py)
+
 set(GEN_DIR ${CMAKE_BINARY_DIR}/gen)
 file(MAKE_DIRECTORY ${GEN_DIR})
 # gtest_discover_tests runs the binary at ctest time, so a build never runs a test.
@@ -137,7 +143,8 @@ endfunction()
 # icesoc_regmap(JSON): registers of one block, from its *.regs.json, as a Verilog include, a C
 # header, a VHDL package and a Markdown page in ${GEN_DIR}; target regmap_<block>, interface library
 # regs_<block>.
-set(REGMAP ${CMAKE_SOURCE_DIR}/bus/regmap.py)
+set(REGMAP ${PYTHON} -m icesoc.regs.regmap)
+set(REGMAP_FILES ${TOOLS}/__init__.py ${TOOLS}/regs/regmap.py ${TOOLS}/regs/regs.schema.json)
 function(icesoc_regmap json)
   get_filename_component(block ${json} NAME_WE)
   get_filename_component(path ${json} ABSOLUTE)
@@ -145,7 +152,7 @@ function(icesoc_regmap json)
            ${GEN_DIR}/${block}_regs.md)
   add_custom_command(OUTPUT ${outs}
     COMMAND ${REGMAP} ${path} --output-dir ${GEN_DIR}
-    DEPENDS ${REGMAP} ${CMAKE_SOURCE_DIR}/bus/regs.schema.json ${path}
+    DEPENDS ${REGMAP_FILES} ${path}
     VERBATIM COMMENT "Registers of ${block}")
   add_custom_target(regmap_${block} ALL DEPENDS ${outs})
   set_property(GLOBAL APPEND PROPERTY ICESOC_REGMAP_TARGETS regmap_${block})
@@ -258,7 +265,7 @@ function(icesoc_netlist name)
   set(netlist ${CMAKE_CURRENT_BINARY_DIR}/netlist_${name}/${A_DESIGN}.v)
   file(GLOB scripts CONFIGURE_DEPENDS ${here}/synth/*/*.v ${here}/synth/*/*.ys)
   foreach(part netlist runner sources)
-    list(APPEND scripts ${here}/synth/tool/${part}.py)
+    list(APPEND scripts ${TOOLS}/synth/${part}.py)
   endforeach()
   get_property(made GLOBAL PROPERTY ICESOC_REGMAP_TARGETS)
   add_custom_command(OUTPUT ${netlist}

@@ -74,7 +74,7 @@ man-db shows and checks the manual pages
 groff-base formats them
 '
 [ -z "$tests" ] || packages="$packages$rest"
-# Debian 12's is too old; cmake/fetch.py fetches Debian 13's.
+# Debian 12's is too old; icesoc.util.fetch fetches Debian 13's.
 case $(sed -n 's/^VERSION_ID="*\([0-9]*\).*/\1/p' /etc/os-release 2>/dev/null) in
 1[3-9]) packages="$packages
 ghdl-mcode simulates and converts VHDL" ;;

@@ -5,8 +5,8 @@
 set(GHDL_DIR ${CMAKE_BINARY_DIR}/ghdl)
 set(GHDL ${GHDL_DIR}/ghdl)
 add_custom_command(OUTPUT ${GHDL}
-  COMMAND ${CMAKE_SOURCE_DIR}/cmake/fetch.py ghdl ${GHDL_DIR}
-  DEPENDS ${CMAKE_SOURCE_DIR}/cmake/fetch.py VERBATIM COMMENT "GHDL 5")
+  COMMAND ${FETCH} ghdl ${GHDL_DIR}
+  DEPENDS ${FETCH_FILES} VERBATIM COMMENT "GHDL 5")
 add_custom_target(ghdl DEPENDS ${GHDL})
 
 # icesoc_vhdl(NAME entity SOURCES file... [REGS block...] [LIBRARY name] [GENERICS name=value...]

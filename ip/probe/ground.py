@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: MIT
 """probe's part of a mission: it records while the cores named after it fly: build/run/probe.vcd."""
 import os
-import sys
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import probe as tool  # noqa: E402
+from icesoc.cores import probe as tool
 
 NEWEST = 2000  # changes that are read without a trigger
 

@@ -43,7 +43,8 @@ done
     exit 2
 }
 mkdir -p "$output"
-"$source/merge_ucf.py" "$mig/par/mig.ucf" "$source/chip.ucf" "$4" "$5" >"$output/all.ucf"
+"$source/../../tools/python" -m icesoc.synth.merge_ucf "$mig/par/mig.ucf" "$source/chip.ucf" \
+    "$4" "$5" >"$output/all.ucf"
 soc=$(cd "$(dirname "$soc")" && pwd)/$(basename "$soc") mig=$(cd "$mig" && pwd)
 cd "$output"
 : >chip.prj

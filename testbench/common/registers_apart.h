@@ -4,8 +4,8 @@
 // as far as they can be written. It finds a lost write, and an address whose words are taken for
 // bytes or bytes for words: then neighbours are one register. A core with fewer registers than
 // addresses repeats them at a distance. A note names each register and says whether it was read
-// back (tests/ctest.py prints notes). Another tells of a core that moves while nobody calls it, and
-// by which signals.
+// back (icesoc.regress.ctest prints notes). Another tells of a core that moves while nobody calls
+// it, and by which signals.
 
 #pragma once
 

@@ -53,7 +53,8 @@ private:
 class Flight {
 public:
     struct Options {
-        // Fields of the flight's description, by their names there (cli/flight.schema.json).
+        // Fields of the flight's description, by their names there
+        // (tools/icesoc/cli/flight.schema.json).
         std::string image, size = "320x240", out = ".", speed = "real", cpu = "host",
                            firmware = FIRMWARE_ELF, key, observer, trouble, modem_key, pins, trace,
                            flash, fpga_flash;

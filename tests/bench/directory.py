@@ -3,7 +3,7 @@
 """directory: what IceGrid's registry and IceStorm take: look-ups, registrations and events in a
 second of a processor, which whatever else the machine does hardly changes.
 
-    directory.py FOLDER OUTPUT.json [--brief]      FOLDER: where cmake/fetch.py icegrid put both
+    directory.py FOLDER OUTPUT.json [--brief]      FOLDER: where icesoc.util.fetch icegrid put both
 """
 import os
 import pathlib

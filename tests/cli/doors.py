@@ -6,9 +6,8 @@ import concurrent.futures, json, os, shutil, subprocess, sys, tempfile, time, un
 from pathlib import Path
 
 TREE = Path(__file__).resolve().parent.parent.parent
-sys.path.insert(0, str(TREE))
-from cli import build_folder, command, flight, main, runner  # noqa: E402, F401
-from cli.options import FLIGHT, SWITCH  # noqa: E402
+from icesoc.cli import build_folder, command, flight, main, runner  # noqa: F401
+from icesoc.cli.options import FLIGHT, SWITCH
 
 
 def clean(**more):
@@ -150,7 +149,7 @@ MISTAKES = {
     "./icesoc core test --ip a-b": "IP is the name of a core, not 'a-b'",
     "./icesoc run --key no.key": "./icesoc key",
     "./icesoc run --again Makefile": "cannot read the flight",
-    "./icesoc run --again cli/flight.schema.json":
+    "./icesoc run --again tools/icesoc/cli/flight.schema.json":
     "describes no flight: it is not of version 3",
     "./icesoc contract": "contract has the commands diff, from-rdl",
     "./icesoc bench --only airr": "there is no bench 'airr': simulator, air",

@@ -30,7 +30,6 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True
 TREE = Path(__file__).resolve().parents[2]
-sys.path[:0] = map(str, (TREE, TREE / "bus", TREE / "sw/ground/clients"))
 DATA = TREE / "tests/bus/cores/data"
 BUILD, WORK = Path(), Path()  # the build folder; a folder of this run
 CORES = {path.name.split(".")[0]: path for path in DATA.glob("*.regs.json")} | {
@@ -66,30 +65,31 @@ class Parser:
 
 
 def chip_rdl():
-    import coremap
+    from icesoc.chip import coremap
     return coremap.core_exchange.rdl_of([
         coremap.Slot("led", 2, 0x1000, coremap.described(CORES["led"]))])
 
 
 def flights():
-    from cli import flight
+    from icesoc.cli import flight
     values = {option.field: option.default or flight.empty(option) for option in flight.FIELDS}
     return [json.dumps({"version": flight.VERSION, **values, "firmware": "x"}, indent=1)]
 
 
 PARSERS = {
-    "regs": Parser("regmap", ["FILE", "--output-dir", "OUT"], [
+    "regs": Parser("icesoc.regs.regmap", ["FILE", "--output-dir", "OUT"], [
         "hdl/*/*.regs.json", "ip/*/*.regs.json", "bus/*.regs.json", "tests/bus/cores/data/*.json"]),
-    "clocked": Parser("regmap", ["FILE", "--clocked", "--clk-hz", "--output-dir", "OUT"], [
+    "clocked": Parser("icesoc.regs.regmap", [
+        "FILE", "--clocked", "--clk-hz", "--output-dir", "OUT"], [
         "ip/*/*.regs.json", "tests/bus/cores/data/*.json"]),
-    "rdl": Parser("rdl", ["FILE", "OUT"], lambda: [RDL, chip_rdl()]),
-    "cores": Parser("coremap", ["FILE", *COREMAP, *(
+    "rdl": Parser("icesoc.regs.rdl", ["FILE", "OUT"], lambda: [RDL, chip_rdl()]),
+    "cores": Parser("icesoc.chip.coremap", ["FILE", *COREMAP, *(
         word for name, path in CORES.items() for word in ("--core", f"{name}={path}"))],
                     lambda: LISTS),
-    "core": Parser("coremap", ["LIST", *COREMAP, "--core", "adder=FILE", "--core",
+    "core": Parser("icesoc.chip.coremap", ["LIST", *COREMAP, "--core", "adder=FILE", "--core",
                                      f"led={CORES['led']}"], [
         "ip/*/*.regs.json", "tests/bus/cores/data/*.json"]),
-    "flight": Parser("cli.flight", [], flights, "read"),
+    "flight": Parser("icesoc.cli.flight", [], flights, "read"),
     "sim": Parser("", ["--flight", "FILE", "--wave", "x"], flights,
                   program="testbench/sim/icesoc-sim"),
     "provided_key": Parser("provide_key", ["--port", "/dev/null", "--key", "FILE"],

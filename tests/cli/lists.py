@@ -5,8 +5,8 @@ import contextlib, io, re, shlex, shutil, subprocess, sys, tempfile, unittest
 from pathlib import Path
 
 from doors import TREE, ask
-from cli import build_folder, command, flight, runner
-from cli.commands.tree import manual
+from icesoc.cli import build_folder, command, flight, runner
+from icesoc.cli.commands.tree import manual
 
 
 class Lists(unittest.TestCase):
@@ -37,7 +37,8 @@ class Lists(unittest.TestCase):
                 command.find(words.split())
 
     def test_the_schema_is_that_of_the_options_and_holds_a_flight(self):
-        self.assertEqual((TREE / "cli/flight.schema.json").read_text(), flight.schema_text())
+        schema = (TREE / "tools/icesoc/cli/flight.schema.json").read_text()
+        self.assertEqual(schema, flight.schema_text())
         good = {"version": flight.VERSION, **{o.field: rule["default"] for o in flight.FIELDS
                                  if (rule := flight.schema()["properties"][o.field])}}
         self.assertIsNone(flight.wrong(good))
@@ -86,7 +87,8 @@ class Lists(unittest.TestCase):
             tool.write_text("#!/bin/sh\necho '[1/2] first'\necho 'odd: a warning'\n"
                             "echo '[2/2] second'\nexit 3\n")
             tool.chmod(0o755)
-            code = f"from cli.build_folder import *; run_ninja(['{tool}'], '{log}', check=False)"
+            code = ("from icesoc.cli.build_folder import *\n"
+                    f"run_ninja(['{tool}'], '{log}', check=False)")
             words = [sys.executable, "-c", code]
             self.assertEqual(ask(*words)[1], "odd: a warning\n")
             shown = ask("script", "-qec", shlex.join(words), "/dev/null")[1]

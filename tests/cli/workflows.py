@@ -15,8 +15,7 @@ from pathlib import Path
 
 import yaml
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from script import TREE, Script, fresh, git, main, write  # noqa: E402
+from script import TREE, Script, fresh, git, main, write
 
 WORK, BUILD = map(Path, sys.argv[2:4])
 

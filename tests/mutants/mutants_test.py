@@ -10,11 +10,9 @@ import subprocess
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-# A script's compiled form contains its time, which differs in each clone.
-sys.pycache_prefix = os.environ["PYTHONPYCACHEPREFIX"] = f"{sys.argv[2]}/compiled"
-from script import TREE, Script, edit, fresh, git, main, write  # noqa: E402
+from script import TREE, Script, edit, fresh, git, main, write
 
+RUN = TREE / "tools/python", "-m", "icesoc.mutants.run"
 PROJECT = "cmake_minimum_required(VERSION 3.25)\nproject(tiny {})\nenable_testing()\n"
 TINY = """/* doubles */
 static int twice(int n) {
@@ -78,9 +76,6 @@ class Cases(Script):
 
     def test_run(self):
         """Each result that a seeded bug can have, an interrupted run."""
-        for file in "tests/mutants/run.py", "testbench/page/tool.py":
-            write(file, (TREE / file).read_text())
-        run = "tests/mutants/run.py"
         write("CMakeLists.txt", PROJECT.format("C") + "add_executable(test_tiny tiny.c)\n"
               "add_test(NAME test_tiny COMMAND test_tiny)\n")
         write("tiny.c", TINY)
@@ -89,7 +84,7 @@ class Cases(Script):
         git("add .")
         wrong = TWICE, "    return 3 * n;"
         self.bugs(wrong=wrong)
-        self.ask(run, "--jobs", "1")
+        self.ask(*RUN, "--jobs", "1")
         self.has("^caught *tiny/wrong ")
         self.has("^tiny/wrong\tcaught\ttest_tiny\t", file="build/mutants/results.tsv")
 
@@ -101,14 +96,14 @@ class Cases(Script):
         self.bugs(wrong=wrong, comment=("/* doubles */", "/* halves */"),
                   nonsense=(TWICE, "    retrun 2 * n;"), nothing=(TWICE, TWICE),
                   stale=("    return 6 * n;", "    return 5 * n;"))
-        self.ask(run, "--jobs", "2", status=1)
+        self.ask(*RUN, "--jobs", "2", status=1)
         self.has("caught *tiny/wrong ", "SURVIVED *tiny/comment ", "does not build *tiny/nonsense ",
                  "does not apply *tiny/stale ", "does not apply *tiny/nothing ",
                  "^mutants: 1 of 5 caught")
         self.assertFalse((copies[0] / "left_the_tree.c").exists())
         for copy in copies:
             self.assertEqual((copy / "tiny.c").read_text(), TINY)
-        self.ask(run, "--check", status=1)
+        self.ask(*RUN, "--check", status=1)
         self.has("tiny/stale: does not apply")
         self.make("mutants", "BLOCK=tiny/wrong", "JOBS=1", tree=".")
         self.has("^mutants: 1 of 1 caught")
@@ -116,13 +111,13 @@ class Cases(Script):
         malformed = Path("tests/mutants/wrong.bugs.json")
         for text in '{"no": {"test": "and no file"}}\n', "no JSON\n", "[]\n":
             malformed.write_text(text)
-            self.ask(run, "--check", status=1)
+            self.ask(*RUN, "--check", status=1)
             self.has("wrong.bugs.json: not bugs as")
         malformed.unlink()
 
         # A test that fails by itself catches nothing.
         edit("tiny.c", "!= 6", "!= 7")
-        self.ask(run, "--jobs", "1", status=1)
+        self.ask(*RUN, "--jobs", "1", status=1)
         self.has("test_tiny fails without any mutant")
 
     def draw(self, status=0, block="pair"):
@@ -136,8 +131,6 @@ class Cases(Script):
         write(pair, PAIR)
         write("bus/none.v", "")
         write("ip/none", "")
-        Path("tests").mkdir()
-        os.symlink(TREE / "tests/mutants", "tests/mutants")
         prove = f"{TREE}/tests/hdl/formal/prove.sh pair 4 {self.work} {self.work}/build/pair"
         write("CMakeLists.txt",
               PROJECT.format("NONE") + f"add_test(NAME formal.pair COMMAND env {prove})\n")
@@ -170,7 +163,7 @@ class Cases(Script):
     def the_model_carries(self, missed, pair):
         write("missed.json", json.dumps(missed))
         write("main.cpp", TEST)
-        self.ask(TREE / "tests/mutants/model.py", "--cc", "-Wall", "--top-module", "pair",
+        self.ask(TREE / "tools/icesoc/mutants/model.py", "--cc", "-Wall", "--top-module", "pair",
                  "--prefix", "Vpair", "--Mdir", "model", pair,
                  env={**os.environ, "DRAWN": str(self.work / "missed.json")})
         root = subprocess.check_output(["verilator", "--getenv", "VERILATOR_ROOT"], text=True)
@@ -186,8 +179,7 @@ class Cases(Script):
         write("copy/build/main/build.ninja", PROGRAMS)
         write("by_tests.py", f"""import pathlib, sys
 from concurrent.futures import ThreadPoolExecutor
-sys.path.insert(0, "{TREE}/tests/mutants")
-import drawn, run
+from icesoc.mutants import drawn, run
 run.TOP, run.prepare = pathlib.Path.cwd(), lambda *_: None
 drawn.TESTS = {{"pair": "test_pair", "bad": "test_bad"}}
 rows = [dict(module=name, result="SURVIVED") for name in ("pair", "pair", "bad")]
@@ -195,7 +187,7 @@ with ThreadPoolExecutor(2) as pool:
     assert drawn.by_tests(rows, run.TOP / "copy", pool) == ["test_bad"]
 assert [row["result"] for row in rows] == ["test_pair", "SURVIVED", "SURVIVED"], rows
 """)
-        self.ask("/usr/bin/python3", "-B", "by_tests.py")
+        self.ask(TREE / "tools/python", "by_tests.py")
         self.has("^said$", "test_bad fails without any mutant, so it caught none")
 
 

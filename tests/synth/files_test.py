@@ -3,11 +3,8 @@
 """files_test: which files a design has, and the places of its signals."""
 import pathlib, sys, tempfile, unittest
 
-sys.dont_write_bytecode = True
-sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[2] / folder)
-                for folder in ("synth/tool", "testbench/page")]
-import nets, sources
-from netlist import Netlist
+from icesoc.synth import nets, sources
+from icesoc.synth.netlist import Netlist
 
 
 class Files(unittest.TestCase):

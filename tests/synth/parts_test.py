@@ -4,12 +4,11 @@
 figures that can be added up by hand."""
 import copy, json, os, pathlib, statistics, sys, tempfile, unittest, unittest.mock
 
-sys.dont_write_bytecode = True
-sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[2] / folder)
-                for folder in ("synth/tool", "testbench/page")]
-import baseline, cores, equivalence, owners, report, reports, runner, slices, sources, timing, tool
-from netlist import Cell, Name, Netlist, Pin, ZERO
-from owners import Cost
+from icesoc.synth import (baseline, cores, equivalence, owners, report, reports, runner, slices,
+                          sources, timing)
+from icesoc.util import tool
+from icesoc.synth.netlist import Cell, Name, Netlist, Pin, ZERO
+from icesoc.synth.owners import Cost
 
 YOSYS = "Yosys 0.23 (git sha1 7ce5011c24b)"
 

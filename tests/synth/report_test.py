@@ -16,10 +16,8 @@ import sys
 import time
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from look import browse, fault  # noqa: E402
-from script import (TREE, Script, append, commit, edit, fresh, git, main,  # noqa: E402
-                    repository, write)
+from look import browse, fault
+from script import TREE, Script, append, commit, edit, fresh, git, main, repository, write
 
 CASE, PROGRAM, KEPT = sys.argv[1], Path(sys.argv[2]).resolve(), Path(sys.argv[4]).resolve()
 BLOCKS = Path("project/hdl/blocks")
@@ -73,7 +71,6 @@ class Cases(Script):
             write(f"project/{folder}/none", "")
         for folder in "yosys", "primitives":
             shutil.copytree(TREE / "synth" / folder, f"project/synth/{folder}")
-        shutil.copy(TREE / "synth/page.html", "project/synth")
         Path("gen").mkdir()
         Path("out").mkdir()
         if CASE != "counts":

@@ -9,7 +9,7 @@ set -eu
 cd "$1"
 listed() { git grep --no-index --exclude-standard --no-color "$@"; }
 # The rooms of `later` have scripts that are not folded yet.
-later='^(sw|bus|ip|slice|tests/(bus|ip|slice|sw|synth))/'
+later='^(sw|ip|slice|tools/icesoc/(cores|regs)|tests/(bus|ip|slice|sw|synth))/'
 if listed -nE '^.{101}' -- '*.sh' '*.py' | grep -vE "$later"; then
     echo "Over 100 columns (see above)."
     exit 1

@@ -9,8 +9,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from script import TREE, Script, append, fresh, main, write  # noqa: E402
+from script import TREE, Script, append, fresh, main, write
 
 WORK, BUILD = map(Path, sys.argv[2:4])
 TINY = r"""cmake_minimum_required(VERSION 3.25)
@@ -46,16 +45,17 @@ class Cases(Script):
             Path("sudo").unlink()
 
     def test_skipped(self):
-        """Skipped tests are named at the end with their reasons (tests/ctest.py)."""
+        """Skipped tests are named at the end with their reasons (icesoc.regress.ctest)."""
         fresh(WORK)
         write("CMakeLists.txt", TINY)
         self.ask("cmake", "-B", "build", "-G", "Ninja")
-        self.ask(TREE / "tests/ctest.py", "--test-dir", "build")
+        self.ask(TREE / "tools/python", "-m", "icesoc.regress.ctest", "--test-dir", "build")
         self.assertTrue(self.said.endswith("Skipped, 2:\n    by_script: no right to mount\n"
                                            "    by_gtest: no IPv6\n"), self.said)
         append("CMakeLists.txt", "add_test(NAME fails COMMAND false)\n")
         self.ask("cmake", "build")
-        self.ask(TREE / "tests/ctest.py", "--test-dir", "build", status=None)
+        self.ask(TREE / "tools/python", "-m", "icesoc.regress.ctest", "--test-dir", "build",
+                 status=None)
 
     def test_tarball(self):
         """What lists the tree's files does so in a copy that is no clone."""

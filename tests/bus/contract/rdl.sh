@@ -8,7 +8,7 @@ source=$1 gen=$2 work=$3
 rm -rf "$work"
 mkdir -p "$work/old/ip" "$work/new"
 fail() { echo "rdl: $*" && exit 1; }
-rdl() { "$source/bus/rdl.py" "$@" >"$work/log" 2>&1; }
+rdl() { "$source/tools/python" -m icesoc.regs.rdl "$@" >"$work/log" 2>&1; }
 
 rdl "$gen/icesoc.rdl" "$work/new/ip" || { cat "$work/log" && fail 'the chip was not read'; }
 for block in "$work"/new/ip/*.regs.json; do
@@ -16,8 +16,8 @@ for block in "$work"/new/ip/*.regs.json; do
     find "$source/hdl" "$source/ip" "$gen" -name "$name" -exec cp {} "$work/old/ip" \;
     [ -f "$work/old/ip/$name" ] || fail "there is no block $name"
 done
-[ "$("$source/bus/contract_diff.py" true "$work/old" "$work/new")" = 'no breaking change' ] ||
-    { "$source/bus/contract_diff.py" true "$work/old" "$work/new" || true;
+[ "$("$source/tools/python" -m icesoc.regs.contract_diff true "$work/old" "$work/new")" = 'no breaking change' ] ||
+    { "$source/tools/python" -m icesoc.regs.contract_diff true "$work/old" "$work/new" || true;
     fail 'what comes back is not what was there'; }
 for file in icesoc.svd icesoc.ipxact.xml; do xmllint --noout "$gen/$file" ||
     fail "$file is no XML"; done
@@ -40,7 +40,7 @@ addrmap lamp {
     reg { field { woclr; hw = w; } DONE[0:0] = 0; field { onwrite = woclr; } OVER[1:1]; } EVENTS @ 6;
 };
 RDL
-"$source/tests/regress/test/make_in.sh" "$source" "$source" none from-rdl RDL="$work/lamp.rdl" \
+"$source/tests/regress/make_in.sh" "$source" "$source" none from-rdl RDL="$work/lamp.rdl" \
     OUT="$work" >"$work/log" 2>&1 || { cat "$work/log" && fail 'the lamp was not read'; }
 /usr/bin/python3 - "$work/lamp.regs.json" <<'PYTHON' || fail 'the lamp has other registers'
 import json, sys

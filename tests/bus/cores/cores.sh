@@ -4,20 +4,22 @@
 # lint of soc.v with each, and errors. It is shell because a case is a list and the words that
 # programs (coremap, Verilator, GCC, xmllint, Yosys) say of it.
 set -eu
-source=$1 gen=$2 work=$3 coremap=$1/bus/coremap.py regmap=$1/bus/regmap.py
+source=$1 gen=$2 work=$3
+coremap() { "$source/tools/python" -m icesoc.chip.coremap "$@"; }
+regmap() { "$source/tools/python" -m icesoc.regs.regmap "$@"; }
 data=$(cd "$(dirname "$0")/data" && pwd)
 rm -rf "$work"
 mkdir -p "$work/own"
 # The led again, with a clock of its own.
 for f in regs.json v; do sed 's/\<led\>/tuner/' "$data/led.$f" >"$work/own/tuner.$f"; done
-"$regmap" "$work/own/tuner.regs.json" --clocked --output-dir "$work/own"
+regmap "$work/own/tuner.regs.json" --clocked --output-dir "$work/own"
 fail() { echo "cores: $*" && exit 1; }
 
 chip() { # name, the list: the chip in $work/name
     out=$work/$1
     mkdir -p "$out"
     printf '%b' "$2" >"$out/cores.list"
-    "$coremap" "$out/cores.list" --base "$source/bus/map.regs.json" \
+    coremap "$out/cores.list" --base "$source/bus/map.regs.json" \
         --core "led=$data/led.regs.json" \
         --core "adder=$data/adder.regs.json" --core "mover=$data/mover.regs.json" \
         --core "probe=$source/ip/probe/probe.regs.json" --clocked mover --clocked probe \
@@ -27,7 +29,7 @@ chip() { # name, the list: the chip in $work/name
 accepted() {
     chip "$@" || { cat "$out/messages" && fail "refused: $2"; }
     for regs in "$out/map.regs.json" "$data"/*.regs.json "$work"/own/*.regs.json;
-    do "$regmap" "$regs" --output-dir "$out"; done
+    do regmap "$regs" --output-dir "$out"; done
     # shellcheck disable=SC2086 # a list of folders
     verilator --lint-only -Wall -I"$out" $(for f in "$out" "$data" "$work/own" "$source"/bus \
         "$source"/hdl/* "$source/ip/probe" "$gen"; do [ ! -d "$f" ] || echo "-y $f"; done) \
@@ -77,7 +79,7 @@ address=$(xmllint --xpath 'string(//peripheral[name="CAMERA"]/baseAddress)' "$ou
 [ "$(xmllint --xpath 'count(//peripheral)' "$out/icesoc.svd")" = 6 ] ||
     fail 'the SVD file has not six peripherals'
 # Words behind PAGE have maps of their own in SystemRDL, which gives them back, and in IP-XACT.
-"$source/bus/rdl.py" "$out/icesoc.rdl" "$work/back" >"$work/rdl" 2>&1 || { cat "$work/rdl" &&
+"$source/tools/python" -m icesoc.regs.rdl "$out/icesoc.rdl" "$work/back" >"$work/rdl" 2>&1 || { cat "$work/rdl" &&
     fail 'SystemRDL with pages'; }
 for f in "$data/led.regs.json" "$work/back/led.regs.json"; do
     python3 -c 'import json, sys; print(sorted(json.dumps(dict(r), sort_keys=True) for r in json.load(open(sys.argv[1]))["registers"]))' "$f"
@@ -109,7 +111,7 @@ before=$(contract mover)
 changed() { # sed's command for the mover's description: the hash with it
     mkdir -p "$work/changed"
     sed "$1" "$data/mover.regs.json" >"$work/changed/mover.regs.json"
-    "$coremap" "$out/cores.list" --base "$source/bus/map.regs.json" --core \
+    coremap "$out/cores.list" --base "$source/bus/map.regs.json" --core \
         "led=$data/led.regs.json" \
         --core "mover=$work/changed/mover.regs.json" --output-dir "$out"
     contract mover
@@ -122,7 +124,7 @@ changed() { # sed's command for the mover's description: the hash with it
 # A servant without a call that waits has neither interrupt nor poll of its own.
 sed 's/"adder_servant.h"/&, "waits": false/' "$data/adder.regs.json" >"$work/adder.regs.json"
 echo adder >"$work/cores.list"
-"$coremap" "$work/cores.list" --base "$source/bus/map.regs.json" \
+coremap "$work/cores.list" --base "$source/bus/map.regs.json" \
     --core "adder=$work/adder.regs.json" \
     --output-dir "$work"
 grep -q '^    Hw_Core_interrupt(&core_adder.core);' "$work/soc_cores.c" &&
@@ -149,7 +151,7 @@ refused 'clock=2/99: 2020202 Hz' 'tuner clock=2/99\n'
 refused 'clock=9/8: a part of' 'tuner clock=9/8\n'
 refused 'clock=x: a part of' 'tuner clock=x\n'
 refused "has no input pin 'clock'" 'led clock=6/25\n'
-! "$regmap" "$data/mover.regs.json" --clocked --output-dir "$work" 2>"$work/messages" &&
+! regmap "$data/mover.regs.json" --clocked --output-dir "$work" 2>"$work/messages" &&
     grep -q 'a core with a memory port has the chip' "$work/messages" ||
     fail 'a memory port in another clock'
 # Registers and fields whose names are one in the headers.
@@ -157,13 +159,13 @@ for names in 'A B A_B_LSB' 'A_B_LSB C A_B_LSB'; do
     # shellcheck disable=SC2086 # three words
     printf '{"block": "b", "doc": "", "registers": [{"word": 0, "name": "%s", "access": "ro", "doc": "",
         "fields": [{"name": "%s", "doc": "", "lsb": 0, "width": 1}]}, {"word": 1, "name": "%s", "access": "ro", "doc": ""}]}' $names >"$work/twice.regs.json"
-    ! "$regmap" "$work/twice.regs.json" --output-dir "$work" 2>"$work/messages" &&
+    ! regmap "$work/twice.regs.json" --output-dir "$work" 2>"$work/messages" &&
         grep -q 'A_B_LSB is there twice' "$work/messages" ||
         fail "registers and fields of one name ($names)"
 done
 described() { # words of the message, a description that is refused
     printf '%b' "$2" >"$work/wrong.regs.json"
-    ! "$regmap" "$work/wrong.regs.json" --output-dir "$work" 2>"$work/messages" &&
+    ! regmap "$work/wrong.regs.json" --output-dir "$work" 2>"$work/messages" &&
         grep -q -- "$1" "$work/messages" || { cat "$work/messages" && fail "'$1' is not said: $2"; }
 }
 described 'the description is no object' '[]'
@@ -226,8 +228,8 @@ refused "1: error: gate=on: 'led' has no output idle_o" 'led gate=on\n'
 refused 'gate=off: on, or without the word' 'adder gate=off\n'
 refused "no core's output of 1 bits" 'led button_i=mover.nothing_o\n'
 refused "_o=none: it is no pin" 'mover\nmover name=a\nmover name=b\nmover name=c\n'
-"$coremap" --help | grep -q 'a core a line' || fail 'no help'
-! "$coremap" "$work/missing" --base "$source/bus/map.regs.json" 2>"$work/messages" ||
+coremap --help | grep -q 'a core a line' || fail 'no help'
+! coremap "$work/missing" --base "$source/bus/map.regs.json" 2>"$work/messages" ||
     fail 'a missing list is accepted'
 grep -q 'cannot read' "$work/messages" || fail 'a missing list is not said'
 echo 'cores: all as expected'

@@ -11,10 +11,9 @@ import zlib
 
 import Ice
 
-TREE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../..")
-sys.path[:0] = [os.path.join(TREE, "sw/ground/clients"), os.path.join(TREE, "ip/probe")]
-import mission  # noqa: E402
-import probe  # noqa: E402
+import mission
+from icesoc import TREE
+from icesoc.cores import probe
 
 device, guard, status, plugin, folder, chip, *files = sys.argv[1:]
 clocked = ["my_requests"] if chip == "TRACE" else []

@@ -49,8 +49,8 @@ mapped scaler # sequences, exceptions and events
 mapped many   # 46 words, of which a slot has 16
 # A core in VHDL, as make new-foreign puts it into a slot. GHDL is fetched once.
 lamps=$source/tests/ip/new_foreign/lamps
-logged env GHDL="$build/ghdl/ghdl" "$source/ip/new_foreign.py" my_lamps lamps own \
-    "$work/fresh/my_lamps" \
+logged env GHDL="$build/ghdl/ghdl" "$source/tools/python" -m icesoc.cores.new_foreign \
+    my_lamps lamps own "$work/fresh/my_lamps" \
     LIBRARY=lights PARAM:lamps_lit=4 read=request_rd write=request_wr address=request_a \
     wdata=request_d rdata=q "$lamps.vhd" "${lamps}_types.vhd"
 fresh my_lamps
@@ -69,8 +69,8 @@ echo '1001 servo.fault_i 0' >>"$work/pins"
 echo '500 port.port_in_i 0x83' >>"$work/pins"
 simulator=$work/build/testbench/sim/icesoc-sim
 logged "$simulator" --pins "$work/pins" --size 96x64 --image /usr/share/xplanet/images/earth.jpg \
-    --out "$work" --seed "${SEED:-1}" --guard 20 -- /usr/bin/python3 "$here/client.py" '{device}' \
-    '{guard}' '{status}' "$build/ground/xbeeat:createXBeeAT" "$work" "$chip" \
+    --out "$work" --seed "${SEED:-1}" --guard 20 -- "$source/tools/python" "$here/client.py" \
+    '{device}' '{guard}' '{status}' "$build/ground/xbeeat:createXBeeAT" "$work" "$chip" \
     "$samples/sample_verilog/sample_verilog.ice" "$golden/scaler.ice" "$golden/many.ice" \
     "$here/servo/servo.ice" "$here/crc32/crc32.ice" "$samples/sample_vhdl/sample_vhdl.ice" \
     "$source/sw/hw/registers/Registers.ice" "$source/ip/probe/Probe.ice"
@@ -99,10 +99,11 @@ traced() {
     # shellcheck disable=SC2086 # options
     logged "$simulator" --replay "$work/begin" --out "$work/again" --wave "$work/trace.fst" $span
     fst2vcd "$work/trace.fst" >"$work/trace.vcd"
-    "$here/same.py" "$work/captured.vcd" "$work/trace.vcd" 500
+    "$source/tools/python" "$here/same.py" "$work/captured.vcd" "$work/trace.vcd" 500
 }
 [ "$chip" = NETLIST ] || traced # a netlist has other names
 # Its inputs, given to the core alone, bring forth its outputs.
-"$source/ip/probe/replay.py" "$work/probe.vcd" --scope u_sample_verilog --top sample_verilog \
+"$source/tools/python" -m icesoc.cores.replay "$work/probe.vcd" \
+    --scope u_sample_verilog --top sample_verilog \
     --out "$work/replay" -I "$work/build/gen" -I "$source/bus" \
     "$samples/sample_verilog/sample_verilog.v" "$work/build/gen/sample_verilog_wrapper.v"

@@ -5,10 +5,8 @@ nanoseconds-of-a-clock
  Compares each signal of the capture in each clock that both have. The trace (fst2vcd) has two
 moments a clock; its clocks are those of u_system_slot.cycles, which it has. """
 import sys
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "ip/probe"))
-from replay import read_vcd  # noqa: E402
+from icesoc.cores.replay import read_vcd
 
 
 def clocks(moments, keys, clock_of):

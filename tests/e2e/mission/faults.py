@@ -20,9 +20,8 @@ import sys
 import time
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "testbench/page"))
-import tool  # noqa: E402
-from fleet_ground import TROUBLE, VEHICLES, words_of  # noqa: E402
+from fleet_ground import TROUBLE, VEHICLES, words_of
+from icesoc.util import tool
 
 IMAGE = "/usr/share/xplanet/images/earth.jpg"
 LONGEST = 240.0  # seconds of a mission on a busy machine
@@ -53,7 +52,7 @@ def lives(pid):
 class Mission:
     """A mission that runs, and its processes by name."""
     NAMES = {"ground": "clients/mission.py", "simulator": "sim/icesoc-sim",
-             "page": "live/live.py(?!.* --try)", "page's trial": "live/live.py.* --try"}
+             "page": "icesoc.web.live(?!.* --try)", "page's trial": "icesoc.web.live.* --try"}
 
     def __init__(self, source, build, out, prefix=(), options=(), words=None):
         """words: makes the command in place of `./icesoc run` with its options."""

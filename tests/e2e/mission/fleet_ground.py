@@ -22,9 +22,8 @@ from types import SimpleNamespace
 
 import Ice
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "sw/ground/clients"))
-import mission  # noqa: E402
-import plugged  # noqa: E402
+import mission
+import plugged
 
 THRESHOLD = 40
 REST = 0.2  # simulated seconds between two frames

@@ -17,8 +17,7 @@ import sys
 import time
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-from script import TREE, Script, fresh, main, write  # noqa: E402
+from script import TREE, Script, fresh, main, write
 
 CASE, BUILD = sys.argv[1], Path(sys.argv[3]).resolve()
 IMAGE = Path("/usr/share/xplanet/images/earth.jpg")

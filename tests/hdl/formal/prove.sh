@@ -13,7 +13,7 @@
 # does the step.
 # PROVE_BOUNDED=1: bounded only.
 # PROVE_READ: more words of read_verilog: defines, files; idle_proof's core.
-# PROVE_MUTANT: Yosys commands before flattening (tests/mutants/drawn.py); no trace then.
+# PROVE_MUTANT: Yosys commands before flattening (tools/icesoc/mutants/drawn.py); no trace then.
 # A failed assertion leaves <work>/trace.vcd. The module may instance others of its folder, of bus/
 # and of hdl/system/.
 set -eu

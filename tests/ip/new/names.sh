@@ -6,7 +6,6 @@ set -eu
 source=$1 ip=$1/ip work=$2 slice2c=$3
 rm -rf "$work"
 mkdir -p "$work/bus" "$work/hdl/modem" "$work/ip/old" "$work/sw" "$work/testbench" "$work/synth"
-cp -r "$ip/template" "$work/ip"
 export ICESOC_TREE="$work"
 new() { "$source/icesoc" core new --built --build build "$@"; }
 remove() { "$source/icesoc" core remove --built --build build "$@"; }

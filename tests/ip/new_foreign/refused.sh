@@ -1,9 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# refused: new_foreign.py work-folder   Input that make new-foreign refuses, with a reason and
+# refused: source-folder work-folder   Input that make new-foreign refuses, with a reason and
 # nothing written. It is shell because a case is a command and what it says.
 set -eu
-new=$1 work=$2
+source=$1 work=$2
+new() { "$source/tools/python" -m icesoc.cores.new_foreign "$@"; }
 here=$(cd "$(dirname "$0")" && pwd)
 rm -rf "$work"
 mkdir -p "$work"
@@ -12,7 +13,7 @@ for file in wb_port.v cores.v axil_words.v lamps.vhd; do cp "$here/$file" .; don
 named() { # name of the core, words of the message, top, bus, options and files
     name=$1 words=$2 top=$3 bus=$4
     shift 4
-    ! "$new" "$name" "$top" "$bus" out "$@" >log 2>&1 ||
+    ! new "$name" "$top" "$bus" out "$@" >log 2>&1 ||
         { echo "accepted: $name $top $bus $*" && exit 1; }
     grep -q -- "$words" log && ! grep -q Traceback log || { cat log &&
         echo "'$words' is not said: $name $top $bus $*" && exit 1; }
@@ -32,7 +33,7 @@ echo 'module broken(input clk;' >broken.v
 refused 'usage: make new-foreign' wb_port wishbone
 refused "not 'spi'" wb_port spi wb_port.v
 mkdir out
-! "$new" my_port wb_port wishbone out wb_port.v >log 2>&1 && grep -q 'is there already' log ||
+! new my_port wb_port wishbone out wb_port.v >log 2>&1 && grep -q 'is there already' log ||
     { cat log && exit 1; }
 rmdir out
 named My 'small letters' wb_port wishbone wb_port.v
@@ -88,40 +89,40 @@ refused 'LIBRARY: .* these are Verilog' req_words own LIBRARY=lights cores.v
 refused 'a setting is for BUS=axis' req_words own setting=value cores.v
 refused "setting is an input of a core, and 'over' is not" axis_scale axis setting=over cores.v
 # Of two cores in one chip.
-! "${new%/*}/foreign_files.py" wb_port.v again.v 2>log &&
+! "$source/tools/python" -m icesoc.cores.foreign_files wb_port.v again.v 2>log &&
     grep -q "again.v:6: module 'wb_port' is in .*a chip has one of each" log ||
     { cat log && exit 1; }
 # Meanings of names.
-"$new" my_port wbs_names wishbone names ack=2 open=spare cores.v >log
+new my_port wbs_names wishbone names ack=2 open=spare cores.v >log
 says 'wbs_clk: clock' 'rst_ni: resetn' 'gate_clk_pad_i: pin' 'clk_div: pin' \
     'wbs_cyc_i: cyc' 'wbs_adr_i: adr, counts words: it has 2 bits; if not, ADDRESS=bytes' \
     'wbs_cti_i: low' 'intr: interrupt' 'spare: open'
 # Macros that are multiples of 4 are byte addresses.
 printf '`define PORT_MODE 8\047h0\n  `define PORT_MODE_BITS 2\n`define PORT_LEVEL 8\047h8 // of pins\n' >macros.vh
 echo 'module macros(input clk, we, input [7:0] a, input [31:0] d, output [31:0] q); assign q = d ^ a; endmodule' >macros.v
-"$new" my_port macros own macros write=we address=a wdata=d rdata=q macros.vh macros.v >log
+new my_port macros own macros write=we address=a wdata=d rdata=q macros.vh macros.v >log
 grep -q 'a: adr, counts bytes: PORT_MODE, PORT_LEVEL are multiples of 4; if not' log &&
     grep -q 'registers: MODE LEVEL' log && grep -q '"word": 10' macros/my_port.regs.json ||
     { cat log && exit 1; }
 # Outputs that may be interrupts are asked about; one that is active low is told.
 echo 'module asked(input clk, we, input [31:0] d, output [31:0] q, output TIMERINT, irq_no, point, output [3:0] rx_events); endmodule' >asked.v
-"$new" my_port asked own asked write=we wdata=d rdata=q asked.v >log
+new my_port asked own asked write=we wdata=d rdata=q asked.v >log
 says "TIMERINT: pin timerint_o; if it is an interrupt: PORTS='interrupt=TIMERINT'" \
     "rx_events: pin rx_events_o; if it is an interrupt: PORTS='interrupt=rx_events'" \
     'irq_no: interruptn$' 'point: pin point_o$'
-"$new" my_port asked own open write=we wdata=d rdata=q 'open=*t*' asked.v >log
+new my_port asked own open write=we wdata=d rdata=q 'open=*t*' asked.v >log
 says 'TIMERINT: pin' 'rx_events: open' 'point: open' 'irq_no: interruptn'
 refused "has no port 'TIMER\*'" asked own write=we wdata=d rdata=q 'low=TIMER*' asked.v
 grep -q 'interrupt = !interrupt_0;' asked/my_port.v
 # Many pins that nobody needs.
-"$new" my_port asked own spared write=we wdata=d rdata=q 'open=*' pin=point asked.v >log
+new my_port asked own spared write=we wdata=d rdata=q 'open=*' pin=point asked.v >log
 says 'irq_no: interruptn$' 'rx_events: open$' 'point: pin point_o$'
 # OpenCores' level of a reset, whatever else has it for a name.
 echo 'module level #(parameter ARST_LVL = 0) (input clk, arst_i, we, input [31:0] d, output reg [31:0] q);
     wire rst = arst_i ^ ARST_LVL[0];
     always @(posedge clk or negedge rst) if (!rst) q <= 0; else if (we) q <= d;
 endmodule' >level.v
-"$new" my_port level own level write=we wdata=d rdata=q level.v >log
+new my_port level own level write=we wdata=d rdata=q level.v >log
 grep -q '^  arst_i: resetn' log && grep -q 'level u_core' level/my_port.v ||
     { cat log && echo 'the level of a reset is wrong' && exit 1; }
 # SystemVerilog with packages, in any order, and a loop that Verilator reports.
@@ -141,7 +142,7 @@ typedef enum logic [1:0] {IDLE, RUN} state_t;
 typedef struct packed {logic [W-1:0] a; logic [7:0] b;} pair_t;
 endpackage' >sizes.sv
 echo 'package widths; localparam W = 8; endpackage' >widths.sv
-"$new" my_port system own system PARAM:EXTRA=2 write=we wdata=d rdata=q \
+new my_port system own system PARAM:EXTRA=2 write=we wdata=d rdata=q \
     system.sv sizes.sv widths.sv >log
 says 'state_o: pin state_o' "sv2v --top=system .*/widths.sv .*/sizes.sv .*/system.sv >system.v"
 ! grep -q 'is_odd\|number' log && # what belongs to functions is no port
@@ -151,13 +152,12 @@ says 'state_o: pin state_o' "sv2v --top=system .*/widths.sv .*/sizes.sv .*/syste
     { cat log system/my_port.v && exit 1; }
 # A register is as wide as its written, or read, data.
 echo 'module narrow(input clk, we, input [16:0] d, output [12:0] q); assign q = d[12:0]; endmodule' >narrow.v
-"$new" my_port narrow own narrow write=we wdata=d rdata=q narrow.v >log &&
+new my_port narrow own narrow write=we wdata=d rdata=q narrow.v >log &&
     grep -q '"width": 17' narrow/my_port.regs.json ||
     { cat log && echo 'a register has not 17 bits' && exit 1; }
 # The same by make, and one that is taken.
 mkdir -p "$work/tree/ip"
-ln -s "$new" "$work/tree/ip"
-made() { "${new%/ip/*}/tests/regress/test/make_in.sh" "${new%/ip/*}" "$work/tree" build \
+made() { "$source/tests/regress/make_in.sh" "$source" "$work/tree" build \
     new-foreign NAME=my_port TOP=req_words BUS=own FILES="$work/cores.v" "$@" >log 2>&1; }
 ! made && grep -q "PORTS=" log || { cat log && exit 1; }
 made CLOCK=24000000 PORTS='select=req write=wr address=where wdata=value rdata=held ack=gnt' &&

@@ -5,7 +5,7 @@
 agreement.py SLICE2C CASES.ice WORK   Each case, from a line "// ok: ...", "// warning: ..." or
     "// error: ..." to the next: both take it silently, take it with a warning, or refuse it, at the
     same first line. Then each keyword of Slice as a name of each kind.
-agreement.py SLICE2C FOLDER           ZeroC's own wrong files (cmake/fetch.py zeroc), line by line:
+agreement.py SLICE2C FOLDER           ZeroC's own wrong files (icesoc.util.fetch zeroc), line by line:
     each of which slice2cpp says something is one of which slice2c does, or has one of the REASONS.
 """
 import collections

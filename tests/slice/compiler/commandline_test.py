@@ -8,8 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-from script import TREE, Script, edit, fresh, main, write  # noqa: E402
+from script import TREE, Script, edit, fresh, main, write
 
 INCLUDES = [f"-I{TREE}/sw/base", f"-I{TREE}/sw/icec"]
 STRICT = ("-std=c90 -pedantic -Wall -Wextra -Wconversion -Wstrict-prototypes -Wmissing-prototypes "

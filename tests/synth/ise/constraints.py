@@ -20,9 +20,7 @@ from pathlib import Path
 SOURCE, GENERATED, WORK = map(Path, sys.argv[1:])
 HERE, ISE = Path(__file__).resolve().parent, SOURCE / "synth/ise"
 FILES = [ISE / "chip.ucf", GENERATED / "core_pins.ucf", ISE / "board.ucf"]
-sys.path.insert(0, str(ISE))
-sys.dont_write_bytecode = True
-from merge_ucf import statements  # noqa: E402
+from icesoc.synth.merge_ucf import statements
 
 fnmatchcase = lru_cache(None)(matches)
 
@@ -51,7 +49,7 @@ def netlist():
 
 def renamed():
     """Returns what merge_ucf.py says it renamed of a board's constraints, which have MIG's."""
-    return subprocess.run([ISE / "merge_ucf.py", HERE / "mig.ucf", *FILES], check=True, text=True,
+    return subprocess.run([sys.executable, "-m", "icesoc.synth.merge_ucf", HERE / "mig.ucf", *FILES], check=True, text=True,
                           stdout=subprocess.DEVNULL, stderr=subprocess.PIPE).stderr
 
 

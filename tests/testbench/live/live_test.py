@@ -16,13 +16,12 @@ import urllib.error
 import urllib.request
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-from script import TREE, Script, edit, fresh, main, write  # noqa: E402
-import look  # noqa: E402
+from script import TREE, Script, edit, fresh, main, write
+import look
 
 BUILD = Path(sys.argv[3]).resolve()
-LIVE = TREE / "testbench/live/live.py"
-PAGE = TREE / "testbench/live/page"
+LIVE = [TREE / "tools/python", "-m", "icesoc.web.live"]
+PAGE = TREE / "tools/icesoc/web/flight"
 
 
 class Cases(Script):
@@ -90,7 +89,7 @@ class Cases(Script):
 
     def narrow(self, state):
         """At 420 pixels nothing is cut, or needs a scroll bar."""
-        for file in (*PAGE.iterdir(), *(TREE / "testbench/page").glob("common.*")):
+        for file in (*PAGE.iterdir(), *(TREE / "tools/icesoc/web").glob("common.*")):
             write(file.name, file.read_text())
         common = '<script src="common.js">'
         edit("index.html", common, f"""<script>
@@ -109,12 +108,12 @@ setTimeout(() => top.document.body.append("cut: " + [...document.querySelectorAl
 
     def test_errors(self):
         registers = BUILD / "gen/registers.list"
-        page = LIVE, "--dir", self.work, "--registers"
-        self.ask(LIVE, "--help")
+        page = *LIVE, "--dir", self.work, "--registers"
+        self.ask(*LIVE, "--help")
         self.has("--registers")
         self.ask(*page, self.work / "none", status=1)
         self.has("cannot read")
-        self.ask(LIVE, "--dir", self.work, status=2)
+        self.ask(*LIVE, "--dir", self.work, status=2)
         self.has("required")
         with self.serving(*page, registers, until="127.0.0.1") as port:
             self.ask(*page, registers, "--port", str(port), status=1)

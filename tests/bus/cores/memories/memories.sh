@@ -20,7 +20,7 @@ ICE
 for order in 'little middle big' 'little big middle' 'middle little big' 'middle big little' \
     'big little middle' 'big middle little'; do
     echo "$order" | tr ' ' '\n' >"$work/cores.list"
-    "$source/bus/coremap.py" "$work/cores.list" --base "$source/bus/map.regs.json" \
+    "$source/tools/python" -m icesoc.chip.coremap "$work/cores.list" --base "$source/bus/map.regs.json" \
         --core "little=$work/little.regs.json" --core "middle=$work/middle.regs.json" \
         --core "big=$work/big.regs.json" --output-dir "$work"
     python3 - "$work/map.regs.json" "$order" <<'PYTHON'

@@ -1,0 +1,247 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""commands_test: what commands do, by make, with each of their variables.
+
+Usage: commands_test.py commands_... work-folder build-folder
+"""
+import os
+import re
+from pathlib import Path
+
+from project import BUILD, REGRESS, TREE, Project, append, edit, git, main, write
+
+FETCH = TREE / "tools/python", "-m", "icesoc.util.fetch"
+WAVED = r"""#!/bin/sh
+case $1 in
+--gtest_list_tests) printf 'Fir.\n  Impulse\n  ImpulseAndStep\n' ;;
+*) echo "$1" >"$WAVE" ;;
+esac
+"""
+TESTS = r"""
+set(work ${CMAKE_SOURCE_DIR})
+set(build ${CMAKE_BINARY_DIR})
+add_custom_target(regress ALL COMMAND mkdir -p tests/regress tests/hdl/formal/thing
+  COMMAND ln -sf REGRESS tests/regress/regress COMMAND sh -c "echo 3 >tests/hdl/formal/thing/cpu"
+  WORKING_DIRECTORY ${build} VERBATIM)
+foreach(target sanitized regmaps bench_programs mission)
+  add_custom_target(${target})
+endforeach()
+add_custom_target(size COMMAND cp ${work}/size.json ${work}/build)
+add_custom_target(measure_good COMMAND cp ${work}/air.json ${work}/build/bench)
+add_custom_target(measure_bad COMMAND test ! -e ${work}/slow
+  COMMAND cp ${work}/air.json ${work}/build/bench/link.json)
+add_custom_target(benches DEPENDS measure_bad measure_good)
+file(WRITE ${build}/cores.known "")
+foreach(core fir ${CORE_FOLDERS})
+  get_filename_component(core ${core} NAME)
+  add_custom_target(test_ip_${core} ALL COMMAND cp ${work}/waved ${build}/test_ip_${core})
+  file(APPEND ${build}/cores.known "${core}\n")
+  add_test(NAME test_ip_${core}.Impulse COMMAND echo "note: LEVELS: not read back")
+endforeach()
+add_custom_target(synth_inputs COMMAND mkdir -p ${build}/synth
+  COMMAND cp ${work}/utilisation ${build}/synth)
+add_test(NAME test_s.Sane COMMAND sh -c
+  "case ${build} in *sanitized) ! test -e ../../../../leak ;; esac")
+set_tests_properties(test_s.Sane PROPERTIES LABELS sanitized)
+foreach(label zeroc nightly)
+  add_test(NAME ${label}.Suite CONFIGURATIONS ${label}
+           COMMAND sh -c "echo ${label} >>../../../../done")
+  set_tests_properties(${label}.Suite PROPERTIES LABELS ${label})
+endforeach()
+"""
+STEPS = """import sys
+name = "_".join(word for word in sys.argv[1:4] if word.isalpha())
+open("done", "a").write(name + "\\n")
+sys.exit(name == open("failing").read())
+"""
+DONE = """zeroc nightly run run fly synth_report core_examples check_netlist check_netlist
+check_sanitizers check_fuzz check_mutants check_mutants check_faults check_soak bench
+check_coverage check_fresh"""
+
+
+class Cases(Project):
+    def user(self, words, *more, **how):
+        """Runs make in the whole tree, where everything is built."""
+        self.make(*words.split(), *more, build=BUILD, **how)
+
+    def test_commands_run(self):
+        flight = self.work / "flight"
+        write(flight / "flight.jsonl", "{}\n")
+        write(flight / "status", "up\n")
+        for words, said in (
+            # before a simulator is built for it
+            (f"run REPLAY={flight} FROM=x", "FROM is a number from 0 on s, not 'x'"),
+            (f"run REPLAY={flight} FROM=2 TO=1", "FROM=2.0 TO=1.0 are no span"),
+            (f"run IMAGE=/none OUT={flight}", "cannot read '/none'"),
+            ("synth BASE=none", "there is no commit BASE=none"),
+            ("faults NAME=nonsense", "faults: none is called nonsense; there are clock_step")):
+            with self.subTest(words):
+                self.user(words, status=2)
+                self.has(said)
+                # A replay would be of an earlier flight, still in the folder.
+                self.lacks("Traceback|--help" + ("|REPLAY=" if "IMAGE" in words else ""))
+        with open(self.work / "commands", "w+") as commands:
+            commands.write("print $pc\nkill\n")
+            commands.seek(0)
+            self.user("gdb SIZE=96x64", f"OUT={self.work}/gdb", stdin=commands)
+        self.has("Reset_Handler")
+        self.user("firmware")
+        self.has("^Written: build/firmware.json")
+        self.user("faults NAME=no_memory MOMENTS=1 SEEDS=1 SEED=2")
+        self.has("^faults: 1 moments of seeds 2 to 2, 0 failed")
+
+    def test_commands_radio(self):
+        """Moments of what takes hours."""
+        # soak and fly both run test_chip_soak, which is a test itself; here only fly does.
+        os.environ["GTEST_FILTER"] = "-ChipSoak*"
+        self.user("soak MINUTES=0.01 FUZZED=1000")
+        self.has("^modem controller: 1000 bytes of noise", "^link layer: 10000 bytes of noise",
+                 "^soak: none wrong, .* none at another")
+        del os.environ["GTEST_FILTER"]
+        self.user("fly MINUTES=0.01")
+        self.has("^chip soak: .* simulated")
+
+    def entrance(self):
+        """Adds to this project all that commands ask of a build."""
+        write("cmake/setup.sh", "#!/bin/sh\n")
+        write("ip/fir/fir_test.cpp", "")
+        write("tests/bench/figures.py", (TREE / "tests/bench/figures.py").read_text())
+        write("waved", WAVED)
+        write("size.json", '[{"name": "call", "value": 4, "unit": "bytes"}]')
+        write("air.json",
+              '[{"name": "trip", "value": 20, "unit": "ms", "limit": 40, "share": 0.5}]')
+        edit("tests/room/CMakeLists.txt", " d.Crash", "")
+        append("tests/room/CMakeLists.txt", TESTS.replace("REGRESS", str(REGRESS)))
+
+    def good(self, words, status=0):
+        self.make("JOBS=1", *words.split(), tree=self.work, build=None, status=status)
+
+    def bad(self, words, *said):
+        self.good(words, 2)
+        self.has(*said)
+
+    def test_commands_small(self):
+        self.entrance()
+        self.ask("rm", "-rf", "build")
+        self.good("build")
+        self.assertTrue(os.access("build/main/tests/regress/regress", os.X_OK))
+        self.good("test NAME=b.Bad LABEL=rtl SEED=7")
+        self.bad("test NAME=b.Bad SEED=3", "value 3 is not 7")
+        self.bad("test LABEL=nothing")
+        self.good("test SEED=7")
+        self.assertEqual(self.said.count("100% tests passed"), 2)  # once more with sanitizers
+        write("leak", "")
+        self.bad("test SEED=7", "test_s.Sane")
+        Path("leak").unlink()
+        self.good("proofs")
+        self.has("^1 proofs, 3 s of a processor$")
+        self.good("regress BLOCK=room NAME=[ab][.] LABEL=rtl SEED=7 WAVES=0 TESTS=2")
+        self.has("^3 passed")
+        self.bad("regress NAME=b.Bad REPEAT=2", "SEED=2")
+        self.bad("regress FAILED=1", "^1 tests")
+        self.bad("regress KEPT=1", "^1 tests, SEED=2")
+        self.good("regress CHANGED=1 NAME=a[.]")
+        # A bench that fails hides no other's figures, and its older figures do not count as new.
+        figures = Path("docs/figures.md")
+        figures.parent.mkdir()
+        trip = "| trip | 20 ms | limit 40, 50.0 % |\n"
+        self.good("bench")
+        self.assertEqual(figures.read_text().count(trip), 2, figures.read_text())
+        self.has(rf"^Measured on .* at commit {git('rev-parse --short HEAD')} and changes to it\.$",
+                 file=figures)
+        write("slow", "")
+        self.bad("bench", "measure_bad")
+        self.assertEqual(figures.read_text().count("\n| trip "), 1, figures.read_text())
+        self.has("^[|] call [|] 4 bytes [|]", file=figures)
+        os.environ["DISPLAY"] = ""
+        self.good("wave IP=fir TEST=Impulse")
+        self.has("^gtkwave .*/build/wave/fir.fst")
+        self.has("^--gtest_filter=Fir.Impulse$", file="build/wave/fir.fst")
+        self.good("wave IP=fir TEST=And")
+        self.bad("wave IP=fir TEST=Imp", "2 tests, not one of")
+        self.good("ip-test IP=fir")
+        self.has("1 tests passed|100% tests passed", "^test_ip_fir.Impulse: LEVELS: not read back$")
+        self.bad("ip-test IP=nobody", "there is no core 'nobody': fir")
+        self.elsewhere()
+        self.bad("bisect TEST=test_a.One GOOD=nonsense BAD=HEAD SEED=1", "no commit GOOD=nonsense")
+        self.good("clean")
+        self.assertFalse(Path("build").exists())
+
+    def elsewhere(self):
+        """A core outside of the tree is named to one command, and from then on known to all."""
+        mine = self.work / "elsewhere/mine"
+        write(mine / "mine_test.cpp", "")
+        write("utilisation", '#!/bin/sh\necho "utilisation $*"\n')
+        os.chmod("utilisation", 0o755)
+        write("ip/cores.list", "fir\n")
+        self.bad(f"run CORES=mine CORE_FOLDERS={mine}", f"there is no {mine}/ground.py")
+        write(mine / "ground.py", "")
+        self.bad(f"run CORES=mine CORE_FOLDERS={os.path.relpath(mine)}",
+                 "the chip has no core 'mine'")
+        self.good(f"ip-test IP=mine CORE_FOLDERS={os.path.relpath(mine)}")
+        self.has(f"^CORE_FOLDERS.*={mine}$", file="build/main/CMakeCache.txt")
+        for words, said in (("regress NAME=test_ip_mine", "^1 passed"),
+                            ("ip-synth IP=mine", "^utilisation .*--design mine$"),
+                            ("synth DESIGN=mine", "^utilisation .*--design mine$"),
+                            ("wave IP=mine TEST=Impulse", "^gtkwave .*/build/wave/mine.fst")):
+            self.good(words)
+            self.has(said)
+        write("ip/cores.list", "fir\nmine clock_i=@B8\n")
+        self.good("rm-ip NAME=mine")
+        self.has("^CORE_FOLDERS.*=$", file="build/main/CMakeCache.txt")
+        self.assertEqual(Path("ip/cores.list").read_text(), "fir\n")
+        self.assertTrue((mine / "ground.py").exists())
+        self.bad("wave IP=mine TEST=Impulse", "there is no core 'mine': fir")
+
+    def test_commands_nightly(self):
+        """Each step runs even if earlier ones failed, and each failure is reported."""
+        self.entrance()
+        write("icesoc", STEPS)
+        edit("tests/room/t.sh", "value $SEED is not 7", "failed with $SEED")
+        edit("tests/room/t.sh", '"$SEED" = 7', "! -e ../../../../bad")
+        for failing, seeds, status in (("none", 2, 0), ("check_mutants", 2, 2), ("fly", 2, 2),
+                                       ("check_fresh", 2, 2), ("a test", 2, 2),
+                                       ("a test", 4, 2)):  # and two that are kept
+            write("done", "")
+            write("failing", failing)
+            if failing == "a test":
+                write("bad", "")
+            self.good("nightly NIGHTLY=2", status)
+            self.assertEqual(Path("done").read_text().split(), DONE.split(), failing)
+            self.assertEqual(len(re.findall("^[0-9]* tests, SEED=", self.said, re.M)), seeds)
+
+    def test_make(self):
+        """What is set up and fetched, and what a test needs of a build."""
+        work = self.work / "made"
+        # A user's name may have an apostrophe.
+        cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "icesoc"
+        (work / "it's").mkdir(parents=True)
+        (work / "it's/icesoc").symlink_to(cache)
+        self.ask(*FETCH, "ghdl", work / "ghdl",
+                 env={**os.environ, "XDG_CACHE_HOME": f"{work}/it's"})
+        self.ask(work / "ghdl/ghdl", "--version")
+        # The pages' libraries: without a network, or with a file of another checksum, the build
+        # goes on, says so, and keeps no partial file.
+        archive = "tabulator-tables-6.5.3.tgz"
+        write(work / "npm/tabulator-tables/-" / archive, "wrong\n")
+        page, empty = work / "page", work / "empty"
+        for mirror in "http://127.0.0.1:9", (work / "npm").as_uri():
+            self.ask(*FETCH, "page", page,
+                     env={**os.environ, "XDG_CACHE_HOME": str(empty), "ICESOC_NPM": mirror})
+            self.has("cannot get Tabulator and uPlot")
+            self.assertEqual((page / "libraries.js").read_text(), "")
+            self.assertFalse((page / "done").exists())
+            self.assertEqual(list(empty.glob("icesoc/foreign/*")), [])
+        self.has(f"{archive} is not the file that was tested")
+        # One block's tests need its programs, and no more.
+        self.ask(BUILD / "tests/regress/regress", "--build", BUILD, "--prepare", "--list",
+                 "--block", "fir")
+        self.has("^(ip/fir/)?test_ip_fir$")
+        self.assertLess(self.said.count("\n"), 20)
+        # Programs that `make test` runs with sanitizers: one without the label would be missed.
+        for program in "test_os_cases", "test_link", "test_engine", "test_icec":
+            labels, = BUILD.glob(f"tests/sw/*/{program}_labels.cmake")
+            self.has("sanitized", file=labels)
+
+
+main(Cases)

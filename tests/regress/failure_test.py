@@ -1,0 +1,293 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""failure_test: what the regression tool tells of a failed test: its reason, the changes since it
+passed, its waveform.
+
+Usage: failure_test.py case work-folder build-folder
+"""
+import re
+from pathlib import Path
+
+from project import BREAK, REGRESS, TREE, Project, append, commit, edit, git, main, write
+from icesoc.regress.failures import reason_of
+
+# A test that misbehaves: what it does, and what is said of it.
+RUDE = {
+    "Hang": ("exec sleep 1000", "^1 x  Timeout"),
+    "Loud": ("yes 'a line' | head -c 1000000; echo; echo 'x is 3'; exit 1", "^1 x  x is 3$"),
+    "Long": (r"head -c 300000 /dev/zero | tr '\0' x; exit 1", r"^1 x  \.\.\.x{150,200}$"),
+    "Crash": ("echo begun; kill -SEGV $$", "^1 x  SegFault: begun$"),
+    "Mute": ("exit 3", "^1 x  failed without a word$"),
+    "Red": (r"printf '\033[31mx.c:1: error: red\033[0m\n'; exit 1", "^1 x  x.c:1: error: red$"),
+    "Leaves": ("setsid sleep 1000 >/dev/null 2>&1 &",
+               r"^A test has left behind, and it was ended: .*sleep 1000 "
+               r"\(in build/main/tests/room\)$"),
+    "Writes": ("echo >../../../../written", "^Changed while the tests ran, .*: written$")}
+IDEMPOTENT = "! error: unexpected operation mode. expected Normal, received Idempotent"
+# The reason, and the log in which a tool writes it; {} in the log is the reason.
+REASONS = {
+    "busy is true, not false":
+        "g.cpp:4: Failure\nValue of: busy\n  Actual: true\nExpected: false\ng.cpp:7: Failure",
+    "status is 5, not 0; after the call; a.cpp:7: the mode":
+        "g.cpp:4: Failure\nExpected equality of these values:\n  status\n    Which is: 5\n  0\n"
+        "after the call\nGoogle Test trace:\n../../a.cpp:7: the mode\n",
+    "call(1) is 5, not Ok, which is 0":
+        "g.cpp:4: Failure\nExpected equality of these values:\n  call(1)\n    Which is: 5\n  Ok\n"
+        "    Which is: 0\n",
+    "status is 5, not 0":
+        "g.cpp:4: Failure\nExpected equality of these values:\n  0\n  status\n    Which is: 5\n",
+    'C++ exception with description "waited for ready" thrown in the test body.':
+        "one error before\nunknown file: Failure\n{}\n[  FAILED  ] A.Throws (7 ms)",
+    "a.c:1:10: fatal error: none.h: No such file or directory":
+        'FAILED: x\nsh -c "gcc -c a.c"\n{}\n    1 | #include "none.h"\nninja: build stopped',
+    "twice.c:3:5: warning: ISO C90": "/t.sh: begun\n{}\nmake: *** [x] Error 1",
+    "c.c:(.text+0x5): undefined reference to `f'":
+        "/bin/ld: c.o: in function `main':\n{}\ncollect2: error: ld returned 1 exit status",
+    'CMake Error at CMakeLists.txt:3 (nonsense): Unknown CMake command "nonsense".':
+        'CMake Error at CMakeLists.txt:3 (nonsense):\n  Unknown CMake command "nonsense".\n--',
+    "%Error: m.v:1:44: syntax error, unexpected ';', expecting TYPE-IDENTIFIER":
+        "{}\n    1 | module m(input a); assign b = c +;\n%Error: Exiting due to 1 error(s)",
+    "m.v:1: ERROR: syntax error, unexpected ';'": "{}",
+    "e2.vhd:2:44:@0ms:(assertion failure): dark": "{}\nghdl:error: assertion failed",
+    "SUMMARY: AddressSanitizer: heap-buffer-overflow u.cpp:2 in main":
+        "==13123==ERROR: AddressSanitizer: heap-buffer-overflow on address 0x602000000014\n{}",
+    "u.cpp:2:47: runtime error: signed integer overflow: 2147483647 + 1": "begun\n{}",
+    "KeyError: 'k'":
+        'ERROR: test_c (__main__.T.test_c)\n---\nTraceback (most recent call last):\n  a["k"]\n'
+        "{}\n\nFAIL: test_a (__main__.T.test_a)\nAssertionError: 1 != 2\nFAILED (failures=3)",
+    "s.ice:1:40: error: 'Strin' is not a type that is known here":
+        "{}\nmodule M { interface I { void f(int a, Strin b); } }",
+    "Ice.ConnectionRefusedException: Ice.ConnectionRefusedException: Connection refused":
+        "    p.ice_ping()\nIce.ConnectionRefusedException: Ice.ConnectionRefusedException:\n"
+        "Connection refused",
+    "ice: src/Ice/Network.cpp:2714: ::Ice::ConnectionRefusedException: connection refused: by peer":
+        "ice: src/Ice/Network.cpp:2714: ::Ice::ConnectionRefusedException:\n"
+        "connection refused: by peer",
+    IDEMPOTENT: "{}\nexception ::Ice::UnknownLocalException\n{\n    unknown = Ice::Marshal\n}",
+    "the picture differs": "Ice.Exception: not served, as expected\n{}\nThe mission failed (1).",
+    "1 2 differ: byte 1, line 1": "{}\nand a word more",
+    "differs: -a +b": "@@ -1,2 +1,2 @@\n same\n-a\n+b"}
+BLAME = r"""
+foreach(i 1 2 3)
+  set(failed "[  FAILED  ] g.Case${i} (${i}7 ms)")
+  add_test(NAME test_g.Case${i} COMMAND sh -c
+    "printf 'x.cpp:1: Failure\nExpected 1, got 2\n${failed}\n'; exit 1")
+endforeach()
+add_test(NAME ice.x COMMAND sh -c "printf 'ran\n%s\n}\n'; exit 1")
+set(s ${CMAKE_SOURCE_DIR}/hdl/a)
+set(at ${s}/broken_proof.vh:1)
+set(t ${CMAKE_BINARY_DIR}/t.vcd)
+foreach(m around broken) # as Yosys writes it: all cells around, and the end of the line before
+  set(cell "($flatten/u_x./u_y.$assert$${at}$12)")
+  add_test(NAME formal.${m} COMMAND sh -c
+    "echo 'Assert failed in ${m}: ${s}/around.v:7.1-8.9|${at}.6-3.20 ${cell}'; touch '${t}'
+     echo '${m}: trace: ${t}'; echo '${m}: an assertion fails'; exit 1")
+endforeach()
+"""
+# A flight that failed, and the simulator that flies it again and writes this waveform.
+ENDED = """  0.1 s  UAV -> ground
+mission: the vision core's result differs from the C++ reference: 141 corners, not 140
+-- 11/23/26 06:27:52.116 XBeeAT: link idle
+icesoc-sim: Cortex-M3: 748300 instructions; asleep 99.5 % of the time
+icesoc-sim: 2.0 s simulated, 37 packets on the air
+The mission failed (exit status 1).
+Its end as a waveform: make run REPLAY='fly' FROM=1.500 TO=2.000
+Its end, and backwards from there: make gdb REPLAY='fly'
+"""
+SIMULATOR = """#!/bin/sh
+echo "$@" >asked
+cp build/regress/report.html page
+while [ "$1" != --wave ]; do shift; done
+vcd2fst - "$2" <<'END'
+$timescale 1ps $end
+$scope module TOP $end
+$var wire 1 ! irq_o $end
+$scope module u_core $end
+$var wire 1 & busy $end
+$upscope $end
+$upscope $end
+$enddefinitions $end
+#10
+0!
+0&
+#20
+1!
+1&
+END
+cat >"$2.program.vcd" <<'END'
+$timescale 1 ps $end
+$scope module program $end
+$var string 1 p.task task $end
+$upscope $end
+$enddefinitions $end
+#3
+sidleTask p.task
+#20
+sradioTask p.task
+#33
+sidleTask p.task
+END
+"""
+
+
+class Cases(Project):
+    def test_reasons(self):
+        """The reason of a failure, in the words of each tool that tests run."""
+        for reason, log in REASONS.items():
+            with self.subTest(reason):
+                self.assertEqual(reason_of(log.replace("{}", reason)), reason)
+
+    def test_rude(self):
+        """Of tests that misbehave the first line says so, and the run goes on."""
+        self.tests("".join(f"add_test(NAME test_r.{name} COMMAND sh -c [=[{does}]=])\n"
+                           for name, (does, _) in RUDE.items()) +
+                   "add_test(NAME test_r.Gone COMMAND /none)\n"
+                   "set_tests_properties(test_r.Hang PROPERTIES TIMEOUT 2)\n")
+        self.regress("--name test_r --jobs 4", 1)
+        self.has("^2 passed, 7 failed, 0 skipped", "^1 x  Unable to find executable: /none$",
+                 *(said for _, said in RUDE.values()))
+        # A limit of 250 KB on files stands for a full disk.
+        self.ask("sh", "-c", "trap '' XFSZ; ulimit -f 500; exec $0 --name test_a", REGRESS,
+                 status=2)
+        self.has("^2 passed, 0 failed",
+                 "^regress: cannot write build/regress/report.html: is the disk full[?]$")
+        self.assertFalse(Path("build/regress/report.html.part").exists())
+        self.assertEqual(Path("build/regress/history.jsonl").read_text().count("\n"), 2)
+
+    def test_blame(self):
+        """One group for one bug, a test's own last word, the failure nearest to the cause first."""
+        self.tests(BLAME.replace("%s", IDEMPOTENT))
+        write("hdl/a/broken_proof.vh", "begin\n    assert (full ||\n        !taken);\nend\n")
+        self.regress("--name 'test_g|formal|ice'", 1)
+        self.has(f"^1 x  {re.escape(IDEMPOTENT)}$",
+                 "^3 x  Expected 1, got 2$", "gtkwave build/regress/failures/formal.broken.vcd",
+                 "^The longest: .* s ")
+        self.assertEqual(re.search("^.* x  .*", self.said, re.M)[0],
+                         "2 x  hdl/a/broken_proof.vh:2: assert (full || !taken);")
+        self.assertIn("broken", re.search("^    make test.*", self.said, re.M)[0])
+        trace = "build/regress/failures/formal.broken.vcd"
+        self.assertTrue(Path(trace).is_file())
+        self.has('message="! error: unexpected operation mode',
+                 f"^wave: {trace}$", file="build/regress/junit.xml")
+
+    def test_changed(self):
+        """The changed files of a failed test since it passed: committed or not, new or gone; for a
+        program its sources."""
+        files = {"hdl/fifo/fifo.v": "a\nb\nc\nd\n", "hdl/old.v": "1\n", "docs/page.md": "1\n",
+                 "hdl/fifo/test.c": '#include "n.h"\nint main(void) { return LIMIT; }\n',
+                 "hdl/fifo/n.h": "#define LIMIT 0\n"}
+        for name, text in files.items():
+            write(name, text)
+        edit("CMakeLists.txt", "small NONE", "small C")
+        write("other.c", "int main(void) { return 0; }\n")  # of another program
+        self.tests("add_test(NAME test_u.Unit COMMAND test_u)\n" + "".join(
+            f"add_executable({name} ${{CMAKE_SOURCE_DIR}}/{source})\n"
+            f"add_custom_command(TARGET {name} POST_BUILD BYPRODUCTS {name}.list COMMAND true)\n"
+            for name, source in (("test_u", "hdl/fifo/test.c"), ("test_v", "other.c"))))
+        self.ask("ninja", "-C", "build/main", "test_u")
+        self.regress("--name 'a.One|u.Unit'")
+        write("docs/page.md", "0\n")  # no commit has the tree that was noted
+        commit("two")
+        edit("tests/room/t.sh", *BREAK)
+        self.regress("--name b.Bad", 1)  # never passed: files that are not committed
+        self.has("^        changed since the commit; it is not known to have passed: "
+                 r"tests/room/t.sh:3 \(1 line\)$")
+        write("hdl/fifo/fifo.v", "a\nB\nc\nD\nE\n")
+        write("docs/page.md", "2\n")
+        append("other.c", "// changed\n")
+        Path("hdl/old.v").unlink()
+        commit("three")
+        self.regress("--changed --prepare --list --name u.Unit")
+        self.has("^Nothing to run")
+        write("hdl/new.v", "int g;\n")  # is none of its inputs, a header is
+        write("hdl/fifo/n.h", "#define LIMIT 3\n")
+        self.regress("--changed --prepare --list --name u.Unit")
+        self.has("^tests/room/test_u$")
+        self.ask("ninja", "-C", "build/main", "test_u")
+        self.regress("--name 'a.One|u.Unit' --seed 2", 1)
+        passed = git("rev-parse --short=10 HEAD~2")  # and files that were not committed then
+        since, one = f"^        changed since it passed at {passed}", r"1 \(1 line\)"
+        own = rf"hdl/fifo/n.h:{one}, "
+        script = r"tests/room/t.sh:3 \(1 line\)$"
+        self.has(f"{since} with SEED=1: {own}hdl/new.v:{one}, hdl/fifo/fifo.v:2 "
+                 rf"\(3 lines\), hdl/old.v:{one}, {script}")  # mine first
+        self.has(f"{since} with SEED=1: {own}{script}")  # its program, its folder
+        self.has("changed: changed since it passed",
+                 file="build/regress/junit.xml")
+        self.has('"changed":"changed since it passed', file="build/regress/report.html")
+        self.ask("git", "cat-file", "-e", git("hash-object hdl/new.v"), status=1)  # no object
+        write(".git/info/exclude", "flicker\n")
+        self.regress("--name c.Flicker")
+        write("flicker", "")
+        self.regress("--name c.Flicker", 1)
+        self.has("^        nothing has changed since it passed at [0-9a-f]*$")
+        self.ask("rm", "-r", "build/regress/tree")  # without noted trees the commit is left
+        self.regress("--name a.One", 1)
+        self.has(rf"{since}: {own}hdl/new.v:{one}, hdl/fifo/fifo.v:1 \(5 lines\), "
+                 ".* tests/room/t.sh")
+
+    def test_waves(self):
+        """A test that runs beside a core, not below tests/, and a trace that is damaged: the
+        report comes in any case."""
+        join = "testbench/common/join_waves.sh"
+        write(join, (TREE / join).read_text())
+        write("ip/core/wave.sh", '#!/bin/sh\necho "wrong at clock cycle 5"\n'
+              '[ -z "${WAVE:-}" ] || vcd2fst "${0%/*}/t.vcd" "$WAVE"\nexit 1\n')
+        write("ip/core/CMakeLists.txt", """
+add_test(NAME test_w.Wave COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/wave.sh)
+set(damaged ${CMAKE_CURRENT_SOURCE_DIR}/damaged.vcd)
+add_test(NAME formal.damaged COMMAND sh -c "echo 'damaged: trace: ${damaged}'; exit 1")
+add_custom_target(test_w)
+""")
+        wire, up = "$var wire 1 {0} {0} $end ", "$upscope $end "
+        word = "$var wire 1 @ !memory[3] $end "
+        wave = ("$timescale 1ns $end $scope module top $end $var wire 1 ! clk_i $end "
+                f"$scope module u_a $end {wire.format('&')}{up}"
+                f"$scope module u_post $end {wire.format('#')}{word}{up}{up}"
+                "$enddefinitions $end #0 0! 0& 0# 0@ #5 1! 1& 1# 1@ #10 0! ")
+        write("ip/core/core.v", "module core;\n    post #(.N(1)) u_post (.b(b));\nendmodule\n")
+        write("ip/core/post.v", "module post;\nendmodule\n")
+        commit("two modules")
+        append("ip/core/post.v", "// a bug\n")
+        write("ip/core/t.vcd", re.sub(r"(end|#\d+|\d[!&#@]) ", r"\1\n", wave))  # for vcd2fst
+        write("ip/core/damaged.vcd", wave.replace("#5", "#five"))
+        write("build/trace/ip/core/verilated_core/Vcore.h", "VL_IN8(&clk_i,0,0);\n")
+        append("CMakeLists.txt", "add_subdirectory(ip/core)\n")
+        self.tests("")
+        self.regress("--name 'test_w|damaged'", 1)
+        self.has("^0 passed, 2 failed", "formal.damaged.vcd is damaged, and not drawn")
+        self.has("^TOP.clk_i$", file="build/regress/failures/test_w.Wave-1.gtkw")
+        self.has("test_w.Wave-1.fst", r'"signals":\[\["top.u_post.#"',
+                 file="build/regress/report.html")
+
+    def test_flight(self):
+        """A flight that fails is flown again around the last event of a core."""
+        join = "testbench/common/join_waves.sh"
+        write(join, (TREE / join).read_text())
+        write("build/trace/gen/soc_cores.vh",
+              "camera u_camera (\n  .clk_i(clk_i), `SLOT(2), .irq_o(i));\n"
+              "core u_core (\n    .clk_i(clk_i), `SLOT(3), .irq_o(j));\n")
+        write("build/trace/build.ninja", "rule r\n command = true\nbuild icesoc-sim: r\n")
+        write("build/trace/testbench/sim/icesoc-sim", SIMULATOR)
+        write("fly/events.jsonl", '{"ns":1000000000,"slot":1,"events":1}\n'
+              '{"ns":1500000000,"slot":3,"events":1}\n{"ns":1900000000,"slot":1,"events":1}\n'
+              '{"ns":2')
+        write("ended", ENDED)
+        self.tests("set(ended ${CMAKE_SOURCE_DIR}/ended)\n"
+                   'add_test(NAME mission.x COMMAND sh -c "cat ${ended}; exit 1")\n'
+                   "set_tests_properties(mission.x PROPERTIES LABELS e2e)\n")
+        self.regress("--name mission --waves 3", 1)
+        self.has("^1 x  mission: the vision core's result differs from the C[+][+] reference: 141 ")
+        left = "build/regress/failures/mission.x-1"
+        self.has(f"^--replay fly --out {left}.replay --wave .*mission.x-1.fst --from 1.498500 "
+                 "--to 1.500500$", file="asked")
+        self.has("141 corners", file="page")  # it was there before any waveform
+        self.ask("fst2vcd", f"{left}.fst")
+        self.assertRegex(self.said.replace("\n", " "),
+                         "#3 .*sidleTask .*#10 .*0. .*#20 .*1. .*sradioTask .*#33 sidleTask")
+        self.has("^program.task$", file=f"{left}.gtkw")
+        self.has(r'"program.task",0,\[3,"idleTask",20,"radioTask",33,"idleTask"\]\],'
+                 r'\["TOP.u_core.busy"', file="build/regress/report.html")  # the core before ports
+
+
+main(Cases)

@@ -1,0 +1,362 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""regress_test: the regression tool on a small project: results, choice of tests, history.
+
+Usage: regress_test.py case work-folder build-folder
+"""
+import contextlib
+import datetime
+import fcntl
+import io
+import json
+import re
+import subprocess
+import sys
+import types
+import unittest.mock
+import xml.etree.ElementTree as xml
+from pathlib import Path
+
+from project import BREAK, REGRESS, TREE, Project, append, commit, edit, git, main, write
+from icesoc.regress import runner
+
+NEEDS = """
+add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/tool COMMAND touch ${CMAKE_BINARY_DIR}/tool)
+add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/other COMMAND touch ${CMAKE_BINARY_DIR}/other)
+add_custom_target(tools ALL DEPENDS ${CMAKE_BINARY_DIR}/tool ${CMAKE_BINARY_DIR}/other)
+add_test(NAME script.tool COMMAND ${t} ${CMAKE_BINARY_DIR}/tool ${CMAKE_CURRENT_BINARY_DIR}/work)
+add_test(NAME script.whole COMMAND ${t} ${CMAKE_BINARY_DIR})
+add_test(NAME script.says COMMAND ${t} ${CMAKE_BINARY_DIR})
+set_tests_properties(script.says PROPERTIES ENVIRONMENT "NEEDS=other tools")
+add_test(NAME script.after COMMAND ${t})
+add_test(NAME absent.program COMMAND ${CMAKE_BINARY_DIR}/absent)
+set_tests_properties(script.tool PROPERTIES FIXTURES_SETUP f)
+set_tests_properties(script.after PROPERTIES FIXTURES_REQUIRED f)
+add_custom_target(test_tame DEPENDS ${CMAKE_SOURCE_DIR}/tame.cpp)
+foreach(n soon radio tame)
+  add_test(NAME test_${n}_NOT_BUILT COMMAND false)
+  set(labels ${CMAKE_CURRENT_BINARY_DIR}/test_${n}_labels.cmake)
+  file(WRITE ${labels} "PROPERTIES LABELS \\"${n};x\\"")
+endforeach()
+"""
+HANG = """#include <unistd.h>
+static void spin(volatile int hangs) { while (hangs) {} }
+int main(void) { spin(access("../../../../flicker", F_OK) == 0); return 0; }
+"""
+LATE = "add_test(NAME test_late_NOT_BUILT COMMAND false)\n"
+
+
+class Cases(Project):
+    def needs(self, words, programs):
+        self.regress(f"--prepare --list {words}")
+        self.assertEqual(" ".join(self.said.split()), programs, words)
+
+    def test_results(self):
+        self.regress("--seed 5", 1)
+        self.has("4 passed, 2 failed, 0 skipped",
+                 "^proofs *green *1 hold, 1 of them as before, from unchanged files$",
+                 r"make test NAME='\^test_b\\\.Bad\$\$' SEED=5", "1 x  SegFault without a word")
+        self.has("value 5 is not 7", file="build/regress/failures/test_b.Bad-5.log")
+        self.has('failures="1" errors="1"', '<error message="SegFault without a word [(]SEED=5[)]"',
+                 '<failure message="value 5 is not 7 &lt;/script&gt; [(]SEED=5[)]"',
+                 file="build/regress/junit.xml")
+        self.junit_is_valid()
+        self.lacks("not 7 </script>", "build/regress/report.html")
+        self.page_is_small()
+
+    def junit_is_valid(self):
+        """As Jenkins' junit-10.xsd has it: elements, attributes (the needed ones first), children;
+        GitLab reads the names, times, failures and outputs of these."""
+        schema = {
+            "testsuites": ("", "name time tests failures errors", "testsuite"),
+            "testsuite": ("name tests failures errors", "time skipped timestamp",
+                          "properties testcase"),
+            "properties": ("", "", "property"), "property": ("name value", "", ""),
+            "testcase": ("name", "time classname", "skipped error failure system-out"),
+            "skipped": ("", "", ""), "failure": ("", "message", ""), "error": ("", "message", ""),
+            "system-out": ("", "", "")}
+        root = xml.parse("build/regress/junit.xml").getroot()
+        self.assertEqual(root.tag, "testsuites")
+        for element in root.iter():
+            needed, others, children = (words.split() for words in schema[element.tag])
+            self.assertLessEqual(set(needed), set(element.attrib), element.tag)
+            self.assertLessEqual(set(element.attrib), {*needed, *others}, element.tag)
+            self.assertLessEqual({each.tag for each in element}, set(children), element.tag)
+        for suite in root:
+            self.assertRegex(suite.get("time"), r"^\d+\.\d{3}$")
+            begin = datetime.datetime.fromisoformat(suite.get("timestamp"))
+            self.assertLess(datetime.datetime.now().astimezone() - begin,
+                            datetime.timedelta(hours=1))
+            self.assertEqual({each.get("name"): each.get("value") for each in suite[0]},
+                             {"seed": "5", "commit": git("describe --always --dirty --abbrev=10")})
+        self.assertEqual({suite.get("name"): suite.get("failures") for suite in root}, {
+            "test_a": "0", "test_b": "1", "test_c": "0", "test_d": "0", "formal": "0"})
+
+    def test_ages(self):
+        """A test that takes three times its usual time is named with its age, and once more when
+        it is twice as old; without history at 60 s."""
+        usual = {"quick": 0.1, "slow": 20.0, "new": None, "formal.long": 40.0}
+        tests = [types.SimpleNamespace(name=name) for name in usual]
+        progress = runner.Progress(tests, types.SimpleNamespace(seconds=usual.get,
+                                                                  usual=usual.get), 2)
+        begun = 1000.0
+        for name in usual:
+            progress.start(name)
+        for age, said, hang in ((9, [], ""), (11, ["quick has run for 11 s, usually 0.1 s"], ""),
+                                (21, [], ""), (61, ["quick has run for 61 s, usually 0.1 s",
+                                                    "slow has run for 61 s, usually 20.0 s",
+                                                    "new has run for 61 s, usually unknown"], ""),
+                                (119, [], ""), (299, None, ""), (301, None, "quick slow"),
+                                (601, None, "quick slow new")):
+            with contextlib.redirect_stdout(io.StringIO()) as out, \
+                    unittest.mock.patch("time.monotonic", lambda: begun + age):
+                progress.running = dict.fromkeys(usual, begun)
+                self.assertEqual([name for name, _ in progress.late()], hang.split(), age)
+            if said is not None:
+                self.assertEqual(out.getvalue().splitlines(), said, age)
+
+    def test_hang(self):
+        """A test that takes ten times its usual time is ended, with the stack of its program, as a
+        failure like others; here without the least of 300 s."""
+        write("hang.c", HANG)
+        edit("CMakeLists.txt", "small NONE", "small C")
+        self.tests("""add_executable(test_h ${CMAKE_SOURCE_DIR}/hang.c)
+add_test(NAME script.Wraps COMMAND sh -c
+  "p=$<TARGET_FILE:test_h>; $p & one=$!; $p & wait $one; kill -9 $! 2>/dev/null; exit 0")
+""")
+        self.ask("ninja", "-C", "build/main", "test_h")
+        self.regress("--name 'Wraps|a.One'")
+        write("flicker", "")
+        self.ask(TREE / "tools/python", "-c", """import sys
+from icesoc.regress import regress, runner
+runner.SHORTEST_HANG = 2
+sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
+        self.has("^1 passed, 1 failed",
+                 "^1 x  Hang, ended after [2-9] s, usually 0.. s, in spin, called by main: Aborted")
+        self.has("^Stack of test_h:$", "^#0 .*spin [(]",
+                 file="build/regress/failures/script.Wraps-1.log")
+        self.has('<error message="Hang, ended after', file="build/regress/junit.xml")
+
+    def page_is_small(self):
+        self.assertLess(Path("build/regress/report.html").stat().st_size, 2000000)
+
+    def test_plan(self):
+        """Which requirement is proven, failed, has not run with these sources, or has no test."""
+        plan = Path("tests/plan.toml")
+        lines = ('[thing]\n"It works" = "test_a.* formal.thing"\n'
+                 '"It stands" = "test_a.One test_b.*"\n')
+        plan.write_text(lines + '"It flies" = "test_c.Nobody*"\n')
+        self.regress("--plan", 1)
+        self.has("^no test is called test_c.Nobody[*], which is to prove: It flies$")
+        plan.write_text(lines)
+        self.regress("--plan")
+        self.has("^2 requirements$")
+        self.regress("--name a.One")
+        self.has("^plan  *grey   *0 of 2 requirements")
+        self.regress("--name 'a[.]|formal'")
+        self.has("^plan  *grey   *1 of 2 requirements")
+        self.regress("--name b.Bad", 1)
+        self.has("^plan  *red  *1 of 2 requirements of docs/ are not proven: It stands$")
+        self.has(r'"open":\["test_b.Bad"\],"page":"thing",'
+                 r'"patterns":\["test_a.One","test_b.\*"\],"state":"failed"',
+                 file="build/regress/report.html")
+        self.regress("--name b.Bad --seed 7")
+        self.has("^plan  *green  *2 requirements")
+        append("tests/room/t.sh", "# changed\n")
+        self.regress("--name a.One")
+        self.has("^plan  *grey   *0 of 2 requirements")
+        self.tests(LATE)
+        append(plan, '"It comes" = "test_late.One"\n')
+        self.regress("--plan")  # a program that is not built may have any test
+        append(plan, '"It has no test" = ""\n')
+        self.regress("--plan", 2)
+        self.has("plan.toml: It has no test: not")
+        append(plan, "It is none\n")
+        self.regress("--plan", 2)
+        self.has("plan.toml: .*line 6")
+
+    def test_company(self):
+        """Progress, one run at a time, messages about mistyped words, no needless builds."""
+        self.regress("--name 'a.One|formal'")
+        self.has("^1 of 2, 0 failed, 1 left",  # nobody knows how long they take
+                 "^2 of 2, 0 failed, 0:00 left", "^tests  *green  1 passed, 4 did not run$",
+                 "^proofs  *green  1 hold, 1 of them")
+        self.regress("--jobs none", 2)
+        self.has("^regress: .*see --help")
+        self.tests("add_test(NAME test_a.OneMore COMMAND true)\n")
+        self.regress("--name test_a.One")
+        self.has("^1 passed")  # an exact name is one test
+        write("tame.cpp", "// nobody\nTEST_F(Tame, Eats) {}\n")
+        self.tests(NEEDS)
+        for words, programs in (
+            ("--name '^script.whole'", "all"), ("--name '^script.says'", "other tools"),
+            ("--name '^test_a'", ""), ("--name '^absent'", "all"),
+            ("--name 'soon\\.'", "test_soon"),
+            ("--name 'script\\.after'", "tool"),  # by what goes before it
+            ("--name One", "test_radio test_soon"),  # whose cases nobody knows
+            ("--name '^One|^(script|docs).says'", "other tools"),  # a name does not begin so
+            ("--name '^test_tame.*Eat'", "test_tame"),
+            ("--label 'rtl|radio'", "test_radio")):
+            self.needs(words, programs)
+        self.regress("--prepare --name script.tool")
+        self.has("^Building tool ")
+        self.assertTrue(Path("build/main/tool").exists())
+        self.assertFalse(Path("build/main/other").exists())
+        # With --changed: tests that have never passed here and do not depend on an edit are not
+        # built.
+        commit("more")
+        self.needs("--changed --name '^script|soon|radio'",
+                   "Nothing to run: no test changed since the last run.")
+        append("tests/room/t.sh", "# edit\n")
+        self.needs("--changed --name '^script.says'", "other tools")
+        git("checkout -q tests/room/t.sh")
+        self.regress("--prepare --name '^test_a.Nobody'", 2)
+        self.has(r"no test is chosen by NAME='\^test_a.Nobody'; .ctest --test-dir")
+        git("checkout -q HEAD~1 tests/room/CMakeLists.txt")
+        self.tests(LATE)
+        self.regress("--label formal", 1)
+        self.has("1 passed, 1 failed")  # programs that are not built may have that label
+        # Another run has the lock until this one has said that it waits.
+        with open("build/regress/lock", "w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            run = subprocess.Popen([REGRESS, "--name", "a.One"], stdout=subprocess.PIPE,
+                                   stderr=subprocess.STDOUT, text=True)
+            waiting = "waiting for another run in build/regress"
+            self.assertTrue(any(waiting in line for line in run.stdout))
+        run.communicate()
+        self.assertEqual(run.returncode, 0)
+
+    def test_selection(self):
+        for words, chosen in (("block thing", "formal.thing"), ("label formal", "formal.thing"),
+                              ("name One", "test_a.One")):
+            self.regress(f"--{words} --list")
+            self.assertEqual(self.said, f"{chosen}\n", words)
+        self.regress("--block room --list")
+        self.assertEqual(self.said.count("\n"), 6)
+        self.regress("--name nothing", 2)
+        self.has("labels: formal rtl")
+        self.regress("--name '*'", 2)
+        self.has(r"^regress: .*'\*' is no regular expression")
+        self.regress("--build nowhere", 2)
+
+    def test_again(self):
+        self.regress("", 1)
+        self.regress("--rerun-failed", 1)
+        self.has("2 tests, SEED=1")
+        self.regress("--changed", 1)
+        self.has("2 tests, SEED=1")  # the tests that passed have not changed
+        append("tests/room/t.sh", "# changed\n")
+        self.regress("--changed", 1)
+        self.has("6 tests, SEED=1")
+        self.regress("--name a.One --repeat 3 --seed 7")
+        self.has("SEED=9", "3 passed, 0 failed")
+        # A removed bug: the failed tests run, and the sources of the last pass count as that pass.
+        write("tests/plan.toml", '[thing]\n"It works" = "test_a.One"\n')
+        edit("tests/room/t.sh", *BREAK)
+        self.regress("--changed --name a[.]", 1)
+        self.has("^2 tests", "^plan  *red")
+        self.regress("--name formal")
+        self.has('"test": "test_a.One"', file="build/regress/report.json")  # a kept seed
+        edit("tests/room/t.sh", *reversed(BREAK))
+        self.regress("--name formal")
+        self.has("^plan  *green")
+        self.lacks('"test": "test_a.One"', "build/regress/report.json")
+        self.regress("--changed --name a[.]")
+        self.has("^1 tests, SEED=1$", "^plan  *green")
+
+    def test_flaky(self):
+        self.regress("", 1)
+        self.lacks("Flaky")
+        write("flicker", "")
+        self.regress("", 1)
+        self.has("Flaky: test_c.Flicker")
+        append("build/regress/history.jsonl", '{"damaged\n')
+        self.regress("--name One")
+        self.has("1 damaged lines")
+
+    def test_seeds(self):
+        self.regress("--kept")
+        self.has("no seed is kept")
+        self.regress("--name 'test_[ab]' --seed random --repeat 2", 1)
+        seeds = re.findall("^3 tests, SEED=(.*)", self.said, re.M)
+        self.assertEqual(len(seeds), 2)
+        self.regress("--name 'test_[ab]' --seed 7")  # passes with another seed: the others stay
+        self.has("2 failing seeds are kept")
+        page = Path("build/regress/report.html")
+        before = page.read_bytes()
+        self.regress("--kept --name 'a[.]'")  # none of these: another run's page stays unchanged
+        self.has("no seed is kept")
+        self.assertEqual(page.read_bytes(), before)
+        self.regress("--kept", 1)
+        self.has("0 passed, 2 failed", *(f"^1 tests, SEED={seed}" for seed in seeds))
+        self.has(*(rf'"seed":"{seed}","since":\d+,"test":"test_b.Bad","times":2' for seed in seeds),
+                 file=page)
+        edit("tests/room/t.sh", "[ \"$SEED\" = 7 ]", "true")  # the bug is mended
+        self.regress("--kept")
+        self.regress("--kept")
+        self.has("no seed is kept")
+
+    def test_bisect(self):
+        """Of five commits the third breaks test_a.One, the second does not configure; the checkout
+        stays as it is."""
+        write("change", "")
+        commit("something else")
+        append("CMakeLists.txt", "broken(\n")
+        commit("does not configure")
+        git("revert --no-edit HEAD")
+        self.regress("--name a.One")  # passes, and is noted
+        edit("tests/room/t.sh", *BREAK)
+        commit("breaks it")
+        for later in "12":
+            write("change", later)
+            commit(f"later {later}")
+        write("change", "mine")
+        write("build/main/tests/regress/regress", f'#!/bin/sh\nexec {REGRESS} "$@"\n')
+        first = git("rev-list --max-parents=0 HEAD")
+        for words, status, said in (
+            ("test_a.One", 0, "^since [0-9a-f]* breaks it [(]a, "),
+            (f"test_a.One --good {first}", 0, "^since [0-9a-f]* breaks it [(]a, "),
+            (f"test_a.Two --good {first}", 2, "passes at"),
+            ("test_b.Bad", 2, "GOOD= names one"),
+            ("test_a.One --good nonsense", 2, "no commit GOOD=nonsense")):
+            self.ask("env", "ICESOC_TREE=.", TREE / "icesoc", "bisect", "--built", *words.split(),
+                     status=status)
+            self.has(said)
+            self.assertEqual(Path("change").read_text(), "mine")
+            self.assertFalse(Path("build/bisect/tree").exists())
+
+    def test_large(self):
+        """More tests than this project has: the page stays small."""
+        write("long.vcd", "$scope module top $end\n" +
+              "".join(f"$var wire 16 s{s} a_signal_{s} $end\n" for s in range(100)) +
+              "$upscope $end $enddefinitions $end\n" + "".join(
+                  f"#{1000000 + t}\n" + "".join(f"b1{t % 2}10101010101010 s{s}\n"
+                                                for s in range(100)) for t in range(300)))
+        some = {"percent": 97, "lines": 200, "gate": 95, "toggles": 96, "toggle_points": 900,
+                "toggle_gate": 95, "why": "",
+                "missed": [f"{m}: some_signal_of_it[{m}]" for m in range(500)]}
+        write("build/coverage/summary.json", json.dumps(
+            {"total": 97.1, "toggles": 95.2,
+             "files": [{"file": f"hdl/block/some_module_{f}.v", **some} for f in range(600)]}))
+        write("build/mutants/results.tsv", "".join(
+            f"block/some_seeded_bug_{i}\tcaught\ttest_block.Case\t7\n" for i in range(400)))
+        self.tests("""
+foreach(i RANGE 1 400)
+  add_test(NAME test_with_a_long_name.AndManyCases.Number/${i} COMMAND ${t} a.${i})
+endforeach()
+foreach(i RANGE 1 30)
+  add_test(NAME test_loud.Case${i} COMMAND sh -c "seq 1 20000; exit 1")
+endforeach()
+foreach(i RANGE 1 8)
+  add_test(NAME formal.long${i} COMMAND sh -c
+    "echo 'long${i}: trace: ${CMAKE_SOURCE_DIR}/long.vcd'; exit 1")
+endforeach()
+""")
+        self.regress("", 1)
+        self.has("404 passed, 40 failed")
+        drawn = Path("build/regress/report.html").read_text().count('"signals":[["top.a_signal_')
+        self.assertEqual(drawn, 8)
+        self.page_is_small()
+
+
+main(Cases)

@@ -1,0 +1,6 @@
+# SPDX-License-Identifier: MIT
+"""icesoc: the tools of the project, as one package. `./icesoc` and CMake run its modules by
+`tools/python`."""
+from pathlib import Path
+
+TREE = Path(__file__).resolve().parents[2]  # of the project

@@ -1,0 +1,388 @@
+# SPDX-License-Identifier: MIT
+"""coremap: puts the cores of ip/cores.list, a line each, into the chip (docs/hw-mapping.md).
+
+Writes map.regs.json (slots, memory ports, buffers in DDR3, pins), soc_cores.vh (instances, for
+soc.v), soc_cores.c (servants), soc_pins.h (for the simulator), core_pins.ucf (for ISE), probes.json
+(the probes' signals), and the registers for other tools and for people.
+"""
+import argparse
+import json
+import os
+import re
+import sys
+from dataclasses import dataclass, field
+
+sys.dont_write_bytecode = True
+from icesoc.regs import core_exchange
+from icesoc.chip import core_output
+from icesoc.regs.regmap import Block, Wrong, check, save
+
+SLOT_LIMIT, PIN_LIMIT = 64, 32
+SLOT_BYTES = 64
+BUFFER_ALIGNMENT = 128  # the largest NPI burst, bytes
+# The slowest clock of a core's own, Hz: an access ends within bus_crossing's TIMEOUT.
+LEAST_HZ = 3e6
+PROBE_BITS = 223
+
+
+@dataclass
+class Pin:
+    name: str  # the core's port; its end says the direction
+    width: int = 1
+    internal: bool = False  # for other cores only, never a pin; unconnected inputs are 0
+    lsb: int = 0  # in the chip's core_pins_i or core_pins_o; bits
+    source: str = ""  # instead of a pin: another core's output
+    places: list = field(default_factory=list)  # of its bits on the board, from bit 0
+
+    @property
+    def is_pin(self):
+        return not self.source and not self.internal
+
+    @property
+    def direction(self):
+        return self.name[-1]
+
+
+@dataclass
+class Core:
+    line: int
+    folder: str
+    name: str
+    identity: str = ""
+    slot: int = 0
+    port: int = -1  # memory port; -1: none
+    memory: int = 0  # DDR3 byte address of its buffers, a multiple of memory_bytes
+    memory_bytes: int = 0  # a power of two, or 0: no buffers
+    is_placed: bool = False  # memory= gives its address
+    servant: dict = None  # type and header; without one: that of sw/hw/registers
+    pins: list = field(default_factory=list)
+    constraints: str = ""  # <folder>.ucf beside its description
+    has_clock: bool = False  # the module has the parameter CLK_HZ
+    own_clock: int = 0  # Hz at most of its own clock; 0: it has the chip's
+    # Its own clock is the chip's clock times this ratio; 0: the pin clock_i, its last, brings it.
+    multiply: int = 0
+    divide: int = 1
+    says_idle: bool = False  # the module has the output idle_o
+    has_gate: bool = False  # its clock stops while it is idle, on the board, too
+    is_probe: bool = False  # it has cycles_i and signals_i
+    signals: list = field(default_factory=list)  # of a probe, from bit 0: (name below soc, width)
+
+    @property
+    def clock_hz(self):
+        """Hz of its own clock; for a clock from a pin, the highest."""
+        return 100e6 / self.divide * self.multiply if self.multiply else self.own_clock
+
+    def fail(self, text):
+        raise Wrong(f"{self.line}: error: {text}")
+
+    def check(self, holds, text):
+        if not holds:
+            self.fail(text)
+
+
+@dataclass
+class Slot:
+    """A populated slot, the platform's included, with its *.regs.json."""
+
+    name: str
+    number: int
+    address: int  # the processor's
+    description: dict
+    bytes: int = SLOT_BYTES
+
+
+class Chip:
+    """The cores of a list, with the resources that the chip gives each."""
+
+    def __init__(self, text, base, descriptions):
+        constants = {c["name"]: c["value"] for c in base["constants"]}
+        self.descriptions = descriptions
+        self.first = constants["SLOT_COUNT"]
+        self.buffers = constants["BUFFERS"]
+        self.memory_end = 1 << constants["DDR_BYTES_LOG2"]
+        self.ports = constants["NPI_PORT_COUNT"]
+        self.registers = constants["CONTROL_WINDOW"]  # the processor's address of slot 0
+        self.pins = {"i": 0, "o": 0}  # bits used of core_pins_i, core_pins_o
+        self.names = {n[5:].lower(): 0 for n in constants if n.startswith("SLOT_")}  # to its line
+        self.identities, self.places, self.cores = set(), {}, []
+        for n, line in enumerate(text.splitlines(), 1):
+            words = line.split("#")[0].split()
+            if words:
+                self.cores.append(self.read(n, words[0], words[1:]))
+        self.give_slots()
+        self.give_memory()
+        for core in self.cores:
+            self.connect(core)
+        self.cores.sort(key=lambda core: core.slot)
+        self.slots = self.cores[-1].slot + 1 if self.cores else self.first
+
+    def read(self, line, folder, words):
+        core = Core(line, folder, folder)
+        core.check(folder in self.descriptions,
+                   f"there is no core '{folder}': ip/{folder}/CMakeLists.txt, with icesoc_core")
+        self.describe(core, self.descriptions[folder])
+        given = {}
+        for word in words:
+            key, _, value = word.partition("=")
+            core.check(value, f"'{word}': after the core's folder come name=, identity=, slot=, "
+                              "memory=, gate=, signals= and its pins")
+            core.check(key not in given, f"'{key}' is given twice")
+            given[key] = value
+        for key, value in given.items():
+            self.set(core, key, value)
+        core.check(core.signals or not core.is_probe,
+                   f"'{core.name}' records nothing: signals=u_fir.busy,u_fir.count:9")
+        core.identity = core.identity or core.name
+        known = self.names.setdefault(core.name, line)
+        core.check(known, f"'{core.name}' is a name of the platform's")
+        core.check(known == line, f"'{core.name}' is on line {known} already; name= tells two of a "
+                                  "kind apart")
+        core.check(core.identity not in self.identities,
+                   f"the identity '{core.identity}' is taken")
+        self.identities.add(core.identity)
+        return core
+
+    def describe(self, core, block):
+        core.check("type" in block, f"'{core.folder}' has no type: its description is not a slot's")
+        if block.get("memory_port"):
+            core.port = self.ports
+            self.ports += 1
+        needed = block.get("memory_bytes", 0)
+        if needed > self.memory_end - self.buffers:
+            self.no_room(core, needed)
+        if needed:
+            core.memory_bytes = max(BUFFER_ALIGNMENT, 1 << (needed - 1).bit_length())
+        core.is_probe = block.get("probe", False)
+        core.servant = block.get("servant")
+        core.pins = [Pin(p["name"], p.get("width", 1), p.get("internal", False))
+                     for p in block.get("pins", [])]
+        core.own_clock = block.get("own_clock", 0)
+        if core.own_clock:
+            core.pins.append(Pin("clock_i"))
+
+    @staticmethod
+    def no_room(core, needed):
+        core.fail(f"no room in DDR3 for the {needed} bytes of '{core.folder}'")
+
+    def set(self, core, key, value):
+        """Takes a word of a core's line."""
+        if key == "name":
+            core.check(re.fullmatch("[a-z][a-z0-9_]*", value),
+                       f"name={value}: small letters, digits and _")
+            core.name = value
+        elif key == "identity":
+            core.check(not re.search(r'["\\/]', value),
+                       f"identity={value}: without quotes, \\ and /")
+            core.identity = value
+        elif key == "slot":
+            core.slot = int(value) if re.fullmatch("[0-9]{1,2}", value) else 0
+            core.check(self.first <= core.slot < SLOT_LIMIT,
+                       f"slot={value}: {self.first}..{SLOT_LIMIT - 1} are for cores")
+        elif key == "memory":
+            digits = "0[xX][0-9a-fA-F]{1,8}|0|[1-9][0-9]{0,9}"
+            core.check(core.memory_bytes and re.fullmatch(digits, value),
+                       f"memory={value}: a byte address in DDR3, for a core with buffers")
+            core.memory, core.is_placed = int(value, 0), True
+        elif key == "signals" and core.is_probe:
+            self.set_signals(core, value)
+        elif key == "clock" and core.own_clock:
+            self.set_clock(core, value)
+        elif key == "gate":
+            core.check(value == "on", f"gate={value}: on, or without the word")
+            core.has_gate = True
+        else:
+            self.set_pin(core, key, value)
+
+    def set_pin(self, core, key, value):
+        inputs = [p.name for p in core.pins if p.direction != "o"]
+        pin = next((p for p in core.pins if p.name == key), None)
+        if pin and value[0] == "@":
+            self.set_places(core, pin, value)
+        elif pin and value == "none":
+            pin.internal = True
+        elif key in inputs:
+            pin.source = value
+        else:
+            core.fail(f"'{core.folder}' has no input pin '{key}'; "
+                      f"it has {', '.join(inputs) or 'none'}")
+
+    @staticmethod
+    def set_clock(core, value):
+        """clock=3/8: of the chip's clock, by a DCM_CLKGEN; there is no pin clock_i then."""
+        match = re.fullmatch("([0-9]{1,3})/([0-9]{1,3})", value)
+        core.multiply, core.divide = map(int, match.groups()) if match else (0, 0)
+        core.check(2 <= core.multiply <= core.divide <= 256,
+                   f"clock={value}: a part of the chip's clock, as 3/8: 2..256 / 2..256")
+        core.check(LEAST_HZ <= core.clock_hz <= core.own_clock,
+                   f"clock={value}: {core.clock_hz:.0f} Hz; '{core.folder}' is for {LEAST_HZ:.0f} "
+                   f"to {core.own_clock} Hz")
+        core.pins[-1].internal = True
+
+    @staticmethod
+    def set_signals(core, value):
+        """signals=u_fir.busy,u_fir.count:9: their names in the simulator, below soc, and bits."""
+        for word in value.split(","):
+            match = re.fullmatch("([A-Za-z0-9_.]+)(?::([0-9]{1,3}))?", word)
+            width = int(match[2] or 1) if match else 0
+            core.check(width, f"signals: '{word}' is no name and width, as u_fir.count:9")
+            core.signals.append((match[1], width))
+        bits = sum(width for _, width in core.signals)
+        core.check(bits <= PROBE_BITS, f"signals: {bits} bits; a probe has {PROBE_BITS}")
+
+    def set_places(self, core, pin, value):
+        """pwm_o=@A4,B4: where the bits are on the board, from bit 0."""
+        for place in value[1:].split(","):
+            core.check(re.fullmatch("[A-Za-z0-9]+", place),
+                       f"{pin.name}={value}: places are letters and digits, as @A4,B4")
+            core.check(place not in self.places,
+                       f"place {place} is taken on line {self.places.get(place)}")
+            self.places[place] = core.line
+            pin.places.append(place)
+        core.check(len(pin.places) == pin.width,
+                   f"{pin.name}={value}: {len(pin.places)} places for {pin.width} bits")
+
+    def give_slots(self):
+        taken = {}
+        for core in self.cores:
+            if core.slot:
+                core.check(core.slot not in taken,
+                           f"slot {core.slot} is taken on line {taken.get(core.slot)}")
+                taken[core.slot] = core.line
+        free = (slot for slot in range(self.first, SLOT_LIMIT) if slot not in taken)
+        for core in self.cores:
+            core.slot = core.slot or next(free, 0)
+            core.check(core.slot, f"all {SLOT_LIMIT} slots are taken")
+
+    def give_memory(self):
+        """Places buffers.
+
+        A wrapper keeps only the address bits above the size of its buffers, so each core's are at a
+        multiple of it. Buffers with memory= come first, the others into the gaps, in order.
+        """
+        placed = []
+
+        def neighbour(core):
+            return next((other for other in placed
+                         if core.memory < other.memory + other.memory_bytes
+                         and other.memory < core.memory + core.memory_bytes), None)
+
+        for core in self.cores:
+            if core.is_placed:
+                core.check(core.memory % core.memory_bytes == 0
+                           and self.buffers <= core.memory < self.memory_end,
+                           f"memory=0x{core.memory:X}: buffers of {core.memory_bytes} bytes begin "
+                           f"at a multiple of that, from 0x{self.buffers:X} on and below "
+                           f"0x{self.memory_end:X}")
+                other = neighbour(core)
+                core.check(not other, f"memory=0x{core.memory:X} is within the buffers of line "
+                                      f"{other and other.line}")
+                placed.append(core)
+        end = self.buffers
+        for core in self.cores:
+            if core.memory_bytes and not core.is_placed:
+                core.memory = aligned(end, core.memory_bytes)
+                while other := neighbour(core):
+                    core.memory = aligned(other.memory + other.memory_bytes, core.memory_bytes)
+                end = core.memory + core.memory_bytes
+                if end > self.memory_end:
+                    self.no_room(core, core.memory_bytes)
+                placed.append(core)
+
+    def connect(self, core):
+        """Wires a core's pins to other cores, and gives the rest their bits of the chip's pins."""
+        outputs = {f"{c.name}.{p.name}": p for c in self.cores for p in c.pins
+                   if p.direction == "o"}
+        names = [c.name for c in self.cores]
+        for pin in core.pins:
+            if pin.source and pin.internal and pin.source.split(".")[0] not in names:
+                pin.source = ""  # a neighbour that is not in the chip is ignored
+            elif pin.source:
+                origin = outputs.get(pin.source)
+                core.check(origin and origin.width == pin.width,
+                           f"{pin.name}={pin.source}: no core's output of {pin.width} bits")
+            elif not pin.internal:
+                pin.lsb = self.pins[pin.direction]
+                self.pins[pin.direction] += pin.width
+                core.check(self.pins[pin.direction] <= PIN_LIMIT,
+                           f"'{pin.name}' of '{core.name}': the chip has {PIN_LIMIT} pins of a "
+                           f"direction for cores; {pin.name}=none: it is no pin")
+
+
+def aligned(address, size):
+    return -(-address // size) * size
+
+
+def read(path):
+    try:
+        with open(path, encoding="utf-8") as f:
+            return f.read()
+    except OSError as e:
+        raise Wrong(f"1: error: cannot read '{path}'") from e
+    except ValueError as e:
+        raise Wrong(f"1: error: '{path}' is no text in UTF-8") from e
+
+
+def described(path):
+    try:
+        return Block.read(path).description
+    except Wrong as e:
+        raise Wrong(f"1: error: '{path}': {e}") from None
+
+
+def parts(option, text, form):
+    found = text.split("=", form.count("="))
+    check(len(found) == form.count("=") + 1, f"1: error: {option} {form}, not '{text}'")
+    return found
+
+
+def build(asked):
+    """Returns all files, name to text."""
+    files = dict(parts("--core", c, "folder=file") for c in asked.core)
+    descriptions = {folder: described(file) for folder, file in files.items()}
+    for given in asked.own_clock:
+        folder, hz = parts("--own-clock", given, "folder=Hz")
+        if folder in descriptions:
+            descriptions[folder]["own_clock"] = int(hz)
+    base = described(asked.base)
+    chip = Chip(read(asked.list), base, descriptions)
+    for core in chip.cores:
+        core.has_clock = core.folder in asked.clocked
+        core.says_idle = core.folder in asked.idle
+        core.check(core.says_idle or not core.has_gate,
+                   f"gate=on: '{core.folder}' has no output idle_o (icesoc_core(... IDLE))")
+        own = os.path.join(os.path.dirname(files[core.folder]), core.folder + ".ucf")
+        core.constraints = read(own) if os.path.exists(own) else ""
+    blocks = [parts("--block", b, "slot=name=file") for b in asked.block]
+    slots = [(name, int(number), described(file)) for number, name, file in blocks]
+    slots += [(core.name, core.slot, descriptions[core.folder]) for core in chip.cores]
+    slots = [Slot(name, number, chip.registers + SLOT_BYTES * number, description)
+             for name, number, description in slots]
+    return core_output.files(chip, slots, base) | core_exchange.files(slots)
+
+
+def main():
+    parser = argparse.ArgumentParser(
+        description="Puts the cores of a list into the chip: address map, instances in Verilog, "
+                    "the firmware's table.")
+    parser.add_argument(
+        "list", help="a core a line: folder [name=] [identity=] [slot=] [memory=] [gate=on] "
+        "[clock=3/8] [signals=u_fir.count:9] [input=core.output] [pin=@places]")
+    parser.add_argument("--base", required=True, help="the platform's map.regs.json")
+    for option, text in (
+            ("--core", "folder=its description (*.regs.json)"),
+            ("--clocked", "folder of a core with the parameter CLK_HZ"),
+            ("--own-clock", "folder=Hz at most, of a core with a clock of its own"),
+            ("--idle", "folder of a core with the output idle_o"),
+            ("--block", "slot=name=description of a block of the platform, for the pages")):
+        parser.add_argument(option, action="append", default=[], help=text)
+    parser.add_argument("--output-dir", default=".", help="where the files go")
+    asked = parser.parse_args()
+    try:
+        for name, text in build(asked).items():
+            save(os.path.join(asked.output_dir, name), text)
+    except (Wrong, OSError) as e:
+        sys.exit(f"{asked.list}:{'' if isinstance(e, Wrong) else '1: error: '}{e}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,252 @@
+# SPDX-License-Identifier: MIT
+"""build_folder: set-up, CMake and ninja of a build folder. Two builds in one folder wait for each
+other."""
+import contextlib
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from icesoc import TREE
+from icesoc.cli import keys
+from icesoc.cli.runner import Stop, end, lock, output, run, say, start, tool, wait, warn
+
+ROOMS_OF_PROGRAMS = "bus;slice;sw;hdl;ip;testbench;tests"
+# Beginnings of lines in which CMake, ninja, Verilator and its makefiles report on themselves.
+NOISE = ("ninja: Entering directory", "ninja: no work to do", "- Verilator: ", "- V e r i l a t",
+         "Archive ar ", "-- GLOB", "-- Configuring", "-- Generating", "-- Build files")
+
+
+class Line:
+    """A build as one line: on a terminal it is written anew, elsewhere each tenth of the steps
+    gives one, but none in the first seconds: a build of nothing says nothing."""
+
+    def __init__(self):
+        self.begin, self.told, self.is_shown = time.monotonic(), 0, False
+        self.moves = sys.stdout.isatty()
+
+    def show(self, done, total, what):
+        spent = time.monotonic() - self.begin
+        text = f"[{done}/{total}]"
+        if done > total / 20:
+            left = round(spent * (total - done) / done)
+            text += f" {left // 60}:{left % 60:02} left"
+        if self.moves:
+            width = os.get_terminal_size(sys.stdout.fileno()).columns or 80
+            print("\r\033[K" + f"{text} {what}"[:width - 1], end="", flush=True)
+            self.is_shown = True
+        elif spent > 3 and done * 10 // total > self.told:
+            self.told = done * 10 // total
+            say(f"{text} {what}")
+
+    def clear(self):
+        if self.is_shown:
+            print("\r\033[K", end="", flush=True)
+        self.is_shown = False
+
+
+def in_vhdl(match):
+    """A place in Verilog that GHDL made, with that in the VHDL: it stands in a comment before what
+    assigns a signal."""
+    try:
+        lines = Path(match[1]).read_text(errors="replace").splitlines()
+    except OSError:
+        return match[0]
+    at = int(match[2]) - 1
+    if at >= len(lines) or "by GHDL" not in lines[0]:
+        return match[0]
+    declared = re.match(r" *(?:wire|reg) (?:\[.*?\] )?(\w+);", lines[at])
+    if declared:
+        at = next((n for n, line in enumerate(lines[at:], at)
+                   if re.match(rf" *(?:assign )?{declared[1]} <?= ", line)), at)
+    places = [found[1] for line in lines[at::-1]
+              if (found := re.fullmatch(r" */\* (\S+:\d+):\d+ +\*/", line))]
+    return f"{match[0]} ({places[0]})" if places else match[0]
+
+
+def explained(text):
+    """A line of a build's output, with the place in the source that it is about."""
+    missing = re.match(r"ninja: error: '(\S+)', needed by .* missing and no known rule", text)
+    if not missing:
+        return re.sub(r"(\S+\.v):(\d+)(?=:)", in_vhdl, text)
+    name = re.escape(Path(missing[1]).name)
+    folders = [*Path(missing[1]).parents, *sorted(Path("ip").glob("*"))]
+    for lists in (folder / "CMakeLists.txt" for folder in folders):
+        lines = lists.read_text().splitlines() if lists.is_file() else []
+        for number, line in enumerate(lines, 1):
+            if re.search(rf"(?<![\w.]){name}(?![\w.])", line):
+                return f"{lists}:{number}: there is no file {missing[1]}\n{text}"
+    return text
+
+
+def run_ninja(words, log, check=True, env=None):
+    """Runs ninja. What it says beside its steps is printed; its whole output goes to a file. If it
+    fails, the command ends, unless `check` is false."""
+    line = Line()
+    process = start(words, env={**(env or {}), "NINJA_STATUS": "[%f/%t] "}, text=True,
+                    stdout=subprocess.PIPE, stderr=subprocess.STDOUT, errors="replace")
+    try:
+        with open(log, "w", buffering=1) as file, process.stdout as said:
+            for text in said:
+                file.write(text)
+                step = re.match(r"\[(\d+)/(\d+)\] (.*)", text)
+                if step:
+                    line.show(int(step[1]), int(step[2]), step[3])
+                elif not text.startswith(NOISE):
+                    line.clear()
+                    print(explained(text), end="", flush=True)
+    except BaseException:
+        end(process)
+        raise
+    finally:
+        line.clear()
+    status = wait(process)
+    if status and check:
+        raise Stop(f"the build failed (above); all of it is in {log}", status)
+    return status
+
+
+def writable(folder, otherwise):
+    """Makes a folder, or ends with the reason why it cannot be used."""
+    try:
+        Path(folder).mkdir(parents=True, exist_ok=True)
+    except OSError:
+        pass
+    if not os.access(folder, os.W_OK):
+        raise Stop(f"you may not write in {folder}, {otherwise}")
+
+
+class BuildFolder:
+    """A build folder, as a command's options name it."""
+    def __init__(self, folder, values):
+        self.folder, self.jobs, self.built = Path(folder), values.jobs, values.built
+        self.ucos2 = getattr(values, "ucos2", "")
+        self.core_folders = getattr(values, "core_folders", "")
+
+    def __truediv__(self, name):
+        return self.folder / name
+
+    def prepare(self, *arguments, tests=False):
+        """Set-up, then CMake, unless the folder is configured."""
+        if not self.built:
+            run(["cmake/setup.sh", *(["--tests"] if tests else [])])
+            self.configure(*arguments)
+            if self.ucos2:
+                self.set(UCOS2=os.path.abspath(self.ucos2))
+            if self.core_folders:
+                self.set(CORE_FOLDERS=";".join(map(str, self.other_cores())))
+        return self
+
+    def configure(self, *arguments):
+        """Lets CMake make the folder, unless it has. CMake refuses a folder made for another place:
+        it is removed first."""
+        writable(self.folder, "where the build goes: take a clone of your own, or give --build "
+                 "(BUILD=) a folder that is yours")
+        cache = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.environ["HOME"], ".cache")
+        writable(cache, "where what is fetched and compiled is kept: set XDG_CACHE_HOME to a "
+                 "folder that is yours")
+        home = self.cached("CMAKE_HOME_DIRECTORY")
+        if home and not (os.path.isdir(home) and os.path.samefile(home, ".")):
+            warn(f"{self.folder} was made for the tree in {home}: made anew")
+            keys.rescue(self.folder)
+            shutil.rmtree(self.folder)
+            self.folder.mkdir()
+        with self.alone():
+            if not (self / "build.ninja").exists():
+                run(["cmake", "-S", ".", "-B", self.folder, "-G", "Ninja", *arguments])
+        commands = Path("compile_commands.json")
+        if not commands.exists():  # an editor looks for it here; in another's tree it stays away
+            with contextlib.suppress(OSError):
+                commands.unlink(missing_ok=True)
+                commands.symlink_to(os.path.relpath(self / commands))
+
+    def cached(self, name):
+        """A variable of CMake's cache; empty if there is none."""
+        try:
+            found = re.search(rf"^{name}:\w+=(.*)$", (self / "CMakeCache.txt").read_text(), re.M)
+        except OSError:
+            return ""
+        return found[1] if found else ""
+
+    def set(self, **variables):
+        """Gives variables of CMake new values; if CMake refuses them, prints its reason and keeps
+        the old values."""
+        if all(self.cached(name) == value for name, value in variables.items()):
+            return
+        words = ["cmake", *(f"-D{name}={value}" for name, value in variables.items()), self.folder]
+        with self.alone(), open(self / "set.log", "w") as log:
+            cache = (self / "CMakeCache.txt").read_bytes()
+            status = run(words, check=False, stdout=log, stderr=log)
+            if status:
+                (self / "CMakeCache.txt").write_bytes(cache)
+        if status:
+            reasons = re.findall(r"^CMake Error.*?(?=^$|\Z)", (self / "set.log").read_text(),
+                                 re.M | re.S)
+            raise Stop("CMake refuses " + " ".join(words[1:-1]) + "\n" + "\n".join(reasons))
+
+    def other_cores(self):
+        """Folders of cores outside of ip/: those that the command names, else those kept."""
+        if self.core_folders == "none":
+            return []
+        folders = self.core_folders or self.cached("CORE_FOLDERS")
+        return [Path(folder).absolute() for folder in folders.split(";") if folder]
+
+    def core(self, name):
+        """The folder of a core."""
+        return next((folder for folder in self.other_cores() if folder.name == name),
+                    Path("ip", name))
+
+    def follow(self, other, **variables):
+        """Has the chip of another build folder."""
+        if other.cached("CMAKE_HOME_DIRECTORY"):
+            variables["CORE_FOLDERS"] = other.cached("CORE_FOLDERS")
+        if other.cached("CORES"):
+            variables["CORES"] = other.cached("CORES")
+        self.set(**variables)
+
+    def alone(self):
+        """Holds the folder: two that configure or build it would spoil each other's files."""
+        return lock(self.folder, busy=f"waiting for another build in {self.folder} ...")
+
+    def ninja(self, *words, check=True, env=None, jobs=None):
+        """Builds targets."""
+        if self.built:
+            return 0
+        with self.alone():
+            return run_ninja(["ninja", "-C", self.folder, "-j", jobs or self.jobs, *words],
+                             self.folder / "build.log", check, env)
+
+    def ctest(self, *words, tests, check=True, junit="junit.xml", **env):
+        """Runs tests by CTest, and leaves their results in the build folder."""
+        return run([*tool("regress.ctest"), "--test-dir", self.folder, "-j", tests,
+                    "--output-on-failure", "--no-tests=error", "--output-junit",
+                    (self / junit).absolute(), *words], env=env, check=check)
+
+    def targets(self):
+        """Names of all targets."""
+        return re.findall(r"^(.*): phony$",
+                          output(["ninja", "-C", self.folder, "-t", "targets", "all"]), re.M)
+
+
+def configured(values, *targets, tests=False):
+    """The build folder of a command, with targets built."""
+    build = BuildFolder(values.build, values).prepare(tests=tests)
+    if targets:
+        build.ninja(*targets)
+    return build
+
+
+def netlists(values, *words, **how):
+    """The build folder of netlists for the chips of --family."""
+    families = {"xc6s": "build/netlist", "ecp5": "build/netlist_ecp5"}
+    if values.family not in families:
+        raise Stop(f"netlists are for xc6s or ecp5, not '{values.family}'", 2)
+    return BuildFolder(families[values.family], values).prepare(
+        "-DNETLIST=ON", f"-DNETLIST_FAMILY={values.family}", *words, **how)
+
+
+def fetch(what, folder, check=True):
+    return run([*tool("util.fetch"), what, folder], check=check)

@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: MIT
+"""command: the list of all commands, the parser of each, and its two doors.
+
+`./icesoc run --loss 0.1` and `make run LOSS=0.1` both end in `values`: an option that is not given
+is taken from the variable of its name in the environment, where make puts those of its command
+line.
+"""
+import argparse
+import difflib
+import os
+
+from icesoc.cli.options import BUILT, PATHS, SWITCH
+from icesoc.cli.runner import Stop
+
+COMMANDS = {}  # by name, such as "core new", in the order of the list
+GROUPS = {}  # first words of names of two words, with their help
+DEFAULTS = {}  # a group's command that its first word alone means
+ALIASES = {}  # other verbs of make: a verb, and the switch that it turns on
+
+
+class Command:
+    """A command: a function of its options' values.
+
+    make: its verb there, if it has one. when: the variable that chooses this one of several with
+    the same verb.
+    brief: a command line, or several, that runs all of its steps in short (commands --brief).
+    long: what `nightly` runs of it, with {day} for a seed; none if the tests run the whole.
+    """
+    def __init__(self, function, name, options, make, when, brief, long, examples):
+        self.function, self.name, self.make, self.when = function, name, make, when
+        self.brief, self.long = ([lines] if isinstance(lines, str) else list(lines)
+                                 for lines in (brief, long))
+        self.options = [*options, BUILT]
+        text, _, self.more = function.__doc__.partition("\n\n")
+        self.help = " ".join(text.split())
+        self.examples = examples
+
+    def parser(self, into=None):
+        parser = into or argparse.ArgumentParser()
+        parser.prog = f"icesoc {self.name}"
+        parser.formatter_class = argparse.RawDescriptionHelpFormatter
+        parser.description = self.help + ("\n\n" + "\n".join(map(str.strip, self.more.split("\n")))
+                                          if self.more else "")
+        parser.epilog = "examples:\n" + "".join(
+            f"  ./icesoc {each}\n" for each in self.examples) if self.examples else None
+        parser.allow_abbrev = False
+        for option in self.options:
+            if not option.listed:
+                parser.add_argument(f"--{option.name}", action="store_true", default=None,
+                                    help=argparse.SUPPRESS)
+                continue
+            name = option.field if option.positional else f"--{option.name}"
+            more = {"help": option.explain(), "default": None}
+            if option.kind is SWITCH:
+                more.update(action="store_true")
+            else:
+                more["metavar"] = option.name.upper() if option.positional else option.kind.metavar
+                if option.positional or option.many:
+                    more.update(nargs="*" if option.many else "?")
+            parser.add_argument(name, **more)
+            if option.positional:  # by its name, too, as by make
+                more["help"] = argparse.SUPPRESS
+                parser.add_argument(f"--{option.name}", dest=f"--{option.field}", **more)
+        return parser
+
+    def values(self, given, makes, place):
+        """The values of all options.
+
+        given: texts by field; makes: variables of make's command line; place: the folder of
+        relative names of files."""
+        values = argparse.Namespace(given=set(), given_by_make=makes is not None)
+        for option in self.options:
+            text = given.get(option.field) or given.get(f"--{option.field}")
+            called = f"--{option.name}"
+            if text is not None and makes is None:
+                values.given.add(option.field)
+                called = option.name.upper() if option.positional else called
+            elif option.variable != "LANG" or option.variable in (
+                    makes or ()):  # LANG in the environment is the user's language
+                text, called = os.environ.get(option.variable), option.variable
+                if text and option.variable in (makes or ()):
+                    values.given.add(option.field)
+            if text is True:
+                value = True
+            elif text in (None, "", []):
+                value = option.none()
+            else:
+                if option.kind in PATHS and place != os.getcwd():
+                    text = os.path.join(place, text)
+                value = option.value(text, called)
+            setattr(values, option.field, value)
+        return values
+
+
+def command(name, options=(), make=None, when=None, brief=(), long=(), examples=()):
+    def declare(function):
+        COMMANDS[name] = Command(function, name, options, make, when, brief, long, examples)
+        return function
+
+    return declare
+
+
+def nearest(word, words):
+    """The end of a message about an unknown word."""
+    close = difflib.get_close_matches(word, words, 1, 0.5)
+    return f"; did you mean {close[0]}?" if close else ""
+
+
+def find(words):
+    """The command at the beginning of words, and the words after it."""
+    for length in (2, 1):
+        name = " ".join(words[:length])
+        if name in COMMANDS:
+            return COMMANDS[name], words[length:]
+    first, rest = words[0], words[1:]
+    if first in DEFAULTS and not (rest and not rest[0].startswith("-")):
+        return COMMANDS[DEFAULTS[first]], rest
+    if first in GROUPS:
+        parts = [name.split()[1] for name in COMMANDS if name.startswith(first + " ")]
+        if not rest:
+            raise Stop(f"{first} has the commands {', '.join(parts)}", 2)
+        raise Stop(f"{first} has no command '{rest[0]}'" + nearest(rest[0], parts), 2)
+    raise Stop(
+        f"there is no command '{first}'" + nearest(first, [*GROUPS, *COMMANDS])
+        + " (./icesoc lists all)", 2)
+
+
+def by_words(words, place):
+    """(command, values) of a command line."""
+    found, rest = find(words)
+    flags = {word.partition("=")[0] for word in rest}
+    for each in COMMANDS.values():  # `run --replay`, as `make run REPLAY=`
+        if each.when and each.make == found.make and f"--{each.when.lower()}" in flags:
+            found = each
+    parser = found.parser()
+
+    def refuse(text):
+        raise Stop(f"{found.name}: {text} (./icesoc {found.name} --help)", 2)
+
+    parser.error = refuse
+    given, left = parser.parse_known_args(rest)
+    names = [name for action in parser._actions for name in action.option_strings]
+    for word in left:
+        what = f"has no option {word.partition('=')[0]}" if word.startswith(
+            "-") else f"takes no '{word}'"
+        raise Stop(f"{found.name} {what}{nearest(word.partition('=')[0], names)}", 2)
+    return found, found.values(vars(given), None, place)
+
+
+def by_make(goal, goals, makes):
+    """(command, values) of one of make's goals."""
+    def of(goal):
+        if goal.endswith("/build.ninja"):
+            os.environ["BUILD"], goal = os.path.dirname(goal), "configure"
+        verb, switch = ALIASES.get(goal, (goal, ""))
+        if switch:
+            os.environ[switch] = "1"
+        return [each for each in COMMANDS.values() if each.make == verb]
+
+    if not of(goal):
+        raise Stop(
+            f"there is no 'make {goal}'"
+            + nearest(goal, [each.make for each in COMMANDS.values() if each.make]), 2)
+    known = {"BUILD", "JOBS"} | {option.variable for each in goals for found in of(each)
+                                 for option in found.options}
+    for name in makes:
+        if name not in known:
+            others = sorted({each.make for each in COMMANDS.values() if each.make
+                             and name in (o.variable for o in each.options)})
+            where = f"; it is one of make {', '.join(others)}" if others else nearest(name, known)
+            raise Stop(f"there is no variable {name} of make {' '.join(goals)}{where}; "
+                       f"./icesoc {of(goal)[0].name} --help names them", 2)
+    chosen = sorted(of(goal), key=lambda each: not (each.when and os.environ.get(each.when)))
+    found = next(each for each in chosen if not each.when or os.environ.get(each.when))
+    return found, found.values({}, makes, os.getcwd())
+
+
+def complete():
+    """Completes words of a shell, if Debian's argcomplete is installed."""
+    import argcomplete
+    top = argparse.ArgumentParser()
+    within = {"": top.add_subparsers()}
+    for name, each in COMMANDS.items():
+        first, _, last = name.rpartition(" ")
+        if first not in within:
+            within[first] = within[""].add_parser(first, help=GROUPS[first]).add_subparsers()
+        each.parser(within[first].add_parser(last, help=each.help))
+    argcomplete.autocomplete(top)
+
+
+def overview():
+    """The text of `./icesoc`: a line for each command or group of commands."""
+    lines = [
+        "IceSoC: every function of the UAV, in software or in hardware, is a ZeroC Ice object.", ""]
+    for name in dict.fromkeys(name.split()[0] for name in COMMANDS):
+        parts = [each.split()[1] for each in COMMANDS if each.startswith(name + " ")]
+        text = f"{GROUPS[name]}: {', '.join(parts)}" if parts else COMMANDS[name].help
+        lines.append(f"  {name:<10} {text}")
+    lines += ["", "./icesoc COMMAND --help explains one; "
+              "make VERB VARIABLE=value is the same by the other door:", *verbs()]
+    return "\n".join(lines)
+
+
+def verbs():
+    """The verbs of make, in lines."""
+    line = "  make"
+    for verb in dict.fromkeys(each.make for each in COMMANDS.values() if each.make):
+        if len(line) + len(verb) > 98:
+            yield line
+            line = "      "
+        line += " " + verb
+    yield line

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""One file per group of commands; each declares its commands."""

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: MIT
+"""build: builds everything, the firmware, the layers' sizes; takes the pictures of the pages."""
+import os
+import re
+import tempfile
+import time
+from pathlib import Path
+
+from icesoc.cli.build_folder import BuildFolder, configured
+from icesoc.cli.command import DEFAULTS, GROUPS, command
+from icesoc.cli.options import BUILD, FOLDER, JOBS, UCOS2, WORDS, Option
+from icesoc.cli.runner import Stop, end, logged, run, say, start
+
+GROUPS["build"] = "build everything, or a part"
+DEFAULTS["build"] = "build all"
+
+
+@command("build all", [BUILD, JOBS, UCOS2], make="build", brief="build all", examples=[
+    "build all", "build all --jobs 2"])
+def build_all(values):
+    """build everything: simulator, firmware, compiler, plugin, tests"""
+    BuildFolder(values.build, values).prepare().ninja()
+
+
+@command("build configure", [BUILD, JOBS, UCOS2], make="configure", brief="build configure")
+def build_configure(values):
+    """configure the build folder, and no more"""
+    BuildFolder(values.build, values).prepare()
+
+
+@command("build firmware", [BUILD, JOBS, UCOS2], make="firmware", brief="build firmware", examples=[
+    "build firmware", "build firmware --ucos2 ~/uC-OS2"])
+def build_firmware(values):
+    """the firmware for the STM32F2: ELF and map in build/main/firmware, table of flash, RAM and
+    stacks"""
+    build = BuildFolder(values.build, values).prepare()
+    build.ninja("firmware")
+    run(["sw/sizes.py", "firmware", build / "firmware/uav.map", build / "sw/target/uav.arm",
+         "build/firmware.json"])
+
+
+@command("build size", [BUILD, JOBS], make="size", brief="build size")
+def build_size(values):
+    """bytes of each firmware layer on a Cortex-M3, beside the paper's"""
+    configured(values).ninja("size")
+
+
+# Picture: its width and height, the page's file and part, and the command that writes the page.
+PAGES = {
+    "utilisation": (1400, 1500, "synth/report.html", "#table1/u_modem", "synth report"),
+    "regression": (1180, 1180, "regress/report.html", "", "regress"),
+    "failure": (1180, 900, "regress/report.html", "", "regress")}
+
+
+def small(path):
+    """Takes as many colours as fit into 100 KB, at most 64."""
+    from PIL import Image  # set-up installs it
+    picture = Image.open(path).convert("RGB")
+    for colours in (64, 48, 32, 24, 16, 8):
+        picture.quantize(colours, dither=Image.Dither.NONE).save(path, optimize=True)
+        if os.path.getsize(path) < 100000:
+            return say(f"{path} {colours} colours")
+    raise Stop(f"{path} has 100 KB with eight colours: show less of it")
+
+
+def shoot(path, width, height, address, profile):
+    """Takes a picture of a page after three seconds of the page's time."""
+    logged([
+        "chromium", "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
+        "--hide-scrollbars", f"--user-data-dir={profile}/chromium", "--virtual-time-budget=3000",
+        f"--window-size={width},{height}", f"--screenshot={path.absolute()}", address],
+           f"{profile}/log", f"no picture of {address}", env={"HOME": profile})
+    small(path)
+
+
+def shoot_live(path, profile, icesoc):
+    """Takes a picture of a mission's page after the flight."""
+    with open(f"{profile}/live.log", "w+") as log:
+        flight = start([*icesoc, "--live", "--cpu", "m3", "--out", f"{profile}/live"], stdout=log,
+                       stderr=log)
+        try:
+            while "stays until" not in (text := Path(log.name).read_text()):
+                if flight.poll() is not None:
+                    raise Stop(text)
+                time.sleep(1)
+            shoot(path, 1280, 1000,
+                  re.search("^The mission as it runs: (.*)$", text, re.M)[1], profile)
+        finally:
+            end(flight)
+
+
+@command("build pictures", [
+    Option("pictures", WORDS,
+           "mission, live, utilisation, regression, or failure, for which a test must have failed",
+           ["mission", "live", "utilisation", "regression"], positional=True),
+    Option("from", FOLDER, "the folder with the pages", "build"),
+    Option("to", FOLDER, "where pictures go", "docs/pictures")], make="pictures",
+         brief="build pictures mission --to build/brief", examples=[
+             "build pictures", "build pictures mission"])
+def pictures(values):
+    """take the pictures of README.md and docs/ anew: missions, and the pages of synth and
+    regress"""
+    icesoc, to = ["./icesoc", "run", *(["--built"] if values.built else [])], Path(values.to)
+    with tempfile.TemporaryDirectory() as profile:
+        for name in values.pictures:
+            path = to / f"{name}.png"
+            if name == "mission":
+                logged([*icesoc, "--size", "640x480", "--out", f"{profile}/run"], f"{profile}/log",
+                       "the mission failed")
+                path.write_bytes(Path(profile, "run/after.png").read_bytes())
+                small(path)
+            elif name == "live":
+                shoot_live(path, profile, icesoc)
+            elif name in PAGES:
+                width, height, file, part, by = PAGES[name]
+                page = Path(getattr(values, "from"), file)
+                if not page.exists():
+                    raise Stop(f"there is no {page}: ./icesoc {by}")
+                shoot(path, width, height, f"file://{page.absolute()}{part}", profile)
+            else:
+                raise Stop(f"there is no picture '{name}': mission, live, {', '.join(PAGES)}", 2)

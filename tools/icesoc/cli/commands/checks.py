@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: MIT
+"""check: proofs, sanitizers, seeded bugs, faults, hours of radio, measurements."""
+import json
+import re
+import shutil
+import sys
+from pathlib import Path
+
+from icesoc.cli.build_folder import ROOMS_OF_PROGRAMS, BuildFolder, configured, netlists
+from icesoc.cli.command import GROUPS, command
+from icesoc.cli.options import (BLOCK, BUILD, COUNT, FAMILY, FRESH, JOBS, MINUTES, NAME, PATH, SEED,
+                                TESTS, WORDS, Option)
+from icesoc.cli.runner import Stop, output, run, say, tool
+
+GROUPS["check"] = "what takes minutes to hours"
+GUARDED = ["test_engine", "gateway", "test_radio_ice", "test_icec"]
+
+
+def one_more(status, other):
+    """The first status that is not 0."""
+    return status or other
+
+
+@command("check proofs", [BUILD, JOBS], make="proofs", brief="check proofs")
+def proofs(values):
+    """run all formal proofs, print the processor time of all together"""
+    build = configured(values, "regmaps")
+    build.ctest("-L", "formal", tests=values.jobs, FRESH="1")
+    spent = [float(path.read_text()) for path in (build / "tests/hdl/formal").glob("*/cpu")]
+    say(f"{len(spent)} proofs, {sum(spent):.0f} s of a processor")
+
+
+@command("check netlist", [NAME, FAMILY, TESTS, JOBS], make="netlist",
+         brief="check netlist --name 'cdc_bit|probe'",
+         long=("check netlist", "check netlist --family ecp5 --name "
+               "'^(cdc_bit|modem_uart_tx|bus_wrapper|modem_at_rows)$'"),
+         examples=["check netlist --name 'fir|modem'", "check netlist --family ecp5"])
+def netlist(values):
+    """prove each netlist of `synth` equivalent to its RTL, or run its block's tests on it; print a
+    table"""
+    simulated = json.loads(Path("synth/designs.json").read_text())["simulated"]
+    build = netlists(values, "-DCLK_HZ=2000000", tests=True)
+    build.ninja("synth_inputs")
+    tool = [build / "synth/utilisation", "--generated", build / "gen", "--jobs", values.jobs,
+            "--output", build / "netlists", "--family", values.family]
+    names = output([*tool, "--list"]).split()
+    chosen = [name for name in names if re.search(values.name or "", name)]
+    if not chosen:
+        raise Stop(f"no netlist matches '{values.name}': {', '.join(names)}", 2)
+    tests = [test for name in chosen for test in simulated.get(name, "").split()]
+    words = ["--equivalent", *(f"--design={name}" for name in chosen)]
+    if tests:
+        # Proofs first, which are short and kept; the table takes them from there.
+        proven = [f"--design={name}" for name in chosen if name not in simulated]
+        if proven:
+            output([*tool, "--equivalent", *proven], check=False)
+        build.ninja(*{test.partition(".")[0] for test in tests})
+        build.ctest("-R", f"^({'|'.join(tests)})[^a-z_]", tests=values.tests or values.jobs,
+                    check=False)
+        words += ["--junit", build / "junit.xml"]
+    return run([*tool, *words], check=False)
+
+
+@command("check sanitizers",
+         [Option("kinds", WORDS, "address or thread", ["address", "thread"]), BUILD, JOBS],
+         make="sanitizers", brief="check sanitizers --kinds address", long="check sanitizers")
+def sanitizers(values):
+    """tests of IceC, engine, gateway and plugin with AddressSanitizer and with ThreadSanitizer;
+    fuzzer of the debugger's stub"""
+    build, status, folders = configured(values, tests=True), 0, {
+        "address": ("sanitized", "ON"), "thread": ("thread", "thread")}
+    for name in values.kinds:  # build/sanitized is that of the tests
+        if name not in folders:
+            raise Stop(f"there is no sanitizer '{name}': address, thread", 2)
+        kind, option = folders[name]
+        folder = BuildFolder(f"build/{kind}", values)
+        folder.configure(f"-DSANITIZE={option}", f"-DROOMS={ROOMS_OF_PROGRAMS}")
+        environment = {
+            "ASAN_OPTIONS": "detect_leaks=0",
+            "TSAN_OPTIONS": f"suppressions={Path('tests/sw/ground/threads.supp').absolute()}"}
+        folder.ninja(*GUARDED, env=environment)  # libmcpp leaks
+        # ThreadSanitizer leaves out Python's libraries: Python's own locks are not built with it.
+        left = ["--gtest_filter=-*Python*"] if kind == "thread" else []
+        for test in ("ground/test_engine", "ground/ice/test_radio_ice", "icec/test_icec"):
+            status = one_more(status, run([folder / "tests/sw" / test, "--gtest_brief=1", *left],
+                                          check=False, env=environment))
+    build.ninja("fuzz_gdb")
+    return one_more(status, build.ctest("-R", "^fuzz[.]gdb$", tests=1, check=False))
+
+
+@command("check fuzz", [
+    Option("minutes", MINUTES, "of each fuzzer", 10.0), NAME, SEED, TESTS, BUILD, JOBS],
+         make="fuzz", brief="check fuzz --minutes 0.05 --name 'update$|rdl$'",
+         long="check fuzz --seed {day}", examples=["check fuzz --name slice --minutes 60"])
+def fuzz(values):
+    """attack every parser with mutated input, from the inputs that earlier runs have kept in
+    ~/.cache/icesoc/fuzz"""
+    build = configured(values, "regress", tests=True)
+    chosen = f"^fuzz[.].*({values.name or ''})"
+    if not values.built:
+        run([build / "tests/regress/regress", "--prepare", "--build", build.folder, "--name",
+             chosen])
+    return build.ctest("-R", chosen, tests=values.tests or values.jobs, check=False,
+                       FUZZ=max(1, round(60 * values.minutes)), SEED=values.seed)
+
+
+@command("check mutants", [
+    BLOCK,
+    Option("draw", COUNT,
+           "mutants that Yosys draws, for each proof, in place of those of tests/mutants"), SEED,
+    FRESH, BUILD, JOBS], make="mutants", brief="check mutants --block bus/decoder_error_of_all",
+         long=("check mutants", "check mutants --draw 8 --seed {day}"), examples=[
+             "check mutants --block bus", "check mutants --draw 20"])
+def mutants(values):
+    """plant every seeded bug of tests/mutants, expect its test to fail"""
+    build = configured(values, tests=True)
+    build.ninja("regress", *(["regmaps"] if values.draw else []))
+    drawn = [*tool("mutants.drawn"), "--build", build.folder, "--number", values.draw, "--seed",
+             values.seed]
+    return run([*(drawn if values.draw else tool("mutants.run")), "--jobs", values.jobs,
+                *(["--block", values.block] if values.block else [])], check=False,
+               env={"FRESH": "1" if values.fresh else ""})
+
+
+@command("check faults", [
+    Option("moments", COUNT, "of each fault and seed", 10), SEED,
+    Option("seeds", COUNT, "how many seeds, the first of which is --seed", 1),
+    Option("name", NAME.kind, "faults whose name contains this, such as killed", ""), BUILD, JOBS],
+         make="faults", brief="check faults --name killed --moments 1",
+         long="check faults --seed {day}", examples=["check faults --name killed --moments 2"])
+def faults(values):
+    """kill, stop and starve each process of a mission at moments drawn from a seed, expect
+    docs/regression.md"""
+    build = configured(values)
+    build.ninja("mission", "clock_step", "regress", "utilisation", "regmaps")
+    if not values.name:
+        run([sys.executable, "tests/regress/interrupted.py", ".", build.folder,
+             "build/faults/interrupted",
+             values.moments, "new_ip", "regress", "synth"], env={"SEED": values.seed})
+    return run([
+        sys.executable, "tests/e2e/mission/faults.py",
+        Path.cwd(), build.folder, "build/faults/missions", "--seed", values.seed, "--seeds",
+        values.seeds, "--moments", values.moments, "--jobs", values.jobs, "--deaths", 2,
+        *(["--only", values.name] if values.name else [])], check=False)
+
+
+@command("check soak", [
+    Option("minutes", MINUTES, "of a processor", 4.0),
+    Option("fuzzed", COUNT,
+           "bytes of noise into the modem controller; ten times as many into link and engine",
+           1000000), SEED, BUILD, JOBS], make="soak",
+         brief="check soak --minutes 0.01 --fuzzed 1000",
+         long="check soak --minutes 60 --seed {day}", examples=["check soak --minutes 60"])
+def soak(values):
+    """endurance of the radio: messages and stock Ice's calls, bad weather, reboots, noise
+
+    Half of the time it is the link alone (half of that attacked), then stock Ice through the
+    plugin to IceC on the chip's RTL. Ten vehicles and two grounds fly as many minutes of simulated
+    time, which take a twentieth of a processor's.
+    """
+    build = configured(values, "soak", "test_chip_soak", "test_engine", "test_modem_soak",
+                       "test_link")
+    seed, noise = {"SEED": values.seed}, {"SEED": values.seed, "BYTES": 10 * values.fuzzed}
+    link = [build / "tests/soak/soak", "--minutes", values.minutes / 4, "--seed", values.seed]
+    run(link)
+    run([*link, "--attacked"])
+    run([build / "tests/soak/soak", "--seconds", 60 * values.minutes, "--seed", values.seed,
+         "--vehicles", 10, "--grounds", 2])
+    run([build / "tests/sw/ground/chip/test_chip_soak", "--gtest_brief=1"],
+        env={**seed, "SOAK_SECONDS": 30 * values.minutes})
+    run([build / "tests/sw/link/test_link", "--gtest_brief=1", "--gtest_filter=*TenMillion*"],
+        env=noise)
+    run([build / "tests/sw/ground/test_engine", "--gtest_brief=1",
+         "--gtest_filter=Engine.RandomBytes*"], env=noise)
+    run([build / "tests/hdl/test_modem_soak", "--gtest_brief=1"],
+        env={**seed, "SOAK_BYTES": values.fuzzed})
+
+
+@command("bench", [
+    Option("only", WORDS, "these alone, without a page"),
+    Option("page", PATH, "the page that is written", "docs/figures.md"), BUILD, JOBS], make="bench",
+         brief="bench --only slice", long="bench --page build/bench/figures.md", examples=[
+             "bench", "bench --only air plugin"])
+def bench(values):
+    """measure everything that has a figure (tests/bench), write build/bench/*.json and a page"""
+    listed = Path("tests/bench/CMakeLists.txt")
+    text = listed.read_text() if listed.exists() else ""
+    there = re.findall(r"^ *icesoc_bench\((\w+)", text, re.M)
+    for name in values.only:
+        if name not in there:
+            raise Stop(f"there is no bench '{name}': {', '.join(there)}", 2)
+    build = configured(values)
+    if values.only:
+        Path("build/bench").mkdir(parents=True, exist_ok=True)
+        return build.ninja(*(f"measure_{name}" for name in values.only), check=False, jobs=1)
+    build.ninja("bench_programs", "regress", "size")
+    folder = Path("build/bench")
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    (folder / "tree").write_text(
+        output([build / "tests/regress/regress", "--tree", "bus hdl ip sw testbench tests tools"]))
+    status = build.ninja("-k", "0", "benches", check=False, jobs=1)
+    return one_more(status, run(["tests/bench/figures.py", values.page,
+                                 *sorted(folder.glob("*.json")), "build/size.json"], check=False))

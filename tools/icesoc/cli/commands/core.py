@@ -1,0 +1,323 @@
+# SPDX-License-Identifier: MIT
+"""core: begin a core, test it, look at it, take it away (docs/recipes.md)."""
+import os
+import re
+import shutil
+import tempfile
+from pathlib import Path
+
+from icesoc import TREE
+from icesoc.cli.build_folder import BuildFolder
+from icesoc.cli.command import GROUPS, command
+from icesoc.cli.commands.synth import utilisation
+from icesoc.cli.options import (BUILD, CORE_FOLDERS, FILE, FOLDER, JOBS, SEED, SWITCH, TEXT, Option,
+                                matching, one_of)
+from icesoc.cli.reserved import RESERVED, REFUSAL
+from icesoc.cli.runner import Stop, logged, output, run, say, warn
+
+TEMPLATE = TREE / "tools/icesoc/cores/template"
+
+GROUPS["core"] = "cores of the chip: begin one, test it, take it away"
+NAME = Option("name", TEXT, "name of the core, such as low_pass", "", positional=True)
+CORE = Option("ip", matching(r"\w+", "the name of a core"), "the core", "", positional=True)
+CHIP = Option("chip", SWITCH,
+              "in the chip as it is listed now, which takes minutes, instead of the accepted one")
+
+
+def check_name(name, room="ip"):
+    """Refuses a name that is invalid or taken, in the tree or in the folder `room`."""
+    if not name:
+        raise Stop("a core needs a name: ./icesoc core new low_pass --lang verilog "
+                   "(make new-ip NAME=low_pass LANG=verilog)")
+    if not re.fullmatch(r"[a-z][a-z0-9]*|[a-z][a-z0-9]+(_[a-z][a-z0-9]+)+", name):
+        raise Stop(
+            f"'{name}': words of small letters and digits, joined by _, such as mixer or low_pass")
+    if name in RESERVED:
+        raise Stop(f"'{name}' {REFUSAL}")
+    for folder in (Path("ip", name), Path(room, name)):
+        if os.path.lexists(folder):
+            raise Stop(f"{folder} is there already")
+    for room in ("bus", "hdl", "ip", "sw", "testbench", "synth"):
+        for path in sorted(Path(room).rglob("*")):
+            if room != "synth" and path.name in (f"{name}.regs.json", f"{name}_wrapper.v"):
+                raise Stop(f"{path} has the name '{name}'")
+            if room not in ("sw", "testbench") and path.suffix in (".v", ".vhd") and re.search(
+                    rf"^ *(module|entity) +{name}(_wrapper)?\b", path.read_text(errors="replace"),
+                    re.M | re.I):
+                raise Stop(f"there is a module '{name}' in {path}")
+
+
+def write_own(build, name, lang, ice, folder):
+    """Begins a core from the user's interface."""
+    included = re.findall(r'^ *# *include *[<"]([^>"]*)', Path(ice).read_text(), re.M)
+    if included:
+        raise Stop(f"{ice} includes {' '.join(included)}: a core has one Slice file; write into it "
+                   "what it needs of others")
+    work = folder.parent
+    if run([build / "slice/slice2c", f"-I{Path(ice).absolute().parent}", ice, "--output-dir",
+            work / "c", "--hw-regs", work / "regs", f"--hw-new-{lang}", work / "new"], check=False):
+        raise Stop(f"{ice} is not an interface in hardware (above)")
+    cores = sorted(path.name[:-len(".regs.json")] for path in (work / "regs").iterdir())
+    if cores != [name]:
+        raise Stop(f"{ice} has the cores {' '.join(cores)}: the name is that of the only one")
+    for path in (work / "new").iterdir():
+        shutil.copy(path, folder)
+    shutil.copy(ice, folder / f"{name}.ice")
+    ground = fill(TEMPLATE / "interface/ground.py.in", folder, name)
+    module, proxy = interface_of(Path(ice).read_text())
+    ground.write_text(ground.read_text().replace("@OWN@", module).replace("@PROXY@", proxy))
+    readme = fill(TEMPLATE / "README.md.in", folder, name)
+    readme.write_text(re.sub(r"^Adds an offset, and sums 1..count:",
+                             "Answers every call with zeros:", readme.read_text(), flags=re.M))
+
+
+def interface_of(text):
+    """The outermost module of the interface in hardware, and the proxy's class in Python."""
+    text = re.sub(r"/\*.*?\*/|//[^\n]*", "", text, flags=re.S)
+    before, _, after = text.partition('":hw"')
+    modules = []
+    for module, brace in re.findall(r"(?:module\s+(\w+)\s*)?([{}])", before):
+        modules = modules[:-1] if brace == "}" else [*modules, module]
+    name = re.search(r"interface\s+\\?(\w+)", after)[1]
+    modules = [module for module in modules if module]
+    return modules[0], ".".join([*modules, name + "Prx"])
+
+
+def fill(template, folder, name):
+    """A file of a template, with the core's name."""
+    text = template.read_text().replace("@NAME@", name).replace("@MODULE@", "Cores")
+    path = folder / re.sub("^NAME", name, template.name[:-len(".in")])
+    path.write_text(text.replace("@TYPE@", "".join(word.capitalize() for word in name.split("_"))))
+    return path
+
+
+REPOSITORY = Option("repository", FOLDER, "a repository of your own cores, which is begun or gets "
+                    "this one, in place of ip/")
+
+
+def put_into_repository(room, name):
+    """Writes what the repository of the user's cores lacks; the workflows are those of this
+    tree."""
+    room = Path(room).absolute()
+    origin = output(["git", "remote", "get-url", "origin"], check=False, stderr=-3).strip()
+    origin = re.sub("(?<=://)[^/@]*@", "", origin)  # a name and a password stay here
+    commit = output(["git", "rev-parse", "HEAD"], check=False, stderr=-3).strip()
+    made = (TEMPLATE / "repository/Makefile.in").read_text()
+    made = made.replace("@URL@", origin or os.getcwd()).replace("@COMMIT@", commit or "HEAD")
+    files = {"Makefile": made, "cores.list": Path("ip/cores.list").read_text(),
+             ".gitignore": "/build/\n"}
+    for file in (".github/workflows/icesoc.yml", ".gitlab-ci.yml"):
+        files[file] = Path(file).read_text()
+    for file, text in files.items():
+        if not (room / file).exists():
+            (room / file).parent.mkdir(parents=True, exist_ok=True)
+            (room / file).write_text(text)
+    with open(room / "cores.list", "a") as listed:
+        listed.write(f"{name}\n")
+    say(f"Next: make -C {room} test; make -C {room} run calls it by radio")
+
+
+@command("core new", [NAME, Option("lang", one_of("verilog", "vhdl"), "the core's language"),
+                      Option("ice", FILE, "Slice file with its interface; without: an example"),
+                      REPOSITORY, BUILD, JOBS], make="new-ip",
+         brief=("core new brief_core --lang vhdl", "core remove brief_core --force"),
+         examples=["core new low_pass --lang vhdl", "core new lamp --lang verilog --ice lamp.ice",
+                   "core new low_pass --lang verilog --repository ~/cores"])
+def new(values):
+    """begin a core: writes ip/NAME with interface, core and test, which builds and passes"""
+    name, lang = values.name, values.lang
+    if name and not lang:
+        raise Stop("LANG says the core's language: LANG=verilog or LANG=vhdl (--lang)")
+    room = values.repository or "ip"
+    check_name(name, room)
+    build = BuildFolder(values.build, values).prepare()
+    if values.ice:
+        build.ninja("slice2c")
+    build.folder.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix="new-ip.", dir=build.folder) as work:
+        folder = Path(work) / name
+        folder.mkdir()
+        if values.ice:
+            write_own(build, name, lang, values.ice, folder)
+        else:
+            for template in [*TEMPLATE.glob("*.in"), *(TEMPLATE / lang).glob("*.in")]:
+                fill(template, folder, name)
+        source = {"verilog": f"{name}.v", "vhdl": f"{name}.vhd"}[lang]
+        (folder / "CMakeLists.txt").write_text(
+            "# SPDX-License-Identifier: MIT\n"
+            f"icesoc_core({name} ICE {name}.ice {lang.upper()} {source})\n")
+        if values.repository:
+            readme = folder / "README.md"
+            text = readme.read_text().replace("../../docs", "../build/icesoc/docs")
+            readme.write_text(text.replace(f"make ip-test IP={name}", "make test"))
+        os.makedirs(room, exist_ok=True)
+        shutil.move(folder, f"{room}/{name}")  # the folder takes its place when it is complete
+    written = f"{room}/{name}: {' '.join(sorted(os.listdir(f'{room}/{name}')))}"
+    if values.repository:
+        say(written)
+        return put_into_repository(room, name)
+    # A build folder would notice the new one by itself; it must now, while the folder can still be
+    # removed.
+    if (build / "build.ninja").exists():
+        try:
+            logged(["cmake", build.folder], build / "new-ip.log",
+                   f"the build does not take '{name}' (above); nothing was changed")
+        except Stop:
+            shutil.rmtree(f"ip/{name}")
+            with open(build / "new-ip.log", "a") as log:
+                run(["cmake", build.folder], check=False, stdout=log, stderr=log)
+            raise
+    say(written)
+    return say(f"Next: make ip-test IP={name}; a line '{name}' in ip/cores.list puts it into the "
+               f"chip; make run CORES={name} calls it by radio")
+
+
+def known(values):
+    """The build folder, which knows the core."""
+    if not values.ip:
+        raise Stop("a core is needed: ./icesoc core test fir (make ip-test IP=fir)")
+    build = BuildFolder(values.build, values).prepare()
+    if not values.built:
+        build.ninja("build.ninja")  # CMake has not seen newer folders
+    cores = (build / "cores.known").read_text().split()
+    if values.ip not in cores:
+        raise Stop(f"there is no core '{values.ip}': {' '.join(cores)}")
+    return build
+
+
+@command("core test", [CORE, CORE_FOLDERS, SEED, BUILD, JOBS], make="ip-test",
+         brief="core test fir", examples=[
+             "core test fir", "core test my_core --core-folders /path/to/my_core"])
+def test(values):
+    """build and test one core: its block test, and its VHDL under GHDL"""
+    core, build = values.ip, known(values)
+    programs = [name for name in build.targets() if name in (f"test_ip_{core}", f"{core}_vectors")]
+    if not programs:
+        raise Stop(f"{core} has no test: {core}_test.cpp is not in its folder")
+    build.ninja(*programs)
+    return build.ctest("-R", rf"^(test_ip_{core}[.]|vhdl[.]{core}$)", tests=1,
+                       junit=f"junit-{core}.xml", SEED=values.seed)
+
+
+@command("core synth", [CORE, CORE_FOLDERS, CHIP, BUILD, JOBS], make="ip-synth",
+         brief="core synth fir", examples=["core synth fir --chip"])
+def synth(values):
+    """utilisation of one core, alone and in the chip"""
+    build = known(values)
+    build.ninja("synth_inputs")
+    return utilisation(build, values, "--design", values.ip) or \
+        utilisation(build, values, "--core", values.ip,
+                    *(["--design", "soc"] if values.chip else []))
+
+
+def one_test(program, text):
+    """The name of the test, given by its whole name or by an expression that matches no other."""
+    listed = output([program, "--gtest_list_tests"])
+    suite, names = "", []
+    for line in listed.splitlines():
+        if line.startswith(" "):
+            names.append(suite + line.split()[0])
+        else:
+            suite = line.split()[0]
+    found = [name for name in names if text in (name, name.partition(".")[2])] or [
+        name for name in names if re.search(text, name)]
+    if len(found) != 1:
+        raise Stop(f"TEST={text} is {len(found)} tests, not one of:\n{listed}")
+    return found[0]
+
+
+def ports(build, core):
+    """Ports of the core's model, as GTKWave names them."""
+    for header in build.folder.rglob(f"verilated_{core}_slot/V{core}_slot.h"):
+        for name, high, low in re.findall(r"VL_(?:IN|OUT)[0-9W]*\(&(\w+),(\d+),(\d+)",
+                                          header.read_text()):
+            yield f"TOP.{name}" + (f"[{high}:{low}]" if int(high) > int(low) else "")
+
+
+@command("core wave", [CORE, Option("test", TEXT,
+                                    "the test: its name, or an expression that matches only it", "",
+                                    positional=True), CORE_FOLDERS, BUILD, JOBS], make="wave",
+         brief="core wave fir Impulse", examples=["core wave fir Impulse"])
+def wave(values):
+    """waveform of one test of a core, for GTKWave: build/wave/CORE.fst and .gtkw"""
+    core = values.ip
+    if not core or not values.test:
+        raise Stop("wave needs a core and a test: ./icesoc core wave fir Impulse "
+                   "(make wave IP=fir TEST=Impulse)")
+    main = known(values)
+    source = main.core(core) / f"{core}_test.cpp"
+    if not source.exists():
+        raise Stop(f"there is no {source}")
+    build = BuildFolder("build/trace", values)
+    if not values.built:
+        build.configure("-DTRACE=ON")
+        build.follow(main)
+    build.ninja(f"test_ip_{core}")
+    program = next(path for path in sorted(build.folder.rglob(f"test_ip_{core}"))
+                   if path.is_file() and os.access(path, os.X_OK))
+    name = one_test(program.absolute(), values.test)
+    folder = Path("build/wave").absolute()
+    folder.mkdir(parents=True, exist_ok=True)
+    fst, save, log = (folder / f"{core}{end}" for end in (".fst", ".gtkw", ".log"))
+    fst.unlink(missing_ok=True)
+    with open(log, "w") as file:
+        status = run([program.absolute(), f"--gtest_filter={name}"], check=False, stdout=file,
+                     stderr=file, env={"WAVE": fst})
+    if not fst.exists() or not fst.stat().st_size:
+        raise Stop(f"{log.read_text()}{name} wrote no waveform")
+    save.write_text("\n".join([
+        f"[*] {name}: generated by ./icesoc core wave", f'[dumpfile] "{fst}"',
+        f'[savefile] "{save}"', *ports(build, core)]) + "\n")
+    if status:
+        warn(f"{name} failed: {log}")
+    if os.environ.get("DISPLAY") and shutil.which("gtkwave"):
+        return run(["gtkwave", fst, save], check=False)
+    say(f"gtkwave {fst} {save}")
+
+
+def users_of(name):
+    """Cores with an input that this one drives. An input for other cores only ("internal") becomes
+    0; any other would become a pin of the chip."""
+    for line in Path("ip/cores.list").read_text().splitlines():
+        user, *words = line.partition("#")[0].split() or [""]
+        text = "".join(path.read_text()
+                       for path in Path("ip", user or ".").glob("*.regs.json")) if user else ""
+        for pin in (word.partition("=")[0] for word in words if f"={name}." in word):
+            if not re.search(rf'"name": *"{pin}"[^}}]*"internal": *true', text):
+                yield user
+
+
+@command("core remove", [NAME, Option("force", SWITCH, "with changes that are not committed"),
+                         BUILD, JOBS], make="rm-ip", brief=("core new brief_gone --lang verilog",
+                                                            "core remove brief_gone --force"),
+         examples=["core remove low_pass"])
+def remove(values):
+    """take a core away: its folder and its line in ip/cores.list; a folder outside of ip/ stays"""
+    build = BuildFolder(values.build, values)
+    name, core = values.name, build.core(values.name or ".")
+    if not re.fullmatch(r"[a-z0-9_]+", name) or name == "template":
+        raise Stop(
+            f"'{name}' is not a core: ./icesoc core remove low_pass (make rm-ip NAME=low_pass)")
+    if not core.is_dir():
+        raise Stop(f"there is no {core}")
+    others = build.other_cores()
+    changed = core not in others and output(
+        ["git", "status", "--porcelain", "--ignored", "--", core], check=False, stderr=-3)
+    if changed and not values.force:
+        raise Stop(f"ip/{name} has changes that are not committed (FORCE=1, --force, takes it away "
+                   f"all the same):\n{changed}")
+    users = sorted(set(users_of(name)))
+    if users:
+        raise Stop(f"in ip/cores.list the inputs of {' '.join(users)} are outputs of '{name}'; "
+                   "change these lines first")
+    if core not in others:
+        shutil.rmtree(core)
+    listed = Path("ip/cores.list")
+    listed.write_text(re.sub(rf"^[ \t]*{name}(?![^\s#]).*\n?", "", listed.read_text(), flags=re.M))
+    if (build / "build.ninja").exists():
+        (build / f"files/{name}_slot.f").unlink(missing_ok=True)
+        others = ";".join(str(folder) for folder in others if folder != core)
+        logged(["cmake", f"-DCORE_FOLDERS={others}", build.folder], build / "rm-ip.log",
+               "the build cannot be configured without it")
+    say(f"ip/{name} and its line in ip/cores.list are gone" if not core.is_dir() else
+        f"the line of {name} in ip/cores.list is gone; {core} stays, and is no part of the build")

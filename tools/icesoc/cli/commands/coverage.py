@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: MIT
+"""coverage: lines, branches and toggles that the tests reach, of C, C++, Verilog and VHDL."""
+import shutil
+import subprocess
+from pathlib import Path
+
+from icesoc.cli.build_folder import BuildFolder, configured
+from icesoc.cli.command import command
+from icesoc.cli.options import BUILD, JOBS, NAME, Option
+from icesoc.cli.runner import Stop, output, run, say, tool, warn
+
+COUNTED = "rtl|firmware|vhdl|models|slice|interop|e2e"  # labels of tests that run what counts
+# Fuzzers have counts of their own, e2e.cores builds a chip of its own.
+LEFT_OUT = "NOT_BUILT|^fuzz|^e2e.cores"
+
+
+@command("check coverage", [
+    Option("name", NAME.kind,
+           "only tests of which a part of the name matches this; no gate holds then", ""), BUILD,
+    JOBS], make="coverage", brief=["check coverage --name ^test_fsmc_corners[.]",
+                             "check coverage --name ^vhdl[.]fir"],
+         long="check coverage")
+def coverage(values):
+    """lines, branches and toggles that the tests reach, write build/coverage/html; exit status 1:
+    below tests/regress/coverage_gates.json
+
+    Builds models, C and C++ that count what ran (build/coverage), runs all tests but proofs, lint
+    and those of tools, and merges Verilator's, GHDL's and gcov's counts. Leaves html/index.html
+    and summary.json."""
+    build = configured(values, tests=True)
+    build.ninja("regress")
+    counted = BuildFolder("build/coverage", values)
+    counted.configure("-DCOVERAGE=ON")
+    counted.follow(build)
+    work, regress = counted.folder, build / "tests/regress/regress"
+    tree = output([regress, "--tree", "bus hdl ip slice sw testbench tests tools"])
+    gates = Path("tests/regress/coverage_gates.json")
+    if values.name:
+        run([regress, "--prepare", "--build", work, "--name", values.name])
+        gates = work / "no_gates.json"
+        gates.write_text('{"gates": {"": {"points": 0}}, "explained": []}')
+    else:
+        counted.ninja()
+    points = run_tests(work, values)
+    say("coverage: merging")
+    infos = [*of_host(work), *of_rtl(work, points), *of_vhdl(work, points)]
+    run(["lcov", "--quiet", *(word for info in infos for word in ("--add-tracefile", info)),
+         "--output-file", work / "merged.info"])
+    run(["genhtml", "--quiet", "--title", "IceSoC", "--output-directory", work / "html",
+         work / "merged.info"])
+    status = run([*tool("regress.coverage"), gates, work], check=False)
+    (work / "tree").write_text(tree)
+    return status
+
+
+def run_tests(work, values):
+    """Runs the tests; returns the folder of their counts. Those that fail still count: the
+    regression reports them."""
+    points = work / "points"
+    for folder in (points, work / "html"):
+        shutil.rmtree(folder, ignore_errors=True)
+    points.mkdir()
+    for path in work.rglob("*.gcda"):
+        path.unlink()
+    say("coverage: running the tests")
+    words = ["ctest", "--test-dir", work, "-j", values.jobs, "-L", COUNTED, "-E", LEFT_OUT]
+    with open(work / "ctest.log", "w") as log:
+        if run(words + (["-R", values.name] if values.name else []), check=False, stdout=log,
+               stderr=log, env={"COVERAGE_DIR": points.absolute()}):
+            warn(f"coverage: some tests failed, see {work}/ctest.log")
+    return points
+
+
+def lcov(work, info, *words):
+    """Writes an info file of lcov. Returns its path in a list, which is empty if lcov refuses."""
+    path = work / info
+    with open(work / "lcov.log", "w") as log:
+        status = run(["lcov", "--quiet", *words, "--output-file", path], check=False, stderr=log)
+    if status:
+        path.unlink(missing_ok=True)
+    return [path] if path.exists() and path.stat().st_size else []
+
+
+def own(work, info, source, rooms):
+    """What lies in these rooms of the tree; none if nothing does, as in a build of few rooms."""
+    return lcov(work, info, "--extract", source, *(f"{Path.cwd()}/{room}/*" for room in rooms))
+
+
+def of_host(work):
+    """Counts of C and C++."""
+    found = lcov(work, "all.info", "--capture", "--directory", work, "--ignore-errors",
+                 "gcov,source")
+    if not found:
+        raise Stop((work / "lcov.log").read_text()[-1000:] or "no C or C++ was counted", 2)
+    return own(work, "host.info", found[0], ("sw", "slice", "testbench", "bus", "ip"))
+
+
+def of_rtl(work, points):
+    """Verilator's counts of Verilog."""
+    counts = sorted(points.glob("*.dat"))
+    if not counts:
+        return []
+    for option, name in (("--write", "rtl.dat"), ("--write-info", "all_rtl.info")):
+        run(["verilator_coverage", option, work / name, *counts], stdout=subprocess.DEVNULL)
+    return own(work, "rtl.info", work / "all_rtl.info", ("hdl", "bus", "ip"))
+
+
+def of_vhdl(work, points):
+    """GHDL's counts."""
+    counts, info = sorted(points.glob("*.json")), work / "vhdl.info"
+    with open(info, "w") as file:
+        if counts:
+            run([work / "ghdl/ghdl", "coverage", "--format=lcov", *counts], stdout=file)
+    return [info] if info.stat().st_size else []

@@ -1,0 +1,297 @@
+# SPDX-License-Identifier: MIT
+"""flights: fly the mission, fly it again, look at it in a debugger; send new firmware; make a key;
+fly for hours."""
+import re
+import resource
+import signal
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from icesoc.cli import flight, keys
+from icesoc.cli.build_folder import BuildFolder, configured, netlists
+from icesoc.cli.command import command
+from icesoc.cli.options import (BUILD, COUNT, FAMILY, FILE, FLIGHT, FOLDER, JOBS, MINUTES, PATH,
+                                SECONDS, SEED, SWITCH, Option)
+from icesoc.cli.runner import Interrupted, Stop, end, lock, run, say, start, tool, until, wait, warn
+
+FROM = Option("from", SECONDS, "begin of the waveform, in simulated time")
+TO = Option("to", SECONDS, "end of the waveform, in simulated time")
+DESCRIPTORS = 64  # of a process; the ground's program has some thirty
+NETLIST = Option("netlist", SWITCH, "flies the chip as Yosys made it, by the models of its "
+                 "primitives; each clock is evaluated, of 2 MHz")
+NETLIST_HZ = 2000000
+DEBUGGED = [option for option in flight.FIELDS if option.name in ("image", "size", "seed")]
+
+
+@command("run", [*flight.OPTIONS, NETLIST, FAMILY, BUILD, JOBS], make="run",
+         brief="run --size 96x64 --guard 20 --out build/brief/run",
+         long=("run --netlist --size 96x64 --guard 20 --patience 3000 --out build/netlist/run",
+               "run --netlist --family ecp5 --size 96x64 --guard 20 --patience 3000 "
+               "--out build/netlist_ecp5/run"),
+         examples=[
+             "run --image photo.jpg --size 640x480", "run --loss 0.1 --seed 7 --cores ascon fir",
+             "run --again build/run/flight.json"])
+def fly_mission(values):
+    """fly the mission: simulated UAV, ZeroC Ice ground station, pictures in build/run
+
+    An address of a page that shows the flight is printed. What was flown is in OUT/flight.json,
+    which --again takes."""
+    descriptors = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
+    if descriptors < DESCRIPTORS:
+        raise Stop(f"a flight needs {DESCRIPTORS} file descriptors, the limit is {descriptors}: "
+                   f"ulimit -n {DESCRIPTORS}")
+    flight.complete(values)
+    build = BuildFolder(values.build, values).prepare()
+    if values.netlist:
+        values.clk_hz = min(values.clk_hz, NETLIST_HZ)
+        chip, build = build, netlists(values)
+        build.follow(chip)
+    if not build.built:
+        build.set(CLK_HZ=str(values.clk_hz))
+    build.ninja("mission", *(["firmware_minimal"] if values.app == "minimal" else []))
+    flight.check_chip(values, build)
+    flight.take_key(values, build)
+    flight.take_observers_key(values)
+    busy = (f"another flight is under way in {values.out}; give this one a folder of its own: "
+            "OUT=build/other (--out)")
+    with lock(Path(values.out) / "lock", refuse=busy) as held:  # until the last program has ended
+        fly = minimal if values.app == "minimal" else update if values.update else mission
+        return fly(values, build, held)
+
+
+def simulator(values, build, held, options, ground):
+    """Starts the simulator, with the ground's program as its child. The simulator replaces words
+    such as {out}."""
+    flight.write(values, build)
+    return start([build / "testbench/sim/icesoc-sim", "--flight", Path(values.out) / "flight.json",
+                  *options, "--", "/usr/bin/python3", *ground], pass_fds=[held],
+                 env={"PROBE": values.probe})
+
+
+def minimal(values, build, held):
+    """Flies the program of Table II with its ground."""
+    return wait(
+        simulator(values, build, held, [], [
+            "sw/apps/minimal/ground.py", "{device}", "--frame", "{frame}", "--reference",
+            build / "testbench/sim/vision-reference",
+            f"--Ice.Plugin.XBeeAT={build.folder}/ground/xbeeat:createXBeeAT",
+            "--XBeeAT.Guard={guard}"]))
+
+
+def update(values, build, held):
+    """Sends firmware or a bitstream to a vehicle with the flash OUT/flash.bin, and its FPGA's
+    OUT/fpga.bin; makes both if missing."""
+    out, pack = Path(values.out), build / "sw/target/pack_update"
+    keys.rescue(build.folder)
+    signing = keys.folder() / "update.key"  # private, made at first use
+    if not (out / "flash.bin").exists():
+        run([pack, "vehicle", build / "firmware/loader.elf", flight.firmware(values, build), 1,
+             signing, out / "flash.bin"])
+    if not (out / "fpga.bin").exists():  # a stand-in for ISE's golden bitstream
+        run([build / "testbench/stm32/stand_in_bitstream", out / "golden.bin", 1, 10000])
+        run([pack, "fpga", out / "golden.bin", 1, signing, out / "fpga.bin"])
+    kind = "bitstream" if values.update.endswith((".bit", ".bin")) else "image"
+    run([pack, kind, values.update, int(time.time()), signing, out / "new.update"])
+    values.cpu = "m3"
+    return wait(
+        simulator(values, build, held,
+                  ["--flash", out / "flash.bin", "--fpga-flash", out / "fpga.bin"], [
+                      "sw/ground/clients/update.py", "{out}/new.update", "--device", "{device}",
+                      "--status", "{status}", "--plugin", build / "ground", "--slice",
+                      "sw/apps/uav/Update.ice", "--patience", values.patience,
+                      *(["--key", values.key] if values.key else [])]))
+
+
+def mission(values, build, held):
+    """Flies the mission of the README, with its page."""
+    out, status_file = Path(values.out), Path(values.out) / "status"
+    page = [*tool("web.live"), "--dir", out, "--port", values.port,
+            "--registers", build / "gen/registers.list"]
+
+    def flown():
+        return status_file.stat().st_ctime_ns if status_file.exists() else None
+
+    before = flown()
+    trial = run([*page, "--try"], check=False)
+    if 0 < trial <= 128:
+        raise Stop(status=trial)
+    if trial:
+        warn(f"the page's trial was ended by signal {trial - 128}; the mission goes on")
+    sim = simulator(values, build, held, [], [
+        "sw/ground/clients/mission.py", "{out}/flight.json", "--device", "{device}", "--frame",
+        "{frame}", "--status", "{status}", "--plugin", build / "ground", "--slice",
+        "sw/apps/uav/Autopilot.ice", "--reference", build / "testbench/sim/vision-reference",
+        *(["--observer-device", "{device2}"] if values.vehicles > 1 else [])])
+    shown = None
+    try:
+        # The page starts after the simulator has accepted its options: its address would hide a
+        # refusal.
+        if until(lambda: flown() != before, sim):
+            shown = start(page, pass_fds=[held])
+            if not until(lambda: sim.poll() is not None, shown):
+                ended = shown.returncode
+                how = f"signal {-ended}" if ended < 0 else f"exit status {ended}"
+                warn(f"the page is gone ({how}); the mission goes on")
+        status = wait(sim)
+        if status == 0:
+            say(f"Pictures and report: {out}/before.png {out}/after.png {out}/report.md")
+        if status == 0 and values.live and shown.poll() is None:
+            say("The page stays until Ctrl-C.")
+            try:
+                wait(shown)
+            except Interrupted:
+                say("The page is closed.")
+    except Interrupted:
+        end(sim)
+        raise
+    finally:
+        if shown:
+            end(shown)
+    if status:
+        signal_ended = f": signal {status - 128} ended the simulator, or the ground's program."
+        what = signal_ended if status > 128 else f" (exit status {status})."
+        text = f"The mission failed{what}\n"
+        span = flight.last_span(out) if flown() != before else None
+        if flown() != before and not span:
+            text += f"It cannot be flown again: {out}/flight.jsonl is cut, as by a full disk.\n"
+        if span:
+            text += f"Its end as a waveform: make run REPLAY='{out}' {span}\n"
+            if values.cpu == "m3":
+                text += f"Its end, and backwards from there: make gdb REPLAY='{out}'\n"
+        sys.stderr.write(text)
+    return status
+
+
+@command("replay", [
+    Option("replay", FLIGHT, "folder of the flight", "build/run", positional=True), FROM, TO,
+    Option("out", FOLDER, "folder that it is written to", "build/replay"), BUILD, JOBS], make="run",
+         when="REPLAY", brief="replay build/brief/run --out build/brief/replay", examples=[
+             "replay build/run", "replay build/run --from 1.5 --to 1.51"])
+def replay(values):
+    """fly a recorded flight again, bit by bit; with a span, its waveform
+
+    With --from or --to the waveform of that span is written to OUT/wave.fst, by a simulator that is
+    built for it once; of a
+    flight with --cpu m3 the program's task, interrupt and function are above it."""
+    span = values.given & {"from", "to"}
+    if span and values.to is not None and values.to <= (getattr(values, "from") or 0):
+        raise Stop(f"FROM={getattr(values, 'from')} TO={values.to} are no span in seconds, such as "
+                   "FROM=1.5 TO=1.6", 2)
+    build = BuildFolder(values.build, values).prepare()
+    with open(Path(values.replay) / "flight.jsonl") as recorded:
+        hz = re.search(r'"clkHz": *(\d+)', recorded.readline())
+    if hz and not build.built:
+        build.set(CLK_HZ=hz[1])
+    build.ninja("mission")
+    words = ["--replay", values.replay, "--out", values.out]
+    if not span:
+        return run([build / "testbench/sim/icesoc-sim", *words], check=False)
+    say("building the simulator that writes waveforms (build/trace) ...")
+    trace = BuildFolder("build/trace", values)
+    trace.configure("-DTRACE=ON")
+    trace.follow(build, CLK_HZ=build.cached("CLK_HZ"))
+    trace.ninja("icesoc-sim")
+    Path(values.out).mkdir(parents=True, exist_ok=True)
+    wave = Path(values.out) / "wave.fst"
+    run([
+        trace / "testbench/sim/icesoc-sim", *words, "--wave", wave, "--from",
+        getattr(values, "from") or 0, *(["--to", values.to] if values.to is not None else [])])
+    run(["testbench/common/join_waves.sh", wave])
+    say(f"Waveform: gtkwave {wave}")
+
+
+@command("gdb", [
+    Option("replay", FLIGHT, "folder of a flight to step through, backwards too", ""), *DEBUGGED,
+    Option("out", FOLDER,
+           "folder that the flight is written to; default build/run, of a replay build/replay"),
+    BUILD, JOBS], make="gdb", brief="gdb --size 48x32 --out build/brief/gdb", examples=[
+        "gdb", "gdb --replay build/run"])
+def gdb(values):
+    """debug the firmware's ARM binary against the RTL with gdb-multiarch"""
+    build = configured(values, tests=True)
+    build.ninja("mission")
+    out = Path(values.out or ("build/replay" if values.replay else "build/run"))
+    out.mkdir(parents=True, exist_ok=True)
+    flown = ["--replay", values.replay] if values.replay else [
+        "--cpu", "m3", "--image", values.image, "--size", values.size, "--seed", values.seed]
+    with tempfile.TemporaryFile("w+") as log:
+        sim = start([build / "testbench/sim/icesoc-sim", "--gdb", 0, "--speed", "max", "--out", out,
+                     *flown], stdout=log, stderr=log)
+        try:
+
+            def text():
+                log.seek(0)
+                return log.read()
+
+            until(lambda: "target remote" in text(), sim, 0.1)
+            port = re.search(r"127.0.0.1:(\d+)'", text())
+            print(text(), end="", flush=True)
+            if not port:
+                raise Stop(status=wait(sim) or 1)
+            signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is GDB's: it stops the processor
+            words = ["gdb-multiarch", "-q", build / "firmware/uav.elf", "-ex",
+                     "set remotetimeout unlimited", "-ex", f"target remote 127.0.0.1:{port[1]}"]
+            return run(words, check=False,
+                       preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+        finally:
+            end(sim)
+
+
+@command("key", [
+    Option("file", PATH, "the file that is written", "", positional=True),
+    Option("certificate", SWITCH, "for TLS with the gateway: the file's name says whose it is, "
+           "authority.pem beside it, which is made if missing, signs it"),
+    Option("signing", SWITCH, "a private key that signs updates, and beside it its public half, "
+           "as spare.pub of spare.key; a key that is there is kept"),
+    Option("list", COUNT, "the next list of keys that sign updates, with this number: the last "
+           "one's and 1"),
+    Option("by", FILE, "the private key that signs the list, one of the last list"),
+    Option("first", FILE, "a public key of the list"),
+    Option("second", FILE, "another"), BUILD, JOBS], make="key",
+         brief=("key build/brief/key/my.key", "key build/brief/key/pilot.pem --certificate",
+                "key build/brief/key/spare.key --signing",
+                "key build/brief/key/next.update --list 2 --by build/brief/key/spare.key --first "
+                "build/brief/key/spare.pub"),
+         examples=["key my.key", "run --key my.key", "key certificates/pilot.pem --certificate",
+                   "key spare.key --signing",
+                   "key next.update --list 2 --by spare.key --first spare.pub --second next.pub"])
+def key(values):
+    """make a key of the link, for vehicle and ground, a certificate (docs/security.md), or a key
+    that signs updates and lists of these (docs/firmware.md)"""
+    if not values.file:
+        raise Stop("key needs the name of a file: ./icesoc key my.key", 2)
+    parts = values.list, values.by, values.first
+    if any((*parts, values.second)) and not all(parts):
+        raise Stop("a list of keys needs --list, its number, --by, a private key, and --first, a "
+                   "public one", 2)
+    if sum(map(bool, (values.certificate, values.signing, values.list))) > 1:
+        raise Stop("give one of --certificate, --signing and --list", 2)
+    if values.signing or values.list:
+        pack = configured(values, "pack_update") / "sw/target/pack_update"
+        public = Path(values.file).with_suffix(".pub")
+        if values.signing:
+            run([pack, "public", values.file, public])
+            say(f"{values.file} signs updates; {public} is its public half")
+        else:
+            run([pack, "keys", values.list, values.by, values.first,
+                 *([values.second] if values.second else []), values.file])
+            say(f"made {values.file}: sw/ground/clients/update.py sends it")
+        return
+    make = keys.make_certificate if values.certificate else flight.make_key
+    if not make(values.file):
+        raise Stop(f"'{values.file}' is there already: a key is never overwritten")
+    used = "" if values.certificate else f": ./icesoc run --key {values.file}"
+    say(f"made {values.file}, which nobody but you may read{used}")
+
+
+@command("fly", [
+    Option("minutes", MINUTES, "of simulated time; an hour of it is minutes of a processor", 4.0),
+    SEED, BUILD, JOBS], make="fly", brief="fly --minutes 0.01",
+         long="fly --minutes 60 --seed {day}", examples=["fly --minutes 60", "fly --seed 7"])
+def fly_for_long(values):
+    """a long flight: stock Ice's calls now and then, loss, reboots of UAV, modems and ground"""
+    build = configured(values, "test_chip_soak")
+    run([build / "tests/sw/ground/chip/test_chip_soak", "--gtest_brief=1"], env={
+        "SEED": values.seed, "SOAK_REST": 10, "SOAK_SECONDS": values.minutes * 60})

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: MIT
+"""foreign: puts third-party cores into slots (docs/recipes.md)."""
+import json
+import shutil
+from pathlib import Path
+
+from icesoc.cli.build_folder import BuildFolder, fetch
+from icesoc.cli.command import command
+from icesoc.cli.commands.core import NAME, REPOSITORY, put_into_repository
+from icesoc.cli.flight import FIELDS
+from icesoc.cli.options import BUILD, COUNT, FILES, JOBS, SEED, SWITCH, TEXT, WORDS, Option, one_of
+from icesoc.cli.runner import Stop, lock, run, tool
+
+
+def foreign_words(values):
+    """The words of cores/new_foreign.py."""
+    given = {name: getattr(values, name.lower()) for name in ("CLOCK", "LIBRARY", "ADDRESS")}
+    return [values.name, values.top, values.bus, f"{values.repository or 'ip'}/{values.name}",
+            *(f"{name}={value}" for name, value in given.items() if value),
+            *(f"PARAM:{each}" for each in values.params),
+            *(f"DEFINE:{each}" for each in values.defines), *values.ports, *values.files]
+
+
+@command("core foreign", [
+    NAME,
+    Option("top", TEXT, "its module", ""),
+    Option("bus", TEXT, "wishbone, axil, apb, avalon, memory, own or axis", ""),
+    Option("files", FILES, "its files, of Verilog or VHDL"),
+    Option("ports", WORDS, "what its ports are, such as write=we ack=done"),
+    Option("params", WORDS, "its parameters, such as depth=16"),
+    Option("defines", WORDS, "its macros, such as wide"),
+    Option("clock", COUNT, "Hz of a clock of its own"),
+    Option("library", TEXT, "library of its VHDL", ""),
+    Option("address", one_of("words", "bytes"),
+           "what its address counts; found out, unless given"), REPOSITORY, BUILD, JOBS
+], make="new-foreign", brief=(
+    "core foreign brief_foreign --top req_words --bus own --files tests/ip/new_foreign/cores.v "
+    "--ports select=req write=wr address=where wdata=value rdata=held ack=gnt",
+    "core remove brief_foreign --force"), examples=[
+        "core foreign my_uart --top wbuart --bus wishbone --files wbuart.v ufifo.v"])
+def foreign_core(values):
+    """put a third-party core into a slot: writes ip/NAME; its files in a repository of yours are
+    found from there"""
+    build = BuildFolder(values.build, values).prepare()
+    if any(file.lower().endswith((".vhd", ".vhdl")) for file in values.files):
+        build.ninja("ghdl")
+    status = run([*tool("cores.new_foreign"), *foreign_words(values)], check=False, env={
+        "GHDL": build / "ghdl/ghdl"})
+    return status or (put_into_repository(values.repository, values.name) if values.repository
+                      else 0)
+
+
+def into_slot(source, slot, words, folder, ghdl):
+    """Lets new_foreign.py write a slot's folder. `words`: module, bus, more; patterns of its files
+    in the source's folder."""
+    top, bus, *more = words.split()
+    rest = [part for word in more for part in (
+        [word] if "=" in word or word.startswith("DEFINE:") else sorted(source.glob(word)))]
+    run([*tool("cores.new_foreign"), slot, top, bus, folder / slot, *rest], stdout=-3,
+        env={"GHDL": ghdl})
+    return folder / slot
+
+
+def put_and_fly(values, listed, known):
+    """Puts the chosen cores into slots, tests and flies them. Returns the status."""
+    folder = Path("build/foreign-cores").absolute()
+    missing = fetch("foreign", folder, check=False)
+    if not missing:
+        fetch("ghdl", folder / "ghdl5")
+    shutil.rmtree(folder / "slots", ignore_errors=True)
+    chips = {}  # numbers of chips: folders of cores
+    for source, its in listed.items():
+        for name, core in its["cores"].items():
+            if name not in (values.cores or known) or not (
+                    (folder / f"{source}.done").exists() or its.keys() == {"cores"}):
+                continue
+            chips.setdefault(core.get("chip", 1), {})[name] = core, core.get("folder") or into_slot(
+                folder / source, name, core["new"], folder / "slots", folder / "ghdl5/ghdl")
+    if set(values.cores) - {name for cores in chips.values() for name in cores}:
+        missing = missing or 77
+    status = 0
+    for number, cores in sorted(chips.items()):
+        names = folder / f"chip{number}.list"
+        names.write_text("".join(f"{name} {core.get('list', '')}\n"
+                                 for name, (core, _) in cores.items()))
+        status = run(["examples/foreign/orders.sh", names, *(where for _, where in cores.values())],
+                     check=False, env={
+                         "IMAGE": values.image, "JOBS": values.jobs, "SEED": values.seed,
+                         "ORDERS": "backwards shuffled listed" if len(cores) > 1
+                                   and not values.cores else "listed",
+                         "CHIP": "1" if values.chip and all(
+                             core.get("netlist", True) for core, _ in cores.values()) else ""
+                     }) or status
+    return status or missing
+
+
+@command("core examples", [
+    Option("cores", WORDS, "these of examples/foreign/cores.json alone, in one order"),
+    Option("chip", SWITCH, "and what each costs in the chip"), SEED,
+    *(o for o in FIELDS if o.name == "image"), BUILD, JOBS], make="foreign",
+         brief="core examples --cores foreign_i2c foreign_arbiter foreign_queue",
+         long="core examples --chip")
+def examples(values):
+    """put third-party cores and two of one's own through the recipe, in three orders, test them and
+    call them by radio
+
+    Wishbone, Avalon-MM, AXI4-Lite, AXI-Stream and plain buses, in Verilog, SystemVerilog (in a chip
+    without a netlist) and VHDL. Downloads them from Debian's mirror and GitHub, and leaves out what
+    it cannot reach. The status is 77 if that is every third-party core, or one of CORES."""
+    listed = json.loads(Path("examples/foreign/cores.json").read_text())
+    known = {name for source in listed.values() for name in source["cores"]}
+    if unknown := set(values.cores) - known:
+        raise Stop(f"CORES: there is no '{sorted(unknown)[0]}': {' '.join(sorted(known))}", 2)
+    if not values.built:
+        run(["cmake/setup.sh", "--tests"])
+    with lock("build/foreign.lock", refuse="another one puts cores into slots in this folder"):
+        return put_and_fly(values, listed, known)

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: MIT
+"""fresh: what the README says, in its order, on an empty Debian 12 and 13.
+
+A machine is a folder that debootstrap fills, with a clone of this tree's HEAD and nothing else: no
+package, no cache. Its mounts and processes are its own and end with it.
+"""
+import json
+import os
+import re
+import shutil
+import subprocess
+import time
+from pathlib import Path
+
+from icesoc.cli.command import command
+from icesoc.cli.options import FOLDER, SWITCH, TEXT, Option, one_of
+from icesoc.cli.runner import Stop, output, run, say
+
+RELEASES = {"bookworm": "Debian 12", "trixie": "Debian 13"}
+README = ["make run", "make test"]
+MIRROR = "http://deb.debian.org/debian"
+CERTIFICATES = Path("/etc/ssl/certs/ca-certificates.crt")
+# The machine's first process; what it mounts stays its own.
+BOOT = """
+mount --make-rprivate / && mount -t proc proc "$1/proc" && mount --rbind /dev "$1/dev" &&
+mount --rbind /sys "$1/sys" && exec chroot "$1" /bin/sh -c "cd /root/icesoc && $2"
+"""
+
+
+@command("check fresh", [
+    Option("release", one_of(*RELEASES), "of Debian; without: one after the other", ""),
+    Option("again", SWITCH, "goes on with the machines of before, with HEAD as it is now"),
+    Option("steps", TEXT, "commands in place of the README's, with ; between them",
+           "; ".join(README)),
+    Option("folder", FOLDER, "of machines and logs, 8 GB each", "/var/tmp/icesoc-fresh"),
+    Option("list", SWITCH, "only says what was done before, with status and minutes")],
+         brief="check fresh --list", long="check fresh", examples=[
+             "check fresh --release trixie", "check fresh --again --steps 'make test'"])
+def fresh(values):
+    """do what the README says on an empty Debian 12 and 13; needs root, debootstrap and a
+    network"""
+    top, failed = Path(values.folder), 0
+    results = top / "results.json"
+    rows = json.loads(results.read_text()) if results.exists() else []
+    if values.list:
+        return say("\n".join(map(told, rows)) or f"no machine was made in {top}")
+    if os.geteuid():
+        raise Stop("check fresh needs root: mount and chroot are not for others")
+    for release in [values.release] if values.release else RELEASES:
+        root = top / release
+        if not (values.again and (root / "root").is_dir()):
+            empty_machine(root, release)
+        put_tree(root)
+        for step in values.steps.split(";"):
+            row = do(root, release, step.strip())
+            failed |= row["status"] != 0
+            rows = [
+                each for each in rows if (each["release"], each["step"]) != (release, row["step"])
+            ] + [row]
+            results.write_text(json.dumps(rows, indent=1) + "\n")
+    return failed
+
+
+def told(row):
+    return (f"{RELEASES[row['release']]}: {row['step']}: exit status {row['status']}, "
+            f"{row['minutes']} min, {row['commit']}")
+
+
+def empty_machine(root, release):
+    shutil.rmtree(root, ignore_errors=True)
+    root.parent.mkdir(parents=True, exist_ok=True)
+    run(["debootstrap", "--variant=minbase", "--include=git,make,ca-certificates", release, root,
+         MIRROR], stdout=open(f"{root}-debootstrap.log", "w"))
+    (root / "etc/apt/sources.list").write_text("".join(
+        f"deb {MIRROR} {suite} main\n" for suite in (release, f"{release}-updates")))
+    # How this machine reaches its network: name servers, proxies, certificates.
+    shutil.copy("/etc/resolv.conf", root / "etc/resolv.conf")
+    for file in Path("/etc/apt/apt.conf.d").iterdir():
+        if any(word in file.read_text() for word in ("Proxy", "Check-Date")):
+            shutil.copy(file, root / "etc/apt/apt.conf.d")
+    if CERTIFICATES.exists():
+        shutil.copy(CERTIFICATES, root / CERTIFICATES.relative_to("/"))
+
+
+def put_tree(root):
+    clone = root / "root/icesoc"
+    if not clone.exists():
+        return run(["git", "clone", "--quiet", "--no-hardlinks", Path.cwd(), clone])
+    run(["git", "-C", clone, "fetch", "--quiet", Path.cwd(), "HEAD"])
+    return run(["git", "-C", clone, "reset", "--quiet", "--hard", "FETCH_HEAD"])
+
+
+def do(root, release, step):
+    """Carries one step out, and tells its last lines."""
+    words = re.findall(r"[\w.]+", step)
+    log = Path("-".join([str(root), *words]) + ".log")
+    place = {"HOME": "/root", "PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "TERM": "dumb"}
+    kept = {name: value for name, value in os.environ.items() if name.lower().endswith("_proxy")}
+    begun = time.monotonic()
+    with open(log, "w") as file:
+        status = run(["unshare", "--mount", "--pid", "--fork", "--kill-child", "env", "-i",
+                      *(f"{name}={value}" for name, value in (kept | place).items()), "sh", "-c",
+                      BOOT, "sh", root, step], check=False, stdin=subprocess.DEVNULL, stdout=file,
+                     stderr=file)
+    row = {
+        "release": release, "step": step, "status": status,
+        "minutes": round((time.monotonic() - begun) / 60, 1), "commit": output([
+            "git", "describe", "--always"]).strip()}
+    say(told(row) + f": {log}")
+    say("\n".join("    " + line for line in log.read_text(errors="replace").splitlines()[-12:]))
+    return row

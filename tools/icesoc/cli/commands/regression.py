@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: MIT
+"""regression: the tests, with selection, history and a page; the commit since which one fails; what
+a timer runs."""
+import functools
+import json
+import re
+import shlex
+import sys
+import time
+from pathlib import Path
+
+from icesoc.cli.build_folder import ROOMS_OF_PROGRAMS, BuildFolder, configured
+from icesoc.cli.command import COMMANDS, command
+from icesoc.cli.options import (BLOCK, BUILD, CORE_FOLDERS, COUNT, FRESH, JOBS, LABEL, NAME, SEED,
+                                SWITCH, TESTS, TEXT, UCOS2, WORDS, Option, matching, number)
+from icesoc.cli.runner import Stop, Table, commit, lock, output, run, say, tool
+
+WAVES = Option("waves", number(0), "failures of which a waveform is written", 3)
+
+
+def at_once(values):
+    return values.tests or values.jobs + 2
+
+
+def selection(values, *more):
+    """Options of the regression tool that choose tests."""
+    return [word for name in ("name", "label", *more) if getattr(values, name)
+            for word in (f"--{name}", getattr(values, name))]
+
+
+@command("test", [LABEL, NAME, SEED, FRESH, TESTS, UCOS2, BUILD, JOBS], make="test",
+         brief="test --name ^tree[.]", examples=[
+             "test", "test --label rtl", "test --name 'Burst' --seed 7"])
+def test(values):
+    """run all tests; firmware, models and IceC once more with sanitizers"""
+    build = BuildFolder(values.build, values).prepare(tests=True)
+    some, tests, seed = values.name or values.label, at_once(values), {
+        "SEED": values.seed, "FRESH": "1" if values.fresh else ""}
+    if not some or values.label == "zeroc":
+        build.ninja()
+    elif not values.built:
+        build.ninja("regress")
+        run([build / "tests/regress/regress", "--prepare", "--build", build.folder,
+             *selection(values)])
+    chosen = [
+        *(["-L", values.label] if values.label else []),
+        *(["-R", values.name] if values.name else []),
+        *(["-C", "zeroc"] if values.label == "zeroc" else [])]
+    build.ctest(*chosen, tests=tests, **seed)
+    if not some:
+        sanitized = BuildFolder("build/sanitized", values)
+        sanitized.configure("-DSANITIZE=ON", f"-DROOMS={ROOMS_OF_PROGRAMS}")
+        sanitized.follow(build)
+        sanitized.ninja("sanitized")
+        sanitized.ctest("-L", "sanitized", tests=tests, **seed)
+
+
+@command("regress", [
+    NAME, LABEL, BLOCK,
+    Option("changed", SWITCH, "tests that what has changed since they passed can fail"),
+    Option("failed", SWITCH, "tests that failed the last time"),
+    Option("kept", SWITCH, "failed tests with the seeds that are kept"),
+    Option("seed", matching(r"\d{1,18}|random", "a whole number, or random", metavar="N|random"),
+           "the first seed", "1"),
+    Option("repeat", COUNT, "seeds", 1), WAVES, FRESH, TESTS, CORE_FOLDERS, BUILD, JOBS],
+         make="regress",
+         brief="regress --block bus", examples=[
+             "regress --changed", "regress --name Burst --seed random --repeat 20"])
+def regress(values):
+    """run the regression, write build/regress/report.html"""
+    build = configured(values, "regress", tests=True)
+    switches = [
+        f"--{word}" for word, on in (("changed", values.changed), ("rerun-failed", values.failed),
+                                     ("kept", values.kept)) if on]
+    return run([build / "tests/regress/regress", "--make", "--build", build.folder, "--jobs",
+                at_once(values), "--seed", values.seed, "--repeat", values.repeat, "--waves",
+                values.waves, *selection(values, "block"), *switches], check=False,
+               env={"FRESH": "1" if values.fresh else ""})
+
+
+def last_good(test):
+    """The last commit at which the test passed; a bisection cannot begin at a state that is not
+    committed."""
+    history = Path("build/regress/history.jsonl")
+    runs = map(json.loads, history.read_text().splitlines() if history.exists() else [])
+    good = [each["commit"] for each in runs if "dirty" not in each["commit"]
+            and {end[1] for end in each.get("ends", []) if end[0] == test} == {"p"}]
+    if not good:
+        raise Stop(f"no run that is noted passed {test} at a commit: GOOD= names one (--good)", 2)
+    return good[-1]
+
+
+@command("bisect", [
+    Option("test", TEXT, "the test, as CTest names it", "", positional=True),
+    Option("good", TEXT, "a commit that it passes at; the last one noted", ""),
+    Option("bad", TEXT, "a commit that it fails at", "HEAD"),
+    Option("list", SWITCH, "only lists the commits that would be searched"), SEED, BUILD, JOBS],
+         make="bisect", brief="bisect test_fifo.Fifo.Wraps --good HEAD~3 --list", examples=[
+             "bisect test_fifo.Fifo.Wraps --good v1"])
+def bisect(values):
+    """find the commit since which a test fails, in a checkout of its own
+
+    Commits that do not build, or lack the test, are passed over. Exit status 0: found, and named in
+    the last line; 1: not found;
+    2: it could not begin."""
+    test = values.test
+    if not test:
+        raise Stop("TEST= names the test, as CTest does: ./icesoc bisect test_fifo.Fifo.Wraps", 2)
+    bad = commit(values.bad, "BAD")
+    good = commit(values.good or last_good(test), "GOOD")
+    if run(["git", "merge-base", "--is-ancestor", good, bad], check=False):
+        raise Stop(f"{values.good or good} does not lead to {values.bad}", 2)
+    if values.list:
+        return run(["git", "log", "--oneline", f"{good}..{bad}"])
+    program = (configured(values, "regress", tests=True) / "tests/regress/regress").absolute()
+    tree = Path("build/bisect/tree").absolute()
+    with lock("build/bisect/lock", refuse="another one runs in this folder"):
+        run(["git", "worktree", "remove", "--force", tree], check=False, stderr=-3)
+        run(["git", "worktree", "prune"])
+        run(["git", "worktree", "add", "-q", "--detach", tree, bad])
+        try:
+            return search(program, values, good, bad, tree)
+        finally:
+            run(["git", "worktree", "remove", "--force", tree], check=False)
+
+
+# Whether the present commit passes; 125: unknown. Its build stays for the next one.
+STEP = """mkdir -p build
+([ -e build/main/build.ninja ] || cmake -S . -B build/main -G Ninja || exit 125
+exec setpriv --pdeathsig TERM "$0" "$@") >build/step.log 2>&1
+status=$?
+case $status in 0) told=passes ;; 1) told=fails ;; *) told='cannot be told' status=125 ;; esac
+git log -1 --format="%h %s: $told" >&2
+exit $status
+"""
+
+
+def search(program, values, good, bad, tree):
+    """Lets git ask commits until it knows the first bad one."""
+    step = [
+        "setpriv", "--pdeathsig", "TERM", "sh", "-c", STEP, program, "--make", "--name",
+        f"^{re.escape(values.test)}$", "--seed", values.seed, "--jobs", values.jobs, "--waves", 0]
+
+    def git(*words):
+        run(["git", "bisect", *words], check=False, cwd=tree, stdout=-3)
+
+    if run(step, check=False, cwd=tree) == 0:
+        raise Stop(f"the test passes at {bad}", 2)
+    git("start", bad, good)
+    git("run", *step)
+    log = output(["git", "bisect", "log"], cwd=tree)
+    git("reset")
+    first = re.search(r"^# first bad commit: \[(.*?)\]", log, re.M)
+    if not first:
+        raise Stop("not found: commits that cannot be told lie between")
+    say("since " + output(["git", "log", "-1", "--format=%h %s (%an, %as)", first[1]]).strip())
+    return 0
+
+
+@command("nightly", [
+    Option("nightly", COUNT, "seeds that are drawn", 3),
+    Option("steps", WORDS, "these alone, by their names in the table", []), NAME, LABEL, WAVES,
+    TESTS, BUILD, JOBS], make="nightly",
+         brief="nightly --steps kept random --nightly 1 --name ^tree[.]pages", examples=[
+             "nightly", "nightly --steps kept check-mutants"])
+def nightly(values):
+    """what a timer runs: seeds that have failed, fresh seeds, ZeroC's own suites, the long form of
+    every command
+
+    Writes a table of the steps, build/nightly.md."""
+    build, tests = BuildFolder(values.build, values), at_once(values)
+    # COMPARE_MS: test_quiet compares a second; HOSTILE: packets of test_link.
+    long = {"FRESH": "1", "COMPARE_MS": "1000", "HOSTILE": "10000000"}
+    tool = [build / "tests/regress/regress", "--build", build.folder, "--jobs", tests, "--waves",
+            values.waves, *selection(values)]
+
+    def regression(*words):
+        return run([*tool, *words], check=False, env=long)
+
+    def suite(name):
+        return build.ctest("-C", name, "-L", name, tests=tests, check=False, **long)
+
+    def whole(lines):
+        day = time.strftime("%Y%m%d")
+        return max([run([*tool("__main__"), *shlex.split(line.format(day=day))], check=False,
+                        env=long) for line in lines])
+
+    steps = {
+        "kept": lambda: regression("--kept"),
+        "random": lambda: regression("--seed", "random", "--repeat", values.nightly),
+        "zeroc": lambda: suite("zeroc"), "missions": lambda: suite("nightly"), **{
+            each.name.replace(' ', '-'): functools.partial(whole, each.long)
+            for each in COMMANDS.values() if each.long}}
+    for name in values.steps:
+        if name not in steps:
+            raise Stop(f"there is no step '{name}': {', '.join(steps)}", 2)
+    build.prepare(tests=True).ninja()
+    table = Table("build/nightly")
+    for name in values.steps or steps:  # each runs, even if an earlier one failed
+        begin = time.monotonic()
+        table.add(name, steps[name](), time.monotonic() - begin)
+    return table.end()

@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: MIT
+"""synth: utilisation of the chip, registers of its blocks, and their changes between commits."""
+import contextlib
+import json
+import subprocess
+from pathlib import Path
+
+from icesoc.cli.build_folder import configured
+from icesoc.cli.command import DEFAULTS, GROUPS, command
+from icesoc.cli.options import BUILD, CORE_FOLDERS, FILE, FOLDER, JOBS, TEXT, WORDS, Option
+from icesoc.cli.runner import Stop, commit, lock, logged, output, run, tool, warn
+
+GROUPS["synth"] = "utilisation of the chip"
+DEFAULTS["synth"] = "synth report"
+GROUPS["contract"] = "registers of cores"
+SHOWN = 10  # tests in a line of a pull request
+DESIGN = Option("design", WORDS,
+                "these designs only, such as modem, table1 or soc; of the others what is known")
+DIFF = tool("regs.contract_diff")
+GIT = ["git", "-c", "advice.detachedHead=false"]
+
+
+def with_name(option, names):
+    return [word for name in names for word in (option, name)]
+
+
+def utilisation(build, values, *words):
+    return run([build / "synth/utilisation", "--generated", build / "gen", "--jobs", values.jobs,
+                *words], check=False)
+
+
+@command("synth report", [
+    DESIGN,
+    Option("family", WORDS, "these chips, too, such as xc7 or ecp5"),
+    Option("base", TEXT, "a commit: and what has changed since, as Markdown; COMMIT..COMMIT or "
+           "COMMIT..: only what has changed between these, or until the last report", ""),
+    CORE_FOLDERS, BUILD, JOBS], make="synth", brief="synth report --design npi_arbiter",
+         long="synth report", examples=[
+             "synth report --design modem", "synth report --family xc7 ecp5",
+             "synth report --base main..mine"])
+def synth(values):
+    """LUTs, flip-flops, slices of the chip and each part, against limits and paper"""
+    first, between, last = values.base.partition("..")
+    commits = [commit(name) for name in (first, last) if name]
+    build = configured(values, "synth_inputs", *["slice2c"] * bool(commits), tests=True)
+    status = 0
+    if not between:
+        status = utilisation(build, values, *with_name("--design", values.design),
+                             *with_name("--family", values.family))
+    if commits and status <= 1:  # 1: a design is beyond its budget
+        compare(build, values.jobs, *commits)
+    return status
+
+
+@command("synth accept", [DESIGN, BUILD, JOBS], make="synth-accept", examples=[
+    "synth accept --design modem"], brief="synth accept --design npi_arbiter")
+def accept(values):
+    """record today's utilisation as what is wanted (synth/baseline.json)"""
+    return utilisation(configured(values, "synth_inputs"), values, "--accept",
+                       *with_name("--design", values.design))
+
+
+@command("synth edif", [Option("design", TEXT, "the design", "soc"), BUILD, JOBS],
+         make="synth-edif", brief="synth edif --design npi_arbiter")
+def edif(values):
+    """the chip as EDIF for Xilinx ISE, in build/synth/ise"""
+    build = configured(values, "synth_inputs")
+    return run([build / "synth/utilisation", "--generated", build / "gen", "--edif", values.design],
+               check=False)
+
+
+def synthesise(program, jobs, base, folder):
+    """Builds and synthesises a commit in its own checkout; this one does not change."""
+    folder = folder.absolute()
+    if (folder / ".git").exists():
+        run([*GIT, "-C", folder, "checkout", "-q", "--detach", base])
+    else:
+        run([*GIT, "worktree", "add", "-q", "--detach", folder, base])
+    warn(f"building what {named(base)} synthesises ...")
+    failed = f"{base} does not build"
+    if not (folder / "build/main/build.ninja").exists():
+        logged(["cmake", "-S", folder, "-B", folder / "build/main", "-G", "Ninja"],
+               folder / "build.log", failed)
+    logged(["ninja", "-C", folder / "build/main", "-j", jobs, "synth_inputs"], folder / "build.log",
+           failed)
+    (folder / "build/synth").mkdir(parents=True, exist_ok=True)
+    cache = folder / "build/synth/cache"
+    with contextlib.suppress(FileNotFoundError):
+        cache.unlink()
+    cache.symlink_to(
+        Path("build/synth/cache").absolute())  # designs that both have are synthesised once
+    with open(folder / "build.log", "w") as log:
+        # Status 1: that commit is beyond its own budget, which does not matter here.
+        if run([program, "--jobs", jobs], check=False, cwd=folder, stdout=log) > 1:
+            raise Stop(status=2)
+
+
+def named(base):
+    return output([*GIT, "log", "-1", "--format=%h (%s)", base]).strip()
+
+
+def tests_of(names):
+    """The tests of two commits, each by its kept run with most tests, and those that end
+    otherwise."""
+    history = Path("build/regress/history.jsonl")
+    kept = list(map(json.loads, history.read_text().splitlines())) if history.exists() else []
+    runs = [max((each for each in kept if each["commit"] == name), default={},
+                key=lambda each: each["passed"] + each["failed"]) for name in names]
+    lines = ["| commit | tests |", "|---|---|"]
+    for name, best in zip(names, runs):
+        tests = f"{best['passed']} passed, {best['failed']} failed" if best else "not measured"
+        lines.append(f"| {name} | {tests} |")
+    then, now = ({end[0]: end[1] for end in run.get("ends", [])} for run in runs)
+    if then and now:
+        for text, some in (
+            ("fail now", [test for test in now if now[test] == "f" != then.get(test)]),
+            ("pass again", [test for test in now if now[test] == "p" and then.get(test) == "f"]),
+            ("new", now.keys() - then.keys()), ("did not run", then.keys() - now.keys())):
+            if some:
+                more = f" and {len(some) - SHOWN} more" if len(some) > SHOWN else ""
+                lines += ["", f"Tests that are {text}" if text == "new" else f"Tests that {text}"]
+                lines[-1] += f": {', '.join(sorted(some)[:SHOWN])}{more}"
+    return lines
+
+
+def compare(build, jobs, base, head=None):
+    """The changes since a commit, or between two, of utilisation, registers and tests, as Markdown
+    for a pull request."""
+    program, folder = (build / "synth/utilisation").absolute(), Path("build/synth")
+    with lock(folder / "base.lock", busy="waiting for another comparison in this folder ..."):
+        run([*GIT, "worktree", "prune"])
+        synthesise(program, jobs, base, folder / "base")
+        after = folder
+        if head:
+            synthesise(program, jobs, head, folder / "head")
+            after = folder / "head/build/synth"
+        registers = subprocess.run(  # status 1: something breaks
+            [*DIFF, build / "slice/slice2c", folder / "base", folder / "head" if head else "."],
+            stdout=subprocess.PIPE, text=True).stdout
+        lines = [
+            f"Utilisation since {named(base)}{f', at {named(head)}' if head else ''}:", "",
+            output([
+                program, "--output", after, "--compare",
+                folder / "base/build/synth/report.json"]).rstrip("\n"), "",
+            "Registers:", "", "```", registers.rstrip("\n"), "```", "",
+            *tests_of([
+                output([*GIT, "describe", "--always", "--abbrev=10", which]).strip()
+                for which in (base, head or "--dirty=+")])]
+        text = "\n".join(lines) + "\n"
+        Path("build/summary.md").write_text(text)
+        print(text, end="")
+    return 0
+
+
+@command("contract diff",
+         [Option("base", TEXT, "the commit to compare with", "", positional=True), BUILD, JOBS],
+         make="contract-diff", brief="contract diff HEAD", examples=["contract diff main"])
+def contract_diff(values):
+    """what changed in the cores' registers since a commit; exit status 1: software of then would
+    break"""
+    build = configured(values, "slice2c")
+    return run([*DIFF, build / "slice/slice2c", ".", values.base], check=False)
+
+
+@command("contract from-rdl", [Option("rdl", FILE, "the SystemRDL file", "", positional=True),
+                               Option("out", FOLDER, "folder that they are written to", "")],
+         make="from-rdl", brief="contract from-rdl build/main/gen/icesoc.rdl --out build/brief/rdl",
+         examples=["contract from-rdl spi.rdl --out ip/spi"])
+def from_rdl(values):
+    """register descriptions (*.regs.json) of SystemRDL"""
+    return run([*tool("regs.rdl"), values.rdl, values.out], check=False)

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: MIT
+"""tree: set-up, clean-up, versions, and the list of commands."""
+import json
+import os
+import re
+import shlex
+import shutil
+import sys
+import time
+from pathlib import Path
+
+from icesoc import TREE
+from icesoc.cli import command as doors
+from icesoc.cli import flight, keys
+from icesoc.cli.command import COMMANDS, command
+from icesoc.cli.options import PATH, SWITCH, TEXT, Option
+from icesoc.cli.runner import SKIPPED, Table, lock, run, say, tool
+
+
+@command("setup", [
+    Option("tests", SWITCH, "what tests, reports and debuggers need, too", variable="WITH_TESTS"),
+    Option("check", SWITCH, "only says what is missing"),
+    Option("developer", SWITCH,
+           "git's hooks of this tree, which hold subjects of commits to 72 characters")],
+         make="setup", brief="setup --check", examples=[
+             "setup", "setup --tests", "setup --developer"])
+def setup(values):
+    """install the Debian packages that are needed and missing"""
+    if values.developer:
+        run(["git", "config", "core.hooksPath", ".ci/hooks"])
+        say("git runs .ci/hooks from now on")
+    return run(
+        ["cmake/setup.sh", *(f"--{word}" for word in ("tests", "check") if getattr(values, word))],
+        check=False)
+
+
+doors.ALIASES["setup-tests"] = ("setup", "WITH_TESTS")
+
+
+@command("clean", [Option("list", SWITCH, "only says what would be removed")], make="clean",
+         brief="clean --list")
+def clean(values):
+    """remove what was built; keys are elsewhere"""
+    if not values.list:
+        keys.rescue("build")
+    for path in sorted(Path("build").glob("*")):
+        say(f"would be removed: {path}" if values.list else f"removed: {path}")
+    if not values.list:
+        shutil.rmtree("build", ignore_errors=True)
+
+
+@command("commands", [
+    Option("brief", SWITCH,
+           "runs the brief form of each to its end, writes build/commands.md"),
+    Option("only", TEXT, "only those whose name contains this", ""),
+    Option("man", PATH, "writes the manual page, such as icesoc.1", ""),
+    Option("schema", PATH, "writes the JSON schema of a flight, "
+           "tools/icesoc/cli/flight.schema.json", "")],
+         make="commands", brief="commands", examples=[
+             "commands --brief", "commands --man icesoc.1 && man ./icesoc.1"])
+def commands(values):
+    """list all commands with their brief forms, or run these"""
+    if values.man:
+        Path(values.man).write_text(manual())
+    if values.schema:
+        Path(values.schema).write_text(flight.schema_text())
+    if values.only and values.brief:
+        return run_all(values.only)
+    if values.brief:
+        with lock("build/commands.lock", refuse="all commands run in this folder already"):
+            shutil.rmtree("build/brief", ignore_errors=True)
+            return run_all("")
+    if not values.man and not values.schema:
+        for name, each in COMMANDS.items():
+            say(f"{name:<18} {'make ' + each.make if each.make else '':<18} "
+                + "; ".join(each.brief))
+
+
+def run_all(only):
+    """Runs every brief form to its end, and writes a table of them. Stops at no failure."""
+    table, folder = Table("build/commands"), Path("build/brief")
+    for name, each in COMMANDS.items():
+        if only not in name:
+            continue
+        own, begin, status = folder / name.replace(" ", "-"), time.monotonic(), 0
+        shutil.rmtree(own, ignore_errors=True)  # what it made the last time
+        own.mkdir(parents=True)
+        log = own.with_suffix(".log")
+        with open(log, "w") as file, open(os.devnull) as nothing:
+            for line in each.brief:
+                status = status or run([*tool("__main__"), *shlex.split(line)], check=False,
+                                       stdin=nothing, stdout=file, stderr=file)
+        lines = log.read_text(errors="replace").strip().splitlines() or [""]
+        table.add(name, status, time.monotonic() - begin, lines[-1].strip()[:100])
+        if status not in (0, SKIPPED):
+            say("\n".join("    " + line for line in lines[-20:]))
+    return table.end()
+
+
+def version():
+    """The versions of the project (CHANGELOG.md), of the protocol on the air, and of the chip's
+    blocks."""
+    newest = re.search(r"^## (\d+\.\d+\.\d+)", (TREE / "CHANGELOG.md").read_text(), re.M)[1]
+    link = re.search(r"LINK_VERSION (\d+)", (TREE / "sw/link/link_frame.h").read_text())[1]
+    blocks = []
+    for path in sorted([*(TREE / "hdl").rglob("*.regs.json"), *(TREE / "ip").rglob("*.regs.json")]):
+        block = json.loads(path.read_text())
+        if "version" in block:
+            number = int(block["version"], 16)
+            blocks.append(f"{block['block']} {number >> 8}.{number & 255}")
+    return f"icesoc {newest}\nlink protocol {link}\ncontracts: {', '.join(blocks)}"
+
+
+def manual():
+    """The manual page, made of the commands' help."""
+    def plain(text):
+        return "".join(
+            f"\\&{line}\n" for line in text.replace("\\", "\\e").replace("-", "\\-").splitlines())
+
+    parts = [f'.TH ICESOC 1 "" "{version().partition(chr(10))[0]}"', ".SH NAME",
+             "icesoc \\- every command of the IceSoC project", ".SH SYNOPSIS",
+             "\\&./icesoc COMMAND [option...]", ".SH COMMANDS", ".nf",
+             plain(doors.overview()) + ".fi"]
+    for name, each in COMMANDS.items():
+        parts += [f'.SH "{name.upper()}"', ".nf", plain(each.parser().format_help()) + ".fi"]
+    return "\n".join(parts) + "\n"

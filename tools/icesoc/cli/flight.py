@@ -1,0 +1,267 @@
+# SPDX-License-Identifier: MIT
+"""flight: the description of a flight, OUT/flight.json, which simulator, ground and page read.
+
+Each option below is a field of it. flight.schema.json beside this file is written from them
+(./icesoc commands --schema).
+"""
+import json
+import os
+import re
+import secrets
+from pathlib import Path
+
+from icesoc.cli import keys
+from icesoc.cli.build_folder import BuildFolder
+from icesoc.cli.options import (CORE_FOLDERS, COUNT, FILE, FOLDER, FRAME, KEY_FILE, PATH, SEED,
+                                SHARE, SWITCH, TEXT, UCOS2, WORDS, Option, matching, number, one_of)
+from icesoc.cli.runner import Stop, say
+
+VERSION = 3
+FIELDS = [
+    Option("image", FILE, "picture for the camera: PNG, JPEG or PGM",
+           "/usr/share/xplanet/images/earth.jpg"),
+    Option("size", FRAME, "of the camera's frame, in pixels", "320x240"),
+    Option("threshold", number(0, 255, "grey levels"), "threshold of the vision core", 24),
+    Option(
+        "loss",
+        matching(r"0?\.\d+|[01](\.0*)?", "the share of packets that is lost, 0..1", float,
+                 SHARE.schema, "N"), "loss on the air, each way", 0.0),
+    Option("interference", SHARE, "share of each 20 ms in which others are heard on the channel",
+           0.0),
+    Option("distance", number(0, 100000, "metres", float), "in free space, with fading; 0: none",
+           0.0),
+    Option("trace", FILE, "CSV of loss, RSSI and delay (docs/simulation.md), in place of --loss",
+           ""),
+    SEED,
+    Option("out", FOLDER, "folder that the flight is written to", "build/run"),
+    Option("cpu", one_of("host", "m3"),
+           "host: the firmware's host build; m3: its ARM binary on a model of the Cortex-M3",
+           "host"),
+    Option("app", one_of("uav", "minimal"),
+           "uav: the mission; minimal: the program of Table II, with --cpu m3", "uav"),
+    Option("port", number(0, 65535), "port of the page that shows the flight; 0 is any", 0),
+    Option("live", SWITCH, "keeps the page until Ctrl-C"),
+    Option("cores", WORDS, "cores whose part is flown too (ip/*/ground.py)"),
+    Option(
+        "camera", SWITCH,
+        "the picture comes through the camera core's pins, and the vision core takes it from there"
+    ),
+    Option("wire", SWITCH, "a wire to the vehicle's serial pins in place of modems and air"),
+    Option("pins", FILE,
+           "drives the inputs of cores (docs/simulation.md); outputs go to OUT/pins.log", ""),
+    Option("probe", TEXT,
+           "trigger of a probe among the cores (ip/probe/README.md), such as u_fir.sent=1", ""),
+    Option("key", KEY_FILE, "file with the link's key, of vehicle and ground; without: a demo key",
+           ""),
+    Option("open", SWITCH, "flies in the clear"),
+    Option("observer", KEY_FILE, "file with the keys of a second ground, which several vehicles "
+           "serve; without: a demo key of its own", ""),
+    Option("vehicles", number(1, 32), "that fly on one channel, all but the first with the ARM "
+           "binary", 1),
+    Option("update", FILE, "firmware (ELF) or bitstream (.bit, .bin) that is sent to the vehicle "
+           "in place of the mission", ""),
+    Option("clk-hz", COUNT, "the simulated chip's clock in Hz", 100000000),
+    Option("guard", number(2, 3300, "ms"), "guard time of both modems", 1000),
+    Option("patience", number(1, unit="s"), "for each answer of the vehicle", 300),
+    Option("firmware", FILE, "firmware (ELF) in place of the one that is built", ""), ]
+# Other options of the simulator, in a flight's description or as words; ./icesoc has its own
+# options for them.
+_TEXT, _TIME, _FLAG = {"type": "string"}, {"type": "number", "minimum": 0}, {"type": "boolean"}
+_SPEED = {**_TEXT, "pattern": "real|max|0?[.][0-9]+|[0-9]{1,2}([.][0-9]+)?"}
+INNER = {name: {**kind, "description": text} for name, kind, text in [
+    ("modem_key", {**_TEXT, "pattern": "[0-9a-fA-F]{32}"},
+     "AES key with which the vehicle's modem encrypts"),
+    ("flash", _TEXT, "file of the chip's flash, 1 MiB by pack_update; it is kept there"),
+    ("fpga_flash", _TEXT,
+     "file of the FPGA's configuration flash, 2 MiB by pack_update; kept too"),
+    ("replay", _TEXT, "folder of a recorded flight, which is flown again without its command"),
+    ("wave", _TEXT, "file for the waveform (FST) of a replay"),
+    ("from", _TIME, "begin of the waveform, s"),
+    ("to", _TIME, "end of the waveform, s"),
+    ("trouble", {**_TEXT, "pattern": "(away|twin|babble):[0-9]+:[0-9.]+:[0-9.]+"},
+     "what befalls several vehicles: away:2:1.5:3 takes the modem with the address 2 out of reach "
+     "after 1.5 s, for 3 s; twin:2:... brings another vehicle of this address; babble:2:... noise"),
+    ("every_clock", _FLAG, "evaluates each clock, quiet ones and those of idle cores, too (slow)"),
+    ("speed", _SPEED, "real: simulated time follows the clock; 0.25: at a quarter of its speed; "
+     "max: as fast as it goes"),
+    ("duration", _TIME, "end after this simulated time, s"),
+    ("gdb", {"type": "integer", "minimum": 0, "maximum": 65535},
+     "waits for GDB on this port of the loopback interface; 0: any"),
+    ("quiet", _FLAG, "says nothing"),
+]}
+AGAIN = Option("again", PATH, "flight.json of a flight: its options, where none is given here")
+OPTIONS = [*FIELDS, UCOS2, AGAIN, CORE_FOLDERS]
+
+
+def empty(option):
+    """The value in flight.json of an option that is not given."""
+    return {"boolean": False, "array": [], "string": ""}.get(option.kind.schema.get("type"),
+                                                             option.default)
+
+
+def schema_text():
+    """The schema, a line a field."""
+    lines = json.dumps({**schema(), "properties": None}, indent=1).split("\n")
+    fields = ",\n".join(f"  {json.dumps(name)}: {json.dumps(rule)}"
+                        for name, rule in schema()["properties"].items())
+    at = next(number for number, line in enumerate(lines) if '"properties"' in line)
+    required = json.dumps(schema()["required"])
+    return "\n".join([*lines[:at], ' "properties": {', fields, " },", f' "required": {required},',
+                      ' "additionalProperties": false', "}"]) + "\n"
+
+
+def schema():
+    """The JSON schema of flight.json."""
+    fields = {option.field: {**option.kind.schema, "description": option.help,
+                             "default": option.default or empty(option)} for option in FIELDS}
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "A flight",
+            "type": "object", "properties": {"version": {"const": VERSION}, **fields, **INNER},
+            "required": ["version", *fields], "additionalProperties": False}
+
+
+def wrong(flight):
+    """The first part that does not fit the schema, or None."""
+    types = {"string": str, "integer": int, "number": (int, float), "boolean": bool, "array": list}
+    rules = {name: rule for name, rule in schema()["properties"].items() if name not in INNER}
+    if not isinstance(flight, dict) or flight.get("version") != VERSION:
+        return f"it is not of version {VERSION}"
+    for name in [*rules, *flight]:
+        if name not in flight or name not in rules:
+            return f"'{name}' is " + ("missing" if name in rules else "no field")
+        value, rule = flight[name], rules[name]
+        kind = rule.get("type", "integer" if name == "version" else "string")
+        fits = value in rule.get("enum", [value]) and isinstance(value, types[kind]) and (
+            isinstance(value, bool) == (kind == "boolean"))
+        fits = fits and (kind != "array" or all(isinstance(word, str) for word in value))
+        if not fits or not rule.get("minimum", 0) <= (value if "minimum" in rule else
+                                                      0) <= rule.get("maximum", float("inf")):
+            return f"'{name}' is {value!r}"
+    return None
+
+
+def read(path):
+    """A flight's description."""
+    try:
+        flight = json.loads(Path(path).read_text())
+    except (OSError, json.JSONDecodeError) as error:
+        raise Stop(f"cannot read the flight '{path}': {error}", 2) from None
+    except (ValueError, RecursionError):
+        raise Stop(f"the flight '{path}' is no JSON in UTF-8, or its numbers or brackets are too "
+                   "long", 2) from None
+    if wrong(flight):
+        raise Stop(f"'{path}' describes no flight: {wrong(flight)}", 2)
+    return flight
+
+
+def complete(values):
+    """Takes options that are not given from the repeated flight, and refuses options that exclude
+    each other."""
+    if values.again:
+        given = values.given | ({"key", "open"} if values.given & {"key", "open"} else {"version"})
+        for name, value in read(values.again).items():
+            if name not in given:
+                setattr(values, name, value)
+    if values.open and values.key:
+        raise Stop(f"OPEN=1 flies in the clear, KEY='{values.key}' does not: give one of them", 2)
+    if values.app == "minimal" and values.cpu != "m3":
+        raise Stop("the minimal program is an ARM binary: give --cpu m3 (CPU=m3)", 2)
+    other = [name for name in ("loss", "interference", "distance", "trace", "update")
+             if getattr(values, name)] + ["app"] * (values.app == "minimal")
+    if values.wire and other:
+        raise Stop("WIRE=1 flies the mission without modems and air: leave out "
+                   + ", ".join(f"--{name}" for name in other), 2)
+    single = [name for name in ("wire", "update", "pins") if getattr(values, name)]
+    if values.vehicles > 1 and (single or values.app == "minimal"):
+        raise Stop(f"VEHICLES={values.vehicles}: vehicles that share the air fly the mission; "
+                   "leave out " + ", ".join(f"--{name}" for name in single or ["app"]), 2)
+    if values.camera and values.pins:
+        raise Stop("CAMERA=1 and PINS=file both drive the inputs of cores: give one of them", 2)
+    if values.camera and "camera" not in values.cores:
+        values.cores = [*values.cores, "camera"]
+    if values.probe and "probe" not in values.cores:
+        raise Stop(f"PROBE='{values.probe}' is a trigger of a probe: give --cores probe "
+                   "(CORES=probe), too", 2)
+    build = BuildFolder(values.build, values)
+    for at, core in enumerate(values.cores):
+        folder = build.core(core)
+        if not (folder / "ground.py").is_file():
+            raise Stop(f"core '{core}' has no part in a mission: there is no {folder}/ground.py", 2)
+        if folder.is_absolute():  # outside of ip/
+            values.cores[at] = str(folder)
+    try:
+        Path(values.out).mkdir(parents=True, exist_ok=True)
+    except OSError:
+        pass
+    if not os.access(values.out, os.W_OK):
+        raise Stop(f"OUT='{values.out}' is no folder into which a flight can be written", 2)
+
+
+def check_chip(values, build):
+    """Refuses a core of the tree that the chip lacks: its call would fail only minutes later."""
+    listed = build.cached("CORES") or "ip/cores.list"
+    lines = re.findall(r"^\s*(\w+)", Path(listed).read_text(), re.M)
+    for core in (Path(folder).name for folder in values.cores):
+        if core not in lines:
+            raise Stop(f"the chip has no core '{core}': it needs a line '{core}' in {listed}")
+
+
+def take_key(values, build):
+    """The demo key, made once, for a mission that is neither open nor has a key."""
+    if values.open or values.key or values.app != "uav":
+        return
+    keys.rescue(build.folder.parent)
+    values.key = str(keys.folder() / "demo.key")
+    if make_key(values.key):
+        say(f"made a demo key, {values.key}: ground and vehicle share it; KEY=file takes yours, "
+            "OPEN=1 none")
+
+
+def take_observers_key(values):
+    """A demo key for the second ground of several vehicles that have keys."""
+    if values.vehicles > 1 and values.key and not values.observer:
+        values.observer = str(keys.folder() / "observer.key")
+        make_key(values.observer)
+
+
+def make_key(path):
+    """Makes a key that nobody else may read; false if there is one."""
+    beside = f"{path}.{os.getpid()}"
+    with open(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w") as file:
+        file.write(secrets.token_hex(16) + "\n")
+    try:
+        os.link(beside, path)
+        return True
+    except FileExistsError:
+        return False
+    finally:
+        os.remove(beside)
+
+
+def firmware(values, build):
+    name = "minimal" if values.app == "minimal" else "uav_ucos2" if values.ucos2 else "uav"
+    return values.firmware or str(build / f"firmware/{name}.elf")
+
+
+def write(values, build):
+    """OUT/flight.json."""
+    flight = {"version": VERSION, **{option.field: getattr(values, option.field)
+                                     for option in FIELDS}}
+    flight["firmware"] = firmware(values, build)
+    path = Path(values.out) / "flight.json"
+    path.with_suffix(".new").write_text(json.dumps(flight, indent=1) + "\n")
+    path.with_suffix(".new").replace(path)
+
+
+def last_span(out):
+    """FROM= and TO= of a flight's end, from its last checkpoint at least 10 ms before it; None if
+    the recording is cut, as by a full disk."""
+    last = before = finish = 0.0
+    recording = (Path(out) / "flight.jsonl").read_text()
+    if not recording.endswith("\n"):
+        return None
+    for line in recording.split("\n"):
+        at = re.search(r'"ns":(\d+)', line)
+        finish = int(at[1]) / 1e9 if at else finish
+        if '"digest"' in line:
+            before, last = last, finish
+    return f"FROM={last if finish - last > 0.01 else before:.3f} TO={finish:.3f}"

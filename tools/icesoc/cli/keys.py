@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: MIT
+"""keys: certificates, and private keys in ~/.config/icesoc (XDG_CONFIG_HOME), outside of what is
+built.
+
+All trees of a user share them, a copy of a tree has none, and no command removes one."""
+import filecmp
+import hashlib
+import os
+import subprocess
+import tempfile
+from pathlib import Path
+
+from icesoc.cli.runner import Stop, run, say
+
+
+def folder():
+    place = Path(os.environ.get("XDG_CONFIG_HOME") or Path.home() / ".config") / "icesoc"
+    place.mkdir(mode=0o700, parents=True, exist_ok=True)
+    return place
+
+
+def rescue(built):
+    """Takes keys out of `build`, or a folder in it, where they were kept once."""
+    for pattern in ("demo.key", "update.key", "*/update.key"):
+        for old in sorted(Path(built).glob(pattern)):
+            new = folder() / old.name
+            if new.exists() and not filecmp.cmp(old, new, shallow=False):
+                digest = hashlib.sha256(old.read_bytes()).hexdigest()
+                new = new.with_name(f"{old.stem}-{digest[:8]}.key")
+            new.touch(mode=0o600)
+            new.write_bytes(old.read_bytes())
+            old.unlink()
+            say(f"{old} is {new} now: keys are kept outside of what is built")
+
+
+def make_certificate(path):
+    """Makes a file (PEM) with a certificate, whose subject is CN=its name, and its private key,
+    P-256, for ten years. Returns False if it is there. Its authority's own key is authority.key."""
+    path = Path(path)
+    authority, signs = path.with_name("authority.pem"), path.with_name("authority.key")
+    if path.exists() or path == authority:
+        return False
+    if not path.parent.is_dir():
+        raise Stop(f"there is no folder '{path.parent}'", 2)
+    if authority.exists() != signs.exists():
+        raise Stop(f"of '{authority}' and '{signs}' one is missing: keep both, or neither")
+    before = os.umask(0o077)
+    with tempfile.TemporaryDirectory(dir=path.parent) as work:
+        cert, key = Path(work, "cert"), Path(work, "key")
+        if not signs.exists():
+            sign("icesoc", cert, key, "CA:TRUE")
+            cert.chmod(0o644)  # it is public
+            key.rename(signs)
+            cert.rename(authority)
+        sign(path.stem, cert, key, "CA:FALSE", "-CA", authority, "-CAkey", signs)
+        cert.write_text(cert.read_text() + key.read_text())
+        os.link(cert, path)
+    os.umask(before)
+    return True
+
+
+def sign(name, cert, key, constraint, *by):
+    settings = cert.with_name("openssl.cnf")  # the machine's own would let everybody sign
+    settings.write_text("[req]\ndistinguished_name = name\n[name]\n")
+    run(["openssl", "req", "-x509", "-config", settings, "-newkey", "ec", "-pkeyopt",
+         "ec_paramgen_curve:P-256", "-nodes", "-days", "3650", "-subj", f"/CN={name}", "-addext",
+         f"basicConstraints=critical,{constraint}", "-keyout", key, "-out", cert, *by],
+        stderr=subprocess.DEVNULL)

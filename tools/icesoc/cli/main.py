@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: MIT
+"""main: the two doors, the environment of all programs, and one way to fail."""
+import os
+import pwd
+import re
+import sys
+
+from icesoc import TREE
+from icesoc.cli import command
+from icesoc.cli.commands import (  # noqa: F401 (each declares its own)
+    flights, core, foreign, synth, build, regression, checks, coverage, fresh, tree)
+from icesoc.cli.runner import Interrupted, Stop, hear_signals, say, warn
+
+
+def surroundings():
+    """Sets the environment of all programs, and changes to the tree's folder. Returns the caller's
+    folder."""
+    place, tree = os.getcwd(), os.environ.pop("ICESOC_TREE", "")  # a test's own tree
+    os.chdir(tree or TREE)
+    place = os.getcwd() if tree else place
+    # ccache and icesoc.util.fetch keep files in HOME, which a timer or a container may not set.
+    os.environ.setdefault("HOME", pwd.getpwuid(os.getuid()).pw_dir)
+    # Paths below this folder are relative in the compiler's cache, so that it serves every clone.
+    os.environ.update(CCACHE_BASEDIR=os.getcwd(), CCACHE_NOHASHDIR="1")
+    os.environ[
+        "LC_ALL"] = "C.UTF-8"  # numbers have a point in every tool, whatever the user's language
+    return place
+
+
+def make_gave():
+    """(goal, all goals, variables of its command line), or None if make has not called."""
+    goal, goals = os.environ.pop("ICESOC_GOAL", ""), os.environ.pop("ICESOC_GOALS", "").split()
+    flags = os.environ.pop("MAKEFLAGS", "")
+    for name in ("MFLAGS", "MAKELEVEL", "MAKEOVERRIDES"):
+        os.environ.pop(name, None)
+    names = re.findall(r"(?:^|(?<=\s))([A-Za-z_]\w*) ?:?=",
+                       re.sub(r"\\.", "", " " + flags.partition(" -- ")[2]))
+    return (goal, goals or [goal], names) if goal else None
+
+
+def act(words):
+    place = surroundings()
+    made = make_gave()
+    if "_ARGCOMPLETE" in os.environ:
+        return command.complete()
+    if not words and (not made or made[0] == "help"):
+        return say(command.overview())
+    if made:
+        found, values = command.by_make(*made)
+    elif words[0] in ("help", "-h", "--help"):
+        return say(command.overview())
+    elif words[0] == "--version":
+        return say(tree.version())
+    else:
+        found, values = command.by_words(words, place)
+    # Programs do not see these variables; a command passes on the necessary ones.
+    for option in found.options:
+        os.environ.pop(option.variable if option.variable != "LANG" else "", None)
+    return found.function(values)
+
+
+def main(words):
+    hear_signals()
+    try:
+        return act(words) or 0
+    except Stop as stop:
+        if stop.text:
+            warn(stop.text)
+        return stop.status
+    except Interrupted as interrupted:
+        warn("stopped")
+        return interrupted.status
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    except OSError as error:
+        warn(f"{error.strerror}" + (f": {error.filename}" if error.filename else ""))
+        return 1

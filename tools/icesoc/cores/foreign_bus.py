@@ -1,0 +1,265 @@
+# SPDX-License-Identifier: MIT
+"""foreign_bus: writes the files of a core with registers behind a bus, for new_foreign.py.
+
+The slot has a Wishbone or an AXI4-Lite adapter. Other buses become Wishbone's by a few gates: a
+core without acknowledge answers at once, after some clocks, or in APB's access phase.
+"""
+import json
+import re
+
+from icesoc.cores.foreign_roles import AXI, LOW, is_answer
+from icesoc.cores.foreign_files import ADAPTER, head, overrides, pin_name, vector
+
+BUSES = {"wishbone": "Wishbone", "apb": "APB", "axil": "AXI4-Lite",
+         "memory": "select, address and data",
+         "own": "a bus of its own", "avalon": "Avalon-MM"}
+WISHBONE = ["cyc", "stb", "we", "adr", "sel", "wdata", "rdata", "ack", "err", "rty", "stall"]
+WIDTHS = {"sel": 4, "strobes": 4, "wdata": 32, "rdata": 32, "wstrb": 4, "bresp": 2, "rresp": 2,
+          "awprot": 3, "arprot": 3}
+ADDRESSES = ("adr", "words", "bytes", "awaddr", "araddr")
+
+
+class Core:
+    """A third-party core: its ports by their roles; `latency`: the clocks after which it answers,
+    if it has no ack;
+    `address`: "words", "bytes" or None; `macros`: of macros_of."""
+
+    def __init__(self, name, top, bus, ports, roles, latency, params, clock, address, macros):
+        acks = [n for n in ports if roles[n] == "ack"]  # one of reads and one of writes, or both
+        self.acks = {n: f"ack_{i}" for i, n in enumerate(acks)} if len(acks) > 1 else {}
+        self.name, self.top, self.bus, self.ports = name, top, bus, ports
+        self.roles = {**roles, **self.acks}
+        roles = self.roles
+        self.latency, self.params, self.clock, self.macros = latency, params, clock, macros
+        self.by_role = {r.removesuffix("_n"): p for n, p in ports.items() if (r := roles[n])}
+        self.pins = [(pin_name(n, p), p) for n, p in ports.items() if not roles[n]]
+        self.data_width = max(len(self.by_role[r]["bits"]) for r in ("wdata", "rdata"))
+        self.signals = AXI if bus == "axil" else WISHBONE
+        self.has_strobes = bus == "avalon" or {"stb", "strobe"}.isdisjoint(self.by_role)
+        self.adr_bits, self.word_bits, self.unit, self.counts_bytes = 6, 0, "", False
+        for n, p in ports.items():
+            if roles[n] in ADDRESSES:
+                self.count_words(roles[n], p, address)
+
+    def count_words(self, role, port, address):
+        """Finds out whether an address counts words or bytes, and how many bits count words."""
+        width, lsb = len(port["bits"]), port.get("offset", 0)
+        if address or role in ("words", "bytes"):
+            unit, reason = address or role, "as you say"
+        elif self.bus in ("apb", "axil", "avalon"):
+            unit = "words" if self.bus == "avalon" else "bytes"
+            reason = f"{BUSES[self.bus]} does"
+        elif lsb:
+            unit, reason = "bytes", f"it begins at bit {lsb}"
+        elif self.macros:
+            unit, reason = "bytes", f"{', '.join(self.macros)} are multiples of 4"
+        elif width < 16 or width == 30:
+            unit, reason = "words", f"it has {width} bits"
+        elif width < 30 and self.data_width < 32:
+            unit, reason = "words", f"it has {width} bits, and data {self.data_width}"
+        else:
+            unit, reason = "bytes", f"it has {width} bits"
+        self.unit = f"counts {unit}: {reason}" + ("" if reason == "as you say" else
+                                                  f"; if not, ADDRESS={'bytes' if unit == 'words' else 'words'}")
+        self.counts_bytes = unit == "bytes"
+        self.word_bits = width if unit == "words" else max(0, width + lsb - 2)
+        self.adr_bits = max(self.adr_bits, self.word_bits + 2, width + lsb)
+        self.slice = f"[{width + 1}:2]" if unit == "words" else f"[{width + lsb - 1}:{lsb}]"
+
+    def width(self, signal):
+        return self.adr_bits if signal in ADDRESSES else WIDTHS.get(signal, 1)
+
+
+def connection(core, role, port, interrupts):
+    """Returns what a port with a role is connected to; appends the wire of an interrupt."""
+    width = len(port["bits"])
+    if role in LOW:
+        return f"{{{width}{{!({connection(core, role[:-2], {'bits': [0]}, interrupts)})}}}}"
+    strobes = core.has_strobes  # without a select, read and write are strobes
+    own = {"strobe": "stb", "re": "stb && !we" if strobes else "!we",
+           "we": "stb && we" if strobes else "we"}
+    if role in ("stb", "strobe", "re", "we"):  # one bit per byte, all of them driven
+        to = own.get(role, role) if core.bus in ("own", "avalon") else role
+        return f"{{{width}{{{to}}}}}" if width > 1 else to
+    if role in ("interrupt", "interruptn"):
+        wire, of_many = f"interrupt_{len(interrupts)}", width > 1
+        value = "|" * of_many + wire if role == "interrupt" else "!" + "&" * of_many + wire
+        interrupts.append((width, wire, value))
+        return wire
+    if role in ADDRESSES:
+        return ("adr" if role in ("words", "bytes") else role) + core.slice
+    if "enable" in core.by_role:
+        role = {"ack": "ready", "err": "refused", "sel": "strobes"}.get(role, role)
+    if role in ("wdata", "sel", "strobes", "wstrb", "rdata") and width < core.width(role):
+        return f"{role}[{width - 1}:0]"
+    fixed = {"clock": "clk_i", "reset": "rst_i", "resetn": "!rst_i", "low": f"{width}'d0",
+             "open": "",
+             "high": f"{{{width}{{1'b1}}}}", "1": f"{width}'d1", "2": f"{width}'d2"}
+    return fixed.get(role, role)
+
+
+def answers(core):
+    """Returns declarations and lines that a core's missing answers need, and how ack and err are
+    made."""
+    if core.acks:
+        acks = list(core.acks.values())
+        return [f"    wire {', '.join(acks)};"], [], {"ack": " || ".join(acks)}
+    taken = "stb && !stall" if "stall" in core.by_role else "stb"
+    if "valid" in core.by_role:
+        return ["    wire valid;"], [], {"ack": f"{taken} && we || valid"}
+    if core.latency:
+        last = core.latency - 1
+        shift = f"{{answered[{last - 1}:0], {taken}}}" if last else taken
+        return ([f"    reg [{last}:0] answered; // the core answers {core.latency} clocks after "
+                 "its strobe"],
+                [f"    always @(posedge clk_i) answered <= rst_i ? {core.latency}'d0 : {shift};"],
+                {"ack": f"answered[{last}]"})
+    if "enable" in core.by_role:
+        made = [f"    assign {signal} = {value};"
+                for role, signal, value in (("ack", "ready", "1'b1"), ("err", "refused", "1'b0"))
+                if role not in core.by_role]
+        return (["    reg access; // APB's access phase, from a transfer's second clock on; ready "
+                 "counts only in it",
+                 "    wire enable, ready, refused;",
+                 "    wire [3:0] strobes;"],
+                ["    always @(posedge clk_i) access <= stb && !rst_i;",
+                 "    assign enable = stb && access;",
+                 "    assign strobes = sel & {4{we}}; // none in a read", *made],
+                {"ack": "enable && ready && !refused", "err": "enable && ready && refused"})
+    return [], [], {"ack": taken} if core.bus in (
+        "memory", "own", "avalon") and "ack" not in core.by_role else {}
+
+
+def rules(core):
+    """Returns the checker of APB's rules; the adapters have those of the other buses."""
+    return f"""`ifdef RULES
+    apb_rules #(.ADDR_WIDTH({core.adr_bits})) u_rules (
+        .clk_i(clk_i), .rst_i(rst_i), .psel_i(stb), .penable_i(enable), .pwrite_i(we), .paddr_i(adr), .pwdata_i(wdata),
+        .pstrb_i(strobes), .pready_i(ready), .abort_i(!bus_valid_i || bus_ready_o));
+`endif
+""" if core.bus == "apb" else ""
+
+
+def module(core):
+    """Returns the slot's Verilog."""
+    interrupts = []
+    connections = [f".{n}({connection(core, core.roles[n], p, interrupts) if core.roles[n] else pin_name(n, p)})"
+                   for n, p in core.ports.items()]
+    wires, lines, made = answers(core)
+    for s in core.signals:
+        value = made.get(s) or (f"{core.width(s)}'d0" if is_answer(s)
+                                and s not in core.by_role else "")
+        wires.append(f"    wire {vector(core.width(s))}{s}{' = ' + value if value else ''};")
+    wires += [f"    wire {vector(width)}{wire};" for width, wire, _ in interrupts]
+    irq = " || ".join(value for *_, value in interrupts) or "1'b0"
+    rdata = len(core.by_role["rdata"]["bits"])
+    if rdata < 32:
+        lines.append(f"    assign rdata[31:{rdata}] = {32 - rdata}'d0;")
+    names = {s: ("axi_" if core.bus == "axil" else "wb_") + s for s in core.signals}
+    if core.bus != "axil":
+        names["wdata"] = names["rdata"] = "wb_dat"
+    adapter = ",\n        ".join([f"{ADAPTER}, .irq_i(interrupt)",
+                                  *(f".{names[s]}_{'i' if is_answer(s) else 'o'}({s})"
+                                    for s in core.signals)])
+    takes_strobes = core.bus == "own" and core.has_strobes or {"stall", "valid", "strobe"} & set(
+        core.by_role)
+    options = ", .PIPELINED(1)" if takes_strobes or core.latency else ""
+    # the adapter gives a core up before bus_crossing does, after 250 clocks of the chip
+    if core.clock:
+        options += f", .TIMEOUT({max(2, 250 * core.clock // 100000000 - 6)})"
+    kind = "bus_to_axi4lite" if core.bus == "axil" else "bus_to_wishbone"
+    separator, newline = ",\n        ", "\n"
+    return f"""{head(core.name, f"{core.top} behind {kind}", core.pins)}    `include "{core.name}_regs.vh"
+
+{newline.join(wires + lines)}
+    wire interrupt = {irq};
+
+    {kind} #(.ID_VALUE({core.name.upper()}_ID_VALUE), .ADDR_WIDTH({core.adr_bits}){options}) u_bus (
+        {adapter}
+    );
+
+    {core.top}{overrides(core.params)} u_core (
+        {separator.join(connections)}
+    );
+{rules(core)}    wire unused = &{{1'b0, {", ".join(s for s in core.signals if not is_answer(s))}, 1'b0}};
+endmodule
+"""
+
+
+def description(core, words):
+    """Returns *.regs.json; `words` are the names of the core's words by their addresses."""
+    letters = (core.name.replace("_", "") + "x").upper()
+    width = {} if core.data_width >= 32 else {"width": core.data_width}
+    registers = [{"word": 3, "name": "PAGE", "access": "rw",
+                  "doc": "byte address in the core of word 8", "fields": [
+        {"name": "ADDRESS", "lsb": 0, "width": core.adr_bits, "doc": "a multiple of 32"}]}]
+    registers += [{"word": 8 + a % 8, "page": a // 8 * 32, "name": n, "access": "rw", **width,
+                   "doc": f"at {4 * a:#x} in the core"} for a, n in words.items()]
+    return {"block": core.name, "doc": f"The third-party core {core.top}, by {BUSES[core.bus]}.",
+            "type": f"0x{ord(letters[0]):02X}{ord(letters[1]):02X}", "version": "0x0100",
+            "pins": [{"name": n, "width": len(p["bits"])} for n, p in core.pins],
+            "registers": registers,
+            "events": [{"name": "CORE", "bit": 0, "doc": "the core's interrupt line was high"},
+                       {"name": "TIMEOUT", "bit": 1, "doc": "the core did not answer"}]}
+
+
+def test(name, first):
+    suite = "".join(w.capitalize() for w in name.split("_"))
+    return f"""// SPDX-License-Identifier: MIT
+//
+// {name}_test: the core answers behind its adapter, and its registers are apart. Pins: slot.bench_.top().<pin>.
+
+#include "V{name}_slot.h"
+#include "V{name}_slot___024root.h"
+#include "registers_apart.h"
+#include "V{name}_slot_state.h" // names of the model's signals
+extern "C" {{
+#include "{name}_regs.h"
+}}
+
+namespace {{
+
+const Hw_Register table[] = {{{name.upper()}_TABLE}};
+
+TEST({suite}, IsInItsSlotAndAnswers) {{
+    CoreSlot<V{name}_slot> slot;
+    EXPECT_EQ(slot.bus_.read(0), {name.upper()}_ID_VALUE);
+    slot.bus_.write({name.upper()}_PAGE, {name.upper()}_{first}_PAGE);
+    auto answer = slot.bus_.transfer(false, {name.upper()}_{first}, 0);
+    EXPECT_FALSE(answer.error) << "no answer, or an error: what does the core want at its reset and its pins?";
+    EXPECT_EQ(slot.bus_.read(1) & {name.upper()}_EVENT_TIMEOUT_MASK, 0u);
+}}
+
+TEST({suite}, RegistersAreApart) {{
+    CoreSlot<V{name}_slot> slot;
+    noteWhetherItRests(slot.bench_);
+    expectRegistersApart(slot, table, {name.upper()}_PAGE);
+}}
+
+}} // namespace
+"""
+
+
+def ground(name, first):
+    return f'''# SPDX-License-Identifier: MIT
+\"""{name}'s part of a mission: its registers are listed, and one is read.\"""
+
+
+def fly(log, proxy, report):
+    import Hw  # made by loadSlice
+
+    core = Hw.RegistersPrx.checkedCast(proxy("{name}"))
+    registers = log.call("ground -> UAV", "{name}.list()", core.list)
+    log.say("{name}: " + " ".join(r.name for r in registers))
+    value = log.call("ground -> UAV", "{name}.get({first})", lambda: core.get("{first}"))
+    log.say("{name}: {first} is 0x%X" % value)
+'''
+
+
+def texts(core, words):
+    """Returns the files by their names; `words` as names_of gives them, or nothing."""
+    words = words or {a: f"REG{a}" for a in range(min(32, 1 << core.word_bits))}
+    first = next(iter(words.values()))
+    return {f"{core.name}.v": module(core), f"{core.name}_test.cpp": test(core.name, first),
+            f"{core.name}.regs.json": json.dumps(description(core, words), indent=2) + "\n",
+            "ground.py": ground(core.name, first)}, "registers: " + " ".join(words.values())

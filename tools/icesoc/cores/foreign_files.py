@@ -1,0 +1,315 @@
+# SPDX-License-Identifier: MIT
+"""foreign_files: what new_foreign.py reads from a third-party core's files: its modules, and TOP's
+ports; and what all wrappers have."""
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import xml.etree.ElementTree
+
+from icesoc import TREE
+
+KINDS = {".vhd": "vhdl", ".vhdl": "vhdl", ".v": "verilog", ".sv": "verilog",
+         ".vh": "header", ".svh": "header", ".h": "header", ".inc": "header"}
+# Verilator's, for a core in anybody's style.
+FLAGS = ["-Wno-fatal", "-Wno-lint", "-Wno-style",
+         *("-Wno-" + w for w in "TIMESCALEMOD SELRANGE COMBDLY INITIALDLY".split()),
+         "-Werror-MODDUP", "--no-timing"]
+
+
+def fail(text):
+    sys.exit("new-foreign: " + text)
+
+
+def end_of(file):
+    return os.path.splitext(file)[1].lower()
+
+
+def kind_of(file):
+    """"vhdl", "verilog", "header" or None, by the end of the file's name."""
+    return KINDS.get(end_of(file))
+
+
+def is_vhdl(file):
+    return kind_of(file) == "vhdl"
+
+
+def text_of(file):
+    with open(file, errors="replace") as f:
+        return f.read()
+
+
+def folders_of(files):
+    return sorted({os.path.dirname(f) for f in files} - {""})
+
+
+def declared(files, kind):
+    """Returns the modules, entities or packages of the files: (name, file, line)."""
+    found = []
+    for f in files:
+        text = re.sub(r"/\*.*?\*/|//[^\n]*", lambda m: "\n" * m.group().count("\n"), text_of(f),
+                      flags=re.S)
+        found += [(m.group(1), f, text.count("\n", 0, m.start(1)) + 1)
+                  for m in re.finditer(rf"^[ \t]*{kind}\s+(?:automatic\s+)?(\w+)", text,
+                                       re.M | re.I)]
+    return found
+
+
+def only_once(modules, what_to_do):
+    """Returns the file of each module; a module in two files is an error."""
+    first = {}
+    for name, file, line in modules:
+        other, at = first.setdefault(name, (file, line))
+        if other != file:
+            fail(f"{file}:{line}: module '{name}' is in {other}:{at}, too: {what_to_do}")
+    return first
+
+
+def check_names(slot, top, files):
+    """Each module is in one file, and none has the name of the slot or of one of this project's: in
+    the chip there is one of each. Returns TOP as it is declared."""
+    kind = "entity" if is_vhdl(files[0]) else "module"
+    there = declared(files, kind)
+    names = [n for n, *_ in there]
+    if kind == "entity":  # its names have no case; GHDL writes them as declared
+        top = next((n for n in names if n.lower() == top.lower()), top)
+    if top not in names:
+        fail(f"there is no {kind} '{top}' in FILES; there is {', '.join(names) or 'none'}")
+    if slot in names:
+        fail(f"'{slot}' is the name of a {kind} of the core: give the slot another")
+    first = only_once(there, "leave one of the files out") if kind == "module" else {}
+    room = str(TREE)
+    ours = [os.path.join(d, f) for r in ("bus", "hdl")
+            for d, _, there in os.walk(os.path.join(room, r)) for f in there
+            if f.endswith(".v")]
+    for name, file, line in declared(ours, "module"):
+        if name == slot:
+            fail(f"'{slot}' is the name of this project's module in "
+                 f"{os.path.relpath(file, room)}: give the slot another")
+        if name in first and first[name][0] != file:
+            fail(f"{first[name][0]}:{first[name][1]}: module '{name}' has the name of this "
+                 "project's "
+                 f"{os.path.relpath(file, room)}:{line}: give it another, where it is used, too")
+    return top
+
+
+def packages_first(files):
+    """Returns the files with each SystemVerilog package before those that use it."""
+    there = {name: f for name, f, _ in declared(files, "package")}
+    ordered = []
+
+    def put(file, above=()):
+        for name, other in there.items():
+            if other not in (*above, file) and re.search(rf"\b{name}::", text_of(file)):
+                put(other, (*above, file))
+        if file not in ordered:
+            ordered.append(file)
+
+    for file in files:
+        put(file)
+    return ordered
+
+
+# Verilator's and Yosys' words, and what to do about it.
+HINTS = {r"[Ii]nclude file:? (?:`)?([^\s']+)": "FILES may name headers, too: `include looks for "
+                                               "{0} in their folders (a timescale.v may be empty)",
+         r"(?:Module `\\|unknown type `|containing module: ')(\w+)": "FILES lacks the file with module '{0}'",
+         r"object for defparam `(\w+)|no generic \"(\w+)\"": "PARAMS: {top} has no '{0}'",
+         r"find resource library \"(\w+)\"": "LIBRARY={0} says that the files are in that library"}
+
+
+def run_tool(what, top, command):
+    """Runs a tool that reads the core; a refusal is an error, with advice. Without `what`: returns
+    whether the tool accepts it."""
+    run = subprocess.run(command, capture_output=True, text=True)
+    if run.returncode and what:
+        said = (run.stdout + run.stderr).rstrip()
+        lines = said.splitlines()
+        hints = [hint.format(*filter(None, m.groups()), top=top) for words, hint in HINTS.items()
+                 if (m := re.search(words, said))]
+        fail("\n".join([f"{what} {top}:", *lines[:12], *(["..."] if len(lines) > 12 else []),
+                        *hints]))
+    return run.returncode == 0
+
+
+def lint_of(top, files, defines):
+    """Returns Verilator's command for a core, but for what it shall do with which files."""
+    return ["verilator", *FLAGS, "--top-module", top, *("-I" + d for d in folders_of(files)),
+            *("-D" + d for d in defines)]
+
+
+def ports_by_verilator(top, words):
+    """Returns TOP's ports as Yosys gives them, of SystemVerilog that Yosys does not read."""
+    with tempfile.TemporaryDirectory() as work:
+        file = os.path.join(work, "top.xml")
+        run_tool("Verilator does not elaborate", top,
+                 [*words, "--xml-only", "--xml-output", file, "--Mdir", work])
+        tree = xml.etree.ElementTree.parse(file)
+    types = {t.get("id"): t for t in tree.find("netlist/typetable")}
+
+    def width(number):
+        t = types[number]
+        if t.tag == "structdtype":
+            return sum(width(member.get("sub_dtype_id")) for member in t)
+        ends = [int(c.get("name").split("h")[1], 16) for c in t.findall("range/const")]
+        if t.get("left"):
+            ends = [int(t.get("left")), int(t.get("right"))]
+        size = abs(ends[0] - ends[1]) + 1 if ends else 1
+        return size * (width(t.get("sub_dtype_id")) if t.get("sub_dtype_id") else 1)
+
+    module = next(m for m in tree.iter("module") if m.get("topModule"))
+    return {v.get("name"): {"direction": v.get("dir"), "bits": [0] * width(v.get("dtype_id")),
+                            "offset": int(types[v.get("dtype_id")].get("right") or 0)}
+            for v in module.findall("var") if v.get("dir")}
+
+
+def read_module(top, files, headers=(), params=(), defines=(), is_whole=True):
+    """The module `top`: its ports in order, and whether Yosys reads it, not Verilator alone. A port
+    that resets registers asynchronously has "reset", the level at which it does. `headers`: files
+    in whose folders `include finds more. `params`: NAME=value of parameters or generics; `defines`:
+    NAME or NAME=value of macros. `is_whole`: all of its modules are in the files."""
+    with tempfile.TemporaryDirectory() as work:
+        out = os.path.join(work, top + ".v")
+        chosen = " ".join("-chparam {} {}".format(*p.split("=", 1)) for p in params)
+        if is_vhdl(files[0]):
+            os.environ["VHDL_FOREIGN"] = "1"
+            os.environ["VHDL_GENERICS"] = " ".join("-g" + p for p in params)
+            run_tool("GHDL does not convert", top,
+                     [TREE / "cmake/vhdl_to_verilog.sh",
+                      os.environ.get("GHDL", "ghdl"), work, top, out, *files])
+            files, chosen = [out], ""
+        folders = ["-I" + d for d in folders_of([*files, *headers])] + ["-D" + d for d in defines]
+        reads = [f"read_verilog -defer {'-sv' if end_of(f) == '.sv' else ''} {' '.join(folders)} "
+                 f"{f}" for f in files]
+        script = "; ".join([*reads, f"hierarchy {'-check' if is_whole else ''} -top {top} {chosen}",
+                            "proc", "flatten", "opt_expr", f"write_json {out}.json"])
+        is_system = any(end_of(f) == ".sv" for f in files)
+        if not run_tool("" if is_system else "Yosys does not elaborate", top,
+                        ["yosys", "-q", "-p", script]):
+            return ports_by_verilator(top, [*lint_of(top, [*files, *headers], defines),
+                                            *("-G" + p for p in params), *files]), False
+        modules = json.loads(text_of(out + ".json"))["modules"]
+    module = next(m for n, m in modules.items() if m["attributes"].get("top") or n == top)
+    for cell in module["cells"].values():
+        for port in module["ports"].values():
+            if cell["connections"].get("ARST") == port["bits"] and "ARST_POLARITY" in cell["parameters"]:
+                port["reset"] = cell["parameters"]["ARST_POLARITY"][-1]
+    return module["ports"], True
+
+
+def filled(file, defines):
+    """Returns the file's text with macros and absolute paths for $readmemh, since a simulation runs
+    in any folder."""
+    def path(m):
+        there = os.path.join(os.path.dirname(file), m.group(1))
+        return f'"{there}"' if os.path.isfile(there) else m.group()
+    text = re.sub(r'(?<!`include )"([^"\n/]+\.\w+)"', path, text_of(file))
+    if not declared([file], "module"):
+        return text
+    before = "".join(f"`define {d.replace('=', ' ', 1)}\n" for d in defines)
+    return before + text + "".join(f"\n`undef {d.split('=')[0]}\n" for d in defines)
+
+
+def copies_for_verilator(top, files, headers, defines):
+    """Returns texts by the files that they replace, with macros, paths of data and, where Verilator
+    needs it, SystemVerilog's words as names."""
+    lint = lint_of(top, [*files, *headers], defines)
+    copies = {f: t for f in files if (t := filled(f, defines)) != text_of(f)}
+    if run_tool(None, top, [*lint, "--lint-only", *files]):
+        return copies
+    with tempfile.TemporaryDirectory() as work:
+        older, names = {}, {}
+        for f in files:
+            if end_of(f) == ".v" and declared([f], "module"):
+                older[f] = f'`ifdef VERILATOR\n`begin_keywords "1364-2005"\n`endif\n{filled(f, defines)}\n`ifdef VERILATOR\n`end_keywords\n`endif\n'
+                names[f] = os.path.join(work, os.path.basename(f))
+                with open(names[f], "w") as out:
+                    out.write(older[f])
+        if run_tool(None, top, [*lint, "--lint-only", *(names.get(f, f) for f in files)]):
+            return {**copies, **older}
+    run_tool("Verilator does not read", top, [*lint, "--lint-only", *files])
+
+
+def macros_of(files):
+    """Macros that are byte addresses of registers, by their values: those with a size in
+    hexadecimal, if all have the same and are different multiples of 4; else none."""
+    found = re.findall(r"^\s*`define\s+(\w+)\s+(\d+)'h([0-9a-fA-F_]+)\s*(?://.*)?$",
+                       "\n".join(map(text_of, files)), re.M)
+    values = {n: int(digits, 16) for n, _, digits in found}
+    return values if len({size for _, size, _ in found}) == 1 and \
+        1 < len(values) == len(set(values.values())) and not any(
+            value % 4 for value in values.values()) else {}
+
+
+def names_of(top, files, core):
+    """Names of the core's words by their addresses: the constants of the file with `top` that are
+    as wide as its address, else its macros. KEY0 and KEY7 at a distance of 7 stand for those
+    between, too."""
+    text = next((t for t in map(text_of, files) if re.search(rf"^\s*module\s+{top}\b", t, re.M)),
+                "")
+    text = re.sub(r"//.*", "", text)
+    base = {"h": 16, "d": 10, "b": 2}
+    found = [(n, int(digits, base[b.lower()]))
+             for part in re.findall(r"\blocalparam\b([^;]*);", text)
+             for n, b, digits in re.findall(
+                 rf"(\w+)\s*=\s*{core.word_bits}'([hdb])([0-9a-fA-F_]+)", part, re.I)]
+    if len(found) < 2 or len({v for _, v in found}) < len(found):
+        found = [(n, v // 4) for n, v in core.macros.items()
+                 if core.counts_bytes and v < 4 << core.word_bits]
+    if len(found) < 2:
+        return {}
+    prefix = os.path.commonprefix([n for n, _ in found])
+    prefix = prefix[:prefix.rfind("_") + 1]
+    names = {v: n[len(prefix):].upper() for n, v in found}
+    for value, name in list(names.items()):
+        word, first = re.fullmatch(r"(.*?)(\d*)", name).groups()
+        for last, other in [(v, n) for v, n in names.items() if v > value]:
+            if first and re.fullmatch(rf"{word}\d+",
+                                      other) and int(other[len(word):]) - int(first) == last - value:
+                names.update({value + i: f"{word}{int(first) + i}" for i in range(last - value)})
+    return {v: ("CORE_" + n if n in ("ID", "EVENT", "MASK", "PAGE") or not n[0].isalpha() else n)
+            for v, n in sorted(names.items())}
+
+
+# ---- pieces of Verilog that the wrapper of every third-party core has ----
+ADAPTER = '`include "slot_connect.vh"\n        .irq_o(irq_o)'
+
+
+def vector(width):
+    return f"[{width - 1}:0] " if width > 1 else ""
+
+
+def pin_name(name, port):
+    """Returns the port's name as the platform has pins: in small letters, with _i or _o at its
+    end."""
+    base = re.sub(r"^[io]_|_[io]$", "", name.lower())
+    return base + ("_i" if port["direction"] == "input" else "_o")
+
+
+def overrides(params):
+    """Returns the parameters of an instance."""
+    return f" #({', '.join('.{}({})'.format(*p.split('=', 1)) for p in params)})" if params else ""
+
+
+def head(name, what, pins, memory=""):
+    """Returns the begin of a slot's module, with its port list."""
+    ports = "".join(f",\n    {p['direction']:6} wire {vector(len(p['bits']))}{n}" for n, p in pins)
+    return f"""// SPDX-License-Identifier: MIT
+//
+// {name}: a slot with the third-party core {what}.
+
+`default_nettype none
+
+module {name} (
+    `include "slot_ports.vh"
+{memory}    output wire irq_o{"," + chr(10) + "    // pins" + ports[1:] if pins else ""}
+);
+"""
+
+
+if __name__ == "__main__":  # foreign_files.py FILE...: the Verilog of all cores of a chip
+    only_once(declared([f for f in sys.argv[1:] if os.path.isfile(f)], "module"),
+              "a chip has one of each: give one of them another name, in a copy, where it is "
+              "used, too")

@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: MIT
+"""new_foreign: puts a third-party core in Verilog or VHDL into a slot (docs/recipes.md).
+
+    new_foreign.py NAME TOP wishbone|axil|apb|avalon|memory|own|axis FOLDER [CLOCK=Hz]
+                   [LIBRARY=name] [ADDRESS=words|bytes] [PARAM:NAME=value...] [DEFINE:NAME...]
+                   [ROLE=port...] FILE...
+
+Reads the ports of the module or entity TOP and writes into FOLDER, which must not exist: NAME.v,
+which connects TOP to the slot; its registers, with the names that TOP has for their addresses; a
+test; its part of a mission; CMakeLists.txt. ROLE=port overrides what a port's name says. Ports that
+are neither bus, clock, reset nor interrupt become pins. CLOCK: the core has a clock of its own, of
+that frequency at most.
+ADDRESS: what its address counts. VHDL is read by GHDL, which the environment names. LIBRARY: the
+VHDL library that its files say they are in. PARAM: a parameter or generic of TOP. DEFINE: a macro
+of its Verilog, NAME or NAME=value. A core with AXI-Streams (axis) has an operation instead of
+registers: foreign_axis.py.
+"""
+import os
+import re
+import sys
+from pathlib import Path
+
+from icesoc.cores import foreign_axis
+from icesoc.cores import foreign_bus
+from icesoc.cli.reserved import REFUSAL, RESERVED
+from icesoc.cores.foreign_files import (FLAGS, check_names, copies_for_verilator, fail, folders_of,
+                                        is_vhdl, kind_of, macros_of, names_of, packages_first,
+                                        pin_name, read_module)
+from icesoc.cores.foreign_roles import NEEDED, roles_of
+
+HEAD = "# SPDX-License-Identifier: MIT\n"
+USAGE = ("usage: make new-foreign NAME=my_uart TOP=module "
+         "BUS=wishbone|axil|apb|avalon|memory|own|axis FILES='a.v b.v' [PORTS='write=we ...']")
+
+
+# Names that may be an interrupt's.
+ASKED = re.compile("irq|(?<!po)(?<!pr)(?<!h)int(r|errupt)?s?(_?n)?(_?o)?$|(^|_)int(_|$)|ev(en)?t|"
+                   "alarm|attention", re.I)
+
+
+class Request:
+    """What the command line asks for."""
+
+    def __init__(self, words):
+        if len(words) < 5:
+            sys.exit(USAGE)
+        self.name, self.top, self.bus, self.folder, *rest = words
+        options = {"CLOCK=": [], "LIBRARY=": [], "ADDRESS=": [], "PARAM:": [], "DEFINE:": []}
+        self.ports, self.files = [], []
+        for word in rest:
+            option = next((o for o in options if word.startswith(o)), None)
+            if option:
+                options[option].append(word[len(option):])
+            else:
+                (self.ports if "=" in word else self.files).append(word)
+        self.params, self.defines = options["PARAM:"], options["DEFINE:"]
+        self.clock, self.library, self.address = (next(iter(options[o]), "")
+                                                  for o in ("CLOCK=", "LIBRARY=", "ADDRESS="))
+
+    def check(self):
+        """Ends the program if what is asked for cannot be."""
+        if self.clock and not (re.fullmatch("[0-9]{7,9}", self.clock)
+                               and 3000000 <= int(self.clock) <= 100000000):
+            fail(f"CLOCK={self.clock}: the frequency of the core's own clock, 3000000 to "
+                 "100000000 Hz")
+        if self.clock and self.bus == "axis":
+            fail("CLOCK: a core with AXI-Streams reaches DDR3, whose port has the chip's clock")
+        if self.address not in ("", "words", "bytes") or self.address and self.bus == "axis":
+            fail(f"ADDRESS={self.address}: words or bytes, for a core with registers")
+        if self.bus not in NEEDED:
+            fail(f"BUS is {', '.join(NEEDED)}, not '{self.bus}'")
+        if not re.fullmatch(r"[a-z][a-z0-9]*(_[a-z0-9]+)*", self.name):
+            fail(f"'{self.name}': words of small letters and digits, joined by _")
+        if not re.fullmatch(r"[A-Za-z_]\w*", self.top):
+            fail(f"TOP is the name of a module or an entity, not '{self.top}'")
+        if os.path.exists(self.folder):
+            fail(f"{self.folder} is there already")
+        if self.name in RESERVED:
+            fail(f"'{self.name}' {REFUSAL}")
+
+    def take_files(self):
+        """Splits the files into sources and headers."""
+        files = [os.path.abspath(f) for f in self.files]
+        for f in files:
+            if " " in f:
+                fail(f"'{f}' has a space in its name, which makefiles cannot have: rename it, or "
+                     "its folder")
+            if not kind_of(f) or not os.path.isfile(f):
+                fail(f"there is no Verilog or VHDL file '{f}'")
+        if self.library and not any(map(is_vhdl, files)):
+            fail("LIBRARY: the library that VHDL files say they are in; these are Verilog")
+        self.headers = [f for f in files if kind_of(f) == "header"]
+        self.files = packages_first([f for f in files if f not in self.headers])
+        if not self.files or len({is_vhdl(f) for f in self.files}) > 1:
+            fail("FILES are all Verilog or all VHDL, and at least one")
+        self.is_vhdl, self.is_synthesised = is_vhdl(self.files[0]), True
+        self.top = check_names(self.name, self.top, self.files)
+
+
+def read_core(asked):
+    """Returns TOP's ports, the parameters of its instance, and texts in place of files that
+    Verilator does not take."""
+    if asked.library:
+        os.environ["VHDL_LIBRARY"] = asked.library  # for vhdl_to_verilog.sh
+    ports, is_synthesised = read_module(asked.top, asked.files, asked.headers, asked.params,
+                                        asked.defines)
+    if odd := [n for n in ports if not re.fullmatch(r"\w+", n)]:
+        fail(f"{asked.top} has the port '{odd[0]}', an escaped name: put a module with plain "
+             "names around it")
+    if two_way := [n for n, p in ports.items() if p["direction"] == "inout"]:
+        fail(f"{asked.top} has the inout port '{two_way[0]}': tri-states belong to the chip's "
+             "pads; take a top without")
+    if asked.is_vhdl:
+        return ports, [], {}
+    asked.is_synthesised = is_synthesised
+    return ports, asked.params, copies_for_verilator(asked.top, asked.files, asked.headers,
+                                                     asked.defines)
+
+
+def slot_texts(asked, ports, params):
+    """Returns the slot's files by their names, what CMake calls its interface, and lines that say
+    what was taken."""
+    roles, latency = roles_of(asked.top, asked.bus, ports, asked.ports)
+    if wide := [n for n, p in ports.items() if not roles[n] and len(p["bits"]) > 32]:
+        left_out = " ".join(f"{'open' if ports[n]['direction'] == 'output' else 'low'}={n}"
+                            for n in wide)
+        fail(f"'{wide[0]}' of {asked.top} has {len(ports[wide[0]]['bits'])} bits, and a pin at most "
+             f"32: PORTS='{left_out}' leaves out all of those")
+    said = {n: roles[n] or "pin " + pin_name(n, p) for n, p in ports.items()}
+    for n, p in ports.items():
+        if not roles[n] and p["direction"] == "output" and ASKED.search(n):
+            said[n] += f"; if it is an interrupt: PORTS='interrupt={n}'"
+    if asked.bus == "axis":
+        if wrong := foreign_axis.problem(asked.top, ports, roles):
+            fail(wrong)
+        operations = "operation: process" + "".join(
+            f", set{foreign_axis.camel(foreign_axis.setting(n))}"
+            for n in ports if roles[n] == "setting")
+        return foreign_axis.texts(asked.name, asked.top, params, ports,
+                                  roles), f"ICE {asked.name}.ice", said, operations
+    core = foreign_bus.Core(asked.name, asked.top, asked.bus, ports, roles, latency, params,
+                            int(asked.clock or 0), asked.address,
+                            macros_of([*asked.files, *asked.headers]))
+    for n in ports:
+        if roles[n] in foreign_bus.ADDRESSES:
+            said[n] += ", " + core.unit
+    texts, registers = foreign_bus.texts(core, names_of(asked.top, asked.files, core))
+    return texts, f"REGS {asked.name}.regs.json" + (f" CLOCK {asked.clock}"
+                                                    if asked.clock else ""), said, registers
+
+
+def from_here(text, folder):
+    """Names what lies in the same room as the core's folder from there: a repository may move."""
+    room = re.escape(os.path.dirname(os.path.abspath(folder)))
+    found = re.sub(rf"{room}(?=[/\s)])", "${here}/..", text)
+    return found if found == text else found.replace(
+        HEAD, HEAD + "get_filename_component(here ${CMAKE_CURRENT_LIST_DIR} REALPATH)\n")
+
+
+def cmake_lists(asked, interface, copies):
+    """Returns CMakeLists.txt; `copies` stand in the place of files."""
+    name, top, separator = asked.name, asked.top, "\n  "
+    if asked.is_vhdl:
+        options = (f" LIBRARY {asked.library}" if asked.library else "") + (
+            f" GENERICS {' '.join(asked.params)}" if asked.params else "")
+        return f"""{HEAD}icesoc_vhdl(NAME {top} FOREIGN{options} SOURCES
+  {separator.join(asked.files)})
+icesoc_core({name} {interface} FLAGS -Wno-lint -Wno-style DEPENDS {top}_verilog
+  VERILOG {name}.v ${{GEN_DIR}}/{top}.v)
+"""
+    files = [copies.get(f, f) for f in asked.files]
+    folders = " ".join("-I" + d for d in folders_of([*files, *copies, *asked.headers]))
+    return f"""{HEAD}icesoc_core({name} {interface} FLAGS {' '.join(FLAGS)} {folders}
+  VERILOG {name}.v {separator.join([*files, *asked.headers])})
+"""
+
+
+def main(words):
+    asked = Request(words)
+    asked.check()
+    asked.take_files()
+    ports, params, copied = read_core(asked)
+    texts, interface, said, last = slot_texts(asked, ports, params)
+    copies = {f: "copy_" + os.path.basename(f) for f in copied}  # beside the slot
+    texts.update({copies[f]: text for f, text in copied.items()})
+    texts["CMakeLists.txt"] = from_here(cmake_lists(asked, interface, copies), asked.folder)
+    folder = Path(asked.folder)
+    folder.mkdir(parents=True)
+    for file, text in texts.items():
+        (folder / file).write_text(text)
+    print(f"{folder}: {' '.join(sorted(texts))}")
+    if copies:
+        print("  copies with macros, paths of data, and words of SystemVerilog as names: "
+              f"{' '.join(map(os.path.basename, copies))}")
+    for port, what in said.items():
+        print(f"  {port}: {what}")
+    print(f"  {last}")
+    if not asked.is_synthesised:
+        print("  SystemVerilog that Yosys does not read: tests and flights have it as it is. For "
+              "make synth and the chip, FILES is what sv2v makes of it (github.com/zachjs/sv2v, not "
+              "in Debian):")
+        print(f"  sv2v --top={asked.top} {' '.join('-I ' + d for d in folders_of(asked.headers))} "
+              f"{' '.join('-D ' + d for d in asked.defines)} {' '.join(asked.files)} "
+              f">{asked.top}.v")
+    print(f"Next: look at what is above; make ip-test IP={asked.name}; a line {asked.name} in "
+          "ip/cores.list; "
+          f"make run CORES={asked.name}")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,243 @@
+# SPDX-License-Identifier: MIT
+"""probe: captures signals of a vehicle's FPGA by radio, as a waveform (VCD) with the simulator's
+names. Stock ZeroC Ice.
+
+    probe.py --device /dev/ttyUSB0 --plugin build/main/ground --trigger u_fir.sent=1 --after 500
+    capture.vcd
+    gtkwave capture.vcd
+
+What is recorded is the line of the probe in ip/cores.list; --map is what the build made of it.
+Times are those of the chip's count of clocks, modulo 2**32 clocks.
+"""
+
+import argparse
+import collections
+import json
+import os
+import sys
+import time
+
+from icesoc import TREE
+
+RING_BYTES, READ_BYTES = 1 << 18, 4096  # probe.regs.json, probe_servant.h
+Change = collections.namedtuple("Change", "clock gap value")  # gap: changes before it were lost
+
+
+class Failed(Exception):
+    """There is no capture; the text says why."""
+
+
+class Signals:
+    """One probe's signals: names and widths, from bit 0 on."""
+
+    def __init__(self, path, name):
+        try:
+            with open(path) as f:
+                probes = json.load(f)
+        except (OSError, ValueError) as e:
+            raise Failed("cannot read --map %s (%s): it is in the build folder of the vehicle's "
+                         "chip, gen/probes.json"
+                         % (path, e))
+        if name not in probes:
+            raise Failed("--map %s has no probe '%s', but %s" %
+                         (path, name, ", ".join(probes) or "none at all"))
+        self.names = probes[name]["names"]
+        self.identity = probes[name]["identity"]
+        self.list = [(signal, width) for signal, width in probes[name]["signals"]]
+
+    def check(self, state):
+        if state.names & 0xFFFFFFFF != self.names:
+            raise Failed("the chip's probe records other signals (hash 0x%08X) than --map says "
+                         "(0x%08X): give the "
+                         "probes.json of that chip's build" %
+                         (state.names & 0xFFFFFFFF, self.names))
+
+    def trigger(self, text):
+        """mask and value of "u_fir.sent=1,u_fir.count=0x10"."""
+        mask = wanted = 0
+        for word in text.split(",") if text else ():
+            name, _, number = word.partition("=")
+            lsb = 0
+            for signal, width in self.list:
+                if signal == name:
+                    break
+                lsb += width
+            else:
+                raise Failed("--trigger: there is no signal '%s', but %s" %
+                             (name, ", ".join(s for s, _ in self.list)))
+            try:
+                value = int(number, 0)
+            except ValueError:
+                raise Failed("--trigger: '%s' is not as u_fir.count=0x10" % word)
+            if not 0 <= value < 1 << width:
+                raise Failed("--trigger: %s has %d bits, and is never %s" % (name, width, number))
+            if lsb + width > 31:
+                raise Failed("--trigger: %s is at bits %d to %d of the list; those below 31 can "
+                             "trigger: name it further"
+                             " in front" % (name, lsb, lsb + width - 1))
+            mask |= (1 << width) - 1 << lsb
+            wanted |= value << lsb
+        return mask, wanted
+
+    def parts(self, value):
+        for name, width in self.list:
+            yield name, value & (1 << width) - 1
+            value >>= width
+
+
+def signed(value):
+    return value - (value >> 31 << 32)
+
+
+def read(probe, state, before, after):
+    """Returns the changes from `before` before the trigger's, or before the newest, to `after`
+    behind it."""
+    size = 8 * state.words
+    ring = RING_BYTES // size
+    count = ring if state.wrapped else state.next
+    oldest = state.next if state.wrapped else 0
+    at = (state.trigger - oldest) % ring if state.trigger >= 0 else max(count - 1, 0)
+    data, place, end = b"", max(at - before, 0), min(at + after + 1, count)
+    while place < end:
+        first = (oldest + place) % ring
+        n = min(end - place, ring - first, READ_BYTES // size)
+        data += bytes(probe.read(first, n))
+        place += n
+    changes, clock = [], None
+    for i in range(0, len(data), size):
+        entry = int.from_bytes(data[i:i + size], "little")
+        low = entry - 2 & 0xFFFFFFFF  # an entry is stored two clocks after its clock
+        clock = low if clock is None else clock + (low - clock & 0xFFFFFFFF)
+        changes.append(Change(clock, entry >> 32 & 1, entry >> 33))
+    return changes
+
+
+def write_vcd(path, signals, changes, clk_hz):
+    """Returns the changes as VCD. After a loss all signals are x until the next stored change."""
+    unit, name = (10**9, "1ns") if 10**9 % clk_hz == 0 else (10**12, "1ps")
+    ids = {s: "".join(chr(33 + d) for d in divmod(i, 94)) for i, (s, _) in enumerate(signals.list)}
+    widths = dict(signals.list)
+    lines = ["$comment what a probe of IceSoC recorded, clk_hz %d $end" % clk_hz,
+             "$timescale %s $end" % name, "$scope module TOP $end",
+             "$scope module soc $end"]
+    scope = []
+    for signal in sorted(ids, key=lambda s: s.split(".")):
+        *folder, leaf = signal.split(".")
+        same = len(os.path.commonprefix([scope, folder]))
+        lines += ["$upscope $end"] * (len(scope) - same) + ["$scope module %s $end" % s
+                                                            for s in folder[same:]]
+        scope = folder
+        bits = " [%d:0]" % (widths[signal] - 1) if widths[signal] > 1 else ""
+        lines.append("$var wire %d %s %s%s $end" % (widths[signal], ids[signal], leaf, bits))
+    lines += ["$upscope $end"] * (len(scope) + 2) + ["$enddefinitions $end"]
+
+    def show(signal, bits):
+        lines.append(("%s%s" if widths[signal] == 1 else "b%s %s") % (bits, ids[signal]))
+
+    shown = {}
+    for i, change in enumerate(changes):
+        if change.gap and i:
+            lines.append("#%d" % ((changes[i - 1].clock + 1) * unit // clk_hz))
+            for signal in ids:
+                show(signal, "x")
+            shown = {}
+        lines.append("#%d" % (change.clock * unit // clk_hz))
+        for signal, value in signals.parts(change.value):
+            if shown.get(signal) != value:
+                shown[signal] = value
+                show(signal, format(value, "0%db" % widths[signal]))
+    lines.append("#%d" % ((changes[-1].clock + 1) * unit // clk_hz))
+    with open(path, "w") as f:
+        f.write("\n".join(lines) + "\n")
+
+
+def save(path, signals, probe, state, before, after):
+    """Writes the capture into a file; returns the messages about it."""
+    changes = read(probe, state, before, after)
+    if not changes:
+        raise Failed("the probe has no capture")
+    write_vcd(path, signals, changes, state.clkHz)
+    lost = sum(c.gap for c in changes)
+    return "%d changes of %d signals in %d clocks%s: gtkwave %s" % (
+        len(changes), len(signals.list), changes[-1].clock - changes[0].clock + 1,
+        ", lost ones at %d places" % lost if lost else "", path)
+
+
+def capture(probe, signals, args, say):
+    state = probe.getState()
+    signals.check(state)
+    mask, value = signals.trigger(args.trigger)
+    ring = RING_BYTES // (8 * state.words)
+    if args.before < 0 or args.after < 0 or args.before + args.after >= ring:
+        raise Failed("the ring has room for %d changes: --before and --after together take less" %
+                     ring)
+    probe.arm(signed(mask), signed(value), bool(args.trigger) and not args.level, args.after)
+    say("armed; waiting for %s" % (args.trigger or "nothing: it begins now"))
+    end = time.monotonic() + args.wait
+    while str((state := probe.getState()).phase) != "done":
+        if time.monotonic() > end:
+            say("%s after %d s: stopped with what there is" % (
+                "no trigger" if state.trigger < 0 else "not all changes behind the trigger",
+                args.wait))
+            probe.stop()
+            state = probe.getState()
+            break
+        time.sleep(0.1)
+    say(save(args.out, signals, probe, state, args.before, args.after))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("out", help="the waveform: a VCD file")
+    parser.add_argument("--map", default=str(TREE / "build/main/gen/probes.json"),
+                        help="default: build/main/gen/probes.json")
+    parser.add_argument("--probe", default="probe",
+                        help="its name in the list of cores, if it has another (name=)")
+    parser.add_argument("--trigger", default="",
+                        help="signals and values, u_fir.sent=1,u_fir.count=0x10: begins when all "
+                             "become "
+                        "so; without: at once")
+    parser.add_argument("--level", action="store_true", help="begin also if they are so already")
+    parser.add_argument("--before", type=int, default=500, help="changes before the trigger (500)")
+    parser.add_argument("--after", type=int, default=1500, help="changes behind it (1500)")
+    parser.add_argument("--wait", type=float, default=60,
+                        help="s: then what there is is taken (60)")
+    parser.add_argument("--device", help="serial port of the modem")
+    parser.add_argument("--proxy",
+                        help="in place of --device: where the object is, as 'probe:tcp -h host -p "
+                             "4061'")
+    parser.add_argument("--plugin", help="folder of libxbeeat.so.37")
+    parser.add_argument("--key", default="", help="file with the link's key; without: in the clear")
+    parser.add_argument("--guard", type=int, default=1000, help="guard time of the modem, ms")
+    args = parser.parse_args()
+    if not args.device and not args.proxy:
+        parser.error("give --device, or --proxy")
+    import Ice
+    import plugged
+    Ice.loadSlice("", [str(TREE / "ip/probe/Probe.ice")])
+    import Probes  # made by loadSlice
+    communicator = None
+    try:
+        signals = Signals(args.map, args.probe)
+        settings = {"Ice.Default.InvocationTimeout": "60000", "Ice.ACM.Close": "0"}
+        communicator = plugged.initialize(settings, args.plugin, args.guard, args.key)
+        where = args.proxy or "%s:xbee-at -d %s -a 0x0001 -t 60000" % (signals.identity,
+                                                                       args.device)
+        capture(Probes.ProbePrx.uncheckedCast(communicator.stringToProxy(where)), signals, args,
+                lambda text: print("probe: " + text, flush=True))
+        return 0
+    except KeyboardInterrupt:
+        return 130
+    except Ice.ObjectNotExistException:
+        sys.exit("probe: the vehicle has no probe '%s': ip/cores.list needs its line, the chip and "
+                 "the firmware a build" % signals.identity)
+    except (Failed, Ice.Exception, OSError) as e:
+        sys.exit("probe: %s" % e)
+    finally:
+        if communicator:
+            communicator.destroy()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

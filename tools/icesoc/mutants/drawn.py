@@ -1,0 +1,288 @@
+# SPDX-License-Identifier: MIT
+"""Draws mutants of each proven module with Yosys' `mutate` and expects the module's proof, or its
+tests, to fail (docs/regression.md#drawn-mutants).
+
+The score of a module is the share of mutants caught, without those that are no bug, over all its
+proofs. Leaves build/mutants/drawn.json. Exit status 1: a module scores less than the gate.
+"""
+import argparse, collections, functools, json, os, pathlib, re, shutil, subprocess, sys, time
+from icesoc import TREE
+from icesoc.mutants import model, run
+from icesoc.mutants.run import tool
+from concurrent.futures import ThreadPoolExecutor
+
+GATE = 95  # per cent
+TESTS = {
+    "bus_": "test_ip_new_foreign", "npi_|mcb_": "test_memory",
+    "axis_filter": "test_ip_foreign_axis", "modem_api_": "test_modem_api",
+    "modem_": "test_modem test_modem_api", "camera_|async_fifo": "test_ip_camera",
+    "fsmc_": "test_fsmc_bridge test_fsmc_modes", "cdc_": "test_fsmc_bridge"}
+SECONDS = "20"  # processor time for each step of a mutant's proof, at least
+DRAW = """setattr -set keep 1 w:f_*
+opt_clean
+write_rtlil plain.il
+write_json plain.json
+select -set proof {module}/t:$ass* {module}/t:$cover {module}/t:$check {module}/t:$any* {lines}
+select -set source {module}/c:* @proof %d
+mutate -list {number} -seed {seed} -o list @source"""
+# A module or its mutant: free signals become the same input of both.
+SIDE = """{change}
+chformal -assert -cover -live -fair -remove
+{assume}flatten
+delete t:$anyseq t:$anyconst t:$allseq t:$allconst
+setundef -undriven -expose
+{seen}{to_state}memory_map
+setundef -zero
+setundef -zero -init
+rename {module} {name}
+design -stash {name}_side
+"""
+MITER = """design -copy-from plain_side -as plain plain
+design -copy-from mutant_side -as mutant mutant
+miter -equiv -flatten -make_assert plain mutant pair
+hierarchy -top pair
+{to_gates}opt_clean
+abc -g AND -fast
+opt_clean
+write_aiger -zinit same.aig
+"""
+
+
+class Proof:
+    """A proof as CTest runs it: what keeps its verdict, prove.sh module depth source work
+    parameters."""
+    def __init__(self, test, out):
+        self.name, words = test["name"].split(".", 1)[1], test["command"]
+        start = next(i for i, word in enumerate(words) if word.endswith("/prove.sh"))
+        self.script, self.module, self.depth, self.tree, _, *self.parameters = words[start:]
+        self.source = out / "source"
+        given = next((p["value"] for p in test["properties"] if p["name"] == "ENVIRONMENT"), [])
+        self.environment = {**os.environ, **dict(entry.split("=", 1) for entry in given)}
+        self.work = out / self.name
+
+    def run(self, folder, mutant, seconds=None):
+        """Output and exit status of prove.sh with these commands of Yosys between reading and
+        proving."""
+        limit = {"PROVE_SECONDS": seconds} if seconds else {}
+        ran = subprocess.run(
+            [self.script, self.module, self.depth, self.source, folder, *self.parameters],
+            text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+            env={**self.environment, "PROVE_MUTANT": mutant, **limit})
+        return ran.returncode, ran.stdout
+
+    def draw(self, number, seed):
+        """Proves the module as it is, and draws its mutants."""
+        self.work.mkdir(parents=True, exist_ok=True)
+        status, text = self.run(self.work, DRAW.format(
+            module=self.module, lines=self.lines_of_proof(), number=4 * number, seed=seed))
+        if status:
+            sys.exit(f"{text}mutants: formal.{self.name} fails without any mutant: mend that first")
+        self.design = model.cells(self.work / "plain.json")
+        return (self.work / "list").read_text().splitlines()[:number]
+
+    def lines_of_proof(self):
+        """The lines of the module's proof, as Yosys' select names them: of its file from `ifdef
+        FORMAL or RULES on, and of what that includes."""
+        lines = next(self.source.glob(f"**/{self.module}.v")).read_text().splitlines()
+        first = next((n for n, line in enumerate(lines, 1)
+                      if re.fullmatch("`(ifdef|elsif) (FORMAL|RULES)", line)), len(lines))
+        return f"{self.module}/a:src=*_proof.vh:* " + " ".join(
+            f"{self.module}/a:src=*/{self.module}.v:{n}.*" for n in range(first, len(lines) + 1))
+
+    def differs(self, folder, mutant):
+        """Whether the mutant's outputs differ from the module's for some input that the proof
+        assumes."""
+        # Where parts are cut off, each named wire is an output: those parts might have read it.
+        seen = "expose w:* w:$* %d\n" if any("delete" in text for text in self.parameters) else ""
+        # prove.sh's own commands to flip-flops and gates
+        script = (self.work / "prove.ys").read_text()
+        to_state = script.split("@source\n")[1].split("write_smt2")[0]
+        to_gates = script.split("write_rtlil model.il\n")[1].split("design -save")[0]
+        side = functools.partial(SIDE.format, module=self.module, seen=seen,
+                                 to_state=to_state.replace("setundef -anyseq -undriven\n", ""))
+        (folder / "same.ys").write_text(
+            f"read_rtlil {self.work}/plain.il\ndesign -save plain\n"
+            + side(change="", assume="", name="plain") + "design -load plain\n"
+            + side(change=mutant, assume="chformal -assume -remove\n", name="mutant")
+            + MITER.format(to_gates=to_gates))
+
+        def limited(command):
+            return subprocess.run(["sh", "-c", f"ulimit -t {SECONDS}; exec {command}"], cwd=folder,
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+        made = limited("yosys -q same.ys")
+        (folder / "same.log").write_text(made.stdout)
+        if made.returncode:
+            return True  # Yosys 0.23 ends over some memories
+        steps = "read_aiger same.aig; fold; strash; scorr -F 2; pdr; sat"
+        said = limited(f"yosys-abc -c '{steps}'").stdout
+        return not re.search("Property proved|UNSATISFIABLE", said)
+
+
+def attempt(proof, index, mutant):
+    """A mutant's row: proof, module, source line, change, result, seconds."""
+    start = time.monotonic()
+    folder = proof.work / str(index)
+    # A proof gets four times the time that it takes without a mutant: being slower is not being
+    # caught.
+    limit = max(int(SECONDS), int(4 * float((proof.work / "cpu").read_text())))
+    status, text = proof.run(folder, mutant, str(limit))
+    if status and not re.search("an assertion fails|not proven|not reached", text):
+        print(f"{text}mutants: formal.{proof.name}: {mutant}: does not run", file=sys.stderr)
+        result = "BROKEN"
+    else:
+        result = "caught" if status else "SURVIVED" if proof.differs(folder, mutant) else "same"
+    said = re.findall(r"-(\w+) (\S+)", mutant)
+    first = dict(reversed(said))  # of an option that stands there more than once
+    source = dict(said).get("src")
+    line = re.sub(r"(:\d+)\..*", r"\1", os.path.relpath(source, proof.source)) if source else ""
+    cell = first["cell"].split("$")
+    does = f"{first['mode']} {cell[1 if len(cell) > 1 else 0]}.{first['port']}[{first['portbit']}]"
+    if "wire" in first:
+        does += f" ({first['wire']}[{first['wirebit']}])"
+    alike, number = model.place(proof.design, first["module"], first["cell"])
+    row = dict(proof=proof.name, module=first["module"], line=line, does=does, result=result,
+               seconds=round(time.monotonic() - start, 1), alike=alike, place=number)
+    row.update({name: first.get(name, "0") for name in ("mode", "port", "portbit", "ctrlbit")})
+    (folder / "mutant").write_text(mutant + "\n")
+    return row
+
+
+def programs(row):
+    return next((names.split() for module, names in TESTS.items()
+                 if re.match(module, row["module"])), [])
+
+
+def by_tests(rows, copy, pool):
+    """Tries mutants that the proofs missed against the modules' tests and sets each row's result.
+    Returns the programs that fail without a mutant."""
+    os.chdir(run.TOP)
+    run.prepare(copy, f"-DVERILATOR={TREE}/tools/icesoc/mutants/model.py")
+    (copy / "build/drawn.json").write_text(json.dumps(rows))
+    needed = sorted({name for row in rows for name in programs(row)})
+    environment = {**run.environment(copy), "DRAWN": str(copy / "build/drawn.json")}
+    for old in copy.glob("build/main/**/V*__ALL.a"):
+        old.unlink()
+    with open(copy / "build/log", "w") as log:
+        if subprocess.run(["ninja", "-C", "build/main", *needed], cwd=copy, env=environment,
+                          stdout=log, stderr=log).returncode:
+            print("mutants: the tests' programs do not build with mutants in their models, so they "
+                  f"caught none: {log.name} says why", file=sys.stderr)
+            return needed
+    where = {name: next(copy.glob(f"build/main/**/{name}")) for name in needed}
+
+    def fails(name, number):
+        log = copy / "build" / f"{name}.{number}.log"
+        with open(log, "w") as out:
+            limited = 'ulimit -t 300; exec "$0" --gtest_fail_fast --gtest_brief=1'
+            failed = subprocess.run(["sh", "-c", limited, where[name]], cwd=where[name].parent,
+                                    env={**environment, "MUTANT": str(number)}, stdout=out,
+                                    stderr=out).returncode != 0
+        if number or not failed:
+            log.unlink()
+        return failed
+
+    bad = [name for name, failed in zip(needed, pool.map(fails, needed, [0] * len(needed)))
+           if failed]
+
+    def caught_by(row, number):
+        found = (name for name in programs(row) if name not in bad and fails(name, number))
+        return next(found, "SURVIVED")
+
+    for row, result in zip(rows, pool.map(caught_by, rows, range(1, len(rows) + 1))):
+        row["result"] = result
+    for name in bad:
+        log = copy / "build" / f"{name}.0.log"
+        print(f"{log.read_text(errors='replace')}mutants: {name} fails without any mutant, so it "
+              f"caught none: mend that first ({log})", file=sys.stderr)
+    return bad
+
+
+def told(results, number):
+    """Returns the results and prints the progress, a line each tenth."""
+    start, rows = time.monotonic(), []
+    for row in results:
+        rows.append(row)
+        done = len(rows)
+        left = round((time.monotonic() - start) / done * (number - done) / 60)
+        if done * 10 // number > (done - 1) * 10 // number:
+            missed = sum(row["result"] == "SURVIVED" for row in rows)
+            print(f"{done} of {number} mutants tried against their proofs, {missed} not seen by "
+                  f"one, {left // 60}:{left % 60:02} h left", file=sys.stderr, flush=True)
+    return rows
+
+
+def measure(proofs, options, out):
+    source = pathlib.Path(proofs[0].tree)
+    tree = tool.tree_state(source, "bus hdl tests")  # that is measured, for the regression's light
+    # A copy: any edit meanwhile would move the names of cells.
+    shutil.rmtree(out / "drawn", ignore_errors=True)
+    for folder in ("bus", "hdl", "ip"):
+        shutil.copytree(source / folder, out / "drawn/source" / folder)
+    with ThreadPoolExecutor(options.jobs) as pool:
+        lists = list(pool.map(lambda proof: proof.draw(options.number, options.seed), proofs))
+        tasks = [(p, i, m) for p, drawn in zip(proofs, lists) for i, m in enumerate(drawn)]
+        try:
+            rows = told(pool.map(lambda task: attempt(*task), tasks), len(tasks))
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+        missed = [row for row in rows if row["result"] == "SURVIVED" and programs(row)]
+        failing = by_tests(missed, run.WORK / "model", pool) if missed else []
+    for row in rows:
+        if row["result"] in ("SURVIVED", "BROKEN"):
+            print(f"{row['result']:<9} formal.{row['proof']:<18} {row['line']} {row['does']}",
+                  flush=True)
+    scores = {}
+    for module in sorted({row["module"] for row in rows}):
+        count = collections.Counter(row["result"] for row in rows if row["module"] == module)
+        judged = count.total() - count["same"] - count["BROKEN"]
+        caught = judged - count["SURVIVED"]
+        scores[module] = dict(drawn=count.total(), same=count["same"], judged=judged, caught=caught,
+                              by_tests=caught - count["caught"],
+                              score=round(100 * caught / judged, 1) if judged else 100.0)
+    bad = [module for module, score in scores.items() if score["score"] < GATE]
+    survived = [row for row in rows if row["result"] == "SURVIVED"]
+    (out / "drawn.json").write_text(json.dumps(
+        dict(seed=options.seed, tree=tree, gate=GATE, modules=scores, survived=survived)))
+    line = "{score:5.1f} %  {caught:3} caught of {judged:3}, {by_tests} of them by tests, {same} "
+    for module, score in scores.items():
+        print(f"{module:<22} {line.format(**score)}the same")
+    total = collections.Counter()
+    for score in scores.values():
+        total.update(score)
+    print("mutants: {caught} of {judged} drawn with seed {seed} caught, {by_tests} of them by "
+          "tests, {same} the same as the module".format(seed=options.seed, **total)
+          + (f"; below {GATE} %: {', '.join(bad)}" if bad else ""))
+    broken = sum(row["result"] == "BROKEN" for row in rows)
+    if broken:
+        print(f"mutants: {broken} do not run, see above")
+    return bool(bad or failing or broken)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", default="build/main", help="whose proofs")
+    parser.add_argument("--out", default="build/mutants", help="where results go")
+    parser.add_argument("--block", default="", help="proofs by regular expression (default: all)")
+    parser.add_argument("--number", type=int, default=20, help="mutants a proof")
+    parser.add_argument("--seed", default="1", help="of the draw")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(),
+                        help="how many are tried at once")
+    options = parser.parse_args()
+    out = pathlib.Path(options.out).resolve()
+    shown = subprocess.run(["ctest", "--test-dir", options.build, "--show-only=json-v1", "-R",
+                            rf"^formal\.({options.block})"], stdout=subprocess.PIPE, check=True)
+    proofs = [Proof(test, out / "drawn") for test in json.loads(shown.stdout)["tests"]]
+    # Without those of several modules together:
+    proofs = [proof for proof in proofs if not proof.module.endswith("_proof")]
+    if not proofs:
+        sys.exit(f"mutants: no proof's name begins with {options.block}: "
+                 "ctest -N -L formal lists them")
+    with tool.only_one(out, "mutants"):
+        return measure(proofs, options, out)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,251 @@
+# SPDX-License-Identifier: MIT
+"""Plants each seeded bug in a copy of the tree and expects the test it names to fail.
+
+The bugs of a block stand in tests/mutants/<block>.bugs.json, a core's in
+ip/<core>/<core>.bugs.json:
+
+    "name": {"does": "What the bug does, in a sentence.",
+      "test": "the test that catches it, as ctest names it", "file": "hdl/some/file.v",
+      "old": "the line of the file that goes, or a list of lines",
+      "new": "the line, or lines, that replace it",
+      "more": [{"old": "...", "new": "..."}]}
+
+Lines that go must be found once in the file. "more" changes further places; "file" there names
+another file.
+
+Leaves build/mutants/results.tsv (name, result, test, seconds, file:line).
+Exit status 1: a bug survived, is no longer found in its file, or does not build.
+"""
+import argparse, collections, glob, json, os, pathlib, queue, re, shutil, subprocess, sys
+import threading, time
+from concurrent.futures import ThreadPoolExecutor
+
+from icesoc.util import tool
+
+TOP = pathlib.Path.cwd()  # the tree
+
+WORK = TOP / "build/mutants"
+
+
+class Bug:
+    def __init__(self, name, said):
+        self.name, self.test, self.does, file = name, said["test"], said["does"], said["file"]
+        self.changes = []  # file, old lines, new lines
+        for change in [said, *said.get("more", [])]:
+            file = change.get("file", file)
+            self.changes.append((file, *([lines] if isinstance(lines, str) else lines
+                                         for lines in (change["old"], change["new"]))))
+
+    def place(self, root):
+        """file:line of its first change, in the file without it."""
+        file, before, _ = self.changes[0]
+        lines = (root / file).read_text().split("\n")
+        starts = [i for i in range(len(lines)) if lines[i:i + len(before)] == before]
+        return f"{file}:{starts[0] + 1}"
+
+    def planted(self, root):
+        """The texts of the files with the bug in them; ValueError if it does not fit."""
+        texts = {}
+        for file, before, after in self.changes:
+            text = texts.get(file) or "\n" + (root / file).read_text()
+            old, new = ("\n" + "".join(line + "\n" for line in part) for part in (before, after))
+            if text.count(old) != 1 or old == new:
+                raise ValueError(f"its lines stand {text.count(old)} times in {file}: "
+                                 "give those of today's source")
+            texts[file] = text.replace(old, new)
+        return {file: text[1:] for file, text in texts.items()}
+
+
+def bugs(chosen):
+    """The bugs of a block (`*`: of all), or the one of block/name."""
+    block, _, name = chosen.partition("/")
+    found = []
+    for file in sorted(glob.glob(f"tests/mutants/{block}.bugs.json")
+                       + glob.glob(f"ip/{block}/{block}.bugs.json")):
+        try:
+            found += [Bug(f"{pathlib.Path(file).name.split('.')[0]}/{name}", said)
+                      for name, said in json.loads(pathlib.Path(file).read_text()).items()]
+        except (ValueError, LookupError, TypeError, AttributeError) as error:
+            sys.exit(f"mutants: {file}: not bugs as `tools/python -m icesoc.mutants.run "
+                     f"--help` shows them: {error!r}")
+    found = [bug for bug in found if not name or bug.name == chosen]
+    return found or sys.exit(f"mutants: no {chosen} in tests/mutants/*.json and ip/*/*.bugs.json")
+
+
+def prepare(copy, *options):
+    """A copy of the tree for a worker, with its own build folder."""
+    copy.mkdir(parents=True, exist_ok=True)
+    for kept in copy.rglob("*.orig"):  # planted by an interrupted run
+        restore(kept.with_suffix(""))
+    listed = subprocess.run(
+        ["git", "grep", "--no-index", "--exclude-standard", "--no-color", "-lz", ""],
+        stdout=subprocess.PIPE, check=True)
+    there = {name for name in os.fsdecode(listed.stdout).split("\0") if os.path.exists(name)}
+    for top in copy.iterdir():
+        for file in [top, *top.rglob("*")] if top.name != "build" else []:
+            if not file.is_dir() and str(file.relative_to(copy)) not in there:  # it left the tree
+                file.unlink()
+    subprocess.run(["xargs", "-0", "cp", "-pu", "--parents", "-t", copy], input=listed.stdout,
+                   stderr=subprocess.DEVNULL)
+    if not (copy / "build/main/build.ninja").exists():
+        made = subprocess.run(["cmake", "-S", ".", "-B", "build/main", "-G", "Ninja", *options],
+                              cwd=copy, env=environment(copy), stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, text=True)
+        if made.returncode:
+            sys.exit(made.stdout)
+
+
+def environment(copy):
+    return {**os.environ, "CCACHE_BASEDIR": str(copy), "CCACHE_NOHASHDIR": "1"}
+
+
+def restore(file):
+    """Restores the file, newer than the build of the bug."""
+    os.replace(f"{file}.orig", file)
+    os.utime(file)
+
+
+def targets(test, copy):
+    """Targets that a test needs."""
+    kind, _, rest = test.partition(".")
+    if kind.startswith("test_"):
+        return [kind]
+    if kind == "cdc":
+        return [rest.rpartition(".")[0]]
+    if kind == "vhdl":
+        return [f"{rest}_vectors"]
+    if kind == "slice":
+        return ["slice2c"] + ["ghdl"] * rest.startswith("hardware.vhdl.")
+    return ["regmaps"]
+
+
+def attempt(test, copy, log):
+    """Builds what a test needs and runs it: "passes", "fails" or "does not build"."""
+    build = ["ninja", "-C", "build/main", "-j", "1", *targets(test, copy)]
+    run = ["ctest", "--test-dir", "build/main", "-R", f"^{re.escape(test)}(\\.|$)",
+           "--no-tests=error", "--output-on-failure", "--stop-on-failure"]
+    with open(log, "w") as out:
+        for command, otherwise in (build, "does not build"), (run, "fails"):
+            if subprocess.run(command, cwd=copy, env=environment(copy), stdout=out,
+                              stderr=out).returncode:
+                break
+        else:
+            return "passes"
+    # A proof must fail by its properties, not by a file that cannot be read.
+    said = re.search("an assertion fails|not proven|not reached", log.read_text(errors="replace"))
+    return "does not build" if test.startswith("formal.") and not said else otherwise
+
+
+def try_bug(bug, copy):
+    start = time.monotonic()
+    try:
+        planted = bug.planted(copy)
+    except (OSError, ValueError):
+        planted, result = {}, "does not apply"
+    for file, text in planted.items():
+        shutil.copy2(copy / file, f"{copy / file}.orig")
+        (copy / file).write_text(text)
+    if planted:
+        result = attempt(bug.test, copy, WORK / (bug.name.replace("/", "-") + ".log"))
+        result = {"passes": "SURVIVED", "fails": "caught"}.get(result, result)
+    for file in planted:
+        restore(copy / file)
+    seconds = str(round(time.monotonic() - start))
+    print(f"{result:<14} {bug.name:<36} {bug.test} ({seconds} s)", flush=True)
+    return [bug.name, result, bug.test, seconds, bug.place(copy) if planted else ""]
+
+
+def check(chosen, build):
+    """Whether each bug fits today's tree, and its test is one of a build folder; builds nothing."""
+    bad, tests = 0, ""
+    if build:
+        tests = subprocess.run(["ctest", "--test-dir", build, "-N"], stdout=subprocess.PIPE,
+                               check=True, text=True).stdout
+    for bug in chosen:
+        try:
+            bug.planted(TOP)
+            program = bug.test.split(".")[0]
+            if build and f": {program}_NOT_BUILT\n" not in tests and not re.search(
+                    rf": {re.escape(bug.test)}(\.|$)", tests, re.M):
+                raise ValueError(f"there is no test {bug.test}")
+        except (OSError, ValueError) as error:
+            print(f"{bug.name}: does not apply: {error}")
+            bad = 1
+    return bad
+
+
+def keep(rows):
+    """Writes the results; those of other blocks stay from an earlier run, unless a bug is gone."""
+    results = WORK / "results.tsv"
+    there = {bug.name for bug in bugs("*")}
+    earlier = results.read_text().splitlines() if results.exists() else []
+    all_rows = {row[0]: row for row in [line.split("\t") for line in earlier] + rows
+                if row[0] in there}
+    results.write_text("".join("\t".join(row) + "\n" for row in all_rows.values()))
+
+
+def try_all(chosen, jobs):
+    """Tries the bugs in copies of the tree, `jobs` at a time. Returns the exit status."""
+    copies = queue.Queue()
+    for number in range(jobs):
+        prepare(WORK / str(number))
+        copies.put(WORK / str(number))
+
+    def of_program(group):
+        """Tries the bugs of one program, or of one proof, in one copy: little is built again."""
+        copy = copies.get()
+        try:
+            for test in sorted({bug.test for bug in group}):
+                # It must pass without a bug, or "caught" says nothing.
+                log = WORK / f"baseline.{test.replace('/', '-')}.log"
+                if attempt(test, copy, log) != "passes":
+                    sys.stderr.write(log.read_text(errors="replace"))
+                    sys.exit(f"mutants: {test} fails without any mutant: mend that first")
+                log.unlink()
+                for bug in group:
+                    if bug.test == test:
+                        row = try_bug(bug, copy)
+                        with writing:
+                            rows.append(row)
+                            keep(rows)
+        finally:
+            copies.put(copy)
+
+    rows, writing, groups = [], threading.Lock(), collections.defaultdict(list)
+    for bug in chosen:
+        groups[bug.test.split(".")[0] if bug.test.startswith("test_") else bug.test].append(bug)
+    with ThreadPoolExecutor(jobs) as pool:
+        tasks = [pool.submit(of_program, group)
+                 for group in sorted(groups.values(), key=len, reverse=True)]
+    for task in tasks:
+        task.result()
+    now = sum(row[1] == "caught" for row in rows)
+    print(f"mutants: {now} of {len(rows)} caught (build/mutants/results.tsv)")
+    return now != len(rows)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument(
+        "--block", default="*",
+        help="the bugs of one block or core, or a single one as block/name (default: all)")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(),
+                        help="how many are tried at once")
+    parser.add_argument("--check", nargs="?", const="", metavar="BUILD",
+                        help="only look whether each is found in its file, and its test in BUILD")
+    options = parser.parse_args()
+    os.chdir(TOP)
+    chosen = bugs(options.block)
+    if options.check is not None:
+        return check(chosen, options.check)
+    with tool.only_one(WORK, "mutants"):
+        if options.block == "*":
+            # The state that all blocks were measured from, for the regression's light
+            measured = "bus hdl ip slice sw testbench tests tools"
+            tool.write(WORK / "tree", tool.tree_state(TOP, measured))
+        return try_all(chosen, options.jobs)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: MIT
+"""changes: lists the files of a failed test that have changed since it last passed: usually the
+best hint at the cause."""
+import functools
+import re
+
+from icesoc.regress.tests import Graph
+from icesoc.util.tool import run
+
+SHOWN = 6  # files
+
+
+class Changes:
+    """Notes the state of the tree, with changes that are not committed, as a tree of git. Its
+    objects go into <out>/tree; the repository gets none."""
+
+    def __init__(self, source, build, out):
+        self.source, self.build, self.environment, self.tree = source, build, {}, ""
+        folder = out.resolve() / "tree"
+        status, objects = self.git("rev-parse", "--path-format=absolute", "--git-path", "objects")
+        if status == 0:
+            (folder / "objects").mkdir(parents=True, exist_ok=True)
+            self.environment = {"GIT_INDEX_FILE": str(folder / "index"),
+                                "GIT_OBJECT_DIRECTORY": str(folder / "objects"),
+                                "GIT_ALTERNATE_OBJECT_DIRECTORIES": objects.strip()}
+            self.tree = self._write_tree()
+
+    def git(self, *words):
+        return run(["git", "-C", self.source, "-c", "core.quotePath=false", *words],
+                   self.environment)
+
+    def _write_tree(self):
+        added, (status, tree) = self.git("add", "--all")[0], self.git("write-tree")
+        return "" if added or status else tree.strip()
+
+    def meanwhile(self):
+        """The files that have changed since the tree was noted, that is, while the tests ran."""
+        now = self.tree and self._write_tree()
+        return self.git("diff", "--name-only", "--no-renames", self.tree, now)[1].splitlines() \
+            if now else []
+
+    @functools.cache
+    def differing(self, since):
+        """{path: (first different line, number of them)} since a tree or a commit; None if git does
+        not know it any more. Files that are not committed come first, sources before others."""
+        status, text = self.git("diff", "--unified=0", "--no-color", "--no-ext-diff",
+                                "--no-renames", "--src-prefix=a/", "--dst-prefix=b/", since,
+                                self.tree)
+        if status:
+            return None
+        files = {}
+        for line in text.splitlines():
+            if begin := re.fullmatch("diff --git a/(.*) b/.*", line):
+                path = begin[1]
+                files[path] = (0, 0)
+            elif hunk := re.match(r"@@ -\d+(?:,(\d+))? [+](\d+)(?:,(\d+))? @@", line):
+                first, lines = files[path]
+                files[path] = (first or max(1, int(hunk[2])),
+                               lines + max(int(hunk[1] or 1), int(hunk[3] or 1)))
+        mine = self.git("diff", "--name-only", "--no-renames", "HEAD", self.tree)[1].splitlines()
+        return dict(sorted(files.items(), key=lambda file: (
+            file[0] not in mine, file[0].startswith(("tests/", "docs/")))))
+
+    @functools.cached_property
+    def graph(self):
+        return Graph(self.source, self.build)
+
+    def forget_graph(self):
+        """Drops what is known of ninja's files: a build has changed them."""
+        self.__dict__.pop("graph", None)
+
+    def of_test(self, test, since):
+        """The differences since a tree or a commit in the files of a test."""
+        folders = test.reads()
+        inputs = set()
+        if test.unbuilt or test.is_program(self.build.resolve()):
+            inputs, folders = self.graph.inputs(test.program), (f"tests/{test.place}",)
+        return {path: lines for path, lines in (self.differing(since) or {}).items()
+                if path in inputs or path.startswith(tuple(f + "/" for f in folders))}
+
+    def touched(self, test, last_pass):
+        """Whether a test's files differ from those of its last pass; if it has never passed here,
+        from the commit."""
+        since = last_pass[1].get("tree") if last_pass else "HEAD"
+        return not self.tree or not since or self.differing(since) is None or \
+            bool(self.of_test(test, since))
+
+    def since(self, last_pass, test, seed):
+        """"changed since it passed at 632b860abc: ip/fir/fir.v:12 (2 lines), ...", or that nothing
+        has; "" if neither is known."""
+        if not self.tree:
+            return ""
+        end, noted = last_pass or (None, {})
+        commit = noted.get("commit", "HEAD").split("-dirty")[0]
+        since = next((each for each in (noted.get("tree"), commit)
+                      if each and self.differing(each) is not None), None)
+        if not since or not (end or self.differing(since)):
+            return ""
+        # Nobody knows each file that a script reads.
+        files = self.of_test(test, since) or self.differing(since)
+        text = "the commit; it is not known to have passed" if not end else \
+            f"it passed at {commit}" + (
+                f" with SEED={end[3]}" if end[3] != seed else "")
+        if not files:
+            return f"nothing has changed since {text}"
+        told = [path + (f":{first} ({lines} line{'s' * (lines != 1)})" if first else "")
+                for path, (first, lines) in list(files.items())[:SHOWN]]
+        more = f" and {len(files) - SHOWN} more" if len(files) > SHOWN else ""
+        return f"changed since {text}: {', '.join(told)}{more}"

@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: MIT
+"""failures: collects for each failed test the reason, the log, a command that repeats it, the tests
+that fail alike, and a waveform."""
+import dataclasses
+import os
+import pathlib
+import re
+import shutil
+
+from icesoc.regress.runner import Result
+from icesoc.util.tool import write
+
+# Words of a runner or of a flight's end: their names, times and counts differ for one cause.
+RUNNERS = re.compile(
+    r"^\[|^at clock cycle|tests? (ran|FAILED|PASSED)|^\s*\d+ FAILED|note:|trace: |Running main|"
+    r"^The mission failed|^Its end|^icesoc-sim: Cortex-M3: |^icesoc-sim: [0-9.]+ s simulated|"
+    r"^-- \S+ \S+ XBeeAT: |^[\s{}()\[\];=-]*$|^(ERROR|FAIL): test_|^FAILED[ :]|^Ran \d+ test|"
+    r"^g?make(\[\d+\])?: \*\*\*|^ninja: build stopped|^collect2: |^terminate called|as expected$|"
+    r"^#\d|^Thread \d|^Stack of |^Google Test trace:|stands at clock", re.I)
+# A message of a compiler or a lint about a line of a file
+OF_FILE = re.compile(
+    r"^%(Error|Warning)[^ ]*: [^ ]+:\d+:|"
+    r"^[^ ]+:\d+:(\d+:)? *((fatal|runtime) error|error|warning):|"
+    r"^SUMMARY: \S+Sanitizer: |^[^ ]+\.vhdl?:\d+:\d+:|: undefined reference to ")
+# A test's message about a value; an exception of Python, of Ice
+OF_VALUE = re.compile(r"\berror\b|(?<!as )\bexpected\b|\bdiffers?\b|"
+                      r"^(\S+: )*(\w+\.)*(::\w+)*\w*(Error|Exception):|^what\(\): ", re.I)
+# GoogleTest's lines about two values, and about a condition
+EQUALITY = re.compile(r"(?m)^Expected equality of these values:"
+                      r"\n +(.*)(?:\n +Which is: (.*))?\n +(.*)(?:\n +Which is: (.*))?$")
+CONDITION = re.compile(r"(?m)^Value of: (.*)\n +Actual: (.*)\nExpected: (.*)$")
+
+
+@dataclasses.dataclass
+class Failure:
+    result: Result
+    reason: str  # the line that says what went wrong
+    bucket: str = ""  # the reason without its numbers: failures of one bucket have one cause
+    repeat: str = ""  # one command
+    place: str = ""  # GoogleTest's: "tests/sw/link/link_test.cpp:185", or ""
+    changed: str = ""  # since it passed, or ""
+    log: str = ""  # file
+    wave: str = ""  # FST or VCD file, or ""
+    about: str = ""  # text with the names of relevant signals: the assertion, or the reason
+    scope: str = ""  # instance in which to look: "u_window.u_wrapper", or ""
+    own_assertion: bool = False  # of a proof: the assertion is in the proven module
+    save: str = ""  # GTKWave save file, or ""
+    clock: int = 0  # of the failure, in that waveform; 0: its end
+
+
+def comparison(match):
+    """status is 5, not ICE_OK, which is 0: a literal stands behind what is none."""
+    a, of_a, b, of_b = match.groups()
+    if not of_a:
+        a, of_a, b, of_b = b, of_b, a, of_a
+    return (f"{a} is {of_a}" if of_a else a) + f", not {b}" + (f", which is {of_b}" if of_b else "")
+
+
+def reason_of(log):
+    """The reason in the test's log: GoogleTest's lines after the first "Failure", else a compiler's
+    first message about a file, else the first line about an error, else the last line. An exception
+    that ends in a colon takes the next line with it, a diff its first two lines."""
+    last, of_file, of_value, failure = "", "", "", None
+    log = CONDITION.sub(r"\1 is \2, not \3", EQUALITY.sub(comparison, log))
+    log = re.sub(r"((?:Error|Exception)\b.*:)\n+ *(?=\S)", r"\1 ", log)
+    log = re.sub(r"(?m)^@@ .*\n(?: .*\n)*(-.*)\n([+].*)", r"differs: \1 \2", log)
+    for line in log.splitlines():
+        below = line.startswith(" ") and last.endswith(":")
+        line = line.strip()
+        if failure is not None and (not line or line[0] == "[" or len(failure) == 4
+                                    or line.endswith(": Failure")):
+            break
+        if not line or RUNNERS.search(line) or (below and failure is None):
+            continue
+        if failure is not None:
+            failure.append(re.sub(r"^(\.\./)+", "", line))
+            continue
+        if line.endswith("Failure"):
+            failure = []
+        last = line
+        of_file = of_file or (line if OF_FILE.search(line) else "")
+        of_value = of_value or (line if OF_VALUE.search(line) else "")
+    return "; ".join(failure) if failure is not None else of_file or of_value or last
+
+
+def find_assertion(failure):
+    """Adds the assertion that fails to a proof's failure: its place and text, its instance, and
+    whether that belongs to the proven module. Yosys names the assertion's cell by
+    instance, file and line, and beside it the lines of all cells around."""
+    match = re.search(
+        r"Assert failed in \S+: (\S+) \((?:\$flatten/)?(?:(\S*?)\.?\$assert\$(\S+)\$)?",
+        failure.result.log)
+    places = list(re.finditer(r"([^|]*?((?:hdl|bus|ip)/[^|:]+)):(\d+)[.](\d+)-(\d+)",
+                              match[1])) if match else []  # file:89.41-91.66|...
+    if not places:
+        return
+    at = next((p for p in reversed(places) if match[3] and match[3] + "." in p[0]), places[0])
+    failure.scope = (match[2] or "").replace("./", ".")
+    first, last = int(at[3]), int(at[5])
+    path = pathlib.Path(at[1].lstrip("|"))
+    lines = path.read_text().splitlines()[first - 1:last] if path.exists() else []
+    if len(lines) > 1:  # Yosys begins at the end of the statement before
+        lines[0] = lines[0][int(at[4]):]
+    failure.about = " ".join(filter(None, map(str.strip, lines)))
+    asserts = next((i for i, line in enumerate(lines) if "assert" in line), max(0, len(lines) - 1))
+    failure.reason = failure.bucket = f"{at[2]}:{first + asserts}: {failure.about}"
+    module = re.sub("_proof.*", "", pathlib.Path(at[2]).stem)
+    failure.own_assertion = failure.result.name.startswith("formal." + module)
+
+
+def rank(failure, tests):
+    """The place of a failure in the reading order: first proofs, which name the property, the
+    module that has it before the modules around; then checks of sources; then tests of one block,
+    of the chip, of the firmware; whole missions last."""
+    test = tests.get(failure.result.name)
+    text = " ".join([failure.result.name, *([test.place, *test.labels] if test else [])])
+    order = ("^formal[.]", "^(lint|tree)[.]", "^(vhdl|slice)[.]|(hdl|bus|ip)/?.* rtl", " rtl",
+             " (firmware|models)", " interop")
+    return -1 if failure.own_assertion else next(
+        (i for i, kind in enumerate(order) if re.search(kind, text)), len(order))
+
+
+def examine(results, tests, out):
+    """The failures in reading order; keeps logs, and traces of proofs, in <out>/failures/."""
+    folder, failures = out / "failures", []
+    shutil.rmtree(folder, ignore_errors=True)
+    for result in [result for result in results if result.status == "failed"]:
+        folder.mkdir(parents=True, exist_ok=True)
+        words = reason_of(result.log)
+        if result.end or not words:
+            mute = "" if result.end.startswith("Hang") else " without a word"
+            words = (result.end or "failed") + (f": {words}" if words else mute)
+        short = re.sub(r"0x[0-9a-fA-F]+|[0-9]+(\.[0-9]+)?", "#", re.sub("[^ ]*/", "", words))
+        exact = re.sub(r"([.+*?()\[\]{}|^$\\])", r"\\\1", result.name)
+        base = f"{folder}/{re.sub('[^A-Za-z0-9_.-]', '_', result.name)}"
+        failure = Failure(result, words, short[:160], f"make test NAME='^{exact}$$' "
+                          f"SEED={result.seed}", log=f"{base}-{result.seed}.log", about=words)
+        find_assertion(failure)
+        if place := re.search(r"(?:^|\n)(?:[.][.]/)*(\S+:\d+): Failure\n", result.log):
+            failure.place = os.path.relpath(place[1]) if place[1][0] == "/" else place[1]
+        trace = re.search(r"trace: (\S+[.]vcd)", result.log)  # of a proof
+        if trace and os.path.exists(trace[1]):
+            failure.wave = f"{base}.vcd"
+            shutil.copyfile(trace[1], failure.wave)
+        write(failure.log, f"# {failure.repeat}\n{result.log}")
+        failures.append(failure)
+    return sorted(failures, key=lambda failure: rank(failure, tests))

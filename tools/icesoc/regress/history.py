@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: MIT
+"""history: keeps the results of each run, a line of JSON a run, in history.jsonl."""
+import collections
+import json
+import time
+
+from icesoc.util.tool import write
+
+KEPT_RUNS = 300
+
+
+class History:
+    """A run's `ends` are [name, how, seconds, print, seed] of each test and seed, failures last;
+    how: "p", "f" or "s"."""
+
+    def __init__(self, path, costs):
+        self.path, self.runs, self.damaged = path, [], 0
+        lines = costs.read_text().splitlines() if costs.exists() else []
+        self.costs = {name: [float(seconds)] for name, _, seconds in map(str.split, lines)}
+        for line in path.read_text(errors="replace").splitlines() if path.exists() else []:
+            try:
+                run = json.loads(line)
+                self.runs += [run] if run["ends"] else []
+            except (ValueError, KeyError, TypeError):
+                self.damaged += 1
+        self._index()
+
+    def _index(self):
+        self.ends = collections.defaultdict(list)  # of a test, the newest last: (end, run)
+        for run in self.runs:
+            for name, *end in run["ends"]:
+                self.ends[name].append((end, run))
+
+    def add(self, run):
+        """Adds a run and writes the file anew, complete or not at all."""
+        self.runs = (self.runs + [run])[-KEPT_RUNS:]
+        self._index()
+        write(self.path, "".join(json.dumps(each, separators=(",", ":")) + "\n"
+                                 for each in self.runs))
+
+    def last(self, name):
+        """How a test ended in the newest run that had it, or ""."""
+        return self.ends[name][-1][0][0] if self.ends[name] else ""
+
+    def now(self, test, seed=None):
+        """How a test ended last with these sources (and with this seed); without such a run, "f" if
+        it failed last."""
+        return next((end[0] for end, _ in reversed(self.ends[test.name])
+                     if end[2] == test.print and seed in (None, end[3])),
+                    "f" if self.last(test.name) == "f" else "")
+
+    def last_pass(self, name):
+        """(end, run) of the newest run in which a test passed, or None."""
+        return next((each for each in reversed(self.ends[name]) if each[0][0] == "p"), None)
+
+    def seconds(self, name):
+        """Seconds that a test took in the newest run that had it, or None."""
+        return self.ends[name][-1][0][1] if self.ends[name] else None
+
+    def usual(self, name):
+        """Seconds that a test may take: the longest of its passes, at least what tests/costs.txt
+        says (the output of a kept one came at once); None: neither is known."""
+        times = [end[1] for end, _ in self.ends[name] if end[0] == "p"]
+        return max([*times, *self.costs.get(name, [])], default=None)
+
+    def flaky(self):
+        """Tests that both passed and failed with one fingerprint and one seed."""
+        names = []
+        for name, ends in sorted(self.ends.items()):
+            how = collections.defaultdict(set)
+            for end, _ in ends:
+                how[tuple(end[2:])].add(end[0])
+            names += [name] * any({"p", "f"} <= each for each in how.values())
+        return names
+
+    def failing(self, tests):
+        """The seeds with which these tests have failed and have not passed since, nor before with
+        these sources: {(test, seed): {"test", "seed", "since" (seconds, Unix), "commit", "times"
+        (how often it failed)}}."""
+        known, found = {test.name: test for test in tests}, {}
+        for run in self.runs:
+            for name, how, _, _, seed in run["ends"]:
+                if how == "p":
+                    found.pop((name, seed), None)
+                elif how == "f":
+                    entry = found.setdefault((name, seed), {
+                        "test": name, "seed": seed, "since": run["time"], "commit": run["commit"],
+                        "times": 0})
+                    entry["times"] += 1
+        return {key: entry for key, entry in sorted(found.items())
+                if key[0] in known and self.now(known[key[0]], key[1]) != "p"}
+
+
+def make_run(tests, results, commit, seconds):
+    prints = {test.name: test.print for test in tests}
+    ends, counts = [], {"passed": 0, "failed": 0, "skipped": 0}
+    for result in sorted(results, key=lambda result: result.status == "failed"):
+        counts[result.status] += 1
+        ends.append([result.name, result.status[0], result.seconds, prints.get(result.name, ""),
+                     result.seed])
+    return {"time": int(time.time()), "commit": commit, "seconds": seconds, "ends": ends, **counts}

@@ -1,0 +1,139 @@
+#!/usr/bin/python3 -I
+# SPDX-License-Identifier: MIT
+"""kept: runs a test that is a function of files; where none of these has changed since it passed,
+prints the kept output.
+
+Usage: kept.py OWN COMMAND [WORD...]   OWN: the test's work folder, emptied before; "" for none
+
+strace sees each file that the test's processes open, look for and list, programs and libraries
+among them. A verdict is what the test printed, and the state that it left each of these in: files
+of the tree by content, others by size and time of change. It holds while all of them are as they
+were. The environment is the same for all: nothing else gets in. A test that fails leaves no
+verdict; nor does one that is killed, or a file of which changed meanwhile; FRESH=1 computes.
+Verdicts are below XDG_CACHE_HOME (~/.cache), the newest four of a command, for all clones.
+"""
+
+import datetime
+import hashlib
+import json
+import os
+import pathlib
+import re
+import shutil
+import stat
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = str(pathlib.Path(__file__).resolve().parents[3])
+STRING = re.compile(r'"((?:[^"\\]|\\.)+)"')
+WRITES = re.compile(
+    "O_(WRONLY|RDWR|CREAT|TRUNC)|(rename|unlink|link|mkdir|rmdir|chmod|utime)")
+TRACING = ("strace", "-f", "--seccomp-bpf", "-qq", "-y", "-e", "signal=none", "-e", "trace=%file")
+
+
+def portable(text):
+    """Returns the text with the same word for any clone's folder."""
+    return re.sub(re.escape(ROOT) + r"(?![\w.-])", "@ROOT@", text)
+
+
+def digest(data):
+    return hashlib.sha256(data).hexdigest()
+
+
+def state(path, listed):
+    """Returns what a run can have seen of a path: nothing, a folder (and its names, where it was
+    listed), a file."""
+    try:
+        status = os.stat(path)
+        if stat.S_ISDIR(status.st_mode):
+            names = "\n".join(sorted(os.listdir(path))).encode() if listed else b""
+            return "folder " + (digest(names) if listed else "")
+        if path.startswith(ROOT + "/") and stat.S_ISREG(status.st_mode):
+            return digest(pathlib.Path(path).read_bytes())
+        return f"{status.st_size} {status.st_mtime_ns}"
+    except OSError as error:
+        return f"none {error.errno}"
+
+
+def touched(trace):
+    """Returns {path: (was it listed, did the run write it)} of strace's lines."""
+    lines = pathlib.Path(trace).read_text(errors="surrogateescape").splitlines()
+    whole = "\n".join(lines)
+    # Folders that relative paths may begin in:
+    here = {os.getcwd(), *re.findall(r"AT_FDCWD<(/[^>]*)>", whole)}
+    here |= {os.path.join(b, n) for n in re.findall(r'\bchdir\("([^"]*)"', whole) for b in here}
+    paths = {}
+    for line in lines:
+        call, _, rest = line.partition("(")
+        ahead, _, result = (rest if " = " in rest else rest + " = ").rpartition(" = ")
+        found = STRING.findall(ahead)[:1 if "execve" in call else None]
+        names = [n.encode("latin1", "ignore").decode("unicode_escape") for n in found]
+        bases = re.findall(r"(?:AT_FDCWD|\d+)<(/[^>]*)>", ahead) or here
+        writes = bool(WRITES.search(line))
+        for path in {*(os.path.normpath(os.path.join(b, n)) for n in names for b in bases),
+                     *re.findall(r"<(/[^>]*)>", result)}:
+            listed, written = paths.get(path, (False, False))
+            paths[path] = (listed or "O_DIRECTORY" in line, written or writes)
+    return paths
+
+
+def main():
+    own, command = sys.argv[1] and os.path.abspath(sys.argv[1]) + "/", sys.argv[2:]
+    environment = {k: os.environ[k] for k in os.environ if re.match("PATH$|GEN_DIR$|PROVE_", k)}
+    environment["LC_ALL"] = "C.UTF-8"
+    words = [command, environment, pathlib.Path(__file__).read_text()]
+    key = digest(portable(json.dumps(words, sort_keys=True)).encode())
+    cache = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache")
+    store = cache / "icesoc" / "verdicts" / key
+    try:
+        verdicts = json.loads(store.read_text())
+    except (OSError, ValueError):
+        verdicts = []
+    for verdict in verdicts if not os.environ.get("FRESH") else []:
+        if all(state(path.replace("@ROOT@", ROOT), listed) == was
+               for path, (listed, was) in verdict["seen"].items()):
+            print(f"kept: the verdict of {verdict['date']}, as all that it came of is unchanged; "
+                  "FRESH=1 computes it again")
+            print(verdict["said"].replace("@ROOT@", ROOT), end="")
+            return 0
+    shutil.rmtree(own or "/dev/null/", ignore_errors=True)
+    begin = time.time_ns() - 50_000_000  # files' times are as coarse as the kernel's clock
+    with tempfile.TemporaryDirectory() as folder:
+        trace, said = folder + "/trace", b""
+        environment["TMPDIR"] = environment["HOME"] = folder
+        tracing = [*TRACING, "-o", trace]
+        if not shutil.which("strace") or subprocess.run(tracing + ["true"],
+                                                        stderr=subprocess.DEVNULL).returncode:
+            print("kept: strace is missing, or may not trace here: the verdict is computed each "
+                  "time", file=sys.stderr)
+            return subprocess.call(command, env=environment)
+        with subprocess.Popen(tracing + command, env=environment, stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT) as run:
+            for line in run.stdout:
+                said += line
+                sys.stdout.buffer.write(line)
+                sys.stdout.flush()
+        if run.returncode:
+            return run.returncode if run.returncode > 0 else 128 - run.returncode
+        seen = {}
+        for path, (listed, written) in touched(trace).items():
+            if own and path.startswith(own):
+                path = os.path.realpath(path)  # a link from there
+            if (path + "/").startswith((own or "/dev/", folder + "/", "/proc/", "/dev/", "/sys/")):
+                continue
+            read = not written and (listed or os.path.isfile(path)) and os.path.exists(path)
+            if read and os.stat(path).st_mtime_ns > begin:
+                return 0  # another process has changed it since: the state that was read is unknown
+            seen[portable(path)] = (listed, state(path, listed))
+    date = datetime.datetime.now().strftime("%Y-%m-%d %H:%M")
+    verdict = {"date": date, "said": portable(said.decode(errors="replace")), "seen": seen}
+    store.parent.mkdir(parents=True, exist_ok=True)
+    part = store.with_suffix(f".{os.getpid()}")
+    part.write_text(json.dumps([verdict] + verdicts[:3]))
+    part.replace(store)
+    return 0
+
+
+sys.exit(main())

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: MIT
+"""lights: shows a run as seven lights: tests, proofs, plan, mutants, coverage, size, speed. A light
+is green, red, or grey: not measured, or the sources have changed since. Each reads its own figures
+only, so that a bug of one kind turns one light red."""
+from icesoc.util.tool import tree_state
+
+
+def light(name, state, text):
+    return {"name": name, "state": state, "text": text}
+
+
+def missing(name, command):
+    return light(name, "grey", f"not measured: {command}")
+
+
+def judge(name, good, wrong, bad):
+    """Green with `good`, or red with the first few errors."""
+    if not bad:
+        return light(name, "green", good)
+    return light(name, "red", f"{len(bad)} {wrong}: {', '.join(bad[:3])}{', ...' * (len(bad) > 3)}")
+
+
+def of_tests(data, name):
+    """Rows of `results` are [name, status, ...]; proofs are the tests named formal.*"""
+    rows = [r for r in data["results"] if r[0].startswith("formal.") == (name == "proofs")]
+    bad = [row[0] for row in rows if row[1] == "failed"]
+    passed = sum(row[1] == "passed" for row in rows)
+    if not bad and not passed:
+        return missing(name, "none ran")
+    good = f"{passed} {'hold' if name == 'proofs' else 'passed'}"
+    if kept := data["kept"][name]:
+        good += f", {kept} of them as before, from unchanged files"
+    if left := data["left"][name]:
+        good += f", {left} did not run"
+    return judge(name, good, "failed", bad)
+
+
+def of_mutants(rows, drawn, source):
+    """Drawn mutants count by their module's score, if the sources are the same."""
+    tree = drawn.get("tree", "")
+    if tree and tree_state(source, tree.split(":")[0]) == tree:
+        if bad := [m for m, s in drawn["modules"].items() if s["score"] < drawn["gate"]]:
+            return judge("mutants", "", "modules of which proofs and tests miss drawn mutants", bad)
+    if not rows:
+        return missing("mutants", "make mutants")
+    return judge("mutants", f"{len(rows)} of {len(rows)} caught", f"of {len(rows)} not caught",
+                 [row[0] for row in rows if row[1] != "caught"])
+
+
+def below_gate(f):
+    """Whether a file's coverage is: of lines, of cover points, or of toggles."""
+    return f["percent"] < f["gate"] or f.get("point_percent", 100) < f.get("point_gate", 0) or \
+        bool(f.get("toggle_points", 0)) and f.get("toggles", 100) < f.get("toggle_gate", 0)
+
+
+def of_coverage(coverage):
+    if not coverage:
+        return missing("coverage", "make coverage")
+    bad = [f["file"] for f in coverage["files"] if below_gate(f)]
+    return judge("coverage", f"{coverage['total']:.1f} % of lines, "
+                 f"{coverage.get('toggles', 0):.1f} % of toggles, "
+                 f"{coverage.get('points', 0)} of {coverage.get('points_total', 0)} cover points",
+                 "files below their gate", bad)
+
+
+def of_entries(name, entries, command):
+    """Entries with a limit: most allowed, or least where the unit says "at least"."""
+    limits = [each for each in entries if "limit" in each]
+    bad = []
+    for each in limits:
+        value, limit, least = each["value"], each["limit"], "at least" in each.get("unit", "")
+        if value < limit if least else value > limit:
+            bad.append(f"{each['name']} {value:g} (at {'least' if least else 'most'} {limit:g})")
+    return judge(name, f"{len(limits)} figures within their limits", "beyond their limits", bad) \
+        if limits else missing(name, command)
+
+
+def of_size(utilisation):
+    """A design that failed has no figure: the result of `make synth` decides."""
+    if not utilisation:
+        return missing("size", "make synth")
+    if utilisation["failures"]:
+        return judge("size", "", "designs failed", utilisation["failures"])
+    states = list(utilisation["states"].values())
+    changed, never = states.count("changed since"), states.count("never measured here")
+    if changed or never:
+        return light("size", "grey",
+                     f"{changed} changed since, {never} never measured here: make synth")
+    return of_entries("size", utilisation["entries"], "make synth")
+
+
+def of_plan(plan):
+    bad = [each["text"] for each in plan if each["state"] == "failed"]
+    proven = sum(each["state"] == "proven" for each in plan)
+    if not bad and proven < len(plan):
+        return light("plan", "grey", f"{proven} of {len(plan)} requirements of docs/ are proven; "
+                     "tests of the others have not run with these sources")
+    return judge("plan", f"{proven} requirements of docs/ are proven",
+                 f"of {len(plan)} requirements of docs/ are not proven", bad)
+
+
+def lights_of(data, source):
+    """The lights of report.py's data: [{name, state, text}]."""
+    measured = [of_mutants(data["mutants"], data.get("drawn", {}), source),
+                of_coverage(data.get("coverage")), of_size(data.get("utilisation")),
+                of_entries("speed", data.get("speed", []), "make bench")]
+    for each in measured:  # a measurement keeps the state of the tree that it measured
+        tree = data["trees"].get(each["name"], "")
+        if each["state"] != "grey" and tree_state(source, tree.split(":")[0]) != tree:
+            each["text"] = f"sources have changed since it was {each['state']}: {each['text']}"
+            each["state"] = "grey"
+    return [of_tests(data, "tests"), of_tests(data, "proofs"),
+            *([of_plan(data["plan"])] if data["plan"] else []), *measured]
+
+
+def text_of(lights):
+    return "".join(f"{each['name']:<9} {each['state']:<6} {each['text']}\n" for each in lights)

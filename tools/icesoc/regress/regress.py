@@ -1,0 +1,274 @@
+# SPDX-License-Identifier: MIT
+"""Runs the regression: chosen tests, in parallel, with history, waveforms of failures and a page.
+Exit status 0: all passed; 1: some failed; 2: it could not run."""
+import argparse
+import collections
+import datetime
+import functools
+import pathlib
+import random
+import re
+import sys
+import time
+
+from icesoc.util import tool
+from icesoc.regress.changes import Changes
+from icesoc.cli.build_folder import run_ninja
+from icesoc.cli.runner import lock
+from icesoc.regress.failures import examine
+from icesoc.regress.history import History, make_run
+from icesoc.regress.lights import text_of
+from icesoc.regress.report import gather, write_reports
+from icesoc.regress.runner import run_tests, write_junit
+from icesoc.regress.tests import Graph, fingerprint, list_tests, read_plan, targets_of, unmatched
+from icesoc.util.tool import Stop
+from icesoc.regress.waves import add_waves
+
+
+def regex(text):
+    try:
+        return re.compile(text)
+    except re.error:
+        raise argparse.ArgumentTypeError(
+            f"'{text}' is no regular expression, in which .* is any text") from None
+
+
+class Parser(argparse.ArgumentParser):
+    def error(self, message):
+        print(f"regress: {message}; see --help", file=sys.stderr)
+        sys.exit(2)
+
+
+def parse(words):
+    parser = Parser("regress", description=__doc__, allow_abbrev=False,
+                    formatter_class=argparse.RawDescriptionHelpFormatter)
+    add, folder = parser.add_argument, pathlib.Path
+    add("--source", type=folder, default=folder("."), help="root of the tree (default: .)")
+    add("--build", type=folder, default=folder("build/main"), help="build folder with the tests")
+    add("--out", type=folder, default=folder("build/regress"), help="where reports go")
+    add("--name", type=regex, default=regex(""), help="regular expression on test names")
+    add("--block", help="one block: modem, link, bus, ...")
+    add("--label", type=regex, default=regex(""), help="labels: rtl, formal, lint, firmware, ...")
+    only = parser.add_mutually_exclusive_group()
+    only.add_argument("--changed", action="store_true", help="only tests that failed last, or "
+                      "whose program or sources differ from those of their last pass")
+    only.add_argument("--rerun-failed", action="store_true", help="only tests that failed last")
+    only.add_argument("--kept", action="store_true", help="only tests that failed with some seed "
+                      "and have not passed with it since, with these seeds")
+    add("--seed", default="1", help="seed of the random tests, or `random`")
+    add("--repeat", type=int, default=1, help="number of runs, each with the next seed")
+    add("--jobs", type=int, default=2, help="tests at once")
+    add("--waves", type=int, default=3, help="failures of which a waveform is written, at most")
+    add("--make", action="store_true", help="build what the chosen tests need first")
+    add("--prepare", action="store_true", help="only build what the chosen tests need; with "
+        "--list, only say what that is")
+    add("--tree", metavar="FOLDERS", help="only print the state of these folders")
+    add("--plan", action="store_true", help="only look whether each pattern of tests/plan.toml "
+        "matches a test")
+    add("--list", action="store_true", help="only say which tests are chosen")
+    return parser.parse_args(words)
+
+
+class Regression:
+    def __init__(self, options):
+        self.options = options
+        options.build = options.build.resolve()
+        self.history = History(options.out / "history.jsonl",
+                               options.source / "tests/costs.txt")
+        self.changes = options.changed and self._changes()
+
+    @functools.cached_property
+    def graph(self):
+        return Graph(self.options.source, self.options.build)
+
+    def _changes(self):
+        return Changes(self.options.source, self.options.build, self.options.out)
+
+    def choose(self, tests, built=True):
+        """The tests that the options choose; before the build only programs of some are known."""
+        o, chosen = self.options, []
+        exact = any(test.name == o.name.pattern for test in tests)
+        for test in tests:
+            if o.block and o.block not in test.blocks():
+                continue
+            if o.label.pattern and not any(map(o.label.search, test.labels)) and \
+                    (test.labels or not test.unbuilt):
+                continue
+            if test.unbuilt:  # its cases are not known
+                named = not exact and (not o.name.pattern or
+                                       test.may_hold(o.name, self._sources(test)))
+            else:
+                named = test.name == o.name.pattern if exact else o.name.search(test.name)
+            if named and not (o.changed and not self._changed(test, built)) and \
+                    not (o.rerun_failed and self.history.last(test.name) != "f"):
+                chosen.append(test)
+        return chosen
+
+    def _sources(self, test):
+        """The texts of a program's C++ files."""
+        files = [self.options.source / file for file in self.graph.inputs(test.program)]
+        return [file.read_text(errors="replace") for file in files
+                if file.suffix == ".cpp" and file.exists()]
+
+    def _changed(self, test, built):
+        """Chooses tests that failed last in any case, not those that passed last with these
+        sources, and tests that have never passed here if their files differ from the commit."""
+        passed = self.history.last_pass(test.name)
+        if self.history.last(test.name) == "f":
+            return True
+        if passed and built:
+            return self.history.now(test) != "p"
+        return self.changes.touched(test, passed)
+
+    def build(self):
+        """Builds, or lists, the targets of the chosen tests; their cases are known afterwards."""
+        o = self.options
+        tests = list_tests(o.build)
+        outputs = {line.rpartition(":")[0] for line in tool.run(
+            ["ninja", "-C", o.build, "-t", "targets", "all"])[1].splitlines()}
+        chosen, targets = self.choose(tests, built=False), set()
+        for test in chosen:  # it grows by the tests that set up others' fixtures
+            targets.update(targets_of(test, o.build, outputs))
+            chosen += [other for other in tests if set(other.sets) & set(test.needs) and
+                       other not in chosen]
+        targets = ["all"] if "all" in targets else sorted(targets)
+        if o.list or not targets:
+            print("".join(target + "\n" for target in targets), end="")
+            return
+        print(f"Building {len(targets)} targets ..." if len(targets) > 8 else
+              f"Building {' '.join(targets)} ...", flush=True)
+        log = o.build / "build.log"
+        with lock(o.build, busy=f"waiting for another build in {o.build} ..."):
+            if run_ninja(["ninja", "-C", o.build, *targets], log, check=False):
+                raise Stop(f"it does not build (above); all of it is in {log}")
+        if self.changes:
+            self.changes.forget_graph()
+
+    def nothing(self, tests):
+        """Says why no test is chosen. Returns the exit status."""
+        o = self.options
+        if o.changed or o.rerun_failed:
+            print(f"Nothing to run: no test {'changed' if o.changed else 'failed'} since the last "
+                  "run.")
+            return 0
+        given = "".join(f" {name}='{value}'" for name, value in (
+            ("BLOCK", o.block), ("LABEL", o.label.pattern), ("NAME", o.name.pattern)) if value)
+        labels = sorted({label for test in tests for label in test.labels})
+        print(f"regress: no test is chosen by{given}; `ctest --test-dir {o.build} -N` lists their "
+              f"names.\nlabels: {' '.join(labels)}\n"
+              f"folders: {' '.join(sorted({test.place for test in tests}))}", file=sys.stderr)
+        return 2
+
+    def run(self):
+        o, history = self.options, self.history
+        if o.make or o.prepare:
+            self.build()
+        tests = list_tests(o.build)
+        if not o.prepare or o.changed:
+            fingerprint(tests, o.source, o.build)
+        chosen = self.choose(tests)
+        if not chosen or o.prepare:  # after --prepare, CTest runs them without history
+            return 0 if chosen else self.nothing(tests)
+        if o.list:
+            print("\n".join(test.name for test in chosen))
+            return 0
+        first = random.getrandbits(32) if o.seed == "random" else int(o.seed)
+        rounds = [(str(first + i), chosen) for i in range(o.repeat)]
+        if o.kept:
+            failing = history.failing(chosen)
+            rounds = [(seed, [test for test in chosen if (test.name, seed) in failing])
+                      for seed in sorted({seed for _, seed in failing})]
+        rounds = [each for each in rounds if each[1]]
+        if not rounds:
+            print("Nothing to run: no seed is kept that made one of these tests fail.")
+            return 0
+        return self._run_rounds(rounds, chosen, tests)
+
+    def _run_rounds(self, rounds, chosen, tests):
+        o, history = self.options, self.history
+        changes, start = self.changes or self._changes(), time.monotonic()
+        begin = datetime.datetime.now().astimezone().isoformat(timespec="seconds")
+        tool.adopt_orphans()
+        results = [result for seed_, some in rounds for result in
+                   run_tests(some, o.build, o.out, seed_, o.jobs, history)]
+        for each in tool.end_orphans():
+            print("A test has left behind, and it was ended:", each)
+        for each in changes.meanwhile():
+            print("Changed while the tests ran, by one of them or by you:", each)
+        known = {test.name: test for test in tests}
+        failures = examine(results, known, o.out)
+        for failure in failures:
+            if test := known.get(failure.result.name):
+                failure.changed = changes.since(history.last_pass(test.name), test,
+                                                failure.result.seed)
+        git = ["git", "-C", o.source]
+        status, commit = tool.run([*git, "describe", "--always", "--dirty", "--abbrev=10"])
+        commit = "unknown" if status else commit.strip()
+        subject = tool.run([*git, "log", "-1", "--format=%s"])
+        reasons = {f.bucket: f"{f.result.name}: {f.reason[:120]}" for f in reversed(failures)}
+        history.add({**make_run(chosen, results, commit, time.monotonic() - start),
+                     "subject": "" if subject[0] else subject[1].strip(), "tree": changes.tree,
+                     "reasons": list(reversed(reasons.values()))[:5]})
+        if failures:  # waveforms may take minutes
+            write_reports(gather(history, tests, results, failures, o.source), failures,
+                          o.build / "page", o.out)
+            print(f"{o.out}/report.html is there; waveforms come into it, if there are any",
+                  flush=True)
+        add_waves(failures, known, o.source, o.build, o.jobs, o.waves)
+        data = gather(history, tests, results, failures, o.source)
+        summary(data, failures, o.out)
+        write_junit(o.out / "junit.xml", results, failures, begin, commit)
+        write_reports(data, failures, o.build / "page", o.out)
+        return 1 if failures else 0
+
+
+def summary(data, failures, out):
+    groups = collections.defaultdict(list)  # in the order of their first failures
+    for failure in failures:
+        groups[failure.bucket].append(failure)
+    for members in groups.values():
+        print(f"\n{len(members)} x  {members[0].reason[:200]}")
+        for failure in members:
+            told = failure is members[0] or failure.changed != members[0].changed
+            print(f"    {failure.repeat}\n        log {failure.log}")
+            for text in (failure.place and f"at {failure.place}", told and failure.changed,
+                         failure.wave and f"gtkwave {failure.save or failure.wave}"):
+                if text:
+                    print(f"        {text}")
+    if data["flaky"]:
+        print("\nFlaky:", *data["flaky"])
+    longest = sorted(((row[2], row[0]) for row in data["results"]), reverse=True)[:3]
+    print("\nThe longest:", *(f"{name} {seconds:.1f} s" for seconds, name in longest))
+    if data["seeds"]:
+        print(f"\n{len(data['seeds'])} failing seeds are kept: make regress KEPT=1 runs them again")
+    print(f"\n{text_of(data['lights'])}{data['passed']} passed, {data['failed']} failed, "
+          f"{data['skipped']} skipped in {data['seconds']:.0f} s; {out}/report.html", flush=True)
+
+
+def main(words):
+    options = parse(words)
+    try:
+        if options.tree is not None:
+            print(tool.tree_state(options.source, options.tree))
+            return 0
+        if options.plan:
+            plan, tests = read_plan(options.source), list_tests(options.build)
+            wrong = [line for each in plan for line in unmatched(each, tests)]
+            print("".join(line + "\n" for line in wrong) + f"{len(plan)} requirements")
+            return 1 if wrong or not plan else 0
+        if options.prepare:
+            return Regression(options).run()
+        with tool.only_one(options.out, "regress"):
+            regression = Regression(options)
+            if damaged := regression.history.damaged:
+                print(f"{damaged} damaged lines of {options.out}/history.jsonl are left out")
+            return regression.run()
+    except Stop as error:
+        print(f"regress: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

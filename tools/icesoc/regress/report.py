@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: MIT
+"""report: writes the results of a run as a page and as JSON."""
+import json
+import pathlib
+import re
+
+from icesoc.regress.blocks import blocks_of
+from icesoc.regress.lights import lights_of
+from icesoc.regress.tests import judge_plan, read_plan
+from icesoc.util.tool import filled, page_parts, script_safe, write
+from icesoc.regress.waves import drawing_of
+
+HERE = pathlib.Path(__file__).resolve().parent
+LARGEST = 2_000_000  # bytes of the page
+MEASURED = {"coverage": "coverage/summary.json", "utilisation": "synth/report.json",
+            "speed": "bench/simulator.json", "drawn": "mutants/drawn.json"}
+
+
+def read(path):
+    try:
+        return json.loads(path.read_text())
+    except (OSError, ValueError):
+        return None
+
+
+def proofs_of(results):
+    """The proofs in logs: "X: proven, 47 clauses with 33 flops", "X: 2 covers reached"."""
+    def said(log, what):
+        return (re.search(what, log) or ["", "-"])[1]
+    return [[r.name[7:], r.status, said(r.log, "bounded, ([0-9]+) clocks"),
+             said(r.log, "proven[,]? *([^\n]*)"), said(r.log, "([0-9]+) covers reached"), r.seconds]
+            for r in results if r.name.startswith("formal.")]
+
+
+def measurements(build):
+    """Results that other commands left in build/, with the state of the tree they measured."""
+    data = {name: found for name, path in MEASURED.items() if (found := read(build / path))}
+    for file in data.get("coverage", {}).get("files", []):  # coverage's own summary has the rest
+        if (more := len(file["missed"]) - 40) > 0:
+            file["missed"][40:] = [f"and {more} more"]
+    mutants = build / "mutants/results.tsv"
+    data["mutants"] = [line.split("\t") for line in mutants.read_text().splitlines()] \
+        if mutants.exists() else []
+    trees = {"mutants": "mutants", "coverage": "coverage", "size": "synth", "speed": "bench"}
+    data["trees"] = {name: (build / folder / "tree").read_text().strip()
+                     for name, folder in trees.items() if (build / folder / "tree").exists()}
+    return data
+
+
+def gather(history, tests, results, failures, source):
+    data = {**history.runs[-1], **measurements(source / "build"), "flaky": history.flaky(),
+            "proofs": proofs_of(results)}
+    del data["ends"]
+    known = {test.name: test for test in tests}
+    now = {(r.name, r.seed) for r in results}  # of one seed its failures say it already
+    data["seeds"] = [kept for test, kept in history.failing(tests).items()
+                     if test not in now or len({r.seed for r in results}) > 1]
+    data["results"] = []
+    for r in results:
+        test = known.get(r.name)
+        ends = [end[:2] for end, _ in history.ends[r.name][-10:]]  # the newest last
+        data["results"].append([r.name, r.status, r.seconds, test.place if test else "",
+                                test.labels[0] if test and test.labels else "", r.seed, ends])
+    ran = {r.name for r in results}
+    names = {"left": [name for name in known if name not in ran],
+             "kept": [r.name for r in results if r.log.startswith("kept: the verdict")]}
+    for what, all_names in names.items():
+        proofs = sum(name.startswith("formal.") for name in all_names)
+        data[what] = {"tests": len(all_names) - proofs, "proofs": proofs}
+    data["failures"] = [{"name": f.result.name, "tail": f.result.log[-3000:], "drawing": None, **{
+        name: getattr(f, name) for name in ("bucket", "reason", "repeat", "log", "wave", "save",
+                                            "place", "changed", "clock")}} for f in failures]
+    data["history"] = [[run["time"], run["commit"], run["passed"], run["failed"], run["seconds"],
+                        run.get("subject", ""), run.get("reasons", [])]
+                       for run in history.runs[-60:]]
+    data["plan"] = judge_plan(read_plan(source), tests, history)
+    data["lights"] = lights_of(data, source)
+    data["blocks"] = blocks_of(data, tests, history, source)
+    return data
+
+
+def write_reports(data, failures, libraries, out):
+    style, script = page_parts(libraries)
+    # Drawings get the rest of the page's size.
+    rest = LARGEST - len(style) - len(script) - len(json.dumps(data)) - 60_000
+    drawn = [i for i, failure in enumerate(failures) if failure.wave]
+    for i in drawn:
+        data["failures"][i]["drawing"] = drawing_of(failures[i], max(0, rest) // len(drawn))
+    page = (HERE / "page.html").read_text()
+    write(out / "report.html", filled(page, {"/*COMMON*/": style, "//COMMON": script,
+                                             "/*DATA*/null": script_safe(data)}))
+    write(out / "report.json", json.dumps(data, indent=1))

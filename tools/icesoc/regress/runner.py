@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: MIT
+"""runner: runs chosen tests by CTest, prints the progress, ends hangs, and writes JUnit."""
+import collections
+import contextlib
+import dataclasses
+import os
+import pathlib
+import re
+import signal
+import sys
+import threading
+import time
+import xml.etree.ElementTree as xml
+
+from icesoc.util.tool import Stop, children, run, write
+
+SHORTEST_HANG = 300  # seconds: no test is ended before
+
+
+@dataclasses.dataclass
+class Result:
+    name: str
+    status: str  # "passed", "failed", "skipped"
+    seconds: float
+    log: str = ""
+    end: str = ""  # of a failed test: "SegFault", "Hang, ..."; "" if it ended by itself
+    seed: str = ""
+
+
+class Progress:
+    """Prints the progress: on a terminal in one line that it rewrites, else at each tenth. It
+    reports a failure at once."""
+
+    def __init__(self, tests, history, jobs):
+        self.jobs, self.total, self.done, self.failed = jobs, len(tests), 0, 0
+        self.seconds = {test.name: history.seconds(test.name) for test in tests}
+        self.usual = {test.name: history.usual(test.name) for test in tests}
+        self.running = {}  # name: when it began, the oldest first
+        self.due = {}  # name: the age in seconds at which it is named
+        self.hangs = {}  # name: (how it was ended, stacks)
+        self.lock = threading.Lock()
+
+    def start(self, name):
+        usual = self.usual.get(name)
+        self.running[name] = time.monotonic()
+        self.due[name] = 60 if usual is None else max(10, 3 * usual)
+
+    def watch(self, done, build):
+        """Names each test that takes three times its usual time (60 s if that is not known) with
+        its age, and again at twice that age, until `done` is set. At ten times it ends it."""
+        while not done.wait(1):
+            for name, told in self.late():
+                with contextlib.suppress(OSError, StopIteration, ValueError):  # it has ended
+                    if process := process_of(name, self.running):
+                        where, stacks = end_hang(process, build)
+                        self.hangs[name] = f"Hang, ended after {told}{where}", stacks
+
+    def late(self):
+        """Names tests that are late; (name, its age) of those that have taken ten times their usual
+        time."""
+        for name, begin in list(self.running.items()):
+            age, usual = time.monotonic() - begin, self.usual.get(name)
+            told = f"{age:.0f} s, usually " + ("unknown" if usual is None else f"{usual:.1f} s")
+            if age >= self.due[name]:
+                self.due[name] = 2 * age
+                self._line(f"{name} has run for {told}", True)
+            limit = max(SHORTEST_HANG, 10 * (60 if usual is None else usual))
+            is_proof = name.startswith("formal.")  # it has a limit of processor time
+            if age >= limit and not is_proof and name not in self.hangs:
+                yield name, told
+
+    def end(self, name, status, seconds):
+        self.running.pop(name, None)
+        self.seconds.pop(name, None)
+        self.done += 1
+        if status == "failed":
+            self.failed += 1
+            self._line(f"FAILED {name} ({seconds:.1f} s)", True)
+        known = all(each is not None for each in self.seconds.values())
+        seconds = int(sum(self.seconds.values()) / self.jobs) if known else 0
+        left = f"{seconds // 60}:{seconds % 60:02}" if known else self.total - self.done
+        tenth = 10 * self.done // self.total != 10 * (self.done - 1) // self.total
+        self._line(f"{self.done} of {self.total}, {self.failed} failed, {left} left: "
+                   f"{' '.join(sorted(self.running))}", tenth and not sys.stdout.isatty())
+
+    def _line(self, text, keep):
+        with self.lock:
+            if sys.stdout.isatty():
+                print(f"\r{text[:110]}\033[K", end="\n" if keep else "", flush=True)
+            elif keep:
+                print(text, flush=True)
+
+
+def process_of(name, running):
+    """The process of a running test: CTest prints them in the order in which it begins them."""
+    ctest = next(pid for pid in children(os.getpid())
+                 if pathlib.Path(f"/proc/{pid}/comm").read_text() == "ctest\n")
+    processes = children(ctest)
+    return processes[list(running).index(name)] if len(processes) == len(running) else 0
+
+
+def end_hang(process, build):
+    """Ends a test's processes. Returns the functions in which the first of its programs was, and
+    the stacks of all; aborted, they print the chip's state (testbench/common/tell_on_abort.h)."""
+    below = [process]
+    for pid in below:
+        below += children(pid)
+    stacks = ""
+    for pid in below:
+        with contextlib.suppress(OSError):  # it has ended because of one before it
+            program = os.readlink(f"/proc/{pid}/exe")
+            if not program.startswith(f"{build}/"):
+                continue
+            text = run(["timeout", 60, "gdb-multiarch", "-nx", "-batch", "-p", pid, "-ex",
+                        "thread apply all backtrace 40"])[1]
+            frames = re.findall(r"(?m)^(?:#|Thread ).*", text) or text.splitlines()[-1:]
+            stacks += "\n".join([f"Stack of {os.path.basename(program)}:", *frames, ""])
+            os.kill(pid, signal.SIGABRT)
+            time.sleep(1)
+    for pid in below:
+        with contextlib.suppress(OSError):
+            os.kill(pid, signal.SIGKILL)
+    names = re.findall(r"(?m)^#\d+ +(?:0x\w+ in )?([\w:]+)", stacks)[:3]
+    return ", in " * bool(names) + ", called by ".join(names), stacks
+
+
+def readable(log):
+    """A log without colours (the first word is CTest's for ESC) and without endless lines."""
+    def short(line):
+        return line if len(line) <= 2000 else \
+            f"{line[:1000]} ... {len(line)} characters ... {line[-500:]}"
+    log = re.sub(r"\[NON-XML-CHAR-0x1B\]\[[0-9;]*m", "", log)
+    return "".join(short(line) + "\n" for line in log.splitlines())
+
+
+def run_tests(tests, build, out, seed, jobs, history):
+    """Runs tests in parallel, those that failed last time first."""
+    chosen, junit = out / "tests.list", (out / f"junit-{seed}.xml").resolve()
+    # start, end, stride: none but the numbers
+    write(chosen, ",".join(["0,0,0", *(str(test.number) for test in tests)]) + "\n")
+    junit.unlink(missing_ok=True)
+    progress, ends = Progress(tests, history, jobs), {}
+    print(f"{len(tests)} tests, SEED={seed}", flush=True)
+
+    def on_line(line):
+        if begun := re.match(r" *Start +\d+: (\S+)", line):
+            progress.start(begun[1])
+        if ended := re.match(r" *\d+/\d+ Test +#\d+: (\S+) \.*(.*?) +([0-9.]+) sec", line):
+            name, how = ended[1], ended[2]
+            ends[name] = how
+            progress.end(name, "passed" if "Passed" in how else
+                         "skipped" if "Skipped" in how else "failed", float(ended[3]))
+    done = threading.Event()
+    watcher = threading.Thread(target=progress.watch, args=[done, str(build)], daemon=True)
+    watcher.start()
+    try:
+        status, text = run(
+            ["ctest", "--test-dir", build, "-I", chosen.resolve(), "-j", jobs, "--output-junit",
+             junit, "--test-output-size-passed", 4096, "--test-output-size-failed", 200000,
+             "--test-output-truncation", "middle"], {"SEED": seed}, on_line)
+    finally:
+        done.set()
+        watcher.join()  # it may be reading the stacks of a hang
+    if sys.stdout.isatty():
+        print("\r\033[K", end="")
+    try:
+        cases = xml.parse(junit).iter("testcase")
+    except FileNotFoundError:
+        raise Stop(f"ctest gave no results ({status}):\n{text}") from None
+    except xml.ParseError as error:
+        raise Stop(f"{junit}: {error}; is the disk full?") from None
+    results = []
+    for case in cases:
+        log = readable(case.findtext("system-out") or "")
+        how = {"run": "passed", "fail": "failed"}.get(case.get("status"), "skipped")
+        if log.startswith("Unable to find"):  # its program
+            how = "failed"
+        end = ends.get(case.get("name"), "")
+        end = "" if end in ("***Failed", "***Not Run") else re.sub("[*]{3}(Exception: *)?", "", end)
+        if case.get("name") in progress.hangs:
+            end, stacks = progress.hangs[case.get("name")]
+            how, log = "failed", log + stacks
+        results.append(Result(case.get("name"), how, float(case.get("time")), log, end, seed))
+    return results
+
+
+def kind_of(result):
+    """JUnit's: a failed test that did not end by itself is an error."""
+    return {"skipped": "skipped", "passed": ""}.get(result.status,
+                                                    "error" if result.end else "failure")
+
+
+def write_junit(path, results, failures, begin, commit):
+    """JUnit of all results, for CI systems: a suite for each program and seed, begun at `begin`
+    (RFC 3339); a failure's text says where to look. Jenkins' junit-10.xsd has no properties of a
+    test."""
+    of, suites = {id(failure.result): failure for failure in failures}, {}
+    for result in results:
+        suites.setdefault((result.name.split(".")[0], result.seed), []).append(result)
+
+    def totals(results):
+        kinds = collections.Counter(kind_of(result) for result in results)
+        return {"tests": str(len(results)), "failures": str(kinds["failure"]),
+                "errors": str(kinds["error"]), "skipped": str(kinds["skipped"]),
+                "time": f"{sum(each.seconds for each in results):.3f}"}
+    whole = totals(results)
+    del whole["skipped"]  # as the schema has it
+    root = xml.Element("testsuites", name="icesoc", **whole)
+    for (name, seed), results_ in suites.items():
+        suite = xml.SubElement(root, "testsuite", name=name, timestamp=begin, **totals(results_))
+        properties = xml.SubElement(suite, "properties")
+        for key, value in (("seed", seed), ("commit", commit)):
+            xml.SubElement(properties, "property", name=key, value=value)
+        for result in results_:
+            case = xml.SubElement(suite, "testcase", name=result.name, classname=name,
+                                  time=f"{result.seconds:.3f}")
+            if result.status == "failed":
+                failure = of[id(result)]
+                told = xml.SubElement(case, kind_of(result),
+                                      message=f"{failure.reason} (SEED={result.seed})")
+                told.text = "".join(
+                    f"{key}: {value}\n" for key in ("changed", "log", "repeat", "wave")
+                    if (value := getattr(failure, key)))
+                xml.SubElement(case, "system-out").text = result.log
+            elif result.status == "skipped":
+                xml.SubElement(case, "skipped")
+    write(path, '<?xml version="1.0"?>\n' + xml.tostring(root, encoding="unicode") + "\n")

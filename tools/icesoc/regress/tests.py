@@ -1,0 +1,238 @@
+# SPDX-License-Identifier: MIT
+"""tests: every test that CTest knows, with its files and the targets that it needs, and the plan,
+which names the tests of each requirement in docs/."""
+import dataclasses
+import fnmatch
+import functools
+import hashlib
+import json
+import os
+import pathlib
+import re
+import tomllib
+
+from icesoc.util.tool import Stop, digest, run, tracked
+
+NOT_BUILT = "_NOT_BUILT"  # CTest's suffix for a program whose cases it does not know
+
+
+@dataclasses.dataclass
+class Test:
+    number: int  # CTest's, from 1
+    name: str
+    command: list
+    folder: str = ""  # where it runs, which it may write
+    place: str = ""  # the same below tests/: "hdl/modem"
+    labels: list = dataclasses.field(default_factory=list)
+    needs: list = dataclasses.field(default_factory=list)  # CTest's fixtures
+    sets: list = dataclasses.field(default_factory=list)
+    targets: list | None = None  # NEEDS=... of its environment: the targets that it needs
+    print: str = ""  # changes with the test's program or files
+
+    @property
+    def unbuilt(self):
+        return self.name.endswith(NOT_BUILT)
+
+    @property
+    def program(self):
+        """The name of the program and of its target."""
+        return self.name.removesuffix(NOT_BUILT) if self.unbuilt else self.name.split(".")[0]
+
+    def is_program(self, build):
+        return bool(self.command) and "/test_" in self.command[0] and \
+            self.command[0].startswith(f"{build}/")
+
+    def reads(self):
+        """The folders that a test without a program reads."""
+        own = f"tests/{self.place}"
+        if "formal" in self.place or "lint" in self.place:
+            return ("bus", "hdl", "ip", "tools", own)
+        if self.place.startswith("slice"):
+            return ("slice", "tests/slice")
+        return ("bus", "hdl", "ip", "slice", "sw", "testbench", "tools", own)
+
+    def blocks(self):
+        """The words that --block compares with: of the folder, and of the name up to the case."""
+        kind, _, rest = self.name.partition(".")
+        more = rest if kind in ("formal", "lint", "wave") else ""
+        return set(re.findall("[A-Za-z0-9]+", f"{self.place}/{kind}/{more}"))
+
+    def _may_begin(self, pattern):
+        """Whether a name that begins with the program's can match, where the pattern says by `^`
+        and letters how it begins."""
+        for some in re.findall(r"(?:\([^()]*\)|[^|()])+", pattern):
+            begins = re.match(r"\^(?:\(([\w|]+)\)(?![?*{])|((?:\w(?![?*{]))+))", some)
+            if not begins or any(word.startswith(self.program) or self.program.startswith(word)
+                                 for word in (begins[1] or begins[2]).split("|")):
+                return True
+        return False
+
+    def may_hold(self, name, sources):
+        """Whether a case of a program that is not built may match `name`, a regular expression, by
+        the texts of its sources. Of cases for several values or types the words of `name` stand in
+        these. Suites and cases begin with capitals."""
+        if not self._may_begin(name.pattern):
+            return False
+        text = re.sub("//.*", "", "\n".join(sources))
+        cases = re.findall(r"(?m)^ *(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)", text)
+        if any(name.search(f"{self.program}.{suite}.{case}") for suite, case in cases):
+            return True
+        if cases and not re.search(r"INSTANTIATE_TEST_SUITE_P|TYPED_TEST", text):
+            return False
+        for some in re.sub(r"\[.*?\]|\\(?!\.)|.[?*{]", " ", name.pattern).split("|"):
+            ends = re.findall(r"([a-z0-9_]+)\\?\.", some)
+            words = re.findall(r"[A-Za-z]{3,}", some) if cases else []
+            if self.program.startswith(re.match(r"\^?(test_\w+|)", some)[1]) and \
+                    all(map(self.program.endswith, ends)) and \
+                    all(word in self.program + text for word in words):
+                return True
+        return False
+
+
+def list_tests(build):
+    """All tests of a build folder."""
+    status, text = run(["ctest", "--test-dir", build, "--show-only=json-v1"])
+    if status:
+        raise Stop(f"ctest cannot list the tests of {build}:\n{text[:2000]}")
+    if "{" not in text:
+        raise Stop(f"ctest lists no tests in {build}; run `make build` first")
+    below = f"{build.resolve()}/tests/"
+    tests = []
+    for number, entry in enumerate(json.loads(text[text.index("{"):])["tests"], 1):
+        has = {each["name"]: each["value"] for each in entry.get("properties", [])}
+        folder = has.get("WORKING_DIRECTORY", "")
+        test = Test(number, entry["name"], entry.get("command", []), folder,
+                    folder.removeprefix(below) if folder.startswith(below)
+                    else os.path.basename(folder), has.get("LABELS", []),
+                    has.get("FIXTURES_REQUIRED", []), has.get("FIXTURES_SETUP", []))
+        for word in has.get("ENVIRONMENT", []):
+            if word.startswith("NEEDS="):
+                test.targets = word[6:].split()
+        labels = pathlib.Path(folder, f"{test.program}_labels.cmake")
+        if test.unbuilt and labels.exists():  # written by icesoc_test() for its cases
+            test.labels = ";".join(re.findall('LABELS "([^"]*)"', labels.read_text())).split(";")
+        tests.append(test)
+    return tests
+
+
+def targets_of(test, build, outputs):
+    """The targets that ninja must build for a test: `Test.targets`, or else the `outputs` of the
+    build folder in its command; "all" if the command has that folder, or an unknown file in it."""
+    if test.unbuilt:
+        return [test.program]
+    if test.name.startswith("formal."):
+        return ["regmaps"]
+    if test.targets is not None:
+        return test.targets
+    if not test.command:  # CTest does not tell that of a program which is not built
+        return ["all"]
+    targets = []
+    for path in re.findall(re.escape(str(build)) + "([^ '\":;,<>]*)", " ".join(test.command)):
+        target = path.lstrip("/")
+        if f"{build}{path}".startswith(test.folder + "/") and target not in outputs:
+            continue  # the test makes it
+        name = os.path.basename(target)  # Ice adds .so to a plugin's
+        targets.append("synth_inputs" if target == "gen" else target if target in outputs
+                       else name if name in outputs else "all")
+    return targets
+
+
+def fingerprint(tests, source, build):
+    """Sets `Test.print` of each: of the program's file, or of the files that a script reads."""
+    @functools.cache
+    def of_file(path):
+        try:
+            return hashlib.sha1(pathlib.Path(path).read_bytes()).hexdigest()
+        except OSError:
+            return ""
+    files = tracked(source)
+
+    @functools.cache
+    def of_folders(folders):
+        return digest([of_file(source / f) for folder in folders for f in files
+                       if f.startswith(folder + "/")])
+    for test in tests:
+        test.print = digest([of_file(test.command[0])]) if test.is_program(build) \
+            else of_folders(test.reads())
+
+
+class Graph:
+    """Ninja's graph of files, with the headers of the last compilation."""
+
+    def __init__(self, source, build):
+        self.source, self.build, self.made = source.resolve(), build.resolve(), {}
+        text = (self.build / "build.ninja").read_text().replace("$\n", "")
+        text = text.replace("${cmake_ninja_workdir}", f"{self.build}/")
+        for line in text.splitlines():
+            if line.startswith("build "):
+                outs, _, ins = re.sub(r"\$([ :$])", r"\\\1", line[6:]).partition(": ")
+                ins = ins.split()[1:]
+                for out in set(outs.split()) - {"|"}:
+                    self.made.setdefault(out.removeprefix(f"{self.build}/"), []).extend(ins)
+        for line in run(["ninja", "-C", self.build, "-t", "deps"])[1].splitlines():
+            if line.startswith("    "):
+                self.made.setdefault(out, []).append(line[4:])
+            elif line:
+                out = line.split(":")[0]
+
+    @functools.cache
+    def inputs(self, target):
+        """The files of the tree from which a target is made, those of the build among them."""
+        seen, left, build, source = {"|", "||"}, [target], f"{self.build}/", f"{self.source}/"
+        while left:
+            path = left.pop().removeprefix(build)
+            if path not in seen:
+                seen.add(path)
+                left += self.made.get(path, [])
+        real = (os.path.normpath(self.build / path) for path in seen)  # ccache's are relative
+        return {path[len(source):] for path in real if path.startswith(source)}
+
+
+@dataclasses.dataclass
+class Requirement:
+    page: str  # "bus" of docs/bus.md
+    text: str
+    patterns: list  # of test names; * is anything
+
+    def matches(self, test):
+        """Whether a test proves it; a program that is not built stands for all of its cases."""
+        return any(may_match(pattern, test) for pattern in self.patterns)
+
+
+def may_match(pattern, test):
+    if test.unbuilt:
+        return fnmatch.fnmatchcase(test.program, pattern.split(".")[0])
+    return fnmatch.fnmatchcase(test.name, pattern)
+
+
+def read_plan(source):
+    """tests/plan.toml: a table a page of docs/, `"requirement" = "test.pattern test.*"`."""
+    path = source / "tests/plan.toml"
+    try:
+        pages = tomllib.loads(path.read_text()) if path.exists() else {}
+    except tomllib.TOMLDecodeError as error:
+        raise Stop(f"{path}: {error}") from None
+    for page, rows in pages.items():
+        for text, patterns in rows.items() if isinstance(rows, dict) else [(page, rows)]:
+            if not isinstance(patterns, str) or not patterns.split() or rows == patterns:
+                raise Stop(f'{path}: {text}: not `"requirement" = "test.pattern ..."` of a page')
+    return [Requirement(page, text, patterns.split())
+            for page, rows in pages.items() for text, patterns in rows.items()]
+
+
+def unmatched(requirement, tests):
+    return [f"no test is called {pattern}, which is to prove: {requirement.text}"
+            for pattern in requirement.patterns if not any(may_match(pattern, t) for t in tests)]
+
+
+def judge_plan(plan, tests, history):
+    """Judges each requirement by its tests' last results, those with these sources first."""
+    rows = []
+    for each in plan:
+        mine = [test for test in tests if each.matches(test)]
+        failed = unmatched(each, tests) + [t.name for t in mine if history.now(t) == "f"]
+        not_run = [t.name for t in mine if t.unbuilt or history.now(t) not in ("p", "f")]
+        rows.append({"page": each.page, "text": each.text, "patterns": each.patterns,
+                     "tests": len(mine), "open": failed or not_run,
+                     "state": "failed" if failed else "open" if not_run else "proven"})
+    return rows

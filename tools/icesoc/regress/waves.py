@@ -1,0 +1,232 @@
+# SPDX-License-Identifier: MIT
+"""waves: repeats a failed test of RTL, or a failed flight, with a waveform of the clocks around the
+failure, and prepares the end of a waveform for the page's drawing."""
+import collections
+import dataclasses
+import json
+import os
+import pathlib
+import re
+
+from icesoc.util.tool import Stop, run, write
+
+CLOCKS_PER_SECOND = 1e8  # of a flight's chip
+FIRST_CORE = 2  # slot
+NAMELESS = re.compile(r"(^|[.])(n\d+(_o)?|_\d+_|\$\S*)$")  # what GHDL and Yosys call wires
+MOST_CHANGES, FEWEST_CHANGES, MOST_SIGNALS = 400, 25, 200  # of a drawing
+
+
+@dataclasses.dataclass
+class Scene:
+    """A repetition: a test's program, or a flight's recording, around a clock."""
+    program: str
+    clock: int
+    flight: str = ""  # folder of the recording
+    slot: int = 0  # of the last core that the processor heard of; 0: none
+    before: int = 2000
+    after: int = 20
+
+
+def scene_of(failure, test):
+    """None: the failure has no waveform."""
+    log = failure.result.log
+    if failure.result.end.startswith("Hang"):  # so would the repetition
+        return None
+    if match := re.search(r"make run REPLAY='([^']+)' FROM=[0-9.]+ TO=([0-9.]+)", log):
+        scene = Scene("icesoc-sim", int(float(match[2]) * CLOCKS_PER_SECOND), match[1])
+        events = pathlib.Path(scene.flight, "events.jsonl")
+        for line in events.read_text().splitlines() if events.exists() else []:
+            try:
+                event = json.loads(line)
+            except ValueError:
+                continue
+            # The last place where the processor heard of a core, or else of the modem
+            slot = event.get("slot", -1)
+            if slot >= FIRST_CORE or slot >= 0 and not scene.slot:
+                scene.clock = event["ns"] // 10
+                scene.slot = slot if slot >= FIRST_CORE else 0
+    elif match := re.search("at clock cycle ([0-9]+)", log):
+        scene = Scene(failure.result.name.split(".")[0], int(match[1]))
+    else:
+        return None
+    if "e2e" in test.labels:  # a mission's program works for longer than a block
+        scene.before, scene.after = 150_000, 50_000
+    return scene
+
+
+def instance_in(slot, build):
+    """The name of a slot's instance in the chip's list of cores."""
+    cores = build / "gen/soc_cores.vh"
+    match = re.search(rf"(u_\w+) \([^;]*`SLOT\({slot}\)",
+                      cores.read_text() if cores.exists() else "")
+    return match[1] if match else "u_modem"
+
+
+def blamed(changed, source):
+    """The name of an instance of the first Verilog module in a text of changes; "": none."""
+    if match := re.search(r"(?:hdl|bus|ip)/\S*?(\w+)\.v:", changed):
+        use = re.compile(rf"^ *{match[1]} +(?:#\s*\([^;]*?\)\s*)?(u_\w+)", re.M)
+        for folder in ("hdl", "bus", "ip"):
+            for file in sorted((source / folder).rglob("*.v")):
+                if found := use.search(file.read_text()):
+                    return found[1]
+    return ""
+
+
+def save_file(wave, build, folder, has_program):
+    """GTKWave's save file: the program's rows, and the ports of the models below `folder` and below
+    the folder of the tested block: tests/hdl/fifo, hdl/fifo."""
+    rows = ["program.task", "program.interrupt", "program.function"] * has_program
+    for place in sorted({folder, folder.removeprefix("tests/")}):
+        for header in sorted((build / place).rglob("verilated_*/V*.h")):
+            if header.parent.name == "verilated_" + header.stem[1:]:
+                ports = re.findall(r"VL_(?:IN|OUT)[0-9W]*\(&(\w+),(\d+),(\d+)", header.read_text())
+                rows += [f"TOP.{name}" + (f"[{high}:{low}]" if int(high) > int(low) else "")
+                         for name, high, low in ports]
+    return f'[dumpfile] "{wave}"\n[size] 1600 900\n[treeopen] TOP.\n' + \
+        "".join(row + "\n" for row in rows)
+
+
+def add_wave(failure, test, scene, source, tested, jobs):
+    """Makes a failure's waveform by the build in build/trace, or prints why there is none."""
+    build = (source / "build/trace").resolve()
+    if not (build / "build.ninja").exists():
+        run(["cmake", "-S", source, "-B", build, "-G", "Ninja", "-DTRACE=ON"])
+    status, text = run(["ninja", "-C", build, "-j", jobs, scene.program])
+    if status:
+        raise Stop(f"it does not build with waveforms:\n{text}")
+    base = failure.log.removesuffix(".log")
+    wave = os.path.abspath(f"{base}.fst")
+    first, last = max(0, scene.clock - scene.before), scene.clock + scene.after
+    if scene.flight:
+        run([build / "testbench/sim/icesoc-sim", "--replay", scene.flight, "--out",
+             f"{base}.replay", "--wave", wave, "--from", f"{first / CLOCKS_PER_SECOND:.6f}",
+             "--to", f"{last / CLOCKS_PER_SECOND:.6f}"])
+        failure.scope = instance_in(scene.slot, build)
+    else:
+        failure.scope = blamed(failure.changed, source)
+        run(["ctest", "--test-dir", build, "--no-tests=error", "-R",
+             "^" + re.sub(r"([.+*?()\[\]{}|^$\\])", r"\\\1", failure.result.name) + "$"],
+            {"SEED": failure.result.seed, "WAVE": wave, "WAVE_FROM": str(first),
+             "WAVE_TO": str(last)})
+    if not os.path.exists(wave):
+        raise Stop("the test drove no traced model")
+    has_program = os.path.exists(wave + ".program.vcd")
+    run([source / "testbench/common/join_waves.sh", wave])
+    failure.wave, failure.clock, failure.save = f"{base}.fst", scene.clock, f"{base}.gtkw"
+    folder = "testbench/sim" if scene.flight else os.path.relpath(test.folder, tested)
+    write(failure.save, save_file(wave, build, folder, has_program))
+
+
+def add_waves(failures, tests, source, build, jobs, limit):
+    """Prints its steps on the terminal; a test that cannot be traced has no waveform."""
+    made = 0
+    for failure in failures:
+        test = tests.get(failure.result.name)
+        scene = test and scene_of(failure, test)
+        if not scene:
+            continue
+        if made == limit:
+            print(f"No waveforms for more than {limit} failures (WAVES=n for more)")
+            return
+        made += 1
+        print(f"Waveform of {failure.result.name} around clock {scene.clock} ...", flush=True)
+        try:
+            add_wave(failure, test, scene, source, build, jobs)
+        except (Stop, OSError) as error:  # the report is worth more than a waveform
+            print(f"  none: {error}")
+
+
+class Signal:
+    def __init__(self, scopes, name, bits):
+        self.name, self.depth = ".".join([*scopes, name]), len(scopes)
+        self.bits = bits  # 0: text
+        self.changes = collections.deque(maxlen=MOST_CHANGES)  # (time, value), the newest last
+
+
+def shown(bits, width):
+    """A value in hexadecimal, one with such a bit as "x" or "z"; a single bit unchanged. VCD leaves
+    out bits on the left that are 0, or like the first that it has."""
+    bits = bits.rjust(width, bits[0] if bits[0] in "xz" else "0")
+    strange = bits.lstrip("01")
+    digits = (len(bits) + 3) // 4
+    return bits if len(bits) <= 1 else strange[0] if strange else f"{int(bits, 2):0{digits}x}"
+
+
+def read_vcd(text):
+    """The signals of a VCD file (IEEE 1364-2005, 18.2), the first and the last moment. A signal
+    with several names has its outermost one."""
+    head, _, body = text.partition("$enddefinitions")
+    signals, scopes = {}, []
+    for kind, rest in re.findall(r"\$(scope|upscope|var)\s+(.*?)\s*\$end", head, re.S):
+        words = rest.split()
+        if kind == "scope":
+            scopes.append(words[1])
+        elif kind == "upscope":
+            scopes.pop()
+        elif not words[3].startswith("smt_"):  # signals of the solver
+            signal = Signal(scopes, words[3], int(words[1]) * (words[0] != "string"))
+            known = signals.get(words[2])
+            if not known or signal.depth < known.depth:
+                signals[words[2]] = signal
+    moments, now = [], 0
+    words = (word for line in body.splitlines() for word in line.split())
+    for word in words:
+        kind, value = word[0], word[1:]
+        if kind == "#":
+            now = int(value)
+            moments = [moments[0] if moments else now, now]
+            continue
+        if kind in "bs":
+            signal = signals.get(next(words))
+        elif kind in "01xz" and value:
+            signal, value = signals.get(value), kind
+        else:
+            continue
+        # Proofs' traces repeat unchanged values at each step.
+        if signal and not (signal.changes and signal.changes[-1][1] == value):
+            signal.changes.append((now, value))
+    return [signal for signal in signals.values() if signal.changes], moments
+
+
+def drawing_of(failure, room):
+    """{from, to, signals: [[name, bits, [time, value, ...]], ...], first: how many of them stand
+    before the tree of instances, more: signals left out}: the program's, those that the failure's
+    text names, those that move below its instance, but no words of memories; then others that move,
+    constant ones; in each group the outermost first. Signals that a converter has named are left
+    out. A drawing of more than `room` bytes loses its older changes, then the last signals."""
+    try:
+        signals, moments = read_vcd(run(["fst2vcd", "-f", failure.wave])[1]
+                                    if failure.wave.endswith(".fst")
+                                    else pathlib.Path(failure.wave).read_text())
+    except (ValueError, IndexError, StopIteration, RuntimeError) as error:
+        print(f"{failure.wave} is damaged, and not drawn ({error})")
+        return None
+    if not moments:
+        return None
+    words = set(re.findall(r"[A-Za-z_]\w+", failure.about))
+
+    def rank(signal):
+        within = f".{failure.scope}." in signal.name if failure.scope else signal.depth <= 3
+        named = signal.name.rpartition(".")[2] in words and (within or signal.depth <= 3)
+        moves = len(signal.changes) > 1
+        blamed = bool(moves and failure.scope and within and not signal.name.endswith("]"))
+        return (signal.bits != 0, not named, not blamed, not moves, signal.depth, signal.name)
+    total = len(signals)
+    signals = sorted((s for s in signals if not NAMELESS.search(s.name)), key=rank)
+    first = sum(not all(rank(s)[:3]) for s in signals)
+
+    def rows(count, changes):
+        return [[s.name, s.bits, [each for time, value in list(s.changes)[-changes:]
+                                  for each in (time, shown(value, s.bits) if s.bits else value)]]
+                for s in signals[:count]]
+    count, changes = min(len(signals), MOST_SIGNALS), MOST_CHANGES
+    drawn = rows(count, changes)
+    while len(json.dumps(drawn)) > room and count > 1:
+        if changes > FEWEST_CHANGES:
+            changes //= 2
+        else:
+            count //= 2
+        drawn = rows(count, changes)
+    return {"from": moments[0], "to": moments[1], "signals": drawn, "first": min(first, count),
+            "more": total - count}

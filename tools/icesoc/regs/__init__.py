@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Register descriptions: their model, headers for all languages, RDL and IP-XACT."""

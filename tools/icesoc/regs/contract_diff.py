@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: MIT
+"""contract_diff: what changed in the register contract since a commit: make contract-diff
+BASE=commit.
+
+    contract_diff.py SLICE2C TREE COMMIT | contract_diff.py SLICE2C OLD-FOLDER NEW-FOLDER
+
+Compares every block's *.regs.json, and those that slice2c makes of interfaces with [":hw"], of two
+trees. Software that was built against the old contract goes wrong with a breaking change: a block,
+register, field or event that is gone, elsewhere or narrower, another access, another type. New or
+wider ones are compatible. Exit status: 1 where something breaks, 2 where a tree cannot be read.
+"""
+import glob
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+ROOMS = ("hdl", "ip", "examples", "bus")
+
+
+def fail(text):
+    print("contract-diff: " + text, file=sys.stderr)
+    sys.exit(2)
+
+
+def blocks_of(tree, slice2c, work):
+    """Returns descriptions by block: those written by hand and those made of Slice files."""
+    os.makedirs(work)
+    files = [f for r in ROOMS for f in glob.glob(os.path.join(tree, r, "**", "*.regs.json"),
+                                                 recursive=True)]
+    for ice in [f for r in ROOMS for f in glob.glob(os.path.join(tree, r, "**", "*.ice"),
+                                                    recursive=True)]:
+        with open(ice) as f:
+            if '":hw"' in f.read():
+                run = subprocess.run([slice2c, ice, "--output-dir", work + "/c", "--hw-regs", work],
+                                     capture_output=True, text=True)
+                if run.returncode:
+                    fail(run.stderr.rstrip().replace(tree + "/", ""))
+    blocks = {}
+    for file in files + glob.glob(work + "/*.regs.json"):
+        with open(file) as f:
+            try:
+                block = json.load(f)
+            except ValueError as e:
+                fail(f"{os.path.relpath(file, tree)}: {e}")
+        if "type" in block:  # a slot's
+            blocks.setdefault(block["block"], block)
+    return blocks
+
+
+def places(registers, events):
+    """Returns the place of each name: name -> (place in words, width in bits, access)."""
+    there = {}
+    for r in registers:
+        word = "word %d" % r["word"] + (", PAGE 0x%X" % r["page"] if r.get("page", -1) >= 0 else "")
+        there[r["name"]] = (word, r.get("width", 32), r["access"])
+        for f in r.get("fields", []):
+            there[r["name"] + "." + f["name"]] = ("%s, from bit %d" % (word, f["lsb"]), f["width"],
+                                                  r["access"])
+    for e in events:
+        there["EVENT." + e["name"]] = ("bit %d" % e["bit"], 1, "w1c")
+    return there
+
+
+def compare(old, new):
+    """Compares two descriptions of one block: breaking changes, compatible ones."""
+    breaking, compatible = [], []
+    for key in ("type", "memory_bytes"):
+        before, after = old.get(key, 0), new.get(key, 0)
+        if before != after:
+            grown = key == "memory_bytes" and after > before
+            (compatible if grown else breaking).append(f"{key} {before} is {after}")
+    before, after = (places(b["registers"], b.get("events", [])) for b in (old, new))
+    for name, (place, width, access) in before.items():
+        if name not in after:
+            breaking.append(f"{name} ({place}) is gone")
+            continue
+        now_place, now_width, now_access = after[name]
+        if now_place != place:
+            breaking.append(f"{name} moved from {place} to {now_place}")
+        if now_width < width:
+            breaking.append(f"{name} has {now_width} bits, and had {width}")
+        elif now_width > width:
+            compatible.append(f"{name} has {now_width} bits, and had {width}")
+        # A register that was read-only and can be written now breaks nobody.
+        if now_access != access and "." not in name:
+            ((compatible if (access, now_access) == ("ro", "rw") else breaking)
+             .append(f"{name} is {now_access}, and was {access}"))
+    compatible += [f"{name} ({after[name][0]}) is new" for name in after if name not in before]
+    return breaking, compatible
+
+
+def main(words):
+    if len(words) != 3:
+        sys.exit("usage: make contract-diff BASE=commit")
+    slice2c, tree, base = words
+    with tempfile.TemporaryDirectory() as work:
+        if os.path.isdir(base):
+            old, new = tree, base
+        else:
+            old, new = os.path.join(work, "old"), tree
+            os.makedirs(old)
+            archive = subprocess.run(["git", "-C", tree, "archive", "--end-of-options", base],
+                                     capture_output=True)
+            if archive.returncode:
+                fail(f"BASE={base} is no commit: " + archive.stderr.decode().splitlines()[0])
+            subprocess.run(["tar", "-x", "-C", old], input=archive.stdout, check=True)
+        old, new = (blocks_of(t, slice2c, os.path.join(work, n))
+                    for t, n in ((old, "o"), (new, "n")))
+    broken = 0
+    for name in sorted(set(old) | set(new)):
+        breaking, compatible = [], []
+        if name not in new:
+            breaking = ["the block is gone"]
+        elif name not in old:
+            compatible = ["the block is new"]
+        else:
+            breaking, compatible = compare(old[name], new[name])
+        broken += len(breaking)
+        for kind, lines in (("breaking", breaking), ("compatible", compatible)):
+            for line in lines:
+                print(f"{kind:10} {name}: {line}")
+    print(f"{broken} breaking change{'s' * (broken > 1)}" if broken else "no breaking change")
+    return 1 if broken else 0
+
+
+sys.exit(main(sys.argv[1:]))

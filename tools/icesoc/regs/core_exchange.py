@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: MIT
+"""core_exchange: the chip's registers for other tools.
+
+CMSIS-SVD 1.3, SystemRDL 2.0 and IP-XACT (IEEE 1685-2014). Slots are coremap.Slot.
+"""
+import xml.etree.ElementTree as ET
+
+from icesoc.regs.regmap import registers_of
+
+HAND = "Generated from ip/cores.list: do not edit."
+TITLE = "Registers of the FPGA in the FSMC window NE2"
+XML_ACCESS = {"ro": "read-only", "ws": "write-only", "rw": "read-write", "w1c": "read-write"}
+RDL_ACCESS = {"ro": "sw=r; hw=w;", "ws": "sw=w; hw=r;", "rw": "sw=rw; hw=r;",
+              "w1c": "sw=rw; hw=w; onwrite=woclr;"}
+
+
+def element(tag, *content, **attributes):
+    """Returns an XML element of text, (tag, text) pairs and elements; what is false is left out."""
+    made = ET.Element(tag, attributes)
+    for part in filter(None, content):
+        if isinstance(part, str):
+            made.text = part
+        else:
+            made.append(element(*part) if isinstance(part, tuple) else part)
+    return made
+
+
+def xml(root):
+    root.insert(0, ET.Comment(f" {HAND} "))
+    ET.indent(root)
+    return '<?xml version="1.0" encoding="utf-8"?>\n' + ET.tostring(root, "unicode") + "\n"
+
+
+def svd_register(r):
+    fields = [element("field", ("name", f["name"]), ("description", f["doc"]),
+                      ("bitOffset", str(f["lsb"])), ("bitWidth", str(f["width"])))
+              for f in r["fields"]]
+    return element("register", ("name", r["name"]), ("description", r["doc"]),
+                   r["page"] >= 0 and ("alternateGroup", f"PAGE_0x{r['page']:X}"),
+                   ("addressOffset", f"0x{4 * r['word']:X}"), ("access", XML_ACCESS[r["access"]]),
+                   r["access"] == "w1c" and ("modifiedWriteValues", "oneToClear"),
+                   fields and ("fields", *fields))
+
+
+def svd_of(slots):
+    peripherals = [element(
+        "peripheral", ("name", s.name.upper()), ("description", s.description["doc"]),
+        ("baseAddress", f"0x{s.address:08X}"),
+        ("addressBlock", ("offset", "0"), ("size", f"0x{s.bytes:X}"), ("usage", "registers")),
+        ("registers", *map(svd_register, registers_of(s.description)))) for s in slots]
+    return xml(element(
+        "device", ("name", "IceSoC"), ("version", "1.0"), ("description", f"{TITLE}."),
+        ("addressUnitBits", "8"), ("width", "32"), ("size", "32"), ("resetValue", "0"),
+        ("resetMask", "0xFFFFFFFF"), ("peripherals", *peripherals), schemaVersion="1.3",
+        **{"xmlns:xs": "http://www.w3.org/2001/XMLSchema-instance",
+           "xs:noNamespaceSchemaLocation": "CMSIS-SVD.xsd"}))
+
+
+def fields_of(r):
+    """Returns a register's fields; one without has the field WORD."""
+    return r["fields"] or [{"name": "WORD", "lsb": 0, "width": r["width"], "doc": r["doc"]}]
+
+
+def address_of(r):
+    return 4 * r["word"] if r["page"] < 0 else r["page"] + 4 * (r["word"] - 8)
+
+
+def split(slot):
+    """Returns the registers in the slot, and those behind an adapter.
+
+    The latter share their addresses in the slot, so they have an address map of their own,
+    <SLOT>_PAGES: by their byte addresses in the core.
+    """
+    registers = registers_of(slot.description)
+    return ([r for r in registers if r["page"] < 0], [r for r in registers if r["page"] >= 0])
+
+
+def quoted(text):
+    return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
+
+
+def rdl_register(r):
+    s = f"        reg {{\n            desc = {quoted(r['doc'])};\n"
+    for f in fields_of(r):
+        reset = f" = {f['reset']}" if "reset" in f else ""
+        s += (f"            field {{ {RDL_ACCESS[r['access']]} desc = {quoted(f['doc'])}; }} "
+              f"{f['name']}[{f['lsb'] + f['width'] - 1}:{f['lsb']}]{reset};\n")
+    return s + f"        }} {r['name']} @ 0x{address_of(r):X};\n"
+
+
+def rdl_of(slots):
+    words = "    default regwidth = 32;\n    default accesswidth = 32;\n"
+    maps, pages = "", ""
+    for slot in slots:
+        own, paged = split(slot)
+        name, block = slot.name.upper(), slot.description
+        if paged:
+            pages += (f'addrmap {name}_PAGES {{\n    desc = "By byte address in the core.";\n'
+                      f"{words}{''.join(map(rdl_register, paged))}}};\n")
+        maps += f"    addrmap {{\n        desc = {quoted(block['doc'])};\n"
+        if block.get("memory_bytes"):
+            maps += f"        memory_bytes = {block['memory_bytes']};\n"
+        maps += f"{''.join(map(rdl_register, own))}    }} {name} @ 0x{slot.address:X};\n"
+    return (f"// {TITLE} (SystemRDL 2.0). {HAND}\n"
+            "property memory_bytes { type = longint unsigned; component = addrmap; };\n"
+            f"{pages}addrmap icesoc {{\n{words}{maps}}};\n")
+
+
+def ipxact_field(f, access):
+    reset = "reset" in f and ("resets", ("reset", ("value", "'h" + f["reset"][2:])))
+    return element("field", ("name", f["name"]), ("description", f["doc"]),
+                   ("bitOffset", str(f["lsb"])), reset, ("bitWidth", str(f["width"])),
+                   ("access", XML_ACCESS[access]),
+                   access == "w1c" and ("modifiedWriteValue", "oneToClear"))
+
+
+def ipxact_block(slot, registers, address):
+    parts = [element("register", ("name", r["name"]), ("description", r["doc"]),
+                     ("addressOffset", f"'h{address_of(r):x}"), ("size", "32"),
+                     *(ipxact_field(f, r["access"]) for f in fields_of(r))) for r in registers]
+    size = max(slot.bytes, *(address_of(r) + 4 for r in registers))
+    return element("addressBlock", ("name", slot.name.upper()),
+                   ("description", slot.description["doc"]), ("baseAddress", f"'h{address:x}"),
+                   ("range", str(size)), ("width", "32"), *parts)
+
+
+def ipxact_of(slots):
+    def memory_map(name, *blocks):
+        return element("memoryMap", ("name", name), *blocks, ("addressUnitBits", "8"))
+
+    maps = [memory_map("registers", *(ipxact_block(s, split(s)[0], s.address) for s in slots))]
+    maps += [memory_map(f"{s.name.upper()}_PAGES", ipxact_block(s, split(s)[1], 0))
+             for s in slots if split(s)[1]]
+    root = element("component", ("vendor", "icesoc"), ("library", "icesoc"), ("name", "icesoc"),
+                   ("version", "1.0"), ("memoryMaps", *maps),
+                   **{"xmlns:ipxact": "http://www.accellera.org/XMLSchema/IPXACT/1685-2014"})
+    for part in root.iter():
+        part.tag = "ipxact:" + part.tag
+    return xml(root)
+
+
+def files(slots):
+    """Returns the files, name to text."""
+    return {"icesoc.svd": svd_of(slots), "icesoc.rdl": rdl_of(slots),
+            "icesoc.ipxact.xml": ipxact_of(slots)}

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Synthesis: netlists by Yosys, utilisation, timing estimates, proofs of equivalence."""

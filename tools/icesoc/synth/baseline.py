@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: MIT
+"""baseline: the accepted figures of all designs (synth/baseline.json), the growth since, and
+the state of each design, in one of four words."""
+import json
+import subprocess
+
+from icesoc.synth.owners import Cost
+from icesoc.synth.sources import read_json
+from icesoc.util.tool import Stop, write
+
+KEYS = ("lut", "ff", "slices", "carry", "dsp", "ram", "mhz")
+NAMED_CHANGES = 6
+
+MEASURED, ACCEPTED, CHANGED, NEVER = STATES = (
+    "measured now",         # of the sources of now, in this run or kept from one before
+    "as accepted",          # not synthesised here, but these sources have the accepted figures
+    "changed since",        # its sources are not those of its last figures, here or accepted
+    "never measured here")  # and nothing says what its accepted figures, if any, are of
+
+
+def state_of(run, source_hash, accepted):
+    if run.figures or run.wanted:
+        return MEASURED
+    if accepted and accepted["sources"] == source_hash:
+        return ACCEPTED
+    return CHANGED if run.known or (accepted and accepted["sources"]) else NEVER
+
+
+def lut_budget(accepted):
+    return accepted + accepted * 3 // 100 + 4
+
+
+def ff_budget(accepted):
+    return accepted + accepted // 100 + 2
+
+
+def short_version(yosys):
+    return " ".join(yosys.split()[:2])
+
+
+def clock_text(mhz):
+    """A clock as terminal, page and accepted figures round it."""
+    return f"{mhz:.1f}"
+
+
+def accepted_from(figures, sources=""):
+    accepted = {key: figures[key] for key in KEYS} | {"mhz": round(figures["mhz"], 1)}
+    return accepted | {"sources": sources, "costs": figures["costs"]}
+
+
+def parse(j):
+    """{"yosys", "designs": {name: accepted}}; raises on a malformed file."""
+    designs = {}
+    for name, d in j["designs"].items():
+        costs = {path: {signal: Cost(lut=c[0], ff=c[1], **dict(zip(("ram", "dsp"), c[2:])))
+                        for signal, c in signals.items()} for path, signals in d["signals"].items()}
+        designs[name] = {key: d[key] for key in KEYS} | {"sources": d.get("sources", ""),
+                                                         "costs": costs}
+    return {"yosys": j["yosys"], "designs": designs}
+
+
+def read_baseline(file):
+    if not file.exists():
+        return {"yosys": "", "designs": {}}
+    j = read_json(file)
+    try:
+        return parse(j)
+    except (KeyError, TypeError, AttributeError) as error:
+        raise Stop(f"{file}: it has no accepted figures: {error!r}") from None
+
+
+def written(baseline):
+    """A line for each instance, so that a commit's difference can be read."""
+    def compact(value):
+        return json.dumps(value, separators=(",", ":"))
+
+    designs = []
+    for name, a in sorted(baseline["designs"].items()):
+        lines = []
+        for path, signals in sorted(a["costs"].items()):
+            kept = {signal: [c.lut, c.ff] + [c.ram, c.dsp] * bool(c.ram or c.dsp)
+                    for signal, c in sorted(signals.items()) if c.lut or c.ff or c.ram or c.dsp}
+            if kept:
+                lines.append(f"\n {json.dumps(path)}: {compact(kept)}")
+        head = "".join(f'"{key}": {a[key]:g}, ' for key in KEYS)
+        designs.append(f'\n{json.dumps(name)}: {{{head}"sources": "{a["sources"]}", '
+                       f'"signals": {{{",".join(lines)}}}}}')
+    yosys = json.dumps(baseline["yosys"])
+    return f'{{\n"yosys": {yosys},\n"designs": {{{",".join(designs)}}}\n}}\n'
+
+
+def accept(report, file):
+    """Records the measured designs, keeps the others, and drops those that are gone. Refuses
+    figures above a limit of synth/designs.json: a limit moves only there."""
+    old = report.baseline
+    # Figures of two versions of Yosys do not belong together.
+    same = short_version(old["yosys"]) == short_version(report.yosys)
+    designs = {}
+    for row in report.rows:
+        name = row.design.name
+        if not row.main.wanted:
+            if same and name in old["designs"]:
+                designs[name] = old["designs"][name]
+            continue
+        if row.main.error:
+            raise Stop(f"{name} failed: nothing is accepted")
+        above = above_limits(row)
+        if above:
+            raise Stop(f"{above[0]}: nothing is accepted; limits are in synth/designs.json")
+        designs[name] = accepted_from(row.figures, row.sources)
+    write(file, written({"yosys": report.yosys, "designs": designs}))
+    print(f"Accepted: {file}; commit it.")
+
+
+def by_instance(costs):
+    return {path: sum(signals.values(), Cost()) for path, signals in costs.items()}
+
+
+def by_signal(costs):
+    return {f"{path}.{signal}" if path else signal: cost
+            for path, signals in costs.items() for signal, cost in signals.items()}
+
+
+def changes(before, after):
+    """(name, more LUTs, more flip-flops) of each change, largest growth first."""
+    names = sorted({*before, *after})
+    rows = [(name, after.get(name, Cost()).lut - before.get(name, Cost()).lut,
+             after.get(name, Cost()).ff - before.get(name, Cost()).ff) for name in names]
+    return sorted((row for row in rows if row[1] or row[2]), key=lambda row: -row[1] - row[2])
+
+
+def grown(title, changed):
+    """Lines below a title, or nothing where nothing grew."""
+    lines = []
+    for name, luts, ffs in changed[:NAMED_CHANGES]:
+        if luts + ffs > 0:
+            parts = [f"{n:+d} {kind}" for n, kind in ((luts, "LUT"), (ffs, "FF")) if n]
+            lines.append(f"\n      {name or 'the top itself'} {', '.join(parts)}")
+    return "".join([f"\n    {title}", *lines]) if lines else ""
+
+
+def above_limits(row):
+    """A sentence for each limit of synth/designs.json that is exceeded."""
+    return [f"{row.design.name}: {row.figures[key]} {key}, {row.figures[key] - limit} above the "
+            f"limit of {limit}" for key, limit in row.design.limits.items()
+            if row.figures[key] > limit]
+
+
+def judge(row, baseline, yosys, goal):
+    """(failures, notes) of a design. Its budget is the accepted figure and a little more, since
+    optimisation is no exact science: 3 % + 4 LUTs, 1 % + 2 flip-flops. A limit must be kept,
+    whatever is accepted. So must the clock (`goal`, MHz) by a design that was accepted with it; one
+    that was accepted below it may lose a tenth."""
+    name, f = row.design.name, row.figures
+    if row.main.error:
+        return ([f"{name}: synthesis failed"] if row.main.wanted else []), []
+    failures = [f"{name}: synthesis for {other.family} failed" for other in row.others
+                if other.wanted and other.error]
+    # Another Yosys counts otherwise: only the version of the accepted figures judges.
+    comparable = short_version(baseline["yosys"]) in ("", short_version(yosys))
+    if not comparable:
+        return failures, [f"{text} (by another Yosys than the limit was set with)"
+                          for text in above_limits(row)]
+    failures += above_limits(row)
+    a = baseline["designs"].get(name)
+    if not a:
+        return failures, []
+    budgets = lut_budget(a["lut"]), ff_budget(a["ff"])
+    if f["lut"] > budgets[0] or f["ff"] > budgets[1]:
+        failures.append(
+            f"{name}: {f['lut']} LUT, {f['ff']} FF; accepted were {a['lut']} and {a['ff']}, "
+            f"the budget is {budgets[0]} and {budgets[1]}"
+            + grown("modules that grew:", changes(by_instance(a["costs"]), by_instance(f["costs"])))
+            + grown("signals that grew:", changes(by_signal(a["costs"]), by_signal(f["costs"]))))
+    least = goal if a["mhz"] >= goal else 0.9 * a["mhz"]
+    if 0 < f["mhz"] < least:
+        path = f["timing"]["paths"][0]
+        failures.append(f"{name}: {f['mhz']:.1f} MHz; accepted were {a['mhz']:g}, the least is "
+                        f"{least:g}\n    the longest path:\n      {path['from']} to {path['to']} "
+                        f"{path['pin']}, {path['levels']} levels")
+    return failures, []
+
+
+def git(source, *words):
+    """Git's output, "" without git."""
+    try:
+        done = subprocess.run(["git", "-C", source, *words], text=True, stdout=subprocess.PIPE,
+                              stderr=subprocess.DEVNULL)
+    except OSError:
+        return ""
+    return done.stdout if done.returncode == 0 else ""
+
+
+def history(source, count=30):
+    """Commits that changed synth/baseline.json, newest first: {"id", "date", "subject", "designs":
+    {name: {key: figure}}}."""
+    commits = []
+    lines = git(source, "log", f"-n{count}", "--format=%h%x09%cs%x09%s", "--",
+                "synth/baseline.json")
+    for line in lines.splitlines():
+        id, date, subject = line.split("\t", 2)
+        try:
+            text = git(source, "show", f"{id}:synth/baseline.json")
+            designs = {name: {key: design[key] for key in KEYS}
+                       for name, design in json.loads(text)["designs"].items()}
+        except (ValueError, LookupError, TypeError, AttributeError):
+            continue  # of another format, or the file was taken away: nothing to show
+        if designs:
+            commits.append({"id": id, "date": date, "subject": subject, "designs": designs})
+    return commits
+
+
+def current_commit(source):
+    """"1a2b3c4", with "+" if the tree has changes; "" without git."""
+    id = git(source, "rev-parse", "--short", "HEAD").strip()
+    return id and id + "+" * bool(git(source, "status", "--porcelain", "--untracked-files=no"))

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: MIT
+"""cores: the cost of each core in the chip: itself, its registers, its slot of the decoder, its
+memory port."""
+import re
+
+from icesoc.synth import report
+from icesoc.synth.owners import Cost
+from icesoc.synth.runner import Run, carry_out
+from icesoc.synth.sources import Design, read_json
+from icesoc.util.tool import Stop
+
+FIRST_SLOT = 2  # those below are the platform's
+
+
+class NotInChip(Stop):
+    """The chip lacks the requested core."""
+
+
+def read_map(file):
+    """The numbers of the chip's map by name: SLOT_FIR, NPI_PORT_COUNT; {} where there is none."""
+    return {c["name"]: c["value"] for c in read_json(file)["constants"]} if file.exists() else {}
+
+
+def slot_cost(library, options, map, wanted):
+    """The cost of a slot in the decoder: that of the chip's number of slots, minus that of one slot
+    fewer. `wanted` False: only from the cache, nothing if it lacks it."""
+    runs = [Run(Design(f"bus_decoder{slots}", "bus_decoder", parameters={"SLOTS": slots}), "xc6s",
+                wanted) for slots in (map["SLOT_COUNT"], map["SLOT_COUNT"] - 1)]
+    carry_out(runs, library, options)
+    for run in runs:
+        if run.error and wanted:
+            raise Stop(f"{run.design.name}: {run.error}")
+    if any(run.error for run in runs):
+        return Cost()
+    more, fewer = (run.figures for run in runs)
+    return Cost(lut=more["lut"] - fewer["lut"], ff=more["ff"] - fewer["ff"])
+
+
+def core_table(costs, map, slot, names, where):
+    """A row for each core of the map that the chip has, or only for `names`, the most LUTs first:
+    LUT, flip-flops, block RAM and DSP together, then LUT / flip-flops of its parts. A port's share
+    of the arbiter is the arbiter's by the number of ports. Raises NotInChip on a name that is not
+    there, `where` the chip is from."""
+    def cost_of(pattern):
+        return sum((cost for path, signals in costs.items() if re.fullmatch(pattern, path)
+                    for cost in signals.values()), Cost())
+
+    def row(name):
+        whole = cost_of(rf"u_{name}(\..*)?")
+        registers = cost_of(rf"u_{name}\.(u_core\.)?u_(wrapper|registers|bus|crossing)(\..*)?")
+        port = shared = Cost()
+        number = map.get(f"NPI_PORT_{name.upper()}")
+        if number is not None:
+            port = cost_of(rf"u_memory\.u_arbiter\.g_port\[{number}\].*")
+            shared = cost_of(r"u_memory(?!\.u_arbiter\.g_port\[).*")
+            ports = map["NPI_PORT_COUNT"]
+            shared = Cost(lut=shared.lut // ports, ff=shared.ff // ports)
+        itself = Cost(lut=whole.lut - registers.lut, ff=whole.ff - registers.ff)
+        sum_ = whole + slot + port + shared
+        return [name, sum_.lut, sum_.ff, f"{sum_.ram:g}", sum_.dsp,
+                *(f"{c.lut} / {c.ff}" if any(c) else "" for c in (itself, registers, slot, port,
+                                                                 shared))]
+
+    slots = sorted((number, constant[5:].lower()) for constant, number in map.items()
+                   if constant.startswith("SLOT_") and constant != "SLOT_COUNT"
+                   and number >= FIRST_SLOT)
+    cores = [name for _, name in slots if any(cost_of(rf"u_{name}(\..*)?"))]
+    for name in names:
+        if name not in cores:
+            raise NotInChip(f"{name} is not in the chip of {where}: a line in ip/cores.list, then "
+                            f"make ip-synth IP={name} CHIP=1")
+    return report.Table(["core in the chip", "LUT", "FF", "RAM16", "DSP", "itself", "registers",
+                         f"slot {map['SLOT_COUNT']}", "memory port", "of the arbiter"],
+                        sorted((row(name) for name in cores if not names or name in names),
+                              key=lambda cells: -cells[1]))

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: MIT
+"""equivalence: proves that a netlist does in each clock what its RTL does, from the first one on.
+
+Yosys puts both side by side, with one output that says whether any of theirs differ
+(synth/yosys/equivalence.ys); abc finds registers that are always equal (lcorr), then other signals
+(scorr), then the clock of a difference (bmc3) or the proof (pdr). What RTL leaves undefined,
+flip-flops have by the netlist at the start, else 0. Where there are several clocks, edges are
+inputs: any order of them is proven.
+"""
+import json
+import pathlib
+import re
+import sys
+import time
+import xml.etree.ElementTree
+
+from icesoc.synth import netlist
+from icesoc.synth import report
+from icesoc.synth import runner
+from icesoc.util.tool import Stop, digest, run as command, write
+
+BOXES = {"DCM_CLKGEN", "BUFGCE"}  # clock parts of both copies; what is around them is proven
+SOLVE = """read_rtlil {file}
+splitnets
+setattr -unset init w:*
+{initial}
+{clocks}
+setundef -init -zero
+setundef -zero
+opt_clean
+simplemap
+techmap
+simplemap
+setundef -zero
+dfflegalize -cell $_DFF_P_ 01
+aigmap
+opt_clean
+write_aiger -zinit {file}.aig
+"""
+# One clock in reset: states of one-hot code may begin with none, which RTL does not have.
+IN_RESET = "sim -clock in_clk_i -reset in_rst_i -rstlen 1 -n 1 -zinit -w miter"
+
+
+def attributes_of(module):
+    """Yosys commands that let registers begin with 1: by the RTL, and where it says nothing, by the
+    netlist; and whether all registers have one clock's rising edge."""
+    begin, ones, nets = {}, {}, module["netnames"]
+    for net in nets.values():
+        for bit, value in zip(net["bits"], reversed(net["attributes"].get("init", ""))):
+            if value in "01":
+                begin[bit] = value
+    for name, net in nets.items():
+        twin = nets.get(name.replace("gold.", "gate.", 1), net)
+        for place, bit in enumerate(net["bits"]):
+            other = twin["bits"][place] if len(twin["bits"]) == len(net["bits"]) else bit
+            if begin.get(bit, other if other in ("0", "1") else begin.get(other)) == "1":
+                index = net.get("offset", 0) + place
+                ones[bit] = f"{name}[{index}]" if len(net["bits"]) > 1 else name
+    commands = [f"setattr -set init 1'1 w:{name}" for bit, name in ones.items() if bit != "1"]
+    kinds = {(*c["connections"].get("CLK", [None]), c["parameters"].get("CLK_POLARITY", "")[-1:])
+             for c in module["cells"].values() if re.match(r"\$a?l?dff", c["type"])}
+    plain = not any(re.match(r"\$(a|al)dff|\$dlatch", c["type"]) for c in module["cells"].values())
+    return commands, len(kinds) <= 1 and plain and all(kind[1] == "1" for kind in kinds)
+
+
+def prove(design, family, library, options, models, seconds):
+    """(What is known, whether the netlist is equivalent, seconds that it took), of a proof of at
+    most so many seconds. What is decided is kept: a second run takes it from there."""
+    begin, run = time.monotonic(), runner.mapped(design, family, library, options)
+    files = (run.netlist, *models, pathlib.Path(__file__), pathlib.Path(netlist.__file__),
+             options.scripts / "equivalence.ys", options.scripts / "product.v")
+    known = digest([library.hash_of(design.top), runner.version_of(options.yosys),
+                    *(file.read_text() for file in files)])
+    kept = run.netlist.with_suffix(f".{known}.proof")
+    if kept.exists():
+        return json.loads(kept.read_text())
+    said, good = proof(run.netlist, design, family, library, options, models, seconds)
+    result = said, good, time.monotonic() - begin
+    if not said.startswith("undecided"):
+        write(kept, json.dumps(result))
+    return result
+
+
+def proof(mapped, design, family, library, options, models, seconds):
+    file, text = options.cache / f"{design.name}.{family}.miter", netlist.with_models(mapped)
+    write(file.with_suffix(".netlist"), text)
+    boxes = BOXES & set(re.findall(r'"type": "(\w+)"', text))
+    words = {
+        "NETLIST": file.with_suffix(".netlist"), "MODELS": " ".join(map(str, models)),
+        "SIMULATION": runner.SIMULATION[family], "PRODUCT": options.scripts / "product.v",
+        "BOXES": "read_verilog -lib +/xilinx/cells_xtra.v" if boxes else ""}
+
+    def script(part):
+        return runner.filled(runner.script_of(
+            runner.Run(design, "equivalence", netlist=file), library, options, part), words)
+
+    runner.yosys_by(script, file, options)
+    part = json.loads((file.parent / f"{file.name}.part.json").read_text())["modules"]["miter"]
+    commands, is_plain = attributes_of(part)
+    said = solved(file, commands, is_plain, options, seconds)
+    if said and is_plain and "in_rst_i" in part["ports"]:
+        again = solved(file, [*commands, IN_RESET], is_plain, options, seconds)
+        return again or "proven from a reset on", not again
+    return said or "proven", not said
+
+
+def solved(file, commands, is_plain, options, seconds):
+    """"" if the output is never high, else what is known."""
+    write(solve := file.with_suffix(".solve.ys"),
+          SOLVE.format(file=file, initial="\n".join(commands),
+                       clocks="" if is_plain else "clk2fflogic"))
+    status, said = command([options.yosys, "-q", "-s", solve])
+    if status:
+        raise Stop(said)
+    with open(f"{file}.aig", "rb") as aiger:
+        has_state = aiger.readline().split()[3] != b"0"
+    # bmc3 finds a difference soon, most before anything else, where pdr seeks a proof; sat decides
+    # what newer versions of pdr do not: a miter in which scorr has left no register. -T is of the
+    # wall's clock, which a busy machine must not judge by: seconds of a processor are ulimit's.
+    whole, less = f"{file}.aig", f"{file}.less.aig"
+    steps = ([(whole, "bmc3 -F 20 -T 10"),
+              (whole, f"lcorr -C 30000; scorr; write_aiger {less}; bmc3 -F 50 -T {seconds // 5}"),
+              (less, f"pdr -T {9 * seconds}; sat")] if has_state else
+             [(whole, "ifraig; iprove; sat")])
+    for source, step in steps:
+        said = command(["sh", "-c", f"ulimit -t {seconds + 60}; {options.yosys}-abc -c "
+                        f"'read_aiger {source}; strash; {step}'"])[1]
+        write(file.with_suffix(".abc.log"), said)
+        differs = re.search(r"asserted in frame (\d+)", said)
+        if differs:
+            return f"differs after {differs[1]} clocks"
+        if re.search("Property proved|UNSATISFIABLE", said):
+            return ""
+    return "differs" if "SATISFIABLE" in said else f"undecided in {seconds} s"
+
+
+def simulated(tests, junit):
+    """(What these tests, by prefixes, show by a JUnit file, whether each ran and all passed, their
+    seconds)."""
+    cases = list(xml.etree.ElementTree.parse(junit).iter("testcase")) if junit else []
+    of = {prefix: [case for case in cases if re.match(f"{prefix}[^a-z_]", case.get("name"))]
+          for prefix in tests.split()}
+    cases = [case for some in of.values() for case in some]
+    red = sum(case.get("status") != "run" for case in cases)
+    missing = [prefix for prefix, some in of.items() if not some]
+    said = f"simulated by {tests}: {len(cases)} tests" + f", {red} failed" * bool(red)
+    return (said + f", none of {', '.join(missing)}" * bool(missing), not red and not missing,
+            sum(float(case.get("time")) for case in cases))
+
+
+def table_of(plan, library, options, models, o):
+    """(A row for each design: its proof, or its block's tests on its netlist; how many failed). The
+    small ones are first; each proof is told when it ends."""
+    rows, failed = {}, []
+
+    def work(design):
+        begin = time.monotonic()
+        try:
+            tests = plan.simulated.get(design.name)
+            said, good, spent = simulated(tests, o.junit) if tests else prove(
+                design, o.family[-1], library, options, models, o.seconds)
+        except (Stop, ValueError) as error:
+            said, good, spent = str(error).partition("\n")[0], False, time.monotonic() - begin
+        rows[design.name] = [design.name, said, f"{spent:.1f}"]
+        failed.extend([design.name] * (not good))
+        print(f"[{len(rows)}/{len(designs)}] {design.name}: {said} ({spent:.1f} s)",
+              file=sys.stderr)
+
+    designs = [design for design in plan.designs if plan.has(design, o.family[-1])
+               and (not o.design or design.name in o.design)]
+    runner.in_parallel(options.jobs, work, sorted(
+        designs, key=lambda design: options.luts.get(design.name, 0)))
+    return report.Table(["module", "proof or tests", "seconds"],
+                        [rows[name] for name in sorted(rows)]), len(failed)

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: MIT
+"""merge_ucf: puts MIG's constraints and others together into one file for ngdbuild.
+
+Usage: merge_ucf.py MIG.ucf OTHER.ucf... > all.ucf
+ MIG writes its names as if its core were the top. Here it is the instance u_mig of chip.v: what is
+inside gets that prefix, c3_sys_clk and c3_sys_rst_i are the pads sys_clk_i and sys_rst_i, and a bit
+is <n>, as XST writes it. VCCAUX, places and standards of OTHER replace those of MIG. Each change is
+printed on stderr. Exit status 1: a statement that is not understood, or two of OTHER that say
+different things. """
+
+import os
+import re
+import sys
+
+PADS = {"c3_sys_clk": "sys_clk_i", "c3_sys_rst_i": "sys_rst_i"}
+
+
+def statements(path):
+    """(line number, text without comments) of each statement."""
+    text = re.sub(r"#[^\n]*", "", open(path).read())
+    line = 1
+    for part in text.split(";"):
+        if part.strip():
+            start = line + part[:len(part) - len(part.lstrip())].count("\n")
+            yield start, " ".join(part.split())
+        line += part.count("\n")
+
+
+def keys(statement):
+    """Settings that occur once only: VCCAUX; place, standard, period of a net."""
+    if re.match(r"(?i)CONFIG\s+VCCAUX", statement):
+        return ["VCCAUX"]
+    net = re.match(r'(?i)NET\s+"?([^"\s]+)"?\s+(.*)', statement)
+    if not net:
+        return []
+    kinds = [part.split("=")[0].strip().upper() for part in net[2].split("|")]
+    return [f"{kind} of {net[1]}" for kind in kinds if kind in ("LOC", "IOSTANDARD")]
+
+
+def renamed(statement, where):
+    head = re.match(r'(?i)(NET|INST|PIN)\s+"?([^"\s]+)"?\s+(.*)', statement)
+    if not head:
+        if not re.match(r"(?i)(CONFIG|TIMESPEC|TIMEGRP|OFFSET)\b", statement):
+            sys.exit(f"{where}: '{statement}' is not understood: write it into the board's file by "
+                     "hand, and take it out here")
+        return statement
+    kind, name, rest = head.groups()
+    new = PADS.get(name)
+    if new is None:
+        new = re.sub(r"\[([^]]*)\]", r"<\1>", name)
+        if not new.startswith("mcb"):
+            new = "u_mig/" + new
+    if new != name:
+        print(f"{where}: {name} is {new}", file=sys.stderr)
+    return f'{kind} "{new}" {rest}'
+
+
+def main():
+    if len(sys.argv) < 2 or sys.argv[1] in ("-h", "--help"):
+        sys.exit(__doc__)
+    mig, others = sys.argv[1], sys.argv[2:]
+    said, result = {}, []
+    for path in others:
+        result.append(f"# {path}")
+        for line, statement in statements(path):
+            for key in keys(statement):
+                if said.setdefault(key, statement) != statement:
+                    sys.exit(f"{path}:{line}: {key} is said twice: '{said[key]}', '{statement}'")
+            result.append(statement + ";")
+    result.append(f"# {mig}")
+    for line, statement in statements(mig):
+        new = renamed(statement, f"{os.path.basename(mig)}:{line}")
+        twice = [key for key in keys(new) if key in said]
+        if twice:
+            print(f"{os.path.basename(mig)}:{line}: '{new}' is left out: {said[twice[0]]}",
+                  file=sys.stderr)
+        else:
+            result.append(new + ";")
+    print("\n".join(result))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: MIT
+"""nets: clocks, resets and the nets with most ends of a Spartan-6 netlist, and where each signal
+stands in the sources."""
+import functools
+import os
+import re
+
+from icesoc.synth import netlist
+
+FOR_OWNER = "(for) "
+
+
+def name_or(n, owners, bit):
+    """A net's name in the source, or "(for) " and the name of its load."""
+    if bit not in n.driver and bit in n.names:
+        return str(n.names[bit][-1])  # the top's own, not that of an instance's input
+    name = n.name_of(bit)
+    return name if name or bit not in n.driver else FOR_OWNER + owners[n.driver[bit]]
+
+
+def without_index(signal):
+    """Of "u_modem.state[3]" that is "u_modem.state"."""
+    return signal.rpartition("[")[0] if signal.endswith("]") else signal
+
+
+def nets_of(n, owners, by_clock, count=20):
+    """Lists of {name, kind, ends, flipFlops, ns}, most ends first; clocks are no fan-outs. kind: of
+    a reset, synchronous or asynchronous; else the type of the driver's cell. ns: of a clock, the
+    longest path that ends with it, grade -3."""
+    pins, clocked, clocks, resets = {}, set(), {}, {}
+    for cell in n.cells:
+        register = netlist.is_register(cell.type)
+        for pin in cell.pins:
+            is_clock = netlist.is_clock(pin.port)
+            kind = {"R": "synchronous", "S": "synchronous", "CLR": "asynchronous",
+                    "PRE": "asynchronous"}.get(pin.port) if register else None
+            for bit in pin.bits:
+                if pin.output or bit < 0:
+                    continue
+                pins[bit] = pins.get(bit, 0) + 1
+                if is_clock:
+                    clocked.add(bit)
+                    clocks[bit] = clocks.get(bit, 0) + register
+                if kind:
+                    resets[bit, kind] = resets.get((bit, kind), 0) + 1
+
+    def net(bit, kind="", flip_flops=0, ns=0):
+        return {"name": name_or(n, owners, bit), "kind": kind or n.driver_type(bit) or "port",
+                "ends": pins[bit], "flipFlops": flip_flops, "ns": ns}
+
+    lists = {"fanouts": [net(bit) for bit in pins if bit not in clocked],
+             "clocks": [net(bit, "", clocks[bit], by_clock.get(bit, 0)) for bit in clocked],
+             "resets": [net(bit, kind, number) for (bit, kind), number in resets.items()
+                        if bit not in clocked]}
+    return {name: sorted(nets, key=lambda net: (-net["ends"], net["name"]))[:count]
+            for name, nets in lists.items()}
+
+
+@functools.lru_cache(64)
+def lines_of(file):
+    try:
+        with open(file, errors="replace") as lines:
+            return lines.read().splitlines()
+    except OSError:
+        return []
+
+
+def relative(file):
+    return os.path.relpath(file) if os.path.isabs(file) else os.path.normpath(file)
+
+
+def place_in_vhdl(lines, declared, name):
+    """The place in VHDL of a signal that GHDL declares at a line of its Verilog: it stands in the
+    comment before the statement that assigns it. A port has none, but its value
+    has."""
+    above = ""
+    for line in lines[declared:]:
+        if line == "endmodule":
+            break
+        comment = re.fullmatch(r" */\* (\S+\.vhdl?:\d+):\d+ +\*/", line)
+        if comment:
+            above = relative(comment[1])
+        elif f" {name} = " in line or f" {name} <= " in line:
+            copied = re.match(r" *assign \S+ = (\w+); // *\((module output|signal)\)", line)
+            if not above and copied and copied[1] != name:
+                return place_in_vhdl(lines, declared, copied[1])
+            return above
+        elif " always @" not in line and " case (" not in line:
+            above = ""
+    return ""
+
+
+def place_of(n, signal):
+    """File and line where a signal ("u_modem.state[3]") is declared; of a core in VHDL, where GHDL
+    says that it is made: names of intermediate values (n71_o) are GHDL's own. "": not known."""
+    whole = without_index(signal.removeprefix(FOR_OWNER))
+    name = whole.rpartition(".")[2]
+    # "platform.vh:62.26-69.2|./hdl/modem/modem.v:97.88-97.94": instances' places, and the
+    # declaration's, which is as wide as the name.
+    places = re.findall(r"([^|:]+):(\d+)\.(\d+)-(\d+)\.(\d+)", n.sources.get(whole, ""))
+    for file, line, begin, last, end in places:
+        if line == last and int(end) - int(begin) == len(name):
+            lines = lines_of(file)
+            in_vhdl = (place_in_vhdl(lines, int(line), name)
+                       if lines and "by GHDL" in lines[0] else "")
+            return in_vhdl or f"{relative(file)}:{line}"
+    return ""

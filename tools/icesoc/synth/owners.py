@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: MIT
+"""owners: finds the owner of each cell of a flat netlist, an instance path and a signal of the
+source, and the cost of each.
+
+A flip-flop is its register's. Logic is the named wire's that it drives; where optimisation has left
+no name, it is whose logic it feeds most.
+"""
+import re
+import typing
+
+from icesoc.synth import netlist
+from icesoc.synth.netlist import BLOCK_RAMS, LUT_INPUTS, MEMORY_LUTS
+
+COMBINATIONAL = {*LUT_INPUTS, "CARRY4", "MUXF7", "MUXF8", "CCU2C", "PFUMX", "L6MUX21"}
+DECODER = "u_bus_decoder"
+
+
+class Cost(typing.NamedTuple):
+    lut: int = 0     # look-up tables, those used as memory included
+    memory: int = 0  # of these, used as memory or shift register
+    ff: int = 0      # flip-flops and latches
+    carry: int = 0   # carry chain segments of 4 bits
+    ram: float = 0   # block RAMs of 16 or 18 Kbit; half ones count half
+    dsp: int = 0
+
+    def __add__(self, other):
+        return Cost(*(a + b for a, b in zip(self, other)))
+
+
+def cost_of(cell):
+    type = cell.type
+    memory = MEMORY_LUTS.get(type, 0) + netlist.is_shift_register(type)
+    return Cost(lut=memory + (type in LUT_INPUTS) + 2 * (type == "CCU2C"), memory=memory,
+                ff=int(netlist.is_register(type)), carry=int(type in ("CARRY4", "CCU2C")),
+                ram=BLOCK_RAMS.get(type, 0), dsp=int(netlist.is_multiplier(type)))
+
+
+def costs_of(n, owners):
+    """{instance path, "" for the top: {signal: Cost}}"""
+    costs = {}
+    for cell, owner in zip(n.cells, owners):
+        cost = cost_of(cell)
+        if any(cost):
+            path, _, signal = owner.rpartition(".")
+            signals = costs.setdefault(path, {})
+            signals[signal] = signals.get(signal, Cost()) + cost
+    return costs
+
+
+def owners_of(n, files_along):
+    """The signal of each cell with its path, "u_modem.u_at.state"; "" if nothing near it has a
+    name. `files_along(path)` are the names of the files of the modules along an instance path."""
+    finder = Finder(n, files_along)
+    owners = [finder.owner_of(cell) for cell in range(len(n.cells))]
+    give_slot_reads(n, owners)
+    return owners
+
+
+class Finder:
+    def __init__(self, n, files_along):
+        self.n, self.files_along = n, files_along
+        self.files = {}
+        self.owners = {}  # None: being looked for, so that a loop finds no owner
+
+    def owner_of(self, index):
+        if index not in self.owners:
+            self.owners[index] = None
+            self.owners[index] = self.find(self.n.cells[index])
+        return self.owners[index]
+
+    def find(self, cell):
+        if cell.named and cell.type not in COMBINATIONAL:
+            return re.sub(r"(\.\d+)+$", "", cell.name)  # "u_fifo.words.0.1" -> "u_fifo.words"
+        driven = [bit for pin in cell.pins if pin.output for bit in pin.bits]
+        for bit in driven:
+            if bit in self.n.names:
+                return self.name_for(cell, self.n.names[bit])
+        votes = {}
+        for bit in driven:
+            for reader in self.n.readers.get(bit, ()):
+                owner = self.owner_of(reader)
+                if owner:
+                    votes[owner] = votes.get(owner, 0) + 1
+        return max(sorted(votes), key=votes.get, default="")
+
+    def name_for(self, cell, names):
+        """The best of several names of one net is the one in the module that the cell is from."""
+        for name in names:
+            path = name.name.rpartition(".")[0]
+            if path not in self.files:
+                self.files[path] = self.files_along(path)
+            if self.files[path] == cell.sources:
+                return name.name
+        return names[0].name
+
+
+def give_slot_reads(n, owners):
+    """Gives the logic that reads a slot's registers to the block in the slot. It is one cone with
+    the bus decoder's multiplexer, in which optimisation leaves no name, and so far the decoder's:
+    what has only one block's signals at its inputs, beside the decoder's own, is that block's."""
+    behind = {}
+
+    def block_of(cell):
+        return owners[cell].partition(".")[0]
+
+    def is_inside(cell):
+        return n.cells[cell].type in COMBINATIONAL and block_of(cell) == DECODER
+
+    def blocks_behind(cell):
+        if cell in behind:
+            return behind[cell]
+        blocks = behind[cell] = set()
+        for pin in n.cells[cell].pins:
+            for bit in pin.bits:
+                if pin.output or bit not in n.driver:
+                    continue
+                driver = n.driver[bit]
+                if is_inside(driver):
+                    blocks |= blocks_behind(driver)
+                elif owners[driver] and block_of(driver) != DECODER:
+                    blocks.add(block_of(driver))
+        return blocks
+
+    for cell in range(len(n.cells)):
+        if is_inside(cell):
+            blocks_behind(cell)
+    for cell, blocks in behind.items():
+        if len(blocks) == 1:
+            owners[cell] = f"{min(blocks)}.bus_rdata_o"

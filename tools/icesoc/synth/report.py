@@ -1,0 +1,306 @@
+# SPDX-License-Identifier: MIT
+"""report: the figures as text for the terminal, as JSON for machines, and as one HTML page that
+needs no network; differences between two reports as Markdown."""
+import dataclasses
+import itertools
+
+from icesoc.synth import baseline
+from icesoc.synth import slices
+from icesoc.synth import timing
+from icesoc.synth.baseline import MEASURED, clock_text, short_version
+from icesoc.synth.owners import Cost
+from icesoc.synth.runner import Run
+from icesoc.synth.sources import Design, Library, Plan
+from icesoc.util.tool import filled, page_parts, script_safe
+
+
+@dataclasses.dataclass
+class Row:
+    """The runs of a design by family."""
+    design: Design
+    main: Run  # Spartan-6
+    others: list = dataclasses.field(default_factory=list)
+    sources: str = ""  # their hash
+    state: str = MEASURED
+    failures: list = dataclasses.field(default_factory=list)
+    notes: list = dataclasses.field(default_factory=list)
+
+    @property
+    def figures(self):
+        return self.main.figures
+
+
+@dataclasses.dataclass
+class Report:
+    plan: Plan
+    library: Library
+    rows: list
+    baseline: dict
+    yosys: str
+    commits: list
+    commit: str
+    cores: "Table" = None  # the cost of each core in the chip, if known
+
+    @property
+    def failures(self):
+        return [failure for row in self.rows for failure in row.failures]
+
+
+class Table:
+    """Columns as wide as they need; the first is left-aligned."""
+
+    def __init__(self, head, rows=()):
+        self.rows = [[str(cell) for cell in row] for row in [head, *rows]]
+
+    def plain(self):
+        columns = itertools.zip_longest(*self.rows, fillvalue="")
+        widths = [max(map(len, column)) for column in columns]
+        return "".join("  ".join([row[0].ljust(widths[0]),
+                                  *(cell.rjust(width) for cell, width in zip(row[1:], widths[1:]))])
+                       .rstrip() + "\n" for row in self.rows)
+
+    def markdown(self):
+        lines = [f"| {' | '.join(row)} |" for row in self.rows]
+        lines.insert(1, "|---|" + "---:|" * (len(self.rows[0]) - 1))
+        return "\n".join(lines) + "\n"
+
+
+# ERRORS says what the ranges in the tables are.
+ERRORS = (f"as mapped, routed: nine of ten of {slices.MAPPED.count} published reports of map, of "
+          f"{timing.ROUTED.count} of TRCE, are in this; their medians are "
+          f"{slices.MAPPED.median:.2f} and {timing.ROUTED.median:.2f} of the estimate")
+
+
+def percent(part, whole):
+    return f"{100 * part / whole:.1f} %"
+
+
+def sites_of_map(f):
+    return int(slices.map_sites(f["lut"], f["lutRam"] + f["shift"], f["through"]) + 0.5)
+
+
+def paper_table(plan, row):
+    f = row.figures
+    lines = [("flip-flops", "ff", f["ff"]), ("LUTs of the netlist", "lut", f["lut"]),
+             ("LUTs and route-throughs, before map pairs them", "lut", f["lut"] + f["through"]),
+             ("LUTs as map counts them (estimate)", "lut", sites_of_map(f)),
+             (f"slices (estimate; as mapped {slices.MAPPED.of(f['slices'])})", "slices",
+              f["slices"])]
+    table = []
+    for name, key, value in lines:
+        chip, paper, limit = plan.chip[key], plan.paper[key], row.design.limits.get(key)
+        table.append([name, value, percent(value, chip), f"{paper} ({percent(paper, chip)})",
+                      f"{value / paper:.2f}", "" if limit is None else limit,
+                      "" if limit is None else "ok" if value <= limit else f"{value - limit} over"])
+    return Table(["", "here", plan.chip["name"], "paper", "here / paper", "limit", ""], table)
+
+
+def ranged(value, values, text=str):
+    """A figure, and its range with the netlist in other orders: "863 (858-865)"."""
+    return text(value) + (f" ({text(min(values))}-{text(max(values))})" if len(values) > 1 else "")
+
+
+def clock_of(f):
+    return ranged(f["mhz"], f["clocks"], clock_text) if f["mhz"] else ""
+
+
+def design_row(plan, row, accepted):
+    name, f = row.design.name, row.figures
+    if not f:
+        return [name, "failed"]
+
+    def change(key):
+        return ("new" if not accepted else
+                "" if f[key] == accepted[key] else f"{f[key] - accepted[key]:+d}")
+
+    luts = [f["cells"].get(f"LUT{n}", 0) for n in range(1, 7)]
+    others = [cell for other in row.others
+              for cell in ((other.figures["lut"], other.figures["ff"]) if other.figures
+                           else ("failed" if other.wanted else "", ""))]
+    return [name, ranged(f["lut"], f["luts"]), change("lut"), percent(f["lut"], plan.chip["lut"]),
+            luts[0] + f["cells"].get("INV", 0) + luts[1], *luts[2:], f["lutRam"], f["shift"],
+            f["through"], f["ff"], change("ff"), f["sets"], f["carry"], f"{f['ram']:g}", f["dsp"],
+            f["pins"], f["slices"], f"{f['low']}-{f['high']}",
+            f["timing"]["paths"][0]["levels"] if f["mhz"] else "", clock_of(f),
+            timing.ROUTED.of(f["mhz"]) if f["mhz"] else "", *others]
+
+
+def design_table(plan, rows, accepted):
+    head = ("design LUT change chip 1-2 3 4 5 6 RAM SRL thru FF change sets carry RAM16 DSP pins "
+            "slices low-high levels MHz routed").split()
+    for other in rows[0].others if rows else ():
+        head += [f"{other.family} LUT", "FF"]
+    return Table(head, [design_row(plan, row, accepted.get(row.design.name)) for row in rows])
+
+
+def cost_table(library, row, depth=2):
+    """The places of a design's cost: the instances, each with all below it."""
+    paths = {"": Cost()}
+    for path, cost in baseline.by_instance(row.figures["costs"]).items():
+        names = path.split(".") if path else []
+        for n in range(len(names) + 1):
+            below = ".".join(names[:n])
+            paths[below] = paths.get(below, Cost()) + cost
+    lines = []
+    for path, cost in sorted(paths.items()):
+        level = path.count(".") + 1 if path else 0
+        if level <= depth:
+            lines.append(["  " * level + (path.rpartition(".")[2] or row.design.top),
+                          library.module_at(row.design.top, path), cost.lut, cost.memory, cost.ff,
+                          cost.carry])
+    return Table(["instance", "module", "LUT", "of these RAM", "FF", "carry"], lines)
+
+
+def path_table(plan, row, count=5):
+    """The longest paths of the order of the netlist that sets the clock."""
+    mhz = plan.chip["mhz"]
+    return Table([f"longest paths, estimated, at {clock_text(row.figures['mhz'])} MHz", "to",
+                  "levels", "ns (-3)", "ns (-2)", f"of {mhz:g} MHz"],
+                 [[p["from"], f"{p['to']} {p['pin']}", p["levels"], f"{p['ns']:.2f}",
+                   f"{p['ns'] * timing.SLOW_GRADE:.2f}",
+                   percent(p["ns"] * timing.SLOW_GRADE, 1000 / mhz)]
+                  for p in row.figures["timing"]["paths"][:count]])
+
+
+def states_text(rows):
+    """The number of designs in each state: "1 measured now, 65 as accepted"."""
+    states = [row.state for row in rows]
+    return ", ".join(f"{states.count(state)} {state}" for state in baseline.STATES
+                     if state in states)
+
+
+def show(report):
+    """Writes the requested designs to the terminal."""
+    wanted = [row for row in report.rows if row.main.wanted]
+    for row in wanted:
+        if row.design.paper and row.figures:
+            tables = [paper_table(report.plan, row), cost_table(report.library, row),
+                      path_table(report.plan, row)]
+            print("\n".join([row.design.title, *(table.plain() for table in tables)]))
+    if report.cores:
+        print(report.cores.plain())
+    accepted = report.baseline["designs"]
+    print(design_table(report.plan, wanted, accepted).plain(), end="")
+    print(ERRORS)
+    if len(wanted) < len(report.rows):
+        print(f"Designs: {states_text(report.rows)}")
+    versions = short_version(report.baseline["yosys"]), short_version(report.yosys)
+    if versions[0] not in ("", versions[1]):
+        print(f"The accepted figures are by {versions[0]}, these by {versions[1]}: growth is not "
+              "judged.")
+    for row in report.rows:
+        for line in row.notes + [f"FAILED {failure}" for failure in row.failures]:
+            print(line)
+    fresh = [row.design.name for row in wanted if row.design.name not in accepted]
+    if fresh:
+        print("No accepted figures yet (`make synth-accept` records them):", *fresh)
+
+
+def entries(report):
+    """docs: the contract of all figures."""
+    found = []
+    for row in report.rows:
+        name, f = row.design.name, row.figures
+        if not f:
+            continue
+        accepted = report.baseline["designs"].get(name)
+        budgets = {"lut": baseline.lut_budget(accepted["lut"]),
+                   "ff": baseline.ff_budget(accepted["ff"])} if accepted else {}
+
+        def add(key, value, unit, more={}):
+            found.append({"name": f"{name} {key}", "value": value, "unit": unit,
+                          "command": f"make synth DESIGN={name}", **more})
+
+        estimated = f"slices, estimated; as mapped {slices.MAPPED.of(f['slices'])}"
+        for key, unit in (("lut", "LUT"), ("ff", "flip-flops"), ("slices", estimated)):
+            limit, more = (budgets | row.design.limits).get(key), {}
+            if limit is not None:
+                more = {"limit": limit} | ({"share": round(f[key] / limit, 3)} if limit else {})
+            if row.design.paper:
+                more |= {"peer": report.plan.paper[key],
+                         "ratio": round(f[key] / report.plan.paper[key], 3)}
+            add(key, f[key], unit, more)
+        goal = report.plan.chip["mhz"]
+        if f["mhz"]:
+            add("clock", round(f["mhz"], 1),
+                f"MHz, estimated; as routed {timing.ROUTED.of(f['mhz'])}; at least",
+                {"limit": goal, "share": round(f["mhz"] / goal, 3)})
+        for other in row.others:
+            if other.figures:
+                add(f"lut {other.family}", other.figures["lut"], "LUT")
+                add(f"ff {other.family}", other.figures["ff"], "flip-flops")
+    return {"failures": [failure.partition("\n")[0] for failure in report.failures],
+            "states": {row.design.name: row.state for row in report.rows}, "entries": found}
+
+
+def differences(before, after):
+    """The differences between two files of entries as a table in Markdown. An entry of only
+    one of them is new or gone; one that is known but not measured has the word for that."""
+    designs = {}  # name: {kind of figure: [then, now]}
+    for number, report in enumerate((before, after)):
+        for entry in report["entries"]:
+            name, kind = entry["name"].split(" ", 1)
+            designs.setdefault(name, {}).setdefault(kind, [None, None])[number] = entry["value"]
+    lines = []
+    for name, figures in sorted(designs.items()):
+        line, differs = [name], False
+        for kind in ("lut", "ff", "slices", "clock"):
+            then, now = figures.get(kind, (None, None))
+            differs |= then != now
+            if then is not None and now is not None and then != now:
+                line.append(f"{then:g} -> {now:g} ({now - then:+g})")
+            elif now is not None:
+                was = before.get("states", {}).get(name, "new")
+                line.append(f"{now:g}" + (f" ({was})" if then is None else ""))
+            else:
+                line.append("" if then is None else after["states"].get(name, "gone"))
+        if differs:
+            lines.append(line)
+    return Table(["design", "LUT", "FF", "slices", "MHz"], lines).markdown() if lines else \
+        "No figure of any design differs.\n"
+
+
+def page_figures(f):
+    """The figures for the page, which rounds them as the terminal does."""
+    costs = {path: {signal: [c.lut, c.ff, c.memory]
+                    for signal, c in signals.items() if c.lut or c.ff}
+             for path, signals in f["costs"].items()}
+    return f | {"lut6": f["cells"].get("LUT6", 0),
+                "levels": f["timing"]["paths"][0]["levels"] if f["mhz"] else 0,
+                "costs": {path: signals for path, signals in costs.items() if signals}}
+
+
+def page_design(report, row):
+    accepted = report.baseline["designs"].get(row.design.name)
+    d = {"name": row.design.name, "title": row.design.title, "file": row.design.file,
+         "top": row.design.top, "paper": row.design.paper, "limits": row.design.limits,
+         "failures": row.failures, "notes": row.notes, "state": row.state}
+    if row.figures:
+        d["figures"] = page_figures(row.figures)
+        paths = {".".join(names[:n]) for names in (p.split(".") for p in row.figures["costs"] if p)
+                 for n in range(1, len(names) + 1)}
+        d["modules"] = {path: report.library.module_at(row.design.top, path) for path in paths}
+    d["others"] = {o.family: {key: o.figures[key] for key in ("lut", "ff")}
+                   for o in row.others if o.figures}
+    if accepted:
+        d["accepted"] = {key: accepted[key] for key in baseline.KEYS}
+        d["budget"] = {"lut": baseline.lut_budget(accepted["lut"]),
+                       "ff": baseline.ff_budget(accepted["ff"])}
+    return d
+
+
+def html(report, page, libraries):
+    """The page of the file `page`: "@STYLE@", "@SCRIPT@" and "@DATA@" in it are replaced.
+    `libraries`: the folder of the pages' libraries from npm."""
+    data = {"yosys": short_version(report.yosys), "commit": report.commit,
+            "paper": report.plan.paper, "chip": report.plan.chip, "slowGrade": timing.SLOW_GRADE,
+            "routed": timing.ROUTED._asdict(),
+            "states": states_text(report.rows),
+            "cores": report.cores.rows if report.cores else [],
+            "table1": next((paper_table(report.plan, row).rows for row in report.rows
+                            if row.design.paper and row.figures), []),
+            "designs": [page_design(report, row) for row in report.rows],
+            "history": report.commits}
+    style, script = page_parts(libraries)
+    return filled(page.read_text(), {"@STYLE@": style, "@SCRIPT@": script,
+                                     "@DATA@": script_safe(data)})

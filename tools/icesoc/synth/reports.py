@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: MIT
+"""reports: the estimates held against published reports of XST, map and TRCE (synth/reports.json),
+which say how far they err (docs/utilisation.md).
+
+A report of map alone calibrates slices; one whose sources Yosys reads, too, has a netlist: its
+counts and the longest path of the report's clock, {type, fan-out, ns of the cell, of its net} a
+step and where it ends.
+"""
+import math
+import statistics
+
+from icesoc.synth import slices
+from icesoc.synth import timing
+from icesoc.synth.report import Table
+from icesoc.synth.slices import Range
+from icesoc.synth.sources import read_json
+from icesoc.util.tool import Stop
+
+MAP = ("sites", "ff", "slices", "one", "two")  # "one", "two": sites with so many functions
+NETLIST = ("lut", "memory", "through", "ff", "path", "end")
+
+
+def fault_of(report):
+    """Why the report cannot be read, "" if it can."""
+    for key, kind in (("at", str), ("device", str), ("tool", str), ("files", dict)):
+        if not isinstance(report.get(key), kind):
+            return f"no {key}"
+    for key, fields in (("map", MAP), ("netlist", NETLIST)):
+        missing = [field for field in fields if field not in report.get(key, dict.fromkeys(fields))]
+        if missing:
+            return f"{key} has no {', '.join(missing)}"
+    published = [report[key] for key in ("synthesised", "routed") if key in report]
+    if not all(isinstance(ns, float) and ns > 0 for ns in published):
+        return "a clock is no time"
+    if bool(published) != ("netlist" in report) or "map" not in report:
+        return "no map, or a netlist without a published clock or a clock without one"
+    return ""
+
+
+def read(file):
+    found = read_json(file)
+    if not isinstance(found, dict) or not isinstance(found.get("reports"), list):
+        raise Stop(f"{file}: it has no list of reports")
+    for number, report in enumerate(found["reports"]):
+        if why := fault_of(report) if isinstance(report, dict) else "no object":
+            raise Stop(f"{file}: report {number + 1} cannot be read: {why}")
+    return found["reports"]
+
+
+def estimated(report):
+    """The estimate of the longest path, ns, at the report's speed grade."""
+    path, (type, pin) = report["netlist"]["path"], report["netlist"]["end"]
+    ns = sum(cell + net for _, _, cell, net in path) + timing.end_delay(type, pin)
+    return ns * (timing.SLOW_GRADE if report["device"].endswith("-2") else 1)
+
+
+def clock_ratios(reports, kind):
+    """Published over estimated clock of the designs with such a report."""
+    return [estimated(report) / report[kind] for report in reports if kind in report]
+
+
+def site_ratios(reports):
+    """Sites of map's report over those estimated of Yosys' netlist."""
+    return [report["map"]["sites"] / slices.map_sites(n["lut"], n["memory"], n["through"])
+            for report in reports if (n := report.get("netlist"))]
+
+
+def left_out(values, fitted):
+    """Each value by what the others are fitted to."""
+    return [value / fitted(values[:i] + values[i + 1:]) for i, value in enumerate(values)]
+
+
+def nine_of_ten(errors):
+    twentieths = statistics.quantiles(errors, n=20, method="inclusive")
+    return twentieths[0], twentieths[-1]
+
+
+def range_of(ratios):
+    """The median of the ratios, with the errors that it has for each when it is of the others."""
+    median = statistics.median(ratios)
+    low, high = nine_of_ten(left_out(ratios, statistics.median))
+    return Range(median, median * low, median * high, len(ratios))
+
+
+def best_share(maps):
+    """The share of flip-flops that predicts the slices of these reports best, in hundredths."""
+    return min((n / 100 for n in range(151)), key=lambda share: sum(
+        abs(math.log(slices.occupied(m["sites"], m["ff"], share) / m["slices"])) for m in maps))
+
+
+def slices_range(maps):
+    """Published over predicted slices, each by the share that fits the others best."""
+    shares = [best_share(maps[:i] + maps[i + 1:]) for i in range(len(maps))]
+    errors = [m["slices"] / slices.occupied(m["sites"], m["ff"], share)
+              for m, share in zip(maps, shares)]
+    return Range(statistics.median(errors), *nine_of_ten(errors), len(errors))
+
+
+def paired(m):
+    """The share of functions without a site of their own."""
+    return m["two"] / (m["one"] + 2 * m["two"])
+
+
+def text(reports):
+    """The comparison for a person, and the figures that timing.py and slices.py have of it."""
+    rows = [["design", "device", "sites of map", "estimated", "MHz estimated", "XST", "routed",
+             "XST / estimated", "routed / estimated"]]
+    for report in (r for r in reports if "netlist" in r):
+        n, ns = report["netlist"], estimated(report)
+        published = [report.get(kind) for kind in ("synthesised", "routed")]
+        rows.append([report["design"], report["device"], report["map"]["sites"],
+                     round(slices.map_sites(n["lut"], n["memory"], n["through"])),
+                     f"{1000 / ns:.1f}", *(f"{1000 / p:.1f}" if p else "" for p in published),
+                     *(f"{ns / p:.2f}" if p else "" for p in published)])
+    maps = [report["map"] for report in reports]
+    ranges = [(f"clock by {kind}", range_of(clock_ratios(reports, key)))
+              for kind, key in (("XST", "synthesised"), ("TRCE", "routed"))]
+    ranges += [("sites of LUTs by map", range_of(site_ratios(reports))),
+               ("slices by map", slices_range(maps))]
+    return Table(rows[0], rows[1:]).plain() + "\n" + Table(
+        ["published / estimated", "median", "nine of ten", "designs"],
+        [[name, f"{r.median:.2f}", f"{r.low:.2f}-{r.high:.2f}", r.count] for name, r in ranges]
+    ).plain() + f"Flip-flops beside no LUT: {best_share(maps):.2f}\n"

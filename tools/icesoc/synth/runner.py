@@ -1,0 +1,356 @@
+# SPDX-License-Identifier: MIT
+"""runner: synthesis runs by Yosys, in parallel, each result kept under the hash of its sources, and
+the figures of a run.
+
+Figures are what the cache has in JSON: {"lut", "ff", ...: counts, "cells": by type as Yosys names
+them, "costs": {path: {signal: Cost}}, and of slices.py, timing.py, nets.py}. "mhz" is the clock
+that is judged, the median of all orders; "clocks" are those of all orders, rising.
+"""
+import concurrent.futures
+import dataclasses
+import functools
+import json
+import os
+import pathlib
+import re
+import shutil
+import sys
+import threading
+import time
+
+from icesoc.synth import nets
+from icesoc.synth import netlist
+from icesoc.synth import owners
+from icesoc.synth import slices
+from icesoc.synth import timing
+from icesoc.synth.sources import Design, read
+from icesoc.util.tool import Stop, digest, run as command, write
+
+# A netlist's figures follow from these.
+TOOL = digest(pathlib.Path(module.__file__).read_text() for module in (
+    nets, netlist, owners, slices, timing, sys.modules[__name__]))
+
+
+@dataclasses.dataclass
+class Run:
+    design: Design
+    family: str  # "xc6s", "xc7", "ecp5": the script of that name
+    wanted: bool = True  # False: only from the cache
+    netlist: pathlib.Path = None  # where Yosys wrote it
+    figures: dict = None
+    error: str = ""  # why there are no figures
+    known: bool = False  # another state of its sources was synthesised here
+    begun: float = 0  # when, by time.monotonic()
+    spent: float = None  # seconds; 0: nothing was to be synthesised
+
+    @property
+    def orders(self):
+        return self.design.orders if self.family == "xc6s" else 0
+
+
+@dataclasses.dataclass
+class Options:
+    scripts: pathlib.Path  # *.ys
+    cache: pathlib.Path
+    yosys: str = "yosys"
+    jobs: int = 1
+    luts: dict = dataclasses.field(default_factory=dict)  # of designs, as far as they are known
+
+
+@functools.cache
+def version_of(yosys):
+    return command([yosys, "-V"])[1].partition("\n")[0]
+
+
+def netlist_of_order(file, order):
+    return pathlib.Path(f"{file}.{order}")
+
+
+NO_MEMORY = "select -assert-none t:$mem*"
+DECLARES_MEMORY = re.compile(r"\b(?:reg|logic|bit)\b[^;]*?\w\s*\[[^];]*\]\s*[;,=]")
+
+
+def script_of(run, library, options, output, more="", memory=False):
+    """The script of a run; `more`: a further library of what its sources instantiate; `memory`: it
+    has one that they do not declare. A design with limits keeps Yosys' whole libraries: with fewer
+    modules its mapping is another, by chance."""
+    includes = "".join(f" -I{folder}" for folder in library.include_folders)
+    files, listed = library.files_of(run.design.top), [m.file for m in library.modules.values()]
+    # SystemVerilog has words of its own, and packages are listed before those that use them.
+    system = sorted((f for f in files if f.suffix.lower() == ".sv"), key=listed.index)
+    sources = "".join(f' "{file}"' for file in files if file not in system)
+    if system:
+        sources += "\nread_verilog @INCLUDES@" * bool(sources) + " -sv" + "".join(
+            f' "{file}"' for file in system)
+    parameters = "".join(f"chparam -set {name} {value} {run.design.top}\n"
+                         for name, value in sorted(run.design.parameters.items()))
+    script = (options.scripts / f"{run.family}.ys").read_text()
+    cells, mapping = ((options.scripts / f"xilinx_{name}.ys").read_text()
+                      for name in ("cells", "map"))
+    if run.design.limits:
+        cells, script = "", script.replace("prepare:", "begin:")
+    if not memory and not any(DECLARES_MEMORY.search(read(file)) for file in files):
+        script = script.replace("@NO_MEMORY@", NO_MEMORY).replace("-run map_memory:",
+                                                                  "-run map_ffram:")
+    orders = ""
+    if run.orders:  # elaborated anew: a copy made before would change the first mapping
+        orders = f"design -reset\n{script.partition('@MAP@')[0]}design -save unmapped\n"
+    for order in range(1, run.orders + 1):
+        permuted = mapping.replace("@ORDER@", f"permute,-S,{order};strash;")
+        orders += (f"design -load unmapped\n{permuted}select A:top\n"
+                   f"json -o {netlist_of_order(run.netlist, order)}\nselect -clear\n")
+    for place, text in (("NO_MEMORY", ""), ("MAP", mapping.replace("@ORDER@", "")),
+                        ("ORDERS", orders), ("CELLS", cells), ("MORE", more), ("SOURCES", sources),
+                        ("INCLUDES", includes), ("PARAMETERS", parameters),
+                        ("TOP", run.design.top), ("OUTPUT", output)):
+        script = script.replace(f"@{place}@", str(text))
+    return script
+
+
+def yosys_by(script, output, options):
+    """Lets Yosys carry out a script that writes `output`: the whole file or none."""
+    part, log = pathlib.Path(f"{output}.part"), output.with_suffix(".log")
+    write(output.with_suffix(".ys"), script(part))
+    status, said = command([options.yosys, "-q", "-s", output.with_suffix(".ys")])
+    write(log, said)
+    if status:
+        errors = [line for line in said.splitlines() if "ERROR" in line] or said.splitlines()[-1:]
+        if re.search(r"\.sv:\d+: ERROR: syntax error", errors[0], re.I):
+            errors.append("SystemVerilog that this Yosys does not read: tests and flights have it "
+                          "as it is; a netlist needs what sv2v makes of it (docs/recipes.md)")
+        raise Stop("\n".join([*errors, f"whole log: {log}"]))
+    if output.exists() and output.read_bytes() == part.read_bytes():
+        part.unlink()  # what is made of it stays
+    else:
+        part.replace(output)
+
+
+def synthesise(run, library, options):
+    more, memory = "", False
+    while True:
+        try:
+            yosys_by(lambda part: script_of(run, library, options, part, more, memory),
+                     run.netlist, options)
+            return
+        except Stop as stop:
+            if "referenced in module" in str(stop) and not more:
+                more = "+/xilinx/cells_xtra.v"
+            elif "Assertion failed" in str(stop) and not memory:
+                memory = True
+            else:
+                raise
+
+
+def figures_of(n, spartan6, files_along):
+    """The figures of one netlist; timing and nets only for Spartan-6."""
+    owner = owners.owners_of(n, files_along)
+    types = [cell.type for cell in n.cells]
+    costs = owners.costs_of(n, owner)
+    total = sum((cost for signals in costs.values() for cost in signals.values()), owners.Cost())
+    figures = {"cells": {type: types.count(type) for type in sorted(set(types))},
+               "lut": total.lut, "ff": total.ff, "carry": total.carry, "ram": total.ram,
+               "dsp": total.dsp, "lutRam": sum(netlist.MEMORY_LUTS.get(t, 0) for t in types),
+               "shift": sum(map(netlist.is_shift_register, types)),
+               # Ports that leave the chip: not those of the memory controller.
+               "pins": sum(len(p.bits) for p in n.ports if not p.name.startswith("mcb_")),
+               "costs": costs, "timing": {"paths": [], "ends": []},
+               "nets": {"fanouts": [], "clocks": [], "resets": []}, "places": {}, "mhz": 0,
+               **slices.slices_of(n)}
+    if spartan6:
+        figures["timing"], by_clock = timing.timing_of(n, owner)
+        figures["nets"] = nets.nets_of(n, owner, by_clock)
+        figures["places"] = places_of(n, figures)
+        if figures["timing"]["paths"]:
+            figures["mhz"] = 1000 / (figures["timing"]["paths"][0]["ns"] * timing.SLOW_GRADE)
+    return figures
+
+
+def places_of(n, figures):
+    """File and line of each signal that the report names."""
+    named = {f"{path}.{signal}" if path else signal
+             for path, signals in figures["costs"].items() for signal in signals}
+    for path in figures["timing"]["paths"]:
+        named |= {path["from"], path["to"], *(step[1] for step in path["steps"])}
+    named |= {net["name"] for list in figures["nets"].values() for net in list}
+    return {nets.without_index(signal): at for signal in sorted(named)
+            if (at := nets.place_of(n, signal))}
+
+
+def together(orders):
+    """The figures of a design of those of its netlist in several orders: the order with the median
+    of LUTs, but for time the one with the median clock, beside the paths of the slowest."""
+    if len(orders) == 1:
+        return orders[0] | {"luts": [orders[0]["lut"]], "clocks": [orders[0]["mhz"]]}
+    by_lut = sorted(orders, key=lambda figures: figures["lut"])
+    by_clock = sorted(orders, key=lambda figures: figures["mhz"])
+    middle, setting, slowest = by_lut[len(orders) // 2], by_clock[len(orders) // 2], by_clock[0]
+    return middle | {
+        "timing": setting["timing"] | {"slowest": slowest["timing"]["paths"]},
+        "nets": setting["nets"], "mhz": setting["mhz"],
+        "places": slowest["places"] | setting["places"] | middle["places"],
+        "luts": [f["lut"] for f in by_lut], "clocks": [f["mhz"] for f in by_clock]}
+
+
+def read_figures(text):
+    figures = json.loads(text)
+    for signals in figures["costs"].values():
+        for signal, cost in signals.items():
+            signals[signal] = owners.Cost(*cost)
+    return figures
+
+
+def place(run, library, options, version):
+    """Sets run.netlist, where Yosys writes the netlist of these sources."""
+    run.netlist = pathlib.Path()  # the hash is not of where its output goes
+    sources = digest([library.hash_of(run.design.top), version,
+                      script_of(run, library, options, "")])
+    run.netlist = options.cache / f"{run.design.name}.{run.family}.{sources}.json"
+
+
+def carry_out_one(run, library, options, version):
+    """Returns whether the synthesis succeeded."""
+    top = run.design.top
+    place(run, library, options, version)
+    stem, kept = f"{run.design.name}.{run.family}.", run.netlist.with_suffix(f".{TOOL}.figures")
+    is_new = not run.netlist.exists()
+    run.known = is_new and any(options.cache.glob(f"{stem}*.json"))
+    if is_new and not run.wanted:
+        run.error = "not synthesised since its sources changed"
+        return False
+    if not is_new and kept.exists():
+        run.figures = read_figures(kept.read_text())
+        return False
+    if is_new:
+        synthesise(run, library, options)
+    files = [run.netlist] + [netlist_of_order(run.netlist, n + 1) for n in range(run.orders)]
+    run.figures = together([figures_of(netlist.read_netlist(file), run.family == "xc6s",
+                                       lambda path: library.files_along(top, path))
+                            for file in files])
+    write(kept, json.dumps(run.figures))
+    return is_new
+
+
+def time_left(runs, options, now):
+    """"11 of 55 designs, about 3:20 left: soc, vision". By its LUTs a design takes a time that is
+    that of an idle machine; those that have ended, or the load, say how much slower this one is. A
+    netlist in several orders says how many of them it has."""
+    def expected(run):
+        return 1 + options.luts.get(run.design.name, 100) * (1 + run.orders) / 200
+
+    def rest(run):
+        files = [f"{run.netlist}.part"] + [netlist_of_order(run.netlist, n + 1)
+                                           for n in range(run.orders)]
+        age, written = now - run.begun, sum(map(os.path.exists, files))
+        return (age * (len(files) - written) / written if written else
+                max(slowness * expected(run) - age, age / 10))
+
+    ended = [run for run in runs if run.spent is not None]
+    new = [run for run in ended if run.spent]
+    slowness = sum(run.spent for run in new) / sum(map(expected, new)) if new else \
+        max(1, os.getloadavg()[0] / os.cpu_count())
+    running = [run for run in runs if run.begun and run.spent is None]
+    rests = list(map(rest, running))
+    waiting = slowness * sum(expected(run) for run in runs if not run.begun)
+    left = round(max([0, (waiting + sum(rests)) / options.jobs, *rests]))
+    return (f"{len(ended)} of {len(runs)} designs, about {left // 60}:{left % 60:02} left: "
+            f"{', '.join(run.design.name for run in running)}")
+
+
+def carry_out(runs, library, options):
+    """Carries out all runs, names finished ones on stderr, and each ten seconds what is left. A
+    failed run does not stop others."""
+    version = version_of(options.yosys)
+    options.cache.mkdir(parents=True, exist_ok=True)
+    wanted, terminal, over = [r for r in runs if r.wanted], threading.Lock(), threading.Event()
+
+    def tell():
+        while not over.wait(10) and any(run.spent is None for run in wanted):
+            with terminal:
+                print(time_left(wanted, options, time.monotonic()), file=sys.stderr)
+
+    def work(run):
+        run.begun = time.monotonic()
+        try:
+            is_new = carry_out_one(run, library, options, version)
+        except (Stop, ValueError, KeyError, OSError) as error:
+            run.error, is_new = str(error), True
+        run.spent = time.monotonic() - run.begun if is_new else 0
+        with terminal:
+            if is_new and run.wanted:
+                told = (f"{run.figures['lut']} LUT, {run.figures['ff']} FF" if run.figures
+                        else "failed")
+                done = sum(each.spent is not None for each in wanted)
+                print(f"[{done}/{len(wanted)}] {run.design.name} for {run.family}: {told} "
+                      f"({run.spent:.1f} s)", file=sys.stderr)
+
+    def size(run):  # those with limits first, since these are looked at; then the largest
+        files = library.files_of(run.design.top)
+        return (not run.design.limits, -sum(file.stat().st_size for file in files))
+
+    threading.Thread(target=tell, daemon=True).start()
+    sys.setrecursionlimit(1 << 20)  # as deep as a design's logic
+    threading.stack_size(512 << 20)
+    try:
+        in_parallel(options.jobs, work, sorted(runs, key=size))
+    finally:
+        over.set()
+
+
+def in_parallel(jobs, work, items):
+    """Calls work(item) for each, `jobs` at a time; raises the first exception."""
+    with concurrent.futures.ThreadPoolExecutor(max(1, jobs)) as pool:
+        try:
+            for future in [pool.submit(work, item) for item in items]:
+                future.result()
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+
+
+# Yosys' models of a family's primitives.
+SIMULATION = {"xc6s": "+/xilinx/cells_sim.v", "ecp5": "+/ecp5/cells_sim.v"}
+
+
+def filled(script, words):
+    for name, value in words.items():
+        script = script.replace(f"@{name}@", str(value))
+    return script
+
+
+def mapped(design, family, library, options):
+    """The run of a design whose netlist is there: of all orders the first, else that without."""
+    options.cache.mkdir(parents=True, exist_ok=True)
+    version = version_of(options.yosys)
+    for orders in (design.orders, 0):
+        run = Run(dataclasses.replace(design, orders=orders), family)
+        place(run, library, options, version)
+        if run.netlist.exists():
+            return run
+    synthesise(run, library, options)
+    return run
+
+
+def write_for_simulation(design, family, library, options, file, models):
+    """Writes the netlist of a design's figures as Verilog, for primitives with models."""
+    run = mapped(design, family, library, options)
+    words = {"NETLIST": file.with_suffix(".json"), "TOP": design.top,
+             "SIMULATION": SIMULATION[run.family], "MODELS": " ".join(map(str, models))}
+    file.parent.mkdir(parents=True, exist_ok=True)
+    write(file.with_suffix(".json"), netlist.with_models(run.netlist))
+    scripts = (options.scripts / "simulate.ys").read_text()
+    yosys_by(lambda part: filled(scripts, {**words, "OUTPUT": part}), file, options)
+
+
+def write_edif(design, library, options, folder):
+    """Writes a design as EDIF, FOLDER/<name>.edf, by the script edif.ys, and its Verilog to
+    FOLDER/verilog."""
+    verilog = folder / "verilog"
+    shutil.rmtree(verilog, ignore_errors=True)
+    verilog.mkdir(parents=True)
+    headers = {file.name: file for include in reversed(library.include_folders)
+               for file in include.glob("*.vh")}  # the first folder's counts
+    for file in [*headers.values(), *library.files_of(design.top)]:
+        shutil.copy(file, verilog)
+    run = Run(design, "edif", netlist=folder / f"{design.name}.edf")
+    synthesise(run, library, options)
+    os.replace(f"{run.netlist}.part.json", folder / f"{design.name}.json")

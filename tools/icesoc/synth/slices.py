@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: MIT
+"""slices: estimates a netlist's slices of four LUT6 and eight flip-flops (docs/utilisation.md).
+
+The rules of Spartan-6 and 7-series slices (UG384, UG474): clock, enable and set/reset are common to
+a slice; a LUT6 is two functions of at most five common inputs; a carry chain takes a slice for
+every four bits with the LUTs in front of it; a LUT RAM takes a SLICEM.
+"""
+import typing
+
+from icesoc.synth import netlist
+from icesoc.synth.netlist import LUT_INPUTS, MEMORY_LUTS, UNDEFINED
+
+SITES, FLIP_FLOPS, MUXES, SHARED_INPUTS = 4, 8, 2, 5
+
+# map makes (sites + share * flip-flops) / 4 slices: the share of flip-flops that find no place
+# beside a used LUT. These figures are of published reports (reports.py).
+USUAL_SHARE = 0.74
+# Functions that map finds no site of their own for, since two share one: 2 to 31 % in the reports,
+# 14 % on average. Fewer are counted on, since map's sites are more than estimated (reports.py).
+USUAL_PAIRING = 0.11
+
+
+class Range(typing.NamedTuple):
+    """Published over estimated figures of `count` designs, each predicted by the others: the
+    median, and where nine of ten lie."""
+    median: float
+    low: float
+    high: float
+    count: int
+
+    def of(self, value):
+        return f"{value * self.low:.0f}-{value * self.high:.0f}"
+
+
+MAPPED = Range(median=1.02, low=0.73, high=1.40, count=58)
+
+
+def occupied(sites, flip_flops, share):
+    return (sites + share * flip_flops) / SITES
+
+
+def map_sites(luts, memory, through):
+    """Sites of LUTs as map counts them, route-throughs included, two functions in some of them;
+    `memory` of the LUTs are RAM or shift registers."""
+    return memory + (1 - USUAL_PAIRING) * (luts - memory + through)
+
+
+def sites_for(luts):
+    """LUT6 sites for these sets of inputs: two share one if together they have five inputs at most.
+    Greedy, the partner with most inputs in common first; LUTs with nothing in common are left
+    apart, as map does."""
+    readers = {}
+    for i, inputs in enumerate(luts):
+        if len(inputs) <= SHARED_INPUTS:
+            for bit in inputs:
+                readers.setdefault(bit, []).append(i)
+    placed, sites = set(), 0
+    for i, inputs in enumerate(luts):
+        if i in placed:
+            continue
+        placed.add(i)
+        sites += 1
+        if len(inputs) > SHARED_INPUTS:
+            continue
+        common = {}
+        for bit in inputs:
+            if len(readers[bit]) <= 64:  # a reset's readers are no neighbours
+                for k in readers[bit]:
+                    if k not in placed:
+                        common[k] = common.get(k, 0) + 1
+        partners = [(-count, k) for k, count in common.items()
+                    if count > 1 and len(inputs) + len(luts[k]) - count <= SHARED_INPUTS]
+        if partners:
+            placed.add(min(partners)[1])
+    return sites
+
+
+def through_sites(n, carry):
+    """Carry bits whose S is no LUT of its own: each takes a site as a route-through."""
+    return sum(bit >= 0 and n.driver_type(bit) not in LUT_INPUTS for bit in carry.bits("S"))
+
+
+def control_set(cell):
+    """Clock, enable and set or reset of a flip-flop."""
+    resets = (cell.bit(port) for port in ("R", "S", "CLR", "PRE"))
+    return (cell.bit("C"), cell.bit("CE"), next((b for b in resets if b != UNDEFINED), UNDEFINED))
+
+
+def slices_of(n):
+    """The estimate ("slices"); "low", the least for any placer; "high", above which one published
+    design of twenty lies; and the counts behind them."""
+    luts, sets = [], {}  # sets: control set -> [flip-flops fed by a LUT of their own, others]
+    memory = carry = through = wide = flip_flops = 0
+    for cell in n.cells:
+        if cell.type in LUT_INPUTS:
+            luts.append({bit for pin in cell.pins if not pin.output
+                         for bit in pin.bits if bit >= 0})
+        elif netlist.is_memory(cell.type):
+            memory += MEMORY_LUTS.get(cell.type, 1)
+        elif cell.type == "MUXF7":
+            wide += 1
+        elif cell.type == "CARRY4":
+            carry += 1
+            through += through_sites(n, cell)
+        elif netlist.is_register(cell.type):
+            flip_flops += 1
+            d = cell.bit("D")
+            fed = n.driver_type(d) in LUT_INPUTS and n.fanout(d) == 1
+            sets.setdefault(control_set(cell), [0, 0])[not fed] += 1
+
+    def up(number, unit):
+        return -(-number // unit)
+
+    sites = sites_for(luts) + memory + through
+    slicem = up(memory, SITES)
+    usual = max(sites, (1 - USUAL_PAIRING) * len(luts) + memory + through)
+    low = max(up(sites, SITES), slicem + carry + up(wide, MUXES),
+              sum(max(up(fed, SITES), up(fed + rest, FLIP_FLOPS)) for fed, rest in sets.values()))
+    estimate = occupied(usual, flip_flops, USUAL_SHARE)
+    likely, high = (max(low, int(n + 0.5)) for n in (estimate, estimate * MAPPED.high))
+    return {"low": low, "slices": likely, "high": high,
+            "slicem": slicem, "sites": sites, "through": through, "sets": len(sets)}

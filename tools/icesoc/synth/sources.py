@@ -1,0 +1,224 @@
+# SPDX-License-Identifier: MIT
+"""sources: finds the Verilog files that a module needs, by their instances, and the designs to
+synthesise, with their limits (synth/designs.json)."""
+import dataclasses
+import functools
+import json
+import pathlib
+import re
+
+from icesoc.util.tool import Stop, digest
+
+# A comment, a string, a word or directive, or the punctuation that instances are recognised by.
+TOKEN = re.compile(r'//[^\n]*|/\*.*?(?:\*/|$)|"([^"]*)"?|(`?[\w$]+|`)|([()#;]|::)', re.S)
+
+PROPERTIES = {"FORMAL", "RULES", "COVER_POINTS"}  # what is under these is no hardware
+
+
+@functools.cache
+def tokens(text):
+    """The words and punctuation without properties; an include directive becomes the token `include
+    and the name."""
+    result = []
+    branches = []  # of the conditions around a word: True: dropped; False: its other branch is
+    condition = ""
+    for string, word, mark in TOKEN.findall(text):
+        if condition:
+            branches.append((condition == "`ifdef") if word in PROPERTIES else None)
+            condition = ""
+        elif word in ("`ifdef", "`ifndef"):
+            condition = word
+        elif word in ("`else", "`elsif") and branches:
+            branches[-1] = {False: True, True: None}.get(branches[-1])
+        elif word == "`endif" and branches:
+            branches.pop()
+        elif (word or mark or (result and result[-1] == "`include")) and True not in branches:
+            result.append(word or mark or string)
+    return result
+
+
+def is_name(token):
+    return token[:1].isalpha() or token[:1] == "_"
+
+
+def closing(t, opened):
+    """The index after the parenthesis that closes the one at `opened`."""
+    depth = 0
+    for i in range(opened, len(t)):
+        depth += {"(": 1, ")": -1}.get(t[i], 0)
+        if depth == 0:
+            return i + 1
+    return len(t)
+
+
+@functools.cache
+def read(file):
+    return pathlib.Path(file).read_text(errors="replace")
+
+
+@dataclasses.dataclass
+class Module:
+    """A module, or a package of SystemVerilog, which is as an instance of those that use it."""
+    file: pathlib.Path
+    is_package: bool = False
+    # Instance name -> module names: several in branches of `ifdef or generate.
+    instances: dict = dataclasses.field(default_factory=dict)
+    includes: set = dataclasses.field(default_factory=set)
+
+
+class Library:
+    """All modules of *.v of these folders, then of these files; of two modules with one name the
+    first counts."""
+
+    def __init__(self, folders, include_folders, files=()):
+        self.include_folders = list(include_folders)
+        self.modules = {}
+        for folder in folders:
+            if not folder.is_dir():
+                raise Stop(f"{folder} is not a folder")
+            for file in sorted(folder.glob("*.v")):
+                self.scan(file)
+        for file in files:
+            self.scan(file)
+        for module in self.modules.values():  # other names are no instances
+            module.instances = {name: known for name, types in module.instances.items()
+                                if (known := [t for t in types if t in self.modules])}
+
+    def included(self, name):
+        """The file that an include directive names, None if it is not known."""
+        return next((folder / name for folder in self.include_folders if (folder / name).exists()),
+                    None)
+
+    def all_tokens(self, file):
+        """Tokens of a file, and behind each include those of the file that it names."""
+        result = []
+        for token in tokens(read(file)):
+            is_include = bool(result) and result[-1] == "`include"
+            result.append(token)
+            if is_include and self.included(token):
+                result += tokens(read(self.included(token)))
+        return result
+
+    def scan(self, file):
+        t = self.all_tokens(file) + ["", ""]
+        current, outside = None, {}  # what is imported outside of modules counts for all behind it
+        for i, token in enumerate(t[:-2]):
+            if token in ("module", "package") and is_name(t[i + 1]):
+                current = None
+                if t[i + 1] not in self.modules:
+                    current = self.modules[t[i + 1]] = Module(file, token == "package", {**outside})
+            elif token in ("endmodule", "endpackage"):
+                current = None
+            elif token == "::":
+                (current.instances if current else outside)["::" + t[i - 1]] = [t[i - 1]]
+            elif current and token == "`include":
+                current.includes.add(t[i + 1])
+            elif current and t[i + 2] == "(" and is_name(token):
+                k = i + 1  # TYPE [#(...)] NAME (
+                if t[k] == "#" and t[k + 1] == "(":
+                    k = closing(t, k + 1)
+                if k + 1 < len(t) and is_name(t[k]) and t[k + 1] == "(":
+                    current.instances.setdefault(t[k], []).append(token)
+
+    def reach(self, top):
+        """The module and all it instantiates."""
+        if top not in self.modules:
+            raise Stop(f"there is no module {top}")
+        found, left = {top}, [top]
+        while left:
+            for types in self.modules[left.pop()].instances.values():
+                left += set(types) - found
+                found.update(types)
+        return found
+
+    def files_of(self, top):
+        return sorted({self.modules[module].file for module in self.reach(top)})
+
+    def all_files_of(self, top):
+        """The files of the module, and those that they include."""
+        names = sorted(set().union(*(self.modules[module].includes for module in self.reach(top))))
+        return self.files_of(top) + [file for name in names if (file := self.included(name))]
+
+    @functools.cache
+    def hash_of(self, top):
+        """A hash that changes with any of these files."""
+        return digest(map(read, self.all_files_of(top)))
+
+    def module_at(self, top, path):
+        """Module of the instance at the end of a path of instance names, "" if unknown."""
+        module = top
+        for name in path.split(".") if path else ():
+            if name in self.modules[module].instances:
+                module = self.modules[module].instances[name][0]
+            elif "[" not in name and not name.startswith("g_"):
+                return ""  # neither an instance nor a generate block
+        return module
+
+    def files_along(self, top, path):
+        """File names of the modules along such a path, the top's included."""
+        names = path.split(".") if path else []
+        modules = [self.module_at(top, ".".join(names[:n])) for n in range(len(names) + 1)]
+        return {self.modules[module].file.name for module in modules if module}
+
+
+@dataclasses.dataclass
+class Design:
+    name: str
+    top: str
+    title: str = ""
+    file: str = ""  # where the module is, relative to the project
+    parameters: dict = dataclasses.field(default_factory=dict)
+    limits: dict = dataclasses.field(default_factory=dict)  # "lut", "ff", "slices"
+    paper: bool = False  # the paper has figures for it
+    orders: int = 0  # further orders of inputs and outputs in which it is mapped: one clock is luck
+
+
+@dataclasses.dataclass
+class Plan:
+    chip: dict
+    paper: dict  # Table I: "lut", "ff", "slices"
+    designs: list
+    simulated: dict  # design -> prefixes of the tests that run on its netlist; others are proven
+    xilinx: list  # designs of parts that only Xilinx's FPGAs have
+
+    def has(self, design, family):
+        return family != "ecp5" or design.name not in self.xilinx
+
+
+def sentence_of(file, module):
+    """"// name: one sentence" at the head of a file, or a converted core's own sentence."""
+    begin = f"// {module}: "
+    return next((line.removeprefix(begin) for line in read(file).split("\n", 8)[:8]
+                 if line.startswith(begin)), "")
+
+
+def read_json(file):
+    """A file of ours; an exception contains its name."""
+    try:
+        return json.loads(file.read_text())
+    except (OSError, ValueError) as error:
+        raise Stop(f"{file}: {error}") from None
+
+
+def read_plan(file, library, root):
+    """The designs of the file, then every other module that has a file of its own; `*_rules` and
+    `*_proof` are properties, not hardware."""
+    j = read_json(file)
+    designs = [Design(**design) for design in j["designs"]]
+    for design in designs:
+        if design.top not in library.modules:
+            raise Stop(f"{file}: there is no module {design.top}")
+    tops = {design.top for design in designs}
+    for name, module in sorted(library.modules.items()):
+        is_hardware = not name.endswith(("_rules", "_proof")) and not module.is_package
+        # Of a converted core only the core itself.
+        if name not in tops and is_hardware and module.file.stem == name:
+            designs.append(Design(name, name, sentence_of(module.file, name)))
+    for design in designs:
+        design.file = str(relative_to(library.modules[design.top].file, root))
+    return Plan(j["chip"], j["paper"], designs, j.get("simulated", {}), j.get("xilinx", []))
+
+
+def relative_to(file, root):
+    file, root = file.absolute(), root.absolute()
+    return file.relative_to(root) if file.is_relative_to(root) else file

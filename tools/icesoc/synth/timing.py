@@ -1,0 +1,223 @@
+# SPDX-License-Identifier: MIT
+"""timing: the longest paths of a Spartan-6 netlist, by an estimate as XST makes before placement.
+
+Cell delays are those that XST 14.7 prints for speed grade -3; a net's delay depends on its fan-out
+alone. Grade -2 is slower by SLOW_GRADE. Clock skew, pads and placement are not known here: ROUTED
+says how far published designs ended from their estimate.
+"""
+import typing
+
+from icesoc.synth import netlist
+from icesoc.synth.netlist import LUT_INPUTS
+from icesoc.synth.slices import Range
+
+# -2 over -3, about: DS162 has 0.26 for 0.21 ns (LUT), 0.53 for 0.45 (clock to out)
+SLOW_GRADE = 1.2
+
+# ns, grade -3
+CLOCK_TO_OUT, LUT, SETUP, ENABLE_SETUP, RESET_SETUP = 0.447, 0.205, 0.102, 0.322, 0.430
+CARRY_IN, CARRY_BIT, CARRY_OUT, WIDE_MUX = 0.172, 0.019, 0.180, 0.140
+RAM_CLOCK, RAM_SETUP, LUT_RAM_CLOCK, LUT_RAM_SETUP = 1.850, 0.400, 0.900, 0.300
+MULTIPLIER_CLOCK, MULTIPLIER_SETUP, MULTIPLY, MULTIPLIER_ADD = 4.700, 1.500, 4.560, 2.687
+# Fan-out and delay of a net: points between which it is interpolated.
+NET_DELAYS = ((0, 0.0), (1, 0.580), (2, 0.617), (5, 0.715), (16, 1.004), (26, 1.207), (88, 1.799))
+
+# Published clock after routing over its estimate: the median of so many designs, and where nine of
+# ten lie, each predicted by the others (reports.py).
+ROUTED = Range(median=1.22, low=0.92, high=1.57, count=11)
+
+
+def net_delay(fanout):
+    pairs = list(zip(NET_DELAYS, NET_DELAYS[1:]))
+    (x0, y0), (x1, y1) = next((pair for pair in pairs if fanout <= pair[1][0]), pairs[-1])
+    return y0 + (y1 - y0) * (min(fanout, 200) - x0) / (x1 - x0)
+
+
+def is_block_ram(type):
+    return type.startswith("RAMB")
+
+
+def is_combinational(type):
+    return type in LUT_INPUTS or type.startswith("MUXF") or type == "CARRY4"
+
+
+def is_unclocked(cell):
+    """True for logic: a multiplier without any of its registers is, too."""
+    return is_combinational(cell.type) or (cell.type.startswith("DSP48") and cell.bit("CLK") < 0)
+
+
+def is_read(address, output):
+    """True if a memory's output follows this port: DOA follows ADDRA, DPO DPRA0.., SPO A0..; none
+    follows the write port, nor a port that is no address."""
+    if address.startswith("ADDR"):
+        return len(output) < 3 or address[-1] == output[2]
+    if address.startswith("DPRA"):
+        return output == "DPO"
+    return address[0] == "A" and output != "DPO"
+
+
+def is_read_only(port):
+    """True for an address port without writes: no path ends there."""
+    return port in ("ADDRA", "ADDRB", "ADDRC") or port.startswith("DPRA")
+
+
+def start_delay(type):
+    if is_block_ram(type):
+        return RAM_CLOCK
+    if type.startswith("DSP48"):
+        return MULTIPLIER_CLOCK
+    return CLOCK_TO_OUT if netlist.is_register(type) else LUT_RAM_CLOCK
+
+
+def end_delay(type, port):
+    if is_block_ram(type):
+        return RAM_SETUP
+    if type.startswith("DSP48"):
+        return MULTIPLIER_SETUP
+    if netlist.is_register(type):
+        return {"D": SETUP, "CE": ENABLE_SETUP}.get(port, RESET_SETUP)
+    return LUT_RAM_SETUP
+
+
+def through_delay(cell, pin, i, to, o):
+    """The delay of a combinational cell from bit i of a pin to bit o of an output, None without
+    such a path."""
+    if cell.type.startswith("DSP48"):
+        return MULTIPLIER_ADD if pin.port == "C" else MULTIPLY
+    if cell.type != "CARRY4":
+        return WIDE_MUX if cell.type.startswith("MUXF") else LUT
+    single = pin.port in ("CI", "CYINIT")
+    if not single and i > o:
+        return None
+    entry = CARRY_BIT * o if single else CARRY_IN + CARRY_BIT * (o - i)
+    return entry + (CARRY_OUT if to.port == "O" else CARRY_BIT)
+
+
+class Arrival(typing.NamedTuple):
+    ns: float
+    levels: int
+    cell: int    # that drives the bit
+    before: int  # bit of the path before, None where it starts
+    delay: float
+
+
+class Analysis:
+    def __init__(self, n):
+        self.n = n
+        self.known = {}
+        self.nets = {bit: net_delay(len(readers)) for bit, readers in n.readers.items()}
+
+    def at(self, bit):
+        """The latest Arrival at a bit that starts at a clocked cell; None without one."""
+        if bit not in self.known:
+            self.known[bit] = None  # a loop ends here
+            self.known[bit] = self.arrive(bit)
+        return self.known[bit]
+
+    def net(self, bit, reader):
+        """The delay of a net; none is needed from a LUT into the flip-flop, wide multiplexer or
+        carry beside it."""
+        source, to = self.n.driver_type(bit), self.n.cells[reader].type
+        if source == "CARRY4" and to == "CARRY4":
+            return 0
+        beside = netlist.is_flip_flop(to) or to.startswith("MUXF") or to == "CARRY4"
+        if beside and is_combinational(source) and self.n.fanout(bit) == 1:
+            return 0
+        return self.nets.get(bit, 0)
+
+    def arrive(self, bit):
+        if bit not in self.n.driver:
+            return None
+        index = self.n.driver[bit]
+        cell = self.n.cells[index]
+        memory, best = netlist.is_memory(cell.type), None
+        if not is_unclocked(cell):
+            delay = start_delay(cell.type)
+            best = Arrival(delay, 0, index, None, delay)
+            if not memory:
+                return best
+        to, o = next((pin, pin.bits.index(bit)) for pin in cell.pins
+                     if pin.output and bit in pin.bits)
+        for pin in cell.pins:
+            if pin.output or (memory and not is_read(pin.port, to.port)):
+                continue
+            chain = cell.type == "CARRY4" and pin.port in ("CI", "CYINIT")
+            for i, source in enumerate(pin.bits):
+                before = self.at(source) if source >= 0 else None
+                delay = LUT if memory else through_delay(cell, pin, i, to, o)
+                if before is None or delay is None:
+                    continue
+                ns = before.ns + self.net(source, index) + delay
+                if best is None or ns > best.ns:
+                    best = Arrival(ns, before.levels + (not chain), index, source, delay)
+        return best
+
+    def steps(self, bit, reader):
+        """The way to a bit, [cell, net, fan-out, ns of the cell, of the net behind it] a step, and
+        the bit where it begins."""
+        steps = []
+        while True:
+            arrival = self.at(bit)
+            steps.insert(0, [self.n.cells[arrival.cell].type, self.n.name_of(bit),
+                             self.n.fanout(bit), arrival.delay, round(self.net(bit, reader), 3)])
+            if arrival.before is None:
+                return steps, bit
+            reader, bit = arrival.cell, arrival.before
+
+
+def start_name(n, owners, bit):
+    """The register or memory that drives a bit; without a name of its own, the name of its load."""
+    return n.name_of(bit) or (f"(for) {owners[n.driver[bit]]}" if bit in n.driver else "")
+
+
+def end_name(n, owners, index):
+    cell = n.cells[index]
+    if cell.named and not netlist.is_flip_flop(cell.type):
+        return cell.name
+    driven = [pin.bits[0] for pin in cell.pins if pin.output and pin.bits]
+    return start_name(n, owners, driven[0]) if driven else owners[index]
+
+
+def path_ends(cell):
+    """(port, bit) of each input at which a path may end."""
+    memory = netlist.is_memory(cell.type)
+    return [(pin.port, bit) for pin in cell.pins if not pin.output and pin.port != "C"
+            and not (memory and is_read_only(pin.port)) for bit in pin.bits if bit >= 0]
+
+
+def timing_of(n, owners, count=10):
+    """Paths between clocked cells, longest first, one for each end register; "ends": registers and
+    memories by their longest path, half a ns each, of grade -2; and {clock's bit: the longest path
+    that ends with it, ns}."""
+    analysis, ends, by_clock = Analysis(n), [], {}
+    worst = {}  # register -> (ns, its name, pin, levels, bit, cell)
+    for index, cell in enumerate(n.cells):
+        if is_unclocked(cell):
+            continue
+        longest = None
+        for port, bit in path_ends(cell):
+            arrival = analysis.at(bit)
+            if arrival is None:
+                continue
+            ns = arrival.ns + analysis.net(bit, index) + end_delay(cell.type, port)
+            if longest is not None and ns <= longest[0]:
+                continue
+            longest = (ns, end_name(n, owners, index), port, arrival.levels, bit, index)
+        if longest is None:
+            continue
+        register = longest[1].partition("[")[0]
+        if register not in worst or longest[0] > worst[register][0]:
+            worst[register] = longest
+        for pin in cell.pins:
+            if netlist.is_clock(pin.port) and pin.bits:
+                by_clock[pin.bits[0]] = max(by_clock.get(pin.bits[0], 0), longest[0])
+        bin = int(2 * longest[0] * SLOW_GRADE)
+        ends += [0] * (bin + 1 - len(ends))
+        ends[bin] += 1
+    paths = []
+    longest_first = sorted(worst.values(), key=lambda path: (-path[0], path[1]))
+    for ns, to, pin, levels, bit, index in longest_first[:count]:
+        steps, begin = analysis.steps(bit, index)
+        paths.append({"from": start_name(n, owners, begin), "to": to, "pin": pin, "levels": levels,
+                      "ns": ns, "steps": steps})
+    return {"paths": paths, "ends": ends}, by_clock

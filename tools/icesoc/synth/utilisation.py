@@ -1,0 +1,242 @@
+# SPDX-License-Identifier: MIT
+"""utilisation: reports the chip's and its parts' use of the FPGA, beside limits and the paper."""
+import argparse
+import concurrent.futures
+import json
+import os
+import pathlib
+import re
+import sys
+
+from icesoc.synth import baseline
+from icesoc.synth import cores
+from icesoc.synth import equivalence
+from icesoc.synth import report
+from icesoc.synth import reports
+from icesoc.synth import runner
+from icesoc.synth import sources
+from icesoc.synth.report import Report, Row
+from icesoc.util.tool import Stop, only_one, tree_state, write
+
+FAMILIES = ("xc6s", "xc7", "ecp5")  # the first is the one that figures, limits and page are of
+WHOLE_CHIP = "soc"
+STATE_OF = "bus hdl ip slice synth tools"
+PAGE = pathlib.Path(__file__).with_name("page.html")
+
+
+def rtl_of(o):
+    """The modules of platform, cores and generated files, in this order."""
+    if not o.generated.is_dir():
+        raise Stop(f"{o.generated} is not there: build first")
+    rooms = sorted(folder for room in ("hdl", "ip") for folder in (o.source / room).iterdir()
+                   if folder.is_dir())
+    folders = [o.source / "synth", o.source / "hdl", o.source / "bus", *rooms, o.generated]
+    # Files of all cores of the build, wherever they are; include files lie beside the modules.
+    list = o.generated / "cores.files"
+    files = [pathlib.Path(line) for line in list.read_text().splitlines()] if list.exists() else []
+    files = [sources.relative_to(file, pathlib.Path()) for file in files if file.exists()]
+    verilog = [file for file in files if re.fullmatch(r"\.s?v", file.suffix, re.I)]
+    parents = [file.parent for file in files]
+    return sources.Library(folders, dict.fromkeys(folders + parents), verilog)
+
+
+def synthesise(plan, library, options, o):
+    """Runs of the wanted designs for each family; the others come from the cache."""
+    runs = [runner.Run(design, family, plan.has(design, family)
+                       and (not o.design or design.name in o.design))
+            for family in o.family for design in plan.designs]
+    runner.carry_out(runs, library, options)
+    for run in runs:
+        if run.wanted and run.error:
+            print(f"utilisation: {run.design.name} for {run.family}: {run.error}", file=sys.stderr)
+    return runs
+
+
+def rows_of(plan, runs, library, accepted, yosys):
+    rows = []
+    for design in plan.designs:
+        main, *others = (run for run in runs if run.design is design)
+        row = Row(design, main, others, library.hash_of(design.top))
+        row.state = baseline.state_of(main, row.sources, accepted["designs"].get(design.name))
+        row.failures, row.notes = baseline.judge(row, accepted, yosys, plan.chip["mhz"])
+        rows.append(row)
+    return rows
+
+
+def tell_cores(library, options, o, accepted, runs):
+    """Prints the cost of some cores in the chip, whatever the limits: in the synthesised one, the
+    only design wanted, or, without runs, in the accepted one. A missing core is no error. Returns 1
+    if the synthesis failed."""
+    run = next((run for run in runs if run.wanted), None)
+    if run and run.error:
+        return 1
+    nothing = dict.fromkeys(baseline.KEYS, 0) | {"costs": {}}
+    chip = run.figures if run else accepted["designs"].get(WHOLE_CHIP, nothing)
+    map = cores.read_map(o.generated / "map.regs.json")
+    if not map:
+        raise Stop(f"{o.generated} has no map.regs.json: build first")
+    try:
+        slot = cores.slot_cost(library, options, map, True)
+        print(cores.core_table(chip["costs"], map, slot, o.core,
+                               "the list" if run else "synth/baseline.json").plain(), end="")
+        print(f"The chip: {chip['lut']} LUT, {chip['ff']} FF, {chip['ram']:g} block RAMs, "
+              f"{chip['dsp']} DSP")
+    except cores.NotInChip as missing:
+        if run:
+            raise
+        print(missing)
+    return 0
+
+
+def cores_of(rows, library, options, o):
+    """A row for each core of the chip; None if the chip was not synthesised."""
+    map = cores.read_map(o.generated / "map.regs.json")
+    for row in rows:
+        if row.design.name == WHOLE_CHIP and row.figures and map:
+            slot = cores.slot_cost(library, options, map, row.main.wanted)
+            return cores.core_table(row.figures["costs"], map, slot, [], "")
+    return None
+
+
+def write_reports(r, o, libraries):
+    write(o.output / "report.json", json.dumps(report.entries(r), indent=1) + "\n")
+    write(o.output / "report.html", report.html(r, PAGE, libraries))
+    print(f"Page: {o.output / 'report.html'}")
+
+
+def edif(plan, library, options, o):
+    print(f"{o.edif} as EDIF ...", file=sys.stderr)
+    design = next(design for design in plan.designs if design.name == o.edif)
+    runner.write_edif(design, library, options, o.output / "ise")
+    print(f"{o.output / 'ise' / o.edif}.edf and its Verilog in {o.output / 'ise/verilog'}; "
+          "docs/utilisation.md says how to go on.")
+    return 0
+
+
+def netlist(plan, library, options, o):
+    design = next(design for design in plan.designs if design.name == o.netlist)
+    design.parameters.update(o.set)
+    runner.write_for_simulation(design, o.family[-1], library, options, o.to, models_of(o))
+    files = " ".join(str(file.absolute()) for file in library.all_files_of(design.top))
+    write(o.to.with_suffix(".d"), f"{o.to.absolute()}: {files}\n")
+    return 0
+
+
+def models_of(o):
+    return sorted((o.source / "synth/primitives").glob("*.v"))
+
+
+def equivalent(plan, library, options, o):
+    table, failed = equivalence.table_of(plan, library, options, models_of(o), o)
+    print(table.plain(), end="")
+    return int(failed > 0)
+
+
+def run(o, libraries):
+    library = rtl_of(o)
+    plan = sources.read_plan(o.source / "synth/designs.json", library, o.source)
+    for name in o.design + [name for name in (o.edif, o.netlist) if name]:
+        names = [design.name for design in plan.designs]
+        if name not in names:
+            raise Stop(f"there is no design {name}; there are {', '.join(sorted(names))}")
+    accepted = baseline.read_baseline(o.source / "synth/baseline.json")
+    options = runner.Options(o.source / "synth/yosys", o.output / "cache", o.yosys, o.jobs,
+                             {name: a["lut"] for name, a in accepted["designs"].items()})
+    if o.list:
+        print(*(design.name for design in plan.designs))
+        return 0
+    if o.edif:
+        return edif(plan, library, options, o)
+    if o.netlist:
+        return netlist(plan, library, options, o)
+    if o.equivalent:
+        return equivalent(plan, library, options, o)
+    if o.core:
+        for design in plan.designs:
+            design.orders = 0  # they are there for the median of clocks
+        runs = synthesise(plan, library, options, o) if o.design else []
+        return tell_cores(library, options, o, accepted, runs)
+    yosys = runner.version_of(o.yosys)
+    with concurrent.futures.ThreadPoolExecutor() as pool:  # Git tells state and past meanwhile
+        tree = pool.submit(tree_state, o.source, STATE_OF)
+        past = pool.submit(baseline.history, o.source)
+        rows = rows_of(plan, synthesise(plan, library, options, o), library, accepted, yosys)
+    r = Report(plan, library, rows, accepted, yosys, past.result(),
+               baseline.current_commit(o.source))
+    if o.accept:
+        baseline.accept(r, o.source / "synth/baseline.json")
+        return 0
+    r.cores = cores_of(rows, library, options, o)
+    report.show(r)
+    write_reports(r, o, libraries)
+    write(o.output / "tree", f"{tree.result()}\n")
+    return 1 if r.failures else 0
+
+
+def options_of(words):
+    parser = argparse.ArgumentParser(prog="utilisation", description=__doc__.partition(": ")[2])
+    path = {"type": pathlib.Path}
+    parser.add_argument("--build", **path, default="build/main",
+                        help="build folder, with the libraries of pages (%(default)s)")
+    parser.add_argument("--source", **path, default=".", help="the project's folder")
+    parser.add_argument("--generated", **path, default="build/main/gen",
+                        help="folder of generated Verilog (%(default)s)")
+    parser.add_argument("--output", **path, default="build/synth",
+                        help="folder of the reports (%(default)s)")
+    parser.add_argument("--design", action="append", default=[],
+                        help="only this design (may be repeated)")
+    parser.add_argument("--family", action="append", default=[], choices=FAMILIES,
+                        help="this chip, too, beside xc6s (may be repeated)")
+    parser.add_argument("--yosys", default="yosys", help="the program")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(),
+                        help="synthesis runs at a time (%(default)s)")
+    parser.add_argument("--accept", action="store_true",
+                        help="record these figures in synth/baseline.json")
+    parser.add_argument("--core", action="append", default=[],
+                        help="only tell what this core costs in the accepted chip (may be "
+                             "repeated); with --design soc in the chip of now")
+    parser.add_argument("--compare", **path, metavar="REPORT.JSON",
+                        help="only tell how the last report differs from this one")
+    parser.add_argument("--reports", action="store_true",
+                        help="only hold the estimates against published reports")
+    parser.add_argument("--edif", metavar="DESIGN",
+                        help="only write this design as EDIF for ISE, into the folder ise")
+    parser.add_argument("--list", action="store_true", help="only print the designs' names")
+    parser.add_argument("--equivalent", action="store_true",
+                        help="only prove that netlists are equivalent to their RTL, or tell tests")
+    parser.add_argument("--junit", **path, help="results of the tests that --equivalent tells")
+    parser.add_argument("--seconds", type=int, default=300,
+                        help="limit of a proof of --equivalent (%(default)s)")
+    parser.add_argument("--netlist", metavar="DESIGN",
+                        help="only write this design's netlist as Verilog for a simulator")
+    parser.add_argument("--set", metavar="NAME=VALUE", action="append", default=[],
+                        type=lambda text: text.split("=", 1),
+                        help="a parameter of --netlist's top module (may be repeated)")
+    parser.add_argument("--to", **path, default="build/synth/netlist.v",
+                        help="the file of --netlist (%(default)s)")
+    o = parser.parse_args(words)
+    o.family = [family for family in FAMILIES if family in [FAMILIES[0], *o.family]]
+    return o
+
+
+def main(words):
+    o = options_of(words)
+    try:
+        if o.reports:
+            print(reports.text(reports.read(o.source / "synth/reports.json")), end="")
+            return 0
+        if o.compare:
+            before, after = (json.loads(file.read_text())
+                             for file in (o.compare, o.output / "report.json"))
+            print(report.differences(before, after), end="")
+            return 0
+        # A design that another run is synthesising is then found in the cache.
+        with only_one(o.output, "utilisation"):
+            return run(o, o.build / "page")
+    except (Stop, OSError) as error:
+        print(f"utilisation: {error}", file=sys.stderr)
+        return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

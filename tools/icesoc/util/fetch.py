@@ -1,0 +1,291 @@
+# SPDX-License-Identifier: MIT
+"""fetch: brings what the build uses and Debian's packages leave out, without touching the system.
+
+Usage: fetch.py THING FOLDER    puts it into FOLDER; `fetch.py --help` lists the things
+What has a checksum here is the file that was tested, or it is refused. Downloads are kept in
+${XDG_CACHE_HOME:-~/.cache}/icesoc, so that a second build needs no network. ICESOC_NPM, ICESOC_RAW:
+a mirror of registry.npmjs.org, of raw.githubusercontent.com.
+Exit status 77: there is no network, and only what is optional needs this thing.
+"""
+
+import argparse
+import fcntl
+import hashlib
+import json
+import os
+import pathlib
+import platform
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tarfile
+import tempfile
+import urllib.request
+
+from icesoc import TREE
+
+CACHE = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "icesoc"
+LIST = TREE / "examples/foreign/cores.json"
+GITHUB = os.environ.get("ICESOC_RAW") or "https://raw.githubusercontent.com"
+NPM = os.environ.get("ICESOC_NPM") or "https://registry.npmjs.org"
+KEYRING = "/usr/share/keyrings/debian-archive-keyring.gpg"
+
+# Path in Debian's pool, or below the mirrors above; sha256
+LZ4 = ("l/lz4/lz4_1.9.4.orig.tar.gz",
+       "0b0e3aa07c8c063ddf40b082bdf7e37a1562bda40a0ff5272957f3e987e0e54b")
+SODIUM = ("libs/libsodium/libsodium_1.0.18.orig.tar.gz",
+          "d59323c6b712a1519a5daf710b68f5e7fde57040845ffec53850911f10a5d4f4")
+ICE = {"3.7.8": "c48f9e43d65e2b1f5e2af747fd86e7718b5e344b4e9d9a7dc73a84dd0be61f66",
+       "3.7.10": "eb1c545cf679facdd07ab45e85ad9f87f2ffc84d72687eeeea2e4e490a6d31c8"}
+SCHEMA = ("ARM-software/CMSIS_5/51f8f89612c8330c0116479cfe3a2cb04c390e2b"
+          "/CMSIS/Utilities/CMSIS-SVD.xsd",
+          "eee4bfe949f80708b00cccb4833e71da3766b0489a4cdfa2dae225d541688d89")
+PAGE = [("tabulator-tables", "6.5.3",
+         "a3aeb833e5cf924c8a686fa6748c1070c5fde8e605e0b1734000c35b78571a9b",
+         ["js/tabulator.min.js", "css/tabulator_simple.min.css"]),
+        ("uplot", "1.6.32", "4b8a8191e425658e3ea8c8c1314b0fc679c861ee3a1af2b20c7b16ba50b5133d",
+         ["uPlot.iife.min.js", "uPlot.min.css"])]
+# Debian 13's packages and all libraries that they load
+GHDL = ["ghdl-mcode", "ghdl-common", "libgnat-14", "libc6", "libgcc-s1", "libstdc++6", "zlib1g",
+        "gcc-14-base"]
+
+
+class Unreachable(Exception):
+    """There is no network, or a mirror does not have the file."""
+
+
+def fail(text, status=1):
+    print(f"fetch: {text}", file=sys.stderr)
+    sys.exit(status)
+
+
+def output(*words):
+    """What a program prints; nothing, where there is no such program."""
+    if not shutil.which(words[0]):
+        return ""
+    return subprocess.run(words, text=True, capture_output=True).stdout
+
+
+def mirror():
+    """The Debian mirror that this machine uses."""
+    found = output("apt-get", "indextargets", "--format", "$(REPO_URI)", "Created-By: Packages")
+    debian = [uri.rstrip("/") for uri in found.split() if uri.rstrip("/").endswith("/debian")]
+    return debian[0] if debian else "http://deb.debian.org/debian"
+
+
+def kept(url, checksum):
+    """The file of this address and checksum, in the cache."""
+    file = CACHE / "foreign" / checksum
+    if not file.exists():
+        print(f"Fetching {url.rsplit('/', 1)[1]} ...", flush=True)
+        try:
+            with urllib.request.urlopen(url, timeout=60) as answer:
+                data = answer.read()
+        except OSError as error:
+            raise Unreachable(f"{url}: {error}")
+        if hashlib.sha256(data).hexdigest() != checksum:
+            raise Unreachable(f"{url} is not the file that was tested (sha256)")
+        file.parent.mkdir(parents=True, exist_ok=True)
+        partial = file.with_suffix(".part")
+        partial.write_bytes(data)
+        partial.rename(file)
+    return file
+
+
+def released(path, checksum):
+    """A released source as Debian keeps it."""
+    return kept(f"{mirror()}/pool/main/{path}", checksum)
+
+
+def unpack(archive, folder, target, suffix=""):
+    """The files below a folder of an archive whose names end with suffix."""
+    with tarfile.open(archive) as tar:
+        for member in tar:
+            if member.isfile() and member.name.startswith(folder) and member.name.endswith(suffix):
+                file = target / member.name[len(folder):]
+                file.parent.mkdir(parents=True, exist_ok=True)
+                file.write_bytes(tar.extractfile(member).read())
+
+
+def packages(name, wanted, release="trixie"):
+    """The folder of these packages of a Debian release, unpacked in the cache."""
+    folder = CACHE / name
+    if not (folder / "done").exists():
+        print(f"Fetching {name} from Debian's {release}, kept apart from the system ...",
+              flush=True)
+        with tempfile.TemporaryDirectory(dir=CACHE) as work:
+            os.makedirs(f"{work}/lists/partial")
+            os.makedirs(f"{work}/archives/partial")
+            pathlib.Path(work, "private.sources").write_text(
+                f"Types: deb\nURIs: {mirror()}\nSuites: {release}\nComponents: main\n"
+                f"Signed-By: {KEYRING}\n")
+            own = [f"Dir::Etc::sourcelist={work}/private.sources",
+                   "Dir::Etc::sourceparts=/dev/null", f"Dir::State::lists={work}/lists",
+                   f"Dir::Cache::archives={work}/archives",
+                   "Dir::Cache::pkgcache=", "Dir::Cache::srcpkgcache=", "APT::Sandbox::User=root",
+                   "APT::Get::List-Cleanup=0"]
+            options = [word for option in own for word in ("-o", option)]
+            for words in (["update"], ["download", *wanted]):
+                if subprocess.call(["apt-get", "-qq", *options, *words], cwd=work):
+                    raise Unreachable(f"apt-get {words[0]}: {name} from {mirror()}")
+            (folder / "root").mkdir(parents=True, exist_ok=True)
+            for package in pathlib.Path(work).glob("*.deb"):
+                subprocess.check_call(["dpkg", "-x", package, folder / "root"])
+        (folder / "done").touch()
+    return folder / "root"
+
+
+def program(target, text):
+    target.parent.mkdir(parents=True, exist_ok=True)
+    target.write_text("#!/bin/sh\n" + text)
+    target.chmod(0o755)
+
+
+def ghdl(target):
+    """GHDL 5 (GHDL 2's Verilog output is wrong for `case`); FOLDER/ghdl runs it"""
+    installed = re.match(r"GHDL (\d+)", output("ghdl", "--version"))
+    if installed and int(installed[1]) >= 5:
+        return program(target / "ghdl", 'exec ghdl "$@"\n')
+    root = packages("ghdl5", GHDL)
+    # Its own libraries, by their own loader
+    loader = next(file for file in sorted(root.rglob("ld-linux-*.so.2")) if not file.is_symlink())
+    words = [f"GHDL_PREFIX={root}/usr/lib/ghdl/mcode/vhdl", loader, "--library-path",
+             root / f"usr/lib/{os.uname().machine}-linux-gnu", root / "usr/bin/ghdl-mcode"]
+    program(target / "ghdl", f'exec env {shlex.join(map(str, words))} "$@"\n')
+
+
+def icegrid(target):
+    """IceGrid's registry and IceStorm (installed, they would start services); two programs"""
+    release = platform.freedesktop_os_release()["VERSION_CODENAME"]
+    library = "libzeroc-icestorm3.7" + ("" if release == "bookworm" else "t64")
+    root = packages(f"icegrid-{release}", ["zeroc-icegrid", "zeroc-icebox", library], release)
+    libraries = root / f"usr/lib/{os.uname().machine}-linux-gnu"
+    for name in ("icegridregistry", "icebox"):
+        program(target / name, f'export LD_LIBRARY_PATH={shlex.quote(str(libraries))}\n'
+                f'exec {shlex.quote(str(root / "usr/bin" / name))} "$@"\n')
+
+
+def ice_source(version):
+    return released(f"z/zeroc-ice/zeroc-ice_{version}.orig.tar.xz", ICE[version])
+
+
+def ice(target):
+    """internal transport headers of the installed ZeroC Ice"""
+    version = output("dpkg-query", "-W", "-f", "${Version}", "libzeroc-ice-dev").split("-")[0]
+    try:
+        archive = ice_source(version)
+    except (KeyError, Unreachable) as error:
+        print(f"fetch: no source of ZeroC Ice {version} ({error}): taking the headers of 3.7.8; "
+              "transports did not change since", file=sys.stderr)
+        archive, version = ice_source("3.7.8"), "3.7.8"
+    unpack(archive, f"ice-{version}/cpp/src/Ice/", target / "Ice", ".h")
+
+
+def zeroc(target):
+    """ZeroC's test suites for Python and wrong Slice files, 3.7.8"""
+    source = ice_source("3.7.8")
+    unpack(source, "ice-3.7.8/cpp/test/Slice/errorDetection/", target / "errorDetection", ".ice")
+    unpack(source, "ice-3.7.8/python/test/", target)
+
+
+def lz4(target):
+    """the source of LZ4, which unpacks firmware on the chip"""
+    unpack(released(*LZ4), "lz4-1.9.4/lib/", target)
+
+
+def sodium(target):
+    """the sources of libsodium that check a signature, for the chip"""
+    unpack(released(*SODIUM), "libsodium-1.0.18/src/libsodium/", target)
+
+
+def source_of_cores(its, target):
+    """One source that examples/foreign/cores.json names: an archive of Debian's, or files."""
+    if "debian" in its:
+        return unpack(released(its["debian"], its["sha256"]), its["folder"], target)
+    target.mkdir(parents=True)
+    for path, checksum in its["files"].items():
+        shutil.copyfile(kept(f"{GITHUB}/{its['github']}/{path}", checksum),
+                        target / os.path.basename(path))
+
+
+def foreign(target):
+    """the third-party cores that examples/foreign/cores.json names, as far as they are reached"""
+    reached = 0
+    for name, its in json.loads(LIST.read_text()).items():
+        folder, sums = target / name, json.dumps({n: its[n] for n in its if n != "cores"})
+        note = target / f"{name}.done"  # what is there already
+        if its.keys() == {"cores"} or (note.exists() and note.read_text() == sums):
+            reached += its.keys() != {"cores"}
+            continue
+        shutil.rmtree(folder, ignore_errors=True)
+        note.unlink(missing_ok=True)
+        try:
+            source_of_cores(its, folder)
+            note.write_text(sums)
+            reached += 1
+        except Unreachable as error:
+            print(f"fetch: without {', '.join(its['cores'])}: {error}", file=sys.stderr)
+    if not reached:
+        raise Unreachable("no source of a third-party core")
+
+
+def svd(target):
+    """ARM's schema of CMSIS-SVD files, 1.3.9"""
+    target.mkdir(parents=True, exist_ok=True)
+    shutil.copyfile(kept(f"{GITHUB}/{SCHEMA[0]}", SCHEMA[1]), target / "CMSIS-SVD.xsd")
+
+
+def page(target):
+    """Tabulator and uPlot for the pages, as FOLDER/libraries.js and .css, each below its licence"""
+    target.mkdir(parents=True, exist_ok=True)
+    texts = {"js": "", "css": ""}
+    try:
+        for name, version, checksum, files in PAGE:
+            with tarfile.open(kept(f"{NPM}/{name}/-/{name}-{version}.tgz", checksum)) as tar:
+                licence = tar.extractfile("package/LICENSE").read().decode()
+                for file in files:
+                    lines = tar.extractfile(f"package/dist/{file}").read().decode().split("\n")
+                    code = "\n".join(line for line in lines if "sourceMappingURL=" not in line)
+                    kind = file.rsplit(".", 1)[1]
+                    texts[kind] += f"/*! {name} {version}\n{licence}\n*/\n{code}\n"
+        (target / "done").touch()
+    except Unreachable as error:
+        texts = {"js": "", "css": ""}
+        print(f"fetch: {error}\nfetch: cannot get Tabulator and uPlot, is there a network? Pages "
+              "have plain tables and no drawn charts; the next build tries again", file=sys.stderr)
+    for kind, text in texts.items():
+        (target / f"libraries.{kind}").write_text(text)
+
+
+# Things that only optional parts need, with the name of the part
+OPTIONAL = {zeroc: "Only these suites need it", svd: "Only the check of icesoc.svd needs it",
+            foreign: "Only the examples of foreign cores need it"}
+THINGS = {thing.__name__: thing
+          for thing in (ice, ghdl, icegrid, lz4, sodium, page, foreign, svd, zeroc)}
+
+
+def main():
+    things = "\n".join(f"  {name:9} {thing.__doc__}" for name, thing in THINGS.items())
+    parser = argparse.ArgumentParser(description=__doc__, epilog=things,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("thing", choices=THINGS, metavar="THING")
+    parser.add_argument("folder", type=pathlib.Path, metavar="FOLDER")
+    options = parser.parse_args()
+    thing = THINGS[options.thing]
+    CACHE.mkdir(parents=True, exist_ok=True)
+    with open(CACHE / "lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)  # two builds may want the same
+        try:
+            thing(options.folder.absolute())
+        except Unreachable as error:
+            fail(f"{error}\nfetch: cannot get {options.thing}: is there a network? " +
+                 OPTIONAL.get(thing, "Then run make again"), 77 if thing in OPTIONAL else 1)
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        sys.exit(130)

@@ -1,0 +1,240 @@
+# SPDX-License-Identifier: MIT
+"""live: serves the page that shows a mission as it runs, on the loopback interface only.
+
+Each connection has a thread of its own and one request: a slow, silent or endless client makes no
+other wait, and ends after PATIENCE seconds of silence.
+"""
+
+import sys
+
+
+def refuse(kind, error, trace):
+    """Names a lack of memory, which Python also tells as a library that cannot be loaded."""
+    if issubclass(kind, (MemoryError, ImportError)):
+        print("icesoc-live: error: not enough memory for the page", file=sys.stderr)
+    else:
+        sys.__excepthook__(kind, error, trace)
+
+
+sys.excepthook = refuse
+
+import argparse
+import http.server
+import json
+import os
+import re
+import signal
+import struct
+from http import HTTPStatus
+
+PATIENCE = 10  # seconds
+NEWEST = 128 << 10  # bytes of events.jsonl that a page shows: a long flight does not make it large
+MOST_VEHICLES = 32  # of a modem of the ground
+HERE = os.path.dirname(os.path.abspath(__file__))
+FILES = {  # path: MIME type, file
+    "/": ("text/html; charset=utf-8", HERE + "/flight/index.html"),
+    "/live.css": ("text/css", HERE + "/flight/live.css"),
+    "/live.js": ("text/javascript", HERE + "/flight/live.js"),
+    "/common.css": ("text/css", HERE + "/common.css"),
+    "/common.js": ("text/javascript", HERE + "/common.js")}
+# SimStatus (sw/ground/sim_status.h): counters, registers by slot * 16 + word, how each was seen
+STATUS = struct.Struct("<8s7Q1024I1024B")
+SCHEMA = HERE + "/../cli/flight.schema.json"
+COUNTERS = ("ns", "cycles", "bytesUp", "bytesDown", "packets", "lost", "wallNs")
+WRITTEN = 2
+
+
+def contents(path):
+    """Returns a file's content; empty if it cannot be read."""
+    try:
+        with open(path, "rb") as file:
+            return file.read()
+    except OSError:
+        return b""
+
+
+def rows(lines):
+    """Returns the JSON objects among lines; the last one may be half written."""
+    for line in lines:
+        try:
+            row = json.loads(line)
+        except ValueError:
+            continue
+        if isinstance(row, dict):
+            yield row
+
+
+def newest(path):
+    """Returns the lines of a file's last bytes."""
+    try:
+        with open(path, "rb") as file:
+            size = file.seek(0, os.SEEK_END)
+            file.seek(max(0, size - NEWEST))
+            if size > NEWEST:
+                file.readline()  # the end of one line
+            return file.readlines()
+    except OSError:
+        return []
+
+
+def picture(folder, address):
+    """Path of a vehicle's picture of this flight: with corners, once it has answered."""
+    paths = (f"{folder}/{name}{address}.png" for name in ("after", "before"))
+    return next(filter(os.path.exists, paths), "")
+
+
+def blocks_by_slot(registers):
+    """[(slot, the description of its block)]; registers: a file that lists the blocks' *.regs.json,
+    one a line."""
+    blocks = {}
+    with open(registers) as paths:
+        for path in filter(None, paths.read().split("\n")):
+            with open(path) as file:
+                block = json.load(file)
+            blocks[block["block"]] = block
+    slots = []
+    for constant in blocks["map"]["constants"]:
+        prefix, _, block = constant["name"].lower().partition("slot_")
+        if not prefix and block not in ("", "count"):
+            slots.append((constant["value"], {**blocks.get(block, {}), "block": block}))
+    return sorted(slots, key=lambda slot: slot[0])
+
+
+def register(block, word, value, seen):
+    """Returns a word with its name and its fields; the fields of EVENT and MASK are the block's
+    events. What was written to EVENT is no state: each one in it has cleared an event."""
+    described = next((r for r in block.get("registers", []) if r["word"] == word), {})
+    fields = [{"name": f["name"], "value": value >> f["lsb"] & (1 << f["width"]) - 1,
+               "doc": f.get("doc", "")} for f in described.get("fields", [])]
+    clears = word == 1 and seen == WRITTEN
+    for event in block.get("events", []) if word in (1, 2) else []:
+        bit = value >> event["bit"] & 1
+        if bit or not clears:
+            fields.append({"name": event["name"], "value": "cleared" if clears else bit,
+                           "doc": event.get("doc", "")})
+    common = ("ID", "EVENT", "MASK")
+    name = described.get("name", common[word] if word < 3 else f"word {word}")
+    return {"word": word, "value": value, "written": seen == WRITTEN, "name": name,
+            "doc": described.get("doc", ""), "fields": fields}
+
+
+def heading(folder):
+    """The options of this flight (flight.json) that are not the defaults."""
+    try:
+        with open(SCHEMA) as schema, open(folder + "/flight.json") as flight:
+            fields, flight = json.load(schema)["properties"], json.load(flight)
+    except (OSError, ValueError):
+        return ""
+    hidden = ("version", "out", "firmware", "key", "port", "live")
+    return ", ".join(f"{name} {value if not isinstance(value, list) else ' '.join(value)}"
+                     for name, value in flight.items()
+                     if name not in hidden and value != fields.get(name, {}).get("default"))
+
+
+def state(folder, slots):
+    """Returns the page's data, from the files of simulator and ground station; missing files leave
+    it empty."""
+    shown = {"calls": [], "features": [], "slots": [], "flight": heading(folder)}
+    status = contents(folder + "/status")
+    if len(status) >= STATUS.size and status.startswith(b"ICESOC1\0"):
+        values = STATUS.unpack_from(status)[1:]
+        shown["air"] = dict(zip(COUNTERS, values))
+        registers, seen = values[7:7 + 1024], values[7 + 1024:]
+        for slot, block in slots:
+            words = [register(block, word, registers[slot * 16 + word], seen[slot * 16 + word])
+                     for word in range(16) if seen[slot * 16 + word]]
+            shown["slots"].append({"slot": slot, "block": block["block"],
+                                   "doc": block.get("doc", ""), "words": words})
+    for row in rows(contents(folder + "/calls.jsonl").split(b"\n")):
+        if "features" in row:
+            shown.update(features=row["features"], found=row["found"])
+        else:
+            shown["calls"].append(row)
+    shown["events"] = list(rows(newest(folder + "/events.jsonl")))
+    changed = {name: os.stat(path).st_mtime_ns for name in ("before.png", "report.json")
+               if os.path.exists(path := f"{folder}/{name}")}
+    shown["frame"] = "before.png" in changed
+    others = ((address, picture(folder, address)) for address in range(2, MOST_VEHICLES + 1))
+    shown["others"] = [[address, os.path.basename(path)] for address, path in others if path]
+    # A report older than the picture is of the previous mission.
+    shown["over"] = len(changed) == 2 and changed["report.json"] >= changed["before.png"]
+    return shown
+
+
+class Page(http.server.BaseHTTPRequestHandler):
+    """A request for the page of a mission."""
+    protocol_version, timeout = "HTTP/1.1", PATIENCE
+    error_message_format, error_content_type = "%(code)d %(message)s\n", "text/plain"
+    folder, slots = "", []
+
+    def do_GET(self):
+        port = self.server.server_address[1]
+        hosts = self.headers.get_all("Host", [])
+        # Another host's page may use a name of its own for this address.
+        if len(hosts) != 1 or hosts[0] not in (f"127.0.0.1:{port}", f"localhost:{port}"):
+            return self.send_error(HTTPStatus.FORBIDDEN)
+        path = self.path.partition("?")[0]
+        frame = self.folder + "/before.png" if path == "/frame.png" else ""
+        if vehicle := re.fullmatch(r"/vehicle(\d{1,2})\.png", path):
+            frame = picture(self.folder, vehicle[1])
+        kind, file = FILES.get(path, ("image/png", frame))
+        if path == "/state":
+            kind, content = "application/json", json.dumps(state(self.folder, self.slots)).encode()
+        else:
+            content = contents(file)
+        if not content:
+            return self.send_error(HTTPStatus.NOT_FOUND)
+        self.send_response(HTTPStatus.OK)
+        self.send_header("Content-Type", kind)
+        self.send_header("Content-Length", str(len(content)))
+        self.send_header("Connection", "close")
+        self.end_headers()
+        self.wfile.write(content)
+
+    def log_message(self, *_):
+        pass
+
+
+class Server(http.server.ThreadingHTTPServer):
+    request_queue_size = 128
+
+    def handle_error(self, *_):
+        pass  # the client has gone, or is not worth waiting for
+
+
+def port_number(text):
+    if not 0 <= (port := int(text)) <= 65535:
+        raise argparse.ArgumentTypeError(f"{port} is not in 0..65535")
+    return port
+
+
+def main():
+    parser = argparse.ArgumentParser(
+        prog="icesoc-live",
+        description="Serves the page that shows a mission as it runs, on 127.0.0.1.")
+    parser.add_argument("--dir", required=True,
+                        help="the mission's folder: status, calls.jsonl, before.png")
+    parser.add_argument("--registers", required=True,
+                        help="file that lists the blocks' *.regs.json; map.regs.json says which is "
+                        "in which slot")
+    parser.add_argument("--port", type=port_number, default=0, help="0: any that is free")
+    parser.add_argument("--try", dest="only_try", action="store_true",
+                        help="only look whether the page can be served")
+    words = parser.parse_args()
+    try:
+        Page.folder, Page.slots = words.dir, blocks_by_slot(words.registers)
+    except (OSError, ValueError, KeyError) as error:
+        sys.exit(f"icesoc-live: error: cannot read '{words.registers}': {error}")
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: os._exit(0))
+    try:
+        server = Server(("127.0.0.1", words.port), Page)
+    except OSError:
+        sys.exit("icesoc-live: error: cannot listen on 127.0.0.1: is the port taken? PORT=0 takes "
+                 "any that is free")
+    if not words.only_try:
+        print(f"The mission as it runs: http://127.0.0.1:{server.server_address[1]}/", flush=True)
+        server.serve_forever()
+
+
+main()

@@ -6,7 +6,8 @@
 
 A link leads to a file of the repository, and to a heading of it where it names one, a path in
 backquotes exists, an empty line ends a table, docs/architecture.md lists every page of docs/, and
-the figures in README.md are those of docs/figures.md and synth/baseline.json. Exit status 1, and a line for each that does not hold.
+the figures in README.md are those of docs/figures.md and synth/baseline.json. Exit status 1, and a
+line for each that does not hold.
 """
 import json
 import os

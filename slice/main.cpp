@@ -67,7 +67,7 @@ bool print(const std::string& text) {
     return !std::cout.fail();
 }
 
-// Saves all files or none: each is written beside its place and then moved there.
+// Saves all files or none: each is written under a temporary name and then renamed.
 bool save(const std::vector<GeneratedFile>& files, const std::string& directory) {
     std::error_code error;
     fs::create_directories(directory, error);
@@ -154,8 +154,8 @@ bool saveHardware(const std::vector<hw::Block>& blocks, const Options& o) {
     return true;
 }
 
-// The definitions of one program's files, each with its place. In all of them C has one name for a
-// definition of a kind, and one header for files of one name.
+// The definitions of all files of one program, with their places. A C name must be unique among
+// them, and so must a file name, since it becomes the name of a header.
 class Program {
 public:
     void add(const Unit& unit, Diagnostics& diagnostics) {
@@ -163,18 +163,17 @@ public:
         auto [header, isNew] = headers_.emplace(name, unit.file);
         if (!isNew)
             diagnostics.error({diagnostics.intern(unit.file), 1, 1},
-                              "'" + name + "' is the name of " + header->second +
-                                  " too; both go into one program: give one file another name");
+                              "file '" + name + "' has the same name as " + header->second +
+                                  "; both go into one program: rename one of them");
         for (const auto& d : unit.declarations) {
             if (d->isForward || d->fromInclude)
                 continue;
             std::string at = unit.file + ":" + std::to_string(d->at.line);
             auto [other, isFirst] = definitions_.emplace(cName(*d), at);
             if (!isFirst && other->second != at)
-                diagnostics.error(d->at, "'" + d->id() + "' is '" + other->first + "' in C, as " +
-                                             other->second +
-                                             " is; both go into one program: give a module or "
-                                             "a name another one");
+                diagnostics.error(d->at, "'" + d->id() + "' becomes '" + other->first +
+                                             "' in C, as " + other->second +
+                                             " does; both go into one program: rename one of them");
         }
     }
 
@@ -230,25 +229,28 @@ void describe(CLI::App& app, Options& o) {
     app.add_option("-I", o.includes, "folder to look for #include files")->allow_extra_args(false);
     app.add_option("-D", o.defines, "define a preprocessor symbol: NAME or NAME=VALUE")
         ->allow_extra_args(false);
-    app.add_option("-U", o.undefines, "forget a preprocessor symbol")->allow_extra_args(false);
-    app.add_flag("-E", o.preprocessOnly, "print what the preprocessor makes, generate nothing");
-    app.add_option("--output-dir", o.outputDir, "where the generated files go");
-    app.add_option("--header-ext", o.headerExtension, "extension of headers, without the dot (h)");
-    app.add_option("--source-ext", o.sourceExtension, "extension of sources, without the dot (c)");
+    app.add_option("-U", o.undefines, "undefine a preprocessor symbol")->allow_extra_args(false);
+    app.add_flag("-E", o.preprocessOnly, "print the preprocessor's output, generate nothing");
+    app.add_option("--output-dir", o.outputDir,
+                   "folder for generated files (default: current folder)");
+    app.add_option("--header-ext", o.headerExtension,
+                   "extension of headers, without the dot (default: h)");
+    app.add_option("--source-ext", o.sourceExtension,
+                   "extension of sources, without the dot (default: c)");
     app.add_option("--include-dir", o.includeDir, "folder of the header in the sources' #include");
     for (size_t i = 0; i < std::size(hardwareOutputs); ++i)
         app.add_option(hardwareOutputs[i].option, o.hardware[i], hardwareOutputs[i].help);
     app.add_flag("--hw-own-clock", o.hwOwnClock,
-                 "the cores have a clock of their own: servants ask whether they answered");
+                 "cores run in separate clock domains: servants check that they answered");
     app.add_flag("--depend", o.depend, "print make dependencies, generate nothing");
     app.add_option("--depend-file", o.dependFile, "write dependencies to this file");
     app.add_flag("--one-program", o.oneProgram,
-                 "generate nothing; say where two of the files define one name of C");
+                 "generate nothing; report C names that two of the files define");
     app.add_flag("--validate", o.validate, "check the command line only");
     app.add_flag("--underscore", o.rules.underscore, "allow underscores in names");
-    app.add_flag("--ice", o.rules.icePrefix, "allow names that begin with 'ice'");
+    app.add_flag("--ice", o.rules.icePrefix, "allow names that start with 'ice'");
     app.set_version_flag("-v,--version", "slice2c 1.0, Slice of Ice 3.7");
-    app.footer("Exit status: 0, or 1 where a file has errors or the command line is wrong.");
+    app.footer("Exit status: 0; 1 if a file has errors or the command line is wrong.");
 }
 
 } // namespace

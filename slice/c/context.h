@@ -140,7 +140,7 @@ struct CContext {
             if (d->kind == kind && !d->fromInclude && !d->isLocal)
                 f(*d);
     }
-    // Calls `f` for each interface of the main file with each of its own operations.
+    // Calls `f` for each interface of the main file and each operation that it declares itself.
     template <class F> void eachOperation(F f) const {
         each(Declaration::Kind::Interface, [&](const Declaration& d) {
             for (const Operation& o : d.operations)
@@ -162,7 +162,7 @@ std::string serverFile(const CContext& c);
 
 // M_D_find of a dictionary; empty where its keys cannot be compared.
 std::string findSignature(const Declaration& d);
-// Write an exception's functions, and those of an operation's exception union.
+// Write the functions of an exception and of an operation's exception union.
 void exceptionFunctions(Writer& w, const Declaration& d);
 void thrownFunctions(Writer& w, const CContext& c, const Declaration& d, const Operation& o);
 // Write a class's descriptor with its functions, and the table of all descriptors.
@@ -174,7 +174,7 @@ void valueTypeTable(Writer& w, const CContext& c);
 
 // The function M_T_init, which sets every member to zero or its default.
 void initFunction(Writer& w, const Declaration& d);
-// Returns the own members of `d` as slots of the variable `v`.
+// Returns the members that `d` declares itself, as slots of the variable `v`.
 std::vector<Slot> memberSlots(const Declaration& d);
 // Writes or reads slots. Where one holds a class, the variable `table` collects the instances.
 void writeWithValues(Writer& w, const std::vector<Slot>& slots, const std::string& table);

@@ -8,7 +8,7 @@
 
 namespace {
 
-// True if its members, or those of its bases, hold classes.
+// Returns whether a member of the exception or of one of its bases holds a class.
 bool hasClasses(const Declaration& d) {
     return anyClass(memberSlots(d)) || (d.base() && hasClasses(*d.base()));
 }
@@ -22,7 +22,7 @@ std::string unknownOf(const Declaration& d) {
     return d.base() && d.base()->preserves() ? "base." + unknownOf(*d.base()) : "ice_unknown";
 }
 
-// True if the code needs a table of instances; kept slices may hold instances, too.
+// Returns whether the code needs a table of instances; kept slices may also hold instances.
 bool needsTables(const Declaration& d) {
     return hasClasses(d) || d.preserves();
 }

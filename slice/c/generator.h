@@ -18,7 +18,8 @@ struct CFileNames {
     std::vector<std::string> includes; // headers of the Slice files that the main file includes
 };
 
-// The files of limits beside these Slice files: Name.limits beside Name.ice, where there is one.
+// Returns the limits files of these Slice files: Name.limits in the folder of Name.ice, if it
+// exists.
 std::vector<std::string> limitFiles(const std::vector<std::string>& files);
 
 // Adds the metadata of these files to the definitions that they name; it goes before the source's.

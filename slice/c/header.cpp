@@ -86,8 +86,8 @@ void declareStruct(Writer& w, const Declaration& d) {
                 w.line("Ice_Value ice_value;");
             bool keeps = !isClass && d.preserves() && !(d.base() && d.base()->preserves());
             if (keeps)
-                w.line(
-                    "Ice_UnknownSlice *ice_unknown; /* what it is besides, most derived first */");
+                w.line("Ice_UnknownSlice *ice_unknown; /* slices of unknown derived types, most "
+                       "derived first */");
             declareFields(w, d);
             if (!isClass && !d.base() && d.fields.empty() && !keeps)
                 w.line("Ice_Byte ice_unused; /* C90 has no empty structs */");
@@ -123,7 +123,7 @@ void declareType(Writer& w, const Declaration& d) {
     if (d.kind != DKind::Exception) {
         w.line("void {c}_readFromInputStream({c} *v, Ice_InputStreamPtr is);", v);
     } else {
-        w.line("/* Without the head: this type's slice and those of its bases. */");
+        w.line("/* The slices of this type and of its bases, without the exception's header. */");
         w.line("void {c}_writeSlices(const {c} *v, Ice_OutputStreamPtr os);", v);
         w.line("void {c}_readSlices({c} *v, Ice_InputStreamPtr is);", v);
     }
@@ -159,7 +159,7 @@ void declareThrown(Writer& w, const CContext& c, const Declaration& d, const Ope
                    v);
         return;
     }
-    w.line("/* What {op} throws: `type` says which member of `u` it is. */", {{"op", op}});
+    w.line("/* The exceptions of {op}: `type` selects the member of `u`. */", {{"op", op}});
     w.type("struct", type, [&] {
         w.line("enum {");
         w.line("    " + op + "_none");

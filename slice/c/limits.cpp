@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// limits: C's metadata from a file beside the Slice file, so that a file of others stays as it is.
+// limits: reads C metadata from Name.limits next to Name.ice, so that a third-party Slice file need
+// not be changed.
 
 #include "c/generator.h"
 #include <algorithm>

@@ -35,7 +35,7 @@ public:
 
     void error(const Location& at, const std::string& text);
     void warning(const Location& at, const std::string& text, Category category = General);
-    // Suppresses this category's warnings (General: all) from this file on.
+    // Suppresses warnings of this category (General: of all categories) for the current file.
     void suppress(std::string_view file, Category category) {
         suppressed_.insert({file, category});
     }
@@ -91,19 +91,19 @@ struct Field {
     Type type;
     std::string name, doc;
     Location at;
-    bool isOut = false; // of an operation's parameter
+    bool isOut = false; // out parameter of an operation
     bool isOptional = false;
-    int tag = 0;   // of an optional one
-    Literal value; // default of a member
+    int tag = 0;   // tag of an optional field
+    Literal value; // default value of a member
     std::vector<std::string> metadata;
 };
 
 struct Operation {
     std::string name, doc;
-    Type result; // Void where there is none
+    Type result; // Void if the operation returns nothing
     bool isResultOptional = false;
     int resultTag = 0;
-    std::vector<Field> parameters; // in the order of the source, ins before outs
+    std::vector<Field> parameters; // in the source's order, in before out
     std::vector<const Declaration*> throws;
     bool idempotent = false;
     Location at;
@@ -164,6 +164,6 @@ struct Unit {
 };
 
 Declaration::Facts factsOf(const Type& type);
-// True if the directive is there; the text behind "prefix:", empty if there is none.
+// Returns whether the directive is present; returns the text after "prefix:", or an empty string.
 bool hasMetadata(const std::vector<std::string>& metadata, const std::string& directive);
 std::string metadataValue(const std::vector<std::string>& metadata, const std::string& prefix);

@@ -13,10 +13,10 @@
 //                  resolves every name at once
 //   literals       numbers and strings as written into values
 //   ast            the result: a Unit of declarations, in the source's order, all names resolved
-//   front          an interface beside each class that can be called
+//   front          adds an interface for each class that can be called
 //   diagnostics    every error and warning of all steps, with the source line and a caret
 //
-// A step reports errors and goes on; a unit is valid if no error was counted.
+// A step reports errors and continues; a unit is valid if no error was reported.
 
 #pragma once
 
@@ -28,7 +28,7 @@
 struct Preprocessed {
     bool ok = false;
     std::string text;                  // with #line markers and comments
-    std::string messages;              // the preprocessor's own
+    std::string messages;              // messages of the preprocessor
     std::vector<std::string> files;    // the file and all that it includes, at any depth
     std::vector<std::string> includes; // those that it includes directly
 };

@@ -120,7 +120,7 @@ void Parser::readMetadata(std::string& text, Metadata& found) {
         text = doc();
 }
 
-// The preprocessor may spell the main file's name in another way than the command line.
+// The preprocessor may spell the name of the main file differently from the command line.
 bool Parser::isMain(std::string_view file) {
     auto [it, isNew] = isMain_.try_emplace(file, false);
     if (isNew) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// parser: turns tokens into the declarations of a unit, every name resolved. It reports errors and
-// goes on.
+// parser: turns tokens into the declarations of a unit, with every name resolved. It reports errors
+// and continues after them.
 
 #pragma once
 
@@ -123,7 +123,7 @@ private:
     Symbol* ownEnumerator(const Declaration& d, const std::string& name, const Location& at);
     Literal namedLiteral(const Type& type, const std::string& what);
     Literal convert(Literal value, const Type& type, const std::string& what, const Location& at);
-    // Reads a number from 0 on; -1 after an error.
+    // Reads a number that is not negative; returns -1 after an error.
     int32_t number(const std::string& what, bool mayBeEnumerator);
     Symbol* resolve(const std::string& written, const Location& at);
     Symbol* resolveValue(const std::string& written, const Location& at);
@@ -139,7 +139,7 @@ private:
     std::string scopeId_; // "::A::B"
     std::string user_;    // the enclosing type: it uses names for itself, not for the module
     std::map<std::string_view, bool> isMain_;
-    std::set<std::string_view> begun_; // files whose definitions have begun
+    std::set<std::string_view> begun_; // files with at least one definition so far
     std::map<int, std::string> compactIds_;
     std::set<std::string> unknown_; // names of types that have been reported
     // State of the definition under way.

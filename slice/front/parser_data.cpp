@@ -25,15 +25,14 @@ void Parser::enumeration() {
         d.hasValues = d.hasValues || isWritten;
         e.value = isWritten ? number("an enumerator's value", false) : next;
         if (e.value > INT32_MAX)
-            error(e.at, "an enumerator's value is 0..2147483647");
+            error(e.at, "an enumerator's value must be 0 to 2147483647");
         if (e.value >= 0)
             next = e.value + 1;
         bool isTaken = false;
         for (const Enumerator& other : d.enumerators) {
             isTaken = isTaken || lowerCase(other.name) == lowerCase(e.name);
             if (lowerCase(other.name) == lowerCase(e.name))
-                error(e.at,
-                      "enumerator '" + e.name + "' is there already, as '" + other.name + "'");
+                error(e.at, "enumerator '" + e.name + "' already exists, as '" + other.name + "'");
             else if (other.value == e.value && e.value >= 0)
                 error(e.at,
                       "enumerator '" + e.name + "' has the same value as '" + other.name + "'");
@@ -54,7 +53,7 @@ void Parser::enumeration() {
     accept(";");
     d.complete();
     if (d.enumerators.empty())
-        error(d.at, "an enum has at least one enumerator");
+        error(d.at, "an enum needs at least one enumerator");
 }
 
 void Parser::structure() {
@@ -65,7 +64,7 @@ void Parser::structure() {
     braces(d, [&] { member(d, false); });
     d.complete();
     if (isEmpty)
-        error(d.at, "a struct has at least one member");
+        error(d.at, "a struct needs at least one member");
 }
 
 void Parser::exception() {
@@ -87,8 +86,8 @@ void Parser::classDefinition() {
         d.compactId = number("a class's compact id", true);
         auto [it, isNew] = compactIds_.emplace(d.compactId, d.id());
         if (!isNew && d.compactId >= 0)
-            error(begin,
-                  "compact id " + std::to_string(d.compactId) + " is that of '" + it->second + "'");
+            error(begin, "compact id " + std::to_string(d.compactId) + " is already used by '" +
+                             it->second + "'");
         expect(")");
     }
     if (acceptWord("extends"))
@@ -152,13 +151,14 @@ void Parser::checkMember(const Declaration& d, const Field& f) {
     for (const Declaration* from = &d; from; from = from->base())
         for (const Field& other : from->fields) {
             if (other.name == f.name)
-                error(f.at, "member '" + f.name + "' is there already" +
+                error(f.at, "member '" + f.name + "' already exists" +
                                 (from == &d ? "" : ", in the base '" + from->id() + "'"));
             else if (lowerCase(other.name) == called)
                 error(f.at,
                       "member '" + f.name + "' differs in capitals only from '" + other.name + "'");
             if (from == &d && f.isOptional && other.isOptional && f.tag >= 0 && other.tag == f.tag)
-                error(f.at, "tag " + std::to_string(f.tag) + " is that of '" + other.name + "'");
+                error(f.at,
+                      "tag " + std::to_string(f.tag) + " is already used by '" + other.name + "'");
         }
 }
 

@@ -133,7 +133,7 @@ void Parser::checkOperation(const Declaration& d, const Operation& o) {
               "operation '" + o.name + "' must differ from the name of its " + kindName(d.kind));
     for (const auto& [other, from] : allOperations(d)) {
         if (other->name == o.name)
-            error(o.at, "operation '" + o.name + "' is there already" +
+            error(o.at, "operation '" + o.name + "' already exists" +
                             (from == &d ? "" : ", in the base '" + from->id() + "'") +
                             "; Slice has no overloading");
         else if (lowerCase(other->name) == called)
@@ -178,15 +178,16 @@ void Parser::parameters(Operation& o, const Declaration& owner) {
             error(begin, "a parameter cannot be void");
         checkLocal(p.type, owner.isLocal, "parameter '" + p.name + "'", begin);
         if (!p.isOut && !o.parameters.empty() && o.parameters.back().isOut)
-            error(p.at, "in parameters come before out parameters");
+            error(p.at, "in parameters must precede out parameters");
         for (const Field& other : o.parameters) {
             if (lowerCase(other.name) == lowerCase(p.name))
-                error(p.at, "parameter '" + p.name + "' is there already, as '" + other.name + "'");
+                error(p.at, "parameter '" + p.name + "' already exists, as '" + other.name + "'");
             if (p.isOptional && other.isOptional && p.tag >= 0 && other.tag == p.tag)
-                error(p.at, "tag " + std::to_string(p.tag) + " is that of '" + other.name + "'");
+                error(p.at,
+                      "tag " + std::to_string(p.tag) + " is already used by '" + other.name + "'");
         }
         if (p.isOptional && o.isResultOptional && p.tag >= 0 && o.resultTag == p.tag)
-            error(p.at, "tag " + std::to_string(p.tag) + " is that of the return value");
+            error(p.at, "tag " + std::to_string(p.tag) + " is already used by the return value");
         o.parameters.push_back(std::move(p));
         if (!accept(","))
             break;

@@ -83,7 +83,7 @@ Type Parser::namedType() {
                          : symbol->declaration->kind == Declaration::Kind::Constant
                              ? "a constant, not a type"
                              : "an exception; it can only be thrown";
-        if (symbol || unknown_.insert(written).second) // an unknown name is told once
+        if (symbol || unknown_.insert(written).second) // an unknown name is reported once
             error(begin, "'" + written + "' is " + is);
         throw SyntaxError();
     }
@@ -99,7 +99,7 @@ Type Parser::namedType() {
     if (accept("*")) {
         t.kind = Kind::Proxy;
         if (t.declaration->isLocal)
-            error(begin, "'" + written + "' is local: there are no proxies of it");
+            error(begin, "'" + written + "' is local and has no proxies");
         if (isClass)
             diagnostics_.warning(begin, "proxy for a class is deprecated", Diagnostics::Deprecated);
     } else if (isInterface) {
@@ -136,7 +136,7 @@ int32_t Parser::number(const std::string& what, bool mayBeEnumerator) {
     }
     bool isWrong = diagnostics_.errors() > before;
     if (!isWrong && (v < 0 || v > INT32_MAX)) {
-        error(begin, what + " is 0..2147483647");
+        error(begin, what + " must be 0 to 2147483647");
         isWrong = true;
     }
     return isWrong ? -1 : static_cast<int32_t>(v);
@@ -154,7 +154,7 @@ Parser::Optional Parser::optional() {
     return o;
 }
 
-// Finds a constant, or an enumerator, which Ice still allows without its enum's name.
+// Finds a constant or an enumerator. Ice still allows an enumerator without the name of its enum.
 Symbol* Parser::resolveValue(const std::string& written, const Location& at) {
     if (Symbol* s = resolve(written, at))
         return s;
@@ -194,7 +194,7 @@ Symbol* Parser::ownEnumerator(const Declaration& d, const std::string& name, con
 Literal Parser::namedLiteral(const Type& type, const std::string& what) {
     Location begin = token().at;
     std::string written = scopedName("a value");
-    // An enumerator of the value's own type needs no scope.
+    // An enumerator of the value's type needs no scope.
     Symbol* s = nullptr;
     if (type.declaration && type.declaration->kind == Declaration::Kind::Enum &&
         written.find("::") == std::string::npos)

@@ -65,7 +65,7 @@ void findFiles(Preprocessed& p) {
     }
 }
 
-// Says the number of the last line again: libmcpp counts comments at a file's end twice.
+// Repeats the number of the last line: libmcpp counts comments at the end of a file twice.
 void markEnd(Preprocessed& p, const std::string& file) {
     size_t end = p.text.find('\n');
     if (p.text.compare(0, 8, "#line 1 ") != 0)
@@ -136,7 +136,7 @@ std::string withoutLineEnds(const std::string& messages) {
 
 Preprocessed preprocess(const std::string& file, const std::vector<std::string>& options) {
     // -C: comments stay, for doc comments; -k: columns stay, for messages. The version macros are
-    // those that Ice's own compilers of 3.7 define.
+    // defined by Ice 3.7's compilers.
     std::vector<std::string> arguments = {"mcpp",
                                           "-C",
                                           "-k",

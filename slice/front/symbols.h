@@ -30,7 +30,7 @@ struct Symbol {
     Kind kind = Kind::Module;
     std::string id; // "::A::B"
     Location at;
-    Declaration* declaration = nullptr; // of an enumerator: its enum
+    Declaration* declaration = nullptr; // an enumerator's enum, for an enumerator
     size_t enumerator = 0;
 };
 
@@ -59,7 +59,7 @@ public:
 
 private:
     Diagnostics& diagnostics_;
-    std::unordered_map<std::string, Symbol> table_; // by the name in small letters
+    std::unordered_map<std::string, Symbol> table_; // keyed by the name in lower case
     std::unordered_map<std::string, std::vector<Symbol*>> bare_;
     std::unordered_map<std::string, std::string>
         used_; // first components used in a scope, with their meaning

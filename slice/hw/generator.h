@@ -20,7 +20,7 @@ constexpr unsigned control = 3, status = 4, page = 5, pageLsb = 5;
 // n / slotWords, at least 8 on pages above 0.
 constexpr unsigned pageWords = 8, mostPageBits = 5;
 constexpr unsigned bufferAlignment = 128; // bytes: bursts begin there
-constexpr unsigned mostPins = 32;         // of a core, in a direction
+constexpr unsigned mostPins = 32;         // pins of a core in one direction
 constexpr unsigned mostOperations = 16, refusedLsb = 16, resetBit = 31;
 
 // A scalar, or half of one of 64 bits, as a field of a word and bits of a port.
@@ -81,7 +81,7 @@ struct Pin {
 struct Block {
     const Declaration* interface = nullptr;
     std::string source; // the Slice file, without .ice
-    std::string header; // of its generated C
+    std::string header; // name of the generated C header
     std::string name;   // snake_case
     unsigned type = 0, version = 0;
     std::vector<Call> calls;
@@ -90,10 +90,10 @@ struct Block {
     bool hasOwnClock = false; // it may stop: then no access is answered
     unsigned pageBits = 0;    // above 0: word 5 is PAGE, and there are 2 to this power of pages
     unsigned memoryWord = 0;  // MEMORY; 0: no sequences
-    unsigned memoryBytes = 0; // of all buffers: a power of two
+    unsigned memoryBytes = 0; // size of all buffers, a power of two
 
     bool hasLong() const;
-    unsigned memoryLsb() const; // MEMORY holds the address from this bit on
+    unsigned memoryLsb() const; // lowest address bit that MEMORY holds
     unsigned events() const;    // bits of EVENT that are used, from bit 0
     unsigned numbers() const;   // of words, from 0: a multiple of slotWords
     bool isPaged(unsigned word) const { return pageBits && word % slotWords >= pageWords; }
@@ -106,7 +106,7 @@ struct Port {
     std::string name; // with _i or _o
     bool isOut = false;
     unsigned width = 1;
-    std::string group;          // of the first port of a group: the group's heading
+    std::string group;          // heading of the group, for its first port
     const Call* call = nullptr; // 0: a port that each wrapper has
 };
 
@@ -140,7 +140,7 @@ void addValue(std::vector<Word>& words, const Type& type, const std::string& nam
 // Appends the number of elements of a sequence that lies `offset` bytes into the slot's buffers.
 void addCount(std::vector<Word>& words, const Type& type, const std::string& name,
               const std::string& c, bool isOut, unsigned most, unsigned offset);
-// Appends the code that tells which of `count` exceptions was thrown.
+// Appends the code of the exception that was thrown, 1 to `count`.
 void addCode(std::vector<Word>& words, size_t count);
 // "a_base", the address port of the sequence that "a_count" counts.
 std::string baseName(const Piece& count);

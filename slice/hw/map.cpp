@@ -276,8 +276,9 @@ std::vector<Block> mapHardware(const Unit& unit, Diagnostics& diagnostics) {
             d->fromInclude || d->isForward)
             continue;
         if (d->isLocal) {
-            diagnostics.error(d->at, "interface '" + d->name +
-                                         "' is local: nobody calls it by radio, so it is no core");
+            diagnostics.error(
+                d->at, "interface '" + d->name +
+                           "' is local; a core needs an interface that can be called remotely");
             continue;
         }
         blocks.push_back(Mapper(*d, unit, diagnostics).run());
@@ -289,7 +290,7 @@ std::vector<Block> mapHardware(const Unit& unit, Diagnostics& diagnostics) {
     }
     if (blocks.empty() && diagnostics.errors() == 0)
         diagnostics.error({diagnostics.intern(unit.file), 1, 1},
-                          "there is no interface with [\":hw\"] in this file");
+                          "expected an interface with [\":hw\"], found none in this file");
     if (!blocks.empty())
         warnOfUnthrown(unit, diagnostics);
     return blocks;

@@ -58,7 +58,7 @@ void method(Writer& w, const Block& b, const Call& c) {
             });
 }
 
-// Writes the method that tells whether the event was raised, and gives its values.
+// Writes the method that returns whether the event was raised, and its values.
 void event(Writer& w, const Block& b, const Call& c) {
     std::string parameters, arguments;
     for (const Slot& s : inVariables(*c.operation)) {

@@ -69,7 +69,7 @@ json registers(const Block& b) {
     };
     add(control, "CONTROL", "ws", "1 in an operation's bit: it begins", act);
     if (b.hasLong())
-        add(status, "STATUS", "ro", "of operations that take time", busy);
+        add(status, "STATUS", "ro", "state of operations that take time", busy);
     if (b.pageBits)
         add(page, "PAGE", "rw", "which words 8..15 are",
             json::array({field("ADDRESS", 0, pageLsb + b.pageBits, "a multiple of 32")}));

@@ -101,13 +101,14 @@ class Cases(Script):
             self.assertIn("cannot write", said.stderr)
         # Files of one program: no two names of theirs are one name in C.
         one = "--one-program one/fir.ice"
-        self.slice2c(f"{one} one/crc.ice", 1, "crc.ice:2:31: error: '::Cores::Bytes' is "
-                     "'Cores_Bytes' in C, as one/fir.ice:1 is")
-        self.slice2c(f"{one} one/other/fir.ice", 1, "'fir.ice' is the name of one/fir.ice too")
+        self.slice2c(f"{one} one/crc.ice", 1, "crc.ice:2:31: error: '::Cores::Bytes' becomes "
+                     "'Cores_Bytes' in C, as one/fir.ice:1 does")
+        self.slice2c(f"{one} one/other/fir.ice", 1,
+                     "file 'fir.ice' has the same name as one/fir.ice; both go")
         self.slice2c(f"{one} -Ione one/user.ice")
         self.assertFalse(Path("fir.h").exists())
         self.slice2c("--hw-c x crlf.ice", 1,
-                     r"crlf.ice:1:1: error: there is no interface with \[\":hw\"\] in this file")
+                     r"crlf.ice:1:1: error: expected an interface with \[\":hw\"\], found none")
         self.assertFalse(Path("crlf.h").exists())
         # An exception that no operation throws, by itself or as a base of one.
         Path("thrown.ice").write_text(

@@ -48,8 +48,10 @@ void syncFunction(Writer& w, const CContext& c, const Declaration& d, const Oper
         writeParameters(w, d, o);
         w.line("status = Ice_ObjectPrx_invoke(self, &is);");
         if (hasResults(o)) {
-            w.block("if (status == ICE_OK)", {},
-                    [&] { readWithValues(w, c, outSlots(o, "*"), "ice_received"); });
+            w.block("if (status == ICE_OK)", {}, [&] {
+                readWithValues(w, c, outSlots(o, "*"), "ice_received");
+                w.line("(void)Ice_InputStream_end(is);");
+            });
         }
         readException(w, c, o, "ex");
         w.line("return Ice_ObjectPrx_end(self, status);");
@@ -76,7 +78,7 @@ void completedFunction(Writer& w, const CContext& c, const Declaration& d, const
                         if (returnsClasses(o))
                             w.line("Ice_InputValues values;");
                         readWithValues(w, c, outSlots(o, "call->"), "values");
-                        w.single("if (is->failed)", "status = ICE_MARSHAL;");
+                        w.single("if (Ice_InputStream_end(is))", "status = ICE_MARSHAL;");
                     });
                 }
                 readException(w, c, o, "&call->exception");

@@ -50,11 +50,11 @@ void declareVariables(Writer& w, const Declaration& d, const Operation& o) {
 
 void readParameters(Writer& w, const CContext& c, const Operation& o) {
     if (inVariables(o).empty()) {
-        w.line("(void)is;");
+        w.single("if (Ice_InputStream_endEmpty(is))", "return ICE_MARSHAL;");
         return;
     }
     readWithValues(w, c, inVariables(o), "ice_values");
-    w.single("if (is->failed)", "return ICE_MARSHAL;");
+    w.single("if (Ice_InputStream_end(is))", "return ICE_MARSHAL;");
 }
 
 void writeResults(Writer& w, const CContext& c, const Declaration& d, const Operation& o) {
@@ -170,6 +170,8 @@ void initFunctions(Writer& w, const Declaration& d) {
     std::set<std::string> ids = {"::Ice::Object"};
     for (const Declaration* from : lineage(d)) {
         ids.insert(from->id());
+        if (hasMetadata(from->metadata, ":maintenance"))
+            ids.insert("::IceSoC::Maintenance");
         for (const Declaration* c = from->ofClass; c; c = c->base())
             ids.insert(c->id());
     }

@@ -138,7 +138,7 @@ double floatingValue(const Token& token, Diagnostics& diagnostics) {
         diagnostics.error(token.at, "'" + std::string(token.text) + "' is not a number");
         return 0;
     }
-    if (errno == ERANGE) {
+    if (errno == ERANGE && (v == 0 || std::fabs(v) > 1)) { // a denormal is a number
         diagnostics.error(token.at, "number '" + text +
                                         (std::fabs(v) > 1 ? "' is too large" : "' is too small"));
         return 0;

@@ -162,6 +162,8 @@ template <class Rule> void Parser::guarded(Rule rule) {
 
 // { rule rule ... } with an optional ';' behind it.
 template <class Rule> void Parser::braces(const Declaration& d, Rule rule) {
+    if (isSymbol(":")) // Ice 3.8's word for it
+        fail("'{'; in Ice 3.7 a base follows 'extends', not ':'");
     expect("{");
     user_ = d.id();
     while (!isSymbol("}") && !at(Token::Kind::End))

@@ -21,8 +21,10 @@ Ice_Status Ice_ObjectPrx_ice_isA(Ice_ObjectPrxPtr self, const char* id, Ice_Bool
         return (Ice_Status)self->status;
     Ice_OutputStream_writeString(os, Ice_String_from(id));
     status = Ice_ObjectPrx_invoke(self, &is);
-    if (status == ICE_OK)
+    if (status == ICE_OK) {
         *result = Ice_InputStream_readBool(is);
+        (void)Ice_InputStream_end(is);
+    }
     return Ice_ObjectPrx_end(self, status);
 }
 
@@ -32,8 +34,10 @@ Ice_Status Ice_ObjectPrx_ice_id(Ice_ObjectPrxPtr self, Ice_String* result) {
     if (!Ice_ObjectPrx_begin(self, "ice_id", MODE | ICE_RESULTS))
         return (Ice_Status)self->status;
     status = Ice_ObjectPrx_invoke(self, &is);
-    if (status == ICE_OK)
+    if (status == ICE_OK) {
         *result = Ice_InputStream_readString(is);
+        (void)Ice_InputStream_end(is);
+    }
     return Ice_ObjectPrx_end(self, status);
 }
 

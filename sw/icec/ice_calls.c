@@ -28,6 +28,15 @@ int icec_takeCall(Ice_CommunicatorPtr ic) {
     return slot;
 }
 
+void Ice_Communicator_endTask(Ice_CommunicatorPtr ic, int task) {
+    Ice_Call* call;
+    icec_lock(ic, ICE_LOCK_STATE);
+    for (call = ic->calls; call < ic->calls + ICE_CALLS; ++call)
+        if (call->state == ICE_CALL_KEPT && call->task == task)
+            call->state = ICE_CALL_FREE;
+    icec_unlock(ic, ICE_LOCK_STATE);
+}
+
 Ice_CallState icec_callState(Ice_CommunicatorPtr ic, int slot) {
     Ice_CallState state;
     icec_lock(ic, ICE_LOCK_STATE);

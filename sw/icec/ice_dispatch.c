@@ -53,6 +53,8 @@ static Ice_Status isA(Ice_ObjectPtr servant, Ice_InputStreamPtr is, Ice_OutputSt
     const char* const* id = servant->ids;
     Ice_String wanted;
     Ice_InputStream_takeString(is, &wanted);
+    if (Ice_InputStream_end(is))
+        return ICE_MARSHAL;
     while (*id && !Ice_String_is(&wanted, *id))
         ++id;
     Ice_OutputStream_writeByte(os, *id != 0);

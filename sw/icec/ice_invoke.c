@@ -44,7 +44,9 @@ static Ice_Status connect(Ice_ObjectPrxPtr self) {
     int n;
     if (self->mode >= ICE_DATAGRAM)
         return ICE_NO_ENDPOINT;
-    if (self->generation) /* a fixed proxy's only connection */
+    if (self->versions[0] != 1 || self->versions[2] != 1)
+        return ICE_PROTOCOL; /* the object's versions have nothing in common with these */
+    if (self->generation)    /* a fixed proxy's only connection */
         return icec_countPending(ic, self->connection, self->generation, 0) ? ICE_OK
                                                                             : ICE_CONNECTION_LOST;
     Ice_InputStream_init(&is, self->endpoints + 1, self->endpointsSize - 1);

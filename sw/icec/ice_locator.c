@@ -25,27 +25,29 @@ static Ice_Status find(const Ice_ObjectPrx* prx, Ice_ObjectPrxPtr locator, Ice_O
         Ice_OutputStream_writeString(os, id.category);
     }
     status = Ice_ObjectPrx_invoke(locator, &is);
-    if (status == ICE_OK)
+    if (status == ICE_OK) {
         Ice_InputStream_readPrx(is, prx->communicator, found);
+        (void)Ice_InputStream_end(is);
+    }
     status = Ice_ObjectPrx_end(locator, status);
     return status == ICE_USER_EXCEPTION ? ICE_NO_ENDPOINT : status; /* it is not registered */
 }
 
 Ice_Status Ice_ObjectPrx_resolve(Ice_ObjectPrxPtr self, Ice_ObjectPrxPtr locator) {
-    Ice_ObjectPrx asked = *self, found;
-    Ice_Status status = ICE_OK;
+    Ice_ObjectPrx asked = *self;
     int steps = 2; /* an object may be known by its adapter, and that by its endpoints */
-    while (status == ICE_OK && asked.endpoints[0] == 0 && steps-- > 0) {
-        status = find(&asked, locator, &found);
-        if (status == ICE_OK && Ice_ObjectPrx_isNull(&found))
+    while (asked.endpoints[0] == 0 && steps-- > 0) {
+        Ice_ObjectPrx found;
+        Ice_Status status = find(&asked, locator, &found);
+        if (status != ICE_OK)
+            return status; /* `found` may be unset */
+        if (Ice_ObjectPrx_isNull(&found))
             return ICE_NO_ENDPOINT;
         asked = found;
     }
-    if (status == ICE_OK && asked.endpoints[0] == 0)
+    if (asked.endpoints[0] == 0)
         return ICE_NO_ENDPOINT;
-    if (status == ICE_OK) {
-        memcpy(self->endpoints, asked.endpoints, sizeof self->endpoints);
-        self->endpointsSize = asked.endpointsSize;
-    }
-    return status;
+    memcpy(self->endpoints, asked.endpoints, sizeof self->endpoints);
+    self->endpointsSize = asked.endpointsSize;
+    return ICE_OK;
 }

@@ -1,29 +1,120 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_option: options in proxy and endpoint strings: "-h host -p 10000 -v 'a b'".
+ * ice_option: options in endpoint strings: "-h host -p 10000 -v 'a b'".
+ *
+ * As in Ice, an option's value does not begin with '-', and of two options with one letter the last
+ * one counts. Quotes stand around a whole word.
  */
 #include "ice_port.h"
 
-const char* Ice_findOption(const char* options, char letter, Ice_Int* size) {
-    int matches = 0; /* the word before was "-x" */
-    while (options && *options && *options != ':') {
-        const char* begin;
-        char quote = 0;
-        if (*options == ' ') {
-            ++options;
+#include <string.h>
+
+#define SPACES " \t\n\r"
+
+/* Takes the next word of the options, without its quotes. Returns the text after it; 0: there is
+ * none, and `size` is -1 if quotes do not match. */
+static const char* nextWord(const char* text, const char** word, Ice_Int* size) {
+    char quote = 0;
+    *size = 0;
+    do {
+        if (*text && strchr(SPACES, *text))
+            ++text;
+        else if (text[0] && text[0] == text[1] && strchr("'\"", *text))
+            text += 2; /* an empty word is not one */
+        else
+            break;
+    } while (1);
+    if (*text == 0 || *text == ':')
+        return 0;
+    if (*text == '"' || *text == '\'')
+        quote = *text++;
+    *word = text;
+    /* A colon ends an endpoint even within single quotes. */
+    text += strcspn(text, quote == '"' ? "\"" : quote ? "':" : SPACES ":'\"");
+    *size = (Ice_Int)(text - *word);
+    if (quote && *text == quote && text[-1] != '\\')
+        ++text;
+    else if (quote)
+        *size = -1;
+    if (*text && strchr(SPACES ":", *text) == 0)
+        *size = -1; /* a quote within a word */
+    return *size < 0 ? 0 : text;
+}
+
+Ice_Bool Ice_areOptions(const char* options, const char* letters) {
+    const char *word, *known = 0;
+    Ice_Int size;
+    for (;;) {
+        options = nextWord(options, &word, &size);
+        if (!options)
+            return size == 0 && !known;
+        if (!letters)
             continue;
+        if (*word != '-') { /* a value */
+            if (!known)
+                return 0;
+            known = 0;
+        } else {
+            if (known || size != 2 || word[1] == '-')
+                return 0;
+            known = strchr(letters, word[1]);
+            if (!known)
+                return 0;
+            if (known[1] == '-')
+                known = 0;
         }
-        if (*options == '"' || *options == '\'')
-            quote = *options++;
-        begin = options;
-        while (*options && (quote ? *options != quote : *options != ' ' && *options != ':'))
-            ++options;
-        *size = (Ice_Int)(options - begin);
-        if (matches)
-            return begin;
-        matches = !quote && *size == 2 && begin[0] == '-' && begin[1] == letter;
-        if (quote && *options)
-            ++options;
     }
+}
+
+const char* Ice_findOption(const char* options, char letter, Ice_Int* size) {
+    const char *word, *found = 0;
+    Ice_Int length;
+    int matches = 0; /* the word before was "-x" */
+    while (options && (options = nextWord(options, &word, &length)) != 0) {
+        if (matches) {
+            found = word;
+            *size = length;
+        }
+        matches = length == 2 && word[0] == '-' && word[1] == letter;
+    }
+    return found;
+}
+
+Ice_Bool Ice_hasOption(const char* options, char letter) {
+    const char* word;
+    Ice_Int size;
+    while ((options = nextWord(options, &word, &size)) != 0)
+        if (size == 2 && word[0] == '-' && word[1] == letter)
+            return 1;
     return 0;
+}
+
+/* Reads a decimal number. Returns 0 if the word is another one. */
+static Ice_Bool readInteger(const char* at, Ice_Int size, Ice_Int most, Ice_Int* value) {
+    Ice_Int number = 0;
+    while (size > 0 && strchr(SPACES, *at))
+        ++at, --size;
+    if (size > 1 && *at == '+')
+        ++at, --size;
+    if (size == 0)
+        return 0;
+    for (; size > 0; ++at, --size) {
+        if (*at < '0' || *at > '9' || number > (most - (*at - '0')) / 10)
+            return 0;
+        number = number * 10 + (*at - '0');
+    }
+    *value = number;
+    return 1;
+}
+
+Ice_Bool Ice_integerOption(const char* options, char letter, Ice_Int most, Ice_Int* value) {
+    const char* word;
+    Ice_Int size;
+    int matches = 0;
+    while ((options = nextWord(options, &word, &size)) != 0) {
+        if (matches && !readInteger(word, size, most, value))
+            return 0;
+        matches = size == 2 && word[0] == '-' && word[1] == letter;
+    }
+    return 1;
 }

@@ -64,7 +64,8 @@ typedef struct Ice_Endpoint {
     /* Accepts connections from peers from now on; options 0: no more. */
     Ice_Status (*listen)(void* context, const char* options);
     /* Writes an endpoint in the wire's form from options such as "-a 1 -p 3" (up to their end, or
-     * an unquoted colon); options 0: the endpoint in a proxy to an object of this side. */
+     * an unquoted colon); options 0: the endpoint in a proxy to an object of this side. Fails the
+     * stream with ICE_FAILED_MALFORMED if they are not options of this transport. */
     void (*encode)(void* context, const char* options, Ice_OutputStreamPtr os);
     /* Makes receive return early; may be called from any task. */
     void (*wake)(void* context);
@@ -76,9 +77,19 @@ typedef struct Ice_Endpoint {
                       Ice_OutputStreamPtr text);
 } Ice_Endpoint;
 
-/* Finds the value behind "-x", without its quotes; for transports. 0: there is none. */
+/* ---- options of endpoints, up to their end or an unquoted colon; for transports ---- */
+
+/* Checks that there are only options of these letters, each with its value; a letter that is
+ * followed by '-' has no value. `letters` 0: checks the quotes alone. */
+Ice_Bool Ice_areOptions(const char* options, const char* letters);
+/* Finds the value of the last "-x", without its quotes; 0: it is missing. */
 const char* Ice_findOption(const char* options, char letter, Ice_Int* size);
-/* Returns the value as a number, decimal or 0x...; `otherwise` where there is none. */
+Ice_Bool Ice_hasOption(const char* options, char letter);
+/* Reads the value, or the last of several, as a decimal number from 0 to `most`; leaves `value` if
+ * the option is missing. Returns 0 if one is another word. */
+Ice_Bool Ice_integerOption(const char* options, char letter, Ice_Int most, Ice_Int* value);
+/* Returns the value as a number, decimal or 0x...; `otherwise` if it is missing. Another word gives
+ * 0xFFFFFFFF in the full run time. */
 U32 Ice_numberOption(const char* options, char letter, U32 otherwise);
 
 /* The two locks: SEND holds the buffer and order of requests for as long as one is written and

@@ -25,11 +25,17 @@ void icec_wake(Ice_CommunicatorPtr ic);
 
 /* Returns the options after a transport's name, and sets the transport; 0: the text names none. */
 const char* icec_optionsOf(Ice_CommunicatorPtr ic, const char* text, int* transport);
-/* Returns the text behind the next colon outside of quotes; 0: there is none. */
+/* Returns the text after the next colon outside of quotes; 0: there is none. */
 const char* icec_nextEndpoint(const char* text);
 /* Adds an endpoint of a transport; `options` 0: the one that it listens on. ICE_LIMIT:
  * ICE_ENDPOINT_MAX. */
 Ice_Status icec_addEndpoint(Ice_ObjectPrxPtr prx, int transport, const char* options);
+
+/* Resolves escapes, as Ice does: `special` may be escaped besides, others stay as they are. Fails
+ * `os` if one is malformed, or if there are control characters. */
+void icec_unescape(Ice_String text, char special, Ice_OutputStreamPtr os);
+/* Returns ICE_PARSE if the stream failed since its text is malformed, else ICE_LIMIT. */
+Ice_Status icec_parseFailure(const Ice_OutputStream* os);
 
 /* Sends the whole message in `os`; under ICE_LOCK_SEND. ICE_CONNECTION_LOST: the connection is
  * over. */

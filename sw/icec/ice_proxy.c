@@ -14,8 +14,11 @@ void icec_initProxy(Ice_ObjectPrxPtr prx, Ice_CommunicatorPtr ic) {
     prx->timeoutMs = ICE_TIMEOUT_MS;
     prx->minor = 1;
     prx->endpointsSize = 2; /* no endpoints, no adapter's id */
-    if (ICEC_FULL)
+    if (ICEC_FULL) {
         prx->call = prx->connection = -1;
+        memset(prx->versions, 1, sizeof prx->versions);
+        prx->versions[1] = 0; /* protocol 1.0, encoding 1.1 */
+    }
 }
 
 Ice_Status icec_setIdentity(Ice_ObjectPrxPtr prx, const Ice_String* name,
@@ -81,7 +84,9 @@ void Ice_OutputStream_writePrx(Ice_OutputStreamPtr os, const Ice_ObjectPrx* prx)
         os->failed = ICE_FAILED_MALFORMED; /* a fixed proxy's connection exists here only */
     Ice_OutputStream_writeBlob(os, prx->identity, prx->identitySize);
     Ice_OutputStream_writeShort(os, (Ice_Short)(prx->mode | prx->secure << 8));
-    if (os->minor != 0) /* protocol 1.0, the encoding */
+    if (ICEC_FULL && os->minor != 0)
+        Ice_OutputStream_writeBlob(os, prx->versions, 4);
+    else if (os->minor != 0) /* protocol 1.0, the encoding */
         Ice_OutputStream_writeInt(os, 0x00010001 | prx->minor << 24);
     Ice_OutputStream_writeBlob(os, prx->endpoints, prx->endpointsSize);
     if (ICEC_FULL && !os->failed && prx->communicator)
@@ -112,9 +117,13 @@ void Ice_InputStream_readPrx(Ice_InputStreamPtr is, Ice_CommunicatorPtr ic, Ice_
     prx->mode = Ice_InputStream_readByte(is);
     prx->secure = Ice_InputStream_readBool(is);
     prx->minor = is->minor; /* an old peer omits it, and means its own */
+    if (ICEC_FULL)
+        prx->versions[3] = is->minor;
     if (is->minor != 0) {
         const Ice_Byte* versions = Ice_InputStream_readBlob(is, 4);
         prx->minor = versions && versions[3] != 0; /* of a later version, 1.1 is understood there */
+        if (ICEC_FULL && versions)
+            memcpy(prx->versions, versions, 4);
     }
     prx->endpointsSize = 1;
     n = Ice_InputStream_readSequence(is, 8);
@@ -150,6 +159,7 @@ Ice_Identity icec_parseIdentity(const char* text) {
 
 int Ice_ObjectPrx_equals(const Ice_ObjectPrx* a, const Ice_ObjectPrx* b) {
     return a->mode == b->mode && a->secure == b->secure && a->minor == b->minor &&
+           (!ICEC_FULL || memcmp(a->versions, b->versions, sizeof a->versions) == 0) &&
            a->generation == b->generation && a->identitySize == b->identitySize &&
            a->endpointsSize == b->endpointsSize &&
            memcmp(a->identity, b->identity, a->identitySize) == 0 &&
@@ -194,6 +204,10 @@ void Ice_ObjectPrx_ice_invocationTimeout(Ice_ObjectPrxPtr prx, Ice_Int ms) {
 
 void Ice_ObjectPrx_ice_encodingVersion(Ice_ObjectPrxPtr prx, Ice_Byte minor) {
     prx->minor = minor != 0;
+    if (ICEC_FULL) {
+        prx->versions[2] = 1;
+        prx->versions[3] = prx->minor;
+    }
 }
 
 void Ice_ObjectPrx_setReplyBuffer(Ice_ObjectPrxPtr prx, U32* buffer, Ice_Int bytes) {

@@ -9,52 +9,47 @@
 
 #define SPACES " \t\n\r"
 
+/* Returns the status of a string that does not fit into `os`, or is malformed. */
+Ice_Status icec_parseFailure(const Ice_OutputStream* os) {
+    return os->failed == ICE_FAILED_MALFORMED ? ICE_PARSE : ICE_LIMIT;
+}
+
 U32 Ice_numberOption(const char* options, char letter, U32 otherwise) {
     Ice_Int size;
     const char* at = Ice_findOption(options, letter, &size);
+    char* end;
+    U32 value;
     if (!at)
         return otherwise;
-    return (U32)strtoul(at, 0, at[0] == '0' && at[1] == 'x' ? 16 : 10);
+    value = (U32)strtoul(at, &end, at[0] == '0' && at[1] == 'x' ? 16 : 10);
+    return end == at + size && *at != '-' ? value : 0xFFFFFFFFU;
 }
 
-/* Takes the next word, without its quotes; it ends at a space, a colon or an at sign. Escapes
- * stay. */
-static const char* word(const char* text, Ice_String* found) {
-    char quote = 0;
-    text += strspn(text, SPACES);
-    if (*text == '"' || *text == '\'')
-        quote = *text++;
+/* Takes the next word, without its quotes; it ends at a character of `ends`. Escapes stay. Returns
+ * the text after it; 0: quotes do not match. */
+static const char* word(const char* text, const char* ends, Ice_String* found) {
+    const char quote = *text;
+    int isQuoted = quote == '"' || quote == '\'';
+    text += isQuoted;
     found->data = text;
-    while (*text && (quote ? *text != quote : strchr(SPACES ":@", *text) == 0))
-        text += text[0] == '\\' && text[1] ? 2 : 1;
+    if (isQuoted) {
+        while (*text && (*text != quote || text[-1] == '\\'))
+            ++text;
+        if (!*text)
+            return 0;
+    } else {
+        text += strcspn(text, ends);
+    }
     found->size = (Ice_Int)(text - found->data);
-    if (quote && *text++ != quote)
-        return 0; /* no closing quote */
-    return text;
+    return text + isQuoted;
 }
 
-/* Resolves escapes. */
-static void unescape(Ice_String text, Ice_OutputStreamPtr os) {
-    static const char from[] = "abfnrtv", to[] = "\a\b\f\n\r\t\v";
-    Ice_Int i = 0;
-    while (i < text.size) {
-        char c = text.data[i++];
-        if (c == '\\' && i < text.size) {
-            const char* known;
-            c = text.data[i++];
-            known = strchr(from, c);
-            if (c >= '0' && c <= '7') {
-                int digits = 2, value = c - '0';
-                for (; digits > 0 && i < text.size && text.data[i] >= '0' && text.data[i] <= '7';
-                     --digits)
-                    value = value * 8 + (text.data[i++] - '0');
-                c = (char)value;
-            } else if (known) {
-                c = to[known - from];
-            }
-        }
-        Ice_OutputStream_writeByte(os, (Ice_Byte)c);
-    }
+/* Returns whether an odd number of backslashes stands before the character at `at`. */
+static int isEscaped(Ice_String text, Ice_Int at) {
+    Ice_Int count = 0;
+    while (count < at && text.data[at - count - 1] == '\\')
+        ++count;
+    return count % 2;
 }
 
 /* Parses "name" or "category/name", where a slash may be escaped. */
@@ -63,14 +58,12 @@ static Ice_Status parseIdentity(Ice_String text, Ice_String facet, Ice_ObjectPrx
     Ice_OutputStream os;
     Ice_String parts[3], raw[3];
     Ice_Int i, slash = -1;
-    for (i = 0; i < text.size; ++i) {
-        if (text.data[i] == '\\')
-            ++i;
-        else if (text.data[i] == '/' && slash >= 0)
-            return ICE_PARSE;
-        else if (text.data[i] == '/')
+    for (i = 0; i < text.size; ++i)
+        if (text.data[i] == '/' && !isEscaped(text, i)) {
+            if (slash >= 0)
+                return ICE_PARSE;
             slash = i;
-    }
+        }
     raw[0].data = text.data + slash + 1;
     raw[0].size = text.size - slash - 1;
     raw[1].data = text.data;
@@ -80,178 +73,206 @@ static Ice_Status parseIdentity(Ice_String text, Ice_String facet, Ice_ObjectPrx
     for (i = 0; i < 3; ++i) {
         parts[i].data = (const char*)bytes + os.size;
         parts[i].size = os.size;
-        unescape(raw[i], &os);
+        icec_unescape(raw[i], i < 2 ? '/' : 0, &os);
         parts[i].size = os.size - parts[i].size;
     }
     if (os.failed)
-        return ICE_LIMIT;
+        return icec_parseFailure(&os);
     if (parts[0].size == 0)
         return ICE_PARSE;
     return icec_setIdentity(prx, &parts[0], &parts[1], &parts[2]);
 }
 
-/* Decodes base 64: each of 64 characters stands for six bits. */
-static void decodeBase64(const char* text, Ice_Int size, Ice_OutputStreamPtr os) {
+/* Returns the six bits that a character of base 64 stands for; '=' has 63; -1: another character.
+ */
+static int base64(char c) {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    U32 bits = 0, have = 0;
-    for (; size > 0 && *text != '='; --size, ++text) {
-        const char* digit = *text ? strchr(digits, *text) : 0;
-        if (!digit) {
-            os->failed = ICE_FAILED_MALFORMED;
-            return;
+    const char* digit = c ? strchr(digits, c) : 0;
+    return digit ? (int)(digit - digits) : c == '=' ? 63 : -1;
+}
+
+/* Decodes base 64 in groups of four characters; missing ones count as 'A', as in Ice. */
+static void decodeBase64(const char* text, Ice_Int size, Ice_OutputStreamPtr os) {
+    for (; size > 0 && !os->failed; size -= 4, text += 4) {
+        char c[4];
+        U32 bits = 0;
+        int i;
+        for (i = 0; i < 4; ++i) {
+            int six;
+            c[i] = i < size ? text[i] : 'A';
+            six = base64(c[i]);
+            if (six < 0)
+                os->failed = ICE_FAILED_MALFORMED;
+            bits = bits << 6 | ((U32)six & 63U);
         }
-        bits = bits << 6 | (U32)(digit - digits);
-        have += 6;
-        if (have >= 8) {
-            have -= 8;
-            Ice_OutputStream_writeByte(os, (Ice_Byte)(bits >> have));
-        }
+        Ice_OutputStream_writeByte(os, (Ice_Byte)(bits >> 16));
+        if (c[2] != '=')
+            Ice_OutputStream_writeByte(os, (Ice_Byte)(bits >> 8));
+        if (c[3] != '=')
+            Ice_OutputStream_writeByte(os, (Ice_Byte)bits);
     }
+}
+
+/* Parses a version such as "1.1". Returns 0 if it is another text. */
+static int parseVersion(Ice_String text, Ice_Byte* version) {
+    int part;
+    Ice_Int i = 0;
+    for (part = 0; part < 2; ++part, ++i) {
+        U32 number = 0;
+        Ice_Int begin;
+        i += i < text.size && text.data[i] == '+';
+        begin = i;
+        for (; i < text.size && text.data[i] >= '0' && text.data[i] <= '9' && number < 256; ++i)
+            number = number * 10 + (U32)(text.data[i] - '0');
+        if (i == begin || number > 255 || (part == 0 && (i == text.size || text.data[i] != '.')))
+            return 0;
+        version[part] = (Ice_Byte)number;
+    }
+    return i == text.size + 1;
+}
+
+/* Returns how many options of this letter there are. */
+static int countOptions(const char* options, char letter) {
+    int count = 0;
+    for (; *options && *options != ':'; ++options)
+        count += options[0] == '-' && options[1] == letter && strchr(SPACES, options[2]) != 0;
+    return count;
 }
 
 /* Parses an endpoint that is passed on unchanged: "opaque -t type -e encoding -v bytes in base
  * 64". */
 static Ice_Status parseOpaque(const char* options, Ice_ObjectPrxPtr prx) {
-    Ice_Int size, versionSize, begin;
-    const char* value = Ice_findOption(options, 'v', &size);
-    const char* version = Ice_findOption(options, 'e', &versionSize);
-    U32 type = Ice_numberOption(options, 't', 0x10000U), major = 1, minor = 1;
+    Ice_Int type = -1;
+    Ice_String value, version;
+    Ice_Byte encoding[2] = {1, 0};
     Ice_OutputStream os;
-    if (version) {
-        major = Ice_numberOption(options, 'e', 0);
-        while (versionSize > 0 && *version != '.')
-            ++version, --versionSize;
-        for (minor = 0; --versionSize > 0;)
-            minor = minor * 10 + ((U32)(U8) * ++version - (U32)'0');
-    }
-    if (!value || type > 0xFFFFU || major > 255 || minor > 255)
+    Ice_Int begin;
+    value.data = Ice_findOption(options, 'v', &value.size);
+    version.data = Ice_findOption(options, 'e', &version.size);
+    if (!Ice_areOptions(options, "tev") || !value.data || countOptions(options, 't') != 1 ||
+        countOptions(options, 'v') != 1 || !Ice_integerOption(options, 't', 0xFFFF, &type) ||
+        (version.data && !parseVersion(version, encoding)))
         return ICE_PARSE;
     Ice_OutputStream_init(&os, prx->endpoints, ICE_ENDPOINT_MAX);
     os.size = prx->endpoints[0] ? prx->endpointsSize : 1;
     Ice_OutputStream_writeShort(&os, (Ice_Short)type);
     begin = os.size;
     Ice_OutputStream_writeInt(&os, 0);
-    Ice_OutputStream_writeShort(&os, (Ice_Short)(major | minor << 8));
-    decodeBase64(value, size, &os);
+    Ice_OutputStream_writeShort(&os, (Ice_Short)(encoding[0] | encoding[1] << 8));
+    decodeBase64(value.data, value.size, &os);
     icec_endEncapsulation(&os, begin);
     if (os.failed)
-        return ICE_LIMIT;
+        return icec_parseFailure(&os);
     prx->endpointsSize = (Ice_Byte)os.size;
     ++prx->endpoints[0];
     return ICE_OK;
 }
 
-/* Tells whether the text is a sequence of "-x value"; -z of tcp has no value. */
-static int areOptions(const char* text) {
-    Ice_String option, value;
-    for (;;) {
-        text += strspn(text, SPACES);
-        if (*text == 0 || *text == ':')
-            return 1;
-        text = word(text, &option);
-        if (!text || option.size != 2 || option.data[0] != '-')
-            return 0;
-        if (option.data[1] == 'z')
-            continue;
-        text = word(text, &value);
-        if (!text || text == value.data)
-            return 0;
-    }
-}
-
 const char* icec_nextEndpoint(const char* text) {
-    char quote = 0;
-    for (; *text; ++text)
-        if (*text == quote)
-            quote = 0;
-        else if (!quote && *text == ':')
-            return text + 1 + strspn(text + 1, " ");
-        else if (!quote && (*text == '"' || *text == '\''))
-            quote = *text;
+    const char* quote;
+    for (; *text; ++text) {
+        if (*text == ':')
+            return text + 1 + strspn(text + 1, SPACES);
+        if (*text == '"' && (quote = strchr(text + 1, '"')) != 0)
+            text = quote;
+    }
     return 0;
 }
 
-/* Parses the endpoints behind the colon at `text`. */
+/* Parses the endpoints after the colon at `text`. Those of unknown transports are left out, as long
+ * as there is another one. */
 static Ice_Status parseEndpoints(const char* text, Ice_ObjectPrxPtr prx) {
     Ice_Status status = ICE_OK;
-    while (status == ICE_OK) {
+    while (status == ICE_OK && (text = icec_nextEndpoint(text)) != 0) {
         int transport;
-        const char* options;
-        text = icec_nextEndpoint(text);
-        if (!text)
-            break;
-        options = icec_optionsOf(prx->communicator, text, &transport);
-        if (!areOptions(text + strcspn(text, SPACES ":")))
+        const char* options = icec_optionsOf(prx->communicator, text, &transport);
+        if (*text == 0 || *text == ':')
             status = ICE_PARSE;
         else if (options)
             status = icec_addEndpoint(prx, transport, options);
-        else if (strncmp(text, "opaque ", 7) == 0)
-            status = parseOpaque(text + 7, prx);
-        else
-            status = ICE_NO_ENDPOINT;
+        else if (strncmp(text, "opaque", 6) == 0 && strchr(SPACES ":", text[6]))
+            status = parseOpaque(text + 6, prx);
+        else if (!Ice_areOptions(text, 0))
+            status = ICE_PARSE;
     }
-    return status;
+    return status == ICE_OK && prx->endpoints[0] == 0 ? ICE_NO_ENDPOINT : status;
 }
 
 static Ice_Status parseAdapter(const char* text, Ice_ObjectPrxPtr prx) {
     Ice_OutputStream os;
     Ice_String id;
-    text = word(text, &id);
-    if (!text || id.size == 0 || *text != 0)
+    text = word(text + strspn(text, SPACES), SPACES, &id);
+    if (!text || text[strspn(text, SPACES)] != 0)
         return ICE_PARSE;
     Ice_OutputStream_init(&os, prx->endpoints, ICE_ENDPOINT_MAX);
     os.size = 2; /* no endpoints, the id's size */
-    unescape(id, &os);
+    icec_unescape(id, 0, &os);
+    if (os.failed)
+        return icec_parseFailure(&os);
     prx->endpointsSize = (Ice_Byte)os.size;
     prx->endpoints[1] = (Ice_Byte)(os.size - 2);
-    return os.failed ? ICE_LIMIT : ICE_OK;
+    return os.size == 2 ? ICE_PARSE : ICE_OK;
+}
+
+/* Parses an option before the endpoints, with its value (of size 0 if there is none). */
+static Ice_Status parseOption(char letter, Ice_String value, Ice_String* facet,
+                              Ice_ObjectPrxPtr prx) {
+    static const char modes[] = "toOdD"; /* in the order of ICE_TWOWAY and its like */
+    const char* mode = letter ? strchr(modes, letter) : 0;
+    int isRight = value.size != 0;
+    if (mode) {
+        prx->mode = (Ice_Byte)(mode - modes);
+        isRight = !isRight;
+    } else if (letter == 's') {
+        prx->secure = 1;
+        isRight = !isRight;
+    } else if (letter == 'f') {
+        *facet = value;
+    } else if (letter == 'p') {
+        isRight = parseVersion(value, prx->versions);
+    } else {
+        isRight = letter == 'e' && parseVersion(value, prx->versions + 2);
+        prx->minor = prx->versions[3] != 0;
+    }
+    return isRight ? ICE_OK : ICE_PARSE;
 }
 
 static Ice_Status parse(const char* text, Ice_ObjectPrxPtr prx) {
-    static const char modes[] = "toOdD"; /* in the order of ICE_TWOWAY and its like */
     Ice_String identity, facet = {0, ""}, option, value;
+    const char* begin;
     Ice_Status status;
-    text = word(text, &identity);
+    text += strspn(text, SPACES);
+    begin = text;
+    text = word(text, SPACES ":@", &identity);
     if (!text)
         return ICE_PARSE;
+    if (identity.size == 0 || (identity.size == 1 && *identity.data == '/')) /* "" and / are null */
+        return text != begin && text[strspn(text, SPACES)] == 0 ? ICE_OK : ICE_PARSE;
     for (;;) {
-        const char* mode;
         text += strspn(text, SPACES);
-        if (*text != '-')
+        if (strchr(":@", *text)) /* or the end */
             break;
-        text = word(text, &option);
-        if (option.size != 2)
+        text += strcspn(option.data = text, SPACES ":@");
+        option.size = (Ice_Int)(text - option.data);
+        value.size = 0;
+        text += strspn(text, SPACES);
+        if (!strchr(":@-", *text))
+            text = word(text, SPACES ":@", &value);
+        if (!text || option.size != 2 || option.data[0] != '-' ||
+            parseOption(option.data[1], value, &facet, prx) != ICE_OK)
             return ICE_PARSE;
-        mode = strchr(modes, option.data[1]);
-        if (mode) {
-            prx->mode = (Ice_Byte)(mode - modes);
-        } else if (option.data[1] == 's') {
-            prx->secure = 1;
-        } else {
-            text = word(text, &value);
-            if (!text || text == value.data)
-                return ICE_PARSE; /* no closing quote, or no value */
-            if (option.data[1] == 'f')
-                facet = value;
-            else if (option.data[1] == 'e' && value.size == 3 && memcmp(value.data, "1.", 2) == 0)
-                prx->minor = value.data[2] != '0';
-            else if (option.data[1] != 'p' || !Ice_String_equals(value, "1.0"))
-                return ICE_PARSE;
-        }
     }
     status = parseIdentity(identity, facet, prx);
     if (status != ICE_OK || *text == 0)
         return status;
-    if (*text == ':')
-        return parseEndpoints(text, prx);
-    return *text == '@' ? parseAdapter(text + 1, prx) : ICE_PARSE;
+    return *text == ':' ? parseEndpoints(text, prx) : parseAdapter(text + 1, prx);
 }
 
 Ice_Status Ice_Communicator_stringToProxy(Ice_CommunicatorPtr ic, const char* proxy,
                                           Ice_ObjectPrxPtr prx) {
     Ice_Status status;
     icec_initProxy(prx, ic);
-    if (proxy[strspn(proxy, SPACES)] == 0)
+    if (proxy[0] == 0)
         return ICE_OK; /* the null proxy */
     status = parse(proxy, prx);
     if (status != ICE_OK)

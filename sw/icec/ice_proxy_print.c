@@ -26,11 +26,11 @@ static void escape(Ice_OutputStreamPtr os, Ice_String text, char special) {
         const char* known = c ? strchr(from, c) : 0;
         if (known) {
             c = to[known - from];
-        } else if ((U8)c < 32 || c == 127) { /* octal, which all versions of Ice read */
-            Ice_OutputStream_writeByte(os, '\\');
-            Ice_OutputStream_writeByte(os, (Ice_Byte)('0' + ((U8)c >> 6)));
-            Ice_OutputStream_writeByte(os, (Ice_Byte)('0' + ((U8)c >> 3 & 7)));
-            Ice_OutputStream_writeByte(os, (Ice_Byte)('0' + ((U8)c & 7)));
+        } else if ((U8)c < 32 || c == 127) {
+            static const char digits[] = "0123456789abcdef";
+            icec_put(os, "\\u00");
+            Ice_OutputStream_writeByte(os, (Ice_Byte)digits[(U8)c >> 4]);
+            Ice_OutputStream_writeByte(os, (Ice_Byte)digits[(U8)c & 15]);
             continue;
         }
         if (known || (special && c == special))
@@ -53,15 +53,19 @@ static void quote(Ice_OutputStreamPtr os, Ice_Int begin) {
         }
 }
 
+static void putVersion(Ice_OutputStreamPtr os, const char* option, const Ice_Byte* version) {
+    icec_put(os, option);
+    icec_putNumber(os, version[0]);
+    icec_put(os, ".");
+    icec_putNumber(os, version[1]);
+}
+
 static void putOpaque(Ice_OutputStreamPtr os, const Ice_Byte* encoded, Ice_Int size) {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     Ice_Int i;
     icec_put(os, "opaque -t ");
     icec_putNumber(os, encoded[0] | (U32)encoded[1] << 8);
-    icec_put(os, " -e ");
-    icec_putNumber(os, encoded[6]);
-    icec_put(os, ".");
-    icec_putNumber(os, encoded[7]);
+    putVersion(os, " -e ", encoded + 6);
     icec_put(os, " -v ");
     for (i = 8; i < size; i += 3) {
         U32 bits = (U32)encoded[i] << 16 | (i + 1 < size ? (U32)encoded[i + 1] << 8 : 0) |
@@ -112,7 +116,9 @@ Ice_Status Ice_Communicator_proxyToString(const Ice_ObjectPrx* prx, char* text, 
         }
         icec_put(&os, modes[prx->mode]);
         icec_put(&os, prx->secure ? " -s" : "");
-        icec_put(&os, prx->minor ? " -e 1.1" : " -e 1.0");
+        if (prx->versions[0] != 1 || prx->versions[1] != 0)
+            putVersion(&os, " -p ", prx->versions);
+        putVersion(&os, " -e ", prx->versions + 2);
         if (prx->endpoints[0]) {
             putEndpoints(prx, &os);
         } else if (prx->endpointsSize > 2) {

@@ -235,3 +235,25 @@ void Ice_InputStream_skipOptionals(Ice_InputStreamPtr is) {
     if (is->minor != 0)
         (void)seek(is, 0x7FFFFFFF, -1);
 }
+
+#ifndef ICEC_MINIMAL
+
+Ice_Bool Ice_InputStream_end(Ice_InputStreamPtr is) {
+    /* Ice before 3.3 could send one byte too much after 1.0's instances of classes. */
+    Ice_Int most = is->minor == 0 ? 1 : 0;
+    is->sliceFlags = 0;
+    Ice_InputStream_skipOptionals(is);
+    if (is->minor != 0 && is->position < is->size && is->data[is->position] == OPTIONAL_END)
+        ++is->position;
+    if (is->size - is->position > most)
+        icec_failRead(is, ICE_FAILED_MALFORMED);
+    return is->failed;
+}
+
+Ice_Bool Ice_InputStream_endEmpty(Ice_InputStreamPtr is) {
+    if (is->minor == 0 && is->position != is->size)
+        icec_failRead(is, ICE_FAILED_MALFORMED);
+    return is->failed;
+}
+
+#endif

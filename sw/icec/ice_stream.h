@@ -176,6 +176,18 @@ Ice_Bool Ice_InputStream_readOptional(Ice_InputStreamPtr is, Ice_Int tag, Ice_In
 /* Skips the optional values that are left in the slice or encapsulation. */
 void Ice_InputStream_skipOptionals(Ice_InputStreamPtr is);
 
+/* Ends the reading of parameters, results or an exception: skips optional values that are left, and
+ * fails the stream if other bytes follow, as stock Ice does. Returns is->failed. The minimal run
+ * time ignores what follows. */
+#ifdef ICEC_MINIMAL
+#define Ice_InputStream_end(is) ((is)->failed)
+#define Ice_InputStream_endEmpty(is) ((void)(is), 0)
+#else
+Ice_Bool Ice_InputStream_end(Ice_InputStreamPtr is);
+/* The same if there are no parameters: 1.1 allows any that a newer peer has added, 1.0 none. */
+Ice_Bool Ice_InputStream_endEmpty(Ice_InputStreamPtr is);
+#endif
+
 /* ---- user exceptions: slices, the most derived one first ---- */
 
 void Ice_OutputStream_startException(Ice_OutputStreamPtr os, Ice_Bool usesClasses);

@@ -40,9 +40,10 @@ const char* icec_optionsOf(Ice_CommunicatorPtr ic, const char* text, int* transp
     Ice_String name;
     int t;
     name.data = text;
-    name.size = (Ice_Int)strcspn(text, " :");
+    name.size = (Ice_Int)strcspn(text, " \t\n\r:");
     for (t = 0; t < ICEC_TRANSPORTS(ic); ++t)
-        if (Ice_String_is(&name, ic->transports[t].endpoint->name)) {
+        if (Ice_String_is(&name, ic->transports[t].endpoint->name) ||
+            Ice_String_is(&name, "default")) { /* the first one */
             *transport = t;
             return text + name.size;
         }
@@ -55,9 +56,11 @@ Ice_Status icec_addEndpoint(Ice_ObjectPrxPtr prx, int transport, const char* opt
     Ice_OutputStream_init(&os, prx->endpoints, ICE_ENDPOINT_MAX);
     os.size = prx->endpoints[0] ? prx->endpointsSize : 1;
     t->endpoint->encode(t->context, options, &os);
+    if (os.failed)
+        return icec_parseFailure(&os);
     prx->endpointsSize = (Ice_Byte)os.size;
     ++prx->endpoints[0];
-    return os.failed ? ICE_LIMIT : ICE_OK;
+    return ICE_OK;
 }
 
 int icec_printEndpoint(Ice_CommunicatorPtr ic, const Ice_Byte* encoded, Ice_Int size,

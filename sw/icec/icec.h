@@ -176,6 +176,7 @@ struct Ice_ObjectPrx {
     Ice_Int id;                           /* of the last call, 0: it has no reply */
     const char* operation;                /* of the last call */
     const char* reason;                   /* for which it failed on this side; 0: another one */
+    Ice_Byte versions[4]; /* protocol and encoding, as the proxy travels with them; full run time */
 };
 
 /* The reason of a failed call: identity, facet and operation that were called for
@@ -261,6 +262,12 @@ void Ice_initialize(Ice_CommunicatorPtr ic);
 void Ice_Communicator_setOs(Ice_CommunicatorPtr ic, const Ice_Os* os, void* context);
 void Ice_Communicator_setEndpoint(Ice_CommunicatorPtr ic, const Ice_Endpoint* endpoint,
                                   void* context);
+
+/* Releases the result of a task's last call, and with it the task's place among ICE_CALLS; `task`
+ * is a number of Ice_Os's task. To be called when a task ends, from the kernel's hook for that; a
+ * task that lives on may call it when it needs the result no longer. It takes the state lock, so
+ * that a hook that may not wait leaves it to another task. Not within a call. Full run time. */
+void Ice_Communicator_endTask(Ice_CommunicatorPtr ic, int task);
 
 /* Takes properties from an array of strings "key=value" that ends with 0. The first of two with one
  * key counts. */

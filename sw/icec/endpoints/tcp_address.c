@@ -15,25 +15,41 @@
 #include <string.h>
 #include <unistd.h>
 
+Ice_Bool TcpEndpoint_readOptions(const char* options, TcpEndpoint_Address* address) {
+    Ice_Int size, timeout = 60000;
+    const char* text = Ice_findOption(options, 't', &size);
+    if (text && size == 8 && memcmp(text, "infinite", 8) == 0)
+        timeout = -1;
+    else if (!Ice_integerOption(options, 't', 0x7FFFFFFF, &timeout) || timeout == 0)
+        return 0;
+    address->timeoutMs = timeout;
+    address->port = 0;
+    address->host.data = Ice_findOption(options, 'h', &address->host.size);
+    address->compresses = Ice_hasOption(options, 'z');
+    return Ice_areOptions(options, "htpz-") &&
+           Ice_integerOption(options, 'p', 65535, &address->port);
+}
+
 void TcpEndpoint_encode(void* context, const char* options, Ice_OutputStreamPtr os) {
     TcpEndpoint* self = context;
-    const char* timeout;
-    Ice_Int size;
-    int infinite;
-    Ice_String host;
-    host.data = Ice_findOption(options, 'h', &host.size);
-    if (!host.data || host.size > 200)
-        host = Ice_String_from(self->host);
+    TcpEndpoint_Address at;
+    if (!TcpEndpoint_readOptions(options ? options : "", &at)) {
+        os->failed = ICE_FAILED_MALFORMED;
+        return;
+    }
+    if (!at.host.data)
+        at.host = Ice_String_from(self->host);
+    if (!options)
+        at.port = self->port;
+    else if (Ice_String_is(&at.host, "*"))
+        os->failed = ICE_FAILED_MALFORMED; /* all addresses, of a server only */
     Ice_OutputStream_writeShort(os, TCP_ENDPOINT_TYPE);
-    Ice_OutputStream_writeInt(os, 6 + 1 + host.size + 9);
+    Ice_OutputStream_writeInt(os, 6 + (at.host.size < 255 ? 1 : 5) + at.host.size + 9);
     Ice_OutputStream_writeShort(os, 0x0101); /* encoding 1.1 */
-    Ice_OutputStream_writeString(os, host);
-    Ice_OutputStream_writeInt(
-        os, (Ice_Int)Ice_numberOption(options, 'p', options ? 0 : (U32)self->port));
-    timeout = Ice_findOption(options, 't', &size);
-    infinite = timeout && size == 8 && memcmp(timeout, "infinite", 8) == 0;
-    Ice_OutputStream_writeInt(os, infinite ? -1 : (Ice_Int)Ice_numberOption(options, 't', 60000));
-    Ice_OutputStream_writeBool(os, 0); /* no compression */
+    Ice_OutputStream_writeString(os, at.host);
+    Ice_OutputStream_writeInt(os, at.port);
+    Ice_OutputStream_writeInt(os, at.timeoutMs);
+    Ice_OutputStream_writeBool(os, at.compresses);
 }
 
 int TcpEndpoint_decode(const Ice_Byte* encoded, Ice_Int size, TcpEndpoint_Address* address) {
@@ -45,6 +61,7 @@ int TcpEndpoint_decode(const Ice_Byte* encoded, Ice_Int size, TcpEndpoint_Addres
     address->host = Ice_InputStream_readString(&is);
     address->port = Ice_InputStream_readInt(&is);
     address->timeoutMs = Ice_InputStream_readInt(&is);
+    address->compresses = Ice_InputStream_readBool(&is);
     return !is.failed;
 }
 
@@ -61,6 +78,7 @@ Ice_Bool TcpEndpoint_print(void* context, const Ice_Byte* encoded, Ice_Int size,
     n = sprintf(line, "tcp -h %s%.*s%s -p %d -t ", quote, (int)at.host.size, at.host.data, quote,
                 at.port);
     n += at.timeoutMs < 0 ? sprintf(line + n, "infinite") : sprintf(line + n, "%d", at.timeoutMs);
+    n += sprintf(line + n, "%s", at.compresses ? " -z" : "");
     Ice_OutputStream_writeBlob(text, (const Ice_Byte*)line, n);
     return 1;
 }

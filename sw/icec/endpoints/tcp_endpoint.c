@@ -287,12 +287,10 @@ static Ice_Status listenTo(void* context, const char* options) {
     }
     if (self->listener >= 0)
         return ICE_LIMIT; /* one port a communicator */
-    here.host.data = Ice_findOption(options, 'h', &here.host.size);
-    if (!here.host.data) {
-        here.host.data = "127.0.0.1";
-        here.host.size = 9;
-    }
-    here.port = (Ice_Int)Ice_numberOption(options, 'p', 0);
+    if (!TcpEndpoint_readOptions(options, &here))
+        return ICE_PARSE;
+    if (!here.host.data)
+        here.host = Ice_String_from("127.0.0.1");
     if (here.host.size >= (Ice_Int)sizeof self->host || !TcpEndpoint_resolve(&here, places))
         return ICE_NO_ENDPOINT;
     memcpy(self->host, here.host.data, (size_t)here.host.size);

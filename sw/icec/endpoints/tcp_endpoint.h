@@ -10,8 +10,9 @@
  * taken, a new peer displaces the one that has been idle longest, at once if it has been served,
  * else after idleMs. A peer that has vanished is noticed within about a minute.
  *
- * A message that is too long, or compressed, is refused and named on standard error; the caller
- * gets the limit in an UnknownLocalException where its request can be told from the rest.
+ * A message that is too long, or compressed, is refused and named on standard error. A caller that
+ * waits for a reply gets the limit in an UnknownLocalException; otherwise the connection ends, as
+ * in stock Ice.
  */
 #pragma once
 

@@ -11,8 +11,13 @@
 typedef struct TcpEndpoint_Address {
     Ice_String host; /* a numeric address or a name, in the encoded endpoint */
     Ice_Int port;
-    Ice_Int timeoutMs; /* for connecting; negative: none */
+    Ice_Int timeoutMs;   /* for connecting; negative: none */
+    Ice_Bool compresses; /* an offer, which this side does not use */
 } TcpEndpoint_Address;
+
+/* Reads the options of an endpoint; the host's data is 0 without -h. Returns 0 if there are others,
+ * or values out of their range. */
+Ice_Bool TcpEndpoint_readOptions(const char* options, TcpEndpoint_Address* address);
 
 /* `encode` and `print` of Ice_Endpoint. */
 void TcpEndpoint_encode(void* context, const char* options, Ice_OutputStreamPtr os);
@@ -50,8 +55,8 @@ Ice_Int TcpEndpoint_keepUp(TcpEndpoint* self, Ice_Int timeoutMs);
 /* Sends for at most `ms`. Returns the number of bytes that the system took. */
 Ice_Int TcpEndpoint_sendSome(int fd, const Ice_Byte* message, Ice_Int size, Ice_Int ms);
 
-/* Refuses the message whose first `have` bytes lie in c->data, and passes over the rest of it: the
- * caller is told where it waits, else the connection ends. Returns 0 if it does. */
+/* Refuses the message whose first `have` bytes lie in c->data. A caller that waits for a reply gets
+ * one, and the rest of the message is skipped. Otherwise returns 0: the connection ends. */
 int TcpEndpoint_refuse(TcpEndpoint_Connection* c, Ice_Int size);
 /* Returns the accepted connection that a new one may displace first, and how long it still may not;
  * -1: there is none. */

@@ -87,10 +87,9 @@ int TcpEndpoint_refuse(TcpEndpoint_Connection* c, Ice_Int size) {
     }
     sprintf(reason, "::Ice::MemoryLimitException: over ICE_MESSAGE_MAX (%d)", ICE_MESSAGE_MAX);
     fprintf(stderr, "icec: refused a %s of %d bytes: %s\n", what, size, reason);
-    if (type > ICEC_BATCH)
-        return 0;
-    if (type == ICEC_REQUEST && memcmp(c->data + ICEC_HEADER, noId, 4) != 0)
-        sendReason(c, reason);
+    if (type != ICEC_REQUEST || memcmp(c->data + ICEC_HEADER, noId, 4) == 0)
+        return 0; /* no reply can report it: the end of the connection does */
+    sendReason(c, reason);
     c->served = 1;
     c->usedMs = TcpEndpoint_nowMs(0);
     c->skip = size - c->have;

@@ -23,7 +23,7 @@ static const Ice_Byte head[HEAD] = {
 
 /* Pending events, one bit each, delivered lowest bit first: a message has bit 0. */
 #define EVENT(kind, channel) \
-    (2U << (((U32)(kind) - ICE_EVENT_CLOSED) * XBEE_CONNECTIONS + (U32)(channel)))
+    (2U << (((U32)(kind)-ICE_EVENT_CLOSED) * XBEE_CONNECTIONS + (U32)(channel)))
 
 /* A connection's ground and its channel there; a ground's connection that this side opens. */
 #define GROUND_OF(connection) (XBEE_GROUNDS > 1 ? (int)((U32)(connection) / LINK_CHANNELS) : 0)
@@ -335,6 +335,11 @@ static Ice_Status listenTo(void* context, const char* options) {
 static void encode(void* context, const char* options, Ice_OutputStreamPtr os) {
     XBeeATEndpoint* self = context;
     U32 address = options ? Ice_numberOption(options, 'a', 0) : self->address;
+    if (ICEC_FULL && options &&
+        (!Ice_areOptions(options, "apt") || address > 0xFFFFU ||
+         Ice_numberOption(options, 'p', 255) > 255U ||
+         Ice_numberOption(options, 't', 0) > 0x7FFFFFFFU))
+        os->failed = ICE_FAILED_MALFORMED;
     Ice_OutputStream_writeBlob(os, head, HEAD);
     Ice_OutputStream_writeShort(os, (Ice_Short)address);
     Ice_OutputStream_writeByte(os, (Ice_Byte)Ice_numberOption(options, 'p', 255));

@@ -34,6 +34,8 @@ public:
             [](void* c, int n) { of(c).close(n); },
             [](void*, const char*) { return ICE_OK; },
             [](void*, const char* options, Ice_OutputStreamPtr os) {
+                if (ICEC_FULL && options && !Ice_areOptions(options, "c"))
+                    os->failed = ICE_FAILED_MALFORMED;
                 Ice_OutputStream_writeBlob(os, head, sizeof head);
                 Ice_OutputStream_writeByte(
                     os, static_cast<Ice_Byte>(Ice_numberOption(options, 'c', 0)));

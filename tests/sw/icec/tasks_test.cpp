@@ -197,6 +197,23 @@ INSTANTIATE_TEST_SUITE_P(Tasks, TasksThatServe, ::testing::Values(0, 1, 2));
 
 // A task that polls takes the leader's role from one that waits for a reply, and gives it back,
 // over and over.
+// Six tasks, one after the other, each with a result that it keeps, and then it ends.
+TEST_F(Tasks, OneThatHasEndedLeavesItsPlaceToOthers) {
+    for (int i = 0; i < ICE_CALLS + 2; ++i)
+        std::thread([&] {
+            Ice_ObjectPrx prx = proxy();
+            Ice_Int out = 0;
+            EXPECT_EQ(call(prx, "op", i, &out), ICE_OK) << i;
+            EXPECT_EQ(out, 2 * i);
+            Ice_Communicator_endTask(&client_->ic, Threads::os()->task(nullptr));
+        }).join();
+    Ice_ObjectPrx prx = proxy();
+    EXPECT_EQ(ask(prx, "op", 1), 2);
+    Ice_Communicator_endTask(&client_->ic, Threads::os()->task(nullptr)); // and again
+    Ice_Communicator_endTask(&client_->ic, Threads::os()->task(nullptr));
+    EXPECT_EQ(ask(prx, "op", 2), 4);
+}
+
 TEST_F(Tasks, CallWhileTwoPollNowAndThen) {
     std::atomic<bool> over{false};
     auto poll = [&] {

@@ -247,20 +247,33 @@ TEST_F(Tcp, ARequestThatIsTooLongIsAnsweredWithTheLimitsName) {
     EXPECT_TRUE(ping(peer)) << "the connection lives";
 }
 
-TEST_F(Tcp, WhatIsRefusedWithoutAnAnswerIsLogged) {
+// A caller that gets no reply learns of the limit by the end of its connection, as from stock Ice.
+TEST_F(Tcp, WhatIsRefusedWithoutAnAnswerIsLoggedAndEndsTheConnection) {
     ::testing::internal::CaptureStderr();
     serve();
-    Peer peer(port());
-    ASSERT_TRUE(ping(peer));
-    ASSERT_TRUE(peer.send(tooLong(0)));
-    EXPECT_TRUE(ping(peer)) << "the connection lives";
-    ASSERT_TRUE(peer.send(message(1, Bytes(100, 1), 2)));
-    EXPECT_EQ(peer.receive(20000), message(4, {}));
+    Peer oneway(port()), batch(port()), compressed(port());
+    Bytes calls = {200, 0, 0, 0}, one = requestBody("thing", "ice_ping");
+    while (calls.size() < 9000)
+        calls.insert(calls.end(), one.begin(), one.end());
+    const std::pair<Peer*, Bytes> cases[] = {{&oneway, tooLong(0)}, {&batch, message(1, calls)}};
+    for (const auto& [peer, bytes] : cases) {
+        ASSERT_TRUE(ping(*peer));
+        ASSERT_TRUE(peer->send(bytes));
+        EXPECT_TRUE(peer->receive(20000).empty());
+        EXPECT_FALSE(ping(*peer, 500)) << "the connection has ended";
+    }
+    ASSERT_TRUE(ping(compressed));
+    ASSERT_TRUE(compressed.send(message(1, Bytes(100, 1), 2)));
+    EXPECT_EQ(compressed.receive(20000), message(4, {}));
     stop();
+    const std::string size = std::to_string(calls.size() + 14);
     EXPECT_EQ(::testing::internal::GetCapturedStderr(),
               "icec: refused a request of 9018 bytes: "
               "::Ice::MemoryLimitException: over ICE_MESSAGE_MAX (8192)\n"
-              "icec: refused a compressed batch: IceC has no bzip2\n");
+              "icec: refused a batch of " +
+                  size +
+                  " bytes: ::Ice::MemoryLimitException: over ICE_MESSAGE_MAX (8192)\n"
+                  "icec: refused a compressed batch: IceC has no bzip2\n");
 }
 
 TEST_F(Tcp, APeerWhoseOperationIsUnderWayIsNotDisplaced) {

@@ -70,6 +70,11 @@ python3-yaml reads the workflows in tests
 ca-certificates checks whom what pages sort and draw with, and foreign cores, are fetched from
 gdb-multiarch debugs it there
 gtkwave shows waveforms, and reads those of failures for the page
+python3-sphinx renders the documentation site
+python3-myst-parser reads its Markdown pages
+furo style of the documentation site
+python3-breathe C reference of the documentation site
+doxygen reads the C headers for it
 man-db shows and checks the manual pages
 groff-base formats them
 '

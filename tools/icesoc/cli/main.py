@@ -8,7 +8,8 @@ import sys
 from icesoc import TREE
 from icesoc.cli import command
 from icesoc.cli.commands import (  # noqa: F401 (each declares its own)
-    flights, core, foreign, synth, build, regression, checks, coverage, fresh, tree)
+    flights, core, foreign, synth, build, regression, checks, coverage, fresh, docs,
+    tree)
 from icesoc.cli.runner import Interrupted, Stop, hear_signals, say, warn
 
 

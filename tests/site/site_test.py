@@ -1,0 +1,85 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""site_test: tests the documentation site: reading of HDL files, links, and errors of the build.
+
+Usage: site_test.py CASE WORK-FOLDER
+"""
+import sys
+from pathlib import Path
+
+from icesoc.site import build, doxygen_filter, hdl, symbol
+from script import TREE, Script, fresh, main, write
+
+WORK = Path(sys.argv[2])
+VERILOG = """// SPDX-License-Identifier: MIT
+//
+// pair: two registers
+// in two clocks.
+//
+// More about it.
+
+module pair #(
+    parameter WIDTH = 8, // bits
+    parameter [3:0] KIND = 4'd2
+) (
+    // writer
+    input  wire             a_clk_i,
+    input  wire [WIDTH-1:0] data_i, // new value (any)
+    // pins
+    output reg              led_o
+);
+endmodule
+"""
+
+
+class Cases(Script):
+    def test_hdl(self):
+        """A module's purpose, parameters, ports, groups and clocks are read from its file."""
+        write(fresh(WORK) / "pair.v", VERILOG)
+        entity = hdl.read(WORK / "pair.v", TREE)
+        self.assertEqual((entity.name, entity.summary, entity.text),
+                         ("pair", "two registers in two clocks.", "More about it."))
+        self.assertEqual([(p.name, p.default, p.meaning) for p in entity.parameters],
+                         [("WIDTH", "8", "bits"), ("KIND", "4'd2", "")])
+        self.assertEqual(
+            [(p.name, p.direction, p.width, p.clock, p.meaning) for p in entity.ports],
+            [("a_clk_i", "input", "", "clock", ""),
+             ("data_i", "input", "[WIDTH-1:0]", "a_clk_i", "new value (any)"),
+             ("led_o", "output", "", "asynchronous", "")])
+        self.assertIn(">data_i [WIDTH-1:0]</text>", symbol.draw(entity))
+
+    def test_every_module(self):
+        """Each module of the platform has a purpose and at least one port in the reference."""
+        for path in sorted([*TREE.glob("hdl/**/*.v"), *TREE.glob("bus/*.v")]):
+            entity = hdl.read(path, TREE)
+            if entity and not path.stem.endswith("_proof"):
+                self.assertTrue(entity.summary, path)
+                self.assertTrue(entity.ports, path)
+
+    def test_links(self):
+        """Links to pages follow a page to its place in the site; other files become code."""
+        moved = {"docs/bus.md": "bus", "ip/fir/README.md": "reference/cores/fir"}
+        text = "[bus](../../docs/bus.md#slots) [code](fir.v) ![p](x.png) [web](https://a.b)"
+        self.assertEqual(
+            build.relink(text, "ip/fir/README.md", "reference/cores/fir", moved),
+            "[bus](../../bus.md#slots) code (`ip/fir/fir.v`) ![p](x.png) [web](https://a.b)")
+
+    def test_comments(self):
+        """Plain C comments become Doxygen's, before and behind what they describe."""
+        text = doxygen_filter.convert("/* Returns it. */\nint f(void);\nint a; /* bytes */\n", "f.h")
+        self.assertEqual(text, "/** Returns it. */\nint f(void);\nint a; /**< bytes */\n")
+
+    def test_broken_link(self):
+        """A link to a page that does not exist fails the build and is named."""
+        tree = fresh(WORK) / "tree"
+        for part in ("docs/conf.py", "sw/fsmc/fsmc.h", "synth/baseline.json", "synth/ise/chip.ucf"):
+            write(tree / part, (TREE / part).read_text())
+        write(tree / "docs/index.md", "# Site\n\n```{toctree}\n:glob:\n*\nreference/**\n```\n")
+        write(tree / "docs/bus.md", "# Bus\n\n[site](index.md)\n")
+        build.build(tree, WORK / "site", {"run": "help"})
+        write(tree / "docs/bus.md", "# Bus\n\n[lost](no_such_page.md)\n")
+        with self.assertRaisesRegex(build.SiteError, "no_such_page.md"):
+            build.build(tree, WORK / "site", {"run": "help"})
+
+
+main(Cases)

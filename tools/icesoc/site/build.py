@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: MIT
+"""build: stages the pages of docs/ with the generated reference, and runs Doxygen and Sphinx."""
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+from icesoc.site import reference
+
+# Pages outside docs/ that are part of the site, by where they are in it.
+ADOPTED = {"sw/ground/README.md": "ground-plugin", "CHANGELOG.md": "changelog",
+           "CONTRIBUTING.md": "contributing"}
+DOXYFILE = """PROJECT_NAME = IceSoC
+INPUT = {inputs}
+FILE_PATTERNS = *.h
+OUTPUT_DIRECTORY = {output}
+EXTRACT_ALL = YES
+GENERATE_HTML = NO
+GENERATE_LATEX = NO
+GENERATE_XML = YES
+OPTIMIZE_OUTPUT_FOR_C = YES
+TYPEDEF_HIDES_STRUCT = YES
+JAVADOC_AUTOBRIEF = YES
+MARKDOWN_SUPPORT = NO
+AUTOLINK_SUPPORT = NO
+MACRO_EXPANSION = NO
+ENABLE_PREPROCESSING = YES
+INPUT_FILTER = "/usr/bin/python3 {filter}"
+QUIET = YES
+WARN_IF_UNDOCUMENTED = NO
+WARN_IF_DOC_ERROR = NO
+"""
+
+
+class SiteError(Exception):
+    """Doxygen or Sphinx failed; the text is what they printed."""
+
+
+def adopted(tree):
+    """Returns the pages outside docs/ that are part of the site: those above, and one a core."""
+    cores = {f"ip/{path.parent.name}/README.md": f"reference/cores/{path.parent.name}"
+             for path in sorted(tree.glob("ip/*/README.md"))}
+    return {source: target for source, target in {**ADOPTED, **cores}.items()
+            if (tree / source).exists()}
+
+
+def relink(text, source, target, moved):
+    """Returns a page's text with its links changed for its place in the site.
+
+    `source` and `target` are the page's paths in the tree and in the site; `moved` maps paths of
+    pages in the tree to paths in the site, both without a leading slash. A link to a file that is
+    not a page becomes the file's name as code.
+    """
+    def replaced(match):
+        label, link = match[1], match[2]
+        if re.match(r"[a-z]+:|#", link):
+            return match[0]
+        path, _, anchor = link.partition("#")
+        there = Path(*_resolved(Path(source).parent / path))
+        page = moved.get(str(there))
+        if page:
+            up = "../" * (len(Path(target).parts) - 1)
+            return f"[{label}]({up}{page}.md{'#' + anchor if anchor else ''})"
+        if there.parts[:1] == ("docs",) or match[0].startswith("!"):
+            return match[0]
+        return label if "`" in label else f"{label} (`{there}`)"
+
+    blocks = re.split(r"(^```.*?^```)", text, flags=re.S | re.M)
+    return "".join(block if block.startswith("```") else
+                   re.sub(r"!?\[([^]]*)\]\(([^)\s]+)\)", replaced, block) for block in blocks)
+
+
+def _resolved(path):
+    """Returns the parts of a relative path without `..`."""
+    parts = []
+    for part in path.parts:
+        if part == ".." and parts:
+            parts.pop()
+        elif part != ".":
+            parts.append(part)
+    return parts
+
+
+def stage(tree, pages, helps):
+    """Copies the pages of docs/, the adopted ones and the generated ones into `pages`."""
+    shutil.rmtree(pages, ignore_errors=True)
+    shutil.copytree(tree / "docs", pages, ignore=shutil.ignore_patterns("CMakeLists.txt", "*.sh"))
+    moved = adopted(tree)
+    moved.update({str(path.relative_to(tree)): str(path.relative_to(tree / "docs").with_suffix(""))
+                  for path in (tree / "docs").rglob("*.md")})
+    for source, target in moved.items():
+        text = relink((tree / source).read_text(), source, target, moved)
+        reference.write(pages / f"{target}.md", text)
+    reference.write_hdl(tree, pages)
+    reference.write_registers(tree, pages)
+    reference.write_c(tree, pages)
+    reference.write_cores(tree, pages)
+    reference.write_commands(pages, helps)
+
+
+def run(words, what, log):
+    """Runs a program and keeps what it prints in `log`; raises SiteError if it fails."""
+    with open(log, "w") as file:
+        status = subprocess.run(words, stdout=file, stderr=subprocess.STDOUT, check=False).returncode
+    if status:
+        raise SiteError(f"{what} failed; the whole output is in {log}:\n" +
+                        "\n".join(Path(log).read_text().splitlines()[-20:]))
+
+
+def build(tree, out, helps):
+    """Builds the site into `out`/html. Broken links and pages in no table of contents are errors."""
+    out.mkdir(parents=True, exist_ok=True)
+    stage(tree, out / "pages", helps)
+    folders = sorted({path.parent for path in (tree / "sw").rglob("*.h")})
+    (out / "Doxyfile").write_text(DOXYFILE.format(
+        inputs=" ".join(f'"{folder}"' for folder in folders), output=f'"{out / "doxygen"}"',
+        filter=Path(__file__).with_name("doxygen_filter.py")))
+    run(["doxygen", out / "Doxyfile"], "doxygen", out / "doxygen.log")
+    run(["sphinx-build", "-q", "-W", "--keep-going", "-b", "html", "-D",
+         f"breathe_projects.icesoc={out / 'doxygen/xml'}", out / "pages", out / "html"],
+        "Sphinx", out / "sphinx.log")
+    return out / "html/index.html"

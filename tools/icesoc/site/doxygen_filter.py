@@ -1,0 +1,36 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""doxygen_filter: turns the project's plain C comments into Doxygen's.
+
+Usage: doxygen_filter.py FILE. A comment on lines of its own documents what follows; one behind
+code documents what precedes it. The file's first comment documents the file.
+"""
+import re
+import sys
+from pathlib import Path
+
+
+def convert(text, name):
+    """Returns the text with Doxygen's comment marks."""
+    # A macro that wraps a function of the same name is not documented a second time.
+    for macro in re.findall(r"^#define (\w+)\(", text, re.M):
+        if re.search(rf"^\w[^#\n]*\b{macro}\(", text, re.M):
+            text = re.sub(rf"(?:/\*(?:(?!\*/).)*\*/\n)?#define {macro}\((?:[^\n]*\\\n)*[^\n]*\n", "", text)
+    text = re.sub(r"^/\* SPDX[^\n]*\n \*\n", f"/** @file {name}\n * ", text, count=1)
+    lines = []
+    for line in text.splitlines():
+        stripped = line.lstrip()
+        if re.match(r"/\* ---- .* ---- \*/", stripped):
+            line = ""
+        elif stripped.startswith("/* "):
+            line = line.replace("/* ", "/** ", 1)
+        elif re.search(r"[;,{]\s*/\* ", line) or (re.search(r"\S\s+/\* .*\*/$", line)
+                                                  and not stripped.startswith("*")):
+            line = line.replace("/* ", "/**< ", 1)
+        lines.append(line)
+    return "\n".join(lines) + "\n"
+
+
+if __name__ == "__main__":
+    path = Path(sys.argv[1])
+    sys.stdout.write(convert(path.read_text(), path.name))

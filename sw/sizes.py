@@ -22,7 +22,10 @@ import tempfile
 
 # its layers, and two of ours
 PAPER = {"fsmc": 1116, "radio": 1795, "crypto": 0, "link": 1307, "icec": 2622, "endpoint": 0}
-TITLES = {"uav": "application", "Autopilot": "generated stubs",
+# sources of a layer that are not just its folder's
+FILES = {"icec": ["icec/*.c", "icec/values/*.c", "icec/extra/*.c"],
+         "endpoint": ["icec/endpoints/xbee_endpoint.c"]}
+TITLES = {"values": "icec", "extra": "icec", "uav": "application", "Autopilot": "generated stubs",
           "endpoints": "icec, xbee-at endpoint", "m3": "os", "GNU": "uC/OS-II",
           "Source": "uC/OS-II", "ARMv7-M": "uC/OS-II"}
 ENTRIES = ("UAV_radioTask", "appMainTask", "clientTask", "watchTask", "idleTask", "EXTI0_Handler",
@@ -51,12 +54,12 @@ def linked(image, layer, wanted):
                and re.match(wanted, name))
 
 
-def whole(files, source, generated):
-    """(text and read-only data, RAM) of all that these files hold."""
+def whole(patterns, source, generated):
+    """Returns (text and read-only data, RAM) of all that the files of these patterns hold."""
     includes = [generated, f"{generated}/slice/Autopilot"] + [f"{source}/sw/{d}" for d in (
         "base", "os", "os/host", "fsmc", "radio", "crypto", "link", "icec", "icec/endpoints")]
     with tempfile.TemporaryDirectory() as work:
-        paths = map(str, pathlib.Path(source, "sw").glob(files))
+        paths = [str(p) for files in patterns for p in pathlib.Path(source, "sw").glob(files)]
         subprocess.run(["arm-none-eabi-gcc", "-std=c90", "-mcpu=cortex-m3", "-mthumb", "-Os",
                         "-ffunction-sections", "-fdata-sections", "-fno-merge-constants",
                         *(f"-I{i}" for i in includes), "-c", *paths], cwd=work, check=True)
@@ -99,8 +102,7 @@ def layers(source, generated, build, output):
     for layer, paper in PAPER.items():
         small, ram = (linked(image, layer, wanted)
                       for wanted in (r"\.(text|rodata)", r"\.(data|bss)|COMMON"))
-        large, large_ram = whole("icec/endpoints/xbee_endpoint.c" if layer == "endpoint" else
-                                 f"{layer}/*.c", source, generated)
+        large, large_ram = whole(FILES.get(layer, [f"{layer}/*.c"]), source, generated)
         print("%-10s %8d %8s %8d %8d %9d %d %s" % (layer, small, paper or "-", large, ram,
                                                    large_ram, *deepest(build, layer)))
         entry(f"minimal.{layer}", small, paper)

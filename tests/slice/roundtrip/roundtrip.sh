@@ -23,7 +23,7 @@ cc -O0 -w -ftrivial-auto-var-init=pattern ${COVERAGE_DIR:+--coverage} -fsanitize
     -DICE_IDENTITY_MAX=255 -I"$sw/base" -I"$sw/icec" -I"$sw/icec/endpoints" -I"$work" -I"$icec" \
     -o "$work/bridge" "$icec/server.c" "$icec/bridge.c" "$work/bridged.c" "$work"/*_types.c \
     "$work/Random_server.c" "$work/Random_client.c" \
-    "$sw"/icec/*.c "$sw"/icec/endpoints/tcp_*.c
+    "$sw"/icec/*.c "$sw"/icec/values/*.c "$sw"/icec/extra/*.c "$sw"/icec/endpoints/tcp_*.c
 echo="/usr/bin/python3 $here/echo.py"
 # shellcheck disable=SC2086
 "$icec/interop.sh" $echo server "$seed" "$work" -- "$here/relay.py" "$work/client.pcap" \

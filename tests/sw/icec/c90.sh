@@ -6,7 +6,7 @@ set -eu
 sw=$1/sw
 warnings='-std=c90 -pedantic -Wall -Wextra -Wconversion -Wno-sign-conversion -Wstrict-prototypes -Wmissing-prototypes
 -Wdeclaration-after-statement -Werror -fsyntax-only'
-full=$(echo "$sw"/icec/*.c)
+full=$(echo "$sw"/icec/*.c "$sw"/icec/values/*.c "$sw"/icec/extra/*.c)
 minimal=$(sed "s,^,$sw/icec/," "$sw/icec/minimal/sources.txt")
 check() { # sources, flags: compiler first
     sources=$1

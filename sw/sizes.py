@@ -8,7 +8,7 @@
     sizes.py firmware MAP OBJECTS OUT.json            flash and RAM of a firmware by layer; its
                                                       stacks, by the call graph
 
-layers: `minimal` is the program that flies (sw/apps/minimal), with the minimal run time and link:
+layers: `minimal` is the program that flies (sw/minimal), with the minimal run time and link:
 of each layer what is in the image (text and read-only data; the C library and generated code are
 not counted, as in the paper). `full` is everything that the layer's files hold, linked or not.
 """
@@ -72,7 +72,7 @@ def whole(patterns, source, generated):
 def deepest(build, layer):
     """(bytes, function) of the minimal program's largest frame."""
     lines = [line.split("\t")
-             for su in pathlib.Path(build, "sw/apps").glob(f"minimal_{layer}.arm/**/*.su")
+             for su in pathlib.Path(build, "sw/minimal").glob(f"minimal_{layer}.arm/**/*.su")
              for line in open(su)]
     return max(((int(size), where.split(":")[3]) for where, size, *_ in lines), default=(0, ""))
 

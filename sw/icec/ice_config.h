@@ -4,7 +4,7 @@
  * limits. The compiler's -D sets them.
  *
  * The same values must be used for IceC and for all that includes icec.h. -DICEC_MINIMAL chooses
- * the minimal run time (docs/icec.md): minimal/ice_minimal.c instead of the full one's files.
+ * the minimal run time (docs/icec.md): sw/minimal/ice_minimal.c instead of the full one's files.
  * Those of the link are in link.h; what a TCP server bears is set at run time (tcp_endpoint.h).
  */
 #pragma once

@@ -315,7 +315,7 @@ Ice_Status Ice_Connection_createProxyTo(Ice_CommunicatorPtr ic, int connection,
 void Ice_Connection_close(Ice_CommunicatorPtr ic, int connection);
 
 #ifdef ICEC_MINIMAL
-#include "minimal/ice_minimal.h"
+#include "ice_minimal.h"
 #else
 #include "ice_objects.h"
 #endif

@@ -134,7 +134,7 @@ U32 Link_deadline(const Link* link, U32 nowUs);
 const Link_Statistics* Link_statistics(const Link* link);
 
 #ifdef LINK_MINIMAL
-#include "minimal/link_minimal.h"
+#include "link_minimal.h"
 #else
 #include "link_session.h"
 

@@ -6,7 +6,7 @@
  */
 #pragma once
 
-/* LINK_MINIMAL, if defined, chooses the minimal layer (minimal/link_minimal.h). */
+/* LINK_MINIMAL, if defined, chooses the minimal layer (sw/minimal/link_minimal.h). */
 #ifdef LINK_MINIMAL
 #define LINK_IS_FULL 0
 #else

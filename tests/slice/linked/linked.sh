@@ -19,8 +19,8 @@ build() { # name, flags
     (cd "$work" && mkdir -p "$name" && cd "$name" &&
         arm-none-eabi-gcc -std=c90 -mcpu=cortex-m3 -mthumb -Os -ffunction-sections -fdata-sections \
         "$@" \
-            -I"$sw/base" -I"$sw/icec" -I.. -c $(sed "s,^,$sw/icec/," \
-            "$sw/icec/minimal/sources.txt") ../Linked_*.c "$here/program.c")
+            -I"$sw/base" -I"$sw/icec" -I"$sw/minimal" -I.. -c $(sed "s,^,$sw/," \
+            "$sw/minimal/sources.txt") ../Linked_*.c "$here/program.c")
     arm-none-eabi-gcc -mcpu=cortex-m3 -mthumb -nostartfiles --specs=nosys.specs --specs=nano.specs \
         -Wl,--gc-sections -Wl,-e,main \
         -o "$work/$name.elf" "$work/$name"/*.o 2>"$work/$name.log" || { cat "$work/$name.log" &&
@@ -36,8 +36,8 @@ build() { # name, flags
 (mkdir -p "$work/host" && cd "$work/host" &&
     # shellcheck disable=SC2046 # a list of words
     gcc -std=c90 -Os -fsanitize=address --param asan-globals=0 -ffunction-sections -fdata-sections \
-        -DICEC_MINIMAL -DSERVER -I"$sw/base" -I"$sw/icec" -I.. \
-        -c $(sed "s,^,$sw/icec/," "$sw/icec/minimal/sources.txt") ../Linked_*.c "$here/program.c" &&
+        -DICEC_MINIMAL -DSERVER -I"$sw/base" -I"$sw/icec" -I"$sw/minimal" -I.. \
+        -c $(sed "s,^,$sw/," "$sw/minimal/sources.txt") ../Linked_*.c "$here/program.c" &&
     gcc -fsanitize=address -Wl,--gc-sections -o server ./*.o)
 bad=0
 classes=$(sed -n 's/^    &\(.*\)_type,$/\1/p' "$work/Linked_types.c")

@@ -7,12 +7,12 @@ sw=$1/sw
 warnings='-std=c90 -pedantic -Wall -Wextra -Wconversion -Wno-sign-conversion -Wstrict-prototypes -Wmissing-prototypes
 -Wdeclaration-after-statement -Werror -fsyntax-only'
 full=$(echo "$sw"/icec/*.c "$sw"/icec/values/*.c "$sw"/icec/extra/*.c)
-minimal=$(sed "s,^,$sw/icec/," "$sw/icec/minimal/sources.txt")
+minimal=$(sed "s,^,$sw/," "$sw/minimal/sources.txt")
 check() { # sources, flags: compiler first
     sources=$1
     shift
     # shellcheck disable=SC2086
-    "$@" $warnings -I"$sw/base" -I"$sw/icec" -I"$sw/link" -I"$sw/icec/endpoints" $sources \
+    "$@" $warnings -I"$sw/base" -I"$sw/icec" -I"$sw/minimal" -I"$sw/link" -I"$sw/icec/endpoints" $sources \
         "$sw/icec/endpoints/xbee_endpoint.c"
     echo "C90: $*"
 }

@@ -74,7 +74,7 @@ def minimal(values, build, held):
     """Flies the program of Table II with its ground."""
     return wait(
         simulator(values, build, held, [], [
-            "sw/apps/minimal/ground.py", "{device}", "--frame", "{frame}", "--reference",
+            "sw/minimal/ground.py", "{device}", "--frame", "{frame}", "--reference",
             build / "testbench/sim/vision-reference",
             f"--Ice.Plugin.XBeeAT={build.folder}/ground/xbeeat:createXBeeAT",
             "--XBeeAT.Guard={guard}"]))

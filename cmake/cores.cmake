@@ -23,7 +23,7 @@ list(REMOVE_DUPLICATES CHIP_CORES)
 # default (sw/icec/ice_config.h), more where there are more, on the host (the library icec) and, by
 # ARM_DEFINES, in the firmware. Four connections each are for a ground, a second one and a fellow.
 set(ARM_DEFINES ICE_CONNECTIONS=12)
-set(header ${CMAKE_SOURCE_DIR}/sw/apps/uav/uav_private.h)
+set(header ${CMAKE_SOURCE_DIR}/sw/vehicle/uav_private.h)
 set_property(DIRECTORY ${CMAKE_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${header})
 file(STRINGS ${header} servants REGEX "^#define UAV_SERVANTS ")
 string(REGEX REPLACE "[^0-9]" "" servants "${servants}")

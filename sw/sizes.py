@@ -25,9 +25,9 @@ PAPER = {"fsmc": 1116, "radio": 1795, "crypto": 0, "link": 1307, "icec": 2622, "
 # sources of a layer that are not just its folder's
 FILES = {"icec": ["icec/*.c", "icec/values/*.c", "icec/extra/*.c"],
          "endpoint": ["icec/endpoints/xbee_endpoint.c"]}
-TITLES = {"values": "icec", "extra": "icec", "uav": "application", "Autopilot": "generated stubs",
-          "endpoints": "icec, xbee-at endpoint", "m3": "os", "GNU": "uC/OS-II",
-          "Source": "uC/OS-II", "ARMv7-M": "uC/OS-II"}
+TITLES = {"values": "icec", "extra": "icec", "vehicle": "application", "loader": "update",
+          "Autopilot": "generated stubs", "endpoints": "icec, xbee-at endpoint", "m3": "os",
+          "GNU": "uC/OS-II", "Source": "uC/OS-II", "ARMv7-M": "uC/OS-II"}
 ENTRIES = ("UAV_radioTask", "appMainTask", "clientTask", "watchTask", "idleTask", "EXTI0_Handler",
            "SysTick_Handler")
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * vision_servant: HwProcessingEngine (sw/apps/uav/Autopilot.ice) by the vision core in a slot, with
+ * vision_servant: HwProcessingEngine (sw/vehicle/Autopilot.ice) by the vision core in a slot, with
  * the functions of a generated servant (docs/hw-mapping.md).
  */
 #pragma once

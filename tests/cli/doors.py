@@ -86,9 +86,9 @@ class Values(Work):
                                  f"{each.name} {o.name}")
 
     def test_keys_and_lists_of_keys_are_made_at_both_doors(self):
-        for name in ("tree/build/main/sw/target", "files"):
+        for name in ("tree/build/main/sw/update", "files"):
             (self.work / name).mkdir(parents=True)
-        self.script("tree/build/main/sw/target/pack_update", 'echo "$@"\n')
+        self.script("tree/build/main/sw/update/pack_update", 'echo "$@"\n')
         made, by, first, second = (str(self.work / "files" / name) for name in (
             "a key", "by.key", "first.pub", "second.pub"))
         for name in (by, first, second):

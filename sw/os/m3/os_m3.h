@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_m3: what the Cortex-M3 port asks of the board (sw/target), besides an idle hook.
+ * os_m3: what the Cortex-M3 port asks of the board (sw/board), besides an idle hook.
  */
 #pragma once
 

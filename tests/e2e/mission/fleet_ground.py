@@ -55,7 +55,7 @@ def words_of(m, image, name, begin, end):
     if TROUBLE[name][0]:
         flight["trouble"] = f"{TROUBLE[name][0]}:{begin:.3f}:{end - begin:.3f}"
     calls = {"device": "{device}", "device2": "{device2}", "status": "{status}", "out": "{out}",
-             "plugin": m.build + "/ground", "slice": m.source + "/sw/apps/uav/Autopilot.ice",
+             "plugin": m.build + "/ground", "slice": m.source + "/sw/vehicle/Autopilot.ice",
              "reference": m.build + "/testbench/sim/vision-reference", "key": keys["fleet"],
              "key2": keys["fleet" if isRival else "observer"], "until": end + 1,
              "rival": begin if isRival else 0, "changed": 2 if name == "new key" else 0,

@@ -26,9 +26,9 @@ IMAGE = Path("/usr/share/xplanet/images/earth.jpg")
 GUARD = 1000 if CASE in ("plain", "stopped", "update") else 20
 SIMULATOR, PING = BUILD / "testbench/sim/icesoc-sim", BUILD / "sw/ground/ground_ping"
 CLIENTS = TREE / "sw/ground/clients"
-INTERFACE = ("--plugin", BUILD / "ground", "--slice", TREE / "sw/apps/uav/Autopilot.ice")
+INTERFACE = ("--plugin", BUILD / "ground", "--slice", TREE / "sw/vehicle/Autopilot.ice")
 UPDATES = (CLIENTS / "update.py", "new.update", "--device", "{device}", "--plugin",
-           BUILD / "ground", "--slice", TREE / "sw/apps/uav/Update.ice")
+           BUILD / "ground", "--slice", TREE / "sw/update/Update.ice")
 FIRMWARE, STAND_IN = BUILD / "firmware/uav.elf", BUILD / "testbench/stm32/stand_in_bitstream"
 VEHICLE = "vehicle", BUILD / "firmware/loader.elf", FIRMWARE, "1"
 KEY = "000102030405060708090a0b0c0d0e0f"
@@ -169,7 +169,7 @@ class Cases(Script):
         there = f"{{unsigned char[{len(value)}]}}((char*)&{symbol} + {offset})"
         self.ask("gdb-multiarch", "-nx", "-batch", "--write", name, "-ex",
                  f"set var {there} = {{{', '.join(map(str, value))}}}")
-        self.ask(BUILD / "sw/target/pack_update", "stamp", name)
+        self.ask(BUILD / "sw/update/pack_update", "stamp", name)
 
     def test_other_chip(self):
         """Firmware built for other registers of the vision core: it does not serve the core and
@@ -182,7 +182,7 @@ class Cases(Script):
                      "firmware by make firmware", "--cpu", "m3", "--firmware", "other.elf")
 
     def pack(self, *words):
-        self.ask(BUILD / "sw/target/pack_update", *words)
+        self.ask(BUILD / "sw/update/pack_update", *words)
 
     def update(self, file, *said, status=0):
         self.ask(*self.words("--cpu", "m3", "--update", file), status=status)

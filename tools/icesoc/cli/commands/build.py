@@ -35,7 +35,7 @@ def build_firmware(values):
     stacks"""
     build = BuildFolder(values.build, values).prepare()
     build.ninja("firmware")
-    run(["sw/sizes.py", "firmware", build / "firmware/uav.map", build / "sw/target/uav.arm",
+    run(["sw/sizes.py", "firmware", build / "firmware/uav.map", build / "sw/vehicle/uav.arm",
          "build/firmware.json"])
 
 

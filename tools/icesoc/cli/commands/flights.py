@@ -83,7 +83,7 @@ def minimal(values, build, held):
 def update(values, build, held):
     """Sends firmware or a bitstream to a vehicle with the flash OUT/flash.bin, and its FPGA's
     OUT/fpga.bin; makes both if missing."""
-    out, pack = Path(values.out), build / "sw/target/pack_update"
+    out, pack = Path(values.out), build / "sw/update/pack_update"
     keys.rescue(build.folder)
     signing = keys.folder() / "update.key"  # private, made at first use
     if not (out / "flash.bin").exists():
@@ -100,7 +100,7 @@ def update(values, build, held):
                   ["--flash", out / "flash.bin", "--fpga-flash", out / "fpga.bin"], [
                       "sw/ground/clients/update.py", "{out}/new.update", "--device", "{device}",
                       "--status", "{status}", "--plugin", build / "ground", "--slice",
-                      "sw/apps/uav/Update.ice", "--patience", values.patience,
+                      "sw/update/Update.ice", "--patience", values.patience,
                       *(["--key", values.key] if values.key else [])]))
 
 
@@ -122,7 +122,7 @@ def mission(values, build, held):
     sim = simulator(values, build, held, [], [
         "sw/ground/clients/mission.py", "{out}/flight.json", "--device", "{device}", "--frame",
         "{frame}", "--status", "{status}", "--plugin", build / "ground", "--slice",
-        "sw/apps/uav/Autopilot.ice", "--reference", build / "testbench/sim/vision-reference",
+        "sw/vehicle/Autopilot.ice", "--reference", build / "testbench/sim/vision-reference",
         *(["--observer-device", "{device2}"] if values.vehicles > 1 else [])])
     shown = None
     try:
@@ -269,7 +269,7 @@ def key(values):
     if sum(map(bool, (values.certificate, values.signing, values.list))) > 1:
         raise Stop("give one of --certificate, --signing and --list", 2)
     if values.signing or values.list:
-        pack = configured(values, "pack_update") / "sw/target/pack_update"
+        pack = configured(values, "pack_update") / "sw/update/pack_update"
         public = Path(values.file).with_suffix(".pub")
         if values.signing:
             run([pack, "public", values.file, public])

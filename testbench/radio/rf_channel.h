@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// rf_channel: the air between modems, half duplex and shared: carrier sense, random waits,
-// collisions, tries and acknowledgements of the MAC, and the weather, by seed.
+// rf_channel: the air between modems. It is half duplex and shared, so frames collide; the weather
+// loses, damages, delays and doubles them, by seed.
 
 #pragma once
 
@@ -149,7 +149,7 @@ struct RfWeather {
 class RfChannel {
 public:
     using Weather = RfWeather;
-    enum class Outcome { Delivered, Lost, Corrupted, Nobody, NoRoom, NoClearChannel };
+    using Outcome = RfOutcome;
     struct Counters {
         uint64_t packets = 0, bytes = 0, lost = 0, duplicated = 0, corrupted = 0;
         uint64_t retries = 0, collisions = 0, noClearChannel = 0;
@@ -160,6 +160,7 @@ public:
     explicit RfChannel(uint64_t seed) : random_(seed) {}
 
     Weather weather;
+    // Sets a function that is called once for each packet, when its fate is known.
     void onPacket(Listener listener) { listener_ = std::move(listener); }
     const Counters& counters() const { return counters_; }
 
@@ -167,9 +168,6 @@ public:
     void leave(XBee* modem);
     // Puts a modem out of reach of all others, or brings it back.
     void carryAway(const XBee* modem, bool isAway);
-    // Sends a packet when its modem is free; the sender's transmitted() is called when the packet
-    // has left or was given up.
-    void transmit(XBee* sender, RfPacket packet, uint64_t now);
     // Returns a time of a modem's own work: it varies by a twentieth; 0 in perfect air.
     uint64_t jittered(uint64_t ns);
     void advance(uint64_t now);
@@ -179,29 +177,38 @@ public:
     // header, carrier sense, the MAC's acknowledgement and the gap after it: docs/simulation.md.
     static uint64_t airTimeNs(size_t bytes);
 
+    // For the MACs of the modems:
+
+    // Draws the weather of a new packet: its strength, and what becomes of it.
+    Outcome announce(const Mac& sender, RfPacket& packet, uint64_t now);
+    // Returns whether carrier sense finds the channel clear from `from` to `to`.
+    bool isClear(uint8_t channel, uint64_t from, uint64_t to) const;
+    // Makes one try of a packet, with carrier sense at `now`. The sender's ended() is called at the
+    // end of the frame.
+    void put(Mac& sender, RfPacket packet, Outcome drawn, uint64_t now);
+    // Calls the sender's wake() at this time.
+    void wakeAt(uint64_t at, Mac* sender) { events_.emplace(at, Event{sender, nullptr}); }
+    // Calls this sender no more.
+    void forget(const Mac* sender);
+    void report(uint64_t now, const RfPacket& packet, Outcome outcome);
+    void countRetry() { ++counters_.retries; }
+    uint32_t below(uint32_t limit) { return random_.below(limit); }
+
 private:
-    struct OnAir { // one try
-        uint8_t channel;
+    struct Frame { // one try on the air
+        RfPacket packet;
+        Outcome drawn; // the weather's decision
+        const XBee* from;
         uint64_t begin, frameEnd, end; // of the frame; of its acknowledgement
         bool collided = false;
     };
-    struct Flight {
-        XBee* sender;
-        RfPacket packet;
-        unsigned triesLeft, roundsLeft, copiesLeft; // of the MAC; by RR; of a broadcast with RR
-        Outcome outcome;
-        bool again;  // a duplicate: the sender has been informed already
-        bool begins; // still has to find the channel clear
-        unsigned backoffs = 0, unanswered = 0;
-        bool answered = true; // the last try's acknowledgement came
-        std::shared_ptr<OnAir> onAir = nullptr;
+    struct Event {
+        Mac* sender; // null for a duplicate, and if the sender was reset or has gone
+        std::shared_ptr<Frame> frame; // null: the sender's wake() is due
     };
-    void start(Flight flight, uint64_t now, uint64_t ready);
-    void begin(Flight flight, uint64_t now);
-    void land(Flight flight, uint64_t now);
-    void retry(Flight flight, uint64_t now);
-    void finish(Flight& flight, Outcome outcome, uint64_t now);
-    Outcome deliver(Flight& flight, uint64_t now);
+    void land(Mac* sender, Frame& frame, uint64_t now);
+    bool isMissed(Frame& frame);
+    Outcome deliver(const Frame& frame, uint64_t now);
     Outcome fate(uint64_t now);
     bool faded(RfPacket& packet);
     uint64_t delayNs(uint64_t now) const;
@@ -211,8 +218,8 @@ private:
     uint64_t fateAt_ = 0; // of the last packet
     std::vector<XBee*> modems_;
     std::set<const XBee*> away_;
-    std::multimap<uint64_t, Flight> events_;
-    std::list<std::shared_ptr<OnAir>> onAir_;
+    std::multimap<uint64_t, Event> events_;
+    std::list<std::shared_ptr<Frame>> onAir_;
     Counters counters_;
     Listener listener_;
 };

@@ -12,7 +12,8 @@
 namespace {
 
 constexpr size_t inputBytes = 202, outputBytes = 202;
-constexpr size_t ctsSlack = 17; // bytes by which the buffer empties further before CTS comes back
+// Bytes held when CTS goes off (17 before the buffer is full) and when it comes back (34 free).
+constexpr size_t ctsOff = inputBytes - 17, ctsOn = inputBytes - 34;
 constexpr size_t packetBytes = 100, packetBytesEncrypted = 95;
 constexpr uint64_t msNs = 1'000'000, resetNs = 200;
 // The modem's time for each packet that it sends (before it senses the carrier) or has received
@@ -31,7 +32,8 @@ XBee::Parameters XBee::factory() {
 }
 
 XBee::XBee(SerialLine& line, RfChannel& channel, Options options)
-    : line_(line), channel_(channel), options_(std::move(options)), written_(factory()) {
+    : line_(line), channel_(channel), options_(std::move(options)), written_(factory()),
+      mac_(channel, *this) {
     for (auto& [letters, value] : options_.set)
         written_.at(letters) = value;
     writtenKey_ = options_.key;
@@ -73,6 +75,7 @@ void XBee::boot(uint64_t now) {
     commandLine_.clear();
     apiQueue_.clear();
     inFrame_ = false;
+    stopSending();
     busyUntil_ = 0;
     line_.setHeedRts(active_.at("D6") == 1);
     cts_ = true;
@@ -95,9 +98,16 @@ void XBee::power(bool on, uint64_t now) {
         input_.clear();
         output_.clear();
         apiQueue_.clear();
+        stopSending();
     } else if (mode_ == Mode::Off) {
         boot(now);
     }
+}
+
+void XBee::stopSending() {
+    mac_.abort();
+    inFlight_ = false;
+    apiId_ = 0;
 }
 
 void XBee::store(uint8_t byte) {
@@ -109,10 +119,10 @@ void XBee::store(uint8_t byte) {
 }
 
 void XBee::updateCts() {
-    size_t held = input_.size(), threshold = active_.at("FT");
+    size_t held = input_.size();
     for (auto& queued : apiQueue_)
         held += queued.packet.bytes.size();
-    bool cts = cts_ ? held < threshold : held + ctsSlack <= threshold;
+    bool cts = cts_ ? held < ctsOff : held <= ctsOn;
     if (active_.at("D7") != 1)
         cts = true;
     if (cts != cts_) {
@@ -193,7 +203,8 @@ RfPacket XBee::addressed() const {
 void XBee::setTries(RfPacket& packet) const {
     unsigned rr = packet.header ? active_.at("RR") : 0;
     bool broadcast = packet.to == 0xFFFF && !packet.wide;
-    packet.tries = packet.acknowledged ? 4 : 1;
+    const uint32_t mm = active_.at("MM");
+    packet.tries = mm == 0 || mm == 2 ? 4 : 1;
     packet.rounds = packet.acknowledged ? rr : 0;
     packet.copies = broadcast && rr ? rr + 2 : 1;
 }
@@ -230,7 +241,7 @@ void XBee::launch(RfPacket packet, uint64_t now) {
     inFlight_ = true;
     ++counters_.packetsSent;
     work(now, packet.encrypted);
-    channel_.transmit(this, std::move(packet), now);
+    mac_.send(std::move(packet), now);
 }
 
 // Its one processor handles one packet at a time, in either direction.
@@ -239,16 +250,18 @@ void XBee::work(uint64_t now, bool encrypted) {
     busyUntil_ = std::max(busyUntil_, now) + channel_.jittered(needed);
 }
 
-void XBee::transmitted(uint64_t now, Fate fate, unsigned unanswered) {
+void XBee::transmitted(uint64_t now, Mac::Fate fate) {
     inFlight_ = false;
-    auto count = [this](const char* letters, unsigned by) {
-        active_[letters] = pending_[letters] = std::min(active_[letters] + by, 0xFFFFu);
+    auto count = [this](const char* letters) {
+        active_[letters] = pending_[letters] = std::min(active_[letters] + 1, 0xFFFFu);
     };
-    count("EA", unanswered);
-    count("EC", fate == Fate::NoClearChannel);
+    if (fate == Mac::Fate::NoAck)
+        count("EA");
+    else if (fate == Mac::Fate::NoClearChannel)
+        count("EC");
     if (apiId_) {
         auto status = static_cast<uint8_t>(fate);
-        if (fate == Fate::NoAck && active_.at("RR"))
+        if (fate == Mac::Fate::NoAck && active_.at("RR"))
             status = 0x21; // no acknowledgement in any of the rounds
         apiReply({0x89, apiId_, status});
         apiId_ = 0;
@@ -258,7 +271,8 @@ void XBee::transmitted(uint64_t now, Fate fate, unsigned unanswered) {
 }
 
 bool XBee::hears(const RfPacket& packet) const {
-    if (active_.at("CH") != packet.channel || active_.at("ID") != packet.pan)
+    if (active_.at("CH") != packet.channel ||
+        (active_.at("ID") != packet.pan && packet.pan != RfPacket::allPans))
         return false;
     if (packet.wide)
         return packet.to64 == serial();
@@ -270,7 +284,7 @@ XBee::Reception XBee::receive(const RfPacket& onAir, uint64_t now) {
         return Reception::Absent;
     RfPacket packet = onAir;
     work(now, packet.encrypted);
-    active_["DB"] = pending_["DB"] = static_cast<uint32_t>(std::clamp(-packet.rssi, 0.0, 255.0));
+    active_["DB"] = pending_["DB"] = static_cast<uint32_t>(std::clamp(-packet.rssi, 23.0, 92.0));
     bool wantsHeader = active_.at("MM") == 0 || active_.at("MM") == 3;
     if (wantsHeader && !packet.header)
         return Reception::Taken; // acknowledged, but this mode ignores it

@@ -8,6 +8,8 @@
 
 #pragma once
 
+#include "mac.h"
+#include "rf_packet.h"
 #include "serial_line.h"
 #include <cstdint>
 #include <deque>
@@ -16,27 +18,6 @@
 #include <vector>
 
 class RfChannel;
-
-struct RfPacket {
-    uint16_t from = 0, to = 0, pan = 0;
-    uint64_t to64 = 0; // destination by serial number, if `wide`
-    bool wide = false;
-    uint8_t channel = 0;
-    std::vector<uint8_t> bytes; // as on the air: encrypted, if the sender encrypts
-    // The sender's settings
-    bool header = true;       // MM 0 or 3: the maker's header of two bytes
-    bool acknowledged = true; // MM 0 or 2, and no broadcast
-    bool sequenced = false;   // with a header and RR: the receiver drops repeated ones
-    uint16_t sequence = 0;
-    uint64_t serial = 0;    // the sender's, for decryption
-    bool encrypted = false; // EE
-    bool from64 = false;    // the sender has no 16-bit address
-    unsigned tries = 4;     // the first and the MAC's retries
-    unsigned rounds = 0;    // RR: times that all tries are made again
-    unsigned copies = 1;    // of a broadcast: RR + 2 with RR
-    unsigned backoff = 0;   // RN
-    double rssi = -40;      // dBm at the receiver
-};
 
 class XBee : private SerialClient {
 public:
@@ -80,7 +61,7 @@ public:
     bool cts() const { return cts_; }
     const Counters& counters() const { return counters_; }
 
-    // Called by the channel, up to transmitted().
+    // Called by the channel and the MAC, up to transmitted().
     bool hears(const RfPacket& packet) const; // whether it is for this modem
     // Absent: it is off or boots. NoRoom: acknowledged, and lost, since the buffer to the host is
     // full.
@@ -88,9 +69,8 @@ public:
     Reception receive(const RfPacket& packet, uint64_t now);
     // Returns the end of its work on packets, during which it sends none.
     uint64_t busyUntil() const { return busyUntil_; }
-    // The packet in flight has ended. `unanswered` tries had no acknowledgement.
-    enum class Fate { Sent, NoAck, NoClearChannel };
-    void transmitted(uint64_t now, Fate fate = Fate::Sent, unsigned unanswered = 0);
+    // The packet in flight has ended.
+    void transmitted(uint64_t now, Mac::Fate fate);
 
 private:
     enum class Mode { Off, Boot, Data, Command };
@@ -103,6 +83,7 @@ private:
 
     static Parameters factory();
     void boot(uint64_t now);
+    void stopSending();
     void store(uint8_t byte);
     void dataByte(uint8_t byte, uint64_t now);
     void silence(uint64_t now);
@@ -120,6 +101,7 @@ private:
     void enterCommandMode(uint64_t now);
     void commandByte(uint8_t byte, uint64_t now);
     std::string execute(const std::string& line, uint64_t now);
+    std::string executeOne(const std::string& command, uint64_t now);
     std::string order(const std::string& letters, uint64_t now);
     bool setParameter(const std::string& letters, uint32_t value);
     bool setKey(const std::string& value);
@@ -152,6 +134,7 @@ private:
     double nextBaud_ = 0;        // of the line, as soon as what was held for the host has left:
     size_t atOldRate_ = 0;       // this many bytes, the OK of the change last
     bool inFlight_ = false, cts_ = true;
+    Mac mac_;
     uint64_t busyUntil_ = 0;
     uint16_t sequence_ = 0;
     uint32_t frameCounter_ = 0;                 // of encrypted packets, since power on

@@ -82,7 +82,12 @@ void XBee::apiSend(const Bytes& frame, uint64_t now) {
     for (size_t i = 0; i < address; ++i)
         packet.to64 = packet.to64 << 8 | frame[2 + i];
     packet.to = static_cast<uint16_t>(packet.to64);
-    bool noAck = frame[head - 1] & 0x01; // option: no acknowledgement
+    if (packet.wide && packet.to64 == 0xFFFF)
+        packet.wide = false; // the broadcast address
+    const uint8_t options = frame[head - 1];
+    const bool noAck = options & 0x01;
+    if (options & 0x04)
+        packet.pan = RfPacket::allPans;
     if (noAck || (packet.to == 0xFFFF && !packet.wide))
         packet.acknowledged = false;
     setTries(packet);
@@ -162,7 +167,8 @@ void XBee::apiReceived(const RfPacket& packet) {
         frame.push_back(
             static_cast<uint8_t>((packet.from64 ? packet.serial : packet.from) >> (8 * byte)));
     frame.push_back(static_cast<uint8_t>(active_.at("DB")));
-    frame.push_back(broadcast ? 2 : 0);
+    frame.push_back(
+        static_cast<uint8_t>((broadcast ? 2 : 0) | (packet.pan == RfPacket::allPans ? 4 : 0)));
     frame.insert(frame.end(), packet.bytes.begin(), packet.bytes.end());
     apiReply(frame);
 }

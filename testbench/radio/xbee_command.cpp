@@ -45,7 +45,7 @@ void XBee::commandByte(uint8_t byte, uint64_t now) {
     line.swap(commandLine_);
     ++counters_.commands;
     std::string answer = execute(line, now);
-    counters_.refused += answer == "ERROR\r";
+    counters_.refused += answer.find("ERROR") != std::string::npos;
     reply(answer);
     line_.wake(now);
 }
@@ -54,6 +54,8 @@ bool XBee::setParameter(const std::string& letters, uint32_t value) {
     auto found = xbeeParameters().find(letters);
     if (found == xbeeParameters().end() || !found->second.writable ||
         value < found->second.lowest || value > found->second.highest)
+        return false;
+    if (letters == "BD" && value > 7 && value < 0x80)
         return false;
     if (letters == "BD" && value > 7)
         value = static_cast<uint32_t>(std::lround(xbeeBaud(value))); // the nearest is kept
@@ -94,12 +96,28 @@ std::string XBee::order(const std::string& letters, uint64_t now) {
     return "OK\r";
 }
 
+// Answers each command of a line such as ATDL2,WR,CN by itself. AT alone is answered OK.
 std::string XBee::execute(const std::string& line, uint64_t now) {
-    if (line.size() < 4 || std::toupper(static_cast<unsigned char>(line[0])) != 'A' ||
+    if (line.size() < 2 || std::toupper(static_cast<unsigned char>(line[0])) != 'A' ||
         std::toupper(static_cast<unsigned char>(line[1])) != 'T')
         return "ERROR\r";
-    std::string letters = line.substr(2, 2), value = line.substr(4);
+    if (line.size() == 2)
+        return "OK\r";
+    std::string answers;
+    for (size_t at = 2, end = 0; end != std::string::npos; at = end + 1) {
+        end = line.find(',', at);
+        answers += executeOne(line.substr(at, end - at), now);
+    }
+    return answers;
+}
+
+std::string XBee::executeOne(const std::string& command, uint64_t now) {
+    if (command.size() < 2)
+        return "ERROR\r";
+    std::string letters = command.substr(0, 2), value = command.substr(2);
     value.erase(0, value.find_first_not_of(' '));
+    if (value.size() > 2 && value[0] == '0' && (value[1] == 'x' || value[1] == 'X'))
+        value.erase(0, 2);
     for (char& c : letters)
         c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
     if (letters == refuse_ || letters + value == refuse_) // or with one value alone

@@ -21,24 +21,23 @@ inline const std::map<std::string, XBeeParameter>& xbeeParameters() {
         {"DL", {0, 0, 0xFFFFFFFF, true}}, // destination, low word; FFFF: broadcast
         {"SH", {0x0013A200, 0, 0xFFFFFFFF, false}}, // serial number
         {"SL", {0x40000000, 0, 0xFFFFFFFF, false}},
-        {"ID", {0x3332, 0, 0xFFFF, true}},    // network
-        {"CH", {0x0C, 0x0B, 0x1A, true}},     // channel
-        {"BD", {3, 0, 0x3D090, true}},        // baud rate: a code, or above 7 the rate itself
-        {"RO", {3, 0, 0xFF, true}},           // character times of silence that send a packet off
-        {"RN", {0, 0, 3, true}},              // least exponent of the random wait before sending
-        {"MM", {0, 0, 3, true}},              // 0 header and acks, 1 neither, 2 acks, 3 header
-        {"RR", {0, 0, 6, true}},              // times that the MAC's four tries are made again
-        {"EE", {0, 0, 1, true}},              // encryption
-        {"GT", {1000, 2, 3300, true}},        // ms of silence around the command sequence
-        {"CT", {100, 2, 0xFFFF, true}},       // 100 ms without a command until command mode ends
-        {"CC", {'+', 0, 0xFF, true}},         // character of the command sequence
-        {"D6", {0, 0, 5, true}},              // 1: RTS is heeded
-        {"D7", {1, 0, 5, true}},              // 1: CTS is driven
-        {"FT", {202 - 17, 0x11, 0xCA, true}}, // bytes in the input buffer that turn CTS off
-        {"AP", {0, 0, 2, true}},              // 1 API frames, 2 with escapes
-        {"DB", {0x28, 0, 0xFF, false}},       // -dBm of the last packet
-        {"EC", {0, 0, 0xFFFF, true}},         // packets given up: the channel was never clear
-        {"EA", {0, 0, 0xFFFF, true}}};        // tries without an acknowledgement
+        {"ID", {0x3332, 0, 0xFFFF, true}}, // network; FFFF: all networks
+        {"CH", {0x0C, 0x0B, 0x1A, true}},  // channel
+        {"BD", {3, 0, 0x3D090, true}},     // baud rate: a code, or above 7 the rate itself
+        {"RO", {3, 0, 0xFF, true}},        // character times of silence that send a packet off
+        {"RN", {0, 0, 3, true}},           // least exponent of the random wait before sending
+        {"MM", {0, 0, 3, true}},           // 0 header and acks, 1 neither, 2 acks, 3 header
+        {"RR", {0, 0, 6, true}},           // times that the MAC's four tries are made again
+        {"EE", {0, 0, 1, true}},           // encryption
+        {"GT", {1000, 2, 3300, true}},     // ms of silence around the command sequence
+        {"CT", {100, 2, 0xFFFF, true}},    // 100 ms without a command until command mode ends
+        {"CC", {'+', 0, 0xFF, true}},      // character of the command sequence
+        {"D6", {0, 0, 5, true}},           // 1: RTS is heeded
+        {"D7", {1, 0, 5, true}},           // 1: CTS is driven
+        {"AP", {0, 0, 2, true}},           // 1 API frames, 2 with escapes
+        {"DB", {0x28, 0, 0xFF, false}},    // -dBm of the last packet, 0x17 to 0x5C
+        {"EC", {0, 0, 0xFFFF, true}},      // packets not sent: the channel was never clear
+        {"EA", {0, 0, 0xFFFF, true}}};     // packets not acknowledged in any of their tries
     return table;
 }
 

@@ -70,7 +70,7 @@ TEST_F(TrueAir, AnEncryptedFrameCarriesItsSendersAddressAndFiveBytes) {
     power({{"EE", 1}, {"RO", 0}}, {{"EE", 1}});
     uint64_t begin = now;
     send("x", 10 * ms);
-    EXPECT_EQ(packets[0].time - begin, RfChannel::airTimeNs(1 + 5 + 6));
+    EXPECT_EQ(packets[0].time - begin, RfChannel::airTimeNs(1 + 5 + 6) - afterFrame);
 }
 
 TEST_F(Retries, WithRRTheTriesAreMadeAgainAfter200To248Milliseconds) {

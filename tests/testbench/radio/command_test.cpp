@@ -88,7 +88,7 @@ TEST_F(Commands, AreReadAndWrittenInHex) {
         {"MY", "1A2B"}, {"DH", "13A200"}, {"DL", "FFFF"}, {"ID", "BEEF"}, {"CH", "1A"},
         {"BD", "7"},    {"RO", "0"},      {"RN", "3"},    {"MM", "2"},    {"RR", "6"},
         {"EE", "1"},    {"GT", "CE4"},    {"CT", "2"},    {"CC", "2D"},   {"D6", "1"},
-        {"D7", "0"},    {"FT", "80"},     {"AP", "2"},    {"EC", "0"},    {"EA", "0"}};
+        {"D7", "0"},    {"AP", "2"},      {"EC", "0"},    {"EA", "0"}};
     for (auto& [letters, value] : values) {
         EXPECT_EQ(command("AT" + letters + value), "OK\r") << letters;
         EXPECT_EQ(command("AT" + letters), value + "\r") << letters;
@@ -98,7 +98,7 @@ TEST_F(Commands, AreReadAndWrittenInHex) {
 TEST_F(Commands, OutOfRangeAreRefusedAndChangeNothing) {
     for (std::string line :
          {"ATMY10000", "ATCH0A", "ATCH1B", "ATRN4", "ATMM4", "ATRR7", "ATEE2", "ATGT1", "ATGTCE5",
-          "ATAP3", "ATBD3D091", "ATD66", "ATFT10", "ATMYG", "ATMY123456789"}) {
+          "ATAP3", "ATBD3D091", "ATBD8", "ATBD7F", "ATD66", "ATMYG", "ATMY123456789"}) {
         std::string before = command(line.substr(0, 4));
         EXPECT_EQ(command(line), "ERROR\r") << line;
         EXPECT_EQ(command(line.substr(0, 4)), before) << line;
@@ -106,9 +106,25 @@ TEST_F(Commands, OutOfRangeAreRefusedAndChangeNothing) {
 }
 
 TEST_F(Commands, UnknownAndMalformedAreRefused) {
-    for (std::string line : {"ATZZ", "ATZZ1", "AT", "A", "", "MY", "XXMY"})
+    for (std::string line :
+         {"ATZZ", "ATZZ1", "ATFT", "ATFT80", "ATM", "A", "", "MY", "XXMY", "ATMY0x"})
         EXPECT_EQ(command(line), "ERROR\r") << line;
     EXPECT_EQ(command("atmy"), "1\r") << "letters may be small";
+    EXPECT_EQ(command("AT"), "OK\r");
+}
+
+TEST_F(Commands, ValuesMayBeginWith0x) {
+    EXPECT_EQ(command("ATMY0x1F"), "OK\r");
+    EXPECT_EQ(command("ATMY"), "1F\r");
+    EXPECT_EQ(command("ATMY 0X2F"), "OK\r");
+    EXPECT_EQ(command("ATKY0x1"), "OK\r");
+    EXPECT_EQ(a->key(), std::string(31, '0') + "1");
+}
+
+TEST_F(Commands, ALineMayHoldSeveralAndEachIsAnswered) {
+    EXPECT_EQ(command("ATMY5,DL6,MY,ZZ,CN"), "OK\rOK\r5\rERROR\rOK\r");
+    EXPECT_FALSE(a->inCommandMode());
+    EXPECT_EQ(a->parameter("DL"), 6u);
 }
 
 TEST_F(Commands, SerialNumberAndSignalAreReadOnly) {
@@ -226,6 +242,20 @@ TEST_P(Api, TheOptionWithoutAckIsNotTriedAgain) {
     air.weather.tryLoss = 1;
     api({0x01, 0x01, 0x00, 0x02, 0x01, 'x'}, 100 * ms);
     EXPECT_EQ(air.counters().retries, 0u);
+}
+
+TEST_P(Api, TheOptionAllNetworksReachesAnotherNetworkAndIsMarked) {
+    power({{"AP", GetParam()}}, {{"AP", GetParam()}, {"ID", 0x1111}});
+    api({0x01, 0x01, 0x00, 0x02, 0x04, 'x'}, 100 * ms);
+    EXPECT_EQ(answer(), framed({0x89, 0x01, 0}));
+    EXPECT_EQ(std::exchange(lineB.received, {}), framed({0x81, 0x00, 0x01, 0x28, 0x04, 'x'}));
+}
+
+TEST_P(Api, TheLongBroadcastAddressIsABroadcast) {
+    power({{"AP", GetParam()}}, {{"AP", GetParam()}});
+    api({0x00, 0x01, 0, 0, 0, 0, 0, 0, 0xFF, 0xFF, 0, 'x'}, 100 * ms);
+    EXPECT_EQ(answer(), framed({0x89, 0x01, 0}));
+    EXPECT_EQ(std::exchange(lineB.received, {}), framed({0x81, 0x00, 0x01, 0x28, 0x02, 'x'}));
 }
 
 TEST_P(Api, AReceivedPacketHasSourceAndSignal) {

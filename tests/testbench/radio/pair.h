@@ -15,6 +15,7 @@ protected:
     using Settings = std::map<std::string, uint32_t>;
     using Bytes = std::vector<uint8_t>;
     static constexpr uint64_t ms = 1'000'000;
+    static constexpr uint64_t afterFrame = 544'000 + 640'000; // acknowledgement, gap
 
     // Settings differ from: quick guard times, addresses 1 and 2.
     void power(Settings forA = {}, Settings forB = {}) {

@@ -32,8 +32,16 @@ TEST_F(Addresses, ChannelNetworkAndAddressMustAgree) {
         power({}, {{letters, value}});
         EXPECT_EQ(across("x", 30 * ms), "") << letters;
         EXPECT_EQ(packets.back().outcome, RfChannel::Outcome::Nobody);
-        EXPECT_EQ(a->parameter("EA"), 4u) << "all tries";
+        EXPECT_EQ(a->parameter("EA"), 1u) << "one packet";
     }
+}
+
+TEST_F(Addresses, NetworkFFFFReachesAllNetworksAndHearsNoOther) {
+    power({{"ID", 0xFFFF}});
+    EXPECT_EQ(across("x", 30 * ms), "x");
+    EXPECT_EQ(a->parameter("EA"), 0u) << "acknowledged";
+    power({}, {{"ID", 0xFFFF}});
+    EXPECT_EQ(across("y", 30 * ms), "");
 }
 
 TEST_F(Addresses, SerialNumbersReachAModemWithoutAShortAddress) {
@@ -47,7 +55,54 @@ TEST_F(Mac, AirTimeIsTheFormulas) {
     power({{"RO", 0}});
     uint64_t begin = now;
     send("x", 10 * ms);
-    EXPECT_EQ(packets[0].time - begin, RfChannel::airTimeNs(1));
+    EXPECT_EQ(packets[0].time - begin, RfChannel::airTimeNs(1) - afterFrame);
+}
+
+TEST_F(Mac, APacketIsWithItsReceiverAtTheEndOfItsFrame) {
+    power({{"RO", 0}});
+    EXPECT_EQ(across("x", 959'000), "");
+    EXPECT_EQ(across("", 2'000), "x") << "128 + 192 + 20 x 32 us";
+}
+
+// All tries of the MAC together sense the channel 20 times; without retries (MM 1) 5 times.
+TEST_F(Mac, AChannelThatIsNeverClearIsTriedFourTimes) {
+    for (uint32_t mm : {0u, 1u, 2u}) {
+        power({{"RO", 0}, {"MM", mm}, {"AP", 1}});
+        air.weather.perfect = false;
+        air.weather.interference = 1;
+        const uint64_t before = air.counters().retries, packet = packets.size();
+        lineA.send({0x7E, 0x00, 0x06, 0x01, 0x01, 0x00, 0x02, 0x00, 'x', 0x83}, now);
+        run(300 * ms);
+        EXPECT_EQ(air.counters().retries - before, mm == 1 ? 0u : 3u) << "MM " << mm;
+        ASSERT_EQ(packets.size(), packet + 1);
+        EXPECT_EQ(packets.back().outcome, RfChannel::Outcome::NoClearChannel);
+        EXPECT_EQ(a->parameter("EC"), 1u);
+        EXPECT_EQ(a->parameter("EA"), 0u);
+        EXPECT_EQ(heard(), std::string("\x7E\0\x03\x89\x01\x02\x73", 7));
+    }
+}
+
+TEST_F(Mac, ABroadcastThatFindsNoClearChannelIsTriedAgain) {
+    power({{"RO", 0}, {"DL", 0xFFFF}});
+    air.weather.perfect = false;
+    air.weather.interference = 1;
+    send("x", 300 * ms);
+    EXPECT_EQ(air.counters().retries, 3u);
+    EXPECT_EQ(a->parameter("EC"), 1u);
+}
+
+TEST_F(Mac, AResetEndsTheTries) {
+    power({{"RR", 6}});
+    air.weather.tryLoss = 1;
+    send("x", 100 * ms);
+    const uint64_t tries = air.counters().retries;
+    a->power(false, now);
+    run(2000 * ms);
+    EXPECT_EQ(air.counters().retries, tries);
+    a->power(true, now);
+    run(60 * ms);
+    air.weather.tryLoss = 0;
+    EXPECT_EQ(across("y", 30 * ms), "y");
 }
 
 // Tries without any acknowledgement, by RR and MM: RR needs the maker's header.
@@ -66,7 +121,7 @@ TEST_P(MacTries, AreFourTimesRRAndOneMore) {
     EXPECT_EQ(air.counters().retries, GetParam().tries - 1);
     EXPECT_EQ(packets.back().outcome, RfChannel::Outcome::Lost);
     bool acks = GetParam().mm == 0 || GetParam().mm == 2;
-    EXPECT_EQ(a->parameter("EA"), acks ? GetParam().tries : 0u);
+    EXPECT_EQ(a->parameter("EA"), acks ? 1u : 0u);
 }
 INSTANTIATE_TEST_SUITE_P(Modes, MacTries,
                          ::testing::Values(Tries{0, 0, 4}, Tries{2, 0, 12}, Tries{6, 0, 28},
@@ -87,7 +142,7 @@ TEST_F(Mac, ALostAckMakesADuplicateThatRRAndTheHeaderTell) {
     air.weather.ackLoss = 1;
     power();
     EXPECT_EQ(across("x", 100 * ms), "xxxx");
-    EXPECT_EQ(a->parameter("EA"), 4u);
+    EXPECT_EQ(a->parameter("EA"), 1u);
     power({{"RR", 1}});
     EXPECT_EQ(across("x", 400 * ms), "x");
     EXPECT_EQ(b->counters().duplicatesDropped, 7u);
@@ -191,7 +246,7 @@ TEST_F(Air, DelayIsAddedToTheAirTime) {
     air.weather.delayNs = 7 * ms;
     uint64_t begin = now;
     send("x", 20 * ms);
-    EXPECT_EQ(packets[0].time - begin, RfChannel::airTimeNs(1) + 7 * ms);
+    EXPECT_EQ(packets[0].time - begin, RfChannel::airTimeNs(1) - afterFrame + 7 * ms);
 }
 
 TEST_F(Air, DuplicationDeliversTwice) {

@@ -88,14 +88,6 @@ TEST_F(Buffers, TheInputBufferHolds202BytesAndCountsWhatIsLost) {
     EXPECT_EQ(heardB(), std::string(100, 'x') + std::string(202, 'y'));
 }
 
-TEST_F(Buffers, FTMovesTheCTSThreshold) {
-    power({{"FT", 0x20}, {"RO", 0xFF}});
-    send(std::string(31, 'x'));
-    EXPECT_TRUE(lineA.cts());
-    send("x");
-    EXPECT_FALSE(lineA.cts());
-}
-
 TEST_F(Buffers, WithoutD7CTSStaysOn) {
     power({{"D7", 0}});
     air.weather.delayNs = 50 * ms;

@@ -105,7 +105,12 @@ function(icesoc_test name)
   # CTest reads this after the cases are known; gtest_discover_tests itself uses only the first of
   # several labels.
   set(labels ${CMAKE_CURRENT_BINARY_DIR}/${name}_labels.cmake)
+  list(GET A_SOURCES 0 first)
+  cmake_path(ABSOLUTE_PATH first)
+  cmake_path(GET first PARENT_PATH folder)
+  cmake_path(RELATIVE_PATH folder BASE_DIRECTORY ${CMAKE_SOURCE_DIR})
   file(WRITE ${labels}
+    "# folder: ${folder}\n"
     "foreach(t IN LISTS ${name}_TESTS)\n"
     "  set_tests_properties(\${t} PROPERTIES LABELS \"${A_LABELS}\")\n")
   if(A_SANITIZED)

@@ -33,6 +33,9 @@ add_test(NAME absent.program COMMAND ${CMAKE_BINARY_DIR}/absent)
 set_tests_properties(script.tool PROPERTIES FIXTURES_SETUP f)
 set_tests_properties(script.after PROPERTIES FIXTURES_REQUIRED f)
 add_custom_target(test_tame DEPENDS ${CMAKE_SOURCE_DIR}/tame.cpp)
+add_executable(test_built ${CMAKE_SOURCE_DIR}/built.cpp)
+add_test(NAME test_built.Fir.Works COMMAND test_built)
+add_test(NAME test_built.Order.ComesFirst COMMAND test_built)
 foreach(n soon radio tame)
   add_test(NAME test_${n}_NOT_BUILT COMMAND false)
   set(labels ${CMAKE_CURRENT_BINARY_DIR}/test_${n}_labels.cmake)
@@ -55,7 +58,7 @@ class Cases(Project):
         self.regress("--seed 5", 1)
         self.has("4 passed, 2 failed, 0 skipped",
                  "^proofs *green *1 hold, 1 of them as before, from unchanged files$",
-                 r"make test NAME='\^test_b\\\.Bad\$\$' SEED=5", "1 x  SegFault without a word")
+                 r"make test NAME='\^test_b\\\.Bad\$' SEED=5", "1 x  SegFault without a word")
         self.has("value 5 is not 7", file="build/regress/failures/test_b.Bad-5.log")
         self.has('failures="1" errors="1"', '<error message="SegFault without a word [(]SEED=5[)]"',
                  '<failure message="value 5 is not 7 &lt;/script&gt; [(]SEED=5[)]"',
@@ -187,6 +190,8 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.regress("--name test_a.One")
         self.has("^1 passed")  # an exact name is one test
         write("tame.cpp", "// nobody\nTEST_F(Tame, Eats) {}\n")
+        write("built.cpp", "int main() {}\n")
+        edit("CMakeLists.txt", "small NONE", "small CXX")
         self.tests(NEEDS)
         for words, programs in (
             ("--name '^script.whole'", "all"), ("--name '^script.says'", "other tools"),
@@ -196,8 +201,12 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
             ("--name One", "test_radio test_soon"),  # whose cases nobody knows
             ("--name '^One|^(script|docs).says'", "other tools"),  # a name does not begin so
             ("--name '^test_tame.*Eat'", "test_tame"),
-            ("--label 'rtl|radio'", "test_radio")):
+            ("--label 'rtl|radio'", "test_radio"),
+            ("--name rue", "test_radio test_soon"),
+            ("--name tame", "test_radio test_soon test_tame"),
+            ("--name '(tam)'", "test_radio test_soon test_tame")):
             self.needs(words, programs)
+        self.a_plain_word_is_a_whole_one()
         self.regress("--prepare --name script.tool")
         self.has("^Building tool ")
         self.assertTrue(Path("build/main/tool").exists())
@@ -211,7 +220,7 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.needs("--changed --name '^script.says'", "other tools")
         git("checkout -q tests/room/t.sh")
         self.regress("--prepare --name '^test_a.Nobody'", 2)
-        self.has(r"no test is chosen by NAME='\^test_a.Nobody'; .ctest --test-dir")
+        self.has(r"no test matches --name '\^test_a.Nobody'; .ctest --test-dir")
         git("checkout -q HEAD~1 tests/room/CMakeLists.txt")
         self.tests(LATE)
         self.regress("--label formal", 1)
@@ -225,6 +234,20 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
             self.assertTrue(any(waiting in line for line in run.stdout))
         run.communicate()
         self.assertEqual(run.returncode, 0)
+
+    def a_plain_word_is_a_whole_one(self):
+        """`fir` is not in `first`. A case that is new in a program's source is found although the
+        program is there."""
+        self.ask("ninja", "-C", "build/main", "test_built")
+        self.regress("--name Fir --list")
+        self.assertIn("test_built.Fir.Works\n", self.said)
+        self.assertNotIn("First", self.said)
+        self.regress("--name built.Newest --list", 2)
+        write("built.cpp", "#define TEST(a, b) int a##b\nTEST(Fir, IsNewest);\nint main() {}\n")
+        self.needs("--name Newest", "test_radio test_soon tests/room/test_built")
+        self.regress("--prepare --list --name built.Fir.IsNewest", 2)
+        self.has("^tests/room/test_built$")
+        self.needs("--name Oldest", "test_radio test_soon")
 
     def test_selection(self):
         for words, chosen in (("block thing", "formal.thing"), ("label formal", "formal.thing"),

@@ -151,7 +151,7 @@ TESTS = Option("tests", COUNT,
                "tests at a time: some wait for a clock, so two more than processors", None)
 SEED = Option("seed", number(0), "seed of everything that is drawn", 1)
 FAMILY = Option("family", TEXT, "the chip that netlists are for: xc6s (Spartan-6) or ecp5", "xc6s")
-NAME = Option("name", TEXT, "regular expression: tests of which a part of the name matches")
+NAME = Option("name", TEXT, "whole word of test names, or regular expression on them")
 LABEL = Option("label", TEXT,
                "tests of this label: rtl, vhdl, formal, lint, firmware, slice, interop, e2e, ...")
 BLOCK = Option("block", TEXT, "what belongs to this block, such as bus or modem")

@@ -133,7 +133,7 @@ def examine(results, tests, out):
         short = re.sub(r"0x[0-9a-fA-F]+|[0-9]+(\.[0-9]+)?", "#", re.sub("[^ ]*/", "", words))
         exact = re.sub(r"([.+*?()\[\]{}|^$\\])", r"\\\1", result.name)
         base = f"{folder}/{re.sub('[^A-Za-z0-9_.-]', '_', result.name)}"
-        failure = Failure(result, words, short[:160], f"make test NAME='^{exact}$$' "
+        failure = Failure(result, words, short[:160], f"make test NAME='^{exact}$' "
                           f"SEED={result.seed}", log=f"{base}-{result.seed}.log", about=words)
         find_assertion(failure)
         if place := re.search(r"(?:^|\n)(?:[.][.]/)*(\S+:\d+): Failure\n", result.log):

@@ -20,14 +20,15 @@ from icesoc.regress.history import History, make_run
 from icesoc.regress.lights import text_of
 from icesoc.regress.report import gather, write_reports
 from icesoc.regress.runner import run_tests, write_junit
-from icesoc.regress.tests import Graph, fingerprint, list_tests, read_plan, targets_of, unmatched
+from icesoc.regress.tests import (Graph, Name, fingerprint, list_tests, read_plan, targets_of,
+                                  unmatched, write_numbers)
 from icesoc.util.tool import Stop
 from icesoc.regress.waves import add_waves
 
 
-def regex(text):
+def regex(text, kind=re.compile):
     try:
-        return re.compile(text)
+        return kind(text)
     except re.error:
         raise argparse.ArgumentTypeError(
             f"'{text}' is no regular expression, in which .* is any text") from None
@@ -46,7 +47,11 @@ def parse(words):
     add("--source", type=folder, default=folder("."), help="root of the tree (default: .)")
     add("--build", type=folder, default=folder("build/main"), help="build folder with the tests")
     add("--out", type=folder, default=folder("build/regress"), help="where reports go")
-    add("--name", type=regex, default=regex(""), help="regular expression on test names")
+    add("--name", type=functools.partial(regex, kind=Name), default=Name(""),
+        help="a whole word of test names, or a regular expression on them")
+    add("--folder", default="", help="tests of this folder, such as hdl/fsmc or ip/fir")
+    add("--select", type=folder, metavar="FILE",
+        help="only write the numbers of the chosen tests, for ctest -I")
     add("--block", help="one block: modem, link, bus, ...")
     add("--label", type=regex, default=regex(""), help="labels: rtl, formal, lint, firmware, ...")
     only = parser.add_mutually_exclusive_group()
@@ -87,22 +92,42 @@ class Regression:
     def choose(self, tests, built=True):
         """The tests that the options choose; before the build only programs of some are known."""
         o, chosen = self.options, []
-        exact = any(test.name == o.name.pattern for test in tests)
+        exact = any(test.name == o.name.text for test in tests)
         for test in tests:
             if o.block and o.block not in test.blocks():
+                continue
+            if o.folder and not test.is_in(o.folder):
                 continue
             if o.label.pattern and not any(map(o.label.search, test.labels)) and \
                     (test.labels or not test.unbuilt):
                 continue
             if test.unbuilt:  # its cases are not known
-                named = not exact and (not o.name.pattern or
+                named = not exact and (not o.name.text or
                                        test.may_hold(o.name, self._sources(test)))
             else:
-                named = test.name == o.name.pattern if exact else o.name.search(test.name)
+                named = test.name == o.name.text if exact else o.name.search(test.name)
             if named and not (o.changed and not self._changed(test, built)) and \
                     not (o.rerun_failed and self.history.last(test.name) != "f"):
                 chosen.append(test)
+        if not built and o.name.text and not exact:
+            chosen += self._outdated(tests, {test.program for test in chosen})
         return chosen
+
+    def _outdated(self, tests, known):
+        """Returns a test of each further program that is older than its sources, if these may have
+        a case of the name that is asked for."""
+        o, found = self.options, {}
+        for test in tests:
+            if test.program in known or test.program in found or test.unbuilt \
+                    or not test.is_program(o.build) or (o.folder and not test.is_in(o.folder)):
+                continue
+            program = pathlib.Path(test.command[0])
+            age = program.stat().st_mtime if program.exists() else 0
+            files = [o.source / file for file in self.graph.inputs(test.program)]
+            if any(file.exists() and file.stat().st_mtime > age for file in files) \
+                    and test.may_hold(o.name, self._sources(test)):
+                found[test.program] = test
+        return list(found.values())
 
     def _sources(self, test):
         """The texts of a program's C++ files."""
@@ -151,11 +176,14 @@ class Regression:
             print(f"Nothing to run: no test {'changed' if o.changed else 'failed'} since the last "
                   "run.")
             return 0
-        given = "".join(f" {name}='{value}'" for name, value in (
-            ("BLOCK", o.block), ("LABEL", o.label.pattern), ("NAME", o.name.pattern)) if value)
+        given = "".join(f" {name} '{value}'" for name, value in (
+            ("--block", o.block), ("--label", o.label.pattern), ("--name", o.name.text),
+            ("--folder", o.folder)) if value)
         labels = sorted({label for test in tests for label in test.labels})
-        print(f"regress: no test is chosen by{given}; `ctest --test-dir {o.build} -N` lists their "
-              f"names.\nlabels: {' '.join(labels)}\n"
+        print(f"regress: no test matches{given}; `ctest --test-dir {o.build} -N` lists the "
+              "names. A plain word is a whole word of a name: --name 'fir.*' matches parts of words, "
+              "too.\n"
+              f"labels: {' '.join(labels)}\n"
               f"folders: {' '.join(sorted({test.place for test in tests}))}", file=sys.stderr)
         return 2
 
@@ -164,10 +192,12 @@ class Regression:
         if o.make or o.prepare:
             self.build()
         tests = list_tests(o.build)
-        if not o.prepare or o.changed:
+        if not (o.prepare or o.select) or o.changed:
             fingerprint(tests, o.source, o.build)
         chosen = self.choose(tests)
-        if not chosen or o.prepare:  # after --prepare, CTest runs them without history
+        if chosen and o.select:
+            write_numbers(o.select, chosen)
+        if not chosen or o.prepare or o.select:  # CTest then runs them without history
             return 0 if chosen else self.nothing(tests)
         if o.list:
             print("\n".join(test.name for test in chosen))
@@ -256,7 +286,7 @@ def main(words):
             wrong = [line for each in plan for line in unmatched(each, tests)]
             print("".join(line + "\n" for line in wrong) + f"{len(plan)} requirements")
             return 1 if wrong or not plan else 0
-        if options.prepare:
+        if options.prepare or options.select:
             return Regression(options).run()
         with tool.only_one(options.out, "regress"):
             regression = Regression(options)

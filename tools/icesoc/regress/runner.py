@@ -12,6 +12,7 @@ import threading
 import time
 import xml.etree.ElementTree as xml
 
+from icesoc.regress.tests import write_numbers
 from icesoc.util.tool import Stop, children, run, write
 
 SHORTEST_HANG = 300  # seconds: no test is ended before
@@ -136,8 +137,7 @@ def readable(log):
 def run_tests(tests, build, out, seed, jobs, history):
     """Runs tests in parallel, those that failed last time first."""
     chosen, junit = out / "tests.list", (out / f"junit-{seed}.xml").resolve()
-    # start, end, stride: none but the numbers
-    write(chosen, ",".join(["0,0,0", *(str(test.number) for test in tests)]) + "\n")
+    write_numbers(chosen, tests)
     junit.unlink(missing_ok=True)
     progress, ends = Progress(tests, history, jobs), {}
     print(f"{len(tests)} tests, SEED={seed}", flush=True)

@@ -11,9 +11,25 @@ import pathlib
 import re
 import tomllib
 
-from icesoc.util.tool import Stop, digest, run, tracked
+from icesoc.util.tool import Stop, digest, run, tracked, write
 
 NOT_BUILT = "_NOT_BUILT"  # CTest's suffix for a program whose cases it does not know
+
+
+class Name:
+    """A choice of tests by name. A plain word chooses names that have it as a whole word, so that
+    `fir` does not choose `first`; anything else is a regular expression."""
+
+    def __init__(self, text):
+        self.text, self.is_word = text, bool(re.fullmatch(r"[A-Za-z]\w*", text))
+        before = "(?<![A-Za-z])" if text[:1].islower() else "(?<![A-Z])"
+        self.pattern = f"{before}{text}(?![a-z])" if self.is_word else text
+        self.search = re.compile(self.pattern).search
+
+
+def write_numbers(path, tests):
+    """Writes the numbers of tests into a file for CTest's option -I."""
+    write(path, ",".join(["0,0,0", *(str(test.number) for test in tests)]) + "\n")
 
 
 @dataclasses.dataclass
@@ -27,6 +43,7 @@ class Test:
     needs: list = dataclasses.field(default_factory=list)  # CTest's fixtures
     sets: list = dataclasses.field(default_factory=list)
     targets: list | None = None  # NEEDS=... of its environment: the targets that it needs
+    path: str = ""  # folder, without tests/: "ip/fir", "hdl/modem"
     print: str = ""  # changes with the test's program or files
 
     @property
@@ -38,9 +55,14 @@ class Test:
         """The name of the program and of its target."""
         return self.name.removesuffix(NOT_BUILT) if self.unbuilt else self.name.split(".")[0]
 
+    def is_in(self, folder):
+        """Returns whether the test is in a folder of the tree or of tests/: hdl/fsmc, ip/fir."""
+        folder = folder.strip("/").removeprefix("tests/")
+        return f"{self.path}/".startswith(f"{folder}/")
+
     def is_program(self, build):
         return bool(self.command) and "/test_" in self.command[0] and \
-            self.command[0].startswith(f"{build}/")
+            self.command[0].startswith(f"{build.resolve()}/")
 
     def reads(self):
         """The folders that a test without a program reads."""
@@ -68,15 +90,18 @@ class Test:
         return False
 
     def may_hold(self, name, sources):
-        """Whether a case of a program that is not built may match `name`, a regular expression, by
-        the texts of its sources. Of cases for several values or types the words of `name` stand in
-        these. Suites and cases begin with capitals."""
+        """Returns whether a case of a program that is not built, or is older than its sources, may
+        match a Name. `sources`: texts of the program's files. The words of a case for several
+        values or types are in different places of the text. Suites and cases begin with
+        capitals."""
         if not self._may_begin(name.pattern):
             return False
         text = re.sub("//.*", "", "\n".join(sources))
         cases = re.findall(r"(?m)^ *(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)", text)
         if any(name.search(f"{self.program}.{suite}.{case}") for suite, case in cases):
             return True
+        if name.is_word:
+            return not sources or bool(name.search(f"{self.program} {text}"))
         if cases and not re.search(r"INSTANTIATE_TEST_SUITE_P|TYPED_TEST", text):
             return False
         for some in re.sub(r"\[.*?\]|\\(?!\.)|.[?*{]", " ", name.pattern).split("|"):
@@ -105,12 +130,17 @@ def list_tests(build):
                     folder.removeprefix(below) if folder.startswith(below)
                     else os.path.basename(folder), has.get("LABELS", []),
                     has.get("FIXTURES_REQUIRED", []), has.get("FIXTURES_SETUP", []))
+        test.path = os.path.relpath(folder, build.resolve()).removeprefix("tests/")
         for word in has.get("ENVIRONMENT", []):
             if word.startswith("NEEDS="):
                 test.targets = word[6:].split()
         labels = pathlib.Path(folder, f"{test.program}_labels.cmake")
-        if test.unbuilt and labels.exists():  # written by icesoc_test() for its cases
-            test.labels = ";".join(re.findall('LABELS "([^"]*)"', labels.read_text())).split(";")
+        if (test.unbuilt or test.is_program(build)) and labels.exists():  # of icesoc_test()
+            text = labels.read_text()
+            if test.unbuilt:
+                test.labels = ";".join(re.findall('LABELS "([^"]*)"', text)).split(";")
+            if place := re.search("^# folder: (.*)", text):
+                test.path = place[1].removeprefix("tests/")
         tests.append(test)
     return tests
 

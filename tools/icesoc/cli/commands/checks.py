@@ -10,7 +10,7 @@ from icesoc.cli.build_folder import ROOMS_OF_PROGRAMS, BuildFolder, configured, 
 from icesoc.cli.command import GROUPS, command
 from icesoc.cli.options import (BLOCK, BUILD, COUNT, FAMILY, FRESH, JOBS, MINUTES, NAME, PATH, SEED,
                                 TESTS, WORDS, Option)
-from icesoc.cli.runner import Stop, output, run, say, tool
+from icesoc.cli.runner import Stop, lock, output, run, say, tool, warn
 
 GROUPS["check"] = "what takes minutes to hours"
 GUARDED = ["test_engine", "gateway", "test_radio_ice", "test_icec"]
@@ -176,6 +176,21 @@ def soak(values):
         env={**seed, "SOAK_BYTES": values.fuzzed})
 
 
+def measure(benches, folder):
+    """Runs benches one after the other; returns the first status that is not 0. The build folder is
+    not locked meanwhile, but no two processes measure at the same time."""
+    folder.mkdir(parents=True, exist_ok=True)
+    status = 0
+    with lock("build/bench.lock", busy="waiting for another bench in this folder ..."):
+        for name, bench in benches.items():
+            words = [folder / f"{name}.json" if word == "@JSON@" else word
+                     for word in bench["command"]]
+            if failed := run(words, check=False):
+                warn(f"bench {name}: exit status {failed}")
+            status = one_more(status, failed)
+    return status
+
+
 @command("bench", [
     Option("only", WORDS, "these alone, without a page"),
     Option("page", PATH, "the page that is written", "docs/figures.md"), BUILD, JOBS], make="bench",
@@ -183,22 +198,22 @@ def soak(values):
              "bench", "bench --only air plugin"])
 def bench(values):
     """measure everything that has a figure (tests/bench), write build/bench/*.json and a page"""
-    listed = Path("tests/bench/CMakeLists.txt")
-    text = listed.read_text() if listed.exists() else ""
-    there = re.findall(r"^ *icesoc_bench\((\w+)", text, re.M)
-    for name in values.only:
-        if name not in there:
-            raise Stop(f"there is no bench '{name}': {', '.join(there)}", 2)
     build = configured(values)
-    if values.only:
-        Path("build/bench").mkdir(parents=True, exist_ok=True)
-        return build.ninja(*(f"measure_{name}" for name in values.only), check=False, jobs=1)
-    build.ninja("bench_programs", "regress", "size")
+    benches = json.loads((build / "benches.json").read_text())
+    for name in values.only:
+        if name not in benches:
+            raise Stop(f"no bench is named '{name}': {', '.join(benches)}", 2)
     folder = Path("build/bench")
+    if values.only:
+        targets = [target for name in values.only for target in benches[name]["targets"]]
+        if targets:
+            build.ninja(*targets)
+        return measure({name: benches[name] for name in values.only}, folder)
+    build.ninja("bench_programs", "regress", "size")
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     (folder / "tree").write_text(
         output([build / "tests/regress/regress", "--tree", "bus hdl ip sw testbench tests tools"]))
-    status = build.ninja("-k", "0", "benches", check=False, jobs=1)
+    status = measure(benches, folder)
     return one_more(status, run(["tests/bench/figures.py", values.page,
                                  *sorted(folder.glob("*.json")), "build/size.json"], check=False))

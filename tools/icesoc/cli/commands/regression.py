@@ -28,24 +28,28 @@ def selection(values, *more):
             for word in (f"--{name}", getattr(values, name))]
 
 
-@command("test", [LABEL, NAME, SEED, FRESH, TESTS, UCOS2, BUILD, JOBS], make="test",
-         brief="test --name ^tree[.]", examples=[
-             "test", "test --label rtl", "test --name 'Burst' --seed 7"])
+@command("test", [
+    Option("folder", TEXT, "folder of the tests, such as hdl/fsmc or ip/fir (default: all)", "",
+           positional=True), LABEL, NAME, SEED, FRESH, TESTS, UCOS2, BUILD, JOBS], make="test",
+         brief="test tree", examples=[
+             "test hdl/fsmc", "test --label rtl", "test --name Burst --seed 7"])
 def test(values):
-    """run all tests; firmware, models and IceC once more with sanitizers"""
+    """run all tests, or some; all: firmware, models and IceC once more with sanitizers"""
     build = BuildFolder(values.build, values).prepare(tests=True)
-    some, tests, seed = values.name or values.label, at_once(values), {
+    some, tests, seed = values.folder or values.name or values.label, at_once(values), {
         "SEED": values.seed, "FRESH": "1" if values.fresh else ""}
-    if not some or values.label == "zeroc":
+    chosen = []
+    if values.label == "zeroc":  # CTest lists these only with their configuration
         build.ninja()
-    elif not values.built:
+        chosen = ["-C", "zeroc", "-L", "zeroc", *(["-R", values.name] if values.name else [])]
+    elif some:
         build.ninja("regress")
-        run([build / "tests/regress/regress", "--prepare", "--build", build.folder,
-             *selection(values)])
-    chosen = [
-        *(["-L", values.label] if values.label else []),
-        *(["-R", values.name] if values.name else []),
-        *(["-C", "zeroc"] if values.label == "zeroc" else [])]
+        numbers = build / "chosen.tests"
+        run([build / "tests/regress/regress", *([] if values.built else ["--prepare"]), "--select",
+             numbers, "--build", build.folder, *selection(values, "folder")])
+        chosen = ["-I", numbers.absolute()]
+    else:
+        build.ninja()
     build.ctest(*chosen, tests=tests, **seed)
     if not some:
         sanitized = BuildFolder("build/sanitized", values)

@@ -151,8 +151,9 @@ MISTAKES = {
     "./icesoc run --again Makefile": "cannot read the flight",
     "./icesoc run --again tools/icesoc/cli/flight.schema.json":
     "describes no flight: it is not of version 3",
-    "./icesoc contract": "contract has the commands diff, from-rdl",
-    "./icesoc bench --only airr": "there is no bench 'airr': simulator, air",
+    "./icesoc contract": "contract: expected a command: diff, from-rdl",
+    "./icesoc contract dif": "contract has no command 'dif'; did you mean diff?",
+    "./icesoc bench --only airr": "no bench is named 'airr': simulator, air",
     "./icesoc nightly --steps nothing --built": "there is no step 'nothing': kept, random",
     "make -s rnu": "there is no 'make rnu'; did you mean run?",
     "make -s run LOS=1": "there is no variable LOS of make run; did you mean LOSS?",

@@ -110,6 +110,24 @@ class Lists(unittest.TestCase):
             self.assertRaisesRegex(runner.Stop, "failed: bad ", rows.end)
             self.assertIn("| good | 0 | 1.5 | a / b |", Path(work, "rows.md").read_text())
 
+    def test_help_fits_a_screen_and_lists_the_commands_of_a_group(self):
+        for words in ("--help",), ("help",), ():
+            status, text = ask("./icesoc", *words)
+            self.assertEqual(status, 0)
+            self.assertLess(len(text.splitlines()), 40)
+            self.assertLess(max(map(len, text.splitlines())), 81, text)
+        for name in command.COMMANDS:
+            self.assertIn(f"  {name.split()[0]} ", text)
+        for group in command.GROUPS:
+            for words in (group, "--help"), (group, "-h"), ("help", group):
+                status, text = ask("./icesoc", *words)
+                self.assertEqual(status, 0)
+                for name in command.COMMANDS:
+                    first, _, second = name.partition(" ")
+                    self.assertTrue(first != group or f"  {second} " in text, f"{words}: {second}")
+        self.assertEqual(ask("./icesoc", "help", "core", "new"),
+                         ask("./icesoc", "core", "new", "--help"))
+
     def test_version_and_manual_are_there(self):
         self.assertRegex(ask("./icesoc", "--version")[1], r"^icesoc \d+\.\d+\.\d+\n")
         said = subprocess.run(["groff", "-man", "-ww", "-Tutf8", "-z"], input=manual(),

@@ -8,6 +8,7 @@ line.
 import argparse
 import difflib
 import os
+import re
 
 from icesoc.cli.options import BUILT, PATHS, SWITCH
 from icesoc.cli.runner import Stop
@@ -15,6 +16,11 @@ from icesoc.cli.runner import Stop
 COMMANDS = {}  # by name, such as "core new", in the order of the list
 GROUPS = {}  # first words of names of two words, with their help
 DEFAULTS = {}  # a group's command that its first word alone means
+SECTIONS = {  # of the overview: commands and groups, by what a user wants to do
+    "Fly": ("run", "replay", "gdb", "key", "fly"),
+    "Add cores, look at the chip": ("core", "contract", "synth"),
+    "Build and test": ("build", "test", "regress", "bisect", "check", "bench", "nightly"),
+    "The project": ("setup", "docs", "clean", "commands")}
 ALIASES = {}  # other verbs of make: a verb, and the switch that it turns on
 
 
@@ -37,7 +43,7 @@ class Command:
 
     def parser(self, into=None):
         parser = into or argparse.ArgumentParser()
-        parser.prog = f"icesoc {self.name}"
+        parser.prog = f"./icesoc {self.name}"
         parser.formatter_class = argparse.RawDescriptionHelpFormatter
         parser.description = self.help + ("\n\n" + "\n".join(map(str.strip, self.more.split("\n")))
                                           if self.more else "")
@@ -118,7 +124,7 @@ def find(words):
     if first in GROUPS:
         parts = [name.split()[1] for name in COMMANDS if name.startswith(first + " ")]
         if not rest:
-            raise Stop(f"{first} has the commands {', '.join(parts)}", 2)
+            raise Stop(f"{first}: expected a command: {', '.join(parts)}", 2)
         raise Stop(f"{first} has no command '{rest[0]}'" + nearest(rest[0], parts), 2)
     raise Stop(
         f"there is no command '{first}'" + nearest(first, [*GROUPS, *COMMANDS])
@@ -188,25 +194,55 @@ def complete():
     argcomplete.autocomplete(top)
 
 
+def short(text, width):
+    """The beginning of a help text, up to its first comma or semicolon that leaves it short."""
+    while len(text) > width:
+        text = re.sub(r"[,;:(][^,;:(]*$", "", text).rstrip() if re.search("[,;:(]", text) \
+            else text[:width - 3] + "..."
+    return text
+
+
+def row(name, text):
+    return f"  {name:<10} {short(text, 67)}"
+
+
 def overview():
     """The text of `./icesoc`: a line for each command or group of commands."""
-    lines = [
-        "IceSoC: every function of the UAV, in software or in hardware, is a ZeroC Ice object.", ""]
-    for name in dict.fromkeys(name.split()[0] for name in COMMANDS):
-        parts = [each.split()[1] for each in COMMANDS if each.startswith(name + " ")]
-        text = f"{GROUPS[name]}: {', '.join(parts)}" if parts else COMMANDS[name].help
-        lines.append(f"  {name:<10} {text}")
-    lines += ["", "./icesoc COMMAND --help explains one; "
-              "make VERB VARIABLE=value is the same by the other door:", *verbs()]
+    lines = ["usage: ./icesoc COMMAND [option...]", "",
+             "IceSoC: an FPGA and a microcontroller whose functions are ZeroC Ice objects."]
+    rest = dict.fromkeys(name.split()[0] for name in COMMANDS)
+    for title, names in SECTIONS.items():
+        lines += ["", f"{title}:"]
+        for name in names:
+            rest.pop(name)
+            lines.append(row(name, f"{GROUPS[name]} (./icesoc {name} --help)" if name in GROUPS
+                             else COMMANDS[name].help))
+    assert not rest, f"in no section of the overview: {', '.join(rest)}"
+    return "\n".join([
+        *lines, "", "./icesoc COMMAND --help explains a command. By make: `make run LOSS=0.1` is",
+        "`./icesoc run --loss 0.1`; help shows the name of make's variable in [brackets]."])
+
+
+def group_help(group):
+    """The help of a group: a line for each of its commands."""
+    lines = [f"usage: ./icesoc {group} COMMAND [option...]", "", GROUPS[group], ""]
+    lines += [row(name.split()[1], each.help) for name, each in COMMANDS.items()
+              if name.startswith(group + " ")]
+    lines += ["", f"./icesoc {group} COMMAND --help explains one."]
+    if group in DEFAULTS:
+        lines.append(f"./icesoc {group} without a command is ./icesoc {DEFAULTS[group]}.")
     return "\n".join(lines)
 
 
-def verbs():
-    """The verbs of make, in lines."""
-    line = "  make"
-    for verb in dict.fromkeys(each.make for each in COMMANDS.values() if each.make):
-        if len(line) + len(verb) > 98:
-            yield line
-            line = "      "
-        line += " " + verb
-    yield line
+def help_of(words):
+    """The help of a command line that asks for it by its first or its last word, or None."""
+    if words and words[0] in ("help", "-h", "--help"):
+        words = words[1:]
+    elif not (len(words) == 2 and words[0] in GROUPS and words[1] in ("-h", "--help")):
+        return None
+    words = [word for word in words if word not in ("-h", "--help")]
+    if not words:
+        return overview()
+    if len(words) == 1 and words[0] in GROUPS:
+        return group_help(words[0])
+    return find(words)[0].parser().format_help().rstrip("\n")

@@ -48,8 +48,8 @@ def act(words):
         return say(command.overview())
     if made:
         found, values = command.by_make(*made)
-    elif words[0] in ("help", "-h", "--help"):
-        return say(command.overview())
+    elif text := command.help_of(words):
+        return say(text)
     elif words[0] == "--version":
         return say(tree.version())
     else:

@@ -181,8 +181,8 @@ class Regression:
             ("--folder", o.folder)) if value)
         labels = sorted({label for test in tests for label in test.labels})
         print(f"regress: no test matches{given}; `ctest --test-dir {o.build} -N` lists the "
-              "names. A plain word is a whole word of a name: --name 'fir.*' matches parts of words, "
-              "too.\n"
+              "names. A plain word is a whole word of a name; --name 'fir.*' also matches parts of "
+              "words.\n"
               f"labels: {' '.join(labels)}\n"
               f"folders: {' '.join(sorted({test.place for test in tests}))}", file=sys.stderr)
         return 2

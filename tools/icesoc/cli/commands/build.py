@@ -11,7 +11,7 @@ from icesoc.cli.command import DEFAULTS, GROUPS, command
 from icesoc.cli.options import BUILD, FOLDER, JOBS, UCOS2, WORDS, Option
 from icesoc.cli.runner import Stop, end, logged, run, say, start
 
-GROUPS["build"] = "build everything, or a part"
+GROUPS["build"] = "build everything, or firmware, sizes, pictures"
 DEFAULTS["build"] = "build all"
 
 

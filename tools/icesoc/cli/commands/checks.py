@@ -12,7 +12,7 @@ from icesoc.cli.options import (BLOCK, BUILD, COUNT, FAMILY, FRESH, JOBS, MINUTE
                                 TESTS, WORDS, Option)
 from icesoc.cli.runner import Stop, lock, output, run, say, tool, warn
 
-GROUPS["check"] = "what takes minutes to hours"
+GROUPS["check"] = "proofs, sanitizers, fuzzing, faults, coverage"
 GUARDED = ["test_engine", "gateway", "test_radio_ice", "test_icec"]
 
 
@@ -197,7 +197,9 @@ def measure(benches, folder):
          brief="bench --only slice", long="bench --page build/bench/figures.md", examples=[
              "bench", "bench --only air plugin"])
 def bench(values):
-    """measure everything that has a figure (tests/bench), write build/bench/*.json and a page"""
+    """measure the figures of docs/figures.md
+
+    The benches are in tests/bench. Each leaves build/bench/NAME.json."""
     build = configured(values)
     benches = json.loads((build / "benches.json").read_text())
     for name in values.only:

@@ -17,7 +17,7 @@ from icesoc.cli.runner import Stop, logged, output, run, say, warn
 
 TEMPLATE = TREE / "tools/icesoc/cores/template"
 
-GROUPS["core"] = "cores of the chip: begin one, test it, take it away"
+GROUPS["core"] = "cores: begin, test, view, remove"
 NAME = Option("name", TEXT, "name of the core, such as low_pass", "", positional=True)
 CORE = Option("ip", matching(r"\w+", "the name of a core"), "the core", "", positional=True)
 CHIP = Option("chip", SWITCH,

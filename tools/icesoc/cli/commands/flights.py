@@ -258,8 +258,10 @@ def gdb(values):
                    "key spare.key --signing",
                    "key next.update --list 2 --by spare.key --first spare.pub --second next.pub"])
 def key(values):
-    """make a key of the link, for vehicle and ground, a certificate (docs/security.md), or a key
-    that signs updates and lists of these (docs/firmware.md)"""
+    """make a key for the radio link, or a certificate
+
+    It also makes keys that sign updates, and lists of such keys. docs/security.md explains keys of
+    the link and certificates, docs/firmware.md those of updates."""
     if not values.file:
         raise Stop("key needs the name of a file: ./icesoc key my.key", 2)
     parts = values.list, values.by, values.first
@@ -291,7 +293,7 @@ def key(values):
     SEED, BUILD, JOBS], make="fly", brief="fly --minutes 0.01",
          long="fly --minutes 60 --seed {day}", examples=["fly --minutes 60", "fly --seed 7"])
 def fly_for_long(values):
-    """a long flight: stock Ice's calls now and then, loss, reboots of UAV, modems and ground"""
+    """fly for hours: calls with packet loss, and reboots of UAV, modems and ground"""
     build = configured(values, "test_chip_soak")
     run([build / "tests/sw/ground/chip/test_chip_soak", "--gtest_brief=1"], env={
         "SEED": values.seed, "SOAK_REST": 10, "SOAK_SECONDS": values.minutes * 60})

@@ -34,7 +34,10 @@ def selection(values, *more):
          brief="test tree", examples=[
              "test hdl/fsmc", "test --label rtl", "test --name Burst --seed 7"])
 def test(values):
-    """run all tests, or some; all: firmware, models and IceC once more with sanitizers"""
+    """run all tests, those of a folder, or those that options choose
+
+    All of them are the tests of the build folder, then those of firmware, models and IceC once more
+    with sanitizers. With a folder, a name or a label only the programs of these are built."""
     build = BuildFolder(values.build, values).prepare(tests=True)
     some, tests, seed = values.folder or values.name or values.label, at_once(values), {
         "SEED": values.seed, "FRESH": "1" if values.fresh else ""}
@@ -71,7 +74,9 @@ def test(values):
          brief="regress --block bus", examples=[
              "regress --changed", "regress --name Burst --seed random --repeat 20"])
 def regress(values):
-    """run the regression, write build/regress/report.html"""
+    """run tests with history, causes and waveforms of failures, and a page
+
+    The page is build/regress/report.html. What a test needs is built before."""
     build = configured(values, "regress", tests=True)
     switches = [
         f"--{word}" for word, on in (("changed", values.changed), ("rerun-failed", values.failed),
@@ -102,7 +107,7 @@ def last_good(test):
          make="bisect", brief="bisect test_fifo.Fifo.Wraps --good HEAD~3 --list", examples=[
              "bisect test_fifo.Fifo.Wraps --good v1"])
 def bisect(values):
-    """find the commit since which a test fails, in a checkout of its own
+    """find the commit since which a test fails, in a separate checkout
 
     Commits that do not build, or lack the test, are passed over. Exit status 0: found, and named in
     the last line; 1: not found;
@@ -168,10 +173,10 @@ def search(program, values, good, bad, tree):
          brief="nightly --steps kept random --nightly 1 --name ^tree[.]pages", examples=[
              "nightly", "nightly --steps kept check-mutants"])
 def nightly(values):
-    """what a timer runs: seeds that have failed, fresh seeds, ZeroC's own suites, the long form of
-    every command
+    """run the nightly suite: known failing seeds, new seeds, long forms
 
-    Writes a table of the steps, build/nightly.md."""
+    The last steps are ZeroC's test suites and the long form of every command. Writes a table of the
+    steps, build/nightly.md."""
     build, tests = BuildFolder(values.build, values), at_once(values)
     # COMPARE_MS: test_quiet compares a second; HOSTILE: packets of test_link.
     long = {"FRESH": "1", "COMPARE_MS": "1000", "HOSTILE": "10000000"}

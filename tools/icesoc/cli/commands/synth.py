@@ -10,9 +10,9 @@ from icesoc.cli.command import DEFAULTS, GROUPS, command
 from icesoc.cli.options import BUILD, CORE_FOLDERS, FILE, FOLDER, JOBS, TEXT, WORDS, Option
 from icesoc.cli.runner import Stop, commit, lock, logged, output, run, tool, warn
 
-GROUPS["synth"] = "utilisation of the chip"
+GROUPS["synth"] = "synthesis: LUTs, flip-flops, clock"
 DEFAULTS["synth"] = "synth report"
-GROUPS["contract"] = "registers of cores"
+GROUPS["contract"] = "registers: changes, import of SystemRDL"
 SHOWN = 10  # tests in a line of a pull request
 DESIGN = Option("design", WORDS,
                 "these designs only, such as modem, table1 or soc; of the others what is known")

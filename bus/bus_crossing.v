@@ -32,7 +32,8 @@ module bus_crossing #(
     // ---- clk_i
     reg       owes;     // the core has not answered the last request
     reg       asked;    // that request belongs to the access under way
-    reg       answered; // a clock after the answer: an interrupt that the access has ended is low by now
+    // a clock after the answer: an interrupt that the access has ended is low by now
+    reg       answered;
     reg       deaf;     // the last access was given up
     reg [7:0] patience;
     wire      handed, irq, error;
@@ -79,14 +80,17 @@ module bus_crossing #(
     wire [36:0] request_kept;
     wire [3:0]  pending;
     cdc_bus #(.WIDTH(37)) u_request (
-        .src_clk_i(clk_i), .src_valid_i(ask), .src_data_i({bus_write_i, bus_addr_i, bus_wdata_i}), .src_data_o(request_kept),
-        .dst_clk_i(core_clk_i), .dst_valid_o(begins), .dst_data_o({core_write_o, core_addr_o, core_wdata_o}),
+        .src_clk_i(clk_i), .src_valid_i(ask), .src_data_i({bus_write_i, bus_addr_i, bus_wdata_i}),
+        .src_data_o(request_kept),
+        .dst_clk_i(core_clk_i), .dst_valid_o(begins),
+        .dst_data_o({core_write_o, core_addr_o, core_wdata_o}),
         .pending_sync_o(pending[0]), .pending_async_o(pending[1]));
     cdc_pulse u_handed (
         .src_clk_i(core_clk_i),
         .src_valid_i(ended), .dst_clk_i(clk_i), .dst_valid_o(handed),
         .pending_sync_o(pending[2]), .pending_async_o(pending[3]));
-    cdc_copy #(.WIDTH(33)) u_answer (.clk_i(clk_i), .bus_async_i(answer), .bus_sync_o({error, rdata}));
+    cdc_copy #(.WIDTH(33))
+        u_answer (.clk_i(clk_i), .bus_async_i(answer), .bus_sync_o({error, rdata}));
     cdc_bit u_irq (.clk_i(clk_i), .bit_async_i(core_irq), .bit_sync_o(irq));
     reg rst; // a flip-flop's output, as what resets without a clock must be
     initial rst = 1'b1;
@@ -96,9 +100,9 @@ module bus_crossing #(
 `endif
 
 `ifdef FORMAL
-    // The slot never hangs the bus, whatever the core's clock does. In place of the core's side, answers
-    // come at any time after their request, or never. The proof of cdc_bus has that a request and an
-    // answer arrive once and whole.
+    // The slot never hangs the bus, whatever the core's clock does. In place of the core's side,
+    // answers come at any time after their request, or never. The proof of cdc_bus has that a
+    // request and an answer arrive once and whole.
     (* anyseq *) reg free_handed, free_irq, free_error;
     (* anyseq *) reg [31:0] free_rdata;
     assign {handed, irq, error, rdata} = {free_handed, free_irq, free_error, free_rdata};
@@ -125,7 +129,8 @@ module bus_crossing #(
         if (!rst_i) begin
             assert (patience + used == TIMEOUT);
             assert (!ask || !owes);                          // one request at a time
-            assert (!asked || owes || answered);             // a waiting access has a request without an answer
+            // a waiting access has a request without an answer
+            assert (!asked || owes || answered);
             assert (!answered || !owes);
             // Each access that succeeds has an answer of its own, to its own request.
             assert (!(bus_valid_i && bus_ready_o && !bus_error_o) || asked);

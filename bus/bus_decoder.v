@@ -2,9 +2,10 @@
 //
 // bus_decoder: one master of the register bus, SLOTS slots of 16 words (docs/bus.md).
 //
-// The master shows address and direction a clock before valid, so they are decoded into registers: no path leads
-// from the master's address through a slot. Each slot has a word address of its own, 0 while it is not selected: one
-// for all would have hundreds of ends. Slots above SLOTS-1 answer at once with error and data 0.
+// The master shows address and direction a clock before valid, so they are decoded into registers:
+// no path leads from the master's address through a slot. Each slot has a word address of its own,
+// 0 while it is not selected: one for all would have hundreds of ends. Slots above SLOTS-1 answer
+// at once with error and data 0.
 
 `default_nettype none
 
@@ -59,7 +60,8 @@ module bus_decoder #(
         end else begin : g_many
             localparam GROUPS = (SLOTS + 7) / 8;
             reg [2:0]            index;
-            reg [GROUPS-1:0]     group; // the selected group; a single one with room for zeros is always selected
+            // the selected group; a single one with room for zeros is always selected
+            reg [GROUPS-1:0]     group;
             reg [256*GROUPS-1:0] left;  // each group is halved by each bit of the number
             reg [31:0]           rdata;
             integer g, b, i;
@@ -107,7 +109,8 @@ module bus_decoder #(
         for (k = 0; k < SLOTS; k = k + 1)
             if (one[k])
                 assert ({bus_ready_o, bus_error_o, bus_rdata_o, slot_addr_o[4*k +: 4]} ==
-                        {slot_ready_i[k], slot_error_i[k], slot_rdata_i[32*k +: 32], bus_addr_i[3:0]});
+                        {slot_ready_i[k], slot_error_i[k], slot_rdata_i[32*k +: 32],
+                         bus_addr_i[3:0]});
             else
                 assert (slot_addr_o[4*k +: 4] == 4'd0);
         assert (slot_valid_o == one);
@@ -122,6 +125,7 @@ module bus_decoder #(
 `ifdef COVER_POINTS
     no_such_slot: cover property (@(posedge clk_i) bus_valid_i && !mapped);
     slot_waits: cover property (@(posedge clk_i) bus_valid_i && !bus_ready_o);
-    slot_refuses: cover property (@(posedge clk_i) bus_valid_i && bus_ready_o && mapped && bus_error_o);
+    slot_refuses: cover property (@(posedge clk_i) bus_valid_i && bus_ready_o && mapped &&
+                                  bus_error_o);
 `endif
 endmodule

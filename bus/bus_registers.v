@@ -9,8 +9,8 @@
 //   RO   reads value_i
 //   W1C  bits set by value_i stay until 1 is written to them; one set while it is cleared stays set
 //   WS   a write acts through strobe_o and wdata_o; reads give 0, nothing is stored
-// strobe_o tells of each write to a word in the cycle of the write, when wdata_o is valid and value_o
-// still old. Word w is at bit 32*(w-3) of the vectors, and at bit w-3 of strobe_o.
+// strobe_o tells of each write to a word in the cycle of the write, when wdata_o is valid and
+// value_o still old. Word w is at bit 32*(w-3) of the vectors, and at bit w-3 of strobe_o.
 
 `default_nettype none
 
@@ -74,7 +74,8 @@ module bus_registers #(
                 end
             end else begin : g_plain
                 assign value_o[LSB +: 32] = 32'd0;
-                assign shown[LSB +: 32]   = RO[w] ? value_i[LSB +: 32] & (32'hFFFFFFFF >> (6'd32 - WIDTH)) : 32'd0;
+                assign shown[LSB +: 32]   = RO[w] ?
+                    value_i[LSB +: 32] & (32'hFFFFFFFF >> (6'd32 - WIDTH)) : 32'd0;
             end
         end
     endgenerate
@@ -106,19 +107,24 @@ module bus_registers #(
                 if (RW[f])
                     assert (now == ($past(strobe_o[f-3]) ? $past(wdata_o) & bits : $past(now)));
                 if (W1C[f])
-                    assert (now == (bits & (($past(now) & ~($past(strobe_o[f-3]) ? $past(wdata_o) : 32'd0))
+                    assert (now ==
+                            (bits & (($past(now) & ~($past(strobe_o[f-3]) ? $past(wdata_o) : 32'd0))
                                             | $past(value_i[LSB +: 32]))));
             end
             always @* begin
-                assert (strobe_o[f-3] == (bus_valid_i && bus_write_i && bus_addr_i == f && (RW[f] || W1C[f] || WS[f])));
+                assert (strobe_o[f-3] ==
+                        (bus_valid_i && bus_write_i && bus_addr_i == f &&
+                         (RW[f] || W1C[f] || WS[f])));
                 if (bus_valid_i && !bus_write_i && bus_addr_i == f)
-                    assert (bus_rdata_o == (RW[f] || W1C[f] ? now : RO[f] ? value_i[LSB +: 32] & bits : 32'd0));
+                    assert (bus_rdata_o ==
+                            (RW[f] || W1C[f] ? now : RO[f] ? value_i[LSB +: 32] & bits : 32'd0));
             end
         end
     endgenerate
     // EVENT and MASK.
     reg  [EVENTS-1:0] seen, masked;
-    wire [EVENTS-1:0] cleared = {EVENTS{bus_valid_i && bus_write_i && bus_addr_i == 4'd1}} & bus_wdata_i[EVENTS-1:0];
+    wire [EVENTS-1:0] cleared = {EVENTS{bus_valid_i && bus_write_i && bus_addr_i == 4'd1}} &
+        bus_wdata_i[EVENTS-1:0];
     always @(posedge clk_i) begin
         seen <= rst_i ? {EVENTS{1'b0}} : (seen & ~cleared) | event_i;
         if (rst_i)

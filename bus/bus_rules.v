@@ -2,8 +2,8 @@
 //
 // bus_rules: the contract of docs/bus.md as properties, for either side of the register bus.
 //
-// Instanced under `ifdef FORMAL beside the ports of a slave (default) or of a master: the other side's
-// rules are assumed, this side's are asserted. A block's own properties go beside it.
+// Instanced under `ifdef FORMAL beside the ports of a slave (default) or of a master: the other
+// side's rules are assumed, this side's are asserted. A block's own properties go beside it.
 
 `default_nettype none
 
@@ -48,7 +48,8 @@ module bus_rules #(
 
     // Master: a waiting transfer does not change; it is withdrawn only when patience is over.
     wire stable    = !waiting || !valid_i
-                     || (write_i == write_was && addr_i == addr_was && (!write_i || wdata_i == wdata_was));
+                     || (write_i == write_was && addr_i == addr_was &&
+                         (!write_i || wdata_i == wdata_was));
     // The address and the direction precede valid by a clock: the decoder relies on it.
     wire early     = !valid_i || !past || (addr_i == addr_was && write_i == write_was);
     // Valid is low between two transfers: a write's effect may take a clock.
@@ -81,6 +82,7 @@ module bus_rules #(
     endgenerate
     wire unused = &{1'b0, past, early, paused, late, 1'b0};
 `else
-    wire unused = &{1'b0, clk_i, rst_i, valid_i, write_i, addr_i, wdata_i, ready_i, rdata_i, error_i, 1'b0};
+    wire unused =
+        &{1'b0, clk_i, rst_i, valid_i, write_i, addr_i, wdata_i, ready_i, rdata_i, error_i, 1'b0};
 `endif
 endmodule

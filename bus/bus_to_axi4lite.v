@@ -3,8 +3,8 @@
 // bus_to_axi4lite: a slot that is an AXI4-Lite master of 32 bits (ARM IHI 0022, chapter B1).
 // Words and events: bus_window.v.
 //
-// One transfer at a time. AXI has no way to give a transfer up: after a time-out the handshakes go on
-// until the late response has come and is thrown away; accesses until then wait, and time out.
+// One transfer at a time. AXI has no way to give a transfer up: after a time-out the handshakes go
+// on until the late response has come and is thrown away; accesses until then wait, and time out.
 
 `default_nettype none
 
@@ -97,9 +97,12 @@ module bus_to_axi4lite #(
     wire write_open = aw_taken && w_taken; // address and data taken, no response yet
     always @(posedge clk_i) begin
         past     <= past || rst_i;
-        aw_taken <= !rst_i && ((aw_taken && !(axi_bvalid_i && axi_bready_o)) || (axi_awvalid_o && axi_awready_i));
-        w_taken  <= !rst_i && ((w_taken && !(axi_bvalid_i && axi_bready_o)) || (axi_wvalid_o && axi_wready_i));
-        ar_taken <= !rst_i && ((ar_taken && !(axi_rvalid_i && axi_rready_o)) || (axi_arvalid_o && axi_arready_i));
+        aw_taken <= !rst_i &&
+            ((aw_taken && !(axi_bvalid_i && axi_bready_o)) || (axi_awvalid_o && axi_awready_i));
+        w_taken  <= !rst_i &&
+            ((w_taken && !(axi_bvalid_i && axi_bready_o)) || (axi_wvalid_o && axi_wready_i));
+        ar_taken <= !rst_i &&
+            ((ar_taken && !(axi_rvalid_i && axi_rready_o)) || (axi_arvalid_o && axi_arready_i));
     end
 `ifdef FORMAL
     always @* if (!rst_i) begin
@@ -128,7 +131,8 @@ module bus_to_axi4lite #(
             if ($past(axi_bvalid_i && !axi_bready_o))
                 assume (axi_bvalid_i && axi_bresp_i == $past(axi_bresp_i));
             if ($past(axi_rvalid_i && !axi_rready_o))
-                assume (axi_rvalid_i && axi_rdata_i == $past(axi_rdata_i) && axi_rresp_i == $past(axi_rresp_i));
+                assume (axi_rvalid_i && axi_rdata_i == $past(axi_rdata_i) &&
+                        axi_rresp_i == $past(axi_rresp_i));
         end
     end
 `endif
@@ -144,7 +148,8 @@ module bus_to_axi4lite #(
     always @* begin // whole words of data
         assert (axi_wstrb_o == 4'hF && {axi_awprot_o, axi_arprot_o} == 6'd0);
         assert ({axi_awaddr_o[1:0], axi_araddr_o[1:0]} == 4'd0);
-        if (!rst_i && bus_valid_i && bus_addr_i[3] && busy && open && (bus_write_i ? axi_bvalid_i : axi_rvalid_i))
+        if (!rst_i && bus_valid_i && bus_addr_i[3] && busy && open &&
+            (bus_write_i ? axi_bvalid_i : axi_rvalid_i))
             assert (bus_ready_o); // the first response ends the access
     end
     reg was_late = 1'b0; // a late response has been thrown away

@@ -64,12 +64,14 @@ module bus_to_wishbone #(
     // those of the standard's rules (B4, 2010). The slave's side is assumed.
     reg past = 1'b0;
     reg outstanding = 1'b0; // pipelined: a strobe was taken and not answered
-    wire abort  = !bus_valid_i || bus_ready_o; // the cycle may end without an answer in the next clock
+    // the cycle may end without an answer in the next clock
+    wire abort  = !bus_valid_i || bus_ready_o;
     wire answer = wb_ack_i || wb_err_i || wb_rty_i;
     wire taken  = wb_stb_o && (PIPELINED == 0 ? answer : !wb_stall_i);
     always @(posedge clk_i) begin
         past <= past || rst_i;
-        outstanding <= PIPELINED != 0 && !rst_i && wb_cyc_o && !answer && !abort && (outstanding || taken);
+        outstanding <= PIPELINED != 0 && !rst_i && wb_cyc_o && !answer && !abort &&
+            (outstanding || taken);
     end
 
 `ifdef FORMAL
@@ -115,12 +117,14 @@ module bus_to_wishbone #(
     end
     reg retry = 1'b0;
     always @(posedge clk_i)
-        retry <= !rst_i && wb_cyc_o && wb_rty_i && !wb_ack_i && !wb_err_i && !(bus_valid_i && bus_ready_o);
+        retry <= !rst_i && wb_cyc_o && wb_rty_i && !wb_ack_i && !wb_err_i &&
+            !(bus_valid_i && bus_ready_o);
     always @* if (!rst_i) begin
         assert (!(retry && wb_cyc_o)); // a clock without CYC follows RTY
         assert (!accepted || (busy && !pause));
         assert (accepted == outstanding);
-        cover (bus_valid_i && bus_ready_o && !bus_error_o && bus_addr_i[3] && accepted == (PIPELINED != 0));
+        cover (bus_valid_i && bus_ready_o && !bus_error_o && bus_addr_i[3] &&
+               accepted == (PIPELINED != 0));
         cover (bus_valid_i && bus_ready_o && wb_err_i && wb_cyc_o);
         cover (pause);
     end

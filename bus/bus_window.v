@@ -4,8 +4,8 @@
 //
 //   0..2  ID, EVENT, MASK (bus_wrapper); EVENT bit 0: the core's interrupt line was high,
 //         bit 1: TIMEOUT, the core did not answer
-//   3     PAGE rw: byte address in the core of word 8, a multiple of 32; 0 if the core has eight words or less, which
-//         then repeat
+//   3     PAGE rw: byte address in the core of word 8, a multiple of 32; 0 if the core has
+//         eight words or less, which then repeat
 //   8..15 the core's words at PAGE + 0, 4, .. 28
 //
 // A core that does not answer within TIMEOUT clocks, or answers with an error, ends the access with
@@ -124,7 +124,9 @@ module bus_window #(
         if (past && !rst_i && !$past(rst_i) && busy_o && !$past(busy_o))
             assert ($past(idle_i));
         if (past && !rst_i && !$past(rst_i) && ADDR_WIDTH > 5)
-            assert (page == ($past(bus_valid_i && bus_write_i && bus_addr_i == PAGE) ? $past(bus_wdata_i[WIDTH-1:5]) : $past(page)));
+            assert (page ==
+                    ($past(bus_valid_i && bus_write_i && bus_addr_i == PAGE) ?
+                     $past(bus_wdata_i[WIDTH-1:5]) : $past(page)));
         if (past && $past(rst_i))
             assert (!busy_o && page == 0);
         cover (past && !rst_i && $past(given_up) && irq_o);
@@ -135,8 +137,11 @@ module bus_window #(
         assert (patience + used == TIMEOUT);
         if (bus_valid_i && !bus_write_i && bus_addr_i == PAGE)
             assert (bus_rdata_o == page_value);
-        assert (!busy_o || (write_o == bus_write_i && addr_o == {page, bus_addr_i[2:0], 2'b00} && wdata_o == bus_wdata_i));
-        // It ends by the core's answer, which may be an error, or by the time-out, which is an event.
+        assert (!busy_o ||
+                (write_o == bus_write_i && addr_o == {page, bus_addr_i[2:0], 2'b00} &&
+                 wdata_o == bus_wdata_i));
+        // It ends by the core's answer, which may be an error, or by the time-out, which is an
+        // event.
         if (wanted) begin
             assert (bus_ready_o == (answered || used == TIMEOUT));
             assert (bus_error_o == !(answered && !error_i));

@@ -16,7 +16,8 @@ module bus_wrapper #(
     parameter [31:0] ID_VALUE = 32'd0,
     parameter [15:0] WORDS    = 16'hFFF8, // bit w: word w exists (bits 2..0 are ignored)
     parameter        EVENTS   = 1,        // 1..32
-    parameter        ZERO     = 0         // 1: reg_rdata_i is 0 for words 0..2 (word 0: or the ID, with ID_VALUE 0): not gated
+    // 1: reg_rdata_i is 0 for words 0..2 (word 0: or the ID, with ID_VALUE 0): not gated
+    parameter        ZERO     = 0
 ) (
     `include "slot_ports.vh"
     // the block's registers
@@ -80,23 +81,32 @@ module bus_wrapper #(
         past <= 1'b1;
         if (past && !$past(rst_i)) begin
             // No event is lost, whatever is cleared at the same time; the mask follows writes only.
-            assert (sticky == (($past(sticky) & ~($past(writes && bus_addr_i == EVENT) ? $past(bus_wdata_i[EVENTS-1:0]) : {EVENTS{1'b0}}))
+            assert (sticky ==
+                    (($past(sticky) &
+                      ~($past(writes && bus_addr_i == EVENT) ? $past(bus_wdata_i[EVENTS-1:0]) :
+                        {EVENTS{1'b0}}))
                                | $past(event_i)));
-            assert (mask == ($past(writes && bus_addr_i == MASK) ? $past(bus_wdata_i[EVENTS-1:0]) : $past(mask)));
+            assert (mask ==
+                    ($past(writes && bus_addr_i == MASK) ? $past(bus_wdata_i[EVENTS-1:0]) :
+                     $past(mask)));
         end
         if (past && $past(rst_i))
             assert ({sticky, mask} == {2*EVENTS{1'b0}});
         cover (past && !rst_i && irq_o && write && bus_addr_i == EVENT && |(event_i & clear));
     end
     always @* begin
-        // Another block's register is never strobed by a word that does not exist: that is an error.
-        assert ({reg_write_o, reg_read_o} == ({writes, bus_valid_i && !bus_write_i} & {2{bus_addr_i > MASK && !bus_error_o}}));
+        // Another block's register is never strobed by a word that does not exist: that is an
+        // error.
+        assert ({reg_write_o, reg_read_o} ==
+                ({writes, bus_valid_i && !bus_write_i} & {2{bus_addr_i > MASK && !bus_error_o}}));
         assert (bus_error_o == (bus_addr_i > MASK && !WORDS[bus_addr_i]));
         // A read gives the wrapper's word, the block's, or 0.
         if (bus_addr_i > MASK)
             assert (bus_rdata_o == (exists ? reg_rdata_i : 32'd0));
         else if (ZERO == 0)
-            assert (bus_rdata_o == (bus_addr_i == ID ? ID_VALUE : {{32-EVENTS{1'b0}}, bus_addr_i == EVENT ? sticky : mask}));
+            assert (bus_rdata_o ==
+                    (bus_addr_i == ID ? ID_VALUE :
+                     {{32-EVENTS{1'b0}}, bus_addr_i == EVENT ? sticky : mask}));
         assert (bus_ready_o);
         assert (irq_o == |(sticky & mask));
     end

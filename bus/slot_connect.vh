@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// slot_connect: connections of slot_ports.vh to a part that has these ports, too, before its other ones.
+// slot_connect: connections of slot_ports.vh to a part that has these ports, too, before its other
+// ones.
 
         .clk_i(clk_i), .rst_i(rst_i),
         .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),

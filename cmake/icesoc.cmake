@@ -182,7 +182,8 @@ macro(icesoc_verilate_observed)
     list(APPEND definitions ICESOC_COVERAGE)
     if(A_FAST)
       file(WRITE ${dir}.vlt
-        "`verilator_config\ncoverage_off -file \"*\"\ncoverage_on -file \"*/soc.v\"\n")
+        "`verilator_config\ncoverage_off -file \"*\"\ncoverage_on -file \"*/soc.v\"\n"
+        "coverage_on -file \"*/platform.v\"\n")
       list(APPEND flags ${dir}.vlt)
     endif()
   endif()

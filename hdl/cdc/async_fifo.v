@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// async_fifo: carries words from one clock to another, whatever their ratio and phase; either may stand still.
+// async_fifo: carries words from one clock to another, whatever their ratio and phase; either may
+// stand still.
 //
-// Each side sends the other its pointer, in Gray code, from flip-flops through two more: `_async` is
-// what arrives, `_meta` the first flip-flop, `_sync` the second, which alone may be looked at.
+// Each side sends the other its pointer, in Gray code, from flip-flops through two more: `_async`
+// is what arrives, `_meta` the first flip-flop, `_sync` the second, which alone may be looked at.
 //
-// There is no reset, because the resets of two clocks come at different times. Pointers begin at 0 with the
-// configuration; a reader that wants the FIFO empty takes what is in it.
+// There is no reset, because the resets of two clocks come at different times. Pointers begin at 0
+// with the configuration; a reader that wants the FIFO empty takes what is in it.
 
 `default_nettype none
 
@@ -27,7 +28,8 @@ module async_fifo #(
 );
     reg [WIDTH-1:0] words [0:(1<<LOG2)-1];
     reg [LOG2:0]  written, taken;       // pointers, one bit wider than the address
-    reg [LOG2:0]  to_reader, to_writer; // the same in Gray code, in the clock of the side that sends them
+    // the same in Gray code, in the clock of the side that sends them
+    reg [LOG2:0]  to_reader, to_writer;
     wire [LOG2:0] to_reader_async, to_writer_async;
     wire [LOG2:0] to_reader_sync, to_writer_sync;
     cdc_bit #(.WIDTH(LOG2+1), .EXACT(1)) u_to_reader (
@@ -39,7 +41,8 @@ module async_fifo #(
 
     // ---- writer
     wire [LOG2:0] next_written = written + 1'b1;
-    // Full is one whole turn ahead: in Gray code the two upper bits differ and the others are equal.
+    // Full is one whole turn ahead: in Gray code the two upper bits differ and the others are
+    // equal.
     assign full_o  = to_reader == {~to_writer_sync[LOG2:LOG2-1], to_writer_sync[LOG2-2:0]};
     always @(posedge write_clk_i)
         if (push_i) begin
@@ -60,9 +63,11 @@ module async_fifo #(
 
 `ifdef VERILATOR
     cdc_skew #(.WIDTH(LOG2+1)) u_skew_to_reader (
-        .src_clk_i(write_clk_i), .bits_i(to_reader), .dst_clk_i(read_clk_i), .bits_o(to_reader_async));
+        .src_clk_i(write_clk_i), .bits_i(to_reader), .dst_clk_i(read_clk_i),
+        .bits_o(to_reader_async));
     cdc_skew #(.WIDTH(LOG2+1)) u_skew_to_writer (
-        .src_clk_i(read_clk_i), .bits_i(to_writer), .dst_clk_i(write_clk_i), .bits_o(to_writer_async));
+        .src_clk_i(read_clk_i), .bits_i(to_writer), .dst_clk_i(write_clk_i),
+        .bits_o(to_writer_async));
 `elsif FORMAL // below
 `else
     assign to_reader_async = to_reader;
@@ -71,8 +76,8 @@ module async_fifo #(
 
 `ifdef FORMAL
     // Words leave in order and unchanged. Time goes in steps, each with an edge of either clock, of
-    // both or of none. A bit that changed in the step before the other clock's edge may arrive old or
-    // new, each bit by itself.
+    // both or of none. A bit that changed in the step before the other clock's edge may arrive old
+    // or new, each bit by itself.
     (* hierconn, init = 8'd0 *) wire [LOG2:0] \u_to_reader.bit_meta , \u_to_writer.bit_meta ;
 
     (* gclk *) wire step;
@@ -107,7 +112,8 @@ module async_fifo #(
         assume (!(push_i && full_o));
         assume (!(pop_i && empty_o));
         assert (to_reader == (written ^ (written >> 1)) && to_writer == (taken ^ (taken >> 1)));
-        // The FIFO never holds more words than fit; each side sees the other's pointer late, never early.
+        // The FIFO never holds more words than fit; each side sees the other's pointer late, never
+        // early.
         assert (count <= DEPTH && held_seen <= DEPTH);
         assert (full_o == (held_seen == DEPTH));
         assert (taken - t1 <= taken - t2 && taken - t2 <= held_seen);

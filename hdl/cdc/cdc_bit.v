@@ -5,24 +5,27 @@
 // Each bit arrives by itself, one to three clocks late; a level is seen for certain if it lasts for
 // two clocks. A bus goes through it only in Gray code, or as independent bits. With TOGETHER the
 // bits depend on each other: routing holds their skew below the time that they rest (docs/fsmc.md).
-// There is no reset: the output is INITIAL until two clocks have come. Constraint: at most a period of clk_i to bit_meta
-// (FROM:TO), and the whole period from bit_meta to bit_sync.
-// In proofs, and in simulation with +cdc_random, bit_meta may take the input of a clock ago:
-// metastability and routing can do no more.
+// There is no reset: the output is INITIAL until two clocks have come. Constraint: at most a period
+// of clk_i to bit_meta (FROM:TO), and the whole period from bit_meta to bit_sync. In proofs, and in
+// simulation with +cdc_random, bit_meta may take the input of a clock ago: metastability and
+// routing can do no more.
 
 `default_nettype none
 
 module cdc_bit #(
     parameter             WIDTH    = 1,
-    parameter             TOGETHER = 0, // n: all bits are late together, if one of the n upper ones moves; the others follow clk_i
-    parameter             EXACT    = 0, // 1: no bit is late here; cdc_skew before it makes bits late
+    // n: all bits are late together, if one of the n upper ones moves; the others follow clk_i
+    parameter             TOGETHER = 0,
+    // 1: no bit is late here; cdc_skew before it makes bits late
+    parameter             EXACT    = 0,
     parameter [WIDTH-1:0] INITIAL  = 0
 ) (
     input  wire             clk_i,
     input  wire [WIDTH-1:0] bit_async_i,
     output wire [WIDTH-1:0] bit_sync_o
 );
-    (* ASYNC_REG = "TRUE", SHREG_EXTRACT = "NO", KEEP = "TRUE" *) reg [WIDTH-1:0] bit_meta, bit_sync;
+    (* ASYNC_REG = "TRUE", SHREG_EXTRACT = "NO", KEEP = "TRUE" *)
+    reg [WIDTH-1:0] bit_meta, bit_sync;
     initial {bit_meta, bit_sync} = {2{INITIAL}};
     assign bit_sync_o = bit_sync;
     always @(posedge clk_i)

@@ -2,9 +2,10 @@
 //
 // cdc_bus: hands each word of src_clk_i over once in dst_clk_i, two to three clocks later.
 //
-// A word stays in the source's register; a copy of it is taken in the clock in which the event's second
-// flip-flop turns, so the next word may come two dst_clk_i clocks and the paths' skew later, without a handshake.
-// There is no reset. Constraint: a dst_clk_i period from src_data's register to the copy, and that of cdc_bit.
+// A word stays in the source's register; a copy of it is taken in the clock in which the event's
+// second flip-flop turns, so the next word may come two dst_clk_i clocks and the paths' skew later,
+// without a handshake. There is no reset. Constraint: a dst_clk_i period from src_data's register
+// to the copy, and that of cdc_bit.
 
 `default_nettype none
 
@@ -17,7 +18,8 @@ module cdc_bus #(
     output reg  [WIDTH-1:0] src_data_o,     // the word taken last, in src_clk_i
     input  wire             dst_clk_i,
     output wire             dst_valid_o,    // one cycle
-    output wire [WIDTH-1:0] dst_data_o,     // valid from dst_valid_o until src_clk_i takes the next word
+    // valid from dst_valid_o until src_clk_i takes the next word
+    output wire [WIDTH-1:0] dst_data_o,
     output wire             pending_sync_o, // pending_async_o as dst_clk_i sees it
     output wire             pending_async_o // a word has not been handed over yet
 );
@@ -26,20 +28,23 @@ module cdc_bus #(
             src_data_o <= src_data_i;
 
     cdc_pulse u_cdc_pulse (
-        .src_clk_i(src_clk_i), .src_valid_i(src_valid_i), .dst_clk_i(dst_clk_i), .dst_valid_o(dst_valid_o),
+        .src_clk_i(src_clk_i), .src_valid_i(src_valid_i), .dst_clk_i(dst_clk_i),
+        .dst_valid_o(dst_valid_o),
         .pending_sync_o(pending_sync_o), .pending_async_o(pending_async_o)
     );
-    cdc_copy #(.WIDTH(WIDTH)) u_cdc_copy (.clk_i(dst_clk_i), .bus_async_i(src_data_o), .bus_sync_o(dst_data_o));
+    cdc_copy #(.WIDTH(WIDTH))
+        u_cdc_copy (.clk_i(dst_clk_i), .bus_async_i(src_data_o), .bus_sync_o(dst_data_o));
 
 `ifdef FORMAL
-    // Each word is handed over once, in order, unchanged. Time goes in steps; either clock and the data
-    // may change in each, so every ratio and phase is covered. An input that changes together with an
-    // edge is seen as it was before it; cdc_bit may see it a clock later.
+    // Each word is handed over once, in order, unchanged. Time goes in steps; either clock and the
+    // data may change in each, so every ratio and phase is covered. An input that changes together
+    // with an edge is seen as it was before it; cdc_bit may see it a clock later.
     (* gclk *) wire step;
     reg past = 1'b0, was_src = 1'b1, was_clk = 1'b1, was_valid = 1'b0, known = 1'b0;
     reg [WIDTH-1:0] was_data = 0;
     reg was_given = 1'b0, gave = 1'b0;
-    reg [WIDTH-1:0] older = 0, newer = 0; // words that have not been handed over; with none, `newer` is the last one
+    // words that have not been handed over; with none, `newer` is the last one
+    reg [WIDTH-1:0] older = 0, newer = 0;
     reg [1:0] count = 2'd0;
     reg [2:0] clocks = 3'd3;             // edges of dst_clk_i since the last word's edge
     wire rise        = past && src_clk_i && !was_src;
@@ -66,7 +71,8 @@ module cdc_bus #(
         end else if (edge_of_clk && clocks != 3'd7) begin
             clocks <= clocks + 3'd1;
         end
-        // Two edges of src_clk_i that hand over are at least three edges of dst_clk_i apart; ringing is closer.
+        // Two edges of src_clk_i that hand over are at least three edges of dst_clk_i apart;
+        // ringing is closer.
         assume (!new_write || clocks >= 3'd3);
     end
     wire [1:0] left  = count - {1'b0, handed}; // words left in this step

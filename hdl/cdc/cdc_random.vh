@@ -3,8 +3,9 @@
 // cdc_random: draws which bits a flip-flop takes with their old value, because they moved near its
 // clock's edge; only for simulation.
 //
-// It is included in the body of a module with WIDTH and TOGETHER. No bit is late unless the run is given +cdc_random
-// (testbench/common/observer.h), and only bits that have moved are drawn: a chip at rest stays at rest.
+// It is included in the body of a module with WIDTH and TOGETHER. No bit is late unless the run is
+// given +cdc_random (testbench/common/observer.h), and only bits that have moved are drawn: a chip
+// at rest stays at rest.
 
     reg uncertain;
     initial uncertain = $test$plusargs("cdc_random") != 0;

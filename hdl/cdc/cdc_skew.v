@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// cdc_skew: models how bits that step with src_clk_i arrive in dst_clk_i; only for simulation (cdc_random.vh).
+// cdc_skew: models how bits that step with src_clk_i arrive in dst_clk_i; only for simulation
+// (cdc_random.vh).
 //
 // A bit that the last edge of src_clk_i has changed, since the last one of dst_clk_i, arrives old
 // or new, each bit independently. So a count in Gray code arrives as one of two values; a binary

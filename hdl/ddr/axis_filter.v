@@ -48,7 +48,8 @@ module axis_filter #(
 
     reg         waiting; // for transfers of an operation before, which was given up
     reg         writing; // the output goes to memory
-    reg         closing, closed; // its last word is taken: the burst is filled; waits until it is in memory
+    // its last word is taken: the burst is filled; waits until it is in memory
+    reg         closing, closed;
     reg         empty, over; // refused
     reg  [BYTE_BITS-1:0] left; // bytes to read that the core has not got
     reg  [BYTE_BITS-1:0] bytes; // written; while waiting, those of the operation
@@ -56,7 +57,8 @@ module axis_filter #(
     wire [63:0] word;
     wire        go        = waiting && read_idle && write_idle && !core_rst_i;
     wire        word_last = left <= {{(BYTE_BITS-4){1'b0}}, 4'd8};
-    wire [7:0]  word_keep = word_last && left[2:0] != 3'd0 ? 8'hFF >> (4'd8 - {1'b0, left[2:0]}) : 8'hFF;
+    wire [7:0]  word_keep = word_last &&
+        left[2:0] != 3'd0 ? 8'hFF >> (4'd8 - {1'b0, left[2:0]}) : 8'hFF;
     wire        word_ready;
 
     // ---- a word from memory, beat by beat ----
@@ -160,16 +162,17 @@ module axis_filter #(
         .read_stop_i(core_rst_i), .read_valid_o(word_valid), .read_data_o(word),
         .read_take_i(word_valid && word_ready), .read_idle_o(read_idle),
         .write_start_i(go), .write_base_i(target_i[31:6]),
-        .write_valid_i(write), .write_data_i(out), .write_be_i(out_keep), .write_ready_o(write_ready),
+        .write_valid_i(write), .write_data_i(out), .write_be_i(out_keep),
+        .write_ready_o(write_ready),
         .write_flush_i(flush), .write_idle_o(write_idle)
     );
 
     wire unused = &{1'b0, shifted, kept, source_i[5:0], target_i[5:0], 1'b0};
 
 `ifdef FORMAL
-    // Words are split into beats and beats joined into words, each once and in order; the rules that
-    // npi_stream wants are kept. npi_stream, which has its own proof, is cut off: it does what that proof
-    // says, and no more is known of it.
+    // Words are split into beats and beats joined into words, each once and in order; the rules
+    // that npi_stream wants are kept. npi_stream, which has its own proof, is cut off: it does what
+    // that proof says, and no more is known of it.
     reg past = 1'b0;
     reg [3:0] f_sent;  // beats of the word that the core has
     reg [3:0] f_size;  // of the word's bytes, in beats
@@ -178,7 +181,8 @@ module axis_filter #(
     (* anyconst *) reg [3:0] f_lane;
     reg [WIDTH-1:0] f_data;
     reg [KEEP-1:0]  f_keep;
-    reg [BYTE_BITS-1:0] f_bytes = 0, f_came = 0; // the operation's; those that came, up to the number that went in
+    // the operation's; those that came, up to the number that went in
+    reg [BYTE_BITS-1:0] f_bytes = 0, f_came = 0;
     reg [WORD_BITS-1:0] f_left = 0;   // words that npi_stream still gives
     reg [WORD_BITS-1:0] f_written = 0; // words that it got in this operation
     wire [3:0] f_place = given ? 4'd0 : f_count; // place of the beat that comes
@@ -199,7 +203,8 @@ module axis_filter #(
         past    <= !f_rst;
         f_sent  <= f_rst || (word_valid && word_ready) ? 4'd0 : f_sent + {3'd0, sent};
         f_count <= f_rst ? 4'd0 : f_place + {3'd0, came};
-        f_came  <= start_i ? {BYTE_BITS{1'b0}} : f_came + (came && f_came != f_bytes ? STEP : {BYTE_BITS{1'b0}});
+        f_came  <= start_i ? {BYTE_BITS{1'b0}} :
+            f_came + (came && f_came != f_bytes ? STEP : {BYTE_BITS{1'b0}});
         if (start_i)
             f_bytes <= bytes_i;
         if (came && f_place == f_lane)
@@ -218,23 +223,29 @@ module axis_filter #(
             if ($past(word_valid && !word_ready)) // npi_stream's word stays
                 assume (word_valid && $stable(word));
             if ($past(m_axis_tvalid_o && !m_axis_tready_i))
-                assert (m_axis_tvalid_o && $stable({m_axis_tdata_o, m_axis_tkeep_o, m_axis_tlast_o}));
+                assert (m_axis_tvalid_o &&
+                        $stable({m_axis_tdata_o, m_axis_tkeep_o, m_axis_tlast_o}));
             if ($past(full && !out_ready))
                 assert (full && $stable({out, out_keep, ends}));
             if ($past(came))
                 assert (full == ($past(last) || f_count == BEATS) && ends == $past(last));
             if ($past(start_i))
-                assert (waiting == (f_bytes != 0) && !writing && (waiting ? !empty : done_o && refused_o));
+                assert (waiting == (f_bytes != 0) && !writing &&
+                        (waiting ? !empty : done_o && refused_o));
             else
-                assert (!empty && waiting == $past(waiting && !go) && writing == $past(go || (writing && !(given && ends))));
+                assert (!empty && waiting == $past(waiting && !go) &&
+                        writing == $past(go || (writing && !(given && ends))));
             // The answer ends when its burst is filled and in memory.
-            assert (closing == $past(given && ends) && (!done_o || empty || $past(closing || closed)));
-            if ($past(given && ends)) // bytes are words before the last one, and what is kept of that
+            assert (closing == $past(given && ends) &&
+                    (!done_o || empty || $past(closing || closed)));
+            // bytes are words before the last one, and what is kept of that
+            if ($past(given && ends))
                 assert (over || bytes == $past(bytes) + $past(out_bytes));
         end
     end
     always @* if (past && !f_rst) begin
-        // npi_stream's rules: a start when idle, no word with a start or a flush. It writes what has room.
+        // npi_stream's rules: a start when idle, no word with a start or a flush. It writes what
+        // has room.
         assert (!go || (read_idle && write_idle && !write && !flush));
         assert (!flush || !write);
         assert ({2'd0, waiting} + {2'd0, writing} + {2'd0, closing} + {2'd0, closed} <= 3'd1);
@@ -244,18 +255,23 @@ module axis_filter #(
         // Words as many as the bytes need; the last one keeps those that are left.
         assert (f_left == {1'b0, left[BYTE_BITS-1:3]} + |left[2:0]);
         assert (!waiting || bytes == f_bytes);
-        assert (!word_valid || (word_last == (f_left == 1) && f_size == (word_last ? left >> $clog2(KEEP) : 8 / KEEP)));
+        assert (!word_valid ||
+                (word_last == (f_left == 1) &&
+                 f_size == (word_last ? left >> $clog2(KEEP) : 8 / KEEP)));
         // Split: all beats of the word, and the word goes with the last of them.
         assert (beat == f_sent && m_axis_tvalid_o == word_valid);
         if (word_valid) begin
             assert (f_sent < f_size && word_ready == (m_axis_tready_i && f_sent + 4'd1 == f_size));
-            assert (m_axis_tdata_o == word[WIDTH*f_sent +: WIDTH] && m_axis_tkeep_o == word_keep[KEEP*f_sent +: KEEP]);
+            assert (m_axis_tdata_o == word[WIDTH*f_sent +: WIDTH] &&
+                    m_axis_tkeep_o == word_keep[KEEP*f_sent +: KEEP]);
             assert (m_axis_tlast_o == (word_last && f_sent + 4'd1 == f_size));
         end
         // Joined: each beat in its place, bytes behind the last one not kept.
-        assert ({28'd0, f_count} <= BEATS && (full ? place == 4'd0 && f_count != 4'd0 : place == f_count && place <= LAST_BEAT));
+        assert ({28'd0, f_count} <= BEATS &&
+                (full ? place == 4'd0 && f_count != 4'd0 : place == f_count && place <= LAST_BEAT));
         assert (f_lane >= f_count ? out_keep[KEEP*f_lane +: KEEP] == 0
-                                  : out[WIDTH*f_lane +: WIDTH] == f_data && out_keep[KEEP*f_lane +: KEEP] == f_keep);
+                                  : out[WIDTH*f_lane +: WIDTH] == f_data &&
+                                      out_keep[KEEP*f_lane +: KEEP] == f_keep);
         assert (s_axis_tready_o == (!full || out_ready));
         cover (sent && f_size == BEATS - 1 && m_axis_tlast_o);
         cover (came && last && f_came != f_bytes);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// mcb_backend: puts the arbiter's command stream on a 64-bit user port of the Spartan-6 MCB (UG388).
+// mcb_backend: puts the arbiter's command stream on a 64-bit user port of the Spartan-6 MCB
+// (UG388).
 //
 // The MCB's read FIFO holds 64 words and loses words that do not fit. A read therefore waits until
 // half of it, the longest burst, is not promised to others.
@@ -55,7 +56,8 @@ module mcb_backend #(
     assign rd_data_o   = mcb_rd_data_i;
     assign mcb_rd_en_o = rd_valid_o && rd_ready_i;
 
-    // `free` is the number of words in the read FIFO that are not promised, 0..64. Minus n is plus ~(n - 1).
+    // `free` is the number of words in the read FIFO that are not promised, 0..64. Minus n is plus
+    // ~(n - 1).
     reg  [6:0] free;
     wire       take = mcb_cmd_en_o && cmd_read_i;
     wire [7:0] next = {free, 1'b1} + {take ? {2'b11, ~cmd_last_i} : 7'd0, mcb_rd_en_o};
@@ -73,7 +75,8 @@ module mcb_backend #(
     always @(posedge clk_i) begin
         past <= 1'b1;
         asked <= rst_i ? 8'd0
-                       : asked + (mcb_cmd_en_o && mcb_cmd_instr_o[0] ? {2'd0, mcb_cmd_bl_o} + 8'd1 : 8'd0)
+                       : asked +
+                           (mcb_cmd_en_o && mcb_cmd_instr_o[0] ? {2'd0, mcb_cmd_bl_o} + 8'd1 : 8'd0)
                                - {7'd0, mcb_rd_en_o};
         // The MCB shows only requested words.
         assume (mcb_rd_empty_i || asked != 0);
@@ -88,8 +91,10 @@ module mcb_backend #(
             assert (mcb_wr_en_o == (wr_valid_i && wr_ready_o));
             assert (mcb_rd_en_o == (rd_valid_o && rd_ready_i));
             if (mcb_cmd_en_o)
-                assert (mcb_cmd_instr_o == {2'b00, cmd_read_i} && mcb_cmd_bl_o == {1'b0, cmd_last_i});
-            // Writes never wait for room of reads; reads wait only while more than half is promised.
+                assert (mcb_cmd_instr_o == {2'b00, cmd_read_i} &&
+                        mcb_cmd_bl_o == {1'b0, cmd_last_i});
+            // Writes never wait for room of reads; reads wait only while more than half is
+            // promised.
             if (mcb_calib_done_i && !mcb_cmd_full_i && (!cmd_read_i || asked <= 8'd32))
                 assert (cmd_ready_o);
             cover (asked == 8'd64);

@@ -37,7 +37,8 @@ module npi_arbiter #(
     output wire                rd_ready_o
 );
     generate
-        if (PORTS < 2 || PORTS > 8 || URGENT_RUN == 0 || ADDR_WIDTH < 9 || ADDR_WIDTH > 32) begin : g_refused
+        if (PORTS < 2 || PORTS > 8 || URGENT_RUN == 0 || ADDR_WIDTH < 9 ||
+            ADDR_WIDTH > 32) begin : g_refused
             // Verilog-2005 has no message as a module item: the name of an unknown module tells
             // Icarus and XST.
 `ifdef VERILATOR
@@ -156,7 +157,8 @@ module npi_arbiter #(
     assign rd_ready_o = |(back_at & back_free);
 
     // Byte enables always work, so read-modify-write needs nothing. Transfers are aligned.
-    wire unused = &{1'b0, npi_rmw_i, npi_size_i, npi_addr_i, addr[2:0], back_index[4], move_at, 1'b0};
+    wire unused =
+        &{1'b0, npi_rmw_i, npi_size_i, npi_addr_i, addr[2:0], back_index[4], move_at, 1'b0};
 
 `ifdef FORMAL
     `include "npi_arbiter_proof.vh"

@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: MIT
 //
-// npi_arbiter_proof: proves npi_arbiter as a whole, with its parts; the end of npi_arbiter, only for the prover (formal.npi_arbiter*).
+// npi_arbiter_proof: proves npi_arbiter as a whole, with its parts; the end of npi_arbiter, only
+// for the prover (formal.npi_arbiter*).
 //
 // `me` is any port that keeps the rules of docs/memory.md; the others are free and must not harm
 // it. `mark` is any accepted request (every fourth, from any on), `w_mark` any word that `me`
 // pushes, `r_mark` any word that it pops. The assertions on them therefore hold for all:
-// - commands are the accepted requests, in their order, each once, aligned; a write's after all its words;
-// - words of a write leave their own port's FIFO, in order, with the command's place in the back-end's stream;
+// - commands are the accepted requests, in their order, each once, aligned; a write's after all
+//   its words;
+// - words of a write leave their own port's FIFO, in order, with the command's place in the
+//   back-end's stream;
 // - words of a read reach their own port, in order, each with its place in its transfer;
-// - no FIFO of `me` overflows or is read empty; its flags are true; a word is there when it is needed;
-// - a request stays visible to npi_select until it is granted, so that one's proven bound on waiting holds.
+// - no FIFO of `me` overflows or is read empty; its flags are true; a word is there when it is
+//   needed;
+// - a request stays visible to npi_select until it is granted, so that one's proven bound on
+//   waiting holds.
 //
 // The second half relates the harness's counts to the arbiter's registers, so a fault is seen where
 // it begins. With it all assertions together are inductive: runs of any length are proven.
@@ -23,14 +28,22 @@
     (* hierconn *) wire [4*QUEUE_LOG2-1:0]          \u_queue.f_places ;
     (* hierconn *) wire [4:0]                       \u_queue.f_moved ;
     (* hierconn *) wire [KIND:0]                    \u_queue.f_moving ; // something moves; its kind
-    (* hierconn *) wire [(72<<FIFO_LOG2)-1:0]       \g_port[0].u_write.f_words , \g_port[1].u_write.f_words ;
-    (* hierconn *) wire [X-1:0]                     \g_port[0].u_write.f_indexes , \g_port[1].u_write.f_indexes ;
-    (* hierconn *) wire [(68<<FIFO_LOG2)-1:0]       \g_port[0].g_fifo.u_read.f_words , \g_port[1].g_fifo.u_read.f_words ;
-    (* hierconn *) wire [X-1:0]                     \g_port[0].g_fifo.u_read.f_indexes , \g_port[1].g_fifo.u_read.f_indexes ;
-    wire [2*X-1:0] wr_indexes = {\g_port[1].u_write.f_indexes , \g_port[0].u_write.f_indexes }; // write, read
-    wire [2*X-1:0] rd_indexes = {\g_port[1].g_fifo.u_read.f_indexes , \g_port[0].g_fifo.u_read.f_indexes };
-    wire [2*(72<<FIFO_LOG2)-1:0] wr_words = {\g_port[1].u_write.f_words , \g_port[0].u_write.f_words };
-    wire [2*(68<<FIFO_LOG2)-1:0] rd_words = {\g_port[1].g_fifo.u_read.f_words , \g_port[0].g_fifo.u_read.f_words };
+    (* hierconn *) wire [(72<<FIFO_LOG2)-1:0]       \g_port[0].u_write.f_words ,
+        \g_port[1].u_write.f_words ;
+    (* hierconn *) wire [X-1:0]                     \g_port[0].u_write.f_indexes ,
+        \g_port[1].u_write.f_indexes ;
+    (* hierconn *) wire [(68<<FIFO_LOG2)-1:0]       \g_port[0].g_fifo.u_read.f_words ,
+        \g_port[1].g_fifo.u_read.f_words ;
+    (* hierconn *) wire [X-1:0]                     \g_port[0].g_fifo.u_read.f_indexes ,
+        \g_port[1].g_fifo.u_read.f_indexes ;
+    // write, read
+    wire [2*X-1:0] wr_indexes = {\g_port[1].u_write.f_indexes , \g_port[0].u_write.f_indexes };
+    wire [2*X-1:0] rd_indexes =
+        {\g_port[1].g_fifo.u_read.f_indexes , \g_port[0].g_fifo.u_read.f_indexes };
+    wire [2*(72<<FIFO_LOG2)-1:0] wr_words =
+        {\g_port[1].u_write.f_words , \g_port[0].u_write.f_words };
+    wire [2*(68<<FIFO_LOG2)-1:0] rd_words =
+        {\g_port[1].g_fifo.u_read.f_words , \g_port[0].g_fifo.u_read.f_words };
     wire [PORTS-1:0] wr_pops   = move_at[PORTS-1:0] & {PORTS{wr_valid_o && wr_ready_i}};
     wire [PORTS-1:0] rd_pushes = back_at & {PORTS{rd_valid_i}} & back_free;
 
@@ -46,7 +59,8 @@
     (* anyconst *) reg [PORT_BITS-1:0] me;
     (* anyconst *) reg [Q-1:0] mark;
     (* anyconst *) reg [W-1:0] w_mark, r_mark;
-    (* anyconst *) reg         eager; // `me` pops every word at once, and has any number outstanding
+    // `me` pops every word at once, and has any number outstanding
+    (* anyconst *) reg         eager;
     reg [PORTS-1:0] was_granted;
     reg             asked = 1'b0; // `me` asks, and is not chosen
     initial assume (rst_i);
@@ -54,7 +68,8 @@
 
     // ---- `me`'s pins and FIFOs; of data the first and the last bit of all
     localparam DEPTH_INT = 1 << F;
-    reg          req, ack, rnw, my_grant, push, pop, has_fifo, w_full, w_empty, r_empty, w_flush, r_flush, w_pop, r_push;
+    reg          req, ack, rnw, my_grant, push, pop, has_fifo, w_full, w_empty, r_empty, w_flush,
+        r_flush, w_pop, r_push;
     reg [2:0]    my_size;
     reg [3:0]    push_word, head_word;
     reg [5:0]    pop_word;
@@ -63,7 +78,8 @@
     reg [6*DEPTH_INT-1:0] r_words;
     integer n, x;
     always @* begin
-        {req, ack, rnw, my_grant, push, pop, has_fifo, w_full, w_empty, r_empty, w_flush, r_flush, w_pop, r_push} = 0;
+        {req, ack, rnw, my_grant, push, pop, has_fifo, w_full, w_empty, r_empty, w_flush, r_flush,
+         w_pop, r_push} = 0;
         my_size = 0;
         {push_word, head_word, pop_word} = 0;
         {w_indexes, r_indexes} = 0;
@@ -71,20 +87,28 @@
         r_words = 0;
         for (n = 0; n < PORTS; n = n + 1)
             if (me == n[PORT_BITS-1:0]) begin
-                {req, ack, rnw, my_grant} = {npi_addr_req_i[n], npi_addr_ack_o[n], npi_rnw_i[n], grant[n]};
+                {req, ack, rnw, my_grant} =
+                    {npi_addr_req_i[n], npi_addr_ack_o[n], npi_rnw_i[n], grant[n]};
                 {push, pop, has_fifo}    = {npi_wr_push_i[n], npi_rd_pop_i[n], READ_FIFO[n]};
-                {w_full, w_empty, r_empty} = {npi_wr_almost_full_o[n], npi_wr_empty_o[n], npi_rd_empty_o[n]};
-                {w_flush, r_flush, w_pop, r_push} = {npi_wr_flush_i[n], npi_rd_flush_i[n], wr_pops[n], rd_pushes[n]};
+                {w_full, w_empty, r_empty} =
+                    {npi_wr_almost_full_o[n], npi_wr_empty_o[n], npi_rd_empty_o[n]};
+                {w_flush, r_flush, w_pop, r_push} =
+                    {npi_wr_flush_i[n], npi_rd_flush_i[n], wr_pops[n], rd_pushes[n]};
                 my_size   = npi_size_i[4*n +: 3];
-                push_word = {npi_wr_be_i[8*n + 7], npi_wr_data_i[64*n + 63], npi_wr_be_i[8*n], npi_wr_data_i[64*n]};
+                push_word =
+                    {npi_wr_be_i[8*n + 7], npi_wr_data_i[64*n + 63], npi_wr_be_i[8*n],
+                     npi_wr_data_i[64*n]};
                 head_word = {wr_bes[8*n + 7], wr_datas[64*n + 63], wr_bes[8*n], wr_datas[64*n]};
-                pop_word  = {npi_rd_word_o[4*n +: 4], npi_rd_data_o[64*n + 63], npi_rd_data_o[64*n]};
+                pop_word  =
+                    {npi_rd_word_o[4*n +: 4], npi_rd_data_o[64*n + 63], npi_rd_data_o[64*n]};
                 w_indexes = wr_indexes[X*n +: X];
                 r_indexes = rd_indexes[X*n +: X];
                 for (x = 0; x < DEPTH_INT; x = x + 1) begin
-                    w_words[4*x +: 4] = {wr_words[72*(DEPTH_INT*n + x) + 71], wr_words[72*(DEPTH_INT*n + x) + 63],
-                                         wr_words[72*(DEPTH_INT*n + x) + 64], wr_words[72*(DEPTH_INT*n + x)]};
-                    r_words[6*x +: 6] = {rd_words[68*(DEPTH_INT*n + x) + 63 +: 5], rd_words[68*(DEPTH_INT*n + x)]};
+                    w_words[4*x +: 4] =
+                        {wr_words[72*(DEPTH_INT*n + x) + 71], wr_words[72*(DEPTH_INT*n + x) + 63],
+                         wr_words[72*(DEPTH_INT*n + x) + 64], wr_words[72*(DEPTH_INT*n + x)]};
+                    r_words[6*x +: 6] =
+                        {rd_words[68*(DEPTH_INT*n + x) + 63 +: 5], rd_words[68*(DEPTH_INT*n + x)]};
                 end
             end
     end
@@ -117,14 +141,16 @@
                 g_from = g[PORT_BITS-1:0];
                 g_read = npi_rnw_i[g];
                 g_size = npi_size_i[4*g +: 3];
-                g_addr = {npi_addr_i[32*g + 5 +: ADDR_BITS-2], npi_addr_i[32*g + 4] && g_size != 3'd2,
+                g_addr =
+                    {npi_addr_i[32*g + 5 +: ADDR_BITS-2], npi_addr_i[32*g + 4] && g_size != 3'd2,
                           npi_addr_i[32*g + 3] && g_size == 3'd0};
             end
     end
     wire         g_any   = |grant;
     wire [W-1:0] g_words = words_of(g_size);
 
-    // t_* is the marked request while it is in the arbiter, and where its words begin in each count.
+    // t_* is the marked request while it is in the arbiter, and where its words begin in each
+    // count.
     reg                 t_live = 1'b0;
     reg [PORT_BITS-1:0] t_port;
     reg                 t_read;
@@ -132,13 +158,15 @@
     reg [ADDR_BITS-1:0] t_addr;
     reg [W-1:0]         t_stream, t_own;
     wire [W-1:0] t_words = words_of(t_size);
-    wire [W-1:0] t_index = (t_read ? all_came : all_moved) - t_stream; // of the next word, if it is one of its
+    // of the next word, if it is one of its
+    wire [W-1:0] t_index = (t_read ? all_came : all_moved) - t_stream;
     wire         t_next  = t_live && t_index < t_words;
     wire [W-1:0] t_own_index = t_own + t_index; // among `me`'s
     wire         t_mine  = t_port == me;
     wire [PORTS-1:0] t_one = {{(PORTS - 1){1'b0}}, 1'b1} << t_port;
 
-    // s_* are the places at which each queued request's words begin in the counts of all writes, all reads, `me`'s writes, reads.
+    // s_* are the places at which each queued request's words begin in the counts of all writes,
+    // all reads, `me`'s writes, reads.
     localparam SLOTS = 1 << Q;
     reg [W*SLOTS-1:0] s_w, s_r, s_wo, s_ro;
 
@@ -207,7 +235,8 @@
     integer q;
     always @* begin
         for (q = 0; q < PORTS; q = q + 1)
-            assume (npi_size_i[4*q +: 3] <= F); // the FIFOs' depth; npi_queue is proven with all sizes
+            // the FIFOs' depth; npi_queue is proven with all sizes
+            assume (npi_size_i[4*q +: 3] <= F);
         assume (!asked || req); // a request stays
         assume (!push || !w_full);
         assume (!asks_write || w_pushed - w_claimed + {{(W - 1){1'b0}}, push} >= words);
@@ -224,7 +253,8 @@
     always @* if (!rst_i) begin
         assert (npi_addr_ack_o == was_granted);
         assert (!asked || !ack); // so npi_select sees it all the time, and its bound holds
-        assert ((grant & ~npi_addr_req_i) == 0 && (grant & npi_addr_ack_o) == 0 && (grant & (grant - 1'b1)) == 0);
+        assert ((grant & ~npi_addr_req_i) == 0 && (grant & npi_addr_ack_o) == 0 &&
+                (grant & (grant - 1'b1)) == 0);
         assert (!cmd_valid_o || issued != accepted);
         if (cmd_valid_o && issued == mark) begin
             assert (t_live && cmd_read_o == t_read && cmd_word == t_addr);
@@ -237,12 +267,14 @@
                 assert (w_have && out_word == w_value);
         end
         for (o = 0; o < PORTS; o = o + 1) // all leaving bits
-            assert (!wr_pops[o] || {wr_be_o, wr_data_o} == {wr_bes[8*o +: 8], wr_datas[64*o +: 64]});
+            assert (!wr_pops[o] ||
+                    {wr_be_o, wr_data_o} == {wr_bes[8*o +: 8], wr_datas[64*o +: 64]});
         assert (moves == |wr_pops && (!moves || all_moved != all_w));
         if (rd_valid_i && t_next && t_read) begin
             assert (rd_pushes == (comes ? t_one : 0));
             if (t_mine && !has_fifo && !r_empty) // a port without a FIFO takes it in this clock
-                assert (rd_ready_o == pop && pop_word == {t_index[1:0] | 4'd0, rd_data_i[63], rd_data_i[0]});
+                assert (rd_ready_o == pop &&
+                        pop_word == {t_index[1:0] | 4'd0, rd_data_i[63], rd_data_i[0]});
         end
         assert (comes == |rd_pushes);
         if (has_fifo && r_have && !r_empty && r_popped == r_mark)
@@ -259,7 +291,8 @@
             assert (BLOCK_RAM != 0 || r_empty == (r_level == 0));
             assert (r_empty || r_level != 0);
         end
-        cover (moves && t_next && !t_read && t_mine && t_own_index == w_mark && t_index == 2 && w_value == 4'b0110);
+        cover (moves && t_next && !t_read && t_mine && t_own_index == w_mark && t_index == 2 &&
+               w_value == 4'b0110);
         cover (pop && has_fifo && r_have && r_popped == r_mark && r_value[5:2] == 4'd3);
         cover (w_full && moves && issues && comes);
         cover (eager && r_claimed - r_popped > DEPTH);
@@ -269,8 +302,10 @@
     // ---- The counts and the arbiter's registers
     wire [Q-1:0] head, move, issue, back;
     assign {head, move, issue, back} = \u_queue.f_places ;
-    wire [Q-1:0] n_head = head - back, n_move = move - back, n_issue = issue - back, n_mark = mark - back;
-    wire [KIND-1:0] move_kind = \u_queue.f_kinds [KIND*move +: KIND], back_kind = \u_queue.f_kinds [KIND*back +: KIND],
+    wire [Q-1:0] n_head = head - back, n_move = move - back, n_issue = issue - back,
+        n_mark = mark - back;
+    wire [KIND-1:0] move_kind = \u_queue.f_kinds [KIND*move +: KIND],
+        back_kind = \u_queue.f_kinds [KIND*back +: KIND],
                     t_kind = \u_queue.f_kinds [KIND*mark +: KIND];
     wire [W-1:0] moved = \u_queue.f_moved , came = back_index;
     wire [W-1:0] moved_me = move_kind[KIND-1:4] == me ? moved : 0;
@@ -302,7 +337,8 @@
                 assert (kind[2:0] <= F && {1'b0, kind[KIND-1:4]} < PORTS);
                 assert (b_w[W*NEXT +: W] == b_w[W*f +: W] + (kind[3] ? NONE : w));
                 assert (b_r[W*NEXT +: W] == b_r[W*f +: W] + (kind[3] ? w : NONE));
-                assert (d < n_move || b_wo[W*NEXT +: W] == b_wo[W*f +: W] + (kind[3] || !mine ? NONE : w));
+                assert (d < n_move ||
+                        b_wo[W*NEXT +: W] == b_wo[W*f +: W] + (kind[3] || !mine ? NONE : w));
                 assert (b_ro[W*NEXT +: W] == b_ro[W*f +: W] + (kind[3] && mine ? w : NONE));
             end
         end
@@ -311,8 +347,11 @@
         assert ((\u_select.f_later & \u_select.f_served ) == 0);
         assert ((npi_addr_ack_o & ~\u_select.f_served ) == 0);
         assert (full == ({1'b0, n_head} == SLOTS - 1));
-        assert (\u_queue.f_moving [KIND] == (move != head) && (move == head || \u_queue.f_moving [KIND-1:0] == move_kind));
-        assert (move_at == (move != head && !move_kind[3] ? {{((1<<PORT_BITS)-1){1'b0}}, 1'b1} << move_kind[KIND-1:4] : 0));
+        assert (\u_queue.f_moving [KIND] == (move != head) &&
+                (move == head || \u_queue.f_moving [KIND-1:0] == move_kind));
+        assert (move_at ==
+                (move != head &&
+                 !move_kind[3] ? {{((1<<PORT_BITS)-1){1'b0}}, 1'b1} << move_kind[KIND-1:4] : 0));
         assert (accepted == head && issued == issue);
         assert (n_issue <= n_move && n_move <= n_head);
         assert (!g_any || {1'b0, n_head} != SLOTS - 1); // the queue has a place for it
@@ -321,12 +360,15 @@
         assert (all_moved == b_w[W*move +: W] + moved && w_moved == b_wo[W*move +: W] + moved_me);
         assert (all_asked == b_r[W*issue +: W]);
         assert (all_came == b_r[W*back +: W] + came && r_pushed == b_ro[W*back +: W] + came_me);
-        assert (rd_ready_o || back == issue || !back_kind[3] || (back_kind[KIND-1:4] == me ? !has_fifo && !pop : 1'b1));
+        assert (rd_ready_o || back == issue || !back_kind[3] ||
+                (back_kind[KIND-1:4] == me ? !has_fifo && !pop : 1'b1));
         assert (t_live == (n_mark < n_head && (t_kind[3] || n_mark >= n_issue)));
         if (t_live) begin
-            assert (t_kind == {t_port, t_read, t_size} && \u_queue.f_addrs [ADDR_BITS*mark +: ADDR_BITS] == t_addr);
+            assert (t_kind == {t_port, t_read, t_size} &&
+                    \u_queue.f_addrs [ADDR_BITS*mark +: ADDR_BITS] == t_addr);
             assert (t_stream == (t_read ? s_r[W*mark +: W] : s_w[W*mark +: W]));
-            assert (!t_mine || (!t_read && n_mark < n_move) || t_own == (t_read ? s_ro[W*mark +: W] : s_wo[W*mark +: W]));
+            assert (!t_mine || (!t_read && n_mark < n_move) ||
+                    t_own == (t_read ? s_ro[W*mark +: W] : s_wo[W*mark +: W]));
         end
         assert (w_indexes == {w_pushed[F-1:0], w_moved[F-1:0]});
         assert (BLOCK_RAM == 0 || !w_empty || w_level <= 1);

@@ -2,9 +2,9 @@
 //
 // npi_fifo: first-in first-out; its first word is on data_o while empty_o is 0.
 //
-// Words are in LUT RAM, or with BLOCK in block RAM: that takes no LUTs for words, and one clock more from
-// push_i to empty_o. A push while full and a pop while empty are the user's errors; they are proven absent
-// where the FIFO is used.
+// Words are in LUT RAM, or with BLOCK in block RAM: that takes no LUTs for words, and one clock
+// more from push_i to empty_o. A push while full and a pop while empty are the user's errors; they
+// are proven absent where the FIFO is used.
 
 `default_nettype none
 `include "shift_order.vh"
@@ -59,8 +59,9 @@ module npi_fifo #(
                 if (push_i)
                     words[write_place] <= data_i;
         end else begin : g_block
-            // no_rw_check (Yosys): no word is read in the clock of its write (see below). Without it, chips whose RAM
-            // does not give the old word, such as ECP5, spend 150 flip-flops and 80 LUTs on holding it.
+            // no_rw_check (Yosys): no word is read in the clock of its write (see below). Without
+            // it, chips whose RAM does not give the old word, such as ECP5, spend 150 flip-flops
+            // and 80 LUTs on holding it.
             (* ram_style = "block", no_rw_check *)
             reg [WIDTH-1:0] words [0:(1<<LOG2)-1];
             reg [WIDTH-1:0] word;
@@ -155,6 +156,7 @@ module npi_fifo #(
 `ifdef COVER_POINTS
     is_full: cover property (@(posedge clk_i) full_o);
     both_at_once: cover property (@(posedge clk_i) push_i && pop_i);
-    empties: cover property (@(posedge clk_i) pop_i && !push_i && write_place == (BLOCK != 0 ? read_place : after(read_place)));
+    empties: cover property (@(posedge clk_i) pop_i && !push_i &&
+                             write_place == (BLOCK != 0 ? read_place : after(read_place)));
 `endif
 endmodule

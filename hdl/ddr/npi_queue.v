@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// npi_queue: holds accepted requests while write words go out, commands go out and read words come back.
+// npi_queue: holds accepted requests while write words go out, commands go out and read words come
+// back.
 //
 // One LUT RAM of 2**LOG2 requests (one is kept free), and four places in it that chase each other:
 //   head   where the next accepted request goes
@@ -125,7 +126,8 @@ module npi_queue #(
         if (move_ends || !moving) begin
             moving    <= next_is;
             move_kind <= next_kind;
-            move_at_o <= {{((1<<PORT_BITS)-1){1'b0}}, next_is && !next_kind[3]} << next_kind[KIND-1:4];
+            move_at_o <=
+                {{((1<<PORT_BITS)-1){1'b0}}, next_is && !next_kind[3]} << next_kind[KIND-1:4];
         end
         if (cmd_valid_o && cmd_ready_i)
             issue <= after(issue);
@@ -157,7 +159,8 @@ module npi_queue #(
     `SHIFT_NUMBERS(place_of, number_of, after, LOG2)
     wire [(KIND<<LOG2)-1:0]      f_kinds;
     wire [(ADDR_BITS<<LOG2)-1:0] f_addrs;
-    wire [4*LOG2-1:0]            f_places = {number_of(head), number_of(move), number_of(issue), number_of(back)};
+    wire [4*LOG2-1:0]            f_places =
+        {number_of(head), number_of(move), number_of(issue), number_of(back)};
     wire [4:0]                   f_moved  = moved_number(move_index);
     wire [KIND:0]                f_moving = {moving, move_kind};
     genvar f;
@@ -216,7 +219,8 @@ module npi_queue #(
             assert (moving == (move != head));
             assert (full == (head_next == back));
             assert (!moving || move != place || move_kind == kind);
-            assert (move_at_o == (moving && !move_read ? {{((1<<PORT_BITS)-1){1'b0}}, 1'b1} << move_port_o : 0));
+            assert (move_at_o ==
+                    (moving && !move_read ? {{((1<<PORT_BITS)-1){1'b0}}, 1'b1} << move_port_o : 0));
             assert (f_moved <= last_of(move_size) || !moving || move_read);
             assert (back_index <= last_of(back_size) || !coming || !back_read);
             if (!moving || move_read)
@@ -268,9 +272,12 @@ module npi_queue #(
 `endif
 `ifdef COVER_POINTS
     is_full: cover property (@(posedge clk_i) full_o);
-    longest_write: cover property (@(posedge clk_i) cmd_valid_o && cmd_ready_i && !cmd_read_o && cmd_last_o == 5'd31);
-    longest_read: cover property (@(posedge clk_i) cmd_valid_o && cmd_ready_i && cmd_read_o && cmd_last_o == 5'd31);
+    longest_write: cover property (@(posedge clk_i) cmd_valid_o && cmd_ready_i && !cmd_read_o &&
+                                   cmd_last_o == 5'd31);
+    longest_read: cover property (@(posedge clk_i) cmd_valid_o && cmd_ready_i && cmd_read_o &&
+                                  cmd_last_o == 5'd31);
     back_end_holds_command: cover property (@(posedge clk_i) cmd_valid_o && !cmd_ready_i);
-    all_at_once: cover property (@(posedge clk_i) push_i && move_done_i && cmd_valid_o && cmd_ready_i && back_done_i);
+    all_at_once: cover property (@(posedge clk_i) push_i && move_done_i && cmd_valid_o &&
+                                 cmd_ready_i && back_done_i);
 `endif
 endmodule

@@ -38,11 +38,13 @@ module npi_select #(
     wire [PORTS-1:0] normal  = asking & ~URGENT;
     wire             overdue = run == URGENT_RUN;
     wire [PORTS-1:0] members = |urgent && !(overdue && |normal) ? URGENT : ~URGENT;
-    // The port served last is not in `later`, so req_i serves here in place of `asking`: one input less a port.
+    // The port served last is not in `later`, so req_i serves here in place of `asking`: one input
+    // less a port.
     wire [PORTS-1:0] first   = req_i & later & members;
     wire [PORTS-1:0] turn    = asking & members;
 
-    // The lowest bit of each, and the ports above the chosen one, without a carry chain: the ports are few.
+    // The lowest bit of each, and the ports above the chosen one, without a carry chain: the ports
+    // are few.
     reg [PORTS-1:0] first_low, turn_low, above;
     integer i;
     always @* begin
@@ -130,6 +132,7 @@ module npi_select #(
 `ifdef COVER_POINTS
     all_ask: cover property (@(posedge clk_i) &asking && enable_i);
     none_is_granted: cover property (@(posedge clk_i) |asking && !enable_i);
-    urgent_have_had_their_run: cover property (@(posedge clk_i) any_o && overdue && |urgent && |normal);
+    urgent_have_had_their_run: cover property (@(posedge clk_i) any_o && overdue && |urgent &&
+                                               |normal);
 `endif
 endmodule

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
-// npi_stream: turns a memory port (docs/memory.md) into two streams of 64-bit words: one reads a buffer in order,
-// one writes a buffer in order, in bursts of 64 bytes. It reads ahead as far as the port's FIFO holds.
+// npi_stream: turns a memory port (docs/memory.md) into two streams of 64-bit words: one reads a
+// buffer in order, one writes a buffer in order, in bursts of 64 bytes. It reads ahead as far as
+// the port's FIFO holds.
 //
-// read_start_i names a buffer to read, while read_idle_o is high; its words come as valid/take. Words of a burst
-// beyond read_words_i are thrown away, as is everything after read_stop_i.
-// write_start_i names a buffer to write, while write_idle_o is high; words go as valid/ready. write_flush_i,
-// high for a clock without valid, fills the burst that is begun with words that no byte enable writes.
-// write_idle_o says that all words taken are acknowledged, so that every later request of any port sees them.
+// read_start_i names a buffer to read, while read_idle_o is high; its words come as valid/take.
+// Words of a burst beyond read_words_i are thrown away, as is everything after read_stop_i.
+// write_start_i names a buffer to write, while write_idle_o is high; words go as valid/ready.
+// write_flush_i, high for a clock without valid, fills the burst that is begun with words that no
+// byte enable writes. write_idle_o says that all words taken are acknowledged, so that every later
+// request of any port sees them.
 
 `default_nettype none
 
@@ -98,7 +100,8 @@ module npi_stream #(
         end
 
         // The idle signals are registers, a clock late, because a core's start depends on them.
-        read_idle_o  <= to_give == {WORD_BITS{1'b0}} && outstanding == 6'd0 && !(request && request_read) && !read_start_i;
+        read_idle_o  <= to_give == {WORD_BITS{1'b0}} && outstanding == 6'd0 &&
+            !(request && request_read) && !read_start_i;
         write_idle_o <= filled == 3'd0 && bursts == 3'd0 && !push;
         // Words and bursts apart: no carry chain comes after the core's take.
         outstanding[2:0] <= outstanding[2:0] - {2'd0, npi_rd_pop_o};
@@ -106,7 +109,8 @@ module npi_stream #(
             outstanding[5:3] <= acked_read ? outstanding[5:3] + 3'd1 : outstanding[5:3] - 3'd1;
         if (acked_read) begin
             read_addr <= read_addr + 1'b1;
-            to_ask    <= to_ask > {{(WORD_BITS - 4){1'b0}}, 4'd8} ? to_ask - {{(WORD_BITS - 4){1'b0}}, 4'd8}
+            to_ask    <= to_ask > {{(WORD_BITS - 4){1'b0}}, 4'd8} ?
+                to_ask - {{(WORD_BITS - 4){1'b0}}, 4'd8}
                                                                   : {WORD_BITS{1'b0}};
         end
         if (read_valid_o && read_take_i)
@@ -187,8 +191,10 @@ module npi_stream #(
             f_begun <= f_begun + 3'd1;
         else if (padding && full)
             f_begun <= 3'd0;
-        f_read   <= read_start_i ? read_base_i : f_read + {{(ADDR_BITS - 7){1'b0}}, npi_addr_ack_i && npi_rnw_o};
-        f_write  <= write_start_i ? write_base_i : f_write + {{(ADDR_BITS - 7){1'b0}}, npi_addr_ack_i && !npi_rnw_o};
+        f_read   <= read_start_i ? read_base_i :
+            f_read + {{(ADDR_BITS - 7){1'b0}}, npi_addr_ack_i && npi_rnw_o};
+        f_write  <= write_start_i ? write_base_i :
+            f_write + {{(ADDR_BITS - 7){1'b0}}, npi_addr_ack_i && !npi_rnw_o};
         f_reads  <= !rst_i && (f_reads || read_start_i);
         f_writes <= !rst_i && (f_writes || write_start_i);
         f_ready  <= !rst_i && (f_ready || npi_init_done_i);
@@ -209,7 +215,9 @@ module npi_stream #(
         assert (promised <= 6'd32 && !(npi_addr_req_o && npi_rnw_o && promised > 6'd24));
         assert (!(npi_addr_req_o && !npi_rnw_o) || {1'b0, f_pushed} >= f_owed + 7'd8);
         assert (outstanding == promised && there <= promised);
-        assert (!read_idle_o || (f_left == {WORD_BITS{1'b0}} && promised == 6'd0 && !(npi_addr_req_o && npi_rnw_o)));
+        assert (!read_idle_o ||
+                (f_left == {WORD_BITS{1'b0}} && promised == 6'd0 &&
+                 !(npi_addr_req_o && npi_rnw_o)));
         assert ({1'b0, f_pushed} == f_owed + {1'b0, bursts, 3'd0} + {4'd0, filled});
         assert (bursts <= 3'd4 && f_owed <= 7'd32);
         assert (!write_idle_o || (filled == 3'd0 && bursts == 3'd0));
@@ -218,7 +226,8 @@ module npi_stream #(
         assert (!read_valid_o || f_left != {WORD_BITS{1'b0}});
         assert (to_ask == {WORD_BITS{1'b0}} || to_give >= to_ask);
         // While words are still to be requested, those on their way are the core's.
-        assert (to_ask == {WORD_BITS{1'b0}} || {1'b0, to_give} == {1'b0, to_ask} + {{(WORD_BITS - 5){1'b0}}, outstanding});
+        assert (to_ask == {WORD_BITS{1'b0}} ||
+                {1'b0, to_give} == {1'b0, to_ask} + {{(WORD_BITS - 5){1'b0}}, outstanding});
         assert (f_pushed <= 6'd32);
         assert (!padding || filled != 3'd0);
         assert (!npi_addr_req_o || npi_rnw_o || bursts != 3'd0);
@@ -228,25 +237,30 @@ module npi_stream #(
         assert (!f_writes || write_addr == f_write);
         // A word that is not the core's writes nothing.
         assert (!npi_wr_push_o || npi_wr_be_o == 8'd0 || (write_valid_i && write_ready_o));
-        cover (read_take_i && f_left == {{(WORD_BITS - 1){1'b0}}, 1'b1} && npi_addr_req_o && !npi_rnw_o);
+        cover (read_take_i && f_left == {{(WORD_BITS - 1){1'b0}}, 1'b1} && npi_addr_req_o &&
+               !npi_rnw_o);
         cover (npi_rd_pop_o && !read_valid_o);
         cover (padding && full);
         cover (acked_write && bursts == 3'd1 && filled == 3'd0);
         cover (promised == 6'd32);
     end
-    always @(posedge clk_i) if (past && !rst_i && !$past(rst_i) && $past(npi_addr_req_o && !npi_addr_ack_i)) begin
+    always @(posedge clk_i)
+        if (past && !rst_i && !$past(rst_i) && $past(npi_addr_req_o && !npi_addr_ack_i)) begin
         assert (npi_addr_req_o && $stable(npi_rnw_o) && $stable(npi_size_o));
         assert ($stable(npi_addr_o));
     end
     // Idle is shown one clock later, not more.
     always @(posedge clk_i) if (past && !rst_i && !$past(rst_i)) begin
         assert (write_idle_o || $past(filled != 3'd0 || bursts != 3'd0 || npi_wr_push_o));
-        assert (read_idle_o || $past(to_give != {WORD_BITS{1'b0}} || promised != 6'd0 || read_start_i || (npi_addr_req_o && npi_rnw_o)));
+        assert (read_idle_o ||
+                $past(to_give != {WORD_BITS{1'b0}} || promised != 6'd0 || read_start_i ||
+                      (npi_addr_req_o && npi_rnw_o)));
     end
 `endif
 `ifdef COVER_POINTS
     as_far_ahead_as_allowed: cover property (@(posedge clk_i) outstanding == FIFO);
-    stopped_with_words_on_their_way: cover property (@(posedge clk_i) read_stop_i && outstanding != 6'd0);
+    stopped_with_words_on_their_way: cover property (@(posedge clk_i) read_stop_i &&
+            outstanding != 6'd0);
     pads_a_burst: cover property (@(posedge clk_i) padding && full);
     write_held_up: cover property (@(posedge clk_i) write_valid_i && !write_ready_o);
     reads_and_writes: cover property (@(posedge clk_i) outstanding != 6'd0 && bursts != 3'd0);

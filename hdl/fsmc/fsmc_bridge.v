@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_bridge: connects the STM32's 16-bit FSMC to DDR3 (NE1) and to the register bus (NE2); docs/fsmc.md.
+// fsmc_bridge: connects the STM32's 16-bit FSMC to DDR3 (NE1) and to the register bus (NE2);
+// docs/fsmc.md.
 //
 // It takes asynchronous accesses of modes 1, A, 2, B, C and D. NWAIT depends on the pins
-// combinationally and is low while a read's data is not there yet or a write has no room. Every access waits
-// until the write before it has been handed over to clk_i and a register write before it has been carried out.
-// An access that has waited for 2**TIMEOUT_LOG2 clocks is let go with access_error_o, so NWAIT is never low for ever.
+// combinationally and is low while a read's data is not there yet or a write has no room. Every
+// access waits until the write before it has been handed over to clk_i and a register write before
+// it has been carried out. An access that has waited for 2**TIMEOUT_LOG2 clocks is let go with
+// access_error_o, so NWAIT is never low for ever.
 
 `default_nettype none
 `include "shift_order.vh"
@@ -47,7 +49,8 @@ module fsmc_bridge #(
     input  wire [31:0] bus_rdata_i,
     input  wire        bus_error_i
 );
-    // $error as a module item is SystemVerilog; for Icarus and XST the name of an unknown module is the message.
+    // $error as a module item is SystemVerilog; for Icarus and XST the name of an unknown module is
+    // the message.
 `ifdef VERILATOR
     `define TELLS_ERRORS
 `endif
@@ -58,7 +61,7 @@ module fsmc_bridge #(
         if (MUXED >> 1 != 0 || WAIT_HIGH >> 1 != 0 || TIMEOUT_LOG2 < 1 || TIMEOUT_LOG2 > 24 ||
             POST_LOG2 < 2 || POST_LOG2 > 5 || BLOCK_LOG2 < 1 || BLOCK_LOG2 > 4) begin : g_refused
 `ifdef TELLS_ERRORS
-            $error("fsmc_bridge: MUXED, WAIT_HIGH are 0 or 1, TIMEOUT_LOG2 1..24, POST_LOG2 2..5, BLOCK_LOG2 1..4");
+            $error("fsmc_bridge: MUXED, WAIT_HIGH 0..1, TIMEOUT_LOG2 1..24, POST 2..5, BLOCK 1..4");
 `else
             fsmc_bridge_parameter_out_of_range u_refused ();
 `endif
@@ -91,21 +94,26 @@ module fsmc_bridge #(
     wire        mem_reading = seen[0];
     reg         excused_read, excused_write; // the access under way has been let go
 
-    // clear, for NWAIT, and clear_sync, for decisions in clk_i, say that the write before is handed over and registers are idle.
+    // clear, for NWAIT, and clear_sync, for decisions in clk_i, say that the write before is handed
+    // over and registers are idle.
     wire clear      = !wr_async && !busy;
     wire clear_sync = !wr_sync && !busy;
 
-    // A write happens when NWE rises while NE is low, as in an SRAM: that very edge registers address, data and byte
-    // lanes (the STM32 holds them for one HCLK after it). An access that is given up, NE rising first, therefore
-    // writes nothing, and NWE has no minimum high time.
-    // taken follows two to three clocks later, for one cycle. The next edge may come when cdc_bus has copied the write,
-    // which is two clocks and the paths' skew later, so 33.3 ns leave 13 ns for delays.
+    // A write happens when NWE rises while NE is low, as in an SRAM: that very edge registers
+    // address, data and byte lanes (the STM32 holds them for one HCLK after it). An access that is
+    // given up, NE rising first, therefore writes nothing, and NWE has no minimum high time. taken
+    // follows two to three clocks later, for one cycle. The next edge may come when cdc_bus has
+    // copied the write, which is two clocks and the paths' skew later, so 33.3 ns leave 13 ns for
+    // delays.
     wire [1:0]  ne = ~fsmc_ne_n_i;
-    wire [44:0] held; // the write that NWE's edge has registered; wr_async is high until a clock after taken
+    // the write that NWE's edge has registered; wr_async is high until a clock after taken
+    wire [44:0] held;
     cdc_bus #(.WIDTH(45)) u_write (
-        .src_clk_i(fsmc_nwe_n_i), .src_valid_i(|ne), .src_data_i({ne, ~fsmc_nbl_n_i, address, fsmc_d_i}),
+        .src_clk_i(fsmc_nwe_n_i), .src_valid_i(|ne),
+        .src_data_i({ne, ~fsmc_nbl_n_i, address, fsmc_d_i}),
         .src_data_o(held), .pending_sync_o(wr_sync), .pending_async_o(wr_async),
-        .dst_clk_i(clk_i), .dst_valid_o(taken), .dst_data_o({taken_ne, taken_be, taken_addr, taken_data})
+        .dst_clk_i(clk_i), .dst_valid_o(taken),
+        .dst_data_o({taken_ne, taken_be, taken_addr, taken_data})
     );
     wire wr_ne2_async = wr_async && held[44];
 
@@ -118,7 +126,8 @@ module fsmc_bridge #(
         .bit_async_i({reads, ne[0] && !fsmc_nwe_n_i, hit && clear, hit_safe && clear}),
         .bit_sync_o({seen, writing, hit_seen, safe_seen})
     );
-    cdc_copy #(.WIDTH(25)) u_at (.clk_i(clk_i), .bus_async_i(address), .bus_sync_o(at)); // a clock later than seen
+    // a clock later than seen
+    cdc_copy #(.WIDTH(25)) u_at (.clk_i(clk_i), .bus_async_i(address), .bus_sync_o(at));
 
     always @(posedge clk_i or posedge fsmc_noe_n_i)
         if (fsmc_noe_n_i)
@@ -131,8 +140,8 @@ module fsmc_bridge #(
         else if (excuse)
             excused_write <= 1'b1;
 
-    // ---- Time-out: an access to memory that has waited too long is let go, until its strobe rises; fsmc_registers does so for
-    // registers.
+    // ---- Time-out: an access to memory that has waited too long is let go, until its strobe
+    // rises; fsmc_registers does so for registers.
     localparam PATIENCE = TIMEOUT_LOG2 > 1 ? TIMEOUT_LOG2 : 2;
     `SHIFT_ORDER(after, PATIENCE)
     localparam [PATIENCE-1:0] LAST = 1 << (TIMEOUT_LOG2 - 1);
@@ -152,9 +161,10 @@ module fsmc_bridge #(
         end
     end
 
-    // ---- NWAIT follows NE and NOE: an access counts as a write until NOE falls, so that NWAIT is valid an address phase
-    // before a write's data phase begins. No access waits while reset is active, even without a clock.
-    // A write that follows one still being handed over needs room for both, as counted before the first was posted.
+    // ---- NWAIT follows NE and NOE: an access counts as a write until NOE falls, so that NWAIT is
+    // valid an address phase before a write's data phase begins. No access waits while reset is
+    // active, even without a clock. A write that follows one still being handed over needs room for
+    // both, as counted before the first was posted.
     reg [1:0] room_for_both;
     always @(posedge clk_i) room_for_both <= {room_for_both[0], more_room};
     wire write_room = wr_async ? room_for_both[1] : room;
@@ -186,7 +196,8 @@ module fsmc_bridge #(
     wire wr_lost;
     fsmc_memory #(.POST_LOG2(POST_LOG2), .BLOCK_LOG2(BLOCK_LOG2)) u_fsmc_memory (
         .clk_i(clk_i), .rst_i(rst_i), .page_i(page_i),
-        .wr_i(taken && taken_ne[0]), .wr_addr_i(taken_addr), .wr_data_i(taken_data), .wr_be_i(taken_be),
+        .wr_i(taken && taken_ne[0]), .wr_addr_i(taken_addr), .wr_data_i(taken_data),
+        .wr_be_i(taken_be),
         .wr_lost_o(wr_lost), .room_o(room), .more_room_o(more_room),
         .rd_addr_async_i(address), .rd_at_i(at), .rd_used_i(mem_reading && hit_seen),
         // not while a register is accessed; its answer may still be under way
@@ -212,9 +223,10 @@ module fsmc_bridge #(
     assign error_addr_o   = bus_addr_o;
     assign error_write_o  = reg_error ? reg_write : !reading_d;
 
-    // ---- late_o tells of a master that ignores NWAIT: of a write that found no room, and of a read that ends although its
-    // data was neither safe (rd_safe_o) in the second clock of its address nor there for two clocks since. In the first clock the
-    // pins may still have moved. Reads of other addresses may follow each other without a rest that the clock sees.
+    // ---- late_o tells of a master that ignores NWAIT: of a write that found no room, and of a
+    // read that ends although its data was neither safe (rd_safe_o) in the second clock of its
+    // address nor there for two clocks since. In the first clock the pins may still have moved.
+    // Reads of other addresses may follow each other without a rest that the clock sees.
     reg [1:0] at_was, at_before, good;
     reg       second, early;
     wire moved  = at_was != at_before;
@@ -238,7 +250,8 @@ module fsmc_bridge #(
     register_waits: cover property (@(posedge clk_i) ne2 && waits);
     memory_write: cover property (@(posedge clk_i) taken && taken_ne[0]);
     register_write: cover property (@(posedge clk_i) taken && taken_ne[1]);
-    next_access_while_write_is_handed_on: cover property (@(posedge clk_i) wr_async && |ne && !fsmc_noe_n_i);
+    next_access_while_write_is_handed_on: cover property (@(posedge clk_i) wr_async && |ne &&
+            !fsmc_noe_n_i);
     half_a_halfword: cover property (@(posedge clk_i) taken && taken_be != 2'b11);
 `endif
 endmodule

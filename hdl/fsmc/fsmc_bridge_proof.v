@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_bridge_proof: states what the processor may rely on at the pins of fsmc_bridge; only for the prover.
+// fsmc_bridge_proof: states what the processor may rely on at the pins of fsmc_bridge; only for the
+// prover.
 //
 // Time goes in steps; clock and pins may change in each, so every ratio and phase is covered. The
 // memory (fsmc_memory, with its own proof) and the slave of the register bus are free: they answer
@@ -8,7 +9,8 @@
 //
 // - NWAIT is not active for ever: it ends within two time-outs and the synchronisers' time.
 // - Once NWAIT is inactive in an access to a register it stays so, and data on the pins stays.
-// - A write to a register goes on only when the write before it is handed over and registers are idle. The bridge's time-out
+// - A write to a register goes on only when the write before it is handed over and registers are
+//   idle. The bridge's time-out
 //   lets go only accesses to memory, however short it is.
 // WORDS = 1 proves instead that 32-bit register words are atomic (fsmc_words_proof); with LATE
 // bounded, without it by induction, whose invariant counts the synchronisers' clocks.
@@ -21,7 +23,8 @@ module fsmc_bridge_proof #(
     parameter WAIT_HIGH    = 0,
     parameter TIMEOUT_LOG2 = 1,
     parameter WORDS        = 0, // 1: proves only that 32-bit words are atomic (fsmc_words_proof)
-    parameter LATE         = WORDS == 0 // 1: each synchroniser may see what its input was a clock ago
+    // 1: each synchroniser may see what its input was a clock ago
+    parameter LATE         = WORDS == 0
 ) (
     input wire        clk_i,
     // pins: addresses are 8 halfwords, and one beyond the slots; a halfword has two bits of data
@@ -56,7 +59,8 @@ module fsmc_bridge_proof #(
         .fsmc_a_i(a), .fsmc_d_i(d), .fsmc_d_o(d_out), .fsmc_d_oe_o(oe),
         .fsmc_ne_n_i({!ne2_i, !ne1_i}), .fsmc_noe_n_i(noe_n_i), .fsmc_nwe_n_i(nwe_n_i),
         .fsmc_nbl_n_i(nbl_n_i), .fsmc_nadv_n_i(nadv_n_i), .fsmc_nwait_n_o(nwait_pin),
-        .page_i(6'd0), .access_error_o(access_error), .error_memory_o(error_memory), .error_addr_o(error_addr),
+        .page_i(6'd0), .access_error_o(access_error), .error_memory_o(error_memory),
+        .error_addr_o(error_addr),
         .error_write_o(error_write), .late_o(late),
         .bus_valid_o(bus_valid), .bus_write_o(bus_write), .bus_addr_o(bus_addr),
         .bus_wdata_o(bus_wdata), .bus_ready_i(ready_i), .bus_rdata_i(bus_rdata),
@@ -72,36 +76,46 @@ module fsmc_bridge_proof #(
     (* hierconn *) wire [15:0] \u_fsmc_bridge.taken_data ;
     (* hierconn, init = 1'b0 *) // flatten keeps no initial value of the joined wire
                    wire \u_fsmc_bridge.u_write.u_cdc_pulse.turned ,
-                        \u_fsmc_bridge.u_write.u_cdc_pulse.u_cdc_bit.bit_meta ,
-                        \u_fsmc_bridge.u_write.u_cdc_pulse.turned_sync ,
-                        \u_fsmc_bridge.u_write.u_cdc_pulse.last ,
-                        \u_fsmc_bridge.u_write.u_cdc_pulse.earlier ;
+        \u_fsmc_bridge.u_write.u_cdc_pulse.u_cdc_bit.bit_meta ,
+        \u_fsmc_bridge.u_write.u_cdc_pulse.turned_sync ,
+        \u_fsmc_bridge.u_write.u_cdc_pulse.last ,
+        \u_fsmc_bridge.u_write.u_cdc_pulse.earlier ;
     (* hierconn *) wire [44:0] \u_fsmc_bridge.held ;
-    (* hierconn, init = 5'd0 *) wire [4:0] \u_fsmc_bridge.u_access.bit_meta , \u_fsmc_bridge.u_access.bit_sync ;
-    (* hierconn *) wire \u_fsmc_bridge.u_fsmc_registers.flushing , \u_fsmc_bridge.u_fsmc_registers.give ,
-                        \u_fsmc_bridge.u_fsmc_registers.answering , \u_fsmc_bridge.u_fsmc_registers.half_read ,
-                        \u_fsmc_bridge.u_fsmc_registers.half_write , \u_fsmc_bridge.u_fsmc_registers.asked_high ,
-                        \u_fsmc_bridge.u_fsmc_registers.given_up , \u_fsmc_bridge.u_fsmc_registers.seen ;
-    (* hierconn, init = 1'b0 *) wire \u_fsmc_bridge.u_fsmc_registers.u_done.bit_meta , \u_fsmc_bridge.u_fsmc_registers.u_done.bit_sync ;
+    (* hierconn, init = 5'd0 *) wire [4:0] \u_fsmc_bridge.u_access.bit_meta ,
+        \u_fsmc_bridge.u_access.bit_sync ;
+    (* hierconn *) wire \u_fsmc_bridge.u_fsmc_registers.flushing ,
+        \u_fsmc_bridge.u_fsmc_registers.give ,
+        \u_fsmc_bridge.u_fsmc_registers.answering ,
+        \u_fsmc_bridge.u_fsmc_registers.half_read ,
+        \u_fsmc_bridge.u_fsmc_registers.half_write ,
+        \u_fsmc_bridge.u_fsmc_registers.asked_high ,
+        \u_fsmc_bridge.u_fsmc_registers.given_up ,
+        \u_fsmc_bridge.u_fsmc_registers.seen ;
+    (* hierconn, init = 1'b0 *) wire \u_fsmc_bridge.u_fsmc_registers.u_done.bit_meta ,
+        \u_fsmc_bridge.u_fsmc_registers.u_done.bit_sync ;
     (* hierconn *) wire [31:0] \u_fsmc_bridge.u_fsmc_registers.word ;
-    (* hierconn *) wire \u_fsmc_bridge.u_write.u_cdc_pulse.u_cdc_bit.late , \u_fsmc_bridge.u_fsmc_registers.u_done.late ;
+    (* hierconn *) wire \u_fsmc_bridge.u_write.u_cdc_pulse.u_cdc_bit.late ,
+        \u_fsmc_bridge.u_fsmc_registers.u_done.late ;
     (* hierconn *) wire [4:0] \u_fsmc_bridge.u_access.late ;
     (* anyseq *) reg late_write, late_done, late_access;
     assign \u_fsmc_bridge.u_write.u_cdc_pulse.u_cdc_bit.late = late_write && LATE != 0;
     assign \u_fsmc_bridge.u_fsmc_registers.u_done.late = late_done && LATE != 0;
     assign \u_fsmc_bridge.u_access.late = {5{late_access && LATE != 0}};
     wire clear = \u_fsmc_bridge.clear , excuse = \u_fsmc_bridge.excuse ;
-    // `turns` is a write's toggle on its way through cdc_pulse: the source's flip-flop first, then those in clk_i to the last.
+    // `turns` is a write's toggle on its way through cdc_pulse: the source's flip-flop first, then
+    // those in clk_i to the last.
     wire [4:0]  turns = {\u_fsmc_bridge.u_write.u_cdc_pulse.turned ,
-                         \u_fsmc_bridge.u_write.u_cdc_pulse.u_cdc_bit.bit_meta ,
-                         \u_fsmc_bridge.u_write.u_cdc_pulse.turned_sync ,
-                         \u_fsmc_bridge.u_write.u_cdc_pulse.last ,
-                         \u_fsmc_bridge.u_write.u_cdc_pulse.earlier };
+        \u_fsmc_bridge.u_write.u_cdc_pulse.u_cdc_bit.bit_meta ,
+        \u_fsmc_bridge.u_write.u_cdc_pulse.turned_sync ,
+        \u_fsmc_bridge.u_write.u_cdc_pulse.last ,
+        \u_fsmc_bridge.u_write.u_cdc_pulse.earlier };
     wire [44:0] taken = \u_fsmc_bridge.held ; // registered by NWE's edge
-    wire [42:0] copy  = {\u_fsmc_bridge.taken_ne , \u_fsmc_bridge.taken_addr , \u_fsmc_bridge.taken_data };
+    wire [42:0] copy  =
+        {\u_fsmc_bridge.taken_ne , \u_fsmc_bridge.taken_addr , \u_fsmc_bridge.taken_data };
 
     // ---- These registers hold the pins of a step ago, and the history of the access
-    reg        past = 1'b0, was_clk = 1'b1, was_ne1 = 1'b0, was_ne2 = 1'b0, was_noe = 1'b1, was_nwe = 1'b1;
+    reg        past = 1'b0, was_clk = 1'b1, was_ne1 = 1'b0, was_ne2 = 1'b0, was_noe = 1'b1,
+        was_nwe = 1'b1;
     reg        was_beyond = 1'b0, was_nwait = 1'b1;
     reg [2:0]  was_a = 3'd0;
     reg [1:0]  was_d = 2'd0, was_nbl = 2'd0, was_out = 2'd0;
@@ -109,7 +123,8 @@ module fsmc_bridge_proof #(
     reg        let_go = 1'b0; // NWAIT has been seen inactive in this access
     reg [2:0]  rest = 3'd0;   // clocks since NWE's last edge, or since an access was given up
     reg [1:0]  calm = 2'd0;   // clocks since NWAIT was seen inactive
-    localparam [1:0] CALM = LATE != 0 ? 2'd3 : 2'd2; // clocks in which a synchroniser is sure to see a level
+    // clocks in which a synchroniser is sure to see a level
+    localparam [1:0] CALM = LATE != 0 ? 2'd3 : 2'd2;
     reg        latched = 1'b0; // NADV has been low in this access
     reg        held = 1'b0;   // a write's strobe has risen, NE has not yet
     reg        given_up = 1'b0; // the access before was given up
@@ -125,7 +140,8 @@ module fsmc_bridge_proof #(
     always @(posedge step) begin
         past <= 1'b1;
         {was_clk, was_ne1, was_ne2, was_noe, was_nwe} <= {clk_i, ne1_i, ne2_i, noe_n_i, nwe_n_i};
-        {was_beyond, was_a, was_d, was_nbl, was_nwait, was_out} <= {beyond_i, a_i, d_i, nbl_n_i, nwait_n, d_out[1:0]};
+        {was_beyond, was_a, was_d, was_nbl, was_nwait, was_out} <=
+            {beyond_i, a_i, d_i, nbl_n_i, nwait_n, d_out[1:0]};
         if (clock && resets != 3'd2)
             resets <= resets + 3'd1;
         rst <= resets < 3'd2;
@@ -150,7 +166,8 @@ module fsmc_bridge_proof #(
         // Reset lasts for some clocks, with the pins at rest.
         assume (past || (clk_i && !selected));
         assume (!rst || (!selected && !strobe));
-        // The processor uses one bank and one strobe; strobes fall while selected or together with NE; the address is stable.
+        // The processor uses one bank and one strobe; strobes fall while selected or together with
+        // NE; the address is stable.
         assume (!(ne1_i && ne2_i) && (noe_n_i || nwe_n_i));
         assume (!(was_selected && selected) || same);
         assume (!(was_access && strobe) || {noe_n_i, nwe_n_i} == {was_noe, was_nwe});
@@ -160,12 +177,15 @@ module fsmc_bridge_proof #(
         // A multiplexed address is latched before the strobe falls.
         assume (!strobe || nadv_n_i);
         assume (MUXED == 0 || !access || latched);
-        // A strobe rises when NWAIT was inactive, or after NE: then the access is given up, and the strobe rests for a while.
+        // A strobe rises when NWAIT was inactive, or after NE: then the access is given up, and the
+        // strobe rests for a while.
         assume (!wrote || let_go);
         assume (!(was_strobe && !was_selected) || !strobe || !selected);
         assume (!held || !strobe);
-        assume (!ended || wrote); // a read ends with NE and NOE together, at least two clocks after NWAIT (FSMC: 4 HCLK)
-        // Edges of NWE are at least three clocks apart (fsmc_bridge), and four after an access that was given up.
+        // a read ends with NE and NOE together, at least two clocks after NWAIT (FSMC: 4 HCLK)
+        assume (!ended || wrote);
+        // Edges of NWE are at least three clocks apart (fsmc_bridge), and four after an access that
+        // was given up.
         assume (!wrote || rest >= 3'd3);
         assume (!(given_up && access) || rest >= 3'd4);
     end

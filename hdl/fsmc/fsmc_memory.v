@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_memory: posts halfword writes, merged into words of four, and reads halfwords from a buffer that reads ahead.
+// fsmc_memory: posts halfword writes, merged into words of four, and reads halfwords from a buffer
+// that reads ahead.
 //
-// fsmc_post has the writes. Reads come from two buffers of one block each, for blocks of even and of odd number. A first
-// miss fetches one word, a second one in the same block fetches the block; from then on the next block is fetched
-// as soon as a block is entered, up to the next multiple of 4 KiB (the upper address bits are kept once).
-// No word is fetched while a write waits; a write, or drop_i, drops all that was read, also what
-// is still on its way. So a read never gives data that is older than a write before it.
+// fsmc_post has the writes. Reads come from two buffers of one block each, for blocks of even and
+// of odd number. A first miss fetches one word, a second one in the same block fetches the block;
+// from then on the next block is fetched as soon as a block is entered, up to the next multiple of
+// 4 KiB (the upper address bits are kept once). No word is fetched while a write waits; a write, or
+// drop_i, drops all that was read, also what is still on its way. So a read never gives data that
+// is older than a write before it.
 
 `default_nettype none
 
@@ -19,7 +21,8 @@ module fsmc_memory #(
 ) (
     input  wire                 clk_i,
     input  wire                 rst_i,
-    input  wire [5:0]           page_i,    // address bits above the window; writes need idle_o while it changes
+    // address bits above the window; writes need idle_o while it changes
+    input  wire [5:0]           page_i,
     // writes: one cycle each; one that comes without room_o is lost
     input  wire                 wr_i,
     input  wire [ADDR_BITS-1:0] wr_addr_i, // halfword address
@@ -28,7 +31,8 @@ module fsmc_memory #(
     output wire                 wr_lost_o, // in the cycle of wr_i: there was no room
     output wire                 room_o,    // there is room for two halfwords at least
     output wire                 more_room_o, // there is room for three
-    // reads: combinational, from pins; rd_miss_i asks for missing data, at rd_at_i, the copy of the address in clk_i
+    // reads: combinational, from pins; rd_miss_i asks for missing data, at rd_at_i, the copy of the
+    // address in clk_i
     input  wire [ADDR_BITS-1:0] rd_addr_async_i, // halfword address
     input  wire [ADDR_BITS-1:0] rd_at_i,
     input  wire                 rd_used_i, // the halfword is being read
@@ -56,7 +60,8 @@ module fsmc_memory #(
 );
     localparam WORD  = ADDR_BITS - 2;                // bits of a word address
     localparam UPPER = WORD - REGION_LOG2;           // of these, the region's
-    localparam PAIR  = REGION_LOG2 - BLOCK_LOG2 - 1; // of these, those of the pair of blocks in a region; block and word follow
+    // of these, those of the pair of blocks in a region; block and word follow
+    localparam PAIR  = REGION_LOG2 - BLOCK_LOG2 - 1;
     localparam BLOCK = 1 << BLOCK_LOG2;
 
     // ---- Posted writes
@@ -65,7 +70,8 @@ module fsmc_memory #(
     fsmc_post #(.ADDR_BITS(ADDR_BITS), .WIDTH(WIDTH), .LOG2(POST_LOG2)) u_fsmc_post (
         .clk_i(clk_i), .rst_i(rst_i),
         .wr_i(wr_i), .wr_addr_i(wr_addr_i), .wr_data_i(wr_data_i), .wr_be_i(wr_be_i),
-        .wr_lost_o(wr_lost_o), .room_o(room_o), .more_room_o(more_room_o), .flush_i(flush_i || rd_miss_i), .idle_o(idle_o),
+        .wr_lost_o(wr_lost_o), .room_o(room_o), .more_room_o(more_room_o),
+        .flush_i(flush_i || rd_miss_i), .idle_o(idle_o),
         .push_o(npi_wr_push_o), .push_data_o(npi_wr_data_o), .push_be_o(npi_wr_be_o),
         .word_valid_o(post_valid), .word_addr_o(post_addr),
         .word_taken_i(npi_addr_ack_i && !npi_rnw_o)
@@ -74,7 +80,8 @@ module fsmc_memory #(
     // ---- Read buffer
     reg [UPPER-1:0]      upper;           // region of both blocks
     reg [PAIR-1:0]       pair0, pair1;    // pair of the even and of the odd block
-    reg [1:0]            full, settled;   // bit n: block n has all its words; it had them a clock ago
+    // bit n: block n has all its words; it had them a clock ago
+    reg [1:0]            full, settled;
     reg                  current;         // the block being read
     reg                  ahead;           // the other block holds its successor, or will
     // A fetch has brought the words below fetch_word or, with have_single, that word alone.
@@ -102,7 +109,8 @@ module fsmc_memory #(
         if (fill)
             line[{fetch_block, fetch_word}] <= npi_rd_data_i;
     wire [4*WIDTH-1:0] rd_line = line[{rd_block, rd_word}];
-    wire [2*WIDTH-1:0] rd_pairs = rd_addr_async_i[1] ? rd_line[4*WIDTH-1:2*WIDTH] : rd_line[2*WIDTH-1:0];
+    wire [2*WIDTH-1:0] rd_pairs = rd_addr_async_i[1] ? rd_line[4*WIDTH-1:2*WIDTH] :
+        rd_line[2*WIDTH-1:0];
     assign rd_data_o = rd_addr_async_i[0] ? rd_pairs[2*WIDTH-1:WIDTH] : rd_pairs[WIDTH-1:0];
 
     // ---- The next fetch is decided from the copy of the address alone. While the pins move the
@@ -118,7 +126,8 @@ module fsmc_memory #(
 
     wire fetching = wanted || busy;
     wire last     = npi_rd_pop_o && (single || &fetch_word);
-    wire miss     = rd_miss_i && idle_o && !fetching && !at_whole && !(at_alone && at_word == fetch_word);
+    wire miss     = rd_miss_i && idle_o && !fetching && !at_whole &&
+        !(at_alone && at_word == fetch_word);
     wire second   = at_alone;                  // a miss beside the single word: fetch the block
     wire enter    = rd_used_i && at_whole && ahead && at_block != current;
     wire border   = current && &pair1;         // the last block of a region
@@ -199,7 +208,8 @@ module fsmc_memory #(
 
 `ifdef FORMAL
     // A read gives what was written last.
-    // fsmc_post_proof provides the halfword under observation, the writes of others to it, and its values.
+    // fsmc_post_proof provides the halfword under observation, the writes of others to it, and its
+    // values.
     (* hierconn *) wire [ADDR_BITS-1:0] \u_fsmc_post.place ;
     (* hierconn *) wire \u_fsmc_post.foreign ;
     (* hierconn *) wire [WIDTH-1:0] \u_fsmc_post.memory , \u_fsmc_post.newest ;
@@ -210,7 +220,8 @@ module fsmc_memory #(
 
     reg past = 1'b0;
     reg untold = 1'b0;         // others have written since the last drop_i
-    // The port's model counts the words pushed, and gives the words of a read in order, as the memory had them.
+    // The port's model counts the words pushed, and gives the words of a read in order, as the
+    // memory had them.
     reg [POST_LOG2-1:0] pushed; // words pushed whose request has not been acknowledged
     reg [4:0] to_come;
     reg [WORD-1:0] coming;     // address of the next word to come
@@ -219,17 +230,20 @@ module fsmc_memory #(
     wire [WORD-1:0] npi_word = npi_addr_o[ADDR_BITS:3];
     wire [WORD-1:0] place_word = place[ADDR_BITS-1:2];
     wire [1:0] lane = place[1:0];
-    wire [WIDTH-1:0] came = lane[1] ? (lane[0] ? npi_rd_data_i[4*WIDTH-1:3*WIDTH] : npi_rd_data_i[3*WIDTH-1:2*WIDTH])
-                                    : (lane[0] ? npi_rd_data_i[2*WIDTH-1:WIDTH] : npi_rd_data_i[WIDTH-1:0]);
+    wire [WIDTH-1:0] came = lane[1]
+        ? (lane[0] ? npi_rd_data_i[4*WIDTH-1:3*WIDTH] : npi_rd_data_i[3*WIDTH-1:2*WIDTH])
+        : (lane[0] ? npi_rd_data_i[2*WIDTH-1:WIDTH] : npi_rd_data_i[WIDTH-1:0]);
     // `kept` is the halfword under observation as the read buffer has it.
     wire [BLOCK_LOG2-1:0] place_in_block = place[BLOCK_LOG2+1:2];
     wire place_block = place[BLOCK_LOG2+2];
     wire [4*WIDTH-1:0] place_line = line[{place_block, place_in_block}];
-    wire [WIDTH-1:0] kept = lane[1] ? (lane[0] ? place_line[4*WIDTH-1:3*WIDTH] : place_line[3*WIDTH-1:2*WIDTH])
-                                    : (lane[0] ? place_line[2*WIDTH-1:WIDTH] : place_line[WIDTH-1:0]);
+    wire [WIDTH-1:0] kept = lane[1]
+        ? (lane[0] ? place_line[4*WIDTH-1:3*WIDTH] : place_line[3*WIDTH-1:2*WIDTH])
+        : (lane[0] ? place_line[2*WIDTH-1:WIDTH] : place_line[WIDTH-1:0]);
     wire place_same = place[ADDR_BITS-1:REGION_LOG2+2] == upper &&
                       place[REGION_LOG2+1:BLOCK_LOG2+3] == (place_block ? pair1 : pair0);
-    wire place_filled = fetch_block == place_block && busy && !stale && to_come != 5'd0 && !single &&
+    wire place_filled = fetch_block == place_block && busy && !stale && to_come != 5'd0 &&
+        !single &&
                         place_in_block < fetch_word;
     wire place_alone  = fetch_block == place_block && have_single && place_in_block == fetch_word;
 
@@ -271,15 +285,19 @@ module fsmc_memory #(
                 assert (memory == newest);
             // Missing data is requested, if nothing else is on the way.
             if (rd_miss_i && idle_o && !wanted && !busy)
-                assert (miss || at_whole || (at_alone && !(|(at_word ^ fetch_word)))); // else one cell with the above
+                // else one cell with the above
+                assert (miss || at_whole || (at_alone && !(|(at_word ^ fetch_word))));
             // A block keeps its words until a fetch needs its place, or all are dropped.
             if ($past(!rst_i && !drop_i && !wr_i && !(miss && at_upper != upper)))
-                assert (($past(full) & ~full & ($past(miss || next) ? ~(2'b01 << fetch_block) : 2'b11)) == 2'b00);
+                assert (($past(full) & ~full &
+                         ($past(miss || next) ? ~(2'b01 << fetch_block) : 2'b11)) == 2'b00);
             // The blocks' tags share the upper bits: a miss in another region takes both back.
             if ($past(miss && at_upper != upper))
                 assert (full == 2'b00);
-            assert (!ahead || fetch_block != current); // what is read ahead never takes the place of the block being read
-            // The port's rules hold: one read at a time, data of a write before its request, aligned blocks.
+            // what is read ahead never takes the place of the block being read
+            assert (!ahead || fetch_block != current);
+            // The port's rules hold: one read at a time, data of a write before its request,
+            // aligned blocks.
             if (npi_addr_req_o) begin
                 assert (!npi_rnw_o || to_come == 5'd0);
                 assert (npi_rnw_o || pushed != 0);
@@ -305,19 +323,22 @@ module fsmc_memory #(
             assert (!full[fetch_block] || !(fetching || have_single) || stale);
             if (place_same && !untold) begin
                 assert (!(full[place_block] || place_filled || place_alone) || kept == memory);
-                assert (!(busy && !stale && to_come != 5'd0 && coming == place_word) || coming_data == memory);
+                assert (!(busy && !stale && to_come != 5'd0 && coming == place_word) ||
+                        coming_data == memory);
             end
             if (busy && !stale && to_come != 5'd0 && !untold)
                 assert (coming_data == memory);
         end
         cover (past && rd_safe_o && rd_block && ahead && $past(ahead));
-        cover (past && rd_hit_o && rd_addr_async_i == place && newest != 0 && $past(memory, 4) != memory);
+        cover (past && rd_hit_o && rd_addr_async_i == place && newest != 0 &&
+               $past(memory, 4) != memory);
         cover (past && stale && !npi_rd_empty_i);
     end
 `endif
 `ifdef COVER_POINTS
     reads_ahead: cover property (@(posedge clk_i) next);
-    stops_at_border: cover property (@(posedge clk_i) rd_used_i && at_whole && !ahead && at_block == current && border);
+    stops_at_border: cover property (@(posedge clk_i) rd_used_i && at_whole && !ahead &&
+                                     at_block == current && border);
     dropped_on_its_way: cover property (@(posedge clk_i) npi_rd_pop_o && stale);
     second_miss_fetches_block: cover property (@(posedge clk_i) miss && second);
     hit_while_block_comes: cover property (@(posedge clk_i) rd_hit_o && filling && rd_used_i);

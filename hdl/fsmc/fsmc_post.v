@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_post: merges halfword writes into words of four, pushes closed words to the memory port and queues their addresses.
+// fsmc_post: merges halfword writes into words of four, pushes closed words to the memory port and
+// queues their addresses.
 //
 // A halfword joins the open word if it belongs to it. The word is closed when all its bytes are
 // there, when a write elsewhere comes, and with flush_i. Its data then goes into the port's write
@@ -12,7 +13,8 @@
 module fsmc_post #(
     parameter ADDR_BITS = 25, // bits of a halfword address
     parameter WIDTH     = 16, // bits of a halfword
-    parameter LOG2      = 4   // 2**LOG2 - 1 closed words can wait; the port's FIFO has room for them
+    // 2**LOG2 - 1 closed words can wait; the port's FIFO has room for them
+    parameter LOG2      = 4
 ) (
     input  wire                 clk_i,
     input  wire                 rst_i,
@@ -38,7 +40,8 @@ module fsmc_post #(
     localparam WORD = ADDR_BITS - 2;
 
     reg [WORD-1:0] addrs [0:(1<<LOG2)-1];
-    // `count` words from `head` on are closed. The initial value keeps Yosys from keeping head twice (npi_queue).
+    // `count` words from `head` on are closed. The initial value keeps Yosys from keeping head
+    // twice (npi_queue).
     reg [LOG2-1:0] head = 0, count;
     reg            open, none; // none: count == 0
     reg [WORD-1:0] open_addr;
@@ -62,7 +65,8 @@ module fsmc_post #(
     assign push_be_o    = open_be;
 
     wire [3:0] bank = 4'd1 << wr_addr_i[1:0];
-    wire [7:0] take = {{2{bank[3]}}, {2{bank[2]}}, {2{bank[1]}}, {2{bank[0]}}} & {4{wr_be_i}} & {8{accept}};
+    wire [7:0] take = {{2{bank[3]}}, {2{bank[2]}}, {2{bank[1]}}, {2{bank[0]}}} & {4{wr_be_i}} &
+        {8{accept}};
     genvar b;
     generate
         for (b = 0; b < 8; b = b + 1) begin : g_byte
@@ -104,15 +108,17 @@ module fsmc_post #(
     localparam HALF = WIDTH / 2, DEPTH = 1 << LOG2;
     reg past = 1'b0;
     wire [1:0] place_lane = place[1:0];
-    // The model of the port's write FIFO keeps, of every word, the halfword under observation and its byte enables.
+    // The model of the port's write FIFO keeps, of every word, the halfword under observation and
+    // its byte enables.
     reg [WIDTH+1:0] fifo [0:DEPTH-1];
-    wire [WIDTH+1:0] open_half = {push_be_o[2*place_lane +: 2], push_data_o[WIDTH*place_lane +: WIDTH]};
+    wire [WIDTH+1:0] open_half =
+        {push_be_o[2*place_lane +: 2], push_data_o[WIDTH*place_lane +: WIDTH]};
     always @(posedge clk_i)
         if (push_o)
             fifo[tail] <= open_half;
 
-    // `after` is the memory's value after each word that waits has been written, oldest first; the open word is
-    // the last of them.
+    // `after` is the memory's value after each word that waits has been written, oldest first; the
+    // open word is the last of them.
     wire [WIDTH*(DEPTH+1)-1:0] after;
     assign after[WIDTH-1:0] = memory;
     genvar q;
@@ -127,8 +133,10 @@ module fsmc_post #(
             wire [1:0] be;
             assign {be, data} = closed ? half_ram : open_half;
             wire hits = (closed || (q == count && open)) && addr == place[ADDR_BITS-1:2];
-            assign after[WIDTH*(q+1) +: HALF] = hits && be[0] ? data[HALF-1:0] : after[WIDTH*q +: HALF];
-            assign after[WIDTH*(q+1)+HALF +: HALF] = hits && be[1] ? data[WIDTH-1:HALF] : after[WIDTH*q+HALF +: HALF];
+            assign after[WIDTH*(q+1) +: HALF] = hits &&
+                be[0] ? data[HALF-1:0] : after[WIDTH*q +: HALF];
+            assign after[WIDTH*(q+1)+HALF +: HALF] = hits &&
+                be[1] ? data[WIDTH-1:HALF] : after[WIDTH*q+HALF +: HALF];
         end
     endgenerate
     wire [WIDTH-1:0] final_value = after[WIDTH*DEPTH +: WIDTH];

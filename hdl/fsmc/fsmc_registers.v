@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_registers: reads and writes 32-bit words of the register bus in two 16-bit halves, low half first, each word in one piece.
+// fsmc_registers: reads and writes 32-bit words of the register bus in two 16-bit halves, low half
+// first, each word in one piece.
 //
-// A read of the low half reads the word and keeps its high half; a write of the low half keeps it, and a write of
-// the high half writes the word. A high half alone is read afresh; written alone it is an error.
-// Writes are posted: busy_o is high from the cycle after wr_i until the word has been written, and
-// every other access waits for that. All memory writes are flushed before a transfer.
-// expired_i ends the wait for a slave with an error; a memory that does not take the writes
-// in time is reported, and the transfer goes on.
+// A read of the low half reads the word and keeps its high half; a write of the low half keeps it,
+// and a write of the high half writes the word. A high half alone is read afresh; written alone it
+// is an error. Writes are posted: busy_o is high from the cycle after wr_i until the word has been
+// written, and every other access waits for that. All memory writes are flushed before a transfer.
+// expired_i ends the wait for a slave with an error; a memory that does not take the writes in time
+// is reported, and the transfer goes on.
 
 `default_nettype none
 
@@ -46,12 +47,14 @@ module fsmc_registers (
     input  wire [31:0] bus_rdata_i,
     input  wire        bus_error_i
 );
-    // At most one of these waits: flushing, for memory to take what was posted; bus_valid_o, for the slave's answer; answering,
-    // for the processor to end its read. With none of them, and no give, there is nothing to do.
+    // At most one of these waits: flushing, for memory to take what was posted; bus_valid_o, for
+    // the slave's answer; answering, for the processor to end its read. With none of them, and no
+    // give, there is nothing to do.
     reg        flushing, answering;
     reg [31:0] word;       // word read last
     reg [15:0] low;        // low half written last
-    reg        half_read, half_write; // of bus_addr_o's word the high half is kept from a read, the low half from a write
+    // of bus_addr_o's word the high half is kept from a read, the low half from a write
+    reg        half_read, half_write;
     reg        asked_high; // this read is of the high half, whatever the pins say now
     reg        given_up;   // the read has ended early; its answer is dropped
     reg        give, seen, done_ne, done_noe;
@@ -78,7 +81,8 @@ module fsmc_registers (
     assign bus_wdata_o   = {wr_data_i, low};
     assign error_write_o = bus_write_o;
 
-    // The clock sets these flip-flops and the pins clear them, because the next read may begin a few nanoseconds later.
+    // The clock sets these flip-flops and the pins clear them, because the next read may begin a
+    // few nanoseconds later.
     always @(posedge clk_i or posedge ne_n_async_i)
         if (ne_n_async_i)
             done_ne <= 1'b0;
@@ -111,7 +115,8 @@ module fsmc_registers (
             low <= wr_data_i;
         if (ends && !bus_write_o)
             word <= bus_rdata_i;
-        if (idle && reading_i && |rd_addr_i[24:11]) // by itself, not by `wrong`: a short path to 32 resets
+        // by itself, not by `wrong`: a short path to 32 resets
+        if (idle && reading_i && |rd_addr_i[24:11])
             word <= 32'd0;
 
         if (begins || flushed)
@@ -178,13 +183,16 @@ module fsmc_registers (
             last_read <= bus_rdata_i;
         if (begins && keep)
             last_low <= wr_data_i;
-        low_word <= !rst_i && (begins ? wr_i && !wr_addr_i[0] && wr_addr_i[24:11] == 14'd0 : low_word);
+        low_word <= !rst_i &&
+            (begins ? wr_i && !wr_addr_i[0] && wr_addr_i[24:11] == 14'd0 : low_word);
         if (begins)
             low_read <= !wr_i && !rd_addr_i[0];
 
         if (past && !rst_i) begin
-            // An access makes one transfer at most, one at a time, and no transfer comes without an access.
-            assert ({2'd0, flushing} + {2'd0, bus_valid_o} + {2'd0, give} + {2'd0, answering} <= 3'd1);
+            // An access makes one transfer at most, one at a time, and no transfer comes without an
+            // access.
+            assert ({2'd0, flushing} + {2'd0, bus_valid_o} + {2'd0, give} +
+                    {2'd0, answering} <= 3'd1);
             if (bus_valid_o && !$past(bus_valid_o))
                 assert ($past(flushing));
             if (flushing && !$past(flushing))
@@ -220,10 +228,12 @@ module fsmc_registers (
     word_read: cover property (@(posedge clk_i) ends && !bus_write_o && bus_ready_i);
     word_written: cover property (@(posedge clk_i) ends && bus_write_o && bus_ready_i);
     high_half_kept: cover property (@(posedge clk_i) begins && kept);
-    high_half_written_alone: cover property (@(posedge clk_i) begins && wr_i && high && in_range && !(half_write && same));
+    high_half_written_alone: cover property (@(posedge clk_i) begins && wr_i && high && in_range &&
+                                             !(half_write && same));
     beyond_the_slots: cover property (@(posedge clk_i) begins && !in_range);
     slave_hangs: cover property (@(posedge clk_i) bus_valid_o && expired_i && !bus_ready_i);
-    memory_hangs_before_transfer: cover property (@(posedge clk_i) flushing && expired_i && !idle_i);
+    memory_hangs_before_transfer: cover property (@(posedge clk_i) flushing && expired_i &&
+            !idle_i);
     read_given_up: cover property (@(posedge clk_i) ends && !bus_write_o && given_up);
     write_while_busy: cover property (@(posedge clk_i) wr_i && !idle);
 `endif

@@ -1,21 +1,27 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_words_proof: 32-bit register words are atomic at the pins of fsmc_bridge; a part of fsmc_bridge_proof.
+// fsmc_words_proof: 32-bit register words are atomic at the pins of fsmc_bridge; a part of
+// fsmc_bridge_proof.
 //
-// These hold for any sequence of accesses, completed or given up at any moment, to registers, beyond them and to memory:
-// - A word written to the bus is that of the processor's last two completed register accesses: low half, then high half of
-//   the same word; so is its address. An access that was given up writes nothing.
-// - A write of a high half, or beyond the slots, yields exactly one transfer or one report of an error, before the next
-//   register access goes on: a transfer if its low half came just before, with not even the attempt of a read between; an
-//   error if it did not. A write of a low half yields neither.
-// - A read gives half of the word that the bus gave last, and that word is of the read's address. Its transfer began in this
-//   access or, for a high half, in the read of its low half just before. If nothing at all was between those two it is always
-//   the latter: both halves are of one transfer. Otherwise reads that were given up may lie between; one of those may have
-//   been that of the low half. A read beyond the slots gives 0.
-// - Each read, also one that was given up, makes one transfer at most, and no transfer comes without a read.
+// These hold for any sequence of accesses, completed or given up at any moment, to registers,
+// beyond them and to memory:
+// - A word written to the bus is that of the processor's last two completed register accesses: low
+//   half, then high half of the same word; so is its address. An access that was given up writes
+//   nothing.
+// - A write of a high half, or beyond the slots, yields exactly one transfer or one report of an
+//   error, before the next register access goes on: a transfer if its low half came just before,
+//   with not even the attempt of a read between; an error if it did not. A write of a low half
+//   yields neither.
+// - A read gives half of the word that the bus gave last, and that word is of the read's address.
+//   Its transfer began in this access or, for a high half, in the read of its low half just before. If
+//   nothing at all was between those two it is always the latter: both halves are of one transfer.
+//   Otherwise reads that were given up may lie between; one of those may have been that of the low
+//   half. A read beyond the slots gives 0.
+// - Each read, also one that was given up, makes one transfer at most, and no transfer comes
+//   without a read.
 //
-// The second half relates the harness's notes to the bridge's registers: with it all assertions together are inductive
-// over two steps, so runs of any length are proven.
+// The second half relates the harness's notes to the bridge's registers: with it all assertions
+// together are inductive over two steps, so runs of any length are proven.
 
     wire up = resets > 3'd1;
 
@@ -23,21 +29,26 @@
     reg [1:0]  was_addr = 2'd0;
     reg [31:0] was_rdata = 32'd0;
     always @(posedge step)
-        {was_valid, was_write, was_addr, was_rdata} <= {bus_valid, bus_write, bus_addr[1:0], bus_rdata};
+        {was_valid, was_write, was_addr, was_rdata} <=
+            {bus_valid, bus_write, bus_addr[1:0], bus_rdata};
     wire reads     = access && ne2_i && !noe_n_i;
     wire was_reads = was_access && was_ne2 && !was_noe;
     wire wrote2    = wrote && was_ne2;
     wire read_done = was_reads && !selected && !gives_up;
     wire begins    = bus_valid && !was_valid;
     wire ends      = was_valid && !bus_valid;
-    wire reports   = clock && access_error && !error_memory && error_write && !(ends && was_write); // no transfer
-    // NWE rises before NE (RM0033), or after it where the access is given up; never in the same step.
+    // no transfer
+    wire reports   = clock && access_error && !error_memory && error_write && !(ends && was_write);
+    // NWE rises before NE (RM0033), or after it where the access is given up; never in the same
+    // step.
     always @* assume (!(was_access && !selected && !was_nwe) || !nwe_n_i);
 
     // ---- Writes
-    reg       low_may = 1'b0, low_sure = 1'b0; // the bridge holds the low half written last: perhaps, for certain
+    // the bridge holds the low half written last: perhaps, for certain
+    reg       low_may = 1'b0, low_sure = 1'b0;
     reg [1:0] low_at = 2'd0, low = 2'd0;
-    reg       owed = 1'b0, may = 1'b0, sure = 1'b0; // a transfer or an error is due; it may be, must be a transfer
+    // a transfer or an error is due; it may be, must be a transfer
+    reg       owed = 1'b0, may = 1'b0, sure = 1'b0;
     reg [1:0] word_at = 2'd0;
     reg [3:0] word = 4'd0;
     wire keeps    = !was_beyond && !was_a[0];
@@ -59,7 +70,8 @@
         if (begins && bus_write)
             assert (owed && may);
         if (bus_valid && bus_write)
-            assert (bus_addr == {8'd0, word_at} && bus_wdata == {14'd0, word[3:2], 14'd0, word[1:0]});
+            assert (bus_addr == {8'd0, word_at} &&
+                    bus_wdata == {14'd0, word[3:2], 14'd0, word[1:0]});
         if (reports)
             assert (owed && !sure && error_addr == {8'd0, word_at});
         if (access && ne2_i && nwait_n)
@@ -70,10 +82,12 @@
     end
 
     // ---- Reads: transfers
-    reg  unread = 1'b0, forgotten = 1'b0; // a transfer has yet to begin for this access, for one that was given up
+    // a transfer has yet to begin for this access, for one that was given up
+    reg  unread = 1'b0, forgotten = 1'b0;
     wire fetches     = begins && !bus_write;
     wire unread_n    = reads && (!was_reads || (unread && !(fetches && !forgotten)));
-    wire forgotten_n = (forgotten && !fetches) || (gives_up && was_reads && unread && !(fetches && !forgotten));
+    wire forgotten_n = (forgotten && !fetches) ||
+        (gives_up && was_reads && unread && !(fetches && !forgotten));
     always @(posedge step)
         {unread, forgotten} <= {unread_n, forgotten_n};
     always @* if (up && fetches)
@@ -81,17 +95,22 @@
 
     // ---- Reads: data, of any word `its`
     (* anyconst *) reg [1:0] its;
-    reg       asked = 1'b0, got = 1'b0;          // a transfer has begun in this access; it has ended
-    reg       half_may = 1'b0, half_sure = 1'b0; // the high half of `its` is there: perhaps, for certain
+    // a transfer has begun in this access; it has ended
+    reg       asked = 1'b0, got = 1'b0;
+    // the high half of `its` is there: perhaps, for certain
+    reg       half_may = 1'b0, half_sure = 1'b0;
     reg [1:0] answer_at = 2'd0;
     reg [3:0] answer = 4'd0;
     wire answered = ends && !was_write;
-    wire mine     = !was_beyond && was_a == {its, 1'b0}; // the access that ends is one to the low half of `its`
+    // the access that ends is one to the low half of `its`
+    wire mine     = !was_beyond && was_a == {its, 1'b0};
     wire asked_n  = access && (asked || (fetches && reads));
     wire got_n    = access && (got || (answered && was_reads && asked && was_addr == a_i[2:1]));
-    wire half_may_n  = wrote2 ? 1'b0 : read_done ? mine : half_may || (gives_up && was_reads && mine);
+    wire half_may_n  = wrote2 ? 1'b0 : read_done ? mine : half_may ||
+        (gives_up && was_reads && mine);
     wire half_sure_n = wrote2 ? 1'b0 : read_done ? mine :
-                       half_sure && !(reads && (beyond_i || a_i != {its, 1'b1})) && !(gives_up && was_reads);
+                       half_sure && !(reads && (beyond_i || a_i != {its, 1'b1})) &&
+                           !(gives_up && was_reads);
     wire [1:0] answer_at_n = answered ? was_addr : answer_at;
     wire [3:0] answer_n = answered ? {was_rdata[17:16], was_rdata[1:0]} : answer;
     always @(posedge step) begin
@@ -116,19 +135,28 @@
 
     // ---- The harness's notes agree with the bridge's registers, all of this step
     wire [3:0]  turn = turns[4:1] ^ turns[3:0];
-    wire        s0 = \u_fsmc_bridge.u_access.bit_meta [4], s1 = \u_fsmc_bridge.u_access.bit_sync [4];
-    wire        flushing   = \u_fsmc_bridge.u_fsmc_registers.flushing , give = \u_fsmc_bridge.u_fsmc_registers.give ;
-    wire        answering  = \u_fsmc_bridge.u_fsmc_registers.answering , seen = \u_fsmc_bridge.u_fsmc_registers.seen ;
-    wire        half_read  = \u_fsmc_bridge.u_fsmc_registers.half_read , half_write = \u_fsmc_bridge.u_fsmc_registers.half_write ;
-    wire        asked_high = \u_fsmc_bridge.u_fsmc_registers.asked_high , read_given_up = \u_fsmc_bridge.u_fsmc_registers.given_up ;
-    wire [1:0]  done_s = {\u_fsmc_bridge.u_fsmc_registers.u_done.bit_sync , \u_fsmc_bridge.u_fsmc_registers.u_done.bit_meta };
+    wire        s0 = \u_fsmc_bridge.u_access.bit_meta [4],
+        s1 = \u_fsmc_bridge.u_access.bit_sync [4];
+    wire        flushing   = \u_fsmc_bridge.u_fsmc_registers.flushing ,
+        give = \u_fsmc_bridge.u_fsmc_registers.give ;
+    wire        answering  = \u_fsmc_bridge.u_fsmc_registers.answering ,
+        seen = \u_fsmc_bridge.u_fsmc_registers.seen ;
+    wire        half_read  = \u_fsmc_bridge.u_fsmc_registers.half_read ,
+        half_write = \u_fsmc_bridge.u_fsmc_registers.half_write ;
+    wire        asked_high = \u_fsmc_bridge.u_fsmc_registers.asked_high ,
+        read_given_up = \u_fsmc_bridge.u_fsmc_registers.given_up ;
+    wire [1:0]  done_s =
+        {\u_fsmc_bridge.u_fsmc_registers.u_done.bit_sync ,
+         \u_fsmc_bridge.u_fsmc_registers.u_done.bit_meta };
     wire [31:0] kept   = \u_fsmc_bridge.u_fsmc_registers.word ;
     wire idle     = !flushing && !bus_valid && !give && !answering;
     wire done     = reads && nwait_n;
     wire writing  = (flushing || bus_valid) && bus_write;
-    wire fetching = (flushing || bus_valid || give) && !bus_write && !read_given_up; // the access may still be under way
+    // the access may still be under way
+    wire fetching = (flushing || bus_valid || give) && !bus_write && !read_given_up;
 
-    // `since` counts clocks since a write's strobe rose, by2 is its bank; gone2: the access given up last read a register.
+    // `since` counts clocks since a write's strobe rose, by2 is its bank; gone2: the access given
+    // up last read a register.
     reg  [2:0] since = 3'd5;
     reg        by2 = 1'b0, gone2 = 1'b0;
     reg  [5:0] last = 6'd0;
@@ -137,7 +165,8 @@
     wire [5:0] last_n  = wrote ? {was_beyond, was_a, was_d} : last;
     wire       gone2_n = gives_up ? was_reads : gone2 && !access;
     wire [2:0] rest_n  = wrote || gives_up ? 3'd0 : clock && rest != 3'd7 ? rest + 3'd1 : rest;
-    wire [1:0] calm_n  = !access || !nwait_n ? 2'd0 : was_access && clock && calm != 2'd2 ? calm + 2'd1 : calm;
+    wire [1:0] calm_n  = !access ||
+        !nwait_n ? 2'd0 : was_access && clock && calm != 2'd2 ? calm + 2'd1 : calm;
     always @(posedge step)
         {since, by2, last, gone2} <= {since_n, by2_n, last_n, gone2_n};
     wire pending  = since_n < 3'd3; // the write is not yet known to fsmc_registers
@@ -150,7 +179,8 @@
         assert (past || rst);
         assert (rst ? resets <= 3'd2 : resets == 3'd2);
         if (rst)
-            assert (!owed && !low_may && !low_sure && !half_may && !half_sure && !asked && !got && since == 3'd5 && !given_up && !gone2);
+            assert (!owed && !low_may && !low_sure && !half_may && !half_sure && !asked && !got &&
+                    since == 3'd5 && !given_up && !gone2);
         if (rst && resets != 3'd0)
             assert (idle && !half_read && !half_write && turn == 4'd0);
         assert (!let_go || (was_access && was_nwait));
@@ -169,7 +199,8 @@
         endcase
         assert (since_n == 3'd5 || rest_n <= since_n);
         if (pending)
-            assert ({taken[44:43], taken[40:0]} == {by2_n, !by2_n, 13'd0, last_n[5], 8'd0, last_n[4:2], 14'd0, last_n[1:0]});
+            assert ({taken[44:43], taken[40:0]} ==
+                    {by2_n, !by2_n, 13'd0, last_n[5], 8'd0, last_n[4:2], 14'd0, last_n[1:0]});
         // The copy of a write stays for fsmc_registers until the next write.
         if (since_n == 3'd2 || (since_n != 3'd0 && !idle && bus_write))
             assert (copy == {taken[44:43], taken[40:0]});
@@ -197,12 +228,15 @@
         assert (answering || (done_s == 2'd0 && !seen) || idle);
         assert (!idle || done_s == 2'd0);
         assert (!(give || answering) || !bus_write);
-        assert (!done || (answering && s0 && s1 && !read_given_up && done_s != 2'b10 && (!seen || done_s == 2'b11)));
+        assert (!done ||
+                (answering && s0 && s1 && !read_given_up && done_s != 2'b10 &&
+                 (!seen || done_s == 2'b11)));
         assert (!done || calm_n != 2'd2 || done_s[0]);
 
         // The read in progress is that of the pins, or was given up just now.
         if (fetching && reads)
-            assert (s0 && s1 && bus_addr == {8'd0, a_i[2:1]} && asked_high == a_i[0] && (give || !beyond_i));
+            assert (s0 && s1 && bus_addr == {8'd0, a_i[2:1]} && asked_high == a_i[0] &&
+                    (give || !beyond_i));
         if (fetching && !reads) begin
             assert (gone2_n && rest_n <= 3'd2);
             if ((flushing && rest_n == 3'd0) || (bus_valid && s1))
@@ -217,7 +251,8 @@
             assert (done || ((bus_valid || give) && fetching));
         if (gone2_n && (s0 || s1) && !forgotten_n)
             assert ((bus_valid && !bus_write) || (give && rest_n != 3'd0) ||
-                    ((give || answering) && s1 && !read_given_up && (!seen || done_s[1]) && (!s0 || done_s != 2'b10)));
+                    ((give || answering) && s1 && !read_given_up && (!seen || done_s[1]) &&
+                     (!s0 || done_s != 2'b10)));
 
         // The word that is kept is the one read last.
         if (half_read) begin
@@ -231,9 +266,11 @@
                 assert (kept == 32'd0);
             else begin
                 assert (answer_at_n == a_i[2:1]);
-                assert (a_i[0] ? kept[31:16] == {14'd0, answer_n[3:2]} : kept[15:0] == {14'd0, answer_n[1:0]});
+                assert (a_i[0] ? kept[31:16] == {14'd0, answer_n[3:2]} :
+                        kept[15:0] == {14'd0, answer_n[1:0]});
                 if (a_i[2:1] == its)
-                    assert ((got_n || (a_i[0] && half_may_n)) && (!got_n || !a_i[0] || !half_sure_n));
+                    assert ((got_n || (a_i[0] && half_may_n)) &&
+                            (!got_n || !a_i[0] || !half_sure_n));
             end
         end
         if (((give && fetching) || done) && reads)
@@ -241,13 +278,17 @@
         if (half_sure_n) begin
             assert (!flushing && !bus_valid && !pending2 && !(reads && got_n));
             assert ((half_read && bus_addr == {8'd0, its} && (idle || answering)) ||
-                    (reads && !beyond_i && a_i == {its, 1'b1} && ((give && !read_given_up) || done)));
+                    (reads && !beyond_i && a_i == {its, 1'b1} &&
+                     ((give && !read_given_up) || done)));
         end
 
-        // The low half written last is kept for the write of its high half, which is a transfer only then.
+        // The low half written last is kept for the write of its high half, which is a transfer
+        // only then.
         assert (!half_write || idle);
         if (!pending2) begin
-            assert (!half_write || (low_may_n && bus_wdata[15:0] == {14'd0, low_n} && bus_addr == {8'd0, low_at_n}));
+            assert (!half_write ||
+                    (low_may_n && bus_wdata[15:0] == {14'd0, low_n} &&
+                     bus_addr == {8'd0, low_at_n}));
             assert (!low_sure_n || half_write);
         end else if (last_low)
             assert (low_may_n && low_n == last_n[1:0] && low_at_n == last_n[4:3]);
@@ -259,6 +300,7 @@
         end
         assert (owed_n == ((pending2 && !last_low) || (flushing && bus_write)));
         if (writing)
-            assert (bus_addr == {8'd0, word_at_n} && bus_wdata == {14'd0, word_n[3:2], 14'd0, word_n[1:0]} && (bus_valid || may_n));
+            assert (bus_addr == {8'd0, word_at_n} &&
+                    bus_wdata == {14'd0, word_n[3:2], 14'd0, word_n[1:0]} && (bus_valid || may_n));
     end
     end

@@ -21,7 +21,8 @@ module modem_at #(
     input  wire [11:0] time_i,
     // control
     input  wire        start_i,    // only while not busy
-    input  wire        wire_i,     // with start_i: no modem is there, the target rate is taken at once
+    // with start_i: no modem is there, the target rate is taken at once
+    input  wire        wire_i,
     output reg         busy_o,
     output reg         done_o,     // one cycle
     output reg         failed_o,   // one cycle
@@ -49,7 +50,8 @@ module modem_at #(
     reg       fresh;    // the line is not idle yet, so no time passes
     reg       steady;   // the character to send is there
     reg [3:0] value;    // last digit
-    reg       tried, walks; // a command failed once, twice; in step 1 the next rate is the factory's, the next lower
+    // a command failed once, twice; in step 1 the next rate is the factory's, the next lower
+    reg       tried, walks;
     reg       heard_o, heard_k; // the reply ends in "O", in "OK"
     reg       ok, refused;      // one cycle: the reply is complete
     reg [3:0] same;             // three bits each of time and guard time
@@ -75,7 +77,8 @@ module modem_at #(
     );
 
     // The next lower rate; after the lowest comes 250,000.
-    wire [3:0] lower = {bd_o[2:0] == 3'd0, bd_o[2] ^ (bd_o[1:0] == 2'd0), bd_o[1] ~^ bd_o[0], ~bd_o[0]};
+    wire [3:0] lower =
+        {bd_o[2:0] == 3'd0, bd_o[2] ^ (bd_o[1:0] == 2'd0), bd_o[1] ~^ bd_o[0], ~bd_o[0]};
 
     reg [3:0] nibble;
     always @* begin

@@ -3,7 +3,8 @@
 // modem_at_rows: holds the AT set-up as rows in block RAM: modem_at's action at each place of each
 // step.
 //
-// A row has flags and eight bits of data: a character, or {word of the settings, its nibble}. Without flags it does nothing.
+// A row has flags and eight bits of data: a character, or {word of the settings, its nibble}.
+// Without flags it does nothing.
 
 `default_nettype none
 `include "shift_order.vh"
@@ -77,7 +78,8 @@ module modem_at_rows #(
             default: digit_count = 0;
         endcase
     endfunction
-    function [7:0] digit(input integer step, input [4:0] left); // {word, nibble} before `left` others
+    // {word, nibble} before `left` others
+    function [7:0] digit(input integer step, input [4:0] left);
         case (step)
             2:       digit = {1'b0, MODEM_ADDR, left[2:0]};
             4:       digit = {1'b0, MODEM_ADDR, 1'b1, left[1:0]};
@@ -137,5 +139,6 @@ module modem_at_rows #(
         else
             now <= rows[{step_i, place_i}];
 
-    assign {settle_o, skip_o, refuse_o, limit_o, hear_o, guard_o, rate_o, digit_o, send_o, data_o} = now;
+    assign {settle_o, skip_o, refuse_o, limit_o, hear_o, guard_o, rate_o, digit_o, send_o, data_o} =
+        now;
 endmodule

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_baud: gives eight ticks a bit time, from a phase accumulator; rates below 38400 are 38400 / 2**n.
+// modem_baud: gives eight ticks a bit time, from a phase accumulator; rates below 38400 are 38400 /
+// 2**n.
 //
 // Error of the mean rate: below 0.1 % for every code from 2 to 100 MHz.
 //
-//   bd_i  0..5  1200 << bd_i     6  57,600     7  111,111, as the modem's "115200"     8..15  250,000
+//   bd_i  0..5  1200 << bd_i     6  57,600     7  111,111, as the modem's "115200"     8..15
+//   250,000
 
 `default_nettype none
 
@@ -49,8 +51,9 @@ module modem_baud #(
     end
 
 `ifdef FORMAL
-    // n clocks equal one step of n, which the simulator adds at once (testbench/sim/quiet_span.cpp).
-    // A span may begin in any clock in which no carry and no tick is on its way.
+    // n clocks equal one step of n, which the simulator adds at once
+    // (testbench/sim/quiet_span.cpp). A span may begin in any clock in which no carry and no tick
+    // is on its way.
     (* anyseq *) reg begins;
     reg        past = 1'b0, spans = 1'b0;
     reg [17:0] phase_then;
@@ -86,16 +89,20 @@ module modem_baud #(
             assert (count == count_then + before[22:18]);
             // A tick is there two clocks after its carry has come about, and at no other time.
             if (n > 9'd1)
-                assert (tick_o == (before[27:18] != older[27:18] && ((count_then + older[22:18]) & hide) == 5'd0));
+                assert (tick_o ==
+                        (before[27:18] != older[27:18] &&
+                         ((count_then + older[22:18]) & hide) == 5'd0));
             else
                 assert (!tick_o);
         end
         cover (past && spans && bd_i == rate && tick_o);
     end
-    // So many carries a second as eight ticks a bit time have, within 0.1 %; each tick is of so many.
+    // So many carries a second as eight ticks a bit time have, within 0.1 %; each tick is of so
+    // many.
     localparam [63:0] SECOND = CLK_HZ;
     function near(input [31:0] phase_step, input [63:0] wanted); // carries a second, times 2**WIDTH
-        near = {32'd0, phase_step} * SECOND * 64'd1000 >= wanted * 64'd999 && {32'd0, phase_step} * SECOND * 64'd1000 <= wanted * 64'd1001;
+        near = {32'd0, phase_step} * SECOND * 64'd1000 >= wanted * 64'd999 &&
+            {32'd0, phase_step} * SECOND * 64'd1000 <= wanted * 64'd1001;
     endfunction
     localparam [63:0] BAUD = 64'd8 << WIDTH;
     always @* begin

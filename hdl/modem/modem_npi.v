@@ -11,7 +11,8 @@
 module modem_npi (
     input  wire        clk_i,
     input  wire        rst_i,
-    // base address of the ring (the receive ring while wr_valid_i, else the transmit ring), when it can be read
+    // base address of the ring (the receive ring while wr_valid_i, else the transmit ring), when it
+    // can be read
     input  wire [31:11] base_i,
     input  wire        base_valid_i,
     // write a byte: {buffer, word in it}, place in the word
@@ -128,8 +129,10 @@ module modem_npi (
                 assert (wr_busy_o);
             // Each goes to its word of the ring, and has its byte of that.
             if (npi_addr_req_o && !$past(npi_addr_req_o))
-                assert (npi_addr_o == {$past(base_i), $past(wr_ready_o ? wr_addr_i : rd_addr_i[10:3]), 3'd0});
-            assert (npi_wr_push_o == wr_ready_o && npi_wr_be_o == wr_be_i && npi_wr_data_o == {8{wr_data_i}});
+                assert (npi_addr_o ==
+                        {$past(base_i), $past(wr_ready_o ? wr_addr_i : rd_addr_i[10:3]), 3'd0});
+            assert (npi_wr_push_o == wr_ready_o && npi_wr_be_o == wr_be_i &&
+                    npi_wr_data_o == {8{wr_data_i}});
             assert ({56'd0, rd_data_o} == (npi_rd_data_i >> {rd_addr_i[2:0], 3'd0} & 64'hFF));
         end
         cover (past && !rst_i && wr_busy_o && npi_addr_ack_i);

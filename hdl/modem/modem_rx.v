@@ -50,7 +50,8 @@ module modem_rx (
     wire       taken   = pending && !ending && (drop || wr_ready_i);
     wire [6:0] count   = wr_index_o + 7'd1;
     wire       silent  = silence[8];
-    wire       late    = (rx_valid_i || rx_error_i || rx_end_i || rx_bad_i) && pending && !taken && !deaf;
+    wire       late    = (rx_valid_i || rx_error_i || rx_end_i || rx_bad_i) && pending && !taken &&
+        !deaf;
     wire       done    = ending && !wr_busy_i;
     // The index is at most 100, so four of its bits tell 99.
     wire       longest = api_i ? &wr_index_o[6:4] : // modem_api_rx gives none so long
@@ -153,18 +154,20 @@ module modem_rx (
             latest <= rx_data_i;
         if (rx_valid_i && !deaf && pending && !taken && !ending)
             lost <= 1'b1;
-        ticks <= !rx_idle_i || rx_valid_i || rst_i ? 9'd0 : ticks + {8'd0, tick_i && ticks != 9'd256};
+        ticks <= !rx_idle_i || rx_valid_i ||
+            rst_i ? 9'd0 : ticks + {8'd0, tick_i && ticks != 9'd256};
         if (done || rst_i) begin
             wrote <= 7'd0;
             lost  <= 1'b0;
         end
         if (past && !rst_i && !$past(rst_i)) begin
-            // An unreleased packet is never overwritten: nothing is written while the ring is full, and
-            // nothing beyond the longest packet; bytes go in turn, each to its place.
+            // An unreleased packet is never overwritten: nothing is written while the ring is full,
+            // and nothing beyond the longest packet; bytes go in turn, each to its place.
             assert (!wr_valid_o || (!full_i && wr_index_o < most));
             assert (wr_be_o == 8'd1 << wr_index_o[2:0]);
             assert (!wr_valid_o || (wr_data_o == latest && wr_index_o == wrote && !lost));
-            // A packet that is published was written whole, was acknowledged, and has a free buffer.
+            // A packet that is published was written whole, was acknowledged, and has a free
+            // buffer.
             if (push_o)
                 assert (!owed && !wr_valid_o && !full_i && !lost &&
                         wrote == wr_index_o && wrote != 7'd0 && wrote <= most);
@@ -194,7 +197,8 @@ module modem_rx (
     memory_late_for_the_last_byte: cover property (@(posedge clk_i) late && ending);
     byte_while_deaf: cover property (@(posedge clk_i) rx_valid_i && deaf);
     longest_packet: cover property (@(posedge clk_i) push_o && wr_index_o == 7'd100);
-    ends_as_announced: cover property (@(posedge clk_i) !api_i && taken && longest && wr_index_o != 7'd99);
+    ends_as_announced: cover property (@(posedge clk_i) !api_i && taken && longest &&
+                                       wr_index_o != 7'd99);
     ends_in_silence: cover property (@(posedge clk_i) !api_i && silent && !first && !ending);
 `endif
 endmodule

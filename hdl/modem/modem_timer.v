@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_timer: counts units of a millisecond and a sixteenth: the margin covers the modem's own clock.
+// modem_timer: counts units of a millisecond and a sixteenth: the margin covers the modem's own
+// clock.
 
 `default_nettype none
 
@@ -33,8 +34,8 @@ module modem_timer #(
     end
 
 `ifdef FORMAL
-    // time_o counts the ticks since clear_i, and n clocks equal one step of n, up to the tick, which
-    // the simulator adds at once.
+    // time_o counts the ticks since clear_i, and n clocks equal one step of n, up to the tick,
+    // which the simulator adds at once.
     (* anyseq *) reg begins; // a span
     reg        past = 1'b0, spans = 1'b0;
     reg [16:0] then, n;
@@ -57,14 +58,16 @@ module modem_timer #(
         if (past) begin
             // A unit begins with clear_i and with each tick, which counts.
             assert (passed == 17'd0 || !$past(rst_i || clear_i || tick_o));
-            assert (time_o == ($past(rst_i || clear_i) ? 12'd0 : $past(time_o) + {11'd0, $past(tick_o)}));
+            assert (time_o ==
+                    ($past(rst_i || clear_i) ? 12'd0 : $past(time_o) + {11'd0, $past(tick_o)}));
             assert (!tick_o || !$past(clear_i));
             // States the registers, so that the prover need not find them.
             assert (passed <= LAST + 17'd1 && (tick_o || passed != LAST + 17'd1));
             if (spans) begin
                 assert (n != 17'd0 && sum <= {1'b0, LAST} + 18'd1);
                 assert ({1'b0, passed} == sum && time_o == time_then);
-                assert (tick_o == (sum == {1'b0, LAST} + 18'd1)); // not earlier, and not a clock late
+                // not earlier, and not a clock late
+                assert (tick_o == (sum == {1'b0, LAST} + 18'd1));
             end
         end
         cover (past && spans && tick_o && n > 17'd1);

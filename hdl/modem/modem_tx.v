@@ -2,8 +2,9 @@
 //
 // modem_tx: takes packets out of the transmit ring and sends them, each as one RF packet.
 //
-// After a packet of fewer than 100 bytes (95 where the modem encrypts) the line rests for four characters.
-// That exceeds the modem's RO of 3, so the modem sends the packet off. One of 100 (95) leaves by itself.
+// After a packet of fewer than 100 bytes (95 where the modem encrypts) the line rests for four
+// characters. That exceeds the modem's RO of 3, so the modem sends the packet off. One of 100 (95)
+// leaves by itself.
 
 `default_nettype none
 
@@ -34,7 +35,8 @@ module modem_tx (
 
     reg [1:0] state;
     reg [8:0] count; // bytes read; in REST ticks of silence
-    reg       whole; // in REST: the modem sends this packet by itself; a register, for the clock's sake
+    // in REST: the modem sends this packet by itself; a register, for the clock's sake
+    reg       whole;
 
     wire last   = rd_index_o == packet_bytes_i;                // all its bytes are out
     wire rested = (count[8] && count[6]) || whole || api_i; // 320 ticks
@@ -106,7 +108,8 @@ module modem_tx (
         if (past && !rst_i && !$past(begin_anew)) begin
             // A byte is read from a packet of the ring, in turn, once, never beyond its end.
             assert (!rd_valid_o || (packet_valid_i && rd_index_o == out && out < packet_bytes_i));
-            assert (!tx_valid_o || (rd_index_o == out + 7'd1 && tx_last_o == (rd_index_o == packet_bytes_i)));
+            assert (!tx_valid_o ||
+                    (rd_index_o == out + 7'd1 && tx_last_o == (rd_index_o == packet_bytes_i)));
             if (tx_valid_o)
                 assert (tx_data_o == read);
             // Its buffer is released once, when all its bytes have left.
@@ -120,9 +123,12 @@ module modem_tx (
         end
         if (past) // each state is at a known byte; the induction rests on this
             case (state)
-                FETCH:   assert (sent_o ? packet_valid_i && rd_index_o == 7'd0 && out == packet_bytes_i :
-                                 rd_index_o == out && (out == 7'd0 || (packet_valid_i && out < packet_bytes_i)));
-                SEND:    assert (!sent_o && packet_valid_i && rd_index_o == out + 7'd1 && out < packet_bytes_i);
+                FETCH:   assert (sent_o ? packet_valid_i && rd_index_o == 7'd0 &&
+                                 out == packet_bytes_i :
+                                 rd_index_o == out &&
+                                     (out == 7'd0 || (packet_valid_i && out < packet_bytes_i)));
+                SEND:    assert (!sent_o && packet_valid_i && rd_index_o == out + 7'd1 &&
+                                 out < packet_bytes_i);
                 REST:    assert (!sent_o && packet_valid_i && out == packet_bytes_i);
                 default: assert (0);
             endcase

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_uart_rx: receives bytes, 8N1, eight ticks a bit; samples each bit within an eighth before its middle.
+// modem_uart_rx: receives bytes, 8N1, eight ticks a bit; samples each bit within an eighth before
+// its middle.
 
 `default_nettype none
 
@@ -106,10 +107,12 @@ module modem_uart_rx (
         // A tick that samples nothing moves `ticks` alone: the simulator skips it. Without a tick,
         // or while the line rests, nothing moves.
         if (past && !$past(rst_i) && $past(busy && !(tick_i && ticks == 3'd7)))
-            assert (busy && {bits, started, armed} == $past({bits, started, armed}) && !valid_o && !framing_error_o &&
+            assert (busy && {bits, started, armed} == $past({bits, started, armed}) && !valid_o &&
+                    !framing_error_o &&
                     ticks == $past(ticks) + {2'd0, $past(tick_i)});
         if (past && $past(past && !rst_i && idle && line && armed && !started && ticks == 3'd4))
-            assert (idle && armed && !started && ticks == 3'd4 && bits == $past(bits) && !valid_o && !framing_error_o);
+            assert (idle && armed && !started && ticks == 3'd4 && bits == $past(bits) && !valid_o &&
+                    !framing_error_o);
         cover (past && valid_o && sent == 8'h3C);
     end
 `endif

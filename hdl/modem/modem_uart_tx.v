@@ -11,7 +11,8 @@ module modem_uart_tx (
     // bytes in
     input  wire       valid_i,
     input  wire [7:0] data_i,
-    output wire       ready_o, // one cycle a tick while the line is idle, and at the end of a stop bit
+    // one cycle a tick while the line is idle, and at the end of a stop bit
+    output wire       ready_o,
     // pin
     output wire       txd_o
 );
@@ -70,7 +71,8 @@ module modem_uart_tx (
             assert (txd_o == (age == 7'd80 ? 1'b1 : frame[age[6:3]]));
             // A tick within a bit moves `ticks` alone: the simulator skips it.
             if (!$past(rst_i) && $past(busy && ticks != 3'd7))
-                assert ({busy, bits, line} == $past({busy, bits, line}) && ticks == $past(ticks) + {2'd0, $past(tick_i)});
+                assert ({busy, bits, line} == $past({busy, bits, line}) &&
+                        ticks == $past(ticks) + {2'd0, $past(tick_i)});
             // Without a tick nothing moves.
             if (!$past(rst_i) && !$past(tick_i))
                 assert ({busy, bits, line, ticks} == $past({busy, bits, line, ticks}));

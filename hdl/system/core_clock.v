@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// core_clock: a clock of clk_i's frequency * MULTIPLY / DIVIDE, at most that of clk_i; on Xilinx's FPGAs a DCM_CLKGEN.
+// core_clock: a clock of clk_i's frequency * MULTIPLY / DIVIDE, at most that of clk_i; on Xilinx's
+// FPGAs a DCM_CLKGEN.
 //
 // It is unrelated to clk_i: crossings go through hdl/cdc. In simulation its edges are at edges of
 // clk_i, so a fractional ratio holds on average, as for a clock with jitter.
@@ -20,13 +21,15 @@ module core_clock #(
     assign clk_o = level;
     initial {phase, level} = 11'd0;
     always @(posedge clk_i or negedge clk_i) begin
-        phase <= phase + MULTIPLY[9:0] - (phase + MULTIPLY[9:0] >= DIVIDE[9:0] ? DIVIDE[9:0] : 10'd0);
+        phase <= phase + MULTIPLY[9:0] -
+            (phase + MULTIPLY[9:0] >= DIVIDE[9:0] ? DIVIDE[9:0] : 10'd0);
         level <= level ^ (phase + MULTIPLY[9:0] >= DIVIDE[9:0]);
     end
 `else
     wire made;
     DCM_CLKGEN #(.CLKFX_MULTIPLY(MULTIPLY), .CLKFX_DIVIDE(DIVIDE)) u_dcm (
-        .CLKIN(clk_i), .RST(1'b0), .FREEZEDCM(1'b0), .PROGCLK(1'b0), .PROGDATA(1'b0), .PROGEN(1'b0), .CLKFX(made));
+        .CLKIN(clk_i), .RST(1'b0), .FREEZEDCM(1'b0), .PROGCLK(1'b0), .PROGDATA(1'b0), .PROGEN(1'b0),
+        .CLKFX(made));
     BUFGCE u_buffer (.I(made), .CE(1'b1), .O(clk_o));
 `endif
 endmodule

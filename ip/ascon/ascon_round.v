@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// ascon_round: one round of Ascon's permutation (NIST SP 800-232, section 3), without state of its own.
-// The words of the state are bits 63..0 (S0) to 319..256 (S4).
+// ascon_round: one round of Ascon's permutation (NIST SP 800-232, section 3), without state of its
+// own. The words of the state are bits 63..0 (S0) to 319..256 (S4).
 
 `default_nettype none
 
@@ -15,7 +15,8 @@ module ascon_round (
     endfunction
 
     // Constant addition
-    wire [63:0] a0 = state_i[63:0],    a1 = state_i[127:64], a3 = state_i[255:192], a4 = state_i[319:256];
+    wire [63:0] a0 = state_i[63:0],    a1 = state_i[127:64], a3 = state_i[255:192],
+        a4 = state_i[319:256];
     wire [63:0] a2 = state_i[191:128] ^ {56'd0, ~round_i, round_i};
     // Substitution: 64 S-boxes of 5 bits, side by side
     wire [63:0] b0 = a0 ^ a4, b1 = a1, b2 = a2 ^ a1, b3 = a3, b4 = a4 ^ a3;

@@ -9,7 +9,8 @@ module camera_buffers (
     input  wire       clk_i,
     input  wire       rst_i,
     input  wire       active_i,  // frames are captured; else none is offered
-    input  wire       kept_i,    // the frame that was written is whole in memory: it is the newest, and offered
+    // the frame that was written is whole in memory: it is the newest, and offered
+    input  wire       kept_i,
     output reg  [1:0] writing_o,
     output reg  [1:0] newest_o,
     output reg        offered_o,
@@ -48,7 +49,8 @@ module camera_buffers (
             has   <= 1'b0;
             held  <= 2'd0;
         end else begin
-            whole <= (whole | ({2'b00, kept_i} << (writing_o - 2'd1))) & ~(3'b001 << ((kept_i ? writing_o ^ reserved : writing_o) - 2'd1));
+            whole <= (whole | ({2'b00, kept_i} << (writing_o - 2'd1))) &
+                ~(3'b001 << ((kept_i ? writing_o ^ reserved : writing_o) - 2'd1));
             if (taken) begin
                 has  <= 1'b1;
                 held <= newest_o;

@@ -3,8 +3,8 @@
 // camera_sensor: turns a sensor's parallel port, in the sensor's clock, into tokens for a FIFO
 // (async_fifo).
 //
-// A token has 11 bits: LOST (tokens before it found no room), kind, pixel. While the FIFO is full pixels are lost;
-// beginnings of frames and ends of lines wait for room until the next one comes.
+// A token has 11 bits: LOST (tokens before it found no room), kind, pixel. While the FIFO is full
+// pixels are lost; beginnings of frames and ends of lines wait for room until the next one comes.
 
 `default_nettype none
 

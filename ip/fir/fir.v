@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// fir: the FIR filter (fir_filter.vhd) over a buffer in DDR3; registers by the generated fir_wrapper.
+// fir: the FIR filter (fir_filter.vhd) over a buffer in DDR3; registers by the generated
+// fir_wrapper.
 
 `default_nettype none
 
@@ -16,9 +17,11 @@ module fir (
     wire [8:0]  count;
 
     reg         busy, refused;
-    reg         forget, put;       // clear the history; write a coefficient: a clock after the request
+    // clear the history; write a coefficient: a clock after the request
+    reg         forget, put;
     reg         begun, flushed;    // the streams have their buffers; the last word is on its way
-    reg  [8:0]  to_send, to_take;  // samples that the filter has not got; results that it has not given
+    // samples that the filter has not got; results that it has not given
+    reg  [8:0]  to_send, to_take;
     reg  [1:0]  place;             // of the next sample in its word
     reg  [63:0] packed_results;
     reg  [2:0]  filled;            // results in it, 0..4
@@ -48,14 +51,16 @@ module fir (
         .set_coefficient_value_o(coefficient),
         .set_shift_start_o(unused_shift_start), .set_shift_bits_o(shift), .clear_start_o(clear),
         .filter_start_o(start), .filter_list_base_o(source), .filter_list_count_o(count),
-        .filter_filtered_base_o(target), .filter_filtered_count_i(count), .filter_result_i(saturations),
+        .filter_filtered_base_o(target), .filter_filtered_count_i(count),
+        .filter_result_i(saturations),
         .filter_done_i(refused || (flushed && idle)), .filter_refused_i(refused));
 
     fir_filter u_filter (
         .clk_i(clk_i), .rst_i(core_rst),
         .coefficient_write_i(put), .coefficient_index_i(index[3:0]),
         .coefficient_i(coefficient[17:0]), .shift_i(shift[4:0]), .clear_i(forget),
-        .sample_valid_i(sending), .sample_ready_o(sample_ready), .sample_i(read_data[16*place +: 16]),
+        .sample_valid_i(sending), .sample_ready_o(sample_ready),
+        .sample_i(read_data[16*place +: 16]),
         .result_valid_o(result_valid), .result_ready_i(room),
         .result_o(result), .saturated_o(saturated));
 
@@ -68,7 +73,8 @@ module fir (
         .read_take_i(sent && (place == 2'd3 || to_send == 9'd1)), .read_idle_o(read_idle),
         .write_start_i(go && !core_rst), .write_base_i(target[31:6]),
         .write_valid_i(offer), .write_data_i(packed_results),
-        .write_be_i({{2{filled[2]}}, {2{filled[2] || &filled[1:0]}}, {2{filled[2] || filled[1]}}, 2'b11}),
+        .write_be_i({{2{filled[2]}}, {2{filled[2] || &filled[1:0]}}, {2{filled[2] || filled[1]}},
+                     2'b11}),
         .write_ready_o(write_ready), .write_flush_i(flush || core_rst), .write_idle_o(write_idle));
     assign idle_o         = !busy && idle;
 
@@ -117,7 +123,8 @@ module fir (
         end
     end
 
-    wire unused = &{1'b0, unused_shift_start, shift[7:5], coefficient[31:18], source[5:0], target[5:0], 1'b0};
+    wire unused =
+        &{1'b0, unused_shift_start, shift[7:5], coefficient[31:18], source[5:0], target[5:0], 1'b0};
 `ifdef FORMAL
     // For formal.idle_fir: without a call there is nothing in the core.
     (* hierconn *) wire [4:0] \u_filter.full ; // the parts' signals

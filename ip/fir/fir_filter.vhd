@@ -1,9 +1,11 @@
 -- SPDX-License-Identifier: MIT
 --
--- fir_filter: FIR filter of 16 taps in transposed form, one sample a clock, coefficients at run time.
+-- fir_filter: FIR filter of 16 taps in transposed form, one sample a clock, coefficients at run
+-- time.
 --
--- Each tap is a multiplier of 18 x 16 bits, a register behind it, and an adder with a register: one DSP48A1.
--- result = (sum of coefficient(k) * sample(n - k)) / 2**shift, rounded to nearest, halves up, kept to 16 bits.
+-- Each tap is a multiplier of 18 x 16 bits, a register behind it, and an adder with a register: one
+-- DSP48A1. result = (sum of coefficient(k) * sample(n - k)) / 2**shift, rounded to nearest, halves
+-- up, kept to 16 bits.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -18,7 +20,8 @@ entity fir_filter is
     coefficient_index_i : in  std_logic_vector(3 downto 0);
     coefficient_i       : in  std_logic_vector(17 downto 0);
     shift_i             : in  std_logic_vector(4 downto 0);
-    clear_i             : in  std_logic; -- earlier samples become 0; only while nothing is in the pipeline
+    -- earlier samples become 0; only while nothing is in the pipeline
+    clear_i             : in  std_logic;
     -- samples
     sample_valid_i      : in  std_logic;
     sample_ready_o      : out std_logic;
@@ -41,7 +44,8 @@ architecture rtl of fir_filter is
   signal coefficients : coefficients_t;
   signal products     : products_t;
   signal sums         : sums_t; -- sums(0) is the newest result, sums(TAPS) is always 0
-  signal coarse       : signed(SUM_BITS downto 0); -- shifted by eights, with one more bit to round by
+  -- shifted by eights, with one more bit to round by
+  signal coarse       : signed(SUM_BITS downto 0);
   signal scaled       : signed(SUM_BITS downto 0); -- shifted
   signal result       : signed(15 downto 0);
   signal saturated    : std_logic;
@@ -95,8 +99,8 @@ begin
         coarse <= shift_right(sums(0) & '0', to_integer(unsigned(shift_i(4 downto 3)) & "000"));
         scaled <= shift_right(coarse, to_integer(unsigned(shift_i(2 downto 0))));
         rounded := shift_right(scaled, 1) + signed'("0" & scaled(0));
-        -- It fits if all bits above the sign are like it. (GHDL 5 converts a comparison of more than 32 bits
-        -- with a negative integer wrongly.)
+        -- It fits if all bits above the sign are like it. (GHDL 5 converts a comparison of more
+        -- than 32 bits with a negative integer wrongly.)
         overflow := '0';
         for b in 16 to SUM_BITS loop
           overflow := overflow or (rounded(b) xor rounded(15));

@@ -28,7 +28,8 @@ begin
       coefficient_write_i => write, coefficient_index_i => index, coefficient_i => coefficient,
       shift_i => shift, clear_i => clear,
       sample_valid_i => in_valid, sample_ready_o => in_ready, sample_i => sample,
-      result_valid_o => out_valid, result_ready_i => out_ready, result_o => result, saturated_o => saturated
+      result_valid_o => out_valid, result_ready_i => out_ready, result_o => result,
+      saturated_o => saturated
     );
 
   samples_and_checks : process

@@ -2,7 +2,8 @@
 --
 -- vision_memory: reads the frame, pixel by pixel, and writes the records, through one memory port.
 --
--- Reads are bursts of 128 bytes, two under way; records are written one word each, before further reads.
+-- Reads are bursts of 128 bytes, two under way; records are written one word each, before further
+-- reads.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -13,7 +14,8 @@ entity vision_memory is
     clk_i          : in  std_logic;
     rst_i          : in  std_logic;
     -- control
-    idle_i         : in  std_logic;                     -- until start: the addresses are taken each cycle
+    -- until start: the addresses are taken each cycle
+    idle_i         : in  std_logic;
     start_i        : in  std_logic;                     -- one cycle, the first without idle_i
     stop_i         : in  std_logic;                     -- no further reads; words are dropped
     frame_base_i   : in  std_logic_vector(31 downto 0);
@@ -24,7 +26,8 @@ entity vision_memory is
     pixel_o        : out std_logic_vector(7 downto 0);
     pixel_take_i   : in  std_logic;
     -- records
-    record_push_i  : in  std_logic;                     -- only if record_ready_o was 1 a clock ago, and never twice running
+    -- only if record_ready_o was 1 a clock ago, and never twice running
+    record_push_i  : in  std_logic;
     record_i       : in  std_logic_vector(63 downto 0);
     record_ready_o : out std_logic;
     -- memory port

@@ -25,8 +25,11 @@ constexpr uint64_t settling = 8; // clocks after a carry in which its tick may s
 constexpr uint64_t least = 8;    // clocks that a platform rests alone at first
 constexpr unsigned longest = 32; // clocks between two tests of a busy chip
 constexpr uint64_t blameEvery = 256; // tests of a busy chip
-const std::set<std::string> platform = {"u_fsmc_bridge", "u_bus_decoder", "u_modem",
-                                        "u_system_slot", "u_memory"}; // soc.v
+// blocks of soc.v other than its cores
+const std::set<std::string> platform = {"u_platform", "u_modem", "u_system_slot"};
+// the ones without a clock while the platform rests (testbench/sim/CMakeLists.txt)
+const char* const resting[] = {"u_platform.u_fsmc_bridge.", "u_platform.u_bus_decoder.", "u_modem.",
+                               "u_system_slot."};
 
 #define PHASE sim_soc__DOT__soc__DOT__u_modem__DOT__u_baud__DOT__phase
 #define PRESCALER sim_soc__DOT__soc__DOT__u_modem__DOT__u_baud__DOT__count
@@ -72,8 +75,9 @@ std::vector<std::string> SocState::differences(const Image& a, const Image& b) {
 QuietSpan::QuietSpan(VSoc& top) : top_(top), image_(sizeof(VSoc___024root)) {
     bool joins = false; // the member before is the platform's, too
     for (const Member& m : members) {
-        const std::string path = m.path, block = path.substr(0, path.find('.'));
-        const bool is = platform.count(block) && block != "u_memory";
+        const bool is = std::any_of(std::begin(resting), std::end(resting), [&](const char* block) {
+            return std::string(m.path).rfind(block, 0) == 0;
+        });
         if (is && joins)
             platform_.back().second = m.offset + m.size;
         else if (is)

@@ -14,7 +14,7 @@
 //   ticks of the UART's halves  one a tick of the baud rate, or held; the tick at 7 is an event
 //
 // Where cores or the memory move while the platform (bridge, decoder, modem, system slot) does not,
-// the platform alone is quiet, up to the next tick of the baud rate, while stirs_o of hdl/soc.v is
+// the platform alone is quiet, up to the next tick of the baud rate, while stirs_o of sim_soc.v is
 // low (proven: formal.platform_rests).
 //
 // A tick of the baud rate is skipped, too, once the chip has been seen to come back to the very

@@ -2,27 +2,63 @@
 //
 // sim_soc: soc.v, its netlist, or that of table1.v (TABLE1), as the simulator clocks it.
 //
-// A clock is a change of tick_i: clk_i rises with it and falls as soon as its edge is taken, so that
-// both edges pass in one evaluation. The memory's pins have flip-flops here, with what they have
-// after the edge set before it: from inputs no path leads through the chip's logic, all of which the
-// model would follow in each evaluation.
+// A change of tick_i is a clock: clk_i rises with it and falls as soon as its edge is taken, so
+// that both edges pass in one evaluation. The memory's pins have flip-flops here and are driven
+// before the edge with their values after it. So no path leads from inputs through the chip's
+// logic, which the model would evaluate each time.
 
 `default_nettype none
+`ifdef RESTS
+`include "rests.vh"
+`endif
 
 module sim_soc #(
     parameter CLK_HZ = 100000000
 ) (
     input  wire        tick_i,
     input  wire        rst_i,
-    `include "platform_ports.vh"
+    // FSMC pins
+    input  wire [24:0] fsmc_a_i,
+    input  wire [15:0] fsmc_d_i,
+    output wire [15:0] fsmc_d_o,
+    output wire        fsmc_d_oe_o,
+    input  wire [1:0]  fsmc_ne_n_i,
+    input  wire        fsmc_noe_n_i,
+    input  wire        fsmc_nwe_n_i,
+    input  wire [1:0]  fsmc_nbl_n_i,
+    input  wire        fsmc_nadv_n_i,
+    output wire        fsmc_nwait_n_o,
+    // modem pins
+    input  wire        modem_rxd_i, // from the modem
+    output wire        modem_txd_o,
+    input  wire        modem_cts_n_i,
+    output wire        modem_rts_n_o,
+    output wire        modem_reset_n_o,
+    // user port of the Spartan-6 MCB, 64 bits
+    output wire        mcb_cmd_en_o,
+    output wire [2:0]  mcb_cmd_instr_o,
+    output wire [5:0]  mcb_cmd_bl_o,
+    output wire [29:0] mcb_cmd_byte_addr_o,
+    input  wire        mcb_cmd_full_i,
+    output wire        mcb_wr_en_o,
+    output wire [7:0]  mcb_wr_mask_o,
+    output wire [63:0] mcb_wr_data_o,
+    input  wire        mcb_wr_full_i,
+    output wire        mcb_rd_en_o,
+    input  wire [63:0] mcb_rd_data_i,
+    input  wire        mcb_rd_empty_i,
+    input  wire        mcb_calib_done_i,
     input  wire [31:0] core_pins_i,
     output wire [31:0] core_pins_o,
-`ifdef PLATFORM_RESTS
+`ifdef RESTS
     input  wire        rests_i,
     output wire        stirs_o,
 `endif
     output wire        irq_o
 );
+`ifdef RESTS
+    `include "map_regs.vh"
+`endif
     reg  ticked = 1'b0;
 `ifdef TRACED
     wire clk_i = tick_i; // so that a waveform has both edges
@@ -41,13 +77,16 @@ module sim_soc #(
         calib_done <= mcb_calib_done_i;
     end
 
-`ifdef PLATFORM_RESTS
-    `include "wiring.vh"
-    // The memory's clock stops while the memory would not move.
-    wire memory_clk_i;
+`ifdef RESTS
+    // The simulator's copies of soc.v and platform.v take these clocks (rest.awk). The platform's
+    // clock stops while rests_i is high, the memory's while the memory would not move.
+    wire platform_clk = clk_i && !rests_i;
+    wire memory_clk;
     core_gate #(.GATED(1)) u_gate_memory (
-        .clk_i(clk_i), .rst_i(soc.rst), .access_i(1'b0), .idle_i(`MEMORY_RESTS(soc.u_memory)),
-        .clk_o(memory_clk_i));
+        .clk_i(clk_i), .rst_i(soc.rst), .access_i(1'b0),
+        .idle_i(`MEMORY_RESTS(soc.u_platform.u_memory)), .clk_o(memory_clk));
+    // A probe would record the standing counters of a platform that rests.
+    assign stirs_o = MAP_PROBES != 0 || `PLATFORM_STIRS(soc.u_platform);
 
     soc #(.CLK_HZ(CLK_HZ), .GATES(1))
 `elsif TABLE1

@@ -265,8 +265,8 @@ add_custom_target(test_w)
         join = "testbench/common/join_waves.sh"
         write(join, (TREE / join).read_text())
         write("build/trace/gen/soc_cores.vh",
-              "camera u_camera (\n  .clk_i(clk_i), `SLOT(2), .irq_o(i));\n"
-              "core u_core (\n    .clk_i(clk_i), `SLOT(3), .irq_o(j));\n")
+              "camera u_camera (\n  .clk_i(clk_i), .bus_valid_i(slot_valid[2]), .irq_o(i));\n"
+              "core u_core (\n    .clk_i(clk_i), .bus_valid_i(slot_valid[3]), .irq_o(j));\n")
         write("build/trace/build.ninja", "rule r\n command = true\nbuild icesoc-sim: r\n")
         write("build/trace/testbench/sim/icesoc-sim", SIMULATOR)
         write("fly/events.jsonl", '{"ns":1000000000,"slot":1,"events":1}\n'

@@ -337,14 +337,14 @@ class Cores(unittest.TestCase):
            "SLOT_GONE": 5, "SLOT_COUNT": 6, "NPI_PORT_COUNT": 3, "NPI_PORT_LOW": 1}
     COSTS = {path: {"signal": Cost(lut=lut, ff=ff, ram=sum(more[:1]), dsp=sum(more[1:]))}
              for path, lut, ff, *more in (
-                 ("u_modem", 900, 900), ("u_bus_decoder", 400, 4), ("u_low", 15, 3),
+                 ("u_modem", 900, 900), ("u_platform.u_bus_decoder", 400, 4), ("u_low", 15, 3),
                  ("u_low.u_wrapper", 3, 30), ("u_low.u_wrapper.u_registers", 1, 2),
                  ("u_low.u_filter", 7, 8, 1.5, 4), ("u_lower", 1000, 1000), ("u_plain", 9, 9),
                  ("u_plain.u_bus.u_window", 4, 5), ("u_own.u_crossing", 20, 60),
                  ("u_own.u_core.u_bus", 6, 7), ("u_own.u_core.u_core", 1, 1),
-                 ("u_memory.u_arbiter", 20, 6), ("u_memory.u_backend", 10, 0),
-                 ("u_memory.u_arbiter.g_port[1].u_write", 5, 6, 2),
-                 ("u_memory.u_arbiter.g_port[10].u_write", 500, 500))}
+                 ("u_platform.u_memory.u_arbiter", 20, 6), ("u_platform.u_memory.u_backend", 10, 0),
+                 ("u_platform.u_memory.u_arbiter.g_port[1].u_write", 5, 6, 2),
+                 ("u_platform.u_memory.u_arbiter.g_port[10].u_write", 500, 500))}
 
     def rows(self, *names):
         return cores.core_table(self.COSTS, self.MAP, Cost(lut=12, ff=5), names, "here").rows
@@ -364,15 +364,15 @@ class Cores(unittest.TestCase):
 
     def test_logic_that_reads_one_slot_is_its_blocks(self):
         """Two LUTs read a register of a block each, one reads both; the decoder's choice."""
-        names = "u_a.count", "u_b.u_part.state", "u_bus_decoder.index"
+        names = "u_a.count", "u_b.u_part.state", "u_platform.u_bus_decoder.index"
         n = Netlist([*(cell("FDRE", {}, {"Q": bit}, name) for bit, name in enumerate(names, 2)),
                      lut([2, 4], 5), lut([3, 4], 6), lut([2, 3, 4], 7), lut([5], 8),
                      lut([6, 7, 8], 9)])
-        n.names[9] = [Name("u_bus_decoder.bus_rdata_o", 0)]
+        n.names[9] = [Name("u_platform.u_bus_decoder.bus_rdata_o", 0)]
         self.assertEqual(owners.owners_of(n, lambda path: set()), [
-            "u_a.count", "u_b.u_part.state", "u_bus_decoder.index", "u_a.bus_rdata_o",
-            "u_b.bus_rdata_o", "u_bus_decoder.bus_rdata_o", "u_a.bus_rdata_o",
-            "u_bus_decoder.bus_rdata_o"])
+            "u_a.count", "u_b.u_part.state", "u_platform.u_bus_decoder.index", "u_a.bus_rdata_o",
+            "u_b.bus_rdata_o", "u_platform.u_bus_decoder.bus_rdata_o", "u_a.bus_rdata_o",
+            "u_platform.u_bus_decoder.bus_rdata_o"])
 
 
 class Simulated(unittest.TestCase):

@@ -212,8 +212,8 @@ module primitives_test;
 
     // UG383: WRITE_FIRST shows the word that is written, READ_FIRST the old one, NO_CHANGE what it
     // showed; WE has a bit a byte, parity goes with its byte; without EN nothing happens; at a
-    // reset of the output a port writes all the same, and without priority "SR" the reset needs EN. The
-    // narrower port's lower address is the wider one's lower bits.
+    // reset of the output a port writes all the same, and without priority "SR" the reset needs EN.
+    // The narrower port's lower address is the wider one's lower bits.
     reg         en = 0, reset = 0, en_b = 0;
     reg  [3:0]  bytes = 0;
     reg  [8:0]  place = 0, place_b = 0;

@@ -1,6 +1,7 @@
 -- SPDX-License-Identifier: MIT
 --
--- polar: bladeRF's CORDIC, which turns a vector until its y is 0; registers by the generated polar_wrapper.
+-- polar: bladeRF's CORDIC, which turns a vector until its y is 0; registers by the generated
+-- polar_wrapper.
 
 library ieee;
 use ieee.std_logic_1164.all;

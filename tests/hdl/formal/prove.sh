@@ -14,8 +14,8 @@
 # PROVE_BOUNDED=1: bounded only.
 # PROVE_READ: more words of read_verilog: defines, files; idle_proof's core.
 # PROVE_MUTANT: Yosys commands before flattening (tools/icesoc/mutants/drawn.py); no trace then.
-# A failed assertion leaves <work>/trace.vcd. The module may instance others of its folder, of bus/
-# and of hdl/system/.
+# A failed assertion leaves <work>/trace.vcd. The module may instantiate others of its folder, of
+# bus/, hdl/system/ and hdl/cdc/; a proof in testbench/sim/ those of hdl/ddr/ instead of its folder.
 set -eu
 here=$(dirname "$(readlink -f "$0")")
 module=$1 depth=$2 source=$3 work=$4 parameters=${5:-}
@@ -23,13 +23,16 @@ limit=${PROVE_SECONDS:-300} # of a processor: a proof that does not end is an er
 mkdir -p "$work"
 cd "$work"
 rm -f ./*.aig ./*.map ./*.aiw ./*.vcd
-file=$(find "$source/bus" "$source/hdl" "$source/ip" -name "$module.v")
+file=$(find "$source/bus" "$source/hdl" "$source/ip" "$source/testbench/sim" -name "$module.v")
 [ -n "$file" ] || {
-    echo "$module: no $module.v below bus, hdl or ip" >&2
+    echo "$module: no $module.v below bus, hdl, ip or testbench/sim" >&2
     exit 2
 }
-folders="$source/bus $source/hdl/system $source/hdl/cdc $(dirname "$file")"
+near=$(dirname "$file") alone=
+case $file in */testbench/sim/*) near=$source/hdl/ddr alone=$file ;; esac
+folders="$source/bus $source/hdl/system $source/hdl/cdc $near"
 files=$(for folder in $folders; do ls "$folder"/*.v || true; done | sort -u)
+files="$files $alone"
 # Several clocks (a proof with `gclk`): every edge is an input of its own.
 clocks=async2sync
 ! grep -q gclk "$file" || clocks='memory_map; clk2fflogic'
@@ -54,14 +57,15 @@ esac
 [ "$module" != rest_proof ] || {
     counters='w:*.cycles w:*.phase w:*.clocks %u %u'
     onward="$counters %co*:-\$dff"
-    seen='w:u_soc.slot_* w:u_soc.npi_* w:u_soc.fsmc_* w:u_soc.modem_* w:u_soc.stirs_o %u %u %u %u'
+    seen='w:u_soc.slot_* w:u_soc.*npi_* w:u_soc.fsmc_* w:u_soc.modem_* w:stirs %u %u %u %u'
     flat="memory_map
 opt_clean
 setattr -unset init w:* w:later w:last %u %d
 select -assert-any $onward w:u_soc.slot_rdata %i
 select -assert-none $onward $seen w:u_soc.slot_rdata %d %i
 techmap -D HELD -map $here/idle_registers.v w:*u_write.src_data_o w:*u_cdc_pulse.turned %u %ci1
-techmap -D REST -map $here/idle_registers.v c:*u_soc* $counters %ci1 %d c:*u_calib_done* %d"
+techmap -D REST -map $here/idle_registers.v c:*u_soc* $counters w:u_soc.irq_o %u %ci1 %d \
+    c:*u_calib_done* %d"
 }
 # -nosdff -nodffe: AIGER has plain flip-flops only. The module's outputs are dropped: abc would take
 # them for properties. What became undefined (a flip-flop without a clock) is free: newer AIGER
@@ -72,6 +76,7 @@ aiger='opt_clean; abc -g AND -fast; opt_clean; write_aiger -zinit -map'
 # shellcheck disable=SC2086
 cat >prove.ys <<END
 verilog_defaults -add -I${GEN_DIR:-.} -I$source/bus -I$source/hdl/ddr -I$source/hdl/system
+verilog_defaults -add -I$source/testbench/sim
 read_verilog -formal -sv -DRULES $read $(echo $files)
 $parameters
 hierarchy -top $module

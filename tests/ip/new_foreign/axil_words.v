@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// axil_words: an AXI core as others write them, with the signals of bursts: four words, capitals, a reset that is low.
-// It takes an address after `aw_late` clocks (before data if that is later), data after `w_late`, and answers `late`
-// clocks later, if it is awake and asked for a single word.
+// axil_words: an AXI core as others write them, with the signals of bursts: four words, capitals, a
+// reset that is low. It takes an address after `aw_late` clocks (before data if that is later),
+// data after `w_late`, and answers `late` clocks later, if it is awake and asked for a single word.
 
 module axil_words (
     input             S_AXI_ACLK, S_AXI_ARESETN, S_AXI_AWAKEUP,
@@ -45,11 +45,15 @@ module axil_words (
     assign S_AXI_WREADY  = !has_w && w_waited == w_late;
     assign {S_AXI_BRESP, S_AXI_RRESP} = 4'd0;
     assign {S_AXI_BID, S_AXI_RID, S_AXI_RLAST} = {S_AXI_AWID, S_AXI_ARID, 1'b1};
-    wire is_single = {S_AXI_AWID, S_AXI_WID, S_AXI_ARID, S_AXI_AWLEN, S_AXI_ARLEN, S_AXI_AWSIZE, S_AXI_ARSIZE, S_AXI_AWBURST,
-                      S_AXI_ARBURST, S_AXI_WLAST, S_AXI_WSTRB, S_AXI_AWAKEUP} == {28'd0, 6'o22, 4'b0101, 6'h3F};
+    wire is_single =
+        {S_AXI_AWID, S_AXI_WID, S_AXI_ARID, S_AXI_AWLEN, S_AXI_ARLEN, S_AXI_AWSIZE, S_AXI_ARSIZE,
+         S_AXI_AWBURST,
+                      S_AXI_ARBURST, S_AXI_WLAST, S_AXI_WSTRB,
+                          S_AXI_AWAKEUP} == {28'd0, 6'o22, 4'b0101, 6'h3F};
     wire has_all = is_single && (has_ar || (has_aw && has_w));
     always @(posedge S_AXI_ACLK) begin
-        aw_waited <= (S_AXI_AWVALID && !S_AXI_AWREADY && !has_aw) || (S_AXI_ARVALID && !S_AXI_ARREADY && !has_ar) ? aw_waited + 1 : 0;
+        aw_waited <= (S_AXI_AWVALID && !S_AXI_AWREADY && !has_aw) ||
+            (S_AXI_ARVALID && !S_AXI_ARREADY && !has_ar) ? aw_waited + 1 : 0;
         w_waited  <= S_AXI_WVALID && !S_AXI_WREADY && !has_w ? w_waited + 1 : 0;
         if (S_AXI_AWVALID && S_AXI_AWREADY)
             {has_aw, word} <= {1'b1, S_AXI_AWADDR[3:2]};

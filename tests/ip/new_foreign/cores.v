@@ -28,9 +28,9 @@ module memory_words #(parameter LATE = 0) (
     wire unused = rst;
 endmodule
 
-// wb_words: Wishbone as a pipelined core has it: it stalls each strobe for `stalls` clocks and answers `late` clocks after
-// it took one, in the same clock if 0. Without STALL it is a classic core, and counts from the strobe's begin. Its addresses
-// count bytes.
+// wb_words: Wishbone as a pipelined core has it: it stalls each strobe for `stalls` clocks and
+// answers `late` clocks after it took one, in the same clock if 0. Without STALL it is a classic
+// core, and counts from the strobe's begin. Its addresses count bytes.
 module wb_words (
     input             wb_clk_i, wb_rst_i,
     input             wb_cyc_i, wb_stb_i, wb_we_i,
@@ -62,7 +62,8 @@ module wb_words (
     end
 endmodule
 
-// axis_scale: multiplies 16-bit samples, as a foreign core with AXI-Streams, a setting and a pin; it has no tlast.
+// axis_scale: multiplies 16-bit samples, as a foreign core with AXI-Streams, a setting and a pin;
+// it has no tlast.
 module axis_scale (
     input  wire        aclk,
     input  wire        aresetn,

@@ -13,7 +13,8 @@ module calculator (
 );
     localparam [5:0] CLOCKS = 6'd40;
 
-    wire        core_rst, set_mode_start, negate_in, add_start, divide_start, get_mode_start, swap_start;
+    wire        core_rst, set_mode_start, negate_in, add_start, divide_start, get_mode_start,
+        swap_start;
     wire [1:0]  mode_in;
     wire [7:0]  shift_in;
     wire [31:0] add_a, add_b, divide_a, divide_b;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// scaler: adds an offset to the samples of one buffer in DDR3 into another, a sample a clock. 0x7777 hangs it.
+// scaler: adds an offset to the samples of one buffer in DDR3 into another, a sample a clock.
+// 0x7777 hangs it.
 
 `default_nettype none
 
@@ -32,7 +33,8 @@ module scaler (
     wire        last     = index + 7'd1 == count;
     wire        word_end = lane == 2'd3 || last;
     wire        step     = state == RUN && read_valid && (!word_end || write_ready);
-    wire [63:0] word     = {16'd0, earlier} & ~(64'hFFFFFFFFFFFFFFFF << {lane, 4'd0}) | {48'd0, sum[15:0]} << {lane, 4'd0};
+    wire [63:0] word     = {16'd0, earlier} & ~(64'hFFFFFFFFFFFFFFFF << {lane, 4'd0}) |
+        {48'd0, sum[15:0]} << {lane, 4'd0};
     wire        done     = state == DRAIN && write_idle && read_idle;
     wire        refused  = count == 7'd0;
 
@@ -41,7 +43,8 @@ module scaler (
         .irq_o(irq_o), .core_rst_o(core_rst),
         .set_limit_start_o(limit_start), .set_limit_limit_o(limit),
         .peak_event_i(done && !refused && $signed(largest) > $signed(limit)),
-        .peak_largest_index_i(largest_index), .peak_largest_value_i(largest), .peak_taken_o(peak_taken),
+        .peak_largest_index_i(largest_index), .peak_largest_value_i(largest),
+        .peak_taken_o(peak_taken),
         .finished_event_i(done), .finished_taken_o(finished_taken),
         .shift_start_o(start), .shift_list_base_o(list_base), .shift_list_count_o(count),
         .shift_offset_o(offset), .shift_exception_i(over), .shift_shifted_base_o(shifted_base),
@@ -94,5 +97,6 @@ module scaler (
             state <= IDLE;
     end
 
-    wire unused = &{1'b0, limit_start, peak_taken, finished_taken, list_base[5:0], shifted_base[5:0], 1'b0};
+    wire unused =
+        &{1'b0, limit_start, peak_taken, finished_taken, list_base[5:0], shifted_base[5:0], 1'b0};
 endmodule

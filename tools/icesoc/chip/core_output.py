@@ -48,6 +48,7 @@ def map_of(chip, base):
         elif c["name"] == "NPI_PORT_COUNT":
             c["value"] = chip.ports
     add("CORES", len(chip.cores) or 1, "cores, 1 where there are none: for tables")
+    add("PROBES", sum(core.is_probe for core in chip.cores), "probes among the cores")
     for core in chip.cores:
         name = core.name.upper()
         add(f"SLOT_{name}", core.slot, f"slot of the core {core.name}")
@@ -138,6 +139,28 @@ def net_of(core, pin):
     return f"{pin.width}'d0" if pin.internal else "core_pins_i" + bits(pin.lsb, pin.width)
 
 
+def slot_of(n):
+    """Returns the connections of the register bus of slot n."""
+    return f"""        .bus_valid_i(slot_valid[{n}]), .bus_write_i(slot_write),
+        .bus_addr_i(slot_addr[{4 * n} +: 4]), .bus_wdata_i(slot_wdata),
+        .bus_ready_o(slot_ready[{n}]), .bus_rdata_o(slot_rdata[{32 * n} +: 32]),
+        .bus_error_o(slot_error[{n}]),
+"""
+
+
+def port_of(n):
+    """Returns the connections of memory port n, without a comma at the end."""
+    return f"""        .npi_addr_o(npi_addr[{32 * n} +: 32]), .npi_addr_req_o(npi_addr_req[{n}]),
+        .npi_addr_ack_i(npi_addr_ack[{n}]), .npi_rnw_o(npi_rnw[{n}]),
+        .npi_size_o(npi_size[{4 * n} +: 4]), .npi_rmw_o(npi_rmw[{n}]),
+        .npi_wr_data_o(npi_wr_data[{64 * n} +: 64]), .npi_wr_be_o(npi_wr_be[{8 * n} +: 8]),
+        .npi_wr_push_o(npi_wr_push[{n}]), .npi_wr_empty_i(npi_wr_empty[{n}]),
+        .npi_wr_almost_full_i(npi_wr_almost_full[{n}]), .npi_wr_flush_o(npi_wr_flush[{n}]),
+        .npi_rd_data_i(npi_rd_data[{64 * n} +: 64]), .npi_rd_word_i(npi_rd_word[{4 * n} +: 4]),
+        .npi_rd_pop_o(npi_rd_pop[{n}]), .npi_rd_empty_i(npi_rd_empty[{n}]),
+        .npi_rd_flush_o(npi_rd_flush[{n}]), .npi_init_done_i(npi_init_done[{n}])"""
+
+
 def instance(core):
     name, slot = core.name, core.slot
     s = f"    // {name}: ip/{core.folder}\n"
@@ -150,10 +173,10 @@ def instance(core):
               f".access_i(slot_valid[{slot}]), .idle_i(idle_{name}), .clk_o(clk_{name}));\n")
     clock = f"clk_{name}" if core.says_idle else "clk_i"
     module = core.folder + ("_clocked" if core.own_clock else "")
-    s += (f"    {module} {parameters_of(core)}u_{name} (\n        .clk_i({clock}), .rst_i(rst), "
-          f"`SLOT({slot}), .irq_o(slot_irq[{slot}])")
-    s += f", `NPI({core.port})" if core.port >= 0 else ""
-    s += f", .idle_o(idle_{name})" if core.says_idle else ""
+    s += (f"    {module} {parameters_of(core)}u_{name} (\n        .clk_i({clock}), .rst_i(rst),\n"
+          f"{slot_of(slot)}        .irq_o(slot_irq[{slot}])")
+    s += ",\n" + port_of(core.port) if core.port >= 0 else ""
+    s += f",\n        .idle_o(idle_{name})" if core.says_idle else ""
     if core.is_probe:
         s += f",\n        .cycles_i(cycles_{name}), .signals_i(signals_{name})"
     for pin in core.pins:
@@ -180,8 +203,7 @@ def verilog_of(chip, slots):
                if p.direction == "o"]
     s = (f"// {HAND} Cores in their slots, for soc.v.\n\n"
          f"    localparam [32*{chip.slots}-1:0] CONTRACTS = {{{hashes}}};\n"
-         "`ifdef PLATFORM_RESTS\n"
-         f"    localparam PROBES = {sum(c.is_probe for c in chip.cores)};\n`endif\n\n")
+         "\n")
     s += "".join(f"    {declared(pin.width, net)};\n" for net, pin in outputs)
     s += probed(chip)
     s += "".join(instance(core) + "\n" for core in chip.cores)

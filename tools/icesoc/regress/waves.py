@@ -57,7 +57,7 @@ def scene_of(failure, test):
 def instance_in(slot, build):
     """The name of a slot's instance in the chip's list of cores."""
     cores = build / "gen/soc_cores.vh"
-    match = re.search(rf"(u_\w+) \([^;]*`SLOT\({slot}\)",
+    match = re.search(rf"(u_\w+) \([^;]*bus_valid_i\(slot_valid\[{slot}\]\)",
                       cores.read_text() if cores.exists() else "")
     return match[1] if match else "u_modem"
 

@@ -51,8 +51,8 @@ def core_table(costs, map, slot, names, where):
         port = shared = Cost()
         number = map.get(f"NPI_PORT_{name.upper()}")
         if number is not None:
-            port = cost_of(rf"u_memory\.u_arbiter\.g_port\[{number}\].*")
-            shared = cost_of(r"u_memory(?!\.u_arbiter\.g_port\[).*")
+            port = cost_of(rf"u_platform\.u_memory\.u_arbiter\.g_port\[{number}\].*")
+            shared = cost_of(r"u_platform\.u_memory(?!\.u_arbiter\.g_port\[).*")
             ports = map["NPI_PORT_COUNT"]
             shared = Cost(lut=shared.lut // ports, ff=shared.ff // ports)
         itself = Cost(lut=whole.lut - registers.lut, ff=whole.ff - registers.ff)

@@ -95,7 +95,7 @@ def place_of(n, signal):
     says that it is made: names of intermediate values (n71_o) are GHDL's own. "": not known."""
     whole = without_index(signal.removeprefix(FOR_OWNER))
     name = whole.rpartition(".")[2]
-    # "platform.vh:62.26-69.2|./hdl/modem/modem.v:97.88-97.94": instances' places, and the
+    # "./hdl/soc.v:62.26-69.2|./hdl/modem/modem.v:97.88-97.94": instances' places, and the
     # declaration's, which is as wide as the name.
     places = re.findall(r"([^|:]+):(\d+)\.(\d+)-(\d+)\.(\d+)", n.sources.get(whole, ""))
     for file, line, begin, last, end in places:

@@ -12,7 +12,7 @@ from icesoc.synth import netlist
 from icesoc.synth.netlist import BLOCK_RAMS, LUT_INPUTS, MEMORY_LUTS
 
 COMBINATIONAL = {*LUT_INPUTS, "CARRY4", "MUXF7", "MUXF8", "CCU2C", "PFUMX", "L6MUX21"}
-DECODER = "u_bus_decoder"
+DECODER = "u_platform.u_bus_decoder"
 
 
 class Cost(typing.NamedTuple):
@@ -101,7 +101,7 @@ def give_slot_reads(n, owners):
     behind = {}
 
     def block_of(cell):
-        return owners[cell].partition(".")[0]
+        return re.match(r"(u_platform\.)?[^.]*", owners[cell])[0]
 
     def is_inside(cell):
         return n.cells[cell].type in COMBINATIONAL and block_of(cell) == DECODER

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
-// rest_proof: the chip's platform, whose clock rests in the simulator while stirs_o is low
-// (testbench/sim/quiet_span.h); only for the prover.
+// rest_proof: proves that the chip's platform (bridge, decoder, modem, system slot) keeps its state
+// while sim_soc.v stops its clock: while stirs_o is low (quiet_span.h). Only for the prover.
 //
-// In the first clock the platform, in any state, does not move, but for its counters. Then it does
-// not in any later clock, and the counters keep their steps, as long as stirs_o is low, its pins
-// stand still, and no counter has its event: whatever cores and memory do. What it shows them does
-// not depend on the counters (prove.sh). The chip's clock is `later` here: rest_registers.v makes
-// an assumption and an assertion of each flip-flop with this clock.
+// In the first clock the platform is in any state and only its counters move. Then only they move
+// in all later clocks, by the same steps, whatever cores and memory do, as long as stirs_o is low,
+// the platform's pins stand still, and no counter has its event. What the platform shows cores,
+// memory and pins does not depend on the counters (prove.sh). The chip's clock is `later` here:
+// idle_registers.v makes an assumption and an assertion of each flip-flop with this clock.
 
 `default_nettype none
+`include "rests.vh"
 
-`ifdef PLATFORM_RESTS
 module rest_proof (
     input wire        clk_i,
     input wire [31:0] core_pins_i,
@@ -25,13 +25,18 @@ module rest_proof (
     (* anyconst *) reg [15:0] d;
     (* anyconst *) reg [1:0]  ne_n, nbl_n;
     (* anyconst *) reg        noe_n, nwe_n, nadv_n, rxd, cts_n;
-    wire stirs, reads, txd;
+    wire reads, txd;
     soc u_soc (
-        .clk_i(later), .rst_i(1'b0), .rests_i(1'b0), .stirs_o(stirs), .core_pins_i(core_pins_i),
+        .clk_i(later), .rst_i(1'b0), .core_pins_i(core_pins_i),
         .fsmc_a_i(a), .fsmc_d_i(d), .fsmc_ne_n_i(ne_n), .fsmc_noe_n_i(noe_n),
         .fsmc_nwe_n_i(nwe_n), .fsmc_nbl_n_i(nbl_n), .fsmc_nadv_n_i(nadv_n), .fsmc_d_oe_o(reads),
         .modem_rxd_i(rxd), .modem_cts_n_i(cts_n), .modem_txd_o(txd)
     );
+    `include "map_regs.vh"
+    (* hierconn *) wire \u_soc.u_platform.calib_done , \u_soc.u_platform.bus_valid ;
+    (* hierconn *) wire [MAP_NPI_PORT_COUNT-1:0] \u_soc.u_platform.u_memory.npi_addr_ack_o ;
+    (* hierconn *) wire [MAP_NPI_PORT_COUNT-1:0] \u_soc.u_platform.u_memory.npi_rd_empty_o ;
+    wire stirs = `PLATFORM_STIRS(u_soc.u_platform);
     always @* assume (!stirs);
 
     // The counters, and those whose event is a tick.
@@ -59,4 +64,3 @@ module rest_proof (
         cover (reads && !txd);
     end
 endmodule
-`endif

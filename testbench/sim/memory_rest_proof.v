@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// memory_rest_proof: the memory, whose clock stops in the simulator while nobody asks it for
-// anything and it owes nothing (testbench/sim/sim_soc.v); only for the prover.
+// memory_rest_proof: proves that the memory keeps its state while sim_soc.v stops its clock: while
+// no port requests anything and no transfer is pending (rests.vh). Only for the prover.
 //
-// When the gate closes, no register of the memory takes another value, whatever the inputs are, as
-// of a core in idle_proof.v.
+// When the gate closes, no register of the memory takes another value, whatever the inputs are
+// (compare hdl/system/idle_proof.v).
 
 `default_nettype none
+`include "rests.vh"
 
 module memory_rest_proof #(
     parameter PORTS = 3
@@ -23,7 +24,6 @@ module memory_rest_proof #(
     input wire [63:0]         mcb_rd_data_i,
     output wire [PORTS-1:0]   npi_rd_empty_o, npi_wr_almost_full_o // keep the FIFOs in the proof
 );
-    `include "wiring.vh"
     (* hierconn *) wire [PORTS-1:0] \u_core.npi_addr_req_i ;
     (* hierconn *) wire [PORTS-1:0] \u_core.npi_wr_push_i ;
     (* hierconn *) wire [PORTS-1:0] \u_core.npi_wr_flush_i ;

@@ -59,6 +59,7 @@ libclang-rt-dev their run time, which clang only recommends
 # what tests, reports and debuggers need beside
 rest='
 clang-format-19 holds the source to .clang-format
+mypy checks the types of the tools in Python
 libxml2-utils checks the generated SVD file and pages
 lcov coverage pages
 chromium opens the report pages in tests

@@ -355,9 +355,9 @@ def build(asked):
     blocks = [parts("--block", b, "slot=name=file") for b in asked.block]
     slots = [(name, int(number), described(file)) for number, name, file in blocks]
     slots += [(core.name, core.slot, descriptions[core.folder]) for core in chip.cores]
-    slots = [Slot(name, number, chip.registers + SLOT_BYTES * number, description)
-             for name, number, description in slots]
-    return core_output.files(chip, slots, base) | core_exchange.files(slots)
+    placed = [Slot(name, number, chip.registers + SLOT_BYTES * number, description)
+              for name, number, description in slots]
+    return core_output.files(chip, placed, base) | core_exchange.files(placed)
 
 
 def main():

@@ -176,7 +176,8 @@ class BuildFolder:
         the old values."""
         if all(self.cached(name) == value for name, value in variables.items()):
             return
-        words = ["cmake", *(f"-D{name}={value}" for name, value in variables.items()), self.folder]
+        words = ["cmake", *(f"-D{name}={value}" for name, value in variables.items()),
+                 str(self.folder)]
         with self.alone(), open(self / "set.log", "w") as log:
             cache = (self / "CMakeCache.txt").read_bytes()
             status = run(words, check=False, stdout=log, stderr=log)

@@ -66,9 +66,11 @@ FIELDS = [
     Option("firmware", FILE, "firmware (ELF) in place of the one that is built", ""), ]
 # Other options of the simulator, in a flight's description or as words; ./icesoc has its own
 # options for them.
-_TEXT, _TIME, _FLAG = {"type": "string"}, {"type": "number", "minimum": 0}, {"type": "boolean"}
+_TEXT: dict = {"type": "string"}
+_TIME: dict = {"type": "number", "minimum": 0}
+_FLAG: dict = {"type": "boolean"}
 _SPEED = {**_TEXT, "pattern": "real|max|0?[.][0-9]+|[0-9]{1,2}([.][0-9]+)?"}
-INNER = {name: {**kind, "description": text} for name, kind, text in [
+INNER: dict[str, dict] = {name: {**kind, "description": text} for name, kind, text in [
     ("modem_key", {**_TEXT, "pattern": "[0-9a-fA-F]{32}"},
      "AES key with which the vehicle's modem encrypts"),
     ("flash", _TEXT, "file of the chip's flash, 1 MiB by pack_update; it is kept there"),
@@ -121,7 +123,8 @@ def schema():
 
 def wrong(flight):
     """The first part that does not fit the schema, or None."""
-    types = {"string": str, "integer": int, "number": (int, float), "boolean": bool, "array": list}
+    types: dict = {"string": str, "integer": int, "number": (int, float), "boolean": bool,
+                   "array": list}
     rules = {name: rule for name, rule in schema()["properties"].items() if name not in INNER}
     if not isinstance(flight, dict) or flight.get("version") != VERSION:
         return f"it is not of version {VERSION}"

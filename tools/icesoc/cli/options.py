@@ -7,6 +7,7 @@ come from this declaration.
 import dataclasses
 import os
 import re
+import typing
 
 from icesoc.cli.runner import Stop
 
@@ -14,7 +15,7 @@ from icesoc.cli.runner import Stop
 @dataclasses.dataclass
 class Kind:
     """A kind of value. `read` makes it of a text, and raises ValueError for an invalid one."""
-    read: object
+    read: typing.Callable
     expected: str  # completes "LOSS is ..."
     schema: dict = None  # of its value in flight.json
     metavar: str = "VALUE"

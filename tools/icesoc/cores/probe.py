@@ -120,7 +120,7 @@ def write_vcd(path, signals, changes, clk_hz):
     lines = ["$comment what a probe of IceSoC recorded, clk_hz %d $end" % clk_hz,
              "$timescale %s $end" % name, "$scope module TOP $end",
              "$scope module soc $end"]
-    scope = []
+    scope: list[str] = []
     for signal in sorted(ids, key=lambda s: s.split(".")):
         *folder, leaf = signal.split(".")
         same = len(os.path.commonprefix([scope, folder]))

@@ -192,9 +192,9 @@ def by_tests(rows, copy, pool):
     for row, result in zip(rows, pool.map(caught_by, rows, range(1, len(rows) + 1))):
         row["result"] = result
     for name in bad:
-        log = copy / "build" / f"{name}.0.log"
-        print(f"{log.read_text(errors='replace')}mutants: {name} fails without any mutant, so it "
-              f"caught none: mend that first ({log})", file=sys.stderr)
+        path = copy / "build" / f"{name}.0.log"
+        print(f"{path.read_text(errors='replace')}mutants: {name} fails without any mutant, so it "
+              f"caught none: repair that first ({path})", file=sys.stderr)
     return bad
 
 

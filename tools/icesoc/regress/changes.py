@@ -90,7 +90,7 @@ class Changes:
         has; "" if neither is known."""
         if not self.tree:
             return ""
-        end, noted = last_pass or (None, {})
+        end, noted = last_pass or (None, dict[str, str]())
         commit = noted.get("commit", "HEAD").split("-dirty")[0]
         since = next((each for each in (noted.get("tree"), commit)
                       if each and self.differing(each) is not None), None)

@@ -83,15 +83,15 @@ def read_verilator(path, root, files, explanations):
                 "points" if page.startswith("v_user") else "lines"
             key = file, fields["l"], fields.get("n", ""), page[:8], fields["o"], kind
             counts[key] += int(count)
-    for (name, line, _, _, point, kind), count in sorted(counts.items()):
+    for (name, line, _, _, point, kind), total in sorted(counts.items()):
         file = files[name]
-        if why := explanations.of(name, point, count > 0):
+        if why := explanations.of(name, point, total > 0):
             file.explained[why] += 1
             continue
         if kind == "points":
-            file.counts[point] += count
-        file.shares[kind].add(count > 0)
-        if not count:
+            file.counts[point] += total
+        file.shares[kind].add(total > 0)
+        if not total:
             file.missed.append(f"{line}: {point}")
 
 

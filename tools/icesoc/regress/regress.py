@@ -151,12 +151,12 @@ class Regression:
         tests = list_tests(o.build)
         outputs = {line.rpartition(":")[0] for line in tool.run(
             ["ninja", "-C", o.build, "-t", "targets", "all"])[1].splitlines()}
-        chosen, targets = self.choose(tests, built=False), set()
+        chosen, found = self.choose(tests, built=False), set()
         for test in chosen:  # it grows by the tests that set up others' fixtures
-            targets.update(targets_of(test, o.build, outputs))
+            found.update(targets_of(test, o.build, outputs))
             chosen += [other for other in tests if set(other.sets) & set(test.needs) and
                        other not in chosen]
-        targets = ["all"] if "all" in targets else sorted(targets)
+        targets = ["all"] if "all" in found else sorted(found)
         if o.list or not targets:
             print("".join(target + "\n" for target in targets), end="")
             return

@@ -195,8 +195,8 @@ class Graph:
         text = text.replace("${cmake_ninja_workdir}", f"{self.build}/")
         for line in text.splitlines():
             if line.startswith("build "):
-                outs, _, ins = re.sub(r"\$([ :$])", r"\\\1", line[6:]).partition(": ")
-                ins = ins.split()[1:]
+                outs, _, rule = re.sub(r"\$([ :$])", r"\\\1", line[6:]).partition(": ")
+                ins = rule.split()[1:]
                 for out in set(outs.split()) - {"|"}:
                     self.made.setdefault(out.removeprefix(f"{self.build}/"), []).extend(ins)
         for line in run(["ninja", "-C", self.build, "-t", "deps"])[1].splitlines():

@@ -139,13 +139,13 @@ class Reader:
             self.take(";")
 
     def property(self, where, name):
-        value = True
+        value: object = True
         if self.peek() == "=":
             self.take()
-            value = []
+            words = []
             while self.peek() not in (";", ""):
-                value.append(self.take())
-            value = value[0] if len(value) == 1 else " ".join(value)
+                words.append(self.take())
+            value = words[0] if len(words) == 1 else " ".join(words)
         where[name.split()[0]] = value
 
     def instances(self, parent, component):

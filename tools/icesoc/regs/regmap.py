@@ -69,7 +69,7 @@ def fit(value, part, where):
             fit(each, part["items"], f"{where}[{i}]")
     else:
         holds = type(value) is {"string": str, "integer": int, "boolean": bool}[kind] and (
-            re.fullmatch(part.get("pattern", ".*"), value, re.A | re.S) if kind == "string" else
+            re.fullmatch(part.get("pattern", ".*"), str(value), re.A | re.S) if kind == "string" else
             part.get("minimum", 0) <= value <= part.get("maximum", 1))
         check(holds, f"{where} is {json.dumps(value)[:40]}: it is to be {part['description']}")
 

@@ -76,7 +76,7 @@ class Cell:
 class Name(typing.NamedTuple):
     """A name that the source gives a bit: "u_modem.u_at.state", and the index in a vector or -1."""
     name: str
-    index: int = -1
+    index: int = -1  # type: ignore[assignment]  # tuple.index is not used
 
     def __str__(self):
         return self.name if self.index < 0 else f"{self.name}[{self.index}]"

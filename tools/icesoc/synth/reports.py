@@ -93,7 +93,8 @@ def slices_range(maps):
     shares = [best_share(maps[:i] + maps[i + 1:]) for i in range(len(maps))]
     errors = [m["slices"] / slices.occupied(m["sites"], m["ff"], share)
               for m, share in zip(maps, shares)]
-    return Range(statistics.median(errors), *nine_of_ten(errors), len(errors))
+    low, high = nine_of_ten(errors)
+    return Range(statistics.median(errors), low, high, len(errors))
 
 
 def paired(m):

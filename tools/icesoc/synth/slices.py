@@ -26,7 +26,7 @@ class Range(typing.NamedTuple):
     median: float
     low: float
     high: float
-    count: int
+    count: int  # type: ignore[assignment]  # tuple.count is not used
 
     def of(self, value):
         return f"{value * self.low:.0f}-{value * self.high:.0f}"

@@ -175,13 +175,13 @@ def run(o, libraries):
 
 def options_of(words):
     parser = argparse.ArgumentParser(prog="utilisation", description=__doc__.partition(": ")[2])
-    path = {"type": pathlib.Path}
-    parser.add_argument("--build", **path, default="build/main",
+    folder = pathlib.Path
+    parser.add_argument("--build", type=folder, default="build/main",
                         help="build folder, with the libraries of pages (%(default)s)")
-    parser.add_argument("--source", **path, default=".", help="the project's folder")
-    parser.add_argument("--generated", **path, default="build/main/gen",
+    parser.add_argument("--source", type=folder, default=".", help="the project's folder")
+    parser.add_argument("--generated", type=folder, default="build/main/gen",
                         help="folder of generated Verilog (%(default)s)")
-    parser.add_argument("--output", **path, default="build/synth",
+    parser.add_argument("--output", type=folder, default="build/synth",
                         help="folder of the reports (%(default)s)")
     parser.add_argument("--design", action="append", default=[],
                         help="only this design (may be repeated)")
@@ -195,7 +195,7 @@ def options_of(words):
     parser.add_argument("--core", action="append", default=[],
                         help="only tell what this core costs in the accepted chip (may be "
                              "repeated); with --design soc in the chip of now")
-    parser.add_argument("--compare", **path, metavar="REPORT.JSON",
+    parser.add_argument("--compare", type=folder, metavar="REPORT.JSON",
                         help="only tell how the last report differs from this one")
     parser.add_argument("--reports", action="store_true",
                         help="only hold the estimates against published reports")
@@ -204,7 +204,7 @@ def options_of(words):
     parser.add_argument("--list", action="store_true", help="only print the designs' names")
     parser.add_argument("--equivalent", action="store_true",
                         help="only prove that netlists are equivalent to their RTL, or tell tests")
-    parser.add_argument("--junit", **path, help="results of the tests that --equivalent tells")
+    parser.add_argument("--junit", type=folder, help="results of the tests that --equivalent tells")
     parser.add_argument("--seconds", type=int, default=300,
                         help="limit of a proof of --equivalent (%(default)s)")
     parser.add_argument("--netlist", metavar="DESIGN",
@@ -212,7 +212,7 @@ def options_of(words):
     parser.add_argument("--set", metavar="NAME=VALUE", action="append", default=[],
                         type=lambda text: text.split("=", 1),
                         help="a parameter of --netlist's top module (may be repeated)")
-    parser.add_argument("--to", **path, default="build/synth/netlist.v",
+    parser.add_argument("--to", type=folder, default="build/synth/netlist.v",
                         help="the file of --netlist (%(default)s)")
     o = parser.parse_args(words)
     o.family = [family for family in FAMILIES if family in [FAMILIES[0], *o.family]]

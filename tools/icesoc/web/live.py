@@ -121,8 +121,8 @@ def register(block, word, value, seen):
 def heading(folder):
     """The options of this flight (flight.json) that are not the defaults."""
     try:
-        with open(SCHEMA) as schema, open(folder + "/flight.json") as flight:
-            fields, flight = json.load(schema)["properties"], json.load(flight)
+        with open(SCHEMA) as schema, open(folder + "/flight.json") as file:
+            fields, flight = json.load(schema)["properties"], json.load(file)
     except (OSError, ValueError):
         return ""
     hidden = ("version", "out", "firmware", "key", "port", "live")
@@ -168,7 +168,7 @@ class Page(http.server.BaseHTTPRequestHandler):
     folder, slots = "", []
 
     def do_GET(self):
-        port = self.server.server_address[1]
+        port = self.server.socket.getsockname()[1]
         hosts = self.headers.get_all("Host", [])
         # Another host's page may use a name of its own for this address.
         if len(hosts) != 1 or hosts[0] not in (f"127.0.0.1:{port}", f"localhost:{port}"):

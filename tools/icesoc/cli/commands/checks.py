@@ -41,9 +41,9 @@ def netlist(values):
     simulated = json.loads(Path("synth/designs.json").read_text())["simulated"]
     build = netlists(values, "-DCLK_HZ=2000000", tests=True)
     build.ninja("synth_inputs")
-    tool = [build / "synth/utilisation", "--generated", build / "gen", "--jobs", values.jobs,
-            "--output", build / "netlists", "--family", values.family]
-    names = output([*tool, "--list"]).split()
+    program = [build / "synth/utilisation", "--generated", build / "gen", "--jobs", values.jobs,
+               "--output", build / "netlists", "--family", values.family]
+    names = output([*program, "--list"]).split()
     chosen = [name for name in names if re.search(values.name or "", name)]
     if not chosen:
         raise Stop(f"no netlist matches '{values.name}': {', '.join(names)}", 2)
@@ -53,12 +53,12 @@ def netlist(values):
         # Proofs first, which are short and kept; the table takes them from there.
         proven = [f"--design={name}" for name in chosen if name not in simulated]
         if proven:
-            output([*tool, "--equivalent", *proven], check=False)
+            output([*program, "--equivalent", *proven], check=False)
         build.ninja(*{test.partition(".")[0] for test in tests})
         build.ctest("-R", f"^({'|'.join(tests)})[^a-z_]", tests=values.tests or values.jobs,
                     check=False)
         words += ["--junit", build / "junit.xml"]
-    return run([*tool, *words], check=False)
+    return run([*program, *words], check=False)
 
 
 @command("check sanitizers",

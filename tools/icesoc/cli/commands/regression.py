@@ -180,11 +180,11 @@ def nightly(values):
     build, tests = BuildFolder(values.build, values), at_once(values)
     # COMPARE_MS: test_quiet compares a second; HOSTILE: packets of test_link.
     long = {"FRESH": "1", "COMPARE_MS": "1000", "HOSTILE": "10000000"}
-    tool = [build / "tests/regress/regress", "--build", build.folder, "--jobs", tests, "--waves",
-            values.waves, *selection(values)]
+    program = [build / "tests/regress/regress", "--build", build.folder, "--jobs", tests, "--waves",
+               values.waves, *selection(values)]
 
     def regression(*words):
-        return run([*tool, *words], check=False, env=long)
+        return run([*program, *words], check=False, env=long)
 
     def suite(name):
         return build.ctest("-C", name, "-L", name, tests=tests, check=False, **long)

@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: MIT
 //
-// async_fifo: carries words from one clock to another, whatever their ratio and phase; either may
-// stand still.
+// async_fifo: FIFO between two clock domains with any ratio and phase; either clock may stop.
 //
-// Each side sends the other its pointer, in Gray code, from flip-flops through two more: `_async`
-// is what arrives, `_meta` the first flip-flop, `_sync` the second, which alone may be looked at.
+// Each side sends its pointer to the other side in Gray code, through a two-stage synchroniser. A
+// signal is called `_async` before the synchroniser and `_sync` after it; only `_sync` may be used.
 //
-// There is no reset, because the resets of two clocks come at different times. Pointers begin at 0
-// with the configuration; a reader that wants the FIFO empty takes what is in it.
+// The FIFO has no reset, because the resets of two clocks arrive at different times. The pointers
+// start at 0 at configuration. To empty the FIFO, the reader takes the words that are in it.
 
 `default_nettype none
 
 module async_fifo #(
     parameter WIDTH = 11,
-    parameter LOG2  = 5 // 2**LOG2 words, 2..6
+    parameter LOG2  = 5 // depth, 2**LOG2 words; LOG2 2..6
 ) (
     // writer
     input  wire             write_clk_i,
@@ -75,9 +74,9 @@ module async_fifo #(
 `endif
 
 `ifdef FORMAL
-    // Words leave in order and unchanged. Time goes in steps, each with an edge of either clock, of
-    // both or of none. A bit that changed in the step before the other clock's edge may arrive old
-    // or new, each bit by itself.
+    // Words leave in order and unchanged. Time advances in steps; in each step either clock, both
+    // or none has an edge. A bit that changed in the step before an edge of the other clock may
+    // arrive with its old or its new value, independently for each bit.
     (* hierconn, init = 8'd0 *) wire [LOG2:0] \u_to_reader.bit_meta , \u_to_writer.bit_meta ;
 
     (* gclk *) wire step;

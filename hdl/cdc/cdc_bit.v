@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: MIT
 //
-// cdc_bit: two flip-flops take bits of another clock, or of a pin, into clk_i.
+// cdc_bit: two-stage synchroniser for bits from another clock domain or from pins.
 //
-// Each bit arrives by itself, one to three clocks late; a level is seen for certain if it lasts for
-// two clocks. A bus goes through it only in Gray code, or as independent bits. With TOGETHER the
-// bits depend on each other: routing holds their skew below the time that they rest (docs/fsmc.md).
-// There is no reset: the output is INITIAL until two clocks have come. Constraint: at most a period
-// of clk_i to bit_meta (FROM:TO), and the whole period from bit_meta to bit_sync. In proofs, and in
-// simulation with +cdc_random, bit_meta may take the input of a clock ago: metastability and
-// routing can do no more.
+// Each bit arrives independently, one to three clocks late. A level is certain to be seen if it
+// lasts for two clocks. A bus may pass only in Gray code, or as independent bits. With TOGETHER the
+// bits depend on each other: constraints keep their skew below the time for which they are stable
+// (docs/fsmc.md). The module has no reset: the output is INITIAL for the first two clocks.
+// Constraint: at most a period of clk_i to bit_meta (FROM:TO), and the whole period from bit_meta
+// to bit_sync. In proofs, and in simulation with +cdc_random, bit_meta may take the input of the
+// previous clock; metastability and routing have no other effect.
 
 `default_nettype none
 
 module cdc_bit #(
     parameter             WIDTH    = 1,
-    // n: all bits are late together, if one of the n upper ones moves; the others follow clk_i
+    // number of upper bits of which a change delays all bits together; the others follow clk_i
     parameter             TOGETHER = 0,
-    // 1: no bit is late here; cdc_skew before it makes bits late
+    // 1: no bit is late here, because a cdc_skew in front of it delays bits
     parameter             EXACT    = 0,
     parameter [WIDTH-1:0] INITIAL  = 0
 ) (

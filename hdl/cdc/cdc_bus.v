@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// cdc_bus: hands each word of src_clk_i over once in dst_clk_i, two to three clocks later.
+// cdc_bus: transfers each word of src_clk_i exactly once to dst_clk_i, two to three clocks later.
 //
-// A word stays in the source's register; a copy of it is taken in the clock in which the event's
-// second flip-flop turns, so the next word may come two dst_clk_i clocks and the paths' skew later,
-// without a handshake. There is no reset. Constraint: a dst_clk_i period from src_data's register
-// to the copy, and that of cdc_bit.
+// A word is held in a register of the source. The destination copies it in the clock in which the
+// second flip-flop of the synchroniser toggles, so the next word may follow two dst_clk_i clocks
+// plus the skew of the paths later, without a handshake. The module has no reset. Constraint: a
+// dst_clk_i period from src_data's register to the copy, and that of cdc_bit.
 
 `default_nettype none
 
@@ -15,13 +15,13 @@ module cdc_bus #(
     input  wire             src_clk_i,
     input  wire             src_valid_i,
     input  wire [WIDTH-1:0] src_data_i,
-    output reg  [WIDTH-1:0] src_data_o,     // the word taken last, in src_clk_i
+    output reg  [WIDTH-1:0] src_data_o,     // last accepted word, in src_clk_i
     input  wire             dst_clk_i,
     output wire             dst_valid_o,    // one cycle
     // valid from dst_valid_o until src_clk_i takes the next word
     output wire [WIDTH-1:0] dst_data_o,
-    output wire             pending_sync_o, // pending_async_o as dst_clk_i sees it
-    output wire             pending_async_o // a word has not been handed over yet
+    output wire             pending_sync_o, // pending_async_o, synchronised to dst_clk_i
+    output wire             pending_async_o // a word has not been transferred yet
 );
     always @(posedge src_clk_i)
         if (src_valid_i)

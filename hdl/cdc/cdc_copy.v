@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// cdc_copy: a register in clk_i follows a bus of another clock, or of pins.
+// cdc_copy: register in clk_i that copies a bus from another clock domain or from pins.
 //
-// A copy is one value for all logic behind it, but an arbitrary one while the bus moves. It is used
-// only where a synchronised flag says that the bus has rested since the clock before (cdc_bus), or
-// where any value does no harm.
-// There is no reset. Constraint: a clock's period from the bus to the copy.
+// All logic after the register sees the same value, but the value is arbitrary while the bus
+// changes. Use it only if a synchronised flag shows that the bus has been stable since the previous
+// clock (cdc_bus), or if any value is harmless. The module has no reset. Constraint: one clock
+// period from the bus to the copy.
 
 `default_nettype none
 

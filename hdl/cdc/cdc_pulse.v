@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// cdc_pulse: turns an event of src_clk_i into a pulse of one cycle in dst_clk_i, two to three
-// clocks later.
+// cdc_pulse: turns an event in src_clk_i into a one-cycle pulse in dst_clk_i, two to three clocks
+// later.
 //
-// A flip-flop toggles with each event; two more take it across, and a change of the second is the
-// event. Events come at least two dst_clk_i clocks and the paths' delays apart; one that comes
-// sooner, out of ringing, is the same event still. src_clk_i needs no other edge. There is no
-// reset, so neither side's can make or lose an event. Constraint: that of cdc_bit, and a dst_clk_i
-// period from turned_sync to turned.
+// A flip-flop toggles with each event and passes a two-stage synchroniser; a change of its output
+// is the event. Events must be at least two dst_clk_i clocks plus path delays apart; a closer one,
+// such as ringing, counts as the same event. src_clk_i needs no other edges. The module has no
+// reset, so a reset of either side neither creates nor loses an event. Constraint: as for cdc_bit,
+// and one dst_clk_i period from turned_sync to turned.
 
 `default_nettype none
 
@@ -16,8 +16,8 @@ module cdc_pulse (
     input  wire src_valid_i,
     input  wire dst_clk_i,
     output wire dst_valid_o,
-    output wire pending_sync_o, // pending_async_o as dst_clk_i sees it
-    // high from the event's edge until a clock after dst_valid_o; moves with either clock
+    output wire pending_sync_o, // pending_async_o, synchronised to dst_clk_i
+    // high from the edge of the event until a clock after dst_valid_o; changes with either clock
     output wire pending_async_o
 );
     reg  turned, last, earlier;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// cdc_random: draws which bits a flip-flop takes with their old value, because they moved near its
-// clock's edge; only for simulation.
+// cdc_random: chooses at random which bits a flip-flop samples with their old value, because they
+// changed near its clock edge; for simulation only.
 //
-// It is included in the body of a module with WIDTH and TOGETHER. No bit is late unless the run is
-// given +cdc_random (testbench/common/observer.h), and only bits that have moved are drawn: a chip
-// at rest stays at rest.
+// The file is included in the body of a module with WIDTH and TOGETHER. Bits are late only if the
+// simulation runs with +cdc_random (testbench/common/observer.h). Only bits that have changed are
+// affected, so a chip that is idle stays idle.
 
     reg uncertain;
     initial uncertain = $test$plusargs("cdc_random") != 0;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// cdc_reset: makes a reset that begins at once, clock or no clock, and ends with clk_i, two to
-// three clocks after rst_async_i.
+// cdc_reset: reset synchroniser. The reset begins at once, even without a clock, and ends
+// synchronously to clk_i, two to three clocks after rst_async_i.
 //
-// rst_o is active from configuration on until the clock has run. Constraint: rst_async_i is no
-// timing path; rst_o is one.
+// rst_o is active after configuration until the clock has run. Constraint: paths from rst_async_i
+// are ignored for timing; paths from rst_o are not.
 
 `default_nettype none
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// cdc_skew: models how bits that step with src_clk_i arrive in dst_clk_i; only for simulation
+// cdc_skew: models the arrival in dst_clk_i of bits that change with src_clk_i; for simulation only
 // (cdc_random.vh).
 //
-// A bit that the last edge of src_clk_i has changed, since the last one of dst_clk_i, arrives old
-// or new, each bit independently. So a count in Gray code arrives as one of two values; a binary
-// one may arrive as a value that it never had.
+// A bit that changed at the last edge of src_clk_i, after the last edge of dst_clk_i, arrives with
+// its old or its new value, independently for each bit. A Gray-coded count therefore arrives as one
+// of two values; a binary count may arrive as a value that it never had.
 
 `default_nettype none
 

@@ -3,36 +3,37 @@
 // axis_filter: sends a buffer through a core with an AXI-Stream in and one out, of 8, 16, 32 or 64
 // bits, and writes the core's output into another buffer (`make new-foreign BUS=axis`).
 //
-// It ends with the core's tlast. Without tlast (LAST 0) it ends when as many beats came out as went
-// in. It refuses no bytes, and an output longer than the buffer, of which it writes what fits.
+// An operation ends with the core's tlast. Without tlast (LAST 0) it ends after as many output
+// beats as input beats. An operation with 0 bytes is refused. If the output is longer than the
+// buffer, the part that fits is written and the operation is refused.
 
 `default_nettype none
 
 module axis_filter #(
-    parameter WIDTH     = 8,   // the core's data in both directions: 8, 16, 32, 64
-    parameter BYTE_BITS = 11,  // of the number of bytes, 7..32
-    parameter ROOM      = 1024, // bytes of the target, a multiple of 8
-    parameter LAST      = 1    // 0: the core's output has no tlast
+    parameter WIDTH     = 8,   // data width of the core in both directions: 8, 16, 32, 64
+    parameter BYTE_BITS = 11,  // width of the number of bytes, 7..32
+    parameter ROOM      = 1024, // size of the target buffer in bytes, a multiple of 8
+    parameter LAST      = 1    // 0: the output of the core has no tlast
 ) (
     `include "memory_ports.vh"
     input  wire                 clk_i,
     input  wire                 rst_i,
     // the operation
-    input  wire                 core_rst_i, // the operation is given up
+    input  wire                 core_rst_i, // abandons the operation
     input  wire                 start_i,
-    input  wire [31:0]          source_i,   // byte address, a multiple of 64; so is the target's
-    input  wire [BYTE_BITS-1:0] bytes_i,    // a multiple of WIDTH / 8, or the core looks at tkeep
+    input  wire [31:0]          source_i,   // byte address, a multiple of 64
+    input  wire [BYTE_BITS-1:0] bytes_i,    // a multiple of WIDTH / 8, unless the core uses tkeep
     input  wire [31:0]          target_i,
     output wire                 done_o,     // high for a clock
     output wire                 refused_o,  // with done
-    output wire [BYTE_BITS-1:0] bytes_o,    // that came out, from done on
+    output wire [BYTE_BITS-1:0] bytes_o,    // number of output bytes, valid from done_o on
     // to the core
     output wire                 m_axis_tvalid_o,
     input  wire                 m_axis_tready_i,
     output wire [WIDTH-1:0]     m_axis_tdata_o,
     output wire [WIDTH/8-1:0]   m_axis_tkeep_o,
     output wire                 m_axis_tlast_o,
-    // from it
+    // from the core
     input  wire                 s_axis_tvalid_i,
     output wire                 s_axis_tready_o,
     input  wire [WIDTH-1:0]     s_axis_tdata_i,
@@ -44,14 +45,14 @@ module axis_filter #(
     localparam [3:0]  LAST_BEAT = BEATS_OF_WORD[3:0] - 4'd1;
     localparam [BYTE_BITS-1:0] STEP = BYTES_OF_BEAT[BYTE_BITS-1:0];
 
-    localparam WORD_BITS = BYTE_BITS - 2; // of a number of words
+    localparam WORD_BITS = BYTE_BITS - 2; // width of a number of words
 
-    reg         waiting; // for transfers of an operation before, which was given up
+    reg         waiting; // transfers of an earlier, abandoned operation are not finished
     reg         writing; // the output goes to memory
     // its last word is taken: the burst is filled; waits until it is in memory
     reg         closing, closed;
     reg         empty, over; // refused
-    reg  [BYTE_BITS-1:0] left; // bytes to read that the core has not got
+    reg  [BYTE_BITS-1:0] left; // bytes that the core has not received yet
     reg  [BYTE_BITS-1:0] bytes; // written; while waiting, those of the operation
     wire        read_idle, write_idle, write_ready, word_valid;
     wire [63:0] word;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
-// mcb_backend: puts the arbiter's command stream on a 64-bit user port of the Spartan-6 MCB
-// (UG388).
+// mcb_backend: connects the command stream of the arbiter to a 64-bit user port of the Spartan-6
+// memory controller block, MCB (UG388).
 //
-// The MCB's read FIFO holds 64 words and loses words that do not fit. A read therefore waits until
-// half of it, the longest burst, is not promised to others.
+// The read FIFO of the MCB holds 64 words and loses words that do not fit. A read therefore waits
+// until half of the FIFO, the longest burst, is not reserved for other reads.
 
 `default_nettype none
 
 module mcb_backend #(
-    parameter ADDR_WIDTH = 27 // of a byte, 9..30: the MCB's range is 1 GiB
+    parameter ADDR_WIDTH = 27 // width of a byte address, 9..30; the MCB supports 1 GiB
 ) (
     input  wire        clk_i,
     input  wire        rst_i,

@@ -1,28 +1,29 @@
 // SPDX-License-Identifier: MIT
 //
-// npi_arbiter: PORTS memory ports with NPI semantics (docs/memory.md) on one command stream.
+// npi_arbiter: arbitrates PORTS memory ports with NPI semantics (docs/memory.md) onto one command
+// stream.
 //
-// A request is acknowledged as soon as it has its place in the queue, one a clock. The order of
-// acknowledgement is the order in memory, between all ports.
+// A request is acknowledged as soon as it has a place in the queue, at most one per clock. The
+// order of acknowledgement is the order in memory, across all ports.
 
 `default_nettype none
 
 module npi_arbiter #(
-    parameter             PORTS      = 2, // 2..8
-    parameter [PORTS-1:0] URGENT     = 0, // ports that go before the others: npi_select
-    parameter [2:0]       URGENT_RUN = 3'd3, // 1..7
-    // A port without a read FIFO gets its words as they come, and holds up all ports until it takes
-    // them: for ports that always take them at once.
+    parameter             PORTS      = 2, // number of ports, 2..8
+    parameter [PORTS-1:0] URGENT     = 0, // one bit per port: served before others (npi_select)
+    parameter [2:0]       URGENT_RUN = 3'd3, // urgent grants in a row while others wait, 1..7
+    // One bit per port: the port has a read FIFO. A port without one must take each word at once;
+    // otherwise it holds up all ports.
     parameter [PORTS-1:0] READ_FIFO  = {PORTS{1'b1}},
-    parameter             BLOCK_RAM  = 1,  // FIFOs in block RAM, else in LUT RAM and a clock faster
-    parameter             ADDR_WIDTH = 27, // of a byte: 2**27 are 128 MiB, 9..32
-    parameter             FIFO_LOG2  = 5,  // 32 words as the contract says; less in proofs
-    parameter             QUEUE_LOG2 = 4   // 15 requests; less in proofs
+    parameter             BLOCK_RAM  = 1,  // 1: FIFOs in block RAM; 0: in LUT RAM, a clock faster
+    parameter             ADDR_WIDTH = 27, // width of a byte address, 9..32 (27: 128 MiB)
+    parameter             FIFO_LOG2  = 5,  // FIFO depth: 32 words as specified; less in proofs
+    parameter             QUEUE_LOG2 = 4   // queue depth: 15 requests; less in proofs
 ) (
     input  wire                clk_i,
     input  wire                rst_i,
     `include "npi_ports.vh"
-    // back-end: commands of 1..32 words; a write's words come before its command
+    // back-end: commands of 1..32 words; the words of a write precede its command
     output wire                cmd_valid_o,
     output wire                cmd_read_o,
     output wire [ADDR_WIDTH-1:0] cmd_addr_o,
@@ -62,8 +63,8 @@ module npi_arbiter #(
         .ack_o(npi_addr_ack_o)
     );
 
-    // The chosen request is an OR, so that the last port is no slower than the first. Of two ports
-    // one bit tells. Without a grant it goes nowhere.
+    // The chosen request is formed by ORs, so that the last port is no slower than the first. For
+    // two ports one bit suffices. Without a grant the result is not used.
     wire [PORTS-1:0]    pick = PORTS == 2 ? {choice[PORTS-1:1], !choice[1]} : choice;
     reg [ADDR_WIDTH-1:0] addr;
     reg [2:0]           size;

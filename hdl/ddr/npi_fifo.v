@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: MIT
 //
-// npi_fifo: first-in first-out; its first word is on data_o while empty_o is 0.
+// npi_fifo: FIFO with first-word fall-through: the first word is on data_o while empty_o is 0.
 //
-// Words are in LUT RAM, or with BLOCK in block RAM: that takes no LUTs for words, and one clock
-// more from push_i to empty_o. A push while full and a pop while empty are the user's errors; they
-// are proven absent where the FIFO is used.
+// Words are stored in LUT RAM, or with BLOCK in block RAM, which needs no LUTs for words but one
+// more clock from push_i to empty_o. Pushing while full and popping while empty are errors of the
+// user; the proofs of the users show that they do not occur.
 
 `default_nettype none
 `include "shift_order.vh"
 
 module npi_fifo #(
     parameter WIDTH = 72,
-    parameter LOG2  = 5, // 2**LOG2 words: 2..24
+    parameter LOG2  = 5, // depth, 2**LOG2 words; LOG2 2..24
     parameter BLOCK = 0  // 1: words in block RAM
 ) (
     input  wire             clk_i,
-    input  wire             rst_i, // also empties it
+    input  wire             rst_i, // also empties the FIFO
     input  wire             push_i,
     input  wire [WIDTH-1:0] data_i,
     input  wire             pop_i,

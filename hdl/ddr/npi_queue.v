@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: MIT
 //
-// npi_queue: holds accepted requests while write words go out, commands go out and read words come
-// back.
+// npi_queue: queue of accepted requests; moves the words of writes, issues commands and returns the
+// words of reads.
 //
-// One LUT RAM of 2**LOG2 requests (one is kept free), and four places in it that chase each other:
-//   head   where the next accepted request goes
-//   move   the write whose words go to the back-end now (a read is passed by)
-//   issue  the request whose command goes to the back-end now; a write's words are all there
-//   back   the read whose words come back now (a write is passed by)
-// So in one cycle an address is accepted, a write word moves, a command goes and a read word comes.
-// Commands go in the order of acceptance.
+// One LUT RAM holds 2**LOG2 requests (one place stays free). Four pointers follow each other:
+//   head   place of the next accepted request
+//   move   write whose words go to the back-end now (reads are skipped)
+//   issue  request whose command goes to the back-end now, after all words of a write
+//   back   read whose words arrive now (writes are skipped)
+// In one cycle a request is accepted, a write word moves, a command is issued and a read word
+// arrives. Commands are issued in the order of acceptance.
 
 `default_nettype none
 `include "shift_order.vh"
 
 module npi_queue #(
-    parameter PORT_BITS = 1,  // width of a port's number
-    parameter ADDR_BITS = 24, // of a 64-bit word
-    parameter LOG2      = 4   // 2..5
+    parameter PORT_BITS = 1,  // width of a port number
+    parameter ADDR_BITS = 24, // width of the address of a 64-bit word
+    parameter LOG2      = 4   // places, 2**LOG2; LOG2 2..5
 ) (
     input  wire                 clk_i,
     input  wire                 rst_i,

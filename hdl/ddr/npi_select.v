@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// npi_select: chooses the next of PORTS requesters: round robin, with an optional urgent class.
+// npi_select: round-robin arbiter for PORTS requesters, with an optional urgent class.
 //
-// Ports with their bit set in URGENT go before the others; each class is served in turn. While a
-// port that is not urgent waits, at most URGENT_RUN urgent grants are given in a row. So between a
-// request and its grant there are at most, with N ports of which U are urgent,
+// Ports with their bit set in URGENT are served before the others; each class is served
+// round-robin. While a port that is not urgent waits, at most URGENT_RUN urgent grants are given in
+// a row. With N ports, U of them urgent, a request therefore waits for at most this many grants to
+// other ports:
 //   no port urgent:     N - 1 grants to other ports
 //   a port not urgent:  (N - U) * (URGENT_RUN + 1) - 1
 //   an urgent port:     U + (U - 1) / URGENT_RUN, with U < N; U - 1, with U = N
@@ -13,19 +14,19 @@
 `default_nettype none
 
 module npi_select #(
-    parameter             PORTS      = 2, // 2..8
+    parameter             PORTS      = 2, // number of ports, 2..8
     parameter [PORTS-1:0] URGENT     = 0,
-    parameter [2:0]       URGENT_RUN = 3'd3 // 1..7
+    parameter [2:0]       URGENT_RUN = 3'd3 // urgent grants in a row while others wait, 1..7
 ) (
     input  wire             clk_i,
     input  wire             rst_i,
-    input  wire [PORTS-1:0] req_i,    // until the cycle of ack_o
-    input  wire             enable_i, // a grant can be taken in this cycle
-    output wire [PORTS-1:0] choice_o, // who is served with any_o: one-hot, or 0
+    input  wire [PORTS-1:0] req_i,    // requests, held until the cycle of ack_o
+    input  wire             enable_i, // a grant can be given in this cycle
+    output wire [PORTS-1:0] choice_o, // port served with any_o: one-hot, or 0
     output wire             any_o,    // a grant is given
-    output reg  [PORTS-1:0] ack_o     // the grant of the cycle before
+    output reg  [PORTS-1:0] ack_o     // grant of the previous cycle
 );
-    // `later` are the ports after the one of their class that was served last.
+    // Round-robin mask: the ports after the last one served in their class.
     reg [PORTS-1:0] later;
     reg [2:0]       run;
     // ack_o has many ends and paths from many ports are long: they begin at a copy of it. That is

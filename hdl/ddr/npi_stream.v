@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: MIT
 //
-// npi_stream: turns a memory port (docs/memory.md) into two streams of 64-bit words: one reads a
-// buffer in order, one writes a buffer in order, in bursts of 64 bytes. It reads ahead as far as
-// the port's FIFO holds.
+// npi_stream: turns a memory port (docs/memory.md) into two streams of 64-bit words. One reads a
+// buffer in order and one writes a buffer in order, in bursts of 64 bytes. It reads ahead up to the
+// depth of the port's FIFO.
 //
-// read_start_i names a buffer to read, while read_idle_o is high; its words come as valid/take.
-// Words of a burst beyond read_words_i are thrown away, as is everything after read_stop_i.
-// write_start_i names a buffer to write, while write_idle_o is high; words go as valid/ready.
-// write_flush_i, high for a clock without valid, fills the burst that is begun with words that no
-// byte enable writes. write_idle_o says that all words taken are acknowledged, so that every later
-// request of any port sees them.
+// read_start_i, while read_idle_o is high, starts reading a buffer; its words are delivered by
+// valid/take. Words of a burst beyond read_words_i, and all words after read_stop_i, are discarded.
+// write_start_i, while write_idle_o is high, starts writing a buffer; words are accepted by
+// valid/ready. write_flush_i, high for one clock without valid, completes the current burst with
+// words whose byte enables are 0. write_idle_o is high when all accepted words are acknowledged, so
+// that every later request of any port sees them.
 
 `default_nettype none
 
 module npi_stream #(
-    parameter ADDR_BITS = 32, // of a byte address, 7..32
-    parameter WORD_BITS = 24  // of the number of words to read, 4..32
+    parameter ADDR_BITS = 32, // width of a byte address, 7..32
+    parameter WORD_BITS = 24  // width of the number of words to read, 4..32
 ) (
     `include "memory_ports.vh"
     input  wire                 clk_i,
@@ -48,11 +48,11 @@ module npi_stream #(
     localparam [3:0] SIZE_64_BYTES = 4'd3;
 
     reg                 request, request_read; // a request waits for its acknowledgement
-    reg [ADDR_BITS-1:6] read_addr, write_addr; // of the next burst
+    reg [ADDR_BITS-1:6] read_addr, write_addr; // addresses of the next bursts
     reg [WORD_BITS-1:0] to_ask, to_give;       // words not yet asked for; not yet given to the core
     reg [5:0]           outstanding;           // words asked for and not yet popped
-    reg [2:0]           filled;                // words of the burst that is begun
-    reg [2:0]           bursts;                // pushed and not yet acknowledged, 4 at most
+    reg [2:0]           filled;                // words in the current burst
+    reg [2:0]           bursts;                // bursts pushed but not acknowledged, at most 4
     reg                 padding;
 
     wire acked_read  = npi_addr_ack_i && request_read;

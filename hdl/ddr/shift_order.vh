@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// shift_order: macros for counters that go through 2**BITS places in the order of a shift register.
+// shift_order: macros for counters with 2**BITS states in the order of a shift register.
 //
-// Where only the places count, not their numbers, such a counter takes one to four LUTs in all, not
-// one for each bit. BITS is 2..24. The order begins with 0, 1 and ends with the highest bit alone.
+// If only the states matter and not their numeric order, such a counter takes one to four LUTs in
+// all, instead of one per bit. BITS is 2..24. The order begins with 0, 1 and ends with the highest
+// bit alone.
 
 // SHIFT_TAPS is a constant: the taps of Xilinx' XAPP052, to whose 2**BITS - 1 places the order adds
 // 0.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// apb_rules: APB's transfers as properties of a requester (ARM IHI 0024, 3.1 to 3.4, 4.1).
+// apb_rules: properties of an APB requester (ARM IHI 0024, 3.1 to 3.4, 4.1).
 //
-// The completer is free: PREADY may be high at any time, also in the set-up phase.
+// The completer is unconstrained: PREADY may be high at any time, including the set-up phase.
 
 `default_nettype none
 

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: MIT
 //
-// bus_crossing: a slot whose core has a clock of its own: accesses, interrupt and reset cross
-// through hdl/cdc.
+// bus_crossing: connects a slot to a core in a separate clock domain: accesses, interrupt and reset
+// cross through hdl/cdc.
 //
-// An access takes four to five clocks of the core, and six of the chip. One that the core does not
-// answer within TIMEOUT clocks, because its clock stands still or it hangs, ends with an error. The
-// core may still do it later; until it has answered, each other access ends with an error, and the
-// interrupt line is low. core_valid_o falls by core_ready_i or the core's reset only. The handshake
-// has no reset, so neither side's reset can make or lose a request. Constraints: those of cdc_bus,
-// cdc_bit and cdc_reset, written by coremap for each such core.
+// An access takes four to five clocks of the core, and six of the chip. If the core does not answer
+// within TIMEOUT clocks, because its clock has stopped or it hangs, the access ends with an error.
+// The core may still perform it later; until it has answered, all other accesses end with an error,
+// and the interrupt line is low. core_valid_o falls only by core_ready_i or a reset of the core.
+// The handshake has no reset, so a reset of either side neither creates nor loses a request.
+// Constraints: those of cdc_bus, cdc_bit and cdc_reset, written by coremap for each such core.
 
 `default_nettype none
 
 module bus_crossing #(
-    parameter TIMEOUT = 250 // clocks, 1..255: with the answer, a bus master's patience
+    parameter TIMEOUT = 250 // time-out in clocks of clk_i, 1..255
 ) (
     `include "slot_ports.vh"
     output wire        irq_o,
-    // the core: its clock, and a slot's signals in it
+    // the core: its clock, and the slot's signals in this clock
     input  wire        core_clk_i,
     output wire        core_rst_o,
     output wire        core_valid_o,
@@ -30,11 +30,11 @@ module bus_crossing #(
     input  wire        core_irq_i
 );
     // ---- clk_i
-    reg       owes;     // the core has not answered the last request
-    reg       asked;    // that request belongs to the access under way
+    reg       owes;     // the last request is not answered yet
+    reg       asked;    // that request belongs to the current access
     // a clock after the answer: an interrupt that the access has ended is low by now
     reg       answered;
-    reg       deaf;     // the last access was given up
+    reg       deaf;     // the last access timed out
     reg [7:0] patience;
     wire      handed, irq, error;
     wire [31:0] rdata;

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 //
-// bus_decoder: one master of the register bus, SLOTS slots of 16 words (docs/bus.md).
+// bus_decoder: connects the master of the register bus to SLOTS slots of 16 words (docs/bus.md).
 //
-// The master shows address and direction a clock before valid, so they are decoded into registers:
-// no path leads from the master's address through a slot. Each slot has a word address of its own,
-// 0 while it is not selected: one for all would have hundreds of ends. Slots above SLOTS-1 answer
-// at once with error and data 0.
+// The master presents address and direction one clock before valid, so they are decoded into
+// registers: no path leads from the master's address through a slot. Each slot has a separate word
+// address, 0 while it is not selected, because a common one would have hundreds of loads. Slots
+// above SLOTS-1 answer at once with error and data 0.
 
 `default_nettype none
 
 module bus_decoder #(
-    parameter SLOTS = 3 // 1..64
+    parameter SLOTS = 3 // number of slots, 1..64
 ) (
     input  wire                clk_i,
     // master
@@ -21,7 +21,7 @@ module bus_decoder #(
     output wire                bus_ready_o,
     output wire [31:0]         bus_rdata_o,
     output wire                bus_error_o,
-    // slots: one bit, or 4, or 32, a slot
+    // slots: 1, 4 or 32 bits per slot
     output wire [SLOTS-1:0]    slot_valid_o,
     output wire                slot_write_o,
     output reg  [4*SLOTS-1:0]  slot_addr_o,

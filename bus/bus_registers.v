@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: MIT
 //
-// bus_registers: a whole slot of 16 words from parameters: the wrapper's three, then the block's.
+// bus_registers: a whole slot of 16 words from parameters: the three words of the wrapper, then
+// those of the block.
 //
-// For words 3..15 one mask a kind says what a word is, at most one kind a word; a word of no kind
-// answers with an error. WIDTHS gives 6 bits a word: its bits above its width read as 0 and have no
-// storage.
+// For words 3..15, one mask per kind selects the words of that kind. A word has at most one kind; a
+// word without a kind answers with an error. WIDTHS has 6 bits per word: bits above a word's width
+// read as 0 and have no storage.
 //   RW   value_o holds what was written; reset to 0
 //   RO   reads value_i
 //   W1C  bits set by value_i stay until 1 is written to them; one set while it is cleared stays set
 //   WS   a write acts through strobe_o and wdata_o; reads give 0, nothing is stored
-// strobe_o tells of each write to a word in the cycle of the write, when wdata_o is valid and
-// value_o still old. Word w is at bit 32*(w-3) of the vectors, and at bit w-3 of strobe_o.
+// strobe_o marks each write to a word in the cycle of the write, when wdata_o is valid and value_o
+// still has the old value. Word w is at bit 32*(w-3) of the vectors, and at bit w-3 of strobe_o.
 
 `default_nettype none
 
 module bus_registers #(
     parameter [31:0] ID_VALUE = 32'd0,
-    parameter        EVENTS   = 1,        // 1..32
+    parameter        EVENTS   = 1,        // number of events, 1..32
     parameter [15:0] RW       = 16'h0000,
     parameter [15:0] RO       = 16'h0000,
     parameter [15:0] W1C      = 16'h0000,

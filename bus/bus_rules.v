@@ -2,15 +2,15 @@
 //
 // bus_rules: the contract of docs/bus.md as properties, for either side of the register bus.
 //
-// Instanced under `ifdef FORMAL beside the ports of a slave (default) or of a master: the other
-// side's rules are assumed, this side's are asserted. A block's own properties go beside it.
+// Instantiated under `ifdef FORMAL at the ports of a slave (default) or of a master: the rules of
+// the other side are assumed, those of this side are asserted.
 
 `default_nettype none
 
 module bus_rules #(
     parameter MASTER   = 0,   // 1: the instance is in a master
-    parameter LIMIT    = 16,  // clocks within which a slave answers, 1 or more
-    parameter PATIENCE = 256  // clocks after which a master may give a hung slave up
+    parameter LIMIT    = 16,  // clocks within which a slave answers, at least 1
+    parameter PATIENCE = 256  // clocks after which a master may abandon an access
 ) (
     input wire        clk_i,
     input wire        rst_i,

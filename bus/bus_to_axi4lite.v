@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: MIT
 //
-// bus_to_axi4lite: a slot that is an AXI4-Lite master of 32 bits (ARM IHI 0022, chapter B1).
-// Words and events: bus_window.v.
+// bus_to_axi4lite: slot with a 32-bit AXI4-Lite master (ARM IHI 0022, chapter B1), for a core with
+// an AXI4-Lite slave. Words and events: bus_window.v.
 //
-// One transfer at a time. AXI has no way to give a transfer up: after a time-out the handshakes go
-// on until the late response has come and is thrown away; accesses until then wait, and time out.
+// One transfer at a time. AXI transfers cannot be abandoned: after a time-out the handshakes
+// continue until the late response has arrived and is discarded. Accesses until then wait, and time
+// out.
 
 `default_nettype none
 
 module bus_to_axi4lite #(
     parameter [31:0] ID_VALUE   = 32'd0,
-    parameter        ADDR_WIDTH = 12,  // of the core's byte addresses, 3..32
-    parameter        TIMEOUT    = 255  // clocks, 1..255
+    parameter        ADDR_WIDTH = 12,  // width of the core's byte addresses, 3..32
+    parameter        TIMEOUT    = 255  // time-out in clocks, 1..255
 ) (
     `include "slot_ports.vh"
     output wire                  irq_o,
@@ -35,7 +36,7 @@ module bus_to_axi4lite #(
     output wire                  axi_rready_o,
     input  wire [31:0]           axi_rdata_i,
     input  wire [1:0]            axi_rresp_i,
-    input  wire                  irq_i // the core's interrupt line, a level of clk_i
+    input  wire                  irq_i // interrupt line of the core, a level in clk_i
 );
     wire busy, write;
     wire [ADDR_WIDTH-1:0] addr;

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT
 //
-// bus_to_wishbone: a slot that is a Wishbone B4 master of 32 bits, classic or pipelined
-// (Wishbone B4, OpenCores 2010, chapters 3 and 5). Words and events: bus_window.v.
+// bus_to_wishbone: slot with a 32-bit Wishbone B4 master, classic or pipelined (Wishbone B4,
+// OpenCores 2010, chapters 3 and 5), for a core with a Wishbone slave. Words and events:
+// bus_window.v.
 //
-// One transfer at a time. ERR ends the access with an error; RTY starts it again until the slot's
-// time-out, which ends the cycle by dropping CYC.
+// One transfer at a time. ERR ends the access with an error. RTY repeats it until the time-out of
+// the slot, which ends the cycle by dropping CYC.
 
 `default_nettype none
 
 module bus_to_wishbone #(
     parameter [31:0] ID_VALUE   = 32'd0,
-    parameter        ADDR_WIDTH = 12,  // of the core's byte addresses, 3..32
-    parameter        TIMEOUT    = 255, // clocks, 1..255
-    parameter        PIPELINED  = 0    // 1: STALL_I is observed, STB_O lasts until it is low
+    parameter        ADDR_WIDTH = 12,  // width of the core's byte addresses, 3..32
+    parameter        TIMEOUT    = 255, // time-out in clocks, 1..255
+    parameter        PIPELINED  = 0    // 1: pipelined: STB_O lasts until STALL_I is low
 ) (
     `include "slot_ports.vh"
     output wire                  irq_o,
@@ -28,7 +29,7 @@ module bus_to_wishbone #(
     input  wire                  wb_err_i,
     input  wire                  wb_rty_i,
     input  wire                  wb_stall_i, // classic: not used
-    input  wire                  irq_i       // the core's interrupt line, a level of clk_i
+    input  wire                  irq_i       // interrupt line of the core, a level in clk_i
 );
     wire busy;
     reg  accepted; // pipelined: the core has taken the strobe

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// bus_window: the slot side of a foreign core's adapter: eight words of the core at a time.
+// bus_window: slot side of an adapter for a third-party core; shows eight words of the core at a
+// time.
 //
 //   0..2  ID, EVENT, MASK (bus_wrapper); EVENT bit 0: the core's interrupt line was high,
 //         bit 1: TIMEOUT, the core did not answer
@@ -8,16 +9,16 @@
 //         eight words or less, which then repeat
 //   8..15 the core's words at PAGE + 0, 4, .. 28
 //
-// A core that does not answer within TIMEOUT clocks, or answers with an error, ends the access with
-// an error. After a time-out the adapter may still wait for the end of the core's transfer: idle_i
-// is low until then, and no access starts.
+// If the core does not answer within TIMEOUT clocks, or answers with an error, the access ends with
+// an error. After a time-out the adapter may still wait for the end of the core's transfer; until
+// then idle_i is low and no access starts.
 
 `default_nettype none
 
 module bus_window #(
     parameter [31:0] ID_VALUE   = 32'd0,
-    parameter        ADDR_WIDTH = 12,  // of the core's byte addresses, 3..32
-    parameter        TIMEOUT    = 255  // clocks, 1..255
+    parameter        ADDR_WIDTH = 12,  // width of the core's byte addresses, 3..32
+    parameter        TIMEOUT    = 255  // time-out in clocks, 1..255
 ) (
     `include "slot_ports.vh"
     output wire                  irq_o,

@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: MIT
 //
-// bus_wrapper: the words every slot begins with, and strobes for the block's own (docs/bus.md).
+// bus_wrapper: the first three words of every slot, and access strobes for the words of the block
+// (docs/bus.md).
 //
 //   0  ID     ro   ID_VALUE
-//   1  EVENT  w1c  sticky events; one that arrives in the cycle of its clear stays set
+//   1  EVENT  w1c  sticky events; an event that arrives while it is cleared stays set
 //   2  MASK   rw   1: the event drives irq_o
-//   3..15          the block's: those with a 1 in WORDS
+//   3..15          words of the block, those with a 1 in WORDS
 //
-// The block answers in the cycle of the access: it gives reg_rdata_i for reg_addr_o, and takes
-// reg_wdata_o when reg_write_o is high.
+// The block answers in the cycle of the access: it drives reg_rdata_i for reg_addr_o, and accepts
+// reg_wdata_o while reg_write_o is high.
 
 `default_nettype none
 
 module bus_wrapper #(
     parameter [31:0] ID_VALUE = 32'd0,
     parameter [15:0] WORDS    = 16'hFFF8, // bit w: word w exists (bits 2..0 are ignored)
-    parameter        EVENTS   = 1,        // 1..32
+    parameter        EVENTS   = 1,        // number of events, 1..32
     // 1: reg_rdata_i is 0 for words 0..2 (word 0: or the ID, with ID_VALUE 0): not gated
     parameter        ZERO     = 0
 ) (

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_bridge: connects the STM32's 16-bit FSMC to DDR3 (NE1) and to the register bus (NE2);
-// docs/fsmc.md.
+// fsmc_bridge: connects the 16-bit FSMC bus of an STM32 to DDR3 (NE1) and to the register bus
+// (NE2); docs/fsmc.md.
 //
-// It takes asynchronous accesses of modes 1, A, 2, B, C and D. NWAIT depends on the pins
-// combinationally and is low while a read's data is not there yet or a write has no room. Every
-// access waits until the write before it has been handed over to clk_i and a register write before
-// it has been carried out. An access that has waited for 2**TIMEOUT_LOG2 clocks is let go with
-// access_error_o, so NWAIT is never low for ever.
+// The bridge supports asynchronous accesses in modes 1, A, 2, B, C and D. NWAIT depends on the pins
+// combinationally. It is low while the data of a read is not available, or a write has no room.
+// Every access waits until the previous write has been transferred to clk_i, and until a previous
+// register write has taken effect. An access that has waited for 2**TIMEOUT_LOG2 clocks is released
+// with access_error_o, so that NWAIT is never low for ever.
 
 `default_nettype none
 `include "shift_order.vh"
 
 module fsmc_bridge #(
-    parameter MUXED        = 0, // 1: address bits 15..0 come on the data pins while NADV is low
+    parameter MUXED        = 0, // 1: the data pins carry address bits 15..0 while NADV is low
     parameter WAIT_HIGH    = 0, // 1: NWAIT is active high (WAITPOL = 1)
     parameter TIMEOUT_LOG2 = 12,
-    parameter POST_LOG2    = 4, // see fsmc_memory
+    parameter POST_LOG2    = 4, // this and the next: see fsmc_memory
     parameter BLOCK_LOG2   = 3
 ) (
     `include "memory_ports.vh"
@@ -36,10 +36,10 @@ module fsmc_bridge #(
     // system slot
     input  wire [5:0]  page_i,
     output wire        access_error_o, // an access ended with an error, one cycle
-    output wire        error_memory_o, // 1: the error is one of memory
-    output wire [9:0]  error_addr_o,   // register of the error, if it is not one of memory
+    output wire        error_memory_o, // 1: the error occurred in an access to memory
+    output wire [9:0]  error_addr_o,   // address of the register, if the error is not in memory
     output wire        error_write_o,
-    output wire        late_o,         // one cycle: an access came too early and did not wait
+    output wire        late_o,         // one cycle: an access came too early and ignored NWAIT
     // register bus
     output wire        bus_valid_o,
     output wire        bus_write_o,
@@ -49,8 +49,8 @@ module fsmc_bridge #(
     input  wire [31:0] bus_rdata_i,
     input  wire        bus_error_i
 );
-    // $error as a module item is SystemVerilog; for Icarus and XST the name of an unknown module is
-    // the message.
+    // $error as a module item is SystemVerilog; for Icarus and XST, the name of an undefined module
+    // serves as the message.
 `ifdef VERILATOR
     `define TELLS_ERRORS
 `endif
@@ -92,21 +92,21 @@ module fsmc_bridge #(
     wire        hit, hit_safe, room, more_room, busy, reg_done, hit_seen, safe_seen, excuse;
     wire [15:0] mem_data, reg_data;
     wire        mem_reading = seen[0];
-    reg         excused_read, excused_write; // the access under way has been let go
+    reg         excused_read, excused_write; // the current access was released by the time-out
 
-    // clear, for NWAIT, and clear_sync, for decisions in clk_i, say that the write before is handed
-    // over and registers are idle.
+    // The previous write has been transferred and registers are idle: `clear` for NWAIT,
+    // `clear_sync` for decisions in clk_i.
     wire clear      = !wr_async && !busy;
     wire clear_sync = !wr_sync && !busy;
 
-    // A write happens when NWE rises while NE is low, as in an SRAM: that very edge registers
-    // address, data and byte lanes (the STM32 holds them for one HCLK after it). An access that is
-    // given up, NE rising first, therefore writes nothing, and NWE has no minimum high time. taken
+    // A write happens when NWE rises while NE is low, as in an SRAM. This edge registers address,
+    // data and byte lanes (the STM32 holds them for one more HCLK). An access that the processor
+    // abandons (NE rises first) therefore writes nothing, and NWE has no minimum high time. `taken`
     // follows two to three clocks later, for one cycle. The next edge may come when cdc_bus has
-    // copied the write, which is two clocks and the paths' skew later, so 33.3 ns leave 13 ns for
+    // copied the write, two clocks plus the skew of the paths later; 33.3 ns leave 13 ns for
     // delays.
     wire [1:0]  ne = ~fsmc_ne_n_i;
-    // the write that NWE's edge has registered; wr_async is high until a clock after taken
+    // write registered by the edge of NWE; wr_async is high until a clock after taken
     wire [44:0] held;
     cdc_bus #(.WIDTH(45)) u_write (
         .src_clk_i(fsmc_nwe_n_i), .src_valid_i(|ne),
@@ -117,9 +117,9 @@ module fsmc_bridge #(
     );
     wire wr_ne2_async = wr_async && held[44];
 
-    // A read of a register is hidden until the write before it has been handed over; else a late
-    // synchroniser would let it go first. A read of memory is not, since a write drops the read
-    // buffer.
+    // A register read is hidden until the previous write has been transferred; otherwise a late
+    // synchroniser could let the read overtake the write. Memory reads are not hidden, since a
+    // write discards the read buffer.
     wire [1:0] reads = ne & {!fsmc_noe_n_i && !wr_async, !fsmc_noe_n_i};
     cdc_bit #(.WIDTH(5), .TOGETHER(3)) u_access (
         .clk_i(clk_i),
@@ -140,8 +140,8 @@ module fsmc_bridge #(
         else if (excuse)
             excused_write <= 1'b1;
 
-    // ---- Time-out: an access to memory that has waited too long is let go, until its strobe
-    // rises; fsmc_registers does so for registers.
+    // ---- Time-out: an access to memory that has waited too long is released, until its strobe
+    // rises; fsmc_registers does this for registers.
     localparam PATIENCE = TIMEOUT_LOG2 > 1 ? TIMEOUT_LOG2 : 2;
     `SHIFT_ORDER(after, PATIENCE)
     localparam [PATIENCE-1:0] LAST = 1 << (TIMEOUT_LOG2 - 1);
@@ -200,7 +200,7 @@ module fsmc_bridge #(
         .wr_be_i(taken_be),
         .wr_lost_o(wr_lost), .room_o(room), .more_room_o(more_room),
         .rd_addr_async_i(address), .rd_at_i(at), .rd_used_i(mem_reading && hit_seen),
-        // not while a register is accessed; its answer may still be under way
+        // not during a register access, whose answer may not have arrived yet
         .rd_miss_i(mem_reading && !hit_seen && !wr_sync && !reg_flush && !bus_valid_o),
         .rd_hit_o(hit), .rd_safe_o(hit_safe), .rd_data_o(mem_data),
         .flush_i(reg_flush), .drop_i(reg_access), .idle_o(mem_idle),
@@ -223,10 +223,10 @@ module fsmc_bridge #(
     assign error_addr_o   = bus_addr_o;
     assign error_write_o  = reg_error ? reg_write : !reading_d;
 
-    // ---- late_o tells of a master that ignores NWAIT: of a write that found no room, and of a
-    // read that ends although its data was neither safe (rd_safe_o) in the second clock of its
-    // address nor there for two clocks since. In the first clock the pins may still have moved.
-    // Reads of other addresses may follow each other without a rest that the clock sees.
+    // ---- late_o detects a master that ignores NWAIT: a write without room, or a read that ends
+    // although its data was neither safe (rd_safe_o) in the second clock of its address nor valid
+    // for two clocks since. In the first clock the pins may still have changed. Reads of other
+    // addresses may follow one another without a pause that is visible to the clock.
     reg [1:0] at_was, at_before, good;
     reg       second, early;
     wire moved  = at_was != at_before;

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_bridge_proof: states what the processor may rely on at the pins of fsmc_bridge; only for the
-// prover.
+// fsmc_bridge_proof: properties at the pins of fsmc_bridge that the processor relies on; for formal
+// verification only.
 //
-// Time goes in steps; clock and pins may change in each, so every ratio and phase is covered. The
-// memory (fsmc_memory, with its own proof) and the slave of the register bus are free: they answer
-// at any time with anything, or never. The parts have proofs of their own.
+// Time advances in steps; clock and pins may change in each, so that every ratio and phase is
+// covered. The memory (fsmc_memory, which is proven separately) and the slave of the register bus
+// are unconstrained: they answer at any time with any value, or never.
 //
-// - NWAIT is not active for ever: it ends within two time-outs and the synchronisers' time.
-// - Once NWAIT is inactive in an access to a register it stays so, and data on the pins stays.
-// - A write to a register goes on only when the write before it is handed over and registers are
-//   idle. The bridge's time-out
-//   lets go only accesses to memory, however short it is.
+// - NWAIT ends within two time-outs plus the delay of the synchronisers.
+// - Once NWAIT is inactive during a register access, it stays inactive and the data stays stable.
+// - A register write proceeds only when the previous write is transferred and registers are idle.
+//   The
+//   bridge's time-out releases only accesses to memory, however short it is.
 // WORDS = 1 proves instead that 32-bit register words are atomic (fsmc_words_proof); with LATE
 // bounded, without it by induction, whose invariant counts the synchronisers' clocks.
 

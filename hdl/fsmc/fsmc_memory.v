@@ -1,48 +1,48 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_memory: posts halfword writes, merged into words of four, and reads halfwords from a buffer
-// that reads ahead.
+// fsmc_memory: memory half of the FSMC bridge: posted halfword writes, merged into words of four
+// halfwords, and halfword reads from a read-ahead buffer.
 //
-// fsmc_post has the writes. Reads come from two buffers of one block each, for blocks of even and
-// of odd number. A first miss fetches one word, a second one in the same block fetches the block;
-// from then on the next block is fetched as soon as a block is entered, up to the next multiple of
-// 4 KiB (the upper address bits are kept once). No word is fetched while a write waits; a write, or
-// drop_i, drops all that was read, also what is still on its way. So a read never gives data that
-// is older than a write before it.
+// fsmc_post handles the writes. Reads are answered from two buffers of one block each, for blocks
+// with even and odd numbers. The first miss fetches one word, a second miss in the same block
+// fetches the block. After that, entering a block fetches the next one, up to the next multiple of
+// 4 KiB (the buffers share the upper address bits). Nothing is fetched while a write waits. A
+// write, or drop_i, discards all data read, including words that have not arrived yet. A read
+// therefore never returns data older than a previous write.
 
 `default_nettype none
 
 module fsmc_memory #(
-    parameter ADDR_BITS   = 25, // bits of a halfword address
-    parameter WIDTH       = 16, // bits of a halfword; proofs take less
-    parameter POST_LOG2   = 4,  // 2**POST_LOG2 - 1 closed words can wait
-    parameter BLOCK_LOG2  = 3,  // 2**BLOCK_LOG2 words in a block, 1..4
-    parameter REGION_LOG2 = 9   // 2**REGION_LOG2 words: reads ahead do not cross their multiples
+    parameter ADDR_BITS   = 25, // width of a halfword address
+    parameter WIDTH       = 16, // width of a halfword; less in proofs
+    parameter POST_LOG2   = 4,  // closed words that can wait: 2**POST_LOG2 - 1
+    parameter BLOCK_LOG2  = 3,  // words in a block: 2**BLOCK_LOG2; 1..4
+    parameter REGION_LOG2 = 9   // read-ahead stops at multiples of 2**REGION_LOG2 words
 ) (
     input  wire                 clk_i,
     input  wire                 rst_i,
     // address bits above the window; writes need idle_o while it changes
     input  wire [5:0]           page_i,
-    // writes: one cycle each; one that comes without room_o is lost
+    // writes: one cycle each; a write without room_o is lost
     input  wire                 wr_i,
     input  wire [ADDR_BITS-1:0] wr_addr_i, // halfword address
     input  wire [WIDTH-1:0]     wr_data_i,
     input  wire [1:0]           wr_be_i,
     output wire                 wr_lost_o, // in the cycle of wr_i: there was no room
-    output wire                 room_o,    // there is room for two halfwords at least
-    output wire                 more_room_o, // there is room for three
-    // reads: combinational, from pins; rd_miss_i asks for missing data, at rd_at_i, the copy of the
-    // address in clk_i
+    output wire                 room_o,    // room for at least two halfwords
+    output wire                 more_room_o, // room for three
+    // reads: combinational from the pins; rd_miss_i requests missing data at rd_at_i, the copy of
+    // the address in clk_i
     input  wire [ADDR_BITS-1:0] rd_addr_async_i, // halfword address
     input  wire [ADDR_BITS-1:0] rd_at_i,
     input  wire                 rd_used_i, // the halfword is being read
     input  wire                 rd_miss_i, // a read waits for its data
     output wire                 rd_hit_o,
-    output wire                 rd_safe_o, // a hit, in a block that was there a clock ago
+    output wire                 rd_safe_o, // a hit in a block that was valid a clock ago
     output wire [WIDTH-1:0]     rd_data_o,
-    // order
+    // ordering
     input  wire                 flush_i,   // write out what is posted
-    input  wire                 drop_i,    // forget what was read
+    input  wire                 drop_i,    // discard the read buffers
     output wire                 idle_o,    // all writes have been acknowledged
     // memory port
     output wire [ADDR_BITS+6:0] npi_addr_o,

@@ -3,17 +3,17 @@
 // fsmc_post: merges halfword writes into words of four, pushes closed words to the memory port and
 // queues their addresses.
 //
-// A halfword joins the open word if it belongs to it. The word is closed when all its bytes are
-// there, when a write elsewhere comes, and with flush_i. Its data then goes into the port's write
-// FIFO at once, while its address waits here for its request. So one word is in flip-flops, the
-// others in the FIFO's RAM.
+// A halfword is merged into the open word if it belongs to it. A word is closed when it is
+// complete, when a write to another word arrives, or by flush_i. Its data then goes into the write
+// FIFO of the port, while its address waits here for its request. Only one word is therefore in
+// flip-flops; the others are in the RAM of the FIFO.
 
 `default_nettype none
 
 module fsmc_post #(
-    parameter ADDR_BITS = 25, // bits of a halfword address
-    parameter WIDTH     = 16, // bits of a halfword
-    // 2**LOG2 - 1 closed words can wait; the port's FIFO has room for them
+    parameter ADDR_BITS = 25, // width of a halfword address
+    parameter WIDTH     = 16, // width of a halfword
+    // closed words that can wait: 2**LOG2 - 1, at most the depth of the port's FIFO
     parameter LOG2      = 4
 ) (
     input  wire                 clk_i,
@@ -24,15 +24,15 @@ module fsmc_post #(
     input  wire [WIDTH-1:0]     wr_data_i,
     input  wire [1:0]           wr_be_i,
     output wire                 wr_lost_o, // in the cycle of wr_i: there was no room
-    output wire                 room_o,    // there is room for two halfwords at least
-    output wire                 more_room_o, // there is room for three
+    output wire                 room_o,    // room for at least two halfwords
+    output wire                 more_room_o, // room for three
     input  wire                 flush_i,
-    output wire                 idle_o,    // nothing is open and nothing waits
-    // word that is being closed
+    output wire                 idle_o,    // no word is open and none waits
+    // closing of a word
     output wire                 push_o,    // one cycle
     output reg  [4*WIDTH-1:0]   push_data_o,
     output wire [7:0]           push_be_o,
-    // the oldest closed word
+    // oldest closed word
     output wire                 word_valid_o,
     output wire [ADDR_BITS-3:0] word_addr_o,
     input  wire                 word_taken_i

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_api_rx: takes the contents of API frames: 1..111 bytes, of which the first is the type.
-// Frames of another length are passed over; silence ends any frame.
+// modem_api_rx: extracts the contents of API frames: 1..111 bytes, starting with the type byte.
+// Frames of other lengths are skipped; silence ends any frame.
 //
 //   7E length(2), the contents, checksum
 
@@ -16,9 +16,9 @@ module modem_api_rx (
     input  wire       error_i,  // a byte was lost
     input  wire       silent_i, // the line has been idle for three characters
     // contents out
-    output wire       valid_o,  // data_i is one of their bytes
-    output reg        end_o,    // one cycle: they are complete
-    output reg        bad_o     // one cycle: drop their bytes so far
+    output wire       valid_o,  // data_i is a byte of the contents
+    output reg        end_o,    // one cycle: the contents are complete
+    output reg        bad_o     // one cycle: discard the bytes so far
 );
     localparam [2:0] DELIMITER = 3'd0, HIGH = 3'd1, LOW = 3'd2, DATA = 3'd3, CHECKSUM = 3'd4;
 

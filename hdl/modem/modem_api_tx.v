@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_api_tx: puts a packet into an API frame, whose contents it is, or leaves it as it is.
+// modem_api_tx: wraps a packet into an API frame, or passes it through unchanged.
 //
 //   7E 00 length, the packet, checksum
 
@@ -9,12 +9,12 @@
 module modem_api_tx (
     input  wire       clk_i,
     input  wire       rst_i,
-    input  wire       api_i,   // 0: no frame; may change only in a reset
-    // packet in; valid only while the modem takes bytes
+    input  wire       api_i,   // 0: pass through; may change only during reset
+    // packet in; valid only while the modem accepts bytes
     input  wire       valid_i,
     input  wire [7:0] data_i,
     input  wire       last_i,
-    input  wire [6:0] bytes_i, // of the whole packet
+    input  wire [6:0] bytes_i, // length of the packet in bytes
     output wire       ready_o,
     // bytes out
     input  wire       cts_i,

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_at: finds the modem's baud rate and sets it up by AT commands, checking each reply.
+// modem_at: finds the modem's baud rate and configures the modem by AT commands, checking each
+// reply.
 //
 // Steps (STATUS.STEP): 1 +++  2 MY  3 DH  4 DL  5 CH  6 ID  7 EE  8 KY (only with EE)  9 RN  10 RO
-// 11 D6  12 D7  13 AP  14 BD  15 CN  0 the modem changes its rate. modem_at_rows has the actions of
-// each step; this block carries them out. Step 1 is tried at the target rate, at 9600 (the
-// factory's), then at all rates from BD 7 down and at 250,000; its wait for an answer is the guard
-// time of the next try. Any other command that is refused or not answered is sent twice again.
+// 11 D6  12 D7  13 AP  14 BD  15 CN  0 the modem changes its rate. modem_at_rows contains the
+// actions of each step; this block executes them. Step 1 is tried at the target rate, at 9600 (the
+// factory setting), then at all rates from BD 7 down and at 250,000; the wait for an answer serves
+// as the guard time of the next attempt. Any other command that is rejected or not answered is
+// repeated twice.
 
 `default_nettype none
 `include "shift_order.vh"
 
 module modem_at #(
-    parameter API = 1 // 0: the modem's mode is always the transparent one
+    parameter API = 1 // 0: the modem is always in transparent mode
 ) (
     input  wire        clk_i,
     input  wire        rst_i,
@@ -21,7 +23,7 @@ module modem_at #(
     input  wire [11:0] time_i,
     // control
     input  wire        start_i,    // only while not busy
-    // with start_i: no modem is there, the target rate is taken at once
+    // with start_i: no modem is connected, the target rate is used at once
     input  wire        wire_i,
     output reg         busy_o,
     output reg         done_o,     // one cycle

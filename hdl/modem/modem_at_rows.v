@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_at_rows: holds the AT set-up as rows in block RAM: modem_at's action at each place of each
+// modem_at_rows: table of the AT set-up in block RAM: one action of modem_at for each place of each
 // step.
 //
-// A row has flags and eight bits of data: a character, or {word of the settings, its nibble}.
-// Without flags it does nothing.
+// A row contains flags and eight bits of data: a character, or {word of the settings, nibble in
+// it}. A row without flags does nothing.
 
 `default_nettype none
 `include "shift_order.vh"
@@ -19,12 +19,12 @@ module modem_at_rows #(
     // the row, a cycle later
     output wire       send_o,   // send a character
     output wire       digit_o,  // the character is the hex digit of a nibble
-    output wire       rate_o,   // take the target's rate
+    output wire       rate_o,   // switch to the target rate
     output wire       guard_o,  // wait for the guard time
     output wire       hear_o,   // OK ends the step
     output wire       limit_o,  // half a second without an answer is a failure
-    output wire       refuse_o, // another answer is a failure, too
-    output wire       skip_o,   // the next step is left out if the last digit was even
+    output wire       refuse_o, // any other answer is also a failure
+    output wire       skip_o,   // skip the next step if the last digit was even
     output wire       settle_o, // wait until the modem has changed its rate, and end
     output wire [7:0] data_o
 );
@@ -32,7 +32,7 @@ module modem_at_rows #(
 
     localparam [8:0] SEND = 9'd1,  DIGIT = 9'd2,  RATE   = 9'd4,  GUARD = 9'd8,
                      HEAR = 9'd16, LIMIT = 9'd32, REFUSE = 9'd64, SKIP  = 9'd128, SETTLE = 9'd256;
-    localparam KEY = 8, RATE_OF = 14, LEAVE = 15; // steps; 0 is the one after LEAVE
+    localparam KEY = 8, RATE_OF = 14, LEAVE = 15; // steps; step 0 follows LEAVE
     localparam [7:0] SETTINGS = {1'b0, MODEM_BAUD, 3'd0}; // rate and guard time
 
     // The letters after "AT" of a command: two or, with a constant value, three.
@@ -45,9 +45,9 @@ module modem_at_rows #(
             6:       letters = {8'd0, "ID"};
             7:       letters = {8'd0, "EE"};
             KEY:     letters = {8'd0, "KY"};
-            9:       letters = "RN2"; // a random wait of up to three units before each try
+            9:       letters = "RN2"; // a random wait of up to three units before each attempt
             10:      letters = "RO3";
-            11:      letters = "D61"; // the modem heeds RTS
+            11:      letters = "D61"; // the modem observes RTS
             12:      letters = "D71"; // the modem drives CTS
             13:      letters = API != 0 ? {8'd0, "AP"} : "AP0";
             RATE_OF: letters = {8'd0, "BD"};

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_baud: gives eight ticks a bit time, from a phase accumulator; rates below 38400 are 38400 /
-// 2**n.
+// modem_baud: baud rate generator: eight ticks per bit, from a phase accumulator; rates below 38400
+// are 38400 / 2**n.
 //
-// Error of the mean rate: below 0.1 % for every code from 2 to 100 MHz.
+// Error of the mean rate: below 0.1 % for every code and every clock from 2 to 100 MHz.
 //
-//   bd_i  0..5  1200 << bd_i     6  57,600     7  111,111, as the modem's "115200"     8..15
-//   250,000
+//   bd_i   0..5    1200 << bd_i
+//          6       57,600
+//          7       111,111, which the modem calls 115200
+//          8..15   250,000
 
 `default_nettype none
 
 module modem_baud #(
-    parameter CLK_HZ = 100000000 // Hz, at least 2 MHz
+    parameter CLK_HZ = 100000000 // frequency of clk_i in Hz, at least 2 MHz
 ) (
     input  wire       clk_i,
     input  wire       rst_i,
@@ -30,9 +32,9 @@ module modem_baud #(
     reg  [WIDTH:0]   phase; // its highest bit is the carry
     reg  [4:0]       count; // ticks of 38400 baud
 
-    // The step is chosen by a chain of conditions, because Yosys makes a ROM of a case and puts
-    // registers before it. It is negative: only in a difference is the phase sure to be the operand
-    // that the carry chain takes without a LUT.
+    // The step is selected by a chain of conditions, because Yosys turns a case into a ROM with
+    // registers in front. It is negative: only in a difference is the phase certain to be the
+    // operand that enters the carry chain without a LUT.
     localparam [WIDTH:0] FULL = 0;
     wire [WIDTH:0] minus = bd_i[3] ? FULL - BD8[WIDTH:0] : bd_i == 4'd7 ? FULL - BD7[WIDTH:0]
                          : bd_i == 4'd6 ? FULL - BD6[WIDTH:0] : FULL - BASE[WIDTH:0];

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_npi: shares one memory port between receiver and transmitter, an access for each byte.
+// modem_npi: shares one memory port between receiver and transmitter, with one access per byte.
 //
-// Accesses of a byte need no word buffers and cost little time: at most 22,000 a second in both
-// directions together, below one percent of the memory's time. Writes go first, because the line
-// does not wait. A request that was taken is carried out, even if its packet is given up.
+// Single-byte accesses need no word buffers and cost little: at most 22,000 per second in both
+// directions together, below one percent of the memory's time. Writes have priority, because the
+// serial line does not wait. An accepted request is carried out even if its packet is dropped.
 
 `default_nettype none
 
 module modem_npi (
     input  wire        clk_i,
     input  wire        rst_i,
-    // base address of the ring (the receive ring while wr_valid_i, else the transmit ring), when it
-    // can be read
+    // base address of the ring (receive ring while wr_valid_i, otherwise transmit ring), when it is
+    // valid
     input  wire [31:11] base_i,
     input  wire        base_valid_i,
     // write a byte: {buffer, word in it}, place in the word
@@ -20,9 +20,9 @@ module modem_npi (
     input  wire [10:3] wr_addr_i,
     input  wire [7:0]  wr_be_i,
     input  wire [7:0]  wr_data_i,
-    output wire        wr_ready_o,   // taken
-    output wire        wr_busy_o,    // a write that was taken is not acknowledged yet
-    // read a byte; a read that is withdrawn for a cycle is never done
+    output wire        wr_ready_o,   // accepted
+    output wire        wr_busy_o,    // an accepted write is not acknowledged yet
+    // read a byte; a read that is withdrawn for a cycle never completes
     input  wire        rd_valid_i,
     input  wire [10:0] rd_addr_i,
     output wire        rd_done_o,    // one cycle, with the data

@@ -1,25 +1,26 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_ring: keeps which of sixteen buffers are in use, in turn, and how many bytes each holds.
+// modem_ring: bookkeeping of a ring of sixteen buffers: which are in use, and how many bytes each
+// contains.
 //
-// A push while full and a pop while empty are the user's errors; modem.v excludes them.
+// Pushing while full and popping while empty are errors of the user; modem.v excludes them.
 
 `default_nettype none
 
 module modem_ring (
     input  wire       clk_i,
-    input  wire       rst_i,   // also empties it
-    input  wire       push_i,  // buffer next_o holds bytes_i bytes
+    input  wire       rst_i,   // also empties the ring
+    input  wire       push_i,  // buffer next_o contains bytes_i bytes
     input  wire [6:0] bytes_i,
-    input  wire       pop_i,   // the oldest is free again
+    input  wire       pop_i,   // frees the oldest buffer
     output wire [3:0] next_o,
     output wire [3:0] oldest_o,
-    output wire [6:0] bytes_o, // bytes of the oldest
-    output wire [4:0] free_o   // 0..16 buffers are not in use
+    output wire [6:0] bytes_o, // bytes in the oldest buffer
+    output wire [4:0] free_o   // number of free buffers, 0..16
 );
     reg [6:0] bytes [0:15];
-    reg [4:0] head; // the oldest buffer, a turn (sixteen) ahead
-    reg [4:0] tail; // the next buffer to fill
+    reg [4:0] head; // oldest buffer, plus sixteen
+    reg [4:0] tail; // next buffer to fill
 
     assign next_o   = tail[3:0];
     assign oldest_o = head[3:0];

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_timer: counts units of a millisecond and a sixteenth: the margin covers the modem's own
-// clock.
+// modem_timer: counts time in units of 17/16 ms; the margin of 1/16 covers the tolerance of the
+// modem's clock.
 
 `default_nettype none
 
 module modem_timer #(
-    parameter CLK_HZ = 100000000 // Hz, a multiple of 16000
+    parameter CLK_HZ = 100000000 // frequency of clk_i in Hz, a multiple of 16000
 ) (
     input  wire        clk_i,
     input  wire        rst_i,
     input  wire        clear_i,
-    output reg         tick_o, // once a unit
-    output reg  [11:0] time_o  // since clear_i
+    output reg         tick_o, // one cycle per unit
+    output reg  [11:0] time_o  // units since clear_i
 );
     localparam [31:0] CLOCKS = CLK_HZ / 16000 * 17;
     localparam [16:0] FIRST  = 17'd1 - CLOCKS[16:0]; // two clocks before the tick it is 2**17 - 1

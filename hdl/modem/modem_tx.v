@@ -1,34 +1,34 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_tx: takes packets out of the transmit ring and sends them, each as one RF packet.
+// modem_tx: sends the packets in the transmit ring, each as one RF packet.
 //
-// After a packet of fewer than 100 bytes (95 where the modem encrypts) the line rests for four
-// characters. That exceeds the modem's RO of 3, so the modem sends the packet off. One of 100 (95)
-// leaves by itself.
+// After a packet of fewer than 100 bytes (95 if the modem encrypts) the line pauses for four
+// characters. This exceeds the modem's RO of 3, so the modem transmits the packet. A packet of 100
+// (95) bytes is transmitted without a pause.
 
 `default_nettype none
 
 module modem_tx (
     input  wire       clk_i,
-    input  wire       rst_i,        // also drops the packet under way
-    input  wire       enable_i,     // the modem is set up
+    input  wire       rst_i,        // also drops the current packet
+    input  wire       enable_i,     // the modem is configured
     input  wire       encrypt_i,    // the modem encrypts
-    input  wire       api_i,        // frames end by themselves
+    input  wire       api_i,        // API mode: no pause after a frame
     // oldest packet of the ring
     input  wire       packet_valid_i,
     input  wire [6:0] packet_bytes_i,
-    output reg        sent_o,       // one cycle: it has left and its buffer is free
+    output reg        sent_o,       // one cycle: the packet is sent and its buffer is free
     // memory
     output wire       rd_valid_o,
-    output wire [6:0] rd_index_o,   // byte of the packet
+    output wire [6:0] rd_index_o,   // index of the byte in the packet
     input  wire       rd_done_i,
     input  wire [7:0] rd_data_i,
     // bytes out
     output wire       tx_valid_o,
     output reg  [7:0] tx_data_o,    // 0 while not enabled
-    input  wire       tx_ready_i,   // one cycle a tick, eight a bit, while the line is idle
+    input  wire       tx_ready_i,   // one cycle per tick (eight per bit) while the line is idle
     output wire       tx_last_o,    // the last byte of the packet
-    input  wire       cts_i         // 1: the modem takes bytes
+    input  wire       cts_i         // 1: the modem accepts bytes
 );
     localparam [1:0] FETCH = 2'd0, SEND = 2'd1, REST = 2'd2;
     wire [6:0] longest = encrypt_i ? 7'd95 : 7'd100;

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_uart_tx: sends bytes, 8N1, eight ticks a bit.
+// modem_uart_tx: UART transmitter, 8N1, eight ticks per bit.
 
 `default_nettype none
 
 module modem_uart_tx (
     input  wire       clk_i,
     input  wire       rst_i,
-    input  wire       tick_i,  // eight a bit time
+    input  wire       tick_i,  // eight per bit
     // bytes in
     input  wire       valid_i,
     input  wire [7:0] data_i,
-    // one cycle a tick while the line is idle, and at the end of a stop bit
+    // one cycle per tick while the line is idle, and at the end of a stop bit
     output wire       ready_o,
     // pin
     output wire       txd_o

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <memory>
+#include <poll.h>
 #include <sstream>
 #include <stdexcept>
 #include <sys/stat.h>
@@ -20,6 +21,7 @@ namespace {
 
 constexpr int anyVehicle = -1;
 constexpr size_t mostBytes = 65536;
+constexpr int pipeMs = 10000; // until a pipe's first bytes
 const char* const hexadecimal = "0123456789abcdefABCDEF";
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
@@ -60,7 +62,7 @@ int addressOf(const std::string& word) {
 } // namespace
 
 std::string readSecret(const std::string& path) {
-    const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    const int fd = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC); // a pipe must not block
     if (fd < 0)
         refuse(path, std::string(": ") + std::strerror(errno) +
                          "; (umask 077; openssl rand -hex 16 >FILE) makes one");
@@ -69,6 +71,10 @@ std::string readSecret(const std::string& path) {
     if (fstat(fd, &file) != 0)
         refuse(path, std::string(": ") + std::strerror(errno));
     checkOwner(path, file);
+    pollfd waits{fd, POLLIN, 0};
+    if (S_ISFIFO(file.st_mode) && poll(&waits, 1, pipeMs) == 0)
+        refuse(path, " is a pipe that nothing is written to");
+    fcntl(fd, F_SETFL, 0);
     std::string text;
     char bytes[512];
     ssize_t count;

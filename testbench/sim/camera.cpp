@@ -1,22 +1,20 @@
 // SPDX-License-Identifier: MIT
 //
-// camera: stb_image and a crop.
+// camera: a picture, cropped and reduced to the camera's size.
 
 #include "camera.h"
+#include "picture.h"
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
-#include <memory>
 #include <stdexcept>
 
-#define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wall"
 #pragma GCC diagnostic ignored "-Wextra"
 #pragma GCC diagnostic ignored "-Wconversion"
 #pragma GCC diagnostic ignored "-Wshadow"
-#include <stb/stb_image.h>
 #include <stb/stb_image_write.h>
 #pragma GCC diagnostic pop
 
@@ -25,14 +23,8 @@ constexpr int leastSide = 8; // the vision core's
 }
 
 Frame loadFrame(const std::string& path, int width, int height) {
-    if (!std::ifstream(path))
-        throw std::runtime_error("cannot read picture '" + path + "'");
-    int w = 0, h = 0, channels = 0;
-    std::unique_ptr<uint8_t, void (*)(void*)> grey(stbi_load(path.c_str(), &w, &h, &channels, 1),
-                                                   stbi_image_free);
-    if (!grey)
-        throw std::runtime_error("'" + path + "' is no picture that can be read (" +
-                                 stbi_failure_reason() + "); give a PNG, JPEG or PGM file");
+    const Picture picture = readPicture(path);
+    const int w = picture.width, h = picture.height;
     int factor = std::max(1, std::min(w / width, h / height));
     Frame frame;
     frame.width = std::min(width, w / factor) / 8 * 8;
@@ -46,7 +38,7 @@ Frame loadFrame(const std::string& path, int width, int height) {
             int sum = 0;
             for (int dy = 0; dy < factor; ++dy)
                 for (int dx = 0; dx < factor; ++dx)
-                    sum += grey.get()[(top + y * factor + dy) * w + left + x * factor + dx];
+                    sum += picture.at(left + x * factor + dx, top + y * factor + dy);
             frame.pixels.push_back(static_cast<uint8_t>(sum / (factor * factor)));
         }
     return frame;

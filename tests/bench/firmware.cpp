@@ -251,8 +251,9 @@ void measurePings(MeasuredFlight& f, const std::string& program) {
     f.inTurn(std::vector<Ground::Call>(20, {"hwengine1", "ice_ping", 2}), 60);
     stopListening(f);
     say(program + ": ping, message to first frame of the reply", took.mean(), "cycles");
-    say(program + ": RAM with all objects and tasks' stacks",
-        image.symbol("bss_end") - image.symbol("data_begin"), "bytes");
+    // From the first variable to the top of the main stack, on which interrupts run.
+    say(program + ": RAM with all objects and all stacks, the main stack's included",
+        image.symbol("stack_top") - image.symbol("data_begin"), "bytes", 131072);
 }
 
 // High-water marks: stacks are filled with zeros at the start.

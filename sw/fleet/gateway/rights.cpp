@@ -9,6 +9,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sys/stat.h>
 
 namespace gateway {
 
@@ -28,9 +29,15 @@ bool matchesOne(const std::vector<std::string>& patterns, const std::string& tex
 } // namespace
 
 Rights::Rights(const std::string& path) : isOpen_(false) {
+    struct stat found;
+    if (stat(path.c_str(), &found) == 0 && !S_ISREG(found.st_mode))
+        throw std::runtime_error("the file of rights '" + path + "' is not a regular file");
     std::ifstream file(path);
     if (!file)
         throw std::runtime_error("the file of rights '" + path + "' cannot be read");
+    if (found.st_mode & S_IWOTH)
+        throw std::runtime_error("others may write to the file of rights '" + path +
+                                 "': chmod o-w '" + path + "'");
     const auto refuse = [&path](const std::string& why) {
         throw std::runtime_error(
             "the file of rights '" + path +

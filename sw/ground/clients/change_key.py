@@ -9,6 +9,7 @@ session has come up under the new one; then the file loses the old one.
 
 import argparse
 import contextlib
+import fcntl
 import os
 import secrets
 import sys
@@ -59,7 +60,29 @@ def talk(args, key_file, what):
         communicator.destroy()
 
 
+@contextlib.contextmanager
+def alone(path):
+    """Keeps other programs of this kind from the file meanwhile: two would each give the vehicle a
+    key, and the file might keep the wrong one."""
+    folder = os.open(os.path.dirname(path) or ".", os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        yield
+    except BlockingIOError:
+        raise RuntimeError("another change_key is at work in the folder of '%s'" % path) from None
+    finally:
+        os.close(folder)
+
+
 def change(args):
+    args.key = os.path.realpath(args.key)  # a link stays one
+    if not os.path.isfile(args.key):
+        raise RuntimeError("'%s': expected a regular file, which is rewritten" % args.key)
+    with alone(args.key):
+        change_alone(args)
+
+
+def change_alone(args):
     provide_key.read_key(args.key, args.address)  # each line makes sense
     with open(args.key) as f:
         lines = f.read().splitlines()

@@ -12,6 +12,7 @@ import fcntl
 import os
 import re
 import select
+import stat
 import sys
 import termios
 import time
@@ -19,6 +20,7 @@ import tty
 
 TIOCSBRK, TIOCCBRK = 0x5427, 0x5428  # Linux' ioctl_tty(2); Python 3.11's termios lacks both
 GROUP = 0xFFFF  # in place of a vehicle's address, or a ground's
+PIPE_WAIT = 10  # s until a pipe's first bytes
 BREAK, PAUSE = 1.5, 0.5  # s; a vehicle without a key starts again each second
 
 
@@ -33,13 +35,34 @@ def address(text):
     return int(text, 16)
 
 
+def open_secret(path):
+    """Opens a file of keys for reading: a regular file, or a pipe that is being written to, which
+    belongs to this user and is closed to others."""
+    fd = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)  # a pipe must not block
+    try:
+        found = os.fstat(fd)
+        if not stat.S_ISREG(found.st_mode) and not stat.S_ISFIFO(found.st_mode):
+            raise Failed("'%s' is neither a file nor a pipe" % path)
+        if found.st_mode & 0o077:
+            raise Failed("others may read '%s': chmod 600 '%s'" % (path, path))
+        if found.st_uid not in (os.geteuid(), 0):
+            raise Failed("'%s' belongs to another user: chown it" % path)
+        if found.st_size > 65536:
+            raise Failed("'%s' is too long for a file of keys" % path)
+        if stat.S_ISFIFO(found.st_mode) and not select.select([fd], [], [], PIPE_WAIT)[0]:
+            raise Failed("'%s' is a pipe that nothing is written to" % path)
+        os.set_blocking(fd, True)
+        return open(fd, errors="replace")
+    except BaseException:
+        os.close(fd)
+        raise
+
+
 def read_key(path, vehicle):
     """Returns a vehicle's key in a file, as the plugin finds it (docs/security.md): in the line of
     its address, else in the one without an address."""
     keys = {}
-    with open(path, errors="replace") as f:
-        if os.fstat(f.fileno()).st_mode & 0o077:
-            raise Failed("others may read '%s': chmod 600 '%s'" % (path, path))
+    with open_secret(path) as f:
         for number, line in enumerate(f.read(65536).split("\n"), 1):
             words = " ".join(line.split("#")[0].split())
             found = re.fullmatch("(0x[0-9a-fA-F]{1,4} )?([0-9a-fA-F]{32})( [0-9a-fA-F]{32})?",

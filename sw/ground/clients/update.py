@@ -3,8 +3,8 @@
 """update: sends new firmware, a bitstream, or keys to a vehicle, sees it start, and confirms it.
 Stock ZeroC Ice.
 
-The package is what pack_update has signed, or several of these in one file: lists of keys go
-before or behind the image, as they stand in it. It goes on where a loss of the link, or of the
+The package is what pack_update has signed, or several of these in one file, which are sent in
+their order: lists of keys, firmware and bitstreams. It continues where a loss of the link, or of the
 vehicle's power, has left it; so does this program when it is started again. A refused package
 leaves the vehicle as it was.
 """
@@ -49,28 +49,33 @@ class Failed(Exception):
 
 
 def read_package(path):
-    """Returns the object that the package is for, its (header, image) by the image's offset in
-    flash, and the lists of keys before and behind the images."""
+    """Returns the parts of a package in their order: "keys" and the lists, or the object that takes
+    an image, and its (header, image) by the image's offset in flash."""
     with open(path, "rb") as f:
         data = f.read()
-    images, before, behind, name, at = {}, [], [], "update", 0
+    parts, at, last = [], 0, None
     while at < len(data):
         head = data[at:at + HEADER.size]
         if len(head) < HEADER.size:
             raise Failed("'%s' is no package, or is cut short: pack_update makes them" % path)
-        magic, product, _, size, base = HEADER.unpack(head)[:5]
+        magic, product, version, size, base = HEADER.unpack(head)[:5]
         image = data[at + HEADER.size:at + HEADER.size + size]
         if magic != MAGIC or product not in OBJECTS or len(image) < size:
             raise Failed("'%s' is no package, or is cut short: pack_update makes them" % path)
         if product == KEYS:
-            (behind if images else before).append(head)
+            if last != KEYS:
+                parts.append(("keys", []))
+            parts[-1][1].append(head)
+            last = KEYS
         else:
-            images[base] = head, image
-            name = OBJECTS[product]
+            if last != (product, version) or base in parts[-1][1]:
+                parts.append((OBJECTS[product], {}))
+            parts[-1][1][base] = head, image
+            last = product, version
         at += HEADER.size + size
     if not data:
         raise Failed("'%s' is empty" % path)
-    return name, images, before, behind
+    return parts
 
 
 def read_clock(air):
@@ -265,22 +270,25 @@ def main():
 
     communicator = None
     try:
-        name, images, before, behind = read_package(args.package)
+        parts = read_package(args.package)
+        images = [name for name, _ in parts if name != "keys"]
         Ice.loadSlice("", ["-I" + (Ice.getSliceDir() or "."), args.slice])
         import Update  # made by loadSlice
         settings = {"Ice.Default.InvocationTimeout": "60000", "Ice.ACM.Close": "0",
                     "Ice.RetryIntervals": "-1"}
         communicator = plugged.initialize(settings, args.plugin, args.guard, args.key)
-        where = args.proxy or "%s:xbee-at -d %s -a 0x0001 -s 0x0000 -t 60000" % (name, args.device)
+        first = images[0] if images else "update"
+        where = args.proxy or "%s:xbee-at -d %s -a 0x0001 -s 0x0000 -t 60000" % (first, args.device)
         proxy = Update.FirmwarePrx.uncheckedCast(communicator.stringToProxy(where))
-        vehicle = Vehicle(proxy, args.patience)
-        keyring = Vehicle(proxy.ice_identity(Ice.stringToIdentity("update")), args.patience)
-        keyring.proxy = Update.FirmwarePrx.uncheckedCast(keyring.proxy)
-        send_keys(keyring, before, say)
-        if images:
-            update(vehicle, images, say, Air(args.status), args.rehearse)
-        if not args.rehearse:
-            send_keys(keyring, behind, say)
+        for name, part in parts:
+            # A given proxy names the object itself where there is only one.
+            own = proxy if name == first else proxy.ice_identity(
+                Ice.stringToIdentity("update" if name == "keys" else name))
+            vehicle = Vehicle(Update.FirmwarePrx.uncheckedCast(own), args.patience)
+            if name != "keys":
+                update(vehicle, part, say, Air(args.status), args.rehearse)
+            elif not (args.rehearse and images and parts[0] != (name, part)):
+                send_keys(vehicle, part, say)
         return 0
     except KeyboardInterrupt:
         return 130

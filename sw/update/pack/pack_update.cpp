@@ -9,8 +9,9 @@
 #include "elf_image.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdlib>
+#include <cerrno>
 #include <cstring>
+#include <fcntl.h>
 #include <fstream>
 #include <functional>
 #include <iostream>
@@ -33,6 +34,7 @@ using Bytes = std::vector<uint8_t>;
 
 uint32_t board[2] = {1, 1}, needs = 0; // of the command line
 std::string second;
+bool isUnchecked = false;
 
 [[noreturn]] void fail(const std::string& text) {
     throw std::runtime_error(text);
@@ -46,21 +48,33 @@ void save(const std::string& path, const Bytes& bytes) {
         fail("cannot write '" + path + "'");
 }
 
-// Reads the private key of a file, which holds its seed.
+// Reads a private key's seed. Returns false if there is no such file.
+bool readSeed(const std::string& path, Bytes& seed) {
+    const int in = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC); // a pipe must not block
+    if (in < 0 && errno == ENOENT)
+        return false;
+    if (in < 0)
+        fail("cannot read the private key '" + path + "': " + std::strerror(errno));
+    struct stat found{};
+    const bool isFile = fstat(in, &found) == 0 && S_ISREG(found.st_mode);
+    const bool isWhole = isFile && found.st_size == off_t(seed.size()) &&
+                         read(in, seed.data(), seed.size()) == ssize_t(seed.size());
+    close(in);
+    if (!isFile)
+        fail("the private key '" + path + "' is not a regular file");
+    if (found.st_mode & 077)
+        fail("others may read the private key '" + path + "': chmod 600 '" + path + "'");
+    if (!isWhole)
+        fail("'" + path + "' is not a private key: expected " + std::to_string(seed.size()) +
+             " bytes, got " + std::to_string(found.st_size));
+    return true;
+}
+
+// Reads the private key of a file, which holds its seed, or makes it.
 struct Keys {
     explicit Keys(const std::string& path) {
         Bytes seed(crypto_sign_SEEDBYTES);
-        std::ifstream in(path, std::ios::binary);
-        if (in) {
-            struct stat found{};
-            if (stat(path.c_str(), &found) == 0 && (found.st_mode & 077))
-                fail("others may read the private key '" + path + "': chmod 600 '" + path + "'");
-            const Bytes file((std::istreambuf_iterator<char>(in)), {});
-            if (file.size() != seed.size())
-                fail("'" + path + "' is no private key: a file of " + std::to_string(seed.size()) +
-                     " bytes is");
-            seed = file;
-        } else {
+        if (!readSeed(path, seed)) {
             randombytes_buf(seed.data(), seed.size());
             // It takes its name when it is complete: all trees of a user share it.
             std::string beside = path + ".XXXXXX";
@@ -68,11 +82,13 @@ struct Keys {
             const bool made = out >= 0 &&
                               write(out, seed.data(), seed.size()) == ssize_t(seed.size()) &&
                               close(out) == 0 && link(beside.c_str(), path.c_str()) == 0;
+            const int why = errno;
             unlink(beside.c_str());
-            if (!made)
+            if (made)
+                std::cout << "pack_update: made a new key pair: " << path
+                          << " signs for vehicles that are filled with it\n";
+            else if (why != EEXIST || !readSeed(path, seed)) // another process was faster
                 fail("cannot write the private key '" + path + "'");
-            std::cout << "pack_update: made a new key pair: " << path
-                      << " signs for vehicles that are filled with it\n";
         }
         crypto_sign_seed_keypair(open_.data(), secret.data(), seed.data());
     }
@@ -100,11 +116,13 @@ void savePublic(const std::string& key, const std::string& output) {
     save(output, {digits.begin(), digits.end()});
 }
 
+// Reads a number of digits alone: a sign or spaces are refused, as strtoull would take them.
 uint32_t versionOf(const std::string& text) {
-    char* end = nullptr;
-    const unsigned long long version = std::strtoull(text.c_str(), &end, 10);
-    if (text.empty() || *end || version == 0 || version >= std::numeric_limits<uint32_t>::max())
-        fail("version '" + text + "': give 1 to 4294967294");
+    const bool isNumber = !text.empty() && text.size() <= 10 &&
+                          text.find_first_not_of("0123456789") == std::string::npos;
+    const unsigned long long version = isNumber ? std::stoull(text) : 0;
+    if (version == 0 || version >= std::numeric_limits<uint32_t>::max())
+        fail("version: expected 1 to 4294967294, got '" + text + "'");
     return static_cast<uint32_t>(version);
 }
 
@@ -157,6 +175,87 @@ std::pair<Bytes, Bytes> sign(const ElfImage& elf, uint32_t slot, uint32_t versio
 
 constexpr uint8_t sync[] = {0xAA, 0x99, 0x55, 0x66};
 
+// Packets reads the words of a bitstream after its sync word (UG380, tables 5-23 to 5-30).
+class Packets {
+public:
+    Packets(const Bytes& file, size_t at) : file_(file), at_(at) {}
+    // Goes to the end of the packet with command DESYNC, the last one. Returns false without one.
+    bool toDesync() {
+        while (at_ + 2 <= file_.size()) {
+            const uint32_t head = word(), type = head >> 13, reg = head >> 5 & 63;
+            if (type == 1 && (head >> 11 & 3) == 0)
+                continue; // no operation
+            if ((type != 1 && type != 2) || (head >> 11 & 3) != write)
+                return false;
+            size_t words = head & 31;
+            if (type == 2)
+                words = size_t{word()} << 16 | word();
+            if (reg == fdri)
+                words += 2; // its CRC
+            if (words > (file_.size() - std::min(at_, file_.size())) / 2)
+                return false;
+            const bool isCommand = type == 1 && reg == cmd && words == 1;
+            if (isCommand && word() == desync)
+                return true;
+            at_ += 2 * (words - isCommand);
+        }
+        return false;
+    }
+    // Returns how many bytes follow, without no operations and erased flash.
+    size_t rest() {
+        size_t end = file_.size();
+        while (at_ + 2 <= end && file_[at_] == 0x20 && file_[at_ + 1] == 0)
+            at_ += 2;
+        while (end > at_ && (file_[end - 1] == 0xFF ||
+                             (end - at_ >= 2 && file_[end - 2] == 0x20 && file_[end - 1] == 0)))
+            end -= file_[end - 1] == 0xFF ? 1 : 2;
+        return end - at_;
+    }
+
+private:
+    enum : uint32_t { write = 2, fdri = 3, cmd = 5, desync = 13 };
+    uint32_t word() {
+        at_ += 2;
+        return at_ <= file_.size() ? uint32_t{file_[at_ - 2]} << 8 | file_[at_ - 1] : 0;
+    }
+    const Bytes& file_;
+    size_t at_;
+};
+
+// Throws if a bitstream is cut or has bytes after its end: a vehicle's FPGA would hang in the
+// first, and the second are not BitGen's.
+void checkWhole(const std::string& path, const Bytes& file, size_t at) {
+    Packets packets(file, at);
+    if (!packets.toDesync())
+        fail("'" + path +
+             "' is cut, or damaged: expected a bitstream up to its command DESYNC, got " +
+             std::to_string(file.size()) + " bytes without it");
+    if (const size_t rest = packets.rest())
+        fail("'" + path + "' has " + std::to_string(rest) +
+             " bytes after the bitstream's end: expected none");
+}
+
+// Throws if a .bit's header counts other bytes than follow: field 'e' (Xilinx's format of BitGen).
+void checkHeader(const std::string& path, const Bytes& file) {
+    const auto number = [&](size_t at, size_t bytes) {
+        size_t value = 0;
+        for (size_t i = 0; i < bytes; ++i)
+            value = value << 8 | (at + i < file.size() ? file[at + i] : 0);
+        return value;
+    };
+    if (number(0, 2) != 9)
+        return; // a .bin has none
+    size_t at = 13;
+    for (; at + 3 <= file.size() && file[at] >= 'a' && file[at] < 'e'; at += 3 + number(at + 1, 2))
+        ;
+    if (at + 5 > file.size() || file[at] != 'e')
+        return;
+    const size_t follow = file.size() - at - 5;
+    if (number(at + 1, 4) != follow)
+        fail("'" + path + "': expected " + std::to_string(number(at + 1, 4)) +
+             " bytes of bitstream, as its header counts, got " + std::to_string(follow));
+}
+
 // Reads a bitstream from SLOTS_SYNC_AT bytes before its sync word on, without that word: the
 // vehicle adds it.
 Bytes readBitstream(const std::string& path) {
@@ -167,7 +266,11 @@ Bytes readBitstream(const std::string& path) {
     const auto found = std::search(file.begin(), end, std::begin(sync), std::end(sync));
     if (found == end)
         fail("'" + path +
-             "' is no bitstream: a .bit or .bin by BitGen has a sync word, AA 99 55 66");
+             "' is not a bitstream: a .bit or .bin by BitGen has a sync word, AA 99 55 66");
+    if (!isUnchecked) {
+        checkHeader(path, file);
+        checkWhole(path, file, static_cast<size_t>(found - file.begin()) + sizeof sync);
+    }
     Bytes bits(SLOTS_SYNC_AT, 0xFF);
     bits.insert(bits.end(), found, file.end());
     std::fill_n(bits.begin() + SLOTS_SYNC_AT, sizeof sync, uint8_t{0xFF});
@@ -295,6 +398,8 @@ int main(int argc, char** argv) {
     number("--needs", needs,
            "version of the bitstream that a firmware needs, or the firmware that a bitstream does");
     app.add_option("--second", second, "KEY.pub: a second key, of a new vehicle");
+    app.add_flag("--unchecked", isUnchecked,
+                 "sign a bitstream although it is cut, or has bytes after its end");
     app.require_subcommand(1);
     try {
         if (sodium_init() < 0)

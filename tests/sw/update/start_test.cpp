@@ -235,9 +235,9 @@ protected:
         });
     }
     // Leaves in the FPGA's flash what a complete update does.
-    void receive(const Bytes& bits) {
+    void receive(const Bytes& bits, const std::string& more = "") {
         folder.save("new.bin", bits);
-        ASSERT_EQ(folder.pack("bitstream new.bin 2 key update"), 0) << folder.said();
+        ASSERT_EQ(folder.pack("bitstream new.bin 2 key update" + more), 0) << folder.said();
         const auto package = folder.read("update");
         const auto image = package.begin() + sizeof(Slots_Header);
         std::copy(package.begin(), image, at(slot));
@@ -332,7 +332,7 @@ TEST_F(FpgaStart, AConfirmedBitstreamThatHasRottedIsKnownNotToRun) {
 TEST_F(FpgaStart, ABitstreamThatHangsTheFpgaGoesAtOnce) {
     auto bits = standInBitstream(2, frameWords);
     bits[SLOTS_SYNC_AT + 4] = 0; // no packet
-    receive(bits);
+    receive(bits, " --unchecked");
     confirm();
     EXPECT_EQ(start(), 0u);
     EXPECT_TRUE(is(SLOTS_REFUSED));
@@ -346,6 +346,89 @@ TEST_F(FpgaStart, ABoardWithoutDoneStartsSoonAndItsFpgaRuns) {
     EXPECT_EQ(chip.run(), CortexM3::Stop::Breakpoint);
     EXPECT_EQ(chip.fpga.boot().running.value_or(0), golden);
     EXPECT_LT(now(), 1'500'000'000u);
+}
+
+// ---- pack_update: what is wrong is refused where it would be signed ----
+
+class Packing : public ::testing::Test {
+protected:
+    // Expects that these words are refused with this reason, and that nothing is written.
+    void refuses(const std::string& words, const std::string& why) {
+        EXPECT_NE(folder.pack(words + " out"), 0) << words;
+        EXPECT_NE(folder.said().find(why), std::string::npos) << words << ": " << folder.said();
+        EXPECT_TRUE(folder.read("out").empty()) << words;
+    }
+    // A bitstream as BitGen's .bit: a header with its length, and the bitstream.
+    static Bytes bitFile(const Bytes& bits) {
+        Bytes file = {0, 9, 0x0F, 0xF0, 0x0F, 0xF0, 0x0F, 0xF0, 0x0F, 0xF0, 0, 0, 1};
+        for (const char field : {'a', 'b', 'c', 'd'})
+            file.insert(file.end(), {uint8_t(field), 0, 2, 'x', 0});
+        file.push_back('e');
+        for (int shift = 24; shift >= 0; shift -= 8)
+            file.push_back(static_cast<uint8_t>(bits.size() >> shift));
+        file.insert(file.end(), bits.begin(), bits.end());
+        return file;
+    }
+    VehicleFolder folder;
+    const Bytes whole = standInBitstream(2, 2000);
+};
+
+TEST_F(Packing, ABitstreamThatIsCutOrHasMoreThanItsEndIsNotSigned) {
+    for (const bool isBit : {false, true}) {
+        const auto file = [&](const Bytes& bits) { return isBit ? bitFile(bits) : bits; };
+        folder.save("whole", file(whole));
+        EXPECT_EQ(folder.pack("bitstream whole 5 key good"), 0) << folder.said();
+        for (const size_t size : {size_t{30}, size_t{1000}, whole.size() / 2, whole.size() - 40}) {
+            folder.save("cut", file({whole.begin(), whole.begin() + std::ptrdiff_t(size)}));
+            refuses("bitstream cut 5 key", "DESYNC");
+            refuses("fpga cut 5 key", "DESYNC");
+        }
+        Bytes more = whole;
+        more.resize(more.size() + 1001, 0x5A);
+        folder.save("more", file(more));
+        refuses("bitstream more 5 key", "1001 bytes after the bitstream's end");
+    }
+    Bytes cut = bitFile(whole); // its header knows better
+    cut.resize(cut.size() - 4);
+    folder.save("short", cut);
+    refuses("bitstream short 5 key", "as its header counts");
+}
+
+TEST_F(Packing, AVersionIsOfDigitsAlone) {
+    folder.save("whole", whole);
+    for (const char* version : {"-1", "+1", "-18446744073709551615", "0", "4294967295", "1x",
+                                "' 1'", "0x10", "99999999999999999999", "''"})
+        refuses("bitstream whole " + std::string(version) + " key",
+                std::string(version)[0] == '-' ? "" : "version");
+    EXPECT_EQ(folder.pack("bitstream whole 4294967294 key good"), 0) << folder.said();
+}
+
+TEST_F(Packing, APrivateKeyIsAFileOfItsOwnersAlone) {
+    folder.save("whole", whole);
+    ASSERT_EQ(std::system(("cd " + folder.path +
+                           " && mkfifo pipe && mkdir folder && touch empty && head -c 32 "
+                           "/dev/zero >open && head -c 33 /dev/zero >long && chmod 600 empty long "
+                           "pipe && chmod 644 open && ln -s nowhere/key dangling")
+                              .c_str()),
+              0);
+    refuses("bitstream whole 5 pipe", "not a regular file");
+    refuses("bitstream whole 5 folder", "not a regular file");
+    refuses("bitstream whole 5 /dev/zero", "not a regular file");
+    refuses("bitstream whole 5 empty", "expected 32 bytes, got 0");
+    refuses("bitstream whole 5 long", "expected 32 bytes, got 33");
+    refuses("bitstream whole 5 open", "chmod 600");
+    refuses("bitstream whole 5 dangling", "cannot write the private key");
+}
+
+TEST_F(Packing, OfManyAtOnceAllHaveTheSameNewKey) {
+    ASSERT_EQ(std::system(("cd " + folder.path +
+                           " && for i in 1 2 3 4 5 6 7 8; do " PACK_UPDATE
+                           " public new.key $i.pub & done; wait")
+                              .c_str()),
+              0);
+    for (int i = 1; i <= 8; ++i)
+        EXPECT_EQ(folder.read(std::to_string(i) + ".pub"), folder.read("1.pub")) << i;
+    EXPECT_EQ(folder.read("1.pub").size(), 65u);
 }
 
 } // namespace

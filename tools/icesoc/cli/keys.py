@@ -3,6 +3,8 @@
 built.
 
 All trees of a user share them, a copy of a tree has none, and no command removes one."""
+import contextlib
+import fcntl
 import filecmp
 import hashlib
 import os
@@ -38,28 +40,57 @@ def make_certificate(path):
     P-256, for ten years. Returns False if it is there. Its authority's own key is authority.key."""
     path = Path(path)
     authority, signs = path.with_name("authority.pem"), path.with_name("authority.key")
-    if path.exists() or path == authority:
+    if os.path.lexists(path) or path == authority:
         return False
     if not path.parent.is_dir():
         raise Stop(f"there is no folder '{path.parent}'", 2)
-    if authority.exists() != signs.exists():
-        raise Stop(f"of '{authority}' and '{signs}' one is missing: keep both, or neither")
     before = os.umask(0o077)
-    with tempfile.TemporaryDirectory(dir=path.parent) as work:
-        cert, key = Path(work, "cert"), Path(work, "key")
-        if not signs.exists():
-            sign("icesoc", cert, key, "CA:TRUE")
-            cert.chmod(0o644)  # it is public
-            key.rename(signs)
-            cert.rename(authority)
-        sign(path.stem, cert, key, "CA:FALSE", "-CA", authority, "-CAkey", signs)
-        cert.write_text(cert.read_text() + key.read_text())
-        os.link(cert, path)
-    os.umask(before)
+    try:
+        with locked(path.parent), tempfile.TemporaryDirectory(dir=path.parent) as work:
+            cert, key = Path(work, "cert"), Path(work, "key")
+            check_authority(authority, signs)
+            if not signs.exists():
+                sign("icesoc", cert, key, "CA:TRUE")
+                cert.chmod(0o644)  # it is public
+                key.rename(signs)
+                cert.rename(authority)
+            sign(path.stem, cert, key, "CA:FALSE", "-CA", authority, "-CAkey", signs)
+            cert.write_text(cert.read_text() + key.read_text())
+            os.link(cert, path)
+    except FileExistsError:  # another process was faster
+        return False
+    finally:
+        os.umask(before)
     return True
 
 
+@contextlib.contextmanager
+def locked(place):
+    """Lets one process at a time make certificates in a folder: each may make the authority."""
+    fd = os.open(place, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        fcntl.flock(fd, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(fd)
+
+
+def check_authority(authority, signs):
+    """Stops if the authority's files are not a pair of regular files, or its key is open to
+    others."""
+    if os.path.lexists(authority) != os.path.lexists(signs):
+        raise Stop(f"of '{authority}' and '{signs}' one is missing: keep both, or neither")
+    for path in authority, signs:
+        if os.path.lexists(path) and not path.is_file():
+            raise Stop(f"'{path}': expected a regular file")
+    if signs.exists() and signs.stat().st_mode & 0o077:
+        raise Stop(f"others may read '{signs}': chmod 600 '{signs}', and make new certificates if "
+                   "anybody may have read it")
+
+
 def sign(name, cert, key, constraint, *by):
+    # A plus sign or a slash in a file's name would begin another part of the subject.
+    name = name.replace("\\", "\\\\").replace("+", "\\+").replace("/", "\\/")
     settings = cert.with_name("openssl.cnf")  # the machine's own would let everybody sign
     settings.write_text("[req]\ndistinguished_name = name\n[name]\n")
     run(["openssl", "req", "-x509", "-config", settings, "-newkey", "ec", "-pkeyopt",

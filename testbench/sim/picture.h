@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+//
+// picture: reads a PNG, JPEG or PNM file as grey levels, upright and with its white at 255.
+
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+struct Picture {
+    int width = 0, height = 0;
+    std::vector<uint8_t> grey; // row by row
+
+    uint8_t at(int x, int y) const { return grey[static_cast<size_t>(y) * width + x]; }
+};
+
+// Throws std::runtime_error with the reason if the file cannot be read, or holds no picture.
+Picture readPicture(const std::string& path);

@@ -23,7 +23,7 @@ static const Ice_Byte head[HEAD] = {
 
 /* Pending events, one bit each, delivered lowest bit first: a message has bit 0. */
 #define EVENT(kind, channel) \
-    (2U << (((U32)(kind)-ICE_EVENT_CLOSED) * XBEE_CONNECTIONS + (U32)(channel)))
+    (2U << (((U32)(kind) - ICE_EVENT_CLOSED) * XBEE_CONNECTIONS + (U32)(channel)))
 
 /* A connection's ground and its channel there; a ground's connection that this side opens. */
 #define GROUND_OF(connection) (XBEE_GROUNDS > 1 ? (int)((U32)(connection) / LINK_CHANNELS) : 0)

@@ -6,8 +6,10 @@ import concurrent.futures, json, os, shutil, subprocess, sys, tempfile, time, un
 from pathlib import Path
 
 TREE = Path(__file__).resolve().parent.parent.parent
-from icesoc.cli import build_folder, command, flight, main, runner  # noqa: F401
+from icesoc.cli import command, flight, main  # noqa: F401
 from icesoc.cli.options import FLIGHT, SWITCH
+from icesoc.util.lock import lock
+from icesoc.util.ninja import explained
 
 
 def clean(**more):
@@ -253,15 +255,15 @@ class Mistakes(Work):
             "  /* ip/mixer.vhd:12:3  */\n  always @*\n    n2_o = n1_o[0];\n")
         for line, place in ((2, 9), (3, 12), (5, 9), (7, 12)):
             at = f"{self.work}/mixer.v:{line}"
-            self.assertEqual(build_folder.explained(f"%Warning: {at}:5: a loop\n"),
+            self.assertEqual(explained(f"%Warning: {at}:5: a loop\n"),
                              f"%Warning: {at} (ip/mixer.vhd:{place}):5: a loop\n")
         Path(self.work, "own.v").write_text("// own\n")
         for said in (f"{self.work}/own.v:1:2: odd\n", f"{self.work}/none.v:1:2: odd\n"):
-            self.assertEqual(build_folder.explained(said), said)
+            self.assertEqual(explained(said), said)
         Path(self.work, "CMakeLists.txt").write_text("icesoc_core(a\n  VERILOG ba.v a.v)\n")
         said = (f"ninja: error: '{self.work}/a.v', needed by 'b', "
                 "missing and no known rule to make it")
-        self.assertEqual(build_folder.explained(said),
+        self.assertEqual(explained(said),
                          f"{self.work}/CMakeLists.txt:2: there is no file {self.work}/a.v\n{said}")
 
 
@@ -323,7 +325,7 @@ class Trees(Work):
     def test_of_two_runs_of_all_commands_one_is_refused(self):
         build = self.work / "tree/build"
         build.mkdir(parents=True)
-        with runner.lock(build / "commands.lock"):
+        with lock(build / "commands.lock"):
             status, said = ask("./icesoc", "commands", "--brief",
                                ICESOC_TREE=str(self.work / "tree"))
         self.assertEqual((status, said), (1, "icesoc: all commands run in this folder already\n"))

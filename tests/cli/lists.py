@@ -5,8 +5,11 @@ import contextlib, io, re, shlex, shutil, subprocess, sys, tempfile, unittest
 from pathlib import Path
 
 from doors import TREE, ask
-from icesoc.cli import build_folder, command, flight, runner
+from icesoc.cli import command, flight
 from icesoc.cli.commands.tree import manual
+from icesoc.util.errors import Stop
+from icesoc.util.ninja import run_ninja
+from icesoc.util.table import Table
 
 
 class Lists(unittest.TestCase):
@@ -87,7 +90,7 @@ class Lists(unittest.TestCase):
             tool.write_text("#!/bin/sh\necho '[1/2] first'\necho 'odd: a warning'\n"
                             "echo '[2/2] second'\nexit 3\n")
             tool.chmod(0o755)
-            code = ("from icesoc.cli.build_folder import *\n"
+            code = ("from icesoc.util.ninja import *\n"
                     f"run_ninja(['{tool}'], '{log}', check=False)")
             words = [sys.executable, "-c", code]
             self.assertEqual(ask(*words)[1], "odd: a warning\n")
@@ -95,19 +98,19 @@ class Lists(unittest.TestCase):
             self.assertEqual(re.sub(r"\s*\x1b\[K", "|", shown),
                              "|[1/2] 0:00 left first|odd: a warning|[2/2] 0:00 left second|")
             self.assertIn("[2/2] second", log.read_text())
-            self.assertRaisesRegex(runner.Stop, f"the build failed .* {log}",
-                                   build_folder.run_ninja, [str(tool)], log)
+            self.assertRaisesRegex(Stop, f"the build failed .* {log}",
+                                   run_ninja, [str(tool)], log)
 
     def test_a_table_tells_what_failed_and_what_lacks_a_network(self):
         with tempfile.TemporaryDirectory() as work, contextlib.redirect_stdout(
                 io.StringIO()) as out:
-            rows = runner.Table(f"{work}/rows")
+            rows = Table(f"{work}/rows")
             rows.add("good", 0, 1.5, "a | b")
             rows.add("far", 77, 0)
             rows.end()
             self.assertRegex(out.getvalue(), "(?s)skipped: far.*1 commands, 2 s")
             rows.add("bad", 3, 0)
-            self.assertRaisesRegex(runner.Stop, "failed: bad ", rows.end)
+            self.assertRaisesRegex(Stop, "failed: bad ", rows.end)
             self.assertIn("| good | 0 | 1.5 | a / b |", Path(work, "rows.md").read_text())
 
     def test_help_fits_a_screen_and_lists_the_commands_of_a_group(self):

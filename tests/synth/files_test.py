@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """files_test: which files a design has, and the places of its signals."""
-import pathlib, sys, tempfile, unittest
+import pathlib, tempfile, unittest
 
 from icesoc.synth import nets, sources
 from icesoc.synth.netlist import Netlist

@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: MIT
 """parts_test: the parts of the utilisation report, against published reports of Xilinx' tools and
 figures that can be added up by hand."""
-import copy, json, os, pathlib, statistics, sys, tempfile, unittest, unittest.mock
+import copy, json, os, pathlib, statistics, tempfile, unittest, unittest.mock
 
 from icesoc.synth import (baseline, cores, equivalence, owners, report, reports, runner, slices,
                           sources, timing)
-from icesoc.util import tool
+from icesoc.util.errors import Stop
 from icesoc.synth.netlist import Cell, Name, Netlist, Pin, ZERO
 from icesoc.synth.owners import Cost
 
@@ -205,10 +205,10 @@ class Reports(unittest.TestCase):
             with tempfile.TemporaryDirectory() as folder:
                 file = pathlib.Path(folder) / "reports.json"
                 file.write_text(json.dumps(broken))
-                with self.assertRaisesRegex(tool.Stop, f"report 1 cannot be read: .*{why}"):
+                with self.assertRaisesRegex(Stop, f"report 1 cannot be read: .*{why}"):
                     reports.read(file)
                 file.write_text("{}")
-                self.assertRaisesRegex(tool.Stop, "no list of reports", reports.read, file)
+                self.assertRaisesRegex(Stop, "no list of reports", reports.read, file)
 
 
 class Baseline(unittest.TestCase):
@@ -304,7 +304,7 @@ class Baseline(unittest.TestCase):
             self.assertEqual(baseline.written(again), baseline.written(self.baseline))
             for text in ('{"designs": 3}', "not json"):
                 file.write_text(text)
-                self.assertRaises(tool.Stop, baseline.read_baseline, file)
+                self.assertRaises(Stop, baseline.read_baseline, file)
             file.unlink()
             self.assertEqual(baseline.read_baseline(file)["designs"], {})
 

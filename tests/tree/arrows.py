@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""arrows: holds every #include to the rooms of rooms.toml, and libraries to having no circles.
+"""arrows: checks every #include, and every import of the tools, against the rooms of rooms.toml;
+checks that libraries have no circles.
 
     arrows.py TREE                the includes of TREE, a checkout
     arrows.py --circles LIBRARY [PREFIX...]
@@ -21,11 +22,13 @@ ROOMS = "tests/tree/rooms.toml"
 
 
 def tracked(tree):
-    """Returns the paths of the C, C++ and Verilog files of the checkout that people write."""
+    """Returns the paths of the C, C++ and Verilog files of the checkout that people write, and of
+    the tools in Python."""
     listing = "grep --no-index --exclude-standard --no-color -l".split()
     names = subprocess.check_output(["git", "-C", tree, *listing, ""], text=True).split("\n")
     return [n for n in names
-            if re.search(r"\.(c|h|cpp|v|vh|in)$", n) and "/golden" not in n and "/errors/" not in n
+            if re.search(r"\.(c|h|cpp|v|vh|in)$|^tools/icesoc/.*\.py$", n)
+            and "/golden" not in n and "/errors/" not in n
             and os.path.isfile(os.path.join(tree, n))]
 
 
@@ -38,6 +41,20 @@ def room_of(path, rooms):
         if path in rooms:
             return path
     return None
+
+
+def wrong_imports(tree, path, room, rooms):
+    """Yields a line for each import of a file of the tools that its room does not allow."""
+    for number, line in enumerate(open(os.path.join(tree, path)), 1):
+        found = re.match(r"\s*(?:from|import) icesoc([.\w]*)(?: import (\w+))?", line)
+        if not found:
+            continue
+        module = "tools/icesoc" + found[1].replace(".", "/")
+        if os.path.isdir(os.path.join(tree, module, found[2] or "")):
+            module += f"/{found[2]}" if found[2] else ""
+        used = module if module in rooms else room_of(module, rooms)
+        if used != room and used not in rooms[room]:
+            yield f"{path}:{number}: {room} may not use {used} ({found[0].strip()})"
 
 
 def wrong_arrows(tree):
@@ -55,6 +72,9 @@ def wrong_arrows(tree):
         room = room_of(path, rooms)
         if not room:
             wrong.append(f"{path}: its folder is in no room of {ROOMS}")
+            continue
+        if path.endswith(".py"):
+            wrong += wrong_imports(tree, path, room, rooms)
             continue
         for number, line in enumerate(open(os.path.join(tree, path), errors="replace"), 1):
             include = re.match(r'\s*[#`]include "([^"]+)"', line)

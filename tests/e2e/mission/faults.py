@@ -21,7 +21,7 @@ import time
 from pathlib import Path
 
 from fleet_ground import TROUBLE, VEHICLES, words_of
-from icesoc.util import tool
+from icesoc.util.process import children
 
 IMAGE = "/usr/share/xplanet/images/earth.jpg"
 LONGEST = 240.0  # seconds of a mission on a busy machine
@@ -38,7 +38,7 @@ def proc(pid, name):
 
 
 def descendants(of):
-    return [pid for child in tool.children(of) for pid in (child, *descendants(child))]
+    return [pid for child in children(of) for pid in (child, *descendants(child))]
 
 
 def command_of(pid):

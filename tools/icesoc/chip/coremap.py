@@ -6,7 +6,6 @@ soc.v), soc_cores.c (servants), soc_pins.h (for the simulator), core_pins.ucf (f
 (the probes' signals), and the registers for other tools and for people.
 """
 import argparse
-import json
 import os
 import re
 import sys

@@ -11,7 +11,7 @@ import os
 import re
 
 from icesoc.cli.options import BUILT, PATHS, SWITCH
-from icesoc.cli.runner import Stop
+from icesoc.util.errors import Stop
 
 COMMANDS = {}  # by name, such as "core new", in the order of the list
 GROUPS = {}  # first words of names of two words, with their help

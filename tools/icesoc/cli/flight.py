@@ -14,7 +14,8 @@ from icesoc.cli import keys
 from icesoc.cli.build_folder import BuildFolder
 from icesoc.cli.options import (CORE_FOLDERS, COUNT, FILE, FOLDER, FRAME, KEY_FILE, PATH, SEED,
                                 SHARE, SWITCH, TEXT, UCOS2, WORDS, Option, matching, number, one_of)
-from icesoc.cli.runner import Stop, say
+from icesoc.util.console import say
+from icesoc.util.errors import Stop
 
 VERSION = 3
 FIELDS = [

@@ -12,7 +12,9 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from icesoc.cli.runner import Stop, run, say
+from icesoc.util.console import say
+from icesoc.util.errors import Stop
+from icesoc.util.process import run
 
 
 def folder():

@@ -10,7 +10,9 @@ from icesoc.cli import command
 from icesoc.cli.commands import (  # noqa: F401 (each declares its own)
     flights, core, foreign, synth, build, regression, checks, coverage, fresh, docs,
     tree)
-from icesoc.cli.runner import Interrupted, Stop, hear_signals, say, warn
+from icesoc.util.console import say, warn
+from icesoc.util.errors import Interrupted, Stop
+from icesoc.util.process import hear_signals
 
 
 def surroundings():

@@ -9,7 +9,7 @@ import os
 import re
 import typing
 
-from icesoc.cli.runner import Stop
+from icesoc.util.errors import Stop
 
 
 @dataclasses.dataclass

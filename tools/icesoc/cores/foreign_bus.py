@@ -5,7 +5,6 @@ The slot has a Wishbone or an AXI4-Lite adapter. Other buses become Wishbone's b
 core without acknowledge answers at once, after some clocks, or in APB's access phase.
 """
 import json
-import re
 
 from icesoc.cores.foreign_roles import AXI, LOW, is_answer
 from icesoc.cores.foreign_files import ADAPTER, head, overrides, pin_name, vector

@@ -22,7 +22,7 @@ from pathlib import Path
 
 from icesoc.cores import foreign_axis
 from icesoc.cores import foreign_bus
-from icesoc.cli.reserved import REFUSAL, RESERVED
+from icesoc.util.reserved import REFUSAL, RESERVED
 from icesoc.cores.foreign_files import (FLAGS, check_names, copies_for_verilator, fail, folders_of,
                                         is_vhdl, kind_of, macros_of, names_of, packages_first,
                                         pin_name, read_module)

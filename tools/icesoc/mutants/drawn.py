@@ -8,7 +8,8 @@ proofs. Leaves build/mutants/drawn.json. Exit status 1: a module scores less tha
 import argparse, collections, functools, json, os, pathlib, re, shutil, subprocess, sys, time
 from icesoc import TREE
 from icesoc.mutants import model, run
-from icesoc.mutants.run import tool
+from icesoc.util.lock import only_one
+from icesoc.util.tree import tree_state
 from concurrent.futures import ThreadPoolExecutor
 
 GATE = 95  # per cent
@@ -214,7 +215,7 @@ def told(results, number):
 
 def measure(proofs, options, out):
     source = pathlib.Path(proofs[0].tree)
-    tree = tool.tree_state(source, "bus hdl tests")  # that is measured, for the regression's light
+    tree = tree_state(source, "bus hdl tests")  # that is measured, for the regression's light
     # A copy: any edit meanwhile would move the names of cells.
     shutil.rmtree(out / "drawn", ignore_errors=True)
     for folder in ("bus", "hdl", "ip"):
@@ -280,7 +281,7 @@ def main():
     if not proofs:
         sys.exit(f"mutants: no proof's name begins with {options.block}: "
                  "ctest -N -L formal lists them")
-    with tool.only_one(out, "mutants"):
+    with only_one(out, "mutants"):
         return measure(proofs, options, out)
 
 

@@ -20,7 +20,9 @@ import argparse, collections, glob, json, os, pathlib, queue, re, shutil, subpro
 import threading, time
 from concurrent.futures import ThreadPoolExecutor
 
-from icesoc.util import tool
+from icesoc.util.files import write
+from icesoc.util.lock import only_one
+from icesoc.util.tree import tree_state
 
 TOP = pathlib.Path.cwd()  # the tree
 
@@ -239,11 +241,11 @@ def main():
     chosen = bugs(options.block)
     if options.check is not None:
         return check(chosen, options.check)
-    with tool.only_one(WORK, "mutants"):
+    with only_one(WORK, "mutants"):
         if options.block == "*":
             # The state that all blocks were measured from, for the regression's light
             measured = "bus hdl ip slice sw testbench tests tools"
-            tool.write(WORK / "tree", tool.tree_state(TOP, measured))
+            write(WORK / "tree", tree_state(TOP, measured))
         return try_all(chosen, options.jobs)
 
 

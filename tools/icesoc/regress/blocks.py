@@ -6,7 +6,7 @@ import pathlib
 import re
 
 from icesoc.regress.lights import below_gate
-from icesoc.util.tool import tracked
+from icesoc.util.tree import tracked
 
 
 class Blocks:

@@ -5,7 +5,7 @@ import functools
 import re
 
 from icesoc.regress.tests import Graph
-from icesoc.util.tool import run
+from icesoc.util.process import collect
 
 SHOWN = 6  # files
 
@@ -26,7 +26,7 @@ class Changes:
             self.tree = self._write_tree()
 
     def git(self, *words):
-        return run(["git", "-C", self.source, "-c", "core.quotePath=false", *words],
+        return collect(["git", "-C", self.source, "-c", "core.quotePath=false", *words],
                    self.environment)
 
     def _write_tree(self):

@@ -13,7 +13,8 @@ import re
 import sys
 
 from icesoc.regress.lights import below_gate
-from icesoc.util.tool import Stop, write
+from icesoc.util.errors import Stop
+from icesoc.util.files import write
 
 
 class Share:

@@ -8,7 +8,7 @@ import re
 import shutil
 
 from icesoc.regress.runner import Result
-from icesoc.util.tool import write
+from icesoc.util.files import write
 
 # Words of a runner or of a flight's end: their names, times and counts differ for one cause.
 RUNNERS = re.compile(

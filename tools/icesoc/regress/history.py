@@ -4,7 +4,7 @@ import collections
 import json
 import time
 
-from icesoc.util.tool import write
+from icesoc.util.files import write
 
 KEPT_RUNS = 300
 

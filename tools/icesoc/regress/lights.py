@@ -2,7 +2,7 @@
 """lights: shows a run as seven lights: tests, proofs, plan, mutants, coverage, size, speed. A light
 is green, red, or grey: not measured, or the sources have changed since. Each reads its own figures
 only, so that a bug of one kind turns one light red."""
-from icesoc.util.tool import tree_state
+from icesoc.util.tree import tree_state
 
 
 def light(name, state, text):

@@ -11,10 +11,12 @@ import re
 import sys
 import time
 
-from icesoc.util import tool
+from icesoc.util.errors import Stop
+from icesoc.util.lock import lock, only_one
+from icesoc.util.ninja import run_ninja
+from icesoc.util.process import adopt_orphans, collect, end_orphans
+from icesoc.util.tree import tree_state
 from icesoc.regress.changes import Changes
-from icesoc.cli.build_folder import run_ninja
-from icesoc.cli.runner import lock
 from icesoc.regress.failures import examine
 from icesoc.regress.history import History, make_run
 from icesoc.regress.lights import text_of
@@ -22,7 +24,6 @@ from icesoc.regress.report import gather, write_reports
 from icesoc.regress.runner import run_tests, write_junit
 from icesoc.regress.tests import (Graph, Name, fingerprint, list_tests, read_plan, targets_of,
                                   unmatched, write_numbers)
-from icesoc.util.tool import Stop
 from icesoc.regress.waves import add_waves
 
 
@@ -149,7 +150,7 @@ class Regression:
         """Builds, or lists, the targets of the chosen tests; their cases are known afterwards."""
         o = self.options
         tests = list_tests(o.build)
-        outputs = {line.rpartition(":")[0] for line in tool.run(
+        outputs = {line.rpartition(":")[0] for line in collect(
             ["ninja", "-C", o.build, "-t", "targets", "all"])[1].splitlines()}
         chosen, found = self.choose(tests, built=False), set()
         for test in chosen:  # it grows by the tests that set up others' fixtures
@@ -218,10 +219,10 @@ class Regression:
         o, history = self.options, self.history
         changes, start = self.changes or self._changes(), time.monotonic()
         begin = datetime.datetime.now().astimezone().isoformat(timespec="seconds")
-        tool.adopt_orphans()
+        adopt_orphans()
         results = [result for seed_, some in rounds for result in
                    run_tests(some, o.build, o.out, seed_, o.jobs, history)]
-        for each in tool.end_orphans():
+        for each in end_orphans():
             print("A test has left behind, and it was ended:", each)
         for each in changes.meanwhile():
             print("Changed while the tests ran, by one of them or by you:", each)
@@ -232,9 +233,9 @@ class Regression:
                 failure.changed = changes.since(history.last_pass(test.name), test,
                                                 failure.result.seed)
         git = ["git", "-C", o.source]
-        status, commit = tool.run([*git, "describe", "--always", "--dirty", "--abbrev=10"])
+        status, commit = collect([*git, "describe", "--always", "--dirty", "--abbrev=10"])
         commit = "unknown" if status else commit.strip()
-        subject = tool.run([*git, "log", "-1", "--format=%s"])
+        subject = collect([*git, "log", "-1", "--format=%s"])
         reasons = {f.bucket: f"{f.result.name}: {f.reason[:120]}" for f in reversed(failures)}
         history.add({**make_run(chosen, results, commit, time.monotonic() - start),
                      "subject": "" if subject[0] else subject[1].strip(), "tree": changes.tree,
@@ -279,7 +280,7 @@ def main(words):
     options = parse(words)
     try:
         if options.tree is not None:
-            print(tool.tree_state(options.source, options.tree))
+            print(tree_state(options.source, options.tree))
             return 0
         if options.plan:
             plan, tests = read_plan(options.source), list_tests(options.build)
@@ -288,7 +289,7 @@ def main(words):
             return 1 if wrong or not plan else 0
         if options.prepare or options.select:
             return Regression(options).run()
-        with tool.only_one(options.out, "regress"):
+        with only_one(options.out, "regress"):
             regression = Regression(options)
             if damaged := regression.history.damaged:
                 print(f"{damaged} damaged lines of {options.out}/history.jsonl are left out")

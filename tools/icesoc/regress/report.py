@@ -7,7 +7,8 @@ import re
 from icesoc.regress.blocks import blocks_of
 from icesoc.regress.lights import lights_of
 from icesoc.regress.tests import judge_plan, read_plan
-from icesoc.util.tool import filled, page_parts, script_safe, write
+from icesoc.util.files import write
+from icesoc.web.page import filled, page_parts, script_safe
 from icesoc.regress.waves import drawing_of
 
 HERE = pathlib.Path(__file__).resolve().parent

@@ -13,7 +13,9 @@ import time
 import xml.etree.ElementTree as xml
 
 from icesoc.regress.tests import write_numbers
-from icesoc.util.tool import Stop, children, run, write
+from icesoc.util.errors import Stop
+from icesoc.util.files import write
+from icesoc.util.process import children, collect
 
 SHORTEST_HANG = 300  # seconds: no test is ended before
 
@@ -112,7 +114,7 @@ def end_hang(process, build):
             program = os.readlink(f"/proc/{pid}/exe")
             if not program.startswith(f"{build}/"):
                 continue
-            text = run(["timeout", 60, "gdb-multiarch", "-nx", "-batch", "-p", pid, "-ex",
+            text = collect(["timeout", 60, "gdb-multiarch", "-nx", "-batch", "-p", pid, "-ex",
                         "thread apply all backtrace 40"])[1]
             frames = re.findall(r"(?m)^(?:#|Thread ).*", text) or text.splitlines()[-1:]
             stacks += "\n".join([f"Stack of {os.path.basename(program)}:", *frames, ""])
@@ -154,7 +156,7 @@ def run_tests(tests, build, out, seed, jobs, history):
     watcher = threading.Thread(target=progress.watch, args=[done, str(build)], daemon=True)
     watcher.start()
     try:
-        status, text = run(
+        status, text = collect(
             ["ctest", "--test-dir", build, "-I", chosen.resolve(), "-j", jobs, "--output-junit",
              junit, "--test-output-size-passed", 4096, "--test-output-size-failed", 200000,
              "--test-output-truncation", "middle"], {"SEED": seed}, on_line)

@@ -11,7 +11,10 @@ import pathlib
 import re
 import tomllib
 
-from icesoc.util.tool import Stop, digest, run, tracked, write
+from icesoc.util.errors import Stop
+from icesoc.util.files import digest, write
+from icesoc.util.process import collect
+from icesoc.util.tree import tracked
 
 NOT_BUILT = "_NOT_BUILT"  # CTest's suffix for a program whose cases it does not know
 
@@ -116,7 +119,7 @@ class Test:
 
 def list_tests(build):
     """All tests of a build folder."""
-    status, text = run(["ctest", "--test-dir", build, "--show-only=json-v1"])
+    status, text = collect(["ctest", "--test-dir", build, "--show-only=json-v1"])
     if status:
         raise Stop(f"ctest cannot list the tests of {build}:\n{text[:2000]}")
     if "{" not in text:
@@ -199,7 +202,7 @@ class Graph:
                 ins = rule.split()[1:]
                 for out in set(outs.split()) - {"|"}:
                     self.made.setdefault(out.removeprefix(f"{self.build}/"), []).extend(ins)
-        for line in run(["ninja", "-C", self.build, "-t", "deps"])[1].splitlines():
+        for line in collect(["ninja", "-C", self.build, "-t", "deps"])[1].splitlines():
             if line.startswith("    "):
                 self.made.setdefault(out, []).append(line[4:])
             elif line:

@@ -8,7 +8,9 @@ import os
 import pathlib
 import re
 
-from icesoc.util.tool import Stop, run, write
+from icesoc.util.errors import Stop
+from icesoc.util.files import write
+from icesoc.util.process import collect
 
 CLOCKS_PER_SECOND = 1e8  # of a flight's chip
 FIRST_CORE = 2  # slot
@@ -91,28 +93,28 @@ def add_wave(failure, test, scene, source, tested, jobs):
     """Makes a failure's waveform by the build in build/trace, or prints why there is none."""
     build = (source / "build/trace").resolve()
     if not (build / "build.ninja").exists():
-        run(["cmake", "-S", source, "-B", build, "-G", "Ninja", "-DTRACE=ON"])
-    status, text = run(["ninja", "-C", build, "-j", jobs, scene.program])
+        collect(["cmake", "-S", source, "-B", build, "-G", "Ninja", "-DTRACE=ON"])
+    status, text = collect(["ninja", "-C", build, "-j", jobs, scene.program])
     if status:
         raise Stop(f"it does not build with waveforms:\n{text}")
     base = failure.log.removesuffix(".log")
     wave = os.path.abspath(f"{base}.fst")
     first, last = max(0, scene.clock - scene.before), scene.clock + scene.after
     if scene.flight:
-        run([build / "testbench/sim/icesoc-sim", "--replay", scene.flight, "--out",
+        collect([build / "testbench/sim/icesoc-sim", "--replay", scene.flight, "--out",
              f"{base}.replay", "--wave", wave, "--from", f"{first / CLOCKS_PER_SECOND:.6f}",
              "--to", f"{last / CLOCKS_PER_SECOND:.6f}"])
         failure.scope = instance_in(scene.slot, build)
     else:
         failure.scope = blamed(failure.changed, source)
-        run(["ctest", "--test-dir", build, "--no-tests=error", "-R",
+        collect(["ctest", "--test-dir", build, "--no-tests=error", "-R",
              "^" + re.sub(r"([.+*?()\[\]{}|^$\\])", r"\\\1", failure.result.name) + "$"],
             {"SEED": failure.result.seed, "WAVE": wave, "WAVE_FROM": str(first),
              "WAVE_TO": str(last)})
     if not os.path.exists(wave):
         raise Stop("the test drove no traced model")
     has_program = os.path.exists(wave + ".program.vcd")
-    run([source / "testbench/common/join_waves.sh", wave])
+    collect([source / "testbench/common/join_waves.sh", wave])
     failure.wave, failure.clock, failure.save = f"{base}.fst", scene.clock, f"{base}.gtkw"
     folder = "testbench/sim" if scene.flight else os.path.relpath(test.folder, tested)
     write(failure.save, save_file(wave, build, folder, has_program))
@@ -196,7 +198,7 @@ def drawing_of(failure, room):
     constant ones; in each group the outermost first. Signals that a converter has named are left
     out. A drawing of more than `room` bytes loses its older changes, then the last signals."""
     try:
-        signals, moments = read_vcd(run(["fst2vcd", "-f", failure.wave])[1]
+        signals, moments = read_vcd(collect(["fst2vcd", "-f", failure.wave])[1]
                                     if failure.wave.endswith(".fst")
                                     else pathlib.Path(failure.wave).read_text())
     except (ValueError, IndexError, StopIteration, RuntimeError) as error:

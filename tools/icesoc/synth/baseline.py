@@ -6,7 +6,8 @@ import subprocess
 
 from icesoc.synth.owners import Cost
 from icesoc.synth.sources import read_json
-from icesoc.util.tool import Stop, write
+from icesoc.util.errors import Stop
+from icesoc.util.files import write
 
 KEYS = ("lut", "ff", "slices", "carry", "dsp", "ram", "mhz")
 NAMED_CHANGES = 6

@@ -7,7 +7,7 @@ from icesoc.synth import report
 from icesoc.synth.owners import Cost
 from icesoc.synth.runner import Run, carry_out
 from icesoc.synth.sources import Design, read_json
-from icesoc.util.tool import Stop
+from icesoc.util.errors import Stop
 
 FIRST_SLOT = 2  # those below are the platform's
 

@@ -17,7 +17,9 @@ import xml.etree.ElementTree
 from icesoc.synth import netlist
 from icesoc.synth import report
 from icesoc.synth import runner
-from icesoc.util.tool import Stop, digest, run as command, write
+from icesoc.util.errors import Stop
+from icesoc.util.files import digest, write
+from icesoc.util.process import collect as command
 
 BOXES = {"DCM_CLKGEN", "BUFGCE"}  # clock parts of both copies; what is around them is proven
 SOLVE = """read_rtlil {file}

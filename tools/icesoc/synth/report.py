@@ -11,7 +11,7 @@ from icesoc.synth.baseline import MEASURED, clock_text, short_version
 from icesoc.synth.owners import Cost
 from icesoc.synth.runner import Run
 from icesoc.synth.sources import Design, Library, Plan
-from icesoc.util.tool import filled, page_parts, script_safe
+from icesoc.web.page import filled, page_parts, script_safe
 
 
 @dataclasses.dataclass

@@ -14,7 +14,7 @@ from icesoc.synth import timing
 from icesoc.synth.report import Table
 from icesoc.synth.slices import Range
 from icesoc.synth.sources import read_json
-from icesoc.util.tool import Stop
+from icesoc.util.errors import Stop
 
 MAP = ("sites", "ff", "slices", "one", "two")  # "one", "two": sites with so many functions
 NETLIST = ("lut", "memory", "through", "ff", "path", "end")

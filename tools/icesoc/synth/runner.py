@@ -24,7 +24,9 @@ from icesoc.synth import owners
 from icesoc.synth import slices
 from icesoc.synth import timing
 from icesoc.synth.sources import Design, read
-from icesoc.util.tool import Stop, digest, run as command, write
+from icesoc.util.errors import Stop
+from icesoc.util.files import digest, write
+from icesoc.util.process import collect as command
 
 # A netlist's figures follow from these.
 TOOL = digest(pathlib.Path(module.__file__).read_text() for module in (

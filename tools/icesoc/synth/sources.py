@@ -7,7 +7,8 @@ import json
 import pathlib
 import re
 
-from icesoc.util.tool import Stop, digest
+from icesoc.util.errors import Stop
+from icesoc.util.files import digest
 
 # A comment, a string, a word or directive, or the punctuation that instances are recognised by.
 TOKEN = re.compile(r'//[^\n]*|/\*.*?(?:\*/|$)|"([^"]*)"?|(`?[\w$]+|`)|([()#;]|::)', re.S)

@@ -16,7 +16,10 @@ from icesoc.synth import reports
 from icesoc.synth import runner
 from icesoc.synth import sources
 from icesoc.synth.report import Report, Row
-from icesoc.util.tool import Stop, only_one, tree_state, write
+from icesoc.util.errors import Stop
+from icesoc.util.files import write
+from icesoc.util.lock import only_one
+from icesoc.util.tree import tree_state
 
 FAMILIES = ("xc6s", "xc7", "ecp5")  # the first is the one that figures, limits and page are of
 WHOLE_CHIP = "soc"

@@ -9,7 +9,9 @@ from pathlib import Path
 from icesoc.cli.build_folder import BuildFolder, configured
 from icesoc.cli.command import DEFAULTS, GROUPS, command
 from icesoc.cli.options import BUILD, FOLDER, JOBS, UCOS2, WORDS, Option
-from icesoc.cli.runner import Stop, end, logged, run, say, start
+from icesoc.util.console import say
+from icesoc.util.errors import Stop
+from icesoc.util.process import end, logged, run, start
 
 GROUPS["build"] = "build everything, or firmware, sizes, pictures"
 DEFAULTS["build"] = "build all"

@@ -10,7 +10,10 @@ from icesoc.cli.build_folder import ROOMS_OF_PROGRAMS, BuildFolder, configured, 
 from icesoc.cli.command import GROUPS, command
 from icesoc.cli.options import (BLOCK, BUILD, COUNT, FAMILY, FRESH, JOBS, MINUTES, NAME, PATH, SEED,
                                 TESTS, WORDS, Option)
-from icesoc.cli.runner import Stop, lock, output, run, say, tool, warn
+from icesoc.util.console import say, warn
+from icesoc.util.errors import Stop
+from icesoc.util.lock import lock
+from icesoc.util.process import output, run, tool
 
 GROUPS["check"] = "proofs, sanitizers, fuzzing, faults, coverage"
 GUARDED = ["test_engine", "gateway", "test_radio_ice", "test_icec"]

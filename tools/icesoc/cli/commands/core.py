@@ -12,8 +12,10 @@ from icesoc.cli.command import GROUPS, command
 from icesoc.cli.commands.synth import utilisation
 from icesoc.cli.options import (BUILD, CORE_FOLDERS, FILE, FOLDER, JOBS, SEED, SWITCH, TEXT, Option,
                                 matching, one_of)
-from icesoc.cli.reserved import RESERVED, REFUSAL
-from icesoc.cli.runner import Stop, logged, output, run, say, warn
+from icesoc.util.console import say, warn
+from icesoc.util.errors import Stop
+from icesoc.util.process import logged, output, run
+from icesoc.util.reserved import REFUSAL, RESERVED
 
 TEMPLATE = TREE / "tools/icesoc/cores/template"
 

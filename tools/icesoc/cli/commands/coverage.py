@@ -7,7 +7,9 @@ from pathlib import Path
 from icesoc.cli.build_folder import BuildFolder, configured
 from icesoc.cli.command import command
 from icesoc.cli.options import BUILD, JOBS, NAME, Option
-from icesoc.cli.runner import Stop, output, run, say, tool, warn
+from icesoc.util.console import say, warn
+from icesoc.util.errors import Stop
+from icesoc.util.process import output, run, tool
 
 COUNTED = "rtl|firmware|vhdl|models|slice|interop|e2e"  # labels of tests that run what counts
 # Fuzzers have counts of their own, e2e.cores builds a chip of its own.

@@ -5,7 +5,8 @@ from pathlib import Path
 
 from icesoc.cli.command import COMMANDS, command
 from icesoc.cli.options import FOLDER, Option
-from icesoc.cli.runner import Stop, say
+from icesoc.util.console import say
+from icesoc.util.errors import Stop
 from icesoc.site import build
 
 PROGRAMS = {"sphinx-build": "python3-sphinx", "doxygen": "doxygen"}

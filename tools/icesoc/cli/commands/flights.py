@@ -14,7 +14,10 @@ from icesoc.cli.build_folder import BuildFolder, configured, netlists
 from icesoc.cli.command import command
 from icesoc.cli.options import (BUILD, COUNT, FAMILY, FILE, FLIGHT, FOLDER, JOBS, MINUTES, PATH,
                                 SECONDS, SEED, SWITCH, Option)
-from icesoc.cli.runner import Interrupted, Stop, end, lock, run, say, start, tool, until, wait, warn
+from icesoc.util.console import say, warn
+from icesoc.util.errors import Interrupted, Stop
+from icesoc.util.lock import lock
+from icesoc.util.process import end, run, start, tool, until, wait
 
 FROM = Option("from", SECONDS, "begin of the waveform, in simulated time")
 TO = Option("to", SECONDS, "end of the waveform, in simulated time")

@@ -9,7 +9,9 @@ from icesoc.cli.command import command
 from icesoc.cli.commands.core import NAME, REPOSITORY, put_into_repository
 from icesoc.cli.flight import FIELDS
 from icesoc.cli.options import BUILD, COUNT, FILES, JOBS, SEED, SWITCH, TEXT, WORDS, Option, one_of
-from icesoc.cli.runner import Stop, lock, run, tool
+from icesoc.util.errors import Stop
+from icesoc.util.lock import lock
+from icesoc.util.process import run, tool
 
 
 def foreign_words(values):

@@ -14,7 +14,9 @@ from pathlib import Path
 
 from icesoc.cli.command import command
 from icesoc.cli.options import FOLDER, SWITCH, TEXT, Option, one_of
-from icesoc.cli.runner import Stop, output, run, say
+from icesoc.util.console import say
+from icesoc.util.errors import Stop
+from icesoc.util.process import output, run
 
 RELEASES = {"bookworm": "Debian 12", "trixie": "Debian 13"}
 README = ["make run", "make test"]

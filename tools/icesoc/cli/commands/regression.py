@@ -5,7 +5,6 @@ import functools
 import json
 import re
 import shlex
-import sys
 import time
 from pathlib import Path
 
@@ -13,7 +12,12 @@ from icesoc.cli.build_folder import ROOMS_OF_PROGRAMS, BuildFolder, configured
 from icesoc.cli.command import COMMANDS, command
 from icesoc.cli.options import (BLOCK, BUILD, CORE_FOLDERS, COUNT, FRESH, JOBS, LABEL, NAME, SEED,
                                 SWITCH, TESTS, TEXT, UCOS2, WORDS, Option, matching, number)
-from icesoc.cli.runner import Stop, Table, commit, lock, output, run, say, tool
+from icesoc.util.console import say
+from icesoc.util.errors import Stop
+from icesoc.util.lock import lock
+from icesoc.util.process import output, run, tool
+from icesoc.util.table import Table
+from icesoc.util.tree import commit
 
 WAVES = Option("waves", number(0), "failures of which a waveform is written", 3)
 

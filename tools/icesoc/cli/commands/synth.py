@@ -8,7 +8,11 @@ from pathlib import Path
 from icesoc.cli.build_folder import configured
 from icesoc.cli.command import DEFAULTS, GROUPS, command
 from icesoc.cli.options import BUILD, CORE_FOLDERS, FILE, FOLDER, JOBS, TEXT, WORDS, Option
-from icesoc.cli.runner import Stop, commit, lock, logged, output, run, tool, warn
+from icesoc.util.console import warn
+from icesoc.util.errors import Stop
+from icesoc.util.lock import lock
+from icesoc.util.process import logged, output, run, tool
+from icesoc.util.tree import commit
 
 GROUPS["synth"] = "synthesis: LUTs, flip-flops, clock"
 DEFAULTS["synth"] = "synth report"

@@ -5,7 +5,6 @@ import os
 import re
 import shlex
 import shutil
-import sys
 import time
 from pathlib import Path
 
@@ -14,7 +13,11 @@ from icesoc.cli import command as doors
 from icesoc.cli import flight, keys
 from icesoc.cli.command import COMMANDS, command
 from icesoc.cli.options import PATH, SWITCH, TEXT, Option
-from icesoc.cli.runner import SKIPPED, Table, lock, run, say, tool
+from icesoc.util.console import say
+from icesoc.util.errors import SKIPPED
+from icesoc.util.lock import lock
+from icesoc.util.process import run, tool
+from icesoc.util.table import Table
 
 
 @command("setup", [

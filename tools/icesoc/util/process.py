@@ -1,35 +1,20 @@
 # SPDX-License-Identifier: MIT
-"""runner: starts programs by lists of words, never through a shell; says what went wrong; ends what
-it has started.
+"""process: starts programs by lists of words, never through a shell, and ends what it started.
 
 A program that is ended by a signal, or cannot be started, is reported here, and nowhere else.
 """
 import contextlib
-import fcntl
+import ctypes
 import os
+import pathlib
 import shutil
 import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 
-SKIPPED = 77  # the exit status of what needs a network, and has none
-
-
-class Stop(Exception):
-    """Ends the command with a message (empty if a program has printed one already) and an exit
-    status."""
-    def __init__(self, text="", status=1):
-        super().__init__(text)
-        self.text, self.status = text, status
-
-
-class Interrupted(BaseException):
-    """A signal asks for the end."""
-    def __init__(self, number):
-        super().__init__(number)
-        self.status = 128 + number
+from icesoc.util.console import warn
+from icesoc.util.errors import Interrupted, Stop
 
 
 def hear_signals():
@@ -41,14 +26,6 @@ def hear_signals():
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, hear)
-
-
-def say(text):
-    print(text, flush=True)
-
-
-def warn(text):
-    print(f"icesoc: {text}", file=sys.stderr, flush=True)
 
 
 def tool(name):
@@ -126,25 +103,6 @@ def logged(words, log, failed, env=None, cwd=None):
         raise Stop(f"{failed}: {log}", status)
 
 
-@contextlib.contextmanager
-def lock(path, busy=None, refuse=None):
-    """Holds a lock, a file whose folder it makes, or a folder, and returns its descriptor. If it is
-    taken: prints `busy` and waits, or ends with `refuse`."""
-    Path(path).parent.mkdir(parents=True, exist_ok=True)
-    fd = os.open(path, os.O_RDONLY if os.path.isdir(path) else os.O_RDWR | os.O_CREAT, 0o666)
-    try:
-        try:
-            fcntl.flock(fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            if refuse:
-                raise Stop(refuse) from None
-            warn(busy)
-            fcntl.flock(fd, fcntl.LOCK_EX)
-        yield fd
-    finally:
-        os.close(fd)
-
-
 def until(condition, process, seconds=0.05):
     """Waits until a condition holds, as long as a process runs. Returns the condition."""
     while not (held := condition()) and process.poll() is None:
@@ -152,37 +110,52 @@ def until(condition, process, seconds=0.05):
     return held or condition()
 
 
-def commit(name, option="BASE"):
-    """The whole name of a commit."""
-    found = output(["git", "rev-parse", "--verify", "-q", f"{name}^{{commit}}"], check=False)
-    if not found:
-        raise Stop(f"there is no commit {option}={name}", 2)
-    return found.strip()
+def collect(command, environment=None, on_line=None):
+    """Runs a program to its end and returns (exit status, output). A signal that kills this process
+    ends the program as well."""
+    words = ["setpriv", "--pdeathsig", "TERM", *map(str, command)]
+    said = []
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          errors="replace", env={**os.environ, **(environment or {})}) as process:
+        for line in process.stdout:
+            said.append(line)
+            if on_line:
+                on_line(line.rstrip("\n"))
+    status = process.returncode
+    if status in (126, 127):
+        raise Stop(f"cannot run {command[0]}: {''.join(said)}")
+    return (status if status >= 0 else 128 - status), "".join(said)
 
 
-class Table:
-    """Rows of a table that is written to PATH.md, row by row."""
-    def __init__(self, path):
-        self.path, self.rows = Path(path), []
+def children(pid):
+    """The processes that one has begun and that have not ended, the oldest first."""
+    found = []
+    for path in pathlib.Path(f"/proc/{pid}/task").glob("*/children"):
+        with contextlib.suppress(OSError):
+            found += map(int, path.read_text().split())
+    return sorted(found)
 
-    def add(self, name, status, seconds, figure=""):
-        self.rows.append({"command": name, "status": status, "seconds": round(seconds, 1),
-                          "figure": figure})
-        said = {0: "ok", SKIPPED: "skipped"}.get(status, f"FAILED ({status})")
-        say(f"{name:<18} {said:<12} {seconds:7.1f} s  {figure}")
-        self.path.parent.mkdir(parents=True, exist_ok=True)
-        lines = ["| command | status | seconds | what it says last |", "|---|---|---|---|"]
-        for row in self.rows:
-            last = row["figure"].replace("|", "/")
-            lines.append(f"| {row['command']} | {row['status']} | {row['seconds']} | {last} |")
-        self.path.with_suffix(".md").write_text("\n".join(lines) + "\n")
 
-    def end(self):
-        """Ends the command: with an error that names what failed, if something has."""
-        seconds = sum(row["seconds"] for row in self.rows)
-        skipped = [row for row in self.rows if row["status"] == SKIPPED]
-        if failed := [row["command"] for row in self.rows if row["status"] not in (0, SKIPPED)]:
-            raise Stop(f"failed: {', '.join(failed)} ({self.path}.md)")
-        for row in skipped:
-            say(f"skipped: {row['command']}: {row['figure']}")
-        say(f"{len(self.rows) - len(skipped)} commands, {seconds:.0f} s: {self.path}.md")
+def adopt_orphans():
+    """Makes processes that programs leave behind children of this process instead of init."""
+    become_subreaper = 36
+    ctypes.CDLL(None).prctl(become_subreaper, 1)
+
+
+def end_orphans():
+    """Ends processes that stay for two seconds; returns a line for each of them."""
+    left = {}
+    for attempt in range(40):
+        time.sleep(0.05 if attempt else 0)
+        left = {}
+        for pid in children(os.getpid()):
+            with contextlib.suppress(OSError):
+                if os.waitpid(pid, os.WNOHANG)[0]:
+                    continue
+                words = pathlib.Path(f"/proc/{pid}/cmdline").read_text().replace("\0", " ")
+                left[pid] = f"{words}(in {os.path.relpath(os.readlink(f'/proc/{pid}/cwd'))})"
+        if not left:
+            break
+    for pid in left:
+        os.kill(pid, 9)
+    return list(left.values())

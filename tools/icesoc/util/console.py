@@ -1,0 +1,11 @@
+# SPDX-License-Identifier: MIT
+"""console: what commands print."""
+import sys
+
+
+def say(text):
+    print(text, flush=True)
+
+
+def warn(text):
+    print(f"icesoc: {text}", file=sys.stderr, flush=True)

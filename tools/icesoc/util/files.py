@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: MIT
+"""files: whole files and their digests."""
+import hashlib
+import pathlib
+
+from icesoc.util.errors import Stop
+
+
+def write(path, text):
+    """Writes a file, all of it or none: readers see the old text or the new."""
+    part = pathlib.Path(f"{path}.part")
+    try:
+        part.write_text(text)
+    except OSError:
+        part.unlink(missing_ok=True)
+        raise Stop(f"cannot write {path}: is the disk full?") from None
+    part.replace(path)
+
+
+def digest(parts):
+    return hashlib.sha1("\0".join(parts).encode()).hexdigest()[:16]

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: MIT
+"""ninja: runs ninja with its progress as one line."""
+import os
+import re
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from icesoc.util.console import say
+from icesoc.util.errors import Stop
+from icesoc.util.process import end, start, wait
+
+# Beginnings of lines in which CMake, ninja, Verilator and its makefiles report on themselves.
+NOISE = ("ninja: Entering directory", "ninja: no work to do", "- Verilator: ", "- V e r i l a t",
+         "Archive ar ", "-- GLOB", "-- Configuring", "-- Generating", "-- Build files")
+
+
+class Line:
+    """A build as one line: on a terminal it is written anew, elsewhere each tenth of the steps
+    gives one, but none in the first seconds: a build of nothing says nothing."""
+
+    def __init__(self):
+        self.begin, self.told, self.is_shown = time.monotonic(), 0, False
+        self.moves = sys.stdout.isatty()
+
+    def show(self, done, total, what):
+        spent = time.monotonic() - self.begin
+        text = f"[{done}/{total}]"
+        if done > total / 20:
+            left = round(spent * (total - done) / done)
+            text += f" {left // 60}:{left % 60:02} left"
+        if self.moves:
+            width = os.get_terminal_size(sys.stdout.fileno()).columns or 80
+            print("\r\033[K" + f"{text} {what}"[:width - 1], end="", flush=True)
+            self.is_shown = True
+        elif spent > 3 and done * 10 // total > self.told:
+            self.told = done * 10 // total
+            say(f"{text} {what}")
+
+    def clear(self):
+        if self.is_shown:
+            print("\r\033[K", end="", flush=True)
+        self.is_shown = False
+
+
+def in_vhdl(match):
+    """A place in Verilog that GHDL made, with that in the VHDL: it stands in a comment before what
+    assigns a signal."""
+    try:
+        lines = Path(match[1]).read_text(errors="replace").splitlines()
+    except OSError:
+        return match[0]
+    at = int(match[2]) - 1
+    if at >= len(lines) or "by GHDL" not in lines[0]:
+        return match[0]
+    declared = re.match(r" *(?:wire|reg) (?:\[.*?\] )?(\w+);", lines[at])
+    if declared:
+        at = next((n for n, line in enumerate(lines[at:], at)
+                   if re.match(rf" *(?:assign )?{declared[1]} <?= ", line)), at)
+    places = [found[1] for line in lines[at::-1]
+              if (found := re.fullmatch(r" */\* (\S+:\d+):\d+ +\*/", line))]
+    return f"{match[0]} ({places[0]})" if places else match[0]
+
+
+def explained(text):
+    """A line of a build's output, with the place in the source that it is about."""
+    missing = re.match(r"ninja: error: '(\S+)', needed by .* missing and no known rule", text)
+    if not missing:
+        return re.sub(r"(\S+\.v):(\d+)(?=:)", in_vhdl, text)
+    name = re.escape(Path(missing[1]).name)
+    folders = [*Path(missing[1]).parents, *sorted(Path("ip").glob("*"))]
+    for lists in (folder / "CMakeLists.txt" for folder in folders):
+        lines = lists.read_text().splitlines() if lists.is_file() else []
+        for number, line in enumerate(lines, 1):
+            if re.search(rf"(?<![\w.]){name}(?![\w.])", line):
+                return f"{lists}:{number}: there is no file {missing[1]}\n{text}"
+    return text
+
+
+def run_ninja(words, log, check=True, env=None):
+    """Runs ninja. What it says beside its steps is printed; its whole output goes to a file. If it
+    fails, the command ends, unless `check` is false."""
+    line = Line()
+    process = start(words, env={**(env or {}), "NINJA_STATUS": "[%f/%t] "}, text=True,
+                    stdout=subprocess.PIPE, stderr=subprocess.STDOUT, errors="replace")
+    try:
+        with open(log, "w", buffering=1) as file, process.stdout as said:
+            for text in said:
+                file.write(text)
+                step = re.match(r"\[(\d+)/(\d+)\] (.*)", text)
+                if step:
+                    line.show(int(step[1]), int(step[2]), step[3])
+                elif not text.startswith(NOISE):
+                    line.clear()
+                    print(explained(text), end="", flush=True)
+    except BaseException:
+        end(process)
+        raise
+    finally:
+        line.clear()
+    status = wait(process)
+    if status and check:
+        raise Stop(f"the build failed (above); all of it is in {log}", status)
+    return status

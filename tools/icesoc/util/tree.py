@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: MIT
+"""tree: the files of a checkout, their state, and its commits."""
+import subprocess
+
+from icesoc.util.errors import Stop
+from icesoc.util.process import collect, output
+
+
+def commit(name, option="BASE"):
+    """The whole name of a commit."""
+    found = output(["git", "rev-parse", "--verify", "-q", f"{name}^{{commit}}"], check=False)
+    if not found:
+        raise Stop(f"there is no commit {option}={name}", 2)
+    return found.strip()
+
+
+def tracked(source):
+    """Paths of the tree's files, those that .gitignore names left out; a copy has them, too."""
+    return collect(["git", "-C", source, "grep", "--no-index", "--exclude-standard", "--no-color",
+                "-l", ""])[1].splitlines()
+
+
+def tree_state(source, folders):
+    """The state of folders, "bus hdl: 0123...": a measurement is current while it is the same."""
+    files = sorted(f for f in tracked(source) if f.split("/")[0] in folders.split())
+    def hashes(text, *words):
+        return subprocess.run(["git", "hash-object", *words], input=text, text=True, cwd=source,
+                              check=True, stdout=subprocess.PIPE).stdout
+    names = "".join(f"{file}\n" for file in files)
+    return f"{folders}: {hashes(names + hashes(names, '--stdin-paths'), '--stdin')[:16]}"

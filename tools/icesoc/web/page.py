@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: MIT
+"""page: puts the pages of regression and utilisation together from their parts."""
+import json
+
+from icesoc import TREE
+from icesoc.util.errors import Stop
+
+
+def page_parts(libraries):
+    """The style and the script that the pages begin with: libraries, colours, tables, charts."""
+    here = TREE / "tools/icesoc/web"
+
+    def joined(ending):
+        files = [libraries / f"libraries{ending}",
+                 here / f"common{ending}", here / f"tables{ending}"]
+        return "".join(file.read_text() for file in files if file.exists())
+    return joined(".css"), joined(".js")
+
+
+def filled(page, places):
+    """The page with each place replaced by its text."""
+    for place, text in places.items():
+        if place not in page:
+            raise Stop(f"the page has no {place}")
+        page = page.replace(place, text, 1)
+    return page
+
+
+def script_safe(data):
+    """JSON as it may stand in a page's script: a "</" in it does not end the script."""
+    return json.dumps(data, separators=(",", ":"), sort_keys=True).replace("</", "<\\/")

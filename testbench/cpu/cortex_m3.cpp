@@ -64,7 +64,33 @@ void CortexM3::updateAttention() {
                  exceptions_.deliverable() != 0;
 }
 
+void CortexM3::setSynchronous(uint32_t address, unsigned number, uint32_t cfsrBits,
+                              const char* text) {
+    executing_ = address;
+    synchronous_ = {number, cfsrBits, text};
+    attention_ = true;
+    uc_emu_stop(uc_);
+}
+
+// Checks an instruction before it is executed. False: it faults.
+bool CortexM3::mayExecute(uint32_t address, const Instruction& i) {
+    if (i.base != Instruction::noBase && (reg(i.base) & i.alignment)) {
+        setSynchronous(address, UsageFault, SystemControl::unaligned,
+                       "LDM, STM, LDRD, STRD, LDREX or STREX at an unaligned address");
+        return false;
+    }
+    // In handlers of HardFault and NMI the MPU is off.
+    if (control_.isExecuteNever(address) && exceptions_.runningPriority() >= 0) {
+        setSynchronous(address, MemManage, SystemControl::instructionAccess,
+                       "the MPU forbids to execute that");
+        return false;
+    }
+    return true;
+}
+
 void CortexM3::onInstruction(uint32_t address) {
+    if (isClearing_)
+        return;
     if (masksChanged_)
         updateMasks(address);
     if (!stores_.empty())
@@ -108,7 +134,9 @@ void CortexM3::onInstruction(uint32_t address) {
         --skipped_;
         expected_ = address;
     }
-    execute(address, instructionAt(address));
+    const Instruction& i = instructionAt(address);
+    if (mayExecute(address, i))
+        execute(address, i);
 }
 
 void CortexM3::execute(uint32_t address, const Instruction& i) {
@@ -140,9 +168,13 @@ void CortexM3::execute(uint32_t address, const Instruction& i) {
         break;
     case Instruction::Masks:
         masksChanged_ = true;
+        special_ = i.special;
+        break;
+    case Instruction::Exclusive:
+        exclusive_ = true;
         break;
     case Instruction::Refused:
-        failure_ = std::make_exception_ptr(std::runtime_error("WFE and SEV are not modelled"));
+        failure_ = std::make_exception_ptr(NotModelled("WFE, SEV and YIELD"));
         break;
     case Instruction::Plain:
         break;
@@ -209,8 +241,19 @@ void CortexM3::settleFlash() {
     stores_.clear();
 }
 
+// Four bits of BASEPRI exist. BASEPRI_MAX ignores a value of which nothing is left.
+void CortexM3::fixBasepri() {
+    constexpr uint8_t basepriMax = 18;
+    const uint32_t value = reg(Basepri), kept = value & Exceptions::priorityBits;
+    if (value != kept)
+        setReg(Basepri, kept || special_ != basepriMax ? kept : exceptions_.basepri());
+}
+
 void CortexM3::updateMasks(uint32_t address) {
     masksChanged_ = false;
+    fixBasepri();
+    if (reg(Control) & 1)
+        failure_ = std::make_exception_ptr(NotModelled("unprivileged code (CONTROL.nPRIV)"));
     exceptions_.setMasks(reg(Primask), reg(Basepri), reg(Faultmask));
     attention_ = attention_ || exceptions_.deliverable();
     bool masked =

@@ -23,16 +23,21 @@
 struct Instruction {
     enum Kind : uint8_t {
         Plain,
-        If,      // IT: the `conditional` instructions behind it are one unit with it
-        Sleep,   // WFI
-        Barrier, // DSB, DMB: wait for the write buffer
-        Masks,   // CPS or MSR: may change PRIMASK, BASEPRI or FAULTMASK
-        Refused  // WFE, SEV: the model has no event register
+        If,        // IT: the `conditional` instructions behind it are one unit with it
+        Sleep,     // WFI
+        Barrier,   // DSB, DMB: wait for the write buffer
+        Masks,     // CPS or MSR: may change PRIMASK, BASEPRI, FAULTMASK or CONTROL
+        Exclusive, // LDREX: opens the exclusive monitor
+        Refused    // WFE, SEV, YIELD: the model has no event register
     };
+    static constexpr uint8_t noBase = 15;
     uint8_t bytes = 2;       // 2 or 4
     uint8_t cycles = 1;      // Cortex-M3 TRM r2p1, table 3-1, without the refill of a taken branch
     uint8_t conditional = 0; // of If: 1..4
     Kind kind = Plain;
+    // An access that must be aligned (A3.2.1): its base register, and the bits that are to be zero.
+    uint8_t base = noBase, alignment = 0;
+    uint8_t special = 0; // the register of MSR: SYSm
 };
 
 // Cycles of refilling the pipeline after a taken branch (TRM: P is 1..3).
@@ -54,7 +59,7 @@ inline Instruction narrowInstruction(uint16_t op) {
             i.conditional = static_cast<uint8_t>(4 - __builtin_ctz(op & 0xF));
         } else if (op == 0xBF30) {
             i.kind = Instruction::Sleep;
-        } else if (op == 0xBF20 || op == 0xBF40) {
+        } else if (op == 0xBF10 || op == 0xBF20 || op == 0xBF40) {
             i.kind = Instruction::Refused;
         }
         return i;
@@ -75,8 +80,10 @@ inline Instruction narrowInstruction(uint16_t op) {
     case 8:
     case 9:
         return takes(op & 0x0800 ? 2 : 1); // immediate offset: a store is buffered
-    case 12:
-        return takes(1 + ones(op & 0xFF)); // LDM, STM
+    case 12:                               // LDM, STM
+        i.base = static_cast<uint8_t>(op >> 8 & 7);
+        i.alignment = 3;
+        return takes(1 + ones(op & 0xFF));
     default:
         return i;
     }
@@ -100,6 +107,21 @@ inline unsigned wideCycles(uint16_t first, uint16_t second) {
     return 1;
 }
 
+// LDM, STM, LDRD, STRD, LDREX, STREX and their kin. Offsets are multiples of the alignment; SP is
+// always aligned.
+inline void decodeAligned(Instruction& i, uint16_t first, uint16_t second) {
+    const bool isTable = (first & 0xFFF0) == 0xE8D0 && (second & 0xFFE0) == 0xF000; // TBB, TBH
+    const bool isMultiple = !(first & 0x0040), isDouble = !isMultiple && (first & 0x0120);
+    const bool isShort = !isMultiple && !isDouble && (first & 0x0080); // byte, halfword
+    if (isTable)
+        return;
+    if (!isMultiple && !isDouble && (first & 0x0010))
+        i.kind = Instruction::Exclusive;
+    const uint8_t base = first & 0xF;
+    i.alignment = !isShort ? 3 : (second & 0xF0) == 0x50 ? 1 : 0;
+    i.base = base == 13 ? Instruction::noBase : base;
+}
+
 // `first` and `second` are the halfwords at the instruction's address and behind it.
 inline Instruction decodeInstruction(uint16_t first, uint16_t second) {
     if (first >> 11 < 0x1D)
@@ -110,7 +132,14 @@ inline Instruction decodeInstruction(uint16_t first, uint16_t second) {
     if ((first & 0xFFE0) == 0xF380 && (second & 0xD000) == 0x8000) { // MSR
         i.kind = Instruction::Masks;
         i.cycles = 2;
+        i.special = static_cast<uint8_t>(second);
     }
+    if (first == 0xF3AF && (second & 0xFF00) == 0x8000) // hints
+        i.kind = (second & 0xFF) == 3                      ? Instruction::Sleep
+                 : (second & 0xFF) && (second & 0xFF) <= 4 ? Instruction::Refused
+                                                           : Instruction::Plain;
+    if ((first & 0xFE00) == 0xE800)
+        decodeAligned(i, first, second);
     if (first == 0xF3BF && (second & 0xFFE0) == 0x8F40)
         i.kind = Instruction::Barrier;
     return i;
@@ -256,6 +285,14 @@ private:
     void settleFlash();
     void waitForFlash();
     void passWaited();
+    bool mayExecute(uint32_t address, const Instruction& i);
+    void setSynchronous(uint32_t address, unsigned number, uint32_t cfsrBits, const char* text);
+    void clearExclusive();
+    void fixBasepri();
+    bool isSplit(uint32_t address, unsigned bytes);
+    bool isBitBand(uint32_t address) const;
+    uint32_t readBit(uint32_t address);
+    void writeBit(uint32_t address, uint32_t value);
     bool onGuarded(uint32_t address, unsigned bytes, bool write);
     template <class Access> uint32_t guardedAccess(uint32_t address, unsigned bytes, Access access);
     bool debugAccess(uint32_t address, uint8_t* data, uint32_t bytes, bool writes);
@@ -271,6 +308,7 @@ private:
     void fault(unsigned number, uint32_t cfsrBits, const std::string& text);
     void handleUnicorn(uc_err error);
     void handleRaised();
+    void fetchFault();
     void undefinedAt(uint32_t address);
 
     CpuBus& bus_;
@@ -290,6 +328,9 @@ private:
     uint32_t pc_ = 0, executing_ = 0, expected_ = 0, unitEnd_ = 0;
     unsigned skipped_ = 0; // of the IT block under way: conditional instructions not seen yet
     bool masksChanged_ = false;
+    uint8_t special_ = 0;     // of the last MSR
+    bool exclusive_ = false;  // the exclusive monitor may be open
+    bool isClearing_ = false; // CLREX of the model's own is executed
     bool attention_ = false, stopAsked_ = false, resetAsked_ = false, stepped_ = false,
          breakpointHit_ = false;
     bool singleStep_ = false, passBreakpoint_ = false;

@@ -82,28 +82,78 @@ uint32_t CortexM3::guardedAccess(uint32_t address, unsigned bytes, Access access
     return 0;
 }
 
+// Bit-band aliases: a word for each bit of RAM and of the peripherals (B3.1, TRM 3.7).
+bool CortexM3::isBitBand(uint32_t address) const {
+    return address >> 25 == 0x22000000 >> 25 || address >> 25 == 0x42000000 >> 25;
+}
+
+uint32_t CortexM3::readBit(uint32_t address) {
+    const uint32_t offset = address & 0x1FFFFFF, at = (address & 0xF0000000) + offset / 128 * 4;
+    const unsigned bit = offset / 4 % 32;
+    uint32_t word = 0;
+    if (address < 0x40000000)
+        (void)(onGuarded(at, 4, false) || readMemory(at, &word, 4));
+    else
+        word = onRead(at, 4);
+    return word >> bit & 1;
+}
+
+void CortexM3::writeBit(uint32_t address, uint32_t value) {
+    const uint32_t offset = address & 0x1FFFFFF, at = (address & 0xF0000000) + offset / 128 * 4;
+    const uint32_t mask = 1u << offset / 4 % 32;
+    uint32_t word = 0;
+    if (address >= 0x40000000) {
+        word = onRead(at, 4);
+        onWrite(at, 4, value & 1 ? word | mask : word & ~mask);
+    } else if (!onGuarded(at, 4, true) && readMemory(at, &word, 4)) {
+        word = value & 1 ? word | mask : word & ~mask;
+        writeMemory(at, &word, 4);
+    }
+}
+
+// An unaligned access to memory is several aligned ones; to a device it is unpredictable.
+bool CortexM3::isSplit(uint32_t address, unsigned bytes) {
+    if (address % bytes == 0 || address >= 0xE0000000)
+        return false;
+    if (address >= 0x40000000 && address < 0x60000000 && !failure_)
+        failure_ = std::make_exception_ptr(
+            NotModelled(accessText(address, bytes, "unaligned, to a device")));
+    return true;
+}
+
 uint32_t CortexM3::onRead(uint32_t address, unsigned bytes) {
-    return guardedAccess(address, bytes, [&](bool own) {
+    if (isBitBand(address))
+        return readBit(address);
+    if (isSplit(address, bytes)) {
         uint32_t value = 0;
-        if (!own)
-            return bus_.read(address, bytes);
-        if (!control_.read(address, bytes, value))
-            throw CpuBus::Error("no such system register");
+        for (unsigned done = 0, size; done < bytes; done += size) {
+            size = accessSize(address + done, bytes - done);
+            value |= onRead(address + done, size) << 8 * done;
+        }
         return value;
+    }
+    return guardedAccess(address, bytes, [&](bool own) {
+        return own ? control_.read(address, bytes) : bus_.read(address, bytes);
     });
 }
 
 void CortexM3::onWrite(uint32_t address, unsigned bytes, uint32_t value) {
+    if (isBitBand(address))
+        return writeBit(address, value);
+    if (isSplit(address, bytes)) {
+        for (unsigned done = 0, size; done < bytes; done += size) {
+            size = accessSize(address + done, bytes - done);
+            onWrite(address + done, size, value >> 8 * done);
+        }
+        return;
+    }
     if (address < 0xE0000000 && control_.buffersStores() && !failure_ && !synchronous_.number) {
         drainStore();
         store_ = {address, value, bytes, cycles() + storeCycles};
         return;
     }
     guardedAccess(address, bytes, [&](bool own) {
-        if (!own)
-            bus_.write(address, bytes, value);
-        else if (!control_.write(address, bytes, value))
-            throw CpuBus::Error("no such system register, or a value that is not modelled");
+        own ? control_.write(address, bytes, value) : bus_.write(address, bytes, value);
         return 0u;
     });
     if (address >= 0xE0000000 && control_.takeResetRequest())
@@ -133,8 +183,9 @@ void CortexM3::flashChanged(uint32_t offset, uint32_t bytes) {
 
 bool CortexM3::onGuarded(uint32_t address, unsigned bytes, bool write) {
     drainStore(); // RAM is behind the same bus
+    // In handlers of HardFault and NMI the MPU is off.
     if (!control_.isForbidden(address, bytes, write) || synchronous_.number ||
-        currentException() == HardFault)
+        exceptions_.runningPriority() < 0)
         return false;
     synchronous_ = {MemManage, SystemControl::dataAccess | SystemControl::mmfarValid,
                     accessText(address, bytes, "the MPU forbids it")};
@@ -170,14 +221,16 @@ bool CortexM3::debugAccess(uint32_t address, uint8_t* data, uint32_t bytes, bool
                 else
                     value = bus_.read(address, size);
                 control_.pass(bus_.takeWaited());
-            } else if (!(writes ? control_.write(address, size, value)
-                                : control_.read(address, size, value))) {
-                return false;
+            } else if (writes) {
+                control_.write(address, size, value);
+            } else {
+                value = control_.read(address, size);
             }
             std::memcpy(data, &value, size);
         }
     } catch (const CpuBus::Error&) {
         (void)bus_.takeWaited();
+    } catch (const NotModelled&) {
     }
     return bytes == 0;
 }

@@ -14,6 +14,15 @@ namespace {
 constexpr unsigned entryCycles = 12, exitCycles = 10, chainCycles = 6; // Cortex-M3 TRM, 5.5 and 5.9
 constexpr uint32_t returnHandler = 0xFFFFFFF1, returnMain = 0xFFFFFFF9, returnProcess = 0xFFFFFFFD;
 constexpr uint32_t thumb = 1u << 24, aligned = 1u << 9, exceptionMask = 0x1FF;
+constexpr uint32_t ifThenMask = 0x0600FC00; // of xPSR
+// A page with the model's own CLREX, at the end of the FSMC's address range.
+constexpr uint32_t clrexPage = 0x9FFFF000, pageBytes = 0x1000;
+constexpr uint16_t clrex[2] = {0xF3BF, 0x8F2F};
+
+// The default memory map forbids to execute devices and system (B3.1, table B3-1).
+bool isNeverExecuted(uint32_t address) {
+    return (address >= 0x40000000 && address < 0x60000000) || address >= 0xA0000000;
+}
 
 void check(uc_err error, const char* what) {
     if (error != UC_ERR_OK)
@@ -52,8 +61,12 @@ CortexM3::CortexM3(CpuBus& bus, const Config& config, const std::vector<Window>&
     for (uint32_t base : {0u, config.flashBase})
         map(base, config.flashBytes, flash_.get(), UC_PROT_ALL);
     map(config.ramBase, config.ramBytes, ram_.get(), UC_PROT_ALL);
+    check(uc_mem_map(uc_, clrexPage, pageBytes, UC_PROT_EXEC), "memory");
+    check(uc_mem_write(uc_, clrexPage, clrex, sizeof clrex), "memory");
     std::vector<Window> all = windows;
     all.push_back({0xE0000000, 0x100000});
+    all.push_back({0x22000000, 32 * config.ramBytes});
+    all.push_back({0x42000000, 0x2000000});
     for (const Window& w : all) {
         windows_.push_back(std::make_unique<MappedWindow>(MappedWindow{this, w.base}));
         void* user = windows_.back().get();
@@ -157,6 +170,7 @@ void CortexM3::reset() {
     store_.bytes = 0;
     raised_ = skipped_ = unitEnd_ = expected_ = 0;
     masksChanged_ = masked_ = false;
+    clearExclusive();
     setReg(Xpsr, thumb);
     for (int r : {Primask, Basepri, Faultmask, Control})
         setReg(r, 0);
@@ -166,11 +180,28 @@ void CortexM3::reset() {
     updateAttention();
 }
 
+// libunicorn does not know that an exception has begun or ended; both close the exclusive monitor.
+void CortexM3::clearExclusive() {
+    if (!std::exchange(exclusive_, false))
+        return;
+    isClearing_ = true;
+    check(uc_emu_start(uc_, clrexPage | 1, clrexPage + sizeof clrex, 0, 0), "CLREX");
+    isClearing_ = false;
+}
+
 void CortexM3::jumpTo(unsigned number) {
-    setReg(Xpsr, (reg(Xpsr) & ~exceptionMask) | thumb | number);
+    setReg(Xpsr, (reg(Xpsr) & ~(exceptionMask | ifThenMask)) | thumb | number);
     setReg(Control, reg(Control) & ~2u);
+    clearExclusive();
     exceptions_.enter(number);
-    pc_ = word(control_.vectorTable() + 4 * number) & ~1u;
+    uint32_t vector = 0;
+    if (!readMemory(control_.vectorTable() + 4 * number, &vector, 4))
+        throw NotModelled("a vector table outside of flash and RAM");
+    pc_ = vector & ~1u;
+    if (!(vector & 1)) {
+        executing_ = pc_;
+        synchronous_ = {UsageFault, SystemControl::invalidState, "a vector without its lowest bit"};
+    }
     expected_ = 0;
     if (listener.entered)
         listener.entered(number);
@@ -225,11 +256,22 @@ void CortexM3::leave() {
         return;
     }
     drainStore();
+    clearExclusive();
     int stack = kind == 13 ? Psp : Msp;
     uint32_t frame = reg(stack), saved[8];
+    if (control_.isForbidden(frame, 32, false) && exceptions_.runningPriority() >= 0) {
+        lastFault = "the MPU forbids to read the frame of an exception";
+        synchronous_ = {MemManage, SystemControl::unstackAccess, lastFault};
+        return;
+    }
     if (!readMemory(frame, saved, 32)) {
         lastFault = "the stack pointer is bad at the return from an exception";
         synchronous_ = {BusFault, SystemControl::stackAccess << 7, lastFault};
+        return;
+    }
+    if ((kind == 1) != ((saved[7] & exceptionMask) != 0)) {
+        synchronous_ = {UsageFault, SystemControl::invalidReturn,
+                        "the stacked xPSR is of another mode"};
         return;
     }
     for (int r = 0; r < 4; ++r)
@@ -242,6 +284,10 @@ void CortexM3::leave() {
     setReg(Lr, saved[5]);
     pc_ = saved[6] & ~1u;
     expected_ = 0;
+    if (!(saved[7] & thumb)) {
+        executing_ = pc_;
+        synchronous_ = {UsageFault, SystemControl::invalidState, "the stacked xPSR has no T bit"};
+    }
     pass(exitCycles);
 }
 
@@ -294,6 +340,14 @@ void CortexM3::undefinedAt(uint32_t address) {
     synchronous_ = {UsageFault, SystemControl::undefined, "undefined instruction"};
 }
 
+void CortexM3::fetchFault() {
+    if (isNeverExecuted(pc_))
+        synchronous_ = {MemManage, SystemControl::instructionAccess,
+                        "devices and system registers are not executed"};
+    else
+        synchronous_ = {BusFault, SystemControl::instructionBus, "nothing to execute there"};
+}
+
 void CortexM3::handleRaised() {
     enum {
         Undefined = 1,
@@ -321,8 +375,7 @@ void CortexM3::handleRaised() {
         breakpointHit_ = true; // for a debugger; without one run() returns as well
         return;
     case Fetch:
-        synchronous_ = {BusFault, SystemControl::instructionBus, "nothing to execute there"};
-        return;
+        return fetchFault();
     case NoCoprocessor:
         pc_ = executing_;
         synchronous_ = {UsageFault, SystemControl::noCoprocessor, "there is no such coprocessor"};
@@ -352,14 +405,14 @@ void CortexM3::handleUnicorn(uc_err error) {
         reportStoreFault(text);
         return;
     case UC_ERR_READ_UNMAPPED:
+    case UC_ERR_READ_PROT:
     case UC_ERR_WRITE_PROT:
         pc_ = executing_;
         synchronous_ = {BusFault, SystemControl::preciseBus, text};
         return;
     case UC_ERR_FETCH_UNMAPPED:
     case UC_ERR_FETCH_PROT:
-        synchronous_ = {BusFault, SystemControl::instructionBus, text};
-        return;
+        return fetchFault();
     case UC_ERR_INSN_INVALID:
     case UC_ERR_EXCEPTION:
         return undefinedAt(executing_);

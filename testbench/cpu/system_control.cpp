@@ -4,6 +4,7 @@
 // the MPU (B3.5) as a list of guards.
 
 #include "system_control.h"
+#include <cstdio>
 
 namespace {
 
@@ -27,6 +28,14 @@ constexpr struct {
              {26, SysTick, true},
              {25, SysTick, false}};
 
+std::string hex(uint32_t value) {
+    char text[16];
+    std::snprintf(text, sizeof text, "0x%08X", value);
+    return text;
+}
+
+constexpr uint32_t traceEnabled = 1u << 24, comparators = 4u << 28; // DEMCR.TRCENA, DWT_CTRL
+
 // RASR.AP for privileged code: 0 no access; 5 to 7 read only.
 bool forbids(uint32_t rasr, bool write) {
     uint32_t access = rasr >> 24 & 7;
@@ -35,25 +44,24 @@ bool forbids(uint32_t rasr, bool write) {
 
 } // namespace
 
-// Registers that store what is written to them. A value with unknown bits is refused.
+// Registers that store what is written to them. A value with unknown bits is not modelled.
 struct SystemControl::Stored {
     uint32_t at;
-    uint32_t SystemControl::* value;
+    uint32_t SystemControl::*value;
     uint32_t kept = ~0u, unknown = 0;
     bool clears = false; // ones that are written
 };
 const SystemControl::Stored SystemControl::stored[] = {
     {0x008, &SystemControl::actlr_, ~0u, ~2u}, // DISDEFWBUF is modelled
-    {0x014, &SystemControl::load_, 0xFFFFFF},
-    {0xD08, &SystemControl::vtor_, 0x3FFFFF80},
-    {0xD10, &SystemControl::scr_, ~0u, 2}, // SLEEPONEXIT is not
-    // Traps of unaligned accesses and divisions by zero are not modelled.
-    {0xD14, &SystemControl::ccr_, ~0u, 0x18},
+    // 97 vectors: the table is aligned to 512 bytes.
+    {0xD08, &SystemControl::vtor_, 0x3FFFFF80, 0x1FF},
+    {0xD10, &SystemControl::scr_, 0, 0x16}, // SLEEPONEXIT, SLEEPDEEP, SEVONPEND
+    // NONBASETHRDENA, USERSETMPEND, traps of unaligned accesses and divisions by zero, BFHFNMIGN
+    {0xD14, &SystemControl::ccr_, 0x200, 0x11B},
     {0xD28, &SystemControl::cfsr_, 0, 0, true},
     {0xD2C, &SystemControl::hfsr_, 0, 0, true},
     {0xD34, &SystemControl::mmfar_},
-    {0xD38, &SystemControl::bfar_},
-    {0xDFC, &SystemControl::demcr_}};
+    {0xD38, &SystemControl::bfar_}};
 
 void SystemControl::reset() {
     uint64_t cycles = cycles_;
@@ -63,7 +71,8 @@ void SystemControl::reset() {
 }
 
 void SystemControl::startSysTick(uint64_t ticks) {
-    tickDue_ = cycles_ + ticks * tickUnit();
+    period_ = ticks;
+    tickDue_ = ticks ? cycles_ + ticks * tickUnit() : ~0ull;
 }
 
 void SystemControl::tick() {
@@ -71,50 +80,81 @@ void SystemControl::tick() {
         countFlag_ = true;
         if (control_ & 2)
             exceptions_->pend(SysTick);
-        tickDue_ = load_ ? tickDue_ + (uint64_t(load_) + 1) * tickUnit() : ~0ull;
+        period_ = load_ ? uint64_t(load_) + 1 : 0;
+        tickDue_ = load_ ? tickDue_ + period_ * tickUnit() : ~0ull;
+        stoppedAt_ = 0;
     }
 }
 
 uint32_t SystemControl::currentTicks() const {
     if (!(control_ & 1) || tickDue_ == ~0ull)
         return stoppedAt_;
-    return static_cast<uint32_t>((tickDue_ - cycles_) / tickUnit()) & 0xFFFFFF;
+    const uint64_t ticks = (tickDue_ - cycles_ + tickUnit() - 1) / tickUnit();
+    return ticks >= period_ && period_ == uint64_t(load_) + 1 ? 0 : static_cast<uint32_t>(ticks);
 }
 
-bool SystemControl::read(uint32_t address, unsigned size, uint32_t& value) {
-    uint32_t word;
+uint32_t SystemControl::read(uint32_t address, unsigned size) {
+    uint32_t word = 0;
+    if (address % size)
+        throw NotModelled("an unaligned access to the system register " + hex(address));
     if (!accessWord(address & ~3u, false, word))
-        return false;
-    value = word >> 8 * (address & 3);
-    if (size < 4)
-        value &= (1u << 8 * size) - 1;
-    return true;
+        throw NotModelled("reading the system register " + hex(address & ~3u));
+    word >>= 8 * (address & 3);
+    return size < 4 ? word & ((1u << 8 * size) - 1) : word;
 }
 
-bool SystemControl::write(uint32_t address, unsigned size, uint32_t value) {
-    if (size == 4)
-        return accessWord(address, true, value);
-    // Only the priority registers may be written in bytes (B3.1.1).
-    uint32_t at = address & 0xFFF;
-    bool priorities = (at >= 0x400 && at < 0x4F0) || (at >= 0xD18 && at < 0xD24);
-    uint32_t word;
-    if (address < scs || !priorities || !accessWord(address & ~3u, false, word))
-        return false;
-    uint32_t mask = ((1u << 8 * size) - 1) << 8 * (address & 3);
-    word = (word & ~mask) | (value << 8 * (address & 3) & mask);
-    return accessWord(address & ~3u, true, word);
+void SystemControl::write(uint32_t address, unsigned size, uint32_t value) {
+    auto refuse = [&] {
+        throw NotModelled("writing " + hex(value) + " to the system register " + hex(address) +
+                          " in " + std::to_string(size) + " bytes");
+    };
+    if (address % size)
+        refuse();
+    if (size == 4) {
+        if (!accessWord(address, true, value))
+            refuse();
+        return;
+    }
+    // The priority registers and CFSR may be written in bytes (B3.1.1, B3.2.15).
+    const uint32_t at = address - scs;
+    const bool priorities = (at >= 0x400 && at < 0x4F0) || (at >= 0xD18 && at < 0xD24);
+    const bool status = at >= 0xD28 && at < 0xD2C;
+    uint32_t word = 0;
+    if (address < scs || !(priorities || status) || !accessWord(address & ~3u, false, word))
+        refuse();
+    const uint32_t mask = ((1u << 8 * size) - 1) << 8 * (address & 3);
+    word = ((status ? 0 : word) & ~mask) | (value << 8 * (address & 3) & mask);
+    accessWord(address & ~3u, true, word);
+}
+
+// CYCCNT counts while DEMCR.TRCENA and DWT_CTRL.CYCCNTENA are set.
+uint64_t SystemControl::countedCycles() const {
+    return (demcr_ & traceEnabled) && (dwtControl_ & 1) ? cycles_ - cycleCountFrom_ : stoppedCount_;
+}
+
+void SystemControl::controlCycleCounter(uint32_t demcr, uint32_t control) {
+    stoppedCount_ = static_cast<uint32_t>(countedCycles());
+    demcr_ = demcr;
+    dwtControl_ = control;
+    cycleCountFrom_ = cycles_ - stoppedCount_;
 }
 
 bool SystemControl::accessWord(uint32_t address, bool write, uint32_t& value) {
+    const bool isTraced = demcr_ & traceEnabled; // else DWT ignores writes
     if (address == dwt) {
-        (write ? dwtControl_ : value) = write ? value : dwtControl_;
+        if (write && isTraced && (value & 0x0FFFFFFE))
+            return false; // other counters, samples of the PC
+        if (write && isTraced)
+            controlCycleCounter(demcr_, value & 1);
+        else if (!write)
+            value = dwtControl_ | comparators;
         return true;
     }
     if (address == dwt + 4) {
-        if (write)
-            cycleCountFrom_ = cycles_ - value;
-        else
-            value = static_cast<uint32_t>(cycles_ - cycleCountFrom_);
+        if (write && isTraced)
+            cycleCountFrom_ = cycles_ - value, stoppedCount_ = value;
+        else if (!write)
+            value = static_cast<uint32_t>(countedCycles());
         return true;
     }
     if (address < scs)
@@ -122,19 +162,21 @@ bool SystemControl::accessWord(uint32_t address, bool write, uint32_t& value) {
     uint32_t at = address - scs;
     if (at >= 0x100 && at < (write ? 0x300 : 0x380)) // ISER, ICER, ISPR, ICPR, IABR
         return accessInterrupts(at - 0x100, write, value);
-    if (at >= 0x400 && at < 0x400 + ((Exceptions::interrupts + 3) & ~3u))
+    if (at >= 0x300 && at < 0x380)
+        return true; // IABR is read only
+    if (at >= 0x400 && at < 0x4F0)
         return accessPriorities(FirstInterrupt + at - 0x400, write, value);
     if (at >= 0xD18 && at < 0xD24)
         return accessPriorities(at - 0xD14, write, value);
-    if (at >= 0xD90 && at < 0xDA8)
+    if (at >= 0xD90 && at < 0xDBC)
         return accessMpu(at - 0xD90, write, value);
     for (const Stored& r : stored)
         if (r.at == at) {
             uint32_t& own = this->*r.value;
             const bool isKnown = !write || !(value & r.unknown);
-            if (write)
+            if (write && isKnown)
                 own = r.clears ? own & ~value : value & r.kept;
-            else
+            else if (!write)
                 value = own;
             return isKnown;
         }
@@ -179,18 +221,17 @@ void SystemControl::setFaultAddress(uint32_t cfsrBits, uint32_t address) {
 
 uint32_t SystemControl::interruptState() const {
     const Exceptions& all = *exceptions_;
-    uint32_t shown = 0;
-    for (unsigned n = 1; n < Exceptions::count; ++n)
-        if (all[n].active && all.priorityOf(n) <= all.runningPriority())
-            shown = n;
-    return shown | uint32_t(all.activeCount() <= 1) << 11 | all.firstPending() << 12 |
-           uint32_t(all[SysTick].pending) << 26 | uint32_t(all[PendSv].pending) << 28 |
-           uint32_t(all[NonMaskable].pending) << 31;
+    bool isPending = false; // an interrupt
+    for (unsigned n = FirstInterrupt; n < Exceptions::count; ++n)
+        isPending = isPending || all[n].pending;
+    return all.current() | uint32_t(all.activeCount() <= 1) << 11 | all.firstPending() << 12 |
+           uint32_t(isPending) << 22 | uint32_t(all[SysTick].pending) << 26 |
+           uint32_t(all[PendSv].pending) << 28 | uint32_t(all[NonMaskable].pending) << 31;
 }
 
 uint32_t SystemControl::handlerState() const {
     uint32_t shown = 0;
-    auto flag = [&](unsigned number, unsigned bit, bool Exceptions::State::* what) {
+    auto flag = [&](unsigned number, unsigned bit, bool Exceptions::State::*what) {
         shown |= uint32_t((*exceptions_)[number].*what) << bit;
     };
     constexpr auto active = &Exceptions::State::active, pending = &Exceptions::State::pending,
@@ -216,6 +257,11 @@ bool SystemControl::accessOther(uint32_t at, bool write, uint32_t& value) {
         else
             countFlag_ = false;
         break;
+    case 0x014:
+        shown = load_;
+        if (write)
+            loadSysTick(given & 0xFFFFFF);
+        break;
     case 0x018: // any value that is written clears it: it is loaded at the next tick
         shown = currentTicks();
         if (!write)
@@ -223,7 +269,7 @@ bool SystemControl::accessOther(uint32_t at, bool write, uint32_t& value) {
         stoppedAt_ = 0;
         countFlag_ = false;
         if (control_ & 1)
-            startSysTick(uint64_t(load_) + 1);
+            startSysTick(load_ ? uint64_t(load_) + 1 : 0);
         break;
     case 0x01C:
         shown = calibration_;
@@ -231,7 +277,7 @@ bool SystemControl::accessOther(uint32_t at, bool write, uint32_t& value) {
     case 0xD00: // CPUID: r2p0, an STM32F2's
         shown = 0x412FC230;
         break;
-    case 0xD04: // ICSR; VECTACTIVE is the processor's IPSR
+    case 0xD04: // ICSR
         shown = interruptState();
         for (const auto& [bit, number, on] : pends)
             if (given >> bit & 1)
@@ -241,14 +287,27 @@ bool SystemControl::accessOther(uint32_t at, bool write, uint32_t& value) {
         shown = keyOut << 16 | exceptions_->grouping() << 8;
         if (given >> 16 != keyIn)
             break; // ignored without the key
+        if (given & 3)
+            return false; // VECTRESET and VECTCLRACTIVE are for debuggers
         exceptions_->setGrouping(given >> 8);
         resetRequested_ = resetRequested_ || (given & 4);
         break;
     case 0xD24:
         shown = handlerState();
+        if (write && ((given ^ shown) & 0xFFFF))
+            return false; // changes of what is active and pending
         for (unsigned number : {MemManage, BusFault, UsageFault})
             if (write)
                 exceptions_->enable(number, given >> (12 + number) & 1);
+        break;
+    case 0xD3C: // AFSR: no bit
+        break;
+    case 0xDFC: // DEMCR; the rest is for debuggers
+        shown = demcr_;
+        if (given & ~traceEnabled)
+            return false;
+        if (write)
+            controlCycleCounter(given, dwtControl_);
         break;
     case 0xF00: // STIR
         if (write && (given & 0x1FF) < Exceptions::interrupts)
@@ -257,42 +316,65 @@ bool SystemControl::accessOther(uint32_t at, bool write, uint32_t& value) {
     default:
         return false;
     }
-    value = write ? value : shown;
-    return !(write && (at == 0x004 || at == 0x01C || at == 0xD00)); // these are read only
+    value = write ? value : shown; // writes to read-only registers are ignored
+    return true;
+}
+
+// A new reload value holds from the next zero on. A counter that stands at zero takes it at once.
+void SystemControl::loadSysTick(uint32_t value) {
+    load_ = value;
+    if ((control_ & 1) && tickDue_ == ~0ull && stoppedAt_ == 0 && value)
+        startSysTick(uint64_t(value) + 1);
 }
 
 void SystemControl::controlSysTick(uint32_t value) {
-    stoppedAt_ = currentTicks();
-    bool wasOn = control_ & 1;
+    const uint32_t before = currentTicks();
+    const bool wasOn = control_ & 1, isSameClock = !((control_ ^ value) & 4);
     control_ = value & 7;
-    if (!(control_ & 1))
+    if (wasOn && (control_ & 1) && isSameClock)
+        return;
+    stoppedAt_ = before;
+    if (control_ & 1)
+        startSysTick(before ? before : load_ ? uint64_t(load_) + 1 : 0);
+    else
         tickDue_ = ~0ull;
-    else if (!wasOn)
-        startSysTick(stoppedAt_ ? stoppedAt_ : uint64_t(load_) + 1);
 }
 
 bool SystemControl::accessMpu(uint32_t at, bool write, uint32_t& value) {
-    Region& region = region_[mpuRegion_];
+    if (at >= 0x14) // three aliases of RBAR and RASR
+        at = 0xC + (at - 0xC) % 8;
     switch (at) {
-    case 0x0:
+    case 0x0: // TYPE, read only
         value = regions << 8;
-        return !write; // TYPE
+        return true;
     case 0x4:
+        // Without the default map as background, or for the handlers of hard faults and NMI.
+        if (write && (value & 1) && (value & 6) != 4)
+            return false;
         write ? mpuControl_ = value& 7 : value = mpuControl_;
+        for (const Region& r : region_)
+            if (write && (value & 1) && (r.rasr & 1))
+                checkRegion(r);
         break;
     case 0x8:
+        if (write && (value & 0xFF) >= regions)
+            return false;
         write ? mpuRegion_ = value& 7 : value = mpuRegion_;
         break;
     case 0xC:
+        if (write && (value & 0x10) && (value & 0xF) >= regions)
+            return false;
         if (write && (value & 0x10)) // VALID: REGION is in the low bits
             mpuRegion_ = value & 7;
         if (write)
             region_[mpuRegion_].rbar = value & ~0x1Fu;
         else
-            value = region.rbar | mpuRegion_;
+            value = region_[mpuRegion_].rbar | mpuRegion_;
         break;
     case 0x10:
-        write ? region.rasr = value : value = region.rasr;
+        write ? region_[mpuRegion_].rasr = value : value = region_[mpuRegion_].rasr;
+        if (write && (mpuControl_ & 1) && (value & 1))
+            checkRegion(region_[mpuRegion_]);
         break;
     default:
         return false;
@@ -304,19 +386,51 @@ bool SystemControl::accessMpu(uint32_t at, bool write, uint32_t& value) {
 
 void SystemControl::updateGuards() {
     guards_ = 0;
-    if (mpuControl_ & 1)
-        for (const Region& r : region_)
-            guards_ += (r.rasr & 1) && forbids(r.rasr, true);
+    neverFrom_ = ~0u, neverTo_ = 0;
+    for (const Region& r : region_)
+        if ((mpuControl_ & 1) && (r.rasr & 1)) {
+            guards_ += forbids(r.rasr, true);
+            if ((r.rasr >> 28 & 1) || (r.rasr >> 24 & 7) == 0) {
+                const uint32_t rest = static_cast<uint32_t>((2ull << (r.rasr >> 1 & 0x1F)) - 1);
+                neverFrom_ = std::min(neverFrom_, r.rbar & ~rest);
+                neverTo_ = std::max(neverTo_, r.rbar | rest);
+            }
+        }
+}
+
+void SystemControl::checkRegion(const Region& r) const {
+    const unsigned size = r.rasr >> 1 & 0x1F;
+    if (size < 4 || (r.rasr >> 24 & 7) == 4 ||
+        (size < 31 && (r.rbar & ((2u << size) - 1) & ~0x1Fu)))
+        throw NotModelled("an MPU region that the manual calls unpredictable, RBAR " + hex(r.rbar) +
+                          ", RASR " + hex(r.rasr));
+}
+
+// Returns the region that decides: the one with the highest number (B3.5.3). A region of 256 bytes
+// and more has eight subregions, which SRD disables one by one.
+const SystemControl::Region* SystemControl::regionAt(uint32_t address) const {
+    for (unsigned n = regions; n--;) {
+        const Region& r = region_[n];
+        const unsigned size = r.rasr >> 1 & 0x1F; // 2^(size + 1) bytes
+        if (!(r.rasr & 1) || (size < 31 && (address ^ r.rbar) >> (size + 1)))
+            continue;
+        const unsigned part = size >= 7 ? address >> (size - 2) & 7 : 0;
+        if (size < 7 || !(r.rasr >> (8 + part) & 1))
+            return &r;
+    }
+    return nullptr;
 }
 
 bool SystemControl::hitsGuard(uint32_t start, uint32_t bytes, bool write) const {
-    for (const Region& r : region_) {
-        if (!(r.rasr & 1) || !forbids(r.rasr, write))
-            continue;
-        uint64_t size = 2ull << (r.rasr >> 1 & 0x1F);
-        uint64_t base = r.rbar & ~(size - 1);
-        if (start < base + size && uint64_t(start) + bytes > base)
+    for (uint64_t at = start; at < uint64_t(start) + bytes; at = (at | 0x1F) + 1) { // least region
+        const Region* r = regionAt(static_cast<uint32_t>(at));
+        if (r && forbids(r->rasr, write))
             return true;
     }
     return false;
+}
+
+bool SystemControl::hitsExecuteNever(uint32_t address) const {
+    const Region* r = regionAt(address);
+    return r && ((r->rasr >> 28 & 1) || (r->rasr >> 24 & 7) == 0);
 }

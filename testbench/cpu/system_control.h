@@ -1,14 +1,24 @@
 // SPDX-License-Identifier: MIT
 //
 // system_control: registers of a Cortex-M3's private peripheral bus (0xE0000000): SysTick, NVIC,
-// SCB, the MPU for regions that are inaccessible or read-only, and DWT's cycle counter. ARMv7-M
-// ARM, chapter B3.
+// SCB, MPU, and DWT's cycle counter, after the ARMv7-M ARM (DDI 0403), chapter B3. A register, a
+// bit or a value that is not modelled stops the simulation with a message (NotModelled).
 
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+// Thrown if a program uses a part of the processor or of the chip that the model does not have.
+class NotModelled : public std::runtime_error {
+public:
+    explicit NotModelled(const std::string& what)
+        : std::runtime_error("not modelled: " + what + " (docs/simulation.md)") {}
+};
 
 // Which exception of a Cortex-M3 is pending, active, enabled, and which may run now.
 //
@@ -41,8 +51,10 @@ public:
     };
 
     void reset() { *this = Exceptions(), update(); }
+    // A line that is still high makes its interrupt pend again at once, unless it is active.
     void pend(unsigned number, bool pending = true) {
-        states_[number].pending = pending;
+        State& s = states_[number];
+        s.pending = pending || (s.level && !s.active);
         update();
     }
     void enable(unsigned number, bool enabled) {
@@ -70,19 +82,20 @@ public:
     void enter(unsigned number) {
         states_[number].pending = false;
         states_[number].active = true;
-        ++activeCount_;
+        active_.push_back(static_cast<uint8_t>(number));
         update();
     }
     void leave(unsigned number) {
         State& s = states_[number];
-        if (s.active)
-            --activeCount_;
+        active_.erase(std::remove(active_.begin(), active_.end(), number), active_.end());
         s.active = false;
         s.pending = s.pending || s.level;
         update();
     }
     const State& operator[](unsigned number) const { return states_[number]; }
-    unsigned activeCount() const { return activeCount_; }
+    unsigned activeCount() const { return static_cast<unsigned>(active_.size()); }
+    // Returns the exception that runs; 0 in thread mode.
+    unsigned current() const { return active_.empty() ? 0 : active_.back(); }
 
     // The masks of the processor.
     void setMasks(uint32_t primask, uint32_t basepri, uint32_t faultmask) {
@@ -92,13 +105,15 @@ public:
         updateMasks();
     }
 
+    uint32_t basepri() const { return basepri_; }
+
     // Returns the exception that must be entered now; 0: none.
     unsigned deliverable() const { return bestPriority_ < runningPriority_ ? best_ : 0; }
     // Returns the priority that the processor runs at, with masks; `none` in thread mode without
     // them.
     int runningPriority() const { return runningPriority_; }
-    // Returns the pending one of the highest priority, masked or not; 0: none.
-    unsigned firstPending() const { return best_; }
+    // Returns the pending one of the highest priority unless BASEPRI or FAULTMASK mask it; 0: none.
+    unsigned firstPending() const { return bestPriority_ < maskPriority_ ? best_ : 0; }
     // WFI wakes by an exception that would preempt with PRIMASK 0 (B1.5.19).
     bool wakes() const { return bestPriority_ < sleepPriority_; }
     int priorityOf(unsigned number) const {
@@ -137,20 +152,18 @@ private:
         updateMasks();
     }
     void updateMasks() {
-        sleepPriority_ = activePriority_;
-        if (basepri_)
-            sleepPriority_ = std::min(sleepPriority_, groupOf(static_cast<int>(basepri_)));
-        if (faultmask_)
-            sleepPriority_ = std::min(sleepPriority_, -1);
+        maskPriority_ = faultmask_ ? -1 : basepri_ ? groupOf(static_cast<int>(basepri_)) : none;
+        sleepPriority_ = std::min(activePriority_, maskPriority_);
         runningPriority_ = primask_ ? std::min(sleepPriority_, 0) : sleepPriority_;
     }
 
     std::array<State, count> states_;
-    unsigned group_ = 0, activeCount_ = 0;
+    std::vector<uint8_t> active_; // the last one runs
+    unsigned group_ = 0;
     uint32_t primask_ = 0, basepri_ = 0, faultmask_ = 0;
     unsigned best_ = 0;
     int bestPriority_ = none, activePriority_ = none, runningPriority_ = none,
-        sleepPriority_ = none;
+        sleepPriority_ = none, maskPriority_ = none;
 };
 
 class SystemControl {
@@ -161,9 +174,9 @@ public:
         : exceptions_(&exceptions), calibration_(calibration) {}
 
     void reset();
-    // 32-bit registers; 8 and 16 bits are cut out of them. False: there is no such register.
-    bool read(uint32_t address, unsigned size, uint32_t& value);
-    bool write(uint32_t address, unsigned size, uint32_t value);
+    // 32-bit registers; 8 and 16 bits are cut out of them. Throw NotModelled.
+    uint32_t read(uint32_t address, unsigned size);
+    void write(uint32_t address, unsigned size, uint32_t value);
 
     // Time passes; SysTick pends when it runs through zero.
     void pass(unsigned cycles) {
@@ -180,20 +193,25 @@ public:
     bool buffersStores() const { return !(actlr_ & 1u << 1); } // ACTLR.DISDEFWBUF
     bool alignsStack() const { return ccr_ & 1u << 9; }
 
-    // True if the MPU forbids a data access from `start` on.
+    // Returns whether the MPU forbids a data access to these bytes.
     bool isForbidden(uint32_t start, uint32_t bytes, bool write) const {
         return guards_ && hitsGuard(start, bytes, write);
+    }
+    // Returns whether the MPU forbids to execute the instruction at an address.
+    bool isExecuteNever(uint32_t address) const {
+        return address >= neverFrom_ && address <= neverTo_ && hitsExecuteNever(address);
     }
 
     // Fault status, for the processor to fill in: bits of CFSR and HFSR, and the address.
     void reportFault(uint32_t cfsrBits) { cfsr_ |= cfsrBits; }
     void reportHardFault(uint32_t hfsrBits) { hfsr_ |= hfsrBits; }
     void setFaultAddress(uint32_t cfsrBits, uint32_t address);
-    static constexpr uint32_t dataAccess = 1u << 1, stackAccess = 1u << 4, mmfarValid = 1u << 7,
+    static constexpr uint32_t instructionAccess = 1u << 0, dataAccess = 1u << 1,
+                              unstackAccess = 1u << 3, stackAccess = 1u << 4, mmfarValid = 1u << 7,
                               preciseBus = 1u << 9, impreciseBus = 1u << 10, bfarValid = 1u << 15,
                               undefined = 1u << 16, invalidState = 1u << 17,
                               invalidReturn = 1u << 18, noCoprocessor = 1u << 19,
-                              instructionBus = 1u << 8, forced = 1u << 30;
+                              unaligned = 1u << 24, instructionBus = 1u << 8, forced = 1u << 30;
 
 private:
     struct Stored;
@@ -212,8 +230,14 @@ private:
     void tick();
     void startSysTick(uint64_t ticks);
     void controlSysTick(uint32_t value);
+    void loadSysTick(uint32_t value);
+    uint64_t countedCycles() const;
+    void controlCycleCounter(uint32_t demcr, uint32_t control);
+    const Region* regionAt(uint32_t address) const;
+    void checkRegion(const Region& region) const;
     uint64_t tickUnit() const { return control_ & 4 ? 1 : 8; } // CLKSOURCE: HCLK or HCLK/8
     uint32_t currentTicks() const;
+    bool hitsExecuteNever(uint32_t address) const;
     bool hitsGuard(uint32_t start, uint32_t bytes, bool write) const;
     void updateGuards();
 
@@ -222,13 +246,16 @@ private:
     uint32_t calibration_;
     uint64_t cycles_ = 0, tickDue_ = ~0ull;
     uint32_t control_ = 0, load_ = 0, stoppedAt_ = 0;
+    uint64_t period_ = 0; // ticks from the last load to the next zero
     bool countFlag_ = false;
     uint32_t actlr_ = 0, vtor_ = 0, scr_ = 0, ccr_ = 0x200, cfsr_ = 0, hfsr_ = 0, mmfar_ = 0,
              bfar_ = 0;
     uint32_t demcr_ = 0, dwtControl_ = 0;
     uint64_t cycleCountFrom_ = 0;
+    uint32_t stoppedCount_ = 0; // of CYCCNT while it stands still
     bool resetRequested_ = false;
     uint32_t mpuControl_ = 0, mpuRegion_ = 0;
     Region region_[regions];
-    unsigned guards_ = 0; // enabled regions with restrictions
+    unsigned guards_ = 0;                  // enabled regions with restrictions
+    uint32_t neverFrom_ = 1, neverTo_ = 0; // bounds of all regions without execution
 };

@@ -74,6 +74,7 @@ private:
 
     uint32_t readPeripheral(uint32_t address);
     void writePeripheral(uint32_t address, uint32_t value);
+    void checkWaitStates();
     void writeWatchdog(uint32_t offset, uint32_t value);
     void requireClock(uint32_t address) const;
     bool isSet(uint32_t address, unsigned bit) const;

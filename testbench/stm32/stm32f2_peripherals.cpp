@@ -3,13 +3,16 @@
 // stm32f2_peripherals: Stm32F2's peripherals, most of which only store written values.
 
 #include "stm32f2_map.h"
+#include <algorithm>
 
 using namespace stm32f2;
 
 namespace {
 
 constexpr uint64_t lsiNs = 31'250; // one cycle of 32 kHz
-constexpr unsigned extiVector = 6; // of line 0; up to line 4 each has its own
+constexpr uint64_t crystalHz = 25'000'000, hsiHz = 16'000'000;
+constexpr uint64_t waitStateHz = 30'000'000; // HCLK for each wait state at 2.7 to 3.6 V
+constexpr unsigned extiVector = 6;           // of line 0; up to line 4 each has its own
 
 } // namespace
 
@@ -30,6 +33,24 @@ void Stm32F2::requireClock(uint32_t address) const {
                                                 : true;
     if (!ok)
         throw Error("the peripheral's clock is off (RCC)");
+}
+
+// Checks that the flash has the wait states for HCLK (RM0033, table 3): with fewer the chip reads
+// wrong instructions.
+void Stm32F2::checkWaitStates() {
+    const uint32_t pll = stored(rcc + 4), config = stored(rcc + 8);
+    const uint64_t source = pll >> 22 & 1 ? crystalHz : hsiHz;
+    const uint64_t divider = std::max<uint64_t>(pll & 0x3F, 1) * (2 * (pll >> 16 & 3) + 2);
+    uint64_t hz = (config & 3) == 2   ? source * (pll >> 6 & 0x1FF) / divider
+                  : (config & 3) == 1 ? crystalHz
+                                      : hsiHz;
+    const unsigned ahb = config >> 4 & 15; // 8: half, 9: a quarter, ...
+    hz >>= ahb < 8 ? 0 : ahb < 12 ? ahb - 7 : ahb - 6;
+    const uint64_t needed = (hz - 1) / waitStateHz, given = flash_.read(Stm32Flash::Acr) & 7;
+    if (given < needed)
+        throw NotModelled("flash with " + std::to_string(given) + " wait states at " +
+                          std::to_string(hz / 1'000'000) + " MHz, which needs " +
+                          std::to_string(needed));
 }
 
 uint32_t Stm32F2::readPeripheral(uint32_t address) {
@@ -106,6 +127,8 @@ void Stm32F2::writePeripheral(uint32_t address, uint32_t value) {
     } else if (isIn(address, rcc, 0x88)) {
         stored(address) = value;
         fsmcUsable_ = false;
+        if (address == rcc + 8)
+            checkWaitStates();
         if (address == csr && (value >> 24 & 1)) { // RMVF
             resetFlags_ = 0;
             stored(address) = 0;
@@ -122,6 +145,8 @@ void Stm32F2::writePeripheral(uint32_t address, uint32_t value) {
         } catch (const Stm32Flash::WrongKey& e) {
             throw Error(e.what());
         }
+        if (address == flashInterface + Stm32Flash::Acr)
+            checkWaitStates();
         waitForFlash();
     } else if (address == crcUnit) {
         crc_ ^= value;
@@ -147,7 +172,8 @@ void Stm32F2::writePeripheral(uint32_t address, uint32_t value) {
 // ---- watchdog (RM0033, 18.3) ----
 
 uint64_t Stm32F2::watchdogNs() const {
-    return (uint64_t(watchdog_.reload) + 1) * (4u << watchdog_.prescaler) * lsiNs;
+    const uint32_t divider = 4u << std::min(watchdog_.prescaler, 6u); // 6 and 7: 256
+    return (uint64_t(watchdog_.reload) + 1) * divider * lsiNs;
 }
 
 void Stm32F2::writeWatchdog(uint32_t offset, uint32_t value) {

@@ -118,6 +118,7 @@ static void noteTick(void) {
 }
 
 void Case_systick(void) {
+    Case_countCycles();
     Case_action[15] = noteTick;
     SYST_RVR = 999;
     SYST_CVR = 0;
@@ -183,6 +184,7 @@ void Case_alignment(
 
 void Case_cycles(void) {
     U32 start;
+    Case_countCycles();
 #define MEASURE(n, code)                                               \
     start = DWT_CYCCNT;                                                \
     __asm__ volatile(code ::: "r0", "r1", "r2", "r3", "cc", "memory"); \

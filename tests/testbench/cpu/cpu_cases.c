@@ -44,6 +44,11 @@ void __attribute__((naked)) Handler(void) {
                      "pop {r3, pc}");
 }
 
+void Case_countCycles(void) {
+    REG(0xE000EDFCUL) = 1UL << 24; /* DEMCR.TRCENA */
+    REG(0xE0001000UL) = 1;         /* DWT_CTRL.CYCCNTENA */
+}
+
 #define NVIC_ISPR0 REG(0xE000E200UL)
 
 void Case_priority(U32 irq, U32 value8) {

@@ -24,6 +24,7 @@ void Reset_Handler(void);
 void Case_ack(void);
 void Case_ackWait(void);
 U32 Work_asm(U32 rounds);
+void Case_countCycles(void); /* starts DWT's cycle counter */
 
 /* clang-format off */
 #define CASES(X) \
@@ -31,7 +32,9 @@ U32 Work_asm(U32 rounds);
     X(faultmask) X(switchLast) X(supervisorCall) X(systick) X(sleepMasked) X(busFault) \
     X(storeFault) X(unbuffered) X(storeMasked) X(lateAck) X(noMemory) X(escalation) \
     X(undefinedInstruction) X(armState) X(lockUp) X(guard) X(process) X(alignment) X(cycles) \
-    X(resetRequest) X(work)
+    X(resetRequest) X(work) X(exclusive) X(unaligned) X(executeNever) X(basepriBits) \
+    X(cycleCounter) X(tickRules) X(interruptState) X(bitBand) X(stackedState) X(unprivileged) \
+    X(sleepOnExit) X(waitForEvent) X(unknownRegister) X(noBackground) X(alignmentTrap)
 /* clang-format on */
 #define DECLARED(name) void Case_##name(void);
 CASES(DECLARED)

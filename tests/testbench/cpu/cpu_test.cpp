@@ -39,6 +39,7 @@ TEST_P(Manual, IsFollowed) {
         EXPECT_EQ(value(number), expected) << number;
 }
 
+constexpr uint32_t unaligned = 1 << 24;
 constexpr uint32_t preciseBus = 1 << 9, addressValid = 1 << 15, impreciseBus = 1 << 10; // of CFSR
 const Case cases[] = {
     {"AnInterruptOfHigherPriorityPreempts", "Case_nesting", "abBA"},
@@ -82,9 +83,79 @@ const Case cases[] = {
      "Case_process",
      "aA",
      {{0, 0}, {1, 1}, {2, 2}, {3, 0xFFFFFFFD}}},
+    // A3.4, B1.5.8: entry and return of an exception close the monitor.
+    {"AnExceptionEndsAnExclusiveAccess", "Case_exclusive", "aA", {{0, 0}, {1, 1}, {2, 1}}},
+    {"MultipleAndExclusiveAccessesMustBeAligned",
+     "Case_unaligned",
+     "ffffff.",
+     {{0, unaligned},
+      {1, unaligned},
+      {2, unaligned},
+      {3, unaligned},
+      {4, unaligned},
+      {5, unaligned}}},
+    // The region with the highest number decides; subregions; the default map.
+    {"MemoryThatIsNotExecutedFaults",
+     "Case_executeNever",
+     "m12mm.",
+     {{0, 1}, {1, 1}, {2, 1}, {3, 0}}},
+    {"BasepriHasFourBits",
+     "Case_basepriBits",
+     "",
+     {{0, 0}, {1, 0x50}, {2, 0x50}, {3, 0x50}, {4, 0x30}, {5, 0}}},
+    {"TheCycleCounterCountsWhileItIsEnabled",
+     "Case_cycleCounter",
+     "",
+     {{0, 0x40000000}, {1, 0}, {2, 0}, {3, 1}, {4, 0x40000001}, {5, 0}}},
+    {"SysTickTakesALateReloadAndAnotherClock",
+     "Case_tickRules",
+     ".",
+     {{0, 1}, {1, 1}, {2, 0}, {3, 0}}},
+    {"TheInterruptStateIsThatOfTheRunningException",
+     "Case_interruptState",
+     "aA",
+     {{0, 16}, {1, 1}, {2, 17}, {3, 0}}},
+    {"ABitHasAWordOfItsOwn", "Case_bitBand", "", {{0, 8}, {1, 1}, {2, 1}, {3, 0}}},
+    {"AReturnOutOfThumbStateIsAUsageFault", "Case_stackedState", "aAf.", {{0, 1 << 17}}},
     {"FramesAreAlignedToEight", "Case_alignment", "aA", {{2, 0}, {3, 0}}}};
 
 INSTANTIATE_TEST_SUITE_P(Cpu, Manual, ::testing::ValuesIn(cases));
+
+// A program that uses what the model does not have is stopped with a message.
+struct Refusal {
+    const char *symbol, *message;
+    friend void PrintTo(const Refusal& r, std::ostream* out) { *out << r.symbol; }
+};
+class NotModelledParts : public Cpu, public ::testing::WithParamInterface<Refusal> {};
+
+TEST_P(NotModelledParts, StopTheProgramWithAMessage) {
+    select(m3, GetParam().symbol);
+    try {
+        m3.run(100'000);
+        FAIL() << "said " << m3.text("said") << ", " << m3.cpu.lastFault;
+    } catch (const NotModelled& e) {
+        EXPECT_NE(std::string(e.what()).find(GetParam().message), std::string::npos) << e.what();
+    }
+    EXPECT_EQ(m3.text("said"), "");
+}
+INSTANTIATE_TEST_SUITE_P(
+    Cpu, NotModelledParts,
+    ::testing::Values(Refusal{"Case_unprivileged", "unprivileged code (CONTROL.nPRIV)"},
+                      Refusal{"Case_sleepOnExit",
+                              "writing 0x00000002 to the system register 0xE000ED10"},
+                      Refusal{"Case_waitForEvent", "WFE"},
+                      Refusal{"Case_unknownRegister", "reading the system register 0xE000EDF0"},
+                      Refusal{"Case_noBackground", "0xE000ED94"},
+                      Refusal{"Case_alignmentTrap", "0xE000ED14"}));
+
+TEST_F(Cpu, ALineThatStaysHighPendsAgainWhenItsPendingBitIsCleared) {
+    m3.cpu.setInterrupt(2, true);
+    m3.cpu.exceptions().pend(18, false);
+    EXPECT_TRUE(m3.cpu.exceptions()[18].pending);
+    m3.cpu.setInterrupt(2, false);
+    m3.cpu.exceptions().pend(18, false);
+    EXPECT_FALSE(m3.cpu.exceptions()[18].pending);
+}
 
 TEST_F(Cpu, SysTickHasItsPeriodExactly) {
     EXPECT_EQ(run("Case_systick"), "tttt");

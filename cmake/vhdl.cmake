@@ -15,14 +15,13 @@ add_custom_target(ghdl DEPENDS ${GHDL})
 # the same Verilog.
 function(icesoc_vhdl)
   cmake_parse_arguments(A "FOREIGN" "NAME;LIBRARY" "SOURCES;REGS;GENERICS" ${ARGN})
-  list(TRANSFORM A_GENERICS PREPEND -g)
-  list(JOIN A_GENERICS " " generics)
+  list(TRANSFORM A_GENERICS REPLACE "(.+)" "--generic;\\1" OUTPUT_VARIABLE generics)
   if(NOT A_LIBRARY)
     set(A_LIBRARY work)
   endif()
   set(foreign)
   if(A_FOREIGN)
-    set(foreign VHDL_FOREIGN=1)
+    set(foreign --foreign)
   endif()
   set(packages)
   set(deps)
@@ -41,9 +40,8 @@ function(icesoc_vhdl)
   set(work ${CMAKE_CURRENT_BINARY_DIR}/ghdl_${A_NAME})
   file(MAKE_DIRECTORY ${work})
   add_custom_command(OUTPUT ${GEN_DIR}/${A_NAME}.v
-    COMMAND ${CMAKE_COMMAND} -E env VHDL_LIBRARY=${A_LIBRARY} "VHDL_GENERICS=${generics}"
-            ${foreign} ${CMAKE_SOURCE_DIR}/cmake/vhdl_to_verilog.sh ${GHDL} ${work} ${A_NAME}
-            ${GEN_DIR}/${A_NAME}.v ${named}
+    COMMAND ${CMAKE_SOURCE_DIR}/cmake/vhdl_to_verilog.sh ${foreign} --library ${A_LIBRARY}
+            ${generics} ${GHDL} ${work} ${A_NAME} ${GEN_DIR}/${A_NAME}.v ${named}
     WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}
     DEPENDS ${GHDL} ghdl ${packages} ${A_SOURCES} ${deps}
       ${CMAKE_SOURCE_DIR}/cmake/vhdl_to_verilog.sh

@@ -1,17 +1,28 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# vhdl_to_verilog: GHDL work-folder entity output.v file.vhd ...   A latch in the result is an
-# error.
-# The files come in any order. VHDL_LIBRARY: their library, if they refer to themselves by its name.
-# VHDL_GENERICS: "-gNAME=value ..." of the entity. VHDL_FOREIGN: third-party sources, which may use
-# Synopsys' packages and what other tools allow; their assertions are for their own simulations.
+# vhdl_to_verilog: converts an entity to Verilog with GHDL. A latch in the result is an error.
+# Usage: vhdl_to_verilog.sh [--foreign] [--library NAME] [--generic NAME=value]...
+#                           GHDL work-folder entity output.v file.vhd...
+# The files may be in any order.
+#   --foreign   third-party sources, which may use Synopsys' packages and what other tools allow;
+#               their assertions are for their own simulations
+#   --library   VHDL library of the files, if they refer to themselves by its name (default: work)
+#   --generic   value of a generic of the entity
 
 set -eu
+library=work options='--std=08' generics='' foreign=''
+while :; do
+    case $1 in
+    --foreign) foreign=--no-formal options='--std=08 -frelaxed -fsynopsys' ;;
+    --library) library=$2 && shift ;;
+    --generic) generics="$generics -g$2" && shift ;;
+    *) break ;;
+    esac
+    shift
+done
 ghdl=$1 work=$2 entity=$3 output=$4
 shift 4
-library=${VHDL_LIBRARY:-work} options='--std=08'
-[ -z "${VHDL_FOREIGN:-}" ] || options='--std=08 -frelaxed -fsynopsys'
 rm -f "$work"/*.cf
 # shellcheck disable=SC2086 # a list of words
 "$ghdl" -i $options --work="$library" --workdir="$work" "$@"
@@ -25,8 +36,8 @@ rm -f "$work"/*.cf
     echo "/* verilator lint_off UNUSEDSIGNAL */ // a generated netlist names what nobody uses"
     echo "/* verilator lint_off DECLFILENAME */ // all entities of a core are in one file"
     # shellcheck disable=SC2086 # a list of words
-    "$ghdl" --synth $options --work="$library" --workdir="$work" ${VHDL_GENERICS:-} \
-        ${VHDL_FOREIGN:+--no-formal} --out=verilog "$entity" 2>"$work/messages" &&
+    "$ghdl" --synth $options --work="$library" --workdir="$work" $generics \
+        $foreign --out=verilog "$entity" 2>"$work/messages" &&
         echo "/* verilator lint_on UNUSEDSIGNAL */" &&
         echo "/* verilator lint_on DECLFILENAME */"
 } >"$output.tmp" || {

@@ -151,7 +151,7 @@ class Runner:
         except TooLong:
             return 128, "5 s of a processor"
         except BaseException as error:
-            if type(error).__name__ != "Stop":  # cli.runner's
+            if type(error).__name__ != "Stop":  # of icesoc.util.errors
                 return 128, traceback.format_exc()
             status = error.text
         finally:

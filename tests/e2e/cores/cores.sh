@@ -49,8 +49,8 @@ mapped scaler # sequences, exceptions and events
 mapped many   # 46 words, of which a slot has 16
 # A core in VHDL, as make new-foreign puts it into a slot. GHDL is fetched once.
 lamps=$source/tests/ip/new_foreign/lamps
-logged env GHDL="$build/ghdl/ghdl" "$source/tools/python" -m icesoc.cores.new_foreign \
-    my_lamps lamps own "$work/fresh/my_lamps" \
+logged "$source/tools/python" -m icesoc.cores.new_foreign \
+    my_lamps lamps own "$work/fresh/my_lamps" GHDL="$build/ghdl/ghdl" \
     LIBRARY=lights PARAM:lamps_lit=4 read=request_rd write=request_wr address=request_a \
     wdata=request_d rdata=q "$lamps.vhd" "${lamps}_types.vhd"
 fresh my_lamps

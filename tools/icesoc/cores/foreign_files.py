@@ -165,20 +165,21 @@ def ports_by_verilator(top, words):
             for v in module.findall("var") if v.get("dir")}
 
 
-def read_module(top, files, headers=(), params=(), defines=(), is_whole=True):
+def read_module(top, files, headers=(), params=(), defines=(), is_whole=True, ghdl="ghdl",
+                library=""):
     """The module `top`: its ports in order, and whether Yosys reads it, not Verilator alone. A port
     that resets registers asynchronously has "reset", the level at which it does. `headers`: files
     in whose folders `include finds more. `params`: NAME=value of parameters or generics; `defines`:
-    NAME or NAME=value of macros. `is_whole`: all of its modules are in the files."""
+    NAME or NAME=value of macros. `is_whole`: all of its modules are in the files. `ghdl`: the
+    program that reads VHDL; `library`: name that the files have for their library."""
     with tempfile.TemporaryDirectory() as work:
         out = os.path.join(work, top + ".v")
         chosen = " ".join("-chparam {} {}".format(*p.split("=", 1)) for p in params)
         if is_vhdl(files[0]):
-            os.environ["VHDL_FOREIGN"] = "1"
-            os.environ["VHDL_GENERICS"] = " ".join("-g" + p for p in params)
             run_tool("GHDL does not convert", top,
-                     [TREE / "cmake/vhdl_to_verilog.sh",
-                      os.environ.get("GHDL", "ghdl"), work, top, out, *files])
+                     [TREE / "cmake/vhdl_to_verilog.sh", "--foreign", "--library",
+                      library or "work", *(word for p in params for word in ("--generic", p)),
+                      ghdl, work, top, out, *files])
             files, chosen = [out], ""
         folders = ["-I" + d for d in folders_of([*files, *headers])] + ["-D" + d for d in defines]
         reads = [f"read_verilog -defer {'-sv' if end_of(f) == '.sv' else ''} {' '.join(folders)} "

@@ -2,7 +2,7 @@
 """new_foreign: puts a third-party core in Verilog or VHDL into a slot (docs/recipes.md).
 
     new_foreign.py NAME TOP wishbone|axil|apb|avalon|memory|own|axis FOLDER [CLOCK=Hz]
-                   [LIBRARY=name] [ADDRESS=words|bytes] [PARAM:NAME=value...] [DEFINE:NAME...]
+                   [GHDL=program] [LIBRARY=name] [ADDRESS=words|bytes] [PARAM:NAME=value...] [DEFINE:NAME...]
                    [ROLE=port...] FILE...
 
 Reads the ports of the module or entity TOP and writes into FOLDER, which must not exist: NAME.v,
@@ -10,7 +10,7 @@ which connects TOP to the slot; its registers, with the names that TOP has for t
 test; its part of a mission; CMakeLists.txt. ROLE=port overrides what a port's name says. Ports that
 are neither bus, clock, reset nor interrupt become pins. CLOCK: the core has a clock of its own, of
 that frequency at most.
-ADDRESS: what its address counts. VHDL is read by GHDL, which the environment names. LIBRARY: the
+ADDRESS: what its address counts. GHDL: the program that reads VHDL (ghdl). LIBRARY: the
 VHDL library that its files say they are in. PARAM: a parameter or generic of TOP. DEFINE: a macro
 of its Verilog, NAME or NAME=value. A core with AXI-Streams (axis) has an operation instead of
 registers: foreign_axis.py.
@@ -45,7 +45,7 @@ class Request:
         if len(words) < 5:
             sys.exit(USAGE)
         self.name, self.top, self.bus, self.folder, *rest = words
-        options = {"CLOCK=": [], "LIBRARY=": [], "ADDRESS=": [], "PARAM:": [], "DEFINE:": []}
+        options = {"CLOCK=": [], "LIBRARY=": [], "ADDRESS=": [], "GHDL=": [], "PARAM:": [], "DEFINE:": []}
         self.ports, self.files = [], []
         for word in rest:
             option = next((o for o in options if word.startswith(o)), None)
@@ -54,8 +54,9 @@ class Request:
             else:
                 (self.ports if "=" in word else self.files).append(word)
         self.params, self.defines = options["PARAM:"], options["DEFINE:"]
-        self.clock, self.library, self.address = (next(iter(options[o]), "")
-                                                  for o in ("CLOCK=", "LIBRARY=", "ADDRESS="))
+        self.clock, self.library, self.address, self.ghdl = (
+            next(iter(options[o]), "") for o in ("CLOCK=", "LIBRARY=", "ADDRESS=", "GHDL="))
+        self.ghdl = self.ghdl or "ghdl"
 
     def check(self):
         """Ends the program if what is asked for cannot be."""
@@ -100,10 +101,8 @@ class Request:
 def read_core(asked):
     """Returns TOP's ports, the parameters of its instance, and texts in place of files that
     Verilator does not take."""
-    if asked.library:
-        os.environ["VHDL_LIBRARY"] = asked.library  # for vhdl_to_verilog.sh
     ports, is_synthesised = read_module(asked.top, asked.files, asked.headers, asked.params,
-                                        asked.defines)
+                                        asked.defines, ghdl=asked.ghdl, library=asked.library)
     if odd := [n for n in ports if not re.fullmatch(r"\w+", n)]:
         fail(f"{asked.top} has the port '{odd[0]}', an escaped name: put a module with plain "
              "names around it")

@@ -46,8 +46,8 @@ def foreign_core(values):
     build = BuildFolder(values.build, values).prepare()
     if any(file.lower().endswith((".vhd", ".vhdl")) for file in values.files):
         build.ninja("ghdl")
-    status = run([*tool("cores.new_foreign"), *foreign_words(values)], check=False, env={
-        "GHDL": build / "ghdl/ghdl"})
+    status = run([*tool("cores.new_foreign"), *foreign_words(values),
+                  f"GHDL={build / 'ghdl/ghdl'}"], check=False)
     return status or (put_into_repository(values.repository, values.name) if values.repository
                       else 0)
 
@@ -58,8 +58,8 @@ def into_slot(source, slot, words, folder, ghdl):
     top, bus, *more = words.split()
     rest = [part for word in more for part in (
         [word] if "=" in word or word.startswith("DEFINE:") else sorted(source.glob(word)))]
-    run([*tool("cores.new_foreign"), slot, top, bus, folder / slot, *rest], stdout=-3,
-        env={"GHDL": ghdl})
+    run([*tool("cores.new_foreign"), slot, top, bus, folder / slot, *rest, f"GHDL={ghdl}"],
+        stdout=-3)
     return folder / slot
 
 

@@ -62,7 +62,15 @@ macro(icesoc_core_software)
     list(APPEND slices ${name}_slice)
     list(APPEND libs ${name}_servants)
   else()
-    icesoc_regmap(${A_REGS})
+    set(block BLOCK)
+    if(A_WINDOW)
+      set(block)
+    elseif(A_VHDL)
+      set(wrapper ${GEN_DIR}/${name}_regs.vhd)
+    else()
+      list(APPEND files ${GEN_DIR}/${name}_regs.v)
+    endif()
+    icesoc_regmap(${A_REGS} ${block})
     get_filename_component(regs ${A_REGS} ABSOLUTE)
     list(APPEND targets regmap_${name})
     list(APPEND libs regs_${name})
@@ -144,9 +152,10 @@ endmacro()
 
 # icesoc_core(NAME [ICE file.ice | REGS name.regs.json] [VERILOG file...] [VHDL file...]
 #             [SERVANT file.c...] [SLICE name...] [INCLUDES dir...] [FLAGS ...] [DEPENDS target...]
-#             [CLK_HZ] [IDLE] [CLOCK Hz])
+#             [CLK_HZ] [IDLE] [CLOCK Hz] [WINDOW])
 # The core NAME: a module or entity NAME with a slot's ports. ICE: its [":hw"] interface, from which
-# registers, wrapper and servant are made; else REGS describes its registers, and SERVANT is written
+# registers, wrapper and servant are made; else REGS describes its registers, of which the register
+# block <NAME>_regs is made (with WINDOW only constants: bus_window.v has them), and SERVANT is written
 # by hand, for interfaces of SLICE: files, or names given to icesoc_slice; without SERVANT it is
 # that of sw/hw/registers. <NAME>_test.cpp beside it becomes test_ip_<NAME>, with the model
 # V<NAME>_slot.
@@ -160,7 +169,7 @@ endmacro()
 # CLOCK: it has a clock of its own, of at most that frequency, behind bus/bus_crossing.v; clk_i,
 # rst_i and its pins belong to it.
 function(icesoc_core name)
-  cmake_parse_arguments(A "CLK_HZ;IDLE" "ICE;REGS;CLOCK"
+  cmake_parse_arguments(A "CLK_HZ;IDLE;WINDOW" "ICE;REGS;CLOCK"
     "VERILOG;VHDL;SERVANT;SLICE;INCLUDES;FLAGS;DEPENDS" ${ARGN})
   list(TRANSFORM A_VHDL PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
   list(TRANSFORM A_VERILOG PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
@@ -273,7 +282,7 @@ function(icesoc_chip)
             --block 0=system=${CMAKE_SOURCE_DIR}/hdl/system/system.regs.json
             --block 1=modem=${CMAKE_SOURCE_DIR}/hdl/modem/modem.regs.json --output-dir ${GEN_DIR}
     DEPENDS ${REGMAP_FILES} ${TOOLS}/chip/coremap.py ${TOOLS}/chip/core_output.py
-            ${TOOLS}/regs/core_exchange.py ${CORES} ${CMAKE_SOURCE_DIR}/bus/map.regs.json
+            ${CORES} ${CMAKE_SOURCE_DIR}/bus/map.regs.json
             ${inputs} ${CMAKE_SOURCE_DIR}/hdl/system/system.regs.json
             ${CMAKE_SOURCE_DIR}/hdl/modem/modem.regs.json ${slice_files}
     COMMAND_EXPAND_LISTS VERBATIM COMMENT "Cores of the chip: ${CHIP_CORES}")

@@ -36,7 +36,7 @@ icesoc_needs(clang CLANGXX program clang++)
 find_package(GTest REQUIRED)
 include(GoogleTest)
 
-# Python with the package of our tools: ${PYTHON} -m icesoc.regs.regmap
+# Python with the package of our tools: ${PYTHON} -m icesoc.regs.generate
 set(PYTHON ${CMAKE_SOURCE_DIR}/tools/python)
 set(TOOLS ${CMAKE_SOURCE_DIR}/tools/icesoc)
 set(FETCH ${PYTHON} -m icesoc.util.fetch)
@@ -145,23 +145,35 @@ function(icesoc_uncertain program seeds)
   endforeach()
 endfunction()
 
-# icesoc_regmap(JSON): registers of one block, from its *.regs.json, as a Verilog include, a C
-# header, a VHDL package and a Markdown page in ${GEN_DIR}; target regmap_<block>, interface library
+# icesoc_regmap(JSON [BLOCK]): registers of one block, from its *.regs.json, as a Verilog include, a
+# C header, a VHDL package and a Markdown page in ${GEN_DIR}; with BLOCK also the register block
+# <block>_regs.v, its proof and <block>_regs.vhd; target regmap_<block>, interface library
 # regs_<block>.
-set(REGMAP ${PYTHON} -m icesoc.regs.regmap)
-set(REGMAP_FILES ${TOOLS}/__init__.py ${TOOLS}/regs/regmap.py ${TOOLS}/regs/regs.schema.json)
+set(REGMAP ${PYTHON} -m icesoc.regs.generate)
+file(GLOB REGMAP_FILES CONFIGURE_DEPENDS ${TOOLS}/__init__.py ${TOOLS}/regs/*.py
+  ${TOOLS}/regs/regs.schema.json ${TOOLS}/regs/templates/*.j2)
 function(icesoc_regmap json)
+  cmake_parse_arguments(A "BLOCK" "" "" ${ARGN})
   get_filename_component(block ${json} NAME_WE)
   get_filename_component(path ${json} ABSOLUTE)
   set(outs ${GEN_DIR}/${block}_regs.vh ${GEN_DIR}/${block}_regs.h ${GEN_DIR}/${block}_regs_pkg.vhd
            ${GEN_DIR}/${block}_regs.md)
+  set(flag)
+  if(A_BLOCK)
+    set(flag --block)
+    list(APPEND outs ${GEN_DIR}/${block}_regs.v ${GEN_DIR}/${block}_regs_proof.vh
+      ${GEN_DIR}/${block}_regs.vhd)
+  endif()
   add_custom_command(OUTPUT ${outs}
-    COMMAND ${REGMAP} ${path} --output-dir ${GEN_DIR}
+    COMMAND ${REGMAP} ${path} --output-dir ${GEN_DIR} ${flag}
     DEPENDS ${REGMAP_FILES} ${path}
     VERBATIM COMMENT "Registers of ${block}")
   add_custom_target(regmap_${block} ALL DEPENDS ${outs})
   set_property(GLOBAL APPEND PROPERTY ICESOC_REGMAP_TARGETS regmap_${block})
   set_property(GLOBAL APPEND PROPERTY ICESOC_REGS_FILES ${path})
+  if(A_BLOCK)
+    set_property(GLOBAL APPEND PROPERTY ICESOC_REGISTER_BLOCKS ${block})
+  endif()
   add_library(regs_${block} INTERFACE)
   target_include_directories(regs_${block} INTERFACE ${GEN_DIR})
   add_dependencies(regs_${block} regmap_${block})
@@ -216,8 +228,14 @@ function(icesoc_verilate name)
   icesoc_verilate_observed()
   set(sources ${A_SOURCES})
   list(TRANSFORM sources PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
-  list(TRANSFORM A_REGS REPLACE "(.+)" "regmap_\\1;${GEN_DIR}/\\1_regs.vh")
-  set(deps ${sources} ${library} ${A_DEPENDS} ${A_REGS})
+  get_property(blocks GLOBAL PROPERTY ICESOC_REGISTER_BLOCKS)
+  foreach(block IN LISTS A_REGS)
+    list(APPEND A_DEPENDS regmap_${block} ${GEN_DIR}/${block}_regs.vh)
+    if(block IN_LIST blocks)
+      list(APPEND A_DEPENDS ${GEN_DIR}/${block}_regs.v)
+    endif()
+  endforeach()
+  set(deps ${sources} ${library} ${A_DEPENDS})
   set(compiler ${CMAKE_CXX_COMPILER})
   if(A_FAST AND NOT COVERAGE AND NOT SANITIZE)
     set(compiler ${CLANGXX})

@@ -39,6 +39,7 @@ libcli11-dev command lines
 libsodium-dev signatures of firmware (Ed25519)
 liblz4-dev unpacks firmware that comes by radio
 python3-lz4 packs it
+python3-jinja2 templates of register blocks, headers and pages
 libssl-dev AES of the modem model
 openssl certificates of the gateway and its clients
 git finds what changed

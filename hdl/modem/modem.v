@@ -24,12 +24,7 @@ module modem #(
 
     // An access waits a cycle, so that no path beyond it begins in the bus's address decoder.
     reg         turn;
-    wire        reg_write, reg_read;
-    wire [3:0]  reg_addr;
-    wire [31:0] reg_wdata;
-    reg  [31:0] reg_rdata;
-
-    wire control     = reg_write && reg_addr == MODEM_CONTROL;
+    wire        set_configure, set_reset_modem, baud_write, net_write, settings_write;
     reg  configure, reset_modem, rings_reset; // a cycle after the write, because their paths are long
 
     // Settings are kept in block RAM: words 0..15 are the registers with the ID, 28..31 the key. A
@@ -38,7 +33,7 @@ module modem #(
     (* ram_style = "block", no_rw_check *)
     reg  [31:0] words [0:31];
     reg  [1:0]  key_index;
-    wire        key_write = reg_write && reg_addr == MODEM_KEY;
+    wire        key_write;
     wire [4:0]  at_word;
     wire [4:0]  ring_word;
     wire        at_busy;
@@ -92,11 +87,11 @@ module modem #(
     // A clock after the ring: a byte that waits is taken two clocks after a packet's end (`writes`).
     // A register, because it is on the path to the word that is read.
     reg         rx_full;
-    wire [7:0]  put_bytes = reg_wdata[7:0];
-    wire        put      = reg_write && reg_addr == MODEM_TX_PUT;
+    wire [7:0]  put_bytes;
+    wire        put, rx_release;
     wire        put_ok   = put && ready && tx_free != 5'd0 && put_bytes != 8'd0 &&
                            put_bytes <= (api ? 8'd105 : 8'd100);
-    wire        release_ok = reg_write && reg_addr == MODEM_RX_RELEASE && rx_waits;
+    wire        release_ok = rx_release && rx_waits;
 
     // Memory
     wire        rd_valid, rd_done, wr_valid, wr_ready, wr_busy;
@@ -120,22 +115,27 @@ module modem #(
     assign npi_rd_flush_o = 1'b0;
 
     wire unused_ready; // always 1
-    wire unused = &{1'b0, npi_wr_empty_i, npi_wr_almost_full_i, npi_rd_word_i, reg_read, unused_ready, 1'b0};
+    wire unused = &{1'b0, npi_wr_empty_i, npi_wr_almost_full_i, npi_rd_word_i, unused_ready, 1'b0};
 
-    bus_wrapper #(
-        .ID_VALUE (32'd0), // words[0]
-        .WORDS    (16'hFFF8),
-        .ZERO     (1),
-        .EVENTS   (6)
-    ) u_wrapper (
+    modem_regs u_registers (
         .clk_i(clk_i), .rst_i(rst_i),
         .bus_valid_i(turn), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
         .bus_wdata_i(bus_wdata_i), .bus_ready_o(unused_ready), .bus_rdata_o(bus_rdata_o),
-        .bus_error_o(bus_error_o),
-        .reg_write_o(reg_write), .reg_read_o(reg_read), .reg_addr_o(reg_addr),
-        .reg_wdata_o(reg_wdata), .reg_rdata_i(reg_rdata),
-        .event_i({put && !put_ok, rx_overrun, at_failed, at_done, rx_push, tx_sent}),
-        .irq_o(irq_o)
+        .bus_error_o(bus_error_o), .irq_o(irq_o),
+        .tx_done_event_i(tx_sent), .rx_packet_event_i(rx_push), .configured_event_i(at_done),
+        .configure_failed_event_i(at_failed), .rx_overrun_event_i(rx_overrun),
+        .tx_refused_event_i(put && !put_ok),
+        .status_api_i(API != 0),
+        .status_ready_i(ready), .status_busy_i(at_busy || !reset_n), .status_tx_active_i(tx_waits),
+        .status_cts_i(cts), .status_step_i(at_step), .status_bd_i(bd_now),
+        .control_configure_o(set_configure), .control_reset_modem_o(set_reset_modem),
+        .baud_write_o(baud_write), .net_write_o(net_write), .key_write_o(key_write),
+        .tx_put_write_o(put), .tx_put_bytes_o(put_bytes), .rx_release_write_o(rx_release),
+        .tx_state_free_i({3'd0, tx_free}), .tx_state_next_i({4'd0, tx_next}),
+        .rx_get_bytes_i({1'b0, rx_bytes}), .rx_get_buffer_i({4'd0, rx_buffer}),
+        .rx_get_valid_i(rx_waits),
+        .errors_framing_i(framing_errors), .errors_overrun_i(overruns), .errors_retries_i(retries),
+        .memory_write_o(settings_write), .memory_i(word)
     );
 
     modem_baud #(.CLK_HZ(CLK_HZ)) u_baud (
@@ -242,42 +242,28 @@ module modem #(
         .npi_init_done_i(npi_init_done_i)
     );
 
-    wire stored = reg_addr >= MODEM_BAUD && reg_addr <= MODEM_RX_BASE;
     integer w;
     initial
         for (w = 0; w < 32; w = w + 1)
-            words[w] = w == 0 ? MODEM_ID_VALUE :
-                       w == {28'd0, MODEM_STATUS} && API != 0 ? 32'd1 << MODEM_STATUS_API_LSB : 32'd0;
-    always @* begin
-        reg_rdata = word; // 0 where nothing is stored
-        if (reg_addr == MODEM_STATUS)
-            reg_rdata = reg_rdata | {bd_now, at_step, 4'd0, cts, tx_waits,
-                                     at_busy || !reset_n, ready, 16'd0};
-        if (reg_addr == MODEM_TX_STATE)
-            reg_rdata = reg_rdata | {20'd0, tx_next, 3'd0, tx_free};
-        if (reg_addr == MODEM_RX_GET)
-            reg_rdata = reg_rdata | {rx_waits, 19'd0, rx_buffer, 1'b0, rx_bytes};
-        if (reg_addr == MODEM_ERRORS)
-            reg_rdata = reg_rdata | {8'd0, retries, overruns, framing_errors};
-    end
+            words[w] = w == 0 ? MODEM_ID_VALUE : 32'd0;
 
     always @(posedge clk_i) begin
         turn       <= bus_valid_i && !turn && !rst_i;
 
-        configure   <= control && reg_wdata[MODEM_CONTROL_CONFIGURE_LSB] && !rst_i;
-        reset_modem <= control && reg_wdata[MODEM_CONTROL_RESET_MODEM_LSB] && !rst_i;
-        rings_reset <= control && reg_wdata[MODEM_CONTROL_RESET_MODEM_LSB] || rst_i;
+        configure   <= set_configure && !rst_i;
+        reset_modem <= set_reset_modem && !rst_i;
+        rings_reset <= set_reset_modem || rst_i;
         rx_full  <= rx_free == 5'd0;
 
-        if (key_write || (reg_write && stored))
-            words[{key_write, reg_addr[3:2], key_write ? key_index : reg_addr[1:0]}] <= reg_wdata;
+        if (key_write || settings_write)
+            words[{key_write, bus_addr_i[3:2], key_write ? key_index : bus_addr_i[1:0]}] <= bus_wdata_i;
         key_index <= key_index + {1'b0, key_write};
-        if (reg_write && reg_addr == MODEM_NET) begin
-            encrypt <= reg_wdata[MODEM_NET_ENCRYPT_LSB];
-            frames  <= reg_wdata[MODEM_NET_API_LSB];
+        if (net_write) begin
+            encrypt <= bus_wdata_i[MODEM_NET_ENCRYPT_LSB];
+            frames  <= bus_wdata_i[MODEM_NET_API_LSB];
         end
-        if (reg_write && reg_addr == MODEM_BAUD)
-            by_wire <= reg_wdata[MODEM_BAUD_WIRE_LSB];
+        if (baud_write)
+            by_wire <= bus_wdata_i[MODEM_BAUD_WIRE_LSB];
 
         if (at_done)
             ready <= 1'b1;

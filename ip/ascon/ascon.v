@@ -42,60 +42,57 @@ module ascon (
     reg [1:0]   index;          // of the word in its block, tag or digest; 1, 2: of the key
     reg         differs, valid, aborted, wipe;
     reg         clear, acting;  // s becomes 0; that, or a command: an access waits
-    reg [4:0]   command;        // the write to CONTROL, in the clock after
-    reg [31:0]  job [0:7];      // words AD_SIZE..TAG by their low address bits
-    reg [7:0]   bad;            // of those, misaligned or too long
+    reg [5:0]   bad;            // settings that are misaligned or too long, as put_job
 
     // ---- registers ----
-    wire        reg_write, reg_read, ready, drained, done, refused;
-    wire [3:0]  reg_addr;
-    wire [31:0] reg_wdata;
-    wire        is_size = reg_addr == ASCON_AD_SIZE || reg_addr == ASCON_SIZE;
-    wire        is_job  = is_size || reg_addr == ASCON_AD_BASE || reg_addr == ASCON_SOURCE || reg_addr == ASCON_TARGET ||
-                          reg_addr == ASCON_TAG;
-    wire [31:0] status = {29'd0, aborted, valid, !idle};
+    wire        control, put_key, nonce, ready, drained, done, refused;
+    wire [4:0]  command;        // the write to CONTROL, in the clock after
+    wire [5:0]  put_job;        // writes to AD_SIZE, SIZE, AD_BASE, SOURCE, TARGET, TAG
+    wire [31:0] setting;        // of them the one that the state reads
+    reg  [2:0]  wanted;
 
-    bus_wrapper #(.ID_VALUE(ASCON_ID_VALUE), .WORDS(16'h1FF8), .EVENTS(2)) u_wrapper (
+    ascon_regs u_registers (
         .clk_i(clk_i), .rst_i(rst_i),
         .bus_valid_i(bus_valid_i && !acting), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
         .bus_wdata_i(bus_wdata_i), .bus_ready_o(ready), .bus_rdata_o(bus_rdata_o),
-        .bus_error_o(bus_error_o),
-        .reg_write_o(reg_write), .reg_read_o(reg_read), .reg_addr_o(reg_addr), .reg_wdata_o(reg_wdata),
-        .reg_rdata_i(is_job ? job[reg_addr[2:0]] : reg_addr == ASCON_STATUS ? status : 32'd0),
-        .event_i({refused, done}), .irq_o(irq_o));
+        .bus_error_o(bus_error_o), .irq_o(irq_o),
+        .done_event_i(done), .refused_event_i(refused),
+        .control_write_o(control),
+        .control_encrypt_o(command[ASCON_CONTROL_ENCRYPT_LSB]),
+        .control_decrypt_o(command[ASCON_CONTROL_DECRYPT_LSB]),
+        .control_hash_o(command[ASCON_CONTROL_HASH_LSB]),
+        .control_abort_o(command[ASCON_CONTROL_ABORT_LSB]),
+        .control_forget_o(command[ASCON_CONTROL_FORGET_LSB]),
+        .status_busy_i(!idle), .status_valid_i(valid), .status_aborted_i(aborted),
+        .key_write_o(put_key), .nonce_write_o(nonce),
+        .ad_size_write_o(put_job[0]), .size_write_o(put_job[1]), .ad_base_write_o(put_job[2]),
+        .source_write_o(put_job[3]), .target_write_o(put_job[4]), .tag_write_o(put_job[5]),
+        .busy_i(!idle), .ram_addr_i(wanted), .ram_o(setting));
 
     // Commands act a clock later, from registers: FORGET drives 448 flip-flops. No access comes
     // between.
     wire start   = idle && |command[2:0] && command[4:3] == 2'd0;
     wire aead    = !command[ASCON_CONTROL_HASH_LSB];
-    wire go      = start && bad == 8'd0 && (!aead || (key_words[2] && nonce_words[2]));
+    wire go      = start && bad == 6'd0 && (!aead || (key_words[2] && nonce_words[2]));
     wire abort   = command[ASCON_CONTROL_ABORT_LSB];
     wire forget  = command[ASCON_CONTROL_FORGET_LSB] && idle;
-    wire put_key   = reg_write && reg_addr == ASCON_KEY && idle;
-    wire put_nonce = reg_write && reg_addr == ASCON_NONCE && idle && !nonce_words[2];
+    wire put_nonce = nonce && !nonce_words[2];
     assign refused = start && !go;
     assign bus_ready_o = ready && !acting;
 
-    wire control = reg_write && reg_addr == ASCON_CONTROL;
-    wire put_job = reg_write && is_job && idle;
     wire clears  = (go && !aead) || forget || (idle && abort) || drained; // zeros go out in WIPE
     always @(posedge clk_i) begin
-        command <= control && !rst_i ? reg_wdata[4:0] : 5'd0;
         clear   <= rst_i || clears;
         acting  <= rst_i || clears || control;
-        if (put_job)
-            job[reg_addr[2:0]] <= reg_wdata;
     end
 
     // ---- memory ----
-    reg [2:0] wanted; // the register that the state reads
     always @* case (state)
         LOAD_SIZE:   wanted = pass == ASSOCIATED ? ASCON_AD_SIZE[2:0] : ASCON_SIZE[2:0];
         LOAD_TARGET: wanted = ASCON_TARGET[2:0];
         LOAD_SOURCE: wanted = pass == ASSOCIATED ? ASCON_AD_BASE[2:0] : ASCON_SOURCE[2:0];
         default:     wanted = ASCON_TAG[2:0];
     endcase
-    wire [31:0] setting = job[wanted];
 
     wire        read_valid, read_idle, write_ready, write_idle;
     wire [63:0] read_data;
@@ -133,7 +130,7 @@ module ascon (
     // The operand is a word of the message, the key, the nonce or a constant. When decrypting, the
     // sum makes the rate equal to the ciphertext. It is kept as a net, which saves 72 LUTs.
     wire        use_iv   = state == FIRST_WORDS && index == 2'd0;
-    wire [63:0] operand  = (from_memory ? read_data : 64'd0) | (busy ? 64'd0 : {2{reg_wdata}}) |
+    wire [63:0] operand  = (from_memory ? read_data : 64'd0) | (busy ? 64'd0 : {2{bus_wdata_i}}) |
                            (keyed && index[0] ? key[63:0] : 64'd0) |
                            (keyed && index[1] ? key[127:64] : 64'd0) |
                            (use_iv && !hash ? IV_AEAD : 64'd0) | (use_iv && hash ? IV_HASH : 64'd0) |
@@ -164,7 +161,7 @@ module ascon (
         if (clear)
             s <= 320'd0;
         if (put_key)
-            key <= {reg_wdata, key[127:32]};
+            key <= {bus_wdata_i, key[127:32]};
         if (rst_i || forget)
             key <= 128'd0;
     end
@@ -301,22 +298,21 @@ module ascon (
             nonce_words <= 3'd0;
         if (forget)
             key_words <= 3'd0;
-        for (b = 0; b < 8; b = b + 1) // one for all would be a shift by a negated index
-            if (put_job && reg_addr[2:0] == b[2:0])
-                bad[b] <= is_size ? |reg_wdata[31:24] : |reg_wdata[5:0];
+        for (b = 0; b < 6; b = b + 1)
+            if (put_job[b])
+                bad[b] <= b < 2 ? |bus_wdata_i[31:24] : |bus_wdata_i[5:0];
         if (rst_i) begin
             enter(WAIT_FOR_START);
             pass        <= ASSOCIATED;
             key_words   <= 3'd0;
             nonce_words <= 3'd0;
-            bad         <= 8'd0;
+            bad         <= 6'd0;
             valid       <= 1'b0;
             aborted     <= 1'b0;
             wipe        <= 1'b0;
         end
     end
 
-    wire unused = &{1'b0, reg_read, 1'b0};
 `ifdef FORMAL
     // For formal.idle_ascon: the flags of states; the stream does nothing without a job, nor before
     // the first LOAD_SOURCE.

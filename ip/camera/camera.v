@@ -40,7 +40,6 @@ module camera (
     reg        room;                 // for one more pixel of this line
     reg        last_word, last_line; // words == width, y + 1 == height, a clock later
     reg [31:0] base, stride;         // of the buffers in use
-    reg [31:0] size, set_base, set_stride;
     reg [15:0] frames, dropped;
     reg [55:0] pixels;               // of the word that is begun, newest on top
     reg        has_newest;
@@ -69,37 +68,36 @@ module camera (
     wire       starts = kind == FRAME_START, ends_line = kind == LINE_END, is_pixel = kind == PIXEL;
 
     // ---- registers ----
-    wire        reg_write, reg_read;
-    wire [3:0]  reg_addr;
-    wire [31:0] reg_wdata;
-    reg  [31:0] reg_rdata;
+    wire [15:0] set_width, set_height;
+    wire [31:0] set_base, set_stride;
+    wire        set_start, stop;
     reg  [6:0]  events;
-    bus_wrapper #(.ID_VALUE(CAMERA_ID_VALUE), .WORDS(16'h07F8), .EVENTS(7)) u_wrapper (
+    camera_regs u_registers (
         `include "slot_connect.vh"
-        .reg_write_o(reg_write), .reg_read_o(reg_read), .reg_addr_o(reg_addr), .reg_wdata_o(reg_wdata),
-        .reg_rdata_i(reg_rdata), .event_i(events), .irq_o(irq_o));
+        .irq_o(irq_o),
+        .frame_event_i(events[CAMERA_EVENT_FRAME_LSB]),
+        .short_line_event_i(events[CAMERA_EVENT_SHORT_LINE_LSB]),
+        .long_line_event_i(events[CAMERA_EVENT_LONG_LINE_LSB]),
+        .short_frame_event_i(events[CAMERA_EVENT_SHORT_FRAME_LSB]),
+        .long_frame_event_i(events[CAMERA_EVENT_LONG_FRAME_LSB]),
+        .overflow_event_i(events[CAMERA_EVENT_OVERFLOW_LSB]),
+        .refused_event_i(events[CAMERA_EVENT_REFUSED_LSB]),
+        .control_start_o(set_start), .control_stop_o(stop),
+        .status_active_i(state != OFF), .status_in_frame_i(capturing),
+        .size_width_o(set_width), .size_height_o(set_height),
+        .base_o(set_base), .stride_o(set_stride),
+        .latest_buffer_i(newest), .latest_valid_i(has_newest),
+        .frames_i(frames), .dropped_i(dropped));
 
-    wire control = reg_write && reg_addr == CAMERA_CONTROL;
-    wire start   = control && reg_wdata[CAMERA_CONTROL_START_LSB] && state == OFF;
-    wire stop    = control && reg_wdata[CAMERA_CONTROL_STOP_LSB];
+    wire start = set_start && state == OFF;
     // The settings are checked in the clock of START; the result counts in the next one.
     reg  asked, good;
     always @(posedge clk_i) begin
         asked <= start && !rst_i;
-        good  <= size[2:0] == 3'd0 && size[15:0] != 16'd0 && size[15:0] <= 16'd2048 && size[31:16] != 16'd0 &&
-                 size[31:28] == 4'd0 && set_base[6:0] == 7'd0 && set_stride[6:0] == 7'd0;
+        good  <= set_width[2:0] == 3'd0 && set_width != 16'd0 && set_width <= 16'd2048 &&
+                 set_height != 16'd0 && set_height[15:12] == 4'd0 &&
+                 set_base[6:0] == 7'd0 && set_stride[6:0] == 7'd0;
     end
-
-    always @* case (reg_addr)
-        CAMERA_STATUS:  reg_rdata = {30'd0, capturing, state != OFF};
-        CAMERA_SIZE:    reg_rdata = size;
-        CAMERA_BASE:    reg_rdata = set_base;
-        CAMERA_STRIDE:  reg_rdata = set_stride;
-        CAMERA_LATEST:  reg_rdata = {has_newest, 29'd0, newest};
-        CAMERA_FRAMES:  reg_rdata = {16'd0, frames};
-        CAMERA_DROPPED: reg_rdata = {16'd0, dropped};
-        default:        reg_rdata = 32'd0;
-    endcase
 
     // ---- memory ----
     wire        write_ready, write_idle;
@@ -155,8 +153,8 @@ module camera (
                 events[CAMERA_EVENT_REFUSED_LSB] <= asked && !good;
                 if (asked && good) begin
                     enter(WAIT_FOR_FRAME);
-                    width      <= size[11:3];
-                    height     <= size[27:16];
+                    width      <= set_width[11:3];
+                    height     <= set_height[11:0];
                     base       <= set_base;
                     stride     <= set_stride;
                     frames     <= 16'd0;
@@ -220,12 +218,6 @@ module camera (
             events[CAMERA_EVENT_FRAME_LSB] <= 1'b1;
         end
 
-        if (reg_write) case (reg_addr)
-            CAMERA_SIZE:   size <= reg_wdata;
-            CAMERA_BASE:   set_base <= reg_wdata;
-            CAMERA_STRIDE: set_stride <= reg_wdata;
-            default: ;
-        endcase
         if (rst_i) begin
             enter(OFF);
             stopping   <= 1'b0;
@@ -233,13 +225,10 @@ module camera (
             has_newest <= 1'b0;
             frames     <= 16'd0;
             dropped    <= 16'd0;
-            size       <= 32'd0;
-            set_base   <= 32'd0;
-            set_stride <= 32'd0;
         end
     end
 
-    wire unused = &{1'b0, reg_read, no_data, no_words, read_idle, write_base[5:0], 1'b0};
+    wire unused = &{1'b0, no_data, no_words, read_idle, write_base[5:0], 1'b0};
 `ifdef COVER_POINTS
     replaces_what_nobody_took: cover property (@(posedge clk_i) kept && offered);
     stopped_in_a_frame: cover property (@(posedge clk_i) capturing && stopping && !token_in_frame);

@@ -27,14 +27,10 @@ module probe #(
     localparam LOG2_WORDS = WORDS == 1 ? 0 : WORDS == 2 ? 1 : 2;
     localparam LOG2_RING = PROBE_LOG2_BYTES - 3 - LOG2_WORDS; // changes in the ring
 
-    wire        reg_write, unused_read;
-    wire [3:0]  reg_addr;
-    wire [31:0] reg_wdata;
-    reg  [31:0] reg_rdata;
-    reg  [30:0] mask, wanted;
-    reg  [31:PROBE_LOG2_BYTES] base;
-    reg  [LOG2_RING-1:0] after;
-    reg         edge_only;
+    wire [30:0] mask, wanted;
+    wire [31:0] base;
+    wire [14:0] after;
+    wire        edge_only, set_arm, stop;
 
     // ---- signals: own registers, so that the probe adds a wire to each signal, and no logic ----
     reg [WIDTH-1:0] now, last;
@@ -56,8 +52,7 @@ module probe #(
 
     wire full, empty, pop, room, stream_idle;
     reg  [2:0] settled; // clocks for which the FIFO has been empty at the end: a word takes two to get there, a flush two to the stream's idle
-    wire act    = reg_write && reg_addr == PROBE_CONTROL;
-    wire arm    = act && reg_wdata[PROBE_CONTROL_ARM_LSB] && !running && !draining;
+    wire arm    = set_arm && !running && !draining;
     wire ended  = triggered && left == {LOG2_RING{1'b0}};
     wire entry  = running && !ended && (changed || owed || half != cycles_i[31]);
     wire push   = entry && !full;
@@ -92,9 +87,9 @@ module probe #(
         if (hit) begin
             triggered <= 1'b1;
             trigger   <= next; // this clock's entry, or if that is lost the next
-            left      <= after;
+            left      <= after[LOG2_RING-1:0];
         end
-        if (running && (ended || (act && reg_wdata[PROBE_CONTROL_STOP_LSB]))) begin
+        if (running && (ended || stop)) begin
             running  <= 1'b0;
             draining <= 1'b1;
         end
@@ -148,42 +143,26 @@ module probe #(
         .npi_wr_almost_full_i(npi_wr_almost_full_i), .npi_wr_flush_o(npi_wr_flush_o), .npi_rd_data_i(npi_rd_data_i),
         .npi_rd_word_i(npi_rd_word_i), .npi_rd_pop_o(npi_rd_pop_o), .npi_rd_empty_i(npi_rd_empty_i),
         .npi_rd_flush_o(npi_rd_flush_o), .npi_init_done_i(npi_init_done_i));
-    assign npi_addr_o     = {base, unused_addr[PROBE_LOG2_BYTES-1:0]};
+    assign npi_addr_o     = {base[31:PROBE_LOG2_BYTES], unused_addr[PROBE_LOG2_BYTES-1:0]};
 
     // ---- registers ----
     reg done_before;
-    bus_wrapper #(.ID_VALUE(PROBE_ID_VALUE), .WORDS(16'h1FF8), .EVENTS(1)) u_wrapper (
-        `include "slot_connect.vh"
-        .reg_write_o(reg_write), .reg_read_o(unused_read), .reg_addr_o(reg_addr), .reg_wdata_o(reg_wdata),
-        .reg_rdata_i(reg_rdata), .event_i(done && !done_before), .irq_o(irq_o));
-
-    always @* case (reg_addr)
-        PROBE_STATUS:     reg_rdata = {21'd0, WORDS[2:0], 3'd0, wrapped, done, triggered, draining, running};
-        PROBE_NAMES:      reg_rdata = NAMES;
-        PROBE_CLK_HZ:     reg_rdata = CLK_HZ;
-        PROBE_NEXT:       reg_rdata = {{(32 - LOG2_RING){1'b0}}, next};
-        PROBE_TRIGGER_AT: reg_rdata = {{(32 - LOG2_RING){1'b0}}, trigger};
-        default:          reg_rdata = 32'd0;
-    endcase
-
-    always @(posedge clk_i) begin
+    always @(posedge clk_i)
         done_before <= done;
-        if (reg_write)
-            case (reg_addr)
-                PROBE_TRIGGER_BITS:  mask   <= reg_wdata[30:0];
-                PROBE_TRIGGER_VALUE: wanted <= reg_wdata[30:0];
-                PROBE_BASE: if (!running && !draining)
-                    base <= reg_wdata[31:PROBE_LOG2_BYTES];
-                PROBE_AFTER: begin
-                    after     <= reg_wdata[LOG2_RING-1:0];
-                    edge_only <= reg_wdata[PROBE_AFTER_EDGE_LSB];
-                end
-                default: ;
-            endcase
-    end
+    probe_regs u_registers (
+        `include "slot_connect.vh"
+        .irq_o(irq_o), .done_event_i(done && !done_before),
+        .control_arm_o(set_arm), .control_stop_o(stop),
+        .status_running_i(running), .status_draining_i(draining), .status_triggered_i(triggered),
+        .status_done_i(done), .status_wrapped_i(wrapped), .status_words_i(WORDS[2:0]),
+        .names_i(NAMES), .clk_hz_i(CLK_HZ),
+        .trigger_bits_o(mask), .trigger_value_o(wanted),
+        .after_count_o(after), .after_edge_o(edge_only),
+        .base_o(base), .capturing_i(running || draining),
+        .next_i({{(32 - LOG2_RING){1'b0}}, next}),
+        .trigger_at_i({{(32 - LOG2_RING){1'b0}}, trigger}));
 
-    wire unused = &{1'b0, unused_read, reg_wdata[31], unused_addr, unused_valid, unused_data,
-                    unused_read_idle, 1'b0};
+    wire unused = &{1'b0, after, base, unused_addr, unused_valid, unused_data, unused_read_idle, 1'b0};
 `ifdef COVER_POINTS
     loses_changes: cover property (@(posedge clk_i) entry && full);
     turns_round: cover property (@(posedge clk_i) push && &next);

@@ -58,13 +58,13 @@ architecture rtl of vision is
   signal state : state_t;
 
   -- registers
-  signal events, mask  : std_logic_vector(1 downto 0); -- REFUSED, DONE
-  signal set_threshold : unsigned(7 downto 0);
+  signal set_threshold : std_logic_vector(7 downto 0);
   signal frame_base, result_base : std_logic_vector(31 downto 0); -- vision_memory takes them at START
-  signal frame_stride  : unsigned(31 downto 0);
+  signal frame_stride  : std_logic_vector(31 downto 0);
   signal follow        : std_logic;
+  signal busy, done, done_pending, refused : std_logic;
   signal taken         : std_logic_vector(1 downto 0); -- the buffer of the last frame, 0: FRAME_BASE itself
-  signal set_width, set_height, set_result_max : unsigned(15 downto 0);
+  signal set_width, set_height, set_result_max : std_logic_vector(15 downto 0);
   signal found, stored : unsigned(15 downto 0);
   -- settings of the frame under way, from START
   signal threshold     : unsigned(7 downto 0);
@@ -72,13 +72,12 @@ architecture rtl of vision is
   signal height, result_max : unsigned(15 downto 0);
   signal cycles        : unsigned(31 downto 0);
   signal aborted, stop : std_logic;
-  signal word          : natural range 0 to 15;
   -- Commands act a clock after their write, so address decoder and frame control are not one path.
   -- Other registers written meanwhile come too late for this frame, as they should.
   signal start, abort  : std_logic;
   signal written       : std_logic; -- a register was written, so size_ok is outdated
   signal size_ok       : std_logic; -- of the registers a clock ago
-  signal write, idle, offered, accept : std_logic;
+  signal idle, offered, accept : std_logic;
   signal go            : std_logic; -- a clock after `accept`; settings are loaded until then
   signal first_pixel, memory_base : std_logic_vector(31 downto 0);
 
@@ -124,14 +123,30 @@ begin
 
   -- ---- registers ----
 
-  word  <= to_integer(unsigned(bus_addr_i));
-  write <= bus_valid_i and bus_write_i;
-  bus_ready_o <= '1';
-  bus_error_o <= '1' when word > VISION_FRAME else '0';
-  irq_o       <= '1' when (events and mask) /= "00" else '0';
+  u_registers : entity work.vision_regs
+    port map (
+      clk_i => clk_i, rst_i => rst_i,
+      bus_valid_i => bus_valid_i, bus_write_i => bus_write_i, bus_addr_i => bus_addr_i,
+      bus_wdata_i => bus_wdata_i, bus_ready_o => bus_ready_o, bus_rdata_o => bus_rdata_o,
+      bus_error_o => bus_error_o, irq_o => irq_o,
+      done_event_i => done, done_pending_o => done_pending, done_clear_o => open,
+      refused_event_i => refused,
+      control_start_o => start, control_abort_o => abort,
+      status_busy_i => busy, status_aborted_i => aborted, threshold_o => set_threshold,
+      frame_base_o => frame_base, frame_size_width_o => set_width,
+      frame_size_height_o => set_height, result_base_o => result_base,
+      result_max_o => set_result_max, found_i => std_logic_vector(found),
+      stored_i => std_logic_vector(stored), cycles_i => std_logic_vector(cycles),
+      frame_stride_o => frame_stride, mode_follow_clear_i => refused, mode_follow_o => follow,
+      frame_buffer_i => taken
+    );
+
+  busy    <= not idle or start;
+  done    <= quiet when state = DRAIN else '0';
+  refused <= ((start and idle) or offered) and not size_ok;
 
   -- The next frame waits until the results of the last one have been read: DONE is cleared.
-  offered <= follow and frame_valid_i and not written and not events(VISION_EVENT_DONE_LSB)
+  offered <= follow and frame_valid_i and not written and not done_pending
              and idle;
   idle   <= '1' when state = WAIT_FOR_START and go = '0' else '0';
   accept <= (start or offered) and size_ok and idle;
@@ -140,97 +155,28 @@ begin
 
   with frame_index_i select first_pixel <=
     frame_base when "01",
-    std_logic_vector(unsigned(frame_base) + frame_stride) when "10",
-    std_logic_vector(unsigned(frame_base) + (frame_stride(30 downto 0) & '0')) when others;
+    std_logic_vector(unsigned(frame_base) + unsigned(frame_stride)) when "10",
+    std_logic_vector(unsigned(frame_base) + unsigned(frame_stride(30 downto 0) & '0')) when others;
 
-  reading : process (all)
-  begin
-    bus_rdata_o <= (others => '0');
-    case word is
-      when VISION_ID          => bus_rdata_o <= std_logic_vector(to_unsigned(VISION_ID_VALUE, 32));
-      when VISION_EVENT       => bus_rdata_o(1 downto 0) <= events;
-      when VISION_MASK        => bus_rdata_o(1 downto 0) <= mask;
-      when VISION_STATUS      =>
-        if idle = '0' or start = '1' then
-          bus_rdata_o(VISION_STATUS_BUSY_LSB) <= '1';
-        end if;
-        bus_rdata_o(VISION_STATUS_ABORTED_LSB) <= aborted;
-      when VISION_THRESHOLD   => bus_rdata_o(7 downto 0) <= std_logic_vector(set_threshold);
-      when VISION_FRAME_BASE  => bus_rdata_o <= frame_base;
-      when VISION_FRAME_SIZE  => bus_rdata_o <= std_logic_vector(set_height & set_width);
-      when VISION_RESULT_BASE => bus_rdata_o <= result_base;
-      when VISION_RESULT_MAX  => bus_rdata_o(15 downto 0) <= std_logic_vector(set_result_max);
-      when VISION_FOUND       => bus_rdata_o(15 downto 0) <= std_logic_vector(found);
-      when VISION_STORED      => bus_rdata_o(15 downto 0) <= std_logic_vector(stored);
-      when VISION_CYCLES      => bus_rdata_o <= std_logic_vector(cycles);
-      when VISION_FRAME_STRIDE => bus_rdata_o <= std_logic_vector(frame_stride);
-      when VISION_MODE        => bus_rdata_o(VISION_MODE_FOLLOW_LSB) <= follow;
-      when VISION_FRAME       => bus_rdata_o(1 downto 0) <= taken;
-      when others             => null;
-    end case;
-  end process;
-
-  registers : process (clk_i)
-    variable clear : std_logic_vector(1 downto 0);
+  starting : process (clk_i)
   begin
     if rising_edge(clk_i) then
-      clear := "00";
-      start <= '0';
-      abort <= '0';
-      written <= write;
+      written <= bus_valid_i and bus_write_i;
       size_ok <= '0';
-      if set_width(2 downto 0) = 0 and set_width >= VISION_MIN_SIDE and set_width <= VISION_MAX_WIDTH and
-         set_height >= VISION_MIN_SIDE and unsigned(frame_base(6 downto 0)) = 0 and
-         unsigned(result_base(6 downto 0)) = 0 and frame_stride(6 downto 0) = 0 then
+      if unsigned(set_width(2 downto 0)) = 0 and unsigned(set_width) >= VISION_MIN_SIDE and
+         unsigned(set_width) <= VISION_MAX_WIDTH and unsigned(set_height) >= VISION_MIN_SIDE and
+         unsigned(frame_base(6 downto 0)) = 0 and unsigned(result_base(6 downto 0)) = 0 and
+         unsigned(frame_stride(6 downto 0)) = 0 then
         size_ok <= '1';
-      end if;
-      if write = '1' then
-        case word is
-          when VISION_CONTROL     =>
-            start <= bus_wdata_i(VISION_CONTROL_START_LSB);
-            abort <= bus_wdata_i(VISION_CONTROL_ABORT_LSB);
-          when VISION_EVENT       => clear := bus_wdata_i(1 downto 0);
-          when VISION_MASK        => mask <= bus_wdata_i(1 downto 0);
-          when VISION_THRESHOLD   => set_threshold <= unsigned(bus_wdata_i(7 downto 0));
-          when VISION_FRAME_BASE  => frame_base <= bus_wdata_i;
-          when VISION_FRAME_SIZE  =>
-            set_height <= unsigned(bus_wdata_i(31 downto 16));
-            set_width  <= unsigned(bus_wdata_i(15 downto 0));
-          when VISION_RESULT_BASE => result_base <= bus_wdata_i;
-          when VISION_FRAME_STRIDE => frame_stride <= unsigned(bus_wdata_i);
-          when VISION_MODE        => follow <= bus_wdata_i(VISION_MODE_FOLLOW_LSB);
-          when VISION_RESULT_MAX  => set_result_max <= unsigned(bus_wdata_i(15 downto 0));
-          when others             => null;
-        end case;
-      end if;
-      events <= events and not clear;
-      if state = DRAIN and quiet = '1' then
-        events(VISION_EVENT_DONE_LSB) <= '1';
-      end if;
-      if ((start and idle) or offered) = '1' and size_ok = '0' then
-        events(VISION_EVENT_REFUSED_LSB) <= '1';
-        follow <= '0';
       end if;
       go <= accept;
       if accept = '1' then
         taken <= frame_index_i and (1 downto 0 => offered);
       end if;
       if rst_i = '1' then
-        start       <= '0';
-        abort       <= '0';
-        written     <= '0';
-        go          <= '0';
-        events      <= "00";
-        mask        <= "00";
-        set_threshold  <= to_unsigned(0, 8);
-        frame_base  <= (others => '0');
-        frame_stride <= (others => '0');
-        follow      <= '0';
-        taken       <= "00";
-        result_base <= (others => '0');
-        set_width      <= to_unsigned(0, 16);
-        set_height     <= to_unsigned(0, 16);
-        set_result_max <= to_unsigned(0, 16);
+        written <= '0';
+        go      <= '0';
+        taken   <= "00";
       end if;
     end if;
   end process;
@@ -304,10 +250,10 @@ begin
             score_x <= to_unsigned(0, 10);
             score_y <= to_unsigned(0, 17);
           else
-            threshold  <= set_threshold;
-            last_column <= resize(set_width - 1, 10);
-            height     <= set_height;
-            result_max <= set_result_max;
+            threshold  <= unsigned(set_threshold);
+            last_column <= resize(unsigned(set_width) - 1, 10);
+            height     <= unsigned(set_height);
+            result_max <= unsigned(set_result_max);
           end if;
         when STREAM =>
           cycles <= cycles + 1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// registers: the register description that regmap turns into headers and pages.
+// registers: the register description that icesoc.regs.generate turns into headers and pages.
 
 #include "c/context.h"
 #include "hw/generator.h"

@@ -77,9 +77,9 @@ def flights():
 
 
 PARSERS = {
-    "regs": Parser("icesoc.regs.regmap", ["FILE", "--output-dir", "OUT"], [
+    "regs": Parser("icesoc.regs.generate", ["FILE", "--output-dir", "OUT"], [
         "hdl/*/*.regs.json", "ip/*/*.regs.json", "bus/*.regs.json", "tests/bus/cores/data/*.json"]),
-    "clocked": Parser("icesoc.regs.regmap", [
+    "clocked": Parser("icesoc.regs.generate", [
         "FILE", "--clocked", "--clk-hz", "--output-dir", "OUT"], [
         "ip/*/*.regs.json", "tests/bus/cores/data/*.json"]),
     "rdl": Parser("icesoc.regs.rdl", ["FILE", "OUT"], lambda: [RDL, chip_rdl()]),

@@ -274,8 +274,8 @@ class Cases(Script):
         here = Path("project").resolve()
         write(here / "CMakeLists.txt", MADE)
         write(here / ".gitignore", "build\n")
-        registers = {"block": "pair", "type": 7, "registers": [
-            {"name": "MODE", "word": 0, "access": "rw"}]}
+        registers = {"block": "pair", "doc": "", "type": "0x0007", "version": "0x0100",
+                     "registers": [{"name": "MODE", "word": 3, "access": "rw", "doc": ""}]}
         write(here / "hdl/blocks/pair.regs.json", json.dumps(registers))
         with contextlib.chdir(here):
             repository()

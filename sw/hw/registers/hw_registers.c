@@ -214,8 +214,8 @@ static int write(Hw_Registers_Core* self, Ice_String name, Ice_Long value) {
         sayNumber(self, bits);
         return 0;
     }
-    /* The other fields of a register that can be read and written stay; in w1c and ws fields 0 has
-     * no effect. */
+    /* The other fields of a register that can be read and written stay; in w1c, w1s and ws fields 0
+     * has no effect. */
     if (r->access == Hw_rw && memchr(name.data, '.', (size_t)name.size)) {
         if (!transfer(self, r, 0, &others))
             return 0;

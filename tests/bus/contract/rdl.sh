@@ -30,14 +30,14 @@ registers=$(grep -c ' @ 0x[0-9A-F]\{1,2\};' "$gen/icesoc.rdl")
 cat >"$work/lamp.rdl" <<'RDL'
 /* A lamp /* of */
 addrmap lamp {
-    name = "Lamp // not a comment"; default regwidth = 8; default sw = rw; default hw = r;
+    name = "Lamp // not a comment"; default regwidth = 16; default sw = rw; default hw = r;
     enum colour { red = 0; green = 1; };
     reg state_r { desc = "State"; field { sw = r; hw = w; } BUSY; field { sw = r; hw = w; } MODE[2] = 2'b01; };
     reg { field { desc = "Level
-        of light"; } LEVEL[7:0] = 8'hFF; field { encode = colour; } COLOUR[10:8]; regwidth = 16; } CTRL @ 0x2;
+        of light"; } LEVEL[7:0] = 8'hFF; field { encode = colour; } COLOUR[10:8]; } CTRL @ 0x2;
     state_r STATE @ 4;
     reg { field { sw = w; hw = r; } W[7:0]; field { sw = r; hw = w; } R[7:0]; } DATA;
-    reg { field { woclr; hw = w; } DONE[0:0] = 0; field { onwrite = woclr; } OVER[1:1]; } EVENTS @ 6;
+    reg { field { woclr; hw = w; } DONE[0:0] = 0; field { onwrite = woclr; } OVER[1:1]; } EVENTS @ 8;
 };
 RDL
 "$source/tests/regress/make_in.sh" "$source" "$source" none from-rdl RDL="$work/lamp.rdl" \
@@ -47,8 +47,8 @@ import json, sys
 block = json.load(open(sys.argv[1]))
 found = [(r["word"], r["name"], r["access"], r.get("width", 32), [(f["name"], f["lsb"], f["width"]) for f in r.get("fields", [])])
          for r in block["registers"]]
-wanted = [(4, "CTRL", "rw", 32, [("LEVEL", 0, 8), ("COLOUR", 8, 3)]), (7, "STATE", "ro", 32, [("BUSY", 0, 1), ("MODE", 1, 2)]),
-          (8, "DATA", "rw", 8, []), (9, "EVENTS", "w1c", 32, [("DONE", 0, 1), ("OVER", 1, 1)])]
+wanted = [(4, "CTRL", "rw", 32, [("LEVEL", 0, 8), ("COLOUR", 8, 3)]), (5, "STATE", "ro", 32, [("BUSY", 0, 1), ("MODE", 1, 2)]),
+          (6, "DATA", "rw", 8, []), (7, "EVENTS", "w1c", 32, [("DONE", 0, 1), ("OVER", 1, 1)])]
 if found != wanted or block["type"] != "0x4C41" or block["doc"] != "Lamp // not a comment" \
         or block["registers"][0]["fields"][0]["doc"] != "Level of light":
     sys.exit("%s\nand not\n%s" % (block, wanted))
@@ -59,22 +59,22 @@ refused() { # words of the message, the SystemRDL
     grep -q -- "$1" "$work/log" || { cat "$work/log" && fail "'$1' is not said: $2"; }
     [ ! -e "$work/wrong" ] || fail "files were written in spite of: $1"
 }
-refused 'wrong.rdl:2: error: regfile is not of the flat subset' 'addrmap a {\n regfile { } x; };'
+refused 'wrong.rdl:2: error: regfile is not part of the flat subset' 'addrmap a {\n regfile { } x; };'
 refused 'wrong.rdl:1: error: arrays are not' 'addrmap a { reg { field {} b; } x[4]; };'
-refused 'parameters are not of the flat subset' \
+refused 'parameters are not part of the flat subset' \
     'addrmap a { reg t #(longint N = 1) { field {} b; }; };'
-refused "'N' is no number" 'addrmap a { reg { field {} b[N:0]; } x; };'
-refused "'the end' comes where" 'addrmap a { reg { field {} b; } x;'
+refused "'N' is not a number" 'addrmap a { reg { field {} b[N:0]; } x; };'
+refused "got 'the end'" 'addrmap a { reg { field {} b; } x;'
 refused 'x would be word 16 of its slot' 'addrmap a { reg { field {} b; } x @ 0x34; };'
 refused 'x has no field' 'addrmap a { reg { } x; };'
 refused 'x.b is at bits 39 to 0' 'addrmap a { reg { field {} b[40]; } x; };'
 refused 'there is no addrmap' '// nothing\n'
-refused 'regwidth is 8, 16, 32 or 64' 'addrmap a { reg { regwidth = 0x 16; field {} b; } x; };'
-refused "'2'b3' is no number" "addrmap a { reg { field {} b = 2'b3; } x; };"
+refused 'regwidth: expected' 'addrmap a { reg { regwidth = 0x 16; field {} b; } x; };'
+refused "'2'b3' is not a number" "addrmap a { reg { field {} b = 2'b3; } x; };"
 refused 'an addrmap of the file has no name' 'addrmap { reg { field {} b; } x; };'
 refused 'two addrmaps have one name' 'addrmap a { reg { field {} b; } x; }; addrmap A { reg { field {} b; } x; };'
-refused 'it is to be a name of letters' 'addrmap { reg { field {} b; } x; } "../a";'
-refused 'x.b is there twice' 'addrmap a { reg { field {} b; field {} b; } x; };'
+refused 'expected a name, got' 'addrmap { reg { field {} b; } x; } "../a";'
+refused 'x.b: duplicate name' 'addrmap a { reg { field {} b; field {} b; } x; };'
 refused 'has no address' 'addrmap A_PAGES { reg { field {} b; } x; }; addrmap top { addrmap { reg { field {} b; } x; } A; };'
 refused "no text in UTF-8" "\\0377"
 refused 'nested too deep' "$(printf 'addrmap a {%.0s' $(seq 1500))"

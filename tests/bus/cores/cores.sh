@@ -6,7 +6,7 @@
 set -eu
 source=$1 gen=$2 work=$3
 coremap() { "$source/tools/python" -m icesoc.chip.coremap "$@"; }
-regmap() { "$source/tools/python" -m icesoc.regs.regmap "$@"; }
+regmap() { "$source/tools/python" -m icesoc.regs.generate "$@"; }
 data=$(cd "$(dirname "$0")/data" && pwd)
 rm -rf "$work"
 mkdir -p "$work/own"
@@ -118,7 +118,7 @@ changed() { # sed's command for the mover's description: the hash with it
 }
 [ "$(changed 's/With a memory/Having a memory/')" = "$before" ] ||
     fail 'words of a description change the hash'
-[ "$(changed 's/"registers": /&[{"word": 3, "name": "A", "access": "rw", "doc": ""}], "none": /')" \
+[ "$(changed 's/"registers": /&[{"word": 3, "name": "A", "access": "rw", "doc": ""}], "events": /')" \
     != "$before" ] ||
     fail 'a register does not change the hash'
 # A servant without a call that waits has neither interrupt nor poll of its own.
@@ -160,7 +160,7 @@ for names in 'A B A_B_LSB' 'A_B_LSB C A_B_LSB'; do
     printf '{"block": "b", "doc": "", "registers": [{"word": 0, "name": "%s", "access": "ro", "doc": "",
         "fields": [{"name": "%s", "doc": "", "lsb": 0, "width": 1}]}, {"word": 1, "name": "%s", "access": "ro", "doc": ""}]}' $names >"$work/twice.regs.json"
     ! regmap "$work/twice.regs.json" --output-dir "$work" 2>"$work/messages" &&
-        grep -q 'A_B_LSB is there twice' "$work/messages" ||
+        grep -q 'both become A_B_LSB\|A_B_LSB: duplicate name' "$work/messages" ||
         fail "registers and fields of one name ($names)"
 done
 described() { # words of the message, a description that is refused
@@ -168,14 +168,14 @@ described() { # words of the message, a description that is refused
     ! regmap "$work/wrong.regs.json" --output-dir "$work" 2>"$work/messages" &&
         grep -q -- "$1" "$work/messages" || { cat "$work/messages" && fail "'$1' is not said: $2"; }
 }
-described 'the description is no object' '[]'
-described "the description has no 'doc'" '{"block": "b"}'
+described 'the description: expected an object' '[]'
+described "the description: 'doc' is missing" '{"block": "b"}'
 described 'it is no JSON in UTF-8' '{"block": "\0377"}'
 described 'brackets are too long' "$(printf '[%.0s' $(seq 50000))"
-described 'block is "../b": it is to be a name' '{"block": "../b", "doc": "", "registers": []}'
-described 'doc is "\*/": it is to be a text' '{"block": "b", "doc": "*/", "registers": []}'
-described 'registers\[0\].word is "": it is to be a whole' '{"block": "b", "doc": "", "registers": [{"word": ""}]}'
-described 'pins\[0\].name is "a": it is to be' '{"block": "b", "doc": "", "registers": [], "pins": [{"name": "a"}]}'
+described 'block: expected a name .*, got "../b"' '{"block": "../b", "doc": "", "registers": []}'
+described 'doc: expected a text .*, got "\*/"' '{"block": "b", "doc": "*/", "registers": []}'
+described 'registers\[0\].word: expected a whole' '{"block": "b", "doc": "", "registers": [{"word": ""}]}'
+described 'pins\[0\].name: expected' '{"block": "b", "doc": "", "registers": [], "pins": [{"name": "a"}]}'
 # A probe has its signals by name, at any depth, in Verilator and, flattened, in Yosys; the ground
 # is told which they are.
 accepted probe 'adder\nprobe signals=u_adder.u_registers.u_wrapper.mask,u_modem.u_timer.clocks:17\nprobe name=other signals=u_adder.irq_o\n'

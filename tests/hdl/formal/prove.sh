@@ -24,6 +24,8 @@ mkdir -p "$work"
 cd "$work"
 rm -f ./*.aig ./*.map ./*.aiw ./*.vcd
 file=$(find "$source/bus" "$source/hdl" "$source/ip" "$source/testbench/sim" -name "$module.v")
+generated=''
+[ -n "$file" ] || [ ! -e "${GEN_DIR:-.}/$module.v" ] || generated=$GEN_DIR/$module.v file=$generated
 [ -n "$file" ] || {
     echo "$module: no $module.v below bus, hdl, ip or testbench/sim" >&2
     exit 2
@@ -31,6 +33,7 @@ file=$(find "$source/bus" "$source/hdl" "$source/ip" "$source/testbench/sim" -na
 near=$(dirname "$file") alone=
 case $file in */testbench/sim/*) near=$source/hdl/ddr alone=$file ;; esac
 folders="$source/bus $source/hdl/system $source/hdl/cdc $near"
+[ -z "$generated" ] || folders=$source/bus alone=$generated
 files=$(for folder in $folders; do ls "$folder"/*.v || true; done | sort -u)
 files="$files $alone"
 # Several clocks (a proof with `gclk`): every edge is an input of its own.
@@ -75,11 +78,11 @@ dfflegalize -cell $_DFF_P_ 01; delete -output w:*'
 aiger='opt_clean; abc -g AND -fast; opt_clean; write_aiger -zinit -map'
 # shellcheck disable=SC2086
 cat >prove.ys <<END
-verilog_defaults -add -I${GEN_DIR:-.} -I$source/bus -I$source/hdl/ddr -I$source/hdl/system
-verilog_defaults -add -I$source/testbench/sim
-read_verilog -formal -sv -DRULES $read $(echo $files)
+verilog_defaults -add -formal -sv -DRULES -I${GEN_DIR:-.} -I$source/bus -I$source/hdl/ddr
+verilog_defaults -add -I$source/hdl/system -I$source/testbench/sim
+read_verilog $read $(echo $files)
 $parameters
-hierarchy -top $module
+hierarchy -top $module -libdir ${GEN_DIR:-.}
 proc
 ${PROVE_MUTANT:-}
 flatten

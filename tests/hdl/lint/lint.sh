@@ -9,7 +9,7 @@ folders=$source/bus
 for room in fsmc ddr modem system cdc; do folders="$folders $source/hdl/$room"; done
 core=$(ls "$source"/ip/*/"$module.v" 2>/dev/null || true)
 [ -z "$core" ] || folders="$folders $(dirname "$core")"
-file=$(for f in $folders; do ls "$f/$module.v" 2>/dev/null || true; done)
+file=$(for f in $folders "$gen"; do ls "$f/$module.v" 2>/dev/null || true; done)
 refused=''
 case $module in
 bus_decoder) variants='SLOTS=1 SLOTS=4 SLOTS=64' ;;
@@ -45,8 +45,8 @@ core_gate | core_clock) # BUFGCE.v, DCM_CLKGEN.v
     ;;
 *) variants='' ;;
 esac
-search=$(for f in $folders ${core:+"$gen"}; do echo "-y $f -I$f"; done)
-libraries=$(for f in $folders ${core:+"$gen"}; do echo "-libdir $f"; done)
+search=$(for f in $folders "$gen"; do echo "-y $f -I$f"; done)
+libraries=$(for f in $folders "$gen"; do echo "-libdir $f"; done)
 each() { echo "$1" | tr , ' '; }
 verilate() { # variant [switches]
     # shellcheck disable=SC2086,SC2046

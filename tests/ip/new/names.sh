@@ -76,7 +76,7 @@ done
 # An input that only cores drive does not keep the core that drives it.
 new low_pass --lang verilog --ice "$work/a.ice" >/dev/null
 mkdir -p "$work/ip/taker"
-echo '{"pins": [{"name": "b_i", "internal": true}, {"name": "c_i", "width": 2}]}' \
+echo '{"block": "taker", "doc": "", "registers": [], "pins": [{"name": "b_i", "internal": true}, {"name": "c_i", "width": 2}]}' \
     >"$work/ip/taker/taker.regs.json"
 printf 'low_pass\ntaker c_i=low_pass.c_o b_i=low_pass.b_o\n' >"$work/ip/cores.list"
 ! remove low_pass 2>"$work/log" && grep -q 'inputs of taker' "$work/log" ||

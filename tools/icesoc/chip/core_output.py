@@ -6,8 +6,6 @@ The chip is coremap.Chip, slots are coremap.Slot.
 import copy
 import json
 
-from icesoc.regs.regmap import REGISTER
-
 CORE_PINS = 32  # of a direction
 HAND = "Generated from ip/cores.list: do not edit."
 
@@ -63,14 +61,14 @@ def map_of(chip, base):
     return json.dumps(made, indent=2, ensure_ascii=False) + "\n"
 
 
-def contract_of(description):
+def contract_of(block):
     """Returns the hash of the register properties that software relies on."""
-    lines = [json.dumps(description["type"])]
-    for r in description["registers"]:
-        r = {**REGISTER, **r}
-        lines.append(f"{r['word']} {r['page']} {r['name']} {r['access']} {r['width']}")
-        lines += [f"{r['name']}.{f['name']} {f['lsb']} {f['width']}" for f in r["fields"]]
-    lines += [f"{e['name']} {e['bit']}" for e in description.get("events", [])]
+    lines = [json.dumps(block.description["type"])]
+    for r in block.own_registers:
+        lines.append(f"{r.word} {r.page} {r.name} {r.access} {r.width}")
+        lines += [f"{r.name}.{f.name} {f.lsb} {f.width}"
+                  f"{'' if f.access == r.access else ' ' + f.access}" for f in r.fields]
+    lines += [f"{e.name} {e.bit}" for e in block.events]
     # The order in the file does not matter.
     return hash_of("".join(line + "\n" for line in sorted(lines)))
 
@@ -197,7 +195,7 @@ def empty(slot):
 def verilog_of(chip, slots):
     contracts = [0] * chip.slots
     for slot in slots:
-        contracts[slot.number] = contract_of(slot.description)
+        contracts[slot.number] = contract_of(slot.block)
     hashes = ", ".join(f"32'h{contract:08X}" for contract in reversed(contracts))
     outputs = [(f"pin_{c.name}_{p.name}", p) for c in chip.cores for p in c.pins
                if p.direction == "o"]
@@ -319,7 +317,7 @@ def instances_of(chip, slots):
         table += (f'    {{"{core.identity}", MAP_SLOT_{core.name.upper()}, '
                   f"(Ice_ObjectPtr)&{own}.servant, {own}_start, {own}_interrupt, {own}_poll}},\n")
     contracts = ",".join(f'\n    {{{{{len(slot.name)}, "{slot.name}"}}, {slot.number}, 0, '
-                         f"(Ice_Int)0x{contract_of(slot.description):08X}U}}" for slot in slots)
+                         f"(Ice_Int)0x{contract_of(slot.block):08X}U}}" for slot in slots)
     includes = "".join(f'#include "{header}"\n' for header in sorted(headers))
     return f"""/* {HAND}
  * The firmware's cores: what hw_instance.h declares. */

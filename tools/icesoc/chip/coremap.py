@@ -14,7 +14,8 @@ from dataclasses import dataclass, field
 sys.dont_write_bytecode = True
 from icesoc.regs import core_exchange
 from icesoc.chip import core_output
-from icesoc.regs.regmap import Block, Wrong, check, save
+from icesoc.regs.generate import save
+from icesoc.regs.model import Block, Wrong, check
 
 SLOT_LIMIT, PIN_LIMIT = 64, 32
 SLOT_BYTES = 64
@@ -86,7 +87,7 @@ class Slot:
     name: str
     number: int
     address: int  # the processor's
-    description: dict
+    block: Block
     bytes: int = SLOT_BYTES
 
 
@@ -119,7 +120,7 @@ class Chip:
         core = Core(line, folder, folder)
         core.check(folder in self.descriptions,
                    f"there is no core '{folder}': ip/{folder}/CMakeLists.txt, with icesoc_core")
-        self.describe(core, self.descriptions[folder])
+        self.describe(core, self.descriptions[folder].description)
         given = {}
         for word in words:
             key, _, value = word.partition("=")
@@ -323,7 +324,7 @@ def read(path):
 
 def described(path):
     try:
-        return Block.read(path).description
+        return Block.read(path)
     except Wrong as e:
         raise Wrong(f"1: error: '{path}': {e}") from None
 
@@ -341,8 +342,8 @@ def build(asked):
     for given in asked.own_clock:
         folder, hz = parts("--own-clock", given, "folder=Hz")
         if folder in descriptions:
-            descriptions[folder]["own_clock"] = int(hz)
-    base = described(asked.base)
+            descriptions[folder].description["own_clock"] = int(hz)
+    base = described(asked.base).description
     chip = Chip(read(asked.list), base, descriptions)
     for core in chip.cores:
         core.has_clock = core.folder in asked.clocked
@@ -354,8 +355,8 @@ def build(asked):
     blocks = [parts("--block", b, "slot=name=file") for b in asked.block]
     slots = [(name, int(number), described(file)) for number, name, file in blocks]
     slots += [(core.name, core.slot, descriptions[core.folder]) for core in chip.cores]
-    placed = [Slot(name, number, chip.registers + SLOT_BYTES * number, description)
-              for name, number, description in slots]
+    placed = [Slot(name, number, chip.registers + SLOT_BYTES * number, block)
+              for name, number, block in slots]
     return core_output.files(chip, placed, base) | core_exchange.files(placed)
 
 

@@ -144,7 +144,7 @@ def slot_texts(asked, ports, params):
         if roles[n] in foreign_bus.ADDRESSES:
             said[n] += ", " + core.unit
     texts, registers = foreign_bus.texts(core, names_of(asked.top, asked.files, core))
-    return texts, f"REGS {asked.name}.regs.json" + (f" CLOCK {asked.clock}"
+    return texts, f"REGS {asked.name}.regs.json WINDOW" + (f" CLOCK {asked.clock}"
                                                     if asked.clock else ""), said, registers
 
 

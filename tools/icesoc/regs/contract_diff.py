@@ -10,11 +10,12 @@ register, field or event that is gone, elsewhere or narrower, another access, an
 wider ones are compatible. Exit status: 1 where something breaks, 2 where a tree cannot be read.
 """
 import glob
-import json
 import os
 import subprocess
 import sys
 import tempfile
+
+from icesoc.regs.model import Block, Wrong
 
 ROOMS = ("hdl", "ip", "examples", "bus")
 
@@ -39,27 +40,25 @@ def blocks_of(tree, slice2c, work):
                     fail(run.stderr.rstrip().replace(tree + "/", ""))
     blocks = {}
     for file in files + glob.glob(work + "/*.regs.json"):
-        with open(file) as f:
-            try:
-                block = json.load(f)
-            except ValueError as e:
-                fail(f"{os.path.relpath(file, tree)}: {e}")
-        if "type" in block:  # a slot's
-            blocks.setdefault(block["block"], block)
+        try:
+            block = Block.read(file)
+        except Wrong as e:
+            fail(f"{os.path.relpath(file, tree)}: {e}")
+        if block.is_slot:
+            blocks.setdefault(block.name, block)
     return blocks
 
 
-def places(registers, events):
+def places(block):
     """Returns the place of each name: name -> (place in words, width in bits, access)."""
     there = {}
-    for r in registers:
-        word = "word %d" % r["word"] + (", PAGE 0x%X" % r["page"] if r.get("page", -1) >= 0 else "")
-        there[r["name"]] = (word, r.get("width", 32), r["access"])
-        for f in r.get("fields", []):
-            there[r["name"] + "." + f["name"]] = ("%s, from bit %d" % (word, f["lsb"]), f["width"],
-                                                  r["access"])
-    for e in events:
-        there["EVENT." + e["name"]] = ("bit %d" % e["bit"], 1, "w1c")
+    for r in block.own_registers:
+        word = f"word {r.word}" + (f", PAGE 0x{r.page:X}" if r.page >= 0 else "")
+        there[r.name] = (word, r.width, r.access)
+        for f in r.fields:
+            there[f"{r.name}.{f.name}"] = (f"{word}, from bit {f.lsb}", f.width, f.access)
+    for e in block.events:
+        there["EVENT." + e.name] = (f"bit {e.bit}", 1, "w1c")
     return there
 
 
@@ -67,11 +66,11 @@ def compare(old, new):
     """Compares two descriptions of one block: breaking changes, compatible ones."""
     breaking, compatible = [], []
     for key in ("type", "memory_bytes"):
-        before, after = old.get(key, 0), new.get(key, 0)
+        before, after = old.description.get(key, 0), new.description.get(key, 0)
         if before != after:
             grown = key == "memory_bytes" and after > before
             (compatible if grown else breaking).append(f"{key} {before} is {after}")
-    before, after = (places(b["registers"], b.get("events", [])) for b in (old, new))
+    before, after = map(places, (old, new))
     for name, (place, width, access) in before.items():
         if name not in after:
             breaking.append(f"{name} ({place}) is gone")
@@ -84,7 +83,10 @@ def compare(old, new):
         elif now_width > width:
             compatible.append(f"{name} has {now_width} bits, and had {width}")
         # A register that was read-only and can be written now breaks nobody.
-        if now_access != access and "." not in name:
+        register = name.split(".")[0]
+        follows = "." in name and (access, now_access) == tuple(
+            names.get(register, ("", 0, ""))[2] for names in (before, after))
+        if now_access != access and not follows:
             ((compatible if (access, now_access) == ("ro", "rw") else breaking)
              .append(f"{name} is {now_access}, and was {access}"))
     compatible += [f"{name} ({after[name][0]}) is new" for name in after if name not in before]

@@ -5,13 +5,16 @@ CMSIS-SVD 1.3, SystemRDL 2.0 and IP-XACT (IEEE 1685-2014). Slots are coremap.Slo
 """
 import xml.etree.ElementTree as ET
 
-from icesoc.regs.regmap import registers_of
+from icesoc.regs import names
+from icesoc.regs.model import Field
 
 HAND = "Generated from ip/cores.list: do not edit."
 TITLE = "Registers of the FPGA in the FSMC window NE2"
-XML_ACCESS = {"ro": "read-only", "ws": "write-only", "rw": "read-write", "w1c": "read-write"}
+XML_ACCESS = {"ro": "read-only", "ws": "write-only", "rw": "read-write", "w1c": "read-write",
+              "w1s": "read-write"}
 RDL_ACCESS = {"ro": "sw=r; hw=w;", "ws": "sw=w; hw=r;", "rw": "sw=rw; hw=r;",
-              "w1c": "sw=rw; hw=w; onwrite=woclr;"}
+              "w1c": "sw=rw; hw=w; onwrite=woclr;", "w1s": "sw=rw; hw=w; onwrite=woset;"}
+MODIFIED = {"w1c": "oneToClear", "w1s": "oneToSet"}
 
 
 def element(tag, *content, **attributes):
@@ -32,22 +35,23 @@ def xml(root):
 
 
 def svd_register(r):
-    fields = [element("field", ("name", f["name"]), ("description", f["doc"]),
-                      ("bitOffset", str(f["lsb"])), ("bitWidth", str(f["width"])))
-              for f in r["fields"]]
-    return element("register", ("name", r["name"]), ("description", r["doc"]),
-                   r["page"] >= 0 and ("alternateGroup", f"PAGE_0x{r['page']:X}"),
-                   ("addressOffset", f"0x{4 * r['word']:X}"), ("access", XML_ACCESS[r["access"]]),
-                   r["access"] == "w1c" and ("modifiedWriteValues", "oneToClear"),
+    fields = [element("field", ("name", f.name), ("description", f.doc),
+                      ("bitOffset", str(f.lsb)), ("bitWidth", str(f.width)),
+                      f.access != r.access and ("access", XML_ACCESS[f.access]))
+              for f in r.fields]
+    return element("register", ("name", r.name), ("description", r.doc),
+                   r.page >= 0 and ("alternateGroup", f"PAGE_0x{r.page:X}"),
+                   ("addressOffset", f"0x{4 * r.word:X}"), ("access", XML_ACCESS[r.access]),
+                   r.access in MODIFIED and ("modifiedWriteValues", MODIFIED[r.access]),
                    fields and ("fields", *fields))
 
 
 def svd_of(slots):
     peripherals = [element(
-        "peripheral", ("name", s.name.upper()), ("description", s.description["doc"]),
+        "peripheral", ("name", s.name.upper()), ("description", s.block.doc),
         ("baseAddress", f"0x{s.address:08X}"),
         ("addressBlock", ("offset", "0"), ("size", f"0x{s.bytes:X}"), ("usage", "registers")),
-        ("registers", *map(svd_register, registers_of(s.description)))) for s in slots]
+        ("registers", *map(svd_register, s.block.registers))) for s in slots]
     return xml(element(
         "device", ("name", "IceSoC"), ("version", "1.0"), ("description", f"{TITLE}."),
         ("addressUnitBits", "8"), ("width", "32"), ("size", "32"), ("resetValue", "0"),
@@ -58,11 +62,11 @@ def svd_of(slots):
 
 def fields_of(r):
     """Returns a register's fields; one without has the field WORD."""
-    return r["fields"] or [{"name": "WORD", "lsb": 0, "width": r["width"], "doc": r["doc"]}]
+    return r.fields or [Field("WORD", 0, r.width, r.doc, r.access, r.reset)]
 
 
 def address_of(r):
-    return 4 * r["word"] if r["page"] < 0 else r["page"] + 4 * (r["word"] - 8)
+    return 4 * r.word if r.page < 0 else r.page + 4 * (r.word - 8)
 
 
 def split(slot):
@@ -71,8 +75,8 @@ def split(slot):
     The latter share their addresses in the slot, so they have an address map of their own,
     <SLOT>_PAGES: by their byte addresses in the core.
     """
-    registers = registers_of(slot.description)
-    return ([r for r in registers if r["page"] < 0], [r for r in registers if r["page"] >= 0])
+    registers = slot.block.registers
+    return ([r for r in registers if r.page < 0], [r for r in registers if r.page >= 0])
 
 
 def quoted(text):
@@ -80,12 +84,20 @@ def quoted(text):
 
 
 def rdl_register(r):
-    s = f"        reg {{\n            desc = {quoted(r['doc'])};\n"
+    s = f"        reg {{\n            desc = {quoted(r.doc)};\n"
     for f in fields_of(r):
-        reset = f" = {f['reset']}" if "reset" in f else ""
-        s += (f"            field {{ {RDL_ACCESS[r['access']]} desc = {quoted(f['doc'])}; }} "
-              f"{f['name']}[{f['lsb'] + f['width'] - 1}:{f['lsb']}]{reset};\n")
-    return s + f"        }} {r['name']} @ 0x{address_of(r):X};\n"
+        reset = f" = 0x{f.reset:X}" if f.has_reset or f.reset else ""
+        s += (f"            field {{ {rdl_access(r, f)} desc = {quoted(f.doc)}; }} "
+              f"{names.rdl(f.name)}[{f.msb}:{f.lsb}]{reset};\n")
+    return s + f"        }} {names.rdl(r.name)} @ 0x{address_of(r):X};\n"
+
+
+def rdl_access(r, f):
+    """Returns a field's access; the core itself may change what it keeps."""
+    more = "".join(f" {flag};" for flag in ("hwset", "hwclr") if getattr(f, flag))
+    if f.access == "rw" and r.storage == "core":
+        return "sw=rw; hw=rw;" + more
+    return RDL_ACCESS[f.access] + more
 
 
 def rdl_of(slots):
@@ -93,34 +105,34 @@ def rdl_of(slots):
     maps, pages = "", ""
     for slot in slots:
         own, paged = split(slot)
-        name, block = slot.name.upper(), slot.description
+        name, block = names.rdl(slot.name.upper()), slot.block
         if paged:
             pages += (f'addrmap {name}_PAGES {{\n    desc = "By byte address in the core.";\n'
                       f"{words}{''.join(map(rdl_register, paged))}}};\n")
-        maps += f"    addrmap {{\n        desc = {quoted(block['doc'])};\n"
-        if block.get("memory_bytes"):
-            maps += f"        memory_bytes = {block['memory_bytes']};\n"
+        maps += f"    addrmap {{\n        desc = {quoted(block.doc)};\n"
+        if block.memory_bytes:
+            maps += f"        memory_bytes = {block.memory_bytes};\n"
         maps += f"{''.join(map(rdl_register, own))}    }} {name} @ 0x{slot.address:X};\n"
     return (f"// {TITLE} (SystemRDL 2.0). {HAND}\n"
             "property memory_bytes { type = longint unsigned; component = addrmap; };\n"
             f"{pages}addrmap icesoc {{\n{words}{maps}}};\n")
 
 
-def ipxact_field(f, access):
-    reset = "reset" in f and ("resets", ("reset", ("value", "'h" + f["reset"][2:])))
-    return element("field", ("name", f["name"]), ("description", f["doc"]),
-                   ("bitOffset", str(f["lsb"])), reset, ("bitWidth", str(f["width"])),
-                   ("access", XML_ACCESS[access]),
-                   access == "w1c" and ("modifiedWriteValue", "oneToClear"))
+def ipxact_field(f):
+    reset = (f.has_reset or f.reset) and ("resets", ("reset", ("value", f"'h{f.reset:X}")))
+    return element("field", ("name", f.name), ("description", f.doc),
+                   ("bitOffset", str(f.lsb)), reset, ("bitWidth", str(f.width)),
+                   ("access", XML_ACCESS[f.access]),
+                   f.access in MODIFIED and ("modifiedWriteValue", MODIFIED[f.access]))
 
 
 def ipxact_block(slot, registers, address):
-    parts = [element("register", ("name", r["name"]), ("description", r["doc"]),
+    parts = [element("register", ("name", r.name), ("description", r.doc),
                      ("addressOffset", f"'h{address_of(r):x}"), ("size", "32"),
-                     *(ipxact_field(f, r["access"]) for f in fields_of(r))) for r in registers]
+                     *map(ipxact_field, fields_of(r))) for r in registers]
     size = max(slot.bytes, *(address_of(r) + 4 for r in registers))
     return element("addressBlock", ("name", slot.name.upper()),
-                   ("description", slot.description["doc"]), ("baseAddress", f"'h{address:x}"),
+                   ("description", slot.block.doc), ("baseAddress", f"'h{address:x}"),
                    ("range", str(size)), ("width", "32"), *parts)
 
 

@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""rdl: makes register descriptions (*.regs.json) of SystemRDL 2.0: make from-rdl RDL=spi.rdl
-OUT=folder.
+"""rdl: makes register descriptions (*.regs.json) from SystemRDL 2.0.
 
-    rdl.py spi.rdl FOLDER [--first 3]
+    ./icesoc from-rdl --rdl spi.rdl --out FOLDER
 
-Reads a flat subset: addrmap, reg and field, named or not, defaults, addresses, resets; enums and
-properties of others are passed over. Register n of an addrmap gets word FIRST + n, behind the three
-words that every slot has; one that begins with ID, EVENT and MASK, as those of icesoc.rdl, has them
-already; <SLOT>_PAGES has the words behind the slot's PAGE. Regfiles, memories, arrays and
-parameters, which have no words of their own, are errors.
+Reads a flat subset: addrmap, reg and field. Register n of an addrmap gets word FIRST + n, after the
+three words that every slot has; an addrmap that begins with ID, EVENT and MASK, as those of
+icesoc.rdl, has them already; <SLOT>_PAGES has the words after the slot's PAGE. Anything that a
+register description cannot express is an error with its line (rdl_properties.py).
 """
 import argparse
 import json
@@ -16,224 +14,209 @@ import os
 import re
 import sys
 
-sys.dont_write_bytecode = True
-from icesoc.regs.regmap import Block, Wrong, check
+from icesoc.regs.model import Block, Wrong, check
+from icesoc.regs.rdl_reader import Reader, number, unquoted
 
-TOKEN = re.compile(r'(?P<string>"(?:[^"\\]|\\.)*")|(?P<number>\d+\'[hbdoHBDO][\da-fA-F_]+|0[xX][\da-fA-F_]+|\d+)'
-                   r'|(?P<name>\\?[A-Za-z_]\w*)|(?P<sign>->|[+%]=|[^\s])', re.A)
-ACCESS = {"r": "ro", "w": "ws", "rw": "rw", "wr": "rw", "rw1": "rw", "w1": "ws"}
+HARDWARE_WRITES = {"w", "rw", "wr", "w1", "rw1"}
 
 
-def number(text):
-    check(len(text) <= 80, f"a number of {len(text)} digits")
-    text = text.replace("_", "").lower()
-    if "'" in text:
-        digits = text.split("'")[1]
-        return int(digits[1:], {"h": 16, "b": 2, "d": 10, "o": 8}[digits[0]])
-    return int(text, 16 if text.startswith("0x") else 10)
+def fail(line, text):
+    raise Wrong(f"{line}: error: {text}")
 
 
-def bytes_in(width):
-    check(width in ("8", "16", "32", "64"), f"regwidth is 8, 16, 32 or 64, not '{width}'")
-    return int(width) // 8
-
-
-class Component:
-    def __init__(self, kind, parent):
-        self.kind, self.parent, self.properties, self.defaults, self.types, self.children = kind, parent, {}, {}, {}, []
-
-    def find_type(self, name):
-        return self.types.get(name) or (self.parent and self.parent.find_type(name))
-
-    def default(self, name):
-        return self.defaults[name] if name in self.defaults else self.parent and self.parent.default(name)
-
-    def get(self, name, otherwise=None):
-        if name in self.properties:
-            return self.properties[name]
-        value = self.parent and self.parent.default(name)
-        return otherwise if value is None else value
-
-
-class Reader:
-    """Reads a file as a tree: each component's children are (instance's name, msb, lsb, reset,
-    address, component)."""
-
-    def __init__(self, path):
-        with open(path) as f:
-            text = f.read()
-        # Comments keep their lines; those within strings are text.
-        text = re.sub(r'"(?:[^"\\]|\\.)*"|//[^\n]*|/\*.*?\*/',
-                      lambda m: m[0] if m[0][0] == '"' else re.sub(r"[^\n]", " ", m[0]), text,
-                      flags=re.S)
-        self.tokens = [(m.lastgroup, m[0], text.count("\n", 0, m.start()) + 1)
-                       for m in TOKEN.finditer(text)]
-        self.at, self.last = 0, text.count("\n") + 1
-
-    def peek(self, ahead=0):
-        return self.tokens[self.at + ahead][1] if self.at + ahead < len(self.tokens) else ""
-
-    def fail(self, text):
-        line = self.tokens[self.at][2] if self.at < len(self.tokens) else self.last
-        raise Wrong("%d: error: %s" % (line, text))
-
-    def take(self, wanted=None):
-        token = self.peek()
-        if not token or (wanted and token != wanted):
-            self.fail("'%s' comes where '%s' is to come" % (token or "the end", wanted or "more"))
-        self.at += 1
-        return token
-
-    def take_number(self):
-        try:
-            isNumber = self.at < len(self.tokens) and self.tokens[self.at][0] == "number"
-            value = number(self.peek()) if isNumber else 1 << 64
-        except ValueError:  # 2'b3
-            value = 1 << 64
-        if value >= 1 << 64:
-            self.fail("'%s' is no number; expressions and parameters are not of the flat subset" %
-                      self.peek()[:80])
-        self.take()
-        return value
-
-    def file(self):
-        root = Component("root", None)
-        self.body(root, "")
-        return root
-
-    def body(self, parent, end):
-        while self.peek() != end:
-            word = self.take()
-            if word in ("addrmap", "reg", "field"):
-                component = Component(word, parent)
-                if self.peek() != "{":
-                    parent.types[self.take()] = component
-                if self.peek() == "#":
-                    self.fail("parameters are not of the flat subset")
-                self.take("{")
-                self.body(component, "}")
-                self.take("}")
-                if self.peek() in ("external", "internal"):
-                    self.take()
-                if self.peek() != ";":
-                    self.instances(parent, component)
-                elif word == "addrmap" and parent.kind == "root":
-                    name = [n for n, c in parent.types.items() if c is component]
-                    if not name:
-                        self.fail("an addrmap of the file has no name")
-                    parent.children.append((name[0], 0, 0, None, 0, component))
-            elif word in ("enum", "property"):
-                while self.take() != "}":
-                    pass
-            elif word == "default":
-                self.property(parent.defaults, self.take())
-            elif word in ("regfile", "mem", "signal", "struct", "constraint"):
-                self.at -= 1
-                self.fail("%s is not of the flat subset: addrmap, reg, field" % word)
-            elif word in ("external", "internal"):
-                continue
-            elif parent.find_type(word) and self.peek() not in ("=", ";"):
-                self.instances(parent, parent.find_type(word))
-            else:
-                self.property(parent.properties, word)
-            self.take(";")
-
-    def property(self, where, name):
-        value: object = True
-        if self.peek() == "=":
-            self.take()
-            words = []
-            while self.peek() not in (";", ""):
-                words.append(self.take())
-            value = words[0] if len(words) == 1 else " ".join(words)
-        where[name.split()[0]] = value
-
-    def instances(self, parent, component):
-        while True:
-            name, msb, lsb, reset, address = self.take().lstrip("\\"), None, None, None, None
-            if self.peek() == "[":
-                if component.kind != "field":
-                    self.fail("arrays are not of the flat subset: name each register")
-                self.take()
-                msb, lsb = self.take_number(), 0
-                if self.peek() == ":":
-                    self.take()
-                    lsb = self.take_number()
-                else:
-                    msb, lsb = msb - 1, None  # a width: from the next free bit on
-                self.take("]")
-            if self.peek() == "=":
-                self.take()
-                reset = self.take_number()
-            if self.peek() == "@":
-                self.take()
-                address = self.take_number()
-            if self.peek() in ("+=", "%="):
-                self.fail("strides are not of the flat subset: give each register its address")
-            parent.children.append((name, msb, lsb, reset, address, component))
-            if self.peek() != ",":
-                return
-            self.take()
+def number_of(component, name, otherwise):
+    """Returns the value of a property that is a number."""
+    text = component.get(name)
+    if text is None:
+        return otherwise
+    try:
+        return number(text)
+    except (ValueError, IndexError):
+        fail(component.lines.get(name, component.line),
+             f"{name}: expected a number, got {text[:40]}; expressions and references are not part "
+             "of the flat subset")
 
 
 def text_of(component):
     text = component.get("desc") or component.get("name") or ""
-    return re.sub(r"\s+", " ", re.sub(r"\\(.)", r"\1", str(text).strip('"'))).strip()
+    return unquoted(text) if text.startswith('"') else ""
 
 
-def register_of(name, reg, word):
-    """Returns a register of a description, and the resets of its fields."""
-    fields, resets, accesses, used, next_bit = [], {}, set(), 0, 0
-    overlap = False
-    for field_name, msb, lsb, reset, _, field in reg.children:
-        if lsb is None:  # a width, or one bit
-            lsb = next_bit
-            msb = lsb + (msb or 0)
-        if msb > 31 or msb < lsb:
-            raise Wrong("%s.%s is at bits %d to %d: a word has bits 31 to 0" %
-                        (name, field_name, msb, lsb))
-        bits = (1 << msb - lsb + 1) - 1 << lsb
-        overlap |= bool(used & bits)
-        used, next_bit = used | bits, msb + 1
-        access = ACCESS.get(field.get("sw", "rw"), "rw")
-        if access == "rw" and (field.get("onwrite") == "woclr" or field.get("woclr")):
-            access = "w1c"
-        accesses.add(access)
-        resets[field_name] = reset
-        fields.append({"name": field_name, "lsb": lsb, "width": msb - lsb + 1,
-                       "doc": text_of(field)})
-    if not fields:
-        raise Wrong("%s has no field" % name)
-    access = accesses.pop() if len(accesses) == 1 else "rw"
-    register = {"word": word, "name": name, "access": access, "doc": text_of(reg)}
-    if overlap or (len(fields) == 1 and fields[0]["name"] == "WORD" and fields[0]["lsb"] == 0):
-        if used != 0xFFFFFFFF:
-            register["width"] = used.bit_length()
+def present(instances):
+    return [i for i in instances if i.component.get("ispresent", "true") == "true"]
+
+
+def access_of(field, name, line):
+    """Returns what software can do with a field."""
+    software, writes = field.get("sw", "rw"), []
+    if field.is_set("woclr") or field.get("onwrite") == "woclr":
+        writes.append("w1c")
+    if field.is_set("woset") or field.get("onwrite") == "woset":
+        writes.append("w1s")
+    if field.is_set("singlepulse"):
+        writes.append("ws")
+    if len(writes) > 1 or (writes and software not in ("rw", "wr", "w")):
+        fail(line, f"{name}: sw = {software} with {' and '.join(writes) or 'nothing'}: a register "
+             "description cannot express it")
+    if software == "r":
+        return "ro"
+    if software == "w" and writes != ["ws"]:
+        if writes:
+            fail(line, f"{name}: sw = w with {writes[0]}: a field that cannot be read has no bits "
+                 "to show")
+        return "ws"
+    return writes[0] if writes else "rw"
+
+
+def bits_of(instance, name, next_bit):
+    """Returns the lowest bit and the width of a field."""
+    given = number_of(instance.component, "fieldwidth", None)
+    if instance.msb is not None:
+        msb, lsb = instance.msb, instance.lsb
     else:
-        register["fields"] = sorted(fields, key=lambda f: f["lsb"])
-    return register, resets
+        width = instance.width or (given if instance.width is None else 0)
+        width = 1 if width is None else width
+        lsb, msb = next_bit, next_bit + width - 1
+    top = min(31, number_of(instance.component.parent, "regwidth", 32) - 1)
+    if msb > top or msb < lsb:
+        fail(instance.line, f"{name} is at bits {msb} to {lsb}: a word has bits {top} to 0")
+    if given is not None and given != msb - lsb + 1:
+        fail(instance.line, f"{name}: fieldwidth is {given}, its bits are {msb} to {lsb}")
+    return lsb, msb - lsb + 1
+
+
+class Fields:
+    """The fields of a register, as a description has them."""
+
+    def __init__(self, register, name):
+        self.fields, self.accesses, self.strobes = [], [], set()
+        self.used, self.written_by_core, self.overlap = 0, False, False
+        next_bit = 0
+        for instance in present(register.children):
+            if instance.component.kind != "field":
+                fail(instance.line, f"{name}: expected fields, got {instance.component.kind}")
+            lsb, width = bits_of(instance, f"{name}.{instance.name}", next_bit)
+            next_bit = lsb + width
+            self.add(instance, f"{name}.{instance.name}", lsb, width)
+
+    def add(self, instance, name, lsb, width):
+        field, line = instance.component, instance.line
+        access = access_of(field, name, line)
+        bits = (1 << width) - 1 << lsb
+        if self.used & bits:
+            self.overlap = True
+            if {access, *self.accesses} != {"ro", "ws"}:
+                fail(line, f"{name}: overlaps another field")
+        self.used |= bits
+        self.accesses.append(access)
+        if field.is_set("swmod") or field.is_set("swacc"):
+            self.strobes |= {"write"} if access != "ro" else set()
+            self.strobes |= {"read"} if field.is_set("swacc") else set()
+        made = {"name": instance.name, "lsb": lsb, "width": width, "doc": text_of(field)}
+        reset = instance.reset if instance.reset is not None else number_of(field, "reset", None)
+        if reset:
+            if reset >> width:
+                fail(line, f"{name}: reset {reset} does not fit {width} bits")
+            made["reset"] = f"0x{reset:X}"
+        for flag in ("hwset", "hwclr"):
+            if field.is_set(flag):
+                if access != "rw":
+                    fail(line, f"{name}: {flag} is for a field that software reads and writes")
+                made[flag] = True
+        if access == "rw" and field.get("hw") in HARDWARE_WRITES and not (
+                "hwset" in made or "hwclr" in made):
+            self.written_by_core = True
+        self.fields.append(made)
+
+
+def register_of(instance, word):
+    name, register = instance.name, instance.component
+    found = Fields(register, name)
+    if not found.fields:
+        fail(instance.line, f"{name} has no field")
+    kinds = set(found.accesses)
+    made = {"word": word, "name": name, "access": kinds.pop() if len(kinds) == 1 else "rw",
+            "doc": text_of(register)}
+    if set(found.accesses) == {"ro", "ws"} and found.overlap:
+        made["storage"] = "core"  # a read gives something else than what was written
+    elif len(found.accesses) > 1 and len(set(found.accesses)) > 1:
+        others = set(found.accesses) - {"ro"}
+        if len(others) > 1 or others == {"ws"}:
+            fail(instance.line, f"{name} has fields with access {', '.join(found.accesses)}: a "
+                 "register has one access, and may have fields that are ro beside it")
+        made["access"] = others.pop()
+        for field, access in zip(found.fields, found.accesses):
+            if access == "ro":
+                field["access"] = "ro"
+    if found.written_by_core and made["access"] == "rw":
+        made["storage"] = "core"
+    if found.strobes:
+        made["strobes"] = sorted(found.strobes)
+    whole = found.fields[0]
+    if found.overlap or (len(found.fields) == 1 and whole["name"] == "WORD" and whole["lsb"] == 0):
+        if found.used != 0xFFFFFFFF:
+            made["width"] = found.used.bit_length()
+        if not found.overlap and "reset" in whole:
+            made["reset"] = whole["reset"]
+    else:
+        made["fields"] = sorted(found.fields, key=lambda f: f["lsb"])
+    return made
+
+
+def addresses_of(component):
+    """Returns (instance, byte address, bytes) of the registers of an addrmap."""
+    alignment = number_of(component, "alignment", 1)
+    if alignment < 1 or alignment & alignment - 1:
+        fail(component.lines.get("alignment", component.line),
+             f"alignment: expected a power of two, got {alignment}")
+    found, next_address = [], 0
+    for instance in present(component.children):
+        register = instance.component
+        if register.kind != "reg":
+            fail(instance.line, f"expected a reg in an addrmap, got {register.kind}")
+        size = number_of(register, "regwidth", 32) // 8
+        step = size
+        if component.get("addressing") == "compact":
+            step = min(size, number_of(register, "accesswidth", 8 * size) // 8)
+        step = max(step, alignment)
+        address = instance.address
+        if address is None:
+            address = -(-next_address // step) * step
+        elif address % size:
+            fail(instance.line, f"{instance.name} @ 0x{address:X}: not a multiple of its {size} "
+                 "bytes")
+        next_address = address + size
+        found.append((instance, address, size))
+    return found
+
+
+def unit_of(placed, component):
+    """Returns the bytes from a word to the next: of the bus, which has one width."""
+    sizes = {size for *_, size in placed}
+    if all(address % 4 == 0 for _, address, _ in placed) and max(sizes) <= 4:
+        return 4 if len(placed) > 1 else min(sizes)
+    if len(sizes) > 1:
+        fail(component.line, f"registers of {' and '.join(str(8 * s) for s in sorted(sizes))} bits "
+             "share words of 32 bits: give them one regwidth, or addresses that are multiples of 4")
+    return sizes.pop()
 
 
 def block_of(name, component, first):
-    bytes_of, next_address = bytes_in(component.default("regwidth") or "32"), 0
-    registers, resets = [], {}
-    for reg_name, _, _, _, address, reg in component.children:
-        bytes_of = bytes_in(reg.get("regwidth", str(8 * bytes_of)))
-        address = next_address if address is None else address
-        next_address = address + bytes_of
-        register, found = register_of(reg_name, reg, address // bytes_of)
-        registers.append(register)
-        resets[reg_name] = found
-    block = {"block": name.lower(), "doc": text_of(component)}
+    placed = addresses_of(component)
+    unit = unit_of(placed, component) if placed else 4
+    registers = [register_of(instance, address // unit) for instance, address, _ in placed]
+    lines = {instance.name: instance.line for instance, *_ in placed}
     letters = (re.sub(r"[^A-Za-z]", "", name) + "XX")[:2].upper()
+    block = {"block": name.lower(), "doc": text_of(component)}
     if "memory_bytes" in component.properties:
-        block.update(memory_port=True, memory_bytes=int(component.get("memory_bytes")))
-    block["type"], block["version"], events = "0x%04X" % int.from_bytes(letters.encode(),
-                                                                        "big"), "0x0100", []
+        block.update(memory_port=True, memory_bytes=number_of(component, "memory_bytes", 0))
+    block.update(type=f"0x{int.from_bytes(letters.encode(), 'big'):04X}", version="0x0100")
+    events = []
     if [r["name"] for r in registers[:3]] == ["ID", "EVENT", "MASK"]:
+        resets = {f["name"]: f.get("reset") for f in registers[0].get("fields", [])}
         for key, field in (("type", "TYPE"), ("version", "VERSION")):
-            if resets["ID"].get(field) is not None:
-                block[key] = "0x%04X" % resets["ID"][field]
+            if resets.get(field):
+                block[key] = f"0x{int(resets[field], 16):04X}"
         events = [{"name": f["name"], "bit": f["lsb"], "doc": f["doc"]}
                   for f in registers[1].get("fields", [])]
         registers = registers[3:]
@@ -242,23 +225,43 @@ def block_of(name, component, first):
             register["word"] += first
     for register in registers:
         if register["word"] > 15:
-            raise Wrong("%s would be word %d of its slot, which has 16" %
-                        (register["name"], register["word"]))
+            fail(lines[register["name"]], f"{register['name']} would be word {register['word']} of "
+                 "its slot, which has 16")
     return dict(block, registers=registers, **({"events": events} if events else {}))
 
 
+def add_pages(block, name, component):
+    for instance in present(component.children):
+        address = instance.address
+        if address is None:
+            fail(instance.line, f"{instance.name} of {name}_PAGES has no address")
+        if address % 4:
+            fail(instance.line, f"{instance.name} @ 0x{address:X}: not a multiple of 4")
+        register = register_of(instance, 8 + address // 4 % 8)
+        block["registers"].append(dict(register, page=address // 32 * 32))
+
+
 def blocks_of(path, first):
-    """Returns the descriptions of the file's blocks, each one that regmap.py takes."""
+    """Returns the descriptions of the file's blocks."""
     root = Reader(path).file()
-    maps = [(n, c) for n, _, _, _, _, c in root.children if c.kind == "addrmap"]
-    inner = [(n, c) for _, top in maps for n, _, _, _, _, c in top.children if c.kind == "addrmap"]
-    blocks = [block_of(n, c, first) for n, c in inner or maps]
-    pages = {n[:-6]: c for n, c in maps if n.endswith("_PAGES")} if inner else {}
-    for (name, _), block in zip(inner, blocks):
-        for reg_name, _, _, _, address, reg in pages[name].children if name in pages else []:
-            check(address is not None, f"{reg_name} of {name}_PAGES has no address")
-            register, _ = register_of(reg_name, reg, 8 + address // 4 % 8)
-            block["registers"].append(dict(register, page=address // 32 * 32))
+    maps = [i for i in present(root.children) if i.component.kind == "addrmap"]
+    stray = [i for i in root.children if i.component.kind != "addrmap"]
+    if stray:
+        fail(stray[0].line, f"{stray[0].name} is outside of an addrmap")
+    inner = [i for top in maps for i in present(top.component.children)
+             if i.component.kind == "addrmap"]
+    for top in maps:
+        others = [i for i in top.component.children if i.component.kind != "addrmap"]
+        if others and any(i.component.kind == "addrmap" for i in top.component.children):
+            fail(others[0].line, f"{others[0].name} is beside addrmaps: give it an addrmap too")
+    pages = {i.name[:-6]: i.component for i in maps if i.name.endswith("_PAGES")} if inner else {}
+    unused = [i for i in maps if inner and not i.name.endswith("_PAGES") and not any(
+        c.component.kind == "addrmap" for c in i.component.children)]
+    blocks = [block_of(i.name, i.component, first) for i in (inner or maps)]
+    blocks += [block_of(i.name, i.component, first) for i in unused]
+    for instance, block in zip(inner, blocks):
+        if instance.name in pages:
+            add_pages(block, instance.name, pages[instance.name])
     check(blocks, "1: error: there is no addrmap in it")
     names = [Block(block).name for block in blocks]
     check(len(names) == len(set(names)), "two addrmaps have one name")
@@ -268,9 +271,10 @@ def blocks_of(path, first):
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("file", help="SystemRDL")
-    parser.add_argument("folder", help="where <block>.regs.json go")
-    parser.add_argument("--first", type=int, default=3, help="word of the first register (3)")
+    parser.add_argument("file", help="SystemRDL file")
+    parser.add_argument("folder", help="folder of the <block>.regs.json")
+    parser.add_argument("--first", type=int, default=3,
+                        help="word of the first register (default 3)")
     args = parser.parse_args()
     if not args.file or not args.folder:
         sys.exit("usage: make from-rdl RDL=spi.rdl OUT=ip/spi")
@@ -282,12 +286,12 @@ def main():
             with open(path, "w") as f:
                 f.write(json.dumps(block, indent=2) + "\n")
     except RecursionError:
-        sys.exit("%s:1: error: its components are nested too deep" % args.file)
+        sys.exit(f"{args.file}:1: error: its components are nested too deep")
     except UnicodeDecodeError:
-        sys.exit("%s:1: error: it is no text in UTF-8" % args.file)
+        sys.exit(f"{args.file}:1: error: it is no text in UTF-8")
     except (Wrong, OSError) as e:
         text = str(e)
-        sys.exit("%s:%s%s" % (args.file, "" if text[0].isdigit() else " error: ", text))
+        sys.exit(f"{args.file}:{'' if text[0].isdigit() else ' error: '}{text}")
     print("\n".join(files))
 
 

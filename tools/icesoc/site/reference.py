@@ -7,7 +7,8 @@ import json
 import re
 from pathlib import Path
 
-from icesoc.regs import regmap
+from icesoc.regs.generate import markdown
+from icesoc.regs.model import Block
 from icesoc.site import hdl, symbol
 
 # Folders with reusable RTL, and their titles.
@@ -140,9 +141,9 @@ def write_registers(tree, pages):
     names = []
     for path in sorted([*tree.glob("hdl/**/*.regs.json"), *tree.glob("ip/*/*.regs.json"),
                         *tree.glob("bus/*.regs.json")]):
-        block = regmap.Block.read(str(path))
+        block = Block.read(path)
         write(pages / "reference/registers" / f"{block.name}.md",
-              regmap.markdown(block) + f"\nFrom `{path.relative_to(tree)}`.\n")
+              markdown(block) + f"\nFrom `{path.relative_to(tree)}`.\n")
         names.append(block.name)
     write_index(pages, "registers", "Register maps", "Words are 32 bits wide. Cores with a Slice "
                 "interface get their registers at build time; those pages are in "

@@ -101,8 +101,9 @@ def script_of(run, library, options, output, more="", memory=False):
         permuted = mapping.replace("@ORDER@", f"permute,-S,{order};strash;")
         orders += (f"design -load unmapped\n{permuted}select A:top\n"
                    f"json -o {netlist_of_order(run.netlist, order)}\nselect -clear\n")
-    for place, text in (("NO_MEMORY", ""), ("MAP", mapping.replace("@ORDER@", "")),
-                        ("ORDERS", orders), ("CELLS", cells), ("MORE", more), ("SOURCES", sources),
+    # What an order has in it is filled in after the orders.
+    for place, text in (("MAP", mapping.replace("@ORDER@", "")), ("ORDERS", orders),
+                        ("NO_MEMORY", ""), ("CELLS", cells), ("MORE", more), ("SOURCES", sources),
                         ("INCLUDES", includes), ("PARAMETERS", parameters),
                         ("TOP", run.design.top), ("OUTPUT", output)):
         script = script.replace(f"@{place}@", str(text))

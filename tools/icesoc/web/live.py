@@ -27,6 +27,8 @@ import signal
 import struct
 from http import HTTPStatus
 
+from icesoc.regs.model import Block, Wrong
+
 PATIENCE = 10  # seconds
 NEWEST = 128 << 10  # bytes of events.jsonl that a page shows: a long flight does not make it large
 MOST_VEHICLES = 32  # of a modem of the ground
@@ -84,38 +86,33 @@ def picture(folder, address):
 
 
 def blocks_by_slot(registers):
-    """[(slot, the description of its block)]; registers: a file that lists the blocks' *.regs.json,
-    one a line."""
-    blocks = {}
+    """Returns [(slot, name, its block or None)]; `registers`: file that lists the blocks'
+    *.regs.json, one a line."""
     with open(registers) as paths:
-        for path in filter(None, paths.read().split("\n")):
-            with open(path) as file:
-                block = json.load(file)
-            blocks[block["block"]] = block
+        found = [Block.read(path) for path in filter(None, paths.read().split("\n"))]
+    blocks = {block.name: block for block in found}
     slots = []
-    for constant in blocks["map"]["constants"]:
-        prefix, _, block = constant["name"].lower().partition("slot_")
-        if not prefix and block not in ("", "count"):
-            slots.append((constant["value"], {**blocks.get(block, {}), "block": block}))
+    for constant in blocks["map"].constants:
+        prefix, _, name = constant.name.lower().partition("slot_")
+        if not prefix and name not in ("", "count"):
+            slots.append((constant.value, name, blocks.get(name)))
     return sorted(slots, key=lambda slot: slot[0])
 
 
 def register(block, word, value, seen):
-    """Returns a word with its name and its fields; the fields of EVENT and MASK are the block's
-    events. What was written to EVENT is no state: each one in it has cleared an event."""
-    described = next((r for r in block.get("registers", []) if r["word"] == word), {})
-    fields = [{"name": f["name"], "value": value >> f["lsb"] & (1 << f["width"]) - 1,
-               "doc": f.get("doc", "")} for f in described.get("fields", [])]
-    clears = word == 1 and seen == WRITTEN
-    for event in block.get("events", []) if word in (1, 2) else []:
-        bit = value >> event["bit"] & 1
-        if bit or not clears:
-            fields.append({"name": event["name"], "value": "cleared" if clears else bit,
-                           "doc": event.get("doc", "")})
+    """Returns a word with its name and its fields. What was written to EVENT is not a state: each 1
+    has cleared an event."""
     common = ("ID", "EVENT", "MASK")
-    name = described.get("name", common[word] if word < 3 else f"word {word}")
+    found = next((r for r in block.registers if r.word == word), None) if block else None
+    clears = word == 1 and seen == WRITTEN
+    fields = []
+    for f in found.fields if found and word else []:
+        bits = value >> f.lsb & (1 << f.width) - 1
+        if bits or not clears:
+            fields.append({"name": f.name, "value": "cleared" if clears else bits, "doc": f.doc})
+    name = found.name if found else common[word] if word < 3 else f"word {word}"
     return {"word": word, "value": value, "written": seen == WRITTEN, "name": name,
-            "doc": described.get("doc", ""), "fields": fields}
+            "doc": found.doc if found and word > 2 else "", "fields": fields}
 
 
 def heading(folder):
@@ -140,11 +137,11 @@ def state(folder, slots):
         values = STATUS.unpack_from(status)[1:]
         shown["air"] = dict(zip(COUNTERS, values))
         registers, seen = values[7:7 + 1024], values[7 + 1024:]
-        for slot, block in slots:
+        for slot, name, block in slots:
             words = [register(block, word, registers[slot * 16 + word], seen[slot * 16 + word])
                      for word in range(16) if seen[slot * 16 + word]]
-            shown["slots"].append({"slot": slot, "block": block["block"],
-                                   "doc": block.get("doc", ""), "words": words})
+            shown["slots"].append({"slot": slot, "block": name, "doc": block.doc if block else "",
+                                   "words": words})
     for row in rows(contents(folder + "/calls.jsonl").split(b"\n")):
         if "features" in row:
             shown.update(features=row["features"], found=row["found"])
@@ -223,7 +220,7 @@ def main():
     words = parser.parse_args()
     try:
         Page.folder, Page.slots = words.dir, blocks_by_slot(words.registers)
-    except (OSError, ValueError, KeyError) as error:
+    except (OSError, ValueError, KeyError, Wrong) as error:
         sys.exit(f"icesoc-live: error: cannot read '{words.registers}': {error}")
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: os._exit(0))
@@ -237,4 +234,5 @@ def main():
         server.serve_forever()
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -12,6 +12,7 @@ from icesoc.cli.command import GROUPS, command
 from icesoc.cli.commands.synth import utilisation
 from icesoc.cli.options import (BUILD, CORE_FOLDERS, FILE, FOLDER, JOBS, SEED, SWITCH, TEXT, Option,
                                 matching, one_of)
+from icesoc.regs.model import Block
 from icesoc.util.console import say, warn
 from icesoc.util.errors import Stop
 from icesoc.util.process import logged, output, run
@@ -282,10 +283,11 @@ def users_of(name):
     0; any other would become a pin of the chip."""
     for line in Path("ip/cores.list").read_text().splitlines():
         user, *words = line.partition("#")[0].split() or [""]
-        text = "".join(path.read_text()
-                       for path in Path("ip", user or ".").glob("*.regs.json")) if user else ""
+        pins = [pin for path in Path("ip", user).glob("*.regs.json") if user
+                for pin in Block.read(path).description.get("pins", [])]
+        internal = {pin["name"] for pin in pins if pin.get("internal")}
         for pin in (word.partition("=")[0] for word in words if f"={name}." in word):
-            if not re.search(rf'"name": *"{pin}"[^}}]*"internal": *true', text):
+            if pin not in internal:
                 yield user
 
 

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
 """tree: set-up, clean-up, versions, and the list of commands."""
-import json
 import os
 import re
 import shlex
@@ -13,6 +12,7 @@ from icesoc.cli import command as doors
 from icesoc.cli import flight, keys
 from icesoc.cli.command import COMMANDS, command
 from icesoc.cli.options import PATH, SWITCH, TEXT, Option
+from icesoc.regs.model import Block
 from icesoc.util.console import say
 from icesoc.util.errors import SKIPPED
 from icesoc.util.lock import lock
@@ -107,10 +107,9 @@ def version():
     link = re.search(r"LINK_VERSION (\d+)", (TREE / "sw/link/link_frame.h").read_text())[1]
     blocks = []
     for path in sorted([*(TREE / "hdl").rglob("*.regs.json"), *(TREE / "ip").rglob("*.regs.json")]):
-        block = json.loads(path.read_text())
-        if "version" in block:
-            number = int(block["version"], 16)
-            blocks.append(f"{block['block']} {number >> 8}.{number & 255}")
+        block = Block.read(path)
+        if block.is_slot:
+            blocks.append(f"{block.name} {block.version >> 8}.{block.version & 255}")
     return f"icesoc {newest}\nlink protocol {link}\ncontracts: {', '.join(blocks)}"
 
 

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: MIT
+"""generate: writes what each side includes of a block's registers.
+
+<block>_regs.vh (Verilog localparams), <block>_regs.h (C90 macros), <block>_regs_pkg.vhd (VHDL
+package) and <block>_regs.md (page for people). With --block also the register block itself:
+<block>_regs.v with its proof, and <block>_regs.vhd. With --clocked instead <block>_clocked.v, the
+block after bus_crossing.v.
+"""
+import argparse
+import functools
+import re
+import sys
+from pathlib import Path
+
+from icesoc.regs import names, verilog, vhdl
+from icesoc.regs.model import ACCESSES, Block, Wrong, check
+
+FILES = {"regs.vh.j2": "{}_regs.vh", "regs.h.j2": "{}_regs.h", "regs_pkg.vhd.j2": "{}_regs_pkg.vhd",
+         "regs.md.j2": "{}_regs.md"}
+BLOCK_FILES = {"regs.v.j2": "{}_regs.v", "regs_proof.vh.j2": "{}_regs_proof.vh",
+               "regs.vhd.j2": "{}_regs.vhd"}
+
+
+def table_rows(b):
+    """Returns the registers and their fields as initialisers of Hw_Register."""
+    rows = []
+    for r in b.registers:
+        parts = [(r.name, 0, r.width, r.access)]
+        parts += [(f"{r.name}.{f.name}", f.lsb, f.width, f.access) for f in r.fields]
+        rows += [f'{{{{{len(name)}, "{name}"}}, Hw_{access}, {r.word}, {lsb}, {width}, {r.page}}}'
+                 for name, lsb, width, access in parts]
+    return rows
+
+
+def cell(text):
+    """Returns a text for a cell of a Markdown table."""
+    return re.sub(r"([\\|*`<\[])", r"\\\1", text)
+
+
+@functools.cache
+def environment():
+    """Returns Jinja's environment. Jinja is imported here, because commands of an empty machine
+    import this module before it is installed."""
+    import jinja2  # pylint: disable=import-outside-toplevel
+    made = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"), trim_blocks=True,
+        lstrip_blocks=True, keep_trailing_newline=True, undefined=jinja2.StrictUndefined)
+    made.globals.update(verilog.GLOBALS | vhdl.GLOBALS, table_rows=table_rows, cell=cell,
+                        accesses=ACCESSES)
+    return made
+
+
+def render(template, **values):
+    return environment().get_template(template).render(**values)
+
+
+def markdown(block):
+    """Returns the page of a block's registers."""
+    return render("regs.md.j2", b=block)
+
+
+def views(block, has_block):
+    """Returns the files of a block, name to text."""
+    files = dict(FILES)
+    if has_block:
+        check(block.has_register_block,
+              "a register block is made for a slot (type, version) whose registers have no page")
+        try:
+            names.check_ports(block)
+        except names.Collision as e:
+            raise Wrong(str(e)) from None
+        files |= BLOCK_FILES
+    return {name.format(block.name): render(template, b=block) for template, name in files.items()}
+
+
+def clocked(block, has_clk_hz):
+    """Returns a module with a slot's ports around a block that has a separate clock."""
+    check(not block.description.get("memory_port"),
+          "a core with a memory port has the chip's clock, as the port has; for a separate clock "
+          "of a part of the core use hdl/cdc/async_fifo.v, as ip/camera does")
+    return render("clocked.v.j2", b=block, has_clk_hz=has_clk_hz,
+                  pins=block.description.get("pins", []))
+
+
+def save(path, text):
+    """Writes a text; an equal file keeps its age, so that nothing is built again for it."""
+    path = Path(path)
+    if not path.is_file() or path.read_bytes() != text.encode():
+        path.write_bytes(text.encode())
+
+
+def main():
+    parser = argparse.ArgumentParser(
+        prog="regs", description="Generates the Verilog, C, VHDL and Markdown views of a block's "
+                                 "registers.")
+    parser.add_argument("description", help="register description, *.regs.json")
+    parser.add_argument("--output-dir", default=".", help="folder of the files (default .)")
+    parser.add_argument("--block", action="store_true",
+                        help="also the register block in Verilog and VHDL, and its proof")
+    parser.add_argument("--clocked", action="store_true", help="only <block>_clocked.v")
+    parser.add_argument("--clk-hz", action="store_true",
+                        help="with --clocked: the module has the parameter CLK_HZ")
+    args = parser.parse_args()
+    try:
+        block = Block.read(args.description)
+        files = ({f"{block.name}_clocked.v": clocked(block, args.clk_hz)} if args.clocked else
+                 views(block, args.block))
+        for name, text in files.items():
+            save(Path(args.output_dir) / name, text)
+    except (Wrong, OSError) as e:
+        sys.exit(f"{args.description}: error: {e}")
+
+
+if __name__ == "__main__":
+    main()

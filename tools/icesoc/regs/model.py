@@ -1,0 +1,413 @@
+# SPDX-License-Identifier: MIT
+"""model: the registers of a block, read from its *.regs.json and checked.
+
+All tools read register descriptions through Block.read. Format of the description: docs/bus.md.
+"""
+import json
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from icesoc.regs import names
+
+SCHEMA = json.loads(Path(__file__).with_name("regs.schema.json").read_text())
+WORDS_PER_SLOT = 16
+FIRST_WORD = 3  # of a slot's own registers: ID, EVENT and MASK come before
+ACCESSES = {
+    "ro": "read only",
+    "rw": "read and write",
+    "w1c": "write 1 to clear",
+    "w1s": "write 1 to set",
+    "ws": "write acts, reads as 0",
+}
+# Who keeps a register's value, by its access: the first one is the default.
+STORAGES = {
+    "ro": ("core",),
+    "rw": ("flip-flops", "ram", "core", "memory"),
+    "w1c": ("flip-flops",),
+    "w1s": ("flip-flops",),
+    "ws": ("core", "flip-flops"),
+}
+
+
+MIXED = ("rw", "w1c", "w1s")  # registers that may have fields which are ro
+
+
+class Wrong(Exception):
+    """An error in the input; its text is for the user."""
+
+
+def check(holds, text):
+    if not holds:
+        raise Wrong(text)
+
+
+def fit(value, part, where):
+    """Checks a part of a description by its part of the schema."""
+    part = SCHEMA["$defs"].get(part.get("$ref", "").rpartition("/")[2], part)
+    kind = part["type"]
+    if kind == "object":
+        check(isinstance(value, dict), f"{where}: expected an object of names and values")
+        for name, inner in part["properties"].items():
+            check(name in value or name not in part["required"], f"{where}: '{name}' is missing")
+            if name in value:
+                fit(value[name], inner, name if part is SCHEMA else f"{where}.{name}")
+        for name in value:
+            check(name in part["properties"], f"{where}: '{name}' is not a property; expected "
+                  f"{', '.join(part['properties'])}")
+    elif kind == "array":
+        check(isinstance(value, list), f"{where}: expected a list")
+        for i, each in enumerate(value):
+            fit(each, part["items"], f"{where}[{i}]")
+    else:
+        holds = type(value) is {"string": str, "integer": int, "boolean": bool}[kind] and (
+            re.fullmatch(part.get("pattern", ".*"), str(value), re.A | re.S)
+            if kind == "string" else
+            part.get("minimum", 0) <= value <= part.get("maximum", 1))
+        check(holds, f"{where}: expected {part['description']}, got {json.dumps(value)[:40]}")
+
+
+def reset_of(text):
+    """Returns a reset value: None for a register that reset leaves as it is."""
+    return None if text == "none" else int(text or "0", 16)
+
+
+@dataclass
+class Field:
+    """Some bits of a register; a register without fields is one field without a name."""
+
+    name: str
+    lsb: int
+    width: int
+    doc: str
+    access: str = ""  # that of its register, or ro
+    reset: int | None = 0
+    has_reset: bool = False  # the description gives the reset value
+    hwset: bool = False  # the core may set all its bits
+    hwclr: bool = False  # the core may clear all its bits
+
+    @property
+    def msb(self):
+        return self.lsb + self.width - 1
+
+    @property
+    def mask(self):
+        return (1 << self.width) - 1 << self.lsb
+
+    @property
+    def bits(self):
+        return str(self.lsb) if self.width == 1 else f"{self.msb}..{self.lsb}"
+
+
+@dataclass
+class Register:
+    word: int
+    name: str
+    access: str
+    doc: str
+    width: int = 32
+    page: int = -1  # byte address of a core's register behind an adapter; -1: in the slot
+    fields: list = field(default_factory=list)
+    reset: int | None = 0  # of a register without fields
+    storage: str = ""
+    lock: str = ""  # input that holds writes off while it is high
+    registered: bool = False  # pulses come from flip-flops, a clock after the write
+    strobes: tuple = ()  # "read", "write": outputs that are high in the clock of such an access
+
+    @property
+    def parts(self):
+        """The fields, or the whole register as one."""
+        return self.fields or [Field("", 0, self.width, self.doc, self.access, self.reset)]
+
+    @property
+    def lower(self):
+        return self.name.lower()
+
+    @property
+    def is_written(self):
+        return self.access != "ro"
+
+    @property
+    def is_read(self):
+        return self.access != "ws"
+
+    @property
+    def is_stored(self):
+        """Flip-flops of the register block hold the value."""
+        return self.storage == "flip-flops"
+
+    def holds(self, part):
+        """Flip-flops of the register block hold the field."""
+        return self.storage == "flip-flops" and part.access != "ro"
+
+    @property
+    def held_parts(self):
+        return [p for p in self.parts if self.holds(p)]
+
+    def port(self, part):
+        """Returns the stem of a field's ports: status_busy for STATUS.BUSY, page for PAGE.PAGE."""
+        alone = len(self.fields) <= 1 and part.name in ("", self.name)
+        return self.lower if alone else f"{self.lower}_{part.name.lower()}"
+
+    def is_pulse(self, part):
+        """The part is a bit of a `ws` register: writing 1 gives a pulse of one clock."""
+        return part.access == "ws" and not self.is_stored and bool(part.name) and part.width == 1
+
+    @property
+    def pulses(self):
+        return [p for p in self.parts if self.is_pulse(p)]
+
+    def written_bits(self, part):
+        """The part has an output with what is written, for the core to keep."""
+        return (part.access != "ro" and self.storage == "core" and bool(part.name)
+                and not self.is_pulse(part))
+
+    @property
+    def reads(self):
+        """The register block gives a pulse for each read."""
+        return "read" in self.strobes
+
+    @property
+    def has_write_strobe(self):
+        """The register block gives a pulse for each write."""
+        return self.is_written and ("write" in self.strobes or self.storage == "core" and not all(
+            self.is_pulse(p) for p in self.parts if p.access != "ro"))
+
+
+@dataclass
+class Event:
+    name: str
+    bit: int
+    doc: str
+    watched: bool = False  # outputs show that it is pending, and that it is being cleared
+
+    @property
+    def lower(self):
+        return self.name.lower()
+
+
+@dataclass
+class Constant:
+    name: str
+    value: int
+    doc: str
+
+
+@dataclass
+class Port:
+    """A port of the register block besides those of every slot."""
+
+    name: str
+    is_out: bool
+    width: int
+    doc: str
+    owner: str  # register, field or event that it belongs to
+    group: str = ""  # comment before it
+    is_reg: bool = False
+
+
+class Block:
+    """The registers of a block."""
+
+    def __init__(self, description):
+        fit(description, SCHEMA, "the description")
+        check(("type" in description) == ("version" in description),
+              "a slot has a type and a version")
+        self.description = description
+        self.name, self.doc = description["block"], description["doc"]
+        self.prefix = self.name.upper()
+        self.is_slot = "type" in description  # has ID, EVENT and MASK in words 0..2
+        self.type = int(description.get("type", "0"), 16)
+        self.version = int(description.get("version", "0"), 16)
+        self.memory_bytes = description.get("memory_bytes", 0)
+        self.events = [Event(**e) for e in description.get("events", [])]
+        self.own_registers = [register_of(r) for r in description["registers"]]
+        self.registers = self.common_registers() + self.own_registers
+        self.constants = [Constant(**c) for c in description.get("constants", [])]
+        if self.is_slot:
+            self.constants.append(Constant("ID_VALUE", self.type << 16 | self.version,
+                                           "what word ID reads"))
+        taken = set()
+        for r in self.registers:
+            check_register(r, taken)
+        for e in self.events:
+            check(sum(other.bit == e.bit for other in self.events) == 1,
+                  f"event {e.name}: bit {e.bit} is used twice")
+        try:
+            names.check_block(self)
+        except names.Collision as e:
+            raise Wrong(str(e)) from None
+
+    @classmethod
+    def read(cls, path):
+        try:
+            return cls(json.loads(Path(path).read_text("utf-8")))
+        except (json.JSONDecodeError, OSError) as e:
+            raise Wrong(str(e)) from None
+        except (ValueError, RecursionError):
+            raise Wrong("it is no JSON in UTF-8, or its numbers or brackets are too long") from None
+
+    def common_registers(self):
+        """Returns the three registers that every slot begins with."""
+        if not self.is_slot:
+            return []
+        def events(access):
+            return [Field(e.name, e.bit, 1, e.doc, access) for e in self.events]
+
+        ident = [Field("VERSION", 0, 16, "major and minor, 8 bits each", "ro", self.version, True),
+                 Field("TYPE", 16, 16, "type id", "ro", self.type, True)]
+        return [Register(0, "ID", "ro", "type and version of the slot", fields=ident),
+                Register(1, "EVENT", "w1c", "sticky events; write 1 to clear",
+                         fields=events("w1c")),
+                Register(2, "MASK", "rw", "1: the event drives the interrupt line",
+                         fields=events("rw"))]
+
+    @property
+    def has_register_block(self):
+        """A register block can be generated: the registers are a slot's, without pages."""
+        return self.is_slot and all(r.page < 0 for r in self.registers)
+
+    @property
+    def event_bits(self):
+        return max([e.bit + 1 for e in self.events], default=1)
+
+    @property
+    def locks(self):
+        return sorted({r.lock for r in self.own_registers if r.lock})
+
+    def stored_in(self, storage):
+        return [r for r in self.own_registers if r.storage == storage]
+
+    @property
+    def ram_bits(self):
+        """Address bits of the LUT RAM: as few low bits of the word as tell its words apart."""
+        words = [r.word for r in self.stored_in("ram")]
+        return next(n for n in range(2, 5) if len({w % (1 << n) for w in words}) == len(words))
+
+    @property
+    def word_mask(self):
+        return sum(1 << r.word for r in self.registers)
+
+    @property
+    def ports(self):
+        return [*interrupt_ports(self), *register_ports(self), *storage_ports(self)]
+
+
+def register_of(r):
+    fields = [Field(**{**f, "reset": reset_of(f.get("reset", r.get("reset"))),
+                       "has_reset": "reset" in f, "access": f.get("access", r["access"])})
+              for f in r.get("fields", [])]
+    storage = r.get("storage") or STORAGES.get(r["access"], ("",))[0]
+    return Register(**{**r, "fields": fields, "reset": reset_of(r.get("reset")),
+                       "storage": storage, "strobes": tuple(r.get("strobes", ()))})
+
+
+def check_register(r, taken):
+    name, word, page = r.name, r.word, r.page
+    check(0 <= word < WORDS_PER_SLOT, f"{name}: word {word} is not in 0..15")
+    check((word, page) not in taken and (page < 0 or (word, -1) not in taken),
+          f"{name}: word {word} is taken")
+    taken.add((word, page))
+    check(page < 0 or (word >= 8 and page % 32 == 0),
+          f"{name}: only words 8..15 have a page, a multiple of 32")
+    check(0 < r.width <= 32, f"{name}: its width is 1..32 bits")
+    check(r.access in ACCESSES,
+          f"{name}: access '{r.access}' is not one of {' '.join(ACCESSES)}")
+    check(word < FIRST_WORD or r.storage in STORAGES[r.access],
+          f"{name}: storage of a register with access {r.access}: expected "
+          f"{' or '.join(STORAGES[r.access])}, got '{r.storage}'")
+    check(not r.registered or r.pulses, f"{name}: registered is for a ws register with bits")
+    check(not r.lock or r.is_written, f"{name}: lock is for a register that is written")
+    for strobe in r.strobes:
+        check(strobe in ("read", "write"), f"{name}: strobes: expected read, write, got '{strobe}'")
+        check(strobe == "read" or r.is_written, f"{name} is ro: it has no write strobe")
+    used = 0
+    for f in r.fields:
+        check(f.lsb >= 0 < f.width and f.msb < 32,
+              f"{name}.{f.name}: bits {f.msb}..{f.lsb} do not fit a word")
+        check(not used & f.mask, f"{name}.{f.name}: overlaps another field")
+        used |= f.mask
+        check(f.access == r.access or (f.access == "ro" and r.access in MIXED),
+              f"{name}.{f.name}: access of a field: expected {r.access}"
+              f"{' or ro' if r.access in MIXED else ''}, got '{f.access}'")
+        check(not (f.hwset or f.hwclr) or (f.access == "rw" and r.is_stored),
+              f"{name}.{f.name}: hwset and hwclr are for rw in flip-flops")
+    for part in r.parts:
+        check(part.reset is None or part.reset >> part.width == 0,
+              f"{name}{'.' + part.name if part.name else ''}: reset 0x{part.reset or 0:X} does not "
+              f"fit {part.width} bits")
+
+
+def interrupt_ports(b):
+    ports = [Port("irq_o", True, 1, "", "the interrupt", "interrupt")]
+    for n, e in enumerate(b.events):
+        def add(end, is_out, doc, group=""):
+            ports.append(Port(f"{e.lower}_{end}", is_out, 1, doc, f"event {e.name}", group))
+
+        add("event_i", False, e.doc, "" if n else "events, high for one clock each")
+        if e.watched:
+            add("pending_o", True, "the event is set")
+            add("clear_o", True, "the event is being cleared")
+    return ports
+
+
+def ports_of_register(r):
+    ports = []
+
+    def add(name, is_out, width=1, doc="", part=None, is_reg=False):
+        owner = f"{r.name}.{part.name}" if part and part.name else r.name
+        ports.append(Port(name, is_out, width, doc, owner, is_reg=is_reg))
+
+    if r.has_write_strobe:
+        add(f"{r.lower}_write_o", True)
+    if r.reads:
+        add(f"{r.lower}_read_o", True)
+    for part in r.parts:
+        stem, doc = r.port(part), part.doc if part.name else ""
+        if part.access == "w1c":
+            add(f"{stem}_set_i", False, part.width, "1 sets a bit", part)
+        if part.access == "w1s":
+            add(f"{stem}_clear_i", False, part.width, "1 clears a bit", part)
+        if part.hwset:
+            add(f"{stem}_set_i", False, 1, "sets all bits", part)
+        if part.hwclr:
+            add(f"{stem}_clear_i", False, 1, "clears all bits", part)
+        if r.is_pulse(part) or r.written_bits(part) or r.holds(part):
+            add(f"{stem}_o", True, part.width, doc, part,
+                r.holds(part) or (r.registered and r.is_pulse(part)))
+        if r.is_read and (r.storage == "core" or (r.is_stored and part.access == "ro")):
+            add(f"{stem}_i", False, part.width, doc, part)
+    if len(ports) > 1 or any(p.doc for p in ports):
+        ports[0].group = r.name
+    return ports
+
+
+def register_ports(b):
+    return [port for r in b.own_registers for port in ports_of_register(r)]
+
+
+def storage_ports(b):
+    ports = []
+    for lock in b.locks:
+        held = ", ".join(r.name for r in b.own_registers if r.lock == lock)
+        ports.append(Port(f"{lock}_i", False, 1, f"writes to {held} are ignored", f"lock {lock}",
+                          "" if ports else "locks"))
+    for storage, made in (("ram", ram_ports), ("memory", memory_ports)):
+        if b.stored_in(storage):
+            ports += made(b, ", ".join(r.name for r in b.stored_in(storage)))
+    return ports
+
+
+def ram_ports(b, kept):
+    owner = "the RAM of registers"
+    return [Port("ram_addr_i", False, b.ram_bits, "low bits of a word's number", owner,
+                 f"second read port of the RAM with {kept}"),
+            Port("ram_o", True, 32, "", owner)]
+
+
+def memory_ports(b, kept):
+    owner = "the core's memory"
+    return [Port("memory_write_o", True, 1, "bus_wdata_i goes to word bus_addr_i", owner,
+                 f"the core's memory of {kept}"),
+            Port("memory_i", False, 32, "its word bus_addr_i; 0 in the words of other registers",
+                 owner)]

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: MIT
+"""names: what the generated files call things, checked before any of them is written.
+
+Two names of a description may become one name in a generated file: the field TX.DONE and the
+register TX_DONE_MASK are both TX_DONE_MASK in C. Such a pair is rejected with both names. VHDL does
+not distinguish capitals, so neither does the check.
+"""
+# Macros of C's standard headers that <BLOCK>_<REGISTER> may spell.
+C_MACROS = {f"{kind}_{end}" for end in ("MAX", "MIN") for kind in (
+    "CHAR", "SCHAR", "UCHAR", "SHRT", "USHRT", "INT", "UINT", "LONG", "ULONG", "FLT", "DBL", "LDBL",
+    "INT8", "INT16", "INT32", "INT64", "UINT8", "UINT16", "UINT32", "UINT64", "INTPTR", "UINTPTR",
+    "INTMAX", "UINTMAX", "SIZE", "PTRDIFF", "WCHAR", "WINT", "RAND", "MB_LEN", "SIG_ATOMIC")}
+C_MACROS |= {"CHAR_BIT", "SIG_DFL", "SIG_IGN", "SIG_ERR", "EXIT_SUCCESS", "EXIT_FAILURE",
+             "SEEK_SET", "SEEK_CUR", "SEEK_END", "BUFSIZ_MAX", "LC_ALL", "LC_COLLATE", "LC_CTYPE",
+             "LC_MONETARY", "LC_NUMERIC", "LC_TIME", "FLT_RADIX", "FLT_ROUNDS"}
+C_MACROS |= {f"{kind}_{what}" for kind in ("FLT", "DBL", "LDBL") for what in (
+    "DIG", "EPSILON", "MANT_DIG", "MAX_EXP", "MAX_10_EXP", "MIN_EXP", "MIN_10_EXP")}
+# Prefixes of the project's own headers: HW_OK, ICE_OK, MAP_SLOT_MODEM.
+PREFIXES = {"hw", "ice", "fsmc", "link", "uav", "os"}
+# Signals and ports that every register block has.
+BLOCK_SIGNALS = {"clk_i", "rst_i", "bus_valid_i", "bus_write_i", "bus_addr_i", "bus_wdata_i",
+                 "bus_ready_o", "bus_rdata_o", "bus_error_o"}
+RDL_KEYWORDS = set("""
+    abstract accesstype addressingtype addrmap alias all alternate bit boolean bothedge byte compact
+    component componentwidth constraint default encode enum external false field fullalign hw inside
+    int internal level longint mem na negedge nonsticky number onreadtype onwritetype posedge
+    precedencetype property r rclr real ref reg regalign regfile rset ruser rw rw1 shortint
+    shortreal signal signed string struct sw this true type unsigned w w1 wclr with within woclr
+    woset wot wr wset wuser wzc wzs wzt""".split())
+
+
+class Collision(Exception):
+    """Two names of a description that become one; its text is for the user."""
+
+
+class Spelled:
+    """The names of one scope of the generated files, with the description's names behind them."""
+
+    def __init__(self):
+        self.owners = {}  # by the name in capitals
+
+    def add(self, spelled, owner):
+        if spelled.upper() not in self.owners:
+            self.owners[spelled.upper()] = (spelled, owner)
+            return
+        first, other = self.owners[spelled.upper()]
+        if other == owner:
+            raise Collision(f"{owner}: duplicate name")
+        raise Collision(f"{other} and {owner} both become {first} in a generated file: rename one")
+
+
+def check_block(b):
+    """Rejects a block whose C, Verilog or VHDL constants collide."""
+    spelled = Spelled()
+    if b.is_slot:
+        spelled.add("TABLE", "the table of a slot's registers")
+    for c in b.constants:
+        spelled.add(c.name, c.name)
+    for r in b.registers:
+        spelled.add(r.name, r.name)
+        if r.page >= 0:
+            spelled.add(f"{r.name}_PAGE", f"the page of {r.name}")
+        for f in r.fields:
+            for end in ("LSB", "MASK", "WIDTH"):
+                spelled.add(f"{r.name}_{f.name}_{end}", full_name(r, f))
+    if b.name.lower() in PREFIXES:
+        raise Collision(f"block {b.name}: the name is the project's own: C's names would collide")
+    for name in spelled.owners:
+        if f"{b.prefix}_{name}" in C_MACROS:
+            raise Collision(f"{spelled.owners[name][1]} becomes {b.prefix}_{name}, which a header "
+                            "of C defines: rename it")
+
+
+def full_name(register, field):
+    return f"{register.name}.{field.name}"
+
+
+def check_ports(b):
+    """Rejects a block whose register block would have two ports or signals of one name."""
+    spelled = Spelled()
+    for name in BLOCK_SIGNALS:
+        spelled.add(name, f"the port {name} of every slot")
+    for p in b.ports:
+        spelled.add(p.name, p.owner)
+
+
+def rdl(name):
+    """Returns a name as SystemRDL takes it: keywords are escaped."""
+    return "\\" + name if name in RDL_KEYWORDS else name

@@ -1,0 +1,223 @@
+# SPDX-License-Identifier: MIT
+"""rdl_reader: reads SystemRDL 2.0 into a tree of components.
+
+The flat subset: addrmap, reg and field, named or not, with properties and defaults. Enums and the
+declarations of properties are skipped. Everything else is an error with its line.
+"""
+import re
+from dataclasses import dataclass, field
+
+from icesoc.regs import rdl_properties
+from icesoc.regs.model import Wrong, check
+
+TOKEN = re.compile(
+    r'(?P<string>"(?:[^"\\]|\\.)*")|(?P<number>\d+\'[hbdoHBDO][\da-fA-F_]+|0[xX][\da-fA-F_]+|\d+)'
+    r'|(?P<name>\\?[A-Za-z_]\w*)|(?P<sign>->|[+%]=|[^\s])', re.A | re.S)
+OTHERS = {"regfile", "mem", "signal", "struct", "constraint", "alias", "abstract"}
+BASES = {"h": 16, "b": 2, "d": 10, "o": 8}
+
+
+def number(text):
+    check(len(text) <= 80, f"a number of {len(text)} digits")
+    text = text.replace("_", "").lower()
+    if "'" in text:
+        digits = text.split("'")[1]
+        return int(digits[1:], BASES[digits[0]])
+    return int(text, 16 if text.startswith("0x") else 10)
+
+
+def unquoted(text):
+    """Returns a string's text in one line: \\" and \\\\ are a quote and a backslash."""
+    return re.sub(r"\s+", " ", re.sub(r'\\(["\\])', r"\1", text[1:-1])).strip()
+
+
+@dataclass
+class Component:
+    kind: str  # root, addrmap, reg, field
+    parent: "Component"
+    line: int
+    properties: dict = field(default_factory=dict)  # name to text
+    defaults: dict = field(default_factory=dict)
+    lines: dict = field(default_factory=dict)  # of properties
+    types: dict = field(default_factory=dict)
+    children: list = field(default_factory=list)
+
+    def find_type(self, name):
+        return self.types.get(name) or (self.parent and self.parent.find_type(name))
+
+    def default(self, name):
+        if name in self.defaults:
+            return self.defaults[name]
+        return self.parent and self.parent.default(name)
+
+    def get(self, name, otherwise=None):
+        """Returns a property's text: "true" where it has no value; a default if it is not set."""
+        if name in self.properties:
+            return self.properties[name]
+        value = self.parent and self.parent.default(name)
+        return otherwise if value is None else value
+
+    def is_set(self, name):
+        return self.get(name, "false") == "true"
+
+
+@dataclass
+class Instance:
+    name: str
+    component: Component
+    line: int
+    msb: int | None = None
+    lsb: int | None = None
+    width: int | None = None  # of a field given by its width
+    reset: int | None = None
+    address: int | None = None
+
+
+class Reader:
+    def __init__(self, path):
+        with open(path, encoding="utf-8") as f:
+            text = f.read()
+        # Comments keep their lines; those within strings are text.
+        text = re.sub(r'"(?:[^"\\]|\\.)*"|//[^\n]*|/\*.*?\*/',
+                      lambda m: m[0] if m[0][0] == '"' else re.sub(r"[^\n]", " ", m[0]), text,
+                      flags=re.S)
+        self.tokens = [(m.lastgroup, m[0], text.count("\n", 0, m.start()) + 1)
+                       for m in TOKEN.finditer(text)]
+        self.at, self.last = 0, text.count("\n") + 1
+        self.declared = set()  # the file's own properties
+
+    @property
+    def line(self):
+        return self.tokens[self.at][2] if self.at < len(self.tokens) else self.last
+
+    def peek(self, ahead=0):
+        return self.tokens[self.at + ahead][1] if self.at + ahead < len(self.tokens) else ""
+
+    def fail(self, text, line=None):
+        raise Wrong(f"{line or self.line}: error: {text}")
+
+    def take(self, wanted=None):
+        token = self.peek()
+        if not token or (wanted and token != wanted):
+            self.fail(f"expected '{wanted or 'more'}', got '{token or 'the end'}'")
+        self.at += 1
+        return token
+
+    def take_name(self):
+        if self.at >= len(self.tokens) or self.tokens[self.at][0] != "name":
+            self.fail(f"expected a name, got '{self.peek() or 'the end'}'")
+        problem = rdl_properties.name_problem(self.peek())
+        if problem:
+            self.fail(problem)
+        return self.take().lstrip("\\")
+
+    def take_number(self):
+        try:
+            is_number = self.at < len(self.tokens) and self.tokens[self.at][0] == "number"
+            value = number(self.peek()) if is_number else 1 << 64
+        except ValueError:  # 2'b3
+            value = 1 << 64
+        if value >= 1 << 64:
+            self.fail(f"'{self.peek()[:80]}' is not a number; expressions and parameters are not "
+                      "part of the flat subset")
+        self.take()
+        return value
+
+    def file(self):
+        root = Component("root", None, 1)
+        self.body(root, "")
+        return root
+
+    def body(self, parent, end):
+        while self.peek() != end:
+            line, word = self.line, self.take()
+            if word in ("addrmap", "reg", "field"):
+                self.component(Component(word, parent, line))
+            elif word == "enum":
+                self.skip()
+            elif word == "property":
+                self.declared.add(self.take_name())
+                self.skip()
+            elif word == "default":
+                self.property(parent, parent.defaults, self.take())
+            elif word in OTHERS:
+                self.fail(f"{word} is not part of the flat subset: addrmap, reg, field", line)
+            elif word in ("external", "internal") and self.peek() not in (";", "="):
+                continue
+            elif word == "`":
+                self.fail("preprocessor directives are not part of the flat subset", line)
+            elif self.peek() in ("->", ".", "["):
+                self.fail(f"'{word}{self.peek()}': assignments to other components are not part of "
+                          "the flat subset: set the property where the component is", line)
+            elif parent.find_type(word.lstrip("\\")) and self.peek() not in ("=", ";"):
+                self.instances(parent, parent.find_type(word.lstrip("\\")))
+            else:
+                self.property(parent, parent.properties, word, line)
+            self.take(";")
+
+    def skip(self):
+        while self.take() != "}":
+            pass
+
+    def component(self, made):
+        parent = made.parent
+        if self.peek() != "{":
+            parent.types[self.take_name()] = made
+        if self.peek() == "#":
+            self.fail("parameters are not part of the flat subset")
+        self.take("{")
+        self.body(made, "}")
+        self.take("}")
+        if self.peek() in ("external", "internal"):
+            self.take()
+        if self.peek() != ";":
+            self.instances(parent, made)
+        elif made.kind == "addrmap" and parent.kind == "root":
+            name = [n for n, c in parent.types.items() if c is made]
+            if not name:
+                self.fail("an addrmap of the file has no name")
+            parent.children.append(Instance(name[0], made, made.line))
+
+    def property(self, component, where, name, line=None):
+        line = line or self.line
+        value = "true"
+        if self.peek() == "=":
+            self.take()
+            parts = []
+            while self.peek() not in (";", ""):
+                parts.append(self.take())
+            value = " ".join(parts)
+        kind = component.kind if where is component.properties else "root"
+        problem = rdl_properties.problem_of(kind, name, value, self.declared)
+        if problem:
+            self.fail(problem, line)
+        where[name] = value
+        component.lines[name] = line
+
+    def instances(self, parent, component):
+        while True:
+            line, made = self.line, Instance(self.take_name(), component, self.line)
+            if self.peek() == "[":
+                if component.kind != "field":
+                    self.fail("arrays are not part of the flat subset: name each register")
+                self.take()
+                first = self.take_number()
+                if self.peek() == ":":
+                    self.take()
+                    made.msb, made.lsb = first, self.take_number()
+                else:
+                    made.width = first  # from the next free bit
+                self.take("]")
+            if self.peek() == "=":
+                self.take()
+                made.reset = self.take_number()
+            if self.peek() == "@":
+                self.take()
+                made.address = self.take_number()
+            if self.peek() in ("+=", "%="):
+                self.fail("strides are not part of the flat subset: give each register its address")
+            made.line = line
+            parent.children.append(made)
+            if self.peek() != ",":
+                return
+            self.take()

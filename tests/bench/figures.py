@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""figures: writes docs/figures.md, a table for each JSON file that `make bench`, `size` and
+"""figures: writes docs/figures.md, a table for each JSON file that `./icesoc bench`, `size` and
 `firmware` have left; benches in Python make theirs with `figure` and `leave`.
 
     figures.py OUTPUT.md FILE.json...
@@ -31,7 +31,7 @@ AXES = [r"of \d+ vehicles", r"loss \d\.\d\d", r"bursts, \w+", r"\d+ m, fading", 
         "in the clear|encrypted|with a key", r"of \d+ bytes", r"\d+ ports", r"HCLK \d+ MHz"]
 HEAD = """# Figures
 
-Written by `make bench`: one run on one machine, each figure beside its limit or its peer of the
+Written by `./icesoc bench`: one run on one machine, each figure beside its limit or its peer of the
 same run. What each one means, and how it is measured, is said on the page of its subject.
 `a of b, c %` is a measured, and c % of the limit b. A goodput and its limit are bytes of programs;
 `(d %)` behind them is the share of all bytes that the modems could carry.

@@ -33,11 +33,13 @@ void makePipe(int pipeEnds[2]) {
 }
 
 Peer::Peer(Host& host, int address, const LinkKeys& keys)
-    : host_(host), address_(address), keys_(keys), link_(new Link) {
+    : host_(host), address_(address), keys_(keys), link_(new Link), buffers_(new Link_Buffers) {
     makePipe(acceptPipe_);
     static const Link_Port port = {onTransmit, onRandom,  onMessage, onChannel,
                                    onState,    onOutcome, onWritable};
-    Link_init(link_.get(), &port, this, static_cast<U32>(host.settings.characterUs() * 16));
+    const Link_Config config = {&port, this, static_cast<U32>(host.settings.characterUs() * 16),
+                                LINK_USE(*buffers_)};
+    Link_init(link_.get(), &config);
     if (!host.radio)
         host.radio = link_.get();
     Link_shareRadio(link_.get(), host.radio);

@@ -143,7 +143,8 @@ private:
     std::deque<U32> late_[LINK_CHANNELS]; // when each message of the link's will be late
     std::deque<Waiting> waiting_;
     std::unique_ptr<Link> link_;
-    std::unique_ptr<Broadcast> broadcast_; // in its place, to all vehicles
+    std::unique_ptr<Link_Buffers> buffers_; // of link_
+    std::unique_ptr<Broadcast> broadcast_;  // in its place, to all vehicles
 };
 
 // Returns both ends of a pipe that does not block. Throws std::system_error.

@@ -14,7 +14,7 @@
  */
 #pragma once
 
-#include "link_frame.h"
+#include "link_crypto.h"
 
 #define LINK_BROADCAST 0x7EU
 #define LINK_BROADCAST_HEAD 13U

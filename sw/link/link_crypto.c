@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_crypto: derives the keys of handshakes and sessions (docs/link.md).
+ * link_crypto: derives keys by Ascon-AEAD128 and X25519.
  */
-#include "link_frame.h"
+#include "link_crypto.h"
 
 #include "ascon.h"
 #include "x25519.h"
@@ -16,8 +16,8 @@ void link_cipher(const U8* key, const U8* nonce, U8* bytes, U32 size, int isDecr
     Ascon_end(&ascon, key, tag);
 }
 
-/* Makes the keystream of a nonce. It is never sent as such, so an attacker who learns one learns
- * nothing of another. */
+/* Writes the keystream of a nonce. It is never sent, so an attacker who learns one keystream learns
+ * nothing about another. */
 static void derive(const U8* secret, const U8* nonce, U8* text, U32 size) {
     U8 tag[ASCON_TAG_BYTES];
     memset(text, 0, size);
@@ -32,32 +32,28 @@ void link_deriveKeys(const Link_Secret* secret, const U8* vehicles, const U8* gr
     derive(secret->key, nonce, keys->bytes, sizeof keys->bytes);
 }
 
-void link_makePair(Link_Pair* pair, const Link_Port* port, void* context) {
+void link_makePair(Link_KeyPair* pair, U32 (*random)(void* context), void* context) {
     U32 i;
-    if (pair->isMade)
-        return;
-    for (i = 0; i < sizeof pair->own; i += 4U)
-        link_put32(pair->own + i, port->random(context));
-    X25519(pair->open, pair->own, 0);
-    pair->isMade = 1;
+    for (i = 0; i < sizeof pair->privateKey; i += 4U)
+        link_put32(pair->privateKey + i, random(context));
+    X25519(pair->publicKey, pair->privateKey, 0);
 }
 
-/* Both inputs are needed: the handshake's keys follow from the secret, `shared` from an own half.
- */
-void link_mixKeys(Link_Keys* keys, Link_Pair* pair, const U8* peerOpen) {
+/* Both inputs are needed: the handshake's keys follow from the secret, `shared` from the private
+ * key. */
+void link_mixKeys(Link_Keys* keys, Link_KeyPair* pair, const U8* peersPublic) {
     U8 shared[X25519_BYTES], text[sizeof keys->bytes];
     U32 i;
-    X25519(shared, pair->own, peerOpen);
+    X25519(shared, pair->privateKey, peersPublic);
     derive(shared, shared + LINK_KEY_BYTES, text, sizeof text);
     for (i = 0; i < sizeof text; ++i)
         keys->bytes[i] = (U8)(keys->bytes[i] ^ text[i]);
     Ascon_wipe(shared, sizeof shared);
     Ascon_wipe(text, sizeof text);
-    Ascon_wipe(pair->own, sizeof pair->own);
-    pair->isMade = 0;
+    Ascon_wipe(pair->privateKey, sizeof pair->privateKey);
 }
 
-/* The key of HELLOs comes from the nonces 0, which no session has. */
+/* The key of HELLOs is derived from nonces of 0, which no session has. */
 void link_makeSecret(Link_Secret* secret, const U8* key, U32 address) {
     U8 nonce[ASCON_NONCE_BYTES];
     memset(nonce, 0, sizeof nonce);

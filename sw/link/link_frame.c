@@ -4,7 +4,7 @@
  */
 #include "link_frame.h"
 
-/* This is CRC-16/CCITT, polynomial 0x1021, MSB first. x ^= x >> 4 replaces Sarwate's table by
+/* Computes CRC-16/CCITT: polynomial 0x1021, MSB first. `x ^= x >> 4` replaces Sarwate's table by
  * shifts. */
 U32 link_crc(U32 key, const U8* bytes, U32 size) {
     U32 crc = key & 0xFFFFU;
@@ -28,8 +28,8 @@ U32 link_seal(U8* frame, U32 header, U32 key) {
     return size;
 }
 
-/* These are Fletcher's sums modulo 256: unlike a second CRC they have nothing in common with the
- * fragments' CRC. */
+/* Computes Fletcher's sums modulo 256. Unlike a second CRC they have nothing in common with the CRC
+ * of fragments. */
 U32 link_sum(U32 sums, const U8* bytes, U32 size) {
     U32 plain = sums & 0xFFU;
     U32 second = sums >> 8;
@@ -56,4 +56,19 @@ U32 link_sessionKey(U32 nonce, U32 peerNonce) {
     U32 mix = (nonce ^ peerNonce) * 2654435761U + nonce + peerNonce;
     link_put32(bytes, mix);
     return LINK_EPOCH_KEY(LINK_KEY_EPOCH(mix)) | link_crc(0x1D0FU, bytes, 4);
+}
+
+U32 link_extend(U32 expected, U32 byte) {
+    U32 ahead = (byte - expected) & 0xFFU;
+    return expected + ahead - (ahead & 0x80U) * 2U;
+}
+
+U32 link_epochBits(const U8* frame, U32 key) {
+    return (frame[2] ^ LINK_KEY_EPOCH(key) << 2) & 0x1CU;
+}
+
+int link_isOfEpoch(const U8* frame, U32 key) {
+    U32 bits = link_epochBits(frame, key);
+    U32 whole = LINK_FIRST | LINK_LAST; /* also the bits of PIGGYBACK's kinds */
+    return bits == 0 || (bits == LINK_READY && (frame[2] & whole) == whole);
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_header_cache: recognises Ice's messages, and writes and reads the tokens for them.
+ * link_header_cache: recognises Ice's messages, and writes and reads their tokens.
  */
-#include "link_receiver.h"
+#include "link_header_cache.h"
 
 #include <string.h>
 
@@ -10,7 +10,7 @@
 #define ENCAPSULATION 6U /* size and encoding version of the parameters */
 #define MOST_HEAD (LINK_HEAD_BYTES - 2U)
 
-#define TOKEN_REQUEST 0x80U /* bit 4: the channel's next id, else oneway; bits 3..0: slot */
+#define TOKEN_REQUEST 0x80U /* bit 4: next id of the channel, else oneway; bits 3..0: index */
 #define TOKEN_LITERAL 0xA0U /* bits 1..0: 0 oneway, 1 next id, 2 id follows; length, head */
 #define TOKEN_REPLY 0xB0U   /* bit 1: id follows, else next; bit 0: status and body as they are */
 #define TOKEN_VALIDATE 0xC0U
@@ -22,9 +22,9 @@
 
 enum { REQUEST = 0, REPLY = 2, VALIDATE = 3, CLOSE = 4 };
 
-#define IS_REPLY 1U /* in place of a head's size, which is more */
+#define IS_REPLY 1U /* in place of a head's size, which is larger */
 
-/* Returns the type of a whole message; -1: it is none of Ice's. */
+/* Returns the type of a whole message; -1 if it is not one of Ice's. */
 static int typeOf(const U8* m, U32 size) {
     return size >= HEADER && link_get32(m) == MAGIC && link_get32(m + 4) == VERSIONS &&
                    link_get32(m + 10) == size
@@ -32,8 +32,8 @@ static int typeOf(const U8* m, U32 size) {
                : -1;
 }
 
-/* Returns what the peer learns from a message: the size of a request's head, identity to context,
- * or IS_REPLY; 0: nothing. */
+/* Returns the size of the head that the peer learns from a request, identity to context; IS_REPLY
+ * for a reply, which only has an id; 0 if there is nothing to learn. */
 static U32 headOf(const U8* m, U32 size, int type) {
     U32 at = LINK_HEAD_AT;
     int strings;
@@ -60,95 +60,95 @@ static U32 headOf(const U8* m, U32 size, int type) {
     return at - LINK_HEAD_AT <= MOST_HEAD ? at - LINK_HEAD_AT : 0;
 }
 
-/* Returns the slot that holds this head and encoding; LINK_HEADS: none. */
-static U32 find(const Link_Heads* heads, const U8* head, U32 size, const U8* version) {
+/* Returns the index of this head and encoding in the cache; LINK_HEADS if it is missing. */
+static U32 find(const Link_HeaderCache* cache, const U8* head, U32 size, const U8* version) {
     U32 slot;
     for (slot = 0; slot < LINK_HEADS; ++slot)
-        if (heads->size[slot] == size + 2U && memcmp(heads->head[slot], head, size) == 0 &&
-            memcmp(heads->head[slot] + size, version, 2) == 0)
+        if (cache->size[slot] == size + 2U && memcmp(cache->head[slot], head, size) == 0 &&
+            memcmp(cache->head[slot] + size, version, 2) == 0)
             break;
     return slot;
 }
 
-void link_note(Link_Heads* heads, int channel, const U8* m, U32 head) {
+void link_cacheHeader(Link_HeaderCache* cache, int channel, const U8* m, U32 head) {
     const U8* version = m + LINK_HEAD_AT + head + 4;
     U32 id = link_get32(m + HEADER);
     if (head == IS_REPLY) {
-        heads->lastReply[channel] = id;
+        cache->lastReply[channel] = id;
         return;
     }
     if (id)
-        heads->lastRequest[channel] = id;
-    if (find(heads, m + LINK_HEAD_AT, head, version) == LINK_HEADS) {
-        U8* entry = heads->head[heads->next];
-        heads->size[heads->next] = (U8)(head + 2U);
+        cache->lastRequest[channel] = id;
+    if (find(cache, m + LINK_HEAD_AT, head, version) == LINK_HEADS) {
+        U8* entry = cache->head[cache->next];
+        cache->size[cache->next] = (U8)(head + 2U);
         memcpy(entry, m + LINK_HEAD_AT, head);
         memcpy(entry + head, version, 2);
-        heads->next = (U8)((heads->next + 1U) % LINK_HEADS);
+        cache->next = (U8)((cache->next + 1U) % LINK_HEADS);
     }
 }
 
-/* Begins the compressed message with a token, and with the id that it may announce. */
-static void setToken(Link_Packed* packed, U32 token, int hasId, U32 id) {
-    packed->bytes[0] = (U8)token;
-    packed->prefix = hasId ? 5U : 1U;
-    link_put32(packed->bytes + 1, id);
+/* Begins the compressed message with a token, and with an id if `hasId`. */
+static void setToken(Link_Compressed* to, U32 token, int hasId, U32 id) {
+    to->bytes[0] = (U8)token;
+    to->prefix = hasId ? 5U : 1U;
+    link_put32(to->bytes + 1, id);
 }
 
-static void packRequest(const Link_Heads* heads, int channel, const U8* m, U32 head,
-                        Link_Packed* packed) {
+static void packRequest(const Link_HeaderCache* cache, int channel, const U8* m, U32 head,
+                        Link_Compressed* to) {
     U32 id = link_get32(m + HEADER);
-    U32 mode = id == 0 ? 0U : id == heads->lastRequest[channel] + 1U ? 1U : 2U;
-    U32 slot = find(heads, m + LINK_HEAD_AT, head, m + LINK_HEAD_AT + head + 4);
-    packed->tailAt = LINK_HEAD_AT + head + ENCAPSULATION;
+    U32 mode = id == 0 ? 0U : id == cache->lastRequest[channel] + 1U ? 1U : 2U;
+    U32 slot = find(cache, m + LINK_HEAD_AT, head, m + LINK_HEAD_AT + head + 4);
+    to->tailAt = LINK_HEAD_AT + head + ENCAPSULATION;
     if (slot < LINK_HEADS && mode < 2U) {
-        setToken(packed, TOKEN_REQUEST | mode << 4 | slot, 0, 0);
+        setToken(to, TOKEN_REQUEST | mode << 4 | slot, 0, 0);
         return;
     }
-    setToken(packed, TOKEN_LITERAL | mode, mode == 2U, id);
-    packed->bytes[packed->prefix++] = (U8)head;
-    packed->middle = head;
-    packed->tailAt -= 2U; /* the encoding's version */
+    setToken(to, TOKEN_LITERAL | mode, mode == 2U, id);
+    to->bytes[to->prefix++] = (U8)head;
+    to->middle = head;
+    to->tailAt -= 2U; /* the encoding's version */
 }
 
-static void packReply(const Link_Heads* heads, int channel, const U8* m, U32 size,
-                      Link_Packed* packed) {
+static void packReply(const Link_HeaderCache* cache, int channel, const U8* m, U32 size,
+                      Link_Compressed* to) {
     const U8* body = m + LINK_HEAD_AT + 1;
     U32 id = link_get32(m + HEADER);
     int isPlain = size >= LINK_HEAD_AT + 1U + ENCAPSULATION && m[LINK_HEAD_AT] == 0 &&
                   link_get32(body) == size - LINK_HEAD_AT - 1U && body[4] == 1 && body[5] == 1;
-    U32 hasId = id != heads->lastReply[channel] + 1U;
-    packed->tailAt = LINK_HEAD_AT + (isPlain ? 1U + ENCAPSULATION : 0U);
-    setToken(packed, TOKEN_REPLY | hasId << 1 | (U32)!isPlain, hasId != 0, id);
+    U32 hasId = id != cache->lastReply[channel] + 1U;
+    to->tailAt = LINK_HEAD_AT + (isPlain ? 1U + ENCAPSULATION : 0U);
+    setToken(to, TOKEN_REPLY | hasId << 1 | (U32)!isPlain, hasId != 0, id);
 }
 
-void link_compress(const Link_Heads* heads, int channel, const U8* m, U32 size,
-                   Link_Packed* packed) {
+void link_compress(const Link_HeaderCache* cache, int channel, const U8* m, U32 size,
+                   Link_Compressed* to) {
     int type = typeOf(m, size);
-    packed->head = headOf(m, size, type);
-    if (packed->head > IS_REPLY) {
-        packRequest(heads, channel, m, packed->head, packed);
-    } else if (packed->head && m[9] == 0) {
-        packReply(heads, channel, m, size, packed);
+    to->head = headOf(m, size, type);
+    if (to->head > IS_REPLY) {
+        packRequest(cache, channel, m, to->head, to);
+    } else if (to->head && m[9] == 0) {
+        packReply(cache, channel, m, size, to);
     } else if (size == HEADER && ((type == CLOSE && m[9] < 2) || (type == VALIDATE && m[9] == 0))) {
-        packed->tailAt = size;
-        setToken(packed, type == VALIDATE ? TOKEN_VALIDATE : TOKEN_CLOSE + m[9], 0, 0);
+        to->tailAt = size;
+        setToken(to, type == VALIDATE ? TOKEN_VALIDATE : TOKEN_CLOSE + m[9], 0, 0);
     } else if (m[0] >= TOKEN_REQUEST) {
-        setToken(packed, TOKEN_AS_IT_IS, 0, 0);
+        setToken(to, TOKEN_AS_IT_IS, 0, 0);
     }
 }
 
 /* Expands the token and prefix of a request at `p` to the fields before its body. Returns their
- * start, or 0 if it is malformed. */
-static U8* unpackRequest(Link_Heads* heads, U32 channel, U8* p, const U8* end) {
+ * start; 0 if the request is malformed. */
+static U8* unpackRequest(Link_HeaderCache* cache, U32 channel, U8* p, const U8* end) {
     U8 head[LINK_HEAD_BYTES]; /* a copy, because the output may overwrite it */
     U32 token = *p++;
     U32 mode = token < TOKEN_LITERAL ? token >> 4 & 1U : token & 3U;
-    U32 id = mode == 1U ? ++heads->lastRequest[channel] : 0;
+    U32 id = mode == 1U ? ++cache->lastRequest[channel] : 0;
     U32 n;
     if (token < TOKEN_LITERAL) {
-        n = heads->size[token & 15U];
-        memcpy(head, heads->head[token & 15U], sizeof head);
+        n = cache->size[token & 15U];
+        memcpy(head, cache->head[token & 15U], sizeof head);
     } else {
         if (token > TOKEN_LITERAL + 2U || end - p < (mode == 2U ? 5 : 1))
             return 0;
@@ -163,7 +163,7 @@ static U8* unpackRequest(Link_Heads* heads, U32 channel, U8* p, const U8* end) {
         p += n;
     }
     if (n < 2U)
-        return 0; /* an empty slot */
+        return 0; /* no head there */
     p -= 2;
     memcpy(p, head + n - 2U, 2);
     p -= 4;
@@ -175,10 +175,10 @@ static U8* unpackRequest(Link_Heads* heads, U32 channel, U8* p, const U8* end) {
     return p;
 }
 
-/* Does the same for a reply. */
-static U8* unpackReply(const Link_Heads* heads, U32 channel, U8* p, const U8* end) {
+/* Expands the token and prefix of a reply likewise. */
+static U8* unpackReply(const Link_HeaderCache* cache, U32 channel, U8* p, const U8* end) {
     U32 token = *p++;
-    U32 id = heads->lastReply[channel] + 1U;
+    U32 id = cache->lastReply[channel] + 1U;
     if (token > TOKEN_REPLY + 3U)
         return 0;
     if (token & 2U) {
@@ -198,8 +198,8 @@ static U8* unpackReply(const Link_Heads* heads, U32 channel, U8* p, const U8* en
     return p;
 }
 
-/* Restores the message at `p`. Returns its start, or 0 if it is malformed. */
-static U8* unpack(Link_Heads* heads, U32 channel, U8* p, U8* end) {
+/* Restores the message at `p`. Returns its start; 0 if it is malformed. */
+static U8* unpack(Link_HeaderCache* cache, U32 channel, U8* p, U8* end) {
     U32 token = *p;
     U32 type = REQUEST;
     U32 compression = 0;
@@ -215,9 +215,9 @@ static U8* unpack(Link_Heads* heads, U32 channel, U8* p, U8* end) {
         p = end;
     } else if (token >= TOKEN_REPLY) {
         type = REPLY;
-        p = unpackReply(heads, channel, p, end);
+        p = unpackReply(cache, channel, p, end);
     } else {
-        p = unpackRequest(heads, channel, p, end);
+        p = unpackRequest(cache, channel, p, end);
     }
     if (!p)
         return 0;
@@ -230,16 +230,16 @@ static U8* unpack(Link_Heads* heads, U32 channel, U8* p, U8* end) {
     return p;
 }
 
-U8* link_decompress(Link_Heads* heads, int channel, U8* start, U32 size) {
+U8* link_decompress(Link_HeaderCache* cache, int channel, U8* start, U32 size) {
     U8* end = start + size;
     int hasKnownHead = *start >= TOKEN_REQUEST && *start < TOKEN_LITERAL;
-    U8* p = unpack(heads, (U32)channel, start, end);
+    U8* p = unpack(cache, (U32)channel, start, end);
     U32 head;
     if (!p || p == end || (U32)(end - p) > LINK_MAX_MESSAGE)
         return 0;
     size = (U32)(end - p);
     head = hasKnownHead ? 0 : headOf(p, size, typeOf(p, size));
     if (head)
-        link_note(heads, channel, p, head);
+        link_cacheHeader(cache, channel, p, head);
     return p;
 }

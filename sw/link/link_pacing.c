@@ -1,124 +1,193 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_pacing: paces packets, and counts.
+ * link_pacing: fills packets and paces them.
  */
 #include "link_pacing.h"
 
 #include <string.h>
 
-/* Least room in a packet for another fragment with an acknowledgement behind it, whose frame has 9
+/* Least room in a packet for another fragment and an acknowledgement after it, whose frame has 9
  * bytes of payload. */
-#define LEAST(output) (output->codec->overhead + 10U)
+#define LEAST(pacing) (pacing->env.codec->overhead + 10U)
 
-/* Packets for which the modem counts as slow after the radio had no room for one. */
+/* Packets for which the modem counts as slow after the radio had no room for one packet. */
 #define SLOW 64U
 
-/* The time of a packet and a silence on the line. */
-static U32 lineOf(const Link_Output* output, U32 size) {
-    return (size + LINK_SILENCE) * output->byteTimeUs16 >> 4;
+void link_initPacing(Link_Pacing* pacing, const Link_Identity* session, struct Link* owner,
+                     U32 byteTimeUs16) {
+    pacing->session = session;
+    pacing->owner = owner;
+    pacing->byteTimeUs16 = byteTimeUs16;
+    pacing->radio = &pacing->own;
+    link_limitPacket(pacing, LINK_MAX_FRAME);
 }
 
-/* The time of a packet: on the line, or in the modem, whichever is longer. `full`: bytes of the
- * longest one. */
+void link_limitUnanswered(Link_Pacing* pacing, U32 packets) {
+    pacing->mostWaiting = (U8)packets;
+    pacing->radio->waiting = (U8)(pacing->radio->waiting - pacing->waiting);
+    pacing->waiting = 0;
+}
+
+void link_limitPacket(Link_Pacing* pacing, U32 bytes) {
+    pacing->longest = (U8)(bytes - pacing->env.codec->overhead);
+}
+
+void link_noteRoundTrip(Link_Pacing* pacing, U32 us) {
+    if (us < pacing->fastest)
+        pacing->fastest = us;
+}
+
+/* Returns the time of a packet and a silence on the line, us. */
+static U32 lineOf(const Link_Pacing* pacing, U32 size) {
+    return (size + LINK_SILENCE) * pacing->byteTimeUs16 >> 4;
+}
+
+/* Returns the time of a packet on the line or in the modem, whichever is longer, us. `full`: size
+ * of the largest packet. */
 static U32 timeOf(U32 line, U32 size, U32 full) {
     U32 modem = size * LINK_BYTE_US +
                 (full > LINK_MAX_ENCRYPTED ? LINK_PACKET_US : LINK_PACKET_ENCRYPTED_US);
     return line > modem ? line : modem;
 }
 
-U32 link_room(const Link_Output* output) {
-    return (U32)output->longest - output->packed;
+U32 link_room(const Link_Pacing* pacing) {
+    return (U32)pacing->longest - pacing->packed;
 }
 
 /* Hands the packet to a radio that answers. */
-static int handOverAnswered(Link_Output* output) {
-    Link_Pacer* pacer = output->pacer;
-    if (pacer->waiting >= output->mostWaiting ||
-        output->port->transmit(output->context, output->packet, output->packed) != 0)
+static int handOverAnswered(Link_Pacing* pacing) {
+    Link_Unanswered* radio = pacing->radio;
+    if (radio->waiting >= pacing->mostWaiting ||
+        pacing->env.port->transmit(pacing->env.context, pacing->packet, pacing->packed) != 0)
         return 0;
-    pacer->owners[(pacer->first + pacer->waiting++) % LINK_MOST_WAITING] = output;
-    ++output->handed;
-    ++output->waiting;
-    output->packed = output->heard = 0;
+    radio->owners[(radio->first + radio->waiting++) % LINK_MOST_WAITING] = pacing->owner;
+    ++pacing->handed;
+    ++pacing->waiting;
+    pacing->packed = pacing->heard = 0;
     return 1;
 }
 
-/* Hands the packet, in which there is a frame, to the radio, filled up if another may follow while
- * the modem holds it: the modem joins two packets unless the first is full, and from then on all
- * begin inside a frame. */
-static int handOver(Link_Output* output, int isFollowed) {
-    U32 size = output->packed;
-    U32 full = (U32)output->longest + output->codec->overhead;
+/* Hands the packet, which has a frame, to the radio. It is padded if another packet may follow
+ * while the modem holds it: the modem joins two packets unless the first is full, and all later
+ * packets would then begin inside a frame. */
+static int handOver(Link_Pacing* pacing, int isFollowed) {
+    U32 size = pacing->packed;
+    U32 full = (U32)pacing->longest + pacing->env.codec->overhead;
     U32 line, time, slack;
-    if (output->mostWaiting)
-        return handOverAnswered(output);
-    if (isFollowed && output->slow && (output->present.features & LINK_FEATURE_PIGGYBACK)) {
-        memset(output->packet + size, (int)LINK_FILL, full - size);
+    if (pacing->mostWaiting)
+        return handOverAnswered(pacing);
+    if (isFollowed && pacing->slow && (pacing->session->features & LINK_FEATURE_PIGGYBACK)) {
+        memset(pacing->packet + size, (int)LINK_FILL, full - size);
         size = full;
     }
-    if ((output->quietUntil - output->now - 1U) >> 21 == 0) /* more is long ago */
+    if ((pacing->quietUntil - pacing->env.now - 1U) >> 21 ==
+        0) /* a larger difference is a time long ago */
         return 0;
-    if (output->port->transmit(output->context, output->packet, size) != 0) {
-        output->slow = SLOW;
+    if (pacing->env.port->transmit(pacing->env.context, pacing->packet, size) != 0) {
+        pacing->slow = SLOW;
         return 0;
     }
-    if (output->slow)
-        --output->slow;
-    output->statistics.bytesSent += size - output->packed;
-    if (LINK_BEFORE(output->paceUntil, output->now))
-        output->paceUntil = output->now;
-    line = lineOf(output, size);
+    if (pacing->slow)
+        --pacing->slow;
+    pacing->env.statistics.bytesSent += size - pacing->packed;
+    if (LINK_BEFORE(pacing->paceUntil, pacing->env.now))
+        pacing->paceUntil = pacing->env.now;
+    line = lineOf(pacing, size);
     time = slack = timeOf(line, size, full);
-    output->paceUntil += time;
+    pacing->paceUntil += time;
     if (size < full) {
         slack -= line > LINK_SHORT_MARGIN ? line : LINK_SHORT_MARGIN;
-        output->quietUntil = output->now + line;
+        pacing->quietUntil = pacing->env.now + line;
     }
-    output->slack = slack;
-    output->early = 0;
-    if (output->heard && output->fastest > LINK_PACKET_US) { /* a wire needs no turns */
-        U32 heard = output->heard;
-        U32 wait = timeOf(lineOf(output, heard), heard, full) * LINK_HEARD_QUARTERS >> 2;
-        output->early = (time + wait) / 2U;
-        output->paceUntil += wait;
+    pacing->slack = slack;
+    pacing->early = 0;
+    if (pacing->heard && pacing->fastest > LINK_PACKET_US) { /* a wire has no turns */
+        U32 heard = pacing->heard;
+        U32 wait = timeOf(lineOf(pacing, heard), heard, full) * LINK_HEARD_QUARTERS >> 2;
+        pacing->early = (time + wait) / 2U;
+        pacing->paceUntil += wait;
     }
-    output->packed = output->heard = 0;
+    pacing->packed = pacing->heard = 0;
     return 1;
 }
 
-int link_flush(Link_Output* output) {
-    return handOver(output, output->isStream);
+int link_flush(Link_Pacing* pacing) {
+    return handOver(pacing, pacing->isStream);
 }
 
-void link_hear(Link_Output* output, U32 size) {
-    output->heard = (U8)size;
-    if (output->paceUntil - output->slack - output->now < output->early)
-        output->paceUntil = output->now + output->slack;
+void link_hear(Link_Pacing* pacing, U32 size) {
+    pacing->heard = (U8)size;
+    if (pacing->paceUntil - pacing->slack - pacing->env.now < pacing->early)
+        pacing->paceUntil = pacing->env.now + pacing->slack;
 }
 
-int link_isOpen(Link_Output* output) {
-    if (output->packed && output->packed + LEAST(output) > output->longest && !link_flush(output))
+struct Link* link_takeAnswered(Link_Pacing* pacing) {
+    Link_Unanswered* radio = pacing->radio;
+    struct Link* owner = radio->owners[radio->first];
+    if (!radio->waiting)
         return 0;
-    if (output->mostWaiting && !output->packed && output->pacer->waiting >= output->mostWaiting)
-        return 0;
-    return output->packed || !LINK_BEFORE(output->now + output->slack, output->paceUntil);
+    --radio->waiting;
+    radio->first = (U8)((radio->first + 1U) % LINK_MOST_WAITING);
+    return owner;
 }
 
-int link_sendFrame(Link_Output* output, U8* frame, U32 header, U32 number) {
-    U32 size = output->codec->seal(output, frame, header, number);
-    if (size > link_room(output) + output->codec->overhead && !handOver(output, 1))
+U32 link_paceByAnswer(Link_Pacing* pacing, int isDelivered, U32 silence) {
+    Link_Env* env = &pacing->env;
+    U32 packet = (U8)(pacing->handed - pacing->waiting--);
+    U32 rest =
+        link_noteAnswer(&pacing->contention, env->now, isDelivered, silence, pacing->waiting != 0);
+    pacing->paceUntil = env->now;
+    if (rest) {
+        pacing->paceUntil += env->port->random(env->context) % rest;
+        pacing->early = 0xFFFFFFFFU; /* a frame of the peer ends the rest */
+    }
+    return packet;
+}
+
+int link_isOpen(Link_Pacing* pacing) {
+    if (pacing->packed && pacing->packed + LEAST(pacing) > pacing->longest && !link_flush(pacing))
         return 0;
-    memcpy(output->packet + output->packed, frame, size);
-    output->packed = (U8)(output->packed + size);
-    ++output->statistics.framesSent;
-    output->statistics.bytesSent += size;
+    if (pacing->mostWaiting && !pacing->packed && pacing->radio->waiting >= pacing->mostWaiting)
+        return 0;
+    return pacing->packed || !LINK_BEFORE(pacing->env.now + pacing->slack, pacing->paceUntil);
+}
+
+int link_sendSealed(Link_Pacing* pacing, U8* frame, U32 header, const Link_Seal* seal) {
+    Link_Env* env = &pacing->env;
+    U32 size = env->codec->seal(frame, header, seal);
+    if (size > link_room(pacing) + env->codec->overhead && !handOver(pacing, 1))
+        return 0;
+    memcpy(pacing->packet + pacing->packed, frame, size);
+    pacing->packed = (U8)(pacing->packed + size);
+    ++env->statistics.framesSent;
+    env->statistics.bytesSent += size;
     return 1;
 }
 
-int link_sendControl(Link_Output* output, U8* frame, U32 byte2, U32 number, U32 size) {
-    U32 header = LINK_HEADER_OF(LINK_CONTROL | size, (U8)number, byte2);
-    if (!link_sendFrame(output, frame, header, number))
+int link_sendNow(Link_Pacing* pacing, U8* frame, U32 header, const Link_Seal* seal) {
+    if (!link_sendSealed(pacing, frame, header, seal))
         return 0;
-    (void)link_flush(output); /* or it leaves with the packet, as soon as the radio has room */
+    (void)link_flush(pacing); /* otherwise it leaves with the packet when the radio has room */
     return 1;
+}
+
+/* Makes the seal of the session's own frames. */
+static void makeSeal(const Link_Pacing* pacing, Link_Seal* seal, U32 number, U32 acked) {
+    seal->key = LINK_OWN_KEY(pacing->session, keys);
+    seal->session = pacing->session->key;
+    seal->number = number;
+    seal->acked = acked;
+}
+
+int link_sendFrame(Link_Pacing* pacing, U8* frame, U32 header, U32 number, U32 acked) {
+    Link_Seal seal;
+    makeSeal(pacing, &seal, number, acked);
+    return link_sendSealed(pacing, frame, header, &seal);
+}
+
+int link_sendControl(Link_Pacing* pacing, U8* frame, U32 byte2, U32 number, U32 size) {
+    Link_Seal seal;
+    makeSeal(pacing, &seal, number, 0);
+    return link_sendNow(pacing, frame, LINK_HEADER_OF(LINK_CONTROL | size, (U8)number, byte2),
+                        &seal);
 }

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_queue: a ring of entries and a ring of their bytes.
+ * link_queue: a ring of entries, and a ring of their bytes.
  */
-#include "link_sender.h"
+#include "link_queue.h"
+
+#include <string.h>
 
 static Link_Entry* entryAt(Link_Queue* queue, U32 index) {
     return &queue->entries[(queue->first + index) % LINK_SEND_MESSAGES];
@@ -29,9 +31,9 @@ void link_put(Link_Queue* queue, const U8* data, U32 size) {
         queue->bytes[queue->tail++ & mask] = *data++;
 }
 
-void link_copy(const Link_Queue* queue, const Link_Piece* piece, U8* to) {
-    U32 at = piece->start;
-    U32 size = piece->size;
+void link_copy(const Link_Queue* queue, const Link_Chunk* chunk, U8* to) {
+    U32 at = chunk->start;
+    U32 size = chunk->size;
     U32 mask = queue->mask;
     while (size--)
         *to++ = queue->bytes[at++ & mask];
@@ -48,15 +50,24 @@ void link_dequeue(Link_Queue* queue, U32 entry) {
     }
 }
 
-void link_rewind(Link_Queue* queue) {
+int link_wasFull(Link_Queue* queue) {
+    int wasFull = queue->wasFull;
+    queue->wasFull = 0;
+    return wasFull;
+}
+
+void link_rewind(Link_Queue* queue, int isWiped) {
     queue->cutAt = queue->tail = queue->head;
     queue->cutEntry = queue->isAhead = 0;
     queue->cutBytes = 0;
+    if (isWiped)
+        memset(queue->bytes, 0, queue->mask + 1U);
 }
 
-/* Finds an entry of at most `most` bytes that may overtake the present long message: on another
- * channel than all that it overtakes, in the order of the heads that the peer learns, and never two
- * in a row. Sets `start` to the place of its bytes. Returns 0: none. */
+/* Finds an entry of at most `most` bytes that may overtake the present long message: it is on
+ * another channel than all entries that it overtakes, keeps the order of the headers that the peer
+ * learns, and does not follow another one that has overtaken. Sets `start` to the offset of its
+ * bytes. Returns 0 if there is none. */
 static Link_Entry* findAhead(Link_Queue* queue, U32 most, U32* start) {
     Link_Entry* entry = entryAt(queue, queue->cutEntry);
     U32 channels = 0;
@@ -78,24 +89,24 @@ static Link_Entry* findAhead(Link_Queue* queue, U32 most, U32* start) {
     return 0;
 }
 
-int link_cut(Link_Queue* queue, Link_Piece* piece, U32 room, U32 reduced, U32 overtaker) {
+int link_cut(Link_Queue* queue, Link_Chunk* chunk, U32 room, U32 reduced, U32 overtaker) {
     Link_Entry* entry;
     U32 left;
     if (queue->cutEntry == queue->count)
         return 0;
-    entry = findAhead(queue, overtaker, &piece->start);
+    entry = findAhead(queue, overtaker, &chunk->start);
     if (!entry && !reduced)
         return 0;
     queue->isAhead = entry != 0;
     if (entry) {
         entry->flags |= LINK_ENTRY_AHEAD;
         left = room = entry->size;
-        piece->flags = entry->flags & (LINK_FIRST | 3U);
+        chunk->flags = entry->flags & (LINK_FIRST | 3U);
     } else {
         entry = entryAt(queue, queue->cutEntry);
         left = entry->size - queue->cutBytes;
-        piece->start = queue->cutAt;
-        piece->flags = entry->flags & (queue->cutBytes ? 3U : LINK_FIRST | 3U);
+        chunk->start = queue->cutAt;
+        chunk->flags = entry->flags & (queue->cutBytes ? 3U : LINK_FIRST | 3U);
         if (queue->cutBytes || left >= room)
             room = reduced;
         if (room > left)
@@ -103,11 +114,11 @@ int link_cut(Link_Queue* queue, Link_Piece* piece, U32 room, U32 reduced, U32 ov
         queue->cutAt += room;
         queue->cutBytes = (U16)(queue->cutBytes + room);
     }
-    piece->size = (U8)room;
-    piece->entry = (U8)(entry - queue->entries);
+    chunk->size = (U8)room;
+    chunk->entry = (U8)(entry - queue->entries);
     if (left != room)
         return 1;
-    piece->flags |= LINK_LAST;
+    chunk->flags |= LINK_LAST;
     if (queue->isAhead)
         return 1;
     queue->cutBytes = 0;

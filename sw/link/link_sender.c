@@ -1,84 +1,115 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_sender: cuts messages into fragments, keeps a window of them in flight, and repeats lost
- * ones.
+ * link_sender: sends fragments and repeats lost ones.
  */
 #include "link_sender.h"
 
 #include <stddef.h>
 #include <string.h>
 
-/* The peer's credit in fragments, until its first frame gives it. */
+/* Credit in fragments until the peer's first acknowledgement. */
 #define LEAST_WINDOW 8U
 
-/* Bytes of the longest acknowledgement. */
-#define ACK_ROOM(output) (output->codec->overhead + 1U + LINK_BITMAP)
-
-/* Fragments in flight that make a stream. */
-#define STREAM 3U
+/* Size of the longest acknowledgement, bytes. */
+#define ACK_ROOM(sender) ((sender)->pacing->env.codec->overhead + 1U + LINK_BITMAP)
 
 #define IN_FLIGHT(sender) ((sender)->next - (sender)->base)
 #define FRAGMENT(sender, seq) (&(sender)->window[(seq) & (sender)->mask])
 
-Link_Entry* link_offer(Link_Sender* sender, U32 flags, U32 size) {
-    Link_Entry* entry = link_enqueue(&sender->queue, flags, size, sender->output->longest);
+/* Adds an entry to the queue. Returns 0 if there is no room. */
+static Link_Entry* enqueue(Link_Sender* sender, U32 flags, U32 size) {
+    Link_Entry* entry = link_enqueue(&sender->queue, flags, size, sender->pacing->longest);
     if (entry)
         sender->hasWork = 1;
     return entry;
 }
 
+int link_queueChannel(Link_Sender* sender, U32 flags) {
+    return enqueue(sender, flags, 0) != 0;
+}
+
+Link_Status link_queueMessage(Link_Sender* sender, int channel, const U8* data, U32 size, U32 tag) {
+    Link_Env* env = &sender->pacing->env;
+    Link_Queue* queue = &sender->queue;
+    Link_Compressed packed;
+    Link_Entry* entry;
+    U8 check[LINK_CHECK];
+    U32 total, checkSize;
+    packed.prefix = packed.middle = packed.tailAt = packed.head = 0;
+    if (sender->pacing->session->features & LINK_FEATURE_COMPRESSION)
+        link_compress(&sender->heads, channel, data, size, &packed);
+    total = packed.prefix + packed.middle + size - packed.tailAt;
+    checkSize = total > LINK_UNCHECKED ? env->codec->check : 0U;
+    entry = enqueue(sender, LINK_FIRST | (U32)channel, total + checkSize);
+    if (!entry)
+        return total + checkSize + LINK_RESERVE > queue->mask + 1U ? LINK_TOO_LONG : LINK_FULL;
+    entry->tag = tag;
+    if (packed.middle)
+        entry->flags |= LINK_ENTRY_LEARNS;
+    LINK_BEGIN_ENTRY(queue, checkSize != 0);
+    link_put(queue, packed.bytes, packed.prefix);
+    link_put(queue, data + LINK_HEAD_AT, packed.middle);
+    link_put(queue, data + packed.tailAt, size - packed.tailAt);
+    if (packed.head)
+        link_cacheHeader(&sender->heads, channel, data, packed.head);
+    env->statistics.headBytesSaved += size - total;
+    check[0] = (U8)queue->sums;
+    check[1] = (U8)(queue->sums >> 8);
+    link_put(queue, check, checkSize);
+    return LINK_OK;
+}
+
 /* Queues the closings that had no room yet. The peer waits for each before the channel can be
  * opened again. */
 static void queueClosings(Link_Sender* sender) {
-    Link_Output* output = sender->output;
-    int channel;
+    Link_Channels* channels = &sender->receiver->channels;
+    U32 channel;
     for (channel = 0; channel < LINK_CHANNELS; ++channel)
-        if ((output->closeDue >> channel & 1) && link_offer(sender, (U32)channel, 0))
-            output->closeDue = (U8)(output->closeDue ^ 1U << channel);
+        if ((channels->closeDue >> channel & 1) && link_queueChannel(sender, channel))
+            LINK_NOTE_CLOSING(channels, channel);
 }
 
-/* Ends an entry of the queue, reports a message's outcome, and tells that there is room again. */
+/* Ends an entry of the queue, reports a message's outcome, and reports that there is room again. */
 static void endEntry(Link_Sender* sender, U32 index, Link_Outcome outcome) {
-    const Link_Output* output = sender->output;
+    Link_Env* env = &sender->pacing->env;
     Link_Queue* queue = &sender->queue;
     Link_Entry ended = queue->entries[index];
     link_dequeue(queue, index);
     if (ended.size) { /* a message, not an opening or closing */
-        sender->output->statistics.messagesSent += outcome == LINK_DELIVERED;
-        if (output->port->outcome)
-            output->port->outcome(output->context, (int)LINK_CHANNEL(ended.flags), ended.tag,
-                                  outcome);
+        env->statistics.messagesSent += outcome == LINK_DELIVERED;
+        if (env->port->outcome)
+            env->port->outcome(env->context, (int)LINK_CHANNEL(ended.flags), ended.tag, outcome);
     }
-    if (queue->wasFull && outcome == LINK_DELIVERED) {
-        queue->wasFull = 0;
+    if (outcome == LINK_DELIVERED && link_wasFull(queue)) {
         queueClosings(sender);
-        if (output->port->writable)
-            output->port->writable(output->context);
+        if (env->port->writable)
+            env->port->writable(env->context);
     }
 }
 
-void link_resetSender(Link_Sender* sender) {
+void link_resetSender(Link_Sender* sender, int isWiped) {
     while (sender->queue.count)
         endEntry(sender, sender->queue.first, LINK_UNKNOWN);
-    link_rewind(&sender->queue);
+    link_rewind(&sender->queue, isWiped);
     memset(&sender->credit, 0, offsetof(Link_Sender, queue) - offsetof(Link_Sender, credit));
     sender->credit = sender->fullCredit = LEAST_WINDOW;
-    sender->output->fastest = sender->rto = LINK_RTO_FIRST;
+    sender->rto = LINK_RTO_FIRST;
+    LINK_FORGET_ROUND_TRIPS(sender->pacing);
 }
 
-/* Cuts the next fragment from the queue into the window, or only one that overtakes. Returns 0:
- * nothing to cut, or no room. */
+/* Cuts the next fragment from the queue into the window; `onlyAhead`: only one that overtakes.
+ * Returns 0 if there is nothing to cut, or no room. */
 static int cut(Link_Sender* sender, int onlyAhead) {
     Link_Fragment* f = FRAGMENT(sender, sender->next);
-    const Link_Output* output = sender->output;
+    const Link_Pacing* pacing = sender->pacing;
     U32 inFlight = IN_FLIGHT(sender);
-    U32 room = link_room(output);
+    U32 room = link_room(pacing);
     /* An acknowledgement that is due leaves in the same packet. */
-    U32 reduced = sender->receiver->ackNow ? room - ACK_ROOM(output) : room;
-    /* One fragment goes out even without credit: its acknowledgement brings news of credit. */
+    U32 reduced = sender->receiver->ackNow ? room - ACK_ROOM(sender) : room;
+    /* One fragment goes out even without credit: its acknowledgement brings new credit. */
     if ((inFlight && inFlight >= sender->credit) ||
-        !link_cut(&sender->queue, &f->piece, room, onlyAhead ? 0 : reduced,
-                  output->present.features & LINK_FEATURE_PIGGYBACK ? output->longest : 0U))
+        !link_cut(&sender->queue, &f->chunk, room, onlyAhead ? 0 : reduced,
+                  pacing->session->features & LINK_FEATURE_PIGGYBACK ? pacing->longest : 0U))
         return 0;
     if (sender->queue.isAhead)
         sender->ahead = sender->next;
@@ -88,12 +119,12 @@ static int cut(Link_Sender* sender, int onlyAhead) {
     return 1;
 }
 
-/* Returns n: one of n transmissions asks for an acknowledgement, which costs a turn of the air:
- * more often where losses stop the window, while somebody waits for a message that has overtaken,
- * or where short messages fill the queue before the window. */
+/* Returns n, so that one of n transmissions asks for an acknowledgement, which costs a turn of the
+ * air. n is smaller while losses stop the window, while a message that has overtaken is not
+ * acknowledged, and while short messages fill the queue before the window. */
 static U32 askEvery(const Link_Sender* sender) {
     U32 ahead = sender->ahead;
-    if (!sender->output->mostWaiting &&
+    if (!sender->pacing->mostWaiting &&
         (sender->isLossy || (ahead - sender->base < IN_FLIGHT(sender) &&
                              FRAGMENT(sender, ahead)->state != LINK_ACKED)))
         return 5U;
@@ -102,12 +133,12 @@ static U32 askEvery(const Link_Sender* sender) {
     return sender->fullCredit / 4U * 3U;
 }
 
-/* True if the peer should answer a fragment at once: one of every n, the last one within its
- * credit, and the last one that is sent again. */
+/* Returns whether the peer should acknowledge a fragment at once: one of every n, the last one
+ * within the credit, and the last one that is sent again. */
 static int mustAsk(const Link_Sender* sender, U32 seq) {
     if (sender->unasked + 1U >= askEvery(sender) || seq - sender->base + 1U >= sender->credit)
         return 1;
-    if (!FRAGMENT(sender, seq)->tries || sender->output->mostWaiting)
+    if (!FRAGMENT(sender, seq)->tries || sender->pacing->mostWaiting)
         return 0;
     while (++seq != sender->next)
         if (FRAGMENT(sender, seq)->state == LINK_TO_SEND)
@@ -115,70 +146,73 @@ static int mustAsk(const Link_Sender* sender, U32 seq) {
     return 1;
 }
 
-/* True if the peer may take a message of one fragment although earlier ones are missing: it has all
- * of its channel, and learns no head from what is not in order yet. */
+/* Returns whether the peer may take a message of one fragment although earlier ones are missing: it
+ * has all earlier ones of the channel, and learns no head from fragments that are not in order yet.
+ */
 static int isReady(const Link_Sender* sender, U32 seq, U32 flags) {
     const Link_Entry* entries = sender->queue.entries;
     const Link_Fragment* f = FRAGMENT(sender, seq);
-    while (!(entries[f->piece.entry].flags & LINK_ENTRY_LEARNS)) {
+    while (!(entries[f->chunk.entry].flags & LINK_ENTRY_LEARNS)) {
         if (seq-- == sender->base)
             return 1;
         f = FRAGMENT(sender, seq);
-        if (f->state != LINK_ACKED && LINK_CHANNEL(f->piece.flags) == LINK_CHANNEL(flags))
+        if (f->state != LINK_ACKED && LINK_CHANNEL(f->chunk.flags) == LINK_CHANNEL(flags))
             break;
     }
     return 0;
 }
 
-/* Puts a fragment's payload into a frame. Returns the header: of data, or, for a whole short
- * message, of a control frame that takes an acknowledgement along. */
+/* Puts a fragment's payload into a frame. Returns the header: of a data frame, or of a PIGGYBACK
+ * for a whole short message while an acknowledgement is due. */
 static U32 build(const Link_Sender* sender, U32 seq, int isAsked, U8* frame) {
-    const Link_Output* output = sender->output;
-    const Link_Piece* piece = &FRAGMENT(sender, seq)->piece;
+    const Link_Pacing* pacing = sender->pacing;
+    const Link_Chunk* chunk = &FRAGMENT(sender, seq)->chunk;
     U8* p = frame + LINK_HEADER;
-    U32 flags = piece->flags;
-    U32 size = piece->size;
+    U32 flags = chunk->flags;
+    U32 size = chunk->size;
     int isWhole = (flags & LINK_FIRST) && (flags & LINK_LAST) && size;
     U32 header = LINK_HEADER_OF(size, (U8)seq, flags | (isAsked ? LINK_ACK_NOW : 0U));
-    if (isWhole && size < link_room(output) && link_ackMayRide(sender->receiver)) {
+    if (isWhole && size < link_room(pacing) && link_canPiggyback(sender->receiver)) {
         header = LINK_CONTROL_HEADER(isAsked ? LINK_KIND_PIGGYBACK_ASK : LINK_KIND_PIGGYBACK,
                                      (U8)seq, size + 1U) |
                  LINK_HEADER_OF(0U, 0U, LINK_CHANNEL(flags));
-        *p++ = (U8)output->expected;
+        *p++ = (U8)sender->receiver->expected;
     }
-    if (isWhole && seq != sender->base && (output->present.features & LINK_FEATURE_PIGGYBACK) &&
+    if (isWhole && seq != sender->base && (pacing->session->features & LINK_FEATURE_PIGGYBACK) &&
         isReady(sender, seq, flags))
         header |= LINK_HEADER_OF(0U, 0U, LINK_READY);
-    link_copy(&sender->queue, piece, p);
+    link_copy(&sender->queue, chunk, p);
     return header;
 }
 
-/* Sends a fragment. Returns 1: handed over. */
+/* Sends a fragment. Returns 1 if it is in a packet. */
 static int transmit(Link_Sender* sender, U32 seq) {
-    Link_Output* output = sender->output;
+    Link_Env* env = &sender->pacing->env;
     Link_Fragment* f = FRAGMENT(sender, seq);
     U8 frame[LINK_MAX_FRAME];
     U32 wait = sender->rto;
     int isAsked = mustAsk(sender, seq);
     U32 header = build(sender, seq, isAsked, frame);
-    if (!link_sendFrame(output, frame, header, seq))
+    if (!link_sendFrame(sender->pacing, frame, header, seq,
+                        header & LINK_CONTROL ? sender->receiver->expected : 0U))
         return 0;
     if (header & LINK_CONTROL)
-        link_ackIsSent(sender->receiver);
+        link_noteAckSent(sender->receiver);
     if (f->tries)
-        ++output->statistics.fragmentsResent;
+        ++env->statistics.fragmentsResent;
     else
-        f->firstAt = output->now;
+        f->firstAt = env->now;
     if (f->tries < 2U)
         ++f->tries;
     f->order = ++sender->order;
-    f->sentAt = output->now;
+    f->sentAt = env->now;
     f->state = LINK_SENT;
-    f->packet = output->handed;
+    f->packet = sender->pacing->handed;
     sender->unasked = (U8)(isAsked ? 0U : sender->unasked + 1U);
-    if (IN_FLIGHT(sender) >= sender->fullCredit && wait > sender->srtt) /* only an answer helps */
+    if (IN_FLIGHT(sender) >= sender->fullCredit &&
+        wait > sender->srtt) /* only an acknowledgement helps */
         wait = sender->srtt < LINK_RTO_MIN ? LINK_RTO_MIN : sender->srtt;
-    sender->timerAt = output->now + wait;
+    sender->timerAt = env->now + wait;
     return 1;
 }
 
@@ -195,12 +229,11 @@ static void sample(Link_Sender* sender, U32 roundTrip) {
         sender->rttvar += error / 4U - sender->rttvar / 4U;
         sender->srtt += roundTrip / 8U - sender->srtt / 8U;
     }
-    if (roundTrip < sender->output->fastest)
-        sender->output->fastest = roundTrip;
-    sender->output->statistics.roundTripUs = sender->srtt;
+    link_noteRoundTrip(sender->pacing, roundTrip);
+    sender->pacing->env.statistics.roundTripUs = sender->srtt;
 }
 
-/* Sets the time-out anew, since the peer has answered. */
+/* Restarts the retransmission timer after an answer. */
 static void setTimer(Link_Sender* sender) {
     U32 rto = sender->hasSample ? sender->srtt + 2U * sender->rttvar : LINK_RTO_FIRST;
     if (rto < LINK_RTO_MIN)
@@ -208,10 +241,10 @@ static void setTimer(Link_Sender* sender) {
     if (rto > LINK_RTO_MAX)
         rto = LINK_RTO_MAX;
     sender->rto = rto;
-    sender->timerAt = sender->output->now + rto;
+    sender->timerAt = sender->pacing->env.now + rto;
 }
 
-/* Marks fragments that were sent before `order` and not acknowledged as lost: they go out again. */
+/* Marks unacknowledged fragments that were sent before `order` as lost: they go out again. */
 static void sendAgain(Link_Sender* sender, U32 order) {
     U32 seq;
     for (seq = sender->base; seq != sender->next; ++seq) {
@@ -223,26 +256,27 @@ static void sendAgain(Link_Sender* sender, U32 order) {
     }
 }
 
-/* Marks acknowledged fragments: `advance` from the base on, and those of the bitmap, whose bit n is
- * for the fragment at advance + 1 + n. Other fragments that were sent before the newest of them are
- * lost. */
-static void markAcked(Link_Sender* sender, U32 advance, const U8* bitmap, U32 size) {
+/* Marks acknowledged fragments: the first `advance`, and those of the bitmap, whose bit n stands
+ * for the fragment at advance + 1 + n. Other fragments that were sent before the newest of these
+ * are lost. */
+static int markAcked(Link_Sender* sender, U32 advance, const U8* bitmap, U32 size) {
     const Link_Fragment* newest = 0;
+    int isNew = 0;
     U32 i;
     for (i = 0; i < IN_FLIGHT(sender); ++i) {
         Link_Fragment* f = FRAGMENT(sender, sender->base + i);
-        U32 elapsed = sender->output->now - f->sentAt;
+        U32 elapsed = sender->pacing->env.now - f->sentAt;
         U32 bit = i - advance - 1U;
         U32 isHere = i < advance || (bit < 8U * size && (bitmap[bit / 8U] >> bit % 8U & 1));
         if (!isHere || f->state == LINK_ACKED || f->tries == 0)
             continue;
         f->state = LINK_ACKED;
-        sender->output->heardAt = sender->output->now;
+        isNew = 1;
         if (f->tries != 1U && elapsed < sender->srtt - sender->srtt / 4U) {
-            /* Too soon for a round trip: it answers an earlier transmission. Where the radio says
-             * what is lost, that was the first one, and the peer of a call takes longer now. */
-            elapsed = sender->output->now - f->firstAt;
-            if (sender->output->mostWaiting && !sender->output->contention.own.isMuch &&
+            /* Too soon for a round trip: this acknowledges an earlier transmission. If the radio
+             * reports losses, it is the first transmission, and the peer takes longer now. */
+            elapsed = sender->pacing->env.now - f->firstAt;
+            if (sender->pacing->mostWaiting && !sender->pacing->contention.own.isStream &&
                 elapsed < LINK_RTO_FIRST)
                 sample(sender, elapsed);
             continue;
@@ -252,28 +286,31 @@ static void markAcked(Link_Sender* sender, U32 advance, const U8* bitmap, U32 si
     }
     if (newest) {
         if (newest->tries == 1U && !sender->isLate)
-            sample(sender, sender->output->now - newest->sentAt);
+            sample(sender, sender->pacing->env.now - newest->sentAt);
         sender->isLate = sender->unasked = 0;
         setTimer(sender);
         sendAgain(sender, newest->order);
     }
+    return isNew;
 }
 
-void link_onAck(Link_Sender* sender, U32 cumulative, U32 credit, const U8* bitmap, U32 size) {
+int link_onAck(Link_Sender* sender, U32 cumulative, U32 credit, const U8* bitmap, U32 size) {
     U32 advance = (U8)(cumulative - sender->base);
+    int isNew;
     if (advance > IN_FLIGHT(sender))
-        return; /* an old acknowledgement came late */
+        return 0; /* an old acknowledgement arrived late */
     sender->credit = (U8)(credit <= sender->mask ? credit : sender->mask + 1U);
     if (sender->fullCredit < sender->credit)
         sender->fullCredit = sender->credit;
     sender->hasWork = 1;
     sender->isLossy = size != 0;
-    markAcked(sender, advance, bitmap, size);
+    isNew = markAcked(sender, advance, bitmap, size);
     while (advance--) {
         const Link_Fragment* f = FRAGMENT(sender, sender->base++);
-        if (f->piece.flags & LINK_LAST)
-            endEntry(sender, f->piece.entry, LINK_DELIVERED);
+        if (f->chunk.flags & LINK_LAST)
+            endEntry(sender, f->chunk.entry, LINK_DELIVERED);
     }
+    return isNew;
 }
 
 void link_onAnswer(Link_Sender* sender, U32 packet, int isDelivered) {
@@ -290,11 +327,11 @@ void link_onAnswer(Link_Sender* sender, U32 packet, int isDelivered) {
         }
     }
     if (sender->receiver->packet == packet)
-        link_oweAck(sender->receiver);
+        link_scheduleAck(sender->receiver);
 }
 
 /* Finds the next fragment to send: a short message that overtakes, a lost one, or a new one.
- * Returns 0: none. */
+ * Returns 0 if there is none. */
 static int nextFragment(Link_Sender* sender, U32* seq) {
     int isRepeated = 0;
     for (*seq = sender->base; *seq != sender->next; ++*seq)
@@ -310,24 +347,24 @@ static int nextFragment(Link_Sender* sender, U32* seq) {
     return 1;
 }
 
-/* The fragments in flight: repeats the oldest when the timer has expired. Returns 0: it has been
- * sent so long ago that the session must end, or the peer would carry out what is given up here. */
+/* Repeats the oldest fragment in flight when the timer has expired. Returns 0 if it was sent so
+ * long ago that the session must end, before the peer carries out an abandoned message. */
 static int pollWindow(Link_Sender* sender, U32 now) {
     Link_Fragment* oldest = FRAGMENT(sender, sender->base);
     U32 age = oldest->tries ? now - oldest->firstAt : 0;
     if (age >= LINK_AGE_LAST)
         return 0;
-    if (LINK_BEFORE(now, sender->timerAt) || sender->output->waiting)
+    if (LINK_BEFORE(now, sender->timerAt) || sender->pacing->waiting)
         return 1;
     sender->timerAt = now + sender->rto;
-    if (sender->output->mostWaiting && sender->output->packed)
+    if (sender->pacing->mostWaiting && sender->pacing->packed)
         return 1;                 /* it has not left yet */
-    oldest->state = LINK_TO_SEND; /* its answer tells about the others */
+    oldest->state = LINK_TO_SEND; /* its acknowledgement reports the others */
     sender->hasWork = sender->isLate = 1;
     sender->rto += sender->rto / 4U;
     if (sender->rto > LINK_RTO_MAX)
         sender->rto = LINK_RTO_MAX;
-    if (age >= LINK_PING_AFTER) /* or the session ends before long */
+    if (age >= LINK_PING_AFTER) /* otherwise the session ends soon */
         sender->rto = LINK_PING_EVERY;
     sender->timerAt = now + sender->rto;
     return 1;
@@ -335,12 +372,12 @@ static int pollWindow(Link_Sender* sender, U32 now) {
 
 int link_pollSender(Link_Sender* sender) {
     U32 seq;
-    sender->output->isStream = IN_FLIGHT(sender) >= STREAM;
-    if (sender->output->closeDue)
+    LINK_NOTE_IN_FLIGHT(sender->pacing, IN_FLIGHT(sender));
+    if (sender->receiver->channels.closeDue)
         queueClosings(sender);
-    if (IN_FLIGHT(sender) && !pollWindow(sender, sender->output->now))
+    if (IN_FLIGHT(sender) && !pollWindow(sender, sender->pacing->env.now))
         return 0;
-    while (sender->hasWork && link_isOpen(sender->output)) {
+    while (sender->hasWork && link_isOpen(sender->pacing)) {
         sender->hasWork = (U8)nextFragment(sender, &seq);
         if (!sender->hasWork || !transmit(sender, seq))
             break;

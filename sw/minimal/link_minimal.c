@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_minimal: the link layer of a side that only answers, in 1.3 KiB of code. It has the full
- * layer's wire format and functions, works by stop and wait, and queues one message (docs/link.md).
+ * link_minimal: stop and wait.
  */
-#include "link.h"
+#include "link_minimal.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -230,11 +229,12 @@ U32 Link_deadline(const Link* link, U32 nowUs) {
 
 /* ---- the program's side ---- */
 
-void Link_init(Link* link, const Link_Port* port, void* context, U32 byteTimeUs16) {
+void Link_init(Link* link, const Link_Config* config) {
     memset(link, 0, sizeof *link);
-    link->port = port;
-    link->context = context;
-    link->retryUs = byteTimeUs16 * LINK_MAX_FRAME; /* the time of 16 of the longest frames */
+    link->port = config->port;
+    link->context = config->context;
+    link->retryUs =
+        config->byteTimeUs16 * LINK_MAX_FRAME; /* the time of 16 of the longest frames */
 }
 
 void Link_start(Link* link, U32 nowUs) {

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_minimal: defines a Link in the minimal layer. Only link.h includes it.
+ * link_minimal: the link layer of a side that only answers, in little code. It has the full layer's
+ * wire format and functions (link.h), works by stop and wait, and queues one message
+ * (docs/link.md).
  */
 #pragma once
 
-#include "link_frame.h"
+#include "link.h"
 
 /* No length that a frame may claim goes beyond. */
 #define LINK_INPUT_BYTES (0x7FU + LINK_OVERHEAD)

@@ -9,6 +9,7 @@
  */
 #include "Autopilot.h"
 #include "board.h"
+#include "link_minimal.h"
 #include "map_regs.h"
 #include "program_memory.h"
 #include "radio.h"
@@ -84,6 +85,7 @@ static void onState(void* context, Link_State state) {
 
 static const Link_Port linkPort = {
     Radio_transmit, randomWord, XBeeATEndpoint_onMessage, XBeeATEndpoint_onChannel, onState, 0, 0};
+static const Link_Config linkConfig = {&linkPort, &endpoint, BYTE_TIME_US16};
 
 Ice_Status Autopilot_HwProcessingEngine_setParameterA(Autopilot_HwProcessingEnginePtr self,
                                                       Ice_Short value, const Ice_Current* current) {
@@ -132,7 +134,7 @@ int main(void) {
 
     if (FSMC_init(&board_fsmc, 0) != FSMC_OK || xbeeInit(&xbeeConf, &rings) != RADIO_OK)
         return 1;
-    Link_init(&radioLink, &linkPort, &endpoint, BYTE_TIME_US16);
+    Link_init(&radioLink, &linkConfig);
     Link_start(&radioLink, nowUs(0));
 
     Ice_initialize(&ic);

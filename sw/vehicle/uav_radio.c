@@ -41,14 +41,10 @@ static U32 now;       /* time of the radio task's present turn, in us */
 /* The links of the second ground and of the fellow, which a vehicle may have in API mode only: it
  * tells them apart by their addresses. A second ground calls by itself and is not sought, a fellow
  * only while this vehicle calls it. */
-static union {
-    Link_Output alignment;
-    U8 bytes[LINK_SIZE(SECOND_SENDS, SECOND_TAKES, SECOND_WINDOW)];
-} secondMemory;
-static union {
-    Link_Output alignment;
-    U8 bytes[LINK_SIZE(FELLOW_SENDS, FELLOW_TAKES, FELLOW_WINDOW)];
-} fellowMemory;
+static Link secondLink, fellowLink;
+static Link_Buffers firstBuffers;
+static LINK_BUFFERS(SECOND_SENDS, SECOND_TAKES, SECOND_WINDOW) secondBuffers;
+static LINK_BUFFERS(FELLOW_SENDS, FELLOW_TAKES, FELLOW_WINDOW) fellowBuffers;
 
 /* The grounds by their numbers; those that there are not have no link. */
 typedef struct Peer {
@@ -142,18 +138,22 @@ static void onState(void* peer, Link_State state) {
 }
 
 static const Link_Port port = {transmit, UAV_random, onMessage, onChannel, onState, 0, 0};
+static const Link_Config configs[UAV_GROUNDS] = {
+    {&port, &peers[0], BYTE_TIME_US16, LINK_USE(firstBuffers)},
+    {&port, &peers[UAV_SECOND], BYTE_TIME_US16, LINK_USE(secondBuffers)},
+    {&port, &peers[UAV_FELLOW], BYTE_TIME_US16, LINK_USE(fellowBuffers)}};
 
 /* Adds the second ground or the fellow, if the vehicle has one. */
-static void addPeer(int ground, void* memory, U32 sends, U32 takes, U32 window) {
+static void addPeer(int ground, Link* link) {
     Peer* peer = &peers[ground];
     const U32 address = UAV_addressOf(ground);
     peer->link = 0;
     if (address == UAV_NO_GROUND)
         return;
-    peer->link = memory;
+    peer->link = link;
     peer->address = (U16)address;
     hasOthers = 1;
-    Link_initSmall(peer->link, &port, peer, BYTE_TIME_US16, sends, takes, window);
+    Link_init(peer->link, &configs[ground]);
     Link_shareRadio(peer->link, &uav_link);
     (void)UAV_giveKeys(ground, peer->link);
 }
@@ -164,9 +164,9 @@ int UAV_initRadio(void) {
     iceEvent = OSSemCreate(0);
     linkMutex = OSMutexCreate(PRIO_MUTEX, &error);
     areUp = hasOthers = toAllSize = 0;
-    Link_init(&uav_link, &port, peers, BYTE_TIME_US16);
-    addPeer(UAV_SECOND, &secondMemory, SECOND_SENDS, SECOND_TAKES, SECOND_WINDOW);
-    addPeer(UAV_FELLOW, &fellowMemory, FELLOW_SENDS, FELLOW_TAKES, FELLOW_WINDOW);
+    Link_init(&uav_link, &configs[0]);
+    addPeer(UAV_SECOND, &secondLink);
+    addPeer(UAV_FELLOW, &fellowLink);
     return UAV_giveKeys(0, &uav_link) || UAV_isOpen();
 }
 

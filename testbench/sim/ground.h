@@ -57,7 +57,8 @@ public:
     // Begins as a fresh program on the ground, without earlier state.
     void start() {
         static const Link_Port port = {transmit, random, message, nothing, state, outcome, nullptr};
-        Link_init(link_.get(), &port, this, 1440);
+        const Link_Config config = {&port, this, 1440, LINK_USE(*buffers_)};
+        Link_init(link_.get(), &config);
         if (!key.empty())
             Link_setKey(link_.get(), 0, key.data(), LINK_GROUND | 1);
         Link_start(link_.get(), us());
@@ -161,6 +162,7 @@ private:
     HostLine line_;
     std::unique_ptr<XBee> modem_;
     std::unique_ptr<Link> link_;
+    std::unique_ptr<Link_Buffers> buffers_{new Link_Buffers};
     uint64_t now_ = 0, clock_ = 0, nextPoll_ = 0;
     size_t backlog_ = 0;
     bool isOpen_ = false; // the channel of its calls

@@ -125,7 +125,8 @@ public:
             api_ = std::make_unique<XBeeAT::ApiModem>(modem.parameter("AP") == 2);
         line.forget();
         for (auto& p : peers_) {
-            Link_init(p->link.get(), &port, p.get(), 1440);
+            const Link_Config config = {&port, p.get(), 1440, LINK_USE(*p->buffers)};
+            Link_init(p->link.get(), &config);
             if (encrypts_)
                 Link_limitFrame(p->link.get(), LINK_MAX_ENCRYPTED);
             Link_shareRadio(p->link.get(), link());
@@ -175,6 +176,7 @@ private:
         size_t number;
         int target;
         std::unique_ptr<Link> link{new Link};
+        std::unique_ptr<Link_Buffers> buffers{new Link_Buffers};
         uint64_t airUs = 0;
     };
     static Peer& of(void* c) { return *static_cast<Peer*>(c); }

@@ -100,7 +100,7 @@ static int number(Ice_String name, U32* value) {
 }
 
 /* Finds the register of a name or of a core's byte address; for the latter fills `place`. Returns 0
- * with the reason if it does not exist. */
+ * with the reason if there is none. */
 static const Hw_Register* lookUp(Hw_Registers_Core* self, Ice_String name, Hw_Register* place) {
     const Hw_Register* r = find(self, name);
     const Hw_Register* page = find(self, Ice_String_from("PAGE.ADDRESS"));

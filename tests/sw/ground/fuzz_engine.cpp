@@ -90,7 +90,8 @@ public:
             [](void*, Link_State) {},
             nullptr,
             nullptr};
-        Link_init(peer_.get(), &port, this, 1440);
+        const Link_Config config = {&port, this, 1440, LINK_USE(*buffers_)};
+        Link_init(peer_.get(), &config);
         Link_start(peer_.get(), now);
     }
     ~World() { close(serial); }
@@ -231,6 +232,7 @@ private:
     uint8_t harm_ = 0;
     std::vector<Bytes> frames_;
     std::unique_ptr<Link> peer_{new Link};
+    std::unique_ptr<Link_Buffers> buffers_{new Link_Buffers};
     std::shared_ptr<XBeeAT::Peer> engine_;
     Program programs_[3];
     std::mutex mutex_;

@@ -33,7 +33,8 @@ public:
         static const Link_Port port = {onTransmit, onRandom, onMessage, onChannel,
                                        onState,    nullptr,  nullptr};
         move(air);
-        Link_init(link(), &port, this, 1440);
+        const Link_Config config = {&port, this, 1440, LINK_USE(*buffers_)};
+        Link_init(link(), &config);
     }
     // Flies to where the modems of an air hear it.
     void move(RfChannel& to) {
@@ -94,6 +95,7 @@ private:
     HostLine line_;
     Random random_;
     std::unique_ptr<Link> link_{new Link};
+    std::unique_ptr<Link_Buffers> buffers_{new Link_Buffers};
     uint64_t now_ = 0;
 };
 

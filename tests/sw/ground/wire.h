@@ -77,7 +77,9 @@ public:
             [](void*, Link_State) {},
             nullptr,
             nullptr};
-        Link_init(link_.get(), &port, this, 16); // a fast way: nothing to pace
+        const Link_Config config = {&port, this, 16, // a fast way: nothing to pace
+                                    LINK_USE(*buffers_)};
+        Link_init(link_.get(), &config);
         Link_start(link_.get(), us());
         if (openpty(&master_, &slave_, name_, nullptr, nullptr) != 0)
             throw std::runtime_error("no pty");
@@ -152,4 +154,5 @@ private:
     char name_[128];
     Random random_{testSeed()};
     std::unique_ptr<Link> link_{new Link};
+    std::unique_ptr<Link_Buffers> buffers_{new Link_Buffers};
 };

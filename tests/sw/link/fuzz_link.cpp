@@ -24,7 +24,12 @@
 #include <vector>
 
 extern "C" {
+#ifdef LINK_MINIMAL
+#include "link_minimal.h"
+#else
 #include "link.h"
+#include "link_codec_keyed.h"
+#endif
 }
 
 namespace {
@@ -40,6 +45,9 @@ constexpr bool isMinimal = false;
 // A link with its program and its radio.
 struct Node {
     std::unique_ptr<Link> link{new Link};
+#ifndef LINK_MINIMAL
+    std::unique_ptr<Link_Buffers> buffers{new Link_Buffers};
+#endif
     std::deque<Bytes> out; // frames that are on their way
     uint32_t nonce = 1;
     uint64_t sum = 0; // a sum, which reads every byte handed over
@@ -81,7 +89,12 @@ class Machine {
 public:
     Machine() {
         for (Node* n : {&a_, &b_}) {
-            Link_init(n->link.get(), &port, n, 1440);
+#ifdef LINK_MINIMAL
+            const Link_Config config = {&port, n, 1440};
+#else
+            const Link_Config config = {&port, n, 1440, LINK_USE(*n->buffers)};
+#endif
+            Link_init(n->link.get(), &config);
 #ifdef KEYED
             Link_setKey(n->link.get(), 0, key, n == &a_ ? LINK_GROUND : 0);
 #endif
@@ -137,14 +150,14 @@ private:
     U32 overhead() const { return LINK_OVERHEAD; }
     Bytes sealed(Bytes bytes, bool) const { return bytes; }
 #else
-    U32 sessionKey() const { return a_.link->output.present.key; }
-    U32 expected() const { return a_.link->output.expected; }
-    U32 overhead() const { return a_.link->output.codec->overhead; }
+    U32 sessionKey() const { return a_.link->session.handshake.present.key; }
+    U32 expected() const { return a_.link->session.receiver.expected; }
+    U32 overhead() const { return a_.link->pacing.env.codec->overhead; }
     // The frame under a key. A HELLO is under its own; the others of the handshake are for the
     // nonce of now, from a peer whose nonce is in the input.
     Bytes sealed(Bytes bytes, bool isHandshake) const {
         const Link* link = a_.link.get();
-        const U8* under = LINK_PEERS_KEY(&link->output, link->output.present.keys);
+        const U8* under = LINK_PEERS_KEY(&link->session.handshake.present, keys);
         Link_Keys keys;
         U32 kind = bytes[2] >> 5 & 7;
         U32 number = expected(), acked = 0;
@@ -155,28 +168,29 @@ private:
             bytes[0] = static_cast<uint8_t>(0x80 | (bytes.size() - LINK_HEADER));
             bytes[1] = LINK_VERSION;
             bytes[2] = static_cast<uint8_t>((bytes[2] & 3) | kind << 5);
-            under = link->session.secrets[0].hello;
+            under = link->session.handshake.secrets[0].hello;
             if (kind != LINK_KIND_HELLO) {
-                std::memcpy(&bytes[LINK_HEADER + 8], link->session.nonce, LINK_NONCE_BYTES);
-                link_deriveKeys(&link->session.secrets[0], &bytes[LINK_HEADER], link->session.nonce,
-                                &keys);
+                std::memcpy(&bytes[LINK_HEADER + 8], link->session.handshake.nonce,
+                            LINK_NONCE_BYTES);
+                link_deriveKeys(&link->session.handshake.secrets[0], &bytes[LINK_HEADER],
+                                link->session.handshake.nonce, &keys);
                 under = keys.bytes; // the peer is the vehicle
             }
         } else if (bytes[0] & LINK_CONTROL) {
             if (kind == LINK_KIND_ACK)
-                number = link->sender.base;
+                number = link->session.sender.base;
             else if (kind == LINK_KIND_PING)
-                number =
-                    bytes[2] & 1 ? link->session.watch.pingsSent : link->session.watch.pingsSeen;
+                number = bytes[2] & 1 ? link->session.liveness.pingsSent
+                                      : link->session.liveness.pingsSeen;
             else if (kind >= LINK_KIND_PIGGYBACK && bytes.size() > LINK_HEADER)
-                acked = link_extend(link->sender.base, bytes[LINK_HEADER]);
+                acked = link_extend(link->session.sender.base, bytes[LINK_HEADER]);
             if (kind == LINK_KIND_BYE)
                 number = bytes[1];
         }
         number = link_extend(number, bytes[1]);
         const U32 header = bytes[0] | U32(bytes[1]) << 8 | U32(bytes[2]) << 16;
         bytes.resize(bytes.size() + LINK_TAG);
-        link_protect(bytes.data(), header, under, number, acked);
+        link_encryptFrame(bytes.data(), header, under, number, acked);
         return bytes;
     }
 #endif

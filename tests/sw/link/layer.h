@@ -5,10 +5,15 @@
  */
 #pragma once
 
+#ifdef LINK_MINIMAL
+#include "link_minimal.h"
+#else
 #include "link.h"
+#endif
 
 typedef struct Layer {
-    U32 size, maxMessage; /* of a Link and of a message, in bytes */
+    U32 size;       /* size of a Link with its buffers, which it begins; bytes */
+    U32 maxMessage; /* largest message that can arrive, bytes */
     void (*init)(Link* link, const Link_Port* port, void* context, U32 byteTimeUs16);
     void (*setKey)(Link* link, int slot, const U8* key, U32 side);
     void (*start)(Link* link, U32 nowUs);

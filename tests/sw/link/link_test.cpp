@@ -314,6 +314,7 @@ TEST(FullLayer, LinksOverOneRadioShareWhatMayWaitForItsAnswers) {
                                    nullptr,
                                    nullptr};
     std::vector<Link> links(2);
+    std::vector<Link_Buffers> buffers(2);
     std::vector<unsigned> packets(2);
     const auto poll = [&](U32 now) {
         for (Link& link : links)
@@ -321,7 +322,8 @@ TEST(FullLayer, LinksOverOneRadioShareWhatMayWaitForItsAnswers) {
         return packets;
     };
     for (size_t i = 0; i < 2; ++i) {
-        Link_init(&links[i], &port, &packets[i], 1440);
+        const Link_Config config = {&port, &packets[i], 1440, LINK_USE(buffers[i])};
+        Link_init(&links[i], &config);
         Link_shareRadio(&links[i], &links[0]);
         Link_expectAnswers(&links[i], 1);
         Link_start(&links[i], 0);

@@ -124,8 +124,8 @@ TEST_F(Heads, MoreHeadsThanThereAreSlots) {
 
 // A peer that breaks the rules: both sides start a new session, and go on.
 TEST_F(Heads, ATokenThatMakesNoSenseEndsTheSession) {
-    send(a, b, {0x41});                    // crosses unchanged
-    a.link()->output.present.features = 0; // so that A sends this token unmarked
+    send(a, b, {0x41});                               // crosses unchanged
+    a.link()->session.handshake.present.features = 0; // so that A sends this token unmarked
     b.start();
     a.send(0, {0xE0}, 99);
     ASSERT_TRUE(until([&] { return a.outcomes.count(99) != 0; }, 5'000'000));

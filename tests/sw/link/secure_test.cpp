@@ -8,6 +8,7 @@
 
 extern "C" {
 #include "link_broadcast.h"
+#include "link_codec_keyed.h"
 }
 
 namespace {
@@ -262,9 +263,9 @@ TEST_P(Attacked, AMessageThatIsHeldBackIsReportedAndNeverTaken) {
 int opened(const std::vector<std::pair<bool, Bytes>>& frames, const Link_Keys& keys) {
     int count = 0;
     for (auto [isFromGround, frame] : frames) {
-        const U32 acked = LINK_IS_RIDE(kindOf(frame)) ? frame[LINK_HEADER] : 0;
-        count += link_unprotect(frame.data(), &keys.bytes[isFromGround ? LINK_KEY_BYTES : 0],
-                                frame[1], acked);
+        const U32 acked = LINK_IS_PIGGYBACK(kindOf(frame)) ? frame[LINK_HEADER] : 0;
+        count += link_decryptFrame(frame.data(), &keys.bytes[isFromGround ? LINK_KEY_BYTES : 0],
+                                   frame[1], acked);
     }
     return count;
 }
@@ -272,12 +273,12 @@ int opened(const std::vector<std::pair<bool, Bytes>>& frames, const Link_Keys& k
 // An attacker who has recorded a session and learns the key later opens the frames of its handshake
 // only. With the half of a pair that one side has wiped he could open all.
 TEST_P(Attacked, WhoLearnsTheKeyLaterOpensNoRecordedSession) {
-    Link_Pair pair = {};
+    Link_KeyPair pair = {};
     a.start();
     ASSERT_TRUE(until(
         [&] {
-            if (b.link()->session.pair.isMade)
-                pair = b.link()->session.pair;
+            if (b.link()->session.handshake.hasPair)
+                pair = b.link()->session.handshake.pair;
             return listen(), bothUp();
         },
         5'000'000));
@@ -295,10 +296,10 @@ TEST_P(Attacked, WhoLearnsTheKeyLaterOpensNoRecordedSession) {
         const int kind = kindOf(frame);
         if (kind == LINK_KIND_HELLO_ACK) { // the vehicle's
             link_deriveKeys(&stolen, nonces, nonces + LINK_NONCE_BYTES, &keys);
-            handshakes += link_unprotect(frame.data(), keys.bytes, 0, 0);
+            handshakes += link_decryptFrame(frame.data(), keys.bytes, 0, 0);
         } else if (kind == LINK_KIND_CONFIRM) {
-            handshakes += link_unprotect(frame.data(), &keys.bytes[LINK_KEY_BYTES], 0, 0);
-            open.assign(&frame[LINK_OPEN_AT], &frame[LINK_OPEN_AT] + LINK_OPEN_BYTES);
+            handshakes += link_decryptFrame(frame.data(), &keys.bytes[LINK_KEY_BYTES], 0, 0);
+            open.assign(&frame[LINK_PUBLIC_AT], &frame[LINK_PUBLIC_AT] + LINK_PUBLIC_BYTES);
         } else if (kind != LINK_KIND_HELLO) {
             frames.emplace_back(isFromA, bytes);
         }
@@ -308,9 +309,55 @@ TEST_P(Attacked, WhoLearnsTheKeyLaterOpensNoRecordedSession) {
     EXPECT_EQ(opened(frames, keys), 0);
     link_mixKeys(&keys, &pair, open.data());
     EXPECT_EQ(opened(frames, keys), int(frames.size()));
-    const Link_Pair& left = a.link()->session.pair;
-    EXPECT_FALSE(left.isMade);
-    EXPECT_EQ(Bytes(left.own, left.own + LINK_OPEN_BYTES), Bytes(LINK_OPEN_BYTES, 0));
+    const Link_KeyPair& left = a.link()->session.handshake.pair;
+    EXPECT_FALSE(a.link()->session.handshake.hasPair);
+    EXPECT_EQ(Bytes(left.privateKey, left.privateKey + LINK_PUBLIC_BYTES),
+              Bytes(LINK_PUBLIC_BYTES, 0));
+}
+
+// Returns whether any 8 bytes in a row of a secret are in a side's memory.
+bool remains(Side& side, const U8* secret, size_t size) {
+    const U8* memory = reinterpret_cast<const U8*>(side.link());
+    for (size_t at = 0; at + 8 <= size; ++at)
+        if (std::search(memory, memory + side.layer.size, secret + at, secret + at + 8) !=
+            memory + side.layer.size)
+            return true;
+    return false;
+}
+
+TEST_P(Attacked, ASessionsKeysAndMessagesAreWipedAtItsEnd) {
+    for (bool isStopped : {true, false}) {
+        ASSERT_TRUE(connect());
+        for (auto* side : {&a, &b})
+            side->open(1);
+        run(500'000);
+        Bytes brief(40), picture(400);
+        for (Bytes* message : {&brief, &picture})
+            for (auto& byte : *message)
+                byte = static_cast<uint8_t>(random.next());
+        for (auto* side : {&a, &b})
+            for (Bytes* message : {&brief, &picture})
+                ASSERT_EQ(side->send(1, *message, random.next()), LINK_OK);
+        run(2'000'000);
+        const auto secrets = b.link()->session.handshake.present.secrets;
+        const auto* bytes = reinterpret_cast<const U8*>(&secrets);
+        ASSERT_TRUE(remains(b, bytes, sizeof secrets.keys));
+        ASSERT_TRUE(remains(b, picture.data(), picture.size()));
+        if (isStopped) {
+            b.stop();
+        } else { // the peer vanishes
+            setWeather({1, 0, 0});
+            run(30'000'000);
+            setWeather({});
+        }
+        ASSERT_FALSE(b.isUp());
+        EXPECT_FALSE(remains(b, bytes, sizeof secrets.keys)) << "keys";
+        EXPECT_FALSE(remains(b, secrets.handshake.bytes, sizeof secrets.handshake)) << "handshake";
+        EXPECT_FALSE(remains(b, brief.data(), brief.size())) << "short message";
+        EXPECT_FALSE(remains(b, picture.data(), picture.size())) << "long message";
+        a.stop();
+        run(1'000'000);
+    }
 }
 
 // The recordings of HELLOs, each with another nonce, make a side compute a pair once, and no key.
@@ -326,13 +373,13 @@ TEST_P(Attacked, OldHellosMakeNobodyMultiplyPoints) {
     }
     b.boot();
     setWeather({1, 0, 0}); // A does not hear the answers
-    Link_Pair first = {};
+    Link_KeyPair first = {};
     for (int i = 0; i < 400; ++i, run(100'000)) { // more than four lives of a nonce
         attack(b, hellos[size_t(i) % hellos.size()]);
         if (i == 0)
-            first = b.link()->session.pair;
-        ASSERT_TRUE(first.isMade);
-        EXPECT_EQ(memcmp(&first, &b.link()->session.pair, sizeof first), 0);
+            first = b.link()->session.handshake.pair;
+        ASSERT_TRUE(b.link()->session.handshake.hasPair);
+        EXPECT_EQ(memcmp(&first, &b.link()->session.handshake.pair, sizeof first), 0);
     }
     EXPECT_FALSE(b.isUp());
 }
@@ -418,6 +465,69 @@ TEST_P(Hindered, OldHellosDelayARestartByLessThanASecond) {
             run(15'000'000);
             EXPECT_TRUE(bothUp());
         }
+}
+
+// The ground reads its line in portions. Right in front of each frame that it should hear, the
+// attacker sends bytes in which a frame of the handshake seems to end with each portion.
+TEST_P(Hindered, FramesThatSeemToEndWithEachPortionOfTheLinePreventNoSession) {
+    const auto hostile = [this](size_t count, size_t portion) {
+        Bytes bytes(count, 0x70);
+        std::vector<bool> isSet(count);
+        const auto put = [&](size_t at, const Bytes& part) {
+            for (size_t i = 0; i < part.size(); ++i)
+                bytes[at + i] = part[i], isSet[at + i] = true;
+        };
+        const auto isFree = [&](size_t at, size_t size) {
+            return at + size <= count &&
+                   std::find(isSet.begin() + long(at), isSet.begin() + long(at + size), true) ==
+                       isSet.begin() + long(at + size);
+        };
+        const U8* nonce = a.link()->session.handshake.nonce;
+        constexpr size_t answer = LINK_SECURE_OVERHEAD + LINK_ANSWER_BYTES,
+                         hello = LINK_SECURE_OVERHEAD + LINK_NONCE_BYTES;
+        for (size_t end = (count + answer) / portion * portion; end > answer; end -= portion)
+            if (const size_t at = end - answer;
+                isFree(at, LINK_HEADER) && isFree(at + 11, LINK_NONCE_BYTES)) {
+                put(at, {LINK_CONTROL | (answer - LINK_OVERHEAD), LINK_VERSION,
+                         LINK_KIND_BITS(LINK_KIND_HELLO_ACK)});
+                put(at + 11, Bytes(nonce, nonce + LINK_NONCE_BYTES));
+            }
+        for (size_t end = (count + hello) / portion * portion; end > hello; end -= portion)
+            if (isFree(end - hello, LINK_HEADER))
+                put(end - hello, {LINK_CONTROL | (hello - LINK_OVERHEAD), LINK_VERSION,
+                                  LINK_KIND_BITS(LINK_KIND_HELLO)});
+        return bytes;
+    };
+    for (bool bothCall : {false, true})
+        for (size_t portion : {1, 4, 8, 16, 31})
+            for (size_t count : {200, 400}) {
+                a.boot(), b.boot();
+                a.start();
+                if (bothCall)
+                    b.start();
+                const uint64_t start = now;
+                while (!bothUp() && now - start < 30'000'000) {
+                    now += 1000;
+                    a.poll(), b.poll();
+                    while (!a.air.empty() && a.air.front().arrives <= now) {
+                        b.receive(a.air.front().bytes);
+                        a.air.pop_front();
+                    }
+                    if (b.air.empty() || b.air.front().arrives > now)
+                        continue;
+                    Bytes line = hostile(count / portion * portion, portion);
+                    line.insert(line.end(), b.air.front().bytes.begin(), b.air.front().bytes.end());
+                    b.air.pop_front();
+                    for (size_t at = 0; at < line.size(); at += portion) {
+                        const size_t end = std::min(at + portion, line.size());
+                        now += (end - at) * 90;
+                        a.receive({line.begin() + long(at), line.begin() + long(end)});
+                    }
+                }
+                EXPECT_TRUE(bothUp()) << (bothCall ? "both call, " : "the ground calls, ") << count
+                                      << " bytes, portions of " << portion;
+                run(200'000);
+            }
 }
 
 INSTANTIATE_TEST_SUITE_P(Vehicles, Attacked, ::testing::ValuesIn(keyed(2)));

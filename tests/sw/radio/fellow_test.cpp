@@ -37,6 +37,7 @@ struct End {
     Craft* craft = nullptr;
     int first = 0; // of its connections
     Link link;
+    Link_Buffers buffers;
     End* peer = nullptr;
     bool isVehicles = false;
     std::deque<std::pair<U32, Key>> coming; // time of arrival, packet
@@ -59,9 +60,14 @@ struct Craft {
         for (End& end : ends) {
             end.craft = this;
             end.first = static_cast<int>(&end - ends) * LINK_CHANNELS;
-            Link_init(&end.link, &linkPort, &end, 1440);
+            Link_Config config = {&linkPort, &end, 1440, LINK_USE(end.buffers)};
+            if (&end == &ends[fellow]) {
+                config.sendBytes = 1024;
+                config.maxMessage = 512;
+                config.window = 4;
+            }
+            Link_init(&end.link, &config);
         }
-        Link_initSmall(&ends[fellow].link, &linkPort, &ends[fellow], 1440, 1024, 512, 4);
         Ice_initialize(&ic);
         XBeeATEndpoint_init(&ic, "xbee-at", &endpoint, &ends[0].link, address, &port, this);
         Ice_Communicator_createObjectAdapterWithEndpoints(&ic, "A", "xbee-at", &adapter);

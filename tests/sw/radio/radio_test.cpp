@@ -44,7 +44,8 @@ public:
             [](void*, Link_State) {},
             nullptr,
             nullptr};
-        Link_init(link_.get(), &port, this, 1440);
+        const Link_Config config = {&port, this, 1440, LINK_USE(*buffers_)};
+        Link_init(link_.get(), &config);
     }
     Link* link() { return link_.get(); }
     static void onPacket(void* c, const U8* bytes, U32 size) {
@@ -56,6 +57,7 @@ public:
 
 private:
     std::unique_ptr<Link> link_;
+    std::unique_ptr<Link_Buffers> buffers_{new Link_Buffers};
     std::function<int(const U8*, U32)> send_;
     Random random_;
 };

@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * link_contention: measures traffic and losses, and chooses waits from them.
+ */
+#include "link_contention.h"
+
+#include "link_config.h"
+
+/* A loss that took the radio no longer than other packets had no failed tries, as there are when
+ * two modems begin together. A side that sends little rests after a loss: twice as long after each
+ * further one, a quarter after a packet that arrives, longest while the peer is silent. */
+U32 link_noteAnswer(Link_Contention* c, U32 now, int isDelivered, U32 silence, int isBusy) {
+    U32 took = now - c->answeredAt;
+    U32 last = LINK_REST_LAST + 4U * silence;
+    int wasBusy = c->isBusy;
+    c->quick -= c->quick / 128U;
+    c->answeredAt = now;
+    c->isBusy = (U8)isBusy;
+    if (isDelivered) {
+        c->rest /= 4U;
+        if (wasBusy)
+            c->usualUs += took / 16U - c->usualUs / 16U;
+        return 0;
+    }
+    if (took < c->usualUs + c->usualUs / 4U)
+        c->quick += 65536U / 128U;
+    c->rest = 2U * c->rest + LINK_REST_FIRST;
+    if (c->rest > last)
+        c->rest = last;
+    c->hasLost = 1;
+    c->lostAt = now;
+    return c->own.isStream || c->peers.isStream ? 0U : c->rest;
+}
+
+/* Judges whether a side sends much by the bytes of `spans` whole spans; 0: of a part of one. */
+static void judge(Link_Traffic* traffic, U32 bytes, U32 spans) {
+    U32 more = bytes - traffic->before;
+    if (more >= LINK_SPAN_MANY * (spans ? spans : 1U))
+        traffic->isStream = 1;
+    else if (more < LINK_SPAN_FEW * spans)
+        traffic->isStream = 0;
+    if (spans)
+        traffic->before = bytes;
+}
+
+U32 link_chooseWait(Link_Contention* c, U32 now, const Link_Statistics* counts, U32 isSlow) {
+    U32 spans = (now - c->since) / LINK_SPAN;
+    judge(&c->own, counts->bytesSent, spans);
+    judge(&c->peers, counts->bytesReceived, spans);
+    if (spans && !c->peers.isStream)
+        c->isCalled = 0;
+    if (c->own.isStream && counts->messagesReceived != c->messages)
+        c->isCalled = 1;
+    if (spans) {
+        c->since = now;
+        c->messages = counts->messagesReceived;
+    }
+    if (now - c->lostAt >= LINK_LOSS_COUNTS)
+        c->hasLost = 0;
+    if (c->own.isStream && c->peers.isStream)
+        return c->quick <= LINK_QUICK_MANY ? LINK_WAIT_BOTH : isSlow ? LINK_WAIT_SHARED : 0U;
+    if (c->peers.isStream || c->isCalled || (c->hasLost && !c->own.isStream))
+        return LINK_WAIT_SHARED;
+    return isSlow;
+}

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * link_contention: congestion control on a shared channel. It measures how much both sides send and
+ * what the radio loses, and decides from that how long a modem waits before it tries (RN) and how
+ * long a side rests after a loss.
+ */
+#pragma once
+
+#include "base.h"
+#include "link_port.h"
+
+/* Traffic of one side. */
+typedef struct Link_Traffic {
+    U32 before;  /* bytes before the present span */
+    U8 isStream; /* 1: sends much */
+} Link_Traffic;
+
+typedef struct Link_Contention {
+    Link_Traffic own, peers;
+    U32 since, messages; /* start of the present span, and messages received before it */
+    U32 lostAt;          /* time of the last loss, us */
+    U8 hasLost;          /* 1: `lostAt` is recent */
+    U8 isCalled;         /* 1: the peer calls during an own stream */
+    U8 isBusy;           /* 1: the radio has had a packet since its last answer */
+    U32 answeredAt;      /* time of the radio's last answer, us */
+    U32 rest;            /* longest rest after the next loss, us */
+    U32 usualUs;         /* mean time of a packet that arrives, us */
+    U32 quick;           /* share of the last packets, of 65,536, lost in no more than that time */
+} Link_Contention;
+
+/* Notes the radio's answer for a packet at time `now`. `silence`: time since the peer was heard,
+ * us. `isBusy`: the radio has further packets. Returns the longest rest before the next packet, us;
+ * 0: no rest. */
+U32 link_noteAnswer(Link_Contention* c, U32 now, int isDelivered, U32 silence, int isBusy);
+
+/* Chooses RN, as Link_randomWait returns it. `isSlow`: the modem encrypts. */
+U32 link_chooseWait(Link_Contention* c, U32 now, const Link_Statistics* counts, U32 isSlow);

@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * link_search: the search for frames.
+ */
+#include "link_search.h"
+
+#include <string.h>
+
+/* Returns whether a header makes sense: most garbage fails here, before a checksum is computed. */
+static int isPlausible(const Link_Codec* codec, const U8* frame) {
+    U32 size = LINK_LENGTH(frame) + LINK_OVERHEAD;
+    U32 payload = size - codec->overhead;
+    Link_Kind kind = LINK_KIND_OF(frame);
+    if (size < codec->overhead)
+        return 0;
+    if (kind == LINK_KIND_DATA)
+        return payload != 0 || (frame[2] & LINK_LAST);
+    if (kind > LINK_KIND_PING)
+        return payload >= 2U;
+    if (kind == LINK_KIND_ACK)
+        return payload - 1U <= LINK_BITMAP;
+    return payload == codec->sizes[kind];
+}
+
+/* Spends the search budget, in rounds of Ascon, on one frame. Returns whether it sufficed: hostile
+ * bytes do not keep the CPU busy, however many headers they pretend to hold. */
+static int mayTry(Link_Search* search, U32 rounds) {
+    U32 now = search->session->handshake.pacing->env.now;
+    U32 debt = search->paidAt - now;
+    if (debt > LINK_ROUNDS_AT_ONCE * LINK_ROUND_EVERY) /* it was paid earlier */
+        debt = 0;
+    debt += rounds * LINK_ROUND_EVERY;
+    if (debt > LINK_ROUNDS_AT_ONCE * LINK_ROUND_EVERY)
+        return 0;
+    search->paidAt = now + debt;
+    return 1;
+}
+
+/* Opens a plausible frame. Returns it, opened, in place or in `copy`, and the attempt that opened
+ * it; 0 if no seal fits. */
+static const U8* unseal(const Link_Search* search, const U8* frame, U8* copy, U32* attempt) {
+    const Link_Codec* codec = search->session->handshake.pacing->env.codec;
+    const U8* opened;
+    Link_Seal seal;
+    for (*attempt = 0; *attempt < 2U; ++*attempt)
+        if (link_expect(search->session, frame, *attempt, &seal) &&
+            (opened = codec->open(frame, copy, &seal)) != 0)
+            return opened;
+    return 0;
+}
+
+/* Returns whether a frame that the search has found is to be believed without a tag, since it might
+ * be one by chance: the bytes end with it, or a good one follows. 1: yes, 0: no, -1: not known yet.
+ */
+static int isConfirmed(const Link_Search* search, const U8* next, U32 left, int isEnd) {
+    const Link_Codec* codec = search->session->handshake.pacing->env.codec;
+    U32 size, attempt;
+    for (; left && *next == LINK_FILL; --left)
+        ++next;
+    if (left == 0)
+        return 1;
+    size = LINK_LENGTH(next) + LINK_OVERHEAD;
+    if (size > LINK_MAX_FRAME)
+        return 0;
+    if (left < size)
+        return isEnd ? 0 : -1;
+    return isPlausible(codec, next) && unseal(search, next, 0, &attempt);
+}
+
+/* Takes a whole frame, with `left` bytes after it. `isSearch`: no frame ends just before it.
+ * Returns 1: taken, 0: not a frame for this side, -1: not known yet. */
+static int take(Link_Search* search, const U8* frame, U32 left, int isSearch, int isEnd) {
+    Link_Session* session = search->session;
+    Link_Env* env = &session->handshake.pacing->env;
+    U8 copy[LINK_MAX_FRAME];
+    U32 size = LINK_LENGTH(frame) + LINK_OVERHEAD;
+    U32 attempt, rounds = 0;
+    const U8* opened;
+    int confirmed = 1;
+    if (isPlausible(env->codec, frame))
+        rounds = link_costOf(session, frame);
+    if (!rounds)
+        return 0;
+    if (isSearch && env->codec->isAuthenticated) {
+        int isHandshake = LINK_IS_HANDSHAKE(LINK_KIND_OF(frame));
+        if (isHandshake && left)
+            return 0;
+        if (!mayTry(search, rounds))
+            return isHandshake ? -1 : 0; /* the budget fills during a silence */
+    }
+    opened = unseal(search, frame, copy, &attempt);
+    if (!opened && env->codec->isAuthenticated)
+        link_onForgery(session, frame);
+    if (opened && isSearch && !env->codec->isAuthenticated)
+        confirmed = isConfirmed(search, frame + size, left, isEnd);
+    if (!opened || confirmed <= 0)
+        return opened ? confirmed : 0;
+    search->outOfStep = 0;
+    link_hear(session->handshake.pacing, size);
+    ++env->statistics.framesReceived;
+    env->statistics.bytesReceived += size;
+    link_onFrame(session, opened, attempt);
+    return 1;
+}
+
+/* Counts a byte where no frame begins. The first one after a frame may begin a frame of an unknown
+ * session, whose peer gets an answer. With a length that no frame has, such as a broadcast's, it
+ * does not. */
+static void skip(Link_Search* search, const U8* frame, U32 left) {
+    Link_Env* env = &search->session->handshake.pacing->env;
+    if (!search->outOfStep && LINK_LENGTH(frame) <= LINK_MAX_PAYLOAD &&
+        left >= env->codec->overhead)
+        link_onUnknown(&search->session->handshake, frame);
+    search->outOfStep = 1;
+    ++env->statistics.bytesSkipped;
+}
+
+/* Takes all whole frames in the bytes. `isEnd`: a silence follows, so half a frame never becomes
+ * whole. Returns the number of bytes that are used.
+ *
+ * Without a key a frame that is not whole holds up the bytes after it. A tag needs no confirmation,
+ * so under a key a frame is taken when its last byte is there, even after the beginning of another:
+ * that may be an attacker's, who wants it to wait. Frames that end within the kept bytes were
+ * looked at before.
+ *
+ * Hostile bytes can pretend that a frame of the handshake ends with each portion that the caller
+ * reads, and use up the search budget before the genuine frame arrives. So a frame of the handshake
+ * that ends the bytes and finds no budget is kept, and tried after a silence. */
+static U32 parse(Link_Search* search, const U8* bytes, U32 count, int isEnd) {
+    int isSure = search->session->handshake.pacing->env.codec->isAuthenticated;
+    U32 used = 0;
+    U32 at = 0;
+    while (at < count) {
+        const U8* frame = bytes + at;
+        U32 end = at + LINK_LENGTH(frame) + LINK_OVERHEAD;
+        int isFrame = end - at <= LINK_MAX_FRAME;
+        int taken = 0;
+        if (isFrame && end <= count &&
+            (!isSure || end > search->count ||
+             (isEnd && end == count && LINK_IS_HANDSHAKE(LINK_KIND_OF(frame)))))
+            taken = take(search, frame, count - end, search->outOfStep || at != used, isEnd);
+        if (taken > 0) {
+            at = used = end;
+            continue;
+        }
+        if (!isSure && (taken < 0 || (isFrame && end > count && !isEnd)))
+            break;
+        if (at == used && (isEnd || !isFrame || (end <= count && taken == 0))) {
+            if (*frame != LINK_FILL)
+                skip(search, frame, count - at);
+            ++used;
+        }
+        ++at;
+    }
+    return used;
+}
+
+/* Parses the kept bytes, `count` of them now, and keeps an incomplete frame. */
+static void parseKept(Link_Search* search, U32 count, int isEnd) {
+    U32 used = parse(search, search->bytes, count, isEnd);
+    search->count = (U8)(count - used);
+    memmove(search->bytes, search->bytes + used, search->count);
+}
+
+void link_pollSearch(Link_Search* search) {
+    const Link_Env* env = &search->session->handshake.pacing->env;
+    if (LINK_BEFORE(env->now, search->at + LINK_FRAME_GAP))
+        return;
+    if (search->count)
+        parseKept(search, search->count, 1);
+    if (env->codec->isAuthenticated)
+        search->outOfStep = 0;
+}
+
+void link_takeBytes(Link_Search* search, const U8* bytes, U32 size) {
+    link_pollSearch(search);
+    if (size == 0)
+        return; /* otherwise silences would not be seen; bytes may be null */
+    search->at = search->session->handshake.pacing->env.now;
+    if (search->count == 0) { /* the usual case: a whole frame is read in place; the rest fits */
+        U32 used = parse(search, bytes, size, 0);
+        search->count = (U8)(size - used);
+        memcpy(search->bytes, bytes + used, search->count);
+        return;
+    }
+    while (size) {
+        U32 had = search->count;
+        U32 part = sizeof search->bytes - had;
+        if (part > size)
+            part = size;
+        memcpy(search->bytes + had, bytes, part);
+        bytes += part;
+        size -= part;
+        parseKept(search, had + part, 0);
+    }
+}

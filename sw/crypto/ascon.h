@@ -26,7 +26,7 @@ typedef struct Ascon {
 /* Starts a message under `key` and `nonce`, of 16 bytes each. */
 void Ascon_begin(Ascon* ascon, const U8* key, const U8* nonce);
 
-/* Takes in the associated data, all of it. It is left out where there are none. */
+/* Absorbs the associated data, all at once. Do not call it without associated data. */
 void Ascon_associate(Ascon* ascon, const U8* bytes, U32 size);
 
 /* Encrypts or decrypts the message in place. Decrypted bytes must not be used before the tag has

@@ -38,7 +38,7 @@ static void add(U16* r, const U16* a, const U16* b) {
     fold(r, carry);
 }
 
-/* Adds 4p - b, in words that are each above those of b. */
+/* Adds 4p - b, with words that are each greater than the corresponding word of b. */
 static void subtract(U16* r, const U16* a, const U16* b) {
     U32 carry = 0;
     int i;
@@ -141,7 +141,8 @@ static void normalize(U16* r) {
     r[WORDS - 1] &= 0x7FFFU;
 }
 
-/* The ladder's numbers, as RFC 7748 names them, of which da also is c, and cb d. */
+/* The variables of the Montgomery ladder, named as in RFC 7748; `da` doubles as c, and `cb` as d.
+ */
 typedef struct Ladder {
     Number x1, x2, z2, x3, z3, a, b, da, cb;
 } Ladder;

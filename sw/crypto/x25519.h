@@ -2,7 +2,7 @@
  *
  * x25519: agrees on a secret over a line that others hear (RFC 7748).
  *
- *     X25519(open, own, 0);           (32 random bytes of its own; `open` goes to the peer)
+ *     X25519(open, own, 0);           (`own`: 32 random bytes; `open` goes to the peer)
  *     X25519(secret, own, peerOpen);  (both sides get the same)
  *
  * Neither branches nor addresses depend on secrets, nor does the time of a multiplication of 16

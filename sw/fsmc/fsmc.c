@@ -134,7 +134,7 @@ FSMC_Status FSMC_checkError(U32* where) {
 /* ---- streams ---- */
 
 /* Mode A without NWAIT: an access takes ADDSET + DATAST + 1 HCLK. A write's data phase is 2 HCLK.
- * Its BUSTURN is 0, since some FSMCs insert it between two writes, too. A read is all data phase,
+ * Its BUSTURN is 0, since some FSMCs also insert it between two writes. A read is all data phase,
  * so that NOE falls with the address. */
 #define STREAM_BCR (BCR_ALWAYS | BCR_EXTMOD)
 #define WRITE_DATAST 2U

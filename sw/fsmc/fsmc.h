@@ -40,7 +40,7 @@ typedef enum FSMC_Status {
     FSMC_OK = 0,
     FSMC_NO_DEVICE,  /* slot 0 does not identify itself as the system slot */
     FSMC_BUS_ERROR,  /* an access since the last check hit nothing, or timed out */
-    FSMC_BAD_SETTING /* of a bank (FSMC_initBanks) */
+    FSMC_BAD_SETTING /* invalid setting of a bank (FSMC_initBanks) */
 } FSMC_Status;
 
 /* Programs BCRx and BTRx of both banks (asynchronous mode 1, 16 bits, NWAIT) and looks for the
@@ -58,8 +58,8 @@ void FSMC_writeMemory(U32 address, const U8* data, U32 bytes);
 /* Copy at the bridge's full speed, 24 to 30 million halfwords a second, without NWAIT. `address` is
  * even. The bridge's LATE event checks each part, and a part that came too early is repeated with
  * NWAIT. Returns the number of repeated halfwords (0 unless others keep the memory very busy).
- * Meanwhile nobody else may use the DDR3 window: the caller locks, interrupt routines included.
- * Call FSMC_setHclk first (else it is slow): Hz of HCLK, at most 120 million. */
+ * Meanwhile no other code may use the DDR3 window, not even interrupt routines: the caller locks
+ * it. Call FSMC_setHclk first (else it is slow): Hz of HCLK, at most 120 million. */
 void FSMC_setHclk(U32 hz);
 U32 FSMC_streamWrite(U32 address, const U16* data, U32 halfwords);
 U32 FSMC_streamRead(U32 address, U16* data, U32 halfwords);
@@ -73,7 +73,7 @@ FSMC_Status FSMC_checkError(U32* where);
 typedef enum FSMC_Mode {
     FSMC_MODE_1, /* SRAM: read and write alike */
     FSMC_MODE_2, /* NOR: read and write alike */
-    FSMC_MODE_A, /* A to D: EXTMOD, writes have a mode and times of their own */
+    FSMC_MODE_A, /* A to D: EXTMOD, with separate mode and times for writes */
     FSMC_MODE_B,
     FSMC_MODE_C,
     FSMC_MODE_D

@@ -3,7 +3,7 @@
  * hw_core: what the servants generated from [":hw"] interfaces share (docs/hw-mapping.md).
  *
  * A core has the registers of its interface in one slot. Each operation has a bit, 0..15. Calls of
- * different operations may come from different tasks; those of one operation come one at a time.
+ * different operations may come from different tasks; calls of one operation must not overlap.
  */
 #pragma once
 
@@ -15,7 +15,7 @@ typedef enum Hw_Status {
     HW_OK = 0,
     HW_WRONG_CORE, /* the slot's ID is another one */
     HW_BUSY,       /* the operation has not ended yet */
-    HW_REFUSED,    /* by the core */
+    HW_REFUSED,    /* the core refused the operation */
     HW_TIMEOUT,    /* no event in time; the core was reset */
     HW_UNALIGNED   /* the buffers do not begin at a multiple of their size */
 } Hw_Status;
@@ -64,7 +64,7 @@ Hw_Status Hw_Core_init(Hw_Core* self, U32 slot, U32 id, const Hw_Port* port, voi
 void Hw_Core_interrupt(Hw_Core* self);
 
 /* Access a word behind PAGE, `page`, of a slot with more than 16 words. PAGE is restored, so an
- * interrupted task goes on as before. Tasks of one priority must not take turns here. */
+ * interrupted task continues as before. Tasks of equal priority must not alternate here. */
 U32 Hw_Core_read(const Hw_Core* self, U32 word, U32 page);
 void Hw_Core_write(const Hw_Core* self, U32 word, U32 page, U32 value);
 

@@ -8,11 +8,11 @@
 
 typedef struct Hw_Listener {
     Ice_ObjectPrx proxies[2];
-    volatile U8 count; /* of changes; its lowest bit says which proxy holds */
+    volatile U8 count; /* number of changes; its lowest bit selects the valid proxy */
 } Hw_Listener;
 
 /* Makes a listener without a proxy. */
 void Hw_Listener_init(Hw_Listener* self);
 void Hw_Listener_set(Hw_Listener* self, const Ice_ObjectPrx* proxy);
-/* Copies the proxy. Returns 0 if there is none. */
+/* Copies the proxy. Returns 0 if no listener is set. */
 int Hw_Listener_get(const Hw_Listener* self, Ice_ObjectPrx* proxy);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_core: what the kernel's own files share, and the processor's port (os_cpu). Not for
+ * os_core: declarations shared by the kernel's files and the processor port (os_cpu). Not for
  * applications.
  */
 #pragma once
@@ -15,16 +15,16 @@ typedef struct OS_Set {
 typedef enum OS_EventType { OS_EVENT_FREE, OS_EVENT_SEM, OS_EVENT_MUTEX, OS_EVENT_Q } OS_EventType;
 
 typedef struct OS_Task {
-    OS_STK* stack; /* the port's: where the context was left */
-    U8 priority;   /* now; raised while the owner of a contended mutex */
-    U8 base;       /* as created */
+    OS_STK* stack; /* stack pointer of the saved context, for the port */
+    U8 priority;   /* current priority; raised while the task owns a contended mutex */
+    U8 base;       /* priority at creation */
     U8 used;
     U8 timedOut;
-    U32 delay;       /* ticks left, 0: none */
-    OS_EVENT* event; /* what it waits for */
-    void* message;   /* what OSQPost handed over */
-    OS_STK* bottom;  /* lowest address of the stack; 0: not known */
-    U32 words;       /* its size */
+    U32 delay;       /* remaining ticks; 0 means no delay */
+    OS_EVENT* event; /* event that the task waits for */
+    void* message;   /* message passed by OSQPost */
+    OS_STK* bottom;  /* lowest address of the stack; 0 if unknown */
+    U32 words;       /* size of the stack in words */
     U16 options;     /* OS_TASK_OPT_... */
 } OS_Task;
 
@@ -68,7 +68,7 @@ void OS_Sched(void);
 /* Gives a task another priority, wherever it is listed. */
 void OS_ChangePriority(OS_Task* task, U8 priority);
 
-/* The processor's port, in os_cpu and beside it. */
+/* Functions of the processor port. */
 OS_STK* OSTaskStkInit(void (*task)(void* p_arg), void* p_arg, OS_STK* ptos, INT16U opt);
 void OSStartHighRdy(void);                /* first switch: to os_kernel.current */
 void OSCtxSw(OS_Task* from, OS_Task* to); /* also from OSIntExit */

@@ -4,7 +4,7 @@
  */
 #include "os_core.h"
 
-/* Takes a free event; 0 where there is none, and in interrupts. */
+/* Allocates an event. Returns 0 if none is free, and in interrupts. */
 static OS_EVENT* create(OS_EventType type) {
     OS_CPU_SR cpu_sr;
     OS_EVENT* found = 0;

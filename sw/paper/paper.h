@@ -7,7 +7,7 @@
 #include "fsmc.h"
 #include "icec.h"
 
-/* Runs the program as its only task of its own. */
+/* Runs the program as its only application task. */
 void appMainTask(void* argument);
 
 /* Sets up XBeeATEndpoint_init, the link, the radio task, and IceC's locks. */

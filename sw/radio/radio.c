@@ -15,7 +15,7 @@
 #define DEFAULT_GUARD_MS 1000U
 #define ANSWERS (RADIO_API && radio.onAnswer)
 #define POLL_TICKS (OS_TICKS_PER_SEC / 100U)
-#define MODE_STEP 13U /* of the set-up: ATAP */
+#define MODE_STEP 13U /* step of the set-up: ATAP */
 
 /* API mode: a buffer holds a frame's contents: its type, and here four bytes more before a packet.
  *   01 ID TARGET TARGET 00 DATA...          a packet to be sent
@@ -29,7 +29,7 @@
 #define HEAD 5U
 #define ID_BASE 0x80U /* so that none is 0, which would ask for no answer */
 #define ID_MASK 0x7FU
-#define SILENT_TICKS (3U * OS_TICKS_PER_SEC) /* without an answer: there will be none */
+#define SILENT_TICKS (3U * OS_TICKS_PER_SEC) /* time-out for the modem's answer */
 
 typedef enum BufferState { BUFFER_FREE, BUFFER_SENDING } BufferState;
 
@@ -40,8 +40,8 @@ static struct {
     Radio_Counters counters;
     U32 failedStep;
     Radio_OnAnswer onAnswer; /* 0: transparent mode */
-    U16 target, source;      /* of the next packet; of the one that came last */
-    U8 handed, answered;     /* packets handed over, and those of them with an answer, modulo 256 */
+    U16 target, source;      /* target of the next packet; source of the last received one */
+    U8 handed, answered;     /* packets queued, and packets answered, modulo 256 */
     U8 wait;                 /* RN */
     U32 handedAt;            /* when the last packet was handed over */
 } radio;
@@ -92,7 +92,7 @@ Radio_Status xbeeInit(const XBeeInitTypeDef* conf, const Radio_Memory* memory) {
     if (RADIO_API) {
         radio.onAnswer = get(MODEM_STATUS) & MODEM_STATUS_API_MASK ? conf->onAnswer : 0;
         radio.target = conf->target;
-        radio.handed = radio.answered = 0; /* the modem forgets what it has, too */
+        radio.handed = radio.answered = 0; /* the modem also drops its packets */
         radio.wait = RADIO_WAIT;
     }
     radio.head = radio.used = 0;
@@ -216,7 +216,7 @@ static void takeStatus(U8 id, int isDelivered) {
     }
 }
 
-/* Calls all packets lost whose answers do not come. */
+/* Counts unanswered packets as lost. */
 static void expire(void) {
     if (radio.handed != radio.answered && OSTimeGet() - radio.handedAt >= SILENT_TICKS)
         takeStatus((U8)(radio.handed - 1U), 0);

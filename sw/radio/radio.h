@@ -5,7 +5,7 @@
  *     static const XBeeInitTypeDef conf = {XBEE_BD_115200, 0x0001, 0x0000, 0, 0, 0, 0, 0};
  *     static const Radio_Memory rings = {0x0000, 0x1000};
  *     if (xbeeInit(&conf, &rings) != RADIO_OK)
- *         ...                                     (Radio_failedStep says where)
+ *         ...                                     (see Radio_failedStep)
  *     for (;;) {
  *         Radio_receive(onPacket, 0);             (calls onPacket for each packet)
  *         Radio_transmit(0, frame, size);         (0: it is on its way)
@@ -35,28 +35,28 @@ typedef enum Radio_Baud {
     XBEE_BD_38400,
     XBEE_BD_57600,
     XBEE_BD_115200,
-    RADIO_250000 = 0x3D090,     /* in API mode; where the controller has none, 111,111 is taken */
-    RADIO_WIRE_115200 = 0x80007 /* no modem: a wire to a serial port, at 111,111 baud as well */
+    RADIO_250000 = 0x3D090,     /* for API mode; 111,111 if the controller has no API mode */
+    RADIO_WIRE_115200 = 0x80007 /* a wire to a serial port instead of a modem, at 111,111 baud */
 } Radio_Baud;
 
-/* Takes the modem's answer for a packet that was sent: the target's modem has it, or it is lost. */
+/* Receives the modem's answer for a sent packet: it reached the target's modem, or it is lost. */
 typedef void (*Radio_OnAnswer)(int isDelivered);
 
 /* Settings of the modem. The paper gives the first three; a zero in the others means the default.
  */
 typedef struct XBeeInitTypeDef {
     Radio_Baud baud;
-    U16 source;  /* MY, the own address */
-    U16 target;  /* DL, the address of the ground's modem */
+    U16 source;  /* MY, address of this modem */
+    U16 target;  /* DL, address of the ground station's modem */
     U8 channel;  /* CH, default 0x0C */
     U16 pan;     /* ID, default 0x3332 */
-    U16 guardMs; /* guard time around +++ as the modem has it now, default 1000 */
-    /* KY, the network's AES key of 16 bytes; 0: EE is 0, nothing is encrypted. An encrypted packet
+    U16 guardMs; /* current guard time of the modem around +++, ms; default 1000 */
+    /* KY, AES key of the network, 16 bytes; 0 disables encryption (EE is 0). An encrypted packet
      * carries 95 bytes instead of 100 (Link_limitFrame). */
     const U8* key;
-    /* 0: transparent mode. Else API mode, if controller and modem have it (Radio_answers):
-     * Radio_receive calls this for each packet that was sent, oldest first, and each packet that
-     * comes has a source (Radio_source), whoever it is. */
+    /* 0 selects transparent mode. Otherwise API mode is used, if controller and modem support it
+     * (Radio_answers): Radio_receive calls this function for each sent packet, oldest first, and
+     * each received packet has a source address (Radio_source). */
     Radio_OnAnswer onAnswer;
 } XBeeInitTypeDef;
 
@@ -64,7 +64,7 @@ typedef enum Radio_Status {
     RADIO_OK = 0,
     RADIO_NO_DEVICE, /* the slot is not a modem controller */
     RADIO_NO_MODEM,  /* no answer at any baud rate */
-    RADIO_REFUSED    /* the modem refused a command: Radio_failedStep says which */
+    RADIO_REFUSED    /* the modem rejected a command; see Radio_failedStep */
 } Radio_Status;
 
 /* Counts since the start. */
@@ -73,8 +73,8 @@ typedef struct Radio_Counters {
     U32 bytesCopiedOut, bytesCopiedIn;   /* over the FSMC */
     U32 ringFull;                        /* frames that found no free buffer */
     U32 interrupts;                      /* calls of Radio_interrupt */
-    U32 hardwareOverruns, framingErrors; /* as the controller counts them (docs/modem.md) */
-    U32 delivered, lost;                 /* API mode: packets sent, by the modem's answers */
+    U32 hardwareOverruns, framingErrors; /* counters of the controller (docs/modem.md) */
+    U32 delivered, lost;                 /* API mode: sent packets by the modem's answer */
     U8 signal;                           /* API mode: RSSI of the last packet, -dBm */
 } Radio_Counters;
 
@@ -84,30 +84,30 @@ typedef struct Radio_Memory {
 } Radio_Memory;
 
 /* Resets the modem and sets controller and modem up. Blocks the calling task: about 4 s with a
- * guard time of 1 s, up to 40 s where no modem answers, half a second for a wire. `memory` is
- * copied. */
+ * guard time of 1 s, up to 40 s if no modem answers, half a second for a wire. `memory` is copied.
+ */
 Radio_Status xbeeInit(const XBeeInitTypeDef* conf, const Radio_Memory* memory);
 
-/* Returns whether API mode was chosen by xbeeInit, and controller and modem have it. */
+/* Returns whether xbeeInit selected API mode, and controller and modem support it. */
 int Radio_answers(void);
 
 /* Returns the step of the set-up that failed, after RADIO_NO_MODEM or RADIO_REFUSED, as STATUS.STEP
  * of the controller counts them (docs/modem.md). */
 U32 Radio_failedStep(void);
 
-/* Copies a frame of 1..128 bytes into the output ring. Returns 0, or 1 where no buffer is free.
+/* Copies a frame of 1..128 bytes into the output ring. Returns 0, or 1 if no buffer is free.
  * `context` is not used: the function fits Link_Port.transmit. */
 int Radio_transmit(void* context, const U8* frame, U32 size);
 
-/* Sets the modem's RN, the exponent of its random wait, in API mode: behind the packets handed over
- * so far. Set-up leaves it at RADIO_WAIT. */
+/* Sets the modem's RN, the exponent of its random wait, in API mode, after the packets queued so
+ * far. Set-up sets it to RADIO_WAIT. */
 #define RADIO_WAIT 2U
 void Radio_setWait(U32 exponent);
 
-/* API mode: has the next packets go to this address. */
+/* API mode: sets the target address of the following packets. */
 void Radio_setTarget(U16 target);
 
-/* API mode: returns the address that the packet is from which onPacket is called with. */
+/* API mode: returns the source address of the packet that onPacket is called with. */
 U16 Radio_source(void);
 
 /* Returns the packets in the output ring that have not left. They wait where the modem does. */
@@ -124,5 +124,5 @@ U32 Radio_receive(Radio_OnPacket onPacket, void* context);
  * (MODEM_EVENT_...); non-zero: there is work for the task. For interrupt routines. */
 U32 Radio_interrupt(void);
 
-/* Returns the counters, which go on counting. */
+/* Returns the counters; they are not reset. */
 const Radio_Counters* Radio_counters(void);

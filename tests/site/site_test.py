@@ -66,7 +66,8 @@ class Cases(Script):
 
     def test_comments(self):
         """Plain C comments become Doxygen's, before and behind what they describe."""
-        text = doxygen_filter.convert("/* Returns it. */\nint f(void);\nint a; /* bytes */\n", "f.h")
+        text = doxygen_filter.convert(
+            "/* Returns it. */\nint f(void);\nint a; /* bytes */\n", "f.h")
         self.assertEqual(text, "/** Returns it. */\nint f(void);\nint a; /**< bytes */\n")
 
     def test_broken_link(self):

@@ -21,8 +21,8 @@ typedef struct Hw_Registers_Core {
     volatile U8 waits; /* a call of wait has no answer yet */
     U32 deadline;      /* ms, of that call */
     Ice_Reply reply;
-    Ice_String events[HW_REGISTERS_EVENTS]; /* of its answer */
-    char reason[400];                       /* of the last exception */
+    Ice_String events[HW_REGISTERS_EVENTS]; /* names in the answer of `wait` */
+    char reason[400];                       /* text of the last exception */
 } Hw_Registers_Core;
 
 /* Sets a servant up: takes the slot's events away and masks them. `id` is what the slot's word ID

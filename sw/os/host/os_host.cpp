@@ -20,7 +20,7 @@ extern "C" {
 
 namespace {
 
-// The firmware's own stacks are sized for a Cortex-M3; host code under it needs more.
+// The stacks of the firmware are sized for a Cortex-M3; host code called by it needs more.
 constexpr size_t stackBytes = 256 * 1024;
 
 struct Coroutine {
@@ -116,7 +116,7 @@ void interruptPoint() {
         OSIntEnter();
         port.machine.serve();
         port.serving = false;
-        OSIntExit(); // may switch to another task; this one goes on here later
+        OSIntExit(); // may switch to another task; this one continues here later
     }
 }
 
@@ -135,7 +135,7 @@ void OS_CPU_SR_Restore(OS_CPU_SR cpu_sr) {
 }
 
 OS_STK* OSTaskStkInit(void (*task)(void*), void* p_arg, OS_STK* ptos, INT16U opt) {
-    (void)ptos; // the port keeps larger stacks of its own
+    (void)ptos; // the port allocates larger stacks
     (void)opt;
     port.coroutines.emplace_back();
     Coroutine& c = port.coroutines.back();

@@ -2,7 +2,7 @@
 //
 // os_host: the kernel's port to a host process: tasks are coroutines of the calling thread.
 //
-// A machine (the simulator, or a test) says how time passes. Interrupts are delivered by
+// A machine (the simulator, or a test) determines how time passes. Interrupts are delivered by
 // OsHost::interruptPoint(), which the machine calls wherever simulated time has passed.
 
 #pragma once
@@ -27,7 +27,7 @@ void setMachine(Machine machine);
 // task.
 void run();
 
-// Leaves run() from within a task, an interrupt or idle. Tasks do not go on afterwards.
+// Leaves run() from within a task, an interrupt or idle. Tasks do not continue afterwards.
 [[noreturn]] void stop();
 
 // Serves interrupts that are pending, if they are enabled and none is being served.

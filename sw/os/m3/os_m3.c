@@ -13,7 +13,7 @@
 
 U32* OS_Switch(U32* sp); /* called by os_switch.S */
 
-/* The task whose context the processor holds; 0 before the first. Debuggers look for this name. */
+/* The running task; 0 before the first one starts. Debuggers look for this name. */
 static OS_Task* os_running;
 
 static void taskReturned(void) {

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_m3: what the Cortex-M3 port asks of the board (sw/board), besides an idle hook.
+ * os_m3: functions that the Cortex-M3 port requires from the board (sw/board), besides an idle
+ * hook.
  */
 #pragma once
 
 #include "ucos_ii.h"
 
-/* PendSV calls this before a task goes on, with interrupts off, to place a guard. `bottom` is the
- * lowest address of the task's stack, 0 where unknown (OSTaskCreate). */
+/* Called by PendSV with interrupts off, before a task continues, to place the stack guard. `bottom`
+ * is the lowest address of the task's stack, or 0 if unknown (OSTaskCreate). */
 void OS_TaskSwitched(OS_STK* bottom);
 
-/* The task with this priority has run over the end of its stack (255: a task has returned). Does
+/* Called when the task with this priority has overflowed its stack (255: a task has returned). Does
  * not return. */
 void OS_StackFault(INT8U priority);

@@ -101,14 +101,15 @@ def stage(tree, pages, helps):
 def run(words, what, log):
     """Runs a program and keeps what it prints in `log`; raises SiteError if it fails."""
     with open(log, "w") as file:
-        status = subprocess.run(words, stdout=file, stderr=subprocess.STDOUT, check=False).returncode
+        status = subprocess.run(words, stdout=file, stderr=subprocess.STDOUT,
+                                check=False).returncode
     if status:
         raise SiteError(f"{what} failed; the whole output is in {log}:\n" +
                         "\n".join(Path(log).read_text().splitlines()[-20:]))
 
 
 def build(tree, out, helps):
-    """Builds the site into `out`/html. Broken links and pages in no table of contents are errors."""
+    """Builds the site into `out`/html. Broken links and orphan pages are errors."""
     out.mkdir(parents=True, exist_ok=True)
     stage(tree, out / "pages", helps)
     folders = sorted({path.parent for path in (tree / "sw").rglob("*.h")})

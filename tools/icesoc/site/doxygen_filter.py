@@ -15,7 +15,8 @@ def convert(text, name):
     # A macro that wraps a function of the same name is not documented a second time.
     for macro in re.findall(r"^#define (\w+)\(", text, re.M):
         if re.search(rf"^\w[^#\n]*\b{macro}\(", text, re.M):
-            text = re.sub(rf"(?:/\*(?:(?!\*/).)*\*/\n)?#define {macro}\((?:[^\n]*\\\n)*[^\n]*\n", "", text)
+            text = re.sub(rf"(?:/\*(?:(?!\*/).)*\*/\n)?#define {macro}\("
+                          r"(?:[^\n]*\\\n)*[^\n]*\n", "", text)
     text = re.sub(r"^/\* SPDX[^\n]*\n \*\n", f"/** @file {name}\n * ", text, count=1)
     lines = []
     for line in text.splitlines():

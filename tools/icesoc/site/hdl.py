@@ -11,7 +11,8 @@ from pathlib import Path
 MARK = {".v": "//", ".vh": "//", ".vhd": "--"}
 PARAMETER = re.compile(r"parameter\s+(?:signed\s+|integer\s+)?(\[[^]]*\]\s*)?(\w+)\s*=\s*([^,/]+?)"
                        r"\s*,?\s*(?://\s*(.*))?$")
-PORT = re.compile(r"(input|output|inout)\s+(?:wire|reg)?\s*(signed\s+)?(\[[^]]*\](?:\[[^]]*\])?)?\s*"
+PORT = re.compile(r"(input|output|inout)\s+(?:wire|reg)?\s*(signed\s+)?"
+                  r"(\[[^]]*\](?:\[[^]]*\])?)?\s*"
                   r"(\w+)\s*,?\s*(?://\s*(.*))?$")
 INCLUDE = re.compile(r'`include\s+"([^"]+)"')
 GENERIC = re.compile(r"(\w+)\s*:\s*(\w+)(?:\s+range\s+[^:;]+)?\s*(?::=\s*([^;]+?))?\s*;?\s*"

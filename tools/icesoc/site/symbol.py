@@ -38,7 +38,8 @@ def draw(entity):
     parts = [f'<svg xmlns="http://www.w3.org/2000/svg" role="img" viewBox="0 0 {width:.0f} '
              f'{height + 4:.0f}" width="{width:.0f}" aria-label="ports of {escape(entity.name)}">',
              STYLE,
-             f'<rect class="box" x="{MARGIN}" y="2" width="{box:.0f}" height="{height - 2}" rx="4"/>',
+             f'<rect class="box" x="{MARGIN}" y="2" width="{box:.0f}" height="{height - 2}" '
+             'rx="4"/>',
              f'<text class="name" x="{MARGIN + box / 2:.0f}" y="19" text-anchor="middle">'
              f'{escape(entity.name)}</text>']
     for side, begin, end, at, anchor in ((left, MARGIN - 40, MARGIN, MARGIN + 8, "start"),

@@ -25,6 +25,8 @@ PAPER = {"fsmc": 1116, "radio": 1795, "crypto": 0, "link": 1307, "icec": 2622, "
 # sources of a layer that are not just its folder's
 FILES = {"icec": ["icec/*.c", "icec/values/*.c", "icec/extra/*.c"],
          "endpoint": ["icec/endpoints/xbee_endpoint.c"]}
+LAYER_FOLDERS = ("fsmc", "radio", "crypto", "link", "icec", "values", "extra", "endpoints")
+PACKAGES = ("update", "fleet", "keys")
 TITLES = {"values": "icec", "extra": "icec", "vehicle": "application", "loader": "update",
           "Autopilot": "generated stubs", "endpoints": "icec, xbee-at endpoint", "m3": "os",
           "GNU": "uC/OS-II", "Source": "uC/OS-II", "ARMv7-M": "uC/OS-II"}
@@ -77,10 +79,12 @@ def deepest(build, layer):
     return max(((int(size), where.split(":")[3]) for where, size, *_ in lines), default=(0, ""))
 
 
-def excess(entries, source):
-    """Sentences about what sw/size_budget.json does not allow."""
+def excess(entries, source, only=""):
+    """Yields a sentence for each size that sw/size_budget.json does not allow."""
     budget = json.load(open(f"{source}/sw/size_budget.json"))
     for name, size in ((entry["name"], entry["value"]) for entry in entries):
+        if not name.startswith(only):
+            continue
         if name not in budget:
             yield f'size: sw/size_budget.json has no "{name}" (it is {size})'
         elif size > budget[name]:
@@ -114,9 +118,47 @@ def layers(source, generated, build, output):
     print("RAM of the minimal program with all objects: "
           f"{linked(image, 'app', r'[.](data|bss)|COMMON')} bytes, of generated code and servants: "
           f"{linked(image, 'app', r'[.](text|rodata)')} bytes of text")
+    entries += packages(build)
+    over += excess(entries, source, only="vehicle.")
     written(output, entries)
     if over:
         sys.exit("\n".join(over))
+
+
+def image_bytes(build, name):
+    """Returns (flash, RAM, layers): bytes of a linked firmware, and of its flash what belongs to
+    the paper's layers (PAPER)."""
+    flash = ram = part = 0
+    for name, address, size, file in sections(f"{build}/firmware/{name}.map"):
+        kind = re.match(r"\.(text|rodata|data|bss|vectors|noinit)", name)
+        if not kind or not address or not size:
+            continue
+        folder = os.path.basename(os.path.dirname(file))
+        flash += size if kind[1] not in ("bss", "noinit") else 0
+        ram += size if kind[1] in ("bss", "noinit", "data") else 0
+        if ".arm/" in file and folder in LAYER_FOLDERS and kind[1] in ("text", "rodata"):
+            part += size
+    return flash, ram, part
+
+
+def packages(build):
+    """Prints flash and RAM of the vehicle by package: the core alone, what each package adds to
+    it in the whole vehicle, and the whole vehicle. Returns the entries of the report."""
+    whole_image = image_bytes(build, "uav")
+    rows = [("core", image_bytes(build, "uav_core"))]
+    rows += [(name, tuple(a - b for a, b in zip(whole_image, image_bytes(build,
+                                                                          f"uav_without_{name}"))))
+             for name in PACKAGES]
+    rows.append(("vehicle", whole_image))
+    print("\n%-10s %8s %8s %8s" % ("package", "flash", "RAM", "layers"))
+    for name, sizes in rows:
+        print("%-10s %8d %8d %8d" % (name, *sizes))
+    print("A package: what leaving it out of the vehicle saves (two may share code). layers: of the "
+          "flash, the layers above as linked;\nthe rest is the application, servants, generated "
+          "code, kernel, board and C library.")
+    return [{"name": f"vehicle.{name}.{what}", "value": size, "unit": "bytes",
+             "command": "make size"} for name, sizes in rows
+            for what, size in zip(("flash", "ram", "layers"), sizes)]
 
 
 def firmware(path, objects, output):

@@ -9,8 +9,8 @@
 #include "board.h"
 #include "boot.h"
 #include "clock.h"
+#include "program.h"
 #include "stm32f2.h"
-#include "uav.h"
 #include "ucos_ii.h"
 
 #define IRQ_PORT 1UL /* PB0: EXTI0 */
@@ -125,7 +125,7 @@ void EXTI0_Handler(void) {
      * would take the edge of an interrupt that rises in between, and its level would be missed. */
     (void)EXTI_PR;
     while (GPIO_IDR(IRQ_PORT) >> IRQ_PIN & 1UL)
-        UAV_irqHandler();
+        Program_onFpgaInterrupt();
     OSIntExit();
 }
 

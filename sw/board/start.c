@@ -4,7 +4,7 @@
  */
 #include "board.h"
 #include "boot.h"
-#include "firmware.h"
+#include "program.h"
 #include "program_memory.h"
 #include "stm32f2.h"
 
@@ -67,5 +67,5 @@ void Reset_Handler(void) {
     Boot_begin();
     if (!Boot_imageIsSound())
         Boot_refuse();
-    Firmware_run();
+    Program_run();
 }

@@ -5,7 +5,7 @@
  *   [1] servants get `self`, so that two cores of a kind can be told apart, and `current`; they
  *       return a status; Figure 3 calls the operation setParameterA
  *   [2] FSMC_write(...) is filled in: word 1 of the vision core's slot is its threshold
- *   [3] xbeeInit is called by the radio task (uav_radio.c, with the same xbeeConf), which also
+ *   [3] xbeeInit is called by the radio task (uav_modem.c, with the same xbeeConf), which also
  *       repeats it when the modem has lost its settings
  *   [4] XBeeATEndpoint_init(&ic, "xbee-at"), with the link that it stands on, and its task
  *   [5] Figure 3's Vehicle is served as well

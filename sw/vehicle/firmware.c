@@ -6,13 +6,10 @@
 #include "firmware.h"
 #include "board.h"
 #include "boot.h"
-#include "fpga.h"
-#include "loader.h"
 #include "map_regs.h"
-#include "stm32f2.h"
+#include "program.h"
 #include "system_regs.h"
 #include "uav.h"
-#include "uav_update.h"
 
 #define PRIO_WATCH 60U
 
@@ -28,23 +25,16 @@ static void watchTask(void* argument) {
     }
 }
 
-static void restart(void) {
-    SCB_AIRCR = SCB_AIRCR_RESET;
+void Program_onFpgaInterrupt(void) {
+    UAV_irqHandler();
 }
 
-void Firmware_run(void) {
+void Program_run(void) {
     UAV_Status status;
     OSInit();
     Secrets_start();
     UAV_useBoard(&secrets_board, 0);
-    uav_update[UAV_FIRMWARE].slots = Loader_slots(&uav_update[UAV_FIRMWARE].running);
-    uav_update[UAV_FIRMWARE].product = LOADER_PRODUCT;
-    uav_update[UAV_BITSTREAM].product = FPGA_PRODUCT;
-    if (uav_update[UAV_FIRMWARE].slots)
-        uav_update[UAV_BITSTREAM].slots =
-            Fpga_slots(uav_update[UAV_FIRMWARE].slots, Boot_loadsFpga(), !UAV_isFlying(),
-                       &uav_update[UAV_BITSTREAM].running);
-    uav_restart = restart;
+    Firmware_useSlots();
     uav_wire = (U8)Board_isWired();
     Provision_listen();
     status = UAV_start(&board_fsmc, 0);

@@ -8,13 +8,14 @@
 #include "uav_keys.h"
 #include "ucos_ii.h"
 
-/* Runs the program after reset, once memory is set up. Does not return. */
-void Firmware_run(void);
+/* Finds the slots of firmware and bitstream and gives them to uav_update; has the FPGA load its
+ * bitstream. */
+void Firmware_useSlots(void);
 
 /* Returns at once where nobody asks. Else says whether read protection is off, and listens for ten
  * seconds for a line: "key" and 32 hexadecimal digits, or "open", and the vehicle's address, four
  * (UAV_provide), or "ground" or "fellow", its address and, unless the vehicle is open, its key
- * (UAV_provideGround); where there is a key, a present one's digits behind it, or PC2 wired to
+ * (UAV_providePeer); where there is a key, a present one's digits behind it, or PC2 wired to
  * ground. "protect" sets read protection. */
 void Provision_listen(void);
 

@@ -120,13 +120,12 @@ static const char* obey(const char* line) {
                  "ground or fellow, its address, its key; or protect\r\n";
     else if (!isProven)
         answer = "no: it has a key; give that, too, or wire the jumper\r\n";
-    else if (isGround)
-        UAV_provideGround(isFellow                  ? UAV_FELLOW
-                          : number == UAV_EVERYBODY ? UAV_GROUP
-                                                    : UAV_SECOND,
-                          number, isKey ? key : 0);
-    else
-        UAV_provide(number, isKey ? key : 0);
+    else if (!(isGround ? UAV_providePeer(isFellow                  ? UAV_VEHICLE
+                                          : number == UAV_EVERYBODY ? UAV_GROUP
+                                                                    : UAV_OBSERVER,
+                                          number, isKey ? key : 0)
+                        : UAV_provide(number, isKey ? key : 0)))
+        answer = "no: this firmware was built without keys or without several peers\r\n";
     Ascon_wipe(key, sizeof key);
     Ascon_wipe(old, sizeof old);
     return answer;

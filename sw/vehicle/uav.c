@@ -4,11 +4,10 @@
  */
 #include "uav.h"
 #include "radio.h"
-#include "uav_keys.h"
+#include "uav_memory.h"
 #include "uav_private.h"
 
 #define STACK_WORDS 512
-#define FELLOW_MS 3000 /* for which a report waits for the fellow's answer */
 
 Ice_Communicator uav_ic;
 
@@ -16,7 +15,6 @@ static OS_STK serverStack[STACK_WORDS], clientStack[STACK_WORDS], radioStack[STA
     coresStack[STACK_WORDS];
 static Ice_ObjectAdapter adapter;
 static Autopilot_Vehicle vehicle;
-static Autopilot_KeyRing keys;
 static U8 irqEnabled;
 
 Ice_Status Autopilot_Vehicle_isAlive(Autopilot_VehiclePtr self, Ice_Short sessionId,
@@ -45,26 +43,6 @@ Ice_Status Autopilot_Vehicle_getFlightState(Autopilot_VehiclePtr self,
     return ICE_OK;
 }
 
-Ice_Status Autopilot_KeyRing_setNextKey(Autopilot_KeyRingPtr self, const Autopilot_ByteSeq* key,
-                                        Ice_Bool* result,
-                                        Autopilot_KeyRing_setNextKey_Exception* ex,
-                                        const Ice_Current* current) {
-    (void)self;
-    if (UAV_isFlying()) {
-        ex->type = Autopilot_KeyRing_setNextKey_InFlight;
-        return ICE_USER_EXCEPTION;
-    }
-    *result = key->size == (Ice_Int)LINK_KEY_BYTES && UAV_nextKey(UAV_groundOf(current), key->data);
-    return ICE_OK;
-}
-
-Ice_Status Autopilot_KeyRing_count(Autopilot_KeyRingPtr self, Ice_Int* result,
-                                   const Ice_Current* current) {
-    (void)self;
-    *result = UAV_countKeys(UAV_groundOf(current));
-    return ICE_OK;
-}
-
 static void setParam(Autopilot_Param* param, Ice_Byte* data, Autopilot_ParamId id, U32 value) {
     int i;
     for (i = 0; i < 4; ++i)
@@ -75,18 +53,6 @@ static void setParam(Autopilot_Param* param, Ice_Byte* data, Autopilot_ParamId i
     param->data.data = data;
 }
 
-/* Makes a proxy to the vehicle that this one calls, if there is one. */
-static int findFellow(Ice_ObjectPrxPtr fellow) {
-    static char text[] = "uav:xbee-at -a 0x0000";
-    const U32 address = UAV_addressOf(UAV_FELLOW);
-    U32 i;
-    for (i = 0; i < 4U; ++i)
-        text[sizeof text - 2U - i] = "0123456789abcdef"[address >> 4U * i & 15U];
-    (void)Ice_Communicator_stringToProxy(&uav_ic, text, fellow);
-    Ice_ObjectPrx_ice_invocationTimeout(fellow, FELLOW_MS);
-    return address != UAV_NO_GROUND;
-}
-
 /* Tells the ground station about the vehicle whenever a frame is done; with a fellow, how that one
  * is, too, unless it does not answer. */
 static void clientTask(void* argument) {
@@ -95,7 +61,7 @@ static void clientTask(void* argument) {
     Ice_Byte data[6][4];
     Autopilot_ParamSeq list;
     Autopilot_FlightState state;
-    const int hasFellow = findFellow(&fellow);
+    const int hasFellow = UAV_makeVehicleProxy(&fellow);
     (void)argument;
     (void)Ice_Communicator_stringToProxy(&uav_ic, "station:xbee-at -a 0x0000", &station);
     (void)Ice_ObjectAdapter_createProxy(&adapter, "uav", &self);
@@ -138,8 +104,7 @@ static void appMainTask(void* argument) {
     Autopilot_Vehicle_init(&vehicle);
     (void)Ice_ObjectAdapter_add(&adapter, (Ice_ObjectPtr)&vehicle, "uav");
     UAV_startUpdate(&adapter);
-    Autopilot_KeyRing_init(&keys);
-    (void)Ice_ObjectAdapter_add(&adapter, (Ice_ObjectPtr)&keys, "keys");
+    UAV_startKeyRing(&adapter);
 
     createTask(UAV_radioTask, radioStack, PRIO_RADIO);
     createTask(UAV_coresTask, coresStack, PRIO_CORES);

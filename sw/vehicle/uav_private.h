@@ -30,7 +30,7 @@ U32 UAV_nowUs(void);
 
 /* Radio task: sets the modem up, runs the link, and sets it up again if the link stays down. */
 int UAV_initRadio(void); /* 0: the vehicle has no key, and was not opened */
-int UAV_groundOf(const Ice_Current* current);
+int UAV_peerOf(const Ice_Current* current);
 int UAV_nextKey(int ground, const U8* key); /* UAV_setNextKey for a servant */
 void UAV_radioTask(void* argument);
 void UAV_useRadio(Ice_CommunicatorPtr ic);
@@ -39,6 +39,12 @@ void UAV_initIceOs(void);
 
 /* Serves new firmware (uav_update.c), if there are slots for it. */
 void UAV_startUpdate(Ice_ObjectAdapterPtr adapter);
+
+/* Serves changes of keys (uav_keyring.c). */
+void UAV_startKeyRing(Ice_ObjectAdapterPtr adapter);
+
+/* Makes a proxy to the vehicle that this one calls; returns 0 if there is none. */
+int UAV_makeVehicleProxy(Ice_ObjectPrxPtr other);
 
 /* Cores (uav_cores.c): their servants, their task; `lines`: interrupt lines of slots 0..31
  * and 32..63. UAV_waitFrame waits for a processed frame, and returns how many there were, with the

@@ -6,7 +6,7 @@
 #include "uav_update.h"
 #include "Update.h"
 #include "receiver.h"
-#include "uav_keys.h"
+#include "uav_memory.h"
 #include "uav_private.h"
 
 #include <lz4.h>

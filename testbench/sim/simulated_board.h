@@ -16,7 +16,7 @@ extern "C" {
 
 class SimulatedBoard {
 public:
-    using Words = std::array<uint32_t, UAV_KEY_WORDS>;
+    using Words = std::array<uint32_t, BACKUP_WORDS>;
 
     explicit SimulatedBoard(uint64_t seed = 1) : random_(seed) {
         (void)RandomBlock::next(random_); // as in secrets.c
@@ -31,14 +31,14 @@ public:
     }
     // Whom it serves besides its ground.
     struct Peer {
-        int ground; // UAV_SECOND, UAV_FELLOW, UAV_GROUP
+        int ground; // UAV_OBSERVER, UAV_VEHICLE, UAV_GROUP
         uint32_t address;
         std::vector<uint8_t> key;
     };
     void providePeers(const std::vector<Peer>& peers) {
         use();
         for (const auto& [ground, address, key] : peers)
-            UAV_provideGround(ground, address, key.empty() ? nullptr : key.data());
+            UAV_providePeer(ground, address, key.empty() ? nullptr : key.data());
     }
     Words words{};
 

@@ -89,9 +89,9 @@ inline void giveKeys(M3Machine::Config& config, unsigned vehicles, const std::st
     }
     if (vehicles > 1)
         config.peers.push_back(
-            {UAV_SECOND, Station::second, keyOf(observer, static_cast<int>(config.address))});
+            {UAV_OBSERVER, Station::second, keyOf(observer, static_cast<int>(config.address))});
     if (vehicles > 3 && config.address < 3)
-        config.peers.push_back({UAV_FELLOW, 3 - config.address, keyOf(observer, 1)});
+        config.peers.push_back({UAV_VEHICLE, 3 - config.address, keyOf(observer, 1)});
 }
 
 // Trouble takes effect by a text: `away:2:1.5:3` takes the modem with the

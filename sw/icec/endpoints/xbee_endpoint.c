@@ -26,19 +26,19 @@ static const Ice_Byte head[HEAD] = {
     (2U << (((U32)(kind) - ICE_EVENT_CLOSED) * XBEE_CONNECTIONS + (U32)(channel)))
 
 /* A connection's ground and its channel there; a ground's connection that this side opens. */
-#define GROUND_OF(connection) (XBEE_GROUNDS > 1 ? (int)((U32)(connection) / LINK_CHANNELS) : 0)
+#define GROUND_OF(connection) (XBEE_PEERS > 1 ? (int)((U32)(connection) / LINK_CHANNELS) : 0)
 #define CHANNEL_OF(connection) \
-    (XBEE_GROUNDS > 1 ? (int)((U32)(connection) % LINK_CHANNELS) : (connection))
+    (XBEE_PEERS > 1 ? (int)((U32)(connection) % LINK_CHANNELS) : (connection))
 static int isOwnOpen(const XBeeATEndpoint* self, int ground) {
-    return XBEE_GROUNDS > 1 ? self->ownOpen >> ground & 1 : self->ownOpen;
+    return XBEE_PEERS > 1 ? self->ownOpen >> ground & 1 : self->ownOpen;
 }
 
 static void setOwnOpen(XBeeATEndpoint* self, int ground, int isOpen) {
-    const int others = XBEE_GROUNDS > 1 ? self->ownOpen & ~(1 << ground) : 0;
-    self->ownOpen = (Ice_Byte)(XBEE_GROUNDS > 1 ? others | isOpen << ground : isOpen);
+    const int others = XBEE_PEERS > 1 ? self->ownOpen & ~(1 << ground) : 0;
+    self->ownOpen = (Ice_Byte)(XBEE_PEERS > 1 ? others | isOpen << ground : isOpen);
 }
 
-#if XBEE_GROUNDS > 1
+#if XBEE_PEERS > 1
 #define OWN_OF(self, ground) ((self)->own[ground])
 
 /* Seeks a vehicle for a call's time from now on, or no more. Returns 0: a ground is not sought. */
@@ -158,9 +158,9 @@ void XBeeATEndpoint_onChannel(void* context, int channel, int isOpen) {
         report(self, EVENT(isOpen ? ICE_EVENT_OPENED : ICE_EVENT_CLOSED, channel));
 }
 
-#if XBEE_GROUNDS > 1
+#if XBEE_PEERS > 1
 
-void XBeeATEndpoint_addGround(XBeeATEndpoint* self, int ground, Link* link, U16 address) {
+void XBeeATEndpoint_addPeer(XBeeATEndpoint* self, int ground, Link* link, U16 address) {
     self->links[ground] = link;
     self->grounds[ground] = address;
     self->own[ground] = (Ice_Byte)(ground * LINK_CHANNELS + XBEE_OWN_CHANNEL);
@@ -220,7 +220,7 @@ static Link_Status openOwn(XBeeATEndpoint* self, int ground) {
     return status;
 }
 
-#if XBEE_GROUNDS > 1
+#if XBEE_PEERS > 1
 
 void XBeeATEndpoint_seek(XBeeATEndpoint* self, int ground, U32 nowUs) {
     Link* link = self->links[ground];
@@ -296,7 +296,7 @@ static Ice_Status sendMessage(void* context, int connection, const Ice_Byte* mes
 
 /* Returns the ground whose address an encoded endpoint has; -1: nobody has it. */
 static int groundOf(const XBeeATEndpoint* self, const Ice_Byte* encoded, Ice_Int size) {
-    int ground = XBEE_GROUNDS - 1;
+    int ground = XBEE_PEERS - 1;
     if (size < HEAD + 2)
         return 0;
     while (ground >= 0 && (!self->links[ground] ||
@@ -306,12 +306,12 @@ static int groundOf(const XBeeATEndpoint* self, const Ice_Byte* encoded, Ice_Int
 }
 
 static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size, int* connection) {
-    int ground = XBEE_GROUNDS > 1 ? groundOf(context, encoded, size) : 0;
+    int ground = XBEE_PEERS > 1 ? groundOf(context, encoded, size) : 0;
     if (size < 2 || encoded[0] != head[0] || encoded[1] != head[1] || ground < 0)
         return ICE_NO_ENDPOINT;
     *connection = OWN_OF((XBeeATEndpoint*)context, ground);
     /* The last closing may still be on its way. */
-    return offer(context, XBEE_GROUNDS > 1 ? *connection : 0, 0, 0);
+    return offer(context, XBEE_PEERS > 1 ? *connection : 0, 0, 0);
 }
 
 static void closeChannel(void* context, int connection) {
@@ -385,7 +385,7 @@ void XBeeATEndpoint_init(Ice_CommunicatorPtr ic, const char* name, XBeeATEndpoin
     (void)name;
     memset(self, 0, sizeof *self);
     self->links[0] = link;
-#if XBEE_GROUNDS > 1
+#if XBEE_PEERS > 1
     self->own[0] = XBEE_OWN_CHANNEL;
 #endif
     self->address = address;

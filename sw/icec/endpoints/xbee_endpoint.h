@@ -16,9 +16,9 @@
 #define XBEE_ENDPOINT_TYPE 0x4158
 #define XBEE_OWN_CHANNEL 3 /* opened by this side, the UAV; the ground opens 0..2 */
 /* Grounds at most; of more than three the events would not fit into 32 bits. */
-#define XBEE_GROUNDS \
+#define XBEE_PEERS \
     (ICE_CONNECTIONS < 3 * LINK_CHANNELS ? ICE_CONNECTIONS < 2 * LINK_CHANNELS ? 1 : 2 : 3)
-#define XBEE_CONNECTIONS (XBEE_GROUNDS * LINK_CHANNELS)
+#define XBEE_CONNECTIONS (XBEE_PEERS * LINK_CHANNELS)
 
 /* The endpoint's port to the application, whose radio task owns the link. The minimal run time has
  * one task, which polls the link in `wait`; lock, unlock, kick and signal are not called, and may
@@ -33,11 +33,11 @@ typedef struct XBeeATEndpoint_Port {
 } XBeeATEndpoint_Port;
 
 typedef struct XBeeATEndpoint {
-    Link* links[XBEE_GROUNDS]; /* 0: there is no such ground */
+    Link* links[XBEE_PEERS]; /* 0: there is no such ground */
     const XBeeATEndpoint_Port* port;
     void* context;
     U16 address;               /* own, MY */
-    U16 grounds[XBEE_GROUNDS]; /* the grounds' addresses, the first one's is 0 */
+    U16 grounds[XBEE_PEERS]; /* the grounds' addresses, the first one's is 0 */
     U32 events;                /* events to be delivered; 0: none */
     Ice_Int size;              /* of the pending message */
     Ice_Byte* buffer; /* the receiving task's; 0: nobody receives, the link keeps the message */
@@ -45,11 +45,11 @@ typedef struct XBeeATEndpoint {
     Ice_Byte ownOpen; /* the own channel is, a bit a ground */
     Ice_Byte held;    /* the link keeps a message that was not taken */
     Ice_Byte offered; /* connection of the message that is being sent, unless it has ended */
-#if XBEE_GROUNDS > 1
-    Ice_Byte own[XBEE_GROUNDS]; /* connections that this side opens */
+#if XBEE_PEERS > 1
+    Ice_Byte own[XBEE_PEERS]; /* connections that this side opens */
     Ice_Byte vehicles, sought;  /* those grounds that are vehicles, and are sought, a bit each */
-    U32 soughtAt[XBEE_GROUNDS]; /* since when, in ms, */
-    U32 seen[XBEE_GROUNDS];     /* and how many messages had come before */
+    U32 soughtAt[XBEE_PEERS]; /* since when, in ms, */
+    U32 seen[XBEE_PEERS];     /* and how many messages had come before */
 #endif
 } XBeeATEndpoint;
 
@@ -57,9 +57,9 @@ typedef struct XBeeATEndpoint {
 void XBeeATEndpoint_init(Ice_CommunicatorPtr ic, const char* name, XBeeATEndpoint* self, Link* link,
                          U16 address, const XBeeATEndpoint_Port* port, void* context);
 
-#if XBEE_GROUNDS > 1
+#if XBEE_PEERS > 1
 /* Adds another ground's link. A proxy whose address is not a ground's has no endpoint here. */
-void XBeeATEndpoint_addGround(XBeeATEndpoint* self, int ground, Link* link, U16 address);
+void XBeeATEndpoint_addPeer(XBeeATEndpoint* self, int ground, Link* link, U16 address);
 /* Makes that ground a vehicle; `isGround`: this side has the ground's part. */
 void XBeeATEndpoint_setVehicle(XBeeATEndpoint* self, int ground, int isGround);
 /* Starts a vehicle's link while a call waits for its session, and stops it where none does; to be

@@ -5,11 +5,11 @@
  * libsodium's other files that signature checks need.
  */
 #include "loader.h"
+#include "backup.h"
 #include "clock.h"
 #include "flash.h"
 #include "signature.h"
 #include "stm32f2.h"
-#include "uav_keys.h"
 
 #include <sodium/crypto_hash_sha512.h>
 #include <sodium/utils.h>
@@ -55,7 +55,7 @@ void Reset_Handler(void) {
     U32 slot;
     Clock_start();
     RCC_AHB1ENR |= RCC_AHB1ENR_BKPSRAM;
-    slot = Slots_choose(&port, LOADER_PRODUCT, BKPSRAM(UAV_FLIGHT_WORD) != UAV_FLYING);
+    slot = Slots_choose(&port, LOADER_PRODUCT, BKPSRAM(BACKUP_AT(vehicle.flight)) != BACKUP_FLYING);
     if (slot == SLOTS_NONE) /* no image can be started: only a programmer helps */
         for (;;)
             __asm__ volatile("wfi");

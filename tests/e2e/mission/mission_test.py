@@ -240,7 +240,7 @@ class Cases(Script):
         self.update("big.elf", "runs and is confirmed")
         sent = re.search(r"sent 262144 bytes in (.*)", self.said)[1]
         self.assertLessEqual(float(re.search(r"[\d.]+", sent)[0]), 30)
-        self.patched("crashes.elf", "Firmware_run", 0, b"\xff\xde")  # UDF
+        self.patched("crashes.elf", "Program_run", 0, b"\xff\xde")  # UDF
         self.update("crashes.elf", "is signed and whole; it starts", "was started and went back",
                     "2 software, 0 watchdog", status=None)
 

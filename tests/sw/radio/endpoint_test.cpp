@@ -188,7 +188,7 @@ TEST_F(RadioEndpoint, AMessageForAConnectionThatHasEndedNeverReachesTheNextOnIts
 
 TEST_F(RadioEndpoint, ASecondGroundHasConnectionsOfItsOwn) {
     Pair other(testSeed() + 1);
-    XBeeATEndpoint_addGround(&endpoint_, 1, other.b.link(), 0x00F0);
+    XBeeATEndpoint_addPeer(&endpoint_, 1, other.b.link(), 0x00F0);
     ASSERT_TRUE(pair_.connect() && other.connect());
     const auto connectTo = [&](Ice_Byte address) {
         const Ice_Byte encoded[] = {0x58, 0x41, 13, 0, 0, 0, 1, 1, address, 0, 255, 0, 0, 0, 0};

@@ -83,7 +83,7 @@ struct Craft {
     // Has a link to the vehicle of this address.
     void meets(Craft& other, U16 address, int place, bool isGround, const Key& key, U32 side) {
         End& end = ends[fellow];
-        XBeeATEndpoint_addGround(&endpoint, fellow, &end.link, address);
+        XBeeATEndpoint_addPeer(&endpoint, fellow, &end.link, address);
         XBeeATEndpoint_setVehicle(&endpoint, fellow, isGround);
         end.isVehicles = true;
         end.peer = &other.ends[place];
@@ -187,7 +187,7 @@ struct Team : World {
         seven.meets(five, 5, Craft::fellow, false, keyOf7.empty() ? key : keyOf7, 7);
         ground.meets(five, 5, 0, true, {}, 0);
         observer.meets(five, 5, 1, true, {}, 0);
-        XBeeATEndpoint_addGround(&five.endpoint, 1, &five.ends[1].link, 0xF0);
+        XBeeATEndpoint_addPeer(&five.endpoint, 1, &five.ends[1].link, 0xF0);
     }
     const std::unique_ptr<Craft> made[4] = {
         std::make_unique<Craft>(*this, 0), std::make_unique<Craft>(*this, 0xF0),

@@ -15,9 +15,9 @@
 #include <unistd.h>
 
 extern "C" {
+#include "backup.h"
 #include "loader.h"
 #include "slots.h"
-#include "uav_keys.h"
 }
 
 namespace {
@@ -159,9 +159,9 @@ TEST_F(Loader, StartsOneOfEitherKeyUntilItIsWithdrawn) {
 TEST_F(Loader, TriesNothingInFlight) {
     fill();
     receive(8);
-    chip.backup()[UAV_FLIGHT_WORD] = UAV_FLYING;
+    chip.backup()[BACKUP_AT(vehicle.flight)] = BACKUP_FLYING;
     EXPECT_EQ(boot(), 0);
-    chip.backup()[UAV_FLIGHT_WORD] = 0;
+    chip.backup()[BACKUP_AT(vehicle.flight)] = 0;
     EXPECT_EQ(boot(), 1);
 }
 
@@ -300,7 +300,7 @@ TEST_F(FpgaStart, ABitstreamThatIsNotSignedNeverRuns) {
 
 TEST_F(FpgaStart, NoBitstreamIsTriedInFlightButOneThatIsRefusedGoes) {
     receive(standInBitstream(2, frameWords));
-    chip.backup()[UAV_FLIGHT_WORD] = UAV_FLYING;
+    chip.backup()[BACKUP_AT(vehicle.flight)] = BACKUP_FLYING;
     *at(multiBoot + 1000) ^= 8;
     EXPECT_EQ(start(), 0u);
     EXPECT_TRUE(is(SLOTS_REFUSED));
@@ -308,7 +308,7 @@ TEST_F(FpgaStart, NoBitstreamIsTriedInFlightButOneThatIsRefusedGoes) {
     std::fill(at(slot + SLOTS_READY), at(multiBoot), uint8_t{0xFF});
     (void)start();
     EXPECT_FALSE(is(SLOTS_TRIED));
-    chip.backup()[UAV_FLIGHT_WORD] = 0;
+    chip.backup()[BACKUP_AT(vehicle.flight)] = 0;
     EXPECT_EQ(start(), 1u);
     EXPECT_TRUE(is(SLOTS_TRIED));
 }

@@ -64,14 +64,14 @@ public:
     }
     bool hasKey(const Key& wanted) {
         Key key{};
-        for (int slot = 0; slot < UAV_KEY_SLOTS; ++slot)
+        for (int slot = 0; slot < int(BACKUP_SLOTS); ++slot)
             if (UAV_readKey(0, slot, key.data()) && key == wanted)
                 return true;
         return false;
     }
 
     static constexpr unsigned never = ~0u;
-    std::array<U32, UAV_KEY_WORDS> words{};
+    std::array<U32, BACKUP_WORDS> words{};
     unsigned stores = 0, cutAfter = never; // then power fails
     bool isDead = false;
     int keys = 0;
@@ -101,6 +101,16 @@ TEST(Keys, AVehicleHasAKeyOrIsOpenOrNeither) {
     EXPECT_FALSE(UAV_isOpen());
 }
 
+TEST(Keys, TheFirstGroundsAddressIsNeitherKeptNorTheFlightState) {
+    Vehicle vehicle(1);
+    for (const int isFlying : {0, 1}) {
+        UAV_setFlying(isFlying);
+        EXPECT_EQ(UAV_addressOf(0), 0u) << "flying: " << isFlying;
+        EXPECT_EQ(UAV_isFlying(), isFlying);
+    }
+    EXPECT_EQ(UAV_address(), address);
+}
+
 TEST(Keys, ASlotThatWasSpoiltIsEmpty) {
     Vehicle vehicle(1);
     for (U32 bit = 0; bit < 5 * 32; ++bit) {
@@ -118,13 +128,13 @@ TEST(Keys, TheGroupsKeyOpensEachCallOnceAndGoesWithANewVehiclesKey) {
         return UAV_openBroadcast(packet, Link_sealBroadcast(packet, 5, key.data(), number)) == 5;
     };
     EXPECT_FALSE(UAV_isOfGroup()) << "it has a key, and not the group's";
-    UAV_provideGround(UAV_GROUP, UAV_EVERYBODY, newKey.data());
+    UAV_providePeer(UAV_GROUP, UAV_EVERYBODY, newKey.data());
     EXPECT_TRUE(UAV_isOfGroup());
     EXPECT_EQ(UAV_countKeys(0), 1);
-    EXPECT_EQ(UAV_addressOf(UAV_SECOND), UAV_NO_GROUND);
+    EXPECT_EQ(UAV_addressOf(UAV_OBSERVER), UAV_NO_PEER);
     EXPECT_FALSE(opens(oldKey, 77));
     EXPECT_TRUE(opens(newKey, 77));
-    UAV_provideGround(UAV_GROUP, UAV_EVERYBODY, newKey.data());
+    UAV_providePeer(UAV_GROUP, UAV_EVERYBODY, newKey.data());
     EXPECT_FALSE(opens(newKey, 77)) << "recorded, under the same key";
     EXPECT_TRUE(opens(newKey, 78));
     UAV_provide(address, nullptr);
@@ -148,11 +158,11 @@ TEST(Keys, OneFollowsAnotherAndTheOldOneOpensNothing) {
 
 TEST(Keys, ASecondGroundHasKeysOfItsOwn) {
     Vehicle vehicle(testSeed());
-    EXPECT_EQ(UAV_addressOf(UAV_SECOND), UAV_NO_GROUND);
-    UAV_provideGround(UAV_SECOND, 0xF0, nullptr);
-    EXPECT_EQ(UAV_addressOf(UAV_SECOND), UAV_NO_GROUND) << "in the clear, of a vehicle with a key";
-    UAV_provideGround(UAV_SECOND, 0xF0, foreignKey.data());
-    EXPECT_EQ(UAV_addressOf(UAV_SECOND), 0xF0u);
+    EXPECT_EQ(UAV_addressOf(UAV_OBSERVER), UAV_NO_PEER);
+    UAV_providePeer(UAV_OBSERVER, 0xF0, nullptr);
+    EXPECT_EQ(UAV_addressOf(UAV_OBSERVER), UAV_NO_PEER) << "in the clear, of a vehicle with a key";
+    UAV_providePeer(UAV_OBSERVER, 0xF0, foreignKey.data());
+    EXPECT_EQ(UAV_addressOf(UAV_OBSERVER), 0xF0u);
     EXPECT_EQ(vehicle.change(), std::vector<Key>{newKey});
     Key key{};
     EXPECT_TRUE(UAV_readKey(1, 0, key.data()) && key == foreignKey);
@@ -160,33 +170,33 @@ TEST(Keys, ASecondGroundHasKeysOfItsOwn) {
     EXPECT_FALSE(UAV_isKey(foreignKey.data())) << "it opens no serial port";
     UAV_provide(address, nullptr);
     EXPECT_EQ(UAV_countKeys(1), 0);
-    UAV_provideGround(UAV_SECOND, 0xF0, nullptr);
-    EXPECT_EQ(UAV_addressOf(UAV_SECOND), 0xF0u) << "of an open vehicle";
+    UAV_providePeer(UAV_OBSERVER, 0xF0, nullptr);
+    EXPECT_EQ(UAV_addressOf(UAV_OBSERVER), 0xF0u) << "of an open vehicle";
 }
 
 TEST(Keys, OfTwoVehiclesTheOneWithTheLowerAddressHasTheGroundsPart) {
     Vehicle vehicle(testSeed());
     for (U32 fellow : {address - 1, address + 1}) {
-        UAV_provideGround(UAV_FELLOW, fellow, foreignKey.data());
-        EXPECT_EQ(UAV_addressOf(UAV_FELLOW), fellow);
-        EXPECT_EQ(UAV_addressOf(UAV_SECOND), UAV_NO_GROUND);
+        UAV_providePeer(UAV_VEHICLE, fellow, foreignKey.data());
+        EXPECT_EQ(UAV_addressOf(UAV_VEHICLE), fellow);
+        EXPECT_EQ(UAV_addressOf(UAV_OBSERVER), UAV_NO_PEER);
         EXPECT_EQ(UAV_hasGroundsPart(), fellow > address);
         vehicle.a.boot();
         vehicle.b.boot();
-        UAV_giveKeys(UAV_FELLOW, vehicle.b.link());
+        UAV_giveKeys(UAV_VEHICLE, vehicle.b.link());
         Link_setKey(vehicle.a.link(), 0, foreignKey.data(),
                     fellow > address ? fellow : LINK_GROUND | address);
         EXPECT_TRUE(vehicle.connect());
     }
-    UAV_provideGround(UAV_SECOND, 0xFFFE, newKey.data());
-    EXPECT_EQ(UAV_addressOf(UAV_SECOND), 0xFFFEu) << "beside the fellow";
+    UAV_providePeer(UAV_OBSERVER, 0xFFFE, newKey.data());
+    EXPECT_EQ(UAV_addressOf(UAV_OBSERVER), 0xFFFEu) << "beside the fellow";
     vehicle.a.boot();
     vehicle.b.boot();
-    UAV_giveKeys(UAV_SECOND, vehicle.b.link());
+    UAV_giveKeys(UAV_OBSERVER, vehicle.b.link());
     Link_setKey(vehicle.a.link(), 0, newKey.data(), LINK_GROUND | address);
     EXPECT_TRUE(vehicle.connect()) << "a ground has the ground's part, whatever its address";
     UAV_provide(address, oldKey.data());
-    EXPECT_EQ(UAV_addressOf(UAV_FELLOW), UAV_NO_GROUND);
+    EXPECT_EQ(UAV_addressOf(UAV_VEHICLE), UAV_NO_PEER);
 }
 
 TEST(Keys, AGroundWithoutTheKeyIsRefused) {

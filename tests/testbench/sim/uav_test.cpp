@@ -139,7 +139,7 @@ TEST(Grounds, TwoAreServedAtOnceEachUnderItsOwnKeyAndNobodyElse) {
     TwoGrounds world;
     EXPECT_TRUE(flies(world.soc, world.flight(), 60, [&](UavMachine& machine) {
         machine.board.provide(world.pilotsKey);
-        machine.board.providePeers({{UAV_SECOND, world.observersAddress, world.observersKey}});
+        machine.board.providePeers({{UAV_OBSERVER, world.observersAddress, world.observersKey}});
     }));
     EXPECT_EQ(Link_statistics(&uav_link)->bytesSkipped, 0u)
         << "the stranger's, on the pilot's link";
@@ -174,7 +174,7 @@ TEST(Fellow, OneThatIsAwayCostsLittleOfTheAirAndTheVehicleServesItsGroundMeanwhi
                            world.ground.calling(calls)});
     EXPECT_TRUE(flies(world.soc, script, 30, [&](UavMachine& machine) {
         machine.board.provide(key);
-        machine.board.providePeers({{UAV_FELLOW, 2, keyOfTwo}});
+        machine.board.providePeers({{UAV_VEHICLE, 2, keyOfTwo}});
     }));
     EXPECT_LT(double(world.soc.now() - since) / 1e9, 22 * 0.045) << "the ground was delayed";
     const double share = double(airNs) / 8e9;

@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * backup: the layout of the memory that a battery keeps (the STM32's backup SRAM), which the
+ * firmware and the boot loader share. Vehicles in the field hold data in this layout.
+ */
+#pragma once
+
+#include "base.h"
+
+#include <stddef.h>
+
+#define BACKUP_KEY_WORDS 4U
+#define BACKUP_SLOTS 2U /* keys of a peer: the one in use and the next one */
+#define BACKUP_OTHERS 3U
+#define BACKUP_FLYING 0x464C5921U /* value of `flight` in flight; any other: on the ground */
+
+typedef struct Backup_Slot {
+    U32 key[BACKUP_KEY_WORDS];
+    U32 check; /* checksum of the key; another value: the slot is empty */
+} Backup_Slot;
+
+typedef struct Backup_Keys {
+    Backup_Slot slots[BACKUP_SLOTS];
+    U32 state; /* which key is the next one; first ground: also whether the vehicle is open;
+                * group: number of the newest call to all vehicles */
+} Backup_Keys;
+
+/* The first ground's keys, and the vehicle's own state. */
+typedef struct Backup_Vehicle {
+    Backup_Keys keys;
+    U32 flight;  /* BACKUP_FLYING in flight; the boot loader reads it, too */
+    U32 address; /* of the vehicle's modem: MY */
+    U32 unused[3];
+} Backup_Vehicle;
+
+/* An observer, another vehicle, or the group. */
+typedef struct Backup_Other {
+    Backup_Keys keys;
+    U32 inverted; /* inverted address; 0: no such peer */
+    U32 unused[4];
+} Backup_Other;
+
+typedef struct Backup {
+    Backup_Vehicle vehicle;
+    Backup_Other others[BACKUP_OTHERS];
+} Backup;
+
+/* Offset of a member in words. */
+#define BACKUP_AT(member) ((U32)(offsetof(Backup, member) / sizeof(U32)))
+#define BACKUP_WORDS ((U32)(sizeof(Backup) / sizeof(U32)))

@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * uav_fleet: the peers besides the first ground: an observer, another vehicle, and calls to all
+ * vehicles. They need API mode, which tells packets apart by their source.
+ *
+ * An observer calls by itself and is not sought; another vehicle only while this one calls it.
+ */
+#include "link_broadcast.h"
+#include "uav.h"
+#include "uav_keys.h"
+#include "uav_links.h"
+
+#include <string.h>
+
+/* The smaller links: bytes of the queue and of a message that comes, fragments in flight. */
+#define OBSERVER_SENDS 8192U
+#define OBSERVER_TAKES 1024U
+#define OBSERVER_WINDOW 16U
+#define VEHICLE_SENDS 1024U
+#define VEHICLE_TAKES 512U
+#define VEHICLE_WINDOW 4U
+#define VEHICLE_MS 3000 /* for which a report waits for the other vehicle's answer */
+
+UAV_Peer uav_peers[UAV_PEERS] = {{&uav_link, UAV_GROUND_ADDRESS}};
+const U8 uav_peerCount = UAV_PEERS;
+
+static Link observerLink, vehicleLink;
+static LINK_BUFFERS(OBSERVER_SENDS, OBSERVER_TAKES, OBSERVER_WINDOW) observerBuffers;
+static LINK_BUFFERS(VEHICLE_SENDS, VEHICLE_TAKES, VEHICLE_WINDOW) vehicleBuffers;
+static const Link_Config observerConfig = {&uav_linkPort, &uav_peers[UAV_OBSERVER],
+                                           UAV_BYTE_TIME_US16, LINK_USE(observerBuffers)};
+static const Link_Config vehicleConfig = {&uav_linkPort, &uav_peers[UAV_VEHICLE],
+                                          UAV_BYTE_TIME_US16, LINK_USE(vehicleBuffers)};
+
+static U8 toAll[LINK_MAX_FRAME]; /* a call to all vehicles, and its bytes while it waits; else 0 */
+static U8 toAllSize;
+
+/* Adds a peer, if the vehicle has it. Returns 1 if it does. */
+static int addPeer(int role, Link* link, const Link_Config* config) {
+    UAV_Peer* peer = &uav_peers[role];
+    const U32 address = UAV_addressOf(role);
+    peer->link = 0;
+    if (address == UAV_NO_PEER)
+        return 0;
+    peer->link = link;
+    peer->address = (U16)address;
+    Link_init(link, config);
+    Link_shareRadio(link, &uav_link);
+    (void)UAV_giveKeys(role, link);
+    return 1;
+}
+
+int UAV_addPeers(void) {
+    toAllSize = 0;
+    return addPeer(UAV_OBSERVER, &observerLink, &observerConfig) |
+           addPeer(UAV_VEHICLE, &vehicleLink, &vehicleConfig);
+}
+
+void UAV_usePeers(void) {
+    int role;
+    for (role = UAV_OBSERVER; role < UAV_PEERS; ++role)
+        if (uav_peers[role].link)
+            XBeeATEndpoint_addPeer(&uav_endpoint, role, uav_peers[role].link,
+                                   uav_peers[role].address);
+    if (uav_peers[UAV_VEHICLE].link)
+        XBeeATEndpoint_setVehicle(&uav_endpoint, UAV_VEHICLE, UAV_hasGroundsPart());
+}
+
+void UAV_seekVehicle(void) {
+    if (uav_peers[UAV_VEHICLE].link)
+        XBeeATEndpoint_seek(&uav_endpoint, UAV_VEHICLE, uav_now);
+}
+
+/* Takes a call to all vehicles, once. While one waits for IceC the others are dropped: a later copy
+ * may arrive in time. */
+static void onAnyPacket(void* context, const U8* bytes, U32 size) {
+    if (*bytes != LINK_BROADCAST) {
+        UAV_onPacketOf(context, bytes, size);
+    } else if (!toAllSize && size <= sizeof toAll) {
+        memcpy(toAll, bytes, size);
+        size = UAV_openBroadcast(toAll, size);
+        if (size && Ice_markBroadcast(toAll + LINK_BROADCAST_HEAD, (Ice_Int)size))
+            toAllSize = uav_pollsAll = (U8)size;
+    }
+}
+
+Radio_OnPacket UAV_receiver(void) {
+    return UAV_isOfGroup() ? onAnyPacket : UAV_onPacketOf;
+}
+
+int UAV_offerCall(void) {
+    if (toAllSize && XBeeATEndpoint_onMessage(&uav_endpoint, XBEE_OWN_CHANNEL,
+                                              toAll + LINK_BROADCAST_HEAD, toAllSize) == 0)
+        toAllSize = 0;
+    return toAllSize != 0; /* the endpoint kicks the radio task when it takes the call */
+}
+
+int UAV_makeVehicleProxy(Ice_ObjectPrxPtr other) {
+    static char text[] = "uav:xbee-at -a 0x0000";
+    const U32 address = UAV_addressOf(UAV_VEHICLE);
+    U32 i;
+    for (i = 0; i < 4U; ++i)
+        text[sizeof text - 2U - i] = "0123456789abcdef"[address >> 4U * i & 15U];
+    (void)Ice_Communicator_stringToProxy(&uav_ic, text, other);
+    Ice_ObjectPrx_ice_invocationTimeout(other, VEHICLE_MS);
+    return address != UAV_NO_PEER;
+}

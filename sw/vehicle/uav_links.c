@@ -1,0 +1,154 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * uav_links: the links with the peers, between the radio task and IceC's endpoint.
+ */
+#include "uav_links.h"
+#include "uav.h"
+#include "uav_keys.h"
+
+#define MOST_UNANSWERED 2U /* packets that the modem has */
+
+Link uav_link;
+XBeeATEndpoint uav_endpoint;
+U32 uav_now;
+U8 uav_isAnswered;
+U8 uav_pollsAll;
+
+static Link_Buffers buffers;
+static OS_EVENT* linkMutex;
+static U8 turn;      /* the peer that is polled first */
+static U8 areUp;     /* peers with a session, a bit each */
+static U8 hasOthers; /* than the first ground */
+
+void UAV_lockLink(void* context) {
+    INT8U error;
+    (void)context;
+    OSMutexPend(linkMutex, 0, &error);
+}
+
+void UAV_unlockLink(void* context) {
+    (void)context;
+    (void)OSMutexPost(linkMutex);
+}
+
+/* Hands a packet over; in transparent mode, which serves the first ground only, while at most one
+ * waits for the line. So the link layer knows how fast the modem is, and chooses late what goes
+ * next. */
+static int transmit(void* peer, const U8* frame, U32 size) {
+    U32 wait, i;
+    if (!uav_isAnswered)
+        return Radio_waiting() > 1U || Radio_transmit(0, frame, size);
+    wait = Link_randomWait(&uav_link);
+    for (i = 1; areUp >> i; ++i)
+        if (areUp >> i & 1) {
+            const U32 other = Link_randomWait(uav_peers[i].link);
+            wait = other > wait ? other : wait;
+        }
+    Radio_setWait(wait);
+    Radio_setTarget(((const UAV_Peer*)peer)->address);
+    return Radio_transmit(0, frame, size);
+}
+
+static int roleOf(const void* peer) {
+    return (int)((const UAV_Peer*)peer - uav_peers);
+}
+
+static int onMessage(void* peer, int channel, const U8* data, U32 size) {
+    return XBeeATEndpoint_onMessage(&uav_endpoint, roleOf(peer) * LINK_CHANNELS + channel, data,
+                                    size);
+}
+
+static void onChannel(void* peer, int channel, int isOpen) {
+    XBeeATEndpoint_onChannel(&uav_endpoint, roleOf(peer) * LINK_CHANNELS + channel, isOpen);
+}
+
+static void onState(void* peer, Link_State state) {
+    const U32 role = (U32)roleOf(peer);
+    areUp = (U8)((areUp & ~(1U << role)) | (U32)(state == LINK_STATE_UP) << role);
+    uav_pollsAll = 1; /* the session's key may have to be confirmed */
+}
+
+const Link_Port uav_linkPort = {transmit, UAV_random, onMessage, onChannel, onState, 0, 0};
+
+static const Link_Config config = {&uav_linkPort, &uav_peers[UAV_GROUND], UAV_BYTE_TIME_US16,
+                                   LINK_USE(buffers)};
+
+int UAV_initRadio(void) {
+    INT8U error;
+    uav_radioWork = OSSemCreate(0);
+    UAV_initEndpointOs();
+    linkMutex = OSMutexCreate(PRIO_MUTEX, &error);
+    areUp = 0;
+    Link_init(&uav_link, &config);
+    hasOthers = (U8)UAV_addPeers();
+    return UAV_giveKeys(UAV_GROUND, &uav_link) || UAV_isOpen();
+}
+
+void UAV_useRadio(Ice_CommunicatorPtr ic) {
+    XBeeATEndpoint_init(ic, "xbee-at", &uav_endpoint, &uav_link, (U16)UAV_address(),
+                        &uav_endpointPort, 0);
+    UAV_usePeers();
+}
+
+int UAV_peerOf(const Ice_Current* current) {
+    return current->connection / LINK_CHANNELS;
+}
+
+int UAV_nextKey(int role, const U8* key) {
+    int isSet;
+    UAV_lockLink(0);
+    isSet = UAV_setNextKey(role, uav_peers[role].link, key);
+    UAV_unlockLink(0);
+    return isSet;
+}
+
+void UAV_limitLinks(void) {
+    const UAV_Peer* peer;
+    for (peer = uav_peers; peer < uav_peers + uav_peerCount; ++peer)
+        if (peer->link) {
+            Link_limitFrame(peer->link, uav_modemKey ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME);
+            Link_expectAnswers(peer->link, uav_isAnswered ? MOST_UNANSWERED : 0U);
+        }
+}
+
+void UAV_onPacketOf(void* context, const U8* bytes, U32 size) {
+    const U32 source = Radio_source();
+    const UAV_Peer* peer = uav_peers;
+    (void)context;
+    while (peer->address != source || !peer->link)
+        if (++peer == uav_peers + uav_peerCount)
+            return;
+    Link_receive(peer->link, bytes, size, uav_now);
+}
+
+/* Does what is due on all links, of which each comes first in turn. */
+static U32 pollAll(void) {
+    U32 wait = 0xFFFFFFFFU, due;
+    int left, role = turn;
+    if (uav_isAnswered)
+        UAV_seekVehicle();
+    for (left = uav_peerCount; left; --left) {
+        Link* link = uav_peers[role].link;
+        if (link) {
+            Link_poll(link, uav_now);
+            (void)UAV_confirmKey(role, link);
+            due = Link_deadline(link, uav_now);
+            wait = due < wait ? due : wait;
+        }
+        role = (role + 1) % uav_peerCount;
+    }
+    turn = (U8)((turn + 1U) % uav_peerCount);
+    uav_pollsAll = (U8)(UAV_offerCall() | hasOthers);
+    return wait;
+}
+
+U32 UAV_pollLinks(void) {
+    if (uav_pollsAll)
+        return pollAll();
+    Link_poll(&uav_link, uav_now);
+    return Link_deadline(&uav_link, uav_now);
+}
+
+int UAV_isUp(void) {
+    return areUp;
+}

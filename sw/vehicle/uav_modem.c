@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * uav_modem: the FPGA's interrupt, and the radio task: sets the modem up, hands its packets to the
+ * links, and sets the modem up again if no link comes up.
+ */
+#include "map_regs.h"
+#include "system_regs.h"
+#include "uav.h"
+#include "uav_links.h"
+#include "uav_memory.h"
+
+#define DOWN_LIMIT 15000000U /* us without a link: the modem may have lost its settings then */
+
+OS_EVENT* uav_radioWork;
+const U8* uav_modemKey;
+U16 uav_guardMs;
+U8 uav_wire;
+U8 uav_transparent;
+
+static Radio_OnPacket receiver;
+
+U32 UAV_nowUs(void) {
+    return OSTimeGet() * (1000000U / OS_TICKS_PER_SEC);
+}
+
+static void onAnswer(int isDelivered) {
+    Link_answer(&uav_link, isDelivered, uav_now);
+}
+
+static void onPacket(void* context, const U8* bytes, U32 size) {
+    (void)context;
+    Link_receive(&uav_link, bytes, size, uav_now);
+}
+
+static void setUpModem(void) {
+    XBeeInitTypeDef xbeeConf = {RADIO_250000, 0x0001, 0x0000, 0, 0, 0, 0, onAnswer};
+    static const Radio_Memory rings = {UAV_TRANSMIT_RING, UAV_RECEIVE_RING};
+    if (uav_wire || uav_transparent) {
+        xbeeConf.baud = uav_wire ? RADIO_WIRE_115200 : XBEE_BD_115200;
+        xbeeConf.onAnswer = 0;
+    }
+    xbeeConf.source = (U16)UAV_address();
+    xbeeConf.key = uav_modemKey;
+    xbeeConf.guardMs = uav_guardMs;
+    /* The vehicle flies on without its modem, and tries again. */
+    while (xbeeInit(&xbeeConf, &rings) != RADIO_OK)
+        OSTimeDly(OS_TICKS_PER_SEC);
+    uav_isAnswered = (U8)Radio_answers();
+    receiver = uav_isAnswered ? UAV_receiver() : onPacket;
+    UAV_limitLinks();
+}
+
+void UAV_radioTask(void* argument) {
+    INT8U error;
+    U32 upAt;
+    (void)argument;
+    setUpModem();
+    upAt = UAV_nowUs();
+    UAV_lockLink(0);
+    Link_start(&uav_link, UAV_nowUs());
+    UAV_unlockLink(0);
+    for (;;) {
+        U32 wait;
+        UAV_lockLink(0);
+        uav_now = UAV_nowUs();
+        (void)Radio_receive(receiver, 0);
+        wait = UAV_pollLinks();
+        if (UAV_isUp())
+            upAt = uav_now;
+        UAV_unlockLink(0);
+        if (uav_now - upAt > DOWN_LIMIT) {
+            setUpModem();
+            upAt = UAV_nowUs();
+        }
+        /* The wait is at least a tick, so that a full ring is not polled. */
+        wait = wait > 1000000U ? OS_TICKS_PER_SEC : wait * OS_TICKS_PER_SEC / 1000000U;
+        OSSemPend(uav_radioWork, wait ? wait : 1U, &error);
+    }
+}
+
+void UAV_irqHandler(void) {
+    U32 lines[2];
+    lines[0] = FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_IRQ_LO);
+    lines[1] = MAP_SLOT_COUNT > 32U ? FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_IRQ_HI) : 0U;
+    if (lines[0] >> MAP_SLOT_MODEM & 1U) {
+        (void)Radio_interrupt();
+        (void)OSSemPost(uav_radioWork);
+    }
+    UAV_coresInterrupt(lines);
+}

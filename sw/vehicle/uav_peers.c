@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * uav_peers: provides peers besides the first ground, and decrypts calls to all vehicles.
+ */
+#include "uav_peers.h"
+#include "ascon.h"
+#include "link_broadcast.h"
+#include "uav_keys.h"
+
+#define NEWEST                                                                        \
+    (BACKUP_AT(others[UAV_GROUP - 1].keys.state)) /* number of the newest call to all \
+                                                   */
+
+int UAV_providePeer(int role, U32 address, const U8* key) {
+    UAV_store(UAV_addressAt(role), 0);
+    if (role != UAV_GROUP) /* or a recorded call would be new again */
+        UAV_store(UAV_stateAt(role), 0);
+    UAV_writeKey(role, 1, 0);
+    UAV_writeKey(role, 0, key);
+    UAV_store(UAV_addressAt(role), ~address);
+    return 1;
+}
+
+/* Reads the group's key: zeros, as of any slot without a key, where the vehicle is open. */
+static int readGroupKey(U8* key) {
+    return UAV_readKey(UAV_GROUP, 0, key) || UAV_isOpen();
+}
+
+int UAV_isOfGroup(void) {
+    U8 key[LINK_KEY_BYTES];
+    int is = readGroupKey(key);
+    Ascon_wipe(key, sizeof key);
+    return is;
+}
+
+U32 UAV_openBroadcast(U8* packet, U32 size) {
+    U8 key[LINK_KEY_BYTES];
+    (void)readGroupKey(key);
+    size = Link_openBroadcast(packet, size, key, UAV_load(NEWEST));
+    Ascon_wipe(key, sizeof key);
+    if (size)
+        UAV_store(NEWEST, LINK_BROADCAST_NUMBER(packet));
+    return size;
+}

@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * without_fleet: the vehicle with one ground only (ICESOC_FLEET=OFF): no observer, no other
+ * vehicle, no calls to all vehicles.
+ */
+#include "uav_links.h"
+#include "uav_peers.h"
+
+UAV_Peer uav_peers[1] = {{&uav_link, UAV_GROUND_ADDRESS}};
+const U8 uav_peerCount = 1;
+
+int UAV_providePeer(int role, U32 address, const U8* key) {
+    (void)role;
+    (void)address;
+    (void)key;
+    return 0;
+}
+
+int UAV_addPeers(void) {
+    return 0;
+}
+
+void UAV_usePeers(void) {}
+
+void UAV_seekVehicle(void) {}
+
+int UAV_offerCall(void) {
+    return 0;
+}
+
+Radio_OnPacket UAV_receiver(void) {
+    return UAV_onPacketOf;
+}
+
+int UAV_makeVehicleProxy(Ice_ObjectPrxPtr other) {
+    (void)other;
+    return 0;
+}

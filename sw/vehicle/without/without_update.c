@@ -1,0 +1,9 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * without_update: the vehicle without updates over the air (ICESOC_UPDATE=OFF).
+ */
+#include "uav_private.h"
+
+void UAV_startUpdate(Ice_ObjectAdapterPtr adapter) {
+    (void)adapter;
+}

@@ -201,7 +201,7 @@ TEST(PackUpdate, SaysWhatIsWrong) {
         EXPECT_NE(folder.said().find(why), std::string::npos) << folder.said();
     };
     refuses("image /dev/null 2 key update", "/dev/null");
-    refuses("image " FIRMWARE "uav.elf 0 key update", "give 1 to 4294967294");
+    refuses("image " FIRMWARE "uav.elf 0 key update", "expected 1 to 4294967294");
     refuses("image " FIRMWARE "loader.elf 2 key update", "--emit-relocs");
     EXPECT_EQ(folder.pack("image " FIRMWARE "uav.elf 2 key update"), 0);
     struct stat key{};

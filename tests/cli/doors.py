@@ -105,7 +105,7 @@ class Values(Work):
                 ({**every, "LIST": ""}, 2, "needs --list, its number, --by"),
                 ({"SECOND": second}, 2, "needs --list, its number, --by"),
                 ({**every, "FIRST": "/none"}, 2, "cannot read '/none': No such file"),
-                ({**every, "LIST": "0"}, 2, "is a whole number from 1 on, not '0'"),
+                ({**every, "LIST": "0"}, 2, ": expected a whole number, at least 1, got '0'"),
                 ({**every, "SIGNING": "1"}, 2, "give one of --certificate"),
                 ({"CERTIFICATE": "1", "SIGNING": "1"}, 2, "give one of --certificate")):
             words = [word for name, value in given.items() if value for word in (
@@ -124,7 +124,8 @@ class Values(Work):
 
     def test_the_environment_gives_defaults(self):
         for words, given, said in (
-                ("make -s fly", {"SEED": "x"}, "SEED is a whole number from 0 on, not 'x'"),
+                ("make -s fly", {"SEED": "x"},
+                 "SEED: expected a whole number, at least 0, got 'x'"),
                 ("./icesoc fly", {"SEED": "x"}, "SEED is a whole number"),
                 ("make -s new-ip NAME=abc", {"LANG": "verilog"}, "LANG says the core's language"),
                 ("make -s run OPEN=1 KEY=Makefile", {}, "OPEN=1 flies in the clear")):
@@ -138,17 +139,17 @@ MISTAKES = {
     "./icesoc rnu": "there is no command 'rnu'; did you mean run?",
     "./icesoc core nwe": "core has no command 'nwe'; did you mean new?",
     "./icesoc run --treshold 3": "run has no option --treshold; did you mean --threshold?",
-    "./icesoc run --loss 2": "--loss is the share of packets that is lost, 0..1, not '2'",
+    "./icesoc run --loss 2": "--loss: expected 0 to 1, got '2'",
     "./icesoc run --size 333x111":
-    "--size is WIDTHxHEIGHT, 8x8 to 1024x4096, WIDTH a multiple of 8, not '333x111'",
+    "--size: expected WIDTHxHEIGHT, 8x8 to 1024x4096, WIDTH a multiple of 8, got '333x111'",
     "./icesoc run --image nofile": "cannot read '",
-    "./icesoc run --jobs 0": "--jobs is a whole number from 1 on, not '0'",
+    "./icesoc run --jobs 0": "--jobs: expected a whole number, at least 1, got '0'",
     "./icesoc run fir": "run takes no 'fir'",
     "./icesoc run --seed": "expected one argument",
     "./icesoc core test": "a core is needed",
-    "./icesoc replay nowhere": "no flight was recorded in",
-    "./icesoc run --replay nowhere": "no flight was recorded in",
-    "./icesoc core test --ip a-b": "IP is the name of a core, not 'a-b'",
+    "./icesoc replay nowhere": "contains no recorded flight",
+    "./icesoc run --replay nowhere": "contains no recorded flight",
+    "./icesoc core test --ip a-b": "IP: expected the name of a core, got 'a-b'",
     "./icesoc run --key no.key": "./icesoc key",
     "./icesoc run --again Makefile": "cannot read the flight",
     "./icesoc run --again tools/icesoc/cli/flight.schema.json":
@@ -160,21 +161,21 @@ MISTAKES = {
     "make -s rnu": "there is no 'make rnu'; did you mean run?",
     "make -s run LOS=1": "there is no variable LOS of make run; did you mean LOSS?",
     "make -s run DRAW=3": "it is one of make mutants",
-    "make -s run CAMERA=yes": "CAMERA is 1 or 0, not 'yes'",
+    "make -s run CAMERA=yes": "CAMERA: expected 1 or 0, got 'yes'",
     "make -s run SIZE=96x65k": "SIZE is WIDTHxHEIGHT",
-    "make -s run THRESHOLD=300": "THRESHOLD is 0..255 grey levels, not '300'",
-    "make -s run LOSS=7": "LOSS is the share of packets that is lost, 0..1, not '7'",
-    "make -s run CPU=x": "CPU is host or m3, not 'x'",
+    "make -s run THRESHOLD=300": "THRESHOLD: expected 0 to 255 grey levels, got '300'",
+    "make -s run LOSS=7": "LOSS: expected 0 to 1, got '7'",
+    "make -s run CPU=x": "CPU: expected host or m3, got 'x'",
     "make -s run CORES=nobody": "core 'nobody' has no part in a mission",
     "make -s run PROBE=fir.go=1": "PROBE='fir.go=1' is a trigger of a probe: give --cores probe",
     "make -s run OUT=/proc/none": "OUT='/proc/none' is no folder",
     "make -s run UPDATE=/none CPU=m3": "cannot read '/none'",
     "make -s run PINS=/none": "cannot read '/none'",
-    "make -s run REPLAY=/none": "no flight was recorded in '/none'",
-    "make -s gdb REPLAY=/none": "no flight was recorded in '/none'",
-    "make -s soak FUZZED=0": "FUZZED is a whole number from 1 on, not '0'",
-    "make -s fly MINUTES=abc": "MINUTES is a number from 0.001 on minutes, not 'abc'",
-    "make -s test SEED=7x": "SEED is a whole number from 0 on, not '7x'",
+    "make -s run REPLAY=/none": "'/none' contains no recorded flight",
+    "make -s gdb REPLAY=/none": "'/none' contains no recorded flight",
+    "make -s soak FUZZED=0": "FUZZED: expected a whole number, at least 1, got '0'",
+    "make -s fly MINUTES=abc": "MINUTES: expected a number, at least 0.001 minutes, got 'abc'",
+    "make -s test SEED=7x": "SEED: expected a whole number, at least 0, got '7x'",
 }
 
 

@@ -71,7 +71,7 @@ class Cases(Project):
         write(flight / "status", "up\n")
         for words, said in (
             # before a simulator is built for it
-            (f"run REPLAY={flight} FROM=x", "FROM is a number from 0 on s, not 'x'"),
+            (f"run REPLAY={flight} FROM=x", "FROM: expected a number, at least 0 s, got 'x'"),
             (f"run REPLAY={flight} FROM=2 TO=1", "FROM=2.0 TO=1.0 are no span"),
             (f"run IMAGE=/none OUT={flight}", "cannot read '/none'"),
             ("synth BASE=none", "there is no commit BASE=none"),

@@ -55,7 +55,7 @@ sed '1i `include "sizes.vh"' wb_port.v >head.v
 refused "sizes.vh.*" wb_port wishbone head.v
 refused 'FILES may name headers' wb_port wishbone head.v
 refused 'all Verilog or all VHDL' wb_port wishbone wb_port.v lamps.vhd
-refused "TOP is the name of a module or an entity, not 'wb_port; x'" 'wb_port; x' wishbone wb_port.v
+refused "TOP: expected the name of a module or an entity, got 'wb_port; x'" 'wb_port; x' wishbone wb_port.v
 refused "no entity 'lamp' in FILES; there is lamps" lamp own lamps.vhd
 refused 'no port for write, wdata, rdata: .*PORTS=' req_words own cores.v
 refused "'grant' is none of .*select, strobe" req_words own grant=gnt cores.v

@@ -21,50 +21,53 @@ VERSION = 3
 FIELDS = [
     Option("image", FILE, "picture for the camera: PNG, JPEG or PGM",
            "/usr/share/xplanet/images/earth.jpg"),
-    Option("size", FRAME, "of the camera's frame, in pixels", "320x240"),
+    Option("size", FRAME, "size of the camera's frame in pixels", "320x240"),
     Option("threshold", number(0, 255, "grey levels"), "threshold of the vision core", 24),
     Option(
         "loss",
-        matching(r"0?\.\d+|[01](\.0*)?", "the share of packets that is lost, 0..1", float,
-                 SHARE.schema, "N"), "loss on the air, each way", 0.0),
-    Option("interference", SHARE, "share of each 20 ms in which others are heard on the channel",
+        matching(r"0?\.\d+|[01](\.0*)?", "0 to 1", float,
+                 SHARE.schema, "N"), "packet loss on the air in each direction", 0.0),
+    Option("interference", SHARE, "share of each 20 ms in which others use the channel", 0.0),
+    Option("distance", number(0, 100000, "metres", float),
+        "distance between the modems in metres, with fading; 0 disables path loss",
            0.0),
-    Option("distance", number(0, 100000, "metres", float), "in free space, with fading; 0: none",
-           0.0),
-    Option("trace", FILE, "CSV of loss, RSSI and delay (docs/simulation.md), in place of --loss",
+    Option("trace", FILE, "CSV file of loss, RSSI and delay over time (docs/simulation.md); "
+                          "replaces --loss",
            ""),
     SEED,
-    Option("out", FOLDER, "folder that the flight is written to", "build/run"),
+    Option("out", FOLDER, "output folder of the flight", "build/run"),
     Option("cpu", one_of("host", "m3"),
-           "host: the firmware's host build; m3: its ARM binary on a model of the Cortex-M3",
+           "host: host build of the firmware; m3: its ARM binary on a Cortex-M3 model",
            "host"),
     Option("app", one_of("uav", "minimal"),
-           "uav: the mission; minimal: the program of Table II, with --cpu m3", "uav"),
-    Option("port", number(0, 65535), "port of the page that shows the flight; 0 is any", 0),
-    Option("live", SWITCH, "keeps the page until Ctrl-C"),
-    Option("cores", WORDS, "cores whose part is flown too (ip/*/ground.py)"),
+           "uav: the mission; minimal: the small program of Table II (needs --cpu m3)", "uav"),
+    Option("port", number(0, 65535), "TCP port of the flight's page; 0 selects a free port", 0),
+    Option("live", SWITCH, "keep the page open until Ctrl-C"),
+    Option("cores", WORDS, "cores to call during the flight (ip/*/ground.py)"),
     Option(
         "camera", SWITCH,
-        "the picture comes through the camera core's pins, and the vision core takes it from there"
+        "send the picture through the pins of the camera core instead of writing it to memory"
     ),
-    Option("wire", SWITCH, "a wire to the vehicle's serial pins in place of modems and air"),
+    Option("wire", SWITCH, "connect by a serial cable instead of modems and air"),
     Option("pins", FILE,
-           "drives the inputs of cores (docs/simulation.md); outputs go to OUT/pins.log", ""),
+           "script that drives the input pins of cores (docs/simulation.md); outputs are logged "
+           "in OUT/pins.log", ""),
     Option("probe", TEXT,
-           "trigger of a probe among the cores (ip/probe/README.md), such as u_fir.sent=1", ""),
-    Option("key", KEY_FILE, "file with the link's key, of vehicle and ground; without: a demo key",
+           "trigger of a probe core (ip/probe/README.md), such as u_fir.sent=1", ""),
+    Option("key", KEY_FILE, "file with the link key of vehicle and ground station; default: a "
+                            "demo key",
            ""),
-    Option("open", SWITCH, "flies in the clear"),
-    Option("observer", KEY_FILE, "file with the keys of a second ground, which several vehicles "
-           "serve; without: a demo key of its own", ""),
-    Option("vehicles", number(1, 32), "that fly on one channel, all but the first with the ARM "
-           "binary", 1),
-    Option("update", FILE, "firmware (ELF) or bitstream (.bit, .bin) that is sent to the vehicle "
-           "in place of the mission", ""),
-    Option("clk-hz", COUNT, "the simulated chip's clock in Hz", 100000000),
+    Option("open", SWITCH, "fly without a key, unencrypted"),
+    Option("observer", KEY_FILE, "file with the keys of a second ground station, for several "
+                                 "vehicles; default: demo keys", ""),
+    Option("vehicles", number(1, 32), "number of vehicles on one channel; all but the first run "
+                                      "the ARM binary", 1),
+    Option("update", FILE, "firmware (ELF) or bitstream (.bit, .bin) to send to the vehicle "
+                           "instead of flying the mission", ""),
+    Option("clk-hz", COUNT, "clock of the simulated chip in Hz", 100000000),
     Option("guard", number(2, 3300, "ms"), "guard time of both modems", 1000),
-    Option("patience", number(1, unit="s"), "for each answer of the vehicle", 300),
-    Option("firmware", FILE, "firmware (ELF) in place of the one that is built", ""), ]
+    Option("patience", number(1, unit="s"), "time-out for each answer of the vehicle", 300),
+    Option("firmware", FILE, "firmware (ELF) to fly instead of the one from the build", ""), ]
 # Other options of the simulator, in a flight's description or as words; ./icesoc has its own
 # options for them.
 _TEXT: dict = {"type": "string"}
@@ -73,26 +76,28 @@ _FLAG: dict = {"type": "boolean"}
 _SPEED = {**_TEXT, "pattern": "real|max|0?[.][0-9]+|[0-9]{1,2}([.][0-9]+)?"}
 INNER: dict[str, dict] = {name: {**kind, "description": text} for name, kind, text in [
     ("modem_key", {**_TEXT, "pattern": "[0-9a-fA-F]{32}"},
-     "AES key with which the vehicle's modem encrypts"),
+     "AES key of the vehicle's modem"),
     ("flash", _TEXT, "file of the chip's flash, 1 MiB by pack_update; it is kept there"),
     ("fpga_flash", _TEXT,
-     "file of the FPGA's configuration flash, 2 MiB by pack_update; kept too"),
+     "file with the FPGA's configuration flash, 2 MiB, made by pack_update; updated by the flight"),
     ("replay", _TEXT, "folder of a recorded flight, which is flown again without its command"),
     ("wave", _TEXT, "file for the waveform (FST) of a replay"),
     ("from", _TIME, "begin of the waveform, s"),
     ("to", _TIME, "end of the waveform, s"),
     ("trouble", {**_TEXT, "pattern": "(away|twin|babble):[0-9]+:[0-9.]+:[0-9.]+"},
-     "what befalls several vehicles: away:2:1.5:3 takes the modem with the address 2 out of reach "
-     "after 1.5 s, for 3 s; twin:2:... brings another vehicle of this address; babble:2:... noise"),
+     "faults injected into several vehicles: away:2:1.5:3 moves the modem with address 2 out of "
+     "reach after 1.5 s for 3 s; twin:2:... adds a vehicle with the same address; babble:2:... "
+     "sends noise"),
     ("every_clock", _FLAG, "evaluates each clock, quiet ones and those of idle cores, too (slow)"),
     ("speed", _SPEED, "real: simulated time follows the clock; 0.25: at a quarter of its speed; "
      "max: as fast as it goes"),
     ("duration", _TIME, "end after this simulated time, s"),
     ("gdb", {"type": "integer", "minimum": 0, "maximum": 65535},
-     "waits for GDB on this port of the loopback interface; 0: any"),
+     "port of the loopback interface on which to wait for GDB; 0 selects a free port"),
     ("quiet", _FLAG, "says nothing"),
 ]}
-AGAIN = Option("again", PATH, "flight.json of a flight: its options, where none is given here")
+AGAIN = Option("again", PATH, "flight.json of an earlier flight: repeats it with its options, "
+                              "except those given here")
 OPTIONS = [*FIELDS, UCOS2, AGAIN, CORE_FOLDERS]
 
 

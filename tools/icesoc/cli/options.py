@@ -14,10 +14,10 @@ from icesoc.util.errors import Stop
 
 @dataclasses.dataclass
 class Kind:
-    """A kind of value. `read` makes it of a text, and raises ValueError for an invalid one."""
+    """A kind of value. `read` converts a text, and raises ValueError for an invalid one."""
     read: typing.Callable
-    expected: str  # completes "LOSS is ..."
-    schema: dict = None  # of its value in flight.json
+    expected: str  # completes "LOSS: expected ..."
+    schema: dict = None  # JSON schema of the value in flight.json
     metavar: str = "VALUE"
 
 
@@ -28,8 +28,8 @@ class Option:
     help: str
     default: object = None
     positional: bool = False
-    variable: str = ""  # of make and of the environment
-    listed: bool = True  # False: for the project's own tests, in no list
+    variable: str = ""  # name as a make variable
+    listed: bool = True  # False: hidden, for the tests of this project
 
     def __post_init__(self):
         self.variable = self.variable or self.name.upper().replace("-", "_")
@@ -37,22 +37,23 @@ class Option:
         self.many = self.kind is WORDS or self.kind is FILES
 
     def value(self, text, called):
-        """The value of a text, or of the list of texts that argparse gives; `called`: its name in a
-        message."""
+        """Returns the value of a text, or of a list of texts from argparse. `called` is the name
+        of the option in messages."""
         if isinstance(text, list):
             text = " ".join(text)
         try:
             return self.kind.read(text)
         except ValueError as error:
-            raise Stop(str(error) or f"{called} is {self.kind.expected}, not '{text}'", 2) from None
+            raise Stop(str(error) or f"{called}: expected {self.kind.expected}, got '{text}'",
+                       2) from None
 
     def none(self):
-        """The value if none is given."""
+        """Returns the value of an option that is not given."""
         empty = False if self.kind is SWITCH else [] if self.many else None
         return empty if self.default is None else self.default
 
     def explain(self):
-        """The help's sentence: its meaning, its values, its default."""
+        """Returns the help text: meaning, values, default."""
         shown = " ".join(self.default) if isinstance(self.default, list) else self.default
         parts = [] if self.kind in (TEXT, WORDS, FILES, SWITCH, FILE, KEY_FILE, FOLDER, PATH,
                                     FLIGHT) else [self.kind.expected]
@@ -71,9 +72,9 @@ def matching(pattern, expected, convert=str, schema=None, metavar="VALUE"):
 
 
 def number(low, high=None, unit="", convert=int):
-    """A number from `low` on, and up to `high` if that is given."""
+    """Returns the kind of a number from `low` to `high`, or without an upper limit."""
     kind = "number" if convert is float else "whole number"
-    between = f"a {kind} from {low} on" if high is None else f"{low}..{high}"
+    between = f"a {kind}, at least {low}" if high is None else f"{low} to {high}"
     pattern = r"\d{1,18}" if convert is int else r"\d+(\.\d*)?|\.\d+"
 
     def read(text):
@@ -99,7 +100,7 @@ def _switch(text):
 
 
 def _file(text):
-    """A file that can be read. Values are checked before anything is built."""
+    """Checks that a file is readable, before anything is built."""
     try:
         with open(text, "rb") as file:
             file.read(1)
@@ -110,14 +111,14 @@ def _file(text):
 
 def _key(text):
     if not os.path.isfile(text):
-        raise ValueError(f"there is no key '{text}': ./icesoc key '{text}' makes one")
+        raise ValueError(f"key file '{text}' does not exist; create one with ./icesoc key '{text}'")
     return _file(text)
 
 
 def _flight(text):
     if not os.path.isfile(os.path.join(text, "flight.jsonl")):
         raise ValueError(
-            f"no flight was recorded in '{text}': ./icesoc run --out '{text}' records one")
+            f"'{text}' contains no recorded flight; record one with ./icesoc run --out '{text}'")
     return text
 
 
@@ -128,15 +129,15 @@ def _frame(text):
     return text
 
 
-TEXT = Kind(str, "a text", {"type": "string"})
-WORDS = Kind(str.split, "words with spaces between them",
+TEXT = Kind(str, "text", {"type": "string"})
+WORDS = Kind(str.split, "words separated by spaces",
              {"type": "array", "items": {"type": "string"}}, "WORD")
-FILES = Kind(str.split, "names of files with spaces between them", metavar="FILE")
+FILES = Kind(str.split, "file names separated by spaces", metavar="FILE")
 SWITCH = Kind(_switch, "1 or 0", {"type": "boolean"})
-FILE = Kind(_file, "a file that can be read", {"type": "string"}, "FILE")
+FILE = Kind(_file, "a readable file", {"type": "string"}, "FILE")
 FOLDER = Kind(str, "a folder", {"type": "string"}, "FOLDER")
-PATH = Kind(str, "a name of a file", {"type": "string"}, "FILE")
-KEY_FILE = Kind(_key, "a file that can be read", {"type": "string"}, "FILE")
+PATH = Kind(str, "a file name", {"type": "string"}, "FILE")
+KEY_FILE = Kind(_key, "a readable file", {"type": "string"}, "FILE")
 FLIGHT = Kind(_flight, "the folder of a recorded flight", {"type": "string"}, "FOLDER")
 FRAME = Kind(_frame, "WIDTHxHEIGHT, 8x8 to 1024x4096, WIDTH a multiple of 8", {"type": "string"},
              "WxH")
@@ -147,20 +148,22 @@ MINUTES = number(0.001, unit="minutes", convert=float)
 PATHS = (FILE, KEY_FILE, FOLDER, PATH, FLIGHT)  # relative to the caller's folder
 
 BUILD = Option("build", FOLDER, "build folder", "build/main")
-JOBS = Option("jobs", COUNT, "processes of a build at a time", len(os.sched_getaffinity(0)))
+JOBS = Option("jobs", COUNT, "parallel build processes", len(os.sched_getaffinity(0)))
 TESTS = Option("tests", COUNT,
-               "tests at a time: some wait for a clock, so two more than processors", None)
-SEED = Option("seed", number(0), "seed of everything that is drawn", 1)
-FAMILY = Option("family", TEXT, "the chip that netlists are for: xc6s (Spartan-6) or ecp5", "xc6s")
-NAME = Option("name", TEXT, "whole word of test names, or regular expression on them")
+               "parallel tests (default: CPUs + 2, since some tests wait for a clock)", None)
+SEED = Option("seed", number(0), "seed of all random numbers", 1)
+FAMILY = Option("family", TEXT, "FPGA family of netlists: xc6s (Spartan-6) or ecp5", "xc6s")
+NAME = Option("name", TEXT, "whole word in test names, or a regular expression")
 LABEL = Option("label", TEXT,
-               "tests of this label: rtl, vhdl, formal, lint, firmware, slice, interop, e2e, ...")
-BLOCK = Option("block", TEXT, "what belongs to this block, such as bus or modem")
+               "label of the tests: rtl, vhdl, formal, lint, firmware, slice, interop, e2e, ...")
+BLOCK = Option("block", TEXT, "block to test, such as bus or modem")
 UCOS2 = Option("ucos2", FOLDER,
-               "folder of the real uC/OS-II: the firmware is built with it, too (docs/firmware.md)")
+               "folder of uC/OS-II sources, to build the firmware with this kernel in addition "
+               "(docs/firmware.md)")
 FRESH = Option("fresh", SWITCH,
-               "computes proofs, lints and synthesis of unchanged files again, too")
+               "recompute cached results of proofs, lints and synthesis")
 CORE_FOLDERS = Option(
     "core-folders", TEXT,
-    "folders of cores outside of ip/, with ; between them, kept from then on; none: none")
-BUILT = Option("built", SWITCH, "takes what is built as it is: no set-up, no build", listed=False)
+    "folders of cores outside ip/, separated by ; and remembered for later commands; none forgets"
+    " them")
+BUILT = Option("built", SWITCH, "use the existing build: no set-up, no build", listed=False)

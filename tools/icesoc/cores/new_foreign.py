@@ -69,11 +69,11 @@ class Request:
         if self.address not in ("", "words", "bytes") or self.address and self.bus == "axis":
             fail(f"ADDRESS={self.address}: words or bytes, for a core with registers")
         if self.bus not in NEEDED:
-            fail(f"BUS is {', '.join(NEEDED)}, not '{self.bus}'")
+            fail(f"BUS: expected {', '.join(NEEDED)}, got '{self.bus}'")
         if not re.fullmatch(r"[a-z][a-z0-9]*(_[a-z0-9]+)*", self.name):
             fail(f"'{self.name}': words of small letters and digits, joined by _")
         if not re.fullmatch(r"[A-Za-z_]\w*", self.top):
-            fail(f"TOP is the name of a module or an entity, not '{self.top}'")
+            fail(f"TOP: expected the name of a module or an entity, got '{self.top}'")
         if os.path.exists(self.folder):
             fail(f"{self.folder} is there already")
         if self.name in RESERVED:

@@ -33,8 +33,7 @@ def build_configure(values):
 @command("build firmware", [BUILD, JOBS, UCOS2], make="firmware", brief="build firmware", examples=[
     "build firmware", "build firmware --ucos2 ~/uC-OS2"])
 def build_firmware(values):
-    """the firmware for the STM32F2: ELF and map in build/main/firmware, table of flash, RAM and
-    stacks"""
+    """build the firmware for the STM32F2 (build/main/firmware); print flash, RAM and stacks"""
     build = BuildFolder(values.build, values).prepare()
     build.ninja("firmware")
     run(["sw/sizes.py", "firmware", build / "firmware/uav.map", build / "sw/vehicle/uav.arm",
@@ -43,7 +42,7 @@ def build_firmware(values):
 
 @command("build size", [BUILD, JOBS], make="size", brief="build size")
 def build_size(values):
-    """bytes of each firmware layer on a Cortex-M3, beside the paper's"""
+    """print the code size of each firmware layer next to the paper's"""
     configured(values).ninja("size")
 
 
@@ -93,15 +92,15 @@ def shoot_live(path, profile, icesoc):
 
 @command("build pictures", [
     Option("pictures", WORDS,
-           "mission, live, utilisation, regression, or failure, for which a test must have failed",
+           "pictures to take: mission, live, utilisation, regression, or failure (needs a failed "
+           "test)",
            ["mission", "live", "utilisation", "regression"], positional=True),
-    Option("from", FOLDER, "the folder with the pages", "build"),
-    Option("to", FOLDER, "where pictures go", "docs/pictures")], make="pictures",
+    Option("from", FOLDER, "folder with the pages", "build"),
+    Option("to", FOLDER, "output folder", "docs/pictures")], make="pictures",
          brief="build pictures mission --to build/brief", examples=[
              "build pictures", "build pictures mission"])
 def pictures(values):
-    """take the pictures of README.md and docs/ anew: missions, and the pages of synth and
-    regress"""
+    """retake the pictures of README.md and docs/"""
     icesoc, to = ["./icesoc", "run", *(["--built"] if values.built else [])], Path(values.to)
     with tempfile.TemporaryDirectory() as profile:
         for name in values.pictures:

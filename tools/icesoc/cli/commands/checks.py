@@ -26,7 +26,7 @@ def one_more(status, other):
 
 @command("check proofs", [BUILD, JOBS], make="proofs", brief="check proofs")
 def proofs(values):
-    """run all formal proofs, print the processor time of all together"""
+    """run all formal proofs and print their total CPU time"""
     build = configured(values, "regmaps")
     build.ctest("-L", "formal", tests=values.jobs, FRESH="1")
     spent = [float(path.read_text()) for path in (build / "tests/hdl/formal").glob("*/cpu")]
@@ -39,8 +39,7 @@ def proofs(values):
                "'^(cdc_bit|modem_uart_tx|bus_wrapper|modem_at_rows)$'"),
          examples=["check netlist --name 'fir|modem'", "check netlist --family ecp5"])
 def netlist(values):
-    """prove each netlist of `synth` equivalent to its RTL, or run its block's tests on it; print a
-    table"""
+    """prove each netlist equivalent to its RTL, or run the tests of its block on it"""
     simulated = json.loads(Path("synth/designs.json").read_text())["simulated"]
     build = netlists(values, "-DCLK_HZ=2000000", tests=True)
     build.ninja("synth_inputs")
@@ -65,7 +64,8 @@ def netlist(values):
 
 
 @command("check sanitizers",
-         [Option("kinds", WORDS, "address or thread", ["address", "thread"]), BUILD, JOBS],
+         [Option("kinds", WORDS, "sanitizers to use: address or thread", ["address", "thread"]),
+           BUILD, JOBS],
          make="sanitizers", brief="check sanitizers --kinds address", long="check sanitizers")
 def sanitizers(values):
     """tests of IceC, engine, gateway and plugin with AddressSanitizer and with ThreadSanitizer;
@@ -92,12 +92,11 @@ def sanitizers(values):
 
 
 @command("check fuzz", [
-    Option("minutes", MINUTES, "of each fuzzer", 10.0), NAME, SEED, TESTS, BUILD, JOBS],
+    Option("minutes", MINUTES, "run time of each fuzzer", 10.0), NAME, SEED, TESTS, BUILD, JOBS],
          make="fuzz", brief="check fuzz --minutes 0.05 --name 'update$|rdl$'",
          long="check fuzz --seed {day}", examples=["check fuzz --name slice --minutes 60"])
 def fuzz(values):
-    """attack every parser with mutated input, from the inputs that earlier runs have kept in
-    ~/.cache/icesoc/fuzz"""
+    """fuzz every parser, starting with the inputs stored in ~/.cache/icesoc/fuzz"""
     build = configured(values, "regress", tests=True)
     chosen = f"^fuzz[.].*({values.name or ''})"
     if not values.built:
@@ -110,12 +109,13 @@ def fuzz(values):
 @command("check mutants", [
     BLOCK,
     Option("draw", COUNT,
-           "mutants that Yosys draws, for each proof, in place of those of tests/mutants"), SEED,
+           "number of random mutants per proof, drawn by Yosys, instead of those in tests/mutants"),
+     SEED,
     FRESH, BUILD, JOBS], make="mutants", brief="check mutants --block bus/decoder_error_of_all",
          long=("check mutants", "check mutants --draw 8 --seed {day}"), examples=[
              "check mutants --block bus", "check mutants --draw 20"])
 def mutants(values):
-    """plant every seeded bug of tests/mutants, expect its test to fail"""
+    """plant every seeded fault of tests/mutants and expect its test to fail"""
     build = configured(values, tests=True)
     build.ninja("regress", *(["regmaps"] if values.draw else []))
     drawn = [*tool("mutants.drawn"), "--build", build.folder, "--number", values.draw, "--seed",
@@ -126,14 +126,14 @@ def mutants(values):
 
 
 @command("check faults", [
-    Option("moments", COUNT, "of each fault and seed", 10), SEED,
-    Option("seeds", COUNT, "how many seeds, the first of which is --seed", 1),
-    Option("name", NAME.kind, "faults whose name contains this, such as killed", ""), BUILD, JOBS],
+    Option("moments", COUNT, "number of moments per fault and seed", 10), SEED,
+    Option("number of seeds to run", COUNT, "number of seeds, starting with --seed", 1),
+    Option("name", NAME.kind, "only faults with this text in their name, such as killed", ""),
+     BUILD, JOBS],
          make="faults", brief="check faults --name killed --moments 1",
          long="check faults --seed {day}", examples=["check faults --name killed --moments 2"])
 def faults(values):
-    """kill, stop and starve each process of a mission at moments drawn from a seed, expect
-    docs/regression.md"""
+    """inject faults into missions and check the consequences listed in docs/regression.md"""
     build = configured(values)
     build.ninja("mission", "clock_step", "regress", "utilisation", "regmaps")
     if not values.name:
@@ -148,9 +148,9 @@ def faults(values):
 
 
 @command("check soak", [
-    Option("minutes", MINUTES, "of a processor", 4.0),
+    Option("minutes", MINUTES, "CPU time", 4.0),
     Option("fuzzed", COUNT,
-           "bytes of noise into the modem controller; ten times as many into link and engine",
+           "bytes of noise sent to the modem controller; link and engine get ten times as many",
            1000000), SEED, BUILD, JOBS], make="soak",
          brief="check soak --minutes 0.01 --fuzzed 1000",
          long="check soak --minutes 60 --seed {day}", examples=["check soak --minutes 60"])
@@ -195,8 +195,8 @@ def measure(benches, folder):
 
 
 @command("bench", [
-    Option("only", WORDS, "these alone, without a page"),
-    Option("page", PATH, "the page that is written", "docs/figures.md"), BUILD, JOBS], make="bench",
+    Option("only", WORDS, "names of the benches to run, without writing the page"),
+    Option("page", PATH, "output page", "docs/figures.md"), BUILD, JOBS], make="bench",
          brief="bench --only slice", long="bench --page build/bench/figures.md", examples=[
              "bench", "bench --only air plugin"])
 def bench(values):

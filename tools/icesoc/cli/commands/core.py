@@ -22,9 +22,9 @@ TEMPLATE = TREE / "tools/icesoc/cores/template"
 
 GROUPS["core"] = "cores: begin, test, view, remove"
 NAME = Option("name", TEXT, "name of the core, such as low_pass", "", positional=True)
-CORE = Option("ip", matching(r"\w+", "the name of a core"), "the core", "", positional=True)
+CORE = Option("ip", matching(r"\w+", "the name of a core"), "name of the core", "", positional=True)
 CHIP = Option("chip", SWITCH,
-              "in the chip as it is listed now, which takes minutes, instead of the accepted one")
+              "synthesise the current chip (takes minutes) instead of using the accepted figures")
 
 
 def check_name(name, room="ip"):
@@ -94,8 +94,8 @@ def fill(template, folder, name):
     return path
 
 
-REPOSITORY = Option("repository", FOLDER, "a repository of your own cores, which is begun or gets "
-                    "this one, in place of ip/")
+REPOSITORY = Option("repository", FOLDER, "separate repository for the core instead of ip/; it is"
+                                          " created if missing")
 
 
 def put_into_repository(room, name):
@@ -120,14 +120,15 @@ def put_into_repository(room, name):
     say(f"Next: make -C {room} test; make -C {room} run calls it by radio")
 
 
-@command("core new", [NAME, Option("lang", one_of("verilog", "vhdl"), "the core's language"),
-                      Option("ice", FILE, "Slice file with its interface; without: an example"),
+@command("core new", [NAME, Option("lang", one_of("verilog", "vhdl"), "language of the core"),
+                      Option("ice", FILE, "Slice file with the interface of the core; default: an"
+                                          " example"),
                       REPOSITORY, BUILD, JOBS], make="new-ip",
          brief=("core new brief_core --lang vhdl", "core remove brief_core --force"),
          examples=["core new low_pass --lang vhdl", "core new lamp --lang verilog --ice lamp.ice",
                    "core new low_pass --lang verilog --repository ~/cores"])
 def new(values):
-    """begin a core: writes ip/NAME with interface, core and test, which builds and passes"""
+    """create a core: ip/NAME with interface, RTL and a test that passes"""
     name, lang = values.name, values.lang
     if name and not lang:
         raise Stop("LANG says the core's language: LANG=verilog or LANG=vhdl (--lang)")
@@ -238,7 +239,8 @@ def ports(build, core):
 
 
 @command("core wave", [CORE, Option("test", TEXT,
-                                    "the test: its name, or an expression that matches only it", "",
+                                    "name of the test, or an expression that matches only this "
+                                    "test", "",
                                     positional=True), CORE_FOLDERS, BUILD, JOBS], make="wave",
          brief="core wave fir Impulse", examples=["core wave fir Impulse"])
 def wave(values):
@@ -291,12 +293,12 @@ def users_of(name):
                 yield user
 
 
-@command("core remove", [NAME, Option("force", SWITCH, "with changes that are not committed"),
+@command("core remove", [NAME, Option("force", SWITCH, "remove it even with uncommitted changes"),
                          BUILD, JOBS], make="rm-ip", brief=("core new brief_gone --lang verilog",
                                                             "core remove brief_gone --force"),
          examples=["core remove low_pass"])
 def remove(values):
-    """take a core away: its folder and its line in ip/cores.list; a folder outside of ip/ stays"""
+    """remove a core: its folder and its line in ip/cores.list; a folder outside ip/ is kept"""
     build = BuildFolder(values.build, values)
     name, core = values.name, build.core(values.name or ".")
     if not re.fullmatch(r"[a-z0-9_]+", name) or name == "template":

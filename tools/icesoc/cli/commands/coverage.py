@@ -18,7 +18,7 @@ LEFT_OUT = "NOT_BUILT|^fuzz|^e2e.cores"
 
 @command("check coverage", [
     Option("name", NAME.kind,
-           "only tests of which a part of the name matches this; no gate holds then", ""), BUILD,
+           "only tests whose name matches this expression; gates are not checked", ""), BUILD,
     JOBS], make="coverage", brief=["check coverage --name ^test_fsmc_corners[.]",
                              "check coverage --name ^vhdl[.]fir"],
          long="check coverage")

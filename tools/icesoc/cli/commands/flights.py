@@ -19,11 +19,11 @@ from icesoc.util.errors import Interrupted, Stop
 from icesoc.util.lock import lock
 from icesoc.util.process import end, run, start, tool, until, wait
 
-FROM = Option("from", SECONDS, "begin of the waveform, in simulated time")
-TO = Option("to", SECONDS, "end of the waveform, in simulated time")
+FROM = Option("from", SECONDS, "start of the waveform, simulated time")
+TO = Option("to", SECONDS, "end of the waveform, simulated time")
 DESCRIPTORS = 64  # of a process; the ground's program has some thirty
-NETLIST = Option("netlist", SWITCH, "flies the chip as Yosys made it, by the models of its "
-                 "primitives; each clock is evaluated, of 2 MHz")
+NETLIST = Option("netlist", SWITCH, "fly the netlist synthesised by Yosys, at 2 MHz with every "
+                                    "clock evaluated")
 NETLIST_HZ = 2000000
 DEBUGGED = [option for option in flight.FIELDS if option.name in ("image", "size", "seed")]
 
@@ -39,8 +39,8 @@ DEBUGGED = [option for option in flight.FIELDS if option.name in ("image", "size
 def fly_mission(values):
     """fly the mission: simulated UAV, ZeroC Ice ground station, pictures in build/run
 
-    An address of a page that shows the flight is printed. What was flown is in OUT/flight.json,
-    which --again takes."""
+    Prints the address of a page that shows the flight. OUT/flight.json describes the flight;
+    --again repeats it."""
     descriptors = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
     if descriptors < DESCRIPTORS:
         raise Stop(f"a flight needs {DESCRIPTORS} file descriptors, the limit is {descriptors}: "
@@ -169,15 +169,14 @@ def mission(values, build, held):
 
 @command("replay", [
     Option("replay", FLIGHT, "folder of the flight", "build/run", positional=True), FROM, TO,
-    Option("out", FOLDER, "folder that it is written to", "build/replay"), BUILD, JOBS], make="run",
+    Option("out", FOLDER, "output folder", "build/replay"), BUILD, JOBS], make="run",
          when="REPLAY", brief="replay build/brief/run --out build/brief/replay", examples=[
              "replay build/run", "replay build/run --from 1.5 --to 1.51"])
 def replay(values):
-    """fly a recorded flight again, bit by bit; with a span, its waveform
+    """repeat a recorded flight bit by bit; with a span, write its waveform
 
-    With --from or --to the waveform of that span is written to OUT/wave.fst, by a simulator that is
-    built for it once; of a
-    flight with --cpu m3 the program's task, interrupt and function are above it."""
+    With --from or --to, writes the waveform of that span to OUT/wave.fst, by a simulator that is
+    built once. For a flight with --cpu m3 the waveform also shows task, interrupt and function."""
     span = values.given & {"from", "to"}
     if span and values.to is not None and values.to <= (getattr(values, "from") or 0):
         raise Stop(f"FROM={getattr(values, 'from')} TO={values.to} are no span in seconds, such as "
@@ -206,9 +205,10 @@ def replay(values):
 
 
 @command("gdb", [
-    Option("replay", FLIGHT, "folder of a flight to step through, backwards too", ""), *DEBUGGED,
+    Option("replay", FLIGHT, "folder of a recorded flight to debug forwards and backwards", ""),
+    *DEBUGGED,
     Option("out", FOLDER,
-           "folder that the flight is written to; default build/run, of a replay build/replay"),
+           "output folder; default build/run, for a replay build/replay"),
     BUILD, JOBS], make="gdb", brief="gdb --size 48x32 --out build/brief/gdb", examples=[
         "gdb", "gdb --replay build/run"])
 def gdb(values):
@@ -243,16 +243,17 @@ def gdb(values):
 
 
 @command("key", [
-    Option("file", PATH, "the file that is written", "", positional=True),
-    Option("certificate", SWITCH, "for TLS with the gateway: the file's name says whose it is, "
-           "authority.pem beside it, which is made if missing, signs it"),
-    Option("signing", SWITCH, "a private key that signs updates, and beside it its public half, "
-           "as spare.pub of spare.key; a key that is there is kept"),
-    Option("list", COUNT, "the next list of keys that sign updates, with this number: the last "
-           "one's and 1"),
-    Option("by", FILE, "the private key that signs the list, one of the last list"),
-    Option("first", FILE, "a public key of the list"),
-    Option("second", FILE, "another"), BUILD, JOBS], make="key",
+    Option("file", PATH, "output file", "", positional=True),
+    Option("certificate", SWITCH, "make a TLS certificate for the gateway; the file name is the "
+                                  "subject. Signed by authority.pem in the same folder, which is "
+                                  "created if missing"),
+    Option("signing", SWITCH, "make a private key for signing updates, and its public half "
+                              "(spare.pub for spare.key); an existing key is kept"),
+    Option("list", COUNT, "make the next list of signing keys, with this number: the previous "
+                          "number plus 1"),
+    Option("by", FILE, "private key that signs the list; it must be in the previous list"),
+    Option("first", FILE, "first public key of the list"),
+    Option("second", FILE, "second public key of the list"), BUILD, JOBS], make="key",
          brief=("key build/brief/key/my.key", "key build/brief/key/pilot.pem --certificate",
                 "key build/brief/key/spare.key --signing",
                 "key build/brief/key/next.update --list 2 --by build/brief/key/spare.key --first "
@@ -292,7 +293,7 @@ def key(values):
 
 
 @command("fly", [
-    Option("minutes", MINUTES, "of simulated time; an hour of it is minutes of a processor", 4.0),
+    Option("minutes", MINUTES, "simulated time; one hour takes about ten minutes of CPU time", 4.0),
     SEED, BUILD, JOBS], make="fly", brief="fly --minutes 0.01",
          long="fly --minutes 60 --seed {day}", examples=["fly --minutes 60", "fly --seed 7"])
 def fly_for_long(values):

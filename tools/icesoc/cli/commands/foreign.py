@@ -25,16 +25,17 @@ def foreign_words(values):
 
 @command("core foreign", [
     NAME,
-    Option("top", TEXT, "its module", ""),
-    Option("bus", TEXT, "wishbone, axil, apb, avalon, memory, own or axis", ""),
-    Option("files", FILES, "its files, of Verilog or VHDL"),
-    Option("ports", WORDS, "what its ports are, such as write=we ack=done"),
-    Option("params", WORDS, "its parameters, such as depth=16"),
-    Option("defines", WORDS, "its macros, such as wide"),
-    Option("clock", COUNT, "Hz of a clock of its own"),
-    Option("library", TEXT, "library of its VHDL", ""),
+    Option("top", TEXT, "top module or entity of the core", ""),
+    Option("bus", TEXT, "bus of the core: wishbone, axil, apb, avalon, memory, own or axis", ""),
+    Option("files", FILES, "Verilog or VHDL files of the core"),
+    Option("ports", WORDS, "meaning of ports, such as write=we ack=done"),
+    Option("params", WORDS, "parameters of the top module, such as depth=16"),
+    Option("defines", WORDS, "Verilog macros to define, such as wide"),
+    Option("clock", COUNT, "frequency of a separate clock, Hz"),
+    Option("library", TEXT, "VHDL library of the files", ""),
     Option("address", one_of("words", "bytes"),
-           "what its address counts; found out, unless given"), REPOSITORY, BUILD, JOBS
+           "unit of the core's address: words or bytes; detected by default"),
+    REPOSITORY, BUILD, JOBS
 ], make="new-foreign", brief=(
     "core foreign brief_foreign --top req_words --bus own --files tests/ip/new_foreign/cores.v "
     "--ports select=req write=wr address=where wdata=value rdata=held ack=gnt",
@@ -97,8 +98,8 @@ def put_and_fly(values, listed, known):
 
 
 @command("core examples", [
-    Option("cores", WORDS, "these of examples/foreign/cores.json alone, in one order"),
-    Option("chip", SWITCH, "and what each costs in the chip"), SEED,
+    Option("cores", WORDS, "only these cores of examples/foreign/cores.json, in one order"),
+    Option("chip", SWITCH, "also print the cost of each core in the chip"), SEED,
     *(o for o in FIELDS if o.name == "image"), BUILD, JOBS], make="foreign",
          brief="core examples --cores foreign_i2c foreign_arbiter foreign_queue",
          long="core examples --chip")

@@ -30,16 +30,16 @@ mount --rbind /sys "$1/sys" && exec chroot "$1" /bin/sh -c "cd /root/icesoc && $
 
 
 @command("check fresh", [
-    Option("release", one_of(*RELEASES), "of Debian; without: one after the other", ""),
-    Option("again", SWITCH, "goes on with the machines of before, with HEAD as it is now"),
-    Option("steps", TEXT, "commands in place of the README's, with ; between them",
+    Option("release", one_of(*RELEASES), "Debian release, bookworm or trixie; default: both", ""),
+    Option("again", SWITCH, "reuse the existing systems, with the current HEAD"),
+    Option("steps", TEXT, "commands to run instead of the README's, separated by ;",
            "; ".join(README)),
-    Option("folder", FOLDER, "of machines and logs, 8 GB each", "/var/tmp/icesoc-fresh"),
-    Option("list", SWITCH, "only says what was done before, with status and minutes")],
+    Option("folder", FOLDER, "folder for the systems and logs, 8 GB each", "/var/tmp/icesoc-fresh"),
+    Option("list", SWITCH, "only print earlier results, with status and minutes")],
          brief="check fresh --list", long="check fresh", examples=[
              "check fresh --release trixie", "check fresh --again --steps 'make test'"])
 def fresh(values):
-    """do what the README says on an empty Debian 12 and 13; needs root, debootstrap and a
+    """run the README's commands on an empty Debian 12 and 13; needs root, debootstrap and a
     network"""
     top, failed = Path(values.folder), 0
     results = top / "results.json"

@@ -19,7 +19,7 @@ from icesoc.util.process import output, run, tool
 from icesoc.util.table import Table
 from icesoc.util.tree import commit
 
-WAVES = Option("waves", number(0), "failures of which a waveform is written", 3)
+WAVES = Option("waves", number(0), "number of failures to record waveforms of", 3)
 
 
 def at_once(values):
@@ -68,19 +68,20 @@ def test(values):
 
 @command("regress", [
     NAME, LABEL, BLOCK,
-    Option("changed", SWITCH, "tests that what has changed since they passed can fail"),
-    Option("failed", SWITCH, "tests that failed the last time"),
-    Option("kept", SWITCH, "failed tests with the seeds that are kept"),
+    Option("changed", SWITCH, "only tests that depend on files changed since they passed"),
+    Option("failed", SWITCH, "only tests that failed last time"),
+    Option("kept", SWITCH, "only known failing tests, with their recorded seeds"),
     Option("seed", matching(r"\d{1,18}|random", "a whole number, or random", metavar="N|random"),
-           "the first seed", "1"),
-    Option("repeat", COUNT, "seeds", 1), WAVES, FRESH, TESTS, CORE_FOLDERS, BUILD, JOBS],
+           "first seed", "1"),
+    Option("repeat", COUNT, "number of seeds to run", 1), WAVES, FRESH, TESTS, CORE_FOLDERS,
+    BUILD, JOBS],
          make="regress",
          brief="regress --block bus", examples=[
              "regress --changed", "regress --name Burst --seed random --repeat 20"])
 def regress(values):
     """run tests with history, causes and waveforms of failures, and a page
 
-    The page is build/regress/report.html. What a test needs is built before."""
+    Writes build/regress/report.html. Builds what the tests need first."""
     build = configured(values, "regress", tests=True)
     switches = [
         f"--{word}" for word, on in (("changed", values.changed), ("rerun-failed", values.failed),
@@ -104,18 +105,17 @@ def last_good(test):
 
 
 @command("bisect", [
-    Option("test", TEXT, "the test, as CTest names it", "", positional=True),
-    Option("good", TEXT, "a commit that it passes at; the last one noted", ""),
-    Option("bad", TEXT, "a commit that it fails at", "HEAD"),
-    Option("list", SWITCH, "only lists the commits that would be searched"), SEED, BUILD, JOBS],
+    Option("test", TEXT, "CTest name of the test", "", positional=True),
+    Option("good", TEXT, "commit at which the test passes; default: the last recorded one", ""),
+    Option("bad", TEXT, "commit at which the test fails", "HEAD"),
+    Option("list", SWITCH, "only list the commits to search"), SEED, BUILD, JOBS],
          make="bisect", brief="bisect test_fifo.Fifo.Wraps --good HEAD~3 --list", examples=[
              "bisect test_fifo.Fifo.Wraps --good v1"])
 def bisect(values):
     """find the commit since which a test fails, in a separate checkout
 
-    Commits that do not build, or lack the test, are passed over. Exit status 0: found, and named in
-    the last line; 1: not found;
-    2: it could not begin."""
+    Skips commits that do not build or lack the test. Exit status: 0 found, printed in the last
+    line; 1 not found; 2 could not start."""
     test = values.test
     if not test:
         raise Stop("TEST= names the test, as CTest does: ./icesoc bisect test_fifo.Fifo.Wraps", 2)
@@ -171,8 +171,8 @@ def search(program, values, good, bad, tree):
 
 
 @command("nightly", [
-    Option("nightly", COUNT, "seeds that are drawn", 3),
-    Option("steps", WORDS, "these alone, by their names in the table", []), NAME, LABEL, WAVES,
+    Option("nightly", COUNT, "number of new random seeds", 3),
+    Option("steps", WORDS, "names of the steps to run, as in the table", []), NAME, LABEL, WAVES,
     TESTS, BUILD, JOBS], make="nightly",
          brief="nightly --steps kept random --nightly 1 --name ^tree[.]pages", examples=[
              "nightly", "nightly --steps kept check-mutants"])

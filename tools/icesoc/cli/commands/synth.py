@@ -19,7 +19,8 @@ DEFAULTS["synth"] = "synth report"
 GROUPS["contract"] = "registers: changes, import of SystemRDL"
 SHOWN = 10  # tests in a line of a pull request
 DESIGN = Option("design", WORDS,
-                "these designs only, such as modem, table1 or soc; of the others what is known")
+                "designs to measure, such as modem, table1 or soc; others are shown as last "
+                "measured")
 DIFF = tool("regs.contract_diff")
 GIT = ["git", "-c", "advice.detachedHead=false"]
 
@@ -35,9 +36,9 @@ def utilisation(build, values, *words):
 
 @command("synth report", [
     DESIGN,
-    Option("family", WORDS, "these chips, too, such as xc7 or ecp5"),
-    Option("base", TEXT, "a commit: and what has changed since, as Markdown; COMMIT..COMMIT or "
-           "COMMIT..: only what has changed between these, or until the last report", ""),
+    Option("family", WORDS, "additional FPGA families, such as xc7 or ecp5"),
+    Option("base", TEXT, "commit to compare with, as Markdown; COMMIT..COMMIT or COMMIT.. prints "
+                         "only the differences between two commits, or up to the last report", ""),
     CORE_FOLDERS, BUILD, JOBS], make="synth", brief="synth report --design npi_arbiter",
          long="synth report", examples=[
              "synth report --design modem", "synth report --family xc7 ecp5",
@@ -59,15 +60,15 @@ def synth(values):
 @command("synth accept", [DESIGN, BUILD, JOBS], make="synth-accept", examples=[
     "synth accept --design modem"], brief="synth accept --design npi_arbiter")
 def accept(values):
-    """record today's utilisation as what is wanted (synth/baseline.json)"""
+    """accept the current utilisation as baseline (synth/baseline.json)"""
     return utilisation(configured(values, "synth_inputs"), values, "--accept",
                        *with_name("--design", values.design))
 
 
-@command("synth edif", [Option("design", TEXT, "the design", "soc"), BUILD, JOBS],
+@command("synth edif", [Option("design", TEXT, "design to export", "soc"), BUILD, JOBS],
          make="synth-edif", brief="synth edif --design npi_arbiter")
 def edif(values):
-    """the chip as EDIF for Xilinx ISE, in build/synth/ise"""
+    """write the chip as EDIF for Xilinx ISE (build/synth/ise)"""
     build = configured(values, "synth_inputs")
     return run([build / "synth/utilisation", "--generated", build / "gen", "--edif", values.design],
                check=False)
@@ -157,7 +158,7 @@ def compare(build, jobs, base, head=None):
 
 
 @command("contract diff",
-         [Option("base", TEXT, "the commit to compare with", "", positional=True), BUILD, JOBS],
+         [Option("base", TEXT, "commit to compare with", "", positional=True), BUILD, JOBS],
          make="contract-diff", brief="contract diff HEAD", examples=["contract diff main"])
 def contract_diff(values):
     """what changed in the cores' registers since a commit; exit status 1: software of then would
@@ -166,10 +167,10 @@ def contract_diff(values):
     return run([*DIFF, build / "slice/slice2c", ".", values.base], check=False)
 
 
-@command("contract from-rdl", [Option("rdl", FILE, "the SystemRDL file", "", positional=True),
-                               Option("out", FOLDER, "folder that they are written to", "")],
+@command("contract from-rdl", [Option("rdl", FILE, "SystemRDL file", "", positional=True),
+                               Option("out", FOLDER, "output folder", "")],
          make="from-rdl", brief="contract from-rdl build/main/gen/icesoc.rdl --out build/brief/rdl",
          examples=["contract from-rdl spi.rdl --out ip/spi"])
 def from_rdl(values):
-    """register descriptions (*.regs.json) of SystemRDL"""
+    """convert SystemRDL into register descriptions (*.regs.json)"""
     return run([*tool("regs.rdl"), values.rdl, values.out], check=False)

@@ -21,10 +21,11 @@ from icesoc.util.table import Table
 
 
 @command("setup", [
-    Option("tests", SWITCH, "what tests, reports and debuggers need, too", variable="WITH_TESTS"),
-    Option("check", SWITCH, "only says what is missing"),
+    Option("tests", SWITCH, "also install packages for tests, reports and debuggers",
+           variable="WITH_TESTS"),
+    Option("check", SWITCH, "only list missing packages"),
     Option("developer", SWITCH,
-           "git's hooks of this tree, which hold subjects of commits to 72 characters")],
+           "install git hooks that limit commit subjects to 72 characters")],
          make="setup", brief="setup --check", examples=[
              "setup", "setup --tests", "setup --developer"])
 def setup(values):
@@ -40,10 +41,10 @@ def setup(values):
 doors.ALIASES["setup-tests"] = ("setup", "WITH_TESTS")
 
 
-@command("clean", [Option("list", SWITCH, "only says what would be removed")], make="clean",
+@command("clean", [Option("list", SWITCH, "only list what would be removed")], make="clean",
          brief="clean --list")
 def clean(values):
-    """remove what was built; keys are elsewhere"""
+    """remove all build output; keys are kept"""
     if not values.list:
         keys.rescue("build")
     for path in sorted(Path("build").glob("*")):
@@ -54,15 +55,15 @@ def clean(values):
 
 @command("commands", [
     Option("brief", SWITCH,
-           "runs the brief form of each to its end, writes build/commands.md"),
-    Option("only", TEXT, "only those whose name contains this", ""),
-    Option("man", PATH, "writes the manual page, such as icesoc.1", ""),
-    Option("schema", PATH, "writes the JSON schema of a flight, "
-           "tools/icesoc/cli/flight.schema.json", "")],
+           "run the brief form of every command and write build/commands.md"),
+    Option("only", TEXT, "only commands with this text in their name", ""),
+    Option("man", PATH, "write the manual page to this file, such as icesoc.1", ""),
+    Option("schema", PATH, "write the JSON schema of a flight to this file "
+                           "(tools/icesoc/cli/flight.schema.json)", "")],
          make="commands", brief="commands", examples=[
              "commands --brief", "commands --man icesoc.1 && man ./icesoc.1"])
 def commands(values):
-    """list all commands with their brief forms, or run these"""
+    """list all commands with their brief forms, or run the brief forms"""
     if values.man:
         Path(values.man).write_text(manual())
     if values.schema:

@@ -1,180 +1,53 @@
 // SPDX-License-Identifier: MIT
 //
-// clock: reads simulated time from memory that the simulator writes.
+// clock: the machine's clock, and how another one is loaded.
 
 #include "clock.h"
-#include "sim_status.h"
 
-#include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
-#include <fcntl.h>
-#include <sys/mman.h>
+#include <dlfcn.h>
 #include <system_error>
-#include <unistd.h>
 
 namespace XBeeAT {
 
 namespace {
 
-constexpr uint32_t shortestUs = 50; // between two looks at simulated time
-constexpr uint32_t longestUs = 500; // the same, while simulated time waits for this program
-constexpr uint64_t endOfTime = ~uint64_t(0);
-
-std::string fromEnvironment() {
-    const char* file = std::getenv("XBEEAT_CLOCK");
-    return file ? file : "";
-}
-
-int pollUs(pollfd* fds, nfds_t count, uint32_t us) {
-    timespec limit{static_cast<time_t>(us / 1000000), static_cast<long>(us % 1000000 * 1000)};
-    return ppoll(fds, count, us == Clock::forever ? nullptr : &limit, nullptr);
-}
-
-std::string whole(const std::string& path) {
-    char* resolved = realpath(path.c_str(), nullptr);
-    std::string result = resolved ? resolved : path;
-    std::free(resolved);
-    return result;
-}
-
-void store(uint64_t& field, uint64_t value) {
-    __atomic_store_n(&field, value, __ATOMIC_RELEASE);
+[[noreturn]] void refuse(int code, const std::string& why) {
+    throw std::system_error(code, std::generic_category(), "XBEEAT_CLOCK: " + why);
 }
 
 } // namespace
 
-Clock::Clock() : Clock(fromEnvironment()) {}
-
-Clock::Clock(const std::string& file) {
-    if (file.empty())
-        return;
-    int fd = open(file.c_str(), O_RDWR | O_CLOEXEC);
-    void* at = fd < 0 ? MAP_FAILED
-                      : mmap(nullptr, sizeof(SimStatus), PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
-    int error = errno;
-    bool isWhole = fd >= 0 && lseek(fd, 0, SEEK_END) >= static_cast<off_t>(sizeof(SimStatus));
-    if (fd >= 0)
-        close(fd);
-    if (at == MAP_FAILED)
-        throw std::system_error(error, std::generic_category(),
-                                "the clock of XBEEAT_CLOCK, '" + file + "'");
-    simulation_ = static_cast<SimStatus*>(at);
-    if (!isWhole || !isSimStatus(simulation_)) {
-        munmap(at, sizeof(SimStatus));
-        throw std::system_error(EINVAL, std::generic_category(),
-                                "the clock of XBEEAT_CLOCK, '" + file +
-                                    "', is no simulator's counters");
-    }
-}
-
-Clock::~Clock() {
-    leaveStep();
-    if (simulation_)
-        munmap(simulation_, sizeof(SimStatus));
-}
-
-uint64_t Clock::nowNs() const {
-    return __atomic_load_n(&simulation_->ns, __ATOMIC_RELAXED);
-}
-
-uint32_t Clock::nowUs() const {
+uint32_t SystemClock::nowUs() const {
     using namespace std::chrono;
-    if (simulation_)
-        return static_cast<uint32_t>(nowNs() / 1000);
     return static_cast<uint32_t>(
         duration_cast<microseconds>(steady_clock::now().time_since_epoch()).count());
 }
 
-// Simulated time is usually no faster than the machine's, so the remaining time is slept before the
-// next look.
-int Clock::wait(pollfd* fds, nfds_t count, uint32_t us) {
-    if (!simulation_)
-        return pollUs(fds, count, us);
-    const uint64_t begin = nowNs() / 1000;
-    // A program that keeps step waits for at least shortestUs. One that never waits would stop
-    // time, and might wait for it.
-    const uint64_t end =
-        us == forever ? endOfTime : begin + (inStep() ? std::max(us, shortestUs) : us);
-    const bool reads = std::any_of(fds, fds + count, [this](const pollfd& p) {
-        return p.fd == serial_ && (p.events & POLLIN);
-    });
-    for (;;) {
-        const uint64_t now = nowNs() / 1000;
-        const bool due = now >= end;
-        uint32_t nap = us == forever ? forever
-                       : due         ? 0
-                                     : std::max(static_cast<uint32_t>(end - now), shortestUs);
-        if (inStep()) {
-            sleepUntil(us == forever ? endOfTime : end * 1000, reads);
-            nap = us == forever ? forever : std::min(nap, longestUs);
-        }
-        int ready = pollUs(fds, count, nap);
-        if (ready != 0 || due) {
-            work();
-            return ready;
-        }
-    }
+int SystemClock::wait(pollfd* fds, nfds_t count, uint32_t us) {
+    timespec limit{static_cast<time_t>(us / 1000000), static_cast<long>(us % 1000000 * 1000)};
+    return ppoll(fds, count, us == forever ? nullptr : &limit, nullptr);
 }
 
-// ---- keeping step ----
-
-void Clock::keepStep(int serial, const std::string& device) {
-    static std::atomic<uint32_t> steps{0};
-    leaveStep();
-    if (!simulation_ || whole(device) != simulation_->device)
-        return;
-    serial_ = serial;
-    taken_ = 0;
-    token_ = static_cast<uint64_t>(++steps) << 32 | static_cast<uint32_t>(getpid());
-    store(simulation_->untilNs, 0);
-    store(simulation_->fromGround, 0);
-    store(simulation_->taken, 0);
-    store(simulation_->toGround, simSession(token_));
-    store(simulation_->keeper, token_);
-}
-
-// Another program on the same port may keep step by now.
-void Clock::leaveStep() {
-    uint64_t mine = token_;
-    if (mine)
-        __atomic_compare_exchange_n(&simulation_->keeper, &mine, uint64_t(0), false,
-                                    __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST);
-    token_ = 0;
-    serial_ = -1;
-}
-
-bool Clock::inStep() const {
-    return token_ && __atomic_load_n(&simulation_->keeper, __ATOMIC_ACQUIRE) == token_;
-}
-
-void Clock::sleepUntil(uint64_t ns, bool reads) {
-    store(simulation_->taken, reads ? taken_ : endOfTime);
-    store(simulation_->untilNs, ns);
-}
-
-void Clock::work() {
-    if (inStep())
-        store(simulation_->untilNs, 0);
-}
-
-void Clock::hasRead(size_t bytes) {
-    taken_ += bytes;
-}
-
-void Clock::hasWritten(size_t bytes) {
-    if (inStep())
-        __atomic_add_fetch(&simulation_->fromGround, bytes, __ATOMIC_RELEASE);
-}
-
-size_t Clock::waiting() const {
-    if (!inStep())
-        return 0;
-    const uint64_t carried = __atomic_load_n(&simulation_->carried, __ATOMIC_ACQUIRE);
-    const uint64_t written = simulation_->fromGround;
-    return carried < written ? written - carried : 0;
+// The library stays loaded: the clock's code is in it.
+std::unique_ptr<Clock> makeClock() {
+    const char* variable = std::getenv("XBEEAT_CLOCK");
+    const std::string wanted = variable ? variable : "";
+    if (wanted.empty())
+        return std::make_unique<SystemClock>();
+    const size_t colon = wanted.find(':');
+    if (colon == std::string::npos)
+        refuse(EINVAL, "expected LIBRARY:ARGUMENT, got '" + wanted + "'");
+    void* library = dlopen(wanted.substr(0, colon).c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (!library)
+        refuse(ENOENT, dlerror());
+    auto* create =
+        reinterpret_cast<decltype(&createXBeeATClock)>(dlsym(library, "createXBeeATClock"));
+    if (!create)
+        refuse(EINVAL, dlerror());
+    return std::unique_ptr<Clock>(create(wanted.c_str() + colon + 1));
 }
 
 } // namespace XBeeAT

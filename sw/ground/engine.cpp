@@ -77,7 +77,7 @@ Peer& Engine::peer(const Settings& wanted) {
     return *peer;
 }
 
-Engine::Engine(const Settings& s, const Log& l) : Host(s, l, clock_) {
+Engine::Engine(const Settings& s, const Log& l) : Host(s, l, *ownClock_) {
     serial_.open(device);
     makePipe(wakePipe_);
     thread_ = std::thread([this] { run(); });
@@ -105,7 +105,7 @@ void Engine::wake() {
 
 // Takes a packet while the line is free.
 bool Engine::transmit(Peer& peer, const U8* frame, U32 size) {
-    const U32 now = clock_.nowUs();
+    const U32 now = clock.nowUs();
     U32 rn = peer.randomWait();
     for (auto& [address, other] : peers_)
         rn = other->isUp() ? std::max(rn, other->randomWait()) : rn;
@@ -126,18 +126,18 @@ int Engine::waitMs(int ms, bool forBytes) {
     // The wait also ends when the port is lost: where its simulator has ended, time stands still.
     pollfd fds[] = {{wakePipe_[0], POLLIN, 0},
                     {serial_.fd(), static_cast<short>(forBytes ? POLLIN : 0), 0}};
-    const U32 begin = clock_.nowUs(), us = static_cast<U32>(ms) * 1000;
+    const U32 begin = clock.nowUs(), us = static_cast<U32>(ms) * 1000;
     for (;;) {
         {
             std::lock_guard<std::mutex> lock(mutex);
             if (stop_)
                 return -1;
         }
-        U32 passed = clock_.nowUs() - begin;
+        U32 passed = clock.nowUs() - begin;
         if (passed >= us || (fds[1].revents & POLLIN))
             return static_cast<int>(passed);
         char bytes[64];
-        if (clock_.wait(fds, 2, us - passed) > 0 && fds[0].revents)
+        if (clock.wait(fds, 2, us - passed) > 0 && fds[0].revents)
             (void)!read(wakePipe_[0], bytes, sizeof bytes);
         if (fds[1].revents & ~POLLIN)
             return -1;
@@ -155,7 +155,7 @@ void Engine::fail(const std::string& text) {
 
 // Returns why the modem cannot be used; empty: it can.
 std::string Engine::prepareModem(const Settings& wanted) {
-    const U32 begin = clock_.nowUs();
+    const U32 begin = clock.nowUs();
     ModemSetup setup(serial_, wanted, log,
                      [this](int ms, bool forBytes) { return waitMs(ms, forBytes); });
     if (!wanted.setUp) {
@@ -168,7 +168,7 @@ std::string Engine::prepareModem(const Settings& wanted) {
     serialOut_.clear();
     api_ = setup.isApi() ? std::make_unique<ApiModem>(setup.escapes()) : nullptr;
     log(1, "modem ready on " + device + " after " +
-               std::to_string((clock_.nowUs() - begin) / 1000) + " ms" +
+               std::to_string((clock.nowUs() - begin) / 1000) + " ms" +
                (setup.isApi() ? ", in API mode" : "") + (setup.encrypts() ? ", it encrypts" : ""));
     return "";
 }
@@ -177,7 +177,7 @@ std::string Engine::prepareModem(const Settings& wanted) {
 // that it was set up for, and not to all.
 void Engine::start(Peer& peer) {
     if (longest_ && (api_ || (peer.address() == target_ && !peer.isAll())))
-        peer.start(longest_, api_ != nullptr, clock_.nowUs());
+        peer.start(longest_, api_ != nullptr, clock.nowUs());
 }
 
 bool Engine::any(bool (Peer::*is)() const) const {
@@ -226,7 +226,7 @@ void Engine::fly(std::unique_lock<std::mutex>& lock) {
         }
         ~Step() { clock.leaveStep(); }
         Clock& clock;
-    } step(clock_, serial_.fd(), device);
+    } step(clock, serial_.fd(), device);
     for (bool first = true;; first = false) {
         lock.unlock();
         const std::string trouble = prepareModem(wanted);
@@ -240,11 +240,11 @@ void Engine::fly(std::unique_lock<std::mutex>& lock) {
         failed_ = complained_ = false;
         for (auto& [address, peer] : peers_)
             start(*peer);
-        upAt_ = clock_.nowUs();
+        upAt_ = clock.nowUs();
         loop(lock);
         if (stop_ || failed_)
             return;
-        log(0, "no link for " + std::to_string((clock_.nowUs() - upAt_) / 1000000) +
+        log(0, "no link for " + std::to_string((clock.nowUs() - upAt_) / 1000000) +
                    " s: is the UAV on, in reach, and " +
                    (wanted.keys.empty() ? "without a key as this side is" : "has it this key") +
                    "? Setting the modem up again");
@@ -315,7 +315,7 @@ U32 Engine::pollPeers(U32 now) {
 // Moves bytes until the engine must stop, has failed, or all links have been down for too long.
 void Engine::loop(std::unique_lock<std::mutex>& lock) {
     while (!stop_ && !failed_) {
-        U32 now = clock_.nowUs();
+        U32 now = clock.nowUs();
         if (downTooLong(now))
             return;
         if (api_)
@@ -330,9 +330,9 @@ void Engine::loop(std::unique_lock<std::mutex>& lock) {
             peer->addInterest(fds);
         }
         lock.unlock();
-        clock_.wait(fds.data(), fds.size(), deadline);
+        clock.wait(fds.data(), fds.size(), deadline);
         lock.lock();
-        now = clock_.nowUs();
+        now = clock.nowUs();
         if (fds[0].revents) {
             char bytes[64];
             (void)!read(wakePipe_[0], bytes, sizeof bytes);
@@ -345,7 +345,7 @@ void Engine::loop(std::unique_lock<std::mutex>& lock) {
     }
     if (!failed_)
         for (auto& [address, peer] : peers_)
-            peer->stop(clock_.nowUs());
+            peer->stop(clock.nowUs());
     writeSerial();
 }
 

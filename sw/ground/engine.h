@@ -52,8 +52,8 @@ private:
     void deliver(int source, const U8* bytes, size_t size, U32 now);
     void writeSerial();
 
-    Clock clock_;
-    SerialPort serial_{clock_};
+    std::unique_ptr<Clock> ownClock_ = makeClock();
+    SerialPort serial_{*ownClock_};
     int wakePipe_[2] = {-1, -1};
     // failed_: the port is lost, or no modem answered; complained_: that was logged as an error.
     bool stop_ = false, failed_ = false, complained_ = false;

@@ -1,73 +1,30 @@
 // SPDX-License-Identifier: MIT
 //
 // ground_step: makes simulated time wait for the program on the ground that keeps step with it
-// (sim_status.h), however seldom a busy machine lets that program run.
+// (keep_step.h), however seldom a busy machine lets that program run.
 
 #pragma once
 
+#include "keep_step.h"
 #include "serial_line.h"
-#include "sim_status.h"
+#include "status_file.h"
 #include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <fcntl.h>
 #include <fstream>
 #include <functional>
 #include <sched.h>
 #include <string>
-#include <sys/mman.h>
-#include <system_error>
+#include <sys/types.h>
 #include <unistd.h>
-
-// A simulator's counters (sim_status.h) in a file that other programs map.
-class StatusFile {
-public:
-    // Throws std::system_error, also where the disk is full: a file with holes would end in SIGBUS.
-    explicit StatusFile(const std::string& path) {
-        unlink(path.c_str()); // never write through a link
-        const int fd = open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
-        const int error = fd < 0 ? errno : map(fd);
-        if (fd >= 0)
-            close(fd);
-        if (error)
-            throw std::system_error(error, std::generic_category(), "cannot write '" + path + "'");
-    }
-    // Creates an empty file, open for writing, which the caller owns.
-    explicit StatusFile(int fd) {
-        if (const int error = map(fd))
-            throw std::system_error(error, std::generic_category(), "no file for simulated time");
-    }
-    ~StatusFile() { munmap(status_, sizeof(SimStatus)); }
-    StatusFile(const StatusFile&) = delete;
-    StatusFile& operator=(const StatusFile&) = delete;
-
-    SimStatus& operator*() const { return *status_; }
-    SimStatus* operator->() const { return status_; }
-    uint64_t ns() const { return __atomic_load_n(&status_->ns, __ATOMIC_ACQUIRE); }
-    void set(uint64_t ns) { __atomic_store_n(&status_->ns, ns, __ATOMIC_RELEASE); }
-
-private:
-    // Returns the error's number, 0: none.
-    int map(int fd) {
-        if (const int error = posix_fallocate(fd, 0, sizeof(SimStatus)))
-            return error;
-        void* at = mmap(nullptr, sizeof(SimStatus), PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
-        if (at == MAP_FAILED)
-            return errno;
-        status_ = static_cast<SimStatus*>(at);
-        std::memcpy(status_->magic, simMagic, sizeof simMagic);
-        return 0;
-    }
-    SimStatus* status_;
-};
 
 class GroundStep {
 public:
-    // `goOn`: called about each 10 ms while time stands still; false: stop waiting. A program that
-    // holds time for `patience` seconds of the wall clock without a debugger is no longer waited
-    // for, and stderr says so.
+    // Calls `goOn` about each 10 ms while time stands still, and stops waiting when it returns
+    // false. A program that holds time for `patience` seconds of the wall clock without a debugger
+    // is no longer waited for; stderr names it.
     GroundStep(SimStatus& status, PtyLine& pty, std::function<bool()> goOn, double patience = 60)
         : status_(status), pty_(pty), goOn_(std::move(goOn)), patience_(patience) {
         std::strncpy(status_.device, pty.path().c_str(), sizeof status_.device - 1);

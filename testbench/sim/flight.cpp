@@ -246,7 +246,8 @@ void Flight::watchRegisters() {
 }
 
 void Flight::startProgram() {
-    setenv("XBEEAT_CLOCK", std::filesystem::absolute(o_.out + "/status").c_str(), 1);
+    const std::string status = std::filesystem::absolute(o_.out + "/status");
+    setenv("XBEEAT_CLOCK", (SIM_CLOCK ":" + status).c_str(), 1);
     if (!o_.command.empty())
         child_.start(o_.command, {{"{device}", ground_.pty.path()},
                                   {"{device2}", second_ ? second_->pty.path() : ""},

@@ -63,7 +63,7 @@ double groundSetUpMs(uint32_t guardMs, uint32_t bd) {
     XBeeAT::Settings settings;
     settings.guardMs = static_cast<int>(guardMs);
     uint64_t now = 0;
-    XBeeAT::Clock clock{""};
+    XBeeAT::SystemClock clock;
     XBeeAT::SerialPort serial(clock);
     serial.open(pty.path());
     XBeeAT::Log log = [](int, const std::string&) {};

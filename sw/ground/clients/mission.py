@@ -256,7 +256,7 @@ class Mission:
     def observe(self):
         """Is a second ground with a modem and keys of its own: asks each vehicle for its state."""
         args, device = self.args, self.args.observer_device
-        os.environ["XBEEAT_CLOCK"] = args.status + "2"  # its engine's clock
+        plugged.use_second_clock()
         with plugged.initialize({"XBeeAT.Trace": str(args.trace), "Ice.ACM.Close": "0",
                                  "XBeeAT.Device": device},
                                 args.plugin, args.guard, args.observer) as communicator:

@@ -6,7 +6,6 @@ import glob
 import json
 import mmap
 import os
-import struct
 import threading
 import time
 
@@ -16,21 +15,20 @@ RESULTS = ("after.png", "report.md", "report.json", "calls.jsonl")
 
 
 class Air:
-    """The simulator's counters (sw/ground/sim_status.h); real hardware has none."""
+    """The simulator's counters (testbench/status/sim_status.toml); real hardware has none."""
 
-    FORMAT = struct.Struct("<8s7Q")
+    COUNTERS = ("ns", "cycles", "bytesUp", "bytesDown", "packets", "lost", "wallNs")
 
     def __init__(self, path):
         self.map = None
         if path:
+            from icesoc.util import record  # a simulation runs in the source tree
+            self.status = record.of_tree("testbench/status/sim_status.toml")
             with open(path, "rb") as f:
-                self.map = mmap.mmap(f.fileno(), self.FORMAT.size, access=mmap.ACCESS_READ)
+                self.map = mmap.mmap(f.fileno(), self.status.size, access=mmap.ACCESS_READ)
 
     def read(self):
-        if not self.map:
-            return None
-        fields = self.FORMAT.unpack(self.map[: self.FORMAT.size])
-        return dict(zip(("ns", "cycles", "up", "down", "packets", "lost", "wall"), fields[1:]))
+        return self.status.unpack(self.map, *self.COUNTERS) if self.map else None
 
 
 @contextlib.contextmanager
@@ -100,8 +98,8 @@ class Log:
             text = f"{who:<16} {what + outcome:<48} {ms:7.1f} ms"
             if before:
                 row.update(simulated_ms=round((after["ns"] - before["ns"]) / 1e6, 1),
-                           bytes_up=after["up"] - before["up"],
-                           bytes_down=after["down"] - before["down"])
+                           bytes_up=after["bytesUp"] - before["bytesUp"],
+                           bytes_down=after["bytesDown"] - before["bytesDown"])
                 text += (f" wall, {row['simulated_ms']:7.1f} ms simulated, {row['bytes_up']:4} "
                          f"bytes up, {row['bytes_down']:4} down")
             self.rows.append(row)

@@ -6,6 +6,14 @@ import os
 import Ice
 
 
+def use_second_clock():
+    """Follows the simulator's second ground station, if a simulator has started this program: its
+    counters' file is named as the first one's, with a 2."""
+    clock = os.environ.get("XBEEAT_CLOCK")
+    if clock and not clock.endswith("2"):
+        os.environ["XBEEAT_CLOCK"] = clock + "2"
+
+
 def initialize(settings, plugin, guard, key):
     """Returns a communicator with these properties. plugin: folder of libxbeeat.so.37, empty or
     None: no radio; guard: the modem's guard time in ms; key: file with the link's key, empty: in

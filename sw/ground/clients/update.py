@@ -82,7 +82,7 @@ def read_clock(air):
     """Returns the vehicle's time in s and the bytes on the air to it: the simulator's, else the
     wall clock's and none."""
     counters = air.read()
-    return (counters["ns"] / 1e9, counters["up"]) if counters else (time.monotonic(), 0)
+    return (counters["ns"] / 1e9, counters["bytesUp"]) if counters else (time.monotonic(), 0)
 
 
 class Watch(threading.Thread):

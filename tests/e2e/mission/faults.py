@@ -21,8 +21,10 @@ import time
 from pathlib import Path
 
 from fleet_ground import TROUBLE, VEHICLES, words_of
+from icesoc.util import record
 from icesoc.util.process import children
 
+STATUS = record.of_tree("testbench/status/sim_status.toml")
 IMAGE = "/usr/share/xplanet/images/earth.jpg"
 LONGEST = 240.0  # seconds of a mission on a busy machine
 REAL = 0.3  # seconds of a moment before the simulated ones
@@ -86,9 +88,9 @@ class Mission:
             time.sleep(0.002)
 
     def simulated(self):
-        """Returns simulated seconds, from the simulator's counters (sw/ground/sim_status.h)."""
+        """Returns simulated seconds, from the simulator's counters."""
         try:
-            return struct.unpack("<8sQ", Path(self.out, "status").read_bytes()[:16])[1] / 1e9
+            return STATUS.unpack(Path(self.out, "status").read_bytes(), "ns")["ns"] / 1e9
         except (FileNotFoundError, struct.error):
             return 0
 

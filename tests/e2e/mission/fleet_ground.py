@@ -146,7 +146,7 @@ class Ground:
 
     def observe(self):
         """Asks each vehicle for its state, one after the other, from the second ground."""
-        os.environ["XBEEAT_CLOCK"] = self.args.status + "2"
+        plugged.use_second_clock()
         observer = self.communicator(self.args.device2, self.args.key2)
         source = 0x0000 if self.args.rival else 0x00f0
         while self.seconds() < self.args.rival:

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// clock_file: simulated time that programs on the ground keep step with: a file that XBEEAT_CLOCK
-// names while this object lives; and such a file without a name.
+// clock_file: simulated time that programs on the ground keep step with. XBEEAT_CLOCK names the
+// file, which has no name on the disk, while this object lives.
 
 #pragma once
 
-#include "ground_step.h"
+#include "status_file.h"
 #include <cstdlib>
 #include <string>
 #include <sys/mman.h>
@@ -30,6 +30,6 @@ private:
 
 class ClockFile : public UnnamedFile, public StatusFile {
 public:
-    ClockFile() : StatusFile(fd()) { setenv("XBEEAT_CLOCK", path().c_str(), 1); }
+    ClockFile() : StatusFile(fd()) { setenv("XBEEAT_CLOCK", (SIM_CLOCK ":" + path()).c_str(), 1); }
     ~ClockFile() { unsetenv("XBEEAT_CLOCK"); }
 };

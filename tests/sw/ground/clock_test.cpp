@@ -9,6 +9,7 @@
 #include "ground_step.h"
 #include "random.h"
 #include "serial_port.h"
+#include "simulated_clock.h"
 #include <atomic>
 #include <csignal>
 #include <cstring>
@@ -23,13 +24,13 @@ using namespace XBeeAT;
 
 namespace {
 
-class SimulatedClock : public testing::Test {
+class ClockOfASimulator : public testing::Test {
 protected:
-    SimulatedClock() {
+    ClockOfASimulator() {
         (void)!pipe(pipe_);
         show(0);
     }
-    ~SimulatedClock() override {
+    ~ClockOfASimulator() override {
         close(pipe_[0]);
         close(pipe_[1]);
     }
@@ -40,8 +41,8 @@ protected:
     int pipe_[2];
 };
 
-TEST_F(SimulatedClock, ShowsWhatTheSimulatorSays) {
-    Clock clock(file_);
+TEST_F(ClockOfASimulator, ShowsWhatTheSimulatorSays) {
+    SimulatedClock clock(file_);
     EXPECT_EQ(clock.nowUs(), 0u);
     show(1'234'567);
     EXPECT_EQ(clock.nowUs(), 1'234'567u);
@@ -49,8 +50,8 @@ TEST_F(SimulatedClock, ShowsWhatTheSimulatorSays) {
     EXPECT_EQ(clock.nowUs(), 5u); // wraps around
 }
 
-TEST_F(SimulatedClock, WaitLastsUntilSimulatedTimeHasPassed) {
-    Clock clock(file_);
+TEST_F(ClockOfASimulator, WaitLastsUntilSimulatedTimeHasPassed) {
+    SimulatedClock clock(file_);
     pollfd fds[] = {{pipe_[0], POLLIN, 0}};
     std::atomic<bool> isOver{false};
     std::thread simulator([&] {
@@ -66,28 +67,49 @@ TEST_F(SimulatedClock, WaitLastsUntilSimulatedTimeHasPassed) {
     simulator.join();
 }
 
-TEST_F(SimulatedClock, WaitEndsWhenSomethingIsReadyThoughTimeStandsStill) {
-    Clock clock(file_);
+TEST_F(ClockOfASimulator, WaitEndsWhenSomethingIsReadyThoughTimeStandsStill) {
+    SimulatedClock clock(file_);
     pollfd fds[] = {{pipe_[0], POLLIN, 0}};
     (void)!write(pipe_[1], "x", 1);
     EXPECT_EQ(clock.wait(fds, 1, 1'000'000), 1);
     EXPECT_EQ(clock.nowUs(), 0u);
 }
 
-TEST_F(SimulatedClock, FileOfSomethingElseIsRefused) {
+TEST_F(ClockOfASimulator, FileOfSomethingElseIsRefused) {
     std::ofstream(file_)
         << "this is no simulator's file of counters, though it is long enough for one.";
-    EXPECT_THROW(Clock{file_}, std::system_error);
+    EXPECT_THROW(SimulatedClock{file_}, std::system_error);
     std::ofstream(file_) << "short";
-    EXPECT_THROW(Clock{file_}, std::system_error);
-    EXPECT_THROW(Clock{"/no/such/file"}, std::system_error);
+    EXPECT_THROW(SimulatedClock{file_}, std::system_error);
+    EXPECT_THROW(SimulatedClock{"/no/such/file"}, std::system_error);
 }
 
-TEST_F(SimulatedClock, EnvironmentNamesIt) {
+TEST_F(ClockOfASimulator, EnvironmentNamesIt) {
     show(77);
-    EXPECT_EQ(Clock().nowUs(), 77u);
+    EXPECT_EQ(makeClock()->nowUs(), 77u);
+}
+
+TEST_F(ClockOfASimulator, WrongNameIsExplained) {
+    const auto complaint = [](const char* name) -> std::string {
+        setenv("XBEEAT_CLOCK", name, 1);
+        try {
+            makeClock();
+        } catch (const std::system_error& e) {
+            return e.what();
+        }
+        return "none";
+    };
+    EXPECT_EQ(complaint("/tmp/status"), "XBEEAT_CLOCK: expected LIBRARY:ARGUMENT, got "
+                                        "'/tmp/status': Invalid argument");
+    EXPECT_NE(complaint("/no/such.so:x").find("/no/such.so"), std::string::npos);
+    EXPECT_NE(complaint("libc.so.6:x").find("createXBeeATClock"), std::string::npos);
+    EXPECT_NE(complaint((SIM_CLOCK ":/no/such/file")).find("/no/such/file"), std::string::npos);
+}
+
+TEST_F(ClockOfASimulator, WithoutANameItIsTheMachines) {
     unsetenv("XBEEAT_CLOCK");
-    Clock machine;
+    SystemClock machine;
+    EXPECT_TRUE(dynamic_cast<SystemClock*>(makeClock().get()));
     uint32_t begin = machine.nowUs();
     pollfd fds[] = {{pipe_[0], POLLIN, 0}};
     EXPECT_EQ(machine.wait(fds, 1, 1000), 0);
@@ -131,7 +153,7 @@ protected:
                 ~AtEnd() { over = true; }
                 std::atomic<bool>& over;
             } atEnd{over};
-            Clock clock(status_.path());
+            SimulatedClock clock(status_.path());
             SerialPort port(clock);
             port.open(pty_.path());
             port.setSpeed(115200);
@@ -206,7 +228,7 @@ TEST_F(Step, WhoKeepsStepNextIsHeardFromTheFirstByte) {
 TEST_F(Step, AProgramThatWasKilledHoldsNothing) {
     pid_t child = fork();
     if (child == 0) {
-        Clock clock(status_.path());
+        SimulatedClock clock(status_.path());
         clock.keepStep(-1, pty_.path());
         _exit(0); // without good-bye
     }
@@ -219,7 +241,7 @@ TEST_F(Step, AProgramThatWasKilledHoldsNothing) {
 }
 
 TEST_F(Step, AnotherPortsProgramIsNotWaitedFor) {
-    Clock clock(status_.path());
+    SimulatedClock clock(status_.path());
     clock.keepStep(-1, "/dev/null");
     EXPECT_EQ(status_->keeper, 0u);
     const uint64_t end = status_->ns + 5'000'000;
@@ -228,7 +250,7 @@ TEST_F(Step, AnotherPortsProgramIsNotWaitedFor) {
 
 // The program lives, and does nothing: time goes on without it, and stderr reports it.
 TEST_F(Step, WhoHoldsTimeForTooLongIsWaitedForNoLonger) {
-    Clock clock(status_.path());
+    SimulatedClock clock(status_.path());
     SerialPort port(clock);
     port.open(pty_.path());
     clock.keepStep(port.fd(), pty_.path());
@@ -244,7 +266,7 @@ TEST_F(Step, WhoIsHeldByADebuggerIsWaitedFor) {
     ASSERT_EQ(pipe(ready), 0);
     const pid_t program = fork();
     if (program == 0) {
-        Clock clock(status_.path());
+        SimulatedClock clock(status_.path());
         clock.keepStep(0, pty_.path());
         (void)!write(ready[1], "", 1);
         raise(SIGSTOP);
@@ -264,7 +286,7 @@ TEST_F(Step, WhoIsHeldByADebuggerIsWaitedFor) {
 
 // A simulation that must end asks once whether it goes on, and waits for nobody from then on.
 TEST_F(Step, NobodyIsWaitedForAfterTheStop) {
-    Clock clock(status_.path());
+    SimulatedClock clock(status_.path());
     SerialPort port(clock);
     port.open(pty_.path());
     clock.keepStep(port.fd(), pty_.path());

@@ -373,7 +373,7 @@ TEST(Engine, APortThatAnotherProgramUsesIsRefusedWithItsNumber) {
     ASSERT_EQ(pipe(ready), 0);
     const pid_t first = fork();
     if (first == 0) {
-        XBeeAT::Clock clock("");
+        XBeeAT::SystemClock clock;
         XBeeAT::SerialPort port(clock);
         port.open(wire.path());
         (void)!write(ready[1], "", 1);

@@ -246,16 +246,16 @@ World* world;
 
 namespace XBeeAT {
 
-Clock::Clock() = default;
-Clock::~Clock() = default;
-uint32_t Clock::nowUs() const {
-    return world->now;
+class FuzzedClock : public Clock {
+public:
+    uint32_t nowUs() const override { return world->now; }
+    int wait(pollfd* fds, nfds_t count, uint32_t us) override {
+        return world->wait(fds, count, us);
+    }
+};
+std::unique_ptr<Clock> makeClock() {
+    return std::make_unique<FuzzedClock>();
 }
-int Clock::wait(pollfd* fds, nfds_t count, uint32_t us) {
-    return world->wait(fds, count, us);
-}
-void Clock::keepStep(int, const std::string&) {}
-void Clock::leaveStep() {}
 
 void SerialPort::open(const std::string&) {
     fd_ = world->serial;

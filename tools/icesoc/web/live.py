@@ -24,23 +24,23 @@ import json
 import os
 import re
 import signal
-import struct
 from http import HTTPStatus
 
 from icesoc.regs.model import Block, Wrong
+from icesoc.util import record
+
+HERE = os.path.dirname(os.path.abspath(__file__))
 
 PATIENCE = 10  # seconds
 NEWEST = 128 << 10  # bytes of events.jsonl that a page shows: a long flight does not make it large
 MOST_VEHICLES = 32  # of a modem of the ground
-HERE = os.path.dirname(os.path.abspath(__file__))
 FILES = {  # path: MIME type, file
     "/": ("text/html; charset=utf-8", HERE + "/flight/index.html"),
     "/live.css": ("text/css", HERE + "/flight/live.css"),
     "/live.js": ("text/javascript", HERE + "/flight/live.js"),
     "/common.css": ("text/css", HERE + "/common.css"),
     "/common.js": ("text/javascript", HERE + "/common.js")}
-# SimStatus (sw/ground/sim_status.h): counters, registers by slot * 16 + word, how each was seen
-STATUS = struct.Struct("<8s7Q1024I1024B")
+STATUS = record.of_tree("testbench/status/sim_status.toml")
 SCHEMA = HERE + "/../cli/flight.schema.json"
 COUNTERS = ("ns", "cycles", "bytesUp", "bytesDown", "packets", "lost", "wallNs")
 WRITTEN = 2
@@ -138,6 +138,9 @@ def state(folder, slots):
         shown["air"] = dict(zip(COUNTERS, values))
         registers, seen = values[7:7 + 1024], values[7 + 1024:]
         for slot, name, block in slots:
+from icesoc.util import record
+
+HERE = os.path.dirname(os.path.abspath(__file__))
             words = [register(block, word, registers[slot * 16 + word], seen[slot * 16 + word])
                      for word in range(16) if seen[slot * 16 + word]]
             shown["slots"].append({"slot": slot, "block": name, "doc": block.doc if block else "",

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+//
+// simulated_clock: a simulated modem's time as the clock of an engine on the ground. A simulator
+// names it in XBEEAT_CLOCK (clock.h) for the programs that it starts, with its SimStatus file as
+// the argument.
+
+#pragma once
+
+#include "clock.h"
+
+struct SimStatus;
+
+class SimulatedClock : public XBeeAT::Clock {
+public:
+    // Maps a file of SimStatus. Throws std::system_error.
+    explicit SimulatedClock(const std::string& file);
+    ~SimulatedClock() override;
+    SimulatedClock(const SimulatedClock&) = delete;
+    SimulatedClock& operator=(const SimulatedClock&) = delete;
+
+    uint32_t nowUs() const override;
+    int wait(pollfd* fds, nfds_t count, uint32_t us) override;
+    void keepStep(int serial, const std::string& device) override;
+    void leaveStep() override;
+    void hasRead(size_t bytes) override;
+    void hasWritten(size_t bytes) override;
+    size_t waiting() const override;
+
+private:
+    uint64_t nowNs() const;
+    bool inStep() const;
+    void sleepUntil(uint64_t ns, bool reads);
+    void work();
+
+    SimStatus* simulation_ = nullptr;
+    XBeeAT::SystemClock machine_;
+    uint64_t token_ = 0; // as SimStatus::keeper; 0 while it does not keep step
+    uint64_t taken_ = 0;
+    int serial_ = -1;
+};

@@ -4,7 +4,9 @@
 // and the peers in turn.
 
 #include "engine.h"
+#include "broadcast_peer.h"
 #include "modem_setup.h"
+#include "vehicle_peer.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -69,15 +71,19 @@ Peer& Engine::peer(const Settings& wanted) {
         refuse(EBUSY, "'" + device + "' has " + std::to_string(mostPeers) +
                           " vehicles already, as many as a modem serves");
     }
-    peer = std::make_unique<Peer>(static_cast<Host&>(*this), wanted.target, wanted.keys);
-    peer->airUs = airUs_;
+    Host& host = *this;
+    if (wanted.target == everybody)
+        peer = std::make_unique<BroadcastPeer>(host, wanted.keys);
+    else
+        peer = std::make_unique<VehiclePeer>(host, wanted.target, wanted.keys);
+    packets_.join(*peer);
     hasMany = peers_.size() > 1;
     start(*peer);
     wake();
     return *peer;
 }
 
-Engine::Engine(const Settings& s, const Log& l) : Host(s, l, *ownClock_) {
+Engine::Engine(const Settings& s, const Log& l) : Host(s, l, *ownClock_, packets_) {
     serial_.open(device);
     makePipe(wakePipe_);
     thread_ = std::thread([this] { run(); });
@@ -101,23 +107,6 @@ void Engine::wake() {
     char byte = 0;
     (void)!write(wakePipe_[1], &byte, 1);
     changed_.notify_all();
-}
-
-// Takes a packet while the line is free.
-bool Engine::transmit(Peer& peer, const U8* frame, U32 size) {
-    const U32 now = clock.nowUs();
-    U32 rn = peer.randomWait();
-    for (auto& [address, other] : peers_)
-        rn = other->isUp() ? std::max(rn, other->randomWait()) : rn;
-    if (!serialOut_.empty() || (!api_ && serial_.waiting()))
-        return false;
-    serialOut_ = api_ ? api_->packet(peer.address(), frame, size, rn, now)
-                      : ApiModem::Bytes(frame, frame + size);
-    peer.airUs = std::max(peer.airUs, airUs_);
-    airUs_ = peer.airUs;
-    peer.airUs += LINK_PACKET_US + size * LINK_BYTE_US;
-    writeSerial();
-    return true;
 }
 
 // ---- the modem's life ----
@@ -165,19 +154,17 @@ std::string Engine::prepareModem(const Settings& wanted) {
     }
     std::lock_guard<std::mutex> lock(mutex);
     longest_ = setup.encrypts() ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME;
-    serialOut_.clear();
-    api_ = setup.isApi() ? std::make_unique<ApiModem>(setup.escapes()) : nullptr;
-    log(1, "modem ready on " + device + " after " +
-               std::to_string((clock.nowUs() - begin) / 1000) + " ms" +
-               (setup.isApi() ? ", in API mode" : "") + (setup.encrypts() ? ", it encrypts" : ""));
+    packets_.start(setup.isApi(), setup.escapes(), wanted.target);
+    log(1, "modem ready on " + device + " after " + std::to_string((clock.nowUs() - begin) / 1000) +
+               " ms" + (setup.isApi() ? ", in API mode" : "") +
+               (setup.encrypts() ? ", it encrypts" : ""));
     return "";
 }
 
-// Starts the link with a peer, if the modem is ready. One without API mode talks to the peer alone
-// that it was set up for, and not to all.
+// Starts the way to a peer, if the modem is ready and reaches the peer.
 void Engine::start(Peer& peer) {
-    if (longest_ && (api_ || (peer.address() == target_ && !peer.isAll())))
-        peer.start(longest_, api_ != nullptr, clock.nowUs());
+    if (longest_ && packets_.reaches(peer, peer.hasLink()))
+        peer.start(longest_, packets_.isApi(), clock.nowUs());
 }
 
 bool Engine::any(bool (Peer::*is)() const) const {
@@ -211,8 +198,7 @@ void Engine::waitForReason(std::unique_lock<std::mutex>& lock) {
 void Engine::fly(std::unique_lock<std::mutex>& lock) {
     const Settings wanted = settings;
     const U32 down = static_cast<U32>(wanted.downMs) * 1000;
-    target_ = wanted.target;
-    patienceUs_ = down;
+    downLimitUs_ = down;
     try {
         if (failed_)
             serial_.open(device);
@@ -248,49 +234,40 @@ void Engine::fly(std::unique_lock<std::mutex>& lock) {
                    " s: is the UAV on, in reach, and " +
                    (wanted.keys.empty() ? "without a key as this side is" : "has it this key") +
                    "? Setting the modem up again");
-        patienceUs_ = std::min(patienceUs_ * 2, 4 * down);
+        downLimitUs_ = std::min(downLimitUs_ * 2, 4 * down);
     }
 }
 
 bool Engine::downTooLong(U32 now) {
     if (any(&Peer::isHeard) || !any(&Peer::hasLink)) {
         upAt_ = now;
-        patienceUs_ = static_cast<U32>(settings.downMs) * 1000;
+        downLimitUs_ = static_cast<U32>(settings.downMs) * 1000;
     }
-    return settings.setUp && now - upAt_ >= patienceUs_;
+    return settings.setUp && now - upAt_ >= downLimitUs_;
 }
 
 // ---- bytes ----
 
 void Engine::readSerial(U32 now) {
-    U8 bytes[512];
-    const ssize_t count = serial_.read(bytes, sizeof bytes);
-    const size_t size = static_cast<size_t>(count);
-    if (count > 0 && api_)
-        api_->feed(
-            bytes, size,
-            [&](int source, const U8* data, size_t heard) { deliver(source, data, heard, now); },
-            [&](bool isThere) { Link_answer(radio, isThere, now); });
-    else if (count > 0)
-        deliver(target_, bytes, size, now);
-    else if (count == 0 || (errno != EAGAIN && errno != EINTR))
+    const ssize_t count = packets_.read(
+        [&](int source, const U8* data, size_t size) { deliver(source, data, size, now); },
+        [&](bool isThere) { answer(isThere, now); });
+    if (count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR))
         fail("serial port '" + device + "': " + (count == 0 ? "closed" : std::strerror(errno)));
 }
 
-// Gives bytes to the peer that they are from. A modem without an address of 16 bits can only be
-// that of a single peer.
+// Gives bytes to the peer that sent them. Only a single peer can have a modem without a 16-bit
+// address.
 void Engine::deliver(int source, const U8* bytes, size_t size, U32 now) {
     for (auto& [address, peer] : peers_)
         if (address == source || (source == ApiFrames::nobody && !hasMany))
             peer->receive(bytes, size, now);
 }
 
-void Engine::writeSerial() {
-    if (serialOut_.empty())
-        return;
-    ssize_t count = serial_.write(serialOut_.data(), serialOut_.size());
-    if (count > 0)
-        serialOut_.erase(serialOut_.begin(), serialOut_.begin() + count);
+// All links share the answers; a call to all vehicles has none.
+void Engine::answer(bool isThere, U32 now) {
+    if (radio)
+        Link_answer(radio, isThere, now);
 }
 
 // Polls all peers, first the one that has had least of the air. Returns when to call again, in
@@ -303,7 +280,7 @@ U32 Engine::pollPeers(U32 now) {
               [](const Peer* a, const Peer* b) { return a->airUs < b->airUs; });
     U32 wait = 0xFFFFFFFFu;
     for (Peer* peer : order) {
-        if (!api_ && (peer->address() != target_ || peer->isAll()) && peer->isWanted()) {
+        if (!packets_.reaches(*peer, peer->hasLink()) && peer->isWanted()) {
             log(0, "the modem on '" + device + "' has no API mode: it talks to one vehicle only");
             peer->fail();
         }
@@ -318,13 +295,13 @@ void Engine::loop(std::unique_lock<std::mutex>& lock) {
         U32 now = clock.nowUs();
         if (downTooLong(now))
             return;
-        if (api_)
-            api_->expire(now, [&] { Link_answer(radio, 0, now); });
+        packets_.expire(now, [&](bool isThere) { answer(isThere, now); });
         const U32 deadline = pollPeers(now);
         std::vector<pollfd> fds = {
             {wakePipe_[0], POLLIN, 0},
-            {serial_.fd(), static_cast<short>(serialOut_.empty() ? POLLIN : POLLIN | POLLOUT), 0}};
-        std::vector<Peer*> served; // another may come while this thread waits
+            {serial_.fd(), static_cast<short>(packets_.isFlushed() ? POLLIN : POLLIN | POLLOUT),
+             0}};
+        std::vector<Peer*> served; // another peer may be added while this thread waits
         for (auto& [address, peer] : peers_) {
             served.push_back(peer.get());
             peer->addInterest(fds);
@@ -339,14 +316,14 @@ void Engine::loop(std::unique_lock<std::mutex>& lock) {
         }
         if (fds[1].revents & (POLLIN | POLLERR | POLLHUP))
             readSerial(now);
-        writeSerial();
+        packets_.flush();
         for (size_t i = 0; i < served.size(); ++i)
             served[i]->servePrograms(&fds[2 + i * LINK_CHANNELS], now);
     }
     if (!failed_)
         for (auto& [address, peer] : peers_)
             peer->stop(clock.nowUs());
-    writeSerial();
+    packets_.flush();
 }
 
 } // namespace XBeeAT

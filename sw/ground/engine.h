@@ -6,8 +6,8 @@
 
 #pragma once
 
-#include "api_modem.h"
 #include "clock.h"
+#include "packet_line.h"
 #include "peer.h"
 #include "serial_port.h"
 
@@ -34,7 +34,6 @@ public:
 private:
     Engine(const Settings& settings, const Log& log);
     Peer& peer(const Settings& settings);
-    bool transmit(Peer& peer, const U8* frame, U32 size) override;
     void wake() override;
     void run();
     std::string prepareModem(const Settings& wanted);
@@ -50,20 +49,17 @@ private:
     bool any(bool (Peer::*is)() const) const;
     void readSerial(U32 now);
     void deliver(int source, const U8* bytes, size_t size, U32 now);
-    void writeSerial();
+    void answer(bool isThere, U32 now);
 
     std::unique_ptr<Clock> ownClock_ = makeClock();
     SerialPort serial_{*ownClock_};
+    PacketLine packets_{serial_};
     int wakePipe_[2] = {-1, -1};
     // failed_: the port is lost, or no modem answered; complained_: that was logged as an error.
     bool stop_ = false, failed_ = false, complained_ = false;
     U32 longest_ = 0;                            // bytes of a frame; 0: the modem is not ready
-    int target_ = 0;                             // DL of the modem
     std::map<int, std::unique_ptr<Peer>> peers_; // by address; they stay
-    uint64_t airUs_ = 0;                         // of the peer that sent last
-    std::vector<U8> serialOut_;       // the packet's bytes that the port has not taken yet
-    std::unique_ptr<ApiModem> api_;   // none: transparent mode
-    U32 upAt_ = 0, patienceUs_ = 0;   // when a link was last up; how long all may be down
+    U32 upAt_ = 0, downLimitUs_ = 0;  // when a link was last up; how long all may be down
     std::condition_variable changed_; // of stop_ and what programs want
     std::thread thread_;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// peer_programs: what programs call of a peer, from their own threads.
+// peer_programs: functions of a peer that programs call, in their threads.
 
 #include "peer.h"
 
@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <poll.h>
 #include <sys/socket.h>
@@ -45,10 +44,11 @@ int Peer::freeChannel(int wanted, U32 now) {
     int idlest = -1;
     for (int i = 0; i < ownChannels; ++i) {
         const int channel = wanted >= 0 ? wanted : (nextChannel_ + i) % ownChannels;
-        Stream& s = streams_[channel];
-        if (s.is(Stream::State::Wanted) && hasLeft(s.fd())) // it gave up before the link was up
+        ProgramConnection& s = programs_[channel];
+        if (s.is(ProgramConnection::State::Wanted) &&
+            hasLeft(s.fd())) // it has left before the link was up
             s.close();
-        if (s.is(Stream::State::Closed)) {
+        if (s.is(ProgramConnection::State::Closed)) {
             nextChannel_ = (channel + 1) % ownChannels;
             return channel;
         }
@@ -58,7 +58,7 @@ int Peer::freeChannel(int wanted, U32 now) {
         }
     }
     if (idlest >= 0) {
-        streams_[idlest].sayGoodbye(now);
+        programs_[idlest].sayGoodbye(now);
         end(idlest, 1, "is idle, and another program waits");
     }
     return idlest;
@@ -78,8 +78,8 @@ void Peer::placePrograms(U32 now) {
         if (isGone)
             ::close(program->fd);
         else
-            streams_[channel].want(program->fd, "the program on channel " + std::to_string(channel),
-                                   program->lateUs);
+            programs_[channel].want(
+                program->fd, "the program on channel " + std::to_string(channel), program->lateUs);
         program = waiting_.erase(program);
     }
 }
@@ -87,13 +87,13 @@ void Peer::placePrograms(U32 now) {
 int Peer::connect(int channel, int lateMs) {
     int ends[2];
     std::lock_guard<std::mutex> lock(host_.mutex);
-    if (isTaken_)
+    if (isYielded())
         errno = EBUSY;
-    if (isTaken_ || !makePair(ends))
+    if (isYielded() || !makePair(ends))
         return -1;
-    const U32 lateUs = static_cast<U32>(lateMs) < Stream::never / 1000
+    const U32 lateUs = static_cast<U32>(lateMs) < ProgramConnection::never / 1000
                            ? static_cast<U32>(lateMs) * 1000
-                           : Stream::never;
+                           : ProgramConnection::never;
     waiting_.push_back({ends[0], channel, lateUs});
     placePrograms(host_.clock.nowUs());
     host_.wake();
@@ -105,17 +105,10 @@ size_t Peer::waiting() const {
     return waiting_.size();
 }
 
-U32 Peer::mostBytes() const {
-    if (!isAll())
-        return LINK_MAX_MESSAGE;
-    std::lock_guard<std::mutex> lock(host_.mutex);
-    return broadcast_->most();
-}
-
 bool Peer::isWanted() const {
     bool wanted = false;
-    for (const Stream& s : streams_)
-        wanted = wanted || s.is(Stream::State::Wanted);
+    for (const ProgramConnection& s : programs_)
+        wanted = wanted || s.is(ProgramConnection::State::Wanted);
     return wanted;
 }
 
@@ -132,7 +125,7 @@ int Peer::calledChannel() const {
     char byte;
     (void)!read(acceptPipe_[0], &byte, 1);
     for (int channel = ownChannels; channel < LINK_CHANNELS; ++channel)
-        if (streams_[channel].is(Stream::State::Called))
+        if (programs_[channel].is(ProgramConnection::State::Called))
             return channel;
     return -1;
 }
@@ -149,7 +142,7 @@ int Peer::accept() {
         host_.wake();
         return -1;
     }
-    streams_[channel].accept(ends[0], "the program on channel " + std::to_string(channel));
+    programs_[channel].accept(ends[0], "the program on channel " + std::to_string(channel));
     host_.wake();
     return ends[1];
 }
@@ -157,20 +150,6 @@ int Peer::accept() {
 void Peer::stopListening() {
     std::lock_guard<std::mutex> lock(host_.mutex);
     listening_ = false;
-}
-
-std::string Peer::statistics() const {
-    std::lock_guard<std::mutex> lock(host_.mutex);
-    const Link_Statistics& s = *Link_statistics(link_.get());
-    char text[320];
-    std::snprintf(
-        text, sizeof text,
-        "%s 0x%04X: %u bytes in %u frames sent (%u sent again), %u bytes in %u frames received, "
-        "%u messages out, %u in, round trip %.1f ms, %u sessions, %u bytes skipped, %u saved",
-        host_.device.c_str(), static_cast<unsigned>(address_), s.bytesSent, s.framesSent,
-        s.fragmentsResent, s.bytesReceived, s.framesReceived, s.messagesSent, s.messagesReceived,
-        s.roundTripUs / 1000.0, s.sessions, s.bytesSkipped, s.headBytesSaved);
-    return text;
 }
 
 } // namespace XBeeAT

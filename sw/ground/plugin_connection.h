@@ -167,11 +167,10 @@ public:
     void checkSendSize(const IceInternal::Buffer& buf) override {
         const size_t most = peer_->mostBytes();
         if (buf.b.size() > most)
-            throw Ice::MemoryLimitException(
-                __FILE__, __LINE__,
-                std::string("message too long for ") +
-                    (peer_->isAll() ? "one packet to all vehicles" : "the radio link") +
-                    " (at most " + std::to_string(most) + " bytes)");
+            throw Ice::MemoryLimitException(__FILE__, __LINE__,
+                                            std::string("message too long for ") +
+                                                peer_->carrierName() + " (at most " +
+                                                std::to_string(most) + " bytes)");
     }
     void setBufferSize(int, int) override {}
 

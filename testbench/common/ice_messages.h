@@ -4,6 +4,7 @@
 
 #pragma once
 
+#include "ice_header.h"
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -21,12 +22,9 @@ inline void append(Bytes& m, const Bytes& more) {
     m.insert(m.end(), more.begin(), more.end());
 }
 
-// A message whose size is filled in.
+// Returns a message with its header.
 inline Bytes message(uint8_t type, const Bytes& body, uint8_t compression = 0) {
-    Bytes m = {'I', 'c', 'e', 'P', 1, 0, 1, 0, type, compression};
-    put32(m, static_cast<uint32_t>(14 + body.size()));
-    append(m, body);
-    return m;
+    return IceHeader::pack(type, body, compression);
 }
 
 inline void encapsulate(Bytes& m, const Bytes& parameters, uint8_t minor = 1) {
@@ -41,7 +39,7 @@ inline void putString(Bytes& m, const std::string& s) {
     m.insert(m.end(), s.begin(), s.end());
 }
 
-// A request from the identity on.
+// Returns a request's body, starting with the identity.
 inline Bytes requestBody(const std::string& object, const std::string& operation, uint8_t minor = 1,
                          const Bytes& parameters = {}, const std::string& facet = "",
                          uint8_t mode = 0) {
@@ -62,10 +60,10 @@ inline Bytes request(uint32_t id, const Bytes& body) {
     Bytes m;
     put32(m, id);
     append(m, body);
-    return message(0, m);
+    return message(IceHeader::Request, m);
 }
 
-// id 0: oneway.
+// Returns a request; id 0 means oneway.
 inline Bytes request(uint32_t id, const std::string& object, const std::string& operation,
                      const Bytes& parameters, const std::string& facet = "", uint8_t minor = 1) {
     return request(id, requestBody(object, operation, minor, parameters, facet));
@@ -76,14 +74,14 @@ inline Bytes reply(uint32_t id, const Bytes& results, uint8_t status = 0, uint8_
     put32(m, id);
     m.push_back(status);
     encapsulate(m, results, minor);
-    return message(2, m);
+    return message(IceHeader::Reply, m);
 }
 
 inline Bytes validate() {
-    return message(3, {});
+    return message(IceHeader::Validate, {});
 }
 inline Bytes closing() {
-    return message(4, {}, 1);
+    return message(IceHeader::CloseConnection, {}, 1);
 }
 
 } // namespace IceMessages

@@ -3,7 +3,7 @@
 // crowd_test: programs at one engine that do not read, that send more than the link carries, or
 // that leave; signs of life for one that cuts silent connections, in simulated time.
 
-#include "stream.h"
+#include "program_connection.h"
 #include "wire.h"
 #include <gtest/gtest.h>
 #include <thread>
@@ -221,7 +221,7 @@ TEST_F(Crowd, AFloodLeavesRoomForOthers) {
     }
 }
 
-using XBeeAT::Stream;
+using XBeeAT::ProgramConnection;
 
 // By Ice 3.8's manual a connection without incoming bytes for 60 s (Ice.Connection.IdleTimeout) is
 // cut; a program that has written nothing for half of it sends a heartbeat. Ice 3.7 sends none by
@@ -245,7 +245,7 @@ public:
         writeAll(fd_, m);
         wroteAt_ = seconds;
         stream.read(seconds * 1000000);
-        while (stream.next(8192) == Stream::Next::Message) {
+        while (stream.next(8192) == ProgramConnection::Next::Message) {
             ++onTheAir;
             stream.taken(seconds * 1000000);
         }
@@ -262,7 +262,7 @@ public:
         silence = std::max(silence, seconds - heardAt_);
     }
 
-    Stream stream;
+    ProgramConnection stream;
     unsigned onTheAir = 0, heard = 0;
     U32 silence = 0; // the longest, in seconds
 
@@ -271,7 +271,7 @@ private:
     U32 wroteAt_ = 0, heardAt_ = 0;
 };
 
-TEST(Stream, AProgramThatCutsSilentConnectionsHearsSignsOfLifeWhileIdle) {
+TEST(ProgramConnection, AProgramThatCutsSilentConnectionsHearsSignsOfLifeWhileIdle) {
     Timed program;
     for (U32 second = 1; second < 1200; ++second)
         program.pass(second, true);
@@ -279,7 +279,7 @@ TEST(Stream, AProgramThatCutsSilentConnectionsHearsSignsOfLifeWhileIdle) {
     EXPECT_EQ(program.onTheAir, 0u);
 }
 
-TEST(Stream, AndWhileItSendsAndNothingComesBack) {
+TEST(ProgramConnection, AndWhileItSendsAndNothingComesBack) {
     Timed program;
     for (U32 second = 1; second < 1200; ++second) {
         if (second % 7 == 0)
@@ -290,7 +290,7 @@ TEST(Stream, AndWhileItSendsAndNothingComesBack) {
     EXPECT_EQ(program.onTheAir, 1199u / 7);
 }
 
-TEST(Stream, SignsOfLifeAreNoActivity) {
+TEST(ProgramConnection, SignsOfLifeAreNoActivity) {
     Timed program;
     program.send(1, 1);
     for (U32 second = 2; second < 100; ++second)
@@ -300,7 +300,7 @@ TEST(Stream, SignsOfLifeAreNoActivity) {
 }
 
 // They would keep its own time-out (Ice.ACM) from closing the connection.
-TEST(Stream, AProgramOfTheOldKindIsLeftAloneWhileIdle) {
+TEST(ProgramConnection, AProgramOfTheOldKindIsLeftAloneWhileIdle) {
     Timed program;
     program.send(1, 1);
     for (U32 second = 2; second < 1200; ++second)
@@ -308,7 +308,7 @@ TEST(Stream, AProgramOfTheOldKindIsLeftAloneWhileIdle) {
     EXPECT_LE(program.heard, 1u);
 }
 
-TEST(Stream, AProgramThatHasEndedItsWritingHearsNoSigns) {
+TEST(ProgramConnection, AProgramThatHasEndedItsWritingHearsNoSigns) {
     Timed program;
     program.send(1, 1);
     program.endWriting();
@@ -319,11 +319,11 @@ TEST(Stream, AProgramThatHasEndedItsWritingHearsNoSigns) {
 
 // It cannot be told, so what the kernel still holds of it is counted, too, although the connection
 // is reset: a sign of life was left unread.
-TEST(Stream, CallsThatAProgramLeftUnreadAreCountedWhenTheLinkIsLost) {
+TEST(ProgramConnection, CallsThatAProgramLeftUnreadAreCountedWhenTheLinkIsLost) {
     constexpr unsigned count = 3000;
     int pair[2];
     ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, pair), 0);
-    Stream stream;
+    ProgramConnection stream;
     stream.want(pair[1], "program");
     stream.open(0);
     Bytes call = message(0, 14), calls;
@@ -335,7 +335,7 @@ TEST(Stream, CallsThatAProgramLeftUnreadAreCountedWhenTheLinkIsLost) {
     (void)stream.beat(20000000);
     close(pair[0]);
     unsigned sent = 0;
-    for (; stream.next(8192) == Stream::Next::Message; ++sent)
+    for (; stream.next(8192) == ProgramConnection::Next::Message; ++sent)
         stream.taken(0);
     EXPECT_GT(sent, 100u);
     EXPECT_EQ(sent + stream.leave(0), count);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // fuzz_programs: libFuzzer target of the bytes from a program with the plugin: they come in any
-// pieces on a socket, and the engine's Stream makes messages of them. Each message must be one that
-// was sent, whole and in its turn. The answers must be whole messages, too.
+// pieces on a socket, and the engine's ProgramConnection makes messages of them. Each message must
+// be one that was sent, whole and in its turn. The answers must be whole messages, too.
 //
 // The first byte's lowest bit: the program is a server that the UAV called. Then a byte names the
 // step (mod 8), the next its argument n:
@@ -10,7 +10,8 @@
 //   bytes is given to the program 5 the program reads n bytes    6 it sends no more    7 n tenths
 //   of a second pass
 
-#include "stream.h"
+#include "ice_header.h"
+#include "program_connection.h"
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -21,25 +22,13 @@
 
 namespace {
 
-using XBeeAT::Stream;
+using XBeeAT::ProgramConnection;
 
 constexpr U32 longest = 8192;
 
 void expect(bool condition) {
     if (!condition)
         std::abort();
-}
-
-size_t sizeOf(const U8* head) {
-    U32 size;
-    std::memcpy(&size, head + 10, sizeof size);
-    return size;
-}
-
-std::vector<U8> headOf(U8 kind, size_t size) {
-    return {
-        'I', 'c', 'e', 'P', 1, 0, 1, 0, kind, 0, static_cast<U8>(size), static_cast<U8>(size >> 8),
-        0,   0};
 }
 
 class World {
@@ -61,8 +50,8 @@ public:
 
     void step(int what, size_t n, const U8* bytes, size_t left) {
         if (what == 2 || what == 3) {
-            const std::vector<U8> head = headOf(static_cast<U8>(n % 5), 14 + std::min(n, left));
-            sendBytes(head.data(), head.size());
+            const size_t size = std::min(n, left);
+            sendBytes(IceHeader::pack(n % 5, std::vector<U8>(size)).data(), IceHeader::bytes);
         }
         if (what < 4)
             sendBytes(bytes, std::min(n, left));
@@ -78,13 +67,13 @@ public:
     }
     void finish() {
         (void)stream_.leave(now_);
-        for (int i = 0; i < 300 && !stream_.is(Stream::State::Closed); ++i) {
+        for (int i = 0; i < 300 && !stream_.is(ProgramConnection::State::Closed); ++i) {
             readSome(4096);
             now_ += 100'000;
             stream_.write(now_);
             (void)stream_.beat(now_);
         }
-        expect(stream_.is(Stream::State::Closed));
+        expect(stream_.is(ProgramConnection::State::Closed));
     }
 
 private:
@@ -94,9 +83,8 @@ private:
             sent_.insert(sent_.end(), bytes, bytes + count);
     }
     void answer(size_t n) {
-        std::vector<U8> message = headOf(2, 14 + n);
-        message.resize(14 + n, 0x55);
-        if (stream_.is(Stream::State::Open))
+        const auto message = IceHeader::pack(IceHeader::Reply, std::vector<U8>(n, 0x55));
+        if (stream_.is(ProgramConnection::State::Open))
             (void)stream_.give(message.data(), static_cast<U32>(message.size()), now_);
     }
     void readSome(size_t n) {
@@ -104,9 +92,9 @@ private:
         const ssize_t count = recv(ends_[1], bytes, std::min(n, sizeof bytes), MSG_DONTWAIT);
         if (count > 0)
             got_.insert(got_.end(), bytes, bytes + count);
-        while (got_.size() >= 14) {
-            const size_t size = sizeOf(got_.data());
-            expect(std::memcmp(got_.data(), "IceP", 4) == 0 && size >= 14 && size < 300);
+        while (got_.size() >= IceHeader::bytes) {
+            const size_t size = IceHeader::sizeOf(got_.data());
+            expect(IceHeader::isValid(got_.data()) && size < 300);
             if (got_.size() < size)
                 return;
             got_.erase(got_.begin(), got_.begin() + static_cast<std::ptrdiff_t>(size));
@@ -114,7 +102,7 @@ private:
     }
     // Does the work of the engine's thread.
     void run() {
-        if (!stream_.is(Stream::State::Open))
+        if (!stream_.is(ProgramConnection::State::Open))
             return;
         pollfd p = stream_.interest(true);
         if (p.fd >= 0 && poll(&p, 1, 0) > 0) {
@@ -124,13 +112,13 @@ private:
                 stream_.write(now_);
         }
         for (;;) {
-            const Stream::Next next = stream_.next(longest);
+            const ProgramConnection::Next next = stream_.next(longest);
             skipValidates();
-            if (next == Stream::Next::Senseless) {
+            if (next == ProgramConnection::Next::Senseless) {
                 expect(!makesSense());
                 return stream_.close();
             }
-            if (next == Stream::Next::None)
+            if (next == ProgramConnection::Next::None)
                 break;
             take();
         }
@@ -162,7 +150,7 @@ private:
     bool validatesComeThrough_; // the first: a server's greeting
     std::vector<U8> sent_;      // and not yet taken
     std::vector<U8> got_;
-    Stream stream_;
+    ProgramConnection stream_;
 };
 
 } // namespace

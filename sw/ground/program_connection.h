@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// stream: one connection of a program: its socket, the Ice messages on it, and its state between
-// program and link. Of Ice it knows only the 14 bytes before each message and a request's number.
+// program_connection: one connection of a program: its socket, the Ice messages on it, and its
+// state between program and link. It knows only Ice's message header and a request's number
+// (ice_header.h).
 
 #pragma once
 
@@ -15,7 +16,7 @@ extern "C" {
 
 namespace XBeeAT {
 
-class Stream {
+class ProgramConnection {
 public:
     enum class State {
         Closed,
@@ -25,10 +26,10 @@ public:
         Leaving // the link's channel is closed; the program has yet to take what came
     };
 
-    Stream() = default;
-    ~Stream() { close(); }
-    Stream(const Stream&) = delete;
-    Stream& operator=(const Stream&) = delete;
+    ProgramConnection() = default;
+    ~ProgramConnection() { close(); }
+    ProgramConnection(const ProgramConnection&) = delete;
+    ProgramConnection& operator=(const ProgramConnection&) = delete;
 
     bool is(State state) const { return state_ == state; }
     // Takes the program's socket (and closes it in the end), which must not block. `name` is for

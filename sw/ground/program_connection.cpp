@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// stream: Ice messages between a socket and the link.
+// program_connection: Ice messages between a socket and the link.
 
-#include "stream.h"
+#include "program_connection.h"
+#include "ice_header.h"
 
 #include <cerrno>
 #include <sys/socket.h>
@@ -12,15 +13,11 @@ namespace XBeeAT {
 
 namespace {
 
-constexpr size_t bufferBytes = 4096, headerBytes = 14;
+constexpr size_t bufferBytes = 4096;
 constexpr U32 noBeat = 0xFFFFFFFFu;
 constexpr U32 heartbeatUs = 5000000; // below any sensible Ice.ACM.Timeout
 constexpr U32 signUs = 10000000;     // Ice 3.8 cuts a connection on which nothing comes for 60 s
 constexpr U32 leavingUs = 10000000;
-
-// Message types and offsets of IceP: "The Ice Protocol" in the manual of ZeroC Ice.
-enum MessageType { request = 0, batch = 1, reply = 2, validate = 3, closeConnection = 4 };
-constexpr size_t typeAt = 8, sizeAt = 10, idAt = 14;
 
 bool isOver(ssize_t count) {
     return count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR);
@@ -28,30 +25,30 @@ bool isOver(ssize_t count) {
 
 } // namespace
 
-void Stream::want(int fd, const std::string& name, U32 lateUs) {
+void ProgramConnection::want(int fd, const std::string& name, U32 lateUs) {
     close(State::Wanted);
     fd_ = fd;
     name_ = name;
     lateUs_ = lateUs;
 }
 
-void Stream::call() {
+void ProgramConnection::call() {
     close(State::Called);
     isServer_ = true;
 }
 
-void Stream::accept(int fd, const std::string& name) {
+void ProgramConnection::accept(int fd, const std::string& name) {
     state_ = State::Open;
     fd_ = fd;
     name_ = name;
 }
 
-void Stream::open(U32 nowUs) {
+void ProgramConnection::open(U32 nowUs) {
     state_ = State::Open;
     activeAt_ = nowUs;
 }
 
-unsigned Stream::leave(U32 nowUs) {
+unsigned ProgramConnection::leave(U32 nowUs) {
     unsigned unsent = 0;
     for (size_t had = ~size_t(0); fd_ >= 0 && !ended_ && had != out_.size(); read(nowUs))
         had = out_.size();
@@ -65,7 +62,7 @@ unsigned Stream::leave(U32 nowUs) {
     return unsent;
 }
 
-void Stream::close(State to) {
+void ProgramConnection::close(State to) {
     if (fd_ >= 0)
         ::close(fd_);
     fd_ = -1;
@@ -77,19 +74,17 @@ void Stream::close(State to) {
     lateUs_ = never;
 }
 
-pollfd Stream::interest(bool reads) const {
+pollfd ProgramConnection::interest(bool reads) const {
     const bool wantsIn = reads && is(State::Open) && !ended_;
     const int events = (wantsIn ? POLLIN : 0) | (in_.empty() ? 0 : POLLOUT);
     return {events ? fd_ : -1, static_cast<short>(events), 0};
 }
 
-U32 Stream::messageSize() const {
-    const U8* p = out_.data() + sizeAt;
-    return static_cast<U32>(p[0]) | static_cast<U32>(p[1]) << 8 | static_cast<U32>(p[2]) << 16 |
-           static_cast<U32>(p[3]) << 24;
+U32 ProgramConnection::messageSize() const {
+    return IceHeader::sizeOf(out_.data());
 }
 
-void Stream::read(U32 nowUs) {
+void ProgramConnection::read(U32 nowUs) {
     U8 bytes[bufferBytes];
     ssize_t count = recv(fd_, bytes, sizeof bytes, 0);
     if (out_.empty())
@@ -98,23 +93,23 @@ void Stream::read(U32 nowUs) {
     if (count > 0)
         out_.insert(out_.end(), bytes, bytes + count);
     ended_ = isOver(count);
-    if (out_.size() >= headerBytes && out_.size() >= messageSize()) { // a part is no activity
+    if (out_.size() >= IceHeader::bytes && out_.size() >= messageSize()) { // a part is no activity
         if (!owesSign_)
             owesSince_ = nowUs;
         owesSign_ = true;
-        if (out_[typeAt] != validate)
+        if (IceHeader::typeOf(out_.data()) != IceHeader::Validate)
             activeAt_ = nowUs;
     }
 }
 
-Stream::Next Stream::next(U32 longest) {
-    while (out_.size() >= headerBytes) {
+ProgramConnection::Next ProgramConnection::next(U32 longest) {
+    while (out_.size() >= IceHeader::bytes) {
         U32 size = messageSize();
-        if (size < headerBytes || size > longest)
+        if (size < IceHeader::bytes || size > longest)
             return Next::Senseless;
         if (out_.size() < size)
             return Next::None;
-        if (out_[typeAt] != validate)
+        if (IceHeader::typeOf(out_.data()) != IceHeader::Validate)
             return Next::Message;
         bool first = isServer_ && !greeted_;
         greeted_ = true;
@@ -125,37 +120,38 @@ Stream::Next Stream::next(U32 longest) {
     return Next::None;
 }
 
-bool Stream::isCall() const {
-    return out_[typeAt] == request || out_[typeAt] == batch;
+bool ProgramConnection::isCall() const {
+    const U8 type = IceHeader::typeOf(out_.data());
+    return type == IceHeader::Request || type == IceHeader::Batch;
 }
 
-Stream::Kind Stream::kind() const {
-    if (out_[typeAt] != request || out_.size() < idAt + 4)
-        return out_[typeAt] == closeConnection ? Kind::Goodbye : Kind::Other;
-    const bool hasId = out_[idAt] | out_[idAt + 1] | out_[idAt + 2] | out_[idAt + 3];
-    return hasId ? Kind::Twoway : Kind::Oneway;
+ProgramConnection::Kind ProgramConnection::kind() const {
+    const U8 type = IceHeader::typeOf(out_.data());
+    if (type != IceHeader::Request || out_.size() < IceHeader::requestIdAt + 4)
+        return type == IceHeader::CloseConnection ? Kind::Goodbye : Kind::Other;
+    return IceHeader::get32(out_.data() + IceHeader::requestIdAt) ? Kind::Twoway : Kind::Oneway;
 }
 
-void Stream::taken(U32 nowUs) {
+void ProgramConnection::taken(U32 nowUs) {
     if (kind() == Kind::Twoway && pending_++ == 0)
         heardAt_ = nowUs;
     out_.erase(out_.begin(), out_.begin() + messageSize());
     since_ = readAt_;
 }
 
-bool Stream::give(const U8* message, U32 size, U32 nowUs) {
+bool ProgramConnection::give(const U8* message, U32 size, U32 nowUs) {
     if (in_.size() + size > mostUnread)
         return false;
     in_.insert(in_.end(), message, message + size);
     heardAt_ = nowUs;
     owesSign_ = false;
-    if (size > typeAt && message[typeAt] == reply && pending_)
+    if (size >= IceHeader::bytes && IceHeader::typeOf(message) == IceHeader::Reply && pending_)
         --pending_;
     write(nowUs);
     return true;
 }
 
-void Stream::write(U32 nowUs) {
+void ProgramConnection::write(U32 nowUs) {
     if (fd_ < 0 || in_.empty())
         return;
     ssize_t count = send(fd_, in_.data(), in_.size(), MSG_NOSIGNAL);
@@ -169,7 +165,7 @@ void Stream::write(U32 nowUs) {
         close();
 }
 
-U32 Stream::beat(U32 nowUs) {
+U32 ProgramConnection::beat(U32 nowUs) {
     if (is(State::Leaving)) {
         if (nowUs - leftAt_ < leavingUs)
             return leavingUs - (nowUs - leftAt_);
@@ -184,37 +180,36 @@ U32 Stream::beat(U32 nowUs) {
     pollfd end{fd_, POLLRDHUP, 0};
     if (in_.empty() && poll(&end, 1, 0) == 0) { // it has not ended its writing
         const U32 activeAt = activeAt_;
-        (void)giveHead(validate, nowUs);
+        (void)giveHead(IceHeader::Validate, nowUs);
         activeAt_ = activeAt;
     }
     return 100000u;
 }
 
-U32 Stream::silentUs(U32 nowUs) const {
+U32 ProgramConnection::silentUs(U32 nowUs) const {
     return is(State::Open) && !pending_ ? nowUs - activeAt_ : 0;
 }
 
-bool Stream::giveHead(U8 type, U32 nowUs) {
-    const U8 head[headerBytes] = {'I', 'c', 'e', 'P', 1, 0, 1, 0, type, 0, headerBytes};
-    return give(head, headerBytes, nowUs);
+bool ProgramConnection::giveHead(U8 type, U32 nowUs) {
+    return give(IceHeader::pack(type).data(), IceHeader::bytes, nowUs);
 }
 
-void Stream::sayGoodbye(U32 nowUs) {
-    (void)giveHead(closeConnection, nowUs);
+void ProgramConnection::sayGoodbye(U32 nowUs) {
+    (void)giveHead(IceHeader::CloseConnection, nowUs);
 }
 
-void Stream::greet(U32 nowUs) {
-    (void)giveHead(validate, nowUs);
+void ProgramConnection::greet(U32 nowUs) {
+    (void)giveHead(IceHeader::Validate, nowUs);
 }
 
-void Stream::refuse(const std::string& why, U32 nowUs) {
+void ProgramConnection::refuse(const std::string& why, U32 nowUs) {
     constexpr U8 unknownLocalException = 5;
-    std::vector<U8> answer = {'I', 'c', 'e', 'P', 1, 0, 1, 0, reply, 0, 0, 0, 0, 0};
-    answer.insert(answer.end(), out_.begin() + idAt, out_.begin() + idAt + 4);
-    answer.push_back(unknownLocalException);
-    answer.push_back(static_cast<U8>(why.size()));
-    answer.insert(answer.end(), why.begin(), why.end());
-    answer[sizeAt] = static_cast<U8>(answer.size());
+    const auto id = out_.begin() + IceHeader::requestIdAt;
+    std::vector<U8> body(id, id + 4);
+    body.push_back(unknownLocalException);
+    body.push_back(static_cast<U8>(why.size()));
+    body.insert(body.end(), why.begin(), why.end());
+    const std::vector<U8> answer = IceHeader::pack(IceHeader::Reply, body);
     taken(nowUs);
     (void)give(answer.data(), static_cast<U32>(answer.size()), nowUs);
 }

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+//
+// packet_line: packets to and from the modem on a serial port, in API mode or transparent mode.
+// Peers are its senders; each has its share of the time on the air.
+
+#pragma once
+
+#include "api_modem.h"
+#include "serial_port.h"
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+extern "C" {
+#include "link.h"
+}
+
+namespace XBeeAT {
+
+class PacketLine {
+public:
+    // What the line knows of a peer.
+    class Sender {
+    public:
+        explicit Sender(int address) : address_(address) {}
+        virtual ~Sender() = default;
+        int address() const { return address_; }
+        virtual bool isUp() const = 0;      // it has a session
+        virtual U32 randomWait() const = 0; // RN that its traffic wants
+
+        uint64_t airUs = 0; // time on the air that it has had
+
+    private:
+        const int address_;
+    };
+    using Deliver = std::function<void(int source, const U8* bytes, size_t size)>;
+    using Answer = std::function<void(bool isThere)>;
+
+    explicit PacketLine(SerialPort& serial) : serial_(serial) {}
+
+    // A new sender has had as much of the air as the one that sent last.
+    void join(Sender& sender) {
+        sender.airUs = airUs_;
+        senders_.push_back(&sender);
+    }
+    // The modem is set up; it answers for each packet in API mode. `target`: DL.
+    void start(bool isApi, bool escapes, int target) {
+        out_.clear();
+        target_ = target;
+        api_ = isApi ? std::make_unique<ApiModem>(escapes) : nullptr;
+    }
+    bool isApi() const { return api_ != nullptr; }
+    // Reaches several vehicles only in API mode.
+    bool reaches(const Sender& sender, bool hasLink) const {
+        return api_ || (sender.address() == target_ && hasLink);
+    }
+
+    // Takes a packet while the line is free. Returns whether it did.
+    bool send(Sender& sender, const U8* frame, U32 size, U32 now);
+    // Reads what has come, and calls `deliver` and, per packet sent, `answer`. Returns read()'s
+    // result.
+    ssize_t read(const Deliver& deliver, const Answer& answer);
+    // Calls `answer(false)` for each packet that the modem will not answer for any more.
+    void expire(U32 now, const Answer& answer) {
+        if (api_)
+            api_->expire(now, [&] { answer(false); });
+    }
+    // Gives the port the bytes that it has not taken yet.
+    void flush();
+    bool isFlushed() const { return out_.empty(); }
+
+private:
+    SerialPort& serial_;
+    std::vector<Sender*> senders_;
+    std::unique_ptr<ApiModem> api_; // none in transparent mode
+    std::vector<U8> out_;           // the packet's bytes that the port has not taken yet
+    uint64_t airUs_ = 0;            // airUs of the sender that sent last
+    int target_ = 0;
+};
+
+} // namespace XBeeAT

@@ -90,7 +90,7 @@ protected:
             v = std::make_unique<Uav>(rig_.air, address, static_cast<uint64_t>(address));
             if (!keys.empty())
                 Link_setKey(v->link(), 0, keys[0].data(), static_cast<U32>(address));
-            v->take = [this, link = v->link(), address](int channel, const U8* data, U32 size) {
+            v->taking = [this, link = v->link(), address](int channel, const U8* data, U32 size) {
                 Bytes answer = message(data[size - 1], 30);
                 answer.back() = static_cast<uint8_t>(address);
                 if (Link_send(link, channel, answer.data(), 30, 0) == LINK_FULL)

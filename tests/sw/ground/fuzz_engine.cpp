@@ -13,7 +13,9 @@
 //
 // Clock and serial port are this file's: so the engine's thread runs alone, by the input's time.
 
+#include "../../support/link_end.h"
 #include "engine.h"
+#include "ice_header.h"
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
@@ -57,11 +59,9 @@ public:
         ssize_t count = fd_ < 0 ? 0 : recv(fd_, bytes, sizeof bytes, MSG_DONTWAIT);
         if (count > 0)
             in_.insert(in_.end(), bytes, bytes + count);
-        while (in_.size() >= 14) {
-            uint32_t size;
-            std::memcpy(&size, in_.data() + 10, sizeof size);
-            expect(std::memcmp(in_.data(), "IceP", 4) == 0 && size >= 14 &&
-                   size <= LINK_MAX_MESSAGE);
+        while (in_.size() >= IceHeader::bytes) {
+            const uint32_t size = IceHeader::sizeOf(in_.data());
+            expect(IceHeader::isValid(in_.data()) && size <= LINK_MAX_MESSAGE);
             if (in_.size() < size)
                 break;
             in_.erase(in_.begin(), in_.begin() + size);
@@ -74,27 +74,13 @@ private:
 };
 
 // The surroundings of one input: the wire, the peer's link, programs, time.
-class World {
+class World : private LinkEnd {
 public:
     World(const uint8_t* data, size_t size) : at_(data), end_(data + size) {
-        static const Link_Port port = {
-            [](void* w, const U8* f, U32 n) {
-                self(w).frames_.emplace_back(f, f + n);
-                return 0;
-            },
-            [](void* w) { return self(w).random(); },
-            [](void* w, int channel, const U8* d, U32 n) { // an echo
-                return Link_send(self(w).peer_.get(), channel, d, n, 0) == LINK_FULL ? 1 : 0;
-            },
-            [](void*, int, int) {},
-            [](void*, Link_State) {},
-            nullptr,
-            nullptr};
-        const Link_Config config = {&port, this, 1440, LINK_USE(*buffers_)};
-        Link_init(peer_.get(), &config);
-        Link_start(peer_.get(), now);
+        begin();
+        Link_start(link(), now);
     }
-    ~World() { close(serial); }
+    ~World() override { close(serial); }
     void run() {
         XBeeAT::Settings settings;
         settings.device = "fuzz";
@@ -123,7 +109,7 @@ public:
     const int serial = eventfd(0, EFD_CLOEXEC);
 
     void fromEngine(const uint8_t* bytes, size_t size) {
-        Link_receive(peer_.get(), bytes, static_cast<U32>(size), now);
+        Link_receive(link(), bytes, static_cast<U32>(size), now);
         if (bytes[0] == 'A' || bytes[0] == '+') // a modem would understand it
             for (char c : {'O', 'K', '\r'})
                 toEngine.push_back(static_cast<uint8_t>(c));
@@ -155,9 +141,15 @@ public:
 
 private:
     enum class Stage { Begins, Goes, Over };
-    static World& self(void* w) { return *static_cast<World*>(w); }
 
-    uint32_t random() { return nonce_ = nonce_ * 1664525u + 1013904223u; }
+    bool transmit(const U8* frame, U32 size) override {
+        frames_.emplace_back(frame, frame + size);
+        return true;
+    }
+    bool take(int channel, const U8* data, U32 size) override { // an echo
+        return Link_send(link(), channel, data, size, 0) != LINK_FULL;
+    }
+    U32 random() override { return nonce_ = nonce_ * 1664525u + 1013904223u; }
     void end() {
         std::lock_guard<std::mutex> lock(mutex_);
         stage_ = Stage::Over;
@@ -165,7 +157,7 @@ private:
     }
     void pass(uint32_t us) {
         now += us;
-        Link_poll(peer_.get(), now);
+        Link_poll(link(), now);
         deliver();
         for (Program& program : programs_)
             program.read();
@@ -208,13 +200,7 @@ private:
         } else if (step == 2) {
             lose_ = n;
         } else if (step < 5) {
-            Bytes message = {'I', 'c', 'e', 'P', 1, 0, 1, 0, static_cast<uint8_t>(n % 5), 0};
-            const Bytes body = take(n);
-            const U32 size = static_cast<U32>(14 + body.size());
-            for (int i = 0; i < 4; ++i)
-                message.push_back(static_cast<uint8_t>(size >> 8 * i));
-            message.insert(message.end(), body.begin(), body.end());
-            program.write(message);
+            program.write(IceHeader::pack(n % 5, take(n)));
         } else if (step == 5) {
             program.write(take(n));
         } else if (step == 6) {
@@ -231,8 +217,6 @@ private:
     unsigned lose_ = 0, rest_ = 20, busy_ = 0;
     uint8_t harm_ = 0;
     std::vector<Bytes> frames_;
-    std::unique_ptr<Link> peer_{new Link};
-    std::unique_ptr<Link_Buffers> buffers_{new Link_Buffers};
     std::shared_ptr<XBeeAT::Peer> engine_;
     Program programs_[3];
     std::mutex mutex_;

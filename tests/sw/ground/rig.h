@@ -6,6 +6,7 @@
 
 #pragma once
 
+#include "../../support/link_end.h"
 #include "clock_file.h"
 #include "ground_step.h"
 #include "rf_channel.h"
@@ -20,21 +21,14 @@
 #include <sys/socket.h>
 #include <thread>
 
-extern "C" {
-#include "link.h"
-}
-
-// Uav is a modem, and a link layer behind it.
-class Uav {
+// Uav is a modem and the link that uses it.
+class Uav : public LinkEnd {
 public:
     using Bytes = std::vector<uint8_t>;
 
     Uav(RfChannel& air, int address, uint64_t seed) : address_(address), random_(seed) {
-        static const Link_Port port = {onTransmit, onRandom, onMessage, onChannel,
-                                       onState,    nullptr,  nullptr};
         move(air);
-        const Link_Config config = {&port, this, 1440, LINK_USE(*buffers_)};
-        Link_init(link(), &config);
+        begin();
     }
     // Flies to where the modems of an air hear it.
     void move(RfChannel& to) {
@@ -55,47 +49,40 @@ public:
         Link_receive(link(), heard.data(), static_cast<U32>(heard.size()), us);
         Link_poll(link(), us);
     }
-    Link* link() { return link_.get(); }
-    unsigned sessions() { return Link_statistics(link())->sessions; }
-    bool isUp() { return Link_state(link()) == LINK_STATE_UP; }
+    unsigned sessions() { return statistics().sessions; }
 
     std::unique_ptr<XBee> modem;
     std::vector<std::pair<int, Bytes>> received;
     std::vector<std::pair<int, int>> opened; // channel, 1 open, 0 close
     bool echo = false, refuse = false, runs = true;
-    // If set, takes messages in place of this one; called in the rig's thread, locked.
-    std::function<int(int channel, const U8* data, U32 size)> take;
+    // If set, takes messages instead of `received`; called in the rig's thread, locked.
+    std::function<int(int channel, const U8* data, U32 size)> taking;
     std::function<void(int channel, bool isOpen)> opening;
 
 private:
-    static Uav& self(void* c) { return *static_cast<Uav*>(c); }
-    static int onTransmit(void* c, const U8* frame, U32 size) {
-        self(c).line_.send({frame, frame + size}, self(c).now_);
-        return 0;
+    bool transmit(const U8* frame, U32 size) override {
+        line_.send({frame, frame + size}, now_);
+        return true;
     }
-    static U32 onRandom(void* c) { return self(c).random_.next(); }
-    static int onMessage(void* c, int channel, const U8* data, U32 size) {
-        Uav& u = self(c);
-        if (u.take)
-            return u.take(channel, data, size);
-        if (u.refuse || (u.echo && Link_send(u.link(), channel, data, size, 0) == LINK_FULL))
-            return 1;
-        u.received.emplace_back(channel, Bytes(data, data + size));
-        return 0;
+    U32 random() override { return random_.next(); }
+    bool take(int channel, const U8* data, U32 size) override {
+        if (taking)
+            return taking(channel, data, size) == 0;
+        if (refuse || (echo && Link_send(link(), channel, data, size, 0) == LINK_FULL))
+            return false;
+        received.emplace_back(channel, Bytes(data, data + size));
+        return true;
     }
-    static void onChannel(void* c, int channel, int isOpen) {
-        if (self(c).opening)
-            self(c).opening(channel, isOpen != 0);
+    void onChannel(int channel, bool isOpen) override {
+        if (opening)
+            opening(channel, isOpen);
         else
-            self(c).opened.emplace_back(channel, isOpen);
+            opened.emplace_back(channel, isOpen);
     }
-    static void onState(void*, Link_State) {}
 
     const int address_;
     HostLine line_;
     Random random_;
-    std::unique_ptr<Link> link_{new Link};
-    std::unique_ptr<Link_Buffers> buffers_{new Link_Buffers};
     uint64_t now_ = 0;
 };
 

@@ -5,7 +5,9 @@
 
 #pragma once
 
+#include "../../support/link_end.h"
 #include "engine.h"
+#include "ice_header.h"
 #include "random.h"
 #include <algorithm>
 #include <cerrno>
@@ -23,13 +25,9 @@
 
 using Bytes = std::vector<uint8_t>;
 
-// A message in Ice's framing; only its size is looked at.
+// Returns a message in Ice's framing, of which only the size matters.
 inline Bytes message(uint8_t tag, size_t size = 30) {
-    Bytes m = {'I', 'c', 'e', 'P', 1, 0, 1, 0, 7, 0, 0, 0, 0, 0};
-    m.resize(size, tag);
-    for (int i = 0; i < 4; ++i)
-        m[10 + i] = static_cast<uint8_t>(size >> 8 * i);
-    return m;
+    return IceHeader::pack(7, Bytes(size - IceHeader::bytes, tag));
 }
 
 inline void writeAll(int fd, const Bytes& bytes) {
@@ -63,24 +61,11 @@ private:
     std::string text_;
 };
 
-class Wire {
+class Wire : private LinkEnd {
 public:
     Wire() {
-        static const Link_Port port = {
-            [](void* c, const U8* f, U32 n) { return self(c).put(f, n); },
-            [](void* c) { return self(c).random_.next(); },
-            [](void* c, int channel, const U8* d, U32 n) { return self(c).take(channel, d, n); },
-            [](void* c, int channel, int isOpen) {
-                self(c).open[channel] = isOpen != 0;
-                self(c).openings[channel] += isOpen != 0;
-            },
-            [](void*, Link_State) {},
-            nullptr,
-            nullptr};
-        const Link_Config config = {&port, this, 16, // a fast way: nothing to pace
-                                    LINK_USE(*buffers_)};
-        Link_init(link_.get(), &config);
-        Link_start(link_.get(), us());
+        begin(16); // a fast way: nothing to pace
+        Link_start(link(), us());
         if (openpty(&master_, &slave_, name_, nullptr, nullptr) != 0)
             throw std::runtime_error("no pty");
         termios raw;
@@ -125,8 +110,8 @@ public:
             U8 bytes[512];
             ssize_t count = read(master_, bytes, sizeof bytes);
             if (count > 0)
-                Link_receive(link_.get(), bytes, static_cast<U32>(count), us());
-            Link_poll(link_.get(), us());
+                Link_receive(link(), bytes, static_cast<U32>(count), us());
+            Link_poll(link(), us());
         }
         return true;
     }
@@ -136,23 +121,27 @@ public:
     unsigned openings[LINK_CHANNELS] = {}, received[LINK_CHANNELS] = {}; // messages
 
 private:
-    int take(int channel, const U8* data, U32 size) {
-        if (echo && Link_send(link_.get(), channel, data, size, 0) == LINK_FULL)
-            return 1;
-        ++received[channel];
-        return 0;
+    bool transmit(const U8* frame, U32 size) override {
+        return write(master_, frame, size) == static_cast<ssize_t>(size);
     }
-    static Wire& self(void* c) { return *static_cast<Wire*>(c); }
+    U32 random() override { return random_.next(); }
+    bool take(int channel, const U8* data, U32 size) override {
+        if (echo && Link_send(link(), channel, data, size, 0) == LINK_FULL)
+            return false;
+        ++received[channel];
+        return true;
+    }
+    void onChannel(int channel, bool isOpen) override {
+        open[channel] = isOpen;
+        openings[channel] += isOpen;
+    }
     static U32 us() {
         return static_cast<U32>(std::chrono::duration_cast<std::chrono::microseconds>(
                                     std::chrono::steady_clock::now().time_since_epoch())
                                     .count());
     }
-    int put(const U8* f, U32 n) { return write(master_, f, n) == static_cast<ssize_t>(n) ? 0 : 1; }
     EngineLog log_;
     int master_ = -1, slave_ = -1;
     char name_[128];
     Random random_{testSeed()};
-    std::unique_ptr<Link> link_{new Link};
-    std::unique_ptr<Link_Buffers> buffers_{new Link_Buffers};
 };

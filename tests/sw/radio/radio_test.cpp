@@ -4,6 +4,7 @@
 // and the XBee model on its UART. The driver runs in a task of the firmware's kernel, and time is
 // simulated.
 
+#include "../../support/link_end.h"
 #include "uav_machine.h"
 #include <gtest/gtest.h>
 
@@ -28,36 +29,26 @@ XBee::Options quick(std::map<std::string, uint32_t> more, const std::string& key
     return options;
 }
 
-// A link with its messages; its frames go where `send` says.
-class Peer {
+// A link that keeps its messages; `send` sends its frames and returns 0.
+class MessageLink : public LinkEnd {
 public:
-    explicit Peer(std::function<int(const U8*, U32)> send, uint32_t seed)
-        : link_(new Link), send_(std::move(send)), random_(seed) {
-        static const Link_Port port = {
-            [](void* c, const U8* f, U32 n) { return static_cast<Peer*>(c)->send_(f, n); },
-            [](void* c) { return static_cast<Peer*>(c)->random_.next(); },
-            [](void* c, int, const U8* d, U32 n) {
-                static_cast<Peer*>(c)->received.emplace_back(d, d + n);
-                return 0;
-            },
-            [](void*, int, int) {},
-            [](void*, Link_State) {},
-            nullptr,
-            nullptr};
-        const Link_Config config = {&port, this, 1440, LINK_USE(*buffers_)};
-        Link_init(link_.get(), &config);
+    explicit MessageLink(std::function<int(const U8*, U32)> send, uint32_t seed)
+        : send_(std::move(send)), random_(seed) {
+        begin();
     }
-    Link* link() { return link_.get(); }
     static void onPacket(void* c, const U8* bytes, U32 size) {
-        Link_receive(static_cast<Peer*>(c)->link(), bytes, size,
+        Link_receive(static_cast<MessageLink*>(c)->link(), bytes, size,
                      OSTimeGet() * (1000000U / OS_TICKS_PER_SEC));
     }
-    bool isUp() const { return Link_state(link_.get()) == LINK_STATE_UP; }
     std::vector<std::vector<uint8_t>> received;
 
 private:
-    std::unique_ptr<Link> link_;
-    std::unique_ptr<Link_Buffers> buffers_{new Link_Buffers};
+    bool transmit(const U8* frame, U32 size) override { return send_(frame, size) == 0; }
+    U32 random() override { return random_.next(); }
+    bool take(int, const U8* data, U32 size) override {
+        received.emplace_back(data, data + size);
+        return true;
+    }
     std::function<int(const U8*, U32)> send_;
     Random random_;
 };
@@ -169,12 +160,12 @@ protected:
     HostLine farLine_;
     XBee far_;
     SocModel soc_{air_, quick({})};
-    Peer nearPeer_{[](const U8* f, U32 n) { return Radio_transmit(nullptr, f, n); }, 11};
-    Peer farPeer_{[this](const U8* f, U32 n) {
-                      farLine_.send({f, f + n}, soc_.now());
-                      return 0;
-                  },
-                  12};
+    MessageLink nearPeer_{[](const U8* f, U32 n) { return Radio_transmit(nullptr, f, n); }, 11};
+    MessageLink farPeer_{[this](const U8* f, U32 n) {
+                             farLine_.send({f, f + n}, soc_.now());
+                             return 0;
+                         },
+                         12};
     bool farLinkRuns_ = false, irqOn_ = false;
     uint64_t nextPoll_ = 0;
     const FSMC_Port* realPort_ = nullptr;

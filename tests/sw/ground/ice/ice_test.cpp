@@ -90,11 +90,11 @@ TEST_F(StockIce, ACallThatHasTimedOutIsNeverCarriedOut) {
     Ice::CommunicatorHolder ic(world_.client({{"Ice.Override.ConnectTimeout", "1800000"}}));
     auto echo = world_.proxy(ic.communicator())->ice_timeout(2000)->ice_invocationTimeout(-2);
     echo->ice_ping();
-    const auto take = world_.rig.uav.take;
-    world_.rig.with([&] { world_.rig.uav.take = [](int, const U8*, U32) { return 1; }; });
+    const auto take = world_.rig.uav.taking;
+    world_.rig.with([&] { world_.rig.uav.taking = [](int, const U8*, U32) { return 1; }; });
     EXPECT_THROW(echo->note(1), Ice::LocalException);
     EXPECT_TRUE(world_.rig.until([&] { return world_.rig.uav.sessions() == 2; }));
-    world_.rig.with([&] { world_.rig.uav.take = take; });
+    world_.rig.with([&] { world_.rig.uav.taking = take; });
     EXPECT_EQ(world_.proxy(ic.communicator())->noted(), 0);
 }
 

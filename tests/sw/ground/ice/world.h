@@ -119,7 +119,7 @@ public:
             throw std::runtime_error("relay: no TCP port");
         port_ = ntohs(any.sin_port);
         rig_.with([this] {
-            rig_.uav.take = [this](int channel, const U8* data, U32 count) {
+            rig_.uav.taking = [this](int channel, const U8* data, U32 count) {
                 return take(lines_[channel], data, count);
             };
             rig_.uav.opening = [this](int channel, bool isOpen) { opening(channel, isOpen); };
@@ -128,7 +128,7 @@ public:
     }
     ~Relay() {
         rig_.with([this] {
-            rig_.uav.take = nullptr;
+            rig_.uav.taking = nullptr;
             rig_.uav.opening = nullptr;
             rig_.step = nullptr;
         });

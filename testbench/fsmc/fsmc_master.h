@@ -13,10 +13,10 @@
 
 #pragma once
 
+#include "fsmc_pins.h"
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <stdexcept>
 #include <string>
 
 // Addresses and bits of its registers (RM0033, 31.5.6).
@@ -40,36 +40,12 @@ constexpr uint32_t timing(unsigned addset, unsigned datast, unsigned busturn = 0
 
 } // namespace fsmc
 
-// The pins between processor and FPGA. The bench sets the design's side.
-struct FsmcPins {
-    uint32_t a = 0; // halfword address, 25 bits; multiplexed: only bits 24..16 are meant
-    uint16_t d = 0; // driven by the processor while dOut
-    bool dOut = false;
-    uint8_t neN = 0xF, nblN = 3; // NE1 in bit 0 .. NE4 in bit 3
-    bool noeN = true, nweN = true, nadvN = true;
-    // from the design
-    uint16_t dFromDesign = 0;
-    bool dDriven = false, nwaitN = true;
-};
-
 struct FsmcCorner;
 class PinDelays;
 
-class FsmcError : public std::runtime_error {
-public:
-    using std::runtime_error::runtime_error;
-};
-
 class FsmcMaster {
 public:
-    // The master's port to the design: `tick` clocks it once with the present pins, `settle` shows
-    // it changed pins between two clock edges. Both update the design's side. `passQuiet` passes up
-    // to the given clocks and ns in which nothing of the design moves, and returns the number of
-    // clocks; a design without it is never quiet.
-    struct Design {
-        std::function<void()> tick, settle;
-        std::function<uint64_t(uint64_t clocks, uint64_t ns)> passQuiet = nullptr;
-    };
+    using Design = FsmcDesign;
     FsmcMaster(FsmcPins& pins, Design design, unsigned hclkPerUnit = 6, unsigned clkPerUnit = 5);
     ~FsmcMaster();
 

@@ -5,7 +5,7 @@
 
 #pragma once
 
-#include "fsmc_master.h"
+#include "fsmc_pins.h"
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
@@ -75,7 +75,7 @@ inline FsmcCorner cornerOf(unsigned index, unsigned hclk = 100) {
 class PinDelays {
 public:
     // `near` are the processor's pins, `far` the design's; clocks' lengths in ps.
-    PinDelays(FsmcPins& near, FsmcPins& far, FsmcMaster::Design design, const FsmcCorner& corner,
+    PinDelays(FsmcPins& near, FsmcPins& far, FsmcDesign design, const FsmcCorner& corner,
               uint64_t seed, int hclk, int clk)
         : near_(near), far_(far), design_(std::move(design)), corner_(corner), random_(seed),
           nextEdge_(clk), hclk_(hclk), clk_(clk), sent_(driven(near)), arrived_(sent_) {
@@ -198,7 +198,7 @@ private:
         bool level, toDesign;
     };
     FsmcPins &near_, &far_;
-    FsmcMaster::Design design_;
+    FsmcDesign design_;
     const FsmcCorner& corner_;
     std::mt19937_64 random_;
     int64_t now_ = 0, nextEdge_, captured_ = -1000000, inputMoved_ = 0, dataMoved_ = 0;

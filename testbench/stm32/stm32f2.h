@@ -75,8 +75,11 @@ private:
     uint32_t readPeripheral(uint32_t address);
     void writePeripheral(uint32_t address, uint32_t value);
     void checkWaitStates();
-    void writeWatchdog(uint32_t offset, uint32_t value);
-    void requireClock(uint32_t address) const;
+    struct Peripheral;
+    static const Peripheral peripherals[];
+    const Peripheral& peripheralAt(uint32_t address) const;
+    static Error noRegister();
+    uint32_t& storedIn(uint32_t base, uint32_t offset, uint32_t bytes);
     bool isSet(uint32_t address, unsigned bit) const;
     void requireFsmc();
     void waitForFlash();
@@ -84,9 +87,21 @@ private:
     void updateExti();
     void updateFpgaPins();
     void followFpga();
-    uint32_t readSpi(uint32_t offset);
     bool drivesLow(uint32_t port, unsigned pin) const;
     void resetPeripherals();
+    // Words of each peripheral, by their offset.
+    uint32_t readGpio(uint32_t offset), readCrc(uint32_t offset), readBackup(uint32_t offset),
+        readRandom(uint32_t offset), readPower(uint32_t offset), readUsart(uint32_t offset),
+        readSpi(uint32_t offset), readSyscfg(uint32_t offset), readRcc(uint32_t offset),
+        readExti(uint32_t offset), readFlashInterface(uint32_t offset),
+        readWatchdog(uint32_t offset);
+    void writeGpio(uint32_t offset, uint32_t value), writeCrc(uint32_t offset, uint32_t value),
+        writeBackup(uint32_t offset, uint32_t value), writeRandom(uint32_t offset, uint32_t value),
+        writePower(uint32_t offset, uint32_t value), writeUsart(uint32_t offset, uint32_t value),
+        writeSpi(uint32_t offset, uint32_t value), writeSyscfg(uint32_t offset, uint32_t value),
+        writeRcc(uint32_t offset, uint32_t value), writeExti(uint32_t offset, uint32_t value),
+        writeFlashInterface(uint32_t offset, uint32_t value),
+        writeWatchdog(uint32_t offset, uint32_t value);
     uint64_t watchdogNs() const;
     uint32_t& stored(uint32_t address) { return registers_[address]; }
 

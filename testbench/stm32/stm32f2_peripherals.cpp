@@ -21,18 +21,99 @@ bool Stm32F2::isSet(uint32_t address, unsigned bit) const {
     return found != registers_.end() && (found->second >> bit & 1);
 }
 
-void Stm32F2::requireClock(uint32_t address) const {
-    bool ok = isIn(address, gpio, 0x2400)       ? isSet(ahb1Enable, (address - gpio) / 0x400)
-              : isIn(address, crcUnit, 0x400)   ? isSet(ahb1Enable, 12)
-              : isIn(address, backupSram, 4096) ? isSet(ahb1Enable, 18)
-              : isIn(address, rng, 12)          ? isSet(ahb2Enable, 6)
-              : isIn(address, power, 8)         ? isSet(apb1Enable, 28)
-              : isIn(address, usart, 0x400)     ? isSet(apb2Enable, 4)
-              : isIn(address, spi, 0x400)       ? isSet(apb2Enable, 12)
-              : isIn(address, syscfg, 0x400)    ? isSet(apb2Enable, 14)
-                                                : true;
-    if (!ok)
-        throw Error("the peripheral's clock is off (RCC)");
+// ---- the table of peripherals ----
+
+// A peripheral: its registers' addresses, the bit of RCC that gives it a clock (enable 0: it always
+// has one), and what a read or write of a word does.
+struct Stm32F2::Peripheral {
+    uint32_t base, bytes, enable;
+    unsigned bit;
+    uint32_t (Stm32F2::*read)(uint32_t offset);
+    void (Stm32F2::*write)(uint32_t offset, uint32_t value);
+
+    // Of GPIO each port has a bit.
+    unsigned clockBit(uint32_t address) const {
+        return base == gpio ? (address - gpio) / 0x400 : bit;
+    }
+};
+
+const Stm32F2::Peripheral Stm32F2::peripherals[] = {
+    {gpio, 0x2400, ahb1Enable, 0, &Stm32F2::readGpio, &Stm32F2::writeGpio},
+    {crcUnit, 0x400, ahb1Enable, 12, &Stm32F2::readCrc, &Stm32F2::writeCrc},
+    {backupSram, 4096, ahb1Enable, 18, &Stm32F2::readBackup, &Stm32F2::writeBackup},
+    {rng, 12, ahb2Enable, 6, &Stm32F2::readRandom, &Stm32F2::writeRandom},
+    {power, 8, apb1Enable, 28, &Stm32F2::readPower, &Stm32F2::writePower},
+    {usart, 0x400, apb2Enable, 4, &Stm32F2::readUsart, &Stm32F2::writeUsart},
+    {spi, 0x400, apb2Enable, 12, &Stm32F2::readSpi, &Stm32F2::writeSpi},
+    {syscfg, 0x400, apb2Enable, 14, &Stm32F2::readSyscfg, &Stm32F2::writeSyscfg},
+    {rcc, 0x88, 0, 0, &Stm32F2::readRcc, &Stm32F2::writeRcc},
+    {exti, 0x18, 0, 0, &Stm32F2::readExti, &Stm32F2::writeExti},
+    {flashInterface, 0x18, 0, 0, &Stm32F2::readFlashInterface, &Stm32F2::writeFlashInterface},
+    {iwdg, 0x10, 0, 0, &Stm32F2::readWatchdog, &Stm32F2::writeWatchdog},
+};
+
+// Returns the peripheral at an address, which has its clock.
+const Stm32F2::Peripheral& Stm32F2::peripheralAt(uint32_t address) const {
+    for (const Peripheral& p : peripherals) {
+        if (!isIn(address, p.base, p.bytes))
+            continue;
+        if (p.enable && !isSet(p.enable, p.clockBit(address)))
+            throw Error("the peripheral's clock is off (RCC)");
+        return p;
+    }
+    throw noRegister();
+}
+
+CpuBus::Error Stm32F2::noRegister() {
+    return Error("no such peripheral in the model");
+}
+
+uint32_t Stm32F2::readPeripheral(uint32_t address) {
+    const Peripheral& p = peripheralAt(address);
+    return (this->*p.read)(address - p.base);
+}
+
+void Stm32F2::writePeripheral(uint32_t address, uint32_t value) {
+    const Peripheral& p = peripheralAt(address);
+    (this->*p.write)(address - p.base, value);
+}
+
+// Returns a register that only stores, one of the first `bytes` of a peripheral.
+uint32_t& Stm32F2::storedIn(uint32_t base, uint32_t offset, uint32_t bytes) {
+    if (offset >= bytes)
+        throw noRegister();
+    return stored(base + offset);
+}
+
+// ---- GPIO ----
+
+uint32_t Stm32F2::readGpio(uint32_t offset) {
+    constexpr uint32_t input = 0x10;
+    uint32_t& value = storedIn(gpio + (offset & ~0x3FFu), offset & 0x3FF, 0x28);
+    switch ((offset & 0x3FF) == input ? offset / 0x400 : ~0u) {
+    case ~0u:
+        return value;
+    case 0: // port A
+        return (pins_[0] & ~0x400u) | uint32_t(!isSerialBreak) << 10;
+    case 1:
+        return pins_[1];
+    case 2:
+        return uint32_t(fpga.isDone()) << 1 | uint32_t(!isJumperWired) << 2;
+    default:
+        return 0;
+    }
+}
+
+void Stm32F2::writeGpio(uint32_t offset, uint32_t value) {
+    constexpr uint32_t output = 0x14, setAndReset = 0x18;
+    const uint32_t port = gpio + (offset & ~0x3FFu);
+    uint32_t& written = storedIn(port, offset & 0x3FF, 0x28);
+    if ((offset & 0x3FF) == setAndReset)
+        stored(port + output) = (stored(port + output) & ~(value >> 16)) | (value & 0xFFFF);
+    else
+        written = value;
+    fsmcUsable_ = false;
+    updateFpgaPins();
 }
 
 // Checks that the flash has the wait states for HCLK (RM0033, table 3): with fewer the chip reads
@@ -53,120 +134,163 @@ void Stm32F2::checkWaitStates() {
                           std::to_string(needed));
 }
 
-uint32_t Stm32F2::readPeripheral(uint32_t address) {
-    requireClock(address);
-    if (isIn(address, gpio, 0x2400) && (address & 0x3FF) < 0x28)
-        return (address & 0x3FF) != 0x10 ? stored(address)
-               : address == gpio + 0x10  ? (pins_[0] & ~0x400u) | uint32_t(!isSerialBreak) << 10
-               : address == gpio + 0x410 ? pins_[1]
-               : address == gpio + 0x810
-                   ? uint32_t(fpga.isDone()) << 1 | uint32_t(!isJumperWired) << 2
-                   : 0;
-    if (isIn(address, rcc, 0x88)) {
-        uint32_t value = stored(address);
-        if (address == rcc) // oscillators and PLL are ready at once
-            return value | (value & 0x05010001) << 1;
-        if (address == rcc + 8)
-            return (value & ~0xCu) | (value & 3) << 2; // the switch has happened
-        return address == csr ? (value & 0x00FFFFFF) | resetFlags_ : value;
+// ---- RCC: oscillators and PLL are ready at once ----
+
+uint32_t Stm32F2::readRcc(uint32_t offset) {
+    const uint32_t value = stored(rcc + offset);
+    switch (offset) {
+    case 0: // CR
+        return value | (value & 0x05010001) << 1;
+    case 8: // CFGR: the switch has happened
+        return (value & ~0xCu) | (value & 3) << 2;
+    case csr - rcc:
+        return (value & 0x00FFFFFF) | resetFlags_;
+    default:
+        return value;
     }
-    if (address == exti + 0x14)
-        return pendingExti_;
-    if (isIn(address, exti, 0x14) || isIn(address, syscfg, 0x24))
-        return stored(address);
-    if (isIn(address, flashInterface, 0x18))
-        return flash_.read(address - flashInterface);
-    if (address == usart) // a written byte is sent at once
-        return 0xC0 | uint32_t(!serialIn.empty()) << 5;
-    if (address == usart + 4) {
-        const uint32_t byte = serialIn.empty() ? 0 : serialIn.front();
-        if (!serialIn.empty())
-            serialIn.pop_front();
-        return byte;
-    }
-    if (isIn(address, usart, 0x1C))
-        return stored(address);
-    if (isIn(address, spi, 0x24))
-        return readSpi(address - spi);
-    if (address == crcUnit)
-        return crc_;
-    if (isIn(address, power, 8))
-        return stored(address) | (stored(address) >> 6 & 8); // the regulator is ready at once
-    if (isIn(address, backupSram, 4096))
-        return backup_[(address - backupSram) / 4];
-    if (isIn(address, rng, 12)) // the PLL makes its clock
-        return random_.read(address - rng, now_(), isSet(rcc, 24));
-    if (address == iwdg + 0x4)
-        return watchdog_.prescaler;
-    if (address == iwdg + 0x8)
-        return watchdog_.reload;
-    if (address == iwdg + 0xC)
-        return 0;
-    throw Error("no such peripheral in the model");
 }
 
-void Stm32F2::writePeripheral(uint32_t address, uint32_t value) {
-    requireClock(address);
-    if (isIn(address, gpio, 0x2400) && (address & 0x3FF) < 0x28) {
-        if ((address & 0x3FF) == 0x18)
-            stored(address - 4) = (stored(address - 4) & ~(value >> 16)) | (value & 0xFFFF);
-        else
-            stored(address) = value;
-        fsmcUsable_ = false;
-        updateFpgaPins();
-    } else if (address == spi + 12) {
-        spiIn_ = fpga.transfer(static_cast<uint8_t>(value));
-        waited_ += 32; // at half of PCLK2, as the driver has it
-    } else if (address == usart + 4) {
-        if (onSerial)
-            onSerial(static_cast<uint8_t>(value));
-    } else if (isIn(address, spi, 0x24) || isIn(address, usart, 0x1C)) {
-        if (address == spi)
-            spiTaken_ = fpga.bytesSent();
-        stored(address) = value;
-    } else if (isIn(address, rcc, 0x88)) {
-        stored(address) = value;
-        fsmcUsable_ = false;
-        if (address == rcc + 8)
-            checkWaitStates();
-        if (address == csr && (value >> 24 & 1)) { // RMVF
-            resetFlags_ = 0;
-            stored(address) = 0;
-        }
-    } else if (address == exti + 0x14) {
+void Stm32F2::writeRcc(uint32_t offset, uint32_t value) {
+    stored(rcc + offset) = value;
+    fsmcUsable_ = false;
+    if (offset == 8)
+        checkWaitStates();
+    if (offset == csr - rcc && (value >> 24 & 1)) { // RMVF
+        resetFlags_ = 0;
+        stored(csr) = 0;
+    }
+}
+
+// ---- EXTI and SYSCFG ----
+
+constexpr uint32_t extiPending = 0x14;
+
+uint32_t Stm32F2::readExti(uint32_t offset) {
+    return offset == extiPending ? pendingExti_ : stored(exti + offset);
+}
+
+void Stm32F2::writeExti(uint32_t offset, uint32_t value) {
+    if (offset == extiPending)
         pendingExti_ &= ~value;
-        updateExti();
-    } else if (isIn(address, exti, 0x14) || isIn(address, syscfg, 0x24)) {
-        stored(address) = value;
-        updateExti();
-    } else if (isIn(address, flashInterface, 0x18)) {
-        try {
-            flash_.write(address - flashInterface, value);
-        } catch (const Stm32Flash::WrongKey& e) {
-            throw Error(e.what());
-        }
-        if (address == flashInterface + Stm32Flash::Acr)
-            checkWaitStates();
-        waitForFlash();
-    } else if (address == crcUnit) {
+    else
+        stored(exti + offset) = value;
+    updateExti();
+}
+
+uint32_t Stm32F2::readSyscfg(uint32_t offset) {
+    return storedIn(syscfg, offset, 0x24);
+}
+
+void Stm32F2::writeSyscfg(uint32_t offset, uint32_t value) {
+    storedIn(syscfg, offset, 0x24) = value;
+    updateExti();
+}
+
+// ---- flash interface, CRC unit, power control, backup SRAM, random numbers ----
+
+uint32_t Stm32F2::readFlashInterface(uint32_t offset) {
+    return flash_.read(offset);
+}
+
+void Stm32F2::writeFlashInterface(uint32_t offset, uint32_t value) {
+    try {
+        flash_.write(offset, value);
+    } catch (const Stm32Flash::WrongKey& e) {
+        throw Error(e.what());
+    }
+    if (offset == Stm32Flash::Acr)
+        checkWaitStates();
+    waitForFlash();
+}
+
+uint32_t Stm32F2::readCrc(uint32_t offset) {
+    if (offset != 0)
+        throw noRegister();
+    return crc_;
+}
+
+void Stm32F2::writeCrc(uint32_t offset, uint32_t value) {
+    if (offset == 0) {
         crc_ ^= value;
         for (int bit = 0; bit < 32; ++bit)
             crc_ = crc_ & 0x80000000 ? crc_ << 1 ^ 0x04C11DB7 : crc_ << 1;
-    } else if (address == crcUnit + 8) {
+    } else if (offset == 8) {
         if (value & 1)
             crc_ = 0xFFFFFFFF;
-    } else if (isIn(address, power, 8)) {
-        stored(address) = value;
-    } else if (isIn(address, backupSram, 4096)) {
-        if (isSet(power, 8)) // PWR_CR.DBP; without it the write is lost, as on the chip
-            backup_[(address - backupSram) / 4] = value;
-    } else if (isIn(address, rng, 12)) {
-        random_.write(address - rng, value, now_());
-    } else if (isIn(address, iwdg, 0x10)) {
-        writeWatchdog(address - iwdg, value);
     } else {
-        throw Error("no such peripheral in the model");
+        throw noRegister();
     }
+}
+
+uint32_t Stm32F2::readPower(uint32_t offset) { // the regulator is ready at once
+    const uint32_t value = stored(power + offset);
+    return value | (value >> 6 & 8);
+}
+
+void Stm32F2::writePower(uint32_t offset, uint32_t value) {
+    stored(power + offset) = value;
+}
+
+uint32_t Stm32F2::readBackup(uint32_t offset) {
+    return backup_[offset / 4];
+}
+
+void Stm32F2::writeBackup(uint32_t offset, uint32_t value) {
+    if (isSet(power, 8)) // PWR_CR.DBP; without it the write is lost, as on the chip
+        backup_[offset / 4] = value;
+}
+
+uint32_t Stm32F2::readRandom(uint32_t offset) { // the PLL makes its clock
+    return random_.read(offset, now_(), isSet(rcc, 24));
+}
+
+void Stm32F2::writeRandom(uint32_t offset, uint32_t value) {
+    random_.write(offset, value, now_());
+}
+
+// ---- USART 1 and SPI 1 ----
+
+uint32_t Stm32F2::readUsart(uint32_t offset) {
+    if (offset == 0) // a written byte is sent at once
+        return 0xC0 | uint32_t(!serialIn.empty()) << 5;
+    if (offset != 4)
+        return storedIn(usart, offset, 0x1C);
+    const uint32_t byte = serialIn.empty() ? 0 : serialIn.front();
+    if (!serialIn.empty())
+        serialIn.pop_front();
+    return byte;
+}
+
+void Stm32F2::writeUsart(uint32_t offset, uint32_t value) {
+    if (offset != 4)
+        storedIn(usart, offset, 0x1C) = value;
+    else if (onSerial)
+        onSerial(static_cast<uint8_t>(value));
+}
+
+// A master's byte is transferred as soon as it is written. A slow slave loses bytes.
+uint32_t Stm32F2::readSpi(uint32_t offset) {
+    uint32_t& value = storedIn(spi, offset, 0x24);
+    const bool isMaster = stored(spi) & 4;
+    if (offset == 8)
+        return isMaster ? 3 : 2 | uint32_t(fpga.bytesSent() > spiTaken_);
+    if (offset != 12 || isMaster)
+        return offset == 12 ? spiIn_ : value;
+    const uint64_t taken = spiTaken_;
+    spiTaken_ = fpga.bytesSent();
+    return fpga.byteSent(taken);
+}
+
+void Stm32F2::writeSpi(uint32_t offset, uint32_t value) {
+    if (offset == 12) {
+        spiIn_ = fpga.transfer(static_cast<uint8_t>(value));
+        waited_ += 32; // at half of PCLK2, as the driver has it
+        return;
+    }
+    uint32_t& written = storedIn(spi, offset, 0x24);
+    if (offset == 0)
+        spiTaken_ = fpga.bytesSent();
+    written = value;
 }
 
 // ---- watchdog (RM0033, 18.3) ----
@@ -174,6 +298,19 @@ void Stm32F2::writePeripheral(uint32_t address, uint32_t value) {
 uint64_t Stm32F2::watchdogNs() const {
     const uint32_t divider = 4u << std::min(watchdog_.prescaler, 6u); // 6 and 7: 256
     return (uint64_t(watchdog_.reload) + 1) * divider * lsiNs;
+}
+
+uint32_t Stm32F2::readWatchdog(uint32_t offset) {
+    switch (offset) {
+    case 0x4:
+        return watchdog_.prescaler;
+    case 0x8:
+        return watchdog_.reload;
+    case 0xC:
+        return 0;
+    default:
+        throw noRegister();
+    }
 }
 
 void Stm32F2::writeWatchdog(uint32_t offset, uint32_t value) {
@@ -223,16 +360,4 @@ void Stm32F2::followFpga() {
     spiTaken_ = 0;
     setPin(0, 4, !fpga.isReading());
     fpgaEdgeNs_ = fpga.nextEdgeNs();
-}
-
-// A master's byte is transferred as soon as it is written. A slow slave loses bytes.
-uint32_t Stm32F2::readSpi(uint32_t offset) {
-    const bool isMaster = stored(spi) & 4;
-    if (offset == 8)
-        return isMaster ? 3 : 2 | uint32_t(fpga.bytesSent() > spiTaken_);
-    if (offset != 12 || isMaster)
-        return offset == 12 ? spiIn_ : stored(spi + offset);
-    const uint64_t taken = spiTaken_;
-    spiTaken_ = fpga.bytesSent();
-    return fpga.byteSent(taken);
 }

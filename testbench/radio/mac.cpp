@@ -3,7 +3,6 @@
 // mac: carrier sense, tries and rounds as events of the air.
 
 #include "mac.h"
-#include "rf_channel.h"
 #include <algorithm>
 #include <utility>
 
@@ -15,24 +14,13 @@ constexpr unsigned longestBackoff = 5, mostBackoffs = 4; // macMaxBE, macMaxCSMA
 constexpr uint64_t roundNs = 200'000'000;                // RR: the wait for an acknowledgement
 constexpr uint32_t roundSpreadUs = 48'000;               // random extra wait, at most
 
-// Length on the air: PHY header, MAC header with 16-bit addresses and checksum have 17 bytes; a
-// 64-bit address adds 6.
-size_t frameBytes(const RfPacket& packet) {
-    bool longSource = packet.encrypted || packet.from64;
-    return 17 + 2u * packet.header + 6u * packet.wide + 6u * longSource + packet.bytes.size();
-}
-
 } // namespace
-
-uint64_t Mac::tryNs(const RfPacket& packet) {
-    return ccaNs + turnaroundNs + frameBytes(packet) * byteNs + (packet.acknowledged ? ackNs : 0);
-}
 
 void Mac::send(RfPacket packet, uint64_t now) {
     packet_ = std::move(packet);
     roundsLeft_ = packet_.rounds;
     copiesLeft_ = packet_.copies - 1;
-    drawn_ = air_.announce(*this, packet_, now);
+    drawn_ = air_.announce(modem_, packet_, now);
     startRound(now, std::max(now, modem_.busyUntil()));
 }
 
@@ -70,13 +58,13 @@ uint64_t Mac::randomWaitNs(unsigned exponent) {
 void Mac::sense(uint64_t now) {
     if (modem_.busyUntil() > now)
         return waitUntil(modem_.busyUntil(), now);
-    if (air_.isClear(packet_.channel, now, now + ccaNs)) {
+    if (air_.isClear(packet_.channel, now, now + RfTimes::ccaNs)) {
         state_ = State::OnAir;
-        air_.put(*this, packet_, drawn_, now);
+        air_.put(*this, modem_, packet_, drawn_, now);
     } else if (busySenses_++ < mostBackoffs) {
-        waitUntil(now + ccaNs + randomWaitNs(packet_.backoff + busySenses_), now);
+        waitUntil(now + RfTimes::ccaNs + randomWaitNs(packet_.backoff + busySenses_), now);
     } else {
-        failed(now, now + ccaNs, Fate::NoClearChannel);
+        failed(now, now + RfTimes::ccaNs, Fate::NoClearChannel);
     }
 }
 
@@ -111,7 +99,7 @@ void Mac::ended(uint64_t now, const RfPacket& arrived, RfOutcome outcome, bool i
             drawn_ = RfOutcome::Delivered; // its repetition is not damaged as well
         return failed(now, now + ackWaitNs, Fate::NoAck);
     }
-    const uint64_t done = now + (packet_.acknowledged ? ackNs : 0) + gapNs;
+    const uint64_t done = now + (packet_.acknowledged ? RfTimes::ackNs : 0) + RfTimes::gapNs;
     if (copiesLeft_ && !isDrawnLost) {
         --copiesLeft_;
         return startRound(now, done);

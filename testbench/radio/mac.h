@@ -5,38 +5,36 @@
 
 #pragma once
 
-#include "rf_packet.h"
+#include "rf_channel.h"
 #include <cstdint>
 
-class RfChannel;
-class XBee;
-
-class Mac {
+class Mac : private RfSender {
 public:
     enum class Fate { Sent, NoAck, NoClearChannel };
 
-    Mac(RfChannel& air, XBee& modem) : air_(air), modem_(modem) {}
+    // The modem that the MAC belongs to.
+    class Modem : public RfReceiver {
+    public:
+        // Returns the end of the modem's work on packets, during which it sends none.
+        virtual uint64_t busyUntil() const = 0;
+        // The packet in flight has ended.
+        virtual void transmitted(uint64_t now, Fate fate) = 0;
+    };
+
+    Mac(RfChannel& air, Modem& modem) : air_(air), modem_(modem) {}
     ~Mac() { abort(); }
     Mac(const Mac&) = delete;
     Mac& operator=(const Mac&) = delete;
 
-    // Sends a packet; one at a time. XBee::transmitted follows.
+    // Sends a packet; one at a time. Modem::transmitted follows.
     void send(RfPacket packet, uint64_t now);
     // Drops the packet; a frame that is on the air still arrives.
     void abort();
 
-    XBee& modem() const { return modem_; }
-
-    // Called by the air: at the time that was asked for, and when a frame has ended.
-    void wake(uint64_t now);
-    void ended(uint64_t now, const RfPacket& arrived, RfOutcome outcome, bool isAnswered);
-
-    // Returns the time in ns from carrier sense to the end of the acknowledgement.
-    static uint64_t tryNs(const RfPacket& packet);
-    static constexpr uint64_t byteNs = 32'000, ccaNs = 128'000, turnaroundNs = 192'000;
-    static constexpr uint64_t ackNs = turnaroundNs + 11 * byteNs, gapNs = 640'000; // LIFS
-
 private:
+    void wake(uint64_t now) override;
+    void ended(uint64_t now, const RfPacket& arrived, RfOutcome outcome, bool isAnswered) override;
+
     enum class State { Idle, Waiting, OnAir, Gap };
 
     void startRound(uint64_t now, uint64_t ready);
@@ -48,7 +46,7 @@ private:
     void finish(uint64_t now, Fate fate);
 
     RfChannel& air_;
-    XBee& modem_;
+    Modem& modem_;
     State state_ = State::Idle;
     RfPacket packet_;
     RfOutcome drawn_ = RfOutcome::Delivered; // the weather's decision on this packet

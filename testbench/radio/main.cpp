@@ -4,6 +4,7 @@
 // program that talks to an XBee.
 
 #include "rf_channel.h"
+#include "xbee.h"
 #include "xbee_parameters.h"
 #include <CLI/CLI.hpp>
 #include <chrono>

@@ -17,10 +17,10 @@ constexpr double jitter = 0.05;              // share of a modem's own time, unv
 uint64_t RfChannel::airTimeNs(size_t bytes) {
     RfPacket packet;
     packet.bytes.resize(bytes);
-    return Mac::tryNs(packet) + Mac::gapNs;
+    return RfTimes::tryNs(packet) + RfTimes::gapNs;
 }
 
-void RfChannel::leave(XBee* modem) {
+void RfChannel::leave(RfReceiver* modem) {
     modems_.erase(std::remove(modems_.begin(), modems_.end(), modem), modems_.end());
     for (auto& [time, event] : events_)
         if (event.frame && event.frame->from == modem)
@@ -28,7 +28,7 @@ void RfChannel::leave(XBee* modem) {
     away_.erase(modem);
 }
 
-void RfChannel::forget(const Mac* sender) {
+void RfChannel::forget(const RfSender* sender) {
     for (auto at = events_.begin(); at != events_.end();) {
         const bool isMine = at->second.sender == sender;
         if (isMine)
@@ -37,7 +37,7 @@ void RfChannel::forget(const Mac* sender) {
     }
 }
 
-void RfChannel::carryAway(const XBee* modem, bool isAway) {
+void RfChannel::carryAway(const RfReceiver* modem, bool isAway) {
     if (isAway)
         away_.insert(modem);
     else
@@ -72,7 +72,7 @@ bool RfChannel::faded(RfPacket& packet) {
     return packet.rssi < sensitivity;
 }
 
-RfChannel::Outcome RfChannel::announce(const Mac& sender, RfPacket& packet, uint64_t now) {
+RfChannel::Outcome RfChannel::announce(const RfReceiver& from, RfPacket& packet, uint64_t now) {
     ++counters_.packets;
     counters_.bytes += packet.bytes.size();
     if (weather.trace)
@@ -83,8 +83,8 @@ RfChannel::Outcome RfChannel::announce(const Mac& sender, RfPacket& packet, uint
     const bool isDoubled = weather.duplication > 0 && random_.chance(weather.duplication);
     if (isDoubled && drawn != Outcome::Lost) {
         ++counters_.duplicated;
-        auto copy = std::make_shared<Frame>(Frame{packet, drawn, &sender.modem(), 0, 0, 0});
-        const uint64_t later = 2 * (Mac::tryNs(packet) + Mac::gapNs) + delayNs(now);
+        auto copy = std::make_shared<Frame>(Frame{packet, drawn, &from, 0, 0, 0});
+        const uint64_t later = 2 * (RfTimes::tryNs(packet) + RfTimes::gapNs) + delayNs(now);
         events_.emplace(now + later, Event{nullptr, std::move(copy)});
     }
     return drawn;
@@ -109,12 +109,13 @@ bool RfChannel::isClear(uint8_t channel, uint64_t from, uint64_t to) const {
 
 // Two modems that begin within the time from carrier sense to the first symbol do not hear each
 // other, and none hears while it sends.
-void RfChannel::put(Mac& sender, RfPacket packet, Outcome drawn, uint64_t now) {
-    const uint64_t end = now + Mac::tryNs(packet);
-    const uint64_t frameEnd = packet.acknowledged ? end - Mac::ackNs : end;
-    const uint64_t begin = now + Mac::ccaNs + Mac::turnaroundNs;
-    auto mine = std::make_shared<Frame>(
-        Frame{std::move(packet), drawn, &sender.modem(), begin, frameEnd, end});
+void RfChannel::put(RfSender& sender, const RfReceiver& from, RfPacket packet, Outcome drawn,
+                    uint64_t now) {
+    const uint64_t end = now + RfTimes::tryNs(packet);
+    const uint64_t frameEnd = packet.acknowledged ? end - RfTimes::ackNs : end;
+    const uint64_t begin = now + RfTimes::ccaNs + RfTimes::turnaroundNs;
+    auto mine =
+        std::make_shared<Frame>(Frame{std::move(packet), drawn, &from, begin, frameEnd, end});
     if (!weather.perfect) {
         onAir_.remove_if(
             [&](auto& other) { return (other->collided ? other->frameEnd : other->end) <= now; });
@@ -127,7 +128,7 @@ void RfChannel::put(Mac& sender, RfPacket packet, Outcome drawn, uint64_t now) {
         mine->collided = mine->collided || weather.interferes(mine->begin, mine->end);
         onAir_.push_back(mine);
     }
-    counters_.airNs += mine->end + Mac::gapNs - now;
+    counters_.airNs += mine->end + RfTimes::gapNs - now;
     events_.emplace(mine->frameEnd + delayNs(now), Event{&sender, mine});
 }
 
@@ -140,14 +141,14 @@ void RfChannel::report(uint64_t now, const RfPacket& packet, Outcome outcome) {
 
 RfChannel::Outcome RfChannel::deliver(const Frame& frame, uint64_t now) {
     Outcome outcome = Outcome::Nobody;
-    for (XBee* modem : modems_) {
+    for (RfReceiver* modem : modems_) {
         if (modem == frame.from || !modem->hears(frame.packet) || away_.count(modem) ||
             away_.count(frame.from))
             continue;
-        XBee::Reception reception = modem->receive(frame.packet, now);
-        if (reception == XBee::Reception::Taken)
+        RfReceiver::Reception reception = modem->receive(frame.packet, now);
+        if (reception == RfReceiver::Reception::Taken)
             outcome = frame.drawn;
-        else if (reception == XBee::Reception::NoRoom && outcome == Outcome::Nobody)
+        else if (reception == RfReceiver::Reception::NoRoom && outcome == Outcome::Nobody)
             outcome = Outcome::NoRoom;
     }
     return outcome;
@@ -159,7 +160,7 @@ bool RfChannel::isMissed(Frame& frame) {
 }
 
 // The receiver has the packet at the end of its frame.
-void RfChannel::land(Mac* sender, Frame& frame, uint64_t now) {
+void RfChannel::land(RfSender* sender, Frame& frame, uint64_t now) {
     const bool missed = isMissed(frame);
     if (frame.drawn == Outcome::Corrupted && !missed) {
         ++counters_.corrupted;

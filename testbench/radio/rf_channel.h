@@ -6,7 +6,7 @@
 #pragma once
 
 #include "random.h"
-#include "xbee.h"
+#include "rf_packet.h"
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -14,6 +14,7 @@
 #include <fstream>
 #include <functional>
 #include <list>
+#include <map>
 #include <memory>
 #include <set>
 #include <stdexcept>
@@ -146,6 +147,26 @@ struct RfWeather {
     }
 };
 
+// What the air delivers packets to.
+class RfReceiver {
+public:
+    virtual ~RfReceiver() = default;
+    virtual bool hears(const RfPacket& packet) const = 0; // whether the packet is for it
+    // Absent: it is off or boots. NoRoom: acknowledged, and lost, since the buffer to the host is
+    // full.
+    enum class Reception { Absent, NoRoom, Taken };
+    virtual Reception receive(const RfPacket& packet, uint64_t now) = 0;
+};
+
+// What the air calls while a packet is sent.
+class RfSender {
+public:
+    virtual ~RfSender() = default;
+    virtual void wake(uint64_t now) = 0; // at the time that was asked for
+    virtual void ended(uint64_t now, const RfPacket& arrived, RfOutcome outcome,
+                       bool isAnswered) = 0; // of a frame
+};
+
 class RfChannel {
 public:
     using Weather = RfWeather;
@@ -164,14 +185,14 @@ public:
     void onPacket(Listener listener) { listener_ = std::move(listener); }
     const Counters& counters() const { return counters_; }
 
-    void join(XBee* modem) { modems_.push_back(modem); }
-    void leave(XBee* modem);
+    void join(RfReceiver* modem) { modems_.push_back(modem); }
+    void leave(RfReceiver* modem);
     // Puts a modem out of reach of all others, or brings it back.
-    void carryAway(const XBee* modem, bool isAway);
+    void carryAway(const RfReceiver* modem, bool isAway);
     // Returns a time of a modem's own work: it varies by a twentieth; 0 in perfect air.
     uint64_t jittered(uint64_t ns);
     void advance(uint64_t now);
-    uint64_t nextEvent() const { return events_.empty() ? never : events_.begin()->first; }
+    uint64_t nextEvent() const { return events_.empty() ? ~uint64_t(0) : events_.begin()->first; }
 
     // Time on the air of n payload bytes from one 16-bit address to another, with the maker's
     // header, carrier sense, the MAC's acknowledgement and the gap after it: docs/simulation.md.
@@ -180,16 +201,17 @@ public:
     // For the MACs of the modems:
 
     // Draws the weather of a new packet: its strength, and what becomes of it.
-    Outcome announce(const Mac& sender, RfPacket& packet, uint64_t now);
+    Outcome announce(const RfReceiver& from, RfPacket& packet, uint64_t now);
     // Returns whether carrier sense finds the channel clear from `from` to `to`.
     bool isClear(uint8_t channel, uint64_t from, uint64_t to) const;
     // Makes one try of a packet, with carrier sense at `now`. The sender's ended() is called at the
     // end of the frame.
-    void put(Mac& sender, RfPacket packet, Outcome drawn, uint64_t now);
+    void put(RfSender& sender, const RfReceiver& from, RfPacket packet, Outcome drawn,
+             uint64_t now);
     // Calls the sender's wake() at this time.
-    void wakeAt(uint64_t at, Mac* sender) { events_.emplace(at, Event{sender, nullptr}); }
+    void wakeAt(uint64_t at, RfSender* sender) { events_.emplace(at, Event{sender, nullptr}); }
     // Calls this sender no more.
-    void forget(const Mac* sender);
+    void forget(const RfSender* sender);
     void report(uint64_t now, const RfPacket& packet, Outcome outcome);
     void countRetry() { ++counters_.retries; }
     uint32_t below(uint32_t limit) { return random_.below(limit); }
@@ -198,15 +220,15 @@ private:
     struct Frame { // one try on the air
         RfPacket packet;
         Outcome drawn; // the weather's decision
-        const XBee* from;
+        const RfReceiver* from;
         uint64_t begin, frameEnd, end; // of the frame; of its acknowledgement
         bool collided = false;
     };
     struct Event {
-        Mac* sender; // null for a duplicate, and if the sender was reset or has gone
+        RfSender* sender; // null for a duplicate, and if the sender was reset or has gone
         std::shared_ptr<Frame> frame; // null: the sender's wake() is due
     };
-    void land(Mac* sender, Frame& frame, uint64_t now);
+    void land(RfSender* sender, Frame& frame, uint64_t now);
     bool isMissed(Frame& frame);
     Outcome deliver(const Frame& frame, uint64_t now);
     Outcome fate(uint64_t now);
@@ -216,8 +238,8 @@ private:
     Random random_;
     bool inBurst_ = false;
     uint64_t fateAt_ = 0; // of the last packet
-    std::vector<XBee*> modems_;
-    std::set<const XBee*> away_;
+    std::vector<RfReceiver*> modems_;
+    std::set<const RfReceiver*> away_;
     std::multimap<uint64_t, Event> events_;
     std::list<std::shared_ptr<Frame>> onAir_;
     Counters counters_;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// rf_packet: a packet between modems, and what can become of it on the air.
+// rf_packet: a packet between modems, its times on the air, and what can become of it.
 
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -31,3 +32,23 @@ struct RfPacket {
     unsigned backoff = 0;   // RN
     double rssi = -40;      // dBm at the receiver
 };
+
+// Times of a try by IEEE 802.15.4, ns (docs/simulation.md).
+namespace RfTimes {
+
+constexpr uint64_t byteNs = 32'000, ccaNs = 128'000, turnaroundNs = 192'000;
+constexpr uint64_t ackNs = turnaroundNs + 11 * byteNs, gapNs = 640'000; // LIFS
+
+// Returns the bytes on the air: PHY header, MAC header with 16-bit addresses and checksum have 17;
+// a 64-bit address adds 6.
+inline size_t frameBytes(const RfPacket& packet) {
+    bool longSource = packet.encrypted || packet.from64;
+    return 17 + 2u * packet.header + 6u * packet.wide + 6u * longSource + packet.bytes.size();
+}
+
+// Returns the time from carrier sense to the end of the acknowledgement.
+inline uint64_t tryNs(const RfPacket& packet) {
+    return ccaNs + turnaroundNs + frameBytes(packet) * byteNs + (packet.acknowledged ? ackNs : 0);
+}
+
+} // namespace RfTimes

@@ -3,7 +3,6 @@
 // xbee: the modem's firmware by its manual: data, buffers, packets.
 
 #include "xbee.h"
-#include "rf_channel.h"
 #include "xbee_crypt.h"
 #include "xbee_parameters.h"
 #include <algorithm>

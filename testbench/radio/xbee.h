@@ -17,9 +17,7 @@
 #include <string>
 #include <vector>
 
-class RfChannel;
-
-class XBee : private SerialClient {
+class XBee : public Mac::Modem, private SerialClient {
 public:
     struct Options {
         std::string name = "xbee";
@@ -39,7 +37,7 @@ public:
     };
 
     XBee(SerialLine& line, RfChannel& channel, Options options);
-    ~XBee();
+    ~XBee() override;
     XBee(const XBee&) = delete;
     XBee& operator=(const XBee&) = delete;
 
@@ -61,16 +59,11 @@ public:
     bool cts() const { return cts_; }
     const Counters& counters() const { return counters_; }
 
-    // Called by the channel and the MAC, up to transmitted().
-    bool hears(const RfPacket& packet) const; // whether it is for this modem
-    // Absent: it is off or boots. NoRoom: acknowledged, and lost, since the buffer to the host is
-    // full.
-    enum class Reception { Absent, NoRoom, Taken };
-    Reception receive(const RfPacket& packet, uint64_t now);
-    // Returns the end of its work on packets, during which it sends none.
-    uint64_t busyUntil() const { return busyUntil_; }
-    // The packet in flight has ended.
-    void transmitted(uint64_t now, Mac::Fate fate);
+    // The air and the MAC call these.
+    bool hears(const RfPacket& packet) const override;
+    Reception receive(const RfPacket& packet, uint64_t now) override;
+    uint64_t busyUntil() const override { return busyUntil_; }
+    void transmitted(uint64_t now, Mac::Fate fate) override;
 
 private:
     enum class Mode { Off, Boot, Data, Command };

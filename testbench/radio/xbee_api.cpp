@@ -3,7 +3,6 @@
 // xbee: API frames: 0x7E, length (2), type and contents, checksum; with AP 2 some bytes are
 // escaped.
 
-#include "rf_channel.h"
 #include "xbee.h"
 #include "xbee_parameters.h"
 

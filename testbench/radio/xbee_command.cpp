@@ -2,7 +2,6 @@
 //
 // xbee: command mode.
 
-#include "rf_channel.h"
 #include "xbee.h"
 #include "xbee_parameters.h"
 #include <algorithm>

@@ -14,6 +14,7 @@
 #include "quiet_span.h"
 #include "rf_channel.h"
 #include "serial_line.h"
+#include "xbee.h"
 #include <algorithm>
 #include <functional>
 #include <memory>

@@ -11,6 +11,7 @@
 #include "modem_setup.h"
 #include "npi_memory.h"
 #include "rf_channel.h"
+#include "xbee.h"
 #include <fcntl.h>
 #include <unistd.h>
 

@@ -8,6 +8,7 @@
 #include "api_modem.h"
 #include "rf_channel.h"
 #include "serial_line.h"
+#include "xbee.h"
 #include <algorithm>
 #include <deque>
 #include <memory>

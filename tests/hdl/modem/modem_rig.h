@@ -10,6 +10,7 @@
 #include "modem_regs.h"
 #include "npi_memory.h"
 #include "rf_channel.h"
+#include "xbee.h"
 #include <gtest/gtest.h>
 
 // `clkNs`: period of the clock that the module's CLK_HZ says.

@@ -10,6 +10,7 @@
 #include "clock_file.h"
 #include "ground_step.h"
 #include "rf_channel.h"
+#include "xbee.h"
 #include <algorithm>
 #include <atomic>
 #include <cerrno>

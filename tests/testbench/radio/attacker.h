@@ -7,6 +7,7 @@
 
 #include "mischief.h"
 #include "rf_channel.h"
+#include "xbee.h"
 
 class Attacker {
 public:

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "rf_channel.h"
+#include "xbee.h"
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <memory>

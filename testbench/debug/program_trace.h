@@ -9,20 +9,21 @@
 
 #pragma once
 
-#include "stm32f2.h"
+#include "cortex_m3.h"
+#include "elf_image.h"
 #include "wave_window.h"
 #include <fstream>
 #include <map>
 
 class ProgramTrace {
 public:
-    // Listens to `stm32`, with the loaded program in its flash, for good. `clocks` of the fabric
-    // have passed.
-    ProgramTrace(Stm32F2& stm32, std::function<uint64_t()> clocks)
-        : stm32_(stm32), clocks_(std::move(clocks)), taskAddress_(kernelsPointer(*stm32.image())) {
-        CortexM3& cpu = stm32.cpu();
-        cpu.listener.entered = [this, &cpu](unsigned) {
-            interrupt_ = stm32_.image()->functionAt(cpu.reg(CortexM3::Pc));
+    // Listens to `cpu`, which runs the program `image`, for good. `clocks` returns the fabric's
+    // clocks that have passed.
+    ProgramTrace(CortexM3& cpu, const ElfImage& image, std::function<uint64_t()> clocks)
+        : cpu_(cpu), image_(image), clocks_(std::move(clocks)),
+          taskAddress_(kernelsPointer(image)) {
+        cpu.listener.entered = [this](unsigned) {
+            interrupt_ = image_.functionAt(cpu_.reg(CortexM3::Pc));
             look();
         };
         cpu.listener.left = [this](unsigned number) {
@@ -64,10 +65,9 @@ private:
 
     // A task that is seen for the first time continues at its first instruction.
     void switched() {
-        const CortexM3& cpu = stm32_.cpu();
-        std::string& name = tasks_[cpu.word(taskAddress_)];
+        std::string& name = tasks_[cpu_.word(taskAddress_)];
         if (name.empty())
-            name = stm32_.image()->functionAt(cpu.word(cpu.reg(CortexM3::Psp) + 24));
+            name = image_.functionAt(cpu_.word(cpu_.reg(CortexM3::Psp) + 24));
         if (name != task_ && onTask)
             onTask(name);
         task_ = name;
@@ -78,8 +78,8 @@ private:
             return;
         const bool near = now + soon >= window_.from && now <= window_.to;
         if (near != isNear_)
-            stm32_.cpu().listener.instruction = near ? [this](uint32_t address) { lookAt(address); }
-                                                     : std::function<void(uint32_t)>();
+            cpu_.listener.instruction = near ? [this](uint32_t address) { lookAt(address); }
+                                             : std::function<void(uint32_t)>();
         isNear_ = near;
         if (now + tenthOfASecond < window_.from || now > window_.to)
             return;
@@ -89,7 +89,7 @@ private:
     void lookAt(uint32_t address) {
         const uint64_t now = clocks_();
         if (now >= window_.from && now <= window_.to)
-            write("function", stm32_.image()->functionAt(address));
+            write("function", image_.functionAt(address));
     }
     void write(const char* row, const std::string& text) {
         std::string& last = written_[row];
@@ -101,7 +101,8 @@ private:
         file_ << 's' << (last = text) << " program." << row << '\n';
     }
 
-    Stm32F2& stm32_;
+    CortexM3& cpu_;
+    const ElfImage& image_;
     std::function<uint64_t()> clocks_;
     const WaveWindow window_;
     std::ofstream file_;

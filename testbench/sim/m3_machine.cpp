@@ -50,7 +50,7 @@ M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> 
     std::copy(board.words.begin(), board.words.end(), stm32_.backup().begin());
     stm32_.setPinB(1, !config.isWired);
     if (config.flash.empty())
-        program.emplace(stm32_, [&soc] { return soc.cycles(); });
+        program.emplace(stm32_.cpu(), *stm32_.image(), [&soc] { return soc.cycles(); });
     else
         cpu().loadFlash(0x08000000, config.flash);
     if (!config.fpgaFlash.empty()) {

@@ -5,6 +5,7 @@
 
 #pragma once
 
+#include "../support/link_end.h"
 #include "api_modem.h"
 #include "rf_channel.h"
 #include "serial_line.h"
@@ -96,7 +97,7 @@ public:
         if (targets.empty())
             targets.push_back(static_cast<int>(modem.parameter("DL")));
         for (int target : targets)
-            peers_.push_back(std::make_unique<Peer>(Peer{*this, peers_.size(), target}));
+            peers_.push_back(std::make_unique<Target>(*this, peers_.size(), target));
         for (auto& p : peers_)
             order_.push_back(p.get());
         begin();
@@ -110,33 +111,20 @@ public:
 
     // Begins as a fresh program, without earlier state.
     void begin() {
-        static const Link_Port port = {
-            [](void* c, const U8* f, U32 n) { return of(c).end.transmit(of(c), f, n); },
-            [](void* c) { return of(c).end.random_.next(); },
-            [](void* c, int channel, const U8* m, U32 n) {
-                return of(c).end.onMessage(of(c).number, channel, m, n);
-            },
-            [](void*, int, int) {},
-            [](void*, Link_State) {},
-            [](void* c, int, U32 tag, Link_Outcome o) {
-                of(c).end.onOutcome(of(c).number, tag, o);
-            },
-            nullptr};
         if (modem.parameter("AP"))
             api_ = std::make_unique<XBeeAT::ApiModem>(modem.parameter("AP") == 2);
         line.forget();
         for (auto& p : peers_) {
-            const Link_Config config = {&port, p.get(), 1440, LINK_USE(*p->buffers)};
-            Link_init(p->link.get(), &config);
+            p->begin();
             if (encrypts_)
-                Link_limitFrame(p->link.get(), LINK_MAX_ENCRYPTED);
-            Link_shareRadio(p->link.get(), link());
-            Link_expectAnswers(p->link.get(), api_ ? mostWaiting_ : 0);
+                Link_limitFrame(p->link(), LINK_MAX_ENCRYPTED);
+            Link_shareRadio(p->link(), link());
+            Link_expectAnswers(p->link(), api_ ? mostWaiting_ : 0);
         }
     }
     size_t peers() const { return peers_.size(); }
     int target(size_t peer) const { return peers_[peer]->target; }
-    Link* link(size_t peer = 0) const { return peers_[peer]->link.get(); }
+    Link* link(size_t peer = 0) const { return peers_[peer]->link(); }
     const Link_Statistics& statistics(size_t peer = 0) const {
         return *Link_statistics(link(peer));
     }
@@ -154,10 +142,10 @@ public:
             receive(us);
             U32 wait = longestRestUs;
             std::sort(order_.begin(), order_.end(),
-                      [](const Peer* a, const Peer* b) { return a->airUs < b->airUs; });
-            for (Peer* p : order_) {
-                Link_poll(p->link.get(), us);
-                wait = std::min(wait, Link_deadline(p->link.get(), us));
+                      [](const Target* a, const Target* b) { return a->airUs < b->airUs; });
+            for (Target* p : order_) {
+                Link_poll(p->link(), us);
+                wait = std::min(wait, Link_deadline(p->link(), us));
             }
             nextPoll_ = now + wait * 1000ull + 100'000;
         }
@@ -172,20 +160,29 @@ protected:
     uint64_t now_ = 0;
 
 private:
-    struct Peer {
+    struct Target : LinkEnd { // a link with one of the others
+        Target(ModemEnd& e, size_t n, int t) : end(e), number(n), target(t) {}
+        using LinkEnd::begin;
+        bool transmit(const U8* frame, U32 size) override {
+            return end.transmit(*this, frame, size) == 0;
+        }
+        U32 random() override { return end.random_.next(); }
+        bool take(int channel, const U8* message, U32 size) override {
+            return end.onMessage(number, channel, message, size) == 0;
+        }
+        void onOutcome(int, U32 tag, Link_Outcome outcome) override {
+            end.onOutcome(number, tag, outcome);
+        }
         ModemEnd& end;
-        size_t number;
-        int target;
-        std::unique_ptr<Link> link{new Link};
-        std::unique_ptr<Link_Buffers> buffers{new Link_Buffers};
+        const size_t number;
+        const int target;
         uint64_t airUs = 0;
     };
-    static Peer& of(void* c) { return *static_cast<Peer*>(c); }
     void receive(U32 us) {
         const auto take = [&](int source, const U8* data, size_t count) {
             for (auto& p : peers_)
                 if (p->target == source)
-                    Link_receive(p->link.get(), data, static_cast<U32>(count), us);
+                    Link_receive(p->link(), data, static_cast<U32>(count), us);
         };
         if (!api_) {
             take(peers_[0]->target, line.received.data(), line.received.size());
@@ -196,8 +193,8 @@ private:
         }
         line.received.clear();
     }
-    int transmit(Peer& peer, const U8* frame, U32 size) {
-        U32 rn = Link_randomWait(peer.link.get());
+    int transmit(Target& peer, const U8* frame, U32 size) {
+        U32 rn = Link_randomWait(peer.link());
         for (size_t i = 0; i < peers(); ++i)
             if (isUp(i))
                 rn = std::max(rn, Link_randomWait(link(i)));
@@ -214,8 +211,8 @@ private:
     const bool encrypts_;
     const unsigned mostWaiting_;
     std::unique_ptr<XBeeAT::ApiModem> api_; // none: transparent mode
-    std::vector<std::unique_ptr<Peer>> peers_;
-    std::vector<Peer*> order_;
+    std::vector<std::unique_ptr<Target>> peers_;
+    std::vector<Target*> order_;
     Random random_;
     uint64_t nextPoll_ = 0, airUs_ = 0;
 };

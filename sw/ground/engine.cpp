@@ -83,7 +83,7 @@ Peer& Engine::peer(const Settings& wanted) {
     return *peer;
 }
 
-Engine::Engine(const Settings& s, const Log& l) : Host(s, l, *ownClock_, packets_) {
+Engine::Engine(const Settings& s, const Log& l) : Host(s, l, makeClock(), packets_) {
     serial_.open(device);
     makePipe(wakePipe_);
     thread_ = std::thread([this] { run(); });

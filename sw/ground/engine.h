@@ -51,8 +51,7 @@ private:
     void deliver(int source, const U8* bytes, size_t size, U32 now);
     void answer(bool isThere, U32 now);
 
-    std::unique_ptr<Clock> ownClock_ = makeClock();
-    SerialPort serial_{*ownClock_};
+    SerialPort serial_{clock};
     PacketLine packets_{serial_};
     int wakePipe_[2] = {-1, -1};
     // failed_: the port is lost, or no modem answered; complained_: that was logged as an error.

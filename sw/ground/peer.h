@@ -5,11 +5,13 @@
 
 #pragma once
 
+#include "clock.h"
 #include "packet_line.h"
 #include "program_connection.h"
 #include "settings.h"
 
 #include <deque>
+#include <memory>
 #include <mutex>
 
 extern "C" {
@@ -28,14 +30,16 @@ public:
         const std::string device;
         Settings settings; // for the next set-up
         Log log;
+        const std::unique_ptr<Clock> ownClock;
         Clock& clock;
         PacketLine& line;
         std::mutex mutex;
         bool hasMany = false;  // several peers: log lines name the peer
         Link* radio = nullptr; // the first link; all links share the modem's answers
 
-        Host(const Settings& s, const Log& l, Clock& c, PacketLine& p)
-            : device(s.device), settings(s), log(l), clock(c), line(p) {}
+        Host(const Settings& s, const Log& l, std::unique_ptr<Clock> c, PacketLine& p)
+            : device(s.device), settings(s), log(l), ownClock(std::move(c)), clock(*ownClock),
+              line(p) {}
         virtual ~Host() = default;
         virtual void wake() = 0; // a program wants something
     };

@@ -405,7 +405,7 @@ TEST_F(BroadcastTest, EachVehicleTakesACallOnceInOrder) {
 TEST_F(BroadcastTest, WhatCannotGoToAllIsRefusedAtOnceInWords) {
     EXPECT_NE(say({callOf(1, 5), goodbye}).find("use a oneway proxy"), std::string::npos);
     say({callOf(1, 0, 80)});
-    EXPECT_TRUE(log_.has("the packet to all vehicles (at most 79)")) << log_.text();
+    EXPECT_TRUE(log_.has("one packet to all vehicles (at most 79)")) << log_.text();
     say({callOf(1, 0, 40, 1)});
     EXPECT_TRUE(log_.has("sent a batch")) << log_.text();
     settings_.quarters = [] { return int64_t(-1); };

@@ -133,14 +133,11 @@ def state(folder, slots):
     it empty."""
     shown = {"calls": [], "features": [], "slots": [], "flight": heading(folder)}
     status = contents(folder + "/status")
-    if len(status) >= STATUS.size and status.startswith(b"ICESOC1\0"):
-        values = STATUS.unpack_from(status)[1:]
-        shown["air"] = dict(zip(COUNTERS, values))
-        registers, seen = values[7:7 + 1024], values[7 + 1024:]
+    if len(status) >= STATUS.size and status.startswith(STATUS.constants["SIM_MAGIC"].encode()):
+        values = STATUS.unpack(status)
+        shown["air"] = {name: values[name] for name in COUNTERS}
+        registers, seen = values["registers"], values["seen"]
         for slot, name, block in slots:
-from icesoc.util import record
-
-HERE = os.path.dirname(os.path.abspath(__file__))
             words = [register(block, word, registers[slot * 16 + word], seen[slot * 16 + word])
                      for word in range(16) if seen[slot * 16 + word]]
             shown["slots"].append({"slot": slot, "block": name, "doc": block.doc if block else "",

@@ -8,6 +8,8 @@
 #include "mischief.h"
 #include "rf_channel.h"
 #include "xbee.h"
+#include <list>
+#include <memory>
 
 class Attacker {
 public:
@@ -34,7 +36,9 @@ public:
         bytes.resize(std::min(bytes.size(), mostBytes));
         packet.bytes = std::move(bytes);
         ++sent_;
-        air_.transmit(&modem_, packet, now);
+        voices_.remove_if([](const auto& voice) { return voice->isDone; });
+        voices_.push_back(std::make_unique<Voice>(air_));
+        voices_.back()->mac.send(std::move(packet), now);
     }
     // Does one of the things that are possible without a key, drawn at random: mischief, in the
     // name of a packet's sender, of its receiver or of another's.
@@ -67,6 +71,17 @@ private:
     static constexpr size_t mostBytes = 100; // of a packet
     static constexpr uint16_t uav = 1, ground = 0;
 
+    // The MAC of one packet: the attacker does not wait for its packet before.
+    struct Voice : Mac::Modem {
+        explicit Voice(RfChannel& air) : mac(air, *this) {}
+        bool hears(const RfPacket&) const override { return false; }
+        Reception receive(const RfPacket&, uint64_t) override { return Reception::Absent; }
+        uint64_t busyUntil() const override { return 0; }
+        void transmitted(uint64_t, Mac::Fate) override { isDone = true; }
+        Mac mac;
+        bool isDone = false;
+    };
+
     static XBee::Options modemOfNobody() {
         XBee::Options options;
         options.name = "attacker";
@@ -84,6 +99,7 @@ private:
     Random random_;
     HostLine line_;
     XBee modem_;
+    std::list<std::unique_ptr<Voice>> voices_; // packets under way
     std::vector<RfPacket> heard_;
     uint64_t sent_ = 0;
     bool hinders_ = false;

@@ -126,18 +126,20 @@ private:
         (void)stream_.silentUs(now_);
     }
     bool makesSense() const {
-        return sent_.size() < 14 || (sizeOf(sent_.data()) >= 14 && sizeOf(sent_.data()) <= longest);
+        return sent_.size() < IceHeader::bytes ||
+               (IceHeader::sizeOf(sent_.data()) >= IceHeader::bytes &&
+                IceHeader::sizeOf(sent_.data()) <= longest);
     }
     void skipValidates() {
-        while (!validatesComeThrough_ && sent_.size() >= 14 && sent_[8] == 3 && makesSense() &&
-               sizeOf(sent_.data()) <= sent_.size())
-            sent_.erase(sent_.begin(),
-                        sent_.begin() + static_cast<std::ptrdiff_t>(sizeOf(sent_.data())));
+        while (!validatesComeThrough_ && sent_.size() >= IceHeader::bytes && sent_[8] == 3 &&
+               makesSense() && IceHeader::sizeOf(sent_.data()) <= sent_.size())
+            sent_.erase(sent_.begin(), sent_.begin() + static_cast<std::ptrdiff_t>(
+                                                           IceHeader::sizeOf(sent_.data())));
     }
     void take() {
         const size_t size = stream_.size();
         validatesComeThrough_ = validatesComeThrough_ && sent_[8] != 3;
-        expect(size >= 14 && size <= longest && size <= sent_.size());
+        expect(size >= IceHeader::bytes && size <= longest && size <= sent_.size());
         expect(std::equal(sent_.begin(), sent_.begin() + static_cast<std::ptrdiff_t>(size),
                           stream_.data()));
         (void)stream_.isCall();

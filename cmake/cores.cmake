@@ -7,6 +7,8 @@ set(CORE_FOLDERS "" CACHE STRING "Folders of cores besides those in ip/")
 set(FOREIGN_CORES ${CMAKE_BINARY_DIR}/foreign
   CACHE PATH "Where icesoc.util.fetch put third-party cores")
 
+set(MANIFEST_FILES ${REGMAP_FILES} ${TOOLS}/chip/manifest.py ${TOOLS}/chip/core.schema.json)
+
 # Names in the list, for parts that are built only with a core: if("vision" IN_LIST CHIP_CORES)
 set(CHIP_CORES)
 set(instances 0)
@@ -100,13 +102,10 @@ macro(icesoc_core_clock)
   if(A_CLOCK)
     set(top ${name}_clocked)
     set(hz ${A_CLOCK})
-    set(flag)
-    if(A_CLK_HZ)
-      set(flag --clk-hz)
-    endif()
     add_custom_command(OUTPUT ${GEN_DIR}/${top}.v
-                       COMMAND ${REGMAP} ${regs} --clocked ${flag} --output-dir ${GEN_DIR}
-                       DEPENDS ${REGMAP_FILES} ${regs} VERBATIM COMMENT "${name} in its own clock")
+      COMMAND ${PYTHON} -m icesoc.chip.clocked ${manifest} ${regs} ${GEN_DIR}/${top}.v
+      DEPENDS ${MANIFEST_FILES} ${TOOLS}/chip/clocked.py ${manifest} ${regs}
+      VERBATIM COMMENT "${name} in its own clock")
     add_custom_target(${top}_verilog DEPENDS ${GEN_DIR}/${top}.v)
     list(APPEND files ${GEN_DIR}/${top}.v)
     list(APPEND targets ${top}_verilog)
@@ -117,7 +116,10 @@ macro(icesoc_core_test)
   if(A_CLK_HZ)
     set(clock CLK_HZ=${hz})
   endif()
-  file(GLOB test CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}_test.cpp)
+  file(GLOB test CONFIGURE_DEPENDS ${folder}/${name}_test.cpp)
+  if(A_TESTS)
+    set(test ${A_TESTS})
+  endif()
   if(test AND "testbench" IN_LIST ROOMS)
     if(NETLIST AND NOT A_CLOCK)
       icesoc_netlist(${name}_slot DESIGN ${top} DEPENDS ${targets})
@@ -126,7 +128,7 @@ macro(icesoc_core_test)
                       FLAGS ${A_FLAGS} ${CORE_TEST_FLAGS}
                       PARAMS ${clock} INCLUDES ${CMAKE_SOURCE_DIR}/bus ${CMAKE_SOURCE_DIR}/hdl/ddr
                         ${CMAKE_SOURCE_DIR}/hdl/system ${CMAKE_SOURCE_DIR}/hdl/cdc
-                        ${CMAKE_CURRENT_SOURCE_DIR})
+                        ${folder})
     endif()
     set(state ${CMAKE_CURRENT_BINARY_DIR}/verilated_${name}_slot/V${name}_slot)
     add_custom_command(OUTPUT ${state}_state.h
@@ -137,7 +139,7 @@ macro(icesoc_core_test)
     if(A_VHDL)
       list(APPEND labels vhdl)
     endif()
-    icesoc_test(test_ip_${name} SOURCES ${name}_test.cpp ${state}_state.h
+    icesoc_test(test_ip_${name} SOURCES ${test} ${state}_state.h
       LIBS ${libs} ${name}_slot bench fsmc hw_core icec LABELS ${labels})
     if(A_CLK_HZ)
       set(clock CORE_CLK_HZ=100000000)
@@ -150,50 +152,30 @@ macro(icesoc_core_test)
   endif()
 endmacro()
 
-# icesoc_core(NAME [ICE file.ice | REGS name.regs.json] [VERILOG file...] [VHDL file...]
-#             [SERVANT file.c...] [SLICE name...] [INCLUDES dir...] [FLAGS ...] [DEPENDS target...]
-#             [CLK_HZ] [IDLE] [CLOCK Hz] [WINDOW])
-# The core NAME: a module or entity NAME with a slot's ports. ICE: its [":hw"] interface, from which
-# registers, wrapper and servant are made; else REGS describes its registers, of which the register
-# block <NAME>_regs is made (with WINDOW only constants: bus_window.v has them), and SERVANT is written
-# by hand, for interfaces of SLICE: files, or names given to icesoc_slice; without SERVANT it is
-# that of sw/hw/registers. <NAME>_test.cpp beside it becomes test_ip_<NAME>, with the model
-# V<NAME>_slot.
-# VERILOG may name headers, in whose folders `include looks.
-# FLAGS: Verilator's, for a foreign core's style.
-# DEPENDS: targets that generate VERILOG files.
-# CLK_HZ: the module has a parameter of that name, the clock in Hz: 100 MHz on the board, in
-# <NAME>_test.cpp and in the simulator, unless another is given.
-# IDLE: it has an output idle_o, which allows a gate for its clock (hdl/system/core_gate.v) where
-# formal.idle_<NAME> proves it.
-# CLOCK: it has a clock of its own, of at most that frequency, behind bus/bus_crossing.v; clk_i,
-# rst_i and its pins belong to it.
-function(icesoc_core name)
-  cmake_parse_arguments(A "CLK_HZ;IDLE;WINDOW" "ICE;REGS;CLOCK"
-    "VERILOG;VHDL;SERVANT;SLICE;INCLUDES;FLAGS;DEPENDS" ${ARGN})
-  list(TRANSFORM A_VHDL PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
-  list(TRANSFORM A_VERILOG PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
-  list(TRANSFORM A_SERVANT PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
-  if(A_CLK_HZ AND A_VHDL)
-    message(FATAL_ERROR "${name}: CLK_HZ is for a module in Verilog: GHDL fixes an entity's "
-      "generics when it converts it, before the clock is known. Take a number by an operation "
-      "instead")
+# icesoc_core([FOLDER]): the core of core.toml in FOLDER (default: the current source folder); its
+# keys are in docs/hw-mapping.md. It is a module or entity of the manifest's name with a slot's
+# ports. A core with a test gets the target test_ip_<NAME> and the model V<NAME>_slot.
+function(icesoc_core)
+  set(folder ${CMAKE_CURRENT_SOURCE_DIR})
+  if(ARGC)
+    set(folder ${ARGV0})
   endif()
-  if(A_CLOCK AND (A_IDLE OR NOT A_CLOCK MATCHES "^[0-9]+$" OR A_CLOCK LESS 3000000
-      OR A_CLOCK GREATER 100000000))
-    message(FATAL_ERROR "${name}: CLOCK is 3000000 to 100000000 Hz, and without IDLE: a clock of "
-      "the core's own has no gate")
+  set(manifest ${folder}/core.toml)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${manifest} ${MANIFEST_FILES})
+  execute_process(COMMAND ${PYTHON} -m icesoc.chip.manifest ${manifest}
+    OUTPUT_VARIABLE facts ERROR_VARIABLE error RESULT_VARIABLE status)
+  if(status)
+    message(FATAL_ERROR "${error}")
   endif()
-  set(chip) # options of coremap.py
-  if(A_CLK_HZ)
-    list(APPEND chip --clocked=${name})
-  endif()
+  cmake_language(EVAL CODE "${facts}")
+  set(A_DEPENDS)
+  foreach(entity IN LISTS A_ENTITIES)
+    icesoc_vhdl(NAME ${entity} ${A_ENTITY_${entity}})
+    list(APPEND A_VERILOG ${GEN_DIR}/${entity}.v)
+    list(APPEND A_DEPENDS ${entity}_verilog)
+  endforeach()
   if(A_IDLE)
-    list(APPEND chip --idle=${name})
     set_property(GLOBAL APPEND PROPERTY ICESOC_IDLE_CORES ${name})
-  endif()
-  if(A_CLOCK)
-    list(APPEND chip --own-clock=${name}=${A_CLOCK})
   endif()
   set(files ${A_VERILOG})
   set(headers ${A_VERILOG}) # found by `include
@@ -202,7 +184,7 @@ function(icesoc_core name)
   set(targets ${A_DEPENDS})
   set(wrapper)
   set(arm_sources ${A_SERVANT})
-  set(arm_includes ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_SOURCE_DIR}/sw/hw)
+  set(arm_includes ${folder} ${CMAKE_SOURCE_DIR}/sw/hw)
   set(arm_targets)
   set(libs)
   set(slices)
@@ -219,12 +201,23 @@ function(icesoc_core name)
     list(APPEND A_FLAGS -Wno-PINCONNECTEMPTY) # GHDL's way to write `open`
   endif()
   icesoc_core_clock()
-  foreach(what files headers targets regs libs chip slices arm_sources arm_includes arm_targets)
+  foreach(what files headers targets regs libs manifest slices arm_sources arm_includes arm_targets)
     set_property(GLOBAL PROPERTY ICESOC_CORE_${name}_${what} ${${what}})
   endforeach()
   set_property(GLOBAL PROPERTY ICESOC_CORE_${name}_flags ${A_FLAGS})
   set_property(GLOBAL APPEND PROPERTY ICESOC_CORES ${name})
   icesoc_core_test()
+endfunction()
+
+# icesoc_core_folder(FOLDER BINARY): adds the core in FOLDER. Without a CMakeLists.txt, which begins
+# with icesoc_core() and adds what a manifest does not have, such as models, the manifest is enough.
+function(icesoc_core_folder folder binary)
+  if(NOT EXISTS ${folder}/CMakeLists.txt)
+    set(text "# Generated: the core of ${folder}/core.toml.\nicesoc_core(${folder})\n")
+    file(CONFIGURE OUTPUT ${binary}/source/CMakeLists.txt CONTENT "${text}")
+    set(folder ${binary}/source)
+  endif()
+  add_subdirectory(${folder} ${binary})
 endfunction()
 
 # The files of one kind that the listed cores bring: icesoc_chip_property(OUT files)
@@ -244,22 +237,25 @@ function(icesoc_chip)
   set(options)
   foreach(name IN LISTS CHIP_CORES)
     if(NOT name IN_LIST known)
-      message(FATAL_ERROR "${CORES}: there is no core '${name}': it needs "
-        "ip/${name}/CMakeLists.txt with icesoc_core, or its line goes")
+      message(FATAL_ERROR "${CORES}: no core '${name}': add ip/${name}/core.toml "
+        "(./icesoc core new ${name}) or remove the line")
     endif()
     get_property(regs GLOBAL PROPERTY ICESOC_CORE_${name}_regs)
-    list(APPEND options --core=${name}=${regs})
-    get_filename_component(folder ${regs} DIRECTORY)
-    file(GLOB own CONFIGURE_DEPENDS ${folder}/${name}.ucf)
-    list(APPEND inputs ${regs} ${own})
+    get_property(manifest GLOBAL PROPERTY ICESOC_CORE_${name}_manifest)
+    list(APPEND options --core=${name}=${manifest}=${regs})
+    get_filename_component(folder ${manifest} DIRECTORY)
+    file(GLOB own CONFIGURE_DEPENDS ${folder}/*.ucf)
+    list(APPEND inputs ${manifest} ${regs} ${own})
   endforeach()
+  # Each module of the chip is in one file: checked when the chip is built.
   icesoc_chip_property(files files)
-  execute_process(COMMAND ${PYTHON} -m icesoc.cores.foreign_files ${files} RESULT_VARIABLE status
-    ERROR_VARIABLE said)
-  if(status)
-    string(REPLACE "new-foreign: " "" said "${said}")
-    message(FATAL_ERROR "${CORES}: ${said}")
-  endif()
+  icesoc_chip_property(targets targets)
+  add_custom_command(OUTPUT ${GEN_DIR}/cores.checked
+    COMMAND ${PYTHON} -m icesoc.cores.foreign_files ${files}
+    COMMAND ${CMAKE_COMMAND} -E touch ${GEN_DIR}/cores.checked
+    DEPENDS ${files} ${targets} ${TOOLS}/cores/foreign_files.py
+    VERBATIM COMMENT "Modules of the chip's cores")
+  add_custom_target(cores_checked DEPENDS ${GEN_DIR}/cores.checked)
   # Slice files of all cores go into one program.
   icesoc_chip_property(slices slices)
   set(check)
@@ -272,16 +268,15 @@ function(icesoc_chip)
     endforeach()
     set(check COMMAND slice2c --one-program ${slice_includes} ${slice_files})
   endif()
-  icesoc_chip_property(chip chip)
   add_custom_command(OUTPUT ${GEN_DIR}/map.regs.json ${GEN_DIR}/soc_cores.vh ${GEN_DIR}/soc_cores.c
                      ${GEN_DIR}/soc_pins.h ${GEN_DIR}/core_pins.ucf ${GEN_DIR}/icesoc.svd
                      ${GEN_DIR}/probes.json ${GEN_DIR}/icesoc.rdl ${GEN_DIR}/icesoc.ipxact.xml
                      ${check}
     COMMAND ${PYTHON} -m icesoc.chip.coremap ${CORES}
-            --base ${CMAKE_SOURCE_DIR}/bus/map.regs.json ${options} ${chip}
+            --base ${CMAKE_SOURCE_DIR}/bus/map.regs.json ${options}
             --block 0=system=${CMAKE_SOURCE_DIR}/hdl/system/system.regs.json
             --block 1=modem=${CMAKE_SOURCE_DIR}/hdl/modem/modem.regs.json --output-dir ${GEN_DIR}
-    DEPENDS ${REGMAP_FILES} ${TOOLS}/chip/coremap.py ${TOOLS}/chip/core_output.py
+    DEPENDS ${MANIFEST_FILES} ${TOOLS}/chip/coremap.py ${TOOLS}/chip/core_output.py
             ${CORES} ${CMAKE_SOURCE_DIR}/bus/map.regs.json
             ${inputs} ${CMAKE_SOURCE_DIR}/hdl/system/system.regs.json
             ${CMAKE_SOURCE_DIR}/hdl/modem/modem.regs.json ${slice_files}

@@ -49,6 +49,7 @@ libzeroc-ice-dev ZeroC Ice for C++
 zeroc-ice-compilers slice2cpp, for tests and the C++ client
 zeroc-ice-slice Slice files of ZeroC Ice
 python3-zeroc-ice ZeroC Ice for Python: the ground station
+python3-jsonschema checks the manifests of cores
 python3-pil draws the features over the picture
 xplanet-images the default picture
 gcc-arm-none-eabi the firmware for the Cortex-M3

@@ -137,9 +137,8 @@ class Cases(Script):
                  "wishbone", "--files", mine / "others/wb_port.v", "--repository", mine, *built)
         self.has(f"^Next: make -C {mine} test")
         self.has("^third$", file=mine / "cores.list")
-        self.has(r"VERILOG third.v \$\{here\}/../others/wb_port.v",
-                 file=mine / "third/CMakeLists.txt")
-        self.lacks(str(mine), file=mine / "third/CMakeLists.txt")
+        self.has('"@FOLDER@/../others/wb_port.v"', file=mine / "third/core.toml")
+        self.lacks(str(mine), file=mine / "third/core.toml")
         # The clone is of this tree's origin, at its commit; one without that commit is not kept.
         if (TREE / ".git").exists():
             commit = git(f"-C {shlex.quote(str(TREE))} rev-parse HEAD")

@@ -22,7 +22,7 @@ run() { # exit status, trees
     wanted=$1
     shift
     status=0
-    "$source/tools/python" -m icesoc.regs.contract_diff "$slice2c" "$@" >"$work/out" 2>&1 || status=$?
+    "$source/tools/python" -m icesoc.chip.contract_diff "$slice2c" "$@" >"$work/out" 2>&1 || status=$?
     [ "$status" = "$wanted" ] && ! grep Traceback "$work/out" || { cat "$work/out" &&
         echo "exit status $status" && exit 1; }
 }

@@ -13,11 +13,16 @@ rdl() { "$source/tools/python" -m icesoc.regs.rdl "$@" >"$work/log" 2>&1; }
 rdl "$gen/icesoc.rdl" "$work/new/ip" || { cat "$work/log" && fail 'the chip was not read'; }
 for block in "$work"/new/ip/*.regs.json; do
     name=$(basename "$block")
-    find "$source/hdl" "$source/ip" "$gen" -name "$name" -exec cp {} "$work/old/ip" \;
-    [ -f "$work/old/ip/$name" ] || fail "there is no block $name"
+    old=$work/old/ip/${name%.regs.json}
+    mkdir -p "$old"
+    for file in $(find "$source/hdl" "$source/ip" "$gen" -name "$name"); do
+        cp "$file" "$old"
+        [ ! -e "${file%/*}/core.toml" ] || cp "${file%/*}/core.toml" "$old" # has memory_bytes
+    done
+    [ -f "$old/$name" ] || fail "there is no block $name"
 done
-[ "$("$source/tools/python" -m icesoc.regs.contract_diff true "$work/old" "$work/new")" = 'no breaking change' ] ||
-    { "$source/tools/python" -m icesoc.regs.contract_diff true "$work/old" "$work/new" || true;
+[ "$("$source/tools/python" -m icesoc.chip.contract_diff true "$work/old" "$work/new")" = 'no breaking change' ] ||
+    { "$source/tools/python" -m icesoc.chip.contract_diff true "$work/old" "$work/new" || true;
     fail 'what comes back is not what was there'; }
 for file in icesoc.svd icesoc.ipxact.xml; do xmllint --noout "$gen/$file" ||
     fail "$file is no XML"; done

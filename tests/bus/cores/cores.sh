@@ -11,8 +11,10 @@ data=$(cd "$(dirname "$0")/data" && pwd)
 rm -rf "$work"
 mkdir -p "$work/own"
 # The led again, with a clock of its own.
-for f in regs.json v; do sed 's/\<led\>/tuner/' "$data/led.$f" >"$work/own/tuner.$f"; done
-regmap "$work/own/tuner.regs.json" --clocked --output-dir "$work/own"
+for f in regs.json v toml; do sed 's/\<led\>/tuner/' "$data/led.$f" >"$work/own/tuner.$f"; done
+sed -i '/^name/a clock_hz = 48000000' "$work/own/tuner.toml"
+clocked() { "$source/tools/python" -m icesoc.chip.clocked "$@"; }
+clocked "$work/own/tuner.toml" "$work/own/tuner.regs.json" "$work/own/tuner_clocked.v"
 fail() { echo "cores: $*" && exit 1; }
 
 chip() { # name, the list: the chip in $work/name
@@ -20,10 +22,11 @@ chip() { # name, the list: the chip in $work/name
     mkdir -p "$out"
     printf '%b' "$2" >"$out/cores.list"
     coremap "$out/cores.list" --base "$source/bus/map.regs.json" \
-        --core "led=$data/led.regs.json" \
-        --core "adder=$data/adder.regs.json" --core "mover=$data/mover.regs.json" \
-        --core "probe=$source/ip/probe/probe.regs.json" --clocked mover --clocked probe \
-        --idle adder --core "tuner=$work/own/tuner.regs.json" --own-clock tuner=48000000 \
+        --core "led=$data/led.toml=$data/led.regs.json" \
+        --core "adder=$data/adder.toml=$data/adder.regs.json" \
+        --core "mover=$data/mover.toml=$data/mover.regs.json" \
+        --core "probe=$source/ip/probe/core.toml=$source/ip/probe/probe.regs.json" \
+        --core "tuner=$work/own/tuner.toml=$work/own/tuner.regs.json" \
         --block "0=system=$source/hdl/system/system.regs.json" --output-dir "$out" 2>"$out/messages"
 }
 accepted() {
@@ -112,8 +115,8 @@ changed() { # sed's command for the mover's description: the hash with it
     mkdir -p "$work/changed"
     sed "$1" "$data/mover.regs.json" >"$work/changed/mover.regs.json"
     coremap "$out/cores.list" --base "$source/bus/map.regs.json" --core \
-        "led=$data/led.regs.json" \
-        --core "mover=$work/changed/mover.regs.json" --output-dir "$out"
+        "led=$data/led.toml=$data/led.regs.json" \
+        --core "mover=$data/mover.toml=$work/changed/mover.regs.json" --output-dir "$out"
     contract mover
 }
 [ "$(changed 's/With a memory/Having a memory/')" = "$before" ] ||
@@ -122,10 +125,11 @@ changed() { # sed's command for the mover's description: the hash with it
     != "$before" ] ||
     fail 'a register does not change the hash'
 # A servant without a call that waits has neither interrupt nor poll of its own.
-sed 's/"adder_servant.h"/&, "waits": false/' "$data/adder.regs.json" >"$work/adder.regs.json"
+for f in adder.regs.json adder.v; do cp "$data/$f" "$work"; done
+sed '/^header/a waits = false' "$data/adder.toml" >"$work/adder.toml"
 echo adder >"$work/cores.list"
 coremap "$work/cores.list" --base "$source/bus/map.regs.json" \
-    --core "adder=$work/adder.regs.json" \
+    --core "adder=$work/adder.toml=$work/adder.regs.json" \
     --output-dir "$work"
 grep -q '^    Hw_Core_interrupt(&core_adder.core);' "$work/soc_cores.c" &&
     ! grep -q 'Demo_Adder_Core_\(interrupt\|poll\)' "$work/soc_cores.c" ||
@@ -151,7 +155,9 @@ refused 'clock=2/99: 2020202 Hz' 'tuner clock=2/99\n'
 refused 'clock=9/8: a part of' 'tuner clock=9/8\n'
 refused 'clock=x: a part of' 'tuner clock=x\n'
 refused "has no input pin 'clock'" 'led clock=6/25\n'
-! regmap "$data/mover.regs.json" --clocked --output-dir "$work" 2>"$work/messages" &&
+sed '/^name/a clock_hz = 48000000' "$data/mover.toml" >"$work/mover.toml"
+for f in mover.regs.json mover.v; do cp "$data/$f" "$work"; done
+! clocked "$work/mover.toml" "$data/mover.regs.json" "$work/mover_clocked.v" 2>"$work/messages" &&
     grep -q 'a core with a memory port has the chip' "$work/messages" ||
     fail 'a memory port in another clock'
 # Registers and fields whose names are one in the headers.
@@ -209,7 +215,7 @@ refused '2: error: memory=0x1000800 is within the buffers of line 1' \
 refused 'memory=1x: a byte address' 'mover memory=1x\n'
 refused 'a byte address in DDR3' "mover memory=1$(printf '%05000d' 0)\n"
 refused 'memory=0x1000000: a byte address in DDR3, for a core with buffers' 'led memory=0x1000000\n'
-refused "1: error: there is no core 'nobody'" 'nobody\n'
+refused "1: error: no core 'nobody'" 'nobody\n'
 refused "2: error: 'led' is on line 1 already; name=" 'led\nled\n'
 refused "3: error: slot 7 is taken on line 2" '#\nled slot=7\nadder slot=7\n'
 refused "slot=1: 2..63" 'led slot=1\n'

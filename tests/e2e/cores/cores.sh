@@ -13,8 +13,8 @@ fresh() {
 # A core of the mapping's tests: its folder for the list.
 mapped() {
     mkdir -p "$work/fresh/$1"
-    echo "icesoc_core($1 ICE $source/tests/slice/hardware/golden/$1.ice
-        VERILOG $source/tests/slice/hardware/$1.v)" >"$work/fresh/$1/CMakeLists.txt"
+    printf 'interface = "%s"\nverilog = ["%s"]\n' "$source/tests/slice/hardware/golden/$1.ice" \
+        "$source/tests/slice/hardware/$1.v" >"$work/fresh/$1/core.toml"
     fresh "$1"
 }
 logged() { "$@" >"$work/log" 2>&1 || { tail -40 "$work/log" && exit 1; }; }

@@ -76,8 +76,12 @@ done
 # An input that only cores drive does not keep the core that drives it.
 new low_pass --lang verilog --ice "$work/a.ice" >/dev/null
 mkdir -p "$work/ip/taker"
-echo '{"block": "taker", "doc": "", "registers": [], "pins": [{"name": "b_i", "internal": true}, {"name": "c_i", "width": 2}]}' \
-    >"$work/ip/taker/taker.regs.json"
+touch "$work/ip/taker/taker.v" "$work/ip/taker/taker.regs.json"
+cat >"$work/ip/taker/core.toml" <<'END'
+registers = "taker.regs.json"
+verilog = ["taker.v"]
+pins = [{name = "b_i", internal = true}, {name = "c_i", width = 2}]
+END
 printf 'low_pass\ntaker c_i=low_pass.c_o b_i=low_pass.b_o\n' >"$work/ip/cores.list"
 ! remove low_pass 2>"$work/log" && grep -q 'inputs of taker' "$work/log" ||
     { echo 'rm-ip makes a pin of an input' && exit 1; }

@@ -148,7 +148,7 @@ says 'state_o: pin state_o' "sv2v --top=system .*/widths.sv .*/sizes.sv .*/syste
 ! grep -q 'is_odd\|number' log && # what belongs to functions is no port
     grep -q 'input  wire \[2:0\] more_i' system/my_port.v &&
     grep -q '"width": 16' system/my_port.regs.json &&
-    ! grep -q UNOPTFLAT system/CMakeLists.txt ||
+    ! grep -q UNOPTFLAT system/core.toml ||
     { cat log system/my_port.v && exit 1; }
 # A register is as wide as its written, or read, data.
 echo 'module narrow(input clk, we, input [16:0] d, output [12:0] q); assign q = d[12:0]; endmodule' >narrow.v

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 
 sys.dont_write_bytecode = True
 from icesoc.regs import core_exchange
-from icesoc.chip import core_output
+from icesoc.chip import core_output, manifest
 from icesoc.regs.generate import save
 from icesoc.regs.model import Block, Wrong, check
 
@@ -56,7 +56,7 @@ class Core:
     is_placed: bool = False  # memory= gives its address
     servant: dict = None  # type and header; without one: that of sw/hw/registers
     pins: list = field(default_factory=list)
-    constraints: str = ""  # <folder>.ucf beside its description
+    constraints: str = ""  # text of its *.ucf
     has_clock: bool = False  # the module has the parameter CLK_HZ
     own_clock: int = 0  # Hz at most of its own clock; 0: it has the chip's
     # Its own clock is the chip's clock times this ratio; 0: the pin clock_i, its last, brings it.
@@ -94,9 +94,9 @@ class Slot:
 class Chip:
     """The cores of a list, with the resources that the chip gives each."""
 
-    def __init__(self, text, base, descriptions):
+    def __init__(self, text, base, manifests, descriptions):
         constants = {c["name"]: c["value"] for c in base["constants"]}
-        self.descriptions = descriptions
+        self.manifests, self.descriptions = manifests, descriptions
         self.first = constants["SLOT_COUNT"]
         self.buffers = constants["BUFFERS"]
         self.memory_end = 1 << constants["DDR_BYTES_LOG2"]
@@ -119,7 +119,7 @@ class Chip:
     def read(self, line, folder, words):
         core = Core(line, folder, folder)
         core.check(folder in self.descriptions,
-                   f"there is no core '{folder}': ip/{folder}/CMakeLists.txt, with icesoc_core")
+                   f"no core '{folder}': add ip/{folder}/core.toml or remove the line")
         self.describe(core, self.descriptions[folder].description)
         given = {}
         for word in words:
@@ -130,6 +130,12 @@ class Chip:
             given[key] = value
         for key, value in given.items():
             self.set(core, key, value)
+        for name, places in self.manifests[folder].places().items():
+            pin = next(p for p in core.pins if p.name == name)
+            if pin.is_pin and not pin.places:
+                self.set_places(core, pin, "@" + ",".join(places))
+        core.check(core.says_idle or not core.has_gate,
+                   f"gate=on: '{core.folder}' has no output idle_o (idle in its core.toml)")
         core.check(core.signals or not core.is_probe,
                    f"'{core.name}' records nothing: signals=u_fir.busy,u_fir.count:9")
         core.identity = core.identity or core.name
@@ -156,7 +162,14 @@ class Chip:
         core.servant = block.get("servant")
         core.pins = [Pin(p["name"], p.get("width", 1), p.get("internal", False))
                      for p in block.get("pins", [])]
-        core.own_clock = block.get("own_clock", 0)
+        facts = self.manifests[core.folder].facts
+        core.has_clock = facts.get("clk_hz", False)
+        core.says_idle = facts.get("idle", False)
+        core.own_clock = facts.get("clock_hz", 0)
+        if "constraints" in facts:
+            core.constraints = read(self.manifests[core.folder].file(facts["constraints"]))
+        for signal in facts.get("signals", []):
+            self.set_signals(core, signal)
         if core.own_clock:
             core.pins.append(Pin("clock_i"))
 
@@ -184,6 +197,7 @@ class Chip:
                        f"memory={value}: a byte address in DDR3, for a core with buffers")
             core.memory, core.is_placed = int(value, 0), True
         elif key == "signals" and core.is_probe:
+            core.signals = []  # instead of the manifest's
             self.set_signals(core, value)
         elif key == "clock" and core.own_clock:
             self.set_clock(core, value)
@@ -329,6 +343,15 @@ def described(path):
         raise Wrong(f"1: error: '{path}': {e}") from None
 
 
+def of_core(file, registers):
+    """Returns a core's manifest and its block."""
+    try:
+        found = manifest.read(file)
+        return found, manifest.block_of(found, registers)
+    except Wrong as e:
+        raise Wrong(f"1: error: {e}") from None
+
+
 def parts(option, text, form):
     found = text.split("=", form.count("="))
     check(len(found) == form.count("=") + 1, f"1: error: {option} {form}, not '{text}'")
@@ -337,21 +360,12 @@ def parts(option, text, form):
 
 def build(asked):
     """Returns all files, name to text."""
-    files = dict(parts("--core", c, "folder=file") for c in asked.core)
-    descriptions = {folder: described(file) for folder, file in files.items()}
-    for given in asked.own_clock:
-        folder, hz = parts("--own-clock", given, "folder=Hz")
-        if folder in descriptions:
-            descriptions[folder].description["own_clock"] = int(hz)
+    manifests, descriptions = {}, {}
+    for folder, file, registers in (parts("--core", c, "folder=core.toml=file")
+                                    for c in asked.core):
+        manifests[folder], descriptions[folder] = of_core(file, registers)
     base = described(asked.base).description
-    chip = Chip(read(asked.list), base, descriptions)
-    for core in chip.cores:
-        core.has_clock = core.folder in asked.clocked
-        core.says_idle = core.folder in asked.idle
-        core.check(core.says_idle or not core.has_gate,
-                   f"gate=on: '{core.folder}' has no output idle_o (icesoc_core(... IDLE))")
-        own = os.path.join(os.path.dirname(files[core.folder]), core.folder + ".ucf")
-        core.constraints = read(own) if os.path.exists(own) else ""
+    chip = Chip(read(asked.list), base, manifests, descriptions)
     blocks = [parts("--block", b, "slot=name=file") for b in asked.block]
     slots = [(name, int(number), described(file)) for number, name, file in blocks]
     slots += [(core.name, core.slot, descriptions[core.folder]) for core in chip.cores]
@@ -369,10 +383,7 @@ def main():
         "[clock=3/8] [signals=u_fir.count:9] [input=core.output] [pin=@places]")
     parser.add_argument("--base", required=True, help="the platform's map.regs.json")
     for option, text in (
-            ("--core", "folder=its description (*.regs.json)"),
-            ("--clocked", "folder of a core with the parameter CLK_HZ"),
-            ("--own-clock", "folder=Hz at most, of a core with a clock of its own"),
-            ("--idle", "folder of a core with the output idle_o"),
+            ("--core", "folder=its manifest (core.toml)=its registers (*.regs.json)"),
             ("--block", "slot=name=description of a block of the platform, for the pages")):
         parser.add_argument(option, action="append", default=[], help=text)
     parser.add_argument("--output-dir", default=".", help="where the files go")

@@ -40,6 +40,11 @@ class Core:
             if roles[n] in ADDRESSES:
                 self.count_words(roles[n], p, address)
 
+    def pin_table(self):
+        """Returns the pins as a manifest has them."""
+        return [{"name": n, "width": len(p["bits"])} if len(p["bits"]) > 1 else {"name": n}
+                for n, p in self.pins]
+
     def count_words(self, role, port, address):
         """Finds out whether an address counts words or bytes, and how many bits count words."""
         width, lsb = len(port["bits"]), port.get("offset", 0)
@@ -196,7 +201,6 @@ def description(core, words):
                    "doc": f"at {4 * a:#x} in the core"} for a, n in words.items()]
     return {"block": core.name, "doc": f"The third-party core {core.top}, by {BUSES[core.bus]}.",
             "type": f"0x{ord(letters[0]):02X}{ord(letters[1]):02X}", "version": "0x0100",
-            "pins": [{"name": n, "width": len(p["bits"])} for n, p in core.pins],
             "registers": registers,
             "events": [{"name": "CORE", "bit": 0, "doc": "the core's interrupt line was high"},
                        {"name": "TIMEOUT", "bit": 1, "doc": "the core did not answer"}]}

@@ -2,12 +2,12 @@
 """new_foreign: puts a third-party core in Verilog or VHDL into a slot (docs/recipes.md).
 
     new_foreign.py NAME TOP wishbone|axil|apb|avalon|memory|own|axis FOLDER [CLOCK=Hz]
-                   [GHDL=program] [LIBRARY=name] [ADDRESS=words|bytes] [PARAM:NAME=value...] [DEFINE:NAME...]
-                   [ROLE=port...] FILE...
+                   [GHDL=program] [LIBRARY=name] [ADDRESS=words|bytes] [PARAM:NAME=value...]
+                   [DEFINE:NAME...] [ROLE=port...] FILE...
 
 Reads the ports of the module or entity TOP and writes into FOLDER, which must not exist: NAME.v,
 which connects TOP to the slot; its registers, with the names that TOP has for their addresses; a
-test; its part of a mission; CMakeLists.txt. ROLE=port overrides what a port's name says. Ports that
+test; its part of a mission; core.toml. ROLE=port overrides what a port's name says. Ports that
 are neither bus, clock, reset nor interrupt become pins. CLOCK: the core has a clock of its own, of
 that frequency at most.
 ADDRESS: what its address counts. GHDL: the program that reads VHDL (ghdl). LIBRARY: the
@@ -15,6 +15,7 @@ VHDL library that its files say they are in. PARAM: a parameter or generic of TO
 of its Verilog, NAME or NAME=value. A core with AXI-Streams (axis) has an operation instead of
 registers: foreign_axis.py.
 """
+import json
 import os
 import re
 import sys
@@ -45,7 +46,8 @@ class Request:
         if len(words) < 5:
             sys.exit(USAGE)
         self.name, self.top, self.bus, self.folder, *rest = words
-        options = {"CLOCK=": [], "LIBRARY=": [], "ADDRESS=": [], "GHDL=": [], "PARAM:": [], "DEFINE:": []}
+        options = {"CLOCK=": [], "LIBRARY=": [], "ADDRESS=": [], "GHDL=": [], "PARAM:": [],
+                   "DEFINE:": []}
         self.ports, self.files = [], []
         for word in rest:
             option = next((o for o in options if word.startswith(o)), None)
@@ -117,8 +119,8 @@ def read_core(asked):
 
 
 def slot_texts(asked, ports, params):
-    """Returns the slot's files by their names, what CMake calls its interface, and lines that say
-    what was taken."""
+    """Returns the slot's files by their names, keys of core.toml for its registers or interface,
+    the meaning of each port, and the line that ends the report."""
     roles, latency = roles_of(asked.top, asked.bus, ports, asked.ports)
     if wide := [n for n, p in ports.items() if not roles[n] and len(p["bits"]) > 32]:
         left_out = " ".join(f"{'open' if ports[n]['direction'] == 'output' else 'low'}={n}"
@@ -136,7 +138,7 @@ def slot_texts(asked, ports, params):
             f", set{foreign_axis.camel(foreign_axis.setting(n))}"
             for n in ports if roles[n] == "setting")
         return foreign_axis.texts(asked.name, asked.top, params, ports,
-                                  roles), f"ICE {asked.name}.ice", said, operations
+                                  roles), {"interface": f"{asked.name}.ice"}, said, operations
     core = foreign_bus.Core(asked.name, asked.top, asked.bus, ports, roles, latency, params,
                             int(asked.clock or 0), asked.address,
                             macros_of([*asked.files, *asked.headers]))
@@ -144,34 +146,51 @@ def slot_texts(asked, ports, params):
         if roles[n] in foreign_bus.ADDRESSES:
             said[n] += ", " + core.unit
     texts, registers = foreign_bus.texts(core, names_of(asked.top, asked.files, core))
-    return texts, f"REGS {asked.name}.regs.json WINDOW" + (f" CLOCK {asked.clock}"
-                                                    if asked.clock else ""), said, registers
+    return texts, {"registers": f"{asked.name}.regs.json", "window": True,
+                   "pins": core.pin_table()}, said, registers
 
 
 def from_here(text, folder):
-    """Names what lies in the same room as the core's folder from there: a repository may move."""
+    """Makes names of files next to the core's folder relative: a repository may move."""
     room = re.escape(os.path.dirname(os.path.abspath(folder)))
-    found = re.sub(rf"{room}(?=[/\s)])", "${here}/..", text)
-    return found if found == text else found.replace(
-        HEAD, HEAD + "get_filename_component(here ${CMAKE_CURRENT_LIST_DIR} REALPATH)\n")
+    return re.sub(rf'(?<=["I]){room}(?=/)', "@FOLDER@/..", text)
 
 
-def cmake_lists(asked, interface, copies):
-    """Returns CMakeLists.txt; `copies` stand in the place of files."""
-    name, top, separator = asked.name, asked.top, "\n  "
+def toml(value):
+    """Returns a value as TOML writes it."""
+    if isinstance(value, list):
+        return "[" + "".join(f"\n    {toml(v)}," for v in value) + ("\n]" if value else "]")
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{k} = {toml(v)}" for k, v in value.items()) + "}"
+    return json.dumps(value, ensure_ascii=False)
+
+
+def manifest_of(asked, interface, pins, copies):
+    """Returns core.toml; `copies` replace files."""
+    facts = dict(interface)
+    if asked.clock:
+        facts["clock_hz"] = int(asked.clock)
+    facts["verilog"] = [f"{asked.name}.v"]
+    facts["flags"] = ["-Wno-lint", "-Wno-style"]
+    entity = {}
     if asked.is_vhdl:
-        options = (f" LIBRARY {asked.library}" if asked.library else "") + (
-            f" GENERICS {' '.join(asked.params)}" if asked.params else "")
-        return f"""{HEAD}icesoc_vhdl(NAME {top} FOREIGN{options} SOURCES
-  {separator.join(asked.files)})
-icesoc_core({name} {interface} FLAGS -Wno-lint -Wno-style DEPENDS {top}_verilog
-  VERILOG {name}.v ${{GEN_DIR}}/{top}.v)
-"""
-    files = [copies.get(f, f) for f in asked.files]
-    folders = " ".join("-I" + d for d in folders_of([*files, *copies, *asked.headers]))
-    return f"""{HEAD}icesoc_core({name} {interface} FLAGS {' '.join(FLAGS)} {folders}
-  VERILOG {name}.v {separator.join([*files, *asked.headers])})
-"""
+        entity = {"files": asked.files, "foreign": True}
+        if asked.library:
+            entity["library"] = asked.library
+        if asked.params:
+            entity["generics"] = asked.params
+    else:
+        files = [copies.get(f, f) for f in asked.files]
+        facts["verilog"] += [*files, *asked.headers]
+        facts["flags"] = [*FLAGS, *("-I" + (d or "@FOLDER@") for d in folders_of(
+            [*files, *copies, *asked.headers]))]
+    if pins:
+        facts["pins"] = pins
+    text = HEAD + "".join(f"{key} = {toml(value)}\n" for key, value in facts.items())
+    if entity:
+        text += f"\n[entities.{asked.top}]\n" + "".join(
+            f"{key} = {toml(value)}\n" for key, value in entity.items())
+    return text
 
 
 def main(words):
@@ -182,7 +201,8 @@ def main(words):
     texts, interface, said, last = slot_texts(asked, ports, params)
     copies = {f: "copy_" + os.path.basename(f) for f in copied}  # beside the slot
     texts.update({copies[f]: text for f, text in copied.items()})
-    texts["CMakeLists.txt"] = from_here(cmake_lists(asked, interface, copies), asked.folder)
+    pins = interface.pop("pins", [])
+    texts["core.toml"] = from_here(manifest_of(asked, interface, pins, copies), asked.folder)
     folder = Path(asked.folder)
     folder.mkdir(parents=True)
     for file, text in texts.items():

@@ -3,8 +3,7 @@
 
 <block>_regs.vh (Verilog localparams), <block>_regs.h (C90 macros), <block>_regs_pkg.vhd (VHDL
 package) and <block>_regs.md (page for people). With --block also the register block itself:
-<block>_regs.v with its proof, and <block>_regs.vhd. With --clocked instead <block>_clocked.v, the
-block after bus_crossing.v.
+<block>_regs.v with its proof, and <block>_regs.vhd.
 """
 import argparse
 import functools
@@ -73,15 +72,6 @@ def views(block, has_block):
     return {name.format(block.name): render(template, b=block) for template, name in files.items()}
 
 
-def clocked(block, has_clk_hz):
-    """Returns a module with a slot's ports around a block that has a separate clock."""
-    check(not block.description.get("memory_port"),
-          "a core with a memory port has the chip's clock, as the port has; for a separate clock "
-          "of a part of the core use hdl/cdc/async_fifo.v, as ip/camera does")
-    return render("clocked.v.j2", b=block, has_clk_hz=has_clk_hz,
-                  pins=block.description.get("pins", []))
-
-
 def save(path, text):
     """Writes a text; an equal file keeps its age, so that nothing is built again for it."""
     path = Path(path)
@@ -97,15 +87,10 @@ def main():
     parser.add_argument("--output-dir", default=".", help="folder of the files (default .)")
     parser.add_argument("--block", action="store_true",
                         help="also the register block in Verilog and VHDL, and its proof")
-    parser.add_argument("--clocked", action="store_true", help="only <block>_clocked.v")
-    parser.add_argument("--clk-hz", action="store_true",
-                        help="with --clocked: the module has the parameter CLK_HZ")
     args = parser.parse_args()
     try:
         block = Block.read(args.description)
-        files = ({f"{block.name}_clocked.v": clocked(block, args.clk_hz)} if args.clocked else
-                 views(block, args.block))
-        for name, text in files.items():
+        for name, text in views(block, args.block).items():
             save(Path(args.output_dir) / name, text)
     except (Wrong, OSError) as e:
         sys.exit(f"{args.description}: error: {e}")

@@ -68,12 +68,12 @@ def explained(text):
     missing = re.match(r"ninja: error: '(\S+)', needed by .* missing and no known rule", text)
     if not missing:
         return re.sub(r"(\S+\.v):(\d+)(?=:)", in_vhdl, text)
-    name = re.escape(Path(missing[1]).name)
+    file = re.escape(Path(missing[1]).name)
     folders = [*Path(missing[1]).parents, *sorted(Path("ip").glob("*"))]
-    for lists in (folder / "CMakeLists.txt" for folder in folders):
+    for lists in (folder / name for folder in folders for name in ("CMakeLists.txt", "core.toml")):
         lines = lists.read_text().splitlines() if lists.is_file() else []
         for number, line in enumerate(lines, 1):
-            if re.search(rf"(?<![\w.]){name}(?![\w.])", line):
+            if re.search(rf"(?<![\w.]){file}(?![\w.])", line):
                 return f"{lists}:{number}: there is no file {missing[1]}\n{text}"
     return text
 

@@ -7,12 +7,12 @@ import tempfile
 from pathlib import Path
 
 from icesoc import TREE
+from icesoc.chip import manifest
 from icesoc.cli.build_folder import BuildFolder
 from icesoc.cli.command import GROUPS, command
 from icesoc.cli.commands.synth import utilisation
 from icesoc.cli.options import (BUILD, CORE_FOLDERS, FILE, FOLDER, JOBS, SEED, SWITCH, TEXT, Option,
                                 matching, one_of)
-from icesoc.regs.model import Block
 from icesoc.util.console import say, warn
 from icesoc.util.errors import Stop
 from icesoc.util.process import logged, output, run
@@ -66,6 +66,7 @@ def write_own(build, name, lang, ice, folder):
     for path in (work / "new").iterdir():
         shutil.copy(path, folder)
     shutil.copy(ice, folder / f"{name}.ice")
+    fill(TEMPLATE / lang / "core.toml.in", folder, name)
     ground = fill(TEMPLATE / "interface/ground.py.in", folder, name)
     module, proxy = interface_of(Path(ice).read_text())
     ground.write_text(ground.read_text().replace("@OWN@", module).replace("@PROXY@", proxy))
@@ -146,10 +147,6 @@ def new(values):
         else:
             for template in [*TEMPLATE.glob("*.in"), *(TEMPLATE / lang).glob("*.in")]:
                 fill(template, folder, name)
-        source = {"verilog": f"{name}.v", "vhdl": f"{name}.vhd"}[lang]
-        (folder / "CMakeLists.txt").write_text(
-            "# SPDX-License-Identifier: MIT\n"
-            f"icesoc_core({name} ICE {name}.ice {lang.upper()} {source})\n")
         if values.repository:
             readme = folder / "README.md"
             text = readme.read_text().replace("../../docs", "../build/icesoc/docs")
@@ -285,12 +282,11 @@ def users_of(name):
     0; any other would become a pin of the chip."""
     for line in Path("ip/cores.list").read_text().splitlines():
         user, *words = line.partition("#")[0].split() or [""]
-        pins = [pin for path in Path("ip", user).glob("*.regs.json") if user
-                for pin in Block.read(path).description.get("pins", [])]
+        path = Path("ip", user, "core.toml")
+        pins = manifest.read(path).pins() if user and path.is_file() else []
         internal = {pin["name"] for pin in pins if pin.get("internal")}
-        for pin in (word.partition("=")[0] for word in words if f"={name}." in word):
-            if pin not in internal:
-                yield user
+        if any(f"={name}." in word and word.partition("=")[0] not in internal for word in words):
+            yield user
 
 
 @command("core remove", [NAME, Option("force", SWITCH, "remove it even with uncommitted changes"),

@@ -21,7 +21,7 @@ SHOWN = 10  # tests in a line of a pull request
 DESIGN = Option("design", WORDS,
                 "designs to measure, such as modem, table1 or soc; others are shown as last "
                 "measured")
-DIFF = tool("regs.contract_diff")
+DIFF = tool("chip.contract_diff")
 GIT = ["git", "-c", "advice.detachedHead=false"]
 
 

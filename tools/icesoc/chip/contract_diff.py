@@ -15,6 +15,7 @@ import subprocess
 import sys
 import tempfile
 
+from icesoc.chip import manifest
 from icesoc.regs.model import Block, Wrong
 
 ROOMS = ("hdl", "ip", "examples", "bus")
@@ -42,11 +43,20 @@ def blocks_of(tree, slice2c, work):
     for file in files + glob.glob(work + "/*.regs.json"):
         try:
             block = Block.read(file)
+            facts = os.path.join(os.path.dirname(file), "core.toml")
+            if block.is_slot and os.path.exists(facts):
+                add_memory(block, manifest.parse(facts))
         except Wrong as e:
             fail(f"{os.path.relpath(file, tree)}: {e}")
         if block.is_slot:
             blocks.setdefault(block.name, block)
     return blocks
+
+
+def add_memory(block, facts):
+    """Adds the size of the buffers, which is part of the contract, from the core's manifest."""
+    if "memory_bytes" in facts:
+        block.description["memory_bytes"] = facts["memory_bytes"]
 
 
 def places(block):

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: MIT
+"""clocked: generates NAME_clocked.v, which puts a core with a separate clock after bus_crossing.v.
+
+    python -m icesoc.chip.clocked core.toml NAME.regs.json NAME_clocked.v
+"""
+import sys
+
+from icesoc.chip import manifest
+from icesoc.regs.generate import render, save
+from icesoc.regs.model import Wrong, check
+
+
+def clocked(block, has_clk_hz):
+    """Returns a module with a slot's ports around a block that has a separate clock."""
+    check(not block.description.get("memory_port"),
+          "a core with a memory port has the chip's clock, as the port has; for a separate clock "
+          "of a part of the core use hdl/cdc/async_fifo.v, as ip/camera does")
+    return render("clocked.v.j2", b=block, has_clk_hz=has_clk_hz,
+                  pins=block.description.get("pins", []))
+
+
+def main():
+    file, registers, output = sys.argv[1:]
+    try:
+        core = manifest.read(file)
+        save(output, clocked(manifest.block_of(core, registers), core.facts.get("clk_hz", False)))
+    except (Wrong, OSError) as e:
+        sys.exit(f"{file}: error: {e}")
+
+
+if __name__ == "__main__":
+    main()

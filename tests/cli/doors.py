@@ -266,6 +266,10 @@ class Mistakes(Work):
                 "missing and no known rule to make it")
         self.assertEqual(explained(said),
                          f"{self.work}/CMakeLists.txt:2: there is no file {self.work}/a.v\n{said}")
+        Path(self.work, "CMakeLists.txt").write_text("icesoc_core()\n")
+        Path(self.work, "core.toml").write_text('verilog = [\n    "ba.v",\n    "a.v",\n]\n')
+        self.assertEqual(explained(said),
+                         f"{self.work}/core.toml:3: there is no file {self.work}/a.v\n{said}")
 
 
 class Trees(Work):

@@ -87,7 +87,8 @@ class Newcomer(unittest.TestCase):
         cores = self.out / "cores.list"
         cores.write_text("camera\n")
         self.run_tool("icesoc.chip.coremap", cores, "--base", TREE / "bus/map.regs.json",
-                      f"--core=camera={self.description}", "--output-dir", self.out)
+                      f"--core=camera={TREE}/ip/camera/core.toml={self.description}",
+                      "--output-dir", self.out)
         device = ET.parse(self.out / "icesoc.svd")
         register = device.find(".//register[name='EXPOSURE']")
         self.assertEqual(register.findtext("addressOffset"), "0x2C")

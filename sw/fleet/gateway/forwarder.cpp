@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// forwarder: the clients' queues and their turns.
+// forwarder: the clients' queues, their turns, and the two lanes to the vehicle.
 
 #include "forwarder.h"
+#include "passed_proxies.h"
 
 #include <algorithm>
 #include <iostream>
@@ -10,11 +11,45 @@
 
 namespace gateway {
 
+struct Client {
+    std::shared_ptr<Ice::Connection> connection;
+    std::string subject;
+    std::deque<std::shared_ptr<Request>> requests;
+    size_t bytes = 0;     // of these
+    size_t underWay = 0;  // requests that may still be on their way to the vehicle,
+    int lane = 0;         // all on this lane
+    size_t objects = 0;   // that it has passed to the vehicle
+    bool hasLeft = false; // only one-way requests are left
+};
+
 namespace {
 
-constexpr size_t mostUnderWay = 8;             // requests without an answer
-constexpr size_t mostBytesUnderWay = 8192;     // of these together; a single longer one may go
-constexpr size_t mostQueued = size_t{1} << 18; // bytes per client
+const char* const maintenanceType = "::IceSoC::Maintenance"; // by metadata [":maintenance"]
+
+constexpr size_t longBytes = 512;  // of a call or reply that takes the lane for these
+constexpr size_t mostUnderWay = 8; // requests of a lane
+// Bytes of these together, short lane and long lane; a single longer one may go.
+constexpr size_t mostBytesUnderWay[] = {1536, 8192};
+constexpr size_t mostUnconfirmed = 4;          // one-way requests, until a ping shows their arrival
+constexpr size_t mostQueued = size_t{1} << 18; // bytes of a subject
+constexpr size_t mostClients = 200;            // of a subject, each with a first request
+constexpr size_t mostBlocked = 16;             // threads that wait for room for one subject
+constexpr size_t mostKnown = 1000;             // objects and operations that are remembered
+constexpr size_t requestCost = 100;            // in a turn, besides its bytes
+
+size_t costOf(const Request& request) {
+    return request.parameters.size() + requestCost;
+}
+
+std::exception_ptr unknown(const std::string& why) {
+    return std::make_exception_ptr(
+        Ice::UnknownException(__FILE__, __LINE__, "icesoc-gateway: " + why));
+}
+
+std::exception_ptr refusal(const Ice::Identity& maintained) {
+    return unknown("'" + Ice::identityToString(maintained) +
+                   "' is for maintenance: call it at the endpoint of --maintenance");
+}
 
 } // namespace
 
@@ -24,7 +59,7 @@ void Request::sendTo(const std::shared_ptr<Ice::ObjectPrx>& target, Response onR
     object = object->ice_encodingVersion(current.encoding);
     object = isOneway() ? object->ice_oneway() : object->ice_twoway();
     const Parameters in{parameters.data(), parameters.data() + parameters.size()};
-    std::function<void(bool)> sent; // Ice's only report about a one-way request
+    std::function<void(bool)> sent; // the only callback for a one-way request
     if (isOneway())
         sent = [onResponse](bool) { onResponse(true, {}); };
     object->ice_invokeAsync(current.operation, current.mode, in, std::move(onResponse),
@@ -40,166 +75,469 @@ void Forwarder::setCallbacks(std::shared_ptr<Ice::ObjectAdapter> adapter) {
 
 // ---- from the clients to the vehicle ----
 
-Forwarder::Client& Forwarder::clientAt(const Connection& connection) {
-    const auto [client, isNew] = clients_.try_emplace(connection);
-    if (isNew)
-        connection->setCloseCallback([this](const Connection& closed) { forget(closed); });
-    return client->second;
+std::shared_ptr<Client> Forwarder::clientOf(const Request& request) {
+    const Connection& from = request.current.con;
+    std::shared_ptr<Client>& client = clients_[from];
+    if (!client) {
+        client = std::make_shared<Client>();
+        client->connection = from;
+        client->subject = request.subject;
+        subjects_[request.subject].clients.insert(client);
+        from->setCloseCallback([this](const Connection& closed) { forget(closed); });
+    }
+    return client;
 }
 
-// Drops a client that has left, and its two-way requests; its one-way requests still go.
+// Drops a client that has left and has nothing more to send.
+void Forwarder::dropIfOver(const std::shared_ptr<Client>& client) {
+    if (!client->hasLeft || !client->requests.empty())
+        return;
+    const auto subject = subjects_.find(client->subject);
+    if (subject == subjects_.end())
+        return;
+    subject->second.turns.remove(client.get());
+    subject->second.clients.erase(client);
+    if (subject->second.clients.empty() && subject->second.blocked == 0)
+        subjects_.erase(subject);
+    clients_.erase(client->connection);
+}
+
+// Drops the two-way requests of a client that has left; its one-way requests still go.
 void Forwarder::forget(const Connection& connection) {
     std::lock_guard<std::mutex> lock(mutex_);
-    const auto client = clients_.find(connection);
-    if (client == clients_.end())
+    const auto found = clients_.find(connection);
+    if (found == clients_.end())
         return;
-    auto& [requests, bytes, hasLeft] = client->second;
-    const auto goes = [&bytes = bytes](const std::shared_ptr<Request>& request) {
-        bytes -= request->isOneway() ? 0 : request->parameters.size();
+    const std::shared_ptr<Client> client = found->second;
+    auto& requests = client->requests;
+    const auto goes = [&](const std::shared_ptr<Request>& request) {
+        const size_t bytes = request->isOneway() ? 0 : request->parameters.size();
+        client->bytes -= bytes;
+        subjects_[client->subject].bytes -= bytes;
         return !request->isOneway();
     };
     requests.erase(std::remove_if(requests.begin(), requests.end(), goes), requests.end());
-    hasLeft = true;
+    client->hasLeft = true;
     if (requests.empty())
-        clients_.erase(client);
-    for (auto owner = owners_.begin(); owner != owners_.end();)
-        owner = owner->second == connection ? owners_.erase(owner) : std::next(owner);
+        subjects_[client->subject].turns.rest(client.get());
+    dropIfOver(client);
+    for (auto owner = owners_.begin(); owner != owners_.end();) {
+        owner->second.erase(connection);
+        owner = owner->second.empty() ? owners_.erase(owner) : std::next(owner);
+    }
     room_.notify_all();
 }
 
+// Returns whether a request may wait here. The first request of a client always may, unless its
+// subject has too many clients. These include clients that have left with one-way requests waiting,
+// so that a subject gains nothing by connecting again and again.
+bool Forwarder::hasRoom(const Request& request) {
+    const bool isFirst = clientOf(request)->requests.empty();
+    const Subject& subject = subjects_[request.subject];
+    return (isFirst && subject.clients.size() <= mostClients) ||
+           subject.bytes + request.parameters.size() <= mostQueued;
+}
+
 void Forwarder::take(std::shared_ptr<Request> request) {
-    const Connection& from = request->current.con;
     {
         std::unique_lock<std::mutex> lock(mutex_);
-        room_.wait(lock, [&] { return stopped_ || clientAt(from).bytes < mostQueued; });
+        if (!hasRoom(*request) && !stopped_) {
+            if (subjects_[request->subject].blocked == mostBlocked) {
+                lock.unlock();
+                if (request->isOneway()) // only a closed connection reports the loss
+                    request->current.con->close(Ice::ConnectionClose::Forcefully);
+                throw Ice::UnknownException(__FILE__, __LINE__,
+                                            "icesoc-gateway: '" + request->subject +
+                                                "' has too much waiting: at most " +
+                                                std::to_string(mostQueued) + " bytes");
+            }
+            ++subjects_[request->subject].blocked;
+            room_.wait(lock, [&] { return stopped_ || hasRoom(*request); });
+            --subjects_[request->subject].blocked;
+        }
         if (stopped_)
             throw Ice::CommunicatorDestroyedException(__FILE__, __LINE__);
-        if (holds_ && !connection_)
+        if (holds_ && !lanes_[shortCalls].connection)
             throw Ice::ObjectNotExistException(__FILE__, __LINE__);
-        Client& client = clientAt(from);
-        client.bytes += request->parameters.size();
-        client.requests.push_back(std::move(request));
+        const std::shared_ptr<Client> client = clientOf(*request);
+        Subject& subject = subjects_[client->subject];
+        request->client = client;
+        client->bytes += request->parameters.size();
+        subject.bytes += request->parameters.size();
+        client->requests.push_back(std::move(request));
+        subject.turns.wait(client.get());
+        turns_.wait(client->subject);
     }
     send();
 }
 
-// Returns the next request by turn, if one may go now; the mutex is held.
-std::shared_ptr<Request> Forwarder::nextRequest() {
-    auto client = clients_.upper_bound(lastServed_);
-    for (size_t i = 0; i < clients_.size(); ++i, ++client) {
-        if (client == clients_.end())
-            client = clients_.begin();
-        auto& [requests, bytes, hasLeft] = client->second;
-        if (requests.empty())
-            continue;
-        const size_t size = requests.front()->parameters.size();
-        if (underWay_ > 0 &&
-            (underWay_ >= mostUnderWay || bytesUnderWay_ + size > mostBytesUnderWay))
-            return nullptr;
-        auto request = std::move(requests.front());
-        requests.pop_front();
-        bytes -= size;
-        lastServed_ = client->first;
-        if (hasLeft && requests.empty())
-            clients_.erase(client);
-        return request;
-    }
-    return nullptr;
+int Forwarder::laneOf(const Request& request) const {
+    const Ice::Current& current = request.current;
+    const bool isLong = request.parameters.size() > longBytes ||
+                        longReplies_.count({current.id, current.operation}) != 0;
+    return isLong && !lanes_[longCalls].isMissing ? longCalls : shortCalls;
 }
 
-// Sends the requests that may go. One thread does so at a time, also for those that come meanwhile.
+// Returns whether a client's first request may go now.
+bool Forwarder::mayGo(const Client& client) const {
+    if (client.requests.empty())
+        return false;
+    const Request& request = *client.requests.front();
+    const int number = laneOf(request);
+    const Lane& lane = lanes_[number];
+    return lane.connection && (client.underWay == 0 || client.lane == number) &&
+           (lane.requests == 0 ||
+            (lane.requests < mostUnderWay &&
+             lane.bytes + request.parameters.size() <= mostBytesUnderWay[number]));
+}
+
+// Returns a lane that requests wait for; -1: none.
+int Forwarder::laneToConnect() const {
+    for (const auto& [connection, client] : clients_) {
+        if (client->requests.empty())
+            continue;
+        const int lane = lanes_[shortCalls].connection ? laneOf(*client->requests.front()) : 0;
+        if (!lanes_[lane].connection && !lanes_[lane].isConnecting)
+            return lane;
+    }
+    return -1;
+}
+
+std::shared_ptr<Request> Forwarder::pop(const std::shared_ptr<Client>& client) {
+    const std::shared_ptr<Request> request = client->requests.front();
+    Subject& subject = subjects_[client->subject];
+    client->requests.pop_front();
+    client->bytes -= request->parameters.size();
+    subject.bytes -= request->parameters.size();
+    if (client->requests.empty())
+        subject.turns.rest(client.get());
+    if (std::all_of(subject.clients.begin(), subject.clients.end(),
+                    [](const auto& each) { return each->requests.empty(); }))
+        turns_.rest(client->subject);
+    dropIfOver(client);
+    room_.notify_all();
+    return request;
+}
+
+// Returns the next request by turn, if one may go now; the mutex is held.
+std::shared_ptr<Request> Forwarder::nextRequest() {
+    std::shared_ptr<Client> next;
+    uint64_t least = 0;
+    for (const auto& [name, subject] : subjects_) {
+        std::shared_ptr<Client> first; // of the subject
+        uint64_t leastHere = 0;
+        for (const auto& client : subject.clients) {
+            if (!mayGo(*client))
+                continue;
+            const uint64_t after =
+                subject.turns.after(client.get(), costOf(*client->requests.front()));
+            if (!first || after < leastHere) {
+                first = client;
+                leastHere = after;
+            }
+        }
+        if (!first)
+            continue;
+        const uint64_t after = turns_.after(name, costOf(*first->requests.front()));
+        if (!next || after < least) {
+            next = first;
+            least = after;
+        }
+    }
+    if (!next)
+        return nullptr;
+    const size_t cost = costOf(*next->requests.front());
+    turns_.take(next->subject, cost);
+    subjects_[next->subject].turns.take(next.get(), cost);
+    const int lane = laneOf(*next->requests.front());
+    const auto request = pop(next);
+    request->lane = next->lane = lane;
+    ++next->underWay;
+    ++lanes_[lane].requests;
+    lanes_[lane].bytes += request->parameters.size();
+    request->isCounted = true;
+    return request;
+}
+
+// Records that a request has arrived, or never will.
+void Forwarder::release(Request& request) {
+    if (!request.isCounted)
+        return;
+    request.isCounted = false;
+    --lanes_[request.lane].requests;
+    lanes_[request.lane].bytes -= request.parameters.size();
+    if (request.client)
+        --request.client->underWay;
+}
+
+// Sends the requests that may go. One thread at a time does so; it also sends requests that arrive
+// meanwhile.
 void Forwarder::send() {
     std::unique_lock<std::mutex> lock(mutex_);
     if (isSending_)
         return;
     for (isSending_ = true; !stopped_;) {
-        if (!connection_) {
-            bool wanted = false;
-            for (const auto& [from, client] : clients_)
-                wanted = wanted || !client.requests.empty();
-            if (!wanted || isConnecting_)
-                break;
-            isConnecting_ = true;
+        const int lane = laneToConnect();
+        if (lane >= 0) {
+            lanes_[lane].isConnecting = true;
             lock.unlock();
-            connect();
+            connect(lane);
             lock.lock();
             continue;
         }
-        const auto request = nextRequest();
+        std::shared_ptr<Request> request;
+        if (ready_.empty()) {
+            request = nextRequest();
+        } else {
+            request = ready_.front();
+            ready_.pop_front();
+        }
         if (!request)
             break;
         sent_.insert(request);
-        ++underWay_;
-        bytesUnderWay_ += request->parameters.size();
-        room_.notify_all();
-        const Connection connection = connection_;
+        const Verdict verdict = verdictOn(request);
+        const Connection connection = lanes_[shortCalls].connection;
         lock.unlock();
-        sendOne(connection, request);
+        if (verdict == Verdict::Goes)
+            sendOne(request);
+        else if (verdict == Verdict::IsAsked)
+            ask(connection, {request->current.id, request->current.facet});
+        else if (verdict == Verdict::IsRefused)
+            finish(request, false, [&] { fail({request}, refusal(request->current.id)); });
         lock.lock();
     }
     isSending_ = false;
 }
 
-void Forwarder::sendOne(const Connection& connection, const std::shared_ptr<Request>& request) {
-    const auto done = [this, request](const std::function<void()>& answer) {
-        bool isAwaited; // else it was given up
-        {
-            std::lock_guard<std::mutex> lock(mutex_);
-            --underWay_;
-            bytesUnderWay_ -= request->parameters.size();
-            isAwaited = sent_.erase(request) != 0;
+// ---- objects for maintenance: the gateway asks the vehicle once for the type of each object ----
+
+Forwarder::Verdict Forwarder::verdictOn(const std::shared_ptr<Request>& request) {
+    const Object object{request->current.id, request->current.facet};
+    const auto known = isMaintenance_.find(object);
+    if (request->mayMaintain || (known != isMaintenance_.end() && !known->second))
+        return Verdict::Goes;
+    if (known != isMaintenance_.end())
+        return Verdict::IsRefused;
+    Requests& waiting = asked_[object];
+    waiting.push_back(request);
+    return waiting.size() == 1 ? Verdict::IsAsked : Verdict::Waits;
+}
+
+void Forwarder::ask(const Connection& connection, const Object& object) {
+    const auto failed = [this, object](std::exception_ptr why) {
+        try {
+            std::rethrow_exception(why);
+        } catch (const Ice::RequestFailedException&) { // it may exist later
+            answered(object, false, false, nullptr);
+        } catch (const Ice::MarshalException&) { // an object that answers anything
+            answered(object, true, false, nullptr);
+        } catch (...) {
+            answered(object, false, false, why);
         }
-        if (isAwaited)
-            answer();
-        send();
-    };
-    const auto failed = [request, done](std::exception_ptr why) {
-        done([&] { fail({request}, why); });
     };
     try {
-        request->sendTo(
-            connection->createProxy(request->current.id),
-            [request, done](bool isOk, const Parameters& out) {
-                done([&] { request->response(isOk, out); });
-            },
-            failed);
+        if (!connection)
+            throw Ice::ConnectionLostException(__FILE__, __LINE__);
+        connection->createProxy(object.first)
+            ->ice_facet(object.second)
+            ->ice_isAAsync(
+                maintenanceType, [this, object](bool is) { answered(object, true, is, nullptr); },
+                failed);
     } catch (const Ice::Exception&) {
         failed(std::current_exception());
     }
 }
 
-void Forwarder::connect() {
-    const auto opened = [this](const Connection& connection) {
-        connection->setAdapter(callbacks_);
-        {
-            std::lock_guard<std::mutex> lock(mutex_);
-            connection_ = connection;
-            isConnecting_ = false;
-            ++connections_;
+// Sends the requests that waited for an object's type, or fails them: if the object is for
+// maintenance, or with `why` if the type is unknown.
+void Forwarder::answered(const Object& object, bool isKnown, bool isMaintenance,
+                         std::exception_ptr why) {
+    Requests waiting;
+    {
+        std::lock_guard<std::mutex> lock(mutex_);
+        waiting.swap(asked_[object]);
+        asked_.erase(object);
+        if (isMaintenance_.size() >= mostKnown)
+            isMaintenance_.clear();
+        if (isKnown && lanes_[shortCalls].connection)
+            isMaintenance_[object] = isMaintenance;
+        for (const auto& request : waiting) {
+            request->mayMaintain = !isMaintenance; // it goes without a second question
+            if (!why && !isMaintenance)
+                ready_.push_back(request);
         }
-        connection->setCloseCallback([this](const Connection& closed) { // may be at once
-            bool refuses;
-            {
+    }
+    if (why || isMaintenance)
+        for (const auto& request : waiting)
+            finish(request, false, [&] { fail({request}, why ? why : refusal(object.first)); });
+    send();
+}
+
+// ---- the lanes ----
+
+// Records the client as owner of the objects that a request passes to the vehicle. Every client may
+// call ice_ping and the like, which pass nothing.
+void Forwarder::recordProxies(const Request& request) {
+    if (!request.client || request.current.operation.compare(0, 4, "ice_") == 0)
+        return;
+    const auto passed = passedProxies(request.parameters);
+    std::lock_guard<std::mutex> lock(mutex_);
+    Client& client = *request.client;
+    for (const Ice::Identity& object : passed)
+        if (!client.hasLeft && client.objects < mostKnown)
+            client.objects += owners_[object].insert(client.connection).second;
+}
+
+// Sends a request on its lane. Only the thread that is in send() calls it.
+void Forwarder::sendOne(const std::shared_ptr<Request>& request) {
+    recordProxies(*request);
+    const auto failed = [this, request](std::exception_ptr why) {
+        finish(request, false, [&] { fail({request}, why); });
+    };
+    Connection connection;
+    bool isUnsure = false; // whether one-way requests have arrived
+    {
+        std::lock_guard<std::mutex> lock(mutex_);
+        Lane& lane = lanes_[request->lane];
+        connection = lane.connection;
+        lane.underWay.push_back(request);
+        if (request->isOneway())
+            isUnsure = request->lane == longCalls || lane.underWay.size() >= mostUnconfirmed;
+    }
+    try {
+        if (!connection)
+            throw Ice::ConnectionLostException(__FILE__, __LINE__);
+        request->sendTo(
+            connection->createProxy(request->current.id),
+            [this, request](bool isOk, const Parameters& out) {
+                finish(request, !request->isOneway(), [&] { request->response(isOk, out); });
+                if (out.second - out.first <= std::ptrdiff_t(longBytes))
+                    return;
                 std::lock_guard<std::mutex> lock(mutex_);
-                if (connection_ == closed)
-                    connection_ = nullptr;
-                refuses = holds_;
+                if (longReplies_.size() >= mostKnown)
+                    longReplies_.clear();
+                longReplies_.insert({request->current.id, request->current.operation});
+            },
+            failed);
+    } catch (const Ice::Exception&) {
+        failed(std::current_exception());
+    }
+    if (isUnsure)
+        confirm(request->lane, request->current);
+}
+
+// Sends a ping, unless one is on its way: its reply shows that all before it have arrived.
+void Forwarder::confirm(int number, const Ice::Current& of) {
+    const auto done = [this, number] {
+        std::lock_guard<std::mutex> lock(mutex_);
+        lanes_[number].isConfirming = false;
+    };
+    Ice::Current current = of;
+    current.operation = "ice_ping";
+    current.mode = Ice::OperationMode::Nonmutating;
+    current.requestId = 1;
+    current.ctx.clear();
+    current.encoding = Ice::currentEncoding;
+    static const Ice::Byte empty[] = {6, 0, 0, 0, 1, 1};
+    const auto ping = std::make_shared<Request>(
+        Parameters{empty, empty + sizeof empty}, [done](bool, const Parameters&) { done(); },
+        [done](std::exception_ptr) { done(); }, current);
+    ping->lane = number;
+    {
+        std::lock_guard<std::mutex> lock(mutex_);
+        Lane& lane = lanes_[number];
+        if (lane.isConfirming || !lane.connection)
+            return;
+        lane.isConfirming = true;
+        ++lane.requests;
+        lane.bytes += ping->parameters.size();
+        ping->isCounted = true;
+        sent_.insert(ping);
+    }
+    sendOne(ping);
+}
+
+// Ends a request. If it has arrived, requests sent before it have also arrived.
+void Forwarder::finish(const std::shared_ptr<Request>& request, bool hasArrived,
+                       const std::function<void()>& answer) {
+    bool isAwaited; // false after giveUp
+    {
+        std::lock_guard<std::mutex> lock(mutex_);
+        auto& underWay = lanes_[request->lane].underWay;
+        const auto at = std::find(underWay.begin(), underWay.end(), request);
+        if (hasArrived && at != underWay.end()) {
+            for (auto each = underWay.begin(); each != std::next(at); ++each)
+                release(**each);
+            underWay.erase(underWay.begin(), std::next(at));
+        } else if (!request->isOneway() || at == underWay.end()) {
+            release(*request);
+            if (at != underWay.end())
+                underWay.erase(at);
+        }
+        isAwaited = sent_.erase(request) != 0;
+    }
+    if (isAwaited)
+        answer();
+    send();
+}
+
+void Forwarder::opened(int lane, const Connection& connection) {
+    connection->setAdapter(callbacks_);
+    {
+        std::lock_guard<std::mutex> lock(mutex_);
+        lanes_[lane].connection = connection;
+        lanes_[lane].isConnecting = false;
+        connections_ += lane == shortCalls;
+    }
+    connection->setCloseCallback(
+        [this, lane](const Connection& over) { closed(lane, over); }); // may be at once
+    send();
+}
+
+void Forwarder::closed(int number, const Connection& connection) {
+    bool refuses = false;
+    {
+        std::lock_guard<std::mutex> lock(mutex_);
+        Lane& lane = lanes_[number];
+        if (lane.connection == connection) {
+            for (const auto& request : lane.underWay)
+                release(*request);
+            lane.underWay.clear();
+            lane.connection = nullptr;
+            lane.isConfirming = false;
+            refuses = holds_ && number == shortCalls;
+            if (number == shortCalls) {
+                isMaintenance_.clear(); // the next vehicle may have others
+                lanes_[longCalls].isMissing = false;
             }
-            if (refuses)
-                refuseWaiting();
-            send();
-        });
+        }
+    }
+    if (refuses)
+        refuseWaiting();
+    send();
+}
+
+void Forwarder::connect(int lane) {
+    const auto failed = [this, lane](std::exception_ptr why) {
+        if (lane == shortCalls)
+            return failAll(std::move(why));
+        { // the vehicle or this ground station has no free channel
+            std::lock_guard<std::mutex> lock(mutex_);
+            lanes_[lane].isConnecting = false;
+            lanes_[lane].isMissing = true;
+        }
         send();
     };
     try {
-        vehicle_->ice_getConnectionAsync(
-            opened, [this](std::exception_ptr why) { failAll(std::move(why)); });
+        vehicle_->ice_connectionId(lane == longCalls ? "long" : "")
+            ->ice_getConnectionAsync(
+                [this, lane](const Connection& connection) { opened(lane, connection); }, failed);
     } catch (const Ice::Exception&) {
-        failAll(std::current_exception());
+        failed(std::current_exception());
     }
 }
 
-// Fails requests. Prints how many one-way ones are among them, since no client hears of these.
+// Fails requests. Prints the number of one-way requests, whose clients receive no error.
 void Forwarder::fail(const Requests& requests, std::exception_ptr why) {
     size_t oneways = 0;
     for (const auto& request : requests) {
@@ -208,33 +546,29 @@ void Forwarder::fail(const Requests& requests, std::exception_ptr why) {
     }
     if (oneways == 0)
         return;
-    const auto told = [oneways](const std::string& reason) {
+    const auto report = [oneways](const std::string& reason) {
         std::cerr << "gateway: one-way calls that were not sent: " + std::to_string(oneways) +
                          " (" + reason + ")\n";
     };
     try {
         std::rethrow_exception(why);
     } catch (const Ice::UnknownException& e) {
-        told(e.unknown);
+        report(e.unknown);
     } catch (const std::exception& e) {
-        told(e.what());
+        report(e.what());
     }
 }
 
-// Fails the waiting requests that came before `due`.
+// Fails the waiting requests that arrived before `due`.
 void Forwarder::failWaiting(std::chrono::steady_clock::time_point due, std::exception_ptr why) {
     Requests out;
-    std::unique_lock<std::mutex> lock(mutex_);
-    for (auto client = clients_.begin(); client != clients_.end();) {
-        auto& [requests, bytes, hasLeft] = client->second;
-        for (; !requests.empty() && requests.front()->since < due; requests.pop_front()) {
-            bytes -= requests.front()->parameters.size();
-            out.push_back(requests.front());
-        }
-        client = hasLeft && requests.empty() ? clients_.erase(client) : std::next(client);
+    {
+        std::lock_guard<std::mutex> lock(mutex_);
+        const auto clients = clients_; // pop drops those that have left
+        for (const auto& [connection, client] : clients)
+            while (!client->requests.empty() && client->requests.front()->since < due)
+                out.push_back(pop(client));
     }
-    room_.notify_all();
-    lock.unlock();
     fail(out, why);
 }
 
@@ -242,7 +576,7 @@ void Forwarder::failWaiting(std::chrono::steady_clock::time_point due, std::exce
 void Forwarder::failAll(std::exception_ptr why) {
     {
         std::lock_guard<std::mutex> lock(mutex_);
-        isConnecting_ = false;
+        lanes_[shortCalls].isConnecting = false;
     }
     failWaiting(std::chrono::steady_clock::time_point::max(), why);
 }
@@ -251,16 +585,17 @@ void Forwarder::hold() {
     {
         std::lock_guard<std::mutex> lock(mutex_);
         holds_ = true;
-        if (connection_ || isConnecting_ || stopped_)
+        Lane& lane = lanes_[shortCalls];
+        if (lane.connection || lane.isConnecting || stopped_)
             return;
-        isConnecting_ = true;
+        lane.isConnecting = true;
     }
-    connect();
+    connect(shortCalls);
 }
 
 unsigned Forwarder::session() const {
     std::lock_guard<std::mutex> lock(mutex_);
-    return connection_ ? connections_ : 0;
+    return lanes_[shortCalls].connection ? connections_ : 0;
 }
 
 void Forwarder::refuseWaiting() {
@@ -278,24 +613,38 @@ void Forwarder::giveUp(std::chrono::milliseconds age) {
         for (const auto& request : old)
             sent_.erase(request);
     }
-    fail(old, std::make_exception_ptr(Ice::UnknownException(
-                  __FILE__, __LINE__,
-                  "icesoc-gateway: the vehicle went to another ground meanwhile; whether it has "
-                  "carried this call out is unknown")));
+    fail(old, unknown("the vehicle went to another ground meanwhile; whether it has carried this "
+                      "call out is unknown"));
 }
 
 void Forwarder::failLateRequests() {
     failWaiting(std::chrono::steady_clock::now() - wait_,
-                std::make_exception_ptr(Ice::UnknownException(
-                    __FILE__, __LINE__,
-                    "icesoc-gateway: waited " + std::to_string(wait_.count()) +
-                        " s for the radio (--wait); the vehicle has not got this call")));
+                unknown("waited " + std::to_string(wait_.count()) +
+                        " s for the radio (--wait); the vehicle has not got this call"));
+    // Calls that the vehicle answers late keep a lane full: a ping shows that they have arrived.
+    for (int number = 0; number < lanes; ++number) {
+        Ice::Current last;
+        {
+            std::lock_guard<std::mutex> lock(mutex_);
+            if (isSending_ || lanes_[number].underWay.empty())
+                continue;
+            last = lanes_[number].underWay.back()->current;
+            isSending_ = true;
+        }
+        confirm(number, last);
+        {
+            std::lock_guard<std::mutex> lock(mutex_);
+            isSending_ = false;
+        }
+        send();
+    }
 }
 
 void Forwarder::stop() {
     {
         std::lock_guard<std::mutex> lock(mutex_);
         stopped_ = true;
+        room_.notify_all();
     }
     // Ice waits for the answers when it stops.
     failAll(std::make_exception_ptr(Ice::CommunicatorDestroyedException(__FILE__, __LINE__)));
@@ -304,52 +653,36 @@ void Forwarder::stop() {
 // ---- from the vehicle to the clients ----
 
 void Forwarder::takeCallback(std::shared_ptr<Request> request) {
-    std::vector<Connection> clients; // the last is tried first
+    const Ice::Current& current = request->current;
+    Connection addressee;
     {
         std::lock_guard<std::mutex> lock(mutex_);
-        for (const auto& [connection, client] : clients_)
-            clients.push_back(connection);
-        const auto owner = owners_.find(request->current.id);
-        if (owner != owners_.end())
-            clients.push_back(owner->second);
-        else if (clients_.count(lastServed_))
-            clients.push_back(lastServed_);
+        const auto owner = owners_.find(current.id);
+        if (owner != owners_.end()) {
+            if (owner->second.size() == 1) // else it is not known which is meant
+                addressee = *owner->second.begin();
+        } else {
+            std::set<Connection> callers;
+            for (const auto& each : sent_)
+                if (each->client && !each->isOneway())
+                    callers.insert(each->current.con);
+            if (callers.size() == 1)
+                addressee = *callers.begin();
+        }
     }
-    tryClients(std::move(request), std::move(clients));
-}
-
-void Forwarder::tryClients(std::shared_ptr<Request> request, std::vector<Connection> clients) {
-    const Ice::Current& current = request->current;
-    if (clients.empty())
-        return request->failed(std::make_exception_ptr(Ice::ObjectNotExistException(
-            __FILE__, __LINE__, current.id, current.facet, current.operation)));
-    const Connection connection = clients.back();
-    clients.pop_back();
-    // A one-way request needs an answer, too, to know whether the object is there.
+    const auto isMissing = [request](const Ice::Current& at) {
+        request->failed(std::make_exception_ptr(
+            Ice::ObjectNotExistException(__FILE__, __LINE__, at.id, at.facet, at.operation)));
+    };
+    if (!addressee)
+        return isMissing(current);
+    // A one-way request is sent two-way: only a reply shows whether the object exists.
     Request asked = *request;
     asked.current.requestId = 1;
     try {
-        asked.sendTo(
-            connection->createProxy(current.id),
-            [this, request, connection](bool isOk, const Parameters& out) {
-                {
-                    std::lock_guard<std::mutex> lock(mutex_);
-                    if (clients_.count(connection))
-                        owners_[request->current.id] = connection;
-                }
-                request->response(isOk, out);
-            },
-            [this, request, clients](std::exception_ptr why) {
-                try {
-                    std::rethrow_exception(why);
-                } catch (const Ice::ObjectNotExistException&) {
-                    tryClients(request, clients);
-                } catch (...) {
-                    request->failed(why);
-                }
-            });
+        asked.sendTo(addressee->createProxy(current.id), request->response, request->failed);
     } catch (const Ice::Exception&) { // it has just left
-        tryClients(std::move(request), std::move(clients));
+        isMissing(current);
     }
 }
 

@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: MIT
 //
-// forwarder: passes the requests of many clients to the vehicle over one connection, and the
-// vehicle's requests back to them.
+// forwarder: passes the requests of many clients to the vehicle, and the vehicle's requests back to
+// them.
 //
-// The clients take turns, a request each, and a few requests are under way at a time: so a client
-// that sends much, or never reads, delays the others only a little. A request goes at most once.
+// Clients take turns by bytes (turns.h): first the subjects, which are certificates or hosts, then
+// the connections of each. There are two connections to the vehicle, since on one connection a
+// short message waits for the long ones before it: a lane for short calls, and one for calls that
+// are long or have long replies. Few requests are under way on each. A one-way request counts until
+// a reply to a later request shows that it has arrived. A request goes at most once, and those of
+// one client go in their order.
 
 #pragma once
 
+#include "turns.h"
+
 #include <Ice/Ice.h>
+#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
@@ -22,6 +29,8 @@ namespace gateway {
 using Parameters = std::pair<const Ice::Byte*, const Ice::Byte*>; // an encapsulation
 using Response = std::function<void(bool, const Parameters&)>;
 using Failure = std::function<void(std::exception_ptr)>;
+
+struct Client;
 
 // A request that outlives its dispatch.
 struct Request {
@@ -38,64 +47,102 @@ struct Request {
     Failure failed;
     Ice::Current current;
     std::chrono::steady_clock::time_point since = std::chrono::steady_clock::now();
+    std::string subject;      // certificate's subject, or host
+    bool mayMaintain = false; // true: may call objects for maintenance
+    std::shared_ptr<Client> client;
+    int lane = 0;           // lane that it was sent on
+    bool isCounted = false; // counted in the lane, until it has arrived
 };
 
 // Forwarder holds the clients' requests until their turn comes.
 class Forwarder {
 public:
-    // `vehicle`: a proxy with the vehicle's endpoint. `wait`: a request fails if its turn does not
-    // come within this time.
+    // `vehicle`: a proxy with the vehicle's endpoint. `wait`: time that a request may wait for its
+    // turn before it fails.
     Forwarder(const std::shared_ptr<Ice::ObjectPrx>& vehicle, std::chrono::seconds wait);
 
-    // Takes a client's request. Blocks while that client has 256 KiB waiting here.
+    // Takes a client's request. Blocks while requests of 256 KiB of its subject wait here, unless
+    // it is the first request of one of the subject's 200 clients. At most 16 requests of a subject
+    // block at a time; further ones fail, and a one-way request that fails closes its connection.
     void take(std::shared_ptr<Request> request);
-    // Passes a request of the vehicle to the client that has the object: the last one that answered
-    // for this identity, else each in turn.
+    // Passes a request of the vehicle to the only client that has passed a proxy of this identity
+    // to the vehicle, or if no client has, to the only client with a two-way call in progress.
+    // Answers ObjectNotExistException if two clients qualify, or no client does.
     void takeCallback(std::shared_ptr<Request> request);
-    // This adapter dispatches the vehicle's requests on the clients' connection.
+    // Sets the adapter that dispatches the vehicle's requests on the clients' connections.
     void setCallbacks(std::shared_ptr<Ice::ObjectAdapter> adapter);
 
-    // Holds a connection to the vehicle from now on; the caller calls it now and then. While there
-    // is none no request waits: the object does not exist here.
+    // Connects to the vehicle and keeps the connection; call it now and then. Afterwards requests
+    // that arrive without a connection get ObjectNotExistException instead of waiting.
     void hold();
-    unsigned session() const; // which connection is held; 0: none is
-    void refuseWaiting();     // as for an object that does not exist: they were not sent
-    // Fails requests under way that are older: it is unknown whether they were carried out.
+    unsigned session() const; // number of the current connection; 0 without one
+    void refuseWaiting();     // fails waiting requests with ObjectNotExistException
+    // Fails requests under way that are older than `age`: it is unknown whether they were executed.
     void giveUp(std::chrono::milliseconds age);
-    void failLateRequests(); // the caller calls it now and then
-    void stop();             // ends the waiting
+    void failLateRequests(); // call it now and then
+    void stop();             // fails all waiting requests
 
 private:
-    struct Client {
-        std::deque<std::shared_ptr<Request>> requests;
-        size_t bytes = 0;
-        bool hasLeft = false; // only one-way requests are left
-    };
     using Connection = std::shared_ptr<Ice::Connection>;
     using Requests = std::vector<std::shared_ptr<Request>>;
-    Client& clientAt(const Connection& connection);
+    using Object = std::pair<Ice::Identity, std::string>; // and its facet
+    enum { shortCalls, longCalls, lanes };
+    struct Lane {
+        Connection connection;
+        bool isConnecting = false, isMissing = false;  // no channel was free for it
+        std::deque<std::shared_ptr<Request>> underWay; // in the order sent
+        size_t requests = 0, bytes = 0;                // chosen or under way
+        bool isConfirming = false;
+    };
+    struct Subject {
+        Turns<const Client*> turns;
+        std::set<std::shared_ptr<Client>> clients;
+        size_t bytes = 0, blocked = 0; // waiting here; threads
+    };
+    std::shared_ptr<Client> clientOf(const Request& request);
     void forget(const Connection& connection);
+    void dropIfOver(const std::shared_ptr<Client>& client);
+    bool hasRoom(const Request& request);
+    int laneOf(const Request& request) const;
+    bool mayGo(const Client& client) const;
+    int laneToConnect() const;
     std::shared_ptr<Request> nextRequest();
+    std::shared_ptr<Request> pop(const std::shared_ptr<Client>& client);
+    void release(Request& request);
     void send();
-    void sendOne(const Connection& connection, const std::shared_ptr<Request>& request);
-    void connect();
+    enum class Verdict { Goes, Waits, IsAsked, IsRefused };
+    Verdict verdictOn(const std::shared_ptr<Request>& request);
+    void ask(const Connection& connection, const Object& object);
+    void answered(const Object& object, bool isKnown, bool isMaintenance, std::exception_ptr why);
+    void recordProxies(const Request& request);
+    void sendOne(const std::shared_ptr<Request>& request);
+    void confirm(int lane, const Ice::Current& of);
+    void finish(const std::shared_ptr<Request>& request, bool hasArrived,
+                const std::function<void()>& answer);
+    void connect(int lane);
+    void opened(int lane, const Connection& connection);
+    void closed(int lane, const Connection& connection);
     void failWaiting(std::chrono::steady_clock::time_point due, std::exception_ptr why);
     static void fail(const Requests& requests, std::exception_ptr why);
     void failAll(std::exception_ptr why);
-    void tryClients(std::shared_ptr<Request> request, std::vector<Connection> clients);
 
     const std::shared_ptr<Ice::ObjectPrx> vehicle_;
     const std::chrono::seconds wait_;
     std::shared_ptr<Ice::ObjectAdapter> callbacks_;
     mutable std::mutex mutex_; // guards all members below
     std::condition_variable room_;
-    std::map<Connection, Client> clients_;
-    std::map<Ice::Identity, Connection> owners_; // of objects that the vehicle calls
-    Connection lastServed_, connection_;         // of a client; to the vehicle
-    std::set<std::shared_ptr<Request>> sent_;    // without an answer
-    bool isConnecting_ = false, isSending_ = false, stopped_ = false, holds_ = false;
+    Turns<std::string> turns_; // of the subjects
+    std::map<std::string, Subject> subjects_;
+    std::map<Connection, std::shared_ptr<Client>> clients_;
+    std::map<Ice::Identity, std::set<Connection>> owners_; // of objects that the vehicle calls
+    std::array<Lane, lanes> lanes_;
+    std::set<std::shared_ptr<Request>> sent_;                     // without a reply so far
+    std::deque<std::shared_ptr<Request>> ready_;                  // chosen, and may be sent
+    std::map<Object, Requests> asked_;                            // waiting for the object's type
+    std::map<Object, bool> isMaintenance_;                        // by object, in this session
+    std::set<std::pair<Ice::Identity, std::string>> longReplies_; // of objects and operations
+    bool isSending_ = false, stopped_ = false, holds_ = false;
     unsigned connections_ = 0; // to the vehicle, so far
-    size_t underWay_ = 0, bytesUnderWay_ = 0;
 };
 
 } // namespace gateway

@@ -21,14 +21,9 @@ namespace {
 
 using namespace gateway;
 
-// Objects that change keys or programs; only --maintenance opens them.
-bool isMaintenance(const Ice::Identity& id) {
-    return id.category.empty() && (id.name == "keys" || id.name == "update");
-}
-
 using Take = std::function<void(std::shared_ptr<Request>)>;
 
-// Servant is every object of an adapter.
+// Servant dispatches the calls of all objects of an adapter.
 class Servant : public Ice::BlobjectArrayAsync {
 public:
     explicit Servant(Take take) : take_(std::move(take)) {}
@@ -41,37 +36,51 @@ private:
     const Take take_;
 };
 
-// The clients' calls go to the vehicle, if they may.
+// Returns the subject that requests of a connection count for: the certificate's, else the host.
+std::string turnOf(const std::shared_ptr<Ice::Connection>& connection, const std::string& subject) {
+    if (!subject.empty())
+        return subject;
+    for (auto info = connection->getInfo(); info; info = info->underlying)
+        if (const auto ip = std::dynamic_pointer_cast<Ice::IPConnectionInfo>(info))
+            return ip->remoteAddress;
+    return "";
+}
+
+// Returns a function that passes the clients' calls to the vehicle if --rights permits them.
+// Without `allowsMaintenance` objects that change keys or programs are refused.
 Take toVehicle(Forwarder& forwarder, const Rights& rights, bool allowsMaintenance) {
     return [&forwarder, &rights, allowsMaintenance](std::shared_ptr<Request> request) {
         const Ice::Current& current = request->current;
         const std::string identity = Ice::identityToString(current.id);
         const std::string subject = subjectOf(current.con);
-        std::string why;
-        if (isMaintenance(current.id) && !allowsMaintenance)
-            why = "'" + identity +
-                  "' is for maintenance: it is reached at the endpoint that "
-                  "--maintenance gives";
-        else if (!rights.permit(subject, identity, current.operation))
-            why = "'" + subject + "' has no right to call " + current.operation + " of '" +
-                  identity + "'";
-        if (why.empty())
+        if (rights.permit(subject, identity, current.operation)) {
+            request->subject = turnOf(current.con, subject);
+            request->mayMaintain = allowsMaintenance;
             return forwarder.take(std::move(request));
+        }
         request->failed(std::make_exception_ptr(
-            Ice::UnknownException(__FILE__, __LINE__, "icesoc-gateway: " + why)));
+            Ice::UnknownException(__FILE__, __LINE__,
+                                  "icesoc-gateway: '" + subject + "' has no right to call " +
+                                      current.operation + " of '" + identity + "'")));
     };
 }
 
-// The vehicle's calls on its own connection go to the station at `where`, or to a topic.
+// Returns a function that passes the vehicle's calls to the station at `where`, or to a topic.
+// `vehicle`: a proxy by which programs on the ground reach the vehicle.
 Take toStation(const std::shared_ptr<Ice::ObjectPrx>& station, const std::string& where,
-               const Events* events) {
-    return [station, where, events](const std::shared_ptr<Request>& request) {
+               const Events* events, const std::shared_ptr<Ice::ObjectPrx>& vehicle) {
+    return [=](const std::shared_ptr<Request>& request) {
         if (events)
             return events->pass(*request, request->response, request->failed);
         const Ice::Current& current = request->current;
         if (!station)
             throw Ice::ObjectNotExistException(__FILE__, __LINE__, current.id, current.facet,
                                                current.operation);
+        replaceVehicle(*request, station->ice_getCommunicator(), [&](const auto& named) {
+            return vehicle->ice_identity(named->ice_getIdentity())
+                ->ice_facet(named->ice_getFacet())
+                ->ice_encodingVersion(named->ice_getEncodingVersion());
+        });
         request->sendTo(station, request->response, [request, where](std::exception_ptr why) {
             try {
                 std::rethrow_exception(why);
@@ -85,8 +94,8 @@ Take toStation(const std::shared_ptr<Ice::ObjectPrx>& station, const std::string
     };
 }
 
-// Returns the port of an adapter's first endpoint. Throws if one of them lets other machines call
-// in the clear.
+// Returns the port of an adapter's first endpoint. Throws if an endpoint accepts unencrypted calls
+// from other machines.
 int checkedPort(const std::shared_ptr<Ice::ObjectAdapter>& adapter) {
     int port = 0;
     for (const auto& endpoint : adapter->getEndpoints()) {
@@ -109,7 +118,7 @@ int checkedPort(const std::shared_ptr<Ice::ObjectAdapter>& adapter) {
     return port;
 }
 
-// Returns what publishes to the topic "vehicles" of an IceStorm service; null: none is given.
+// Returns the publisher of the topic "vehicles" of an IceStorm service; null without --topics.
 std::shared_ptr<Ice::ObjectPrx> publisherOf(const std::shared_ptr<Ice::Communicator>& ic,
                                             const std::string& topics) {
     if (topics.empty())
@@ -131,10 +140,10 @@ std::shared_ptr<Ice::ObjectAdapter> adapterOf(const std::shared_ptr<Ice::Communi
     return made;
 }
 
-// Vehicle is one vehicle behind the modem, and the adapters that lead to it.
+// Vehicle is one vehicle reached by the modem, and the adapters that lead to it.
 class Vehicle {
 public:
-    // `place`: of the vehicle in the fleet; its ports are that many above the given ones.
+    // `place`: index of the vehicle in the fleet; added to the given ports.
     Vehicle(const std::shared_ptr<Ice::Communicator>& ic, const Options& o, const Rights& rights,
             const std::string& name, int address, int place,
             const std::shared_ptr<Ice::ObjectPrx>& publisher)
@@ -151,6 +160,9 @@ public:
           place_(place) {
         const auto opened = registration.open();
         const int port = checkedPort(opened);
+        const auto reached = ic->getDefaultLocator()
+                                 ? ic->stringToProxy("uav@" + name)
+                                 : opened->createDirectProxy(Ice::stringToIdentity("uav"));
         if (ic->getDefaultLocator())
             opened->destroy(); // until the vehicle is here
         else
@@ -167,7 +179,7 @@ public:
         if (!o.station.empty())
             station = ic->stringToProxy("station:" + endpointsOf(o.station));
         adapterOf(ic, named("Radio"), radioEndpoint(o, address),
-                  toStation(station, o.station, publisher ? &events : nullptr))
+                  toStation(station, o.station, publisher ? &events : nullptr, reached))
             ->activate();
         const std::string what = o.vehicles.empty() ? "the UAV" : name;
         if (!ic->getDefaultLocator())
@@ -191,7 +203,7 @@ private:
     std::vector<std::shared_ptr<Ice::ObjectAdapter>> adapters_;
 };
 
-// Returns the signals to stop.
+// Returns the signals that stop the gateway.
 sigset_t endings() {
     sigset_t signals;
     sigemptyset(&signals);
@@ -200,14 +212,14 @@ sigset_t endings() {
     return signals;
 }
 
-// Passes requests until the signal to stop.
+// Passes requests until a signal stops the gateway.
 void serve(const std::shared_ptr<Ice::Communicator>& ic, const Options& o) {
     const Rights rights = o.rights.empty() ? Rights() : Rights(o.rights);
     const auto publisher = publisherOf(ic, o.topics);
     std::list<Vehicle> vehicles;
     for (const auto& [name, address] : fleetOf(o))
         vehicles.emplace_back(ic, o, rights, name, address, int(vehicles.size()), publisher);
-    // Returns why the registry does not answer; empty: it does, or there is none.
+    // Returns the registry's error; empty if it answers or there is no registry.
     const auto ask = [&](void (Registration::*question)()) -> std::string {
         try {
             for (Vehicle& vehicle : vehicles)
@@ -237,7 +249,7 @@ void serve(const std::shared_ptr<Ice::Communicator>& ic, const Options& o) {
 } // namespace
 
 int main(int argc, char** argv) {
-    const sigset_t signals = endings(); // every thread leaves them to sigtimedwait
+    const sigset_t signals = endings(); // blocked in all threads; sigtimedwait takes them
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
     CLI::App app{"A stock Ice server that passes requests to the UAV: Ice programs reach its "

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// gateway_options: options by CLI11; keys come from files, never from words.
+// gateway_options: parses the gateway's options (CLI11). Keys come from files, never from
+// arguments.
 
 #include "gateway_options.h"
 #include "key_file.h"
@@ -18,7 +19,7 @@ namespace gateway {
 
 namespace {
 
-// Returns Ice's endpoints of what the command line gives.
+// Returns Ice's endpoints for HOST:PORT or endpoints from the command line.
 std::string given(const std::string& text) {
     if (text.find(' ') != std::string::npos)
         return text;
@@ -86,8 +87,8 @@ void addOptions(CLI::App& app, Options& o) {
                    "and who comes and goes")
         ->excludes(station);
     app.add_option("--maintenance", o.maintenance,
-                   "HOST:PORT, or Ice's endpoints, at which the objects 'keys' and 'update' are "
-                   "reached, too. Without: nowhere");
+                   "HOST:PORT, or Ice's endpoints: the only ones at which objects for maintenance, "
+                   "such as 'keys', 'update' and 'fpga', can be reached");
     app.add_option("--rights", o.rights,
                    "JSON file: which certificate may call which identities and operations");
     app.add_option("--wait", o.wait,
@@ -107,10 +108,12 @@ void setProperties(const std::shared_ptr<Ice::Properties>& p, const Options& o) 
             p->setProperty(name, value);
     };
     preset("Ice.ThreadPool.Server.Size", "4");
-    preset("Ice.ThreadPool.Server.SizeMax", "256"); // each client that waits for room holds one
+    preset("Ice.ThreadPool.Server.SizeMax",
+           "256"); // each client that waits for room holds a thread
     preset("Ice.ThreadPool.Server.Serialize", "1");
     preset("Ice.ThreadPool.Client.Size", "4");
-    preset("Ice.ACM.Client.Close", "0"); // the vehicle may call back at any time
+    preset("Ice.ACM.Client.Close", "0");     // the vehicle may call back at any time
+    preset("Ice.ACM.Server.Heartbeat", "3"); // always: Ice 3.8 drops a silent server after 60 s
     preset("Ice.RetryIntervals", "-1");
     preset("Ice.Override.CloseTimeout", "5000");
     preset("Ice.Warn.Connections", "0");

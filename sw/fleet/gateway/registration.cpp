@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// registration: registers and withdraws a vehicle by what the forwarder and the registry say.
+// registration: registers a vehicle in IceGrid and withdraws it, as its session starts and ends.
 
 #include "registration.h"
 
@@ -10,9 +10,10 @@ namespace gateway {
 
 namespace {
 
-constexpr std::chrono::milliseconds late{500}; // of a call under way to a vehicle that has moved
+// Time after which a call in progress to a vehicle that has moved fails.
+constexpr std::chrono::milliseconds late{500};
 
-// Returns whether nobody listens at the endpoints of a proxy.
+// Returns whether the endpoints of a proxy refuse connections.
 bool isDead(const std::shared_ptr<Ice::ObjectPrx>& proxy) {
     try {
         proxy->ice_invocationTimeout(Registration::patienceMs)->ice_getConnection();
@@ -27,6 +28,24 @@ bool isDead(const std::shared_ptr<Ice::ObjectPrx>& proxy) {
 
 // ---- events ----
 
+void replaceVehicle(
+    Request& call, const std::shared_ptr<Ice::Communicator>& ic,
+    const std::function<std::shared_ptr<Ice::ObjectPrx>(const std::shared_ptr<Ice::ObjectPrx>&)>&
+        reached) {
+    if (call.current.operation != "vehicleState")
+        return;
+    const std::vector<Ice::Byte> parameters = call.parameters;
+    Ice::InputStream in(ic, parameters);
+    Ice::OutputStream out(ic);
+    out.startEncapsulation(in.startEncapsulation(), Ice::FormatType::DefaultFormat);
+    std::shared_ptr<Ice::ObjectPrx> vehicle;
+    in.read(vehicle);
+    out.write(vehicle ? reached(vehicle) : nullptr);
+    out.writeBlob(in.i, in.b.end() - in.i);
+    out.endEncapsulation();
+    out.finished(call.parameters);
+}
+
 void Events::tell(bool isHere) const {
     if (!publisher_)
         return;
@@ -37,7 +56,7 @@ void Events::tell(bool isHere) const {
     out.writeSize(0);
     out.endEncapsulation();
     const auto in = out.finished();
-    const auto ignored = [](std::exception_ptr) {}; // the next event tells
+    const auto ignored = [](std::exception_ptr) {}; // the next event follows
     publisher_->ice_invokeAsync("vehicleState", Ice::OperationMode::Normal, in, nullptr, ignored,
                                 nullptr, {{"vehicle", vehicle_}});
 }
@@ -46,18 +65,8 @@ void Events::pass(const Request& request, Response onResponse, Failure onError) 
     Request named = request;
     named.current.ctx["vehicle"] = vehicle_;
     named.current.id = publisher_->ice_getIdentity();
-    if (request.current.operation == "vehicleState") {
-        const auto ic = publisher_->ice_getCommunicator();
-        Ice::InputStream in(ic, request.parameters);
-        Ice::OutputStream out(ic);
-        out.startEncapsulation(in.startEncapsulation(), Ice::FormatType::DefaultFormat);
-        std::shared_ptr<Ice::ObjectPrx> vehicle;
-        in.read(vehicle);
-        out.write(vehicle ? vehicle->ice_adapterId(vehicle_) : nullptr);
-        out.writeBlob(in.i, in.b.end() - in.i);
-        out.endEncapsulation();
-        out.finished(named.parameters);
-    }
+    replaceVehicle(named, publisher_->ice_getCommunicator(),
+                   [this](const auto& vehicle) { return vehicle->ice_adapterId(vehicle_); });
     named.sendTo(publisher_, std::move(onResponse), std::move(onError));
 }
 
@@ -71,7 +80,7 @@ std::shared_ptr<Ice::ObjectPrx> Registration::find() const {
     }
 }
 
-// Writes into the registry where the vehicle is; null: nowhere.
+// Writes the vehicle's endpoints into the registry; null removes them.
 void Registration::enter(const std::shared_ptr<Ice::ObjectPrx>& proxy) const {
     const auto registry = locator_->getRegistry();
     registry->ice_invocationTimeout(patienceMs)->setAdapterDirectProxy(name_, proxy);
@@ -81,7 +90,7 @@ bool Registration::isOwn(const std::shared_ptr<Ice::ObjectPrx>& found) const {
     return found && own_ && found->ice_toString() == own_->ice_toString();
 }
 
-// Opens, if it is not open, and writes this ground into the registry.
+// Opens the adapter unless it is open, and registers this ground station.
 void Registration::come() {
     const unsigned session = forwarder_.session();
     if (!adapter_) {
@@ -101,7 +110,8 @@ void Registration::come() {
     events_.tell(true);
 }
 
-// Closes: clients ask the registry again. What waits was not sent, and may go elsewhere.
+// Closes the adapter, so that clients ask the registry again. Waiting calls were not sent; clients
+// may send them to another ground station.
 void Registration::close() {
     if (!adapter_)
         return;
@@ -133,7 +143,7 @@ void Registration::look() {
     }
 }
 
-// Removes this ground from the registry, unless another one is there by now.
+// Removes this ground station from the registry, unless another one is registered by now.
 void Registration::leave() {
     if (!isEntered_)
         return;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
 // registration: one vehicle's entry in IceGrid's registry, and the object adapter that it leads to.
-// Both exist while this ground has the vehicle.
+// Both exist while this ground station holds the vehicle.
 //
-// A ground has a vehicle once a connection to it stands, and loses it with the link's session. The
-// ground that got it last is in the registry; another that still hears it stands by.
+// A ground station holds a vehicle while it has a connection to it. The ground station that got the
+// vehicle last is in the registry; another one that still receives the vehicle stands by.
 
 #pragma once
 
@@ -15,14 +15,14 @@
 
 namespace gateway {
 
-// Events tells an IceStorm topic what happens to a vehicle, as calls of Station.vehicleState.
+// Events publishes a vehicle's events to an IceStorm topic, as calls of Station.vehicleState.
 class Events {
 public:
-    // `publisher`: of the topic; null: nobody is told.
+    // `publisher`: the topic's publisher; null disables events.
     Events(std::string vehicle, std::shared_ptr<Ice::ObjectPrx> publisher)
         : vehicle_(std::move(vehicle)), publisher_(std::move(publisher)) {}
-    void tell(bool isHere) const; // the vehicle "uav" by its name, or none; without parameters
-    // Passes a call of the vehicle on. A vehicleState names it as clients reach it.
+    void tell(bool isHere) const; // publishes the vehicle's proxy, or a null proxy; no parameters
+    // Publishes a call of the vehicle. The proxy in a vehicleState leads clients to the vehicle.
     void pass(const Request& request, Response onResponse, Failure onError) const;
 
 private:
@@ -30,22 +30,29 @@ private:
     const std::shared_ptr<Ice::ObjectPrx> publisher_;
 };
 
+// Replaces the vehicle's proxy in a call of Station.vehicleState by `reached`, which leads clients
+// to it; a null proxy stays.
+void replaceVehicle(
+    Request& call, const std::shared_ptr<Ice::Communicator>& ic,
+    const std::function<std::shared_ptr<Ice::ObjectPrx>(const std::shared_ptr<Ice::ObjectPrx>&)>&
+        reached);
+
 class Registration {
 public:
     using Open = std::function<std::shared_ptr<Ice::ObjectAdapter>()>;
-    // `open` makes the adapter, which is not yet active. `locator`: null where there is no
-    // registry; then nothing else is called.
+    // `open` creates the adapter, which is not yet active. `locator`: null without a registry; then
+    // look() and leave() are never called.
     Registration(std::string name, Forwarder& forwarder, const Events& events, Open open,
                  const std::shared_ptr<Ice::LocatorPrx>& locator)
         : open(std::move(open)), name_(std::move(name)), forwarder_(forwarder), events_(events),
           locator_(locator ? locator->ice_invocationTimeout(patienceMs) : nullptr) {}
-    // Looks whether the vehicle is here, and who is in the registry; the caller calls it each
-    // `lookMs`. Throws Ice's exceptions where no registry answers.
+    // Checks whether the vehicle is connected, and which ground station is registered; call it
+    // every `lookMs`. Throws Ice's exceptions if no registry answers.
     void look();
-    void leave(); // the program ends
+    void leave(); // call it when the program ends
 
     static constexpr int lookMs = 250, looksBetweenQuestions = 4;
-    static constexpr int patienceMs = 2000; // with a registry, or another ground
+    static constexpr int patienceMs = 2000; // time-out of a registry or another ground station
     const Open open;
 
 private:
@@ -61,8 +68,8 @@ private:
     const std::shared_ptr<Ice::LocatorPrx> locator_;
     std::shared_ptr<Ice::ObjectAdapter> adapter_, closing_;
     std::shared_ptr<Ice::ObjectPrx> own_; // the adapter's endpoints
-    unsigned entered_ = 0;                // the connection that the registry has been told of
-    bool isEntered_ = false;              // this ground is in the registry, as far as it knows
+    unsigned entered_ = 0;                // session() when the registry was last written
+    bool isEntered_ = false;              // this ground station has registered itself
     int looks_ = 0;
 };
 

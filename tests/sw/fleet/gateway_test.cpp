@@ -8,8 +8,13 @@
 #include "gateway_rig.h"
 #include <Glacier2/Router.h>
 #include <IceSSL/IceSSL.h>
+#include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
+#include <thread>
 #include <utility>
 
 namespace {
@@ -28,6 +33,48 @@ TEST_F(Gateway, TheUavCallsTheStationBehindIt) {
     expectAnswer();
     EXPECT_EQ(stop(), 0);
     EXPECT_TRUE(says("nobody listens at 127.0.0.1"));
+}
+
+// Station keeps the vehicle's proxy of a vehicleState.
+struct Station : Ice::Blobject {
+    bool ice_invoke(std::vector<Ice::Byte> in, std::vector<Ice::Byte>& out,
+                    const Ice::Current& current) override {
+        const auto ic = current.adapter->getCommunicator();
+        Ice::InputStream parameters(ic, in);
+        parameters.startEncapsulation();
+        parameters.read(vehicle);
+        Ice::OutputStream answer(ic);
+        answer.startEncapsulation();
+        answer.endEncapsulation();
+        answer.finished(out);
+        return true;
+    }
+    std::shared_ptr<Ice::ObjectPrx> vehicle;
+};
+
+TEST_F(Gateway, TheStationGetsAProxyByWhichItReachesTheVehicle) {
+    const auto station = std::make_shared<Station>();
+    auto adapter = ic_->createObjectAdapterWithEndpoints("Station", "tcp -h 127.0.0.1");
+    adapter->add(station, Ice::stringToIdentity("station"));
+    adapter->activate();
+    auto info =
+        std::dynamic_pointer_cast<Ice::TCPEndpointInfo>(adapter->getEndpoints()[0]->getInfo());
+    start({"--station", "127.0.0.1:" + std::to_string(info->port)});
+    expectAnswer(2); // the link has a session
+    const auto vehicles = world_.uav->getCommunicator();
+    Ice::OutputStream out(vehicles);
+    out.startEncapsulation();
+    // Its own endpoint leads nowhere on the ground.
+    out.write(vehicles->stringToProxy("echo:opaque -t 16728 -e 1.1 -v AQD/ECcAAA=="));
+    out.writeSize(0);
+    out.endEncapsulation();
+    std::vector<Ice::Byte> in, result;
+    out.finished(in);
+    ASSERT_TRUE(vehicles->stringToProxy(world_.echo->station)
+                    ->ice_invoke("vehicleState", Ice::OperationMode::Normal, in, result));
+    ASSERT_NE(station->vehicle, nullptr);
+    const auto reached = Ice::uncheckedCast<RadioTest::UavPrx>(station->vehicle);
+    EXPECT_EQ(reached->repeat(1, {1, 2}), (RadioTest::Bytes{1, 2}));
 }
 
 TEST_F(Gateway, ListensAtAnIPv6Address) {
@@ -66,6 +113,90 @@ TEST_F(Gateway, AFloodLeavesRoomForOthers) {
     EXPECT_LT(echo_->noted(), 1000) << "the flood went first";
 }
 
+// Returns the times of calls on the rig's clock, in ms, sorted.
+std::vector<double> timesOf(World& world, const std::shared_ptr<RadioTest::UavPrx>& echo,
+                            int calls) {
+    const auto now = [&world] {
+        double ms = 0;
+        world.rig.with([&] { ms = static_cast<double>(world.rig.ns()) / 1e6; });
+        return ms;
+    };
+    std::vector<double> times;
+    for (int i = 0; i < calls; ++i) {
+        const double begun = now();
+        echo->ice_ping();
+        times.push_back(now() - begun);
+    }
+    std::sort(times.begin(), times.end());
+    return times;
+}
+
+// A hundred connections of another host send long one-way calls without end.
+TEST_F(Gateway, AHundredFloodingConnectionsLeaveAGoodClientItsTurns) {
+    start();
+    constexpr int connections = 100, calls = 100;
+    timesOf(world_, echo_, 5);
+    const auto alone = timesOf(world_, echo_, calls);
+    Ice::CommunicatorHolder flooding(program({{"Ice.Default.InvocationTimeout", "1800000"},
+                                              {"Ice.RetryIntervals", "-1"},
+                                              {"Ice.Override.CloseTimeout", "500"}}));
+    const std::vector<Ice::Byte> bytes(7000);
+    std::atomic<bool> isOver{false};
+    std::atomic<int> sent{0};
+    std::vector<std::thread> floods;
+    for (int i = 0; i < connections; ++i)
+        floods.emplace_back([&, i] {
+            const auto proxy =
+                flooding->stringToProxy("echo -o:" + endpoint() + " --sourceAddress 127.0.0.2")
+                    ->ice_connectionId(std::to_string(i));
+            std::vector<Ice::Byte> in{0, 0, 0, 0, 1, 1}, out;
+            in.insert(in.end(), bytes.begin(), bytes.end());
+            for (int shift = 0; shift < 4; ++shift)
+                in[size_t(shift)] = static_cast<Ice::Byte>(in.size() >> 8 * shift);
+            while (!isOver)
+                try {
+                    ++sent;
+                    proxy->ice_invoke("note", Ice::OperationMode::Normal, in, out);
+                } catch (const Ice::LocalException&) { // it has too much waiting
+                    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+                }
+        });
+    for (int tries = 0; tries < 3000 && sent < 2 * connections; ++tries)
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    EXPECT_GE(sent, 2 * connections) << "calls of the flood";
+    const auto crowded = timesOf(world_, echo_, calls);
+    isOver = true;
+    EXPECT_EQ(stop(), 0);
+    flooding->destroy();
+    for (auto& flood : floods)
+        flood.join();
+    RecordProperty("alone_ms", std::to_string(alone[calls - 2]));
+    RecordProperty("crowded_ms", std::to_string(crowded[calls - 2]));
+    std::cout << "99 of 100: alone " << alone[calls - 2] << " ms, crowded " << crowded[calls - 2]
+              << " ms; medians " << alone[calls / 2] << " and " << crowded[calls / 2] << " ms\n";
+    EXPECT_LE(crowded[calls / 2], 6 * alone[calls / 2]);
+}
+
+// Ice 3.8 closes a connection on which nothing arrives for a minute.
+TEST_F(Gateway, AnIdleClientGetsHeartbeats) {
+    start({"--Ice.ACM.Timeout=2"}); // s; heartbeats are sent twice as often
+    const int client = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_port = htons(static_cast<uint16_t>(port_));
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    ASSERT_EQ(connect(client, reinterpret_cast<sockaddr*>(&to), sizeof to), 0);
+    const timeval patience{30, 0};
+    setsockopt(client, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    for (int message = 0; message < 3; ++message) { // the first one opens the connection
+        unsigned char header[14] = {};
+        ASSERT_EQ(recv(client, header, sizeof header, MSG_WAITALL), ssize_t(sizeof header))
+            << "message " << message;
+        EXPECT_EQ(header[8], 3) << "ValidateConnection";
+    }
+    close(client);
+}
+
 // ---- who may call what ----
 
 // Says why a call fails; empty: it does not.
@@ -80,6 +211,29 @@ std::string whyFails(const std::function<void()>& call) {
     }
 }
 
+// Maintained has the type of objects for maintenance.
+struct Maintained : Ice::Object {
+    bool ice_isA(std::string id, const Ice::Current&) const override {
+        return id == "::IceSoC::Maintenance";
+    }
+    std::string ice_id(const Ice::Current&) const override { // the gateway itself sends ice_ping
+        ++calls;
+        return ice_staticId();
+    }
+    mutable std::atomic<int> calls{0};
+};
+
+// Heard answers each call with the same number.
+struct Heard : RadioTest::Listener {
+    explicit Heard(int answer) : answer(answer) {}
+    int heard(int, const Ice::Current&) override {
+        ++calls;
+        return answer;
+    }
+    const int answer;
+    std::atomic<int> calls{0};
+};
+
 void expectRefusal(const std::function<void()>& call, const std::string& why) {
     const std::string said = whyFails(call);
     EXPECT_NE(said.find(why), std::string::npos) << said;
@@ -90,15 +244,79 @@ TEST_F(Gateway, MaintenanceIsReachedAtItsOwnDoor) {
     ASSERT_TRUE(gateway_->hear("maintenance at port ")) << said();
     ASSERT_TRUE(gateway_->hear("\n"));
     const int door = std::atoi(said().c_str() + said().rfind("port ") + 5);
-    const auto ping = [&](const std::string& name, int at) {
-        return [=] { ic_->stringToProxy(name + ":" + endpoint(at))->ice_ping(); };
+    const auto call = [&](const std::string& name, int at) {
+        return [=] { ic_->stringToProxy(name + ":" + endpoint(at))->ice_id(); };
     };
-    for (const std::string name : {"keys", "update"}) {
-        expectRefusal(ping(name, port_), "'" + name + "' is for maintenance");
-        EXPECT_EQ(whyFails(ping(name, door)), "::Ice::ObjectNotExistException")
-            << "said by the vehicle";
+    const auto servant = std::make_shared<Maintained>();
+    for (const std::string name : {"keys", "update", "fpga", "x/any", "faceted"}) {
+        const auto id = Ice::stringToIdentity(name);
+        const std::string facet = name == "faceted" ? "f" : "";
+        world_.uav->addFacet(servant, id, facet);
+        const std::string proxy = name + (facet.empty() ? "" : " -f f");
+        for (int turn = 0; turn < 2; ++turn) // asked, and remembered
+            expectRefusal(call(proxy, port_), "'" + name + "' is for maintenance");
+        EXPECT_EQ(whyFails(call(proxy, door)), "");
+        const auto oneway = ic_->stringToProxy(proxy + " -o:" + endpoint());
+        std::vector<Ice::Byte> out;
+        oneway->ice_invoke("ice_id", Ice::OperationMode::Normal, {6, 0, 0, 0, 1, 1}, out);
     }
-    EXPECT_EQ(whyFails(ping("echo", door)), "");
+    EXPECT_EQ(whyFails(call("echo", door)), "");
+    EXPECT_EQ(whyFails(call("echo", port_)), "");
+    EXPECT_EQ(whyFails(call("nobody", port_)), "::Ice::ObjectNotExistException");
+    EXPECT_EQ(servant->calls, 5) << "those of the maintenance endpoint";
+}
+
+// ---- the vehicle's calls ----
+
+// Both have an object of this name, and the vehicle calls it while it serves one of them.
+TEST_F(Gateway, TheVehiclesCallGoesToItsAddresseeAlone) {
+    start();
+    struct Program {
+        Program(const std::string& at, int answer)
+            : ic(plain()), heard(std::make_shared<Heard>(answer)) {
+            adapter = ic->createObjectAdapter("");
+            adapter->add(heard, Ice::stringToIdentity("listener"));
+            adapter->activate();
+            echo = Ice::uncheckedCast<RadioTest::UavPrx>(ic->stringToProxy("echo:" + at));
+            echo->ice_getConnection()->setAdapter(adapter);
+        }
+        Ice::CommunicatorHolder ic;
+        std::shared_ptr<Heard> heard;
+        std::shared_ptr<Ice::ObjectAdapter> adapter;
+        std::shared_ptr<RadioTest::UavPrx> echo;
+    };
+    Program one(endpoint(), 1), two(endpoint(), 10), idle(endpoint(), 100);
+    one.echo->ice_ping();
+    two.echo->ice_ping();
+    for (int turn = 0; turn < 2; ++turn) {
+        EXPECT_EQ(one.echo->callBack(3), 3);
+        EXPECT_EQ(two.echo->callBack(3), 30);
+    }
+    EXPECT_EQ(one.heard->calls, 6);
+    EXPECT_EQ(two.heard->calls, 6);
+    EXPECT_EQ(idle.heard->calls, 0);
+    // One passes a proxy of the object, as if the vehicle were to call it later.
+    const auto passes = [](const Program& program, const std::string& operation) {
+        Ice::OutputStream out(program.ic.communicator());
+        out.startEncapsulation();
+        out.write(0);
+        out.write(std::shared_ptr<Ice::ObjectPrx>(
+            program.adapter->createProxy(Ice::stringToIdentity("listener"))));
+        out.endEncapsulation();
+        std::vector<Ice::Byte> in, result;
+        out.finished(in);
+        try {
+            program.echo->ice_invoke(operation, Ice::OperationMode::Normal, in, result);
+        } catch (const Ice::LocalException&) { // the operation has no such parameter
+        }
+    };
+    passes(idle, "ice_ping"); // which every client may call: it passes nothing
+    EXPECT_EQ(two.echo->callBack(1), 10);
+    passes(one, "fetch");
+    EXPECT_EQ(two.echo->callBack(1), 1) << "only one has passed this object";
+    passes(two, "fetch");
+    EXPECT_THROW(two.echo->callBack(1), Ice::Exception) << "it could be either object";
+    EXPECT_EQ(idle.heard->calls, 0);
 }
 
 // By TLS the subject of a client's certificate is known; the certificates are those that

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+//
+// passed_proxies: reads a proxy at each offset, and keeps those that are one.
+
+#include "passed_proxies.h"
+
+namespace gateway {
+
+namespace {
+
+constexpr size_t head = 6;          // of an encapsulation: size, encoding
+constexpr size_t longestName = 254; // a size of one byte
+
+// Reader takes bytes from `at`; it fails at the end, or where others stand than are expected.
+struct Reader {
+    const std::vector<Ice::Byte>& bytes;
+    size_t at;
+    bool isRight = true;
+
+    unsigned byte(unsigned least, unsigned most) {
+        const unsigned value = at < bytes.size() ? bytes[at] : 256;
+        ++at;
+        isRight = isRight && value >= least && value <= most;
+        return isRight ? value : 0;
+    }
+    std::string text(unsigned least) {
+        const size_t size = byte(least, longestName);
+        isRight = isRight && size <= bytes.size() - at;
+        if (!isRight)
+            return "";
+        at += size;
+        return {bytes.begin() + std::ptrdiff_t(at - size), bytes.begin() + std::ptrdiff_t(at)};
+    }
+};
+
+} // namespace
+
+std::vector<Ice::Identity> passedProxies(const std::vector<Ice::Byte>& encapsulation) {
+    std::vector<Ice::Identity> found;
+    const bool hasVersions = encapsulation.size() > head && encapsulation[5] != 0;
+    for (size_t begin = head; begin < encapsulation.size(); ++begin) {
+        Reader in{encapsulation, begin};
+        Ice::Identity id;
+        id.name = in.text(1);
+        id.category = in.text(0);
+        for (const char c : id.name + id.category)
+            in.isRight = in.isRight && (c < 0 || c >= ' ');
+        in.isRight = in.isRight && (hasVersions || id.name.size() > 3); // else zeros look like one
+        if (in.byte(0, 1))
+            in.text(0); // facet
+        in.byte(0, 4);  // mode
+        in.byte(0, 1);  // security
+        if (hasVersions)
+            for (const unsigned expected : {1U, 0U, 1U})
+                in.byte(expected, expected);
+        if (hasVersions)
+            in.byte(0, 1);
+        in.byte(0, 0); // endpoints
+        in.byte(0, 0); // adapter
+        if (in.isRight)
+            found.push_back(id);
+    }
+    return found;
+}
+
+} // namespace gateway

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+//
+// turns: fair turns by bytes among any number of flows (self-clocked fair queueing).
+//
+// A flow that begins to wait has the clock's time as its tag, and each turn adds its bytes. The
+// flow that would end first goes next, so one with little to send waits for little more than the
+// bytes that are under way.
+
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <map>
+
+namespace gateway {
+
+template <class Flow> class Turns {
+public:
+    // Records that a flow has something to send.
+    void wait(const Flow& flow) {
+        Entry& entry = entries_[flow];
+        if (!entry.isWaiting)
+            entry = {std::max(entry.tag, clock_), true};
+    }
+    // Returns the tag that a waiting flow has after its next `bytes`: the least goes next.
+    uint64_t after(const Flow& flow, size_t bytes) const { return entries_.at(flow).tag + bytes; }
+    // Records that a waiting flow sends `bytes`.
+    void take(const Flow& flow, size_t bytes) {
+        uint64_t& tag = entries_.at(flow).tag;
+        tag += bytes;
+        clock_ = std::max(clock_, tag);
+    }
+    // Records that a flow has nothing more to send.
+    void rest(const Flow& flow) {
+        const auto entry = entries_.find(flow);
+        if (entry == entries_.end())
+            return;
+        entry->second.isWaiting = false;
+        for (auto each = entries_.begin(); each != entries_.end();) { // these begin as new ones do
+            const bool isOver = !each->second.isWaiting && each->second.tag <= clock_;
+            each = isOver ? entries_.erase(each) : std::next(each);
+        }
+    }
+    void remove(const Flow& flow) { entries_.erase(flow); }
+
+private:
+    struct Entry {
+        uint64_t tag = 0;
+        bool isWaiting = false;
+    };
+    uint64_t clock_ = 0;
+    std::map<Flow, Entry> entries_;
+};
+
+} // namespace gateway

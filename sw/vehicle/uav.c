@@ -9,7 +9,7 @@
 
 #define STACK_WORDS 512
 
-Ice_Communicator uav_ic;
+static Ice_Communicator uav_ic;
 
 static OS_STK serverStack[STACK_WORDS], clientStack[STACK_WORDS], radioStack[STACK_WORDS],
     coresStack[STACK_WORDS];
@@ -61,7 +61,7 @@ static void clientTask(void* argument) {
     Ice_Byte data[6][4];
     Autopilot_ParamSeq list;
     Autopilot_FlightState state;
-    const int hasFellow = UAV_makeVehicleProxy(&fellow);
+    const int hasFellow = UAV_makeVehicleProxy(&uav_ic, &fellow);
     (void)argument;
     (void)Ice_Communicator_stringToProxy(&uav_ic, "station:xbee-at -a 0x0000", &station);
     (void)Ice_ObjectAdapter_createProxy(&adapter, "uav", &self);

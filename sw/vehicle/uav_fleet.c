@@ -95,13 +95,13 @@ int UAV_offerCall(void) {
     return toAllSize != 0; /* the endpoint kicks the radio task when it takes the call */
 }
 
-int UAV_makeVehicleProxy(Ice_ObjectPrxPtr other) {
+int UAV_makeVehicleProxy(Ice_CommunicatorPtr ic, Ice_ObjectPrxPtr other) {
     static char text[] = "uav:xbee-at -a 0x0000";
     const U32 address = UAV_addressOf(UAV_VEHICLE);
     U32 i;
     for (i = 0; i < 4U; ++i)
         text[sizeof text - 2U - i] = "0123456789abcdef"[address >> 4U * i & 15U];
-    (void)Ice_Communicator_stringToProxy(&uav_ic, text, other);
+    (void)Ice_Communicator_stringToProxy(ic, text, other);
     Ice_ObjectPrx_ice_invocationTimeout(other, VEHICLE_MS);
     return address != UAV_NO_PEER;
 }

@@ -21,7 +21,6 @@
  * it. */
 #define UAV_SERVANTS 5
 
-extern Ice_Communicator uav_ic;
 extern Link uav_link;           /* the first ground's */
 extern OS_EVENT* uav_radioWork; /* the radio task has something to do */
 
@@ -44,7 +43,7 @@ void UAV_startUpdate(Ice_ObjectAdapterPtr adapter);
 void UAV_startKeyRing(Ice_ObjectAdapterPtr adapter);
 
 /* Makes a proxy to the vehicle that this one calls; returns 0 if there is none. */
-int UAV_makeVehicleProxy(Ice_ObjectPrxPtr other);
+int UAV_makeVehicleProxy(Ice_CommunicatorPtr ic, Ice_ObjectPrxPtr other);
 
 /* Cores (uav_cores.c): their servants, their task; `lines`: interrupt lines of slots 0..31
  * and 32..63. UAV_waitFrame waits for a processed frame, and returns how many there were, with the

@@ -32,7 +32,8 @@ Radio_OnPacket UAV_receiver(void) {
     return UAV_onPacketOf;
 }
 
-int UAV_makeVehicleProxy(Ice_ObjectPrxPtr other) {
+int UAV_makeVehicleProxy(Ice_CommunicatorPtr ic, Ice_ObjectPrxPtr other) {
+    (void)ic;
     (void)other;
     return 0;
 }

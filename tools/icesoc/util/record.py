@@ -86,7 +86,8 @@ class Record:
         types = {kind: "char" if kind == "char" else
                  kind.upper() if self.include else f"uint{8 * BYTES[kind]}_t" for kind in BYTES}
         include = f'"{self.include}"' if self.include else "<stdint.h>"
-        lines = [f"/* Generated from {source} by tools/icesoc/util/record.py: do not edit. */", "#pragma once",
+        lines = [f"/* Generated from {source} by tools/icesoc/util/record.py: do not edit. */",
+                 "#pragma once",
                  f"#include {include}", ""]
         for name, value in self.constants.items():
             text = f'"{value}"' if isinstance(value, str) else f"0x{value:X}U"

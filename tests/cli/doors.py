@@ -126,7 +126,7 @@ class Values(Work):
         for words, given, said in (
                 ("make -s fly", {"SEED": "x"},
                  "SEED: expected a whole number, at least 0, got 'x'"),
-                ("./icesoc fly", {"SEED": "x"}, "SEED is a whole number"),
+                ("./icesoc fly", {"SEED": "x"}, "SEED: expected a whole number"),
                 ("make -s new-ip NAME=abc", {"LANG": "verilog"}, "LANG says the core's language"),
                 ("make -s run OPEN=1 KEY=Makefile", {}, "OPEN=1 flies in the clear")):
             self.assertIn(said, ask(*words.split(), **given)[1])

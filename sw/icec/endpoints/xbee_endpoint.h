@@ -36,20 +36,20 @@ typedef struct XBeeATEndpoint {
     Link* links[XBEE_PEERS]; /* 0: there is no such ground */
     const XBeeATEndpoint_Port* port;
     void* context;
-    U16 address;               /* own, MY */
+    U16 address;             /* own, MY */
     U16 grounds[XBEE_PEERS]; /* the grounds' addresses, the first one's is 0 */
-    U32 events;                /* events to be delivered; 0: none */
-    Ice_Int size;              /* of the pending message */
+    U32 events;              /* events to be delivered; 0: none */
+    Ice_Int size;            /* of the pending message */
     Ice_Byte* buffer; /* the receiving task's; 0: nobody receives, the link keeps the message */
     Ice_Byte from;    /* connection of the pending message */
     Ice_Byte ownOpen; /* the own channel is, a bit a ground */
     Ice_Byte held;    /* the link keeps a message that was not taken */
     Ice_Byte offered; /* connection of the message that is being sent, unless it has ended */
 #if XBEE_PEERS > 1
-    Ice_Byte own[XBEE_PEERS]; /* connections that this side opens */
-    Ice_Byte vehicles, sought;  /* those grounds that are vehicles, and are sought, a bit each */
-    U32 soughtAt[XBEE_PEERS]; /* since when, in ms, */
-    U32 seen[XBEE_PEERS];     /* and how many messages had come before */
+    Ice_Byte own[XBEE_PEERS];  /* connections that this side opens */
+    Ice_Byte vehicles, sought; /* those grounds that are vehicles, and are sought, a bit each */
+    U32 soughtAt[XBEE_PEERS];  /* since when, in ms, */
+    U32 seen[XBEE_PEERS];      /* and how many messages had come before */
 #endif
 } XBeeATEndpoint;
 

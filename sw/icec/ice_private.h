@@ -34,8 +34,8 @@ Ice_Status icec_addEndpoint(Ice_ObjectPrxPtr prx, int transport, const char* opt
 /* Resolves escapes, as Ice does: `special` may be escaped besides, others stay as they are. Fails
  * `os` if one is malformed, or if there are control characters. */
 void icec_unescape(Ice_String text, char special, Ice_OutputStreamPtr os);
-/* Returns ICE_PARSE if the stream failed since its text is malformed, else ICE_LIMIT. */
-Ice_Status icec_parseFailure(const Ice_OutputStream* os);
+/* The status of a stream that failed: ICE_PARSE if its text is malformed, otherwise ICE_LIMIT. */
+#define icec_parseFailure(os) ((os)->failed == ICE_FAILED_MALFORMED ? ICE_PARSE : ICE_LIMIT)
 
 /* Sends the whole message in `os`; under ICE_LOCK_SEND. ICE_CONNECTION_LOST: the connection is
  * over. */

@@ -9,11 +9,6 @@
 
 #define SPACES " \t\n\r"
 
-/* Returns the status of a string that does not fit into `os`, or is malformed. */
-Ice_Status icec_parseFailure(const Ice_OutputStream* os) {
-    return os->failed == ICE_FAILED_MALFORMED ? ICE_PARSE : ICE_LIMIT;
-}
-
 U32 Ice_numberOption(const char* options, char letter, U32 otherwise) {
     Ice_Int size;
     const char* at = Ice_findOption(options, letter, &size);

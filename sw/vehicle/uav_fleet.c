@@ -21,9 +21,6 @@
 #define VEHICLE_WINDOW 4U
 #define VEHICLE_MS 3000 /* for which a report waits for the other vehicle's answer */
 
-UAV_Peer uav_peers[UAV_PEERS] = {{&uav_link, UAV_GROUND_ADDRESS}};
-const U8 uav_peerCount = UAV_PEERS;
-
 static Link observerLink, vehicleLink;
 static LINK_BUFFERS(OBSERVER_SENDS, OBSERVER_TAKES, OBSERVER_WINDOW) observerBuffers;
 static LINK_BUFFERS(VEHICLE_SENDS, VEHICLE_TAKES, VEHICLE_WINDOW) vehicleBuffers;
@@ -52,6 +49,7 @@ static int addPeer(int role, Link* link, const Link_Config* config) {
 
 int UAV_addPeers(void) {
     toAllSize = 0;
+    uav_peerCount = UAV_PEERS;
     return addPeer(UAV_OBSERVER, &observerLink, &observerConfig) |
            addPeer(UAV_VEHICLE, &vehicleLink, &vehicleConfig);
 }

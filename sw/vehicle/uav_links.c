@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_links: the links with the peers, between the radio task and IceC's endpoint.
+ * uav_links: the links with the peers: what they send, receive and report.
  */
 #include "uav_links.h"
 #include "uav.h"
@@ -8,28 +8,7 @@
 
 #define MOST_UNANSWERED 2U /* packets that the modem has */
 
-Link uav_link;
-XBeeATEndpoint uav_endpoint;
-U32 uav_now;
-U8 uav_isAnswered;
-U8 uav_pollsAll;
-
-static Link_Buffers buffers;
-static OS_EVENT* linkMutex;
-static U8 turn;      /* the peer that is polled first */
-static U8 areUp;     /* peers with a session, a bit each */
-static U8 hasOthers; /* than the first ground */
-
-void UAV_lockLink(void* context) {
-    INT8U error;
-    (void)context;
-    OSMutexPend(linkMutex, 0, &error);
-}
-
-void UAV_unlockLink(void* context) {
-    (void)context;
-    (void)OSMutexPost(linkMutex);
-}
+static U8 areUp; /* peers with a session, one bit each */
 
 /* Hands a packet over; in transparent mode, which serves the first ground only, while at most one
  * waits for the line. So the link layer knows how fast the modem is, and chooses late what goes
@@ -70,26 +49,6 @@ static void onState(void* peer, Link_State state) {
 
 const Link_Port uav_linkPort = {transmit, UAV_random, onMessage, onChannel, onState, 0, 0};
 
-static const Link_Config config = {&uav_linkPort, &uav_peers[UAV_GROUND], UAV_BYTE_TIME_US16,
-                                   LINK_USE(buffers)};
-
-int UAV_initRadio(void) {
-    INT8U error;
-    uav_radioWork = OSSemCreate(0);
-    UAV_initEndpointOs();
-    linkMutex = OSMutexCreate(PRIO_MUTEX, &error);
-    areUp = 0;
-    Link_init(&uav_link, &config);
-    hasOthers = (U8)UAV_addPeers();
-    return UAV_giveKeys(UAV_GROUND, &uav_link) || UAV_isOpen();
-}
-
-void UAV_useRadio(Ice_CommunicatorPtr ic) {
-    XBeeATEndpoint_init(ic, "xbee-at", &uav_endpoint, &uav_link, (U16)UAV_address(),
-                        &uav_endpointPort, 0);
-    UAV_usePeers();
-}
-
 int UAV_peerOf(const Ice_Current* current) {
     return current->connection / LINK_CHANNELS;
 }
@@ -121,32 +80,8 @@ void UAV_onPacketOf(void* context, const U8* bytes, U32 size) {
     Link_receive(peer->link, bytes, size, uav_now);
 }
 
-/* Does what is due on all links, of which each comes first in turn. */
-static U32 pollAll(void) {
-    U32 wait = 0xFFFFFFFFU, due;
-    int left, role = turn;
-    if (uav_isAnswered)
-        UAV_seekVehicle();
-    for (left = uav_peerCount; left; --left) {
-        Link* link = uav_peers[role].link;
-        if (link) {
-            Link_poll(link, uav_now);
-            (void)UAV_confirmKey(role, link);
-            due = Link_deadline(link, uav_now);
-            wait = due < wait ? due : wait;
-        }
-        role = (role + 1) % uav_peerCount;
-    }
-    turn = (U8)((turn + 1U) % uav_peerCount);
-    uav_pollsAll = (U8)(UAV_offerCall() | hasOthers);
-    return wait;
-}
-
-U32 UAV_pollLinks(void) {
-    if (uav_pollsAll)
-        return pollAll();
-    Link_poll(&uav_link, uav_now);
-    return Link_deadline(&uav_link, uav_now);
+void UAV_resetLinks(void) {
+    areUp = 0;
 }
 
 int UAV_isUp(void) {

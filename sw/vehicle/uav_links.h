@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_links: the vehicle's peers and their links, for the files of the radio: uav_links.c (core),
- * uav_modem.c (radio task) and uav_fleet.c (observer, other vehicle, calls to all vehicles), which
- * without/without_fleet.c replaces in firmware for one ground.
+ * uav_links: the vehicle's peers and their links, for the files of the radio, from the bottom up:
+ * uav_state.c, uav_os.c, uav_links.c, uav_fleet.c (observer, other vehicle, calls to all vehicles)
+ * and uav_modem.c (radio task). In firmware for one ground station
+ * without/without_fleet.c replaces uav_fleet.c.
  */
 #pragma once
 
@@ -18,7 +19,7 @@ typedef struct UAV_Peer {
     U16 address;
 } UAV_Peer;
 extern UAV_Peer uav_peers[];
-extern const U8 uav_peerCount;
+extern U8 uav_peerCount; /* peers in use: 1, or UAV_PEERS with the fleet package */
 
 extern XBeeATEndpoint uav_endpoint;
 extern const Link_Port uav_linkPort; /* its context is the UAV_Peer */
@@ -26,15 +27,18 @@ extern U32 uav_now;                  /* time of the radio task's current turn, u
 extern U8 uav_isAnswered;            /* the radio answers for each packet */
 extern U8 uav_pollsAll;              /* not only the first ground's link must be polled */
 
-/* ---- uav_links.c ---- */
+/* ---- uav_state.c ---- */
+void UAV_initState(void);
 void UAV_lockLink(void* context);
 void UAV_unlockLink(void* context);
+
+/* ---- uav_links.c ---- */
+/* Forgets all sessions. */
+void UAV_resetLinks(void);
 /* Sets the links' limits to those of the modem. */
 void UAV_limitLinks(void);
 /* Gives a packet to the link of the peer that it is from; other packets are dropped. */
 void UAV_onPacketOf(void* context, const U8* bytes, U32 size);
-/* Polls the links; returns the time until the next call is due, us. */
-U32 UAV_pollLinks(void);
 /* Returns 1 if a peer has a session. */
 int UAV_isUp(void);
 

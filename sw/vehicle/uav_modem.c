@@ -1,23 +1,43 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_modem: the FPGA's interrupt, and the radio task: sets the modem up, hands its packets to the
- * links, and sets the modem up again if no link comes up.
+ * uav_modem: the FPGA's interrupt, and the radio task: sets the modem up, passes its packets to the
+ * links, polls the links, and sets the modem up again if no link comes up.
  */
 #include "map_regs.h"
 #include "system_regs.h"
 #include "uav.h"
+#include "uav_keys.h"
 #include "uav_links.h"
 #include "uav_memory.h"
 
 #define DOWN_LIMIT 15000000U /* us without a link: the modem may have lost its settings then */
 
-OS_EVENT* uav_radioWork;
-const U8* uav_modemKey;
 U16 uav_guardMs;
 U8 uav_wire;
 U8 uav_transparent;
 
 static Radio_OnPacket receiver;
+static Link_Buffers buffers;
+static U8 turn;      /* the peer that is polled first */
+static U8 hasOthers; /* there are peers besides the first ground */
+
+static const Link_Config config = {&uav_linkPort, &uav_peers[UAV_GROUND], UAV_BYTE_TIME_US16,
+                                   LINK_USE(buffers)};
+
+int UAV_initRadio(void) {
+    UAV_initState();
+    UAV_initEndpointOs();
+    UAV_resetLinks();
+    Link_init(&uav_link, &config);
+    hasOthers = (U8)UAV_addPeers();
+    return UAV_giveKeys(UAV_GROUND, &uav_link) || UAV_isOpen();
+}
+
+void UAV_useRadio(Ice_CommunicatorPtr ic) {
+    XBeeATEndpoint_init(ic, "xbee-at", &uav_endpoint, &uav_link, (U16)UAV_address(),
+                        &uav_endpointPort, 0);
+    UAV_usePeers();
+}
 
 U32 UAV_nowUs(void) {
     return OSTimeGet() * (1000000U / OS_TICKS_PER_SEC);
@@ -50,6 +70,34 @@ static void setUpModem(void) {
     UAV_limitLinks();
 }
 
+/* Does what is due on all links, of which each comes first in turn. */
+static U32 pollAll(void) {
+    U32 wait = 0xFFFFFFFFU, due;
+    int left, role = turn;
+    if (uav_isAnswered)
+        UAV_seekVehicle();
+    for (left = uav_peerCount; left; --left) {
+        Link* link = uav_peers[role].link;
+        if (link) {
+            Link_poll(link, uav_now);
+            (void)UAV_confirmKey(role, link);
+            due = Link_deadline(link, uav_now);
+            wait = due < wait ? due : wait;
+        }
+        role = (role + 1) % uav_peerCount;
+    }
+    turn = (U8)((turn + 1U) % uav_peerCount);
+    uav_pollsAll = (U8)(UAV_offerCall() | hasOthers);
+    return wait;
+}
+
+static U32 pollLinks(void) {
+    if (uav_pollsAll)
+        return pollAll();
+    Link_poll(&uav_link, uav_now);
+    return Link_deadline(&uav_link, uav_now);
+}
+
 void UAV_radioTask(void* argument) {
     INT8U error;
     U32 upAt;
@@ -64,7 +112,7 @@ void UAV_radioTask(void* argument) {
         UAV_lockLink(0);
         uav_now = UAV_nowUs();
         (void)Radio_receive(receiver, 0);
-        wait = UAV_pollLinks();
+        wait = pollLinks();
         if (UAV_isUp())
             upAt = uav_now;
         UAV_unlockLink(0);

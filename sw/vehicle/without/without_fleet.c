@@ -6,9 +6,6 @@
 #include "uav_links.h"
 #include "uav_peers.h"
 
-UAV_Peer uav_peers[1] = {{&uav_link, UAV_GROUND_ADDRESS}};
-const U8 uav_peerCount = 1;
-
 int UAV_providePeer(int role, U32 address, const U8* key) {
     (void)role;
     (void)address;

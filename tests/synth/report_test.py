@@ -315,7 +315,7 @@ class Cases(Script):
         self.made("synth", "BASE=HEAD~1..HEAD")
         self.has(r"^Utilisation since .* \(The first one\), at .* \(The second one\):", grown,
                  r"^\| \w+ \| 4 passed, 1 failed \|",
-                 "^breaking   pair: MODE .word 0. is gone$", "^Tests that fail now: test_a.X$",
+                 "^breaking   pair: MODE .word 3. is gone$", "^Tests that fail now: test_a.X$",
                  "^Tests that pass again: test_b.X$", "^Tests that are new: test_c.X$",
                  "^Tests that did not run: test_d.X$")
         for wrong in "nonsense", "HEAD..nonsense":

@@ -17,12 +17,16 @@ module Fill {
 };
 ICE
 "$slice2c" "$work/fillers.ice" --output-dir "$work/c" --hw-verilog "$work" --hw-regs "$work"
+for core in little middle big; do
+    printf 'interface = "fillers.ice"\nverilog = ["%s_wrapper.v"]\n' "$core" >"$work/$core.toml"
+done
 for order in 'little middle big' 'little big middle' 'middle little big' 'middle big little' \
     'big little middle' 'big middle little'; do
     echo "$order" | tr ' ' '\n' >"$work/cores.list"
     "$source/tools/python" -m icesoc.chip.coremap "$work/cores.list" --base "$source/bus/map.regs.json" \
-        --core "little=$work/little.regs.json" --core "middle=$work/middle.regs.json" \
-        --core "big=$work/big.regs.json" --output-dir "$work"
+        --core "little=$work/little.toml=$work/little.regs.json" \
+        --core "middle=$work/middle.toml=$work/middle.regs.json" \
+        --core "big=$work/big.toml=$work/big.regs.json" --output-dir "$work"
     python3 - "$work/map.regs.json" "$order" <<'PYTHON'
 import json, sys
 constants = {c["name"]: c["value"] for c in json.load(open(sys.argv[1]))["constants"]}

@@ -104,7 +104,7 @@ class Cases(Script):
         shutil.copy("a.key", "others.key")
         os.chmod("others.key", 0o644)
         for name, said in (("short", "32 hexadecimal digits"), ("others", "chmod 600"),
-                           ("no", "icesoc key '.*no.key' makes one")):
+                           ("no", "create one with ./icesoc key '.*no.key'")):
             self.refused(said, "--key", f"{name}.key")
         # No session with this vehicle begins with another key, or with none.
         for key in self.out / "b.key", "":
@@ -370,7 +370,7 @@ class Cases(Script):
         shutil.copy("mine/report.md", ".")
         os.symlink(self.out / "mine/report.md", "calls.jsonl")
         write("bad.png", "this is no picture\n")
-        self.refused("is no picture that can be read", image="bad.png")
+        self.refused("is not a picture that can be read", image="bad.png")
         self.lacks("127.0.0.1")  # a page's address before what is refused
         for name in "report.md", "calls.jsonl":
             self.assertEqual(Path(name).read_text(), "mine\n")

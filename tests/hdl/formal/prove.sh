@@ -23,7 +23,9 @@ limit=${PROVE_SECONDS:-300} # of a processor: a proof that does not end is an er
 mkdir -p "$work"
 cd "$work"
 rm -f ./*.aig ./*.map ./*.aiw ./*.vcd
-file=$(find "$source/bus" "$source/hdl" "$source/ip" "$source/testbench/sim" -name "$module.v")
+# A tree may lack one of these folders.
+file=$(find "$source/bus" "$source/hdl" "$source/ip" "$source/testbench/sim" -name "$module.v" \
+    2>/dev/null) || true
 generated=''
 [ -n "$file" ] || [ ! -e "${GEN_DIR:-.}/$module.v" ] || generated=$GEN_DIR/$module.v file=$generated
 [ -n "$file" ] || {

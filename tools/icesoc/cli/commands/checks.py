@@ -127,7 +127,7 @@ def mutants(values):
 
 @command("check faults", [
     Option("moments", COUNT, "number of moments per fault and seed", 10), SEED,
-    Option("number of seeds to run", COUNT, "number of seeds, starting with --seed", 1),
+    Option("seeds", COUNT, "number of seeds, starting with --seed", 1),
     Option("name", NAME.kind, "only faults with this text in their name, such as killed", ""),
      BUILD, JOBS],
          make="faults", brief="check faults --name killed --moments 1",

@@ -155,8 +155,7 @@ void thrownFunctions(Writer& w, const CContext& c, const Declaration& d, const O
                v);
         if (classes)
             w.line("Ice_InputStream_endValues(is);");
-        w.single("if (v->type != {op}_none ? Ice_InputStream_end(is) : is->failed)",
-                 "return ICE_MARSHAL;", v);
+        w.single("if (is->failed)", "return ICE_MARSHAL;");
         w.line("return v->type == {op}_none ? ICE_UNKNOWN_USER_EXCEPTION : ICE_USER_EXCEPTION;", v);
     });
 }

@@ -19,7 +19,7 @@ import time
 import Ice
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-Ice.loadSlice("", [os.path.join(HERE, "..", "uav", "Autopilot.ice")])
+Ice.loadSlice("", [os.path.join(HERE, "..", "vehicle", "Autopilot.ice")])
 import Autopilot  # noqa: E402
 
 THRESHOLD = 24

@@ -89,7 +89,7 @@ class Cases(Project):
         self.user("firmware")
         self.has("^Written: build/firmware.json")
         self.user("faults NAME=no_memory MOMENTS=1 SEEDS=1 SEED=3")
-        self.has("^faults: 1 moments of seeds 2 to 2, 0 failed")
+        self.has("^faults: 1 moments of seeds 3 to 3, 0 failed")
 
     def test_commands_radio(self):
         """Moments of what takes hours."""

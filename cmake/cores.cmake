@@ -152,6 +152,17 @@ macro(icesoc_core_test)
   endif()
 endmacro()
 
+# icesoc_read_manifests(FILE...): reads manifests for icesoc_core(), which reads its own if needed.
+# Starting Python takes longer than reading, so a folder of cores is read at once.
+function(icesoc_read_manifests)
+  execute_process(COMMAND ${PYTHON} -m icesoc.chip.manifest ${ARGN}
+    OUTPUT_VARIABLE facts ERROR_VARIABLE error RESULT_VARIABLE status)
+  if(status)
+    message(FATAL_ERROR "${error}")
+  endif()
+  cmake_language(EVAL CODE "${facts}")
+endfunction()
+
 # icesoc_core([FOLDER]): the core of core.toml in FOLDER (default: the current source folder); its
 # keys are in docs/hw-mapping.md. It is a module or entity of the manifest's name with a slot's
 # ports. A core with a test gets the target test_ip_<NAME> and the model V<NAME>_slot.
@@ -162,10 +173,10 @@ function(icesoc_core)
   endif()
   set(manifest ${folder}/core.toml)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${manifest} ${MANIFEST_FILES})
-  execute_process(COMMAND ${PYTHON} -m icesoc.chip.manifest ${manifest}
-    OUTPUT_VARIABLE facts ERROR_VARIABLE error RESULT_VARIABLE status)
-  if(status)
-    message(FATAL_ERROR "${error}")
+  get_property(facts GLOBAL PROPERTY ICESOC_FACTS_${manifest})
+  if(NOT facts)
+    icesoc_read_manifests(${manifest})
+    get_property(facts GLOBAL PROPERTY ICESOC_FACTS_${manifest})
   endif()
   cmake_language(EVAL CODE "${facts}")
   set(A_DEPENDS)

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """manifest: reads a core's core.toml, the one place of the core's facts (docs/hw-mapping.md).
 
-CMake gets the facts as variables: python -m icesoc.chip.manifest ip/fir/core.toml. Python programs
-use read() and block_of().
+CMake gets the facts as code that sets variables, in a global property for each manifest:
+python -m icesoc.chip.manifest ip/fir/core.toml ip/probe/core.toml. Python programs use read() and
+block_of().
 """
 import json
 import re
@@ -190,7 +191,9 @@ def cmake(manifest):
 
 def main():
     try:
-        sys.stdout.write(cmake(read(sys.argv[1])))
+        for path in sys.argv[1:]:
+            sys.stdout.write(f"set_property(GLOBAL PROPERTY {quoted(['ICESOC_FACTS_' + path])} "
+                             f"[==[\n{cmake(read(path))}]==])\n")
     except Wrong as e:
         sys.exit(str(e))
 

@@ -7,8 +7,8 @@
 .SUFFIXES:
 MAKEFLAGS += --no-builtin-rules
 unexport MAKEFILES
-# GNU make expands the variables of its command line when it exports them, and would run $(shell ...)
-# in a value. Each is replaced by its text as it was written.
+# When GNU make exports a variable from its command line, it expands the value, and so would run a
+# $(shell ...) in it. The lines below make each value literal text first.
 $(foreach v,$(.VARIABLES),$(if $(filter command,$(firstword $(origin $v))),\
     $(eval export override $v := $$(value $v))))
 export ICESOC_GOALS := $(MAKECMDGOALS)

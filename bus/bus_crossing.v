@@ -30,8 +30,8 @@ module bus_crossing #(
     input  wire        core_irq_i
 );
     // ---- clk_i
-    reg       owes;     // the last request is not answered yet
-    reg       asked;    // that request belongs to the current access
+    reg       owes;     // a request has been sent, and its answer has not arrived yet
+    reg       asked;    // the current access has sent that request
     // a clock after the answer: an interrupt that the access has ended is low by now
     reg       answered;
     reg       deaf;     // the last access timed out

@@ -220,8 +220,9 @@ function(icesoc_core)
   icesoc_core_test()
 endfunction()
 
-# icesoc_core_folder(FOLDER BINARY): adds the core in FOLDER. Without a CMakeLists.txt, which begins
-# with icesoc_core() and adds what a manifest does not have, such as models, the manifest is enough.
+# icesoc_core_folder(FOLDER BINARY): adds the core in FOLDER. Its manifest is enough. A core that
+# needs more than a manifest can say, such as models, has a CMakeLists.txt that begins with
+# icesoc_core().
 function(icesoc_core_folder folder binary)
   if(NOT EXISTS ${folder}/CMakeLists.txt)
     set(text "# Generated: the core of ${folder}/core.toml.\nicesoc_core(${folder})\n")

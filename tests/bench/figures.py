@@ -31,10 +31,13 @@ AXES = [r"of \d+ vehicles", r"loss \d\.\d\d", r"bursts, \w+", r"\d+ m, fading", 
         "in the clear|encrypted|with a key", r"of \d+ bytes", r"\d+ ports", r"HCLK \d+ MHz"]
 HEAD = """# Figures
 
-Written by `./icesoc bench`: one run on one machine, each figure beside its limit or its peer of the
-same run. What each one means, and how it is measured, is said on the page of its subject.
-`a of b, c %` is a measured, and c % of the limit b. A goodput and its limit are bytes of programs;
-`(d %)` behind them is the share of all bytes that the modems could carry.
+`./icesoc bench` writes this page. It measures everything in one run on one machine, and shows each
+figure beside its limit, or beside a peer that was measured in the same run. The page of each
+subject explains what its figures mean and how they are measured.
+
+In `a of b, c %`, a was measured, b is the limit, and c is a's share of it. Goodput and its limit
+count the bytes that programs exchange; `(d %)` after them is the share of all bytes that the modems
+could carry.
 """
 
 

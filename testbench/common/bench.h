@@ -21,7 +21,8 @@ public:
     Bench()
         : context_(new VerilatedContext), observer_(*context_), top_(new Module(context_.get())) {}
     ~Bench() {
-        // A module's scopes leave this thread's context, which may be that of another bench, gone.
+        // A module's scopes remove this thread's context, which may belong to a bench that no
+        // longer exists.
         Verilated::threadContextp(context_.get());
         top_->final();
         observer_.finish();
@@ -74,7 +75,7 @@ public:
         top_->eval();
     }
 
-    // Ticks until the condition holds; throws with `what` after `limit` cycles.
+    // Ticks until the condition holds; throws after `limit` cycles, with `what` in the message.
     template <class Condition>
     void waitFor(Condition condition, const std::string& what, uint64_t limit = 10000) {
         for (uint64_t i = 0; i < limit; ++i) {

@@ -13,7 +13,7 @@ public:
     struct Answer {
         uint32_t data;
         bool error;
-        unsigned cycles; // from valid to ready, 1 at least
+        unsigned cycles; // cycles from valid to ready, at least 1
     };
 
     Answer transfer(bool write, unsigned word, uint32_t data) {
@@ -21,7 +21,7 @@ public:
         top.bus_write_i = write;
         top.bus_addr_i = static_cast<uint8_t>(word);
         top.bus_wdata_i = data;
-        bench_.tick(); // the address comes a clock before valid, which is low between transfers
+        bench_.tick(); // the address arrives one clock before valid; valid is low between transfers
         top.bus_valid_i = 1;
         uint64_t start = bench_.cycles();
         bench_.waitFor([&] { return top.bus_ready_o; },

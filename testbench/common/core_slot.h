@@ -22,10 +22,10 @@ extern "C" {
 }
 
 constexpr U32 coreSlot = 5;
-#ifdef CORE_CLK_HZ // of a core with that parameter
+#ifdef CORE_CLK_HZ // defined for cores with that parameter
 constexpr U32 coreClocksOfMs = CORE_CLK_HZ / 1000;
 #else
-constexpr U32 coreClocksOfMs = 100; // few, so that time-outs end soon
+constexpr U32 coreClocksOfMs = 100; // few, so that time-outs expire soon
 #endif
 constexpr U32 coreMemory = 0x01000000; // DDR3 byte address of the core's buffers, to the driver
 
@@ -56,8 +56,8 @@ public:
     explicit CoreMemory(Bench<Module>& bench) : NpiMemory<Module>(bench, 0.2, testSeed()) {}
 };
 
-// The clock of a core that has its own, beside the chip's 100 MHz; its edges are between the
-// chip's.
+// Clock of a core with a separate clock domain, in addition to the chip's 100 MHz; its edges are
+// between the chip's.
 #ifndef CORE_OWN_HZ
 #define CORE_OWN_HZ 24000000u
 #endif
@@ -153,8 +153,10 @@ public:
     CoreMemory<Module> memory_{bench_};
     BusMaster<Module> bus_{bench_};
     Hw_Core* core_ = nullptr;
-    std::function<void()> interrupt_;    // a servant's own, instead of Hw_Core_interrupt
-    std::function<void()> beforeAccess_; // of a register, by another task
+    std::function<void()> interrupt_;    // the servant's interrupt function; empty:
+                                         // Hw_Core_interrupt
+    std::function<void()> beforeAccess_; // called before each register access, as if another task
+                                         // ran
     U32 posted_ = 0;
     U32 memoryAt_ = coreMemory; // their address for the core: the value of MEMORY
     uint64_t started_ = 0, waitedClocks_ = 0;

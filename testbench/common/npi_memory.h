@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// npi_memory: the memory behind one NPI port (docs/memory.md), with random stalls, for block tests.
-// It checks the requester's rules and throws where one is broken.
+// npi_memory: a model of the memory behind one NPI port (docs/memory.md), with random stalls, for
+// block tests. It checks the requester's rules and throws if one is broken.
 
 #pragma once
 
@@ -12,7 +12,7 @@
 
 template <class Module> class NpiMemory {
 public:
-    // stall: probability, each cycle, that an acknowledgement or the next read word waits.
+    // stall: probability, per cycle, that an acknowledgement or the next read word waits.
     NpiMemory(Bench<Module>& bench, double stall, uint64_t seed)
         : top_(bench.top()), random_(seed), stall_(stall) {
         drive();
@@ -37,8 +37,8 @@ public:
     void setStall(double stall) { stall_ = stall; }
     // Holds all requests, as a hung memory does.
     void hold(bool held) { held_ = held; }
-    // Probability, each cycle, that a word of an acknowledged write stays in the write FIFO, as it
-    // does while the memory is busy with other ports. 0: it leaves at the acknowledgement.
+    // Probability, per cycle, that a word of an acknowledged write stays in the write FIFO, as it
+    // does while the memory is busy with other ports. With 0 it leaves at the acknowledgement.
     void setLinger(double linger) { linger_ = linger; }
     uint64_t reads() const { return reads_; }
     uint64_t writes() const { return writes_; }
@@ -112,7 +112,8 @@ private:
         if (size_ > 5)
             broken("size " + std::to_string(size_));
         unsigned words = 1u << size_;
-        bool lineRead = isRead_ && (size_ == 1 || size_ == 2); // may name any word of the line
+        bool lineRead = isRead_ && (size_ == 1 || size_ == 2); // may start with any word of the
+                                                               // line
         if (address_ % (lineRead ? 8 : words * 8))
             broken("address not aligned to its size");
         address_ -= address_ % (words * 8);
@@ -139,7 +140,7 @@ private:
                     bytes_[address_ + 8 * w + b] = static_cast<uint8_t>(word.data >> (8 * b));
         }
         if (linger_ > 0)
-            lingering_ += words; // every later request sees what they write
+            lingering_ += words; // every later request sees their words
     }
 
     uint64_t load(uint32_t address) const {
@@ -167,7 +168,7 @@ private:
     bool held_ = false, ack_ = false, waiting_ = false, readValid_ = false, isRead_ = false;
     uint32_t address_ = 0;
     unsigned size_ = 0;
-    size_t lingering_ = 0; // words of acknowledged writes that are in the FIFO
+    size_t lingering_ = 0; // words of acknowledged writes that are still in the FIFO
     std::deque<Word> read_, write_;
     std::unordered_map<uint32_t, uint8_t> bytes_;
     uint64_t reads_ = 0, writes_ = 0;

@@ -45,7 +45,7 @@ public:
 #ifdef ICESOC_COVERAGE
         if (const char* folder = std::getenv("COVERAGE_DIR")) {
             std::string file = std::string(folder) + "/XXXXXX.dat";
-            close(mkstemps(file.data(), 4)); // ids of processes come again in a long run
+            close(mkstemps(file.data(), 4)); // process ids are reused in a long run
             context_.coveragep()->write(file.c_str());
         }
 #endif

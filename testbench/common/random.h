@@ -23,7 +23,7 @@ public:
     }
     // Returns a number in 0 .. bound-1.
     uint32_t below(uint32_t bound) { return static_cast<uint32_t>(uint64_t(next()) * bound >> 32); }
-    // Returns `count` numbers, whose bits are all random.
+    // Returns `count` random numbers; all their bits are random.
     template <class Item> std::vector<Item> items(size_t count) {
         std::vector<Item> list(count);
         for (Item& item : list)

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// registers_apart: values written to two registers of a third-party core are read back from both,
-// as far as they can be written. It finds a lost write, and an address whose words are taken for
-// bytes or bytes for words: then neighbours are one register. A core with fewer registers than
-// addresses repeats them at a distance. A note names each register and says whether it was read
-// back (icesoc.regress.ctest prints notes). Another tells of a core that moves while nobody calls
-// it, and by which signals.
+// registers_apart: checks that two registers of a third-party core hold different values, as far as
+// they can be written. It detects lost writes and a wrong address unit (words instead of bytes, or
+// the reverse), with which neighbouring addresses reach one register. In a core with fewer
+// registers than addresses they repeat at a distance. The test prints a note for each register,
+// with whether it was read back, and a note if the core moves without a call, with the signals that
+// move (icesoc.regress.ctest prints notes).
 
 #pragma once
 
@@ -23,7 +23,7 @@ extern "C" {
 #include "hw_registers.h"
 }
 
-// Whether a slot says by idle_o that its clock may stand still.
+// True if a slot has idle_o, which reports that its clock may stop.
 template <class Module> auto saysIdle(Module& top, int) -> decltype(bool(top.idle_o)) {
     return top.idle_o;
 }
@@ -31,8 +31,8 @@ template <class Module> bool saysIdle(Module&, long) {
     return false;
 }
 
-// A signal in a model's state, by its path in the slot; V<core>_slot_state.h, made by
-// state_members.awk, says those of a core.
+// A signal in a model's state, by its path in the slot. state_members.awk generates
+// V<core>_slot_state.h, which lists the signals of a core.
 struct StateMember {
     template <class Root, class T>
     StateMember(const Root& root, const T& member, const char* name)
@@ -46,14 +46,14 @@ template <class Root> std::vector<StateMember> stateOf(const Root&) {
     return {};
 }
 
-// A flight passes clocks at once in which nothing but its own counters moves (docs/simulation.md).
+// A flight skips clocks in which only the core's counters move (docs/simulation.md).
 // The generated test includes the header of the model's state.
 template <class Module> void noteWhetherItRests(Bench<Module>& bench) {
     constexpr unsigned settling = 64, clocks = 1000, named = 3;
     const auto& state = *bench.top().rootp;
     const auto* now = reinterpret_cast<const unsigned char*>(&state);
     const std::vector<StateMember> members = stateOf(state);
-    std::map<std::string, unsigned> movers; // by the clocks in which they moved
+    std::map<std::string, unsigned> movers; // signals by the number of clocks in which they moved
     for (unsigned i = 0; i < settling; ++i)
         bench.tick();
     unsigned moved = 0;
@@ -76,7 +76,7 @@ template <class Module> void noteWhetherItRests(Bench<Module>& bench) {
         which += (i ? ", " : " (most often ") + most[i].second;
     which += most.size() > named ? ", ...)" : most.empty() ? "" : ")";
     std::cout << "note: it does not rest: it moves in " << moved << " of " << clocks
-              << " clocks in which nobody calls it" << which
+              << " clocks without a call" << which
               << ", so that a flight evaluates each clock, 5 million a second, and not 600. If it "
               << "may stand still then, let its slot say so by idle_o "
               << "(docs/hw-mapping.md#idle); else make run CLK_HZ=2000000 is quicker\n";
@@ -87,7 +87,7 @@ void expectRegistersApart(CoreSlot<Module>& slot, const Hw_Register (&table)[N],
                           unsigned pageWord) {
     struct Register {
         const Hw_Register& is;
-        U32 value; // differs from those of the others
+        U32 value; // different from the values of the other registers
     };
     auto access = [&](bool isWrite, const Register& r) {
         slot.bus_.write(pageWord, static_cast<U32>(r.is.page));
@@ -96,7 +96,7 @@ void expectRegistersApart(CoreSlot<Module>& slot, const Hw_Register (&table)[N],
     std::vector<Register> hold;
     for (const Hw_Register& is : table) {
         if (is.word < 8)
-            continue; // the slot's own
+            continue; // in the system slot
         const U32 mask = is.width < 32 ? (1u << is.width) - 1 : ~0u;
         const Register r{is, (0x5A5A0001u + 0x01010101u * static_cast<U32>(&is - table)) & mask};
         const bool refused = access(true, r).error;
@@ -126,7 +126,7 @@ void expectRegistersApart(CoreSlot<Module>& slot, const Hw_Register (&table)[N],
                 continue;
             EXPECT_GT(std::abs(distance), 1)
                 << r.is.name.data << " has what was written to " << other.is.name.data
-                << ": does its address count words, or bytes? ADDRESS=words|bytes says it";
+                << ": set ADDRESS=words or ADDRESS=bytes, the unit of the core's address";
             std::cout << "note: " << r.is.name.data << " is " << other.is.name.data << " again\n";
         }
     }

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 #
-# state_members: lists signals in the header of a Verilated model's state, those whose names begin
-# with `top`, a line each: MEMBER(name, "path"). With `class`, that of the state, they stand in the
-# function stateOf (registers_apart.h).
-# Random values that it reads beyond an array's end, and the scratch of writes there, are no state.
+# state_members: lists the signals in the header of a Verilated model's state that have names
+# beginning with `top`, one line each: MEMBER(name, "path"). With `class`, the type of the state, it
+# writes them as the function stateOf (registers_apart.h).
+# Random values read beyond an array's end, and the scratch variables for writes there, are not
+# state.
 
 BEGIN {
     if (class) {
@@ -15,7 +16,7 @@ END {
     if (class)
         print "#undef MEMBER\n    };\n}"
 }
-/__DOT____V/ && class { next } # Verilator's own copies
+/__DOT____V/ && class { next } # copies that Verilator makes
 /__DOT____V(xrand|lvbound)/ { next }
 /;$/ && match($0, "[ ]" top "[A-Za-z0-9_]*;$") {
     name = substr($0, RSTART + 1, RLENGTH - 2)

@@ -15,12 +15,13 @@
 // The clock of the model that ran last, for failed assertions.
 inline uint64_t observedClock = 0;
 
-// A line of each model that is alive, by its address; a model removes its own at its end.
+// One line per live model, by the model's address; a model removes its line when it is destroyed.
 inline std::map<const void*, std::function<std::string()>> tellers;
 
 inline void tellOnAbort(const void* model, std::function<std::string()> tell) {
     tellers[model] = std::move(tell);
-    std::signal(SIGABRT, [](int signal) { // the program ends: what it calls need not be safe here
+    std::signal(SIGABRT, [](int signal) { // the program ends anyway, so functions that are not
+                                          // signal-safe are allowed
         std::signal(signal, SIG_DFL);
         for (const auto& [_, line] : tellers)
             std::fprintf(stderr, "%s\n", line().c_str());

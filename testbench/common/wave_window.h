@@ -9,14 +9,14 @@
 #include <cstdlib>
 #include <string>
 
-// Returns a number of the environment, `otherwise` where there is none.
+// Returns a number from the environment; `otherwise` if the variable is not set.
 inline uint64_t environmentNumber(const char* variable, uint64_t otherwise) {
     const char* text = std::getenv(variable);
     return text && *text ? std::strtoull(text, nullptr, 0) : otherwise;
 }
 
 struct WaveWindow {
-    std::string file; // empty: none
+    std::string file; // empty: no waveform
     uint64_t from = environmentNumber("WAVE_FROM", 0), to = environmentNumber("WAVE_TO", ~0ull);
 
     WaveWindow() {

@@ -13,13 +13,13 @@
 #include <cstring>
 
 namespace {
-constexpr uint64_t sleepStep = 1 << 20; // cycles that the surroundings may pass at once
+constexpr uint64_t sleepStep = 1 << 20; // cycles that the rest of the system may skip at once
 } // namespace
 
 CortexM3::Stop CortexM3::run(bool singleStep) {
     singleStep_ = singleStep;
     stepped_ = breakpointHit_ = false;
-    passBreakpoint_ = true; // at which the processor stands
+    passBreakpoint_ = true; // the breakpoint at the current address
     for (;;) {
         if (failure_) {
             auto failure = failure_;
@@ -40,7 +40,7 @@ CortexM3::Stop CortexM3::run(bool singleStep) {
             updateAttention();
             return why;
         }
-        if (lockedUp_) { // only a reset ends it
+        if (lockedUp_) { // only a reset leaves lock-up
             pass(1);
             continue;
         }
@@ -72,7 +72,7 @@ void CortexM3::setSynchronous(uint32_t address, unsigned number, uint32_t cfsrBi
     uc_emu_stop(uc_);
 }
 
-// Checks an instruction before it is executed. False: it faults.
+// Checks an instruction before it is executed. Returns false if it faults.
 bool CortexM3::mayExecute(uint32_t address, const Instruction& i) {
     if (i.base != Instruction::noBase && (reg(i.base) & i.alignment)) {
         setSynchronous(address, UsageFault, SystemControl::unaligned,
@@ -223,7 +223,7 @@ void CortexM3::sleep() {
     asleep_ = false;
 }
 
-// Passes the time until instructions can be fetched from flash again, or until another event is
+// Advances the time until instructions can be fetched from flash again, or until another event is
 // due.
 void CortexM3::waitForFlash() {
     while (cycles() < flashFree_ && !stopAsked_ && !resetAsked_ && !failure_)
@@ -234,14 +234,14 @@ void CortexM3::waitForFlash() {
     updateAttention();
 }
 
-// Restores the bytes that libunicorn has stored to flash by itself.
+// Restores the flash bytes that libunicorn has overwritten without calling the bus.
 void CortexM3::settleFlash() {
     for (auto s = stores_.rbegin(); s != stores_.rend(); ++s)
         std::memcpy(flash_.get() + s->offset, s->was, s->bytes);
     stores_.clear();
 }
 
-// Four bits of BASEPRI exist. BASEPRI_MAX ignores a value of which nothing is left.
+// BASEPRI has four implemented bits. A write to BASEPRI_MAX is ignored if these four bits are 0.
 void CortexM3::fixBasepri() {
     constexpr uint8_t basepriMax = 18;
     const uint32_t value = reg(Basepri), kept = value & Exceptions::priorityBits;

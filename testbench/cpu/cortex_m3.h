@@ -16,14 +16,14 @@
 #include <unicorn/unicorn.h>
 #include <vector>
 
-// A Thumb-2 instruction for the CPU model: its length, its cycles, whether it stops; by the tables
-// of the ARMv7-M Architecture Reference Manual, chapter A5. Loads take 2 cycles even where the
-// pipeline would hide one; divisions and long products take the middle of the range that the TRM
-// gives, for the real ones depend on their operands.
+// A Thumb-2 instruction for the CPU model: its length, its cycles, whether it stops, by the tables
+// of the ARMv7-M Architecture Reference Manual, chapter A5. Loads take 2 cycles even if the
+// pipeline would hide one. Divisions and long products take the middle of the range that the TRM
+// gives, because the real number depends on their operands.
 struct Instruction {
     enum Kind : uint8_t {
         Plain,
-        If,        // IT: the `conditional` instructions behind it are one unit with it
+        If,        // IT: executed as one unit with the `conditional` instructions after it
         Sleep,     // WFI
         Barrier,   // DSB, DMB: wait for the write buffer
         Masks,     // CPS or MSR: may change PRIMASK, BASEPRI, FAULTMASK or CONTROL
@@ -33,9 +33,9 @@ struct Instruction {
     static constexpr uint8_t noBase = 15;
     uint8_t bytes = 2;       // 2 or 4
     uint8_t cycles = 1;      // Cortex-M3 TRM r2p1, table 3-1, without the refill of a taken branch
-    uint8_t conditional = 0; // of If: 1..4
+    uint8_t conditional = 0; // number of conditional instructions after an IT, 1..4
     Kind kind = Plain;
-    // An access that must be aligned (A3.2.1): its base register, and the bits that are to be zero.
+    // Alignment check of an access (A3.2.1): base register, and the address bits that must be zero.
     uint8_t base = noBase, alignment = 0;
     uint8_t special = 0; // the register of MSR: SYSm
 };
@@ -122,7 +122,7 @@ inline void decodeAligned(Instruction& i, uint16_t first, uint16_t second) {
     i.base = base == 13 ? Instruction::noBase : base;
 }
 
-// `first` and `second` are the halfwords at the instruction's address and behind it.
+// `first` and `second`: the halfword at the instruction's address and the one after it.
 inline Instruction decodeInstruction(uint16_t first, uint16_t second) {
     if (first >> 11 < 0x1D)
         return narrowInstruction(first);
@@ -189,12 +189,13 @@ public:
     CortexM3(const CortexM3&) = delete;
     CortexM3& operator=(const CortexM3&) = delete;
 
-    // Read and write flash and RAM, without side effects. False: not all of it is memory.
+    // Read and write flash and RAM, without side effects. Return false if part of the range is not
+    // memory.
     bool readMemory(uint32_t address, void* data, uint32_t bytes) const;
     bool writeMemory(uint32_t address, const void* data, uint32_t bytes);
     void loadFlash(uint32_t address, const std::vector<uint8_t>& bytes);
-    // Read and write for a debugger: memory, else registers and windows by accesses like the
-    // processor's own.
+    // Read and write for a debugger: memory directly; registers and windows by accesses like those
+    // that the processor makes.
     bool debugRead(uint32_t address, void* data, uint32_t bytes);
     bool debugWrite(uint32_t address, const void* data, uint32_t bytes);
     uint8_t* flash() { return flash_.get(); }
@@ -202,15 +203,15 @@ public:
     void flashChanged(uint32_t offset, uint32_t bytes);
     // No instruction can be fetched from flash for this many cycles; called by the bus.
     void stallFlash(uint64_t cycles) { flashFree_ = this->cycles() + cycles; }
-    uint32_t word(uint32_t address) const; // 0 where there is no memory
+    uint32_t word(uint32_t address) const; // 0 if the address is not memory
 
-    // Resets as power-on or the system does: registers from the vector table; RAM stays.
+    // Performs a power-on or system reset: registers from the vector table; RAM is kept.
     void reset();
     // Runs until stop(), a breakpoint, or an exception of the bus other than CpuBus::Error.
     enum class Stop { Asked, Breakpoint, Stepped };
     Stop run(bool singleStep = false);
-    // Stops (Stop::Stepped) when `instructions()` has reached this, too; 0: never. It cannot stop
-    // within an IT block.
+    // Stops (Stop::Stepped) also when `instructions()` reaches this count; 0 disables it. It cannot
+    // stop within an IT block.
     void setLimit(uint64_t instructions) { limit_ = instructions; }
     // The last count of instructions before the present one at which the processor could stop.
     uint64_t lastStop() const { return boundaries_[0]; }
@@ -260,7 +261,7 @@ public:
     std::set<uint32_t> breakpoints; // addresses, bit 0 clear
     std::string lastFault;          // text of the last fault, for people
 
-    // Listeners: exceptions entered and left, a system reset before it is carried out.
+    // Called when an exception is entered or left, and before a system reset is carried out.
     struct Listener {
         std::function<void(unsigned number)> entered, left;
         std::function<void()> systemReset;
@@ -315,8 +316,9 @@ private:
     Config config_;
     uc_engine* uc_ = nullptr;
     std::unique_ptr<uint8_t[], void (*)(void*)> flash_, ram_;
-    std::vector<Instruction> decoded_; // of flash, a slot a halfword; bytes 0: not yet
-    Instruction scratch_;              // of code elsewhere
+    std::vector<Instruction> decoded_; // decoded flash, one slot per halfword; bytes 0: not decoded
+                                       // yet
+    Instruction scratch_;              // decoded instruction outside flash
     struct MappedWindow {
         CortexM3* cpu;
         uint32_t base;
@@ -326,11 +328,12 @@ private:
     SystemControl control_{exceptions_, 0};
 
     uint32_t pc_ = 0, executing_ = 0, expected_ = 0, unitEnd_ = 0;
-    unsigned skipped_ = 0; // of the IT block under way: conditional instructions not seen yet
+    unsigned skipped_ = 0; // conditional instructions of the current IT block that were not
+                           // executed yet
     bool masksChanged_ = false;
-    uint8_t special_ = 0;     // of the last MSR
+    uint8_t special_ = 0;     // special register of the last MSR
     bool exclusive_ = false;  // the exclusive monitor may be open
-    bool isClearing_ = false; // CLREX of the model's own is executed
+    bool isClearing_ = false; // the model's inserted CLREX is being executed
     bool attention_ = false, stopAsked_ = false, resetAsked_ = false, stepped_ = false,
          breakpointHit_ = false;
     bool singleStep_ = false, passBreakpoint_ = false;
@@ -340,23 +343,23 @@ private:
         unsigned number = 0;
         uint32_t cfsrBits = 0;
         std::string text;
-    } synchronous_; // fault of the instruction under way
+    } synchronous_; // fault of the current instruction
     // The write buffer of one entry (TRM r2p1, 3.5): a pending store to a window.
     struct BufferedStore {
         uint32_t address = 0, value = 0;
         unsigned bytes = 0; // 0: the buffer is empty
-        uint64_t due = 0;   // in cycles
+        uint64_t due = 0;   // cycle count
     } store_;
     std::exception_ptr failure_;
     uint64_t instructions_ = 0, sleeping_ = 0, waited_ = 0;
-    // libunicorn carries a store to flash out by itself: the old bytes are restored, and the bus
-    // changes them.
+    // libunicorn carries out a store to flash by itself: the old bytes are restored, and the bus
+    // then applies the write.
     struct FlashStore {
         uint32_t offset;
         unsigned bytes;
         uint8_t was[8];
     };
-    std::vector<FlashStore> stores_; // of the instruction under way
+    std::vector<FlashStore> stores_; // stores of the current instruction
     bool staleCode_ = false;         // translated code differs from flash
     uint64_t flashFree_ = 0;
     uint64_t limit_ = 0, boundaries_[2] = {0, 0};

@@ -9,7 +9,7 @@
 #include <cstring>
 
 namespace {
-constexpr unsigned storeCycles = 14; // the FSMC's for a register word
+constexpr unsigned storeCycles = 14; // FSMC cycles for one register word
 
 std::string accessText(uint32_t address, unsigned bytes, const char* what) {
     char text[64];
@@ -23,7 +23,7 @@ unsigned accessSize(uint32_t address, uint32_t bytes) {
 }
 } // namespace
 
-// Counts the time of the bus's last access.
+// Adds the time that the last bus access took.
 void CortexM3::passWaited() {
     const unsigned waited = bus_.takeWaited();
     waited_ += waited;
@@ -31,7 +31,7 @@ void CortexM3::passWaited() {
     attention_ = attention_ || exceptions_.deliverable();
 }
 
-// Carries a store out. Its fault comes late, and has no address.
+// Carries out a store. Its fault is imprecise: reported late and without an address.
 template <class Store> void CortexM3::store(uint32_t address, unsigned bytes, Store store) {
     try {
         store();
@@ -61,7 +61,7 @@ uint32_t CortexM3::guardedAccess(uint32_t address, unsigned bytes, Access access
         if (address >= 0xE0000000) {
             value = access(true);
             // Writing a system register may make an exception deliverable: DSB and ISB cost nothing
-            // more.
+            // extra.
             attention_ = attention_ || exceptions_.deliverable() || stopAsked_;
             return value;
         }
@@ -82,7 +82,7 @@ uint32_t CortexM3::guardedAccess(uint32_t address, unsigned bytes, Access access
     return 0;
 }
 
-// Bit-band aliases: a word for each bit of RAM and of the peripherals (B3.1, TRM 3.7).
+// Bit-band aliases: one word per bit of RAM and of the peripherals (B3.1, TRM 3.7).
 bool CortexM3::isBitBand(uint32_t address) const {
     return address >> 25 == 0x22000000 >> 25 || address >> 25 == 0x42000000 >> 25;
 }
@@ -111,7 +111,7 @@ void CortexM3::writeBit(uint32_t address, uint32_t value) {
     }
 }
 
-// An unaligned access to memory is several aligned ones; to a device it is unpredictable.
+// An unaligned access to memory is split into aligned ones; to a device it is unpredictable.
 bool CortexM3::isSplit(uint32_t address, unsigned bytes) {
     if (address % bytes == 0 || address >= 0xE0000000)
         return false;
@@ -173,7 +173,8 @@ void CortexM3::onFlashWrite(uint32_t offset, unsigned bytes, uint32_t value) {
 }
 
 void CortexM3::flashChanged(uint32_t offset, uint32_t bytes) {
-    const uint32_t first = offset >= 2 ? offset / 2 - 1 : 0; // a long instruction may begin before
+    const uint32_t first = offset >= 2 ? offset / 2 - 1 : 0; // a 32-bit instruction may begin one
+                                                             // halfword earlier
     for (uint32_t at = first; at < (offset + bytes + 1) / 2; ++at) {
         staleCode_ = staleCode_ || decoded_[at].bytes;
         decoded_[at].bytes = 0;
@@ -182,7 +183,7 @@ void CortexM3::flashChanged(uint32_t offset, uint32_t bytes) {
 }
 
 bool CortexM3::onGuarded(uint32_t address, unsigned bytes, bool write) {
-    drainStore(); // RAM is behind the same bus
+    drainStore(); // RAM is on the same bus
     // In handlers of HardFault and NMI the MPU is off.
     if (!control_.isForbidden(address, bytes, write) || synchronous_.number ||
         exceptions_.runningPriority() < 0)
@@ -195,7 +196,7 @@ bool CortexM3::onGuarded(uint32_t address, unsigned bytes, bool write) {
     return true;
 }
 
-// ---- a debugger's accesses outside of memory: in words where they are aligned, else in bytes ----
+// ---- a debugger's accesses outside memory: by word if aligned, else by byte ----
 
 bool CortexM3::debugRead(uint32_t address, void* data, uint32_t bytes) {
     return readMemory(address, data, bytes) ||

@@ -14,8 +14,8 @@ namespace {
 constexpr unsigned entryCycles = 12, exitCycles = 10, chainCycles = 6; // Cortex-M3 TRM, 5.5 and 5.9
 constexpr uint32_t returnHandler = 0xFFFFFFF1, returnMain = 0xFFFFFFF9, returnProcess = 0xFFFFFFFD;
 constexpr uint32_t thumb = 1u << 24, aligned = 1u << 9, exceptionMask = 0x1FF;
-constexpr uint32_t ifThenMask = 0x0600FC00; // of xPSR
-// A page with the model's own CLREX, at the end of the FSMC's address range.
+constexpr uint32_t ifThenMask = 0x0600FC00; // ICI/IT bits of xPSR
+// A page at the end of the FSMC's address range with a CLREX instruction for the model.
 constexpr uint32_t clrexPage = 0x9FFFF000, pageBytes = 0x1000;
 constexpr uint16_t clrex[2] = {0xF3BF, 0x8F2F};
 
@@ -123,7 +123,7 @@ bool CortexM3::writeMemory(uint32_t address, const void* data, uint32_t bytes) {
     if (address >= config_.ramBase || !readMemory(address, &was, 1) ||
         !readMemory(address + bytes - 1, &was, 1))
         return false;
-    // Writes flash as a programmer does.
+    // Writes to flash directly, as a programmer does.
     const uint32_t offset = address >= config_.flashBase ? address - config_.flashBase : address;
     std::memcpy(flash_.get() + offset, data, bytes);
     flashChanged(offset, bytes);
@@ -180,7 +180,7 @@ void CortexM3::reset() {
     updateAttention();
 }
 
-// libunicorn does not know that an exception has begun or ended; both close the exclusive monitor.
+// libunicorn does not see exception entry and return; both close the exclusive monitor.
 void CortexM3::clearExclusive() {
     if (!std::exchange(exclusive_, false))
         return;
@@ -372,13 +372,14 @@ void CortexM3::handleRaised() {
         return;
     case Breakpoint:
         pc_ = executing_;
-        breakpointHit_ = true; // for a debugger; without one run() returns as well
+        breakpointHit_ = true; // stops run(), also without a debugger
         return;
     case Fetch:
         return fetchFault();
     case NoCoprocessor:
         pc_ = executing_;
-        synchronous_ = {UsageFault, SystemControl::noCoprocessor, "there is no such coprocessor"};
+        synchronous_ = {UsageFault, SystemControl::noCoprocessor,
+                        "access to a missing coprocessor"};
         return;
     case State:
         synchronous_ = {UsageFault, SystemControl::invalidState, "a jump out of Thumb state"};

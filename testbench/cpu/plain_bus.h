@@ -10,8 +10,8 @@
 
 class PlainBus : public CpuBus {
 public:
-    uint32_t read(uint32_t, unsigned) override { throw Error("nobody answers"); }
-    void write(uint32_t, unsigned, uint32_t) override { throw Error("nobody answers"); }
+    uint32_t read(uint32_t, unsigned) override { throw Error("no device at this address"); }
+    void write(uint32_t, unsigned, uint32_t) override { throw Error("no device at this address"); }
     void pass(unsigned cycles) override { passed += cycles; }
     unsigned takeWaited() override { return 0; }
     uint64_t passed = 0;
@@ -34,8 +34,8 @@ struct PlainCpu {
         cpu.readMemory(image.symbol(name), bytes.data(), image.size(name));
         return bytes.substr(0, std::strlen(bytes.c_str()));
     }
-    // Runs up to a breakpoint or for these cycles; returns the breakpoint's number, -1 where none
-    // was reached.
+    // Runs until a breakpoint is reached or these cycles have passed; returns the breakpoint's
+    // number, or -1.
     int run(uint64_t cycleLimit) {
         uint64_t end = cpu.cycles() + cycleLimit;
         bus.limit = [this, end] {

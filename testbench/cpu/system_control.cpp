@@ -11,7 +11,8 @@ namespace {
 constexpr uint32_t dwt = 0xE0001000, scs = 0xE000E000;
 constexpr uint32_t keyIn = 0x05FA, keyOut = 0xFA05;
 
-// Exceptions 4..15 have their priorities in SHPR1..3; those that exist, and interrupts:
+// Priorities of exceptions 4..15 are in SHPR1..3. True for the exceptions that exist, and for
+// interrupts.
 bool hasPriority(unsigned number) {
     return number >= FirstInterrupt || (number >= MemManage && number <= UsageFault) ||
            number == SupervisorCall || number == DebugMonitor || number == PendSv ||
@@ -44,12 +45,12 @@ bool forbids(uint32_t rasr, bool write) {
 
 } // namespace
 
-// Registers that store what is written to them. A value with unknown bits is not modelled.
+// Registers that only store the written value. A value with unknown bits is not modelled.
 struct SystemControl::Stored {
     uint32_t at;
-    uint32_t SystemControl::* value;
+    uint32_t SystemControl::*value;
     uint32_t kept = ~0u, unknown = 0;
-    bool clears = false; // ones that are written
+    bool clears = false; // writing 1 clears a bit
 };
 const SystemControl::Stored SystemControl::stored[] = {
     {0x008, &SystemControl::actlr_, ~0u, ~2u}, // DISDEFWBUF is modelled
@@ -115,7 +116,7 @@ void SystemControl::write(uint32_t address, unsigned size, uint32_t value) {
             refuse();
         return;
     }
-    // The priority registers and CFSR may be written in bytes (B3.1.1, B3.2.15).
+    // The priority registers and CFSR can be written by byte (B3.1.1, B3.2.15).
     const uint32_t at = address - scs;
     const bool priorities = (at >= 0x400 && at < 0x4F0) || (at >= 0xD18 && at < 0xD24);
     const bool status = at >= 0xD28 && at < 0xD2C;
@@ -231,7 +232,7 @@ uint32_t SystemControl::interruptState() const {
 
 uint32_t SystemControl::handlerState() const {
     uint32_t shown = 0;
-    auto flag = [&](unsigned number, unsigned bit, bool Exceptions::State::* what) {
+    auto flag = [&](unsigned number, unsigned bit, bool Exceptions::State::*what) {
         shown |= uint32_t((*exceptions_)[number].*what) << bit;
     };
     constexpr auto active = &Exceptions::State::active, pending = &Exceptions::State::pending,
@@ -262,7 +263,7 @@ bool SystemControl::accessOther(uint32_t at, bool write, uint32_t& value) {
         if (write)
             loadSysTick(given & 0xFFFFFF);
         break;
-    case 0x018: // any value that is written clears it: it is loaded at the next tick
+    case 0x018: // writing any value clears the counter; it reloads at the next tick
         shown = currentTicks();
         if (!write)
             break;
@@ -295,14 +296,14 @@ bool SystemControl::accessOther(uint32_t at, bool write, uint32_t& value) {
     case 0xD24:
         shown = handlerState();
         if (write && ((given ^ shown) & 0xFFFF))
-            return false; // changes of what is active and pending
+            return false; // writes that change the pending or active state
         for (unsigned number : {MemManage, BusFault, UsageFault})
             if (write)
                 exceptions_->enable(number, given >> (12 + number) & 1);
         break;
     case 0xD3C: // AFSR: no bit
         break;
-    case 0xDFC: // DEMCR; the rest is for debuggers
+    case 0xDFC: // DEMCR; its other bits are for debuggers
         shown = demcr_;
         if (given & ~traceEnabled)
             return false;
@@ -320,7 +321,7 @@ bool SystemControl::accessOther(uint32_t at, bool write, uint32_t& value) {
     return true;
 }
 
-// A new reload value holds from the next zero on. A counter that stands at zero takes it at once.
+// A new reload value takes effect when the counter next reaches zero; if it is zero, at once.
 void SystemControl::loadSysTick(uint32_t value) {
     load_ = value;
     if ((control_ & 1) && tickDue_ == ~0ull && stoppedAt_ == 0 && value)

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-// Thrown if a program uses a part of the processor or of the chip that the model does not have.
+// Thrown if a program uses a feature of the processor or chip that is not modelled.
 class NotModelled : public std::runtime_error {
 public:
     explicit NotModelled(const std::string& what)
@@ -39,19 +39,21 @@ enum Exception : unsigned {
 
 class Exceptions {
 public:
-    static constexpr unsigned interrupts = 81; // of an STM32F2 (RM0033, table 61)
+    static constexpr unsigned interrupts = 81; // for an STM32F2 (RM0033, table 61)
+                                               // 61)
     static constexpr unsigned count = FirstInterrupt + interrupts;
     static constexpr uint8_t priorityBits = 0xF0; // four bits are there
     static constexpr int none = 256;              // priority of thread mode
 
     struct State {
         bool pending = false, active = false, enabled = false;
-        bool level = false; // state of the line: the interrupt pends again while it is high
+        bool level = false; // state of the line; while it is high the interrupt becomes pending
+                            // again
         uint8_t priority = 0;
     };
 
     void reset() { *this = Exceptions(), update(); }
-    // A line that is still high makes its interrupt pend again at once, unless it is active.
+    // A line that is still high makes its interrupt pending again at once, unless it is active.
     void pend(unsigned number, bool pending = true) {
         State& s = states_[number];
         s.pending = pending || (s.level && !s.active);
@@ -107,12 +109,11 @@ public:
 
     uint32_t basepri() const { return basepri_; }
 
-    // Returns the exception that must be entered now; 0: none.
+    // Returns the exception that must be entered now; 0 if there is none.
     unsigned deliverable() const { return bestPriority_ < runningPriority_ ? best_ : 0; }
-    // Returns the priority that the processor runs at, with masks; `none` in thread mode without
-    // them.
+    // Returns the current execution priority, including masks; `none` in thread mode without masks.
     int runningPriority() const { return runningPriority_; }
-    // Returns the pending one of the highest priority unless BASEPRI or FAULTMASK mask it; 0: none.
+    // Returns the pending exception to enter if BASEPRI and FAULTMASK do not mask it; else 0.
     unsigned firstPending() const { return bestPriority_ < maskPriority_ ? best_ : 0; }
     // WFI wakes by an exception that would preempt with PRIMASK 0 (B1.5.19).
     bool wakes() const { return bestPriority_ < sleepPriority_; }
@@ -174,7 +175,7 @@ public:
         : exceptions_(&exceptions), calibration_(calibration) {}
 
     void reset();
-    // 32-bit registers; 8 and 16 bits are cut out of them. Throw NotModelled.
+    // 32-bit registers; 8- and 16-bit accesses use part of one. Throw NotModelled.
     uint32_t read(uint32_t address, unsigned size);
     void write(uint32_t address, unsigned size, uint32_t value);
 
@@ -185,7 +186,7 @@ public:
             tick();
     }
     uint64_t cycles() const { return cycles_; }
-    // Cycles until SysTick pends, at least 1; a large number where it is off.
+    // Cycles until SysTick becomes pending, at least 1; a large number if SysTick is off.
     uint64_t untilTick() const { return tickDue_ > cycles_ ? tickDue_ - cycles_ : 1; }
 
     uint32_t vectorTable() const { return vtor_; }
@@ -252,7 +253,7 @@ private:
              bfar_ = 0;
     uint32_t demcr_ = 0, dwtControl_ = 0;
     uint64_t cycleCountFrom_ = 0;
-    uint32_t stoppedCount_ = 0; // of CYCCNT while it stands still
+    uint32_t stoppedCount_ = 0; // CYCCNT while it is stopped
     bool resetRequested_ = false;
     uint32_t mpuControl_ = 0, mpuRegion_ = 0;
     Region region_[regions];

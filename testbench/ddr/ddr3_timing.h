@@ -45,8 +45,8 @@ public:
         return b.open && b.row == row(address);
     }
 
-    // Places one burst, not before `at` and after all earlier ones. Returns the clock of its READ
-    // or WRITE command. Opens the row, closes another, and refreshes first as needed.
+    // Places one burst at `at` or later, after all earlier bursts. Returns the clock of its READ or
+    // WRITE command. Opens and closes rows and refreshes as needed.
     uint64_t access(uint64_t at, bool read, uint32_t address) {
         at = refresh(at);
         Bank& b = banks_[bank(address)];
@@ -71,13 +71,13 @@ public:
             std::max(b.mayPrecharge, read ? cas + part_.tRTP : cas + part_.cwl + 4 + part_.tWR);
         return cas;
     }
-    // The bank closes by itself after its last burst.
+    // Closes the bank after its last burst (auto-precharge).
     void autoPrecharge(uint32_t address) {
         Bank& b = banks_[bank(address)];
         b.open = false;
         b.mayActivate = std::max(b.mayActivate, precharge(b, 0) + part_.tRP);
     }
-    // Refreshes on demand, not before `at`. Returns the clock of its end.
+    // Refreshes on demand, at `at` or later. Returns the clock in which the refresh ends.
     uint64_t refreshNow(uint64_t at) {
         uint64_t start = at;
         for (Bank& b : banks_) { // precharge all

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// mcb_model: the user port's FIFOs and the commands' way through them.
+// mcb_model: the user port's FIFOs, and the path of commands through them.
 
 #include "mcb_model.h"
 #include <cstring>
@@ -50,7 +50,7 @@ void McbModel::takeCommand() {
     nextEvent_ = std::min(nextEvent_, now_ + timing_.commandWay);
 }
 
-// Does what is due: words move, commands begin. Then computes the next due time.
+// Does all work that is due: moves words, starts commands. Then computes the next due time.
 void McbModel::work() {
     pins.calibDone = now_ >= timing_.calibration;
     while (!releases_.empty() && releases_.front().at <= now_) {

@@ -11,12 +11,13 @@
 //   a word into the full write FIFO (ignored), out of the empty read FIFO (rd_error)
 //   a word that comes from the memory while the read FIFO is full (rd_overflow)
 //
-// Behind it, commands are carried out one after another, in bursts of 8 on a device of 16 bits at
-// DDR3-800 (ddr3_timing.h), four memory clocks to one of the design: 100 MHz. By Xilinx AR36413 a
-// write waits for the end of the data of the read before, and so does an activate; otherwise a row
-// is opened as soon as the burst before has its command. Addresses are ROW_BANK_COLUMN, MIG's
-// default. The way through the FIFOs, both clock crossings and the PHY is estimated by two
-// constants (Timing): UG388 gives the read latency as a range that depends on the configuration.
+// Behind the port, commands are carried out one after another, in bursts of 8 on a device of 16
+// bits at DDR3-800 (ddr3_timing.h), with four memory clocks per clock of the design: 100 MHz. By
+// Xilinx AR36413 a write waits for the end of the previous read's data, and so does an activate;
+// otherwise a row is opened as soon as the previous burst has its command. Addresses are
+// ROW_BANK_COLUMN, MIG's default. The path through the FIFOs, both clock crossings and the PHY is
+// estimated by two constants (Timing): UG388 gives the read latency as a range that depends on the
+// configuration.
 
 #pragma once
 
@@ -41,7 +42,10 @@ public:
     bool full() const { return size() == capacity; }
     T& front() { return items_[tail_ % capacity]; }
     const T& front() const { return items_[tail_ % capacity]; }
-    void push(const T& item) { items_[head_++ % capacity] = item; } // the user knows there is room
+    void push(const T& item) {
+        items_[head_++ % capacity] = item;
+    } // the caller has checked that
+      // there is room
     void pop() { ++tail_; }
 
 private:
@@ -52,7 +56,7 @@ private:
 class McbModel {
 public:
     static constexpr unsigned commandDepth = 4, dataDepth = 64;
-    static constexpr unsigned memoryClocks = 4; // of the memory to one of the design
+    static constexpr unsigned memoryClocks = 4; // memory clocks per clock of the design
     // JESD79-3, 3.3.1: 200 us in reset and 500 us until CKE; calibration: an estimate, 300 us.
     static constexpr unsigned startClocks = 100'000;
 
@@ -74,7 +78,7 @@ public:
     struct Timing {
         unsigned calibration = 64; // shortened: a real start takes startClocks
         unsigned commandWay = 6;   // from cmd_en to the memory's command
-        unsigned dataWay = 5;      // from the memory's last word of a burst to rd_empty
+        unsigned dataWay = 5;      // from the last word of a burst to rd_empty
     };
 
     explicit McbModel(size_t bytes = size_t(128) << 20) : McbModel(bytes, Timing()) {}
@@ -90,8 +94,8 @@ public:
             work();
     }
 
-    // Clocks to the next event, minus 1; and a skip of such clocks, in which the design does
-    // nothing.
+    // Clocks to the next event, minus 1; and a function that skips clocks in which the design is
+    // idle.
     uint64_t untilEvent() const {
         return hung_ ? ~0ull : nextEvent_ > now_ + 1 ? nextEvent_ - now_ - 1 : 0;
     }
@@ -104,8 +108,8 @@ public:
         nextEvent_ = 0;
     }
 
-    // Injects a fault: no command begins and no word moves until it is over; waiting ones are
-    // carried out then.
+    // Injects a fault: until it ends, no command begins and no word moves; waiting ones are carried
+    // out after it.
     void hang(bool on) { hung_ = on; }
 
     // Back door, for pictures and checks.
@@ -146,17 +150,18 @@ private:
     Ddr3Timing device_;
     bool hung_ = false;
     uint64_t now_ = 0, nextEvent_ = 0;
-    // AR36413: memory clocks added to a refresh; from the end of a read's data to a write.
+    // AR36413: memory clocks added to a refresh; memory clocks from the end of read data to a
+    // write.
     static constexpr unsigned refreshLater = 2, readToWrite = 3;
-    uint64_t readEnd_ = 0; // memory clock in which the data of the last read ends
+    uint64_t readEnd_ = 0; // memory clock in which the last read's data ends
     bool lastWasRead_ = false;
-    uint64_t free_ = 0;       // memory clock from which the next command may begin
-    unsigned promised_ = 0;   // words of the write FIFO that commands have claimed
-    unsigned writeCount_ = 0; // words in the write FIFO, as its user sees it
+    uint64_t free_ = 0;       // earliest memory clock of the next command
+    unsigned promised_ = 0;   // words of the write FIFO claimed by commands
+    unsigned writeCount_ = 0; // words in the write FIFO, as the user port reports them
     Ring<Command, commandDepth> commands_;
-    Ring<Write, dataDepth> write_; // not yet carried out
-    Ring<Release, 256> releases_;  // when words leave the write FIFO
-    Ring<Word, 1024> coming_;      // on their way from the memory
+    Ring<Write, dataDepth> write_; // writes not yet carried out
+    Ring<Release, 256> releases_;  // times at which words leave the write FIFO
+    Ring<Word, 1024> coming_;      // words on their way from the memory
     Ring<uint64_t, dataDepth> read_;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// memory_bench: a memory controller with PORTS requesters in front and the MCB's model behind.
+// memory_bench: a memory controller, PORTS requesters in front of it and the MCB model behind it.
 
 #pragma once
 
@@ -30,7 +30,7 @@ public:
         for (uint64_t i = 0; i < cycles; ++i)
             bench.tick();
     }
-    // Lets pending requests end; the memory must then equal the reference.
+    // Waits until pending requests end; the memory must then equal the reference.
     void drain() {
         requesters.stop();
         bench.waitFor([this] { return requesters.idle(); }, "the requesters' end", 20000);

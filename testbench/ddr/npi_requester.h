@@ -47,14 +47,15 @@ template <class Port> void setBits(Port& port, unsigned lsb, unsigned width, uin
 
 // The traffic that a requester makes.
 struct NpiTraffic {
-    double ask = 1.0;    // chance, each cycle, of beginning a request when none is waiting
-    double push = 1.0;   // ... that the next word of a write is pushed
-    double pop = 1.0;    // ... that a word that has come is taken
+    double ask = 1.0;    // probability, per cycle, of starting a request when none is waiting
+    double push = 1.0;   // ... of pushing the next word of a write
+    double pop = 1.0;    // ... of taking a word that has arrived
     double writes = 0.5; // share of writes
     unsigned minSize = 0, maxSize = 5;
-    unsigned outstanding = 32; // words asked for and not yet taken; more only with pop = 1 (rule 3)
+    unsigned outstanding = 32; // words requested and not yet taken; may be exceeded only with pop =
+                               // 1 (rule 3)
     bool byteEnables = true;   // random; else all bytes
-    bool anyLineWord = true;   // reads of cache lines begin at any word
+    bool anyLineWord = true;   // reads of cache lines start at a random word
     bool sequential = false;   // address after address, else anywhere
     uint32_t base = 0, bytes = 1 << 16; // its part of the memory
     uint32_t above = 0;                 // ignored address bits beyond the memory: random
@@ -76,7 +77,7 @@ public:
     NpiTraffic& traffic(unsigned port) { return ports_[port].traffic; }
     const Counters& counters(unsigned port) const { return ports_[port].counters; }
     std::vector<uint8_t>& reference() { return reference_; }
-    void stop() { stopped_ = true; } // no new requests; pending ones end
+    void stop() { stopped_ = true; } // starts no new requests; pending ones end
     void go() { stopped_ = false; }
     bool idle() const {
         for (const Port& port : ports_)
@@ -151,14 +152,14 @@ private:
         bool valid = false, read = false, rmw = false;
         uint32_t address = 0, above = 0;
         unsigned size = 0, words = 0, pushed = 0;
-        std::vector<std::pair<uint64_t, uint8_t>> data; // of a write
+        std::vector<std::pair<uint64_t, uint8_t>> data; // words of a write, with byte enables
         bool ready() const { return valid && (read || pushed == words); }
     };
     struct Port {
         unsigned number = 0;
         NpiTraffic traffic;
         Counters counters;
-        Request now, ahead; // the words of a write may be pushed before its turn comes
+        Request now, ahead; // `ahead`: next request, whose write words may be pushed early
         bool raised = false, willing = false, popping = false;
         uint32_t next = 0; // address of a sequential stream
         uint64_t since = 0;
@@ -242,7 +243,7 @@ private:
         if (!port.popping)
             return;
         if (port.expected.empty())
-            throw std::runtime_error(where(port) + "a word that nobody asked for");
+            throw std::runtime_error(where(port) + "a word arrived that was not requested");
         Expected e = port.expected.front();
         port.expected.pop_front();
         uint64_t data = getBits(top_.npi_rd_data_o, 64 * port.number, 64);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// checkpoints: frozen copies of this process (fork), to which a debugger goes back.
+// checkpoints: frozen copies of this process (fork), used by a debugger to step backwards.
 //
 // A copy has everything: processor, chip, radio, air. To go back, a process wakes the last copy
 // before that place, with an order, and ends. The woken process is a copy of the frozen one, which
@@ -26,8 +26,8 @@ public:
     // The task of a woken copy. Places are counts of instructions.
     struct Order {
         enum Goal {
-            Stop,          // run to `place`, and stop there
-            LastStop,      // find the last place before `place` where the processor can stop
+            Stop,          // run to `place` and stop there
+            LastStop,      // find the last place before `place` at which the processor can stop
             LastBreakpoint // find the last breakpoint before `place`
         } goal;
         uint64_t place;
@@ -41,7 +41,7 @@ public:
             throw std::system_error(errno, std::generic_category(), "checkpoints");
         shared_->first = shared_->active = getpid();
     }
-    // A woken process leaves the others to the first one, which waits for its status.
+    // A woken process leaves the other processes to the first one, which waits for its status.
     ~Checkpoints() {
         if (getpid() != shared_->first)
             return;
@@ -51,8 +51,8 @@ public:
     Checkpoints(const Checkpoints&) = delete;
     Checkpoints& operator=(const Checkpoints&) = delete;
 
-    // Leaves a frozen copy behind, unless there is one at or behind this place, or there are too
-    // many. Returns an order in a woken process, none where the run continues.
+    // Forks a frozen copy, unless one exists at or after this place or there are too many. Returns
+    // an order in a woken process, nothing if the run continues.
     std::optional<Order> freeze(uint64_t place) {
         Shared& s = *shared_;
         if (s.count == mostCopies || (s.count && s.copies[s.count - 1].place >= place))
@@ -82,16 +82,16 @@ public:
         kill(s.copies[last].process, SIGUSR1);
         if (getpid() == s.first)
             waitForTheEnd();
-        while (hasCopies_) // they would end with it
+        while (hasCopies_) // the copies would end with this process
             pause();
         _exit(0);
     }
-    // Ends the copies behind this place: the run from here on will differ.
+    // Ends the copies after this place: the run will differ from here.
     void forgetBehind(uint64_t place) {
         for (Shared& s = *shared_; s.count && s.copies[s.count - 1].place > place; --s.count)
             kill(s.copies[s.count - 1].process, SIGKILL);
     }
-    // True if there is no copy to go back to.
+    // True if no earlier copy exists.
     bool isFirst(uint64_t place) const {
         return shared_->count == 0 || place <= shared_->copies[0].place;
     }
@@ -119,19 +119,18 @@ private:
         struct Copy {
             uint64_t place;
             pid_t process;
-        } copies[mostCopies]; // in order of their places
+        } copies[mostCopies]; // ordered by place
         unsigned count;
         Order::Goal goal;
         uint64_t place;
         unsigned breakpointCount;
         uint32_t breakpoints[mostBreakpoints];
-        pid_t first, active; // active 0: it is being woken
+        pid_t first, active; // process ids; active is 0 while it is being woken
         bool over;           // the active process has ended normally
         int status;
     };
 
-    // Holds a frozen copy, which forks each time that it is woken. Returns in the forked process
-    // only.
+    // Holds a frozen copy, which forks each time it is woken. Returns only in the forked process.
     std::optional<Order> sleep() {
         sigset_t all, wakes, before;
         sigfillset(&all);
@@ -172,6 +171,6 @@ private:
         }
     }
 
-    Shared* shared_; // by all these processes
+    Shared* shared_; // memory shared by all these processes
     bool hasCopies_ = false;
 };

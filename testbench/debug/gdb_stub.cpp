@@ -16,7 +16,8 @@
 
 namespace {
 
-constexpr int xpsrNumber = 25, firstSystemNumber = 26; // as in the description below
+constexpr int xpsrNumber = 25, firstSystemNumber = 26; // register numbers, as in the description
+                                                       // below
 constexpr int systemRegisters[] = {CortexM3::Msp,     CortexM3::Psp,       CortexM3::Primask,
                                    CortexM3::Basepri, CortexM3::Faultmask, CortexM3::Control};
 
@@ -63,7 +64,7 @@ uint32_t wordOf(const std::string& hex) {
     return value;
 }
 
-// GDB's number of a register to CortexM3's; -1: there is none.
+// Converts GDB's number of a register to CortexM3's; -1 if it does not exist.
 int registerOf(unsigned long number) {
     if (number <= 15)
         return static_cast<int>(number);
@@ -75,7 +76,7 @@ int registerOf(unsigned long number) {
 
 const std::string error = "E01";
 constexpr int interrupt = 3;             // Ctrl-C
-constexpr size_t longestPacket = 0x4000; // bytes, as qSupported's answer says
+constexpr size_t longestPacket = 0x4000; // bytes, as reported in qSupported
 
 } // namespace
 
@@ -164,7 +165,7 @@ bool GdbStub::wantsStop() {
         pollfd waiting{listener_, POLLIN, 0};
         return poll(&waiting, 1, 0) > 0;
     }
-    char bytes[4096]; // other bytes must not hide a Ctrl-C or the end
+    char bytes[4096]; // other bytes must not hide a Ctrl-C or the end of the connection
     const ssize_t n = recv(connection_, bytes, sizeof bytes, MSG_DONTWAIT);
     return n > 0 ? std::memchr(bytes, interrupt, static_cast<size_t>(n)) != nullptr
                  : n == 0 || (errno != EAGAIN && errno != EINTR);
@@ -185,13 +186,13 @@ bool GdbStub::serve(const Target& target, const std::function<bool()>& mayWait) 
     return served_ && !over_;
 }
 
-// A debugger may be silent for hours, but it speaks first.
+// A debugger may be silent for hours, but it sends the first packet.
 void GdbStub::patient(bool on) {
     timeval limit{on ? 0 : 2, 0};
     setsockopt(connection_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
 }
 
-// False: the peer was no debugger.
+// Returns false if the peer does not use GDB's protocol.
 bool GdbStub::talks(const Target& target) {
     std::string packet;
     bool talked = false;
@@ -200,7 +201,7 @@ bool GdbStub::talks(const Target& target) {
         if (receive(packet))
             send(answer(target, packet));
         else if (talked)
-            detached_ = true; // the debugger has gone: the program goes on
+            detached_ = true; // the debugger has disconnected: the program continues
         else
             return false;
         talked = true;

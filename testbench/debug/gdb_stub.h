@@ -21,23 +21,24 @@ public:
         std::function<void()> reset;
         std::function<bool()> isOver;
         std::function<std::string()> describe;
-        // Goes back, where that is possible: one stop, or to the last breakpoint. Returns where
-        // there is nothing before; else the continuing process returns from `run`.
+        // Goes back one stop, or to the last breakpoint, if supported. Returns if there is nothing
+        // before; otherwise the continuing process returns from `run`.
         std::function<void(bool singleStep)> back = nullptr;
-        // Tells where a reversible run has ended: at its "begin" or "end", or "".
+        // Returns where a reversible run has ended: at its "begin" or "end", or "".
         std::function<std::string()> edge = [] { return ""; };
         std::function<void()> changed = [] {}; // the debugger has written registers or memory
     };
-    // Listens on 127.0.0.1; port 0 is any free one. Throws std::system_error where it is taken.
+    // Listens on 127.0.0.1; port 0 selects a free one. Throws std::system_error if the port is
+    // taken.
     explicit GdbStub(uint16_t port);
     ~GdbStub();
     GdbStub(const GdbStub&) = delete;
     GdbStub& operator=(const GdbStub&) = delete;
     uint16_t port() const { return port_; }
 
-    // Waits for a debugger, as long as `mayWait`, and obeys it; a peer that does not begin with the
-    // protocol is sent away. True: the program must go on; false: the debugger has killed it, the
-    // simulation is over, or no debugger has come.
+    // Waits for a debugger while `mayWait` returns true, and obeys it; a peer that does not start
+    // with the protocol is disconnected. Returns true if the program must continue; false if the
+    // debugger has killed it, the simulation is over, or no debugger has connected.
     bool serve(const Target& target, const std::function<bool()>& mayWait);
     // True while the processor runs and must stop: the debugger has sent Ctrl-C, or has gone, or
     // another one waits.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// program_trace: the Cortex-M3 program's task, interrupt and function over time.
+// program_trace: records which task, interrupt and function the Cortex-M3 runs over time.
 //
 // They are three rows of text in WAVE.program.vcd where the environment asks for a waveform
 // (wave_window.h), in the same unit of time as the RTL's: half a clock. join_waves.sh puts the two
 // together. Functions are written from WAVE_FROM to WAVE_TO, tasks and interrupts a tenth of a
-// second before, too.
+// second earlier.
 
 #pragma once
 
@@ -17,7 +17,7 @@
 
 class ProgramTrace {
 public:
-    // Listens to `cpu`, which runs the program `image`, for good. `clocks` returns the fabric's
+    // Listens permanently to `cpu`, which runs the program `image`. `clocks` returns the fabric
     // clocks that have passed.
     ProgramTrace(CortexM3& cpu, const ElfImage& image, std::function<uint64_t()> clocks)
         : cpu_(cpu), image_(image), clocks_(std::move(clocks)),
@@ -45,13 +45,14 @@ public:
     ProgramTrace(const ProgramTrace&) = delete;
     ProgramTrace& operator=(const ProgramTrace&) = delete;
 
-    // Called when another task goes on; a task's name is that of its function.
+    // Called at a task switch; the name of a task is the name of its function.
     std::function<void(const std::string& name)> onTask;
 
 private:
-    static constexpr unsigned pendSv = 14;                 // in which each kernel switches tasks
+    static constexpr unsigned pendSv = 14;                 // exception in which each kernel
+                                                           // switches tasks
     static constexpr uint64_t tenthOfASecond = 10'000'000; // clocks
-    // An exception comes within these clocks: the tick is 100,000.
+    // longest time to the next exception, clocks; the kernel's tick is 100,000
     static constexpr uint64_t soon = 200'000;
 
     // Returns the address of the pointer to the running task, uC/OS-II's or our kernel's; 0: the
@@ -106,10 +107,11 @@ private:
     std::function<uint64_t()> clocks_;
     const WaveWindow window_;
     std::ofstream file_;
-    uint32_t taskAddress_;                  // of the pointer to the running task; 0: no kernel
-    std::map<uint32_t, std::string> tasks_; // by that pointer
+    uint32_t taskAddress_;                  // address of the pointer to the running task; 0: no
+                                            // kernel
+    std::map<uint32_t, std::string> tasks_; // name by value of that pointer
     std::string task_, interrupt_ = "-";
-    std::map<std::string, std::string> written_; // by row
+    std::map<std::string, std::string> written_; // last text by row
     uint64_t time_ = ~0ull;
     bool isNear_ = false; // the window has begun, or begins soon
 };

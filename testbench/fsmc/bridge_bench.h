@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// bridge_bench: the FSMC bridge alone between the processor's pins, a bus slave, which has the
-// system slot's ID, and a memory.
+// bridge_bench: the FSMC bridge alone, between the processor's pins, a bus slave with the system
+// slot's ID, and a memory.
 
 #pragma once
 
@@ -27,7 +27,7 @@ public:
     }
 
     std::array<uint32_t, 1024> words{};
-    unsigned firstError = 1024; // words from here on answer with error
+    unsigned firstError = 1024; // words from this one on report an error
     bool hung = false;          // never answers
     unsigned clearWord = 1024;  // writing 1 clears there
 
@@ -62,7 +62,7 @@ private:
         // Valid only with ready high; else noise.
         top_.bus_rdata_i = random_.next();
         top_.bus_error_i = random_.chance(0.5);
-        answer(); // comes in the first half of a clock, as a decoder's
+        answer(); // the answer is combinational, as a decoder's
     }
 
 public:
@@ -100,16 +100,16 @@ public:
 
     Bench<Bridge> bench;
     Bridge& top = bench.top();
-    FsmcPins pins;         // at the processor
-    FsmcPins* far = &pins; // at the design: other ones, if there are delays
+    FsmcPins pins;         // pins at the processor
+    FsmcPins* far = &pins; // pins at the design; separate ones if there are delays
     NpiMemory<Bridge> memory;
     BusSlave<Bridge> slave;
     FsmcMaster master;
     unsigned errors = 0, errorAddr = 0;
     bool errorWrite = false;
-    std::function<void()> onTick; // for observers
+    std::function<void()> onTick; // called each clock, for observers
 
-    // Sets the FSMC up by its driver: with the driver's own timing, or both banks alike.
+    // Configures the FSMC with its driver: with the driver's timing, or with both banks alike.
     FSMC_Status init() { return FSMC_init(&driverPort, &master); }
     FSMC_Status init(const FSMC_Bank& bank) {
         const FSMC_Bank banks[2] = {bank, bank};
@@ -133,7 +133,7 @@ public:
         if (onTick)
             onTick();
     }
-    // Gives pins delays from now on.
+    // Adds delays to the pins.
     void delay(const FsmcCorner& corner, uint64_t seed, bool looksTwice) {
         delayed_ = pins;
         far = &delayed_;

@@ -32,7 +32,7 @@ void FsmcMaster::delay(const FsmcCorner& corner, FsmcPins& far, uint64_t seed, b
 
 void FsmcMaster::show() {
     if (delays_)
-        return delays_->show(); // for a few ns both sides may drive the bus
+        return delays_->show(); // for a few ns both sides may drive the data bus
     design_.settle();
     if (pins_.dDriven && pins_.dOut)
         throw FsmcError("data bus driven by both sides");
@@ -129,7 +129,7 @@ void FsmcMaster::turnaround(const Access& access) {
     lastBusturn_ = access.timing.busturn;
 }
 
-// The bank looks at NWAIT, and it is active.
+// True if the bank uses NWAIT and NWAIT is active.
 bool FsmcMaster::isWaiting(const Access& access) const {
     return (access.bank->bcr & bcrAsyncWait) &&
            pins_.nwaitN == bool(access.bank->bcr & bcrWaitHigh);
@@ -167,14 +167,14 @@ void FsmcMaster::addressPhase(const Access& access, uint16_t value, uint8_t lane
     }
     strobe = false;
     show();
-    // The pins' delays leave no time for a NWAIT that does not follow the strobe.
+    // The pins' delays leave no time for NWAIT that does not follow the strobe.
     if (free && isWaiting(access) && !delays_)
         throw FsmcError(access.name + ": NWAIT went active after the strobe");
 }
 
-// Plays the data phase up to two HCLK cycles before its end, or less. NWAIT is looked at four HCLK
-// before the end, and ends the phase four HCLK after it has gone high. Returns the remaining HCLK
-// cycles.
+// Advances the data phase by at most the given time, to two HCLK cycles before its end. NWAIT is
+// sampled four HCLK before the end; the phase ends four HCLK after NWAIT is released. Returns the
+// remaining HCLK cycles.
 unsigned FsmcMaster::waitPhase(const Access& access) {
     if (!(access.bank->bcr & bcrAsyncWait)) {
         unsigned left = access.timing.datast < 2 ? access.timing.datast : 2;
@@ -216,7 +216,7 @@ uint16_t FsmcMaster::readPins(uint32_t address) {
     passHclk(left);
     if (ours != pins_.dDriven)
         throw FsmcError(access.name +
-                        (ours ? ": nobody drives the data bus" : ": the FPGA drives the data bus"));
+                        (ours ? ": the data bus floats" : ": the FPGA drives the data bus"));
     if (delays_)
         value = pins_.dFromDesign;
     if (ours && (delays_ ? !delays_->dataIsSetUp() : pins_.dFromDesign != value)) {
@@ -258,8 +258,8 @@ void FsmcMaster::abort(const Access& access, unsigned hclk) {
     pins_.dOut = false;
     show();
     if (pins_.dDriven && !delays_)
-        throw FsmcError(access.name + ": given up, and the data bus is still driven");
-    passHclk(8); // the reset of a processor takes far longer
+        throw FsmcError(access.name + ": the access was aborted, and the data bus is still driven");
+    passHclk(8); // a processor's reset takes far longer
 }
 
 void FsmcMaster::abortRead(uint32_t address, unsigned hclk) {

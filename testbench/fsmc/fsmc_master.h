@@ -7,7 +7,7 @@
 // that clock stand in a fixed ratio (120 MHz to 100 MHz by default), kept exactly; pins change on
 // HCLK edges, between clock edges.
 //
-// It throws FsmcError where a real system would fail: both sides driving the data bus, nobody
+// It throws FsmcError where a real system would fail: both sides driving the data bus, no side
 // driving it in a read, read data that moves within its set-up time, NWAIT too late to be seen or
 // low for ever, reserved values in registers, a bank that is not enabled.
 
@@ -23,7 +23,7 @@
 namespace fsmc {
 
 constexpr uint32_t registersAt = 0xA0000000, windowsAt = 0x60000000, windowBytes = 0x04000000;
-constexpr unsigned waitLimit = 20000; // HCLK cycles of NWAIT before the model gives up
+constexpr unsigned waitLimit = 20000; // HCLK cycles of NWAIT before the model reports an error
 
 // BCR
 constexpr uint32_t bcrEnable = 1u << 0, bcrMuxed = 1u << 1, bcrTypePsram = 1u << 2,
@@ -49,14 +49,14 @@ public:
     FsmcMaster(FsmcPins& pins, Design design, unsigned hclkPerUnit = 6, unsigned clkPerUnit = 5);
     ~FsmcMaster();
 
-    // Gives pins delays from now on (pin_delays.h): `far` are the pins at the design, `pins` stay
+    // Adds delays to the pins (pin_delays.h): `far` are the pins at the design, `pins` stay
     // the processor's. `looksTwice` chooses between two readings of RM0033's rule about NWAIT: it
     // is looked at once, four HCLK before the end of the data phase, or again after it.
     void delay(const FsmcCorner& corner, FsmcPins& far, uint64_t seed, bool looksTwice);
 
-    // Whether BUSTURN also applies between two writes to a bank. RM0033 promises that it does not.
-    // On an STM32F407 it does between the halves of a word (community.st.com, thread 309858), from
-    // BWTR where that is in use.
+    // Whether BUSTURN also applies between two writes to a bank. RM0033 states that it does not. On
+    // an STM32F407 it applies between the two halves of a word, with the value of BWTR if that is
+    // in use (community.st.com, thread 309858).
     void pauseWrites(bool pauses) { pausesWrites_ = pauses; }
 
     // Loads and stores of the processor. A 32-bit one to a window is two accesses, low half first.
@@ -70,7 +70,7 @@ public:
     // Called after each 32-bit access to a window, for observers.
     std::function<void(uint32_t address, uint32_t value, bool isWrite)> onWord;
 
-    // Begin an access that the processor gives up (its reset): NE and strobe rise together, NE
+    // Begin an access that a reset of the processor aborts: NE and strobe rise together, NE
     // first, after these HCLK cycles of the data phase, whatever NWAIT is. Asynchronous modes.
     void abortRead(uint32_t address, unsigned hclk);
     void abortWrite(uint32_t address, uint16_t value, unsigned hclk);
@@ -97,7 +97,7 @@ private:
         bool write, muxed;
         char mode; // '1' 'A' '2' 'B' 'C' 'D'
         Timing timing;
-        std::string name; // for messages
+        std::string name; // used in messages
     };
 
     Access decode(uint32_t address, bool write);

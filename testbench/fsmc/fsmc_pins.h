@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_pins: the pins between the FSMC and the design, and what clocks the design.
+// fsmc_pins: the pins between the FSMC and the design, and the functions that clock the design.
 
 #pragma once
 
@@ -15,15 +15,15 @@ struct FsmcPins {
     bool dOut = false;
     uint8_t neN = 0xF, nblN = 3; // NE1 in bit 0 .. NE4 in bit 3
     bool noeN = true, nweN = true, nadvN = true;
-    // from the design
+    // driven by the design
     uint16_t dFromDesign = 0;
     bool dDriven = false, nwaitN = true;
 };
 
-// The port to the design: `tick` clocks it once with the present pins, `settle` shows
-// it changed pins between two clock edges. Both update the design's side. `passQuiet` passes up
-// to the given clocks and ns in which nothing of the design moves, and returns the number of
-// clocks; a design without it is never quiet.
+// Port to the design: `tick` clocks it once with the current pins; `settle` shows it pins that
+// changed between two clock edges. Both update the pins that the design drives. `passQuiet` skips
+// at most the given clocks and ns while the design is idle, and returns the number of clocks
+// skipped; a design without this function is never idle.
 struct FsmcDesign {
     std::function<void()> tick, settle;
     std::function<uint64_t(uint64_t clocks, uint64_t ns)> passQuiet = nullptr;

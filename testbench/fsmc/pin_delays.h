@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// pin_delays: the wires between the FSMC and the design: each change of each pin has its own delay,
-// and a flip-flop whose data moves in its set-up or hold time throws.
+// pin_delays: the wires between the FSMC and the design: each change of each pin has a separate
+// delay, and a flip-flop throws if its data moves in its set-up or hold time.
 
 #pragma once
 
@@ -25,11 +25,12 @@ struct PinDelay {
 struct FsmcCorner {
     const char* name;
     PinDelay address, data, lanes, select, strobe; // processor
-    PinDelay board;                                // each way
+    PinDelay board;                                // delay of the board's tracks, each way
     PinDelay padIn, clockIn;                       // clockIn: NWE, NADV, as clocks
     PinDelay padOut;                               // LUTs and pad
-    int setup, hold;                               // of the design's capture by NWE
-    int readSetup = 4000;                          // of the FSMC, before HCLK's length
+    int setup, hold;                               // set-up and hold time of the design's capture
+                                                   // by NWE
+    int readSetup = 4000;                          // read set-up time of the FSMC, without one HCLK
 };
 
 // The tables of the two data sheets (STM32F2, "FSMC characteristics"; Spartan-6, DS162, IOB and
@@ -74,7 +75,7 @@ inline FsmcCorner cornerOf(unsigned index, unsigned hclk = 100) {
 
 class PinDelays {
 public:
-    // `near` are the processor's pins, `far` the design's; clocks' lengths in ps.
+    // `near`: the processor's pins; `far`: the design's pins; clock periods in ps.
     PinDelays(FsmcPins& near, FsmcPins& far, FsmcDesign design, const FsmcCorner& corner,
               uint64_t seed, int hclk, int clk)
         : near_(near), far_(far), design_(std::move(design)), corner_(corner), random_(seed),
@@ -82,7 +83,7 @@ public:
         nextEdge_ = 1 + static_cast<int64_t>(random_() % static_cast<uint64_t>(clk)); // any phase
     }
 
-    // Sends on changes at the processor's pins.
+    // Passes on changes of the processor's pins.
     void show() {
         uint64_t levels = driven(near_);
         for (unsigned pin = 0; pin <= drives; ++pin)
@@ -124,7 +125,7 @@ public:
         }
         now_ = end;
     }
-    // True if the data at the processor's pins has been stable for its set-up time.
+    // True if the data at the processor's pins has been stable for the set-up time.
     bool dataIsSetUp() const { return now_ - dataMoved_ >= corner_.readSetup + hclk_; }
 
 private:
@@ -176,7 +177,7 @@ private:
         design_.settle();
         settled();
     }
-    // Sends on changes at the design's pins.
+    // Passes on changes of the design's pins.
     void settled() {
         uint32_t out = far_.dFromDesign | uint32_t(far_.dDriven) << drivenOut |
                        uint32_t(far_.nwaitN) << nwaitOut;

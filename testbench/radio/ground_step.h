@@ -66,7 +66,7 @@ public:
     }
     // Returns when the program wakes up, in simulated ns.
     uint64_t nextEvent() const { return load(status_.keeper) ? load(status_.untilNs) : never; }
-    uint64_t waitedNs() const { return waitedNs_; } // of the wall clock
+    uint64_t waitedNs() const { return waitedNs_; } // wall-clock time
 
 private:
     static constexpr unsigned turnsAtOnce = 50, napUs = 50, turnsBetweenQuestions = 200;
@@ -75,7 +75,7 @@ private:
         return __atomic_load_n(&field, __ATOMIC_ACQUIRE);
     }
     static pid_t processOf(uint64_t keeper) { return static_cast<pid_t>(keeper & 0xFFFFFFFFu); }
-    // True if a debugger or SIGSTOP holds the process: "PID (NAME) T ..." in its stat.
+    // True if a debugger or SIGSTOP has stopped the process: "PID (NAME) T ..." in its stat.
     static bool isHeld(pid_t process) {
         std::ifstream file("/proc/" + std::to_string(process) + "/stat");
         std::string text;
@@ -83,7 +83,7 @@ private:
         const size_t name = text.rfind(") ");
         return name != std::string::npos && (text[name + 2] == 'T' || text[name + 2] == 't');
     }
-    // When a byte is counted its reader may have left, and another one begun.
+    // When a byte is counted, its reader may have left and another one may have begun.
     void given(uint64_t keeper, size_t bytes) {
         uint64_t is = load(status_.toGround);
         while (is - simCount(is) == simSession(keeper) &&

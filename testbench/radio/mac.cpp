@@ -93,7 +93,7 @@ void Mac::failed(uint64_t now, uint64_t ready, Fate fate) {
 
 void Mac::ended(uint64_t now, const RfPacket& arrived, RfOutcome outcome, bool isAnswered) {
     const bool isLost = outcome == RfOutcome::Lost || outcome == RfOutcome::Nobody;
-    const bool isDrawnLost = drawn_ == RfOutcome::Lost; // stands for tries that all failed
+    const bool isDrawnLost = drawn_ == RfOutcome::Lost; // represents tries that all failed
     if (packet_.acknowledged && !isAnswered && !isDrawnLost && (triesLeft_ || roundsLeft_)) {
         if (!isLost)
             drawn_ = RfOutcome::Delivered; // its repetition is not damaged as well

@@ -15,7 +15,7 @@ public:
     // The modem that the MAC belongs to.
     class Modem : public RfReceiver {
     public:
-        // Returns the end of the modem's work on packets, during which it sends none.
+        // Returns when the modem's work on packets ends; until then it sends none.
         virtual uint64_t busyUntil() const = 0;
         // The packet in flight has ended.
         virtual void transmitted(uint64_t now, Fate fate) = 0;
@@ -50,8 +50,8 @@ private:
     State state_ = State::Idle;
     RfPacket packet_;
     RfOutcome drawn_ = RfOutcome::Delivered; // the weather's decision on this packet
-    // Tries of this round, rounds of RR, and copies of a broadcast that are left.
+    // Remaining tries of this round, rounds of RR, and copies of a broadcast.
     unsigned triesLeft_ = 0, roundsLeft_ = 0, copiesLeft_ = 0;
-    unsigned busySenses_ = 0; // of this try
+    unsigned busySenses_ = 0; // busy carrier senses in this try
     Fate fate_ = Fate::Sent;
 };

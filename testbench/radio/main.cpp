@@ -52,7 +52,7 @@ void setParameter(std::map<std::string, uint32_t>& set, const std::string& text)
     char* end = nullptr;
     unsigned long value = std::strtoul(digits.c_str(), &end, 16);
     if (parameter == xbeeParameters().end())
-        throw CLI::ValidationError("'" + text + "'", "there is no parameter " + letters);
+        throw CLI::ValidationError("'" + text + "'", "unknown parameter " + letters);
     if (digits.empty() || *end)
         throw CLI::ValidationError("'" + text + "'", "give it as in MY=1A2B, in hex");
     if (value < parameter->second.lowest || value > parameter->second.highest)
@@ -103,8 +103,8 @@ void report(const RfChannel& air) {
 }
 
 void say(uint64_t now, const RfPacket& packet, RfChannel::Outcome outcome) {
-    static const char* const outcomes[] = {"delivered",    "lost",    "corrupted",
-                                           "nobody there", "no room", "channel not clear"};
+    static const char* const outcomes[] = {"delivered",   "lost",    "corrupted",
+                                           "no receiver", "no room", "channel not clear"};
     fmt::print("{:9.3f} s  {:04X} -> {:04X}  {:3} bytes  {}\n", static_cast<double>(now) / 1e9,
                packet.from, packet.to, packet.bytes.size(), outcomes[static_cast<int>(outcome)]);
 }
@@ -153,7 +153,8 @@ void describe(CLI::App& app, Options& o) {
     chance("--ack-loss", o.weather.ackLoss, "Loss of an acknowledgement: duplicates");
     chance("--interference", o.weather.interference,
            "Share of each 20 ms in which others are heard");
-    app.add_option("--distance", o.weather.distance, "Metres in free space, with fading; 0: none")
+    app.add_option("--distance", o.weather.distance,
+                   "Distance in free space, with fading, m; 0: no path loss")
         ->check(CLI::Range(0.0, 1e5));
     app.add_option("--trace", o.trace, "CSV of loss, RSSI and delay, in place of these")
         ->check(CLI::ExistingFile);

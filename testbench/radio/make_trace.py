@@ -3,14 +3,14 @@
 """make_trace: prints a trace: out to 300 m at 10 m/s, most of a minute there, and back.
 
 It is made up, not recorded: free space and Rayleigh fading of the four tries of a packet, as in
-rf_channel.h, and bursts as frequent as "bursts, long" (docs/simulation.md), drawn anew each
+rf_channel.h, and bursts as frequent as "bursts, long" (docs/simulation.md), drawn again each
 second."""
 import math
 import random
 import sys
 
 SENSITIVITY, FIRST_METRE = -92, 40  # dBm, dB
-# Chances that a burst begins and ends in a second, of about ten packets; its share of lost ones
+# Probabilities per second (about ten packets) that a burst begins and ends; packets lost in it
 BEGIN, END, INSIDE = 0.01 * 10, 0.08 * 10, 0.9
 
 

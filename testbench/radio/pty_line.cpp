@@ -4,7 +4,7 @@
 
 #include "serial_line.h"
 #include <algorithm>
-#include <asm/termbits.h> // struct termios2, TCGETS2: the true speed, custom ones included
+#include <asm/termbits.h> // struct termios2, TCGETS2: the actual speed, including custom ones
 #include <cerrno>
 #include <cmath>
 #include <cstdlib>
@@ -17,8 +17,9 @@
 namespace {
 
 constexpr uint64_t pollNs = 500'000;        // interval between looks at the pty
-constexpr uint64_t countedPollNs = 100'000; // the same, where no byte is late
-constexpr int patience = 20'000;            // looks at a pty whose bytes the kernel has yet to move
+constexpr uint64_t countedPollNs = 100'000; // the same, if no byte is late
+constexpr int patience = 20'000;            // polls of a pty before its bytes, which the kernel has
+                                            // yet to move, are considered read
 
 void makeRaw(int fd) {
     termios2 settings{};
@@ -60,7 +61,8 @@ bool PtyLine::speedFits() const {
     return std::fabs(settings.c_ospeed - modem) <= 0.045 * modem;
 }
 
-// Reads all that the program has written; the kernel takes a moment to move bytes between the ends.
+// Reads all bytes that the program has written; the kernel needs a moment to move them between the
+// ends.
 void PtyLine::readAhead(uint64_t now) {
     uint64_t counter = count_.keeper ? count_.keeper() : 0;
     if (counter != counter_)
@@ -81,7 +83,7 @@ void PtyLine::readAhead(uint64_t now) {
             sched_yield();
         }
     }
-    if (looks == patience) // they were read as those of the session before
+    if (looks == patience) // the previous session has read them
         fetched_ = std::max(fetched_, count_.fromProgram());
 }
 

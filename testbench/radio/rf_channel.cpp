@@ -8,9 +8,9 @@
 
 namespace {
 
-constexpr uint64_t burstStepNs = 10'000'000; // a full packet's time
+constexpr uint64_t burstStepNs = 10'000'000; // duration of a full packet
 constexpr double sensitivity = -92;          // dBm; XBee-PRO: -100
-constexpr double jitter = 0.05;              // share of a modem's own time, unverified
+constexpr double jitter = 0.05;              // variation of a modem's processing time, unverified
 
 } // namespace
 
@@ -45,8 +45,8 @@ void RfChannel::carryAway(const RfReceiver* modem, bool isAway) {
 }
 
 RfChannel::Outcome RfChannel::fate(uint64_t now) {
-    // A step for this packet, and one for each missed packet time: a burst passes while nobody
-    // sends, too.
+    // One step for this packet, and one per missed packet time: a burst also passes while no modem
+    // sends.
     const uint64_t quiet = std::min<uint64_t>((now - fateAt_) / burstStepNs, 1000);
     fateAt_ = now;
     for (uint64_t steps = std::max<uint64_t>(quiet, 1); weather.burstBegin > 0 && steps; --steps)
@@ -63,7 +63,7 @@ uint64_t RfChannel::delayNs(uint64_t now) const {
     return weather.trace ? weather.trace->at(now).delayNs : weather.delayNs;
 }
 
-// Draws the strength of one try. Returns whether it is below the receiver's sensitivity.
+// Draws the signal strength of one try. Returns whether it is below the receiver's sensitivity.
 bool RfChannel::faded(RfPacket& packet) {
     if (weather.distance <= 0)
         return false;
@@ -108,7 +108,7 @@ bool RfChannel::isClear(uint8_t channel, uint64_t from, uint64_t to) const {
 }
 
 // Two modems that begin within the time from carrier sense to the first symbol do not hear each
-// other, and none hears while it sends.
+// other, and a modem cannot receive while it sends.
 void RfChannel::put(RfSender& sender, const RfReceiver& from, RfPacket packet, Outcome drawn,
                     uint64_t now) {
     const uint64_t end = now + RfTimes::tryNs(packet);
@@ -159,7 +159,7 @@ bool RfChannel::isMissed(Frame& frame) {
            (weather.tryLoss > 0 && random_.chance(weather.tryLoss));
 }
 
-// The receiver has the packet at the end of its frame.
+// Called at the end of a frame, when the receiver has the packet.
 void RfChannel::land(RfSender* sender, Frame& frame, uint64_t now) {
     const bool missed = isMissed(frame);
     if (frame.drawn == Outcome::Corrupted && !missed) {

@@ -21,8 +21,8 @@
 #include <string>
 #include <vector>
 
-// A link's record: CSV with the heading `time_s,loss,rssi_dbm,delay_ms`. A row holds from its time
-// to that of the next one; the last row stays.
+// A link's record: CSV with the heading `time_s,loss,rssi_dbm,delay_ms`. A row is valid from its
+// time until the next row's time; the last row stays valid.
 class RfTrace {
 public:
     struct Row {
@@ -59,7 +59,7 @@ public:
             rows_.push_back({ns, loss, rssi, static_cast<uint64_t>(delay * 1e6)});
         }
         if (rows_.empty())
-            fail("there is no row");
+            fail("no row found");
     }
     const Row& at(uint64_t ns) const {
         auto next = std::upper_bound(rows_.begin(), rows_.end(), ns,
@@ -73,25 +73,25 @@ private:
     std::vector<Row> rows_;
 };
 
-// The weather of the air; each is a probability unless it says otherwise.
+// Weather of the air; fields are probabilities unless stated otherwise.
 struct RfWeather {
-    // Residual loss of a packet in one direction, after the MAC's tries; costs no more air time.
+    // Residual packet loss in one direction, after the MAC's tries; costs no additional air time.
     double loss = 0;
     double burstBegin = 0, burstEnd = 0.2, burstLoss = 0.9; // Gilbert-Elliott, per packet or 10 ms
     double duplication = 0, corruption = 0;
     uint64_t delayNs = 0; // beyond the time on the air
-    // The MAC itself: one try is lost, or its acknowledgement, and it tries again.
+    // Loss at the MAC: of one try, or of its acknowledgement; the MAC then retries.
     double tryLoss = 0, ackLoss = 0;
-    // Free space and Rayleigh fading over this many metres, each try by itself; 0: none.
+    // Distance in free space with Rayleigh fading per try, m; 0 disables it.
     double distance = 0;
-    // An interferer is on for this share of each of its periods: the channel is busy then, and a
-    // try that meets it is lost. A microwave oven: about half of 20 ms (50 Hz).
+    // Share of each period during which an interferer is on: the channel is then busy, and a try
+    // that overlaps it is lost. A microwave oven: about half of 20 ms (50 Hz).
     double interference = 0;
     uint64_t interferencePeriodNs = 20'000'000;
     // A link's record, instead of loss and delay above.
     std::shared_ptr<const RfTrace> trace;
-    // Perfect air, for unit tests: both directions at once, no carrier sense, no collisions, and
-    // modems that need no time of their own. No radio has this air.
+    // Perfect air, for unit tests: both directions at once, no carrier sense, no collisions, no
+    // processing time in the modems. No real radio behaves like this.
     bool perfect = false;
 
     // Losses in bursts as on flights, and tries lost as in the field; distance in the clear; an
@@ -119,8 +119,8 @@ struct RfWeather {
         }();
         return all;
     }
-    // Draws one of these, independent losses below `mostLoss` percent, or none; now and then with
-    // doubled and damaged packets.
+    // Draws one of these weathers, with independent losses below `mostLoss` percent, or none; now
+    // and then with doubled and damaged packets.
     static RfWeather drawn(Random& random, unsigned mostLoss) {
         RfWeather w;
         const size_t kind = random.below(static_cast<uint32_t>(3 * published().size()));
@@ -152,8 +152,8 @@ class RfReceiver {
 public:
     virtual ~RfReceiver() = default;
     virtual bool hears(const RfPacket& packet) const = 0; // whether the packet is for it
-    // Absent: it is off or boots. NoRoom: acknowledged, and lost, since the buffer to the host is
-    // full.
+    // Absent: the modem is off or boots. NoRoom: acknowledged but lost, because the buffer to the
+    // host is full.
     enum class Reception { Absent, NoRoom, Taken };
     virtual Reception receive(const RfPacket& packet, uint64_t now) = 0;
 };
@@ -162,9 +162,9 @@ public:
 class RfSender {
 public:
     virtual ~RfSender() = default;
-    virtual void wake(uint64_t now) = 0; // at the time that was asked for
+    virtual void wake(uint64_t now) = 0; // at the requested time
     virtual void ended(uint64_t now, const RfPacket& arrived, RfOutcome outcome,
-                       bool isAnswered) = 0; // of a frame
+                       bool isAnswered) = 0; // result of a frame
 };
 
 class RfChannel {
@@ -181,15 +181,15 @@ public:
     explicit RfChannel(uint64_t seed) : random_(seed) {}
 
     Weather weather;
-    // Sets a function that is called once for each packet, when its fate is known.
+    // Sets a function that is called once per packet, when its outcome is known.
     void onPacket(Listener listener) { listener_ = std::move(listener); }
     const Counters& counters() const { return counters_; }
 
     void join(RfReceiver* modem) { modems_.push_back(modem); }
     void leave(RfReceiver* modem);
-    // Puts a modem out of reach of all others, or brings it back.
+    // Moves a modem out of reach of all others, or back into reach.
     void carryAway(const RfReceiver* modem, bool isAway);
-    // Returns a time of a modem's own work: it varies by a twentieth; 0 in perfect air.
+    // Returns a processing time of a modem, varied by up to a twentieth; 0 in perfect air.
     uint64_t jittered(uint64_t ns);
     void advance(uint64_t now);
     uint64_t nextEvent() const { return events_.empty() ? ~uint64_t(0) : events_.begin()->first; }
@@ -200,7 +200,7 @@ public:
 
     // For the MACs of the modems:
 
-    // Draws the weather of a new packet: its strength, and what becomes of it.
+    // Draws the weather of a new packet: its strength and its outcome.
     Outcome announce(const RfReceiver& from, RfPacket& packet, uint64_t now);
     // Returns whether carrier sense finds the channel clear from `from` to `to`.
     bool isClear(uint8_t channel, uint64_t from, uint64_t to) const;
@@ -210,7 +210,7 @@ public:
              uint64_t now);
     // Calls the sender's wake() at this time.
     void wakeAt(uint64_t at, RfSender* sender) { events_.emplace(at, Event{sender, nullptr}); }
-    // Calls this sender no more.
+    // Stops calling this sender.
     void forget(const RfSender* sender);
     void report(uint64_t now, const RfPacket& packet, Outcome outcome);
     void countRetry() { ++counters_.retries; }
@@ -221,7 +221,7 @@ private:
         RfPacket packet;
         Outcome drawn; // the weather's decision
         const RfReceiver* from;
-        uint64_t begin, frameEnd, end; // of the frame; of its acknowledgement
+        uint64_t begin, frameEnd, end; // times of the frame and of its acknowledgement
         bool collided = false;
     };
     struct Event {
@@ -237,7 +237,7 @@ private:
 
     Random random_;
     bool inBurst_ = false;
-    uint64_t fateAt_ = 0; // of the last packet
+    uint64_t fateAt_ = 0; // time of the last packet
     std::vector<RfReceiver*> modems_;
     std::set<const RfReceiver*> away_;
     std::multimap<uint64_t, Event> events_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// rf_packet: a packet between modems, its times on the air, and what can become of it.
+// rf_packet: a packet between modems, its air times and its possible outcomes.
 
 #pragma once
 
@@ -17,18 +17,18 @@ struct RfPacket {
     uint64_t to64 = 0; // destination by serial number, if `wide`
     bool wide = false;
     uint8_t channel = 0;
-    std::vector<uint8_t> bytes; // as on the air: encrypted, if the sender encrypts
+    std::vector<uint8_t> bytes; // as on the air: encrypted if the sender encrypts
     // The sender's settings
     bool header = true;       // MM 0 or 3: the maker's header of two bytes
     bool acknowledged = true; // MM 0 or 2, and no broadcast
-    bool sequenced = false;   // with a header and RR: the receiver drops repeated ones
+    bool sequenced = false;   // has the header of RR, by which the receiver drops duplicates
     uint16_t sequence = 0;
     uint64_t serial = 0;    // the sender's, for decryption
     bool encrypted = false; // EE
     bool from64 = false;    // the sender has no 16-bit address
-    unsigned tries = 4;     // of the MAC: the first and the retries
-    unsigned rounds = 0;    // RR: times that all tries are made again
-    unsigned copies = 1;    // of a broadcast: RR + 2 with RR
+    unsigned tries = 4;     // tries of the MAC: the first one and the retries
+    unsigned rounds = 0;    // RR: further rounds of tries
+    unsigned copies = 1;    // copies of a broadcast: RR + 2 with RR
     unsigned backoff = 0;   // RN
     double rssi = -40;      // dBm at the receiver
 };
@@ -46,7 +46,7 @@ inline size_t frameBytes(const RfPacket& packet) {
     return 17 + 2u * packet.header + 6u * packet.wide + 6u * longSource + packet.bytes.size();
 }
 
-// Returns the time from carrier sense to the end of the acknowledgement.
+// Returns the duration from carrier sense to the end of the acknowledgement.
 inline uint64_t tryNs(const RfPacket& packet) {
     return ccaNs + turnaroundNs + frameBytes(packet) * byteNs + (packet.acknowledged ? ackNs : 0);
 }

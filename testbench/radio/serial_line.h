@@ -18,7 +18,7 @@ class SerialClient {
 public:
     virtual void fromHost(uint8_t byte, uint64_t now) = 0;
     virtual void framingError(uint64_t now) = 0;
-    virtual bool nextToHost(uint8_t& byte) = 0; // false: nothing to send
+    virtual bool nextToHost(uint8_t& byte) = 0; // returns false if there is nothing to send
 
 protected:
     ~SerialClient() = default;
@@ -44,7 +44,7 @@ protected:
     bool cts_ = true, heedsRts_ = false;
 };
 
-// Pins of a design. The design's TXD is told by setTxd when it changes; RXD and CTS are read.
+// Serial pins of a design. setTxd reports each change of the design's TXD; RXD and CTS are read.
 class UartPins : public SerialLine {
 public:
     void setTxd(bool level, uint64_t now) {
@@ -76,8 +76,8 @@ public:
         if (rxBit_ == 0 && txBit_ == 0)
             bitNs_ = wantedBitNs_;
     }
-    // The next stop bit of a byte from the design, or edge of RXD; between TXD's edges nothing else
-    // is due.
+    // Time of the next stop bit of a byte from the design, or of the next RXD edge; between TXD
+    // edges nothing else is due.
     uint64_t nextEvent() const override {
         double at = 1e300;
         if (rxBit_)
@@ -161,7 +161,7 @@ public:
             client_->fromHost(byte, now);
     }
     std::vector<uint8_t> received;
-    bool paused = false; // nothing moves to the host
+    bool paused = false; // nothing is sent to the host
     bool cts() const { return cts_; }
 
     void advance(uint64_t) override {
@@ -175,7 +175,7 @@ public:
 
 // A pseudo-terminal, for programs that talk to a serial port. Bytes move at the modem's baud rate;
 // while CTS is off none is read, which is the flow control. If the program has set a speed more
-// than 4.5 % off the modem's, bytes are spoilt, as they would be on a wire.
+// than 4.5 % off the modem's, bytes are damaged, as on a wire.
 class PtyLine : public SerialLine {
 public:
     PtyLine(); // throws std::system_error
@@ -184,10 +184,10 @@ public:
     PtyLine& operator=(const PtyLine&) = delete;
     const std::string& path() const { return path_; }
 
-    // A program may report how many bytes it has written and read: then no byte is late because the
+    // A program may report how many bytes it has written and read; then no byte is late because the
     // machine is busy (testbench/radio/ground_step.h).
     struct Count {
-        std::function<uint64_t()> keeper; // its session, 0: none; each from 0
+        std::function<uint64_t()> keeper; // the program's session, 0: none; its counts start at 0
         std::function<void(uint64_t keeper, size_t bytes)> toProgram;
         std::function<uint64_t()> fromProgram;
     };
@@ -201,31 +201,32 @@ public:
 
 private:
     bool speedFits() const;
-    // Returns the time (ns) in which an idle wire may have carried unseen bytes: a poll period and
-    // a byte.
+    // Returns the time (ns) in which an idle wire may have carried unseen bytes: one poll period
+    // and one byte.
     double lookBack() const { return 1e6 + 10 * bitNs_; }
     void readAhead(uint64_t now);
     size_t fetch(uint8_t* bytes, size_t room);
     void readHost(uint64_t now);
     void writeHost(uint64_t now);
 
-    int master_ = -1, keeper_ = -1; // keeper_: the slave side, so that closing it is no hang-up
+    int master_ = -1, keeper_ = -1; // keeper_: the slave side, kept open so that closing it causes
+                                    // no hang-up
     std::string path_;
     uint64_t nextPoll_ = 0;
-    double rxFree_ = 0, txFree_ = 0; // when the wire is free again, each way
+    double rxFree_ = 0, txFree_ = 0; // time from which the wire is free, each way
     std::vector<uint8_t> unwritten_;
     Count count_;
     bool txIdle_ = true;
     uint64_t counter_ = 0;      // the counting session
-    uint64_t fetched_ = 0;      // of the counted bytes
-    std::deque<uint8_t> ahead_; // read, but the wire has not carried them yet
+    uint64_t fetched_ = 0;      // number of counted bytes fetched
+    std::deque<uint8_t> ahead_; // bytes read that the wire has not carried yet
 };
 
-// Joins two serial lines by a wire each way, where no modems are between them.
+// Joins two serial lines by a wire each way, without modems.
 class Cable {
 public:
-    // `bitNs`: the bit time of both hosts. `carried` is called for each byte, with the line that it
-    // came from.
+    // `bitNs`: bit time of both hosts. `carried` is called for each byte with the line that sent
+    // it.
     Cable(SerialLine& first, SerialLine& second, double bitNs,
           std::function<void(const SerialLine& from)> carried)
         : ends_{{first, carried}, {second, carried}} {
@@ -268,7 +269,7 @@ private:
         SerialLine& line;
         std::function<void(const SerialLine&)> carried;
         End* other = nullptr;
-        std::deque<uint8_t> bytes; // on their way to this end
+        std::deque<uint8_t> bytes; // bytes on their way to this end
     };
     End ends_[2];
 };

@@ -11,15 +11,15 @@
 namespace {
 
 constexpr size_t inputBytes = 202, outputBytes = 202;
-// Bytes held when CTS goes off (17 before the buffer is full) and when it comes back (34 free).
+// Bytes held when CTS is deasserted (17 before the buffer is full) and asserted again (34 free).
 constexpr size_t ctsOff = inputBytes - 17, ctsOn = inputBytes - 34;
 constexpr size_t packetBytes = 100, packetBytesEncrypted = 95;
 constexpr uint64_t msNs = 1'000'000, resetNs = 200;
-// The modem's time for each packet that it sends (before it senses the carrier) or has received
-// (before it handles the next). With it and the time on the air full packets leave at 80 and,
-// encrypted, at 47 kb/s, the maker's measurement (docs/simulation.md).
+// Processing time of the modem for each packet that it sends (before carrier sense) or has received
+// (before the next one). With this and the time on the air, full packets leave at 80 kb/s and,
+// encrypted, at 47 kb/s, as the manufacturer measured (docs/simulation.md).
 constexpr uint64_t processingNs = 4'688'000, processingEncryptedNs = 10'666'000;
-constexpr uint64_t plusWindowNs = 1000 * msNs; // the three characters come within a second
+constexpr uint64_t plusWindowNs = 1000 * msNs; // the three characters must arrive within one second
 
 } // namespace
 

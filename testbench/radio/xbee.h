@@ -32,7 +32,7 @@ public:
         uint64_t commands = 0, refused = 0;
         uint64_t packetsSent = 0, packetsReceived = 0;
         uint64_t packetsDropped = 0;    // acknowledged, but the buffer to the host was full
-        uint64_t packetsUnreadable = 0; // encrypted, and EE is 0 here, or the other way round
+        uint64_t packetsUnreadable = 0; // encrypted while EE is 0 here, or the other way round
         uint64_t duplicatesDropped = 0, badFrames = 0; // API frames with a wrong checksum or type
     };
 
@@ -48,13 +48,13 @@ public:
     void resetPin(bool low, uint64_t now);
     // Power off and on: settings that were not written by WR are lost.
     void power(bool on, uint64_t now);
-    // Answers ERROR to this command, as a firmware that lacks it does ("" for none).
+    // Replies ERROR to this command, as a firmware without it does ("" disables this).
     void refuseCommand(const std::string& letters) { refuse_ = letters; }
 
     const std::string& name() const { return options_.name; }
     uint32_t parameter(const std::string& letters) const { return active_.at(letters); }
     double baud() const;
-    const std::string& key() const { return key_; } // 32 hex digits, "" if none was set
+    const std::string& key() const { return key_; } // 32 hex digits; "" if no key was set
     bool inCommandMode() const { return mode_ == Mode::Command; }
     bool cts() const { return cts_; }
     const Counters& counters() const { return counters_; }
@@ -114,24 +114,24 @@ private:
     SerialLine& line_;
     RfChannel& channel_;
     Options options_;
-    Parameters written_, pending_, active_; // by WR; by commands; in force
+    Parameters written_, pending_, active_; // saved by WR; set by commands; in force
     Mode mode_ = Mode::Off;
     uint64_t bootDone_ = 0, lastByte_ = 0, commandUntil_ = 0, resetLowSince_ = 0;
     bool resetLow_ = false;
-    unsigned pluses_ = 0; // of a sequence that may lead to command mode
+    unsigned pluses_ = 0; // length so far of a sequence that may enter command mode
     uint64_t firstPlus_ = 0;
     std::string commandLine_;
-    std::deque<uint8_t> input_;  // from the host, to be sent
-    size_t flushCount_ = 0;      // bytes of it that must leave now
-    std::deque<uint8_t> output_; // to the host
-    double nextBaud_ = 0;        // of the line, as soon as what was held for the host has left:
+    std::deque<uint8_t> input_;  // bytes from the host, to be sent
+    size_t flushCount_ = 0;      // number of them that must be sent now
+    std::deque<uint8_t> output_; // bytes to the host
+    double nextBaud_ = 0;        // rate of the line after the bytes held for the host have left:
     size_t atOldRate_ = 0;       // this many bytes, the OK of the change last
     bool inFlight_ = false, cts_ = true;
     Mac mac_;
     uint64_t busyUntil_ = 0;
     uint16_t sequence_ = 0;
-    uint32_t frameCounter_ = 0;                 // of encrypted packets, since power on
-    std::map<uint16_t, uint16_t> lastSequence_; // of each sender
+    uint32_t frameCounter_ = 0;                 // counter of encrypted packets since power on
+    std::map<uint16_t, uint16_t> lastSequence_; // last sequence number by sender
     std::string refuse_;
     std::string key_, writtenKey_;
     // API
@@ -142,6 +142,6 @@ private:
     Bytes frame_;
     bool inFrame_ = false, escaped_ = false;
     std::deque<ApiPacket> apiQueue_;
-    uint8_t apiId_ = 0; // of the packet in flight
+    uint8_t apiId_ = 0; // frame id of the packet in flight
     Counters counters_;
 };

@@ -27,7 +27,7 @@ uint8_t sum(const uint8_t* bytes, size_t count) {
 void XBee::apiByte(uint8_t byte, uint64_t now) {
     bool escapes = active_.at("AP") == 2;
     if (byte == delimiter && (escapes || !inFrame_)) {
-        inFrame_ = true; // with escapes a delimiter always begins a frame
+        inFrame_ = true; // in escaped mode a delimiter always starts a frame
         escaped_ = false;
         frame_.clear();
         return;
@@ -104,7 +104,7 @@ void XBee::sendApiPacket(uint64_t now) {
     launch(std::move(next.packet), now);
 }
 
-// 0x88: the answer; its status is 0 OK, 1 ERROR, 2 no such command, 3 wrong value.
+// 0x88: reply to a command; status 0 OK, 1 ERROR, 2 invalid command, 3 invalid value.
 void XBee::apiCommand(const Bytes& frame, uint64_t now) {
     if (frame.size() < 4) {
         ++counters_.badFrames;

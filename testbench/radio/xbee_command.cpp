@@ -57,7 +57,8 @@ bool XBee::setParameter(const std::string& letters, uint32_t value) {
     if (letters == "BD" && value > 7 && value < 0x80)
         return false;
     if (letters == "BD" && value > 7)
-        value = static_cast<uint32_t>(std::lround(xbeeBaud(value))); // the nearest is kept
+        value = static_cast<uint32_t>(std::lround(xbeeBaud(value))); // rounded to the nearest
+                                                                     // possible rate
     pending_[letters] = value;
     if (letters == "EC" || letters == "EA")
         active_[letters] = value;
@@ -88,14 +89,14 @@ std::string XBee::order(const std::string& letters, uint64_t now) {
                 pending_[own] = value; // the serial number stays
         key_.clear();
     } else if (letters == "FR") {
-        boot(now); // the OK still leaves, at the old rate
+        boot(now); // the OK is still sent at the old rate
     } else {
         return "";
     }
     return "OK\r";
 }
 
-// Answers each command of a line such as ATDL2,WR,CN by itself. AT alone is answered OK.
+// Replies to each command of a line such as ATDL2,WR,CN separately. AT alone replies OK.
 std::string XBee::execute(const std::string& line, uint64_t now) {
     if (line.size() < 2 || std::toupper(static_cast<unsigned char>(line[0])) != 'A' ||
         std::toupper(static_cast<unsigned char>(line[1])) != 'T')
@@ -142,7 +143,7 @@ std::string XBee::executeOne(const std::string& command, uint64_t now) {
     return answer;
 }
 
-// BD takes effect after the OK has left (XBee::advance).
+// BD takes effect after the OK has been sent (XBee::advance).
 void XBee::apply() {
     active_ = pending_;
     line_.setHeedRts(active_.at("D6") == 1);

@@ -17,7 +17,7 @@
 struct XBeeCrypt {
     using Bytes = std::vector<uint8_t>;
     static constexpr size_t headBytes = 5;
-    // `key`: 32 hexadecimal digits, or none (all zero). `source`: the sender's serial number.
+    // `key`: 32 hexadecimal digits, or "" for all zeros. `source`: the sender's serial number.
     static Bytes encrypt(const std::string& key, uint64_t source, uint32_t counter,
                          const Bytes& plain) {
         Bytes packet = {static_cast<uint8_t>(counter >> 24), static_cast<uint8_t>(counter >> 16),
@@ -26,7 +26,7 @@ struct XBeeCrypt {
         packet.insert(packet.end(), secret.begin(), secret.end());
         return packet;
     }
-    // The payload of a packet; empty if it is too short.
+    // Returns the payload of a packet; empty if the packet is too short.
     static Bytes decrypt(const std::string& key, uint64_t source, const Bytes& packet) {
         if (packet.size() < headBytes)
             return {};

@@ -16,8 +16,9 @@ struct XBeeParameter {
 
 inline const std::map<std::string, XBeeParameter>& xbeeParameters() {
     static const std::map<std::string, XBeeParameter> table = {
-        {"MY", {0, 0, 0xFFFF, true}},     // own 16-bit address; FFFE and FFFF: none
-        {"DH", {0, 0, 0xFFFFFFFF, true}}, // destination, high word; 0 and DL <= FFFF: 16 bits
+        {"MY", {0, 0, 0xFFFF, true}},     // 16-bit address of this modem; FFFE and FFFF disable it
+        {"DH", {0, 0, 0xFFFFFFFF, true}}, // destination, high word; 0 with DL <= FFFF: 16-bit
+                                          // address
         {"DL", {0, 0, 0xFFFFFFFF, true}}, // destination, low word; FFFF: broadcast
         {"SH", {0x0013A200, 0, 0xFFFFFFFF, false}}, // serial number
         {"SL", {0x40000000, 0, 0xFFFFFFFF, false}},
@@ -27,10 +28,10 @@ inline const std::map<std::string, XBeeParameter>& xbeeParameters() {
         {"RO", {3, 0, 0xFF, true}},        // character times of silence that send a packet off
         {"RN", {0, 0, 3, true}},           // least exponent of the random wait before sending
         {"MM", {0, 0, 3, true}},           // 0 header and acks, 1 neither, 2 acks, 3 header
-        {"RR", {0, 0, 6, true}},           // times that the MAC's four tries are made again
+        {"RR", {0, 0, 6, true}},           // additional rounds of the MAC's four tries
         {"EE", {0, 0, 1, true}},           // encryption
         {"GT", {1000, 2, 3300, true}},     // ms of silence around the command sequence
-        {"CT", {100, 2, 0xFFFF, true}},    // 100 ms without a command until command mode ends
+        {"CT", {100, 2, 0xFFFF, true}},    // time without a command that ends command mode, 100 ms
         {"CC", {'+', 0, 0xFF, true}},      // character of the command sequence
         {"D6", {0, 0, 5, true}},           // 1: RTS is heeded
         {"D7", {1, 0, 5, true}},           // 1: CTS is driven
@@ -41,7 +42,7 @@ inline const std::map<std::string, XBeeParameter>& xbeeParameters() {
     return table;
 }
 
-// Rate of a BD value in baud. Above 7 the divisor of 16 MHz / 16 that comes nearest.
+// Rate of a BD value in baud. Above 7: 16 MHz / 16 divided by the nearest integer.
 inline double xbeeBaud(uint32_t bd) {
     static const double rates[] = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 1e6 / 9};
     if (bd < 8)

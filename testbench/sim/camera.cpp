@@ -51,16 +51,16 @@ Frame movedBy(Frame frame, int columns) {
 }
 
 void savePng(const std::string& path, const Frame& frame) {
-    const std::string beside = path + ".new";
-    std::ofstream file(beside, std::ios::binary);
+    const std::string temporary = path + ".new";
+    std::ofstream file(temporary, std::ios::binary);
     auto put = [](void* to, void* bytes, int size) {
         static_cast<std::ofstream*>(to)->write(static_cast<const char*>(bytes), size);
     };
     stbi_write_png_to_func(put, &file, frame.width, frame.height, 1, frame.pixels.data(),
                            frame.width);
     file.close();
-    if (!file || std::rename(beside.c_str(), path.c_str()) != 0) {
-        std::remove(beside.c_str());
+    if (!file || std::rename(temporary.c_str(), path.c_str()) != 0) {
+        std::remove(temporary.c_str());
         throw std::runtime_error("cannot write '" + path +
                                  "': is the disk full, or the folder read-only?");
     }

@@ -13,9 +13,9 @@ struct Frame {
     std::vector<uint8_t> pixels;
 };
 
-// Returns the middle of the picture, reduced by a whole factor where it is at least twice the
-// wanted size. The width becomes a multiple of 8. Throws std::runtime_error with the reason.
+// Returns the middle of the picture, reduced by an integer factor if it is at least twice the
+// requested size. The width becomes a multiple of 8. Throws std::runtime_error with the reason.
 Frame loadFrame(const std::string& path, int width, int height);
-// Returns the picture from another place: its columns moved to the left, round its end.
+// Returns the picture as seen from another position: its columns rotated to the left.
 Frame movedBy(Frame frame, int columns);
 void savePng(const std::string& path, const Frame& frame);

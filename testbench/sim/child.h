@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// child: the ground's program that the simulator starts; it ends with the simulator, however that
-// ends.
+// child: starts the program of the ground as a child process, which ends with the simulator even if
+// the simulator is killed.
 
 #pragma once
 
@@ -27,8 +27,8 @@ public:
     Child(const Child&) = delete;
     Child& operator=(const Child&) = delete;
 
-    // Throws std::system_error if there is no process available. A program that cannot be started
-    // ends with status 127.
+    // Throws std::system_error if no process can be created. A program that cannot be started ends
+    // with status 127.
     void start(const std::vector<std::string>& command,
                const std::map<std::string, std::string>& places) {
         std::vector<std::string> words;
@@ -52,7 +52,7 @@ public:
         std::fprintf(stderr, "icesoc-sim: cannot start '%s': %s\n", argv[0], std::strerror(errno));
         _exit(127);
     }
-    // True while it runs. stderr names a signal that ends it.
+    // True while it runs. Logs to stderr if a signal ended it.
     bool runs() {
         int status;
         if (pid_ > 0 && waitpid(pid_, &status, WNOHANG) == pid_) {
@@ -64,7 +64,7 @@ public:
         }
         return pid_ > 0;
     }
-    // Asks it to end, and waits for at most a second until it has.
+    // Asks it to end, and waits at most one second.
     void stop() {
         asked_ = true;
         for (int i = 0; runs(); ++i) {
@@ -75,10 +75,10 @@ public:
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
         }
     }
-    int status() const { return status_; } // as in a shell
+    int status() const { return status_; } // exit status as in a shell
 
 private:
-    // Returns `word` with each name of `places` replaced by its value, in one pass.
+    // Returns `word` with each name in `places` replaced by its value, in one pass.
     static std::string filledIn(const std::string& word,
                                 const std::map<std::string, std::string>& places) {
         std::string result;

@@ -13,10 +13,10 @@
 // the same form. Throws std::runtime_error, with file and line, for a wrong script.
 void connectPins(SocModel& soc, const std::string& script, const std::string& log);
 
-// Sends the frame to the camera core, a pixel every second clock, each time that `sends` says so.
-// It is asked each two milliseconds while the sensor's clock stands still, as many sensors' does
-// between frames. `note` gets the pins of each clock. Throws std::runtime_error if the chip has no
-// such core.
+// Sends the frame to the camera core, one pixel every second clock, each time that `sends` returns
+// true. `sends` is called every two milliseconds; between frames the sensor clock stops, as in many
+// sensors. `note` gets the pins of each clock. Throws std::runtime_error if the chip has no such
+// core.
 void connectSensor(
     SocModel& soc, const Frame& frame, std::function<bool()> sends,
     std::function<void(uint32_t pins)> note = [](uint32_t) {});

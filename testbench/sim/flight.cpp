@@ -28,7 +28,7 @@ volatile sig_atomic_t Flight::stopSignal = 0;
 
 namespace {
 
-constexpr uint64_t clockStepNs = 100'000; // of the time that other programs read
+constexpr uint64_t clockStepNs = 100'000; // resolution of the time that other programs read
 constexpr uint64_t digestNs = 100'000'000;
 
 Frame pictureFor(const Flight::Options& o) {
@@ -36,12 +36,13 @@ Frame pictureFor(const Flight::Options& o) {
     char more = 0;
     if (std::sscanf(o.size.c_str(), "%dx%d%c", &width, &height, &more) != 2 || width < 8 ||
         width > 1024 || width % 8 || height < 8 || height > 4096)
-        throw std::runtime_error("size '" + o.size +
-                                 "': give WIDTHxHEIGHT, 8x8 to 1024x4096, WIDTH a multiple of 8");
+        throw std::runtime_error(
+            "size '" + o.size +
+            "': expected WIDTHxHEIGHT, 8x8 to 1024x4096, WIDTH a multiple of 8");
     return loadFrame(o.image, width, height);
 }
 
-// Returns the folder of the flight's files, which has the picture.
+// Creates the folder of the flight's files, with the picture, and returns it.
 std::string prepared(const Flight::Options& o, const Frame& frame) {
     std::filesystem::create_directories(o.out);
     savePng(o.out + "/before.png", frame);
@@ -90,12 +91,12 @@ std::vector<uint8_t> keyBytes(const std::string& digits) {
     return key;
 }
 
-// Returns a file's bytes, for a flash; none where there is no file.
-std::vector<uint8_t> flashOf(const std::string& file, size_t size, const std::string& whose) {
+// Returns a file's bytes for a flash; empty if there is no file.
+std::vector<uint8_t> flashOf(const std::string& file, size_t size, const std::string& owner) {
     const std::string bytes = file.empty() ? "" : readFile(file);
     if (!file.empty() && bytes.size() != size)
         throw std::runtime_error("'" + file + "' is not the " + std::to_string(size >> 20) +
-                                 " MiB of " + whose + " flash: pack_update makes such");
+                                 " MiB of " + owner + " flash; make one with pack_update");
     return {bytes.begin(), bytes.end()};
 }
 
@@ -221,7 +222,7 @@ void Flight::bringTrouble() {
     trouble_->begin(air_, modem);
 }
 
-// Counts how often a vehicle's vision core is told to start: once a call.
+// Counts how often a vehicle's vision core is started: once per call.
 void Flight::countStarts(SocModel& soc, uint32_t address, uint32_t value, bool isWrite) {
 #ifdef MAP_SLOT_VISION
     constexpr uint32_t control = MAP_CONTROL_WINDOW + 4 * (16 * MAP_SLOT_VISION + VISION_CONTROL);
@@ -266,7 +267,8 @@ double Flight::millionsPerSecond() const {
            static_cast<double>(pace_.workedNs() - ground_.step.waitedNs());
 }
 
-// Reports once if the chip is hardly ever quiet: the core that causes it, and the flight's speed.
+// Warns once if the chip is hardly ever quiet: names the core that causes it and the flight's
+// speed.
 void Flight::adviseOnClock() {
     constexpr uint64_t enough = 2'000'000, slow = 2'000'000;
     if (o_.quiet || o_.every_clock || advised_ || soc_.evaluated() < enough ||
@@ -285,7 +287,7 @@ void Flight::adviseOnClock() {
 void Flight::mark(const char* what, const nlohmann::json& value) {
     if (ground_.recorded)
         ground_.recorded->note(soc_.now(), what, value);
-    else if (o_.gdb < 0) // a debugger may change what it looks at
+    else if (o_.gdb < 0) // a debugger may change the values that it reads
         o_.replayed->compare(soc_.now(), what, value);
 }
 

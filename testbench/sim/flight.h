@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// flight: one run of the simulated UAV with its modem, the air, and the ground's modem on a pty;
-// and, as its child, the program that uses that pty.
+// flight: one run of the simulated UAV with its modem, the air, the ground's modem on a pty and, as
+// a child process, the program that uses the pty.
 
 #pragma once
 
@@ -33,7 +33,7 @@ public:
             std::this_thread::sleep_until(due);
             slept_ += Clock::now() - now;
         } else if (now - due > std::chrono::milliseconds(50)) {
-            anchor_ = now; // too slow for a while: continue from here, without catching up
+            anchor_ = now; // too slow for a while: continue from here without catching up
             anchorNs_ = simulatedNs;
         }
     }
@@ -69,14 +69,14 @@ public:
                                                     flash, fpga_flash, guard, vehicles, gdb, loss,
                                                     interference, distance, duration, from, to,
                                                     seed, camera, wire, every_clock, quiet)
-        nlohmann::json flight; // the description, which the recording keeps
+        nlohmann::json flight; // description, stored in the recording
         std::vector<std::string> command;
-        std::shared_ptr<ReplayedLine> replayed; // the flight to be flown again, if any
+        std::shared_ptr<ReplayedLine> replayed; // flight to replay, if any
     };
 
-    // Makes the folder and the ground's files in it: the counters, before.png; and the recording,
-    // unless one is replayed. Throws std::runtime_error, before it changes anything, where the
-    // options or the picture are wrong.
+    // Creates the folder and the ground's files in it: the counters, before.png, and the recording
+    // unless one is replayed. Throws std::runtime_error, before changing anything, if the options
+    // or the picture are wrong.
     explicit Flight(const Options& options);
     Flight(const Flight&) = delete;
     Flight& operator=(const Flight&) = delete;
@@ -109,16 +109,17 @@ private:
 
     const Options o_;
     const Frame frame_;
-    const std::vector<uint8_t> key_; // of the link
+    const std::vector<uint8_t> key_; // key of the link
     const RfWeather weather_;
     RfChannel air_;
     Station ground_;
     SocModel soc_;
     std::vector<std::unique_ptr<Follower>> followers_; // addresses 2 and up
-    std::unique_ptr<Station> second_;                  // of several vehicles
-    std::unique_ptr<Trouble> trouble_;                 // of several vehicles, if any
-    std::map<const SocModel*, unsigned> starts_;       // of each vehicle's vision core
-    std::unique_ptr<Cable> cable_;                     // in place of the modems and the air
+    std::unique_ptr<Station> second_;                  // with several vehicles
+    std::unique_ptr<Trouble> trouble_;                 // faults, with several vehicles
+    std::map<const SocModel*, unsigned> starts_;       // number of starts of each vehicle's vision
+                                                       // core
+    std::unique_ptr<Cable> cable_;                     // replaces the modems and the air
     Child child_;
     Events events_;
     Pace pace_;

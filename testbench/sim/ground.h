@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// ground: a ground station in this process: a modem, a link and hand-written IceP messages; and
-// scripts for flights, which are called again and again until they return true.
+// ground: a ground station in this process: a modem, a link and hand-written IceP messages, with
+// scripts for flights. A script is called repeatedly until it returns true.
 
 #pragma once
 
@@ -102,7 +102,8 @@ public:
             backlog_ += size;
     }
     void ping(int id, const std::string& object) { call(id, object, "ice_ping", 2); }
-    // A script that makes calls, each when the one before is answered; their numbers are from 1 on.
+    // Returns a script that makes calls, each after the reply to the previous one; request ids
+    // start at 1.
     Script calling(std::vector<Call> calls) {
         return [this, calls = std::move(calls), sent = size_t(0)]() mutable {
             if (validated && replies.size() == sent && sent < calls.size()) {
@@ -118,14 +119,14 @@ public:
     void noise(const std::vector<uint8_t>& bytes) { line_.send(bytes, now_); }
 
     std::map<int, int> replies;                   // request id to reply status
-    std::map<int, std::vector<uint8_t>> messages; // request id to the whole reply
+    std::map<int, std::vector<uint8_t>> messages; // whole reply by request id
     int delivered = 0, unknown = 0;               // outcomes of messages
-    uint64_t deliveredBytes = 0;                  // of messages that were acknowledged
-    size_t backlog() const { return backlog_; }   // bytes of messages that are not yet delivered
-    std::vector<uint8_t> key; // of the link, from the next start on; none: in the clear
+    uint64_t deliveredBytes = 0;                  // bytes of acknowledged messages
+    size_t backlog() const { return backlog_; }   // bytes of undelivered messages
+    std::vector<uint8_t> key; // key of the link, used from the next start; empty: unencrypted
     const Link_Statistics& statistics() const { return *Link_statistics(link_.get()); }
     bool validated = false, running = true;
-    unsigned hurry = 1; // the link's clock runs this many times as fast (UavMachine::hurry)
+    unsigned hurry = 1; // factor by which the link's clock is sped up (UavMachine::hurry)
 
 private:
     U32 us() const { return static_cast<U32>(clock_ / 1000); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// m3_machine: the chip's interrupt goes to PB0; the processor's time is the time of its FSMC's
+// m3_machine: connects the chip's interrupt to PB0, and takes the processor's time from its FSMC
 // pins.
 
 #include "m3_machine.h"
@@ -10,7 +10,7 @@
 
 namespace {
 
-constexpr uint64_t pinHclkHz = SocModel::clkHz * 6 / 5; // as FsmcMaster plays it
+constexpr uint64_t pinHclkHz = SocModel::clkHz * 6 / 5; // the frequency at which FsmcMaster runs
 
 Stm32F2::Config configOf(uint32_t hclkHz, uint64_t seed) {
     if (hclkHz == 0)
@@ -22,13 +22,13 @@ Stm32F2::Config configOf(uint32_t hclkHz, uint64_t seed) {
     return {static_cast<unsigned>(hclkHz / pinHclkHz), hclkHz, seed};
 }
 
-// Names the function in which the program is, and those that words of its stack return to.
+// Names the current function, and the functions that return addresses on the stack belong to.
 std::string stackOf(Stm32F2& stm32) {
     const CortexM3& cpu = stm32.cpu();
     std::string text = "The program is in " + stm32.image()->functionAt(cpu.reg(CortexM3::Pc));
     for (uint32_t at = cpu.reg(CortexM3::Sp), end = at + 256; at < end; at += 4) {
         const uint32_t word = cpu.word(at);
-        if ((word & 1) && word >> 20 == 0x080) // an address of code, in flash
+        if ((word & 1) && word >> 20 == 0x080) // a code address in flash
             text += ", " + stm32.image()->functionAt(word);
     }
     return text + ".";
@@ -43,7 +43,8 @@ void provideKeys(SimulatedBoard& board, const M3Machine::Config& config) {
 
 M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> poll)
     : soc_(soc), poll_(std::move(poll)), fpgaFlash_([&soc] { return soc.now(); }, config.seed),
-      stm32_(soc.fsmc(), [&soc] { return soc.now(); }, configOf(config.hclkHz, config.seed)) {
+      stm32_(
+          soc.fsmc(), [&soc] { return soc.now(); }, configOf(config.hclkHz, config.seed)) {
     stm32_.load(config.firmware);
     SimulatedBoard board;
     provideKeys(board, config);
@@ -164,8 +165,8 @@ void M3Machine::debug(GdbStub& stub, bool canGoBack) {
     stub_ = nullptr;
 }
 
-// Runs as the debugger commands, and leaves copies behind: each 50 ms, later each sixteenth of the
-// time.
+// Runs as the debugger commands, and leaves copies: one per 50 ms at first, then one per sixteenth
+// of the elapsed time.
 CortexM3::Stop M3Machine::resume(bool singleStep) {
     constexpr uint64_t copyNs = 50'000'000;
     isAtBegin_ = isAsked_ = false;
@@ -182,8 +183,8 @@ CortexM3::Stop M3Machine::resume(bool singleStep) {
     }
 }
 
-// Goes back to the last place before this one where the processor can stop, or to the last
-// breakpoint: one copy finds it, and a second one goes there. Returns if there is none.
+// Goes back to the last place before this one at which the processor can stop, or to the last
+// breakpoint: one copy finds it, a second one goes there. Returns if there is no such place.
 void M3Machine::goBack(bool singleStep) {
     const uint64_t here = cpu().instructions();
     if (checkpoints_->isFirst(here))
@@ -193,7 +194,7 @@ void M3Machine::goBack(bool singleStep) {
         here - 1, {singleStep ? Order::LastStop : Order::LastBreakpoint, here, cpu().breakpoints});
 }
 
-// Runs to this count of instructions. False: a breakpoint came first.
+// Runs to this count of instructions. Returns false if a breakpoint was reached first.
 bool M3Machine::runTo(uint64_t instructions) {
     CortexM3::Stop why = CortexM3::Stop::Asked;
     cpu().setLimit(instructions);
@@ -203,7 +204,7 @@ bool M3Machine::runTo(uint64_t instructions) {
     return why != CortexM3::Stop::Breakpoint;
 }
 
-// Executes the order of this copy, which stands at `from`.
+// Carries out the order given to this copy, which is at `from`.
 CortexM3::Stop M3Machine::follow(const Checkpoints::Order& order, uint64_t from) {
     using Order = Checkpoints::Order;
     cpu().breakpoints.clear();

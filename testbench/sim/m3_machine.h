@@ -17,36 +17,38 @@ class M3Machine {
 public:
     struct Config {
         std::string firmware; // ELF file
-        // HCLK in simulated time. 120 MHz: the processor's work takes as long as on the board,
-        // though the fabric is slower. 0: in the board's ratio to the fabric's clock, 6 to 5, as
-        // FSMC accesses always are; then cycles are as on the board, and the processor is slower by
-        // the fabric's scale.
+        // Processor clock (HCLK), Hz of simulated time. 120 MHz: the processor's work takes as long
+        // as on the board, although the fabric is slower. 0: 6/5 of the fabric's clock, as FSMC
+        // accesses always are; then cycle counts are as on the board, and the processor is slower
+        // by the fabric's scale.
         uint32_t hclkHz = 120'000'000;
         // Written to uav_guardMs (uav.h) after each start, as a debugger would, in ms; 0: not
         // written. A program without the variable is left alone.
         uint16_t guardMs = 0;
-        // The whole of flash, instead of the program, which then gives only its symbols.
+        // Contents of flash, instead of the program, which then only provides its symbols.
         std::vector<uint8_t> flash = {};
-        // The link's key, as from the factory, 16 bytes; none: the vehicle is open.
+        // Key of the link as set by the factory, 16 bytes; empty: the vehicle is open.
         std::vector<uint8_t> key = {};
-        uint64_t seed = 1; // of the random number generator
-        // The FPGA's configuration flash; none: it needs no configuration.
+        uint64_t seed = 1; // seed of the random number generator
+        // Contents of the FPGA's configuration flash; empty: the FPGA needs no configuration.
         std::vector<uint8_t> fpgaFlash = {};
         bool isWired = false;                         // the jumper of PB1 (board.h)
-        uint32_t address = 1;                         // of the vehicle, from the factory, too
-        std::vector<SimulatedBoard::Peer> peers = {}; // whom it serves besides its ground
+        uint32_t address = 1;                         // address of the vehicle, also set by the
+                                                      // factory
+        std::vector<SimulatedBoard::Peer> peers = {}; // peers served in addition to its ground
+                                                      // station
         bool isTransparent = false;                   // written to uav_transparent, as guardMs is
     };
-    // `poll` is called about once a simulated millisecond; when it returns false, run() ends.
+    // `poll` is called about once per simulated millisecond; when it returns false, run() ends.
     M3Machine(SocModel& soc, const Config& config, std::function<bool()> poll);
     ~M3Machine();
 
-    // Runs until poll says so; the first call begins with power-on. Exceptions of the models come
-    // through.
+    // Runs until `poll` returns false; the first call begins with power-on. Exceptions of the
+    // models propagate.
     void run();
     // Runs up to this time, or an instruction beyond; the first call begins with power-on.
     void advance(uint64_t ns);
-    // Prints what the processor did, and what stopped it, if anything did.
+    // Prints what the processor executed, and the reason if it stopped.
     void report();
 
     // Runs as a debugger commands. It begins when one connects, runs freely when it detaches, and
@@ -57,7 +59,7 @@ public:
     Stm32F2& stm32() { return stm32_; }
     const std::vector<uint8_t>& fpgaFlash() const { return fpgaFlash_.memory; }
     CortexM3& cpu() { return stm32_.cpu(); }
-    // The program's state; none where flash was given, since that program is unknown.
+    // State of the program; empty if flash was given, since that program is unknown.
     std::optional<ProgramTrace> program;
 
 private:
@@ -75,11 +77,11 @@ private:
     Stm32F2 stm32_;
     uint64_t nextPoll_ = 0, until_ = never;
     bool powered_ = false, over_ = false;
-    std::unique_ptr<Checkpoints> checkpoints_; // while a debugger may go back
+    std::unique_ptr<Checkpoints> checkpoints_; // exists while a debugger may go back
     uint64_t nextCopyNs_ = 0;
-    bool isAsked_ = false; // the debugger wants the processor to stop
+    bool isAsked_ = false; // the debugger has requested a stop
     bool isAtBegin_ = false;
 };
 
-// Gives a board the keys and the address of a vehicle, as its factory does.
+// Stores the keys and the address of a vehicle in a board, as its factory does.
 void provideKeys(SimulatedBoard& board, const M3Machine::Config& config);

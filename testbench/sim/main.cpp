@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// icesoc-sim: options of a simulated flight, of a file (flight.json) and of words "--name value".
-// The schema of the file, which ./icesoc writes of its own options, says which fields there are,
-// their types and limits.
+// icesoc-sim: reads the options of a simulated flight, from a file (flight.json) and from words
+// "--name value". The schema of the file, which ./icesoc generates from its options, defines the
+// fields, their types and limits.
 
 #include "files.h"
 #include "flight.h"
@@ -19,7 +19,7 @@ json fields() {
     return json::parse(readFile(FLIGHT_SCHEMA)).at("properties");
 }
 
-// The value of a word, by its field's type; the text itself where it is none.
+// Converts a word to a value of its field's type; returns the text if that fails.
 json valueOf(const json& field, const std::string& text) {
     const std::string type = field.value("type", "string");
     if (type == "integer" || type == "number") {
@@ -46,8 +46,8 @@ bool fits(const json& field, const json& value) {
                                                   std::regex(field["pattern"].get<std::string>())));
 }
 
-// Reads words up to "--". "--flight FILE" takes all fields of a file, a word behind it one more.
-// Throws std::invalid_argument, which names the word, if one is wrong.
+// Reads words up to "--". "--flight FILE" takes all fields of a file; later words override single
+// fields. Throws std::invalid_argument, which names the word, if one is wrong.
 json flightOf(const std::vector<std::string>& words) {
     const json known = fields();
     json flight = json::object();
@@ -56,7 +56,7 @@ json flightOf(const std::vector<std::string>& words) {
         std::string name = word->compare(0, 2, "--") == 0 ? word->substr(2) : "";
         std::replace(name.begin(), name.end(), '-', '_');
         if (name != "flight" && !known.contains(name))
-            throw std::invalid_argument("there is no option '" + *word + "'; see --help");
+            throw std::invalid_argument("unknown option '" + *word + "'; see --help");
         if (name != "flight" && known[name].value("type", "") == "boolean")
             flight[name] = true;
         else if (word + 1 == end)
@@ -65,7 +65,7 @@ json flightOf(const std::vector<std::string>& words) {
             const json described = json::parse(readFile(*++word), nullptr, false);
             if (!described.is_object())
                 throw std::invalid_argument("'" + *word +
-                                            "' describes no flight: it is no JSON "
+                                            "' is not a flight: expected a JSON "
                                             "object");
             flight.update(described);
         } else
@@ -114,12 +114,12 @@ void writeWave(const Flight::Options& o) {
 #endif
 }
 
-// The options of the recorded flight, and those of this view of it.
+// Combines the options of the recorded flight with those options that control this replay.
 Flight::Options recorded(const Flight::Options& now, const std::string& folder) {
     auto replayed = std::make_shared<ReplayedLine>(folder + "/flight.jsonl");
     const json& head = replayed->head();
     if (head.at("clkHz") != SocModel::clkHz)
-        throw std::runtime_error("that flight had a clock of " + head.at("clkHz").dump() +
+        throw std::runtime_error("the recorded flight has a clock of " + head.at("clkHz").dump() +
                                  " Hz: make run REPLAY=" + folder +
                                  " CLK_HZ=" + head.at("clkHz").dump());
     json fields = head.at("flight"), view = now;
@@ -128,10 +128,9 @@ Flight::Options recorded(const Flight::Options& now, const std::string& folder) 
     Flight::Options o = fields;
     for (const auto& [file, hash] : head.value("hashes", std::map<std::string, std::string>()))
         if (hexHash(readFile(file)) != hash)
-            throw std::runtime_error("'" + file +
-                                     "' is not what it was when that flight was recorded");
+            throw std::runtime_error("'" + file + "' has changed since the flight was recorded");
     if (std::filesystem::weakly_canonical(now.out) == std::filesystem::weakly_canonical(folder))
-        throw std::runtime_error("the replay needs a folder of its own: give another --out than '" +
+        throw std::runtime_error("--out: expected a folder other than the recording's, got '" +
                                  folder + "'");
     o.flight = now.flight;
     o.image = folder + "/before.png";
@@ -149,7 +148,7 @@ int main(int argc, char** argv) {
         std::cout << flightHelp();
         return 0;
     }
-    struct sigaction action{};
+    struct sigaction action {};
     action.sa_handler = [](int signal) { Flight::stopSignal = signal; };
     for (int signal : {SIGINT, SIGTERM, SIGHUP})
         sigaction(signal, &action, nullptr);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// memory_rest_proof: proves that the memory keeps its state while sim_soc.v stops its clock: while
-// no port requests anything and no transfer is pending (rests.vh). Only for the prover.
+// memory_rest_proof: proves that the memory keeps its state while sim_soc.v stops its clock, which
+// it does while no port has a request and no transfer is pending (rests.vh). Used only by the
+// prover.
 //
 // When the gate closes, no register of the memory takes another value, whatever the inputs are
 // (compare hdl/system/idle_proof.v).

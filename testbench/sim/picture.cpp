@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// picture: stb_image, and two things that it leaves out: the orientation that a camera notes in a
-// JPEG file (EXIF 2.3, tag 0x0112), and the maximum of a PNM file (netpbm's formats).
+// picture: decodes pictures with stb_image, and handles two things that stb_image ignores: the
+// orientation in a JPEG file (EXIF 2.3, tag 0x0112), and the maximum of a PNM file (netpbm's
+// formats).
 
 #include "picture.h"
 
@@ -25,7 +26,7 @@ namespace {
 
 using Bytes = std::vector<uint8_t>;
 
-// Reader reads numbers of a file; one beyond its end is 0.
+// Reads numbers of a file; beyond its end returns 0.
 struct Reader {
     const Bytes& file;
     bool isLittle = false;
@@ -60,7 +61,7 @@ int orientationAt(const Bytes& file, size_t at) {
     return 1;
 }
 
-// Returns how a JPEG file is to be turned, as EXIF counts it: 1 to 8; 1 of other files.
+// Returns the orientation of a JPEG file by EXIF's numbers, 1 to 8; 1 for other files.
 int orientationOf(const Bytes& file) {
     static const char name[] = "Exif\0"; // and a second 0
     constexpr size_t imageData = 0xFFDA, application1 = 0xFFE1;
@@ -85,7 +86,7 @@ int whiteOf(const Bytes& file) {
     std::string text(file.begin() + 2, file.begin() + std::min<long>(long(file.size()), 4096));
     std::string line, words;
     for (std::istringstream lines(text); std::getline(lines, line);)
-        words += line.substr(0, line.find('#')) + " "; // comments
+        words += line.substr(0, line.find('#')) + " "; // without comments
     int width = 0, height = 0, white = 255;
     std::istringstream(words) >> width >> height >> white;
     return white > 0 ? white : 255;
@@ -99,8 +100,8 @@ Picture turned(const Picture& from, int orientation) {
     to.height = isOnItsSide ? from.width : from.height;
     for (int y = 0; y < to.height; ++y)
         for (int x = 0; x < to.width; ++x) {
-            // Row 0 and column 0 of `from` are at: 1 top left, 2 top right, 3 bottom right,
-            // 4 bottom left, 5 left top, 6 right top, 7 right bottom, 8 left bottom.
+            // Position of `from`'s row 0 and column 0: 1 top left, 2 top right, 3 bottom right, 4
+            // bottom left, 5 left top, 6 right top, 7 right bottom, 8 left bottom.
             const int a = isOnItsSide ? y : x, b = isOnItsSide ? x : y;
             const bool flipsA =
                 orientation == 2 || orientation == 3 || orientation == 7 || orientation == 8;

@@ -15,5 +15,5 @@ struct Picture {
     uint8_t at(int x, int y) const { return grey[static_cast<size_t>(y) * width + x]; }
 };
 
-// Throws std::runtime_error with the reason if the file cannot be read, or holds no picture.
+// Throws std::runtime_error with the reason if the file cannot be read or is not a picture.
 Picture readPicture(const std::string& path);

@@ -16,18 +16,20 @@
 namespace {
 
 constexpr uint32_t phaseMask = (1u << 18) - 1, phaseCarry = 1u << 18; // modem_baud.v
-constexpr uint32_t timerLast = (1u << 17) - 1; // modem_timer.v: its tick comes then
-constexpr unsigned everyCarryTicks = 5;        // from this code of the baud rate on
+constexpr uint32_t timerLast = (1u << 17) - 1; // count before modem_timer.v's tick
+constexpr unsigned everyCarryTicks = 5;        // lowest code of the baud rate with which every
+                                               // carry is a tick
 constexpr uint8_t lastTick = 7;                // modem_uart_rx.v, modem_uart_tx.v
 constexpr uint64_t worth = 4;                  // fewer clocks than these are evaluated
 constexpr uint64_t margin = 2;                 // clocks before an event that are evaluated
-constexpr uint64_t settling = 8; // clocks after a carry in which its tick may still have effects
-constexpr uint64_t least = 8;    // clocks that a platform rests alone at first
-constexpr unsigned longest = 32; // clocks between two tests of a busy chip
+constexpr uint64_t settling = 8;     // clocks after a carry during which its tick may still have
+                                     // effects
+constexpr uint64_t least = 8;        // clocks that a platform rests alone at first
+constexpr unsigned longest = 32;     // clocks between two tests of a busy chip
 constexpr uint64_t blameEvery = 256; // tests of a busy chip
 // blocks of soc.v other than its cores
 const std::set<std::string> platform = {"u_platform", "u_modem", "u_system_slot"};
-// the ones without a clock while the platform rests (testbench/sim/CMakeLists.txt)
+// the blocks that get no clock while the platform rests (testbench/sim/CMakeLists.txt)
 const char* const resting[] = {"u_platform.u_fsmc_bridge.", "u_platform.u_bus_decoder.", "u_modem.",
                                "u_system_slot."};
 
@@ -73,7 +75,7 @@ std::vector<std::string> SocState::differences(const Image& a, const Image& b) {
 }
 
 QuietSpan::QuietSpan(VSoc& top) : top_(top), image_(sizeof(VSoc___024root)) {
-    bool joins = false; // the member before is the platform's, too
+    bool joins = false; // the previous member also belongs to the platform
     for (const Member& m : members) {
         const bool is = std::any_of(std::begin(resting), std::end(resting), [&](const char* block) {
             return std::string(m.path).rfind(block, 0) == 0;
@@ -102,7 +104,7 @@ void QuietSpan::takeImage() {
     nullAge_ = 0;
 }
 
-// True if all state of the platform except the counters is that of the image.
+// True if all state of the platform except the counters equals the image.
 bool QuietSpan::isPlatformLikeImage() {
     const VSoc___024root& r = *top_.rootp;
     copyInto(image_, r, r.tick_i);
@@ -135,7 +137,7 @@ void QuietSpan::blame() {
     for (const std::string& path : SocState::differences(image_, SocState::of(*top_.rootp)))
         blocks.insert(path.substr(0, path.find('.')));
     for (const std::string& block : blocks)
-        if (block.rfind("u_", 0) == 0 && !platform.count(block)) // u_clock_fir: fir's own clock
+        if (block.rfind("u_", 0) == 0 && !platform.count(block)) // u_clock_fir: the clock of fir
             ++movers_[block.substr(block.rfind("u_clock_", 0) == 0 ? 8 : 2)];
 }
 
@@ -159,7 +161,7 @@ uint64_t QuietSpan::untilEvent(const Counters& now, uint64_t most, bool passesTi
     uint64_t clocks = most;
     if (timerRuns_)
         clocks = std::min<uint64_t>(clocks, timerLast - now.timer);
-    uint64_t carries = nullAge_ && passesTicks ? ~0ull >> 32 : 0; // that may be passed
+    uint64_t carries = nullAge_ && passesTicks ? ~0ull >> 32 : 0; // carries that may be skipped
     if (rxStep_)
         carries = std::min<uint64_t>(carries, lastTick - now.rx);
     if (txStep_)
@@ -170,8 +172,8 @@ uint64_t QuietSpan::untilEvent(const Counters& now, uint64_t most, bool passesTi
     return clocks > margin ? clocks - margin : 0;
 }
 
-// Learns from the clocks since the last comparison how the counters move. False if they have moved
-// in an unknown way.
+// Learns how the counters move from the clocks since the last comparison. Returns false if they
+// have moved in an unknown way.
 bool QuietSpan::learn(const Counters& now) {
     const uint8_t rx = (now.rx - before_.rx) & lastTick, tx = (now.tx - before_.tx) & lastTick;
     if (!isFixed_) { // the clock after the image was taken
@@ -208,7 +210,7 @@ QuietSpan::Clocks QuietSpan::look(Clocks most) {
         return {};
     Counters now = counters();
     if (now.phase & phaseCarry || top_.rootp->TICK)
-        return {}; // a tick is on its way
+        return {}; // a tick is in progress
     if (!hasImage_) {
         takeImage();
         return {};
@@ -234,7 +236,7 @@ QuietSpan::Clocks QuietSpan::look(Clocks most) {
     since_ = 0;
     if (isLike) {
         rest_ = least;
-        return isAllFixed_ ? clocks : Clocks{}; // else once more, in the next clock
+        return isAllFixed_ ? clocks : Clocks{}; // otherwise check again in the next clock
     }
     blame();
     std::memcpy(image_.data(), top_.rootp, image_.size());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// recording: stores all inputs of a flight, with their times, in a file, so that it can be flown
-// again bit by bit, without the ground's program.
+// recording: stores all inputs of a flight, with their times, in a file, so that it can be replayed
+// bit by bit, without the ground's program.
 //
 // The simulator is deterministic except for the bytes of the ground's program on its serial port,
 // and their times. The file is JSON Lines, one object each:
@@ -9,8 +9,9 @@
 //   {"ns": time, "up": "hexadecimal"}        bytes from the program to its modem
 //   {"ns": time, "spoilt": n}                bytes with a wrong stop bit
 //   {"ns": time, "down": n}                  bytes that the modem handed to the program
-//   {"ns": time, "digest": "hexadecimal"}    of all bus accesses until then, each 100 ms
-//   {"ns": time, "end": {...}}               the flight's final state; missing if it was killed
+//   {"ns": time, "digest": "hexadecimal"}    digest of all bus accesses so far, each 100 ms
+//   {"ns": time, "end": {...}}               the flight's final state; missing if the simulator was
+//   killed
 
 #pragma once
 
@@ -29,10 +30,10 @@
 
 // The events of a flight, with their times, as JSON Lines, for the mission's page and other
 // tools. One object a line:
-//   {"ns": t, "packet": bytes, "from": "ground" or "uav", "lost": bool}   one left the air
+//   {"ns": t, "packet": bytes, "from": "ground" or "uav", "lost": bool}   a packet's end
 //   {"ns": t, "slot": n, "events": bits}   the processor has read these events of slot n, not 0
-//   {"ns": t, "task": name}    this task of the firmware goes on (Cortex-M3 only)
-//   {"ns": t, "accesses": {"n": count}}    register accesses to slots in the 10 ms from t on
+//   {"ns": t, "task": name}    the firmware switches to this task (Cortex-M3 only)
+//   {"ns": t, "accesses": {"n": count}}    register accesses to slots in the 10 ms after t
 class Events {
 public:
     explicit Events(const std::string& file) : file_(file) {}
@@ -46,7 +47,7 @@ public:
 
     void task(uint64_t ns, const std::string& name) { put({{"ns", ns}, {"task", name}}); }
 
-    // A register access: slot * 16 + word.
+    // Records a register access; `word`: slot * 16 + word.
     void access(uint64_t ns, uint32_t word, uint32_t value, bool isWrite) {
         constexpr uint64_t binNs = 10'000'000;
         constexpr uint32_t event = 1;
@@ -91,15 +92,15 @@ private:
     uint64_t hash_ = 0xCBF29CE484222325;
 };
 
-// Stands between a modem and its line, passes all bytes on and records them. A line of the file is
-// written when the next begins, so a killed simulator leaves its work.
+// Sits between a modem and its line, passes on all bytes and records them. A line of the file is
+// written when the next begins, so the recording of a killed simulator is usable.
 class RecordedLine : public SerialLine, SerialClient {
     using json = nlohmann::json;
 
 public:
     // Throws std::runtime_error if the file cannot be written.
     RecordedLine(SerialLine& line, const std::string& file, const json& head) : line_(line) {
-        // The flight's description may hold the modem's key: nobody else may read the file.
+        // The flight's description may hold the modem's key: only the owner may read the file.
         const int fd = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
         if (fd < 0 || fchmod(fd, 0600) != 0)
             throw std::runtime_error("cannot write '" + file + "': " + std::strerror(errno));
@@ -170,7 +171,7 @@ private:
     SerialLine& line_;
     std::ofstream file_;
     uint64_t now_ = 0;
-    // The content of the line under way, of `now_`.
+    // Key and value of the line being written, of time `now_`.
     const char* what_ = nullptr;
     std::string bytes_;
     unsigned count_ = 0;
@@ -194,7 +195,7 @@ public:
             if (!head_.at("flight").is_object())
                 throw std::runtime_error("another version wrote it");
             while (!whole_ && std::getline(in, text) &&
-                   !in.eof()) { // the last line may be cut short
+                   !in.eof()) { // the last line may be incomplete
                 ++number;
                 json line = json::parse(text);
                 endNs_ = line.at("ns");
@@ -211,15 +212,15 @@ public:
                 moves_.push_back(move);
             }
         } catch (const std::exception& e) {
-            throw std::runtime_error(fmt::format("'{}' is no recording of a flight: line {}: {}",
-                                                 file, number, e.what()));
+            throw std::runtime_error(fmt::format(
+                "'{}': expected the recording of a flight, line {}: {}", file, number, e.what()));
         }
     }
 
     const json& head() const { return head_; }
     uint64_t endNs() const { return endNs_; }
-    // Throws std::runtime_error, with the place, if the flight differs from the recorded one, by a
-    // digest or its final state.
+    // Throws std::runtime_error, with the time, if a digest or the final state differs from the
+    // recorded flight.
     void compare(uint64_t ns, const char* what, const json& value) {
         if (mark_ == marks_.size())
             return;

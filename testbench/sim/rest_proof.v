@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
 // rest_proof: proves that the chip's platform (bridge, decoder, modem, system slot) keeps its state
-// while sim_soc.v stops its clock: while stirs_o is low (quiet_span.h). Only for the prover.
+// while sim_soc.v stops its clock, which it does while stirs_o is low (quiet_span.h). Used only by
+// the prover.
 //
-// In the first clock the platform is in any state and only its counters move. Then only they move
-// in all later clocks, by the same steps, whatever cores and memory do, as long as stirs_o is low,
-// the platform's pins stand still, and no counter has its event. What the platform shows cores,
-// memory and pins does not depend on the counters (prove.sh). The chip's clock is `later` here:
-// idle_registers.v makes an assumption and an assertion of each flip-flop with this clock.
+// In the first clock the platform is in any state and only its counters move. The proof shows that
+// then only they move in all later clocks, by the same steps, whatever cores and memory do, as long
+// as stirs_o is low, the platform's pins are stable, and no counter has its event. The outputs of
+// the platform to cores, memory and pins do not depend on the counters (prove.sh). The chip's clock
+// is `later` here: idle_registers.v makes an assumption and an assertion of each flip-flop with
+// this clock.
 
 `default_nettype none
 `include "rests.vh"
@@ -39,7 +41,7 @@ module rest_proof (
     wire stirs = `PLATFORM_STIRS(u_soc.u_platform);
     always @* assume (!stirs);
 
-    // The counters, and those whose event is a tick.
+    // The counters, and the counters whose event is a tick.
     (* hierconn *) wire [63:0] \u_soc.u_system_slot.cycles ;
     (* hierconn *) wire [18:0] \u_soc.u_modem.u_baud.phase ;
     (* hierconn *) wire [16:0] \u_soc.u_modem.u_timer.clocks ;

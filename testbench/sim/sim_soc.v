@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// sim_soc: soc.v, its netlist, or that of table1.v (TABLE1), as the simulator clocks it.
+// sim_soc: soc.v, its netlist or the netlist of table1.v (TABLE1), with the simulator's clocks.
 //
-// A change of tick_i is a clock: clk_i rises with it and falls as soon as its edge is taken, so
-// that both edges pass in one evaluation. The memory's pins have flip-flops here and are driven
-// before the edge with their values after it. So no path leads from inputs through the chip's
-// logic, which the model would evaluate each time.
+// Each change of tick_i is one clock: clk_i rises with it and falls as soon as its edge is taken,
+// so that both edges need one evaluation. The memory's pins have flip-flops here and are driven
+// before the edge with their values after it. Therefore no path leads from inputs through the
+// chip's logic, which the model would otherwise evaluate each time.
 
 `default_nettype none
 `ifdef RESTS
@@ -29,7 +29,7 @@ module sim_soc #(
     input  wire        fsmc_nadv_n_i,
     output wire        fsmc_nwait_n_o,
     // modem pins
-    input  wire        modem_rxd_i, // from the modem
+    input  wire        modem_rxd_i, // driven by the modem
     output wire        modem_txd_o,
     input  wire        modem_cts_n_i,
     output wire        modem_rts_n_o,
@@ -61,7 +61,7 @@ module sim_soc #(
 `endif
     reg  ticked = 1'b0;
 `ifdef TRACED
-    wire clk_i = tick_i; // so that a waveform has both edges
+    wire clk_i = tick_i; // a waveform then has both edges
 `else
     wire clk_i = tick_i != ticked;
 `endif
@@ -78,8 +78,8 @@ module sim_soc #(
     end
 
 `ifdef RESTS
-    // The simulator's copies of soc.v and platform.v take these clocks (rest.awk). The platform's
-    // clock stops while rests_i is high, the memory's while the memory would not move.
+    // The simulator's copies of soc.v and platform.v use these clocks (rest.awk). The platform's
+    // clock stops while rests_i is high, the memory's clock while the memory would not move.
     wire platform_clk = clk_i && !rests_i;
     wire memory_clk;
     core_gate #(.GATED(1)) u_gate_memory (

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// simulated_board: the vehicle's source of secrets where its firmware runs on the host: random
-// numbers by a seed, from the Cortex-M3 model's generator, and words that keep their values without
-// power. Initially it is open.
+// simulated_board: replaces the vehicle's source of secrets if its firmware runs on the host:
+// random numbers from a seed, by the Cortex-M3 model's generator, and words that keep their values
+// without power. Initially the vehicle is open.
 
 #pragma once
 
@@ -24,7 +24,8 @@ public:
     }
     // Gives it to the firmware.
     void use() { UAV_useBoard(&port(), this); }
-    // Gives the vehicle its key, 16 bytes, and its address, as its factory does; none: opens it.
+    // Stores the vehicle's key, 16 bytes, and its address, as its factory does; an empty key opens
+    // it.
     void provide(const std::vector<uint8_t>& key, uint32_t address = 1) {
         use();
         UAV_provide(address, key.empty() ? nullptr : key.data());

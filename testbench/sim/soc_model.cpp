@@ -9,7 +9,7 @@
 
 namespace {
 
-// The model has no threads of its own: a fork keeps only the calling one.
+// The model has no threads: a fork keeps only the calling thread.
 VerilatedContext* oneThread() {
     auto* context = new VerilatedContext;
     context->threads(1);
@@ -52,7 +52,7 @@ void SocModel::reset(bool memoryStarts) {
     for (int i = 0; i < 8; ++i)
         tick();
     top_->rst_i = 0;
-    // The chip's reset ends some clocks after the pin's, through flip-flops.
+    // The chip's reset ends some clocks after the pin's, because of its synchroniser.
     for (int i = 0; i < 8 || !(memoryStarts || memory_.pins.calibDone); ++i)
         tick();
 }
@@ -75,7 +75,7 @@ void SocModel::timeModels() {
     top_->modem_cts_n_i = line_.ctsN();
 }
 
-// Clocks until a model outside of the chip is due, or one at the platform's pins.
+// Clocks until a model outside the chip is due, or a model at the platform's pins.
 QuietSpan::Clocks SocModel::mayBeQuiet() const {
     if (!skips_ || now() >= nextEvent_)
         return {};
@@ -96,7 +96,7 @@ void SocModel::pay() {
     uint64_t left = span_.pass(owed_);
     memory_.pass(owed_ - left);
     owed_ = 0;
-    if (left) // the chip stands in a tick of the baud rate: no state to add clocks to
+    if (left) // the chip is in a tick of the baud rate: clocks cannot be added to its state
         quiet_ = 0;
     for (cycles_ -= left; left; --left)
         evaluate();
@@ -109,7 +109,7 @@ void SocModel::wake() {
     span_.forget();
 }
 
-// The processor's pins, between two clock edges.
+// Updates the processor's pins between two clock edges.
 void SocModel::settle() {
     wake();
     VSoc& top = *top_;
@@ -150,7 +150,7 @@ void SocModel::tick() {
 }
 
 void SocModel::evaluate(bool rests) {
-    // The design is settled. The memory's pins get what they have after this clock.
+    // The design is settled. The memory's pins get their values after this clock.
     VSoc& top = *top_;
     sampleMcb(top, memory_);
     driveMcb(top, memory_);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // soc_model: the Verilated chip with its memory, its modem and its processor's FSMC: one clock.
-//
-// Clocks in which only counters of the chip would move are not evaluated but owed: they count at
-// once, and are added to the chip's counters before anything reads it (quiet_span.h).
+// Clocks in which only counters of the chip would move are not evaluated: they count at once as
+// passed, and are added to the chip's counters before anything reads it (quiet_span.h).
 
 #pragma once
 
@@ -25,18 +24,17 @@ public:
     static constexpr uint64_t clkHz = SOC_CLK_HZ; // make run CLK_HZ=
     static constexpr uint64_t clkNs = 1'000'000'000 / clkHz;
 
-    // The ratio is that of HCLK to clkHz: 120 MHz to 100 MHz, scaled down, unless stated otherwise.
+    // Ratio of HCLK to clkHz: by default 120 MHz to 100 MHz, scaled down.
     SocModel(RfChannel& air, XBee::Options modemOptions, unsigned hclkPerUnit = 6,
              unsigned clkPerUnit = 5);
     ~SocModel();
 
     // Resets the chip. Without `memoryStarts` the memory is ready at the end. With it the memory
-    // starts then, as on a board whose processor does not wait for it: a millisecond.
+    // starts then, which takes a millisecond, as on a board whose processor does not wait for it.
     void reset(bool memoryStarts = false);
     void tick(); // one clock cycle
 
-    // Passes clock cycles at once, as far as the chip is quiet, up to clock `until`. Returns their
-    // number.
+    // Skips clock cycles as far as the chip is quiet, up to clock `until`. Returns their number.
     uint64_t passQuiet(uint64_t until) {
         const uint64_t clocks = until > cycles_ ? std::min(quiet_, until - cycles_) : 0;
         quiet_ -= clocks;
@@ -44,22 +42,22 @@ public:
         cycles_ += clocks;
         return clocks;
     }
-    // Lets the clocks of cores run while they are idle, too (hdl/system/core_gate.v); for
-    // comparisons, before the reset.
+    // Keeps the clocks of cores running while they are idle (hdl/system/core_gate.v). Call it
+    // before the reset; used for comparisons.
     void ungate() {
         const char* option = "+ungated";
         context_->commandArgsAdd(1, &option);
     }
-    // Evaluates each clock from now on, or no longer; for comparisons.
+    // Evaluates every clock if `all`; for comparisons.
     void evaluateAll(bool all) {
         wake();
         skips_ = !all;
     }
     uint64_t evaluated() const { return evaluated_; } // clocks
-    // The core that moves in most of them; empty: none.
+    // Name of the core that moves in most of them; empty if there is none.
     std::string mover() const { return span_.mover(); }
 
-    // Returns the chip's whole present state.
+    // Returns the complete current state of the chip.
     const VSoc& chip() {
         pay();
         return *top_;
@@ -68,8 +66,8 @@ public:
     uint64_t now() const { return cycles_ * clkNs; }
     bool irq() const { return top_->irq_o; }
 
-    // Sets the input pins of cores (MAP_PIN_...), from the next settling on. With `sampled` they
-    // lead to flip-flops alone, as a sensor's: a platform that rests goes on to do so.
+    // Sets the input pins of cores (MAP_PIN_...) from the next settling. With `sampled` they only
+    // lead to flip-flops, as a sensor's do: a resting platform then continues to rest.
     void setCorePins(uint32_t value, bool sampled = false) {
         if (!sampled) {
             wake();
@@ -81,8 +79,8 @@ public:
     }
     uint32_t corePins() const { return top_->core_pins_o; }
 
-    // Sets the driver of those pins. Called before a clock, it returns the count of clocks
-    // (cycles()) of its next call.
+    // Sets the driver of those pins. It is called before a clock, and returns the clock (cycles())
+    // of its next call.
     void onClock(std::function<uint64_t()> drive) { drive_ = std::move(drive); }
     // Called at each change of the cores' outputs.
     void onCorePins(std::function<void(uint32_t)> changed) {
@@ -90,7 +88,7 @@ public:
     }
 
     FsmcMaster& fsmc() { return fsmc_; }
-    // Gives the FSMC's wires delays from now on, at a clock of 100 MHz.
+    // Adds delays to the FSMC's wires, at a clock of 100 MHz.
     void delay(const FsmcCorner& corner, uint64_t seed, bool looksTwice) {
         delayed_ = pins_;
         far_ = &delayed_;
@@ -98,17 +96,18 @@ public:
         fsmc_.pauseWrites(looksTwice);
     }
     McbModel& memory() {
-        wake(); // it may be about to hang, or no longer
+        wake(); // the modem may start or stop hanging
         return memory_;
     }
     XBee& modem() { return modem_; }
-    // A cable at the modem's pins, in its place.
+    // Cable at the modem's pins, instead of the modem.
     UartPins& line() { return line_; }
     void plugIn(Cable& cable) { cable_ = &cable; }
 
-    // Replaces what is done at each look at the models: the air advances. Several chips share one.
+    // Replaces the function that advances the air at each update of the models. Several chips share
+    // one.
     void onAir(std::function<void(uint64_t now)> advance) { advanceAir_ = std::move(advance); }
-    // Adds a model with events in simulated time (the ground's modem): it is called when due.
+    // Adds a model with events in simulated time (the ground's modem); it is called when due.
     void onTime(std::function<uint64_t(uint64_t now)> advance) { others_ = std::move(advance); }
 
     // Sets the listener for edges of the interrupt line.
@@ -133,7 +132,7 @@ private:
     uint64_t rested_ = 0;  // clocks that have passed in which it was not
     uint64_t evaluated_ = 0;
     FsmcPins pins_, delayed_;
-    FsmcPins* far_ = &pins_; // at the chip
+    FsmcPins* far_ = &pins_; // pins at the chip
     FsmcMaster fsmc_;
     McbModel memory_;
     RfChannel& air_;

@@ -30,18 +30,19 @@ public:
         std::function<bool()> irqEnabled = [] { return UAV_irqEnabled() != 0; };
     };
 
-    // `poll` is called about once a simulated millisecond; when it returns false, run() ends.
+    // `poll` is called about once per simulated millisecond; when it returns false, run() ends.
     UavMachine(SocModel& soc, std::function<bool()> poll)
         : UavMachine(soc, std::move(poll), Firmware()) {}
     UavMachine(SocModel& soc, std::function<bool()> poll, Firmware firmware);
 
-    // Boots the firmware and runs it until poll says so; exceptions of the models come through.
+    // Boots the firmware and runs it until `poll` returns false; exceptions of the models
+    // propagate.
     void run();
 
-    SimulatedBoard board; // of the UAV's application
+    SimulatedBoard board; // board of the UAV's application
 
-    // Makes the firmware's clock tick this many times as fast as the fabric's, for spans with only
-    // the firmware's own time-outs. The modem's times are then too long for it.
+    // Runs the firmware's clock this many times as fast as the fabric's, to shorten periods in
+    // which only the firmware's time-outs run. The modem's times are then too long for it.
     void hurry(unsigned times);
 
 private:
@@ -70,7 +71,7 @@ inline bool flies(
     return done;
 }
 
-// The firmware that the simulator runs on the host: each program that links sim_main answers.
-// `modemKey`: 16 bytes of the modem's AES key, or none; `isSecure`: the link has a key. Throws if
+// The firmware that the simulator runs on the host; each program that links sim_main defines it.
+// `modemKey`: 16 bytes of the modem's AES key, or empty; `isSecure`: the link has a key. Throws if
 // the firmware cannot encrypt.
 UavMachine::Firmware simulatedFirmware(const std::vector<uint8_t>& modemKey, bool isSecure);

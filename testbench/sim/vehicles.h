@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// vehicles: more vehicles and a second ground in the air of a flight, and what befalls them.
+// vehicles: further vehicles and a second ground station in a flight, and fault injection for them.
 
 #pragma once
 
@@ -14,8 +14,8 @@
 #include <cstdlib>
 #include <sstream>
 
-// One more vehicle in the air of a flight: a chip of its own, with the firmware's ARM
-// binary. It follows the first vehicle, which runs the air: pins would move too early otherwise.
+// One more vehicle in the air of a flight: a separate chip, with the firmware's ARM binary. It
+// follows the first vehicle, which runs the air: otherwise pins would move too early.
 class Follower {
 public:
     Follower(RfChannel& air, const XBee::Options& modem, const M3Machine::Config& config)
@@ -24,7 +24,7 @@ public:
         soc.onTime([this](uint64_t now) { return std::max(until_, now + 1); });
         soc.reset(true);
     }
-    // Runs up to this time. The air has brought nothing later than the last call.
+    // Runs up to this time. The air has delivered nothing later than the last call.
     void advance(uint64_t now) {
         until_ = now;
         machine_.advance(now);
@@ -36,12 +36,12 @@ private:
     uint64_t until_ = 0;
 };
 
-// A ground in the air of a flight: a modem on a pty, or on the recording of the flight that is
-// flown again, with a clock and a recording of its own. Simulated time waits for its program.
+// A ground station in the air of a flight: a modem on a pty, or on the recording of a replayed
+// flight, with a separate clock and recording. Simulated time waits for its program.
 struct Station {
     static constexpr uint32_t second = 0x00F0; // address of a second one's modem
 
-    // `out`: folder of its files; `number`: behind their names; `head`: first line of the
+    // `out`: folder of its files; `number`: appended to their names; `head`: first line of the
     // recording.
     Station(RfChannel& air, const XBee::Options& options, const std::string& out,
             const std::string& number, std::shared_ptr<ReplayedLine> from,
@@ -52,11 +52,11 @@ struct Station {
                                   pty, out + "/flight" + number + ".jsonl", head)),
           modem(line(), air, options), step(*status, pty, std::move(goOn)) {}
     SerialLine& line() { return replayed ? static_cast<SerialLine&>(*replayed) : *recorded; }
-    // Returns the time of its next call. A cable may be in the modem's place.
+    // Returns the time of its next call. A cable may replace the modem.
     uint64_t advance(uint64_t now, bool isWired = false) {
         if (!isWired)
             modem.advance(now);
-        status.set(now); // its program's clock
+        status.set(now); // clock of its program
         step.wait(now);
         return std::min(isWired ? never : modem.nextEvent(), std::max(step.nextEvent(), now + 1));
     }
@@ -64,12 +64,12 @@ struct Station {
     StatusFile status;
     PtyLine pty;
     const std::shared_ptr<ReplayedLine> replayed;
-    const std::unique_ptr<RecordedLine> recorded; // none in a replay
+    const std::unique_ptr<RecordedLine> recorded; // empty in a replay
     XBee modem;
     GroundStep step;
 };
 
-// Returns a vehicle's key in a file, if any; with a next key on its way, the old one.
+// Returns a vehicle's key from a file, if any; the old one while a next key is pending.
 inline std::vector<uint8_t> keyOf(const std::string& file, int address) {
     if (file.empty())
         return {};
@@ -111,7 +111,7 @@ public:
         from_ = static_cast<uint64_t>(std::atof(from.c_str()) * 1e9);
         until_ = from_ + static_cast<uint64_t>(std::atof(seconds.c_str()) * 1e9);
     }
-    // `modem`: the one with the address, or the twin's; none where somebody babbles.
+    // `modem`: the modem with this address, or the twin's; null for babble.
     void begin(RfChannel& air, const XBee* modem) {
         air_ = &air;
         modem_ = modem;

@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
         Frame frame = loadFrame(argv[1], 1024, 4096);
         auto corners =
             detectCorners(frame.pixels.data(), frame.width, frame.height, std::atoi(argv[2]));
-        if (corners.size() > VISION_RECORDS) // as many as the core counts and keeps
+        if (corners.size() > VISION_RECORDS) // the core counts and stores at most this many
             corners.resize(VISION_RECORDS);
         std::printf("{\"found\": %zu, \"best\": [", corners.size());
         const char* separator = "";

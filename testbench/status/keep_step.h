@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// keep_step: the part of SimStatus by which a program keeps step with simulated time.
+// keep_step: the part of SimStatus with which a program keeps step with simulated time.
 //
-// Simulated time stands still while the program works, and until the program has read all bytes
-// that its serial port was given.
+// Simulated time stops while the program works, and until the program has read all bytes that its
+// serial port has received.
 
 #pragma once
 

@@ -69,8 +69,8 @@ uint32_t SimulatedClock::nowUs() const {
 // next look.
 int SimulatedClock::wait(pollfd* fds, nfds_t count, uint32_t us) {
     const uint64_t begin = nowNs() / 1000;
-    // A program that keeps step waits for at least shortestUs. One that never waits would stop
-    // time, and might wait for it.
+    // A program that keeps step waits for at least shortestUs. A program that never waits would
+    // stop time, and might wait for time to pass.
     const uint64_t end =
         us == forever ? endOfTime : begin + (inStep() ? std::max(us, shortestUs) : us);
     const bool reads = std::any_of(fds, fds + count, [this](const pollfd& p) {
@@ -111,7 +111,7 @@ void SimulatedClock::keepStep(int serial, const std::string& device) {
     store(simulation_->keeper, token_);
 }
 
-// Another program on the same port may keep step by now.
+// Another program on the same port may keep step now.
 void SimulatedClock::leaveStep() {
     uint64_t mine = token_;
     if (mine)
@@ -152,7 +152,7 @@ size_t SimulatedClock::waiting() const {
     return carried < written ? written - carried : 0;
 }
 
-// ---- as XBEEAT_CLOCK's library ----
+// ---- the library named by XBEEAT_CLOCK ----
 
 extern "C" XBeeAT::Clock* createXBeeATClock(const char* argument) {
     return new SimulatedClock(argument);

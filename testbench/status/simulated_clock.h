@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// simulated_clock: a simulated modem's time as the clock of an engine on the ground. A simulator
-// names it in XBEEAT_CLOCK (clock.h) for the programs that it starts, with its SimStatus file as
-// the argument.
+// simulated_clock: makes a simulated modem's time the clock of an engine on the ground. A simulator
+// names this library in XBEEAT_CLOCK (clock.h) for the programs that it starts, with its SimStatus
+// file as the argument.
 
 #pragma once
 
@@ -34,7 +34,7 @@ private:
 
     SimStatus* simulation_ = nullptr;
     XBeeAT::SystemClock machine_;
-    uint64_t token_ = 0; // as SimStatus::keeper; 0 while it does not keep step
+    uint64_t token_ = 0; // same as SimStatus::keeper; 0 while it does not keep step
     uint64_t taken_ = 0;
     int serial_ = -1;
 };

@@ -15,7 +15,8 @@
 
 class StatusFile {
 public:
-    // Throws std::system_error, also if the disk is full: a file with holes would end in SIGBUS.
+    // Throws std::system_error, also if the disk is full: writing to a sparse file would raise
+    // SIGBUS.
     explicit StatusFile(const std::string& path) {
         unlink(path.c_str()); // never write through a link
         const int fd = open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);

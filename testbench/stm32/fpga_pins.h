@@ -37,7 +37,7 @@ public:
         }
     }
     bool isDone() const { return isDoneWired && (!flash_ || (boot_.running && now_() >= doneAt_)); }
-    bool isDoneWired = true; // else it is read as low
+    bool isDoneWired = true; // if false, DONE is read as low
     const Spartan6Boot& boot() const { return boot_; }
     // Called when the FPGA has lost its configuration, and starts to load one.
     std::function<void()> onReconfigured;
@@ -57,7 +57,7 @@ public:
             return 0xFF;
         return static_cast<uint8_t>((0x03000000 | read->address) >> (24 - 8 * index));
     }
-    // When the chip select changes next; ~0: it does not.
+    // Time of the next change of the chip select; ~0 if none is due.
     uint64_t nextEdgeNs() const {
         for (const Spartan6Boot::Read& read : boot_.reads)
             for (uint64_t edge : {read.from, read.to})

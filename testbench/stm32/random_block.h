@@ -5,7 +5,7 @@
 //
 //   0  CR  bit 2 RNGEN
 //   4  SR  bit 0 DRDY, 1 CECS, 2 SECS: now; 5 CEIS, 6 SEIS: since they were written 0
-//   8  DR  the number; 0 while there is none
+//   8  DR  the number; 0 while none is ready
 
 #pragma once
 

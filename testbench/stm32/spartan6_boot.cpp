@@ -19,7 +19,7 @@ enum Register : unsigned {
     General1 = 19
 };
 enum Command : uint16_t { Wcfg = 1, Start = 5, Rcrc = 7, Desync = 13, Iprog = 14 };
-constexpr uint16_t crcBypass = 0x10;                            // of COR1
+constexpr uint16_t crcBypass = 0x10;                            // CRC bypass bit of COR1
 constexpr uint32_t noCrc = 0x9876DEFC, watchdogClocks = 0xFFFF; // CWDT's default
 
 void addCrc(uint32_t& crc, unsigned reg, uint16_t word) {
@@ -32,7 +32,8 @@ void addCrc(uint32_t& crc, unsigned reg, uint16_t word) {
 } // namespace
 
 void Spartan6Boot::configure(const std::vector<uint8_t>& flash) {
-    constexpr uint64_t clearing = 2000; // of the configuration memory, about a millisecond
+    constexpr uint64_t clearing = 2000; // clocks to clear the configuration memory, about a
+                                        // millisecond
     running.reset();
     isStuck = false;
     strikes = 0;
@@ -114,7 +115,7 @@ Spartan6Boot::End Spartan6Boot::load(const std::vector<uint8_t>& flash, uint32_t
             return isStarted ? End::Done : End::Stuck;
         }
     }
-    return End::Stuck; // it never ends
+    return End::Stuck; // the configuration never ends
 }
 
 std::vector<uint8_t> standInBitstream(uint32_t seed, uint32_t frameWords, uint32_t idCode) {
@@ -139,7 +140,8 @@ std::vector<uint8_t> standInBitstream(uint32_t seed, uint32_t frameWords, uint32
     write(Cmd, {Rcrc});
     crc = 0;
     write(IdCode, {static_cast<uint16_t>(idCode >> 16), static_cast<uint16_t>(idCode)});
-    for (int i = 0; i < 32; ++i) // about ISE's distance from the sync word to the frames
+    for (int i = 0; i < 32; ++i) // about as many words as ISE writes between the sync word and the
+                                 // frames
         put(0x2000);
     write(Cmd, {Wcfg});
     put(2 << 13 | 2 << 11 | Fdri << 5);

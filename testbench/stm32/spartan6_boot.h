@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
 // spartan6_boot: how a Spartan-6 configures itself from an SPI flash (UG380 v2.7, chapters 5 and
-// 7). A header at address 0 sends it to the MultiBoot bitstream. It tries that three times, then
-// takes the golden one. A try fails by a wrong CRC or device, or without a sync word in time. Any
-// other fault behind the sync word stops it for good (AMD's answer 58249): such a bitstream must
-// never be in flash.
+// 7). A header at address 0 points to the MultiBoot bitstream. The FPGA tries that one three times,
+// then the golden one. A try fails by a wrong CRC or device, or if no sync word arrives in time.
+// Any other fault after the sync word stops the FPGA permanently (AMD's answer 58249): such a
+// bitstream must never be in flash.
 
 #pragma once
 
@@ -19,10 +19,10 @@ struct Spartan6Boot {
     // Starts at power-on, or when PROGRAM_B rises.
     void configure(const std::vector<uint8_t>& flash);
 
-    // The address in flash of the bitstream that runs; none: DONE stays low.
+    // Address in flash of the running bitstream; empty: DONE stays low.
     std::optional<uint32_t> running;
-    bool isStuck = false; // and makes no further try
-    uint64_t clocks = 0;  // of CCLK that it took
+    bool isStuck = false; // the FPGA makes no further try
+    uint64_t clocks = 0;  // CCLK clocks that it took
     unsigned strikes = 0; // tries that failed
     // The reads of the flash, a try each: the address, and the clocks at which its chip select
     // falls and rises.
@@ -38,6 +38,6 @@ private:
     uint16_t general_[4] = {}; // GENERAL1..4: MultiBoot's address, and the golden one's
 };
 
-// A bitstream that configures the model, instead of ISE's: frames of random words.
+// A bitstream that configures the model, in place of one from ISE: frames of random words.
 std::vector<uint8_t> standInBitstream(uint32_t seed, uint32_t frameWords,
                                       uint32_t idCode = Spartan6Boot::idCode);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// spi_flash: a serial NOR flash of 2 MiB like Winbond's W25Q16: instructions byte by byte, as the
-// SPI master clocks them, with the times of erases and writes. Programming only clears bits. An
-// operation cut by a loss of power leaves bits that a seed decides.
+// spi_flash: a 2 MiB serial NOR flash like Winbond's W25Q16: it takes instructions byte by byte, as
+// the SPI master clocks them, with realistic erase and write times. Programming only clears bits.
+// After a loss of power in an operation a seed decides the bits.
 
 #pragma once
 
@@ -30,8 +30,7 @@ public:
             if (instruction == WriteEnable || instruction == WriteDisable) {
                 mayWrite_ = instruction == WriteEnable;
             } else if (mayWrite_ && instruction == PageProgram && in_.size() > 4) {
-                const uint32_t page =
-                    at & ~(pageBytes - 1); // behind its end it goes on at its start
+                const uint32_t page = at & ~(pageBytes - 1); // wraps at the end of the page
                 page_.assign(pageBytes, 0xFF);
                 for (size_t i = 4; i < in_.size(); ++i)
                     page_[(at + i - 4) % pageBytes] = in_[i];
@@ -48,7 +47,7 @@ public:
             in_.clear();
         isSelected_ = isLow;
     }
-    // Eight clocks: takes a byte, and returns the byte that it drives meanwhile.
+    // Clocks one byte: takes `in`, and returns the byte that the flash drives meanwhile.
     uint8_t transfer(uint8_t in) {
         settle();
         in_.push_back(in);
@@ -67,9 +66,9 @@ public:
         }
         return 0xFF;
     }
-    // A loss of power cuts the operation under way. A cut write has cleared some of its bits. A cut
-    // erase, which first clears all bits and then sets them, leaves rows of 64 bytes old, cleared,
-    // erased, or in between.
+    // Cuts the current operation by a loss of power. A cut write has cleared some of its bits. An
+    // erase first clears all bits and then sets them; if cut, it leaves rows of 64 bytes old,
+    // cleared, erased, or in between.
     void powerOff() {
         settle();
         for (uint32_t row = at_; isUnder_ && row < at_ + size_; row += 64) {
@@ -130,8 +129,9 @@ private:
 
     std::function<uint64_t()> now_;
     std::mt19937_64 random_;
-    std::vector<uint8_t> in_, page_; // the instruction; what is being written, empty: an erase
+    std::vector<uint8_t> in_, page_; // the instruction; the page being written, empty during an
+                                     // erase
     bool isSelected_ = false, mayWrite_ = false, isUnder_ = false;
-    uint32_t at_ = 0, size_ = 0; // of the operation under way
+    uint32_t at_ = 0, size_ = 0; // address and size of the current operation
     uint64_t end_ = 0, operations_ = 0;
 };

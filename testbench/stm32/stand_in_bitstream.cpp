@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// stand_in_bitstream: writes a bitstream that configures the model of the FPGA, where there is no
-// ISE to make a real one. The simulator's design stays the same.
+// stand_in_bitstream: writes a bitstream that configures the model of the FPGA, for machines
+// without ISE. The simulator's design stays the same.
 
 #include "spartan6_boot.h"
 #include <cstdlib>
@@ -9,7 +9,7 @@
 #include <iostream>
 
 int main(int argc, char** argv) {
-    const uint32_t frames = 233'127; // words, so that all has an XC6SLX16's 466,408 bytes
+    const uint32_t frames = 233'127; // words, so that the total is the 466,408 bytes of an XC6SLX16
     if (argc < 3) {
         std::cerr << "Usage: stand_in_bitstream OUT.bin SEED [WORDS OF FRAMES, else " << frames
                   << "]\n";

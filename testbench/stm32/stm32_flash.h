@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// stm32_flash: the flash memory of an STM32F2 with 1 MiB, and its interface's registers (ST's
+// stm32_flash: the 1 MiB flash memory of an STM32F2, and the registers of its interface (ST's
 // PM0059, and the data sheet's table of erase and programming times). It has one bank: every read
-// waits until an erase or a write is done. Programming only clears bits. An operation cut by a
-// reset or a loss of power leaves bits that a seed decides.
+// waits until an erase or a write is done. Programming only clears bits. After a reset or a loss of
+// power in an operation a seed decides the bits.
 
 #pragma once
 
@@ -16,7 +16,7 @@
 class Stm32Flash {
 public:
     static constexpr uint32_t bytes = 0x100000, sectors = 12;
-    // Returns the offset of a sector's first byte.
+    // Returns the offset of a sector.
     static uint32_t sectorAt(unsigned n) { return n <= 4 ? n * 0x4000u : (n - 4) * 0x20000u; }
     // Returns its size: 4 sectors of 16 KiB, one of 64 KiB, 7 of 128 KiB.
     static uint32_t sectorBytes(unsigned n) { return n < 4 ? 0x4000 : n == 4 ? 0x10000 : 0x20000; }
@@ -25,8 +25,8 @@ public:
     }
 
     enum Register : uint32_t { Acr = 0, Keyr = 4, Optkeyr = 8, Sr = 12, Cr = 16, Optcr = 20 };
-    enum : uint32_t { Pg = 1, Ser = 2, Strt = 1u << 16, Lock = 1u << 31 }; // of CR
-    enum : uint32_t {                                                      // of SR
+    enum : uint32_t { Pg = 1, Ser = 2, Strt = 1u << 16, Lock = 1u << 31 }; // bits of CR
+    enum : uint32_t {                                                      // bits of SR
         Eop = 1,
         Pgaerr = 1u << 5,
         Pgperr = 1u << 6,
@@ -96,12 +96,12 @@ public:
         else
             begin({0, offset, size, value, false, false}, programNs);
     }
-    // Returns how long the memory cannot be read yet, in ns.
+    // Returns the time until the memory can be read again, in ns.
     uint64_t busyNs() const {
         const uint64_t now = now_();
         return operation_.under && operation_.end > now ? operation_.end - now : 0;
     }
-    // A reset or a loss of power cuts the operation under way.
+    // Cuts the current operation, as a reset or a loss of power does.
     void reset() {
         settle();
         if (operation_.under)
@@ -111,7 +111,7 @@ public:
         optcr_ = erasedOptions | uint32_t(protection_) << 8 | 1;
     }
 
-    uint8_t protection() const { return protection_; }  // 0xAA: none
+    uint8_t protection() const { return protection_; }  // 0xAA: not protected
     uint64_t operations() const { return operations_; } // erases and writes that have begun
     // Called when an erase or a write has begun.
     std::function<void()> onOperation;
@@ -120,8 +120,8 @@ public:
 
 private:
     static constexpr uint32_t keys[2] = {0x45670123, 0xCDEF89AB};
-    // Typical times (STM32F207's data sheet, flash memory characteristics) with a parallelism of 32
-    // bits, of sectors of 16, 64 and 128 KiB and of a word.
+    // Typical times (STM32F207 data sheet, flash memory characteristics) with a parallelism of 32
+    // bits, for sectors of 16, 64 and 128 KiB and for a word.
     static constexpr uint64_t eraseMs[] = {250, 550, 1000}, millisecond = 1'000'000,
                               programNs = 16'000;
 
@@ -140,7 +140,7 @@ private:
             keyStep_ = 0;
         }
     }
-    // The option bytes, of which only the read protection is kept (PM0059, 2.5).
+    // Option bytes, of which only the read protection is stored (PM0059, 2.5).
     void unlockOptions(uint32_t key) {
         static constexpr uint32_t optionKeys[2] = {0x08192A3B, 0x4C5D6E7F};
         optionStep_ = optionStep_ < 2 && key == optionKeys[optionStep_] ? optionStep_ + 1 : 3;
@@ -174,8 +174,8 @@ private:
         if (operation_.under && now_() >= operation_.end)
             finish();
     }
-    // Leaves a cut write with some of its bits cleared. A cut erase, which first clears all bits
-    // and then sets them, leaves rows of 64 bytes old, cleared, erased, or in between.
+    // Leaves a cut write with some of its bits cleared. An erase first clears all bits and then
+    // sets them; if cut, it leaves rows of 64 bytes old, cleared, erased, or in between.
     void cut() {
         operation_.under = false;
         const auto [end, offset, size, value, under, erases] = operation_;

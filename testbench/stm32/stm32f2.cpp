@@ -58,7 +58,7 @@ void Stm32F2::resetPeripherals() {
     registers_[rcc] = 0x83;           // HSI on and ready
     registers_[rcc + 4] = 0x24003010; // PLLCFGR
     registers_[gpio] = 0xA8000000;    // debug pins of port A
-    registers_[gpio + 0x400] = 0x280; // and of port B
+    registers_[gpio + 0x400] = 0x280; // the same register of port B
     updateFpgaPins();
     watchdog_ = {};
     crc_ = 0xFFFFFFFF;
@@ -100,7 +100,7 @@ unsigned Stm32F2::sleep(unsigned limit) {
     unsigned passed = 0;
     lineChanged_ = false;
     do {
-        // Passes most of it at once, where the design is quiet; by HCLK where it is not.
+        // Skips most of it at once if the design is quiet; otherwise advances by HCLK.
         const uint64_t now = now_();
         const unsigned hclks =
             now < until ? fsmc_.idleQuiet((carry_ + limit - passed) / each, until - now) : 0;
@@ -176,7 +176,7 @@ void Stm32F2::writeFlash(uint32_t offset, unsigned bytes, uint32_t value) {
     waitForFlash();
 }
 
-// One bank: while it is erased or written, no instruction comes from it.
+// One bank: no instruction can be fetched while it is erased or written.
 void Stm32F2::waitForFlash() {
     if (const uint64_t ns = flash_.busyNs())
         cpu_.stallFlash(ns * (config_.hclkHz / 1000) / 1'000'000 + 1);

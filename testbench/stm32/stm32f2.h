@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// stm32f2: an STM32F2 as far as the firmware uses one: the Cortex-M3, flash, RAM, FSMC, and clock,
-// pins, EXTI, CRC unit, watchdog, random numbers and backup SRAM by RM0033. Other addresses answer
-// with a bus fault, and so does a peripheral whose clock is off, or the FSMC while one of its pins
-// is not switched to it.
+// stm32f2: the parts of an STM32F2 that the firmware uses: the Cortex-M3, flash, RAM, FSMC, clock,
+// pins, EXTI, CRC unit, watchdog, random numbers and backup SRAM, by RM0033. An access to any other
+// address is a bus fault, and so is an access to a peripheral with its clock off, or to the FSMC
+// while one of its pins is not switched to it.
 
 #pragma once
 
@@ -22,11 +22,11 @@
 class Stm32F2 : private CpuBus {
 public:
     struct Config {
-        // Where the fabric's clock is scaled down, simulated time has fewer HCLK cycles at the
-        // FSMC's pins than in the processor: this many of the processor's for one at the pins.
+        // Processor HCLK cycles per HCLK cycle at the FSMC's pins. More than 1 if the fabric's
+        // clock is scaled down, because simulated time then has fewer cycles at the pins.
         unsigned coreCyclesPerHclk = 1;
-        uint32_t hclkHz = 120'000'000; // of the processor, in simulated time
-        uint64_t seed = 1;             // of the random number generator
+        uint32_t hclkHz = 120'000'000; // processor clock in simulated time, Hz
+        uint64_t seed = 1;             // seed of the random number generator
     };
     // `now` is simulated time in ns.
     Stm32F2(FsmcMaster& fsmc, std::function<uint64_t()> now, Config config);
@@ -41,11 +41,11 @@ public:
     // Sets the level at a pin of port B, 0..4, which EXTI can listen to.
     void setPinB(unsigned pin, bool high) { setPin(1, pin, high); }
     // Sets a function that is called whenever time has passed, at the pace of the pins. It returns
-    // the time in ns of its next call; until then a sleeping processor need not call it.
+    // the time of its next call, ns; until then a sleeping processor need not call it.
     void onTime(std::function<uint64_t()> called) { onTime_ = std::move(called); }
 
     // The FPGA's flash, on SPI 1 (PA4..7), PROGRAM_B on PC0, DONE on PC1. The flash loses its power
-    // with the processor.
+    // together with the processor.
     FpgaPins fpga;
 
     // USART 1, at its rate: the bytes that the firmware receives (PA10), whether that line is in a
@@ -55,7 +55,7 @@ public:
     bool isJumperWired = false; // PC2 to ground
     std::function<void(uint8_t)> onSerial;
 
-    // The 4 KiB that VBAT keeps through power-off and resets.
+    // The 4 KiB that VBAT preserves through power-off and resets.
     std::array<uint32_t, 1024>& backup() { return backup_; }
 
     struct Resets {
@@ -113,14 +113,14 @@ private:
     CortexM3 cpu_;
     Stm32Flash flash_;
     std::optional<ElfImage> image_;
-    std::map<uint32_t, uint32_t> registers_; // that only store
+    std::map<uint32_t, uint32_t> registers_; // registers that only store
     RandomBlock random_{config_.seed};
     std::array<uint32_t, 1024> backup_{};
     unsigned carry_ = 0, waited_ = 0;
     uint32_t resetFlags_ = 0, crc_ = 0xFFFFFFFF, pendingExti_ = 0;
     uint32_t pins_[2] = {0x410, 2}; // levels at ports A and B
     bool fsmcUsable_ = false, lineChanged_ = false;
-    uint64_t fpgaEdgeNs_ = ~0ull; // when PA4 changes next
+    uint64_t fpgaEdgeNs_ = ~0ull; // next change of PA4
     uint64_t spiTaken_ = 0;       // number of the FPGA's bytes that were taken
     uint8_t spiIn_ = 0xFF;
     struct {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// stm32f2_peripherals: Stm32F2's peripherals, most of which only store written values.
+// stm32f2_peripherals: the peripherals of Stm32F2, most of which only store written values.
 
 #include "stm32f2_map.h"
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 constexpr uint64_t lsiNs = 31'250; // one cycle of 32 kHz
 constexpr uint64_t crystalHz = 25'000'000, hsiHz = 16'000'000;
 constexpr uint64_t waitStateHz = 30'000'000; // HCLK for each wait state at 2.7 to 3.6 V
-constexpr unsigned extiVector = 6;           // of line 0; up to line 4 each has its own
+constexpr unsigned extiVector = 6;           // vector of EXTI line 0; lines 0 to 4 have one each
 
 } // namespace
 
@@ -23,8 +23,8 @@ bool Stm32F2::isSet(uint32_t address, unsigned bit) const {
 
 // ---- the table of peripherals ----
 
-// A peripheral: its registers' addresses, the bit of RCC that gives it a clock (enable 0: it always
-// has one), and what a read or write of a word does.
+// A peripheral: the addresses of its registers, the bit of RCC that enables its clock (enable 0:
+// always on), and functions that read and write a word.
 struct Stm32F2::Peripheral {
     uint32_t base, bytes, enable;
     unsigned bit;
@@ -58,7 +58,7 @@ const Stm32F2::Peripheral& Stm32F2::peripheralAt(uint32_t address) const {
         if (!isIn(address, p.base, p.bytes))
             continue;
         if (p.enable && !isSet(p.enable, p.clockBit(address)))
-            throw Error("the peripheral's clock is off (RCC)");
+            throw Error("access to a peripheral with its clock off (RCC)");
         return p;
     }
     throw noRegister();
@@ -134,7 +134,7 @@ void Stm32F2::checkWaitStates() {
                           std::to_string(needed));
 }
 
-// ---- RCC: oscillators and PLL are ready at once ----
+// ---- RCC: oscillators and PLL are ready immediately ----
 
 uint32_t Stm32F2::readRcc(uint32_t offset) {
     const uint32_t value = stored(rcc + offset);
@@ -222,7 +222,7 @@ void Stm32F2::writeCrc(uint32_t offset, uint32_t value) {
     }
 }
 
-uint32_t Stm32F2::readPower(uint32_t offset) { // the regulator is ready at once
+uint32_t Stm32F2::readPower(uint32_t offset) { // the regulator is ready immediately
     const uint32_t value = stored(power + offset);
     return value | (value >> 6 & 8);
 }
@@ -251,7 +251,7 @@ void Stm32F2::writeRandom(uint32_t offset, uint32_t value) {
 // ---- USART 1 and SPI 1 ----
 
 uint32_t Stm32F2::readUsart(uint32_t offset) {
-    if (offset == 0) // a written byte is sent at once
+    if (offset == 0) // a written byte is sent immediately
         return 0xC0 | uint32_t(!serialIn.empty()) << 5;
     if (offset != 4)
         return storedIn(usart, offset, 0x1C);
@@ -268,7 +268,7 @@ void Stm32F2::writeUsart(uint32_t offset, uint32_t value) {
         onSerial(static_cast<uint8_t>(value));
 }
 
-// A master's byte is transferred as soon as it is written. A slow slave loses bytes.
+// A master's byte is transferred as soon as it is written. A slave that is too slow loses bytes.
 uint32_t Stm32F2::readSpi(uint32_t offset) {
     uint32_t& value = storedIn(spi, offset, 0x24);
     const bool isMaster = stored(spi) & 4;
@@ -284,7 +284,7 @@ uint32_t Stm32F2::readSpi(uint32_t offset) {
 void Stm32F2::writeSpi(uint32_t offset, uint32_t value) {
     if (offset == 12) {
         spiIn_ = fpga.transfer(static_cast<uint8_t>(value));
-        waited_ += 32; // at half of PCLK2, as the driver has it
+        waited_ += 32; // at half of PCLK2, as the driver sets it
         return;
     }
     uint32_t& written = storedIn(spi, offset, 0x24);

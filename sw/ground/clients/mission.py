@@ -54,7 +54,7 @@ def parse_arguments():
         args.endpoint = "%s -d %s -a 0x0001 -s 0x0000" % (
             "serial" if args.wire else "xbee-at", args.device)
     except (OSError, ValueError, KeyError) as error:
-        sys.exit("mission: '%s' describes no flight: %r" % (args.flight, error))
+        sys.exit("mission: '%s' is not a flight: %r" % (args.flight, error))
     args.cores = [os.path.join(IP, core) for core in flight["cores"]]
     return args
 

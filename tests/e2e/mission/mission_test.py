@@ -130,8 +130,8 @@ class Cases(Script):
         replay = SIMULATOR, "--out", "replay", "--replay"
         self.fails("not the flight that was recorded: it departs between", *replay, "other")
         write("other/flight.jsonl", '{"no": "flight"}\n')
-        self.fails("is no recording of a flight: line 1", *replay, "other")
-        self.fails("the replay needs a folder of its own", SIMULATOR, "--replay", self.out,
+        self.fails("expected the recording of a flight, line 1", *replay, "other")
+        self.fails("--out: expected a folder other than the recording's", SIMULATOR, "--replay", self.out,
                    "--out", self.out)
         self.fails("flown by the firmware's host build", *replay, self.out, "--gdb", "0")
         self.fails("writes no waveforms", *replay, self.out, "--wave", "wave.fst")
@@ -376,7 +376,7 @@ class Cases(Script):
             self.assertEqual(Path(name).read_text(), "mine\n")
         for text in '"text"', "[", "[{}]":
             write("bad.json", text)
-            self.fails("'bad.json' describes no flight", SIMULATOR, "--flight", "bad.json")
+            self.fails("'bad.json' is not a flight", SIMULATOR, "--flight", "bad.json")
             self.lacks("exception")
         write("flight.json", json.dumps(
             dict(threshold=24, loss=0, guard=20, patience=300, key="", camera=False, cores=[],

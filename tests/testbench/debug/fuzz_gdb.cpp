@@ -20,8 +20,8 @@ namespace {
 
 class Nobody : public CpuBus {
 public:
-    uint32_t read(uint32_t, unsigned) override { throw Error("nobody answers"); }
-    void write(uint32_t, unsigned, uint32_t) override { throw Error("nobody answers"); }
+    uint32_t read(uint32_t, unsigned) override { throw Error("no device at this address"); }
+    void write(uint32_t, unsigned, uint32_t) override { throw Error("no device at this address"); }
     void pass(unsigned) override {}
     unsigned takeWaited() override { return 0; }
 };

@@ -188,7 +188,7 @@ TEST_F(Traces, ThatAreWrongAreRefusedWithTheirLine) {
     EXPECT_EQ(fault(head + "0,2,-50,0\n"),
               ":2: time and delay are not negative, loss is from 0 to 1");
     EXPECT_EQ(fault(head + "1,0,-50,0\n1,0,-50,0\n"), ":3: time does not grow");
-    EXPECT_EQ(fault(head), ":2: there is no row");
+    EXPECT_EQ(fault(head), ":2: no row found");
 }
 
 } // namespace

@@ -155,10 +155,10 @@ def read(path):
     except (OSError, json.JSONDecodeError) as error:
         raise Stop(f"cannot read the flight '{path}': {error}", 2) from None
     except (ValueError, RecursionError):
-        raise Stop(f"the flight '{path}' is no JSON in UTF-8, or its numbers or brackets are too "
-                   "long", 2) from None
+        raise Stop(f"the flight '{path}': expected JSON in UTF-8, got invalid or too deeply "
+                   "nested text", 2) from None
     if wrong(flight):
-        raise Stop(f"'{path}' describes no flight: {wrong(flight)}", 2)
+        raise Stop(f"'{path}' is not a flight: {wrong(flight)}", 2)
     return flight
 
 

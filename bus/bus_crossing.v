@@ -8,7 +8,7 @@
 // The core may still perform it later; until it has answered, all other accesses end with an error,
 // and the interrupt line is low. core_valid_o falls only by core_ready_i or a reset of the core.
 // The handshake has no reset, so a reset of either side neither creates nor loses a request.
-// Constraints: those of cdc_bus, cdc_bit and cdc_reset, written by coremap for each such core.
+// Constraints: as for cdc_bus, cdc_bit and cdc_reset; coremap writes them for each such core.
 
 `default_nettype none
 
@@ -30,7 +30,7 @@ module bus_crossing #(
     input  wire        core_irq_i
 );
     // ---- clk_i
-    reg       owes;     // a request has been sent, and its answer has not arrived yet
+    reg       owes;     // a request has been sent and is not answered yet
     reg       asked;    // the current access has sent that request
     // a clock after the answer: an interrupt that the access has ended is low by now
     reg       answered;
@@ -71,8 +71,8 @@ module bus_crossing #(
     assign core_valid_o = busy && !core_rst_o;
     always @(posedge core_clk_i) begin
         busy     <= begins || (busy && !ends);
-        ended    <= ends;       // after the access's effect on the interrupt
-        core_irq <= core_irq_i; // no glitch of a LUT may cross
+        ended    <= ends;       // follows the access's effect on the interrupt
+        core_irq <= core_irq_i; // a flip-flop: no glitch of a LUT may cross
         if (ends)
             answer <= {core_error_i || core_rst_o, core_rdata_i};
     end
@@ -92,7 +92,7 @@ module bus_crossing #(
     cdc_copy #(.WIDTH(33))
         u_answer (.clk_i(clk_i), .bus_async_i(answer), .bus_sync_o({error, rdata}));
     cdc_bit u_irq (.clk_i(clk_i), .bit_async_i(core_irq), .bit_sync_o(irq));
-    reg rst; // a flip-flop's output, as what resets without a clock must be
+    reg rst; // a flip-flop, because an asynchronous reset must be free of glitches
     initial rst = 1'b1;
     always @(posedge clk_i) rst <= rst_i;
     cdc_reset u_rst (.clk_i(core_clk_i), .rst_async_i(rst), .rst_o(core_rst_o));
@@ -100,9 +100,9 @@ module bus_crossing #(
 `endif
 
 `ifdef FORMAL
-    // The slot never hangs the bus, whatever the core's clock does. In place of the core's side,
-    // answers come at any time after their request, or never. The proof of cdc_bus has that a
-    // request and an answer arrive once and whole.
+    // The slot never hangs the bus, whatever the core clock does. The proof replaces the core side
+    // by answers that arrive at any time after their request, or never. The proof of cdc_bus shows
+    // that a request and an answer arrive exactly once and complete.
     (* anyseq *) reg free_handed, free_irq, free_error;
     (* anyseq *) reg [31:0] free_rdata;
     assign {handed, irq, error, rdata} = {free_handed, free_irq, free_error, free_rdata};
@@ -125,14 +125,14 @@ module bus_crossing #(
         cover (bus_valid_i && bus_ready_o && !bus_error_o && !rst_i);
     end
     always @* begin
-        assume (!handed || owes); // an answer comes to a request only
+        assume (!handed || owes); // answers follow requests only
         if (!rst_i) begin
             assert (patience + used == TIMEOUT);
             assert (!ask || !owes);                          // one request at a time
             // a waiting access has a request without an answer
             assert (!asked || owes || answered);
             assert (!answered || !owes);
-            // Each access that succeeds has an answer of its own, to its own request.
+            // Each access that succeeds has an answer to its request, and to no other.
             assert (!(bus_valid_i && bus_ready_o && !bus_error_o) || asked);
         end
     end

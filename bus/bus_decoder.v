@@ -62,7 +62,7 @@ module bus_decoder #(
             reg [2:0]            index;
             // the selected group; a single one with room for zeros is always selected
             reg [GROUPS-1:0]     group;
-            reg [256*GROUPS-1:0] left;  // each group is halved by each bit of the number
+            reg [256*GROUPS-1:0] left;  // each bit of the number halves each group
             reg [31:0]           rdata;
             integer g, b, i;
             always @(posedge clk_i) begin
@@ -93,8 +93,8 @@ module bus_decoder #(
     assign bus_error_o  = !mapped || |(selected & slot_error_i);
 
 `ifdef FORMAL
-    // The master's promises are assumed. The decoder's registers depend only on the clock before,
-    // so they hold for all inputs.
+    // The rules of the master are assumed. The decoder's registers depend only on the previous
+    // clock, so the properties hold for all inputs.
     reg             past = 1'b0;
     reg [10:0]      shown; // address and direction, a clock ago
     reg [SLOTS-1:0] one;   // any one slot

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// bus_registers: a whole slot of 16 words from parameters: the three words of the wrapper, then
-// those of the block.
+// bus_registers: a complete slot of 16 words, described by parameters: the three words of the
+// wrapper, then the words of the block.
 //
 // For words 3..15, one mask per kind selects the words of that kind. A word has at most one kind; a
 // word without a kind answers with an error. WIDTHS has 6 bits per word: bits above a word's width
@@ -44,7 +44,7 @@ module bus_registers #(
         .event_i(event_i), .irq_o(irq_o)
     );
 
-    wire [32*13-1:0] shown; // what a read of each word gives
+    wire [32*13-1:0] shown; // read value of each word
     genvar w;
     generate
         for (w = 3; w < 16; w = w + 1) begin : g_word

@@ -2,8 +2,8 @@
 //
 // bus_rules: the contract of docs/bus.md as properties, for either side of the register bus.
 //
-// Instantiated under `ifdef FORMAL at the ports of a slave (default) or of a master: the rules of
-// the other side are assumed, those of this side are asserted.
+// Instantiated under `ifdef FORMAL at the ports of a slave (default) or of a master. The rules for
+// the other side are assumed, the rules for this side are asserted.
 
 `default_nettype none
 
@@ -46,16 +46,16 @@ module bus_rules #(
     always @*
         assert (waiting == (waited != 16'd0));
 
-    // Master: a waiting transfer does not change; it is withdrawn only when patience is over.
+    // Master: a waiting transfer does not change; it is withdrawn only after PATIENCE clocks.
     wire stable    = !waiting || !valid_i
                      || (write_i == write_was && addr_i == addr_was &&
                          (!write_i || wdata_i == wdata_was));
     // The address and the direction precede valid by a clock: the decoder relies on it.
     wire early     = !valid_i || !past || (addr_i == addr_was && write_i == write_was);
-    // Valid is low between two transfers: a write's effect may take a clock.
+    // Valid is low between two transfers, because a write may take a clock to take effect.
     wire paused    = !valid_i || !ended;
     wire withdrawn = waiting && !valid_i && waited < PATIENCE;
-    // Slave: an answer in time; an error comes without data.
+    // Slave: answers in time; an error has data 0.
     wire late      = valid_i && !ready_i && waited >= LIMIT - 1;
     wire leaking   = valid_i && ready_i && error_i && !write_i && rdata_i != 32'd0;
 
@@ -67,7 +67,7 @@ module bus_rules #(
                 assert (paused);
                 assert (!withdrawn);
                 assume (!leaking);
-                // A slave may hang, so `late` is not assumed away.
+                // A slave may hang, so `late` is not excluded by an assumption.
             end
         end else begin : g_slave
             always @* if (!rst_i) begin

@@ -42,7 +42,7 @@ module bus_to_axi4lite #(
     wire [ADDR_WIDTH-1:0] addr;
     wire [31:0] wdata;
     reg  [ADDR_WIDTH-1:2] address;
-    reg  open; // a transfer has begun and its response has not come; no access starts meanwhile
+    reg  open; // a transfer has begun and its response is missing; no other access starts
 
     wire response = (axi_bvalid_i && axi_bready_o) || (axi_rvalid_i && axi_rready_o);
 
@@ -89,7 +89,7 @@ module bus_to_axi4lite #(
 
     wire unused = &{1'b0, addr[1:0], axi_bresp_i[0], axi_rresp_i[0], 1'b0};
 
-`ifdef RULES // in proofs, and in tests of cores
+`ifdef RULES // for proofs and for tests of cores
     // AXI4-Lite's handshakes as properties of a master (ARM IHI 0022, A3.1-A3.3, B1.1). The slave's
     // side is assumed, with all its freedom: ready before, with or after valid, a response at any
     // later time, or never.
@@ -122,7 +122,7 @@ module bus_to_axi4lite #(
         if (past && $past(rst_i)) // A3.1.2: no valid after reset
             assert (!axi_awvalid_o && !axi_wvalid_o && !axi_arvalid_o);
         if (past && !rst_i && !$past(rst_i)) begin
-            // A3.2.1: valid, once high, stays with its payload until ready
+            // A3.2.1: once valid is high, it stays high and the payload is stable until ready
             if ($past(axi_awvalid_o && !axi_awready_i))
                 assert (axi_awvalid_o && axi_awaddr_o == $past(axi_awaddr_o));
             if ($past(axi_wvalid_o && !axi_wready_i))
@@ -138,7 +138,7 @@ module bus_to_axi4lite #(
     end
 `endif
 `ifdef FORMAL
-    // Each answered access is answered by its own transfer, with what the core said.
+    // Each answered access is answered by its transfer, with the core's response.
     wire window = bus_valid_i && bus_addr_i[3] && bus_ready_o && !bus_error_o;
     always @* if (!rst_i && window) begin
         assert (open && address[4:2] == bus_addr_i[2:0]);
@@ -146,7 +146,7 @@ module bus_to_axi4lite #(
                             : axi_rvalid_i && !axi_rresp_i[1] && bus_rdata_o == axi_rdata_i);
         assert (bus_write_i ? write_open : ar_taken);
     end
-    always @* begin // whole words of data
+    always @* begin // complete words of data
         assert (axi_wstrb_o == 4'hF && {axi_awprot_o, axi_arprot_o} == 6'd0);
         assert ({axi_awaddr_o[1:0], axi_araddr_o[1:0]} == 4'd0);
         if (!rst_i && bus_valid_i && bus_addr_i[3] && busy && open &&

@@ -60,9 +60,9 @@ module bus_to_wishbone #(
 
     wire unused = &{1'b0, wb_stall_i, 1'b0};
 
-`ifdef RULES // in proofs, and in tests of cores
+`ifdef RULES // for proofs and for tests of cores
     // The Wishbone B4 handshakes as properties of a master with one transfer at a time. Numbers are
-    // those of the standard's rules (B4, 2010). The slave's side is assumed.
+    // rule numbers of the standard (B4, 2010). The slave's behaviour is assumed.
     reg past = 1'b0;
     reg outstanding = 1'b0; // pipelined: a strobe was taken and not answered
     // the cycle may end without an answer in the next clock
@@ -83,15 +83,15 @@ module bus_to_wishbone #(
         assert (!wb_stb_o || wb_cyc_o);              // 3.25: CYC whenever STB
         assert (!(wb_stb_o && outstanding));      // one at a time
         assume (wb_ack_i + wb_err_i + wb_rty_i <= 1); // 3.45: one of ACK, ERR, RTY
-        // 3.55: outside of a cycle a slave may hold its answer, so nothing is assumed there.
+        // 3.55: outside a cycle a slave may hold its answer, so nothing is assumed then.
         if (PIPELINED != 0 && wb_cyc_o && !outstanding && !taken)
-            assume (!answer);                   // 3.35: none before the strobe was taken
+            assume (!answer);                   // 3.35: no answer before the strobe was taken
     end
     always @(posedge clk_i) begin
         if (past && $past(rst_i))
-            assert (!wb_cyc_o && !wb_stb_o);       // 3.20: reset ends everything
+            assert (!wb_cyc_o && !wb_stb_o);       // 3.20: reset ends all cycles
         if (past && !rst_i && !$past(rst_i)) begin
-            // Rule 3.60: what qualifies a strobe stays until the strobe is taken.
+            // Rule 3.60: the signals that qualify a strobe are stable until the strobe is taken.
             if ($past(wb_stb_o && !taken && !abort)) begin
                 assert (wb_stb_o && wb_cyc_o);
                 assert (wb_we_o == $past(wb_we_o) && wb_adr_o == $past(wb_adr_o));
@@ -110,7 +110,7 @@ module bus_to_wishbone #(
         assert (wb_we_o == bus_write_i && wb_adr_o[4:2] == bus_addr_i[2:0]);
         assert (wb_stb_o || outstanding);
     end
-    always @* if (!rst_i) begin // whole words of the window
+    always @* if (!rst_i) begin // complete words of the window
         assert (wb_sel_o == 4'hF && wb_adr_o[1:0] == 2'd0);
         assert (!wb_cyc_o || (bus_valid_i && bus_addr_i[3]));
         if (bus_valid_i && bus_addr_i[3] && wb_cyc_o)

@@ -7,7 +7,7 @@
 //         bit 1: TIMEOUT, the core did not answer
 //   3     PAGE rw: byte address in the core of word 8, a multiple of 32; 0 if the core has
 //         eight words or less, which then repeat
-//   8..15 the core's words at PAGE + 0, 4, .. 28
+//   8..15 words of the core at PAGE + 0, 4, .. 28
 //
 // If the core does not answer within TIMEOUT clocks, or answers with an error, the access ends with
 // an error. After a time-out the adapter may still wait for the end of the core's transfer; until
@@ -22,7 +22,7 @@ module bus_window #(
 ) (
     `include "slot_ports.vh"
     output wire                  irq_o,
-    // the adapter: busy_o is high, with the rest stable, until done_i or until it falls by time-out
+    // the adapter: busy_o is high, with the other outputs stable, until done_i or the time-out
     input  wire                  idle_i,
     output reg                   busy_o,
     output wire                  write_o,
@@ -47,7 +47,7 @@ module bus_window #(
     endgenerate
 
     localparam [3:0] PAGE = 4'd3;
-    localparam WIDTH = ADDR_WIDTH > 5 ? ADDR_WIDTH : 6; // with a page
+    localparam WIDTH = ADDR_WIDTH > 5 ? ADDR_WIDTH : 6; // at least one page
 
     wire        own_ready, own_error, reg_write, reg_read;
     wire [31:0] own_rdata;
@@ -134,14 +134,14 @@ module bus_window #(
         cover (past && !rst_i && given_up && answered && !error_i);
     end
     always @* if (!rst_i) begin
-        assert (!busy_o || wanted);          // it never outlives the access
+        assert (!busy_o || wanted);          // it never lasts longer than the access
         assert (patience + used == TIMEOUT);
         if (bus_valid_i && !bus_write_i && bus_addr_i == PAGE)
             assert (bus_rdata_o == page_value);
         assert (!busy_o ||
                 (write_o == bus_write_i && addr_o == {page, bus_addr_i[2:0], 2'b00} &&
                  wdata_o == bus_wdata_i));
-        // It ends by the core's answer, which may be an error, or by the time-out, which is an
+        // It ends by the core's answer, which may be an error, or by the time-out, which sets an
         // event.
         if (wanted) begin
             assert (bus_ready_o == (answered || used == TIMEOUT));
@@ -150,7 +150,7 @@ module bus_window #(
         end
         assert (\u_wrapper.event_i == {wanted && used == TIMEOUT && !answered, irq_i});
         if (bus_valid_i && !window) begin
-            assert (bus_ready_o && bus_error_o == bus_addr_i[2]); // there are no words 4..7
+            assert (bus_ready_o && bus_error_o == bus_addr_i[2]); // words 4..7 do not exist
             assert (bus_write_i || bus_addr_i != 4'd0 || bus_rdata_o == ID_VALUE);
         end
     end

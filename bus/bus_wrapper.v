@@ -48,7 +48,7 @@ module bus_wrapper #(
     assign reg_wdata_o = bus_wdata_i;
     assign irq_o       = |(sticky & mask);
 
-    reg [31:0] first; // of words 0..2
+    reg [31:0] first; // words 0..2
     always @* begin
         first = 32'd0;
         if (bus_addr_i == ID)
@@ -96,12 +96,11 @@ module bus_wrapper #(
         cover (past && !rst_i && irq_o && write && bus_addr_i == EVENT && |(event_i & clear));
     end
     always @* begin
-        // Another block's register is never strobed by a word that does not exist: that is an
-        // error.
+        // A word that does not exist never strobes a register of the block: the access is an error.
         assert ({reg_write_o, reg_read_o} ==
                 ({writes, bus_valid_i && !bus_write_i} & {2{bus_addr_i > MASK && !bus_error_o}}));
         assert (bus_error_o == (bus_addr_i > MASK && !WORDS[bus_addr_i]));
-        // A read gives the wrapper's word, the block's, or 0.
+        // A read returns the wrapper's word, the block's word, or 0.
         if (bus_addr_i > MASK)
             assert (bus_rdata_o == (exists ? reg_rdata_i : 32'd0));
         else if (ZERO == 0)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 #
-# arm.cmake: compiles C90 and assembly for the Cortex-M3 with GCC's bare-metal toolchain, beside the
-# host's build.
+# arm.cmake: compiles C90 and assembly for the Cortex-M3 with GCC's bare-metal toolchain, in
+# addition to the build for the host.
 
 icesoc_needs(gcc-arm-none-eabi ARM_GCC program arm-none-eabi-gcc)
 icesoc_needs(binutils-arm-none-eabi ARM_SIZE program arm-none-eabi-size)
@@ -12,8 +12,8 @@ set(ARM_FLAGS -mcpu=cortex-m3 -mthumb -Os -g -ffunction-sections -fdata-sections
 
 # icesoc_arm_objects(OUT name SOURCES file... [INCLUDES dir...] [DEFINES NAME=value...]
 #                    [OPTIONS ...] [DEPENDS target...] [FOREIGN])
-# Compiles the sources and puts the objects' paths into the variable OUT. FOREIGN: others' code,
-# without our warnings.
+# Compiles the sources and stores the paths of the objects in the variable OUT. FOREIGN: third-party
+# code, compiled without our warnings.
 function(icesoc_arm_objects out name)
   cmake_parse_arguments(A "FOREIGN" "" "SOURCES;INCLUDES;DEFINES;OPTIONS;DEPENDS" ${ARGN})
   set(dir ${CMAKE_CURRENT_BINARY_DIR}/${name}.arm)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 #
-# cores.cmake: builds IP cores, and puts those of ip/cores.list into the chip (docs/hw-mapping.md).
+# cores.cmake: builds IP cores, and adds the cores of ip/cores.list to the chip
+# (docs/hw-mapping.md).
 
 set(CORES ${CMAKE_SOURCE_DIR}/ip/cores.list CACHE FILEPATH "The cores in the chip, one a line")
 set(CORE_FOLDERS "" CACHE STRING "Folders of cores besides those in ip/")
@@ -21,9 +22,10 @@ foreach(line IN LISTS lines)
   endif()
 endforeach()
 list(REMOVE_DUPLICATES CHIP_CORES)
-# The object adapter has room for every core's servant beside the vehicle's own: 8 servants by
-# default (sw/icec/ice_config.h), more where there are more, on the host (the library icec) and, by
-# ARM_DEFINES, in the firmware. Four connections each are for a ground, a second one and a fellow.
+# The object adapter has room for the servants of all cores in addition to the vehicle's servants: 8
+# servants by default (sw/icec/ice_config.h), more if there are more, on the host (the library icec)
+# and, by ARM_DEFINES, in the firmware. Each of them has four connections for a ground station, a
+# second one and another vehicle.
 set(ARM_DEFINES ICE_CONNECTIONS=12)
 set(header ${CMAKE_SOURCE_DIR}/sw/vehicle/uav_private.h)
 set_property(DIRECTORY ${CMAKE_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${header})
@@ -34,8 +36,8 @@ if(servants GREATER 8)
   list(APPEND ARM_DEFINES ICE_SERVANTS=${servants})
 endif()
 
-# Parts of icesoc_core, in its scope: C of a Slice file, in a folder of GEN_DIR; registers, wrapper
-# and servant; a clock of its own; the block test.
+# Parts of icesoc_core, in its scope: C code from a Slice file, in a folder of GEN_DIR; registers,
+# wrapper and servant; a separate clock; the block test.
 macro(icesoc_core_slice folder file)
   get_filename_component(base ${file} NAME_WE)
   set(slice ${GEN_DIR}/slice/${folder})

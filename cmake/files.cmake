@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-# Writes the list of the Verilog files that Verilator read for a model, for other tools. Each file's
-# folder is one of includes: some cores include a file whose name ends with .v. SystemVerilog's
-# packages come first.
+# Writes the list of the Verilog files that Verilator read for a model, for other tools. The folder
+# of each file is added to the include path, because some cores include a file with a name that ends
+# in .v. SystemVerilog packages come first.
 #
 #   cmake -DREAD=V__ver.d -DTO=list -DTOP=module "-DDEFINES=+define+NAME" -P files.cmake
 file(READ "${READ}" text)
@@ -11,7 +11,7 @@ set(sources)
 foreach(file IN LISTS files)
   string(STRIP "${file}" file)
   file(STRINGS "${file}" line REGEX "^`line 1 \".*\"" LIMIT_COUNT 1)
-  if(line MATCHES "\"(.*)\"") # a copy for the simulator (testbench/sim/rest.awk)
+  if(line MATCHES "\"(.*)\"") # the simulator's copy of a file (testbench/sim/rest.awk)
     set(file "${CMAKE_MATCH_1}")
   endif()
   get_filename_component(folder "${file}" DIRECTORY)

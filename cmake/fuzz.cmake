@@ -5,8 +5,8 @@
 # icesoc_fuzz(NAME HARNESS file.cpp SOURCES file... [INCLUDES dir...] [DEFINES name...] RUNS n
 #             [SEEDS file-or-folder] [DICT file] [LENGTH bytes] [LIBS file...] [LABELS ...]
 #             [DEPENDS ...])
-# The program NAME, and the test fuzz.NAME of RUNS inputs from SEED, of up to LENGTH (400) bytes. It
-# ends by their number, never by time. The inputs in SEEDS come first.
+# Builds the program NAME, and adds the test fuzz.NAME, which runs RUNS inputs of up to LENGTH (400)
+# bytes, drawn by SEED. It ends by their number, never by time. The inputs in SEEDS run first.
 function(icesoc_fuzz name)
   cmake_parse_arguments(A "" "HARNESS;DICT;RUNS;SEEDS;LENGTH"
     "SOURCES;INCLUDES;DEFINES;LIBS;LABELS;DEPENDS" ${ARGN})

@@ -3,9 +3,9 @@
 #
 # fuzz: runs a libFuzzer program on a number of inputs, from SEED (default 1).
 # Usage: fuzz.sh program runs seeds|- option...
-# seeds: a folder of inputs, or a file with one a line in hex ("#" begins a comment). FUZZ=600: for
-# 600 s, from the inputs that earlier runs kept (~/.cache/icesoc/fuzz).
-# It prints an input that fails.
+# seeds: a folder of inputs, or a file with one input per line in hex ("#" begins a comment).
+# FUZZ=600 runs for 600 s, starting from the inputs that earlier runs stored (~/.cache/icesoc/fuzz).
+# Prints an input that fails.
 set -eu
 program=$1 end=-runs=$2 seeds=$3
 shift 3
@@ -27,8 +27,8 @@ for number, line in enumerate(sys.stdin):
     open(f"{sys.argv[1]}/{number}", "wb").write(bytes.fromhex(line))' "$work/seeds" <"$seeds"
     seeds=$work/seeds
 fi
-# libFuzzer tries values that the program compares, addresses among them: with fixed addresses,
-# where the system allows them, the inputs are the same each time.
+# libFuzzer also tries values that the program compares, including addresses. With fixed addresses,
+# if the system allows them, every run uses the same inputs.
 alike=$(setarch -R true 2>/dev/null && echo "setarch -R" || :)
 $alike "$program" -seed="${SEED:-1}" "$end" -timeout=60 -print_final_stats=1 \
     -artifact_prefix="$work/" "$@" "$found" $seeds >"$work/log" 2>&1 || {

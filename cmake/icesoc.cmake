@@ -1,17 +1,18 @@
 # SPDX-License-Identifier: MIT
 #
-# icesoc.cmake: how each kind of source is built, said once.
+# icesoc.cmake: defines once how each kind of source is built.
 
-# icesoc_needs(PACKAGE VARIABLE program|library|path NAME): finds what Debian's package has, or ends
-# with its name. Nothing is left out in silence: the list of tests is the same on each machine.
-# Programs that only a test's script runs (gdb-multiarch, xmllint) are not looked for here.
+# icesoc_needs(PACKAGE VARIABLE program|library|path NAME): finds a file of a Debian package, or
+# stops with an error that names the package. Nothing is skipped silently: the list of tests is the
+# same on every machine. Programs that only a test script runs (gdb-multiarch, xmllint) are not
+# checked here.
 function(icesoc_needs package variable kind name)
   cmake_language(CALL find_${kind} ${variable} ${name})
   if(NOT ${variable})
     message(FATAL_ERROR "${name} is missing (Debian: ${package}): run 'make setup'")
   endif()
 endfunction()
-# Packages that arrive, go or change configure anew.
+# Installed, removed or upgraded packages trigger a new configuration.
 set(packages /var/lib/dpkg/status)
 if(DEFINED ENV{DPKG_ADMINDIR})
   set(packages $ENV{DPKG_ADMINDIR}/status)
@@ -88,8 +89,8 @@ function(icesoc_c90 name)
 endfunction()
 
 # icesoc_test(NAME SOURCES... [LIBS lib...] [LABELS label...] [ARGS ...] [SANITIZED regexp])
-# A GoogleTest program whose cases CTest finds. Labels select: `ctest -L rtl`. SANITIZED: `make
-# test` runs the cases of these names once more with sanitizers.
+# A GoogleTest program with cases that CTest discovers. Labels select: `ctest -L rtl`. SANITIZED:
+# `make test` runs the cases with these names again, with sanitizers.
 function(icesoc_test name)
   cmake_parse_arguments(A "" "SANITIZED" "SOURCES;LIBS;LABELS;ARGS" ${ARGN})
   if(NOT TARGET clock_listener)
@@ -127,9 +128,9 @@ function(icesoc_sanitized)
   set_property(GLOBAL APPEND PROPERTY ICESOC_SANITIZED ${ARGN})
 endfunction()
 
-# icesoc_uncertain(PROGRAM seeds [gtest filter]): the cases of an icesoc_test once more, with
-# synchronisers that take old or new at random (hdl/cdc/cdc_random.vh): tests cdc.<program>.<seed>.
-# The numbers drawn follow from the seed and from SEED.
+# icesoc_uncertain(PROGRAM seeds [gtest filter]): runs the cases of an icesoc_test again, with
+# synchronisers that take the old or the new value at random (hdl/cdc/cdc_random.vh): tests
+# cdc.<program>.<seed>. The numbers drawn depend on the seed and on SEED.
 function(icesoc_uncertain program seeds)
   set(filter ${ARGN})
   if(NOT filter)
@@ -187,9 +188,9 @@ macro(icesoc_verilate_observed)
     list(APPEND definitions ICESOC_TRACE)
   endif()
   if(COVERAGE)
-    # --assert: newer Verilators leave cover properties out without it. Verilator takes a cover
-    # point that reads a pin for a flip-flop of clk_i; where the pin is an asynchronous reset as
-    # well, that would be a warning.
+    # --assert: without it newer Verilators omit cover properties. Verilator treats a cover point
+    # that reads a pin as a flip-flop of clk_i; if the pin is also an asynchronous reset, this would
+    # be a warning.
     list(APPEND flags --coverage --assert -DCOVER_POINTS -Wno-SYNCASYNCNET)
     list(APPEND definitions ICESOC_COVERAGE)
     if(A_FAST)
@@ -204,9 +205,9 @@ endmacro()
 # icesoc_verilate(NAME TOP module SOURCES file... [PARAMS NAME=value...] [INCLUDES dir...]
 #                 [REGS block...] [DEPENDS target-or-file...] [FLAGS ...] [FAST] [CLASS class])
 # Verilated model of a module as a library NAME with the class V<NAME>, or V<CLASS>. Lint is on
-# (-Wall) and fatal. FAST, the whole chip: compiled by clang (measured: 1.18 times the speed of
-# g++'s code). A model with COVERAGE counts soc.v only: each block's own tests count the block, and
-# with all counters seconds of flight took minutes.
+# (-Wall) and its warnings are errors. FAST, for the whole chip: compiled by clang (measured: 1.18
+# times the speed of the code of g++). With COVERAGE only soc.v is counted: the tests of each block
+# count the block, and with all counters seconds of flight took minutes.
 function(icesoc_verilate name)
   cmake_parse_arguments(A "FAST" "TOP;CLASS" "SOURCES;PARAMS;INCLUDES;REGS;DEPENDS;FLAGS" ${ARGN})
   set(dir ${CMAKE_CURRENT_BINARY_DIR}/verilated_${name})
@@ -240,13 +241,13 @@ function(icesoc_verilate name)
   if(A_FAST AND NOT COVERAGE AND NOT SANITIZE)
     set(compiler ${CLANGXX})
   endif()
-  # This code runs once; with counters it has megabytes, and -O1 took minutes.
+  # This code runs once; with counters it is several megabytes, and -O1 took minutes.
   set(slow -O1)
   if(COVERAGE)
     set(slow -O0)
   endif()
-  # Verilator's own makefile appends -Os; OPT_FAST is the way in (measured: twice the speed). The
-  # headers are said to be made here, so that what includes them is compiled again in the same run
+  # Verilator's makefile appends -Os; OPT_FAST overrides it (measured: twice the speed). The headers
+  # are declared as by-products, so that files that include them are compiled again in the same run
   # of ninja, not in the next one.
   add_custom_command(OUTPUT ${lib} BYPRODUCTS ${dir}/${class}.h ${dir}/${class}___024root.h
     COMMAND ${VERILATOR} ${flags} ${A_PARAMS} ${sources}
@@ -276,9 +277,9 @@ endfunction()
 set(STATE_MEMBERS ${CMAKE_SOURCE_DIR}/testbench/common/state_members.awk)
 
 # icesoc_netlist(NAME DESIGN design [PARAMS NAME=value...] [DEPENDS target...] [TOP module SOURCES
-#                file... INCLUDES dir...] [FLAGS ...] [CLASS class]): the Verilated model, as above,
-# of the netlist that the figures of a design of `make synth` are of, or of one with other
-# parameters, with what each of its primitives does; or of a module around it.
+# file... INCLUDES dir...] [FLAGS ...] [CLASS class]): Verilated model, as above, of the netlist
+# that `make synth` measures for a design, or of the netlist with other parameters, with a model of
+# each primitive; or of a module around it.
 function(icesoc_netlist name)
   cmake_parse_arguments(A "" "DESIGN;TOP;CLASS" "PARAMS;DEPENDS;SOURCES;INCLUDES;FLAGS" ${ARGN})
   if(NOT A_TOP)
@@ -304,7 +305,7 @@ function(icesoc_netlist name)
     CLASS ${A_CLASS} FLAGS ${A_FLAGS} -Wno-lint -Wno-style -Wno-UNOPTFLAT)
 endfunction()
 
-# Verilator's run time, compiled once for all models.
+# Verilator's run-time library, compiled once for all models.
 function(icesoc_verilator_runtime)
   if(TARGET verilator_runtime)
     return()

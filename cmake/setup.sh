@@ -58,21 +58,21 @@ libnewlib-arm-none-eabi C library for it
 clang fuzzers of the link layer (libFuzzer)
 libclang-rt-dev their run time, which clang only recommends
 '
-# what tests, reports and debuggers need beside
+# packages that tests, reports and debuggers need in addition
 rest='
 clang-format-19 holds the source to .clang-format
 mypy checks the types of the tools in Python
 libxml2-utils checks the generated SVD file and pages
 lcov coverage pages
 chromium opens the report pages in tests
-zeroc-icebridge a forwarder, beside the gateway in a test
+zeroc-icebridge a forwarder; a test compares the gateway with it
 zeroc-glacier2 a router, in front of the gateway in a test
 tshark reads the messages on the wire in tests
 strace sees which files a proof reads, so that its verdict holds until one changes
 python3-yaml reads the workflows in tests
 ca-certificates checks whom what pages sort and draw with, and foreign cores, are fetched from
 gdb-multiarch debugs it there
-gtkwave shows waveforms, and reads those of failures for the page
+gtkwave shows waveforms, and converts waveforms of failures for the page
 python3-sphinx renders the documentation site
 python3-myst-parser reads its Markdown pages
 furo style of the documentation site
@@ -126,12 +126,13 @@ fi
 echo "Installing them with apt-get (a minute or two) ..."
 $sudo apt-get update -qq ||
     echo "setup: apt-get update failed: is there a network, and a mirror in /etc/apt?" >&2
-# Another apt, such as unattended upgrades, is waited for.
+# Waits while another apt, such as unattended upgrades, is running.
 # shellcheck disable=SC2086 # a list of words
 $sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
     -o DPkg::Lock::Timeout=600 \
     $missing >/dev/null || {
-    echo "setup: apt-get could not install the packages above, and says why. Then run again." >&2
+    echo "setup: apt-get could not install the packages above (see its messages);" \
+        "fix that and run setup again." >&2
     exit 1
 }
 echo "Installed."

@@ -55,7 +55,7 @@ module soc #(
     localparam SLOTS = MAP_SLOT_COUNT;
     localparam PORTS = MAP_NPI_PORT_COUNT;
     localparam SYSTEM = MAP_SLOT_SYSTEM, MODEM = MAP_SLOT_MODEM, MODEM_PORT = MAP_NPI_PORT_MODEM;
-    // The bridge and the modem take read words in the cycle of their arrival and need no FIFO.
+    // The bridge and the modem take read words in the cycle in which they arrive and need no FIFO.
     localparam [31:0] NO_READ_FIFO = 1 << MAP_NPI_PORT_FSMC | 1 << MODEM_PORT;
     localparam [PORTS-1:0] READ_FIFO = ~NO_READ_FIFO[PORTS-1:0];
 
@@ -146,7 +146,7 @@ module soc #(
         .access_error_i(access_error), .error_memory_i(error_memory),
         .error_addr_i(error_addr), .error_write_i(error_write), .late_i(late)
     );
-    // The processor's interrupt input is sensitive to edges, so no glitch of a LUT may reach it.
+    // The processor's interrupt input is edge-sensitive, so no glitch of a LUT may reach it.
     always @(posedge clk_i) irq_o <= irq;
 
     wire unused = &{1'b0, slot_addr, 1'b0}; // addresses of empty slots

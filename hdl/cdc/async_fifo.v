@@ -16,12 +16,12 @@ module async_fifo #(
 ) (
     // writer
     input  wire             write_clk_i,
-    input  wire             push_i,     // only while full_o is low
+    input  wire             push_i,     // allowed only while full_o is low
     input  wire [WIDTH-1:0] data_i,
     output wire             full_o,
     // reader
     input  wire             read_clk_i,
-    input  wire             pop_i,      // only while empty_o is low
+    input  wire             pop_i,      // allowed only while empty_o is low
     output wire [WIDTH-1:0] data_o,     // valid while empty_o is low
     output wire             empty_o
 );
@@ -87,7 +87,7 @@ module async_fifo #(
     assign to_reader_async = (to_reader & reader_sees) | (was_to_reader & ~reader_sees);
     assign to_writer_async = (to_writer & writer_sees) | (was_to_writer & ~writer_sees);
 
-    // `value` is the word with number `place`; the prover chooses which.
+    // `value` is the word at position `place`, which the prover chooses.
     localparam [LOG2:0] DEPTH = 1 << LOG2;
     (* anyconst *) reg [LOG2:0] place;
     reg [WIDTH-1:0] value;
@@ -111,8 +111,8 @@ module async_fifo #(
         assume (!(push_i && full_o));
         assume (!(pop_i && empty_o));
         assert (to_reader == (written ^ (written >> 1)) && to_writer == (taken ^ (taken >> 1)));
-        // The FIFO never holds more words than fit; each side sees the other's pointer late, never
-        // early.
+        // The FIFO never holds more words than fit. Each side sees the pointer of the other side
+        // late, never early.
         assert (count <= DEPTH && held_seen <= DEPTH);
         assert (full_o == (held_seen == DEPTH));
         assert (taken - t1 <= taken - t2 && taken - t2 <= held_seen);

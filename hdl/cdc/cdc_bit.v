@@ -14,9 +14,10 @@
 
 module cdc_bit #(
     parameter             WIDTH    = 1,
-    // number of upper bits of which a change delays all bits together; the others follow clk_i
+    // number of upper bits; a change of one of them delays all bits together, the lower bits follow
+    // clk_i
     parameter             TOGETHER = 0,
-    // 1: no bit is late here, because a cdc_skew in front of it delays bits
+    // 1: no bit is late here, because a cdc_skew before it delays the bits
     parameter             EXACT    = 0,
     parameter [WIDTH-1:0] INITIAL  = 0
 ) (

@@ -4,8 +4,8 @@
 //
 // A word is held in a register of the source. The destination copies it in the clock in which the
 // second flip-flop of the synchroniser toggles, so the next word may follow two dst_clk_i clocks
-// plus the skew of the paths later, without a handshake. The module has no reset. Constraint: a
-// dst_clk_i period from src_data's register to the copy, and that of cdc_bit.
+// plus the skew of the paths later, without a handshake. The module has no reset. Constraint: one
+// dst_clk_i period from src_data's register to the copy, and the constraint of cdc_bit.
 
 `default_nettype none
 
@@ -36,17 +36,19 @@ module cdc_bus #(
         u_cdc_copy (.clk_i(dst_clk_i), .bus_async_i(src_data_o), .bus_sync_o(dst_data_o));
 
 `ifdef FORMAL
-    // Each word is handed over once, in order, unchanged. Time goes in steps; either clock and the
-    // data may change in each, so every ratio and phase is covered. An input that changes together
-    // with an edge is seen as it was before it; cdc_bit may see it a clock later.
+    // Each word is transferred once, in order and unchanged. Time advances in steps; either clock
+    // and the data may change in each, so every ratio and phase is covered. An input that changes
+    // at the same time as an edge is sampled with its old value; cdc_bit may sample the new value
+    // one clock later.
     (* gclk *) wire step;
     reg past = 1'b0, was_src = 1'b1, was_clk = 1'b1, was_valid = 1'b0, known = 1'b0;
     reg [WIDTH-1:0] was_data = 0;
     reg was_given = 1'b0, gave = 1'b0;
-    // words that have not been handed over; with none, `newer` is the last one
+    // words not transferred yet; if there are none, `newer` is the last word
     reg [WIDTH-1:0] older = 0, newer = 0;
     reg [1:0] count = 2'd0;
-    reg [2:0] clocks = 3'd3;             // edges of dst_clk_i since the last word's edge
+    reg [2:0] clocks = 3'd3;             // edges of dst_clk_i since the source edge of the last
+                                         // word
     wire rise        = past && src_clk_i && !was_src;
     wire edge_of_clk = past && dst_clk_i && !was_clk;
     wire writes      = rise && was_given;
@@ -75,10 +77,10 @@ module cdc_bus #(
         // ringing is closer.
         assume (!new_write || clocks >= 3'd3);
     end
-    wire [1:0] left  = count - {1'b0, handed}; // words left in this step
+    wire [1:0] left  = count - {1'b0, handed}; // words left after this step
     wire       gives = edge_of_clk ? was_valid : gave; // the clock after dst_valid_o
     always @* if (past) begin
-        // Each word is pending at once and handed over once, in order, as it was.
+        // Each word is pending immediately and is transferred once, in order, unchanged.
         assert (!handed || count != 2'd0);
         assert (left <= 2'd1 || dst_valid_o);
         assert (pending_async_o == (new_write || left != 2'd0 || gives));
@@ -88,10 +90,10 @@ module cdc_bus #(
             assert (dst_data_o == (left == 2'd2 ? older : newer));
         end
         assert (left == 2'd0 || clocks + {2'd0, edge_of_clk} <= 3'd3 || (clocks == 3'd3 && handed));
-        // The source's word stands from its edge until the next.
+        // The source word is stable from its edge to the next.
         if (known || new_write)
             assert (src_data_o == (new_write ? was_data : newer));
-        // The copy of the last word stays until the next.
+        // The copy of the last word is stable until the next.
         if (known && left == 2'd0)
             assert (dst_data_o == newer);
         cover (rings);

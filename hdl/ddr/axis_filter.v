@@ -26,7 +26,7 @@ module axis_filter #(
     input  wire [31:0]          target_i,
     output wire                 done_o,     // high for a clock
     output wire                 refused_o,  // with done
-    output wire [BYTE_BITS-1:0] bytes_o,    // number of output bytes, valid from done_o on
+    output wire [BYTE_BITS-1:0] bytes_o,    // number of output bytes, valid since done_o
     // to the core
     output wire                 m_axis_tvalid_o,
     input  wire                 m_axis_tready_i,
@@ -40,20 +40,20 @@ module axis_filter #(
     input  wire [WIDTH/8-1:0]   s_axis_tkeep_i,
     input  wire                 s_axis_tlast_i
 );
-    localparam KEEP = WIDTH / 8, BEATS = 64 / WIDTH; // bytes of a beat, beats of a word
+    localparam KEEP = WIDTH / 8, BEATS = 64 / WIDTH; // bytes per beat, beats per word
     localparam [31:0] BYTES_OF_BEAT = KEEP, BEATS_OF_WORD = BEATS;
     localparam [3:0]  LAST_BEAT = BEATS_OF_WORD[3:0] - 4'd1;
     localparam [BYTE_BITS-1:0] STEP = BYTES_OF_BEAT[BYTE_BITS-1:0];
 
-    localparam WORD_BITS = BYTE_BITS - 2; // width of a number of words
+    localparam WORD_BITS = BYTE_BITS - 2; // width of a word count
 
     reg         waiting; // transfers of an earlier, abandoned operation are not finished
     reg         writing; // the output goes to memory
-    // its last word is taken: the burst is filled; waits until it is in memory
+    // the last word was taken: the burst is filled up; waits until it is in memory
     reg         closing, closed;
     reg         empty, over; // refused
-    reg  [BYTE_BITS-1:0] left; // bytes that the core has not received yet
-    reg  [BYTE_BITS-1:0] bytes; // written; while waiting, those of the operation
+    reg  [BYTE_BITS-1:0] left; // bytes not yet sent to the core
+    reg  [BYTE_BITS-1:0] bytes; // number of bytes written; while waiting, the size of the operation
     wire        read_idle, write_idle, write_ready, word_valid;
     wire [63:0] word;
     wire        go        = waiting && read_idle && write_idle && !core_rst_i;
@@ -62,9 +62,9 @@ module axis_filter #(
         left[2:0] != 3'd0 ? 8'hFF >> (4'd8 - {1'b0, left[2:0]}) : 8'hFF;
     wire        word_ready;
 
-    // ---- a word from memory, beat by beat ----
+    // ---- splitting a word from memory into beats ----
     reg  [3:0]  beat;
-    wire [7:0]  rest    = word_keep >> KEEP * beat >> KEEP; // bytes of the beats behind this one
+    wire [7:0]  rest    = word_keep >> KEEP * beat >> KEEP; // bytes of the beats after this one
     wire        is_last = beat == LAST_BEAT || rest == 8'd0;
     wire        sent    = m_axis_tvalid_o && m_axis_tready_i;
     wire [63:0] shifted = word >> WIDTH * beat;
@@ -75,13 +75,13 @@ module axis_filter #(
     assign m_axis_tlast_o  = word_last && is_last;
     assign word_ready      = m_axis_tready_i && is_last;
 
-    // ---- beats into a word ----
+    // ---- joining beats into a word ----
     reg  [3:0]  place;
-    reg         full;      // the word is whole
-    reg         ends;      // and the packet's last
+    reg         full;      // the word is complete
+    reg         ends;      // and it is the last of the packet
     reg  [63:0] out;
     reg  [7:0]  out_keep;
-    reg  [BYTE_BITS-1:0] awaited; // bytes that went in and have not come out
+    reg  [BYTE_BITS-1:0] awaited; // bytes sent to the core whose output is missing
     wire        room      = bytes != ROOM[BYTE_BITS-1:0];
     wire        out_ready = writing && (write_ready || !room);
     wire        given     = full && out_ready;
@@ -89,7 +89,7 @@ module axis_filter #(
     wire        last = LAST != 0 ? s_axis_tlast_i : awaited <= STEP;
     assign s_axis_tready_o = !full || out_ready;
 
-    reg [3:0] out_bytes; // up to the last one that is kept
+    reg [3:0] out_bytes; // up to the last byte that is kept
     integer b;
     always @* begin
         out_bytes = 4'd0;
@@ -157,7 +157,7 @@ module axis_filter #(
     wire flush = closing || core_rst_i;
     npi_stream #(.WORD_BITS(WORD_BITS)) u_stream (
         `include "memory_connect.vh"
-        .clk_i(clk_i), .rst_i(rst_i), // not by core_rst_i: requested words must be taken
+        .clk_i(clk_i), .rst_i(rst_i), // not core_rst_i: requested words must still be taken
         .read_start_i(go), .read_base_i(source_i[31:6]),
         .read_words_i({1'b0, bytes[BYTE_BITS-1:3]} + {{(WORD_BITS-1){1'b0}}, |bytes[2:0]}),
         .read_stop_i(core_rst_i), .read_valid_o(word_valid), .read_data_o(word),
@@ -171,22 +171,22 @@ module axis_filter #(
     wire unused = &{1'b0, shifted, kept, source_i[5:0], target_i[5:0], 1'b0};
 
 `ifdef FORMAL
-    // Words are split into beats and beats joined into words, each once and in order; the rules
-    // that npi_stream wants are kept. npi_stream, which has its own proof, is cut off: it does what
-    // that proof says, and no more is known of it.
+    // Words are split into beats and beats are joined into words, each once and in order, and the
+    // rules of npi_stream are kept. npi_stream has a separate proof. It is cut out of this one,
+    // which assumes only what that proof shows.
     reg past = 1'b0;
-    reg [3:0] f_sent;  // beats of the word that the core has
-    reg [3:0] f_size;  // of the word's bytes, in beats
+    reg [3:0] f_sent;  // beats of the word that the core has taken
+    reg [3:0] f_size;  // beats that the bytes of the word need
     reg [3:0] f_count; // beats of the output that are not in memory's hands
-    // Any one beat of a word: the bytes that came as it.
+    // Any beat of a word, with its bytes as they arrived.
     (* anyconst *) reg [3:0] f_lane;
     reg [WIDTH-1:0] f_data;
     reg [KEEP-1:0]  f_keep;
-    // the operation's; those that came, up to the number that went in
+    // bytes of the operation; bytes that arrived, up to the number sent
     reg [BYTE_BITS-1:0] f_bytes = 0, f_came = 0;
-    reg [WORD_BITS-1:0] f_left = 0;   // words that npi_stream still gives
-    reg [WORD_BITS-1:0] f_written = 0; // words that it got in this operation
-    wire [3:0] f_place = given ? 4'd0 : f_count; // place of the beat that comes
+    reg [WORD_BITS-1:0] f_left = 0;   // words that npi_stream still delivers
+    reg [WORD_BITS-1:0] f_written = 0; // words passed to npi_stream in this operation
+    wire [3:0] f_place = given ? 4'd0 : f_count; // position of the arriving beat
     wire       f_rst   = rst_i || core_rst_i;
     integer f;
     initial assume (rst_i);
@@ -221,7 +221,7 @@ module axis_filter #(
         else if (write && write_ready)
             f_written <= f_written + 1'b1;
         if (past && !f_rst) begin
-            if ($past(word_valid && !word_ready)) // npi_stream's word stays
+            if ($past(word_valid && !word_ready)) // a word of npi_stream is stable
                 assume (word_valid && $stable(word));
             if ($past(m_axis_tvalid_o && !m_axis_tready_i))
                 assert (m_axis_tvalid_o &&
@@ -236,30 +236,30 @@ module axis_filter #(
             else
                 assert (!empty && waiting == $past(waiting && !go) &&
                         writing == $past(go || (writing && !(given && ends))));
-            // The answer ends when its burst is filled and in memory.
+            // The answer ends when its burst is filled up and in memory.
             assert (closing == $past(given && ends) &&
                     (!done_o || empty || $past(closing || closed)));
-            // bytes are words before the last one, and what is kept of that
+            // number of bytes: the words before the last one, and the bytes kept of the last
             if ($past(given && ends))
                 assert (over || bytes == $past(bytes) + $past(out_bytes));
         end
     end
     always @* if (past && !f_rst) begin
-        // npi_stream's rules: a start when idle, no word with a start or a flush. It writes what
-        // has room.
+        // Rules of npi_stream: a start only when idle, no word with a start or a flush. It writes
+        // every word that has room.
         assert (!go || (read_idle && write_idle && !write && !flush));
         assert (!flush || !write);
         assert ({2'd0, waiting} + {2'd0, writing} + {2'd0, closing} + {2'd0, closed} <= 3'd1);
         assert (!(writing || closing || closed) || bytes <= ROOM);
         assert (!writing || bytes == {f_written, 3'd0});
         assert (!(writing && over) || !room);
-        // Words as many as the bytes need; the last one keeps those that are left.
+        // There are as many words as the bytes need; the last word holds the remaining bytes.
         assert (f_left == {1'b0, left[BYTE_BITS-1:3]} + |left[2:0]);
         assert (!waiting || bytes == f_bytes);
         assert (!word_valid ||
                 (word_last == (f_left == 1) &&
                  f_size == (word_last ? left >> $clog2(KEEP) : 8 / KEEP)));
-        // Split: all beats of the word, and the word goes with the last of them.
+        // Split: all beats of a word are sent, and the word is taken with the last of them.
         assert (beat == f_sent && m_axis_tvalid_o == word_valid);
         if (word_valid) begin
             assert (f_sent < f_size && word_ready == (m_axis_tready_i && f_sent + 4'd1 == f_size));
@@ -267,7 +267,7 @@ module axis_filter #(
                     m_axis_tkeep_o == word_keep[KEEP*f_sent +: KEEP]);
             assert (m_axis_tlast_o == (word_last && f_sent + 4'd1 == f_size));
         end
-        // Joined: each beat in its place, bytes behind the last one not kept.
+        // Joined: each beat is in its position, and bytes after the last one are dropped.
         assert ({28'd0, f_count} <= BEATS &&
                 (full ? place == 4'd0 && f_count != 4'd0 : place == f_count && place <= LAST_BEAT));
         assert (f_lane >= f_count ? out_keep[KEEP*f_lane +: KEEP] == 0
@@ -280,7 +280,7 @@ module axis_filter #(
         cover (done_o && !refused_o && bytes == 3);
         cover (given && ends && f_count == BEATS - 1 && came);
     end
-    // Without tlast the packet ends with the beat before which all others came.
+    // Without tlast the packet ends with the last beat that is due.
     always @* if (past && !f_rst && LAST == 0 && f_came != f_bytes) begin
         assert (awaited == f_bytes - f_came);
         assert (last == (f_bytes - f_came == STEP));

@@ -56,8 +56,8 @@ module mcb_backend #(
     assign rd_data_o   = mcb_rd_data_i;
     assign mcb_rd_en_o = rd_valid_o && rd_ready_i;
 
-    // `free` is the number of words in the read FIFO that are not promised, 0..64. Minus n is plus
-    // ~(n - 1).
+    // `free` is the number of words in the read FIFO that are not promised, 0..64. Subtracting n is
+    // adding ~(n - 1).
     reg  [6:0] free;
     wire       take = mcb_cmd_en_o && cmd_read_i;
     wire [7:0] next = {free, 1'b1} + {take ? {2'b11, ~cmd_last_i} : 7'd0, mcb_rd_en_o};
@@ -71,7 +71,7 @@ module mcb_backend #(
     // The MCB never gets a command that it refuses, and no word is lost.
     reg past = 1'b0;
     initial assume (rst_i);
-    reg [7:0] asked = 0; // words of reads that were asked for and not yet taken
+    reg [7:0] asked = 0; // words of reads requested and not yet taken
     always @(posedge clk_i) begin
         past <= 1'b1;
         asked <= rst_i ? 8'd0
@@ -86,7 +86,7 @@ module mcb_backend #(
             assert (!(mcb_cmd_en_o && (mcb_cmd_full_i || !mcb_calib_done_i)));
             assert (!(mcb_wr_en_o && mcb_wr_full_i));
             assert (!(mcb_rd_en_o && mcb_rd_empty_i));
-            // Nothing is lost on the way.
+            // Nothing is lost between arbiter and MCB.
             assert (mcb_cmd_en_o == (cmd_valid_i && cmd_ready_o));
             assert (mcb_wr_en_o == (wr_valid_i && wr_ready_o));
             assert (mcb_rd_en_o == (rd_valid_o && rd_ready_i));

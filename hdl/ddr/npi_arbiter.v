@@ -40,8 +40,8 @@ module npi_arbiter #(
     generate
         if (PORTS < 2 || PORTS > 8 || URGENT_RUN == 0 || ADDR_WIDTH < 9 ||
             ADDR_WIDTH > 32) begin : g_refused
-            // Verilog-2005 has no message as a module item: the name of an unknown module tells
-            // Icarus and XST.
+            // Verilog-2005 has no error message as a module item: Icarus and XST report the name of
+            // an unknown module instead.
 `ifdef VERILATOR
             $error("npi_arbiter: PORTS is 2..8, URGENT_RUN 1..7, ADDR_WIDTH 9..32");
 `elsif YOSYS
@@ -63,8 +63,8 @@ module npi_arbiter #(
         .ack_o(npi_addr_ack_o)
     );
 
-    // The chosen request is formed by ORs, so that the last port is no slower than the first. For
-    // two ports one bit suffices. Without a grant the result is not used.
+    // The chosen request is an OR of all ports, so that the last port is no slower than the first.
+    // For two ports one bit suffices. Without a grant the result is not used.
     wire [PORTS-1:0]    pick = PORTS == 2 ? {choice[PORTS-1:1], !choice[1]} : choice;
     reg [ADDR_WIDTH-1:0] addr;
     reg [2:0]           size;
@@ -80,7 +80,7 @@ module npi_arbiter #(
             port = port | (i[PORT_BITS-1:0] & {PORT_BITS{pick[i]}});
         end
     end
-    // A read of a cache line may name any of its words; rd_word tells them apart.
+    // A read of a cache line may start with any of its words; rd_word selects it.
     wire line = size == 3'd1 || size == 3'd2;
     wire [ADDR_WIDTH-4:0] start = {addr[ADDR_WIDTH-1:5], addr[4] && size != 3'd2, addr[3] && !line};
 
@@ -157,7 +157,7 @@ module npi_arbiter #(
     assign wr_be_o    = wr_be;
     assign rd_ready_o = |(back_at & back_free);
 
-    // Byte enables always work, so read-modify-write needs nothing. Transfers are aligned.
+    // Byte enables are supported, so read-modify-write is not needed. Transfers are aligned.
     wire unused =
         &{1'b0, npi_rmw_i, npi_size_i, npi_addr_i, addr[2:0], back_index[4], move_at, 1'b0};
 

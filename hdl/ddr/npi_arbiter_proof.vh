@@ -1,23 +1,25 @@
 // SPDX-License-Identifier: MIT
 //
-// npi_arbiter_proof: proves npi_arbiter as a whole, with its parts; the end of npi_arbiter, only
-// for the prover (formal.npi_arbiter*).
+// npi_arbiter_proof: proves npi_arbiter and its parts together; included at the end of npi_arbiter,
+// only for the prover (formal.npi_arbiter*).
 //
-// `me` is any port that keeps the rules of docs/memory.md; the others are free and must not harm
-// it. `mark` is any accepted request (every fourth, from any on), `w_mark` any word that `me`
-// pushes, `r_mark` any word that it pops. The assertions on them therefore hold for all:
-// - commands are the accepted requests, in their order, each once, aligned; a write's after all
-//   its words;
-// - words of a write leave their own port's FIFO, in order, with the command's place in the
-//   back-end's stream;
-// - words of a read reach their own port, in order, each with its place in its transfer;
-// - no FIFO of `me` overflows or is read empty; its flags are true; a word is there when it is
-//   needed;
-// - a request stays visible to npi_select until it is granted, so that one's proven bound on
-//   waiting holds.
+// `me` is any port that keeps the rules of docs/memory.md; the other ports are free and must not
+// harm it. `mark` is any accepted request (every fourth, starting with any), `w_mark` any word that
+// `me` pushes, `r_mark` any word that it pops. The assertions on them therefore hold for all:
+// - commands are the accepted requests, in order, each once, aligned; the command of a write
+//   follows all its words;
+// - words of a write leave the FIFO of their port in order, with the command's position in the
+//   stream to the back-end;
+// - words of a read reach the port that requested them, in order, each with its position in its
+//   transfer;
+// - no FIFO of `me` overflows or is read when empty; its flags are correct; a word is there when it
+//   is needed;
+// - a request stays visible to npi_select until it is granted, so that the bound on waiting proven
+//   there holds.
 //
-// The second half relates the harness's counts to the arbiter's registers, so a fault is seen where
-// it begins. With it all assertions together are inductive: runs of any length are proven.
+// The second half relates the counts in the harness to the registers of the arbiter, so that a
+// fault is detected where it begins. With it all assertions together are inductive: runs of any
+// length are proven.
 
     // The state of the arbiter's parts, for two ports.
     localparam KIND = PORT_BITS + 4, ADDR_BITS = ADDR_WIDTH - 3, X = 2 * FIFO_LOG2;
@@ -47,7 +49,7 @@
     wire [PORTS-1:0] wr_pops   = move_at[PORTS-1:0] & {PORTS{wr_valid_o && wr_ready_i}};
     wire [PORTS-1:0] rd_pushes = back_at & {PORTS{rd_valid_i}} & back_free;
 
-    localparam W = FIFO_LOG2 + QUEUE_LOG2 + 1; // counts of words
+    localparam W = FIFO_LOG2 + QUEUE_LOG2 + 1; // width of word counts
     localparam Q = QUEUE_LOG2, F = FIFO_LOG2;
     localparam [W-1:0] DEPTH = 1 << F, NONE = 0;
 
@@ -62,7 +64,7 @@
     // `me` pops every word at once, and has any number outstanding
     (* anyconst *) reg         eager;
     reg [PORTS-1:0] was_granted;
-    reg             asked = 1'b0; // `me` asks, and is not chosen
+    reg             asked = 1'b0; // `me` requests and has not been chosen
     initial assume (rst_i);
     always @* assume ({1'b0, me} < PORTS);
 
@@ -117,10 +119,12 @@
     wire [3:0]   out_word  = {wr_be_o[7], wr_data_o[63], wr_be_o[0], wr_data_o[0]};
 
     // ---- Counts, modulo 2**W
-    reg [W-1:0] w_pushed, w_claimed, w_moved; // of `me`: in its FIFO; of accepted writes; gone
+    reg [W-1:0] w_pushed, w_claimed, w_moved; // words of `me`: in its FIFO; of accepted writes;
+                                              // gone
     reg [W-1:0] r_claimed, r_pushed, r_popped;
-    reg [W-1:0] all_w, all_moved;             // of all ports: words of accepted writes; gone
-    reg [W-1:0] all_r, all_asked, all_came;   // words of accepted reads; of their commands; come
+    reg [W-1:0] all_w, all_moved;             // words of accepted writes of all ports; gone
+    reg [W-1:0] all_r, all_asked, all_came;   // words of accepted reads; of issued commands;
+                                              // arrived
     reg [Q-1:0] accepted, issued;             // requests
     wire        moves  = wr_valid_o && wr_ready_i;
     wire        comes  = rd_valid_i && rd_ready_o;
@@ -131,7 +135,7 @@
     reg [PORT_BITS-1:0] g_from;
     reg                 g_read;
     reg [2:0]           g_size;
-    reg [ADDR_BITS-1:0] g_addr; // its first word
+    reg [ADDR_BITS-1:0] g_addr; // address of its first word
     integer g;
     always @* begin
         {g_from, g_read, g_size} = 0;
@@ -149,8 +153,8 @@
     wire         g_any   = |grant;
     wire [W-1:0] g_words = words_of(g_size);
 
-    // t_* is the marked request while it is in the arbiter, and where its words begin in each
-    // count.
+    // t_* is the marked request while it is in the arbiter, and the position in each count at which
+    // its words begin.
     reg                 t_live = 1'b0;
     reg [PORT_BITS-1:0] t_port;
     reg                 t_read;
@@ -158,19 +162,19 @@
     reg [ADDR_BITS-1:0] t_addr;
     reg [W-1:0]         t_stream, t_own;
     wire [W-1:0] t_words = words_of(t_size);
-    // of the next word, if it is one of its
+    // index of the next word, if it belongs to the marked request
     wire [W-1:0] t_index = (t_read ? all_came : all_moved) - t_stream;
     wire         t_next  = t_live && t_index < t_words;
     wire [W-1:0] t_own_index = t_own + t_index; // among `me`'s
     wire         t_mine  = t_port == me;
     wire [PORTS-1:0] t_one = {{(PORTS - 1){1'b0}}, 1'b1} << t_port;
 
-    // s_* are the places at which each queued request's words begin in the counts of all writes,
-    // all reads, `me`'s writes, reads.
+    // s_* are the positions at which the words of each queued request begin in the counts of all
+    // writes, all reads, the writes of `me` and the reads of `me`.
     localparam SLOTS = 1 << Q;
     reg [W*SLOTS-1:0] s_w, s_r, s_wo, s_ro;
 
-    // w_value and r_value are the marked words while they are in `me`'s FIFOs.
+    // w_value and r_value are the marked words while they are in the FIFOs of `me`.
     reg  [3:0] w_value;
     reg  [5:0] r_value;
     reg        r_have = 1'b0;
@@ -237,7 +241,7 @@
         for (q = 0; q < PORTS; q = q + 1)
             // the FIFOs' depth; npi_queue is proven with all sizes
             assume (npi_size_i[4*q +: 3] <= F);
-        assume (!asked || req); // a request stays
+        assume (!asked || req); // a request is held
         assume (!push || !w_full);
         assume (!asks_write || w_pushed - w_claimed + {{(W - 1){1'b0}}, push} >= words);
         assume (!asks_read || !has_fifo || eager || r_claimed - r_popped + words <= DEPTH);
@@ -245,14 +249,14 @@
         assume (!eager || pop == !r_empty);
         assume (!w_flush || (!asks_write && w_claimed == w_moved));
         assume (!r_flush || (!asks_read && r_claimed == r_pushed));
-        assume (!rd_valid_i || all_asked != all_came); // the back-end gives requested words only
+        assume (!rd_valid_i || all_asked != all_came); // the back-end delivers requested words only
     end
 
     // ---- Guarantees
     integer o;
     always @* if (!rst_i) begin
         assert (npi_addr_ack_o == was_granted);
-        assert (!asked || !ack); // so npi_select sees it all the time, and its bound holds
+        assert (!asked || !ack); // so npi_select sees it continuously, and its bound holds
         assert ((grant & ~npi_addr_req_i) == 0 && (grant & npi_addr_ack_o) == 0 &&
                 (grant & (grant - 1'b1)) == 0);
         assert (!cmd_valid_o || issued != accepted);
@@ -283,7 +287,7 @@
         assert (w_level <= DEPTH);
         assert (w_full == (w_level == DEPTH));
         assert (!w_pop || !w_empty);
-        assert (w_claimed - w_moved <= w_level); // requested words are there
+        assert (w_claimed - w_moved <= w_level); // requested words are present
         assert (BLOCK_RAM != 0 || w_empty == (w_level == 0));
         assert (w_empty || w_level != 0);
         if (has_fifo) begin
@@ -299,7 +303,7 @@
         cover (cmd_valid_o && issued == mark && t_mine && t_read && moves && !t_next);
     end
 
-    // ---- The counts and the arbiter's registers
+    // ---- The relation of the counts to the arbiter's registers
     wire [Q-1:0] head, move, issue, back;
     assign {head, move, issue, back} = \u_queue.f_places ;
     wire [Q-1:0] n_head = head - back, n_move = move - back, n_issue = issue - back,
@@ -354,7 +358,7 @@
                  !move_kind[3] ? {{((1<<PORT_BITS)-1){1'b0}}, 1'b1} << move_kind[KIND-1:4] : 0));
         assert (accepted == head && issued == issue);
         assert (n_issue <= n_move && n_move <= n_head);
-        assert (!g_any || {1'b0, n_head} != SLOTS - 1); // the queue has a place for it
+        assert (!g_any || {1'b0, n_head} != SLOTS - 1); // the queue has room for it
         assert (moved == 0 || (move != head && !move_kind[3] && moved < words_of(move_kind[2:0])));
         assert (came == 0 || (back != issue && back_kind[3] && came < words_of(back_kind[2:0])));
         assert (all_moved == b_w[W*move +: W] + moved && w_moved == b_wo[W*move +: W] + moved_me);

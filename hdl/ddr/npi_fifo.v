@@ -24,14 +24,14 @@ module npi_fifo #(
     output wire             full_o
 );
     `SHIFT_ORDER(after, LOG2)
-    // Places of the next word to write, and of the one that goes to data_o next (in LUT RAM: that
-    // is on data_o).
+    // Positions of the next word to write, and of the next word to move to data_o (in LUT RAM: the
+    // word on data_o).
     reg  [LOG2-1:0] write_place, read_place;
     wire [LOG2-1:0] write_next = after(write_place);
 
-    // full_o is a register, because requesters' paths begin here.
+    // full_o is a register, because paths of the requesters begin here.
     wire nearly; // room for one, of any count but the full one
-    wire moves;  // the word at read_place does not wait any more
+    wire moves;  // the word at read_place need not wait
     reg  full;
     assign full_o = full;
 
@@ -59,19 +59,19 @@ module npi_fifo #(
                 if (push_i)
                     words[write_place] <= data_i;
         end else begin : g_block
-            // no_rw_check (Yosys): no word is read in the clock of its write (see below). Without
-            // it, chips whose RAM does not give the old word, such as ECP5, spend 150 flip-flops
-            // and 80 LUTs on holding it.
+            // no_rw_check (Yosys): no word is read in the clock of its write (see below). Otherwise
+            // chips with a RAM that does not return the old word, such as ECP5, need 150 flip-flops
+            // and 80 LUTs to hold it.
             (* ram_style = "block", no_rw_check *)
             reg [WIDTH-1:0] words [0:(1<<LOG2)-1];
             reg [WIDTH-1:0] word;
             reg             empty;
-            // The RAM gives only words of earlier clocks: it is never read where it is being
-            // written. pop_i only enables, so it may come late.
+            // The RAM returns only words of earlier clocks: it is never read at the address being
+            // written. pop_i is only an enable, so it may arrive late.
             wire fetch = empty || pop_i;
             wire ready = read_place != write_place;
             assign moves   = fetch && ready;
-            assign nearly  = after(write_next) == read_place; // the one on data_o counts, too
+            assign nearly  = after(write_next) == read_place; // including the word on data_o
             assign empty_o = empty;
             assign data_o  = word;
             always @(posedge clk_i) begin
@@ -85,11 +85,12 @@ module npi_fifo #(
     endgenerate
 
 `ifdef FORMAL
-    // Words come out as they went in, in order; flags tell the count.
-    parameter PROOF = 0; // 1 where the FIFO itself is proven: its user's errors are assumed away
+    // Words leave in order and unchanged; the flags match the count.
+    parameter PROOF = 0; // 1 for the proof of the FIFO itself: errors of its user are excluded by
+                         // assumptions
 
-    // The FIFO's words, numbered, and which of them are the next to write and to pop, for proofs of
-    // its users.
+    // The words of the FIFO, numbered, and the numbers of the next word to write and to pop, for
+    // proofs of its users.
     `SHIFT_NUMBERS(place_of, number_of, after, LOG2)
     wire [LOG2-1:0] f_write = number_of(write_place);
     wire [LOG2-1:0] f_read  = number_of(read_place) - {{(LOG2-1){1'b0}}, BLOCK != 0 && !empty_o};
@@ -117,7 +118,7 @@ module npi_fifo #(
                 end
         end else begin : g_proof
             initial assume (rst_i);
-            // Any one word comes out as it went in, in its place.
+            // Any word leaves unchanged, in its position.
             (* anyconst *) reg [LOG2-1:0] place;
             reg [WIDTH-1:0] value;
             reg inside = 1'b0;

@@ -4,10 +4,10 @@
 // words of reads.
 //
 // One LUT RAM holds 2**LOG2 requests (one place stays free). Four pointers follow each other:
-//   head   place of the next accepted request
-//   move   write whose words go to the back-end now (reads are skipped)
-//   issue  request whose command goes to the back-end now, after all words of a write
-//   back   read whose words arrive now (writes are skipped)
+//   head   position of the next accepted request
+//   move   write that sends words to the back-end now (reads are skipped)
+//   issue  request that sends its command now, after all words of a write
+//   back   read that receives words now (writes are skipped)
 // In one cycle a request is accepted, a write word moves, a command is issued and a read word
 // arrives. Commands are issued in the order of acceptance.
 
@@ -29,9 +29,9 @@ module npi_queue #(
     input  wire [ADDR_BITS-1:0] push_addr_i,
     output wire                 full_o,
     // words of writes
-    output reg  [(1<<PORT_BITS)-1:0] move_at_o, // a word of this port is wanted: one bit, or none
+    output reg  [(1<<PORT_BITS)-1:0] move_at_o, // port that must send a word: one bit, or no bit
     output wire [PORT_BITS-1:0] move_port_o,
-    input  wire                 move_done_i,  // it goes in this cycle
+    input  wire                 move_done_i,  // the word is sent in this cycle
     // commands
     output wire                 cmd_valid_o,
     output wire                 cmd_read_o,
@@ -41,14 +41,14 @@ module npi_queue #(
     // words of reads
     output wire                 back_valid_o, // the next word is for this port
     output wire [PORT_BITS-1:0] back_port_o,
-    output wire [4:0]           back_index_o, // its place in its transfer
-    input  wire                 back_done_i   // it comes in this cycle
+    output wire [4:0]           back_index_o, // its position in its transfer
+    input  wire                 back_done_i   // the word arrives in this cycle
 );
     localparam KIND = PORT_BITS + 4;
 
     reg [ADDR_BITS-1:0] addrs [0:(1<<LOG2)-1];
     reg [KIND-1:0] kinds [0:(1<<LOG2)-1]; // port, read, size
-    // The initial value keeps Yosys from merging the RAM's address registers into it and keeping
+    // The initial value prevents Yosys from merging the RAM's address registers into it and keeping
     // them twice.
     reg [LOG2-1:0] head = 0, move = 0, issue = 0, back = 0;
     reg [4:0]      move_index, back_index;
@@ -82,8 +82,8 @@ module npi_queue #(
     reg             full;
     assign full_o = full;
 
-    // The request at `move` is in registers, since the write FIFOs depend on it. It comes from the
-    // RAM, or, where the RAM does not have it yet, from the push.
+    // The request at `move` is in registers, since the write FIFOs depend on it. It is loaded from
+    // the RAM or, if the RAM does not contain it yet, from the push.
     reg             moving;
     reg [KIND-1:0]  move_kind;
     wire [KIND-1:0] push_kind = {push_port_i, push_read_i, push_size_i};
@@ -154,8 +154,8 @@ module npi_queue #(
     wire unused = &{1'b0, issue_port, 1'b0};
 
 `ifdef FORMAL
-    // The four places never pass each other, and a request keeps its kind.
-    // The queue's registers, for npi_arbiter_proof; requests are numbered by their places.
+    // The four pointers never pass each other, and the kind of a request does not change.
+    // Registers of the queue, for npi_arbiter_proof; requests are numbered by position.
     `SHIFT_NUMBERS(place_of, number_of, after, LOG2)
     wire [(KIND<<LOG2)-1:0]      f_kinds;
     wire [(ADDR_BITS<<LOG2)-1:0] f_addrs;
@@ -174,12 +174,12 @@ module npi_queue #(
     reg past = 1'b0;
     initial assume (rst_i);
 
-    // A request in any one place of the ring comes out as it went in, once, in its turn.
+    // A request in any position of the ring leaves unchanged, once, in its turn.
     (* anyconst *) reg [LOG2-1:0] place;
     reg [ADDR_BITS-1:0] addr;
     reg [KIND-1:0] kind;
     reg            inside = 1'b0, issued = 1'b0;
-    reg [5:0]      moved = 0, came = 0; // words of it
+    reg [5:0]      moved = 0, came = 0; // words of the request
     wire           is_read   = kind[3];
     wire [5:0]     all_words = {1'b0, last_of(kind[2:0])} + 6'd1;
     // distances from `back`, the oldest
@@ -230,14 +230,14 @@ module npi_queue #(
             if (inside) begin
                 assert (addrs[place] == addr && kinds[place] == kind);
                 assert (issued == (n_place < n_issue));
-                // No word of a write before its turn, and all of them before its command.
+                // No word of a write is sent before its turn, and all are sent before its command.
                 if (n_place > n_move)
                     assert (moved == 6'd0);
                 if (move == place && moving)
                     assert (moved == (is_read ? 6'd0 : {1'b0, f_moved}));
                 if (n_place < n_move)
                     assert (moved == (is_read ? 6'd0 : all_words));
-                // No word of a read before its command; its words are counted.
+                // No word of a read arrives before its command; its words are counted.
                 if (back != place)
                     assert (came == 6'd0);
                 if (back == place)
@@ -251,7 +251,7 @@ module npi_queue #(
             end
             if (back_valid_o && back == place)
                 assert (issued && is_read && back_port_o == kind[KIND-1:4]);
-            // An offered command or move stays until it is taken.
+            // An offered command or move is stable until it is taken.
             if (!$past(rst_i)) begin
                 if ($past(cmd_valid_o) && !$past(cmd_ready_i))
                     assert (cmd_valid_o && $stable(cmd_read_o) && $stable(cmd_addr_o) &&
@@ -264,7 +264,7 @@ module npi_queue #(
             cover (full_o);
             cover (inside && issued && is_read && came == 6'd4);
             cover (cmd_valid_o && !cmd_read_o && cmd_last_o == 5'd3);
-            // all of them in one cycle, as far as three places allow
+            // all of them in one cycle, as far as three positions allow
             cover (move_done_i && cmd_valid_o && cmd_ready_i && back_done_i);
             cover (push_i && move_done_i && back_done_i);
         end

@@ -29,8 +29,8 @@ module npi_select #(
     // Round-robin mask: the ports after the last one served in their class.
     reg [PORTS-1:0] later;
     reg [2:0]       run;
-    // ack_o has many ends and paths from many ports are long: they begin at a copy of it. That is
-    // not reset, or the two would be made one.
+    // ack_o has a high fan-out and paths from many ports are long: they begin at a copy of it. The
+    // copy has no reset; otherwise synthesis would merge the two.
     reg [PORTS-1:0] copy;
     wire [PORTS-1:0] served = PORTS > 2 ? copy : ack_o;
 
@@ -39,8 +39,8 @@ module npi_select #(
     wire [PORTS-1:0] normal  = asking & ~URGENT;
     wire             overdue = run == URGENT_RUN;
     wire [PORTS-1:0] members = |urgent && !(overdue && |normal) ? URGENT : ~URGENT;
-    // The port served last is not in `later`, so req_i serves here in place of `asking`: one input
-    // less a port.
+    // The port served last is not in `later`, so req_i can replace `asking` here, which saves one
+    // input per port.
     wire [PORTS-1:0] first   = req_i & later & members;
     wire [PORTS-1:0] turn    = asking & members;
 
@@ -90,7 +90,7 @@ module npi_select #(
 
     (* anyconst *) reg [PORTS-1:0] me; // any one port, one-hot
     localparam [5:0] N = PORTS;
-    reg  [5:0] waited = 0;             // grants to others since it began to wait
+    reg  [5:0] waited = 0;             // grants to other ports since the request began to wait
     reg  [5:0] urgents, bound;
     wire me_asks = |(me & asking);
     integer q;
@@ -109,7 +109,7 @@ module npi_select #(
     always @(posedge clk_i) begin
         past <= 1'b1;
         assume (me != 0 && (me & (me - 1'b1)) == 0);
-        // A request stays until it is granted.
+        // A request is held until it is granted.
         if (past && !rst_i && !$past(rst_i))
             assume ((asking | ~$past(asking) | $past(grant)) == {PORTS{1'b1}});
         if (rst_i || !me_asks || |(grant & me))
@@ -117,8 +117,8 @@ module npi_select #(
         else if (|grant)
             waited <= waited + 6'd1;
         if (past && !rst_i) begin
-            assert ((grant & (grant - 1'b1)) == 0);   // at most one
-            assert ((grant & ~asking) == 0);          // only to a requester
+            assert ((grant & (grant - 1'b1)) == 0);   // at most one grant
+            assert ((grant & ~asking) == 0);          // grants only to requesters
             assert (|grant == (enable_i && |asking)); // no cycle is lost
             assert (!any_o || grant == choice_o);
             assert (any_o == |grant);

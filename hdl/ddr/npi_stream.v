@@ -8,7 +8,7 @@
 // valid/take. Words of a burst beyond read_words_i, and all words after read_stop_i, are discarded.
 // write_start_i, while write_idle_o is high, starts writing a buffer; words are accepted by
 // valid/ready. write_flush_i, high for one clock without valid, completes the current burst with
-// words whose byte enables are 0. write_idle_o is high when all accepted words are acknowledged, so
+// words with byte enables 0. write_idle_o is high when all accepted words are acknowledged, so
 // that every later request of any port sees them.
 
 `default_nettype none
@@ -49,8 +49,9 @@ module npi_stream #(
 
     reg                 request, request_read; // a request waits for its acknowledgement
     reg [ADDR_BITS-1:6] read_addr, write_addr; // addresses of the next bursts
-    reg [WORD_BITS-1:0] to_ask, to_give;       // words not yet asked for; not yet given to the core
-    reg [5:0]           outstanding;           // words asked for and not yet popped
+    reg [WORD_BITS-1:0] to_ask, to_give;       // words not requested yet; words not delivered to
+                                               // the core yet
+    reg [5:0]           outstanding;           // words requested and not popped yet
     reg [2:0]           filled;                // words in the current burst
     reg [2:0]           bursts;                // bursts pushed but not acknowledged, at most 4
     reg                 padding;
@@ -103,7 +104,7 @@ module npi_stream #(
         read_idle_o  <= to_give == {WORD_BITS{1'b0}} && outstanding == 6'd0 &&
             !(request && request_read) && !read_start_i;
         write_idle_o <= filled == 3'd0 && bursts == 3'd0 && !push;
-        // Words and bursts apart: no carry chain comes after the core's take.
+        // Words and bursts are counted separately, so that no carry chain follows the core's take.
         outstanding[2:0] <= outstanding[2:0] - {2'd0, npi_rd_pop_o};
         if (acked_read != popped_burst)
             outstanding[5:3] <= acked_read ? outstanding[5:3] + 3'd1 : outstanding[5:3] - 3'd1;
@@ -137,7 +138,7 @@ module npi_stream #(
 
         if (rst_i) begin
             request     <= 1'b0;
-            request_read <= 1'b1; // as while idle, also before npi_init_done_i
+            request_read <= 1'b1; // same as while idle, also before npi_init_done_i
             to_ask      <= {WORD_BITS{1'b0}};
             to_give     <= {WORD_BITS{1'b0}};
             outstanding <= 6'd0;
@@ -150,20 +151,20 @@ module npi_stream #(
     end
 
 `ifdef FORMAL
-    // Requests keep the rules of docs/memory.md; the core gets its words and no others.
-    // The port has two FIFOs of 32 words and a controller that acknowledges when it likes.
+    // Requests follow the rules of docs/memory.md; the core receives exactly its words.
+    // The port has two FIFOs of 32 words and a controller that acknowledges at any time.
     reg       past = 1'b0;
     reg [5:0] f_pushed;         // words in the write FIFO
-    reg [5:0] promised;         // words of reads that are acknowledged, not yet popped
-    reg [5:0] there;            // of those, in the read FIFO
-    reg [6:0] f_owed;           // words of acknowledged writes, still in the write FIFO
+    reg [5:0] promised;         // words of acknowledged reads, not popped yet
+    reg [5:0] there;            // those of them in the read FIFO
+    reg [6:0] f_owed;           // words of acknowledged writes that are still in the write FIFO
     (* anyseq *) wire may_move, may_come;
     wire      moved = may_move && f_owed != 7'd0;
     wire      came  = may_come && there != promised;
-    // The core takes what is offered, starts when idle, flushes without a word.
+    // The core takes words only when offered, starts only when idle, and flushes without a word.
     reg [WORD_BITS-1:0] f_left; // words that it may still take
-    reg [2:0] f_begun;          // words it gave since the burst began
-    reg [ADDR_BITS-1:6] f_read, f_write; // where the next bursts go, once there was a start
+    reg [2:0] f_begun;          // words sent since the burst began
+    reg [ADDR_BITS-1:6] f_read, f_write; // addresses of the next bursts, after a start
     reg       f_reads, f_writes;
     reg       f_ready;          // the port was ready since the reset
     initial assume (rst_i);
@@ -173,7 +174,7 @@ module npi_stream #(
         assume (npi_wr_almost_full_i == (f_pushed == 6'd32));
         assume (npi_init_done_i || !f_ready);
     end
-    always @* if (!rst_i) begin // of a core's stream these are proven (idle_proof)
+    always @* if (!rst_i) begin // for the stream of a core these are proven (idle_proof)
         core_takes:   assume (!read_take_i || read_valid_o);
         core_reads:   assume (!read_start_i || (read_idle_o && !read_stop_i));
         core_writes:  assume (!write_start_i || (write_idle_o && !write_valid_i && !write_flush_i));
@@ -208,8 +209,8 @@ module npi_stream #(
         end
     end
     always @* if (!rst_i && past) begin
-        // By the rules of docs/memory.md no FIFO overflows or is popped empty, and a write's words
-        // precede its request.
+        // By the rules of docs/memory.md no FIFO overflows or is popped when empty, and the words
+        // of a write precede its request.
         assert (!npi_wr_push_o || f_pushed != 6'd32);
         assert (!npi_rd_pop_o || there != 6'd0);
         assert (promised <= 6'd32 && !(npi_addr_req_o && npi_rnw_o && promised > 6'd24));
@@ -221,11 +222,11 @@ module npi_stream #(
         assert ({1'b0, f_pushed} == f_owed + {1'b0, bursts, 3'd0} + {4'd0, filled});
         assert (bursts <= 3'd4 && f_owed <= 7'd32);
         assert (!write_idle_o || (filled == 3'd0 && bursts == 3'd0));
-        // The core gets as many words as it requested, no more; all requested words come.
+        // The core receives exactly as many words as it requested; all requested words arrive.
         assert (to_give == f_left);
         assert (!read_valid_o || f_left != {WORD_BITS{1'b0}});
         assert (to_ask == {WORD_BITS{1'b0}} || to_give >= to_ask);
-        // While words are still to be requested, those on their way are the core's.
+        // While words are still to be requested, all outstanding words belong to the core.
         assert (to_ask == {WORD_BITS{1'b0}} ||
                 {1'b0, to_give} == {1'b0, to_ask} + {{(WORD_BITS - 5){1'b0}}, outstanding});
         assert (f_pushed <= 6'd32);
@@ -235,7 +236,7 @@ module npi_stream #(
         // Bursts follow each other from the base.
         assert (!f_reads || read_addr == f_read);
         assert (!f_writes || write_addr == f_write);
-        // A word that is not the core's writes nothing.
+        // A padding word writes nothing.
         assert (!npi_wr_push_o || npi_wr_be_o == 8'd0 || (write_valid_i && write_ready_o));
         cover (read_take_i && f_left == {{(WORD_BITS - 1){1'b0}}, 1'b1} && npi_addr_req_o &&
                !npi_rnw_o);

@@ -6,8 +6,8 @@
 // all, instead of one per bit. BITS is 2..24. The order begins with 0, 1 and ends with the highest
 // bit alone.
 
-// SHIFT_TAPS is a constant: the taps of Xilinx' XAPP052, to whose 2**BITS - 1 places the order adds
-// 0.
+// SHIFT_TAPS is a constant: the taps of Xilinx XAPP052; the order adds state 0 to their 2**BITS - 1
+// states.
 `define SHIFT_TAPS(BITS) \
     ((BITS) == 5  ? 24'h000014 : \
      (BITS) == 8  ? 24'h0000B8 : \
@@ -27,7 +27,7 @@
      (BITS) == 24 ? 24'hE10000 : \
      24'd3 << (BITS) - 2)
 
-// SHIFT_ORDER declares the function after(from): the next place.
+// SHIFT_ORDER declares the function after(from), which returns the next state.
 `define SHIFT_ORDER(after, BITS) \
     function [(BITS)-1:0] after; \
         input [(BITS)-1:0] from; \

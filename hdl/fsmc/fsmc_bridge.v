@@ -162,8 +162,8 @@ module fsmc_bridge #(
     end
 
     // ---- NWAIT follows NE and NOE: an access counts as a write until NOE falls, so that NWAIT is
-    // valid an address phase before a write's data phase begins. No access waits while reset is
-    // active, even without a clock. A write that follows one still being handed over needs room for
+    // valid one address phase before the data phase of a write begins. No access waits while reset
+    // is active, even without a clock. A write that follows one still in transfer needs room for
     // both, as counted before the first was posted.
     reg [1:0] room_for_both;
     always @(posedge clk_i) room_for_both <= {room_for_both[0], more_room};
@@ -200,7 +200,7 @@ module fsmc_bridge #(
         .wr_be_i(taken_be),
         .wr_lost_o(wr_lost), .room_o(room), .more_room_o(more_room),
         .rd_addr_async_i(address), .rd_at_i(at), .rd_used_i(mem_reading && hit_seen),
-        // not during a register access, whose answer may not have arrived yet
+        // not during a register access, which may not have been answered yet
         .rd_miss_i(mem_reading && !hit_seen && !wr_sync && !reg_flush && !bus_valid_o),
         .rd_hit_o(hit), .rd_safe_o(hit_safe), .rd_data_o(mem_data),
         .flush_i(reg_flush), .drop_i(reg_access), .idle_o(mem_idle),
@@ -216,7 +216,7 @@ module fsmc_bridge #(
     assign npi_rd_flush_o = 1'b0;
 
     // ---- Errors
-    reg reading_d, excuse_was; // a clock later: excuse comes late in its own
+    reg reading_d, excuse_was; // one clock later, because `excuse` arrives late in its clock
     always @(posedge clk_i) excuse_was <= excuse;
     assign access_error_o = reg_error || reg_error_memory || excuse_was;
     assign error_memory_o = !reg_error;

@@ -10,10 +10,10 @@
 // - NWAIT ends within two time-outs plus the delay of the synchronisers.
 // - Once NWAIT is inactive during a register access, it stays inactive and the data stays stable.
 // - A register write proceeds only when the previous write is transferred and registers are idle.
-//   The
-//   bridge's time-out releases only accesses to memory, however short it is.
-// WORDS = 1 proves instead that 32-bit register words are atomic (fsmc_words_proof); with LATE
-// bounded, without it by induction, whose invariant counts the synchronisers' clocks.
+//   The time-out of the bridge releases only accesses to memory, however short it is.
+// WORDS = 1 proves instead that 32-bit register words are atomic (fsmc_words_proof). With LATE the
+// proof is bounded; without it the proof is inductive, with an invariant that counts the
+// synchronisers' clocks.
 
 `default_nettype none
 
@@ -23,7 +23,7 @@ module fsmc_bridge_proof #(
     parameter WAIT_HIGH    = 0,
     parameter TIMEOUT_LOG2 = 1,
     parameter WORDS        = 0, // 1: proves only that 32-bit words are atomic (fsmc_words_proof)
-    // 1: each synchroniser may see what its input was a clock ago
+    // 1: each synchroniser may take the input value of the previous clock
     parameter LATE         = WORDS == 0
 ) (
     input wire        clk_i,
@@ -69,12 +69,12 @@ module fsmc_bridge_proof #(
         .npi_rd_data_i(64'd0), .npi_rd_word_i(4'd0), .npi_rd_empty_i(1'b1), .npi_init_done_i(1'b1)
     );
 
-    // These wires are the bridge's registers: flatten joins them with those of the same name.
+    // Registers of the bridge: flatten joins these wires with the signals of the same names.
     (* hierconn *) wire \u_fsmc_bridge.clear , \u_fsmc_bridge.excuse ;
     (* hierconn *) wire [1:0] \u_fsmc_bridge.taken_ne ;
     (* hierconn *) wire [24:0] \u_fsmc_bridge.taken_addr ;
     (* hierconn *) wire [15:0] \u_fsmc_bridge.taken_data ;
-    (* hierconn, init = 1'b0 *) // flatten keeps no initial value of the joined wire
+    (* hierconn, init = 1'b0 *) // flatten drops the initial value of a joined wire
                    wire \u_fsmc_bridge.u_write.u_cdc_pulse.turned ,
         \u_fsmc_bridge.u_write.u_cdc_pulse.u_cdc_bit.bit_meta ,
         \u_fsmc_bridge.u_write.u_cdc_pulse.turned_sync ,
@@ -102,8 +102,8 @@ module fsmc_bridge_proof #(
     assign \u_fsmc_bridge.u_fsmc_registers.u_done.late = late_done && LATE != 0;
     assign \u_fsmc_bridge.u_access.late = {5{late_access && LATE != 0}};
     wire clear = \u_fsmc_bridge.clear , excuse = \u_fsmc_bridge.excuse ;
-    // `turns` is a write's toggle on its way through cdc_pulse: the source's flip-flop first, then
-    // those in clk_i to the last.
+    // `turns` is the toggle of a write on its way through cdc_pulse: first the source's flip-flop,
+    // then the flip-flops in clk_i up to the last.
     wire [4:0]  turns = {\u_fsmc_bridge.u_write.u_cdc_pulse.turned ,
         \u_fsmc_bridge.u_write.u_cdc_pulse.u_cdc_bit.bit_meta ,
         \u_fsmc_bridge.u_write.u_cdc_pulse.turned_sync ,
@@ -113,7 +113,7 @@ module fsmc_bridge_proof #(
     wire [42:0] copy  =
         {\u_fsmc_bridge.taken_ne , \u_fsmc_bridge.taken_addr , \u_fsmc_bridge.taken_data };
 
-    // ---- These registers hold the pins of a step ago, and the history of the access
+    // ---- Pins in the previous step, and the history of the access
     reg        past = 1'b0, was_clk = 1'b1, was_ne1 = 1'b0, was_ne2 = 1'b0, was_noe = 1'b1,
         was_nwe = 1'b1;
     reg        was_beyond = 1'b0, was_nwait = 1'b1;
@@ -121,13 +121,13 @@ module fsmc_bridge_proof #(
     reg [1:0]  was_d = 2'd0, was_nbl = 2'd0, was_out = 2'd0;
     reg [2:0]  resets = 3'd0; // clocks of reset so far, up to 2
     reg        let_go = 1'b0; // NWAIT has been seen inactive in this access
-    reg [2:0]  rest = 3'd0;   // clocks since NWE's last edge, or since an access was given up
+    reg [2:0]  rest = 3'd0;   // clocks since the last edge of NWE, or since an access was aborted
     reg [1:0]  calm = 2'd0;   // clocks since NWAIT was seen inactive
     // clocks in which a synchroniser is sure to see a level
     localparam [1:0] CALM = LATE != 0 ? 2'd3 : 2'd2;
     reg        latched = 1'b0; // NADV has been low in this access
-    reg        held = 1'b0;   // a write's strobe has risen, NE has not yet
-    reg        given_up = 1'b0; // the access before was given up
+    reg        held = 1'b0;   // the strobe of a write has risen, NE has not yet
+    reg        given_up = 1'b0; // the previous access was aborted
     wire clock    = past && clk_i && !was_clk;
     wire selected = ne1_i || ne2_i, was_selected = was_ne1 || was_ne2;
     wire strobe   = !noe_n_i || !nwe_n_i, was_strobe = !was_noe || !was_nwe;
@@ -163,7 +163,7 @@ module fsmc_bridge_proof #(
     end
 
     always @* begin
-        // Reset lasts for some clocks, with the pins at rest.
+        // Reset lasts some clocks, with the pins idle.
         assume (past || (clk_i && !selected));
         assume (!rst || (!selected && !strobe));
         // The processor uses one bank and one strobe; strobes fall while selected or together with
@@ -177,15 +177,15 @@ module fsmc_bridge_proof #(
         // A multiplexed address is latched before the strobe falls.
         assume (!strobe || nadv_n_i);
         assume (MUXED == 0 || !access || latched);
-        // A strobe rises when NWAIT was inactive, or after NE: then the access is given up, and the
-        // strobe rests for a while.
+        // A strobe rises when NWAIT was inactive, or after NE: then the access is aborted, and the
+        // strobe is inactive for some clocks.
         assume (!wrote || let_go);
         assume (!(was_strobe && !was_selected) || !strobe || !selected);
         assume (!held || !strobe);
         // a read ends with NE and NOE together, at least two clocks after NWAIT (FSMC: 4 HCLK)
         assume (!ended || wrote);
-        // Edges of NWE are at least three clocks apart (fsmc_bridge), and four after an access that
-        // was given up.
+        // Edges of NWE are at least three clocks apart (fsmc_bridge), and four after an aborted
+        // access.
         assume (!wrote || rest >= 3'd3);
         assume (!(given_up && access) || rest >= 3'd4);
     end

@@ -28,7 +28,7 @@ module fsmc_memory #(
     input  wire [ADDR_BITS-1:0] wr_addr_i, // halfword address
     input  wire [WIDTH-1:0]     wr_data_i,
     input  wire [1:0]           wr_be_i,
-    output wire                 wr_lost_o, // in the cycle of wr_i: there was no room
+    output wire                 wr_lost_o, // high in the cycle of a wr_i without room
     output wire                 room_o,    // room for at least two halfwords
     output wire                 more_room_o, // room for three
     // reads: combinational from the pins; rd_miss_i requests missing data at rd_at_i, the copy of
@@ -41,7 +41,7 @@ module fsmc_memory #(
     output wire                 rd_safe_o, // a hit in a block that was valid a clock ago
     output wire [WIDTH-1:0]     rd_data_o,
     // ordering
-    input  wire                 flush_i,   // write out what is posted
+    input  wire                 flush_i,   // write out all posted data
     input  wire                 drop_i,    // discard the read buffers
     output wire                 idle_o,    // all writes have been acknowledged
     // memory port
@@ -58,9 +58,9 @@ module fsmc_memory #(
     input  wire                 npi_rd_empty_i,
     input  wire                 npi_init_done_i
 );
-    localparam WORD  = ADDR_BITS - 2;                // bits of a word address
-    localparam UPPER = WORD - REGION_LOG2;           // of these, the region's
-    // of these, those of the pair of blocks in a region; block and word follow
+    localparam WORD  = ADDR_BITS - 2;                // width of a word address
+    localparam UPPER = WORD - REGION_LOG2;           // of these, the bits of the region
+    // of these, the bits of the pair of blocks in a region; block and word follow
     localparam PAIR  = REGION_LOG2 - BLOCK_LOG2 - 1;
     localparam BLOCK = 1 << BLOCK_LOG2;
 
@@ -80,11 +80,11 @@ module fsmc_memory #(
     // ---- Read buffer
     reg [UPPER-1:0]      upper;           // region of both blocks
     reg [PAIR-1:0]       pair0, pair1;    // pair of the even and of the odd block
-    // bit n: block n has all its words; it had them a clock ago
+    // bit n: block n is complete; it was complete one clock ago
     reg [1:0]            full, settled;
     reg                  current;         // the block being read
-    reg                  ahead;           // the other block holds its successor, or will
-    // A fetch has brought the words below fetch_word or, with have_single, that word alone.
+    reg                  ahead;           // the other block holds the next block, or will
+    // A fetch has read the words below fetch_word or, with have_single, only that word.
     reg                  wanted, busy, stale, single, have_single;
     reg                  fetch_block;
     reg [BLOCK_LOG2-1:0] fetch_word;
@@ -113,8 +113,8 @@ module fsmc_memory #(
         rd_line[2*WIDTH-1:0];
     assign rd_data_o = rd_addr_async_i[0] ? rd_pairs[2*WIDTH-1:WIDTH] : rd_pairs[WIDTH-1:0];
 
-    // ---- The next fetch is decided from the copy of the address alone. While the pins move the
-    // copy may name any place: the fetched word is then useless, but its tag is right.
+    // ---- The next fetch depends only on the registered copy of the address. While the pins move
+    // the copy may contain any address: the fetched word is then useless, but its tag is correct.
     wire [BLOCK_LOG2-1:0] at_word  = rd_at_i[BLOCK_LOG2+1:2];
     wire                  at_block = rd_at_i[BLOCK_LOG2+2];
     wire [PAIR-1:0]       at_pair  = rd_at_i[REGION_LOG2+1:BLOCK_LOG2+3];
@@ -128,16 +128,16 @@ module fsmc_memory #(
     wire last     = npi_rd_pop_o && (single || &fetch_word);
     wire miss     = rd_miss_i && idle_o && !fetching && !at_whole &&
         !(at_alone && at_word == fetch_word);
-    wire second   = at_alone;                  // a miss beside the single word: fetch the block
+    wire second   = at_alone;                  // a miss next to the single word: fetch the block
     wire enter    = rd_used_i && at_whole && ahead && at_block != current;
     wire border   = current && &pair1;         // the last block of a region
     wire next     = rd_used_i && at_whole && !ahead && at_block == current && !border && !fetching;
 
-    // ---- The port takes posted words first
+    // ---- The port handles posted words first
     wire start      = !npi_addr_req_o && npi_init_done_i && (post_valid || wanted);
     wire start_read = start && !post_valid;
     wire [WORD-1:0] fetch_addr = {upper, fetch_block ? pair1 : pair0, fetch_block, fetch_word};
-    reg [5:0] page; // page of the request: stays until it is acknowledged
+    reg [5:0] page; // page of the request, held until it is acknowledged
     always @(posedge clk_i)
         if (!npi_addr_req_o)
             page <= page_i;
@@ -196,7 +196,7 @@ module fsmc_memory #(
             wanted <= 1'b0;
             ahead  <= 1'b0;
             have_single <= 1'b0;
-            // The words of an acknowledged request still come.
+            // The words of an acknowledged request will still arrive.
             stale  <= start_read || (busy && !last);
         end
         if (rst_i) begin
@@ -207,9 +207,8 @@ module fsmc_memory #(
     end
 
 `ifdef FORMAL
-    // A read gives what was written last.
-    // fsmc_post_proof provides the halfword under observation, the writes of others to it, and its
-    // values.
+    // A read returns the value written last. fsmc_post_proof provides the halfword under
+    // observation, the writes of others to it, and its values.
     (* hierconn *) wire [ADDR_BITS-1:0] \u_fsmc_post.place ;
     (* hierconn *) wire \u_fsmc_post.foreign ;
     (* hierconn *) wire [WIDTH-1:0] \u_fsmc_post.memory , \u_fsmc_post.newest ;
@@ -220,11 +219,11 @@ module fsmc_memory #(
 
     reg past = 1'b0;
     reg untold = 1'b0;         // others have written since the last drop_i
-    // The port's model counts the words pushed, and gives the words of a read in order, as the
-    // memory had them.
-    reg [POST_LOG2-1:0] pushed; // words pushed whose request has not been acknowledged
+    // The model of the port counts the words pushed, and returns the words of a read in order, as
+    // the memory held them.
+    reg [POST_LOG2-1:0] pushed; // words pushed with a request that is not acknowledged yet
     reg [4:0] to_come;
-    reg [WORD-1:0] coming;     // address of the next word to come
+    reg [WORD-1:0] coming;     // address of the next word to arrive
     reg [WIDTH-1:0] coming_data;
     wire taken = npi_addr_req_o && npi_addr_ack_i;
     wire [WORD-1:0] npi_word = npi_addr_o[ADDR_BITS:3];
@@ -233,7 +232,7 @@ module fsmc_memory #(
     wire [WIDTH-1:0] came = lane[1]
         ? (lane[0] ? npi_rd_data_i[4*WIDTH-1:3*WIDTH] : npi_rd_data_i[3*WIDTH-1:2*WIDTH])
         : (lane[0] ? npi_rd_data_i[2*WIDTH-1:WIDTH] : npi_rd_data_i[WIDTH-1:0]);
-    // `kept` is the halfword under observation as the read buffer has it.
+    // `kept` is the halfword under observation, as stored in the read buffer.
     wire [BLOCK_LOG2-1:0] place_in_block = place[BLOCK_LOG2+1:2];
     wire place_block = place[BLOCK_LOG2+2];
     wire [4*WIDTH-1:0] place_line = line[{place_block, place_in_block}];
@@ -277,26 +276,26 @@ module fsmc_memory #(
         end
 
         if (past && !rst_i) begin
-            // A read gives what the processor wrote last, or what others wrote before drop_i.
+            // A read returns the processor's last write, or what others wrote before drop_i.
             if (rd_hit_o && rd_addr_async_i == place && !untold)
                 assert (rd_data_o == newest);
             assert (!rd_safe_o || rd_hit_o);
             if (idle_o)
                 assert (memory == newest);
-            // Missing data is requested, if nothing else is on the way.
+            // Missing data is requested if no other request is pending.
             if (rd_miss_i && idle_o && !wanted && !busy)
                 // else one cell with the above
                 assert (miss || at_whole || (at_alone && !(|(at_word ^ fetch_word))));
-            // A block keeps its words until a fetch needs its place, or all are dropped.
+            // A block keeps its words until a fetch replaces it, or all are dropped.
             if ($past(!rst_i && !drop_i && !wr_i && !(miss && at_upper != upper)))
                 assert (($past(full) & ~full &
                          ($past(miss || next) ? ~(2'b01 << fetch_block) : 2'b11)) == 2'b00);
             // The blocks' tags share the upper bits: a miss in another region takes both back.
             if ($past(miss && at_upper != upper))
                 assert (full == 2'b00);
-            // what is read ahead never takes the place of the block being read
+            // read-ahead never replaces the block being read
             assert (!ahead || fetch_block != current);
-            // The port's rules hold: one read at a time, data of a write before its request,
+            // The rules of the port hold: one read at a time, data of a write before its request,
             // aligned blocks.
             if (npi_addr_req_o) begin
                 assert (!npi_rnw_o || to_come == 5'd0);

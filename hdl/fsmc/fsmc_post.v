@@ -23,12 +23,12 @@ module fsmc_post #(
     input  wire [ADDR_BITS-1:0] wr_addr_i, // halfword address
     input  wire [WIDTH-1:0]     wr_data_i,
     input  wire [1:0]           wr_be_i,
-    output wire                 wr_lost_o, // in the cycle of wr_i: there was no room
+    output wire                 wr_lost_o, // high in the cycle of a wr_i without room
     output wire                 room_o,    // room for at least two halfwords
     output wire                 more_room_o, // room for three
     input  wire                 flush_i,
     output wire                 idle_o,    // no word is open and none waits
-    // closing of a word
+    // a word is closed
     output wire                 push_o,    // one cycle
     output reg  [4*WIDTH-1:0]   push_data_o,
     output wire [7:0]           push_be_o,
@@ -40,7 +40,7 @@ module fsmc_post #(
     localparam WORD = ADDR_BITS - 2;
 
     reg [WORD-1:0] addrs [0:(1<<LOG2)-1];
-    // `count` words from `head` on are closed. The initial value keeps Yosys from keeping head
+    // `count` closed words start at `head`. The initial value prevents Yosys from keeping head
     // twice (npi_queue).
     reg [LOG2-1:0] head = 0, count;
     reg            open, none; // none: count == 0
@@ -49,12 +49,12 @@ module fsmc_post #(
 
     wire       joins = open_addr == wr_addr_i[ADDR_BITS-1:2];
     wire [LOG2-1:0] tail = head + count;
-    wire full   = &count; // no closed word more fits, so the open one stays open
+    wire full   = &count; // no room for another closed word, so the open one stays open
     wire close  = open && !full && (&open_be || flush_i || (wr_i && !joins));
     wire accept = wr_i && !(full && open && !joins);
 
     assign wr_lost_o    = wr_i && !accept;
-    // The open word counts as closed, so that room never shrinks without a write.
+    // The open word counts as closed, so that room only shrinks with a write.
     assign room_o       = !(&count[LOG2-1:1] || (open && count == (1 << LOG2) - 3));
     localparam [LOG2-1:0] LOW = 3;
     assign more_room_o  = !(&(count | LOW) && (count[0] || count[1] || open));
@@ -80,7 +80,7 @@ module fsmc_post #(
         if (close)
             addrs[tail] <= open_addr;
         if (close != word_taken_i)
-            count <= word_taken_i ? count - 1'b1 : count + 1'b1; // close comes late
+            count <= word_taken_i ? count - 1'b1 : count + 1'b1; // `close` arrives late
         if (close || word_taken_i)
             none <= !close && count == 1;
         if (close || accept)
@@ -99,8 +99,8 @@ module fsmc_post #(
     end
 
 `ifdef FORMAL
-    // Every halfword that is accepted reaches the memory, in order.
-    // `place` is the halfword under observation, any; others may write there while nothing waits.
+    // Every accepted halfword reaches the memory, in order. `place` is the halfword under
+    // observation, which the prover chooses; others may write there while nothing waits.
     (* anyconst *) reg [ADDR_BITS-1:0] place;
     (* anyseq *) reg foreign;
     (* anyseq *) reg [WIDTH-1:0] foreign_data;
@@ -108,7 +108,7 @@ module fsmc_post #(
     localparam HALF = WIDTH / 2, DEPTH = 1 << LOG2;
     reg past = 1'b0;
     wire [1:0] place_lane = place[1:0];
-    // The model of the port's write FIFO keeps, of every word, the halfword under observation and
+    // The model of the port's write FIFO stores, for each word, the halfword under observation and
     // its byte enables.
     reg [WIDTH+1:0] fifo [0:DEPTH-1];
     wire [WIDTH+1:0] open_half =
@@ -117,8 +117,8 @@ module fsmc_post #(
         if (push_o)
             fifo[tail] <= open_half;
 
-    // `after` is the memory's value after each word that waits has been written, oldest first; the
-    // open word is the last of them.
+    // `after` is the memory's value after each waiting word has been written, oldest first; the
+    // open word is the last.
     wire [WIDTH*(DEPTH+1)-1:0] after;
     assign after[WIDTH-1:0] = memory;
     genvar q;
@@ -170,13 +170,13 @@ module fsmc_post #(
 
         if (past && !rst_i) begin
             assert (final_value == newest);
-            // Two writes may come before the processor can see that there is no room.
+            // Two writes may arrive before the processor can see that there is no room.
             assert (!wr_lost_o || !$past(room_o));
             assert (!(wr_lost_o && more)); // or three
             assert (none == (count == 0));
-            // A word that has all its bytes does not wait for another, or for a flush.
+            // A complete word does not wait for another word or a flush.
             assert (push_o || !(open && push_be_o == 8'hFF && count != DEPTH - 1));
-            // The oldest word does not change until it is taken.
+            // The oldest word is stable until it is taken.
             if ($past(word_valid_o && !word_taken_i && !rst_i))
                 assert (word_valid_o && $stable(word_addr_o));
         end

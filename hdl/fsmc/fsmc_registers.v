@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
 // fsmc_registers: reads and writes 32-bit words of the register bus in two 16-bit halves, low half
-// first, each word in one piece.
+// first; each word is atomic.
 //
-// A read of the low half reads the word and keeps its high half; a write of the low half keeps it,
-// and a write of the high half writes the word. A high half alone is read afresh; written alone it
-// is an error. Writes are posted: busy_o is high from the cycle after wr_i until the word has been
-// written, and every other access waits for that. All memory writes are flushed before a transfer.
-// expired_i ends the wait for a slave with an error; a memory that does not take the writes in time
-// is reported, and the transfer goes on.
+// A read of the low half reads the word and stores its high half for the next read. A write of the
+// low half is stored, and a write of the high half writes the word. A high half that is read alone
+// is read again; written alone it is an error. Writes are posted: busy_o is high from the cycle
+// after wr_i until the word has been written, and every other access waits for that. All memory
+// writes are flushed before a transfer. expired_i ends the wait for a slave with an error; a memory
+// that does not take the writes in time is reported, and the transfer continues.
 
 `default_nettype none
 
@@ -19,7 +19,7 @@ module fsmc_registers (
     input  wire        wr_i,
     input  wire [24:0] wr_addr_i, // halfword address
     input  wire [15:0] wr_data_i,
-    // reads: until the pin ends the access
+    // reads: held until the pin ends the access
     input  wire        reading_i,
     input  wire [24:0] rd_addr_i,
     input  wire        rd_high_async_i, // pins: the high half is being read
@@ -47,13 +47,13 @@ module fsmc_registers (
     input  wire [31:0] bus_rdata_i,
     input  wire        bus_error_i
 );
-    // At most one of these waits: flushing, for memory to take what was posted; bus_valid_o, for
-    // the slave's answer; answering, for the processor to end its read. With none of them, and no
-    // give, there is nothing to do.
+    // At most one of these is active: flushing, until memory has taken all posted writes;
+    // bus_valid_o, until the slave answers; answering, until the processor ends its read. Without
+    // them, and without give, the module is idle.
     reg        flushing, answering;
     reg [31:0] word;       // word read last
     reg [15:0] low;        // low half written last
-    // of bus_addr_o's word the high half is kept from a read, the low half from a write
+    // the high half of bus_addr_o's word is stored from a read; the low half from a write
     reg        half_read, half_write;
     reg        asked_high; // this read is of the high half, whatever the pins say now
     reg        given_up;   // the read has ended early; its answer is dropped
@@ -67,7 +67,7 @@ module fsmc_registers (
     wire [9:0] addr = wr_i ? wr_addr_i[10:1] : rd_addr_i[10:1];
     wire same     = in_range && addr == bus_addr_o;
     wire keep     = wr_i && !high && in_range;           // a low half to be written
-    wire kept     = !wr_i && high && half_read && same;  // a high half that was read
+    wire kept     = !wr_i && high && half_read && same;  // a stored high half
     wire wrong    = !in_range || (wr_i && !(half_write && same));
     wire transfer = begins && !keep && !kept && !wrong;
     wire at_once  = begins && !wr_i && (kept || wrong);  // a read without a transfer
@@ -115,7 +115,7 @@ module fsmc_registers (
             low <= wr_data_i;
         if (ends && !bus_write_o)
             word <= bus_rdata_i;
-        // by itself, not by `wrong`: a short path to 32 resets
+        // directly, not through `wrong`: a short path to 32 resets
         if (idle && reading_i && |rd_addr_i[24:11])
             word <= 32'd0;
 
@@ -126,8 +126,8 @@ module fsmc_registers (
         if (give || (answering && (given_up || (seen && !done_sync))))
             answering <= give;
 
-        // A write while busy, from a master that ignores NWAIT, is lost and reported: the word
-        // under way may get its data.
+        // A write while busy, from a master that ignores NWAIT, is lost and reported: the word in
+        // progress may get its data.
         error_o <= (begins && !keep && !kept && wrong) || (ends && (bus_error_i || !bus_ready_i)) ||
                    (wr_i && !idle);
         error_memory_o <= flushing && expired_i && !idle_i;
@@ -146,8 +146,8 @@ module fsmc_registers (
 
 `ifdef FORMAL
     // An access makes at most one transfer, of a whole word.
-    // A hung slave is given up as soon as expired_i is high, which PATIENCE = 1 lets bus_rules
-    // allow.
+    // A hung slave is abandoned as soon as expired_i is high, which bus_rules allows with PATIENCE
+    // = 1.
     bus_rules #(.MASTER(1), .PATIENCE(1)) u_bus_rules (
         .clk_i(clk_i), .rst_i(rst_i), .valid_i(bus_valid_o), .write_i(bus_write_o),
         .addr_i(bus_addr_o), .wdata_i(bus_wdata_o), .ready_i(bus_ready_i), .rdata_i(bus_rdata_i),
@@ -156,17 +156,17 @@ module fsmc_registers (
     reg        past = 1'b0;
     reg [3:0]  patience;  // the bridge's time-out count, shorter
     reg [4:0]  stuck;     // clocks of this access without an answer
-    reg [31:0] last_read; // the word that the bus gave last
+    reg [31:0] last_read; // the last word from the bus
     reg [15:0] last_low;  // low half written last
     reg        low_word;  // the low half of bus_addr_o's word was the last write
     reg        low_read;  // the access begun last reads a low half
     reg        was_busy = 1'b0;
     reg [40:0] write_was;
     always @* begin
-        // NWAIT at the pins holds the next write and its data back until the one before is done.
+        // NWAIT holds back the next write and its data until the previous one is done.
         assume (!(busy_o && wr_i));
         assume (!(was_busy && busy_o) || write_was == {wr_addr_i, wr_data_i});
-        // Time-outs come as the bridge counts them.
+        // Time-outs as the bridge counts them.
         assume (expired_i == patience[3]);
     end
     always @(posedge clk_i) begin
@@ -189,7 +189,7 @@ module fsmc_registers (
             low_read <= !wr_i && !rd_addr_i[0];
 
         if (past && !rst_i) begin
-            // An access makes one transfer at most, one at a time, and no transfer comes without an
+            // An access makes at most one transfer at a time, and no transfer happens without an
             // access.
             assert ({2'd0, flushing} + {2'd0, bus_valid_o} + {2'd0, give} +
                     {2'd0, answering} <= 3'd1);
@@ -197,8 +197,8 @@ module fsmc_registers (
                 assert ($past(flushing));
             if (flushing && !$past(flushing))
                 assert ($past(idle && (wr_i || reading_i)));
-            // Words stay whole: a kept high half belongs to the word read last; a word is written
-            // with the low half that was written just before.
+            // Words are atomic: a stored high half belongs to the word read last; a word is written
+            // with the low half of the write just before.
             assert (!half_read || (word == last_read && low_read));
             assert (!half_read || $past(half_read) || $past(reading_i));
             assert (half_write == low_word);
@@ -207,14 +207,15 @@ module fsmc_registers (
             assert (!half_write || low == last_low);
             if ((flushing || bus_valid_o) && bus_write_o)
                 assert (low == last_low);
-            // Waiting ends after two time-outs and the steps between.
+            // Waiting ends after two time-outs and the steps between them.
             assert (!flushing || stuck <= patience);
             assert (!bus_valid_o || stuck <= patience + 5'd9);
             assert (stuck <= 5'd18);
-            // Memory writes come first, unless the memory hangs.
+            // Memory writes are flushed first, unless the memory hangs.
             if (bus_valid_o && !$past(bus_valid_o))
                 assert ($past(idle_i) || $past(expired_i));
-            // An answer goes only to the access that asked for it, and falls with either pin.
+            // An answer goes only to the access that requested it, and is withdrawn with either
+            // pin.
             assert (!done || !(ne_n_async_i || noe_n_async_i));
             assert (!$past(given_up && !begins) || !(done && !$past(done)));
         end

@@ -3,25 +3,24 @@
 // fsmc_words_proof: 32-bit register words are atomic at the pins of fsmc_bridge; a part of
 // fsmc_bridge_proof.
 //
-// These hold for any sequence of accesses, completed or given up at any moment, to registers,
-// beyond them and to memory:
-// - A word written to the bus is that of the processor's last two completed register accesses: low
-//   half, then high half of the same word; so is its address. An access that was given up writes
-//   nothing.
-// - A write of a high half, or beyond the slots, yields exactly one transfer or one report of an
-//   error, before the next register access goes on: a transfer if its low half came just before,
-//   with not even the attempt of a read between; an error if it did not. A write of a low half
-//   yields neither.
-// - A read gives half of the word that the bus gave last, and that word is of the read's address.
-//   Its transfer began in this access or, for a high half, in the read of its low half just before. If
-//   nothing at all was between those two it is always the latter: both halves are of one transfer.
-//   Otherwise reads that were given up may lie between; one of those may have been that of the low
-//   half. A read beyond the slots gives 0.
-// - Each read, also one that was given up, makes one transfer at most, and no transfer comes
-//   without a read.
+// These hold for any sequence of completed or aborted accesses to registers, to addresses beyond
+// them and to memory:
+// - A word written to the bus, and its address, come from the processor's last two completed
+//   register accesses: low half, then high half of the same word. An aborted access writes nothing.
+// - A write of a high half, or beyond the slots, causes exactly one transfer or one error report,
+//   before the next register access continues: a transfer if the write of its low half was the
+//   access just before, without even an attempted read between; otherwise an error. A write of a
+//   low half causes neither.
+// - A read returns half of the word that the bus returned last, and that word has the address of
+//   the read. Its transfer began in this access or, for a high half, in the read of its low half
+//   just before. If there was nothing at all between those two, it is always the latter: both
+//   halves are from one transfer. Otherwise there may be aborted reads between, including one of
+//   the low half. A read beyond the slots returns 0.
+// - Each read, also an aborted one, makes at most one transfer, and no transfer happens without a
+//   read.
 //
-// The second half relates the harness's notes to the bridge's registers: with it all assertions
-// together are inductive over two steps, so runs of any length are proven.
+// The second half relates the notes in the harness to the registers of the bridge: with it all
+// assertions together are inductive over two steps, so runs of any length are proven.
 
     wire up = resets > 3'd1;
 
@@ -39,15 +38,14 @@
     wire ends      = was_valid && !bus_valid;
     // no transfer
     wire reports   = clock && access_error && !error_memory && error_write && !(ends && was_write);
-    // NWE rises before NE (RM0033), or after it where the access is given up; never in the same
-    // step.
+    // NWE rises before NE (RM0033), or after it if the access is aborted; never in the same step.
     always @* assume (!(was_access && !selected && !was_nwe) || !nwe_n_i);
 
     // ---- Writes
-    // the bridge holds the low half written last: perhaps, for certain
+    // the bridge holds the low half written last: possibly, certainly
     reg       low_may = 1'b0, low_sure = 1'b0;
     reg [1:0] low_at = 2'd0, low = 2'd0;
-    // a transfer or an error is due; it may be, must be a transfer
+    // a transfer or an error is due; it may be a transfer, must be one
     reg       owed = 1'b0, may = 1'b0, sure = 1'b0;
     reg [1:0] word_at = 2'd0;
     reg [3:0] word = 4'd0;
@@ -82,7 +80,7 @@
     end
 
     // ---- Reads: transfers
-    // a transfer has yet to begin for this access, for one that was given up
+    // a transfer for this access, or for an aborted one, has yet to begin
     reg  unread = 1'b0, forgotten = 1'b0;
     wire fetches     = begins && !bus_write;
     wire unread_n    = reads && (!was_reads || (unread && !(fetches && !forgotten)));
@@ -93,7 +91,7 @@
     always @* if (up && fetches)
         assert (unread || forgotten);
 
-    // ---- Reads: data, of any word `its`
+    // ---- Reads: data of any word `its`
     (* anyconst *) reg [1:0] its;
     // a transfer has begun in this access; it has ended
     reg       asked = 1'b0, got = 1'b0;
@@ -102,7 +100,7 @@
     reg [1:0] answer_at = 2'd0;
     reg [3:0] answer = 4'd0;
     wire answered = ends && !was_write;
-    // the access that ends is one to the low half of `its`
+    // the ending access reads the low half of `its`
     wire mine     = !was_beyond && was_a == {its, 1'b0};
     wire asked_n  = access && (asked || (fetches && reads));
     wire got_n    = access && (got || (answered && was_reads && asked && was_addr == a_i[2:1]));
@@ -152,7 +150,7 @@
     wire idle     = !flushing && !bus_valid && !give && !answering;
     wire done     = reads && nwait_n;
     wire writing  = (flushing || bus_valid) && bus_write;
-    // the access may still be under way
+    // the access may still be in progress
     wire fetching = (flushing || bus_valid || give) && !bus_write && !read_given_up;
 
     // `since` counts clocks since a write's strobe rose, by2 is its bank; gone2: the access given
@@ -169,7 +167,7 @@
         !nwait_n ? 2'd0 : was_access && clock && calm != 2'd2 ? calm + 2'd1 : calm;
     always @(posedge step)
         {since, by2, last, gone2} <= {since_n, by2_n, last_n, gone2_n};
-    wire pending  = since_n < 3'd3; // the write is not yet known to fsmc_registers
+    wire pending  = since_n < 3'd3; // fsmc_registers may not have received the write yet
     wire pending2 = pending && by2_n;
     wire last_low = !last_n[5] && !last_n[2];
     wire paired   = half_write && !last_n[5] && last_n[2] && bus_addr == {8'd0, last_n[4:3]};
@@ -233,7 +231,7 @@
                  (!seen || done_s == 2'b11)));
         assert (!done || calm_n != 2'd2 || done_s[0]);
 
-        // The read in progress is that of the pins, or was given up just now.
+        // The read in progress belongs to the pins, or was aborted just now.
         if (fetching && reads)
             assert (s0 && s1 && bus_addr == {8'd0, a_i[2:1]} && asked_high == a_i[0] &&
                     (give || !beyond_i));
@@ -254,7 +252,7 @@
                     ((give || answering) && s1 && !read_given_up && (!seen || done_s[1]) &&
                      (!s0 || done_s != 2'b10)));
 
-        // The word that is kept is the one read last.
+        // The stored word is the word read last.
         if (half_read) begin
             assert (!flushing && !bus_valid && !bus_write);
             assert (kept[31:16] == {14'd0, answer_n[3:2]} && bus_addr == {8'd0, answer_at_n});
@@ -282,7 +280,7 @@
                      ((give && !read_given_up) || done)));
         end
 
-        // The low half written last is kept for the write of its high half, which is a transfer
+        // The low half written last is stored for the write of its high half, which is a transfer
         // only then.
         assert (!half_write || idle);
         if (!pending2) begin

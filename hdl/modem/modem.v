@@ -7,8 +7,8 @@
 `default_nettype none
 
 module modem #(
-    parameter CLK_HZ = 100000000, // Hz, a multiple of 16000 from 2 MHz on
-    parameter API    = 0          // 0 only a transparent modem, 1 NET.API may choose API frames
+    parameter CLK_HZ = 100000000, // Hz, a multiple of 16000, at least 2 MHz
+    parameter API    = 0          // 1: NET.API may select API frames; 0: only a transparent modem
 ) (
     `include "slot_ports.vh"
     `include "memory_ports.vh"
@@ -27,9 +27,9 @@ module modem #(
     wire        set_configure, set_reset_modem, baud_write, net_write, settings_write;
     reg  configure, reset_modem, rings_reset; // a cycle after the write, because their paths are long
 
-    // Settings are kept in block RAM: words 0..15 are the registers with the ID, 28..31 the key. A
-    // word is there a clock after its index. It is invalid after an index of the processor's, which
-    // may have written it in that clock.
+    // Settings are stored in block RAM: words 0..15 are the registers with the ID, 28..31 the key.
+    // A word is available one clock after its index. It is invalid after an index used by the
+    // processor, which may have written it in that clock.
     (* ram_style = "block", no_rw_check *)
     reg  [31:0] words [0:31];
     reg  [1:0]  key_index;
@@ -56,7 +56,7 @@ module modem #(
     reg         ready, reset_n, pulse_ends, encrypt, by_wire, frames;
     wire        api = API != 0 && frames;
     reg  [7:0]  framing_errors, overruns, retries;
-    reg         framing_waits, retry_waits; // a clock after it happened, or more: one is counted at a time
+    reg         framing_waits, retry_waits; // pending events; counted one per clock
     wire        counts_retry = retry_waits && !rx_overrun;
     wire        counts_framing = framing_waits && !rx_overrun && !retry_waits;
     wire [8:0]  counted = {1'b0, rx_overrun ? overruns : retry_waits ? retries : framing_errors} + 9'd1;
@@ -84,8 +84,8 @@ module modem #(
     wire [6:0]  tx_bytes, rx_bytes;
     wire        tx_waits = !tx_free[4];
     wire        rx_waits = !rx_free[4];
-    // A clock after the ring: a byte that waits is taken two clocks after a packet's end (`writes`).
-    // A register, because it is on the path to the word that is read.
+    // One clock after the ring: a waiting byte is taken two clocks after the end of a packet
+    // (`writes`). A register, because it is on the path to the word that is read.
     reg         rx_full;
     wire [7:0]  put_bytes;
     wire        put, rx_release;
@@ -104,7 +104,7 @@ module modem #(
     assign uart_valid = at_tx_valid || packet_tx_valid; // never both: not ready while the set-up runs
     assign uart_data  = at_tx_data | packet_tx_data;
     // `writes` is a register because it also addresses the word that the processor reads: a change
-    // of ring waits a clock.
+    // of ring waits one clock.
     reg writes;
     always @(posedge clk_i)
         writes <= wr_valid;
@@ -196,7 +196,7 @@ module modem #(
                 .valid_o(frame_valid), .end_o(in_end), .bad_o(frame_bad)
             );
             assign in_valid = api ? frame_valid : rx_valid && ready;
-            assign in_bad   = frame_bad || (api && !ready); // a set-up cuts off the frame under way
+            assign in_bad   = frame_bad || (api && !ready); // a set-up aborts the current frame
         end else begin : g_transparent
             assign packet_tx_valid = body_valid;
             assign packet_tx_data  = body_data;
@@ -221,7 +221,7 @@ module modem #(
         .clk_i(clk_i), .rst_i(rings_reset), .tick_i(bit_tick), .api_i(api),
         .rx_valid_i(in_valid), .rx_data_i(rx_data), .rx_error_i(in_error),
         .rx_end_i(in_end), .rx_bad_i(in_bad), .silent_o(silent),
-        .rx_idle_i(rx_idle && !modem_rts_n_o), // a pause that RTS caused ends no packet
+        .rx_idle_i(rx_idle && !modem_rts_n_o), // a pause caused by RTS does not end a packet
         .wr_valid_o(wr_valid), .wr_data_o(wr_data), .wr_index_o(wr_index), .wr_be_o(wr_be),
         .wr_ready_i(wr_ready), .wr_busy_i(wr_busy),
         .full_i(rx_full), .push_o(rx_push), .overrun_o(rx_overrun)

@@ -23,10 +23,10 @@ module modem_api_rx (
     localparam [2:0] DELIMITER = 3'd0, HIGH = 3'd1, LOW = 3'd2, DATA = 3'd3, CHECKSUM = 3'd4;
 
     reg [2:0] state;
-    reg [6:0] left; // bytes before the checksum
+    reg [6:0] left; // bytes left before the checksum
     reg [7:0] sum;
 
-    wire fits  = data_i != 8'd0 && !data_i[7] && data_i[6:4] != 3'd7; // as a length
+    wire fits  = data_i != 8'd0 && !data_i[7] && data_i[6:4] != 3'd7; // valid as a length
     wire right = sum + data_i == 8'hFF;
 
     assign valid_o = valid_i && state == DATA;
@@ -60,11 +60,11 @@ module modem_api_rx (
     end
 
 `ifdef FORMAL
-    // Contents end once, complete or bad, and have as many bytes as the frame says.
+    // The contents end once, complete or bad, and have as many bytes as the frame's length field.
     reg past = 1'b0;
     initial assume (rst_i);
     reg       open = 1'b0;  // a frame's contents have begun and not ended
-    reg [6:0] given = 7'd0; // bytes of them
+    reg [6:0] given = 7'd0; // bytes of the contents delivered
     reg [6:0] length = 7'd0;
     always @(posedge clk_i) begin
         past <= 1'b1;
@@ -76,7 +76,8 @@ module modem_api_rx (
             given <= given + valid_o;
         if (past && !$past(rst_i)) begin
             assert (!(end_o && bad_o));
-            // Bytes are given inside a frame only, and a frame that gave some ends good or bad.
+            // Bytes are delivered only inside a frame, and a frame that delivered any ends good or
+            // bad.
             if (open && !end_o && !bad_o)
                 assert (state == DATA || state == CHECKSUM);
             assert (!(end_o || bad_o) || state == DELIMITER);

@@ -24,7 +24,7 @@ module modem_api_tx (
 );
     localparam [2:0] DATA = 3'd3, CHECKSUM = 3'd4;
 
-    reg [2:0] place; // byte of the frame: 0..2 head, DATA, CHECKSUM
+    reg [2:0] place; // current byte of the frame: 0..2 head, DATA, CHECKSUM
     reg [7:0] sum;
 
     wire taken = valid_o && ready_i;
@@ -58,7 +58,7 @@ module modem_api_tx (
     // Every frame carries its length and its checksum; without frames the packet alone goes out.
     reg past = 1'b0;
     initial assume (rst_i);
-    reg [7:0] total = 8'd0; // of all behind the length, checksum included
+    reg [7:0] total = 8'd0; // sum of all bytes after the length, including the checksum
     always @(posedge clk_i) begin
         past <= 1'b1;
         if (past)
@@ -67,15 +67,15 @@ module modem_api_tx (
             total <= place < DATA ? 8'd0 : total + data_o;
         if (past && !$past(rst_i)) begin
             assert (place <= CHECKSUM);
-            // Each place follows its predecessor; that of the packet's bytes, after the last.
+            // Each position follows its predecessor; CHECKSUM follows the last byte of the packet.
             if ($past(api_i) && api_i)
                 assert (place == $past(!taken || (place == DATA && !last_i) ? place :
                                        place == CHECKSUM ? 3'd0 : place + 3'd1));
             else if (!rst_i)
                 assert (place == DATA && (!taken || (valid_i && data_o == data_i)));
-            // The packet's bytes are taken in their place, and in no other.
+            // The bytes of the packet are taken in state DATA only.
             assert (!ready_o || place == DATA);
-            // The sum behind the length is 0xFF.
+            // The sum of the bytes after the length is 0xFF.
             if ($past(taken) && $past(place) == CHECKSUM)
                 assert (total == 8'hFF && place == 3'd0);
         end

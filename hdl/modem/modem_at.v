@@ -22,7 +22,7 @@ module modem_at #(
     output wire        clear_o,
     input  wire [11:0] time_i,
     // control
-    input  wire        start_i,    // only while not busy
+    input  wire        start_i,    // allowed only while not busy
     // with start_i: no modem is connected, the target rate is used at once
     input  wire        wire_i,
     output reg         busy_o,
@@ -31,7 +31,7 @@ module modem_at #(
     output reg         retried_o,  // one cycle
     output reg  [3:0]  step_o,
     output reg  [3:0]  bd_o,       // baud rate in use
-    // settings: the word at word_o, when it can be read
+    // settings: the word with index word_o, as soon as it is available
     output wire [4:0]  word_o,
     input  wire [31:0] word_i,
     input  wire        word_valid_i,
@@ -47,14 +47,15 @@ module modem_at #(
     localparam [3:0] SETTLES = 4'd0, ENTER = 4'd1;
     localparam [3:0] FACTORY_BD = 4'd3, HIGHEST_BD = 4'd7;
 
-    reg [5:0] place;    // row of the step
+    reg [5:0] place;    // table row in the current step
     `SHIFT_ORDER(after, 6)
-    reg       fresh;    // the line is not idle yet, so no time passes
+    reg       fresh;    // the line is not idle yet, so the time does not advance
     reg       steady;   // the character to send is there
     reg [3:0] value;    // last digit
-    // a command failed once, twice; in step 1 the next rate is the factory's, the next lower
+    // a command has failed once / twice; in step 1: the next rate is the factory's / the next lower
+    // one
     reg       tried, walks;
-    reg       heard_o, heard_k; // the reply ends in "O", in "OK"
+    reg       heard_o, heard_k; // the reply ends with "O" / with "OK"
     reg       ok, refused;      // one cycle: the reply is complete
     reg [3:0] same;             // three bits each of time and guard time
     reg       counts;           // the digits are complete: compare time and guard time
@@ -78,7 +79,7 @@ module modem_at #(
         .limit_o(limit), .refuse_o(refuse), .skip_o(skip), .settle_o(settle), .data_o(data)
     );
 
-    // The next lower rate; after the lowest comes 250,000.
+    // The next lower rate; the one after the lowest is 250,000.
     wire [3:0] lower =
         {bd_o[2:0] == 3'd0, bd_o[2] ^ (bd_o[1:0] == 2'd0), bd_o[1] ~^ bd_o[0], ~bd_o[0]};
 
@@ -164,7 +165,7 @@ module modem_at #(
     end
 
 `ifdef FORMAL
-    // Each step needs the modem's OK, and the set-up ends.
+    // Each step needs an OK from the modem; then the set-up ends.
     localparam [3:0] EE = 4'd7, RN = 4'd9;
     reg past = 1'b0;
     initial assume (rst_i);
@@ -180,10 +181,10 @@ module modem_at #(
             assert (busy_o || !(send || rate || guard || hear || limit || settle));
             if ($past(goes || start))
                 assert (!(send || rate || guard || hear || limit || settle) && fresh);
-            // A step follows its predecessor, and only after "OK" and a return came.
+            // A step follows its predecessor, and only after "OK" and a carriage return.
             if (passed)
                 assert (heard == {"OK", 8'h0D});
-            // A return without "OK" is a refusal, except the end of an earlier answer.
+            // A carriage return without "OK" is a rejection, unless it ends an earlier reply.
             assert (refused == $past(rx_valid_i && rx_data_i == 8'h0D && !heard_k && !fresh));
             if (hear) begin
                 assert (!send);
@@ -194,7 +195,7 @@ module modem_at #(
                 assert (($past(start) && step_o == ($past(wire_i) ? SETTLES : ENTER)) ||
                         ($past(passed) && (step_o == $past(step_o) + 4'd1 ||
                                            ($past(step_o) == EE && step_o == RN))));
-            // The end is success after the last step, or failure, never both.
+            // The set-up ends with success after the last step, or with failure, never both.
             assert (!(done_o && failed_o));
             if (done_o)
                 assert ($past(settle) && step_o == SETTLES);
@@ -202,7 +203,8 @@ module modem_at #(
                 assert (step_o == SETTLES);
             if ($past(busy_o) && !busy_o)
                 assert (done_o || failed_o);
-            // Nothing is sent while silence is kept, and what is offered stays until it is taken.
+            // Nothing is sent during the guard time, and an offered byte is stable until it is
+            // taken.
             if (tx_valid_o)
                 assert (send && !guard);
             if ($past(tx_valid_o) && !$past(tx_ready_i))

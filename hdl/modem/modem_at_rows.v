@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_at_rows: table of the AT set-up in block RAM: one action of modem_at for each place of each
+// modem_at_rows: table of the AT set-up in block RAM: one action of modem_at for each row of each
 // step.
 //
 // A row contains flags and eight bits of data: a character, or {word of the settings, nibble in
@@ -15,7 +15,7 @@ module modem_at_rows #(
     input  wire       clk_i,
     input  wire       clear_i, // the next row is 0
     input  wire [3:0] step_i,
-    input  wire [5:0] place_i, // in the order of a shift register
+    input  wire [5:0] place_i, // counted in the order of a shift register
     // the row, a cycle later
     output wire       send_o,   // send a character
     output wire       digit_o,  // the character is the hex digit of a nibble
@@ -57,7 +57,8 @@ module modem_at_rows #(
     function integer letter_count(input integer step);
         letter_count = letters(step) < 24'h10000 ? 2 : 3;
     endfunction
-    function [7:0] letter(input [23:0] text, input integer left); // before `left` others
+    function [7:0] letter(input [23:0] text, input integer left); // the character with `left`
+                                                                  // others after it
         case (left)
             0:       letter = text[7:0];
             1:       letter = text[15:8];
@@ -65,8 +66,8 @@ module modem_at_rows #(
         endcase
     endfunction
 
-    // The value of a command is digit_count digits of a word, from the nibble that the next
-    // function gives; the key is in four words.
+    // The value of a command consists of digit_count digits of a word, starting at the nibble that
+    // the next function returns; the key has four words.
     function integer digit_count(input integer step);
         case (step)
             2, 4, 6: digit_count = 4;
@@ -78,7 +79,7 @@ module modem_at_rows #(
             default: digit_count = 0;
         endcase
     endfunction
-    // {word, nibble} before `left` others
+    // {word, nibble} with `left` others after it
     function [7:0] digit(input integer step, input [4:0] left);
         case (step)
             2:       digit = {1'b0, MODEM_ADDR, left[2:0]};

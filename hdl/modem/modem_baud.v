@@ -55,14 +55,14 @@ module modem_baud #(
 `ifdef FORMAL
     // n clocks equal one step of n, which the simulator adds at once
     // (testbench/sim/quiet_span.cpp). A span may begin in any clock in which no carry and no tick
-    // is on its way.
+    // is in progress.
     (* anyseq *) reg begins;
     reg        past = 1'b0, spans = 1'b0;
     reg [17:0] phase_then;
     reg [4:0]  count_then;
     reg [3:0]  rate;
     reg [8:0]  n;       // clocks since the span began
-    reg [27:0] product; // n times the step: it is added n times
+    reg [27:0] product; // n times the step
     wire [18:0] step   = FULL - minus;
     wire [27:0] sum    = {10'd0, phase_then} + product;
     wire [27:0] before = sum - {10'd0, step[17:0]}; // a clock ago
@@ -89,7 +89,7 @@ module modem_baud #(
             assert (phase[WIDTH-1:0] == sum[17:0]);
             assert (phase[WIDTH] == (sum[27:18] != before[27:18]));
             assert (count == count_then + before[22:18]);
-            // A tick is there two clocks after its carry has come about, and at no other time.
+            // A tick occurs two clocks after its carry, and at no other time.
             if (n > 9'd1)
                 assert (tick_o ==
                         (before[27:18] != older[27:18] &&

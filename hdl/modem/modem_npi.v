@@ -3,7 +3,7 @@
 // modem_npi: shares one memory port between receiver and transmitter, with one access per byte.
 //
 // Single-byte accesses need no word buffers and cost little: at most 22,000 per second in both
-// directions together, below one percent of the memory's time. Writes have priority, because the
+// directions together, below one percent of the memory bandwidth. Writes have priority, because the
 // serial line does not wait. An accepted request is carried out even if its packet is dropped.
 
 `default_nettype none
@@ -11,8 +11,8 @@
 module modem_npi (
     input  wire        clk_i,
     input  wire        rst_i,
-    // base address of the ring (receive ring while wr_valid_i, otherwise transmit ring), when it is
-    // valid
+    // base address of the ring (receive ring while wr_valid_i, otherwise transmit ring); must be
+    // valid in that clock
     input  wire [31:11] base_i,
     input  wire        base_valid_i,
     // write a byte: {buffer, word in it}, place in the word
@@ -44,7 +44,7 @@ module modem_npi (
 
     reg [1:0]  state;
     reg [31:3] addr;
-    reg        wanted; // the read under way has not been withdrawn
+    reg        wanted; // the current read has not been withdrawn
 
     wire start = state == IDLE && base_valid_i && npi_init_done_i;
 
@@ -76,7 +76,7 @@ module modem_npi (
         wanted <= rd_valid_i && (wanted || state == IDLE);
         case (state)
             IDLE: begin
-                // not with `start`, which comes late
+                // not `start`, which arrives late
                 addr <= {base_i, wr_valid_i ? wr_addr_i[10:3] : rd_addr_i[10:3]};
                 if (start && wr_valid_i)
                     state <= WRITE;
@@ -98,11 +98,11 @@ module modem_npi (
     // Words and acknowledgements keep the rules of a memory port.
     reg past = 1'b0;
     initial assume (rst_i);
-    reg [4:0] words = 5'd0; // pushed and not acknowledged
-    reg       owed  = 1'b0; // a word was asked for and has not come
+    reg [4:0] words = 5'd0; // words pushed and not acknowledged
+    reg       owed  = 1'b0; // a word was requested and has not arrived
     always @(posedge clk_i) begin
         past <= 1'b1;
-        // The memory answers a request only, and gives a word only for a read that it took.
+        // The memory acknowledges only requests, and returns a word only for an acknowledged read.
         assume (!npi_addr_ack_i || npi_addr_req_o);
         assume (npi_rd_empty_i || owed);
         if (npi_addr_req_o && npi_addr_ack_i && npi_rnw_o)
@@ -115,10 +115,10 @@ module modem_npi (
             owed  <= 1'b0;
         end
         if (past && !rst_i && !$past(rst_i)) begin
-            // A request stays, with its address, until it is acknowledged.
+            // A request and its address are stable until it is acknowledged.
             if ($past(npi_addr_req_o) && !$past(npi_addr_ack_i))
                 assert (npi_addr_req_o && $stable(npi_addr_o) && $stable(npi_rnw_o));
-            // One word of data before each write, never another.
+            // Exactly one word of data before each write.
             assert (words == (state == WRITE));
             assert (owed == (state == WAIT_WORD));
             assert (!(npi_rd_pop_o && npi_rd_empty_i));
@@ -127,7 +127,7 @@ module modem_npi (
                 assert ($past(rd_valid_i) && rd_valid_i && $past(wanted));
             if ($past(wr_ready_o))
                 assert (wr_busy_o);
-            // Each goes to its word of the ring, and has its byte of that.
+            // Each request goes to its word of the ring, with the byte enable of its byte.
             if (npi_addr_req_o && !$past(npi_addr_req_o))
                 assert (npi_addr_o ==
                         {$past(base_i), $past(wr_ready_o ? wr_addr_i : rd_addr_i[10:3]), 3'd0});

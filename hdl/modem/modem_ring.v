@@ -39,10 +39,10 @@ module modem_ring (
     end
 
 `ifdef FORMAL
-    // A length comes out as it went in, and the count of free buffers is true.
+    // A length leaves unchanged, and the count of free buffers is correct.
     reg past = 1'b0;
     initial assume (rst_i);
-    // The length of any one buffer in any one turn comes out as it went in, in its place.
+    // The length of any one buffer in any one turn leaves unchanged, in its position.
     (* anyconst *) reg [4:0] place;
     reg [6:0] length;
     reg       inside = 1'b0;

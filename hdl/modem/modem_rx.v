@@ -1,25 +1,24 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_rx: writes bytes from the modem into the receive ring, a packet a buffer.
+// modem_rx: writes bytes from the modem into the receive ring, one packet per buffer.
 //
-// A packet ends after the length that its first byte announces ((byte & 127) + 5, if at most 100),
-// at 100 bytes, after 3.2 characters of silence, or at a framing error; in API mode it is a frame's
-// contents, and ends with them. It is in memory before it
-// is published. With no buffer free it is dropped whole. A memory that is more than a byte time
-// late costs the packet under way and the bytes that follow without a pause; earlier packets are
-// kept.
+// A packet ends after the length given by its first byte ((byte & 127) + 5, if at most 100), at 100
+// bytes, after 3.2 characters of silence, or at a framing error; in API mode a packet is the
+// contents of a frame, and ends with them. A packet is in memory before it is published. If no
+// buffer is free, the whole packet is dropped. If the memory is more than a byte time late, the
+// current packet and the bytes that follow without a pause are lost; earlier packets are kept.
 
 `default_nettype none
 
 module modem_rx (
     input  wire       clk_i,
-    input  wire       rst_i,      // also drops the packet under way
+    input  wire       rst_i,      // also drops the current packet
     input  wire       tick_i,     // eight a bit time
-    input  wire       api_i,      // packets end as modem_api_rx says, at rx_end_i or rx_bad_i
+    input  wire       api_i,      // packets end as in modem_api_rx, at rx_end_i or rx_bad_i
     // bytes in
     input  wire       rx_valid_i,
     input  wire [7:0] rx_data_i,
-    input  wire       rx_error_i, // the packet under way ends here
+    input  wire       rx_error_i, // the current packet ends here
     input  wire       rx_end_i,   // the packet is complete (API)
     input  wire       rx_bad_i,   // the packet must be dropped (API)
     output wire       silent_o,   // 3.2 characters without a byte
@@ -28,7 +27,7 @@ module modem_rx (
     output wire       wr_valid_o,
     output reg  [7:0] wr_data_o,
     output reg  [6:0] wr_index_o, // byte of the packet
-    output reg  [7:0] wr_be_o,    // its place in a word of eight
+    output reg  [7:0] wr_be_o,    // one bit: its position in a word of eight bytes
     input  wire       wr_ready_i,
     input  wire       wr_busy_i,
     // ring
@@ -36,13 +35,13 @@ module modem_rx (
     output wire       push_o,     // the packet is complete: wr_index_o bytes
     output reg        overrun_o   // one cycle: dropped
 );
-    reg [6:0] length;   // bytes announced, less 5; above 95 it does not count
+    reg [6:0] length;   // announced number of bytes minus 5; ignored above 95
     reg       near;     // wr_index_o / 4 is length / 4 + 1
     reg [8:0] silence;  // ticks; 256 are 3.2 characters
     reg       pending;  // wr_data_o waits
     reg       ending;   // the last byte is in wr_data_o or written
-    reg       dropping; // no buffer for this packet, or a byte of it was lost
-    reg       deaf;     // bytes were lost: nothing is taken until there is silence
+    reg       dropping; // no buffer was free for this packet, or a byte of it was lost
+    reg       deaf;     // bytes were lost: the input is ignored until there is silence
 
     wire       first   = wr_index_o == 7'd0;
     wire       begins  = pending && first && !ending;
@@ -54,7 +53,7 @@ module modem_rx (
         !deaf;
     wire       done    = ending && !wr_busy_i;
     // The index is at most 100, so four of its bits tell 99.
-    wire       longest = api_i ? &wr_index_o[6:4] : // modem_api_rx gives none so long
+    wire       longest = api_i ? &wr_index_o[6:4] : // modem_api_rx delivers no packet of this length
                          (wr_index_o[6] && wr_index_o[5] && wr_index_o[1] && wr_index_o[0]) ||
                          (near && wr_index_o[1:0] == length[1:0]);
     wire       cut     = api_i ? rx_end_i || rx_bad_i : rx_error_i || silent;
@@ -134,7 +133,7 @@ module modem_rx (
     reg [8:0] ticks = 9'd0; // 80 a character, since the latest byte
     reg       lost  = 1'b0; // a byte of this packet was replaced before it was taken
     reg [7:0] latest = 8'd0; // the latest byte
-    reg [6:0] announced;     // by the first byte written
+    reg [6:0] announced;     // length given by the first byte written
     wire      write = wr_valid_o && wr_ready_i;
     always @(posedge clk_i) begin
         past <= 1'b1;
@@ -162,23 +161,23 @@ module modem_rx (
         end
         if (past && !rst_i && !$past(rst_i)) begin
             // An unreleased packet is never overwritten: nothing is written while the ring is full,
-            // and nothing beyond the longest packet; bytes go in turn, each to its place.
+            // nor beyond the longest packet; bytes are written in order, each to its position.
             assert (!wr_valid_o || (!full_i && wr_index_o < most));
             assert (wr_be_o == 8'd1 << wr_index_o[2:0]);
             assert (!wr_valid_o || (wr_data_o == latest && wr_index_o == wrote && !lost));
-            // A packet that is published was written whole, was acknowledged, and has a free
-            // buffer.
+            // A published packet was completely written and acknowledged, and a buffer was free for
+            // it.
             if (push_o)
                 assert (!owed && !wr_valid_o && !full_i && !lost &&
                         wrote == wr_index_o && wrote != 7'd0 && wrote <= most);
-            // A dropped packet counts, once, and is never published.
+            // A dropped packet is counted once, and is never published.
             assert (!(push_o && done && dropping));
             assert (!$past(done && dropping) || overrun_o);
             assert (!overrun_o || $past(late || dropping));
             assert (!(overrun_o && $past(push_o && !late)));
             assert (!lost || (ending && dropping));
             assert (silence == ticks); // 256 are 3.2 characters
-            // It ends with the length that its first byte announced.
+            // The packet has the length given by its first byte.
             if (wrote != 7'd0 && !dropping)
                 assert (length == announced);
             assert (near == ({1'b0, wr_index_o[6:2]} == {1'b0, length[6:2]} + 6'd1));

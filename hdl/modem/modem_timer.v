@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_timer: counts time in units of 17/16 ms; the margin of 1/16 covers the tolerance of the
-// modem's clock.
+// modem_timer: counts time in units of 17/16 ms; the margin of 1/16 covers the clock tolerance of
+// the modem.
 
 `default_nettype none
 
@@ -15,7 +15,8 @@ module modem_timer #(
     output reg  [11:0] time_o  // units since clear_i
 );
     localparam [31:0] CLOCKS = CLK_HZ / 16000 * 17;
-    localparam [16:0] FIRST  = 17'd1 - CLOCKS[16:0]; // two clocks before the tick it is 2**17 - 1
+    localparam [16:0] FIRST  = 17'd1 - CLOCKS[16:0]; // two clocks before the tick the counter is
+                                                     // 2**17 - 1
 
     reg [16:0] clocks;
 
@@ -34,8 +35,8 @@ module modem_timer #(
     end
 
 `ifdef FORMAL
-    // time_o counts the ticks since clear_i, and n clocks equal one step of n, up to the tick,
-    // which the simulator adds at once.
+    // time_o counts the ticks since clear_i. Up to the tick, n clocks equal one step of n, which
+    // the simulator adds at once.
     (* anyseq *) reg begins; // a span
     reg        past = 1'b0, spans = 1'b0;
     reg [16:0] then, n;
@@ -66,7 +67,7 @@ module modem_timer #(
             if (spans) begin
                 assert (n != 17'd0 && sum <= {1'b0, LAST} + 18'd1);
                 assert ({1'b0, passed} == sum && time_o == time_then);
-                // not earlier, and not a clock late
+                // exactly in this clock
                 assert (tick_o == (sum == {1'b0, LAST} + 18'd1));
             end
         end

@@ -35,16 +35,16 @@ module modem_tx (
 
     reg [1:0] state;
     reg [8:0] count; // bytes read; in REST ticks of silence
-    // in REST: the modem sends this packet by itself; a register, for the clock's sake
+    // in REST: the modem sends this packet without a pause; a register, to shorten the path
     reg       whole;
 
     wire last   = rd_index_o == packet_bytes_i;                // all its bytes are out
-    wire rested = (count[8] && count[6]) || whole || api_i; // 320 ticks
+    wire rested = (count[8] && count[6]) || whole || api_i; // after 320 ticks
 
     wire leaves = tx_valid_o && tx_ready_i;
     wire ends   = state == REST && (tx_ready_i || api_i) && rested;
 
-    // The set-up restarts the transmitter: a packet that it interrupts is sent again, whole.
+    // The set-up restarts the transmitter: an interrupted packet is sent again from its first byte.
     wire begin_anew = rst_i || !enable_i;
 
     assign rd_valid_o = state == FETCH && packet_valid_i && enable_i && !sent_o;
@@ -81,13 +81,13 @@ module modem_tx (
     end
 
 `ifdef FORMAL
-    // A packet's bytes leave once, in order, and its buffer is freed after the last.
+    // The bytes of a packet leave once, in order, and its buffer is freed after the last.
     reg past = 1'b0;
     initial assume (rst_i);
     reg [6:0] out  = 7'd0; // bytes of this packet that have left
     reg [7:0] read = 8'd0; // the latest byte read
-    reg [8:0] rest;        // ticks since the last one left
-    reg       full;        // it left a packet that the modem sends at once by its length
+    reg [8:0] rest;        // ticks since the last byte left
+    reg       full;        // the modem sends the packet at once because of its length
     always @(posedge clk_i) begin
         past <= 1'b1;
         if (past)
@@ -106,17 +106,17 @@ module modem_tx (
         if (sent_o || begin_anew)
             out <= 7'd0;
         if (past && !rst_i && !$past(begin_anew)) begin
-            // A byte is read from a packet of the ring, in turn, once, never beyond its end.
+            // Bytes are read from a packet of the ring, in order, once, never beyond its end.
             assert (!rd_valid_o || (packet_valid_i && rd_index_o == out && out < packet_bytes_i));
             assert (!tx_valid_o ||
                     (rd_index_o == out + 7'd1 && tx_last_o == (rd_index_o == packet_bytes_i)));
             if (tx_valid_o)
                 assert (tx_data_o == read);
-            // Its buffer is released once, when all its bytes have left.
+            // The buffer is released once, when all its bytes have left.
             if (sent_o)
                 assert (packet_valid_i && out == packet_bytes_i && !$past(sent_o));
-            // After a packet that the modem does not send at once by its length, the line rests for
-            // 320 ticks.
+            // After a packet that the modem does not send at once because of its length, the line
+            // is idle for 320 ticks.
             if (state == REST && tx_ready_i)
                 assert (ends == (api_i || full || rest >= 9'd320));
             assert (state != REST || (count == rest && whole == full));

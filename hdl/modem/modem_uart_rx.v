@@ -13,7 +13,7 @@ module modem_uart_rx (
     input  wire       rxd_i,
     // bytes out: one cycle each
     output reg        valid_o,
-    output wire [7:0] data_o,          // for a bit time at least
+    output wire [7:0] data_o,          // valid for at least one bit time
     output reg        framing_error_o, // the stop bit was low: the byte is dropped
     output wire       idle_o           // no byte is on the line
 );
@@ -22,7 +22,7 @@ module modem_uart_rx (
     reg [2:0] ticks;
     reg [8:0] bits;    // enter at the top, above a 1 that reaches the bottom with the eighth
     reg       idle;    // no start bit was seen
-    reg       started; // the start bit was low in its middle, too
+    reg       started; // the start bit was still low in its middle
     reg       armed;   // the line has been high since the last byte
 
     wire line   = rxd_sync;
@@ -65,16 +65,17 @@ module modem_uart_rx (
     end
 
 `ifdef FORMAL
-    // A byte from a sender of the same rate comes once, in its stop bit; a tick without a sample
-    // changes nothing else.
-    // The sender takes a tick a clock. Else ticks and line are free, and only changes are checked.
+    // A byte from a sender of the same rate is received once, in its stop bit; a tick without a
+    // sample changes nothing else. With `sender` the sender advances one tick per clock. Otherwise
+    // ticks and line are free, and only changes are checked.
     (* anyconst *) reg sender;
     reg past = 1'b0;
     wire busy = !idle;
     initial assume (rst_i);
     (* anyconst *) reg [7:0] sent;
     (* hierconn, init = 1'b1 *) wire \u_rxd.bit_meta ;
-    reg [6:0] age = 7'd127; // ticks since the start bit's edge at the first flip-flop; 127: not yet
+    reg [6:0] age = 7'd127; // ticks since the start bit's edge reached the first flip-flop; 127:
+                            // not yet
     wire [9:0] frame = {1'b1, sent, 1'b0};
     wire [6:0] before = age - 7'd1;
     wire [3:0] got = (age - 7'd6) >> 3; // data bits sampled
@@ -104,8 +105,8 @@ module modem_uart_rx (
                 assert (bits == (({1'b0, sent} << (4'd9 - got)) | (9'h100 >> got)));
             assert (armed || age == 7'd127 || age > 7'd77);
         end
-        // A tick that samples nothing moves `ticks` alone: the simulator skips it. Without a tick,
-        // or while the line rests, nothing moves.
+        // A tick without a sample changes only `ticks`: the simulator skips it. Without a tick, or
+        // while the line is idle, nothing changes.
         if (past && !$past(rst_i) && $past(busy && !(tick_i && ticks == 3'd7)))
             assert (busy && {bits, started, armed} == $past({bits, started, armed}) && !valid_o &&
                     !framing_error_o &&

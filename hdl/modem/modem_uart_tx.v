@@ -17,7 +17,7 @@ module modem_uart_tx (
     output wire       txd_o
 );
     reg [2:0] ticks;
-    reg [8:0] bits;  // bits to come: data below the stop bit's 1, which ends them
+    reg [8:0] bits;  // bits still to send: data below the 1 of the stop bit, which marks the end
     reg       line;
     reg       busy;
 
@@ -54,7 +54,7 @@ module modem_uart_tx (
     reg past = 1'b0;
     initial assume (rst_i);
     reg [7:0] sent;
-    reg [6:0] age = 7'd80; // ticks since the byte was taken; 80: it is over
+    reg [6:0] age = 7'd80; // ticks since the byte was taken; 80: it is finished
     wire [9:0] frame = {1'b1, sent, 1'b0};
     always @(posedge clk_i) begin
         past <= 1'b1;
@@ -73,7 +73,7 @@ module modem_uart_tx (
             if (!$past(rst_i) && $past(busy && ticks != 3'd7))
                 assert ({busy, bits, line} == $past({busy, bits, line}) &&
                         ticks == $past(ticks) + {2'd0, $past(tick_i)});
-            // Without a tick nothing moves.
+            // Without a tick nothing changes.
             if (!$past(rst_i) && !$past(tick_i))
                 assert ({busy, bits, line, ticks} == $past({busy, bits, line, ticks}));
         end

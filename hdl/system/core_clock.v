@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// core_clock: a clock of clk_i's frequency * MULTIPLY / DIVIDE, at most that of clk_i; on Xilinx's
-// FPGAs a DCM_CLKGEN.
+// core_clock: generates a clock with the frequency of clk_i * MULTIPLY / DIVIDE, at most that of
+// clk_i; on Xilinx FPGAs with a DCM_CLKGEN.
 //
 // It is unrelated to clk_i: crossings go through hdl/cdc. In simulation its edges are at edges of
 // clk_i, so a fractional ratio holds on average, as for a clock with jitter.
@@ -16,7 +16,7 @@ module core_clock #(
     output wire clk_o
 );
 `ifdef VERILATOR
-    reg [9:0] phase; // of half a clock, in parts of DIVIDE
+    reg [9:0] phase; // phase of half a clock, in units of 1 / DIVIDE
     reg       level;
     assign clk_o = level;
     initial {phase, level} = 11'd0;

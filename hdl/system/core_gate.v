@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: MIT
 //
-// core_gate: the clock of a core; with GATED it stops 16 clocks after the core became idle.
+// core_gate: gates the clock of a core; with GATED the clock stops 16 clocks after the core became
+// idle.
 //
-// The 16 clocks let pipelines behind an idle core empty themselves. On Xilinx's FPGAs the gate is a
+// The 16 clocks let the pipelines of an idle core drain. On Xilinx's FPGAs the gate is a
 // BUFGCE; its enable comes from flip-flops of clk_i and a few LUTs.
 
 `default_nettype none
 
 module core_gate #(
-    parameter GATED = 0 // 1: there is a gate; 0: the clock as it is, and no logic
+    parameter GATED = 0 // 1: gate the clock; 0: pass it on without logic
 ) (
     input  wire clk_i,
     input  wire rst_i,
     input  wire access_i, // the core's slot is accessed
-    input  wire idle_i,   // without an access, nothing in the core will move 16 clocks from now
+    input  wire idle_i,   // without an access, the core will be static 16 clocks from now
     output wire clk_o
 );
     generate
@@ -21,14 +22,14 @@ module core_gate #(
             assign clk_o = clk_i;
             wire unused = &{1'b0, rst_i, access_i, idle_i, 1'b0};
         end else begin : g_gate
-            reg  [4:0] rest; // clocks of rest, 16 at most
+            reg  [4:0] rest; // clocks since the core became idle, at most 16
             wire       active = rst_i || access_i || !idle_i;
             (* keep *) wire run; // core_pins.ucf names it
             assign     run    = active || !rest[4];
             always @(posedge clk_i)
                 rest <= active ? 5'd0 : rest + {4'd0, !rest[4]};
 `ifdef VERILATOR
-            reg open; // as in the BUFGCE: the enable's value before the clock's rise counts
+            reg open; // as in the BUFGCE: the enable is sampled before the rising edge
             reg ungated;
             initial ungated = $test$plusargs("ungated") != 0; // for comparisons
             always_latch
@@ -36,7 +37,7 @@ module core_gate #(
                     open = run;
             assign clk_o = clk_i && (open || ungated);
 `elsif FORMAL
-            // A proof of what stands still behind a gate sees one edge, when the gate has closed.
+            // A proof of a gated block sees one edge, when the gate has closed.
             reg closed;
             always @(posedge clk_i)
                 closed <= !run;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// idle_proof: the core CORE in a slot, whose clock core_gate.v stops; only for the prover.
+// idle_proof: proves that gating the clock of the core CORE in a slot (core_gate.v) has no effect;
+// only for the prover.
 //
-// When the gate closes, no register of the core takes another value, whatever the inputs are. So
-// without a clock the core is where it would be with one, until the gate opens. The core's clock is
-// `closes` here: idle_registers.v makes that assertion of each flip-flop with this clock.
+// When the gate closes, no register of the core takes another value, whatever the inputs are.
+// Gating is therefore invisible to the core. The core's clock is `closes` here: idle_registers.v
+// adds this assertion for each flip-flop with this clock.
 
 `default_nettype none
 
@@ -34,8 +35,8 @@ module idle_proof (
         .idle_o(idle_o));
 
 `ifdef MEMORY
-    // The port acknowledges requests only, and gives words that were asked for. Its words stand
-    // still while none is on its way. It is ready once, for good.
+    // The port acknowledges only requests, and returns requested words. Its outputs are stable
+    // while no word is on its way. It becomes ready once, permanently.
     reg        ready = 1'b0;
     reg [6:0]  promised; // words
     reg [63:0] word;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// system_slot: slot 0 shows the chip's identity, interrupt lines, the DDR3 page, bus errors and the cycle count.
+// system_slot: slot 0, with the chip's identity, interrupt lines, the DDR3 page, bus errors and the
+// cycle count.
 //
 // hdl/system/system.regs.json lists the registers.
 
@@ -9,7 +10,7 @@
 module system_slot #(
     parameter SLOTS  = 3,         // populated slots, this one included
     parameter CLK_HZ = 100000000, // Hz
-    parameter [32*SLOTS-1:0] CONTRACTS = {SLOTS{32'd0}} // hashes of the slots' registers, from slot 0 on
+    parameter [32*SLOTS-1:0] CONTRACTS = {SLOTS{32'd0}} // hashes of the register maps, slot 0 first
 ) (
     `include "slot_ports.vh"
     // interrupt lines of slots SLOTS-1..1, and the one to the processor
@@ -48,7 +49,7 @@ module system_slot #(
 
     assign irq_o = |lines;
 
-    // looked up on write, so that the read comes from a register
+    // looked up on write, so that a read comes from a register
     reg [31:0] asked;
     integer    s;
     always @* begin
@@ -63,7 +64,7 @@ module system_slot #(
             cycles_high_latched <= cycles[63:32];
         if (contract_write)
             contract <= asked;
-        // The first error is kept until its event has been cleared; an error in the clock of the
+        // The first error is stored until its event has been cleared; an error in the clock of the
         // clear is a new one.
         if (access_error_i && (!error_open || clearing)) begin
             error_addr  <= error_memory_i ? 10'h3FF : error_addr_i;
@@ -80,8 +81,8 @@ module system_slot #(
 
     wire unused = &{1'b0, scratch, 1'b0};
 `ifdef FORMAL
-    // Registers: formal.system_regs. Without an access only the cycle count moves, n in n clocks,
-    // which the simulator adds at once (testbench/sim/quiet_span.cpp).
+    // Registers: formal.system_regs. Without an access only the cycle count changes, by n in n
+    // clocks, which the simulator adds at once (testbench/sim/quiet_span.cpp).
     reg past = 1'b0;
     (* anyseq *) reg begins; // a span
     reg [63:0] then;
@@ -113,13 +114,13 @@ module system_slot #(
             assert ({cycles, cycles_high_latched, error_addr, error_write} == 0);
             assert (contract == CONTRACTS[31:0]);
         end else if (past && !rst_i) begin
-            // The place shown is that of the oldest error since the event was last clear.
+            // The reported location is the oldest error since the event was last clear.
             if ($past(access_error_i && (!error_open || clearing)))
                 assert ({error_addr, error_write} ==
                         $past({error_addr_i | {10{error_memory_i}}, error_write_i}));
             else
                 assert ({error_addr, error_write} == $past({error_addr, error_write}));
-            // The high word stays as it was when the low word was read.
+            // The high word keeps its value from when the low word was read.
             assert (cycles_high_latched == $past(
                 bus_valid_i && !bus_write_i && bus_addr_i == SYSTEM_CYCLES_LO ?
                 cycles[63:32] : cycles_high_latched));

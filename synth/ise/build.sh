@@ -1,14 +1,14 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# build: from soc.edf to a bitstream with Xilinx ISE 14.7: XST for the wrapper, ngdbuild, map, par,
-# trce, bitgen.
+# build: builds a bitstream from soc.edf with Xilinx ISE 14.7: XST for the wrapper, ngdbuild, map,
+# par, trce, bitgen.
 # Usage: synth/ise/build.sh [--xst] [--part xc6slx16-2-csg324] soc.edf mig-folder output-folder
 # core_pins.ucf board.ucf
 #   soc.edf      from `make synth-edif`
 #   mig-folder   user_design of a MIG core called "mig": its rtl/*.v and par/mig.ucf are used
 #   *.ucf        build/main/gen/core_pins.ucf, and your board's (synth/ise/board.ucf is an example)
-#   --xst        XST synthesises soc as well, from the folder verilog beside soc.edf, instead of it
+#   --xst        XST also synthesises soc, from the folder `verilog` next to soc.edf (soc.edf is unused)
 set -eu
 usage() {
     sed -n 's/^# \{0,1\}//; 6,11p' "$0"
@@ -20,7 +20,7 @@ while [ $# -gt 0 ]; do
     --help | -h) usage 0 ;;
     --xst) whole=1 ;;
     --part) part=${2:?--part needs a name} && shift ;;
-    -*) echo "build: there is no option $1" >&2 && usage 2 >&2 ;;
+    -*) echo "build: unknown option $1" >&2 && usage 2 >&2 ;;
     *) break ;;
     esac
     shift
@@ -38,7 +38,7 @@ for program in xst ngdbuild map par trce bitgen; do
     }
 done
 [ -z "$whole" ] || ! grep -q hierconn "$soc"/*.vh || {
-    echo "build: the chip has a probe, whose signals are hierarchical names: XST knows none;" \
+    echo "build: the chip has a probe, and XST does not support its hierarchical names;" \
         "leave --xst out" >&2
     exit 2
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// chip: the top for ISE: soc (from EDIF), the memory controller that MIG makes, pads.
+// chip: top level for ISE: soc (from EDIF), the memory controller that MIG generates, pads.
 //
 // A template: `mig` and its ports have MIG 3.x's names for a core "mig" for the MCB of bank 3 with
 // one 64-bit port (UG388); c3_clk0 is the 100 MHz user clock that it makes from sys_clk_i.

@@ -1,25 +1,26 @@
 // SPDX-License-Identifier: MIT
 //
-// block_ram: what RAMB16BWER and RAMB8BWER do (Xilinx UG383, Spartan-6 Block RAM): two ports on
-// one array, each of its own width. For simulation of netlists.
+// block_ram: models of RAMB16BWER and RAMB8BWER (Xilinx UG383, Spartan-6 Block RAM): two ports on
+// one array, each with its width. For simulation of netlists.
 //
-// A port reads and writes at its clock's edge while EN is high. Data that one port reads where the
-// other writes at the same edge is not valid (UG383, "Conflict Avoidance"), unless the writer is
-// READ_FIRST: here half of its bits are not the old ones, half not the new ones. Output registers
-// (DO_REG) are not modelled, nor are collisions of ports with different clocks.
+// A port reads and writes at its clock edge while EN is high. Data that one port reads at the
+// address that the other writes at the same edge is invalid (UG383, "Conflict Avoidance"), unless
+// the writer is READ_FIRST: the model returns half of the bits different from the old ones, half
+// different from the new ones. Output registers (DO_REG) are not modelled, nor are collisions of
+// ports with different clocks.
 `default_nettype none
 
 module block_ram #(
     parameter integer ADDR_BITS = 14, // address of a bit: 14 for 16 Kbit, 13 for 8 Kbit
     parameter integer WIDTH_A = 36,   // bits of a word: 0 (unused), 1, 2, 4, 9, 18 or 36
     parameter integer WIDTH_B = 36,
-    parameter MODE_A = "WRITE_FIRST", // what a port shows of a word that it writes
+    parameter MODE_A = "WRITE_FIRST", // output of a port during a write
     parameter MODE_B = "WRITE_FIRST",
     parameter [35:0] START_A = 36'd0, // outputs after configuration: {parity, data}
     parameter [35:0] START_B = 36'd0,
-    parameter [35:0] RESET_A = 36'd0, // and after a reset
+    parameter [35:0] RESET_A = 36'd0, // output after a reset
     parameter [35:0] RESET_B = 36'd0,
-    parameter PRIORITY_A = "CE",      // "CE": a reset needs EN, "SR": it does not
+    parameter PRIORITY_A = "CE",      // "CE": a reset needs EN; "SR": it is independent of EN
     parameter PRIORITY_B = "CE",
     parameter [(1 << ADDR_BITS) - 1:0]     INIT   = 0,
     parameter [(1 << ADDR_BITS) / 8 - 1:0] INIT_P = 0 // parity, a bit a byte
@@ -27,7 +28,7 @@ module block_ram #(
     input  wire                 clk_a_i,
     input  wire                 en_a_i,
     input  wire                 rst_a_i,
-    input  wire [3:0]           we_a_i,  // a bit a byte of the word
+    input  wire [3:0]           we_a_i,  // one bit per byte of the word
     input  wire [ADDR_BITS-1:0] addr_a_i,
     input  wire [35:0]          data_a_i, // {parity, data}
     output reg  [35:0]          data_a_o,
@@ -40,13 +41,13 @@ module block_ram #(
     input  wire [35:0]          data_b_i,
     output reg  [35:0]          data_b_o
 );
-    // Data bits of a word, without parity.
+    // Number of data bits of a word, without parity.
     function integer data_bits(input integer width);
         data_bits = width >= 9 ? width / 9 * 8 : width;
     endfunction
     localparam integer DATA_A = data_bits(WIDTH_A), DATA_B = data_bits(WIDTH_B);
 
-    // Rows of 32 bits and their parity: the widest word.
+    // Rows of 32 bits with parity, the widest word.
     localparam integer ROWS = 1 << (ADDR_BITS - 5);
     reg [35:0] rows [0:ROWS-1];
     integer i;
@@ -57,7 +58,7 @@ module block_ram #(
         data_b_o = START_B;
     end
 
-    // Bits of a row that a word with these byte enables covers.
+    // Bits of a row that a word with these byte enables writes.
     function [35:0] mask(input integer width, input [4:0] place, input [3:0] we);
         reg [31:0] data;
         reg [3:0]  parity;
@@ -87,7 +88,7 @@ module block_ram #(
     wire [35:0] mask_b  = WIDTH_B == 0 || !en_b_i ? 36'd0 : mask(WIDTH_B, place_b, we_b_i);
     wire [35:0] new_a   = (rows[row_a] & ~mask_a) | (placed(place_a, data_a_i) & mask_a);
     wire [35:0] new_b   = (rows[row_b] & ~mask_b) | (placed(place_b, data_b_i) & mask_b);
-    // What the other port changes under this one's feet.
+    // Bits that the other port writes at the same edge.
     wire [35:0] lost_a  = row_a == row_b && MODE_B != "READ_FIRST" ? mask_b : 36'd0;
     wire [35:0] lost_b  = row_a == row_b && MODE_A != "READ_FIRST" ? mask_a : 36'd0;
     wire [35:0] wrong_a = (~rows[row_a] & 36'h555555555) | (~new_b & 36'haaaaaaaaa);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// product: a multiplier as rows of adders, alike wherever its operands are: Yosys' own mapping adds
-// in the order of nets' names, so that RTL and netlist have different logic for one product.
+// product: maps a multiplier to rows of adders, the same way regardless of the names of its
+// operands. Yosys's mapping adds in the order of net names, so that RTL and netlist would have
+// different logic for the same product.
 
 (* techmap_celltype = "$mul" *)
 module product (A, B, Y);

@@ -96,7 +96,7 @@ public:
         fsmc_.pauseWrites(looksTwice);
     }
     McbModel& memory() {
-        wake(); // the modem may start or stop hanging
+        wake(); // the caller may start or end a hang
         return memory_;
     }
     XBee& modem() { return modem_; }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// ascon: Ascon-AEAD128 and Ascon-Hash256 (NIST SP 800-232) over buffers in DDR3, a round a clock.
-// Registers: ascon.regs.json. Page: README.md.
+// ascon: Ascon-AEAD128 and Ascon-Hash256 (NIST SP 800-232) over buffers in DDR3, one round per
+// clock. Registers: ascon.regs.json. Page: README.md.
 //
 // State, key and message move in 64-bit words, byte n of memory in bits 8n+7..8n, as in the
 // standard.
@@ -12,34 +12,35 @@ module ascon (
     `include "slot_ports.vh"
     `include "memory_ports.vh"
     output wire        irq_o,
-    output wire        idle_o // no job is under way
+    output wire        idle_o // no job is in progress
 );
     `include "ascon_regs.vh"
 
     // Initial values, sections 4 and 5: version, rounds, tag or digest bits, rate.
     localparam [63:0] IV_AEAD = 64'h00001000_808C0001, IV_HASH = 64'h00000801_00CC0002;
     localparam [3:0]  TWELVE_ROUNDS = 4'd0, EIGHT_ROUNDS = 4'd4, LAST_ROUND = 4'd11;
-    localparam [1:0]  ASSOCIATED = 2'd0, MESSAGE = 2'd1, WIPE = 2'd2; // kinds of data under way
+    localparam [1:0]  ASSOCIATED = 2'd0, MESSAGE = 2'd1, WIPE = 2'd2; // kinds of data being processed
     localparam [3:0]  WAIT_FOR_START = 4'd0, ROUNDS = 4'd1, FIRST_WORDS = 4'd2, ADD_KEY = 4'd3, LOAD_SIZE = 4'd4,
                       SEPARATE = 4'd5, LOAD_TARGET = 4'd6, LOAD_SOURCE = 4'd7, WORD = 4'd8, FINAL_KEY = 4'd9,
                       LOAD_TAG = 4'd10, TAG_WORD = 4'd11, DIGEST = 4'd12, FLUSH = 4'd13, DRAIN = 4'd14, CLEAR = 4'd15;
 
-    reg [3:0]   state, after;   // after: the state behind ROUNDS
+    reg [3:0]   state, after;   // after: the state that follows ROUNDS
     // state is ROUNDS, WORD, LOAD_SOURCE, LOAD_TAG, TAG_WORD, WAIT_FOR_START: flip-flops, for their
     // fan-out; busy is !idle
     reg         in_rounds, in_word, in_source, in_tag, in_tag_word, idle, busy;
-    reg         keyed, from_memory; // the operand is a word of the key; one of memory
-    reg         deciphers;          // that is ciphertext
+    reg         keyed, from_memory; // the operand is a key word; a memory word
+    reg         deciphers;          // the operand is ciphertext
     reg [1:0]   pass;
     reg         decrypt, hash;
     reg [319:0] s;              // S4 .. S0; while idle 0, except for the nonce in S4, S3
     reg [127:0] key;
     reg [2:0]   key_words, nonce_words; // written, 4 at most
-    reg         key_came;       // a word of the key was written: key_words follows a clock later
+    reg         key_came;       // a key word was written: key_words follows one clock later
     reg [3:0]   round;
-    reg [23:0]  left;           // bytes
-    reg         few, none;      // in WORD: fewer than eight; none, so the word is padding only
-    reg [1:0]   index;          // of the word in its block, tag or digest; 1, 2: of the key
+    reg [23:0]  left;           // bytes left
+    reg         few, none;      // in WORD: fewer than eight bytes; none, so that the word is only
+                                // padding
+    reg [1:0]   index;          // index of the word in its block, tag or digest; 1, 2: key word
     reg         differs, valid, aborted, wipe;
     reg         clear, acting;  // s becomes 0; that, or a command: an access waits
     reg [5:0]   bad;            // settings that are misaligned or too long, as put_job
@@ -48,7 +49,7 @@ module ascon (
     wire        control, put_key, nonce, ready, drained, done, refused;
     wire [4:0]  command;        // the write to CONTROL, in the clock after
     wire [5:0]  put_job;        // writes to AD_SIZE, SIZE, AD_BASE, SOURCE, TARGET, TAG
-    wire [31:0] setting;        // of them the one that the state reads
+    wire [31:0] setting;        // the word of them that the state reads
     reg  [2:0]  wanted;
 
     ascon_regs u_registers (
@@ -69,8 +70,8 @@ module ascon (
         .source_write_o(put_job[3]), .target_write_o(put_job[4]), .tag_write_o(put_job[5]),
         .busy_i(!idle), .ram_addr_i(wanted), .ram_o(setting));
 
-    // Commands act a clock later, from registers: FORGET drives 448 flip-flops. No access comes
-    // between.
+    // Commands take effect one clock later, from registers: FORGET drives 448 flip-flops. No access
+    // can happen in between.
     wire start   = idle && |command[2:0] && command[4:3] == 2'd0;
     wire aead    = !command[ASCON_CONTROL_HASH_LSB];
     wire go      = start && bad == 6'd0 && (!aead || (key_words[2] && nonce_words[2]));
@@ -96,17 +97,17 @@ module ascon (
 
     wire        read_valid, read_idle, write_ready, write_idle;
     wire [63:0] read_data;
-    reg         both_idle; // a clock ago: no state asks in the clock after a start or a word
+    reg         both_idle; // one clock ago: no state uses it in the clock after a start or a word
     wire [23:0] words = in_tag ? 24'd2 : {3'd0, left[23:3]} + {23'd0, |left[2:0]};
 
-    // Bytes of this word: all eight, or the remaining ones, padded by a one.
+    // Bytes of this word: all eight, or the remaining ones, padded with a one.
     wire        last = in_word && few;
     wire [7:0]  be   = last ? ~(8'hFF << left[2:0]) : 8'hFF;
     wire [63:0] pad  = last ? 64'd1 << {left[2:0], 3'd0} : 64'd0;
     wire [63:0] mask = {{8{be[7]}}, {8{be[6]}}, {8{be[5]}}, {8{be[4]}},
                         {8{be[3]}}, {8{be[2]}}, {8{be[1]}}, {8{be[0]}}};
 
-    reg  writes; // WIPE, MESSAGE; since before the first word
+    reg  writes; // writes results; set before the first word
     wire reads  = !pass[1] && !none;
     wire step   = in_word && (!reads || read_valid) && (!writes || none || write_ready);
     wire tag_step    = in_tag_word && (decrypt ? read_valid : write_ready);
@@ -126,9 +127,9 @@ module ascon (
         .write_ready_o(write_ready), .write_flush_i(state == FLUSH || state == FINAL_KEY), .write_idle_o(write_idle));
     assign idle_o         = idle && both_idle && read_idle && write_idle;
 
-    // ---- state of 320 bits: a round, or one of its words plus an operand ----
+    // ---- 320-bit state: a round, or one of its words plus an operand ----
     // The operand is a word of the message, the key, the nonce or a constant. When decrypting, the
-    // sum makes the rate equal to the ciphertext. It is kept as a net, which saves 72 LUTs.
+    // sum sets the rate to the ciphertext. It is kept as a net, which saves 72 LUTs.
     wire        use_iv   = state == FIRST_WORDS && index == 2'd0;
     wire [63:0] operand  = (from_memory ? read_data : 64'd0) | (busy ? 64'd0 : {2{bus_wdata_i}}) |
                            (keyed && index[0] ? key[63:0] : 64'd0) |
@@ -141,7 +142,7 @@ module ascon (
     wire [63:0] sum      = chosen ^ operand; // encrypted or decrypted bytes, a tag (its difference) or a digest
     (* keep *) wire [63:0] added    = ((deciphers ? sum : operand) & mask) ^ pad;
 
-    // The bits of `takes` choose the halves of words that take the sum.
+    // The bits of `takes` select the word halves that receive the sum.
     wire absorbs = step && !pass[1];
     wire [9:0] takes = {{2{(state == ADD_KEY && index[1]) || state == SEPARATE}} | {put_nonce && nonce_words[1:0] == 2'd3,
                                                                                    put_nonce && nonce_words[1:0] == 2'd2},
@@ -314,8 +315,8 @@ module ascon (
     end
 
 `ifdef FORMAL
-    // For formal.idle_ascon: the flags of states; the stream does nothing without a job, nor before
-    // the first LOAD_SOURCE.
+    // For formal.idle_ascon: the state flags; the stream is idle without a job, and before the
+    // first LOAD_SOURCE.
     (* hierconn *) wire [23:0] \u_stream.to_give ; // the stream's
     (* hierconn *) wire [5:0]  \u_stream.outstanding ;
     (* hierconn *) wire [2:0]  \u_stream.filled , \u_stream.bursts ;

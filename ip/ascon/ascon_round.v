@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// ascon_round: one round of Ascon's permutation (NIST SP 800-232, section 3), without state of its
-// own. The words of the state are bits 63..0 (S0) to 319..256 (S4).
+// ascon_round: one round of Ascon's permutation (NIST SP 800-232, section 3), combinational. The
+// words of the state are bits 63..0 (S0) to 319..256 (S4).
 
 `default_nettype none
 

@@ -48,9 +48,9 @@ static int fits(const Cores_Bytes* bytes) {
     return bytes->size <= ASCON_LIMIT;
 }
 
-/* Returns 1 if the core hangs: an earlier message has not ended, since the memory does not answer.
- * The core would ignore a key, a nonce or a start, and the end of the old message would look like
- * the end of the next. */
+/* Returns 1 if the core hangs: an earlier message has not ended, because the memory does not
+ * respond. The core would ignore a key, a nonce or a start, and the end of the old message would
+ * look like the end of the next one. */
 static int hangs(const Ascon_Core* self) {
     return (FSMC_read(self->core.slot, ASCON_STATUS) & ASCON_STATUS_BUSY_MASK) != 0;
 }
@@ -64,7 +64,8 @@ static Ice_Status run(Ascon_Core* self, U32 control, const Cores_Bytes* associat
         FSMC_writeMemory(self->memory + MESSAGE, message->data, size);
     set(self, ASCON_AD_SIZE, associatedSize);
     set(self, ASCON_SIZE, size);
-    set(self, ASCON_EVENT, ASCON_EVENT_DONE_MASK | ASCON_EVENT_REFUSED_MASK); /* of one given up */
+    set(self, ASCON_EVENT,
+        ASCON_EVENT_DONE_MASK | ASCON_EVENT_REFUSED_MASK); /* of an abandoned operation */
     self->core.done[DONE] = 0;
     self->core.done[REFUSED] = 0;
     set(self, ASCON_CONTROL, control);

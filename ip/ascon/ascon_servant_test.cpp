@@ -79,17 +79,17 @@ TEST(AsconServant, WhileTheCoreHangsNothingIsTakenForAnAnswer) {
               ICE_TIMEOUT);
     slot.memory_.hold(false);
     slot.bench_.waitFor([&] { return !(slot.bus_.read(ASCON_STATUS) & ASCON_STATUS_BUSY_MASK); },
-                        "the core to give up", 1000);
-    // The answer to the call that was given up comes when the next has begun, before the interrupt.
+                        "the core to abort", 1000);
+    // The reply to the abandoned call arrives after the next one has begun, before the interrupt.
     ASSERT_EQ(Cores_Ascon_seal(&core.servant, &n, &m, &m, &text, &tag, nullptr), ICE_OK);
     auto want = asconEncrypt(key, nonce, message, message);
     EXPECT_EQ(hex(AsconBytes(text.data, text.data + text.size)), hex(want.text));
     EXPECT_EQ(hex(AsconBytes(tag.data, tag.data + tag.size)), hex(want.tag));
-    Hw_Core_interrupt(&core.core); // none is pending
+    Hw_Core_interrupt(&core.core); // no interrupt is pending
     EXPECT_EQ(Cores_Ascon_forget(&core.servant, nullptr), ICE_OK);
     EXPECT_EQ(Cores_Ascon_seal(&core.servant, &n, &m, &m, &text, &tag, nullptr),
               ICE_UNKNOWN_EXCEPTION)
-        << "there is no key";
+        << "no key was set";
 }
 
 } // namespace

@@ -19,7 +19,7 @@ protected:
         bus_.write(ASCON_MASK, 3);
         place();
     }
-    // Buffers anywhere in the address space, 64 KiB apart at least: each in a quarter of its own.
+    // Buffers anywhere in the address space, at least 64 KiB apart: each in a separate quarter.
     void place() {
         uint32_t quarter = random_.next();
         for (auto [word, base] : {std::pair(ASCON_AD_BASE, &adBase_),
@@ -134,15 +134,15 @@ TEST_F(AsconTest, EqualsTheModelForRandomMessages) {
         auto key = randomKey(), nonce = randomKey();
         auto associated = random(random_.below(200)), message = random(random_.below(600));
         if (i % 3 == 0)
-            put(ASCON_KEY, randomKey()); // the last four words count
+            put(ASCON_KEY, randomKey()); // the last four words are used
         put(ASCON_KEY, key);
         auto sealed = encrypt(nonce, associated, message),
              want = asconEncrypt(key, nonce, associated, message);
         ASSERT_EQ(hex(sealed.text), hex(want.text)) << associated.size() << ", " << message.size();
         ASSERT_EQ(hex(sealed.tag), hex(want.tag));
         EXPECT_EQ(memory_.byte(tagBase_ + 16), 0) << "16 bytes, no more";
-        // Each bit of the protected data is changed in turn: the tag is wrong, and nothing of the
-        // message remains.
+        // Each bit of the protected data is changed in turn: the tag is wrong, and the message is
+        // erased.
         auto forged = sealed;
         auto forgedAd = associated;
         uint8_t bit = static_cast<uint8_t>(1u << random_.below(8));
@@ -172,7 +172,7 @@ TEST_F(AsconTest, ADigestWaitsForRoomInTheMemorysFifo) {
     sizes(0, message.size());
     auto start = [&] { bus_.write(ASCON_CONTROL, ASCON_CONTROL_HASH_MASK); };
     memory_.setLinger(1);
-    for (int i = 0; i < 4; ++i) { // a burst each: the FIFO's 32 words
+    for (int i = 0; i < 4; ++i) { // one burst each: the 32 words of the FIFO
         start();
         ASSERT_EQ(finish(), ASCON_EVENT_DONE_MASK);
     }
@@ -260,7 +260,7 @@ TEST_F(AsconTest, RefusesWithoutKeyOrFreshNonce) {
     bus_.write(ASCON_CONTROL, ASCON_CONTROL_ABORT_MASK);
     EXPECT_EQ(hex(encrypt(sixteen(1), {}, counted(9, 5)).text),
               hex(asconEncrypt(sixteen(2), sixteen(1), {}, counted(9, 5)).text));
-    // A nonce may follow at once; a start together with an abort has no effect.
+    // A nonce may follow at once; a start and an abort in one write have no effect.
     for (uint32_t how :
          {ASCON_CONTROL_ABORT_MASK, ASCON_CONTROL_ABORT_MASK | ASCON_CONTROL_ENCRYPT_MASK}) {
         put(ASCON_NONCE, sixteen(5));
@@ -297,7 +297,7 @@ TEST_F(AsconTest, SettingsWrittenBehindTheStartAreIgnored) {
     for (int clocks = 0; clocks < 300; clocks += 7) {
         place();
         auto sealed = asconEncrypt(key, nonce, {}, random(300));
-        sealed.tag[clocks % 16] ^= 1; // so TARGET is read again, to overwrite what was decrypted
+        sealed.tag[clocks % 16] ^= 1; // so TARGET is read again, to overwrite the decrypted data
         memory_.store(source_, sealed.text);
         memory_.store(tagBase_, sealed.tag);
         sizes(0, sealed.text.size());
@@ -349,7 +349,7 @@ TEST_F(AsconTest, SpeedWhenTheMemoryKeepsUp) {
     double hashed = 2048.0 / static_cast<double>(clocksOf(ASCON_CONTROL_HASH_MASK, 4096) -
                                                  clocksOf(ASCON_CONTROL_HASH_MASK, 2048));
     std::printf("Ascon-AEAD128 %.3f bytes a clock, Ascon-Hash256 %.3f\n", sealed, hashed);
-    EXPECT_GE(sealed, 1.6); // 16 bytes: 8 rounds, a clock for each word
+    EXPECT_GE(sealed, 1.6); // 16 bytes: 8 rounds, one clock per word
     EXPECT_GE(hashed, 8.0 / 13 - 0.001);
 }
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// camera: writes frames of a parallel sensor port into three buffers in DDR3, and hands on whole
-// ones.
-// Registers: camera.regs.json. Page: README.md.
+// camera: writes frames from a parallel sensor port into three buffers in DDR3, and offers complete
+// frames to another core. Registers: camera.regs.json. Page: README.md.
 //
-// frame_valid_o offers the newest frame, in buffer frame_index_o, to another core. A frame that it
-// takes with frame_take_i is not overwritten until it takes another.
+// frame_valid_o offers the newest frame, in buffer frame_index_o, to another core. A frame taken
+// with frame_take_i is not overwritten until the next one is taken.
 
 `default_nettype none
 
@@ -32,16 +31,16 @@ module camera (
     reg [2:0]  state;
     reg        capturing, listening; // state is CAPTURE; the state takes tokens
     reg        stopping;             // no further frame
-    reg        whole;                // the frame that ends, or has ended, is whole
-    reg        again;                // the next frame has begun already
-    reg [8:0]  width, words;         // words of a line; number of the one under way, from 1
+    reg        whole;                // the frame that ends, or has ended, is complete
+    reg        again;                // the next frame has already begun
+    reg [8:0]  width, words;         // words per line; number of the current word, starting at 1
     reg [11:0] height, y;
-    reg [2:0]  x;                    // of the next pixel in its word
-    reg        room;                 // for one more pixel of this line
-    reg        last_word, last_line; // words == width, y + 1 == height, a clock later
+    reg [2:0]  x;                    // index of the next pixel in its word
+    reg        room;                 // room for another pixel of this line
+    reg        last_word, last_line; // words == width, y + 1 == height, one clock later
     reg [31:0] base, stride;         // of the buffers in use
     reg [15:0] frames, dropped;
-    reg [55:0] pixels;               // of the word that is begun, newest on top
+    reg [55:0] pixels;               // pixels of the incomplete word, newest on top
     reg        has_newest;
     wire [1:0] writing, newest;
     wire       offered;
@@ -54,7 +53,7 @@ module camera (
     async_fifo #(.WIDTH(11), .LOG2(5)) u_fifo (
         .write_clk_i(pclk_i), .push_i(push), .data_i(token_in), .full_o(full),
         .read_clk_i(clk_i), .pop_i(fetch), .data_o(token_out), .empty_o(waits));
-    // The next token is in a register: the path behind it is long enough without the FIFO's memory.
+    // The next token is in a register, because the path after it is already long.
     reg [10:0] token;
     reg        has_token;
     wire       fetch = !waits && (!has_token || pop);
@@ -116,15 +115,16 @@ module camera (
         .write_ready_o(write_ready), .write_flush_i(state == FINISH), .write_idle_o(write_idle));
 
     // ---- frames ----
-    // Tokens wait while a buffer is chosen and while a frame is finished; a token that waits too
-    // long is lost and reported. All kinds wait where an eighth pixel would: the kind comes late.
+    // Tokens wait while a buffer is selected and while a frame is finished; if a token waits too
+    // long, tokens are lost and reported. All kinds of token wait when an eighth pixel would: the
+    // kind arrives late.
     wire ready  = x != 3'd7 || write_ready;
     assign pop  = has_token && listening && ready;
     wire begins = pop && starts;
     wire token_in_frame = has_token && capturing && ready;
     wire bad    = lost || (is_pixel && !room) || (ends_line && room) || starts;
     wire last   = ends_line && last_line;
-    wire kept   = state == WAIT_FOR_MEMORY && write_idle && whole; // all of it is in memory
+    wire kept   = state == WAIT_FOR_MEMORY && write_idle && whole; // the whole frame is in memory
     camera_buffers u_buffers (.clk_i(clk_i), .rst_i(rst_i), .active_i(state != OFF), .kept_i(kept),
                               .writing_o(writing), .newest_o(newest), .offered_o(offered), .take_i(frame_take_i));
     assign frame_valid_o = offered;
@@ -142,7 +142,8 @@ module camera (
         events    <= 7'd0;
         last_word <= words == width;
         last_line <= y + 12'd1 == height;
-        // Also by a line's end, whose byte the next seven pixels push out: 56 enables hang on this.
+        // Also by the end of a line, whose byte the next seven pixels push out: 56 enables depend
+        // on this.
         if (capturing && has_token && x != 3'd7)
             pixels <= {token[7:0], pixels[55:8]};
         if (stop && state != OFF)
@@ -168,7 +169,7 @@ module camera (
                     enter(OFF);
                 else if (begins)
                     enter(WAIT_FOR_BUFFER);
-                if (pop && ends_line) // reported once
+                if (pop && ends_line) // report this once
                     whole <= 1'b0;
                 events[CAMERA_EVENT_LONG_FRAME_LSB] <= pop && ends_line && whole;
             end

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: MIT
 //
-// camera_buffers: which of the buffers 1..3 is written, holds the newest whole frame, belongs to
-// another core.
+// camera_buffers: tracks which of the buffers 1..3 is being written, holds the newest complete
+// frame, or belongs to another core.
 
 `default_nettype none
 
 module camera_buffers (
     input  wire       clk_i,
     input  wire       rst_i,
-    input  wire       active_i,  // frames are captured; else none is offered
-    // the frame that was written is whole in memory: it is the newest, and offered
+    input  wire       active_i,  // capture is on; otherwise no frame is offered
+    // the written frame is complete in memory: it is now the newest, and offered
     input  wire       kept_i,
     output reg  [1:0] writing_o,
     output reg  [1:0] newest_o,
     output reg        offered_o,
-    input  wire       take_i     // the other core takes the newest, and returns its old one
+    input  wire       take_i     // the other core takes the newest buffer, and returns its old one
 );
-    reg [1:0] used; // of the other core
+    reg [1:0] used; // buffer of the other core
 
     wire       taken    = offered_o && take_i;
     wire [1:0] reserved = taken ? newest_o : used;
@@ -37,11 +37,11 @@ module camera_buffers (
     end
 
 `ifdef FORMAL
-    // A buffer is whole from the clock in which it is kept until the next frame is begun in it.
+    // A buffer is complete from the clock in which it is kept until the next frame begins in it.
     reg       past = 1'b0;
     reg [3:1] whole = 3'b000;
-    reg       has = 1'b0;  // the other core has taken one
-    reg [1:0] held = 2'd0; // it is this one
+    reg       has = 1'b0;  // the other core has taken a buffer
+    reg [1:0] held = 2'd0; // the buffer that it has taken
     always @(posedge clk_i) begin
         past <= 1'b1;
         if (rst_i) begin
@@ -63,7 +63,7 @@ module camera_buffers (
             // Three buffers, three parts.
             assert (writing_o != 2'd0 && newest_o != 2'd0 && used != 2'd0 && writing_o != newest_o);
             assert (writing_o != used && (!offered_o || newest_o != used));
-            // The other core's buffer and the offered one are never written; both are whole.
+            // The other core's buffer and the offered one are never written; both are complete.
             assert (!has || (held == used && held != writing_o && whole[held]));
             assert (!offered_o || whole[newest_o]);
             assert (!whole[writing_o]);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// camera_sensor: turns a sensor's parallel port, in the sensor's clock, into tokens for a FIFO
-// (async_fifo).
+// camera_sensor: converts the parallel port of a sensor, in the sensor's clock domain, into tokens
+// for a FIFO (async_fifo).
 //
-// A token has 11 bits: LOST (tokens before it found no room), kind, pixel. While the FIFO is full
-// pixels are lost; beginnings of frames and ends of lines wait for room until the next one comes.
+// A token has 11 bits: LOST (earlier tokens found no room), kind, pixel. While the FIFO is full
+// pixels are lost; frame starts and line ends wait for room until the next one arrives.
 
 `default_nettype none
 
@@ -25,7 +25,8 @@ module camera_sensor (
     reg [7:0] data;
     reg       owes_line_end, owes_frame_start, lost;
 
-    // This domain has no reset: the pins tell the sensor's state, and only whole frames are taken.
+    // This domain has no reset: the pins show the state of the sensor, and only complete frames are
+    // used.
     initial begin
         {vsync, vsync_before, href, href_before} = 4'd0;
         {owes_line_end, owes_frame_start, lost}  = 3'd0;

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * camera_servant: Cores::Camera by the core's registers through the FSMC; tells other servants
- * where frames are (Hw_Frames).
+ * camera_servant: Cores::Camera, which accesses the core's registers through the FSMC; informs
+ * other servants of the position of frames (Hw_Frames).
  */
 #include "camera_servant.h"
 #include "camera_regs.h"
 #include "fsmc.h"
 
-#define STOP_READS 1000 /* of STATUS: a burst under way takes less than one of them */
+#define STOP_READS 1000 /* reads of STATUS; a pending burst takes less time than one */
 
 static U32 get(const Camera_Core* self, U32 word) {
     return FSMC_read(self->core.slot, word);

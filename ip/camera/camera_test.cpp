@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// camera_test: a sensor with a jittering clock of its own, a memory that stalls, and every kind of
-// broken frame.
+// camera_test: a sensor with a separate, jittering clock, a memory that stalls, and every kind of
+// damaged frame.
 
 #include "Vcamera_slot.h"
 #include "bench.h"
@@ -18,8 +18,8 @@ constexpr int width = 40, height = 12;
 class CameraTest : public ::testing::Test {
 protected:
     CameraTest() {
-        // Edges of the pixel clock fall before or after those of the fabric's, 1 to 3 halves of its
-        // period apart.
+        // Edges of the pixel clock fall before or after the edges of the fabric clock, 1 to 3 half
+        // periods apart.
         bench_.addModel([this] { edge(); }, [this] { edge(); });
         bench_.reset();
         bus_.write(CAMERA_MASK, 0x7F);
@@ -125,7 +125,7 @@ TEST_F(CameraTest, FramesMayBeAsWideAndAsHighAsTheRegistersSay) {
 }
 
 TEST_F(CameraTest, FramesAreCountedModulo65536) {
-    // Frames follow as fast as they can be dropped: each ends the one before, which has no lines.
+    // Frames follow as fast as they can be dropped: each ends the previous one, which has no lines.
     slowest_ = 1;
     sensor_ = SensorModel({4, 2});
     start();
@@ -137,7 +137,7 @@ TEST_F(CameraTest, FramesAreCountedModulo65536) {
     }
     EXPECT_EQ(bus_.read(CAMERA_FRAMES), 0u);
     stop();
-    // Whole frames, as close as memory bursts and the FIFO let them be.
+    // Complete frames, as close as memory bursts and the FIFO allow.
     configure(8, 1);
     sensor_ = SensorModel({16, 1});
     memory_.setStall(0);
@@ -201,7 +201,7 @@ TEST_F(CameraTest, AMemoryThatIsTooSlowIsToldAndTheNextFrameIsRight) {
     uint32_t events = drain();
     EXPECT_EQ(bus_.read(CAMERA_FRAMES), 0u) << events;
     auto pixels = picture();
-    sensor_.addFrame(picture(), width, height); // ends the frame that the lost lines left open
+    sensor_.addFrame(picture(), width, height); // ends the frame left incomplete by the lost lines
     sensor_.addFrame(pixels, width, height);
     events |= drain();
     EXPECT_TRUE(events & CAMERA_EVENT_OVERFLOW_MASK);
@@ -234,8 +234,8 @@ TEST_F(CameraTest, TheFrameThatAnotherCoreHasIsNotOverwritten) {
     }
 }
 
-// The clock in which the next frame is kept is among them: the taken frame is whole, and stays
-// until the next is taken.
+// One of these clocks is the clock in which the next frame is kept: the taken frame is complete,
+// and stays so until the next one is taken.
 TEST_F(CameraTest, AnotherCoreTakesAFrameInAnyClock) {
     constexpr int w = 8, h = 1;
     slowest_ = 1;
@@ -284,7 +284,7 @@ TEST_F(CameraTest, StopsAndStartsInTheMiddleOfAFrame) {
 TEST_F(CameraTest, RefusesWhatItCannotCapture) {
     auto refused = [&] {
         start();
-        bench_.tick(); // checked in the clock of START, reported in the next, sticky from then on
+        bench_.tick(); // checked in the clock of START, reported in the next clock, then sticky
         bench_.tick();
         return bus_.takeEvents() == CAMERA_EVENT_REFUSED_MASK && bus_.read(CAMERA_STATUS) == 0;
     };
@@ -325,8 +325,8 @@ TEST_F(CameraTest, APixelEachFabricClockWhenTheMemoryKeepsUp) {
     configure(wide, lines);
     bus_.write(CAMERA_STRIDE, wide * lines);
     sensor_ = SensorModel({60, 1});
-    // Clocks from a line's first word to memory to its last, and the pixels of all but the first
-    // word.
+    // Clocks from the first to the last word of a line sent to memory, and the pixels of all words
+    // but the first.
     uint64_t first = 0, clocks = 0, seen = 0;
     bench_.addModel(
         [&] {

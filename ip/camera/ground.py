@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""camera's part of a mission: it is started and stopped; with a sensor, the vision core works on
+"""camera's part of a mission: starts and stops the core; with a sensor, the vision core works on
 its frames."""
 
 import Ice

@@ -9,7 +9,7 @@ module fir (
     `include "slot_ports.vh"
     `include "memory_ports.vh"
     output wire        irq_o,
-    output wire        idle_o // no call is under way
+    output wire        idle_o // no call is in progress
 );
     wire        core_rst, set_coefficient, clear, start, unused_shift_start;
     wire [7:0]  index, shift;
@@ -19,10 +19,10 @@ module fir (
     reg         busy, refused;
     // clear the history; write a coefficient: a clock after the request
     reg         forget, put;
-    reg         begun, flushed;    // the streams have their buffers; the last word is on its way
-    // samples that the filter has not got; results that it has not given
+    reg         begun, flushed;    // the streams have started; the last word is being flushed
+    // samples not sent to the filter yet; results not received yet
     reg  [8:0]  to_send, to_take;
-    reg  [1:0]  place;             // of the next sample in its word
+    reg  [1:0]  place;             // index of the next sample in its word
     reg  [63:0] packed_results;
     reg  [2:0]  filled;            // results in it, 0..4
     reg  [31:0] saturations;
@@ -33,7 +33,7 @@ module fir (
     wire        sample_ready, result_valid, saturated;
     wire [15:0] result;
     wire        idle    = read_idle && write_idle;
-    wire        go      = busy && !begun && idle; // an earlier call's transfers may be under way
+    wire        go      = busy && !begun && idle; // transfers of an earlier call may be pending
     wire        ended   = begun && to_take == 9'd0;
     wire        flush   = ended && filled == 3'd0 && !flushed;
     wire        sending = to_send != 9'd0 && read_valid;
@@ -42,7 +42,8 @@ module fir (
     wire        written = offer && write_ready;
     wire        room    = !filled[2] || write_ready;
     wire        taken   = result_valid && room;
-    wire [3:0]  here    = written ? 4'd1 : 4'd1 << filled[1:0]; // where this result goes
+    wire [3:0]  here    = written ? 4'd1 : 4'd1 << filled[1:0]; // position of this result in its
+                                                                // word
 
     fir_wrapper u_wrapper (
         `include "slot_connect.vh"
@@ -66,7 +67,7 @@ module fir (
 
     npi_stream #(.ADDR_BITS(32), .WORD_BITS(7)) u_stream (
         `include "memory_connect.vh"
-        .clk_i(clk_i), .rst_i(rst_i), // not by core_rst: requested words must be taken
+        .clk_i(clk_i), .rst_i(rst_i), // not core_rst: requested words must still be taken
         .read_start_i(go && !core_rst), .read_base_i(source[31:6]),
         .read_words_i(to_send[8:2] + {6'd0, |to_send[1:0]}), .read_stop_i(core_rst),
         .read_valid_o(read_valid), .read_data_o(read_data),
@@ -88,7 +89,7 @@ module fir (
             to_send     <= count;
             to_take     <= count;
         end
-        if (go) begin // not at start, whose path is long
+        if (go) begin // not at `start`, which has a long path
             begun       <= 1'b1;
             saturations <= 32'd0;
             place       <= 2'd0;
@@ -126,8 +127,8 @@ module fir (
     wire unused =
         &{1'b0, unused_shift_start, shift[7:5], coefficient[31:18], source[5:0], target[5:0], 1'b0};
 `ifdef FORMAL
-    // For formal.idle_fir: without a call there is nothing in the core.
-    (* hierconn *) wire [4:0] \u_filter.full ; // the parts' signals
+    // For formal.idle_fir: without a call the core is empty.
+    (* hierconn *) wire [4:0] \u_filter.full ; // signals of the parts
     (* hierconn *) wire [3:0] \u_wrapper.busy ;
     (* hierconn *) wire [6:0] \u_stream.to_give ;
     reg        past = 1'b0;

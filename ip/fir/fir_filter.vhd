@@ -1,11 +1,11 @@
 -- SPDX-License-Identifier: MIT
 --
--- fir_filter: FIR filter of 16 taps in transposed form, one sample a clock, coefficients at run
--- time.
+-- fir_filter: FIR filter of 16 taps in transposed form, one sample per clock, with coefficients set
+-- at run time.
 --
--- Each tap is a multiplier of 18 x 16 bits, a register behind it, and an adder with a register: one
+-- Each tap is a multiplier of 18 x 16 bits with a register and an adder with a register: one
 -- DSP48A1. result = (sum of coefficient(k) * sample(n - k)) / 2**shift, rounded to nearest, halves
--- up, kept to 16 bits.
+-- up, saturated to 16 bits.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -20,7 +20,7 @@ entity fir_filter is
     coefficient_index_i : in  std_logic_vector(3 downto 0);
     coefficient_i       : in  std_logic_vector(17 downto 0);
     shift_i             : in  std_logic_vector(4 downto 0);
-    -- earlier samples become 0; only while nothing is in the pipeline
+    -- sets earlier samples to 0; allowed only while the pipeline is empty
     clear_i             : in  std_logic;
     -- samples
     sample_valid_i      : in  std_logic;
@@ -30,7 +30,7 @@ entity fir_filter is
     result_valid_o      : out std_logic;
     result_ready_i      : in  std_logic;
     result_o            : out std_logic_vector(15 downto 0);
-    saturated_o         : out std_logic  -- of this result
+    saturated_o         : out std_logic  -- this result was saturated
   );
 end entity;
 

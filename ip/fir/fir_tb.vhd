@@ -86,7 +86,7 @@ begin
         if out_valid = '1' and out_ready = '1' then
           assert to_integer(signed(result)) = wanted(got)
             report "result " & to_string(got) & " is " & to_string(to_integer(signed(result))) &
-                   ", the model says " & to_string(wanted(got)) severity failure;
+                   ", the model expects " & to_string(wanted(got)) severity failure;
           assert saturated = '0' or abs (2 * wanted(got) + 1) = 65535
             report "saturated inside the range" severity failure;
           got := got + 1;

@@ -127,14 +127,14 @@ TEST_F(FirCore, WhatIsGivenUpLeavesTheMemoryPortInOrder) {
 
 TEST_F(FirCore, ACountWrittenBehindTheStartDoesNotChangeTheCall) {
     Random random(testSeed());
-    const uint32_t results = 512; // bytes behind the samples
+    const uint32_t results = 512; // bytes after the samples
     for (int clocks = 10; clocks < 100; clocks += 7) {
         set(16, random);
         filter(random.items<Ice_Short>(256));
         core_.bus_.write(FIR_CONTROL, 1u << 3);
         for (int i = 0; i < clocks; ++i)
             core_.tick();
-        // The next call waits for the words that this one has asked for.
+        // The next call waits for the words requested by this one.
         core_.bus_.write(FIR_CONTROL, 1u << 31);
         core_.bus_.write(FIR_CONTROL, 1u << 3);
         core_.bus_.write(FIR_FILTER_IN0, 8);
@@ -153,7 +153,7 @@ TEST_F(FirCore, OneSampleAClockWhenTheMemoryKeepsUp) {
     auto clocksOf = [&](size_t count) {
         filter(std::vector<Ice_Short>(count, 1));
         uint64_t before = core_.bench_.cycles();
-        core_.bus_.write(FIR_CONTROL, 1u << 3); // once more
+        core_.bus_.write(FIR_CONTROL, 1u << 3); // again
         core_.bench_.waitFor([&] { return core_.bench_.top().irq_o; }, "the core's interrupt",
                              20000);
         core_.bus_.write(FIR_EVENT, ~0u);

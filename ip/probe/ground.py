@@ -15,7 +15,7 @@ def fly(log, proxy, report):
     mask, value = signals.trigger(trigger)
     probe = Probes.ProbePrx.uncheckedCast(proxy(signals.identity))
     signals.check(log.call("ground -> UAV", "probe.getState()", probe.getState))
-    # Without a trigger one that never comes: the newest changes are kept.
+    # Without a trigger a condition that never occurs: the newest changes are kept.
     log.call(
         "ground -> UAV", "probe.arm(%s)" % (trigger or "no trigger"),
         lambda: probe.arm(tool.signed(mask), tool.signed(value if trigger else 1), True, NEWEST))

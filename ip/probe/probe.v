@@ -1,23 +1,24 @@
 // SPDX-License-Identifier: MIT
 //
-// probe: records signals of the chip into a ring in DDR3, a change at a time, around a trigger (ip/probe/README.md).
+// probe: records signals of the chip into a ring in DDR3, one change at a time, around a trigger (ip/probe/README.md).
 //
-// A change is the value of all signals with the clock from which on they had it; nothing is stored while nothing
-// moves. It is WORDS words of 64 bits: word 0 has in bits 31..0 the low bits of cycles_i, two clocks after that
-// clock, in bit 32 that changes before it were lost, and above them signals_i from bit 0 on, which goes on in word 1.
-// A FIFO of 512 changes stands between the signals, which may change in every clock, and memory.
+// A change is the value of all signals with the clock in which they took it; while no signal
+// changes, nothing is stored. It has WORDS words of 64 bits. Word 0 contains in bits 31..0 the low
+// bits of cycles_i, two clocks after that clock, in bit 32 a flag that changes before it were lost,
+// and above them signals_i, bit 0 first, which continues in word 1. A FIFO of 512 changes lies
+// between the signals, which may change in every clock, and memory.
 
 `default_nettype none
 
 module probe #(
-    parameter        WORDS  = 2,         // of a change: 1, 2 or 4, for 31, 95 or 223 signals
+    parameter        WORDS  = 2,         // words per change: 1, 2 or 4, for 31, 95 or 223 signals
     parameter        CLK_HZ = 100000000, // Hz
     parameter [31:0] NAMES  = 32'd0      // hash of the signals' names and widths
 ) (
     `include "slot_ports.vh"
     `include "memory_ports.vh"
     output wire                 irq_o,
-    // what is recorded
+    // recorded signals
     input  wire [31:0]          cycles_i,  // the low bits of the chip's count of clocks
     input  wire [64*WORDS-34:0] signals_i
 );
@@ -34,7 +35,7 @@ module probe #(
 
     // ---- signals: own registers, so that the probe adds a wire to each signal, and no logic ----
     reg [WIDTH-1:0] now, last;
-    reg             changed, fits, fitted; // last is another value than the one before it; it meets the trigger, so did that
+    reg             changed, fits, fitted; // last differs from the value before it; it meets the trigger; so did the value before
     always @(posedge clk_i) begin
         now     <= signals_i;
         last    <= now;
@@ -51,7 +52,7 @@ module probe #(
     reg [LOG2_RING-1:0] next, trigger, left;
 
     wire full, empty, pop, room, stream_idle;
-    reg  [2:0] settled; // clocks for which the FIFO has been empty at the end: a word takes two to get there, a flush two to the stream's idle
+    reg  [2:0] settled; // clocks for which the FIFO has been empty at the end: a word arrives in two, a flush ends in two more
     wire arm    = set_arm && !running && !draining;
     wire ended  = triggered && left == {LOG2_RING{1'b0}};
     wire entry  = running && !ended && (changed || owed || half != cycles_i[31]);
@@ -130,7 +131,7 @@ module probe #(
     wire [31:0] unused_addr;
     wire        unused_valid, unused_read_idle;
     wire [63:0] unused_data;
-    npi_stream #(.ADDR_BITS(PROBE_LOG2_BYTES), .WORD_BITS(4)) u_stream ( // its address turns round at the ring's end
+    npi_stream #(.ADDR_BITS(PROBE_LOG2_BYTES), .WORD_BITS(4)) u_stream ( // its address wraps at the end of the ring
         .clk_i(clk_i), .rst_i(rst_i),
         .read_start_i(1'b0), .read_base_i({(PROBE_LOG2_BYTES - 6){1'b0}}), .read_words_i(4'd0), .read_stop_i(1'b0),
         .read_valid_o(unused_valid), .read_data_o(unused_data), .read_take_i(1'b0), .read_idle_o(unused_read_idle),

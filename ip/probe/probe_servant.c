@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * probe_servant: Probes::Probe by the core's registers, and its ring in DDR3, through the FSMC.
- */
+ * probe_servant: Probes::Probe, which accesses the core's registers, and its ring in DDR3, through
+ * the FSMC. */
 #include "probe_servant.h"
 #include "fsmc.h"
 #include "probe_regs.h"
 
-#define STOP_READS 10000 /* of STATUS: emptying the FIFO takes less than a few hundred of them */
+#define STOP_READS 10000 /* reads of STATUS; emptying the FIFO takes less time than a few hundred \
+                          */
 
 static U32 get(const Probe_Core* self, U32 word) {
     return FSMC_read(self->core.slot, word);

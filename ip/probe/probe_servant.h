@@ -7,7 +7,7 @@
 #include "Probe.h"
 #include "hw_core.h"
 
-#define PROBE_READ_BYTES 4096 /* of an answer */
+#define PROBE_READ_BYTES 4096 /* size of a reply */
 
 typedef struct Probe_Core {
     Probes_Probe servant;

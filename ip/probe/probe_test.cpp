@@ -67,7 +67,8 @@ protected:
         bool gap;
         Value value;
     };
-    // The ring from its oldest change on, with whole clocks from their low 32 bits.
+    // The ring, starting at its oldest change, with full clock counts computed from their low 32
+    // bits.
     std::vector<Change> capture(const Probes_State& s) {
         std::vector<Ice_Byte> bytes;
         auto read = [&](int first, int end) {
@@ -153,7 +154,7 @@ TYPED_TEST(ProbeTest, ALevelThatIsThereTriggersAtOnce) {
 }
 
 TYPED_TEST(ProbeTest, AnEdgeIsNoLevel) {
-    this->quiet_ = 1u << 31; // nothing moves by itself
+    this->quiet_ = 1u << 31; // no signal changes without a call
     auto become = [&](uint32_t value) {
         this->value_[0] = value;
         for (int i = 0; i < 50; ++i)
@@ -169,8 +170,8 @@ TYPED_TEST(ProbeTest, AnEdgeIsNoLevel) {
     EXPECT_EQ(this->finish().trigger, 3);
 }
 
-// No test sees whether probe.v's `settled` stops at 7 or turns round: a capture would end up to 7
-// clocks later, and a flush of what is flushed does nothing.
+// No test covers whether probe.v's `settled` stops at 7 or wraps: a capture would end up to 7
+// clocks later, and flushing again has no effect.
 TYPED_TEST(ProbeTest, TheRingKeepsTheNewest) {
     this->quiet_ = 2 * this->words;
     ASSERT_EQ(this->arm(0, 1, true, static_cast<int>(this->ring) - 100),
@@ -199,12 +200,12 @@ TYPED_TEST(ProbeTest, SaysWhereChangesWereLost) {
     EXPECT_EQ(all.size(), 2001u);
     this->expectGiven(all, true);
     EXPECT_FALSE(all[512].gap);
-    for (size_t i = 0; i < 512; ++i) // as many as the FIFO holds without memory
+    for (size_t i = 0; i < 512; ++i) // the capacity of the FIFO
         ASSERT_EQ(all[i + 1].clock - all[i].clock <= 3, true) << i;
 }
 
 TYPED_TEST(ProbeTest, CountsOnWhereTheClockCountTurnsRound) {
-    this->quiet_ = 1u << 31; // nothing moves
+    this->quiet_ = 1u << 31; // no signal changes
     this->cycles_ = 0x7FFFFF00;
     ASSERT_EQ(this->arm(0, 0, false, 2), ICE_OK);
     for (int i = 0; i < 1000; ++i)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// idle_rules: what formal.idle_vision builds on: without a frame the core asks for nothing, and
+// idle_rules: the assumptions of formal.idle_vision: without a frame the core requests nothing, and
 // knows how many words are on their way to it.
 
     (* hierconn *) wire [1:0] \u_core.state , \u_core.u_memory.state ;

@@ -22,7 +22,7 @@ entity vision is
     bus_rdata_o          : out std_logic_vector(31 downto 0);
     bus_error_o          : out std_logic;
     irq_o                : out std_logic;
-    idle_o               : out std_logic; -- no frame is under way or awaited
+    idle_o               : out std_logic; -- no frame is being processed or awaited
     -- frames of another core, in buffers 1..3 (FOLLOW)
     frame_valid_i        : in  std_logic := '0';
     frame_index_i        : in  std_logic_vector(1 downto 0) := "00";
@@ -66,41 +66,41 @@ architecture rtl of vision is
   signal taken         : std_logic_vector(1 downto 0); -- the buffer of the last frame, 0: FRAME_BASE itself
   signal set_width, set_height, set_result_max : std_logic_vector(15 downto 0);
   signal found, stored : unsigned(15 downto 0);
-  -- settings of the frame under way, from START
+  -- settings of the current frame, loaded at START
   signal threshold     : unsigned(7 downto 0);
   signal last_column   : unsigned(9 downto 0);
   signal height, result_max : unsigned(15 downto 0);
   signal cycles        : unsigned(31 downto 0);
   signal aborted, stop : std_logic;
-  -- Commands act a clock after their write, so address decoder and frame control are not one path.
-  -- Other registers written meanwhile come too late for this frame, as they should.
+  -- Commands take effect one clock after their write, so that address decoder and frame control are
+  -- not one path. Other registers written in between do not affect this frame, as intended.
   signal start, abort  : std_logic;
   signal written       : std_logic; -- a register was written, so size_ok is outdated
-  signal size_ok       : std_logic; -- of the registers a clock ago
+  signal size_ok       : std_logic; -- check of the registers, one clock ago
   signal idle, offered, accept : std_logic;
-  signal go            : std_logic; -- a clock after `accept`; settings are loaded until then
+  signal go            : std_logic; -- one clock after `accept`; settings are loaded until then
   signal first_pixel, memory_base : std_logic_vector(31 downto 0);
 
-  -- stream: column of the pixel that is taken, and number of lines, this one included; then column
+  -- stream: column of the pixel being taken, and number of lines including this one; then column
   -- and row of the score, and of vision_suppress's output
   signal x             : unsigned(9 downto 0);
   signal lines_left    : unsigned(15 downto 0);
   signal score_x, kept_x : unsigned(9 downto 0);
   signal score_y, kept_y : unsigned(16 downto 0);
-  signal fill          : unsigned(3 downto 0); -- steps until the first score, then the first kept one
+  signal fill          : unsigned(3 downto 0); -- steps until the first score, then until the first kept score
   signal take, real_pixel, pixel_valid, pixel_take, last : std_logic;
   signal streaming     : std_logic; -- state = STREAM and not stop
-  -- `step` is `take` a clock later: everything from the window on moves by this register, whose
-  -- fan-out has the clock to itself.
+  -- `step` is `take` one clock later: everything after the window moves by this register, which has
+  -- a whole clock for its fan-out.
   signal step          : std_logic;
-  signal decide        : std_logic; -- as step, for all decisions: without step's fan-out
+  signal decide        : std_logic; -- a copy of step for all decisions, with a small fan-out
   signal step_x        : unsigned(9 downto 0);
   signal pixel, step_pixel : std_logic_vector(7 downto 0);
   signal window        : std_logic_vector(391 downto 0);
   signal raw_score, score, centre_score : unsigned(11 downto 0);
   signal kept, is_corner, record_ready, record_push, quiet : std_logic;
-  -- kept_y was in the frame a step ago: only a line's first column sees a difference, and there all
-  -- scores are 0
+  -- kept_y was in the frame one step ago: this only differs in the first column of a line, where
+  -- all scores are 0
   signal in_frame      : std_logic;
   signal data          : std_logic_vector(63 downto 0);
   signal frame_x, frame_y : unsigned(15 downto 0);
@@ -183,17 +183,17 @@ begin
 
   -- ---- stream ----
 
-  -- Lines below the frame are made up: their scores are 0, but they push the last corners out.
-  -- A record may be pushed one step after record_ready_o has fallen, but none is: of two successive
-  -- scores vision_suppress keeps one at most, the first only if it is not less, the second only if
-  -- it is greater.
+  -- Lines below the frame are generated: their scores are 0, but they push the last corners out. A
+  -- record may be pushed one step after record_ready_o has fallen, but this does not happen: of two
+  -- successive scores vision_suppress keeps at most one, the first only if it is not less, the
+  -- second only if it is greater.
   take       <= streaming and (pixel_valid or not real_pixel) and record_ready;
   pixel_take <= streaming and pixel_valid and real_pixel and record_ready;
 
   taking : process (clk_i)
   begin
     if rising_edge(clk_i) then
-      step   <= take; -- not reset, or the two would be made one
+      step   <= take; -- no reset; otherwise synthesis would merge the two
       decide <= take;
       step_x <= x;
       step_pixel <= pixel and (7 downto 0 => real_pixel);
@@ -225,7 +225,7 @@ begin
   -- Centre of the frame's coordinates: three columns and lines back for the window.
   frame_x     <= resize(kept_x, 16) - 3;
   frame_y     <= resize(kept_y, 16) - 3;
-  -- The block RAMs hold lines of an older frame until the first lines have gone through.
+  -- The block RAMs hold lines of an older frame until the first lines have passed.
   is_corner   <= decide and kept and in_frame when fill = SCORE_DELAY + KEPT_DELAY else '0';
   record_push <= is_corner when stored < result_max else '0';
   data        <= x"00000" & std_logic_vector(centre_score) &
@@ -304,7 +304,7 @@ begin
     end if;
   end process;
 
-  -- The centre is one line and one column behind the score that entered KEPT_DELAY steps ago.
+  -- The centre is one line and one column before the score that entered KEPT_DELAY steps ago.
   kept_position : process (clk_i)
   begin
     if rising_edge(clk_i) then

@@ -1,10 +1,11 @@
 -- SPDX-License-Identifier: MIT
 --
--- vision_fast: FAST-9 score of the window's centre: 0 where it is no corner.
+-- vision_fast: FAST-9 score of the window's centre: 0 if it is not a corner.
 --
--- The 16 pixels of the circle of radius 3 are brighter (> centre + threshold) or darker (< centre -
--- threshold). Nine in a row of a kind make a corner; its score is the sum of their distances beyond
--- the threshold over all pixels of that kind. Three steps after the window.
+-- The 16 pixels of the circle of radius 3 are brighter (> centre + threshold), darker (< centre -
+-- threshold) or neither. Nine consecutive pixels of one kind make a corner; its score is the sum of
+-- their distances beyond the threshold over all pixels of that kind. It is valid three steps after
+-- the window.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -15,7 +16,7 @@ entity vision_fast is
     clk_i       : in  std_logic;
     step_i      : in  std_logic;
     threshold_i : in  unsigned(7 downto 0);
-    window_i    : in  std_logic_vector(391 downto 0); -- as from vision_window
+    window_i    : in  std_logic_vector(391 downto 0); -- as output by vision_window
     score_o     : out unsigned(11 downto 0)
   );
 end entity;

@@ -1,9 +1,9 @@
 -- SPDX-License-Identifier: MIT
 --
--- vision_memory: reads the frame, pixel by pixel, and writes the records, through one memory port.
+-- vision_memory: reads the frame pixel by pixel, and writes the records, through one memory port.
 --
--- Reads are bursts of 128 bytes, two under way; records are written one word each, before further
--- reads.
+-- Reads are bursts of 128 bytes, at most two outstanding; records are written one word each, before
+-- further reads.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -14,19 +14,19 @@ entity vision_memory is
     clk_i          : in  std_logic;
     rst_i          : in  std_logic;
     -- control
-    -- until start: the addresses are taken each cycle
+    -- until start: the addresses are loaded in each cycle
     idle_i         : in  std_logic;
     start_i        : in  std_logic;                     -- one cycle, the first without idle_i
-    stop_i         : in  std_logic;                     -- no further reads; words are dropped
+    stop_i         : in  std_logic;                     -- no further reads; arriving words are dropped
     frame_base_i   : in  std_logic_vector(31 downto 0);
     result_base_i  : in  std_logic_vector(31 downto 0);
-    quiet_o        : out std_logic;                     -- nothing is under way
+    quiet_o        : out std_logic;                     -- no transfer is pending
     -- pixels
     pixel_valid_o  : out std_logic;
     pixel_o        : out std_logic_vector(7 downto 0);
     pixel_take_i   : in  std_logic;
     -- records
-    -- only if record_ready_o was 1 a clock ago, and never twice running
+    -- only if record_ready_o was 1 one clock ago, and never in two successive clocks
     record_push_i  : in  std_logic;
     record_i       : in  std_logic_vector(63 downto 0);
     record_ready_o : out std_logic;
@@ -51,9 +51,9 @@ architecture rtl of vision_memory is
   signal active      : std_logic;              -- between start and stop
   signal read_addr   : unsigned(31 downto 7);
   signal write_addr  : unsigned(31 downto 3);
-  signal outstanding : unsigned(5 downto 0);   -- words asked for and not yet popped
+  signal outstanding : unsigned(5 downto 0);   -- words requested and not popped yet
   signal word        : std_logic_vector(63 downto 0);
-  signal left        : std_logic_vector(7 downto 0); -- of `word`: a one a byte left, from bit 0
+  signal left        : std_logic_vector(7 downto 0); -- remaining bytes of `word`: one bit each, from bit 0
   signal slot        : std_logic_vector(63 downto 0); -- a record that waits
   signal slot_full   : std_logic;
   signal pushed      : std_logic;
@@ -120,7 +120,7 @@ begin
         word <= x"00" & word(63 downto 8);
         left <= '0' & left(7 downto 1);
       end if;
-      -- `word` may take invalid data: only `left` depends on a word in the port.
+      -- `word` may load invalid data: only `left` depends on a word in the port.
       if refill = '1' then
         word <= npi_rd_data_i;
       end if;

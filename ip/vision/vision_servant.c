@@ -44,7 +44,7 @@ U32 Vision_Core_poll(Vision_Core* self, U32 nowMs) {
     return HW_NEVER;
 }
 
-/* Strongest first; of equal ones the first in scan order first. */
+/* Inserts a corner: strongest first; of equal ones the first in scan order comes first. */
 static void insert(Vision_Core* self, const Autopilot_Feature* f) {
     Ice_Int at = self->bestCount;
     if (at == VISION_BEST) {
@@ -76,7 +76,7 @@ static void readResults(Vision_Core* self) {
     }
 }
 
-/* Waits for the frame under way, if there is one. */
+/* Waits for the current frame, if any. */
 static Ice_Status finishFrame(Vision_Core* self) {
     const Hw_Port* port = self->core.port;
     U32 errorsBefore = port->busErrors(self->core.context);
@@ -87,8 +87,7 @@ static Ice_Status finishFrame(Vision_Core* self) {
             !self->core.done[REFUSED]) {
             set(self, VISION_MODE, 0);
             set(self, VISION_CONTROL, VISION_CONTROL_ABORT_MASK);
-            /* A core that hangs stays busy; without a frame from the camera there is none to
-             * end. */
+            /* A hung core stays busy; without a frame from the camera there is no frame to end. */
             self->busy = (get(self, VISION_STATUS) & VISION_STATUS_BUSY_MASK) != 0;
             return ICE_TIMEOUT;
         }

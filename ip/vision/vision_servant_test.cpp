@@ -100,7 +100,7 @@ TEST_F(VisionServant, GivesTheStrongestCornersOfThePicture) {
         expectCorners();
     }
     EXPECT_EQ(result(), ICE_OK);
-    expectCorners(); // once more
+    expectCorners(); // again
     EXPECT_EQ(Vision_Core_poll(&core_, 0), HW_NEVER);
     for (int value : {-1, 256})
         EXPECT_EQ(Autopilot_HwProcessingEngine_setParameterA(
@@ -128,7 +128,7 @@ TEST_F(VisionServant, AFrameThatTheCoreRefusesIsAnError) {
     loadAtHeader();
     busErrorsOfRead = 1;
     ASSERT_EQ(start(), ICE_OK);
-    EXPECT_EQ(result(), ICE_UNKNOWN_EXCEPTION) << "its registers did not answer";
+    EXPECT_EQ(result(), ICE_UNKNOWN_EXCEPTION) << "its registers did not respond";
     busErrorsOfRead = 0;
     ASSERT_EQ(start(), ICE_OK);
     ASSERT_EQ(result(), ICE_OK);

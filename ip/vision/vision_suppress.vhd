@@ -1,9 +1,10 @@
 -- SPDX-License-Identifier: MIT
 --
--- vision_suppress: keeps a score only where it is the greatest of its 3 x 3 neighbourhood.
+-- vision_suppress: keeps a score only if it is the greatest in its 3 x 3 neighbourhood.
 --
--- The first of equal neighbours in scan order stays. A score that enters at column x leaves, kept
--- or 0, one line and one column later; kept_o then belongs to the score before in the line above.
+-- The first of equal neighbours in scan order is kept. A score that enters at column x leaves, kept
+-- or as 0, one line and one column later; kept_o then belongs to the previous score in the line
+-- above.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -15,7 +16,7 @@ entity vision_suppress is
     step_i  : in  std_logic;
     x_i     : in  unsigned(9 downto 0);  -- column of the score that enters
     score_i : in  unsigned(11 downto 0);
-    score_o : out unsigned(11 downto 0); -- of the centre, two steps after the entry
+    score_o : out unsigned(11 downto 0); -- score of the centre, two steps after it entered
     kept_o  : out std_logic
   );
 end entity;

@@ -1,8 +1,8 @@
 -- SPDX-License-Identifier: MIT
 --
--- vision_window: the last seven lines of a pixel stream, as a 7 x 7 window that moves with it.
+-- vision_window: keeps the last seven lines of a pixel stream as a 7 x 7 window that moves with it.
 --
--- One block RAM holds six pixels a column. window_o is complete two steps after its newest pixel.
+-- One block RAM holds six pixels per column. window_o is complete two steps after its newest pixel.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -11,7 +11,7 @@ use ieee.numeric_std.all;
 entity vision_window is
   port (
     clk_i    : in  std_logic;
-    step_i   : in  std_logic;                    -- a pixel comes, everything moves on
+    step_i   : in  std_logic;                    -- a pixel arrives, everything moves by one step
     x_i      : in  unsigned(9 downto 0);         -- its column
     pixel_i  : in  std_logic_vector(7 downto 0);
     -- bits 8 * (7 * row + column) + 7 downto ...; row 0 is the oldest line, column 0 the oldest

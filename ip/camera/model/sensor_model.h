@@ -20,7 +20,7 @@ public:
         int frame = 60, line = 9;
     };
     struct Defect {
-        int line = -1;  // in this line ..
+        int line = -1;  // current line
         int pixels = 0; // .. this many pixels more, or less if negative
         int lines = 0;  // this many lines more, or less if negative
     };
@@ -45,7 +45,7 @@ public:
         }
     }
     bool isIdle() const { return pins_.empty(); }
-    // Returns the pins at the next pixel clock; idle ones once all frames have gone.
+    // Returns the pins at the next pixel clock; idle pins after all frames.
     Pins next() {
         if (pins_.empty())
             return {};

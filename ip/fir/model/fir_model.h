@@ -39,7 +39,7 @@ public:
 private:
     struct Past {
         int16_t sample;
-        std::array<int32_t, taps> coefficients; // as they were when it came
+        std::array<int32_t, taps> coefficients; // as they were when the sample arrived
     };
     std::deque<Past> history_; // newest first
 };

@@ -67,7 +67,8 @@ inline std::vector<Feature> detectCorners(const uint8_t* pixels, int width, int 
     return found;
 }
 
-// The strongest `count`, strongest first; of equal ones the first in scan order first.
+// Returns the strongest `count`, strongest first; of equal ones the first in scan order comes
+// first.
 inline std::vector<Feature> strongest(std::vector<Feature> features, size_t count) {
     std::stable_sort(features.begin(), features.end(),
                      [](const Feature& a, const Feature& b) { return a.score > b.score; });

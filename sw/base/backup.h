@@ -25,18 +25,18 @@ typedef struct Backup_Keys {
                 * group: number of the newest call to all vehicles */
 } Backup_Keys;
 
-/* The first ground's keys, and the vehicle's own state. */
+/* Keys of the first ground station, and the vehicle's state. */
 typedef struct Backup_Vehicle {
     Backup_Keys keys;
-    U32 flight;  /* BACKUP_FLYING in flight; the boot loader reads it, too */
-    U32 address; /* of the vehicle's modem: MY */
+    U32 flight;  /* BACKUP_FLYING in flight; also read by the boot loader */
+    U32 address; /* address (MY) of the vehicle's modem */
     U32 unused[3];
 } Backup_Vehicle;
 
 /* An observer, another vehicle, or the group. */
 typedef struct Backup_Other {
     Backup_Keys keys;
-    U32 inverted; /* inverted address; 0: no such peer */
+    U32 inverted; /* inverted address; 0 if the entry is unused */
     U32 unused[4];
 } Backup_Other;
 
@@ -45,6 +45,6 @@ typedef struct Backup {
     Backup_Other others[BACKUP_OTHERS];
 } Backup;
 
-/* Offset of a member in words. */
+/* Offset of a member, in words. */
 #define BACKUP_AT(member) ((U32)(offsetof(Backup, member) / sizeof(U32)))
 #define BACKUP_WORDS ((U32)(sizeof(Backup) / sizeof(U32)))

@@ -12,14 +12,14 @@ extern const FSMC_Port board_fsmc;
 /* Sets up the clock (120 MHz from a crystal of 25 MHz), flash wait states and the FSMC's pins. Uses
  * no RAM. */
 void Board_start(void);
-/* Returns whether a jumper pulls PB1 low: a wire is there in place of the modem. */
+/* Returns whether a jumper pulls PB1 low: the board is wired, without a modem. */
 int Board_isWired(void);
 /* Starts SysTick, the FPGA's interrupt and the watchdog. To be called with interrupts masked,
  * before OSStart. */
 void Board_startInterrupts(void);
 /* Serves the watchdog, which resets the processor if this is not called for a second. */
 void Board_serveWatchdog(void);
-/* Returns the priority of the running task; 255 if none runs yet. */
+/* Returns the priority of the running task; 255 before the first task runs. */
 U32 Board_task(void);
 
 /* Interrupt routines, for the vectors. */

@@ -11,7 +11,7 @@
 
 #define MAGIC 0x1CE50C01UL
 
-extern U32 image_begin[], image_end[]; /* firmware.ld; the checksum is the word at image_end */
+extern U32 image_begin[], image_end[]; /* from firmware.ld; the checksum is the word at image_end */
 
 Boot_Record boot_record __attribute__((section(".noinit")));
 static Boot_Reason reason;

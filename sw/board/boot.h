@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * boot: records why the firmware started and what ended the run before. Each start writes it to the
- * system slot's SCRATCH register, which everybody who reaches the FPGA can read.
+ * boot: records why the firmware started and what ended the previous run. Each start writes it to
+ * the system slot's SCRATCH register, which every client of the FPGA can read.
  *
- *   31..24  0xB0, so that a report can be told from other uses
+ *   31..24  0xB0, which distinguishes a report from other uses
  *   23..16  starts since power-on, modulo 256
  *   15..8   Boot_Reason
  *    7..0   detail: for faults the priority of the task that ran (63 the idle task, 255 none)
@@ -17,11 +17,11 @@ typedef enum Boot_Reason {
     BOOT_SOFTWARE = 2,       /* a requested reset, without a fault */
     BOOT_WATCHDOG = 3,       /* the watchdog was not served for a second */
     BOOT_IMAGE_CORRUPT = 4,  /* the image's checksum is wrong: the firmware has not started */
-    BOOT_STACK_OVERFLOW = 5, /* a task ran over the end of its stack */
+    BOOT_STACK_OVERFLOW = 5, /* a task overflowed its stack */
     BOOT_BUS_FAULT = 6,      /* an access without an answer */
     BOOT_USAGE_FAULT = 7,    /* an undefined instruction */
     BOOT_HARD_FAULT = 8,
-    BOOT_NO_FPGA = 9, /* the system slot does not answer; only in Boot_record */
+    BOOT_NO_FPGA = 9, /* the system slot does not respond; only in Boot_record */
     BOOT_NO_KEY = 10  /* the vehicle was neither given a key nor opened */
 } Boot_Reason;
 
@@ -31,24 +31,24 @@ typedef enum Boot_Reason {
 typedef struct Boot_Record {
     U32 magic;
     U32 starts;  /* since power-on */
-    U32 reason;  /* Boot_Reason of the fault that is not reported yet, else 0 */
-    U32 pc, lr;  /* where the fault happened */
+    U32 reason;  /* Boot_Reason of a fault that is not reported yet, else 0 */
+    U32 pc, lr;  /* program counter and link register at the fault */
     U32 address; /* the access that failed, else 0 */
     U32 status;  /* SCB's CFSR */
     U32 task;    /* priority of the task that ran */
 } Boot_Record;
 
-extern Boot_Record boot_record; /* of the previous run, once Boot_begin has been called */
+extern Boot_Record boot_record; /* record of the previous run, valid after Boot_begin */
 
 /* Counts the start and finds its reason; to be called before anything else. */
 void Boot_begin(void);
-/* Returns 1 if the checksum that the build has put behind the image is right. */
+/* Returns 1 if the checksum that the build appended to the image is correct. */
 int Boot_imageIsSound(void);
-/* Returns 1 where the FPGA must load its bitstream: after power-on, or where it did not answer. */
+/* Returns 1 if the FPGA must load its bitstream: after power-on, or if it did not respond. */
 int Boot_loadsFpga(void);
-/* Returns the word for SCRATCH. */
+/* Returns the value for SCRATCH. */
 U32 Boot_report(void);
-/* Makes the next start report this reason, whatever ends the run. */
+/* Makes the next start report this reason, however the run ends. */
 void Boot_note(Boot_Reason reason);
 /* Records the fault and resets the processor. */
 void Boot_fail(Boot_Reason reason, U32 pc, U32 lr, U32 address);

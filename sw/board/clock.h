@@ -6,8 +6,8 @@
 
 #include "stm32f2.h"
 
-/* Switches to 120 MHz, from a crystal of 25 MHz, with the flash's wait states. Does nothing where
- * this has been done. Uses no RAM. */
+/* Switches to 120 MHz, from a 25 MHz crystal, with the flash's wait states. Does nothing if already
+ * done. Uses no RAM. */
 static void Clock_start(void) {
     if ((RCC_CFGR & RCC_CFGR_SWS_MASK) == RCC_CFGR_SWS_PLL)
         return; /* the boot loader has done it */

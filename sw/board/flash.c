@@ -12,7 +12,7 @@ static void unlock(void) {
         FLASH_KEYR = FLASH_KEY1;
         FLASH_KEYR = FLASH_KEY2;
     }
-    FLASH_SR = FLASH_SR_ERRORS; /* a chip may come out of reset with some set */
+    FLASH_SR = FLASH_SR_ERRORS; /* some flags may be set after reset */
 }
 
 static int done(void) {

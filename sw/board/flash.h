@@ -9,8 +9,8 @@
 
 #define FLASH_BASE 0x08000000UL
 
-/* Functions of a Slots_Port: read, erase a sector of 128 KiB by its offset, program words. The
- * latter two return 1 if no error flag was set. The context is not used. */
+/* Functions of a Slots_Port: read, erase a sector of 128 KiB at an offset, program words. The last
+ * two return 1 if no error flag was set. The context is not used. */
 void Flash_read(void* context, U32 offset, U8* bytes, U32 count);
 int Flash_erase(void* context, U32 offset);
 int Flash_program(void* context, U32 offset, const U8* bytes, U32 count);

@@ -4,8 +4,8 @@
  */
 #pragma once
 
-/* Runs the program after a reset, once memory is set up. Does not return. */
+/* Runs the program after a reset, when memory is initialised. Does not return. */
 void Program_run(void);
 
-/* Handles the FPGA's interrupt, which is a level: called until the pin is low. */
+/* Handles the FPGA's interrupt, which is level-sensitive: called until the pin is low. */
 void Program_onFpgaInterrupt(void);

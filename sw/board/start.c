@@ -14,7 +14,7 @@ void Reset_Handler(void);
 void Fault_Handler(void);
 void Fault_entered(const U32* frame, U32 number);
 
-/* Calls a fault's handler with the frame's address: bit 2 of EXC_RETURN says which stack was in
+/* Calls the handler of a fault with the frame's address: bit 2 of EXC_RETURN selects the stack in
  * use. */
 void __attribute__((naked)) Fault_Handler(void) {
     __asm__ volatile("tst lr, #4\n\t"
@@ -37,11 +37,11 @@ void Fault_entered(const U32* frame, U32 number) {
 }
 
 __attribute__((section(".vectors"), used)) static const Vector vectors[16 + 7] = {
-    stack_top, /* not a function: the first word is the stack pointer */
+    stack_top, /* initial stack pointer, not a function */
     Reset_Handler,
     Fault_Handler, /* NMI */
     Fault_Handler, /* HardFault */
-    Fault_Handler, /* MemManage: the MPU guards the ends of stacks */
+    Fault_Handler, /* MemManage: the MPU guards the ends of the stacks */
     Fault_Handler, /* BusFault */
     Fault_Handler, /* UsageFault */
     0,

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * stm32f2: the registers of an STM32F2 that the firmware uses. Source: RM0033 (chapter and page
- * names at each block), and the ARMv7-M Architecture Reference Manual for the core's own.
- */
+ * names at each block); ARMv7-M Architecture Reference Manual for the core's registers. */
 #pragma once
 
 #include "base.h"
@@ -62,14 +61,14 @@
 #define FLASH_OPTCR REG(0x40023C14UL)
 #define FLASH_OPTCR_LOCK 1UL
 #define FLASH_OPTCR_STRT 2UL
-#define FLASH_OPTCR_RDP 0xFF00UL /* read protection: 0xAA none, 0xCC for ever, others level 1 */
+#define FLASH_OPTCR_RDP 0xFF00UL /* read protection: 0xAA none, 0xCC permanent, others level 1 */
 #define FLASH_OPTCR_RDP_NONE 0xAA00UL
 #define FLASH_OPTCR_RDP_1 0x5500UL
 
-/* CRC unit (RM0033, 3.4): polynomial 0x04C11DB7, from 0xFFFFFFFF, words, most significant bit
- * first. */
+/* CRC unit (RM0033, 3.4): polynomial 0x04C11DB7, initial value 0xFFFFFFFF, words, most significant
+ * bit first. */
 #define CRC_DR REG(0x40023000UL)
-#define CRC_CR REG(0x40023008UL) /* 1: start again */
+#define CRC_CR REG(0x40023008UL) /* 1: restart */
 
 /* Random number generator (RM0033, 20.4), from the PLL's 48 MHz. */
 #define RNG_CR REG(0x50060800UL)
@@ -80,11 +79,11 @@
 #define RNG_SR_SEIS (1UL << 6)
 #define RNG_DR REG(0x50060808UL)
 
-/* Power control (RM0033, 4.4), and the 4 KiB that VBAT keeps (4.1.2), in words. */
+/* Power control (RM0033, 4.4), and the 4 KiB backup SRAM kept by VBAT (4.1.2), in words. */
 #define PWR_CR REG(0x40007000UL)
-#define PWR_CR_DBP (1UL << 8) /* the backup domain may be written */
+#define PWR_CR_DBP (1UL << 8) /* write enable of the backup domain */
 #define PWR_CSR REG(0x40007004UL)
-#define PWR_CSR_BRE (1UL << 9) /* a regulator keeps the backup SRAM without VDD */
+#define PWR_CSR_BRE (1UL << 9) /* regulator that keeps the backup SRAM without VDD */
 #define BKPSRAM(word) REG(0x40024000UL + 4UL * (word))
 
 /* General-purpose pins (RM0033, 6.4). Port 0 is A. */
@@ -115,12 +114,12 @@
 #define USART1_BRR REG(0x40011008UL)
 #define USART1_BRR_115200 521UL
 #define USART1_CR1 REG(0x4001100CUL)
-#define USART1_CR1_ON 0x200CUL /* on, transmits and receives, 8 bits */
+#define USART1_CR1_ON 0x200CUL /* enabled, transmitter and receiver, 8 bits */
 
 /* SPI 1 (RM0033, 25.5). */
 #define SPI1_CR1 REG(0x40013000UL)
-#define SPI1_CR1_MASTER 0x0344UL /* on, master, PCLK2 / 2, mode 0, no NSS pin */
-#define SPI1_CR1_SLAVE 0x0040UL  /* on, slave by its NSS pin, mode 0 */
+#define SPI1_CR1_MASTER 0x0344UL /* enabled, master, PCLK2 / 2, mode 0, no NSS pin */
+#define SPI1_CR1_SLAVE 0x0040UL  /* enabled, slave selected by its NSS pin, mode 0 */
 #define SPI1_SR REG(0x40013008UL)
 #define SPI1_SR_RXNE 1UL
 #define SPI1_DR REG(0x4001300CUL)
@@ -135,12 +134,12 @@
 
 /* The core (ARMv7-M ARM, B3). */
 #define SYST_CSR REG(0xE000E010UL)
-#define SYST_CSR_ON 7UL /* from HCLK, with interrupt */
+#define SYST_CSR_ON 7UL /* clocked by HCLK, with interrupt */
 #define SYST_CSR_POLLED 5UL
 #define SYST_RVR REG(0xE000E014UL)
 #define SYST_CVR REG(0xE000E018UL)
 #define SYST_CALIB REG(0xE000E01CUL) /* RM0033, 8.1.2: HCLK/8 ticks in one millisecond */
-#define SYST_MS ((SYST_CALIB & 0xFFFFFFUL) * 8UL) /* of HCLK */
+#define SYST_MS ((SYST_CALIB & 0xFFFFFFUL) * 8UL) /* HCLK cycles per millisecond */
 #define NVIC_ISER(n) REG(0xE000E100UL + 4UL * (n))
 #define NVIC_ICER(n) REG(0xE000E180UL + 4UL * (n))
 #define NVIC_ICPR(n) REG(0xE000E280UL + 4UL * (n))
@@ -151,15 +150,15 @@
 #define SCB_VTOR REG(0xE000ED08UL)
 #define SCB_AIRCR REG(0xE000ED0CUL)
 #define SCB_AIRCR_RESET 0x05FA0004UL
-#define SCB_SHPR(n) (*(volatile U8*)(0xE000ED14UL + (n))) /* of exception n, 4..15 */
+#define SCB_SHPR(n) (*(volatile U8*)(0xE000ED14UL + (n))) /* priority of exception n, 4..15 */
 #define SCB_SHCSR REG(0xE000ED24UL)
-#define SCB_SHCSR_FAULTS (7UL << 16) /* usage, bus and memory faults have handlers of their own */
+#define SCB_SHCSR_FAULTS (7UL << 16) /* enables separate usage, bus and memory fault handlers */
 #define SCB_CFSR REG(0xE000ED28UL)
 #define SCB_CFSR_MMFARVALID (1UL << 7)
 #define SCB_CFSR_BFARVALID (1UL << 15)
 #define SCB_MMFAR REG(0xE000ED34UL)
 #define SCB_BFAR REG(0xE000ED38UL)
 #define MPU_CTRL REG(0xE000ED94UL)
-#define MPU_CTRL_ON 5UL /* on, with the default map for privileged code as background */
+#define MPU_CTRL_ON 5UL /* enabled, with the default map as background for privileged code */
 #define MPU_RBAR REG(0xE000ED9CUL)
 #define MPU_RASR REG(0xE000EDA0UL)

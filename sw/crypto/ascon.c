@@ -9,7 +9,7 @@
 #pragma GCC optimize("no-tree-reassoc", "no-schedule-insns")
 #endif
 
-/* The constants with which 12 and 8 rounds begin, and the one behind the last round. */
+/* Round constants: of the first of 12 and of 8 rounds, and the value after the last round. */
 #define ROUNDS_12 0xF0U
 #define ROUNDS_8 0xB4U
 #define ROUNDS_END 0x3CU
@@ -18,10 +18,10 @@
 #define RATE 16U /* bytes in a block */
 
 /* XORs a value with half of a word rotated right by 0 < n < 32; `next` is the half above it. The
- * parts are separate, since the processor shifts an operand of ^ at no cost. */
+ * parts are separate, because the processor shifts one operand of ^ for free. */
 #define JOIN(value, half, next, n) value ^ half >> n ^ next << (32 - n)
 
-/* The 5-bit S-box, 32 times at once, on one half of each word. */
+/* Applies the 5-bit S-box, 32 times at once, to one half of each word. */
 #define SUBSTITUTE(x0, x1, x2, x3, x4) \
     x0 ^= x4;                          \
     x4 ^= x3;                          \
@@ -37,25 +37,28 @@
     x2 = ~y2;
 
 /* XORs a word with itself rotated right by m and by n. (l, h) and (k, i) are its halves, low first,
- * for the two rotations; for a rotation by more than 32 they are exchanged and 32 is subtracted. */
+ * for the two rotations. For a rotation by more than 32 they are exchanged and n is reduced by
+ * 32. */
 #define DIFFUSE(low, high, l, h, m, k, i, n)   \
     y0 = JOIN(JOIN(low, l, h, m), k, i, n);    \
     high = JOIN(JOIN(high, h, l, m), i, k, n); \
     low = y0;
 
 static void permute(U32* half, U32 constant) {
-    U32 a = half[0], b = half[2], c = half[4], d = half[6], e = half[8]; /* low halves of words */
-    U32 A = half[1], B = half[3], C = half[5], D = half[7], E = half[9]; /* high ones */
+    U32 a = half[0], b = half[2], c = half[4], d = half[6], e = half[8]; /* low halves of the
+                                                                          * words */
+    U32 A = half[1], B = half[3], C = half[5], D = half[7], E = half[9]; /* high halves of the
+                                                                          * words */
     U32 y0, y1, y2;
     for (; constant != ROUNDS_END; constant -= ROUND_STEP) {
         c ^= constant;
         SUBSTITUTE(a, b, c, d, e)
         SUBSTITUTE(A, B, C, D, E)
         DIFFUSE(a, A, a, A, 19, a, A, 28)
-        DIFFUSE(b, B, B, b, 29, B, b, 7) /* by 61 and 39 */
+        DIFFUSE(b, B, B, b, 29, B, b, 7) /* rotations by 61 and 39 */
         DIFFUSE(c, C, c, C, 1, c, C, 6)
         DIFFUSE(d, D, d, D, 10, d, D, 17)
-        DIFFUSE(e, E, e, E, 7, E, e, 9) /* by 7 and 41 */
+        DIFFUSE(e, E, e, E, 7, E, e, 9) /* rotations by 7 and 41 */
     }
     half[0] = a;
     half[1] = A;
@@ -69,7 +72,7 @@ static void permute(U32* half, U32 constant) {
     half[9] = E;
 }
 
-/* Four bytes at any address as a word: the compiler makes one access of them. */
+/* Reads four bytes at any address as a word; the compiler makes one access of it. */
 static U32 get(const U8* bytes) {
     return bytes[0] | (U32)bytes[1] << 8 | (U32)bytes[2] << 16 | (U32)bytes[3] << 24;
 }

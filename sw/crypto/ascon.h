@@ -18,7 +18,7 @@
 #define ASCON_NONCE_BYTES 16U
 #define ASCON_TAG_BYTES 16U
 
-/* The state: five words of 64 bits, each as its low and its high half. */
+/* State: five 64-bit words, each as a low and a high half. */
 typedef struct Ascon {
     U32 half[10];
 } Ascon;
@@ -26,18 +26,18 @@ typedef struct Ascon {
 /* Starts a message under `key` and `nonce`, of 16 bytes each. */
 void Ascon_begin(Ascon* ascon, const U8* key, const U8* nonce);
 
-/* Absorbs the associated data, all at once. Do not call it without associated data. */
+/* Absorbs the associated data, all at once. Must not be called without associated data. */
 void Ascon_associate(Ascon* ascon, const U8* bytes, U32 size);
 
-/* Encrypts or decrypts the message in place. Decrypted bytes must not be used before the tag has
- * been verified. */
+/* Encrypts or decrypts the message in place. Decrypted bytes must not be used before the tag is
+ * verified. */
 void Ascon_crypt(Ascon* ascon, U8* bytes, U32 size, int isDecryption);
 
 /* Writes the tag of 16 bytes, and wipes the state. */
 void Ascon_end(Ascon* ascon, const U8* key, U8* tag);
 
-/* Compares the bytes in a time that does not depend on where they differ. */
+/* Compares bytes in a time that does not depend on the position of the difference. */
 int Ascon_isSame(const U8* a, const U8* b, U32 size);
 
-/* Overwrites with zeros, also where the compiler sees no later read. */
+/* Overwrites with zeros, even if the compiler sees no later read. */
 void Ascon_wipe(void* bytes, U32 size);

@@ -14,7 +14,7 @@
 
 typedef U16 Number[WORDS];
 
-/* Adds what went beyond 2^256; after the second time nothing does. */
+/* Adds the carry beyond 2^256; after two calls there is none left. */
 static void fold(U16* r, U32 carry) {
     int i, again;
     for (again = 0; again < 2; ++again) {
@@ -38,7 +38,7 @@ static void add(U16* r, const U16* a, const U16* b) {
     fold(r, carry);
 }
 
-/* Adds 4p - b, with words that are each greater than the corresponding word of b. */
+/* Adds 4p - b, with limbs that are each greater than the corresponding limb of b. */
 static void subtract(U16* r, const U16* a, const U16* b) {
     U32 carry = 0;
     int i;
@@ -82,7 +82,8 @@ static void multiply(U16* r, const U16* a, const U16* b) {
     fold(r, carry);
 }
 
-/* Multiplies by A24, which has 17 bits: by its lower 16, and by 2^16, a word further. */
+/* Multiplies by A24, which has 17 bits: by its lower 16 bits, and by 2^16, which is a shift by one
+ * limb. */
 static void multiplyA24(U16* r, const U16* a) {
     U32 carry = 0;
     U32 below = 0;
@@ -97,7 +98,7 @@ static void multiplyA24(U16* r, const U16* a) {
     fold(r, carry + below);
 }
 
-/* Raises to p - 2, which is all ones but for the bits 2 and 4. */
+/* Raises to the power p - 2, whose bits are all 1 except bits 2 and 4. */
 static void invert(U16* r, const U16* a) {
     Number z;
     int bit;
@@ -120,7 +121,8 @@ static void exchange(U16* a, U16* b, U32 isWanted) {
     }
 }
 
-/* Brings a number below p: counts bit 255 as 19, then takes p away if that leaves something. */
+/* Reduces a number below p: counts bit 255 as 19, then subtracts p if the result is not
+ * negative. */
 static void normalize(U16* r) {
     Number less;
     U32 carry = (U32)(r[WORDS - 1] >> 15) * 19U;
@@ -191,7 +193,7 @@ void X25519(U8* result, const U8* number, const U8* point) {
         swapped = bit;
         step(&l);
     }
-    invert(l.z2, l.z2); /* nothing is swapped at the end: the lowest bit is 0 */
+    invert(l.z2, l.z2); /* no final swap is needed, because the lowest bit is 0 */
     multiply(l.x2, l.x2, l.z2);
     normalize(l.x2);
     for (i = 0; i < WORDS; ++i) {

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * x25519: agrees on a secret over a line that others hear (RFC 7748).
+ * x25519: agrees on a shared secret over a line that others can read (RFC 7748).
  *
- *     X25519(open, own, 0);           (`own`: 32 random bytes; `open` goes to the peer)
- *     X25519(secret, own, peerOpen);  (both sides get the same)
+ *     X25519(open, own, 0);           (`own`: 32 random bytes; `open` is sent to the peer)
+ *     X25519(secret, own, peerOpen);  (both sides get the same secret)
  *
- * Neither branches nor addresses depend on secrets, nor does the time of a multiplication of 16
- * bits on a Cortex-M3, whose multiplications of 32 bits into 64 end early. A call takes 480 bytes
- * of stack.
+ * Neither branches nor addresses depend on secrets, nor does the time of a 16-bit multiplication on
+ * a Cortex-M3 (32-bit multiplications into 64 bits end early). A call takes 480 bytes of stack.
  */
 #pragma once
 

@@ -20,7 +20,7 @@
 #define BCR_MTYP_NOR (2U << 2)
 #define BCR_MWID_16 (1U << 4)
 #define BCR_FACCEN (1U << 6)
-#define BCR_RESERVED (1U << 7) /* reads 1, and is kept so */
+#define BCR_RESERVED (1U << 7) /* reads as 1, must be written as 1 */
 #define BCR_WAITPOL (1U << 9)
 #define BCR_WREN (1U << 12)
 #define BCR_EXTMOD (1U << 14)
@@ -79,7 +79,7 @@ void FSMC_write(U32 slot, U32 word, U32 value) {
     fsmcPort->write32(fsmcContext, wordAddress(slot, word), value);
 }
 
-/* Turns a DDR3 address into one in the window, and moves the page register where it must. */
+/* Converts a DDR3 address to one in the window, and moves the page register if necessary. */
 static U32 windowAddress(U32 address) {
     U32 page = address >> MAP_DDR_WINDOW_LOG2;
     if (page != fsmcPage) {
@@ -133,19 +133,20 @@ FSMC_Status FSMC_checkError(U32* where) {
 
 /* ---- streams ---- */
 
-/* Mode A without NWAIT: an access takes ADDSET + DATAST + 1 HCLK. A write's data phase is 2 HCLK.
- * Its BUSTURN is 0, since some FSMCs also insert it between two writes. A read is all data phase,
- * so that NOE falls with the address. */
+/* Mode A without NWAIT: an access takes ADDSET + DATAST + 1 HCLK. The data phase of a write is 2
+ * HCLK. BUSTURN of writes is 0, since some FSMCs also insert it between two writes. A read is only
+ * a data phase, so that NOE falls with the address. */
 #define STREAM_BCR (BCR_ALWAYS | BCR_EXTMOD)
 #define WRITE_DATAST 2U
-/* Accesses/s at most (docs/fsmc.md): 33.3 ns between edges of NWE; a read has its data 15 ns after
- * HCLK's edge that moves its address, and the FSMC wants it HCLK + 4 ns before the end. */
+/* Highest access rates, per second (docs/fsmc.md): 33.3 ns between edges of NWE; a read has its
+ * data 15 ns after the HCLK edge that moves its address, and the FSMC needs it HCLK + 4 ns before
+ * the end. */
 #define WRITE_HZ 30000000UL
 #define READ_HZ 25000000UL
-#define REGION 4096U /* bytes: the bridge does not read ahead beyond their multiples */
+#define REGION 4096U /* bytes: the bridge does not read ahead beyond multiples of this */
 #define BLOCK 64U
 
-static U8 writeAddset = 15, readDatast = 17; /* until FSMC_setHclk: slow, but right */
+static U8 writeAddset = 15, readDatast = 17; /* until FSMC_setHclk: slow but safe */
 
 /* HCLK cycles of an access, 4 at least. */
 static U32 cyclesFor(U32 hclkHz, U32 accessHz) {
@@ -229,8 +230,8 @@ U32 FSMC_streamRead(U32 address, U16* data, U32 halfwords) {
             part = upTo(address, BLOCK, 2U * part) / 2U;
             readHalfwords(at, data, part);
         } else {
-            /* Two reads in a block make the bridge fetch it; the one at its end waits until all of
-             * it is there. */
+            /* Two reads in a block make the bridge fetch it; the read at its end waits until the
+             * whole block has arrived. */
             (void)fsmcPort->read16(fsmcContext, at);
             (void)fsmcPort->read16(fsmcContext, at + BLOCK - 2U);
             setBank(1);

@@ -20,12 +20,13 @@
 
 #include "base.h"
 
-/* The processor's loads and stores, which the driver needs. On the target they are volatile
- * accesses, on the host they go to the model of the FSMC peripheral and from there to the pins of
+/* Loads and stores of the processor, which the driver needs. On the target they are volatile
+ * accesses; on the host they go to the model of the FSMC peripheral and from there to the pins of
  * the RTL. Addresses are the Cortex-M3's: FSMC registers at 0xA0000000 (32 bits only), NE1 at
- * 0x60000000, NE2 at 0x64000000. The FSMC splits a 32-bit access to a window into two of 16 bits,
- * low half first, and no interrupt comes between them. FSMC_read and FSMC_write are one such access
- * each, so tasks and interrupt routines may use them alike. An 8-bit access uses one byte lane.
+ * 0x60000000, NE2 at 0x64000000. The FSMC splits a 32-bit access to a window into two 16-bit
+ * accesses, low half first, without an interrupt between them. FSMC_read and FSMC_write are one
+ * such access each, so tasks and interrupt routines may both use them. An 8-bit access uses one
+ * byte lane.
  */
 typedef struct FSMC_Port {
     U8 (*read8)(void* context, U32 address);
@@ -38,8 +39,8 @@ typedef struct FSMC_Port {
 
 typedef enum FSMC_Status {
     FSMC_OK = 0,
-    FSMC_NO_DEVICE,  /* slot 0 does not identify itself as the system slot */
-    FSMC_BUS_ERROR,  /* an access since the last check hit nothing, or timed out */
+    FSMC_NO_DEVICE,  /* slot 0 does not contain the system slot's ID */
+    FSMC_BUS_ERROR,  /* an access since the last check had no target, or timed out */
     FSMC_BAD_SETTING /* invalid setting of a bank (FSMC_initBanks) */
 } FSMC_Status;
 
@@ -55,11 +56,12 @@ void FSMC_write(U32 slot, U32 word, U32 value);
 void FSMC_readMemory(U32 address, U8* data, U32 bytes);
 void FSMC_writeMemory(U32 address, const U8* data, U32 bytes);
 
-/* Copy at the bridge's full speed, 24 to 30 million halfwords a second, without NWAIT. `address` is
- * even. The bridge's LATE event checks each part, and a part that came too early is repeated with
- * NWAIT. Returns the number of repeated halfwords (0 unless others keep the memory very busy).
- * Meanwhile no other code may use the DDR3 window, not even interrupt routines: the caller locks
- * it. Call FSMC_setHclk first (else it is slow): Hz of HCLK, at most 120 million. */
+/* Copy at the bridge's full speed, 24 to 30 million halfwords per second, without NWAIT. `address`
+ * is even. The bridge's LATE event checks each part, and a part that was too early is repeated with
+ * NWAIT. Returns the number of repeated halfwords (0 unless others keep the memory very busy). The
+ * caller must lock the DDR3 window: no other code may use it meanwhile, not even interrupt
+ * routines. Call FSMC_setHclk first (otherwise copying is slow): HCLK in Hz, at most 120
+ * million. */
 void FSMC_setHclk(U32 hz);
 U32 FSMC_streamWrite(U32 address, const U16* data, U32 halfwords);
 U32 FSMC_streamRead(U32 address, U16* data, U32 halfwords);
@@ -68,8 +70,8 @@ U32 FSMC_streamRead(U32 address, U16* data, U32 halfwords);
  * not 0, becomes slot * 16 + word of the last such access, with bit 16 set for a write. */
 FSMC_Status FSMC_checkError(U32* where);
 
-/* The other modes by name, for bridges that are built for them: contents of a bank's BCR, BTR and
- * BWTR (RM0033, 31.5.6). FSMC_init needs none of this. */
+/* Other modes, for bridges that are built for them: contents of a bank's BCR, BTR and BWTR (RM0033,
+ * 31.5.6). Not needed with FSMC_init. */
 typedef enum FSMC_Mode {
     FSMC_MODE_1, /* SRAM: read and write alike */
     FSMC_MODE_2, /* NOR: read and write alike */
@@ -87,8 +89,8 @@ typedef struct FSMC_Timing {
 
 typedef struct FSMC_Bank {
     FSMC_Mode mode;
-    FSMC_Mode writeMode;     /* in modes A to D */
-    U8 psram;                /* MTYP of modes 1 and A: 1 PSRAM, 0 SRAM */
+    FSMC_Mode writeMode;     /* for modes A to D */
+    U8 psram;                /* MTYP for modes 1 and A: 1 PSRAM, 0 SRAM */
     U8 muxed;                /* MUXEN: address bits 15..0 on the data pins (the bridge's MUXED) */
     U8 wait;                 /* ASYNCWAIT: asynchronous accesses look at NWAIT */
     U8 waitHigh;             /* WAITPOL: NWAIT is active high (WAIT_HIGH) */
@@ -96,8 +98,7 @@ typedef struct FSMC_Bank {
     FSMC_Timing read, write; /* modes 1 and 2: only `read`, for both */
 } FSMC_Bank;
 
-/* Does what FSMC_init does, with these settings of NE1 and NE2. Returns FSMC_BAD_SETTING, and
- * writes nothing, where a setting is reserved or out of range.
- * Streams (FSMC_streamRead, FSMC_streamWrite) are for the plain bridge and FSMC_init's settings
- * only. */
+/* Initialises like FSMC_init, but with these settings of NE1 and NE2. Returns FSMC_BAD_SETTING, and
+ * writes nothing, if a setting is reserved or out of range. Streams (FSMC_streamRead,
+ * FSMC_streamWrite) only work with the plain bridge and the settings of FSMC_init. */
 FSMC_Status FSMC_initBanks(const FSMC_Port* port, void* context, const FSMC_Bank banks[2]);

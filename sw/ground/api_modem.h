@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
-// api_modem: a modem in API mode: packets go to it with a target, and it answers for each. Its
-// frames: 0x7E, length (2 bytes), contents, checksum. With AP 2 four bytes are escaped.
+// api_modem: a modem in API mode: each packet to it has a target, and the modem reports the result
+// of each. Its frames: 0x7E, length (2 bytes), contents, checksum. With AP 2 four byte values are
+// escaped.
 //
-//   01 ID TARGET TARGET 00 DATA...          a packet to be sent
-//   89 ID STATUS                            its fate: 0 the other modem has it
-//   81 SOURCE SOURCE RSSI OPTIONS DATA...   a packet that came
-//   08 ID LETTER LETTER VALUE...            an AT command
-//   88 ID LETTER LETTER STATUS VALUE...     its answer
-//   8A STATUS                               the modem has started, or the like
+//   01 ID TARGET TARGET 00 DATA...          packet to send
+//   89 ID STATUS                            its result; 0: received by the other modem
+//   81 SOURCE SOURCE RSSI OPTIONS DATA...   received packet
+//   08 ID LETTER LETTER VALUE...            AT command
+//   88 ID LETTER LETTER STATUS VALUE...     its reply
+//   8A STATUS                               modem status, such as started
 
 #pragma once
 
@@ -33,13 +34,13 @@ public:
     enum Type : uint8_t {
         Transmit = 0x01,
         Command = 0x08,
-        Wide = 0x80, // as Packet, from a modem without a 16-bit address
+        Wide = 0x80, // as Packet, but from a modem without a 16-bit address
         Packet = 0x81,
         Answer = 0x88,
         Status = 0x89,
         Event = 0x8A
     };
-    static constexpr int nobody = -1; // a source without a 16-bit address
+    static constexpr int noAddress = -1; // a source without a 16-bit address
 
     // `escapes`: AP is 2.
     explicit ApiFrames(bool escapes = false) : escapes_(escapes) {}
@@ -69,9 +70,10 @@ public:
         contents.insert(contents.end(), value.begin(), value.end());
         return pack(contents);
     }
-    // Takes bytes from the modem. Calls `data(source, bytes, count)` with those of packets, as they
-    // come: what a packet holds has checks of its own. Calls `frame` with the contents of each
-    // other frame. Behind a wrong checksum the search goes on at the byte after the delimiter.
+    // Parses bytes from the modem. Calls `data(source, bytes, count)` with the bytes of packets as
+    // they arrive, because the contents of a packet have separate checks. Calls `frame` with the
+    // contents of each other frame. After a wrong checksum the search continues at the byte after
+    // the delimiter.
     template <class Data, class Frame>
     void feed(const uint8_t* bytes, size_t count, Data data, Frame frame) {
         in_.insert(in_.end(), bytes, bytes + count);
@@ -106,10 +108,10 @@ private:
     static constexpr uint8_t delimiter = 0x7E, escape = 0x7D, escapeXor = 0x20;
     static constexpr size_t longest = 120; // contents: a packet from a 64-bit address, and more
 
-    // Returns where the data of a packet begin; 0: it is another frame.
+    // Returns the offset of a packet's data; 0 for other frames.
     static size_t headOf(uint8_t type) { return type == Packet ? 5 : type == Wide ? 11 : 0; }
     int sourceOf(size_t head) const {
-        return head == 5 ? contents_[1] << 8 | contents_[2] : nobody;
+        return head == 5 ? contents_[1] << 8 | contents_[2] : noAddress;
     }
     void put(Bytes& frame, uint8_t byte) const {
         const bool isEscaped =
@@ -118,10 +120,10 @@ private:
             frame.push_back(escape);
         frame.push_back(isEscaped ? byte ^ escapeXor : byte);
     }
-    // Reads the contents, as far as they have come, of the frame whose delimiter stands at `at`.
-    // Returns the bytes used; 0: it is incomplete.
+    // Reads the contents received so far of the frame with its delimiter at `at`. Returns the
+    // number of bytes used; 0 if the frame is incomplete.
     size_t read(size_t at) {
-        Bytes& plain = contents_; // with length and checksum, until the end
+        Bytes& plain = contents_; // including length and checksum until the frame is complete
         isWhole_ = false;
         plain.clear();
         size_t length = 0, used = 0, i = at + 1;
@@ -156,13 +158,13 @@ private:
     }
 
     bool escapes_;
-    Bytes in_;             // from the delimiter of the frame under way on
-    Bytes contents_;       // of the frame that was read last
-    bool isWhole_ = false; // and its checksum is right
-    size_t given_ = 0;     // contents up to here have been given, of the frame under way
+    Bytes in_;             // starting at the delimiter of the current frame
+    Bytes contents_;       // contents of the last frame read
+    bool isWhole_ = false; // complete, with a correct checksum
+    size_t given_ = 0;     // bytes of the current frame's contents already passed on
 };
 
-// Times in microseconds, 32 bits that may wrap.
+// A modem in API mode; times in microseconds, 32 bits that wrap.
 class ApiModem {
 public:
     using Bytes = ApiFrames::Bytes;
@@ -185,8 +187,8 @@ public:
         bytes.insert(bytes.end(), frame.begin(), frame.end());
         return bytes;
     }
-    // Takes bytes from the modem. Calls `data(source, bytes, count)` with those of packets, and
-    // `answer(isThere)` for each packet that was sent, in their order.
+    // Takes bytes from the modem. Calls `data(source, bytes, count)` with the bytes of packets, and
+    // `answer(isThere)` for each packet sent, in order.
     template <class Data, class Answer>
     void feed(const uint8_t* bytes, size_t count, const Data& data, const Answer& answer) {
         frames_.feed(bytes, count, data, [&](const Bytes& frame) {
@@ -195,7 +197,7 @@ public:
                              [&](const Packet& p) { return p.id == frame[1]; }))
                 return;
             for (bool isLast = false; !isLast;) {
-                isLast = waiting_.front().id == frame[1]; // the line lost the others' answers
+                isLast = waiting_.front().id == frame[1]; // the line lost the other replies
                 waiting_.pop_front();
                 answer(isLast && frame[2] == 0);
             }
@@ -210,7 +212,7 @@ public:
 private:
     struct Packet {
         uint8_t id;
-        uint32_t at; // when it was handed over
+        uint32_t at; // time of hand-over
     };
     ApiFrames frames_;
     uint32_t rn_ = LINK_WAIT_SHARED; // as set-up leaves it

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// broadcast: one call at a time to all vehicles on the channel: its copies, spread in time, since
-// nobody acknowledges them.
+// broadcast: sends one call at a time to all vehicles on the channel, as several copies spread in
+// time, because broadcasts are not acknowledged.
 
 #pragma once
 
@@ -18,17 +18,17 @@ namespace XBeeAT {
 
 class Broadcast {
 public:
-    // `keys`: the group's, the present one last; none: in the clear.
+    // `keys`: keys of the group, the current one last; empty: unencrypted.
     Broadcast(const Settings& settings, const LinkKeys& keys)
         : settings_(settings), key_(keys.empty() ? LinkKey{} : keys.back()) {}
     ~Broadcast() { explicit_bzero(key_.data(), key_.size()); }
 
     // The modem is ready, and a packet has `bytes` at most.
     void limitPacket(U32 bytes) { most_ = bytes - LINK_BROADCAST_OVERHEAD; }
-    void stop() { most_ = copies_ = 0; } // nothing goes out later
+    void stop() { most_ = copies_ = 0; } // sends no further copies
     U32 most() const { return most_; }   // bytes of a message; 0: the modem is not ready
     bool isBusy() const { return copies_ != 0; }
-    // Takes a message, unless it is busy. False: this machine's clock stands before 2026.
+    // Takes a message, unless busy. Returns false if this machine's clock is before 2026.
     bool take(const U8* message, U32 size, U32 now) {
         const int64_t number = settings_.quarters();
         if (number <= 0)
@@ -42,7 +42,8 @@ public:
         dueAt_ = now;
         return true;
     }
-    // Gives `transmit` the copy that is due. Returns when to call again, in microseconds.
+    // Passes the copy that is due to `transmit`. Returns the time of the next call, in
+    // microseconds.
     template <class Transmit> U32 poll(U32 now, Transmit transmit) {
         if (copies_ && !LINK_BEFORE(now, dueAt_)) {
             if (!transmit(packet_, size_))
@@ -54,9 +55,9 @@ public:
     }
 
 private:
-    // Copies of a call all miss a vehicle once in 400 calls where 30 % is lost. They take longer
-    // than a quarter of a second, so numbers do not run ahead of the clock. Each waits a random
-    // time: what disturbs one does not meet all.
+    // With 30 % loss, all copies of a call miss a vehicle once in 400 calls. They take longer than
+    // a quarter of a second, so that numbers do not run ahead of the clock. Each copy waits a
+    // random time, so that one disturbance does not hit all.
     static constexpr unsigned copies = 5;
     static constexpr U32 leastUs = 70000, spreadUs = 80000;
 
@@ -64,7 +65,7 @@ private:
     LinkKey key_;
     U8 packet_[LINK_MAX_FRAME];
     U32 size_ = 0, most_ = 0, number_ = 0, dueAt_ = 0;
-    unsigned copies_ = 0; // of the packet, to be sent yet
+    unsigned copies_ = 0; // copies of the packet still to be sent
 };
 
 } // namespace XBeeAT

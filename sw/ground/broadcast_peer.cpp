@@ -37,7 +37,7 @@ bool BroadcastPeer::send(int channel, U32 now) {
     return false;
 }
 
-// Sends the copy that is due. Programs may send again when the last copy has left.
+// Sends the copy that is due. Programs may send again after the last copy.
 U32 BroadcastPeer::pollWay(U32 now) {
     placePrograms(now);
     openWanted(now);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// broadcast_peer: all vehicles at once, by one-way calls without a link.
+// broadcast_peer: addresses all vehicles at once, with one-way calls and without a link.
 
 #pragma once
 

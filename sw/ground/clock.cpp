@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// clock: the machine's clock, and how another one is loaded.
+// clock: the machine's clock, and loading of another one.
 
 #include "clock.h"
 

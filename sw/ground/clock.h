@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// clock: the time of an engine. The product has the machine's clock; a simulator brings another
-// one, so that a slow machine makes a mission slow and no time-out early.
+// clock: the time base of an engine. Normally the machine's clock; a simulator provides another
+// one, so that a slow machine slows the mission down without early time-outs.
 
 #pragma once
 
@@ -19,20 +19,20 @@ public:
 
     static constexpr uint32_t forever = 0xFFFFFFFFu;
     virtual uint32_t nowUs() const = 0; // wraps around
-    // Works as poll does: returns when a descriptor is ready or `us` have passed by this clock.
+    // Works like poll: returns when a descriptor is ready or `us` have passed by this clock.
     virtual int wait(pollfd* fds, nfds_t count, uint32_t us) = 0;
 
-    // Keeping step concerns simulated clocks; the machine's clock ignores these calls.
+    // Keeping step only matters for simulated clocks; the machine's clock ignores these calls.
     //
-    // Simulated time waits for this thread until leaveStep: it stands still except during `wait`,
-    // and until all bytes that `serial` was given have been read. Has no effect if the simulator's
-    // modem is not on `device`.
+    // Makes simulated time wait for this thread until leaveStep: time stops except during `wait`,
+    // and until all bytes given to `serial` have been read. Has no effect if the simulator's modem
+    // is not on `device`.
     virtual void keepStep(int serial, const std::string& device) { (void)serial, (void)device; }
     virtual void leaveStep() {}
     // Count the bytes read from and written to `serial`.
     virtual void hasRead(size_t bytes) { (void)bytes; }
     virtual void hasWritten(size_t bytes) { (void)bytes; }
-    // Returns the bytes written that a simulated line has yet to carry.
+    // Returns the number of bytes written that a simulated line has not carried yet.
     virtual size_t waiting() const { return 0; }
 };
 
@@ -42,7 +42,7 @@ public:
     int wait(pollfd* fds, nfds_t count, uint32_t us) override;
 };
 
-// Returns the clock that the environment variable XBEEAT_CLOCK names as LIBRARY:ARGUMENT, or the
+// Returns the clock named by the environment variable XBEEAT_CLOCK as LIBRARY:ARGUMENT, or the
 // machine's clock if the variable is not set. LIBRARY is a shared library with a function
 // createXBeeATClock, which gets ARGUMENT. Throws std::system_error.
 std::unique_ptr<Clock> makeClock();

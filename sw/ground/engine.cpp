@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// engine: the devices that are in use, and an engine's thread: its serial port, the modem there,
-// and the peers in turn.
+// engine: the devices in use, and the thread of an engine, which serves its serial port, the modem
+// there, and the peers in turn.
 
 #include "engine.h"
 #include "broadcast_peer.h"
@@ -57,7 +57,7 @@ std::shared_ptr<Peer> Engine::get(const Settings& settings, const Log& log) {
 Peer& Engine::peer(const Settings& wanted) {
     std::lock_guard<std::mutex> lock(mutex);
     std::unique_ptr<Peer>& peer = peers_[wanted.target];
-    // A program with a key does not talk in the clear because another program was here before.
+    // A program with a key never talks unencrypted because an earlier program did.
     if (peer && peer->keys() != wanted.keys)
         refuse(EBUSY, "'" + device +
                           "' is in use with other keys: all who share a vehicle give the same key "
@@ -112,7 +112,7 @@ void Engine::wake() {
 // ---- the modem's life ----
 
 int Engine::waitMs(int ms, bool forBytes) {
-    // The wait also ends when the port is lost: where its simulator has ended, time stands still.
+    // The wait also ends when the port is lost: after its simulator has ended, time stands still.
     pollfd fds[] = {{wakePipe_[0], POLLIN, 0},
                     {serial_.fd(), static_cast<short>(forBytes ? POLLIN : 0), 0}};
     const U32 begin = clock.nowUs(), us = static_cast<U32>(ms) * 1000;
@@ -133,7 +133,7 @@ int Engine::waitMs(int ms, bool forBytes) {
     }
 }
 
-// Ends all connections and those that wait for one, since the port or the modem is lost.
+// Ends all connections and pending connects, because the port or the modem is lost.
 void Engine::fail(const std::string& text) {
     log(complained_ ? 1 : 0, text);
     complained_ = failed_ = true;
@@ -161,7 +161,7 @@ std::string Engine::prepareModem(const Settings& wanted) {
     return "";
 }
 
-// Starts the way to a peer, if the modem is ready and reaches the peer.
+// Starts connecting to a peer, if the modem is ready and can reach the peer.
 void Engine::start(Peer& peer) {
     if (longest_ && packets_.reaches(peer, peer.hasLink()))
         peer.start(longest_, packets_.isApi(), clock.nowUs());
@@ -172,8 +172,8 @@ bool Engine::any(bool (Peer::*is)() const) const {
                        [is](const auto& p) { return (*p.second.*is)(); });
 }
 
-// Runs the links again and again: a lost port or a silent modem is tried again for a program that
-// connects or listens.
+// Runs the links repeatedly: a lost port or a silent modem is retried for a program that connects
+// or listens.
 void Engine::run() {
     std::unique_lock<std::mutex> lock(mutex);
     while (!stop_) {
@@ -192,9 +192,9 @@ void Engine::waitForReason(std::unique_lock<std::mutex>& lock) {
         changed_.wait_for(lock, retryEvery, reason);
 }
 
-// Runs the links from an open port to a lost one. A modem that was reset in flight has its own
-// settings again, since nothing is written to its memory. It looks like a silent peer. So the modem
-// is set up again after a while, less and less often while nothing changes.
+// Runs the links until the port is lost. A modem that was reset in flight has its stored settings
+// again, since set-up does not write to its memory, and looks like a silent peer. Therefore the
+// modem is set up again after a while, less and less often if nothing changes.
 void Engine::fly(std::unique_lock<std::mutex>& lock) {
     const Settings wanted = settings;
     const U32 down = static_cast<U32>(wanted.downMs) * 1000;
@@ -260,18 +260,18 @@ void Engine::readSerial(U32 now) {
 // address.
 void Engine::deliver(int source, const U8* bytes, size_t size, U32 now) {
     for (auto& [address, peer] : peers_)
-        if (address == source || (source == ApiFrames::nobody && !hasMany))
+        if (address == source || (source == ApiFrames::noAddress && !hasMany))
             peer->receive(bytes, size, now);
 }
 
-// All links share the answers; a call to all vehicles has none.
+// All links share the results; a call to all vehicles has none.
 void Engine::answer(bool isThere, U32 now) {
     if (radio)
         Link_answer(radio, isThere, now);
 }
 
-// Polls all peers, first the one that has had least of the air. Returns when to call again, in
-// microseconds.
+// Polls all peers, first the one that has used the least air time. Returns the time of the next
+// call, in microseconds.
 U32 Engine::pollPeers(U32 now) {
     std::vector<Peer*> order;
     for (auto& [address, peer] : peers_)

@@ -18,13 +18,13 @@
 
 namespace XBeeAT {
 
-constexpr size_t mostPeers = 32; // of a modem
+constexpr size_t mostPeers = 32; // peers of a modem
 
 class Engine : private Peer::Host {
 public:
-    // Returns the vehicle with the settings' address, on the device's engine; both may be new.
-    // Throws std::system_error if the device cannot be opened, or has as many peers as there may
-    // be. An empty device means the only one that is open.
+    // Returns the vehicle with the settings' address, on the engine of the device; creates both if
+    // necessary. Throws std::system_error if the device cannot be opened, or already has the
+    // maximum number of peers. An empty device selects the only open one.
     static std::shared_ptr<Peer> get(const Settings& settings, const Log& log);
 
     ~Engine() override;
@@ -44,7 +44,7 @@ private:
     U32 pollPeers(U32 now);
     bool downTooLong(U32 now);
     void fail(const std::string& text);
-    // Waits as ModemSetup::Wait does; negative: the engine must stop, or the port is lost.
+    // Waits like ModemSetup::Wait; negative: the engine must stop, or the port is lost.
     int waitMs(int ms, bool forBytes);
     bool any(bool (Peer::*is)() const) const;
     void readSerial(U32 now);
@@ -57,9 +57,10 @@ private:
     // failed_: the port is lost, or no modem answered; complained_: that was logged as an error.
     bool stop_ = false, failed_ = false, complained_ = false;
     U32 longest_ = 0;                            // bytes of a frame; 0: the modem is not ready
-    std::map<int, std::unique_ptr<Peer>> peers_; // by address; they stay
-    U32 upAt_ = 0, downLimitUs_ = 0;  // when a link was last up; how long all may be down
-    std::condition_variable changed_; // of stop_ and what programs want
+    std::map<int, std::unique_ptr<Peer>> peers_; // by address; never removed
+    U32 upAt_ = 0, downLimitUs_ = 0;  // time at which a link was last up; longest time that all may
+                                      // be down
+    std::condition_variable changed_; // signals changes of stop_ and of requests
     std::thread thread_;
 };
 

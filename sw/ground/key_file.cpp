@@ -21,7 +21,7 @@ namespace {
 
 constexpr int anyVehicle = -1;
 constexpr size_t mostBytes = 65536;
-constexpr int pipeMs = 10000; // until a pipe's first bytes
+constexpr int pipeMs = 10000; // time-out for the first bytes of a pipe
 const char* const hexadecimal = "0123456789abcdefABCDEF";
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
@@ -52,7 +52,7 @@ LinkKey keyOf(const std::string& digits) {
     return key;
 }
 
-// Returns the address in a word; negative: there is none.
+// Returns the address in a word; negative if it is not one.
 int addressOf(const std::string& word) {
     const bool isNumber = word.rfind("0x", 0) == 0 && word.size() > 2 && word.size() <= 6 &&
                           word.find_first_not_of(hexadecimal, 2) == std::string::npos;

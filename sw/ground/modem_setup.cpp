@@ -16,7 +16,7 @@ namespace {
 
 const int rates[] = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200};
 constexpr int factoryRate = 9600, fastestRate = 250000, replyMs = 500, tries = 3;
-constexpr int apiReplyMs = 100; // beside the time on the line
+constexpr int apiReplyMs = 100; // in addition to the time on the line
 constexpr int mostGuard = 3300; // ms, of ATGT
 
 // Returns the value of BD: a code, or the rate itself.
@@ -45,8 +45,8 @@ bool ModemSetup::pause(int ms) {
     return !stopped_;
 }
 
-// Returns which of `words` the reply ends in; "": none came in time. Bytes received by radio drain
-// out before a reply, and may contain carriage returns.
+// Returns the one of `words` with which the reply ends; "" after a time-out. Bytes received by
+// radio arrive before a reply, and may contain carriage returns.
 std::string ModemSetup::readReply(int timeoutMs, std::initializer_list<std::string> words) {
     std::string reply;
     for (int leftUs = timeoutMs * 1000;;) {
@@ -95,7 +95,7 @@ std::string ModemSetup::ask(const std::string& text, std::initializer_list<std::
 }
 
 // Sets a parameter, or reads it (no value), of a modem in API mode. Returns OK, ERROR or the value
-// in hexadecimal; "": no answer came in time.
+// in hexadecimal; "" after a time-out.
 std::string ModemSetup::askApi(const std::string& letters, const std::string& value,
                                int timeoutMs) {
     constexpr uint8_t id = 0xA5;
@@ -155,9 +155,9 @@ bool ModemSetup::findApi(int baud) {
     return isApi_;
 }
 
-// Tries the target rate first, where a modem is that this has set up before, then the factory's.
-// Then it tries both with a longer guard time, because a modem keeps its ATGT and a simulated one
-// may be slower than the clock, then all rates. Times: docs/modem.md.
+// Tries the target rate first, at which a modem set up earlier is found, then the factory's rate.
+// Then tries both with a longer guard time, because a modem keeps its ATGT and a simulated one may
+// be slower than the clock; then all rates. Times: docs/modem.md.
 bool ModemSetup::find() {
     const int guard = settings_.guardMs, longer = std::min(3 * guard, mostGuard);
     std::vector<std::pair<int, int>> candidates = {{settings_.baud, guard},
@@ -167,7 +167,7 @@ bool ModemSetup::find() {
     for (int i = 7; i >= 0; --i)
         if (rates[i] != settings_.baud && rates[i] != factoryRate)
             candidates.emplace_back(rates[i], guard);
-    // A modem in API mode knows no +++. The wait in vain is a part of the silence before it.
+    // A modem in API mode ignores +++. The failed wait is part of the silence before it.
     if (findApi(settings_.baud) || stopped_)
         return !stopped_;
     for (auto [baud, guardMs] : candidates) {
@@ -207,11 +207,11 @@ bool ModemSetup::finish() {
         return false;
     serial_.setSpeed(rate_ = settings_.baud);
     isApi_ = api;
-    return pause(10); // the modem changes its rate after the last OK has left
+    return pause(10); // the modem changes its rate after sending the last OK
 }
 
-// Sets rate and mode of a modem that was found in API mode; AP 2 stays, and so does the mode of a
-// modem that refuses the other. Each is in force at once, so the answer may come at either rate.
+// Sets rate and mode of a modem that was found in API mode; AP 2 is kept, and so is the mode of a
+// modem that rejects the other. Each takes effect at once, so the reply may arrive at either rate.
 bool ModemSetup::finishApi() {
     const int found = rate_;
     for (int attempt = 0; attempt < tries && rate_ != settings_.baud; ++attempt) {

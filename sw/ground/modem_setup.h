@@ -12,15 +12,16 @@ namespace XBeeAT {
 
 class ModemSetup {
 public:
-    // Pauses, or (`forBytes`) until the port has something to read. Returns the microseconds that
-    // have passed; negative: give up.
+    // Pauses, or (`forBytes`) waits until the port has bytes to read. Returns the elapsed
+    // microseconds; negative: abort.
     using Wait = std::function<int(int ms, bool forBytes)>;
 
     ModemSetup(SerialPort& serial, const Settings& settings, const Log& log, Wait wait)
         : serial_(serial), settings_(settings), log_(log), wait_(std::move(wait)) {}
 
-    // Sets the modem up. False: `trouble()` says why, or `wait` gave up and it is empty. About two
-    // guard times at the right rate at once, one more for each rate tried in vain.
+    // Sets the modem up. Returns false with the reason in `trouble()`, which is empty if `wait`
+    // aborted. Takes about two guard times at the right rate, and one more for each wrong rate
+    // tried.
     bool run();
     // After run(): EE; AP is not 0, and is 2.
     bool encrypts() const { return encrypts_; }
@@ -44,10 +45,10 @@ private:
     const Settings& settings_;
     const Log& log_;
     Wait wait_;
-    std::string trouble_, reply_; // to the last command
+    std::string trouble_, reply_; // reply to the last command
     bool stopped_ = false, encrypts_ = false, isApi_ = false, escapes_ = false;
-    int rate_ = 0;     // of the port
-    int silentMs_ = 0; // how long nothing was sent
+    int rate_ = 0;     // rate of the port
+    int silentMs_ = 0; // time since the last byte was sent
 };
 
 } // namespace XBeeAT

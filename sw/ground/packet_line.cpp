@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// packet_line: one packet at a time to the serial port, and all that comes from it.
+// packet_line: sends one packet at a time to the serial port, and reads everything that arrives.
 
 #include "packet_line.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // packet_line: packets to and from the modem on a serial port, in API mode or transparent mode.
-// Peers are its senders; each has its share of the time on the air.
+// Peers are its senders and share the time on the air.
 
 #pragma once
 
@@ -20,16 +20,16 @@ namespace XBeeAT {
 
 class PacketLine {
 public:
-    // What the line knows of a peer.
+    // What the line needs to know about a peer.
     class Sender {
     public:
         explicit Sender(int address) : address_(address) {}
         virtual ~Sender() = default;
         int address() const { return address_; }
         virtual bool isUp() const = 0;      // it has a session
-        virtual U32 randomWait() const = 0; // RN that its traffic wants
+        virtual U32 randomWait() const = 0; // RN for its traffic
 
-        uint64_t airUs = 0; // time on the air that it has had
+        uint64_t airUs = 0; // air time used
 
     private:
         const int address_;
@@ -58,23 +58,23 @@ public:
 
     // Takes a packet while the line is free. Returns whether it did.
     bool send(Sender& sender, const U8* frame, U32 size, U32 now);
-    // Reads what has come, and calls `deliver` and, per packet sent, `answer`. Returns read()'s
-    // result.
+    // Reads the available bytes, and calls `deliver` and, per packet sent, `answer`. Returns
+    // read()'s result.
     ssize_t read(const Deliver& deliver, const Answer& answer);
     // Calls `answer(false)` for each packet that the modem will not answer for any more.
     void expire(U32 now, const Answer& answer) {
         if (api_)
             api_->expire(now, [&] { answer(false); });
     }
-    // Gives the port the bytes that it has not taken yet.
+    // Writes the bytes that the port has not taken yet.
     void flush();
     bool isFlushed() const { return out_.empty(); }
 
 private:
     SerialPort& serial_;
     std::vector<Sender*> senders_;
-    std::unique_ptr<ApiModem> api_; // none in transparent mode
-    std::vector<U8> out_;           // the packet's bytes that the port has not taken yet
+    std::unique_ptr<ApiModem> api_; // null in transparent mode
+    std::vector<U8> out_;           // bytes of the packet that the port has not taken yet
     uint64_t airUs_ = 0;            // airUs of the sender that sent last
     int target_ = 0;
 };

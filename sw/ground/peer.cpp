@@ -101,8 +101,8 @@ bool Peer::sendMessage(int channel, U32 now) {
     return send(channel, now);
 }
 
-// Sends what the programs have written. They take turns, a message each, so that a flood leaves
-// room for others. While one waits for room the others send only short ones, for which the link has
+// Sends messages from the programs. They take turns, one message each, so that a flood leaves room
+// for others. While one waits for room the others send only short messages, for which the link has
 // a reserve.
 void Peer::sendMessages(U32 now) {
     for (int idle = 0, channel = turn_; idle < LINK_CHANNELS; ++idle) {
@@ -126,8 +126,8 @@ void Peer::openWanted(U32 now) {
     }
 }
 
-// Ends the connections of programs for whose message there was no room in time. Returns when to
-// look again, in microseconds.
+// Ends the connections of programs that waited too long for room for a message. Returns the time of
+// the next check, in microseconds.
 U32 Peer::endLate(U32 now) {
     U32 wait = never;
     for (int channel = 0; channel < LINK_CHANNELS; ++channel) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// peer: what programs on the ground talk to: one vehicle (VehiclePeer), or all vehicles at once
-// (BroadcastPeer). A peer has the programs' connections; its kind has the way to the vehicle.
+// peer: the destination of programs on the ground: one vehicle (VehiclePeer), or all vehicles at
+// once (BroadcastPeer). A peer owns the connections of the programs; the derived class knows the
+// way to the vehicle.
 
 #pragma once
 
@@ -22,7 +23,7 @@ namespace XBeeAT {
 
 constexpr int ownChannels = 3; // 0..2 are opened by the ground, 3 by the UAV
 
-// Functions of programs take the lock themselves; the engine holds it when it calls the others.
+// Functions called by programs take the lock; the engine holds it when it calls the others.
 class Peer : public PacketLine::Sender {
 public:
     // What all peers of an engine share.
@@ -41,7 +42,7 @@ public:
             : device(s.device), settings(s), log(l), ownClock(std::move(c)), clock(*ownClock),
               line(p) {}
         virtual ~Host() = default;
-        virtual void wake() = 0; // a program wants something
+        virtual void wake() = 0; // a program needs service
     };
 
     ~Peer() override;
@@ -52,10 +53,10 @@ public:
 
     // Opens a connection to the peer, on channel 0..2 or any (-1). Returns the program's end of it,
     // a socket, or -1 if no descriptor is left. The peer speaks once the link is up and a channel
-    // is free; programs wait their turn. A lost port is opened again. The socket ends if there is
-    // no modem. A message that the peer has not taken in `lateMs` is withdrawn by the end of the
-    // session; one for which the link had no room, by the end of the connection; -1 disables both.
-    // Returns -1 with EBUSY while another ground with this one's address has the vehicle.
+    // is free; programs wait their turn. A lost port is opened again. If there is no modem, the
+    // socket is closed. A message that the peer has not taken in `lateMs` is withdrawn by ending
+    // the session; one without room in the link, by ending the connection; -1 disables both.
+    // Returns -1 with EBUSY while another ground station with the same address has the vehicle.
     int connect(int channel, int lateMs = -1);
     size_t waiting() const; // programs without a channel
     // Lets the peer open connections. Each makes the returned descriptor readable, also after the
@@ -68,7 +69,7 @@ public:
     virtual std::string statistics() const = 0; // one line of text
     const std::string& device() const { return host_.device; }
     virtual U32 mostBytes() const = 0;           // bytes of the longest message
-    virtual const char* carrierName() const = 0; // what carries a message, for error texts
+    virtual const char* carrierName() const = 0; // carrier of a message, for error texts
 
     // ---- functions of the engine ----
 
@@ -80,11 +81,11 @@ public:
     // The modem is ready: frames have `longest` bytes at most; `isApi`: it answers for each packet.
     virtual void start(U32 longest, bool isApi, U32 now) = 0;
     virtual void stop(U32 now) = 0; // also informs the vehicle
-    void fail();                    // ends all connections and those that wait for one
+    void fail();                    // ends all connections and pending connects
     virtual void receive(const U8* bytes, size_t size, U32 now) = 0;
-    // Does what is due. Returns when to call again, in microseconds.
+    // Does the work that is due. Returns the time of the next call, in microseconds.
     U32 poll(U32 now);
-    // Adds what poll(2) must wait for: a descriptor for each channel.
+    // Adds the descriptors for poll(2): one per channel.
     void addInterest(std::vector<pollfd>& fds) const;
     void servePrograms(const pollfd* fds, U32 now);
 
@@ -94,18 +95,19 @@ protected:
     // What the kinds of peers implement:
     virtual bool isYielded() const { return false; } // another ground has the vehicle
     virtual bool isReady() const = 0;                // channels can be opened
-    virtual bool openChannel(int channel) = 0;       // for a program
+    virtual bool openChannel(int channel) = 0;       // on behalf of a program
     virtual void opened(ProgramConnection& program, U32 now) = 0;
     virtual void closeChannel(int channel) = 0;
     virtual U32 longestMessage() const = 0; // lock held
     // Sends a connection's next message. Returns whether it was taken.
     virtual bool send(int channel, U32 now) = 0;
-    // Does what is due on the way to the vehicle. Returns when to call again, in microseconds.
+    // Does the work due for the way to the vehicle. Returns the time of the next call, in
+    // microseconds.
     virtual U32 pollWay(U32 now) = 0;
 
     // Ends a program's connection; `why` completes a sentence about it.
     void end(int channel, int level, const std::string& why);
-    void refusePrograms();       // ends the connections of programs that have not yet got a channel
+    void refusePrograms();       // ends the connections of programs that have no channel yet
     void placePrograms(U32 now); // gives waiting programs a channel
     void openWanted(U32 now);
     void waitForRoom(int channel);
@@ -129,12 +131,12 @@ private:
     void sendMessages(U32 now);
     U32 endLate(U32 now);
 
-    int nextChannel_ = 0; // where `connect` begins to search
-    int turn_ = 0;        // the channel whose program sends next
+    int nextChannel_ = 0; // channel at which `connect` starts its search
+    int turn_ = 0;        // channel of the program that sends next
     std::deque<Waiting> waiting_;
 };
 
-// Returns both ends of a pipe that does not block. Throws std::system_error.
+// Returns both ends of a non-blocking pipe. Throws std::system_error.
 void makePipe(int pipeEnds[2]);
 
 // Returns the time until `at`, 0 if it has passed.

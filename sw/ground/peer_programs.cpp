@@ -36,8 +36,9 @@ bool hasLeft(int fd) {
 
 } // namespace
 
-// Returns a channel for a program, `wanted` or (-1) any: a free one, else that of the program that
-// has been silent longest, if that is long enough to make room. -1 if there is none.
+// Returns a channel for a program, `wanted` or any (-1): a free one, otherwise the channel of the
+// program that has been silent longest, if that is long enough to displace it. Returns -1 if there
+// is none.
 int Peer::freeChannel(int wanted, U32 now) {
     U32 longest =
         host_.settings.idleMs ? static_cast<U32>(host_.settings.idleMs) * 1000 - 1 : 0xFFFFFFFFu;
@@ -46,7 +47,7 @@ int Peer::freeChannel(int wanted, U32 now) {
         const int channel = wanted >= 0 ? wanted : (nextChannel_ + i) % ownChannels;
         ProgramConnection& s = programs_[channel];
         if (s.is(ProgramConnection::State::Wanted) &&
-            hasLeft(s.fd())) // it has left before the link was up
+            hasLeft(s.fd())) // it disconnected before the link was up
             s.close();
         if (s.is(ProgramConnection::State::Closed)) {
             nextChannel_ = (channel + 1) % ownChannels;
@@ -64,7 +65,7 @@ int Peer::freeChannel(int wanted, U32 now) {
     return idlest;
 }
 
-// Gives waiting programs a channel, in their order. One that has left gets none.
+// Assigns channels to waiting programs, in order. A disconnected program gets none.
 void Peer::placePrograms(U32 now) {
     for (auto program = waiting_.begin(); program != waiting_.end();) {
         const bool isGone = hasLeft(program->fd);
@@ -136,7 +137,7 @@ int Peer::accept() {
     int ends[2];
     if (channel < 0)
         return -1;
-    if (!makePair(ends)) { // nobody answers the UAV
+    if (!makePair(ends)) { // no program replies to the UAV
         log(0, std::string("the UAV calls, and no socket can be made: ") + std::strerror(errno));
         end(channel, 1, "is refused");
         host_.wake();

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// plugin_connection: what the endpoints of one communicator share (defaults, logger, peers), and
-// how Ice opens connections and accepts those of the UAV: one is the program's end of a stream.
+// plugin_connection: data shared by the endpoints of one communicator (defaults, logger, peers),
+// and the connections that Ice opens or accepts from the UAV; Ice uses the program's end of a
+// stream.
 
 #pragma once
 
@@ -44,7 +45,7 @@ inline void checkModemKey(const std::string& key, const std::string& where) {
             __FILE__, __LINE__, "the AES key of " + where + " must be up to 32 hexadecimal digits");
 }
 
-// Instance is what they share.
+// Data shared by the endpoints.
 class Instance : public IceUtil::Shared {
 public:
     explicit Instance(const Ice::CommunicatorPtr& communicator) : communicator_(communicator) {
@@ -71,7 +72,7 @@ public:
     }
     const EndpointOptions& defaults() const { return defaults_; }
 
-    // A thread may ask for a connection while another destroys the communicator.
+    // A thread may request a connection while another destroys the communicator.
     std::shared_ptr<Peer> peer(const EndpointOptions& o) {
         std::lock_guard<std::mutex> lock(mutex_);
         if (!communicator_)
@@ -113,7 +114,8 @@ private:
     KeyFile keys_;
     int trace_ = 0;
     bool statistics_ = false;
-    std::set<std::shared_ptr<Peer>> peers_; // kept while the communicator lives: set-up takes time
+    std::set<std::shared_ptr<Peer>> peers_; // kept while the communicator lives, because set-up
+                                            // takes time
 };
 typedef IceUtil::Handle<Instance> InstancePtr;
 
@@ -123,8 +125,8 @@ public:
         : IceInternal::NativeInfo(fd), peer_(peer) {}
     IceInternal::NativeInfoPtr getNativeInfo() override { return this; }
     IceInternal::SocketOperation initialize(IceInternal::Buffer&, IceInternal::Buffer&) override {
-        // Ice waits for the peer's first message next, under the connect time-out: that is "link
-        // up".
+        // Ice then waits for the peer's first message under the connect time-out: it means that the
+        // link is up.
         return IceInternal::SocketOperationNone;
     }
     IceInternal::SocketOperation closing(bool initiator, const Ice::LocalException&) override {

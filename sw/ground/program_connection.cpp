@@ -16,7 +16,7 @@ namespace {
 constexpr size_t bufferBytes = 4096;
 constexpr U32 noBeat = 0xFFFFFFFFu;
 constexpr U32 heartbeatUs = 5000000; // below any sensible Ice.ACM.Timeout
-constexpr U32 signUs = 10000000;     // Ice 3.8 cuts a connection on which nothing comes for 60 s
+constexpr U32 signUs = 10000000;     // Ice 3.8 closes a connection without traffic after 60 s
 constexpr U32 leavingUs = 10000000;
 
 bool isOver(ssize_t count) {
@@ -93,7 +93,8 @@ void ProgramConnection::read(U32 nowUs) {
     if (count > 0)
         out_.insert(out_.end(), bytes, bytes + count);
     ended_ = isOver(count);
-    if (out_.size() >= IceHeader::bytes && out_.size() >= messageSize()) { // a part is no activity
+    if (out_.size() >= IceHeader::bytes && out_.size() >= messageSize()) { // a partial message is
+                                                                           // not activity
         if (!owesSign_)
             owesSince_ = nowUs;
         owesSign_ = true;
@@ -178,7 +179,7 @@ U32 ProgramConnection::beat(U32 nowUs) {
     if (since < limit)
         return limit - since;
     pollfd end{fd_, POLLRDHUP, 0};
-    if (in_.empty() && poll(&end, 1, 0) == 0) { // it has not ended its writing
+    if (in_.empty() && poll(&end, 1, 0) == 0) { // it can still write
         const U32 activeAt = activeAt_;
         (void)giveHead(IceHeader::Validate, nowUs);
         activeAt_ = activeAt;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // program_connection: one connection of a program: its socket, the Ice messages on it, and its
-// state between program and link. It knows only Ice's message header and a request's number
+// state between program and link. Of Ice it only knows the message header and the id of a request
 // (ice_header.h).
 
 #pragma once
@@ -20,10 +20,10 @@ class ProgramConnection {
 public:
     enum class State {
         Closed,
-        Wanted, // by the program; the link has yet to open the channel
-        Called, // by the peer; no program has taken it yet
+        Wanted, // requested by the program; the link has not opened the channel yet
+        Called, // opened by the peer; no program has taken it yet
         Open,   // between program and link
-        Leaving // the link's channel is closed; the program has yet to take what came
+        Leaving // the link's channel is closed; the program has not read everything yet
     };
 
     ProgramConnection() = default;
@@ -32,29 +32,27 @@ public:
     ProgramConnection& operator=(const ProgramConnection&) = delete;
 
     bool is(State state) const { return state_ == state; }
-    // Takes the program's socket (and closes it in the end), which must not block. `name` is for
-    // log lines. A program that was called is a server, and its first ValidateConnection is its
-    // greeting.
-    // A message is late when the peer has not taken it after `lateUs`.
+    // Takes the program's socket, which must not block, and closes it in the end. `name` is used in
+    // log lines. A called program is a server, and its first ValidateConnection is its greeting. A
+    // message is late if the peer has not taken it after `lateUs`.
     static constexpr U32 never = 2000000000;
     void want(int fd, const std::string& name, U32 lateUs = never);
-    void call(); // by the peer
+    void call(); // opened by the peer
     void accept(int fd, const std::string& name);
     void open(U32 nowUs);
-    // The link's channel is closed; the program may take the rest for ten seconds. Returns the
-    // number of calls that were not sent, if the program has gone and cannot be told.
+    // The link's channel is closed; the program may read the rest for ten seconds. Returns the
+    // number of calls that were not sent, if the program has disconnected and cannot be informed.
     unsigned leave(U32 nowUs);
     void close(State to = State::Closed);
     const std::string& name() const { return name_; }
     int fd() const { return fd_; }
 
-    // Tells which events poll must wait for; fd -1 is none. `reads`: the link has room for
-    // messages.
+    // Returns the events for poll; fd -1 for none. `reads`: the link has room for messages.
     pollfd interest(bool reads) const;
-    void read(U32 nowUs);                 // from the program, at most a buffer
+    void read(U32 nowUs);                 // reads from the program, at most one buffer
     bool ended() const { return ended_; } // the program sends no more
     enum class Next { None, Message, Senseless };
-    // Finds the next whole message, at most `longest` bytes. Heartbeats are left out: the link
+    // Finds the next complete message, at most `longest` bytes. Heartbeats are skipped: the link
     // knows whether the peer is there.
     Next next(U32 longest);
     bool isCall() const;                                // whether the message is a call
@@ -62,26 +60,25 @@ public:
     Kind kind() const;
     const U8* data() const { return out_.data(); }
     U32 size() const { return messageSize(); }      // also of a message that makes no sense
-    U32 lateAt() const { return since_ + lateUs_; } // when the next message will be late
+    U32 lateAt() const { return since_ + lateUs_; } // time at which the next message will be late
     void taken(U32 nowUs);                          // the link has taken the message
 
-    // Hands the program a message. False: the program has left 64 KiB unread.
+    // Passes a message to the program. Returns false if the program has left 64 KiB unread.
     bool give(const U8* message, U32 size, U32 nowUs);
     void write(U32 nowUs);
-    // Sends a heartbeat if the program waits for an answer and has heard nothing for a while, as a
-    // busy server would, but without air. One also follows other messages of the program, its own
-    // heartbeats included, since Ice 3.8 cuts silent connections. Ice 3.7 is silent itself while
-    // idle, and hears none, so that it can close its idle connections. Ends a leaving that takes
-    // too long.
-    // Returns when to call again, in microseconds.
+    // Sends a heartbeat if the program waits for a reply and has received nothing for a while, as a
+    // busy server would, but without using the air. It also answers other messages of the program,
+    // including heartbeats, because Ice 3.8 closes silent connections. Ice 3.7 sends no heartbeats
+    // while idle and gets none, so that it can close its idle connections. Ends a closing that
+    // takes too long. Returns the time of the next call, in microseconds.
     U32 beat(U32 nowUs);
-    // Returns how long the program has neither sent a whole message nor taken a byte; 0: it waits
-    // for an answer.
+    // Returns how long the program has neither sent a complete message nor taken a byte; 0 while it
+    // waits for a reply.
     U32 silentUs(U32 nowUs) const;
-    // Tells the program, in Ice's words, that the connection closes and it may open another one.
+    // Sends the program Ice's CloseConnection; it may open another connection.
     void sayGoodbye(U32 nowUs);
-    void greet(U32 nowUs); // as a server does
-    // Takes the next message, a call that waits for an answer, which is an error with this text.
+    void greet(U32 nowUs); // sends the first message of a server
+    // Takes the next message, a two-way call, and replies with an error with this text.
     void refuse(const std::string& why, U32 nowUs);
 
     static constexpr size_t mostUnread = 64 * 1024; // bytes
@@ -93,15 +90,15 @@ private:
     State state_ = State::Closed;
     std::string name_;
     int fd_ = -1;
-    std::vector<U8> out_; // from the program: less than a message and a buffer
-    std::vector<U8> in_;  // to the program, not yet written
+    std::vector<U8> out_; // from the program: less than one message plus one buffer
+    std::vector<U8> in_;  // to the program, not written yet
     bool ended_ = false, isServer_ = false, greeted_ = false;
     bool owesSign_ = false; // the program has sent something since it last heard something,
     U32 owesSince_ = 0;     // since then
-    unsigned pending_ = 0;  // two-way requests of the program that are not answered yet
-    U32 heardAt_ = 0;       // when it got its last message
+    unsigned pending_ = 0;  // two-way requests of the program without a reply so far
+    U32 heardAt_ = 0;       // time of the last message to it
     U32 lateUs_ = never, readAt_ = 0, since_ = 0; // last read; since when the next message waits
-    U32 activeAt_ = 0, leftAt_ = 0; // when it last sent or took something; when its leaving began
+    U32 activeAt_ = 0, leftAt_ = 0; // time of the last byte sent or taken; start of the closing
 };
 
 } // namespace XBeeAT

@@ -40,13 +40,13 @@ void SerialPort::open(const std::string& device) {
     int error = fd_ < 0 ? errno : 0;
     if (!error && !isatty(fd_)) {
         error = ENOTTY;
-        why = ": it is no terminal";
+        why = ": it is not a terminal";
     } else if (!error && fcntl(fd_, F_SETLK, &lock) != 0) {
         error = EBUSY;
         why = ": process " + std::to_string(userOf(fd_)) + " uses it";
     }
     if (!error) {
-        // Terminal programs are kept out, too; a pty would stay locked when this process is killed.
+        // Also excludes terminal programs; a pty would stay locked if this process is killed.
         if (!isPty(fd_))
             ioctl(fd_, TIOCEXCL);
         return;

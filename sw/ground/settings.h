@@ -20,26 +20,27 @@ struct Settings {
     int target = 0x0001;  // DL
     int rfChannel = 0x0C; // CH
     int pan = 0x3332;     // ID
-    LinkKeys keys;        // of the link's sessions
+    LinkKeys keys;        // keys of the link's sessions
     std::string modemKey; // AES, up to 32 hexadecimal digits; empty: the modem's setting stays
     int guardMs = 1000;   // the modem's present guard time
-    bool setUp = true;    // by AT commands
+    bool setUp = true;    // set up the modem by AT commands
     bool isApi = true;    // API mode, if the modem is set up and has it
     bool isWire = false;  // no modems: the port is wired to the vehicle's board
-    int downMs = 15000;   // without a link, until the modem is set up again
+    int downMs = 15000;   // time without a link after which the modem is set up again, ms
     int idleMs = 60000;   // a program silent this long makes room for one that waits; 0: never
 
-    // Returns a random number for sessions; a test may set its own source.
+    // Returns a random number for sessions; tests may replace it.
     std::function<unsigned()> random = [] { return std::random_device()(); };
 
-    // Returns quarters of a second since 2026 began (link_broadcast.h); a test may set its own.
+    // Returns quarters of a second since the start of 2026 (link_broadcast.h); tests may replace
+    // it.
     std::function<int64_t()> quarters = [] {
         using namespace std::chrono;
         const auto now = system_clock::now().time_since_epoch();
         return duration_cast<milliseconds>(now).count() / 250 - 1767225600LL * 4;
     };
 
-    // Packets that may wait for the modem's answer (Link_expectAnswers).
+    // Packets that may wait for the modem's result (Link_expectAnswers).
     unsigned mostWaiting() const { return baud > 115200 ? 2 : 3; }
     double characterUs() const { return 1e7 / (baud == 115200 ? 111111 : baud); }
 };

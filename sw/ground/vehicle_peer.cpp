@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// vehicle_peer: callbacks of the link, and what the link is asked to do.
+// vehicle_peer: callbacks from the link, and requests to it.
 
 #include "vehicle_peer.h"
 
@@ -14,7 +14,7 @@ namespace XBeeAT {
 
 namespace {
 
-constexpr U32 briefBytes = 128; // of a message that one fragment takes, its head compressed
+constexpr U32 briefBytes = 128; // largest message for one fragment with a compressed header
 
 } // namespace
 
@@ -55,7 +55,7 @@ int VehiclePeer::onMessage(void* context, int channel, const U8* data, U32 size)
     U32 now = e.host_.clock.nowUs();
     bool isWanted =
         program.is(ProgramConnection::State::Open) || program.is(ProgramConnection::State::Called);
-    // The link delivers in order, so a message held back would hold all other programs' back.
+    // The link delivers in order, so holding back a message would hold back all other programs.
     if (isWanted && !program.give(data, size, now))
         e.end(channel, 0,
               "does not read: " + std::to_string(ProgramConnection::mostUnread) +
@@ -75,7 +75,7 @@ void VehiclePeer::onChannel(void* context, int channel, int isOpen) {
     if (!isOpen)
         return e.leave(program);
     if (channel < ownChannels || !e.listening_) {
-        e.log(1, "the peer opened channel " + std::to_string(channel) + ", and nobody listens");
+        e.log(1, "the peer opened channel " + std::to_string(channel) + ", but no program listens");
         Link_closeChannel(e.link_.get(), channel);
         return;
     }
@@ -111,7 +111,7 @@ void VehiclePeer::onWritable(void* context) {
     self(context).full_ = 0;
 }
 
-// ---- from programs to the link ----
+// ---- programs to link ----
 
 bool VehiclePeer::send(int channel, U32 now) {
     ProgramConnection& program = programs_[channel];
@@ -129,7 +129,7 @@ bool VehiclePeer::send(int channel, U32 now) {
     return status == LINK_OK;
 }
 
-// Logs the calls of programs that have left: nobody else can be told.
+// Logs the calls of disconnected programs, because no program can be informed.
 void VehiclePeer::reportLost() {
     if (lost_)
         log(0, "calls of programs that have left, and may not have reached the UAV: " +
@@ -137,8 +137,8 @@ void VehiclePeer::reportLost() {
     lost_ = 0;
 }
 
-// Ends the session if a message is late, so that the vehicle does not carry out what its caller has
-// abandoned. Returns when to look again, in microseconds.
+// Ends the session if a message is late, so that the vehicle does not execute a call that its
+// caller has abandoned. Returns the time of the next check, in microseconds.
 U32 VehiclePeer::withdrawLate(U32 now) {
     U32 wait = 0xFFFFFFFFu;
     for (int channel = 0; channel < LINK_CHANNELS; ++channel) {
@@ -147,7 +147,7 @@ U32 VehiclePeer::withdrawLate(U32 now) {
         wait = std::min(wait, untilLate(late_[channel].front(), now));
         if (wait == 0) {
             log(0, programs_[channel].name() +
-                       " has a message that nobody took in time: the session ends");
+                       " has a message that was not taken in time: the session ends");
             Link_stop(link_.get(), now);
             Link_start(link_.get(), now);
             return 0;
@@ -183,7 +183,7 @@ void VehiclePeer::receive(const U8* bytes, size_t size, U32 now) {
         yielding_.heard(s.framesReceived != frames);
 }
 
-// A vehicle calls only a ground with address 0 by itself.
+// A vehicle only calls a ground station with address 0 by itself.
 void VehiclePeer::yieldOrResume(U32 now) {
     const bool connects = Link_state(link_.get()) == LINK_STATE_CONNECTING;
     switch (yielding_.poll(connects, host_.settings.source != 0, now)) {

@@ -54,11 +54,11 @@ private:
     static void onOutcome(void* context, int channel, U32 isCall, Link_Outcome outcome);
     static void onWritable(void* context);
 
-    unsigned lost_ = 0;                   // unconfirmed calls of programs that have left
-    std::deque<U32> late_[LINK_CHANNELS]; // when each message that the link has will be late
+    unsigned lost_ = 0;                   // unconfirmed calls of disconnected programs
+    std::deque<U32> late_[LINK_CHANNELS]; // times at which the messages in the link will be late
     Yielding yielding_;
     std::unique_ptr<Link> link_;
-    std::unique_ptr<Link_Buffers> buffers_; // of link_
+    std::unique_ptr<Link_Buffers> buffers_; // buffers of link_
 };
 
 } // namespace XBeeAT

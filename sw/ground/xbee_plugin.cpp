@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // xbee_plugin: the xbee-at transport of ZeroC Ice 3.7: an endpoint, its options as text and on the
-// wire, and the factory that makes it. One source, two libraries: for the C++98 mapping (which
-// Python loads) and for the C++11 mapping. It links to ZeroC Ice, which is GPL-2.0.
+// wire, and its factory. One source, two libraries: for the C++98 mapping (loaded by Python) and
+// for the C++11 mapping. It links to ZeroC Ice, which is GPL-2.0.
 
 #include "plugin_connection.h"
 
@@ -26,7 +26,7 @@ public:
         : instance_(instance), o_(options) {}
 
     void streamWriteImpl(Ice::OutputStream* s) const override {
-        // A proxy carries only what a peer can use: never the device of this machine.
+        // A proxy only contains data that a peer can use: never the device of this machine.
         s->write(static_cast<Ice::Short>(o_.serial.target));
         s->write(static_cast<Ice::Byte>(o_.channel));
         s->write(o_.timeoutMs);
@@ -61,8 +61,8 @@ public:
         callback->connectors(list);
     }
     IceInternal::AcceptorPtr acceptor(const std::string&) const override {
-        // The acceptor publishes this side's own address, so a proxy to the peer on the same device
-        // is not taken for an object of this process.
+        // The acceptor publishes the address of this side, so that a proxy to the peer on the same
+        // device is not taken for an object of this process.
         return new Acceptor(instance_, o_,
                             with([](EndpointOptions& o) { o.serial.target = o.serial.source; }));
     }
@@ -130,7 +130,7 @@ protected:
         else if (option == "-k") { // a secret, never printed
             checkModemKey(argument, "an xbee-at endpoint");
             o_.serial.modemKey = argument;
-        } else if (option != "-h") // accepted and ignored: there is no host
+        } else if (option != "-h") // accepted and ignored, because there is no host
             number(option[1], argument, endpoint);
         return true;
     }
@@ -146,7 +146,7 @@ private:
         if (*end || value < 0 || value > most)
             throw Ice::EndpointParseException(
                 __FILE__, __LINE__,
-                std::string("'") + argument + "' is no value for option '-" + option +
+                std::string("'") + argument + "' is not a value for option '-" + option +
                     "' in endpoint '" + endpoint + "' (0.." + std::to_string(most) + ")");
         static const std::map<char, int Settings::*> ofSerial = {
             {'b', &Settings::baud},      {'a', &Settings::target}, {'s', &Settings::source},
@@ -201,8 +201,7 @@ public:
         o.channel = channel > 2 ? 255 : channel;
         return ICE_MAKE_SHARED(Endpoint, instance_, o);
     }
-    // Another thread may be parsing a proxy: the instance stays, and refuses connections from now
-    // on.
+    // Another thread may be parsing a proxy: the instance is kept, and refuses further connections.
     void destroy() override { instance_->destroy(); }
     IceInternal::EndpointFactoryPtr clone(const IceInternal::ProtocolInstancePtr&) const override {
         return new Factory(instance_, isWire_);

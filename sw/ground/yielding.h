@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// yielding: leaves a vehicle to another ground that has the same address, and takes it back later.
+// yielding: leaves a vehicle to another ground station with the same address, and resumes later.
 //
-// The other ground has the vehicle if this side's session ended while the vehicle continued to
-// speak, and not to this side. Two grounds that both call would take the vehicle from each other
-// for ever.
+// The other ground station has the vehicle if the session of this side ended while the vehicle
+// continued to send to another one. Two ground stations that both call would take the vehicle from
+// each other forever.
 
 #pragma once
 
@@ -21,10 +21,10 @@ public:
     void reset() { isYielded_ = isLost_ = hearsOther_ = false; }
     bool isYielded() const { return isYielded_; }
 
-    // Takes bytes from the vehicle before the link does. Returns false if the link may not have
-    // them: while yielded only the vehicle's HELLO at the beginning of a packet counts, which means
-    // that the vehicle has no session any more. The HELLO is in hello(); `bytes` and `size` are
-    // what follows it.
+    // Takes bytes from the vehicle before the link does. Returns false if the link must not get
+    // them: while yielded, only the vehicle's HELLO at the beginning of a packet counts, because it
+    // means that the vehicle has no session. The HELLO is in hello(); `bytes` and `size` are set to
+    // the bytes after it.
     bool admits(const U8*& bytes, size_t& size, U32 now) {
         if (now - heardAt_ >= LINK_FRAME_GAP)
             headSize_ = 0;
@@ -44,8 +44,8 @@ public:
         isLost_ = !isUp && hearsOther_ && now - heardAt_ < speaksWithinUs;
     }
 
-    // Returns what is to be done now. `connects`: the link calls the vehicle; `callsAgain`: the
-    // vehicle does not call this ground by itself, so that this ground calls after a minute.
+    // Returns the next action. `connects`: the link calls the vehicle; `callsAgain`: the vehicle
+    // does not call this ground station by itself, so that this side calls after a minute.
     enum class Step { None, Yield, Resume };
     Step poll(bool connects, bool callsAgain, U32 now) {
         const bool yields = isLost_ && connects;
@@ -53,7 +53,7 @@ public:
         if (yields) {
             isYielded_ = true;
             heardAt_ = yieldedAt_ = now;
-            headSize_ = LINK_HEADER; // the packet under way is not a HELLO
+            headSize_ = LINK_HEADER; // the current packet is not a HELLO
             head_[0] = 0;
             return Step::Yield;
         }
@@ -64,17 +64,18 @@ public:
     void resume() { isYielded_ = hearsOther_ = false; }
 
 private:
-    static constexpr U32 quietUs = LINK_AGE_LAST; // silence of a vehicle that the other has lost
+    static constexpr U32 quietUs = LINK_AGE_LAST; // silence after which the other side has lost the
+                                                  // vehicle
     static constexpr U32 longestUs = 60'000'000;
-    // A vehicle with a session speaks at least this often, since it is asked when it is silent.
-    // What was heard before is a frame that a reset has cut.
+    // A vehicle with a session sends at least this often, because it is pinged when silent. Earlier
+    // bytes are a frame cut by a reset.
     static constexpr U32 speaksWithinUs = LINK_PING_AFTER + 4 * LINK_PING_EVERY;
 
     bool isYielded_ = false;
     bool isLost_ = false;     // the session ended while another one was heard
     bool hearsOther_ = false; // the last frame belonged to another session
     U32 heardAt_ = 0, yieldedAt_ = 0;
-    U8 head_[LINK_HEADER]; // of the packet under way, while yielded
+    U8 head_[LINK_HEADER]; // header of the current packet, while yielded
     U32 headSize_ = 0;
 };
 

@@ -70,8 +70,7 @@ int Hw_Core_answers(const Hw_Core* self) {
 Hw_Status Hw_Core_run(Hw_Core* self, U32 operation, U32 ms) {
     self->done[operation] = 0;
     Hw_Core_act(self, operation);
-    /* A post left from a call that was given up ends one wait early, so the event itself
-     * decides. */
+    /* A post left from an abandoned call ends one wait early, so the event itself decides. */
     while (!self->done[operation])
         if (!self->port->wait(self->context, operation, ms) && !self->done[operation]) {
             FSMC_write(self->slot, CONTROL, RESET);
@@ -88,7 +87,7 @@ void Hw_Core_begin(Hw_Core* self, U32 operation, U32 ms) {
 
 void Hw_Core_later(Hw_Core* self, U32 operation) {
     self->later[operation] = 1;
-    /* A post wakes the polling task: the event may have come already, or this deadline may be the
+    /* A post wakes the polling task: the event may already be pending, or this deadline may be the
      * earliest. */
     self->port->post(self->context, operation);
 }

@@ -10,13 +10,13 @@
 #include "map_regs.h"
 
 typedef struct Hw_Instance {
-    const char* identity; /* 0 ends the table */
+    const char* identity; /* 0 marks the end of the table */
     U32 slot;             /* 2..63 */
     Ice_ObjectPtr servant;
     Hw_Status (*start)(const Hw_Port* port, void* context);
     void (*interrupt)(void);
-    /* Answers calls that are done or too late. Returns after how many ms it must be called again
-     * even without an event, or HW_NEVER. */
+    /* Answers calls that are done or late. Returns the time to the next call without an event, ms,
+     * or HW_NEVER. */
     U32 (*poll)(U32 nowMs);
 } Hw_Instance;
 

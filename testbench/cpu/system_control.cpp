@@ -48,7 +48,7 @@ bool forbids(uint32_t rasr, bool write) {
 // Registers that only store the written value. A value with unknown bits is not modelled.
 struct SystemControl::Stored {
     uint32_t at;
-    uint32_t SystemControl::*value;
+    uint32_t SystemControl::* value;
     uint32_t kept = ~0u, unknown = 0;
     bool clears = false; // writing 1 clears a bit
 };
@@ -232,7 +232,7 @@ uint32_t SystemControl::interruptState() const {
 
 uint32_t SystemControl::handlerState() const {
     uint32_t shown = 0;
-    auto flag = [&](unsigned number, unsigned bit, bool Exceptions::State::*what) {
+    auto flag = [&](unsigned number, unsigned bit, bool Exceptions::State::* what) {
         shown |= uint32_t((*exceptions_)[number].*what) << bit;
     };
     constexpr auto active = &Exceptions::State::active, pending = &Exceptions::State::pending,

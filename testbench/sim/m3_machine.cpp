@@ -43,8 +43,7 @@ void provideKeys(SimulatedBoard& board, const M3Machine::Config& config) {
 
 M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> poll)
     : soc_(soc), poll_(std::move(poll)), fpgaFlash_([&soc] { return soc.now(); }, config.seed),
-      stm32_(
-          soc.fsmc(), [&soc] { return soc.now(); }, configOf(config.hclkHz, config.seed)) {
+      stm32_(soc.fsmc(), [&soc] { return soc.now(); }, configOf(config.hclkHz, config.seed)) {
     stm32_.load(config.firmware);
     SimulatedBoard board;
     provideKeys(board, config);

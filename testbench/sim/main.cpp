@@ -148,7 +148,7 @@ int main(int argc, char** argv) {
         std::cout << flightHelp();
         return 0;
     }
-    struct sigaction action {};
+    struct sigaction action{};
     action.sa_handler = [](int signal) { Flight::stopSignal = signal; };
     for (int signal : {SIGINT, SIGTERM, SIGHUP})
         sigaction(signal, &action, nullptr);

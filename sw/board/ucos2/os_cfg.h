@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * os_cfg: configuration of uC/OS-II 2.9x for the firmware: tasks, semaphores, mutexes, queues,
- * time. Names and meanings are those of uC/OS-II's manual, chapter 17.
+ * time. The names are documented in uC/OS-II's manual, chapter 17.
  */
 #pragma once
 

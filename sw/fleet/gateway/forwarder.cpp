@@ -15,27 +15,30 @@ struct Client {
     std::shared_ptr<Ice::Connection> connection;
     std::string subject;
     std::deque<std::shared_ptr<Request>> requests;
-    size_t bytes = 0;     // of these
-    size_t underWay = 0;  // requests that may still be on their way to the vehicle,
+    size_t bytes = 0;     // bytes of these requests
+    size_t underWay = 0;  // requests that may not have reached the vehicle yet
     int lane = 0;         // all on this lane
-    size_t objects = 0;   // that it has passed to the vehicle
-    bool hasLeft = false; // only one-way requests are left
+    size_t objects = 0;   // number of objects that it has passed to the vehicle
+    bool hasLeft = false; // only one-way requests remain
 };
 
 namespace {
 
-const char* const maintenanceType = "::IceSoC::Maintenance"; // by metadata [":maintenance"]
+const char* const maintenanceType = "::IceSoC::Maintenance"; // selected by metadata
+                                                             // [":maintenance"]
 
-constexpr size_t longBytes = 512;  // of a call or reply that takes the lane for these
+constexpr size_t longBytes = 512;  // size of a call or reply that takes the lane for long ones
 constexpr size_t mostUnderWay = 8; // requests of a lane
-// Bytes of these together, short lane and long lane; a single longer one may go.
+// Bytes in flight, short lane and long lane; a single longer request is allowed.
 constexpr size_t mostBytesUnderWay[] = {1536, 8192};
-constexpr size_t mostUnconfirmed = 4;          // one-way requests, until a ping shows their arrival
+constexpr size_t mostUnconfirmed = 4;          // one-way requests before a ping must confirm their
+                                               // arrival
 constexpr size_t mostQueued = size_t{1} << 18; // bytes of a subject
-constexpr size_t mostClients = 200;            // of a subject, each with a first request
+constexpr size_t mostClients = 200;            // clients of a subject, each with a first request
 constexpr size_t mostBlocked = 16;             // threads that wait for room for one subject
 constexpr size_t mostKnown = 1000;             // objects and operations that are remembered
-constexpr size_t requestCost = 100;            // in a turn, besides its bytes
+constexpr size_t requestCost = 100;            // cost of a request in a turn, in addition to its
+                                               // bytes
 
 size_t costOf(const Request& request) {
     return request.parameters.size() + requestCost;
@@ -73,7 +76,7 @@ void Forwarder::setCallbacks(std::shared_ptr<Ice::ObjectAdapter> adapter) {
     callbacks_ = std::move(adapter);
 }
 
-// ---- from the clients to the vehicle ----
+// ---- clients to vehicle ----
 
 std::shared_ptr<Client> Forwarder::clientOf(const Request& request) {
     const Connection& from = request.current.con;
@@ -88,7 +91,7 @@ std::shared_ptr<Client> Forwarder::clientOf(const Request& request) {
     return client;
 }
 
-// Drops a client that has left and has nothing more to send.
+// Removes a client that has disconnected and has nothing more to send.
 void Forwarder::dropIfOver(const std::shared_ptr<Client>& client) {
     if (!client->hasLeft || !client->requests.empty())
         return;
@@ -102,7 +105,8 @@ void Forwarder::dropIfOver(const std::shared_ptr<Client>& client) {
     clients_.erase(client->connection);
 }
 
-// Drops the two-way requests of a client that has left; its one-way requests still go.
+// Drops the two-way requests of a client that has disconnected; its one-way requests are still
+// sent.
 void Forwarder::forget(const Connection& connection) {
     std::lock_guard<std::mutex> lock(mutex_);
     const auto found = clients_.find(connection);
@@ -129,8 +133,8 @@ void Forwarder::forget(const Connection& connection) {
 }
 
 // Returns whether a request may wait here. The first request of a client always may, unless its
-// subject has too many clients. These include clients that have left with one-way requests waiting,
-// so that a subject gains nothing by connecting again and again.
+// subject has too many clients. These include disconnected clients with waiting one-way requests,
+// so that a subject gains nothing by reconnecting.
 bool Forwarder::hasRoom(const Request& request) {
     const bool isFirst = clientOf(request)->requests.empty();
     const Subject& subject = subjects_[request.subject];
@@ -178,7 +182,7 @@ int Forwarder::laneOf(const Request& request) const {
     return isLong && !lanes_[longCalls].isMissing ? longCalls : shortCalls;
 }
 
-// Returns whether a client's first request may go now.
+// Returns whether a client's first request may be sent now.
 bool Forwarder::mayGo(const Client& client) const {
     if (client.requests.empty())
         return false;
@@ -191,7 +195,7 @@ bool Forwarder::mayGo(const Client& client) const {
              lane.bytes + request.parameters.size() <= mostBytesUnderWay[number]));
 }
 
-// Returns a lane that requests wait for; -1: none.
+// Returns a lane that has waiting requests and no connection; -1 if there is none.
 int Forwarder::laneToConnect() const {
     for (const auto& [connection, client] : clients_) {
         if (client->requests.empty())
@@ -219,12 +223,12 @@ std::shared_ptr<Request> Forwarder::pop(const std::shared_ptr<Client>& client) {
     return request;
 }
 
-// Returns the next request by turn, if one may go now; the mutex is held.
+// Returns the next request by turn, if one may be sent now; the mutex is held.
 std::shared_ptr<Request> Forwarder::nextRequest() {
     std::shared_ptr<Client> next;
     uint64_t least = 0;
     for (const auto& [name, subject] : subjects_) {
-        std::shared_ptr<Client> first; // of the subject
+        std::shared_ptr<Client> first; // first client of the subject
         uint64_t leastHere = 0;
         for (const auto& client : subject.clients) {
             if (!mayGo(*client))
@@ -270,8 +274,8 @@ void Forwarder::release(Request& request) {
         --request.client->underWay;
 }
 
-// Sends the requests that may go. One thread at a time does so; it also sends requests that arrive
-// meanwhile.
+// Sends the requests that may be sent. One thread at a time does this; it also sends requests that
+// arrive in the meantime.
 void Forwarder::send() {
     std::unique_lock<std::mutex> lock(mutex_);
     if (isSending_)
@@ -327,7 +331,7 @@ void Forwarder::ask(const Connection& connection, const Object& object) {
     const auto failed = [this, object](std::exception_ptr why) {
         try {
             std::rethrow_exception(why);
-        } catch (const Ice::RequestFailedException&) { // it may exist later
+        } catch (const Ice::RequestFailedException&) { // the object may exist later
             answered(object, false, false, nullptr);
         } catch (const Ice::MarshalException&) { // an object that answers anything
             answered(object, true, false, nullptr);
@@ -362,7 +366,7 @@ void Forwarder::answered(const Object& object, bool isKnown, bool isMaintenance,
         if (isKnown && lanes_[shortCalls].connection)
             isMaintenance_[object] = isMaintenance;
         for (const auto& request : waiting) {
-            request->mayMaintain = !isMaintenance; // it goes without a second question
+            request->mayMaintain = !isMaintenance; // sent without asking again
             if (!why && !isMaintenance)
                 ready_.push_back(request);
         }
@@ -376,7 +380,7 @@ void Forwarder::answered(const Object& object, bool isKnown, bool isMaintenance,
 // ---- the lanes ----
 
 // Records the client as owner of the objects that a request passes to the vehicle. Every client may
-// call ice_ping and the like, which pass nothing.
+// call ice_ping and similar operations, which pass no objects.
 void Forwarder::recordProxies(const Request& request) {
     if (!request.client || request.current.operation.compare(0, 4, "ice_") == 0)
         return;
@@ -395,7 +399,7 @@ void Forwarder::sendOne(const std::shared_ptr<Request>& request) {
         finish(request, false, [&] { fail({request}, why); });
     };
     Connection connection;
-    bool isUnsure = false; // whether one-way requests have arrived
+    bool isUnsure = false; // it is unknown whether one-way requests have arrived
     {
         std::lock_guard<std::mutex> lock(mutex_);
         Lane& lane = lanes_[request->lane];
@@ -426,7 +430,7 @@ void Forwarder::sendOne(const std::shared_ptr<Request>& request) {
         confirm(request->lane, request->current);
 }
 
-// Sends a ping, unless one is on its way: its reply shows that all before it have arrived.
+// Sends a ping, unless one is pending: its reply confirms all earlier requests.
 void Forwarder::confirm(int number, const Ice::Current& of) {
     const auto done = [this, number] {
         std::lock_guard<std::mutex> lock(mutex_);
@@ -490,7 +494,7 @@ void Forwarder::opened(int lane, const Connection& connection) {
         connections_ += lane == shortCalls;
     }
     connection->setCloseCallback(
-        [this, lane](const Connection& over) { closed(lane, over); }); // may be at once
+        [this, lane](const Connection& over) { closed(lane, over); }); // may be called immediately
     send();
 }
 
@@ -507,7 +511,7 @@ void Forwarder::closed(int number, const Connection& connection) {
             lane.isConfirming = false;
             refuses = holds_ && number == shortCalls;
             if (number == shortCalls) {
-                isMaintenance_.clear(); // the next vehicle may have others
+                isMaintenance_.clear(); // the next vehicle may have other objects
                 lanes_[longCalls].isMissing = false;
             }
         }
@@ -537,7 +541,7 @@ void Forwarder::connect(int lane) {
     }
 }
 
-// Fails requests. Prints the number of one-way requests, whose clients receive no error.
+// Fails requests. Prints the number of one-way requests, because their clients receive no error.
 void Forwarder::fail(const Requests& requests, std::exception_ptr why) {
     size_t oneways = 0;
     for (const auto& request : requests) {
@@ -564,7 +568,7 @@ void Forwarder::failWaiting(std::chrono::steady_clock::time_point due, std::exce
     Requests out;
     {
         std::lock_guard<std::mutex> lock(mutex_);
-        const auto clients = clients_; // pop drops those that have left
+        const auto clients = clients_; // pop removes disconnected clients
         for (const auto& [connection, client] : clients)
             while (!client->requests.empty() && client->requests.front()->since < due)
                 out.push_back(pop(client));
@@ -650,7 +654,7 @@ void Forwarder::stop() {
     failAll(std::make_exception_ptr(Ice::CommunicatorDestroyedException(__FILE__, __LINE__)));
 }
 
-// ---- from the vehicle to the clients ----
+// ---- vehicle to clients ----
 
 void Forwarder::takeCallback(std::shared_ptr<Request> request) {
     const Ice::Current& current = request->current;
@@ -659,7 +663,7 @@ void Forwarder::takeCallback(std::shared_ptr<Request> request) {
         std::lock_guard<std::mutex> lock(mutex_);
         const auto owner = owners_.find(current.id);
         if (owner != owners_.end()) {
-            if (owner->second.size() == 1) // else it is not known which is meant
+            if (owner->second.size() == 1) // otherwise the owner is ambiguous
                 addressee = *owner->second.begin();
         } else {
             std::set<Connection> callers;
@@ -676,12 +680,12 @@ void Forwarder::takeCallback(std::shared_ptr<Request> request) {
     };
     if (!addressee)
         return isMissing(current);
-    // A one-way request is sent two-way: only a reply shows whether the object exists.
+    // A one-way request is sent two-way, because only a reply shows whether the object exists.
     Request asked = *request;
     asked.current.requestId = 1;
     try {
         asked.sendTo(addressee->createProxy(current.id), request->response, request->failed);
-    } catch (const Ice::Exception&) { // it has just left
+    } catch (const Ice::Exception&) { // the client has just disconnected
         isMissing(current);
     }
 }

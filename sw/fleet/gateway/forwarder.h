@@ -3,12 +3,12 @@
 // forwarder: passes the requests of many clients to the vehicle, and the vehicle's requests back to
 // them.
 //
-// Clients take turns by bytes (turns.h): first the subjects, which are certificates or hosts, then
-// the connections of each. There are two connections to the vehicle, since on one connection a
-// short message waits for the long ones before it: a lane for short calls, and one for calls that
-// are long or have long replies. Few requests are under way on each. A one-way request counts until
-// a reply to a later request shows that it has arrived. A request goes at most once, and those of
-// one client go in their order.
+// Clients take turns by bytes (turns.h): first the subjects (certificates or hosts), then the
+// connections of each subject. There are two connections to the vehicle, because on one connection
+// a short message waits for the long ones before it: a lane for short calls, and a lane for calls
+// that are long or have long replies. Few requests are in flight on each. A one-way request counts
+// until a reply to a later request shows that it has arrived. Each request is sent at most once,
+// and the requests of one client are sent in order.
 
 #pragma once
 
@@ -50,34 +50,34 @@ struct Request {
     std::string subject;      // certificate's subject, or host
     bool mayMaintain = false; // true: may call objects for maintenance
     std::shared_ptr<Client> client;
-    int lane = 0;           // lane that it was sent on
+    int lane = 0;           // lane on which it was sent
     bool isCounted = false; // counted in the lane, until it has arrived
 };
 
-// Forwarder holds the clients' requests until their turn comes.
+// Holds the clients' requests until their turn.
 class Forwarder {
 public:
-    // `vehicle`: a proxy with the vehicle's endpoint. `wait`: time that a request may wait for its
-    // turn before it fails.
+    // `vehicle`: a proxy with the vehicle's endpoint. `wait`: longest time that a request waits for
+    // its turn before it fails.
     Forwarder(const std::shared_ptr<Ice::ObjectPrx>& vehicle, std::chrono::seconds wait);
 
-    // Takes a client's request. Blocks while requests of 256 KiB of its subject wait here, unless
+    // Takes a client's request. Blocks while 256 KiB of requests of its subject wait here, unless
     // it is the first request of one of the subject's 200 clients. At most 16 requests of a subject
     // block at a time; further ones fail, and a one-way request that fails closes its connection.
     void take(std::shared_ptr<Request> request);
     // Passes a request of the vehicle to the only client that has passed a proxy of this identity
-    // to the vehicle, or if no client has, to the only client with a two-way call in progress.
-    // Answers ObjectNotExistException if two clients qualify, or no client does.
+    // to the vehicle; if there is none, to the only client with a two-way call in progress. Replies
+    // ObjectNotExistException if two clients qualify, or none.
     void takeCallback(std::shared_ptr<Request> request);
     // Sets the adapter that dispatches the vehicle's requests on the clients' connections.
     void setCallbacks(std::shared_ptr<Ice::ObjectAdapter> adapter);
 
-    // Connects to the vehicle and keeps the connection; call it now and then. Afterwards requests
-    // that arrive without a connection get ObjectNotExistException instead of waiting.
+    // Connects to the vehicle and keeps the connection; to be called periodically. Afterwards
+    // requests that arrive without a connection get ObjectNotExistException instead of waiting.
     void hold();
     unsigned session() const; // number of the current connection; 0 without one
     void refuseWaiting();     // fails waiting requests with ObjectNotExistException
-    // Fails requests under way that are older than `age`: it is unknown whether they were executed.
+    // Fails requests in flight that are older than `age`: it is unknown whether they were executed.
     void giveUp(std::chrono::milliseconds age);
     void failLateRequests(); // call it now and then
     void stop();             // fails all waiting requests
@@ -85,19 +85,19 @@ public:
 private:
     using Connection = std::shared_ptr<Ice::Connection>;
     using Requests = std::vector<std::shared_ptr<Request>>;
-    using Object = std::pair<Ice::Identity, std::string>; // and its facet
+    using Object = std::pair<Ice::Identity, std::string>; // identity and facet
     enum { shortCalls, longCalls, lanes };
     struct Lane {
         Connection connection;
         bool isConnecting = false, isMissing = false;  // no channel was free for it
         std::deque<std::shared_ptr<Request>> underWay; // in the order sent
-        size_t requests = 0, bytes = 0;                // chosen or under way
+        size_t requests = 0, bytes = 0;                // chosen or in flight
         bool isConfirming = false;
     };
     struct Subject {
         Turns<const Client*> turns;
         std::set<std::shared_ptr<Client>> clients;
-        size_t bytes = 0, blocked = 0; // waiting here; threads
+        size_t bytes = 0, blocked = 0; // bytes waiting here; blocked threads
     };
     std::shared_ptr<Client> clientOf(const Request& request);
     void forget(const Connection& connection);
@@ -131,18 +131,19 @@ private:
     std::shared_ptr<Ice::ObjectAdapter> callbacks_;
     mutable std::mutex mutex_; // guards all members below
     std::condition_variable room_;
-    Turns<std::string> turns_; // of the subjects
+    Turns<std::string> turns_; // turns of the subjects
     std::map<std::string, Subject> subjects_;
     std::map<Connection, std::shared_ptr<Client>> clients_;
-    std::map<Ice::Identity, std::set<Connection>> owners_; // of objects that the vehicle calls
+    std::map<Ice::Identity, std::set<Connection>> owners_; // clients by object that the vehicle
+                                                           // calls
     std::array<Lane, lanes> lanes_;
     std::set<std::shared_ptr<Request>> sent_;                     // without a reply so far
     std::deque<std::shared_ptr<Request>> ready_;                  // chosen, and may be sent
     std::map<Object, Requests> asked_;                            // waiting for the object's type
     std::map<Object, bool> isMaintenance_;                        // by object, in this session
-    std::set<std::pair<Ice::Identity, std::string>> longReplies_; // of objects and operations
+    std::set<std::pair<Ice::Identity, std::string>> longReplies_; // objects and operations
     bool isSending_ = false, stopped_ = false, holds_ = false;
-    unsigned connections_ = 0; // to the vehicle, so far
+    unsigned connections_ = 0; // number of connections to the vehicle so far
 };
 
 } // namespace gateway

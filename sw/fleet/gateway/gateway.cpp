@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
 // gateway: a stock Ice server that passes requests to the vehicle. Ice programs in any language and
-// of any version, several at a time, reach the vehicle's objects here, and the vehicle's calls
-// reach a server on the ground.
+// of any version, several at a time, reach the vehicle's objects through it, and the vehicle's
+// calls reach a server on the ground.
 //
-// Endpoints, TLS, WebSocket, compression and connections are Ice's; forwarder.h shares the radio.
+// Endpoints, TLS, WebSocket, compression and connections are handled by Ice; forwarder.h shares the
+// radio.
 
 #include "gateway_options.h"
 #include "registration.h"
@@ -85,7 +86,7 @@ Take toStation(const std::shared_ptr<Ice::ObjectPrx>& station, const std::string
             try {
                 std::rethrow_exception(why);
             } catch (const Ice::SocketException& e) {
-                std::cerr << "gateway: the UAV calls, and nobody listens at " + where + ": " +
+                std::cerr << "gateway: the UAV calls, but no server listens at " + where + ": " +
                                  e.what() + "\n";
             } catch (...) {
             }
@@ -143,7 +144,7 @@ std::shared_ptr<Ice::ObjectAdapter> adapterOf(const std::shared_ptr<Ice::Communi
 // Vehicle is one vehicle reached by the modem, and the adapters that lead to it.
 class Vehicle {
 public:
-    // `place`: index of the vehicle in the fleet; added to the given ports.
+    // `place`: index of the vehicle in the fleet, which is added to the given ports.
     Vehicle(const std::shared_ptr<Ice::Communicator>& ic, const Options& o, const Rights& rights,
             const std::string& name, int address, int place,
             const std::shared_ptr<Ice::ObjectPrx>& publisher)
@@ -164,7 +165,7 @@ public:
                                  ? ic->stringToProxy("uav@" + name)
                                  : opened->createDirectProxy(Ice::stringToIdentity("uav"));
         if (ic->getDefaultLocator())
-            opened->destroy(); // until the vehicle is here
+            opened->destroy(); // until the vehicle is connected
         else
             adapters_.push_back(opened);
         if (!o.maintenance.empty())
@@ -243,7 +244,7 @@ void serve(const std::shared_ptr<Ice::Communicator>& ic, const Options& o) {
     ask(&Registration::leave);
     for (Vehicle& vehicle : vehicles)
         vehicle.forwarder.stop();
-    ic->destroy(); // while the objects that its callbacks use exist
+    ic->destroy(); // while the objects used by its callbacks exist
 }
 
 } // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// gateway_options: parses the gateway's options (CLI11). Keys come from files, never from
+// gateway_options: parses the gateway's options (CLI11). Keys are read from files, never from
 // arguments.
 
 #include "gateway_options.h"
@@ -76,7 +76,7 @@ void addOptions(CLI::App& app, Options& o) {
     app.add_flag("!--no-setup", o.setUp, "the modem is set up already");
     app.add_flag("!--transparent", o.isApi, "the modem is used in transparent mode, not API mode");
     app.add_flag("--wire", o.isWire,
-                 "no modems: the port is wired to the vehicle's board, whose jumper says so");
+                 "no modems: the port is wired to the vehicle's board, and its jumper PB1 is set");
     app.add_option("-l,--listen", o.listen,
                    "HOST:PORT of this machine for clients, [::1]:PORT too; port 0: any, it is "
                    "printed. Or Ice's endpoints, e.g. \"ssl -p 10001\"");
@@ -97,7 +97,7 @@ void addOptions(CLI::App& app, Options& o) {
         ->check(CLI::Range(1, 3600));
     app.add_option("-t,--trace", o.trace, "0 errors, 1 link and connections, 2 AT commands")
         ->check(CLI::Range(0, 2));
-    app.footer("Ice's properties are options, too, e.g. --IceSSL.CertFile=gateway.p12. With "
+    app.footer("Properties of Ice are also options, e.g. --IceSSL.CertFile=gateway.p12. With "
                "--Ice.Default.Locator\neach vehicle is in IceGrid's registry by its name, uav1 for "
                "address 1, while it is here.");
 }
@@ -150,7 +150,7 @@ std::map<std::string, int> fleetOf(const Options& o) {
         const size_t equals = text.find('=');
         const std::string name = text.substr(0, equals);
         const std::string number = equals < text.size() ? text.substr(equals + 1) : "";
-        char* end = nullptr; // a number that is too large for a long becomes the largest one
+        char* end = nullptr; // a number too large for a long becomes the largest one
         const long address = std::strtol(number.c_str(), &end, 0);
         if (name.empty() || number.empty() || !std::isdigit(number[0]) || address > 0xFFFF || *end)
             throw std::runtime_error("'" + text + "': give NAME=ADDRESS, as uav7=0x0007");

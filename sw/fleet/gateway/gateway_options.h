@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// gateway_options: the gateway's options, and what Ice gets of them: properties and endpoints.
+// gateway_options: the gateway's options, and the properties and endpoints that they set in Ice.
 
 #pragma once
 
@@ -22,15 +22,15 @@ struct Options {
 };
 
 void addOptions(CLI::App& app, Options& o);
-// Sets Ice's properties, those of the radio included, where the command line leaves them open.
+// Sets Ice's properties, including the radio's, unless the command line sets them.
 void setProperties(const std::shared_ptr<Ice::Properties>& p, const Options& o);
 
 // Returns the vehicles' names and addresses. Throws if they make no sense.
 std::map<std::string, int> fleetOf(const Options& o);
 // Returns the endpoint of the vehicle, and of its calls, at the serial port.
 std::string radioEndpoint(const Options& o, int address);
-// Returns Ice's endpoints of "HOST:PORT" or "[::1]:PORT", or of other words, which are endpoints
-// already, with ports that are `place` above the given ones; 0 stays: any.
+// Returns Ice endpoints for "HOST:PORT" or "[::1]:PORT", or for text that already is an endpoint.
+// Ports are increased by `place`; port 0 (any) stays 0.
 std::string endpointsOf(const std::string& text, int place = 0);
 
 } // namespace gateway

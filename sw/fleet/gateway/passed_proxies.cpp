@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// passed_proxies: reads a proxy at each offset, and keeps those that are one.
+// passed_proxies: tries to read a proxy at each offset, and keeps the valid ones.
 
 #include "passed_proxies.h"
 
@@ -8,10 +8,10 @@ namespace gateway {
 
 namespace {
 
-constexpr size_t head = 6;          // of an encapsulation: size, encoding
+constexpr size_t head = 6;          // bytes of an encapsulation's header: size, encoding
 constexpr size_t longestName = 254; // a size of one byte
 
-// Reader takes bytes from `at`; it fails at the end, or where others stand than are expected.
+// Reads bytes from `at`; fails at the end, or if the bytes are not the expected ones.
 struct Reader {
     const std::vector<Ice::Byte>& bytes;
     size_t at;

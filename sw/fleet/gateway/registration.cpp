@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// registration: registers a vehicle in IceGrid and withdraws it, as its session starts and ends.
+// registration: registers a vehicle in IceGrid when its session starts, and withdraws it when the
+// session ends.
 
 #include "registration.h"
 
@@ -90,7 +91,7 @@ bool Registration::isOwn(const std::shared_ptr<Ice::ObjectPrx>& found) const {
     return found && own_ && found->ice_toString() == own_->ice_toString();
 }
 
-// Opens the adapter unless it is open, and registers this ground station.
+// Opens the adapter if it is closed, and registers this ground station.
 void Registration::come() {
     const unsigned session = forwarder_.session();
     if (!adapter_) {
@@ -143,7 +144,7 @@ void Registration::look() {
     }
 }
 
-// Removes this ground station from the registry, unless another one is registered by now.
+// Removes this ground station from the registry, unless another one is registered now.
 void Registration::leave() {
     if (!isEntered_)
         return;

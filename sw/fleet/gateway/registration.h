@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// registration: one vehicle's entry in IceGrid's registry, and the object adapter that it leads to.
-// Both exist while this ground station holds the vehicle.
+// registration: one vehicle's entry in IceGrid's registry, and the object adapter that it refers
+// to. Both exist while this ground station holds the vehicle.
 //
-// A ground station holds a vehicle while it has a connection to it. The ground station that got the
-// vehicle last is in the registry; another one that still receives the vehicle stands by.
+// A ground station holds a vehicle while it has a connection to it. The registry contains the
+// ground station that connected last; another one that still receives the vehicle stands by.
 
 #pragma once
 
@@ -30,8 +30,8 @@ private:
     const std::shared_ptr<Ice::ObjectPrx> publisher_;
 };
 
-// Replaces the vehicle's proxy in a call of Station.vehicleState by `reached`, which leads clients
-// to it; a null proxy stays.
+// Replaces the vehicle's proxy in a call of Station.vehicleState by `reached`, with which clients
+// reach the vehicle; a null proxy is kept.
 void replaceVehicle(
     Request& call, const std::shared_ptr<Ice::Communicator>& ic,
     const std::function<std::shared_ptr<Ice::ObjectPrx>(const std::shared_ptr<Ice::ObjectPrx>&)>&
@@ -40,8 +40,8 @@ void replaceVehicle(
 class Registration {
 public:
     using Open = std::function<std::shared_ptr<Ice::ObjectAdapter>()>;
-    // `open` creates the adapter, which is not yet active. `locator`: null without a registry; then
-    // look() and leave() are never called.
+    // `open` creates the adapter, not yet active. `locator`: null without a registry; then look()
+    // and leave() are never called.
     Registration(std::string name, Forwarder& forwarder, const Events& events, Open open,
                  const std::shared_ptr<Ice::LocatorPrx>& locator)
         : open(std::move(open)), name_(std::move(name)), forwarder_(forwarder), events_(events),
@@ -49,7 +49,7 @@ public:
     // Checks whether the vehicle is connected, and which ground station is registered; call it
     // every `lookMs`. Throws Ice's exceptions if no registry answers.
     void look();
-    void leave(); // call it when the program ends
+    void leave(); // call it before the program ends
 
     static constexpr int lookMs = 250, looksBetweenQuestions = 4;
     static constexpr int patienceMs = 2000; // time-out of a registry or another ground station

@@ -48,14 +48,14 @@ Rights::Rights(const std::string& path) : isOpen_(false) {
     try {
         const auto rules = nlohmann::json::parse(file);
         if (!rules.is_array())
-            refuse("it is no list");
+            refuse("it is not a list");
         for (const auto& rule : rules) {
             rules_.push_back({rule.at("who"), rule.at("identities"), rule.at("operations")});
             if (rule.size() != 3)
                 refuse("rule " + std::to_string(rules_.size()) + " has more than these");
         }
     } catch (const nlohmann::json::parse_error& e) {
-        refuse("it is no JSON at byte " + std::to_string(e.byte));
+        refuse("invalid JSON at byte " + std::to_string(e.byte));
     } catch (const nlohmann::json::exception&) {
         refuse("rule " + std::to_string(rules_.size() + 1) + " has another form");
     }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// rights: gives clients of the gateway the right to call operations, by a JSON file of rules:
+// rights: defines which clients of the gateway may call which operations, by a JSON file of rules:
 //
 //   [{"who": "CN=pilot*", "identities": ["*"], "operations": ["*"]},
 //    {"who": "",          "identities": ["uav", "hwengine*"], "operations": ["get*", "isAlive"]}]
 //
-// `who` is the subject of the client's certificate, as a shell pattern; a client without a
-// certificate has the subject "". A call passes if one rule allows it. Every caller of an
-// object may ask it for its type and ping it.
+// `who` is a shell pattern for the subject of the client's certificate; a client without a
+// certificate has the subject "". A call is allowed if one rule allows it. Every caller of an
+// object may also ask for its type and ping it.
 
 #pragma once
 
@@ -17,7 +17,7 @@ namespace gateway {
 
 class Rights {
 public:
-    Rights() = default; // everybody may call everything
+    Rights() = default; // every client may call every operation
     // Throws std::runtime_error with the reason if the file has another form.
     explicit Rights(const std::string& path);
 

@@ -2,9 +2,9 @@
 //
 // turns: fair turns by bytes among any number of flows (self-clocked fair queueing).
 //
-// A flow that begins to wait has the clock's time as its tag, and each turn adds its bytes. The
-// flow that would end first goes next, so one with little to send waits for little more than the
-// bytes that are under way.
+// A flow that begins to wait gets the current clock value as its tag, and each turn adds its bytes.
+// The flow that would end first is served next, so a flow with little to send waits only a little
+// longer than for the bytes in flight.
 
 #pragma once
 
@@ -38,7 +38,7 @@ public:
         if (entry == entries_.end())
             return;
         entry->second.isWaiting = false;
-        for (auto each = entries_.begin(); each != entries_.end();) { // these begin as new ones do
+        for (auto each = entries_.begin(); each != entries_.end();) { // these begin as new flows do
             const bool isOver = !each->second.isWaiting && each->second.tag <= clock_;
             each = isOver ? entries_.erase(each) : std::next(each);
         }

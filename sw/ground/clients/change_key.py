@@ -21,15 +21,15 @@ import provide_key
 
 
 def write(path, lines):
-    """Writes the file with these lines, whole or not at all, for its owner alone."""
-    beside = path + ".new"
+    """Writes the file with these lines atomically, readable by its owner only."""
+    temporary = path + ".new"
     with contextlib.suppress(FileNotFoundError):
-        os.remove(beside)
-    with open(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w") as f:
+        os.remove(temporary)
+    with open(os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w") as f:
         f.write("\n".join(lines) + "\n")
         f.flush()
         os.fsync(f.fileno())
-    return beside
+    return temporary
 
 
 def keys_of(lines, address):
@@ -47,7 +47,7 @@ def keys_of(lines, address):
 
 
 def talk(args, key_file, what):
-    """Calls `what` with the vehicle's KeyRing, in its own session."""
+    """Calls `what` with the vehicle's KeyRing, in a separate session."""
     communicator = plugged.initialize({"Ice.Default.InvocationTimeout": str(1000 * args.patience)},
                                       args.plugin, args.guard,
                                       key_file)
@@ -110,7 +110,7 @@ def main():
     parser.add_argument("--plugin", required=True, help="folder of libxbeeat.so.37")
     parser.add_argument("--slice", required=True, help="Autopilot.ice")
     parser.add_argument("--address", type=lambda text: int(text, 0), default=1,
-                        help="of the vehicle")
+                        help="address of the vehicle")
     parser.add_argument("--guard", type=int, default=1000, help="guard time of the modem, ms")
     parser.add_argument("--patience", type=int, default=60, help="seconds that an answer may take")
     args = parser.parse_args()

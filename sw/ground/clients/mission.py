@@ -24,8 +24,8 @@ import plugged
 from mission_log import Air, Log, report, whole
 from PIL import Image, ImageDraw
 
-# Corners: a core that takes a pixel at the threshold for a brighter one passed with 121 of them,
-# and failed with 313.
+# Corners of a complete result: a core that treats a pixel at the threshold as brighter passed with
+# 121 corners, and failed with 313.
 ENOUGH = 300
 IP = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../../ip")
 
@@ -67,7 +67,7 @@ def initialize(args):
         "Ice.Default.InvocationTimeout": str(1000 * args.patience),
         "Ice.ACM.Close": "0",
         "Station.Endpoints": args.endpoint,
-        # of two devices in one process: where a proxy of the UAV leads
+        # with two devices in one process: the device for proxies of the UAV
         **({"XBeeAT.Device": args.device} if args.observer_device else {}),
     }, args.plugin, args.guard, args.key)
 
@@ -106,8 +106,8 @@ def draw(frame, result, path):
         r = 4 + 8 * f.score // max(strongest, 1)
         pen.ellipse((x - r, y - r, x + r, y + r), outline=(255, 80, 0), width=2)
         pen.point((x, y), fill=(0, 255, 80))
-    with whole(path) as beside:
-        picture.save(beside, format="PNG")
+    with whole(path) as temporary:
+        picture.save(temporary, format="PNG")
 
 
 def check_against_reference(args, frame, result):
@@ -129,7 +129,7 @@ def check_against_reference(args, frame, result):
 
 
 def begin(function, *args):
-    """Calls a function in a thread. Returns the future of what becomes of it."""
+    """Calls a function in a thread. Returns a future of its result."""
     future = concurrent.futures.Future()
 
     def run():
@@ -146,7 +146,7 @@ def part_of(folder):
     """Imports FOLDER/ground.py."""
     path = os.path.join(folder, "ground.py")
     if not os.path.exists(path):
-        raise RuntimeError("the core in %s has no part in a mission: there is no ground.py" %
+        raise RuntimeError("the core in %s has no part in a mission: ground.py is missing" %
                            folder)
     spec = importlib.util.spec_from_file_location("ground_" + os.path.basename(folder), path)
     module = importlib.util.module_from_spec(spec)
@@ -155,7 +155,7 @@ def part_of(folder):
 
 
 def differences(chip):
-    """Lists the blocks whose registers differ between chip and firmware."""
+    """Lists the blocks with different registers in chip and firmware."""
     return ["%s: its registers have the hash 0x%08X in the chip, 0x%08X in the firmware"
             % (c.block, c.chip & 0xFFFFFFFF, c.firmware & 0xFFFFFFFF)
             for c in chip.contracts() if c.chip != c.firmware]
@@ -177,7 +177,7 @@ def explain(communicator, args, failure):
 
 
 class Mission:
-    """The calls of a mission, step by step, to the vehicle 1 unless a step says otherwise."""
+    """The calls of a mission, step by step; to vehicle 1 unless a step names another."""
 
     def __init__(self, args, communicator):
         import Autopilot  # made by loadSlice
@@ -232,7 +232,7 @@ class Mission:
         return result
 
     def call_others(self):
-        """Begins to call the other vehicles, and by the second ground all."""
+        """Starts calling the other vehicles, and all vehicles from the second ground station."""
         others = [begin(self.call_vehicle, address)
                   for address in range(2, self.args.vehicles + 1)]
         if self.args.observer_device:
@@ -240,7 +240,7 @@ class Mission:
         return others
 
     def call_vehicle(self, address):
-        """Calls the vision core of one more vehicle, while others are called."""
+        """Calls the vision core of another vehicle, while others are called."""
         frame = os.path.join(self.args.out, f"before{address}.png")
         engine = self.autopilot.HwProcessingEnginePrx.uncheckedCast(
             self.proxy("hwengine1", address))
@@ -254,7 +254,8 @@ class Mission:
         self.log.note(f"{name}: {result.found} corners")
 
     def observe(self):
-        """Is a second ground with a modem and keys of its own: asks each vehicle for its state."""
+        """Acts as a second ground station with a separate modem and keys: asks each vehicle for its
+        state."""
         args, device = self.args, self.args.observer_device
         plugged.use_second_clock()
         with plugged.initialize({"XBeeAT.Trace": str(args.trace), "Ice.ACM.Close": "0",
@@ -294,7 +295,7 @@ class Mission:
         others = self.call_others()
         self.hear()
         self.check(result)
-        # A part may return a function to be called after all parts.
+        # A part may return a function to call after all parts.
         ends = [part.fly(self.log, self.proxy, f"{result.found} corners") for part in self.parts]
         for end in filter(None, ends):
             end()

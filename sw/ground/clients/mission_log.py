@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""mission_log: what a mission prints, and keeps in the folder of its results."""
+"""mission_log: prints the steps of a mission, and stores them in the folder of its results."""
 
 import contextlib
 import glob
@@ -15,7 +15,8 @@ RESULTS = ("after.png", "report.md", "report.json", "calls.jsonl")
 
 
 class Air:
-    """The simulator's counters (testbench/status/sim_status.toml); real hardware has none."""
+    """The simulator's counters (testbench/status/sim_status.toml); real hardware has no
+    counters."""
 
     COUNTERS = ("ns", "cycles", "bytesUp", "bytesDown", "packets", "lost", "wallNs")
 
@@ -33,14 +34,14 @@ class Air:
 
 @contextlib.contextmanager
 def whole(path):
-    """Returns a temporary name for a file that takes the name `path` when it is complete."""
-    beside = path + ".new"
+    """Returns a temporary name for a file that is renamed to `path` when it is complete."""
+    temporary = path + ".new"
     try:
-        yield beside
-        os.replace(beside, path)
+        yield temporary
+        os.replace(temporary, path)
     finally:
         with contextlib.suppress(FileNotFoundError):
-            os.remove(beside)
+            os.remove(temporary)
 
 
 class Log:
@@ -50,7 +51,7 @@ class Log:
         self.air, self.out, self.build = air, out, build  # folders: of the results, of the build
         self.rows = []
         followers = glob.glob(os.path.join(glob.escape(out), "after[0-9]*.png"))
-        # Those of the mission before; a link is removed, and what it leads to stays.
+        # Removes the results of the previous mission; of a link, only the link.
         for path in [*(os.path.join(out, name) for name in RESULTS), *followers]:
             with contextlib.suppress(FileNotFoundError):
                 os.remove(path)
@@ -69,7 +70,7 @@ class Log:
             self.live.flush()
 
     def note(self, text):
-        """Prints a line that is no call, on the terminal and on the page."""
+        """Prints a line that is not a call, on the terminal and on the page."""
         self.say(text)
         self.follow({"who": "ground", "what": text})
 
@@ -119,8 +120,8 @@ def report(args, log, result, station, air):
         lines.append(f"| {' | '.join(map(str, cells))} |")
     lines += ["", "| corner | x | y | score |", "|---|---|---|---|"]
     lines += [f"| {i} | {f.x} | {f.y} | {f.score} |" for i, f in enumerate(result.best, 1)]
-    with whole(os.path.join(args.out, "report.md")) as beside, open(beside, "w") as f:
+    with whole(os.path.join(args.out, "report.md")) as temporary, open(temporary, "w") as f:
         f.write("\n".join(lines) + "\n")
-    with whole(os.path.join(args.out, "report.json")) as beside, open(beside, "w") as f:
+    with whole(os.path.join(args.out, "report.json")) as temporary, open(temporary, "w") as f:
         json.dump({"calls": log.rows, "found": result.found, "cycles": result.cycles,
                    "vehicle": station.params, "air": air.read() or {}}, f, indent=2)

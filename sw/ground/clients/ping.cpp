@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// ping: a C++ ground station of a few lines: pings an object, says its type and how long it took.
+// ping: a C++ ground station of a few lines: pings an object, prints its type and the duration.
 // Usage: ping "hwengine1:xbee-at -d /dev/ttyUSB0 -a 1" [count]
 
 #include <Ice/Ice.h>

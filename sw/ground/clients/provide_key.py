@@ -19,19 +19,20 @@ import time
 import tty
 
 TIOCSBRK, TIOCCBRK = 0x5427, 0x5428  # Linux' ioctl_tty(2); Python 3.11's termios lacks both
-GROUP = 0xFFFF  # in place of a vehicle's address, or a ground's
-PIPE_WAIT = 10  # s until a pipe's first bytes
-BREAK, PAUSE = 1.5, 0.5  # s; a vehicle without a key starts again each second
+GROUP = 0xFFFF  # instead of the address of a vehicle or ground station
+PIPE_WAIT = 10  # time-out for the first bytes of a pipe, s
+BREAK, PAUSE = 1.5, 0.5  # s; a vehicle without a key restarts every second
 
 
 class Failed(Exception):
-    """The vehicle has no new key; the text says why."""
+    """The vehicle has no new key; the text is the reason."""
 
 
 def address(text):
     """Returns the number of an address as key files have it."""
     if not re.fullmatch("0x[0-9a-fA-F]{1,4}", text):
-        raise argparse.ArgumentTypeError("'%s' is no address of a vehicle, 0x0001 is one" % text)
+        raise argparse.ArgumentTypeError(
+            "'%s': expected the address of a vehicle, such as 0x0001" % text)
     return int(text, 16)
 
 
@@ -67,12 +68,12 @@ def read_key(path, vehicle):
             words = " ".join(line.split("#")[0].split())
             found = re.fullmatch("(0x[0-9a-fA-F]{1,4} )?([0-9a-fA-F]{32})( [0-9a-fA-F]{32})?",
                                  words)
-            whose = int(found[1], 16) if found and found[1] else None
-            if words and (not found or whose in keys):
+            owner = int(found[1], 16) if found and found[1] else None
+            if words and (not found or owner in keys):
                 raise Failed("'%s', line %d: give [ADDRESS] KEY [NEXT], a key as 32 hexadecimal "
                              "digits, one line a vehicle" % (path, number))
             if words:
-                keys[whose] = found[2].lower()
+                keys[owner] = found[2].lower()
     if not keys:
         raise Failed("'%s' has no key, 32 hexadecimal digits: openssl rand -hex 16 makes one" %
                      path)
@@ -83,7 +84,7 @@ def read_key(path, vehicle):
 
 
 def read_line(port, seconds):
-    """Returns what arrives until a line has ended or the time is over."""
+    """Returns the bytes that arrive until the end of a line or the time-out."""
     text, end = b"", time.monotonic() + seconds
     while b"\n" not in text and select.select([port], [], [], max(0, end - time.monotonic()))[0]:
         text += os.read(port, 100)
@@ -115,14 +116,14 @@ def main():
     what = parser.add_mutually_exclusive_group(required=True)
     what.add_argument("--key", help="file with the key, mode 0600")
     what.add_argument("--open", action="store_true",
-                      help="in place of a key: who has a radio may call the vehicle")
+                      help="instead of a key: anyone with a radio may call the vehicle")
     what.add_argument("--protect", action="store_true",
-                      help="in place of a key: set read protection level 1; switch the vehicle off "
+                      help="instead of a key: set read protection level 1; switch the vehicle off "
                       "and on then")
     parser.add_argument("--old", help="file with the vehicle's present key, if it has one, and its "
                         "jumper is not wired")
     parser.add_argument("--address", type=address, default=1,
-                        help="that the vehicle gets, and its line in the file (default: 0x0001)")
+                        help="address for the vehicle, and its line in the file (default: 0x0001)")
     second = parser.add_mutually_exclusive_group()
     second.add_argument("--ground", type=address, help="address of a second ground's modem, which "
                         "the vehicle serves, too, under this key of its own")
@@ -131,11 +132,11 @@ def main():
     second.add_argument("--group", action="store_const", dest="ground", const=GROUP,
                         help="gives it the key of calls to all vehicles, in the line 0xffff")
     parser.add_argument("--patience", type=int, default=120,
-                        help="seconds without a vehicle until it gives up")
+                        help="time-out without a vehicle, s")
     args = parser.parse_args()
     try:
-        whose = GROUP if args.ground == GROUP else args.address
-        key = "" if args.protect or args.open else read_key(args.key, whose)
+        owner = GROUP if args.ground == GROUP else args.address
+        key = "" if args.protect or args.open else read_key(args.key, owner)
         command = ("protect" if args.protect else
                    ("ground %04x %s" % (args.ground, key)).strip() if args.ground is not None else
                    ("fellow %04x %s" % (args.fellow, key)).strip() if args.fellow is not None else

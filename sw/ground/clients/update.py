@@ -24,15 +24,15 @@ from mission_log import Air
 HEADER = struct.Struct("<8I64s64s")  # sw/update/slots.h
 MAGIC = 0x1CE50C05
 KEYS = 0x5359454B
-OBJECTS = {0x31564155: "update", 0x31475046: "fpga", KEYS: "update"}  # by product
+OBJECTS = {0x31564155: "update", 0x31475046: "fpga", KEYS: "update"}  # by product number
 PIECE, PIECES_ON_THE_WAY, DICTIONARY = 4096, 3, 65535
 TEXT = {
     "foreignImage": "the package is not for this kind of vehicle, or not for its board",
-    "oldVersion": "its version is not above the vehicle's confirmed one",
+    "oldVersion": "its version must be greater than the vehicle's confirmed version",
     "wrongSignature": "it is not signed with this vehicle's keys",
-    "damagedImage": "what arrived is not what was signed; try again",
+    "damagedImage": "the received bytes do not match the signature; try again",
     "busyNow": "another update is under way",
-    "onTrial": "what the vehicle runs is not confirmed yet; it goes back in a minute",
+    "onTrial": "the running image is not confirmed yet; the vehicle reverts within a minute",
     "needsOther": "it needs a newer bitstream, or firmware, that was confirmed: send that first; a "
                   "list of keys needs the list before it, and what runs signed with one of its "
                   "keys",
@@ -45,7 +45,7 @@ IN_FLIGHT = "the vehicle flies: it takes no update before it has landed"
 
 
 class Failed(Exception):
-    """The update is over; the text says why."""
+    """The update has ended; the text is the reason."""
 
 
 def read_package(path):
@@ -57,11 +57,11 @@ def read_package(path):
     while at < len(data):
         head = data[at:at + HEADER.size]
         if len(head) < HEADER.size:
-            raise Failed("'%s' is no package, or is cut short: pack_update makes them" % path)
+            raise Failed("'%s': expected a complete package from pack_update" % path)
         magic, product, version, size, base = HEADER.unpack(head)[:5]
         image = data[at + HEADER.size:at + HEADER.size + size]
         if magic != MAGIC or product not in OBJECTS or len(image) < size:
-            raise Failed("'%s' is no package, or is cut short: pack_update makes them" % path)
+            raise Failed("'%s': expected a complete package from pack_update" % path)
         if product == KEYS:
             if last != KEYS:
                 parts.append(("keys", []))
@@ -79,8 +79,8 @@ def read_package(path):
 
 
 def read_clock(air):
-    """Returns the vehicle's time in s and the bytes on the air to it: the simulator's, else the
-    wall clock's and none."""
+    """Returns the vehicle's time, s, and the bytes on the air to it: from the simulator; otherwise
+    wall-clock time and no bytes."""
     counters = air.read()
     return (counters["ns"] / 1e9, counters["bytesUp"]) if counters else (time.monotonic(), 0)
 
@@ -115,7 +115,7 @@ class Vehicle:
         self.proxy, self.patience = proxy, patience
 
     def persist(self, function):
-        """Returns the function's result; tries again while the vehicle does not answer."""
+        """Returns the function's result; retries while the vehicle does not reply."""
         end = time.monotonic() + self.patience
         while True:
             try:
@@ -184,7 +184,7 @@ def send_keys(vehicle, lists, say):
 
 
 def transfer(vehicle, header, image, say, air):
-    """Sends an image, over links that are lost, too, until the vehicle has begun to check it."""
+    """Sends an image, also over links that are lost, until the vehicle has begun to check it."""
     # The vehicle's processor cannot read the FPGA's flash as memory.
     dictionary = DICTIONARY if vehicle.proxy.ice_getIdentity().name == "update" else 0
 
@@ -206,7 +206,7 @@ def transfer(vehicle, header, image, say, air):
             vehicle.expect(vehicle.proxy.finish())
             return
         except Ice.LocalException as e:
-            say("the link was lost (%s): going on where it was" % type(e).__name__)
+            say("the link was lost (%s): continuing" % type(e).__name__)
             if str(vehicle.status().phase) == "idle":
                 begin()
 
@@ -248,10 +248,10 @@ def update(vehicle, images, say, air, rehearses):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("package", help="what pack_update has written")
+    parser.add_argument("package", help="file from pack_update")
     parser.add_argument("--device", help="serial port of the modem")
     parser.add_argument("--proxy",
-                        help="in place of --device: where the object is, as 'update:tcp -h host "
+                        help="instead of --device: proxy of the object, as 'update:tcp -h host "
                              "-p 4061'")
     parser.add_argument("--plugin", help="folder of libxbeeat.so.37")
     parser.add_argument("--slice", required=True, help="Update.ice")
@@ -261,7 +261,7 @@ def main():
     parser.add_argument("--rehearse", action="store_true",
                         help="confirm nothing: see it start, and go back by itself")
     parser.add_argument("--patience", type=int, default=120,
-                        help="seconds without an answer until it gives up")
+                        help="time-out without a reply, s")
     args = parser.parse_args()
     start = time.monotonic()
 
@@ -281,7 +281,7 @@ def main():
         where = args.proxy or "%s:xbee-at -d %s -a 0x0001 -s 0x0000 -t 60000" % (first, args.device)
         proxy = Update.FirmwarePrx.uncheckedCast(communicator.stringToProxy(where))
         for name, part in parts:
-            # A given proxy names the object itself where there is only one.
+            # A given proxy names the object itself if there is only one.
             own = proxy if name == first else proxy.ice_identity(
                 Ice.stringToIdentity("update" if name == "keys" else name))
             vehicle = Vehicle(Update.FirmwarePrx.uncheckedCast(own), args.patience)

@@ -12,8 +12,8 @@
 
 enum { ID, EVENT, MASK, PAGE };
 #define ALL 0xFFFFFFFFU
-#define WINDOW 8U        /* word 8 shows the core's byte address PAGE */
-#define WINDOW_BYTES 32U /* bytes of a core that words 8..15 show at once */
+#define WINDOW 8U        /* word 8 is the word at the core's byte address PAGE */
+#define WINDOW_BYTES 32U /* bytes of a core visible at once in words 8..15 */
 #define WAIT_MAX 600000  /* ms */
 
 Hw_Status Hw_Registers_Core_init(Hw_Registers_Core* self, U32 slot, U32 id,
@@ -40,7 +40,7 @@ void Hw_Registers_Core_interrupt(Hw_Registers_Core* self) {
     self->port->post(self->context, 0);
 }
 
-/* Adds text to the reason of an exception; text that does not fit ends in dots. */
+/* Appends text to the reason of an exception; text that does not fit ends in dots. */
 static void say(Hw_Registers_Core* self, Ice_String text) {
     static const char dots[] = "...";
     U32 used = (U32)strlen(self->reason), left = sizeof self->reason - sizeof dots - used;
@@ -99,8 +99,8 @@ static int number(Ice_String name, U32* value) {
     return 1;
 }
 
-/* Finds the register of a name or of a core's byte address; for the latter fills `place`. Returns 0
- * with the reason if there is none. */
+/* Finds the register with a name or at a core's byte address; for an address fills `place`. Returns
+ * 0 with the reason if it does not exist. */
 static const Hw_Register* lookUp(Hw_Registers_Core* self, Ice_String name, Hw_Register* place) {
     const Hw_Register* r = find(self, name);
     const Hw_Register* page = find(self, Ice_String_from("PAGE.ADDRESS"));
@@ -134,7 +134,7 @@ static const Hw_Register* lookUp(Hw_Registers_Core* self, Ice_String name, Hw_Re
     return 0;
 }
 
-/* Makes one access of a word. Returns 0 with the reason if the core does not answer. */
+/* Makes one access to a word. Returns 0 with the reason if the core does not respond. */
 static int transfer(Hw_Registers_Core* self, const Hw_Register* r, int isWrite, U32* value) {
     U32 before = self->port->busErrors(self->context);
     if (r->page >= 0)
@@ -164,7 +164,7 @@ Ice_Status Hw_Registers_list(Hw_RegistersPtr servant, Hw_RegisterSeq* result,
     const Hw_Registers_Core* self = (const Hw_Registers_Core*)servant;
     (void)current;
     result->size = self->count;
-    result->data = (Hw_Register*)self->table; /* it is only read */
+    result->data = (Hw_Register*)self->table; /* read only */
     return ICE_OK;
 }
 
@@ -292,7 +292,7 @@ U32 Hw_Registers_Core_poll(Hw_Registers_Core* self, U32 nowMs) {
     FSMC_write(self->slot, MASK, 0);
     events.size = takeEvents(self);
     events.data = self->events;
-    self->waits = 0; /* the next call may come once this one is answered */
+    self->waits = 0; /* the next call may start once this one is answered */
     (void)Hw_Registers_wait_response(&reply, &events);
     return HW_NEVER;
 }

@@ -56,8 +56,8 @@ static void use(TcpEndpoint_Connection* c, int fd, Ice_Byte accepted) {
     TcpEndpoint_tune(fd);
 }
 
-/* Returns the size of the message at the front; 0: it is not whole yet, or refused; -1: malformed,
- * or refused and the connection ends. */
+/* Returns the size of the message at the front; 0 if it is incomplete, or was refused; -1 if it is
+ * malformed, or was refused and the connection ends. */
 static Ice_Int frontSize(TcpEndpoint_Connection* c) {
     Ice_InputStream is;
     Ice_Int size;
@@ -109,7 +109,7 @@ static int ready(TcpEndpoint* self, Ice_Byte* buffer, Ice_Event* event) {
     return 0;
 }
 
-/* Accepts a connection; where all numbers are taken, ends another one first. */
+/* Accepts a connection; if all slots are taken, ends another one first. */
 static void acceptOne(TcpEndpoint* self, Ice_Event* event) {
     int slot = TcpEndpoint_freeSlot(self), fd;
     Ice_Int left;
@@ -206,12 +206,12 @@ static Ice_Status sendAll(void* context, int connection, const Ice_Byte* message
     if (c->over)
         closeOne(c);
     else if (ends)
-        (void)shutdown(fd, SHUT_RDWR); /* the receiver sees the end, and reports it */
+        (void)shutdown(fd, SHUT_RDWR); /* the receiver detects the end, and reports it */
     unlock(self);
     return ends ? ICE_CONNECTION_LOST : ICE_OK;
 }
 
-/* Returns the connection that was made to this peer; -1: there is none. */
+/* Returns the connection made to this peer; -1 if there is none. */
 static int connectionTo(TcpEndpoint* self, const TcpEndpoint_Place* to) {
     int slot, found = -1;
     lock(self);
@@ -225,8 +225,9 @@ static int connectionTo(TcpEndpoint* self, const TcpEndpoint_Place* to) {
     return found;
 }
 
-/* Returns the open connection to this peer, or makes it. A name's addresses are tried one after the
- * other: the server may listen on one of them only, as on 127.0.0.1 where localhost is ::1, too. */
+/* Returns the open connection to this peer, or makes it. The addresses of a name are tried in
+ * order, because the server may listen on only one of them, such as 127.0.0.1 if localhost is also
+ * ::1. */
 static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size, int* connection) {
     TcpEndpoint* self = context;
     TcpEndpoint_Place places[TCP_PLACES];
@@ -262,7 +263,7 @@ static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size
     }
     unlock(self);
     *connection = slot;
-    wakeUp(self); /* a receiving task waits only on the others */
+    wakeUp(self); /* a receiving task only waits on the others */
     return slot >= 0 ? ICE_OK : ICE_LIMIT;
 }
 
@@ -299,7 +300,8 @@ static Ice_Status listenTo(void* context, const char* options) {
     if (self->listener < 0)
         return ICE_NO_ENDPOINT;
     (void)setsockopt(self->listener, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-    (void)fcntl(self->listener, F_SETFL, O_NONBLOCK); /* a peer may be gone before it is accepted */
+    (void)fcntl(self->listener, F_SETFL, O_NONBLOCK); /* a peer may disconnect before it is
+                                                       * accepted */
     if (bind(self->listener, (struct sockaddr*)&at->at, at->size) != 0 ||
         listen(self->listener, SOMAXCONN) != 0 ||
         getsockname(self->listener, (struct sockaddr*)&at->at, &at->size) != 0) {

@@ -26,22 +26,22 @@
 typedef struct TcpEndpoint_Connection {
     int fd;                       /* -1: free */
     Ice_Byte accepted, told;      /* told: OPENED has been reported */
-    Ice_Byte sending, over;       /* over: closed, but for the task that still sends */
+    Ice_Byte sending, over;       /* over: closed, except for the task that still sends */
     Ice_Byte spoke;               /* this side has sent a message */
-    Ice_Byte served;              /* a request or reply has come or gone */
-    Ice_Int skip;                 /* bytes to come of a message that is refused */
-    U32 sentMs;                   /* when it did so last */
+    Ice_Byte served;              /* a request or reply was sent or received */
+    Ice_Int skip;                 /* remaining bytes of a refused message */
+    U32 sentMs;                   /* time of the last message sent */
     U32 usedMs;                   /* time of the last request or reply */
     Ice_Int owed;                 /* replies due in either direction */
-    struct sockaddr_storage peer; /* of a connection made by this side */
+    struct sockaddr_storage peer; /* for a connection made by this side */
     socklen_t peerSize;
     Ice_Int have;
     Ice_Byte data[ICE_MESSAGE_MAX];
 } TcpEndpoint_Connection;
 
 typedef struct TcpEndpoint {
-    int listener; /* -1: none */
-    int port;     /* that it listens on */
+    int listener; /* -1: not listening */
+    int port;     /* port of the listener */
     char host[64];
     int pipe[2];
     Ice_Int sendMs, heartbeatMs, idleMs; /* may be changed after TcpEndpoint_init */

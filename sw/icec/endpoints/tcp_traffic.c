@@ -82,13 +82,13 @@ int TcpEndpoint_refuse(TcpEndpoint_Connection* c, Ice_Int size) {
     char reason[REASON_MAX];
     if (c->data[COMPRESSION_AT] == 2) {
         fprintf(stderr, "icec: refused a compressed %s: IceC has no bzip2\n", what);
-        TcpEndpoint_sendHead(c, ICEC_CLOSE); /* its caller learns that it was not executed */
+        TcpEndpoint_sendHead(c, ICEC_CLOSE); /* informs its caller that it was not executed */
         return 0;
     }
     sprintf(reason, "::Ice::MemoryLimitException: over ICE_MESSAGE_MAX (%d)", ICE_MESSAGE_MAX);
     fprintf(stderr, "icec: refused a %s of %d bytes: %s\n", what, size, reason);
     if (type != ICEC_REQUEST || memcmp(c->data + ICEC_HEADER, noId, 4) == 0)
-        return 0; /* no reply can report it: the end of the connection does */
+        return 0; /* no reply can report it; the end of the connection does */
     sendReason(c, reason);
     c->served = 1;
     c->usedMs = TcpEndpoint_nowMs(0);
@@ -97,7 +97,7 @@ int TcpEndpoint_refuse(TcpEndpoint_Connection* c, Ice_Int size) {
     return 1;
 }
 
-/* Returns whether a message is arriving, of which the peer may not learn that it is lost. */
+/* Returns whether a message is arriving whose loss cannot be reported to the peer. */
 static int isArriving(const TcpEndpoint_Connection* c) {
     Ice_Byte byte;
     return c->have > 0 || c->skip > 0 || recv(c->fd, &byte, 1, MSG_PEEK | MSG_DONTWAIT) > 0;

@@ -11,11 +11,11 @@
 #define NOBODY 255
 #define HEAD 8
 #define BODY 7
-/* Tries to send while the link has no room, 20 ms apart, for 20 s: 27 s after a fragment that
- * nobody takes the session ends, and with it every other connection. Two answers of 8 KB take 4 s
- * where three packets of ten are lost. */
+/* Retries while the link has no room, 20 ms apart, for 20 s: 27 s after a fragment that no peer
+ * takes, the session ends, and with it every other connection. Two replies of 8 KB take 4 s with a
+ * loss of 30 %. */
 #define RETRIES 1000
-#define OTHER_RETRIES 100 /* the same of another ground, for whom the first one waits */
+#define OTHER_RETRIES 100 /* for another ground station, because the first one waits for it */
 
 /* The head of an encoded endpoint: type, 13 bytes of encapsulation, encoding 1.1. */
 static const Ice_Byte head[HEAD] = {
@@ -41,7 +41,8 @@ static void setOwnOpen(XBeeATEndpoint* self, int ground, int isOpen) {
 #if XBEE_PEERS > 1
 #define OWN_OF(self, ground) ((self)->own[ground])
 
-/* Seeks a vehicle for a call's time from now on, or no more. Returns 0: a ground is not sought. */
+/* Starts or stops connecting to a vehicle. Returns 0 for a ground station, which is never
+ * dialled. */
 static int setSought(XBeeATEndpoint* self, int ground, int isSought) {
     const int bit = isSought ? self->vehicles & 1 << ground : 0;
     self->sought = (Ice_Byte)((self->sought & ~(1 << ground)) | bit);
@@ -50,8 +51,8 @@ static int setSought(XBeeATEndpoint* self, int ground, int isSought) {
     return bit;
 }
 
-/* Returns 1 if a vehicle's session has ended before anything came in it, as where both have begun
- * one: it is sought on, and nobody is told. */
+/* Returns 1 if a vehicle's session has ended before any message arrived in it, as when both sides
+ * have begun one: dialling continues, and no task is informed. */
 static int isSoughtOn(XBeeATEndpoint* self, int ground) {
     const Link* link = self->links[ground];
     if (!(self->sought >> ground & 1) || Link_state(link) == LINK_STATE_UP ||
@@ -72,7 +73,7 @@ static int isOwn(const XBeeATEndpoint* self, int connection) {
 }
 
 /* ---- several tasks ----
- * The minimal run time has one, which polls the link itself while it waits: it needs none of this.
+ * The minimal run time has one task, which polls the link while it waits, and needs none of this.
  */
 
 /* Calls a function of the port. */
@@ -81,7 +82,7 @@ static void tell(XBeeATEndpoint* self, void (*function)(void* context)) {
         function(self->context);
 }
 
-/* Records whether the link keeps a message that was not taken. Returns what was recorded before. */
+/* Records whether the link keeps a message that was not taken. Returns the previous state. */
 static int setHeld(XBeeATEndpoint* self, Ice_Byte held) {
     int before = ICEC_FULL && self->held;
     if (ICEC_FULL && held != before)
@@ -112,7 +113,7 @@ static void report(XBeeATEndpoint* self, U32 events) {
     tell(self, self->port->signal);
 }
 
-/* Takes a report back. Returns 1 if it was not delivered yet. */
+/* Withdraws a report. Returns 1 if it was not delivered yet. */
 static int takeBack(XBeeATEndpoint* self, Ice_EventKind kind, int channel) {
     if (!(self->events & EVENT(kind, channel)))
         return 0;
@@ -120,8 +121,8 @@ static int takeBack(XBeeATEndpoint* self, Ice_EventKind kind, int channel) {
     return 1;
 }
 
-/* Records that a connection is over: nothing more may be sent on its channel, which may soon belong
- * to another one. */
+/* Records that a connection has ended: nothing more may be sent on its channel, which may soon
+ * belong to another connection. */
 static void end(XBeeATEndpoint* self, int channel) {
     if (isOwn(self, channel)) {
         setOwnOpen(self, GROUND_OF(channel), 0);
@@ -133,7 +134,7 @@ static void end(XBeeATEndpoint* self, int channel) {
 
 int XBeeATEndpoint_onMessage(void* context, int channel, const U8* data, U32 size) {
     XBeeATEndpoint* self = context;
-    /* Opening and closing come before it in order, so no other event can be pending. */
+    /* Opening and closing come first, so no other event can be pending. */
     if (!self->buffer || self->events) {
         (void)setHeld(self, 1);
         return 1;
@@ -152,8 +153,8 @@ void XBeeATEndpoint_onChannel(void* context, int channel, int isOpen) {
         return;
     if (!isOpen)
         end(self, channel);
-    /* A closing takes an unseen opening back, so at most a closing and then an opening wait for a
-     * channel, however often the ground restarts. */
+    /* A closing withdraws an unseen opening, so at most a closing and then an opening wait for a
+     * channel, however often the ground station restarts. */
     if (isOpen || !takeBack(self, ICE_EVENT_OPENED, channel))
         report(self, EVENT(isOpen ? ICE_EVENT_OPENED : ICE_EVENT_CLOSED, channel));
 }
@@ -174,7 +175,7 @@ void XBeeATEndpoint_setVehicle(XBeeATEndpoint* self, int ground, int isGround) {
 
 #endif
 
-/* Waits for one event. The link may write `buffer` only meanwhile; at other times the link keeps
+/* Waits for one event. Only during this wait may the link write `buffer`; otherwise the link keeps
  * messages. */
 static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ice_Event* event) {
     XBeeATEndpoint* self = context;
@@ -203,14 +204,14 @@ static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ic
     return ICE_OK;
 }
 
-/* Opens a ground's own channel. A vehicle without a session is sought, and has the channel later:
- * its first message ends the caller's wait. */
+/* Opens the channel of this side to a ground station. A vehicle without a session is dialled, and
+ * the channel opens later: its first message ends the caller's wait. */
 static Link_Status openOwn(XBeeATEndpoint* self, int ground) {
     Link_Status status = LINK_OK;
     int own = OWN_OF(self, ground);
     if (!isOwnOpen(self, ground)) {
         status = Link_openChannel(self->links[ground], CHANNEL_OF(own));
-        if (status == LINK_OK) { /* and the end of the last connection is not the end of this one */
+        if (status == LINK_OK) { /* the end of the last connection is not the end of this one */
             setOwnOpen(self, ground, 1);
             self->events &= ~EVENT(ICE_EVENT_CLOSED, own);
         }
@@ -239,13 +240,14 @@ void XBeeATEndpoint_seek(XBeeATEndpoint* self, int ground, U32 nowUs) {
 
 #endif
 
-/* Returns whether the connection of the offered message has ended, seen by the receiver or not: its
- * channel may belong to another one by now. */
+/* Returns whether the connection of the offered message has ended, whether or not the receiver has
+ * seen it: its channel may already belong to another one. */
 static int hasEnded(const XBeeATEndpoint* self, int connection) {
     return (self->events & EVENT(ICE_EVENT_CLOSED, connection)) || !isOffered(self, connection);
 }
 
-/* Ends a connection for whose message the link has no room: the minimal run time's caller may. */
+/* Ends a connection if the link has no room for its message; in the minimal run time the caller may
+ * retry. */
 static void giveUp(XBeeATEndpoint* self, int connection) {
     if (ICEC_FULL) {
         (void)Link_closeChannel(self->links[GROUND_OF(connection)], CHANNEL_OF(connection));
@@ -257,8 +259,8 @@ static int mostTries(int connection) {
     return GROUND_OF(connection) ? OTHER_RETRIES : RETRIES;
 }
 
-/* Sends, or opens the own channel (no message). While the link has no room it tries again, and in
- * the end the connection ends: the link tells the peer as soon as it can. */
+/* Sends a message, or opens the channel of this side (no message). Retries while the link has no
+ * room; finally the connection ends, and the link informs the peer as soon as it can. */
 static Ice_Status offer(XBeeATEndpoint* self, int connection, const Ice_Byte* message,
                         Ice_Int size) {
     Link_Status status;
@@ -294,7 +296,7 @@ static Ice_Status sendMessage(void* context, int connection, const Ice_Byte* mes
     return offer(context, connection, message, size);
 }
 
-/* Returns the ground whose address an encoded endpoint has; -1: nobody has it. */
+/* Returns the ground station with the address in an encoded endpoint; -1 if there is none. */
 static int groundOf(const XBeeATEndpoint* self, const Ice_Byte* encoded, Ice_Int size) {
     int ground = XBEE_PEERS - 1;
     if (size < HEAD + 2)
@@ -310,14 +312,14 @@ static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size
     if (size < 2 || encoded[0] != head[0] || encoded[1] != head[1] || ground < 0)
         return ICE_NO_ENDPOINT;
     *connection = OWN_OF((XBeeATEndpoint*)context, ground);
-    /* The last closing may still be on its way. */
+    /* The last closing may still be pending. */
     return offer(context, XBEE_PEERS > 1 ? *connection : 0, 0, 0);
 }
 
 static void closeChannel(void* context, int connection) {
     XBeeATEndpoint* self = context;
     lock(self);
-    /* The peer may have closed already; the channel may be a new one by now. */
+    /* The peer may have closed already; the channel may already be a new one. */
     if (!takeBack(self, ICE_EVENT_CLOSED, connection)) {
         (void)Link_closeChannel(self->links[GROUND_OF(connection)], CHANNEL_OF(connection));
         end(self, connection);

@@ -2,11 +2,12 @@
  *
  * xbee_endpoint: IceC's transport over the radio link: a connection is a channel of the link.
  *
- * The ground opens channels 0..2, this side channel 3. On the wire an endpoint is type 0x4158 with
- * a remote address (short), a channel (byte, 255: any) and a time-out in milliseconds (int). Of
- * several grounds each has a link and LINK_CHANNELS connections, one ground's behind the other's.
- * Another vehicle may have a ground's place: of the two, one has the ground's part, and opens
- * channel 0. A call begins their session, and seeks it for ICE_TIMEOUT_MS.
+ * The ground station opens channels 0..2, this side channel 3. On the wire an endpoint is type
+ * 0x4158 with a remote address (short), a channel (byte, 255: any) and a time-out in milliseconds
+ * (int). With several ground stations each has a link and LINK_CHANNELS connections, numbered one
+ * after the other. Another vehicle may take the place of a ground station: one of the two vehicles
+ * then acts as the ground station, and opens channel 0. A call starts their session, and dials for
+ * at most ICE_TIMEOUT_MS.
  */
 #pragma once
 
@@ -20,36 +21,37 @@
     (ICE_CONNECTIONS < 3 * LINK_CHANNELS ? ICE_CONNECTIONS < 2 * LINK_CHANNELS ? 1 : 2 : 3)
 #define XBEE_CONNECTIONS (XBEE_PEERS * LINK_CHANNELS)
 
-/* The endpoint's port to the application, whose radio task owns the link. The minimal run time has
- * one task, which polls the link in `wait`; lock, unlock, kick and signal are not called, and may
- * be 0. */
+/* Port to the application, whose radio task owns the link. The minimal run time has one task, which
+ * polls the link in `wait`; lock, unlock, kick and signal are not called, and may be 0. */
 typedef struct XBeeATEndpoint_Port {
     void (*lock)(void* context); /* around every use of the link, with its callbacks */
     void (*unlock)(void* context);
     void (*kick)(void* context);                   /* makes the radio task poll the link soon */
-    int (*wait)(void* context, Ice_Int timeoutMs); /* for signal; 1: signalled */
+    int (*wait)(void* context, Ice_Int timeoutMs); /* for signal; returns 1 if signalled */
     void (*signal)(void* context);
     U32 (*nowMs)(void* context);
 } XBeeATEndpoint_Port;
 
 typedef struct XBeeATEndpoint {
-    Link* links[XBEE_PEERS]; /* 0: there is no such ground */
+    Link* links[XBEE_PEERS]; /* 0 for absent ground stations */
     const XBeeATEndpoint_Port* port;
     void* context;
     U16 address;             /* own, MY */
     U16 grounds[XBEE_PEERS]; /* the grounds' addresses, the first one's is 0 */
-    U32 events;              /* events to be delivered; 0: none */
-    Ice_Int size;            /* of the pending message */
-    Ice_Byte* buffer; /* the receiving task's; 0: nobody receives, the link keeps the message */
+    U32 events;              /* events to deliver; 0 if none */
+    Ice_Int size;            /* size of the pending message */
+    Ice_Byte* buffer; /* buffer of the receiving task; 0: no task receives, the link keeps the
+                       * message */
     Ice_Byte from;    /* connection of the pending message */
-    Ice_Byte ownOpen; /* the own channel is, a bit a ground */
+    Ice_Byte ownOpen; /* open channels of this side, one bit per ground station */
     Ice_Byte held;    /* the link keeps a message that was not taken */
-    Ice_Byte offered; /* connection of the message that is being sent, unless it has ended */
+    Ice_Byte offered; /* connection of the message being sent, unless it has ended */
 #if XBEE_PEERS > 1
     Ice_Byte own[XBEE_PEERS];  /* connections that this side opens */
-    Ice_Byte vehicles, sought; /* those grounds that are vehicles, and are sought, a bit each */
-    U32 soughtAt[XBEE_PEERS];  /* since when, in ms, */
-    U32 seen[XBEE_PEERS];      /* and how many messages had come before */
+    Ice_Byte vehicles, sought; /* ground stations that are vehicles; those being dialled; one bit
+                                * each */
+    U32 soughtAt[XBEE_PEERS];  /* start of dialling, ms */
+    U32 seen[XBEE_PEERS];      /* number of messages received before */
 #endif
 } XBeeATEndpoint;
 
@@ -58,12 +60,12 @@ void XBeeATEndpoint_init(Ice_CommunicatorPtr ic, const char* name, XBeeATEndpoin
                          U16 address, const XBeeATEndpoint_Port* port, void* context);
 
 #if XBEE_PEERS > 1
-/* Adds another ground's link. A proxy whose address is not a ground's has no endpoint here. */
+/* Adds the link of another ground station. A proxy with any other address has no endpoint here. */
 void XBeeATEndpoint_addPeer(XBeeATEndpoint* self, int ground, Link* link, U16 address);
 /* Makes that ground a vehicle; `isGround`: this side has the ground's part. */
 void XBeeATEndpoint_setVehicle(XBeeATEndpoint* self, int ground, int isGround);
-/* Starts a vehicle's link while a call waits for its session, and stops it where none does; to be
- * called under the lock before each Link_poll. */
+/* Starts a vehicle's link while a call waits for its session, and stops it otherwise; call it under
+ * the lock before each Link_poll. */
 void XBeeATEndpoint_seek(XBeeATEndpoint* self, int ground, U32 nowUs);
 #endif
 

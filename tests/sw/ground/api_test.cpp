@@ -75,7 +75,7 @@ TEST(Api, DataSayWhoseTheyAre) {
         EXPECT_EQ(heard.source, address);
     }
     heard.feed(modem, ApiFrames().pack({0x80, 0, 0, 0, 0, 0, 0, 0, 9, 40, 0, 7}));
-    EXPECT_EQ(heard.source, ApiFrames::nobody);
+    EXPECT_EQ(heard.source, ApiFrames::noAddress);
 }
 
 TEST(Api, RNIsSetWhenItChanges) {

@@ -121,7 +121,7 @@ TEST_F(EngineTest, WhatIsLateIsWithdrawnAndItsSenderIsTold) {
     const double seconds = rig_.seconds() - begun;
     EXPECT_GE(seconds, 2.0);
     EXPECT_LT(seconds, 2.5);
-    EXPECT_TRUE(log_.has("0 the program on channel 1 has a message that nobody took in time"))
+    EXPECT_TRUE(log_.has("0 the program on channel 1 has a message that was not taken in time"))
         << log_.text();
     close(fd);
     close(other);

@@ -15,7 +15,6 @@ struct Client {
     std::shared_ptr<Ice::Connection> connection;
     std::string subject;
     std::deque<std::shared_ptr<Request>> requests;
-    size_t bytes = 0;     // bytes of these requests
     size_t underWay = 0;  // requests that may not have reached the vehicle yet
     int lane = 0;         // all on this lane
     size_t objects = 0;   // number of objects that it has passed to the vehicle
@@ -91,6 +90,18 @@ std::shared_ptr<Client> Forwarder::clientOf(const Request& request) {
     return client;
 }
 
+// Ends the turns of a client that has nothing more to send, and those of its subject if none of the
+// subject's clients has.
+void Forwarder::restIfEmpty(const Client& client) {
+    if (!client.requests.empty())
+        return;
+    Subject& subject = subjects_[client.subject];
+    subject.turns.rest(&client);
+    if (std::all_of(subject.clients.begin(), subject.clients.end(),
+                    [](const auto& each) { return each->requests.empty(); }))
+        turns_.rest(client.subject);
+}
+
 // Removes a client that has disconnected and has nothing more to send.
 void Forwarder::dropIfOver(const std::shared_ptr<Client>& client) {
     if (!client->hasLeft || !client->requests.empty())
@@ -115,15 +126,12 @@ void Forwarder::forget(const Connection& connection) {
     const std::shared_ptr<Client> client = found->second;
     auto& requests = client->requests;
     const auto goes = [&](const std::shared_ptr<Request>& request) {
-        const size_t bytes = request->isOneway() ? 0 : request->parameters.size();
-        client->bytes -= bytes;
-        subjects_[client->subject].bytes -= bytes;
+        subjects_[client->subject].bytes -= request->isOneway() ? 0 : request->parameters.size();
         return !request->isOneway();
     };
     requests.erase(std::remove_if(requests.begin(), requests.end(), goes), requests.end());
     client->hasLeft = true;
-    if (requests.empty())
-        subjects_[client->subject].turns.rest(client.get());
+    restIfEmpty(*client);
     dropIfOver(client);
     for (auto owner = owners_.begin(); owner != owners_.end();) {
         owner->second.erase(connection);
@@ -166,7 +174,6 @@ void Forwarder::take(std::shared_ptr<Request> request) {
         const std::shared_ptr<Client> client = clientOf(*request);
         Subject& subject = subjects_[client->subject];
         request->client = client;
-        client->bytes += request->parameters.size();
         subject.bytes += request->parameters.size();
         client->requests.push_back(std::move(request));
         subject.turns.wait(client.get());
@@ -209,15 +216,9 @@ int Forwarder::laneToConnect() const {
 
 std::shared_ptr<Request> Forwarder::pop(const std::shared_ptr<Client>& client) {
     const std::shared_ptr<Request> request = client->requests.front();
-    Subject& subject = subjects_[client->subject];
     client->requests.pop_front();
-    client->bytes -= request->parameters.size();
-    subject.bytes -= request->parameters.size();
-    if (client->requests.empty())
-        subject.turns.rest(client.get());
-    if (std::all_of(subject.clients.begin(), subject.clients.end(),
-                    [](const auto& each) { return each->requests.empty(); }))
-        turns_.rest(client->subject);
+    subjects_[client->subject].bytes -= request->parameters.size();
+    restIfEmpty(*client);
     dropIfOver(client);
     room_.notify_all();
     return request;

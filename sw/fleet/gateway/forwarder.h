@@ -102,6 +102,7 @@ private:
     std::shared_ptr<Client> clientOf(const Request& request);
     void forget(const Connection& connection);
     void dropIfOver(const std::shared_ptr<Client>& client);
+    void restIfEmpty(const Client& client);
     bool hasRoom(const Request& request);
     int laneOf(const Request& request) const;
     bool mayGo(const Client& client) const;

@@ -29,7 +29,7 @@ bool matchesOne(const std::vector<std::string>& patterns, const std::string& tex
 } // namespace
 
 Rights::Rights(const std::string& path) : isOpen_(false) {
-    struct stat found;
+    struct stat found{};
     if (stat(path.c_str(), &found) == 0 && !S_ISREG(found.st_mode))
         throw std::runtime_error("the file of rights '" + path + "' is not a regular file");
     std::ifstream file(path);

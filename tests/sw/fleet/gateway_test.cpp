@@ -225,7 +225,7 @@ struct Maintained : Ice::Object {
 
 // Heard answers each call with the same number.
 struct Heard : RadioTest::Listener {
-    explicit Heard(int answer) : answer(answer) {}
+    explicit Heard(int result) : answer(result) {}
     int heard(int, const Ice::Current&) override {
         ++calls;
         return answer;

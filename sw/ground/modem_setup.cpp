@@ -95,9 +95,11 @@ std::string ModemSetup::ask(const std::string& text, std::initializer_list<std::
 }
 
 // Sets a parameter, or reads it (no value), of a modem in API mode. Returns OK, ERROR or the value
-// in hexadecimal; "" after a time-out.
-std::string ModemSetup::askApi(const std::string& letters, const std::string& value,
-                               int timeoutMs) {
+// in hexadecimal; "": no answer arrived in time. With `endsLine`, a carriage return follows: a
+// modem in command mode takes the frame for a command line, and "COMMAND" is returned when it
+// refuses the line. A modem in API mode ignores bytes between frames.
+std::string ModemSetup::askApi(const std::string& letters, const std::string& value, int timeoutMs,
+                               bool endsLine) {
     constexpr uint8_t id = 0xA5;
     ApiFrames frames(escapes_);
     const std::string digits = (value.size() % 2 ? "0" : "") + value;
@@ -105,13 +107,18 @@ std::string ModemSetup::askApi(const std::string& letters, const std::string& va
     for (size_t i = 0; i < digits.size(); i += 2)
         bytes.push_back(static_cast<uint8_t>(std::stoi(digits.substr(i, 2), nullptr, 16)));
     serial_.drop();
-    const auto request = frames.command(id, letters, bytes);
+    auto request = frames.command(id, letters, bytes);
+    if (endsLine)
+        request.push_back('\r');
     if (serial_.write(request.data(), request.size()) != static_cast<ssize_t>(request.size()))
         return "";
-    std::string reply;
+    std::string reply, text;
     for (int leftUs = timeoutMs * 1000; reply.empty();) {
         uint8_t byte;
-        while (reply.empty() && serial_.read(&byte, 1) == 1)
+        while (reply.empty() && serial_.read(&byte, 1) == 1) {
+            text += static_cast<char>(byte);
+            if (endsLine && text == "ERROR\r")
+                reply = "COMMAND";
             frames.feed(
                 &byte, 1, [](int, const uint8_t*, size_t) {},
                 [&](const ApiFrames::Bytes& answer) {
@@ -122,6 +129,7 @@ std::string ModemSetup::askApi(const std::string& letters, const std::string& va
                     for (size_t i = 5; i < answer.size() && !answer[4]; ++i)
                         reply += hex(answer[i]);
                 });
+        }
         if (!reply.empty() || leftUs <= 0)
             break;
         const int passed = wait_((leftUs + 999) / 1000, true);
@@ -144,15 +152,17 @@ bool ModemSetup::command(const std::string& text) {
     return false;
 }
 
-// Returns whether a modem in API mode answers at a rate. The question has no byte to be escaped.
-bool ModemSetup::findApi(int baud) {
+// Returns whether a modem at this rate answers without +++: it is in API mode, or in command mode,
+// where a program that was killed during its set-up leaves it. No byte of the question needs to be
+// escaped.
+bool ModemSetup::findWithoutGuard(int baud) {
     serial_.setSpeed(rate_ = baud);
-    const int ms = apiReplyMs + 180000 / baud;
-    const std::string mode = askApi("AP", "", ms);
-    silentMs_ = mode.empty() ? ms : 0;
-    isApi_ = mode == "1" || mode == "2";
-    escapes_ = mode == "2";
-    return isApi_;
+    const int ms = apiReplyMs + 190000 / baud;
+    const std::string reply = askApi("AP", "", ms, true);
+    silentMs_ = reply.empty() ? ms : 0;
+    isApi_ = reply == "1" || reply == "2";
+    escapes_ = reply == "2";
+    return isApi_ || reply == "COMMAND";
 }
 
 // Tries the target rate first, at which a modem set up earlier is found, then the factory's rate.
@@ -167,9 +177,11 @@ bool ModemSetup::find() {
     for (int i = 7; i >= 0; --i)
         if (rates[i] != settings_.baud && rates[i] != factoryRate)
             candidates.emplace_back(rates[i], guard);
-    // A modem in API mode ignores +++. The failed wait is part of the silence before it.
-    if (findApi(settings_.baud) || stopped_)
-        return !stopped_;
+    // A modem in API mode or in command mode ignores +++. The wait for its answer is a part of the
+    // silence before +++.
+    for (int baud : {settings_.baud, factoryRate})
+        if (findWithoutGuard(baud) || stopped_)
+            return !stopped_;
     for (auto [baud, guardMs] : candidates) {
         serial_.setSpeed(rate_ = baud);
         bool found = enterCommandMode(guardMs);
@@ -179,7 +191,7 @@ bool ModemSetup::find() {
     }
     for (int baud : {fastestRate, rates[7], rates[6], rates[5], rates[4], factoryRate, rates[2],
                      rates[1], rates[0]})
-        if (findApi(baud) || stopped_)
+        if (findWithoutGuard(baud) || stopped_)
             return !stopped_;
     trouble_ =
         "no modem answers on '" + settings_.device +

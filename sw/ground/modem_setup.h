@@ -31,12 +31,13 @@ public:
 
 private:
     bool find();
-    bool findApi(int baud);
+    bool findWithoutGuard(int baud);
     bool enterCommandMode(int guardMs);
     bool pause(int ms);
     bool command(const std::string& text);
     std::string ask(const std::string& text, std::initializer_list<std::string> words);
-    std::string askApi(const std::string& letters, const std::string& value, int timeoutMs);
+    std::string askApi(const std::string& letters, const std::string& value, int timeoutMs,
+                       bool endsLine = false);
     bool finish();
     bool finishApi();
     std::string readReply(int timeoutMs, std::initializer_list<std::string> words);

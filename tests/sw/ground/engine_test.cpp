@@ -267,6 +267,24 @@ TEST_F(EngineTest, AModemThatWasGivenUpIsTriedAgainAndTheListenerIsCalled) {
     close(fd);
 }
 
+// A program that is killed during the set-up leaves the modem in command mode, in the middle of a
+// line. The modem leaves the mode by itself only after CT, 10 s.
+TEST_F(EngineTest, AModemThatWasLeftInCommandModeIsFoundAtOnce) {
+    const int port = open(rig_.pty.path().c_str(), O_RDWR | O_NOCTTY);
+    ASSERT_GE(port, 0);
+    rig_.pass(2 * Rig::guardMs / 1000.0);
+    ASSERT_EQ(write(port, "+++", 3), 3);
+    ASSERT_TRUE(rig_.until([&] { return rig_.ground->inCommandMode(); }));
+    ASSERT_EQ(write(port, "ATMY1", 5), 5);
+    close(port);
+    const double begin = rig_.seconds();
+    auto engine = start();
+    const int fd = engine->connect(0);
+    echoes(fd, 1);
+    close(fd);
+    EXPECT_LT(rig_.seconds() - begin, 3);
+}
+
 // A failure is reported once, with its cause.
 TEST_F(EngineTest, ARefusedCommandIsToldAsWhatItIs) {
     XBeeAT::Settings s = settings();

@@ -31,7 +31,7 @@ echo 'module wide(input clk, clk_en, we, input [1:0] a, input [63:0] my_wide, ou
 echo 'module odd(input clk, input type_t [1:0] a); endmodule' >odd.sv
 echo 'module broken(input clk;' >broken.v
 refused 'usage: make new-foreign' wb_port wishbone
-refused "not 'spi'" wb_port spi wb_port.v
+refused "got 'spi'" wb_port spi wb_port.v
 mkdir out
 ! new my_port wb_port wishbone out wb_port.v >log 2>&1 && grep -q 'is there already' log ||
     { cat log && exit 1; }
@@ -155,6 +155,25 @@ echo 'module narrow(input clk, we, input [16:0] d, output [12:0] q); assign q = 
 new my_port narrow own narrow write=we wdata=d rdata=q narrow.v >log &&
     grep -q '"width": 17' narrow/my_port.regs.json ||
     { cat log && echo 'a register has not 17 bits' && exit 1; }
+# Parameters as users type them, and a file that begins with a byte order mark.
+cat >typed.v <<'END'
+module typed #(parameter MODE = "SLOW", parameter [31:0] INIT = 0, parameter signed [7:0] LOW = 0)
+    (input clk, input we, input [(MODE == "FAST" ? 8 : 7) - LOW:0] d, output reg [31:0] q);
+    always @(posedge clk) q <= we ? {INIT[31:16], 16'd0} | d : q;
+endmodule
+END
+printf '\357\273\277' | cat - typed.v >marked.v
+for value in FAST '"FAST"'; do
+    rm -rf typed
+    new my_port typed own typed PARAM:MODE="$value" PARAM:LOW=-3 PARAM:INIT=0xDEADBEEF \
+        write=we wdata=d rdata=q marked.v >log
+    grep -q '.MODE("FAST"), .LOW(-3), .INIT(32.hDEADBEEF)' typed/my_port.v &&
+        grep -q 'd(wdata\[11:0\])' typed/my_port.v &&
+        [ "$(head -c 6 typed/copy_marked.v)" = module ] ||
+        { cat log typed/my_port.v && echo 'parameters are not as typed' && exit 1; }
+done
+refused "PARAMS: INIT: expected a number such as .*, got '2[*]1'" typed own PARAM:INIT='2*1' \
+    write=we wdata=d rdata=q typed.v
 # The same by make, and one that is taken.
 mkdir -p "$work/tree/ip"
 made() { "$source/tests/regress/make_in.sh" "$source" "$work/tree" build \

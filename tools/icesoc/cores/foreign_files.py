@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """foreign_files: what new_foreign.py reads from a third-party core's files: its modules, and TOP's
 ports; and what all wrappers have."""
+import codecs
 import json
 import os
 import re
@@ -8,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 import xml.etree.ElementTree
+from pathlib import Path
 
 from icesoc import TREE
 
@@ -37,8 +39,35 @@ def is_vhdl(file):
 
 
 def text_of(file):
-    with open(file, errors="replace") as f:
+    """Returns the text of a file, without the byte order mark that some editors write."""
+    with open(file, errors="replace", encoding="utf-8-sig") as f:
         return f.read()
+
+
+def has_mark(file):
+    """Returns whether a file begins with a byte order mark. Yosys 0.23 skips the first module of
+    such a file without a message."""
+    with open(file, "rb") as f:
+        return f.read(3) == codecs.BOM_UTF8
+
+
+def verilog_params(params):
+    """Returns parameters with values that Verilog reads, from NAME=value as a user types them: a
+    number such as -3 or 8'hFF, a number in C's form such as 0xFF, or a text with or without quotes.
+    """
+    found = []
+    for param in params:
+        name, _, value = param.partition("=")
+        if m := re.fullmatch(r"0[xX]([0-9a-fA-F_]+)", value):
+            value = f"{max(32, 4 * len(m[1].replace('_', '')))}'h{m[1]}"
+        elif re.fullmatch(r"[A-Za-z_][\w .-]*", value):
+            value = f'"{value}"'
+        elif not re.fullmatch(r"[-+]?\d[\d_]*(\.\d+)?|\d*'[sS]?[bodhBODH][0-9a-fA-FxXzZ_?]+"
+                              r'|"[^"\\\n]*"', value):
+            fail(f"PARAMS: {name}: expected a number such as -3, 8'hFF or 0xFF, or a text, got "
+                 f"'{value}'")
+        found.append(f"{name}={value}")
+    return found
 
 
 def folders_of(files):
@@ -174,23 +203,32 @@ def read_module(top, files, headers=(), params=(), defines=(), is_whole=True, gh
     program that reads VHDL; `library`: name that the files have for their library."""
     with tempfile.TemporaryDirectory() as work:
         out = os.path.join(work, top + ".v")
-        chosen = " ".join("-chparam {} {}".format(*p.split("=", 1)) for p in params)
+        is_chosen = bool(params) and not is_vhdl(files[0])
         if is_vhdl(files[0]):
             run_tool("GHDL does not convert", top,
                      [TREE / "cmake/vhdl_to_verilog.sh", "--foreign", "--library",
                       library or "work", *(word for p in params for word in ("--generic", p)),
                       ghdl, work, top, out, *files])
-            files, chosen = [out], ""
+            files = [out]
         folders = ["-I" + d for d in folders_of([*files, *headers])] + ["-D" + d for d in defines]
+        originals = files
+        files = [f if not has_mark(f) else copy_without_mark(f, work) for f in files]
         reads = [f"read_verilog -defer {'-sv' if end_of(f) == '.sv' else ''} {' '.join(folders)} "
                  f"{f}" for f in files]
-        script = "; ".join([*reads, f"hierarchy {'-check' if is_whole else ''} -top {top} {chosen}",
-                            "proc", "flatten", "opt_expr", f"write_json {out}.json"])
+        check = "hierarchy -check" if is_whole else "hierarchy"
+        elaborate = [f"{check} -top {top}"]
+        if is_chosen:  # an instance of TOP: -chparam takes neither texts nor negative numbers
+            instance = os.path.join(work, "instance.v")
+            Path(instance).write_text(f"module icesoc_top; {top}{overrides(params)} u (); endmodule")
+            elaborate = [f"read_verilog -sv {instance}", f"{check} -top icesoc_top",
+                         "delete icesoc_top", "hierarchy -auto-top"]
+        script = "; ".join([*reads, *elaborate, "proc", "flatten", "opt_expr",
+                            f"write_json {out}.json"])
         is_system = any(end_of(f) == ".sv" for f in files)
         if not run_tool("" if is_system else "Yosys does not elaborate", top,
                         ["yosys", "-q", "-p", script]):
-            return ports_by_verilator(top, [*lint_of(top, [*files, *headers], defines),
-                                            *("-G" + p for p in params), *files]), False
+            return ports_by_verilator(top, [*lint_of(top, [*originals, *headers], defines),
+                                            *("-G" + p for p in params), *originals]), False
         modules = json.loads(text_of(out + ".json"))["modules"]
     module = next(m for n, m in modules.items() if m["attributes"].get("top") or n == top)
     for cell in module["cells"].values():
@@ -198,6 +236,14 @@ def read_module(top, files, headers=(), params=(), defines=(), is_whole=True, gh
             if cell["connections"].get("ARST") == port["bits"] and "ARST_POLARITY" in cell["parameters"]:
                 port["reset"] = cell["parameters"]["ARST_POLARITY"][-1]
     return module["ports"], True
+
+
+def copy_without_mark(file, folder):
+    """Copies a file into a folder without its byte order mark; returns the copy's path."""
+    copy = os.path.join(folder, "unmarked_" + os.path.basename(file))
+    with open(copy, "w") as f:
+        f.write(text_of(file))
+    return copy
 
 
 def filled(file, defines):
@@ -217,7 +263,7 @@ def copies_for_verilator(top, files, headers, defines):
     """Returns texts by the files that they replace, with macros, paths of data and, where Verilator
     needs it, SystemVerilog's words as names."""
     lint = lint_of(top, [*files, *headers], defines)
-    copies = {f: t for f in files if (t := filled(f, defines)) != text_of(f)}
+    copies = {f: t for f in files if (t := filled(f, defines)) != text_of(f) or has_mark(f)}
     if run_tool(None, top, [*lint, "--lint-only", *files]):
         return copies
     with tempfile.TemporaryDirectory() as work:

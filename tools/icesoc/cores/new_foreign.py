@@ -26,7 +26,7 @@ from icesoc.cores import foreign_bus
 from icesoc.util.reserved import REFUSAL, RESERVED
 from icesoc.cores.foreign_files import (FLAGS, check_names, copies_for_verilator, fail, folders_of,
                                         is_vhdl, kind_of, macros_of, names_of, packages_first,
-                                        pin_name, read_module)
+                                        pin_name, read_module, verilog_params)
 from icesoc.cores.foreign_roles import NEEDED, roles_of
 
 HEAD = "# SPDX-License-Identifier: MIT\n"
@@ -97,6 +97,8 @@ class Request:
         if not self.files or len({is_vhdl(f) for f in self.files}) > 1:
             fail("FILES are all Verilog or all VHDL, and at least one")
         self.is_vhdl, self.is_synthesised = is_vhdl(self.files[0]), True
+        if not self.is_vhdl:
+            self.params = verilog_params(self.params)
         self.top = check_names(self.name, self.top, self.files)
 
 
@@ -209,7 +211,7 @@ def main(words):
         (folder / file).write_text(text)
     print(f"{folder}: {' '.join(sorted(texts))}")
     if copies:
-        print("  copies with macros, paths of data, and words of SystemVerilog as names: "
+        print("  copies, changed in macros, paths of data, names or byte order marks: "
               f"{' '.join(map(os.path.basename, copies))}")
     for port, what in said.items():
         print(f"  {port}: {what}")

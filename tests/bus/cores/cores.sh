@@ -56,6 +56,9 @@ has() { # file of the chip, line by line what it has
 lacks() { ! grep -E -- "$2" "$out/$1" || fail "$1 has what it must not have (above: $2)"; }
 is() { has map_regs.h "^#define MAP_$1 $2U"; }
 
+# A byte order mark is not a part of a name; form feeds and U+0085 in a comment do not end its line.
+chip marked '\0357\0273\0277led # a\014b \0302\0205c\n' || { cat "$out/messages" && fail 'a mark is refused'; }
+has soc_cores.vh led
 accepted none '# nothing\n\n'
 is SLOT_COUNT 0x2
 is NPI_PORT_COUNT 0x2

@@ -105,7 +105,7 @@ class Chip:
         self.pins = {"i": 0, "o": 0}  # bits used of core_pins_i, core_pins_o
         self.names = {n[5:].lower(): 0 for n in constants if n.startswith("SLOT_")}  # to its line
         self.identities, self.places, self.cores = set(), {}, []
-        for n, line in enumerate(text.splitlines(), 1):
+        for n, line in enumerate(text.split("\n"), 1):  # not at form feeds, as splitlines()
             words = line.split("#")[0].split()
             if words:
                 self.cores.append(self.read(n, words[0], words[1:]))
@@ -328,7 +328,7 @@ def aligned(address, size):
 
 def read(path):
     try:
-        with open(path, encoding="utf-8") as f:
+        with open(path, encoding="utf-8-sig") as f:
             return f.read()
     except OSError as e:
         raise Wrong(f"1: error: cannot read '{path}'") from e

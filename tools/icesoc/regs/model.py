@@ -241,7 +241,7 @@ class Block:
     @classmethod
     def read(cls, path):
         try:
-            return cls(json.loads(Path(path).read_text("utf-8")))
+            return cls(json.loads(Path(path).read_text("utf-8-sig")))
         except (json.JSONDecodeError, OSError) as e:
             raise Wrong(str(e)) from None
         except (ValueError, RecursionError):

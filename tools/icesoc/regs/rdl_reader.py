@@ -75,7 +75,7 @@ class Instance:
 
 class Reader:
     def __init__(self, path):
-        with open(path, encoding="utf-8") as f:
+        with open(path, encoding="utf-8-sig") as f:
             text = f.read()
         # Comments keep their lines; those within strings are text.
         text = re.sub(r'"(?:[^"\\]|\\.)*"|//[^\n]*|/\*.*?\*/',

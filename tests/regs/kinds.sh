@@ -19,6 +19,17 @@ gcc -std=c90 -pedantic -Wall -Wextra -Werror -fsyntax-only "$work/kinds.c"
 prove() { GEN_DIR=$1 "$source/tests/hdl/formal/prove.sh" kinds_regs 4 "$source" "$1/proof"; }
 prove "$work" >"$work/log" || { cat "$work/log" && fail 'not proven'; }
 
+# A block that has both LUT RAM and words in a memory of the core.
+mkdir "$work/memory"
+sed 's/"block": "kinds"/"block": "memory"/
+    s/"name": "SHOWN", "access": "ro"/"name": "SHOWN", "access": "rw", "storage": "memory"/
+    s/, "strobes": \["read"\], "doc": "of the core"/, "doc": "in the core"/' \
+    "$here/kinds.regs.json" >"$work/memory/memory.regs.json"
+"$source/tools/python" -m icesoc.regs.generate "$work/memory/memory.regs.json" --block \
+    --output-dir "$work/memory"
+verilator --lint-only -Wall -I"$source/bus" -I"$work/memory" --top-module memory_regs \
+    "$work/memory/memory_regs.v"
+
 # The same, word by word, from VHDL.
 "$source/cmake/vhdl_to_verilog.sh" "$ghdl" "$work/vhdl" kinds_regs "$work/vhdl/kinds_regs.v" \
     "$work/kinds_regs_pkg.vhd" "$work/kinds_regs.vhd"

@@ -117,11 +117,12 @@ class Regression:
     def _outdated(self, tests, known):
         """Returns a test of each further program that is older than its sources, if these may have
         a case of the name that is asked for."""
-        o, found = self.options, {}
+        o, found, known = self.options, {}, set(known)
         for test in tests:
-            if test.program in known or test.program in found or test.unbuilt \
+            if test.program in known or test.unbuilt \
                     or not test.is_program(o.build) or (o.folder and not test.is_in(o.folder)):
                 continue
+            known.add(test.program)
             program = pathlib.Path(test.command[0])
             age = program.stat().st_mtime if program.exists() else 0
             files = [o.source / file for file in self.graph.inputs(test.program)]

@@ -164,6 +164,7 @@ struct Unit {
 };
 
 Declaration::Facts factsOf(const Type& type);
-// Returns whether the directive is present; returns the text after "prefix:", or an empty string.
+// Returns whether the directive is present.
 bool hasMetadata(const std::vector<std::string>& metadata, const std::string& directive);
+// Returns the text after "prefix:", or an empty string.
 std::string metadataValue(const std::vector<std::string>& metadata, const std::string& prefix);

@@ -30,7 +30,7 @@ struct Symbol {
     Kind kind = Kind::Module;
     std::string id; // "::A::B"
     Location at;
-    Declaration* declaration = nullptr; // an enumerator's enum, for an enumerator
+    Declaration* declaration = nullptr; // the declaration; an enumerator's enum
     size_t enumerator = 0;
 };
 

@@ -6,8 +6,6 @@
 
 #include "clock.h"
 
-#include <cstdio>
-
 namespace XBeeAT {
 
 BroadcastPeer::BroadcastPeer(Host& host, const LinkKeys& keys)

@@ -5,7 +5,7 @@
  *
  * The same values must be used for IceC and for all that includes icec.h. -DICEC_MINIMAL chooses
  * the minimal run time (docs/icec.md): sw/minimal/ice_minimal.c instead of the full one's files.
- * Those of the link are in link.h; what a TCP server bears is set at run time (tcp_endpoint.h).
+ * Those of the link are in link_config.h; a TCP server's are set at run time (tcp_endpoint.h).
  */
 #pragma once
 

@@ -5,11 +5,9 @@
  * As in Ice, an option's value does not begin with '-', and of two options with one letter the last
  * one counts. Quotes stand around a whole word.
  */
-#include "ice_port.h"
+#include "ice_private.h"
 
 #include <string.h>
-
-#define SPACES " \t\n\r"
 
 /* Takes the next word of the options, without its quotes. Returns the text after it; 0: there is
  * none, and `size` is -1 if quotes do not match. */
@@ -17,7 +15,7 @@ static const char* nextWord(const char* text, const char** word, Ice_Int* size) 
     char quote = 0;
     *size = 0;
     do {
-        if (*text && strchr(SPACES, *text))
+        if (*text && strchr(ICEC_SPACES, *text))
             ++text;
         else if (text[0] && text[0] == text[1] && strchr("'\"", *text))
             text += 2; /* an empty word is not one */
@@ -30,13 +28,13 @@ static const char* nextWord(const char* text, const char** word, Ice_Int* size) 
         quote = *text++;
     *word = text;
     /* A colon ends an endpoint even within single quotes. */
-    text += strcspn(text, quote == '"' ? "\"" : quote ? "':" : SPACES ":'\"");
+    text += strcspn(text, quote == '"' ? "\"" : quote ? "':" : ICEC_SPACES ":'\"");
     *size = (Ice_Int)(text - *word);
     if (quote && *text == quote && text[-1] != '\\')
         ++text;
     else if (quote)
         *size = -1;
-    if (*text && strchr(SPACES ":", *text) == 0)
+    if (*text && strchr(ICEC_SPACES ":", *text) == 0)
         *size = -1; /* a quote within a word */
     return *size < 0 ? 0 : text;
 }
@@ -92,7 +90,7 @@ Ice_Bool Ice_hasOption(const char* options, char letter) {
 /* Reads a decimal number. Returns 0 if the word is another one. */
 static Ice_Bool readInteger(const char* at, Ice_Int size, Ice_Int most, Ice_Int* value) {
     Ice_Int number = 0;
-    while (size > 0 && strchr(SPACES, *at))
+    while (size > 0 && strchr(ICEC_SPACES, *at))
         ++at, --size;
     if (size > 1 && *at == '+')
         ++at, --size;

@@ -23,6 +23,9 @@ U32 icec_nowMs(Ice_CommunicatorPtr ic);
 /* Makes the receiver's wait end early. */
 void icec_wake(Ice_CommunicatorPtr ic);
 
+/* Spaces between the words of proxies and endpoints as strings, as in Ice. */
+#define ICEC_SPACES " \t\n\r"
+
 /* Returns the options after a transport's name, and sets the transport; 0: the text names none. */
 const char* icec_optionsOf(Ice_CommunicatorPtr ic, const char* text, int* transport);
 /* Returns the text after the next colon outside of quotes; 0: there is none. */

@@ -7,8 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SPACES " \t\n\r"
-
 U32 Ice_numberOption(const char* options, char letter, U32 otherwise) {
     Ice_Int size;
     const char* at = Ice_findOption(options, letter, &size);
@@ -130,7 +128,7 @@ static int parseVersion(Ice_String text, Ice_Byte* version) {
 static int countOptions(const char* options, char letter) {
     int count = 0;
     for (; *options && *options != ':'; ++options)
-        count += options[0] == '-' && options[1] == letter && strchr(SPACES, options[2]) != 0;
+        count += options[0] == '-' && options[1] == letter && strchr(ICEC_SPACES, options[2]) != 0;
     return count;
 }
 
@@ -167,7 +165,7 @@ const char* icec_nextEndpoint(const char* text) {
     const char* quote;
     for (; *text; ++text) {
         if (*text == ':')
-            return text + 1 + strspn(text + 1, SPACES);
+            return text + 1 + strspn(text + 1, ICEC_SPACES);
         if (*text == '"' && (quote = strchr(text + 1, '"')) != 0)
             text = quote;
     }
@@ -185,7 +183,7 @@ static Ice_Status parseEndpoints(const char* text, Ice_ObjectPrxPtr prx) {
             status = ICE_PARSE;
         else if (options)
             status = icec_addEndpoint(prx, transport, options);
-        else if (strncmp(text, "opaque", 6) == 0 && strchr(SPACES ":", text[6]))
+        else if (strncmp(text, "opaque", 6) == 0 && strchr(ICEC_SPACES ":", text[6]))
             status = parseOpaque(text + 6, prx);
         else if (!Ice_areOptions(text, 0))
             status = ICE_PARSE;
@@ -196,8 +194,8 @@ static Ice_Status parseEndpoints(const char* text, Ice_ObjectPrxPtr prx) {
 static Ice_Status parseAdapter(const char* text, Ice_ObjectPrxPtr prx) {
     Ice_OutputStream os;
     Ice_String id;
-    text = word(text + strspn(text, SPACES), SPACES, &id);
-    if (!text || text[strspn(text, SPACES)] != 0)
+    text = word(text + strspn(text, ICEC_SPACES), ICEC_SPACES, &id);
+    if (!text || text[strspn(text, ICEC_SPACES)] != 0)
         return ICE_PARSE;
     Ice_OutputStream_init(&os, prx->endpoints, ICE_ENDPOINT_MAX);
     os.size = 2; /* no endpoints, the id's size */
@@ -236,23 +234,23 @@ static Ice_Status parse(const char* text, Ice_ObjectPrxPtr prx) {
     Ice_String identity, facet = {0, ""}, option, value;
     const char* begin;
     Ice_Status status;
-    text += strspn(text, SPACES);
+    text += strspn(text, ICEC_SPACES);
     begin = text;
-    text = word(text, SPACES ":@", &identity);
+    text = word(text, ICEC_SPACES ":@", &identity);
     if (!text)
         return ICE_PARSE;
     if (identity.size == 0 || (identity.size == 1 && *identity.data == '/')) /* "" and / are null */
-        return text != begin && text[strspn(text, SPACES)] == 0 ? ICE_OK : ICE_PARSE;
+        return text != begin && text[strspn(text, ICEC_SPACES)] == 0 ? ICE_OK : ICE_PARSE;
     for (;;) {
-        text += strspn(text, SPACES);
+        text += strspn(text, ICEC_SPACES);
         if (strchr(":@", *text)) /* or the end */
             break;
-        text += strcspn(option.data = text, SPACES ":@");
+        text += strcspn(option.data = text, ICEC_SPACES ":@");
         option.size = (Ice_Int)(text - option.data);
         value.size = 0;
-        text += strspn(text, SPACES);
+        text += strspn(text, ICEC_SPACES);
         if (!strchr(":@-", *text))
-            text = word(text, SPACES ":@", &value);
+            text = word(text, ICEC_SPACES ":@", &value);
         if (!text || option.size != 2 || option.data[0] != '-' ||
             parseOption(option.data[1], value, &facet, prx) != ICE_OK)
             return ICE_PARSE;

@@ -176,9 +176,9 @@ Ice_Bool Ice_InputStream_readOptional(Ice_InputStreamPtr is, Ice_Int tag, Ice_In
 /* Skips the optional values that are left in the slice or encapsulation. */
 void Ice_InputStream_skipOptionals(Ice_InputStreamPtr is);
 
-/* Ends the reading of parameters, results or an exception: skips optional values that are left, and
- * fails the stream if other bytes follow, as stock Ice does. Returns is->failed. The minimal run
- * time ignores what follows. */
+/* Ends the reading of parameters or results: skips optional values that are left, and fails the
+ * stream if other bytes follow, as stock Ice does. Returns is->failed. The minimal run time ignores
+ * what follows. */
 #ifdef ICEC_MINIMAL
 #define Ice_InputStream_end(is) ((is)->failed)
 #define Ice_InputStream_endEmpty(is) ((void)(is), 0)

@@ -40,7 +40,7 @@ const char* icec_optionsOf(Ice_CommunicatorPtr ic, const char* text, int* transp
     Ice_String name;
     int t;
     name.data = text;
-    name.size = (Ice_Int)strcspn(text, " \t\n\r:");
+    name.size = (Ice_Int)strcspn(text, ICEC_SPACES ":");
     for (t = 0; t < ICEC_TRANSPORTS(ic); ++t)
         if (Ice_String_is(&name, ic->transports[t].endpoint->name) ||
             Ice_String_is(&name, "default")) { /* the first one */

@@ -13,7 +13,7 @@
 #define LINK_IS_FULL 1
 #endif
 
-#ifndef LINK_TAG /* bytes of such a frame's tag, both sides (4..16; docs/link.md: risk of 4) */
+#ifndef LINK_TAG /* bytes of a frame's tag, both sides (4..16; docs/link.md: risk of 4) */
 #define LINK_TAG 8U
 #endif
 #ifndef LINK_OUTCOMES /* minimal layer, 1: it calls `outcome` and `writable` */

@@ -152,7 +152,9 @@ int link_isOpen(Link_Pacing* pacing) {
     return pacing->packed || !LINK_BEFORE(pacing->env.now + pacing->slack, pacing->paceUntil);
 }
 
-int link_sendSealed(Link_Pacing* pacing, U8* frame, U32 header, const Link_Seal* seal) {
+/* Seals a frame whose payload is in place, and puts it into the packet. Returns 1 if it is there.
+ */
+static int sendSealed(Link_Pacing* pacing, U8* frame, U32 header, const Link_Seal* seal) {
     Link_Env* env = &pacing->env;
     U32 size = env->codec->seal(frame, header, seal);
     if (size > link_room(pacing) + env->codec->overhead && !handOver(pacing, 1))
@@ -165,7 +167,7 @@ int link_sendSealed(Link_Pacing* pacing, U8* frame, U32 header, const Link_Seal*
 }
 
 int link_sendNow(Link_Pacing* pacing, U8* frame, U32 header, const Link_Seal* seal) {
-    if (!link_sendSealed(pacing, frame, header, seal))
+    if (!sendSealed(pacing, frame, header, seal))
         return 0;
     (void)link_flush(pacing); /* otherwise it leaves with the packet when the radio has room */
     return 1;
@@ -182,7 +184,7 @@ static void makeSeal(const Link_Pacing* pacing, Link_Seal* seal, U32 number, U32
 int link_sendFrame(Link_Pacing* pacing, U8* frame, U32 header, U32 number, U32 acked) {
     Link_Seal seal;
     makeSeal(pacing, &seal, number, acked);
-    return link_sendSealed(pacing, frame, header, &seal);
+    return sendSealed(pacing, frame, header, &seal);
 }
 
 int link_sendControl(Link_Pacing* pacing, U8* frame, U32 byte2, U32 number, U32 size) {

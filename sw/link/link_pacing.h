@@ -89,15 +89,13 @@ U32 link_room(const Link_Pacing* pacing);
  * then stays. */
 int link_flush(Link_Pacing* pacing);
 
-/* Seals a frame whose payload is in place, and puts it into the packet. Returns 1 if it is there.
- */
-int link_sendSealed(Link_Pacing* pacing, U8* frame, U32 header, const Link_Seal* seal);
-
-/* Sends a frame likewise, and hands the packet to the radio at once if it has room. */
+/* Seals a frame whose payload is in place, puts it into the packet, and hands the packet to the
+ * radio at once if it has room. Returns 1 if the frame is in the packet. */
 int link_sendNow(Link_Pacing* pacing, U8* frame, U32 header, const Link_Seal* seal);
 
-/* Sends a frame likewise, under the session's key. `number` has byte 1 of the header as its lowest
- * byte; `acked` is the number that a PIGGYBACK acknowledges, otherwise 0. */
+/* Seals a frame likewise, under the session's key, and puts it into the packet, which may wait for
+ * more. `number` has byte 1 of the header as its lowest byte; `acked` is the number that a
+ * PIGGYBACK acknowledges, otherwise 0. Returns 1 if the frame is in the packet. */
 int link_sendFrame(Link_Pacing* pacing, U8* frame, U32 header, U32 number, U32 acked);
 
 /* Sends at once a control frame of the session with a payload of `size` bytes in place; byte 1 is

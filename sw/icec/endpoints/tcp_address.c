@@ -3,6 +3,7 @@
  * tcp_address: endpoints of the tcp transport as proxies carry them, as strings, and as sockets.
  */
 #define _POSIX_C_SOURCE 200809L
+#include "ice_message.h"
 #include "tcp_private.h"
 
 #include <errno.h>
@@ -33,6 +34,7 @@ Ice_Bool TcpEndpoint_readOptions(const char* options, TcpEndpoint_Address* addre
 void TcpEndpoint_encode(void* context, const char* options, Ice_OutputStreamPtr os) {
     TcpEndpoint* self = context;
     TcpEndpoint_Address at;
+    Ice_Int begin;
     if (!TcpEndpoint_readOptions(options ? options : "", &at)) {
         os->failed = ICE_FAILED_MALFORMED;
         return;
@@ -44,12 +46,12 @@ void TcpEndpoint_encode(void* context, const char* options, Ice_OutputStreamPtr 
     else if (Ice_String_is(&at.host, "*"))
         os->failed = ICE_FAILED_MALFORMED; /* all addresses, of a server only */
     Ice_OutputStream_writeShort(os, TCP_ENDPOINT_TYPE);
-    Ice_OutputStream_writeInt(os, 6 + (at.host.size < 255 ? 1 : 5) + at.host.size + 9);
-    Ice_OutputStream_writeShort(os, 0x0101); /* encoding 1.1 */
+    begin = icec_beginEncapsulation(os);
     Ice_OutputStream_writeString(os, at.host);
     Ice_OutputStream_writeInt(os, at.port);
     Ice_OutputStream_writeInt(os, at.timeoutMs);
     Ice_OutputStream_writeBool(os, at.compresses);
+    icec_endEncapsulation(os, begin);
 }
 
 int TcpEndpoint_decode(const Ice_Byte* encoded, Ice_Int size, TcpEndpoint_Address* address) {

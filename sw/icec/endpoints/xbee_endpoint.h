@@ -16,7 +16,8 @@
 
 #define XBEE_ENDPOINT_TYPE 0x4158
 #define XBEE_OWN_CHANNEL 3 /* opened by this side, the UAV; the ground opens 0..2 */
-/* Grounds at most; of more than three the events would not fit into 32 bits. */
+/* Peers at most: grounds, and vehicles in a ground's place. The events of more than three do not
+ * fit into 32 bits. */
 #define XBEE_PEERS \
     (ICE_CONNECTIONS < 3 * LINK_CHANNELS ? ICE_CONNECTIONS < 2 * LINK_CHANNELS ? 1 : 2 : 3)
 #define XBEE_CONNECTIONS (XBEE_PEERS * LINK_CHANNELS)
@@ -60,7 +61,8 @@ void XBeeATEndpoint_init(Ice_CommunicatorPtr ic, const char* name, XBeeATEndpoin
                          U16 address, const XBeeATEndpoint_Port* port, void* context);
 
 #if XBEE_PEERS > 1
-/* Adds the link of another ground station. A proxy with any other address has no endpoint here. */
+/* Adds another peer's link, in the place of ground `ground`. A proxy whose address is not a peer's
+ * has no endpoint here. */
 void XBeeATEndpoint_addPeer(XBeeATEndpoint* self, int ground, Link* link, U16 address);
 /* Makes that ground a vehicle; `isGround`: this side has the ground's part. */
 void XBeeATEndpoint_setVehicle(XBeeATEndpoint* self, int ground, int isGround);

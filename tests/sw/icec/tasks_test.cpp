@@ -195,8 +195,6 @@ TEST_P(TasksThatServe, LetOthersCallAtOnce) {
 }
 INSTANTIATE_TEST_SUITE_P(Tasks, TasksThatServe, ::testing::Values(0, 1, 2));
 
-// A task that polls takes the leader's role from one that waits for a reply, and gives it back,
-// over and over.
 // Six tasks, one after the other, each with a result that it keeps, and then it ends.
 TEST_F(Tasks, OneThatHasEndedLeavesItsPlaceToOthers) {
     for (int i = 0; i < ICE_CALLS + 2; ++i)
@@ -214,6 +212,8 @@ TEST_F(Tasks, OneThatHasEndedLeavesItsPlaceToOthers) {
     EXPECT_EQ(ask(prx, "op", 2), 4);
 }
 
+// A task that polls takes the leader's role from one that waits for a reply, and gives it back,
+// over and over.
 TEST_F(Tasks, CallWhileTwoPollNowAndThen) {
     std::atomic<bool> over{false};
     auto poll = [&] {

@@ -8,7 +8,6 @@ import dataclasses
 import re
 from pathlib import Path
 
-MARK = {".v": "//", ".vh": "//", ".vhd": "--"}
 PARAMETER = re.compile(r"parameter\s+(?:signed\s+|integer\s+)?(\[[^]]*\]\s*)?(\w+)\s*=\s*([^,/]+?)"
                        r"\s*,?\s*(?://\s*(.*))?$")
 PORT = re.compile(r"(input|output|inout)\s+(?:wire|reg)?\s*(signed\s+)?"

@@ -56,7 +56,7 @@ def paragraphs(comment):
         if any(line.startswith("  ") for line in lines):
             parts.append("```text\n" + part + "\n```")
         elif part.strip():
-            parts.append(re.sub(r"`(?!`)", "`", part))
+            parts.append(part)
     return "\n\n".join(parts)
 
 

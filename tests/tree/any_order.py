@@ -95,12 +95,24 @@ def main():
     said = configure(source, work / "grown", work, links(work / "bin", hidden))
     if said.returncode:
         fail(f"make run needs the packages of tests:\n{said.stdout}")
+    # A new configuration removes generated files of cores that have left the list, and no others.
+    generated = work / "grown/gen"
+    names = {path.name.split(".")[0] for room in ("hdl", "ip")
+             for path in source.glob(f"{room}/*/*.regs.json")}
+    needed = {generated / f"{name}_regs.v" for name in names}
+    stale = generated / "left_the_list.v"
+    for file in (*needed, stale):
+        file.touch()
     (work / "arrived").touch()
     (work / "dpkg/status").touch()
     said = run(["ninja", "-C", work / "grown", "build.ninja"],
                env=environment(work, os.environ["PATH"]))
     if said.returncode:
         fail(f"configured a second time:\n{said.stdout}")
+    if removed := sorted(file.name for file in needed if not file.exists()):
+        fail(f"a second configuration removes {', '.join(removed)}")
+    if stale.exists():
+        fail(f"a second configuration keeps {stale.name}, which no rule makes")
     said = configure(source, work / "rich", work, os.environ["PATH"])
     if said.returncode:
         fail(f"configured with all packages:\n{said.stdout}")

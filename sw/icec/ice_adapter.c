@@ -37,13 +37,13 @@ Ice_Status Ice_Communicator_createObjectAdapterWithEndpoints(Ice_CommunicatorPtr
         ic->adapters = adapter;
     }
     for (t = 0; ICE_TRANSPORTS > 1 && t < ic->transportCount && status != ICE_OK; ++t)
-        if (adapter->transports >> t & 1) /* this adapter's endpoints end with it */
+        if (adapter->transports >> t & 1) /* endpoints of this adapter end with it */
             (void)ic->transports[t].endpoint->listen(ic->transports[t].context, 0);
     icec_unlock(ic, ICE_LOCK_STATE);
     return status;
 }
 
-/* Returns the entry of exactly this identity and facet; -1: there is none. */
+/* Returns the index of the entry with exactly this identity and facet; -1 if there is none. */
 static int indexOf(Ice_ObjectAdapterPtr adapter, const Ice_Identity* id, const Ice_String* facet) {
     int s;
     for (s = 0; s < ICE_SERVANTS; ++s)

@@ -52,7 +52,7 @@ void icec_wakeCalls(Ice_CommunicatorPtr ic) {
             ic->os->wake(ic->osContext, c);
 }
 
-/* Ends the call `id` if it still waits: tells the waiting task, or calls back; `is` 0: without a
+/* Ends the call `id` if it still waits: wakes the waiting task, or calls back. `is` is 0 without a
  * reply. */
 static void finish(Ice_CommunicatorPtr ic, Ice_Call* call, Ice_Int id, Ice_Status status,
                    Ice_InputStreamPtr is) {
@@ -69,7 +69,7 @@ static void finish(Ice_CommunicatorPtr ic, Ice_Call* call, Ice_Int id, Ice_Statu
         /* The callback may make the next call. */
         call->state = callback ? ICE_CALL_FREE : ICE_CALL_DONE;
         if (!callback) {
-            call->is.size = 0; /* nothing to keep */
+            call->is.size = 0; /* no results to keep */
             ic->os->wake(ic->osContext, (int)(call - ic->calls));
         }
     }
@@ -117,7 +117,7 @@ void icec_expireCall(Ice_CommunicatorPtr ic, Ice_Call* call, Ice_Int id) {
     finish(ic, call, id, ICE_TIMEOUT, 0);
 }
 
-/* Reads a reply's status, and what a failed one says. */
+/* Reads a reply's status, and the reason of a failure. */
 static Ice_Status readReply(Ice_Call* call, Ice_InputStreamPtr is) {
     Ice_Status status = icec_readReply(is);
     if (status == ICE_MARSHAL && is->failed)
@@ -157,7 +157,7 @@ void icec_takeReply(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr i
     Ice_Int id = Ice_InputStream_readInt(is);
     Ice_Call* call;
     int isAsynchronous = 0;
-    icec_lock(ic, ICE_LOCK_STATE); /* so that it does not time out meanwhile */
+    icec_lock(ic, ICE_LOCK_STATE); /* prevents a time-out meanwhile */
     call = waitingCall(ic, connection, id);
     if (call && call->callback) {
         isAsynchronous = 1;

@@ -97,5 +97,5 @@ void Ice_Connection_close(Ice_CommunicatorPtr ic, int connection) {
     (void)icec_sendHead(ic, connection, ICEC_CLOSE);
     icec_closeConnection(ic, connection);
     icec_loseConnection(ic, connection, ICE_CONNECTION_LOST);
-    icec_wake(ic); /* the call that failed may be its receiver's */
+    icec_wake(ic); /* the receiver of the failed call may have to wake */
 }

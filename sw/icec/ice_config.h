@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_config: all numbers of IceC that a program may choose, each with its unit, default and
- * limits. The compiler's -D sets them.
+ * ice_config: all numbers of IceC that a program may choose, with unit, default and limits. They
+ * are set with the compiler's -D.
  *
- * The same values must be used for IceC and for all that includes icec.h. -DICEC_MINIMAL chooses
- * the minimal run time (docs/icec.md): sw/minimal/ice_minimal.c instead of the full one's files.
- * Those of the link are in link_config.h; a TCP server's are set at run time (tcp_endpoint.h).
+ * IceC and all code that includes icec.h must use the same values. -DICEC_MINIMAL selects the
+ * minimal run time (docs/icec.md): sw/minimal/ice_minimal.c replaces the files of the full one. The
+ * numbers of the link are in link_config.h; the limits of a TCP server are set at run time
+ * (tcp_endpoint.h).
  */
 #pragma once
 
-/* Bytes of a message that comes in, header included: 8192, from 64. The radio link takes up to
+/* Size of a received message, header included, bytes: 8192, at least 64. The radio link takes up to
  * LINK_MAX_MESSAGE. A communicator has ICE_NESTING buffers of this size. */
 #ifndef ICE_MESSAGE_MAX
 #define ICE_MESSAGE_MAX 8192
@@ -20,28 +21,28 @@
 #define ICE_REQUEST_MAX ICE_MESSAGE_MAX
 #endif
 
-/* Bytes of a reply that this side makes when the operation ends: as ICE_MESSAGE_MAX, from 64. */
+/* Size of a reply made by this side, bytes: default as ICE_MESSAGE_MAX, at least 64. */
 #ifndef ICE_RESULT_MAX
 #define ICE_RESULT_MAX ICE_MESSAGE_MAX
 #endif
 
-/* Bytes of a reply that is kept for its task, decoded sequences included: 1024, a multiple of 8.
- * There are ICE_CALLS of them; a proxy can have a buffer of its own (setReplyBuffer). */
+/* Size of a reply kept for its task, decoded sequences included, bytes: 1024, a multiple of 8.
+ * There are ICE_CALLS such buffers; a proxy can have a separate one (setReplyBuffer). */
 #ifndef ICE_REPLY_MAX
 #define ICE_REPLY_MAX 1024
 #endif
 
-/* Bytes for decoded sequences of the requests under way: 2048, a multiple of 8. */
+/* Room for decoded sequences of the requests in progress, bytes: 2048, a multiple of 8. */
 #ifndef ICE_ARENA_BYTES
 #define ICE_ARENA_BYTES 2048
 #endif
 
-/* Servants an adapter: 8, from 1. The build sets more where the chip has more cores. */
+/* Servants per adapter: 8, at least 1. The build raises it if the chip has more cores. */
 #ifndef ICE_SERVANTS
 #define ICE_SERVANTS 8
 #endif
 
-/* Characters of a proxy's name, category and facet together: 52, up to 255. */
+/* Characters of a proxy's name, category and facet together: 52, at most 255. */
 #ifndef ICE_IDENTITY_MAX
 #define ICE_IDENTITY_MAX 52
 #endif
@@ -51,8 +52,8 @@
 #define ICE_ENDPOINT_MAX 96
 #endif
 
-/* Connections of a transport, of both directions: 4, from 1; over the radio 4 for each ground that
- * a vehicle serves, of which there are three at most. */
+/* Connections of a transport, in both directions: 4, at least 1; over the radio 4 per ground
+ * station that a vehicle serves (at most three). */
 #ifndef ICE_CONNECTIONS
 #define ICE_CONNECTIONS 4
 #endif
@@ -62,18 +63,18 @@
 #define ICE_TRANSPORTS 1
 #endif
 
-/* Milliseconds for which the receiver listens to a silent transport before it turns to the next, of
- * several: 2, from 1. A message waits as long where the others are silent. */
+/* Time for which the receiver listens to a silent transport before it turns to the next one, ms: 2,
+ * at least 1. A message may wait that long while the others are silent. */
 #ifndef ICE_TURN_MS
 #define ICE_TURN_MS 2
 #endif
 
-/* Calls under way, and tasks that keep what their last call returned: 4, from 1. */
+/* Calls in progress, including tasks that keep the results of their last call: 4, at least 1. */
 #ifndef ICE_CALLS
 #define ICE_CALLS 4
 #endif
 
-/* Messages handled at once, 1 + calls made from within an operation: 2, from 1. */
+/* Messages handled at once, 1 + calls made from within an operation: 2, at least 1. */
 #ifndef ICE_NESTING
 #define ICE_NESTING 2
 #endif
@@ -88,14 +89,13 @@
 #define ICE_VALUE_TYPES_MAX 16
 #endif
 
-/* Milliseconds that a call waits for its connection and reply, unless its proxy says otherwise:
- * 10000, from 1. */
+/* Time-out of a call for connection and reply, unless set for the proxy, ms: 10000, at least 1. */
 #ifndef ICE_TIMEOUT_MS
 #define ICE_TIMEOUT_MS 10000
 #endif
 
-/* Milliseconds between heartbeats while an operation is under way: 15000, from 1. Stock Ice gives
- * a silent connection up after 60 s. */
+/* Interval of heartbeats during an operation, ms: 15000, at least 1. Stock Ice closes a silent
+ * connection after 60 s. */
 #ifndef ICE_HEARTBEAT_MS
 #define ICE_HEARTBEAT_MS 15000
 #endif

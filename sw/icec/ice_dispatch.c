@@ -7,8 +7,8 @@
 
 #include <string.h>
 
-/* Grades a servant's entry for a target: an exact entry comes before its category's default
- * servant, and that before the default servant of all. */
+/* Ranks a servant's entry for a target: an exact entry comes before the default servant of its
+ * category, which comes before the default servant of all. */
 enum { NO_MATCH, DEFAULT_OF_ALL, DEFAULT_OF_CATEGORY, EXACT };
 
 static int match(const Ice_Servant* entry, const Ice_Current* current, Ice_Status* status) {
@@ -26,8 +26,8 @@ static int match(const Ice_Servant* entry, const Ice_Current* current, Ice_Statu
     return Ice_String_same(&entry->facet, &current->facet) ? EXACT : NO_MATCH;
 }
 
-/* Finds the servant for `current`, sets current->adapter, and counts an operation under way. 0:
- * there is none, and `status` says why; ICE_CONNECTION_CLOSED: after shutdown. */
+/* Finds the servant for `current`, sets current->adapter, and counts an operation in progress.
+ * Returns 0 with `status` if there is none; ICE_CONNECTION_CLOSED: after shutdown. */
 static Ice_ObjectPtr find(Ice_CommunicatorPtr ic, Ice_Current* current, Ice_Status* status) {
     Ice_ObjectAdapterPtr adapter;
     Ice_ObjectPtr servant = 0;
@@ -88,8 +88,8 @@ Ice_Status Ice_Object_invoke(Ice_ObjectPtr servant, const Ice_Current* current,
     return ICE_OK;
 }
 
-/* Runs an operation that its connection counts. `answers` becomes 0 where no reply is sent now: it
- * comes later, or the caller has gone. */
+/* Runs an operation that its connection counts. `answers` is set to 0 if no reply is sent now: it
+ * is sent later, or the caller has disconnected. */
 static Ice_Status runCounted(Ice_ObjectPtr servant, const Ice_Current* current,
                              Ice_InputStreamPtr is, Ice_OutputStreamPtr os, int* answers) {
     Ice_CommunicatorPtr ic = current->communicator;
@@ -108,8 +108,8 @@ static Ice_Status runCounted(Ice_ObjectPtr servant, const Ice_Current* current,
     return status;
 }
 
-/* Reads a request behind its id, and narrows `is` to the parameters. Returns as
- * icec_enterEncapsulation does. */
+/* Reads a request after its id, and narrows `is` to the parameters. Returns the same as
+ * icec_enterEncapsulation. */
 static Ice_Status readRequest(Ice_InputStreamPtr is, Ice_Current* current, Icec_Target* target) {
     Ice_Int begin = is->position;
     target->data = is->data + begin;
@@ -134,8 +134,8 @@ static void writeHead(Ice_OutputStreamPtr os, Ice_Int id) {
     icec_beginReply(&head, id);
 }
 
-/* Sends the results at ICEC_REPLY_HEAD of `os`, or the failure `status` with its reason in words;
- * under ICE_LOCK_SEND. `target` 0: the target is no longer known. */
+/* Sends the results at ICEC_REPLY_HEAD of `os`, or the failure `status` with its reason as text;
+ * under ICE_LOCK_SEND. `target` 0: the target is not known any more. */
 static Ice_Status sendReply(Ice_CommunicatorPtr ic, int connection, Ice_OutputStreamPtr os,
                             Ice_Int id, Ice_Status status, const Icec_Target* target) {
     const char* reason;
@@ -155,7 +155,7 @@ static Ice_Status sendReply(Ice_CommunicatorPtr ic, int connection, Ice_OutputSt
     return icec_send(ic, connection, os);
 }
 
-/* Executes the request behind the id, and leaves `is` where its parameters end. */
+/* Executes the request after the id, and leaves `is` at the end of its parameters. */
 static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is,
                            Ice_Int id) {
     Ice_OutputStream os;
@@ -201,7 +201,7 @@ Ice_Status icec_dispatchBatch(Ice_CommunicatorPtr ic, int connection, Ice_InputS
     Ice_Status status = is->failed || count < 0 ? ICE_CONNECTION_LOST : ICE_OK;
     for (; count > 0 && status == ICE_OK; --count) {
         status = dispatch(ic, connection, is, 0);
-        is->position = is->size; /* the next request begins where this one's parameters end */
+        is->position = is->size; /* the next request begins at the end of these parameters */
         is->size = whole;
         is->failed = 0;
     }

@@ -36,7 +36,7 @@ static void writeUtf8(Ice_OutputStreamPtr os, U32 c) {
         Ice_OutputStream_writeByte(os, (Ice_Byte)(0x80U | (c >> 6 * i & 0x3FU)));
 }
 
-/* Resolves the sequence after a backslash. Returns 0 if it is malformed. */
+/* Resolves the escape after a backslash. Returns 0 if it is malformed. */
 static int unescapeOne(Ice_String* text, char special, Ice_OutputStreamPtr os) {
     const char c = *text->data;
     const char* known = c ? strchr(letters, c) : 0;
@@ -63,7 +63,7 @@ static int unescapeOne(Ice_String* text, char special, Ice_OutputStreamPtr os) {
         return 1;
     }
     if (!strchr("\\'\"?", c) && c != special)
-        Ice_OutputStream_writeByte(os, '\\'); /* unknown ones stay */
+        Ice_OutputStream_writeByte(os, '\\'); /* unknown ones are kept */
     Ice_OutputStream_writeByte(os, (Ice_Byte)c);
     return !isControl(c);
 }

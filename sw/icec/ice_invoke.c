@@ -17,7 +17,7 @@ static int isValidating(Ice_CommunicatorPtr ic, int connection) {
     return icec_connectionState(ic, connection) == ICE_CONNECTION_VALIDATING;
 }
 
-/* Connects to one endpoint by the transport that it is of, or uses the existing connection. */
+/* Connects to one endpoint with the matching transport, or uses the existing connection. */
 static Ice_Status open(Ice_ObjectPrxPtr self, const Ice_Byte* endpoint, Ice_Int size) {
     Ice_CommunicatorPtr ic = self->communicator;
     Ice_Status status = ICE_NO_ENDPOINT;
@@ -35,7 +35,7 @@ static Ice_Status open(Ice_ObjectPrxPtr self, const Ice_Byte* endpoint, Ice_Int 
     return status;
 }
 
-/* Tries the proxy's endpoints in turn, and waits for the peer's first message. */
+/* Tries the endpoints of the proxy in turn, and waits for the peer's first message. */
 static Ice_Status connect(Ice_ObjectPrxPtr self) {
     Ice_CommunicatorPtr ic = self->communicator;
     Ice_Status status = ICE_NO_ENDPOINT;
@@ -45,8 +45,8 @@ static Ice_Status connect(Ice_ObjectPrxPtr self) {
     if (self->mode >= ICE_DATAGRAM)
         return ICE_NO_ENDPOINT;
     if (self->versions[0] != 1 || self->versions[2] != 1)
-        return ICE_PROTOCOL; /* the object's versions have nothing in common with these */
-    if (self->generation)    /* a fixed proxy's only connection */
+        return ICE_PROTOCOL; /* no common version with the object */
+    if (self->generation)    /* the only connection of a fixed proxy */
         return icec_countPending(ic, self->connection, self->generation, 0) ? ICE_OK
                                                                             : ICE_CONNECTION_LOST;
     Ice_InputStream_init(&is, self->endpoints + 1, self->endpointsSize - 1);
@@ -66,7 +66,7 @@ static Ice_Status connect(Ice_ObjectPrxPtr self) {
 }
 
 Ice_Status Ice_ObjectPrx_ice_getConnection(Ice_ObjectPrxPtr self, int* connection) {
-    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "", 0); /* for a slot to wait in */
+    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "", 0); /* to get a slot for waiting */
     if (!os)
         return (Ice_Status)self->status;
     icec_unlock(self->communicator, ICE_LOCK_SEND);
@@ -92,7 +92,7 @@ static void beginRequest(Ice_ObjectPrxPtr self, const char* operation, Ice_Byte 
     Ice_OutputStream_init(os, ic->requestData, ICE_REQUEST_MAX);
     if (!self->batch) {
         if (self->mode == ICE_TWOWAY) {
-            ic->lastId = (ic->lastId & 0x3FFFFFFF) + 1; /* never 0: that is a one-way request */
+            ic->lastId = (ic->lastId & 0x3FFFFFFF) + 1; /* never 0, which marks a one-way request */
             self->id = ic->lastId;
         }
         icec_beginMessage(os, ICEC_REQUEST);
@@ -141,7 +141,8 @@ static void registerCall(Ice_ObjectPrxPtr self, Ice_Callback callback, void* coo
     call->replySize = self->reply ? self->replySize : (Ice_Int)sizeof call->replyData;
     if (self->mode == ICE_TWOWAY)
         call->state = ICE_CALL_WAITING;
-    self->status = ICE_LATER; /* of an asynchronous call the slot has it, the proxy may be gone */
+    self->status = ICE_LATER; /* the status of an asynchronous call is in the slot; the proxy may
+                               * not exist any more */
     icec_unlock(ic, ICE_LOCK_STATE);
 }
 
@@ -192,13 +193,13 @@ Ice_Status Ice_ObjectPrx_invokeAsync(Ice_ObjectPrxPtr self, Ice_Callback callbac
     Ice_Status status = sendAndUnlock(self, callback, cookie);
     if (status != ICE_OK || self->mode != ICE_TWOWAY)
         return Ice_ObjectPrx_end(self, status);
-    /* Wakes the receiving task, which shortens its sleep to this call's time. */
+    /* Wakes the receiving task, so that it sleeps at most until this call's time-out. */
     if (isWaiting(ic, slot))
         icec_wake(ic);
     return ICE_OK;
 }
 
-/* Status, encapsulation and a result of one byte: nothing in them can be pointed to. */
+/* Status, encapsulation and a one-byte result contain nothing to point to. */
 #define NOTHING_KEPT 8
 
 Ice_Status Ice_ObjectPrx_end(Ice_ObjectPrxPtr self, Ice_Status status) {

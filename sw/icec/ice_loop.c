@@ -4,7 +4,7 @@
  */
 #include "ice_private.h"
 
-/* Opens a connection for calls, on the peer's first message. */
+/* Marks a connection as open for calls, after the peer's first message. */
 static void validate(Ice_CommunicatorPtr ic, int connection) {
     icec_lock(ic, ICE_LOCK_STATE);
     ic->connections[connection].state = ICE_CONNECTION_OPEN;
@@ -35,7 +35,7 @@ static Ice_Status takeMessage(Ice_CommunicatorPtr ic, int connection, const Ice_
     case ICEC_CLOSE:
         return ICE_CONNECTION_CLOSED;
     default:
-        /* A compressed request cannot be answered; closing tells its caller that it was not
+        /* A compressed request cannot be answered; closing informs its caller that it was not
          * executed. */
         if (type > 0xFF)
             (void)icec_sendHead(ic, connection, ICEC_CLOSE);
@@ -71,8 +71,9 @@ static Ice_Status takeEvent(Ice_CommunicatorPtr ic, const Ice_Byte* in, const Ic
     return ICE_OK;
 }
 
-/* Finds a connection whose callers wait for an operation and are due a heartbeat, and records it;
- * -1: none. Shortens `waitMs` to the next heartbeat; under the state lock. */
+/* Finds a connection with callers that wait for an operation and are due a heartbeat, and records
+ * the heartbeat; returns -1 if there is none. Shortens `waitMs` to the next heartbeat; under the
+ * state lock. */
 static int heartbeatDue(Ice_CommunicatorPtr ic, U32 now, Ice_Int* waitMs) {
     int c, due = -1;
     for (c = 0; c < ICE_TRANSPORTS * ICE_CONNECTIONS && due < 0; ++c) {
@@ -91,7 +92,7 @@ static int heartbeatDue(Ice_CommunicatorPtr ic, U32 now, Ice_Int* waitMs) {
     return due;
 }
 
-/* Sends the heartbeats that are due, and ends the asynchronous calls whose time is over. Shortens
+/* Sends the heartbeats that are due, and ends asynchronous calls that have timed out. Shortens
  * `waitMs` to the time until the next. Returns whether shutdown was called. */
 static int keepTimes(Ice_CommunicatorPtr ic, Ice_Int* waitMs) {
     for (;;) {
@@ -113,10 +114,10 @@ static int keepTimes(Ice_CommunicatorPtr ic, Ice_Int* waitMs) {
     }
 }
 
-/* Events after which a transport that is never silent lets the others have their turn. */
+/* Events after which a busy transport passes the turn to the others. */
 #define TURN_EVENTS 32
 
-/* Receives from the transport whose turn it is; a silent one gives it up. */
+/* Receives from the transport with the turn; a silent one passes it on. */
 static Ice_Status receive(Ice_CommunicatorPtr ic, Ice_Byte* in, Ice_Int timeoutMs,
                           Ice_Event* event) {
     const Ice_Transport* t = ic->transports + (ICE_TRANSPORTS == 1 ? 0 : ic->turn);
@@ -134,12 +135,12 @@ static Ice_Status receive(Ice_CommunicatorPtr ic, Ice_Byte* in, Ice_Int timeoutM
     return status;
 }
 
-#define SERVE (-1) /* in place of a time: until shutdown is called */
+#define SERVE (-1) /* instead of a time: until shutdown is called */
 #define POLL_MS 1000
 
-/* Handles at most one event, of the transport whose turn it is; for the task that has the role of
- * the receiver. ICE_TIMEOUT: there was none; ICE_LIMIT: ICE_NESTING; ICE_CONNECTION_CLOSED: the end
- * of SERVE. */
+/* Handles at most one event, of the transport with the turn; for the task with the role of the
+ * receiver. ICE_TIMEOUT: no event; ICE_LIMIT: ICE_NESTING; ICE_CONNECTION_CLOSED: the end of
+ * SERVE. */
 static Ice_Status receiveOne(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
     Ice_Event event;
     Ice_Status status;
@@ -160,19 +161,19 @@ static Ice_Status receiveOne(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
 }
 
 /* ---- which of several tasks receives ----
- * One task at a time holds the role: a server (waitForShutdown, poll) as soon as it can have it,
- * else a task that waits for a reply (a leader), as long as it waits. `receiver` and `servers`
- * change under the state lock only. A task that gives the role up wakes another that may want it.
+ * One task at a time holds the role: a server (waitForShutdown, poll) as soon as it can get it,
+ * otherwise a task that waits for a reply (a leader), while it waits. `receiver` and `servers`
+ * change only under the state lock. A task that gives up the role wakes another that may want it.
  */
 
 typedef enum Role {
     ROLE_NONE,  /* another task has it */
     ROLE_TAKEN, /* to be returned by giveRole */
-    ROLE_HAD    /* this task already had it: an operation calls this */
+    ROLE_HAD    /* this task already had it: an operation makes the call */
 } Role;
 #define FOREVER 0x7FFFFFFF /* a time-out: until the role is free, or shutdown is called */
 
-/* Gives the role up, and wakes a task that may want it; under the state lock. */
+/* Gives up the role, and wakes a task that may want it; under the state lock. */
 static void giveUp(Ice_CommunicatorPtr ic) {
     ic->receiver = -1;
     if (ic->servers)
@@ -208,7 +209,7 @@ static Role takeRole(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
         else
             ic->receiver = task;
         if (ic->stopping && ic->servers)
-            ic->os->wake(ic->osContext, ICEC_SERVER_SLOT); /* the next one to leave */
+            ic->os->wake(ic->osContext, ICEC_SERVER_SLOT); /* the next server to leave */
     }
     icec_unlock(ic, ICE_LOCK_STATE);
     return role;
@@ -220,8 +221,8 @@ static void giveRole(Ice_CommunicatorPtr ic) {
     icec_unlock(ic, ICE_LOCK_STATE);
 }
 
-/* Tells whether a task that waits for a reply must receive now. Such a task leads (`leads`) where
- * no other has or wants the role, and hands it to a server that wants it. */
+/* Returns whether a task that waits for a reply must receive now. Such a task leads (`leads`) if no
+ * other task has or wants the role, and hands it to a server that wants it. */
 static int mayReceive(Ice_CommunicatorPtr ic, int* leads) {
     int task = ic->os->task(ic->osContext), may;
     icec_lock(ic, ICE_LOCK_STATE);

@@ -92,7 +92,7 @@ void icec_endReply(Ice_OutputStreamPtr os, Ice_Status status, const Icec_Target*
         if (status <= ICE_OPERATION_NOT_EXIST)
             Ice_OutputStream_writeBlob(os, target->data, target->size);
         else
-            Ice_OutputStream_writeByte(os, 0); /* the reason, in no words */
+            Ice_OutputStream_writeByte(os, 0); /* empty reason */
     }
 }
 

@@ -16,22 +16,22 @@ struct Ice_ObjectAdapter {
     Ice_CommunicatorPtr communicator;
     Ice_ObjectAdapterPtr next;
     Ice_Byte active;
-    Ice_Byte transports; /* that it listens on, a bit each; 0: none by itself */
+    Ice_Byte transports; /* transports on which it listens, one bit each; 0: none */
     Ice_Servant servants[ICE_SERVANTS];
 };
 
 typedef enum Ice_CallState {
     ICE_CALL_FREE,
-    ICE_CALL_KEPT,     /* over; its task may still use what it returned */
+    ICE_CALL_KEPT,     /* ended; its task may still use the results */
     ICE_CALL_BUILDING, /* its request is being written */
     ICE_CALL_WAITING,  /* for the reply */
-    ICE_CALL_DONE      /* the reply is there, or will never come */
+    ICE_CALL_DONE      /* the reply has arrived, or will never arrive */
 } Ice_CallState;
 
 typedef struct Ice_Call {
     Ice_CallState state;
-    int task;          /* that made it */
-    Ice_Status status; /* once it is done */
+    int task;          /* task that made the call */
+    Ice_Status status; /* valid in state DONE */
     Ice_Int id;
     int connection;
     U32 begunMs;
@@ -39,24 +39,24 @@ typedef struct Ice_Call {
     Ice_Callback callback; /* 0: a task waits */
     void* cookie;
     Ice_InputStream is;
-    Ice_String unknown; /* of Ice_Failure */
-    U32* reply;         /* the reply, and behind it its decoded sequences */
+    Ice_String unknown; /* unknown exception, for Ice_Failure */
+    U32* reply;         /* the reply, followed by its decoded sequences */
     Ice_Int replySize;
     U32 replyData[ICE_REPLY_MAX / 4];
 } Ice_Call;
 
 typedef enum Ice_ConnectionState {
     ICE_CONNECTION_NONE,
-    ICE_CONNECTION_VALIDATING, /* waits for the peer's first message */
+    ICE_CONNECTION_VALIDATING, /* waiting for the peer's first message */
     ICE_CONNECTION_OPEN
 } Ice_ConnectionState;
 
 typedef struct Ice_Connection {
     Ice_ConnectionState state;
-    Ice_Byte pending; /* operations under way, or answered later */
+    Ice_Byte pending; /* operations in progress, or answered later */
     Ice_Byte closing; /* the peer has been asked to close */
     U16 generation;   /* counts the connections that had this number; never 0 */
-    U32 signMs;       /* time of the callers' last sign of life, or of the wait's begin */
+    U32 signMs;       /* time of the callers' last heartbeat, or of the start of the wait */
 } Ice_Connection;
 
 typedef struct Ice_Transport {
@@ -72,14 +72,14 @@ struct Ice_Communicator {
     Ice_Byte stopping;
     Ice_Byte transportCount;
     Ice_Byte turn;     /* transport that is listened to now */
-    Ice_Byte turnUsed; /* events that it has had meanwhile */
-    int receiver;      /* task that receives, -1 none */
+    Ice_Byte turnUsed; /* events handled in this turn */
+    int receiver;      /* task that receives; -1 if none */
     int servers;       /* tasks that want to receive */
     int depth;         /* messages being handled */
     Ice_Int lastId;
     Ice_OutputStream request;    /* being built, under ICE_LOCK_SEND */
-    Ice_Int requestBody;         /* where its encapsulation begins */
-    Ice_InputStreamPtr decoding; /* of the innermost operation, with its part of the arena */
+    Ice_Int requestBody;         /* offset of its encapsulation */
+    Ice_InputStreamPtr decoding; /* stream of the innermost operation, with its part of the arena */
     const Ice_Os* os;
     void* osContext;
     const char* const* properties;

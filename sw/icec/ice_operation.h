@@ -10,11 +10,11 @@
 
 enum { ICE_NORMAL = 0, ICE_NONMUTATING = 1, ICE_IDEMPOTENT = 2 };
 
-/* Added to the mode of a request that came by broadcast (Ice_markBroadcast). */
+/* Added to the mode of a request that arrived by broadcast (Ice_markBroadcast). */
 #define ICE_BROADCAST 4
 
-/* Modes of requests that an operation takes, a bit each; with metadata [":broadcast"], such by
- * broadcast, too. */
+/* Request modes that an operation accepts, one bit each; with metadata [":broadcast"] also requests
+ * by broadcast. */
 enum {
     ICE_TAKES_NORMAL = 1 << ICE_NORMAL,
     ICE_TAKES_IDEMPOTENT = 1 << ICE_NONMUTATING | 1 << ICE_IDEMPOTENT
@@ -22,7 +22,7 @@ enum {
 #define ICE_TAKES_BROADCAST(modes) ((modes) | (modes) << ICE_BROADCAST)
 
 typedef struct Ice_Operation {
-    const char* name; /* 0 ends a table */
+    const char* name; /* 0 marks the end of a table */
     /* `table`: the servant's M_I_Operations */
     Ice_Status (*dispatch)(Ice_ObjectPtr self, const void* table, const Ice_Current* current,
                            Ice_InputStreamPtr is, Ice_OutputStreamPtr os);
@@ -33,12 +33,12 @@ typedef struct Ice_Base Ice_Base;
 
 typedef struct Ice_Interface {
     const Ice_Operation* operations;
-    const Ice_Base* bases; /* 0: none */
+    const Ice_Base* bases; /* 0 if there are none */
 } Ice_Interface;
 
 struct Ice_Base {
-    const Ice_Interface* interface; /* 0 ends */
-    size_t offset;                  /* of its operations within those of the derived interface */
+    const Ice_Interface* interface; /* 0 marks the end */
+    size_t offset;                  /* offset of its operations in those of the derived interface */
 };
 
 /* Calls the operation that `current` names. ICE_PROTOCOL: it was called as idempotent and is not,

@@ -9,8 +9,8 @@
 
 #include <string.h>
 
-/* Takes the next word of the options, without its quotes. Returns the text after it; 0: there is
- * none, and `size` is -1 if quotes do not match. */
+/* Takes the next word of the options, without its quotes. Returns the text after it; 0 at the end,
+ * with `size` -1 if quotes do not match. */
 static const char* nextWord(const char* text, const char** word, Ice_Int* size) {
     char quote = 0;
     *size = 0;
@@ -18,7 +18,7 @@ static const char* nextWord(const char* text, const char** word, Ice_Int* size) 
         if (*text && strchr(ICEC_SPACES, *text))
             ++text;
         else if (text[0] && text[0] == text[1] && strchr("'\"", *text))
-            text += 2; /* an empty word is not one */
+            text += 2; /* an empty word is skipped */
         else
             break;
     } while (1);
@@ -67,7 +67,7 @@ Ice_Bool Ice_areOptions(const char* options, const char* letters) {
 const char* Ice_findOption(const char* options, char letter, Ice_Int* size) {
     const char *word, *found = 0;
     Ice_Int length;
-    int matches = 0; /* the word before was "-x" */
+    int matches = 0; /* the previous word was "-x" */
     while (options && (options = nextWord(options, &word, &length)) != 0) {
         if (matches) {
             found = word;
@@ -87,7 +87,7 @@ Ice_Bool Ice_hasOption(const char* options, char letter) {
     return 0;
 }
 
-/* Reads a decimal number. Returns 0 if the word is another one. */
+/* Reads a decimal number. Returns 0 if the word is not a number. */
 static Ice_Bool readInteger(const char* at, Ice_Int size, Ice_Int most, Ice_Int* value) {
     Ice_Int number = 0;
     while (size > 0 && strchr(ICEC_SPACES, *at))

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_private: declares the functions that the full run time's files share, from the bottom to the
- * top.
+ * ice_private: declares the functions shared by the files of the full run time, bottom layer first.
  */
 #pragma once
 
@@ -10,7 +9,7 @@
 /* ---- ice_transport: transports, locks, time, and the connections: their states, and sending on
  * them ---- */
 
-/* A loop over the transports; one alone costs none. */
+/* Number of transports for loops; a single one costs no code. */
 #define ICEC_TRANSPORTS(ic) (ICE_TRANSPORTS == 1 ? 1 : (ic)->transportCount)
 
 /* `which`: ICE_LOCK_STATE or ICE_LOCK_SEND. */
@@ -20,28 +19,29 @@
 /* Milliseconds since any time; wraps. */
 U32 icec_nowMs(Ice_CommunicatorPtr ic);
 
-/* Makes the receiver's wait end early. */
+/* Ends the receiver's wait early. */
 void icec_wake(Ice_CommunicatorPtr ic);
 
 /* Spaces between the words of proxies and endpoints as strings, as in Ice. */
 #define ICEC_SPACES " \t\n\r"
 
-/* Returns the options after a transport's name, and sets the transport; 0: the text names none. */
+/* Returns the options after a transport's name, and sets the transport; 0 if the text names
+ * none. */
 const char* icec_optionsOf(Ice_CommunicatorPtr ic, const char* text, int* transport);
-/* Returns the text after the next colon outside of quotes; 0: there is none. */
+/* Returns the text after the next colon outside quotes; 0 if there is none. */
 const char* icec_nextEndpoint(const char* text);
-/* Adds an endpoint of a transport; `options` 0: the one that it listens on. ICE_LIMIT:
+/* Adds an endpoint of a transport; `options` 0: the one on which it listens. ICE_LIMIT: more than
  * ICE_ENDPOINT_MAX. */
 Ice_Status icec_addEndpoint(Ice_ObjectPrxPtr prx, int transport, const char* options);
 
-/* Resolves escapes, as Ice does: `special` may be escaped besides, others stay as they are. Fails
- * `os` if one is malformed, or if there are control characters. */
+/* Resolves escapes as Ice does: `special` may also be escaped; other escapes are kept. Fails `os`
+ * if one is malformed, or for control characters. */
 void icec_unescape(Ice_String text, char special, Ice_OutputStreamPtr os);
 /* The status of a stream that failed: ICE_PARSE if its text is malformed, otherwise ICE_LIMIT. */
 #define icec_parseFailure(os) ((os)->failed == ICE_FAILED_MALFORMED ? ICE_PARSE : ICE_LIMIT)
 
-/* Sends the whole message in `os`; under ICE_LOCK_SEND. ICE_CONNECTION_LOST: the connection is
- * over. */
+/* Sends the complete message in `os`; under ICE_LOCK_SEND. ICE_CONNECTION_LOST: the connection has
+ * ended. */
 Ice_Status icec_send(Ice_CommunicatorPtr ic, int connection, Ice_OutputStreamPtr os);
 /* Sends a message without a body: ICEC_VALIDATE or ICEC_CLOSE. */
 Ice_Status icec_sendHead(Ice_CommunicatorPtr ic, int connection, Ice_Byte type);
@@ -52,31 +52,31 @@ void icec_openConnection(Ice_CommunicatorPtr ic, int connection, Ice_ConnectionS
 void icec_closeConnection(Ice_CommunicatorPtr ic, int connection);
 Ice_ConnectionState icec_connectionState(Ice_CommunicatorPtr ic, int connection);
 
-/* Sends CloseConnection, once: pending requests of the peer were not executed, and it closes. Waits
- * until operations under way have been answered: then the next call sends. */
+/* Sends CloseConnection, once: pending requests of the peer were not executed, and the peer closes.
+ * Waits until operations in progress have been answered: then the next call sends. */
 void icec_askToClose(Ice_CommunicatorPtr ic, int connection);
 int icec_isStopping(Ice_CommunicatorPtr ic);
 
-/* Counts `change` more operations under way on a connection. 0: the number now belongs to another
- * connection, or to none. */
+/* Counts `change` more operations in progress on a connection. Returns 0 if the number now belongs
+ * to another connection, or to none. */
 int icec_countPending(Ice_CommunicatorPtr ic, int connection, U16 generation, int change);
 
 /* Gives `is` the part of the communicator's arena that outer operations do not use. */
 void icec_giveArena(Ice_CommunicatorPtr ic, Ice_InputStreamPtr is);
 
-/* ---- ice_calls: the table of this side's calls whose replies have not come ---- */
+/* ---- ice_calls: the table of calls that wait for replies ---- */
 
-/* Takes a slot for a call that is being built: a free one, or one that this task's last call has
- * kept. -1: all are taken. */
+/* Takes a slot for a call that is being built: a free one, or the slot kept by this task's last
+ * call. Returns -1 if all are taken. */
 int icec_takeCall(Ice_CommunicatorPtr ic);
 Ice_CallState icec_callState(Ice_CommunicatorPtr ic, int slot);
 
 /* Hands a reply, read up to its body, to the call that waits for it. */
 void icec_takeReply(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is);
-/* Finds an asynchronous call whose time is over, and its id; 0: there is none. Shortens `waitMs` to
- * the next call's time; under the state lock. */
+/* Finds an asynchronous call that has timed out, and its id; returns 0 if there is none. Shortens
+ * `waitMs` to the next time-out; under the state lock. */
 Ice_Call* icec_expiredCall(Ice_CommunicatorPtr ic, U32 now, Ice_Int* id, Ice_Int* waitMs);
-/* Ends that call, unless it has ended meanwhile. */
+/* Ends that call, unless it has already ended. */
 void icec_expireCall(Ice_CommunicatorPtr ic, Ice_Call* call, Ice_Int id);
 /* Marks a connection as closed, and fails its calls with `status`. */
 void icec_loseConnection(Ice_CommunicatorPtr ic, int connection, Ice_Status status);
@@ -85,17 +85,17 @@ void icec_wakeCalls(Ice_CommunicatorPtr ic);
 
 /* ---- ice_dispatch: incoming requests, from the message to the servant, and replies ---- */
 
-/* Executes a request, or a batch of them, and answers. Returns ICE_OK whatever the result;
+/* Executes a request, or a batch of requests, and replies. Returns ICE_OK for any result;
  * ICE_CONNECTION_LOST: the message is malformed. */
 Ice_Status icec_dispatchRequest(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is);
 Ice_Status icec_dispatchBatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is);
 
 /* ---- ice_loop: handles arriving events, and waits for them, in one of several tasks ---- */
 
-/* Receives, or lets another task receive, while `waits(ic, which)` holds; from within an operation,
- * too. `slot` belongs to the call that the task sleeps on. ICE_TIMEOUT, ICE_LIMIT. */
+/* Receives, or lets another task receive, while `waits(ic, which)` holds; also from within an
+ * operation. `slot` belongs to the call on which the task sleeps. ICE_TIMEOUT, ICE_LIMIT. */
 Ice_Status icec_await(Ice_CommunicatorPtr ic, int (*waits)(Ice_CommunicatorPtr ic, int which),
                       int which, int slot, Ice_Int timeoutMs);
 
-/* The slot of Ice_Os in which tasks sleep that want to receive; 0..ICE_CALLS-1 belong to calls. */
+/* Slot of Ice_Os in which tasks that want to receive sleep; 0..ICE_CALLS-1 belong to calls. */
 #define ICEC_SERVER_SLOT ICE_CALLS

@@ -60,8 +60,8 @@ Ice_String Ice_ObjectPrx_getFacet(const Ice_ObjectPrx* prx) {
     return facet;
 }
 
-/* Gives received endpoints of this program's transports the message's encoding, as Ice does; others
- * stay as they came. */
+/* Sets the encoding of received endpoints of this program's transports to the message's, as Ice
+ * does; other endpoints are unchanged. */
 static void adoptEncoding(Ice_CommunicatorPtr ic, Ice_Byte* endpoints, Ice_Byte minor) {
     Ice_Byte* at = endpoints + 1;
     int n;
@@ -81,7 +81,7 @@ void Ice_OutputStream_writePrx(Ice_OutputStreamPtr os, const Ice_ObjectPrx* prx)
         return;
     }
     if (ICEC_FULL && prx->generation)
-        os->failed = ICE_FAILED_MALFORMED; /* a fixed proxy's connection exists here only */
+        os->failed = ICE_FAILED_MALFORMED; /* a fixed proxy's connection only exists here */
     Ice_OutputStream_writeBlob(os, prx->identity, prx->identitySize);
     Ice_OutputStream_writeShort(os, (Ice_Short)(prx->mode | prx->secure << 8));
     if (ICEC_FULL && os->minor != 0)
@@ -93,7 +93,7 @@ void Ice_OutputStream_writePrx(Ice_OutputStreamPtr os, const Ice_ObjectPrx* prx)
         adoptEncoding(prx->communicator, os->data + os->size - prx->endpointsSize, os->minor);
 }
 
-/* Keeps bytes of the message behind those already kept. 0: no room. */
+/* Appends bytes of the message to those already kept. Returns 0 without room. */
 static int keep(Ice_InputStreamPtr is, Ice_Int begin, Ice_ObjectPrxPtr prx) {
     Ice_Int size = is->position - begin;
     if (is->failed || size > ICE_ENDPOINT_MAX - prx->endpointsSize)
@@ -121,7 +121,7 @@ void Ice_InputStream_readPrx(Ice_InputStreamPtr is, Ice_CommunicatorPtr ic, Ice_
         prx->versions[3] = is->minor;
     if (is->minor != 0) {
         const Ice_Byte* versions = Ice_InputStream_readBlob(is, 4);
-        prx->minor = versions && versions[3] != 0; /* of a later version, 1.1 is understood there */
+        prx->minor = versions && versions[3] != 0; /* a later version also supports 1.1 */
         if (ICEC_FULL && versions)
             memcpy(prx->versions, versions, 4);
     }
@@ -133,7 +133,7 @@ void Ice_InputStream_readPrx(Ice_InputStreamPtr is, Ice_CommunicatorPtr ic, Ice_
         if (!is->failed && !keep(is, begin, prx))
             is->failed = ICE_FAILED_ENDPOINT;
     }
-    /* Endpoints that do not fit are left out, as long as one does. */
+    /* Endpoints that do not fit are omitted, as long as one does. */
     for (; n > 0 && !is->failed; --n) {
         Ice_Int size;
         begin = is->position;
@@ -178,7 +178,7 @@ Ice_Status Ice_ObjectPrx_ice_facet(Ice_ObjectPrxPtr prx, const char* facet) {
     Ice_InputStream_init(&is, prx->identity, prx->identitySize);
     icec_skipStrings(&is, 2);
     Ice_OutputStream_init(&os, prx->identity, ICE_IDENTITY_MAX);
-    os.size = is.position; /* the facet stands behind name and category */
+    os.size = is.position; /* the facet follows name and category */
     icec_writeFacet(&os, &text);
     prx->identitySize = (Ice_Byte)os.size;
     return os.failed ? ICE_LIMIT : ICE_OK;

@@ -18,8 +18,8 @@ U32 Ice_numberOption(const char* options, char letter, U32 otherwise) {
     return end == at + size && *at != '-' ? value : 0xFFFFFFFFU;
 }
 
-/* Takes the next word, without its quotes; it ends at a character of `ends`. Escapes stay. Returns
- * the text after it; 0: quotes do not match. */
+/* Takes the next word, without its quotes; it ends at a character of `ends`. Escapes are kept.
+ * Returns the text after it; 0 if quotes do not match. */
 static const char* word(const char* text, const char* ends, Ice_String* found) {
     const char quote = *text;
     int isQuoted = quote == '"' || quote == '\'';
@@ -37,7 +37,7 @@ static const char* word(const char* text, const char* ends, Ice_String* found) {
     return text + isQuoted;
 }
 
-/* Returns whether an odd number of backslashes stands before the character at `at`. */
+/* Returns whether an odd number of backslashes precedes the character at `at`. */
 static int isEscaped(Ice_String text, Ice_Int at) {
     Ice_Int count = 0;
     while (count < at && text.data[at - count - 1] == '\\')
@@ -45,7 +45,7 @@ static int isEscaped(Ice_String text, Ice_Int at) {
     return count % 2;
 }
 
-/* Parses "name" or "category/name", where a slash may be escaped. */
+/* Parses "name" or "category/name"; a slash may be escaped. */
 static Ice_Status parseIdentity(Ice_String text, Ice_String facet, Ice_ObjectPrxPtr prx) {
     Ice_Byte bytes[ICE_IDENTITY_MAX];
     Ice_OutputStream os;
@@ -76,8 +76,7 @@ static Ice_Status parseIdentity(Ice_String text, Ice_String facet, Ice_ObjectPrx
     return icec_setIdentity(prx, &parts[0], &parts[1], &parts[2]);
 }
 
-/* Returns the six bits that a character of base 64 stands for; '=' has 63; -1: another character.
- */
+/* Returns the six bits of a character of base 64; 63 for '='; -1 for other characters. */
 static int base64(char c) {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     const char* digit = c ? strchr(digits, c) : 0;
@@ -106,7 +105,7 @@ static void decodeBase64(const char* text, Ice_Int size, Ice_OutputStreamPtr os)
     }
 }
 
-/* Parses a version such as "1.1". Returns 0 if it is another text. */
+/* Parses a version such as "1.1". Returns 0 for other text. */
 static int parseVersion(Ice_String text, Ice_Byte* version) {
     int part;
     Ice_Int i = 0;
@@ -172,8 +171,8 @@ const char* icec_nextEndpoint(const char* text) {
     return 0;
 }
 
-/* Parses the endpoints after the colon at `text`. Those of unknown transports are left out, as long
- * as there is another one. */
+/* Parses the endpoints after the colon at `text`. Endpoints of unknown transports are omitted, as
+ * long as another one remains. */
 static Ice_Status parseEndpoints(const char* text, Ice_ObjectPrxPtr prx) {
     Ice_Status status = ICE_OK;
     while (status == ICE_OK && (text = icec_nextEndpoint(text)) != 0) {
@@ -207,10 +206,10 @@ static Ice_Status parseAdapter(const char* text, Ice_ObjectPrxPtr prx) {
     return os.size == 2 ? ICE_PARSE : ICE_OK;
 }
 
-/* Parses an option before the endpoints, with its value (of size 0 if there is none). */
+/* Parses an option before the endpoints, with its value (of size 0 without one). */
 static Ice_Status parseOption(char letter, Ice_String value, Ice_String* facet,
                               Ice_ObjectPrxPtr prx) {
-    static const char modes[] = "toOdD"; /* in the order of ICE_TWOWAY and its like */
+    static const char modes[] = "toOdD"; /* in the order of ICE_TWOWAY and the following */
     const char* mode = letter ? strchr(modes, letter) : 0;
     int isRight = value.size != 0;
     if (mode) {
@@ -243,7 +242,7 @@ static Ice_Status parse(const char* text, Ice_ObjectPrxPtr prx) {
         return text != begin && text[strspn(text, ICEC_SPACES)] == 0 ? ICE_OK : ICE_PARSE;
     for (;;) {
         text += strspn(text, ICEC_SPACES);
-        if (strchr(":@", *text)) /* or the end */
+        if (strchr(":@", *text)) /* or at the end */
             break;
         text += strcspn(option.data = text, ICEC_SPACES ":@");
         option.size = (Ice_Int)(text - option.data);

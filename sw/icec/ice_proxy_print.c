@@ -39,7 +39,7 @@ static void escape(Ice_OutputStreamPtr os, Ice_String text, char special) {
     }
 }
 
-/* Puts the text that begins at `begin` into quotes where it needs them. */
+/* Quotes the text that begins at `begin`, if necessary. */
 static void quote(Ice_OutputStreamPtr os, Ice_Int begin) {
     Ice_Int i;
     for (i = begin; i < os->size; ++i)

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_status: statuses in words, with Ice's name of the exception where there is one.
- */
+ * ice_status: statuses as text, with the name of Ice's exception if there is one. */
 #include "ice_port.h"
 #include "ice_value.h"
 
@@ -28,7 +27,7 @@ const char* Ice_Status_text(Ice_Status status) {
     return (unsigned)status < sizeof texts / sizeof texts[0] ? texts[status] : "unknown status";
 }
 
-/* The macro's name and its value: the name is taken before the argument is expanded. */
+/* Name and value of a macro: the name is taken before the argument is expanded. */
 #define VALUE(x) #x
 #define NAMED(exception, name, value) exception ": over " name " (" VALUE(value) ")"
 #define OVER(macro) NAMED("::Ice::MarshalException", #macro, macro)

@@ -153,7 +153,7 @@ const Ice_Byte* Ice_InputStream_readBlob(Ice_InputStreamPtr is, Ice_Int size) {
     const Ice_Byte* at = is->data + is->position;
     if (is->failed)
         return 0;
-    if ((U32)size > (U32)(is->size - is->position)) { /* a negative one, too */
+    if ((U32)size > (U32)(is->size - is->position)) { /* also a negative one */
         is->failed = ICE_FAILED_MALFORMED;
         return 0;
     }
@@ -260,7 +260,7 @@ void* Ice_InputStream_allocate(Ice_InputStreamPtr is, Ice_Int count, Ice_Int byt
         return 0;
     }
     words = (count * bytes + 3) / 4;
-    /* Doubles and pointers want 8 on hosts, wherever the arena begins. */
+    /* Doubles and pointers need an alignment of 8 on hosts, wherever the arena begins. */
     if ((size_t)(is->arena + is->arenaUsed) & 7U)
         ++is->arenaUsed;
     if (words > is->arenaSize - is->arenaUsed) {

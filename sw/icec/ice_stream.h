@@ -34,14 +34,14 @@ int Ice_String_equals(Ice_String a, const char* terminated);
 int Ice_String_is(const Ice_String* a, const char* terminated);
 int Ice_String_same(const Ice_String* a, const Ice_String* b);
 
-/* Copies into `size` bytes, the end mark included, what fits of the string, in whole characters of
- * UTF-8. Returns 1 if all of it fits. */
+/* Copies as many whole UTF-8 characters of the string as fit into `size` bytes, end mark included.
+ * Returns 1 if all of it fits. */
 int Ice_String_copy(Ice_String s, char* to, Ice_Int size);
 /* The two arguments for "%.*s": printf("%.*s\n", ICE_PRINTF(name)). `s` is evaluated three times.
  */
 #define ICE_PRINTF(s) (int)(s).size, (s).data ? (s).data : ""
 
-/* Ice_Long from and to long long, where the compiler has it. */
+/* Converts Ice_Long from and to long long, if the compiler has it. */
 #if (defined(__STDC_VERSION__) && __STDC_VERSION__ >= 199901L) || \
     (defined(__cplusplus) && __cplusplus >= 201103L)
 static inline Ice_Long Ice_Long_from(long long v) {
@@ -63,7 +63,7 @@ struct Ice_InputValues;
  * stays. */
 typedef enum Ice_Failed {
     ICE_FAILED_MALFORMED = 1,
-    ICE_FAILED_RESULT, /* the buffer is full: ICE_RESULT_MAX unless said otherwise */
+    ICE_FAILED_RESULT, /* the buffer is full: ICE_RESULT_MAX unless stated otherwise */
     ICE_FAILED_REQUEST,
     ICE_FAILED_REPLY,
     ICE_FAILED_ARENA,
@@ -74,10 +74,10 @@ typedef enum Ice_Failed {
     ICE_FAILED_CALLS, /* of calls, not of streams: ICE_LIMIT */
     ICE_FAILED_CONNECTIONS,
     ICE_FAILED_NESTING,
-    ICE_FAILED_BOUND /* of a type in Slice, ["c:max:N"], which the stream's `bound` names */
+    ICE_FAILED_BOUND /* limit of a type in Slice, ["c:max:N"], named by the stream's `bound` */
 } Ice_Failed;
 
-/* Returns the reason in words: the limit, its macro and its value. `bound`: the stream's. */
+/* Returns the reason as text: the limit, its macro and its value. `bound`: the stream's. */
 const char* Ice_Failed_text(Ice_Byte failed, const char* bound);
 
 typedef struct Ice_OutputStream {
@@ -87,9 +87,9 @@ typedef struct Ice_OutputStream {
     Ice_Byte failed; /* Ice_Failed; 0: no failure */
     Ice_Byte
         sliced; /* user exceptions in the sliced format: a peer can skip slices it does not know */
-    Ice_Byte sliceFlags;             /* of the slice under way */
-    const char* bound;               /* the reason in words, with ICE_FAILED_BOUND */
-    struct Ice_OutputValues* values; /* classes; 0: none so far */
+    Ice_Byte sliceFlags;             /* flags of the current slice */
+    const char* bound;               /* reason as text, with ICE_FAILED_BOUND */
+    struct Ice_OutputValues* values; /* classes; 0 if there are none so far */
 } Ice_OutputStream, *Ice_OutputStreamPtr;
 
 typedef struct Ice_InputStream {
@@ -97,13 +97,13 @@ typedef struct Ice_InputStream {
     Ice_Int position, size;
     Ice_Byte minor;
     Ice_Byte failed;
-    Ice_Byte sliceFlags;                   /* of the slice under way; 0: none */
-    const char* bound;                     /* the reason in words, with ICE_FAILED_BOUND */
+    Ice_Byte sliceFlags;                   /* flags of the current slice; 0 outside a slice */
+    const char* bound;                     /* reason as text, with ICE_FAILED_BOUND */
     Ice_Int sliceEnd;                      /* 0: not known */
     U32* arena;                            /* for decoded sequences */
     Ice_Int arenaUsed, arenaSize;          /* in words of 4 bytes */
-    struct Ice_Communicator* communicator; /* of the proxies that are read */
-    struct Ice_InputValues* values;        /* classes; 0: none so far */
+    struct Ice_Communicator* communicator; /* communicator of the proxies that are read */
+    struct Ice_InputValues* values;        /* classes; 0 if there are none so far */
 } Ice_InputStream, *Ice_InputStreamPtr;
 
 /* ---- writing ---- */
@@ -126,7 +126,7 @@ void Ice_OutputStream_writeEnum(Ice_OutputStreamPtr os, Ice_Int v, Ice_Int large
 #define Ice_OutputStream_writeEnum(os, v, largest)                   \
     ((largest) < 127 ? Ice_OutputStream_writeByte(os, (Ice_Byte)(v)) \
                      : (Ice_OutputStream_writeEnum)(os, v, largest))
-/* Leaves room for a size of 4 bytes that does not count itself; endSize writes it. */
+/* Reserves a size of 4 bytes that does not count itself; endSize writes it. */
 Ice_Int Ice_OutputStream_startSize(Ice_OutputStreamPtr os);
 void Ice_OutputStream_endSize(Ice_OutputStreamPtr os, Ice_Int begin);
 /* Overwrites the four bytes at `at`. */
@@ -147,11 +147,11 @@ Ice_Int Ice_InputStream_readSize(Ice_InputStreamPtr is);
 Ice_String Ice_InputStream_readString(Ice_InputStreamPtr is);
 void Ice_InputStream_takeString(Ice_InputStreamPtr is, Ice_String* s);
 Ice_Int Ice_InputStream_readEnum(Ice_InputStreamPtr is, Ice_Int largest);
-/* Reads the size of a sequence whose elements take at least `least` bytes each. A size beyond the
+/* Reads the size of a sequence with elements of at least `least` bytes each. A size beyond the
  * message fails the stream. */
 Ice_Int Ice_InputStream_readSequence(Ice_InputStreamPtr is, Ice_Int least);
-/* Returns room for `count` elements of `bytes` each, aligned to 8; 0 where there is none, which
- * fails the stream. */
+/* Returns room for `count` elements of `bytes` each, aligned to 8; 0 without room, which fails the
+ * stream. */
 void* Ice_InputStream_allocate(Ice_InputStreamPtr is, Ice_Int count, Ice_Int bytes);
 
 /* ---- optional values: encoding 1.1 only ---- */
@@ -173,18 +173,18 @@ Ice_Bool Ice_OutputStream_writeOptional(Ice_OutputStreamPtr os, Ice_Int tag, Ice
 /* Returns 1 if the value is there: it follows. Unknown tags before it are skipped.
  */
 Ice_Bool Ice_InputStream_readOptional(Ice_InputStreamPtr is, Ice_Int tag, Ice_Int format);
-/* Skips the optional values that are left in the slice or encapsulation. */
+/* Skips the remaining optional values of the slice or encapsulation. */
 void Ice_InputStream_skipOptionals(Ice_InputStreamPtr is);
 
-/* Ends the reading of parameters or results: skips optional values that are left, and fails the
- * stream if other bytes follow, as stock Ice does. Returns is->failed. The minimal run time ignores
- * what follows. */
+/* Ends the reading of parameters, results or an exception: skips remaining optional values, and
+ * fails the stream if other bytes follow, as stock Ice does. Returns is->failed. The minimal run
+ * time ignores what follows. */
 #ifdef ICEC_MINIMAL
 #define Ice_InputStream_end(is) ((is)->failed)
 #define Ice_InputStream_endEmpty(is) ((void)(is), 0)
 #else
 Ice_Bool Ice_InputStream_end(Ice_InputStreamPtr is);
-/* The same if there are no parameters: 1.1 allows any that a newer peer has added, 1.0 none. */
+/* The same without parameters: 1.1 allows any that a newer peer has added, 1.0 none. */
 Ice_Bool Ice_InputStream_endEmpty(Ice_InputStreamPtr is);
 #endif
 
@@ -196,9 +196,8 @@ Ice_Int Ice_OutputStream_startSlice(Ice_OutputStreamPtr os, const char* typeId, 
 void Ice_OutputStream_endSlice(Ice_OutputStreamPtr os, Ice_Int begin, Ice_Bool last);
 
 void Ice_InputStream_startException(Ice_InputStreamPtr is);
-/* Begins to read a slice. Returns its type id, an empty one where there is no slice. */
+/* Begins to read a slice. Returns its type id, empty if there is no slice. */
 Ice_String Ice_InputStream_startSlice(Ice_InputStreamPtr is);
-/* Goes to the next slice. Returns 0 if there is none, or the format does not say where it begins.
- */
+/* Skips to the next slice. Returns 0 if there is none, or the format does not give its position. */
 Ice_Bool Ice_InputStream_skipSlice(Ice_InputStreamPtr is);
 void Ice_InputStream_endSlice(Ice_InputStreamPtr is);

@@ -10,16 +10,16 @@
  *     Ice_ObjectAdapter_activate(&adapter);
  *     Ice_Communicator_stringToProxy(&ic, "other:tcp -h ground -p 10000", &prx);
  *     if (M_OtherPrx_op(&prx, in, &out) != ICE_OK)     (a call, generated)
- *         ...                                          (Ice_ObjectPrx_failure says more)
+ *         ...                                          (Ice_ObjectPrx_failure has details)
  *     Ice_Communicator_waitForShutdown(&ic);           (serves)
  *
- * Nothing is allocated: the caller owns every object named here, and keeps it while it is in use,
- * and so it does strings that are passed as `const char*`. The limits are those of ice_config.h.
- * Any task may call every function where an Ice_Os is set; a proxy object belongs to one task at a
- * time (copies are plain assignments). What a call returns by pointer (strings, sequences,
- * exceptions, instances) is its task's until that task makes its next call, or serves (poll,
- * waitForShutdown), whatever other tasks do; with Ice_ObjectPrx_setReplyBuffer, until the next call
- * through that proxy. Names follow the paper's figures; docs/icec.md tells the rest.
+ * Nothing is allocated: the caller owns every object named here, and keeps it, and strings passed
+ * as `const char*`, while it is in use. The limits are in ice_config.h. Any task may call every
+ * function if an Ice_Os is set; a proxy object belongs to one task at a time (copies are plain
+ * assignments). Results returned by pointer (strings, sequences, exceptions, instances) belong to
+ * the task until it makes its next call, or serves (poll, waitForShutdown), whatever other tasks
+ * do; with Ice_ObjectPrx_setReplyBuffer, until the next call through that proxy. Names follow the
+ * paper's figures; for more see docs/icec.md.
  */
 #pragma once
 
@@ -34,7 +34,7 @@ typedef struct Ice_Identity {
     Ice_String name, category;
 } Ice_Identity;
 
-/* An entry of a request context. An array of them ends with a key of 0. */
+/* Entry of a request context. An array of entries ends with a key of 0. */
 typedef struct Ice_ContextEntry {
     const char *key, *value;
 } Ice_ContextEntry;
@@ -53,25 +53,27 @@ typedef struct Ice_Current {
     Ice_InputStream context; /* use Ice_Current_context */
 } Ice_Current;
 
-/* Reads the parameters from `is`, runs the operation, and writes the results to `os`, after the
- * servant's function has returned: until then `os` has no place of its own. Returns
- * ICE_OPERATION_NOT_EXIST where there is no such operation. */
+/* Reads the parameters from `is`, runs the operation, and writes the results to `os` after the
+ * servant's function has returned; before that `os` has no buffer. Returns ICE_OPERATION_NOT_EXIST
+ * if the operation does not exist. */
 typedef Ice_Status (*Ice_Dispatch)(Ice_ObjectPtr self, const Ice_Current* current,
                                    Ice_InputStreamPtr is, Ice_OutputStreamPtr os);
 
 struct Ice_Object {
     Ice_Dispatch dispatch;
-    const char* const* ids; /* type ids in alphabetical order, "::Ice::Object" among them; 0 ends */
+    const char* const* ids; /* type ids in alphabetical order, including "::Ice::Object"; 0 marks
+                             * the end */
     const char* id;         /* the most derived one */
 };
 
 /* Runs an operation of a servant as a request does: ice_ping, ice_isA, ice_id and ice_ids are
- * answered from its ids. A servant whose `ids` is 0 is asked these, too (full run time): it can
- * forward what it does not know, or watch and pass on to another servant by this function. */
+ * answered from its ids. A servant with `ids` 0 also gets these (full run time): it can forward
+ * requests that it does not know, or log them and pass them on to another servant with this
+ * function. */
 Ice_Status Ice_Object_invoke(Ice_ObjectPtr servant, const Ice_Current* current,
                              Ice_InputStreamPtr is, Ice_OutputStreamPtr os);
 
-/* Looks a key of the caller's context up. Returns 1 if it is there, and sets `value`. */
+/* Looks up a key of the caller's context. Returns 1 and sets `value` if it exists. */
 Ice_Bool Ice_Current_context(const Ice_Current* current, const char* key, Ice_String* value);
 /* Lists the caller's context: returns 1 and the entry of this index, from 0; 0 after the last. */
 Ice_Bool Ice_Current_contextAt(const Ice_Current* current, Ice_Int index, Ice_String* key,
@@ -81,9 +83,9 @@ Ice_Bool Ice_Current_contextAt(const Ice_Current* current, Ice_Int index, Ice_St
  * servant's function has returned ICE_LATER. 0: there is not enough room. */
 void* Ice_Current_allocate(const Ice_Current* current, Ice_Int bytes);
 
-/* Ends an operation with `text` as its failure in words: `return Ice_Current_fail(current, "...")`.
- * ICE_CHECK does where the condition is wrong, and names the servant's file and line: the caller
- * has UnknownLocalException("pump.c:42: litres > 0"). Full run time. */
+/* Ends an operation with `text` as the reason of its failure: `return Ice_Current_fail(current,
+ * "...")`. ICE_CHECK does so if the condition is false, with the servant's file and line: the
+ * caller gets UnknownLocalException("pump.c:42: litres > 0"). Full run time. */
 Ice_Status Ice_Current_fail(const Ice_Current* current, const char* text);
 #define ICE_CHECK(current, condition)                                                          \
     do {                                                                                       \
@@ -93,7 +95,7 @@ Ice_Status Ice_Current_fail(const Ice_Current* current, const char* text);
 #define ICE_TEXT(x) ICE_TEXT_OF(x)
 #define ICE_TEXT_OF(x) #x
 
-/* The right to answer a call later, of a servant whose function returns ICE_LATER. */
+/* Allows a servant to answer a call later, after its function returned ICE_LATER. */
 typedef struct Ice_Reply {
     Ice_CommunicatorPtr communicator;
     Ice_Int id;
@@ -102,8 +104,8 @@ typedef struct Ice_Reply {
     Ice_Byte minor;
 } Ice_Reply;
 
-/* Marks a request that came by broadcast, for a transport: operations with the metadata
- * [":broadcast"] take it, and no others. Returns 0: it is no request, or one that wants a reply. */
+/* Marks a request that arrived by broadcast, for a transport: only operations with the metadata
+ * [":broadcast"] accept it. Returns 0 if it is not a request, or expects a reply. */
 int Ice_markBroadcast(Ice_Byte* message, Ice_Int size);
 
 /* Fills `reply`; to be called while the operation runs. */
@@ -122,19 +124,19 @@ Ice_Status Ice_ObjectAdapter_add(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr ser
                                  const char* identity);
 Ice_Status Ice_ObjectAdapter_addFacet(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
                                       const char* identity, const char* facet);
-/* Adds a servant that answers for every identity of the category that has none of its own;
- * "": for every category. */
+/* Adds a servant for every identity of the category that has no servant; "": for every category. */
 Ice_Status Ice_ObjectAdapter_addDefaultServant(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
                                                const char* category);
-/* Remove an added servant. ICE_OBJECT_NOT_EXIST: there was none. */
+/* Remove a servant. ICE_OBJECT_NOT_EXIST: not found. */
 Ice_Status Ice_ObjectAdapter_remove(Ice_ObjectAdapterPtr adapter, const char* identity);
 Ice_Status Ice_ObjectAdapter_removeFacet(Ice_ObjectAdapterPtr adapter, const char* identity,
                                          const char* facet);
 Ice_Status Ice_ObjectAdapter_removeDefaultServant(Ice_ObjectAdapterPtr adapter,
                                                   const char* category);
-/* Returns the servant of exactly this identity, without a facet; 0: there is none. */
+/* Returns the servant of exactly this identity, without a facet; 0 if there is none. */
 Ice_ObjectPtr Ice_ObjectAdapter_find(Ice_ObjectAdapterPtr adapter, const char* identity);
-/* Activating makes an adapter's objects exist for callers; deactivating and destroying end that. */
+/* Activating makes the objects of an adapter exist for callers; deactivating and destroying end
+ * that. */
 void Ice_ObjectAdapter_activate(Ice_ObjectAdapterPtr adapter);
 void Ice_ObjectAdapter_deactivate(Ice_ObjectAdapterPtr adapter);
 void Ice_ObjectAdapter_destroy(Ice_ObjectAdapterPtr adapter);
@@ -149,33 +151,34 @@ Ice_Status Ice_ObjectAdapter_createProxyTo(Ice_ObjectAdapterPtr adapter,
 
 enum { ICE_TWOWAY, ICE_ONEWAY, ICE_BATCH_ONEWAY, ICE_DATAGRAM, ICE_BATCH_DATAGRAM };
 
-/* A buffer of one-way requests that are sent together. */
+/* A buffer for one-way requests that are sent together. */
 typedef struct Ice_Batch {
     Ice_OutputStream os;
     Ice_Int count;
     Ice_Status (*keep)(Ice_ObjectPrxPtr prx); /* the run time's */
 } Ice_Batch;
 
-/* A proxy. Members that code uses most come first: their offsets are short. */
+/* A proxy. Frequently used members come first, because their offsets are short. */
 struct Ice_ObjectPrx {
     Ice_CommunicatorPtr communicator;
-    int call;          /* the slot of the last call, -1 none */
-    int connection;    /* of the last call; a fixed proxy's only one */
-    Ice_Int timeoutMs; /* for connecting and for a reply; 10 s unless set */
+    int call;          /* slot of the last call; -1 if none */
+    int connection;    /* connection of the last call; the only one of a fixed proxy */
+    Ice_Int timeoutMs; /* time-out for connecting and for a reply, ms; default 10 s */
     Ice_Byte mode, secure;
     Ice_Byte minor;  /* encoding of requests, 1.minor */
     Ice_Byte status; /* Ice_Status of the last call */
     Ice_Byte identitySize, endpointsSize;
-    U16 generation; /* of a fixed proxy's connection; 0: not fixed */
+    U16 generation; /* generation of a fixed proxy's connection; 0: not fixed */
     const Ice_ContextEntry* context;
     Ice_Batch* batch;
     U32* reply; /* 0: ICE_REPLY_MAX bytes of the communicator's */
     Ice_Int replySize;
-    Ice_Byte identity[ICE_IDENTITY_MAX];  /* as on the wire: name, category, facet */
-    Ice_Byte endpoints[ICE_ENDPOINT_MAX]; /* as on the wire: count, endpoints; or 0, adapter's id */
-    Ice_Int id;                           /* of the last call, 0: it has no reply */
-    const char* operation;                /* of the last call */
-    const char* reason;                   /* for which it failed on this side; 0: another one */
+    Ice_Byte identity[ICE_IDENTITY_MAX];  /* in wire format: name, category, facet */
+    Ice_Byte endpoints[ICE_ENDPOINT_MAX]; /* in wire format: count, endpoints; or 0, adapter id */
+    Ice_Int id;                           /* id of the last call; 0: no reply */
+    const char* operation;                /* operation of the last call */
+    const char* reason;                   /* reason of its failure on this side; 0: another
+                                           * reason */
     Ice_Byte versions[4]; /* protocol and encoding, as the proxy travels with them; full run time */
 };
 
@@ -193,8 +196,7 @@ typedef struct Ice_Failure {
  * ICE_PARSE: malformed; ICE_LIMIT: ICE_IDENTITY_MAX or ICE_ENDPOINT_MAX. */
 Ice_Status Ice_Communicator_stringToProxy(Ice_CommunicatorPtr ic, const char* proxy,
                                           Ice_ObjectPrxPtr prx);
-/* Writes a terminated string of at most `size` bytes with the end mark. ICE_LIMIT: it does not fit.
- */
+/* Writes a string of at most `size` bytes, including the end mark. ICE_LIMIT: it does not fit. */
 Ice_Status Ice_Communicator_proxyToString(const Ice_ObjectPrx* prx, char* text, Ice_Int size);
 int Ice_ObjectPrx_isNull(const Ice_ObjectPrx* prx);
 int Ice_ObjectPrx_equals(const Ice_ObjectPrx* a, const Ice_ObjectPrx* b);
@@ -212,8 +214,8 @@ void Ice_ObjectPrx_ice_batchOneway(Ice_ObjectPrxPtr prx, Ice_Batch* batch, Ice_B
 Ice_Status Ice_ObjectPrx_ice_flushBatchRequests(Ice_ObjectPrxPtr prx);
 void Ice_ObjectPrx_ice_context(Ice_ObjectPrxPtr prx, const Ice_ContextEntry* context); /* 0: none */
 void Ice_ObjectPrx_ice_invocationTimeout(Ice_ObjectPrxPtr prx, Ice_Int ms);
-/* Gives the proxy's replies a buffer of their own, aligned to 8, instead of ICE_REPLY_MAX bytes of
- * the communicator's: `bytes` for a reply and its decoded sequences together. */
+/* Gives the proxy a separate buffer for replies, aligned to 8, instead of ICE_REPLY_MAX bytes of
+ * the communicator: `bytes` for a reply with its decoded sequences. */
 void Ice_ObjectPrx_setReplyBuffer(Ice_ObjectPrxPtr prx, U32* buffer, Ice_Int bytes);
 void Ice_ObjectPrx_ice_encodingVersion(Ice_ObjectPrxPtr prx, Ice_Byte minor);
 
@@ -221,60 +223,60 @@ Ice_Status Ice_ObjectPrx_ice_ping(Ice_ObjectPrxPtr self);
 Ice_Status Ice_ObjectPrx_ice_isA(Ice_ObjectPrxPtr self, const char* id, Ice_Bool* result);
 Ice_Status Ice_ObjectPrx_ice_id(Ice_ObjectPrxPtr self, Ice_String* result);
 /* Makes `self` a copy of `from` if the object has the type, else null. Returns whether the object
- * could be asked. */
+ * replied. */
 Ice_Status Ice_ObjectPrx_checkedCast(Ice_ObjectPrxPtr self, const Ice_ObjectPrx* from,
                                      const char* id);
 /* Opens the connection of future calls. */
 Ice_Status Ice_ObjectPrx_ice_getConnection(Ice_ObjectPrxPtr self, int* connection);
-/* Gives an indirect proxy ("object", "object@adapter") the endpoints that `locator` knows, a proxy
- * to an Ice::Locator such as IceGrid's; a direct one does not change. They stay until this is
- * called again on a fresh copy. ICE_NO_ENDPOINT: the locator knows none. */
+/* Gives an indirect proxy ("object", "object@adapter") the endpoints that `locator` knows, which is
+ * a proxy to an Ice::Locator such as IceGrid's; a direct proxy does not change. The endpoints are
+ * kept until this is called again on a fresh copy. ICE_NO_ENDPOINT: not known to the locator. */
 Ice_Status Ice_ObjectPrx_resolve(Ice_ObjectPrxPtr self, Ice_ObjectPrxPtr locator);
-/* Tells about the last call that was made through this object, until its next call; the peer's text
- * is kept as results are, and empty afterwards. */
+/* Describes the failure of the last call made through this object, until its next call; the peer's
+ * text is kept as long as results are, and empty afterwards. */
 void Ice_ObjectPrx_failure(const Ice_ObjectPrx* self, Ice_Failure* failure);
 
-/* The four steps of a call in generated code: begin, writes to the returned stream, invoke,
- * reads, end. begin returns 0, with the reason in self->status, if all calls are taken, or if
- * `mode` has ICE_RESULTS and the proxy is oneway or batch. No other call may be made between
- * begin and invoke. */
+/* Four steps of a call in generated code: begin, writes to the returned stream, invoke, reads, end.
+ * begin returns 0, with the reason in self->status, if all calls are taken, or if `mode` has
+ * ICE_RESULTS and the proxy is oneway or batch. No other call may be made between begin and
+ * invoke. */
 #define ICE_RESULTS 0x80 /* in `mode`: the operation has results or exceptions */
 Ice_OutputStreamPtr Ice_ObjectPrx_begin(Ice_ObjectPrxPtr self, const char* operation,
                                         Ice_Byte mode);
 Ice_Status Ice_ObjectPrx_invoke(Ice_ObjectPrxPtr self, Ice_InputStreamPtr* is);
 Ice_Status Ice_ObjectPrx_end(Ice_ObjectPrxPtr self, Ice_Status status);
 /* Instead of invoke and end: the receiving task calls `callback` with the reply, unless this
- * returns another status than ICE_OK. `is` is valid during the callback. */
+ * returns a status other than ICE_OK. `is` is valid during the callback. */
 typedef void (*Ice_Callback)(void* cookie, Ice_Status status, Ice_InputStreamPtr is);
 Ice_Status Ice_ObjectPrx_invokeAsync(Ice_ObjectPrxPtr self, Ice_Callback callback, void* cookie);
 
-/* Write and read a proxy. 0 is written as the null proxy, which is read as one of an empty name;
- * `ic` 0: the proxy is of the stream's communicator. */
+/* Write and read a proxy. 0 is written as the null proxy, which is read as a proxy with an empty
+ * name; `ic` 0: the communicator of the stream. */
 void Ice_OutputStream_writePrx(Ice_OutputStreamPtr os, const Ice_ObjectPrx* prx);
 void Ice_InputStream_readPrx(Ice_InputStreamPtr is, Ice_CommunicatorPtr ic, Ice_ObjectPrxPtr prx);
 
 /* ---- communicator ---- */
 
 void Ice_initialize(Ice_CommunicatorPtr ic);
-/* Set the tasks' port, and a transport; to be called before any other function, and both must stay
- * valid. Each call of the second adds a transport, up to ICE_TRANSPORTS, beyond which it takes the
- * last one's place; a proxy's endpoints say by which transport it is called. */
+/* Set the port to the tasks, and a transport; call them before any other function, and keep both
+ * valid. Each call of the second adds a transport, up to ICE_TRANSPORTS; a further one replaces the
+ * last. A call uses the transport of its proxy's endpoints. */
 void Ice_Communicator_setOs(Ice_CommunicatorPtr ic, const Ice_Os* os, void* context);
 void Ice_Communicator_setEndpoint(Ice_CommunicatorPtr ic, const Ice_Endpoint* endpoint,
                                   void* context);
 
-/* Releases the result of a task's last call, and with it the task's place among ICE_CALLS; `task`
- * is a number of Ice_Os's task. To be called when a task ends, from the kernel's hook for that; a
- * task that lives on may call it when it needs the result no longer. It takes the state lock, so
- * that a hook that may not wait leaves it to another task. Not within a call. Full run time. */
+/* Releases the result of a task's last call, and the task's place among ICE_CALLS; `task` is a
+ * number returned by Ice_Os's task. To be called from the kernel's hook when a task ends; a
+ * continuing task may call it when it does not need the result any more. It takes the state lock,
+ * so a hook that may not wait must leave it to another task. Not within a call. Full run time. */
 void Ice_Communicator_endTask(Ice_CommunicatorPtr ic, int task);
 
-/* Takes properties from an array of strings "key=value" that ends with 0. The first of two with one
- * key counts. */
+/* Takes properties from an array of strings "key=value" that ends with 0. If a key occurs twice,
+ * the first is used. */
 void Ice_Communicator_setProperties(Ice_CommunicatorPtr ic, const char* const* table);
-/* Returns the property's value; 0: it is not there. */
+/* Returns the property's value; 0 if it is not set. */
 const char* Ice_Communicator_getProperty(Ice_CommunicatorPtr ic, const char* key);
-/* Returns its value as a number, `otherwise` if it is not there or no number. */
+/* Returns its value as a number; `otherwise` if it is not set or not a number. */
 Ice_Int Ice_Communicator_getPropertyAsInt(Ice_CommunicatorPtr ic, const char* key,
                                           Ice_Int otherwise);
 Ice_Status Ice_Communicator_propertyToProxy(Ice_CommunicatorPtr ic, const char* key,
@@ -294,19 +296,19 @@ Ice_Status Ice_Communicator_createObjectAdapter(Ice_CommunicatorPtr ic, const ch
 /* Receives and dispatches until Ice_Communicator_shutdown is called. Of several tasks one receives.
  */
 void Ice_Communicator_waitForShutdown(Ice_CommunicatorPtr ic);
-/* Stops serving: no connections are accepted, and requests are no longer executed, which closing
- * tells their callers. Calls of this side go on. */
+/* Stops serving: no connections are accepted, and requests are not executed any more; their callers
+ * are informed by closing. Calls of this side continue. */
 void Ice_Communicator_shutdown(Ice_CommunicatorPtr ic);
-/* Handles at most one event; for programs with a loop of their own. Returns ICE_TIMEOUT if there
- * was none, or another task received all the time. */
+/* Handles at most one event; for programs with a main loop. Returns ICE_TIMEOUT if there was none,
+ * or if another task received all the time. */
 Ice_Status Ice_Communicator_poll(Ice_CommunicatorPtr ic, Ice_Int timeoutMs);
-/* Shuts down, and closes every connection in good order: waits up to timeoutMs for operations under
- * way to be answered, and for the peers to close. */
+/* Shuts down, and closes every connection gracefully: waits up to timeoutMs for operations in
+ * progress to be answered, and for the peers to close. */
 void Ice_Communicator_destroy(Ice_CommunicatorPtr ic, Ice_Int timeoutMs);
 
-/* Makes a proxy to an object of the peer on this connection, whoever made it: calls go back on it.
- * It ends with the connection (ICE_CONNECTION_LOST), and cannot be passed to anybody. From
- * "category/name", or from an identity as Ice_ObjectPrx_getIdentity has it. */
+/* Makes a proxy to an object of the peer on this connection, whichever side made it: calls use this
+ * connection. The proxy ends with the connection (ICE_CONNECTION_LOST), and cannot be passed to
+ * others. `identity` is "category/name", or as from Ice_ObjectPrx_getIdentity. */
 Ice_Status Ice_Connection_createProxy(Ice_CommunicatorPtr ic, int connection, const char* identity,
                                       Ice_ObjectPrxPtr prx);
 Ice_Status Ice_Connection_createProxyTo(Ice_CommunicatorPtr ic, int connection,

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_batch: one-way requests that are sent together.
- *
- * A batch is a message of its own: its head, a count, and requests without ids.
- */
+ * ice_batch: one-way requests that are sent together. A batch is a separate message: its head, a
+ * count, and requests without ids. */
 #include "ice_private.h"
 
 static void restart(Ice_Batch* batch) {
@@ -23,8 +21,8 @@ static Ice_Status flush(Ice_ObjectPrxPtr prx) {
     return status;
 }
 
-/* Adds the finished request. A full batch is sent if there is a connection for it: opening one here
- * would receive, while the request's buffer is in use. */
+/* Adds the finished request. A full batch is sent if it already has a connection: opening one here
+ * would receive while the request's buffer is in use. */
 static Ice_Status keep(Ice_ObjectPrxPtr prx) {
     Ice_Batch* batch = prx->batch;
     Ice_OutputStreamPtr request = &prx->communicator->request;
@@ -61,7 +59,7 @@ Ice_Status Ice_ObjectPrx_ice_flushBatchRequests(Ice_ObjectPrxPtr prx) {
     int connection;
     if (!batch || batch->count == 0)
         return ICE_OK;
-    prx->batch = 0; /* to connect as any call does */
+    prx->batch = 0; /* connect as any call does */
     status = Ice_ObjectPrx_ice_getConnection(prx, &connection);
     prx->batch = batch;
     if (status != ICE_OK)

@@ -30,17 +30,17 @@ static Ice_Status find(const Ice_ObjectPrx* prx, Ice_ObjectPrxPtr locator, Ice_O
         (void)Ice_InputStream_end(is);
     }
     status = Ice_ObjectPrx_end(locator, status);
-    return status == ICE_USER_EXCEPTION ? ICE_NO_ENDPOINT : status; /* it is not registered */
+    return status == ICE_USER_EXCEPTION ? ICE_NO_ENDPOINT : status; /* not registered */
 }
 
 Ice_Status Ice_ObjectPrx_resolve(Ice_ObjectPrxPtr self, Ice_ObjectPrxPtr locator) {
     Ice_ObjectPrx asked = *self;
-    int steps = 2; /* an object may be known by its adapter, and that by its endpoints */
+    int steps = 2; /* an object may be known by its adapter, and the adapter by its endpoints */
     while (asked.endpoints[0] == 0 && steps-- > 0) {
         Ice_ObjectPrx found;
         Ice_Status status = find(&asked, locator, &found);
         if (status != ICE_OK)
-            return status; /* `found` may be unset */
+            return status; /* `found` may not be set */
         if (Ice_ObjectPrx_isNull(&found))
             return ICE_NO_ENDPOINT;
         asked = found;

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_slice: slices of user exceptions, and optional values.
- *
- * 1.0: a slice is its type id, a size of 4 bytes that counts itself, the members; a byte before the
- * first says whether there are classes. 1.1: flags, type id, the size where the format is sliced,
- * the members, optional values behind them up to a mark.
+ * ice_slice: slices of user exceptions, and optional values. In 1.0 a slice is its type id, a size
+ * of 4 bytes that counts itself, and the members; a byte before the first slice shows whether there
+ * are classes. In 1.1 it is flags, type id, the size in the sliced format, the members, and
+ * optional values after them up to a mark.
  */
 #include "ice_slice.h"
 
@@ -121,8 +120,8 @@ Ice_String Ice_InputStream_startSlice(Ice_InputStreamPtr is) {
     return is->failed ? none : id;
 }
 
-/* Skips a table of instances behind a slice. `depth` bounds the nesting, so that a peer cannot fill
- * the stack. */
+/* Skips a table of instances after a slice. `depth` bounds the nesting, so that a peer cannot
+ * overflow the stack. */
 static void skipTable(Ice_InputStreamPtr is, int depth) {
     Ice_Int count = Ice_InputStream_readSequence(is, 1);
     while (count-- > 0 && !is->failed) {
@@ -147,7 +146,7 @@ static void skipTable(Ice_InputStreamPtr is, int depth) {
     }
 }
 
-/* Reads the table of instances behind a slice, if it has one; without a reader of values it is
+/* Reads the table of instances after a slice, if it has one; without a reader of values it is
  * skipped. */
 static void readTable(Ice_InputStreamPtr is) {
     Ice_Byte flags = is->sliceFlags;
@@ -202,7 +201,7 @@ static void skip(Ice_InputStreamPtr is, Ice_Int format) {
     }
 }
 
-/* Goes to the first tag that is not below `tag`. Returns 1 if it is `tag`: its value follows. */
+/* Skips to the first tag that is not below `tag`. Returns 1 if it is `tag`: its value follows. */
 static Ice_Bool seek(Ice_InputStreamPtr is, Ice_Int tag, Ice_Int format) {
     Ice_Int end = is->sliceFlags && is->sliceEnd ? is->sliceEnd : is->size;
     while (!is->failed && is->position < end) {

@@ -6,7 +6,7 @@
 
 #include "ice_value.h"
 
-/* The flags before a slice in encoding 1.1. Exceptions have none for the type: it is a string. */
+/* Flags before a slice in encoding 1.1. Exceptions have no flags for the type: it is a string. */
 enum {
     ICE_SLICE_TYPE_STRING = 0x01,
     ICE_SLICE_TYPE_INDEX = 0x02,
@@ -21,11 +21,11 @@ enum {
 /* Fails a stream that has not failed yet. */
 void icec_failRead(Ice_InputStreamPtr is, Ice_Failed why);
 
-/* Reads the size of a slice with these flags: four bytes, which count themselves. Returns the
- * slice's end; 0: it has no size, or a wrong one, which fails the stream. */
+/* Reads the size of a slice with these flags: four bytes, which count themselves. Returns the end
+ * of the slice; 0 if it has no size, or a wrong one, which fails the stream. */
 Ice_Int icec_readSliceEnd(Ice_InputStreamPtr is, Ice_Byte flags);
 
-/* Ends a slice of 1.1 whose flags stand at `flags`, and its size at `size` (-1: none). */
+/* Ends a slice of 1.1 with its flags at `flags`, and its size at `size` (-1: no size). */
 void icec_finishSlice(Ice_OutputStreamPtr os, Ice_Int flags, Ice_Int size);
 /* Fills in the size of four bytes at `begin`; it counts itself. */
 void icec_patchSize(Ice_OutputStreamPtr os, Ice_Int begin);

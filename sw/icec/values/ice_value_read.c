@@ -50,7 +50,7 @@ void Ice_InputStream_beginValues(Ice_InputStreamPtr is, Ice_InputValues* values,
     is->values = values;
 }
 
-/* Sets a pointer to the instance of this number, at once, or at the end of the message if the
+/* Sets a pointer to the instance of this number, now, or at the end of the message if the
  * instance's type is not known yet. */
 static void set(Ice_InputStreamPtr is, void* at, Ice_Int number, const Ice_ValueType* expected,
                 Ice_Bool last) {
@@ -120,8 +120,8 @@ static void skip(Ice_InputStreamPtr is) {
         (void)readInstance(is, number);
 }
 
-/* Reads the table behind a slice: the instances that its members, the patches from patchBegin,
- * refer to. */
+/* Reads the table after a slice: the instances to which its members, the patches from patchBegin,
+ * refer. */
 static void readTable(Ice_InputStreamPtr is) {
     Ice_InputValues* values = is->values;
     Ice_Int count = Ice_InputStream_readSequence(is, 1), first = values->patchBegin;
@@ -140,7 +140,8 @@ static void readTable(Ice_InputStreamPtr is) {
     values->patchEnd = first;
 }
 
-/* Keeps the current slice, in 1.1, and goes behind it. 0: it has no end, or there is no room. */
+/* Preserves the current slice, in 1.1, and skips it. Returns 0 if it has no end, or without
+ * room. */
 static Ice_UnknownSlice* keepSlice(Ice_InputStreamPtr is, Ice_String id, Ice_Int compactId) {
     Ice_Byte flags = is->sliceFlags, optionals = (flags & ICE_SLICE_OPTIONALS) != 0;
     Ice_UnknownSlice* slice;
@@ -156,7 +157,7 @@ static Ice_UnknownSlice* keepSlice(Ice_InputStreamPtr is, Ice_String id, Ice_Int
     slice->compactId = compactId;
     slice->flags = flags & (ICE_SLICE_OPTIONALS | ICE_SLICE_LAST);
     slice->data = is->data + is->position;
-    slice->size = is->sliceEnd - is->position - optionals; /* their end is written anew */
+    slice->size = is->sliceEnd - is->position - optionals; /* their end is written again */
     is->position = is->sliceEnd;
     if (flags & ICE_SLICE_TABLE) {
         Ice_Int count = Ice_InputStream_readSequence(is, 1), i;
@@ -182,7 +183,7 @@ Ice_Bool Ice_InputStream_keepSlice(Ice_InputStreamPtr is, Ice_String id, Ice_Unk
     return slice && !(slice->flags & ICE_SLICE_LAST) && is->position < is->size;
 }
 
-/* Sets the targets of kept slices; at the end of the message. */
+/* Sets the targets of preserved slices; at the end of the message. */
 static void endUnknown(Ice_InputStreamPtr is) {
     Ice_InputValues* values = is->values;
     Ice_UnknownSlice* slice;
@@ -194,9 +195,9 @@ static void endUnknown(Ice_InputStreamPtr is) {
 
 typedef struct SliceHead {
     Ice_String id;
-    Ice_Int compactId;         /* -1: none */
+    Ice_Int compactId;         /* -1 if there is none */
     const Ice_ValueType* type; /* 0: not known */
-    Ice_Bool isObject;         /* the base of all; it ends an instance of 1.0 */
+    Ice_Bool isObject;         /* the base of all classes; it ends an instance of 1.0 */
 } SliceHead;
 
 static Ice_String typeByIndex(Ice_InputStreamPtr is) {
@@ -252,21 +253,21 @@ static void startSlice(Ice_InputStreamPtr is, SliceHead* head) {
             head->type = *type;
 }
 
-/* Reads the last slice of an instance of 1.0: that of ::Ice::Object, with a size that is 0. */
+/* Reads the last slice of an instance of 1.0, the slice of ::Ice::Object, with a size of 0. */
 static void readEnd10(Ice_InputStreamPtr is) {
     if (Ice_InputStream_readSize(is) != 0)
         icec_failRead(is, ICE_FAILED_MALFORMED);
 }
 
 /* Skips slices down to one of a known type. Without one the instance becomes an Ice_Value_type
- * without a slice; in 1.0, which cannot keep slices, it is dropped. */
+ * without a slice; in 1.0, which cannot preserve slices, it is dropped. */
 static const Ice_ValueType* knownType(Ice_InputStreamPtr is, Ice_UnknownSlice** list) {
     Ice_Bool isFirst;
     for (isFirst = 1;; isFirst = 0) {
         SliceHead head;
         startSlice(is, &head);
         if (is->minor == 0 && head.isObject && !isFirst) {
-            readEnd10(is); /* nobody may point at it */
+            readEnd10(is); /* must not be referenced */
             return 0;
         }
         if (is->failed || (head.isObject && !isFirst)) {
@@ -276,7 +277,7 @@ static const Ice_ValueType* knownType(Ice_InputStreamPtr is, Ice_UnknownSlice** 
         if (head.type)
             return head.type;
         if (is->sliceEnd == 0) {
-            icec_failRead(is, ICE_FAILED_MALFORMED); /* the format does not say where it ends */
+            icec_failRead(is, ICE_FAILED_MALFORMED); /* the format does not give its end */
             return 0;
         }
         if (is->minor == 0) {

@@ -19,7 +19,7 @@ void Ice_OutputStream_beginValues(Ice_OutputStreamPtr os, Ice_OutputValues* valu
     os->values = values;
 }
 
-/* Returns the instance's place in `known`; -1: it is new, and has the last place now. */
+/* Returns the instance's place in `known`; -1 if it is new, and was added at the end. */
 static Ice_Int placeOf(Ice_OutputStreamPtr os, const Ice_Value* v, Ice_Int* place) {
     Ice_OutputValues* values = os->values;
     Ice_Int i;
@@ -37,7 +37,7 @@ static Ice_Int placeOf(Ice_OutputStreamPtr os, const Ice_Value* v, Ice_Int* plac
     return 1;
 }
 
-/* Returns the number under which this type's name was written; 0: it was not, and has one now. */
+/* Returns the number under which this type's name was written; 0 if it was not, and got one now. */
 static Ice_Int typeNumber(Ice_OutputStreamPtr os, Ice_String id) {
     Ice_OutputValues* values = os->values;
     Ice_Int i;
@@ -66,7 +66,8 @@ static void writeType(Ice_OutputStreamPtr os, Ice_String id, Ice_Int compactId) 
         Ice_OutputStream_writeString(os, id);
 }
 
-/* Writes the kept slices. Those of an exception have no flags for their type, which is a string. */
+/* Writes the preserved slices. Slices of an exception have no flags for their type, which is a
+ * string. */
 static void writeUnknown(Ice_OutputStreamPtr os, const Ice_UnknownSlice* slice,
                          Ice_Bool isException) {
     Ice_OutputValues* values = os->values;
@@ -134,8 +135,7 @@ static void writeInstance(Ice_OutputStreamPtr os, const Ice_Value* v) {
     os->sliceFlags = flags;
 }
 
-/* Writes the instances at which a slice's members pointed, behind it. Returns 0 if there are none.
- */
+/* Writes the instances referenced by a slice's members, after it. Returns 0 if there are none. */
 static Ice_Bool writeTable(Ice_OutputStreamPtr os) {
     Ice_OutputValues* values = os->values;
     Ice_Int begin = values->tableBegin, end = values->tableEnd, i;
@@ -199,8 +199,8 @@ static void writeSlice10(Ice_OutputStreamPtr os, const Ice_ValueType* type, cons
     icec_patchSize(os, begin);
 }
 
-/* Ends the values. In 1.0 the instances follow here in groups: a group holds the instances that
- * members of the group before refer to. */
+/* Ends the values. In 1.0 the instances follow here in groups: a group holds the instances
+ * referenced by members of the previous group. */
 void Ice_OutputStream_endValues(Ice_OutputStreamPtr os) {
     Ice_OutputValues* values = os->values;
     while (os->minor == 0 && !os->failed && values->written < values->count) {

@@ -165,7 +165,7 @@ void Link_poll(Link* link, U32 nowUs) {
         (void)link_flush(&link->pacing);
 }
 
-/* Returns the earlier of two times, if the first is due at all. */
+/* Returns the earlier of two times; `at` counts only if `isDue`. */
 static U32 sooner(int isDue, U32 at, U32 first) {
     return isDue && LINK_BEFORE(at, first) ? at : first;
 }
@@ -188,7 +188,7 @@ U32 Link_deadline(const Link* link, U32 nowUs) {
     first = sooner(handshake->isAnswered, handshake->firstAnswer + LINK_NONCE_LIFE, first);
     if (handshake->state == LINK_STATE_UP) {
         first = sooner(1, link_livenessDeadline(&link->session.liveness), first);
-        if (!pacing->waiting) /* otherwise the radio's next answer decides what goes out again */
+        if (!pacing->waiting) /* otherwise the radio's next result decides what is sent again */
             first = sooner(sender->base != sender->next, sender->timerAt, first);
         if (!pacing->mostWaiting || pacing->radio->waiting < pacing->mostWaiting) {
             first = sooner(pacing->packed, soon, first);

@@ -42,7 +42,7 @@ typedef struct Link Link; /* its fields are private */
 typedef struct Link_Config {
     const Link_Port* port;
     void* context;    /* passed to the port unchanged */
-    U32 byteTimeUs16; /* time of one byte on the slowest part of the way, 1/16 us (111,111 baud:
+    U32 byteTimeUs16; /* time of one byte on the slowest part of the path, 1/16 us (111,111 baud:
                        * 1440), for pacing and timers */
 #ifndef LINK_MINIMAL
     U8* send;      /* queue of outgoing messages */
@@ -66,7 +66,7 @@ typedef struct Link_Config {
         U8 message[LINK_ROOM(maxMessage)];          \
     }
 
-/* Initialises the fields of a Link_Config from `send` on with such buffers. */
+/* Sets the fields of a Link_Config starting with `send` to such buffers. */
 #define LINK_USE(buffers)                                                              \
     (buffers).send, sizeof(buffers).send, (buffers).message,                           \
         sizeof(buffers).message - LINK_ROOM(0U), (buffers).fragments, (buffers).slots, \
@@ -80,20 +80,20 @@ typedef LINK_BUFFERS(LINK_SEND_BYTES, LINK_MAX_MESSAGE, LINK_WINDOW) Link_Buffer
 void Link_init(Link* link, const Link_Config* config);
 
 #ifndef LINK_MINIMAL
-/* Limits frames that are sent later to `bytes`, 32 (under a key 59) to LINK_MAX_FRAME: a modem that
+/* Limits the size of later frames, bytes, 32 (under a key 59) to LINK_MAX_FRAME: a modem that
  * encrypts splits packets longer than LINK_MAX_ENCRYPTED. The two sides may differ. */
 void Link_limitFrame(Link* link, U32 bytes);
 
-/* Sets the vehicle's key for slot 0 or 1: LINK_KEY_BYTES bytes that both sides have, copied. `side`
- * is the vehicle's address, plus LINK_GROUND on the ground: a session is made only between a ground
- * and the vehicle with that address, although others may have the key. `key` 0 wipes the slot, and
- * ends a session that was made with it. After the first key sessions are authenticated and
- * encrypted, and a peer without the key is refused, for ever: with both slots wiped no session is
- * made. The layer sends HELLO under the keys of both slots in turn and answers one under either.
- * Call it after Link_init. */
+/* Sets the vehicle's key for slot 0 or 1: LINK_KEY_BYTES bytes shared by both sides; they are
+ * copied. `side` is the vehicle's address, plus LINK_GROUND on the ground: a session is only
+ * possible between a ground station and the vehicle with that address, even if others have the key.
+ * `key` 0 wipes the slot, and ends a session made with it. After the first key, sessions are
+ * authenticated and encrypted, and a peer without the key is refused permanently: with both slots
+ * wiped no session is possible. The layer sends HELLO under the keys of both slots in turn and
+ * answers a HELLO under either. Call it after Link_init. */
 void Link_setKey(Link* link, int slot, const U8* key, U32 side);
 
-/* Returns the slot of the key that made the present session; -1 if there is no session, or it has
+/* Returns the slot of the key that made the current session; -1 if there is no session, or it has
  * no key. */
 int Link_keyInUse(const Link* link);
 #endif
@@ -117,10 +117,10 @@ Link_Status Link_openChannel(Link* link, int channel);
 Link_Status Link_closeChannel(Link* link, int channel);
 
 #ifndef LINK_MINIMAL
-/* Sets how many packets may wait for the radio's answer (Link_answer); 0: the radio gives no
- * answers. Answers pace packets, and the contents of a lost packet go out again at once. Two
- * packets fill the air if the line to the modem is faster: one is on the air, one waits in the
- * modem. A line of 111,111 baud needs three. A call waits for all of them. */
+/* Sets how many packets may wait for the radio's result (Link_answer); 0: the radio reports none.
+ * Results pace packets, and the contents of a lost packet are sent again at once. Two packets fill
+ * the air if the line to the modem is faster: one is on the air, one waits in the modem. A line of
+ * 111,111 baud needs three. A call waits for all of them. */
 void Link_expectAnswers(Link* link, U32 packets);
 
 /* Lets a link share the radio of another: their packets wait for its answers together, and a call
@@ -128,7 +128,7 @@ void Link_expectAnswers(Link* link, U32 packets);
  * both the same Link_expectAnswers. */
 void Link_shareRadio(Link* link, Link* with);
 
-/* Returns the modem's RN for the present traffic: the smallest exponent of the random wait before
+/* Returns the modem's RN for the current traffic: the smallest exponent of the random wait before
  * its first try.
  * - 0 for a lone sender: it need not wait. 1 if the modem encrypts: a packet then takes 16 ms
  *   instead of 10, and without a random wait an interferer of a fixed period that hits one packet
@@ -140,8 +140,8 @@ void Link_shareRadio(Link* link, Link* with);
  * `transmit` may call it. */
 U32 Link_randomWait(Link* link);
 
-/* Reports the radio's answer for the oldest packet without one: it was delivered, or it is lost.
- * The driver also reports a loss if the radio does not answer (LINK_ANSWER_LAST). */
+/* Reports the radio's result for the oldest packet without one: delivered or lost. The driver also
+ * reports a loss if the radio does not report (LINK_ANSWER_LAST). */
 void Link_answer(Link* link, int isDelivered, U32 nowUs);
 #endif
 
@@ -162,8 +162,8 @@ U32 Link_deadline(const Link* link, U32 nowUs);
 const Link_Statistics* Link_statistics(const Link* link);
 
 #ifndef LINK_MINIMAL
-/* The parts, from the bottom to the top: each knows only parts below it, and writes its own fields
- * alone. */
+/* Parts of the link, from bottom to top: each uses only parts below it, and writes only its
+ * fields. */
 struct Link {
     Link_Pacing pacing;
     Link_Session session;

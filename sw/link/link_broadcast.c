@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_broadcast: encrypts and authenticates by Ascon-AEAD128, whose nonce is the packet's head.
- */
+ * link_broadcast: encrypts and authenticates with Ascon-AEAD128; the nonce is the packet's head. */
 #include "link_broadcast.h"
 
 #include "ascon.h"
@@ -10,7 +9,7 @@
 
 static void crypt(U8* packet, U32 size, const U8* key, int isDecryption, U8* tag) {
     U8 nonce[ASCON_NONCE_BYTES];
-    memset(nonce, 0xFF, sizeof nonce); /* no nonce of a link ends so */
+    memset(nonce, 0xFF, sizeof nonce); /* nonces of a link end differently */
     memcpy(nonce, packet, LINK_BROADCAST_HEAD);
     link_cipher(key, nonce, packet + LINK_BROADCAST_HEAD, size, isDecryption, tag);
 }

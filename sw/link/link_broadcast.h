@@ -20,11 +20,11 @@
 #define LINK_BROADCAST_HEAD 13U
 #define LINK_BROADCAST_OVERHEAD (LINK_BROADCAST_HEAD + LINK_TAG)
 
-/* Makes a packet around a message of `size` bytes, which is in its place already, as is the salt.
- * Returns the packet's size. */
+/* Makes a packet around a message of `size` bytes; message and salt are already in place. Returns
+ * the packet's size. */
 U32 Link_sealBroadcast(U8* packet, U32 size, const U8* key, U32 number);
 
-/* Decrypts the message in its place. Returns its size; 0: the packet is not newer than `newest`, or
+/* Decrypts the message in place. Returns its size; 0 if the packet is not newer than `newest`, or
  * not authentic. */
 U32 Link_openBroadcast(U8* packet, U32 size, const U8* key, U32 newest);
 #define LINK_BROADCAST_NUMBER(packet) link_get32((packet) + 1)

@@ -9,14 +9,14 @@
 
 /* Sets of channels, one bit each. */
 typedef struct Link_Channels {
-    U8 open;     /* messages may be sent */
+    U8 open;     /* channels on which messages may be sent */
     U8 closing;  /* closed here; the peer's closing has not arrived */
-    U8 closeDue; /* own closing is not queued yet */
+    U8 closeDue; /* closings of this side that are not queued yet */
 } Link_Channels;
 
 #define LINK_IS_OPEN(channels, channel) ((channels)->open >> (channel) & 1U)
 
-/* Closes all channels without a word to the peer. */
+/* Closes all channels without notifying the peer. */
 #define LINK_RESET_CHANNELS(channels) \
     ((channels)->open = (channels)->closing = (channels)->closeDue = 0)
 
@@ -24,15 +24,15 @@ typedef struct Link_Channels {
 #define LINK_MAY_OPEN(channels, channel) \
     (!(((channels)->closing | (channels)->closeDue) >> (channel) & 1))
 
-/* Notes that an opening has been queued here. */
+/* Records that an opening has been queued here. */
 #define LINK_OPEN(channels, channel) ((channels)->open = (U8)((channels)->open | 1U << (channel)))
 
-/* Notes that an open channel is closed here. `isQueued`: its closing is in the queue. */
+/* Records that an open channel is closed here. `isQueued`: its closing is in the queue. */
 void link_closeChannel(Link_Channels* channels, U32 channel, int isQueued);
 
 /* Notes that a closing that was due is in the queue now. */
 #define LINK_NOTE_CLOSING(channels, channel) \
     ((channels)->closeDue = (U8)((channels)->closeDue ^ 1U << (channel)))
 
-/* Notes that the peer opened or closed a channel. Returns whether this changes anything here. */
+/* Records that the peer opened or closed a channel. Returns whether this changes anything here. */
 int link_onPeersChannel(Link_Channels* channels, U32 channel, U32 isOpen);

@@ -50,8 +50,8 @@ typedef struct Link_Codec {
     /* Adds the session's epoch to `header`, writes it before the payload that `frame` already
      * holds, and completes the frame. Returns its size in bytes. */
     U32 (*seal)(U8* frame, U32 header, const Link_Seal* seal);
-    /* Checks a whole frame of at least `overhead` bytes, and decrypts it into `copy`, of
-     * LINK_MAX_FRAME bytes. Returns the frame, whose header has the payload's length, in one of the
-     * two places; 0 if checksum or tag is wrong. */
+    /* Checks a complete frame of at least `overhead` bytes, and decrypts it into `copy`, of
+     * LINK_MAX_FRAME bytes. Returns the frame, with the payload's length in its header, in one of
+     * the two places; 0 if checksum or tag is wrong. */
     const U8* (*open)(const U8* frame, U8* copy, const Link_Seal* seal);
 } Link_Codec;

@@ -10,7 +10,7 @@
 #include <string.h>
 
 #define CLEAR_AT 11U  /* offset of the unencrypted payload in a nonce */
-#define CLEAR_MOST 5U /* largest size of it there, in bytes */
+#define CLEAR_MOST 5U /* largest size of an unencrypted payload, bytes */
 
 /* Returns the number of unencrypted bytes at the start of the payload: all of a control frame, the
  * acknowledgement of a PIGGYBACK, the nonces of HELLO-ACK and CONFIRM. */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_config: the link layer's numbers that a project may want to change: here, or, for those with
- * #ifndef, on the compiler's command line. Layers with other numbers understand each other, unless
- * "both sides" is said. Times are in us, sizes in bytes, limits in parentheses.
+ * link_config: the link layer's numbers that a project may change: here or, for those with #ifndef,
+ * on the compiler's command line. Layers with different numbers are compatible, except for numbers
+ * marked "both sides". Times are in us, sizes in bytes, limits in parentheses.
  */
 #pragma once
 
@@ -19,7 +19,7 @@
 #ifndef LINK_OUTCOMES /* minimal layer, 1: it calls `outcome` and `writable` */
 #define LINK_OUTCOMES 0
 #endif
-#ifndef LINK_MAX_MESSAGE /* of one message (1..32,000); a longer one ends the session */
+#ifndef LINK_MAX_MESSAGE /* size of one message (1..32,000); a longer one ends the session */
 #define LINK_MAX_MESSAGE (LINK_IS_FULL ? 8192U : 1024U)
 #endif
 #ifndef LINK_WINDOW /* fragments in flight (a power of two, 8..64) */
@@ -30,13 +30,13 @@
 #ifndef LINK_SEND_BYTES
 #define LINK_SEND_BYTES 16384U
 #endif
-/* Bytes of it for messages of one fragment only, so that they do not wait behind long ones. */
+/* Bytes reserved for messages of one fragment, so that they do not wait behind long ones. */
 #define LINK_RESERVE 256U
 
 #ifndef LINK_SEND_MESSAGES /* messages, openings and closings in that queue (1..128) */
 #define LINK_SEND_MESSAGES 32U
 #endif
-#ifndef LINK_LONGEST /* minimal layer: payload of a frame; 90 where the modem encrypts (27..95) */
+#ifndef LINK_LONGEST /* minimal layer: payload of a frame; 90 if the modem encrypts (27..95) */
 #define LINK_LONGEST 95U
 #endif
 
@@ -45,35 +45,35 @@
 #define LINK_RTO_MIN 60000U /* (more than a round trip takes) */
 #define LINK_RTO_MAX 2000000U
 
-/* Silence behind data before an acknowledgement that nobody asked for (less than LINK_RTO_MIN, or
- * fragments go out twice), and the same inside a message, whose rest will come. */
+/* Silence after data before an unrequested acknowledgement (less than LINK_RTO_MIN, or fragments
+ * are sent twice); ACK_WITHIN applies inside a message, since its rest will arrive. */
 #define LINK_ACK_DELAY 30000U
 #define LINK_ACK_WITHIN 80000U
 
 #define LINK_HELLO_FIRST 300000U /* between HELLOs, at first; doubled from one to the next */
-#define LINK_HELLO_LAST 2000000U /* until it is no less than this: 2.4 s */
-#define LINK_PING_AFTER 5000000U /* silence after which the peer is asked, */
-#define LINK_PING_EVERY 200000U  /* again, */
-/* and given up (more than LINK_PING_AFTER, below 2^31); the minimal layer's times have few one
- * bits, so that a constant fits into an instruction */
+#define LINK_HELLO_LAST 2000000U /* largest interval: doubled until at least this, 2.4 s */
+#define LINK_PING_AFTER 5000000U /* silence after which the peer is pinged */
+#define LINK_PING_EVERY 200000U  /* interval of pings */
+/* silence after which the peer is considered lost (more than LINK_PING_AFTER, below 2^31); the
+ * times of the minimal layer have few one bits, so that a constant fits into an instruction */
 #define LINK_DEAD_AFTER (LINK_IS_FULL ? 9000000U : 0x890000U)
 
-/* The same under a key, of answers: whatever else was heard may be an attacker's recording. */
+/* The same under a key, for replies to pings: other frames may be an attacker's recording. */
 #define LINK_PROOF_AFTER 5000000U
 #define LINK_PROOF_EVERY 1000000U
 #define LINK_PROOF_LAST 27000000U
 
-/* Age of a fragment without acknowledgement at which the session ends, so that nobody carries out
- * later what its caller has given up (more than LINK_PING_AFTER, below 2^31). */
+/* Age of an unacknowledged fragment at which the session ends, so that the peer does not execute a
+ * call that its caller has abandoned (more than LINK_PING_AFTER, below 2^31). */
 #define LINK_AGE_LAST 27000000U
 
-/* Under a key: between answers to HELLO while a session is up; and how long the nonce of such an
- * answer can make a session. */
+/* Under a key: interval of replies to HELLO while a session is up, and time for which the nonce of
+ * such a reply can make a session. */
 #define LINK_ANSWER_EVERY 100000U
 #define LINK_NONCE_LIFE 9000000U
 
-/* Numbers at which a session under a key ends and a new one begins: of fragments sent (below 2^32
- * - 256), and of frames whose tag was wrong. */
+/* Counts at which a session under a key ends and a new one begins: fragments sent (below 2^32 -
+ * 256), and frames with a wrong tag. */
 #ifndef LINK_LAST_NUMBER
 #define LINK_LAST_NUMBER 0xFFFF0000U
 #endif
@@ -84,17 +84,17 @@
 /* Silence after which half a frame is dropped. */
 #define LINK_FRAME_GAP (LINK_IS_FULL ? 25000U : 0x6200U)
 
-/* Under a key the search for frames in garbage may compute one round of Ascon in LINK_ROUND_EVERY,
- * and LINK_ROUNDS_AT_ONCE at once (168 at least: one frame of the handshake). */
+/* Under a key the search for frames in garbage may compute one round of Ascon per LINK_ROUND_EVERY,
+ * and LINK_ROUNDS_AT_ONCE at once (at least 168: one frame of the handshake). */
 #define LINK_ROUND_EVERY 30U
 #define LINK_ROUNDS_AT_ONCE 1000U
 
-/* How often Link_poll looks again, at most. */
+/* Shortest interval of Link_poll. */
 #define LINK_POLL_EVERY 1000U  /* while the radio has no room */
 #define LINK_OFFER_EVERY 5000U /* while the program does not take a message */
 
-/* Pacing (docs/simulation.md): a modem's time for a packet without its bytes, the same where it
- * encrypts, and for a byte on the air. */
+/* Pacing (docs/simulation.md): time of a modem for a packet without its bytes, the same if it
+ * encrypts, and time per byte on the air. */
 #define LINK_PACKET_US 7250U
 #define LINK_PACKET_ENCRYPTED_US 13450U
 #define LINK_BYTE_US 32U
@@ -102,7 +102,7 @@
 /* Back-off of the next packet after one was heard, in quarters of the airtime (docs/link.md). */
 #define LINK_HEARD_QUARTERS 7U
 
-/* Extra wait behind a short packet, or a modem that still holds it joins the two. */
+/* Extra wait after a short packet; otherwise a modem that still holds it joins the two. */
 #define LINK_SHORT_MARGIN 1500U
 
 #define LINK_MOST_WAITING 4U /* packets without an answer of the radio, of all its links */
@@ -110,11 +110,12 @@
 /* Drivers: the time without an answer after which a packet counts as lost. */
 #define LINK_ANSWER_LAST 3000000U
 
-/* The choice of RN (Link_randomWait): each span its bytes are counted, of which the air carries
- * some 5,000; these many make a stream, fewer than these end it. A loss counts for a while. */
+/* Choice of RN (Link_randomWait): in each span the bytes are counted, of which the air carries some
+ * 5,000; at least this many make a stream, fewer than the second number end it. A loss counts for a
+ * while. */
 #define LINK_WAIT_SHARED 2U    /* as set-up leaves it */
 #define LINK_WAIT_BOTH 3U      /* two streams */
-#define LINK_QUICK_MANY 12288U /* of 65,536 packets lost without failed tries: many */
+#define LINK_QUICK_MANY 12288U /* of 65,536 packets, lost without failed tries: considered many */
 #define LINK_SPAN 500000U
 #define LINK_SPAN_MANY 1000U
 #define LINK_SPAN_FEW 500U
@@ -135,11 +136,11 @@
 #error "LINK_MAX_MESSAGE is 1..32000 bytes"
 #elif LINK_SEND_BYTES <= LINK_MAX_MESSAGE + LINK_RESERVE || LINK_SEND_BYTES > 32768 || \
     (LINK_SEND_BYTES & (LINK_SEND_BYTES - 1))
-#error "LINK_SEND_BYTES is a power of two up to 32768, above LINK_MAX_MESSAGE + LINK_RESERVE"
+#error "LINK_SEND_BYTES: expected a power of two up to 32768, above LINK_MAX_MESSAGE + LINK_RESERVE"
 #elif LINK_SEND_MESSAGES < 1 || LINK_SEND_MESSAGES > 128
-#error "LINK_SEND_MESSAGES is 1..128"
+#error "LINK_SEND_MESSAGES: expected 1 to 128"
 #elif LINK_RTO_MIN > LINK_RTO_FIRST || LINK_RTO_FIRST > LINK_RTO_MAX
-#error "LINK_RTO_FIRST lies between LINK_RTO_MIN and LINK_RTO_MAX"
+#error "LINK_RTO_FIRST: expected LINK_RTO_MIN to LINK_RTO_MAX"
 #elif LINK_PING_AFTER >= LINK_DEAD_AFTER || LINK_PROOF_AFTER >= LINK_PROOF_LAST
-#error "A peer is asked before it is given up"
+#error "LINK_PING_AFTER, LINK_PROOF_AFTER: expected less than LINK_DEAD_AFTER, LINK_PROOF_LAST"
 #endif

@@ -32,7 +32,7 @@ U32 link_noteAnswer(Link_Contention* c, U32 now, int isDelivered, U32 silence, i
     return c->own.isStream || c->peers.isStream ? 0U : c->rest;
 }
 
-/* Judges whether a side sends much by the bytes of `spans` whole spans; 0: of a part of one. */
+/* Decides whether a side sends much, by the bytes of `spans` whole spans; 0: of part of one. */
 static void judge(Link_Traffic* traffic, U32 bytes, U32 spans) {
     U32 more = bytes - traffic->before;
     if (more >= LINK_SPAN_MANY * (spans ? spans : 1U))

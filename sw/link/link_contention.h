@@ -22,15 +22,15 @@ typedef struct Link_Contention {
     U8 hasLost;          /* 1: `lostAt` is recent */
     U8 isCalled;         /* 1: the peer calls during an own stream */
     U8 isBusy;           /* 1: the radio has had a packet since its last answer */
-    U32 answeredAt;      /* time of the radio's last answer, us */
-    U32 rest;            /* longest rest after the next loss, us */
+    U32 answeredAt;      /* time of the radio's last result, us */
+    U32 rest;            /* longest pause after the next loss, us */
     U32 usualUs;         /* mean time of a packet that arrives, us */
-    U32 quick;           /* share of the last packets, of 65,536, lost in no more than that time */
+    U32 quick;           /* share of the last packets, of 65,536, lost within that time */
 } Link_Contention;
 
-/* Notes the radio's answer for a packet at time `now`. `silence`: time since the peer was heard,
- * us. `isBusy`: the radio has further packets. Returns the longest rest before the next packet, us;
- * 0: no rest. */
+/* Records the radio's result for a packet at time `now`. `silence`: time since the peer was heard,
+ * us. `isBusy`: the radio has further packets. Returns the longest pause before the next packet,
+ * us; 0: no pause. */
 U32 link_noteAnswer(Link_Contention* c, U32 now, int isDelivered, U32 silence, int isBusy);
 
 /* Chooses RN, as Link_randomWait returns it. `isSlow`: the modem encrypts. */

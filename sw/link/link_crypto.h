@@ -8,7 +8,7 @@
 
 #define LINK_NONCE_BYTES 8U   /* nonce of each side in the handshake under a key */
 #define LINK_PUBLIC_BYTES 32U /* public key, which HELLO-ACK and CONFIRM carry */
-#define LINK_PUBLIC_AT (LINK_HEADER + 2U * LINK_NONCE_BYTES) /* its place in such a frame */
+#define LINK_PUBLIC_AT (LINK_HEADER + 2U * LINK_NONCE_BYTES) /* its offset in such a frame */
 #define LINK_ANSWER_BYTES                                                  \
     (2U * LINK_NONCE_BYTES + LINK_PUBLIC_BYTES) /* payload of such a frame \
                                                  */
@@ -36,8 +36,8 @@ void link_makeSecret(Link_Secret* secret, const U8* key, U32 address);
 void link_deriveKeys(const Link_Secret* secret, const U8* vehicles, const U8* grounds,
                      Link_Keys* keys);
 
-/* Makes the pair from 32 random bytes. This takes long (docs/link.md), as does link_mixKeys: both
- * are called only for a peer that has the key, once per session. */
+/* Makes the key pair from 32 random bytes. This takes long (docs/link.md), as does link_mixKeys:
+ * both are called only for a peer that has the key, once per session. */
 void link_makePair(Link_KeyPair* pair, U32 (*random)(void* context), void* context);
 
 /* Turns the handshake's keys into the session's, by the peer's public key. Wipes the private key;

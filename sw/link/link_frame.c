@@ -28,8 +28,8 @@ U32 link_seal(U8* frame, U32 header, U32 key) {
     return size;
 }
 
-/* Computes Fletcher's sums modulo 256. Unlike a second CRC they have nothing in common with the CRC
- * of fragments. */
+/* Computes Fletcher's sums modulo 256. Unlike a second CRC they are independent of the CRC of
+ * fragments. */
 U32 link_sum(U32 sums, const U8* bytes, U32 size) {
     U32 plain = sums & 0xFFU;
     U32 second = sums >> 8;

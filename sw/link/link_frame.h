@@ -30,14 +30,14 @@
 #define LINK_CONTROL 0x80U
 #define LINK_LENGTH_OF(header) ((header) & 0x7FU)
 #define LINK_LENGTH(frame) LINK_LENGTH_OF((frame)[0])
-#define LINK_FILL 0xFFU /* padding byte, in place of byte 0 */
+#define LINK_FILL 0xFFU /* padding byte, instead of byte 0 */
 
 /* Byte 2: flags of data frames, channel and epoch; kind of control frames. */
 #define LINK_FIRST 0x80U
 #define LINK_LAST 0x40U
 #define LINK_ACK_NOW 0x20U
-#define LINK_READY 0x10U  /* inverted in a whole message that may be taken before its turn */
-#define LINK_EARLY 0x100U /* that property among the flags of a received frame */
+#define LINK_READY 0x10U  /* inverted in a complete message that may be taken out of order */
+#define LINK_EARLY 0x100U /* this property in the flags of a received frame */
 #define LINK_CHANNEL(flags) ((flags) & 3U)
 #define LINK_EPOCH(frame) ((U32)(frame)[2] >> 2 & 7U)
 #define LINK_KIND_BITS(kind) ((U32)(kind) << 5)
@@ -47,7 +47,8 @@
 #define LINK_CONTROL_HEADER(kind, byte1, size) \
     LINK_HEADER_OF(LINK_CONTROL | (size), byte1, LINK_KIND_BITS(kind))
 
-/* Features: low bits of byte 2 of HELLO and HELLO-ACK. A session uses those that both sides set. */
+/* Features: low bits of byte 2 of HELLO and HELLO-ACK. A session uses the features that both sides
+ * set. */
 #define LINK_FEATURE_COMPRESSION 1U
 #define LINK_FEATURE_PIGGYBACK 2U
 #define LINK_FEATURES (LINK_FEATURE_COMPRESSION | LINK_FEATURE_PIGGYBACK)
@@ -60,8 +61,8 @@ typedef enum Link_Kind {
     LINK_KIND_RST,
     LINK_KIND_BYE,
     LINK_KIND_PING,
-    LINK_KIND_PIGGYBACK,     /* whole message of one fragment, with an acknowledgement */
-    LINK_KIND_PIGGYBACK_ASK, /* whole message likewise, with LINK_ACK_NOW */
+    LINK_KIND_PIGGYBACK,     /* complete message of one fragment, with an acknowledgement */
+    LINK_KIND_PIGGYBACK_ASK, /* the same, with LINK_ACK_NOW */
     LINK_KIND_DATA           /* not a control frame */
 } Link_Kind;
 
@@ -86,7 +87,7 @@ typedef enum Link_Kind {
 #define LINK_BEFORE(a, b) ((S32)((a) - (b)) < 0)
 
 /* Returns the CRC-16/CCITT of `size` bytes, seeded with the low 16 bits of `key`; 0 for a frame
- * that ends with its CRC. */
+ * including its CRC. */
 U32 link_crc(U32 key, const U8* bytes, U32 size);
 
 /* Writes header and CRC around the payload that `frame` already holds, and adds the epoch of `key`

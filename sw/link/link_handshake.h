@@ -12,9 +12,9 @@
 typedef enum Link_Verdict {
     LINK_VERDICT_NONE = 0,
     LINK_VERDICT_BEGIN = 1,       /* the session of the candidate begins */
-    LINK_VERDICT_UNCONFIRMED = 2, /* the peer does not know of that session yet */
-    LINK_VERDICT_ACK = 4,         /* an acknowledgement should go out */
-    LINK_VERDICT_LOST = 8         /* the peer does not know the present session */
+    LINK_VERDICT_UNCONFIRMED = 2, /* the peer may not know that session yet */
+    LINK_VERDICT_ACK = 4,         /* an acknowledgement should be sent */
+    LINK_VERDICT_LOST = 8         /* the peer does not know the current session */
 } Link_Verdict;
 
 struct Link_Handshake;
@@ -66,10 +66,11 @@ void link_setSecret(Link_Handshake* handshake, int slot, const U8* key, U32 side
 /* Draws the nonce of the next session. */
 void link_drawNonce(Link_Handshake* handshake);
 
-/* Prepares the candidate of the peer's nonce and the own one. */
+/* Prepares the candidate from the peer's nonce and the nonce of this side. */
 void link_makeCandidate(Link_Handshake* handshake, const U8* peerNonce, U32 features);
 
-/* Sends a frame with both nonces of a session; `of` 0: HELLO with the own nonce of the next one. */
+/* Sends a frame with both nonces of a session; `of` 0: HELLO with the nonce for the next
+ * session. */
 void link_sendHandshake(Link_Handshake* handshake, const Link_Identity* of, Link_Kind kind,
                         U32 version);
 
@@ -85,7 +86,7 @@ void link_leave(Link_Handshake* handshake, Link_State next);
 /* Notes a frame of the present session, which confirms it. */
 #define LINK_NOTE_CONFIRMED(handshake) ((handshake)->isUnconfirmed = 0)
 
-/* Drops the candidate. Frames that are still on the way from the peer get no answer. */
+/* Drops the candidate. Frames that are still on the way from the peer are not answered. */
 void link_forgetPeer(Link_Handshake* handshake);
 
 /* Answers a frame of an unknown session, but not too often. */

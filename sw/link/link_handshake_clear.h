@@ -6,5 +6,5 @@
 
 #include "link_handshake.h"
 
-/* Any peer may make a session; an unknown session is answered by RST. */
+/* Any peer may make a session; an unknown session is answered with RST. */
 extern const Link_HandshakeRules link_clearHandshake;

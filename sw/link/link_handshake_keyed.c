@@ -71,7 +71,7 @@ static int expect(Link_Handshake* handshake, const U8* frame, U32 attempt, Link_
     return 1;
 }
 
-/* Puts the public key of the own pair into the candidate. */
+/* Puts the public key of this side's pair into the candidate. */
 static void offerPair(Link_Handshake* handshake) {
     const Link_Env* env = &handshake->pacing->env;
     if (!handshake->hasPair)
@@ -114,7 +114,7 @@ static U32 onFrame(Link_Handshake* handshake, const U8* frame, U32 attempt) {
         return LINK_VERDICT_NONE;
     }
     if (kind == LINK_KIND_CONFIRM && isOfSession(handshake, frame + LINK_HEADER))
-        return LINK_VERDICT_ACK; /* so that the peer hears of the session */
+        return LINK_VERDICT_ACK; /* informs the peer of the session */
     offerPair(handshake);
     secrets->keys = secrets->handshake;
     link_mixKeys(&secrets->keys, &handshake->pair, frame + LINK_PUBLIC_AT);

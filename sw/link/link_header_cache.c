@@ -18,13 +18,13 @@
 #define TOKEN_AS_IT_IS 0xFFU
 
 #define MAGIC 0x50656349U    /* "IceP" */
-#define VERSIONS 0x00010001U /* of protocol and encoding: 1.0 */
+#define VERSIONS 0x00010001U /* versions of protocol and encoding: 1.0 */
 
 enum { REQUEST = 0, REPLY = 2, VALIDATE = 3, CLOSE = 4 };
 
-#define IS_REPLY 1U /* in place of a head's size, which is larger */
+#define IS_REPLY 1U /* instead of a head's size, which is larger */
 
-/* Returns the type of a whole message; -1 if it is not one of Ice's. */
+/* Returns the type of a complete message; -1 if it is not an Ice message. */
 static int typeOf(const U8* m, U32 size) {
     return size >= HEADER && link_get32(m) == MAGIC && link_get32(m + 4) == VERSIONS &&
                    link_get32(m + 10) == size

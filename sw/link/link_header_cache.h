@@ -14,8 +14,8 @@
 #define LINK_HEAD_AT 18U    /* offset of the head in a request: after Ice's header and request id */
 #define LINK_HEADS 16U      /* request heads cached for each direction */
 #define LINK_HEAD_BYTES 64U /* largest cached head, bytes: 62 and the encoding's version */
-#define LINK_HEAD_ROOM 96U  /* bytes that decompression may add in front of a message */
-#define LINK_ESCAPE 1U      /* byte that marks messages other than Ice's */
+#define LINK_HEAD_ROOM 96U  /* bytes that decompression may add before a message */
+#define LINK_ESCAPE 1U      /* marks messages that are not Ice's */
 
 /* Request heads that have passed in one direction: identity, facet, operation, mode and context. */
 typedef struct Link_HeaderCache {
@@ -33,13 +33,13 @@ typedef struct Link_Compressed {
     U32 head; /* header that both sides cache (link_cacheHeader); 0: none */
 } Link_Compressed;
 
-/* Compresses a message. `to` is zeroed on entry, which stands for the unchanged message. */
+/* Compresses a message. `to` is zeroed on entry, which represents the unchanged message. */
 void link_compress(const Link_HeaderCache* cache, int channel, const U8* m, U32 size,
                    Link_Compressed* to);
 
 /* Caches the head of a message that has passed, on both sides alike. */
 void link_cacheHeader(Link_HeaderCache* cache, int channel, const U8* m, U32 head);
 
-/* Restores the message of `size` bytes at `start`, with LINK_HEAD_ROOM bytes of room in front of
- * it. Returns its new start; its end stays. Returns 0 if the message is malformed. */
+/* Restores the message of `size` bytes at `start`, with LINK_HEAD_ROOM bytes of room before it.
+ * Returns its new start; its end is unchanged. Returns 0 if the message is malformed. */
 U8* link_decompress(Link_HeaderCache* cache, int channel, U8* start, U32 size);

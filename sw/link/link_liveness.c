@@ -31,7 +31,7 @@ void link_onPing(Link_Liveness* liveness, const U8* frame) {
         if (LINK_BEFORE(liveness->pingsAnswered, number) &&
             !LINK_BEFORE(liveness->pingsSent, number)) {
             liveness->pingsAnswered = liveness->pingsSent;
-            liveness->provenAt = liveness->askedAt; /* the answer may have been held back */
+            liveness->provenAt = liveness->askedAt; /* the reply may have been delayed */
             LINK_NOTE_ALIVE(liveness);
         }
         return;

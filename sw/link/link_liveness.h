@@ -11,8 +11,8 @@
 
 typedef struct Link_Liveness {
     Link_Pacing* pacing;
-    /* The fields from here on are set when a session begins. */
-    U32 pingsSent;     /* number of the newest own PING */
+    /* The following fields are set when a session begins. */
+    U32 pingsSent;     /* number of the newest PING of this side */
     U32 pingsAnswered; /* newest own PING that is answered, or older than an answered one */
     U32 askedAt;       /* time of the first PING after that one, us */
     U32 pingsSeen;     /* number of the peer's newest PING */

@@ -6,8 +6,8 @@
 
 #include <string.h>
 
-/* Least room in a packet for another fragment and an acknowledgement after it, whose frame has 9
- * bytes of payload. */
+/* Least room in a packet for another fragment and an acknowledgement after it, which has a payload
+ * of 9 bytes. */
 #define LEAST(pacing) (pacing->env.codec->overhead + 10U)
 
 /* Packets for which the modem counts as slow after the radio had no room for one packet. */
@@ -139,7 +139,7 @@ U32 link_paceByAnswer(Link_Pacing* pacing, int isDelivered, U32 silence) {
     pacing->paceUntil = env->now;
     if (rest) {
         pacing->paceUntil += env->port->random(env->context) % rest;
-        pacing->early = 0xFFFFFFFFU; /* a frame of the peer ends the rest */
+        pacing->early = 0xFFFFFFFFU; /* a frame from the peer ends the pause */
     }
     return packet;
 }
@@ -169,11 +169,11 @@ static int sendSealed(Link_Pacing* pacing, U8* frame, U32 header, const Link_Sea
 int link_sendNow(Link_Pacing* pacing, U8* frame, U32 header, const Link_Seal* seal) {
     if (!sendSealed(pacing, frame, header, seal))
         return 0;
-    (void)link_flush(pacing); /* otherwise it leaves with the packet when the radio has room */
+    (void)link_flush(pacing); /* otherwise it is sent with the packet when the radio has room */
     return 1;
 }
 
-/* Makes the seal of the session's own frames. */
+/* Makes the seal for the session's frames. */
 static void makeSeal(const Link_Pacing* pacing, Link_Seal* seal, U32 number, U32 acked) {
     seal->key = LINK_OWN_KEY(pacing->session, keys);
     seal->session = pacing->session->key;

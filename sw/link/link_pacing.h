@@ -19,26 +19,27 @@ typedef struct Link_Unanswered {
     struct Link* owners[LINK_MOST_WAITING]; /* link of each packet, by its index */
 } Link_Unanswered;
 
-/* Small fields that are often used come first in each part: short instructions reach them. */
+/* Small fields that are often used come first in each part, in reach of short instructions. */
 typedef struct Link_Pacing {
     U8 longest;         /* largest payload of a frame that is sent, bytes */
     U8 packed;          /* bytes in the packet */
-    U8 heard;           /* bytes of a frame received since the last packet left; 0: none */
+    U8 heard;           /* bytes of a frame received since the last packet was sent; 0: none */
     U8 isStream;        /* 1: several fragments are in flight, packets follow each other */
-    U8 slow;            /* packets for which the modem still counts as slow; it may hold packets */
-    U8 mostWaiting;     /* packets that may wait for an answer; 0: the radio gives no answers */
-    U8 handed, waiting; /* own packets handed over, modulo 256; those without an answer */
+    U8 slow;            /* packets for which the modem still counts as slow, because it may hold
+                         * packets */
+    U8 mostWaiting;     /* packets that may wait for a result; 0: the radio reports none */
+    U8 handed, waiting; /* packets handed over, modulo 256; packets without a result */
     Link_Env env;
     const Link_Identity* session; /* identity that seals frames */
     Link_Unanswered* radio;
     struct Link* owner;
-    U32 byteTimeUs16;          /* time of one byte on the slowest line, 1/16 us */
-    U32 fastest;               /* shortest round trip of the session, us */
-    U32 slack;                 /* the next packet may leave this long before paceUntil, us */
-    U32 paceUntil;             /* time when the modem will have sent all packets handed over, us */
-    U32 early;                 /* a received frame shortens the wait by at most this, us */
-    U32 quietUntil;            /* end of the silence after a short packet, us */
-    U8 packet[LINK_MAX_FRAME]; /* frames that leave together */
+    U32 byteTimeUs16; /* time of one byte on the slowest line, 1/16 us */
+    U32 fastest;      /* shortest round trip of the session, us */
+    U32 slack;        /* time before paceUntil at which the next packet may be sent, us */
+    U32 paceUntil;    /* time at which the modem will have sent all packets handed over, us */
+    U32 early;        /* a received frame shortens the wait by at most this, us */
+    U32 quietUntil;   /* end of the silence after a short packet, us */
+    U8 packet[LINK_MAX_FRAME]; /* frames that are sent together */
     Link_Unanswered own;       /* used unless another link's is shared */
     Link_Contention contention;
 } Link_Pacing;
@@ -50,13 +51,13 @@ void link_initPacing(Link_Pacing* pacing, const Link_Identity* session, struct L
 /* Shares the radio of another link. */
 #define LINK_SHARE_ANSWERS(pacing, with) ((pacing)->radio = (with)->radio)
 
-/* Sets how many packets may wait for an answer; 0: the radio gives none. */
+/* Sets how many packets may wait for a result; 0: the radio reports none. */
 void link_limitUnanswered(Link_Pacing* pacing, U32 packets);
 
 /* Sets the largest frame, in bytes with the codec's overhead. */
 void link_limitPacket(Link_Pacing* pacing, U32 bytes);
 
-/* Lets the next packet leave now: an old paceUntil could read as a future time. */
+/* Lets the next packet be sent now: an old paceUntil could be read as a future time. */
 #define LINK_END_PAUSE(pacing) ((pacing)->paceUntil = (pacing)->env.now)
 
 /* Notes a round trip. */
@@ -71,15 +72,16 @@ void link_noteRoundTrip(Link_Pacing* pacing, U32 us);
 /* Notes that a frame of `size` bytes was received. */
 void link_hear(Link_Pacing* pacing, U32 size);
 
-/* Removes the oldest packet that waits for the radio's answer. Returns its link; 0: none waits. */
+/* Removes the oldest packet that waits for the radio's result. Returns its link; 0 if none
+ * waits. */
 struct Link* link_takeAnswered(Link_Pacing* pacing);
 
 /* Takes the radio's answer for the oldest own packet. `silence`: time since the peer was heard, us.
  * Returns the packet's number, as `handed` counts. */
 U32 link_paceByAnswer(Link_Pacing* pacing, int isDelivered, U32 silence);
 
-/* Returns whether a fragment may go out now: the packet has room, or the modem has for a new one.
- */
+/* Returns whether a fragment may be sent now: the packet has room, or the modem has room for a new
+ * one. */
 int link_isOpen(Link_Pacing* pacing);
 
 /* Returns the largest payload of a frame that fits into the packet, bytes; valid if link_isOpen. */
@@ -89,15 +91,15 @@ U32 link_room(const Link_Pacing* pacing);
  * then stays. */
 int link_flush(Link_Pacing* pacing);
 
-/* Seals a frame whose payload is in place, puts it into the packet, and hands the packet to the
- * radio at once if it has room. Returns 1 if the frame is in the packet. */
+/* Seals a frame with its payload in place, adds it to the packet, and hands the packet to the radio
+ * at once if it has room. Returns 1 if the frame is in the packet. */
 int link_sendNow(Link_Pacing* pacing, U8* frame, U32 header, const Link_Seal* seal);
 
-/* Seals a frame likewise, under the session's key, and puts it into the packet, which may wait for
- * more. `number` has byte 1 of the header as its lowest byte; `acked` is the number that a
- * PIGGYBACK acknowledges, otherwise 0. Returns 1 if the frame is in the packet. */
+/* Seals a frame with its payload in place under the session's key, and adds it to the packet, which
+ * may wait for more frames. `number` has byte 1 of the header as its lowest byte; `acked` is the
+ * number that a PIGGYBACK acknowledges, otherwise 0. Returns 1 if the frame is in the packet. */
 int link_sendFrame(Link_Pacing* pacing, U8* frame, U32 header, U32 number, U32 acked);
 
-/* Sends at once a control frame of the session with a payload of `size` bytes in place; byte 1 is
+/* Sends a control frame of the session at once, with a payload of `size` bytes in place; byte 1 is
  * the lowest byte of `number`. Returns 1 if it is in the packet. */
 int link_sendControl(Link_Pacing* pacing, U8* frame, U32 byte2, U32 number, U32 size);

@@ -14,7 +14,7 @@ typedef struct Link_Entry {
     U16 size; /* bytes */
     U8 flags; /* LINK_FIRST, channel, LINK_ENTRY_... */
 } Link_Entry;
-#define LINK_ENTRY_LEARNS 4U /* the peer learns a header from it: it keeps its place */
+#define LINK_ENTRY_LEARNS 4U /* the peer learns a header from it: it must stay in order */
 #define LINK_ENTRY_AHEAD 8U  /* it has overtaken earlier entries */
 #define LINK_ENTRY_ENDED 16U /* its outcome is known; it waits for earlier entries */
 
@@ -22,7 +22,7 @@ typedef struct Link_Entry {
 typedef struct Link_Chunk {
     U32 start; /* offset in the queue's bytes */
     U8 size;   /* bytes */
-    U8 flags;  /* as in the frame */
+    U8 flags;  /* flags, as in the frame */
     U8 entry;  /* index in Link_Queue.entries */
 } Link_Chunk;
 
@@ -45,8 +45,8 @@ typedef struct Link_Queue {
 #define LINK_INIT_QUEUE(queue, buffer, size) \
     ((queue)->bytes = (buffer), (queue)->mask = (size) - 1U)
 
-/* Adds an entry for `size` bytes, which the caller puts in. `longest`: bytes of one chunk at most.
- * Returns 0 if there is no room. */
+/* Adds an entry for `size` bytes, which the caller appends. `longest`: largest chunk, bytes.
+ * Returns 0 without room. */
 Link_Entry* link_enqueue(Link_Queue* queue, U32 flags, U32 size, U32 longest);
 
 /* Begins the bytes of the newest entry. `isSummed`: link_put computes its check. */
@@ -55,9 +55,9 @@ Link_Entry* link_enqueue(Link_Queue* queue, U32 flags, U32 size, U32 longest);
 /* Appends bytes to the newest entry, and continues its check. */
 void link_put(Link_Queue* queue, const U8* data, U32 size);
 
-/* Cuts the next chunk, of at most `room` bytes, or of `reduced` unless it is a whole message. 0 for
- * `reduced` allows only an entry that overtakes. `overtaker`: largest entry that may overtake,
- * bytes; 0: none may. Returns 0 if all is cut. */
+/* Cuts the next chunk, of at most `room` bytes, or of `reduced` unless it is a complete message.
+ * `reduced` 0 allows only an entry that overtakes. `overtaker`: largest entry that may overtake,
+ * bytes; 0 disables overtaking. Returns 0 if everything is cut. */
 int link_cut(Link_Queue* queue, Link_Chunk* chunk, U32 room, U32 reduced, U32 overtaker);
 
 /* Copies the bytes of a chunk. */

@@ -23,8 +23,8 @@ static void onChannel(Link_Receiver* receiver, U32 channel, U32 isOpen) {
         env->port->channel(env->context, (int)channel, (int)isOpen);
 }
 
-/* Offers a whole message to the program; a message on a channel that was closed here is dropped.
- * The last fragment of a message that the program does not take counts as not received. */
+/* Offers a complete message to the program; a message on a channel that was closed here is dropped.
+ * If the program does not take a message, its last fragment counts as not received. */
 static void deliver(Link_Receiver* receiver) {
     Link_Env* env = &receiver->pacing->env;
     receiver->isHeld = 0;
@@ -38,8 +38,8 @@ static void deliver(Link_Receiver* receiver) {
     }
 }
 
-/* Adds a fragment to its message; a message of one fragment may stand between those of a long one.
- * Returns 0 if the fragment does not belong there. */
+/* Adds a fragment to its message; a message of one fragment may arrive between the fragments of a
+ * long one. Returns 0 if the fragment does not belong there. */
 static int append(Link_Receiver* receiver, U32 flags, const U8* data, U32 size) {
     U8* to = receiver->brief + LINK_HEAD_ROOM;
     receiver->start = to;
@@ -64,7 +64,7 @@ static int append(Link_Receiver* receiver, U32 flags, const U8* data, U32 size) 
     return 1;
 }
 
-/* Removes the check from the whole message. Returns 0 if the check is wrong. */
+/* Removes the check from the complete message. Returns 0 if the check is wrong. */
 static int uncheck(Link_Receiver* receiver) {
     U32 size = receiver->size - LINK_CHECK;
     if (receiver->size <= LINK_UNCHECKED || !receiver->pacing->env.codec->check)
@@ -73,7 +73,7 @@ static int uncheck(Link_Receiver* receiver) {
     return link_sum(0, receiver->start, size) == LINK_CHECK_AT(receiver->start + size);
 }
 
-/* Restores the head of the whole message. Returns 0 if the message is malformed. */
+/* Restores the head of the complete message. Returns 0 if the message is malformed. */
 static int expand(Link_Receiver* receiver) {
     U8* end = receiver->start + receiver->size;
     U8* start =
@@ -106,8 +106,8 @@ static int accept(Link_Receiver* receiver, U32 flags, const U8* data, U32 size) 
     return 1;
 }
 
-/* Takes a whole message out of its slot before its turn: the missing fragments are of other
- * channels. The message keeps waiting if an earlier one of its channel waits, or if the program
+/* Takes a complete message out of its slot before its turn: the missing fragments belong to other
+ * channels. The message continues to wait if an earlier one of its channel waits, or if the program
  * does not take it now. Returns 0 if the peer broke the rules. */
 static int takeEarly(Link_Receiver* receiver, U32 seq) {
     Link_HeaderCache* heads = &receiver->heads;

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-/* Returns whether a header makes sense: most garbage fails here, before a checksum is computed. */
+/* Returns whether a header is plausible: most garbage fails here, before a checksum is computed. */
 static int isPlausible(const Link_Codec* codec, const U8* frame) {
     U32 size = LINK_LENGTH(frame) + LINK_OVERHEAD;
     U32 payload = size - codec->overhead;
@@ -22,12 +22,13 @@ static int isPlausible(const Link_Codec* codec, const U8* frame) {
     return payload == codec->sizes[kind];
 }
 
-/* Spends the search budget, in rounds of Ascon, on one frame. Returns whether it sufficed: hostile
- * bytes do not keep the CPU busy, however many headers they pretend to hold. */
+/* Takes the cost of one frame, in rounds of Ascon, from the search budget. Returns whether the
+ * budget was sufficient: hostile bytes cannot keep the CPU busy, however many headers they
+ * contain. */
 static int mayTry(Link_Search* search, U32 rounds) {
     U32 now = search->session->handshake.pacing->env.now;
     U32 debt = search->paidAt - now;
-    if (debt > LINK_ROUNDS_AT_ONCE * LINK_ROUND_EVERY) /* it was paid earlier */
+    if (debt > LINK_ROUNDS_AT_ONCE * LINK_ROUND_EVERY) /* older debt is paid */
         debt = 0;
     debt += rounds * LINK_ROUND_EVERY;
     if (debt > LINK_ROUNDS_AT_ONCE * LINK_ROUND_EVERY)
@@ -37,7 +38,7 @@ static int mayTry(Link_Search* search, U32 rounds) {
 }
 
 /* Opens a plausible frame. Returns it, opened, in place or in `copy`, and the attempt that opened
- * it; 0 if no seal fits. */
+ * it; 0 if no seal matches. */
 static const U8* unseal(const Link_Search* search, const U8* frame, U8* copy, U32* attempt) {
     const Link_Codec* codec = search->session->handshake.pacing->env.codec;
     const U8* opened;
@@ -49,9 +50,9 @@ static const U8* unseal(const Link_Search* search, const U8* frame, U8* copy, U3
     return 0;
 }
 
-/* Returns whether a frame that the search has found is to be believed without a tag, since it might
- * be one by chance: the bytes end with it, or a good one follows. 1: yes, 0: no, -1: not known yet.
- */
+/* Returns whether a frame found by the search can be trusted without a tag, since it might be a
+ * coincidence: it is at the end of the bytes, or a valid one follows. 1: yes, 0: no, -1: not known
+ * yet. */
 static int isConfirmed(const Link_Search* search, const U8* next, U32 left, int isEnd) {
     const Link_Codec* codec = search->session->handshake.pacing->env.codec;
     U32 size, attempt;
@@ -67,7 +68,7 @@ static int isConfirmed(const Link_Search* search, const U8* next, U32 left, int 
     return isPlausible(codec, next) && unseal(search, next, 0, &attempt);
 }
 
-/* Takes a whole frame, with `left` bytes after it. `isSearch`: no frame ends just before it.
+/* Takes a complete frame, with `left` bytes after it. `isSearch`: no frame ends just before it.
  * Returns 1: taken, 0: not a frame for this side, -1: not known yet. */
 static int take(Link_Search* search, const U8* frame, U32 left, int isSearch, int isEnd) {
     Link_Session* session = search->session;
@@ -103,9 +104,9 @@ static int take(Link_Search* search, const U8* frame, U32 left, int isSearch, in
     return 1;
 }
 
-/* Counts a byte where no frame begins. The first one after a frame may begin a frame of an unknown
- * session, whose peer gets an answer. With a length that no frame has, such as a broadcast's, it
- * does not. */
+/* Counts a byte at which no frame begins. The first such byte after a frame may begin a frame of an
+ * unknown session, which is then answered. It is not answered if its length is impossible for a
+ * frame, as in a broadcast. */
 static void skip(Link_Search* search, const U8* frame, U32 left) {
     Link_Env* env = &search->session->handshake.pacing->env;
     if (!search->outOfStep && LINK_LENGTH(frame) <= LINK_MAX_PAYLOAD &&
@@ -115,17 +116,18 @@ static void skip(Link_Search* search, const U8* frame, U32 left) {
     ++env->statistics.bytesSkipped;
 }
 
-/* Takes all whole frames in the bytes. `isEnd`: a silence follows, so half a frame never becomes
- * whole. Returns the number of bytes that are used.
+/* Takes all complete frames in the bytes. `isEnd`: a silence follows, so an incomplete frame stays
+ * incomplete. Returns the number of bytes used.
  *
- * Without a key a frame that is not whole holds up the bytes after it. A tag needs no confirmation,
- * so under a key a frame is taken when its last byte is there, even after the beginning of another:
- * that may be an attacker's, who wants it to wait. Frames that end within the kept bytes were
- * looked at before.
+ * Without a key an incomplete frame holds up the bytes after it. A tag needs no confirmation, so
+ * under a key a frame is taken when its last byte arrives, even after the beginning of another:
+ * that beginning may come from an attacker who wants to delay it. Frames that end within the kept
+ * bytes were checked before.
  *
  * Hostile bytes can pretend that a frame of the handshake ends with each portion that the caller
- * reads, and use up the search budget before the genuine frame arrives. So a frame of the handshake
- * that ends the bytes and finds no budget is kept, and tried after a silence. */
+ * reads, and use up the search budget before the genuine frame arrives. Therefore a frame of the
+ * handshake at the end of the bytes for which there is no budget is kept, and tried after a
+ * silence. */
 static U32 parse(Link_Search* search, const U8* bytes, U32 count, int isEnd) {
     int isSure = search->session->handshake.pacing->env.codec->isAuthenticated;
     U32 used = 0;
@@ -155,7 +157,7 @@ static U32 parse(Link_Search* search, const U8* bytes, U32 count, int isEnd) {
     return used;
 }
 
-/* Parses the kept bytes, `count` of them now, and keeps an incomplete frame. */
+/* Parses the kept bytes, currently `count`, and keeps an incomplete frame. */
 static void parseKept(Link_Search* search, U32 count, int isEnd) {
     U32 used = parse(search, search->bytes, count, isEnd);
     search->count = (U8)(count - used);
@@ -175,9 +177,9 @@ void link_pollSearch(Link_Search* search) {
 void link_takeBytes(Link_Search* search, const U8* bytes, U32 size) {
     link_pollSearch(search);
     if (size == 0)
-        return; /* otherwise silences would not be seen; bytes may be null */
+        return; /* otherwise silences would not be detected; bytes may be null */
     search->at = search->session->handshake.pacing->env.now;
-    if (search->count == 0) { /* the usual case: a whole frame is read in place; the rest fits */
+    if (search->count == 0) { /* the usual case: a complete frame is read in place */
         U32 used = parse(search, bytes, size, 0);
         search->count = (U8)(size - used);
         memcpy(search->bytes, bytes + used, search->count);

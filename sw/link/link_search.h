@@ -12,7 +12,7 @@ typedef struct Link_Search {
     U8 count;     /* bytes kept */
     U8 outOfStep; /* 1: the last bytes were not a frame, so the next frame needs confirmation */
     U32 at;       /* time of the last byte, us */
-    U32 paidAt;   /* time when the search budget is full again, us */
+    U32 paidAt;   /* time at which the search budget is full again, us */
     U8 bytes[2U * LINK_MAX_FRAME];
 } Link_Search;
 

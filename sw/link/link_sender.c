@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <string.h>
 
-/* Credit in fragments until the peer's first acknowledgement. */
+/* Credit before the peer's first acknowledgement, fragments. */
 #define LEAST_WINDOW 8U
 
 /* Size of the longest acknowledgement, bytes. */
@@ -59,7 +59,7 @@ Link_Status link_queueMessage(Link_Sender* sender, int channel, const U8* data, 
     return LINK_OK;
 }
 
-/* Queues the closings that had no room yet. The peer waits for each before the channel can be
+/* Queues the closings that had no room before. The peer waits for each before the channel can be
  * opened again. */
 static void queueClosings(Link_Sender* sender) {
     Link_Channels* channels = &sender->receiver->channels;
@@ -69,7 +69,7 @@ static void queueClosings(Link_Sender* sender) {
             LINK_NOTE_CLOSING(channels, channel);
 }
 
-/* Ends an entry of the queue, reports a message's outcome, and reports that there is room again. */
+/* Ends an entry of the queue, and reports a message's outcome and room in the queue. */
 static void endEntry(Link_Sender* sender, U32 index, Link_Outcome outcome) {
     Link_Env* env = &sender->pacing->env;
     Link_Queue* queue = &sender->queue;
@@ -104,7 +104,7 @@ static int cut(Link_Sender* sender, int onlyAhead) {
     const Link_Pacing* pacing = sender->pacing;
     U32 inFlight = IN_FLIGHT(sender);
     U32 room = link_room(pacing);
-    /* An acknowledgement that is due leaves in the same packet. */
+    /* An acknowledgement that is due is sent in the same packet. */
     U32 reduced = sender->receiver->ackNow ? room - ACK_ROOM(sender) : room;
     /* One fragment goes out even without credit: its acknowledgement brings new credit. */
     if ((inFlight && inFlight >= sender->credit) ||
@@ -119,7 +119,7 @@ static int cut(Link_Sender* sender, int onlyAhead) {
     return 1;
 }
 
-/* Returns n, so that one of n transmissions asks for an acknowledgement, which costs a turn of the
+/* Returns n, so that one of n transmissions requests an acknowledgement, which costs a turn of the
  * air. n is smaller while losses stop the window, while a message that has overtaken is not
  * acknowledged, and while short messages fill the queue before the window. */
 static U32 askEvery(const Link_Sender* sender) {
@@ -147,8 +147,8 @@ static int mustAsk(const Link_Sender* sender, U32 seq) {
 }
 
 /* Returns whether the peer may take a message of one fragment although earlier ones are missing: it
- * has all earlier ones of the channel, and learns no head from fragments that are not in order yet.
- */
+ * has all earlier ones of the channel, and learns no head from fragments that are not in order
+ * yet. */
 static int isReady(const Link_Sender* sender, U32 seq, U32 flags) {
     const Link_Entry* entries = sender->queue.entries;
     const Link_Fragment* f = FRAGMENT(sender, seq);
@@ -163,7 +163,7 @@ static int isReady(const Link_Sender* sender, U32 seq, U32 flags) {
 }
 
 /* Puts a fragment's payload into a frame. Returns the header: of a data frame, or of a PIGGYBACK
- * for a whole short message while an acknowledgement is due. */
+ * for a complete short message while an acknowledgement is due. */
 static U32 build(const Link_Sender* sender, U32 seq, int isAsked, U8* frame) {
     const Link_Pacing* pacing = sender->pacing;
     const Link_Chunk* chunk = &FRAGMENT(sender, seq)->chunk;
@@ -244,7 +244,7 @@ static void setTimer(Link_Sender* sender) {
     sender->timerAt = sender->pacing->env.now + rto;
 }
 
-/* Marks unacknowledged fragments that were sent before `order` as lost: they go out again. */
+/* Marks unacknowledged fragments that were sent before `order` as lost: they are sent again. */
 static void sendAgain(Link_Sender* sender, U32 order) {
     U32 seq;
     for (seq = sender->base; seq != sender->next; ++seq) {
@@ -256,9 +256,9 @@ static void sendAgain(Link_Sender* sender, U32 order) {
     }
 }
 
-/* Marks acknowledged fragments: the first `advance`, and those of the bitmap, whose bit n stands
- * for the fragment at advance + 1 + n. Other fragments that were sent before the newest of these
- * are lost. */
+/* Marks acknowledged fragments: the first `advance`, and those in the bitmap, where bit n is the
+ * fragment at advance + 1 + n. Other fragments that were sent before the newest of these are
+ * lost. */
 static int markAcked(Link_Sender* sender, U32 advance, const U8* bitmap, U32 size) {
     const Link_Fragment* newest = 0;
     int isNew = 0;
@@ -274,7 +274,7 @@ static int markAcked(Link_Sender* sender, U32 advance, const U8* bitmap, U32 siz
         isNew = 1;
         if (f->tries != 1U && elapsed < sender->srtt - sender->srtt / 4U) {
             /* Too soon for a round trip: this acknowledges an earlier transmission. If the radio
-             * reports losses, it is the first transmission, and the peer takes longer now. */
+             * reports losses, it is the first transmission, and the peer now takes longer. */
             elapsed = sender->pacing->env.now - f->firstAt;
             if (sender->pacing->mostWaiting && !sender->pacing->contention.own.isStream &&
                 elapsed < LINK_RTO_FIRST)
@@ -348,7 +348,7 @@ static int nextFragment(Link_Sender* sender, U32* seq) {
 }
 
 /* Repeats the oldest fragment in flight when the timer has expired. Returns 0 if it was sent so
- * long ago that the session must end, before the peer carries out an abandoned message. */
+ * long ago that the session must end, before the peer executes an abandoned message. */
 static int pollWindow(Link_Sender* sender, U32 now) {
     Link_Fragment* oldest = FRAGMENT(sender, sender->base);
     U32 age = oldest->tries ? now - oldest->firstAt : 0;
@@ -358,8 +358,8 @@ static int pollWindow(Link_Sender* sender, U32 now) {
         return 1;
     sender->timerAt = now + sender->rto;
     if (sender->pacing->mostWaiting && sender->pacing->packed)
-        return 1;                 /* it has not left yet */
-    oldest->state = LINK_TO_SEND; /* its acknowledgement reports the others */
+        return 1;                 /* not sent yet */
+    oldest->state = LINK_TO_SEND; /* its acknowledgement also reports the others */
     sender->hasWork = sender->isLate = 1;
     sender->rto += sender->rto / 4U;
     if (sender->rto > LINK_RTO_MAX)

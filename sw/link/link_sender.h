@@ -10,7 +10,7 @@
 
 typedef enum Link_FragmentState { LINK_TO_SEND, LINK_SENT, LINK_ACKED } Link_FragmentState;
 
-/* Fragment that was cut from the queue, until it is acknowledged in order. */
+/* A fragment that was cut from the queue and is not acknowledged in order yet. */
 typedef struct Link_Fragment {
     Link_Chunk chunk;
     U32 firstAt, sentAt; /* times of its first and its last transmission, us */
@@ -25,7 +25,7 @@ typedef struct Link_Sender {
     Link_Receiver* receiver; /* its acknowledgements ride on fragments */
     Link_Fragment* window;   /* the caller's */
     U8 mask;                 /* fragments in the window less one */
-    /* The fields from here on are 0 when a session begins. */
+    /* The following fields are 0 when a session begins. */
     U8 credit;     /* fragments that may be in flight now */
     U8 fullCredit; /* largest credit so far */
     U8 hasWork;    /* 1: there may be something to send */
@@ -36,19 +36,19 @@ typedef struct Link_Sender {
     U32 base;     /* number of the oldest unacknowledged fragment; its lowest byte is SEQ */
     U32 next;     /* number of the next new fragment */
     U32 ahead;    /* number of the newest fragment that has overtaken */
-    U32 rto, srtt, rttvar;  /* as RFC 6298 names them, us */
-    U32 timerAt;            /* time when the retransmission timer expires, us */
+    U32 rto, srtt, rttvar;  /* as named in RFC 6298, us */
+    U32 timerAt;            /* time at which the retransmission timer expires, us */
     U32 order;              /* transmissions so far */
     Link_HeaderCache heads; /* heads of sent messages */
     /* End of the fields that begin at 0. */
     Link_Queue queue;
 } Link_Sender;
 
-/* Begins anew, without a session: reports queued messages as LINK_UNKNOWN. Wipes their bytes if
- * `isWiped`. */
+/* Resets to the state without a session: reports queued messages as LINK_UNKNOWN. Wipes their bytes
+ * if `isWiped`. */
 void link_resetSender(Link_Sender* sender, int isWiped);
 
-/* Queues an opening (LINK_FIRST) or closing of a channel. Returns 0 if there is no room. */
+/* Queues an opening (LINK_FIRST) or closing of a channel. Returns 0 without room. */
 int link_queueChannel(Link_Sender* sender, U32 flags);
 
 /* Queues a copy of a message. Returns LINK_OK, LINK_FULL or LINK_TOO_LONG. */
@@ -58,7 +58,7 @@ Link_Status link_queueMessage(Link_Sender* sender, int channel, const U8* data, 
  * acknowledges a fragment for the first time. */
 int link_onAck(Link_Sender* sender, U32 cumulative, U32 credit, const U8* bitmap, U32 size);
 
-/* Takes the radio's answer for a packet: the contents of a lost one go out again. */
+/* Takes the radio's result for a packet: the contents of a lost one are sent again. */
 void link_onAnswer(Link_Sender* sender, U32 packet, int isDelivered);
 
 /* Sends fragments that are due. Returns 0 if one is so old that the session must end. */

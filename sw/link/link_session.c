@@ -152,8 +152,8 @@ void link_onFrame(Link_Session* session, const U8* frame, U32 attempt) {
         link_onPing(&session->liveness, frame);
     else
         link_scheduleAck(&session->receiver);
-    /* A frame that was heard before may be an attacker's recording, and is not a sign of life.
-     * link_onAck and link_onPing check that themselves. */
+    /* A duplicate frame may be an attacker's recording, and is not a sign of life. link_onAck and
+     * link_onPing check this themselves. */
     if (kind >= LINK_KIND_PIGGYBACK && duplicates == env->statistics.duplicates)
         LINK_NOTE_ALIVE(&session->liveness);
     if (!isFair)

@@ -17,10 +17,10 @@ typedef struct Link_Session {
     Link_Sender sender;
 } Link_Session;
 
-/* Notes whether the program wants a session. */
+/* Records whether the program wants a session. */
 #define LINK_WANT(session, isWanted) ((session)->wanted = (isWanted))
 
-/* Ends the session, if there is one: clears its state and reports its end. */
+/* Ends the session, if any: clears its state and reports its end. */
 void link_endSession(Link_Session* session, Link_State next);
 
 /* Ends a session that the peer's wish or silence has ended. */

@@ -3,9 +3,9 @@
  * ice_minimal: the run time of the minimal configuration: one task, one active adapter, one message
  * at a time.
  *
- * `in` holds received messages, `out` those to send. A connection and the call under way have an
- * Ice_Status, which is ICE_LATER while the peer's answer is awaited. The functions are those of
- * icec.h; streams, proxies and tables of operations are the full run time's.
+ * `in` holds received messages, `out` messages to send. A connection and the current call each have
+ * an Ice_Status, which is ICE_LATER while the peer's message is awaited. The functions are declared
+ * in icec.h; streams, proxies and tables of operations are shared with the full run time.
  */
 #include "ice_message.h"
 
@@ -63,7 +63,7 @@ static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStre
     target.data = is->data + target.size;
     Ice_InputStream_takeString(is, &current.name);
     Ice_InputStream_takeString(is, &current.category);
-    current.facet.size = Ice_InputStream_readByte(is); /* how many: one is too many */
+    current.facet.size = Ice_InputStream_readByte(is); /* number of facets: one is not supported */
     icec_skipStrings(is, (U32)current.facet.size);
     Ice_InputStream_takeString(is, &current.operation);
     target.size = is->position - target.size;
@@ -102,7 +102,7 @@ static Ice_Status takeMessage(Ice_CommunicatorPtr ic, int connection, Ice_Int si
         return dispatch(ic, connection, is);
     case ICEC_REPLY:
         if (Ice_InputStream_readInt(is) == ic->id && connection == ic->connection)
-            ic->call = (Ice_Byte)icec_readReply(is); /* another one came too late */
+            ic->call = (Ice_Byte)icec_readReply(is); /* another reply arrived too late */
         return ICE_OK;
     case ICEC_VALIDATE:
         ic->connections[connection] = ICE_OK;
@@ -121,7 +121,7 @@ Ice_Status Ice_Communicator_poll(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
     (void)ic->endpoint->receive(ic->endpointContext, ic->in, timeoutMs, &event);
     if (event.kind == ICE_EVENT_NONE)
         return ICE_TIMEOUT;
-    if (event.kind == ICE_EVENT_OPENED) { /* who accepts a connection speaks first */
+    if (event.kind == ICE_EVENT_OPENED) { /* the side that accepts a connection sends first */
         ic->connections[event.connection] = ICE_OK;
         icec_beginMessage(&ic->os, ICEC_VALIDATE);
         (void)send(ic, event.connection);
@@ -208,20 +208,21 @@ Ice_Status Ice_ObjectPrx_end(Ice_ObjectPrxPtr self, Ice_Status status) {
 
 U32 Ice_numberOption(const char* options, char letter, U32 otherwise) {
     for (; options && *options; ++options)
-        if (options[0] == '-' && options[1] == letter) { /* there are no quotes here */
+        if (options[0] == '-' && options[1] == letter) { /* quotes are not supported here */
             options += 3;
             return (U32)strtoul(options, 0, options[0] == '0' && options[1] == 'x' ? 16 : 10);
         }
     return otherwise;
 }
 
-/* Returns the options behind the transport's name; 0: the text names another transport. */
+/* Returns the options after the transport's name; 0 if the text names another transport. */
 static const char* optionsOf(Ice_CommunicatorPtr ic, const char* text) {
     size_t size = strlen(ic->endpoint->name);
     return strncmp(text, ic->endpoint->name, size) == 0 && text[size] <= ' ' ? text + size : 0;
 }
 
-/* Parses "name [-t|-o]:transport options"; without a transport, the proxy is of an object here. */
+/* Parses "name [-t|-o]:transport options"; without a transport, the proxy refers to an object
+ * here. */
 static Ice_Status parse(Ice_CommunicatorPtr ic, const char* text, Ice_ObjectPrxPtr prx) {
     size_t size = strcspn(text, " :");
     const char* options = strchr(text, ':');
@@ -230,7 +231,7 @@ static Ice_Status parse(Ice_CommunicatorPtr ic, const char* text, Ice_ObjectPrxP
     if (size - 1U > ICE_IDENTITY_MAX - 4U)
         return ICE_LIMIT;
     prx->identity[0] = (Ice_Byte)size;
-    memcpy(prx->identity + 1, text, size); /* behind it are 0: no category, no facet */
+    memcpy(prx->identity + 1, text, size); /* followed by 0: no category, no facet */
     prx->identitySize = (Ice_Byte)(size + 3U);
     prx->mode = strncmp(text + size, " -o", 3) == 0; /* ICE_ONEWAY */
     if (options) {

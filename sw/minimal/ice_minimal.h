@@ -21,12 +21,12 @@ struct Ice_Communicator {
     Ice_ObjectAdapterPtr adapter; /* the active one */
     Ice_Byte stopping;
     Ice_Byte busy; /* an operation runs */
-    /* Ice_Status: ICE_OK the connection is open, the reply is there; ICE_LATER it is awaited. */
+    /* Ice_Status: ICE_OK the connection is open, the reply has arrived; ICE_LATER it is awaited. */
     Ice_Byte call;
     Ice_Byte connections[ICE_CONNECTIONS];
-    int connection;      /* of the call */
-    Ice_Int id;          /* of the call; odd */
-    Ice_Int body;        /* begin of the encapsulation in `os` */
+    int connection;      /* connection of the call */
+    Ice_Int id;          /* id of the call; odd */
+    Ice_Int body;        /* start of the encapsulation in `os` */
     Ice_OutputStream os; /* in `out`: a request, or a reply */
     Ice_InputStream is;  /* in `in` */
     U32 arena[ICE_ARENA_BYTES / 4];

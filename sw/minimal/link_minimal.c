@@ -10,11 +10,11 @@
 /* A channel's state has these bits, and LINK_FIRST or LINK_LAST for a fragment about it that is
  * due. */
 #define OPEN 1U
-#define CLOSING 2U /* closed here, the peer's closing has not come yet */
+#define CLOSING 2U /* closed here, the peer's closing has not arrived yet */
 #define DUE (LINK_FIRST | LINK_LAST)
 
-/* Sends link->frame, which holds its payload (link_seal). A frame for which the radio has no room
- * is lost, as on the air. */
+/* Sends link->frame, which contains its payload (link_seal). A frame for which the radio has no
+ * room is lost, as on the air. */
 static void transmit(Link* link, U32 header) {
     (void)link->port->transmit(link->context, link->frame,
                                link_seal(link->frame, header, link->key));
@@ -29,7 +29,7 @@ static void report(Link* link, Link_Outcome outcome) {
         link->port->writable(link->context);
 }
 
-/* Ends the session, if there is one: clears its fields and reports its end. */
+/* Ends the session, if any: clears its fields and reports its end. */
 static void lose(Link* link) {
     int channel;
     if (link->state != LINK_STATE_UP)
@@ -148,7 +148,7 @@ static void takeFrame(Link* link, const U8* frame, U32 size) {
 }
 
 void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs) {
-    /* A frame begins behind a silence, or where it is all of the packet. */
+    /* A frame begins after a silence, or if it fills the packet. */
     if (nowUs - link->inputAt > LINK_FRAME_GAP || LINK_LENGTH(bytes) + LINK_OVERHEAD == size)
         link->inputCount = 0;
     link->inputAt = nowUs;
@@ -164,7 +164,8 @@ void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs) {
 
 /* ---- sending ---- */
 
-/* Returns the next fragment's flags; 0: none. Openings come first, closings after the message. */
+/* Returns the next fragment's flags; 0 if there is none. Openings come first, closings after the
+ * message. */
 static U32 cut(Link* link) {
     U32 size, channel, flags;
     link->size = 0;
@@ -259,7 +260,7 @@ const Link_Statistics* Link_statistics(const Link* link) {
     return &none;
 }
 
-/* Returns the channel's state; 0: there is no session, or no such channel. */
+/* Returns the channel's state; 0 if there is no session, or no such channel. */
 static U8* channelOf(Link* link, int channel) {
     return link->state == LINK_STATE_UP && (U32)channel < LINK_CHANNELS ? link->channels + channel
                                                                         : 0;

@@ -8,27 +8,27 @@
 
 #include "link.h"
 
-/* No length that a frame may claim goes beyond. */
+/* Largest length in the header of a frame. */
 #define LINK_INPUT_BYTES (0x7FU + LINK_OVERHEAD)
 
-/* Small and often used fields come first: a Cortex-M3 reaches them with short instructions. */
+/* Small and often used fields come first, in reach of short Cortex-M3 instructions. */
 struct Link {
     U8 state; /* Link_State */
-    /* The fields from here on are 0 when a session begins. */
+    /* The following fields are 0 when a session begins. */
     U8 channels[LINK_CHANNELS]; /* OPEN, CLOSING, and due fragments */
     U8 ackDue;
-    U8 flags;           /* byte 2 of the fragment in flight; 0: there is none */
+    U8 flags;           /* byte 2 of the fragment in flight; 0: none */
     U8 channel;         /* channel of the message going out */
     U32 sendNext;       /* number of the fragment in flight, or of the next one: SEQ extended */
     U32 receiveNext;    /* number expected */
-    U32 outSize, outAt; /* bytes of the message going out, and acknowledged bytes of it */
+    U32 outSize, outAt; /* bytes of the message being sent, and acknowledged bytes of it */
     U32 size;           /* bytes of the fragment in flight */
     U32 messageSize;    /* bytes received of the message coming in */
     U32 peerNonce;      /* 0: no session */
     /* End of the fields that begin at 0. */
     U32 nonce, key;
-    U32 timerAt; /* time at which the fragment in flight goes out again */
-    U32 retryUs; /* time from one transmission of it to the next */
+    U32 timerAt; /* time at which the fragment in flight is sent again */
+    U32 retryUs; /* time between its transmissions */
     U32 inputAt, heardAt;
     U32 inputCount;
     const Link_Port* port;

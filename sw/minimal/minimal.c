@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * minimal: the smallest program that has all layers: one loop, no tasks, a server and a client.
+ * minimal: the smallest program that uses all layers: one loop, no tasks, a server and a client.
  *
  * `make size` measures it (docs/icec.md), and it flies: `make run CPU=m3 APP=minimal`. It has the
- * Slice of the paper's Figure 3, the engine's servant as in its Figure 5, and calls to the ground
- * station, two-way and one-way, over the xbee-at endpoint, the link, the modem and the FSMC. There
- * is no interrupt but a tick of 1 kHz: the program polls.
+ * Slice interfaces of the paper's Figure 3, the engine's servant as in its Figure 5, and calls to
+ * the ground station, two-way and one-way, over the xbee-at endpoint, the link, the modem and the
+ * FSMC. The only interrupt is a tick of 1 kHz: the program polls.
  */
 #include "Autopilot.h"
 #include "board.h"
@@ -33,7 +33,7 @@ static void sleep(void) {
     __asm__ volatile("wfi");
 }
 
-/* Sleeps. The radio driver needs no more of an OS. */
+/* Sleeps. The radio driver needs no other function of an OS. */
 void OSTimeDly(INT32U ticks) {
     INT32U begin = now;
     while (now - begin < ticks)
@@ -125,7 +125,7 @@ Ice_Status Autopilot_HwProcessingEngine_getResult(Autopilot_HwProcessingEnginePt
     return ICE_OK;
 }
 
-/* Returns where the FPGA or the modem does not answer. */
+/* Returns if the FPGA or the modem does not respond. */
 int main(void) {
     static const XBeeInitTypeDef xbeeConf = {XBEE_BD_115200, 0x0001, 0x0000, 0, 0, 0, 0, 0};
     static const Radio_Memory rings = {0x00000000U, 0x00001000U};
@@ -168,7 +168,7 @@ static void halt(void) {
 }
 
 __attribute__((section(".vectors"), used)) static const Vector vectors[16] = {
-    stack_top, /* not a function: the first word is the stack pointer */
+    stack_top, /* initial stack pointer, not a function */
     Reset_Handler, halt, halt, halt, halt, halt, 0, 0, 0, 0, halt, halt, 0, halt, countTick};
 
 void Reset_Handler(void) {

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: MIT
 """sizes: bytes of the firmware's layers, from linkers' maps and objects.
 
-    sizes.py layers SOURCE GENERATED BUILD OUT.json   each layer on a Cortex-M3 at -Os, beside the
+    sizes.py layers SOURCE GENERATED BUILD OUT.json   each layer on a Cortex-M3 at -Os, with the
                                                       paper's Table II; RAM and largest frames;
-                                                      fails where one exceeds sw/size_budget.json
+                                                      fails if one exceeds sw/size_budget.json
     sizes.py firmware MAP OBJECTS OUT.json            flash and RAM of a firmware by layer; its
                                                       stacks, by the call graph
 
@@ -37,7 +37,7 @@ ENTRIES = ("UAV_radioTask", "appMainTask", "clientTask", "watchTask", "idleTask"
 def sections(path):
     """Returns (section, address, bytes, file) of the image's parts in a linker's map."""
     text = open(path).read().partition("Linker script and memory map")[2]
-    # long names have a line of their own
+    # long names are on a separate line
     text = re.sub(r"^( \.?[A-Za-z_]\S*)\n +(?=0x)", r"\1 ", text, flags=re.M)
     for name, address, size, file in re.findall(r"^ (\.?[A-Za-z_]\S*) +0x(\w+) +0x(\w+) (\S.*)$",
                                                 text, re.M):
@@ -57,7 +57,8 @@ def linked(image, layer, wanted):
 
 
 def whole(patterns, source, generated):
-    """Returns (text and read-only data, RAM) of all that the files of these patterns hold."""
+    """Returns (text and read-only data, RAM) of all contents of the files matching these
+    patterns."""
     includes = [generated, f"{generated}/slice/Autopilot"] + [f"{source}/sw/{d}" for d in (
         "base", "os", "os/host", "fsmc", "radio", "crypto", "link", "icec", "icec/endpoints")]
     with tempfile.TemporaryDirectory() as work:
@@ -80,7 +81,7 @@ def deepest(build, layer):
 
 
 def excess(entries, source, only=""):
-    """Yields a sentence for each size that sw/size_budget.json does not allow."""
+    """Yields a sentence for each size above its limit in sw/size_budget.json."""
     budget = json.load(open(f"{source}/sw/size_budget.json"))
     for name, size in ((entry["name"], entry["value"]) for entry in entries):
         if not name.startswith(only):
@@ -195,7 +196,7 @@ def stacks(objects):
     known = {}
 
     def depth(function):
-        """(bytes, way) of the deepest stack; a circle counts once."""
+        """(bytes, call path) of the deepest stack; a recursion is counted once."""
         if function not in known:
             known[function] = (0, [])
             below, way = max((depth(called) for called in calls.get(function, ())

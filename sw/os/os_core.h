@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_core: declarations shared by the kernel's files and the processor port (os_cpu). Not for
+ * os_core: declarations shared by the files of the kernel and the processor port (os_cpu). Not for
  * applications.
  */
 #pragma once
@@ -24,7 +24,7 @@ typedef struct OS_Task {
     OS_EVENT* event; /* event that the task waits for */
     void* message;   /* message passed by OSQPost */
     OS_STK* bottom;  /* lowest address of the stack; 0 if unknown */
-    U32 words;       /* size of the stack in words */
+    U32 words;       /* size of the stack, words */
     U16 options;     /* OS_TASK_OPT_... */
 } OS_Task;
 
@@ -40,7 +40,7 @@ struct os_event {
 
 typedef struct OS_Kernel {
     OS_Set ready;
-    OS_Set reserved; /* ceilings of mutexes: no task may have them */
+    OS_Set reserved; /* ceilings of mutexes: not available to tasks */
     OS_Task* byPriority[OS_LOWEST_PRIO + 1];
     OS_Task tasks[OS_MAX_TASKS + 1];
     OS_EVENT events[OS_MAX_EVENTS];
@@ -54,7 +54,7 @@ extern OS_Kernel os_kernel;
 void OS_Set_add(OS_Set* set, U8 priority);
 void OS_Set_remove(OS_Set* set, U8 priority);
 int OS_Set_has(const OS_Set* set, U8 priority);
-/* Returns the lowest number in the set, OS_LOWEST_PRIO + 1 where it is empty. */
+/* Returns the lowest number in the set; OS_LOWEST_PRIO + 1 if it is empty. */
 U8 OS_Set_first(const OS_Set* set);
 
 /* True if a task or a mutex has this priority. */
@@ -63,13 +63,13 @@ int OS_PriorityTaken(U8 priority);
  * OS_ERR_NONE or OS_ERR_TASK_NO_MORE_TCB. */
 U8 OS_TaskMake(void (*task)(void*), void* argument, OS_STK* ptos, U8 priority,
                const OS_Task* stack);
-/* Switches to the highest ready task, unless in an interrupt or locked. */
+/* Switches to the highest-priority ready task, unless in an interrupt or locked. */
 void OS_Sched(void);
-/* Gives a task another priority, wherever it is listed. */
+/* Changes the priority of a task in all lists. */
 void OS_ChangePriority(OS_Task* task, U8 priority);
 
 /* Functions of the processor port. */
 OS_STK* OSTaskStkInit(void (*task)(void* p_arg), void* p_arg, OS_STK* ptos, INT16U opt);
 void OSStartHighRdy(void);                /* first switch: to os_kernel.current */
 void OSCtxSw(OS_Task* from, OS_Task* to); /* also from OSIntExit */
-void OSTaskIdleHook(void);                /* the idle task, again and again */
+void OSTaskIdleHook(void);                /* called repeatedly by the idle task */

@@ -4,7 +4,7 @@
  */
 #include "os_core.h"
 
-/* Allocates an event. Returns 0 if none is free, and in interrupts. */
+/* Allocates an event. Returns 0 if none is free, or in an interrupt. */
 static OS_EVENT* create(OS_EventType type) {
     OS_CPU_SR cpu_sr;
     OS_EVENT* found = 0;
@@ -21,8 +21,7 @@ static OS_EVENT* create(OS_EventType type) {
     return found;
 }
 
-/* Checks a pend call on an event of this type. Returns OS_ERR_NONE or what is wrong with the call.
- */
+/* Checks a pend call on an event of this type. Returns OS_ERR_NONE or the error of the call. */
 static U8 pendError(const OS_EVENT* event, OS_EventType type) {
     if (!event)
         return OS_ERR_PEVENT_NULL;
@@ -33,8 +32,8 @@ static U8 pendError(const OS_EVENT* event, OS_EventType type) {
     return os_kernel.lockNesting ? OS_ERR_PEND_LOCKED : OS_ERR_NONE;
 }
 
-/* Puts the current task to sleep on an event until it is signalled or `timeout` ticks are over.
- * Returns 1 on time-out. Interrupts are disabled at the call and at the return, enabled in
+/* Suspends the current task on an event until it is signalled or `timeout` ticks have passed.
+ * Returns 1 on time-out. Interrupts are disabled at the call and at the return, and enabled in
  * between. */
 static U8 waitFor(OS_EVENT* event, U32 timeout, OS_CPU_SR* cpu_sr) {
     OS_Task* task = os_kernel.current;
@@ -49,7 +48,7 @@ static U8 waitFor(OS_EVENT* event, U32 timeout, OS_CPU_SR* cpu_sr) {
     return task->timedOut;
 }
 
-/* Makes the first waiting task ready and returns it; 0 where none waits. */
+/* Makes the first waiting task ready and returns it; 0 if none waits. */
 static OS_Task* wake(OS_EVENT* event) {
     U8 priority;
     OS_Task* task;

@@ -20,7 +20,7 @@ typedef U32 INT32U;
 
 #define OS_ERR_NONE 0U
 #define OS_ERR_EVENT_TYPE 1U /* the event is of another type */
-#define OS_ERR_PEND_ISR 2U   /* a task-only call came from an interrupt */
+#define OS_ERR_PEND_ISR 2U   /* a task-only call was made from an interrupt */
 #define OS_ERR_POST_NULL_PTR 3U
 #define OS_ERR_PEVENT_NULL 4U
 #define OS_ERR_POST_ISR 5U /* an interrupt cannot own a mutex */
@@ -51,16 +51,16 @@ void OSStart(void);
 INT8U OSTaskCreate(void (*task)(void* p_arg), void* p_arg, OS_STK* ptos, INT8U prio);
 
 #define OS_TASK_OPT_NONE 0U
-#define OS_TASK_OPT_STK_CHK 1U /* OSTaskStkChk may be asked about it */
+#define OS_TASK_OPT_STK_CHK 1U /* OSTaskStkChk may be used */
 #define OS_TASK_OPT_STK_CLR 2U /* the stack is filled with zeros, which OSTaskStkChk counts */
 
-/* Creates a task as OSTaskCreate does, with its stack's bounds: `pbos` is its lowest address,
+/* Creates a task like OSTaskCreate, with the bounds of its stack: `pbos` is its lowest address,
  * `stk_size` its size in OS_STK. `id` and `pext` are accepted as in uC/OS-II, and not used. */
 INT8U OSTaskCreateExt(void (*task)(void* p_arg), void* p_arg, OS_STK* ptos, INT8U prio, INT16U id,
                       OS_STK* pbos, INT32U stk_size, void* pext, INT16U opt);
 
 typedef struct os_stk_data {
-    INT32U OSFree, OSUsed; /* in OS_STK */
+    INT32U OSFree, OSUsed; /* sizes in OS_STK */
 } OS_STK_DATA;
 
 /* Tells how much of a task's stack has ever been in use. */
@@ -75,7 +75,7 @@ void OSTimeDly(INT32U ticks);
 INT32U OSTimeGet(void);
 void OSTimeTick(void); /* called by the tick interrupt, between OSIntEnter and OSIntExit */
 
-/* timeout 0: for ever. *perr: OS_ERR_NONE, OS_ERR_TIMEOUT, or what was wrong with the call. */
+/* timeout 0: wait forever. *perr: OS_ERR_NONE, OS_ERR_TIMEOUT, or the error of the call. */
 OS_EVENT* OSSemCreate(INT16U cnt);
 void OSSemPend(OS_EVENT* pevent, INT32U timeout, INT8U* perr);
 INT8U OSSemPost(OS_EVENT* pevent);

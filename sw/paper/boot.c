@@ -11,7 +11,7 @@
 static OS_STK stack[STACK_WORDS], radioStack[STACK_WORDS];
 static U8 irqEnabled;
 
-/* The program's servant of the core does not wait for an interrupt. */
+/* The program's servant polls the core and needs no interrupt. */
 void UAV_coresInterrupt(const U32 lines[2]) {
     (void)lines;
 }

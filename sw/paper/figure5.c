@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Figure 5 of the paper, upper half: the server on the UAV, as printed but for what is marked:
+ * Figure 5 of the paper, upper half: the server on the UAV, as printed except for the marked lines:
  *
  *   [1] servants get `self`, so that two cores of a kind can be told apart, and `current`; they
  *       return a status; Figure 3 calls the operation setParameterA

@@ -9,7 +9,8 @@
 #include "ucos_ii.h"
 
 #define BUFFERS MODEM_RING_BUFFERS
-#define BUSY (BUFFERS - (get(MODEM_TX_STATE) & MODEM_TX_STATE_FREE_MASK)) /* in the output ring */
+/* Used buffers of the output ring. */
+#define BUSY (BUFFERS - (get(MODEM_TX_STATE) & MODEM_TX_STATE_FREE_MASK))
 #define DEFAULT_CHANNEL 0x0CU
 #define DEFAULT_PAN 0x3332U
 #define DEFAULT_GUARD_MS 1000U
@@ -18,16 +19,16 @@
 #define MODE_STEP 13U /* step of the set-up: ATAP */
 
 /* API mode: a buffer holds a frame's contents: its type, and here four bytes more before a packet.
- *   01 ID TARGET TARGET 00 DATA...          a packet to be sent
- *   89 ID STATUS                            its fate: 0 the target's modem has it
- *   08 00 'R' 'N' VALUE                     a setting, which is not answered
- *   81 SOURCE SOURCE RSSI OPTIONS DATA...   a packet that came */
+ *   01 ID TARGET TARGET 00 DATA...          packet to send
+ *   89 ID STATUS                            its result: 0 received by the target's modem
+ *   08 00 'R' 'N' VALUE                     a setting, without a reply
+ *   81 SOURCE SOURCE RSSI OPTIONS DATA...   received packet */
 #define TRANSMIT 0x01U
 #define COMMAND 0x08U
 #define STATUS 0x89U
 #define PACKET 0x81U
 #define HEAD 5U
-#define ID_BASE 0x80U /* so that none is 0, which would ask for no answer */
+#define ID_BASE 0x80U /* so that an id is never 0, which would request no report */
 #define ID_MASK 0x7FU
 #define SILENT_TICKS (3U * OS_TICKS_PER_SEC) /* time-out for the modem's answer */
 
@@ -43,7 +44,7 @@ static struct {
     U16 target, source;      /* target of the next packet; source of the last received one */
     U8 handed, answered;     /* packets queued, and packets answered, modulo 256 */
     U8 wait;                 /* RN */
-    U32 handedAt;            /* when the last packet was handed over */
+    U32 handedAt;            /* time at which the last packet was handed over */
 } radio;
 
 static U32 get(U32 word) {
@@ -54,7 +55,7 @@ static void set(U32 word, U32 value) {
     FSMC_write(MAP_SLOT_MODEM, word, value);
 }
 
-/* Writes the key's words, the highest first. */
+/* Writes the words of the key, highest first. */
 static void setKey(const U8* key) {
     U32 i;
     for (i = 0; i < 16U; i += 4U)
@@ -99,7 +100,7 @@ Radio_Status xbeeInit(const XBeeInitTypeDef* conf, const Radio_Memory* memory) {
     for (i = 0; i < BUFFERS; ++i)
         radio.output[i] = BUFFER_FREE;
     setUpController(conf);
-    /* The controller always ends: with all rates tried, after about 40 s. */
+    /* The controller always finishes: after about 40 s, with all rates tried. */
     while (!(events & (MODEM_EVENT_CONFIGURED_MASK | MODEM_EVENT_CONFIGURE_FAILED_MASK))) {
         OSTimeDly(POLL_TICKS);
         events = get(MODEM_EVENT);
@@ -130,7 +131,7 @@ U32 Radio_waiting(void) {
     return BUSY;
 }
 
-/* Frees the buffers whose packets have left, oldest first. */
+/* Frees the buffers of packets that were sent, oldest first. */
 static void reclaim(void) {
     U32 busy = BUSY;
     while (radio.used > busy) {
@@ -140,7 +141,7 @@ static void reclaim(void) {
     }
 }
 
-/* Writes what a frame's contents have before the packet. Returns its size. */
+/* Writes the bytes of a frame's contents before the packet. Returns their size. */
 static U32 writeHead(U32 address) {
     U8 head[HEAD];
     head[0] = TRANSMIT;
@@ -153,8 +154,8 @@ static U32 writeHead(U32 address) {
     return HEAD;
 }
 
-/* Puts a packet, or the contents of a frame, into the output ring. Returns 0, or 1 where no buffer
- * is free. */
+/* Puts a packet, or the contents of a frame, into the output ring. Returns 0, or 1 if no buffer is
+ * free. */
 static int put(const U8* bytes, U32 size, int isPacket) {
     U32 buffer, address, head = 0;
     buffer = (radio.head + radio.used) % BUFFERS;
@@ -200,7 +201,7 @@ U16 Radio_source(void) {
 
 #endif
 
-/* Gives the answer for a packet; earlier ones without an answer are lost, since answers come in the
+/* Reports the result of a packet; earlier packets without one are lost, since results arrive in the
  * order of packets. */
 static void takeStatus(U8 id, int isDelivered) {
     U32 before = (U32)(id - radio.answered) & ID_MASK;

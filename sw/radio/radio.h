@@ -20,7 +20,7 @@
 
 #include "base.h"
 
-#ifndef RADIO_API /* 1: API mode can be chosen; 0: it is left out */
+#ifndef RADIO_API /* 1: API mode can be selected; 0: it is not compiled in */
 #define RADIO_API 1
 #endif
 
@@ -36,14 +36,14 @@ typedef enum Radio_Baud {
     XBEE_BD_57600,
     XBEE_BD_115200,
     RADIO_250000 = 0x3D090,     /* for API mode; 111,111 if the controller has no API mode */
-    RADIO_WIRE_115200 = 0x80007 /* a wire to a serial port instead of a modem, at 111,111 baud */
+    RADIO_WIRE_115200 = 0x80007 /* a cable to a serial port instead of a modem, at 111,111 baud */
 } Radio_Baud;
 
-/* Receives the modem's answer for a sent packet: it reached the target's modem, or it is lost. */
+/* Receives the modem's result for a sent packet: delivered to the target's modem, or lost. */
 typedef void (*Radio_OnAnswer)(int isDelivered);
 
-/* Settings of the modem. The paper gives the first three; a zero in the others means the default.
- */
+/* Settings of the modem. The first three are from the paper; zero in the others selects the
+ * default. */
 typedef struct XBeeInitTypeDef {
     Radio_Baud baud;
     U16 source;  /* MY, address of this modem */
@@ -110,7 +110,7 @@ void Radio_setTarget(U16 target);
 /* API mode: returns the source address of the packet that onPacket is called with. */
 U16 Radio_source(void);
 
-/* Returns the packets in the output ring that have not left. They wait where the modem does. */
+/* Returns the number of packets in the output ring that were not sent; they wait for the modem. */
 U32 Radio_waiting(void);
 
 /* Takes a packet; `bytes` are valid during the call only. */
@@ -121,7 +121,7 @@ typedef void (*Radio_OnPacket)(void* context, const U8* bytes, U32 size);
 U32 Radio_receive(Radio_OnPacket onPacket, void* context);
 
 /* Acknowledges the controller's interrupt. Returns the events that it reads and clears
- * (MODEM_EVENT_...); non-zero: there is work for the task. For interrupt routines. */
+ * (MODEM_EVENT_...); if non-zero, the task has work. For interrupt routines. */
 U32 Radio_interrupt(void);
 
 /* Returns the counters; they are not reset. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * receiver: brings an image into its slot. The slot's header is written once its sectors are empty,
- * so a header in flash tells which image the bytes behind it belong to, also after a loss of power.
+ * receiver: writes an image into its slot. The slot's header is written when its sectors are empty,
+ * so that a header in flash identifies the image after it, also after a loss of power.
  */
 #include "receiver.h"
 
@@ -32,7 +32,7 @@ static int holds(const Receiver* self, U32 at, const U8* data, U32 bytes) {
     return memcmp(chunk, data, bytes) == 0;
 }
 
-/* Programs the bytes that are not there yet, and reads them back. */
+/* Programs the bytes that are not in flash yet, and reads them back. */
 static int put(const Receiver* self, U32 at, const U8* data, U32 bytes) {
     const Slots_Port* port = self->port;
     U32 size;
@@ -47,14 +47,14 @@ static int put(const Receiver* self, U32 at, const U8* data, U32 bytes) {
     return 1;
 }
 
-/* Returns 1 if this header is in flash, and its image is neither ready nor given up. */
+/* Returns 1 if this header is in flash, and its image is neither ready nor abandoned. */
 static int hasBegun(const Receiver* self, const Slots_Header* header) {
     return holds(self, slotAt(self), (const U8*)header, (U32)sizeof *header) &&
            isErased(self, slotAt(self) + SLOTS_READY, SLOTS_IMAGE_AT - SLOTS_READY) &&
            isErased(self, slotAt(self) + self->port->layout->readyAt, 4);
 }
 
-/* Goes on with the image whose header is in flash. Its last piece may be there in part; it comes
+/* Continues the image with its header in flash. Its last piece may be partly written; it is sent
  * again. */
 static void takeUp(Receiver* self) {
     const U32 at = slotAt(self) + SLOTS_IMAGE_AT;
@@ -70,7 +70,7 @@ static void end(Receiver* self, Receiver_Reason reason) {
     self->state = RECEIVER_IDLE;
 }
 
-/* Gives the image up: it must be sent anew, to an erased slot. */
+/* Abandons the image: it must be sent again, to an erased slot. */
 static void spoil(Receiver* self, Receiver_Reason reason) {
     static const U8 never[4] = {0, 0, 0, 0};
     (void)self->port->program(self->port->context, slotAt(self) + self->port->layout->readyAt,
@@ -170,7 +170,7 @@ Receiver_Reason Receiver_confirm(Receiver* self) {
     return RECEIVER_OK;
 }
 
-/* Returns 1 if what runs is signed with a key of this list, so that it starts again. */
+/* Returns 1 if the running image is signed with a key of this list, so that it starts again. */
 static int staysSigned(const Receiver* self, const Slots_Header* list) {
     Slots_Header header;
     if (self->port->layout->hasGolden && self->running == 0U)
@@ -179,8 +179,8 @@ static int staysSigned(const Receiver* self, const Slots_Header* list) {
     return Slots_isSigned(self->port, list, &header);
 }
 
-/* Adds the list of keys in the first place that is empty: a loss of power may have left a part of
- * another in one before. */
+/* Adds the list of keys at the first empty place: after a loss of power, an earlier place may
+ * contain part of another list. */
 static Receiver_Reason addKeys(const Receiver* self) {
     static const U32 complete = SLOTS_TRUE;
     const Slots_Header* list = &self->header;
@@ -209,8 +209,8 @@ static void prepare(Receiver* self) {
         self->state = RECEIVER_ERASING;
 }
 
-/* Erases the first sector that the image needs and that is not empty; where all are empty, writes
- * the header. The header's sector comes first, so a half-erased image has no header. */
+/* Erases the first non-empty sector that the image needs; if all are empty, writes the header. The
+ * header's sector is erased first, so that a half-erased image has no header. */
 static void erase(Receiver* self) {
     const Slots_Port* port = self->port;
     const U32 at = slotAt(self), size = port->layout->sectorBytes;

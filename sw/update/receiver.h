@@ -13,7 +13,7 @@ typedef enum Receiver_State {
     RECEIVER_PREPARING, /* checks the signature */
     RECEIVER_ERASING,
     RECEIVER_RECEIVING,
-    RECEIVER_CHECKING, /* the whole image */
+    RECEIVER_CHECKING, /* of the complete image */
     RECEIVER_READY     /* starts at the next reset */
 } Receiver_State;
 
@@ -26,38 +26,40 @@ typedef enum Receiver_Reason {
     RECEIVER_BUSY,       /* preparing, checking, or ready */
     RECEIVER_ON_TRIAL,   /* the running image must be confirmed first */
     RECEIVER_NOT_BEGUN,  /* no update was begun, or bytes are missing */
-    RECEIVER_MISPLACED,  /* a piece behind a gap, unaligned, or beyond the end */
+    RECEIVER_MISPLACED,  /* a piece after a gap, unaligned, or beyond the end */
     RECEIVER_FLASH,      /* the flash could not be programmed */
     RECEIVER_WENT_BACK,  /* the image was tried and not confirmed */
     RECEIVER_REFUSED,    /* the FPGA did not take the bitstream */
-    RECEIVER_NEEDS_OTHER /* the counterpart that it needs is not confirmed; of keys: the list before
-                          * it is missing, or what runs is signed with none of them */
+    RECEIVER_NEEDS_OTHER /* the required counterpart is not confirmed; for keys: the previous list
+                          * is missing, or the running image is signed with none of them */
 } Receiver_Reason;
 
 typedef struct Receiver {
     const Slots_Port* port;
-    const struct Receiver* counterpart; /* of the other kind of image, set by the owner; or 0 */
+    const struct Receiver* counterpart; /* receiver of the other kind of image, set by the owner; or
+                                         * 0 */
     U32 product;
     U32 running, slot;   /* the slot that runs, and the slot for new images */
-    U32 version;         /* that runs */
-    U32 confirmed;       /* the highest confirmed version */
+    U32 version;         /* version that runs */
+    U32 confirmed;       /* highest confirmed version */
     int isOnTrial;       /* the running image is not confirmed */
-    Slots_Header header; /* of the update under way */
+    Slots_Header header; /* header of the current update */
     volatile Receiver_State state;
     Receiver_Reason reason; /* why the last update ended */
     U32 received;           /* bytes of the image, from its beginning */
 } Receiver;
 
-/* Finds what an earlier start has left. `running`: the slot that runs, of firmware or bitstream. */
+/* Restores the state that an earlier start left. `running`: the slot that runs, of firmware or
+ * bitstream. */
 void Receiver_init(Receiver* self, const Slots_Port* port, U32 product, U32 running);
-/* Begins or continues the image of this header; `received` tells how much is there already. A list
- * of keys has no image: it counts as soon as the state is idle again, without a reason. */
+/* Begins or continues the image of this header; `received` is the number of bytes already present.
+ * A list of keys has no image: it is valid as soon as the state is idle again, without a reason. */
 Receiver_Reason Receiver_begin(Receiver* self, const Slots_Header* header);
-/* Writes a piece of the image: 4-byte aligned in place and size, without a gap before it. */
+/* Writes a piece of the image, aligned to 4 bytes in offset and size, without a gap before it. */
 Receiver_Reason Receiver_write(Receiver* self, U32 offset, const U8* data, U32 bytes);
-/* Requests the check of the whole image. */
+/* Requests the check of the complete image. */
 Receiver_Reason Receiver_finish(Receiver* self);
-/* Confirms the running image: from now on a failed update goes back to it. */
+/* Confirms the running image: a failed update then reverts to it. */
 Receiver_Reason Receiver_confirm(Receiver* self);
 /* Does a step: one signature, one sector, one digest. Returns 1 if there is more to do. */
 int Receiver_work(Receiver* self);

@@ -9,5 +9,5 @@
 /* Returns 1 if the owner of the public key (32 bytes) has signed the message (signature: 64 bytes).
  * Takes 3.5 KB of stack. */
 int Signature_isGood(const U8* signature, const U8* message, U32 bytes, const U8* key);
-/* Writes the digest, 64 bytes, of the bytes that `read` reads from an offset on. */
+/* Writes the digest, 64 bytes, of `bytes` bytes that `read` reads at `offset`. */
 void Signature_digest(Slots_Read read, void* context, U32 offset, U32 bytes, U8* digest);

@@ -88,8 +88,8 @@ static int isSound(const Slots_Port* port, U32 slot, U32 product) {
            Slots_isSigned(port, Slots_keys(port), &header) && Slots_isWhole(port, slot, &header);
 }
 
-/* Returns the highest version of the log. An entry is a version and its complement; any other was
- * cut by a loss of power. `end` becomes the offset of the first empty entry. */
+/* Returns the highest version in the log. An entry is a version and its complement; any other entry
+ * was cut by a loss of power. `end` is set to the offset of the first empty entry. */
 static U32 readLog(const Slots_Port* port, U32* end) {
     U32 highest = 0, entry[2];
     for (*end = 0; *end < SLOTS_LOG_BYTES; *end += (U32)sizeof entry) {

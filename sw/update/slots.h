@@ -13,9 +13,9 @@
 #define SLOTS_COUNT 2U
 #define SLOTS_NONE SLOTS_COUNT
 #define SLOTS_KEY_BYTES 32U
-#define SLOTS_KEYS_AT 0x8000U /* in the processor's flash, sector 2: lists of keys */
+#define SLOTS_KEYS_AT 0x8000U /* offset of the lists of keys in the processor's flash, sector 2 */
 #define SLOTS_LISTS 64U
-#define SLOTS_IMAGE_AT 0x200U /* in a slot; Cortex-M3's vectors are aligned to 512 bytes */
+#define SLOTS_IMAGE_AT 0x200U /* in a slot: Cortex-M3 vectors are aligned to 512 bytes */
 
 #define SLOTS_MAGIC 0x1CE50C05U
 #define SLOTS_DIGEST_BYTES 64U    /* SHA-512 */
@@ -26,16 +26,16 @@ typedef struct Slots_Header {
     U32 magic;
     U32 product;  /* the kind of vehicle, or SLOTS_KEYS */
     U32 version;  /* 1..0xFFFFFFFE; of lists: counted up by one */
-    U32 bytes;    /* of the image, a multiple of 4 */
+    U32 bytes;    /* size of the image, bytes, a multiple of 4 */
     U32 base;     /* offset in flash of the image's first byte */
     U32 board[2]; /* vendor, and board with its revision */
     U32 needs;    /* version that must run of the counterpart: bitstream or firmware; 0: any */
-    U8 digest[SLOTS_DIGEST_BYTES]; /* of a list: two public keys in its place */
+    U8 digest[SLOTS_DIGEST_BYTES]; /* for a list: two public keys instead */
     U8 signature[SLOTS_SIGNATURE_BYTES];
 } Slots_Header;
 
-/* A list of the two public keys whose owners may sign images and the next list. Lists are only ever
- * added, behind the one that a programmer has written; the last complete one counts. */
+/* A list of the two public keys whose owners may sign images and the next list. Lists are only
+ * added, after the one written by a programmer; the last complete one is valid. */
 #define SLOTS_KEYS 0x5359454BU /* "KEYS" */
 typedef struct Slots_Keys {
     Slots_Header list;
@@ -47,7 +47,8 @@ typedef struct Slots_Keys {
 
 /* State words, by their offset in a slot. */
 typedef enum Slots_State {
-    SLOTS_READY = 0x1C0,     /* the whole image is there, and was checked (or Slots_Layout.ready) */
+    SLOTS_READY = 0x1C0,     /* the complete image is present and was checked (or
+                              * Slots_Layout.ready) */
     SLOTS_TRIED = 0x1D0,     /* it was started once */
     SLOTS_CONFIRMED = 0x1E0, /* the image works */
     SLOTS_REFUSED = 0x1F0    /* the FPGA has not taken it */
@@ -57,17 +58,17 @@ typedef enum Slots_State {
 
 /* The layout of a flash. */
 typedef struct Slots_Layout {
-    U32 at, bytes;      /* of slot 0; slot 1 is behind it */
+    U32 at, bytes;      /* slot 0; slot 1 follows it */
     U32 sectorBytes;    /* size of an erase */
-    U32 readyAt, ready; /* READY's place in a slot, and the value that makes it true */
+    U32 readyAt, ready; /* offset of READY in a slot, and the value that makes it true */
     U32 logAt;          /* log of erased confirmed versions */
     U32 hasGolden;      /* slot 0 is never written; else slots take turns */
 } Slots_Layout;
 
 /* The processor's flash: sectors 5..7 and 8..10, and the log in sector 3. */
 extern const Slots_Layout slots_firmware;
-/* The FPGA's: slot 0 has the golden bitstream, which is never written, slot 1 the one that is tried
- * first. READY is its sync word, without which the FPGA ignores it. */
+/* Layout for the FPGA: slot 0 contains the golden bitstream, which is never written, slot 1 the one
+ * that is tried first. READY is its sync word, without which the FPGA ignores it. */
 extern const Slots_Layout slots_fpga;
 #define SLOTS_SYNC_AT 16U /* in a bitstream */
 #define SLOTS_LOG_BYTES 0x1000U
@@ -81,13 +82,12 @@ typedef struct Slots_Port {
     void* context;
     Slots_Read read;
     int (*erase)(void* context, U32 offset); /* the sector that begins there */
-    /* Programs bytes, in words and within 256 that begin at a multiple of that; only clears bits.
-     */
+    /* Programs bytes, in words, within 256 bytes aligned to 256; only clears bits. */
     int (*program)(void* context, U32 offset, const U8* bytes, U32 count);
     int (*isSigned)(const U8* signature, const U8* message, U32 bytes, const U8* key);
     void (*digest)(Slots_Read read, void* context, U32 offset, U32 bytes, U8* digest);
     const Slots_Keys* keys; /* the lists of keys, with the vehicle's vendor and board */
-    const U8* mapped;       /* the flash, if it is the processor's own memory; else 0 */
+    const U8* mapped;       /* the flash, if it is memory-mapped; else 0 */
 } Slots_Port;
 
 /* Returns the slot's offset in flash. */
@@ -95,7 +95,7 @@ U32 Slots_at(const Slots_Layout* layout, U32 slot);
 /* Reads the bytes at the slot's beginning, valid or not. */
 void Slots_header(const Slots_Port* port, U32 slot, Slots_Header* header);
 int Slots_is(const Slots_Port* port, U32 slot, Slots_State state);
-/* Sets a state. Returns 0 where the flash does not take it. */
+/* Sets a state. Returns 0 if the flash could not be programmed. */
 int Slots_set(const Slots_Port* port, U32 slot, Slots_State state);
 /* Returns 1 if the header could be one of an image for this slot, product, vendor and board. */
 int Slots_fits(const Slots_Port* port, const Slots_Header* header, U32 slot, U32 product);
@@ -105,20 +105,20 @@ const Slots_Header* Slots_keys(const Slots_Port* port);
 int Slots_isSigned(const Slots_Port* port, const Slots_Header* keys, const Slots_Header* header);
 /* Returns 1 if the image in the slot has the header's digest. */
 int Slots_isWhole(const Slots_Port* port, U32 slot, const Slots_Header* header);
-/* Returns the highest confirmed version, 0 where there is none. */
+/* Returns the highest confirmed version; 0 if there is none. */
 U32 Slots_confirmed(const Slots_Port* port, U32 product);
-/* Clears READY of a slot before it is erased, and logs its version if it was the highest that is
- * confirmed. So a half-erased image never starts, and an older one is never taken. */
+/* Clears READY of a slot before it is erased, and logs its version if it was the highest confirmed
+ * one. Therefore a half-erased image never starts, and an older one is never accepted. */
 int Slots_retire(const Slots_Port* port, U32 slot);
 
-/* Returns the slot to run, SLOTS_NONE where there is none: with `mayTry` a new image, once; else
- * the newest confirmed one; else any sound one. Each is signed and whole. */
+/* Returns the slot to run; SLOTS_NONE if there is none: with `mayTry` a new image, once; else the
+ * newest confirmed one; else any valid one. Each is signed and complete. */
 U32 Slots_choose(const Slots_Port* port, U32 product, int mayTry);
 
-/* Returns 1 if the bitstream that the FPGA would load is signed and whole. The golden one, which is
- * never written, is signed with a key of the first list. */
+/* Returns 1 if the bitstream that the FPGA would load is signed and complete. The golden one, which
+ * is never written, is signed with a key of the first list. */
 int Slots_isLoadable(const Slots_Port* port, U32 product);
 /* Checks the FPGA's flash at a start, and after each failed load of the FPGA. A new bitstream is
- * tried once. One that was tried and not confirmed is retired, and so is one that the FPGA has
- * refused: it hangs, or runs the golden one. Returns 1 where the FPGA must load again. */
+ * tried once. A bitstream is retired if it was tried and not confirmed, or if the FPGA has refused
+ * it: it hangs, or runs the golden one. Returns 1 if the FPGA must load again. */
 int Slots_settleFpga(const Slots_Port* port, int isRefused);

@@ -13,7 +13,7 @@
 #define BUSY 1U
 #define PAUSES 10000U /* far longer than an erase takes */
 
-/* Begins a transaction with an instruction and, where there is one, an address. */
+/* Begins a transaction with an instruction and, if `hasOffset`, an address. */
 static const SpiNor_Bus* begin(void* context, U32 instruction, U32 offset, int hasOffset) {
     const SpiNor_Bus* bus = (const SpiNor_Bus*)context;
     int shift;

@@ -8,10 +8,10 @@
 #include "base.h"
 
 typedef struct SpiNor_Bus {
-    /* Drives chip select and the bus; 0: leaves both to others. */
+    /* Drives chip select and the bus; 0: releases both. */
     void (*select)(int isLow);
     U8 (*transfer)(U8 byte);
-    void (*pause)(void); /* lets others work for a while */
+    void (*pause)(void); /* lets other tasks work for a while */
 } SpiNor_Bus;
 
 /* Returns 1 if a flash answers. */

@@ -12,14 +12,14 @@
  * bitstream. */
 void Firmware_useSlots(void);
 
-/* Returns at once where nobody asks. Else says whether read protection is off, and listens for ten
- * seconds for a line: "key" and 32 hexadecimal digits, or "open", and the vehicle's address, four
- * (UAV_provide), or "ground" or "fellow", its address and, unless the vehicle is open, its key
- * (UAV_providePeer); where there is a key, a present one's digits behind it, or PC2 wired to
- * ground. "protect" sets read protection. */
+/* Returns at once without a break on the port. Otherwise reports whether read protection is off,
+ * and waits ten seconds for a line: "key" and 32 hexadecimal digits, or "open", and the vehicle's
+ * address as four digits (UAV_provide); or "ground" or "fellow", its address and, unless the
+ * vehicle is open, its key (UAV_providePeer). If a key is set, append a present one's digits, or
+ * connect PC2 to ground. "protect" sets read protection. */
 void Provision_listen(void);
 
-/* The random number generator, and the first words of the backup SRAM; the context is not used. */
+/* Random number generator, and the first words of the backup SRAM; the context is not used. */
 extern const UAV_Board secrets_board;
 /* Starts both; needs the clocks of Board_start. */
 void Secrets_start(void);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * provision: polls the port, since no task runs yet. SysTick tells that 10 ms have passed.
- */
+ * provision: gives the vehicle its key over the serial port. Polls the port, since no task runs
+ * yet; SysTick marks every 10 ms. */
 #include "ascon.h"
 #include "firmware.h"
 #include "stm32f2.h"
@@ -11,7 +11,7 @@
 #define PORT 0U
 #define TRANSMIT 9U
 #define RECEIVE 10U
-#define LIMIT 1000U /* of 10 ms */
+#define LIMIT 1000U /* time-out, units of 10 ms */
 #define LINE_BYTES 80U
 #define JUMPER_PORT 2U /* PC2: wired to ground, it proves that the vehicle is open */
 #define JUMPER 2U
@@ -20,7 +20,7 @@ static int isBreak(void) {
     return !(GPIO_IDR(PORT) >> RECEIVE & 1UL);
 }
 
-/* Returns 1 once each 10 ms. */
+/* Returns 1 once every 10 ms. */
 static U32 tick(void) {
     return SYST_CSR >> 16 & 1UL;
 }
@@ -35,7 +35,7 @@ static void say(const char* text) {
         ;
 }
 
-/* Reads a line. Returns 0 where none came. */
+/* Reads a line. Returns 0 after a time-out. */
 static int readLine(char* line) {
     U32 ticks = 0, size = 0;
     while (ticks < LIMIT) {
@@ -59,7 +59,7 @@ static int digitOf(char c) {
     return found ? (int)(found - digits) : -1;
 }
 
-/* Reads two digits a byte. Returns their end, 0 where they are none. */
+/* Reads two digits per byte. Returns their end; 0 if they are not digits. */
 static const char* readBytes(const char* text, U8* bytes, U32 count) {
     for (; text && count; --count, text += 2) {
         const int high = digitOf(text[0]), low = high < 0 ? -1 : digitOf(text[1]);
@@ -74,7 +74,8 @@ static int isProtected(void) {
     return (FLASH_OPTCR & FLASH_OPTCR_RDP) != FLASH_OPTCR_RDP_NONE;
 }
 
-/* Sets read protection level 1, from the next power-on on. Taking it back erases flash and keys. */
+/* Sets read protection level 1, effective at the next power-on. Removing it erases flash and
+ * keys. */
 static void protect(void) {
     if (isProtected())
         return;
@@ -140,7 +141,7 @@ void Provision_listen(void) {
     char line[LINE_BYTES];
     U32 ticks = 0;
     RCC_AHB1ENR |= 1UL << PORT | 1UL << JUMPER_PORT;
-    GPIO_PUPDR(PORT) |= 1UL << 2U * RECEIVE; /* pulled up where nothing is wired */
+    GPIO_PUPDR(PORT) |= 1UL << 2U * RECEIVE; /* pull-up for an unconnected pin */
     if (!isBreak())
         return;
     SYST_RVR = 10UL * SYST_MS - 1UL;

@@ -33,7 +33,7 @@ static U32 load(void* context, U32 word) {
 static void store(void* context, U32 word, U32 value) {
     (void)context;
     BKPSRAM(word) = value;
-    __asm__ volatile("dsb"); /* one write after the other, since power may fail */
+    __asm__ volatile("dsb"); /* in order, since power may fail */
 }
 
 const UAV_Board secrets_board = {random, load, store};

@@ -11,7 +11,7 @@
 #define UAV_RECEIVE_RING 0x00001000U
 #define UAV_FRAME 0x00100000U /* the camera's picture */
 #define UAV_FRAME_HEADER \
-    0x000FFF80U /* its width and height, two 32-bit words, written by the camera */
+    0x000FFF80U /* width and height of the frame, two 32-bit words, written by the camera */
 
 /* The modem's AES key, 16 bytes that stay valid; 0, the initial value: no encryption. Read when the
  * tasks start. The board gives the link's keys (uav_keys.h). */
@@ -20,17 +20,17 @@ extern const U8* uav_modemKey;
 /* The modem's present guard time in ms; 0, the initial value: the factory's 1000. */
 extern U16 uav_guardMs;
 
-/* 1: a wire to the ground's serial port is there in place of the modems; 0, the initial value: a
- * modem. Read when the tasks start. */
+/* 1: a cable to the ground's serial port replaces the modems; 0, the initial value: a modem. Read
+ * when the tasks start. */
 extern U8 uav_wire;
 
-/* 1: the modem is used in transparent mode; 0, the initial value: in API mode, where it reports of
- * each packet whether the ground's modem has it. Read when the tasks start. */
+/* 1: transparent mode of the modem; 0, the initial value: API mode, with a report for each packet
+ * whether the ground's modem has received it. Read when the tasks start. */
 extern U8 uav_transparent;
 
 typedef enum UAV_Status {
     UAV_OK,
-    UAV_NO_FPGA, /* the FPGA does not answer */
+    UAV_NO_FPGA, /* the FPGA does not respond */
     UAV_NO_KEY   /* the vehicle was neither given a key nor opened */
 } UAV_Status;
 
@@ -38,6 +38,6 @@ typedef enum UAV_Status {
  * are tasks. */
 UAV_Status UAV_start(const FSMC_Port* port, void* context);
 
-/* Handles the FPGA's interrupt, which is a level. */
+/* Handles the FPGA's interrupt, which is level-sensitive. */
 void UAV_irqHandler(void);
 int UAV_irqEnabled(void);

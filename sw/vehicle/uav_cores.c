@@ -15,15 +15,15 @@ typedef char UAV_RoomForEveryServant[ICE_SERVANTS >= UAV_SERVANTS + MAP_CORES ? 
 
 static OS_EVENT *waiter, *work, *frameDone; /* wake the waiting task, coresTask, UAV_waitFrame */
 static U32 framesDone, cornersFound;
-/* Accesses without an answer: to no register, or to a core that hung until the bridge gave up.
- * Written by the interrupt only; a debugger reads the place of the last one. */
+/* Accesses without a response: to no register, or to a core that hung until the bridge timed out.
+ * Written only by the interrupt; a debugger can read the place of the last one. */
 static U32 busErrors, busErrorPlace;
 static U8 isStarted[MAP_CORES];
 static Hw_Contract contracts[MAP_CONTRACTS];
 static Hw_Chip chip;
 
-/* Waits for any operation's event. Only the task that serves calls waits here; it checks whether
- * the event was its own. */
+/* Waits for the event of any operation. Only the task that serves calls waits here; it checks
+ * whether the event belongs to its operation. */
 static int waitEvent(void* context, U32 operation, U32 ms) {
     INT8U error;
     (void)context;

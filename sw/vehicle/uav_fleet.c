@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_fleet: the peers besides the first ground: an observer, another vehicle, and calls to all
- * vehicles. They need API mode, which tells packets apart by their source.
+ * uav_fleet: the peers other than the first ground station: an observer, another vehicle, and calls
+ * to all vehicles. They need API mode, which identifies the source of each packet.
  *
- * An observer calls by itself and is not sought; another vehicle only while this one calls it.
+ * An observer calls by itself and is not dialled; another vehicle is dialled only while this one
+ * calls it.
  */
 #include "link_broadcast.h"
 #include "uav.h"
@@ -12,14 +13,14 @@
 
 #include <string.h>
 
-/* The smaller links: bytes of the queue and of a message that comes, fragments in flight. */
+/* Sizes of the smaller links: bytes of the queue and of a received message, fragments in flight. */
 #define OBSERVER_SENDS 8192U
 #define OBSERVER_TAKES 1024U
 #define OBSERVER_WINDOW 16U
 #define VEHICLE_SENDS 1024U
 #define VEHICLE_TAKES 512U
 #define VEHICLE_WINDOW 4U
-#define VEHICLE_MS 3000 /* for which a report waits for the other vehicle's answer */
+#define VEHICLE_MS 3000 /* time for which a report waits for the other vehicle's reply */
 
 static Link observerLink, vehicleLink;
 static LINK_BUFFERS(OBSERVER_SENDS, OBSERVER_TAKES, OBSERVER_WINDOW) observerBuffers;
@@ -32,7 +33,7 @@ static const Link_Config vehicleConfig = {&uav_linkPort, &uav_peers[UAV_VEHICLE]
 static U8 toAll[LINK_MAX_FRAME]; /* a call to all vehicles, and its bytes while it waits; else 0 */
 static U8 toAllSize;
 
-/* Adds a peer, if the vehicle has it. Returns 1 if it does. */
+/* Adds a peer, if the vehicle was given one. Returns 1 if so. */
 static int addPeer(int role, Link* link, const Link_Config* config) {
     UAV_Peer* peer = &uav_peers[role];
     const U32 address = UAV_addressOf(role);

@@ -13,7 +13,7 @@
 
 static int nextSlot[UAV_PEERS]; /* slot of the next key; -1: there is one key */
 
-/* Returns the place of a slot's first word. */
+/* Returns the index of a slot's first word. */
 static U32 slotAt(int role, int slot) {
     return (U32)role * UAV_PEER_WORDS + (U32)slot * SLOT_WORDS;
 }
@@ -130,7 +130,7 @@ int UAV_setNextKey(int role, Link* link, const U8* key) {
     Ascon_wipe(present, sizeof present);
     if (isSame)
         return 1;
-    /* The state comes first: if both slots have a key, the state selects the next one. */
+    /* The state is written first: if both slots have a key, the state selects the next one. */
     UAV_writeKey(role, slot, 0);
     UAV_store(UAV_stateAt(role), STATE_NEXT + (U32)slot);
     UAV_writeKey(role, slot, key);

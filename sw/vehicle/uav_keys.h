@@ -10,11 +10,11 @@
 #include "link.h"
 #include "uav_peers.h"
 
-#define UAV_STATE_OPEN 0x4F50454EU /* the first ground's state: no key, and anyone may call */
+#define UAV_STATE_OPEN 0x4F50454EU /* the first ground's state: no key, any ground may call */
 #define UAV_PEER_WORDS ((U32)(sizeof(Backup_Other) / sizeof(U32)))
 
-/* Provides the vehicle, in its factory, with its address and this key alone. 0: no key; anyone may
- * call. Returns 0 in firmware without keys, for a key. */
+/* Stores the vehicle's address and this key as the only one, in the factory. 0: no key; any ground
+ * may call. Returns 0 for a key in firmware without keys. */
 int UAV_provide(U32 address, const U8* key);
 
 /* Reads the key of a slot. Returns 0 if the slot is empty. */
@@ -23,7 +23,8 @@ int UAV_readKey(int role, int slot, U8* key);
 /* Writes a slot; without a key, empties it. */
 void UAV_writeKey(int role, int slot, const U8* key);
 
-/* Return the place of a role's state word; of the inverted address of any but the first ground. */
+/* Return the index of a role's state word, and of the inverted address of any role but the first
+ * ground. */
 U32 UAV_stateAt(int role);
 U32 UAV_addressAt(int role);
 
@@ -47,9 +48,8 @@ int UAV_hasGroundsPart(void);
 /* Gives a peer's link the keys of both slots; returns how many there are. */
 int UAV_giveKeys(int role, Link* link);
 
-/* Puts a peer's next key into the slot that is not in use. Returns 0 if the session has no key,
- * since everyone on the air would read the new one. The present key is accepted and changes
- * nothing. */
+/* Stores a peer's next key in the slot that is not in use. Returns 0 if the session has no key,
+ * since the new one could be read on the air. The present key is accepted and changes nothing. */
 int UAV_setNextKey(int role, Link* link, const U8* key);
 
 /* Removes the old key once a session is up under the next one, which the peer then has. Returns 1

@@ -10,9 +10,9 @@
 
 static U8 areUp; /* peers with a session, one bit each */
 
-/* Hands a packet over; in transparent mode, which serves the first ground only, while at most one
- * waits for the line. So the link layer knows how fast the modem is, and chooses late what goes
- * next. */
+/* Hands a packet over; in transparent mode, which serves the first ground only, at most one packet
+ * waits for the line. The link layer then knows how fast the modem is, and decides late which
+ * packet is next. */
 static int transmit(void* peer, const U8* frame, U32 size) {
     U32 wait, i;
     if (!uav_isAnswered)

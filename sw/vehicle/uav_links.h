@@ -25,7 +25,7 @@ extern XBeeATEndpoint uav_endpoint;
 extern const Link_Port uav_linkPort; /* its context is the UAV_Peer */
 extern U32 uav_now;                  /* time of the radio task's current turn, us */
 extern U8 uav_isAnswered;            /* the radio answers for each packet */
-extern U8 uav_pollsAll;              /* not only the first ground's link must be polled */
+extern U8 uav_pollsAll;              /* links other than the first ground's must be polled */
 
 /* ---- uav_state.c ---- */
 void UAV_initState(void);
@@ -35,9 +35,9 @@ void UAV_unlockLink(void* context);
 /* ---- uav_links.c ---- */
 /* Forgets all sessions. */
 void UAV_resetLinks(void);
-/* Sets the links' limits to those of the modem. */
+/* Sets the limits of the links to the modem's. */
 void UAV_limitLinks(void);
-/* Gives a packet to the link of the peer that it is from; other packets are dropped. */
+/* Passes a packet to the link of its source; other packets are dropped. */
 void UAV_onPacketOf(void* context, const U8* bytes, U32 size);
 /* Returns 1 if a peer has a session. */
 int UAV_isUp(void);

@@ -7,7 +7,7 @@
 
 #include "backup.h"
 
-/* The board keeps secrets and draws random numbers. `context` is passed back unchanged. */
+/* Functions of the board for secrets and random numbers. `context` is passed back unchanged. */
 typedef struct UAV_Board {
     /* Returns 32 bits that cannot be guessed. */
     U32 (*random)(void* context);
@@ -28,6 +28,6 @@ void UAV_store(U32 word, U32 value);
 /* Returns the vehicle's address: its modem's MY, to which its keys are bound. */
 U32 UAV_address(void);
 
-/* Return and set whether the vehicle flies; a restart in flight does not change it. */
+/* Return and set whether the vehicle flies; kept through a restart in flight. */
 int UAV_isFlying(void);
 void UAV_setFlying(int isFlying);

@@ -10,7 +10,7 @@
 #include "uav_links.h"
 #include "uav_memory.h"
 
-#define DOWN_LIMIT 15000000U /* us without a link: the modem may have lost its settings then */
+#define DOWN_LIMIT 15000000U /* us without a link: the modem may have lost its settings */
 
 U16 uav_guardMs;
 U8 uav_wire;
@@ -62,7 +62,7 @@ static void setUpModem(void) {
     xbeeConf.source = (U16)UAV_address();
     xbeeConf.key = uav_modemKey;
     xbeeConf.guardMs = uav_guardMs;
-    /* The vehicle flies on without its modem, and tries again. */
+    /* The vehicle continues to fly without its modem, and retries. */
     while (xbeeInit(&xbeeConf, &rings) != RADIO_OK)
         OSTimeDly(OS_TICKS_PER_SEC);
     uav_isAnswered = (U8)Radio_answers();
@@ -70,7 +70,7 @@ static void setUpModem(void) {
     UAV_limitLinks();
 }
 
-/* Does what is due on all links, of which each comes first in turn. */
+/* Does the work that is due on all links; each link is first in turn. */
 static U32 pollAll(void) {
     U32 wait = 0xFFFFFFFFU, due;
     int left, role = turn;

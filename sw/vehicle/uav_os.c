@@ -5,8 +5,8 @@
 #include "uav_links.h"
 
 static OS_EVENT* endpointEvent;
-static OS_EVENT* callDone[ICE_CALLS + 1]; /* the last is for tasks that want to receive */
-static OS_EVENT* iceMutex[2];             /* by ICE_LOCK_STATE and ICE_LOCK_SEND */
+static OS_EVENT* callDone[ICE_CALLS + 1]; /* the last one is for tasks that want to receive */
+static OS_EVENT* iceMutex[2];             /* index: ICE_LOCK_STATE and ICE_LOCK_SEND */
 
 static void kick(void* context) {
     (void)context;

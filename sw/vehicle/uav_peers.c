@@ -13,7 +13,7 @@
 
 int UAV_providePeer(int role, U32 address, const U8* key) {
     UAV_store(UAV_addressAt(role), 0);
-    if (role != UAV_GROUP) /* or a recorded call would be new again */
+    if (role != UAV_GROUP) /* otherwise a recorded call would be accepted again */
         UAV_store(UAV_stateAt(role), 0);
     UAV_writeKey(role, 1, 0);
     UAV_writeKey(role, 0, key);
@@ -21,7 +21,7 @@ int UAV_providePeer(int role, U32 address, const U8* key) {
     return 1;
 }
 
-/* Reads the group's key: zeros, as of any slot without a key, where the vehicle is open. */
+/* Reads the group's key; zeros if the vehicle is open, as for any slot without a key. */
 static int readGroupKey(U8* key) {
     return UAV_readKey(UAV_GROUP, 0, key) || UAV_isOpen();
 }

@@ -19,17 +19,16 @@ typedef enum UAV_Role {
 
 #define UAV_GROUND_ADDRESS 0x0000U
 #define UAV_EVERYBODY 0xFFFFU   /* the group's address */
-#define UAV_NO_PEER 0xFFFFFFFFU /* in place of an address */
+#define UAV_NO_PEER 0xFFFFFFFFU /* instead of an address */
 
-/* Provides the vehicle with an observer, by its modem's address, and with that one's key; or with
- * another vehicle, which has the same key and this one's address; or with the key of its group.
- * 0: no key, for an open vehicle. UAV_NO_PEER: it has none, as after UAV_provide. Returns 0 in
- * firmware without peers. */
+/* Stores an observer's modem address and key in the vehicle; or another vehicle, with the common
+ * key and its address; or the key of the group. 0: no key, for an open vehicle. UAV_NO_PEER: the
+ * vehicle has none, as after UAV_provide. Returns 0 in firmware without peers. */
 int UAV_providePeer(int role, U32 address, const U8* key);
 
 /* Returns 1 if the vehicle takes calls to all vehicles: it has the group's key, or is open. */
 int UAV_isOfGroup(void);
 
-/* Decrypts such a call, unless this vehicle has seen it (Link_openBroadcast), and keeps its
- * number. Returns the message's size; 0: it is not to be carried out. */
+/* Decrypts such a call, unless this vehicle has seen it (Link_openBroadcast), and stores its
+ * number. Returns the message's size; 0 if it must not be executed. */
 U32 UAV_openBroadcast(U8* packet, U32 size);

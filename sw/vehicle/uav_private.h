@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_private: what the application's files share.
+ * uav_private: declarations shared by the files of the application.
  */
 #pragma once
 
@@ -27,7 +27,7 @@ extern OS_EVENT* uav_radioWork; /* the radio task has something to do */
 /* Microseconds since the start, from the OS's ticks. */
 U32 UAV_nowUs(void);
 
-/* Radio task: sets the modem up, runs the link, and sets it up again if the link stays down. */
+/* Radio task: sets up the modem, runs the link, and repeats the set-up if the link stays down. */
 int UAV_initRadio(void); /* 0: the vehicle has no key, and was not opened */
 int UAV_peerOf(const Ice_Current* current);
 int UAV_nextKey(int ground, const U8* key); /* UAV_setNextKey for a servant */

@@ -17,7 +17,7 @@
 #define PIECE_BYTES 4096
 #define DICTIONARY_BYTES 65535U
 #define TRIAL_S 60U  /* after this time an unconfirmed firmware is replaced */
-#define RESTART_S 1U /* gives the answers under way time to leave */
+#define RESTART_S 1U /* gives pending replies time to leave */
 
 UAV_Update uav_update[UAV_UPDATABLES];
 void (*uav_restart)(void);
@@ -67,8 +67,8 @@ Ice_Status Update_Firmware_begin(Update_FirmwarePtr self, const Update_Header* s
     return answer(Receiver_begin(receiverOf(self), &header), result);
 }
 
-/* Returns the piece's bytes, 0 where they are not as announced. A compressed piece has the image's
- * part in flash as its dictionary, which the processor reads as memory, so a loss of power loses
+/* Returns the piece's bytes; 0 if they are not as announced. The dictionary of a compressed piece
+ * is the part of the image in flash, which the processor reads as memory, so a loss of power loses
  * nothing. */
 static const U8* unpack(const Receiver* receiver, U32 offset, Ice_Int size,
                         const Update_Piece* bytes) {
@@ -129,8 +129,8 @@ Ice_Status Update_Firmware_confirm(Update_FirmwarePtr self, Update_Reason* resul
     return ICE_OK;
 }
 
-/* Does one step of each update; returns whether one has more to do. What is under way waits for the
- * landing: erases stall the processor, and a new image restarts it. */
+/* Does one step of each update; returns whether one has more to do. During flight updates wait:
+ * erases stall the processor, and a new image restarts it. */
 static int workOn(U32 uptime) {
     int more = 0, i;
     for (i = 0; i < UAV_UPDATABLES && !UAV_isFlying(); ++i) {

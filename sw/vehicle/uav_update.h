@@ -9,8 +9,8 @@
 /* The images that can be renewed: firmware (object "update") and bitstream (object "fpga"). */
 typedef enum UAV_Updatable { UAV_FIRMWARE, UAV_BITSTREAM, UAV_UPDATABLES } UAV_Updatable;
 
-/* The flash of each; 0, the initial value: it is not renewed over the air. `running` is the slot
- * that runs, `product` the kind of vehicle. */
+/* Flash of the firmware and of the FPGA; 0, the initial value: not updated over the air. `running`
+ * is the slot that runs, `product` the kind of vehicle. */
 typedef struct UAV_Update {
     const Slots_Port* slots;
     U32 running, product;

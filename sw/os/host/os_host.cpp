@@ -36,7 +36,7 @@ struct Coroutine {
 struct Port {
     OsHost::Machine machine;
     std::deque<Coroutine> coroutines;
-    Coroutine caller; // of run()
+    Coroutine caller; // the coroutine that called run()
     Coroutine* active = nullptr;
     std::exception_ptr failure;
     bool masked = false, serving = false;
@@ -105,7 +105,7 @@ void run() {
 
 void stop() {
     switchTo(port.caller);
-    std::terminate(); // nothing resumes a task after stop
+    std::terminate(); // no code resumes a task after stop
 }
 
 void interruptPoint() {

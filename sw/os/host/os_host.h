@@ -14,8 +14,8 @@ namespace OsHost {
 struct Machine {
     // Lets time pass up to the next interrupt: no task is ready.
     std::function<void()> idle;
-    // True while an interrupt is pending; then `serve` runs its handler (between OSIntEnter and
-    // OSIntExit), which must make `pending` false or the handler is entered again.
+    // Returns true while an interrupt is pending; then `serve` runs its handler (between OSIntEnter
+    // and OSIntExit), which must make `pending` return false or the handler is entered again.
     std::function<bool()> pending;
     std::function<void()> serve;
 };
@@ -23,14 +23,14 @@ struct Machine {
 // Sets the machine, which must outlive run(). To be called before OSInit.
 void setMachine(Machine machine);
 
-// Does what OSStart does, but returns: when stop() is called, or with the exception that left a
-// task.
+// Runs the tasks like OSStart, but returns: when stop() is called, or with the exception that left
+// a task.
 void run();
 
 // Leaves run() from within a task, an interrupt or idle. Tasks do not continue afterwards.
 [[noreturn]] void stop();
 
-// Serves interrupts that are pending, if they are enabled and none is being served.
+// Serves pending interrupts, if they are enabled and none is being served.
 void interruptPoint();
 
 } // namespace OsHost

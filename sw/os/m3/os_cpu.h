@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_cpu: what the kernel needs of a processor, as uC/OS-II names it: Cortex-M3. Critical sections
- * set PRIMASK; the switch is PendSV, of the lowest priority, so that it runs behind all interrupts.
+ * os_cpu: the interface that the kernel needs from a processor, with uC/OS-II's names: Cortex-M3.
+ * Critical sections set PRIMASK; tasks are switched in PendSV, which has the lowest priority, so
+ * that it runs after all interrupts.
  */
 #pragma once
 
 typedef unsigned int OS_STK;
 typedef unsigned int OS_CPU_SR;
 
-/* Method 3: the state of the interrupt enable is kept in a local variable. */
+/* Method 3: the interrupt-enable state is stored in a local variable. */
 #define OS_CRITICAL_METHOD 3U
 #define OS_ENTER_CRITICAL() (cpu_sr = OS_CPU_SR_Save())
 #define OS_EXIT_CRITICAL() (OS_CPU_SR_Restore(cpu_sr))

@@ -17,7 +17,7 @@ U32* OS_Switch(U32* sp); /* called by os_switch.S */
 static OS_Task* os_running;
 
 static void taskReturned(void) {
-    OS_StackFault(0xFFU); /* a task must not return: it is treated as an overflow */
+    OS_StackFault(0xFFU); /* a task must not return: treated as an overflow */
 }
 
 OS_STK* OSTaskStkInit(void (*task)(void* p_arg), void* p_arg, OS_STK* ptos, INT16U opt) {

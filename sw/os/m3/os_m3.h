@@ -7,8 +7,8 @@
 
 #include "ucos_ii.h"
 
-/* Called by PendSV with interrupts off, before a task continues, to place the stack guard. `bottom`
- * is the lowest address of the task's stack, or 0 if unknown (OSTaskCreate). */
+/* Called by PendSV with interrupts disabled, before a task continues, to place the stack guard.
+ * `bottom`: lowest address of the task's stack, or 0 if unknown (OSTaskCreate). */
 void OS_TaskSwitched(OS_STK* bottom);
 
 /* Called when the task with this priority has overflowed its stack (255: a task has returned). Does

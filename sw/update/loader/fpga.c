@@ -16,15 +16,15 @@
 #define BUS_OURS (0xA9UL << 8)   /* an output, and three of SPI 1 */
 #define BUS_HEARS (0x8AUL << 8)  /* all but data in are SPI 1's */
 #define BUS_SPI (0x5555UL << 16) /* alternate function 5 */
-#define SELECT 4U                /* chip select's EXTI line, too: port A's, as after a reset */
+#define SELECT 4U                /* chip select on port A, and its EXTI line */
 #define SELECT_VECTOR 10U
 #define ADDRESS_BYTES 4U /* the flash's instruction precedes it */
-#define POLLS 2000U      /* of 10 cycles and more; the address takes 32 us at 1 MHz */
+#define POLLS 2000U      /* at least 10 cycles each; the address takes 32 us at 1 MHz */
 #define CONTROL 2U       /* port C: PROGRAM_B 0, open drain; DONE 1 */
 #define DONE 1U
 #define NO_TASK 255U
-/* The longest wait for DONE, ticks of 10 ms: 3.7 Mbit take 1.9 s at 2 MHz, 3.7 s at half of it, and
- * four tries are the most. */
+/* Longest wait for DONE, ticks of 10 ms: 3.7 Mbit take 1.9 s at 2 MHz, 3.7 s at half of it, and
+ * there are at most four tries. */
 #define WAIT_TICKS 1600U
 #define QUIET_TICKS 100U /* without chip select: no reads, or no wire */
 #define READS_A_PAUSE 64U
@@ -69,7 +69,8 @@ static void startPins(void) {
     GPIO_OTYPER(CONTROL) |= 1UL;
 }
 
-/* Clears the FPGA's configuration, and holds it cleared for more than 0.5 us: PROGRAM_B is low. */
+/* Clears the FPGA's configuration, and holds it cleared for more than 0.5 us by driving PROGRAM_B
+ * low. */
 static void hold(void) {
     U32 i;
     GPIO_BSRR(CONTROL) = 1UL << 16;
@@ -94,7 +95,7 @@ static void arm(void) {
     SPI1_CR1 = SPI1_CR1_SLAVE;
 }
 
-/* Returns the address that the FPGA sends to its flash now, 0 where none came in time. */
+/* Returns the address that the FPGA now sends to its flash; 0 after a time-out. */
 static U32 hear(void) {
     U32 address = 0, polls = 0, i;
     for (i = 0; i < ADDRESS_BYTES; ++i) {
@@ -155,8 +156,8 @@ static int loadsAnother(void) {
     return !isDone() || from == Slots_at(&slots_fpga, 0) + SLOTS_IMAGE_AT;
 }
 
-/* Has the FPGA load once more, so that all its reads are received, if the bitstream is signed and
- * whole. Returns 1 if that is not so, or as loadsAnother. */
+/* Makes the FPGA load again, so that all its reads are received, if the bitstream is signed and
+ * complete. Returns 1 if it is not, otherwise the result of loadsAnother. */
 static int loadsAnotherAgain(void) {
     hold();
     SPI1_CR1 = SPI1_CR1_MASTER;

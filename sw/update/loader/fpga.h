@@ -9,10 +9,10 @@
 
 #define FPGA_PRODUCT 0x31475046UL /* "FPG1" */
 
-/* Returns the slots of bitstreams, or 0 where there is no such flash. Before that the FPGA loads a
- * new bitstream (with `mayTry`), or the golden one in place of one that was not confirmed or not
- * taken, and DONE is awaited. With `mustLoad` the FPGA loads its bitstream once more, so that its
- * reads are received. Before each load it is held empty until the bitstream was found signed and
- * whole. One that is not is refused; where that is the golden one, the FPGA stays empty. `running`
- * becomes the slot of the bitstream that the FPGA runs. */
+/* Returns the slots of bitstreams, or 0 if there is no such flash. Before that, the FPGA loads a
+ * new bitstream (with `mayTry`), or the golden one if the new one was not confirmed or not
+ * accepted, and DONE is awaited. With `mustLoad` the FPGA loads its bitstream again, so that its
+ * reads are received. Before each load the FPGA is held empty until the bitstream was found signed
+ * and complete. Another one is refused; if the golden one is refused, the FPGA stays empty.
+ * `running` is set to the slot of the bitstream that the FPGA runs. */
 const Slots_Port* Fpga_slots(const Slots_Port* firmware, int mustLoad, int mayTry, U32* running);

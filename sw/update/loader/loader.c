@@ -23,7 +23,7 @@ extern void stack_top(void); /* loader.ld */
 
 void Reset_Handler(void);
 
-/* A fault in the loader restarts it: the next try may succeed. */
+/* Restarts after a fault in the loader: the next try may succeed. */
 static void restart(void) {
     SCB_AIRCR = SCB_AIRCR_RESET;
     for (;;)
@@ -31,7 +31,7 @@ static void restart(void) {
 }
 
 __attribute__((section(".vectors"), used)) static const Vector vectors[16] = {
-    stack_top, /* not a function: the first word is the stack pointer */
+    stack_top, /* initial stack pointer, not a function */
     Reset_Handler, restart, restart, restart, restart, restart};
 
 __attribute__((section(".services"), used)) static const Loader_Services services = {
@@ -94,7 +94,7 @@ int sodium_is_zero(const unsigned char* bytes, const size_t count) {
     return all == 0;
 }
 
-/* libsodium calls this to wipe intermediate results; what is checked here is public. */
+/* Wipes memory for libsodium's intermediate results; the data checked here is public. */
 void sodium_memzero(void* const at, const size_t bytes) {
     (void)at;
     (void)bytes;

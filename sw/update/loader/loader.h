@@ -10,7 +10,7 @@
 #define LOADER_PRODUCT 0x31564155UL /* "UAV1" */
 #define LOADER_MAGIC 0x1CE50C06UL
 
-/* Lies behind the loader's vectors, so that images need no libsodium of their own. */
+/* Stored after the loader's vectors, so that images need not contain libsodium. */
 typedef struct Loader_Services {
     U32 magic;
     int (*isSigned)(const U8* signature, const U8* message, U32 bytes, const U8* key);

@@ -12,8 +12,8 @@ extern U32 image_begin[]; /* firmware.ld */
 
 static Slots_Port port;
 
-/* The watchdog is not served while the processor stands still for an erase: it allows 4 s, or 2.8 s
- * where its oscillator is at its fastest. */
+/* The watchdog is not served while the processor stalls during an erase: it allows 4 s, or 2.8 s
+ * with its oscillator at its fastest. */
 static int erase(void* context, U32 offset) {
     const U32 usual = IWDG_RLR;
     int good;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// elf_image: ELF by the structures of <elf.h>; little-endian hosts only, as everywhere here.
+// elf_image: reads ELF files with the structures of <elf.h>; only for little-endian hosts.
 
 #include "elf_image.h"
 #include <algorithm>
@@ -19,7 +19,8 @@ template <class T> T at(const std::vector<uint8_t>& file, size_t offset) {
     return value;
 }
 
-// CRC of the STM32's unit (RM0033, 3.2) over all words but the last, its own.
+// Computes the CRC of the STM32's unit (RM0033, 3.2) over all words except the last, which stores
+// it.
 uint32_t checksum(const std::vector<uint8_t>& image) {
     uint32_t crc = 0xFFFFFFFF;
     for (size_t offset = 0; offset + 4 < image.size(); offset += 4) {
@@ -41,7 +42,7 @@ ElfImage::ElfImage(const std::string& path) : path_(path) {
         auto header = at<Elf32_Ehdr>(file, 0);
         if (std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 ||
             header.e_ident[EI_CLASS] != ELFCLASS32 || header.e_machine != EM_ARM)
-            throw std::runtime_error("it is no 32-bit ARM ELF file");
+            throw std::runtime_error("not a 32-bit ARM ELF file");
         for (unsigned i = 0; i < header.e_phnum; ++i) {
             auto p = at<Elf32_Phdr>(file, header.e_phoff + i * sizeof(Elf32_Phdr));
             if (p.p_type != PT_LOAD || p.p_filesz == 0)
@@ -126,7 +127,7 @@ std::vector<uint8_t> ElfImage::movedTo(uint32_t address) const {
             throw std::runtime_error("firmware '" + path_ + "' has a relocation of type " +
                                      std::to_string(r.type) + ": compile with -mword-relocations");
         if (r.symbol < begin || r.symbol > end)
-            continue; // RAM and registers stay where they are
+            continue; // RAM and registers do not move
         for (const Segment& s : segments_)
             if (r.at >= s.runAt && r.at + 4 <= s.runAt + s.bytes.size()) {
                 const uint32_t where = s.address - begin + (r.at - s.runAt);

@@ -13,27 +13,27 @@
 
 class ElfImage {
 public:
-    // Throws std::runtime_error with what is wrong with the file.
+    // Throws std::runtime_error with the reason.
     explicit ElfImage(const std::string& path);
 
     struct Segment {
-        uint32_t address; // where it is loaded, in flash
-        uint32_t runAt;   // where the program uses it: RAM for variables' first values
-        uint32_t offset;  // in the file
+        uint32_t address; // load address, in flash
+        uint32_t runAt;   // address during execution: RAM for the initial values of variables
+        uint32_t offset;  // offset in the file
         std::vector<uint8_t> bytes;
     };
     const std::vector<Segment>& segments() const { return segments_; }
     bool has(const std::string& symbol) const { return symbols_.count(symbol) != 0; }
     uint32_t symbol(const std::string& name) const; // throws for an unknown name
     uint32_t size(const std::string& name) const { return sizes_.at(name); }
-    // Name of the function at an address, "?" where there is none.
+    // Returns the name of the function at an address; "?" if there is none.
     std::string functionAt(uint32_t address) const;
 
-    // Writes the checksum of the words image_begin .. image_end into the file, where image_end is.
+    // Writes the checksum of the words image_begin .. image_end into the file, at image_end.
     void stamp() const;
 
-    // The bytes of flash from image_begin on, relocated to another address, checksum included. For
-    // programs that were linked with --emit-relocs.
+    // Returns the bytes of flash since image_begin, relocated to another address, including the
+    // checksum. For programs linked with --emit-relocs.
     std::vector<uint8_t> movedTo(uint32_t address) const;
 
 private:
@@ -42,7 +42,7 @@ private:
     };
     void readRelocations(const std::vector<uint8_t>& file, const Elf32_Ehdr& header,
                          const Elf32_Shdr& section);
-    std::vector<uint8_t> image() const; // from image_begin on, with the checksum's word
+    std::vector<uint8_t> image() const; // since image_begin, including the checksum
 
     std::string path_;
     std::vector<Segment> segments_;

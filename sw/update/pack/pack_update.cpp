@@ -32,7 +32,7 @@ namespace {
 
 using Bytes = std::vector<uint8_t>;
 
-uint32_t board[2] = {1, 1}, needs = 0; // of the command line
+uint32_t board[2] = {1, 1}, needs = 0; // from the command line
 std::string second;
 bool isUnchecked = false;
 
@@ -70,20 +70,20 @@ bool readSeed(const std::string& path, Bytes& seed) {
     return true;
 }
 
-// Reads the private key of a file, which holds its seed, or makes it.
+// Reads a private key from a file, which contains its seed, or creates it.
 struct Keys {
     explicit Keys(const std::string& path) {
         Bytes seed(crypto_sign_SEEDBYTES);
         if (!readSeed(path, seed)) {
             randombytes_buf(seed.data(), seed.size());
-            // It takes its name when it is complete: all trees of a user share it.
-            std::string beside = path + ".XXXXXX";
-            const int out = mkstemp(beside.data()); // mode 0600
+            // The file is renamed when it is complete: all trees of a user share it.
+            std::string temporary = path + ".XXXXXX";
+            const int out = mkstemp(temporary.data()); // mode 0600
             const bool made = out >= 0 &&
                               write(out, seed.data(), seed.size()) == ssize_t(seed.size()) &&
-                              close(out) == 0 && link(beside.c_str(), path.c_str()) == 0;
+                              close(out) == 0 && link(temporary.c_str(), path.c_str()) == 0;
             const int why = errno;
-            unlink(beside.c_str());
+            unlink(temporary.c_str());
             if (made)
                 std::cout << "pack_update: made a new key pair: " << path
                           << " signs for vehicles that are filled with it\n";
@@ -104,7 +104,7 @@ Bytes readPublic(const std::string& path) {
     if (sodium_hex2bin(key.data(), key.size(), digits.data(), digits.size(), nullptr, &size,
                        nullptr) != 0 ||
         size != key.size() || digits.size() != 2 * size)
-        fail("'" + path + "' is no public key: pack_update public makes such a file");
+        fail("'" + path + "': expected a public key, as written by pack_update public");
     return key;
 }
 
@@ -175,11 +175,12 @@ std::pair<Bytes, Bytes> sign(const ElfImage& elf, uint32_t slot, uint32_t versio
 
 constexpr uint8_t sync[] = {0xAA, 0x99, 0x55, 0x66};
 
-// Packets reads the words of a bitstream after its sync word (UG380, tables 5-23 to 5-30).
+// Reads the words of a bitstream after its sync word (UG380, tables 5-23 to 5-30).
 class Packets {
 public:
     Packets(const Bytes& file, size_t at) : file_(file), at_(at) {}
-    // Goes to the end of the packet with command DESYNC, the last one. Returns false without one.
+    // Skips to the end of the packet with command DESYNC, the last one. Returns false if there is
+    // none.
     bool toDesync() {
         while (at_ + 2 <= file_.size()) {
             const uint32_t head = word(), type = head >> 13, reg = head >> 5 & 63;
@@ -191,7 +192,7 @@ public:
             if (type == 2)
                 words = size_t{word()} << 16 | word();
             if (reg == fdri)
-                words += 2; // its CRC
+                words += 2; // including its CRC
             if (words > (file_.size() - std::min(at_, file_.size())) / 2)
                 return false;
             const bool isCommand = type == 1 && reg == cmd && words == 1;
@@ -222,8 +223,8 @@ private:
     size_t at_;
 };
 
-// Throws if a bitstream is cut or has bytes after its end: a vehicle's FPGA would hang in the
-// first, and the second are not BitGen's.
+// Throws if a bitstream is cut or has bytes after its end: a cut one would hang a vehicle's FPGA,
+// and BitGen appends no bytes.
 void checkWhole(const std::string& path, const Bytes& file, size_t at) {
     Packets packets(file, at);
     if (!packets.toDesync())
@@ -244,7 +245,7 @@ void checkHeader(const std::string& path, const Bytes& file) {
         return value;
     };
     if (number(0, 2) != 9)
-        return; // a .bin has none
+        return; // a .bin has no header
     size_t at = 13;
     for (; at + 3 <= file.size() && file[at] >= 'a' && file[at] < 'e'; at += 3 + number(at + 1, 2))
         ;
@@ -256,8 +257,8 @@ void checkHeader(const std::string& path, const Bytes& file) {
              " bytes of bitstream, as its header counts, got " + std::to_string(follow));
 }
 
-// Reads a bitstream from SLOTS_SYNC_AT bytes before its sync word on, without that word: the
-// vehicle adds it.
+// Reads a bitstream, starting SLOTS_SYNC_AT bytes before its sync word, without that word, which
+// the vehicle adds.
 Bytes readBitstream(const std::string& path) {
     std::ifstream in(path, std::ios::binary);
     const Bytes file((std::istreambuf_iterator<char>(in)), {});
@@ -358,7 +359,7 @@ void fillVehicle(const std::string& loader, const std::string& elf, uint32_t ver
 int main(int argc, char** argv) {
     CLI::App app{
         "Signs what is sent to a vehicle, and fills the flash of a new one. KEYFILE is the "
-        "private key,\nwhich is made, and kept from other users, if there is none. "
+        "private key,\nwhich is created, readable only by you, if it is missing. "
         "VERSION: 1 to 4294967294."};
     std::vector<std::string> word;
     const auto add = [&](const char* name, const char* names, int least, int most, const char* what,

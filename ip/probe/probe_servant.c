@@ -6,9 +6,7 @@
 #include "fsmc.h"
 #include "probe_regs.h"
 
-#define STOP_READS                                                                 \
-    10000 /* reads of STATUS; emptying the FIFO takes less time than a few hundred \
-           */
+#define STOP_READS 10000 /* reads of STATUS; emptying the FIFO takes less than a few hundred */
 
 static U32 get(const Probe_Core* self, U32 word) {
     return FSMC_read(self->core.slot, word);

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- os_switch: task switch in PendSV: saves the registers that the processor has not saved, calls
- OS_Switch for the next stack, and restores.
+ * os_switch: task switch in PendSV: saves the registers that the processor has not saved, calls
+ * OS_Switch for the next stack, and restores.
  *
- Stack of a suspended task, from its stack pointer upwards: r4..r11, then the frame pushed by the
- processor: r0..r3, r12, lr, pc, xPSR (ARMv7-M ARM, B1.5.6).
+ * Stack of a suspended task, from its stack pointer upwards: r4..r11, then the frame pushed by the
+ * processor: r0..r3, r12, lr, pc, xPSR (ARMv7-M ARM, B1.5.6).
  */
     .syntax unified
     .thumb

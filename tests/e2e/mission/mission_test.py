@@ -191,7 +191,7 @@ class Cases(Script):
 
     def test_update(self):
         """New firmware: a wrong file, a vehicle with another key, a loss of power during it."""
-        self.update(TREE / "Makefile", "no 32-bit ARM ELF file", status=None)
+        self.update(TREE / "Makefile", "not a 32-bit ARM ELF file", status=None)
         flash = Path("flash.bin")
         self.pack(*VEHICLE, "other.key", flash)
         self.ask(STAND_IN, "golden.bin", "1", "10000")

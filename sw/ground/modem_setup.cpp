@@ -228,7 +228,8 @@ bool ModemSetup::finishApi() {
     const int found = rate_;
     for (int attempt = 0; attempt < tries && rate_ != settings_.baud; ++attempt) {
         (void)askApi("BD", hex(codeOf(settings_.baud)), apiReplyMs);
-        if (stopped_ || !pause(10) || (!findApi(settings_.baud) && !findApi(found) && stopped_))
+        if (stopped_ || !pause(10) ||
+            (!findWithoutGuard(settings_.baud) && !findWithoutGuard(found) && stopped_))
             return false;
     }
     if (!isApi_ || rate_ != settings_.baud) {

@@ -21,7 +21,6 @@ import threading
 import Ice
 
 import plugged
-import stay
 from mission_log import Air, Log, report, whole
 from PIL import Image, ImageDraw
 
@@ -50,7 +49,7 @@ def parse_arguments():
         with open(args.flight) as file:
             flight = json.load(file)
         for name in ("threshold", "loss", "guard", "patience", "key", "camera", "out", "wire",
-                     "vehicles", "observer", "live"):
+                     "vehicles", "observer"):
             setattr(args, name, flight[name])
         args.endpoint = "%s -d %s -a 0x0001 -s 0x0000" % (
             "serial" if args.wire else "xbee-at", args.device)
@@ -306,8 +305,8 @@ class Mission:
         report(self.args, self.log, result, self.station, self.air)
 
 
-def fly(args):
-    """Flies the mission; returns an exit status."""
+def main():
+    args = parse_arguments()
     communicator = initialize(args)
     try:
         registers = os.path.join(os.path.dirname(os.path.abspath(__file__)),
@@ -328,11 +327,6 @@ def fly(args):
         sys.exit("mission: %s" % e)
     finally:
         communicator.destroy()
-
-
-def main():
-    args = parse_arguments()
-    return fly(args) or (stay.serve(args) if args.live else 0)
 
 
 if __name__ == "__main__":

@@ -28,6 +28,7 @@ from icesoc import TREE
 
 CACHE = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "icesoc"
 LIST = TREE / "examples/foreign/cores.json"
+KERNEL = TREE / "examples/porting/freertos.json"
 GITHUB = os.environ.get("ICESOC_RAW") or "https://raw.githubusercontent.com"
 NPM = os.environ.get("ICESOC_NPM") or "https://registry.npmjs.org"
 KEYRING = "/usr/share/keyrings/debian-archive-keyring.gpg"
@@ -42,6 +43,8 @@ ICE = {"3.7.8": "c48f9e43d65e2b1f5e2af747fd86e7718b5e344b4e9d9a7dc73a84dd0be61f6
 SCHEMA = ("ARM-software/CMSIS_5/51f8f89612c8330c0116479cfe3a2cb04c390e2b"
           "/CMSIS/Utilities/CMSIS-SVD.xsd",
           "eee4bfe949f80708b00cccb4833e71da3766b0489a4cdfa2dae225d541688d89")
+PACK = ("Open-CMSIS-Pack/Open-CMSIS-Pack-Spec/f34f91d07e4299e8aab0e4ee7fb8ff4834001c3e"
+        "/schema/PACK.xsd", "76fd2cd95a2e3de3da20922723d624c7c356639cd79a2d5abd81efcec7c9e31b")
 PAGE = [("tabulator-tables", "6.5.3",
          "a3aeb833e5cf924c8a686fa6748c1070c5fde8e605e0b1734000c35b78571a9b",
          ["js/tabulator.min.js", "css/tabulator_simple.min.css"]),
@@ -237,6 +240,21 @@ def svd(target):
     shutil.copyfile(kept(f"{GITHUB}/{SCHEMA[0]}", SCHEMA[1]), target / "CMSIS-SVD.xsd")
 
 
+def pack(target):
+    """ARM's schema of CMSIS-Packs, 1.7.60"""
+    target.mkdir(parents=True, exist_ok=True)
+    shutil.copyfile(kept(f"{GITHUB}/{PACK[0]}", PACK[1]), target / "PACK.xsd")
+
+
+def freertos(target):
+    """the kernel FreeRTOS 11.1.0 for the Cortex-M3, for the porting example"""
+    its = json.loads(KERNEL.read_text())
+    for path, checksum in its["files"].items():
+        file = target / path
+        file.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(kept(f"{GITHUB}/{its['github']}/{path}", checksum), file)
+
+
 def page(target):
     """Tabulator and uPlot for the pages, as FOLDER/libraries.js and .css, each below its licence"""
     target.mkdir(parents=True, exist_ok=True)
@@ -261,9 +279,12 @@ def page(target):
 
 # Things that only optional parts need, with the name of the part
 OPTIONAL = {zeroc: "Only these suites need it", svd: "Only the check of icesoc.svd needs it",
-            foreign: "Only the examples of foreign cores need it"}
+            foreign: "Only the examples of foreign cores need it",
+            pack: "Only the check of the CMSIS-Pack needs it",
+            freertos: "Only the porting example for this kernel needs it"}
 THINGS = {thing.__name__: thing
-          for thing in (ice, ghdl, icegrid, lz4, sodium, page, foreign, svd, zeroc)}
+          for thing in (ice, ghdl, icegrid, lz4, sodium, page, foreign, svd, zeroc, pack,
+                        freertos)}
 
 
 def main():

@@ -13,6 +13,7 @@ from icesoc.cli import flight, keys
 from icesoc.cli.command import COMMANDS, command
 from icesoc.cli.options import PATH, SWITCH, TEXT, Option
 from icesoc.regs.model import Block
+from icesoc.release import version as product
 from icesoc.util.console import say
 from icesoc.util.errors import SKIPPED
 from icesoc.util.lock import lock
@@ -104,7 +105,7 @@ def run_all(only):
 def version():
     """The versions of the project (CHANGELOG.md), of the protocol on the air, and of the chip's
     blocks."""
-    newest = re.search(r"^## (\d+\.\d+\.\d+)", (TREE / "CHANGELOG.md").read_text(), re.M)[1]
+    newest = product.newest()
     link = re.search(r"LINK_VERSION (\d+)", (TREE / "sw/link/link_frame.h").read_text())[1]
     blocks = []
     for path in sorted([*(TREE / "hdl").rglob("*.regs.json"), *(TREE / "ip").rglob("*.regs.json")]):

@@ -1,0 +1,326 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""release_test: IceC's single files and packs, the porting examples, the files of a release.
+
+Usage: release_test.py CASE WORK-FOLDER BUILD-FOLDER
+"""
+import hashlib
+import json
+import os
+import re
+import select
+import shutil
+import subprocess
+import sys
+import tarfile
+import xml.etree.ElementTree as ET
+import zipfile
+from pathlib import Path
+
+from icesoc.release import components, packs, single_file, version
+from script import TREE, Script, commit, fresh, git, main, repository, write
+
+WORK, BUILD = map(Path, sys.argv[2:4])
+EXAMPLE = TREE / "examples/porting"
+STRICT = "-std=c90 -pedantic -Wall -Wextra -Wconversion -Werror".split()
+ARM = "arm-none-eabi-gcc -mcpu=cortex-m3 -mthumb -Os".split()
+GENERATED = ["Meter_types.c", "Meter_server.c", "Station_types.c", "Station_client.c"]
+PROGRAM = ["icec.c", "icec_link.c", "icec_radio.c", EXAMPLE / "meter.c", EXAMPLE / "mps2.c"]
+# Layers of the build, and the components that have their files.
+LAYERS = {"icec": "icec", "icec_tcp": "icec_tcp", "link_layer": "icec_link", "crypto": "icec_link",
+          "icec_xbee": "icec_radio", "fsmc": "icec_fsmc"}
+SMALL = "# Changelog\n\n## Unreleased\n{}\n## 1.2.3\n\n- second\n\n## 1.2.2\n\n- first\n"
+
+
+def write_all(files, folder="."):
+    for name, text in files.items():
+        write(Path(folder, name), text)
+
+
+def symbols(file):
+    """The functions and data that an object file defines."""
+    said = subprocess.check_output(["nm", file], text=True)
+    return [re.sub(r"\.\d+$", "", name)
+            for name in re.findall(r"^\w+ [tTdDbBrR] (\S+)$", said, re.M)]
+
+
+class Cases(Script):
+    def test_components(self):
+        """Each layer of the build has the files of its component."""
+        known, found = components.read(), {}
+        for line in (BUILD / "tests/release/layers.txt").read_text().splitlines():
+            layer, *files = line.split()
+            paths = {os.path.relpath(file, TREE) if os.path.isabs(file) else f"sw/icec/{file}"
+                     for file in files}
+            found.setdefault(LAYERS[layer], set()).update(paths)
+        self.assertEqual(found, {name: set(its.files()) for name, its in known.items()})
+
+    def examples(self):
+        """Writes the single files and the examples' generated code into the current folder."""
+        write_all(single_file.files())
+        for name in "Meter", "Station":
+            self.ask(BUILD / "slice/slice2c", EXAMPLE / f"{name}.ice", "--output-dir", ".")
+
+    def test_single_file(self):
+        """The single files compile without a warning for three compilers, have every function of
+        the sources, and a program of them answers stock Ice over TCP."""
+        fresh(WORK)
+        self.examples()
+        known = components.read()
+        for compiler in ["clang"], ARM:
+            for its in known.values():
+                if compiler is not ARM or not its.host:
+                    self.ask(*compiler, *STRICT, "-fsyntax-only", f"{its.name}.c")
+        self.ask("g++", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-x", "c++",
+                 *(f"{name}.h" for name in known))
+        folders = [f"-I{TREE / folder}" for its in known.values() for folder in its.folders]
+        for its in known.values():
+            os.mkdir(its.name)
+            self.ask("gcc", "-c", *folders, f"-I{TREE}/sw/base", f"-I{BUILD}/gen",
+                     *[TREE / path for path in its.files()], cwd=its.name)
+            self.ask("gcc", *STRICT, "-O2", "-c", f"{its.name}.c", "-o", "optimized.o")
+            self.ask("gcc", "-c", f"{its.name}.c")
+            parts = [(path.stem, name) for path in Path(its.name).glob("*.o")
+                     for name in symbols(path)]
+            joined = symbols(f"{its.name}.o")
+            self.assertEqual(len(parts), len(joined), its.name)
+            for stem, name in parts:
+                self.assertTrue({name, f"{stem}_{name}"} & set(joined), f"{stem}: {name}")
+        self.ask("gcc", *STRICT, "-D_POSIX_C_SOURCE=200809L", "-I.", f"-I{EXAMPLE}", "icec.c",
+                 "icec_tcp.c", EXAMPLE / "meter.c", EXAMPLE / "host.c", *GENERATED, "-lpthread",
+                 "-o", "host")
+        with subprocess.Popen(["./host"], stdout=subprocess.PIPE, text=True) as host:
+            try:
+                port = host.stdout.readline().strip()
+                self.ask("/usr/bin/python3", EXAMPLE / "call.py", "host",
+                         f"tcp -h 127.0.0.1 -p {port}", timeout=60)
+            finally:
+                host.kill()
+
+    def fly(self, elf, kernel):
+        """A program on QEMU's MPS2 board is called by stock Ice through the ground's plugin, and
+        calls back."""
+        with subprocess.Popen(
+                ["qemu-system-arm", "-M", "mps2-an385", "-kernel", elf, "-display", "none",
+                 "-monitor", "none", "-serial", "pty"], stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as qemu:
+            try:
+                self.assertTrue(select.select([qemu.stdout], [], [], 20)[0], "QEMU is silent")
+                said = qemu.stdout.readline()
+                device = re.search(r"/dev/pts/\d+", said)
+                self.assertTrue(device, f"QEMU did not name its serial port: {said}")
+                self.ask("/usr/bin/python3", EXAMPLE / "call.py", kernel,
+                         f"serial -d {device[0]} -a 0x0001", f"serial -d {device[0]} -s 0x0000",
+                         f"--Ice.Plugin.XBeeAT={BUILD}/ground/xbeeat:createXBeeAT", timeout=120)
+            finally:
+                qemu.kill()
+
+    def link(self, name, *objects):
+        self.ask(*ARM, *STRICT, "-Wstrict-prototypes", "-I.", f"-I{EXAMPLE}", "-nostartfiles",
+                 "--specs=nano.specs", "--specs=nosys.specs", "-T", EXAMPLE / "mps2.ld", *PROGRAM,
+                 *objects, *GENERATED, "-o", name)
+
+    def needs_qemu(self):
+        if not shutil.which("qemu-system-arm"):
+            self.skipTest("qemu-system-arm is missing: apt-get install qemu-system-arm")
+
+    def fetched(self, thing):
+        """The folder of what icesoc.util.fetch brings; the case is skipped without a network."""
+        done = subprocess.run([TREE / "tools/python", "-m", "icesoc.util.fetch", thing, thing],
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        if done.returncode == 77:
+            self.skipTest(f"{thing} cannot be fetched: {done.stdout.splitlines()[-2][-100:]}")
+        self.assertEqual(done.returncode, 0, done.stdout)
+        return Path(thing)
+
+    def test_bare_metal(self):
+        """The porting example without a kernel works on a Cortex-M3."""
+        fresh(WORK)
+        self.needs_qemu()
+        self.examples()
+        self.link("bare_metal.elf", EXAMPLE / "bare_metal.c")
+        self.fly("bare_metal.elf", "bare metal")
+
+    def test_freertos(self):
+        """The porting example for FreeRTOS works on a Cortex-M3."""
+        fresh(WORK)
+        self.needs_qemu()
+        kernel = self.fetched("freertos")
+        self.examples()
+        objects, port = [], "portable/GCC/ARM_CM3"
+        folders = [word for folder in ("include", port) for word in ("-isystem", kernel / folder)]
+        for path in "tasks.c", "queue.c", "list.c", f"{port}/port.c":
+            objects.append(Path(path).with_suffix(".o").name)
+            self.ask(*ARM, "-w", f"-I{EXAMPLE}", *folders, "-c", kernel / path, "-o", objects[-1])
+        # The kernel's headers need C99.
+        self.ask(*ARM, *STRICT[2:], "-std=gnu99", "-I.", f"-I{EXAMPLE}", *folders, "-c",
+                 EXAMPLE / "freertos.c")
+        self.link("freertos.elf", "freertos.o", *objects)
+        self.fly("freertos.elf", "FreeRTOS")
+
+    def test_packs(self):
+        """Each form names the files that it has, and they compile."""
+        fresh(WORK)
+        write_all(packs.library("1.2.3"), "library")
+        manifest = json.loads(Path("library/library.json").read_text())
+        chosen = manifest["build"]["srcFilter"]
+        self.assertEqual(chosen, ["+<*.c>", "-<icec_tcp.c>"])
+        self.assertEqual(manifest["version"], "1.2.3")
+        for header in manifest["headers"]:
+            self.assertTrue(Path("library/src", header).is_file(), header)
+
+        options = re.findall(r"^config (\w+)$", Path("library/zephyr/Kconfig").read_text(), re.M)
+        used = set(re.findall(r"CONFIG_(\w+)", Path("library/zephyr/CMakeLists.txt").read_text()))
+        self.assertEqual(used, set(options))
+        # Zephyr's functions, as far as the module calls them
+        write("CMakeLists.txt", """cmake_minimum_required(VERSION 3.20)
+project(zephyr C)
+macro(zephyr_library_named name)
+  add_library(${name} STATIC)
+  set(library ${name})
+endmacro()
+function(zephyr_include_directories)
+  target_include_directories(${library} PUBLIC ${ARGN})
+endfunction()
+function(zephyr_compile_definitions)
+  target_compile_definitions(${library} PUBLIC ${ARGN})
+endfunction()
+function(zephyr_library_sources_ifdef option)
+  if(${option})
+    target_sources(${library} PRIVATE ${ARGN})
+  endif()
+endfunction()
+include(options.cmake)
+add_subdirectory(library/zephyr)
+""")
+        write("options.cmake", "".join(f"set(CONFIG_{name} {value})\n" for name, value in [
+            *((name, 1) for name in options), *((f"ICEC_{name.removeprefix('ICE_')}", value)
+                                                for name, value, _ in packs.limits())]).replace(
+            " ICE_MESSAGE_MAX)", " 512)"))
+        self.ask("cmake", "-G", "Ninja", "-B", "build", "-DCMAKE_BUILD_TYPE=MinSizeRel",
+                 "-DCMAKE_C_COMPILER=arm-none-eabi-gcc", "-DCMAKE_SYSTEM_NAME=Generic",
+                 "-DCMAKE_TRY_COMPILE_TARGET_TYPE=STATIC_LIBRARY",
+                 "-DCMAKE_C_FLAGS=-mcpu=cortex-m3 -mthumb -Wall -Werror")
+        self.ask("ninja", "-C", "build")
+        self.ask("arm-none-eabi-nm", "build/library/zephyr/libicec.a")
+        self.has("T Ice_initialize", "T Link_init", "T XBeeATEndpoint_init", "T FSMC_init")
+
+        files = packs.cmsis("1.2.3", "2026-11-28", "- a <b> & c")
+        description = ET.fromstring(files["IceSoC.IceC.pdsc"])
+        named = {its.get("name") for its in description.iter("file")}
+        self.assertEqual(named | {"LICENSE", "IceSoC.IceC.pdsc"}, set(files))
+        groups = {its.get("Cgroup") for its in description.iter("component")}
+        conditions = {its.get("id") for its in description.iter("condition")}
+        for its in description.iter("require"):
+            self.assertIn(its.get("Cgroup"), groups)
+        for its in description.iter("component"):
+            self.assertIn(its.get("condition"), conditions | {None})
+
+    def test_guide(self):
+        """The code on the porting guide is that of the examples."""
+        page = (TREE / "docs/porting.md").read_text()
+        sources = "".join(path.read_text() for path in EXAMPLE.glob("*.c"))
+        blocks = re.findall(r"^```c\n(.*?)^```", page, re.M | re.S)
+        self.assertTrue(blocks)
+        for block in blocks:
+            self.assertIn(block, sources)
+
+    def test_pack_schema(self):
+        """ARM's schema accepts the description of the CMSIS-Pack."""
+        fresh(WORK)
+        schema = self.fetched("pack")
+        for number in "1.2.3", "1.2.3+git.0123456789ab":
+            write("a.pdsc", packs.pdsc(number, "2026-11-28", "- a <b> & c"))
+            self.ask("xmllint", "--noout", "--schema", schema / "PACK.xsd", "a.pdsc")
+
+    def release(self, out, *words, tree=TREE, **environment):
+        self.ask(TREE / "icesoc", "release", "--out", out, *words,
+                 env={**os.environ, "ICESOC_TREE": str(tree), **environment})
+
+    def test_same_bytes(self):
+        """Two runs in other surroundings give the same bytes; the archive has the commit's files,
+        and the bill of materials lists each."""
+        fresh(WORK)
+        if not (TREE / ".git").exists():
+            self.skipTest("this tree is not a git repository")
+        there = ["git", "-C", TREE, "cat-file", "-e", f"HEAD:{components.LIST}"]
+        if subprocess.run(there).returncode:
+            self.skipTest("the last commit has no list of components")
+        parts = ["--only", "source", "icec", "changes", "sbom"]
+        self.release(WORK / "a", *parts, TZ="Asia/Tokyo", PYTHONHASHSEED="1")
+        self.has("^IceSoC .*, not signed: --key KEY signs SHA256SUMS")
+        self.release(WORK / "b", *parts, TZ="America/Lima", PYTHONHASHSEED="2")
+        self.ask("diff", "-r", "a", "b")
+        self.ask("sha256sum", "--check", "SHA256SUMS", cwd="a")
+        listed = subprocess.check_output(["git", "ls-tree", "-r", "-z", "--name-only", "HEAD"],
+                                         text=True, cwd=TREE).strip("\0").split("\0")
+        source = next(path for path in Path("a").glob("icesoc-*.tar.gz"))
+        with tarfile.open(source) as tar:
+            folder = source.name.removesuffix(".tar.gz") + "/"
+            self.assertEqual(sorted(tar.getnames()), sorted(folder + name for name in listed))
+            self.assertEqual(tar.getmember(folder + "icesoc").mode, 0o755)
+        bill = json.loads(next(Path("a").glob("*.spdx.json")).read_text())
+        self.assertEqual(sorted(its["fileName"] for its in bill["files"]),
+                         sorted(f"./{name}" for name in listed))
+        self.assertEqual(bill["spdxVersion"], "SPDX-2.3")
+        known = [its["SPDXID"] for kind in ("packages", "files") for its in bill[kind]]
+        self.assertEqual(len(known), len(set(known)))
+        for its in bill["relationships"]:
+            for end in its["spdxElementId"], its["relatedSpdxElement"]:
+                self.assertIn(end, {*known, "SPDXRef-DOCUMENT"})
+        sums = sorted(its["checksums"][0]["checksumValue"] for its in bill["files"])
+        self.assertEqual(bill["packages"][0]["packageVerificationCode"],
+                         {"packageVerificationCodeValue":
+                          hashlib.sha1("".join(sums).encode()).hexdigest()})
+        with zipfile.ZipFile(next(Path("a").glob("*.pack"))) as pack:
+            self.assertIn("IceSoC.IceC.pdsc", pack.namelist())
+
+    def small(self, unreleased):
+        """Makes the work folder a repository with a changelog."""
+        fresh(WORK / "small")
+        repository()
+        write("CHANGELOG.md", SMALL.format(unreleased))
+        commit("First")
+
+    def test_versions(self):
+        """A commit with unreleased changes has the last version and its own number; a released
+        version belongs to one commit."""
+        self.assertEqual(version.newest(), re.search(r"badge/version-([\d.]+)-",
+                                                     (TREE / "README.md").read_text())[1])
+        self.small("\n- third\n")
+        short = git("rev-parse HEAD")[:12]
+        self.release("out", "--only", "changes", tree=".")
+        self.has(rf"^IceSoC 1\.2\.3\+git\.{short}, not signed")
+        self.has("^- third", file=f"out/CHANGES-1.2.3+git.{short}.md")
+        self.small("")
+        git("tag v1.2.3")
+        self.release("out", "--only", "changes", tree=".")
+        self.has("^- second", file="out/CHANGES-1.2.3.md")
+        self.lacks("first", file="out/CHANGES-1.2.3.md")
+        write("more", "")
+        commit("Second")
+        self.ask(TREE / "icesoc", "release", "--only", "changes", status=1,
+                 env={**os.environ, "ICESOC_TREE": "."})
+        self.has("version 1.2.3 is already released as commit .*; give CHANGELOG.md a new version")
+        self.ask(TREE / "icesoc", "release", "--only", "sauce", status=2)
+        self.has("only: expected parts out of source, .*, got 'sauce'")
+
+    def test_signature(self):
+        """The signature of SHA256SUMS holds, and a missing key is an error."""
+        if not shutil.which("gpg"):
+            self.skipTest("gpg is missing: apt-get install gnupg")
+        self.small("")
+        home = {**os.environ, "GNUPGHOME": str(Path("keys").absolute()), "ICESOC_TREE": "."}
+        os.mkdir("keys", 0o700)
+        self.ask("gpg", "--batch", "--passphrase", "", "--quick-gen-key", "test@icesoc", "ed25519",
+                 env=home)
+        release = [TREE / "icesoc", "release", "--only", "changes", "--out", "out", "--key"]
+        self.ask(*release, "test@icesoc", env=home)
+        self.has("SHA256SUMS.asc$", "^IceSoC 1.2.3, signed.$")
+        self.ask("gpg", "--verify", "out/SHA256SUMS.asc", "out/SHA256SUMS", env=home)
+        self.ask(*release, "nobody@icesoc", status=1, env=home)
+        self.has("release: gpg could not sign with 'nobody@icesoc': ")
+        self.ask("gpgconf", "--kill", "all", env=home)
+
+
+main(Cases)

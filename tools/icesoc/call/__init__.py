@@ -1,2 +1,0 @@
-# SPDX-License-Identifier: MIT
-"""call: calls any operation of any object from the command line (docs/call.md)."""

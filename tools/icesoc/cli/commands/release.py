@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: MIT
+"""release: makes the files of a release."""
+from pathlib import Path
+
+from icesoc.cli.command import COMMANDS, command
+from icesoc.cli.options import FOLDER, TEXT, WORDS, Option
+from icesoc.release import build
+from icesoc.util.console import say
+from icesoc.util.errors import Stop
+
+
+@command("release", [
+    Option("only", WORDS, "parts to make: " + ", ".join(build.PARTS) + " (default: all)"),
+    Option("key", TEXT, "key that signs SHA256SUMS: a key file of minisign (NAME.sec), or the name "
+                        "of a key of gpg", ""),
+    Option("out", FOLDER, "folder for the files, which is emptied first", "build/release")],
+         brief="release --only source icec changes sbom --out build/brief/release/files", examples=[
+             "release --key ~/.minisign/icesoc.sec", "release --only source icec"])
+def release(values):
+    """make the files of a release: sources, IceC, packages, documentation, checksums
+
+    They are made of the last commit. The same commit gives the same bytes, except a signature of
+    gpg, which has the time.
+    """
+    for part in values.only:
+        if part not in build.PARTS:
+            raise Stop(f"only: expected parts out of {', '.join(build.PARTS)}, got '{part}'", 2)
+    parts = values.only or list(build.PARTS)
+    if "packages" in parts and "package" not in COMMANDS:
+        if values.only:
+            raise Stop("release: the command that makes Debian packages does not exist yet", 2)
+        parts.remove("packages")
+        say("Without Debian packages: no command makes them yet.")
+    out = Path(values.out).absolute()
+    number, made = build.build(Path.cwd(), out, parts, values.key)
+    for name in made:
+        say(f"{(out / name).stat().st_size:>9} bytes  {out / name}")
+    say(f"IceSoC {number}, "
+        + ("signed." if values.key else "not signed: --key KEY signs SHA256SUMS."))

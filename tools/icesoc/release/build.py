@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: MIT
+"""build: makes the files of a release from a commit. The same commit gives the same bytes."""
+import dataclasses
+import hashlib
+import io
+import shutil
+import subprocess
+import tarfile
+import tempfile
+import time
+from pathlib import Path
+
+from icesoc.release import archive, packs, sbom, version
+from icesoc.util.errors import Stop
+from icesoc.util.process import output, run
+
+PARTS = {  # in the order in which they are made
+    "source": "icesoc-VERSION.tar.gz: all files of the commit",
+    "icec": "icec-VERSION.tar.gz (single files, PlatformIO, Zephyr) and the CMSIS-Pack",
+    "changes": "CHANGES-VERSION.md: the section of the changelog",
+    "site": "icesoc-VERSION-site.tar.gz: the documentation",
+    "packages": "Debian packages for the release of this machine",
+    "sbom": "icesoc-VERSION.spdx.json: bill of materials (SPDX 2.3)"}
+
+
+@dataclasses.dataclass
+class Release:
+    """What a release is made of."""
+    version: str
+    commit: str
+    seconds: int  # time of the commit
+    files: dict  # files of the commit, name to bytes
+    programs: set  # names of the executable ones
+    tree: Path  # the same, unpacked
+    origin: Path  # the working tree
+    out: Path
+
+    def path(self, name):
+        return self.out / name.replace("VERSION", self.version)
+
+    @property
+    def changes(self):
+        """The changes since the last version, or those of this version."""
+        text = self.files["CHANGELOG.md"].decode()
+        return version.unreleased(text) or dict(version.sections(text))[version.newest(text)]
+
+
+def read_commit(tree):
+    """Returns the commit, its time, its files and the names of its programs, as in Release."""
+    git = ["git", "-C", str(tree)]
+    commit = output([*git, "rev-parse", "HEAD"], check=False, stderr=subprocess.DEVNULL).strip()
+    if not commit:
+        raise Stop(f"release: expected a git repository, got {tree}; a release is made of a commit")
+    seconds = int(output([*git, "show", "-s", "--format=%ct", "HEAD"]))
+    data = subprocess.run([*git, "archive", "--format=tar", "HEAD"], check=True,
+                          stdout=subprocess.PIPE).stdout
+    with tarfile.open(fileobj=io.BytesIO(data)) as tar:
+        members = [member for member in tar if member.isfile()]
+        files = {member.name: tar.extractfile(member).read() for member in members}
+    return commit, seconds, files, {member.name for member in members if member.mode & 0o100}
+
+
+def number(tree, commit, files):
+    """Returns the version of a commit. One with unreleased changes has the last version and the
+    commit's number; a released version belongs to one commit for ever."""
+    text = files["CHANGELOG.md"].decode()
+    newest = version.newest(text)
+    if version.unreleased(text):
+        return f"{newest}+git.{commit[:12]}"
+    tagged = output(["git", "-C", str(tree), "rev-parse", "-q", "--verify",
+                     f"v{newest}^{{commit}}"], check=False).strip()
+    if tagged and tagged != commit:
+        raise Stop(f"release: version {newest} is already released as commit {tagged[:12]}; "
+                   "give CHANGELOG.md a new version")
+    return newest
+
+
+def source(release):
+    archive.tar(release.path("icesoc-VERSION.tar.gz"), f"icesoc-{release.version}", release.files,
+                release.seconds, release.programs)
+
+
+def icec(release):
+    made = packs.library(release.version, release.tree)
+    archive.tar(release.path("icec-VERSION.tar.gz"), f"icec-{release.version}",
+                {name: text.encode() for name, text in made.items()}, release.seconds)
+    date = time.strftime("%Y-%m-%d", time.gmtime(release.seconds))
+    made = packs.cmsis(release.version, date, release.changes, release.tree)
+    archive.zip_(release.path(f"{packs.VENDOR}.{packs.PACK}.VERSION.pack"),
+                 {name: text.encode() for name, text in made.items()}, release.seconds)
+
+
+def changes(release):
+    release.path("CHANGES-VERSION.md").write_text(
+        f"# IceSoC {release.version}\n\n{release.changes}\n")
+
+
+def site(release):
+    with tempfile.TemporaryDirectory() as work:
+        run([release.tree / "icesoc", "docs", "--out", work], cwd=release.tree,
+            env={"SOURCE_DATE_EPOCH": release.seconds})
+        archive.tar_of_folder(release.path("icesoc-VERSION-site.tar.gz"),
+                              f"icesoc-{release.version}-site", f"{work}/html", release.seconds)
+
+
+def packages(release):
+    """Copies the Debian packages that `./icesoc package` makes of the working tree, which must be
+    the commit."""
+    if output(["git", "-C", str(release.origin), "status", "--porcelain"]):
+        raise Stop("release: Debian packages are made of the working tree, which has changes; "
+                   "commit them, or choose other parts with --only")
+    with tempfile.TemporaryDirectory() as work:
+        run([release.origin / "icesoc", "package", "--output", work],
+            env={"SOURCE_DATE_EPOCH": release.seconds})
+        for file in Path(work).glob("*.deb"):
+            shutil.copyfile(file, release.out / file.name)
+
+
+def bill(release):
+    made = {file.name: hashlib.sha256(file.read_bytes()).hexdigest()
+            for file in release.out.iterdir()}
+    release.path("icesoc-VERSION.spdx.json").write_text(
+        sbom.document(release.version, release.commit, release.seconds, release.files, made))
+
+
+MAKERS = dict(zip(PARTS, (source, icec, changes, site, packages, bill), strict=True))
+
+
+def build(tree, out, parts, key):
+    """Makes these parts in an empty folder, with SHA256SUMS and its signature. Returns the version
+    and the files, the signature last, if there is a key."""
+    commit, seconds, files, programs = read_commit(tree)
+    with tempfile.TemporaryDirectory() as work:
+        for name, data in files.items():
+            file = Path(work, name)
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_bytes(data)
+            file.chmod(0o755 if name in programs else 0o644)
+        release = Release(number(tree, commit, files), commit, seconds, files, programs,
+                          Path(work), Path(tree), Path(out))
+        shutil.rmtree(out, ignore_errors=True)
+        release.out.mkdir(parents=True)
+        for part, make in MAKERS.items():
+            if part in parts:
+                make(release)
+    listed = archive.sums(out)
+    made = sorted(path.name for path in Path(out).iterdir())
+    return release.version, made + ([archive.sign(listed, key).name] if key else [])

@@ -257,6 +257,12 @@ function(icesoc_chip)
     get_property(regs GLOBAL PROPERTY ICESOC_CORE_${name}_regs)
     get_property(manifest GLOBAL PROPERTY ICESOC_CORE_${name}_manifest)
     list(APPEND options --core=${name}=${manifest}=${regs})
+    get_property(slices GLOBAL PROPERTY ICESOC_CORE_${name}_slices)
+    foreach(s IN LISTS slices)
+      if(TARGET slice2c)
+        list(APPEND options "--slice=${name}=$<TARGET_PROPERTY:${s},SLICE_FILE>")
+      endif()
+    endforeach()
     get_filename_component(folder ${manifest} DIRECTORY)
     file(GLOB own CONFIGURE_DEPENDS ${folder}/*.ucf)
     list(APPEND inputs ${manifest} ${regs} ${own})
@@ -285,7 +291,7 @@ function(icesoc_chip)
   add_custom_command(OUTPUT ${GEN_DIR}/map.regs.json ${GEN_DIR}/soc_cores.vh ${GEN_DIR}/soc_cores.c
                      ${GEN_DIR}/soc_pins.h ${GEN_DIR}/core_pins.ucf ${GEN_DIR}/icesoc.svd
                      ${GEN_DIR}/probes.json ${GEN_DIR}/icesoc.rdl ${GEN_DIR}/icesoc.ipxact.xml
-                     ${check}
+                     ${GEN_DIR}/objects.json ${check}
     COMMAND ${PYTHON} -m icesoc.chip.coremap ${CORES}
             --base ${CMAKE_SOURCE_DIR}/bus/map.regs.json ${options}
             --block 0=system=${CMAKE_SOURCE_DIR}/hdl/system/system.regs.json

@@ -5,6 +5,7 @@
 #include "c/context.h"
 #include "front/front.h"
 #include "hw/generator.h"
+#include "text/description.h"
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
@@ -37,8 +38,8 @@ struct Options {
     std::vector<std::string> files, includes, defines, undefines;
     std::string outputDir = ".", includeDir, headerExtension = "h", sourceExtension = "c",
                 dependFile, hardware[std::size(hardwareOutputs)];
-    bool oneProgram = false, preprocessOnly = false, depend = false, validate = false,
-         hwOwnClock = false;
+    bool oneProgram = false, preprocessOnly = false, depend = false, describe = false,
+         validate = false, hwOwnClock = false;
     NameRules rules;
 };
 
@@ -181,8 +182,15 @@ private:
     std::map<std::string, std::string> headers_, definitions_;
 };
 
-// Compiles a file, or appends its dependencies to `rules`.
-bool compile(const std::string& file, const Options& o, std::string& rules, Program& program) {
+// What the files of a command line have in common.
+struct Collected {
+    std::string rules;                                                   // --depend
+    Program program;                                                     // --one-program
+    nlohmann::ordered_json described = nlohmann::ordered_json::object(); // --describe
+};
+
+// Compiles a file, or adds its dependencies or its description to `all`.
+bool compile(const std::string& file, const Options& o, Collected& all) {
     if (fs::is_directory(file) || !std::ifstream(file)) {
         std::cerr << "slice2c: error: cannot read '" << file << "'\n";
         return false;
@@ -198,11 +206,16 @@ bool compile(const std::string& file, const Options& o, std::string& rules, Prog
     std::vector<std::string> limits = limitFiles(p.files);
     if (o.depend) {
         p.files.insert(p.files.end(), limits.begin(), limits.end());
-        rules += dependencyRule(file, names, p.files);
+        all.rules += dependencyRule(file, names, p.files);
         return true;
     }
     Diagnostics diagnostics(std::cerr);
     Unit unit = compileUnit(p.text, file, o.rules, diagnostics);
+    if (o.describe) { // C's limits do not matter
+        if (diagnostics.errors() == 0)
+            describeUnit(unit, all.described);
+        return diagnostics.errors() == 0;
+    }
     if (diagnostics.errors() == 0)
         addLimits(unit, limits, diagnostics);
     scopeEnumerators(unit);
@@ -216,7 +229,7 @@ bool compile(const std::string& file, const Options& o, std::string& rules, Prog
         b.header = names.base + "." + names.headerExtension;
     }
     if (diagnostics.errors() == 0 && o.oneProgram)
-        program.add(unit, diagnostics);
+        all.program.add(unit, diagnostics);
     if (diagnostics.errors()) {
         std::cerr << diagnostics.errors() << (diagnostics.errors() == 1 ? " error\n" : " errors\n");
         return false;
@@ -224,7 +237,7 @@ bool compile(const std::string& file, const Options& o, std::string& rules, Prog
     return o.oneProgram || (save(generateC(unit, names), o.outputDir) && saveHardware(blocks, o));
 }
 
-void describe(CLI::App& app, Options& o) {
+void addOptions(CLI::App& app, Options& o) {
     app.add_option("files", o.files, "Slice files");
     app.add_option("-I", o.includes, "folder to look for #include files")->allow_extra_args(false);
     app.add_option("-D", o.defines, "define a preprocessor symbol: NAME or NAME=VALUE")
@@ -242,6 +255,8 @@ void describe(CLI::App& app, Options& o) {
         app.add_option(hardwareOutputs[i].option, o.hardware[i], hardwareOutputs[i].help);
     app.add_flag("--hw-own-clock", o.hwOwnClock,
                  "cores run in separate clock domains: servants check that they answered");
+    app.add_flag("--describe", o.describe,
+                 "print the declarations as JSON, generate nothing (docs/call.md)");
     app.add_flag("--depend", o.depend, "print make dependencies, generate nothing");
     app.add_option("--depend-file", o.dependFile, "write dependencies to this file");
     app.add_flag("--one-program", o.oneProgram,
@@ -258,7 +273,7 @@ void describe(CLI::App& app, Options& o) {
 int main(int argc, char** argv) {
     CLI::App app{"Generates C90 stubs and skeletons for IceC from Slice files."};
     Options o;
-    describe(app, o);
+    addOptions(app, o);
     try {
         app.parse(argc, argv);
         if (o.files.empty() && !o.validate)
@@ -269,12 +284,14 @@ int main(int argc, char** argv) {
     if (o.validate)
         return 0;
     o.depend = o.depend || !o.dependFile.empty();
-    std::string rules;
-    Program program;
+    Collected all;
     int failures = 0;
     for (const std::string& file : o.files)
-        failures += !compile(file, o, rules, program);
+        failures += !compile(file, o, all);
     if (o.depend && failures == 0)
-        failures += !(o.dependFile.empty() ? print(rules) : write(o.dependFile, rules));
+        failures += !(o.dependFile.empty() ? print(all.rules) : write(o.dependFile, all.rules));
+    if (o.describe && failures == 0)
+        failures += !print(
+            all.described.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     return failures ? 1 : 0;
 }

@@ -6,7 +6,7 @@ import concurrent.futures, json, os, shutil, subprocess, sys, tempfile, time, un
 from pathlib import Path
 
 TREE = Path(__file__).resolve().parent.parent.parent
-from icesoc.cli import command, flight, main  # noqa: F401
+from icesoc.cli import command, everything, flight  # noqa: F401
 from icesoc.cli.options import FLIGHT, SWITCH
 from icesoc.util.lock import lock
 from icesoc.util.ninja import explained

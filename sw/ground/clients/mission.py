@@ -21,6 +21,7 @@ import threading
 import Ice
 
 import plugged
+import stay
 from mission_log import Air, Log, report, whole
 from PIL import Image, ImageDraw
 
@@ -49,7 +50,7 @@ def parse_arguments():
         with open(args.flight) as file:
             flight = json.load(file)
         for name in ("threshold", "loss", "guard", "patience", "key", "camera", "out", "wire",
-                     "vehicles", "observer"):
+                     "vehicles", "observer", "live"):
             setattr(args, name, flight[name])
         args.endpoint = "%s -d %s -a 0x0001 -s 0x0000" % (
             "serial" if args.wire else "xbee-at", args.device)
@@ -305,8 +306,8 @@ class Mission:
         report(self.args, self.log, result, self.station, self.air)
 
 
-def main():
-    args = parse_arguments()
+def fly(args):
+    """Flies the mission; returns an exit status."""
     communicator = initialize(args)
     try:
         registers = os.path.join(os.path.dirname(os.path.abspath(__file__)),
@@ -327,6 +328,11 @@ def main():
         sys.exit("mission: %s" % e)
     finally:
         communicator.destroy()
+
+
+def main():
+    args = parse_arguments()
+    return fly(args) or (stay.serve(args) if args.live else 0)
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@
 
 Usage: commandline_test.py commandline work-folder slice2c
 """
+import json
 import subprocess
 import sys
 from pathlib import Path
@@ -110,6 +111,18 @@ class Cases(Script):
         self.slice2c("--hw-c x crlf.ice", 1,
                      r"crlf.ice:1:1: error: expected an interface with \[\":hw\"\], found none")
         self.assertFalse(Path("crlf.h").exists())
+        # The description of declarations for other programs.
+        self.slice2c("--describe -I slice slice/Top.ice bad.ice", 1, "bad.ice:1:8: error: ")
+        self.slice2c("--describe -I slice slice/Top.ice one/fir.ice")
+        described = json.loads(self.said)
+        self.assertEqual(described["::Lib::Points"]["element"], "::Lib::Point_ty")
+        self.assertEqual(described["::Top::Worse"]["fields"],
+                         [{"name": "whom", "type": "::Lib::Later*"}])
+        self.assertEqual(described["::Top::Service"]["operations"], [
+            {"name": "go", "result": "void", "parameters": [
+                {"name": "points", "type": "::Lib::Points"}, {"name": "leaf", "type": "::Top::Leaf"}],
+             "throws": ["::Top::Worse"]}])
+        self.assertIn("::Cores::Fir", described)
         # An exception that no operation throws, by itself or as a base of one.
         Path("thrown.ice").write_text(
             "module M { exception Base { int a; }; exception Thrown extends Base { int b; };\n"

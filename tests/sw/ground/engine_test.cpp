@@ -11,6 +11,7 @@
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
+#include <termios.h>
 #include <unistd.h>
 
 namespace {
@@ -272,6 +273,11 @@ TEST_F(EngineTest, AModemThatWasGivenUpIsTriedAgainAndTheListenerIsCalled) {
 TEST_F(EngineTest, AModemThatWasLeftInCommandModeIsFoundAtOnce) {
     const int port = open(rig_.pty.path().c_str(), O_RDWR | O_NOCTTY);
     ASSERT_GE(port, 0);
+    termios mode;
+    ASSERT_EQ(tcgetattr(port, &mode), 0);
+    cfmakeraw(&mode);
+    cfsetspeed(&mode, B9600);
+    ASSERT_EQ(tcsetattr(port, TCSANOW, &mode), 0);
     rig_.pass(2 * Rig::guardMs / 1000.0);
     ASSERT_EQ(write(port, "+++", 3), 3);
     ASSERT_TRUE(rig_.until([&] { return rig_.ground->inCommandMode(); }));

@@ -57,7 +57,10 @@ class Cases(Script):
             self.said, log = look.browse(f"http://127.0.0.1:{port}/",
                                          "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
                                          "--window-size=1280,1500", "--virtual-time-budget=4000")
+            page = self.said
             state = urllib.request.urlopen(f"http://127.0.0.1:{port}/state").read().decode()
+            self.calls()
+            self.said = page
         self.assertNotRegex(log, "CONSOLE.*(rror|NOT_RESOLVED)")
         self.has(
             "the mission is over", '<p id="flight">size 96x64, cpu m3, guard 20</p>',
@@ -86,6 +89,24 @@ class Cases(Script):
         for file in (*PAGE.glob("*.html"), *PAGE.glob("*.css")):
             self.lacks("(https?:)?//[a-z]", file)  # the page names no other host
         self.narrow(state)
+
+    def calls(self):
+        """After the mission the vehicle is called from the shell."""
+        call = TREE / "icesoc", "call", "--json", "--flight", self.work, "--build", BUILD
+        self.ask(*call, "hwengine1.setParameterA", "300", status=2)
+        self.has("value: expected 0 to 255, got 300")
+        found = []
+        for threshold in "24", "60":
+            self.ask(*call, "setParameterA", threshold)
+            self.ask(*call, "hwengine1.startProcessing", "--oneway")
+            self.ask(*call, "hwengine1.getResult")
+            found.append(json.loads(self.said)["res"]["found"])
+        self.assertGreater(found[0], found[1])
+        self.ask(*call, "fir.filter", "[]", status=6)
+        self.has('{"error": "Ice.UnknownException", "text": "the call was refused: ')
+        self.ask(*call, "keys.count", status=6)
+        self.has("maintenance")
+        self.ask(*call, "update.getStatus", status=5)
 
     def narrow(self, state):
         """At 420 pixels nothing is cut, or needs a scroll bar."""

@@ -331,6 +331,15 @@ const Hw_Contract hw_contracts[MAP_CONTRACTS] = {{{contracts}}};
 """
 
 
+def objects_of(chip, registers, slices):
+    """Returns the cores' objects as JSON: identity, Slice files, and register description.
+    registers: file by folder; slices: pairs of folder and file."""
+    return json.dumps([
+        {"identity": core.identity, "core": core.name, "registers": registers[core.folder],
+         "slice": [file for folder, file in slices if folder == core.folder]}
+        for core in chip.cores], indent=1) + "\n"
+
+
 def files(chip, slots, base):
     """Returns the chip's files, name to text."""
     return {"map.regs.json": map_of(chip, base), "probes.json": probes_of(chip),

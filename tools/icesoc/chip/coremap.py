@@ -3,7 +3,8 @@
 
 Writes map.regs.json (slots, memory ports, buffers in DDR3, pins), soc_cores.vh (instances, for
 soc.v), soc_cores.c (servants), soc_pins.h (for the simulator), core_pins.ucf (for ISE), probes.json
-(the probes' signals), and the registers for other tools and for people.
+(the probes' signals), objects.json (for ./icesoc call), and the registers for other tools and for
+people.
 """
 import argparse
 import os
@@ -360,10 +361,12 @@ def parts(option, text, form):
 
 def build(asked):
     """Returns all files, name to text."""
-    manifests, descriptions = {}, {}
+    manifests, descriptions, files = {}, {}, {}
     for folder, file, registers in (parts("--core", c, "folder=core.toml=file")
                                     for c in asked.core):
         manifests[folder], descriptions[folder] = of_core(file, registers)
+        files[folder] = registers
+    slices = [parts("--slice", s, "folder=file") for s in asked.slice]
     base = described(asked.base).description
     chip = Chip(read(asked.list), base, manifests, descriptions)
     blocks = [parts("--block", b, "slot=name=file") for b in asked.block]
@@ -371,7 +374,8 @@ def build(asked):
     slots += [(core.name, core.slot, descriptions[core.folder]) for core in chip.cores]
     placed = [Slot(name, number, chip.registers + SLOT_BYTES * number, block)
               for name, number, block in slots]
-    return core_output.files(chip, placed, base) | core_exchange.files(placed)
+    return core_output.files(chip, placed, base) | core_exchange.files(placed) | {
+        "objects.json": core_output.objects_of(chip, files, slices)}
 
 
 def main():
@@ -384,6 +388,7 @@ def main():
     parser.add_argument("--base", required=True, help="the platform's map.regs.json")
     for option, text in (
             ("--core", "folder=its manifest (core.toml)=its registers (*.regs.json)"),
+            ("--slice", "folder=a Slice file of its servant"),
             ("--block", "slot=name=description of a block of the platform, for the pages")):
         parser.add_argument(option, action="append", default=[], help=text)
     parser.add_argument("--output-dir", default=".", help="where the files go")

@@ -9,15 +9,16 @@ import argparse
 import difflib
 import os
 import re
+import typing
 
-from icesoc.cli.options import BUILT, PATHS, SWITCH
+from icesoc.cli.options import ARGUMENTS, BUILT, PATHS, SWITCH
 from icesoc.util.errors import Stop
 
 COMMANDS = {}  # by name, such as "core new", in the order of the list
 GROUPS = {}  # first words of names of two words, with their help
 DEFAULTS = {}  # a group's command that its first word alone means
 SECTIONS = {  # of the overview: commands and groups, by what a user wants to do
-    "Fly": ("run", "replay", "gdb", "key", "fly"),
+    "Fly": ("run", "call", "replay", "gdb", "key", "fly"),
     "Add cores, look at the chip": ("core", "contract", "synth"),
     "Build and test": ("build", "test", "regress", "bisect", "check", "bench", "nightly"),
     "The project": ("setup", "docs", "release", "clean", "commands")}
@@ -63,7 +64,9 @@ class Command:
                 more["metavar"] = option.name.upper() if option.positional else option.kind.metavar
                 if option.positional or option.many:
                     more.update(nargs="*" if option.many else "?")
-            parser.add_argument(name, **more)
+            action: typing.Any = parser.add_argument(name, **more)
+            if option.completer:
+                action.completer = option.completer
             if option.positional:  # by its name, too, as by make
                 more["help"] = argparse.SUPPRESS
                 parser.add_argument(f"--{option.name}", dest=f"--{option.field}", **more)
@@ -73,8 +76,8 @@ class Command:
         """The values of all options.
 
         given: texts by field; makes: variables of make's command line; place: the folder of
-        relative names of files."""
-        values = argparse.Namespace(given=set(), given_by_make=makes is not None)
+        relative names of files, also a value itself."""
+        values = argparse.Namespace(given=set(), given_by_make=makes is not None, place=place)
         for option in self.options:
             text = given.get(option.field) or given.get(f"--{option.field}")
             called = f"--{option.name}"
@@ -144,7 +147,12 @@ def by_words(words, place):
         raise Stop(f"{found.name}: {text} (./icesoc {found.name} --help)", 2)
 
     parser.error = refuse
-    given, left = parser.parse_known_args(rest)
+    parse = parser.parse_known_args
+    if any(option.kind is ARGUMENTS for option in found.options):
+        # Options may stand between the arguments, and -1e3 is not one.
+        parse = parser.parse_known_intermixed_args
+        parser._negative_number_matcher = re.compile(r"-\.?\d")
+    given, left = parse(rest)
     names = [name for action in parser._actions for name in action.option_strings]
     for word in left:
         what = f"has no option {word.partition('=')[0]}" if word.startswith(

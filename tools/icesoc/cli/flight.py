@@ -42,7 +42,7 @@ FIELDS = [
     Option("app", one_of("uav", "minimal"),
            "uav: the mission; minimal: the small program of Table II (needs --cpu m3)", "uav"),
     Option("port", number(0, 65535), "TCP port of the flight's page; 0 selects a free port", 0),
-    Option("live", SWITCH, "keep the page open until Ctrl-C"),
+    Option("live", SWITCH, "keep page and vehicle until Ctrl-C, for ./icesoc call"),
     Option("cores", WORDS, "cores to call during the flight (ip/*/ground.py)"),
     Option(
         "camera", SWITCH,

@@ -7,9 +7,6 @@ import sys
 
 from icesoc import TREE
 from icesoc.cli import command
-from icesoc.cli.commands import (  # noqa: F401 (each declares its own)
-    flights, core, foreign, synth, build, regression, checks, coverage, fresh, docs,
-    release, tree)
 from icesoc.util.console import say, warn
 from icesoc.util.errors import Interrupted, Stop
 from icesoc.util.process import hear_signals
@@ -41,9 +38,18 @@ def make_gave():
     return (goal, goals or [goal], names) if goal else None
 
 
+def declare(words):
+    """Declares the commands that a command line needs: a call must start quickly."""
+    if words[:1] == ["call"] and "_ARGCOMPLETE" not in os.environ:
+        from icesoc.cli.commands import call  # noqa: F401
+    else:
+        from icesoc.cli import everything  # noqa: F401
+
+
 def act(words):
     place = surroundings()
     made = make_gave()
+    declare(words)
     if "_ARGCOMPLETE" in os.environ:
         return command.complete()
     if not words and (not made or made[0] == "help"):
@@ -53,6 +59,7 @@ def act(words):
     elif text := command.help_of(words):
         return say(text)
     elif words[0] == "--version":
+        from icesoc.cli.commands import tree
         return say(tree.version())
     else:
         found, values = command.by_words(words, place)

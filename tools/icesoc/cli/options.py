@@ -30,15 +30,18 @@ class Option:
     positional: bool = False
     variable: str = ""  # name as a make variable
     listed: bool = True  # False: hidden, for the tests of this project
+    completer: typing.Callable = None  # of argcomplete
 
     def __post_init__(self):
         self.variable = self.variable or self.name.upper().replace("-", "_")
         self.field = self.name.replace("-", "_")
-        self.many = self.kind is WORDS or self.kind is FILES
+        self.many = self.kind in (WORDS, FILES, ARGUMENTS)
 
     def value(self, text, called):
         """Returns the value of a text, or of a list of texts from argparse. `called` is the name
         of the option in messages."""
+        if self.kind is ARGUMENTS:
+            return [text] if isinstance(text, str) else text
         if isinstance(text, list):
             text = " ".join(text)
         try:
@@ -55,8 +58,8 @@ class Option:
     def explain(self):
         """Returns the help text: meaning, values, default."""
         shown = " ".join(self.default) if isinstance(self.default, list) else self.default
-        parts = [] if self.kind in (TEXT, WORDS, FILES, SWITCH, FILE, KEY_FILE, FOLDER, PATH,
-                                    FLIGHT) else [self.kind.expected]
+        parts = [] if self.kind in (TEXT, WORDS, FILES, ARGUMENTS, SWITCH, FILE, KEY_FILE, FOLDER,
+                                    PATH, FLIGHT) else [self.kind.expected]
         parts += [f"default {shown}"] if shown is not None and shown != "" else []
         return (self.help + (f" ({'; '.join(parts)})" if parts
                              else "") + f" [{self.variable}]").replace("%", "%%")
@@ -133,6 +136,7 @@ TEXT = Kind(str, "text", {"type": "string"})
 WORDS = Kind(str.split, "words separated by spaces",
              {"type": "array", "items": {"type": "string"}}, "WORD")
 FILES = Kind(str.split, "file names separated by spaces", metavar="FILE")
+ARGUMENTS = Kind(str, "words, each as it is", metavar="WORD")
 SWITCH = Kind(_switch, "1 or 0", {"type": "boolean"})
 FILE = Kind(_file, "a readable file", {"type": "string"}, "FILE")
 FOLDER = Kind(str, "a folder", {"type": "string"}, "FOLDER")

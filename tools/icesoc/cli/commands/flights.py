@@ -9,6 +9,7 @@ import tempfile
 import time
 from pathlib import Path
 
+from icesoc.call.objects import LIVE
 from icesoc.cli import flight, keys
 from icesoc.cli.build_folder import BuildFolder, configured, netlists
 from icesoc.cli.command import command
@@ -53,7 +54,8 @@ def fly_mission(values):
         build.follow(chip)
     if not build.built:
         build.set(CLK_HZ=str(values.clk_hz))
-    build.ninja("mission", *(["firmware_minimal"] if values.app == "minimal" else []))
+    build.ninja("mission", *(["firmware_minimal"] if values.app == "minimal" else []),
+                *(["gateway", "slice2c"] if values.live else []))
     flight.check_chip(values, build)
     flight.take_key(values, build)
     flight.take_observers_key(values)
@@ -116,6 +118,7 @@ def mission(values, build, held):
     def flown():
         return status_file.stat().st_ctime_ns if status_file.exists() else None
 
+    (out / LIVE).unlink(missing_ok=True)
     before = flown()
     trial = run([*page, "--try"], check=False)
     if 0 < trial <= 128:
@@ -128,24 +131,32 @@ def mission(values, build, held):
         "sw/vehicle/Autopilot.ice", "--reference", build / "testbench/sim/vision-reference",
         *(["--observer-device", "{device2}"] if values.vehicles > 1 else [])])
     shown = None
+
+    def flies_on():  # after the mission
+        return values.live and (out / LIVE).exists()
+
     try:
         # The page starts after the simulator has accepted its options: its address would hide a
         # refusal.
         if until(lambda: flown() != before, sim):
             shown = start(page, pass_fds=[held])
-            if not until(lambda: sim.poll() is not None, shown):
+            if not until(lambda: sim.poll() is not None or flies_on(), shown):
                 ended = shown.returncode
                 how = f"signal {-ended}" if ended < 0 else f"exit status {ended}"
                 warn(f"the page is gone ({how}); the mission goes on")
-        status = wait(sim)
-        if status == 0:
-            say(f"Pictures and report: {out}/before.png {out}/after.png {out}/report.md")
-        if status == 0 and values.live and shown.poll() is None:
-            say("The page stays until Ctrl-C.")
+        results = f"Pictures and report: {out}/before.png {out}/after.png {out}/report.md"
+        if values.live and until(flies_on, sim):
+            say(results)
+            say("The page stays until Ctrl-C, and so does the vehicle: ./icesoc call --list")
             try:
-                wait(shown)
+                status = wait(sim)
             except Interrupted:
-                say("The page is closed.")
+                status = 0
+                say("The flight has ended.")
+        else:
+            status = wait(sim)
+            if status == 0:
+                say(results)
     except Interrupted:
         end(sim)
         raise

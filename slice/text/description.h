@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+//
+// description: the declarations of a unit as JSON, for programs that call operations without
+// generated code (docs/call.md).
+
+#pragma once
+
+#include "front/ast.h"
+#include <nlohmann/json.hpp>
+
+// Adds each declaration of the unit, those of included files among them, under its full name:
+//
+//   "::Autopilot::Feature": {"kind": "struct", "file": "Autopilot.ice", "doc": "...", "fields":
+//   [...]}
+//
+// A type is a text: "short", "::Cores::Samples", a proxy as "::Demo::Watcher*" or "Object*".
+void describeUnit(const Unit& unit, nlohmann::ordered_json& declarations);

@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: MIT
+"""client: calls an operation by stock Ice and returns what came of it; listens to events.
+
+Exit statuses of a call that fails: 3 the operation threw an exception of its throws clause, 4 no
+answer (no connection, time-out), 5 the vehicle has no such object, facet or operation, 6 the
+operation refused the call without a reason; 2 stands for wrong arguments.
+"""
+import os
+import queue
+import sys
+import time
+
+import Ice
+
+from icesoc import TREE
+from icesoc.call.mapping import Mapping, escaped
+from icesoc.util.errors import Stop
+
+THROWN, SILENT, ABSENT, REFUSED = 3, 4, 5, 6
+
+
+class Failure(Stop):
+    """A call that failed, with the name and the fields of its exception."""
+
+    def __init__(self, text, status, name="", fields=None):
+        super().__init__(text, status)
+        self.name, self.fields = name, fields or {}
+
+
+class Events:
+    """Calls of the vehicle to listeners of this program, in the order of their arrival."""
+
+    def __init__(self, client):
+        self.client, self.queue, self.adapter = client, queue.Queue(), None
+
+    def listener(self, interface):
+        """Returns a proxy of a new object that takes each operation of an interface."""
+        slices, mapping = self.client.slices, self.client.mapping
+        members = {}
+        for name, operation in slices.operations(interface).items():
+            if not name.startswith("ice_"):
+                members[escaped(name)] = self.taker(interface, operation)
+        kind = type("Listener", (mapping.of(interface), ), members)
+        proxy = self.open().addWithUUID(kind()).ice_oneway()
+        return mapping.of(interface, "Prx").uncheckedCast(proxy)
+
+    def open(self):
+        """Returns the object adapter; calls arrive by the connection of this program's calls."""
+        if not self.adapter:
+            target, communicator = self.client.target, self.client.communicator
+            if target.callbacks:
+                self.adapter = communicator.createObjectAdapterWithEndpoints("", target.callbacks)
+                self.adapter.activate()
+            else:
+                self.adapter = communicator.createObjectAdapter("")
+                self.client.guarded(lambda: self.client.proxy.ice_getConnection().setAdapter(
+                    self.adapter))
+        return self.adapter
+
+    def taker(self, interface, operation):
+        inputs = [p for p in operation["parameters"] if not p.get("out")]
+        outputs = [p["type"] for p in operation["parameters"] if p.get("out")]
+        if operation["result"] != "void":
+            outputs.insert(0, operation["result"])
+
+        def take(listener, *values):
+            found = {p["name"]: self.client.mapping.outof(value, p["type"])
+                     for p, value in zip(inputs, values)}
+            self.queue.put((f"{interface.rpartition(':')[2]}.{operation['name']}", found))
+            if outputs:
+                raise Ice.UnknownException("this program only listens")
+
+        return take
+
+
+class Client:
+    """A communicator and the proxy of one object."""
+
+    def __init__(self, target, catalogue, each, options):
+        self.target, self.catalogue, self.each = target, catalogue, each
+        self.slices, self.options = catalogue.slices, options
+        self.communicator = self.connect()
+        self.mapping = Mapping(self.slices, self.communicator)
+        self.events = Events(self)
+        self.mapping.listeners = self.events.listener
+        try:
+            self.proxy = self.made()
+        except BaseException:
+            self.communicator.destroy()
+            raise
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.communicator.destroy()
+
+    def connect(self):
+        sys.path.append(str(TREE / "sw/ground/clients"))
+        import plugged
+        milliseconds = str(int(1000 * self.options.timeout))
+        settings = {"Ice.Default.InvocationTimeout": milliseconds,
+                    "Ice.Override.ConnectTimeout": milliseconds, "Ice.RetryIntervals": "-1",
+                    "Ice.Warn.Connections": "0", "Ice.Warn.Dispatch": "0", "Ice.ACM.Close": "0",
+                    "Ice.Default.EncodingVersion": self.options.encoding,
+                    **self.target.properties}
+        if self.options.config:
+            settings |= self.guarded(lambda: properties_in(self.options.config))
+        if self.target.plugin and not os.path.exists(
+                os.path.join(self.target.plugin, "libxbeeat.so.37")):
+            raise Stop(f"'{self.target.plugin}' has no libxbeeat.so.37: make run builds it", 2)
+        return self.guarded(lambda: plugged.initialize(
+            settings, self.target.plugin, self.target.guard, self.target.key))
+
+    def made(self):
+        """Returns the proxy of the object; asks for its interface if that is unknown."""
+        mode = " -o" if self.options.oneway else ""
+        text = self.target.proxy(self.each.identity, mode, self.options.facet or "")
+        try:
+            plain = self.communicator.stringToProxy(text)
+        except Ice.Exception as error:
+            raise Stop(f"expected an object's identity, got '{self.each.identity}': "
+                       f"{getattr(error, 'str', error)}", 2) from None
+        if not self.each.interface:
+            ids = self.guarded(plain.ice_twoway().ice_ids)
+            self.each.interface = self.catalogue.interface_of(ids)
+            if not self.each.interface:
+                own = next((name for name in ids if name != "::Ice::Object"), ids[0])
+                raise Stop(f"'{self.each.identity}' has the interface {own}, which no Slice file "
+                           "declares: give --slice FILE", 2)
+        return self.mapping.of(self.each.interface, "Prx").uncheckedCast(plain)
+
+    def arguments(self, operation, values):
+        """Returns the values of stock Ice for checked ones, by the operation's order."""
+        made = []
+        for p in operation["parameters"]:
+            if not p.get("out"):
+                value = self.mapping.into(values[p["name"]], p["type"], p["name"])
+                made.append(Ice.Unset if value is None and "tag" in p else value)
+        return made
+
+    def call(self, operation, arguments):
+        """Returns ({name: value} of the results, milliseconds)."""
+        name = operation["name"]
+        method = getattr(self.proxy, name if name.startswith("ice_") else escaped(name))
+        begin = time.perf_counter()
+        context = self.options.context
+        answer = self.guarded(lambda: method(*arguments, context) if name.startswith("ice_")
+                              else method(*arguments, context=context), operation)
+        milliseconds = 1000 * (time.perf_counter() - begin)
+        outputs = [(p["name"], p["type"]) for p in operation["parameters"] if p.get("out")]
+        if operation["result"] != "void":
+            outputs.insert(0, ("result", operation["result"]))
+        if self.options.oneway:
+            return {}, milliseconds
+        answers = answer if len(outputs) > 1 else (answer, )
+        return {called: self.mapping.outof(value, kind)
+                for (called, kind), value in zip(outputs, answers)}, milliseconds
+
+    def guarded(self, function, operation=None):
+        """Calls a function; turns each exception of Ice into a failure with a plain text."""
+        try:
+            return function()
+        except Ice.UserException as error:
+            raise self.thrown(error) from None
+        except Ice.ObjectNotExistException:
+            raise Failure(f"{self.target.place} has no object '{self.each.identity}'", ABSENT,
+                          "Ice.ObjectNotExistException") from None
+        except Ice.FacetNotExistException:
+            raise Failure(f"'{self.each.identity}' has no facet '{self.options.facet}'", ABSENT,
+                          "Ice.FacetNotExistException") from None
+        except Ice.OperationNotExistException:
+            raise Failure(f"'{self.each.identity}' has no operation '{operation['name']}' in the "
+                          "vehicle: is its firmware built from the same Slice?", ABSENT,
+                          "Ice.OperationNotExistException") from None
+        except Ice.UnknownException as error:
+            raise Failure(f"the call was refused: {reason_of(error)}", REFUSED,
+                          error.ice_id().lstrip(":").replace("::", ".")) from None
+        except (Ice.InvocationTimeoutException, Ice.TimeoutException):
+            raise Failure(f"no answer from {self.target.place} within {self.options.timeout:g} s: "
+                          "is it on, in reach, and has it the same key?", SILENT,
+                          "Ice.TimeoutException") from None
+        except Ice.LocalException as error:
+            raise Failure(f"cannot reach {self.target.place}: {reason_of(error)}", SILENT,
+                          error.ice_id().lstrip(":").replace("::", ".")) from None
+
+    def thrown(self, error):
+        """Returns the failure of an exception that Slice declares."""
+        name = error.ice_id()
+        fields = self.mapping.object(error, name)
+        text = ", ".join(f"{field} = {value}" for field, value in fields.items())
+        named = name.lstrip(":").replace("::", ".")
+        return Failure(f"{named}{': ' + text if text else ''}", THROWN, named, fields)
+
+
+def properties_in(file):
+    """Returns Ice's properties in a file."""
+    found = Ice.createProperties()
+    found.load(file)
+    return found.getPropertiesForPrefix("")
+
+
+def reason_of(error):
+    """Returns an exception of Ice as a short text."""
+    for field in ("unknown", "reason"):
+        if getattr(error, field, ""):
+            return getattr(error, field).strip().rpartition("\n")[2]
+    number = getattr(error, "error", 0)
+    return os.strerror(number) if number else error.ice_id().rpartition(":")[2]

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: MIT
+"""objects: the objects of a vehicle with their interfaces and Slice files, as the build lists them
+in gen/objects.json, and where a flight in progress is reached, as it writes it in OUT/live.json.
+"""
+import json
+import os
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from icesoc import TREE
+from icesoc.call.slices import Slices, hint, listed
+from icesoc.util.errors import Stop
+
+# Objects of the firmware itself (sw/vehicle): file and interface
+VEHICLE = {"uav": ("sw/vehicle/Autopilot.ice", "::Autopilot::Vehicle"),
+           "keys": ("sw/vehicle/Autopilot.ice", "::Autopilot::KeyRing"),
+           "chip": ("sw/hw/registers/Registers.ice", "::Hw::Chip"),
+           "update": ("sw/update/Update.ice", "::Update::Firmware"),
+           "fpga": ("sw/update/Update.ice", "::Update::Firmware")}
+REGISTERS = "::Hw::Registers"  # interface of a core that is called by its registers
+ACCESSES = {"get": ("ro", "rw", "w1c", "w1s"), "set": ("rw", "w1c", "w1s", "ws")}
+LIVE = "live.json"  # of a flight in progress, in its folder
+
+
+def read_json(path):
+    """Returns the JSON in a file, or None if there is no such file."""
+    try:
+        return json.loads(Path(path).read_text())
+    except (OSError, ValueError):
+        return None
+
+
+@dataclass
+class Object:
+    identity: str
+    interface: str = ""  # empty: to be asked for
+    registers: str = ""  # file *.regs.json of its core
+
+
+def only_interface(slices, files):
+    """Returns the interface of a core's servant: the one with [":hw"], or the only one."""
+    folders = {os.path.realpath(file) for file in files}
+    found = [name for name in slices.interfaces()
+             if os.path.realpath(slices.get(name)["file"]) in folders]
+    marked = [name for name in found if ":hw" in slices.get(name).get("metadata", [])]
+    return marked[0] if len(marked) == 1 else found[0] if len(found) == 1 else ""
+
+
+class Catalogue:
+    """What can be called: objects, and the declarations of their interfaces."""
+
+    def __init__(self, build, files=()):
+        """build: build folder of the vehicle, or None; files: Slice files that replace its own."""
+        listed_cores = read_json(Path(build, "gen/objects.json")) if build else None
+        self.is_complete = listed_cores is not None
+        cores = listed_cores or []
+        own = [] if build is None else [str(TREE / file) for file, _ in VEHICLE.values()]
+        all_files = [*files, *own, *(file for core in cores for file in core["slice"])]
+        self.given = {os.path.realpath(file) for file in files}
+        self.slices = Slices(all_files, compiler(build),
+                             [folder for folder in ("/usr/share/ice/slice",)
+                              if os.path.isdir(folder)])
+        self.objects = {}
+        if build is not None:
+            self.objects = {name: Object(name, interface)
+                            for name, (_, interface) in VEHICLE.items()}
+        for core in cores:
+            interface = core.get("interface") or only_interface(self.slices, core["slice"])
+            self.objects[core["identity"]] = Object(core["identity"], interface,
+                                                    core["registers"])
+
+    def find(self, text):
+        """Returns (object, operation) of OBJECT.OPERATION, or of an operation that only one object
+        has."""
+        identity, dot, operation = text.rpartition(".")
+        if dot:
+            return self.objects.get(identity) or self.unknown(identity, operation), operation
+        having = [each for each in self.objects.values()
+                  if text in self.slices.operations(each.interface)]
+        if len(having) == 1:
+            return having[0], text
+        if text in self.objects:
+            names = self.slices.operations(self.objects[text].interface)
+            raise Stop(f"{text}: expected {text}.OPERATION; it has {listed(names)}", 2)
+        if having:
+            raise Stop(f"{text}: expected an object before it, since several have this operation: "
+                       + listed(f"{each.identity}.{text}" for each in having), 2)
+        every = {name for each in self.objects.values()
+                 for name in self.slices.operations(each.interface)}
+        raise Stop(f"no object has an operation '{text}'{hint(text, every)}; ./icesoc call --list "
+                   "lists all", 2)
+
+    def unknown(self, identity, operation):
+        """Returns an object that the build does not list. It has the interface of --slice that
+        declares the operation; several or none: the object itself is asked later."""
+        declare = [name for name in self.slices.interfaces()
+                   if os.path.realpath(self.slices.get(name)["file"]) in self.given
+                   and any(o["name"] == operation for o in self.slices.get(name)["operations"])]
+        if self.is_complete and not self.given and (near := hint(identity, self.objects)):
+            raise Stop(f"the vehicle has no object '{identity}'{near}", 2)
+        return Object(identity, declare[0] if len(declare) == 1 else "")
+
+    def operation(self, each, name):
+        """Returns an operation of an object."""
+        found = self.slices.operations(each.interface)
+        if name not in found:
+            raise Stop(f"{each.identity} has no operation '{name}'"
+                       f"{hint(name, found) or '; it has ' + listed(found)}", 2)
+        return found[name]
+
+    def interface_of(self, ids):
+        """Returns the most derived interface among an object's own that Slice declares."""
+        known = [name for name in ids if name in self.slices.declarations]
+        return max(known, key=lambda name: len(self.slices.lineage(name)), default="")
+
+
+def registers(each):
+    """Returns {name: (access, width)} of the registers and fields of an object's core."""
+    from icesoc.regs.model import Block, Wrong
+    found = {}
+    try:
+        block = Block.read(each.registers)
+    except (Wrong, OSError):
+        return found
+    for register in block.registers:
+        found[register.name] = register.access, register.width
+        for field in register.fields:
+            if field.name:
+                found[f"{register.name}.{field.name}"] = field.access, field.width
+    return found
+
+
+def check_register(each, operation, values):
+    """Checks name and value of a call of Hw::Registers against the core's description."""
+    if each.interface != REGISTERS or operation not in ACCESSES or not each.registers:
+        return
+    known, name = registers(each), values["name"]
+    if not known or re.fullmatch("0[xX][0-9a-fA-F]+", name):
+        return
+    fitting = [one for one, (access, _) in known.items() if access in ACCESSES[operation]]
+    if name not in fitting:
+        reason = f"{known[name][0]}: it cannot be {'read' if operation == 'get' else 'written'}" \
+            if name in known else f"not a register{hint(name, fitting)}"
+        raise Stop(f"{name}: {reason}; expected {listed(fitting)}", 2)
+    most = (1 << known[name][1]) - 1
+    if operation == "set" and not 0 <= values["value"] <= most:
+        raise Stop(f"{name}: expected 0 to {most}, got {values['value']}", 2)
+
+
+def compiler(build):
+    """Returns the path of slice2c."""
+    candidates = [Path(build, "slice/slice2c")] if build else []
+    candidates += [TREE / "build/main/slice/slice2c"]
+    return next((path for path in candidates if path.exists()), "slice2c")
+
+
+def flight(folder):
+    """Returns live.json of a flight in progress in this folder, or None."""
+    found = read_json(Path(folder, LIVE))
+    try:
+        os.kill(found["pid"], 0)
+    except (TypeError, KeyError, ProcessLookupError):
+        return None
+    except PermissionError:
+        pass
+    return found
+
+
+def flights():
+    """Returns {folder: live.json} of all flights in progress below build/, the usual one first."""
+    folders = sorted(Path("build").glob("*/" + LIVE), key=lambda path: path.parent.name != "run")
+    found = {str(path.parent): flight(path.parent) for path in folders}
+    return {folder: live for folder, live in found.items() if live}

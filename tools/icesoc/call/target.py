@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: MIT
+"""target: where the objects of a call are: in a flight in progress, behind a serial device, behind
+the gateway, or in IceGrid by name."""
+import re
+from dataclasses import dataclass, field
+
+from icesoc.call import objects
+from icesoc.util.errors import Stop
+
+
+@dataclass
+class Target:
+    """Properties of the communicator, and what follows an identity in a proxy."""
+    place: str  # for messages
+    suffix: str = ""  # ":tcp -h ..." or "@uav1"
+    properties: dict = field(default_factory=dict)
+    build: str = ""  # build folder of the vehicle; empty: unknown
+    plugin: str = ""  # folder of the radio plugin
+    key: str = ""
+    guard: int = 1000
+    callbacks: str = ""  # endpoints for calls of the vehicle; empty: its own connection
+
+    def proxy(self, identity, mode="", facet=""):
+        quoted = identity.replace("\\", "\\\\").replace('"', '\\"')
+        options = (f' -f "{facet}"' if facet else "") + mode
+        return f'"{quoted}"{options}{self.suffix}'
+
+
+def of_flight(folder, vehicle):
+    """Returns the target of a flight in progress."""
+    found = {folder: objects.flight(folder)} if folder else objects.flights()
+    if not any(found.values()):
+        place = f"in {folder}" if folder else "below build/"
+        raise Stop(f"no flight is in progress {place}: start one with make run LIVE=1, or give "
+                   "--flight, --device or --gateway", 4)
+    folder, live = next(iter(found.items()))
+    vehicles = live["vehicles"]
+    name = vehicle or next(iter(vehicles))
+    if name not in vehicles:
+        raise Stop(f"--vehicle: expected {', '.join(vehicles)}, got '{name}'", 2)
+    return Target(f"the flight in {folder}", ":" + vehicles[name], build=live["build"])
+
+
+def of_device(values):
+    """Returns the target behind a modem, or a cable, at a serial port."""
+    kind = "serial" if values.wire else "xbee-at"
+    plugin = values.plugin or f"{values.build}/ground"
+    address = values.address
+    return Target(
+        f"the vehicle {address} at {values.device}",
+        f':{kind} -d "{values.device}" -a {address} -t {int(1000 * values.timeout)}',
+        build=values.build, plugin=plugin, key=values.key or "", guard=values.guard,
+        callbacks=f'{kind} -d "{values.device}"')
+
+
+def of_gateway(values):
+    """Returns the target at HOST:PORT, or at Ice's endpoints."""
+    text = values.gateway
+    if " " in text:
+        return Target(text, ":" + text, build=values.build)
+    found = re.fullmatch(r"(?:\[([0-9a-fA-F:.]+)\]|([^:\[\]]+)):(\d{1,5})", text)
+    if not found or not 0 < int(found[3]) <= 65535:
+        raise Stop(f"--gateway: expected HOST:PORT, [::1]:PORT or Ice's endpoints, got '{text}'", 2)
+    return Target(text, f':tcp -h "{found[1] or found[2]}" -p {found[3]}', build=values.build)
+
+
+def of(values):
+    """Returns the target that the options name; without one, the flight in progress."""
+    given = [name for name in ("flight", "device", "gateway", "locator") if getattr(values, name)]
+    if len(given) > 1:
+        raise Stop(f"give one of {', '.join('--' + name for name in given)}", 2)
+    if values.locator:
+        name = values.vehicle or "uav1"
+        return Target(f"'{name}' in IceGrid", f"@{name}",
+                      {"Ice.Default.Locator": values.locator}, build=values.build)
+    if values.device:
+        return of_device(values)
+    if values.gateway:
+        return of_gateway(values)
+    return of_flight(values.flight, values.vehicle)

@@ -120,7 +120,8 @@ def yosys_by(script, output, options):
         errors = [line for line in said.splitlines() if "ERROR" in line] or said.splitlines()[-1:]
         if re.search(r"\.sv:\d+: ERROR: syntax error", errors[0], re.I):
             errors.append("SystemVerilog that this Yosys does not read: tests and flights have it "
-                          "as it is; a netlist needs what sv2v makes of it (docs/recipes.md)")
+                          "as it is; a netlist needs what sv2v makes of it "
+                          "(docs/guides/foreign-core.md)")
         raise Stop("\n".join([*errors, f"whole log: {log}"]))
     if output.exists() and output.read_bytes() == part.read_bytes():
         part.unlink()  # what is made of it stays

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""core: begin a core, test it, look at it, take it away (docs/recipes.md)."""
+"""core: begin a core, test it, look at it, take it away (docs/guides/core-new.md)."""
 import os
 import re
 import shutil

@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""docs: builds the documentation site."""
+"""docs: builds the documentation site, and follows the tutorial."""
+import os
 import shutil
+import subprocess
 from pathlib import Path
 
 from icesoc.cli.command import COMMANDS, command
-from icesoc.cli.options import FOLDER, Option
+from icesoc.cli.options import FOLDER, SWITCH, Option
 from icesoc.util.console import say
 from icesoc.util.errors import Stop
-from icesoc.site import build
+from icesoc.util.process import run, start, wait
+from icesoc.site import build, tutorial
 
 PROGRAMS = {"sphinx-build": "python3-sphinx", "doxygen": "doxygen"}
 
@@ -34,3 +37,49 @@ def docs(values):
     except build.SiteError as error:
         raise Stop(f"docs: {error}") from error
     say(f"Open {page}")
+
+
+TUTORIAL = "docs/tutorial.md"
+CHIP = Path("ip/cores.list")
+BEGIN = "cd icesoc"  # the tutorial's last command before the ones that are run
+MADE = ["LowPass.ice", "ip/low_pass"]
+
+
+@command("check tutorial", [
+    Option("clone", SWITCH, "follow it in a new clone of HEAD, build/tutorial/icesoc, with nothing"
+                            " built")],
+         brief="check tutorial", long="check tutorial --clone", examples=["check tutorial"])
+def check_tutorial(values):
+    """run every command of docs/tutorial.md and compare its output with the page
+
+    Without --clone it runs in this tree and uses what is built. It adds the core low_pass to the
+    tree, and removes it at the end."""
+    page, folder = Path(TUTORIAL).absolute(), Path.cwd()
+    if values.clone:
+        folder = Path("build/tutorial/icesoc").absolute()
+        shutil.rmtree(folder, ignore_errors=True)
+        run(["git", "clone", "--quiet", "--no-hardlinks", Path.cwd(), folder])
+    for name in MADE:
+        if (folder / name).exists():
+            raise Stop(f"check tutorial: {name} already exists; rename or remove it first")
+
+    def execute(text):
+        say(f"$ {text}")
+        kept = {name: value for name, value in os.environ.items()
+                if name not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL", "ICESOC_TREE")}
+        process = start(["env", "-i", *(f"{name}={value}" for name, value in kept.items()),
+                         "sh", "-c", text], cwd=folder, stdin=subprocess.DEVNULL, text=True,
+                        errors="replace", stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        output = process.stdout.read()
+        return wait(process), output
+
+    chip = (folder / CHIP).read_text()
+    try:
+        tutorial.follow(page, folder, execute, BEGIN)
+    except tutorial.Mismatch as error:
+        raise Stop(f"check tutorial: {error}") from error
+    finally:
+        (folder / MADE[0]).unlink(missing_ok=True)
+        shutil.rmtree(folder / MADE[1], ignore_errors=True)
+        (folder / CHIP).write_text(chip)
+    say("The output of every command is as the page shows it.")

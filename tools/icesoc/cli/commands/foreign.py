@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""foreign: puts third-party cores into slots (docs/recipes.md)."""
+"""foreign: puts third-party cores into slots (docs/guides/foreign-core.md)."""
 import json
 import shutil
 from pathlib import Path

@@ -208,7 +208,7 @@ void peers(Mode mode) {
     World w(RfWeather(), mode);
     const auto times = callTimes(w, 3, 31); // setParameterA(short) has 3 bytes
     const double own = times[times.size() / 2];
-    figures.add(std::string("round trip of a command ") + names[mode] + ", beside MAVLink 2", own,
+    figures.add(std::string("round trip of a command ") + names[mode] + ", limit: MAVLink 2", own,
                 "ms", ms);
 }
 
@@ -226,9 +226,10 @@ void headOfLine(Mode mode) {
             late = times[times.size() * 19 / 20];
         }
         char name[80];
-        std::snprintf(name, sizeof name, "call behind pictures %s, loss %.2f", names[mode], loss);
-        figures.add(name, median[1], "ms", median[0]);
-        figures.add("19 of 20: " + std::string(name), late, "ms", median[0]);
+        std::snprintf(name, sizeof name, "%s, loss %.2f", names[mode], loss);
+        const std::string what = "call during a picture transfer, ";
+        figures.add(what + "median " + name, median[1], "ms", median[0]);
+        figures.add(what + "95th percentile " + name, late, "ms", median[0]);
     }
 }
 

@@ -74,9 +74,9 @@ def main(build, output, *brief):
                               text=True).stdout
         found = re.search(expression, said, re.M) or sys.exit(f"cores: {core} says no {name}")
         value = round(bytes_of(float(found[1])), 3)
-        print(f"{name:<34} {value} bytes a clock: {100 * value:.1f} MB/s at 100 MHz, "
+        print(f"{name:<34} {value} bytes per clock: {100 * value:.1f} MB/s at 100 MHz, "
               f"{100 * value / 8:.1f} % of the port")
-        entries.append(figure(name, value, "bytes a clock", limit=8))
+        entries.append(figure(name, value, "bytes per clock", limit=8))
     leave(output, entries)
 
 

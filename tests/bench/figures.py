@@ -19,25 +19,30 @@ from pathlib import Path
 TITLES = {
     "simulator": "Simulator", "air": "Radio link on the half-duplex air",
     "fleet": "Several vehicles on one channel", "plugin": "Stock Ice through the plugin",
-    "trust": "Attacks, losses of power in updates, bytes of a key",
+    "trust": "Attacks, power losses during updates, cost of a key",
     "load": "Load on the ground's engine and gateway", "modem": "Modem set-up",
     "directory": "IceGrid's registry and IceStorm",
     "fsmc": "FSMC bridge", "memory": "Memory ports", "firmware": "Firmware on the Cortex-M3",
     "cores": "Cores", "slice": "Slice compiler", "size": "Bytes of the firmware's layers",
 }
 
+NOTES = {  # below the titles
+    "size": "The limit of each layer is the paper's figure for it (Table II). A build also fails if "
+            "a layer\nexceeds its smaller budget in "
+            "[`sw/size_budget.json`](../sw/size_budget.json)."}
+
 # Parts of a name that become columns of a row, where there are two to six
-AXES = [r"of \d+ vehicles", r"loss \d\.\d\d", r"bursts, \w+", r"\d+ m, fading", r"interferer \d+ %",
+AXES = [r"\d+ vehicles?", r"loss \d\.\d\d", r"bursts, \w+", r"\d+ m, fading", r"interferer \d+ %",
         "in the clear|encrypted|with a key", r"of \d+ bytes", r"\d+ ports", r"HCLK \d+ MHz"]
 HEAD = """# Figures
 
-`./icesoc bench` writes this page. It measures everything in one run on one machine, and shows each
-figure beside its limit, or beside a peer that was measured in the same run. The page of each
-subject explains what its figures mean and how they are measured.
+`./icesoc bench` writes this page. It measures everything in one run on one machine, and compares
+each figure with its limit, or with another implementation that it measures in the same run. The
+page of each subject explains its figures and how they are measured.
 
-In `a of b, c %`, a was measured, b is the limit, and c is a's share of it. Goodput and its limit
-count the bytes that programs exchange; `(d %)` after them is the share of all bytes that the modems
-could carry.
+`a of b, c %` means: a was measured, the limit is b, and a is c percent of it. Goodput and its limit
+count the bytes that programs exchange. The `(d %)` after them is the share of all bytes that the
+modems could transfer.
 """
 
 
@@ -95,7 +100,7 @@ def tables(rows):
             shapes.setdefault(tuple(cells), []).append(row)
     single = [line for cells, line in plain if not 2 <= len(cells) <= 6]
     if single:
-        lines += ["| what | measured | beside |", "|---|---|---|", *single]
+        lines += ["| what | measured | limit or comparison |", "|---|---|---|", *single]
     for columns, those in shapes.items():
         lines += [""] * bool(lines) + [f"| what | {' | '.join(columns)} |",
                                        "|---" * (len(columns) + 1) + "|", *those]
@@ -114,7 +119,8 @@ def main(words):
         entries = content["entries"] if isinstance(content, dict) else content
         name = os.path.splitext(os.path.basename(path))[0]
         rows = [(e["name"], number(e["value"]), e["unit"], beside(e)) for e in entries]
-        lines += ["", f"## {TITLES.get(name, name)}", *tables(rows)]
+        note = [NOTES[name], ""] if name in NOTES else []
+        lines += ["", f"## {TITLES.get(name, name)}", *note, *tables(rows)]
     with open(words[0], "w") as page:
         page.write("\n".join(lines) + "\n")
 

@@ -153,13 +153,13 @@ void measureLatencies(MeasuredFlight& f) {
     f.inTurn({start, isAlive, result, isAlive, isAlive, start, isAlive, result, isAlive, isAlive},
              20);
     stopListening(f);
-    say("interrupt latency, least", interrupts->least, "cycles");
+    say("interrupt latency, minimum", interrupts->least, "cycles");
     say("interrupt latency, mean", interrupts->mean(), "cycles");
-    say("interrupt latency, most", interrupts->most, "cycles");
-    say("interrupt routine of the FPGA, most", routines->most, "cycles", 0,
+    say("interrupt latency, maximum", interrupts->most, "cycles");
+    say("interrupt routine of the FPGA, maximum", routines->most, "cycles", 0,
         "the tick waits for so long");
     say("task switch (PendSV with entry and return), mean", switches->mean(), "cycles");
-    say("task switch, most", switches->most, "cycles");
+    say("task switch, maximum", switches->most, "cycles");
     const auto& masked = f.cpu().longestMasked();
     say("interrupts off, longest", static_cast<double>(masked.cycles) / hclk * 1e6, "us", 20,
         "in " + f.machine.stm32().image()->functionAt(masked.from));
@@ -194,12 +194,12 @@ void measureCalls(MeasuredFlight& f, unsigned calls, const std::string& what, do
     f.wait(2);
     idle = (f.awake() - idle) / (f.seconds() - idleFrom); // a second
     double aCall = (awake - idle * took) / calls, aTrip = took / calls;
-    say(what + ": processor load without any (tick of 1 kHz)", 100 * idle / hclk, "%");
+    say(what + ": processor load without calls (1 kHz tick)", 100 * idle / hclk, "%");
     say(what + ": radio interrupt to servant, mean", toServant.mean(), "cycles");
     say(what + ": servant to first frame of the reply, mean", back.mean(), "cycles");
-    say(what + ": all of its cycles, ticks not counted", aCall, "cycles", cycles,
+    say(what + ": all cycles of a call, without ticks", aCall, "cycles", cycles,
         "with acknowledgements");
-    say(what + ": share of the FSMC in its cycles", 100 * waiting / awake, "%");
+    say(what + ": share of the FSMC in these cycles", 100 * waiting / awake, "%");
     say(what + ": round trip", aTrip * 1e3, "ms");
     say(what + ": the platform's share of the round trip", 100 * aCall / hclk / aTrip, "%", share);
 }
@@ -224,11 +224,11 @@ void measureStream(MeasuredFlight& f, const std::string& what) {
     double took = f.seconds() - began,
            goodput = static_cast<double>(f.ground.deliveredBytes - bytes) / took;
     say(what + ": goodput", goodput / 1e3, "kB/s", 0, "messages of 1 KB, no loss");
-    say(what + ": goodput, share of the serial limit", 100 * goodput / serialLimit, "%");
+    say(what + ": goodput as a share of the serial limit", 100 * goodput / serialLimit, "%");
     say(what + ": processor load at 120 MHz", 100 * (f.awake() - awake) / took / hclk, "%", 5);
-    say(what + ": share of the FSMC in that", 100 * (f.waiting() - waiting) / (f.awake() - awake),
-        "%");
-    say(what + ": cycles a byte", (f.awake() - awake) / (goodput * took), "cycles");
+    say(what + ": share of the FSMC in this load",
+        100 * (f.waiting() - waiting) / (f.awake() - awake), "%");
+    say(what + ": cycles per byte", (f.awake() - awake) / (goodput * took), "cycles");
 }
 
 // Measures a ping from the message's last byte at IceC's endpoint to the first frame of its reply.
@@ -252,7 +252,7 @@ void measurePings(MeasuredFlight& f, const std::string& program) {
     stopListening(f);
     say(program + ": ping, message to first frame of the reply", took.mean(), "cycles");
     // From the first variable to the top of the main stack, on which interrupts run.
-    say(program + ": RAM with all objects and all stacks, the main stack's included",
+    say(program + ": RAM with all objects and all stacks, including the main stack",
         image.symbol("stack_top") - image.symbol("data_begin"), "bytes", 131072);
 }
 

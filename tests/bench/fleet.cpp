@@ -123,12 +123,13 @@ void measure(const std::string& what, int grounds, int vehicles, bool isKeyed,
     }
     std::sort(times.begin(), times.end());
     const std::string name = what + (isKeyed ? " with a key" : " in the clear");
-    figures.add(name + ", of " + std::to_string(vehicles) + " vehicles", rate, "calls/s",
-                foundOutside);
+    const std::string count =
+        ", " + std::to_string(vehicles) + (vehicles == 1 ? " vehicle" : " vehicles");
+    figures.add(name + count, rate, "calls/s", foundOutside);
     if (rate < 0.9 * foundOutside)
         figures.miss(name + " is below nine tenths of what others found");
-    for (auto [part, share] : {std::pair("median", 50u), std::pair("95 of 100 within", 95u)})
-        figures.add(name + ", of " + std::to_string(vehicles) + " vehicles: " + part,
+    for (auto [part, share] : {std::pair("median", 50u), std::pair("95th percentile", 95u)})
+        figures.add(name + count + ": " + part,
                     times.empty() ? 0 : times[(times.size() - 1) * share / 100], "ms");
 }
 
@@ -144,7 +145,8 @@ int main(int argc, char** argv) {
                 if (!figures.brief || vehicles == 2)
                     measure("one ground", 1, vehicles, isKeyed, isKeyed ? 0 : oneGround);
                 if (!figures.brief || vehicles == 2 || vehicles == 20)
-                    measure("a ground each", vehicles, vehicles, isKeyed, isKeyed ? 0 : pairs);
+                    measure("one ground per vehicle", vehicles, vehicles, isKeyed,
+                            isKeyed ? 0 : pairs);
                 if (!figures.brief && vehicles > 2)
                     measure("two grounds", 2, vehicles, isKeyed, 0);
             }

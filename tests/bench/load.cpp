@@ -50,10 +50,10 @@ public:
         for (unsigned count : wire_.received)
             arrived += count;
         std::sort(latencies_.begin(), latencies_.end());
-        figures.add(where + "calls answered rightly", answered_, "calls", calls_);
+        figures.add(where + "calls answered correctly", answered_, "calls", calls_);
         figures.add(where + "latency, median", at(0.50), "us");
-        figures.add(where + "latency, 99 of 100", at(0.99), "us");
-        figures.add(where + "memory grown since the first tenth", grown, "KiB");
+        figures.add(where + "latency, 99th percentile", at(0.99), "us");
+        figures.add(where + "memory growth after the first tenth", grown, "KiB");
         if (answered_ != calls_ || arrived != calls_)
             figures.miss(where + std::to_string(calls_) + " calls, " + std::to_string(arrived) +
                          " arrived, " + std::to_string(answered_) + " answered rightly");
@@ -132,11 +132,11 @@ public:
         const double last = together.empty() ? 0 : together[together.size() * 99 / 100];
         const double fair = clients_ * alone[alone.size() / 2];
         const auto answered = static_cast<double>(together.size());
-        figures.add("gateway: calls answered rightly", answered, "calls", clients_ * callsEach);
-        figures.add("gateway: a call by one client alone, median", alone[alone.size() / 2], "us");
+        figures.add("gateway: calls answered correctly", answered, "calls", clients_ * callsEach);
+        figures.add("gateway: call of a single client, median", alone[alone.size() / 2], "us");
         figures.add("gateway: latency, median", together[together.size() / 2], "us");
-        figures.add("gateway: latency, 99 of 100", last, "us", 3 * fair);
-        figures.add("gateway: memory grown", grown, "KiB");
+        figures.add("gateway: latency, 99th percentile", last, "us", 3 * fair);
+        figures.add("gateway: memory growth", grown, "KiB");
         if (answered != clients_ * callsEach)
             figures.miss("gateway: calls were lost or answered wrongly");
         if (last > 3 * fair)

@@ -21,7 +21,7 @@ struct Mix {
 };
 constexpr Mix mixes[] = {{"reads", 0, 0},
                          {"writes", 1, 1},
-                         {"ports 0, 2 .. read, 1, 3 .. write", 0, 1},
+                         {"even ports read, odd ports write", 0, 1},
                          {"each port reads and writes", 0.5, 0.5}};
 
 // Clocks that the memory and its port need for the requests, from the first command to the last
@@ -115,7 +115,7 @@ double stream(const Mix& mix, unsigned size, uint64_t cycles, uint64_t seed) {
     double limit = words / static_cast<double>(directMcb(Bench::size, accepted));
     double rate = words / static_cast<double>(clocks);
     std::string name = fmt::format("MCB, {} ports, {} bytes, {}", ports, 8u << size, mix.name);
-    figures.add(name, rate, "words of 64 bits a clock", limit);
+    figures.add(name, rate, "64-bit words per clock", limit);
     leastFairness = std::min(leastFairness, words * words / (ports * squares));
     return rate / limit;
 }
@@ -149,7 +149,7 @@ template <class Module, unsigned ports> void latency(uint64_t cycles, uint64_t s
         }
         std::string name = fmt::format("MCB, {} ports, read of {} bytes", ports, 8u << size);
         figures.add(name + ", latency alone", mean[0], "clocks");
-        figures.add(name + ", latency, others streaming", mean[1], "clocks");
+        figures.add(name + ", latency while other ports stream", mean[1], "clocks");
     }
 }
 
@@ -161,8 +161,8 @@ int main(int argc, char** argv) {
     return figures.run(argc, argv, [] {
         const uint64_t cycles = figures.brief ? 500 : 20000, seed = testSeed();
         const double worst = streams(cycles, seed);
-        figures.add("memory controllers, least share of the limit", worst, "of 1", 0.95);
-        figures.add("memory controllers, least fairness (Jain)", leastFairness, "of 1", 1);
+        figures.add("memory controllers, lowest share of the limit", worst, "of 1", 0.95);
+        figures.add("memory controllers, lowest fairness (Jain)", leastFairness, "of 1", 1);
         if (worst < 0.95)
             figures.miss("a memory controller is below 95 % of its limit");
         latency<VMemoryMcb2, 2>(cycles, seed);

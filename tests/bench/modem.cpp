@@ -92,11 +92,12 @@ int main(int argc, char** argv) {
             uint32_t guardMs, bd;
         };
         const Case cases[] = {
-            {"set-up, modem as from the factory (9600), guard time 1000 ms", 1000, 3},
-            {"set-up, modem at the rate already, guard time 1000 ms", 1000, 7},
-            {"set-up, modem as from the factory (9600), guard time 20 ms", 20, 3},
-            {"set-up, modem at the rate already, guard time 20 ms", 20, 7},
-            {"set-up, modem at 1200 baud, found last but one, guard time 20 ms", 20, 0}};
+            {"set-up, modem with factory settings (9600 baud), guard time 1000 ms", 1000, 3},
+            {"set-up, modem already at the target rate, guard time 1000 ms", 1000, 7},
+            {"set-up, modem with factory settings (9600 baud), guard time 20 ms", 20, 3},
+            {"set-up, modem already at the target rate, guard time 20 ms", 20, 7},
+            {"set-up, modem at 1200 baud (the last rate but one that is tried), guard time 20 ms",
+             20, 0}};
         struct Side {
             const char* name;
             double (*measure)(uint32_t, uint32_t);

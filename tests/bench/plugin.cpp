@@ -97,8 +97,8 @@ public:
         isOver = true;
         pictures.join();
         const double median = busy[busy.size() / 2], alone = idle[idle.size() / 2];
-        figures_.add(std::string("Ice, call behind pictures ") + modes[hasKey_], median, "ms",
-                     alone);
+        figures_.add(std::string("Ice, call during a picture transfer ") + modes[hasKey_], median,
+                     "ms", alone);
     }
     RadioTest::EchoPrx& echo() { return *echo_; }
 

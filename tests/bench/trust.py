@@ -17,16 +17,16 @@ CALL = "Tags/CallBytes.ACallAndItsReplyTakeFewerThanMavlink/"
 HOSTILE = "Vehicles/Attacked.NothingHostileIsAcceptedAndNothingLegalLostOrDoubled/"
 FIGURES = [  # program, tests, property, text
     (0, "Update.WhereverThePowerIsCutThereIsAnImageThatBoots", "cuts",
-     "new firmware: losses of power, in each operation and later"),
+     "new firmware: power losses, in each operation and later"),
     (0, "Fpga.WhereverThePowerIsCutABitstreamConfiguresIt", "cuts",
-     "new bitstream: losses of power, in each operation and later"),
+     "new bitstream: power losses, in each operation and later"),
     (1, HOSTILE + "0:" + HOSTILE + "1", "packets", "hostile packets"),
     (1, CALL + "0", "bytes",
-     "setParameterA and its reply on the air, in the clear; beside MAVLink 2"),
-    (1, CALL + "1", "bytes", "the same under a key; beside MAVLink 2, signed"),
+     "setParameterA and its reply on the air, in the clear; limit: MAVLink 2"),
+    (1, CALL + "1", "bytes", "the same with a key; limit: MAVLink 2, signed"),
     (1, CALL + "2", "bytes", "the same with tags of 4 bytes")]
-HARM = {"cuts": "it does not start again",
-        "packets": "one accepted, or a legal message lost or doubled"}
+HARM = {"cuts": "vehicle or FPGA does not start again",
+        "packets": "accepted packets, and valid messages lost or doubled"}
 
 
 def run(program, tests, hostile):

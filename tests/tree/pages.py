@@ -76,7 +76,7 @@ def stale(tree):
         return int(row(name).split()[0].replace(",", ""))
 
     hostile = count("hostile packets")
-    firmware, bitstream = (count(f"new {what}: losses of power, in each operation and later")
+    firmware, bitstream = (count(f"new {what}: power losses, in each operation and later")
                            for what in ("firmware", "bitstream"))
     for said in (str(count("minimal.all")),
                  f"{sites} / {table1['ff']} / {table1['slices']} ({mapped})",

@@ -26,7 +26,7 @@ class Lists(unittest.TestCase):
     def test_pages_name_commands_that_there_are(self):
         value = r"""[A-Z][A-Z0-9_]*=(?:'[^']*'|"[^"]*"|[^\s`'"]*)"""
         verbs = {each.make for each in command.COMMANDS.values()} | set(command.ALIASES)
-        for page in [TREE / "README.md", TREE / "CONTRIBUTING.md", 
+        for page in [TREE / "README.md", TREE / "CONTRIBUTING.md",
                      *sorted(TREE.glob("docs/**/*.md"))]:
             quoted = "\n\n".join(re.findall(r"```.*?```|``.*?``|`[^`]+`", page.read_text(), re.S))
             for before, verb, after in re.findall(

@@ -110,7 +110,7 @@ def last_good(test):
     Option("bad", TEXT, "commit at which the test fails", "HEAD"),
     Option("list", SWITCH, "only list the commits to search"), SEED, BUILD, JOBS],
          make="bisect", brief="bisect test_fifo.Fifo.Wraps --good HEAD~3 --list", examples=[
-             "bisect test_fifo.Fifo.Wraps --good v1"])
+             "bisect test_fifo.Fifo.Wraps --good HEAD~20"])
 def bisect(values):
     """find the commit since which a test fails, in a separate checkout
 

@@ -69,6 +69,8 @@ class Cases(Script):
         text = doxygen_filter.convert(
             "/* Returns it. */\nint f(void);\nint a; /* bytes */\n", "f.h")
         self.assertEqual(text, "/** Returns it. */\nint f(void);\nint a; /**< bytes */\n")
+        self.assertEqual(doxygen_filter.convert("typedef BUFFERS(1, 2) All;\n", "f.h"),
+                         "typedef struct All All;\n")
 
     def test_broken_link(self):
         """A link to a page that does not exist fails the build and is named."""

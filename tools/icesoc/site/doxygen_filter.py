@@ -12,6 +12,8 @@ from pathlib import Path
 
 def convert(text, name):
     """Returns the text with Doxygen's comment marks."""
+    # A type that a macro declares is documented as a struct.
+    text = re.sub(r"^typedef [A-Z_]+\([^;]*\) (\w+);", r"typedef struct \1 \1;", text, flags=re.M)
     # A macro that wraps a function of the same name is not documented a second time.
     for macro in re.findall(r"^#define (\w+)\(", text, re.M):
         if re.search(rf"^\w[^#\n]*\b{macro}\(", text, re.M):

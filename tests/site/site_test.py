@@ -75,7 +75,8 @@ class Cases(Script):
     def test_broken_link(self):
         """A link to a page that does not exist fails the build and is named."""
         tree = fresh(WORK) / "tree"
-        for part in ("docs/conf.py", "docs/_static/site.css", "sw/fsmc/fsmc.h", "synth/baseline.json", "synth/ise/chip.ucf"):
+        for part in ("docs/conf.py", "docs/_static/site.css", "sw/fsmc/fsmc.h",
+                     "synth/baseline.json", "synth/ise/chip.ucf"):
             write(tree / part, (TREE / part).read_text())
         write(tree / "docs/index.md", "# Site\n\n```{toctree}\n:glob:\n*\nreference/**\n```\n")
         write(tree / "docs/bus.md", "# Bus\n\n[site](index.md)\n")

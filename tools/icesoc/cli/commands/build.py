@@ -26,7 +26,7 @@ def build_all(values):
 
 @command("build configure", [BUILD, JOBS, UCOS2], make="configure", brief="build configure")
 def build_configure(values):
-    """configure the build folder, and no more"""
+    """only configure the build folder"""
     BuildFolder(values.build, values).prepare()
 
 

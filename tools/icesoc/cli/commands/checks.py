@@ -157,9 +157,10 @@ def faults(values):
 def soak(values):
     """endurance of the radio: messages and stock Ice's calls, bad weather, reboots, noise
 
-    Half of the time it is the link alone (half of that attacked), then stock Ice through the
-    plugin to IceC on the chip's RTL. Ten vehicles and two grounds fly as many minutes of simulated
-    time, which take a twentieth of a processor's.
+    A quarter of the time runs the link alone, another quarter the link under attack, and half of
+    it stock Ice through the plugin to IceC on the chip's RTL. In addition, ten vehicles and two
+    ground stations fly for the same number of simulated minutes, which takes a twentieth of that
+    CPU time.
     """
     build = configured(values, "soak", "test_chip_soak", "test_engine", "test_modem_soak",
                        "test_link")

@@ -23,12 +23,12 @@ LEFT_OUT = "NOT_BUILT|^fuzz|^e2e.cores"
                              "check coverage --name ^vhdl[.]fir"],
          long="check coverage")
 def coverage(values):
-    """lines, branches and toggles that the tests reach, write build/coverage/html; exit status 1:
-    below tests/regress/coverage_gates.json
+    """measure the lines, branches and toggles that the tests reach
 
-    Builds models, C and C++ that count what ran (build/coverage), runs all tests but proofs, lint
-    and those of tools, and merges Verilator's, GHDL's and gcov's counts. Leaves html/index.html
-    and summary.json."""
+    Builds models, C and C++ with counters (build/coverage), runs all tests except proofs, lints and
+    tests of tools, and merges the counts of Verilator, GHDL and gcov. Writes html/index.html and
+    summary.json in build/coverage. Exit status 1: a figure is below its gate in
+    tests/regress/coverage_gates.json."""
     build = configured(values, tests=True)
     build.ninja("regress")
     counted = BuildFolder("build/coverage", values)

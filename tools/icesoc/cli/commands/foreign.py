@@ -42,8 +42,9 @@ def foreign_words(values):
     "core remove brief_foreign --force"), examples=[
         "core foreign my_uart --top wbuart --bus wishbone --files wbuart.v ufifo.v"])
 def foreign_core(values):
-    """put a third-party core into a slot: writes ip/NAME; its files in a repository of yours are
-    found from there"""
+    """put a third-party core into a slot: writes ip/NAME
+
+    With --repository, source files inside the repository are stored as relative paths."""
     build = BuildFolder(values.build, values).prepare()
     if any(file.lower().endswith((".vhd", ".vhdl")) for file in values.files):
         build.ninja("ghdl")
@@ -104,12 +105,13 @@ def put_and_fly(values, listed, known):
          brief="core examples --cores foreign_i2c foreign_arbiter foreign_queue",
          long="core examples --chip")
 def examples(values):
-    """put third-party cores and two of one's own through the recipe, in three orders, test them and
-    call them by radio
+    """download public cores, put them into slots, test them and call them by radio
 
-    Wishbone, Avalon-MM, AXI4-Lite, AXI-Stream and plain buses, in Verilog, SystemVerilog (in a chip
-    without a netlist) and VHDL. Downloads them from Debian's mirror and GitHub, and leaves out what
-    it cannot reach. The status is 77 if that is every third-party core, or one of CORES."""
+    The cores have Wishbone, Avalon-MM, AXI4-Lite, AXI-Stream and plain buses, and are written in
+    Verilog, SystemVerilog (in a chip without a netlist) and VHDL. They are downloaded from Debian's
+    mirror and GitHub; a core that cannot be downloaded is skipped. Together with two cores of this
+    tree they form a chip, built in three orders of the list. Exit status 77: no core, or not every
+    core of --cores, could be downloaded."""
     listed = json.loads(Path("examples/foreign/cores.json").read_text())
     known = {name for source in listed.values() for name in source["cores"]}
     if unknown := set(values.cores) - known:

@@ -38,10 +38,11 @@ def selection(values, *more):
          brief="test tree", examples=[
              "test hdl/fsmc", "test --label rtl", "test --name Burst --seed 7"])
 def test(values):
-    """run all tests, those of a folder, or those that options choose
+    """run all tests, the tests of a folder, or tests selected by options
 
-    All of them are the tests of the build folder, then those of firmware, models and IceC once more
-    with sanitizers. With a folder, a name or a label only the programs of these are built."""
+    Without options it runs all tests of the build folder, then the tests of firmware, models and
+    IceC again with sanitizers. With a folder, a name or a label it builds only the programs of the
+    selected tests."""
     build = BuildFolder(values.build, values).prepare(tests=True)
     some, tests, seed = values.folder or values.name or values.label, at_once(values), {
         "SEED": values.seed, "FRESH": "1" if values.fresh else ""}

@@ -161,8 +161,9 @@ def compare(build, jobs, base, head=None):
          [Option("base", TEXT, "commit to compare with", "", positional=True), BUILD, JOBS],
          make="contract-diff", brief="contract diff HEAD", examples=["contract diff main"])
 def contract_diff(values):
-    """what changed in the cores' registers since a commit; exit status 1: software of then would
-    break"""
+    """list changes of the cores' registers since a commit
+
+    Exit status 1: software for that commit would break."""
     build = configured(values, "slice2c")
     return run([*DIFF, build / "slice/slice2c", ".", values.base], check=False)
 

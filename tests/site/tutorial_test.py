@@ -34,6 +34,11 @@ a
 c
 ```
 
+<!-- long -->
+```console
+$ echo slow >>log
+```
+
 <!-- exit status 3 -->
 ```console
 $ exit 3
@@ -48,15 +53,18 @@ def execute(command):
 
 
 class Cases(Script):
-    def follow(self, text):
+    def follow(self, text, brief=False):
         fresh(WORK)
         write(WORK / "page.md", text)
-        tutorial.follow(WORK / "page.md", WORK, execute, "cd icesoc")
+        tutorial.follow(WORK / "page.md", WORK, execute, "cd icesoc", brief)
 
     def test_right(self):
         """A page is followed in its order."""
         self.follow(PAGE)
         self.assertEqual((WORK / "greeting").read_text(), "hello, radio\n")
+        self.assertTrue((WORK / "log").exists())
+        self.follow(PAGE, brief=True)
+        self.assertFalse((WORK / "log").exists())
 
     def test_wrong(self):
         """A wrong command, line, missing line, further line or exit status is reported with its

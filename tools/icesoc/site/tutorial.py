@@ -4,8 +4,8 @@
 A block of the language `console` has commands (`$ command`), each with its expected output. A line
 `...` stands for any number of lines, and `...` inside a line for any text. The comment
 `<!-- exit status N -->` in front of a block gives the exit status of its last command; it is 0
-otherwise. Any other block in front of which a line names a file, such as "`ip/x/x.v`:", is the
-content of that file.
+otherwise. `<!-- long -->` marks a block that a brief run leaves out. Any other block in front of which
+a line names a file, such as "`ip/x/x.v`:", is the content of that file.
 """
 import dataclasses
 import re
@@ -20,6 +20,7 @@ class Step:
     expected: list = dataclasses.field(default_factory=list)
     status: int = 0
     file: str = ""
+    long: bool = False
 
 
 class Mismatch(Exception):
@@ -58,6 +59,8 @@ def _block(number, language, lines, before):
             found[-1].expected.append(line)
         else:
             raise Mismatch(f"line {at}: expected '$ command' at the start of a block, got '{line}'")
+    for step in found:
+        step.long = before == "<!-- long -->"
     status = re.fullmatch(r"<!-- exit status (\d+) -->", before)
     if status and found:
         found[-1].status = int(status[1])
@@ -83,9 +86,9 @@ def compare(expected, printed):
     return None
 
 
-def follow(page, folder, execute, begin=""):
+def follow(page, folder, execute, begin="", brief=False):
     """Follows a page in a folder. `execute(command)` returns exit status and output. Steps up to
-    the command `begin` are left out."""
+    the command `begin` are left out, and the long ones if `brief`."""
     todo = steps(Path(page).read_text())
     if begin:
         at = next((n for n, step in enumerate(todo) if step.command == begin), None)
@@ -93,6 +96,8 @@ def follow(page, folder, execute, begin=""):
             raise Mismatch(f"{page}: expected the command '{begin}'")
         todo = todo[at + 1:]
     for step in todo:
+        if step.long and brief:
+            continue
         if step.file:
             Path(folder, step.file).write_text("\n".join(step.expected) + "\n")
             continue

@@ -47,8 +47,10 @@ MADE = ["LowPass.ice", "ip/low_pass"]
 
 @command("check tutorial", [
     Option("clone", SWITCH, "follow it in a new clone of HEAD, build/tutorial/icesoc, with nothing"
-                            " built")],
-         brief="check tutorial", long="check tutorial --clone", examples=["check tutorial"])
+                            " built"),
+    Option("brief", SWITCH, "leave out flights and the waveform, which take minutes")],
+         brief="check tutorial --brief", long="check tutorial --clone", examples=[
+             "check tutorial", "check tutorial --clone"])
 def check_tutorial(values):
     """run every command of docs/tutorial.md and compare its output with the page
 
@@ -75,7 +77,7 @@ def check_tutorial(values):
 
     chip = (folder / CHIP).read_text()
     try:
-        tutorial.follow(page, folder, execute, BEGIN)
+        tutorial.follow(page, folder, execute, BEGIN, values.brief)
     except tutorial.Mismatch as error:
         raise Stop(f"check tutorial: {error}") from error
     finally:

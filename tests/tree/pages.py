@@ -65,8 +65,8 @@ def stale(tree):
     readme, figures, baseline, utilisation = (open(os.path.join(tree, page)).read() for page in (
         "README.md", "docs/figures.md", "synth/baseline.json", "docs/utilisation.md"))
     table1 = json.loads(baseline)["designs"]["table1"]
-    sites = re.search(r"it is about\s+(\d+)", utilisation)[1]
-    mapped = re.search(r"the slices at (\d+ to \d+)", utilisation)[1]
+    sites = re.search(r"it\s+is\s+about\s+(\d+)", utilisation)[1]
+    mapped = re.search(r"the\s+slices\s+at\s+(\d+ to \d+)", utilisation)[1]
 
     def row(name):
         found = re.search(rf"^\| {re.escape(name)} \| (.*) \|$", figures, re.M)

@@ -27,8 +27,8 @@ TITLES = {
 }
 
 NOTES = {  # below the titles
-    "size": "The limit of each layer is the paper's figure for it (Table II). A build also fails if "
-            "a layer\nexceeds its smaller budget in "
+    "size": "The limit of each layer is the paper's figure for it (Table II). A build also fails "
+            "if a layer\nexceeds its smaller budget in "
             "[`sw/size_budget.json`](../sw/size_budget.json)."}
 
 # Parts of a name that become columns of a row, where there are two to six

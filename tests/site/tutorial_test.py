@@ -70,7 +70,8 @@ class Cases(Script):
         """A wrong command, line, missing line, further line or exit status is reported with its
         line in the page."""
         for old, new, message in (
-                ("$ cat greeting", "$ cat greetings", "page.md:14: cat greetings: .*status 0, got 1"),
+                ("$ cat greeting", "$ cat greetings",
+                 "page.md:14: cat greetings: .*status 0, got 1"),
                 ("hello, ...", "hello, cable", "page.md:14: .*expected hello, cable"),
                 ("hello, radio", "hello radio", "expected hello, [.]"),
                 ("a\\n...\\nc", "a\\nc", "expected c"),

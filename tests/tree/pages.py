@@ -54,7 +54,7 @@ def check(tree, page, files):
             if known and anchor not in anchors(os.path.join(tree, path)):
                 yield f"{page}:{number}: {path} has no heading #{anchor}"
         for path in re.findall(rf"`((?:{ROOMS})/[\w./*-]+)`", line):
-            example = re.search("low_pass|my_uart|[pP]ump|NAME", path)  # names in the guides' examples
+            example = re.search("low_pass|my_uart|[pP]ump|NAME", path)  # examples of the guides
             if not example and not exists(tree, path, files):
                 yield f"{page}:{number}: there is no {path}"
 

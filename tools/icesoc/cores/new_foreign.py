@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""new_foreign: puts a third-party core in Verilog or VHDL into a slot (docs/guides/foreign-core.md).
+"""new_foreign: puts a third-party core in Verilog or VHDL into a slot.
 
     new_foreign.py NAME TOP wishbone|axil|apb|avalon|memory|own|axis FOLDER [CLOCK=Hz]
                    [GHDL=program] [LIBRARY=name] [ADDRESS=words|bytes] [PARAM:NAME=value...]

@@ -48,8 +48,9 @@ MADE = ["LowPass.ice", "ip/low_pass"]
 @command("check tutorial", [
     Option("clone", SWITCH, "follow it in a new clone of HEAD, build/tutorial/icesoc, with nothing"
                             " built"),
-    Option("brief", SWITCH, "leave out flights and the waveform, which take minutes")],
-         brief="check tutorial --brief", long="check tutorial --clone", examples=[
+    Option("brief", SWITCH, "leave out flights and the waveform, which take minutes"),
+    Option("list", SWITCH, "only list the commands of the page")],
+         brief="check tutorial --list", long="check tutorial --clone", examples=[
              "check tutorial", "check tutorial --clone"])
 def check_tutorial(values):
     """run every command of docs/tutorial.md and compare its output with the page
@@ -57,6 +58,9 @@ def check_tutorial(values):
     Without --clone it runs in this tree and uses what is built. It adds the core low_pass to the
     tree, and removes it at the end."""
     page, folder = Path(TUTORIAL).absolute(), Path.cwd()
+    if values.list:
+        return say("\n".join(step.command or f"write {step.file}"
+                             for step in tutorial.steps(page.read_text())))
     if values.clone:
         folder = Path("build/tutorial/icesoc").absolute()
         shutil.rmtree(folder, ignore_errors=True)

@@ -107,6 +107,7 @@ REFUSED = {
     "echo a --oneway": "--oneway: expected an operation without results and exceptions, got echo",
     "nothing --context x": "--context: expected NAME=VALUE, got 'x'",
     "nothing --events 2": "--events needs --watch",
+    "nothing --page --gateway x": "--page: expected --gateway HOST:PORT, got 'x'",
     "nothing --encoding 2.0": "--encoding: expected 1.0 or 1.1, got '2.0'",
     "nothing --gateway x": "--gateway: expected HOST:PORT",
     "nothing --device /dev/null --flight x": "give one of --flight, --device",

@@ -3,7 +3,7 @@
  * uav_links: the vehicle's peers and their links, for the files of the radio, from the bottom up:
  * uav_state.c, uav_os.c, uav_links.c, uav_fleet.c (observer, other vehicle, calls to all vehicles)
  * and uav_modem.c (radio task). In firmware for one ground station
- * without/without_fleet.c replaces uav_fleet.c.
+ * without/without_fleet.c replaces uav_fleet.c and uav_peers.c.
  */
 #pragma once
 
@@ -43,7 +43,7 @@ void UAV_onPacketOf(void* context, const U8* bytes, U32 size);
 int UAV_isUp(void);
 
 /* ---- uav_fleet.c ---- */
-/* Starts the links of the peers besides the first ground. Returns how many there are. */
+/* Starts the links of the peers besides the first ground. Returns 1 if there are any. */
 int UAV_addPeers(void);
 /* Makes these peers known to the endpoint. */
 void UAV_usePeers(void);

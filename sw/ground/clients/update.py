@@ -287,7 +287,8 @@ def main():
             vehicle = Vehicle(Update.FirmwarePrx.uncheckedCast(own), args.patience)
             if name != "keys":
                 update(vehicle, part, say, Air(args.status), args.rehearse)
-            elif not (args.rehearse and images and parts[0] != (name, part)):
+            elif not args.rehearse or part is parts[0][1]:
+                # A rehearsal does not send keys that follow an image: the vehicle drops that image.
                 send_keys(vehicle, part, say)
         return 0
     except KeyboardInterrupt:

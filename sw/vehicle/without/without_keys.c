@@ -8,14 +8,6 @@
 
 #include <string.h>
 
-U32 UAV_stateAt(int role) {
-    return (U32)role * UAV_PEER_WORDS + BACKUP_AT(vehicle.keys.state);
-}
-
-U32 UAV_addressAt(int role) {
-    return BACKUP_AT(others[0].inverted) + ((U32)role - 1U) * UAV_PEER_WORDS;
-}
-
 int UAV_provide(U32 address, const U8* key) {
     U32 word;
     if (key)
@@ -58,7 +50,7 @@ int UAV_isOpen(void) {
 U32 UAV_addressOf(int role) {
     if (role == UAV_GROUND)
         return UAV_GROUND_ADDRESS;
-    return UAV_isOpen() ? ~UAV_load(UAV_addressAt(role)) : UAV_NO_PEER;
+    return UAV_isOpen() ? ~UAV_load(UAV_ADDRESS_AT(role)) : UAV_NO_PEER;
 }
 
 int UAV_hasGroundsPart(void) {

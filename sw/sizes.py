@@ -24,7 +24,7 @@ import tempfile
 PAPER = {"fsmc": 1116, "radio": 1795, "crypto": 0, "link": 1307, "icec": 2622, "endpoint": 0}
 # sources of a layer that are not just its folder's
 FILES = {"icec": ["icec/*.c", "icec/values/*.c", "icec/extra/*.c"],
-         "endpoint": ["icec/endpoints/xbee_endpoint.c"]}
+         "endpoint": ["icec/endpoints/xbee_endpoint.c", "icec/endpoints/xbee_peers.c"]}
 LAYER_FOLDERS = ("fsmc", "radio", "crypto", "link", "icec", "values", "extra", "endpoints")
 PACKAGES = ("update", "fleet", "keys")
 TITLES = {"values": "icec", "extra": "icec", "vehicle": "application", "loader": "update",

@@ -65,9 +65,9 @@ void UAV_usePeers(void) {
         XBeeATEndpoint_setVehicle(&uav_endpoint, UAV_VEHICLE, UAV_hasGroundsPart());
 }
 
-void UAV_seekVehicle(void) {
+void UAV_dialVehicle(void) {
     if (uav_peers[UAV_VEHICLE].link)
-        XBeeATEndpoint_seek(&uav_endpoint, UAV_VEHICLE, uav_now);
+        XBeeATEndpoint_dial(&uav_endpoint, UAV_VEHICLE, uav_now);
 }
 
 /* Takes a call to all vehicles, once. While one waits for IceC the others are dropped: a later copy

@@ -48,7 +48,7 @@ int UAV_addPeers(void);
 /* Makes these peers known to the endpoint. */
 void UAV_usePeers(void);
 /* Starts or stops connecting to the other vehicle. */
-void UAV_seekVehicle(void);
+void UAV_dialVehicle(void);
 /* Offers a call to all vehicles to IceC. Returns 1 if it waits. */
 int UAV_offerCall(void);
 /* Returns the receiver of packets in API mode. */

@@ -75,7 +75,7 @@ static U32 pollAll(void) {
     U32 wait = 0xFFFFFFFFU, due;
     int left, role = turn;
     if (uav_isAnswered)
-        UAV_seekVehicle();
+        UAV_dialVehicle();
     for (left = uav_peerCount; left; --left) {
         Link* link = uav_peers[role].link;
         if (link) {

@@ -19,7 +19,7 @@ int UAV_addPeers(void) {
 
 void UAV_usePeers(void) {}
 
-void UAV_seekVehicle(void) {}
+void UAV_dialVehicle(void) {}
 
 int UAV_offerCall(void) {
     return 0;

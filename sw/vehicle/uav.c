@@ -3,9 +3,17 @@
  * uav: tasks of the application: server, client, radio.
  */
 #include "uav.h"
+#include "Autopilot.h"
 #include "radio.h"
+#include "uav_cores.h"
+#include "uav_fleet.h"
+#include "uav_keyring.h"
 #include "uav_memory.h"
-#include "uav_private.h"
+#include "uav_modem.h"
+#include "uav_os.h"
+#include "uav_tasks.h"
+#include "uav_update.h"
+#include "ucos_ii.h"
 
 #define STACK_WORDS 512
 

@@ -3,9 +3,9 @@
  * uav_fleet: the peers other than the first ground station: an observer, another vehicle, and calls
  * to all vehicles. They need API mode, which identifies the source of each packet.
  *
- * An observer calls by itself and is not dialled; another vehicle is dialled only while this one
- * calls it.
+ * An observer connects by itself. Another vehicle is dialed while this one calls it.
  */
+#include "uav_fleet.h"
 #include "link_broadcast.h"
 #include "uav.h"
 #include "uav_keys.h"

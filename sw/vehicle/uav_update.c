@@ -7,7 +7,8 @@
 #include "Update.h"
 #include "receiver.h"
 #include "uav_memory.h"
-#include "uav_private.h"
+#include "uav_tasks.h"
+#include "ucos_ii.h"
 
 #include <lz4.h>
 #include <string.h>

@@ -3,6 +3,7 @@
  * without_fleet: the vehicle with one ground only (ICESOC_FLEET=OFF): no observer, no other
  * vehicle, no calls to all vehicles.
  */
+#include "uav_fleet.h"
 #include "uav_links.h"
 #include "uav_peers.h"
 

@@ -3,8 +3,8 @@
  * without_keys: the vehicle without keys (ICESOC_KEYS=OFF): every peer talks in the clear. It only
  * starts if it was opened on purpose, so a vehicle that has a key does not fly unprotected.
  */
+#include "uav_keyring.h"
 #include "uav_keys.h"
-#include "uav_private.h"
 
 #include <string.h>
 

@@ -7,7 +7,7 @@
 #include "fpga.h"
 #include "loader.h"
 #include "stm32f2.h"
-#include "uav_memory.h"
+#include "uav_backup.h"
 #include "uav_update.h"
 
 static void restart(void) {

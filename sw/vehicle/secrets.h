@@ -4,7 +4,7 @@
  */
 #pragma once
 
-#include "uav_memory.h"
+#include "uav_backup.h"
 
 extern const UAV_Board secrets_board; /* its context is not used */
 

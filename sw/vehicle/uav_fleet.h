@@ -6,7 +6,7 @@
 #pragma once
 
 #include "radio.h"
-#include "uav_state.h"
+#include "uav_radio_state.h"
 
 /* Starts the links of the peers besides the first ground. Returns 1 if there are any. */
 int UAV_addPeers(void);

@@ -4,7 +4,7 @@
  */
 #pragma once
 
-#include "uav_state.h"
+#include "uav_radio_state.h"
 
 #define UAV_BYTE_TIME_US16 1440U /* 111,111 baud */
 

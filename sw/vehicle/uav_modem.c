@@ -7,11 +7,11 @@
 #include "map_regs.h"
 #include "system_regs.h"
 #include "uav.h"
+#include "uav_backup.h"
 #include "uav_cores.h"
 #include "uav_fleet.h"
 #include "uav_keys.h"
 #include "uav_links.h"
-#include "uav_memory.h"
 #include "uav_os.h"
 
 #define DOWN_LIMIT 15000000U /* us without a link: the modem may have lost its settings */

@@ -3,7 +3,7 @@
  * uav_os: what IceC and its endpoint need from the operating system: locks, waits and signals.
  */
 #include "uav_os.h"
-#include "uav_state.h"
+#include "uav_radio_state.h"
 #include "uav_tasks.h"
 
 static OS_EVENT* endpointEvent;

@@ -7,7 +7,7 @@
  */
 #pragma once
 
-#include "uav_memory.h"
+#include "uav_backup.h"
 
 typedef enum UAV_Role {
     UAV_GROUND,           /* the first ground, always there */

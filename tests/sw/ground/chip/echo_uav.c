@@ -8,7 +8,7 @@
 #include "uav_cores.h"
 #include "uav_modem.h"
 #include "uav_os.h"
-#include "uav_state.h"
+#include "uav_radio_state.h"
 #include "uav_tasks.h"
 #include "ucos_ii.h"
 

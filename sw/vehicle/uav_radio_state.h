@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_state: the state that the files of the radio share: peers, endpoint, the link's lock. Those
- * files are, from the bottom up: uav_state, uav_os, uav_links, uav_fleet (observer, other vehicle,
- * calls to all vehicles) and uav_modem (radio task).
+ * uav_radio_state: the state that the files of the radio share: peers, endpoint, the link's lock.
+ * Those files are, from the bottom up: uav_radio_state, uav_os, uav_links, uav_fleet (observer,
+ * other vehicle, calls to all vehicles) and uav_modem (radio task).
  */
 #pragma once
 

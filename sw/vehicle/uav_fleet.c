@@ -94,13 +94,9 @@ int UAV_offerCall(void) {
     return toAllSize != 0; /* the endpoint kicks the radio task when it takes the call */
 }
 
-int UAV_makeVehicleProxy(Ice_CommunicatorPtr ic, Ice_ObjectPrxPtr other) {
-    static char text[] = "uav:xbee-at -a 0x0000";
+int UAV_makeVehicleProxy(Ice_ObjectAdapterPtr adapter, Ice_ObjectPrxPtr other) {
     const U32 address = UAV_addressOf(UAV_VEHICLE);
-    U32 i;
-    for (i = 0; i < 4U; ++i)
-        text[sizeof text - 2U - i] = "0123456789abcdef"[address >> 4U * i & 15U];
-    (void)Ice_Communicator_stringToProxy(ic, text, other);
+    (void)XBeeATEndpoint_makeProxy(adapter, "uav", (U16)address, other);
     Ice_ObjectPrx_ice_invocationTimeout(other, VEHICLE_MS);
     return address != UAV_NO_PEER;
 }

@@ -24,4 +24,4 @@ int UAV_offerCall(void);
 Radio_OnPacket UAV_receiver(void);
 
 /* Makes a proxy to the vehicle that this one calls. Returns 0 if there is none. */
-int UAV_makeVehicleProxy(Ice_CommunicatorPtr ic, Ice_ObjectPrxPtr other);
+int UAV_makeVehicleProxy(Ice_ObjectAdapterPtr adapter, Ice_ObjectPrxPtr other);

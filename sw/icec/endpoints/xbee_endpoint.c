@@ -298,6 +298,14 @@ static Ice_Bool print(void* context, const Ice_Byte* encoded, Ice_Int size,
     return 1;
 }
 
+Ice_Status XBeeATEndpoint_makeProxy(Ice_ObjectAdapterPtr adapter, const char* identity, U16 address,
+                                    Ice_ObjectPrxPtr prx) {
+    const Ice_Status status = Ice_ObjectAdapter_createProxy(adapter, identity, prx);
+    prx->endpoints[1 + HEAD] = (Ice_Byte)address; /* after the number of endpoints: one */
+    prx->endpoints[2 + HEAD] = (Ice_Byte)(address >> 8);
+    return status;
+}
+
 static U32 nowMs(void* context) {
     XBeeATEndpoint* self = context;
     return self->port->nowMs(self->context);

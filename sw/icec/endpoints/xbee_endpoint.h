@@ -56,6 +56,11 @@ typedef struct XBeeATEndpoint {
 void XBeeATEndpoint_init(Ice_CommunicatorPtr ic, const char* name, XBeeATEndpoint* self, Link* link,
                          U16 address, const XBeeATEndpoint_Port* port, void* context);
 
+/* Makes a two-way proxy to an object of a peer, as stringToProxy does from "IDENTITY:xbee-at -a
+ * ADDRESS"; a program that has no other strings then needs no parser. */
+Ice_Status XBeeATEndpoint_makeProxy(Ice_ObjectAdapterPtr adapter, const char* identity, U16 address,
+                                    Ice_ObjectPrxPtr prx);
+
 /* Adds a peer's link (xbee_peers.c). A proxy with an unknown address has no endpoint here. */
 void XBeeATEndpoint_addPeer(XBeeATEndpoint* self, int peer, Link* link, U16 address);
 /* Makes a peer a vehicle (xbee_peers.c); `isGround`: this side has the ground's part. */

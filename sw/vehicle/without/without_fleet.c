@@ -30,8 +30,8 @@ Radio_OnPacket UAV_receiver(void) {
     return UAV_onPacketOf;
 }
 
-int UAV_makeVehicleProxy(Ice_CommunicatorPtr ic, Ice_ObjectPrxPtr other) {
-    (void)ic;
+int UAV_makeVehicleProxy(Ice_ObjectAdapterPtr adapter, Ice_ObjectPrxPtr other) {
+    (void)adapter;
     (void)other;
     return 0;
 }

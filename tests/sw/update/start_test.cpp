@@ -209,7 +209,7 @@ TEST(PackUpdate, SaysWhatIsWrong) {
     EXPECT_EQ(key.st_mode & 0777, 0600u);
     ::chmod((folder.path + "/key").c_str(), 0644);
     refuses("image " FIRMWARE "uav.elf 2 key update", "chmod 600");
-    refuses("keys 2 other said list", "no public key");
+    refuses("keys 2 other said list", "expected a public key");
 }
 
 constexpr uint32_t frameWords = 2000;

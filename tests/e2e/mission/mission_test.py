@@ -201,7 +201,8 @@ class Cases(Script):
         self.assertEqual(flash.read_bytes(), before)
         Path("fpga.bin").unlink()
         Path("cut.update").write_bytes(Path("new.update").read_bytes()[:50000])
-        self.fails("is cut short", CLIENTS / "update.py", "cut.update", "--slice", UPDATES[-1])
+        self.fails("expected a complete package", CLIENTS / "update.py", "cut.update", "--slice",
+                   UPDATES[-1])
         self.pack(*VEHICLE, self.keys / "update.key", flash)
         stored = "--cpu", "m3", "--flash", flash
         self.simulate(*UPDATES, options=(*stored, "--duration", "8"), status=None)

@@ -57,7 +57,8 @@ void XBeeATEndpoint_init(Ice_CommunicatorPtr ic, const char* name, XBeeATEndpoin
                          U16 address, const XBeeATEndpoint_Port* port, void* context);
 
 /* Makes a two-way proxy to an object of a peer, as stringToProxy does from "IDENTITY:xbee-at -a
- * ADDRESS"; a program that has no other strings then needs no parser. */
+ * ADDRESS", for an adapter with this transport only. A program that parses no other string is
+ * linked without the parser. */
 Ice_Status XBeeATEndpoint_makeProxy(Ice_ObjectAdapterPtr adapter, const char* identity, U16 address,
                                     Ice_ObjectPrxPtr prx);
 

@@ -131,8 +131,8 @@ class Cases(Script):
         self.fails("not the flight that was recorded: it departs between", *replay, "other")
         write("other/flight.jsonl", '{"no": "flight"}\n')
         self.fails("expected the recording of a flight, line 1", *replay, "other")
-        self.fails("--out: expected a folder other than the recording's", SIMULATOR, "--replay", self.out,
-                   "--out", self.out)
+        self.fails("--out: expected a folder other than the recording's", SIMULATOR, "--replay",
+                   self.out, "--out", self.out)
         self.fails("flown by the firmware's host build", *replay, self.out, "--gdb", "0")
         self.fails("writes no waveforms", *replay, self.out, "--wave", "wave.fst")
 

@@ -21,7 +21,10 @@ from icesoc.util.errors import Interrupted, Stop
 def completed(prefix, parsed_args, **_):
     """Returns completions of a word: objects and operations, then parameters and their values."""
     values = {name.lstrip("-"): value for name, value in vars(parsed_args).items()}
-    words = list(values.get("call") or ())
+    # argcomplete does not pass the words before this one: they are in the shell's line.
+    line = os.environ.get("COMP_LINE", "")[:int(os.environ.get("COMP_POINT") or 0)]
+    before = line.partition(" call ")[2].split(" ")[:-1]
+    words = [word for word in before if "." in word and not word.startswith("-")]
     try:
         catalogue = Catalogue(values.get("build") or "build/main",
                               (values.get("slice") or "").split())

@@ -2,10 +2,8 @@
  *
  * uav_keyring: the servant by which a ground changes its key over the air.
  */
-#include "uav_keyring.h"
-#include "Autopilot.h"
 #include "uav_keys.h"
-#include "uav_links.h"
+#include "uav_private.h"
 
 static Autopilot_KeyRing keys;
 

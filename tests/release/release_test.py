@@ -17,10 +17,13 @@ import xml.etree.ElementTree as ET
 import zipfile
 from pathlib import Path
 
+from icesoc.chip import contract_diff
+from icesoc.regs.model import Block
 from icesoc.release import components, packs, single_file, version
 from script import TREE, Script, commit, fresh, git, main, repository, write
 
 WORK, BUILD = map(Path, sys.argv[2:4])
+CONTRACTS = Path(__file__).parent / "contracts"
 EXAMPLE = TREE / "examples/porting"
 STRICT = "-std=c90 -pedantic -Wall -Wextra -Wconversion -Werror".split()
 ARM = "arm-none-eabi-gcc -mcpu=cortex-m3 -mthumb -Os".split()
@@ -42,6 +45,15 @@ def symbols(file):
     said = subprocess.check_output(["nm", file], text=True)
     return [re.sub(r"\.\d+$", "", name)
             for name in re.findall(r"^\w+ [tTdDbBrR] (\S+)$", said, re.M)]
+
+
+def undocumented(value):
+    """A description without its texts."""
+    if isinstance(value, list):
+        return [undocumented(each) for each in value]
+    if isinstance(value, dict):
+        return {name: "-" if name == "doc" else undocumented(each) for name, each in value.items()}
+    return value
 
 
 class Cases(Script):
@@ -232,6 +244,28 @@ add_subdirectory(library/zephyr)
         for number in "1.2.3", "1.2.3+git.0123456789ab":
             write("a.pdsc", packs.pdsc(number, "2026-11-28", "- a <b> & c"))
             self.ask("xmllint", "--noout", "--schema", schema / "PACK.xsd", "a.pdsc")
+
+    def test_contracts(self):
+        """A block's registers keep the contract of each recorded version with the same major
+        number. With RECORD in the environment, versions that are not recorded are written."""
+        for path in sorted([*TREE.glob("hdl/*/*.regs.json"), *TREE.glob("ip/*/*.regs.json")]):
+            block = Block.read(path)
+            if not block.is_slot:
+                continue
+            number = f"{block.version >> 8}.{block.version & 255}"
+            own = CONTRACTS / f"{block.name}-{number}.json"
+            if os.environ.get("RECORD") and not own.exists():
+                write(own, json.dumps(undocumented(block.description), indent=1) + "\n")
+            files = list(CONTRACTS.glob(f"{block.name}-{block.version >> 8}.*.json"))
+            if list(CONTRACTS.glob(f"{block.name}-*.json")):
+                self.assertIn(own, files, f"{block.name} {number} is not recorded: RECORD=1")
+            for file in files:
+                old = Block.read(file)
+                breaking, compatible = contract_diff.compare(old, block)
+                self.assertFalse(breaking, f"{path}: raise the major version of {block.name}, "
+                                 f"since it breaks {file.stem}")
+                self.assertFalse(compatible and old.version == block.version,
+                                 f"{path}: raise the minor version of {block.name}: {compatible}")
 
     def release(self, out, *words, tree=TREE, **environment):
         self.ask(TREE / "icesoc", "release", "--out", out, *words,

@@ -3,7 +3,6 @@
  * without_fleet: the vehicle with one ground only (ICESOC_FLEET=OFF): no observer, no other
  * vehicle, no calls to all vehicles.
  */
-#include "uav_fleet.h"
 #include "uav_links.h"
 #include "uav_peers.h"
 
@@ -20,7 +19,7 @@ int UAV_addPeers(void) {
 
 void UAV_usePeers(void) {}
 
-void UAV_dialVehicle(void) {}
+void UAV_seekVehicle(void) {}
 
 int UAV_offerCall(void) {
     return 0;
@@ -30,8 +29,8 @@ Radio_OnPacket UAV_receiver(void) {
     return UAV_onPacketOf;
 }
 
-int UAV_makeVehicleProxy(Ice_ObjectAdapterPtr adapter, Ice_ObjectPrxPtr other) {
-    (void)adapter;
+int UAV_makeVehicleProxy(Ice_CommunicatorPtr ic, Ice_ObjectPrxPtr other) {
+    (void)ic;
     (void)other;
     return 0;
 }

@@ -363,6 +363,35 @@ TEST(Update, AnOlderImageThatWasNeverTriedIsNotStarted) {
     EXPECT_EQ(vehicle.boot(), 6u);
 }
 
+// The header of an image in the format that vehicles in the field read. A change of these bytes
+// changes the format (docs/compatibility.md): it needs another SLOTS_MAGIC, and a second recording.
+constexpr char recordedHeader[] =
+    "050ce51c31564155020000004000000000020800070000000300000000000000ee4320ebaf3fdb4f"
+    "2c832b137200c08e235e0fa7bbd0eb1740c7063ba8a0d151da77e003398e1714a955d475b05e3e95"
+    "0b639503b452ec185de4229bc48739495b68ed709bab55e1e64ec3a4cd9aaf32a5267d27a79cd10d"
+    "ccff198d00eefce471c8fb660c639be2edacf6c9d5bdaa04dac1bfd0af05a074f79e7a469a653401";
+
+TEST(Update, AnImageWithARecordedHeaderIsStarted) {
+    Bytes content(64), recorded;
+    for (size_t i = 0; i < content.size(); ++i)
+        content[i] = static_cast<uint8_t>(i);
+    for (const char* digit = recordedHeader; *digit; digit += 2)
+        recorded.push_back(static_cast<uint8_t>(std::stoi(std::string(digit, 2), nullptr, 16)));
+    const Image image(slots_firmware, product, 2, 1, content, ours);
+    Bytes header(sizeof image.header);
+    std::memcpy(header.data(), &image.header, header.size());
+    EXPECT_EQ(header, recorded);
+
+    Vehicle vehicle;
+    std::fill_n(vehicle.memory.begin() + Slots_at(&slots_firmware, 1), slots_firmware.bytes,
+                uint8_t{0xFF});
+    vehicle.put(1, image);
+    std::copy(recorded.begin(), recorded.end(),
+              vehicle.memory.begin() + Slots_at(&slots_firmware, 1));
+    vehicle.set(1, SLOTS_READY);
+    EXPECT_EQ(Slots_choose(&vehicle.port, product, 1), 1u);
+}
+
 TEST(Update, WhereverThePowerIsCutThereIsAnImageThatBoots) {
     Vehicle whole;
     whole.updateTo(2);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_backup: words of the board's memory by their place in backup.h.
+ * uav_memory: words of the board's memory by their place in backup.h.
  */
-#include "uav_backup.h"
+#include "uav_memory.h"
 
 static const UAV_Board* board;
 static void* boardContext;

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Files of [":hw"] interfaces, wanted where the option names a folder: one or two an interface.
+// Files of [":hw"] interfaces, generated if the option names a folder: one or two per interface.
 struct HardwareOutput {
     const char *option, *help;
     GeneratedFile (*makes[2])(const hw::Block&);
@@ -110,7 +110,7 @@ std::string shown(const std::string& file) {
     return relative.empty() || *relative.begin() == ".." ? path.string() : relative.string();
 }
 
-// Returns a rule for make. `files`: the Slice file itself and all files that it includes.
+// Returns a rule for make. `files`: the Slice file and all files that it includes.
 std::string dependencyRule(const std::string& file, const CFileNames& names,
                            const std::vector<std::string>& files) {
     std::string rule = names.base + "." + names.headerExtension;

@@ -79,7 +79,7 @@ public:
         }
     }
     // Checks the name of a member or parameter: it must not hide a name of file scope that its
-    // function may use, nor be a macro. Only a name with an underscore can.
+    // function may use, nor be a macro. Only names with an underscore can collide.
     void checkInner(const std::string& c, const std::string& slice, const Location& at) {
         auto it = names_.find(c);
         if (it != names_.end())
@@ -130,7 +130,7 @@ private:
             diagnostics_.error(e.at,
                                "'" + id + "' becomes '" + c + "' in C, as '" + it->second +
                                    "' of another file does; [\"c:scoped\"] before the enum puts "
-                                   "its name between");
+                                   "its name in between");
     }
 
     const Unit& unit_;
@@ -154,7 +154,7 @@ void checkInner(const Declaration& d, CNames& names) {
 } // namespace
 
 void scopeEnumerators(Unit& unit) {
-    std::map<std::string, std::string_view> files; // of names in C
+    std::map<std::string, std::string_view> files; // files by name in C
     for (const auto& d : unit.declarations)
         files.emplace(cName(*d), d->at.file);
     for (const auto& d : unit.declarations) {
@@ -181,7 +181,7 @@ void checkC(const Unit& unit, const CFileNames& files, Diagnostics& diagnostics)
         if (d->isLocal)
             continue;
         checkInner(*d, names);
-        if (d->ofClass) // the class has the other messages
+        if (d->ofClass) // the class reports the other errors
             continue;
         checkMetadata(*d, diagnostics);
         checkText(d->value, d->at, diagnostics);
@@ -190,7 +190,8 @@ void checkC(const Unit& unit, const CFileNames& files, Diagnostics& diagnostics)
         for (const Operation& o : d->operations)
             if (hasMetadata(o.metadata, ":broadcast") && (hasResults(o) || !o.throws.empty()))
                 diagnostics.error(o.at, "[\":broadcast\"]: '" + o.name +
-                                            "' has a result or an exception, which nobody gets");
+                                            "': expected no result and no exception, because a "
+                                            "one-way call returns none");
     }
     for (const std::string& m : unit.metadata)
         if (m.compare(0, 2, "c:") == 0 && m.compare(0, 10, "c:include:") != 0)

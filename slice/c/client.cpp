@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// client: proxies: synchronous calls in one file, asynchronous ones in another.
+// client: generates proxies: synchronous calls in one file, asynchronous calls in another.
 
 #include "c/context.h"
 
@@ -26,7 +26,7 @@ void writeParameters(Writer& w, const Declaration& d, const Operation& o) {
     writeWithValues(w, inSlots(o), "ice_values");
 }
 
-// Reads an exception into `to`, where the operation declares one: Python's servants can throw any.
+// Reads an exception into `to`, if the operation declares one: Python's servants can throw any.
 void readException(Writer& w, const CContext& c, const Operation& o, const std::string& to) {
     bool isAsked = !o.throws.empty() && to == "ex"; // the caller may pass 0
     w.line(isAsked ? "if (status == ICE_USER_EXCEPTION && ex)"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// context: names that belong to the whole unit, the heads of its files, and members: defaults and
-// marshalling.
+// context: names of the whole unit, the heads of its files, and members: defaults and marshalling.
 
 #include "c/context.h"
 
 CContext::CContext(const Unit& ofFile, const CFileNames& ofFiles) : unit(ofFile), names(ofFiles) {
-    std::map<std::vector<std::string>, std::string> first; // by the constants and their types
+    std::map<std::vector<std::string>, std::string> first; // first user, by constants and their
+                                                           // types
     eachOperation([&](const Declaration& d, const Operation& o) {
         auto family = mayThrow(unit, o);
         std::vector<std::string> key;
@@ -65,7 +65,7 @@ namespace {
 
 using DKind = Declaration::Kind;
 
-// Sets a member to its default where that is not the zero that initFunction has written.
+// Sets a member to its default, unless that is the zero that initFunction has written.
 void initMember(Writer& w, const Declaration& d, const Field& f) {
     std::string name = "v->" + cMember(d, f), value = cValue(f.value, f.type);
     if (f.isOptional && f.value.kind != Literal::Kind::None)

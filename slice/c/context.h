@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// context: what the generators of C share, by the source that has it, and one function for each
-// generated file.
+// context: declarations shared by the generators of C, grouped by the source that defines them, and
+// one function for each generated file.
 
 #pragma once
 
@@ -16,19 +16,19 @@
 
 // True if IceC's headers use this name of C.
 bool isRuntimeName(const std::string& c);
-// Module_Sub_Name, with an underscore behind what would be a name of IceC
+// Module_Sub_Name, with an underscore appended if IceC uses that name
 std::string cName(const Declaration& d);
 // Module_Sub_NamePrx, of an interface or a class
 std::string cProxy(const Declaration& d);
-// Names in a scope that they share with names of generated code. These are listed in names.cpp, or
-// begin with "ice_" or "Ice_". A user's name that equals one of them, or a word of C, gets an
-// underscore at its end. No name in Slice ends with an underscore.
+// Names in a scope shared with names of generated code, which are listed in names.cpp, or begin
+// with "ice_" or "Ice_". A user's name that equals one of them, or a keyword of C, gets an
+// underscore appended. No name in Slice ends with an underscore.
 std::string cIdentifier(const std::string& name);
 // The name of a member of struct, class or exception `d`.
 std::string cMember(const Declaration& d, const Field& member);
 // The name of a parameter: of functions, as a member of the asynchronous call, as a variable.
 std::string cParameter(const Operation& o, const Field& parameter);
-// The part of an operation's functions' names behind the interface's.
+// Part of the names of an operation's functions, after the interface's name.
 std::string cOperation(const std::string& name);
 // The C type of a value.
 std::string cType(const Type& type);
@@ -36,7 +36,7 @@ std::string cType(const Type& type);
 std::string cEnumerator(const Declaration& owner, const std::string& name);
 // A constant's value as an expression; a Long's is an initialiser {low, high}.
 std::string cValue(const Literal& value, const Type& type);
-// The name of a thing that a Slice file has once: "Folder_File_what".
+// Name of an item that each Slice file has once: "Folder_File_what".
 std::string cFileName(const CFileNames& names, const std::string& what);
 // True if icec.h declares the type itself; only its stream functions are generated.
 bool isRuntimeType(const Declaration& d);
@@ -45,7 +45,8 @@ int statedMaximum(const Declaration& d);
 
 // ---- types: pieces of C that pass, write and read values ----
 
-// True if it is passed by const pointer: all types except scalars, strings, enums and classes.
+// True if the type is passed by const pointer: all types except scalars, strings, enums and
+// classes.
 bool isByPointer(const Type& type);
 bool isEnum(const Type& type);
 bool isClass(const Type& type); // a pointer to an Ice_Value
@@ -60,7 +61,7 @@ struct Slot {
     std::string pointer; // its address
     bool isOptional = false;
     int tag = 0;
-    std::string has; // whether it is there: a condition when writing, an lvalue when reading
+    std::string has; // condition whether it is present when writing, an lvalue when reading
 };
 
 // Write or read slots in the order of the wire.
@@ -69,13 +70,13 @@ void readSlots(Writer& w, const std::vector<Slot>& slots);
 
 // ---- operations: operations and exceptions in C: signatures, lists of parameters ----
 
-// Base interfaces first, without repetition; the interface itself comes last.
+// Base interfaces first, without repetition; the interface itself is last.
 std::vector<const Declaration*> lineage(const Declaration& interface);
 
-// The exceptions that an operation may throw: its own, and those derived from them in this unit.
+// Exceptions that an operation may throw: the declared ones, and exceptions derived from them in
+// this unit.
 std::vector<const Declaration*> mayThrow(const Unit& unit, const Operation& o);
-// The label of an exception in M_I_op_Exception, whose constant is M_I_op_<label>; and its member
-// in the union.
+// Label of an exception in M_I_op_Exception (constant M_I_op_<label>), and its member in the union.
 std::string exceptionLabel(const Operation& o, const std::vector<const Declaration*>& family,
                            const Declaration& exception);
 std::string exceptionMember(const Operation& o, const std::vector<const Declaration*>& family,
@@ -87,8 +88,8 @@ bool isSliced(const Declaration& owner, const Operation& o);
 // True if classes are among the in parameters (sends), among the results (returns).
 bool sendsClasses(const Operation& o);
 bool returnsClasses(const Operation& o);
-// True if one of the slots holds a class; if a required one does (encoding 1.0 has a list of
-// instances then).
+// True if one of the slots holds a class; if a required one does (encoding 1.0 then has a list of
+// instances).
 bool anyClass(const std::vector<Slot>& slots);
 bool anyRequiredClass(const std::vector<Slot>& slots);
 
@@ -96,15 +97,14 @@ bool anyRequiredClass(const std::vector<Slot>& slots);
 std::string operationName(const Declaration& owner, const Operation& o);
 std::string exceptionType(const Declaration& owner, const Operation& o);
 
-// Lists of C parameters, each with a comma before it (", Ice_Int a, const M_S *b"): the in
-// parameters; out parameters and the result as pointers. A servant's instances, which are sent, may
-// be const.
+// Lists of C parameters, each preceded by a comma (", Ice_Int a, const M_S *b"): the in parameters;
+// out parameters and the result as pointers. Instances of a servant, which are sent, may be const.
 std::string inParameters(const Operation& o);
 std::string outParameters(const Declaration& owner, const Operation& o, bool isSent);
 
 std::string proxySignature(const Declaration& d, const Operation& o);
 std::string asyncSignature(const Declaration& d, const Operation& o);
-// True if it may throw an exception that keeps unknown slices.
+// True if it may throw an exception that preserves unknown slices.
 bool throwsPreserved(const Unit& unit, const Operation& o);
 // `name` is a function, or "(*op)"; `self` the servant's type.
 std::string servantSignature(const Declaration& owner, const Operation& o, const std::string& name);
@@ -117,7 +117,7 @@ std::vector<Slot> inVariables(const Operation& o);
 std::vector<Slot> outSlots(const Operation& o, const std::string& object);
 std::vector<Slot> responseSlots(const Operation& o);
 
-// ---- context: what belongs to a whole unit ----
+// ---- context: data of a whole unit ----
 
 struct CContext {
     const Unit& unit;
@@ -125,22 +125,23 @@ struct CContext {
 
     CContext(const Unit& ofFile, const CFileNames& ofFiles);
     std::string header() const;
-    // The name of the table of classes that this unit knows, and so can receive.
+    // Name of the table of classes that this unit knows, and so can receive.
     std::string valueTable() const;
     bool usesClasses() const;
     Writer begin(const std::string& what) const;
     Writer beginSource(const std::string& what) const;
-    // Returns the prefix ("M_I_op") of an operation's exception union: that of the first operation
-    // in the file that throws the same, so that an exception is thrown again by an assignment.
+    // Returns the prefix ("M_I_op") of an operation's exception union: the prefix of the first
+    // operation in the file that throws the same exceptions, so that an exception can be rethrown
+    // by an assignment.
     const std::string& thrownAs(const Operation& o) const { return thrown_.at(&o); }
 
-    // Calls `f` for each declaration of the main file of this kind, local ones aside.
+    // Calls `f` for each declaration of this kind in the main file, except local ones.
     template <class F> void each(Declaration::Kind kind, F f) const {
         for (const auto& d : unit.declarations)
             if (d->kind == kind && !d->fromInclude && !d->isLocal)
                 f(*d);
     }
-    // Calls `f` for each interface of the main file and each operation that it declares itself.
+    // Calls `f` for each interface of the main file and each operation that the interface declares.
     template <class F> void eachOperation(F f) const {
         each(Declaration::Kind::Interface, [&](const Declaration& d) {
             for (const Operation& o : d.operations)
@@ -176,7 +177,7 @@ void valueTypeTable(Writer& w, const CContext& c);
 void initFunction(Writer& w, const Declaration& d);
 // Returns the members that `d` declares itself, as slots of the variable `v`.
 std::vector<Slot> memberSlots(const Declaration& d);
-// Writes or reads slots. Where one holds a class, the variable `table` collects the instances.
+// Writes or reads slots. If one holds a class, the variable `table` collects the instances.
 void writeWithValues(Writer& w, const std::vector<Slot>& slots, const std::string& table);
 void readWithValues(Writer& w, const CContext& c, const std::vector<Slot>& slots,
                     const std::string& table);

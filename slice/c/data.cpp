@@ -36,7 +36,7 @@ void loop(Writer& w, const Declaration& d, void (*each)(Writer&, const std::vect
     }
 }
 
-// Fails a stream whose sequence has more elements than Slice allows.
+// Fails a stream if a sequence has more elements than Slice allows.
 static void overBound(Writer& w, const Declaration& d, const std::string& stream) {
     w.line(stream + "->failed = ICE_FAILED_BOUND;");
     w.line(stream + "->bound = \"::Ice::MarshalException: over [\\\"c:max:" +

@@ -17,12 +17,12 @@ bool requiresClasses(const Declaration& d) {
     return anyRequiredClass(memberSlots(d)) || (d.base() && requiresClasses(*d.base()));
 }
 
-// Returns the path from an exception to the member that keeps unknown slices.
+// Returns the path from an exception to the member that stores unknown slices.
 std::string unknownOf(const Declaration& d) {
     return d.base() && d.base()->preserves() ? "base." + unknownOf(*d.base()) : "ice_unknown";
 }
 
-// Returns whether the code needs a table of instances; kept slices may also hold instances.
+// Returns whether the code needs a table of instances; preserved slices may also hold instances.
 bool needsTables(const Declaration& d) {
     return hasClasses(d) || d.preserves();
 }
@@ -81,7 +81,7 @@ void exceptionFunctions(Writer& w, const Declaration& d) {
 
 namespace {
 
-// An exception that an operation may throw, with the names of its templates.
+// An exception that an operation may throw, with its names for the templates.
 struct Thrown {
     const Declaration* exception;
     Writer::Values names;
@@ -112,7 +112,7 @@ void writeThrown(Writer& w, const std::vector<Thrown>& family) {
     w.line("}");
 }
 
-// Reads a slice, which belongs to one of the exceptions or to none.
+// Reads one slice, which belongs to one of the exceptions or to none.
 void readOneSlice(Writer& w, const std::vector<Thrown>& family, bool preserves) {
     w.line(std::string(preserves ? "" : "Ice_String ") + "id = Ice_InputStream_startSlice(is);");
     const char* otherwise = "";
@@ -208,7 +208,7 @@ static std::set<const Declaration*> mentioned(const Unit& unit) {
                 add(p.type);
         }
     }
-    for (const auto& d : unit.declarations) // bases come before derived types
+    for (const auto& d : unit.declarations) // bases precede derived types
         for (const Declaration* base : d->bases)
             if (d->kind == Declaration::Kind::Interface && found.count(base))
                 found.insert(d.get());

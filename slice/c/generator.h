@@ -13,8 +13,8 @@ struct CFileNames {
     std::string base;                  // "Printer"
     std::string headerExtension = "h"; // without the dot
     std::string sourceExtension = "c";
-    std::string path;                  // "folder/Printer.h": the header, as others include it
-    std::string includeDir;            // before the header's name in the sources, may be empty
+    std::string path;                  // "folder/Printer.h": the header, as in include directives
+    std::string includeDir;            // prefix of the header's name in the sources, may be empty
     std::vector<std::string> includes; // headers of the Slice files that the main file includes
 };
 
@@ -25,9 +25,9 @@ std::vector<std::string> limitFiles(const std::vector<std::string>& files);
 // Adds the metadata of these files to the definitions that they name; it goes before the source's.
 void addLimits(Unit& unit, const std::vector<std::string>& files, Diagnostics& diagnostics);
 
-// Gives the enumerators of an enum their long names, as ["c:scoped"] does, if a short one is taken
-// by another name of the same file. What another file declares does not count: it may be included
-// or not.
+// Gives the enumerators of an enum their long names, as ["c:scoped"] does, if a short one is used
+// by another name of the same file. Declarations in other files are ignored, because they may be
+// included or not.
 void scopeEnumerators(Unit& unit);
 
 // Reports definitions that C cannot map, or would map to one name twice. Call it before generateC.

@@ -9,7 +9,7 @@ namespace {
 
 using DKind = Declaration::Kind;
 
-// Several files may declare an interface or class: C90 allows one typedef.
+// Several files may declare an interface or class, but C90 allows one typedef.
 void forwardDeclarations(Writer& w, const CContext& c) {
     for (const auto& d : c.unit.declarations) {
         bool isClass = d->kind == DKind::Class;

@@ -12,9 +12,9 @@
 std::vector<std::string> limitFiles(const std::vector<std::string>& files) {
     std::vector<std::string> found;
     for (const std::string& file : files) {
-        std::string beside = std::filesystem::path(file).replace_extension("limits").string();
-        if (std::filesystem::exists(beside))
-            found.push_back(beside);
+        std::string limits = std::filesystem::path(file).replace_extension("limits").string();
+        if (std::filesystem::exists(limits))
+            found.push_back(limits);
     }
     return found;
 }

@@ -33,7 +33,7 @@ std::string cIdentifier(const std::string& name) {
         "enum", "extern", "float", "for", "goto", "if", "inline", "int", "long", "register",
         "restrict", "return", "short", "signed", "sizeof", "static", "struct", "switch", "typedef",
         "union", "unsigned", "void", "volatile", "while",
-        // C++, which may include the header
+        // keywords of C++, which may include the header
         "alignas", "alignof", "and", "and_eq", "asm", "bitand", "bitor", "bool", "catch",
         "char16_t", "char32_t", "char8_t", "class", "co_await", "co_return", "co_yield", "compl",
         "concept", "const_cast", "consteval", "constexpr", "constinit", "decltype", "delete",

@@ -10,8 +10,8 @@ namespace {
 
 const char* const resultName = "result";
 
-// Returns the declaration of an in parameter or response value. An optional one is a pointer, 0 for
-// none.
+// Returns the declaration of an in parameter or response value. An optional one is a pointer, 0 if
+// absent.
 std::string passed(const Type& t, const std::string& name, bool isOptional) {
     bool isPointer = isByPointer(t) || isOptional;
     if (isClass(t))
@@ -78,8 +78,8 @@ bool throwsPreserved(const Unit& unit, const Operation& o) {
                        [](const Declaration* e) { return e->preserves(); });
 }
 
-// The first exception with a name has it alone: first the operation's exceptions, in their order,
-// then the others. So one more exception does not rename it.
+// The first exception with a name keeps it unchanged: first the operation's exceptions, in order,
+// then the others. Therefore an additional exception does not rename it.
 static bool isFirstOfName(const Operation& o, const std::vector<const Declaration*>& family,
                           const Declaration& exception) {
     for (const auto& list : {o.throws, family})

@@ -86,7 +86,7 @@ void dispatchOperation(Writer& w, const CContext& c, const Declaration& d, const
             for (const Slot& s : outSlots(o, ""))
                 if (s.isOptional)
                     w.line(s.has + " = 0;");
-            if (throwsPreserved(c.unit, o)) // with the list of slices
+            if (throwsPreserved(c.unit, o)) // also with the list of slices
                 w.line("memset(&ex, 0, sizeof ex);");
             if (!o.throws.empty())
                 w.line("ex.type = " + operationName(d, o) + "_none;");

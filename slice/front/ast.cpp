@@ -27,7 +27,7 @@ Declaration::Facts factsOf(const Type& type) {
     using Kind = Type::Kind;
     if (type.kind == Kind::Named)
         return type.declaration->facts;
-    static const int sizes[] = {1, 1, 1, 2, 4, 8, 4, 8, 1, 1, 2, 1, 1}; // by kind
+    static const int sizes[] = {1, 1, 1, 2, 4, 8, 4, 8, 1, 1, 2, 1, 1}; // indexed by kind
     bool isProxy = type.kind == Kind::Proxy;
     Declaration::Facts f;
     f.leastWireSize = sizes[static_cast<int>(type.kind)];
@@ -41,7 +41,7 @@ Declaration::Facts factsOf(const Type& type) {
 void Declaration::complete() {
     auto join = [&](const Type& type) {
         Facts f = factsOf(type);
-        // The bound keeps sums small; no message reaches this size.
+        // The bound prevents overflow; no message reaches this size.
         facts.leastWireSize = std::min(facts.leastWireSize + f.leastWireSize, 1000000);
         facts.isVariable |= f.isVariable;
         facts.hasClass |= f.hasClass;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// ast: the declarations of a Slice file and the files that it includes. The parser makes it, with
-// every name resolved and Slice's rules checked; the generators read it.
+// ast: the declarations of a Slice file and of the files that it includes. The parser creates them,
+// with every name resolved and Slice's rules checked; the generators read them.
 //
-//   Unit         declarations in the order of the source, those of included files among them
+// Unit         declarations in source order, including those of included files
 //   Declaration  one enum, struct, sequence, dictionary, interface, class, exception or constant
 //   Operation    of an interface;  Field: a member or a parameter;  Type: of a field
 
@@ -18,9 +18,9 @@
 #include <string_view>
 #include <vector>
 
-// A place in a source, for errors and warnings.
+// Position in a source, for errors and warnings.
 struct Location {
-    std::string_view file;    // kept by Diagnostics::intern
+    std::string_view file;    // stored by Diagnostics::intern
     int line = 0, column = 0; // both from 1
 };
 
@@ -71,7 +71,7 @@ struct Type {
         Named,      // `declaration`: enum, struct, sequence, dictionary or class
         Proxy,      // `declaration`: the interface; 0 for Object*
         Value,      // any class: Object or Value; with `declaration`, an interface by value
-        LocalObject // only within local definitions
+        LocalObject // only in local definitions
     };
     Kind kind = Kind::Void;
     Declaration* declaration = nullptr;
@@ -83,7 +83,7 @@ struct Literal {
     Kind kind = Kind::None;
     int64_t integer = 0; // Bool, Integer; Enumerator: its value
     double floating = 0; // Floating
-    std::string text;    // Floating as written; String as bytes of UTF-8; Enumerator's name
+    std::string text;    // Floating as written; String in UTF-8; name of an Enumerator
     const Declaration* owner = nullptr; // Enumerator's enum
 };
 
@@ -103,7 +103,7 @@ struct Operation {
     Type result; // Void if the operation returns nothing
     bool isResultOptional = false;
     int resultTag = 0;
-    std::vector<Field> parameters; // in the source's order, in before out
+    std::vector<Field> parameters; // in source order, in before out
     std::vector<const Declaration*> throws;
     bool idempotent = false;
     Location at;
@@ -124,7 +124,7 @@ struct Declaration {
     Location at;
     bool fromInclude = false;
     bool isLocal = false;
-    bool isForward = false; // an interface or class that is declared, but not defined here
+    bool isForward = false; // an interface or class that is declared but not defined here
     std::vector<std::string> metadata;
 
     std::vector<Enumerator> enumerators;   // Enum
@@ -134,31 +134,32 @@ struct Declaration {
     Literal value;                         // Constant
     std::vector<const Declaration*> bases; // Interface: any; Class, Exception: at most one
     std::vector<const Declaration*> implemented; // Class: interfaces
-    std::vector<Operation> operations;           // Interface, Class: own ones
+    std::vector<Operation> operations;           // Interface, Class: without inherited ones
     const Declaration* ofClass = nullptr;        // Interface: made for calls of this class
-    int compactId = -1;                          // Class; -1: none
+    int compactId = -1;                          // Class; -1 if there is none
 
     // Facts about all values of a type; set when its definition is complete.
     struct Facts {
         int leastWireSize = 1;  // bytes
         bool isVariable = true; // longer values are possible
         bool hasClass = false;  // a class is inside, at any depth
-        bool isKey = false;     // it can be a dictionary's key
+        bool isKey = false;     // it can be the key of a dictionary
         bool hasSequence = false;
-        bool isNumeric = true; // numbers, enums, structs and sequences of them only
+        bool isNumeric = true; // only numbers, enums, structs and sequences
     } facts;
     void complete();
 
     std::string id() const; // ::Module::Sub::Name
-    // True if it is `other`, or derived from it.
+    // True if it is `other` or derived from it.
     bool isA(const Declaration& other) const;
-    // True if slices of unknown derived types are kept: ["preserve-slice"] is here or at a base.
+    // True if slices of unknown derived types are preserved: ["preserve-slice"] is set here or on a
+    // base.
     bool preserves() const;
     const Declaration* base() const { return bases.empty() ? nullptr : bases.front(); }
 };
 
 struct Unit {
-    std::string file; // as given on the command line
+    std::string file; // as on the command line
     std::vector<std::unique_ptr<Declaration>> declarations;
     std::vector<std::string> metadata; // [["..."]] of the main file
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// front: the steps from text to unit, one after the other. The last makes interfaces of classes'
-// operations, their own and inherited ones, with the class's type id, so that a class can be called
+// front: runs the steps from text to unit. The last step creates interfaces from the operations of
+// classes, including inherited ones, with the type id of the class, so that a class can be called
 // and served as in Ice's C++11 mapping.
 
 #include "front/front.h"
@@ -30,7 +30,7 @@ std::unique_ptr<Declaration> interfaceOf(const Declaration& c, const Declaration
 
 // Adds, after each class that can be called, an interface with its operations.
 void addClassInterfaces(Unit& unit) {
-    std::map<const Declaration*, const Declaration*> made; // by class
+    std::map<const Declaration*, const Declaration*> made; // interface by class
     std::vector<std::unique_ptr<Declaration>> all;
     for (auto& d : unit.declarations) {
         const Declaration* c = d.get();

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT
 //
-// front: the front end of the Slice compiler: a file's text becomes a unit, without a command line.
+// front: the front end of the Slice compiler: converts the text of a file into a unit; independent
+// of the command line.
 //
-// A file passes these steps, each in a source of its name:
+// A file passes through these steps, each in a source file of that name:
 //
-//   preprocessor   #include, #define and #if, by libmcpp; comments stay, #line gives the origin
+//   preprocessor   #include, #define and #if, by libmcpp; comments are kept, #line gives the origin
 //   lexer          text into tokens, each with its place in the original file and its doc comment
 //   parser         tokens into declarations by recursive descent: parser.cpp has tokens, recovery
 //                  and modules, parser_data, parser_interface and parser_types one method a rule;
-//                  each declaration is checked when its rule is through
+//                  each declaration is checked at the end of its rule
 //   symbols        identifiers that Slice allows, and what a name means in its scope; the parser
 //                  resolves every name at once
-//   literals       numbers and strings as written into values
-//   ast            the result: a Unit of declarations, in the source's order, all names resolved
+//   literals       converts numbers and strings as written into values
+//   ast            the result: a Unit of declarations, in source order, all names resolved
 //   front          adds an interface for each class that can be called
 //   diagnostics    every error and warning of all steps, with the source line and a caret
 //
@@ -24,13 +25,13 @@
 #include <string>
 #include <vector>
 
-// The text that libmcpp makes of a file with its #include, #define and #if.
+// Text of a file after libmcpp has processed #include, #define and #if.
 struct Preprocessed {
     bool ok = false;
-    std::string text;                  // with #line markers and comments
+    std::string text;                  // including #line markers and comments
     std::string messages;              // messages of the preprocessor
-    std::vector<std::string> files;    // the file and all that it includes, at any depth
-    std::vector<std::string> includes; // those that it includes directly
+    std::vector<std::string> files;    // the file and all files included, at any depth
+    std::vector<std::string> includes; // files included directly
 };
 
 // `options`: -I, -D, -U as for the C preprocessor.

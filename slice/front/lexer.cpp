@@ -51,17 +51,17 @@ private:
         while (position_ < position)
             advance();
     }
-    // Adds a token from `begin` to here.
+    // Adds a token from `begin` to the current position.
     void add(Token::Kind kind, size_t begin, const Location& at, bool escaped = false) {
         tokens_.push_back(
             {kind, text_.substr(begin, position_ - begin), doc_, linesAbove(at.line), at, escaped});
         doc_ = {};
         comments_.clear();
     }
-    // Returns the lines of // that end directly above this line.
+    // Returns the // lines that end directly above this line.
     std::string linesAbove(int line) const {
         auto end = comments_.end();
-        while (end != comments_.begin() && (end - 1)->first >= line) // behind the line's tokens
+        while (end != comments_.begin() && (end - 1)->first >= line) // after the tokens of the line
             --end;
         auto begin = end;
         while (begin != comments_.begin() && (begin - 1)->first == line - 1) {
@@ -74,7 +74,8 @@ private:
         return lines;
     }
 
-    // # 12 "file" or #line 12 "file", as the preprocessor leaves them, or a #pragma for a compiler.
+    // Handles # 12 "file" or #line 12 "file", as written by the preprocessor, or a #pragma for a
+    // compiler.
     void lineMarker() {
         size_t end = text_.find('\n', position_);
         std::string_view line = text_.substr(position_, end - position_);
@@ -109,7 +110,7 @@ private:
 
     void lineComment() {
         size_t end = std::min(text_.find('\n', position_), text_.size());
-        if (peek(2) == '/') { // lines of them are one comment
+        if (peek(2) == '/') { // consecutive // lines are one comment
             size_t begin =
                 doc_.empty() ? position_ + 3 : static_cast<size_t>(doc_.data() - text_.data());
             doc_ = text_.substr(begin, end - begin);
@@ -204,7 +205,7 @@ private:
         if (position_ == begin + 1 &&
             std::string_view("{}()[];:,*=<>").find(c) == std::string_view::npos) {
             auto u = static_cast<unsigned char>(c);
-            if (u >= 0xC0) // a whole character of UTF-8
+            if (u >= 0xC0) // a complete UTF-8 character
                 while ((static_cast<unsigned char>(peek()) & 0xC0) == 0x80)
                     ++position_;
             std::string shown = u > 32 && u != 127
@@ -221,8 +222,8 @@ private:
     size_t position_ = 0;
     Location at_;
     std::string_view doc_;
-    std::vector<std::pair<int, std::string_view>> comments_; // of //, with their lines
-    int moved_ = 0; // lines that the preprocessor has added, one behind each comment
+    std::vector<std::pair<int, std::string_view>> comments_; // // comments, with their lines
+    int moved_ = 0; // lines added by the preprocessor, one after each comment
     std::vector<Token> tokens_;
 };
 

@@ -69,7 +69,7 @@ std::string Parser::name(const std::string& what) {
              "')");
     NameRules rules = rules_;
     if (!isMain(token().at.file))
-        rules = {true, true}; // an including file does not answer for these names
+        rules = {true, true}; // an including file is not responsible for these names
     checkName(text, rules, token().at, diagnostics_);
     ++position_;
     return std::string(text);
@@ -112,7 +112,7 @@ std::string Parser::doc() {
     return std::string(token().doc);
 }
 
-// Reads metadata with the doc comment that stands before or behind it.
+// Reads metadata with the doc comment before or after it.
 void Parser::readMetadata(std::string& text, Metadata& found) {
     text = doc();
     found = metadata();
@@ -120,7 +120,7 @@ void Parser::readMetadata(std::string& text, Metadata& found) {
         text = doc();
 }
 
-// The preprocessor may spell the name of the main file differently from the command line.
+// The preprocessor may spell the path of the main file differently from the command line.
 bool Parser::isMain(std::string_view file) {
     auto [it, isNew] = isMain_.try_emplace(file, false);
     if (isNew) {
@@ -130,7 +130,7 @@ bool Parser::isMain(std::string_view file) {
     return it->second;
 }
 
-// Reads strings up to `end`, with commas between.
+// Reads strings up to `end`, separated by commas.
 void Parser::metadataStrings(Metadata& found, std::string_view end) {
     do {
         if (!at(Token::Kind::String))
@@ -214,7 +214,7 @@ void Parser::definition() {
 
 void Parser::module() {
     Location begin = token().at;
-    std::string called = name("the module's name"), outer = scopeId_;
+    std::string called = name("the name of the module"), outer = scopeId_;
     bool isNew = false;
     Symbol* symbol = symbols_.declare(scopeId_, called, begin, isNew);
     if (symbol && symbol->declaration)
@@ -298,7 +298,7 @@ Declaration& Parser::declareType(Declaration::Kind kind, bool mayBeForward) {
         unit_.declarations.pop_back();
         return *earlier;
     }
-    // Others refer to the definition's place; moving it to the end keeps the source's order.
+    // Other declarations refer to the definition; moving it to the end keeps the source order.
     auto it = std::find_if(unit_.declarations.begin(), unit_.declarations.end(),
                            [&](const auto& p) { return p.get() == earlier; });
     *earlier = std::move(d);

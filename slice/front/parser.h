@@ -16,9 +16,9 @@
 struct Token {
     enum class Kind { Identifier, Integer, Float, String, Symbol, End };
     Kind kind;
-    std::string_view text; // as written; of a string, the text between the quotes
+    std::string_view text; // as written; for a string, the text between the quotes
     std::string_view doc;  // the doc comment before it, without /** and */
-    std::string comment;   // lines of // that stand directly above it
+    std::string comment;   // // lines directly above it
     Location at;
     bool escaped; // identifier written with a backslash
 };
@@ -40,7 +40,8 @@ std::string stringValue(const Token& token, Diagnostics& diagnostics);
 
 class Parser {
 public:
-    // `mainFile` is the file on the command line; declarations of others are marked fromInclude.
+    // `mainFile` is the file on the command line; declarations in other files are marked
+    // fromInclude.
     Parser(const std::vector<Token>& tokens, const std::string& mainFile, NameRules rules,
            Diagnostics& diagnostics);
     Unit run();
@@ -68,14 +69,14 @@ private:
     bool accept(std::string_view symbol);
     bool acceptWord(std::string_view word);
     void expect(std::string_view symbol);
-    void expectEnd(const std::string& what); // a '}'
+    void expectEnd(const std::string& what); // expects a '}'
     [[noreturn]] void fail(const std::string& expected);
     void error(const Location& at, const std::string& text) { diagnostics_.error(at, text); }
     // Reads a name that this declares, and checks it.
     std::string name(const std::string& what);
     std::string scopedName(const std::string& what);
     void recover();
-    // Runs a rule; after a syntax error continues behind the next ';' or '}'.
+    // Runs a rule; after a syntax error continues after the next ';' or '}'.
     template <class Rule> void guarded(Rule rule);
     template <class Rule> void braces(const Declaration& d, Rule rule);
     std::string doc();
@@ -142,7 +143,7 @@ private:
     std::set<std::string_view> begun_; // files with at least one definition so far
     std::map<int, std::string> compactIds_;
     std::set<std::string> unknown_; // names of types that have been reported
-    // State of the definition under way.
+    // State of the current definition.
     Metadata metadata_;
     std::string doc_;
     bool local_ = false;
@@ -160,9 +161,9 @@ template <class Rule> void Parser::guarded(Rule rule) {
         ++position_; // a stray '}': reported and skipped
 }
 
-// { rule rule ... } with an optional ';' behind it.
+// Parses { rule rule ... } with an optional ';' after it.
 template <class Rule> void Parser::braces(const Declaration& d, Rule rule) {
-    if (isSymbol(":")) // Ice 3.8's word for it
+    if (isSymbol(":")) // the syntax of Ice 3.8
         fail("'{'; in Ice 3.7 a base follows 'extends', not ':'");
     expect("{");
     user_ = d.id();

@@ -128,12 +128,12 @@ void Parser::member(Declaration& d, bool mayBeOptional) {
     if (o.present && !mayBeOptional)
         error(begin, "a struct's member cannot be optional");
     f.at = token().at;
-    f.name = name("the member's name");
+    f.name = name("the name of the member");
     if (f.type.kind == Type::Kind::Void)
         error(begin, "a member cannot be void");
     checkLocal(f.type, d.isLocal, "member '" + f.name + "'", begin);
     checkMember(d, f);
-    // A type that contains itself would have no end, nor would a walk through it.
+    // A type that contains itself would be infinite, and so would a traversal.
     bool containsItself = f.type.declaration == &d && f.type.kind == Type::Kind::Named && !isClass;
     if (containsItself)
         error(f.at, "a " + std::string(kindName(d.kind)) + " cannot contain itself");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// parser_interface: interfaces, operations, and what may be inherited.
+// parser_interface: parses interfaces and operations, and checks inheritance.
 
 #include "front/parser.h"
 #include <algorithm>
@@ -56,7 +56,7 @@ void collect(const Declaration& d, std::set<const Declaration*>& seen,
         list.push_back({&o, &d});
 }
 
-// Returns the operations of an interface or class, own and inherited, each once.
+// Returns the operations of an interface or class, including inherited ones, each once.
 std::vector<OwnedOperation> allOperations(const Declaration& d) {
     std::set<const Declaration*> seen;
     std::vector<OwnedOperation> list;
@@ -111,7 +111,7 @@ void Parser::operation(Declaration& d) {
     if (result.present && o.result.kind == Type::Kind::Void)
         error(begin, "void cannot be optional");
     o.at = token().at;
-    o.name = name("the operation's name");
+    o.name = name("the name of the operation");
     checkLocal(o.result, d.isLocal, "operation '" + o.name + "'", begin);
     checkOperation(d, o);
     expect("(");
@@ -148,7 +148,7 @@ void Parser::checkOperation(const Declaration& d, const Operation& o) {
                       "operation '" + o.name + "' has the name of a member, '" + f.name + "'");
 }
 
-// Checks that a class's member does not have the name of an operation.
+// Checks that a member of a class does not have the name of an operation.
 void Parser::checkMemberOfClass(const Declaration& d, const Field& f) {
     for (const auto& [operation, from] : allOperations(d))
         if (lowerCase(operation->name) == lowerCase(f.name))
@@ -173,7 +173,7 @@ void Parser::parameters(Operation& o, const Declaration& owner) {
         p.isOptional = tag.present;
         p.tag = tag.tag;
         p.at = token().at;
-        p.name = name("the parameter's name");
+        p.name = name("the name of the parameter");
         if (p.type.kind == Type::Kind::Void)
             error(begin, "a parameter cannot be void");
         checkLocal(p.type, owner.isLocal, "parameter '" + p.name + "'", begin);
@@ -201,7 +201,7 @@ void Parser::throwsClause(Operation& o, const Declaration& owner) {
         Location begin = token().at;
         std::string written = scopedName("an exception");
         Symbol* s = resolve(written, begin);
-        // An operation's name must have no other meaning in the interface.
+        // The name of an operation must have no other meaning in the interface.
         std::string first = lowerCase(written.substr(0, written.find("::")));
         bool isOperation = first == lowerCase(o.name);
         for (const Operation& other : owner.operations)

@@ -37,7 +37,7 @@ Symbol* Parser::resolve(const std::string& written, const Location& at) {
     return symbols_.resolve(scopeId_, written, at, user_.empty() ? scopeId_ : user_);
 }
 
-// Checks that only local types hold local ones.
+// Checks that only local types contain local ones.
 void Parser::checkLocal(const Type& type, bool local, const std::string& what, const Location& at) {
     bool isLocal =
         type.kind == Kind::LocalObject || (type.declaration && type.declaration->isLocal);
@@ -92,7 +92,7 @@ Type Parser::namedType() {
     bool isClass = t.declaration->kind == Declaration::Kind::Class;
     if (isSymbol("*") && !isInterface && !isClass) {
         error(token().at, "Slice has no pointers to data; for a result, write 'out " + written +
-                              "' before the parameter's name");
+                              "' before the name of the parameter");
         throw SyntaxError();
     }
     t.kind = Kind::Named;
@@ -174,7 +174,7 @@ Symbol* Parser::resolveValue(const std::string& written, const Location& at) {
     if (found.empty())
         return nullptr;
     diagnostics_.warning(
-        at, "enumerator '" + found.front()->id + "' without its enum's name is deprecated",
+        at, "enumerator '" + found.front()->id + "' without the name of its enum is deprecated",
         Diagnostics::Deprecated);
     return found.front();
 }

@@ -19,8 +19,8 @@ void addOnce(std::vector<std::string>& list, const std::string& name) {
         list.push_back(name);
 }
 
-// Returns the path of `name`, which `includer` includes: libmcpp leaves a name relative to the
-// includer's folder unchanged, or puts it behind the -I folder of the includer.
+// Returns the path of `name`, included by `includer`: libmcpp leaves a name relative to the
+// includer's folder unchanged, or appends it to the -I folder of the includer.
 std::string placeOf(const std::string& name, const std::string& includer) {
     std::error_code error;
     std::filesystem::path path = name, folder = std::filesystem::path(includer).parent_path();
@@ -30,9 +30,9 @@ std::string placeOf(const std::string& name, const std::string& includer) {
         std::filesystem::path rest;
         for (auto part = first; part != path.end(); ++part)
             rest /= *part;
-        auto beside = (folder / rest).lexically_normal();
-        if (rest.is_relative() && std::filesystem::exists(beside, error))
-            return beside.string();
+        auto sibling = (folder / rest).lexically_normal();
+        if (rest.is_relative() && std::filesystem::exists(sibling, error))
+            return sibling.string();
     }
     return name;
 }
@@ -116,13 +116,14 @@ std::string tooLongLine(const std::filesystem::path& file, const std::vector<std
     return "";
 }
 
-// Removes messages that Ice's compilers do not give: foreign line ends, and a missing one.
+// Removes messages that Ice's compilers do not print: about foreign line ends, and a missing one.
 std::string withoutLineEnds(const std::string& messages) {
     std::istringstream in(messages);
     std::string kept;
     bool isSkipped = false;
     for (std::string line; std::getline(in, line);) {
-        bool continues = !line.empty() && line[0] == ' '; // the source, or where it is included
+        bool continues = !line.empty() && line[0] == ' '; // the source line, or where it is
+                                                          // included
         isSkipped = (isSkipped && continues) ||
                     line.find(": warning: Converted [CR+LF] to [LF]") != std::string::npos ||
                     line.find(" with no newline, supplemented newline") != std::string::npos;

@@ -19,7 +19,7 @@ struct NameRules {
 
 bool isKeyword(std::string_view word);
 
-// Reports what is wrong with the name of a declaration.
+// Reports errors in the name of a declaration.
 void checkName(std::string_view name, const NameRules& rules, const Location& at,
                Diagnostics& diagnostics);
 
@@ -44,8 +44,8 @@ public:
     // was reported.
     Symbol* declare(const std::string& scope, const std::string& name, const Location& at,
                     bool& isNew);
-    // Finds the meaning of `written` in `scope`, from the inside out; 0 if there is none. `user`, a
-    // module or a type, must not give the name another meaning later.
+    // Finds the meaning of `written` in `scope`, from the inside out; returns 0 if there is none.
+    // `user`, a module or a type, must not give the name another meaning later.
     Symbol* resolve(const std::string& scope, const std::string& written, const Location& at,
                     const std::string& user);
     // The same for any capitals, and without a user.

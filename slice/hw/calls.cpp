@@ -157,15 +157,15 @@ private:
     void add(Call& call, const Type& type, bool isOptional, const std::string& name,
              const std::string& c, bool isOut, const std::vector<std::string>& metadata,
              const Location& at) {
-        std::string whose = "'" + name + "' of '" + call.operation->name, what = whose + "'";
+        std::string subject = "'" + name + "' of '" + call.operation->name, what = subject + "'";
         std::string wanted = metadataValue(metadata, "hw:word");
         std::string most = metadataValue(metadata, "hw:max");
         if (isOptional)
             return error(at, what + " is optional; a register is always there");
         if (!isSequence(type) && !isMappable(type))
-            return error(at, whose + unfit);
+            return error(at, subject + unfit);
         if (!isSequence(type) && !most.empty())
-            return error(at, "[\"hw:max:" + most + "\"]: " + what + " is no sequence");
+            return error(at, "[\"hw:max:" + most + "\"]: " + what + " is not a sequence");
         std::vector<Word> chosen, &words = wanted.empty() ? call.words : chosen;
         if (isSequence(type))
             addSequence(words, type, what, name, c, isOut, most, at);
@@ -195,7 +195,7 @@ private:
         if (!most.empty() && !number(most, 1, limit, count))
             return error(at, "[\"hw:max:" + most + "\"]: elements, 1.." + std::to_string(limit));
         if (count == 0)
-            return error(at, what + " is a sequence: [\"hw:max:N\"] before it says how many "
+            return error(at, what + " is a sequence: add [\"hw:max:N\"], the largest number of "
                                     "elements its buffer in DDR3 has");
         addCount(words, type, name, c, isOut, count, offset_);
         offset_ += (count * bytes + bufferAlignment - 1) / bufferAlignment * bufferAlignment;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// generator: the files of a hardware interface, one function a file (docs/hw-mapping.md), and what
-// wrappers in both languages share.
+// generator: the files generated for a hardware interface, one function per file
+// (docs/hw-mapping.md), and code shared by the wrappers in both languages.
 
 #pragma once
 
@@ -12,18 +12,18 @@
 
 namespace hw {
 
-// ---- map: the register of a slot that holds each value of a [":hw"] interface ----
+// ---- map: the register of a slot for each value of a [":hw"] interface ----
 
-constexpr unsigned firstWord = 3, slotWords = 16; // ID, EVENT and MASK come before
+constexpr unsigned firstWord = 3, slotWords = 16; // ID, EVENT and MASK come first
 constexpr unsigned control = 3, status = 4, page = 5, pageLsb = 5;
-// PAGE selects which words a slot shows at 8..15: number n is word n % slotWords of page
-// n / slotWords, at least 8 on pages above 0.
+// PAGE selects which words appear at 8..15 of a slot: word n is at n % slotWords on page n /
+// slotWords, at least 8 on pages above 0.
 constexpr unsigned pageWords = 8, mostPageBits = 5;
 constexpr unsigned bufferAlignment = 128; // bytes: bursts begin there
 constexpr unsigned mostPins = 32;         // pins of a core in one direction
 constexpr unsigned mostOperations = 16, refusedLsb = 16, resetBit = 31;
 
-// A scalar, or half of one of 64 bits, as a field of a word and bits of a port.
+// A scalar, or half of a 64-bit one, as a field of a word and bits of a port.
 struct Piece {
     Type type;
     std::string name; // a_x: of parameter a, member x
@@ -31,9 +31,9 @@ struct Piece {
     unsigned lsb = 0, width = 0;
     unsigned portLsb = 0, portWidth = 0;
     unsigned exception = 0; // 0: of the call or its results; else a member of the n-th exception
-    bool isCode = false;    // not a value: 0, or the exception's number
-    // The number of elements of a sequence: it is in DDR3, `offset` bytes behind the slot's
-    // buffers.
+    bool isCode = false;    // not a value: 0, or the number of the exception
+    // The number of elements of a sequence, which is in DDR3, `offset` bytes after the start of the
+    // slot's buffers.
     bool isCount = false;
     unsigned offset = 0, most = 0, elementBytes = 0;
 };
@@ -57,7 +57,7 @@ struct Call {
     std::vector<const Declaration*> thrown; // codes 1, 2, ...
     std::vector<std::string> labels;        // their constants in C
     std::string name;                       // snake_case
-    unsigned bit = 0;                       // in CONTROL, STATUS, EVENT and MASK
+    unsigned bit = 0;                       // bit in CONTROL, STATUS, EVENT and MASK
     bool isLong = false;
     unsigned timeout = 0; // milliseconds
     std::vector<Word> words;
@@ -68,12 +68,12 @@ struct Listener {
     const Operation* operation = nullptr;
     const Declaration* interface = nullptr;
     std::string name;            // snake_case
-    size_t first = 0, count = 0; // of Block::calls
+    size_t first = 0, count = 0; // range of Block::calls
 };
 
 // A pin of the chip, a port of the core besides its slot's.
 struct Pin {
-    std::string name; // ends in _i or _o
+    std::string name; // ends with _i or _o
     unsigned width = 1;
     bool isOut() const { return name.back() == 'o'; }
 };
@@ -87,15 +87,15 @@ struct Block {
     std::vector<Call> calls;
     std::vector<Listener> listeners;
     std::vector<Pin> pins;
-    bool hasOwnClock = false; // it may stop: then no access is answered
-    unsigned pageBits = 0;    // above 0: word 5 is PAGE, and there are 2 to this power of pages
+    bool hasOwnClock = false; // the clock may stop: then accesses are not answered
+    unsigned pageBits = 0;    // if not 0: word 5 is PAGE, and there are 2 to this power of pages
     unsigned memoryWord = 0;  // MEMORY; 0: no sequences
     unsigned memoryBytes = 0; // size of all buffers, a power of two
 
     bool hasLong() const;
-    unsigned memoryLsb() const; // lowest address bit that MEMORY holds
+    unsigned memoryLsb() const; // lowest address bit stored in MEMORY
     unsigned events() const;    // bits of EVENT that are used, from bit 0
-    unsigned numbers() const;   // of words, from 0: a multiple of slotWords
+    unsigned numbers() const;   // number of words, a multiple of slotWords
     bool isPaged(unsigned word) const { return pageBits && word % slotWords >= pageWords; }
     // Returns every word of parameters and results, by number.
     std::vector<const Word*> words() const;
@@ -115,9 +115,9 @@ std::vector<Port> wrapperPorts(const Block& b);
 // Maps all hardware interfaces of the unit's main file; errors are in `diagnostics`.
 std::vector<Block> mapHardware(const Unit& unit, Diagnostics& diagnostics);
 
-// Maps the calls of an interface, which have no words yet.
+// Assigns words to the calls of an interface.
 void mapCalls(const Declaration& d, const Unit& unit, Block& block, Diagnostics& diagnostics);
-// Parses a whole number, decimal or 0x..., within [low, high]. False: it is malformed.
+// Parses an integer, decimal or 0x..., within [low, high]. Returns false if it is malformed.
 bool number(const std::string& text, unsigned low, unsigned high, unsigned& value);
 // Checks that hw: metadata is one of `known`.
 void checkKeys(const std::vector<std::string>& metadata, const std::vector<std::string>& known,
@@ -127,13 +127,12 @@ std::string snakeCase(const std::string& name);
 std::string upperCase(std::string text);
 std::string hexDigits(unsigned value, unsigned digits);
 
-// ---- words: the part that knows the types ----
+// ---- words: the part that depends on types ----
 
-// True if it is a number, a bool, an enum, or a struct of these.
+// True for a number, a bool, an enum, or a struct of these.
 bool isMappable(const Type& type);
-// Appends the value's scalars. Successive ones share a word that has no number yet, where they fit;
-// a scalar of 64 bits takes two words, low one first. `c` is the lvalue in C; "*p" for the target
-// of p.
+// Appends the scalars of the value. Successive ones share a word without a number if they fit; a
+// 64-bit scalar takes two words, low one first. `c` is the lvalue in C; "*p" for the target of p.
 void addValue(std::vector<Word>& words, const Type& type, const std::string& name,
               const std::string& c, bool isOut, unsigned exception = 0);
 
@@ -164,13 +163,13 @@ GeneratedFile testSkeleton(const Block& b);
 
 // ---- the head and the ports of a wrapper ----
 
-// Writes a wrapper's first comment; `mark` begins its lines.
+// Writes the first comment of a wrapper; `mark` begins its lines.
 void wrapperHead(Writer& w, const Block& b, const std::string& mark);
 
-// "[7:0] ", or nothing for a bit; "std_logic_vector(7 downto 0)", or "std_logic".
+// Returns "[7:0] ", or "" for one bit; "std_logic_vector(7 downto 0)", or "std_logic".
 std::string verilogRange(unsigned width);
 std::string vhdlType(unsigned width);
-// Writes an entity, up to its architecture's declarations, with a package that it uses.
+// Writes an entity, up to the declarations of its architecture, with a package that it uses.
 void vhdlEntity(Writer& w, const std::string& name, const std::vector<Port>& ports,
                 const std::string& package = "");
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// map: maps interfaces to slots: checks what is allowed, and gives out words.
+// map: maps interfaces to slots: checks what is allowed, and assigns words.
 
 #include "hw/generator.h"
 #include <algorithm>
@@ -52,7 +52,8 @@ private:
         diagnostics_.error(at, "interface '" + d_.name + "' in hardware: " + text);
     }
 
-    // [":hw", "hw:type:0x4144", "hw:version:0x0100"]; by default the name's first letters, and 1.0.
+    // [":hw", "hw:type:0x4144", "hw:version:0x0100"]; default: the first letters of the name, and
+    // 1.0.
     void identity() {
         std::string letters = upperCase(d_.name + "_");
         block_.type = static_cast<unsigned>(letters[0]) << 8 | static_cast<unsigned>(letters[1]);
@@ -85,7 +86,7 @@ private:
                            number(rest.substr(colon + 1), 1, mostPins, pin.width));
             if (!isGood)
                 error(d_.at, "[\"" + m +
-                                 "\"]: the port's name in small letters, with _i or _o at "
+                                 "\"]: the name of the port in lower case, with _i or _o at "
                                  "its end, and its width, 1.." +
                                  std::to_string(mostPins) + ": [\"hw:pin:pwm_o:4\"]");
             else if (isSlotPort(pin.name))
@@ -102,7 +103,7 @@ private:
                name == "clk_i" || name == "rst_i" || name == "irq_o";
     }
 
-    // Chosen words first, then the others in order into the gaps.
+    // First the chosen words, then the others in order into the gaps.
     void place() {
         std::map<unsigned, std::string> taken = {{control, "CONTROL"}};
         if (block_.hasLong())
@@ -131,7 +132,7 @@ private:
                 if (w.number >= slotWords)
                     error(call.operation->at, w.name + " would be word " +
                                                   std::to_string(w.number) +
-                                                  "; 15 is the slot's last");
+                                                  "; the last word of the slot is 15");
                 else if (w.number && !taken.emplace(w.number, w.name).second)
                     error(call.operation->at, w.name + " wants word " + std::to_string(w.number) +
                                                   ", which is " + taken[w.number] + "'s");
@@ -164,7 +165,7 @@ private:
     // Checks that no two Slice names give one port name, as aB and a_b do, or a member x of p and
     // p_x.
     void checkPorts() {
-        std::map<std::string, std::string> owners; // by the port's name
+        std::map<std::string, std::string> owners; // by name of the port
         for (const Port& p : wrapperPorts(block_)) {
             std::string owner = p.call ? p.call->operation->name : "the wrapper";
             auto [it, isNew] = owners.emplace(p.name.substr(0, p.name.size() - 2), owner);
@@ -255,7 +256,7 @@ std::vector<Port> wrapperPorts(const Block& b) {
     return list;
 }
 
-// Warns of each exception of the file that no operation throws: it has no place in a register.
+// Warns of each exception in the file that no operation throws, which therefore has no register.
 void warnOfUnthrown(const Unit& unit, Diagnostics& diagnostics) {
     std::set<const Declaration*> thrown;
     for (const auto& d : unit.declarations)

@@ -13,7 +13,7 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-// A doc comment's first line, in which nothing ends a comment of C.
+// Returns the first line of a doc comment, without the end of a C comment in it.
 std::string firstLine(const std::string& doc, const std::string& otherwise) {
     auto lines = docLines(doc);
     return lines.empty() ? otherwise : lines.front();

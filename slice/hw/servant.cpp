@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// servant: the servant's two files in C90: operations that are answered at once, waited for, or
-// answered later; events.
+// servant: generates the servant's two files in C90: operations that are answered at once, waited
+// for, or answered later; events.
 
 #include "c/context.h"
 #include "hw/generator.h"

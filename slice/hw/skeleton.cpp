@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// skeleton: a core to begin with, in Verilog or VHDL, which answers every call of its interface
-// with zeros, and a test that calls them all. For make new-ip; from then on the author owns it.
+// skeleton: generates a first version of a core, in Verilog or VHDL, which answers every call of
+// its interface with zeros, and a test that makes all calls. For make new-ip; afterwards it belongs
+// to the author.
 
 #include "c/context.h"
 #include "hw/generator.h"
@@ -12,7 +13,7 @@
 namespace hw {
 namespace {
 
-// The ports of a core that its wrapper does not have: a memory port's (docs/memory.md), and pins.
+// Ports of a core that its wrapper does not have: the memory port (docs/memory.md), and pins.
 std::vector<Port> ownPorts(const Block& b) {
     std::vector<Port> list;
     if (b.memoryBytes)
@@ -39,7 +40,7 @@ std::vector<Port> ownPorts(const Block& b) {
     return list;
 }
 
-// The wrapper's ports towards the slot, or towards the core.
+// Ports of the wrapper towards the slot, or towards the core.
 std::vector<Port> portsOf(const Block& b, bool ofSlot) {
     std::vector<Port> list = wrapperPorts(b);
     auto core = std::find_if(list.begin(), list.end(),
@@ -64,7 +65,7 @@ void head(Writer& w, const Block& b, const char* comment) {
     w.line();
 }
 
-// The memory port as two idle streams of words, by which a core reads and writes its buffers. No
+// The memory port as two idle streams of words, with which a core reads and writes its buffers. No
 // operation has a name that begins with npi_.
 const char npiStream[] =
     R"(    // The buffers in DDR3 as two streams of words, which rest here (docs/memory.md, npi_stream).
@@ -255,7 +256,7 @@ GeneratedFile vhdlSkeleton(const Block& b) {
 
 namespace {
 
-// The elements that a sequence has in the test: 4, or as many as may be; of another value 0.
+// Number of elements of a sequence in the test: 4, or the maximum if lower; 0 for other values.
 unsigned shown(const Call& c, const Type& type, const std::string& value) {
     if (isSequence(type))
         for (const Word& word : c.words)

@@ -43,7 +43,7 @@ std::string bitsOf(const Piece& p) {
     }
 }
 
-// A read or write of a word, up to its bracket; a word behind PAGE takes more accesses.
+// Returns a read or write of a word, up to the parenthesis; a word behind PAGE takes more accesses.
 std::string access(const Block& b, const Word& word, const std::string& what) {
     std::string name = upperCase(b.name) + "_" + word.name;
     return b.isPaged(word.number)
@@ -70,7 +70,7 @@ std::string roomOf(const Call& c, const Piece& p) {
     return c.name + "_" + p.name.substr(0, p.name.size() - 5) + "data";
 }
 
-// Writes the reading of a sequence; its layout in DDR3 is that of the array in C.
+// Writes the reading of a sequence; its layout in DDR3 is the layout of the array in C.
 void readSequence(Writer& w, const Call& c, const Piece& p, const std::string& count) {
     std::string sequence = lvalue(p), bytes = std::to_string(p.elementBytes) + "U";
     w.line(sequence + ".size = (Ice_Int)" + count + ";");
@@ -118,7 +118,7 @@ void readPiece(Writer& w, const Block& b, const Call& c, const Word& word, const
     w.line(to + " = (" + cType(p.type) + ")" + whole + ";");
 }
 
-// The words with values of an exception, or of the call (0).
+// Reads the words with values of an exception, or of the call (0).
 void readWords(Writer& w, const Block& b, const Call& c, unsigned exception) {
     for (const Word& word : c.words) {
         bool isRead = false;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// verilog: the wrapper over bus_registers: from words to ports with the interface's names.
+// verilog: generates the wrapper over bus_registers: from words to ports with the names of the
+// interface.
 
 #include "hw/generator.h"
 #include <map>
@@ -23,7 +24,7 @@ std::string portOf(const Word& word, const Piece& p) {
     return p.portWidth > 32 ? slice(port, p.portLsb, p.width) : port;
 }
 
-// The bits of bus_registers' vectors that hold a word.
+// Index of a word in the vectors of bus_registers.
 unsigned base(unsigned word) {
     return 32 * (word % slotWords - firstWord);
 }
@@ -43,7 +44,7 @@ void ports(Writer& w, const Block& b) {
     }
 }
 
-// Writes the registers of one page, whose words begin with the number `first`.
+// Writes the registers of one page, starting with word number `first`.
 void registers(Writer& w, const Block& b, unsigned first) {
     unsigned rw = 0, ro = !first && b.hasLong() ? 1u << status : 0;
     std::map<unsigned, unsigned> widthOf;
@@ -87,7 +88,7 @@ void registers(Writer& w, const Block& b, unsigned first) {
     w.line("    );");
 }
 
-// Writes the registers of all pages: words 8..15 of the bus show one of them.
+// Writes the registers of all pages: words 8..15 of the bus show one page.
 void pages(Writer& w, const Block& b) {
     unsigned count = b.numbers() / slotWords;
     std::string top = "[" + std::to_string(count - 1) + ":0]", data;
@@ -162,7 +163,7 @@ void longCalls(Writer& w, const Block& b) {
     w.line("    end");
 }
 
-// Writes the read values of a page's words, whose words begin with the number `first`.
+// Writes the read values of a page, starting with word number `first`.
 void results(Writer& w, const Block& b, unsigned first) {
     std::string shown = "shown" + suffix(first);
     unsigned next = 0; // bits of `shown` below it are assigned
@@ -191,8 +192,8 @@ void results(Writer& w, const Block& b, unsigned first) {
     zero(32 * (slotWords - firstWord));
 }
 
-// Writes the address of a sequence. The buffers begin at a multiple of their size, so the offset
-// replaces low bits and nothing is added.
+// Writes the address of a sequence. The buffers are aligned to a multiple of their size, so the
+// offset replaces low bits and nothing is added.
 void base(Writer& w, const Block& b, const Call& c, const Piece& p) {
     unsigned lsb = b.memoryLsb();
     w.line("    assign " + c.name + "_" + baseName(p) + "_o = {" +

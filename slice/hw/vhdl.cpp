@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// vhdl: the wrapper in VHDL, for designs that are VHDL throughout: an entity with the Verilog
-// wrapper's ports that does the same clock by clock, in VHDL-93 and later.
+// vhdl: generates the wrapper in VHDL, for designs entirely in VHDL: an entity with the same ports
+// and the same behaviour in each clock as the Verilog wrapper, in VHDL-93 and later.
 
 #include "front/symbols.h"
 #include "hw/generator.h"
@@ -47,7 +47,7 @@ std::string number(unsigned n) {
     return std::to_string(n);
 }
 
-// `width` bits of a vector; one bit of it is a std_logic.
+// `width` bits of a vector; a single bit is a std_logic.
 std::string slice(const std::string& vector, unsigned lsb, unsigned width) {
     return vector + "(" + (width == 1 ? "" : number(lsb + width - 1) + " downto ") + number(lsb) +
            ")";
@@ -64,7 +64,7 @@ std::string address(const Block& b, unsigned word) {
     return binary(word, 4 + b.pageBits);
 }
 
-// The number of the word that the bus accesses.
+// Number of the word that the bus accesses.
 std::string addressed(const Block& b) {
     return b.pageBits ? "place" : "bus_addr_i";
 }
@@ -102,8 +102,8 @@ void signals(Writer& w, const Block& b) {
                    c.name + "_refused : std_logic;");
 }
 
-// Writes the signals that start and end calls, and `happened`, a bit for each call that can end or
-// be an event.
+// Writes the signals that start and end calls, and `happened`, one bit for each call that can end
+// or be an event.
 void events(Writer& w, const Block& b) {
     for (const Call& c : b.calls)
         if (c.isLong) {
@@ -186,11 +186,11 @@ void registers(Writer& w, const Block& b) {
     w.line("  end process;");
 }
 
-// Separates the signals of a sensitivity list: one a line, since their names may be long.
+// Separates the signals of a sensitivity list: one per line, since their names may be long.
 const std::string nextSignal = ",\n                   ";
 
-// The lines of the case statement with each word's read value. Appends the signals that they read
-// to `signals`.
+// Returns the lines of the case statement with the read value of each word. Appends the signals
+// that they read to `signals`.
 std::vector<std::string> shownWords(const Block& b, std::string& signals) {
     std::vector<std::string> lines;
     auto word = [&](unsigned n, const std::string& name) {
@@ -268,7 +268,7 @@ void calls(Writer& w, const Block& b) {
                (c.isLong ? c.name + "_start" : slice("act", c.bit, 1)) + ";");
         for (const Word& word : c.words)
             for (const Piece& p : word.pieces) {
-                // The buffers begin at a multiple of their size, so nothing is added.
+                // The buffers are aligned to a multiple of their size, so nothing is added.
                 if (p.isCount)
                     w.line("  " + c.name + "_" + baseName(p) + "_o <= memory & " +
                            binary(p.offset, b.memoryLsb()) + "; -- " + number(p.offset) +

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// words: scalars into words, words into the slot.
+// words: packs scalars into words, and words into the slot.
 
 #include "c/context.h"
 #include "hw/generator.h"

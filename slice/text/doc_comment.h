@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-// The text without stars and margins; @param, @return, @throws and {@link} in plain words.
+// Returns the text without stars and margins, with @param, @return, @throws and {@link} in words.
 std::vector<std::string> docLines(const std::string& doc);
-// Writes it, with a line for ["deprecate"]; nothing where there is neither.
+// Writes it, with a line for ["deprecate"]; nothing if there is neither.
 void writeDoc(Writer& w, const std::string& doc, const std::vector<std::string>& metadata = {});

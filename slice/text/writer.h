@@ -33,7 +33,7 @@ public:
         indented(body);
         line(tail, values);
     }
-    // A block behind an empty line.
+    // Writes a block after an empty line.
     template <class Body> void function(std::string_view head, const Values& values, Body body) {
         blank();
         block(head, values, body);

@@ -97,7 +97,7 @@ class Values(Work):
             Path(name).touch()
         every = {"LIST": "3", "BY": by, "FIRST": first}
         for given, status, said in (
-                ({}, 0, "nobody but you may read"), ({}, 1, "never overwritten"),
+                ({}, 0, "only you may read"), ({}, 1, "never overwritten"),
                 ({"SIGNING": "1"}, 0, f"public {made} {made}.pub\n"),
                 (every, 0, f"keys 3 {by} {first} {made}\n"),
                 ({**every, "SECOND": second}, 0, f"keys 3 {by} {first} {second} {made}\n"),
@@ -127,7 +127,8 @@ class Values(Work):
                 ("make -s fly", {"SEED": "x"},
                  "SEED: expected a whole number, at least 0, got 'x'"),
                 ("./icesoc fly", {"SEED": "x"}, "SEED: expected a whole number"),
-                ("make -s new-ip NAME=abc", {"LANG": "verilog"}, "LANG says the core's language"),
+                ("make -s new-ip NAME=abc", {"LANG": "verilog"},
+                 "--lang: expected verilog or vhdl"),
                 ("make -s run OPEN=1 KEY=Makefile", {}, "OPEN=1 flies in the clear")):
             self.assertIn(said, ask(*words.split(), **given)[1])
         self.assertNotIn("OPEN=1 flies",
@@ -228,7 +229,7 @@ class Mistakes(Work):
             (self.work / "bin" / name).symlink_to(shutil.which(name))
         status, text = ask("./icesoc", "build", ICESOC_TREE=str(self.work / "tree"), PATH=str(
             self.work / "bin"))
-        self.assertEqual((status, text), (127, "icesoc: there is no program 'cmake': "
+        self.assertEqual((status, text), (127, "icesoc: program 'cmake' not found: "
                                           "./icesoc setup --tests installs what is missing\n"))
         self.assertEqual(ask("./icesoc", "commands", "--man", "/dev/full"),
                          (1, "icesoc: No space left on device\n"))
@@ -289,7 +290,7 @@ class Trees(Work):
         self.assertTrue((old / "build/kept").exists())
         old.rename(new)
         status, text = self.configure(new)
-        self.assertIn(f"build was made for the tree in {old}: made anew", text)
+        self.assertIn(f"build was made for the tree in {old}: creating it again", text)
         self.assertEqual(status, 0)
         self.assertEqual((config / "icesoc/update.key").read_bytes(), b"private")
         # A value that CMake refuses is not kept: it would fail whatever is made next.

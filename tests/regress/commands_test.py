@@ -74,7 +74,7 @@ class Cases(Project):
             (f"run REPLAY={flight} FROM=x", "FROM: expected a number, at least 0 s, got 'x'"),
             (f"run REPLAY={flight} FROM=2 TO=1", "FROM=2.0 TO=1.0 are no span"),
             (f"run IMAGE=/none OUT={flight}", "cannot read '/none'"),
-            ("synth BASE=none", "there is no commit BASE=none"),
+            ("synth BASE=none", "unknown commit BASE=none"),
             ("faults NAME=nonsense", "faults: none is called nonsense; there are clock_step")):
             with self.subTest(words):
                 self.user(words, status=2)
@@ -135,7 +135,7 @@ class Cases(Project):
         self.bad("test SEED=7", "test_s.Sane")
         Path("leak").unlink()
         self.good("proofs")
-        self.has("^1 proofs, 3 s of a processor$")
+        self.has("^1 proofs, 3 s of CPU time$")
         self.good("regress BLOCK=room NAME=[ab][.] LABEL=rtl SEED=7 WAVES=0 TESTS=2")
         self.has("^3 passed")
         self.bad("regress NAME=b.Bad REPEAT=2", "SEED=2")

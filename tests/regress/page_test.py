@@ -133,9 +133,9 @@ class Cases(Project):
         self.regress("--name a.One")
         self.browse(WRITTEN)
         self.has('id="seeds"', ">1 passed, 4 did not run<", ">2 did not run<",
-                 "<summary>1 of which no test ran</summary>")
+                 "<summary>1 without a test that ran</summary>")
         self.has("Requirements: 1 of 1 that were tested proven", ">It works<",
-                 "<summary>1 whose tests did not run with these sources</summary>")
+                 "<summary>1 with tests that did not run with these sources</summary>")
         self.lacks(">It waits<")
 
     def small_and_wrong(self, page):
@@ -247,7 +247,7 @@ top.document.body.append("wider: " + [...document.querySelectorAll(".tabulator-c
                                ("caught", "green")):
             write("build/mutants/results.tsv", results.format(verdict))
             self.lights(mutants=state, tests="green")
-        missed = "red   *1 modules of which proofs and tests miss drawn mutants: fifo"
+        missed = "red   *1 modules with drawn mutants that proofs and tests miss: fifo"
         for score, state in (87.5, missed), (100, "green"):
             fifo = {"drawn": 8, "same": 0, "caught": 7, "score": score}
             write("build/mutants/drawn.json",

@@ -259,7 +259,7 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.regress("--name nothing", 2)
         self.has("labels: formal rtl")
         self.regress("--name '*'", 2)
-        self.has(r"^regress: .*'\*' is no regular expression")
+        self.has(r"^regress: .*'\*': expected a regular expression")
         self.regress("--build nowhere", 2)
 
     def test_again(self):

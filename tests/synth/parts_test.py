@@ -352,7 +352,7 @@ class Cores(unittest.TestCase):
     def test_a_share_has_each_part_once_and_the_largest_core_is_first(self):
         self.assertEqual(self.rows(), [
             ["core in the chip", "LUT", "FF", "RAM16", "DSP", "itself", "registers", "slot 6",
-             "memory port", "of the arbiter"],
+             "memory port", "arbiter"],
             ["low", "53", "56", "3.5", "4", "22 / 11", "4 / 32", "12 / 5", "5 / 6", "10 / 2"],
             ["own", "39", "73", "0", "0", "1 / 1", "26 / 67", "12 / 5", "", ""],
             ["plain", "25", "19", "0", "0", "9 / 9", "4 / 5", "12 / 5", "", ""]])

@@ -240,7 +240,7 @@ class Cases(Script):
         self.has("Tabulator and uPlot could not be fetched. With a network")
         self.lacks("NaN|undefined")
         self.has("as routed [0-9]+ to [0-9]+: nine of ten of [0-9]+ published designs lie in this",
-                 r" flip-flops 11 .* 50 \(0.3 %\) .* wide 1 .* store \d+ .* of the chip's LUTs "
+                 r" flip-flops 11 .* 50 \(0.3 %\) .* wide 1 .* store \d+ .* share of LUTs "
                  r"0.2 %, slices \d+ to \d+, .* ecp5 LUT \d+, ecp5 FF \d+ .* pair 15 .* "
                  r"u_store .* read_addr_i 5 0 project/hdl/blocks/store.v:12 .* clk_i 11 12 [0-9.]+ "
                  r"project/hdl/blocks/pair.v:8 .* rst_i synchronous 5 project/hdl/blocks/pair.v:9 ")
@@ -320,7 +320,7 @@ class Cases(Script):
                  "^Tests that did not run: test_d.X$")
         for wrong in "nonsense", "HEAD..nonsense":
             self.made("synth", f"BASE={wrong}", status=None)
-            self.has("there is no commit BASE=nonsense")
+            self.has("unknown commit BASE=nonsense")
 
     def test_made(self):
         self.users_tree()

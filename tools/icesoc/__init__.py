@@ -3,4 +3,4 @@
 `tools/python`."""
 from pathlib import Path
 
-TREE = Path(__file__).resolve().parents[2]  # of the project
+TREE = Path(__file__).resolve().parents[2]  # root of the project

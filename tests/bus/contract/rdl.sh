@@ -73,7 +73,7 @@ refused "got 'the end'" 'addrmap a { reg { field {} b; } x;'
 refused 'x would be word 16 of its slot' 'addrmap a { reg { field {} b; } x @ 0x34; };'
 refused 'x has no field' 'addrmap a { reg { } x; };'
 refused 'x.b is at bits 39 to 0' 'addrmap a { reg { field {} b[40]; } x; };'
-refused 'there is no addrmap' '// nothing\n'
+refused 'expected an addrmap' '// nothing\n'
 refused 'regwidth: expected' 'addrmap a { reg { regwidth = 0x 16; field {} b; } x; };'
 refused "'2'b3' is not a number" "addrmap a { reg { field {} b = 2'b3; } x; };"
 refused 'an addrmap of the file has no name' 'addrmap { reg { field {} b; } x; };'
@@ -81,7 +81,7 @@ refused 'two addrmaps have one name' 'addrmap a { reg { field {} b; } x; }; addr
 refused 'expected a name, got' 'addrmap { reg { field {} b; } x; } "../a";'
 refused 'x.b: duplicate name' 'addrmap a { reg { field {} b; field {} b; } x; };'
 refused 'has no address' 'addrmap A_PAGES { reg { field {} b; } x; }; addrmap top { addrmap { reg { field {} b; } x; } A; };'
-refused "no text in UTF-8" "\\0377"
+refused "expected text in UTF-8" "\\0377"
 refused 'nested too deep' "$(printf 'addrmap a {%.0s' $(seq 1500))"
 ! rdl "$work/none.rdl" "$work" && grep -q 'No such file' "$work/log" ||
     fail 'a file that is not there is not said'

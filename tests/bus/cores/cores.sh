@@ -161,7 +161,7 @@ refused "has no input pin 'clock'" 'led clock=6/25\n'
 sed '/^name/a clock_hz = 48000000' "$data/mover.toml" >"$work/mover.toml"
 for f in mover.regs.json mover.v; do cp "$data/$f" "$work"; done
 ! clocked "$work/mover.toml" "$data/mover.regs.json" "$work/mover_clocked.v" 2>"$work/messages" &&
-    grep -q 'a core with a memory port has the chip' "$work/messages" ||
+    grep -q 'a core with a memory port uses the chip clock' "$work/messages" ||
     fail 'a memory port in another clock'
 # Registers and fields whose names are one in the headers.
 for names in 'A B A_B_LSB' 'A_B_LSB C A_B_LSB'; do
@@ -199,7 +199,7 @@ hash=$(sed -n 's/.*"names":\([0-9]*\),"signals":\[\["u_adder.irq_o".*/\1/p' "$ou
 grep -q "WORDS(1), .NAMES(32'h$(printf %08X "$hash"))) u_other" "$out/soc_cores.vh" ||
     fail 'chip and ground have other hashes of what a probe records'
 refused "1: error: 'probe' records nothing" 'probe\n'
-refused "signals: 'u_a.b:0' is no name and width" 'probe signals=u_a.b:0\n'
+refused "signals: 'u_a.b:0': expected a name and a width" 'probe signals=u_a.b:0\n'
 refused 'signals: 224 bits; a probe has 223' 'probe signals=a:200,b:24\n'
 refused "'led' has no input pin 'signals'" 'led signals=a\n'
 accepted hole 'led slot=63\n'
@@ -236,7 +236,7 @@ refused 'places are letters and digits' 'led button_i=@A-4\n'
 refused "1: error: gate=on: 'led' has no output idle_o" 'led gate=on\n'
 refused 'gate=off: on, or without the word' 'adder gate=off\n'
 refused "no core's output of 1 bits" 'led button_i=mover.nothing_o\n'
-refused "_o=none: it is no pin" 'mover\nmover name=a\nmover name=b\nmover name=c\n'
+refused "_o=none: it is not a pin" 'mover\nmover name=a\nmover name=b\nmover name=c\n'
 coremap --help | grep -q 'a core a line' || fail 'no help'
 ! coremap "$work/missing" --base "$source/bus/map.regs.json" 2>"$work/messages" ||
     fail 'a missing list is accepted'

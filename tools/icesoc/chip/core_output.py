@@ -6,7 +6,7 @@ The chip is coremap.Chip, slots are coremap.Slot.
 import copy
 import json
 
-CORE_PINS = 32  # of a direction
+CORE_PINS = 32  # pins in each direction
 HAND = "Generated from ip/cores.list: do not edit."
 
 
@@ -45,7 +45,7 @@ def map_of(chip, base):
             c["value"] = chip.slots
         elif c["name"] == "NPI_PORT_COUNT":
             c["value"] = chip.ports
-    add("CORES", len(chip.cores) or 1, "cores, 1 where there are none: for tables")
+    add("CORES", len(chip.cores) or 1, "number of cores, at least 1: for tables")
     add("PROBES", sum(core.is_probe for core in chip.cores), "probes among the cores")
     for core in chip.cores:
         name = core.name.upper()
@@ -127,7 +127,7 @@ def parameters_of(core):
 
 
 def net_of(core, pin):
-    """Returns what is connected to a core's pin."""
+    """Returns the connection of a core's pin."""
     if pin.source:
         return source_net(pin)
     if core.multiply and pin.name == "clock_i":
@@ -246,7 +246,8 @@ def places(core):
 
 
 def own_constraints(core):
-    """Returns the core's own: @name@ is the instance, @port@ its pads, those of a bus as a list."""
+    """Returns the core's timing constraints: @name@ is the instance, @port@ its pads, a list for a
+    bus."""
     s = core.constraints.replace("@name@", core.name)
     for pin in core.pins:
         s = s.replace(f"@{pin.name}@", '" : "'.join(pads(pin)) if pin.is_pin else "")
@@ -254,7 +255,7 @@ def own_constraints(core):
 
 
 def clock_constraints(core):
-    """Returns the period of a clock of the core's own.
+    """Returns the period of a core's separate clock.
 
     Between it and the chip's a path has 8 ns, so two bits, or a word and its flag, arrive at most a
     clock of 10 ns apart.
@@ -341,7 +342,7 @@ def objects_of(chip, registers, slices):
 
 
 def files(chip, slots, base):
-    """Returns the chip's files, name to text."""
+    """Returns the chip's files: name -> text."""
     return {"map.regs.json": map_of(chip, base), "probes.json": probes_of(chip),
             "soc_pins.h": pin_table_of(chip), "core_pins.ucf": constraints_of(chip),
             "soc_cores.vh": verilog_of(chip, slots), "soc_cores.c": instances_of(chip, slots)}

@@ -21,19 +21,19 @@ from icesoc.regs.model import Block, Wrong, check
 SLOT_LIMIT, PIN_LIMIT = 64, 32
 SLOT_BYTES = 64
 BUFFER_ALIGNMENT = 128  # the largest NPI burst, bytes
-# The slowest clock of a core's own, Hz: an access ends within bus_crossing's TIMEOUT.
+# Slowest separate clock of a core, Hz: an access ends within bus_crossing's TIMEOUT.
 LEAST_HZ = 3e6
 PROBE_BITS = 223
 
 
 @dataclass
 class Pin:
-    name: str  # the core's port; its end says the direction
+    name: str  # port of the core; its suffix gives the direction
     width: int = 1
-    internal: bool = False  # for other cores only, never a pin; unconnected inputs are 0
-    lsb: int = 0  # in the chip's core_pins_i or core_pins_o; bits
+    internal: bool = False  # only for other cores, never a pin; unconnected inputs are 0
+    lsb: int = 0  # first bit in core_pins_i or core_pins_o; number of bits
     source: str = ""  # instead of a pin: another core's output
-    places: list = field(default_factory=list)  # of its bits on the board, from bit 0
+    places: list = field(default_factory=list)  # of its bits on the board, bit 0 first
 
     @property
     def is_pin(self):
@@ -51,26 +51,28 @@ class Core:
     name: str
     identity: str = ""
     slot: int = 0
-    port: int = -1  # memory port; -1: none
+    port: int = -1  # memory port; -1 if there is none
     memory: int = 0  # DDR3 byte address of its buffers, a multiple of memory_bytes
     memory_bytes: int = 0  # a power of two, or 0: no buffers
     is_placed: bool = False  # memory= gives its address
-    servant: dict = None  # type and header; without one: that of sw/hw/registers
+    servant: dict = None  # type and header; default: the servant of sw/hw/registers
     pins: list = field(default_factory=list)
     constraints: str = ""  # text of its *.ucf
     has_clock: bool = False  # the module has the parameter CLK_HZ
-    own_clock: int = 0  # Hz at most of its own clock; 0: it has the chip's
-    # Its own clock is the chip's clock times this ratio; 0: the pin clock_i, its last, brings it.
+    own_clock: int = 0  # highest frequency of its separate clock, Hz; 0: it uses the chip clock
+    # Ratio of its separate clock to the chip clock; 0: the clock comes from pin clock_i, its last
+    # pin.
     multiply: int = 0
     divide: int = 1
     says_idle: bool = False  # the module has the output idle_o
-    has_gate: bool = False  # its clock stops while it is idle, on the board, too
+    has_gate: bool = False  # its clock stops while it is idle, also on the board
     is_probe: bool = False  # it has cycles_i and signals_i
-    signals: list = field(default_factory=list)  # of a probe, from bit 0: (name below soc, width)
+    signals: list = field(default_factory=list)  # signals of a probe, bit 0 first: (name below soc,
+                                                 # width)
 
     @property
     def clock_hz(self):
-        """Hz of its own clock; for a clock from a pin, the highest."""
+        """Frequency of its separate clock, Hz; for a clock from a pin, the highest."""
         return 100e6 / self.divide * self.multiply if self.multiply else self.own_clock
 
     def fail(self, text):
@@ -104,9 +106,10 @@ class Chip:
         self.ports = constants["NPI_PORT_COUNT"]
         self.registers = constants["CONTROL_WINDOW"]  # the processor's address of slot 0
         self.pins = {"i": 0, "o": 0}  # bits used of core_pins_i, core_pins_o
-        self.names = {n[5:].lower(): 0 for n in constants if n.startswith("SLOT_")}  # to its line
+        self.names = {n[5:].lower(): 0 for n in constants if n.startswith("SLOT_")}  # line number
+                                                                                     # by name
         self.identities, self.places, self.cores = set(), {}, []
-        for n, line in enumerate(text.split("\n"), 1):  # not at form feeds, as splitlines()
+        for n, line in enumerate(text.split("\n"), 1):  # unlike splitlines(), not at form feeds
             words = line.split("#")[0].split()
             if words:
                 self.cores.append(self.read(n, words[0], words[1:]))
@@ -179,7 +182,7 @@ class Chip:
         core.fail(f"no room in DDR3 for the {needed} bytes of '{core.folder}'")
 
     def set(self, core, key, value):
-        """Takes a word of a core's line."""
+        """Parses one word of a core's line."""
         if key == "name":
             core.check(re.fullmatch("[a-z][a-z0-9_]*", value),
                        f"name={value}: small letters, digits and _")
@@ -223,11 +226,13 @@ class Chip:
 
     @staticmethod
     def set_clock(core, value):
-        """clock=3/8: of the chip's clock, by a DCM_CLKGEN; there is no pin clock_i then."""
+        """clock=3/8: a fraction of the chip clock, made by a DCM_CLKGEN; then there is no pin
+        clock_i."""
         match = re.fullmatch("([0-9]{1,3})/([0-9]{1,3})", value)
         core.multiply, core.divide = map(int, match.groups()) if match else (0, 0)
         core.check(2 <= core.multiply <= core.divide <= 256,
-                   f"clock={value}: a part of the chip's clock, as 3/8: 2..256 / 2..256")
+                   f"clock={value}: expected a fraction of the chip clock, such as 3/8 "
+                   "(2..256 / 2..256)")
         core.check(LEAST_HZ <= core.clock_hz <= core.own_clock,
                    f"clock={value}: {core.clock_hz:.0f} Hz; '{core.folder}' is for {LEAST_HZ:.0f} "
                    f"to {core.own_clock} Hz")
@@ -239,13 +244,14 @@ class Chip:
         for word in value.split(","):
             match = re.fullmatch("([A-Za-z0-9_.]+)(?::([0-9]{1,3}))?", word)
             width = int(match[2] or 1) if match else 0
-            core.check(width, f"signals: '{word}' is no name and width, as u_fir.count:9")
+            core.check(width, f"signals: '{word}': expected a name and a width, such as "
+                       "u_fir.count:9")
             core.signals.append((match[1], width))
         bits = sum(width for _, width in core.signals)
         core.check(bits <= PROBE_BITS, f"signals: {bits} bits; a probe has {PROBE_BITS}")
 
     def set_places(self, core, pin, value):
-        """pwm_o=@A4,B4: where the bits are on the board, from bit 0."""
+        """pwm_o=@A4,B4: locations of the bits on the board, bit 0 first."""
         for place in value[1:].split(","):
             core.check(re.fullmatch("[A-Za-z0-9]+", place),
                        f"{pin.name}={value}: places are letters and digits, as @A4,B4")
@@ -304,7 +310,7 @@ class Chip:
                 placed.append(core)
 
     def connect(self, core):
-        """Wires a core's pins to other cores, and gives the rest their bits of the chip's pins."""
+        """Wires pins of cores to other cores, and assigns bits of the chip pins to the rest."""
         outputs = {f"{c.name}.{p.name}": p for c in self.cores for p in c.pins
                    if p.direction == "o"}
         names = [c.name for c in self.cores]
@@ -320,7 +326,7 @@ class Chip:
                 self.pins[pin.direction] += pin.width
                 core.check(self.pins[pin.direction] <= PIN_LIMIT,
                            f"'{pin.name}' of '{core.name}': the chip has {PIN_LIMIT} pins of a "
-                           f"direction for cores; {pin.name}=none: it is no pin")
+                           f"direction for cores; {pin.name}=none: it is not a pin")
 
 
 def aligned(address, size):
@@ -334,7 +340,7 @@ def read(path):
     except OSError as e:
         raise Wrong(f"1: error: cannot read '{path}'") from e
     except ValueError as e:
-        raise Wrong(f"1: error: '{path}' is no text in UTF-8") from e
+        raise Wrong(f"1: error: '{path}': expected text in UTF-8") from e
 
 
 def described(path):

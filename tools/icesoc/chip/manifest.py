@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""manifest: reads a core's core.toml, the one place of the core's facts (docs/hw-mapping.md).
+"""manifest: reads a core's core.toml, the only description of the core (docs/hw-mapping.md).
 
 CMake gets the facts as code that sets variables, in a global property for each manifest:
 python -m icesoc.chip.manifest ip/fir/core.toml ip/probe/core.toml. Python programs use read() and
@@ -23,7 +23,7 @@ FILE_LISTS = "verilog", "vhdl", "includes", "tests"
 
 
 def reason(error):
-    """Returns the words for a violation of the schema."""
+    """Returns the message for a violation of the schema."""
     where = "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in error.path)
     where = where.lstrip(".")
     before = f"{where}: " if where else ""
@@ -142,7 +142,7 @@ def block_of(manifest, registers):
 
 
 def quoted(words):
-    """Returns words as arguments of CMake; @NAME@ becomes a variable's value."""
+    """Returns words as arguments of CMake; @NAME@ is replaced by the value of a variable."""
     text = (str(word).replace("\\", "\\\\").replace('"', '\\"').replace("$", "\\$")
             .replace(";", "\\;") for word in words)
     return " ".join('"' + re.sub("@([A-Z_]+)@", r"${\1}", word) + '"' for word in text)

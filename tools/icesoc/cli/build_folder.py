@@ -18,7 +18,7 @@ ROOMS_OF_PROGRAMS = "bus;slice;sw;hdl;ip;testbench;tests"
 
 
 def writable(folder, otherwise):
-    """Makes a folder, or ends with the reason why it cannot be used."""
+    """Makes a folder, or fails with the reason."""
     try:
         Path(folder).mkdir(parents=True, exist_ok=True)
     except OSError:
@@ -58,7 +58,7 @@ class BuildFolder:
                  "folder that is yours")
         home = self.cached("CMAKE_HOME_DIRECTORY")
         if home and not (os.path.isdir(home) and os.path.samefile(home, ".")):
-            warn(f"{self.folder} was made for the tree in {home}: made anew")
+            warn(f"{self.folder} was made for the tree in {home}: creating it again")
             keys.rescue(self.folder)
             shutil.rmtree(self.folder)
             self.folder.mkdir()
@@ -66,13 +66,13 @@ class BuildFolder:
             if not (self / "build.ninja").exists():
                 run(["cmake", "-S", ".", "-B", self.folder, "-G", "Ninja", *arguments])
         commands = Path("compile_commands.json")
-        if not commands.exists():  # an editor looks for it here; in another's tree it stays away
+        if not commands.exists():  # editors look for it here; not created in another user's tree
             with contextlib.suppress(OSError):
                 commands.unlink(missing_ok=True)
                 commands.symlink_to(os.path.relpath(self / commands))
 
     def cached(self, name):
-        """A variable of CMake's cache; empty if there is none."""
+        """Returns a variable of CMake's cache; empty if it is not set."""
         try:
             found = re.search(rf"^{name}:\w+=(.*)$", (self / "CMakeCache.txt").read_text(), re.M)
         except OSError:
@@ -117,7 +117,8 @@ class BuildFolder:
         self.set(**variables)
 
     def alone(self):
-        """Holds the folder: two that configure or build it would spoil each other's files."""
+        """Locks the folder, because two commands that configure or build it would disturb each
+        other."""
         return lock(self.folder, busy=f"waiting for another build in {self.folder} ...")
 
     def ninja(self, *words, check=True, env=None, jobs=None):
@@ -129,7 +130,7 @@ class BuildFolder:
                              self.folder / "build.log", check, env)
 
     def ctest(self, *words, tests, check=True, junit="junit.xml", **env):
-        """Runs tests by CTest, and leaves their results in the build folder."""
+        """Runs tests with CTest, and leaves their results in the build folder."""
         return run([*tool("regress.ctest"), "--test-dir", self.folder, "-j", tests,
                     "--output-on-failure", "--no-tests=error", "--output-junit",
                     (self / junit).absolute(), *words], env=env, check=check)

@@ -14,15 +14,15 @@ import typing
 from icesoc.cli.options import ARGUMENTS, BUILT, PATHS, SWITCH
 from icesoc.util.errors import Stop
 
-COMMANDS = {}  # by name, such as "core new", in the order of the list
-GROUPS = {}  # first words of names of two words, with their help
-DEFAULTS = {}  # a group's command that its first word alone means
+COMMANDS = {}  # command by name, such as "core new", in the order of the list
+GROUPS = {}  # help of each group, by the first word of its commands
+DEFAULTS = {}  # command of a group that its first word alone selects
 SECTIONS = {  # of the overview: commands and groups, by what a user wants to do
     "Fly": ("run", "call", "replay", "gdb", "key", "fly"),
     "Add cores, look at the chip": ("core", "contract", "synth"),
     "Build and test": ("build", "test", "regress", "bisect", "check", "bench", "nightly"),
     "The project": ("setup", "docs", "release", "clean", "commands")}
-ALIASES = {}  # other verbs of make: a verb, and the switch that it turns on
+ALIASES = {}  # other goals of make: a goal, and the switch that it sets
 
 
 class Command:
@@ -67,7 +67,7 @@ class Command:
             action: typing.Any = parser.add_argument(name, **more)
             if option.completer:
                 action.completer = option.completer
-            if option.positional:  # by its name, too, as by make
+            if option.positional:  # also by its name, as with make
                 more["help"] = argparse.SUPPRESS
                 parser.add_argument(f"--{option.name}", dest=f"--{option.field}", **more)
         return parser
@@ -110,13 +110,13 @@ def command(name, options=(), make=None, when=None, brief=(), long=(), examples=
 
 
 def nearest(word, words):
-    """The end of a message about an unknown word."""
+    """Returns the end of a message about an unknown word."""
     close = difflib.get_close_matches(word, words, 1, 0.5)
     return f"; did you mean {close[0]}?" if close else ""
 
 
 def find(words):
-    """The command at the beginning of words, and the words after it."""
+    """Returns the command at the beginning of the words, and the remaining words."""
     for length in (2, 1):
         name = " ".join(words[:length])
         if name in COMMANDS:
@@ -190,7 +190,7 @@ def by_make(goal, goals, makes):
 
 
 def complete():
-    """Completes words of a shell, if Debian's argcomplete is installed."""
+    """Completes shell words, if Debian's argcomplete is installed."""
     import argcomplete
     top = argparse.ArgumentParser()
     within = {"": top.add_subparsers()}
@@ -203,7 +203,8 @@ def complete():
 
 
 def short(text, width):
-    """The beginning of a help text, up to its first comma or semicolon that leaves it short."""
+    """Returns the beginning of a help text, up to its first comma or semicolon if the result is
+    short."""
     while len(text) > width:
         text = re.sub(r"[,;:(][^,;:(]*$", "", text).rstrip() if re.search("[,;:(]", text) \
             else text[:width - 3] + "..."
@@ -225,7 +226,7 @@ def overview():
             rest.pop(name)
             lines.append(row(name, f"{GROUPS[name]} (./icesoc {name} --help)" if name in GROUPS
                              else COMMANDS[name].help))
-    assert not rest, f"in no section of the overview: {', '.join(rest)}"
+    assert not rest, f"commands missing in the sections of the overview: {', '.join(rest)}"
     return "\n".join([
         *lines, "", "./icesoc COMMAND --help explains a command. By make: `make run LOSS=0.1` is",
         "`./icesoc run --loss 0.1`; help shows the name of make's variable in [brackets]."])
@@ -243,7 +244,7 @@ def group_help(group):
 
 
 def help_of(words):
-    """The help of a command line that asks for it by its first or its last word, or None."""
+    """Returns the help if the first or last word of a command line asks for it, or None."""
     if words and words[0] in ("help", "-h", "--help"):
         words = words[1:]
     elif not (len(words) == 2 and words[0] in GROUPS and words[1] in ("-h", "--help")):

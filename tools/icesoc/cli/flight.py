@@ -68,7 +68,7 @@ FIELDS = [
     Option("guard", number(2, 3300, "ms"), "guard time of both modems", 1000),
     Option("patience", number(1, unit="s"), "time-out for each answer of the vehicle", 300),
     Option("firmware", FILE, "firmware (ELF) to fly instead of the one from the build", ""), ]
-# Other options of the simulator, in a flight's description or as words; ./icesoc has its own
+# Further options of the simulator, in a flight's description or as words; ./icesoc has separate
 # options for them.
 _TEXT: dict = {"type": "string"}
 _TIME: dict = {"type": "number", "minimum": 0}
@@ -88,13 +88,14 @@ INNER: dict[str, dict] = {name: {**kind, "description": text} for name, kind, te
      "faults injected into several vehicles: away:2:1.5:3 moves the modem with address 2 out of "
      "reach after 1.5 s for 3 s; twin:2:... adds a vehicle with the same address; babble:2:... "
      "sends noise"),
-    ("every_clock", _FLAG, "evaluates each clock, quiet ones and those of idle cores, too (slow)"),
+    ("every_clock", _FLAG, "evaluate every clock, including quiet ones and clocks of idle "
+     "cores (slow)"),
     ("speed", _SPEED, "real: simulated time follows the clock; 0.25: at a quarter of its speed; "
      "max: as fast as it goes"),
     ("duration", _TIME, "end after this simulated time, s"),
     ("gdb", {"type": "integer", "minimum": 0, "maximum": 65535},
      "port of the loopback interface on which to wait for GDB; 0 selects a free port"),
-    ("quiet", _FLAG, "says nothing"),
+    ("quiet", _FLAG, "print nothing"),
 ]}
 AGAIN = Option("again", PATH, "flight.json of an earlier flight: repeats it with its options, "
                               "except those given here")
@@ -128,7 +129,7 @@ def schema():
 
 
 def wrong(flight):
-    """The first part that does not fit the schema, or None."""
+    """Returns the first part that does not match the schema, or None."""
     types: dict = {"string": str, "integer": int, "number": (int, float), "boolean": bool,
                    "array": list}
     rules = {name: rule for name, rule in schema()["properties"].items() if name not in INNER}
@@ -189,7 +190,7 @@ def complete(values):
         values.cores = [*values.cores, "camera"]
     if values.probe and "probe" not in values.cores:
         raise Stop(f"PROBE='{values.probe}' is a trigger of a probe: give --cores probe "
-                   "(CORES=probe), too", 2)
+                   "(CORES=probe)", 2)
     build = BuildFolder(values.build, values)
     for at, core in enumerate(values.cores):
         folder = build.core(core)
@@ -202,7 +203,7 @@ def complete(values):
     except OSError:
         pass
     if not os.access(values.out, os.W_OK):
-        raise Stop(f"OUT='{values.out}' is no folder into which a flight can be written", 2)
+        raise Stop(f"OUT='{values.out}': expected a folder that a flight can write", 2)
 
 
 def check_chip(values, build):
@@ -215,7 +216,7 @@ def check_chip(values, build):
 
 
 def take_key(values, build):
-    """The demo key, made once, for a mission that is neither open nor has a key."""
+    """Returns the demo key, created once, for a mission that is neither open nor has a key."""
     if values.open or values.key or values.app != "uav":
         return
     keys.rescue(build.folder.parent)
@@ -233,17 +234,17 @@ def take_observers_key(values):
 
 
 def make_key(path):
-    """Makes a key that nobody else may read; false if there is one."""
-    beside = f"{path}.{os.getpid()}"
-    with open(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w") as file:
+    """Creates a key that only its owner may read; returns False if it exists."""
+    temporary = f"{path}.{os.getpid()}"
+    with open(os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w") as file:
         file.write(secrets.token_hex(16) + "\n")
     try:
-        os.link(beside, path)
+        os.link(temporary, path)
         return True
     except FileExistsError:
         return False
     finally:
-        os.remove(beside)
+        os.remove(temporary)
 
 
 def firmware(values, build):

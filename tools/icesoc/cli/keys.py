@@ -24,7 +24,7 @@ def folder():
 
 
 def rescue(built):
-    """Takes keys out of `build`, or a folder in it, where they were kept once."""
+    """Moves keys out of `build`, or a folder in it, where earlier versions kept them."""
     for pattern in ("demo.key", "update.key", "*/update.key"):
         for old in sorted(Path(built).glob(pattern)):
             new = folder() / old.name
@@ -68,7 +68,8 @@ def make_certificate(path):
 
 @contextlib.contextmanager
 def locked(place):
-    """Lets one process at a time make certificates in a folder: each may make the authority."""
+    """Lets one process at a time create certificates in a folder, because each may create the
+    authority."""
     fd = os.open(place, os.O_RDONLY | os.O_DIRECTORY)
     try:
         fcntl.flock(fd, fcntl.LOCK_EX)
@@ -93,7 +94,8 @@ def check_authority(authority, signs):
 def sign(name, cert, key, constraint, *by):
     # A plus sign or a slash in a file's name would begin another part of the subject.
     name = name.replace("\\", "\\\\").replace("+", "\\+").replace("/", "\\/")
-    settings = cert.with_name("openssl.cnf")  # the machine's own would let everybody sign
+    settings = cert.with_name("openssl.cnf")  # the machine's settings would allow every certificate
+                                              # to sign
     settings.write_text("[req]\ndistinguished_name = name\n[name]\n")
     run(["openssl", "req", "-x509", "-config", settings, "-newkey", "ec", "-pkeyopt",
          "ec_paramgen_curve:P-256", "-nodes", "-days", "3650", "-subj", f"/CN={name}", "-addext",

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""main: the two doors, the environment of all programs, and one way to fail."""
+"""main: the two entry points (./icesoc and make), the environment of all programs, and error
+handling."""
 import os
 import pwd
 import re
@@ -15,12 +16,12 @@ from icesoc.util.process import hear_signals
 def surroundings():
     """Sets the environment of all programs, and changes to the tree's folder. Returns the caller's
     folder."""
-    place, tree = os.getcwd(), os.environ.pop("ICESOC_TREE", "")  # a test's own tree
+    place, tree = os.getcwd(), os.environ.pop("ICESOC_TREE", "")  # the tree of a test
     os.chdir(tree or TREE)
     place = os.getcwd() if tree else place
-    # ccache and icesoc.util.fetch keep files in HOME, which a timer or a container may not set.
+    # ccache and icesoc.util.fetch store files in HOME, which a timer or a container may not set.
     os.environ.setdefault("HOME", pwd.getpwuid(os.getuid()).pw_dir)
-    # Paths below this folder are relative in the compiler's cache, so that it serves every clone.
+    # Paths below this folder are relative in the compiler cache, so that it works for every clone.
     os.environ.update(CCACHE_BASEDIR=os.getcwd(), CCACHE_NOHASHDIR="1")
     os.environ[
         "LC_ALL"] = "C.UTF-8"  # numbers have a point in every tool, whatever the user's language

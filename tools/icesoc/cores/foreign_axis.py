@@ -13,11 +13,12 @@ SIGNALS = ("tdata", "tvalid", "tready", "tkeep", "tstrb", "tlast", "tuser", "tid
 ROLES = [f"{stream}_{signal}" for stream in "sm" for signal in SIGNALS]
 NEEDED = ["s_tdata", "s_tvalid", "m_tdata", "m_tvalid", "m_tready"]
 ELEMENTS = {8: "byte", 16: "short", 32: "int", 64: "long"}
-BYTES = 1024  # of a packet, in and out
+BYTES = 1024  # largest packet in each direction, bytes
 
 
 def role(name, port):
-    """Returns s_ and the signal of the stream into the core, m_ of the one out of it, or None."""
+    """Returns s_ and the signal of the input stream, m_ and the signal of the output stream, or
+    None."""
     found = re.search(f"({'|'.join(SIGNALS)})(_[io])?$", name.lower()) or re.fullmatch(
         "[sm](?:_axis)?_(data|valid|ready|rdy|keep|strb|last)", name.lower())
     if not found:
@@ -28,7 +29,7 @@ def role(name, port):
 
 
 def problem(top, ports, roles):
-    """Returns what is wrong with the module's streams, or None."""
+    """Returns the error in the module's streams, or None."""
     widths = [len(p["bits"]) for n, p in ports.items() if roles[n] in ("s_tdata", "m_tdata")]
     if widths[0] != widths[1] or widths[0] not in ELEMENTS:
         return f"tdata of {top} has {widths[0]} and {widths[1]} bits: it must be 8, 16, 32 or 64 in both directions"
@@ -46,14 +47,15 @@ def setting(name):
 
 
 class Core:
-    """A third-party core with two streams: widths, and what its ports are."""
+    """A third-party core with two streams: their widths, and the roles of its ports."""
 
     def __init__(self, name, top, params, ports, roles):
         self.name, self.top, self.params, self.ports, self.roles = name, top, params, ports, roles
         self.type_name = camel(name)
         self.by_role = {r: n for n, r in roles.items()}
         self.width = len(ports[self.by_role["s_tdata"]]["bits"])
-        self.bits = 8 if {"s_tkeep", "m_tkeep"} & set(self.by_role) else self.width  # of an element
+        self.bits = 8 if {"s_tkeep", "m_tkeep"} & set(self.by_role) else self.width  # width of an
+                                                                                     # element
         self.most = BYTES * 8 // self.bits
         self.settings = [n for n in ports if roles[n] == "setting"]
         self.pins = [(pin_name(n, p), p) for n, p in ports.items() if not roles[n]]
@@ -84,7 +86,7 @@ module Cores {{
 
 
 def connection(core, name, port):
-    """Returns what a port of the core is connected to."""
+    """Returns the connection of a port of the core."""
     role, bits = core.roles[name], len(port["bits"])
     if role == "setting":
         return f"{setting(name)}[{bits - 1}:0]" if bits > 1 else f"{setting(name)}[0]"
@@ -169,7 +171,7 @@ TEST({core.type_name}, AnswersAPacket) {{
     Cores_{core.type_name}Packet packet{{64, words}};
 {"".join(f"    {line}{chr(10)}" for line in before)}    Cores_{core.type_name}Packet answer{{}};
     ASSERT_NO_THROW(answer = core.process(&packet))
-        << "no answer: what does the core want at its reset, its settings and its pins?";
+        << "no answer: check the core's reset, settings and pins";
     EXPECT_GT(answer.size, 0);
 }}
 

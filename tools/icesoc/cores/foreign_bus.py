@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""foreign_bus: writes the files of a core with registers behind a bus, for new_foreign.py.
+"""foreign_bus: writes the files of a core with registers on a bus, for new_foreign.py.
 
 The slot has a Wishbone or an AXI4-Lite adapter. Other buses become Wishbone's by a few gates: a
 core without acknowledge answers at once, after some clocks, or in APB's access phase.
@@ -11,7 +11,7 @@ from icesoc.cores.foreign_files import ADAPTER, head, overrides, pin_name, vecto
 
 BUSES = {"wishbone": "Wishbone", "apb": "APB", "axil": "AXI4-Lite",
          "memory": "select, address and data",
-         "own": "a bus of its own", "avalon": "Avalon-MM"}
+         "own": "a custom bus", "avalon": "Avalon-MM"}
 WISHBONE = ["cyc", "stb", "we", "adr", "sel", "wdata", "rdata", "ack", "err", "rty", "stall"]
 WIDTHS = {"sel": 4, "strobes": 4, "wdata": 32, "rdata": 32, "wstrb": 4, "bresp": 2, "rresp": 2,
           "awprot": 3, "arprot": 3}
@@ -46,7 +46,8 @@ class Core:
                 for n, p in self.pins]
 
     def count_words(self, role, port, address):
-        """Finds out whether an address counts words or bytes, and how many bits count words."""
+        """Detects whether an address counts words or bytes, and the number of bits that count
+        words."""
         width, lsb = len(port["bits"]), port.get("offset", 0)
         if address or role in ("words", "bytes"):
             unit, reason = address or role, "as you say"
@@ -75,14 +76,14 @@ class Core:
 
 
 def connection(core, role, port, interrupts):
-    """Returns what a port with a role is connected to; appends the wire of an interrupt."""
+    """Returns the connection of a port with a role; appends the wire of an interrupt."""
     width = len(port["bits"])
     if role in LOW:
         return f"{{{width}{{!({connection(core, role[:-2], {'bits': [0]}, interrupts)})}}}}"
     strobes = core.has_strobes  # without a select, read and write are strobes
     own = {"strobe": "stb", "re": "stb && !we" if strobes else "!we",
            "we": "stb && we" if strobes else "we"}
-    if role in ("stb", "strobe", "re", "we"):  # one bit per byte, all of them driven
+    if role in ("stb", "strobe", "re", "we"):  # one bit per byte, all driven
         to = own.get(role, role) if core.bus in ("own", "avalon") else role
         return f"{{{width}{{{to}}}}}" if width > 1 else to
     if role in ("interrupt", "interruptn"):
@@ -135,7 +136,8 @@ def answers(core):
 
 
 def rules(core):
-    """Returns the checker of APB's rules; the adapters have those of the other buses."""
+    """Returns the checker of the APB rules; the adapters contain the checkers of the other
+    buses."""
     return f"""`ifdef RULES
     apb_rules #(.ADDR_WIDTH({core.adr_bits})) u_rules (
         .clk_i(clk_i), .rst_i(rst_i), .psel_i(stb), .penable_i(enable), .pwrite_i(we), .paddr_i(adr), .pwdata_i(wdata),
@@ -168,7 +170,7 @@ def module(core):
     takes_strobes = core.bus == "own" and core.has_strobes or {"stall", "valid", "strobe"} & set(
         core.by_role)
     options = ", .PIPELINED(1)" if takes_strobes or core.latency else ""
-    # the adapter gives a core up before bus_crossing does, after 250 clocks of the chip
+    # the adapter aborts before bus_crossing does, after 250 chip clocks
     if core.clock:
         options += f", .TIMEOUT({max(2, 250 * core.clock // 100000000 - 6)})"
     kind = "bus_to_axi4lite" if core.bus == "axil" else "bus_to_wishbone"
@@ -191,7 +193,7 @@ endmodule
 
 
 def description(core, words):
-    """Returns *.regs.json; `words` are the names of the core's words by their addresses."""
+    """Returns *.regs.json; `words` are the names of the core's words by address."""
     letters = (core.name.replace("_", "") + "x").upper()
     width = {} if core.data_width >= 32 else {"width": core.data_width}
     registers = [{"word": 3, "name": "PAGE", "access": "rw",
@@ -260,7 +262,7 @@ def fly(log, proxy, report):
 
 
 def texts(core, words):
-    """Returns the files by their names; `words` as names_of gives them, or nothing."""
+    """Returns the files by name; `words` as returned by names_of, or empty."""
     words = words or {a: f"REG{a}" for a in range(min(32, 1 << core.word_bits))}
     first = next(iter(words.values()))
     return {f"{core.name}.v": module(core), f"{core.name}_test.cpp": test(core.name, first),

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""foreign_files: what new_foreign.py reads from a third-party core's files: its modules, and TOP's
-ports; and what all wrappers have."""
+"""foreign_files: reads the files of a third-party core for new_foreign.py (its modules, and the
+ports of TOP), and provides code common to all wrappers."""
 import codecs
 import json
 import os
@@ -92,7 +92,7 @@ def only_once(modules, what_to_do):
     for name, file, line in modules:
         other, at = first.setdefault(name, (file, line))
         if other != file:
-            fail(f"{file}:{line}: module '{name}' is in {other}:{at}, too: {what_to_do}")
+            fail(f"{file}:{line}: module '{name}' is also in {other}:{at}: {what_to_do}")
     return first
 
 
@@ -120,7 +120,7 @@ def check_names(slot, top, files):
         if name in first and first[name][0] != file:
             fail(f"{first[name][0]}:{first[name][1]}: module '{name}' has the name of this "
                  "project's "
-                 f"{os.path.relpath(file, room)}:{line}: give it another, where it is used, too")
+                 f"{os.path.relpath(file, room)}:{line}: give it another name, also where it is used")
     return top
 
 
@@ -141,12 +141,12 @@ def packages_first(files):
     return ordered
 
 
-# Verilator's and Yosys' words, and what to do about it.
-HINTS = {r"[Ii]nclude file:? (?:`)?([^\s']+)": "FILES may name headers, too: `include looks for "
+# Messages of Verilator and Yosys, and what to do about them.
+HINTS = {r"[Ii]nclude file:? (?:`)?([^\s']+)": "FILES may also name headers: `include looks for "
                                                "{0} in their folders (a timescale.v may be empty)",
          r"(?:Module `\\|unknown type `|containing module: ')(\w+)": "FILES lacks the file with module '{0}'",
          r"object for defparam `(\w+)|no generic \"(\w+)\"": "PARAMS: {top} has no '{0}'",
-         r"find resource library \"(\w+)\"": "LIBRARY={0} says that the files are in that library"}
+         r"find resource library \"(\w+)\"": "add LIBRARY={0} if the files are in that library"}
 
 
 def run_tool(what, top, command):
@@ -170,7 +170,7 @@ def lint_of(top, files, defines):
 
 
 def ports_by_verilator(top, words):
-    """Returns TOP's ports as Yosys gives them, of SystemVerilog that Yosys does not read."""
+    """Returns the ports of TOP as listed by Yosys, for SystemVerilog that Yosys cannot read."""
     with tempfile.TemporaryDirectory() as work:
         file = os.path.join(work, "top.xml")
         run_tool("Verilator does not elaborate", top,
@@ -329,7 +329,7 @@ def vector(width):
 
 
 def pin_name(name, port):
-    """Returns the port's name as the platform has pins: in small letters, with _i or _o at its
+    """Returns the name of a port in the form of platform pins: in lower case, with _i or _o at its
     end."""
     base = re.sub(r"^[io]_|_[io]$", "", name.lower())
     return base + ("_i" if port["direction"] == "input" else "_o")
@@ -359,4 +359,4 @@ module {name} (
 if __name__ == "__main__":  # foreign_files.py FILE...: the Verilog of all cores of a chip
     only_once(declared([f for f in sys.argv[1:] if os.path.isfile(f)], "module"),
               "a chip has one of each: give one of them another name, in a copy, where it is "
-              "used, too")
+              "used as well")

@@ -8,7 +8,7 @@ from icesoc.cores.foreign_files import fail
 
 CLOCK = r"[aph]?(clk|clock)g?"
 RESET = r"[aph]?n?(rst|reset)[nb]?"
-# Parts of a signal's name that make it another signal than these words: clk_en, gate_clk_pad_i.
+# Words in a signal's name that exclude these roles: clk_en, gate_clk_pad_i.
 NO_CLOCK = {"en", "ena", "enable", "ce", "sel", "div", "gate", "ext", "pad"}
 INTERRUPTS = {"int", "inta", "intr", "irq", "interrupt"}
 AXI = ["awvalid", "awready", "awaddr", "awprot", "wvalid", "wready", "wdata", "wstrb", "bvalid",
@@ -22,7 +22,8 @@ WISHBONE = {"input": {"cyc": "cyc", "stb": "stb", "we": "we", "adr": "adr", "add
 # "apb": AMBA APB 2 to 5 (ARM IHI 0024), without parity.
 APB = {"psel": "stb", "penable": "enable", "pwrite": "we", "paddr": "adr", "pwdata": "wdata",
        "pstrb": "sel", "pwstrb": "sel", "prdata": "rdata", "pready": "ack", "pslverr": "err"}
-# Optional signals of a bus, tied off for single transfers of whole words; outputs are left open.
+# Optional signals of a bus, set to constants for single transfers of whole words; outputs are left
+# open.
 TIED = {"axil": {**dict.fromkeys("awid awlen awlock awcache awqos awregion awuser wid wuser arid "
                                  "arlen arlock arcache arqos arregion aruser".split(), "low"),
                  "awakeup": "high", "wlast": "high", "awburst": "1", "arburst": "1",
@@ -33,7 +34,7 @@ TIED = {"axil": {**dict.fromkeys("awid awlen awlock awcache awqos awregion awuse
         "wishbone": dict.fromkeys(("cti", "bte", "lock"), "low"),
         "avalon": {"burstcount": "1", "debugaccess": "low", "lock": "low", "response": "open",
                    "writeresponsevalid": "open"}}
-# "memory": chip select, write enable, address of a word, data; read data is there in the same
+# "memory": chip select, write enable, address of a word, data; read data is available in the same
 # clock.
 MEMORY = {"cs": "stb", "ce": "stb", "we": "we", "address": "adr", "addr": "adr",
           "write_data": "wdata", "wdata": "wdata",
@@ -42,8 +43,8 @@ MEMORY = {"cs": "stb", "ce": "stb", "we": "we", "address": "adr", "addr": "adr",
 AVALON = {"chipselect": "stb", "read": "re", "write": "we", "address": "adr", "addr": "adr",
           "writedata": "wdata", "byteenable": "sel", "readdata": "rdata", "waitrequest": "stall",
           "readdatavalid": "valid"}
-# Words for ROLE=port. select is high until the answer, strobe for one clock; read and write beside
-# neither are both.
+# Words for ROLE=port. select is high until the answer, strobe for one clock; read and write without
+# either are both.
 ROLES = {"select": "stb", "strobe": "strobe", "read": "re", "write": "we", "address": "adr",
          "enables": "sel",
          "wdata": "wdata", "rdata": "rdata", "ack": "ack", "error": "err", "clock": "clock",
@@ -110,7 +111,7 @@ def roles_of(top, bus, ports, given):
     """Returns each port's role, and the clocks until a core without `ack` answers, or None; `given`
     is ROLE=port."""
     roles = {n: role(n, p, bus) for n, p in ports.items()}
-    # The bus' own names, too, where they are no role's word.
+    # The signal names of the bus are also accepted, if they are not the words for another role.
     words = {**{r: r for r in NEEDED[bus] + {"axil": AXI, "axis": foreign_axis.ROLES}.get(bus, [])},
              **ROLES}
     say = {v: k for k, v in ROLES.items()} if bus != "axis" else {}
@@ -118,12 +119,12 @@ def roles_of(top, bus, ports, given):
     for word in sorted(given, key=lambda word: "*" in word):
         what, port = word.split("=", 1)
         if what not in words:
-            fail(f"PORTS: '{what}' is none of {', '.join(words)}")
+            fail(f"PORTS: '{what}': expected one of {', '.join(words)}")
         if what == "ack" and re.fullmatch("[1-9]", port):
             latency = int(port)
             continue
         is_output = words[what] in OUTPUTS or is_answer(words[what])
-        if "*" in port:  # those of its direction that would be pins
+        if "*" in port:  # the ports of its direction that would be pins
             found = [n for n, p in ports.items() if not roles[n] and fnmatch.fnmatch(n, port)
                      and n not in named and is_output == (p["direction"] == "output")]
             roles.update(dict.fromkeys(found, words[what]))
@@ -134,7 +135,7 @@ def roles_of(top, bus, ports, given):
             fail(f"PORTS: {what} is an {'output' if is_output else 'input'} of a core, and "
                  f"'{port}' is not")
         if what == "setting" and bus != "axis":
-            fail("PORTS: a setting is for BUS=axis; here an input that is none of the bus is a pin")
+            fail("PORTS: a setting requires BUS=axis; here an input outside the bus is a pin")
         roles[port] = words[what]
         named.add(port)
     there = {*(r.removesuffix("_n") for r in roles.values()),

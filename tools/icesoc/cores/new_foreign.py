@@ -34,13 +34,13 @@ USAGE = ("usage: make new-foreign NAME=my_uart TOP=module "
          "BUS=wishbone|axil|apb|avalon|memory|own|axis FILES='a.v b.v' [PORTS='write=we ...']")
 
 
-# Names that may be an interrupt's.
+# Names that may belong to an interrupt.
 ASKED = re.compile("irq|(?<!po)(?<!pr)(?<!h)int(r|errupt)?s?(_?n)?(_?o)?$|(^|_)int(_|$)|ev(en)?t|"
                    "alarm|attention", re.I)
 
 
 class Request:
-    """What the command line asks for."""
+    """Arguments of the command line."""
 
     def __init__(self, words):
         if len(words) < 5:
@@ -61,13 +61,13 @@ class Request:
         self.ghdl = self.ghdl or "ghdl"
 
     def check(self):
-        """Ends the program if what is asked for cannot be."""
+        """Ends the program if the request is impossible."""
         if self.clock and not (re.fullmatch("[0-9]{7,9}", self.clock)
                                and 3000000 <= int(self.clock) <= 100000000):
-            fail(f"CLOCK={self.clock}: the frequency of the core's own clock, 3000000 to "
+            fail(f"CLOCK={self.clock}: the frequency of the core's separate clock, 3000000 to "
                  "100000000 Hz")
         if self.clock and self.bus == "axis":
-            fail("CLOCK: a core with AXI-Streams reaches DDR3, whose port has the chip's clock")
+            fail("CLOCK: a core with AXI-Streams uses a DDR3 port, which has the chip clock")
         if self.address not in ("", "words", "bytes") or self.address and self.bus == "axis":
             fail(f"ADDRESS={self.address}: words or bytes, for a core with registers")
         if self.bus not in NEEDED:
@@ -153,7 +153,7 @@ def slot_texts(asked, ports, params):
 
 
 def from_here(text, folder):
-    """Makes names of files next to the core's folder relative: a repository may move."""
+    """Makes names of files near the core's folder relative, because a repository may move."""
     room = re.escape(os.path.dirname(os.path.abspath(folder)))
     return re.sub(rf'(?<=["I]){room}(?=/)', "@FOLDER@/..", text)
 
@@ -201,7 +201,7 @@ def main(words):
     asked.take_files()
     ports, params, copied = read_core(asked)
     texts, interface, said, last = slot_texts(asked, ports, params)
-    copies = {f: "copy_" + os.path.basename(f) for f in copied}  # beside the slot
+    copies = {f: "copy_" + os.path.basename(f) for f in copied}  # next to the slot
     texts.update({copies[f]: text for f, text in copied.items()})
     pins = interface.pop("pins", [])
     texts["core.toml"] = from_here(manifest_of(asked, interface, pins, copies), asked.folder)

@@ -24,11 +24,11 @@ Change = collections.namedtuple("Change", "clock gap value")  # gap: changes bef
 
 
 class Failed(Exception):
-    """There is no capture; the text says why."""
+    """The capture failed; the text is the reason."""
 
 
 class Signals:
-    """One probe's signals: names and widths, from bit 0 on."""
+    """Signals of one probe: names and widths, bit 0 first."""
 
     def __init__(self, path, name):
         try:
@@ -176,7 +176,7 @@ def capture(probe, signals, args, say):
     end = time.monotonic() + args.wait
     while str((state := probe.getState()).phase) != "done":
         if time.monotonic() > end:
-            say("%s after %d s: stopped with what there is" % (
+            say("%s after %d s: stopped with the changes so far" % (
                 "no trigger" if state.trigger < 0 else "not all changes behind the trigger",
                 args.wait))
             probe.stop()
@@ -193,7 +193,7 @@ def main():
     parser.add_argument("--map", default=str(TREE / "build/main/gen/probes.json"),
                         help="default: build/main/gen/probes.json")
     parser.add_argument("--probe", default="probe",
-                        help="its name in the list of cores, if it has another (name=)")
+                        help="name in the list of cores, if it was renamed (name=)")
     parser.add_argument("--trigger", default="",
                         help="signals and values, u_fir.sent=1,u_fir.count=0x10: begins when all "
                              "become "
@@ -202,10 +202,10 @@ def main():
     parser.add_argument("--before", type=int, default=500, help="changes before the trigger (500)")
     parser.add_argument("--after", type=int, default=1500, help="changes behind it (1500)")
     parser.add_argument("--wait", type=float, default=60,
-                        help="s: then what there is is taken (60)")
+                        help="time-out, s, after which the changes so far are used (default: 60)")
     parser.add_argument("--device", help="serial port of the modem")
     parser.add_argument("--proxy",
-                        help="in place of --device: where the object is, as 'probe:tcp -h host -p "
+                        help="instead of --device: proxy of the object, as 'probe:tcp -h host -p "
                              "4061'")
     parser.add_argument("--plugin", help="folder of libxbeeat.so.37")
     parser.add_argument("--key", default="", help="file with the link's key; without: in the clear")

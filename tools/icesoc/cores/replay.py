@@ -38,7 +38,7 @@ module replay;
         repeat (4) @(negedge clk);
         rst = 1'b0;
     end
-    always @(posedge clk) // the row is that of the clock which begins here
+    always @(posedge clk) // the row of the clock that begins here
         if (!rst) begin
             now <= now + 40'd1;
             if (now + 40'd1 == next[39+{bits} -: 40])
@@ -114,13 +114,14 @@ def words():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("capture", help="VCD of probe.py")
     parser.add_argument("--scope", required=True, help="the block in the chip, as u_fir.u_filter")
-    parser.add_argument("--top", required=True, help="its module")
+    parser.add_argument("--top", required=True, help="module of the block")
     parser.add_argument("--out", default="build/replay-block",
                         help="folder for what is written (build/replay-block)")
     parser.add_argument("-I", action="append", default=[], metavar="FOLDER",
                         help="where Verilator looks for modules and headers")
     parser.add_argument("files", nargs="+",
-                        help="its Verilog; of VHDL what the build has made, build/main/gen/NAME.v")
+                        help="Verilog files of the block; for VHDL the generated "
+                        "build/main/gen/NAME.v")
     return parser.parse_args()
 
 
@@ -150,7 +151,7 @@ def block(args, widths):
 
 
 def write_bench(args, widths, moments):
-    """Writes replay.v, and the rows of signals that it plays."""
+    """Writes replay.v, and the rows of signals that it plays back."""
     wiring, inputs, outputs = block(args, widths)
     bits, shown = 0, []
     for name, width in outputs[::-1] + inputs[::-1]:
@@ -181,7 +182,7 @@ def simulate(args):
     files = [os.path.abspath(f) for f in args.files]
     folders = [word for f in args.I + [os.path.dirname(f) for f in files]
                for word in ("-y", os.path.abspath(f), "-I" + os.path.abspath(f))]
-    # of Verilator's own makefile
+    # set in Verilator's makefile
     environment = {"OBJCACHE": shutil.which("ccache") or "", **os.environ}
     for command in (["verilator", "--binary", "--timing", "--trace-fst", "-Wno-fatal", "-Wno-lint",
                      "--top-module", "replay",

@@ -72,7 +72,7 @@ class Proof:
         return ran.returncode, ran.stdout
 
     def draw(self, number, seed):
-        """Proves the module as it is, and draws its mutants."""
+        """Proves the unchanged module, and draws its mutants."""
         self.work.mkdir(parents=True, exist_ok=True)
         status, text = self.run(self.work, DRAW.format(
             module=self.module, lines=self.lines_of_proof(), number=4 * number, seed=seed))
@@ -93,9 +93,10 @@ class Proof:
     def differs(self, folder, mutant):
         """Whether the mutant's outputs differ from the module's for some input that the proof
         assumes."""
-        # Where parts are cut off, each named wire is an output: those parts might have read it.
+        # If parts are cut off, each named wire is an output, because those parts might have read
+        # it.
         seen = "expose w:* w:$* %d\n" if any("delete" in text for text in self.parameters) else ""
-        # prove.sh's own commands to flip-flops and gates
+        # commands of prove.sh up to flip-flops and gates
         script = (self.work / "prove.ys").read_text()
         to_state = script.split("@source\n")[1].split("write_smt2")[0]
         to_gates = script.split("write_rtlil model.il\n")[1].split("design -save")[0]
@@ -114,7 +115,7 @@ class Proof:
         made = limited("yosys -q same.ys")
         (folder / "same.log").write_text(made.stdout)
         if made.returncode:
-            return True  # Yosys 0.23 ends over some memories
+            return True  # Yosys 0.23 fails on some memories
         steps = "read_aiger same.aig; fold; strash; scorr -F 2; pdr; sat"
         said = limited(f"yosys-abc -c '{steps}'").stdout
         return not re.search("Property proved|UNSATISFIABLE", said)
@@ -124,8 +125,8 @@ def attempt(proof, index, mutant):
     """A mutant's row: proof, module, source line, change, result, seconds."""
     start = time.monotonic()
     folder = proof.work / str(index)
-    # A proof gets four times the time that it takes without a mutant: being slower is not being
-    # caught.
+    # A proof gets four times the time that it takes without a mutant, because a slower proof does
+    # not count as caught.
     limit = max(int(SECONDS), int(4 * float((proof.work / "cpu").read_text())))
     status, text = proof.run(folder, mutant, str(limit))
     if status and not re.search("an assertion fails|not proven|not reached", text):
@@ -134,7 +135,7 @@ def attempt(proof, index, mutant):
     else:
         result = "caught" if status else "SURVIVED" if proof.differs(folder, mutant) else "same"
     said = re.findall(r"-(\w+) (\S+)", mutant)
-    first = dict(reversed(said))  # of an option that stands there more than once
+    first = dict(reversed(said))  # for an option that occurs more than once
     source = dict(said).get("src")
     line = re.sub(r"(:\d+)\..*", r"\1", os.path.relpath(source, proof.source)) if source else ""
     cell = first["cell"].split("$")
@@ -168,7 +169,7 @@ def by_tests(rows, copy, pool):
         if subprocess.run(["ninja", "-C", "build/main", *needed], cwd=copy, env=environment,
                           stdout=log, stderr=log).returncode:
             print("mutants: the tests' programs do not build with mutants in their models, so they "
-                  f"caught none: {log.name} says why", file=sys.stderr)
+                  f"caught none: see {log.name}", file=sys.stderr)
             return needed
     where = {name: next(copy.glob(f"build/main/**/{name}")) for name in needed}
 
@@ -215,7 +216,7 @@ def told(results, number):
 
 def measure(proofs, options, out):
     source = pathlib.Path(proofs[0].tree)
-    tree = tree_state(source, "bus hdl tests")  # that is measured, for the regression's light
+    tree = tree_state(source, "bus hdl tests")  # measured tree, for the regression's status
     # A copy: any edit meanwhile would move the names of cells.
     shutil.rmtree(out / "drawn", ignore_errors=True)
     for folder in ("bus", "hdl", "ip"):
@@ -264,19 +265,19 @@ def measure(proofs, options, out):
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", default="build/main", help="whose proofs")
+    parser.add_argument("--build", default="build/main", help="build folder with the proofs")
     parser.add_argument("--out", default="build/mutants", help="where results go")
     parser.add_argument("--block", default="", help="proofs by regular expression (default: all)")
     parser.add_argument("--number", type=int, default=20, help="mutants a proof")
-    parser.add_argument("--seed", default="1", help="of the draw")
+    parser.add_argument("--seed", default="1", help="seed of the draw")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(),
-                        help="how many are tried at once")
+                        help="mutants tried at once")
     options = parser.parse_args()
     out = pathlib.Path(options.out).resolve()
     shown = subprocess.run(["ctest", "--test-dir", options.build, "--show-only=json-v1", "-R",
                             rf"^formal\.({options.block})"], stdout=subprocess.PIPE, check=True)
     proofs = [Proof(test, out / "drawn") for test in json.loads(shown.stdout)["tests"]]
-    # Without those of several modules together:
+    # Without proofs of several modules together:
     proofs = [proof for proof in proofs if not proof.module.endswith("_proof")]
     if not proofs:
         sys.exit(f"mutants: no proof's name begins with {options.block}: "

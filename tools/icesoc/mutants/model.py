@@ -37,7 +37,7 @@ write_verilog -noattr {folder}/{top}.v
 
 
 def module_of(name):
-    """A module's name without its parameters."""
+    """Returns a module's name without its parameters."""
     return re.sub(r"^\$paramod(\$[0-9a-f]+)?\\(\w+).*", r"\2", name)
 
 
@@ -51,8 +51,8 @@ def cells(path):
     for module, content in json.load(open(path))["modules"].items():
         alike = found[module] = collections.defaultdict(list)
         for name, cell in sorted(content["cells"].items(), key=made):
-            # The last of several: the place of a condition that Yosys could not resolve stands
-            # before it.
+            # The last of several, because the location of a condition that Yosys could not resolve
+            # precedes it.
             source = cell["attributes"].get("src", "").split("|")[-1]
             source = re.sub(r".*/((bus|hdl|ip)/)", r"\1", source)
             widths = {port: len(bits) for port, bits in cell["connections"].items()}
@@ -61,7 +61,7 @@ def cells(path):
 
 
 def place(design, module, cell):
-    """Kind and source of a cell, and its place among such cells."""
+    """Returns kind and source of a cell, and its index among such cells."""
     for alike, names in design[module].items():
         for number, (name, _) in enumerate(names):
             if name == cell:
@@ -76,7 +76,8 @@ def yosys(folder, script):
 
 
 def mutated(arguments, folder):
-    """The file of a model's modules with all their mutants; None if there are none."""
+    """Writes the file of a model's modules with all their mutants; returns None if there are
+    none."""
     def of(flag):
         return [a.removeprefix(flag) for a in arguments if a.startswith(flag)]
 
@@ -124,7 +125,7 @@ def main():
                                           "-Wno-style", file])
                 given = dict(zip(arguments, arguments[1:]))
                 makefile = pathlib.Path(given["--Mdir"], given["--prefix"] + ".mk")
-                # Compiled once, run for seconds
+                # compiled once, runs for seconds
                 makefile.write_text("override OPT_FAST = -O1\n" + makefile.read_text())
                 return status
     os.execvp("verilator", ["verilator", *arguments])

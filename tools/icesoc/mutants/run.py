@@ -46,14 +46,15 @@ class Bug:
         return f"{file}:{starts[0] + 1}"
 
     def planted(self, root):
-        """The texts of the files with the bug in them; ValueError if it does not fit."""
+        """Returns the texts of the files with the bug in them; raises ValueError if it does not
+        fit."""
         texts = {}
         for file, before, after in self.changes:
             text = texts.get(file) or "\n" + (root / file).read_text()
             old, new = ("\n" + "".join(line + "\n" for line in part) for part in (before, after))
             if text.count(old) != 1 or old == new:
-                raise ValueError(f"its lines stand {text.count(old)} times in {file}: "
-                                 "give those of today's source")
+                raise ValueError(f"its lines occur {text.count(old)} times in {file}: "
+                                 "expected 1; update them to the current source")
             texts[file] = text.replace(old, new)
         return {file: text[1:] for file, text in texts.items()}
 
@@ -77,7 +78,7 @@ def bugs(chosen):
 def prepare(copy, *options):
     """A copy of the tree for a worker, with its own build folder."""
     copy.mkdir(parents=True, exist_ok=True)
-    for kept in copy.rglob("*.orig"):  # planted by an interrupted run
+    for kept in copy.rglob("*.orig"):  # left by an interrupted run
         restore(kept.with_suffix(""))
     listed = subprocess.run(
         ["git", "grep", "--no-index", "--exclude-standard", "--no-color", "-lz", ""],
@@ -85,7 +86,8 @@ def prepare(copy, *options):
     there = {name for name in os.fsdecode(listed.stdout).split("\0") if os.path.exists(name)}
     for top in copy.iterdir():
         for file in [top, *top.rglob("*")] if top.name != "build" else []:
-            if not file.is_dir() and str(file.relative_to(copy)) not in there:  # it left the tree
+            if not file.is_dir() and str(file.relative_to(copy)) not in there:  # removed from the
+                                                                                # tree
                 file.unlink()
     subprocess.run(["xargs", "-0", "cp", "-pu", "--parents", "-t", copy], input=listed.stdout,
                    stderr=subprocess.DEVNULL)
@@ -122,7 +124,7 @@ def targets(test, copy):
 
 
 def attempt(test, copy, log):
-    """Builds what a test needs and runs it: "passes", "fails" or "does not build"."""
+    """Builds the targets of a test and runs it: returns "passes", "fails" or "does not build"."""
     build = ["ninja", "-C", "build/main", "-j", "1", *targets(test, copy)]
     run = ["ctest", "--test-dir", "build/main", "-R", f"^{re.escape(test)}(\\.|$)",
            "--no-tests=error", "--output-on-failure", "--stop-on-failure"]
@@ -158,7 +160,8 @@ def try_bug(bug, copy):
 
 
 def check(chosen, build):
-    """Whether each bug fits today's tree, and its test is one of a build folder; builds nothing."""
+    """Checks whether each bug fits the current tree, and its test is in a build folder; builds
+    nothing."""
     bad, tests = 0, ""
     if build:
         tests = subprocess.run(["ctest", "--test-dir", build, "-N"], stdout=subprocess.PIPE,
@@ -169,7 +172,7 @@ def check(chosen, build):
             program = bug.test.split(".")[0]
             if build and f": {program}_NOT_BUILT\n" not in tests and not re.search(
                     rf": {re.escape(bug.test)}(\.|$)", tests, re.M):
-                raise ValueError(f"there is no test {bug.test}")
+                raise ValueError(f"unknown test {bug.test}")
         except (OSError, ValueError) as error:
             print(f"{bug.name}: does not apply: {error}")
             bad = 1
@@ -177,7 +180,8 @@ def check(chosen, build):
 
 
 def keep(rows):
-    """Writes the results; those of other blocks stay from an earlier run, unless a bug is gone."""
+    """Writes the results; results of other blocks are kept from an earlier run, unless a bug was
+    removed."""
     results = WORK / "results.tsv"
     there = {bug.name for bug in bugs("*")}
     earlier = results.read_text().splitlines() if results.exists() else []
@@ -194,11 +198,12 @@ def try_all(chosen, jobs):
         copies.put(WORK / str(number))
 
     def of_program(group):
-        """Tries the bugs of one program, or of one proof, in one copy: little is built again."""
+        """Tries the bugs of one program, or of one proof, in one copy, so that little is built
+        again."""
         copy = copies.get()
         try:
             for test in sorted({bug.test for bug in group}):
-                # It must pass without a bug, or "caught" says nothing.
+                # It must pass without a bug, or "caught" means nothing.
                 log = WORK / f"baseline.{test.replace('/', '-')}.log"
                 if attempt(test, copy, log) != "passes":
                     sys.stderr.write(log.read_text(errors="replace"))
@@ -233,7 +238,7 @@ def main():
         "--block", default="*",
         help="the bugs of one block or core, or a single one as block/name (default: all)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(),
-                        help="how many are tried at once")
+                        help="bugs tried at once")
     parser.add_argument("--check", nargs="?", const="", metavar="BUILD",
                         help="only look whether each is found in its file, and its test in BUILD")
     options = parser.parse_args()

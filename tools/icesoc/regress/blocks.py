@@ -22,8 +22,8 @@ class Blocks:
         return "/".join(path.split("/")[:-1][:2])
 
     def of_module(self, name):
-        """The block of a module, or of the one that a test's name begins with, else of one that
-        begins with its first word; "": none."""
+        """The block of a module, or of the module with which a test's name begins, or of a module
+        that begins with its first word; "" if there is none."""
         first = name.partition("_")[0] + "_"
         while name and name not in self.modules:
             name = name.rpartition("_")[0]
@@ -41,7 +41,8 @@ class Blocks:
 
 
 def last_green(history, block_of):
-    """{block: the last commit at which a test of it ran and none was left that had failed}."""
+    """Returns {block: last commit at which one of its tests ran and none that had failed was
+    left}."""
     failing, green = collections.defaultdict(set), {}
     for run in history.runs:
         ran = collections.defaultdict(set)

@@ -66,7 +66,7 @@ class Changes:
         return Graph(self.source, self.build)
 
     def forget_graph(self):
-        """Drops what is known of ninja's files: a build has changed them."""
+        """Discards cached facts about ninja's files after a build has changed them."""
         self.__dict__.pop("graph", None)
 
     def of_test(self, test, since):
@@ -96,14 +96,14 @@ class Changes:
                       if each and self.differing(each) is not None), None)
         if not since or not (end or self.differing(since)):
             return ""
-        # Nobody knows each file that a script reads.
+        # The files read by a script are not all known.
         files = self.of_test(test, since) or self.differing(since)
         text = "the commit; it is not known to have passed" if not end else \
             f"it passed at {commit}" + (
                 f" with SEED={end[3]}" if end[3] != seed else "")
         if not files:
             return f"nothing has changed since {text}"
-        told = [path + (f":{first} ({lines} line{'s' * (lines != 1)})" if first else "")
+        named = [path + (f":{first} ({lines} line{'s' * (lines != 1)})" if first else "")
                 for path, (first, lines) in list(files.items())[:SHOWN]]
         more = f" and {len(files) - SHOWN} more" if len(files) > SHOWN else ""
-        return f"changed since {text}: {', '.join(told)}{more}"
+        return f"changed since {text}: {', '.join(named)}{more}"

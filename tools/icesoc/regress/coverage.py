@@ -32,14 +32,15 @@ class Share:
 
 class File:
     def __init__(self):
-        self.shares = collections.defaultdict(Share)  # of lines, toggles, points
-        self.counts = collections.Counter()  # of the points: `name: cover property` in the RTL
+        self.shares = collections.defaultdict(Share)  # by lines, toggles, points
+        self.counts = collections.Counter()  # counts of the points: `name: cover property` in the
+                                             # RTL
         self.missed = []  # signals that never toggled, lines that never ran, points
         self.explained = collections.Counter()  # reason: number of points
 
 
 def inside(path, root):
-    """Path from the root of the tree, or "" for files of others and generated ones."""
+    """Returns the path from the root of the tree, or "" for third-party and generated files."""
     real = os.path.realpath(path)
     below = os.path.relpath(real, root)
     return "" if below.startswith(("..", "build/", "tests/")) else below
@@ -53,7 +54,7 @@ class Explanations:
                       for r in rules]
 
     def of(self, file, point, covered):
-        """The reason why a point does not count, or ""."""
+        """Returns the reason why a point does not count, or ""."""
         for below, points, why, seen in self.rules:
             if file.startswith(below) and points.fullmatch(point):
                 seen[covered] += 1
@@ -62,7 +63,7 @@ class Explanations:
         return ""
 
     def stale(self):
-        """The rules that explain nothing: their points are reached, or gone."""
+        """Returns the rules that explain nothing: their points are covered or were removed."""
         return [f"{below}: {points.pattern} ({'reached' if seen[True] else 'no such point'})"
                 for below, points, _, seen in self.rules if not seen[False]]
 

@@ -15,14 +15,14 @@ import xml.etree.ElementTree as xml
 
 
 def reason(text):
-    """What GTEST_SKIP said, or the last words of a script that ended with 77."""
+    """Returns the text of GTEST_SKIP, or the last output line of a script that ended with 77."""
     said = re.search(r": Skipped\n(.+)", text)
     lines = [line for line in text.splitlines() if line.strip()]
     return said[1] if said else lines[-1] if lines else "it does not say why"
 
 
 def main():
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # CTest ends by it, and says so
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # CTest ends on it, and reports it
     with tempfile.TemporaryDirectory() as folder:
         words = sys.argv[1:]
         if "--output-junit" not in words:

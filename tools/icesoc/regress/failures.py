@@ -10,7 +10,8 @@ import shutil
 from icesoc.regress.runner import Result
 from icesoc.util.files import write
 
-# Words of a runner or of a flight's end: their names, times and counts differ for one cause.
+# Lines of a runner or of a flight's end, in which names, times and counts differ for the same
+# cause.
 RUNNERS = re.compile(
     r"^\[|^at clock cycle|tests? (ran|FAILED|PASSED)|^\s*\d+ FAILED|note:|trace: |Running main|"
     r"^The mission failed|^Its end|^icesoc-sim: Cortex-M3: |^icesoc-sim: [0-9.]+ s simulated|"
@@ -34,18 +35,18 @@ CONDITION = re.compile(r"(?m)^Value of: (.*)\n +Actual: (.*)\nExpected: (.*)$")
 @dataclasses.dataclass
 class Failure:
     result: Result
-    reason: str  # the line that says what went wrong
+    reason: str  # the line with the error
     bucket: str = ""  # the reason without its numbers: failures of one bucket have one cause
     repeat: str = ""  # one command
-    place: str = ""  # GoogleTest's: "tests/sw/link/link_test.cpp:185", or ""
+    place: str = ""  # from GoogleTest: "tests/sw/link/link_test.cpp:185", or ""
     changed: str = ""  # since it passed, or ""
     log: str = ""  # file
     wave: str = ""  # FST or VCD file, or ""
     about: str = ""  # text with the names of relevant signals: the assertion, or the reason
     scope: str = ""  # instance in which to look: "u_window.u_wrapper", or ""
-    own_assertion: bool = False  # of a proof: the assertion is in the proven module
+    own_assertion: bool = False  # for a proof: the assertion is in the proven module
     save: str = ""  # GTKWave save file, or ""
-    clock: int = 0  # of the failure, in that waveform; 0: its end
+    clock: int = 0  # clock of the failure in that waveform; 0: its end
 
 
 def comparison(match):
@@ -138,7 +139,7 @@ def examine(results, tests, out):
         find_assertion(failure)
         if place := re.search(r"(?:^|\n)(?:[.][.]/)*(\S+:\d+): Failure\n", result.log):
             failure.place = os.path.relpath(place[1]) if place[1][0] == "/" else place[1]
-        trace = re.search(r"trace: (\S+[.]vcd)", result.log)  # of a proof
+        trace = re.search(r"trace: (\S+[.]vcd)", result.log)  # for a proof
         if trace and os.path.exists(trace[1]):
             failure.wave = f"{base}.vcd"
             shutil.copyfile(trace[1], failure.wave)

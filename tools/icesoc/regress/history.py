@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""history: keeps the results of each run, a line of JSON a run, in history.jsonl."""
+"""history: stores the results of each run in history.jsonl, one line of JSON per run."""
 import collections
 import json
 import time
@@ -26,13 +26,13 @@ class History:
         self._index()
 
     def _index(self):
-        self.ends = collections.defaultdict(list)  # of a test, the newest last: (end, run)
+        self.ends = collections.defaultdict(list)  # by test, the newest last: (end, run)
         for run in self.runs:
             for name, *end in run["ends"]:
                 self.ends[name].append((end, run))
 
     def add(self, run):
-        """Adds a run and writes the file anew, complete or not at all."""
+        """Adds a run and writes the file again, atomically."""
         self.runs = (self.runs + [run])[-KEPT_RUNS:]
         self._index()
         write(self.path, "".join(json.dumps(each, separators=(",", ":")) + "\n"
@@ -50,7 +50,7 @@ class History:
                     "f" if self.last(test.name) == "f" else "")
 
     def last_pass(self, name):
-        """(end, run) of the newest run in which a test passed, or None."""
+        """Returns (end, run) of the newest run in which a test passed, or None."""
         return next((each for each in reversed(self.ends[name]) if each[0][0] == "p"), None)
 
     def seconds(self, name):

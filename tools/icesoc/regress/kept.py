@@ -34,7 +34,7 @@ TRACING = ("strace", "-f", "--seccomp-bpf", "-qq", "-y", "-e", "signal=none", "-
 
 
 def portable(text):
-    """Returns the text with the same word for any clone's folder."""
+    """Returns the text with a placeholder for the folder of a clone."""
     return re.sub(re.escape(ROOT) + r"(?![\w.-])", "@ROOT@", text)
 
 
@@ -61,7 +61,7 @@ def touched(trace):
     """Returns {path: (was it listed, did the run write it)} of strace's lines."""
     lines = pathlib.Path(trace).read_text(errors="surrogateescape").splitlines()
     whole = "\n".join(lines)
-    # Folders that relative paths may begin in:
+    # folders that relative paths may start from
     here = {os.getcwd(), *re.findall(r"AT_FDCWD<(/[^>]*)>", whole)}
     here |= {os.path.join(b, n) for n in re.findall(r'\bchdir\("([^"]*)"', whole) for b in here}
     paths = {}
@@ -99,7 +99,7 @@ def main():
             print(verdict["said"].replace("@ROOT@", ROOT), end="")
             return 0
     shutil.rmtree(own or "/dev/null/", ignore_errors=True)
-    begin = time.time_ns() - 50_000_000  # files' times are as coarse as the kernel's clock
+    begin = time.time_ns() - 50_000_000  # file times are as coarse as the kernel's clock
     with tempfile.TemporaryDirectory() as folder:
         trace, said = folder + "/trace", b""
         environment["TMPDIR"] = environment["HOME"] = folder

@@ -40,7 +40,8 @@ def of_mutants(rows, drawn, source):
     tree = drawn.get("tree", "")
     if tree and tree_state(source, tree.split(":")[0]) == tree:
         if bad := [m for m, s in drawn["modules"].items() if s["score"] < drawn["gate"]]:
-            return judge("mutants", "", "modules of which proofs and tests miss drawn mutants", bad)
+            return judge("mutants", "",
+                         "modules with drawn mutants that proofs and tests miss", bad)
     if not rows:
         return missing("mutants", "make mutants")
     return judge("mutants", f"{len(rows)} of {len(rows)} caught", f"of {len(rows)} not caught",
@@ -64,7 +65,7 @@ def of_coverage(coverage):
 
 
 def of_entries(name, entries, command):
-    """Entries with a limit: most allowed, or least where the unit says "at least"."""
+    """Returns entries with a limit: a maximum, or a minimum if the unit says "at least"."""
     limits = [each for each in entries if "limit" in each]
     bad = []
     for each in limits:
@@ -100,11 +101,11 @@ def of_plan(plan):
 
 
 def lights_of(data, source):
-    """The lights of report.py's data: [{name, state, text}]."""
+    """Returns the status lights for report.py's data: [{name, state, text}]."""
     measured = [of_mutants(data["mutants"], data.get("drawn", {}), source),
                 of_coverage(data.get("coverage")), of_size(data.get("utilisation")),
                 of_entries("speed", data.get("speed", []), "make bench")]
-    for each in measured:  # a measurement keeps the state of the tree that it measured
+    for each in measured:  # a measurement keeps the state of the tree it was made with
         tree = data["trees"].get(each["name"], "")
         if each["state"] != "grey" and tree_state(source, tree.split(":")[0]) != tree:
             each["text"] = f"sources have changed since it was {each['state']}: {each['text']}"

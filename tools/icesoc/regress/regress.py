@@ -32,7 +32,7 @@ def regex(text, kind=re.compile):
         return kind(text)
     except re.error:
         raise argparse.ArgumentTypeError(
-            f"'{text}' is no regular expression, in which .* is any text") from None
+            f"'{text}': expected a regular expression; .* matches any text") from None
 
 
 class Parser(argparse.ArgumentParser):
@@ -64,10 +64,10 @@ def parse(words):
     add("--seed", default="1", help="seed of the random tests, or `random`")
     add("--repeat", type=int, default=1, help="number of runs, each with the next seed")
     add("--jobs", type=int, default=2, help="tests at once")
-    add("--waves", type=int, default=3, help="failures of which a waveform is written, at most")
+    add("--waves", type=int, default=3, help="largest number of failures with a waveform")
     add("--make", action="store_true", help="build what the chosen tests need first")
     add("--prepare", action="store_true", help="only build what the chosen tests need; with "
-        "--list, only say what that is")
+        "--list, only print it")
     add("--tree", metavar="FOLDERS", help="only print the state of these folders")
     add("--plan", action="store_true", help="only look whether each pattern of tests/plan.toml "
         "matches a test")
@@ -154,7 +154,7 @@ class Regression:
         outputs = {line.rpartition(":")[0] for line in collect(
             ["ninja", "-C", o.build, "-t", "targets", "all"])[1].splitlines()}
         chosen, found = self.choose(tests, built=False), set()
-        for test in chosen:  # it grows by the tests that set up others' fixtures
+        for test in chosen:  # grows by the tests that set up fixtures
             found.update(targets_of(test, o.build, outputs))
             chosen += [other for other in tests if set(other.sets) & set(test.needs) and
                        other not in chosen]
@@ -261,9 +261,9 @@ def summary(data, failures, out):
     for members in groups.values():
         print(f"\n{len(members)} x  {members[0].reason[:200]}")
         for failure in members:
-            told = failure is members[0] or failure.changed != members[0].changed
+            is_new = failure is members[0] or failure.changed != members[0].changed
             print(f"    {failure.repeat}\n        log {failure.log}")
-            for text in (failure.place and f"at {failure.place}", told and failure.changed,
+            for text in (failure.place and f"at {failure.place}", is_new and failure.changed,
                          failure.wave and f"gtkwave {failure.save or failure.wave}"):
                 if text:
                     print(f"        {text}")

@@ -34,9 +34,9 @@ def proofs_of(results):
 
 
 def measurements(build):
-    """Results that other commands left in build/, with the state of the tree they measured."""
+    """Results that other commands left in build/, with the state of the tree that they measured."""
     data = {name: found for name, path in MEASURED.items() if (found := read(build / path))}
-    for file in data.get("coverage", {}).get("files", []):  # coverage's own summary has the rest
+    for file in data.get("coverage", {}).get("files", []):  # the rest is in the coverage summary
         if (more := len(file["missed"]) - 40) > 0:
             file["missed"][40:] = [f"and {more} more"]
     mutants = build / "mutants/results.tsv"
@@ -53,7 +53,8 @@ def gather(history, tests, results, failures, source):
             "proofs": proofs_of(results)}
     del data["ends"]
     known = {test.name: test for test in tests}
-    now = {(r.name, r.seed) for r in results}  # of one seed its failures say it already
+    now = {(r.name, r.seed) for r in results}  # with one seed the results already contain its
+                                               # failures
     data["seeds"] = [kept for test, kept in history.failing(tests).items()
                      if test not in now or len({r.seed for r in results}) > 1]
     data["results"] = []
@@ -82,7 +83,7 @@ def gather(history, tests, results, failures, source):
 
 def write_reports(data, failures, libraries, out):
     style, script = page_parts(libraries)
-    # Drawings get the rest of the page's size.
+    # Drawings get the remaining size of the page.
     rest = LARGEST - len(style) - len(script) - len(json.dumps(data)) - 60_000
     drawn = [i for i, failure in enumerate(failures) if failure.wave]
     for i in drawn:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""runner: runs chosen tests by CTest, prints the progress, ends hangs, and writes JUnit."""
+"""runner: runs selected tests with CTest, prints the progress, ends hangs, and writes JUnit."""
 import collections
 import contextlib
 import dataclasses
@@ -26,7 +26,7 @@ class Result:
     status: str  # "passed", "failed", "skipped"
     seconds: float
     log: str = ""
-    end: str = ""  # of a failed test: "SegFault", "Hang, ..."; "" if it ended by itself
+    end: str = ""  # for a failed test: "SegFault", "Hang, ..."; "" if it ended by itself
     seed: str = ""
 
 
@@ -39,7 +39,7 @@ class Progress:
         self.seconds = {test.name: history.seconds(test.name) for test in tests}
         self.usual = {test.name: history.usual(test.name) for test in tests}
         self.running = {}  # name: when it began, the oldest first
-        self.due = {}  # name: the age in seconds at which it is named
+        self.due = {}  # by name: age in seconds at which it is named
         self.hangs = {}  # name: (how it was ended, stacks)
         self.lock = threading.Lock()
 
@@ -68,7 +68,7 @@ class Progress:
                 self.due[name] = 2 * age
                 self._line(f"{name} has run for {told}", True)
             limit = max(SHORTEST_HANG, 10 * (60 if usual is None else usual))
-            is_proof = name.startswith("formal.")  # it has a limit of processor time
+            is_proof = name.startswith("formal.")  # limited by CPU time
             if age >= limit and not is_proof and name not in self.hangs:
                 yield name, told
 
@@ -110,7 +110,7 @@ def end_hang(process, build):
         below += children(pid)
     stacks = ""
     for pid in below:
-        with contextlib.suppress(OSError):  # it has ended because of one before it
+        with contextlib.suppress(OSError):  # ended because of an earlier one
             program = os.readlink(f"/proc/{pid}/exe")
             if not program.startswith(f"{build}/"):
                 continue
@@ -128,7 +128,7 @@ def end_hang(process, build):
 
 
 def readable(log):
-    """A log without colours (the first word is CTest's for ESC) and without endless lines."""
+    """Returns a log without colours (CTest writes a word for ESC) and without endless lines."""
     def short(line):
         return line if len(line) <= 2000 else \
             f"{line[:1000]} ... {len(line)} characters ... {line[-500:]}"
@@ -137,7 +137,7 @@ def readable(log):
 
 
 def run_tests(tests, build, out, seed, jobs, history):
-    """Runs tests in parallel, those that failed last time first."""
+    """Runs tests in parallel, tests that failed last time first."""
     chosen, junit = out / "tests.list", (out / f"junit-{seed}.xml").resolve()
     write_numbers(chosen, tests)
     junit.unlink(missing_ok=True)
@@ -187,7 +187,7 @@ def run_tests(tests, build, out, seed, jobs, history):
 
 
 def kind_of(result):
-    """JUnit's: a failed test that did not end by itself is an error."""
+    """Returns the JUnit kind: a failed test that did not end by itself is an error."""
     return {"skipped": "skipped", "passed": ""}.get(result.status,
                                                     "error" if result.end else "failure")
 
@@ -206,7 +206,7 @@ def write_junit(path, results, failures, begin, commit):
                 "errors": str(kinds["error"]), "skipped": str(kinds["skipped"]),
                 "time": f"{sum(each.seconds for each in results):.3f}"}
     whole = totals(results)
-    del whole["skipped"]  # as the schema has it
+    del whole["skipped"]  # required by the schema
     root = xml.Element("testsuites", name="icesoc", **whole)
     for (name, seed), results_ in suites.items():
         suite = xml.SubElement(root, "testsuite", name=name, timestamp=begin, **totals(results_))
@@ -218,9 +218,9 @@ def write_junit(path, results, failures, begin, commit):
                                   time=f"{result.seconds:.3f}")
             if result.status == "failed":
                 failure = of[id(result)]
-                told = xml.SubElement(case, kind_of(result),
+                failure = xml.SubElement(case, kind_of(result),
                                       message=f"{failure.reason} (SEED={result.seed})")
-                told.text = "".join(
+                failure.text = "".join(
                     f"{key}: {value}\n" for key in ("changed", "log", "repeat", "wave")
                     if (value := getattr(failure, key)))
                 xml.SubElement(case, "system-out").text = result.log

@@ -16,7 +16,7 @@ from icesoc.util.files import digest, write
 from icesoc.util.process import collect
 from icesoc.util.tree import tracked
 
-NOT_BUILT = "_NOT_BUILT"  # CTest's suffix for a program whose cases it does not know
+NOT_BUILT = "_NOT_BUILT"  # CTest's suffix for a program that is not built
 
 
 class Name:
@@ -40,12 +40,12 @@ class Test:
     number: int  # CTest's, from 1
     name: str
     command: list
-    folder: str = ""  # where it runs, which it may write
-    place: str = ""  # the same below tests/: "hdl/modem"
+    folder: str = ""  # working directory, which it may write
+    place: str = ""  # the same, relative to tests/: "hdl/modem"
     labels: list = dataclasses.field(default_factory=list)
     needs: list = dataclasses.field(default_factory=list)  # CTest's fixtures
     sets: list = dataclasses.field(default_factory=list)
-    targets: list | None = None  # NEEDS=... of its environment: the targets that it needs
+    targets: list | None = None  # NEEDS=... of its environment: targets that it needs
     path: str = ""  # folder, without tests/: "ip/fir", "hdl/modem"
     print: str = ""  # changes with the test's program or files
 
@@ -77,7 +77,7 @@ class Test:
         return ("bus", "hdl", "ip", "slice", "sw", "testbench", "tools", own)
 
     def blocks(self):
-        """The words that --block compares with: of the folder, and of the name up to the case."""
+        """Words that --block compares with: from the folder, and from the name up to the case."""
         kind, _, rest = self.name.partition(".")
         more = rest if kind in ("formal", "lint", "wave") else ""
         return set(re.findall("[A-Za-z0-9]+", f"{self.place}/{kind}/{more}"))
@@ -157,7 +157,7 @@ def targets_of(test, build, outputs):
         return ["regmaps"]
     if test.targets is not None:
         return test.targets
-    if not test.command:  # CTest does not tell that of a program which is not built
+    if not test.command:  # CTest does not list the command of a program that is not built
         return ["all"]
     targets = []
     for path in re.findall(re.escape(str(build)) + "([^ '\":;,<>]*)", " ".join(test.command)):
@@ -210,7 +210,7 @@ class Graph:
 
     @functools.cache
     def inputs(self, target):
-        """The files of the tree from which a target is made, those of the build among them."""
+        """Returns the files of the tree from which a target is built, including build files."""
         seen, left, build, source = {"|", "||"}, [target], f"{self.build}/", f"{self.source}/"
         while left:
             path = left.pop().removeprefix(build)
@@ -225,10 +225,11 @@ class Graph:
 class Requirement:
     page: str  # "bus" of docs/bus.md
     text: str
-    patterns: list  # of test names; * is anything
+    patterns: list  # test names; * matches anything
 
     def matches(self, test):
-        """Whether a test proves it; a program that is not built stands for all of its cases."""
+        """Returns whether a test proves it; a program that is not built represents all of its
+        cases."""
         return any(may_match(pattern, test) for pattern in self.patterns)
 
 
@@ -259,7 +260,8 @@ def unmatched(requirement, tests):
 
 
 def judge_plan(plan, tests, history):
-    """Judges each requirement by its tests' last results, those with these sources first."""
+    """Judges each requirement by the last results of its tests, preferring results with these
+    sources."""
     rows = []
     for each in plan:
         mine = [test for test in tests if each.matches(test)]

@@ -12,10 +12,10 @@ from icesoc.util.errors import Stop
 from icesoc.util.files import write
 from icesoc.util.process import collect
 
-CLOCKS_PER_SECOND = 1e8  # of a flight's chip
+CLOCKS_PER_SECOND = 1e8  # of the chip in a flight
 FIRST_CORE = 2  # slot
-NAMELESS = re.compile(r"(^|[.])(n\d+(_o)?|_\d+_|\$\S*)$")  # what GHDL and Yosys call wires
-MOST_CHANGES, FEWEST_CHANGES, MOST_SIGNALS = 400, 25, 200  # of a drawing
+NAMELESS = re.compile(r"(^|[.])(n\d+(_o)?|_\d+_|\$\S*)$")  # names that GHDL and Yosys give to wires
+MOST_CHANGES, FEWEST_CHANGES, MOST_SIGNALS = 400, 25, 200  # limits of a drawing
 
 
 @dataclasses.dataclass
@@ -24,7 +24,7 @@ class Scene:
     program: str
     clock: int
     flight: str = ""  # folder of the recording
-    slot: int = 0  # of the last core that the processor heard of; 0: none
+    slot: int = 0  # last core reported to the processor; 0 if there is none
     before: int = 2000
     after: int = 20
 
@@ -32,7 +32,7 @@ class Scene:
 def scene_of(failure, test):
     """None: the failure has no waveform."""
     log = failure.result.log
-    if failure.result.end.startswith("Hang"):  # so would the repetition
+    if failure.result.end.startswith("Hang"):  # the repetition would also hang
         return None
     if match := re.search(r"make run REPLAY='([^']+)' FROM=[0-9.]+ TO=([0-9.]+)", log):
         scene = Scene("icesoc-sim", int(float(match[2]) * CLOCKS_PER_SECOND), match[1])
@@ -42,7 +42,7 @@ def scene_of(failure, test):
                 event = json.loads(line)
             except ValueError:
                 continue
-            # The last place where the processor heard of a core, or else of the modem
+            # The last core reported to the processor, or otherwise the modem
             slot = event.get("slot", -1)
             if slot >= FIRST_CORE or slot >= 0 and not scene.slot:
                 scene.clock = event["ns"] // 10
@@ -65,7 +65,8 @@ def instance_in(slot, build):
 
 
 def blamed(changed, source):
-    """The name of an instance of the first Verilog module in a text of changes; "": none."""
+    """Returns the name of an instance of the first Verilog module in a text of changes; "" if there
+    is none."""
     if match := re.search(r"(?:hdl|bus|ip)/\S*?(\w+)\.v:", changed):
         use = re.compile(rf"^ *{match[1]} +(?:#\s*\([^;]*?\)\s*)?(u_\w+)", re.M)
         for folder in ("hdl", "bus", "ip"):
@@ -90,7 +91,8 @@ def save_file(wave, build, folder, has_program):
 
 
 def add_wave(failure, test, scene, source, tested, jobs):
-    """Makes a failure's waveform by the build in build/trace, or prints why there is none."""
+    """Writes a waveform of a failure with the build in build/trace, or prints why this is
+    impossible."""
     build = (source / "build/trace").resolve()
     if not (build / "build.ninja").exists():
         collect(["cmake", "-S", source, "-B", build, "-G", "Ninja", "-DTRACE=ON"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""core_exchange: the chip's registers for other tools.
+"""core_exchange: writes the chip's registers for other tools (SystemRDL, IP-XACT).
 
 CMSIS-SVD 1.3, SystemRDL 2.0 and IP-XACT (IEEE 1685-2014). Slots are coremap.Slot.
 """
@@ -18,7 +18,7 @@ MODIFIED = {"w1c": "oneToClear", "w1s": "oneToSet"}
 
 
 def element(tag, *content, **attributes):
-    """Returns an XML element of text, (tag, text) pairs and elements; what is false is left out."""
+    """Returns an XML element of text, (tag, text) pairs and elements; false values are omitted."""
     made = ET.Element(tag, attributes)
     for part in filter(None, content):
         if isinstance(part, str):
@@ -72,7 +72,7 @@ def address_of(r):
 def split(slot):
     """Returns the registers in the slot, and those behind an adapter.
 
-    The latter share their addresses in the slot, so they have an address map of their own,
+    The latter share their addresses in the slot, so they have a separate address map,
     <SLOT>_PAGES: by their byte addresses in the core.
     """
     registers = slot.block.registers
@@ -93,7 +93,7 @@ def rdl_register(r):
 
 
 def rdl_access(r, f):
-    """Returns a field's access; the core itself may change what it keeps."""
+    """Returns a field's access; the core itself may change values that it stores."""
     more = "".join(f" {flag};" for flag in ("hwset", "hwclr") if getattr(f, flag))
     if f.access == "rw" and r.storage == "core":
         return "sw=rw; hw=rw;" + more

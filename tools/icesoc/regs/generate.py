@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""generate: writes what each side includes of a block's registers.
+"""generate: writes the files about a block's registers that each side includes.
 
 <block>_regs.vh (Verilog localparams), <block>_regs.h (C90 macros), <block>_regs_pkg.vhd (VHDL
 package) and <block>_regs.md (page for people). With --block also the register block itself:
@@ -54,7 +54,7 @@ def render(template, **values):
 
 
 def markdown(block):
-    """Returns the page of a block's registers."""
+    """Returns the documentation page of a block's registers."""
     return render("regs.md.j2", b=block)
 
 
@@ -73,7 +73,7 @@ def views(block, has_block):
 
 
 def save(path, text):
-    """Writes a text; an equal file keeps its age, so that nothing is built again for it."""
+    """Writes a text; an equal file keeps its time, so that nothing is built again because of it."""
     path = Path(path)
     if not path.is_file() or path.read_bytes() != text.encode():
         path.write_bytes(text.encode())

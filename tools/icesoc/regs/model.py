@@ -12,7 +12,7 @@ from icesoc.regs import names
 
 SCHEMA = json.loads(Path(__file__).with_name("regs.schema.json").read_text())
 WORDS_PER_SLOT = 16
-FIRST_WORD = 3  # of a slot's own registers: ID, EVENT and MASK come before
+FIRST_WORD = 3  # first register of a block: ID, EVENT and MASK precede it
 ACCESSES = {
     "ro": "read only",
     "rw": "read and write",
@@ -20,7 +20,7 @@ ACCESSES = {
     "w1s": "write 1 to set",
     "ws": "write acts, reads as 0",
 }
-# Who keeps a register's value, by its access: the first one is the default.
+# Possible owners of a register's value, by its access: the first one is the default.
 STORAGES = {
     "ro": ("core",),
     "rw": ("flip-flops", "ram", "core", "memory"),
@@ -30,7 +30,7 @@ STORAGES = {
 }
 
 
-MIXED = ("rw", "w1c", "w1s")  # registers that may have fields which are ro
+MIXED = ("rw", "w1c", "w1s")  # registers that may contain ro fields
 
 
 class Wrong(Exception):
@@ -68,7 +68,7 @@ def fit(value, part, where):
 
 
 def reset_of(text):
-    """Returns a reset value: None for a register that reset leaves as it is."""
+    """Returns a reset value: None for a register that reset does not change."""
     return None if text == "none" else int(text or "0", 16)
 
 
@@ -80,11 +80,11 @@ class Field:
     lsb: int
     width: int
     doc: str
-    access: str = ""  # that of its register, or ro
+    access: str = ""  # "" for the access of its register, or ro
     reset: int | None = 0
     has_reset: bool = False  # the description gives the reset value
-    hwset: bool = False  # the core may set all its bits
-    hwclr: bool = False  # the core may clear all its bits
+    hwset: bool = False  # the core may set all bits
+    hwclr: bool = False  # the core may clear all bits
 
     @property
     def msb(self):
@@ -108,15 +108,15 @@ class Register:
     width: int = 32
     page: int = -1  # byte address of a core's register behind an adapter; -1: in the slot
     fields: list = field(default_factory=list)
-    reset: int | None = 0  # of a register without fields
+    reset: int | None = 0  # for a register without fields
     storage: str = ""
-    lock: str = ""  # input that holds writes off while it is high
-    registered: bool = False  # pulses come from flip-flops, a clock after the write
+    lock: str = ""  # input that blocks writes while high
+    registered: bool = False  # pulses come from flip-flops, one clock after the write
     strobes: tuple = ()  # "read", "write": outputs that are high in the clock of such an access
 
     @property
     def parts(self):
-        """The fields, or the whole register as one."""
+        """Returns the fields, or the whole register as one field."""
         return self.fields or [Field("", 0, self.width, self.doc, self.access, self.reset)]
 
     @property
@@ -133,11 +133,11 @@ class Register:
 
     @property
     def is_stored(self):
-        """Flip-flops of the register block hold the value."""
+        """True if flip-flops of the register block hold the value."""
         return self.storage == "flip-flops"
 
     def holds(self, part):
-        """Flip-flops of the register block hold the field."""
+        """True if flip-flops of the register block hold the field."""
         return self.storage == "flip-flops" and part.access != "ro"
 
     @property
@@ -158,7 +158,7 @@ class Register:
         return [p for p in self.parts if self.is_pulse(p)]
 
     def written_bits(self, part):
-        """The part has an output with what is written, for the core to keep."""
+        """True if the part has an output with the written value, for the core to store."""
         return (part.access != "ro" and self.storage == "core" and bool(part.name)
                 and not self.is_pulse(part))
 
@@ -195,13 +195,13 @@ class Constant:
 
 @dataclass
 class Port:
-    """A port of the register block besides those of every slot."""
+    """A port of the register block in addition to the ports of every slot."""
 
     name: str
     is_out: bool
     width: int
     doc: str
-    owner: str  # register, field or event that it belongs to
+    owner: str  # its register, field or event
     group: str = ""  # comment before it
     is_reg: bool = False
 
@@ -226,7 +226,7 @@ class Block:
         self.constants = [Constant(**c) for c in description.get("constants", [])]
         if self.is_slot:
             self.constants.append(Constant("ID_VALUE", self.type << 16 | self.version,
-                                           "what word ID reads"))
+                                           "value of word ID"))
         taken = set()
         for r in self.registers:
             check_register(r, taken)
@@ -280,7 +280,8 @@ class Block:
 
     @property
     def ram_bits(self):
-        """Address bits of the LUT RAM: as few low bits of the word as tell its words apart."""
+        """Returns the address bits of the LUT RAM: as few low bits of the word as distinguish its
+        words."""
         words = [r.word for r in self.stored_in("ram")]
         return next(n for n in range(2, 5) if len({w % (1 << n) for w in words}) == len(words))
 
@@ -409,5 +410,5 @@ def memory_ports(b, kept):
     owner = "the core's memory"
     return [Port("memory_write_o", True, 1, "bus_wdata_i goes to word bus_addr_i", owner,
                  f"the core's memory of {kept}"),
-            Port("memory_i", False, 32, "its word bus_addr_i; 0 in the words of other registers",
+            Port("memory_i", False, 32, "word bus_addr_i; 0 for words of other registers",
                  owner)]

@@ -5,7 +5,7 @@ Two names of a description may become one name in a generated file: the field TX
 register TX_DONE_MASK are both TX_DONE_MASK in C. Such a pair is rejected with both names. VHDL does
 not distinguish capitals, so neither does the check.
 """
-# Macros of C's standard headers that <BLOCK>_<REGISTER> may spell.
+# Macros of C's standard headers that <BLOCK>_<REGISTER> could equal.
 C_MACROS = {f"{kind}_{end}" for end in ("MAX", "MIN") for kind in (
     "CHAR", "SCHAR", "UCHAR", "SHRT", "USHRT", "INT", "UINT", "LONG", "ULONG", "FLT", "DBL", "LDBL",
     "INT8", "INT16", "INT32", "INT64", "UINT8", "UINT16", "UINT32", "UINT64", "INTPTR", "UINTPTR",
@@ -15,7 +15,7 @@ C_MACROS |= {"CHAR_BIT", "SIG_DFL", "SIG_IGN", "SIG_ERR", "EXIT_SUCCESS", "EXIT_
              "LC_MONETARY", "LC_NUMERIC", "LC_TIME", "FLT_RADIX", "FLT_ROUNDS"}
 C_MACROS |= {f"{kind}_{what}" for kind in ("FLT", "DBL", "LDBL") for what in (
     "DIG", "EPSILON", "MANT_DIG", "MAX_EXP", "MAX_10_EXP", "MIN_EXP", "MIN_10_EXP")}
-# Prefixes of the project's own headers: HW_OK, ICE_OK, MAP_SLOT_MODEM.
+# Prefixes of the project's headers: HW_OK, ICE_OK, MAP_SLOT_MODEM.
 PREFIXES = {"hw", "ice", "fsmc", "link", "uav", "os"}
 # Signals and ports that every register block has.
 BLOCK_SIGNALS = {"clk_i", "rst_i", "bus_valid_i", "bus_write_i", "bus_addr_i", "bus_wdata_i",
@@ -34,10 +34,10 @@ class Collision(Exception):
 
 
 class Spelled:
-    """The names of one scope of the generated files, with the description's names behind them."""
+    """Names of one scope in the generated files, with the names in the description."""
 
     def __init__(self):
-        self.owners = {}  # by the name in capitals
+        self.owners = {}  # by the name in upper case
 
     def add(self, spelled, owner):
         if spelled.upper() not in self.owners:
@@ -50,7 +50,7 @@ class Spelled:
 
 
 def check_block(b):
-    """Rejects a block whose C, Verilog or VHDL constants collide."""
+    """Rejects a block with colliding C, Verilog or VHDL constants."""
     spelled = Spelled()
     if b.is_slot:
         spelled.add("TABLE", "the table of a slot's registers")
@@ -64,7 +64,7 @@ def check_block(b):
             for end in ("LSB", "MASK", "WIDTH"):
                 spelled.add(f"{r.name}_{f.name}_{end}", full_name(r, f))
     if b.name.lower() in PREFIXES:
-        raise Collision(f"block {b.name}: the name is the project's own: C's names would collide")
+        raise Collision(f"block {b.name}: the name is reserved by the project")
     for name in spelled.owners:
         if f"{b.prefix}_{name}" in C_MACROS:
             raise Collision(f"{spelled.owners[name][1]} becomes {b.prefix}_{name}, which a header "
@@ -76,7 +76,7 @@ def full_name(register, field):
 
 
 def check_ports(b):
-    """Rejects a block whose register block would have two ports or signals of one name."""
+    """Rejects a block with a register block that would have two ports or signals of one name."""
     spelled = Spelled()
     for name in BLOCK_SIGNALS:
         spelled.add(name, f"the port {name} of every slot")

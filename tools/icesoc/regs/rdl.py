@@ -47,7 +47,7 @@ def present(instances):
 
 
 def access_of(field, name, line):
-    """Returns what software can do with a field."""
+    """Returns the access of software to a field."""
     software, writes = field.get("sw", "rw"), []
     if field.is_set("woclr") or field.get("onwrite") == "woclr":
         writes.append("w1c")
@@ -138,12 +138,12 @@ def register_of(instance, word):
     made = {"word": word, "name": name, "access": kinds.pop() if len(kinds) == 1 else "rw",
             "doc": text_of(register)}
     if set(found.accesses) == {"ro", "ws"} and found.overlap:
-        made["storage"] = "core"  # a read gives something else than what was written
+        made["storage"] = "core"  # the read value differs from the written value
     elif len(found.accesses) > 1 and len(set(found.accesses)) > 1:
         others = set(found.accesses) - {"ro"}
         if len(others) > 1 or others == {"ws"}:
             fail(instance.line, f"{name} has fields with access {', '.join(found.accesses)}: a "
-                 "register has one access, and may have fields that are ro beside it")
+                 "register has one access, and may also have ro fields")
         made["access"] = others.pop()
         for field, access in zip(found.fields, found.accesses):
             if access == "ro":
@@ -191,7 +191,7 @@ def addresses_of(component):
 
 
 def unit_of(placed, component):
-    """Returns the bytes from a word to the next: of the bus, which has one width."""
+    """Returns the distance of words in bytes, from the bus, which has one width."""
     sizes = {size for *_, size in placed}
     if all(address % 4 == 0 for _, address, _ in placed) and max(sizes) <= 4:
         return 4 if len(placed) > 1 else min(sizes)
@@ -253,7 +253,7 @@ def blocks_of(path, first):
     for top in maps:
         others = [i for i in top.component.children if i.component.kind != "addrmap"]
         if others and any(i.component.kind == "addrmap" for i in top.component.children):
-            fail(others[0].line, f"{others[0].name} is beside addrmaps: give it an addrmap too")
+            fail(others[0].line, f"{others[0].name} is outside the addrmaps: put it in one")
     pages = {i.name[:-6]: i.component for i in maps if i.name.endswith("_PAGES")} if inner else {}
     unused = [i for i in maps if inner and not i.name.endswith("_PAGES") and not any(
         c.component.kind == "addrmap" for c in i.component.children)]
@@ -262,7 +262,7 @@ def blocks_of(path, first):
     for instance, block in zip(inner, blocks):
         if instance.name in pages:
             add_pages(block, instance.name, pages[instance.name])
-    check(blocks, "1: error: there is no addrmap in it")
+    check(blocks, "1: error: expected an addrmap")
     names = [Block(block).name for block in blocks]
     check(len(names) == len(set(names)), "two addrmaps have one name")
     return blocks
@@ -288,7 +288,7 @@ def main():
     except RecursionError:
         sys.exit(f"{args.file}:1: error: its components are nested too deep")
     except UnicodeDecodeError:
-        sys.exit(f"{args.file}:1: error: it is no text in UTF-8")
+        sys.exit(f"{args.file}:1: error: expected text in UTF-8")
     except (Wrong, OSError) as e:
         text = str(e)
         sys.exit(f"{args.file}:{'' if text[0].isdigit() else ' error: '}{text}")

@@ -12,8 +12,8 @@ TAKEN = {
 # Texts for verification, hints for other tools, and states that ours have anyway.
 WITHOUT_EFFECT = {"donttest", "dontcompare", "hdl_path", "hdl_path_slice", "hdl_path_gate",
                   "hdl_path_gate_slice", "encode", "littleendian", "lsb0", "internal"}
-# With these values software sees what it would see without the property; others are errors. A
-# property that is set to false is off.
+# With these values software sees no difference to the property's absence; other values are errors.
+# A property set to false is off.
 OFF: dict[str, set[str]] = {
     "precedence": {"sw"}, "onread": set(), "rclr": set(), "rset": set(), "swwe": set(),
     "swwel": set(), "we": set(), "wel": set(), "hwenable": set(), "hwmask": set(), "anded": set(),
@@ -28,7 +28,7 @@ OFF: dict[str, set[str]] = {
     "rsvdset": set(), "rsvdsetX": set(), "bridge": set(), "sync": set(), "async": set(),
     "activehigh": set(), "activelow": set(), "cpuif_reset": set(), "field_reset": set(),
     "signalwidth": set(), "mementries": set(), "memwidth": set()}
-# Properties by component; the rest belong to fields.
+# Properties by component; all others belong to fields.
 UNIVERSAL = {"name", "desc", "ispresent", "donttest", "dontcompare", "hdl_path", "hdl_path_gate"}
 OF_COMPONENT: dict[str, set[str]] = {
     "addrmap": UNIVERSAL | {"alignment", "addressing", "sharedextbus", "errextbus", "bigendian",

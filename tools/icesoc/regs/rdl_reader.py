@@ -38,7 +38,7 @@ class Component:
     line: int
     properties: dict = field(default_factory=dict)  # name to text
     defaults: dict = field(default_factory=dict)
-    lines: dict = field(default_factory=dict)  # of properties
+    lines: dict = field(default_factory=dict)  # line numbers of properties
     types: dict = field(default_factory=dict)
     children: list = field(default_factory=list)
 
@@ -51,7 +51,7 @@ class Component:
         return self.parent and self.parent.default(name)
 
     def get(self, name, otherwise=None):
-        """Returns a property's text: "true" where it has no value; a default if it is not set."""
+        """Returns a property's text: "true" if it has no value; a default if it is not set."""
         if name in self.properties:
             return self.properties[name]
         value = self.parent and self.parent.default(name)
@@ -68,7 +68,7 @@ class Instance:
     line: int
     msb: int | None = None
     lsb: int | None = None
-    width: int | None = None  # of a field given by its width
+    width: int | None = None  # width of a field that is given by its width
     reset: int | None = None
     address: int | None = None
 
@@ -77,14 +77,14 @@ class Reader:
     def __init__(self, path):
         with open(path, encoding="utf-8-sig") as f:
             text = f.read()
-        # Comments keep their lines; those within strings are text.
+        # Comments keep their line ends; strings may contain comment marks.
         text = re.sub(r'"(?:[^"\\]|\\.)*"|//[^\n]*|/\*.*?\*/',
                       lambda m: m[0] if m[0][0] == '"' else re.sub(r"[^\n]", " ", m[0]), text,
                       flags=re.S)
         self.tokens = [(m.lastgroup, m[0], text.count("\n", 0, m.start()) + 1)
                        for m in TOKEN.finditer(text)]
         self.at, self.last = 0, text.count("\n") + 1
-        self.declared = set()  # the file's own properties
+        self.declared = set()  # properties that the file declares
 
     @property
     def line(self):
@@ -206,7 +206,7 @@ class Reader:
                     self.take()
                     made.msb, made.lsb = first, self.take_number()
                 else:
-                    made.width = first  # from the next free bit
+                    made.width = first  # the next free bit
                 self.take("]")
             if self.peek() == "=":
                 self.take()

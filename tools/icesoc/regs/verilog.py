@@ -40,7 +40,7 @@ def padded(parts, width=32, indent=0):
 
 
 def shown(r, indent=0):
-    """Returns what a read of a register gives."""
+    """Returns the read value of a register."""
     return padded([(p.lsb, p.width, r.port(p) + ("_o" if r.holds(p) else "_i")) for p in r.parts],
                   32, indent)
 
@@ -50,7 +50,7 @@ def event_inputs(b, indent=0):
 
 
 def aligned(rows, mark):
-    """Returns lines of (left, right) with the mark between them in one column."""
+    """Returns lines of (left, right) with the mark between them aligned in one column."""
     broad = max((len(left) for left, _ in rows), default=0)
     return [f"{left:{broad}}{mark}{right}" for left, right in rows]
 
@@ -86,7 +86,7 @@ def outputs(b):
 
 
 def read_cases(b):
-    """Returns the arms of the read multiplexer; words in the RAM are one of them."""
+    """Returns the cases of the read multiplexer; the words in the RAM are one case."""
     label = b.prefix + "_"
     short = [("ID:", f"{label}ID_VALUE"), ("EVENT:", padded([(0, b.event_bits, "events")])),
              ("MASK:", padded([(0, b.event_bits, "mask")]))]
@@ -129,7 +129,7 @@ def plain(text):
 
 
 def tail(text, mark):
-    """Returns a comment after a line; nothing for an empty text."""
+    """Returns a comment to append to a line; "" for an empty text."""
     return mark + plain(text) if text else ""
 
 

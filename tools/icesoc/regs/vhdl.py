@@ -51,7 +51,7 @@ def signals_of(b):
 
 
 def write_signals(b):
-    """Returns (name, word, lock) of the pulses of writes."""
+    """Returns (name, word, lock) for the write pulses."""
     return [("event", "EVENT", ""), ("mask", "MASK", "")] + [
         (r.lower, r.name, r.lock) for r in b.own_registers if r.is_written]
 
@@ -106,7 +106,7 @@ def vhdl_reads(b):
 
 
 def word_cover(b):
-    """Returns the words that exist as choices of a case: 0 to 10 | 13."""
+    """Returns the existing words as choices of a case: 0 to 10 | 13."""
     words, runs = sorted(r.word for r in b.registers), []
     for word in words:
         if runs and runs[-1][1] == word - 1:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from icesoc.site import reference
 
-# Pages outside docs/ that are part of the site, by where they are in it.
+# Pages outside docs/ that are part of the site: path in the tree -> path in the site.
 ADOPTED = {"sw/ground/README.md": "ground-plugin", "CHANGELOG.md": "changelog",
            "CONTRIBUTING.md": "contributing"}
 DOXYFILE = """PROJECT_NAME = IceSoC
@@ -33,11 +33,12 @@ WARN_IF_DOC_ERROR = NO
 
 
 class SiteError(Exception):
-    """Doxygen or Sphinx failed; the text is what they printed."""
+    """Doxygen or Sphinx failed; the text is their output."""
 
 
 def adopted(tree):
-    """Returns the pages outside docs/ that are part of the site: those above, and one a core."""
+    """Returns the pages outside docs/ that are part of the site: the pages above, and one per
+    core."""
     cores = {f"ip/{path.parent.name}/README.md": f"reference/cores/{path.parent.name}"
              for path in sorted(tree.glob("ip/*/README.md"))}
     return {source: target for source, target in {**ADOPTED, **cores}.items()
@@ -99,7 +100,7 @@ def stage(tree, pages, helps):
 
 
 def run(words, what, log):
-    """Runs a program and keeps what it prints in `log`; raises SiteError if it fails."""
+    """Runs a program and stores its output in `log`; raises SiteError if it fails."""
     with open(log, "w") as file:
         status = subprocess.run(words, stdout=file, stderr=subprocess.STDOUT,
                                 check=False).returncode

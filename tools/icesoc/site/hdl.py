@@ -45,7 +45,7 @@ class Entity:
     name: str
     path: Path
     summary: str
-    text: str  # the rest of the file's first comment
+    text: str  # remaining text of the file's first comment
     parameters: list
     ports: list
 
@@ -117,7 +117,7 @@ def declarations(lines, mark, pattern):
 
 
 def name_clocks(ports):
-    """Fills in each port's clock: the only clock, or the one of the port's group."""
+    """Sets the clock of each port: the only clock, or the clock of the port's group."""
     clocks = [p for p in ports if p.direction == "input" and re.search(r"(^|_)clk_i$", p.name)]
     of_group = {p.group: p.name for p in clocks}
     for port in ports:

@@ -15,7 +15,7 @@ from icesoc.site import hdl, symbol
 ROOMS = {"bus": "Register bus", "hdl/cdc": "Clock-domain crossings", "hdl/ddr": "Memory ports",
          "hdl/fsmc": "FSMC bridge", "hdl/modem": "Modem controller", "hdl/system": "Platform",
          "hdl": "Chip"}
-# Files that hold properties or models and no hardware.
+# Files that contain properties or models, and no hardware.
 NOT_HARDWARE = re.compile(r"(_proof|_rules|cdc_skew|idle_proof)$")
 # Headers of the C API, by the component that a firmware links.
 HEADERS = {
@@ -174,7 +174,8 @@ def write_cores(tree, pages):
 
 
 def write_commands(pages, helps):
-    """Writes the command line's pages. `helps` maps each command's words to its --help text."""
+    """Writes the pages of the command line. `helps` maps the words of each command to its --help
+    text."""
     parts = ["# Command line\n", "`./icesoc COMMAND --help` prints the same.\n"]
     for words, text in helps.items():
         parts.append(f"## icesoc {words}\n\n```text\n{text.strip()}\n```\n")

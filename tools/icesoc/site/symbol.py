@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""symbol: draws a module's ports as an SVG: inputs on the left, outputs on the right."""
+"""symbol: draws the ports of a module as an SVG: inputs on the left, outputs on the right."""
 from html import escape
 
 STEP, HEAD, MARGIN, CHAR = 18, 30, 60, 7.3  # px; CHAR: width of a monospaced character

@@ -13,10 +13,10 @@ KEYS = ("lut", "ff", "slices", "carry", "dsp", "ram", "mhz")
 NAMED_CHANGES = 6
 
 MEASURED, ACCEPTED, CHANGED, NEVER = STATES = (
-    "measured now",         # of the sources of now, in this run or kept from one before
-    "as accepted",          # not synthesised here, but these sources have the accepted figures
-    "changed since",        # its sources are not those of its last figures, here or accepted
-    "never measured here")  # and nothing says what its accepted figures, if any, are of
+    "measured now",         # with the current sources, in this run or cached
+    "as accepted",          # not synthesised here, but these sources produced the accepted figures
+    "changed since",        # its sources differ from the last figures', measured or accepted
+    "never measured here")  # and the sources of its accepted figures, if any, are unknown
 
 
 def state_of(run, source_hash, accepted):
@@ -131,7 +131,7 @@ def changes(before, after):
 
 
 def grown(title, changed):
-    """Lines below a title, or nothing where nothing grew."""
+    """Lines below a title, or nothing if nothing grew."""
     lines = []
     for name, luts, ffs in changed[:NAMED_CHANGES]:
         if luts + ffs > 0:
@@ -205,7 +205,7 @@ def history(source, count=30):
             designs = {name: {key: design[key] for key in KEYS}
                        for name, design in json.loads(text)["designs"].items()}
         except (ValueError, LookupError, TypeError, AttributeError):
-            continue  # of another format, or the file was taken away: nothing to show
+            continue  # another format, or the file was removed: nothing to show
         if designs:
             commits.append({"id": id, "date": date, "subject": subject, "designs": designs})
     return commits

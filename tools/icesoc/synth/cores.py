@@ -9,7 +9,7 @@ from icesoc.synth.runner import Run, carry_out
 from icesoc.synth.sources import Design, read_json
 from icesoc.util.errors import Stop
 
-FIRST_SLOT = 2  # those below are the platform's
+FIRST_SLOT = 2  # lower slots belong to the platform
 
 
 class NotInChip(Stop):
@@ -17,7 +17,8 @@ class NotInChip(Stop):
 
 
 def read_map(file):
-    """The numbers of the chip's map by name: SLOT_FIR, NPI_PORT_COUNT; {} where there is none."""
+    """Returns the numbers of the chip's map by name: SLOT_FIR, NPI_PORT_COUNT; {} if it is
+    missing."""
     return {c["name"]: c["value"] for c in read_json(file)["constants"]} if file.exists() else {}
 
 
@@ -70,6 +71,6 @@ def core_table(costs, map, slot, names, where):
             raise NotInChip(f"{name} is not in the chip of {where}: a line in ip/cores.list, then "
                             f"make ip-synth IP={name} CHIP=1")
     return report.Table(["core in the chip", "LUT", "FF", "RAM16", "DSP", "itself", "registers",
-                         f"slot {map['SLOT_COUNT']}", "memory port", "of the arbiter"],
+                         f"slot {map['SLOT_COUNT']}", "memory port", "arbiter"],
                         sorted((row(name) for name in cores if not names or name in names),
                               key=lambda cells: -cells[1]))

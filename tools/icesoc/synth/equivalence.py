@@ -21,7 +21,7 @@ from icesoc.util.errors import Stop
 from icesoc.util.files import digest, write
 from icesoc.util.process import collect as command
 
-BOXES = {"DCM_CLKGEN", "BUFGCE"}  # clock parts of both copies; what is around them is proven
+BOXES = {"DCM_CLKGEN", "BUFGCE"}  # clock primitives in both copies; the logic around them is proven
 SOLVE = """read_rtlil {file}
 splitnets
 setattr -unset init w:*
@@ -39,7 +39,8 @@ aigmap
 opt_clean
 write_aiger -zinit {file}.aig
 """
-# One clock in reset: states of one-hot code may begin with none, which RTL does not have.
+# One clock in reset, because one-hot state registers may be initialised to none, which RTL never
+# is.
 IN_RESET = "sim -clock in_clk_i -reset in_rst_i -rstlen 1 -n 1 -zinit -w miter"
 
 
@@ -102,12 +103,12 @@ def proof(mapped, design, family, library, options, models, seconds):
     said = solved(file, commands, is_plain, options, seconds)
     if said and is_plain and "in_rst_i" in part["ports"]:
         again = solved(file, [*commands, IN_RESET], is_plain, options, seconds)
-        return again or "proven from a reset on", not again
+        return again or "proven after a reset", not again
     return said or "proven", not said
 
 
 def solved(file, commands, is_plain, options, seconds):
-    """"" if the output is never high, else what is known."""
+    """Returns "" if the output is never high, otherwise the result."""
     write(solve := file.with_suffix(".solve.ys"),
           SOLVE.format(file=file, initial="\n".join(commands),
                        clocks="" if is_plain else "clk2fflogic"))

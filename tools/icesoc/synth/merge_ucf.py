@@ -27,7 +27,7 @@ def statements(path):
 
 
 def keys(statement):
-    """Settings that occur once only: VCCAUX; place, standard, period of a net."""
+    """Settings that occur only once: VCCAUX; location, standard, period of a net."""
     if re.match(r"(?i)CONFIG\s+VCCAUX", statement):
         return ["VCCAUX"]
     net = re.match(r'(?i)NET\s+"?([^"\s]+)"?\s+(.*)', statement)
@@ -65,7 +65,7 @@ def main():
         for line, statement in statements(path):
             for key in keys(statement):
                 if said.setdefault(key, statement) != statement:
-                    sys.exit(f"{path}:{line}: {key} is said twice: '{said[key]}', '{statement}'")
+                    sys.exit(f"{path}:{line}: duplicate {key}: '{said[key]}', '{statement}'")
             result.append(statement + ";")
     result.append(f"# {mig}")
     for line, statement in statements(mig):

@@ -63,13 +63,13 @@ class Cell:
     type: str
     pins: list
     named: bool = False  # the name is the design's, not the tool's
-    sources: frozenset = frozenset()  # file names of the block it comes from and its instances
+    sources: frozenset = frozenset()  # file names of the block it comes from, and of its instances
 
     def bits(self, port):
         return next((pin.bits for pin in self.pins if pin.port == port), [])
 
     def bit(self, port):
-        """The only bit of a port, UNDEFINED where there is none."""
+        """Returns the only bit of a port; UNDEFINED if there is none."""
         return (self.bits(port) or [UNDEFINED])[0]
 
 
@@ -116,7 +116,7 @@ class Netlist:
         return str(self.names[bit][0]) if bit in self.names else ""
 
     def driver_type(self, bit):
-        """The type of the cell that drives a bit, "" if none does."""
+        """Returns the type of the cell that drives a bit; "" if none does."""
         return self.cells[self.driver[bit]].type if bit in self.driver else ""
 
     def fanout(self, bit):
@@ -174,8 +174,8 @@ def read_netlist(file):
     return n
 
 
-# Ports of Spartan-6's block RAMs, in the order of those of synth/primitives/block_ram.v; of the
-# last kind port A writes words of 36 bits, and B reads them.
+# Ports of Spartan-6 block RAMs, in the order of synth/primitives/block_ram.v; of the last kind port
+# A writes words of 36 bits, and B reads them.
 RAM_PORTS = {
     "RAMB16BWER": "CLKA ENA RSTA WEA ADDRA DIA+DIPA DOA+DOPA "
                   "CLKB ENB RSTB WEB ADDRB DIB+DIPB DOB+DOPB",
@@ -208,7 +208,7 @@ def with_models(file):
 
 
 def make_block_ram(cell, free):
-    """Changes the cell. Bits of the netlist are below `free`; returns that of the changed one."""
+    """Changes the cell. Bits of the netlist are below `free`; returns the new `free`."""
     given, log2 = cell["parameters"], 14 if cell["type"] == "RAMB16BWER" else 13
     is_wide, lanes = given.get("RAM_MODE") == "SDP", 4 if log2 == 14 else 2
 
@@ -267,7 +267,7 @@ def finish_block_ram(cell, made, connections):
                                  for port in connections}}
 
 
-# Lattice FPGA-TN-02204 (ECP5 memory): what a port shows of a word that it writes.
+# Lattice FPGA-TN-02204 (ECP5 memory): output of a port while it writes a word.
 ECP5_MODES = {"NORMAL": "NO_CHANGE", "WRITETHROUGH": "WRITE_FIRST",
               "READBEFOREWRITE": "READ_FIRST"}
 
@@ -302,7 +302,8 @@ def make_block_ram_of_ecp5(cell, free):
         data, shown = ["0"] * 36, list(range(free, free + 36))
         for name, place in zip(names, places):
             data[place] = pin(f"DI{name}")
-            if enable != "1":  # else it writes or does nothing: the pins show what the other reads
+            if enable != "1":  # otherwise it writes or is idle: the pins show the word that the
+                               # other port reads
                 shown[place] = pins.get(f"DO{name}", [shown[place]])[0]
         free += 36
         low = {9: 3, 18: 4, 36: 5}[width]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""nets: clocks, resets and the nets with most ends of a Spartan-6 netlist, and where each signal
+"""nets: lists clocks, resets and the nets with the highest fan-out of a Spartan-6 netlist, and
+where each signal is declared in the sources.
 stands in the sources."""
 import functools
 import os
@@ -11,9 +12,9 @@ FOR_OWNER = "(for) "
 
 
 def name_or(n, owners, bit):
-    """A net's name in the source, or "(for) " and the name of its load."""
+    """Returns a net's name in the source, or "(for) " and the name of its load."""
     if bit not in n.driver and bit in n.names:
-        return str(n.names[bit][-1])  # the top's own, not that of an instance's input
+        return str(n.names[bit][-1])  # the name in the top module, not of an instance's input
     name = n.name_of(bit)
     return name if name or bit not in n.driver else FOR_OWNER + owners[n.driver[bit]]
 
@@ -95,8 +96,8 @@ def place_of(n, signal):
     says that it is made: names of intermediate values (n71_o) are GHDL's own. "": not known."""
     whole = without_index(signal.removeprefix(FOR_OWNER))
     name = whole.rpartition(".")[2]
-    # "./hdl/soc.v:62.26-69.2|./hdl/modem/modem.v:97.88-97.94": instances' places, and the
-    # declaration's, which is as wide as the name.
+    # "./hdl/soc.v:62.26-69.2|./hdl/modem/modem.v:97.88-97.94": locations of instances, then of the
+    # declaration, which is as wide as the name.
     places = re.findall(r"([^|:]+):(\d+)\.(\d+)-(\d+)\.(\d+)", n.sources.get(whole, ""))
     for file, line, begin, last, end in places:
         if line == last and int(end) - int(begin) == len(name):

@@ -16,11 +16,11 @@ DECODER = "u_platform.u_bus_decoder"
 
 
 class Cost(typing.NamedTuple):
-    lut: int = 0     # look-up tables, those used as memory included
+    lut: int = 0     # look-up tables, including those used as memory
     memory: int = 0  # of these, used as memory or shift register
     ff: int = 0      # flip-flops and latches
     carry: int = 0   # carry chain segments of 4 bits
-    ram: float = 0   # block RAMs of 16 or 18 Kbit; half ones count half
+    ram: float = 0   # block RAMs of 16 or 18 Kbit; a half counts 0.5
     dsp: int = 0
 
     def __add__(self, other):

@@ -47,7 +47,7 @@ class Report:
 
 
 class Table:
-    """Columns as wide as they need; the first is left-aligned."""
+    """Columns as wide as needed; the first is left-aligned."""
 
     def __init__(self, head, rows=()):
         self.rows = [[str(cell) for cell in row] for row in [head, *rows]]
@@ -65,7 +65,7 @@ class Table:
         return "\n".join(lines) + "\n"
 
 
-# ERRORS says what the ranges in the tables are.
+# Explains the ranges in the tables.
 ERRORS = (f"as mapped, routed: nine of ten of {slices.MAPPED.count} published reports of map, of "
           f"{timing.ROUTED.count} of TRCE, are in this; their medians are "
           f"{slices.MAPPED.median:.2f} and {timing.ROUTED.median:.2f} of the estimate")
@@ -148,7 +148,7 @@ def cost_table(library, row, depth=2):
             lines.append(["  " * level + (path.rpartition(".")[2] or row.design.top),
                           library.module_at(row.design.top, path), cost.lut, cost.memory, cost.ff,
                           cost.carry])
-    return Table(["instance", "module", "LUT", "of these RAM", "FF", "carry"], lines)
+    return Table(["instance", "module", "LUT", "as RAM", "FF", "carry"], lines)
 
 
 def path_table(plan, row, count=5):
@@ -261,7 +261,7 @@ def differences(before, after):
 
 
 def page_figures(f):
-    """The figures for the page, which rounds them as the terminal does."""
+    """Returns the figures for the page, rounded as in the terminal."""
     costs = {path: {signal: [c.lut, c.ff, c.memory]
                     for signal, c in signals.items() if c.lut or c.ff}
              for path, signals in f["costs"].items()}

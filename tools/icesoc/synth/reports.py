@@ -16,7 +16,7 @@ from icesoc.synth.slices import Range
 from icesoc.synth.sources import read_json
 from icesoc.util.errors import Stop
 
-MAP = ("sites", "ff", "slices", "one", "two")  # "one", "two": sites with so many functions
+MAP = ("sites", "ff", "slices", "one", "two")  # "one", "two": sites with one or two functions
 NETLIST = ("lut", "memory", "through", "ff", "path", "end")
 
 
@@ -55,18 +55,18 @@ def estimated(report):
 
 
 def clock_ratios(reports, kind):
-    """Published over estimated clock of the designs with such a report."""
+    """Ratios of published to estimated clock, of the designs with such a report."""
     return [estimated(report) / report[kind] for report in reports if kind in report]
 
 
 def site_ratios(reports):
-    """Sites of map's report over those estimated of Yosys' netlist."""
+    """Ratio of the sites in map's report to the sites estimated from Yosys's netlist."""
     return [report["map"]["sites"] / slices.map_sites(n["lut"], n["memory"], n["through"])
             for report in reports if (n := report.get("netlist"))]
 
 
 def left_out(values, fitted):
-    """Each value by what the others are fitted to."""
+    """Yields each value with the values that the others are fitted to."""
     return [value / fitted(values[:i] + values[i + 1:]) for i, value in enumerate(values)]
 
 
@@ -89,7 +89,7 @@ def best_share(maps):
 
 
 def slices_range(maps):
-    """Published over predicted slices, each by the share that fits the others best."""
+    """Ratios of published to predicted slices, each with the share that fits the others best."""
     shares = [best_share(maps[:i] + maps[i + 1:]) for i in range(len(maps))]
     errors = [m["slices"] / slices.occupied(m["sites"], m["ff"], share)
               for m, share in zip(maps, shares)]
@@ -98,7 +98,7 @@ def slices_range(maps):
 
 
 def paired(m):
-    """The share of functions without a site of their own."""
+    """The share of functions without a separate site."""
     return m["two"] / (m["one"] + 2 * m["two"])
 
 
@@ -121,4 +121,4 @@ def text(reports):
     return Table(rows[0], rows[1:]).plain() + "\n" + Table(
         ["published / estimated", "median", "nine of ten", "designs"],
         [[name, f"{r.median:.2f}", f"{r.low:.2f}-{r.high:.2f}", r.count] for name, r in ranges]
-    ).plain() + f"Flip-flops beside no LUT: {best_share(maps):.2f}\n"
+    ).plain() + f"Flip-flops without a LUT: {best_share(maps):.2f}\n"

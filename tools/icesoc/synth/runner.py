@@ -38,12 +38,12 @@ class Run:
     design: Design
     family: str  # "xc6s", "xc7", "ecp5": the script of that name
     wanted: bool = True  # False: only from the cache
-    netlist: pathlib.Path = None  # where Yosys wrote it
+    netlist: pathlib.Path = None  # path of the netlist written by Yosys
     figures: dict = None
-    error: str = ""  # why there are no figures
+    error: str = ""  # reason for missing figures
     known: bool = False  # another state of its sources was synthesised here
-    begun: float = 0  # when, by time.monotonic()
-    spent: float = None  # seconds; 0: nothing was to be synthesised
+    begun: float = 0  # start, by time.monotonic()
+    spent: float = None  # seconds; 0: cached
 
     @property
     def orders(self):
@@ -56,7 +56,7 @@ class Options:
     cache: pathlib.Path
     yosys: str = "yosys"
     jobs: int = 1
-    luts: dict = dataclasses.field(default_factory=dict)  # of designs, as far as they are known
+    luts: dict = dataclasses.field(default_factory=dict)  # LUTs of designs, as far as known
 
 
 @functools.cache
@@ -78,7 +78,8 @@ def script_of(run, library, options, output, more="", memory=False):
     modules its mapping is another, by chance."""
     includes = "".join(f" -I{folder}" for folder in library.include_folders)
     files, listed = library.files_of(run.design.top), [m.file for m in library.modules.values()]
-    # SystemVerilog has words of its own, and packages are listed before those that use them.
+    # SystemVerilog has additional keywords, and packages are listed before the modules that use
+    # them.
     system = sorted((f for f in files if f.suffix.lower() == ".sv"), key=listed.index)
     sources = "".join(f' "{file}"' for file in files if file not in system)
     if system:
@@ -95,13 +96,13 @@ def script_of(run, library, options, output, more="", memory=False):
         script = script.replace("@NO_MEMORY@", NO_MEMORY).replace("-run map_memory:",
                                                                   "-run map_ffram:")
     orders = ""
-    if run.orders:  # elaborated anew: a copy made before would change the first mapping
+    if run.orders:  # elaborated again: an earlier copy would change the first mapping
         orders = f"design -reset\n{script.partition('@MAP@')[0]}design -save unmapped\n"
     for order in range(1, run.orders + 1):
         permuted = mapping.replace("@ORDER@", f"permute,-S,{order};strash;")
         orders += (f"design -load unmapped\n{permuted}select A:top\n"
                    f"json -o {netlist_of_order(run.netlist, order)}\nselect -clear\n")
-    # What an order has in it is filled in after the orders.
+    # Texts from an order are filled in after ORDERS.
     for place, text in (("MAP", mapping.replace("@ORDER@", "")), ("ORDERS", orders),
                         ("NO_MEMORY", ""), ("CELLS", cells), ("MORE", more), ("SOURCES", sources),
                         ("INCLUDES", includes), ("PARAMETERS", parameters),
@@ -124,7 +125,7 @@ def yosys_by(script, output, options):
                           "(docs/guides/foreign-core.md)")
         raise Stop("\n".join([*errors, f"whole log: {log}"]))
     if output.exists() and output.read_bytes() == part.read_bytes():
-        part.unlink()  # what is made of it stays
+        part.unlink()  # files made from it are kept
     else:
         part.replace(output)
 
@@ -155,7 +156,7 @@ def figures_of(n, spartan6, files_along):
                "lut": total.lut, "ff": total.ff, "carry": total.carry, "ram": total.ram,
                "dsp": total.dsp, "lutRam": sum(netlist.MEMORY_LUTS.get(t, 0) for t in types),
                "shift": sum(map(netlist.is_shift_register, types)),
-               # Ports that leave the chip: not those of the memory controller.
+               # Ports that leave the chip, without the ports of the memory controller.
                "pins": sum(len(p.bits) for p in n.ports if not p.name.startswith("mcb_")),
                "costs": costs, "timing": {"paths": [], "ends": []},
                "nets": {"fanouts": [], "clocks": [], "resets": []}, "places": {}, "mhz": 0,
@@ -281,18 +282,18 @@ def carry_out(runs, library, options):
         run.spent = time.monotonic() - run.begun if is_new else 0
         with terminal:
             if is_new and run.wanted:
-                told = (f"{run.figures['lut']} LUT, {run.figures['ff']} FF" if run.figures
+                result = (f"{run.figures['lut']} LUT, {run.figures['ff']} FF" if run.figures
                         else "failed")
                 done = sum(each.spent is not None for each in wanted)
-                print(f"[{done}/{len(wanted)}] {run.design.name} for {run.family}: {told} "
+                print(f"[{done}/{len(wanted)}] {run.design.name} for {run.family}: {result} "
                       f"({run.spent:.1f} s)", file=sys.stderr)
 
-    def size(run):  # those with limits first, since these are looked at; then the largest
+    def size(run):  # designs with limits first, since these are checked; then the largest
         files = library.files_of(run.design.top)
         return (not run.design.limits, -sum(file.stat().st_size for file in files))
 
     threading.Thread(target=tell, daemon=True).start()
-    sys.setrecursionlimit(1 << 20)  # as deep as a design's logic
+    sys.setrecursionlimit(1 << 20)  # as deep as the logic of a design
     threading.stack_size(512 << 20)
     try:
         in_parallel(options.jobs, work, sorted(runs, key=size))
@@ -322,7 +323,8 @@ def filled(script, words):
 
 
 def mapped(design, family, library, options):
-    """The run of a design whose netlist is there: of all orders the first, else that without."""
+    """Returns the run of a design with a netlist: the first of all orders, or the run without
+    orders."""
     options.cache.mkdir(parents=True, exist_ok=True)
     version = version_of(options.yosys)
     for orders in (design.orders, 0):

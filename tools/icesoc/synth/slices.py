@@ -12,11 +12,11 @@ from icesoc.synth.netlist import LUT_INPUTS, MEMORY_LUTS, UNDEFINED
 
 SITES, FLIP_FLOPS, MUXES, SHARED_INPUTS = 4, 8, 2, 5
 
-# map makes (sites + share * flip-flops) / 4 slices: the share of flip-flops that find no place
-# beside a used LUT. These figures are of published reports (reports.py).
+# map makes (sites + share * flip-flops) / 4 slices; share: fraction of flip-flops that do not share
+# a site with a LUT. The figures come from published reports (reports.py).
 USUAL_SHARE = 0.74
-# Functions that map finds no site of their own for, since two share one: 2 to 31 % in the reports,
-# 14 % on average. Fewer are counted on, since map's sites are more than estimated (reports.py).
+# Fraction of functions that need no separate site, because two share one: 2 to 31 % in the reports,
+# 14 % on average. A lower value is used, since map's sites are more than estimated (reports.py).
 USUAL_PAIRING = 0.11
 
 
@@ -64,7 +64,7 @@ def sites_for(luts):
             continue
         common = {}
         for bit in inputs:
-            if len(readers[bit]) <= 64:  # a reset's readers are no neighbours
+            if len(readers[bit]) <= 64:  # the loads of a reset are not neighbours
                 for k in readers[bit]:
                     if k not in placed:
                         common[k] = common.get(k, 0) + 1
@@ -76,7 +76,8 @@ def sites_for(luts):
 
 
 def through_sites(n, carry):
-    """Carry bits whose S is no LUT of its own: each takes a site as a route-through."""
+    """Carry bits with an S that is not driven by a separate LUT: each takes a site as a
+    route-through."""
     return sum(bit >= 0 and n.driver_type(bit) not in LUT_INPUTS for bit in carry.bits("S"))
 
 
@@ -89,7 +90,7 @@ def control_set(cell):
 def slices_of(n):
     """The estimate ("slices"); "low", the least for any placer; "high", above which one published
     design of twenty lies; and the counts behind them."""
-    luts, sets = [], {}  # sets: control set -> [flip-flops fed by a LUT of their own, others]
+    luts, sets = [], {}  # sets: control set -> [flip-flops fed by a separate LUT, others]
     memory = carry = through = wide = flip_flops = 0
     for cell in n.cells:
         if cell.type in LUT_INPUTS:

@@ -10,10 +10,10 @@ import re
 from icesoc.util.errors import Stop
 from icesoc.util.files import digest
 
-# A comment, a string, a word or directive, or the punctuation that instances are recognised by.
+# A comment, a string, a word or directive, or the punctuation that marks instances.
 TOKEN = re.compile(r'//[^\n]*|/\*.*?(?:\*/|$)|"([^"]*)"?|(`?[\w$]+|`)|([()#;]|::)', re.S)
 
-PROPERTIES = {"FORMAL", "RULES", "COVER_POINTS"}  # what is under these is no hardware
+PROPERTIES = {"FORMAL", "RULES", "COVER_POINTS"}  # code under these macros is not hardware
 
 
 @functools.cache
@@ -21,7 +21,7 @@ def tokens(text):
     """The words and punctuation without properties; an include directive becomes the token `include
     and the name."""
     result = []
-    branches = []  # of the conditions around a word: True: dropped; False: its other branch is
+    branches = []  # conditions around a word: True: dropped; False: its other branch is
     condition = ""
     for string, word, mark in TOKEN.findall(text):
         if condition:
@@ -59,7 +59,7 @@ def read(file):
 
 @dataclasses.dataclass
 class Module:
-    """A module, or a package of SystemVerilog, which is as an instance of those that use it."""
+    """A module, or a SystemVerilog package, which is treated as an instance of its users."""
     file: pathlib.Path
     is_package: bool = False
     # Instance name -> module names: several in branches of `ifdef or generate.
@@ -81,17 +81,17 @@ class Library:
                 self.scan(file)
         for file in files:
             self.scan(file)
-        for module in self.modules.values():  # other names are no instances
+        for module in self.modules.values():  # other names are not instances
             module.instances = {name: known for name, types in module.instances.items()
                                 if (known := [t for t in types if t in self.modules])}
 
     def included(self, name):
-        """The file that an include directive names, None if it is not known."""
+        """Returns the file that an include directive names; None if it is not found."""
         return next((folder / name for folder in self.include_folders if (folder / name).exists()),
                     None)
 
     def all_tokens(self, file):
-        """Tokens of a file, and behind each include those of the file that it names."""
+        """Tokens of a file, with the tokens of included files after each include."""
         result = []
         for token in tokens(read(file)):
             is_include = bool(result) and result[-1] == "`include"
@@ -102,7 +102,7 @@ class Library:
 
     def scan(self, file):
         t = self.all_tokens(file) + ["", ""]
-        current, outside = None, {}  # what is imported outside of modules counts for all behind it
+        current, outside = None, {}  # imports outside modules apply to everything after them
         for i, token in enumerate(t[:-2]):
             if token in ("module", "package") and is_name(t[i + 1]):
                 current = None
@@ -124,7 +124,7 @@ class Library:
     def reach(self, top):
         """The module and all it instantiates."""
         if top not in self.modules:
-            raise Stop(f"there is no module {top}")
+            raise Stop(f"unknown module {top}")
         found, left = {top}, [top]
         while left:
             for types in self.modules[left.pop()].instances.values():
@@ -146,7 +146,8 @@ class Library:
         return digest(map(read, self.all_files_of(top)))
 
     def module_at(self, top, path):
-        """Module of the instance at the end of a path of instance names, "" if unknown."""
+        """Returns the module of the instance at the end of a path of instance names; "" if
+        unknown."""
         module = top
         for name in path.split(".") if path else ():
             if name in self.modules[module].instances:
@@ -167,11 +168,12 @@ class Design:
     name: str
     top: str
     title: str = ""
-    file: str = ""  # where the module is, relative to the project
+    file: str = ""  # path of the module's file in the project
     parameters: dict = dataclasses.field(default_factory=dict)
     limits: dict = dataclasses.field(default_factory=dict)  # "lut", "ff", "slices"
     paper: bool = False  # the paper has figures for it
-    orders: int = 0  # further orders of inputs and outputs in which it is mapped: one clock is luck
+    orders: int = 0  # further orders of inputs and outputs for mapping, because a single clock
+                     # result is luck
 
 
 @dataclasses.dataclass
@@ -179,7 +181,8 @@ class Plan:
     chip: dict
     paper: dict  # Table I: "lut", "ff", "slices"
     designs: list
-    simulated: dict  # design -> prefixes of the tests that run on its netlist; others are proven
+    simulated: dict  # design -> prefixes of the tests that run on its netlist; other designs are
+                     # proven
     xilinx: list  # designs of parts that only Xilinx's FPGAs have
 
     def has(self, design, family):
@@ -208,7 +211,7 @@ def read_plan(file, library, root):
     designs = [Design(**design) for design in j["designs"]]
     for design in designs:
         if design.top not in library.modules:
-            raise Stop(f"{file}: there is no module {design.top}")
+            raise Stop(f"{file}: unknown module {design.top}")
     tops = {design.top for design in designs}
     for name, module in sorted(library.modules.items()):
         is_hardware = not name.endswith(("_rules", "_proof")) and not module.is_package

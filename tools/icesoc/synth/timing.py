@@ -22,8 +22,8 @@ MULTIPLIER_CLOCK, MULTIPLIER_SETUP, MULTIPLY, MULTIPLIER_ADD = 4.700, 1.500, 4.5
 # Fan-out and delay of a net: points between which it is interpolated.
 NET_DELAYS = ((0, 0.0), (1, 0.580), (2, 0.617), (5, 0.715), (16, 1.004), (26, 1.207), (88, 1.799))
 
-# Published clock after routing over its estimate: the median of so many designs, and where nine of
-# ten lie, each predicted by the others (reports.py).
+# Ratio of published clock after routing to the estimate: median and 90 % range of `count` designs,
+# each predicted by the others (reports.py).
 ROUTED = Range(median=1.22, low=0.92, high=1.57, count=11)
 
 
@@ -42,7 +42,7 @@ def is_combinational(type):
 
 
 def is_unclocked(cell):
-    """True for logic: a multiplier without any of its registers is, too."""
+    """True for logic, including a multiplier without registers."""
     return is_combinational(cell.type) or (cell.type.startswith("DSP48") and cell.bit("CLK") < 0)
 
 
@@ -96,8 +96,8 @@ def through_delay(cell, pin, i, to, o):
 class Arrival(typing.NamedTuple):
     ns: float
     levels: int
-    cell: int    # that drives the bit
-    before: int  # bit of the path before, None where it starts
+    cell: int    # driver of the bit
+    before: int  # previous bit of the path, None at its start
     delay: float
 
 
@@ -110,7 +110,7 @@ class Analysis:
     def at(self, bit):
         """The latest Arrival at a bit that starts at a clocked cell; None without one."""
         if bit not in self.known:
-            self.known[bit] = None  # a loop ends here
+            self.known[bit] = None  # breaks a loop
             self.known[bit] = self.arrive(bit)
         return self.known[bit]
 
@@ -120,8 +120,8 @@ class Analysis:
         source, to = self.n.driver_type(bit), self.n.cells[reader].type
         if source == "CARRY4" and to == "CARRY4":
             return 0
-        beside = netlist.is_flip_flop(to) or to.startswith("MUXF") or to == "CARRY4"
-        if beside and is_combinational(source) and self.n.fanout(bit) == 1:
+        joined = netlist.is_flip_flop(to) or to.startswith("MUXF") or to == "CARRY4"
+        if joined and is_combinational(source) and self.n.fanout(bit) == 1:
             return 0
         return self.nets.get(bit, 0)
 

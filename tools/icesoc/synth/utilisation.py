@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""utilisation: reports the chip's and its parts' use of the FPGA, beside limits and the paper."""
+"""utilisation: reports the use of the FPGA by the chip and its parts, compared with limits and the
+paper."""
 import argparse
 import concurrent.futures
 import json
@@ -34,7 +35,7 @@ def rtl_of(o):
     rooms = sorted(folder for room in ("hdl", "ip") for folder in (o.source / room).iterdir()
                    if folder.is_dir())
     folders = [o.source / "synth", o.source / "hdl", o.source / "bus", *rooms, o.generated]
-    # Files of all cores of the build, wherever they are; include files lie beside the modules.
+    # Files of all cores of the build; include files are next to the modules.
     list = o.generated / "cores.files"
     files = [pathlib.Path(line) for line in list.read_text().splitlines()] if list.exists() else []
     files = [sources.relative_to(file, pathlib.Path()) for file in files if file.exists()]
@@ -44,7 +45,8 @@ def rtl_of(o):
 
 
 def synthesise(plan, library, options, o):
-    """Runs of the wanted designs for each family; the others come from the cache."""
+    """Returns runs of the requested designs for each family; results of others come from the
+    cache."""
     runs = [runner.Run(design, family, plan.has(design, family)
                        and (not o.design or design.name in o.design))
             for family in o.family for design in plan.designs]
@@ -112,7 +114,7 @@ def edif(plan, library, options, o):
     design = next(design for design in plan.designs if design.name == o.edif)
     runner.write_edif(design, library, options, o.output / "ise")
     print(f"{o.output / 'ise' / o.edif}.edf and its Verilog in {o.output / 'ise/verilog'}; "
-          "docs/utilisation.md says how to go on.")
+          "see docs/utilisation.md.")
     return 0
 
 
@@ -141,7 +143,7 @@ def run(o, libraries):
     for name in o.design + [name for name in (o.edif, o.netlist) if name]:
         names = [design.name for design in plan.designs]
         if name not in names:
-            raise Stop(f"there is no design {name}; there are {', '.join(sorted(names))}")
+            raise Stop(f"unknown design {name}; available: {', '.join(sorted(names))}")
     accepted = baseline.read_baseline(o.source / "synth/baseline.json")
     options = runner.Options(o.source / "synth/yosys", o.output / "cache", o.yosys, o.jobs,
                              {name: a["lut"] for name, a in accepted["designs"].items()})
@@ -160,7 +162,8 @@ def run(o, libraries):
         runs = synthesise(plan, library, options, o) if o.design else []
         return tell_cores(library, options, o, accepted, runs)
     yosys = runner.version_of(o.yosys)
-    with concurrent.futures.ThreadPoolExecutor() as pool:  # Git tells state and past meanwhile
+    with concurrent.futures.ThreadPoolExecutor() as pool:  # meanwhile Git determines state and
+                                                           # history
         tree = pool.submit(tree_state, o.source, STATE_OF)
         past = pool.submit(baseline.history, o.source)
         rows = rows_of(plan, synthesise(plan, library, options, o), library, accepted, yosys)
@@ -189,7 +192,7 @@ def options_of(words):
     parser.add_argument("--design", action="append", default=[],
                         help="only this design (may be repeated)")
     parser.add_argument("--family", action="append", default=[], choices=FAMILIES,
-                        help="this chip, too, beside xc6s (may be repeated)")
+                        help="further FPGA family, in addition to xc6s (may be repeated)")
     parser.add_argument("--yosys", default="yosys", help="the program")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(),
                         help="synthesis runs at a time (%(default)s)")
@@ -207,7 +210,7 @@ def options_of(words):
     parser.add_argument("--list", action="store_true", help="only print the designs' names")
     parser.add_argument("--equivalent", action="store_true",
                         help="only prove that netlists are equivalent to their RTL, or tell tests")
-    parser.add_argument("--junit", type=folder, help="results of the tests that --equivalent tells")
+    parser.add_argument("--junit", type=folder, help="results of the tests that --equivalent lists")
     parser.add_argument("--seconds", type=int, default=300,
                         help="limit of a proof of --equivalent (%(default)s)")
     parser.add_argument("--netlist", metavar="DESIGN",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""console: what commands print."""
+"""console: prints the output of commands."""
 import sys
 
 

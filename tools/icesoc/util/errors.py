@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""errors: how a command of the tools ends early."""
+"""errors: exceptions that end a command of the tools early."""
 
 SKIPPED = 77  # exit status of a command that needs a network and has none
 

@@ -56,7 +56,7 @@ GHDL = ["ghdl-mcode", "ghdl-common", "libgnat-14", "libc6", "libgcc-s1", "libstd
 
 
 class Unreachable(Exception):
-    """There is no network, or a mirror does not have the file."""
+    """No network, or the mirror does not have the file."""
 
 
 def fail(text, status=1):
@@ -65,7 +65,7 @@ def fail(text, status=1):
 
 
 def output(*words):
-    """What a program prints; nothing, where there is no such program."""
+    """Returns the output of a program; "" if the program does not exist."""
     if not shutil.which(words[0]):
         return ""
     return subprocess.run(words, text=True, capture_output=True).stdout
@@ -98,12 +98,12 @@ def kept(url, checksum):
 
 
 def released(path, checksum):
-    """A released source as Debian keeps it."""
+    """Returns a released source as archived by Debian."""
     return kept(f"{mirror()}/pool/main/{path}", checksum)
 
 
 def unpack(archive, folder, target, suffix=""):
-    """The files below a folder of an archive whose names end with suffix."""
+    """Returns the files below a folder of an archive with names ending in suffix."""
     with tarfile.open(archive) as tar:
         for member in tar:
             if member.isfile() and member.name.startswith(folder) and member.name.endswith(suffix):
@@ -218,7 +218,7 @@ def foreign(target):
     reached = 0
     for name, its in json.loads(LIST.read_text()).items():
         folder, sums = target / name, json.dumps({n: its[n] for n in its if n != "cores"})
-        note = target / f"{name}.done"  # what is there already
+        note = target / f"{name}.done"  # already present
         if its.keys() == {"cores"} or (note.exists() and note.read_text() == sums):
             reached += its.keys() != {"cores"}
             continue
@@ -297,7 +297,7 @@ def main():
     thing = THINGS[options.thing]
     CACHE.mkdir(parents=True, exist_ok=True)
     with open(CACHE / "lock", "w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)  # two builds may want the same
+        fcntl.flock(lock, fcntl.LOCK_EX)  # two builds may need the same
         try:
             thing(options.folder.absolute())
         except Unreachable as error:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""files: whole files and their digests."""
+"""files: complete files and their digests."""
 import hashlib
 import pathlib
 
@@ -7,7 +7,7 @@ from icesoc.util.errors import Stop
 
 
 def write(path, text):
-    """Writes a file, all of it or none: readers see the old text or the new."""
+    """Writes a file atomically: readers see the old text or the new."""
     part = pathlib.Path(f"{path}.part")
     try:
         part.write_text(text)

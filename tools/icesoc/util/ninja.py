@@ -64,7 +64,7 @@ def in_vhdl(match):
 
 
 def explained(text):
-    """A line of a build's output, with the place in the source that it is about."""
+    """Returns a line of a build's output, with the source location that it refers to."""
     missing = re.match(r"ninja: error: '(\S+)', needed by .* missing and no known rule", text)
     if not missing:
         return re.sub(r"(\S+\.v):(\d+)(?=:)", in_vhdl, text)

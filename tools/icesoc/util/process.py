@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""process: starts programs by lists of words, never through a shell, and ends what it started.
+"""process: starts programs from lists of words, never through a shell, and ends them.
 
 A program that is ended by a signal, or cannot be started, is reported here, and nowhere else.
 """
@@ -20,7 +20,7 @@ from icesoc.util.errors import Interrupted, Stop
 def hear_signals():
     def hear(number, _):
         for each in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            signal.signal(each, signal.SIG_IGN)  # one is enough: what runs is being ended
+            signal.signal(each, signal.SIG_IGN)  # one is enough: the program is being ended
         raise Interrupted(number)
 
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
@@ -29,16 +29,16 @@ def hear_signals():
 
 
 def tool(name):
-    """The words that start a module of this package, "regs.rdl"."""
+    """Returns the words that start a module of this package, "regs.rdl"."""
     return [sys.executable, "-m", "icesoc" if name == "__main__" else f"icesoc.{name}"]
 
 
 def start(words, env=None, **more):
-    """A process that ends with this one, however that ends. `env`: additions to our environment."""
+    """A process that ends with this one, in any case. `env`: additions to our environment."""
     words = [str(word) for word in words]
     if not shutil.which(words[0]):
         raise Stop(
-            f"there is no program '{words[0]}': ./icesoc setup --tests installs what is missing",
+            f"program '{words[0]}' not found: ./icesoc setup --tests installs missing packages",
             127)
     more["env"] = {**os.environ, **{name: str(value) for name, value in (env or {}).items()}}
     return subprocess.Popen(["setpriv", "--pdeathsig", "TERM", "--", *words], **more)
@@ -56,7 +56,7 @@ def end(process, seconds=20):
 
 
 def wait(process):
-    """Its exit status, as in a shell; an interrupt of this process ends it."""
+    """Returns its exit status, as in a shell; an interrupt of this process ends it."""
     try:
         status = process.wait()
     except BaseException:
@@ -137,7 +137,7 @@ def children(pid):
 
 
 def adopt_orphans():
-    """Makes processes that programs leave behind children of this process instead of init."""
+    """Adopts processes that programs leave behind, instead of init."""
     become_subreaper = 36
     ctypes.CDLL(None).prctl(become_subreaper, 1)
 

@@ -96,14 +96,14 @@ class Record:
         for field in self.fields.values():
             array = f"[{field.count}]" if field.count else ""
             lines.append(f"    {types[field.type]} {field.name}{array}; /* {field.text} */")
-        # An array of -1 elements if a compiler lays the struct out in another way.
+        # An array of -1 elements if a compiler uses a different layout.
         lines += [f"}} {self.name};", f"typedef char {self.name}_hasItsSize"
                   f"[sizeof({self.name}) == {self.size} ? 1 : -1];", ""]
         return "\n".join(lines)
 
 
 def load(path):
-    """Returns the record that a file describes. Raises ValueError if it is wrong."""
+    """Returns the record that a file describes. Raises ValueError if it is invalid."""
     with open(path, "rb") as file:
         try:
             return Record(tomllib.load(file))

@@ -17,14 +17,14 @@ class Table:
         said = {0: "ok", SKIPPED: "skipped"}.get(status, f"FAILED ({status})")
         say(f"{name:<18} {said:<12} {seconds:7.1f} s  {figure}")
         self.path.parent.mkdir(parents=True, exist_ok=True)
-        lines = ["| command | status | seconds | what it says last |", "|---|---|---|---|"]
+        lines = ["| command | status | seconds | last output |", "|---|---|---|---|"]
         for row in self.rows:
             last = row["figure"].replace("|", "/")
             lines.append(f"| {row['command']} | {row['status']} | {row['seconds']} | {last} |")
         self.path.with_suffix(".md").write_text("\n".join(lines) + "\n")
 
     def end(self):
-        """Ends the command: with an error that names what failed, if something has."""
+        """Ends the command, with an error that names the failed items if there are any."""
         seconds = sum(row["seconds"] for row in self.rows)
         skipped = [row for row in self.rows if row["status"] == SKIPPED]
         if failed := [row["command"] for row in self.rows if row["status"] not in (0, SKIPPED)]:

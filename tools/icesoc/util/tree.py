@@ -7,21 +7,23 @@ from icesoc.util.process import collect, output
 
 
 def commit(name, option="BASE"):
-    """The whole name of a commit."""
+    """Returns the full hash of a commit."""
     found = output(["git", "rev-parse", "--verify", "-q", f"{name}^{{commit}}"], check=False)
     if not found:
-        raise Stop(f"there is no commit {option}={name}", 2)
+        raise Stop(f"unknown commit {option}={name}", 2)
     return found.strip()
 
 
 def tracked(source):
-    """Paths of the tree's files, those that .gitignore names left out; a copy has them, too."""
+    """Returns paths of the tree's files, without those that .gitignore excludes; also works in a
+    copy."""
     return collect(["git", "-C", source, "grep", "--no-index", "--exclude-standard", "--no-color",
                 "-l", ""])[1].splitlines()
 
 
 def tree_state(source, folders):
-    """The state of folders, "bus hdl: 0123...": a measurement is current while it is the same."""
+    """Returns the state of folders, "bus hdl: 0123...": a measurement is current while it is
+    equal."""
     files = sorted(f for f in tracked(source) if f.split("/")[0] in folders.split())
     def hashes(text, *words):
         return subprocess.run(["git", "hash-object", *words], input=text, text=True, cwd=source,

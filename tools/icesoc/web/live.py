@@ -9,7 +9,7 @@ import sys
 
 
 def refuse(kind, error, trace):
-    """Names a lack of memory, which Python also tells as a library that cannot be loaded."""
+    """Reports a lack of memory, which Python may also report as a library that cannot be loaded."""
     if issubclass(kind, (MemoryError, ImportError)):
         print("icesoc-live: error: not enough memory for the page", file=sys.stderr)
     else:
@@ -33,7 +33,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 
 PATIENCE = 10  # seconds
 NEWEST = 128 << 10  # bytes of events.jsonl that a page shows: a long flight does not make it large
-MOST_VEHICLES = 32  # of a modem of the ground
+MOST_VEHICLES = 32  # vehicles per modem on the ground
 FILES = {  # path: MIME type, file
     "/": ("text/html; charset=utf-8", HERE + "/flight/index.html"),
     "/live.css": ("text/css", HERE + "/flight/live.css"),
@@ -56,7 +56,7 @@ def contents(path):
 
 
 def rows(lines):
-    """Returns the JSON objects among lines; the last one may be half written."""
+    """Returns the JSON objects in lines; the last one may be incomplete."""
     for line in lines:
         try:
             row = json.loads(line)
@@ -67,7 +67,7 @@ def rows(lines):
 
 
 def newest(path):
-    """Returns the lines of a file's last bytes."""
+    """Returns the lines in the last bytes of a file."""
     try:
         with open(path, "rb") as file:
             size = file.seek(0, os.SEEK_END)
@@ -167,7 +167,7 @@ class Page(http.server.BaseHTTPRequestHandler):
     def do_GET(self):
         port = self.server.socket.getsockname()[1]
         hosts = self.headers.get_all("Host", [])
-        # Another host's page may use a name of its own for this address.
+        # A page on another host may use another name for this address.
         if len(hosts) != 1 or hosts[0] not in (f"127.0.0.1:{port}", f"localhost:{port}"):
             return self.send_error(HTTPStatus.FORBIDDEN)
         path = self.path.partition("?")[0]

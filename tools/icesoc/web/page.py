@@ -18,7 +18,7 @@ def page_parts(libraries):
 
 
 def filled(page, places):
-    """The page with each place replaced by its text."""
+    """Returns the page with each placeholder replaced by its text."""
     for place, text in places.items():
         if place not in page:
             raise Stop(f"the page has no {place}")
@@ -27,5 +27,5 @@ def filled(page, places):
 
 
 def script_safe(data):
-    """JSON as it may stand in a page's script: a "</" in it does not end the script."""
+    """Returns JSON for a page's script: a "</" in it does not end the script."""
     return json.dumps(data, separators=(",", ":"), sort_keys=True).replace("</", "<\\/")

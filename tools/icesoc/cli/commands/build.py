@@ -65,7 +65,7 @@ def small(path):
 
 
 def shoot(path, width, height, address, profile):
-    """Takes a picture of a page after three seconds of the page's time."""
+    """Saves a screenshot of a page after three seconds of page time."""
     logged([
         "chromium", "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
         "--hide-scrollbars", f"--user-data-dir={profile}/chromium", "--virtual-time-budget=3000",

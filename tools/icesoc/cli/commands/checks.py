@@ -30,7 +30,7 @@ def proofs(values):
     build = configured(values, "regmaps")
     build.ctest("-L", "formal", tests=values.jobs, FRESH="1")
     spent = [float(path.read_text()) for path in (build / "tests/hdl/formal").glob("*/cpu")]
-    say(f"{len(spent)} proofs, {sum(spent):.0f} s of a processor")
+    say(f"{len(spent)} proofs, {sum(spent):.0f} s of CPU time")
 
 
 @command("check netlist", [NAME, FAMILY, TESTS, JOBS], make="netlist",
@@ -72,7 +72,7 @@ def sanitizers(values):
     fuzzer of the debugger's stub"""
     build, status, folders = configured(values, tests=True), 0, {
         "address": ("sanitized", "ON"), "thread": ("thread", "thread")}
-    for name in values.kinds:  # build/sanitized is that of the tests
+    for name in values.kinds:  # build/sanitized belongs to the tests
         if name not in folders:
             raise Stop(f"there is no sanitizer '{name}': address, thread", 2)
         kind, option = folders[name]
@@ -82,7 +82,7 @@ def sanitizers(values):
             "ASAN_OPTIONS": "detect_leaks=0",
             "TSAN_OPTIONS": f"suppressions={Path('tests/sw/ground/threads.supp').absolute()}"}
         folder.ninja(*GUARDED, env=environment)  # libmcpp leaks
-        # ThreadSanitizer leaves out Python's libraries: Python's own locks are not built with it.
+        # ThreadSanitizer skips Python's libraries, because Python's locks are not instrumented.
         left = ["--gtest_filter=-*Python*"] if kind == "thread" else []
         for test in ("ground/test_engine", "ground/ice/test_radio_ice", "icec/test_icec"):
             status = one_more(status, run([folder / "tests/sw" / test, "--gtest_brief=1", *left],

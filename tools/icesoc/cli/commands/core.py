@@ -88,7 +88,7 @@ def interface_of(text):
 
 
 def fill(template, folder, name):
-    """A file of a template, with the core's name."""
+    """Returns a file of a template for the core's name."""
     text = template.read_text().replace("@NAME@", name).replace("@MODULE@", "Cores")
     path = folder / re.sub("^NAME", name, template.name[:-len(".in")])
     path.write_text(text.replace("@TYPE@", "".join(word.capitalize() for word in name.split("_"))))
@@ -104,7 +104,7 @@ def put_into_repository(room, name):
     tree."""
     room = Path(room).absolute()
     origin = output(["git", "remote", "get-url", "origin"], check=False, stderr=-3).strip()
-    origin = re.sub("(?<=://)[^/@]*@", "", origin)  # a name and a password stay here
+    origin = re.sub("(?<=://)[^/@]*@", "", origin)  # omit a name and a password
     commit = output(["git", "rev-parse", "HEAD"], check=False, stderr=-3).strip()
     made = (TEMPLATE / "repository/Makefile.in").read_text()
     made = made.replace("@URL@", origin or os.getcwd()).replace("@COMMIT@", commit or "HEAD")
@@ -132,7 +132,7 @@ def new(values):
     """create a core: ip/NAME with interface, RTL and a test that passes"""
     name, lang = values.name, values.lang
     if name and not lang:
-        raise Stop("LANG says the core's language: LANG=verilog or LANG=vhdl (--lang)")
+        raise Stop("--lang: expected verilog or vhdl (LANG=...), got nothing")
     room = values.repository or "ip"
     check_name(name, room)
     build = BuildFolder(values.build, values).prepare()
@@ -174,7 +174,7 @@ def new(values):
 
 
 def known(values):
-    """The build folder, which knows the core."""
+    """Returns the build folder that contains the core."""
     if not values.ip:
         raise Stop("a core is needed: ./icesoc core test fir (make ip-test IP=fir)")
     build = BuildFolder(values.build, values).prepare()
@@ -212,7 +212,8 @@ def synth(values):
 
 
 def one_test(program, text):
-    """The name of the test, given by its whole name or by an expression that matches no other."""
+    """Returns the name of the test, given by its full name or by an expression that matches only
+    one."""
     listed = output([program, "--gtest_list_tests"])
     suite, names = "", []
     for line in listed.splitlines():
@@ -322,4 +323,4 @@ def remove(values):
         logged(["cmake", f"-DCORE_FOLDERS={others}", build.folder], build / "rm-ip.log",
                "the build cannot be configured without it")
     say(f"ip/{name} and its line in ip/cores.list are gone" if not core.is_dir() else
-        f"the line of {name} in ip/cores.list is gone; {core} stays, and is no part of the build")
+        f"removed {name} from ip/cores.list; {core} is kept, but is not part of the build")

@@ -11,8 +11,8 @@ from icesoc.util.console import say, warn
 from icesoc.util.errors import Stop
 from icesoc.util.process import output, run, tool
 
-COUNTED = "rtl|firmware|vhdl|models|slice|interop|e2e"  # labels of tests that run what counts
-# Fuzzers have counts of their own, e2e.cores builds a chip of its own.
+COUNTED = "rtl|firmware|vhdl|models|slice|interop|e2e"  # labels of tests whose execution is counted
+# Fuzzers have separate counts; e2e.cores builds a separate chip.
 LEFT_OUT = "NOT_BUILT|^fuzz|^e2e.cores"
 
 
@@ -84,7 +84,7 @@ def lcov(work, info, *words):
 
 
 def own(work, info, source, rooms):
-    """What lies in these rooms of the tree; none if nothing does, as in a build of few rooms."""
+    """Returns the files in these rooms of the tree; nothing in a build of few rooms."""
     return lcov(work, info, "--extract", source, *(f"{Path.cwd()}/{room}/*" for room in rooms))
 
 

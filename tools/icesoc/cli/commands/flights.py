@@ -22,7 +22,7 @@ from icesoc.util.process import end, run, start, tool, until, wait
 
 FROM = Option("from", SECONDS, "start of the waveform, simulated time")
 TO = Option("to", SECONDS, "end of the waveform, simulated time")
-DESCRIPTORS = 64  # of a process; the ground's program has some thirty
+DESCRIPTORS = 64  # per process; the program of the ground needs about thirty
 NETLIST = Option("netlist", SWITCH, "fly the netlist synthesised by Yosys, at 2 MHz with every "
                                     "clock evaluated")
 NETLIST_HZ = 2000000
@@ -59,7 +59,7 @@ def fly_mission(values):
     flight.check_chip(values, build)
     flight.take_key(values, build)
     flight.take_observers_key(values)
-    busy = (f"another flight is under way in {values.out}; give this one a folder of its own: "
+    busy = (f"another flight is under way in {values.out}; give this one a separate folder: "
             "OUT=build/other (--out)")
     with lock(Path(values.out) / "lock", refuse=busy) as held:  # until the last program has ended
         fly = minimal if values.app == "minimal" else update if values.update else mission
@@ -94,7 +94,7 @@ def update(values, build, held):
     if not (out / "flash.bin").exists():
         run([pack, "vehicle", build / "firmware/loader.elf", flight.firmware(values, build), 1,
              signing, out / "flash.bin"])
-    if not (out / "fpga.bin").exists():  # a stand-in for ISE's golden bitstream
+    if not (out / "fpga.bin").exists():  # replaces ISE's golden bitstream
         run([build / "testbench/stm32/stand_in_bitstream", out / "golden.bin", 1, 10000])
         run([pack, "fpga", out / "golden.bin", 1, signing, out / "fpga.bin"])
     kind = "bitstream" if values.update.endswith((".bit", ".bin")) else "image"
@@ -124,7 +124,7 @@ def mission(values, build, held):
     if 0 < trial <= 128:
         raise Stop(status=trial)
     if trial:
-        warn(f"the page's trial was ended by signal {trial - 128}; the mission goes on")
+        warn(f"the page's trial was ended by signal {trial - 128}; the mission continues")
     sim = simulator(values, build, held, [], [
         "sw/ground/clients/mission.py", "{out}/flight.json", "--device", "{device}", "--frame",
         "{frame}", "--status", "{status}", "--plugin", build / "ground", "--slice",
@@ -143,7 +143,7 @@ def mission(values, build, held):
             if not until(lambda: sim.poll() is not None or flies_on(), shown):
                 ended = shown.returncode
                 how = f"signal {-ended}" if ended < 0 else f"exit status {ended}"
-                warn(f"the page is gone ({how}); the mission goes on")
+                warn(f"the page has ended ({how}); the mission continues")
         results = f"Pictures and report: {out}/before.png {out}/after.png {out}/report.md"
         if values.live and until(flies_on, sim):
             say(results)
@@ -300,7 +300,7 @@ def key(values):
     if not make(values.file):
         raise Stop(f"'{values.file}' is there already: a key is never overwritten")
     used = "" if values.certificate else f": ./icesoc run --key {values.file}"
-    say(f"made {values.file}, which nobody but you may read{used}")
+    say(f"made {values.file}, which only you may read{used}")
 
 
 @command("fly", [

@@ -15,7 +15,7 @@ from icesoc.util.process import run, tool
 
 
 def foreign_words(values):
-    """The words of cores/new_foreign.py."""
+    """Returns the arguments for cores/new_foreign.py."""
     given = {name: getattr(values, name.lower()) for name in ("CLOCK", "LIBRARY", "ADDRESS")}
     return [values.name, values.top, values.bus, f"{values.repository or 'ip'}/{values.name}",
             *(f"{name}={value}" for name, value in given.items() if value),

@@ -22,7 +22,7 @@ RELEASES = {"bookworm": "Debian 12", "trixie": "Debian 13"}
 README = ["make run", "make test"]
 MIRROR = "http://deb.debian.org/debian"
 CERTIFICATES = Path("/etc/ssl/certs/ca-certificates.crt")
-# The machine's first process; what it mounts stays its own.
+# First process of the machine, in a separate mount namespace.
 BOOT = """
 mount --make-rprivate / && mount -t proc proc "$1/proc" && mount --rbind /dev "$1/dev" &&
 mount --rbind /sys "$1/sys" && exec chroot "$1" /bin/sh -c "cd /root/icesoc && $2"
@@ -93,7 +93,7 @@ def put_tree(root):
 
 
 def do(root, release, step):
-    """Carries one step out, and tells its last lines."""
+    """Carries out one step, and prints its last lines."""
     words = re.findall(r"[\w.]+", step)
     log = Path("-".join([str(root), *words]) + ".log")
     place = {"HOME": "/root", "PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "TERM": "dumb"}

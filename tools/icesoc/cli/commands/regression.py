@@ -150,7 +150,7 @@ exit $status
 
 
 def search(program, values, good, bad, tree):
-    """Lets git ask commits until it knows the first bad one."""
+    """Lets git bisect ask about commits until it finds the first bad one."""
     step = [
         "setpriv", "--pdeathsig", "TERM", "sh", "-c", STEP, program, "--make", "--name",
         f"^{re.escape(values.test)}$", "--seed", values.seed, "--jobs", values.jobs, "--waves", 0]
@@ -166,7 +166,7 @@ def search(program, values, good, bad, tree):
     git("reset")
     first = re.search(r"^# first bad commit: \[(.*?)\]", log, re.M)
     if not first:
-        raise Stop("not found: commits that cannot be told lie between")
+        raise Stop("not found: the commits in between cannot be judged")
     say("since " + output(["git", "log", "-1", "--format=%h %s (%an, %as)", first[1]]).strip())
     return 0
 

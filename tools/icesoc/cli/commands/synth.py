@@ -75,7 +75,7 @@ def edif(values):
 
 
 def synthesise(program, jobs, base, folder):
-    """Builds and synthesises a commit in its own checkout; this one does not change."""
+    """Builds and synthesises a commit in a separate checkout; this one does not change."""
     folder = folder.absolute()
     if (folder / ".git").exists():
         run([*GIT, "-C", folder, "checkout", "-q", "--detach", base])
@@ -93,9 +93,9 @@ def synthesise(program, jobs, base, folder):
     with contextlib.suppress(FileNotFoundError):
         cache.unlink()
     cache.symlink_to(
-        Path("build/synth/cache").absolute())  # designs that both have are synthesised once
+        Path("build/synth/cache").absolute())  # designs common to both are synthesised once
     with open(folder / "build.log", "w") as log:
-        # Status 1: that commit is beyond its own budget, which does not matter here.
+        # Status 1: that commit exceeds its budget, which does not matter here.
         if run([program, "--jobs", jobs], check=False, cwd=folder, stdout=log) > 1:
             raise Stop(status=2)
 

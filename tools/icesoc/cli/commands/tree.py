@@ -33,7 +33,7 @@ def setup(values):
     """install the Debian packages that are needed and missing"""
     if values.developer:
         run(["git", "config", "core.hooksPath", ".ci/hooks"])
-        say("git runs .ci/hooks from now on")
+        say("git now runs .ci/hooks")
     return run(
         ["cmake/setup.sh", *(f"--{word}" for word in ("tests", "check") if getattr(values, word))],
         check=False)
@@ -88,7 +88,7 @@ def run_all(only):
         if only not in name:
             continue
         own, begin, status = folder / name.replace(" ", "-"), time.monotonic(), 0
-        shutil.rmtree(own, ignore_errors=True)  # what it made the last time
+        shutil.rmtree(own, ignore_errors=True)  # output of the last run
         own.mkdir(parents=True)
         log = own.with_suffix(".log")
         with open(log, "w") as file, open(os.devnull) as nothing:

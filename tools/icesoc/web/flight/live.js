@@ -80,7 +80,7 @@ function showTimeline(state) {
     const events = state.events, svg = $('timeline'), width = svg.getBoundingClientRect().width || 1200, left = 120, height = 22;
     if (!events.length || !state.air) return;
     const end = state.air.ns, first = state.calls.find(c => c.ns)?.ns ?? end, chosen = $('span').value;
-    // The first call waits for the modems to be set up: only its end is shown.
+    // The first call waits for the set-up of the modems, so only its end is shown.
     const span = chosen === 'call' ? 1.5 * (end - first) : Number(chosen) * 1e9, begin = span ? Math.max(0, end - span) : 0;
     const x = ns => left + (width - left - 10) * (ns - begin) / (end - begin);
     const lanes = [];

@@ -13,7 +13,7 @@ from pathlib import Path
 
 
 def browse(address, *options):
-    """(the elements of a page when its scripts have run, what the browser said)."""
+    """Returns (the elements of a page when its scripts have run, the browser's output)."""
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as home:
         done = subprocess.run(["chromium", "--headless", "--no-sandbox", "--disable-gpu",
                                "--disable-dev-shm-usage", f"--user-data-dir={home}", "--dump-dom",

@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""cores: what the cores' block tests measure, beside what a memory port gives; and how long the
-first `ip-test` in a fresh clone takes, beside Verilator alone.
+"""cores: throughput of the cores in their block tests, compared with their memory ports; and the
+duration of the first `ip-test` in a fresh clone, compared with Verilator alone.
 
     cores.py BUILD-FOLDER OUTPUT.json [--brief]
 
-A port moves 8 bytes a clock in each direction (docs/memory.md); the fabric's clock is 100 MHz.
+A port moves 8 bytes per clock in each direction (docs/memory.md); the fabric clock is 100 MHz.
 """
 import os
 import re
@@ -35,7 +35,7 @@ int main() {
 
 
 def seconds(*words):
-    """Seconds that a command takes, without what ccache keeps."""
+    """Seconds that a command takes, without ccache."""
     begin = time.monotonic()
     done = subprocess.run(list(map(str, words)), stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                           text=True, env={**os.environ, "CCACHE_DISABLE": "1"})
@@ -72,7 +72,7 @@ def main(build, output, *brief):
             continue
         said = subprocess.run([program, f"--gtest_filter=*{case}*"], stdout=subprocess.PIPE,
                               text=True).stdout
-        found = re.search(expression, said, re.M) or sys.exit(f"cores: {core} says no {name}")
+        found = re.search(expression, said, re.M) or sys.exit(f"cores: {core} prints no {name}")
         value = round(bytes_of(float(found[1])), 3)
         print(f"{name:<34} {value} bytes per clock: {100 * value:.1f} MB/s at 100 MHz, "
               f"{100 * value / 8:.1f} % of the port")

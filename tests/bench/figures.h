@@ -26,7 +26,7 @@ public:
         app.add_option("output", output_, "JSON file for the figures")->required();
         app.add_flag("--brief", brief, "measures just enough to show that the bench works");
     }
-    CLI::App app;       // for options of a bench's own
+    CLI::App app;       // for options of a bench
     bool brief = false; // a short measurement; no figure is judged
 
     // Adds a figure, and prints it. `limit` is compared with it: a physical bound, or a budget.
@@ -43,7 +43,7 @@ public:
         std::puts("");
         return entries_.emplace_back(std::move(entry));
     }
-    // Reports an unwanted figure; the bench then ends with status 1.
+    // Reports an undesired figure; the bench then ends with status 1.
     void miss(const std::string& what) {
         if (!brief)
             missed_ += app.get_name() + ": " + what + "\n";

@@ -2,9 +2,8 @@
 //
 // firmware: the firmware's cost on the Cortex-M3, measured while it flies against the RTL.
 //
-// Cycles are those of the board: the processor's own, and for accesses the HCLK cycles at the
-// FSMC's pins (the simulator's fabric is slower than the board's; its pins keep the ratio of 6 to
-// 5).
+// Cycles are cycles of the board: of the processor, and for accesses the HCLK cycles at the FSMC
+// pins (the simulator's fabric is slower than the board's; its pins keep the ratio of 6 to 5).
 
 #include "figures.h"
 #include "ground.h"
@@ -21,8 +20,8 @@ const Ground::Call isAlive = {"uav", "isAlive", 0, {7, 0}};
 // takes.
 class MeasuredFlight : public GroundAndChip {
 public:
-    // `scaled` 1: the board's ratio of clocks; 50: the processor's time in the radio's. `key`: the
-    // link's, if any. `isTransparent`: the vehicle's modem.
+    // `scaled` 1: the board's ratio of clocks; 50: processor time scaled to radio time. `key`: key
+    // of the link, if any. `isTransparent`: mode of the vehicle's modem.
     MeasuredFlight(const std::string& elf, double scaled, const std::vector<uint8_t>& key = {},
                    bool isTransparent = false)
         : GroundAndChip(1), warp(scaled),
@@ -33,7 +32,7 @@ public:
         provide(48, 32, nullptr);
         until([this] { return ground.validated; }, 25, "the connection");
     }
-    // Runs until `done`, asked each simulated millisecond; fails after `seconds`.
+    // Runs until `done` returns true, called every simulated millisecond; fails after `seconds`.
     void until(std::function<bool()> done, double seconds, const char* what) {
         done_ = std::move(done);
         uint64_t end = soc.now() + static_cast<uint64_t>(seconds * 1e9);
@@ -126,8 +125,8 @@ void measureLatencies(MeasuredFlight& f) {
     auto interrupts = std::make_shared<Range>();
     auto switches = std::make_shared<Range>();
     auto routines = std::make_shared<Range>();
-    auto rose = std::make_shared<uint64_t>(
-        0); // in clocks of the fabric: exact within an access, and in sleep
+    auto rose =
+        std::make_shared<uint64_t>(0); // in fabric clocks: exact within an access, and in sleep
     auto begin = std::make_shared<std::array<double, Exceptions::count>>();
     f.soc.onIrq([&f, rose](bool high) {
         if (high)
@@ -205,8 +204,8 @@ void measureCalls(MeasuredFlight& f, unsigned calls, const std::string& what, do
 }
 
 void measureStream(MeasuredFlight& f, const std::string& what) {
-    // Floods the vehicle, a window of the link and more in the queue, with one-way requests of 1 KB
-    // to no object: link and IceC's dispatcher work, no servant, no reply.
+    // Floods the vehicle with one-way requests of 1 KB to a missing object, a window of the link
+    // and more in the queue: link and IceC's dispatcher work, no servant, no reply.
     f.ground.replies.clear();
     uint64_t bytes = 0;
     const std::vector<uint8_t> load(1000, 0x55);
@@ -215,7 +214,7 @@ void measureStream(MeasuredFlight& f, const std::string& what) {
             f.ground.call(0, "nobody", "listen", 0, load);
         return false;
     };
-    double end = f.seconds() + 1; // under way
+    double end = f.seconds() + 1; // calls in progress
     f.until([&] { return feed() || f.seconds() > end; }, 3, "the stream");
     double awake = f.awake(), waiting = f.waiting(), began = f.seconds();
     bytes = f.ground.deliveredBytes;
@@ -231,7 +230,8 @@ void measureStream(MeasuredFlight& f, const std::string& what) {
     say(what + ": cycles per byte", (f.awake() - awake) / (goodput * took), "cycles");
 }
 
-// Measures a ping from the message's last byte at IceC's endpoint to the first frame of its reply.
+// Measures a ping from the arrival of the message's last byte at IceC's endpoint to the first frame
+// of its reply.
 void measurePings(MeasuredFlight& f, const std::string& program) {
     const ElfImage& image = *f.machine.stm32().image();
     const uint32_t message = image.symbol("XBeeATEndpoint_onMessage"),

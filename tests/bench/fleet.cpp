@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// fleet: calls a second on one channel, with vehicles that are called one after the other each,
-// all at once: by one ground, by grounds of their own, by two grounds that share them. Links,
-// modems in API mode and air, as in air.cpp; a ground shares its modem as the engine does.
+// fleet: calls per second on one channel, with vehicles called one after the other or all at once:
+// by one ground station, by separate ground stations, or by two that share them. Links, modems in
+// API mode and air as in air.cpp; a ground station shares its modem as the engine does.
 
 #include "figures.h"
 #include "modem_pair.h"
@@ -14,8 +14,8 @@ Figures figures("Calls a second of several vehicles on one channel.");
 
 constexpr U32 callBytes = 3; // setParameterA(short), its head compressed
 
-// A ground calls on each of its links as soon as the call before is answered; a vehicle answers
-// with the call.
+// A ground station calls on each of its links as soon as the previous call is answered; a vehicle
+// replies with the call.
 class Station : public ModemEnd {
 public:
     Station(RfChannel& air, int address, bool isGround, bool isKeyed,
@@ -23,7 +23,7 @@ public:
         : ModemEnd(air, options(address, isGround), seed, targets), isGround_(isGround),
           calls_(targets.size()) {
         for (size_t i = 0; i < peers(); ++i) {
-            const int vehicle = isGround ? targets[i] : address; // each has a key of its own
+            const int vehicle = isGround ? targets[i] : address; // each has a separate key
             const std::vector<U8> key(LINK_KEY_BYTES, static_cast<U8>(vehicle));
             if (isKeyed)
                 Link_setKey(link(i), 0, key.data(),
@@ -37,7 +37,7 @@ public:
             call(i);
         return ModemEnd::advance(now);
     }
-    std::vector<double> times; // of calls, in ms
+    std::vector<double> times; // of calls, ms
     bool calls = false;
 
 private:
@@ -75,10 +75,10 @@ private:
         return 0;
     }
     const bool isGround_;
-    std::vector<Call> calls_; // of each peer
+    std::vector<Call> calls_; // calls by peer
 };
 
-// So many grounds call so many vehicles, each ground its own ones.
+// Measures `grounds` ground stations that each call separate vehicles, `vehicles` in all.
 void measure(const std::string& what, int grounds, int vehicles, bool isKeyed,
              double foundOutside) {
     std::vector<double> times;
@@ -137,7 +137,7 @@ void measure(const std::string& what, int grounds, int vehicles, bool isKeyed,
 
 int main(int argc, char** argv) {
     return figures.run(argc, argv, [&] {
-        // Beside what others found in the clear, with models of the same modems.
+        // Compared with published results without encryption, for models of the same modems.
         const std::vector<std::tuple<int, double, double>> fleets = {
             {1, 34.6, 34.6}, {2, 60.4, 69}, {5, 78, 125}, {10, 80, 130}, {20, 80, 128}};
         for (bool isKeyed : {false, true})

@@ -36,8 +36,8 @@ struct Chip {
     SocModel soc;
 };
 
-// Blocks by the driver, everything included: setting the bank up, reading ahead, the check at the
-// end.
+// Measures block transfers by the driver, including setting up the bank, reading ahead, and the
+// check at the end.
 double streams(unsigned hclk, uint64_t seed, uint32_t halfwords, bool& right) {
     Chip chip(hclk, seed);
     Random random(seed);
@@ -45,8 +45,8 @@ double streams(unsigned hclk, uint64_t seed, uint32_t halfwords, bool& right) {
     std::vector<U16> in(halfwords);
     U32 repeated = 0;
     double least = 1;
-    // An access takes whole HCLK: the limit of the pins is what the driver's timing
-    // leaves at this HCLK (docs/fsmc.md).
+    // An access takes a whole number of HCLK: the limit of the pins follows from the driver's
+    // timing at this HCLK (docs/fsmc.md).
     auto show = [&](const char* what, double clocks, unsigned cycles, double wanted) {
         double rate = halfwords / clocks * fabricHz, limit = hclk * 1e6 / cycles;
         figures.add(fmt::format("FSMC, HCLK {} MHz, {}", hclk, what), rate / 1e6,
@@ -70,8 +70,8 @@ double streams(unsigned hclk, uint64_t seed, uint32_t halfwords, bool& right) {
     return least;
 }
 
-// Copies a picture of 320 x 240 bytes into DDR3 and back, as the firmware has it: with NWAIT, and
-// as a stream.
+// Copies a picture of 320 x 240 bytes into DDR3 and back, as the firmware does: with NWAIT, and as
+// a stream.
 void frame(unsigned hclk, uint64_t seed, bool& right, uint32_t halfwords = 320 * 240 / 2) {
     Chip chip(hclk, seed);
     Random random(seed);
@@ -110,9 +110,9 @@ void single(unsigned hclk, uint64_t seed, int count) {
         });
         figures.add(fmt::format("FSMC, HCLK {} MHz, {}", hclk, what), sum / count, "clocks", least);
     };
-    // The least time: ADDSET 2, DATAST 4 and 1 HCLK of hold or turnaround. A read that waits ends 4
-    // HCLK after NWAIT and passes two flip-flops (1 to 2 clocks, 1.5 on average), then a clock each
-    // for noting it, for the request and for the answer.
+    // Least time: ADDSET 2, DATAST 4 and 1 HCLK of hold or turnaround. A read that waits ends 4
+    // HCLK after NWAIT, passes two flip-flops (1 to 2 clocks, 1.5 on average), and takes one clock
+    // each to register, to request and to answer.
     double access = 7 * hclks, waits = (2 + 4 + 1) * hclks + 1.5;
     show("register word, 32 bits, write", 2 * access,
          [&] { master.write32(control + 4 * SYSTEM_SCRATCH, 1); });
@@ -138,7 +138,8 @@ int main(int argc, char** argv) {
         for (unsigned hclk : {100, 120})
             single(hclk, seed, figures.brief ? 5 : 500);
         if (!right)
-            throw std::runtime_error("what was read is not what was written, or was repeated");
+            throw std::runtime_error(
+                "the data read differ from the data written, or a part was repeated");
         if (least < 1)
             figures.miss("a stream is slower than wanted");
     });

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // load: many programs at the ground's engine, one after the other on its three channels, and many
-// clients at once at the gateway: no call is lost, doubled or answered wrongly, and memory stays as
-// it is.
+// clients at once at the gateway: no call is lost, duplicated or answered wrongly, and memory use
+// stays constant.
 
 #include "../sw/ground/ice/world.h"
 #include "../sw/ground/wire.h"
@@ -22,7 +22,7 @@ double residentKiB(const std::string& process) {
     return static_cast<double>(resident) * 4;
 }
 
-// Programs at the engine in this process, eight at a time; each call has a number of its own.
+// Programs at the engine in this process, eight at a time; each call has a unique number.
 class Programs {
 public:
     Programs(unsigned programs, unsigned calls)
@@ -62,7 +62,7 @@ public:
     }
 
 private:
-    // Runs one program after the other, until all have been served.
+    // Runs one program after another, until all have been served.
     void work() {
         for (unsigned program; (program = next_++) < programs_;) {
             int fd;
@@ -101,12 +101,12 @@ private:
     Wire wire_;
     std::shared_ptr<XBeeAT::Peer> engine_ = wire_.engine();
     const unsigned programs_, calls_;
-    std::vector<float> latencies_; // as long from the start: memory is measured
+    std::vector<float> latencies_; // allocated at the start, because memory is measured
     std::atomic<unsigned> next_{0}, answered_{0}, ended_{0};
 };
 
-// Stock Ice clients that call all at once through the gateway, a process of its own, over modems
-// and air.
+// Stock Ice clients that all call at once through the gateway, a separate process, over modems and
+// air.
 class Clients {
 public:
     Clients(const std::string& gateway, unsigned clients)
@@ -144,7 +144,7 @@ public:
     }
 
 private:
-    // Calls with a connection of its own; adds how long each right answer took.
+    // Calls on a separate connection; adds the time of each correct reply.
     void call(unsigned client, unsigned count, std::vector<double>& took) {
         auto echo = echo_->ice_connectionId(std::to_string(client));
         for (unsigned i = 0; i < count; ++i) {

@@ -13,7 +13,7 @@ namespace {
 
 Figures figures("Speed, latency and fairness of the memory controller.");
 unsigned outstanding = 64; // words that a port may request ahead
-double leastFairness = 1;  // of all streams, by Jain's index: 1 is equal
+double leastFairness = 1;  // lowest fairness of the streams, Jain's index: 1 is equal
 
 struct Mix {
     const char* name;
@@ -24,14 +24,14 @@ constexpr Mix mixes[] = {{"reads", 0, 0},
                          {"even ports read, odd ports write", 0, 1},
                          {"each port reads and writes", 0.5, 0.5}};
 
-// Clocks that the memory and its port need for the requests, from the first command to the last
-// word: given to the model by a driver that loses no clock and never lacks words or room.
-// Request: anything with address, words, read.
+// Returns the clocks that the memory and its port need for the requests, from the first command to
+// the last word, with a driver that loses no clock and always has words and room. Request: any type
+// with address, words, read.
 template <class Request> uint64_t directMcb(size_t bytes, const std::vector<Request>& requests) {
     McbModel memory(bytes);
     while (!memory.pins.calibDone)
         memory.cycle();
-    size_t pushing = 0, issuing = 0; // requests whose words go next, whose command goes next
+    size_t pushing = 0, issuing = 0; // request whose words are next; request whose command is next
     unsigned pushed = 0, promised = 0;
     uint64_t words = 0, popped = 0, clocks = 0;
     for (const Request& r : requests)
@@ -131,7 +131,8 @@ double streams(uint64_t cycles, uint64_t seed) {
     return worst;
 }
 
-// Measures from the request to the first word popped, one port alone and with all others streaming.
+// Measures from the request to the first word popped, with one port alone and with all others
+// streaming.
 template <class Module, unsigned ports> void latency(uint64_t cycles, uint64_t seed) {
     for (unsigned size = 0; size <= 5; ++size) {
         double mean[2];

@@ -108,8 +108,8 @@ int main(int argc, char** argv) {
                 if (figures.brief && (c.guardMs > 20 || c.bd != 7))
                     continue;
                 double ms = side.measure(c.guardMs, c.bd);
-                // The limit has the two guard times of the modem's manual; commands and search come
-                // on top.
+                // The limit consists of the two guard times from the modem's manual; commands and
+                // search are added to it.
                 double floor = 2.0 * c.guardMs;
                 std::string name = std::string(side.name) + ": " + c.name;
                 if (ms == 0)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_pair: link layers over modem models and the air between them, from event to event. All ends
-// are as the ground's: link layer, pacer, serial line of 111,111 baud.
+// modem_pair: link layers over modem models and the air between them, event by event. All ends are
+// like the ground's: link layer, pacer, serial line of 111,111 baud.
 
 #pragma once
 
@@ -19,7 +19,7 @@ extern "C" {
 #include "link.h"
 }
 
-// A serial line to a modem that takes a wire's time for each byte, and heeds CTS.
+// A serial line to a modem that takes the time of a wire for each byte, and obeys CTS.
 class TimedLine : public SerialLine {
 public:
     void send(const uint8_t* bytes, size_t count, uint64_t now) {
@@ -28,12 +28,12 @@ public:
         out_.insert(out_.end(), bytes, bytes + count);
     }
     size_t waiting() const { return out_.size(); }
-    void forget() { // a host that starts anew
+    void forget() { // a host that restarts
         out_.clear();
         received.clear();
     }
     std::vector<uint8_t> received;
-    bool hangs = false; // its host: nothing moves
+    bool hangs = false; // the host hangs: nothing is transferred
 
     void advance(uint64_t now) override {
         if (hangs)
@@ -74,8 +74,8 @@ private:
     uint8_t byte_ = 0;
 };
 
-// The settings of modem 0 or 1, which talks to the other; RN is `leastExponent`, unless the modem
-// is in API mode, where the end changes it.
+// Settings of modem 0 or 1, which talks to the other; RN is `leastExponent`, except in API mode, in
+// which the end changes it.
 inline XBee::Options modemOptions(unsigned address, bool encrypts = false,
                                   unsigned leastExponent = 2, bool isApi = false) {
     XBee::Options o;
@@ -84,12 +84,11 @@ inline XBee::Options modemOptions(unsigned address, bool encrypts = false,
     return o;
 }
 
-// One end: a modem and the links that it carries, one for each that it talks to; as the engine
-// does, the one that has had least of the air comes first. A derived class handles the messages; it
-// calls Link_setKey and Link_start.
+// One end: a modem and its links, one per peer; as in the engine, the one that has used the least
+// air time is first. A derived class handles the messages; it calls Link_setKey and Link_start.
 class ModemEnd {
 public:
-    // `targets`: addresses of those it talks to; none: its modem's DL.
+    // `targets`: addresses of the peers; empty: its modem's DL.
     ModemEnd(RfChannel& air, const XBee::Options& options, uint64_t seed,
              std::vector<int> targets = {})
         : modem(line, air, options), encrypts_(options.set.at("EE") != 0),
@@ -105,7 +104,7 @@ public:
     virtual ~ModemEnd() = default;
     ModemEnd(const ModemEnd&) = delete;
     ModemEnd& operator=(const ModemEnd&) = delete;
-    // A message of the peer with this number in `targets`. Returns 0: it is taken.
+    // Handles a message from peer number `peer` in `targets`. Returns 0 if it is taken.
     virtual int onMessage(size_t peer, int channel, const U8* message, U32 size) = 0;
     virtual void onOutcome(size_t, U32, Link_Outcome) {}
 
@@ -160,7 +159,7 @@ protected:
     uint64_t now_ = 0;
 
 private:
-    struct Target : LinkEnd { // a link with one of the others
+    struct Target : LinkEnd { // a link to one of the peers
         Target(ModemEnd& e, size_t n, int t) : end(e), number(n), target(t) {}
         using LinkEnd::begin;
         bool transmit(const U8* frame, U32 size) override {
@@ -210,14 +209,14 @@ private:
     }
     const bool encrypts_;
     const unsigned mostWaiting_;
-    std::unique_ptr<XBeeAT::ApiModem> api_; // none: transparent mode
+    std::unique_ptr<XBeeAT::ApiModem> api_; // null in transparent mode
     std::vector<std::unique_ptr<Target>> peers_;
     std::vector<Target*> order_;
     Random random_;
     uint64_t nextPoll_ = 0, airUs_ = 0;
 };
 
-// Lets time pass until `done`, or else until `end`. Returns whether it is done.
+// Advances time until `done` returns true, or until `end`. Returns whether it is done.
 template <class Ends, class Done>
 bool passUntil(uint64_t& now, uint64_t end, RfChannel& air, Ends& ends, Done done) {
     while (!done()) {
@@ -233,7 +232,7 @@ bool passUntil(uint64_t& now, uint64_t end, RfChannel& air, Ends& ends, Done don
 }
 
 // Two ends of a class derived from ModemEnd, and the air; the first has called, and both are up
-// with the channels 0 to `channels` - 1 open.
+// with channels 0 to `channels` - 1 open.
 template <class End> class ModemPair {
 public:
     template <class... Arguments>
@@ -270,8 +269,8 @@ public:
     End &a = ends_[0], &b = ends_[1];
 };
 
-// Two modems with their serial lines of 111,111 baud and the air, nothing else: what a link could
-// reach at most.
+// Two modems with serial lines of 111,111 baud and the air, nothing else: the upper bound for a
+// link.
 struct BareModems {
     struct End {
         End(RfChannel& channel, const XBee::Options& options) : modem(line, channel, options) {}
@@ -297,9 +296,9 @@ struct BareModems {
     uint64_t now = 1'000'000;
 };
 
-// The floor of a round trip on a half-duplex air, measured; docs/link.md has it as a formula.
-// Returns the median in ms of `out` bytes there and, from the moment of the last one on, `back`
-// bytes here; each at most a packet. RN is 2.
+// Measures the lower bound of a round trip on half-duplex air (formula in docs/link.md). Returns
+// the median in ms of `out` bytes there and, after the last one has arrived, `back` bytes here;
+// each at most one packet. RN is 2.
 inline double floorMs(size_t out, size_t back, bool isEncrypted = false) {
     BareModems w(RfWeather(), 1, isEncrypted, 2);
     const std::vector<uint8_t> bytes(std::max(out, back), 1);
@@ -326,9 +325,9 @@ inline double floorMs(size_t out, size_t back, bool isEncrypted = false) {
     return times[times.size() / 2];
 }
 
-// The most bytes a second that two modems bring over the air in this weather, one way or both ways
-// together: full packets are always at hand, and a lost one costs its own time only, as with a
-// sender that learns at once what was lost.
+// Returns the most bytes per second that two modems can transfer in this weather, in one direction
+// or both: full packets are always ready, and a lost one only costs its air time, as with a sender
+// that learns of losses at once.
 inline double mostBytesPerSecond(const RfWeather& weather, bool both, bool isEncrypted,
                                  unsigned leastExponent, uint64_t seconds, uint64_t seed) {
     BareModems w(weather, seed, isEncrypted, leastExponent);

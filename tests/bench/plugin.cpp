@@ -14,8 +14,8 @@ extern "C" {
 
 namespace {
 
-const char* const modes[] = {"in the clear", "with a key"}; // by hasKey
-// The limit one way: full packets through the modem and RN 2 (docs/simulation.md).
+const char* const modes[] = {"in the clear", "with a key"}; // index: hasKey
+// Limit in one direction: full packets through the modem and RN 2 (docs/simulation.md).
 constexpr double mostBytesPerSecond = 100 / (4.688 + 1.5 * 0.320 + 5.312) * 1000;
 constexpr int size = 7900, messages = 6; // bytes of a sequence; a message has up to 8192
 
@@ -64,15 +64,15 @@ public:
         for (int i = 0; i < (figures_.brief ? 4 : calls + 2); ++i) {
             const uint64_t begin = world_.ns();
             call();
-            if (i > 1) // the first ones bring the head
+            if (i > 1) // the first calls transfer the head
                 ms.push_back(static_cast<double>(world_.ns() - begin) / 1e6);
             world_.sleep(0.06 + i * 0.0003);
         }
         std::sort(ms.begin(), ms.end());
         return ms;
     }
-    // `out`, `back`: bytes in the two frames that go (docs/link.md, heads of Ice messages); the
-    // answer's has the acknowledgement, too.
+    // `out`, `back`: bytes of the two frames (docs/link.md, heads of Ice messages); the reply also
+    // contains the acknowledgement.
     void roundTrip(const char* what, size_t out, size_t back, const std::function<void()>& call) {
         const size_t overhead = hasKey_ ? LINK_SECURE_OVERHEAD : LINK_OVERHEAD;
         const auto ms = times(31, call);
@@ -82,7 +82,7 @@ public:
         figures_.add(std::string("Ice, round trip of ") + what + " " + modes[hasKey_], median, "ms",
                      floor);
     }
-    // A small call on a connection of its own while the UAV's pictures come without end.
+    // A small call on a separate connection while the UAV's pictures arrive continuously.
     void headOfLine() {
         const auto fast = world_.echo(ic_, "fast");
         const auto note = [&] { fast->note(1); };
@@ -116,7 +116,7 @@ private:
             world_.sleep(0.001);
         return since(begin, heard_.lastNs);
     }
-    // Two calls are under way, so that the line does not rest between them.
+    // Two calls are in progress, so that the line is never idle between them.
     double fetched(uint64_t begin) {
         std::deque<std::future<RadioTest::Bytes>> calls;
         for (int i = 0; i < messages; ++i) {

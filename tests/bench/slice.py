@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""slice: slice2c beside slice2cpp on the five largest files of Debian's zeroc-ice-slice: processor
+"""slice: slice2c and slice2cpp on the five largest files of Debian's zeroc-ice-slice: processor
 time, the files alternating; the best of the rounds counts, since everything else on the machine
 only makes them slower.
 

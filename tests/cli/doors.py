@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""doors: ./icesoc and make take the same options, refuse what is wrong in words that help, and give
-no value to a shell; lists.py tests what they list."""
+"""doors: ./icesoc and make take the same options, report errors with advice, and pass no
+value to a shell; lists.py tests their lists."""
 import concurrent.futures, json, os, shutil, subprocess, sys, tempfile, time, unittest
 from pathlib import Path
 
@@ -20,7 +20,7 @@ def clean(**more):
 
 
 def ask(*words, **environment):
-    """(exit status, what is said) of a program in the tree."""
+    """Returns (exit status, output) of a program in the tree."""
     done = subprocess.run(words, cwd=TREE, env=clean(**environment), stdin=subprocess.DEVNULL,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=100)
     return done.returncode, done.stdout
@@ -31,7 +31,7 @@ class Work(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.work = Path(folder.name)
-        # A tree with nothing in it: whatever a command would do there ends soon.
+        # An empty tree: any command ends soon in it.
         (self.work / "tree/cmake").mkdir(parents=True)
         (self.work / "tree/ip").mkdir()
         self.script("tree/cmake/setup.sh", "")
@@ -188,9 +188,9 @@ class Mistakes(Work):
                            (json.dumps({**whole, "seed": True}).encode(), "'seed' is True"),
                            (json.dumps({**whole, "cores": [1]}).encode(), "'cores' is [1]")):
             (self.work / "flight.json").write_bytes(text)
-            status, told = ask("./icesoc", "run", "--again", str(self.work / "flight.json"))
+            status, text = ask("./icesoc", "run", "--again", str(self.work / "flight.json"))
             self.assertEqual(status, 2)
-            self.assertIn(said, told)
+            self.assertIn(said, text)
 
     def test_each_is_answered_in_words(self):
         for words, said in MISTAKES.items():
@@ -245,7 +245,7 @@ class Mistakes(Work):
         run.send_signal(2)
         self.assertEqual(run.communicate()[1], "icesoc: stopped\n")
         self.assertEqual(run.returncode, 130)
-        # One that had just been started hears of its parent's end from the kernel, a little later.
+        # A child that had just been started gets the signal about its parent's end a little later.
         while Path("/proc", child.read_text().strip()).exists():
             time.sleep(0.01)
 
@@ -293,7 +293,7 @@ class Trees(Work):
         self.assertIn(f"build was made for the tree in {old}: creating it again", text)
         self.assertEqual(status, 0)
         self.assertEqual((config / "icesoc/update.key").read_bytes(), b"private")
-        # A value that CMake refuses is not kept: it would fail whatever is made next.
+        # A value that CMake refuses is not stored; otherwise all later commands would fail.
         with open(new / "CMakeLists.txt", "a") as file:
             file.write('if(CORE_FOLDERS)\n'
                        '  message(FATAL_ERROR "CORE_FOLDERS is ${CORE_FOLDERS}")\nendif()\n')
@@ -316,7 +316,7 @@ class Trees(Work):
 
         def remove(text):
             (tree / "build/main").mkdir(parents=True, exist_ok=True)
-            (tree / "build/main/update.key").write_text(text)  # where a tree of before kept it
+            (tree / "build/main/update.key").write_text(text)  # where earlier trees stored it
             ask("make", "-s", "clean", ICESOC_TREE=str(tree), XDG_CONFIG_HOME=str(config))
             self.assertFalse((tree / "build").exists())
             return sorted(key.read_text() for key in (config / "icesoc").glob("update*.key"))

@@ -6,7 +6,7 @@ process.
     fuzz_parsers.py PARSER BUILD INPUTS [FILE...]
 
 A file is read, or refused: by a message in our words, with a status that is not 0, without a file
-written. Anything else is a finding, and so are 5 s of a processor. Inputs that reach a new line of
+written. Anything else is a finding, and so are 5 s of CPU time. Inputs that reach a new line of
 the parser are mutated further. FUZZ=600: for 600 s in place of INPUTS, from those that earlier runs
 kept (~/.cache/icesoc/fuzz). SEED (1) chooses the mutations. FILE: these alone, unchanged.
 """
@@ -47,7 +47,7 @@ RDL = """addrmap lamp { name = "Lamp // no comment"; default regwidth = 8; defau
     state_r STATE @ 4; reg { field { woclr; } DONE[0:0] = 0; } EVENTS @ 6; };
 """
 KEYS = "# ours\n0x0001 {0}\n0xBEEF {0} {0}\n{0}\n".format("00112233445566778899AABBCCDDEEFF")
-# These words of Python and of libraries stand in no refusal of ours.
+# Words of Python and of libraries that must not occur in our error messages.
 FOREIGN = re.compile(
     r"Traceback|[a-z]Error\b|NoneType|'\w+' object|unhashable|subscriptable|not supported between"
     r"|indices must|\b\w+\(\) |unsupported operand|literal for int|must be str|exception\.\w+\.\d+"
@@ -57,10 +57,10 @@ FOREIGN = re.compile(
 @dataclasses.dataclass
 class Parser:
     module: str
-    words: list  # FILE stands for the input, OUT for the folder of the output
+    words: list  # FILE is replaced by the input, OUT by the folder of the output
     seeds: object  # patterns of files, or a function
-    function: str = "main"  # gets the file, if there are no words
-    program: str = ""  # in the build folder: runs in place of the module
+    function: str = "main"  # gets the file if there are no words
+    program: str = ""  # in the build folder: runs instead of the module
 
 
 def chip_rdl():
@@ -140,7 +140,7 @@ class Runner:
         return self.line
 
     def call(self):
-        """(status, message); a status of 128 and more: it is a finding by itself."""
+        """Returns (status, message); a status of at least 128 is a finding."""
         if self.parser.program:
             run = subprocess.run([BUILD / self.parser.program, *self.words],
                                  capture_output=True, timeout=60)
@@ -159,9 +159,9 @@ class Runner:
         except SystemExit as end:
             status = end.code
         except TooLong:
-            return 128, "5 s of a processor"
+            return 128, "5 s of CPU time"
         except BaseException as error:
-            if type(error).__name__ != "Stop":  # of icesoc.util.errors
+            if type(error).__name__ != "Stop":  # icesoc.util.errors.Stop
                 return 128, traceback.format_exc()
             status = error.text
         finally:
@@ -195,7 +195,7 @@ ODD = [b"9" * 25, b"9" * 5000, b"\xff", b"\0", b"\n", b"\xe0\xb9\x95", b"\xc2\xb
 
 
 def mutated(data, corpus, words, draw):
-    """Another input, some changes of words, bytes or halves away."""
+    """Returns another input, mutated by a few changes of words, bytes or halves."""
     tokens = TOKEN.findall(data) or [b""]
     for _ in range(draw.choice((1, 1, 1, 2, 3, 6))):
         at = draw.randrange(len(tokens) + 1)
@@ -230,7 +230,7 @@ def kept_in(name):
 
 
 def fuzz(name, runs, seconds):
-    """Mutates until the number or the time is over; (inputs run, findings by what is said)."""
+    """Mutates until the number or time is reached; returns (inputs run, findings by message)."""
     runner, seed = Runner(PARSERS[name]), PARSERS[name].seeds
     corpus = [text.encode() for text in seed()] if callable(seed) else [
         path.read_bytes() for pattern in seed for path in sorted(TREE.glob(pattern))]

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""lists: the commands there are, their help and manual, and what files and terminal get of them."""
+"""lists: the list of commands, their help and manual, and the text that files and terminals get."""
 import contextlib, io, re, shlex, shutil, subprocess, sys, tempfile, unittest
 from pathlib import Path
 

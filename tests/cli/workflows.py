@@ -21,13 +21,13 @@ WORK, BUILD = map(Path, sys.argv[2:4])
 
 
 def container():
-    """The instructions of the Containerfile: (name, the rest)."""
+    """Returns the instructions of the Containerfile: (name, arguments)."""
     text = (TREE / "Containerfile").read_text()
     return [line.split(" ", 1) for line in text.splitlines() if not line.startswith("#")]
 
 
 def workflows(tree):
-    """Of each workflow its file, the image, its commands, and paths of what it keeps."""
+    """Returns, for each workflow, its file, the image, its commands, and paths of its artifacts."""
     hub, lab = (tree / name for name in (".github/workflows/icesoc.yml", ".gitlab-ci.yml"))
     job = yaml.safe_load(hub.read_text())["jobs"]["icesoc"]
     yield (hub, job["container"], [step["run"] for step in job["steps"] if "run" in step],
@@ -38,7 +38,7 @@ def workflows(tree):
 
 
 def linked(tree):
-    """This tree by links, with folders ip and build of its own."""
+    """A tree of links to this one, with separate folders ip and build."""
     for path in TREE.iterdir():
         if path.name not in ("build", "ip", ".git"):
             (tree / path.name).symlink_to(path)
@@ -123,14 +123,14 @@ class Cases(Script):
         self.has("^vision ", "^sample_verilog$", file=icesoc / "ip/cores.list")
         self.lacks("@[A-Z]+@|make ip-test", file=mine / "Makefile")
         self.lacks(r"\.\./\.\./docs|ip-test", file=mine / "sample_verilog/README.md")
-        # Another core joins; what is there stays.
+        # Another core is added; existing files are kept.
         write(mine / ".gitlab-ci.yml", "changed\n")
         self.ask(*new, "second")
         self.has("^sample_verilog\nsecond$", file=mine / "cores.list")
         self.has("^changed$", file=mine / ".gitlab-ci.yml")
         self.ask(*new, "second", status=1)
         self.has("second is there already")
-        # So does somebody else's, whose files are found wherever the repository is.
+        # The same for a third-party repository, with files that are found wherever it is.
         (mine / "others").mkdir()
         shutil.copy(TREE / "tests/ip/new_foreign/wb_port.v", mine / "others")
         self.ask(TREE / "icesoc", "core", "foreign", "third", "--top", "wb_port", "--bus",
@@ -139,7 +139,7 @@ class Cases(Script):
         self.has("^third$", file=mine / "cores.list")
         self.has('"@FOLDER@/../others/wb_port.v"', file=mine / "third/core.toml")
         self.lacks(str(mine), file=mine / "third/core.toml")
-        # The clone is of this tree's origin, at its commit; one without that commit is not kept.
+        # The clone is of this tree's origin, at its commit; a clone without that commit is removed.
         if (TREE / ".git").exists():
             commit = git(f"-C {shlex.quote(str(TREE))} rev-parse HEAD")
             text = (mine / "Makefile").read_text()

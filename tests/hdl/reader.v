@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// reader: a flip-flop that sees a pin, or a register of another clock, past hdl/cdc. For Yosys, the
-// map to it (CMakeLists.txt).
+// reader: a flip-flop that depends on a pin, or on a register of another clock, without hdl/cdc.
+// For Yosys, which maps such flip-flops to it (CMakeLists.txt).
 //
-// Each bit that has moved since the clock's falling edge is taken old or new, by itself
-// (cdc_random.vh). Benches move synchronous inputs before that edge, pins after it.
+// Each bit that has changed since the clock's falling edge is taken old or new, independently
+// (cdc_random.vh). Benches change synchronous inputs before that edge, pins after it.
 
 `default_nettype none
 

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""mutants_test: run.py and drawn.py on small designs of their own.
+"""mutants_test: run.py and drawn.py on small designs.
 
 Usage: mutants_test.py run|drawn work-folder verilators-runtime.a
 """
@@ -69,7 +69,7 @@ class Cases(Script):
         self.work = fresh(sys.argv[2])
 
     def bugs(self, **bugs):
-        """Seeds bugs: the line that goes, the line that comes."""
+        """Seeds bugs: removed line, added line."""
         write("tests/mutants/tiny.bugs.json", json.dumps({
             name: {"does": "A bug.", "test": "test_tiny", "file": "tiny.c", "old": old, "new": new}
             for name, (old, new) in bugs.items()}))
@@ -115,7 +115,7 @@ class Cases(Script):
             self.has("wrong.bugs.json: not bugs as")
         malformed.unlink()
 
-        # A test that fails by itself catches nothing.
+        # A test that fails without a bug catches nothing.
         edit("tiny.c", "!= 6", "!= 7")
         self.ask(*RUN, "--jobs", "1", status=1)
         self.has("test_tiny fails without any mutant")
@@ -138,7 +138,7 @@ class Cases(Script):
         self.draw(status=2)
         self.has("^SURVIVED .*formal.pair .*hdl/small/pair.v:[56] ", "^pair .* [1-9] the same$",
                  "below 95 %: pair$")
-        self.lacks("^SURVIVED .*pair.v:4 ")  # it changes nothing, or the proof sees it
+        self.lacks("^SURVIVED .*pair.v:4 ")  # it changes nothing, or the proof detects it
         missed = json.loads(Path("build/mutants/drawn.json").read_text())["survived"]
         self.the_model_carries(missed, pair)
         edit(pair, "assert (same_o == a_i);",
@@ -175,7 +175,7 @@ class Cases(Script):
             self.ask("./test_pair", env={**os.environ, "MUTANT": str(mutant)}, status=3)
 
     def a_test_that_fails_as_it_is_catches_none(self):
-        """The others' results are still reported."""
+        """The results of the other blocks are still reported."""
         write("copy/build/main/build.ninja", PROGRAMS)
         write("by_tests.py", f"""import pathlib, sys
 from concurrent.futures import ThreadPoolExecutor

@@ -122,20 +122,20 @@ class Timing(unittest.TestCase):
                                  luts={"chip": 5800, "large": 2000, "small": 200})
         chip, large, small = run("chip", orders=4), run("large"), run("small")
 
-        def says(text, load=0):
+        def shows(text, load=0):
             with unittest.mock.patch("os.getloadavg", lambda: (load * os.cpu_count(), 0, 0)):
                 self.assertEqual(runner.time_left([chip, large, small], options, 30), text)
-        says("0 of 3 designs, about 1:20 left: ")  # 146, 11 and 2 s by two
-        says("0 of 3 designs, about 3:58 left: ", load=3)
+        shows("0 of 3 designs, about 1:20 left: ")  # 146, 11 and 2 s by two
+        shows("0 of 3 designs, about 3:58 left: ", load=3)
         chip.begun = 10
-        says("0 of 3 designs, about 2:06 left: chip")
+        shows("0 of 3 designs, about 2:06 left: chip")
         large.begun, large.spent = 1, 22  # twice as long
-        says("1 of 3 designs, about 4:32 left: chip")
+        shows("1 of 3 designs, about 4:32 left: chip")
         for suffix in ".part", ".1":  # two orders of five
             (folder / f"chip{suffix}").touch()
-        says("1 of 3 designs, about 0:30 left: chip")
+        shows("1 of 3 designs, about 0:30 left: chip")
         chip.begun, chip.spent, small.begun, small.spent = 1, 290, 1, 0  # it was kept
-        says("3 of 3 designs, about 0:00 left: ")
+        shows("3 of 3 designs, about 0:00 left: ")
 
 
 class Reports(unittest.TestCase):

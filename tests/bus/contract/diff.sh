@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# diff: source-folder slice2c work-folder   Which changes of registers are told as breaking, which
-# as compatible.
+# diff: source-folder slice2c work-folder   Which changes of registers are reported as breaking,
+# which as compatible.
 set -eu
 source=$1 slice2c=$2 work=$3
 rm -rf "$work"
@@ -26,11 +26,11 @@ run() { # exit status, trees
     [ "$status" = "$wanted" ] && ! grep Traceback "$work/out" || { cat "$work/out" &&
         echo "exit status $status" && exit 1; }
 }
-says() { printf '%s\n' "$@" | cmp -s - "$work/out" || { cat "$work/out" && echo "is not: $*" &&
+prints() { printf '%s\n' "$@" | cmp -s - "$work/out" || { cat "$work/out" && echo "is not: $*" &&
     exit 1; }; }
 
 run 0 "$work/old" "$work/old"
-says 'no breaking change'
+prints 'no breaking change'
 
 # Everything that breaks.
 sed -e 's/0x4141/0x4142/' -e 's/1024/512/' -e 's/"lsb": 1, "width": 3/"lsb": 2, "width": 2/' \
@@ -40,7 +40,7 @@ sed -e 's/0x4141/0x4142/' -e 's/1024/512/' -e 's/"lsb": 1, "width": 3/"lsb": 2, 
     -e 's/"LOST", "bit": 1/"LOST", "bit": 2/' "$work/old/ip/a/a.regs.json" \
     >"$work/new/ip/a/a.regs.json"
 run 1 "$work/old" "$work/new"
-says 'breaking   a: type 0x4141 is 0x4142' \
+prints 'breaking   a: type 0x4141 is 0x4142' \
     'breaking   a: memory_bytes 1024 is 512' \
     'breaking   a: CONTROL.START (word 3, from bit 0) is gone' \
     'breaking   a: CONTROL.MODE moved from word 3, from bit 1 to word 3, from bit 2' \
@@ -53,7 +53,7 @@ says 'breaking   a: type 0x4141 is 0x4142' \
     'breaking   gone: the block is gone' \
     '10 breaking changes'
 
-# Everything that does not.
+# All changes that are compatible.
 mkdir -p "$work/new/ip/b"
 cp "$work/old/ip/b/b.ice" "$work/new/ip/b"
 sed -e 's/"old"/"new"/' -e 's/1024/2048/' -e 's/"width": 16/"width": 17/' \
@@ -61,13 +61,13 @@ sed -e 's/"old"/"new"/' -e 's/1024/2048/' -e 's/"width": 16/"width": 17/' \
     -e 's/^  {"word": 4/  {"word": 6, "name": "MORE", "access": "ro", "doc": ""},\n&/' \
     "$work/old/ip/a/a.regs.json" >"$work/new/ip/a/a.regs.json"
 run 0 "$work/old" "$work/new"
-says 'compatible a: memory_bytes 1024 is 2048' \
+prints 'compatible a: memory_bytes 1024 is 2048' \
     'compatible a: STATUS is rw, and was ro' \
     'compatible a: LIMIT has 17 bits, and had 16' \
     'compatible a: MORE (word 6) is new' \
     'no breaking change'
 
-# An interface in Slice is a contract, too.
+# An interface in Slice is also a contract.
 sed -i 's/int value/short value/' "$work/new/ip/b/b.ice"
 run 1 "$work/old" "$work/new"
 grep -q 'breaking   gone: RUN_IN0.VALUE has 16 bits, and had 32' "$work/out" ||
@@ -83,7 +83,7 @@ git -C "$work" add old && git -C "$work" mv old/ip ip && rm -rf "$work/old"
 git -C "$work" -c user.name=t -c user.email=t@t commit -qm old
 sed -i 's/"STATUS"/"STATE"/' "$work/ip/a/a.regs.json"
 run 1 "$work" HEAD
-says 'breaking   a: STATUS (word 4) is gone' 'compatible a: STATE (word 4) is new' \
+prints 'breaking   a: STATUS (word 4) is gone' 'compatible a: STATE (word 4) is new' \
     '1 breaking change'
 mkdir -p "$work/build/slice"
 ln -s "$slice2c" "$work/build/slice"

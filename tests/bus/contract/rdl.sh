@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# rdl: source-folder generated-folder work-folder   The chip's SystemRDL gives back its source
-# descriptions, its IP-XACT has the same registers; checks the SystemRDL that the reader accepts,
-# and its messages for the rest.
+# rdl: source-folder generated-folder work-folder   The chip's SystemRDL converts back to its source
+# descriptions, and its IP-XACT has the same registers. Checks the SystemRDL that the reader
+# accepts, and its messages for the rest.
 set -eu
 source=$1 gen=$2 work=$3
 rm -rf "$work"
@@ -19,13 +19,13 @@ for block in "$work"/new/ip/*.regs.json; do
         cp "$file" "$old"
         [ ! -e "${file%/*}/core.toml" ] || cp "${file%/*}/core.toml" "$old" # has memory_bytes
     done
-    [ -f "$old/$name" ] || fail "there is no block $name"
+    [ -f "$old/$name" ] || fail "no block $name"
 done
 [ "$("$source/tools/python" -m icesoc.chip.contract_diff true "$work/old" "$work/new")" = 'no breaking change' ] ||
     { "$source/tools/python" -m icesoc.chip.contract_diff true "$work/old" "$work/new" || true;
-    fail 'what comes back is not what was there'; }
+    fail 'the result differs from the source'; }
 for file in icesoc.svd icesoc.ipxact.xml; do xmllint --noout "$gen/$file" ||
-    fail "$file is no XML"; done
+    fail "$file is not XML"; done
 registers=$(grep -c ' @ 0x[0-9A-F]\{1,2\};' "$gen/icesoc.rdl")
 [ "$registers" -gt 50 ] &&
     [ "$(xmllint --xpath 'count(//*[local-name()="register"])' "$gen/icesoc.ipxact.xml")" = \
@@ -58,7 +58,7 @@ if found != wanted or block["type"] != "0x4C41" or block["doc"] != "Lamp // not 
         or block["registers"][0]["fields"][0]["doc"] != "Level of light":
     sys.exit("%s\nand not\n%s" % (block, wanted))
 PYTHON
-refused() { # words of the message, the SystemRDL
+refused() { # message, SystemRDL
     printf '%b' "$2" >"$work/wrong.rdl"
     ! rdl "$work/wrong.rdl" "$work/wrong" || fail "accepted: $2"
     grep -q -- "$1" "$work/log" || { cat "$work/log" && fail "'$1' is not said: $2"; }

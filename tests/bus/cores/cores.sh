@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# cores: source-folder generated-folder work-folder   Lists of cores: what the chip is with them,
-# lint of soc.v with each, and errors. It is shell because a case is a list and the words that
-# programs (coremap, Verilator, GCC, xmllint, Yosys) say of it.
+# cores: source-folder generated-folder work-folder   Lists of cores: the chip with them, lint of
+# soc.v with each, and errors. It is a shell script because a case is a list and the output of
+# programs (coremap, Verilator, GCC, xmllint, Yosys).
 set -eu
 source=$1 gen=$2 work=$3
 coremap() { "$source/tools/python" -m icesoc.chip.coremap "$@"; }
@@ -10,7 +10,7 @@ regmap() { "$source/tools/python" -m icesoc.regs.generate "$@"; }
 data=$(cd "$(dirname "$0")/data" && pwd)
 rm -rf "$work"
 mkdir -p "$work/own"
-# The led again, with a clock of its own.
+# The led with a separate clock.
 for f in regs.json v toml; do sed 's/\<led\>/tuner/' "$data/led.$f" >"$work/own/tuner.$f"; done
 sed -i '/^name/a clock_hz = 48000000' "$work/own/tuner.toml"
 clocked() { "$source/tools/python" -m icesoc.chip.clocked "$@"; }
@@ -42,21 +42,21 @@ accepted() {
         -I"$source/sw/hw/registers" -I"$gen/slice/Registers" -I"$source/ip/probe" \
         -I"$gen/slice/Probe" -I"$source/sw/icec" -I"$source/sw/base" "$out/soc_cores.c"
 }
-refused() { # words of the message, the list
+refused() { # message, list
     ! chip refused "$2" || fail "accepted: $2"
     grep -q -- "$1" "$work/refused/messages" || { cat "$work/refused/messages" &&
         fail "'$1' is not said: $2"; }
     [ ! -f "$work/refused/soc_cores.vh" ] || fail "files were written in spite of: $1"
 }
-has() { # file of the chip, line by line what it has
+has() { # file of the chip, expected lines
     file=$1
     shift
     for line; do grep -q -- "$line" "$out/$file" || fail "$file has no '$line'"; done
 }
-lacks() { ! grep -E -- "$2" "$out/$1" || fail "$1 has what it must not have (above: $2)"; }
+lacks() { ! grep -E -- "$2" "$out/$1" || fail "$1 contains a forbidden line (above: $2)"; }
 is() { has map_regs.h "^#define MAP_$1 $2U"; }
 
-# A byte order mark is not a part of a name; form feeds and U+0085 in a comment do not end its line.
+# A byte order mark is not part of a name; form feeds and U+0085 in a comment do not end its line.
 chip marked '\0357\0273\0277led # a\014b \0302\0205c\n' || { cat "$out/messages" && fail 'a mark is refused'; }
 has soc_cores.vh led
 accepted none '# nothing\n\n'
@@ -76,15 +76,15 @@ is NPI_PORT_MOVER 0x2
 is NPI_PORT_CAMERA 0x3
 is MEMORY_MOVER 0x1000000
 is MEMORY_CAMERA 0x1000800
-# The files are XML that others read (cores.svd holds the SVD to ARM's schema); the registers are
-# where the map has them.
+# The files are valid XML (cores.svd checks the SVD against ARM's schema); the registers are at the
+# addresses of the map.
 address=$(xmllint --xpath 'string(//peripheral[name="CAMERA"]/baseAddress)' "$out/icesoc.svd")
 [ "$address" = 0x64000100 ] || fail "CAMERA is at $address in the SVD file"
 [ "$(xmllint --xpath 'string(//peripheral[name="SYSTEM"]/registers/register[name="EVENT"]/modifiedWriteValues)' "$out/icesoc.svd")" = oneToClear ] ||
     fail 'EVENT is not cleared by writing 1 in the SVD file'
 [ "$(xmllint --xpath 'count(//peripheral)' "$out/icesoc.svd")" = 6 ] ||
     fail 'the SVD file has not six peripherals'
-# Words behind PAGE have maps of their own in SystemRDL, which gives them back, and in IP-XACT.
+# Words behind PAGE have separate maps in SystemRDL, which converts them back, and in IP-XACT.
 "$source/tools/python" -m icesoc.regs.rdl "$out/icesoc.rdl" "$work/back" >"$work/rdl" 2>&1 || { cat "$work/rdl" &&
     fail 'SystemRDL with pages'; }
 for f in "$data/led.regs.json" "$work/back/led.regs.json"; do
@@ -94,12 +94,12 @@ done | uniq | wc -l | grep -qx 1 || { cat "$work/back/led.regs.json" &&
 [ "$(xmllint --xpath 'string(//*[local-name()="memoryMap"][*[local-name()="name"]="LED_PAGES"]//*[local-name()="register"][1]/*[local-name()="addressOffset"])' "$out/icesoc.ipxact.xml")" = "'h44" ] ||
     fail 'IP-XACT has not the words behind PAGE'
 is PIN_CAMERA_SEEN_O 0xB
-# The identity, and the servant of registers for a core that has none.
+# The identity, and the servant of registers for a core without a servant.
 has soc_cores.c '"eye"' '{"camera", MAP_SLOT_CAMERA, .*core_camera_start' \
     'core_camera_table\[\] = {MOVER_TABLE}'
 accepted unwired 'mover\nmover name=a\nmover name=b level_o=none\nled button_i=none\nmover name=c level_o=none\n'
 has soc_pins.h '"a.level_o"'
-lacks soc_pins.h '"(c.level_o|led.button_i)"' # what is no pin has no place
+lacks soc_pins.h '"(c.level_o|led.button_i)"' # a signal that is not a pin has no location
 has soc_cores.vh "button_i(1'd0)"
 accepted pins 'led name=eye button_i=@A4\nmover seen_o=@B1 level_o=@C1,C2,C3,C4,C5,C6,C7,C8,C9\n'
 has soc_pins.h '^    {"eye.button_i", 0, 1, false},$'
@@ -107,8 +107,8 @@ has core_pins.ucf '^NET "core_pins_i<0>" LOC = "A4"; # eye.button_i\[0\]$' \
     '^# NET "core_pins_o<0>" LOC = "..."; # eye.led_o\[0\]$' \
     '^NET "core_pins_o<10>" LOC = "C9"; # mover.level_o\[8\]$'
 has soc_cores.vh 'led u_eye' 'mover #(.CLK_HZ(CLK_HZ)) u_mover'
-# Chip and firmware have the same hash of a core's registers, which says when these change, and not
-# when their words do.
+# Chip and firmware have the same hash of a core's registers, which changes with the registers, and
+# not with their descriptions.
 contract() { sed -n "s/.*\"$1\"}, [0-9]*, 0, (Ice_Int)0x\([0-9A-F]*\)U.*/\1/p" "$out/soc_cores.c"; }
 before=$(contract mover)
 [ -n "$before" ] && grep -q "CONTRACTS = {32'h$before, 32'h$(contract \
@@ -127,7 +127,7 @@ changed() { # sed's command for the mover's description: the hash with it
 [ "$(changed 's/"registers": /&[{"word": 3, "name": "A", "access": "rw", "doc": ""}], "events": /')" \
     != "$before" ] ||
     fail 'a register does not change the hash'
-# A servant without a call that waits has neither interrupt nor poll of its own.
+# A servant without a waiting call has neither interrupt nor poll.
 for f in adder.regs.json adder.v; do cp "$data/$f" "$work"; done
 sed '/^header/a waits = false' "$data/adder.toml" >"$work/adder.toml"
 echo adder >"$work/cores.list"
@@ -137,14 +137,14 @@ coremap "$work/cores.list" --base "$source/bus/map.regs.json" \
 grep -q '^    Hw_Core_interrupt(&core_adder.core);' "$work/soc_cores.c" &&
     ! grep -q 'Demo_Adder_Core_\(interrupt\|poll\)' "$work/soc_cores.c" ||
     fail 'a servant that waits for nothing is asked for its interrupt or poll'
-# Only a core with idle_o can have a gate; one with a gate in the list has it on the board, too.
+# Only a core with idle_o can have a gate; a core with a gate in the list also has it on the board.
 accepted gates 'adder gate=on\nadder name=other\nled\n'
 has soc_cores.vh 'core_gate #(.GATED(1)) u_gate_adder .*slot_valid\[2\].*clk_adder' \
     '.clk_i(clk_adder)' 'core_gate #(.GATED(GATES)) u_gate_other'
 lacks soc_cores.vh u_gate_led
 has core_pins.ucf '^NET "u_soc/u_gate_adder.g_gate.run" MAXDELAY'
-# A clock of a core's own comes from a pin, from another core, or is made of the chip's; ISE is told
-# its period, and what crosses.
+# A separate clock of a core comes from a pin, from another core, or is made from the chip clock;
+# ISE gets its period, and the crossings.
 accepted clocks 'led\ntuner clock_i=@A9\ntuner name=other clock_i=led.led_o\ntuner name=made clock=6/25\n'
 is PIN_TUNER_CLOCK_I 0x2
 has soc_cores.vh '^    tuner_clocked u_tuner' 'clock_i(pin_led_led_o)' \
@@ -163,7 +163,7 @@ for f in mover.regs.json mover.v; do cp "$data/$f" "$work"; done
 ! clocked "$work/mover.toml" "$data/mover.regs.json" "$work/mover_clocked.v" 2>"$work/messages" &&
     grep -q 'a core with a memory port uses the chip clock' "$work/messages" ||
     fail 'a memory port in another clock'
-# Registers and fields whose names are one in the headers.
+# Registers and fields with names that collide in the headers.
 for names in 'A B A_B_LSB' 'A_B_LSB C A_B_LSB'; do
     # shellcheck disable=SC2086 # three words
     printf '{"block": "b", "doc": "", "registers": [{"word": 0, "name": "%s", "access": "ro", "doc": "",
@@ -172,7 +172,7 @@ for names in 'A B A_B_LSB' 'A_B_LSB C A_B_LSB'; do
         grep -q 'both become A_B_LSB\|A_B_LSB: duplicate name' "$work/messages" ||
         fail "registers and fields of one name ($names)"
 done
-described() { # words of the message, a description that is refused
+described() { # message, rejected description
     printf '%b' "$2" >"$work/wrong.regs.json"
     ! regmap "$work/wrong.regs.json" --output-dir "$work" 2>"$work/messages" &&
         grep -q -- "$1" "$work/messages" || { cat "$work/messages" && fail "'$1' is not said: $2"; }
@@ -186,7 +186,7 @@ described 'doc: expected a text .*, got "\*/"' '{"block": "b", "doc": "*/", "reg
 described 'registers\[0\].word: expected a whole' '{"block": "b", "doc": "", "registers": [{"word": ""}]}'
 described 'pins\[0\].name: expected' '{"block": "b", "doc": "", "registers": [], "pins": [{"name": "a"}]}'
 # A probe has its signals by name, at any depth, in Verilator and, flattened, in Yosys; the ground
-# is told which they are.
+# gets their names.
 accepted probe 'adder\nprobe signals=u_adder.u_registers.u_wrapper.mask,u_modem.u_timer.clocks:17\nprobe name=other signals=u_adder.irq_o\n'
 yosys -q -p "verilog_defaults -add -I$out -I$gen $(for f in bus hdl/fsmc hdl/ddr hdl/modem \
     hdl/system hdl/cdc; do printf -- '-I%s ' "$source/$f"; done)
@@ -218,7 +218,7 @@ refused '2: error: memory=0x1000800 is within the buffers of line 1' \
 refused 'memory=1x: a byte address' 'mover memory=1x\n'
 refused 'a byte address in DDR3' "mover memory=1$(printf '%05000d' 0)\n"
 refused 'memory=0x1000000: a byte address in DDR3, for a core with buffers' 'led memory=0x1000000\n'
-refused "1: error: no core 'nobody'" 'nobody\n'
+refused "1: error: no core 'missing'" 'missing\n'
 refused "2: error: 'led' is on line 1 already; name=" 'led\nled\n'
 refused "3: error: slot 7 is taken on line 2" '#\nled slot=7\nadder slot=7\n'
 refused "slot=1: 2..63" 'led slot=1\n'

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Tests of the manifest of a core, core.toml: what is read, and the words for what is refused."""
+"""Tests of the manifest of a core, core.toml: accepted values, and messages for rejected ones."""
 import tempfile
 import unittest
 from pathlib import Path

@@ -74,7 +74,7 @@ with Ice.initialize(data) as ic:
     while not said and recording.is_alive():
         threading.Event().wait(0.01)
     core = Cores.SampleVerilogPrx.uncheckedCast(ic.stringToProxy("sample_verilog" + where))
-    while recording.is_alive():  # calls close behind each other: the trace is of few clocks
+    while recording.is_alive():  # calls without pauses: the trace covers few clocks
         calls = [call for _ in range(3) for call in (core.setOffsetAsync(7), core.addAsync(42))]
         expect("add, recorded", [call.result() for call in calls], 3 * [None, 49])
     print(said)
@@ -94,7 +94,7 @@ with Ice.initialize(data) as ic:
         expect(identity + ".add", core.add(42), -58)
         expect(identity + ".sumTo", core.sumTo(100), 5050)
         fails(Ice.UnknownException, core.sumTo, 0)
-        # While a long call is under way (it hangs, and is given up after 100 ms) others are
+        # While a long call is in progress (it hangs, and is aborted after 100 ms) others are
         # answered.
         later = core.sumToAsync(2000000000)
         expect(identity + ".add meanwhile", core.add(1), -99)
@@ -124,7 +124,7 @@ with Ice.initialize(data) as ic:
         "my_lamps", "sample_vhdl", "many", "probe"]))
     expect("contracts", mission.differences(vehicle), [])
 
-    # Third-party cores, whose interface are their registers.
+    # Third-party cores, with their registers as interface.
     port = Hw.RegistersPrx.checkedCast(ic.stringToProxy("port" + where))
     expect("port.wait", port.wait(10000), ["CORE"])  # the simulator's script raises the pin
     expect("port.LEVELS", port.get("LEVELS"), 0x83)

@@ -1,11 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # cores: source-folder build-folder work-folder TRACE|NETLIST   Builds a simulator with the cores of
-# a list of its own, of RTL that is traced or of the chip's netlist, and calls them by radio.
+# a separate list, from traced RTL or the chip's netlist, and calls them by radio.
 set -eu
 source=$1 build=$2 work=$3 chip=$4
 mkdir -p "$work/build"
-# Puts fresh/NAME in the place of NAME if they differ: what is as it was is not built again.
+# Replaces NAME by fresh/NAME if they differ, so that unchanged files are not built again.
 fresh() {
     diff -r "$work/fresh/$1" "$work/$1" >/dev/null 2>&1 ||
         { rm -rf "${work:?}/$1" && mv "$work/fresh/$1" "$work/$1"; }
@@ -20,13 +20,13 @@ mapped() {
 logged() { "$@" >"$work/log" 2>&1 || { tail -40 "$work/log" && exit 1; }; }
 rm -rf "$work/fresh" && mkdir "$work/fresh"
 clocked='my_requests clock=6/25'
-[ "$chip" = TRACE ] || clocked='# no core in a clock of its own: its DCM_CLKGEN has no model'
+[ "$chip" = TRACE ] || clocked='# no core with a separate clock: its DCM_CLKGEN has no model'
 signals=''
 for signal in valid_i write_i addr_i:4 wdata_i:32 ready_o rdata_o:32; do
     signals=$signals,u_sample_verilog.bus_$signal
 done
 cat >"$work/fresh/cores.list" <<END
-# No vision core here.
+# without the vision core
 sample_verilog
 sample_vhdl identity=newcomer slot=9
 scaler
@@ -46,8 +46,8 @@ golden=$source/tests/slice/hardware/golden
 folders="$samples/sample_verilog;$samples/sample_vhdl;$work/scaler;$here/servo;$here/crc32"
 folders="$folders;$work/many;$foreign/my_port;$foreign/my_requests;$work/my_lamps"
 mapped scaler # sequences, exceptions and events
-mapped many   # 46 words, of which a slot has 16
-# A core in VHDL, as make new-foreign puts it into a slot. GHDL is fetched once.
+mapped many   # 46 words; a slot has 16
+# A core in VHDL, put into a slot by make new-foreign. GHDL is fetched once.
 lamps=$source/tests/ip/new_foreign/lamps
 logged "$source/tools/python" -m icesoc.cores.new_foreign \
     my_lamps lamps own "$work/fresh/my_lamps" GHDL="$build/ghdl/ghdl" \
@@ -74,21 +74,21 @@ logged "$simulator" --pins "$work/pins" --size 96x64 --image /usr/share/xplanet/
     "$samples/sample_verilog/sample_verilog.ice" "$golden/scaler.ice" "$golden/many.ice" \
     "$here/servo/servo.ice" "$here/crc32/crc32.ice" "$samples/sample_vhdl/sample_vhdl.ice" \
     "$source/sw/hw/registers/Registers.ice" "$source/ip/probe/Probe.ice"
-# Pulses of 1.5 ms, 20 ms apart, whatever the clock; the fault pin ended at most one of them, and
-# moved the later ones.
+# Pulses of 1.5 ms, 20 ms apart, at any clock frequency; the fault pin ended at most one of them,
+# and moved the later ones.
 awk '$2 != "servo.pwm_o" { next }
      $3 == 4 { frames += up && $1 - last > 19.999 && $1 - last < 20.001; last = up = $1 }
      $3 == 0 && up { n += $1 - up > 1.499 && $1 - up < 1.501; all++ }
      END { exit !(n > 10 && all - n <= 1 && frames >= n - 2) }' "$work/pins.log" ||
     { tail "$work/pins.log" && echo 'the pulses are not 1.5 ms long, 20 ms apart' && exit 1; }
-says() { grep -Eq "$1" "$work/log" || { cat "$work/log" && echo "not said: $1" && exit 1; }; }
-says 'cores: all as expected'
+prints() { grep -Eq "$1" "$work/log" || { cat "$work/log" && echo "not said: $1" && exit 1; }; }
+prints 'cores: all as expected'
 
 # The simulator names a core that keeps the chip from being quiet: two never rest. The probe's
-# capture by radio, read by GTKWave's tools, equals the simulator's trace of the replayed flight, as
-# far as that goes.
+# capture by radio, read by GTKWave's tools, equals the simulator's trace of the replayed flight,
+# over the captured time.
 traced() {
-    says "'(my_requests|servo)' moves in nearly every clock"
+    prints "'(my_requests|servo)' moves in nearly every clock"
     vcd2fst "$work/probe.vcd" "$work/probe.fst" >"$work/log"
     fst2vcd "$work/probe.fst" >"$work/captured.vcd"
     span=$(awk '/^#/ { t = substr($1, 2) / 1e9; if (!n++) first = t }

@@ -27,7 +27,7 @@ from icesoc.util.process import children
 STATUS = record.of_tree("testbench/status/sim_status.toml")
 IMAGE = "/usr/share/xplanet/images/earth.jpg"
 LONGEST = 240.0  # seconds of a mission on a busy machine
-REAL = 0.3  # seconds of a moment before the simulated ones
+REAL = 0.3  # seconds per moment, before simulated time starts
 LAST = 2.0  # moment; its share of this is the quantity of faults that have no moment
 
 
@@ -57,7 +57,7 @@ class Mission:
              "page": "icesoc.web.live(?!.* --try)", "page's trial": "icesoc.web.live.* --try"}
 
     def __init__(self, source, build, out, prefix=(), options=(), words=None):
-        """words: makes the command in place of `./icesoc run` with its options."""
+        """words: command instead of `./icesoc run` with its options."""
         self.out, self.source, self.build = out, source, build
         os.makedirs(out, exist_ok=True)
         self.log = open(out + ".log", "w+")
@@ -72,7 +72,7 @@ class Mission:
         return [self.run.pid] + descendants(self.run.pid)
 
     def find(self, name):
-        """Returns the process of that name, once it is there; None: the mission ended first."""
+        """Returns the process of that name when it exists; None if the mission ended first."""
         while name != "run" and self.run.poll() is None:
             for pid in descendants(self.run.pid):
                 command = command_of(pid)
@@ -115,7 +115,7 @@ class Mission:
             left.unlink()
 
     def kill(self):
-        """Ends all processes that are left, when the test ends."""
+        """Ends all remaining processes when the test ends."""
         for pid in self.all():
             with contextlib.suppress(ProcessLookupError):
                 os.kill(pid, signal.SIGKILL)
@@ -144,7 +144,7 @@ def is_whole(out):
 
 
 def caught(start, name, moment):
-    """Returns a mission at a moment, and the process of that name; None: it is too late."""
+    """Returns a mission at a moment, and the process of that name; None if it is too late."""
     m = start()
     pid = m.find(name)
     m.pass_time(moment)
@@ -153,19 +153,19 @@ def caught(start, name, moment):
 
 def goes_on(m, otherwise):
     expect(m.wait(LONGEST) == 0 and m.succeeded(), m, otherwise)
-    return "the mission goes on"
+    return "the mission continues"
 
 
 def without_page(m):
     """The page is only a view."""
     said = goes_on(m, "the mission needs the page")
-    expect(re.search("page.*signal 9", m.text()), m, "nobody says that the page is gone")
+    expect(re.search("page.*signal 9", m.text()), m, "no message about the page's end")
     return said
 
 
 def refused(m, why):
     expect(m.wait(LONGEST), m, "it flies, or hangs")
-    expect(re.search(why, m.text()), m, "nobody says why")
+    expect(re.search(why, m.text()), m, "no message with the reason")
     expect(m.simulated() == 0, m, "it is refused after it flew")
     return "refused before it flies"
 
@@ -197,8 +197,8 @@ def killed(start, name, moment, deaths):
     took = time.monotonic() - begin
     m.run.wait()
     if name != "run":
-        expect("signal 9" in m.text(), m, "nobody says what happened")
-        expect(m.run.returncode != 0 or m.succeeded(), m, "it says that it succeeded")
+        expect("signal 9" in m.text(), m, "no message about the cause")
+        expect(m.run.returncode != 0 or m.succeeded(), m, "it reports success")
     return "all end, within %.1f s" % took
 
 
@@ -213,17 +213,17 @@ def stopped(start, name, moment, deaths):
 
 
 def disk_full(start, name, moment, deaths):
-    """The folder is a file system of its own with few blocks; its files are copied at the end."""
+    """The folder is a separate file system with few blocks; its files are copied at the end."""
     size = 4096 * int(1 + 7 * moment / LAST)
     script = (f"mount -t tmpfs -o size={size} none $0 || exit 9; status=0; \"$@\" || status=$?; "
               "cp -a $0 $0.kept; exit $status")
     m = start(prefix=["unshare", "--map-root-user", "--mount", "sh", "-c", script, "sh"])
     status = m.wait(LONGEST)
     expect(status is not None and status != 9, m, "it hangs")
-    expect("Traceback" not in m.text() and "Bus error" not in m.text(), m, "that is no message")
+    expect("Traceback" not in m.text() and "Bus error" not in m.text(), m, "not a clear message")
     expect(is_whole(m.out + ".kept"), m, "a file is cut short")
     expect(status == 0 or "No space left" in m.text() or "disk full" in m.text(), m,
-           "nobody says why")
+           "no message with the reason")
     return "fails with a message" if status else "has room enough"
 
 
@@ -243,17 +243,17 @@ def no_memory(start, name, moment, deaths):
     m = start(prefix=["prlimit", "--as=%d" % (8e6 * 100**(moment / LAST))])
     status = m.wait(LONGEST)
     expect(status is not None, m, "it hangs")
-    expect(status != 0 or m.succeeded(), m, "it says that it succeeded")
+    expect(status != 0 or m.succeeded(), m, "it reports success")
     expect(status == 0 or m.text().strip(), m, "it fails without a word")
-    # An interpreter that cannot even start says so by itself, with a traceback of its own.
+    # An interpreter that cannot even start reports this itself, with a traceback.
     expect("Fatal Python error: init" in m.text() or
-           not re.search("bad_alloc|Traceback", m.text()), m, "that is no message")
+           not re.search("bad_alloc|Traceback", m.text()), m, "not a clear message")
     expect(is_whole(m.out), m, "a file is cut short")
     return "fails with a message" if status else "succeeds"
 
 
 def clock_step(start, name, moment, deaths):
-    """Steps the clock of the day an hour forward and two back, again and again."""
+    """Steps the time of day one hour forward and two back, repeatedly."""
     m = start(prefix=["env", "LD_PRELOAD=" + CLOCK_STEP])
     said = goes_on(m, "it lives by the clock of the day")
     expect("cannot be preloaded" not in m.text(), m, "no clock was stepped")
@@ -264,9 +264,9 @@ def loss(start, name, moment, deaths):
     """name: the share of packets that are lost."""
     m = start(options=["--loss", name, "--patience", "16", "--seed", str(int(1000 * moment))])
     status = m.wait(LONGEST)
-    expect(status is not None, m, "it goes on without end")
-    told = re.search("mission: .*(no answer for 16 s|Exception)", m.text())
-    expect(status == 0 and m.succeeded() or told, m, "nobody says what is missing")
+    expect(status is not None, m, "it does not end")
+    reported = re.search("mission: .*(no answer for 16 s|Exception)", m.text())
+    expect(status == 0 and m.succeeded() or reported, m, "no message about the missing part")
     return "fails after its patience" if status else "succeeds"
 
 
@@ -275,26 +275,26 @@ def fleet(start, name, moment, deaths):
     ground with the first one's address and key has all vehicles until it ends, and then the first
     one has them again."""
     trouble, least, most = TROUBLE[name]
-    begin = 7 + moment  # all have sessions, with the second ground, too
+    begin = 7 + moment  # all have sessions, also with the second ground
     end = begin + least + (most - least) * moment / LAST
     m = start(words=lambda m: words_of(m, IMAGE, name, begin, end))
     expect(m.wait(5 * LONGEST) == 0, m, "a vehicle does not answer at the end, or it hangs")
-    told = json.loads(Path(m.out, "fleet.json").read_text())
+    result = json.loads(Path(m.out, "fleet.json").read_text())
     cores = re.search("vision cores were started ([0-9, ]+) times", m.text())[1].split(", ")
     away, isLong = int(trouble[-1]) if trouble.startswith("away") else None, least > 9
     for address in range(1, VEHICLES + 1):
-        t, ran = told[str(address)], int(cores[address - 1])
+        t, ran = result[str(address)], int(cores[address - 1])
         expect(not t["wrong"], m, f"vehicle {address}: the result is of another picture")
         expect(t["answered"] <= ran <= t["started"], m, f"vehicle {address}: {t}, and {ran} frames")
         expect(bool(t["reported"]) == (isLong and away in (None, address)), m,
                f"vehicle {address}: {t}")
-    seen = {at for at, second in told["seen"] if away != 0 or begin <= second < end}
+    seen = {at for at, second in result["seen"] if away != 0 or begin <= second < end}
     expect(seen == set(range(1, VEHICLES + 1)), m, f"the other ground saw only {seen}")
     sessions = m.text().count("link up, secure")
-    expect(trouble or sessions == 3 * VEHICLES, m, f"{sessions} sessions: the grounds go on vying")
+    expect(trouble or sessions == 3 * VEHICLES, m, f"{sessions} sessions: the grounds compete")
     return "%d frames started, %d calls reported" % tuple(
         sum(count) for count in zip(*((t["started"], len(t["reported"]))
-                                      for at, t in told.items() if at != "seen")))
+                                      for at, t in result.items() if at != "seen")))
 
 
 FAULTS = [(killed, n) for n in ("ground", "simulator", "run", "page")] + \
@@ -335,7 +335,7 @@ def main():
         parser.add_argument(name)
     parser.add_argument("--seed", type=int, default=1, help="the first")
     parser.add_argument("--seeds", type=int, default=1, help="how many")
-    parser.add_argument("--moments", type=int, default=1, help="of each fault and seed")
+    parser.add_argument("--moments", type=int, default=1, help="moments per fault and seed")
     parser.add_argument("--jobs", type=int, default=1, help="missions at a time")
     parser.add_argument("--deaths", type=float, default=LONGEST,
                         help="seconds in which all processes of a mission follow the first")

@@ -29,9 +29,9 @@ THRESHOLD = 40
 REST = 0.2  # simulated seconds between two frames
 
 
-# Each trouble of a fleet has its name, the simulator's words for it ("": a program makes it), and
-# the seconds that it lasts at least and at most. Vehicle 1 runs the firmware's host build, and the
-# others run the ARM binary.
+# Name of each fault of a fleet, its option of the simulator ("": a program causes it), and the
+# seconds that it lasts at least and at most. Vehicle 1 runs the firmware's host build, the others
+# run the ARM binary.
 TROUBLE = {"vehicle away": ("away:2", 0.5, 3), "vehicle gone": ("away:3", 11, 13),
            "twin": ("twin:2", 1, 3), "babbler": ("babble:1", 1, 3),
            "other ground": ("away:0", 2, 4), "new key": ("away:2", 11, 13),
@@ -66,7 +66,7 @@ def words_of(m, image, name, begin, end):
 
 
 class Caller(threading.Thread):
-    """Calls one vehicle, each call once, whatever becomes of it."""
+    """Calls one vehicle; each call is made once, whatever its result."""
 
     def __init__(self, ground, address):
         super().__init__(daemon=True)
@@ -91,7 +91,8 @@ class Caller(threading.Thread):
         self.wrong += [result.found, best] != [self.want["found"], self.want["best"]]
 
     def frames(self):
-        """Calls until the flight's end; then, for 20 seconds at most, until an answer comes."""
+        """Calls until the end of the flight; then, for at most 20 seconds, until a reply
+        arrives."""
         engine = Autopilot.HwProcessingEnginePrx.uncheckedCast(
             self.ground.proxy("hwengine1", self.address))
         self.take(engine)
@@ -120,7 +121,7 @@ class Caller(threading.Thread):
         except (Ice.Exception, RuntimeError) as failure:
             self.failure = failure
 
-    def told(self):
+    def result(self):
         return {"started": self.started, "answered": self.answered, "reported": self.reported,
                 "wrong": self.wrong}
 
@@ -129,7 +130,7 @@ class Ground:
     def __init__(self, args):
         self.args, self.air = args, mission.Air(args.status)
         self.pilot = self.communicator(args.device, args.key)
-        self.seen = []  # (address, simulated seconds) of what the second ground heard
+        self.seen = []  # (address, simulated seconds) of the states received by the second ground
 
     def seconds(self):
         return self.air.read()["ns"] / 1e9
@@ -202,8 +203,8 @@ class Ground:
         self.pilot.destroy()
         if self.args.changed and not callers[self.args.changed - 1].failure:
             callers[self.args.changed - 1].failure = self.keep_new_key()
-        told = {caller.address: caller.told() for caller in callers}
-        Path(self.args.out, "fleet.json").write_text(json.dumps({**told, "seen": self.seen}))
+        results = {caller.address: caller.result() for caller in callers}
+        Path(self.args.out, "fleet.json").write_text(json.dumps({**results, "seen": self.seen}))
         failed = [f"vehicle {c.address}: {c.failure}" for c in callers if c.failure]
         if failed:
             sys.exit("fleet_ground: " + "; ".join(failed))

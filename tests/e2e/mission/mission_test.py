@@ -72,13 +72,13 @@ class Cases(Script):
     def simulate(self, *words, options=(), **how):
         self.ask(*self.simulator(*words, options=options), **how)
 
-    def replay(self, folder, *options, says="bit by bit the flight that was recorded"):
+    def replay(self, folder, *options, expected="bit by bit the flight that was recorded"):
         """Repeats the flight in a folder from its recording."""
         self.ask(SIMULATOR, "--out", "replay", "--replay", folder, *options)
-        self.has(says)
+        self.has(expected)
 
     def test_plain(self):
-        """Secure by default; only the user may read its recording and its key."""
+        """Secure by default; only the user may read the recording and the key."""
         self.make("run", f"IMAGE={IMAGE}", "SIZE=96x64", f"OUT={self.out}", build=BUILD)
         self.flew(self.out)
         self.has("121 corners leave much of the core untried: make ip-test IP=vision")
@@ -106,7 +106,7 @@ class Cases(Script):
         for name, said in (("short", "32 hexadecimal digits"), ("others", "chmod 600"),
                            ("no", "create one with ./icesoc key '.*no.key'")):
             self.refused(said, "--key", f"{name}.key")
-        # No session with this vehicle begins with another key, or with none.
+        # No session with this vehicle begins with another key, or without one.
         for key in self.out / "b.key", "":
             self.simulate(PING, DEVICE + "-g {guard} -t 3000", "1", f"--XBeeAT.KeyFile={key}",
                           "--Ice.RetryIntervals=-1", options=("--key", "a.key"), status=None)
@@ -126,13 +126,13 @@ class Cases(Script):
                              ("other", flight.replace('"up":"2b', '"up":"2c'))):
             write(f"{folder}/flight.jsonl", text)
             shutil.copy("before.png", folder)
-        self.replay("cut", says="the recording ends here")
+        self.replay("cut", expected="the recording ends here")
         replay = SIMULATOR, "--out", "replay", "--replay"
         self.fails("not the flight that was recorded: it departs between", *replay, "other")
         write("other/flight.jsonl", '{"no": "flight"}\n')
         self.fails("expected the recording of a flight, line 1", *replay, "other")
-        self.fails("--out: expected a folder other than the recording's", SIMULATOR, "--replay", self.out,
-                   "--out", self.out)
+        self.fails("--out: expected a folder other than the recording's", SIMULATOR,
+                   "--replay", self.out, "--out", self.out)
         self.fails("flown by the firmware's host build", *replay, self.out, "--gdb", "0")
         self.fails("writes no waveforms", *replay, self.out, "--wave", "wave.fst")
 
@@ -144,7 +144,7 @@ class Cases(Script):
         self.has(*(rf"{part}\." for part in parts), file="report.md")
 
     def test_sensor(self):
-        """Camera pins and the vision core see the picture, the processor never does."""
+        """Camera pins and the vision core process the picture; the processor never reads it."""
         self.fly("--camera", "--cpu", "m3")
         self.has(r"camera.capture\(96, 64\)", file="report.md")
 
@@ -176,7 +176,7 @@ class Cases(Script):
         tells the ground why."""
         lines = (BUILD / "gen/soc_cores.c").read_text().split("hw_contracts[")[1].split("\n")[1:]
         row = 1 + next(n for n, line in enumerate(lines) if '"vision"' in line)
-        self.patched("other.elf", "hw_contracts", 20 * row - 4, b"\xff" * 4)  # a row's last word
+        self.patched("other.elf", "hw_contracts", 20 * row - 4, b"\xff" * 4)  # last word of a row
         self.refused("no object 'hwengine1'; vision: its registers have the hash 0x.* in the chip, "
                      "0xFFFFFFFF in the firmware: build both anew from one ip/cores.list, the "
                      "firmware by make firmware", "--cpu", "m3", "--firmware", "other.elf")
@@ -264,7 +264,7 @@ class Cases(Script):
     def test_slow(self):
         """A machine that is four times too slow: the ground uses the simulator's clock, so it finds
         the modem as fast."""
-        self.fly()  # for its flight.json
+        self.fly()  # to get its flight.json
         Path("after.png").unlink()
         self.ask(SIMULATOR, "--flight", "flight.json", "--speed", "0.25", "--", "/usr/bin/python3",
                  CLIENTS / "mission.py", "flight.json", "--device", "{device}", "--frame",
@@ -299,7 +299,7 @@ class Cases(Script):
         self.assertLess(float(seconds[1]), 5)
 
     def test_encrypted(self):
-        """Both modems by the same AES key: the controller sets one, the endpoint's -k the other.
+        """Both modems with the same AES key: the controller sets one, the endpoint's -k the other.
         By the C++11 library of the plugin, a C++ client, a proxy that goes through its string."""
         key = "00112233445566778899AABBCCDDEEFF"
         self.simulate(PING, f"{DEVICE}-k {key} -p 2 -g {{guard}} -t 300000", "3",
@@ -308,7 +308,7 @@ class Cases(Script):
         self.lacks(key)
 
     def test_new_key(self):
-        """A key follows another over the link, and the old one opens nothing any more."""
+        """A key is replaced over the link, and the old one then opens nothing."""
         os.umask(0o077)
         write("the.key", f"0x0001 {KEY}\n")
         self.simulate("/usr/bin/python3", CLIENTS / "change_key.py", "--device", "{device}",
@@ -357,7 +357,8 @@ class Cases(Script):
         self.flew(self.out / "a")
 
     def test_odd_names(self):
-        """A folder's name has special characters of the shell, of make and of the simulator."""
+        """The name of a folder has special characters of the shell, of make and of the
+        simulator."""
         hit = self.out / "oops"
         odd = f"a'b \"c\" {{device}} {{out}}x `touch {hit}` $(touch {hit})"
         self.fly(out=self.out / odd)
@@ -369,9 +370,9 @@ class Cases(Script):
         write("mine/report.md", "mine\n")
         shutil.copy("mine/report.md", ".")
         os.symlink(self.out / "mine/report.md", "calls.jsonl")
-        write("bad.png", "this is no picture\n")
+        write("bad.png", "this is not a picture\n")
         self.refused("is not a picture that can be read", image="bad.png")
-        self.lacks("127.0.0.1")  # a page's address before what is refused
+        self.lacks("127.0.0.1")  # the address of a page precedes the rejected one
         for name in "report.md", "calls.jsonl":
             self.assertEqual(Path(name).read_text(), "mine\n")
         for text in '"text"', "[", "[{}]":
@@ -381,7 +382,7 @@ class Cases(Script):
         write("flight.json", json.dumps(
             dict(threshold=24, loss=0, guard=20, patience=300, key="", camera=False, cores=[],
                  wire=False, vehicles=1, observer="", out=str(self.out))))
-        _, silent = pty.openpty()  # which only this test holds
+        _, silent = pty.openpty()  # held only by this test
         for device, said in (("/dev/no-such-port", "cannot open serial port '/dev/no-such-port'"),
                              (os.ttyname(silent), "no modem answers on")):
             self.fails(said, "/usr/bin/python3", CLIENTS / "mission.py", "flight.json", *INTERFACE,
@@ -390,14 +391,14 @@ class Cases(Script):
     def test_interrupted(self):
         with self.until("setting the ground", *self.words()) as run:
             self.refused("another flight is under way")
-            # The simulator; Ctrl-C would reach all of them.
+            # The simulator; Ctrl-C would reach all processes.
             self.ask("pkill", "-INT", "-f", f"icesoc-sim.*{self.out}")
             self.assertEqual(run.wait(), 130, Path("log").read_text())
         # The command that it prints shows its end.
         span = re.search(f"^Its end as a waveform: make run REPLAY='{self.out}' "
                          r"FROM=([\d.]+) TO=([\d.]+)$", Path("log").read_text(), re.M)
         self.replay(self.out, "--from", span[1], "--to", span[2],
-                    says="the recording ends here|bit by bit")
+                    expected="the recording ends here|bit by bit")
         self.ask("pgrep", "-f", f"mission.py.*{self.out}", status=1)  # no ground station runs
 
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// memory_test: the memory controller with random traffic from all ports against a reference memory;
-// and a port before the calibration.
+// memory_test: the memory controller with random traffic from all ports, compared with a reference
+// memory; and a port before the calibration.
 
 #include "VMemoryMcb2.h"
 #include "VMemoryMcb3.h"

@@ -3,23 +3,22 @@
 # prove: module depth source-folder work-folder [yosys commands for parameters]
 # It is shell because it only calls Yosys, abc and CaDiCaL, each with a limit of processor time.
 #
-# 1. induction: no assertion ever fails: by k-induction (MiniSat) where the assertions carry
-#    themselves; else property-directed reachability finds the inductive invariant itself and has it
-#    checked (z3's k-induction did not end on 64-bit data);
-# 2. bounded: where that does not prove it, the shortest counterexample of `depth` clocks (BMC);
+# 1. induction: no assertion ever fails: by k-induction (MiniSat) if the assertions are inductive;
+# otherwise property-directed reachability finds the inductive invariant and has it checked (z3's
+# k-induction did not end on 64-bit data);
+# 2. bounded: if that does not prove it, the shortest counterexample of `depth` clocks (BMC);
 # 3. cover: every cover statement is reached within 4 * `depth` clocks.
-# PROVE_PDR: switches of pdr, where others are quicker.
-# PROVE_STEP=k: the assertions carry themselves over k clocks, but are too many for MiniSat: CaDiCaL
-# does the step.
+# PROVE_PDR: switches of pdr, if others are faster. PROVE_STEP=k: the assertions are inductive over
+# k clocks, but are too many for MiniSat: CaDiCaL does the step.
 # PROVE_BOUNDED=1: bounded only.
-# PROVE_READ: more words of read_verilog: defines, files; idle_proof's core.
+# PROVE_READ: more arguments of read_verilog: defines, files; idle_proof's core.
 # PROVE_MUTANT: Yosys commands before flattening (tools/icesoc/mutants/drawn.py); no trace then.
-# A failed assertion leaves <work>/trace.vcd. The module may instantiate others of its folder, of
-# bus/, hdl/system/ and hdl/cdc/; a proof in testbench/sim/ those of hdl/ddr/ instead of its folder.
+# A failed assertion leaves <work>/trace.vcd. The module may instantiate modules of its folder, of
+# bus/, hdl/system/ and hdl/cdc/; a proof in testbench/sim/ may use hdl/ddr/ instead of its folder.
 set -eu
 here=$(dirname "$(readlink -f "$0")")
 module=$1 depth=$2 source=$3 work=$4 parameters=${5:-}
-limit=${PROVE_SECONDS:-300} # of a processor: a proof that does not end is an error
+limit=${PROVE_SECONDS:-300} # CPU seconds; a proof that does not end is an error
 mkdir -p "$work"
 cd "$work"
 rm -f ./*.aig ./*.map ./*.aiw ./*.vcd
@@ -38,10 +37,10 @@ folders="$source/bus $source/hdl/system $source/hdl/cdc $near"
 [ -z "$generated" ] || folders=$source/bus alone=$generated
 files=$(for folder in $folders; do ls "$folder"/*.v || true; done | sort -u)
 files="$files $alone"
-# Several clocks (a proof with `gclk`): every edge is an input of its own.
+# Several clocks (a proof with `gclk`): every edge is a separate input.
 clocks=async2sync
 ! grep -q gclk "$file" || clocks='memory_map; clk2fflogic'
-# A core that says it is idle: its registers, without those of proofs, may not move.
+# A core with idle_o: its registers, without those of proofs, may not change.
 flat='' read=${PROVE_READ:-}
 case $module in idle_proof | memory_rest_proof)
     flat="techmap -map $here/idle_registers.v r:SIZE>=256 # lines of pictures
@@ -51,14 +50,14 @@ techmap -map $here/idle_registers.v c:*u_core* w:*.f_* %ci1 %d" ;;
 esac
 [ "$module" != idle_proof ] || {
     core=${read#-DCORE=}
-    rules=$source/ip/${core%% *}/idle_rules.vh # of a core in VHDL
+    rules=$source/ip/${core%% *}/idle_rules.vh # for a core in VHDL
     own=${read#* } # files of the core, and npi_stream.v
     # shellcheck disable=SC2086
     ! grep -q 'memory_ports\|npi_addr_o' ${own% *} || read="-DMEMORY $read"
     [ ! -e "$rules" ] || read="-DIDLE_RULES=\"$rules\" $read"
 }
-# A platform that rests begins in any state. What cores, memory and pins see of it does not depend
-# on its counters. Its flip-flops on a pin's edge are held.
+# A resting platform begins in any state. Its outputs to cores, memory and pins do not depend on its
+# counters. Its flip-flops on a pin's edge are held.
 [ "$module" != rest_proof ] || {
     counters='w:*.cycles w:*.phase w:*.clocks %u %u'
     onward="$counters %co*:-\$dff"
@@ -143,15 +142,15 @@ replay() { # abc's counterexample, by smtbmc for names and a waveform
 # abc commands log
 limited() { (ulimit -t "$limit" && exec "$@"); }
 abc() { limited yosys-abc -c "$1" >"$2" 2>&1 || true; }
-# step clocks: from any state (no initial values), a failure after this many clocks without one?
-# Exit status 20: none. The assumptions hold in each of them.
+# step clocks: from any state (no initial values), is there a failure after this many clocks without
+# one? Exit status 20: there is none. The assumptions hold in each of them.
 step() {
     abc "read_aiger assert.aig; fold; strash; orpos; frames -F $(($1 + 1)); comb;
         write_blif frames.blif" step.log
-    # The model's first outputs say whether an assertion fails in each clock; they become one, step:
-    # only the last clock failed.
+    # The first outputs of the model show whether an assertion fails in each clock; they become one,
+    # step: only the last clock failed.
     awk -v bads=$(($1 + 1)) '
-        /\\$/ { # a line goes on in the next
+        /\\$/ { # a line continues in the next
             sub(/\\$/, "")
             line = line $0
             next
@@ -172,7 +171,7 @@ step() {
     abc "read_blif step.blif; strash; write_cnf step.cnf" step.log
     limited cadical -q step.cnf >step.log 2>&1
 }
-# bounded clocks [seconds]: does an assertion fail within them, as far as these seconds lead?
+# bounded clocks [seconds]: does an assertion fail within them, as far as this time allows?
 bounded() {
     abc "read_aiger assert.aig; fold; strash; bmc3 -F $1 ${2:+-T $2};
         write_cex -a assert.aiw" bounded.log
@@ -206,7 +205,7 @@ else
         status=0
         step "$clocks_of_step" || status=$?
         [ $status -ne 20 ] || carried="induction step of $clocks_of_step clock(s)"
-    elif [ "$clocks" = async2sync ]; then # assertions that are inductive as they stand: a second
+    elif [ "$clocks" = async2sync ]; then # inductive assertions: a second
         limited yosys -q -l induct.log induct.ys >/dev/null 2>&1 || true
         ! grep -q 'Induction step proven: SUCCESS' induct.log || {
             bounded 2 # the base begins after the first clock
@@ -214,7 +213,7 @@ else
         }
     fi
     if [ -z "$carried" ]; then
-        bounded "$depth" 5 # what fails within seconds here may take pdr minutes
+        bounded "$depth" 5 # a failure found within seconds here may take pdr minutes
         # sat: scorr alone may find the output constant; newer versions of abc then have nothing to
         # prove
         abc "read_aiger assert.aig; fold; strash; scorr -F 2; pdr ${PROVE_PDR:-};
@@ -263,4 +262,4 @@ echo "$module: $covers covers reached"
 times >times.txt
 awk 'function s(t) { split(t, a, /[ms]/); return 60 * a[1] + a[2] } { n += s($1) + s($2) }
     END { printf "%.1f\n", n }' times.txt >cpu
-echo "$module: $(cat cpu) s of a processor"
+echo "$module: $(cat cpu) s of CPU time"

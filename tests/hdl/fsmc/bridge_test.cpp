@@ -112,7 +112,7 @@ TEST_F(Bridge, ARegisterWrittenTooEarlyIsLostAndReported) {
         unsigned errors = b_.errors;
         b_.slave.hung = true; // for less than the time-out
         fsmc_.write32(bcr2, bcr & ~fsmc::bcrAsyncWait);
-        // The word under way would get the later data as its high half: here they are the same.
+        // The current word would get the later data as its high half: here they are equal.
         if (behindWrite)
             fsmc_.write32(at(40), 0x5A5A1234);
         else
@@ -140,13 +140,12 @@ TEST_F(Bridge, AHungMemoryEndsInAnErrorAndTheBridgeGoesOn) {
     EXPECT_EQ(b_.errors, 1u);
     EXPECT_EQ(b_.errorAddr, 0x3FFu);
     b_.memory.hold(false);
-    EXPECT_EQ(fsmc_.read16(ddr + 0x40), 0x77)
-        << "what comes late is not mistaken for something else";
+    EXPECT_EQ(fsmc_.read16(ddr + 0x40), 0x77) << "a late answer is not taken for another one";
     EXPECT_EQ(fsmc_.read16(ddr + 0x80), 0);
 }
 
-// Writes that find no room are let go like reads, with an error each; after the last place they are
-// lost.
+// Writes that find no room are released like reads, with an error each; after the last entry they
+// are lost.
 TEST_F(Bridge, WritesToAHungMemoryEndInErrorsAndTheBridgeGoesOn) {
     b_.keepEvents();
     const uint32_t& event = b_.slave.words[b_.slave.clearWord];
@@ -154,7 +153,7 @@ TEST_F(Bridge, WritesToAHungMemoryEndInErrorsAndTheBridgeGoesOn) {
     b_.memory.hold(true);
     unsigned done = 0;
     for (; b_.errors == 0 && done < 32; ++done)
-        fsmc_.write16(ddr + 8 * done, value(done)); // a place each
+        fsmc_.write16(ddr + 8 * done, value(done)); // one address each
     const unsigned before = done - 1;
     EXPECT_EQ(before, 14u) << "of 16 places two are kept";
     EXPECT_EQ(b_.errorAddr, 0x3FFu);
@@ -174,7 +173,7 @@ TEST_F(Bridge, WritesToAHungMemoryEndInErrorsAndTheBridgeGoesOn) {
 }
 
 // Registers wait for posted writes: a memory that does not take them is reported, and the register
-// access goes on.
+// access continues.
 TEST_F(Bridge, AHungMemoryDoesNotKeepRegistersAway) {
     b_.memory.hold(true);
     fsmc_.write16(ddr + 0x40, 0x1234);
@@ -182,7 +181,7 @@ TEST_F(Bridge, AHungMemoryDoesNotKeepRegistersAway) {
     EXPECT_GE(b_.errors, 1u);
     b_.memory.hold(false);
     unsigned errors = b_.errors;
-    EXPECT_EQ(fsmc_.read16(ddr + 0x40), 0x1234) << "what was posted is written late";
+    EXPECT_EQ(fsmc_.read16(ddr + 0x40), 0x1234) << "posted data are written late";
     EXPECT_EQ(b_.errors, errors);
 }
 
@@ -218,8 +217,7 @@ TEST_F(Bridge, AnAccessThatIsGivenUpLeavesNothingHalfDone) {
     EXPECT_EQ(b_.errors, 0u);
 }
 
-// The fastest timing, without NWAIT: correct when the memory keeps up, and detected when it does
-// not.
+// The fastest timing, without NWAIT: correct if the memory keeps up, and detected if it does not.
 TEST_F(Bridge, StreamsAreRightHoweverSlowTheMemoryIs) {
     Random random(testSeed());
     FSMC_setHclk(120000000);
@@ -243,7 +241,7 @@ TEST_F(Bridge, StreamsAreRightHoweverSlowTheMemoryIs) {
     EXPECT_GT(repeated, 0u) << "a slow one does not, and that was seen";
 }
 
-// The edges of NWE are 33.3 ns apart at 120 MHz; other ratios let them come at every phase of the
+// The edges of NWE are 33.3 ns apart at 120 MHz; other ratios place them at every phase of the
 // clock.
 TEST(BridgeRatios, WritesOfAStreamAreTakenAtEveryPhase) {
     Random random(testSeed());
@@ -279,7 +277,7 @@ TEST_F(Bridge, TheDriverTurnsThePageAndTellsOfTheFirstBusError) {
     EXPECT_EQ(FSMC_checkError(&where), FSMC_BUS_ERROR);
     EXPECT_EQ(where, 0x123u);
     doorbell();
-    EXPECT_EQ(words[SYSTEM_EVENT], unsigned(SYSTEM_EVENT_LATE_MASK)) << "only what was told";
+    EXPECT_EQ(words[SYSTEM_EVENT], unsigned(SYSTEM_EVENT_LATE_MASK)) << "only the reported event";
 }
 
 TEST_F(Bridge, OtherChipsOnTheBusAreLeftAlone) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// corners_test: the bridge at the end of real wires: pins with delays and skew of their own, in
-// each corner, at several HCLK, with both readings of when the FSMC looks at NWAIT.
+// corners_test: the bridge at the end of real wires: pins with separate delays and skew, in each
+// corner, at several HCLK, with both interpretations of when the FSMC samples NWAIT.
 
 #include "VFsmcBridge.h"
 #include "pin_delays.h"
@@ -9,7 +9,7 @@
 
 namespace {
 
-// Runs each case in a bench of its own, with its name in every message.
+// Runs each case in a separate bench, with its name in every message.
 template <class Case> void inEveryCorner(double stall, Case&& run) {
     for (unsigned corner = 0; corner < std::size(fsmcCorners); ++corner)
         for (unsigned hclk : {60u, 100u, 120u})
@@ -37,7 +37,7 @@ TEST(Corners, NoAccessIsLostWithTheDriversTiming) {
         });
 }
 
-// NOE falls behind the address phase, and so a read's NWAIT comes later: DATAST 6.
+// NOE falls after the address phase, so the NWAIT of a read is late: DATAST 6.
 TEST(Corners, EveryModeWithTimeForNwait) {
     for (FSMC_Mode mode : {FSMC_MODE_A, FSMC_MODE_2, FSMC_MODE_B, FSMC_MODE_C, FSMC_MODE_D})
         inEveryCorner(0.9, [mode](BridgeBench<VFsmcBridge>& b, unsigned hclk) {

@@ -43,7 +43,7 @@ template <class Bridge> void trafficIn(const Mode& mode, unsigned hclk, unsigned
                  " : " + std::to_string(clk) + ", SEED=" + std::to_string(testSeed()));
     BridgeBench<Bridge> b(testSeed(), 0.2, hclk, clk);
     Random random(testSeed() + hclk);
-    const uint32_t page = random.below(64); // of the memory; as the system slot has it
+    const uint32_t page = random.below(64); // of the memory; as stored in the system slot
     b.top.page_i = static_cast<uint8_t>(page);
     b.master.pauseWrites(random.chance(0.5));
     ASSERT_EQ(b.init(mode.bank), FSMC_OK);
@@ -55,7 +55,7 @@ TEST(Modes, EveryAsynchronousModeAtEveryRatio) {
         for (auto [hclk, clk] :
              {std::pair(120, 100), {100, 100}, {1000, 997}, {997, 1000}, {60, 100}, {168, 100}}) {
             if (hclk == 168 && mode.bank.read.addset < 2)
-                continue; // 4 clocks between writes want ADDSET 2 at 168 MHz
+                continue; // 4 clocks between writes require ADDSET 2 at 168 MHz
             trafficIn<VFsmcBridge>(mode, hclk, clk);
         }
 }
@@ -73,7 +73,7 @@ TEST(Modes, NwaitActiveHighAndTheLargestBuffers) {
     }
 }
 
-// An STM32F407 pauses between the halves of a written word; RM0033 promises that it does not.
+// An STM32F407 pauses between the halves of a written word; RM0033 states that it does not.
 TEST(Modes, BusturnOfWritesIsBetweenTheHalvesOfAWordOrNot) {
     BridgeBench<VFsmcBridge> b(testSeed(), 0, 120, 100);
     FSMC_Bank bank = {FSMC_MODE_A, FSMC_MODE_A, 0, 0, 1, 0, 1, {2, 1, 4}, {2, 1, 4}};
@@ -92,16 +92,16 @@ TEST(Modes, BusturnOfWritesIsBetweenTheHalvesOfAWordOrNot) {
 }
 
 // A doorbell right after a read drops data that is read ahead, on its way or even requested in that
-// very clock, since it is old. At 168 MHz the pins are quick enough: they have the doorbell's
-// address already (here that of the block in its own window) while the memory's side still sees the
+// clock, since it is old. At 168 MHz the pins are fast enough to have the doorbell's address
+// already (here the address of the block in its window) while the memory's side still sees the
 // read.
 TEST(Modes, WhatADoorbellDropsOnItsWayIsNotTakenForFresh) {
     BridgeBench<VFsmcBridge> b(testSeed(), 0.1, 168, 100);
     ASSERT_EQ(b.init(plainModes[0].bank), FSMC_OK);
     Random random(testSeed());
     for (int i = 0; i < 1000 && !HasFailure(); ++i) {
-        // Two misses fetch a block; when it is there the next one is asked for, near the second
-        // read's end. Or, from a slow memory, it comes until after the doorbell.
+        // Two misses fetch a block; when it is complete the next one is requested, near the end of
+        // the second read. With a slow memory, it arrives until after the doorbell.
         const bool slow = random.chance(0.5);
         b.memory.setStall(slow ? 0.7 : 0.1);
         const uint32_t block = 64 * random.below(60), next = block + 64;
@@ -142,7 +142,7 @@ TEST(Modes, TheDriverRefusesWhatTheManualForbids) {
     EXPECT_THROW(b.master.read16(control), FsmcError) << "bank 2 is off: nothing was written";
 }
 
-// The model is strict: it throws where a real STM32 would behave otherwise, or fail.
+// The model is strict: it throws if a real STM32 would behave otherwise, or fail.
 TEST(Modes, TheModelRefusesWhatTheManualForbids) {
     BridgeBench<VFsmcBridge> b(testSeed());
     FsmcMaster& m = b.master;

@@ -10,7 +10,7 @@
 
 constexpr uint32_t ddr = MAP_DDR_WINDOW, control = MAP_CONTROL_WINDOW;
 
-// Written keeps each byte that the memory was given.
+// Stores each byte that was sent to the memory.
 struct Written {
     std::map<uint32_t, uint8_t> bytes;
 
@@ -27,8 +27,7 @@ struct Written {
 };
 
 // Accesses of all widths to both windows and to another chip's: to memory in runs with jumps
-// between them; registers also one right behind the other, so that each write waits for the one
-// before.
+// between them; to registers also without a pause, so that each write waits for the previous one.
 template <class Bridge>
 void traffic(BridgeBench<Bridge>& b, uint64_t seed, int accesses, uint32_t page = 0) {
     FsmcMaster& m = b.master;

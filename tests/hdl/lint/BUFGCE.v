@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// BUFGCE: the ports of Xilinx's clock buffer with an enable (UG382), for lint.
+// BUFGCE: ports of Xilinx's clock buffer with enable (UG382), for lint.
 
 (* blackbox *)
 module BUFGCE (

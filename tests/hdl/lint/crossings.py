@@ -23,7 +23,8 @@ NO_DATA = {"CLK", "ARST", "ALOAD", "RD_CLK", "WR_CLK"}
 
 
 def cdc_clock(kind, port, connections):
-    """The net of the clock that a port of an hdl/cdc module belongs to; None: of none."""
+    """Returns the net of the clock that a port of an hdl/cdc module belongs to; None if there is
+    none."""
     if "async" in port or port in CLOCKS:
         return None
     if kind == "async_fifo":
@@ -134,7 +135,7 @@ class Nets:
         return seen[bit]
 
     def bad(self, main_clock):
-        """Returns the sinks that see what they may not."""
+        """Returns the sinks that depend on forbidden sources."""
         return {
             f"{name} ({self.names.get(own, own)}) sees {through} ({self.names.get(of, of)})"
             for name, own, data in self.sinks

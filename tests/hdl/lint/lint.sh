@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# lint: module source-folder generated-folder. Verilator -Wall, Icarus, Yosys check and latches.
-# A variant is a parameter and its value, or several with commas; what is in `refused` must not
-# elaborate.
+# lint: module source-folder generated-folder. Verilator -Wall, Icarus, Yosys check and latches. A
+# variant is a parameter and its value, or several separated by commas; variants in `refused` must
+# not elaborate.
 set -eu
 module=$1 source=$2 gen=$3
 folders=$source/bus
@@ -68,14 +68,14 @@ for variant in '' $variants; do
         proc; opt; check -assert; select -assert-none t:\$dlatch;"
 done
 # The design with cover points, which make coverage builds, is linted in addition: a signal must
-# have a use without them, too.
+# also have a use without them.
 verilate '' '-DCOVER_POINTS --coverage --assert -Wno-SYNCASYNCNET'
 # One process: its start costs more than a variant.
 yosys -q -p "$read_file design -save read; $checks"
 for variant in $refused; do
     for tool in verilate elaborate; do
         said=$($tool "$variant" 2>&1) && { echo "$module: $tool takes $variant" >&2; exit 1; }
-        # by its message, and by nothing else
+        # only because of its message
         echo "$said" | grep -q "$module: [A-Z].*[0-9][.][.][0-9]" || {
             echo "$said" >&2
             exit 1

@@ -47,7 +47,7 @@ protected:
     static std::vector<uint8_t> received(const std::vector<uint8_t>& packet) {
         return join({0x81, 0x00, 0x00, 40, 0x00}, packet);
     }
-    // Returns the oldest packet that came, without what its frame says of it.
+    // Returns the oldest received packet, without the fields of its frame.
     std::vector<uint8_t> takePacket() {
         auto contents = take();
         EXPECT_GT(contents.size(), 5u);
@@ -153,8 +153,7 @@ TEST_F(ModemApi, ASpoiltFrameIsDroppedAndTheNextIsWhole) {
     EXPECT_EQ(takePacket(), packet(30, 8));
 }
 
-// Frames follow without pauses, so that only a frame's own end brings the receiver back to the
-// next.
+// Frames follow without pauses, so that only the end of a frame leads the receiver to the next one.
 TEST_F(ModemApi, FramesOfAllTypesAreTakenAndTooLongOnesPassedOver) {
     ready();
     Random random(testSeed());
@@ -169,9 +168,9 @@ TEST_F(ModemApi, FramesOfAllTypesAreTakenAndTooLongOnesPassedOver) {
         other(0x8A, 1 + random.below(2)),   // the modem's status, or less
         other(0x88, 5),                     // a reply
         other(0x80, 12 + random.below(98)), // a packet from a 64-bit address
-        other(0x80, 111),                   // the longest of them
+        other(0x80, 111),                   // the longest type
         other(0x81, 112),                   // more than a modem sends
-        other(0x81, 255),                   // the longest that one byte says
+        other(0x81, 255),                   // the longest with a one-byte length
         other(0x81, 0x105),                 // its low byte alone would do
     };
     for (size_t i = 0; i < strangers.size(); ++i) {
@@ -194,7 +193,8 @@ TEST_F(ModemApi, FramesOfAllTypesAreTakenAndTooLongOnesPassedOver) {
 TEST_F(ModemApi, AModemThatLostItsPowerIsSetUpAgain) {
     ready();
     near_->power(false, now());
-    near_->power(true, now()); // it boots transparent, at 9600 baud: noise for the controller
+    near_->power(true, now()); // it boots in transparent mode at 9600 baud: noise for the
+                               // controller
     plain_.send(packet(50, 1), now());
     runMs(100);
     while (!take().empty()) {

@@ -13,14 +13,14 @@
 #include "xbee.h"
 #include <gtest/gtest.h>
 
-// `clkNs`: period of the clock that the module's CLK_HZ says.
+// `clkNs`: clock period that matches the module's CLK_HZ.
 template <class Module, uint64_t clkNs> class ModemRig : public ::testing::Test {
 protected:
     static constexpr uint32_t txRing = 0xAAAAA800,
                               rxRing = 0x55555000; // every address line, both ways
 
     void power(XBee::Options options) {
-        air_.weather.perfect = true; // these tests try the controller
+        air_.weather.perfect = true; // these tests are about the controller
         near_ = std::make_unique<XBee>(pins_, air_, options);
         XBee::Options far;
         far.name = "far";
@@ -45,8 +45,7 @@ protected:
         bus_.write(MODEM_BAUD, guardMs << MODEM_BAUD_GUARD_MS_LSB | bd);
         bus_.write(MODEM_CONTROL, MODEM_CONTROL_CONFIGURE_MASK);
         bench_.waitFor([&] { return bench_.top().irq_o; }, "the end of the set-up", 40'000'000);
-        // A command that it tries at a wrong rate may go out as data, unless the modem still
-        // starts.
+        // A command tried at a wrong rate may be sent as data, unless the modem still starts.
         plain_.received.clear();
         sizes_.clear();
         targets_.clear();
@@ -89,11 +88,10 @@ protected:
         return packet;
     }
 
-    // Returns the counted errors without the set-up's retries, since it may have to search the
+    // Returns the counted errors without the set-up's retries, since it may have to search for the
     // rate.
     uint32_t errors() { return bus_.read(MODEM_ERRORS) & ~MODEM_ERRORS_RETRIES_MASK; }
-    // Drives the line from the modem's side bit by bit, as the model, which is silent then, would
-    // not.
+    // Drives the line from the modem's side bit by bit, which the model, silent then, cannot do.
     void bytesIn(const std::vector<uint8_t>& bytes, unsigned bitClocks) {
         for (uint8_t byte : bytes)
             for (unsigned bits = byte << 1 | 0x200; bits > 0; bits >>= 1) {
@@ -109,7 +107,7 @@ protected:
     UartPins pins_;
     HostLine plain_;
     std::unique_ptr<XBee> near_, far_;
-    std::vector<size_t> sizes_; // of the packets that were on the air
+    std::vector<size_t> sizes_; // sizes of the packets that were on the air
     std::vector<uint16_t> targets_;
     bool pinsIgnoreRts_ = false;
     bool noise_ = false; // the line to the controller is held low

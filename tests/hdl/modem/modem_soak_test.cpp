@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // modem_soak_test: noise into the modem controller's UART: random bytes, gaps, breaks and glitches,
-// with a memory that stalls and software that takes packets at random. Its output must be runs of
-// its input, in order; other memory does not change; and afterwards it works.
+// with a memory that stalls and software that takes packets at random. Its output must consist of
+// parts of its input, in order; other memory does not change; and afterwards it works.
 //
 //   SOAK_BYTES=10000000 build/main/tests/hdl/test_modem_soak     (default 30000)
 
@@ -43,7 +43,8 @@ protected:
         else if (what < 6)
             hold(false, bitClocks * 0.2); // a glitch
         else if (what < 16)
-            hold(true, bitClocks * random_.below(60)); // a gap, maybe long enough to end a packet
+            hold(true, bitClocks * random_.below(60)); // a gap, possibly long enough to end a
+                                                       // packet
         else if (what < 18)
             memory_.hold(true);
         else if (what < 40)
@@ -71,7 +72,8 @@ protected:
         ASSERT_LE(packet.size(), 100u);
         auto from = stream_.begin() + static_cast<std::ptrdiff_t>(checked_);
         auto found = std::search(from, stream_.end(), packet.begin(), packet.end());
-        ASSERT_NE(found, stream_.end()) << "packet " << packets_ << " is no run of what was sent";
+        ASSERT_NE(found, stream_.end())
+            << "packet " << packets_ << " is not a part of the bytes sent";
         checked_ = static_cast<size_t>(found - stream_.begin()) + packet.size();
         if (checked_ > 100'000) {
             stream_.erase(stream_.begin(), stream_.begin() + static_cast<std::ptrdiff_t>(checked_));
@@ -108,11 +110,11 @@ TEST_F(ModemSoak, NoiseIsReceivedAsItIsOrDroppedWhole) {
         ASSERT_EQ(memory_.byte(rxRing + 2048 + i), 0) << "above the ring";
     }
     std::cout << "modem controller: " << bytes << " bytes of noise into its UART, " << packets_
-              << " packets came out, each a run of what went in; it goes on" << std::endl;
+              << " packets received, each a part of the bytes sent" << std::endl;
     noise_ = false;
     plain_.send(frame(50, 9), now());
     runMs(10);
-    EXPECT_EQ(take(), frame(50, 9)) << "it goes on";
+    EXPECT_EQ(take(), frame(50, 9)) << "it works afterwards";
 }
 
 } // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_test: setting the modem up, resets, puts that are refused, and packets to the modem and
-// from it, pin by pin. What meets in one clock is proven (formal.modem_*).
+// modem_test: modem set-up, resets, rejected settings, and packets to and from the modem, pin by
+// pin. Coincidences in one clock are proven (formal.modem_*).
 
 #include "VModem.h"
 #include "modem_rig.h"
@@ -155,7 +155,7 @@ TEST_F(ModemTest, APacketThatASetUpInterruptsIsSentAgainWhole) {
     ready();
     put(0, frame(100, 1));
     runMs(4);
-    configure(); // in mid packet
+    configure(); // within a packet
     EXPECT_TRUE(takeEvents() & MODEM_EVENT_CONFIGURED_MASK);
     runMs(40);
     ASSERT_GE(plain_.received.size(), 100u);
@@ -172,7 +172,7 @@ TEST_F(ModemTest, PacketsLeaveEachAsOneRfPacket) {
         std::vector<uint8_t> packet(lengths[i], static_cast<uint8_t>(i + 1));
         put(static_cast<unsigned>(i), packet);
         expected.insert(expected.end(), packet.begin(), packet.end());
-        runMs(16); // else the modem, busy on the air, may join two that wait in it
+        runMs(16); // otherwise the modem, busy on the air, may join two waiting packets
     }
     EXPECT_EQ(plain_.received, expected);
     EXPECT_EQ(sizes_, std::vector<size_t>(lengths.begin(), lengths.end()));
@@ -180,7 +180,7 @@ TEST_F(ModemTest, PacketsLeaveEachAsOneRfPacket) {
     EXPECT_EQ(bus_.read(MODEM_TX_STATE), 9u << 8 | 16u);
 }
 
-// A modem that encrypts sends a packet off at 95 bytes: no rest is needed after one of these.
+// A modem that encrypts sends a packet at 95 bytes: no pause is needed after such a packet.
 TEST_F(ModemTest, EncryptedPacketsOf95BytesFollowEachOther) {
     power(quick());
     bus_.write(MODEM_NET, 0x3332u << MODEM_NET_PAN_LSB | 1u << MODEM_NET_ENCRYPT_LSB | 0x0C);
@@ -266,7 +266,7 @@ TEST_F(ModemTest, AFullRingDropsWholePacketsAndNothingElse) {
     EXPECT_TRUE(take().empty());
     plain_.send(frame(50, 99), now());
     runMs(10);
-    EXPECT_EQ(take(), frame(50, 99)) << "it goes on";
+    EXPECT_EQ(take(), frame(50, 99)) << "it works afterwards";
 }
 
 TEST_F(ModemTest, RTSHoldsTheModemInMidPacketAndThePacketIsWhole) {
@@ -275,8 +275,8 @@ TEST_F(ModemTest, RTSHoldsTheModemInMidPacketAndThePacketIsWhole) {
         plain_.send(frame(20, static_cast<uint8_t>(i + 1)), now());
         runMs(10);
     }
-    // Both frames are in one RF packet, so they come without a pause. Memory takes the first one's
-    // last byte when the second has begun.
+    // Both frames are in one RF packet, so they arrive without a pause. The memory takes the last
+    // byte of the first one after the second has begun.
     auto both = frame(50, 14);
     const auto second = frame(50, 15);
     both.insert(both.end(), second.begin(), second.end());
@@ -284,7 +284,7 @@ TEST_F(ModemTest, RTSHoldsTheModemInMidPacketAndThePacketIsWhole) {
     plain_.send(both, now());
     for (uint64_t byte : {end, end + 1}) {
         bench_.waitFor([&] { return near_->counters().bytesToHost >= byte; }, "a byte", 100'000);
-        runMs(byte == end ? 0.02 : 0); // the byte before is in memory, however slow that was
+        runMs(byte == end ? 0.02 : 0); // the previous byte is in memory, even if that was slow
         memory_.hold(byte == end);
     }
     runMs(50);

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# names: source-folder work-folder slice2c   core new and core remove: names that they
-# refuse, which leave the tree unchanged. It is shell because a case is a command and what it says.
+# names: source-folder work-folder slice2c   core new and core remove: names that they refuse,
+# leaving the tree unchanged. It is a shell script because a case is a command and its output.
 set -eu
 source=$1 ip=$1/ip work=$2 slice2c=$3
 rm -rf "$work"
@@ -16,7 +16,7 @@ echo 'entity Vhdl_Thing is' >"$work/ip/old/other.vhd"
 # Not the repository that the work folder may be in.
 export GIT_CEILING_DIRECTORIES="$(dirname "$work")"
 before=$(ls "$work/ip")
-refused() { # words of the message, arguments
+refused() { # message, arguments
     words=$1
     shift
     status=0
@@ -42,7 +42,7 @@ refused 'there already' old --lang verilog
 refused 'modem.regs.json' modem --lang verilog
 refused 'a module' bus_thing --lang verilog
 refused 'a module' vhdl_thing --lang verilog
-# An interface of one's own.
+# A user's interface.
 mkdir -p "$work/build/slice"
 printf '#!/bin/sh\nexec "%s" "$@"\n' "$slice2c" >"$work/build/slice/slice2c"
 chmod +x "$work/build/slice/slice2c"
@@ -73,7 +73,7 @@ for language in verilog vhdl; do
     [ ! -e "$work/ip/low_pass" ] && [ ! -s "$work/ip/cores.list" ] ||
         { echo 'rm-ip left something' && exit 1; }
 done
-# An input that only cores drive does not keep the core that drives it.
+# An input driven only by cores does not prevent the removal of the core that drives it.
 new low_pass --lang verilog --ice "$work/a.ice" >/dev/null
 mkdir -p "$work/ip/taker"
 touch "$work/ip/taker/taker.v" "$work/ip/taker/taker.regs.json"
@@ -94,7 +94,7 @@ for wrong in '' nobody template ../bus; do
     ! remove "$wrong" 2>"$work/log" && grep -q 'not a core\|there is no ip/' "$work/log" ||
         { echo "rm-ip takes '$wrong'" && exit 1; }
 done
-# Uncommitted work stays, unless forced.
+# Uncommitted work is kept, unless forced.
 (cd "$work" && git init -q . && new fir --lang verilog >"$work/log")
 grep -q 'make ip-test IP=fir' "$work/log" && [ -f "$work/ip/fir/fir.v" ] &&
     ! grep -rq '@[A-Z]*@' "$work/ip/fir" || { echo 'ip/fir is not what it should be' && exit 1; }
@@ -103,7 +103,7 @@ grep -q 'make ip-test IP=fir' "$work/log" && [ -f "$work/ip/fir/fir.v" ] &&
 remove fir --force >/dev/null
 [ ! -e "$work/ip/fir" ] || { echo 'rm-ip FORCE=1 left it' && exit 1; }
 rm -rf "$work/.git" "$work/build"
-# A build that cannot be configured with it: taken back.
+# A core with which the build cannot be configured is removed again.
 mkdir "$work/build"
 touch "$work/build/build.ninja"
 refused 'nothing was changed' fir --lang verilog

@@ -1,11 +1,11 @@
 `include "timescale.v"
 // SPDX-License-Identifier: MIT
 //
-// apb_words: an APB 5 core as others write them: old Verilog with a delay and a signal named int, a
+// apb_words: an APB 5 core as written by others: old Verilog with a delay and a signal named int, a
 // parameter, several interrupts, a gated clock. It waits `waits` clocks in each access, with PREADY
 // high at rest if 0, takes data for a read in the set-up phase, and refuses word 3. Word 0 counts
-// the transfers that begin as they must, awake, and of which only a write has strobes. What it
-// answers while it is not ready means nothing.
+// the transfers that begin correctly, awake, and with strobes only for a write. Its outputs while
+// it is not ready are meaningless.
 
 module apb_words #(parameter WORDS = 1) (
     input             PCLK, PCLKG, PRESETn, PWAKEUP,

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// axil_words: an AXI core as others write them, with the signals of bursts: four words, capitals, a
-// reset that is low. It takes an address after `aw_late` clocks (before data if that is later),
-// data after `w_late`, and answers `late` clocks later, if it is awake and asked for a single word.
+// axil_words: an AXI core as written by others, with the signals of bursts: four words, capitals,
+// an active-low reset. It takes an address after `aw_late` clocks (before data if that is later),
+// data after `w_late`, and answers `late` clocks later, if it is awake and the request is for a
+// single word.
 
 module axil_words (
     input             S_AXI_ACLK, S_AXI_ARESETN, S_AXI_AWAKEUP,

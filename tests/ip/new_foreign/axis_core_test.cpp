@@ -37,7 +37,7 @@ TEST_F(Scale, EverySampleComesOutOnceScaled) {
     }
     EXPECT_FALSE(core_.bench_.top().over_o);
     scaled({0x7FFF});
-    EXPECT_TRUE(core_.bench_.top().over_o) << "its pin";
+    EXPECT_TRUE(core_.bench_.top().over_o) << "pin of the core";
 }
 
 TEST_F(Scale, GivesABeatAClockWhenTheMemoryKeepsUp) {
@@ -46,7 +46,7 @@ TEST_F(Scale, GivesABeatAClockWhenTheMemoryKeepsUp) {
     auto clocksOf = [&](size_t count) {
         scaled(std::vector<Ice_Short>(count, 1));
         uint64_t before = core_.bench_.cycles();
-        core_.bus_.write(MY_SCALE_CONTROL, 1u << 1); // once more, without the driver's copying
+        core_.bus_.write(MY_SCALE_CONTROL, 1u << 1); // again, without the driver's copying
         core_.bench_.waitFor([&] { return core_.bench_.top().irq_o; }, "the core's interrupt",
                              9999);
         core_.bus_.write(MY_SCALE_EVENT, ~0u);
@@ -67,9 +67,9 @@ TEST_F(Scale, WhatDoesNotEndIsGivenUpAndTheNextCallWorks) {
     EXPECT_THROW(scaled(std::vector<Ice_Short>(300, 5)), CoreError);
     core_.memory_.hold(false);
     EXPECT_EQ(scaled({1, 2, 3}), (std::vector<Ice_Short>{2, 4, 6}));
-    // In its midst, when words wait for the core.
+    // In the middle of it, when words wait for the core.
     scaled(std::vector<Ice_Short>(512, 5));
-    core_.bus_.write(MY_SCALE_CONTROL, 1u << 1); // once more
+    core_.bus_.write(MY_SCALE_CONTROL, 1u << 1); // again
     core_.bench_.tick(250);
     core_.bus_.write(MY_SCALE_CONTROL, 1u << 31);
     EXPECT_EQ(scaled({1, 2, 3}), (std::vector<Ice_Short>{2, 4, 6}));
@@ -93,7 +93,7 @@ TEST_F(Twice, AnswersAreAsLongAsWhatComesOut) {
         for (size_t i = 0; i < 2 * n; ++i)
             ASSERT_EQ(out[i], static_cast<Ice_Byte>(7 * (i / 16 * 8 + i % 8))) << i << " of " << n;
     }
-    auto out = twice(5); // the first word is given whole, then what is kept of it
+    auto out = twice(5); // the first word is complete, then only the kept bytes
     ASSERT_EQ(out.size(), 13u);
     for (size_t i = 0; i < 5; ++i)
         EXPECT_EQ(out[8 + i], 7 * i);

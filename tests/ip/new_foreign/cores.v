@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// cores: third-party cores whose files need nothing else, as other people write them.
+// cores: third-party cores in self-contained files, as written by others.
 
-// memory_words: four words behind select and write enable; what is read is there LATE clocks later.
+// memory_words: four words with select and write enable; read data is valid LATE clocks later.
 module memory_words #(parameter LATE = 0) (
     input         clk, rst,
     input         cs, we,
@@ -28,9 +28,9 @@ module memory_words #(parameter LATE = 0) (
     wire unused = rst;
 endmodule
 
-// wb_words: Wishbone as a pipelined core has it: it stalls each strobe for `stalls` clocks and
-// answers `late` clocks after it took one, in the same clock if 0. Without STALL it is a classic
-// core, and counts from the strobe's begin. Its addresses count bytes.
+// wb_words: Wishbone as in a pipelined core: it stalls each strobe for `stalls` clocks and answers
+// `late` clocks after taking one, in the same clock if 0. Without STALL it is a classic core, and
+// counts from the start of the strobe. Its addresses count bytes.
 module wb_words (
     input             wb_clk_i, wb_rst_i,
     input             wb_cyc_i, wb_stb_i, wb_we_i,
@@ -62,8 +62,8 @@ module wb_words (
     end
 endmodule
 
-// axis_scale: multiplies 16-bit samples, as a foreign core with AXI-Streams, a setting and a pin;
-// it has no tlast.
+// axis_scale: multiplies 16-bit samples, as a third-party core with AXI-Streams, a setting and a
+// pin; without tlast.
 module axis_scale (
     input  wire        aclk,
     input  wire        aresetn,
@@ -91,7 +91,7 @@ module axis_scale (
     end
 endmodule
 
-// axis_twice: gives each word of 64 bits twice, bytes as they are kept: packets become longer.
+// axis_twice: outputs each 64-bit word twice, with its byte enables: packets become longer.
 module axis_twice (
     input  wire        clk,
     input  wire        rst,
@@ -119,7 +119,8 @@ module axis_twice (
             second <= !second;
 endmodule
 
-// req_words: a core with a request that lasts until the grant, two clocks later; word 3 gets none.
+// req_words: a core with a request that lasts until the grant, two clocks later; word 3 gets no
+// grant.
 module req_words (
     input             clock, nrst,
     input             req, wr,
@@ -141,8 +142,8 @@ module req_words (
     end
 endmodule
 
-// wbs_names: Wishbone's signals by names as others write them, without strobe and acknowledge, of a
-// core that is a master, too.
+// wbs_names: Wishbone signals with names as written by others, without strobe and acknowledge, for
+// a core that is also a master.
 module wbs_names (
     input         wbs_clk, rst_ni, gate_clk_pad_i,
     input  [3:0]  clk_div,
@@ -156,8 +157,8 @@ module wbs_names (
     assign {wbs_dat_o, intr, spare} = 34'd0;
 endmodule
 
-// avalon_words: Avalon-MM as a pipelined slave has it: it holds each request up for `waits` clocks,
-// and gives what is read `late` clocks after it took the request, in the same clock if 0.
+// avalon_words: Avalon-MM as in a pipelined slave: it delays each request for `waits` clocks, and
+// returns read data `late` clocks after taking the request, in the same clock if 0.
 module avalon_words (
     input             csi_clk, rsi_reset_n,
     input             avs_read, avs_write_n,
@@ -194,7 +195,7 @@ module avalon_words (
 endmodule
 
 // two_ways: an address, a request of one clock and an acknowledge for reads, and others for writes,
-// which it counts.
+// which are counted.
 module two_ways (
     input             up_clk, up_rstn,
     input             up_wreq, up_rreq,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// foreign_test: third-party cores as make new-foreign connects them: registers, pins, interrupt; a
-// clock of its own; cores that answer at any time that their bus allows. Checkers of the bus'
-// rules (bus/*_rules.v) end the test where a wrapper or a core breaks one.
+// foreign_test: third-party cores as connected by make new-foreign: registers, pins, interrupt; a
+// separate clock; cores that answer at any time allowed by their bus. Checkers of the bus rules
+// (bus/*_rules.v) end the test if a wrapper or a core breaks one.
 
 #include "Va_bridge_slot.h"
 #include "Vmy_apb2_slot.h"
@@ -28,7 +28,7 @@
 
 namespace {
 
-// Two registers from `first` on hold what was written to them.
+// Checks that two registers, starting with `first`, hold the values written.
 template <class Module>
 void holdsRegisters(CoreSlot<Module>& slot, unsigned first, const std::string& how) {
     for (uint32_t round : {0x12345678u, 0xEDCBA987u}) {
@@ -104,7 +104,7 @@ TEST(Axi4Lite, AChannelIsReadyAndAnsweredWhenItLikes) {
     CoreSlot<Vmy_words_slot> slot;
     auto& top = slot.bench_.top();
     const uint8_t clocks[] = {0, 1, 4};
-    for (uint8_t address : clocks) // before the data, with it, behind it
+    for (uint8_t address : clocks) // before the data, with it, after it
         for (uint8_t data : clocks)
             for (uint8_t late : clocks) {
                 top.aw_late_i = address;
@@ -221,7 +221,7 @@ TEST(RegistersApart, ACoreThatNeverRestsIsToldWithWhatMoves) {
 
 TEST(Late, AValueIsReadOnceAndAClockLater) {
     CoreSlot<Vmy_late_slot> slot;
-    EXPECT_EQ(slot.bus_.read(MY_LATE_REG2), 0x3222u) << "of its file, wherever the test runs";
+    EXPECT_EQ(slot.bus_.read(MY_LATE_REG2), 0x3222u) << "from its file, in any working directory";
     for (uint32_t i = 0; i < 4; ++i)
         slot.bus_.write(MY_LATE_REG0 + i, 0xA5C0 + i);
     for (uint32_t i = 0; i < 4; ++i) {
@@ -239,13 +239,13 @@ TEST(OwnClock, AnyRatioOfTheTwoClocksWillDo) {
             EXPECT_FALSE(slot.bus_.transfer(true, MY_REQUESTS_REG0 + i % 3, value).error) << hz;
             EXPECT_EQ(slot.bus_.read(MY_REQUESTS_REG0 + i % 3), value) << hz;
             EXPECT_EQ(slot.bus_.read(0), MY_REQUESTS_ID_VALUE) << hz;
-            EXPECT_TRUE(slot.bus_.transfer(false, 4, 0).error) << hz << ": there is no word 4";
+            EXPECT_TRUE(slot.bus_.transfer(false, 4, 0).error) << hz << ": word 4 does not exist";
         }
     }
 }
 
-// The core's time-out is an event; its interrupt crosses, and has gone when the write that takes it
-// is done.
+// The core's time-out is an event; its interrupt crosses, and is inactive when the write that
+// clears it has ended.
 TEST(OwnClock, TheInterruptComesAndGoes) {
     CoreSlot<Vmy_requests_slot> slot;
     slot.interrupt_ = [] {};
@@ -269,7 +269,7 @@ TEST(OwnClock, OneThatStandsStillIsAnErrorAndHangsNothing) {
         EXPECT_FALSE(slot.bench_.top().irq_o);
     }
     slot.ownClock_.run(24576000);
-    EXPECT_EQ(slot.bus_.read(0), MY_REQUESTS_ID_VALUE); // not the late answer to the read before
+    EXPECT_EQ(slot.bus_.read(0), MY_REQUESTS_ID_VALUE); // not the late answer to the previous read
     EXPECT_EQ(slot.bus_.read(MY_REQUESTS_REG0), 5u);
 }
 

@@ -1,8 +1,8 @@
 -- SPDX-License-Identifier: MIT
 --
--- lamps: a core in VHDL with a strobe for reading and one for writing, in a record of
--- lamps_types.vhd; it counts what is read. Its habits: a package of Synopsys', an attribute of an
--- output, an assertion for a simulation.
+-- lamps: a core in VHDL with strobes for reading and writing in a record of lamps_types.vhd; it
+-- counts reads. Its features: a Synopsys package, an attribute of an output, an assertion for
+-- simulation.
 library ieee, lights; -- the second one is its own
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// late_words: four words of 16 bits, written by bytes, whose values come a clock after their
-// strobe; a read clears its word. They begin with what is in a file.
+// late_words: four words of 16 bits, written by bytes, with values valid one clock after their
+// strobe; a read clears its word. Their initial values come from a file.
 
 module late_words (
     input             mclk, rst_ni,

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # refused: source-folder work-folder   Input that make new-foreign refuses, with a reason and
-# nothing written. It is shell because a case is a command and what it says.
+# without writing files. It is a shell script because a case is a command and its output.
 set -eu
 source=$1 work=$2
 new() { "$source/tools/python" -m icesoc.cores.new_foreign "$@"; }
@@ -10,7 +10,7 @@ rm -rf "$work"
 mkdir -p "$work"
 cd "$work"
 for file in wb_port.v cores.v axil_words.v lamps.vhd; do cp "$here/$file" .; done
-named() { # name of the core, words of the message, top, bus, options and files
+named() { # name of the core, message, top, bus, options and files
     name=$1 words=$2 top=$3 bus=$4
     shift 4
     ! new "$name" "$top" "$bus" out "$@" >log 2>&1 ||
@@ -20,7 +20,7 @@ named() { # name of the core, words of the message, top, bus, options and files
     [ ! -e out ] || { echo "something was written: $name $top $bus $*" && exit 1; }
 }
 refused() { named my_port "$@"; }
-says() { # each line of the log
+prints() { # each line of the log
     for line; do
         grep -q "^  $line" log || { cat log && echo "'$line' is not said" && exit 1; }
     done
@@ -94,7 +94,7 @@ refused "setting is an input of a core, and 'over' is not" axis_scale axis setti
     { cat log && exit 1; }
 # Meanings of names.
 new my_port wbs_names wishbone names ack=2 open=spare cores.v >log
-says 'wbs_clk: clock' 'rst_ni: resetn' 'gate_clk_pad_i: pin' 'clk_div: pin' \
+prints 'wbs_clk: clock' 'rst_ni: resetn' 'gate_clk_pad_i: pin' 'clk_div: pin' \
     'wbs_cyc_i: cyc' 'wbs_adr_i: adr, counts words: it has 2 bits; if not, ADDRESS=bytes' \
     'wbs_cti_i: low' 'intr: interrupt' 'spare: open'
 # Macros that are multiples of 4 are byte addresses.
@@ -104,19 +104,19 @@ new my_port macros own macros write=we address=a wdata=d rdata=q macros.vh macro
 grep -q 'a: adr, counts bytes: PORT_MODE, PORT_LEVEL are multiples of 4; if not' log &&
     grep -q 'registers: MODE LEVEL' log && grep -q '"word": 10' macros/my_port.regs.json ||
     { cat log && exit 1; }
-# Outputs that may be interrupts are asked about; one that is active low is told.
+# The user is asked about outputs that may be interrupts; an active-low one is reported.
 echo 'module asked(input clk, we, input [31:0] d, output [31:0] q, output TIMERINT, irq_no, point, output [3:0] rx_events); endmodule' >asked.v
 new my_port asked own asked write=we wdata=d rdata=q asked.v >log
-says "TIMERINT: pin timerint_o; if it is an interrupt: PORTS='interrupt=TIMERINT'" \
+prints "TIMERINT: pin timerint_o; if it is an interrupt: PORTS='interrupt=TIMERINT'" \
     "rx_events: pin rx_events_o; if it is an interrupt: PORTS='interrupt=rx_events'" \
     'irq_no: interruptn$' 'point: pin point_o$'
 new my_port asked own open write=we wdata=d rdata=q 'open=*t*' asked.v >log
-says 'TIMERINT: pin' 'rx_events: open' 'point: open' 'irq_no: interruptn'
+prints 'TIMERINT: pin' 'rx_events: open' 'point: open' 'irq_no: interruptn'
 refused "has no port 'TIMER\*'" asked own write=we wdata=d rdata=q 'low=TIMER*' asked.v
 grep -q 'interrupt = !interrupt_0;' asked/my_port.v
-# Many pins that nobody needs.
+# Many unneeded pins.
 new my_port asked own spared write=we wdata=d rdata=q 'open=*' pin=point asked.v >log
-says 'irq_no: interruptn$' 'rx_events: open$' 'point: pin point_o$'
+prints 'irq_no: interruptn$' 'rx_events: open$' 'point: pin point_o$'
 # OpenCores' level of a reset, whatever else has it for a name.
 echo 'module level #(parameter ARST_LVL = 0) (input clk, arst_i, we, input [31:0] d, output reg [31:0] q);
     wire rst = arst_i ^ ARST_LVL[0];
@@ -144,8 +144,8 @@ endpackage' >sizes.sv
 echo 'package widths; localparam W = 8; endpackage' >widths.sv
 new my_port system own system PARAM:EXTRA=2 write=we wdata=d rdata=q \
     system.sv sizes.sv widths.sv >log
-says 'state_o: pin state_o' "sv2v --top=system .*/widths.sv .*/sizes.sv .*/system.sv >system.v"
-! grep -q 'is_odd\|number' log && # what belongs to functions is no port
+prints 'state_o: pin state_o' "sv2v --top=system .*/widths.sv .*/sizes.sv .*/system.sv >system.v"
+! grep -q 'is_odd\|number' log && # arguments of functions are not ports
     grep -q 'input  wire \[2:0\] more_i' system/my_port.v &&
     grep -q '"width": 16' system/my_port.regs.json &&
     ! grep -q UNOPTFLAT system/core.toml ||

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// registers_test: Hw::Registers, the servant of any core's registers, called by IceC's proxies.
+// registers_test: Hw::Registers, the servant for the registers of any core, called by IceC's
+// proxies.
 
 #include "Vmy_port_slot.h"
 #include "Vmy_requests_slot.h"
@@ -65,7 +66,7 @@ public:
         EXPECT_EQ(Hw_RegistersPrx_wait_async(&prx_, ms, &call_), ICE_OK);
         settle();
     }
-    // Lets time pass as the firmware's task does, until the servant needs no more calls.
+    // Advances time like the firmware's task, until the servant needs no more calls.
     void poll() {
         for (U32 next; (next = Hw_Registers_Core_poll(&core_, slot_.nowMs(&slot_))) != HW_NEVER;)
             slot_.wait(&slot_, 0, next + 1);
@@ -80,7 +81,7 @@ public:
     CoreSlot<Module> slot_;
     Hw_Registers_Core core_;
     Ice_ObjectPrx prx_;
-    std::string reason_; // of the last call's exception
+    std::string reason_; // reason of the last call's exception
     std::optional<std::vector<std::string>> answer_;
     int interrupts_ = 0;
 
@@ -205,7 +206,7 @@ TEST(HwRegisters, WaitTakesTheEventThatWasThereOrComes) {
     core.poll();
     ASSERT_TRUE(core.answer_);
     EXPECT_THAT(*core.answer_, ElementsAre("CORE"));
-    // The line stays high: it interrupts once a wait, and is an event again.
+    // The line stays high: it interrupts once per wait, and is an event again.
     EXPECT_EQ(core.interrupts_, 1);
     core.slot_.wait(&core.slot_, 0, 5);
     EXPECT_EQ(core.interrupts_, 1);
@@ -243,8 +244,8 @@ TEST(HwRegisters, AnotherCoreInTheSlotIsNotServed) {
               HW_WRONG_CORE);
 }
 
-// A slot whose registers have another hash in the chip than in the firmware is found: the system
-// slot of a chip whose hashes are slot * 17.
+// A slot with different hashes of registers in chip and firmware is detected: the system slot of a
+// chip with hashes slot * 17.
 struct Chip {
     U32 slot = 0;
     static U32 read(void* context, U32 address) {
@@ -278,7 +279,7 @@ TEST(Contracts, ASlotThatDiffersIsFoundAndTheOthersHold) {
     EXPECT_TRUE(Hw_Contracts_hold(found, 4, 2));
     EXPECT_FALSE(Hw_Contracts_hold(found, 4, 3));
     EXPECT_TRUE(Hw_Contracts_hold(found, 4, 63));
-    EXPECT_FALSE(Hw_Contracts_hold(found, 4, 4)) << "nobody knows this slot";
+    EXPECT_FALSE(Hw_Contracts_hold(found, 4, 4)) << "this slot is not in the list";
     EXPECT_EQ(found[2].chip, 51);
     EXPECT_EQ(found[2].firmware, 52);
     EXPECT_STREQ(found[2].block.data, "two");

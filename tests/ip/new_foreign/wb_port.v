@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// wb_port: a Wishbone core as others write them: 8 bits, word addresses, an interrupt, pins.
+// wb_port: a Wishbone core as written by others: 8 bits, word addresses, an interrupt, pins.
 
 module wb_port (
     input            wb_clk_i, wb_rst_i,

@@ -58,9 +58,9 @@ module Top {
     "text.ice": f'module L {{ const string T = "{509 * "0"}"; '
                 f'struct S {{ string a = "{510 * "0"}"; }}; }};',
     # A file beside the one that includes it, or above, wherever the compiler runs
-    "beside/above.ice": "module Above { struct S { int a; }; };\n",
-    "beside/sub/next.ice": "module Next { struct S { Above::S a; Nothing b; }; };\n",
-    "beside/sub/low.ice": '#include "../above.ice"\n#include "next.ice"\n'
+    "siblings/above.ice": "module Above { struct S { int a; }; };\n",
+    "siblings/sub/next.ice": "module Next { struct S { Above::S a; Nothing b; }; };\n",
+    "siblings/sub/low.ice": '#include "../above.ice"\n#include "next.ice"\n'
                           "module Low { struct S { Above::S a; }; };\n",
     "top.ice": "#include <sub/low.ice>\n",
     "one/fir.ice": "module Cores { sequence<byte> Bytes; interface Fir { void f(); }; };\n",
@@ -204,13 +204,13 @@ class Cases(Script):
                      "a compiler of C90 needs to take 509 only")
 
     def beside_and_above(self):
-        self.slice2c("beside/sub/low.ice", 1, "^module Next",
-                     "^/.*/beside/sub/next.ice:1:38: error: .Nothing. is not a type")
-        edit("beside/sub/next.ice", "Nothing b;", "")
-        self.slice2c("beside/sub/low.ice --output-dir beside/sub")
-        self.has('^#include "../above.h"$', '^#include "next.h"$', file="beside/sub/low.h")
-        for words in "beside/sub/low.ice", "-Ibeside top.ice":
-            self.slice2c(f"--depend {words}", 0, "^ beside/above.ice ", "^ beside/sub/next.ice$")
+        self.slice2c("siblings/sub/low.ice", 1, "^module Next",
+                     "^/.*/siblings/sub/next.ice:1:38: error: .Nothing. is not a type")
+        edit("siblings/sub/next.ice", "Nothing b;", "")
+        self.slice2c("siblings/sub/low.ice --output-dir siblings/sub")
+        self.has('^#include "../above.h"$', '^#include "next.h"$', file="siblings/sub/low.h")
+        for words in "siblings/sub/low.ice", "-Isiblings top.ice":
+            self.slice2c(f"--depend {words}", 0, "^ siblings/above.ice ", "^ siblings/sub/next.ice$")
 
 
 main(Cases)

@@ -22,7 +22,9 @@ protected:
     }
     int stop() { return gateway_->stop(); }
     const std::string& said() const { return gateway_->said(); }
-    bool says(const std::string& text) const { return said().find(text) != std::string::npos; }
+    bool hasPrinted(const std::string& text) const {
+        return said().find(text) != std::string::npos;
+    }
     // A program without the plugin.
     static Ice::CommunicatorPtr plain() {
         return program(

@@ -32,7 +32,7 @@ TEST_F(Gateway, TheUavCallsTheStationBehindIt) {
     EXPECT_ANY_THROW(echo_->callStation(1));
     expectAnswer();
     EXPECT_EQ(stop(), 0);
-    EXPECT_TRUE(says("no server listens at 127.0.0.1"));
+    EXPECT_TRUE(hasPrinted("no server listens at 127.0.0.1"));
 }
 
 // Station keeps the vehicle's proxy of a vehicleState.

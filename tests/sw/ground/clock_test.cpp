@@ -146,7 +146,7 @@ protected:
         }
     }
     // Runs a program that keeps step beside it, until it returns.
-    void beside(const std::function<void(Clock&, SerialPort&)>& program) {
+    void alongside(const std::function<void(Clock&, SerialPort&)>& program) {
         std::atomic<bool> over{false};
         std::thread thread([&] {
             struct AtEnd {
@@ -187,7 +187,7 @@ TEST(Pty, BytesThatNeverComeAreWaitedForOnce) {
 }
 
 TEST_F(Step, NoTimePassesWhileTheProgramWorksAndNoByteIsLate) {
-    beside([&](Clock& clock, SerialPort& port) {
+    alongside([&](Clock& clock, SerialPort& port) {
         Random random(testSeed());
         for (uint8_t i = 0; i < 60; ++i) {
             const uint32_t begin = clock.nowUs();
@@ -211,7 +211,7 @@ TEST_F(Step, NoTimePassesWhileTheProgramWorksAndNoByteIsLate) {
 
 // An engine that gave up and tries again follows the other between two looks at the pty.
 TEST_F(Step, WhoKeepsStepNextIsHeardFromTheFirstByte) {
-    beside([&](Clock& clock, SerialPort& port) {
+    alongside([&](Clock& clock, SerialPort& port) {
         for (uint8_t i = 0; i < 240; ++i) {
             if (i % 4 == 3)
                 clock.keepStep(port.fd(), pty_.path());

@@ -178,7 +178,7 @@ class Constraints:
         return (kind == "pad") == (point[0] == "pad") and any(
             fnmatchcase(m, p) for m in members for p in patterns)
 
-    def says(self, pad, word):
+    def has_word(self, pad, word):
         return any(
             fnmatchcase(pad, net) and re.search(rf"\b{word}\b", what) for net, what in self.nets)
 
@@ -187,7 +187,7 @@ class Constraints:
             return True
         if end[0] == "reset":
             if start[0] == "pad":
-                return self.says(re.sub(r"<(\d+)>", r"_\1", start[1]) + "_IBUF", "MAXDELAY")
+                return self.has_word(re.sub(r"<(\d+)>", r"_\1", start[1]) + "_IBUF", "MAXDELAY")
             end = end[1]
         if start[0] != "pad" and start[1] == end[1]:
             return any(self.has(group, start) for group in self.periods)
@@ -201,7 +201,7 @@ class Constraints:
                 if not self.covers(start, end)}
         for pad in pads:
             told |= {f"pad {pad}: no {word}" for word in ("IOSTANDARD", "LOC")
-                     if not self.says(pad, word) and not (word == "LOC" and pad in unused)}
+                     if not self.has_word(pad, word) and not (word == "LOC" and pad in unused)}
         return told
 
 

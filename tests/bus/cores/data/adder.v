@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// adder: a slot with no register of its own.
+// adder: a slot without registers of the core.
 
 `default_nettype none
 

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # memories: slice2c source-folder work-folder   In every order of ip/cores.list three cores get
-# buffers apart, each at a multiple of its size. And the proof that then, whatever is written to two
-# generated wrappers, no byte of one's buffers is a byte of the other's.
+# separate buffers, each aligned to its size. Includes the proof that then, whatever is written to
+# two generated wrappers, their buffers never overlap.
 set -eu
 slice2c=$1 source=$2 work=$3
 here=$(cd "$(dirname "$0")" && pwd)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// memories_proof: two generated wrappers whose buffers are given as ip/cores.list gives them, each
-// at a multiple of its size and apart: no byte of one's buffers is a byte of the other's.
+// memories_proof: two generated wrappers with buffers allocated as by ip/cores.list, separate and
+// each aligned to its size: the buffers never overlap.
 
 `default_nettype none
 
@@ -28,7 +28,7 @@ module memories_proof (
         .bus_addr_i(addr_i), .bus_wdata_i(wdata_i), .fill_result_base_o(middle_base),
         .fill_result_count_i(13'd4096), .fill_done_i(1'b0), .fill_refused_i(1'b0));
 
-    (* anyconst *) reg [31:0] little, middle; // where the list puts them
+    (* anyconst *) reg [31:0] little, middle; // as allocated by the list
     always @* begin
         assume (little[LITTLE-1:0] == 0 && middle[MIDDLE-1:0] == 0);
         assume (little + 33'd128 <= middle || middle + 33'd4096 <= little);

@@ -14,12 +14,12 @@ module crc32 (
     wire [31:0] base;
     wire [12:0] count;
     reg         busy, begun;
-    reg  [12:0] left;  // bytes
-    reg  [2:0]  place; // of the next byte in its word
+    reg  [12:0] left;  // bytes left
+    reg  [2:0]  place; // index of the next byte in its word
     reg  [31:0] crc;
     wire        read_valid, read_idle;
     wire [63:0] read_data;
-    wire        go   = busy && !begun && read_idle; // what was given up may still be under way
+    wire        go   = busy && !begun && read_idle; // an aborted transfer may still be in progress
     wire        take = begun && read_valid;
     wire        done = begun && left == 13'd0;
 
@@ -33,7 +33,7 @@ module crc32 (
     wire write_ready, write_idle;
     npi_stream u_stream (
         `include "memory_connect.vh"
-        .clk_i(clk_i), .rst_i(rst_i), // not by core_rst: what was asked for must be taken
+        .clk_i(clk_i), .rst_i(rst_i), // not core_rst: requested words must still be taken
         .read_start_i(go && !core_rst), .read_base_i(base[31:6]),
         .read_words_i({14'd0, left[12:3]} + {23'd0, |left[2:0]}), .read_stop_i(core_rst),
         .read_valid_o(read_valid), .read_data_o(read_data),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// crc32_test: the core's answers beside a CRC-32 computed bit by bit, with random waits of the
-// memory.
+// crc32_test: compares the core's results with a CRC-32 computed bit by bit, with random wait
+// states of the memory.
 
 #include "Vcrc32_slot.h"
 #include "crc32_proxy.h"
@@ -43,7 +43,7 @@ TEST(Crc32, ACountWrittenBehindTheStartDoesNotChangeTheCall) {
     core.crc(&data);
     core.bus_.write(CRC32_CONTROL, CRC32_CONTROL_CRC_MASK);
     core.bench_.tick(50);
-    core.bus_.write(CRC32_CONTROL, CRC32_CONTROL_RESET_MASK); // given up, with words on their way
+    core.bus_.write(CRC32_CONTROL, CRC32_CONTROL_RESET_MASK); // aborted with words on their way
     core.bus_.write(CRC32_CONTROL, CRC32_CONTROL_CRC_MASK);
     core.bus_.write(CRC32_CRC_IN0, 8);
     core.bench_.waitFor([&] { return core.bench_.top().irq_o; }, "the core's interrupt", 20000);

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""script: what tests of commands share: a command, what it says, the files that it needs.
+"""script: shared code of tests of commands: a command, its output, the files that it needs.
 
 A test's program ends with `script.main(Cases)`. CTest gives it the name of a case, then what the
 case reads from sys.argv[2:].
@@ -50,7 +50,7 @@ def git(words, *more):
 
 
 def repository():
-    """Makes the current folder a repository of its own."""
+    """Makes the current folder a separate repository."""
     git("init -q .")
     git("config user.email a@b")
     git("config user.name a")
@@ -62,7 +62,7 @@ def commit(subject):
 
 
 class Script(unittest.TestCase):
-    said = ""  # by the last command
+    said = ""  # output of the last command
 
     def ask(self, *words, status=0, **how):
         """Runs a command, which must end with this exit status (None: any of a failure), and keeps

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// clicks: a second script of the page. It clicks as a user does, also on a table and a chart of its
-// own, and writes what it then sees.
+// clicks: a second script of the page. It clicks like a user, also on a separate table and chart, and writes what it then sees.
 const seen = [], $ = (selector, at = document) => at.querySelector(selector);
 const all = (selector, at) => [...at.querySelectorAll(selector)];
 const wait = () => new Promise(done => setTimeout(done, 300));
@@ -29,9 +28,9 @@ const key = (node, key) => node.dispatchEvent(new KeyboardEvent("keydown", {key,
   table(few, [["name", r => r.name], ["n", r => r.n]],
     [{name: "<a>", n: 9}, {name: "b", n: 10, below: [{name: "c", n: 1}]}],
     {id: "few", children: r => r.below, pick: r => seen.push(`picked ${r.name}`)});
-  const values = [1, null, 4], says = i => `no. ${i}`;
+  const values = [1, null, 4], text = i => `no. ${i}`;
   chart(drawn, {labels: ["i", "ii", "iii"], limits: [{name: "l", value: 2, colour: "--bad"}],
-    series: [{name: "s", colour: "--good", values, says, bars: true}]});
+    series: [{name: "s", colour: "--good", values, says: text, bars: true}]});
   await wait();
   seen.push(`of 2000 ${all(".tabulator-row", many).length < 300 ? "some" : "all"}`);
   all(".tabulator-col", few)[1].click();
@@ -54,7 +53,7 @@ const key = (node, key) => node.dispatchEvent(new KeyboardEvent("keydown", {key,
   key(drawn, "ArrowLeft");
   seen.push(`moved ${read()}`);
 
-  const wave = $(".waveform"), told = $("span", wave.closest("details"));
+  const wave = $(".waveform"), cursor = $("span", wave.closest("details"));
   const rows = () => all("text:not([text-anchor])", wave).map(t => t.textContent)
     .filter(t => !/^(\S+Task|[\dafus-]+)$/.test(t)).join(" ");
   const cells = () => all("text.value", wave).map(t => t.firstChild.textContent).join(" ");
@@ -67,14 +66,14 @@ const key = (node, key) => node.dispatchEvent(new KeyboardEvent("keydown", {key,
   key(wave, "Enter");
   seen.push(`tree ${rows()}`);
   click(40, 3);
-  seen.push(`deeper ${rows()}`, `values ${cells()}`, `told${told.textContent}`);
+  seen.push(`deeper ${rows()}`, `values ${cells()}`, `told${cursor.textContent}`);
   click(40, 4);
   seen.push(`unsigned ${cells()}`);
   key(wave, "Enter");
   seen.push(`signed ${cells()}`);
   key(wave, "ArrowLeft");
   key(wave, "ArrowLeft");
-  seen.push(`earlier ${cells()}`, `told${told.textContent}`);
+  seen.push(`earlier ${cells()}`, `told${cursor.textContent}`);
   click(wave.clientWidth - 1, 2);
   seen.push(`later ${cells()}`);
   filter.value = "";

@@ -92,8 +92,8 @@ class Cases(Project):
         self.has("^faults: 1 moments of seeds 3 to 3, 0 failed")
 
     def test_commands_radio(self):
-        """Moments of what takes hours."""
-        # soak and fly both run test_chip_soak, which is a test itself; here only fly does.
+        """Runs moments of commands that take hours."""
+        # soak and fly both run test_chip_soak, which is a separate test; here only fly runs it.
         os.environ["GTEST_FILTER"] = "-ChipSoak*"
         self.user("soak MINUTES=0.01 FUZZED=1000")
         self.has("^modem controller: 1000 bytes of noise", "^link layer: 10000 bytes of noise",
@@ -130,7 +130,7 @@ class Cases(Project):
         self.bad("test NAME=b.Bad SEED=3", "value 3 is not 7")
         self.bad("test LABEL=nothing")
         self.good("test SEED=7")
-        self.assertEqual(self.said.count("100% tests passed"), 2)  # once more with sanitizers
+        self.assertEqual(self.said.count("100% tests passed"), 2)  # again with sanitizers
         write("leak", "")
         self.bad("test SEED=7", "test_s.Sane")
         Path("leak").unlink()
@@ -169,7 +169,7 @@ class Cases(Project):
         self.assertFalse(Path("build").exists())
 
     def elsewhere(self):
-        """A core outside of the tree is named to one command, and from then on known to all."""
+        """A core outside the tree is passed to one command, and then known to all."""
         mine = self.work / "elsewhere/mine"
         write(mine / "mine_test.cpp", "")
         write("utilisation", '#!/bin/sh\necho "utilisation $*"\n')
@@ -212,17 +212,17 @@ class Cases(Project):
             self.assertEqual(len(re.findall("^[0-9]* tests, SEED=", self.said, re.M)), seeds)
 
     def test_make(self):
-        """What is set up and fetched, and what a test needs of a build."""
+        """Set-up, downloads, and the needs of a test."""
         work = self.work / "made"
-        # A user's name may have an apostrophe.
+        # User names may contain an apostrophe.
         cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "icesoc"
         (work / "it's").mkdir(parents=True)
         (work / "it's/icesoc").symlink_to(cache)
         self.ask(*FETCH, "ghdl", work / "ghdl",
                  env={**os.environ, "XDG_CACHE_HOME": f"{work}/it's"})
         self.ask(work / "ghdl/ghdl", "--version")
-        # The pages' libraries: without a network, or with a file of another checksum, the build
-        # goes on, says so, and keeps no partial file.
+        # The pages' libraries: without a network, or with a wrong checksum, the build continues,
+        # prints a message, and keeps no partial file.
         archive = "tabulator-tables-6.5.3.tgz"
         write(work / "npm/tabulator-tables/-" / archive, "wrong\n")
         page, empty = work / "page", work / "empty"
@@ -234,7 +234,7 @@ class Cases(Project):
             self.assertFalse((page / "done").exists())
             self.assertEqual(list(empty.glob("icesoc/foreign/*")), [])
         self.has(f"{archive} is not the file that was tested")
-        # One block's tests need its programs, and no more.
+        # The tests of one block need its programs, and no others.
         self.ask(BUILD / "tests/regress/regress", "--build", BUILD, "--prepare", "--list",
                  "--block", "fir")
         self.has("^(ip/fir/)?test_ip_fir$")

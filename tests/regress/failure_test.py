@@ -11,7 +11,7 @@ from pathlib import Path
 from project import BREAK, REGRESS, TREE, Project, append, commit, edit, git, main, write
 from icesoc.regress.failures import reason_of
 
-# A test that misbehaves: what it does, and what is said of it.
+# A test that misbehaves: its action, and the message about it.
 RUDE = {
     "Hang": ("exec sleep 1000", "^1 x  Timeout"),
     "Loud": ("yes 'a line' | head -c 1000000; echo; echo 'x is 3'; exit 1", "^1 x  x is 3$"),
@@ -77,14 +77,14 @@ add_test(NAME ice.x COMMAND sh -c "printf 'ran\n%s\n}\n'; exit 1")
 set(s ${CMAKE_SOURCE_DIR}/hdl/a)
 set(at ${s}/broken_proof.vh:1)
 set(t ${CMAKE_BINARY_DIR}/t.vcd)
-foreach(m around broken) # as Yosys writes it: all cells around, and the end of the line before
+foreach(m around broken) # as written by Yosys: all cells around, and the end of the previous line
   set(cell "($flatten/u_x./u_y.$assert$${at}$12)")
   add_test(NAME formal.${m} COMMAND sh -c
     "echo 'Assert failed in ${m}: ${s}/around.v:7.1-8.9|${at}.6-3.20 ${cell}'; touch '${t}'
      echo '${m}: trace: ${t}'; echo '${m}: an assertion fails'; exit 1")
 endforeach()
 """
-# A flight that failed, and the simulator that flies it again and writes this waveform.
+# A failed flight, and the simulator that replays it and writes this waveform.
 ENDED = """  0.1 s  UAV -> ground
 mission: the vision core's result differs from the C++ reference: 141 corners, not 140
 -- 11/23/26 06:27:52.116 XBeeAT: link idle
@@ -132,13 +132,13 @@ END
 
 class Cases(Project):
     def test_reasons(self):
-        """The reason of a failure, in the words of each tool that tests run."""
+        """The reason of a failure, from the output of each tool that tests run."""
         for reason, log in REASONS.items():
             with self.subTest(reason):
                 self.assertEqual(reason_of(log.replace("{}", reason)), reason)
 
     def test_rude(self):
-        """Of tests that misbehave the first line says so, and the run goes on."""
+        """The first line reports tests that misbehave, and the run continues."""
         self.tests("".join(f"add_test(NAME test_r.{name} COMMAND sh -c [=[{does}]=])\n"
                            for name, (does, _) in RUDE.items()) +
                    "add_test(NAME test_r.Gone COMMAND /none)\n"
@@ -146,7 +146,7 @@ class Cases(Project):
         self.regress("--name test_r --jobs 4", 1)
         self.has("^2 passed, 7 failed, 0 skipped", "^1 x  Unable to find executable: /none$",
                  *(said for _, said in RUDE.values()))
-        # A limit of 250 KB on files stands for a full disk.
+        # A limit of 250 KB on files simulates a full disk.
         self.ask("sh", "-c", "trap '' XFSZ; ulimit -f 500; exec $0 --name test_a", REGRESS,
                  status=2)
         self.has("^2 passed, 0 failed",
@@ -155,7 +155,7 @@ class Cases(Project):
         self.assertEqual(Path("build/regress/history.jsonl").read_text().count("\n"), 2)
 
     def test_blame(self):
-        """One group for one bug, a test's own last word, the failure nearest to the cause first."""
+        """One group per bug, with a test's last word, the failure nearest to the cause first."""
         self.tests(BLAME.replace("%s", IDEMPOTENT))
         write("hdl/a/broken_proof.vh", "begin\n    assert (full ||\n        !taken);\nend\n")
         self.regress("--name 'test_g|formal|ice'", 1)
@@ -199,7 +199,7 @@ class Cases(Project):
         commit("three")
         self.regress("--changed --prepare --list --name u.Unit")
         self.has("^Nothing to run")
-        write("hdl/new.v", "int g;\n")  # is none of its inputs, a header is
+        write("hdl/new.v", "int g;\n")  # is not one of its inputs, a header is
         write("hdl/fifo/n.h", "#define LIMIT 3\n")
         self.regress("--changed --prepare --list --name u.Unit")
         self.has("^tests/room/test_u$")
@@ -221,7 +221,7 @@ class Cases(Project):
         write("flicker", "")
         self.regress("--name c.Flicker", 1)
         self.has("^        nothing has changed since it passed at [0-9a-f]*$")
-        self.ask("rm", "-r", "build/regress/tree")  # without noted trees the commit is left
+        self.ask("rm", "-r", "build/regress/tree")  # without recorded trees the commit is used
         self.regress("--name a.One", 1)
         self.has(rf"{since}: {own}hdl/new.v:{one}, hdl/fifo/fifo.v:1 \(5 lines\), "
                  ".* tests/room/t.sh")
@@ -261,7 +261,7 @@ add_custom_target(test_w)
                  file="build/regress/report.html")
 
     def test_flight(self):
-        """A flight that fails is flown again around the last event of a core."""
+        """A flight that fails is replayed around the last event of a core."""
         join = "testbench/common/join_waves.sh"
         write(join, (TREE / join).read_text())
         write("build/trace/gen/soc_cores.vh",
@@ -281,7 +281,7 @@ add_custom_target(test_w)
         left = "build/regress/failures/mission.x-1"
         self.has(f"^--replay fly --out {left}.replay --wave .*mission.x-1.fst --from 1.498500 "
                  "--to 1.500500$", file="asked")
-        self.has("141 corners", file="page")  # it was there before any waveform
+        self.has("141 corners", file="page")  # it was present before any waveform
         self.ask("fst2vcd", f"{left}.fst")
         self.assertRegex(self.said.replace("\n", " "),
                          "#3 .*sidleTask .*#10 .*0. .*#20 .*1. .*sradioTask .*#33 sidleTask")

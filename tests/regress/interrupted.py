@@ -16,19 +16,19 @@ import subprocess
 import sys
 import time
 
-LONGEST = 300  # seconds: ends a hang
+LONGEST = 300  # time-out of a hang, s
 source, build, work = (pathlib.Path(word).resolve() for word in sys.argv[1:4])
 moments, tools = int(sys.argv[4]), sys.argv[5:]
 
 
 def members(session):
-    """Processes of a session, but for those that have ended."""
+    """Returns the processes of a session that have not ended."""
     return subprocess.run(["pgrep", "--session", str(session), "--runstates", "D,I,R,S,T,t"],
                           stdout=subprocess.PIPE, text=True).stdout.split()
 
 
 def interrupt(command, number, moment, where):
-    """Starts it, ends it; true if it still ran."""
+    """Starts it, and ends it; returns True if it was still running."""
     with open(work / "log", "w") as log:
         run = subprocess.Popen(command, cwd=where, stdout=log, stderr=log, start_new_session=True)
         try:
@@ -86,7 +86,7 @@ def main():
         right = result()
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL) * moments:
             moment = draw.uniform(0, longest)
-            shutil.rmtree(work / tool, ignore_errors=True)  # kept by the run before
+            shutil.rmtree(work / tool, ignore_errors=True)  # kept by the previous run
             cut = interrupt(command, number, moment, where)
             subprocess.run(command, cwd=where, check=True, stdout=subprocess.DEVNULL,
                            timeout=LONGEST)

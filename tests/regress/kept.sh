@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# kept: tests when tools/icesoc/regress/kept.py computes a verdict anew, and when not.
+# kept: tests when tools/icesoc/regress/kept.py computes a result again, and when not.
 # Usage: kept.sh kept.py's-path work-folder
 set -eu
 kept=$1 work=$2
@@ -28,9 +28,9 @@ echo 'b 1' >second/b.vh
 fail() { echo "kept: $*" >&2 && cat "$work/said" >&2 && exit 1; }
 kept=tools/icesoc/regress/kept.py
 run() { status=0; $kept "$PWD/own" tests/t.sh "$PWD/own" >"$work/said" 2>&1 || status=$?; }
-# why, words in its output: the verdict is computed now, and kept the next time
+# reason, words in its output: the result is computed now, and reused the next time
 computed() {
-    sleep 0.1 # what has just been written is not trusted
+    sleep 0.1 # files just written are not trusted
     run
     { [ $status -eq 0 ] && ! grep -q '^kept:' "$work/said"; } || fail "not computed: $1"
     grep -q "$2" "$work/said" || fail "'$2' is not said: $1"
@@ -57,14 +57,14 @@ touch linked && cp /bin/echo prog
 computed 'a program of the tree, by a link of the test' '^by a link$'
 cp /bin/printf prog && computed 'another one there' '^by a link$'
 rm prog linked
-# A test that fails leaves no verdict.
+# A test that fails leaves no result.
 echo wrong >second/b.vh
 for _ in 1 2; do
     run
     { [ $status -eq 3 ] && ! grep -q '^kept:' "$work/said"; } || fail "a failure: status $status"
 done
-# Nor one that is killed, nor one whose file changes while it runs.
-begun() { # what was before
+# Nor does one that is killed, or one with a file that changes while it runs.
+begun() { # earlier output
     rm -rf own
     $kept "$PWD/own" tests/t.sh "$PWD/own" >"$work/said" 2>&1 &
     until [ -e own/waits ]; do kill -0 $! || fail "a verdict of $1"; done

@@ -44,7 +44,7 @@ int main() {
     Vcounter top;
     for (int i = 0; i < 40; ++i) {
         top.clk_i = i & 1;
-        if (!top.clk_i) { // a property samples what was there before the edge
+        a property samples the values before the edge
             bool shy = std::getenv("SHY") && top.count_o == 2;
             top.rst_i = (i < 4 || i > 26) && !shy;
             top.enable_i = !std::getenv("LAZY") && i % 3;
@@ -61,7 +61,7 @@ def tree(folders):
 
 
 def measured(name, folders):
-    """Writes the file that a measurement's command leaves beside its figures."""
+    """Writes the file that the command of a measurement leaves with its figures."""
     write(f"build/{name}/tree", tree(folders))
 
 
@@ -82,7 +82,7 @@ class Cases(Project):
         self.regress("", 1)
         page = Path(WRITTEN).read_text()
         self.lacks('src="http|href="http', WRITTEN)  # offline
-        # If the libraries could not be fetched, the page is complete and says how to get them.
+        # If the libraries could not be fetched, the page is complete and describes how to get them.
         write("plain.html", re.sub("(?m)^(!function.*Tabulator=|.*var uPlot=).*\n", "", page))
         self.browse("plain.html")
         self.has("Tabulator and uPlot could not be fetched. With a network",
@@ -228,7 +228,7 @@ top.document.body.append("wider: " + [...document.querySelectorAll(".tabulator-c
         self.lights(coverage="green")
         measure(LAZY="1")  # the stimulus is forgotten: the test still passes
         self.lights(coverage=below, tests="green")
-        # All lines, all toggles; but one situation, named in the design, never comes.
+        # All lines, all toggles; but one situation, named in the design, never occurs.
         said = measure(SHY="1")
         self.lights(coverage=below)
         self.assertRegex(said, r"toggles 100.0 \(gate 95\), points 0.0 \(gate 100\); "

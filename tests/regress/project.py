@@ -14,7 +14,7 @@ from script import (TREE, Script, append, commit, edit, fresh, git, main,  # noq
 BUILD = Path(sys.argv[3]) if len(sys.argv) > 3 else TREE / "build/main"
 REGRESS = BUILD / "tests/regress/regress"
 
-# test_a passes, test_b fails alike for all seeds but 7, test_c as the file `flicker` says, test_d
+# test_a passes, test_b fails for all seeds except 7, test_c depends on the file `flicker`, test_d
 # crashes.
 FILES = {
     "CMakeLists.txt": """cmake_minimum_required(VERSION 3.25)
@@ -41,7 +41,7 @@ b.Bad)
 c.Flicker) [ ! -e ../../../../flicker ] ;;
 d.Crash) kill -SEGV $$ ;;
 formal)
-    echo "kept: the verdict of yesterday"
+    echo "kept: yesterday's result"
     echo "thing: bounded, 6 clocks"
     echo "thing: proven, 12 clauses with 3 flops"
     echo "thing: 2 covers reached" ;;

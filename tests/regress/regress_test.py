@@ -181,7 +181,7 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
     def test_company(self):
         """Progress, one run at a time, messages about mistyped words, no needless builds."""
         self.regress("--name 'a.One|formal'")
-        self.has("^1 of 2, 0 failed, 1 left",  # nobody knows how long they take
+        self.has("^1 of 2, 0 failed, 1 left",  # their duration is unknown
                  "^2 of 2, 0 failed, 0:00 left", "^tests  *green  1 passed, 4 did not run$",
                  "^proofs  *green  1 hold, 1 of them")
         self.regress("--jobs none", 2)
@@ -189,7 +189,7 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.tests("add_test(NAME test_a.OneMore COMMAND true)\n")
         self.regress("--name test_a.One")
         self.has("^1 passed")  # an exact name is one test
-        write("tame.cpp", "// nobody\nTEST_F(Tame, Eats) {}\n")
+        write("tame.cpp", "// unused\nTEST_F(Tame, Eats) {}\n")
         write("built.cpp", "int main() {}\n")
         edit("CMakeLists.txt", "small NONE", "small CXX")
         self.tests(NEEDS)
@@ -197,9 +197,9 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
             ("--name '^script.whole'", "all"), ("--name '^script.says'", "other tools"),
             ("--name '^test_a'", ""), ("--name '^absent'", "all"),
             ("--name 'soon\\.'", "test_soon"),
-            ("--name 'script\\.after'", "tool"),  # by what goes before it
-            ("--name One", "test_radio test_soon"),  # whose cases nobody knows
-            ("--name '^One|^(script|docs).says'", "other tools"),  # a name does not begin so
+            ("--name 'script\\.after'", "tool"),  # by words before it
+            ("--name One", "test_radio test_soon"),  # with unknown cases
+            ("--name '^One|^(script|docs).says'", "other tools"),  # no name begins so
             ("--name '^test_tame.*Eat'", "test_tame"),
             ("--label 'rtl|radio'", "test_radio"),
             ("--name rue", "test_radio test_soon"),
@@ -225,7 +225,7 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.tests(LATE)
         self.regress("--label formal", 1)
         self.has("1 passed, 1 failed")  # programs that are not built may have that label
-        # Another run has the lock until this one has said that it waits.
+        # Another run has the lock until this one has printed that it waits.
         with open("build/regress/lock", "w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
             run = subprocess.Popen([REGRESS, "--name", "a.One"], stdout=subprocess.PIPE,
@@ -303,11 +303,11 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.regress("--name 'test_[ab]' --seed random --repeat 2", 1)
         seeds = re.findall("^3 tests, SEED=(.*)", self.said, re.M)
         self.assertEqual(len(seeds), 2)
-        self.regress("--name 'test_[ab]' --seed 7")  # passes with another seed: the others stay
+        self.regress("--name 'test_[ab]' --seed 7")  # passes with another seed: the others are kept
         self.has("2 failing seeds are kept")
         page = Path("build/regress/report.html")
         before = page.read_bytes()
-        self.regress("--kept --name 'a[.]'")  # none of these: another run's page stays unchanged
+        self.regress("--kept --name 'a[.]'")  # none of these: the page of another run is unchanged
         self.has("no seed is kept")
         self.assertEqual(page.read_bytes(), before)
         self.regress("--kept", 1)

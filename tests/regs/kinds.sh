@@ -19,7 +19,7 @@ gcc -std=c90 -pedantic -Wall -Wextra -Werror -fsyntax-only "$work/kinds.c"
 prove() { GEN_DIR=$1 "$source/tests/hdl/formal/prove.sh" kinds_regs 4 "$source" "$1/proof"; }
 prove "$work" >"$work/log" || { cat "$work/log" && fail 'not proven'; }
 
-# A block that has both LUT RAM and words in a memory of the core.
+# A block with both LUT RAM and words in a memory of the core.
 mkdir "$work/memory"
 sed 's/"block": "kinds"/"block": "memory"/
     s/"name": "SHOWN", "access": "ro"/"name": "SHOWN", "access": "rw", "storage": "memory"/
@@ -51,7 +51,7 @@ sed 's/& *clear/\& ~clear/; s/~ *clear/clear/' "$work/vhdl/kinds_regs.v" >"$work
 cmp -s "$work/vhdl/kinds_regs.v" "$work/other/kinds_regs.v" || ! same "$work/other" ||
     fail 'a difference between VHDL and Verilog is not seen'
 
-wrong() { # what is wrong, a sed command
+wrong() { # error, sed command
     sed "$2" "$work/kinds_regs.v" >"$work/wrong/kinds_regs.v"
     ! cmp -s "$work/kinds_regs.v" "$work/wrong/kinds_regs.v" || fail "nothing is changed: $1"
     cp "$work"/*.vh "$work/wrong"
@@ -68,6 +68,6 @@ wrong 'a reset value is another' "s/whole_o <= 32'hDEADBEEF/whole_o <= 32'hDEADB
 wrong 'a flag is cleared by 0' 's/(flags_a_o & ~(/(flags_a_o \& (/'
 wrong 'a bit that is set while it is cleared is lost' \
     's/ask_o <= (ask_o & ~ask_clear_i) | \(.*\);/ask_o <= (ask_o | \1) \& ~ask_clear_i;/'
-wrong 'what cannot be read is shown' 's/default: *rdata = 32.d0/default: rdata = 32'"'"'d1/'
+wrong 'an unreadable word is readable' 's/default: *rdata = 32.d0/default: rdata = 32'"'"'d1/'
 wrong 'a pulse comes at once' 's/if (!later_write || rst_i)/if (rst_i)/'
 echo 'kinds: all as expected'

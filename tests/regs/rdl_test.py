@@ -9,7 +9,7 @@ from pathlib import Path
 from icesoc.regs import rdl, rdl_properties
 from icesoc.regs.model import Wrong
 
-# The properties of the standard, by component, typed from its tables: every one has its place.
+# The properties of the standard, by component, typed from its tables; each is handled.
 STANDARD = """name desc ispresent donttest dontcompare hdl_path hdl_path_slice hdl_path_gate
 hdl_path_gate_slice errextbus hw sw reset resetsignal rclr rset onread woset woclr onwrite swwe
 swwel swmod swacc singlepulse we wel anded ored xored fieldwidth hwclr hwset hwenable hwmask counter

@@ -57,7 +57,8 @@ class Cases(Script):
                 self.assertTrue(entity.ports, path)
 
     def test_links(self):
-        """Links to pages follow a page to its place in the site; other files become code."""
+        """Links to pages follow a page to its place in the site; links to other files become
+        code."""
         moved = {"docs/bus.md": "bus", "ip/fir/README.md": "reference/cores/fir"}
         text = "[bus](../../docs/bus.md#slots) [code](fir.v) ![p](x.png) [web](https://a.b)"
         self.assertEqual(
@@ -65,7 +66,7 @@ class Cases(Script):
             "[bus](../../bus.md#slots) code (`ip/fir/fir.v`) ![p](x.png) [web](https://a.b)")
 
     def test_comments(self):
-        """Plain C comments become Doxygen's, before and behind what they describe."""
+        """Plain C comments become Doxygen's, before and after the item that they describe."""
         text = doxygen_filter.convert(
             "/* Returns it. */\nint f(void);\nint a; /* bytes */\n", "f.h")
         self.assertEqual(text, "/** Returns it. */\nint f(void);\nint a; /**< bytes */\n")

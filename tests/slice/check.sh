@@ -7,8 +7,9 @@
 # golden: the C has no warnings.
 # hardware: the wrappers and new cores are Verilog without warnings, and without latches.
 # equal: each interface's VHDL wrapper, and the new core around it, are taken as VHDL-93 and -2008
-# without a warning. The wrapper does what the Verilog one does: from reset on, whatever comes,
-# their outputs are the same in every clock (proven, not bounded).
+# equal: each interface's VHDL wrapper, and the new core around it, compile as VHDL-93 and -2008
+# without a warning. The wrapper behaves like the Verilog one: after reset, for any inputs, their
+# outputs are the same in every clock (proven, not bounded).
 # errors: nothing is written.
 # A message's source line and caret are compared where the file has them.
 # UPDATE_GOLDENS=1 rewrites messages.
@@ -22,7 +23,7 @@ out=$work/out
 hardware="--hw-verilog $out --hw-vhdl $out --hw-regs $out --hw-c $out --hw-cpp $out \
 --hw-new-verilog $out --hw-new-vhdl $out"
 
-has_lines() { # the lines behind `//= `, in the files
+has_lines() { # the lines behind `//= ` in the files
     grep -q '^//= ' "$ice" || return 0
     sed -n 's/^\/\/= //p' "$ice" | awk 'BEGIN { i = 0 } NR == FNR { wanted[n++] = $0; next }
         $0 == wanted[i] { i++ }
@@ -101,8 +102,8 @@ equal)
             hierarchy -top both; proc; opt_clean; setundef -zero -init; opt -full; techmap
             opt -fast -nosdff -nodffe; dfflegalize -cell \$_DFF_P_ 01
             abc -g AND -fast; opt_clean; delete -output w:*; write_aiger -zinit both.aig"
-        # sat: where scorr alone has found the output constant, newer versions of abc have nothing
-        # left to prove
+        # sat: if scorr alone has found the output constant, newer versions of abc have nothing left
+        # to prove
         timeout 100 yosys-abc -c 'read_aiger both.aig; fold; strash; scorr; pdr; sat' >proof.log \
             2>&1 || true
         grep -q 'Property proved\|UNSATISFIABLE' proof.log || {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// ends: vehicles and grounds of the soak, and the messages between them, which say whether they are
-// right.
+// ends: vehicles and ground stations of the soak, and the messages between them, which contain what
+// is needed to check them.
 
 #pragma once
 
@@ -26,7 +26,7 @@ struct Totals {
     uint64_t babbles = 0, rivals = 0;
 };
 
-// Mail is what one end sends to another: messages with numbers, of which a channel has each fourth.
+// Messages from one end to another: numbered; each channel has every fourth one.
 class Mail {
 public:
     Mail(int from, int to, Totals& totals) : from_(from), to_(to), totals_(totals) {}
@@ -48,13 +48,13 @@ public:
         ++(outcome == LINK_DELIVERED ? totals_.delivered : totals_.unknown);
         outstanding_.erase(it);
     }
-    // Messages on their way at the power's loss: their program calls them unknown.
+    // Messages on their way when the power fails: their program cannot know their outcome.
     void forget() {
         totals_.unknown += outstanding_.size();
         outstanding_.clear();
     }
     // Checks a message for the receiver: it is the next or a later one of this mail and channel,
-    // and whole, and the receiver's rival has not had it. False: it is none.
+    // complete, and the receiver's rival has not had it. Returns false otherwise.
     bool arrived(int channel, const Bytes& bytes, bool isRival) {
         uint32_t& expected = expected_[isRival][channel];
         uint32_t id = expected;
@@ -66,7 +66,7 @@ public:
         auto it = outstanding_.find(id);
         if (it != outstanding_.end())
             it->second = true;
-        // A skipped message must no longer be on its way for the sender.
+        // The sender must not consider a skipped message as on its way.
         for (; expected < id; expected += LINK_CHANNELS)
             if (outstanding_.count(expected))
                 fault("was skipped", expected);
@@ -103,13 +103,14 @@ private:
     Totals& totals_;
     uint32_t next_ = 0, expected_[2][LINK_CHANNELS] = {{0, 1, 2, 3}, {0, 1, 2, 3}};
     std::vector<bool> hasCome_;                      // each message
-    std::unordered_map<uint32_t, bool> outstanding_; // not reported, with whether it has arrived
+    std::unordered_map<uint32_t, bool> outstanding_; // not reported yet, with whether it has
+                                                     // arrived
 };
 
-// End is a vehicle or a ground, and its program. It knows what others send only to check it.
+// A vehicle or a ground station, and its program. It knows what others send only to check it.
 class End : public ModemEnd {
 public:
-    using MailOf = std::function<Mail*(int from, int to)>; // null: there is none
+    using MailOf = std::function<Mail*(int from, int to)>; // null if there is none
     End(RfChannel& air, Random& random, int name, bool isGround, const std::vector<int>& targets,
         const MailOf& mailOf)
         : ModemEnd(air, options(name & 0xFFFF), random.next(), targets), random_(random),
@@ -188,8 +189,7 @@ private:
     void onOutcome(size_t peer, U32 id, Link_Outcome outcome) override {
         out_[peer]->report(id, outcome);
     }
-    // The link's and the program's acceptance of a message are one step here, unless the program is
-    // busy.
+    // Link and program accept a message in one step here, unless the program is busy.
     int onMessage(size_t peer, int channel, const U8* data, U32 size) override {
         if (isBusy_)
             return 1;
@@ -197,15 +197,15 @@ private:
             if (mail && mail->arrived(channel, Bytes(data, data + size), isRival_))
                 return 0;
         throw Fault(fmt::format("{}: a message of 0x{:04x} came that is wrong, came before, is out "
-                                "of order, or for another one of this address",
+                                "of order, or for another vehicle with this address",
                                 modem.name(), target(peer)));
     }
 
     Random& random_;
     const bool isGround_, isRival_;
     const int address_;
-    std::vector<std::array<Mail*, 2>> in_; // of each peer, and of its rival
+    std::vector<std::array<Mail*, 2>> in_; // by peer, and its rival
     std::vector<Mail*> out_;
-    std::vector<unsigned> keys_; // how often each was changed
+    std::vector<unsigned> keys_; // number of changes by peer
     bool isBusy_ = false;
 };

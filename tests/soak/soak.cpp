@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
 // soak: link layers over XBee models in API mode and a bad radio, for any time: one vehicle and one
-// ground, or --vehicles and --grounds, each of which talks to all of the others. Random messages
-// both ways; loss, bursts, corruption, duplication; reboots of vehicles, grounds and modems; some
-// that are away for a while. With --attacked, or of several, each pair has a key of its own, and a
-// hostile modem listens, lies and babbles; a second vehicle comes with the address of another; keys
-// are changed. Among several a second program comes with the first ground's address and keys, and
-// both believe that they have the vehicles. No message may be wrong, doubled, out of order or at
-// another, and each is delivered or reported: the first violation ends the program.
+// ground station, or --vehicles and --grounds, where each station talks to all vehicles. Random
+// messages in both directions; loss, bursts, corruption, duplication; reboots of vehicles, stations
+// and modems; some are away for a while. With --attacked, or with several, each pair has a separate
+// key, and a hostile modem listens, forges and sends noise; a second vehicle uses the address of
+// another; keys are changed. With several, a second program with the first station's address and
+// keys appears, and both believe that they have the vehicles. No message may be wrong, duplicated,
+// out of order or at the wrong receiver, and each is delivered or reported: the first violation
+// ends the program.
 
 #include "attacker.h"
 #include "ends.h"
@@ -17,7 +18,7 @@
 
 namespace {
 
-// Soak is the air with all ends, and what befalls them.
+// The air with all ends, and fault injection.
 class Soak {
 public:
     Soak(uint64_t seed, bool attacked, int vehicles, int grounds)
@@ -63,7 +64,7 @@ public:
         misfortune();
         pass(rate_ / static_cast<double>(2 * vehicles_ * grounds_));
     }
-    // Good weather, nothing new: everything that is under way must be reported.
+    // Good weather, no new messages: all pending ones must be reported.
     void settle() {
         air_.weather = {};
         attacker_.hinder(false);
@@ -78,7 +79,7 @@ public:
             pass(0);
         }
         if (!isWell())
-            throw Fault("in good weather a link does not come back, or a message is neither "
+            throw Fault("in good weather a link does not recover, or a message is neither "
                         "delivered nor reported");
     }
     const Totals& totals() const { return totals_; }
@@ -87,8 +88,8 @@ public:
     const RfChannel::Counters& air() const { return air_.counters(); }
 
 private:
-    // A guest comes; if it is here, it leaves, and nobody knows what became of the messages that it
-    // has under way. Returns how many have come.
+    // A guest appears; if it is present, it disappears, and its pending messages have an unknown
+    // outcome. Returns the number of appearances.
     unsigned visit(size_t number) {
         End& guest = *ends_[vehicles_ + grounds_ + number];
         const bool comes = guest.isGone();
@@ -137,10 +138,10 @@ private:
         air_.weather = RfWeather::drawn(random_, 40);
         attacker_.hinder(attacked_ && !isFleet_ && random_.below(2));
         air_.weather.delayNs = random_.below(2) ? 0 : random_.below(20) * msNs;
-        // messages a ms: light, or more than the air carries, of which many links use more
+        // messages per ms: light, or more than the air carries, of which many links use more
         rate_ = (random_.below(3) ? 0.08 : 0.8) / (isFleet_ ? 8 : 1);
     }
-    // Draws what befalls one of the ends, more often where there are many.
+    // Draws a fault for one of the ends, more often if there are many.
     void misfortune() {
         for (auto& end : ends_)
             if (end->awayUntil && end->awayUntil <= now_) {
@@ -153,7 +154,7 @@ private:
         End& end = *ends_[random_.below(hosts)];
         switch (random_.below(isFleet_ ? 7 : attacked_ ? 6 : 3)) {
         case 0:
-            ++totals_.reboots; // of a vehicle, or another program takes the ground over
+            ++totals_.reboots; // of a vehicle, or another program replaces the ground's
             end.boot(now_, attacked_);
             break;
         case 1:
@@ -176,11 +177,11 @@ private:
         case 5:
             changeKey();
             break;
-        case 6: // the first ground still believes that it has the vehicles
+        case 6: // the first station still believes that it has the vehicles
             totals_.rivals += visit(1);
         }
     }
-    // A ground takes the next key of a vehicle; the vehicle does, some time later.
+    // A ground station gets the next key of a vehicle; the vehicle gets it some time later.
     void changeKey() {
         const size_t vehicle = random_.below(static_cast<uint32_t>(vehicles_));
         const size_t ground = random_.below(static_cast<uint32_t>(grounds_));
@@ -200,8 +201,8 @@ private:
     const bool attacked_;
     Attacker attacker_;
     std::map<std::pair<int, int>, Mail> mail_;
-    // The vehicles, the grounds, and guests: one that has a vehicle's address and no key of it and,
-    // in a fleet, one that has the first ground's address and keys.
+    // The vehicles, the ground stations, and guests: one with a vehicle's address and none of its
+    // keys and, in a fleet, one with the first station's address and keys.
     std::vector<std::unique_ptr<End>> ends_;
     size_t vehicles_, grounds_;
     bool isFleet_ = false;
@@ -258,14 +259,14 @@ int main(int argc, char** argv) {
     uint64_t seed = testSeed(), messages = 0;
     int vehicles = 1, grounds = 1;
     bool attacked = false;
-    app.add_option("--minutes", minutes, "of the wall clock to go on for")
+    app.add_option("--minutes", minutes, "duration in wall-clock minutes")
         ->check(CLI::PositiveNumber);
     app.add_option("--messages", messages,
                    "number of messages after which it stops instead, however long that takes");
-    app.add_option("--seconds", seconds, "of simulated time after which it stops instead");
-    app.add_option("--seed", seed, "of everything that happens (default: $SEED, or 1)");
+    app.add_option("--seconds", seconds, "duration in simulated seconds, instead of --minutes");
+    app.add_option("--seed", seed, "seed of all random numbers (default: $SEED, or 1)");
     app.add_option("--vehicles", vehicles, "how many")->check(CLI::Range(1, 32));
-    app.add_option("--grounds", grounds, "how many, each of which calls all vehicles")
+    app.add_option("--grounds", grounds, "number of ground stations; each calls all vehicles")
         ->check(CLI::Range(1, 8));
     app.add_flag("--attacked", attacked,
                  "by a modem that has no key, as several vehicles always are; the others have");

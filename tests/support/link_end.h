@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// link_end: one end of a link for tests. A test derives from it and overrides what it cares about.
+// link_end: one end of a link for tests. A test derives from it and overrides the functions it
+// needs.
 
 #pragma once
 
@@ -22,8 +23,8 @@ public:
     const Link_Statistics& statistics() const { return *Link_statistics(link()); }
 
 protected:
-    // Begins without earlier state. `sixteenUs`: time of 16 characters on the line, us; the default
-    // is that of 111,111 baud.
+    // Begins without earlier state. `sixteenUs`: time of 16 characters on the line, us; default:
+    // for 111,111 baud.
     void begin(U32 sixteenUs = 1440) {
         static const Link_Port port = {
             [](void* end, const U8* frame, U32 size) {
@@ -46,7 +47,7 @@ protected:
     // Sends a frame. Returns whether there was room.
     virtual bool transmit(const U8* frame, U32 size) = 0;
     virtual U32 random() = 0;
-    // Takes a message. Returns false if the link has to deliver it again later.
+    // Takes a message. Returns false if the link must deliver it again later.
     virtual bool take(int channel, const U8* data, U32 size) {
         (void)channel, (void)data, (void)size;
         return true;

@@ -16,15 +16,15 @@ import subprocess
 import sys
 import tempfile
 
-NEXT = "slice2c names the line of the name, slice2cpp that of the bracket behind it"
-REASONS = {  # regular expression of "FILE:LINE: message": why slice2c does not say it
+NEXT = "slice2c reports the line of the name, slice2cpp the line of the bracket after it"
+REASONS = {  # regular expression of "FILE:LINE: message": why slice2c does not report it
     "only at module scope|IdentAsKeyword.*(syntax error|capitalization from (dict|enum))":
-        "after a syntax error slice2cpp has lost the module; slice2c goes on in it",
+        "after a syntax error slice2cpp has lost the module; slice2c continues in it",
     "metadata `cpp:": "metadata of C++ alone",
     "StructMembers.ice:10:": NEXT,
-    "Undefined.ice:9:": "a name that is no type is told once, not at each use",
+    "Undefined.ice:9:": "a name that is not a type is reported once, not at each use",
     "ConstDef.ice:132:": "a value that was refused above is refused once",
-    "NotType.ice:28:": "a struct whose member was refused is not called empty, too",
+    "NotType.ice:28:": "a struct with a rejected member is not also reported as empty",
     "IllegalIdentifier.ice:23:": "the line of the wrong character is named, not the one behind it"}
 SAID = re.compile(r"[^:\n]*?([^/:\n]+\.ice):(\d+):(.*)")
 WANTED = {"ok": (0, False), "warning": (0, True), "error": (1, True)}
@@ -37,7 +37,7 @@ NAMES = """struct % { int a; };|struct S# { int %; };|enum % { x# };|enum E# { %
 
 
 def said(compiler, file, work="out"):
-    """Exit status, and {line: the messages of it} in their order, of one compiler."""
+    """Returns the exit status, and {line: its messages} in order, for one compiler."""
     words = [compiler, "--output-dir", work, file.name]
     words += ["--underscore"] * ("Underscore" in file.name)
     run = subprocess.run(words, cwd=file.parent, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
@@ -67,7 +67,7 @@ def cases(compiler, file, work):
                 (ours[0], list(ours[1])[:1]) != (theirs[0], list(theirs[1])[:1]):
             differ += 1
             print(f"{text}\nslice2c: {ours}\nslice2cpp: {theirs}")
-    for form in NAMES:  # slice2cpp refuses each as it is, and takes it behind a backslash
+    for form in NAMES:  # slice2cpp refuses each as it is, and accepts it after a backslash
         for escape, wanted in ("", len(KEYWORDS)), ("\\", 0):
             line = f"module A# {{ {form.strip()} }};\n"
             ours, theirs = both("".join(

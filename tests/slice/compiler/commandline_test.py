@@ -41,13 +41,13 @@ module Top {
     interface Service extends Lib::Named { void go(Lib::Points points, Leaf leaf) throws Worse; };
 };
 """,
-    # Two files of one name go into one program; a name may begin with a digit.
+    # Two files with the same name go into one program; a name may begin with a digit.
     "slice/2nd/Base.ice": "module Second { class Node { int x; }; };\n",
     "slice/Both.ice": "#include <Lib/Base.ice>\n#include <2nd/Base.ice>\n"
                       "module Both { struct S { Lib::Node a; Second::Node b; }; };\n",
     "file": "in the way\n", "bad.ice": "module {\n",
     "names.ice": "module A_b { struct iceS { int x; }; };",
-    # What the preprocessor has no room for
+    # More than the preprocessor can handle
     "long.ice": "module L { // " + 70000 * "x" + "\n};\n",
     "includes.ice": "\n#include <long.ice>\n",
     "joined.ice": "module L { struct S { int a; }; };" + 8000 * "          \\\n",
@@ -57,7 +57,7 @@ module Top {
     "twice.ice": "#include <crlf.ice>\n#include <crlf.ice>\n",
     "text.ice": f'module L {{ const string T = "{509 * "0"}"; '
                 f'struct S {{ string a = "{510 * "0"}"; }}; }};',
-    # A file beside the one that includes it, or above, wherever the compiler runs
+    # A file next to the including one, or above, wherever the compiler runs
     "siblings/above.ice": "module Above { struct S { int a; }; };\n",
     "siblings/sub/next.ice": "module Next { struct S { Above::S a; Nothing b; }; };\n",
     "siblings/sub/low.ice": '#include "../above.ice"\n#include "next.ice"\n'
@@ -123,7 +123,7 @@ class Cases(Script):
                 {"name": "points", "type": "::Lib::Points"}, {"name": "leaf", "type": "::Top::Leaf"}],
              "throws": ["::Top::Worse"]}])
         self.assertIn("::Cores::Fir", described)
-        # An exception that no operation throws, by itself or as a base of one.
+        # An exception that no operation throws, alone or as a base of another.
         Path("thrown.ice").write_text(
             "module M { exception Base { int a; }; exception Thrown extends Base { int b; };\n"
             "exception Forgotten { int c; };\n"
@@ -132,7 +132,7 @@ class Cases(Script):
                      "exception 'Forgotten'")
 
     def files_that_include_others(self):
-        """Several files in one run, each beside the others; a header is included by its name on
+        """Several files in one run, all in one folder; a header is included by its name on
         the -I path."""
         self.slice2c("-I slice slice/Lib/Base.ice slice/Lib/Middle.ice --output-dir out/Lib")
         more = "-Islice -DWITH_MORE=7 slice/Top.ice --output-dir out"
@@ -158,7 +158,7 @@ class Cases(Script):
         self.has('#include "sub/Top.hh"', file="ext/Top_client.cc")
 
     def limits(self):
-        """Metadata of C from a file beside, for definitions of a file that includes it, too."""
+        """C metadata from a .limits file, also for definitions of an included file."""
         write("limits/mesh.ice", "module G { sequence<int> Points; enum E { a }; enum F { b }; };")
         write("limits/user.ice", "#include <mesh.ice>\nmodule U { struct S { G::Points p; }; };")
         write("limits/mesh.limits", "# of a board\n\nG::Points c:max:21 # room\n::G::E c:scoped")
@@ -185,7 +185,7 @@ class Cases(Script):
         self.ask("touch", "-d", "+1 hour", "slice/Lib/Base.ice")
         self.ask("make", "-s", "Top.h")
         self.has("remade")
-        # One bad file does not keep the others from being compiled.
+        # An invalid file does not keep the others from being compiled.
         self.slice2c("bad.ice slice/Lib/Base.ice --output-dir mixed", 1, "expected the module")
         self.assertTrue(Path("mixed/Base.h").exists())
         self.slice2c("names.ice --output-dir x", 1, "underscore")
@@ -197,7 +197,7 @@ class Cases(Script):
         self.slice2c("-I . includes.ice", 1, f"long.ice:1: {too_long}")
         self.slice2c("joined.ice", 1, f"joined.ice:[0-9]*: {too_long}")
         self.slice2c("-I . crlf.ice without.ice --output-dir x")
-        self.assertEqual(self.said, "")  # line ends are not spoken of
+        self.assertEqual(self.said, "")  # line ends are not reported
         self.slice2c("-I . twice.ice", 1, "crlf.ice:2:9: error: .S. is defined already: this file "
                      "is included twice; begin it with #pragma once")
         self.slice2c("text.ice", 1, "^1 error$", "text.ice:1:[0-9]*: error: a string of 510 bytes; "

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# corpus: inputs for the compiler's fuzzer: every Slice file of the tests, cases of the agreement
-# test in a file each. Beside the folder, as <folder>.dict, the words of Slice.
+# corpus: inputs for the compiler's fuzzer: every Slice file of the tests, and each case of the
+# agreement test in a file. Next to the folder, as <folder>.dict, the words of Slice.
 # Usage: corpus.sh output-folder source-folder
 set -eu
 rm -rf "$1"

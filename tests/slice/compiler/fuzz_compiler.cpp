@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // fuzz_compiler: libFuzzer's entry: any text through lexer, parser, checks and all generators, as
-// slice2c calls them. Text without errors must give C, and each [":hw"] interface of it registers,
-// wrappers, servant, proxy and skeletons; nothing may crash, hang or leak (built with sanitizers).
+// called by slice2c. Text without errors must produce C, and each of its [":hw"] interfaces
+// registers, wrappers, servant, proxy and skeletons; nothing may crash, hang or leak (built with
+// sanitizers).
 
 #include "c/generator.h"
 #include "front/front.h"

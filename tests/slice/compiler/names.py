@@ -105,7 +105,7 @@ def main():
     bad, refused, tried = [], 0, 0
     for kind, template in TEMPLATES.items():
         folder = f"{WORK}/{kind}"
-        # A name with M_ in it exists only in the C of its own template.
+        # A name with M_ in it exists only in the C of its template.
         names = sorted(n for n in own[kind] | {n for n in parts if "M_" not in n}
                        if is_slice_name(n))
         left = dict(enumerate(names, 2))  # by line

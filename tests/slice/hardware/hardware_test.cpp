@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // hardware_test: generated servants call cores behind generated wrappers, through the FSMC driver
-// and a port that has a slot's register bus behind it.
+// and a port to the register bus of a slot.
 
 #include "VCalculatorSlot.h"
 #include "VManySlot.h"
@@ -48,7 +48,7 @@ TEST_F(CalculatorServant, IdentityIsTypeAndVersionOfTheInterface) {
     EXPECT_EQ(Hw_Core_init(&other, slot, 0x43410103, &core_.port, &core_), HW_WRONG_CORE);
 }
 
-// Its own clock stops (OWN_CLOCK): a read is no result then.
+// The separate clock stops (OWN_CLOCK): a read then has no result.
 TEST_F(CalculatorServant, ACoreThatNoLongerAnswersIsATimeOut) {
     core_.core_.core.id ^= 1;
     EXPECT_EQ(statusOf([&] { core_.add(2, 3); }), ICE_TIMEOUT);
@@ -113,7 +113,7 @@ TEST_F(CalculatorServant, OtherCallsGoOnWhileALongOneIsUnderWay) {
     EXPECT_EQ(divide(8, 2), 4);
 }
 
-// Values of 64 bits, floating point, and words that metadata chose, at the wrapper's pins.
+// 64-bit values, floating point, and words chosen by metadata, at the wrapper's pins.
 class WideEchoServant : public ::testing::Test {
 protected:
     WideEchoServant() {
@@ -199,7 +199,7 @@ protected:
     ~ManyServant() override { EXPECT_EQ(rig_.errors_, 0u) << "accesses to no register"; }
     static Ice_Long number(U32 n) { return {n * 0x9E3779B9U, static_cast<Ice_Int>(n * 77 + 1)}; }
     static Ice_Long inverted(Ice_Long n) { return {~n.low, ~n.high}; }
-    // Each call has other values, so stale ones are wrong.
+    // Each call has other values, so that stale ones are wrong.
     void turn() {
         Ice_Long n[10];
         for (Ice_Long& one : n)
@@ -252,7 +252,7 @@ TEST_F(ManyServant, ATaskThatInterruptsAnotherLeavesItsPageAlone) {
 
 TEST_F(ManyServant, AWordThatNoPageHasIsAnError) {
     FSMC_write(slot, 5, 0xFFFFFFFF);
-    EXPECT_EQ(FSMC_read(slot, 5), 0xFFu) << "eight pages, of which six have words";
+    EXPECT_EQ(FSMC_read(slot, 5), 0xFFu) << "eight pages; six have words";
     FSMC_read(slot, 15);
     FSMC_write(slot, 15, 1);
     EXPECT_EQ(rig_.errors_, 2u);

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# linked: slice2c sw-folder work-folder   A program for the Cortex-M3 contains only the parts of an
-# interface and of the run time that it uses: nm of a client of one operation and of a server of one
+# linked: slice2c sw-folder work-folder   A program for the Cortex-M3 contains only the used parts
+# of an interface and of the run time: nm of a client of one operation and of a server of one
 # interface (docs/slice-mapping.md).
 set -eu
 slice2c=$1 sw=$2 work=$3
@@ -31,8 +31,7 @@ build() { # name, flags
         awk 'NR == 2 {print $1}') bytes of text, $(wc \
         -l <"$work/$name.names") names of IceC and of generated code"
 }
-# With AddressSanitizer on a host, too, where it does not keep the tables of interfaces that nobody
-# serves.
+# Also with AddressSanitizer on a host, without the tables of interfaces that are not served.
 (mkdir -p "$work/host" && cd "$work/host" &&
     # shellcheck disable=SC2046 # a list of words
     gcc -std=c90 -Os -fsanitize=address --param asan-globals=0 -ffunction-sections -fdata-sections \

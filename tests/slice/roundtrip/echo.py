@@ -16,7 +16,7 @@ from model import Model
 
 
 def same(t, a, b, encoding, seen):
-    """Compares two values. In encoding 1.0 optional members are lost on the way."""
+    """Compares two values. In encoding 1.0 optional members are lost."""
     if a is None or b is None:
         return a is None and b is None
     if t.kind == "sequence":
@@ -100,15 +100,15 @@ def thrown(echo, module, ic, encoding, form, e):
 def hide(v, t, module, ic, values):
     """Fills an instance of the class or exception Hidden...; `values`: how many the members of `t`
     may have."""
-    graph = [(v, t)] if t.kind == "class" else []  # its members may point back at it
+    graph = [(v, t)] if t.kind == "class" else []  # its members may refer to it
     for name, ft, tag in t.all_fields():
         setattr(v, name, model.value(ft, module, ic, [values], graph))
-    v.more, v.last = "of what C does not know", Ice.Unset if model.random.random() < 0.5 else 5
+    v.more, v.last = "unknown to C", Ice.Unset if model.random.random() < 0.5 else 5
     return graph
 
 
 def same_hidden(t, v, got, encoding):
-    """Returns the value as sent where slices are kept, else cut down to `t`."""
+    """Returns the value as sent if slices are preserved, otherwise reduced to `t`."""
     kept = t.preserves() and encoding == "1.1"
     if type(got).__name__ != ("Hidden" if kept else "") + t.name or not members(t, v, got, encoding,
                                                                                 {id(v): got}):
@@ -211,7 +211,7 @@ def forwarder(module, e):
 
 
 def server(module):
-    """Gives back what it gets, until `shutdown`."""
+    """Returns what it receives, until `shutdown`."""
     def echo(self, v, current):
         return v, v
 

@@ -12,7 +12,7 @@ KEYS = ["bool", "byte", "short", "int", "long", "string"]
 
 
 class Type:
-    """kind: a scalar's name, enum, struct, sequence, dictionary, class, proxy or exception."""
+    """kind: name of a scalar, enum, struct, sequence, dictionary, class, proxy or exception."""
 
     def __init__(self, kind, name=None):
         self.kind, self.name = kind, name
@@ -30,7 +30,7 @@ class Type:
         return (self.base.all_fields() if self.base else []) + self.fields
 
     def preserves(self):
-        """Slices of unknown derived types are kept."""
+        """Slices of unknown derived types are preserved."""
         return self.preserve or (self.base is not None and self.base.preserves())
 
     def legal_key(self):
@@ -165,7 +165,7 @@ class Model:
         out.append("};")
         return '[["underscore", "suppress-warning:deprecated"]]\n' + "\n".join(out) + "\n"
 
-    # Defines what the other file only declares.
+    # Defines declarations of the other file.
     DEFINER = """module T {
 class Later { int id; Later next; };
 interface Marker { void op(); };

@@ -38,10 +38,10 @@ class Capture:
 
 
 async def connection(reader, writer):
-    """Passes bytes on from either side until one ends."""
+    """Passes on bytes from both sides until one ends."""
     try:
         server_reader, server_writer = await asyncio.open_connection("127.0.0.1", PORT)
-    except OSError:  # it listens no longer
+    except OSError:  # it does not listen any more
         writer.close()
         return
     capture = Capture(writer.get_extra_info("peername")[1])

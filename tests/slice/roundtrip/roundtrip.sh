@@ -14,8 +14,9 @@ mkdir -p "$work"
 /usr/bin/python3 "$here/echo.py" generate "$seed" "$work"
 "$slice2c" "$work/Random.ice" "$work/Definer.ice" --output-dir "$work"
 "$icec/bridge.py" "$work/Random.h" >"$work/bridged.c"
-# In a coverage run (COVERAGE_DIR) it counts lines, too. With room for graphs and long sequences;
-# -O0, since most of the time goes into compiling. Variables without a value hold a pattern, not by
+# In a coverage run (COVERAGE_DIR) it also counts lines. With room for graphs and long sequences;
+# -O0, since most of the time is spent compiling. Variables without a value contain a pattern,
+# instead of zeros
 # chance zeros. shellcheck disable=SC2046
 cc -O0 -w -ftrivial-auto-var-init=pattern ${COVERAGE_DIR:+--coverage} -fsanitize=address,undefined \
     -fno-sanitize-recover=undefined -DICE_ARENA_BYTES=262144 -DICE_MESSAGE_MAX=65536 \
@@ -34,6 +35,6 @@ for file in client server; do
     bad=$(tshark -r "$work/$file.pcap" -Y '_ws.malformed || _ws.unreassembled ||
         (icep && _ws.expert.severity >= error)' 2>/dev/null | head)
     echo "$file: $messages ICEP messages"
-    [ -z "$bad" ] || { echo "malformed, says tshark: $bad" && exit 1; }
+    [ -z "$bad" ] || { echo "malformed, according to tshark: $bad" && exit 1; }
     [ "$messages" -ge 1000 ] || exit 1
 done

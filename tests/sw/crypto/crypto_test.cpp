@@ -22,7 +22,7 @@ using Bytes = AsconBytes;
 
 const Bytes key = counted(0x00, 16), nonce = counted(0x10, 16);
 
-// The text with its tag behind it.
+// Returns the encrypted text followed by its tag.
 Bytes seal(const Bytes& associated, Bytes message) {
     Ascon ascon;
     Ascon_begin(&ascon, key.data(), nonce.data());
@@ -36,7 +36,7 @@ Bytes seal(const Bytes& associated, Bytes message) {
     return message;
 }
 
-// The message, or nothing if the tag is wrong.
+// Returns the message; empty if the tag is wrong.
 Bytes open(const Bytes& associated, Bytes sealed) {
     Ascon ascon;
     U8 tag[ASCON_TAG_BYTES];
@@ -83,7 +83,7 @@ Value multiply(const Value& number, const U8* point) {
     return result;
 }
 
-// RFC 7748, 5.2: a number and the point, from 9 on, each time.
+// RFC 7748, 5.2: iterates a number and a point, starting with 9.
 TEST(X25519Code, GivesTheStandardsAnswerAfterAThousandTimes) {
     Value number = {9}, point = {9};
     for (int i = 0; i < 1000; ++i) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// directory_test: gateways beside IceGrid's registries and IceStorm, all real processes: stock
-// clients find a vehicle by its name, follow it from one ground to another, and hear of it.
+// directory_test: gateways with IceGrid's registries and IceStorm, all real processes: stock
+// clients find a vehicle by name, follow it from one ground station to another, and are informed of
+// it.
 
 #include "gateway_rig.h"
 #include <IceSSL/IceSSL.h>
@@ -18,7 +19,7 @@ Words with(Words words, const Words& more) {
     return words;
 }
 
-// Returns a port of 127.0.0.1 that is free, below those that the system gives away by itself.
+// Returns a free port of 127.0.0.1, below the ones that the system assigns.
 int freePort() {
     static int port = 20000 + getpid() % 1000 * 12;
     const Ice::CommunicatorHolder ic(Ice::initialize());
@@ -41,7 +42,7 @@ struct Folder {
     const std::string path;
 };
 
-// A registry of IceGrid; it may be killed and started again.
+// A registry of IceGrid, which may be killed and restarted.
 class Registry {
 public:
     // `protocol`: tcp or ssl. `more`: the certificate; in a replica, the master's locator.
@@ -84,7 +85,7 @@ protected:
     explicit Directory(bool isSecure = false) : isSecure_(isSecure) {
         rig_.placeOther(rig_.elsewhere);
     }
-    // A certificate that IceSSL takes, as Ice's options; none in the clear.
+    // Returns a certificate for IceSSL, as options of Ice; empty without encryption.
     Words certificate() const {
         if (!isSecure_)
             return {};
@@ -105,7 +106,7 @@ protected:
         rig_.with([&] { Link_setKey(rig_.uav.link(), 0, key.data(), 1); });
         return path;
     }
-    // The vehicle is where the first ground hears it, or where the other one does.
+    // Moves the vehicle into reach of the first ground station, or of the other one.
     void fly(bool isHome) {
         rig_.with([&] { rig_.uav.move(isHome ? rig_.air : rig_.elsewhere); });
     }
@@ -129,7 +130,7 @@ protected:
         return Ice::initialize(data);
     }
     void followAVehicle(const Words& more);
-    // Calls until one is answered; how many may have been carried out or not.
+    // Calls until a reply arrives; an unknown number of calls may have been executed.
     int callOn(const std::shared_ptr<RadioTest::UavPrx>& echo) {
         for (int unknown = 0;;)
             try {
@@ -239,7 +240,7 @@ TEST_F(Directory, OneOfTwoRegistriesIsKilledAndComesBack) {
         Ice::CommunicatorHolder late(client());
         EXPECT_EQ(callOn(echoOf(late.communicator())), 0) << "one that asks the replica";
     }
-    fly(false); // no registry can be told before the master is back
+    fly(false); // no registry can be updated before the master is back
     ASSERT_TRUE(other->hear("does not answer")) << other->said();
     master_.start();
     ASSERT_TRUE(other->hear("uav1 is here")) << other->said();
@@ -249,8 +250,8 @@ TEST_F(Directory, OneOfTwoRegistriesIsKilledAndComesBack) {
     EXPECT_EQ(world_.echo->twice(), 0);
 }
 
-// Subscriber notes what it hears: the vehicle's name, and how a client reaches it, and bytes of the
-// other parameters.
+// Records the events it receives: the vehicle's name, its proxy, and the bytes of the other
+// parameters.
 class Subscriber : public Ice::Blobject {
 public:
     bool ice_invoke(std::vector<Ice::Byte> in, std::vector<Ice::Byte>&,

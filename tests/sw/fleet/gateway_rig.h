@@ -39,7 +39,7 @@ protected:
     void expectAnswer(int id = 1) {
         EXPECT_EQ(echo_->repeat(id, {1, 2}), (RadioTest::Bytes{1, 2}));
     }
-    // Asks for the number of notes, each time with a turn, until it has come to `wanted`.
+    // Asks for the number of notes, one turn each, until it has reached `wanted`.
     void expectNoted(int wanted) {
         int noted = 0;
         for (int calls = 0; calls < 1000 && noted < wanted; ++calls)

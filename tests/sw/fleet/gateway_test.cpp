@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// gateway_test: icesoc-gateway between the radio and stock Ice programs without the plugin, and
-// beside ZeroC's own forwarders: it keeps of a call what IceBridge keeps, and facets, and programs
-// reach it through a Glacier2 router. (Many of them at once: bench.load. A modem that is gone and
-// comes back: test_engine.)
+// gateway_test: icesoc-gateway between the radio and stock Ice programs without the plugin,
+// compared with ZeroC's forwarders: it preserves of a call what IceBridge preserves, also facets,
+// and programs reach it through a Glacier2 router. (Many at once: bench.load. A modem that
+// disappears and returns: test_engine.)
 
 #include "gateway_rig.h"
 #include <Glacier2/Router.h>
@@ -27,7 +27,7 @@ TEST_F(Gateway, TheUavCallsTheStationBehindIt) {
         std::dynamic_pointer_cast<Ice::TCPEndpointInfo>(adapter->getEndpoints()[0]->getInfo());
     start({"-t", "1", "--station", "127.0.0.1:" + std::to_string(info->port)});
     EXPECT_EQ(echo_->callStation(10), 90);
-    // Nobody at --station: the UAV is told so, and the gateway goes on.
+    // No server at --station: the UAV gets an error, and the gateway continues.
     adapter->destroy();
     EXPECT_ANY_THROW(echo_->callStation(1));
     expectAnswer();
@@ -35,7 +35,7 @@ TEST_F(Gateway, TheUavCallsTheStationBehindIt) {
     EXPECT_TRUE(hasPrinted("no server listens at 127.0.0.1"));
 }
 
-// Station keeps the vehicle's proxy of a vehicleState.
+// Stores the vehicle's proxy from a vehicleState.
 struct Station : Ice::Blobject {
     bool ice_invoke(std::vector<Ice::Byte> in, std::vector<Ice::Byte>& out,
                     const Ice::Current& current) override {
@@ -86,7 +86,7 @@ TEST_F(Gateway, ListensAtAnIPv6Address) {
     expectAnswer();
 }
 
-// ---- who shares the radio ----
+// ---- sharing the radio ----
 
 TEST_F(Gateway, WhatAProgramHasSentArrivesAlthoughItLeaves) {
     start({"--wait", "600"}); // none is late, however slow the machine is
@@ -113,7 +113,7 @@ TEST_F(Gateway, AFloodLeavesRoomForOthers) {
     EXPECT_LT(echo_->noted(), 1000) << "the flood went first";
 }
 
-// Returns the times of calls on the rig's clock, in ms, sorted.
+// Returns the durations of calls by the rig's clock, in ms, sorted.
 std::vector<double> timesOf(World& world, const std::shared_ptr<RadioTest::UavPrx>& echo,
                             int calls) {
     const auto now = [&world] {
@@ -131,7 +131,7 @@ std::vector<double> timesOf(World& world, const std::shared_ptr<RadioTest::UavPr
     return times;
 }
 
-// A hundred connections of another host send long one-way calls without end.
+// A hundred connections of another host send long one-way calls continuously.
 TEST_F(Gateway, AHundredFloodingConnectionsLeaveAGoodClientItsTurns) {
     start();
     constexpr int connections = 100, calls = 100;
@@ -157,7 +157,7 @@ TEST_F(Gateway, AHundredFloodingConnectionsLeaveAGoodClientItsTurns) {
                 try {
                     ++sent;
                     proxy->ice_invoke("note", Ice::OperationMode::Normal, in, out);
-                } catch (const Ice::LocalException&) { // it has too much waiting
+                } catch (const Ice::LocalException&) { // too many requests are waiting
                     std::this_thread::sleep_for(std::chrono::milliseconds(50));
                 }
         });
@@ -197,9 +197,9 @@ TEST_F(Gateway, AnIdleClientGetsHeartbeats) {
     close(client);
 }
 
-// ---- who may call what ----
+// ---- rights ----
 
-// Says why a call fails; empty: it does not.
+// Returns the reason of a call's failure; empty if it succeeds.
 std::string whyFails(const std::function<void()>& call) {
     try {
         call();
@@ -253,7 +253,7 @@ TEST_F(Gateway, MaintenanceIsReachedAtItsOwnDoor) {
         const std::string facet = name == "faceted" ? "f" : "";
         world_.uav->addFacet(servant, id, facet);
         const std::string proxy = name + (facet.empty() ? "" : " -f f");
-        for (int turn = 0; turn < 2; ++turn) // asked, and remembered
+        for (int turn = 0; turn < 2; ++turn) // asked, then cached
             expectRefusal(call(proxy, port_), "'" + name + "' is for maintenance");
         EXPECT_EQ(whyFails(call(proxy, door)), "");
         const auto oneway = ic_->stringToProxy(proxy + " -o:" + endpoint());
@@ -263,12 +263,12 @@ TEST_F(Gateway, MaintenanceIsReachedAtItsOwnDoor) {
     EXPECT_EQ(whyFails(call("echo", door)), "");
     EXPECT_EQ(whyFails(call("echo", port_)), "");
     EXPECT_EQ(whyFails(call("nobody", port_)), "::Ice::ObjectNotExistException");
-    EXPECT_EQ(servant->calls, 5) << "those of the maintenance endpoint";
+    EXPECT_EQ(servant->calls, 5) << "calls on the maintenance endpoint";
 }
 
 // ---- the vehicle's calls ----
 
-// Both have an object of this name, and the vehicle calls it while it serves one of them.
+// Both have an object with this name, and the vehicle calls it while it serves one of them.
 TEST_F(Gateway, TheVehiclesCallGoesToItsAddresseeAlone) {
     start();
     struct Program {
@@ -310,7 +310,7 @@ TEST_F(Gateway, TheVehiclesCallGoesToItsAddresseeAlone) {
         } catch (const Ice::LocalException&) { // the operation has no such parameter
         }
     };
-    passes(idle, "ice_ping"); // which every client may call: it passes nothing
+    passes(idle, "ice_ping"); // allowed for every client: it passes no objects
     EXPECT_EQ(two.echo->callBack(1), 10);
     passes(one, "fetch");
     EXPECT_EQ(two.echo->callBack(1), 1) << "only one has passed this object";
@@ -319,8 +319,8 @@ TEST_F(Gateway, TheVehiclesCallGoesToItsAddresseeAlone) {
     EXPECT_EQ(idle.heard->calls, 0);
 }
 
-// By TLS the subject of a client's certificate is known; the certificates are those that
-// `./icesoc key FILE --certificate` makes.
+// With TLS the subject of a client's certificate is known; the certificates are made by `./icesoc
+// key FILE --certificate`.
 TEST_F(Gateway, ACertificateSaysWhoAsks) {
     const std::string folder = testing::TempDir() + "gateway_tls." + std::to_string(getpid());
     std::filesystem::create_directories(folder + "/others");
@@ -392,7 +392,8 @@ TEST_F(Gateway, CompressedCallsArrive) {
     expectNoted(30); // the server has several threads
 }
 
-// One-way calls to an absent vehicle are given up after --wait, those of a program that left, too.
+// One-way calls to an absent vehicle are dropped after --wait, also the calls of a program that has
+// ended.
 TEST_F(Gateway, AOnewayThatWaitsTooLongIsNeverCarriedOut) {
     start({"--wait", "3"});
     const auto power = [&](bool isOn) {
@@ -417,15 +418,15 @@ TEST_F(Gateway, AOnewayThatWaitsTooLongIsNeverCarriedOut) {
         }
     EXPECT_EQ(noted, 0);
     stop();
-    int told = 0; // in one look, or in two
+    int dropped = 0; // in one line, or in two
     for (size_t at = 0; (at = said().find("were not sent: ", at)) != std::string::npos;)
-        told += std::atoi(said().c_str() + (at += 15));
-    EXPECT_EQ(told, 3) << said();
+        dropped += std::atoi(said().c_str() + (at += 15));
+    EXPECT_EQ(dropped, 3) << said();
 }
 
 TEST(GatewayOptions, WrongOnesAreRefusedByName) {
     const std::pair<std::multimap<std::string, std::string>, std::string> cases[] = {
-        {{}, "it is no terminal"},
+        {{}, "it is not a terminal"},
         {{{"-d", "/dev/no-such-port"}}, "No such file"},
         {{{"-l", "nonsense"}}, "give HOST:PORT"},
         {{{"-l", "127.0.0.1:70000"}}, "a port is 0 to 65535"},
@@ -461,7 +462,7 @@ std::string textOf(const Ice::EncodingVersion& e) {
     return std::to_string(e.major) + "." + std::to_string(e.minor);
 }
 
-// Witness tells what it sees of a request. Its operation "fail" ends in a user exception.
+// Records the data of a request. Its operation "fail" ends in a user exception.
 class Witness : public Ice::Blobject {
 public:
     bool ice_invoke(std::vector<Ice::Byte> in, std::vector<Ice::Byte>& out,
@@ -481,7 +482,7 @@ public:
     }
 };
 
-// Returns what becomes of a call of the witness: its answer, or the exception's name.
+// Returns the result of a call to the witness: its reply, or the exception's name.
 std::string ask(const std::shared_ptr<Ice::ObjectPrx>& proxy, const std::string& operation,
                 Ice::OperationMode mode = Ice::OperationMode::Normal,
                 const Ice::Context& context = {}, const std::vector<Ice::Byte>& in = {}) {
@@ -503,7 +504,7 @@ std::string ask(const std::shared_ptr<Ice::ObjectPrx>& proxy, const std::string&
     }
 }
 
-// Returns what a program sees at an endpoint: a line a call.
+// Returns the results that a program gets at an endpoint: one line per call.
 std::string tryAll(const Ice::CommunicatorPtr& communicator, const std::string& endpoint,
                    bool facets = true) {
     const Ice::CommunicatorHolder ic(communicator);

@@ -12,8 +12,8 @@ using XBeeAT::ApiFrames;
 using XBeeAT::ApiModem;
 using Bytes = ApiFrames::Bytes;
 
-// Heard is what a modem in API mode said: data and their source, '+' for a packet that arrived, and
-// '-' for a lost one.
+// Output of a modem in API mode: data and their source, '+' for an acknowledged packet, and '-' for
+// a lost one.
 struct Heard {
     Bytes data;
     int source = 0;
@@ -57,7 +57,7 @@ TEST(Api, PacketsOfAllBytesArriveWithAndWithoutEscapes) {
     EXPECT_EQ(std::count(bytes.begin(), bytes.end(), 0x13), 0);
 }
 
-// The frame under way is heard at once: a short one at its head need not wait for the others.
+// Data are passed on at once: a short packet at the front need not wait for the others.
 TEST(Api, DataAreGivenAsTheyCome) {
     ApiModem modem(false);
     Heard heard;
@@ -112,7 +112,7 @@ TEST(Api, AnswersComeInTheOrderOfPacketsAndALostOneCountsAsALoss) {
     EXPECT_EQ(heard.answers, std::string(296, '+'));
     heard.answers.clear();
     heard.feed(modem, ApiFrames().pack({0x89, 298 % 255, 2}));
-    heard.feed(modem, ApiFrames().pack({0x89, 298 % 255, 0})); // nobody waits for it
+    heard.feed(modem, ApiFrames().pack({0x89, 298 % 255, 0})); // no packet waits for it
     Bytes spoilt = ApiFrames().pack({0x89, 299 % 255, 0});
     spoilt.back() ^= 1;
     heard.feed(modem, spoilt);
@@ -129,7 +129,7 @@ TEST(Api, AfterNoiseFramesAreReadAgain) {
             Heard heard;
             for (uint32_t i = random.below(40); i; --i)
                 heard.feed(modem, {static_cast<uint8_t>(random.below(4) ? random.next() : 0x7E)});
-            for (int i = 0; i < 3; ++i) // a false frame holds at most the first ones back
+            for (int i = 0; i < 3; ++i) // a false frame delays at most the first ones
                 heard.feed(modem, packetFrom(frames, 1, Bytes(60, 0x55)));
             heard.data.clear();
             heard.feed(modem, packetFrom(frames, 1, {1, 2, 3}));

@@ -12,8 +12,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-// A file in memory, mode 0600, that this process and its children open by a path. A test that is
-// killed leaves nothing of it.
+// A file in memory, mode 0600, that this process and its children open by path. A killed test
+// leaves nothing of it.
 class UnnamedFile {
 public:
     UnnamedFile() { fchmod(fd_, 0600); }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // clock_test: the engine's clock, from a simulator's counters and from the machine; and a program
-// that keeps step with simulated time, on a machine that lets it run seldom: no simulated time
+// that keeps step with simulated time, on a machine that rarely lets it run: no simulated time
 // passes while it works, and no byte is late.
 
 #include "clock.h"
@@ -76,8 +76,7 @@ TEST_F(ClockOfASimulator, WaitEndsWhenSomethingIsReadyThoughTimeStandsStill) {
 }
 
 TEST_F(ClockOfASimulator, FileOfSomethingElseIsRefused) {
-    std::ofstream(file_)
-        << "this is no simulator's file of counters, though it is long enough for one.";
+    std::ofstream(file_) << "not a simulator's file of counters, although long enough.";
     EXPECT_THROW(SimulatedClock{file_}, std::system_error);
     std::ofstream(file_) << "short";
     EXPECT_THROW(SimulatedClock{file_}, std::system_error);
@@ -116,7 +115,7 @@ TEST_F(ClockOfASimulator, WithoutANameItIsTheMachines) {
     EXPECT_GE(machine.nowUs() - begin, 1000u);
 }
 
-// A simulation of nothing but the pty, whose modem answers each byte by the next higher one.
+// A simulation of only the pty, with a modem that answers each byte with the next higher one.
 class Step : public testing::Test, public SerialClient {
 protected:
     Step() {
@@ -145,7 +144,7 @@ protected:
             step.wait(status_->ns);
         }
     }
-    // Runs a program that keeps step beside it, until it returns.
+    // Runs a program that keeps step in parallel, until it returns.
     void alongside(const std::function<void(Clock&, SerialPort&)>& program) {
         std::atomic<bool> over{false};
         std::thread thread([&] {
@@ -158,7 +157,7 @@ protected:
             port.open(pty_.path());
             port.setSpeed(115200);
             clock.keepStep(port.fd(), pty_.path());
-            ASSERT_EQ(clock.wait(&none_, 1, 1000), 0); // the pty knows by then
+            ASSERT_EQ(clock.wait(&none_, 1, 1000), 0); // the pty has been polled by then
             program(clock, port);
         });
         simulate([&] { return over.load(); });
@@ -170,7 +169,7 @@ protected:
     pollfd none_ = {-1, 0, 0};
 };
 
-// A program that begins may have bytes read as those of the one before.
+// When a program begins, bytes may be considered read by the previous one.
 TEST(Pty, BytesThatNeverComeAreWaitedForOnce) {
     struct Modem : SerialClient {
         void fromHost(uint8_t, uint64_t) override {}
@@ -191,12 +190,12 @@ TEST_F(Step, NoTimePassesWhileTheProgramWorksAndNoByteIsLate) {
         Random random(testSeed());
         for (uint8_t i = 0; i < 60; ++i) {
             const uint32_t begin = clock.nowUs();
-            if (i % 4 == 0) // the machine does other things
+            if (i % 4 == 0) // the machine does other work
                 std::this_thread::sleep_for(std::chrono::milliseconds(random.below(20)));
             ASSERT_EQ(clock.nowUs(), begin) << "time passed while the program worked";
             ASSERT_EQ(port.write(&i, 1), 1);
             pollfd fds[] = {{port.fd(), POLLIN, 0}};
-            // A byte takes 90 us each way, and the pty is looked at every 100 us.
+            // A byte takes 90 us each way, and the pty is polled every 100 us.
             ASSERT_EQ(clock.wait(fds, 1, 1'000'000), 1);
             ASSERT_LE(clock.nowUs() - begin, 500u);
             uint8_t byte = 0;
@@ -209,7 +208,7 @@ TEST_F(Step, NoTimePassesWhileTheProgramWorksAndNoByteIsLate) {
     });
 }
 
-// An engine that gave up and tries again follows the other between two looks at the pty.
+// An engine that failed and retries follows the other between two polls of the pty.
 TEST_F(Step, WhoKeepsStepNextIsHeardFromTheFirstByte) {
     alongside([&](Clock& clock, SerialPort& port) {
         for (uint8_t i = 0; i < 240; ++i) {
@@ -248,7 +247,7 @@ TEST_F(Step, AnotherPortsProgramIsNotWaitedFor) {
     simulate([&] { return status_->ns >= end; });
 }
 
-// The program lives, and does nothing: time goes on without it, and stderr reports it.
+// The program is alive, and does nothing: time continues without it, and stderr reports it.
 TEST_F(Step, WhoHoldsTimeForTooLongIsWaitedForNoLonger) {
     SimulatedClock clock(status_.path());
     SerialPort port(clock);
@@ -260,7 +259,7 @@ TEST_F(Step, WhoHoldsTimeForTooLongIsWaitedForNoLonger) {
               std::string::npos);
 }
 
-// A debugger, or SIGSTOP, may hold it as long as it likes.
+// A debugger, or SIGSTOP, may stop it for any time.
 TEST_F(Step, WhoIsHeldByADebuggerIsWaitedFor) {
     int ready[2];
     ASSERT_EQ(pipe(ready), 0);
@@ -284,7 +283,7 @@ TEST_F(Step, WhoIsHeldByADebuggerIsWaitedFor) {
     close(ready[1]);
 }
 
-// A simulation that must end asks once whether it goes on, and waits for nobody from then on.
+// A simulation that must end checks once whether it continues, and then waits for no program.
 TEST_F(Step, NobodyIsWaitedForAfterTheStop) {
     SimulatedClock clock(status_.path());
     SerialPort port(clock);

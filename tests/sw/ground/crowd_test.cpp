@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // crowd_test: programs at one engine that do not read, that send more than the link carries, or
-// that leave; signs of life for one that cuts silent connections, in simulated time.
+// that disconnect; heartbeats for one that closes silent connections, in simulated time.
 
 #include "program_connection.h"
 #include "wire.h"
@@ -10,7 +10,7 @@
 
 namespace {
 
-// A program's end of a connection; nothing blocks.
+// A program's end of a connection; non-blocking.
 class Program {
 public:
     explicit Program(int fd) : fd_(fd) {}
@@ -114,7 +114,7 @@ TEST_F(Crowd, CallsThatTheLinkCouldNotDeliverAreReportedWhenTheirProgramHasLeft)
         program.send(call);
     program.write();
     program.leave();
-    while (wire_.log().find("has ended") == std::string::npos) // the UAV hears nothing
+    while (wire_.log().find("has ended") == std::string::npos) // the UAV receives nothing
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
     engine_.reset();
     EXPECT_NE(wire_.log().find("may not have reached the UAV: 20"), std::string::npos)
@@ -136,12 +136,12 @@ TEST_F(Crowd, AfterAFloodEveryNewProgramIsServed) {
                 program->write();
             return std::chrono::steady_clock::now() > end;
         });
-        flood.clear(); // in the midst of it
+        flood.clear(); // in the middle of it
         for (int i = 0; i < 3; ++i) {
             unsigned openings = 2 * round + 1;
             Program next(engine_->connect(i));
             echoes(next);
-            EXPECT_EQ(wire_.openings[i], ++openings) << "the UAV greets nobody";
+            EXPECT_EQ(wire_.openings[i], ++openings) << "the UAV sends no greeting";
         }
         wire_.until([] {
             static int n;
@@ -150,11 +150,11 @@ TEST_F(Crowd, AfterAFloodEveryNewProgramIsServed) {
     }
 }
 
-// Three programs keep their channels without a use: they leave answers unread, or never end a
+// Three programs keep their channels without using them: they leave replies unread, or never end a
 // message. A fourth that waits gets one of the channels after a while.
 class Keepers : public ::testing::Test {
 protected:
-    // The fourth has an answer, while the three do `meanwhile` again and again.
+    // The fourth gets a reply, while the three repeat `meanwhile`.
     template <class F> void theFourthIsServed(F meanwhile) {
         Program fourth(engine_->connect(-1));
         fourth.send(message(1));
@@ -178,7 +178,8 @@ protected:
 TEST_F(Keepers, AnswersThatAreNotRead) {
     for (auto& keeper : keepers_)
         for (int i = 0; i < 10; ++i)
-            keeper->send(message(1, 4000)); // more than the socket takes, less than ends it
+            keeper->send(message(1, 4000)); // more than the socket takes, less than a complete
+                                            // message
     theFourthIsServed([](Program& keeper) { keeper.write(); });
 }
 
@@ -216,7 +217,7 @@ TEST_F(Crowd, AFloodLeavesRoomForOthers) {
             other.read();
             return other.got >= want;
         }));
-        // The link's queue goes first, not the whole flood.
+        // The link's queue is sent first, not the whole flood.
         EXPECT_LT(flood.got - before, 60'000u);
     }
 }
@@ -224,8 +225,8 @@ TEST_F(Crowd, AFloodLeavesRoomForOthers) {
 using XBeeAT::ProgramConnection;
 
 // By Ice 3.8's manual a connection without incoming bytes for 60 s (Ice.Connection.IdleTimeout) is
-// cut; a program that has written nothing for half of it sends a heartbeat. Ice 3.7 sends none by
-// itself.
+// closed; a program that has written nothing for half of that time sends a heartbeat. Ice 3.7 sends
+// none by itself.
 class Timed {
 public:
     Timed() {
@@ -283,7 +284,7 @@ TEST(ProgramConnection, AndWhileItSendsAndNothingComesBack) {
     Timed program;
     for (U32 second = 1; second < 1200; ++second) {
         if (second % 7 == 0)
-            program.send(1, second); // a batch: nobody answers it
+            program.send(1, second); // a batch, which is not answered
         program.pass(second, true);
     }
     EXPECT_LT(program.silence, 45u);
@@ -317,8 +318,8 @@ TEST(ProgramConnection, AProgramThatHasEndedItsWritingHearsNoSigns) {
     EXPECT_EQ(program.heard, 0u);
 }
 
-// It cannot be told, so what the kernel still holds of it is counted, too, although the connection
-// is reset: a sign of life was left unread.
+// It cannot be informed, so messages still held by the kernel are also counted, although the
+// connection is reset because a heartbeat was left unread.
 TEST(ProgramConnection, CallsThatAProgramLeftUnreadAreCountedWhenTheLinkIsLost) {
     constexpr unsigned count = 3000;
     int pair[2];

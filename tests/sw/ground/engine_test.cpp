@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// engine_test: the ground's engine on a pty with a modem behind it.
+// engine_test: the ground's engine on a pty with a modem.
 
 #include "engine.h"
 #include "rig.h"
@@ -67,7 +67,7 @@ TEST_F(EngineTest, MoreProgramsThanChannelsWaitTheirTurn) {
     EXPECT_EQ(engine->waiting(), 3u);
     close(gone);
     close(fds[2]);
-    echoes(next, 2); // not the one that has left
+    echoes(next, 2); // not the one that has disconnected
     close(fds[0]);
     close(fds[1]);
     echoes(last, 3);
@@ -108,7 +108,7 @@ TEST_F(EngineTest, AMessageThatIsTooLongEndsItsConnectionOnly) {
     close(bad);
 }
 
-// Neither the message that the UAV's program does not take nor the one behind it is taken later.
+// Neither the message that the UAV's program does not take nor the next one is taken later.
 TEST_F(EngineTest, WhatIsLateIsWithdrawnAndItsSenderIsTold) {
     auto engine = start();
     const int other = engine->connect(0), fd = engine->connect(1, 2000);
@@ -168,7 +168,7 @@ TEST_F(EngineTest, HeartbeatsTakeNoAir) {
     auto engine = start();
     int fd = engine->connect(0);
     ASSERT_TRUE(rig_.until([&] { return rig_.uav.isUp() && !rig_.uav.opened.empty(); }));
-    // Ice sends a two-way request, then heartbeats while the answer takes its time.
+    // Ice sends a two-way request, then heartbeats until the reply arrives.
     Bytes request = message(1, 40), heartbeat = message(0, 14);
     request[8] = 0;
     heartbeat[8] = 3;
@@ -176,7 +176,8 @@ TEST_F(EngineTest, HeartbeatsTakeNoAir) {
     ASSERT_TRUE(rig_.until([&] { return rig_.uav.received.size() == 1; }));
     for (int i = 0; i < 10; ++i)
         writeAll(fd, heartbeat);
-    EXPECT_EQ(rig_.read(fd, 14), heartbeat); // after 5 s, from the engine, for the UAV says nothing
+    EXPECT_EQ(rig_.read(fd, 14),
+              heartbeat); // after 5 s, from the engine, because the UAV is silent
     rig_.with([&] {
         EXPECT_EQ(rig_.uav.received.size(), 1u) << "a heartbeat crossed the air";
         Bytes reply = message(1, 30);
@@ -187,7 +188,7 @@ TEST_F(EngineTest, HeartbeatsTakeNoAir) {
     close(fd);
 }
 
-// A modem may be in any mode and at any rate when it is found; AP 2 is its user's choice.
+// A modem may be in any mode and at any rate when it is found; AP 2 is the user's choice.
 TEST_F(EngineTest, AModemInAnyModeIsSetToTheWantedOne) {
     const auto fly = [&](const XBeeAT::Settings& s, uint32_t mode, uint32_t rate) {
         SCOPED_TRACE("AP " + std::to_string(mode));
@@ -257,7 +258,7 @@ TEST_F(EngineTest, AModemThatWasGivenUpIsTriedAgainAndTheListenerIsCalled) {
     int ready = engine->listen();
     EXPECT_EQ(engine->listen(), -1) << "a second listener";
     int fd = engine->connect(0);
-    EXPECT_TRUE(rig_.read(fd, 1).empty()); // nobody answers: the waiting program is told
+    EXPECT_TRUE(rig_.read(fd, 1).empty()); // no reply: the waiting program gets an error
     close(fd);
     EXPECT_TRUE(log_.has("0 no modem answers"));
     rig_.with([&] { rig_.ground->power(true, rig_.ns()); });
@@ -268,8 +269,8 @@ TEST_F(EngineTest, AModemThatWasGivenUpIsTriedAgainAndTheListenerIsCalled) {
     close(fd);
 }
 
-// A program that is killed during the set-up leaves the modem in command mode, in the middle of a
-// line. The modem leaves the mode by itself only after CT, 10 s.
+// A program killed during the set-up leaves the modem in command mode, in the middle of a line. The
+// modem leaves the mode by itself only after CT, 10 s.
 TEST_F(EngineTest, AModemThatWasLeftInCommandModeIsFoundAtOnce) {
     const int port = open(rig_.pty.path().c_str(), O_RDWR | O_NOCTTY);
     ASSERT_GE(port, 0);
@@ -304,7 +305,7 @@ TEST_F(EngineTest, ARefusedCommandIsToldAsWhatItIs) {
 }
 
 // A vehicle that is up before the ground's program: its frames leave the modem between the replies,
-// carriage returns and all.
+// including carriage returns.
 TEST_F(EngineTest, TheModemIsSetUpWhileTheUavSends) {
     uint64_t commands = 0;
     rig_.with([&] {
@@ -338,8 +339,8 @@ TEST_F(EngineTest, AListenerAloneHasTheModemTriedAgain) {
     EXPECT_TRUE(rig_.until([&] { return rig_.uav.isUp(); }));
 }
 
-// BYTES=10000000 from the line, and noise from a program for each 64 KiB of them: nothing hangs or
-// falls over, and afterwards the link works.
+// BYTES=10000000 from the line, and noise from a program for every 64 KiB: nothing hangs or
+// crashes, and afterwards the link works.
 TEST(Engine, RandomBytesFromTheLineAndFromProgramsAreSurvived) {
     const char* more = std::getenv("BYTES");
     const size_t total = more ? std::strtoul(more, nullptr, 0) : 10'000'000;
@@ -352,7 +353,7 @@ TEST(Engine, RandomBytesFromTheLineAndFromProgramsAreSurvived) {
             byte = static_cast<uint8_t>(random.next());
         wire.flood(noise);
         int fd = engine->connect(0);
-        if (fd >= 0) { // nonsense instead of a message ends the connection
+        if (fd >= 0) { // garbage instead of a message ends the connection
             (void)!send(fd, noise.data(), noise.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
             close(fd);
         }

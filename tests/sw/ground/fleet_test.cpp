@@ -44,7 +44,7 @@ public:
         line_.received.clear();
     }
 
-    std::vector<Rig::Bytes> packets, calls; // what was heard, and what is to be carried out
+    std::vector<Rig::Bytes> packets, calls; // received bytes, and calls to execute
 
 private:
     void take(Rig::Bytes packet) {
@@ -82,8 +82,8 @@ protected:
     ~FleetTest() override {
         rig_.with([&] { rig_.step = nullptr; });
     }
-    // A vehicle comes. It answers a message with its first bytes, and its address as their last
-    // byte. `place`: its number in `vehicles_`, if another one has its address.
+    // Adds a vehicle. It answers a message with its first bytes, followed by its address as last
+    // byte. `place`: its index in `vehicles_`, if another one has its address.
     void fly(int address, const LinkKeys& keys = {}, int place = 0) {
         rig_.with([&] {
             auto& v = vehicles_[place ? place : address];
@@ -109,7 +109,7 @@ protected:
     unsigned sessions(int place) {
         return rig_.with([&] { return vehicles_[place]->sessions(); });
     }
-    // A call, whose answer says which vehicle has it; -1: there is none.
+    // Makes a call; the reply contains the vehicle that received it; -1: no reply.
     void answers(int fd, int vehicle) {
         writeAll(fd, message(1));
         const Bytes answer = rig_.read(fd, 30);
@@ -121,7 +121,7 @@ protected:
             sum += bytes;
         return sum;
     }
-    // Seconds of simulated time in which the vehicles take so many bytes, all programs writing as
+    // Simulated seconds in which the vehicles take this many bytes, with all programs writing as
     // much as is taken. Their connections end.
     double secondsFor(const std::list<Program>& programs, size_t bytes) {
         std::atomic<bool> stop{false};
@@ -152,7 +152,7 @@ protected:
     Rig rig_{testSeed()};
     std::map<int, size_t> taken_; // bytes, by address
     std::map<int, std::unique_ptr<Uav>> vehicles_;
-    std::list<Hearer> hearers_; // of calls to all vehicles
+    std::list<Hearer> hearers_; // receivers of calls to all vehicles
     std::list<Program> programs_;
 };
 
@@ -223,7 +223,7 @@ TEST_F(FleetTest, AnotherOfOneAddressABabblerAndAChangeOfKeysDisturbNobodyElse) 
     answers(first.fd, 1);
     answers(second.fd, 2);
 
-    rig_.with([&] { // the session ends, and the next one is under the next key
+    rig_.with([&] { // the session ends, and the next one uses the next key
         Link_setKey(vehicles_[1]->link(), 1, next[0].data(), 1);
         Link_setKey(vehicles_[1]->link(), 0, nullptr, 1);
     });
@@ -256,7 +256,7 @@ TEST_F(FleetTest, AnotherOfOneAddressABabblerAndAChangeOfKeysDisturbNobodyElse) 
     EXPECT_EQ(sessions(101), 0u);
 }
 
-// Two grounds with one address and, where the links have keys, one key.
+// Two ground stations with one address and, if the links have keys, one key.
 class TwinGrounds : public FleetTest, public ::testing::WithParamInterface<LinkKeys> {};
 
 TEST_P(TwinGrounds, TheNewerOneKeepsTheVehicleAndTheOlderOneHasItAgainAfterIt) {
@@ -287,7 +287,7 @@ TEST_P(TwinGrounds, TheNewerOneKeepsTheVehicleAndTheOlderOneHasItAgainAfterIt) {
     answers(Program(older).fd, 1);
 }
 
-// A vehicle that loses its power leaves a cut frame, which is of no session.
+// A vehicle that loses its power leaves a cut frame, which belongs to no session.
 TEST_P(TwinGrounds, AVehicleThatFallsSilentInAFrameHasNoOtherGround) {
     fly(1, GetParam());
     const auto ground = peer(1, GetParam());
@@ -307,7 +307,7 @@ TEST_P(TwinGrounds, AVehicleThatFallsSilentInAFrameHasNoOtherGround) {
             dying.advance(rig_.ns());
         };
     });
-    EXPECT_TRUE(rig_.read(before.fd, 1).empty()) << "its connection ends";
+    EXPECT_TRUE(rig_.read(before.fd, 1).empty()) << "the connection ends";
     rig_.pass(1);
     rig_.with([&] {
         rig_.step = step;
@@ -345,7 +345,7 @@ TEST_F(FleetTest, AModemServesAsManyVehiclesAsItMay) {
 
 const XBeeAT::LinkKey groupKey = {7, 7, 7};
 
-// A call of so many bytes in Ice's framing; `id`: 0 oneway; `type`: 1 batch, 4 goodbye.
+// A call of `size` bytes in Ice's format; `id`: 0 oneway; `type`: 1 batch, 4 close.
 Bytes callOf(uint8_t tag, uint8_t id = 0, size_t size = 40, uint8_t type = 0) {
     Bytes m = message(tag, size);
     m[8] = type;
@@ -354,7 +354,7 @@ Bytes callOf(uint8_t tag, uint8_t id = 0, size_t size = 40, uint8_t type = 0) {
     return m;
 }
 
-// Five hearers, of whom the last has another key, and programs that call all vehicles.
+// Five receivers, the last with another key, and programs that call all vehicles.
 class BroadcastTest : public FleetTest {
 protected:
     BroadcastTest() {
@@ -363,8 +363,8 @@ protected:
                 hearers_.emplace_back(rig_, address, address == 5 ? XBeeAT::LinkKey{1} : groupKey);
         });
     }
-    // What is read after these messages, until the connection ends, which it does when what was
-    // sent is on the air; without the greeting.
+    // Returns the bytes read after these messages, until the connection ends, which happens when
+    // the messages are on the air; without the greeting.
     std::string say(const std::vector<Bytes>& messages) {
         const Program all(peer(XBeeAT::everybody, {groupKey}));
         (void)rig_.read(all.fd, 14);
@@ -398,7 +398,7 @@ TEST_F(BroadcastTest, EachVehicleTakesACallOnceInOrder) {
                 EXPECT_GE(h.calls.size(), 23u) << "five copies miss once in 400";
         }
     });
-    EXPECT_EQ(sessions(9), 1u) << "it hears them, too";
+    EXPECT_EQ(sessions(9), 1u) << "it also hears them";
     answers(one.fd, 9);
 }
 

@@ -2,8 +2,8 @@
 //
 // fuzz_engine: libFuzzer target of the ground's engine: its serial input and programs' writes. An
 // input is a sequence of steps; between them the engine runs with a link layer at the other end of
-// the wire, so that sessions come up. Nothing may crash, hang or leak, and a message that is handed
-// to a program is whole.
+// the wire, so that sessions come up. Nothing may crash, hang or leak, and a message passed to a
+// program is complete.
 //
 // The first byte's lowest bit: the modem is set up first. Then a byte names the step (mod 8), the
 // next its argument n:
@@ -11,7 +11,8 @@
 //   2 n frames are lost    3,4 a program (n mod 3) writes a message of the bytes behind
 //   5 it writes n bytes as they are    6 it leaves, and (n > 127) comes anew    7 8 n ms pass
 //
-// Clock and serial port are this file's: so the engine's thread runs alone, by the input's time.
+// Clock and serial port are implemented here, so the engine's thread runs alone, in the input's
+// time.
 
 #include "../../support/link_end.h"
 #include "engine.h"
@@ -36,7 +37,7 @@ void expect(bool condition) {
         std::abort();
 }
 
-// Takes what the engine hands to a program, in any pieces.
+// Takes the engine's output for a program, in any pieces.
 class Program {
 public:
     ~Program() { leave(); }
@@ -103,7 +104,7 @@ public:
         engine_.reset();
     }
 
-    // ---- the engine's clock and port ----
+    // ---- clock and port of the engine ----
     U32 now = 0xFFFFF000u;
     std::deque<uint8_t> toEngine;
     const int serial = eventfd(0, EFD_CLOEXEC);
@@ -114,7 +115,7 @@ public:
             for (char c : {'O', 'K', '\r'})
                 toEngine.push_back(static_cast<uint8_t>(c));
     }
-    // Returns, as the engine's clock does, when something is ready or `us` have passed.
+    // Returns, like the engine's clock, when a descriptor is ready or `us` have passed.
     int wait(pollfd* fds, nfds_t count, uint32_t us) {
         std::unique_lock<std::mutex> lock(mutex_);
         changed_.wait(lock, [this] { return stage_ != Stage::Begins; });
@@ -128,7 +129,7 @@ public:
                     ready += !fds[i].revents;
                     fds[i].revents |= POLLIN;
                 }
-            now += 10; // even an engine that is always busy comes to the input's end
+            now += 10; // even an engine that is always busy reaches the end of the input
             if (ready && ++busy_ % 64)
                 return ready;
             const uint32_t step = std::min(us, at_ < end_ ? 10'000u : 200'000u);
@@ -182,7 +183,8 @@ private:
         at_ += count;
         return Bytes(at_ - count, at_);
     }
-    // Does the next step of the input; behind the last, time passes until all time-outs have come.
+    // Executes the next step of the input; after the last, time passes until all time-outs have
+    // expired.
     void next() {
         if (end_ - at_ < 2) {
             pause_ = 1'000'000;

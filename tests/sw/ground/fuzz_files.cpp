@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // fuzz_files: libFuzzer target of the key file, and with RIGHTS of the gateway's file of rights. It
-// is read, or refused in our words: with no key in them, and no right is given that it does not
-// name.
+// is accepted, or rejected with our messages, without a key in them; no right is granted that the
+// file does not contain.
 
 #ifdef RIGHTS
 #include "rights.h"

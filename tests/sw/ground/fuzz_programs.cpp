@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// fuzz_programs: libFuzzer target of the bytes from a program with the plugin: they come in any
-// pieces on a socket, and the engine's ProgramConnection makes messages of them. Each message must
-// be one that was sent, whole and in its turn. The answers must be whole messages, too.
+// fuzz_programs: libFuzzer target of the bytes from a program with the plugin: they arrive in any
+// pieces on a socket, and the engine's ProgramConnection splits them into messages. Each message
+// must be one that was sent, complete and in order. The replies must also be complete messages.
 //
 // The first byte's lowest bit: the program is a server that the UAV called. Then a byte names the
 // step (mod 8), the next its argument n:
@@ -150,7 +150,7 @@ private:
     int ends_[2];
     U32 now_ = 0xFFFFF000u;
     bool validatesComeThrough_; // the first: a server's greeting
-    std::vector<U8> sent_;      // and not yet taken
+    std::vector<U8> sent_;      // not taken yet
     std::vector<U8> got_;
     ProgramConnection stream_;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// key_file_test: accepted key files, and messages about refused ones.
+// key_file_test: accepted key files, and messages about rejected ones.
 
 #include "key_file.h"
 #include <cstdio>

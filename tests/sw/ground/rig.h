@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// rig: the other end of the ground's serial port: a modem on a pty, the air, and a UAV that is a
+// rig: the other end of the ground's serial port: a modem on a pty, the air, and a UAV made of a
 // modem and a link layer. Its thread follows the machine's clock, but waits for an engine that
-// keeps step with it: where many tests run at once, time passes slowly and no time-out is early.
+// keeps step: if many tests run at once, time passes slowly and no time-out is early.
 
 #pragma once
 
@@ -31,7 +31,7 @@ public:
         move(air);
         begin();
     }
-    // Flies to where the modems of an air hear it.
+    // Moves it into reach of the modems of an air.
     void move(RfChannel& to) {
         XBee::Options options;
         options.name = "uav " + std::to_string(address_);
@@ -100,7 +100,7 @@ public:
         stop_ = true;
         thread_.join();
     }
-    // Puts another modem in the ground's place.
+    // Replaces the ground's modem by another one.
     void replaceGround(std::map<std::string, uint32_t> set) {
         place(ground, pty, air, std::move(set));
     }
@@ -111,7 +111,8 @@ public:
         std::lock_guard<std::mutex> lock(mutex_);
         return f();
     }
-    // Waits until `done`, for so many simulated seconds at most: a busy machine takes longer.
+    // Waits until `done` returns true, for at most `seconds` of simulated time: a busy machine
+    // takes longer.
     template <class F> bool until(F done, uint64_t seconds = 60) {
         const uint64_t end = with([&] { return now_ + seconds * 1'000'000'000; });
         bool isLate = false;
@@ -136,7 +137,7 @@ public:
             return poll(&p, 1, 0) == 1;
         });
     }
-    // Reads `size` bytes; fewer if the stream ends, or nothing comes for a simulated minute.
+    // Reads `size` bytes; fewer if the stream ends, or nothing arrives for a simulated minute.
     Bytes read(int fd, size_t size) {
         Bytes bytes(size);
         size_t got = 0;
@@ -155,7 +156,7 @@ public:
     static constexpr uint32_t guardMs = 20;
     RfChannel air, elsewhere; // the second is out of the first one's reach
     PtyLine pty, otherPty;
-    std::unique_ptr<XBee> ground, other; // the second: none, until it is placed
+    std::unique_ptr<XBee> ground, other; // `other` is null until it is placed
     Uav uav;
     std::function<void()> step; // called in the rig's thread, locked
 
@@ -195,7 +196,7 @@ private:
         }
     }
 
-    // An engine whose thread waits for the test is not waited for.
+    // An engine with a thread that waits for the test is not waited for.
     bool goesOn() const {
         return !stop_ && std::chrono::steady_clock::now() - waiting_ < std::chrono::seconds(5);
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// wire: a serial port with a link layer behind it and no modem, as fast as bytes are taken; and
+// wire: a serial port with a link layer and without a modem, as fast as bytes are taken; and
 // helpers for programs' sockets.
 
 #pragma once
@@ -25,7 +25,7 @@
 
 using Bytes = std::vector<uint8_t>;
 
-// Returns a message in Ice's framing, of which only the size matters.
+// Returns a message in Ice's format with a valid size and no other meaning.
 inline Bytes message(uint8_t tag, size_t size = 30) {
     return IceHeader::pack(7, Bytes(size - IceHeader::bytes, tag));
 }
@@ -41,7 +41,7 @@ inline void writeAll(int fd, const Bytes& bytes) {
     }
 }
 
-// EngineLog keeps what engines have logged: a line each, which begins with the level.
+// Log of engines: one line each, which begins with the level.
 class EngineLog {
 public:
     XBeeAT::Log taker() {
@@ -64,7 +64,7 @@ private:
 class Wire : private LinkEnd {
 public:
     Wire() {
-        begin(16); // a fast way: nothing to pace
+        begin(16); // a fast path: no pacing needed
         Link_start(link(), us());
         if (openpty(&master_, &slave_, name_, nullptr, nullptr) != 0)
             throw std::runtime_error("no pty");
@@ -100,8 +100,8 @@ public:
             done += count > 0 ? static_cast<size_t>(count) : 0;
         }
     }
-    // The peer's link runs until `done`. False: so often it had nothing to read for 2 ms, which a
-    // busy machine makes longer.
+    // Runs the peer's link until `done` returns true. Returns false if it had nothing to read for 2
+    // ms this often, which a busy machine makes longer.
     template <class F> bool until(F done, int rests = 30'000) {
         while (!done()) {
             pollfd p{master_, POLLIN, 0};

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// chip_soak_test: the real thing for long: stock Ice with the plugin and IceC on the RTL call each
-// other over a bad radio, while UAV, modems and the ground's program start again. No message is
-// wrong, doubled or out of order; each is answered, or reported by such a status.
+// chip_soak_test: the real system for a long time: stock Ice with the plugin and IceC on the RTL
+// call each other over a bad radio, while UAV, modems and the ground's program restart. No message
+// is wrong, duplicated or out of order; each call is answered, or reported with a status.
 //
 //   SOAK_SECONDS=600 build/main/tests/sw/ground/chip/test_chip_soak (simulated seconds; default 5)
-// SOAK_REST=10 makes each caller rest for this many seconds on average, with accidents rarer by as
-// much. That is a flight (make fly): most of its clocks pass at once. The camera's sensor sends a
-// picture a second then, and the cores are called in turn.
+// SOAK_REST=10 makes each caller pause for this many seconds on average, with faults rarer by the
+// same factor. That is a flight (make fly): most of its clocks are skipped. The camera's sensor
+// then sends one picture per second, and the cores are called in turn.
 
 #include "chip_world.h"
 #include "core_pins.h"
@@ -30,7 +30,7 @@ RadioTest::Bytes pattern(int id, size_t size) {
     return bytes;
 }
 
-// The ground's program, which ends and starts again under its callers.
+// The ground's program, which ends and restarts while it is being used.
 class GroundProgram {
 public:
     Ice::CommunicatorPtr get() {
@@ -49,9 +49,9 @@ public:
         }
         old->destroy();
     }
-    // True if an exception means, in Ice's words, "this call may not have been executed". While a
-    // communicator is destroyed, Ice's own parts report it in other words: "timer destroyed", a
-    // null handle.
+    // True if an Ice exception means "this call may not have been executed". While a communicator
+    // is being destroyed, parts of Ice report it with other texts: "timer destroyed", a null
+    // handle.
     bool isReport(const Ice::CommunicatorPtr& used, const std::string& exceptionId) {
         static const std::set<std::string> reports = {
             "::Ice::ConnectionLostException",    "::Ice::ConnectFailedException",
@@ -164,7 +164,7 @@ protected:
             const auto ground = ground_.get();
             try {
                 auto echo = world_.echo(ground, std::to_string(worker));
-                if (random.below(4) == 0) // reported by nobody if it is lost: it is oneway
+                if (random.below(4) == 0) // not reported if it is lost, because it is oneway
                     echo->ice_oneway()->note(id);
                 const U32 size = random.below(12) ? random.below(200) : random.below(7000);
                 const auto data = pattern(id + 1, size);
@@ -192,7 +192,7 @@ protected:
             });
         });
     }
-    // Calls the core whose turn it is; two-way, so that it works before the next call.
+    // Calls the next core in turn; two-way, so that it works before the next call.
     void callCore(const Ice::CommunicatorPtr& ground, int worker) {
         using Bytes = std::vector<Ice::Byte>;
         static const Bytes size = {64, 1, 240, 0}, one = {0, 0, 0, 1, 0}, key(17, 16), text(41, 40),
@@ -244,7 +244,7 @@ protected:
             ++modemResets_;
             break;
         case 3:
-            ground_.end(); // with it the engine, as at a program's end
+            ground_.end(); // and with it the engine, as at the end of a program
             startGround();
             ++groundStarts_;
             break;
@@ -295,8 +295,8 @@ protected:
         EXPECT_EQ(up_.outOfOrder + down_.outOfOrder, 0u) << "out of order; SEED " << testSeed();
         EXPECT_LE(answered_, up_.executed);
         EXPECT_GE(answered_ + wrong_ + reported, calls_.load())
-            << "calls of which nothing was said; SEED " << testSeed();
-        // A reboot takes the call under way with it.
+            << "calls without a report; SEED " << testSeed();
+        // A reboot ends the current call.
         EXPECT_LE(uavAnswered_ + uavReported_, static_cast<unsigned>(uavSent_));
         EXPECT_GE(uavAnswered_ + uavReported_ + reboots_ + 1, static_cast<unsigned>(uavSent_));
         EXPECT_GE(2 * coreAnswers_ + 5, coreCalls_) << "cores that do not answer";
@@ -336,7 +336,7 @@ protected:
 };
 
 TEST_F(ChipSoak, EveryMessageIsRightOnceInOrderOrReported) {
-    struct AtEnd { // also after an exception: the workers are told before they are joined
+    struct AtEnd { // also after an exception: the workers are stopped before they are joined
         ~AtEnd() { stop = true; }
         std::atomic<bool>& stop;
     };

@@ -70,7 +70,8 @@ void ChipWorld::run() {
             machine.board.provide(std::vector<uint8_t>(key_ ? LINK_KEY_BYTES : 0, 0x55));
             machine.run();
         }
-    } catch (const std::exception& e) { // a model says that the chip did wrong: nobody can go on
+    } catch (const std::exception& e) { // a model reports an error of the chip: the test cannot
+                                        // continue
         std::fprintf(stderr, "chip: error: %s\n", e.what());
         std::_Exit(1);
     }
@@ -104,14 +105,14 @@ Ice::CommunicatorPtr ChipWorld::client(std::map<std::string, std::string> more) 
     std::map<std::string, std::string> all = {
         {"Ice.Plugin.XBeeAT", PLUGIN_FOLDER "/xbeeat:createXBeeAT"},
         {"Ice.Default.InvocationTimeout", "120000"},
-        {"Ice.RetryIntervals", "-1"}, // a call is made once, whatever becomes of it
+        {"Ice.RetryIntervals", "-1"}, // a call is made once, whatever its result
         {"Ice.ThreadPool.Client.Size", "4"},
         {"Ice.Warn.Connections", "0"},
         {"Ice.ACM.Close", "0"},
         {"XBeeAT.Guard", std::to_string(guardMs_)},
         {"XBeeAT.Down", "2"},
         {"Station.Endpoints", endpoint()},
-        {"Station.ThreadPool.Size", "1"}}; // so that order can be seen
+        {"Station.ThreadPool.Size", "1"}}; // so that the order is visible
     if (key_)
         all["XBeeAT.KeyFile"] = key_->path();
     for (auto& [name, value] : more)

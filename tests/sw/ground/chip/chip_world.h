@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// chip_world: the real thing under stock Ice: RTL, DDR3, firmware with IceC, two modems, the air,
-// and a pty for the plugin; in a thread of its own, in simulated time that waits for the plugin.
+// chip_world: the real system under stock Ice: RTL, DDR3, firmware with IceC, two modems, the air,
+// and a pty for the plugin; in a separate thread, in simulated time that waits for the plugin.
 
 #pragma once
 
@@ -31,10 +31,10 @@ public:
     void with(std::function<void()> f);
     uint64_t ns() const { return clock_.ns(); }
     void sleep(double seconds) const; // simulated
-    // Processor and chip start again; memory and modem stay as they are.
+    // Restarts processor and chip; memory and modem are not reset.
     void reboot() { reboot_ = true; }
 
-    // A program on the ground, with a call's time-out in ms of the wall clock.
+    // A program on the ground, with a time-out per call in wall-clock ms.
     Ice::CommunicatorPtr client(std::map<std::string, std::string> more = {}) const;
     std::string endpoint() const { return "xbee-at -t 120000 -d " + pty_.path(); }
     std::shared_ptr<RadioTest::EchoPrx> echo(const Ice::CommunicatorPtr& ic,
@@ -47,10 +47,10 @@ private:
 
     static constexpr uint32_t guardMs_ = 20;
     const uint64_t seed_;
-    std::unique_ptr<UnnamedFile> key_; // none: in the clear
+    std::unique_ptr<UnnamedFile> key_; // null: unencrypted
     ClockFile clock_;
 
-public: // in the world's thread only
+public: // only used in the world's thread
     RfChannel air;
 
 private:

@@ -12,10 +12,10 @@ typedef struct EchoUav_Port {
     /* Called when an operation with an id has been executed here, with this data. */
     void (*executed)(void* context, int id, const U8* data, int size);
     /* Returns the next message to the ground: its id, its bytes written to `data`, and their
-     * number, or -1: none now. `isOneway`: as note(id), without bytes. */
+     * number; -1 if there is none now. `isOneway`: as note(id), without bytes. */
     int (*next)(void* context, int* id, U8* data, int* isOneway);
-    /* The outcome of a call: `status` 0, and the answer's bytes unless it was oneway; else a status
-     * of ice_status.c with its text. */
+    /* Outcome of a call: `status` 0, and the bytes of the reply unless it was oneway; otherwise a
+     * status of ice_status.c with its text. */
     void (*outcome)(void* context, int id, int status, const char* text, const U8* answer,
                     int size);
 } EchoUav_Port;
@@ -25,6 +25,6 @@ typedef struct EchoUav_Port {
 /* Sets the program up; to be called before the first boot. */
 void EchoUav_setPort(const EchoUav_Port* port, void* context);
 
-/* These do what UAV_start and its like do (uav.h). */
+/* Counterparts of UAV_start and related functions (uav.h). */
 void EchoUav_start(const FSMC_Port* fsmc, void* context);
 int EchoUav_irqEnabled(void);

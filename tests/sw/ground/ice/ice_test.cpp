@@ -26,7 +26,8 @@ TEST_F(StockIce, MessagesUpToTheLimitPassAndALongerOneIsRefusedInTheCaller) {
         EXPECT_EQ(echo->repeat(static_cast<int>(size), World::pattern(1, size)),
                   World::pattern(1, size));
     EXPECT_THROW(echo->repeat(1, World::pattern(1, most + 1)), Ice::MemoryLimitException);
-    EXPECT_EQ(echo->repeat(2, World::pattern(2, 10)), World::pattern(2, 10)) << "and it goes on";
+    EXPECT_EQ(echo->repeat(2, World::pattern(2, 10)), World::pattern(2, 10))
+        << "and it still works";
 }
 
 TEST_F(StockIce, TheUavCallsBackOnTheSameConnectionWhileItIsCalled) {
@@ -104,7 +105,7 @@ TEST_F(StockIce, WhatCannotGoToAllVehiclesIsRefusedInTheCaller) {
         ic->stringToProxy("echo -o:" + world_.endpoint() + " -a 0xFFFF"));
     EXPECT_THROW(all->ice_twoway()->ice_ping(), Ice::UnknownLocalException);
     EXPECT_THROW(all->take(8, World::pattern(1, 79)), Ice::MemoryLimitException);
-    EXPECT_NO_THROW(all->note(9)) << "and it goes on";
+    EXPECT_NO_THROW(all->note(9)) << "and it still works";
 }
 
 TEST_F(StockIce, EndpointsKeepTheirOptionsAsTextAndWrongOnesAreRefused) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // world: stock Ice at both ends of the radio: a client with the plugin, the rig's modems and air,
-// and a stock Ice server as the UAV's objects.
+// and a stock Ice server for the UAV's objects.
 
 #pragma once
 
@@ -30,7 +30,7 @@ inline Ice::CommunicatorPtr program(const std::map<std::string, std::string>& pr
     return Ice::initialize(data);
 }
 
-// A server program, its output read as far as it is asked for.
+// A server program; its output is read on demand.
 class Server {
 public:
     explicit Server(std::vector<std::string> arguments) {
@@ -43,7 +43,7 @@ public:
         argv.push_back(nullptr);
         pid_ = fork();
         if (pid_ == 0) {
-            prctl(PR_SET_PDEATHSIG, SIGKILL); // a test that is killed leaves no server
+            prctl(PR_SET_PDEATHSIG, SIGKILL); // a killed test leaves no server
             dup2(ends[1], 1);
             dup2(ends[1], 2);
             close_range(3, ~0u, 0); // Ice's sockets are inherited otherwise
@@ -58,7 +58,7 @@ public:
             stop();
         close(out_);
     }
-    // Returns the port that it prints between these words; -1: it ended without.
+    // Returns the port printed between these words; -1 if the program ended without it.
     int port(const std::string& before = "gateway: port ", const std::string& after = " leads") {
         if (!hear(before))
             return -1;
@@ -80,7 +80,7 @@ public:
     }
     pid_t pid() const { return pid_; }
     const std::string& said() const { return said_; }
-    // Reads until it prints `text` once more. Returns false where it ends without.
+    // Reads until it prints `text` again. Returns false if the program ends without it.
     bool hear(const std::string& text) {
         size_t at;
         while ((at = said_.find(text, heard_)) == std::string::npos)
@@ -101,11 +101,11 @@ private:
     pid_t pid_ = 0;
     int out_ = -1;
     std::string said_;
-    size_t heard_ = 0; // of said_, by hear
+    size_t heard_ = 0; // position in said_, by hear
 };
 
-// The rig's UAV hands each channel of its link to an Ice server on 127.0.0.1, and a connection of
-// that server's to the ground on channel 3. It runs in the rig's thread.
+// The rig's UAV passes each channel of its link to an Ice server on 127.0.0.1, and a connection of
+// that server to the ground on channel 3. It runs in the rig's thread.
 class Relay {
 public:
     // `server`: TCP port of the UAV's objects.
@@ -139,13 +139,13 @@ public:
     Relay(const Relay&) = delete;
     Relay& operator=(const Relay&) = delete;
 
-    int port() const { return port_; } // where the UAV's server reaches the ground
+    int port() const { return port_; } // port at which the UAV's server reaches the ground
 
 private:
     static constexpr int ownChannel = 3;
     struct Line {
         int fd = -1;
-        Rig::Bytes in, out; // from TCP, not yet a whole message; to TCP, not yet written
+        Rig::Bytes in, out; // from TCP, not a complete message yet; to TCP, not written yet
     };
 
     static sockaddr_in local(int port) {
@@ -264,7 +264,7 @@ public:
                        current.adapter->getCommunicator()->stringToProxy(station)),
                    times);
     }
-    // Calls that were executed more than once.
+    // Returns the number of calls that were executed more than once.
     int twice() {
         std::lock_guard<std::mutex> lock(mutex_);
         return twice_;
@@ -306,7 +306,7 @@ public:
     Ice::CommunicatorPtr client(std::map<std::string, std::string> more = {}) {
         more.insert({{"Ice.Plugin.XBeeAT", PLUGIN_FOLDER "/xbeeat:createXBeeAT"},
                      {"Ice.Default.InvocationTimeout", "1800000"},
-                     {"Ice.RetryIntervals", "-1"}, // a call is made once, whatever becomes of it
+                     {"Ice.RetryIntervals", "-1"}, // a call is made once, whatever its result
                      {"Ice.ThreadPool.Client.Size", "4"},
                      {"Ice.Warn.Connections", "0"},
                      {"XBeeAT.Guard", std::to_string(Rig::guardMs)},
@@ -329,7 +329,7 @@ public:
     Rig rig;
     std::shared_ptr<EchoServant> echo = std::make_shared<EchoServant>();
     std::shared_ptr<Ice::ObjectAdapter> uav;
-    int uavPort = 0; // of it
+    int uavPort = 0; // port of the UAV
     std::unique_ptr<Relay> relay;
 
 private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// clicks: what a user does on the utilisation page; report_test.py runs it in the page.
+// clicks: actions of a user on the utilisation page; report_test.py runs it in the page.
 (async () => {
 const seen = [], all = selector => [...document.querySelectorAll(selector)];
 const rest = () => new Promise(done => setTimeout(done, 200));

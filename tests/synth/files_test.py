@@ -8,7 +8,7 @@ from icesoc.synth.netlist import Netlist
 
 
 class Files(unittest.TestCase):
-    """Which files a module needs, and where a signal stands in them."""
+    """Which files a module needs, and where a signal is declared in them."""
 
     def setUp(self):
         self.work = tempfile.TemporaryDirectory()
@@ -88,7 +88,7 @@ endmodule
         for signal, place in (("n71_o", "ip/a/a.vhd:40"), ("n72_q[0]", "ip/a/a.vhd:51"),
                               ("n74_o", "ip/a/a.vhd:60"), ("(for) kept_o", "ip/a/a.vhd:40")):
             self.assertEqual(nets.place_of(n, signal), place)
-        self.assertTrue(nets.place_of(n, "n73_o").endswith("/place.v:5"))  # GHDL says nothing of it
+        self.assertTrue(nets.place_of(n, "n73_o").endswith("/place.v:5"))  # unknown to GHDL
 
 
 if __name__ == "__main__":

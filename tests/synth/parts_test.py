@@ -37,7 +37,7 @@ class Slices(unittest.TestCase):
         for inputs, sites in (([2, 3, 4, 5], 1), ([2, 3, 4, 5, 6, 7], 2), ([2, 3, 4, 7], 2)):
             n = Netlist([lut([2, 3, 4, 5, 6], 20), lut(inputs, 21)])
             self.assertEqual(slices.slices_of(n)["sites"], sites, inputs)
-        # A LUT RAM takes a slice of its own kind.
+        # A LUT RAM takes a separate slice of its kind.
         found = slices.slices_of(Netlist([cell("RAM32M", {}, {})] * 3))
         self.assertEqual((found["slicem"], found["low"]), (3, 3))
 
@@ -46,7 +46,7 @@ def chain(fanouts, end_pin, middle=None):
     """A path of one-input LUTs between two flip-flops, each net with its fan-out."""
     n = Netlist([cell("FDRE", {"C": 2}, {"Q": 10})])
     for bit, fanout in enumerate(fanouts, 10):
-        n.readers.setdefault(bit, []).extend([0] * (fanout - 1))  # others that read it
+        n.readers.setdefault(bit, []).extend([0] * (fanout - 1))  # other readers
         if bit - 9 < len(fanouts):
             n.add(middle or lut([bit], bit + 1))
     n.add(cell("FDRE", {"C": 2, end_pin: 9 + len(fanouts)}, {"Q": 100}))
@@ -59,14 +59,14 @@ def longest(n):
 
 
 class Timing(unittest.TestCase):
-    """Longest paths, and the clock that is told of several orders."""
+    """Longest paths, and the reported clock of several orders."""
 
     def test_a_path_is_the_sum_of_its_cells_and_nets(self):
         p = longest(chain([4, 1, 88, 26, 2, 5, 16], "CE"))
         self.assertAlmostEqual(p["ns"], 0.447 + 6 * 0.205 + 0.322 + 0.682 + 0.580 + 1.799 + 1.207
                                + 0.617 + 0.715 + 1.004, delta=0.002)
         self.assertEqual((p["levels"], p["from"], p["to"], p["pin"]), (6, "from", "to", "CE"))
-        p = longest(chain([7, 2, 1], "D"))  # a flip-flop beside its LUT
+        p = longest(chain([7, 2, 1], "D"))  # a flip-flop after its LUT
         self.assertEqual((p["levels"], p["steps"][-1][4]), (2, 0))
 
     def test_each_register_is_counted_once_by_its_longest_path(self):
@@ -75,7 +75,7 @@ class Timing(unittest.TestCase):
         self.assertEqual(t["ends"], [0] * bins + [1])  # nothing ends at the first register
 
     def test_through_a_memory_only_the_address_of_that_output_leads(self):
-        # ADDRD is the write port's: the path from there ends, another begins at the memory.
+        # ADDRD belongs to the write port: the path ends there, another begins at the memory.
         for address, levels in (("ADDRA", 1), ("ADDRD", 0), ("ADDRB", 0)):
             p = longest(chain([1, 1], "D", cell("RAM32M", {address: 10}, {"DOA": 11})))
             self.assertEqual(p["levels"], levels, address)
@@ -106,7 +106,7 @@ class Timing(unittest.TestCase):
         self.assertEqual(f["luts"], [10, 11, 12, 13, 14])
         self.assertEqual(f["clocks"], [102, 104, 105, 108, 109])
         self.assertEqual(report.clock_of(f), "105.0 (102.0-109.0)")
-        # It is rounded as the page does.
+        # Rounded as on the page.
         self.assertEqual([baseline.clock_text(mhz) for mhz in (104.46, 104.44, 104.0)],
                          ["104.5", "104.4", "104.0"])
 
@@ -134,12 +134,12 @@ class Timing(unittest.TestCase):
         for suffix in ".part", ".1":  # two orders of five
             (folder / f"chip{suffix}").touch()
         shows("1 of 3 designs, about 0:30 left: chip")
-        chip.begun, chip.spent, small.begun, small.spent = 1, 290, 1, 0  # it was kept
+        chip.begun, chip.spent, small.begun, small.spent = 1, 290, 1, 0  # from the cache
         shows("3 of 3 designs, about 0:00 left: ")
 
 
 class Reports(unittest.TestCase):
-    """The published reports, and what is said of them."""
+    """The published reports, and the statements about them."""
     FILE = pathlib.Path(__file__).resolve().parents[2] / "synth/reports.json"
 
     def setUp(self):
@@ -147,7 +147,7 @@ class Reports(unittest.TestCase):
         self.designs = [r for r in self.reports if "netlist" in r]
 
     def stated(self):
-        """Raises where a figure is not that of the reports."""
+        """Raises if a figure is not in the reports."""
         maps = [r["map"] for r in self.reports]
         for said, found in ((timing.ROUTED, reports.range_of(self.ratios("routed"))),
                             (slices.MAPPED, reports.slices_range(maps))):
@@ -212,7 +212,7 @@ class Reports(unittest.TestCase):
 
 
 class Baseline(unittest.TestCase):
-    """What is judged as growth, which names are given, what the committed file keeps."""
+    """Growth rules, accepted names, and the contents of the committed file."""
 
     def setUp(self):
         self.design = sources.Design("block", "block")
@@ -376,7 +376,7 @@ class Cores(unittest.TestCase):
 
 
 class Simulated(unittest.TestCase):
-    """Blocks whose tests run on their netlist in place of a proof."""
+    """Blocks with tests that run on their netlist instead of a proof."""
 
     def test_each_kind_of_tests_must_have_run_and_passed(self):
         for ran, red, said, good in (

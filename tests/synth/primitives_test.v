@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// primitives_test: holds the models that netlists are simulated and proven with to the rules of
-// Xilinx' guides: UG389 (DSP48A1), UG383 (block RAM), UG384 (LUT RAM, shift registers, flip-flops,
-// carry chains). Each rule is said above its check.
+// primitives_test: checks the models used to simulate and prove netlists against the rules of
+// Xilinx's guides: UG389 (DSP48A1), UG383 (block RAM), UG384 (LUT RAM, shift registers, flip-flops,
+// carry chains). Each rule is stated above its check.
 `default_nettype none
 `timescale 1ns / 1ps
 
@@ -23,7 +23,7 @@ module primitives_test;
         end
     endtask
 
-    // DSP48A1 without a register but P's, and with all of them.
+    // DSP48A1 without a register except P's, and with all of them.
     reg signed  [17:0] a = 0, b = 0, d = 0;
     reg signed  [47:0] c = 0, pcin = 0;
     reg  [7:0]  opmode = 0;
@@ -45,7 +45,7 @@ module primitives_test;
 
     // UG389, OPMODE: [4] takes the pre-adder for B, [6] subtracts B from D there; [1:0] chooses X:
     // 0, M, P, D:A:B; [3:2] Z: 0, PCIN, P, C; [7] makes Z + (X + carry) Z - (X + carry). [5] is the
-    // carry where CARRYINSEL says so. The 49th bit is CARRYOUT.
+    // carry if selected by CARRYINSEL. The 49th bit is CARRYOUT.
     function [17:0] factor(input [7:0] op);
         factor = !op[4] ? b : op[6] ? d - b : d + b;
     endfunction
@@ -62,7 +62,7 @@ module primitives_test;
         end
     endfunction
     reg [48:0] want;
-    task dsp_random; // stable inputs arrive; P goes on where it is an input
+    task dsp_random; // stable inputs; P continues if it is an input
         for (i = 0; i < 2000; i = i + 1) begin
             {a, b, d, c, pcin} = {$random, $random, $random, $random, $random};
             {opmode, carryin}  = $random;
@@ -115,7 +115,8 @@ module primitives_test;
             latency(4, 1);
             latency(5, 3);
             latency(6, 2);
-            for (i = 0; i < 8; i = i + 1) begin // what passes a register stays while it is disabled
+            for (i = 0; i < 8; i = i + 1) begin // values in a register are kept while it is
+                                                // disabled
                 {a, b, d, c, opmode} = {18'd3, 18'd5, 18'd7, 48'd11, 8'b00111101};
                 edges(6);
                 held = p1;
@@ -185,8 +186,8 @@ module primitives_test;
         end
     endtask
 
-    // UG384: synchronous set and reset go before the enable, asynchronous ones need no clock. A
-    // carry is CI where S is high, else DI; O is S ^ CI.
+    // UG384: synchronous set and reset have priority over the enable, asynchronous ones need no
+    // clock. A carry is CI if S is high, else DI; O is S ^ CI.
     reg         s = 0, value = 0;
     reg         r_held = 0, s_held = 1;
     wire        r_q, s_q, c_q, p_q;
@@ -210,10 +211,11 @@ module primitives_test;
         end
     endtask
 
-    // UG383: WRITE_FIRST shows the word that is written, READ_FIRST the old one, NO_CHANGE what it
-    // showed; WE has a bit a byte, parity goes with its byte; without EN nothing happens; at a
-    // reset of the output a port writes all the same, and without priority "SR" the reset needs EN.
-    // The narrower port's lower address is the wider one's lower bits.
+    // UG383: WRITE_FIRST outputs the word being written, READ_FIRST the old one, NO_CHANGE the
+    // previous output; WE has one bit per byte, parity belongs to its byte; without EN nothing
+    // happens; during a reset of the output a port still writes, and without priority "SR" the
+    // reset needs EN. The lower address bits of the narrower port are the lower bits of the wider
+    // one.
     reg         en = 0, reset = 0, en_b = 0;
     reg  [3:0]  bytes = 0;
     reg  [8:0]  place = 0, place_b = 0;
@@ -241,7 +243,7 @@ module primitives_test;
                 {en, en_b, bytes, place[2:0], place_b[2:0], lane} = $random;
                 in    = {$random, $random};
                 reset = $random & $random;
-                if (place == place_b) en_b = 0; // a collision: below
+                if (place == place_b) en_b = 0; // a collision: see below
                 next = rows[place];
                 if (bytes[0]) {next[32], next[7:0]}   = {in[32], in[7:0]};
                 if (bytes[1]) {next[33], next[15:8]}  = {in[33], in[15:8]};
@@ -259,7 +261,7 @@ module primitives_test;
                 check(same == shown_same, "NO_CHANGE");
                 check({first_b[32], first_b[7:0]} == shown_b, "a port of 9 bits");
             end
-            // "Conflict Avoidance": the other port reads what it had only by READ_FIRST.
+            // "Conflict Avoidance": the other port reads the old value only with READ_FIRST.
             {en, en_b, reset, bytes, place, place_b, lane} = {7'b1101111, 9'd3, 9'd3, 2'd0};
             in      = ~rows[3];
             shown_b = {rows[3][32], rows[3][7:0]};

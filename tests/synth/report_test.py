@@ -94,7 +94,7 @@ class Cases(Script):
 
     def test_counts(self):
         """Figures are those that the blocks' sources promise, and Yosys' own `stat` counts them."""
-        # A package is read before the module that uses it, and is no design.
+        # A package is read before the module that uses it, and is not a design.
         write("far/typed_sizes.sv", "package typed_sizes; typedef logic [2:0] t; endpackage\n")
         write("far/typed.sv", "module typed(input logic clk_i, input typed_sizes::t d_i, output "
               "typed_sizes::t q_o); always_ff @(posedge clk_i) q_o <= d_i; endmodule\n")
@@ -103,7 +103,7 @@ class Cases(Script):
         write("gen/clocks.v", """module clocks (input clk_i, output pll_o, output reg q_o);
             wire clk;
             PLL_BASE u_pll (.CLKIN(clk_i), .CLKOUT0(pll_o)); // in Yosys' second library
-            BUFG u_buffer (.I(pll_o), .O(clk)); // in the first, but none of the mapping
+            in the first, but not for the mapping
             always @(posedge clk) q_o <= !q_o;
             endmodule\n""")
         cases = " ".join(f"{n}: o <= {n * n % 509};" for n in range(1024))  # a memory without an array
@@ -114,10 +114,10 @@ class Cases(Script):
         self.run_program()
         # A checkout elsewhere, of the same sources, has the same netlists.
         self.lacks(str(Path.cwd()), file=next(Path("out/cache").glob("store.xc6s.*.ys")))
-        # Nor has its generated Verilog, by which the accepted figures know their sources.
+        # Nor has its generated Verilog, which identifies the sources of the accepted figures.
         for file in (PROGRAM.parents[1] / "gen").glob("*.v"):
             self.lacks(re.escape(f"{TREE}/"), file=file)
-        # The clock, and from where to where it goes in other orders; and the LUTs.
+        # The clock, and its range in other orders; and the LUTs.
         self.has(r"^wide .* [0-9.]+ \([0-9.]*-[0-9.]*\) +[0-9]+-[0-9]+$",
                  r"nine of ten of [0-9]+ published reports of map, of [0-9]+ of TRCE",
                  r"^wide +[0-9]+ \([0-9]*-[0-9]*\) ")
@@ -141,7 +141,7 @@ class Cases(Script):
                            Path("stat").read_text(), re.M)
         sites = 4  # of LUT RAM
         self.assertEqual(whole["lut"], sites + sum(int(row[1] or row[2]) for row in cells))
-        # A core's cost in the accepted chip: a slot is the decoder of three less that of two.
+        # A core's cost in the accepted chip: the decoder for three slots minus that for two.
         shutil.copy(TREE / "bus/bus_decoder.v", "project/bus")
         write("gen/map.regs.json", json.dumps({"constants": [
             {"name": "SLOT_LOW", "value": 2}, {"name": "SLOT_COUNT", "value": 3}]}))
@@ -179,7 +179,7 @@ class Cases(Script):
         self.lacks("^wide ")
         self.has("^Designs: 2 measured now, 1 changed since")
         self.has('"whole": "changed since"', '"name": "wide lut"', file="out/report.json")
-        # In a fresh clone nothing has been measured, and nothing is gone.
+        # In a fresh clone nothing has been measured, and nothing was removed.
         self.run_program("--accept")
         shutil.rmtree("out/cache")
         self.run_program("--design", "store")
@@ -200,7 +200,7 @@ class Cases(Script):
         self.has("broken.v:1: ERROR: syntax error", "^wide ", "^broken .*failed",
                  "typed.sv:1: ERROR: syntax error.*\n.*needs what sv2v makes of it")
         self.has('"broken: synthesis failed"', file="out/report.json")
-        for name in "baseline", "designs":  # as a merge leaves it
+        for name in "baseline", "designs":  # as left by a merge
             write(f"project/synth/{name}.json", "{\n<<<<<<< HEAD\n")
             self.run_program(status=None)
             self.has(f"^utilisation: project/synth/{name}.json: .*line 2")
@@ -213,7 +213,7 @@ class Cases(Script):
                  "--design", "wide", "--yosys", Path("slow").resolve())
         with open("first", "w") as first, open("second", "w") as second:
             begun = subprocess.Popen(words, stdout=first, stderr=first)
-            while not Path("out/cache").exists() and begun.poll() is None:  # it has the folder
+            while not Path("out/cache").exists() and begun.poll() is None:  # it holds the folder
                 time.sleep(0.1)
             waited = subprocess.run(words, stdout=second, stderr=second)
         self.assertEqual((begun.wait(), waited.returncode), (0, 0))
@@ -232,7 +232,8 @@ class Cases(Script):
         text = page.read_text()
         self.assertLess(len(text), 2_000_000)
         self.lacks('(src|href)="?https?:', file=page)
-        # All is there where the libraries could not be fetched; the page says how to get them.
+        # The page is complete even if the libraries could not be fetched, and describes how to get
+        # them.
         write("plain.html", "\n".join(line for line in text.split("\n") if not re.search(
             "^!function.*Tabulator=|^.*var uPlot=", line)))
         seen = re.search('<p class="soft">.*?(?=<script id)', self.dump("plain.html"), re.S)[0]
@@ -248,7 +249,7 @@ class Cases(Script):
                  r"project/hdl/blocks/counter.v:13 .* now 15 11 7 [0-9.]+ this run ")
         if not (PROGRAM.parents[1] / "page/libraries.js").stat().st_size:
             self.skipTest("Tabulator and uPlot could not be fetched")
-        # A second script clicks as a user does and writes what it then sees.
+        # A second script clicks like a user and writes what it then sees.
         clicks = (TREE / "tests/synth/clicks.js").read_text()
         write("clicked.html", text.replace(
             "</body>", f'<p id="seen"></p><script>{clicks}</script></body>'))
@@ -290,17 +291,18 @@ class Cases(Script):
         self.ask(PROGRAM, cwd=here)
         self.made("synth", "BASE=HEAD..")
         grown = r"^\| whole \| .* \| \d+ -> \d+ \(\+12\) \|"
-        # Nobody knows what was measured of files without a commit.
+        # The state of measurements from uncommitted files is unknown.
         self.has(r"^Utilisation since .* \(The first one\):", grown, r"^\| wide \| gone \| gone \|",
                  r"^\| wider \| \d+ \(new\) \|", r"^\| \w+\+ \| not measured \|")
         self.has(r"^\| wider ", file=here / "build/summary.md")
-        # Over budget the difference matters most: it is told, and the status is that of the budget.
+        # Over budget the difference matters most: it is printed, and the status is that of the
+        # budget.
         kept = designs.read_text()
         edit(designs, '"ff": 30', '"ff": 20')
         self.made("synth", "BASE=HEAD", status=None)
         self.has("^FAILED whole", grown)
         write(designs, kept)
-        # The same between two commits, whatever is here now; tests are those of each.
+        # The same between two commits, whatever is checked out; each with its tests.
         write(here / "hdl/blocks/pair.regs.json", json.dumps({**registers, "registers": []}))
         with contextlib.chdir(here):
             commit("The second one")
@@ -330,8 +332,8 @@ class Cases(Script):
         self.made("synth", "FAMILY=none", status=None)
         self.has("'none'.*choose from")
         write("project/build/main/cores.known", "store\n")
-        self.made("ip-synth", "IP=nobody", status=None)
-        self.has("there is no core 'nobody': store")
+        self.made("ip-synth", "IP=missing", status=None)
+        self.has("there is no core 'missing': store")
 
     def test_equivalent(self):
         """A netlist is proven equivalent to its RTL, once; one with a fault is not."""
@@ -349,7 +351,7 @@ class Cases(Script):
         proof, = Path("out/cache").glob("whole.xc6s.*.proof")
         file = proof.with_name(proof.name.rsplit(".", 2)[0] + ".json")
         good = file.read_text()
-        # A netlist for a simulator that comes out as it was stays, and what is made of it.
+        # An unchanged netlist for a simulator is kept, and so are the files made from it.
         for age in 100, None:
             self.run_program("--netlist", "whole", "--to", "out/sim/whole.v")
             if age:
@@ -394,7 +396,7 @@ class Cases(Script):
             self.assertTrue(inside, cell)
         self.has(r"\(design (pair|whole)", file=ise / "whole.edf")
         self.assertTrue((ise / "verilog/store.v").exists(), "the Verilog for XST")
-        # A primitive's port is connected by the bits that it has alone.
+        # A primitive's port is connected by the bits that only it has.
         write("project/hdl/blocks/deep.v", DEEP)
         self.made("synth-edif", "DESIGN=deep")
         self.has("cellRef RAMB8BWER", file=ise / "deep.edf")

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// table1_test: the netlist of Table I's content in the chip's place: its processor writes and reads
-// memory and registers, has the modem set up, from its factory's settings, and packets go both
-// ways.
+// table1_test: the netlist of Table I's content replaces the chip: its processor writes and reads
+// memory and registers, has the modem set up from its factory settings, and packets go both ways.
 
 #include "map_regs.h"
 #include "modem_regs.h"
@@ -79,13 +78,13 @@ TEST_F(Table1, TheModemIsSetUpAndPacketsGoBothWays) {
     std::vector<uint8_t> packet(60);
     for (uint8_t n = 1; n < packet.size(); ++n)
         packet[n] = static_cast<uint8_t>(37 * n);
-    packet[0] = 55; // a packet's first byte gives its length
+    packet[0] = 55; // the first byte of a packet gives its length
     for (uint32_t n = 0; n < packet.size(); n += 4) {
         uint32_t word;
         std::memcpy(&word, &packet[n], 4);
         fsmc_.write32(ddr + txRing + n, word);
     }
-    host_.received.clear(); // what the set-up's search for the rate has sent
+    host_.received.clear(); // bytes sent by the set-up's search for the rate
     write(MODEM_TX_PUT, static_cast<uint32_t>(packet.size()));
     tickUntil([&] { return host_.received.size() >= packet.size(); }, "a packet to the ground");
     EXPECT_EQ(host_.received, packet);

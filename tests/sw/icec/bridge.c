@@ -14,7 +14,7 @@
 Ice_ObjectPrx Bridge_far;
 static Ice_ObjectPrx server;
 
-/* Copies a string to the end of `room`, and ends it with a zero. */
+/* Copies a string to the end of `room`, with a final zero. */
 static char* keep(char** room, Ice_String text) {
     char* kept = *room;
     memcpy(kept, text.data, (size_t)text.size);
@@ -58,7 +58,7 @@ static Ice_Status aim(const Ice_Current* current, Ice_ObjectPrxPtr far) {
     return status;
 }
 
-/* Passes an operation that every object has, whose parameters need no decoding. */
+/* Passes on an operation that every object has, with parameters that need no decoding. */
 static Ice_Status passWhole(Ice_ObjectPrxPtr far, const Ice_Current* current, Ice_InputStreamPtr is,
                             Ice_OutputStreamPtr os) {
     Ice_InputStreamPtr back;
@@ -78,7 +78,7 @@ static Ice_Status passWhole(Ice_ObjectPrxPtr far, const Ice_Current* current, Ic
     return Ice_ObjectPrx_end(far, status);
 }
 
-/* Returns the servant of the object's type; 0: there is none, and `status` says why. */
+/* Returns the servant of the object's type; 0 with `status` if there is none. */
 static Ice_ObjectPtr servantOf(const Ice_ObjectPrx* far, Ice_Status* status) {
     Ice_ObjectPrx asked = *far;
     Ice_ObjectPtr servant = 0;
@@ -109,7 +109,7 @@ static Ice_Status pass(Ice_ObjectPtr self, const Ice_Current* current, Ice_Input
     servant = servantOf(&far, &status);
     if (!servant)
         return status;
-    status = aim(current, &Bridge_far); /* requests that came meanwhile have aimed elsewhere */
+    status = aim(current, &Bridge_far); /* requests that arrived meanwhile have changed it */
     if (status == ICE_OK)
         status = servant->dispatch(servant, current, is, os);
     if (status == ICE_CONNECTION_LOST)

@@ -21,10 +21,10 @@ TEST_F(Calls, ACastAsksTheObjectForItsTypes) {
 }
 
 TEST_F(Calls, AFailureIsToldOfItsProxyWhateverOthersCall) {
-    Ice_ObjectPrx nobody = here().proxy("cat/nobody -f side:loop"),
+    Ice_ObjectPrx missing = here().proxy("cat/missing -f side:loop"),
                   fails = here().proxy("thing:loop"), works = fails;
     Ice_Failure failure;
-    EXPECT_EQ(call(nobody, "first"), ICE_OBJECT_NOT_EXIST);
+    EXPECT_EQ(call(missing, "first"), ICE_OBJECT_NOT_EXIST);
     servant_.run = [](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
         return str(current.operation) == "works" ? ICE_OK : ICE_LIMIT;
     };
@@ -35,8 +35,8 @@ TEST_F(Calls, AFailureIsToldOfItsProxyWhateverOthersCall) {
     EXPECT_EQ(call(works, "works"), ICE_OK);
     Ice_ObjectPrx_failure(&works, &failure);
     EXPECT_EQ(failure.unknown.size + failure.identity.name.size + failure.operation.size, 0);
-    Ice_ObjectPrx_failure(&nobody, &failure);
-    EXPECT_EQ(str(failure.identity.name), "nobody");
+    Ice_ObjectPrx_failure(&missing, &failure);
+    EXPECT_EQ(str(failure.identity.name), "missing");
     EXPECT_EQ(str(failure.identity.category), "cat");
     EXPECT_EQ(str(failure.facet), "side");
     EXPECT_EQ(str(failure.operation), "first");
@@ -87,12 +87,12 @@ TEST_F(Calls, EachTasksLastResultStaysAndOneTaskMoreIsRefused) {
     std::vector<Ice_String> results;
     for (int i = 0; i < 3 * ICE_CALLS; ++i) {
         task = i % ICE_CALLS;
-        results.push_back(askString(proxies[task], "of call " + std::to_string(i)));
+        results.push_back(askString(proxies[task], "call " + std::to_string(i)));
     }
     task = ICE_CALLS;
     askString(proxies[task], "one too many", ICE_LIMIT);
     for (int i = 2 * ICE_CALLS; i < 3 * ICE_CALLS; ++i)
-        EXPECT_EQ(str(results[i]), "of call " + std::to_string(i));
+        EXPECT_EQ(str(results[i]), "call " + std::to_string(i));
     task = 0;
     EXPECT_EQ(call(proxies[0], "a call without results lets go"), ICE_OK);
     task = ICE_CALLS;
@@ -109,7 +109,7 @@ TEST_F(Calls, CategoriesFacetsAndDefaultServantsAreFoundInIcesOrder) {
         Ice_ObjectPrx prx = here().proxy(string);
         return call(prx, "op");
     };
-    EXPECT_EQ(to("cat/whoever:loop"), ICE_OK);
+    EXPECT_EQ(to("cat/anyone:loop"), ICE_OK);
     EXPECT_EQ(category.calls, 1);
     EXPECT_EQ(to("thing -f side:loop"), ICE_OK);
     EXPECT_EQ(facet.calls, 1);
@@ -117,7 +117,7 @@ TEST_F(Calls, CategoriesFacetsAndDefaultServantsAreFoundInIcesOrder) {
     EXPECT_EQ(to("other:loop"), ICE_OBJECT_NOT_EXIST);
     EXPECT_EQ(Ice_ObjectAdapter_addDefaultServant(&adapter, &any.base, ""), ICE_OK);
     EXPECT_EQ(to("other:loop"), ICE_OK);
-    EXPECT_EQ(to("cat/whoever:loop"), ICE_OK);
+    EXPECT_EQ(to("cat/anyone:loop"), ICE_OK);
     EXPECT_EQ(any.calls, 1);
     EXPECT_EQ(category.calls, 2);
     EXPECT_EQ(Ice_ObjectAdapter_removeDefaultServant(&adapter, ""), ICE_OK);
@@ -187,7 +187,7 @@ TEST_F(Calls, EveryLimitIsSaidWithItsNameAndValue) {
     servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
         if (str(current.operation) == "arena") {
             (void)Ice_InputStream_allocate(is, 1000, 8);
-            return ICE_MARSHAL; // as generated code does
+            return ICE_MARSHAL; // as in generated code
         }
         if (str(current.operation) == "bound") {
             is->failed = ICE_FAILED_BOUND;

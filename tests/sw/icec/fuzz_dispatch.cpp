@@ -3,10 +3,10 @@
 // fuzz_dispatch: libFuzzer on all messages of a peer: bytes behind a valid head, and on the parser
 // of proxy strings.
 //
-// The first byte chooses the message's type, or a request of which only the parameters are fuzzed:
-// in them, two bytes choose each read. A proxy that is read or parsed must come back the same from
-// its own string and its own encoding. Afterwards the communicator must still answer a ping. With
-// ICEC_MINIMAL the same of the minimal run time, without the strings.
+// The first byte selects the message's type, or a request with only the parameters fuzzed: in them,
+// two bytes select each read. A proxy that is read or parsed must survive conversion to its string
+// and its encoding and back. Afterwards the communicator must still answer a ping. With
+// ICEC_MINIMAL the same for the minimal run time, without the strings.
 
 #include "ice_messages.h"
 #include "loop.h"
@@ -52,9 +52,9 @@ void checkProxy(const Ice_ObjectPrx& prx, Ice_Byte minor) {
         abort();
     if (Ice_Communicator_stringToProxy(&ic, text, &again) != ICE_OK ||
         (!Ice_ObjectPrx_isNull(&prx) && !Ice_ObjectPrx_equals(&prx, &again))) {
-        // An endpoint of this transport prints in its own words, strange bytes in it are not kept;
-        // an empty opaque one has no string that Ice reads; octal escapes may be longer than the
-        // limit.
+        // An endpoint of this transport prints in a canonical form, and unknown bytes in it are not
+        // kept; an empty opaque one has no string that Ice reads; octal escapes may be longer than
+        // the limit.
         size_t n = strlen(text);
         if (!prints(":loop") && !prints("\\") && !prints("-v :") &&
             (n < 3 || strcmp(text + n - 3, "-v ") != 0)) {
@@ -62,7 +62,7 @@ void checkProxy(const Ice_ObjectPrx& prx, Ice_Byte minor) {
             abort();
         }
     }
-    // An endpoint of this transport takes over the encoding in which it is sent, once.
+    // An endpoint of this transport adopts the encoding in which it is sent, once.
     Ice_ObjectPrx sent, sentAgain;
     sendProxy(prx, minor, sent);
     sendProxy(sent, minor, sentAgain);
@@ -191,7 +191,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     Bytes rest(data + 1, data + size);
     if (choice == 1) {
         rest = IceMessages::requestBody("thing", "op", data[0] >> 5 & 1, rest);
-        rest[11] = data[0] >> 6; // the mode
+        rest[11] = data[0] >> 6; // mode
         rest.insert(rest.begin(), {1, 0, 0, 0});
     }
     messageDuringCall(types[choice], choice == 4, rest);

@@ -2,9 +2,9 @@
 //
 // fuzz_values: libFuzzer on graphs of instances and on exceptions, through generated code.
 //
-// An input is read as a message; every second one is first made a good message of a graph that its
-// bytes describe, and then damaged. The instances read are written in each encoding and format;
-// where that can be read again, it must be written again as the same bytes.
+// An input is read as a message; every second one is first converted to a valid message with a
+// graph described by its bytes, and then damaged. The instances read are written in each encoding
+// and format; if the result can be read again, writing it must give the same bytes.
 
 #include <cstdint>
 #include <cstdio>
@@ -92,7 +92,7 @@ template <class What> void roundTrip(const What& what) {
     for (Format format : formats) {
         Bytes first, second;
         What again{};
-        // A limit of the run time (instances, types, pointers that wait) may be met on the way
+        // A limit of the run time (instances, types, waiting pointers) may be reached on the way
         // back.
         if (!write(what, format, first) ||
             !read(again, first, format.minor, sizeof arena / sizeof *arena / 2))
@@ -154,7 +154,7 @@ template <class What> Bytes described(const uint8_t* data, size_t size, Format f
         what.u.Failure.node = pick();
     }
     (void)write(what, format, bytes);
-    while (at + 2 < size && !bytes.empty()) { // damage; of names, too: then slices are not known
+    while (at + 2 < size && !bytes.empty()) { // damages also names: then slices are unknown
         size_t where = (data[at] << 8 | data[at + 1]) % bytes.size();
         bytes[where] = data[at + 2];
         at += 3;

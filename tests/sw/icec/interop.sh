@@ -1,8 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# interop: command -- command ...   Each prints the port that it listens on; the next gets it
-#                                   appended. The last one's exit status counts, and that of the
-#                                   first, which it must have ended.
+# interop: command -- command ...   Each prints its port, which is appended to the next command. The
+# exit status of the last one counts, and the status of the first, which the last must have ended.
 set -eu
 work=$(mktemp -d)
 pids=''

@@ -3,8 +3,8 @@
 // loop: IceC's transport between two communicators of one process and one task.
 //
 // Proxies: "loop [-c n]", n 0 or 1: which of the two connections of this side. Time is simulated:
-// it passes only where a communicator waits and nothing can happen. Without a peer, messages go to
-// `tap` alone, and inject plays the other side.
+// it passes only while a communicator waits and nothing can happen. Without a peer, messages only
+// go to `tap`, and inject acts as the other side.
 
 #pragma once
 
@@ -54,7 +54,7 @@ public:
     Loop(const Loop&) = delete;
     Loop& operator=(const Loop&) = delete;
 
-    // Joins two sides: one receives what the other sends.
+    // Joins two sides: each receives what the other sends.
     void join(Loop& other) {
         peer_ = &other;
         other.peer_ = other.clock_ = this;
@@ -69,7 +69,7 @@ public:
     U32 nowMs() const { return clock_->ownMs_; }
 
     bool open[ICE_CONNECTIONS] = {};
-    bool silent = false; // connections can be made, but nobody answers
+    bool silent = false; // connections can be made, but are not answered
     // Sees every message that is sent.
     std::function<void(const Bytes& message)> tap;
 
@@ -130,8 +130,8 @@ private:
         return ICE_OK;
     }
     void close(int connection) {
-        // The peer may have closed already: its report is taken back, since the connection may be a
-        // new one by now.
+        // The peer may have closed already: its report is withdrawn, since the connection may
+        // already be a new one.
         for (Event& e : events_)
             if (e.kind == ICE_EVENT_CLOSED && e.connection == connection) {
                 e.kind = ICE_EVENT_NONE;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// manual_test: the chapters on proxies and adapters of Ice's manual, besides calls (docs/icec.md):
+// manual_test: the chapters on proxies and adapters of Ice's manual, except calls (docs/icec.md):
 // parts of a proxy, changes of a copy, adapters, Current, transports that cannot be called;
-// connections that end, calls back on them, time-outs, signs of life, the properties that adapters
-// and proxies are made from, and addresses of names.
+// connections that end, calls back on them, time-outs, heartbeats, the properties for adapters and
+// proxies, and addresses of names.
 
 #include "pair.h"
 #include <dlfcn.h>
@@ -14,7 +14,7 @@ extern "C" {
 #include "tcp_private.h"
 }
 
-// A resolver in place of the system's: "twofold.test" is 127.0.0.2 and 127.0.0.1, "mixed.test" is
+// A resolver that replaces the system's: "twofold.test" is 127.0.0.2 and 127.0.0.1, "mixed.test" is
 // ::1 and 127.0.0.1.
 static const auto real = reinterpret_cast<decltype(&getaddrinfo)>(dlsym(RTLD_NEXT, "getaddrinfo"));
 static addrinfo* inFront(const char* address, const char* port, addrinfo* rest) {
@@ -130,7 +130,7 @@ TEST_F(Manual, CurrentTellsWhatIsAsked) {
     EXPECT_EQ(seen, "/thing -f  note mode 0 encoding 1.1 on 0 one-way");
 }
 
-TEST_F(Manual, AServantWithoutTypeIdsIsAskedEverything) { // a forwarder of objects it does not know
+TEST_F(Manual, AServantWithoutTypeIdsIsAskedEverything) { // forwards requests for unknown objects
     static Ice_ObjectPtr target;
     static std::vector<std::string> seen;
     target = &servant_.base;
@@ -156,7 +156,7 @@ TEST_F(Manual, AServantWithoutTypeIdsIsAskedEverything) { // a forwarder of obje
     EXPECT_EQ(call(prx, "secret"), ICE_OPERATION_NOT_EXIST);
     EXPECT_EQ(seen, (std::vector<std::string>{"ice_ping", "ice_isA", "ice_id", "op", "secret"}));
     EXPECT_EQ(servant_.calls, 1);
-    // The target is gone: its forwarder says so, for ice_ping, too.
+    // The target does not exist any more: its forwarder reports this, also for ice_ping.
     forwarder.dispatch = [](Ice_ObjectPtr, const Ice_Current*, Ice_InputStreamPtr,
                             Ice_OutputStreamPtr) { return ICE_OBJECT_NOT_EXIST; };
     EXPECT_EQ(Ice_ObjectPrx_ice_ping(&prx), ICE_OBJECT_NOT_EXIST);
@@ -189,7 +189,7 @@ TEST_F(Manual, AServantHasRoomForItsResults) {
         return ICE_OK;
     };
     EXPECT_EQ(ask(prx_, "op", ICE_ARENA_BYTES), 0x55);
-    EXPECT_EQ(ask(prx_, "op", ICE_ARENA_BYTES + 8), -1) << "the servant says what then";
+    EXPECT_EQ(ask(prx_, "op", ICE_ARENA_BYTES + 8), -1) << "the servant then reports it";
     EXPECT_EQ(ask(prx_, "op", 1), 0x55) << "each call has all of it";
 }
 
@@ -318,8 +318,8 @@ TEST_F(Calls, DestroyWaitsForAnswersThatComeLater) {
     Ice_Status status = ICE_LIMIT;
     callAsync(prx_, "op", status);
     settle();
-    // A call of the other side's own, whose failure comes while that side destroys itself.
-    Ice_ObjectPrx own = there().proxy("nobody:loop");
+    // A call of the other side, which fails while that side destroys itself.
+    Ice_ObjectPrx own = there().proxy("missing:loop");
     ASSERT_NE(Ice_ObjectPrx_begin(&own, "op", 0), nullptr);
     ASSERT_EQ(Ice_ObjectPrx_invokeAsync(
                   &own,

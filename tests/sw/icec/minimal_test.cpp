@@ -34,7 +34,7 @@ TEST_F(Minimal, CallsFromWithinAnOperationAreRefused) {
     };
     EXPECT_EQ(ask(prx_, "op", 4), 5);
     EXPECT_EQ(inner, ICE_LIMIT);
-    Ice_ObjectPrx back = there().proxy("nobody:loop");
+    Ice_ObjectPrx back = there().proxy("missing:loop");
     EXPECT_EQ(call(back, "op"), ICE_OBJECT_NOT_EXIST) << "afterwards they are not";
 }
 
@@ -164,7 +164,7 @@ TEST_F(MinimalPeer, RepliesThatAreMalformedSaySo) {
     }
     Ice_ObjectPrx oneway = prx_;
     oneway.mode = ICE_ONEWAY;
-    EXPECT_EQ(call(oneway, "op"), ICE_OK) << "what was malformed before does not matter";
+    EXPECT_EQ(call(oneway, "op"), ICE_OK) << "the earlier malformed message has no effect";
 }
 
 } // namespace

@@ -27,7 +27,7 @@ inline Operation returns(Ice_Status status) {
     return [=](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr) { return status; };
 }
 
-// A servant whose every operation is `run`.
+// A servant with `run` as every operation.
 struct Servant {
     Ice_Object base; // first: IceC calls with its address
     Operation run = returns(ICE_OK);
@@ -39,7 +39,7 @@ struct Servant {
         base.ids = ids;
         base.id = ids[1];
     }
-    // Makes operations leave their answer to `later`.
+    // Makes operations store their reply in `later`.
     void answerLater(Ice_Reply& later) {
         run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
             Ice_Current_later(&current, &later);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // requests_test: calls, and messages as bytes: answered, malformed, refused or skipped; the same
-// for the full and for the minimal run time.
+// for the full and the minimal run time.
 
 #include "pair.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * results_m3: tasks of the kernel on a Cortex-M3 call objects of their own program through one
- * communicator, with the vehicle's Ice_Os, and look at what each call returned: a string, an
+ * results_m3: tasks of the kernel on a Cortex-M3 call objects of the same program through one
+ * communicator, with the vehicle's Ice_Os, and check the results of each call: a string, an
  * exception with an instance, and an instance with a sequence. An interrupt, at any instruction,
  * wakes the tasks of higher priority. For m3_runner.c.
  */
@@ -11,8 +11,8 @@
 
 #include <string.h>
 
-#define WORDS 1024 /* of a task's stack */
-#define WOKEN 7    /* priorities: of two tasks that the interrupt wakes, the server, two others */
+#define WORDS 1024 /* size of a task's stack */
+#define WOKEN 7    /* priorities: two tasks woken by the interrupt, the server, two others */
 #define SERVER 9
 #define LOW 10
 
@@ -26,7 +26,7 @@ static OS_EVENT *arrived, *go[2];
 static unsigned tasks, ended;
 char os_said[512];
 
-/* ---- a transport whose connection 0 leads to its connection 1 ---- */
+/* ---- a transport that connects its connection 0 to its connection 1 ---- */
 
 #define WAITING 8
 
@@ -109,7 +109,7 @@ static U32 nowMs(void* context) {
     return OSTimeGet();
 }
 
-/* ---- the servant: gives back what it gets; an exception where the id is odd ---- */
+/* ---- the servant: returns what it receives; throws an exception if the id is odd ---- */
 
 Ice_Status Graph_Maker_echo(Graph_MakerPtr self, Ice_String text, Ice_String* result,
                             const Ice_Current* current) {
@@ -154,7 +154,7 @@ static void check(int isRight, const char* what) {
         say(what);
 }
 
-/* Makes calls whose values contain `letter`. */
+/* Makes calls with values that contain `letter`. */
 static void call(char letter, Ice_Int id) {
     Graph_MakerPrx prx;
     Graph_Node sent, *node = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// results_m3_test: what a call returned on a Cortex-M3 is its task's, wherever the kernel lets
-// other tasks call meanwhile.
+// results_m3_test: the results of a call on a Cortex-M3 belong to its task, wherever the kernel
+// lets other tasks call meanwhile.
 
 #include "plain_bus.h"
 #include "random.h"
@@ -10,10 +10,10 @@
 
 namespace {
 
-enum Counted { ALL, LOOKING }; // every instruction, or those of the function that looks at results
+enum Counted { ALL, LOOKING }; // every instruction, or those of the function that checks results
 
-// Runs a case, and pends the interrupt before the instruction `where` of those counted, from the
-// begin of the first caller on. Returns how many there were.
+// Runs a case, and pends the interrupt before instruction number `where` of those counted, starting
+// at the first caller. Returns their number.
 uint64_t run(unsigned number, Counted counted, uint64_t where) {
     PlainCpu m3(RESULTS_ELF);
     const uint32_t first = m3.image.symbol("callsOnce") & ~1u;
@@ -49,7 +49,7 @@ TEST_P(ResultsM3, StayWhileTheirTaskLooksAtThemAndOthersCall) {
     interruptEach(LOOKING, 2);
 }
 
-// Another seed interrupts at other instructions; RESULTS_M3_STEP=1 at each of them.
+// Another seed interrupts at other instructions; RESULTS_M3_STEP=1 at every instruction.
 TEST_P(ResultsM3, ComeWhereverOthersCall) {
     const char* step = std::getenv("RESULTS_M3_STEP");
     interruptEach(ALL, step ? std::strtoull(step, nullptr, 10) : 1499);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// tasks_test: one communicator used by several threads, over tcp: calls at once, with a task that
-// receives and without, and answers that come from another task than the operation's.
+// tasks_test: one communicator used by several threads, over tcp: simultaneous calls, with and
+// without a receiving task, and replies sent by a task other than the operation's.
 
 #include "pair.h"
 
@@ -188,14 +188,14 @@ protected:
     std::thread serving_, answering_;
 };
 
-// The parameter is how many tasks serve; where none does, those that call receive in turns.
+// Parameter: number of tasks that serve; without one, the calling tasks receive in turns.
 class TasksThatServe : public Tasks, public ::testing::WithParamInterface<int> {};
 TEST_P(TasksThatServe, LetOthersCallAtOnce) {
     whileServing(GetParam(), [this] { callFromThreads(ICE_CALLS); });
 }
 INSTANTIATE_TEST_SUITE_P(Tasks, TasksThatServe, ::testing::Values(0, 1, 2));
 
-// Six tasks, one after the other, each with a result that it keeps, and then it ends.
+// Six tasks, one after the other, each with a result that it keeps until it ends.
 TEST_F(Tasks, OneThatHasEndedLeavesItsPlaceToOthers) {
     for (int i = 0; i < ICE_CALLS + 2; ++i)
         std::thread([&] {
@@ -267,7 +267,7 @@ TEST_F(Tasks, TryEachAddressOfAName) {
     EXPECT_EQ(open, 1);
 }
 
-// (While other tasks call, what a call returned stays: results_m3.)
+// (Results stay valid while other tasks call: see results_m3.)
 class Results : public Tasks {
 protected:
     Results() {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// tcp_test: IceC's tcp transport and peers: many at once, silent, dead or greedy ones, and those
-// that cut a silent connection (Ice 3.8).
+// tcp_test: IceC's tcp transport and peers: many at once, silent, dead or greedy ones, and peers
+// that close a silent connection (Ice 3.8).
 
 #include "pair.h"
 
@@ -37,7 +37,7 @@ sockaddr_in local(int port) {
     return at;
 }
 
-// A peer that is no Ice program: a socket, and the bytes written to it.
+// A peer that is not an Ice program: a socket, and the bytes written to it.
 class Peer {
 public:
     explicit Peer(int port) : fd_(socket(AF_INET, SOCK_STREAM, 0)) {
@@ -60,7 +60,7 @@ public:
     bool send(const Bytes& m) {
         return ::send(fd_, m.data(), m.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(m.size());
     }
-    // The next message; empty: none within `ms`, or the end.
+    // The next message; empty if none arrives within `ms`, or at the end.
     Bytes receive(int ms) {
         Bytes m(14);
         if (!read(m.data(), 14, ms))
@@ -89,7 +89,7 @@ private:
     const int fd_;
 };
 
-// A server listens here that is no Ice program.
+// A server that is not an Ice program listens here.
 struct Listener {
     Listener() {
         sockaddr_in at = local(0);
@@ -166,7 +166,7 @@ TEST_F(Tcp, AHundredClientsAtOnceAreServed) {
     for (Peer& peer : peers)
         ASSERT_TRUE(peer.isConnected(100)) << "the system keeps them until they are accepted";
     serve();
-    while (!peers.empty()) { // those that are served make room
+    while (!peers.empty()) { // served peers make room
         ASSERT_TRUE(ping(peers.front())) << peers.size() << " to come";
         peers.pop_front();
     }
@@ -213,7 +213,7 @@ TEST_F(Tcp, ANewPeerDisplacesTheOneThatHasBeenIdleLongest) {
     Peer other(port());
     EXPECT_TRUE(ping(other, 2000));
     EXPECT_EQ(idle[0].receive(1000), message(4, {})) << "CloseConnection: it may come again";
-    EXPECT_TRUE(ping(idle[1])) << "nobody else was closed";
+    EXPECT_TRUE(ping(idle[1])) << "no other connection was closed";
 }
 
 TEST_F(Tcp, APeerThatHasBeenServedMakesRoomAtOnce) {
@@ -226,7 +226,7 @@ TEST_F(Tcp, APeerThatHasBeenServedMakesRoomAtOnce) {
     }
 }
 
-// Sends "thing" a request that is longer than any message may be.
+// Sends "thing" a request that exceeds the largest message size.
 Bytes tooLong(Ice_Int id) {
     Bytes body = requestBody("thing", "ice_ping");
     body.resize(9000);
@@ -247,7 +247,8 @@ TEST_F(Tcp, ARequestThatIsTooLongIsAnsweredWithTheLimitsName) {
     EXPECT_TRUE(ping(peer)) << "the connection lives";
 }
 
-// A caller that gets no reply learns of the limit by the end of its connection, as from stock Ice.
+// A caller that gets no reply is informed of the limit by the end of its connection, as with stock
+// Ice.
 TEST_F(Tcp, WhatIsRefusedWithoutAnAnswerIsLoggedAndEndsTheConnection) {
     ::testing::internal::CaptureStderr();
     serve();
@@ -301,7 +302,7 @@ TEST_F(Tcp, APeerWhoseOperationIsUnderWayIsNotDisplaced) {
     EXPECT_TRUE(peers[0].receive(100).empty()) << "it still waits";
 }
 
-TEST_F(Tcp, AConnectionWithoutCallsCarriesHeartbeats) { // Ice 3.8: else it is cut
+TEST_F(Tcp, AConnectionWithoutCallsCarriesHeartbeats) { // with Ice 3.8 it would be closed
     tcp_->heartbeatMs = 50;
     serve();
     Peer peer(port());
@@ -311,7 +312,7 @@ TEST_F(Tcp, AConnectionWithoutCallsCarriesHeartbeats) { // Ice 3.8: else it is c
     EXPECT_TRUE(ping(peer));
 }
 
-// A server that does what Ice 3.8 documents: it cuts a connection on which it gets nothing.
+// A server as documented for Ice 3.8: it closes a connection on which nothing arrives.
 TEST_F(Tcp, AServerThatCutsSilentConnectionsKeepsThisOne) {
     tcp_->heartbeatMs = 50;
     Listener listener;
@@ -339,7 +340,7 @@ TEST_F(Tcp, ACallWhoseReplyIsCutIsLostAndTheNextOneConnectsAgain) {
     constexpr int calls = 20;
     Listener listener;
     std::thread server([&] {
-        for (int i = 0; i < calls; ++i) { // the reply is cut anywhere, or whole
+        for (int i = 0; i < calls; ++i) { // the reply is cut anywhere, or complete
             Peer peer(listener.fd, true);
             peer.send(message(3, {}));
             const Bytes reply = replyTo(peer.receive(20000));

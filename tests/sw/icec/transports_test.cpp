@@ -32,7 +32,7 @@ struct Both {
 
 enum { LOOP, TCP };
 
-// The servant of `there_` is called from `here_`, whose loop lets `there_` work, too.
+// The servant of `there_` is called from `here_`; the loop of `here_` also runs `there_`.
 class Transports : public ::testing::Test {
 protected:
     Transports() : here_(std::make_unique<Both>()), there_(std::make_unique<Both>()) {
@@ -57,7 +57,7 @@ protected:
         EXPECT_EQ(Ice_Communicator_proxyToString(&prx, printed, sizeof printed), ICE_OK);
         return printed;
     }
-    // Returns the transport by which a call came.
+    // Returns the transport on which a call arrived.
     int callBy(Ice_ObjectPrx& prx) {
         came_ = -1;
         EXPECT_EQ(ask(prx, "op", 7), 8);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// wire_test: messages as bytes that the full run time alone knows; proxies as strings; streams.
+// wire_test: messages as bytes that only the full run time supports; proxies as strings; streams.
 
 #include "pair.h"
 #include <cstdio>
@@ -71,7 +71,7 @@ TEST_F(Wire, ABatchMayNotPromiseMoreThanItHas) {
 TEST_F(Wire, ProxiesTravelWithEndpointsOfAnyKind) {
     const Bytes wire = {2,    'i',  'd', 1, 'c', 1, 1, 'f', 1,  1,  1, 0, 1, 1, // -f f -o -s
                         2,                                                      // two endpoints
-                        9,    0,    8,   0, 0,   0, 1, 1,   65, 66,             // of type 9
+                        9,    0,    8,   0, 0,   0, 1, 1,   65, 66,             // type 9
                         0x50, 0x4C, 7,   0, 0,   0, 1, 1,   1};                 // loop -c 1
     Ice_InputStream is = over(wire);
     Ice_ObjectPrx prx;
@@ -152,12 +152,12 @@ TEST(Stream, OptionalsOfEveryFormatAreSkipped) {
     }
 }
 
-// A peer's size may be the least that there is; what is subtracted from it must not wrap.
+// A peer's size may be the smallest possible; subtractions from it must not wrap.
 TEST(Stream, ASliceOfAnyWrongSizeIsMalformed) {
     for (uint32_t size : {0x80000000U, 0x80000003U, 0xFFFFFFFFU, 0U, 3U, 5U, 0x7FFFFFFFU}) {
-        Bytes wire = {0x39, 1, 'x', 4, 0, 0, 0, // the last slice: a name, a size, a table behind it
-                      1,    1,                  // of one instance,
-                      0x31, 1, 'y'};            // whose slice has a name and this size
+        Bytes wire = {0x39, 1, 'x', 4, 0, 0, 0, // the last slice: a name, a size, a table after it
+                      1,    1,                  // with one instance,
+                      0x31, 1, 'y'};            // in a slice with this name and this size
         for (int shift = 0; shift < 32; shift += 8)
             wire.push_back(static_cast<Ice_Byte>(size >> shift));
         Ice_InputStream is = over(wire);

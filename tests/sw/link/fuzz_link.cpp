@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// fuzz_link: libFuzzer target of the full and of the minimal link layer. The input is a little
-// program: bytes for the receiver, with or without a good checksum, time, messages to send. The
-// full layer has a peer, to which it has a session; the minimal one hears a HELLO. Nothing may
-// crash, hang, or write outside of its data, and no frame or message may have an impossible size.
+// fuzz_link: libFuzzer target of the full and of the minimal link layer. The input is a small
+// program: bytes for the receiver, with or without a valid checksum, time, messages to send. The
+// full layer has a peer with a session; the minimal one receives a HELLO. Nothing may crash, hang,
+// or write out of bounds, and no frame or message may have an impossible size.
 //
 // An input byte names the step (mod 8), the next its argument n:
 //   0, 1  n bytes, unchanged
@@ -48,7 +48,7 @@ struct Node {
 #ifndef LINK_MINIMAL
     std::unique_ptr<Link_Buffers> buffers{new Link_Buffers};
 #endif
-    std::deque<Bytes> out; // frames that are on their way
+    std::deque<Bytes> out; // frames on their way
     uint32_t nonce = 1;
     uint64_t sum = 0; // a sum, which reads every byte handed over
     bool busy = false;
@@ -153,8 +153,8 @@ private:
     U32 sessionKey() const { return a_.link->session.handshake.present.key; }
     U32 expected() const { return a_.link->session.receiver.expected; }
     U32 overhead() const { return a_.link->pacing.env.codec->overhead; }
-    // The frame under a key. A HELLO is under its own; the others of the handshake are for the
-    // nonce of now, from a peer whose nonce is in the input.
+    // Returns the frame under a key. A HELLO uses a separate one; the other frames of the handshake
+    // are for the current nonce, from a peer with the nonce in the input.
     Bytes sealed(Bytes bytes, bool isHandshake) const {
         const Link* link = a_.link.get();
         const U8* under = LINK_PEERS_KEY(&link->session.handshake.present, keys);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// handshake_model: goes through all states of the secure link's handshake (docs/link.md) under
-// attack.
+// handshake_model: explores all states of the secure link's handshake (docs/link.md) under attack.
 //
-// Two sides, each of which calls, answers, ends, and starts anew at any time (it was restarted, or
-// hears nothing, or its nonce is too old); and the attacker of Dolev and Yao, who is the air: he
-// may deliver every frame that was ever sent, at any time, to either side, as often as he likes, or
-// never. He has no key: frames of his own have no good tag, so that only a side with a bug believes
-// them. Keys follow from the two nonces of a session, one a direction, so the nonces name a frame.
+// Two sides, each of which calls, answers, ends, and restarts at any time (after a restart,
+// silence, or with an old nonce); and the attacker of Dolev and Yao, who controls the air: he may
+// deliver every frame that was ever sent, at any time, to either side, any number of times, or
+// never. He has no key: frames made by him have no valid tag, so that only a side with a bug
+// accepts them. Keys follow from the two nonces of a session, one per direction, so the nonces
+// identify a frame.
 
 #include <bitset>
 #include <cstdint>
@@ -19,30 +19,30 @@
 
 namespace {
 
-// The bugs that a side may have.
+// Bugs that a side may have.
 enum class Bug {
     None,
-    NonceIsNotEchoed,    // HELLO-ACK counts for any nonce that the side once had
+    NonceIsNotEchoed,    // HELLO-ACK is accepted for any earlier nonce of the side
     OneKeyForBoth,       // the directions' keys are the same
-    ResetIsNotAuthentic, // anybody's RST ends a session
-    HelloEndsTheSession, // at once, before its sender has proved that he lives
+    ResetIsNotAuthentic, // an RST from anyone ends a session
+    HelloEndsTheSession, // at once, before its sender has proved its presence
     HelloMakesASession,  // without a CONFIRM
     ConfirmIsNotAuthentic,
     OwnNonceIsTaken,  // reflected
-    NonceServesTwice, // is not drawn anew when a session begins
+    NonceServesTwice, // is not drawn again when a session begins
     UnconfirmedCalls, // a side calls while up, though its peer may not be in the session yet
-    OldDataIsTaken,   // a number counts again
-    OldPingIsLife,    // heard again, it shows that the peer is there
+    OldDataIsTaken,   // a number is accepted again
+    OldPingIsLife,    // heard again, it proves that the peer is present
     OldDataIsLife
 };
 
 class HandshakeModel {
 public:
     struct Limits {
-        unsigned nonces, data, pings; // of a side; that a side sends in a session
+        unsigned nonces, data, pings; // of a side; data and pings that a side sends in a session
     };
     struct Result {
-        std::string fault;            // the first rule that was broken; none: ""
+        std::string fault;            // the first broken rule; "" if none
         std::vector<std::string> way; // the steps that led to it
         size_t states = 0;
         bool bothWereUp = false, dataArrived = false;
@@ -79,7 +79,7 @@ public:
 
 private:
     static constexpr unsigned mostNonces = 3, mostNumbers = 2; // of a side; of a kind of frame
-    static constexpr uint8_t none = 2 * mostNonces;            // a nonce that nobody has
+    static constexpr uint8_t none = 2 * mostNonces;            // a nonce that no side has
     enum Kind { Hello, HelloAck, Confirm, Data, Ping, Answer, Bye, kinds };
 
     struct Frame {
@@ -87,7 +87,8 @@ private:
         uint8_t from, to, number; // nonces of its sender and of its receiver
     };
     struct Side {
-        uint8_t nonce, drawn, begun; // for the next session; how many; a bit each that began one
+        uint8_t nonce, drawn, begun; // for the next session; number drawn; one bit each that began
+                                     // one
         uint8_t mine, peer;          // nonces of the present session
         uint8_t dataSent, dataTaken, pingsSent, pingsSeen, pingsAnswered, lives;
         bool isUp, isAnswered, isUnconfirmed, unused[2];
@@ -121,7 +122,7 @@ private:
             result_.fault = rule;
     }
 
-    // ---- what a side does ----
+    // ---- actions of a side ----
 
     void draw(State& state, int who) const {
         Side& s = state.side[who];
@@ -129,7 +130,7 @@ private:
         s.isAnswered = false;
     }
 
-    // Only one of both sides, or silence, ends their session; an attack never does.
+    // Only one of the two sides, or silence, ends a session; an attack never does.
     void end(State& state, int who, bool byAttack) {
         Side &s = state.side[who], &other = state.side[1 - who];
         if (!s.isUp)
@@ -143,7 +144,7 @@ private:
 
     void begin(State& state, int who, uint8_t mine, uint8_t peer) {
         if (!isOwn(1 - who, peer))
-            fail("a session with somebody who is not the peer");
+            fail("a session with a stranger");
         else if (!state.air[indexOf({HelloAck, peer, mine, 0})] &&
                  !state.air[indexOf({Confirm, peer, mine, 0})])
             fail("a session that the peer knows nothing of");
@@ -202,7 +203,7 @@ private:
         case 3:
             if (!s.isUp)
                 return;
-            name = "says good-bye";
+            name = "ends the session";
             send(state, {Bye, s.mine, s.peer, 0});
             end(state, who, false);
             draw(state, who);
@@ -210,7 +211,7 @@ private:
         default:
             if (s.drawn == limits_.nonces)
                 return;
-            name = "starts anew";
+            name = "restarts";
             end(state, who, false);
             draw(state, who);
         }
@@ -257,7 +258,7 @@ private:
         Side& s = state.side[who];
         const bool isReflected = bug_ == Bug::OneKeyForBoth && f.from == s.mine && f.to == s.peer;
         if (isReflected)
-            std::swap(f.from, f.to); // the own frame, reflected
+            std::swap(f.from, f.to); // a frame of this side, reflected
         if (!s.isUp || f.from != s.peer || f.to != s.mine)
             return;
         s.isUnconfirmed = false;
@@ -295,7 +296,7 @@ private:
         }
     }
 
-    // ---- what the attacker does ----
+    // ---- actions of the attacker ----
 
     void deliver(const State& from, int who, const Frame& f) {
         State state = from;
@@ -358,8 +359,8 @@ TEST(HandshakeModel, FindsEachBug) {
         {Bug::ResetIsNotAuthentic, "a session that both were in was ended"},
         {Bug::HelloEndsTheSession, "a session that both were in was ended"},
         {Bug::HelloMakesASession, "a session that the peer knows nothing of"},
-        {Bug::ConfirmIsNotAuthentic, "a session with somebody who is not the peer"},
-        {Bug::OwnNonceIsTaken, "a session with somebody who is not the peer"},
+        {Bug::ConfirmIsNotAuthentic, "a session with a stranger"},
+        {Bug::OwnNonceIsTaken, "a session with a stranger"},
         {Bug::NonceServesTwice, "a nonce began two sessions"},
         {Bug::UnconfirmedCalls, "a session that both were in was ended"},
         {Bug::OldDataIsTaken, "data was taken twice"},

@@ -24,7 +24,7 @@ struct Weather {
     uint32_t delayUs = 8000;
 };
 
-// A link with its program and its radio. `now` is the pair's time.
+// A link with its program and its radio. `now` is the time of the pair.
 class Side {
 public:
     Side(const Layer& of, const uint64_t& now, uint64_t seed, const Bytes& key, U32 side)
@@ -127,11 +127,11 @@ private:
     const uint64_t& now_;
     Random random_;
     const Bytes key_;
-    const U32 side_; // of Link_setKey
+    const U32 side_; // as for Link_setKey
     std::vector<uint64_t> memory_;
 };
 
-// A ground (a) and a vehicle (b), unless a test says otherwise.
+// A ground station (a) and a vehicle (b), unless a test states otherwise.
 class Pair {
 public:
     explicit Pair(uint64_t seed, const Bytes& key = {}, const Layer& ofA = layer,
@@ -162,7 +162,7 @@ public:
         return until([this] { return bothUp(); }, 30'000'000);
     }
 
-    uint64_t now = 0xFFFF0000u; // so that the 32-bit time wraps in every test
+    uint64_t now = 0xFFFF0000u; // the 32-bit time then wraps in every test
     Side a, b;
 
 private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// link_test: sessions, channels and messages, one fault at a time: of a ground with the full layer
-// and vehicles with the full one, in the clear and under a key, or the minimal one.
+// link_test: sessions, channels and messages, one fault at a time: a ground station with the full
+// layer and vehicles with the full one, unencrypted and with a key, or the minimal one.
 
 #include "link_variants.h"
 
@@ -26,7 +26,7 @@ TEST_P(LinkLayer, ChannelsOpenAndCloseFromBothSidesInOrder) {
     EXPECT_EQ(a.events, (std::vector<std::string>{"connecting", "up", "open 3", "close 3"}));
     EXPECT_EQ(a.received, (Messages{{3, Bytes(300, 2)}}));
     EXPECT_EQ(b.received, (Messages{{1, {1}}}));
-    EXPECT_EQ(a.open(1), LINK_OK); // both sides have said that it is closed
+    EXPECT_EQ(a.open(1), LINK_OK); // both sides have reported it as closed
     EXPECT_EQ(b.open(3), LINK_OK);
 }
 
@@ -68,7 +68,7 @@ TEST_P(LinkLayer, AChannelThatNobodyHasOpenedIsRefused) {
     EXPECT_EQ(a.close(1), LINK_CLOSED);
     ASSERT_EQ(a.open(1), LINK_OK);
     EXPECT_EQ(a.send(1, {1}, 1), LINK_OK);
-    EXPECT_EQ(b.send(1, {1}, 2), LINK_CLOSED); // not there yet
+    EXPECT_EQ(b.send(1, {1}, 2), LINK_CLOSED); // not connected yet
     ASSERT_TRUE(until([&] { return a.outcomes.count(1) != 0; }, 1'000'000));
     EXPECT_EQ(b.send(1, {1}, 3), LINK_OK);
     a.close(1);
@@ -78,8 +78,8 @@ TEST_P(LinkLayer, AChannelThatNobodyHasOpenedIsRefused) {
     EXPECT_EQ(b.received.size(), 1u);
 }
 
-// Random bytes in a session, between messages: no fault, and the link goes on. BYTES gives their
-// number to the full layer.
+// Random bytes in a session, between messages: no fault, and the link continues. BYTES sets their
+// number for the full layer.
 TEST_P(LinkLayer, TenMillionRandomBytesAreSurvived) {
     const char* given = std::getenv("BYTES");
     const unsigned long bytes = isMinimal() || GetParam().hasKey ? 1'000'000
@@ -126,7 +126,7 @@ TEST_P(LinkLayer, AVanishedPeerIsNoticedAndAReturningOneFound) {
     EXPECT_TRUE(a.received.empty() && b.received.empty());
 }
 
-// The ground hears of it by its next frame, not by 9 s of silence.
+// The ground is informed by its next frame, not after 9 s of silence.
 TEST_P(LinkLayer, ARebootOfTheVehicleIsNoticedByTheNextFrame) {
     ASSERT_TRUE(connect());
     a.open(0);
@@ -138,7 +138,7 @@ TEST_P(LinkLayer, ARebootOfTheVehicleIsNoticedByTheNextFrame) {
     EXPECT_TRUE(until([&] { return bothUp(); }, 1'000'000));
 }
 
-// The time of the last PING has become so old that it would read as a future time.
+// The time of the last PING is so old that it would read as a future time.
 TEST_P(LinkLayer, ASilenceAfterFortyMinutesOfTrafficIsAskedAbout) {
     ASSERT_TRUE(connect());
     ASSERT_EQ(a.open(0), LINK_OK);
@@ -239,14 +239,14 @@ TEST_P(MinimalLayer, TheDeadlineIsWhenSomethingIsToBeDone) {
     setWeather({1, 0, 0});
     ASSERT_EQ(b.send(3, {1}, 1), LINK_OK);
     run(2000);
-    EXPECT_GT(b.deadline(), 100'000u); // goes out again after 144 ms
+    EXPECT_GT(b.deadline(), 100'000u); // sent again after 144 ms
     EXPECT_LE(b.deadline(), 144'000u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Vehicles, MinimalLayer,
                          ::testing::Values(Variant{"full", "minimal", false}));
 
-// Layers whose session ends at 60 fragments in a direction, or at 50 wrong tags.
+// Layers with sessions that end at 60 fragments in a direction, or at 50 wrong tags.
 class Limits : public Variants {
 protected:
     Limits() { usualSize = longestSize = 40; } // one fragment
@@ -255,7 +255,7 @@ protected:
             std::count_if(side.outcomes.begin(), side.outcomes.end(),
                           [](auto& tagged) { return tagged.second == LINK_DELIVERED; }));
     }
-    // Sends until `least` messages are delivered each way, as a program that repeats all others.
+    // Sends until `least` messages are delivered each way, like a program that repeats all others.
     template <class... Meanwhile> void deliver(size_t least, Meanwhile... meanwhile) {
         for (size_t most = least; delivered(a) < least || delivered(b) < least; most += 10) {
             ASSERT_LT(most, 4 * least);
@@ -288,12 +288,12 @@ TEST_P(Limits, ASessionEndsAtTooManyWrongTagsAndBeginsAnew) {
     frame.back() ^= 1;
     unsigned guesses = 0;
     for (; b.isUp() && guesses < 200; ++guesses) {
-        now += 100'000; // the rest of half a frame is dropped
+        now += 100'000; // the rest of an incomplete frame is dropped
         b.poll();
         b.receive(frame);
         b.poll();
     }
-    EXPECT_GT(guesses, 20u); // the search goes on inside a frame, so each may count several times
+    EXPECT_GT(guesses, 20u); // the search continues inside a frame, so each may count several times
     EXPECT_LE(guesses, 50u);
     deliver(20);
     EXPECT_EQ(a.sessions(), 2u);
@@ -361,7 +361,7 @@ TEST(FullLayer, OverAWireACallWaitsForNoTurn) {
     ASSERT_TRUE(pair.connect());
     pair.a.open(0);
     pair.run(100'000);
-    // Makes calls one after the other, each answered; returns microseconds.
+    // Makes calls, each after the previous reply; returns microseconds.
     auto take = [&](unsigned calls) {
         const uint64_t start = pair.now;
         for (unsigned i = 0; i < calls; ++i)
@@ -373,7 +373,7 @@ TEST(FullLayer, OverAWireACallWaitsForNoTurn) {
             }
         return pair.now - start;
     };
-    take(20); // now both know the way's speed
+    take(20); // both now know the speed of the path
     EXPECT_LE(take(20), 20 * 12'000u);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// link_variants: the fixture of tests that hold for link layers of different kinds, and messages
-// both ways between them.
+// link_variants: the fixture of tests for link layers of different kinds, and messages in both
+// directions between them.
 
 #pragma once
 
@@ -58,8 +58,8 @@ protected:
 
     static bool isMinimal() { return GetParam().b.find("minimal") == 0; }
 
-    // Offers a side's next message on a random channel: of random bytes, or with them as parameters
-    // of Ice's, whose numbers count up, and whose operations the peer has often heard of.
+    // Offers the next message of a side on a random channel: random bytes, or an Ice message with
+    // them as parameters, with increasing ids and operations that the peer knows.
     void offer(Side& from, Messages& sent, size_t most) {
         if (sent.size() >= most)
             return;
@@ -81,7 +81,8 @@ protected:
         else if (status == LINK_CLOSED) // a new session
             from.open(channel);
     }
-    // Sends messages both ways until their number is reached and all are reported, or time is over.
+    // Sends messages in both directions until their number is reached and all are reported, or the
+    // time is over.
     template <class Meanwhile>
     bool traffic(size_t messages, uint64_t limitUs, Meanwhile meanwhile) {
         return until(
@@ -96,8 +97,9 @@ protected:
     bool traffic(size_t messages, uint64_t limitUs) {
         return traffic(messages, limitUs, [] {});
     }
-    // The messages that arrived are a part of those sent, in order and unchanged, and hold all that
-    // was reported as delivered. Between full layers a short one may overtake on another channel.
+    // The received messages are a subset of those sent, in order and unchanged, and include all
+    // that were reported as delivered. Between full layers a short one may overtake on another
+    // channel.
     static void check(const Messages& sent, const Side& sender, const Side& receiver) {
         ASSERT_EQ(sender.outcomes.size(), sent.size()) << "messages not reported";
         auto order = [](int channel) { return isMinimal() ? 0 : channel; };

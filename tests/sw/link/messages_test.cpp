@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// messages_test: Ice's messages between full layers: their heads are left out where the peer knows
-// them, and what does not fit crosses unchanged; only short ones overtake, and only the rest of a
-// long one on another channel.
+// messages_test: Ice's messages between full layers: their heads are omitted if the peer knows
+// them, and other messages cross unchanged; only short ones overtake, and only the rest of a long
+// one on another channel.
 
 #include "ice_messages.h"
 #include "link_variants.h"
@@ -11,8 +11,8 @@ namespace {
 
 using namespace IceMessages;
 
-// Bytes on the air of a call and its reply, acknowledgements included: without a key, with tags of
-// 8 bytes and of 4; beside MAVLink 2, whose signature takes 13 bytes a frame.
+// Bytes on the air of a call and its reply, including acknowledgements: without a key, with tags of
+// 8 bytes and of 4; compared with MAVLink 2, with a signature of 13 bytes per frame.
 class CallBytes : public Variants {};
 
 TEST_P(CallBytes, ACallAndItsReplyTakeFewerThanMavlink) {
@@ -122,10 +122,10 @@ TEST_F(Heads, MoreHeadsThanThereAreSlots) {
     EXPECT_EQ(bytes() - before, 5u + 2u + 6u);
 }
 
-// A peer that breaks the rules: both sides start a new session, and go on.
+// A peer that breaks the rules: both sides start a new session, and continue.
 TEST_F(Heads, ATokenThatMakesNoSenseEndsTheSession) {
     send(a, b, {0x41});                               // crosses unchanged
-    a.link()->session.handshake.present.features = 0; // so that A sends this token unmarked
+    a.link()->session.handshake.present.features = 0; // A then sends this token unmarked
     b.start();
     a.send(0, {0xE0}, 99);
     ASSERT_TRUE(until([&] { return a.outcomes.count(99) != 0; }, 5'000'000));
@@ -197,10 +197,10 @@ TEST_P(FullOvertaking, ACallDoesNotWaitForALostPartOfAPicture) {
 
 TEST_P(FullOvertaking, OnlyAcrossChannelsAndTheLongOneComesWhole) {
     send(0, Bytes(1000, 1));
-    send(0, Bytes(11, 1)); // behind the picture of its channel
+    send(0, Bytes(11, 1)); // after the picture of its channel
     run(20'000);
     send(1, Bytes(300, 3));
-    send(1, Bytes(12, 3)); // behind a long one of its channel
+    send(1, Bytes(12, 3)); // after a long one of its channel
     send(2, Bytes(13, 4));
     send(2, Bytes(14, 4));
     a.close(2);

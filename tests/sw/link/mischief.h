@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// mischief: what may be sent without the key: copies of what was heard, changed, cut or joined;
-// control frames and data with a guessed tag; the open protocol's.
+// mischief: frames that can be sent without the key: copies of received ones, changed, cut or
+// joined; control frames and data with a guessed tag; frames of the open protocol.
 
 #pragma once
 
@@ -68,8 +68,8 @@ inline std::vector<uint8_t> mischief(Random& random,
     return frame;
 }
 
-// Returns 20 bytes to be added to packets: one of no frame, and what looks like HELLOs of this
-// version, so that a receiver looks for frames there, and pays for it, while the next one waits.
+// Returns 20 bytes to append to packets: bytes of no frame, followed by apparent HELLOs of this
+// version, so that a receiver searches them for frames, at a cost, while the next one waits.
 inline std::vector<uint8_t> lure(uint8_t version) {
     std::vector<uint8_t> bytes = {0xFF};
     while (bytes.size() < 20)

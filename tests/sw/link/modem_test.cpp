@@ -78,7 +78,7 @@ TEST_P(LinkOverModems, WhatAModemAcknowledgesAndThenDropsIsSentAgain) {
     EXPECT_GT(b_.modem.counters().packetsDropped, 2u);
 }
 
-// Returns whether a packet is made of whole frames and of bytes that fill it up.
+// Returns whether a packet consists of complete frames and padding bytes.
 bool isWhole(const std::vector<uint8_t>& bytes) {
     size_t at = 0;
     while (at < bytes.size())
@@ -111,8 +111,8 @@ TEST_P(LinkOverModems, TheTraceOfTheExampleIsFlown) {
     EXPECT_GT(air_.counters().lost - lost, 100u);
 }
 
-// An idle link asks after five seconds, which costs few bytes, and soon again without an answer. It
-// never gives up a living peer in an hour of any weather, or with three of ten packets lost.
+// An idle link pings after five seconds, which costs few bytes, and again soon without a reply. It
+// never drops a living peer in an hour of any weather, or with 30 % loss.
 TEST_P(LinkOverModems, AnIdleSessionLastsInBadWeather) {
     a_.longestRestUs = b_.longestRestUs = 100'000;
     const U32 before = a_.statistics().bytesSent + b_.statistics().bytesSent;
@@ -129,8 +129,8 @@ TEST_P(LinkOverModems, AnIdleSessionLastsInBadWeather) {
     }
 }
 
-// A modem in API mode says what was lost: that goes again at once, once, though the receiver has
-// said nothing yet; nothing else does.
+// A modem in API mode reports losses: a lost packet is sent again at once, once, before the
+// receiver has reported anything; nothing else is.
 TEST(LinkOverApi, WhatTheModemSaysIsLostAndNothingElseIsSentAgain) {
     ModemPair<End> pair(RfWeather(), testSeed(), 1, false, 1u);
     pair.air.weather.loss = 0.3;
@@ -147,7 +147,7 @@ TEST(LinkOverApi, WhatTheModemSaysIsLostAndNothingElseIsSentAgain) {
                 ++sent;
             return pair.b.received.size() == 10;
         },
-        20)); // the lost packets included, these take 13 s of the air's time
+        20)); // including the lost packets, these take 13 s of air time
     EXPECT_GT(lost, 250u);
     EXPECT_NEAR(pair.a.statistics().fragmentsResent, lost, lost * 0.05);
 }
@@ -198,7 +198,7 @@ TEST_F(RandomWait, WhoTalksAloneDoesNotWaitAndTwoThatTalkDo) {
     talk(pair, 2000, 0);
     EXPECT_EQ(rn(pair.a), 0u);
     EXPECT_EQ(rn(pair.b), 2u);
-    talk(pair, 2000, 1); // the other calls
+    talk(pair, 2000, 1); // the other side calls
     EXPECT_EQ(rn(pair.a), 2u);
     talk(pair, 2000, 2000);
     EXPECT_EQ(rn(pair.a), 3u);

@@ -46,7 +46,7 @@ protected:
         if (!recorded_.empty() && random.chance(0.5))
             hostile();
     }
-    // Messages both ways.
+    // Sends messages in both directions.
     bool attackedTraffic(size_t messages, uint64_t limitUs) {
         return traffic(messages, limitUs, [&] {
             listen();
@@ -112,7 +112,7 @@ TEST_P(Attacked, AFrameWithAnyBitWrongIsRefused) {
                     const int kind = kindOf(frame);
                     if (kinds[kind]++ > 2)
                         continue;
-                    auto rest = [&] { // what is kept of half a frame is dropped
+                    auto rest = [&] { // the bytes kept of an incomplete frame are dropped
                         now += 26'000;
                         to->poll();
                     };
@@ -198,8 +198,8 @@ TEST_P(Attacked, WhoOnlyReplaysDoesNotKeepASessionAlive) {
         10'000'000));
 }
 
-// A's CONFIRM is held back, A starts again: the old CONFIRM comes too late for a session, whether A
-// has a new one by then or is gone.
+// A's CONFIRM is delayed, A restarts: the old CONFIRM arrives too late for a session, whether A has
+// a new one by then or is absent.
 TEST_P(Attacked, AConfirmThatWasHeldBackMakesNoSession) {
     for (bool isGone : {false, true}) {
         recorded_.clear();
@@ -224,8 +224,8 @@ TEST_P(Attacked, AConfirmThatWasHeldBackMakesNoSession) {
     }
 }
 
-// Who lets all pass but the fragments of one side's message, and brings them later: their sender
-// has been told by then, and nobody takes them.
+// The attacker lets everything pass except the fragments of one side's message, and delivers them
+// later: their sender has then been informed, and they are not accepted.
 TEST_P(Attacked, AMessageThatIsHeldBackIsReportedAndNeverTaken) {
     for (bool isFromA : {true, false}) {
         Side &from = isFromA ? a : b, &to = isFromA ? b : a;
@@ -259,7 +259,7 @@ TEST_P(Attacked, AMessageThatIsHeldBackIsReportedAndNeverTaken) {
     }
 }
 
-// Counts those of the recorded frames of a session, all but the handshake's, that keys open.
+// Counts the recorded frames of a session, except handshake frames, that the keys open.
 int opened(const std::vector<std::pair<bool, Bytes>>& frames, const Link_Keys& keys) {
     int count = 0;
     for (auto [isFromGround, frame] : frames) {
@@ -270,8 +270,8 @@ int opened(const std::vector<std::pair<bool, Bytes>>& frames, const Link_Keys& k
     return count;
 }
 
-// An attacker who has recorded a session and learns the key later opens the frames of its handshake
-// only. With the half of a pair that one side has wiped he could open all.
+// An attacker who has recorded a session and later learns the key can open only its handshake
+// frames. With the half of a pair that one side has wiped he could open all.
 TEST_P(Attacked, WhoLearnsTheKeyLaterOpensNoRecordedSession) {
     Link_KeyPair pair = {};
     a.start();
@@ -360,7 +360,7 @@ TEST_P(Attacked, ASessionsKeysAndMessagesAreWipedAtItsEnd) {
     }
 }
 
-// The recordings of HELLOs, each with another nonce, make a side compute a pair once, and no key.
+// Recorded HELLOs, each with another nonce, make a side compute a pair once, and no key.
 TEST_P(Attacked, OldHellosMakeNobodyMultiplyPoints) {
     std::vector<Bytes> hellos;
     for (unsigned boot = 0; boot < 5; ++boot) {
@@ -372,7 +372,7 @@ TEST_P(Attacked, OldHellosMakeNobodyMultiplyPoints) {
         ASSERT_EQ(kindOf(hellos.back()), LINK_KIND_HELLO);
     }
     b.boot();
-    setWeather({1, 0, 0}); // A does not hear the answers
+    setWeather({1, 0, 0}); // A does not receive the replies
     Link_KeyPair first = {};
     for (int i = 0; i < 400; ++i, run(100'000)) { // more than four lives of a nonce
         attack(b, hellos[size_t(i) % hellos.size()]);
@@ -430,10 +430,10 @@ TEST_P(Hindered, WhoAddsBytesToPacketsOrSendsThemBlindlyPreventsNoSession) {
             }
 }
 
-// A side that starts again has a session within a second, however often its peer, which believes
-// in the session before, hears HELLOs of that session and of an earlier one.
+// A side that restarts has a session within a second, however often its peer, which believes in the
+// previous session, receives HELLOs of that session and of an earlier one.
 TEST_P(Hindered, OldHellosDelayARestartByLessThanASecond) {
-    for (bool isGround : {true, false}) // the side that starts again
+    for (bool isGround : {true, false}) // the side that restarts
         for (uint64_t every : {100'000, 10'000, 2000}) {
             Side &side = isGround ? a : b, &other = isGround ? b : a;
             std::vector<Bytes> old;
@@ -467,7 +467,7 @@ TEST_P(Hindered, OldHellosDelayARestartByLessThanASecond) {
         }
 }
 
-// The ground reads its line in portions. Right in front of each frame that it should hear, the
+// The ground reads its line in portions. Right before each frame that it should receive, the
 // attacker sends bytes in which a frame of the handshake seems to end with each portion.
 TEST_P(Hindered, FramesThatSeemToEndWithEachPortionOfTheLinePreventNoSession) {
     const auto hostile = [this](size_t count, size_t portion) {
@@ -536,7 +536,7 @@ INSTANTIATE_TEST_SUITE_P(Vehicles, Hindered, ::testing::ValuesIn(keyed(2)));
 // Whoever meets, both have the key.
 struct Meeting {
     U32 sideA, sideB;
-    bool isOfSides; // a ground and the vehicle that it means
+    bool isOfSides; // a ground station and its vehicle
 };
 
 void PrintTo(const Meeting& m, std::ostream* out) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// weather_test: traffic both ways over a bad radio, reboots, garbage: no message is wrong, doubled,
-// out of order or unreported, whichever layers meet; and the goodput is sufficient.
+// weather_test: traffic in both directions over a bad radio, reboots, garbage: no message is wrong,
+// duplicated, out of order or unreported, for all combinations of layers; and the goodput is
+// sufficient.
 
 #include "link_variants.h"
 
@@ -103,7 +104,7 @@ TEST_P(Seeds, GarbageOnTheLineDoesNotDisturbTheSession) {
     }
 }
 
-// A side that sends the beginning of a frame each 20 ms leaves no silence for a frame to follow.
+// A side that sends the beginning of a frame every 20 ms leaves no silence for a frame to follow.
 TEST_P(Seeds, BeginningsOfFramesBetweenPacketsDoNotStopIt) {
     ASSERT_TRUE(connect());
     uint64_t at = now;
@@ -136,7 +137,7 @@ INSTANTIATE_TEST_SUITE_P(Vehicles, Speed, ::testing::ValuesIn(vehicles(1)));
 
 class InTheClear : public Variants {};
 
-// A wrong message with a right CRC-16 comes once in 65,536 times; here the polynomial is added to
+// A wrong message with a valid CRC-16 occurs once in 65,536 times; here the polynomial is added to
 // get one at once.
 TEST_P(InTheClear, AWrongMessageWithARightChecksumIsReportedAndNotDelivered) {
     ASSERT_TRUE(connect());
@@ -160,7 +161,7 @@ INSTANTIATE_TEST_SUITE_P(Vehicles, InTheClear,
                                            Variant{"full", "minimal", false}));
 
 // Goodput of one direction as a share of the modem's 10,000 bytes/s (docs/link.md): the layer paces
-// itself by the modem, though the radio here takes whatever comes.
+// itself by the modem, although the radio here takes everything.
 TEST(Goodput, MeetsItsTargets) {
     const double targets[][2] = {{0, 0.83}, {0.01, 0.81}, {0.1, 0.68}, {0.3, 0.42}};
     for (auto& [loss, target] : targets) {

@@ -32,7 +32,7 @@ void Boot_fail(Boot_Reason reason, U32 pc, U32 lr, U32 address) { /* own_kernel'
 }
 
 __attribute__((section(".vectors"), used)) static const Vector vectors[17] = {
-    stack_top, /* not a function: the first word is the stack pointer */
+    stack_top, /* initial stack pointer, not a function */
     Reset_Handler, fault, fault, fault,          fault,           fault,      0, 0, 0, 0,
     fault,         fault, 0,     PendSV_Handler, SysTick_Handler, Irq_Handler};
 

@@ -45,7 +45,7 @@ TEST(OsM3, ASwitchAtAnyInstructionLosesNoRegister) {
             if (++n == where)
                 m3.cpu.pendInterrupt(0);
             said = said || (where == 0 && n % 64 == 0 && !m3.text("os_said").empty());
-            instructions += where == 0 && !said; // up to where the computation has ended
+            instructions += where == 0 && !said; // until the computation has ended
         };
         m3.setVariable("selected_case", number);
         ASSERT_EQ(m3.run(1'000'000), 1)
@@ -61,6 +61,6 @@ INSTANTIATE_TEST_SUITE_P(All, OsM3Cases, ::testing::Range(0u, os_caseCount),
 
 } // namespace
 
-// The host's side of the table is only read here.
+// The host only reads the table here.
 extern "C" void Runner_interrupt(void) {}
 extern "C" void Runner_passTime(void) {}

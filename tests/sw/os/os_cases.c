@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_cases: the list of cases, and their output; those of creation, preemption, delays, the
+ * os_cases: the list of cases, and their output; the cases of creation, preemption, delays, the
  * scheduler's lock, stacks, registers and interrupts.
  */
 #include "os_cases.h"
@@ -40,7 +40,7 @@ void OsCase_sayNumber(unsigned value) {
     OsCase_say(digits + at);
 }
 
-/* `p`: the task's body, which may return. */
+/* `p`: body of the task, which may return. */
 static void runs(void* p) {
     (*(void (**)(void))p)();
     for (;;)
@@ -79,7 +79,7 @@ static OS_EVENT *sem2, *mutex, *queue;
 static void* slots[3];
 static INT8U err;
 
-/* ---- a post lets the task of higher priority go on at once ---- */
+/* ---- a post lets the task of higher priority continue at once ---- */
 
 static void postsSem(void) {
     OsCase_say("low-posts");
@@ -131,7 +131,7 @@ void OsCase_locking(void) {
     (void)OsCase_task(locks, 6);
 }
 
-/* ---- delays, and who runs when they end ---- */
+/* ---- delays, and which task runs when they end ---- */
 
 static void pulses(void) {
     int i;
@@ -152,7 +152,7 @@ static void looksAtStacks(void) {
     OS_STK_DATA data;
     OsCase_sayNumber(OSTaskStkChk(9, &data));
     OsCase_sayNumber(data.OSFree + data.OSUsed);
-    OsCase_sayNumber(OSTaskStkChk(33, &data)); /* nobody */
+    OsCase_sayNumber(OSTaskStkChk(33, &data)); /* no task */
     OsCase_sayNumber(OSTaskStkChk(3, &data));  /* a mutex */
     OsCase_sayNumber(OSTaskStkChk(9, 0));
     OsCase_sayNumber(OSTaskStkChk(12, &data)); /* created without the option */
@@ -217,7 +217,7 @@ void OsCase_masking(void) {
     (void)OsCase_task(disablesInterrupts, 6);
 }
 
-/* ---- a computation that needs all registers, and a task that may come in between anywhere ---- */
+/* ---- a computation that needs all registers, and a task that may interrupt it anywhere ---- */
 
 static unsigned scramble(unsigned a) {
     unsigned b = 3, c = 5, d = 7, e = 11, f = 13, g = 17, h = 19, j = 23, k = 29, l = 31, i;

@@ -18,9 +18,9 @@ typedef struct OsCase {
 
 extern const OsCase os_cases[];
 extern const unsigned os_caseCount;
-extern char os_said[512]; /* by the case that ran last */
+extern char os_said[512]; /* output of the last case */
 
-void OsCase_begin(void); /* before `prepare`: nothing is said, no stack is used */
+void OsCase_begin(void); /* before `prepare`: clears output and stacks */
 /* Makes an interrupt arrive now; implemented by the runner. */
 void Runner_interrupt(void);
 /* Serves an interrupt that has become possible (a real processor does so at once); implemented by
@@ -28,12 +28,12 @@ void Runner_interrupt(void);
 void Runner_passTime(void);
 
 /* Shared by the files of cases: tasks that print their steps. */
-#define OS_CASE_WORDS 128 /* of a task's stack */
+#define OS_CASE_WORDS 128 /* size of a task's stack */
 
 void OsCase_say(const char* word);
 void OsCase_sayNumber(unsigned value);
-/* Creates a task on a stack of its own, with its priority as its number. Returns OSTaskCreateExt's
- * result. */
+/* Creates a task on a separate stack, with its priority as its number. Returns the result of
+ * OSTaskCreateExt. */
 INT8U OsCase_task(void (*body)(void), INT8U priority);
 INT8U OsCase_uncheckedTask(void (*body)(void), INT8U priority); /* without the stack's options */
 

@@ -103,7 +103,7 @@ static void usesQueue(void) {
         OsCase_sayNumber(OSQPost(queue, &messages[i])); /* the fourth does not fit */
     for (i = 0; i < 3; ++i)
         sayMessage(OSQPend(queue, 0, &err));
-    OsCase_sayNumber(OSQPost(queue, &messages[3])); /* around the end of the array */
+    OsCase_sayNumber(OSQPost(queue, &messages[3])); /* wraps around the end of the array */
     sayMessage(OSQPend(queue, 1, &err));
     sayMessage(OSQPend(queue, 1, &err));
     OsCase_sayNumber(err);
@@ -171,7 +171,7 @@ void OsCase_inheriting(void) {
     (void)OsCase_task(middle, 10);
 }
 
-/* The owner waits for something else while it inherits: it is moved in that list, too. */
+/* The owner waits for another event while it inherits: it is also moved in that list. */
 static void ownerWaits(void) {
     OSMutexPend(mutex, 0, &err);
     OSSemPend(sem, 0, &err);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// endpoint_test: reports of IceC's radio endpoint about connections that come and go while nobody
-// looks.
+// endpoint_test: reports of IceC's radio endpoint about connections that open and close unobserved.
 
 #include "link_pair.h"
 #include <functional>
@@ -32,7 +31,7 @@ protected:
         Ice_initialize(&ic_);
         XBeeATEndpoint_init(&ic_, "xbee-at", &endpoint_, pair_.b.link(), 1, &port, this);
     }
-    // All of the endpoint's messages have one tag, of which a side may learn one outcome.
+    // All messages of the endpoint have one tag, for which a side may get one outcome.
     void run(U32 ms) {
         for (; ms; --ms) {
             pair_.b.outcomes.clear();
@@ -59,7 +58,7 @@ protected:
         return status;
     }
 
-    // The vehicle has a connection of its own.
+    // Opens a connection of the vehicle.
     void open() {
         ASSERT_TRUE(pair_.connect());
         ASSERT_EQ(connect(), ICE_OK);
@@ -74,7 +73,7 @@ protected:
     Ice_Communicator ic_;
     XBeeATEndpoint endpoint_;
     Ice_Byte buffer_[ICE_MESSAGE_MAX];
-    std::function<void()> atWait_; // happens when somebody waits next
+    std::function<void()> atWait_; // called when a task waits next
 };
 
 using Kinds = std::vector<std::pair<Ice_EventKind, int>>;
@@ -83,7 +82,7 @@ TEST_F(RadioEndpoint, OfConnectionsThatCameAndWentOnlyTheLastStateIsTold) {
     for (int channel = 0; channel < 3; ++channel)
         XBeeATEndpoint_onChannel(&endpoint_, channel, 1);
     EXPECT_EQ(events().size(), 3u);
-    // The ground starts again and again, while the server's task is busy.
+    // The ground restarts repeatedly, while the server's task is busy.
     for (int times = 0; times < 10; ++times)
         for (int channel = 0; channel < 3; ++channel) {
             XBeeATEndpoint_onChannel(&endpoint_, channel, 0);
@@ -119,7 +118,7 @@ TEST_F(RadioEndpoint, TheEndOfTheLastOwnConnectionDoesNotEndTheNext) {
     open();
     pair_.a.close(3);
     pair_.run(500000);
-    XBeeATEndpoint_onChannel(&endpoint_, 3, 0); // nobody has looked yet
+    XBeeATEndpoint_onChannel(&endpoint_, 3, 0); // not checked yet
     ASSERT_EQ(connect(), ICE_OK);
     EXPECT_EQ(events(), Kinds{});
 }
@@ -143,7 +142,7 @@ TEST_F(RadioEndpoint, AnswersThatTheLinkHasNoRoomForWaitForASlowLink) {
 
 TEST_F(RadioEndpoint, AConnectionThatTheLinkHasNoRoomForTooLongIsClosedOnBothSides) {
     open();
-    pair_.a.refuse = true; // the link lives, and makes no way
+    pair_.a.refuse = true; // the link is up, but makes no progress
     const Bytes answer(7930, 7);
     Ice_Status status = ICE_OK;
     for (int n = 0; n < 10 && status == ICE_OK; ++n)
@@ -159,7 +158,7 @@ TEST_F(RadioEndpoint, AConnectionThatTheLinkHasNoRoomForTooLongIsClosedOnBothSid
     EXPECT_EQ(events(), Kinds{});
 }
 
-// A waiting message belongs to the program that had the channel when it came.
+// A waiting message belongs to the program that had the channel when it arrived.
 TEST_F(RadioEndpoint, AMessageForAConnectionThatHasEndedNeverReachesTheNextOnItsChannel) {
     ASSERT_TRUE(pair_.connect());
     const Bytes answer(7930, 7);
@@ -174,7 +173,7 @@ TEST_F(RadioEndpoint, AMessageForAConnectionThatHasEndedNeverReachesTheNextOnIts
     pair_.a.refuse = true; // the queue fills
     while (pair_.b.send(1, answer, 0) == LINK_OK) {
     }
-    atWait_ = [&] { // and while the next one waits, the other task learns the end
+    atWait_ = [&] { // and while the next one waits, the other task detects the end
         again();
         EXPECT_EQ(events(), (Kinds{{ICE_EVENT_CLOSED, 1}, {ICE_EVENT_OPENED, 1}}));
         pair_.a.refuse = false;
@@ -182,7 +181,7 @@ TEST_F(RadioEndpoint, AMessageForAConnectionThatHasEndedNeverReachesTheNextOnIts
     EXPECT_EQ(send(1, answer), ICE_CONNECTION_LOST);
     run(10000);
     EXPECT_EQ(send(1, answer), ICE_OK);
-    again(); // and nobody has looked yet
+    again(); // not checked yet
     EXPECT_EQ(send(1, answer), ICE_CONNECTION_LOST);
 }
 
@@ -205,7 +204,7 @@ TEST_F(RadioEndpoint, ASecondGroundHasConnectionsOfItsOwn) {
     pair_.run(500'000);
     EXPECT_EQ(other.a.received, (Messages{{3, call}}));
     EXPECT_EQ(pair_.a.received, Messages{});
-    XBeeATEndpoint_onChannel(&endpoint_, 7, 0); // as where its session has ended
+    XBeeATEndpoint_onChannel(&endpoint_, 7, 0); // as after the end of its session
     EXPECT_EQ(events(), (Kinds{{ICE_EVENT_CLOSED, 7}}));
     EXPECT_EQ(send(3, call), ICE_OK);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // fellow_test: vehicles that call each other's objects through IceC's radio endpoint, while one of
-// them serves two grounds. All have links and communicators of their own, in simulated time.
+// them serves two ground stations. All have separate links and communicators, in simulated time.
 
 #include "random.h"
 #include <deque>
@@ -27,15 +27,15 @@ struct World {
         while (times--)
             step();
     }
-    U32 ms = 0xFFFFFC00u; // so that the links' time wraps
+    U32 ms = 0xFFFFFC00u; // the links' time then wraps
     std::vector<Craft*> crafts;
     std::function<void()> atStep = [] {};
 };
 
-// One of three links, and what is on its way to it.
+// One of three links, and the bytes on their way to it.
 struct End {
     Craft* craft = nullptr;
-    int first = 0; // of its connections
+    int first = 0; // first of its connections
     Link link;
     Link_Buffers buffers;
     End* peer = nullptr;
@@ -44,8 +44,8 @@ struct End {
     unsigned sent = 0;                      // packets
 };
 
-// A vehicle or a ground: a communicator with three links, of which the last is as small as that of
-// the vehicle to its fellow.
+// A vehicle or a ground station: a communicator with three links, the last one as small as the
+// vehicle's link to another vehicle.
 struct Craft {
     Craft(World& w, U16 address) : world(w), random(testSeed() + w.crafts.size()) {
         static const Link_Port linkPort = {
@@ -180,7 +180,7 @@ void World::step() {
     atStep();
 }
 
-// Vehicles 5 and 7, of which 5 has the ground's part, and the two grounds of 5.
+// Vehicles 5 and 7 (5 acts as the ground station), and the two ground stations of 5.
 struct Team : World {
     explicit Team(const Key& key = {}, const Key& keyOf7 = {}) {
         five.meets(seven, 7, Craft::fellow, true, key, LINK_GROUND | 7);
@@ -202,7 +202,7 @@ TEST(Fellows, CallEachOtherTwowayAndOnewayInOneSessionWithAKeyAndWithout) {
         Team world(key);
         world.run(5000);
         EXPECT_EQ(world.five.ends[Craft::fellow].sent + world.seven.ends[Craft::fellow].sent, 0u)
-            << "nobody calls yet";
+            << "no call yet";
         EXPECT_EQ(world.five.call("it:xbee-at -a 7"), ICE_OK);
         EXPECT_EQ(world.seven.call("it:xbee-at -a 0x0005"), ICE_OK);
         EXPECT_EQ(world.five.call("it -o:xbee-at -a 7"), ICE_OK);
@@ -285,10 +285,10 @@ TEST(Fellows, OneThatIsAwayEndsTheCallInTimeAndTheGroundIsServedMeanwhile) {
         world.run(11000);
         const unsigned sent = world.five.ends[Craft::fellow].sent;
         world.run(20000);
-        EXPECT_EQ(world.five.ends[Craft::fellow].sent, sent) << "nobody calls it any more";
+        EXPECT_EQ(world.five.ends[Craft::fellow].sent, sent) << "no further calls";
         world.seven.isAway = false;
         EXPECT_EQ(world.five.call("it:xbee-at -a 7"), ICE_OK);
-        EXPECT_EQ(world.seven.servant.calls, 1u) << "what was given up is not carried out later";
+        EXPECT_EQ(world.seven.servant.calls, 1u) << "an abandoned call is not executed later";
     }
 }
 

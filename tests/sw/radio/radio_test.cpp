@@ -29,7 +29,7 @@ XBee::Options quick(std::map<std::string, uint32_t> more, const std::string& key
     return options;
 }
 
-// A link that keeps its messages; `send` sends its frames and returns 0.
+// A link that stores its messages; `send` sends its frames and returns 0.
 class MessageLink : public LinkEnd {
 public:
     explicit MessageLink(std::function<int(const U8*, U32)> send, uint32_t seed)
@@ -55,7 +55,7 @@ private:
 
 class Radio : public ::testing::Test {
 protected:
-    // A far modem that encrypts, or one that does not.
+    // A far modem that encrypts, or not.
     explicit Radio(const std::string& farKey = "")
         : far_(farLine_, air_,
                quick({{"BD", 7}, {"MY", 0}, {"DL", 1}, {"EE", farKey.empty() ? 0 : 1}}, farKey)) {}
@@ -149,7 +149,7 @@ protected:
             ASSERT_EQ(Link_send(farPeer_.link(), 0, message.data(), 700, tag), LINK_OK);
         ASSERT_TRUE(
             talk([&] { return farPeer_.received.size() == 5 && nearPeer_.received.size() == 5; },
-                 20000)); // the far end's packets hold parts of two frames
+                 20000)); // the far end's packets contain parts of two frames
         talk([] { return false; }, 100);
         EXPECT_EQ(nearPeer_.received[4], message);
         EXPECT_EQ(farPeer_.received[4], message);
@@ -208,7 +208,8 @@ TEST_F(Radio, FramesLeaveInOrderAndUnchangedAndAFullRingSaysSo) {
     U32 copied = 0, full = 0, interrupts = 0;
     run([&] {
         ASSERT_EQ(init(), RADIO_OK);
-        farLine_.received.clear(); // what the search for the baud rate looked like to the modem
+        farLine_.received.clear(); // the bytes of the search for the baud rate, as received by the
+                                   // modem
         copied = Radio_counters()->bytesCopiedOut;
         full = Radio_counters()->ringFull;
         interrupts = Radio_counters()->interrupts;
@@ -230,12 +231,12 @@ TEST_F(Radio, FramesLeaveInOrderAndUnchangedAndAFullRingSaysSo) {
     EXPECT_EQ(farLine_.received, sent) << "seed " << testSeed();
     EXPECT_EQ(copied, sent.size()); // one copy, into DDR3
     EXPECT_GT(full, 0u);
-    EXPECT_EQ(interrupts, 0u) << "a packet that left interrupts nobody";
+    EXPECT_EQ(interrupts, 0u) << "a packet that was sent causes no interrupt";
 }
 
 TEST_F(Radio, ALinkRunsOverItBothWays) {
     air_.weather.perfect =
-        true; // a modem that keeps up with its line: no packet holds parts of two frames
+        true; // a modem that keeps up with its line: no packet contains parts of two frames
     run([&] {
         ASSERT_EQ(init(), RADIO_OK);
         const U32 before = Radio_counters()->bytesCopiedIn;
@@ -256,12 +257,12 @@ TEST_F(Radio, ATaskThatSleepsLosesNoMessage) {
             std::vector<uint8_t> message(300, static_cast<uint8_t>(i));
             ASSERT_EQ(Link_send(farPeer_.link(), 0, message.data(), 300, i), LINK_OK);
         }
-        OSTimeDly(OS_TICKS_PER_SEC); // more packets than the ring has room for come meanwhile
+        OSTimeDly(OS_TICKS_PER_SEC); // more packets arrive than the ring has room for
         ASSERT_TRUE(talk([&] { return nearPeer_.received.size() == 30; }, 20000));
         for (size_t i = 0; i < 30; ++i)
             EXPECT_EQ(nearPeer_.received[i], std::vector<uint8_t>(300, static_cast<uint8_t>(i)));
-        // RTS stopped the modem before the ring was full. (The modem itself drops RF packets then,
-        // and a packet may hold the end of one frame and the beginning of the next.)
+        // RTS stopped the modem before the ring was full. (The modem itself then drops RF packets,
+        // and a packet may contain the end of one frame and the beginning of the next.)
         EXPECT_EQ(Radio_counters()->hardwareOverruns, 0u);
     });
 }
@@ -311,19 +312,19 @@ TEST_F(ApiRadio, EachPacketIsAnsweredForAndAnAnswerThatIsLostCountsAsALoss) {
         const U8 frame[3] = {'a', 'b', 'c'};
         ASSERT_EQ(Radio_transmit(nullptr, frame, 3), 0);
         OSTimeDly(OS_TICKS_PER_SEC / 20);
-        FSMC_write(MAP_SLOT_MODEM, MODEM_RX_RELEASE, 1); // as if the line had spoilt it
+        FSMC_write(MAP_SLOT_MODEM, MODEM_RX_RELEASE, 1); // as if the line had damaged it
         sendOne(302);
         far_.power(false, soc_.now());
         sendOne(303);
         EXPECT_EQ(answers_.substr(300), "-+-");
         soc_.modem().power(false, soc_.now());
         sendOne(304);
-        OSTimeDly(3 * OS_TICKS_PER_SEC); // a modem that says nothing has lost what it had
+        OSTimeDly(3 * OS_TICKS_PER_SEC); // a silent modem has lost its packets
         Radio_receive([](void*, const U8*, U32) {}, nullptr);
         EXPECT_EQ(answers_.substr(303), "-");
         sendOne(305);
         soc_.modem().power(true, soc_.now());
-        ASSERT_EQ(initApi(), RADIO_OK); // what had no answer gets none
+        ASSERT_EQ(initApi(), RADIO_OK); // packets without a result get none
         far_.power(true, soc_.now());
         OSTimeDly(OS_TICKS_PER_SEC / 10);
         sendOne(1);

@@ -46,7 +46,7 @@ public:
     }
     ~Fpga() override { flash_ = nullptr; }
 
-    // As the factory leaves it: a golden bitstream, and the header that looks for a newer one.
+    // State left by the factory: a golden bitstream, and the header that looks for a newer one.
     void fill(uint64_t seed) {
         flash = SpiFlash([] { return now_; }, seed);
         flash_ = &flash;
@@ -112,7 +112,7 @@ TEST_F(Fpga, ABitstreamThatIsNotConfirmedIsTriedOnce) {
     expectTriedOnce();
 }
 
-// Signed, but made wrongly: the FPGA hangs on it, and the processor's next start takes it back.
+// Signed, but invalid: the FPGA hangs on it, and the processor's next start reverts it.
 TEST_F(Fpga, ABitstreamThatHangsTheFpgaIsTakenBack) {
     powerOn();
     Image image = imageOf(2);
@@ -138,7 +138,7 @@ TEST_F(Fpga, ABitstreamThatTheFpgaRefusesIsNamedAndDoesNotCountAsRunning) {
     updateTo(3);
 }
 
-// The rest is as of firmware (update_test.cpp).
+// The rest is as for firmware (update_test.cpp).
 TEST_F(Fpga, NothingGoesOverTheGoldenBitstream) {
     updateTo(5);
     const Bytes before = flash.memory;
@@ -149,7 +149,7 @@ TEST_F(Fpga, NothingGoesOverTheGoldenBitstream) {
 TEST_F(Fpga, AVersionThatWasConfirmedIsRememberedWhenItIsErased) {
     updateTo(5);
     EXPECT_EQ(begin(imageOf(6)), RECEIVER_OK);
-    EXPECT_EQ(powerOn(), 1u); // 5 is gone, 6 has not come
+    EXPECT_EQ(powerOn(), 1u); // 5 is erased, 6 has not arrived
     EXPECT_EQ(begin(imageOf(4)), RECEIVER_OLD);
     updateTo(6);
 }

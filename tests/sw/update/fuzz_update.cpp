@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// fuzz_update: libFuzzer target of the boot loader's choice of a slot, and of what receives images.
-// Headers, states and log in flash are any bytes, calls come in any order. Nothing is read or
-// written outside of the flash, nothing but states in the slot that runs, and the slot that is
-// chosen holds an image that is whole, signed and for this vehicle.
+// fuzz_update: libFuzzer target of the boot loader's choice of a slot, and of the receiver of
+// images. Headers, states and log in flash are any bytes, calls are in any order. Nothing is read
+// or written outside the flash, nothing but states in the running slot, and the chosen slot
+// contains an image that is complete, signed and for this vehicle.
 //
 // The first byte's lowest bit: slot 0 is golden, as the FPGA's. Then a byte names the step (mod 8),
 // the next its argument n:
@@ -31,15 +31,14 @@ using Bytes = std::vector<uint8_t>;
 
 constexpr U32 product = 7, imageBytes = 0x200;
 constexpr U32 syncWord = 0x665599AA;
-constexpr uint8_t key = 1, filling = 0x5A; // of images that come
+constexpr uint8_t key = 1, filling = 0x5A; // of received images
 
 void expect(bool condition) {
     if (!condition)
         std::abort();
 }
 
-// Stands for digest and, beside a key's first byte, signature, so that an input can have right
-// ones.
+// Replaces digest and, with a key's first byte, signature, so that an input can contain valid ones.
 uint64_t sumOf(const uint8_t* bytes, size_t count) {
     uint64_t sum = 0xCBF29CE484222325;
     for (size_t i = 0; i < count; ++i)

@@ -67,12 +67,12 @@ struct Image {
 
 struct PowerCut {};
 
-// A vehicle with a receiver, version 1 confirmed, and what the ground does with it.
+// A vehicle with a receiver, version 1 confirmed, and the actions of the ground station.
 class Updated {
 public:
     explicit Updated(uint32_t chunk) : chunk_(chunk) {}
     virtual ~Updated() = default;
-    // The processor starts again, or the power comes; returns the version that runs.
+    // Restarts the processor, or switches the power on; returns the running version.
     virtual uint32_t boot() = 0;
     virtual uint32_t powerOn() { return boot(); }
     virtual uint64_t operations() const = 0;
@@ -143,8 +143,8 @@ private:
 };
 
 // Cuts the power at each of `all` operations of an update of the vehicles that `fresh` makes, and
-// once more at a random one later; then again at the first ones, to `tries` in all. `wentBack`: has
-// the last cut led to the version before?
+// again at a random later one; then again at the first ones, `tries` in all. `wentBack`: returns
+// whether the last cut led to the previous version.
 template <class Fresh, class WentBack>
 void cutAtEach(uint32_t version, uint64_t all, uint64_t tries, Fresh fresh, WentBack wentBack) {
     uint64_t cuts = 0, back = 0;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// start_test: what the ARM binaries start, on the chip's model, from flash as a programmer fills
-// it: the boot loader its firmware, and the firmware, which hears the addresses of the FPGA's reads
-// in flash, a bitstream.
+// start_test: what the ARM binaries start, on the chip's model, from flash as filled by a
+// programmer: the boot loader starts its firmware, and the firmware, which receives the addresses
+// of the FPGA's reads in flash, a bitstream.
 
 #include "stm32f2.h"
 #include <algorithm>
@@ -25,7 +25,7 @@ namespace {
 using Bytes = std::vector<uint8_t>;
 constexpr uint32_t flashBase = 0x08000000;
 
-// A test's own folder, since tests run side by side, in which pack_update works.
+// A separate folder for a test, since tests run in parallel, in which pack_update works.
 struct VehicleFolder {
     VehicleFolder() { std::filesystem::create_directories(path); }
     ~VehicleFolder() { std::filesystem::remove_all(path); }
@@ -84,7 +84,8 @@ protected:
         const uint32_t isTrue = SLOTS_TRUE;
         chip.cpu().writeMemory(at + SLOTS_READY, &isTrue, 4);
     }
-    // Power comes; returns the slot whose firmware's first instruction is reached, -1: none is.
+    // Switches the power on; returns the slot with the firmware whose first instruction is reached;
+    // -1 if none is.
     int boot() {
         chip.powerOn();
         const uint64_t begun = chip.cpu().cycles();
@@ -148,7 +149,7 @@ TEST_F(Loader, StartsOneOfEitherKeyUntilItIsWithdrawn) {
     const uint32_t at = flashBase + SLOTS_KEYS_AT + sizeof(Slots_Keys);
     chip.cpu().loadFlash(at, folder.read("list"));
     receive(9, "key");    // over the one that is confirmed
-    EXPECT_EQ(boot(), 1); // the list does not count yet
+    EXPECT_EQ(boot(), 1); // the list is not valid yet
     receive(9, "key");
     chip.cpu().writeMemory(at + offsetof(Slots_Keys, isComplete), &isTrue, 4);
     EXPECT_EQ(boot(), -1);
@@ -234,7 +235,7 @@ protected:
             return now() + 1'000'000;
         });
     }
-    // Leaves in the FPGA's flash what a complete update does.
+    // Writes to the FPGA's flash what a complete update writes.
     void receive(const Bytes& bits, const std::string& more = "") {
         folder.save("new.bin", bits);
         ASSERT_EQ(folder.pack("bitstream new.bin 2 key update" + more), 0) << folder.said();
@@ -256,8 +257,8 @@ protected:
         std::memcpy(&*at(slot + SLOTS_TRIED), &isTrue, 4);
         std::memcpy(&*at(slot + SLOTS_CONFIRMED), &isTrue, 4);
     }
-    // Switches the power on. Returns the slot of the running bitstream, in the firmware's words and
-    // the FPGA's.
+    // Switches the power on. Returns the slot of the running bitstream, as seen by the firmware and
+    // the FPGA.
     uint32_t start() {
         chip.powerOn();
         limit = chip.cpu().cycles() + 3'000'000'000;
@@ -282,7 +283,7 @@ TEST_F(FpgaStart, ANewBitstreamIsTriedAndOneNotConfirmedGoes) {
     EXPECT_FALSE(is(SLOTS_REFUSED));
 }
 
-// Somebody has written to the flash: what he wrote would run, its CRC is right.
+// Someone has written to the flash: the data would run, its CRC is valid.
 TEST_F(FpgaStart, ABitstreamThatIsNotSignedNeverRuns) {
     receive(standInBitstream(2, frameWords));
     confirm();
@@ -338,7 +339,7 @@ TEST_F(FpgaStart, ABitstreamThatHangsTheFpgaGoesAtOnce) {
     EXPECT_TRUE(is(SLOTS_REFUSED));
 }
 
-// It would take four tries, 16 s, to know that the FPGA hangs; but this one reads no more.
+// It would take four tries, 16 s, to detect that the FPGA hangs; but this one reads no more.
 TEST_F(FpgaStart, ABoardWithoutDoneStartsSoonAndItsFpgaRuns) {
     chip.fpga.isDoneWired = false;
     chip.powerOn();
@@ -348,11 +349,11 @@ TEST_F(FpgaStart, ABoardWithoutDoneStartsSoonAndItsFpgaRuns) {
     EXPECT_LT(now(), 1'500'000'000u);
 }
 
-// ---- pack_update: what is wrong is refused where it would be signed ----
+// ---- pack_update refuses invalid input before signing ----
 
 class Packing : public ::testing::Test {
 protected:
-    // Expects that these words are refused with this reason, and that nothing is written.
+    // Expects that these arguments are refused with this reason, and that nothing is written.
     void refuses(const std::string& words, const std::string& why) {
         EXPECT_NE(folder.pack(words + " out"), 0) << words;
         EXPECT_NE(folder.said().find(why), std::string::npos) << words << ": " << folder.said();
@@ -388,7 +389,7 @@ TEST_F(Packing, ABitstreamThatIsCutOrHasMoreThanItsEndIsNotSigned) {
         folder.save("more", file(more));
         refuses("bitstream more 5 key", "1001 bytes after the bitstream's end");
     }
-    Bytes cut = bitFile(whole); // its header knows better
+    Bytes cut = bitFile(whole); // its header has the real size
     cut.resize(cut.size() - 4);
     folder.save("short", cut);
     refuses("bitstream short 5 key", "as its header counts");

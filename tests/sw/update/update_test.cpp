@@ -28,8 +28,8 @@ Image makeImage(uint32_t version, uint32_t slot, uint32_t size = imageBytes,
 // The flash with its power, and the firmware that boots from it.
 class Vehicle : public Updated {
 public:
-    // As a programmer leaves it, at its first start: slot 0 has a confirmed image, slot 1 something
-    // else.
+    // State left by a programmer, at its first start: slot 0 has a confirmed image, slot 1 other
+    // data.
     explicit Vehicle(uint32_t version = 1, uint64_t seed = 1)
         : Updated(chunk), flash_(
                               memory.data(), [this] { return now_; }, seed),
@@ -256,7 +256,8 @@ TEST(Update, AListIsSignedByTheOneBeforeAndCountsUpByOne) {
     EXPECT_EQ(vehicle.take(ours.list(4, third, ours)), RECEIVER_NEEDS_OTHER);
     EXPECT_EQ(vehicle.take(foreign), RECEIVER_FOREIGN);
     EXPECT_EQ(vehicle.take(changed), RECEIVER_UNSIGNED);
-    EXPECT_EQ(vehicle.take(ours.list(3, second, second)), RECEIVER_UNSIGNED); // of the list before
+    EXPECT_EQ(vehicle.take(ours.list(3, second, second)), RECEIVER_UNSIGNED); // of the previous
+                                                                              // list
     EXPECT_EQ(vehicle.take(others.list(3, others, others)), RECEIVER_UNSIGNED);
     EXPECT_EQ(vehicle.memory, before);
     EXPECT_EQ(vehicle.operations(), operations);
@@ -319,7 +320,7 @@ TEST(Update, ADamagedOrCutImageIsNotStarted) {
     image.bytes[700] ^= 4;
     EXPECT_EQ(vehicle.send(image), RECEIVER_DAMAGED);
     EXPECT_EQ(vehicle.boot(), 1u);
-    vehicle.updateTo(2); // and it can be sent anew
+    vehicle.updateTo(2); // and it can be sent again
     EXPECT_EQ(vehicle.boot(), 2u);
 }
 
@@ -333,7 +334,7 @@ TEST(Update, PiecesComeInOrderAndInWords) {
     EXPECT_EQ(Receiver_write(&vehicle.receiver, 0, bytes, 6), RECEIVER_MISPLACED);
     EXPECT_EQ(Receiver_write(&vehicle.receiver, 0, bytes, imageBytes + 4), RECEIVER_MISPLACED);
     EXPECT_EQ(Receiver_write(&vehicle.receiver, 0, bytes, imageBytes), RECEIVER_OK);
-    EXPECT_EQ(Receiver_write(&vehicle.receiver, 512, bytes + 512, 512), RECEIVER_OK); // once more
+    EXPECT_EQ(Receiver_write(&vehicle.receiver, 512, bytes + 512, 512), RECEIVER_OK); // again
     EXPECT_EQ(Receiver_write(&vehicle.receiver, imageBytes, bytes, 4), RECEIVER_MISPLACED);
     EXPECT_EQ(Receiver_write(&vehicle.receiver, 0xFFFFFFFC, bytes, 8), RECEIVER_MISPLACED);
 }

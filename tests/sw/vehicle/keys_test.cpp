@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // keys_test: the vehicle's key slots: a change of keys, with the power cut at every written word,
-// and a ground that gives up at every step.
+// and a ground station that stops at every step.
 
 #include "link_pair.h"
 #include <array>
@@ -37,14 +37,14 @@ public:
         keys = UAV_giveKeys(0, b.link());
         b.start();
     }
-    // The ground's program starts with this key file; true: a session has come up.
+    // Starts the ground's program with this key file; returns true if a session has come up.
     bool meets(const std::vector<Key>& file, uint64_t patienceUs = 20'000'000) {
         a.boot();
         for (size_t slot = 0; slot < file.size(); ++slot)
             Link_setKey(a.link(), static_cast<int>(slot), file[slot].data(), LINK_GROUND | address);
         a.start();
         const U32 sessions = Link_statistics(b.link())->sessions;
-        auto isOver = [&] { // the vehicle, too, is in the new session
+        auto isOver = [&] { // the vehicle is also in the new session
             UAV_confirmKey(0, b.link());
             return isDead || (bothUp() && Link_statistics(b.link())->sessions != sessions);
         };
@@ -52,8 +52,8 @@ public:
         UAV_confirmKey(0, b.link());
         return isMet && !isDead;
     }
-    // The whole change, as sw/ground/clients/change_key.py makes it, or its first steps. Returns
-    // the resulting content of the ground's file.
+    // The whole change, as made by sw/ground/clients/change_key.py, or its first steps. Returns the
+    // resulting content of the ground's file.
     std::vector<Key> change(int steps = 3) {
         const std::vector<Key> before = {oldKey}, both = {newKey, oldKey}, after = {newKey};
         if (steps < 1)
@@ -160,7 +160,8 @@ TEST(Keys, ASecondGroundHasKeysOfItsOwn) {
     Vehicle vehicle(testSeed());
     EXPECT_EQ(UAV_addressOf(UAV_OBSERVER), UAV_NO_PEER);
     UAV_providePeer(UAV_OBSERVER, 0xF0, nullptr);
-    EXPECT_EQ(UAV_addressOf(UAV_OBSERVER), UAV_NO_PEER) << "in the clear, of a vehicle with a key";
+    EXPECT_EQ(UAV_addressOf(UAV_OBSERVER), UAV_NO_PEER)
+        << "without a key, for a vehicle with a key";
     UAV_providePeer(UAV_OBSERVER, 0xF0, foreignKey.data());
     EXPECT_EQ(UAV_addressOf(UAV_OBSERVER), 0xF0u);
     EXPECT_EQ(vehicle.change(), std::vector<Key>{newKey});
@@ -171,7 +172,7 @@ TEST(Keys, ASecondGroundHasKeysOfItsOwn) {
     UAV_provide(address, nullptr);
     EXPECT_EQ(UAV_countKeys(1), 0);
     UAV_providePeer(UAV_OBSERVER, 0xF0, nullptr);
-    EXPECT_EQ(UAV_addressOf(UAV_OBSERVER), 0xF0u) << "of an open vehicle";
+    EXPECT_EQ(UAV_addressOf(UAV_OBSERVER), 0xF0u) << "for an open vehicle";
 }
 
 TEST(Keys, OfTwoVehiclesTheOneWithTheLowerAddressHasTheGroundsPart) {
@@ -189,7 +190,7 @@ TEST(Keys, OfTwoVehiclesTheOneWithTheLowerAddressHasTheGroundsPart) {
         EXPECT_TRUE(vehicle.connect());
     }
     UAV_providePeer(UAV_OBSERVER, 0xFFFE, newKey.data());
-    EXPECT_EQ(UAV_addressOf(UAV_OBSERVER), 0xFFFEu) << "beside the fellow";
+    EXPECT_EQ(UAV_addressOf(UAV_OBSERVER), 0xFFFEu) << "together with the fellow";
     vehicle.a.boot();
     vehicle.b.boot();
     UAV_giveKeys(UAV_OBSERVER, vehicle.b.link());
@@ -201,7 +202,7 @@ TEST(Keys, OfTwoVehiclesTheOneWithTheLowerAddressHasTheGroundsPart) {
 
 TEST(Keys, AGroundWithoutTheKeyIsRefused) {
     Vehicle vehicle(testSeed());
-    EXPECT_FALSE(vehicle.meets({}, 5'000'000)) << "in the clear";
+    EXPECT_FALSE(vehicle.meets({}, 5'000'000)) << "without a key";
     EXPECT_FALSE(vehicle.meets({foreignKey}, 5'000'000));
     EXPECT_FALSE(UAV_setNextKey(0, vehicle.b.link(), newKey.data())) << "without a session";
     EXPECT_TRUE(vehicle.meets({foreignKey, oldKey})) << "one of two serves";

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// provision_test: the ground's program gives a key to the firmware's ARM binary, over the
-// processor's own serial port, here a pseudo-terminal.
+// provision_test: the ground's program sets a key in the firmware's ARM binary, over the
+// processor's serial port, here a pseudo-terminal.
 
 #include "stm32f2.h"
 #include <algorithm>
@@ -34,7 +34,7 @@ protected:
         chip.run();
         return said;
     }
-    // The firmware starts with the line in a break, which then ends.
+    // Starts the firmware with a break on the line, which then ends.
     std::string start() {
         chip.isSerialBreak = true;
         chip.powerOn();
@@ -51,7 +51,8 @@ protected:
         start();
         return answerTo(line + "\n");
     }
-    // The words in which the firmware keeps a key (uav_keys.h), none: it is open; and its address.
+    // Checks the words in which the firmware stores a key (uav_keys.h), empty for an open vehicle,
+    // and its address.
     bool has(const std::vector<uint8_t>& key, uint32_t address = 0x2A) {
         std::array<uint32_t, 4> words = {};
         for (size_t i = 0; i < key.size(); ++i)
@@ -155,7 +156,7 @@ TEST_F(Provision, NobodyIsListenedToWithoutABreak) {
     EXPECT_FALSE(has(key));
 }
 
-// The model stands still while the program is waited for: nothing depends on how fast that is.
+// The model waits for the program: nothing depends on its speed.
 TEST_F(Provision, TheGroundsProgramGivesIt) {
     const std::string file = FOLDER + std::to_string(getpid()) + ".key";
     std::ofstream(file) << "# demo\n0x0001 " << std::string(32, 'a') << "\n0x002A " << digits
@@ -182,7 +183,7 @@ TEST_F(Provision, TheGroundsProgramGivesIt) {
               file.c_str(), "--address", "0x002a", nullptr);
         _exit(127);
     }
-    usleep(1'000'000); // no prompt: the program holds the line in a break
+    usleep(1'000'000); // no prompt: the program holds a break on the line
     std::string line;
     for (int tries = 0; tries < 60 && line.find('\n') == std::string::npos; ++tries) {
         const std::string asked = start();

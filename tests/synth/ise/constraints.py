@@ -54,15 +54,15 @@ def renamed():
 
 
 class Paths:
-    """The chip's paths, pairs (start, end) in `pairs`, and its pads without MIG's in `pads`. A start
-    or an end is ("pad", name), ("clock", names of the net), a start ("ram", names of its clock), an
-    end ("reset", the clock of the reset register)."""
+    """The paths of the chip, pairs (start, end) in `pairs`, and its pads without MIG's in `pads`. A
+    start or an end is ("pad", name), ("clock", names of the net), a start ("ram", names of its
+    clock), an end ("reset", the clock of the reset register)."""
 
     def __init__(self, module):
         self.names, self.pads = {}, []
         # The start that drives a net, or the nets (or starts) that its logic reads
         self.source, self.comb = {}, {}
-        self.sinks, self.origins = [], {}  # (end, net); of a net: its starts, as far as known
+        self.sinks, self.origins = [], {}  # (end, net); by net: its starts, as far as known
         self.add_ports(module["ports"])
         for name, net in module["netnames"].items():
             if len(net["bits"]) == 1:
@@ -109,7 +109,7 @@ class Paths:
         elif kind == "$tribuf" or "CLK" not in nets:
             needs = [bit for p in ins for bit in nets[p]]
             for bit in [bit for p in nets if p not in ins for bit in nets[p]]:
-                if self.source.get(bit, "?")[0] == "pad":  # a pad both ways
+                if self.source.get(bit, "?")[0] == "pad":  # a bidirectional pad
                     self.sinks += [(self.source[bit], need) for need in needs]
                 else:
                     self.comb[bit] = needs
@@ -197,12 +197,12 @@ class Constraints:
         return any(self.has(a, start) and self.has(b, end) for a, b in self.paths)
 
     def missing(self, pads, pairs):
-        told = {f"{tell(start)} to {tell(end)}: no constraint" for start, end in pairs
+        missing = {f"{tell(start)} to {tell(end)}: no constraint" for start, end in pairs
                 if not self.covers(start, end)}
         for pad in pads:
-            told |= {f"pad {pad}: no {word}" for word in ("IOSTANDARD", "LOC")
+            missing |= {f"pad {pad}: no {word}" for word in ("IOSTANDARD", "LOC")
                      if not self.has_word(pad, word) and not (word == "LOC" and pad in unused)}
-        return told
+        return missing
 
 
 def tell(point):
@@ -213,7 +213,7 @@ def tell(point):
 
 expected = re.findall("^#> (.*\n)", (HERE / "mig.ucf").read_text(), re.M)
 if renamed() != "".join(expected):
-    sys.exit(f"{renamed()}is what merge_ucf.py renamed, and not what mig.ucf says")
+    sys.exit(f"{renamed()}is renamed by merge_ucf.py, but differs from mig.ucf")
 paths = Paths(netlist()["modules"]["chip"])
 all_pads, all_pairs = paths.pads, paths.pairs
 used = {point[1] for pair in all_pairs for point in pair if point[0] == "pad"}

@@ -13,7 +13,7 @@ import threading
 import time
 
 HEAD = b"IceP\1\0\1\0"
-REPLIES = 0.3  # s that a reply may take, once the next connection's ping is answered
+REPLIES = 0.3  # time-out for a reply, s, after the next connection's ping was answered
 
 
 def size(n):
@@ -45,7 +45,7 @@ def request(op, params=b"", rid=1, version=(1, 1), more=0, **where):
     return message(0, number(rid) + target(op, **where) + encapsulation(params, version, more))
 
 
-def one(op, params=b""):  # of a batch
+def one(op, params=b""):  # in a batch
     return target(op) + encapsulation(params)
 
 
@@ -65,7 +65,7 @@ CASES = {
     "a batch of 2^31-1": message(1, number(2**31 - 1) + one("hit") * 2),
     "a batch of -1": message(1, number(-1) + one("hit") * 2),
     "a batch of 0": message(1, number(0)),
-    "a batch whose second is cut": message(1, number(2) + one("hit") + one("hit")[:-3]),
+    "a batch with a cut second request": message(1, number(2) + one("hit") + one("hit")[:-3]),
     "no optional": request("say", N7),
     "an optional": request("say", N7 + HI),
     "an unknown optional before it": request("say", N7 + tag(3, 2) + N7 + HI),
@@ -130,7 +130,7 @@ CASES = {
     "compression offered": message(0, COUNT[14:], 1),
     "a validation with a body": message(3, b"xx") + COUNT,
     "a validation, then a call": message(3, b"") + COUNT,
-    "a reply that nobody waits for": message(2, number(77) + b"\0" + encapsulation(b"")) + COUNT,
+    "an unexpected reply": message(2, number(77) + b"\0" + encapsulation(b"")) + COUNT,
     "a type of 9": message(9, b"") + COUNT,
     "a mode of 3": request("count", string("ab"), mode=3),
     "an idempotent call of another operation": request("count", string("ab"), mode=2),
@@ -138,7 +138,7 @@ CASES = {
     "a normal call of an idempotent operation": request("same", b"\1"),
     "a nonmutating call of an idempotent operation": request("same", b"\1", mode=1),
     "an empty identity": request("count", string("ab"), name=""),
-    "an identity that is missing": request("count", string("ab"), name="nobody"),
+    "an identity that is missing": request("count", string("ab"), name="missing"),
     "another category": request("count", string("ab"), category="c"),
     "a facet that is missing": request("count", string("ab"), facet=b"\1" + string("f")),
     "an empty facet": request("count", string("ab"), facet=b"\1\0"),
@@ -170,9 +170,9 @@ CASES = {
 FAILED = [(2, b"\x01\0\0\0\x05"), "open"], 0  # UnknownLocalException
 CLOSED = [""], 0
 IN_PYTHON = "stock Ice in Python has another exception, or none; in C++ it has this one"
-MALFORMED = "what is malformed closes the connection: nothing after it can be trusted"
+MALFORMED = "a malformed message closes the connection: nothing after it can be trusted"
 DIFFERENT = {
-    "a batch whose second is cut": ([""], 1, MALFORMED),
+    "a batch with a cut second request": ([""], 1, MALFORMED),
     "a size of the encapsulation beyond the message": (*CLOSED, MALFORMED),
     "a size of the encapsulation of 5": (*CLOSED, MALFORMED),
     "a size of the encapsulation of -1": (*CLOSED, MALFORMED),
@@ -204,11 +204,11 @@ class Server:
         return s
 
     def ask(self, data):
-        """Returns what comes back for these bytes, and how many operations are executed."""
+        """Returns the bytes sent in reply, and the number of operations executed."""
         before = self.executed
         s = self.connect()
         s.sendall(data)
-        other = self.connect()  # once it is answered, so is what came before
+        other = self.connect()  # after its reply, all earlier messages are handled
         other.sendall(COUNT)
         read(other, 25)
         other.close()
@@ -223,7 +223,7 @@ class Server:
             status = body[4] if head[8] == 2 else 0
             answers.append((head[8], body[:5] if status > 4 else body))
         s.close()
-        time.sleep(0.05)  # the last line of what was executed
+        time.sleep(0.05)  # for the last line about executed operations
         return answers, self.executed - before - 1
 
 
@@ -301,7 +301,7 @@ def main():
         mine = ours.ask(data)
         try:
             theirs = stock.ask(data)
-        except OSError:  # it has died of this message
+        except OSError:  # it crashed on this message
             theirs = "died", 0
             stock.process.kill()
             stock = Server([sys.executable, __file__, "--serve", sys.argv[2]])

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * strings: reads proxy strings, a line of hexadecimal digits each, and prints each proxy as IceC
- * does; "error" and the status where there is none. For strings.py.
- */
+ * strings: reads proxy strings, one line of hexadecimal digits each, and prints each proxy as IceC
+ * prints it; "error" and the status if it is invalid. For strings.py. */
 #include "icec.h"
 #include "tcp_endpoint.h"
 

@@ -11,8 +11,8 @@ import sys
 
 import Ice
 
-# Differences by design (docs/icec.md): IceC has no such transports, and binds no source address;
-# in endpoints quotes stand around whole words, and "-timeout" is not another word for "-t".
+# Differences by design (docs/icec.md): IceC lacks these transports, and does not bind a source
+# address; in endpoints quotes surround whole words, and "-timeout" is not accepted for "-t".
 NOT_HERE = ("udp", "ws", "wss", "ssl", "--sourceAddress")
 STRICTER = re.compile(r"""[^\s:]["'][^\s:@]|["'][^\s:]+["']\S|\s-[tzev][^\s:]""")
 
@@ -73,7 +73,7 @@ def main():
             try:
                 proxy = ic.stringToProxy(text)
                 stock = "=" + (str(proxy) if proxy else "")
-            except Exception as e:  # stock Ice raises ones of several kinds
+            except Exception as e:  # stock Ice raises several kinds
                 stock = "error " + type(e).__name__
             if mine.startswith("error") and (stock.startswith("error") or STRICTER.search(text)):
                 continue

@@ -25,7 +25,7 @@ passed = 0
 failures = {}  # "File.py:line": text
 lock = threading.Lock()
 PATIENCE = 3  # seconds
-TURNS = 200  # of a loop that waits for the server
+TURNS = 200  # iterations of a loop that waits for the server
 
 
 def check(truth):
@@ -61,13 +61,13 @@ def wait(self, timeout=None, wait=threading.Condition.wait):
 
 
 class Guard(ast.NodeTransformer):
-    """Puts each statement of a function outside `try` into a `try` of its own."""
+    """Wraps each statement of a function outside `try` in a separate `try`."""
 
     def __init__(self, name):
         self.name = name
 
     def visit_Try(self, node):
-        return self.guarded(node)  # it contains its own expectations of exceptions
+        return self.guarded(node)  # it contains the expectations of exceptions
 
     def visit_FunctionDef(self, node):
         node.body = [self.visit(s) for s in node.body]
@@ -121,7 +121,7 @@ class Loader(importlib.abc.Loader):
 
 
 class Finder(importlib.abc.MetaPathFinder):
-    """The suite's own modules, each statement guarded."""
+    """The modules of the suite, each statement guarded."""
 
     def find_spec(self, name, path, target=None):
         file = os.path.join(os.getcwd(), name + ".py")
@@ -130,7 +130,7 @@ class Finder(importlib.abc.MetaPathFinder):
 
 
 def expected(run):
-    """Returns how many checks must pass in this run, and {place: reason} of those that need not."""
+    """Returns how many checks must pass in this run, and {place: reason} of exempt ones."""
     with open(os.path.join(OWN, "expected.toml"), "rb") as file:
         known = tomllib.load(file)
     wanted = [n for runs, n in known["passed"].items() if fnmatch.fnmatch(run, runs)]
@@ -148,7 +148,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("folder")
     parser.add_argument("suite")
-    parser.add_argument("run", help="what the run is called: SUITE-tcp-1.1")
+    parser.add_argument("run", help="name of the run: SUITE-tcp-1.1")
     parser.add_argument("rest", nargs=argparse.REMAINDER,
                         help="Ice properties, then an endpoint or a port")
     a = parser.parse_args()
@@ -193,7 +193,7 @@ def main():
     print("%s: %d checks passed (%d expected), %d by design, %d failed"
           % (a.run, passed, wanted, len(failures) - unknown, unknown))
     sys.stdout.flush()
-    os._exit(0 if unknown == 0 and passed >= wanted else 1)  # a suite may leave threads that wait
+    os._exit(0 if unknown == 0 and passed >= wanted else 1)  # a suite may leave waiting threads
 
 
 main()

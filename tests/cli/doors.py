@@ -169,7 +169,7 @@ MISTAKES = {
     "make -s run CPU=x": "CPU: expected host or m3, got 'x'",
     "make -s run CORES=nobody": "core 'nobody' has no part in a mission",
     "make -s run PROBE=fir.go=1": "PROBE='fir.go=1' is a trigger of a probe: give --cores probe",
-    "make -s run OUT=/proc/none": "OUT='/proc/none' is no folder",
+    "make -s run OUT=/proc/none": "OUT='/proc/none': expected a folder",
     "make -s run UPDATE=/none CPU=m3": "cannot read '/none'",
     "make -s run PINS=/none": "cannot read '/none'",
     "make -s run REPLAY=/none": "'/none' contains no recorded flight",

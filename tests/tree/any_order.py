@@ -28,7 +28,7 @@ def run(words, **options):
 
 
 def packages(source, work, *options):
-    """What set-up would install on a machine that has nothing."""
+    """Returns the packages that set-up would install on an empty machine."""
     nothing = work / "nothing"
     nothing.mkdir(exist_ok=True)
     (nothing / "dpkg-query").write_text("#!/bin/sh\n")
@@ -55,7 +55,7 @@ def links(folder, hidden):
 
 
 def configure(source, build, work, path):
-    """As on a machine whose programs are those in path; all, once there is a file `arrived`."""
+    """As on a machine with only the programs in path; all after the file `arrived` exists."""
     hide = work / "hide.cmake"
     hide.write_text(f'if(NOT EXISTS "{work}/arrived")\n'
                     f'  set(CMAKE_IGNORE_PATH "{";".join(FOLDERS)}")\nendif()\n')

@@ -6,7 +6,7 @@ checks that libraries have no circles.
     arrows.py TREE                the includes of TREE, a checkout
     arrows.py --circles LIBRARY [PREFIX...]
                                   the object files of a static library: none needs one that needs
-                                  it back; files whose names begin with one PREFIX count as one
+                                  it; files whose names begin with one PREFIX count as one
                                   (natural recursion)
 
 A room is a folder, the longest that fits a file. A file may include from its own room and from
@@ -33,7 +33,7 @@ def tracked(tree):
 
 
 def room_of(path, rooms):
-    """Returns the room of a file; tests and vectors beside a core belong to the room `tests`."""
+    """Returns the room of a file; tests and vectors of a core belong to the room `tests`."""
     if re.search(r"_(test|vectors)\.(cpp|h)$", path):
         return "tests"
     while path:
@@ -44,7 +44,7 @@ def room_of(path, rooms):
 
 
 def wrong_imports(tree, path, room, rooms):
-    """Yields a line for each import of a file of the tools that its room does not allow."""
+    """Yields a line for each import in a file of the tools that its room does not allow."""
     for number, line in enumerate(open(os.path.join(tree, path)), 1):
         found = re.match(r"\s*(?:from|import) icesoc([.\w]*)(?: import (\w+))?", line)
         if not found:
@@ -64,9 +64,9 @@ def wrong_arrows(tree):
     by_name = {}
     for path in files:
         by_name.setdefault(os.path.basename(path), []).append(path)
-    wrong = [f"{ROOMS}: `{room}` is no folder" for room in sorted(rooms)
+    wrong = [f"{ROOMS}: `{room}` is not a folder" for room in sorted(rooms)
              if not os.path.isdir(os.path.join(tree, room))]
-    wrong += [f"{ROOMS}: `{used}`, which `{room}` may use, is none" for room in sorted(rooms)
+    wrong += [f"{ROOMS}: `{used}`, which `{room}` may use, does not exist" for room in sorted(rooms)
               for used in sorted(rooms[room]) if used not in rooms]
     for path in files:
         room = room_of(path, rooms)
@@ -83,7 +83,7 @@ def wrong_arrows(tree):
             name = include.group(1)
             places = [p for p in by_name.get(os.path.basename(name), [])
                       if ("/" + p).endswith("/" + name.replace("../", ""))]
-            # A generated header has no place. Among several files of one name, an allowed one is
+            # A generated header has no location. Of several files with one name, an allowed one is
             # meant.
             targets = {room_of(p, rooms) for p in places}
             if targets and room not in targets and not targets & rooms[room]:

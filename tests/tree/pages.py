@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""pages: holds every Markdown page to what a reader may expect.
+"""pages: checks every Markdown page.
 
     pages.py TREE
 
@@ -56,7 +56,7 @@ def check(tree, page, files):
         for path in re.findall(rf"`((?:{ROOMS})/[\w./*-]+)`", line):
             example = re.search("low_pass|my_uart|[pP]ump|NAME", path)  # examples of the guides
             if not example and not exists(tree, path, files):
-                yield f"{page}:{number}: there is no {path}"
+                yield f"{page}:{number}: {path} does not exist"
 
 
 def stale(tree):

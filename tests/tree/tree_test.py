@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""tree_test: set-up, skipped tests, a copy that is no clone, what editors read.
+"""tree_test: set-up, skipped tests, a copy that is not a clone, files for editors.
 
 Usage: tree_test.py CASE WORK-FOLDER BUILD-FOLDER
 """
@@ -45,7 +45,7 @@ class Cases(Script):
             Path("sudo").unlink()
 
     def test_skipped(self):
-        """Skipped tests are named at the end with their reasons (icesoc.regress.ctest)."""
+        """Skipped tests are listed at the end with their reasons (icesoc.regress.ctest)."""
         fresh(WORK)
         write("CMakeLists.txt", TINY)
         self.ask("cmake", "-B", "build", "-G", "Ninja")
@@ -58,7 +58,7 @@ class Cases(Script):
                  status=None)
 
     def test_tarball(self):
-        """What lists the tree's files does so in a copy that is no clone."""
+        """Listing the tree's files also works in a copy that is not a clone."""
         states = set()
         with tempfile.TemporaryDirectory() as copy:
             self.ask("sh", "-c", "git grep --no-index --exclude-standard --no-color -lz '' |"

@@ -197,12 +197,12 @@ class Constraints:
         return any(self.has(a, start) and self.has(b, end) for a, b in self.paths)
 
     def missing(self, pads, pairs):
-        missing = {f"{tell(start)} to {tell(end)}: no constraint" for start, end in pairs
-                if not self.covers(start, end)}
+        found = {f"{tell(start)} to {tell(end)}: no constraint" for start, end in pairs
+                 if not self.covers(start, end)}
         for pad in pads:
-            missing |= {f"pad {pad}: no {word}" for word in ("IOSTANDARD", "LOC")
-                     if not self.has_word(pad, word) and not (word == "LOC" and pad in unused)}
-        return missing
+            found |= {f"pad {pad}: no {word}" for word in ("IOSTANDARD", "LOC")
+                      if not self.has_word(pad, word) and not (word == "LOC" and pad in unused)}
+        return found
 
 
 def tell(point):

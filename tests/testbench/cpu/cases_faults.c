@@ -9,7 +9,7 @@
 #define ACTLR_DISDEFWBUF 2UL
 #define CFSR_IMPRECISERR (1UL << 10)
 
-/* Continues behind the failing instruction; the fault of a store comes later by itself. */
+/* Continues after the failing instruction; the fault of a store arrives later by itself. */
 static void skip(void) {
     U16 first = *(U16*)Case_frame[6];
     value[0] = SCB_CFSR;
@@ -60,7 +60,7 @@ void Case_unbuffered(void) {
     Case_say('.');
 }
 
-/* While PRIMASK is set the fault of a store waits; that of a load would be a hard fault. */
+/* While PRIMASK is set the fault of a store waits; the fault of a load would be a hard fault. */
 void Case_storeMasked(void) {
     SCB_SHCSR = SCB_SHCSR_FAULTS;
     Case_action[5] = skip;
@@ -72,8 +72,8 @@ void Case_storeMasked(void) {
     Case_say('2');
 }
 
-/* Handlers of interrupts 4 and 5, whose line falls by a store: without a barrier behind it, and
- * with one. */
+/* Handlers of interrupts 4 and 5, with a line that falls by a store: without a barrier after it,
+ * and with one. */
 void __attribute__((naked)) Case_ack(void) {
     __asm__ volatile("mov r0, #0x60000000\n\t"
                      "str r0, [r0, #16]\n\t"

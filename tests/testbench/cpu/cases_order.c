@@ -130,7 +130,7 @@ void Case_systick(void) {
     value[1] = tickAt[3] - tickAt[2];
 }
 
-void Case_sleepMasked(void) { /* WFI wakes, though PRIMASK keeps the interrupt from being taken */
+void Case_sleepMasked(void) { /* WFI wakes, although PRIMASK blocks the interrupt */
     SYST_RVR = 99;
     SYST_CVR = 0;
     __asm__ volatile("cpsid i");
@@ -208,8 +208,8 @@ void Case_resetRequest(void) {
     Case_say('r');
 }
 
-/* Something with loops, IT blocks, multiple loads, calls and products: interrupted anywhere, it
- * comes out the same. */
+/* A computation with loops, IT blocks, multiple loads, calls and products: interrupted anywhere, it
+ * gives the same result. */
 static U32 mix(U32 a, U32 b) {
     return (a ^ b) * 2654435761UL + (a >> 7 | b << 25);
 }

@@ -47,7 +47,7 @@ void Case_unaligned(void) {
                      "mov r2, %0\n\tstmia r2!, {r0, r1}\n\t"
                      "ldmdb.w %0, {r0, r1}\n\t"
                      "ldrex r0, [%0]\n\t"
-                     "ldrexh r0, [%0]\n\tldr r0, [%0]\n\tldrh r0, [%0]" /* these may */
+                     "ldrexh r0, [%0]\n\tldr r0, [%0]\n\tldrh r0, [%0]" /* these may be unaligned */
                      :
                      : "r"(at)
                      : "r0", "r1", "r2", "memory");
@@ -103,7 +103,7 @@ void Case_basepriBits(void) {
 void Case_cycleCounter(void) {
     U32 start = DWT_CYCCNT;
     value[0] = DWT_CTRL;
-    DWT_CTRL = 1; /* without TRCENA it is not written */
+    DWT_CTRL = 1; /* without TRCENA it cannot be written */
     __asm__ volatile("nop\n\tnop");
     value[1] = DWT_CYCCNT - start;
     DEMCR = 1UL << 24;
@@ -120,7 +120,7 @@ void Case_cycleCounter(void) {
 void Case_tickRules(void) {
     SYST_RVR = 0;
     SYST_CVR = 0;
-    SYST_CSR = 7; /* stands at zero without a reload value */
+    SYST_CSR = 7; /* stays at zero without a reload value */
     __asm__ volatile("nop\n\tnop\n\tnop");
     SYST_RVR = 999;
     value[0] = SYST_CVR > 900UL;
@@ -141,7 +141,7 @@ static void masked(void) {
     value[1] = SCB_ICSR >> 22 & 1UL;
     value[2] = SCB_ICSR >> 12 & 0x1FFUL;
     __asm__ volatile("msr basepri, %0" : : "r"(0x40));
-    value[3] = SCB_ICSR >> 12 & 0x1FFUL; /* BASEPRI masks it, PRIMASK does not */
+    value[3] = SCB_ICSR >> 12 & 0x1FFUL; /* masked by BASEPRI, not by PRIMASK */
     __asm__ volatile("msr basepri, %0" : : "r"(0));
     NVIC_ICPR(0) = 2;
     __asm__ volatile("cpsie i");
@@ -187,7 +187,7 @@ void Case_stackedState(void) { /* an exception returns to ARM state */
     Case_say('.');
 }
 
-/* Parts that the model does not have. */
+/* Features that the model does not have. */
 void Case_unprivileged(void) {
     __asm__ volatile("msr control, %0\n\tisb" : : "r"(1));
     Case_say('!');

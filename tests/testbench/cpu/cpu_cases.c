@@ -11,10 +11,10 @@ void Handler_run(U32* frame, U32 number, U32 excReturn);
 volatile Action selected __attribute__((section(".noinit"))); /* the case; written by the test */
 volatile U32 boots __attribute__((section(".noinit")));
 char said[128];
-U32 value[8]; /* what a case found out */
+U32 value[8]; /* results of a case */
 static U32 at;
-Action Case_action[16 + 4]; /* of exceptions, called by their handlers */
-U32* Case_frame;            /* the frame of the exception under way */
+Action Case_action[16 + 4]; /* by exception, called by its handler */
+U32* Case_frame;            /* frame of the current exception */
 
 void Case_say(char c) {
     said[at++] = c;
@@ -65,7 +65,7 @@ void Case_pend(U32 irq) {
 __attribute__((section(".vectors"), used)) static const Vector vectors[] = {
     stack_top, Reset_Handler, Handler, Handler, Handler, Handler, Handler, 0, 0, 0, 0, Handler,
     Handler, 0, Handler, Handler, Handler, Handler, Handler, Handler, Case_ack, Case_ackWait,
-    /* The cases, behind the interrupts' vectors: the linker drops what nobody names. */
+    /* The cases, after the interrupt vectors: the linker drops unreferenced functions. */
     CASES(NAMED)};
 
 void Reset_Handler(void) {

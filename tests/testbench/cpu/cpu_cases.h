@@ -12,12 +12,12 @@ typedef void (*Action)(void);
 
 extern volatile Action selected; /* the case; written by the test */
 extern volatile U32 boots;       /* survives a reset */
-extern U32 value[8];             /* what a case found out; [7]: EXC_RETURN of the last exception */
-extern Action Case_action[20];   /* of exceptions, called by their handlers */
-extern U32* Case_frame;          /* the frame of the exception under way */
+extern U32 value[8];             /* results of a case; [7]: EXC_RETURN of the last exception */
+extern Action Case_action[20];   /* by exception, called by its handler */
+extern U32* Case_frame;          /* frame of the current exception */
 
 void Case_say(char c);
-void Case_priority(U32 irq, U32 value8); /* and enables it */
+void Case_priority(U32 irq, U32 value8); /* also enables it */
 void Case_pend(U32 irq);
 void Reset_Handler(void);
 

@@ -13,7 +13,7 @@ protected:
     static void select(PlainCpu& m, const std::string& name) {
         m.setVariable("selected", m.image.symbol(name) | 1); // in Thumb state
     }
-    // Runs a case and returns what it prints.
+    // Runs a case and returns its output.
     std::string run(const std::string& name) {
         select(m3, name);
         EXPECT_EQ(m3.run(100'000), 1) << m3.cpu.lastFault << ", said " << m3.text("said");
@@ -24,7 +24,7 @@ protected:
     PlainCpu m3{CASES_ELF};
 };
 
-// A case, what it prints, and what it finds out: value[n] by n.
+// A case, its output, and its results: value[n] by n.
 struct Case {
     const char *name, *symbol, *said;
     std::map<unsigned, uint32_t> values = {};
@@ -40,13 +40,14 @@ TEST_P(Manual, IsFollowed) {
 }
 
 constexpr uint32_t unaligned = 1 << 24;
-constexpr uint32_t preciseBus = 1 << 9, addressValid = 1 << 15, impreciseBus = 1 << 10; // of CFSR
+constexpr uint32_t preciseBus = 1 << 9, addressValid = 1 << 15, impreciseBus = 1 << 10; // bits of
+                                                                                        // CFSR
 const Case cases[] = {
     {"AnInterruptOfHigherPriorityPreempts", "Case_nesting", "abBA"},
     {"OneOfTheSamePriorityWaits", "Case_samePriority", "aAbB"},
     {"OfEqualOnesTheLowestNumberComesFirst", "Case_lowestNumberFirst", "aAbBcC"},
     {"SubPrioritiesOrderAndDoNotPreempt", "Case_subPriority", "aAcCbB"},
-    // R0 when the handler ran: no instruction behind CPSIE has been executed.
+    // R0 when the handler ran: no instruction after CPSIE has been executed.
     {"PrimaskHoldsBackAndUnmaskingIsExact", "Case_primaskExact", "1aA2", {{0, 5}}},
     {"BasepriHoldsBackItsPriorityAndBelow", "Case_basepri", "1bB2aA3"},
     {"FaultmaskHoldsBackAll", "Case_faultmask", "1aA2"},
@@ -57,8 +58,8 @@ const Case cases[] = {
      "Case_busFault",
      "u.",
      {{0, preciseBus | addressValid}, {1, 0x60000010}}},
-    // TRM r2p1, 3.5: the fault of a store comes later, and has no address; value 4 counts what was
-    // executed between the store and the DSB.
+    // TRM r2p1, 3.5: the fault of a store arrives later, and has no address; value 4 counts the
+    // instructions executed between the store and the DSB.
     {"TheFaultOfAStoreIsImpreciseAndABarrierWaitsForIt",
      "Case_storeFault",
      "u.",
@@ -121,7 +122,7 @@ const Case cases[] = {
 
 INSTANTIATE_TEST_SUITE_P(Cpu, Manual, ::testing::ValuesIn(cases));
 
-// A program that uses what the model does not have is stopped with a message.
+// A program that uses a feature that is not modelled is stopped with a message.
 struct Refusal {
     const char *symbol, *message;
     friend void PrintTo(const Refusal& r, std::ostream* out) { *out << r.symbol; }
@@ -204,10 +205,10 @@ TEST_F(Cpu, InstructionsTakeTheCyclesOfTheManual) {
 }
 
 TEST_F(Cpu, AResetRequestStartsAgainAndKeepsMemory) {
-    unsigned told = 0;
-    m3.cpu.listener.systemReset = [&] { ++told; };
+    unsigned resets = 0;
+    m3.cpu.listener.systemReset = [&] { ++resets; };
     EXPECT_EQ(run("Case_resetRequest"), "r");
-    EXPECT_EQ(told, 1u);
+    EXPECT_EQ(resets, 1u);
     EXPECT_EQ(m3.variable("boots"), 2u);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// memory_models_test: the MCB model's user port: order, flags, and everything that it refuses.
-// And the device's times, against sums of data-sheet figures, worked out by hand.
+// memory_models_test: the MCB model's user port: order, flags, and everything that it refuses; and
+// the device's times, compared with sums of data-sheet figures worked out by hand.
 
 #include "ddr3_timing.h"
 #include "mcb_model.h"
@@ -83,7 +83,7 @@ TEST_F(Mcb, ReadLatencyIsTheSumOfItsParts) {
     EXPECT_EQ(waitForWord() + 1, 6u + 3 + 5) << "a row hit: CL 6 and burst 4 are 3 clocks";
 }
 
-// AR36413, 2: the write waits for the end of the read's data, 2 cycles, and 1 at the pins.
+// AR36413, 2: the write waits for the end of the read data, 2 cycles, and 1 at the pins.
 TEST_F(Mcb, AWriteWaitsForTheDataOfTheReadBefore) {
     auto clocksUntilEmpty = [&](bool behindRead) {
         push(1);
@@ -97,9 +97,9 @@ TEST_F(Mcb, AWriteWaitsForTheDataOfTheReadBefore) {
         return clocks;
     };
     (void)clocksUntilEmpty(true); // opens the row
-    // Memory clocks from the read's first command: the last of its four bursts is commanded at 12
-    // and its data is over at 12 + 6 + 4, so the write comes at 25; alone it would at 4, a clock of
-    // the design later.
+    // Memory clocks from the read's first command: the last of its four bursts has its command at
+    // 12 and its data ends at 12 + 6 + 4, so the write starts at 25; alone it would start at 4, one
+    // clock of the design later.
     EXPECT_EQ(clocksUntilEmpty(true), clocksUntilEmpty(false) + (25 - 4) / 4);
 }
 
@@ -135,7 +135,7 @@ TEST_F(Mcb, PrechargingInstructionsCloseTheRow) {
 }
 
 TEST_F(Mcb, TwoWordsAClockBehindTheFifosOneAtThePort) {
-    // 64 words that were asked for are in the FIFO before 40 clocks have passed since the first
+    // 64 requested words are in the FIFO before 40 clocks have passed since the first
     command(read, 0, 64);
     waitForWord();
     unsigned clocks = 0;

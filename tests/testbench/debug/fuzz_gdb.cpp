@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// fuzz_gdb: libFuzzer target of the GDB stub. Nothing may crash or hang, whatever a debugger says.
+// fuzz_gdb: libFuzzer target of the GDB stub. Nothing may crash or hang, whatever a debugger sends.
 //
-// Each line of an input is a packet, and gets its frame and checksum; one that begins with ! goes
-// unchanged. The processor does not run: "continue" stops at once.
+// Each line of an input is a packet, to which frame and checksum are added; a line that begins with
+// ! is sent unchanged. The processor does not run: "continue" stops at once.
 
 #include "gdb_stub.h"
 #include <arpa/inet.h>
@@ -42,7 +42,7 @@ int connected(uint16_t port) {
     to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     to.sin_port = htons(port);
     const int fd = socket(AF_INET, SOCK_STREAM, 0);
-    // In a long run the machine may be out of ports for a moment: 500 connections a second.
+    // In a long run the machine may temporarily be out of ports: 500 connections per second.
     while (connect(fd, reinterpret_cast<sockaddr*>(&to), sizeof to) != 0) {
         if (errno != EADDRNOTAVAIL) {
             perror("fuzz_gdb: cannot connect to the stub");
@@ -55,7 +55,7 @@ int connected(uint16_t port) {
 
 } // namespace
 
-// Unicorn 2.1 loses 32 bytes of its own.
+// Unicorn 2.1 leaks 32 bytes.
 extern "C" const char* __lsan_default_suppressions() {
     return "leak:libunicorn\n";
 }
@@ -83,7 +83,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     shutdown(fd, SHUT_WR);
     bool isNew = true;
     stub.serve(target, [&] { return std::exchange(isNew, false); });
-    const linger reset{1, 0}; // no port stays behind
+    const linger reset{1, 0}; // no port is left behind
     setsockopt(fd, SOL_SOCKET, SO_LINGER, &reset, sizeof reset);
     close(fd);
     return 0;

@@ -18,7 +18,7 @@ import subprocess
 import sys
 import time
 
-PATIENCE = 60  # seconds: ends a hang
+PATIENCE = 60  # time-out of a hang, s
 sim, elf, out, case = sys.argv[1:]
 FLIGHT = [sim, "--image", "/usr/share/xplanet/images/earth.jpg", "--size", "96x64", "--cpu", "m3",
           "--firmware", elf, "--speed", "max"]
@@ -43,7 +43,7 @@ def simulator(*command):
 
 
 def gdb(port, commands):
-    """What GDB says of these commands, one a line."""
+    """Returns the output of GDB for these commands, one per line."""
     script = pathlib.Path(out, "commands")
     script.write_text("set confirm off\nset width 0\nset remotetimeout unlimited\n"
                       f"target remote 127.0.0.1:{port}\n{commands}kill\n")
@@ -88,7 +88,7 @@ info symbol $pc
     for wanted in ("^Reset_Handler in section .text", "^Breakpoint 1, UAV_start",
                    r"^UAV_start \+ [24] in section .text", "^Breakpoint 2, .*SysTick_Handler",
                    "^#0 .*SysTick_Handler", "= 15$",
-                   "^0x64000000:.*0x5359",      # the system slot says who it is
+                   "^0x64000000:.*0x5359",      # the system slot's ID
                    "^0xe000ed00:.*0x412fc230",  # a Cortex-M3
                    "= 77$", "= 0x1234$", "s simulated, .* instructions"):
         assert re.search(wanted, said, re.M), f"expected: {wanted}"
@@ -100,7 +100,7 @@ def reverse():
     key.chmod(0o600)
     subprocess.run([*FLIGHT, "--duration", "0.3", "--key", key, "--out", f"{out}/flight",
                     "--quiet"], check=True)
-    # Going on from a place must lead to the same one each time.
+    # Continuing from a place must always lead to the same one.
     steps = (("reverse-stepi", "AT_BEGIN"), ("break UAV_start\ncontinue", "START"),
              ("delete\nstepi 20", "AHEAD"), ("reverse-stepi 20", "BACK"), ("stepi 20", "AGAIN"),
              ("continue", "END"),
@@ -121,8 +121,8 @@ def reverse():
     assert at["TICK2"][0] < at["TICK1"][0] < at["END"][0], "ticks, the later one first"
     # GDB 13 has the first wording, GDB 16 the second.
     ends = re.findall("No more reverse-execution history|Reached end of recorded history", said)
-    assert len(ends) == 2, "begin and end are not told"
-    assert not re.search("= 77$", said, re.M), "what the debugger wrote later is there earlier"
+    assert len(ends) == 2, "begin and end are not reported"
+    assert not re.search("= 77$", said, re.M), "later data are visible earlier"
     copies = ["pgrep", "-f", "--", f"--out {out} --gdb"]  # they are ended a moment after it
     until = time.monotonic() + PATIENCE
     while subprocess.run(copies, stdout=subprocess.DEVNULL).returncode == 0:
@@ -164,7 +164,7 @@ def check(port):
         with socket.create_connection(("127.0.0.1", port), PATIENCE) as s:
             for part in parts:
                 s.sendall(part)
-        assert talk(packet(b"?"))[:5] == b"+$T05", f"nobody is served after {parts[0][:20]}"
+        assert talk(packet(b"?"))[:5] == b"+$T05", f"no debugger is served after {parts[0][:20]}"
 
     web = b"POST / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"
     assert talk(web + packet(b"k")) == b"", "a web page's request"

@@ -78,7 +78,7 @@ class Cases(Script):
         drawn = re.findall('data-features="([0-9]*)"', self.said)
         found = [len(call["features"]) for call in self.lines("calls") if "features" in call]
         self.assertEqual(drawn, [str(found[-1])])
-        # The flight as JSON Lines: all packets, and the core's end as an event.
+        # The flight as JSON Lines: all packets, and the end of the core as an event.
         events, whole = self.lines("events"), self.lines("flight")[-1]["end"]
         packets = [event for event in events if "packet" in event]
         self.assertEqual((len(packets), sum(event["lost"] for event in packets)),
@@ -169,8 +169,7 @@ setTimeout(() => top.document.body.append("cut: " + [...document.querySelectorAl
 
         empty = state()
         self.assertEqual((empty["calls"], empty["slots"], bool(empty["frame"])), ([], [], False))
-        # Other names of this address, malformed rows, and clients that are slow, endless or say
-        # nothing.
+        # Other names of this address, malformed rows, and clients that are slow, endless or silent.
         self.assertEqual(status({}), 200)
         self.assertEqual(status({"Host": f"evil.example:{port}"}), 403)
         self.assertEqual(status({"Host": ours, "HOST": "evil.example"}), 403)

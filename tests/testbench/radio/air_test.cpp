@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// air_test: the properties of the air: one direction at a time, the modem's own time, retries by
-// RR, fading, interference, recorded traces. Sources of the figures: docs/simulation.md.
+// air_test: the properties of the air: one direction at a time, processing time of the modem,
+// retries by RR, fading, interference, recorded traces. Sources of the figures: docs/simulation.md.
 
 #include "pair.h"
 #include <cstdio>
@@ -18,7 +18,7 @@ protected:
         if (line.cts())
             line.send(Bytes(10, 'x'), now);
     }
-    // Bits a second at both hosts together while `a`, and `b` if asked, send without a pause.
+    // Bits per second at both hosts together while `a`, and `b` if `both`, send without a pause.
     double throughput(bool both) {
         const uint64_t begin = now, seconds = 4;
         lineA.received.clear();
@@ -86,7 +86,7 @@ TEST_F(Retries, WithRRTheTriesAreMadeAgainAfter200To248Milliseconds) {
 
 TEST_F(Retries, ABroadcastGoesRRAndTwoTimesAndArrivesOnce) {
     for (uint32_t rr : {0u, 2u})
-        for (double loss : {1, 0}) { // nobody acknowledges it
+        for (double loss : {1, 0}) { // not acknowledged
             power({{"DL", 0xFFFF}, {"RR", rr}, {"RO", 0}});
             air.weather.tryLoss = loss;
             uint64_t before = air.counters().airNs;

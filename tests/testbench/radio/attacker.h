@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// attacker: a foreign modem on the air. It hears every packet, keeps all, and sends anything in
-// anybody's name.
+// attacker: a foreign modem on the air. It receives every packet, stores all, and can send any
+// packet with any source.
 
 #pragma once
 
@@ -15,12 +15,12 @@ class Attacker {
 public:
     using Bytes = std::vector<uint8_t>;
 
-    // Listens from now on: it is the channel's only listener.
+    // Starts listening: it is the channel's only listener.
     Attacker(RfChannel& air, uint64_t seed)
         : air_(air), random_(seed), modem_(line_, air, modemOfNobody()) {
         air.onPacket([this](uint64_t, const RfPacket& packet, RfChannel::Outcome) {
             toHinder_ += hinders_ && packet.bytes != lure_;
-            // Its own packets arrive as the link's: the air does not tell them apart.
+            // Its own packets are delivered like the link's: the air does not distinguish them.
             if (heard_.size() < 100'000)
                 heard_.push_back(packet);
         });
@@ -53,7 +53,7 @@ public:
         const auto any = [this]() -> const Bytes& { return recalled().bytes; };
         send(as.from, as.to, mischief(random_, any), now);
     }
-    // Adds a lure to each packet from now on, or adds no more.
+    // Starts or stops adding a lure to each packet.
     void hinder(bool isOn) { hinders_ = isOn; }
     void advance(uint64_t now) {
         modem_.advance(now);
@@ -71,7 +71,7 @@ private:
     static constexpr size_t mostBytes = 100; // of a packet
     static constexpr uint16_t uav = 1, ground = 0;
 
-    // The MAC of one packet: the attacker does not wait for its packet before.
+    // The MAC of one packet: the attacker does not wait for its previous packet.
     struct Voice : Mac::Modem {
         explicit Voice(RfChannel& air) : mac(air, *this) {}
         bool hears(const RfPacket&) const override { return false; }
@@ -99,9 +99,9 @@ private:
     Random random_;
     HostLine line_;
     XBee modem_;
-    std::list<std::unique_ptr<Voice>> voices_; // packets under way
+    std::list<std::unique_ptr<Voice>> voices_; // packets in flight
     std::vector<RfPacket> heard_;
     uint64_t sent_ = 0;
     bool hinders_ = false;
-    unsigned toHinder_ = 0; // packets heard, and not yet hindered
+    unsigned toHinder_ = 0; // packets received, not hindered yet
 };

@@ -15,13 +15,13 @@ protected:
     }
 };
 
-// A sequence: what `a` is sent, each with the milliseconds until the next, and what becomes of it.
+// A sequence: the bytes sent to `a`, each with the milliseconds until the next, and the result.
 struct Sequence {
     const char* name;
     std::map<std::string, uint32_t> set;
     std::vector<std::pair<const char*, uint64_t>> sent;
     bool isCommandMode;
-    const char *answers, *atB; // what the hosts of `a` and `b` hear
+    const char *answers, *atB; // output to the hosts of `a` and `b`
     friend void PrintTo(const Sequence& s, std::ostream* out) { *out << s.name; }
 };
 const Sequence sequences[] = {
@@ -39,7 +39,7 @@ const Sequence sequences[] = {
     {"OfFewerCharacters", {}, {{"", 11}, {"++", 30}}, false, "", "++"},
     {"OfAnotherCharacterThanCC", {{"CC", '-'}}, {{"", 11}, {"+++", 11}}, false, "", "+++"},
     {"OfCC", {{"CC", '-'}}, {{"", 11}, {"---", 11}}, true, "OK\r", ""},
-    // RO 0xFF: nothing would leave by itself for 265 ms
+    // RO 0xFF: nothing would be sent by itself for 265 ms
     {"ThatDoesNotCome", {{"RO", 0xFF}}, {{"", 11}, {"before", 11}}, false, "", ""},
     {"BehindData", {{"RO", 0xFF}}, {{"", 11}, {"before", 11}, {"+++", 20}}, true, "OK\r", "before"},
     {"ThenCN", {}, {{"", 11}, {"+++", 11}, {"ATCN\r", 1}, {"data", 20}}, false, "OK\rOK\r", "data"},
@@ -228,8 +228,8 @@ TEST_P(Api, TransmitRequestsAreSentAndTheirStatusReported) {
         Bytes answer;
     } cases[] = {
         {{0x01, 0x52, 0, 2, 0, 'h', 0x7E, 0x11, 'i'}, "h\x7E\x11i", framed({0x89, 0x52, 0})},
-        {{0x01, 0x07, 0x99, 0x99, 0, 'x'}, "", framed({0x89, 0x07, 1})}, // nobody is there
-        {{0x01, 0x00, 0, 2, 0, 'x'}, "x", {}},                           // asks for no status
+        {{0x01, 0x07, 0x99, 0x99, 0, 'x'}, "", framed({0x89, 0x07, 1})}, // no receiver
+        {{0x01, 0x00, 0, 2, 0, 'x'}, "x", {}},                           // requests no status
         {{0x00, 0x01, 0, 0x13, 0xA2, 0, 0, 0, 0, 0x0B, 0, 'x'}, "x", framed({0x89, 0x01, 0})}};
     for (const auto& c : cases) {
         api(c.sent, 100 * ms);
@@ -293,7 +293,7 @@ TEST_P(Api, BadFramesAreCountedAndTheNextIsRead) {
     lineA.send(bad, now);
     lineA.send({'n', 'o', 'i', 's', 'e'}, now);
     lineA.send({0x7E, 0xF0, 0x00}, now); // an impossible length
-    api({0x33, 0x00});                   // no such type
+    api({0x33, 0x00});                   // unknown type
     Bytes longPayload = {0x01, 0x00, 0x00, 0x02, 0x00};
     longPayload.resize(longPayload.size() + 101, 'x');
     api(longPayload);

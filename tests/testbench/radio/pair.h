@@ -52,10 +52,10 @@ protected:
         lineA.send(bytes(data), now);
         run(ns);
     }
-    // Returns what `a` has given its host since the last call.
+    // Returns the bytes that `a` has sent to its host since the last call.
     std::string heard() { return text(std::exchange(lineA.received, {})); }
     std::string heardB() { return text(std::exchange(lineB.received, {})); }
-    // Returns what `b` has given its host by the given time after `data` went to `a`.
+    // Returns the bytes that `b` has sent to its host by the given time after `data` went to `a`.
     std::string across(const std::string& data, uint64_t ns) {
         send(data, ns);
         return heardB();
@@ -76,10 +76,10 @@ protected:
         Bytes bytes;
         RfChannel::Outcome outcome;
     };
-    bool perfect = true; // RfWeather's, from power() on
+    bool perfect = true; // RfWeather's, since power()
     uint64_t now = 0;
     RfChannel air{testSeed()};
     HostLine lineA, lineB;
     std::unique_ptr<XBee> a, b;
-    std::vector<Seen> packets; // as they landed
+    std::vector<Seen> packets; // in the order of their arrival
 };

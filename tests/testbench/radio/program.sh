@@ -1,8 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
 #
-# program: icesoc-xbee for its user, with stty and the shell as the serial programs: help, wrong
-# options, command mode, data across, statistics, a clean end by Ctrl-C. Usage: program.sh
+# program: icesoc-xbee as seen by its user, with stty and the shell as the serial programs: help,
+# wrong options, command mode, data across, statistics, a clean end by Ctrl-C. Usage: program.sh
 # icesoc-xbee
 set -eu
 program=$1
@@ -25,7 +25,7 @@ done
 
 "$program" --a GT=14 --a BD=7 --b BD=7 --link-a "$work/a" --link-b "$work/b" -v >"$work/out" 2>&1 &
 pid=$!
-for _ in $(seq 500); do # until it is there
+for _ in $(seq 500); do # until it exists
     [ -e "$work/b" ] && break
     sleep 0.02
 done
@@ -33,8 +33,8 @@ stty -F "$work/a" 115200 raw -echo
 stty -F "$work/b" 115200 raw -echo
 exec 3<>"$work/a" 4<>"$work/b"
 sleep 0.2
-# bash's own read would change the terminal's settings. The limit only keeps a broken program from
-# hanging.
+# bash's built-in read would change the terminal's settings. The limit only prevents a broken
+# program from hanging.
 expect() { # file-descriptor text what
     answer=$(timeout 60 head -c ${#2} <&"$1" | tr '\r' '~') || true
     [ "$answer" = "${2//$'\r'/'~'}" ] || fail "$3: '$answer'"

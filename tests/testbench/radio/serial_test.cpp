@@ -109,7 +109,7 @@ TEST_F(Buffers, TheOutputBufferHolds202BytesAndWhatComesThenIsAcknowledgedAndLos
     EXPECT_EQ(heardB(), std::string(100, 'x') + std::string(100, 'y'));
 }
 
-// A host with a UART of its own, bit by bit, `error` off the modem's rate.
+// A host with a separate UART, bit by bit, `error` off the modem's rate.
 class Wire : public ::testing::Test {
 protected:
     void connect(std::map<std::string, uint32_t> settings) {
@@ -154,7 +154,7 @@ protected:
     bool level_ = true;
     std::vector<uint64_t> edges_;
     std::string sent_; // the last packet
-    RfPacket crowd_;   // comes all the time, unless it is empty
+    RfPacket crowd_;   // sent continuously, unless it is empty
 };
 
 class BaudTolerance : public Wire, public ::testing::WithParamInterface<double> {};

@@ -76,9 +76,9 @@ size_t differingBytes(const Bytes& a, const Bytes& b) {
     return n;
 }
 
-// The clock cycles that the core measured of itself depend on who else uses the memory just then:
+// The clock cycles that the core measured itself depend on other users of the memory at that time:
 // four bytes of getResult's reply, the only ones that may differ between the builds; and with them
-// the checksums of the packet that holds them, and of the one that ends the message.
+// the checksums of the packet that contains them, and of the one that ends the message.
 constexpr size_t cyclesAt = 29, cyclesBytes = 4, checksumBytes = 2;
 constexpr int packetsThatMayDiffer = 2;
 
@@ -87,7 +87,7 @@ TEST(CortexM3Firmware, FliesTheMissionAsTheHostBuildDoesByteByByteOnTheAir) {
     EXPECT_TRUE(flies(host.soc, host.mission(2), 30));
     m3.fly(m3.mission(2), 30);
     ASSERT_EQ(host.ground.replies.size(), 7u);
-    EXPECT_EQ(host.ground.replies[7], 2); // there is nobody of that name
+    EXPECT_EQ(host.ground.replies[7], 2); // no object has this name
     for (auto* flight : {&host, &m3})
         std::fill_n(flight->ground.messages[5].begin() + cyclesAt, cyclesBytes, 0);
     EXPECT_GT(host.ground.messages[5].size(), 60u) << "no corners were found";
@@ -112,7 +112,7 @@ TEST(CortexM3Firmware, LosesNothingInBadWeatherAndAtTheBoardsCycleRatio) {
     f.fly(f.mission(22), 90, firmwareAt(0));
     EXPECT_EQ(f.ground.replies.size(), 27u);
     for (auto& [id, status] : f.ground.replies)
-        EXPECT_EQ(status, id < 27 ? 0 : 2) << id; // the last one asks for nobody
+        EXPECT_EQ(status, id < 27 ? 0 : 2) << id; // the last one calls a missing object
     EXPECT_GT(f.air.counters().lost, 0u);
 }
 
@@ -131,8 +131,8 @@ TEST(CortexM3Firmware, CarriesACallToAllVehiclesOutOnce) {
     EXPECT_TRUE(w.isDone);
 }
 
-// One flight, several accidents: a core that hangs, a processor that hangs, the FSMC switched off,
-// a stack overflow. Each is shown in the system slot, and the link comes back by itself.
+// One flight, several faults: a core that hangs, a processor that hangs, the FSMC switched off, a
+// stack overflow. Each is reported in the system slot, and the link recovers by itself.
 TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
     Flight f;
     uint64_t since = 0;
@@ -144,7 +144,7 @@ TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
             return Boot_Reason(); // the firmware has not switched the FSMC on yet
         }
     };
-    auto readNobodysRegister = [&] { // an event, an interrupt, and the flight goes on
+    auto readNobodysRegister = [&] { // an event, an interrupt, and the flight continues
         EXPECT_EQ(f.variable("busErrors"), 0u);
         (void)f.soc.fsmc().read32(MAP_CONTROL_WINDOW + 64 * 33 + 4 * 5);
         since = f.soc.cycles();
@@ -154,7 +154,7 @@ TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
         EXPECT_EQ(f.variable("busErrors"), 1u);
         EXPECT_EQ(f.variable("busErrorPlace"), 33u * 16 + 5);
         f.ground.ping(100, "hwengine1");            // on its way when ...
-        f.m3->cpu().setReg(CortexM3::Faultmask, 1); // ... nothing gets through to it any more
+        f.m3->cpu().setReg(CortexM3::Faultmask, 1); // ... no interrupt reaches it any more
         return true;
     };
     auto groundIsTold = [&] { // the link comes up again
@@ -193,7 +193,7 @@ TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
 }
 
 // The memory holds its port: accesses end by the bridge's time-out, each is a bus error with its
-// place, no reset; when the memory is back, the flight goes on.
+// address, without a reset; when the memory responds again, the flight continues.
 TEST(CortexM3Firmware, AHungMemoryIsReportedAndTheFlightGoesOn) {
     Flight f;
     uint64_t since = 0;
@@ -233,8 +233,7 @@ TEST(CortexM3Firmware, ACorruptImageIsRefusedWithItsReason) {
         Flight f;
         M3Machine machine(f.soc, firmware, [&] { return f.within(0.3); });
         const ElfImage& image = *machine.stm32().image();
-        // Anywhere behind the code that reports: start, boot and FSMC driver come first in the
-        // image.
+        // Anywhere after the reporting code: start, boot and FSMC driver come first in the image.
         uint32_t begin = image.symbol("telling_end"), end = image.symbol("image_end");
         uint32_t at = begin + random.below(end - begin);
         uint8_t byte = 0;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// quiet_test: a flight in which quiet clocks pass at once and idle cores have no clock is, clock by
-// clock, the one in which each is evaluated and each core clocked. COMPARE_MS=1000 compares a
-// second of it. In a second flight every core works, and the camera's pins move.
+// quiet_test: a flight in which quiet clocks are skipped and idle cores have no clock equals, clock
+// by clock, the one in which each is evaluated and each core clocked. COMPARE_MS=1000 compares a
+// second of it. In a second flight every core works, and the camera's pins change.
 
 #include "VSoc___024root.h"
 #include "core_pins.h"
@@ -34,13 +34,14 @@ struct Flight {
     std::map<int, int> replies; // their statuses
 };
 
-// The plan of a flight. The slow flight evaluates each clock at its start and once for
-// `compareNs`, from the reply number `comparedFrom` on (0: from the first call on).
+// The plan of a flight. The slow flight evaluates each clock at its start and once for `compareNs`,
+// starting with reply number `comparedFrom` (0: with the first call).
 struct Plan {
-    std::vector<Ground::Call> calls; // again and again, each when the one before is answered
+    std::vector<Ground::Call> calls; // repeated, each after the previous reply
     uint64_t compareNs = 0;
     size_t comparedFrom = 0;
-    size_t framedAfter = 0; // replies after which the camera's sensor sends a frame; 0: none
+    size_t framedAfter = 0; // number of replies after which the camera's sensor sends a frame; 0:
+                            // never
 };
 
 // Returns how much of a flight is compared (ns).
@@ -49,7 +50,7 @@ uint64_t comparedNs() {
     return static_cast<uint64_t>(1e6 * (text ? std::atof(text) : 40));
 }
 
-// Has the camera's sensor send frames: at first, each millisecond, and one while a call waits for
+// Makes the camera's sensor send frames: at first, each millisecond, and one while a call waits for
 // it.
 void sendFrames(GroundAndChip& world, size_t framedAfter, std::function<void(uint32_t)> note) {
     Frame frame{16, 8, {}};
@@ -154,7 +155,7 @@ TEST(Quiet, AFlightIsTheSameWithQuietClocksPassedAtOnce) {
 }
 
 #if defined(MAP_SLOT_FIR) && defined(MAP_SLOT_ASCON)
-// A core that says it is idle while it is not would stand still in the quick flight alone.
+// A core that reports idle while it is not would stop only in the quick flight.
 TEST(Quiet, EachCoreWorksAsIfItsClockNeverStopped) {
     std::vector<uint8_t> samples = {24}, key = {16}, message = {40};
     for (uint8_t i = 0; i < 48; ++i)
@@ -176,7 +177,7 @@ TEST(Quiet, EachCoreWorksAsIfItsClockNeverStopped) {
 }
 #endif
 
-// Random values that an index beyond its range reads, and the scratch of such a write.
+// Random values read by an index beyond its range, and the scratch variable of such a write.
 TEST(Quiet, VerilatorsScratchIsNoStateOfTheChip) {
     SocState::Image zeros(sizeof(VSoc___024root), 0), ones(sizeof(VSoc___024root), 255);
     auto paths = SocState::differences(zeros, ones);
@@ -203,7 +204,7 @@ TEST(Quiet, TheChipIsTheSameInWhateverClockItIsLookedAt) {
     slow.evaluateAll(true);
     for (SocModel* soc : {&quick, &slow})
         soc->onClock([soc, next = uint64_t{0}]() mutable {
-            EXPECT_EQ(soc->cycles(), next); // as it asked for
+            EXPECT_EQ(soc->cycles(), next); // as requested
             return next += 77'777;
         });
     quick.reset(true);
@@ -236,7 +237,7 @@ TEST(Quiet, TheMemoryIsReadyInItsClock) {
     EXPECT_TRUE(isMemoryReady(McbModel::startClocks));
 }
 
-// Two chips that do the same, one of which evaluates each clock.
+// Two chips that do the same; one of them evaluates each clock.
 struct Pair {
     Pair() {
         slow.evaluateAll(true);
@@ -245,7 +246,7 @@ struct Pair {
             EXPECT_EQ(FSMC_init(&driverPort, &soc->fsmc()), FSMC_OK);
         }
     }
-    // Has a word written to the memory; another closes it.
+    // Writes a word to the memory; another one closes it.
     static void write(SocModel& soc) {
         for (uint32_t word = 0; word < 2; ++word)
             soc.fsmc().write16(fsmc::windowsAt + 8 * word, 1);
@@ -255,7 +256,7 @@ struct Pair {
     SocModel quick{air, Ground::uavModem()}, slow{air, Ground::uavModem()};
 };
 
-// A platform that waits for the memory to be ready is still, and moves as soon as it is.
+// A platform that waits for the memory to be ready is static, and moves as soon as it is.
 TEST(Quiet, WhatWaitsForTheMemoryGoesWhenItIsReady) {
     Pair pair;
     for (SocModel* soc : {&pair.quick, &pair.slow}) {
@@ -305,7 +306,7 @@ TEST(Quiet, NothingOutsideOfTheChipIsLate) {
     EXPECT_EQ(ground.replies.size(), 3u);
 }
 
-// A processor that takes no packets fills the ring: RTS holds back what follows.
+// A processor that takes no packets fills the ring: RTS holds back further bytes.
 TEST(Quiet, WhatRtsHoldsBackGoesOnInItsClock) {
     constexpr unsigned bytes = 2500, fill = 14 * 100; // RTS rises at 14 packets of 16
     constexpr uint64_t bitNs = 4000, byteNs = 10 * bitNs;

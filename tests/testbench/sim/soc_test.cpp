@@ -72,8 +72,8 @@ TEST_F(Soc, ThePageRegisterReachesTheUpperHalf) {
     EXPECT_EQ(fsmc_.read16(ddr + 0x40), 0);
 }
 
-// Each address line alone, each data line both ways: a line that is cut or crossed shows. 128 MiB
-// are there.
+// Each address line alone, each data line both ways: detects a line that is cut or crossed. The
+// memory has 128 MiB.
 TEST_F(Soc, EveryLineToTheMemoryIsConnected) {
     uint32_t page = 0;
     auto place = [&](uint32_t address) {
@@ -95,8 +95,7 @@ TEST_F(Soc, EveryLineToTheMemoryIsConnected) {
     }
     for (auto [address, value] : expected)
         EXPECT_EQ(fsmc_.read16(place(address)), value) << std::hex << address;
-    for (unsigned bit = 0; bit < 6;
-         ++bit) { // the page register keeps what has no memory behind it, too
+    for (unsigned bit = 0; bit < 6; ++bit) { // the page register also stores bits beyond the memory
         write(MAP_SLOT_SYSTEM, SYSTEM_PAGE, 1u << bit);
         EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_PAGE), 1u << bit);
     }
@@ -116,8 +115,8 @@ TEST_F(Soc, EveryLineToTheSlotsIsConnected) {
         read(slot, 0);
 }
 
-// As on a board whose processor starts before the DDR3: nothing hangs, early accesses are reported,
-// and posted writes are kept.
+// As on a board with a processor that starts before the DDR3: nothing hangs, early accesses are
+// reported, and posted writes are kept.
 TEST_F(Soc, AnAccessWhileTheMemoryStartsIsToldAndLaterOnesAreRight) {
     soc_.reset(true);
     fsmc_.write16(ddr + 0x100, 0x1234);

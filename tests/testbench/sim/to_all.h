@@ -12,8 +12,8 @@ extern "C" {
 #include "link_broadcast.h"
 }
 
-// A vehicle that the pilot calls, and a modem that sends calls to all vehicles. Of the picture's
-// corners a threshold of 10 finds some, one of 200 none.
+// A vehicle that the pilot calls, and a modem that sends calls to all vehicles. A threshold of 10
+// finds some of the picture's corners, one of 200 none.
 class ToAll : public GroundAndChip {
 public:
     using Key = std::vector<uint8_t>;
@@ -34,7 +34,7 @@ public:
         });
         provide(64, 64, [](uint32_t i) { return i % 8 < 3 && i / 64 % 8 < 3 ? 150 : 100; });
     }
-    // Begins a flight; a machine goes on while the function returns true.
+    // Begins a flight; a machine continues while the function returns true.
     std::function<bool()> flight(std::vector<Script> steps) {
         soc.reset(true);
         ground.start();
@@ -44,7 +44,7 @@ public:
             return !isDone && within(60);
         };
     }
-    // Sends a new call, in three copies, since one may meet a packet of the link.
+    // Sends a new call, in three copies, since one may collide with a packet of the link.
     Script send(const Key& key, U32 number, const Call& call) {
         const auto m = Ground::request(0, call.object, call.operation, call.mode, call.parameters);
         Key packet(LINK_MAX_FRAME, 0x55);

@@ -40,8 +40,8 @@ TEST_F(Uav, AModemResetInMidPacketIsRecoveredFrom) {
                      soc.modem().resetPin(false, soc.now() + 1000);
                      return hurry(10);
                  },
-                 // The link is given up after 9 s of silence, the modem set up again 15 s later, in
-                 // its own time.
+                 // The link is dropped after 9 s of silence, the modem set up again 15 s later, in
+                 // its time scale.
                  [&] { return soc.now() - since > 2'350'000'000; },
                  [&] {
                      EXPECT_NE(Link_state(&uav_link), LINK_STATE_UP) << "the UAV has not noticed";
@@ -57,7 +57,7 @@ TEST_F(Uav, AModemResetInMidPacketIsRecoveredFrom) {
     EXPECT_EQ(soc.modem().parameter("BD"), 250000u);
 }
 
-// A vehicle with two grounds, each under a key of its own, and a stranger.
+// A vehicle with two ground stations, each with a separate key, and a stranger.
 class TwoGrounds : public GroundAndChip {
 public:
     static constexpr uint32_t observersAddress = 0x00F0;
@@ -74,8 +74,8 @@ public:
         });
         soc.reset(true);
     }
-    // Both call at once; the observer vanishes in mid-call, and comes again with the pilot's key,
-    // then with its own.
+    // Both call at once; the observer vanishes during a call, and returns with the pilot's key,
+    // then with its key.
     Script flight() {
         const auto vanish = [this] {
             since_ = soc.now();
@@ -152,7 +152,7 @@ TEST(Fellow, OneThatIsAwayCostsLittleOfTheAirAndTheVehicleServesItsGroundMeanwhi
     world.ground.start();
     world.soc.reset(true);
     world.provide(48, 32, [](uint32_t i) { return static_cast<uint8_t>(i * 37); });
-    // After a frame the vehicle asks its fellow.
+    // After a frame the vehicle asks the other one.
     const std::vector<Ground::Call> frame = {{"hwengine1", "startProcessing"},
                                              {"hwengine1", "getResult"}};
     std::vector<Ground::Call> calls(20, {"hwengine1", "ice_ping", 2});
@@ -183,7 +183,8 @@ TEST(Fellow, OneThatIsAwayCostsLittleOfTheAirAndTheVehicleServesItsGroundMeanwhi
     EXPECT_GT(share, 0.004) << "it is not sought: the idle sessions take 0.0015";
 }
 
-// Boots the vehicle with what its memory keeps, and flies. Returns what its memory keeps then.
+// Boots the vehicle with the given memory contents, and flies. Returns the memory contents
+// afterwards.
 SimulatedBoard::Words fly(ToAll& w, std::vector<Script> steps,
                           const std::function<void(SimulatedBoard&)>& provide) {
     UavMachine machine(w.soc, w.flight(std::move(steps)));
@@ -224,7 +225,7 @@ TEST(CallsToAll, AreRefusedWithAKeyButWithoutTheGroupsAndTakenByAnOpenVehicle) {
         fly(w,
             {w.calls({w.high}), w.send(w.groups, 10, w.low),
              w.calls({w.start, w.result}, false, "under a key that it has not"),
-             w.send(w.open, 11, w.low), w.calls({w.start, w.result}, isOpen, "in the clear"),
+             w.send(w.open, 11, w.low), w.calls({w.start, w.result}, isOpen, "unencrypted"),
              w.calls({w.high}), w.send({w.sent.back()}),
              w.calls({w.start, w.result}, false, "a copy")},
             [&](SimulatedBoard& board) { board.provide(pilots); });
@@ -247,7 +248,7 @@ protected:
             return std::min(ground.advance(now), attacker_.nextEvent());
         });
     }
-    // The vehicle starts, and flies until the script, which is called each millisecond, is over.
+    // Starts the vehicle, and flies until the script, called each millisecond, ends.
     void fly(const Script& script, double seconds) {
         const Script withMischief = [&] {
             if (period_ && soc.now() >= nextMischief_) {
@@ -275,7 +276,7 @@ protected:
     uint64_t period_ = 0, nextMischief_ = 0, boots_ = 0;
 };
 
-// Eight of them, one for each epoch, ended a session in the clear, 60 times of 60.
+// Eight of them, one per epoch, ended an unencrypted session, 60 times of 60.
 Bytes blindResets() {
     Bytes all;
     for (U32 epoch = 0; epoch < 8; ++epoch) {
@@ -302,8 +303,8 @@ TEST_F(Attack, InTheClearEightBlindResetsEndASession) {
         20);
 }
 
-// Everything that is possible without the key, and twenty bytes to each packet, while the ground
-// and then the vehicle start anew; then earlier packets are repeated.
+// Everything that is possible without the key, and twenty bytes added to each packet, while the
+// ground station and then the vehicle restart; then earlier packets are repeated.
 TEST_F(Attack, WithAKeyNothingComesOfAnyMischief) {
     start(vehicleKey);
     attacker_.hinder(true);

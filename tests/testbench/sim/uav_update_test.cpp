@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// uav_update_test: new firmware over the air to the firmware's host build, whose flash is memory of
-// this process.
+// uav_update_test: new firmware over the air to the firmware's host build, with this process's
+// memory as its flash.
 
 #include "ground.h"
 #include "keys.h"
@@ -19,7 +19,7 @@ namespace {
 
 using Bytes = std::vector<uint8_t>;
 constexpr uint32_t product = 77, imageBytes = 1024, half = imageBytes / 2;
-bool restarted; // the firmware has asked for it
+bool restarted; // the firmware has requested it
 
 struct Flash {
     static uint8_t* at(void* context, U32 offset) {
@@ -94,14 +94,14 @@ protected:
                                        reinterpret_cast<char*>(packed.data()), half, half, 1)));
         return packed;
     }
-    // A call, and the first byte of its expected answer; 0xFF: any. Calls of getStatus are repeated
-    // until it comes.
+    // A call, and the first byte of its expected reply; 0xFF: any. Calls of getStatus are repeated
+    // until it arrives.
     struct Step {
         const char* operation;
         Bytes parameters;
         uint8_t wanted;
     };
-    // Makes the calls, one after the other, and goes on until `over`.
+    // Makes the calls, one after the other, and continues until `over`.
     void fly(const std::vector<Step>& steps, const std::function<bool()>& over) {
         size_t step = 0;
         int sent = 0;
@@ -160,7 +160,7 @@ TEST_F(UavUpdate, WhatIsRefusedChangesNothing) {
     ++changed.bytes, changed.bytes += 3;
     fly({{"begin", encoded(headerOf(5, 1)), Old},
          {"begin", encoded(headerOf(6, 0)), Foreign},
-         {"begin", {3, 1, 2, 3}, Foreign}, // no header at all
+         {"begin", {3, 1, 2, 3}, Foreign}, // not a header
          {"begin", encoded(changed), None},
          {"getStatus", {}, Idle}},
         [] { return true; });
@@ -198,7 +198,7 @@ TEST_F(UavUpdate, InFlightImagesAndKeysAreRefusedAlsoAfterARestart) {
                                       {{"uav", "setFlightState", 2, {0}}, 0, ""},
                                       {{"keys", "setNextKey", 2, key}, 0, ""},
                                       {{"update", "begin", 0, header}, 0, ""}};
-    SimulatedBoard::Words words = SimulatedBoard().words; // what the battery keeps
+    SimulatedBoard::Words words = SimulatedBoard().words; // contents kept by the battery
     for (const auto& list : {calls, landed}) {
         EXPECT_EQ(flash.bytes, before);
         std::vector<Ground::Call> made;
@@ -222,7 +222,8 @@ TEST_F(UavUpdate, InFlightImagesAndKeysAreRefusedAlsoAfterARestart) {
     }
 }
 
-// "keys" is added last: the adapter has room for all servants of the vehicle beside the cores'.
+// "keys" is added last: the adapter has room for all servants of the vehicle in addition to those
+// of the cores.
 TEST_F(UavUpdate, WhereBothKindsOfImageAreTakenTheKeysAreServedToo) {
     uav_update[UAV_BITSTREAM] = {&flash.port, 0, product};
     EXPECT_TRUE(flies(soc, ground.pinging(1, "keys"), 4));

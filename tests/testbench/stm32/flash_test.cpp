@@ -111,7 +111,7 @@ TEST_F(Flash, AStoreOfAnotherWidthThanPsizeIsRefused) {
     flash.store(0, 2, 0);
     EXPECT_EQ(status(), uint32_t(Stm32Flash::Pgperr));
     flash.write(Stm32Flash::Sr, Stm32Flash::Pgperr);
-    flash.store(14, 4, 0); // over the end of a row of 128 bits
+    flash.store(14, 4, 0); // beyond the end of a row of 128 bits
     EXPECT_EQ(status(), uint32_t(Stm32Flash::Pgaerr));
     EXPECT_EQ(word(12), 0xFFFFFFFFu);
 }
@@ -124,7 +124,7 @@ TEST_F(Flash, AResetInAWriteLeavesSomeOfItsBits) {
         flash.write(Stm32Flash::Cr, X32 | Stm32Flash::Pg);
         flash.store(4u * i, 4, 0x0000FFFF);
         flash.reset();
-        EXPECT_EQ(word(4u * i) & 0xFFFF, 0xFFFFu); // what stays 1 is not touched
+        EXPECT_EQ(word(4u * i) & 0xFFFF, 0xFFFFu); // bits that stay 1 are not changed
         partial += word(4u * i) != 0x0000FFFF && word(4u * i) != 0xFFFFFFFF;
     }
     EXPECT_GT(partial, 16u);

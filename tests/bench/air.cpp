@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// air: the radio link over two modems and the air between them, without chip and kernel: goodput in
-// one direction and in both at once, and round trips, unencrypted and encrypted (docs/link.md).
-// Both modems are in API mode, unless --api sets another number; the ground's modem at 111,111
-// baud, the vehicle's at 250,000, as in the firmware. In one direction the ground sends; pictures
-// are sent by the vehicle.
+// air: the radio link over two modems and the air between them, without chip and kernel: goodput
+// one way and both ways at once, round trips, in the clear and encrypted (docs/link.md). Both
+// modems are in API mode, unless --api says how many; the ground's at 111,111 baud, the vehicle's
+// as the firmware's at 250,000. What one way goes is sent by the ground, what comes behind pictures
+// by the vehicle.
 
 #include "figures.h"
 #include "modem_pair.h"
@@ -17,7 +17,7 @@ unsigned rates[2] = {7, 250000};       // their BD in API mode: the ground's, th
 constexpr int pictures = 0, calls = 1; // channels
 const char* const key = "0123456789ABCDEF0123456789ABCDEF";
 
-// Not encrypted, encrypted by the modems, or by the link layer with a key (docs/link.md).
+// Encrypted by nobody, by the modems, or by the link layer with a key (docs/link.md).
 enum Mode { Clear, Encrypted, Keyed };
 const char* const names[] = {"in the clear", "encrypted", "with a key"};
 
@@ -99,8 +99,8 @@ double flow(World& w, bool both, uint64_t seconds) {
     return rate;
 }
 
-// Returns the bytes per second that modems and air allow in this weather, with the best RN; a key
-// of the link does not change it.
+// Returns the bytes a second that modems and air allow in this weather, with the best RN; a key of
+// the link changes nothing for them.
 double limitOf(const std::string& what, const RfWeather& weather, bool isEncrypted, bool both) {
     static std::map<std::string, double> known;
     double& most = known[what + (isEncrypted ? ", encrypted" : "") + (both ? ", both ways" : "")];
@@ -110,8 +110,8 @@ double limitOf(const std::string& what, const RfWeather& weather, bool isEncrypt
     return most;
 }
 
-// Smallest share of the limit that the link must reach with API mode; 5 points less in both
-// directions than in one.
+// The least share of the limit that the link must reach with API mode; both ways, by 5 points less
+// than one way.
 double wantedShare(const std::string& what, bool both, double share) {
     static double oneWay;
     if (both)
@@ -122,8 +122,8 @@ double wantedShare(const std::string& what, bool both, double share) {
     return isClear ? 0.95 : isTried ? 0.92 : 0.9;
 }
 
-// Measures the mean over several seeds, because single runs differ by a tenth. The limit counts the
-// same bytes, those of a program: the modems' limit without the overhead of frames.
+// The mean over some seeds: single runs differ by a tenth. The limit is of the same bytes, those of
+// a program: what the modems allow without the frames' own.
 void goodput(const std::string& what, const RfWeather& weather, Mode mode, bool both) {
     const unsigned runs = figures.brief ? 1 : 9;
     const double packet = mode == Encrypted ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME;
@@ -164,8 +164,8 @@ void allWeather(Mode mode) {
                 goodput(what, weather, mode, both);
 }
 
-// Makes `count` calls with a message of `size` bytes, which is returned; returns the times in ms,
-// sorted.
+// Calls `count` times with a message of `size` bytes, which comes back, and returns the times
+// in ms, sorted.
 std::vector<double> callTimes(World& w, U32 size, int count) {
     std::vector<double> times;
     const std::vector<U8> message(size, 1);
@@ -200,8 +200,8 @@ void roundTrips(Mode mode) {
     }
 }
 
-// MAVLink 2's COMMAND_LONG and COMMAND_ACK, as plain bytes that are never retransmitted, on the
-// same air; signed if there is a key.
+// MAVLink 2's COMMAND_LONG and COMMAND_ACK, as bare bytes that are never sent again, on the same
+// air; under a key signed.
 void peers(Mode mode) {
     const bool isSigned = mode == Keyed;
     const double ms = floorMs(isSigned ? 58 : 45, isSigned ? 35 : 22, mode == Encrypted);

@@ -26,7 +26,7 @@ HERE = "tcp -h 127.0.0.1"
 
 
 class Service:
-    """A program with an object adapter; prints the endpoint as traced by Ice."""
+    """A program with an object adapter, whose endpoint it prints as Ice traces it."""
 
     def __init__(self, adapter, *words):
         self.process = subprocess.Popen([*words], text=True, stdout=subprocess.PIPE,
@@ -40,7 +40,7 @@ class Service:
         self.endpoint = found[1]
 
     def spent(self):
-        """CPU seconds so far."""
+        """Seconds of a processor so far."""
         words = pathlib.Path(f"/proc/{self.process.pid}/stat").read_text().rsplit(") ")[1].split()
         return (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")
 
@@ -75,15 +75,15 @@ def registry(ic, folder, work, count, calls):
         locator = Ice.LocatorPrx.checkedCast(
             ic.stringToProxy(f"IceGrid/Locator:{service.endpoint}"))
         book, entry = locator.getRegistry(), ic.stringToProxy(f"any:{HERE} -p 10000")
-        registered = rate(service, [lambda i=i: book.setAdapterDirectProxyAsync(f"uav{i}", entry)
+        told = rate(service, [lambda i=i: book.setAdapterDirectProxyAsync(f"uav{i}", entry)
                               for i in range(count)])
         found = rate(service, [lambda i=random.randrange(count):
                                locator.findAdapterByIdAsync(f"uav{i}") for _ in range(calls)])
         if locator.findAdapterById("uav1") != entry:
             sys.exit("directory: the registry leads elsewhere")
-    of = f"with {count} vehicles, per CPU second"
+    of = f"with {count} vehicles, a second of a processor"
     return [figure(f"{what} {of}", round(value), "")
-            for what, value in (("registrations", registered), ("look-ups", found))]
+            for what, value in (("registrations", told), ("look-ups", found))]
 
 
 class Counter(Ice.Blobject):
@@ -95,7 +95,7 @@ class Counter(Ice.Blobject):
 
 
 def storm(ic, folder, subscribers, events):
-    """Publishes events of the length of a vehicle's, and counts them on arrival."""
+    """Publishes events as long as a vehicle's, and counts them where they arrive."""
     adapter, counters = ic.createObjectAdapterWithEndpoints("", HERE), []
     adapter.activate()
     with Service("TopicManager", folder / "icebox",
@@ -116,7 +116,7 @@ def storm(ic, folder, subscribers, events):
             time.sleep(0.01)
         taken = events / max(service.spent() - begin, 0.01)
     adapter.destroy()
-    return figure(f"events to {subscribers} subscribers, per CPU second", round(taken), "")
+    return figure(f"events to {subscribers} subscribers, a second of a processor", round(taken), "")
 
 
 def main(folder, output, brief=""):

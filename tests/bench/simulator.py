@@ -33,7 +33,7 @@ def main(source, build, output, brief=""):
              "every": (build, *IMAGE, "--duration", "0.02", "--every-clock"),
              "flight": (build, "--replay", f"{work.name}/host"),
              "flight m3": (build, "--replay", f"{work.name}/m3")}
-    best = dict.fromkeys(kinds, (0, 0))  # million clocks per second, percent of them evaluated
+    best = dict.fromkeys(kinds, (0, 0))  # million clocks a second, percent of them evaluated
     for run in range(runs):
         for kind, (folder, *options) in kinds.items():
             said = logged(f"{folder}/testbench/sim/icesoc-sim", "--speed", "max", "--out",
@@ -44,8 +44,8 @@ def main(source, build, output, brief=""):
     rate = {kind: rate for kind, (rate, _) in best.items()}
     active = {kind: rate * share / 100 for kind, (rate, share) in best.items()}
 
-    def row(name, value, unit="million clocks/s", **compared):
-        return figure(name, float(f"{value:.4g}"), unit, **compared)
+    def row(name, value, unit="million clocks/s", **beside):
+        return figure(name, float(f"{value:.4g}"), unit, **beside)
 
     def real_time(name, kind):
         return row(name, rate[kind], "million clocks/s, at least", limit=100)

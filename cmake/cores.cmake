@@ -27,7 +27,7 @@ list(REMOVE_DUPLICATES CHIP_CORES)
 # and, by ARM_DEFINES, in the firmware. Each of them has four connections for a ground station, a
 # second one and another vehicle.
 set(ARM_DEFINES ICE_CONNECTIONS=12)
-set(header ${CMAKE_SOURCE_DIR}/sw/vehicle/uav_private.h)
+set(header ${CMAKE_SOURCE_DIR}/sw/vehicle/uav_tasks.h)
 set_property(DIRECTORY ${CMAKE_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${header})
 file(STRINGS ${header} servants REGEX "^#define UAV_SERVANTS ")
 string(REGEX REPLACE "[^0-9]" "" servants "${servants}")

@@ -29,7 +29,7 @@ function(icesoc_fuzz name)
     endif()
     add_custom_command(OUTPUT ${object}
       COMMAND ${compile} ${flags} -MMD -MF ${object}.d -c ${path} -o ${object}
-      DEPENDS ${path} DEPFILE ${object}.d VERBATIM COMMENT "Fuzzer ${name}: ${file}")
+      DEPENDS ${path} ${A_DEPENDS} DEPFILE ${object}.d VERBATIM COMMENT "Fuzzer ${name}: ${file}")
     list(APPEND objects ${object})
   endforeach()
   add_custom_command(OUTPUT ${dir}/run

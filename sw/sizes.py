@@ -5,7 +5,7 @@
     sizes.py layers SOURCE GENERATED BUILD OUT.json   each layer on a Cortex-M3 at -Os, with the
                                                       paper's Table II; RAM and largest frames;
                                                       fails if one exceeds sw/size_budget.json
-    sizes.py firmware MAP OBJECTS OUT.json            flash and RAM of a firmware by layer; its
+    sizes.py firmware MAP OUT.json                    flash and RAM of a firmware by layer; its
                                                       stacks, by the call graph
 
 layers: `minimal` is the program that flies (sw/minimal), with the minimal run time and link:
@@ -24,7 +24,7 @@ import tempfile
 PAPER = {"fsmc": 1116, "radio": 1795, "crypto": 0, "link": 1307, "icec": 2622, "endpoint": 0}
 # sources of a layer that are not just its folder's
 FILES = {"icec": ["icec/*.c", "icec/values/*.c", "icec/extra/*.c"],
-         "endpoint": ["icec/endpoints/xbee_endpoint.c"]}
+         "endpoint": ["icec/endpoints/xbee_endpoint.c", "icec/endpoints/xbee_peers.c"]}
 LAYER_FOLDERS = ("fsmc", "radio", "crypto", "link", "icec", "values", "extra", "endpoints")
 PACKAGES = ("update", "fleet", "keys")
 TITLES = {"values": "icec", "extra": "icec", "vehicle": "application", "loader": "update",
@@ -162,7 +162,7 @@ def packages(build):
             for what, size in zip(("flash", "ram", "layers"), sizes)]
 
 
-def firmware(path, objects, output):
+def firmware(path, output):
     flash, ram = {}, {}
     for name, address, size, file in sections(path):
         kind = re.match(r"\.(text|rodata|data|bss|vectors|noinit)", name)
@@ -176,16 +176,18 @@ def firmware(path, objects, output):
         print("%-26s %8d %8d" % (layer, flash[layer], ram[layer]))
     print("%-26s %8d %8d   bytes, stacks of tasks included in RAM\n" %
           ("all", sum(flash.values()), sum(ram.values())))
-    stacks(objects)
+    stacks(path)
     written(output, [{"name": f"{what}: {layer}", "value": table[layer], "unit": "bytes",
                       "command": "make firmware"}
                      for layer in flash for what, table in (("flash", flash), ("RAM", ram))])
 
 
-def stacks(objects):
+def stacks(path):
     """Prints the deepest stack below each task: frames (-fstack-usage) along the call graph
-    (-fcallgraph-info)."""
-    text = "".join(path.read_text() for path in sorted(pathlib.Path(objects).rglob("*.ci")))
+    (-fcallgraph-info) of the objects in the linker's map."""
+    objects = sorted(set(re.findall(r"^LOAD (\S+)\.o$", open(path).read(), re.M)))
+    graphs = [pathlib.Path(f"{name}.ci") for name in objects]
+    text = "".join(graph.read_text() for graph in graphs if graph.is_file())
     name = r'"(?:[^"]*:)?([^":]*)"'
     frames = {f: int(size) for f, size in re.findall(r"^node: .*?title: " + name +
                                                      r".*?(\d+) bytes", text, re.M)}
@@ -213,7 +215,7 @@ def stacks(objects):
         print("%-26s %8d   %s" % (entry, size, " > ".join(way[1:])))
 
 
-commands = {"layers": (layers, 4), "firmware": (firmware, 3)}
+commands = {"layers": (layers, 4), "firmware": (firmware, 2)}
 command, *words = sys.argv[1:] or [""]
 if command not in commands or len(words) != commands[command][1]:
     sys.exit(__doc__)

@@ -9,7 +9,7 @@
  */
 #include "Autopilot.h"
 #include "board.h"
-#include "link_minimal.h"
+#include "endpoint_minimal.h"
 #include "map_regs.h"
 #include "program_memory.h"
 #include "radio.h"
@@ -17,7 +17,6 @@
 #include "uav.h"
 #include "ucos_ii.h"
 #include "vision_regs.h"
-#include "xbee_endpoint.h"
 
 #define BYTE_TIME_US16 1440U /* 111,111 baud */
 
@@ -70,7 +69,7 @@ static int work(void* context, Ice_Int timeoutMs) {
     return 0;
 }
 
-static const XBeeATEndpoint_Port endpointPort = {0, 0, 0, work, 0, nowMs};
+static const XBeeATEndpoint_Port endpointPort = {work, nowMs};
 
 static U32 randomWord(void* context) {
     static U32 state;
@@ -80,7 +79,7 @@ static U32 randomWord(void* context) {
 
 static void onState(void* context, Link_State state) {
     (void)context;
-    (void)state; /* the endpoint hears of each channel */
+    (void)state; /* the link reports each channel to the endpoint */
 }
 
 static const Link_Port linkPort = {

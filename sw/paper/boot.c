@@ -4,7 +4,11 @@
  */
 #include "paper.h"
 #include "uav.h"
-#include "uav_private.h"
+#include "uav_cores.h"
+#include "uav_modem.h"
+#include "uav_os.h"
+#include "uav_tasks.h"
+#include "ucos_ii.h"
 
 #define STACK_WORDS 1024
 

@@ -8,35 +8,16 @@
  */
 #pragma once
 
-#include "base.h"
+#include "slots_header.h" /* generated from slots_header.toml */
 
 #define SLOTS_COUNT 2U
 #define SLOTS_NONE SLOTS_COUNT
-#define SLOTS_KEY_BYTES 32U
 #define SLOTS_KEYS_AT 0x8000U /* offset of the lists of keys in the processor's flash, sector 2 */
 #define SLOTS_LISTS 64U
 #define SLOTS_IMAGE_AT 0x200U /* in a slot: Cortex-M3 vectors are aligned to 512 bytes */
 
-#define SLOTS_MAGIC 0x1CE50C05U
-#define SLOTS_DIGEST_BYTES 64U    /* SHA-512 */
-#define SLOTS_SIGNATURE_BYTES 64U /* Ed25519 */
-
-/* The beginning of a slot, or a list of keys. The signature covers all bytes before it. */
-typedef struct Slots_Header {
-    U32 magic;
-    U32 product;  /* the kind of vehicle, or SLOTS_KEYS */
-    U32 version;  /* 1..0xFFFFFFFE; of lists: counted up by one */
-    U32 bytes;    /* size of the image, bytes, a multiple of 4 */
-    U32 base;     /* offset in flash of the image's first byte */
-    U32 board[2]; /* vendor, and board with its revision */
-    U32 needs;    /* version that must run of the counterpart: bitstream or firmware; 0: any */
-    U8 digest[SLOTS_DIGEST_BYTES]; /* for a list: two public keys instead */
-    U8 signature[SLOTS_SIGNATURE_BYTES];
-} Slots_Header;
-
 /* A list of the two public keys whose owners may sign images and the next list. Lists are only
  * added, after the one written by a programmer; the last complete one is valid. */
-#define SLOTS_KEYS 0x5359454BU /* "KEYS" */
 typedef struct Slots_Keys {
     Slots_Header list;
     U32 unused[23];

@@ -3,13 +3,16 @@
  * firmware: starts the kernel with the application and the watchdog's task. That task is below all
  * others, so it runs as long as no other task and no interrupt keeps the processor for itself.
  */
-#include "firmware.h"
 #include "board.h"
 #include "boot.h"
+#include "firmware_slots.h"
 #include "map_regs.h"
 #include "program.h"
+#include "provision.h"
+#include "secrets.h"
 #include "system_regs.h"
 #include "uav.h"
+#include "ucos_ii.h"
 
 #define PRIO_WATCH 60U
 

@@ -2,11 +2,12 @@
  *
  * firmware_slots: the board's part in updates: slots of the processor's and of the FPGA's flash.
  */
+#include "firmware_slots.h"
 #include "boot.h"
-#include "firmware.h"
 #include "fpga.h"
 #include "loader.h"
 #include "stm32f2.h"
+#include "uav_backup.h"
 #include "uav_update.h"
 
 static void restart(void) {

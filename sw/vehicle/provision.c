@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
  * provision: gives the vehicle its key over the serial port. Polls the port, since no task runs
- * yet; SysTick marks every 10 ms. */
+ * yet; SysTick marks every 10 ms.
+ */
+#include "provision.h"
 #include "ascon.h"
-#include "firmware.h"
 #include "stm32f2.h"
+#include "uav_keys.h"
 
 #include <string.h>
 

@@ -4,7 +4,7 @@
  * numbers are worse than a restart by the watchdog. The backup SRAM is ST's place for keys: the
  * battery keeps it, and removing the read protection erases it with the flash.
  */
-#include "firmware.h"
+#include "secrets.h"
 #include "stm32f2.h"
 
 static U32 lastRandom;

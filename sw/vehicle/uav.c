@@ -3,9 +3,18 @@
  * uav: tasks of the application: server, client, radio.
  */
 #include "uav.h"
+#include "Autopilot.h"
 #include "radio.h"
-#include "uav_memory.h"
-#include "uav_private.h"
+#include "uav_backup.h"
+#include "uav_cores.h"
+#include "uav_fleet.h"
+#include "uav_keyring.h"
+#include "uav_modem.h"
+#include "uav_os.h"
+#include "uav_peers.h"
+#include "uav_tasks.h"
+#include "uav_update.h"
+#include "ucos_ii.h"
 
 #define STACK_WORDS 512
 
@@ -61,9 +70,9 @@ static void clientTask(void* argument) {
     Ice_Byte data[6][4];
     Autopilot_ParamSeq list;
     Autopilot_FlightState state;
-    const int hasFellow = UAV_makeVehicleProxy(&uav_ic, &fellow);
+    const int hasFellow = UAV_makeVehicleProxy(&adapter, &fellow);
     (void)argument;
-    (void)Ice_Communicator_stringToProxy(&uav_ic, "station:xbee-at -a 0x0000", &station);
+    (void)XBeeATEndpoint_makeProxy(&adapter, "station", UAV_GROUND_ADDRESS, &station);
     (void)Ice_ObjectAdapter_createProxy(&adapter, "uav", &self);
     list.data = params;
     for (;;) {

@@ -3,11 +3,14 @@
  * uav_cores: starts the servants of the cores in ip/cores.list, handles their interrupts and errors
  * on their bus, and has the task that answers calls which take time.
  */
+#include "uav_cores.h"
+#include "Autopilot.h"
 #include "hw_instance.h"
 #include "hw_registers.h"
 #include "system_regs.h"
 #include "uav.h"
-#include "uav_private.h"
+#include "uav_tasks.h"
+#include "ucos_ii.h"
 
 #define MS_PER_TICK (1000U / OS_TICKS_PER_SEC)
 

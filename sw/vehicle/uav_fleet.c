@@ -3,9 +3,9 @@
  * uav_fleet: the peers other than the first ground station: an observer, another vehicle, and calls
  * to all vehicles. They need API mode, which identifies the source of each packet.
  *
- * An observer calls by itself and is not dialled; another vehicle is dialled only while this one
- * calls it.
+ * An observer connects by itself. Another vehicle is dialed while this one calls it.
  */
+#include "uav_fleet.h"
 #include "link_broadcast.h"
 #include "uav.h"
 #include "uav_keys.h"
@@ -65,9 +65,9 @@ void UAV_usePeers(void) {
         XBeeATEndpoint_setVehicle(&uav_endpoint, UAV_VEHICLE, UAV_hasGroundsPart());
 }
 
-void UAV_seekVehicle(void) {
+void UAV_dialVehicle(void) {
     if (uav_peers[UAV_VEHICLE].link)
-        XBeeATEndpoint_seek(&uav_endpoint, UAV_VEHICLE, uav_now);
+        XBeeATEndpoint_dial(&uav_endpoint, UAV_VEHICLE, uav_now);
 }
 
 /* Takes a call to all vehicles, once. While one waits for IceC the others are dropped: a later copy
@@ -94,13 +94,9 @@ int UAV_offerCall(void) {
     return toAllSize != 0; /* the endpoint kicks the radio task when it takes the call */
 }
 
-int UAV_makeVehicleProxy(Ice_CommunicatorPtr ic, Ice_ObjectPrxPtr other) {
-    static char text[] = "uav:xbee-at -a 0x0000";
+int UAV_makeVehicleProxy(Ice_ObjectAdapterPtr adapter, Ice_ObjectPrxPtr other) {
     const U32 address = UAV_addressOf(UAV_VEHICLE);
-    U32 i;
-    for (i = 0; i < 4U; ++i)
-        text[sizeof text - 2U - i] = "0123456789abcdef"[address >> 4U * i & 15U];
-    (void)Ice_Communicator_stringToProxy(ic, text, other);
+    (void)XBeeATEndpoint_makeProxy(adapter, "uav", (U16)address, other);
     Ice_ObjectPrx_ice_invocationTimeout(other, VEHICLE_MS);
     return address != UAV_NO_PEER;
 }

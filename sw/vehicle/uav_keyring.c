@@ -2,8 +2,10 @@
  *
  * uav_keyring: the servant by which a ground changes its key over the air.
  */
+#include "uav_keyring.h"
+#include "Autopilot.h"
 #include "uav_keys.h"
-#include "uav_private.h"
+#include "uav_links.h"
 
 static Autopilot_KeyRing keys;
 

@@ -18,14 +18,6 @@ static U32 slotAt(int role, int slot) {
     return (U32)role * UAV_PEER_WORDS + (U32)slot * SLOT_WORDS;
 }
 
-U32 UAV_stateAt(int role) {
-    return (U32)role * UAV_PEER_WORDS + BACKUP_AT(vehicle.keys.state);
-}
-
-U32 UAV_addressAt(int role) {
-    return BACKUP_AT(others[0].inverted) + ((U32)role - 1U) * UAV_PEER_WORDS;
-}
-
 /* Returns the check of a key: against lost power, not against attackers. Never 0. */
 static U32 checkOf(const U32* words) {
     U32 check = CHECK_SEED, i;
@@ -92,7 +84,7 @@ int UAV_isOpen(void) {
 U32 UAV_addressOf(int role) {
     if (role == UAV_GROUND)
         return UAV_GROUND_ADDRESS;
-    return UAV_countKeys(role) || UAV_isOpen() ? ~UAV_load(UAV_addressAt(role)) : UAV_NO_PEER;
+    return UAV_countKeys(role) || UAV_isOpen() ? ~UAV_load(UAV_ADDRESS_AT(role)) : UAV_NO_PEER;
 }
 
 int UAV_hasGroundsPart(void) {
@@ -117,7 +109,7 @@ int UAV_giveKeys(int role, Link* link) {
         }
     Ascon_wipe(key, sizeof key);
     nextSlot[role] =
-        count < (int)BACKUP_SLOTS ? -1 : (int)(UAV_load(UAV_stateAt(role)) - STATE_NEXT);
+        count < (int)BACKUP_SLOTS ? -1 : (int)(UAV_load(UAV_STATE_AT(role)) - STATE_NEXT);
     return count;
 }
 
@@ -132,7 +124,7 @@ int UAV_setNextKey(int role, Link* link, const U8* key) {
         return 1;
     /* The state is written first: if both slots have a key, the state selects the next one. */
     UAV_writeKey(role, slot, 0);
-    UAV_store(UAV_stateAt(role), STATE_NEXT + (U32)slot);
+    UAV_store(UAV_STATE_AT(role), STATE_NEXT + (U32)slot);
     UAV_writeKey(role, slot, key);
     giveKey(role, link, slot, key);
     nextSlot[role] = slot;

@@ -13,25 +13,24 @@
 #define UAV_STATE_OPEN 0x4F50454EU /* the first ground's state: no key, any ground may call */
 #define UAV_PEER_WORDS ((U32)(sizeof(Backup_Other) / sizeof(U32)))
 
-/* Stores the vehicle's address and this key as the only one, in the factory. 0: no key; any ground
- * may call. Returns 0 for a key in firmware without keys. */
+/* Word of a role's state; word of the inverted address of a role other than UAV_GROUND. */
+#define UAV_STATE_AT(role) ((U32)(role) * UAV_PEER_WORDS + BACKUP_AT(vehicle.keys.state))
+#define UAV_ADDRESS_AT(role) (BACKUP_AT(others[0].inverted) + ((U32)(role) - 1U) * UAV_PEER_WORDS)
+
+/* Gives the vehicle its address and one key, in the factory; all others are deleted. Without a key
+ * (0) anyone may call. Returns 0 if the firmware has no keys and one is given. */
 int UAV_provide(U32 address, const U8* key);
 
 /* Reads the key of a slot. Returns 0 if the slot is empty. */
 int UAV_readKey(int role, int slot, U8* key);
 
-/* Writes a slot; without a key, empties it. */
+/* Writes a slot; empties it if `key` is 0. */
 void UAV_writeKey(int role, int slot, const U8* key);
-
-/* Return the index of a role's state word, and of the inverted address of any role but the first
- * ground. */
-U32 UAV_stateAt(int role);
-U32 UAV_addressAt(int role);
 
 /* Returns 1 if this is one of the first ground's keys, in the same time for any other. */
 int UAV_isKey(const U8* key);
 
-/* Returns how many slots of a role have a key. */
+/* Returns the number of a role's slots that have a key. */
 int UAV_countKeys(int role);
 
 /* Returns 1 if the vehicle has no key and was opened. */
@@ -41,17 +40,18 @@ int UAV_isOpen(void);
  */
 U32 UAV_addressOf(int role);
 
-/* Returns 1 if this vehicle has the ground's part in sessions with another vehicle: of the two it
- * has the lower address. */
+/* Returns 1 if this vehicle has the ground's part in sessions with another vehicle: its address is
+ * the lower one. */
 int UAV_hasGroundsPart(void);
 
-/* Gives a peer's link the keys of both slots; returns how many there are. */
+/* Gives a peer's link the keys of both slots; returns their number. */
 int UAV_giveKeys(int role, Link* link);
 
-/* Stores a peer's next key in the slot that is not in use. Returns 0 if the session has no key,
- * since the new one could be read on the air. The present key is accepted and changes nothing. */
+/* Puts a peer's next key into the slot that is not in use. Returns 0 if the session has no key,
+ * since everyone on the air could read the new one. The current key is accepted and changes
+ * nothing. */
 int UAV_setNextKey(int role, Link* link, const U8* key);
 
-/* Removes the old key once a session is up under the next one, which the peer then has. Returns 1
- * if it did. */
+/* Removes the old key if the session uses the next one, since the peer then has it. Returns 1 if
+ * the key was removed. */
 int UAV_confirmKey(int role, Link* link);

@@ -3,6 +3,7 @@
  * uav_links: the links with the peers: what they send, receive and report.
  */
 #include "uav_links.h"
+#include "radio.h"
 #include "uav.h"
 #include "uav_keys.h"
 

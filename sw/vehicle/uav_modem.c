@@ -3,12 +3,16 @@
  * uav_modem: the FPGA's interrupt, and the radio task: sets the modem up, passes its packets to the
  * links, polls the links, and sets the modem up again if no link comes up.
  */
+#include "uav_modem.h"
 #include "map_regs.h"
 #include "system_regs.h"
 #include "uav.h"
+#include "uav_backup.h"
+#include "uav_cores.h"
+#include "uav_fleet.h"
 #include "uav_keys.h"
 #include "uav_links.h"
-#include "uav_memory.h"
+#include "uav_os.h"
 
 #define DOWN_LIMIT 15000000U /* us without a link: the modem may have lost its settings */
 
@@ -75,7 +79,7 @@ static U32 pollAll(void) {
     U32 wait = 0xFFFFFFFFU, due;
     int left, role = turn;
     if (uav_isAnswered)
-        UAV_seekVehicle();
+        UAV_dialVehicle();
     for (left = uav_peerCount; left; --left) {
         Link* link = uav_peers[role].link;
         if (link) {

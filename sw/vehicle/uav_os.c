@@ -2,7 +2,9 @@
  *
  * uav_os: what IceC and its endpoint need from the operating system: locks, waits and signals.
  */
-#include "uav_links.h"
+#include "uav_os.h"
+#include "uav_radio_state.h"
+#include "uav_tasks.h"
 
 static OS_EVENT* endpointEvent;
 static OS_EVENT* callDone[ICE_CALLS + 1]; /* the last one is for tasks that want to receive */

@@ -7,21 +7,20 @@
 #include "link_broadcast.h"
 #include "uav_keys.h"
 
-#define NEWEST                                                                        \
-    (BACKUP_AT(others[UAV_GROUP - 1].keys.state)) /* number of the newest call to all \
-                                                   */
+#define NEWEST UAV_STATE_AT(UAV_GROUP) /* word with the number of the newest call to all */
 
 int UAV_providePeer(int role, U32 address, const U8* key) {
-    UAV_store(UAV_addressAt(role), 0);
-    if (role != UAV_GROUP) /* otherwise a recorded call would be accepted again */
-        UAV_store(UAV_stateAt(role), 0);
+    UAV_store(UAV_ADDRESS_AT(role), 0);
+    if (role != UAV_GROUP) /* or a recorded call would be new again */
+        UAV_store(UAV_STATE_AT(role), 0);
     UAV_writeKey(role, 1, 0);
     UAV_writeKey(role, 0, key);
-    UAV_store(UAV_addressAt(role), ~address);
+    UAV_store(UAV_ADDRESS_AT(role), ~address);
     return 1;
 }
 
-/* Reads the group's key; zeros if the vehicle is open, as for any slot without a key. */
+/* Reads the group's key: zeros if the slot is empty. Returns 0 if there is no key and the vehicle
+ * is not open. */
 static int readGroupKey(U8* key) {
     return UAV_readKey(UAV_GROUP, 0, key) || UAV_isOpen();
 }

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_peers: the roles of a vehicle's peers, and the addresses at which they were provided.
+ * uav_peers: the roles of a vehicle's peers, and their addresses.
  *
- * Each role has its place in the backup memory (backup.h): the keys, and for all but the first
- * ground an address. All but the group have a link.
+ * Each role has a place in the backup memory (backup.h): its keys, and an address for all roles but
+ * the first ground. All roles but the group have a link.
  */
 #pragma once
 
-#include "uav_memory.h"
+#include "uav_backup.h"
 
 typedef enum UAV_Role {
     UAV_GROUND,           /* the first ground, always there */
@@ -19,16 +19,17 @@ typedef enum UAV_Role {
 
 #define UAV_GROUND_ADDRESS 0x0000U
 #define UAV_EVERYBODY 0xFFFFU   /* the group's address */
-#define UAV_NO_PEER 0xFFFFFFFFU /* instead of an address */
+#define UAV_NO_PEER 0xFFFFFFFFU /* address of a peer that is absent */
 
-/* Stores an observer's modem address and key in the vehicle; or another vehicle, with the common
- * key and its address; or the key of the group. 0: no key, for an open vehicle. UAV_NO_PEER: the
- * vehicle has none, as after UAV_provide. Returns 0 in firmware without peers. */
+/* Gives the vehicle a peer: the address of an observer's or another vehicle's modem and the key
+ * shared with it, or the key of its group. Without a key (0) the vehicle must be open. The address
+ * UAV_NO_PEER removes the peer. Returns 0 if the firmware has no such peers. */
 int UAV_providePeer(int role, U32 address, const U8* key);
 
 /* Returns 1 if the vehicle takes calls to all vehicles: it has the group's key, or is open. */
 int UAV_isOfGroup(void);
 
-/* Decrypts such a call, unless this vehicle has seen it (Link_openBroadcast), and stores its
- * number. Returns the message's size; 0 if it must not be executed. */
+/* Decrypts a call to all vehicles and stores its number. Returns the message's size, or 0 if the
+ * call must not be executed: it is not of the group, or this vehicle has seen it
+ * (Link_openBroadcast). */
 U32 UAV_openBroadcast(U8* packet, U32 size);

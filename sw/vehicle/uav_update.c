@@ -6,8 +6,9 @@
 #include "uav_update.h"
 #include "Update.h"
 #include "receiver.h"
-#include "uav_memory.h"
-#include "uav_private.h"
+#include "uav_backup.h"
+#include "uav_tasks.h"
+#include "ucos_ii.h"
 
 #include <lz4.h>
 #include <string.h>

@@ -4,6 +4,7 @@
  */
 #pragma once
 
+#include "icec.h"
 #include "slots.h"
 
 /* The images that can be renewed: firmware (object "update") and bitstream (object "fpga"). */
@@ -16,6 +17,9 @@ typedef struct UAV_Update {
     U32 running, product;
 } UAV_Update;
 extern UAV_Update uav_update[UAV_UPDATABLES];
+
+/* Serves new images, if there are slots for them; none in firmware without updates. */
+void UAV_startUpdate(Ice_ObjectAdapterPtr adapter);
 
 /* Resets the processor. */
 extern void (*uav_restart)(void);

@@ -8,7 +8,7 @@
 #   soc.edf      from `make synth-edif`
 #   mig-folder   user_design of a MIG core called "mig": its rtl/*.v and par/mig.ucf are used
 #   *.ucf        build/main/gen/core_pins.ucf, and your board's (synth/ise/board.ucf is an example)
-#   --xst        XST also synthesises soc, from the folder `verilog` next to soc.edf (soc.edf is unused)
+#   --xst        XST also synthesises soc, from the folder `verilog` (soc.edf is unused)
 set -eu
 usage() {
     sed -n 's/^# \{0,1\}//; 6,11p' "$0"

@@ -79,8 +79,7 @@ bool CortexM3::mayExecute(uint32_t address, const Instruction& i) {
                        "LDM, STM, LDRD, STRD, LDREX or STREX at an unaligned address");
         return false;
     }
-    // In handlers of HardFault and NMI the MPU is off.
-    if (control_.isExecuteNever(address) && exceptions_.runningPriority() >= 0) {
+    if (control_.isExecuteNever(address) && !isMpuOff()) {
         setSynchronous(address, MemManage, SystemControl::instructionAccess,
                        "the MPU forbids to execute that");
         return false;

@@ -290,6 +290,8 @@ private:
     void setSynchronous(uint32_t address, unsigned number, uint32_t cfsrBits, const char* text);
     void clearExclusive();
     void fixBasepri();
+    // Handlers of HardFault and NMI, and code under FAULTMASK, run without the MPU (B3.5.1).
+    bool isMpuOff() const { return exceptions_.runningPriority() < 0; }
     bool isSplit(uint32_t address, unsigned bytes);
     bool isBitBand(uint32_t address) const;
     uint32_t readBit(uint32_t address);

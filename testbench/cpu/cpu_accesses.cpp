@@ -184,9 +184,7 @@ void CortexM3::flashChanged(uint32_t offset, uint32_t bytes) {
 
 bool CortexM3::onGuarded(uint32_t address, unsigned bytes, bool write) {
     drainStore(); // RAM is on the same bus
-    // In handlers of HardFault and NMI the MPU is off.
-    if (!control_.isForbidden(address, bytes, write) || synchronous_.number ||
-        exceptions_.runningPriority() < 0)
+    if (!control_.isForbidden(address, bytes, write) || synchronous_.number || isMpuOff())
         return false;
     synchronous_ = {MemManage, SystemControl::dataAccess | SystemControl::mmfarValid,
                     accessText(address, bytes, "the MPU forbids it")};

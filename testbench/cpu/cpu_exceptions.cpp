@@ -216,7 +216,7 @@ void CortexM3::enter(unsigned number) {
     const uint32_t saved[8] = {
         reg(0),  reg(1),  reg(2), reg(3),
         reg(12), reg(Lr), pc_,    (xpsr & ~aligned) | (padding ? aligned : 0)};
-    bool guarded = control_.isForbidden(frame, 32, true);
+    bool guarded = !isMpuOff() && control_.isForbidden(frame, 32, true);
     if (guarded || !writeMemory(frame, saved, 32)) {
         lastFault = "the stack pointer is bad at the entry of an exception";
         control_.reportFault(guarded ? SystemControl::stackAccess
@@ -259,7 +259,7 @@ void CortexM3::leave() {
     clearExclusive();
     int stack = kind == 13 ? Psp : Msp;
     uint32_t frame = reg(stack), saved[8];
-    if (control_.isForbidden(frame, 32, false) && exceptions_.runningPriority() >= 0) {
+    if (!isMpuOff() && control_.isForbidden(frame, 32, false)) {
         lastFault = "the MPU forbids to read the frame of an exception";
         synchronous_ = {MemManage, SystemControl::unstackAccess, lastFault};
         return;

@@ -19,7 +19,7 @@ bool hasPriority(unsigned number) {
            number == SysTick;
 }
 
-// Bits of ICSR that make an exception pending, or take that back.
+// Bits of ICSR that set or clear the pending state of an exception.
 constexpr struct {
     unsigned bit, number;
     bool on;
@@ -41,6 +41,11 @@ constexpr uint32_t traceEnabled = 1u << 24, comparators = 4u << 28; // DEMCR.TRC
 bool forbids(uint32_t rasr, bool write) {
     uint32_t access = rasr >> 24 & 7;
     return access == 0 || (write && access >= 5);
+}
+
+// RASR.XN, or no access at all.
+bool forbidsToExecute(uint32_t rasr) {
+    return (rasr >> 28 & 1) || forbids(rasr, false);
 }
 
 } // namespace
@@ -81,7 +86,7 @@ void SystemControl::tick() {
         countFlag_ = true;
         if (control_ & 2)
             exceptions_->pend(SysTick);
-        period_ = load_ ? uint64_t(load_) + 1 : 0;
+        period_ = reload();
         tickDue_ = load_ ? tickDue_ + period_ * tickUnit() : ~0ull;
         stoppedAt_ = 0;
     }
@@ -270,7 +275,7 @@ bool SystemControl::accessOther(uint32_t at, bool write, uint32_t& value) {
         stoppedAt_ = 0;
         countFlag_ = false;
         if (control_ & 1)
-            startSysTick(load_ ? uint64_t(load_) + 1 : 0);
+            startSysTick(reload());
         break;
     case 0x01C:
         shown = calibration_;
@@ -336,7 +341,7 @@ void SystemControl::controlSysTick(uint32_t value) {
         return;
     stoppedAt_ = before;
     if (control_ & 1)
-        startSysTick(before ? before : load_ ? uint64_t(load_) + 1 : 0);
+        startSysTick(before ? before : reload());
     else
         tickDue_ = ~0ull;
 }
@@ -391,7 +396,7 @@ void SystemControl::updateGuards() {
     for (const Region& r : region_)
         if ((mpuControl_ & 1) && (r.rasr & 1)) {
             guards_ += forbids(r.rasr, true);
-            if ((r.rasr >> 28 & 1) || (r.rasr >> 24 & 7) == 0) {
+            if (forbidsToExecute(r.rasr)) {
                 const uint32_t rest = static_cast<uint32_t>((2ull << (r.rasr >> 1 & 0x1F)) - 1);
                 neverFrom_ = std::min(neverFrom_, r.rbar & ~rest);
                 neverTo_ = std::max(neverTo_, r.rbar | rest);
@@ -433,5 +438,5 @@ bool SystemControl::hitsGuard(uint32_t start, uint32_t bytes, bool write) const 
 
 bool SystemControl::hitsExecuteNever(uint32_t address) const {
     const Region* r = regionAt(address);
-    return r && ((r->rasr >> 28 & 1) || (r->rasr >> 24 & 7) == 0);
+    return r && forbidsToExecute(r->rasr);
 }

@@ -229,6 +229,8 @@ private:
     bool accessOther(uint32_t offset, bool write, uint32_t& value);
     bool accessMpu(uint32_t offset, bool write, uint32_t& value);
     void tick();
+    // Ticks of SysTick from one zero to the next; 0: the counter stays at zero.
+    uint64_t reload() const { return load_ ? uint64_t(load_) + 1 : 0; }
     void startSysTick(uint64_t ticks);
     void controlSysTick(uint32_t value);
     void loadSysTick(uint32_t value);

@@ -101,9 +101,7 @@ bool RfChannel::isClear(uint8_t channel, uint64_t from, uint64_t to) const {
     if (weather.interferes(from, to))
         return false;
     return std::none_of(onAir_.begin(), onAir_.end(), [&](const auto& other) {
-        // A collided frame is not acknowledged.
-        const uint64_t end = other->collided ? other->frameEnd : other->end;
-        return other->packet.channel == channel && other->begin < to && end > from;
+        return other->packet.channel == channel && other->begin < to && other->over() > from;
     });
 }
 
@@ -117,8 +115,7 @@ void RfChannel::put(RfSender& sender, const RfReceiver& from, RfPacket packet, O
     auto mine =
         std::make_shared<Frame>(Frame{std::move(packet), drawn, &from, begin, frameEnd, end});
     if (!weather.perfect) {
-        onAir_.remove_if(
-            [&](auto& other) { return (other->collided ? other->frameEnd : other->end) <= now; });
+        onAir_.remove_if([&](auto& other) { return other->over() <= now; });
         for (auto& other : onAir_)
             if (other->packet.channel == mine->packet.channel) {
                 if (!mine->collided)

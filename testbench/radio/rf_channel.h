@@ -223,6 +223,8 @@ private:
         const RfReceiver* from;
         uint64_t begin, frameEnd, end; // times of the frame and of its acknowledgement
         bool collided = false;
+        // Returns when the air is free again: a collided frame is not acknowledged.
+        uint64_t over() const { return collided ? frameEnd : end; }
     };
     struct Event {
         RfSender* sender; // null for a duplicate, and if the sender was reset or has gone

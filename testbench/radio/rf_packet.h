@@ -26,11 +26,13 @@ struct RfPacket {
     uint64_t serial = 0;    // the sender's, for decryption
     bool encrypted = false; // EE
     bool from64 = false;    // the sender has no 16-bit address
-    unsigned tries = 4;     // tries of the MAC: the first one and the retries
-    unsigned rounds = 0;    // RR: further rounds of tries
-    unsigned copies = 1;    // copies of a broadcast: RR + 2 with RR
+    unsigned tries = 4;     // tries of the MAC in a round: the first one and the retries
+    unsigned rounds = 0;    // further rounds of tries (RR)
+    unsigned copies = 1;    // frames of a broadcast: RR + 2, or 1 if RR is 0
     unsigned backoff = 0;   // RN
     double rssi = -40;      // dBm at the receiver
+
+    bool isBroadcast() const { return to == 0xFFFF && !wide; }
 };
 
 // Times of a try by IEEE 802.15.4, ns (docs/simulation.md).

@@ -191,21 +191,19 @@ RfPacket XBee::addressed() const {
     packet.pan = static_cast<uint16_t>(active_.at("ID"));
     packet.channel = static_cast<uint8_t>(active_.at("CH"));
     packet.header = mm == 0 || mm == 3;
-    packet.acknowledged = (mm == 0 || mm == 2) && !(packet.to == 0xFFFF && !packet.wide);
+    packet.tries = mm == 0 || mm == 2 ? 4 : 1;
+    packet.acknowledged = (mm == 0 || mm == 2) && !packet.isBroadcast();
     packet.sequenced = packet.header && active_.at("RR") > 0;
     packet.from64 = packet.from >= 0xFFFE;
     packet.backoff = active_.at("RN");
-    setTries(packet);
+    setRounds(packet);
     return packet;
 }
 
-void XBee::setTries(RfPacket& packet) const {
+void XBee::setRounds(RfPacket& packet) const {
     unsigned rr = packet.header ? active_.at("RR") : 0;
-    bool broadcast = packet.to == 0xFFFF && !packet.wide;
-    const uint32_t mm = active_.at("MM");
-    packet.tries = mm == 0 || mm == 2 ? 4 : 1;
     packet.rounds = packet.acknowledged ? rr : 0;
-    packet.copies = broadcast && rr ? rr + 2 : 1;
+    packet.copies = packet.isBroadcast() && rr ? rr + 2 : 1;
 }
 
 void XBee::sendPackets(uint64_t now) {
@@ -275,7 +273,7 @@ bool XBee::hears(const RfPacket& packet) const {
         return false;
     if (packet.wide)
         return packet.to64 == serial();
-    return packet.to == 0xFFFF || (active_.at("MY") == packet.to && packet.to < 0xFFFE);
+    return packet.isBroadcast() || (active_.at("MY") == packet.to && packet.to < 0xFFFE);
 }
 
 XBee::Reception XBee::receive(const RfPacket& onAir, uint64_t now) {

@@ -84,7 +84,7 @@ private:
     void launch(RfPacket packet, uint64_t now);
     void work(uint64_t now, bool encrypted);
     RfPacket addressed() const;
-    void setTries(RfPacket& packet) const;
+    void setRounds(RfPacket& packet) const;
     uint64_t serial() const;
     void updateCts();
     uint64_t charNs() const;

@@ -87,9 +87,9 @@ void XBee::apiSend(const Bytes& frame, uint64_t now) {
     const bool noAck = options & 0x01;
     if (options & 0x04)
         packet.pan = RfPacket::allPans;
-    if (noAck || (packet.to == 0xFFFF && !packet.wide))
+    if (noAck || packet.isBroadcast())
         packet.acknowledged = false;
-    setTries(packet);
+    setRounds(packet);
     packet.bytes.assign(frame.begin() + static_cast<std::ptrdiff_t>(head), frame.end());
     apiQueue_.push_back({frame[1], std::move(packet)});
     updateCts();
@@ -160,14 +160,13 @@ void XBee::apiReply(const Bytes& frame) {
 
 // 0x81: a packet from a 16-bit address: source, RSSI, options, data. 0x80: from one of 64 bits.
 void XBee::apiReceived(const RfPacket& packet) {
-    bool broadcast = !packet.wide && packet.to == 0xFFFF;
     Bytes frame = {static_cast<uint8_t>(packet.from64 ? 0x80 : 0x81)};
     for (int byte = packet.from64 ? 7 : 1; byte >= 0; --byte)
         frame.push_back(
             static_cast<uint8_t>((packet.from64 ? packet.serial : packet.from) >> (8 * byte)));
     frame.push_back(static_cast<uint8_t>(active_.at("DB")));
-    frame.push_back(
-        static_cast<uint8_t>((broadcast ? 2 : 0) | (packet.pan == RfPacket::allPans ? 4 : 0)));
+    frame.push_back(static_cast<uint8_t>((packet.isBroadcast() ? 2 : 0) |
+                                         (packet.pan == RfPacket::allPans ? 4 : 0)));
     frame.insert(frame.end(), packet.bytes.begin(), packet.bytes.end());
     apiReply(frame);
 }

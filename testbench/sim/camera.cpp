@@ -10,13 +10,7 @@
 #include <stdexcept>
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wall"
-#pragma GCC diagnostic ignored "-Wextra"
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wshadow"
 #include <stb/stb_image_write.h>
-#pragma GCC diagnostic pop
 
 namespace {
 constexpr int leastSide = 8; // the vision core's

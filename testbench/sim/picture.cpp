@@ -14,13 +14,7 @@
 #include <stdexcept>
 
 #define STB_IMAGE_IMPLEMENTATION
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wall"
-#pragma GCC diagnostic ignored "-Wextra"
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wshadow"
 #include <stb/stb_image.h>
-#pragma GCC diagnostic pop
 
 namespace {
 

@@ -89,10 +89,11 @@ uint32_t& Stm32F2::storedIn(uint32_t base, uint32_t offset, uint32_t bytes) {
 
 uint32_t Stm32F2::readGpio(uint32_t offset) {
     constexpr uint32_t input = 0x10;
-    uint32_t& value = storedIn(gpio + (offset & ~0x3FFu), offset & 0x3FF, 0x28);
-    switch ((offset & 0x3FF) == input ? offset / 0x400 : ~0u) {
-    case ~0u:
+    const uint32_t port = offset / 0x400,
+                   value = storedIn(gpio + 0x400 * port, offset % 0x400, 0x28);
+    if (offset % 0x400 != input)
         return value;
+    switch (port) {
     case 0: // port A
         return (pins_[0] & ~0x400u) | uint32_t(!isSerialBreak) << 10;
     case 1:
@@ -116,6 +117,8 @@ void Stm32F2::writeGpio(uint32_t offset, uint32_t value) {
     updateFpgaPins();
 }
 
+// ---- RCC: oscillators and PLL are ready immediately ----
+
 // Checks that the flash has the wait states for HCLK (RM0033, table 3): with fewer the chip reads
 // wrong instructions.
 void Stm32F2::checkWaitStates() {
@@ -133,8 +136,6 @@ void Stm32F2::checkWaitStates() {
                           std::to_string(hz / 1'000'000) + " MHz, which needs " +
                           std::to_string(needed));
 }
-
-// ---- RCC: oscillators and PLL are ready immediately ----
 
 uint32_t Stm32F2::readRcc(uint32_t offset) {
     const uint32_t value = stored(rcc + offset);
@@ -287,10 +288,9 @@ void Stm32F2::writeSpi(uint32_t offset, uint32_t value) {
         waited_ += 32; // at half of PCLK2, as the driver sets it
         return;
     }
-    uint32_t& written = storedIn(spi, offset, 0x24);
+    storedIn(spi, offset, 0x24) = value;
     if (offset == 0)
         spiTaken_ = fpga.bytesSent();
-    written = value;
 }
 
 // ---- watchdog (RM0033, 18.3) ----

@@ -44,6 +44,10 @@ class Try(Trial.Try):
     def pixels(self, frame, current=None):
         return frame.width * frame.height * 1000 + len(frame.pixels)
 
+    def negative(self, frame, current=None):
+        return Trial.Picture(frame.width, frame.height,
+                             bytes(255 - level for level in frame.pixels))
+
     def count(self, words, current=None):
         return {word: 2 * number for word, number in words.items()}
 

@@ -6,6 +6,7 @@ hostile ones, options, exit statuses, events, completion.
 Usage: call_test.py case build-folder
 """
 import contextlib
+import importlib.util
 import io
 import json
 import os
@@ -107,6 +108,7 @@ REFUSED = {
     "echo a --oneway": "--oneway: expected an operation without results and exceptions, got echo",
     "nothing --context x": "--context: expected NAME=VALUE, got 'x'",
     "nothing --events 2": "--events needs --watch",
+    "nothing --page --gateway x": "--page: expected --gateway HOST:PORT, got 'x'",
     "nothing --encoding 2.0": "--encoding: expected 1.0 or 1.1, got '2.0'",
     "nothing --gateway x": "--gateway: expected HOST:PORT",
     "nothing --device /dev/null --flight x": "give one of --flight, --device",
@@ -232,6 +234,17 @@ class Call(unittest.TestCase):
         self.assertTrue({"fir.filter", "uav.isAlive"} <= set(choices(catalogue, [])))
         self.assertEqual(list(choices(catalogue, ["uav.setFlightState"])),
                          ["value=onGround", "value=flying"])
+        lines = (("./icesoc call fir.se", "fir.setShift"),
+                 ("./icesoc call --json uav.setFlightState v", "value=flying"),
+                 ("./icesoc call fir.setShift ", "bits="))
+        for line, wanted in lines if importlib.util.find_spec("argcomplete") else ():
+            done = subprocess.run(
+                ["bash", "-c", "./icesoc 8>&1 9>/dev/null >/dev/null 2>&1"], capture_output=True,
+                text=True, env={**os.environ, "_ARGCOMPLETE": "1", "COMP_TYPE": "9",
+                                "_ARGCOMPLETE_IFS": "\n", "COMP_LINE": line,
+                                "COMP_POINT": str(len(line)),
+                                "_ARGCOMPLETE_SUPPRESS_SPACE": "1"})
+            self.assertIn(wanted, done.stdout.split("\n"), line)
         self.assertIn("several have this operation", self.ask("ice_ping", operation=False)[2])
         self.assertIn("did you mean filter", self.ask("fliter", operation=False)[2])
         with self.assertRaisesRegex(Stop, "no object 'fri'; did you mean fir"):

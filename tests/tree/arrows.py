@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """arrows: checks every #include, and every import of the tools, against the rooms of rooms.toml;
-checks that libraries have no circles.
+checks that each C file has its header, and that libraries have no circles.
 
     arrows.py TREE                the includes of TREE, a checkout
     arrows.py --circles LIBRARY [PREFIX...]
@@ -10,7 +10,9 @@ checks that libraries have no circles.
                                   (natural recursion)
 
 A room is a folder, the longest that fits a file. A file may include from its own room and from
-those that its room may use. Exit status 1: an include that no room allows, or a circle.
+those that its room may use. A C file in sw/ includes the header of its name, or one that the table
+`headers` of rooms.toml gives for it or its folder. Exit status 1: an include that no room allows,
+a C file without its header, or a circle.
 """
 import os
 import re
@@ -57,9 +59,33 @@ def wrong_imports(tree, path, room, rooms):
             yield f"{path}:{number}: {room} may not use {used} ({found[0].strip()})"
 
 
+def wrong_headers(tree, files, headers):
+    """Yields a line for each C file in sw/ that does not include its header."""
+    for path in sorted(set(headers) - set(files)):
+        if not os.path.isdir(os.path.join(tree, path)):
+            yield f"{ROOMS}: headers: no file or folder {path}"
+    for path in files:
+        if not re.match(r"sw/.*\.c$", path):
+            continue
+        own = path[:-2] + ".h"
+        place = next((p for p in (path, os.path.dirname(path)) if p in headers), None)
+        if place:
+            wanted = headers[place] + [os.path.basename(own)] * (own in files)
+        elif own in files:
+            wanted = [os.path.basename(own)]
+        else:
+            yield f"{path}: has no header: add {own}, or its header to `headers` in {ROOMS}"
+            continue
+        text = open(os.path.join(tree, path)).read()
+        if wanted and not any(f'#include "{name}"' in text for name in wanted):
+            yield f"{path}: expected #include of {' or '.join(wanted)}"
+
+
 def wrong_arrows(tree):
     with open(os.path.join(tree, ROOMS), "rb") as file:
-        rooms = {room: set(used) for room, used in tomllib.load(file).items()}
+        table = tomllib.load(file)
+    headers = table.pop("headers")
+    rooms = {room: set(used) for room, used in table.items()}
     files = tracked(tree)
     by_name = {}
     for path in files:
@@ -68,6 +94,7 @@ def wrong_arrows(tree):
              if not os.path.isdir(os.path.join(tree, room))]
     wrong += [f"{ROOMS}: `{used}`, which `{room}` may use, does not exist" for room in sorted(rooms)
               for used in sorted(rooms[room]) if used not in rooms]
+    wrong += wrong_headers(tree, files, headers)
     for path in files:
         room = room_of(path, rooms)
         if not room:

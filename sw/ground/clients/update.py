@@ -10,7 +10,7 @@ leaves the vehicle as it was.
 """
 
 import argparse
-import struct
+import pathlib
 import sys
 import threading
 import time
@@ -21,10 +21,14 @@ import lz4.block
 import plugged
 from mission_log import Air
 
-HEADER = struct.Struct("<8I64s64s")  # sw/update/slots.h
-MAGIC = 0x1CE50C05
-KEYS = 0x5359454B
-OBJECTS = {0x31564155: "update", 0x31475046: "fpga", KEYS: "update"}  # by product number
+TREE = pathlib.Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(TREE / "tools"))
+from icesoc.util import record  # noqa: E402
+
+HEADER = record.load(TREE / "sw/update/slots_header.toml")
+MAGIC, KEYS = HEADER.constants["SLOTS_MAGIC"], HEADER.constants["SLOTS_KEYS"]
+OBJECTS = {HEADER.constants["LOADER_PRODUCT"]: "update",  # by product number
+           HEADER.constants["FPGA_PRODUCT"]: "fpga", KEYS: "update"}
 PIECE, PIECES_ON_THE_WAY, DICTIONARY = 4096, 3, 65535
 TEXT = {
     "foreignImage": "the package is not for this kind of vehicle, or not for its board",
@@ -58,9 +62,10 @@ def read_package(path):
         head = data[at:at + HEADER.size]
         if len(head) < HEADER.size:
             raise Failed("'%s': expected a complete package from pack_update" % path)
-        magic, product, version, size, base = HEADER.unpack(head)[:5]
-        image = data[at + HEADER.size:at + HEADER.size + size]
-        if magic != MAGIC or product not in OBJECTS or len(image) < size:
+        fields = HEADER.unpack(head)
+        product, version, base = fields["product"], fields["version"], fields["base"]
+        image = data[at + HEADER.size:at + HEADER.size + fields["bytes"]]
+        if fields["magic"] != MAGIC or product not in OBJECTS or len(image) < fields["bytes"]:
             raise Failed("'%s': expected a complete package from pack_update" % path)
         if product == KEYS:
             if last != KEYS:
@@ -72,7 +77,7 @@ def read_package(path):
                 parts.append((OBJECTS[product], {}))
             parts[-1][1][base] = head, image
             last = product, version
-        at += HEADER.size + size
+        at += HEADER.size + len(image)
     if not data:
         raise Failed("'%s' is empty" % path)
     return parts
@@ -173,7 +178,7 @@ class Vehicle:
 
 def send_keys(vehicle, lists, say):
     for header in lists:
-        number = HEADER.unpack(header)[2]
+        number = HEADER.unpack(header)["version"]
         reason = vehicle.persist(lambda: vehicle.proxy.begin(header))
         if str(reason) == "oldVersion":
             say("the vehicle has list %d of keys, or a later one" % number)
@@ -221,7 +226,7 @@ def await_start(vehicle, version):
 def update(vehicle, images, say, air, rehearses):
     """Brings the vehicle to the package's version, confirmed. A rehearsal sees it start and go
     back."""
-    version = HEADER.unpack(next(iter(images.values()))[0])[2]
+    version = HEADER.unpack(next(iter(images.values()))[0])["version"]
     status = vehicle.status()
     say("the vehicle runs version %d%s" % (status.running, ", on trial" if status.trial else ""))
     if status.running == version and not status.trial:
@@ -287,7 +292,8 @@ def main():
             vehicle = Vehicle(Update.FirmwarePrx.uncheckedCast(own), args.patience)
             if name != "keys":
                 update(vehicle, part, say, Air(args.status), args.rehearse)
-            elif not (args.rehearse and images and parts[0] != (name, part)):
+            elif not args.rehearse or part is parts[0][1]:
+                # A rehearsal does not send keys that follow an image: the vehicle drops that image.
                 send_keys(vehicle, part, say)
         return 0
     except KeyboardInterrupt:

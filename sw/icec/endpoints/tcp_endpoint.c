@@ -3,6 +3,7 @@
  * tcp_endpoint: sockets, cut into IceP messages by the size in their heads.
  */
 #define _POSIX_C_SOURCE 200809L
+#include "tcp_endpoint.h"
 #include "ice_message.h"
 #include "tcp_private.h"
 

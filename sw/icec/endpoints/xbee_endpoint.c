@@ -5,17 +5,18 @@
 #include "xbee_endpoint.h"
 
 #include "ice_message.h"
+#include "xbee_peers.h"
 
 #include <string.h>
 
 #define NOBODY 255
 #define HEAD 8
 #define BODY 7
-/* Retries while the link has no room, 20 ms apart, for 20 s: 27 s after a fragment that no peer
- * takes, the session ends, and with it every other connection. Two replies of 8 KB take 4 s with a
- * loss of 30 %. */
+/* Tries to send while the link has no room, 20 ms apart, for 20 s: the session, with all its
+ * connections, ends 27 s after a fragment that is not taken. Two answers of 8 KB take 4 s if three
+ * of ten packets are lost. */
 #define RETRIES 1000
-#define OTHER_RETRIES 100 /* for another ground station, because the first one waits for it */
+#define OTHER_RETRIES 100 /* the same for other peers, for which the first ground waits */
 
 /* The head of an encoded endpoint: type, 13 bytes of encapsulation, encoding 1.1. */
 static const Ice_Byte head[HEAD] = {
@@ -25,111 +26,60 @@ static const Ice_Byte head[HEAD] = {
 #define EVENT(kind, channel) \
     (2U << (((U32)(kind) - ICE_EVENT_CLOSED) * XBEE_CONNECTIONS + (U32)(channel)))
 
-/* A connection's ground and its channel there; a ground's connection that this side opens. */
-#define GROUND_OF(connection) (XBEE_PEERS > 1 ? (int)((U32)(connection) / LINK_CHANNELS) : 0)
-#define CHANNEL_OF(connection) \
-    (XBEE_PEERS > 1 ? (int)((U32)(connection) % LINK_CHANNELS) : (connection))
-static int isOwnOpen(const XBeeATEndpoint* self, int ground) {
-    return XBEE_PEERS > 1 ? self->ownOpen >> ground & 1 : self->ownOpen;
+/* Peer of a connection, and its channel there. */
+#define PEER_OF(connection) ((int)((U32)(connection) / LINK_CHANNELS))
+#define CHANNEL_OF(connection) ((int)((U32)(connection) % LINK_CHANNELS))
+
+static int isOwnOpen(const XBeeATEndpoint* self, int peer) {
+    return self->ownOpen >> peer & 1;
 }
 
-static void setOwnOpen(XBeeATEndpoint* self, int ground, int isOpen) {
-    const int others = XBEE_PEERS > 1 ? self->ownOpen & ~(1 << ground) : 0;
-    self->ownOpen = (Ice_Byte)(XBEE_PEERS > 1 ? others | isOpen << ground : isOpen);
+static void setOwnOpen(XBeeATEndpoint* self, int peer, int isOpen) {
+    self->ownOpen = (Ice_Byte)((self->ownOpen & ~(1 << peer)) | isOpen << peer);
 }
-
-#if XBEE_PEERS > 1
-#define OWN_OF(self, ground) ((self)->own[ground])
-
-/* Starts or stops connecting to a vehicle. Returns 0 for a ground station, which is never
- * dialled. */
-static int setSought(XBeeATEndpoint* self, int ground, int isSought) {
-    const int bit = isSought ? self->vehicles & 1 << ground : 0;
-    self->sought = (Ice_Byte)((self->sought & ~(1 << ground)) | bit);
-    self->soughtAt[ground] = self->port->nowMs(self->context);
-    self->seen[ground] = Link_statistics(self->links[ground])->messagesReceived;
-    return bit;
-}
-
-/* Returns 1 if a vehicle's session has ended before any message arrived in it, as when both sides
- * have begun one: dialling continues, and no task is informed. */
-static int isSoughtOn(XBeeATEndpoint* self, int ground) {
-    const Link* link = self->links[ground];
-    if (!(self->sought >> ground & 1) || Link_state(link) == LINK_STATE_UP ||
-        Link_statistics(link)->messagesReceived != self->seen[ground])
-        return 0;
-    setOwnOpen(self, ground, 0);
-    return 1;
-}
-#else
-#define OWN_OF(self, ground) XBEE_OWN_CHANNEL
-#define setSought(self, ground, isSought) 0
-#define isSoughtOn(self, ground) 0
-#endif
 
 static int isOwn(const XBeeATEndpoint* self, int connection) {
-    (void)self;
-    return connection == OWN_OF(self, GROUND_OF(connection));
+    return connection == self->own[PEER_OF(connection)];
 }
 
-/* ---- several tasks ----
- * The minimal run time has one task, which polls the link while it waits, and needs none of this.
- */
-
-/* Calls a function of the port. */
-static void tell(XBeeATEndpoint* self, void (*function)(void* context)) {
-    if (ICEC_FULL)
-        function(self->context);
-}
-
-/* Records whether the link keeps a message that was not taken. Returns the previous state. */
+/* Records whether the link keeps a message that was not taken. Returns the last record. */
 static int setHeld(XBeeATEndpoint* self, Ice_Byte held) {
-    int before = ICEC_FULL && self->held;
-    if (ICEC_FULL && held != before)
+    const int before = self->held;
+    if (held != before)
         self->held = held;
     return before;
 }
 
-/* Records the connection of the message that is being sent: one at a time, under ICE_LOCK_SEND. */
-static void setOffered(XBeeATEndpoint* self, int connection) {
-    if (ICEC_FULL)
-        self->offered = (Ice_Byte)connection;
-}
-
-static int isOffered(const XBeeATEndpoint* self, int connection) {
-    return !ICEC_FULL || self->offered == connection;
-}
-
 static void lock(XBeeATEndpoint* self) {
-    tell(self, self->port->lock);
+    self->port->lock(self->context);
 }
 
 static void unlock(XBeeATEndpoint* self) {
-    tell(self, self->port->unlock);
+    self->port->unlock(self->context);
 }
 
 static void report(XBeeATEndpoint* self, U32 events) {
     self->events |= events;
-    tell(self, self->port->signal);
+    self->port->signal(self->context);
 }
 
-/* Withdraws a report. Returns 1 if it was not delivered yet. */
-static int takeBack(XBeeATEndpoint* self, Ice_EventKind kind, int channel) {
+/* Cancels a report. Returns 1 if it was not delivered yet. */
+static int cancel(XBeeATEndpoint* self, Ice_EventKind kind, int channel) {
     if (!(self->events & EVENT(kind, channel)))
         return 0;
     self->events ^= EVENT(kind, channel);
     return 1;
 }
 
-/* Records that a connection has ended: nothing more may be sent on its channel, which may soon
- * belong to another connection. */
+/* Records the end of a connection: nothing more may be sent on its channel, which may soon belong
+ * to another one. */
 static void end(XBeeATEndpoint* self, int channel) {
     if (isOwn(self, channel)) {
-        setOwnOpen(self, GROUND_OF(channel), 0);
-        (void)setSought(self, GROUND_OF(channel), 0);
+        setOwnOpen(self, PEER_OF(channel), 0);
+        (void)XBeePeers_setDialed(self, PEER_OF(channel), 0);
     }
-    if (isOffered(self, channel))
-        setOffered(self, NOBODY);
+    if (self->offered == channel)
+        self->offered = NOBODY;
 }
 
 int XBeeATEndpoint_onMessage(void* context, int channel, const U8* data, U32 size) {
@@ -149,33 +99,23 @@ int XBeeATEndpoint_onMessage(void* context, int channel, const U8* data, U32 siz
 
 void XBeeATEndpoint_onChannel(void* context, int channel, int isOpen) {
     XBeeATEndpoint* self = context;
-    if (isOwn(self, channel) && (isOpen || isSoughtOn(self, GROUND_OF(channel))))
-        return;
+    if (isOwn(self, channel)) {
+        if (isOpen)
+            return;
+        if (XBeePeers_isDialedOn(self, PEER_OF(channel))) {
+            setOwnOpen(self, PEER_OF(channel), 0);
+            return;
+        }
+    }
     if (!isOpen)
         end(self, channel);
-    /* A closing withdraws an unseen opening, so at most a closing and then an opening wait for a
-     * channel, however often the ground station restarts. */
-    if (isOpen || !takeBack(self, ICE_EVENT_OPENED, channel))
+    /* A closing cancels an unseen opening, so at most a closing and then an opening are pending for
+     * a channel, however often the ground restarts. */
+    if (isOpen || !cancel(self, ICE_EVENT_OPENED, channel))
         report(self, EVENT(isOpen ? ICE_EVENT_OPENED : ICE_EVENT_CLOSED, channel));
 }
 
-#if XBEE_PEERS > 1
-
-void XBeeATEndpoint_addPeer(XBeeATEndpoint* self, int ground, Link* link, U16 address) {
-    self->links[ground] = link;
-    self->grounds[ground] = address;
-    self->own[ground] = (Ice_Byte)(ground * LINK_CHANNELS + XBEE_OWN_CHANNEL);
-}
-
-void XBeeATEndpoint_setVehicle(XBeeATEndpoint* self, int ground, int isGround) {
-    self->vehicles = (Ice_Byte)(self->vehicles | 1 << ground);
-    if (isGround)
-        self->own[ground] = (Ice_Byte)(ground * LINK_CHANNELS);
-}
-
-#endif
-
-/* Waits for one event. Only during this wait may the link write `buffer`; otherwise the link keeps
+/* Waits for one event. The link may write `buffer` only meanwhile; at other times the link keeps
  * messages. */
 static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ice_Event* event) {
     XBeeATEndpoint* self = context;
@@ -186,7 +126,7 @@ static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ic
         self->buffer = buffer;
         unlock(self);
         if (held)
-            tell(self, self->port->kick);
+            self->port->kick(self->context);
         (void)self->port->wait(self->context, timeoutMs);
         lock(self);
         self->buffer = 0;
@@ -204,82 +144,76 @@ static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ic
     return ICE_OK;
 }
 
-/* Opens the channel of this side to a ground station. A vehicle without a session is dialled, and
- * the channel opens later: its first message ends the caller's wait. */
-static Link_Status openOwn(XBeeATEndpoint* self, int ground) {
+/* Opens this side's channel to a peer. A vehicle without a session is dialed, and gets the channel
+ * later: its first message ends the caller's wait. */
+static Link_Status openOwn(XBeeATEndpoint* self, int peer) {
     Link_Status status = LINK_OK;
-    int own = OWN_OF(self, ground);
-    if (!isOwnOpen(self, ground)) {
-        status = Link_openChannel(self->links[ground], CHANNEL_OF(own));
+    const int own = self->own[peer];
+    if (!isOwnOpen(self, peer)) {
+        status = Link_openChannel(self->links[peer], CHANNEL_OF(own));
         if (status == LINK_OK) { /* the end of the last connection is not the end of this one */
-            setOwnOpen(self, ground, 1);
+            setOwnOpen(self, peer, 1);
             self->events &= ~EVENT(ICE_EVENT_CLOSED, own);
         }
-        if (status == LINK_DOWN && setSought(self, ground, 1))
+        if (status == LINK_DOWN && XBeePeers_setDialed(self, peer, 1))
             status = LINK_OK;
     }
     return status;
 }
 
-#if XBEE_PEERS > 1
-
-void XBeeATEndpoint_seek(XBeeATEndpoint* self, int ground, U32 nowUs) {
-    Link* link = self->links[ground];
-    Link_State state = Link_state(link);
-    const U32 tookMs = self->port->nowMs(self->context) - self->soughtAt[ground];
+void XBeeATEndpoint_dial(XBeeATEndpoint* self, int peer, U32 nowUs) {
+    Link* link = self->links[peer];
+    const Link_State state = Link_state(link);
+    const U32 tookMs = self->port->nowMs(self->context) - self->dialedAt[peer];
     if (tookMs >= (U32)ICE_TIMEOUT_MS)
-        (void)setSought(self, ground, 0);
-    if (self->sought >> ground & 1) {
+        (void)XBeePeers_setDialed(self, peer, 0);
+    if (self->dialed >> peer & 1) {
         if (state == LINK_STATE_UP)
-            (void)openOwn(self, ground);
+            (void)openOwn(self, peer);
         Link_start(link, nowUs);
     } else if (state == LINK_STATE_CONNECTING) {
         Link_stop(link, nowUs);
     }
 }
 
-#endif
-
-/* Returns whether the connection of the offered message has ended, whether or not the receiver has
- * seen it: its channel may already belong to another one. */
+/* Returns whether the connection of the offered message has ended, whether the receiver knows it or
+ * not: its channel may already belong to another one. */
 static int hasEnded(const XBeeATEndpoint* self, int connection) {
-    return (self->events & EVENT(ICE_EVENT_CLOSED, connection)) || !isOffered(self, connection);
+    return (self->events & EVENT(ICE_EVENT_CLOSED, connection)) || self->offered != connection;
 }
 
-/* Ends a connection if the link has no room for its message; in the minimal run time the caller may
- * retry. */
+/* Ends a connection, since the link has no room for its message. */
 static void giveUp(XBeeATEndpoint* self, int connection) {
-    if (ICEC_FULL) {
-        (void)Link_closeChannel(self->links[GROUND_OF(connection)], CHANNEL_OF(connection));
-        XBeeATEndpoint_onChannel(self, connection, 0);
-    }
+    (void)Link_closeChannel(self->links[PEER_OF(connection)], CHANNEL_OF(connection));
+    XBeeATEndpoint_onChannel(self, connection, 0);
 }
 
 static int mostTries(int connection) {
-    return GROUND_OF(connection) ? OTHER_RETRIES : RETRIES;
+    return PEER_OF(connection) ? OTHER_RETRIES : RETRIES;
 }
 
-/* Sends a message, or opens the channel of this side (no message). Retries while the link has no
- * room; finally the connection ends, and the link informs the peer as soon as it can. */
+/* Sends a message or, without one, opens this side's channel. Tries again while the link has no
+ * room; after the last try it ends the connection, and the link informs the peer as soon as it can.
+ */
 static Ice_Status offer(XBeeATEndpoint* self, int connection, const Ice_Byte* message,
                         Ice_Int size) {
     Link_Status status;
     int tries = 0;
     lock(self);
     if (message)
-        setOffered(self, connection);
+        self->offered = (Ice_Byte)connection; /* one at a time, under ICE_LOCK_SEND */
     for (;;) {
         if (!message)
-            status = openOwn(self, GROUND_OF(connection));
+            status = openOwn(self, PEER_OF(connection));
         else if (hasEnded(self, connection))
             status = LINK_CLOSED;
         else
-            status = Link_send(self->links[GROUND_OF(connection)], CHANNEL_OF(connection), message,
+            status = Link_send(self->links[PEER_OF(connection)], CHANNEL_OF(connection), message,
                                (U32)size, 0);
         if (status == LINK_FULL && message && tries == mostTries(connection))
             giveUp(self, connection);
         unlock(self);
-        tell(self, self->port->kick);
+        self->port->kick(self->context);
         if (status != LINK_FULL || tries++ == mostTries(connection))
             break;
         (void)self->port->wait(self->context, 20);
@@ -287,7 +221,7 @@ static Ice_Status offer(XBeeATEndpoint* self, int connection, const Ice_Byte* me
     }
     /* A wait here may have taken an event that the receiver waits for. */
     if (tries)
-        tell(self, self->port->signal);
+        self->port->signal(self->context);
     return status == LINK_OK ? ICE_OK : status == LINK_TOO_LONG ? ICE_LIMIT : ICE_CONNECTION_LOST;
 }
 
@@ -296,36 +230,32 @@ static Ice_Status sendMessage(void* context, int connection, const Ice_Byte* mes
     return offer(context, connection, message, size);
 }
 
-/* Returns the ground station with the address in an encoded endpoint; -1 if there is none. */
-static int groundOf(const XBeeATEndpoint* self, const Ice_Byte* encoded, Ice_Int size) {
-    int ground = XBEE_PEERS - 1;
+/* Returns the peer with an encoded endpoint's address; -1: unknown. */
+static int peerOf(const XBeeATEndpoint* self, const Ice_Byte* encoded, Ice_Int size) {
     if (size < HEAD + 2)
         return 0;
-    while (ground >= 0 && (!self->links[ground] ||
-                           self->grounds[ground] != (encoded[HEAD] | encoded[HEAD + 1] << 8)))
-        --ground;
-    return ground;
+    return XBeePeers_find(self, (U16)(encoded[HEAD] | encoded[HEAD + 1] << 8));
 }
 
 static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size, int* connection) {
-    int ground = XBEE_PEERS > 1 ? groundOf(context, encoded, size) : 0;
-    if (size < 2 || encoded[0] != head[0] || encoded[1] != head[1] || ground < 0)
+    XBeeATEndpoint* self = context;
+    const int peer = peerOf(self, encoded, size);
+    if (size < 2 || encoded[0] != head[0] || encoded[1] != head[1] || peer < 0)
         return ICE_NO_ENDPOINT;
-    *connection = OWN_OF((XBeeATEndpoint*)context, ground);
-    /* The last closing may still be pending. */
-    return offer(context, XBEE_PEERS > 1 ? *connection : 0, 0, 0);
+    *connection = self->own[peer];
+    return offer(self, *connection, 0, 0); /* the last closing may not be delivered yet */
 }
 
 static void closeChannel(void* context, int connection) {
     XBeeATEndpoint* self = context;
     lock(self);
-    /* The peer may have closed already; the channel may already be a new one. */
-    if (!takeBack(self, ICE_EVENT_CLOSED, connection)) {
-        (void)Link_closeChannel(self->links[GROUND_OF(connection)], CHANNEL_OF(connection));
+    /* The peer may have closed it already, and the channel may belong to a new connection. */
+    if (!cancel(self, ICE_EVENT_CLOSED, connection)) {
+        (void)Link_closeChannel(self->links[PEER_OF(connection)], CHANNEL_OF(connection));
         end(self, connection);
     }
     unlock(self);
-    tell(self, self->port->kick);
+    self->port->kick(self->context);
 }
 
 static Ice_Status listenTo(void* context, const char* options) {
@@ -337,10 +267,9 @@ static Ice_Status listenTo(void* context, const char* options) {
 static void encode(void* context, const char* options, Ice_OutputStreamPtr os) {
     XBeeATEndpoint* self = context;
     U32 address = options ? Ice_numberOption(options, 'a', 0) : self->address;
-    if (ICEC_FULL && options &&
-        (!Ice_areOptions(options, "apt") || address > 0xFFFFU ||
-         Ice_numberOption(options, 'p', 255) > 255U ||
-         Ice_numberOption(options, 't', 0) > 0x7FFFFFFFU))
+    if (options && (!Ice_areOptions(options, "apt") || address > 0xFFFFU ||
+                    Ice_numberOption(options, 'p', 255) > 255U ||
+                    Ice_numberOption(options, 't', 0) > 0x7FFFFFFFU))
         os->failed = ICE_FAILED_MALFORMED;
     Ice_OutputStream_writeBlob(os, head, HEAD);
     Ice_OutputStream_writeShort(os, (Ice_Short)address);
@@ -369,6 +298,14 @@ static Ice_Bool print(void* context, const Ice_Byte* encoded, Ice_Int size,
     return 1;
 }
 
+Ice_Status XBeeATEndpoint_makeProxy(Ice_ObjectAdapterPtr adapter, const char* identity, U16 address,
+                                    Ice_ObjectPrxPtr prx) {
+    const Ice_Status status = Ice_ObjectAdapter_createProxy(adapter, identity, prx);
+    prx->endpoints[1 + HEAD] = (Ice_Byte)address; /* after the number of endpoints: one */
+    prx->endpoints[2 + HEAD] = (Ice_Byte)(address >> 8);
+    return status;
+}
+
 static U32 nowMs(void* context) {
     XBeeATEndpoint* self = context;
     return self->port->nowMs(self->context);
@@ -376,20 +313,17 @@ static U32 nowMs(void* context) {
 
 static void wakeUp(void* context) {
     XBeeATEndpoint* self = context;
-    tell(self, self->port->signal);
+    self->port->signal(self->context);
 }
 
 void XBeeATEndpoint_init(Ice_CommunicatorPtr ic, const char* name, XBeeATEndpoint* self, Link* link,
                          U16 address, const XBeeATEndpoint_Port* port, void* context) {
-    static const Ice_Endpoint endpoint = {
-        "xbee-at", receive, sendMessage, connectTo, closeChannel,
-        listenTo,  encode,  wakeUp,      nowMs,     ICEC_FULL ? print : 0};
+    static const Ice_Endpoint endpoint = {"xbee-at", receive, sendMessage, connectTo, closeChannel,
+                                          listenTo,  encode,  wakeUp,      nowMs,     print};
     (void)name;
     memset(self, 0, sizeof *self);
     self->links[0] = link;
-#if XBEE_PEERS > 1
     self->own[0] = XBEE_OWN_CHANNEL;
-#endif
     self->address = address;
     self->port = port;
     self->context = context;

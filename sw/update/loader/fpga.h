@@ -7,8 +7,6 @@
 
 #include "slots.h"
 
-#define FPGA_PRODUCT 0x31475046UL /* "FPG1" */
-
 /* Returns the slots of bitstreams, or 0 if there is no such flash. Before that, the FPGA loads a
  * new bitstream (with `mayTry`), or the golden one if the new one was not confirmed or not
  * accepted, and DONE is awaited. With `mustLoad` the FPGA loads its bitstream again, so that its

@@ -7,7 +7,6 @@
 
 #include "slots.h"
 
-#define LOADER_PRODUCT 0x31564155UL /* "UAV1" */
 #define LOADER_MAGIC 0x1CE50C06UL
 
 /* Stored after the loader's vectors, so that images need not contain libsodium. */

@@ -116,7 +116,7 @@ void savePublic(const std::string& key, const std::string& output) {
     save(output, {digits.begin(), digits.end()});
 }
 
-// Reads a number of digits alone: a sign or spaces are refused, as strtoull would take them.
+// Parses a version: digits only. (std::stoull also accepts spaces and a sign.)
 uint32_t versionOf(const std::string& text) {
     const bool isNumber = !text.empty() && text.size() <= 10 &&
                           text.find_first_not_of("0123456789") == std::string::npos;
@@ -236,7 +236,8 @@ void checkWhole(const std::string& path, const Bytes& file, size_t at) {
              " bytes after the bitstream's end: expected none");
 }
 
-// Throws if a .bit's header counts other bytes than follow: field 'e' (Xilinx's format of BitGen).
+// Throws if a .bit file has more or fewer bytes than field 'e' of its header states (the format of
+// Xilinx's BitGen).
 void checkHeader(const std::string& path, const Bytes& file) {
     const auto number = [&](size_t at, size_t bytes) {
         size_t value = 0;
@@ -380,13 +381,12 @@ int main(int argc, char** argv) {
         "fills a new vehicle's flash: boot loader, public key, a confirmed firmware",
         [&] { fillVehicle(word[0], word[1], versionOf(word[2]), word[3], word[4]); });
     add("fpga", "GOLDEN.bit VERSION KEYFILE FLASH.bin", 4, 4,
-        "fills the FPGA's flash, with the bitstream that is always there",
+        "fills the FPGA's flash with the bitstream that is never replaced",
         [&] { fillFpga(word[0], versionOf(word[1]), word[2], word[3]); });
     add("public", "KEYFILE KEY.pub", 2, 2, "writes a key's public half",
         [&] { savePublic(word[0], word[1]); });
     add("keys", "NUMBER KEYFILE KEY.pub [SECOND.pub] NEW.update", 4, 5,
-        "signs the next list of public keys; NUMBER is the last one's and 1, of a new vehicle 1",
-        [&] {
+        "signs the next list of public keys; NUMBER: the last list's plus 1 (new vehicle: 1)", [&] {
             std::vector<Bytes> open;
             std::transform(word.begin() + 2, word.end() - 1, std::back_inserter(open), readPublic);
             save(word.back(), listOf(open, versionOf(word[0]), Keys(word[1])));
@@ -394,13 +394,14 @@ int main(int argc, char** argv) {
     add("stamp", "FIRMWARE.elf", 1, 1,
         "writes a firmware's checksum into its file, as the build does",
         [&] { ElfImage(word[0]).stamp(); });
-    number("--vendor", board[0], "which vehicle and image have in common (1)");
-    number("--board", board[1], "the same (1)");
+    number("--vendor", board[0], "vendor of the board, must match the vehicle's (default 1)");
+    number("--board", board[1], "type of the board, must match the vehicle's (default 1)");
     number("--needs", needs,
-           "version of the bitstream that a firmware needs, or the firmware that a bitstream does");
-    app.add_option("--second", second, "KEY.pub: a second key, of a new vehicle");
+           "lowest version of the bitstream that a firmware needs, or of the firmware that a "
+           "bitstream needs (default 0: any)");
+    app.add_option("--second", second, "KEY.pub: second public key of a new vehicle");
     app.add_flag("--unchecked", isUnchecked,
-                 "sign a bitstream although it is cut, or has bytes after its end");
+                 "sign a bitstream that is cut or has bytes after its end");
     app.require_subcommand(1);
     try {
         if (sodium_init() < 0)

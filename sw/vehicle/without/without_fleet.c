@@ -3,6 +3,7 @@
  * without_fleet: the vehicle with one ground only (ICESOC_FLEET=OFF): no observer, no other
  * vehicle, no calls to all vehicles.
  */
+#include "uav_fleet.h"
 #include "uav_links.h"
 #include "uav_peers.h"
 
@@ -19,7 +20,7 @@ int UAV_addPeers(void) {
 
 void UAV_usePeers(void) {}
 
-void UAV_seekVehicle(void) {}
+void UAV_dialVehicle(void) {}
 
 int UAV_offerCall(void) {
     return 0;
@@ -29,8 +30,8 @@ Radio_OnPacket UAV_receiver(void) {
     return UAV_onPacketOf;
 }
 
-int UAV_makeVehicleProxy(Ice_CommunicatorPtr ic, Ice_ObjectPrxPtr other) {
-    (void)ic;
+int UAV_makeVehicleProxy(Ice_ObjectAdapterPtr adapter, Ice_ObjectPrxPtr other) {
+    (void)adapter;
     (void)other;
     return 0;
 }

@@ -3,18 +3,10 @@
  * without_keys: the vehicle without keys (ICESOC_KEYS=OFF): every peer talks in the clear. It only
  * starts if it was opened on purpose, so a vehicle that has a key does not fly unprotected.
  */
+#include "uav_keyring.h"
 #include "uav_keys.h"
-#include "uav_private.h"
 
 #include <string.h>
-
-U32 UAV_stateAt(int role) {
-    return (U32)role * UAV_PEER_WORDS + BACKUP_AT(vehicle.keys.state);
-}
-
-U32 UAV_addressAt(int role) {
-    return BACKUP_AT(others[0].inverted) + ((U32)role - 1U) * UAV_PEER_WORDS;
-}
 
 int UAV_provide(U32 address, const U8* key) {
     U32 word;
@@ -58,7 +50,7 @@ int UAV_isOpen(void) {
 U32 UAV_addressOf(int role) {
     if (role == UAV_GROUND)
         return UAV_GROUND_ADDRESS;
-    return UAV_isOpen() ? ~UAV_load(UAV_addressAt(role)) : UAV_NO_PEER;
+    return UAV_isOpen() ? ~UAV_load(UAV_ADDRESS_AT(role)) : UAV_NO_PEER;
 }
 
 int UAV_hasGroundsPart(void) {

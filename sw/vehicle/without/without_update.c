@@ -2,7 +2,7 @@
  *
  * without_update: the vehicle without updates over the air (ICESOC_UPDATE=OFF).
  */
-#include "uav_private.h"
+#include "uav_update.h"
 
 void UAV_startUpdate(Ice_ObjectAdapterPtr adapter) {
     (void)adapter;

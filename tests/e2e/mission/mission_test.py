@@ -131,8 +131,8 @@ class Cases(Script):
         self.fails("not the flight that was recorded: it departs between", *replay, "other")
         write("other/flight.jsonl", '{"no": "flight"}\n')
         self.fails("expected the recording of a flight, line 1", *replay, "other")
-        self.fails("--out: expected a folder other than the recording's", SIMULATOR,
-                   "--replay", self.out, "--out", self.out)
+        self.fails("--out: expected a folder other than the recording's", SIMULATOR, "--replay",
+                   self.out, "--out", self.out)
         self.fails("flown by the firmware's host build", *replay, self.out, "--gdb", "0")
         self.fails("writes no waveforms", *replay, self.out, "--wave", "wave.fst")
 
@@ -201,7 +201,8 @@ class Cases(Script):
         self.assertEqual(flash.read_bytes(), before)
         Path("fpga.bin").unlink()
         Path("cut.update").write_bytes(Path("new.update").read_bytes()[:50000])
-        self.fails("is cut short", CLIENTS / "update.py", "cut.update", "--slice", UPDATES[-1])
+        self.fails("expected a complete package", CLIENTS / "update.py", "cut.update", "--slice",
+                   UPDATES[-1])
         self.pack(*VEHICLE, self.keys / "update.key", flash)
         stored = "--cpu", "m3", "--flash", flash
         self.simulate(*UPDATES, options=(*stored, "--duration", "8"), status=None)

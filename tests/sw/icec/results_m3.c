@@ -7,7 +7,9 @@
  */
 #include "Graph.h"
 #include "os_cases.h"
-#include "uav_private.h"
+#include "uav_os.h"
+#include "uav_tasks.h"
+#include "ucos_ii.h"
 
 #include <string.h>
 

@@ -211,6 +211,16 @@ TEST_F(RadioEndpoint, ASecondGroundHasConnectionsOfItsOwn) {
 
 // Options are written as the ground's plugin writes them (test_radio_ice,
 // EndpointsKeepTheirOptionsAsText...), so far as the UAV has them.
+TEST_F(RadioEndpoint, AProxyToAPeerIsEqualToThatOfItsString) {
+    Ice_ObjectAdapter adapter;
+    Ice_ObjectPrx made, parsed;
+    ASSERT_EQ(Ice_Communicator_createObjectAdapterWithEndpoints(&ic_, "", "xbee-at", &adapter),
+              ICE_OK);
+    ASSERT_EQ(XBeeATEndpoint_makeProxy(&adapter, "uav", 0x12F3, &made), ICE_OK);
+    ASSERT_EQ(Ice_Communicator_stringToProxy(&ic_, "uav:xbee-at -a 0x12F3", &parsed), ICE_OK);
+    EXPECT_TRUE(Ice_ObjectPrx_equals(&made, &parsed));
+}
+
 TEST_F(RadioEndpoint, AnEndpointsOptionsAreInTheProxysTextAgain) {
     auto text = [&](const char* proxy) {
         Ice_ObjectPrx prx;

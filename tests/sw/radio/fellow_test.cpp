@@ -125,7 +125,7 @@ struct Craft {
                 Link_receive(&end.link, bytes.data(), U32(bytes.size()), us);
             }
             if (end.isVehicles)
-                XBeeATEndpoint_seek(&endpoint, fellow, us);
+                XBeeATEndpoint_dial(&endpoint, fellow, us);
             Link_poll(&end.link, us);
         }
     }

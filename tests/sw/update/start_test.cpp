@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// start_test: what the ARM binaries start, on the chip's model, from flash as filled by a
-// programmer: the boot loader starts its firmware, and the firmware, which receives the addresses
-// of the FPGA's reads in flash, a bitstream.
+// start_test: runs the ARM binaries on the model of the STM32, from flash as a programmer fills it.
+// The boot loader starts the firmware, and the firmware starts the bitstream that the FPGA loads:
+// it observes the addresses that the FPGA reads from its SPI flash.
 
 #include "stm32f2.h"
 #include <algorithm>
@@ -25,7 +25,7 @@ namespace {
 using Bytes = std::vector<uint8_t>;
 constexpr uint32_t flashBase = 0x08000000;
 
-// A separate folder for a test, since tests run in parallel, in which pack_update works.
+// Folder of one test, in which pack_update runs: tests run in parallel.
 struct VehicleFolder {
     VehicleFolder() { std::filesystem::create_directories(path); }
     ~VehicleFolder() { std::filesystem::remove_all(path); }
@@ -210,7 +210,7 @@ TEST(PackUpdate, SaysWhatIsWrong) {
     EXPECT_EQ(key.st_mode & 0777, 0600u);
     ::chmod((folder.path + "/key").c_str(), 0644);
     refuses("image " FIRMWARE "uav.elf 2 key update", "chmod 600");
-    refuses("keys 2 other said list", "no public key");
+    refuses("keys 2 other said list", "expected a public key");
 }
 
 constexpr uint32_t frameWords = 2000;

@@ -157,3 +157,30 @@ void Case_guard(void) {
     MPU_CTRL = 0;
     Case_say('.');
 }
+
+/* Handlers of hard faults and of NMI run without the MPU, so an NMI may put its frame there. */
+static U32 readOnly[64] __attribute__((aligned(256)));
+
+static void interruptOnReadOnly(void) {
+    skip();
+    __asm__ volatile("mov r2, sp\n\t"
+                     "mov sp, %0\n\t"
+                     "str %1, [%2]\n\t"
+                     "dsb\n\t"
+                     "isb\n\t"
+                     "mov sp, r2" ::"r"(readOnly + 64),
+                     "r"(1UL << 31), /* ICSR.NMIPENDSET */
+                     "r"(&SCB_ICSR)
+                     : "r2", "memory");
+}
+
+void Case_guardOff(void) {
+    Case_action[3] = interruptOnReadOnly;
+    MPU_RBAR = (U32)readOnly | 0x10UL;
+    MPU_RASR = 1UL << 28 | 5UL << 24 | 7UL << 1 | 1UL;
+    MPU_CTRL = MPU_CTRL_ON;
+    value[4] = REG(0x60000010UL);
+    Case_say('.');
+    value[5] = SCB_CFSR;
+    MPU_CTRL = 0;
+}

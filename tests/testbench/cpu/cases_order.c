@@ -5,7 +5,6 @@
  */
 #include "cpu_cases.h"
 
-#define DWT_CYCCNT REG(0xE0001004UL)
 #define PENDSVSET (1UL << 28)
 
 static void pend1(void) {

@@ -5,11 +5,7 @@
  */
 #include "cpu_cases.h"
 
-#define DEMCR REG(0xE000EDFCUL)
-#define DWT_CTRL REG(0xE0001000UL)
-#define DWT_CYCCNT REG(0xE0001004UL)
 #define SCB_SCR REG(0xE000ED10UL)
-#define NVIC_ISPR REG(0xE000E200UL)
 
 static U32 word[128] __attribute__((aligned(512)));
 
@@ -136,7 +132,7 @@ void Case_tickRules(void) {
 
 static void masked(void) {
     __asm__ volatile("cpsid i");
-    NVIC_ISPR = 2;
+    NVIC_ISPR0 = 2;
     value[0] = SCB_ICSR & 0x1FFUL;
     value[1] = SCB_ICSR >> 22 & 1UL;
     value[2] = SCB_ICSR >> 12 & 0x1FFUL;

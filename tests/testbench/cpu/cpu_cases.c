@@ -45,11 +45,9 @@ void __attribute__((naked)) Handler(void) {
 }
 
 void Case_countCycles(void) {
-    REG(0xE000EDFCUL) = 1UL << 24; /* DEMCR.TRCENA */
-    REG(0xE0001000UL) = 1;         /* DWT_CTRL.CYCCNTENA */
+    DEMCR = DEMCR_TRCENA;
+    DWT_CTRL = 1; /* CYCCNTENA */
 }
-
-#define NVIC_ISPR0 REG(0xE000E200UL)
 
 void Case_priority(U32 irq, U32 value8) {
     NVIC_IPR(irq) = (U8)value8;

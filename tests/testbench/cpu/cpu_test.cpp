@@ -76,7 +76,11 @@ const Case cases[] = {
     {"WithoutAHandlerOfItsOwnAFaultIsAHardFault",
      "Case_escalation",
      "h.",
-     {{2, 1 << 30}}}, // FORCED
+     {{2, 1 << 30}}},                                              // FORCED
+    {"InTheHandlerOfAHardFaultAnNmiMayUseAStackThatTheMpuForbids", // B3.5.1
+     "Case_guardOff",
+     "hn.",
+     {{5, 0}}},
     {"AnUndefinedInstructionIsAUsageFault", "Case_undefinedInstruction", "f.", {{0, 1 << 16}}},
     {"AJumpOutOfThumbStateIsAUsageFault", "Case_armState", "f.", {{0, 1 << 17}}}, // INVSTATE
     // The frame is where PSP points; the handler has another stack; CONTROL.SPSEL is back.

@@ -16,6 +16,7 @@ import urllib.error
 import urllib.request
 from pathlib import Path
 
+from browser import Browser
 from script import TREE, Script, edit, fresh, main, write
 import look
 
@@ -60,6 +61,7 @@ class Cases(Script):
             page = self.said
             state = urllib.request.urlopen(f"http://127.0.0.1:{port}/state").read().decode()
             self.calls()
+            self.calls_of_the_page(port)
             self.said = page
         self.assertNotRegex(log, "CONSOLE.*(rror|NOT_RESOLVED)")
         self.has(
@@ -107,6 +109,34 @@ class Cases(Script):
         self.ask(*call, "keys.count", status=6)
         self.has("maintenance")
         self.ask(*call, "update.getStatus", status=5)
+
+    def calls_of_the_page(self, port):
+        """The page calls the vision core, and draws the corners that come back."""
+        if not (BUILD / "page/ice.js").stat().st_size:
+            return print("without a call of the page: Ice for JavaScript could not be fetched")
+        with Browser() as browser:
+            browser.open(f"http://127.0.0.1:{port}/")
+            browser.run("document.getElementById('objects').open = true")
+            browser.until("document.querySelectorAll('#cards details').length > 4")
+            browser.run("document.querySelectorAll('#cards details').forEach(d => d.open = true)")
+            browser.until("document.getElementById('hwengine1.setParameterA.value') !== null")
+            calls = browser.run("""(async () => {
+                const slider = document.querySelector(
+                    '[id="hwengine1.setParameterA.value"] ~ input');
+                slider.value = 60;
+                slider.dispatchEvent(new Event('input'));
+                const forms = [...slider.closest('details').querySelectorAll('form')];
+                for (const form of forms) {
+                    form.requestSubmit();
+                    while (!form.querySelector('output').innerText.includes('done in'))
+                        await new Promise(r => setTimeout(r, 10));
+                }
+                return forms.map(form => form.innerText);
+            })()""")
+            found = re.search(r'"found":(\d+)', calls[2])[1]
+            browser.until("document.getElementById('found').innerText"
+                          f".startsWith('{found} corners')")
+            self.assertLess(int(found), 121)
 
     def narrow(self, state):
         """At 420 pixels nothing is cut, or needs a scroll bar."""

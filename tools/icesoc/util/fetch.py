@@ -50,6 +50,7 @@ PAGE = [("tabulator-tables", "6.5.3",
          ["js/tabulator.min.js", "css/tabulator_simple.min.css"]),
         ("uplot", "1.6.32", "4b8a8191e425658e3ea8c8c1314b0fc679c861ee3a1af2b20c7b16ba50b5133d",
          ["uPlot.iife.min.js", "uPlot.min.css"])]
+ICEJS = ("3.7.110", "8477728b2fccb8ec825d432d35391df74857c4dc5c68c39dc6f96925d475fd8d")
 # Debian 13's packages and all libraries that they load
 GHDL = ["ghdl-mcode", "ghdl-common", "libgnat-14", "libc6", "libgcc-s1", "libstdc++6", "zlib1g",
         "gcc-14-base"]
@@ -277,13 +278,30 @@ def page(target):
         (target / f"libraries.{kind}").write_text(text)
 
 
+def icejs(target):
+    """Ice for JavaScript, for the page of a flight, as FOLDER/ice.js"""
+    target.mkdir(parents=True, exist_ok=True)
+    version, checksum = ICEJS
+    text = ""
+    try:
+        with tarfile.open(kept(f"{NPM}/ice/-/ice-{version}.tgz", checksum)) as tar:
+            library = tar.extractfile("package/lib/Ice.min.js").read().decode()
+            text = f"/*! ice {version}, ZeroC, Inc., GPL-2.0 */\n{library}"
+        (target / "ice.done").touch()
+    except Unreachable as error:
+        print(f"fetch: {error}\nfetch: cannot get Ice for JavaScript, is there a network? The page "
+              "of a flight makes no calls; the next build tries again", file=sys.stderr)
+    (target / "ice.js").write_text("\n".join(
+        line for line in text.split("\n") if "sourceMappingURL=" not in line))
+
+
 # Things that only optional parts need, with the name of the part
 OPTIONAL = {zeroc: "Only these suites need it", svd: "Only the check of icesoc.svd needs it",
             foreign: "Only the examples of foreign cores need it",
             pack: "Only the check of the CMSIS-Pack needs it",
             freertos: "Only the porting example for this kernel needs it"}
 THINGS = {thing.__name__: thing
-          for thing in (ice, ghdl, icegrid, lz4, sodium, page, foreign, svd, zeroc, pack,
+          for thing in (ice, ghdl, icegrid, icejs, lz4, sodium, page, foreign, svd, zeroc, pack,
                         freertos)}
 
 

@@ -26,8 +26,11 @@ import re
 import signal
 from http import HTTPStatus
 
+from icesoc.call import objects
 from icesoc.regs.model import Block, Wrong
 from icesoc.util import record
+from icesoc.util.errors import Stop
+from icesoc.web import bridge
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 
@@ -38,10 +41,16 @@ FILES = {  # path: MIME type, file
     "/": ("text/html; charset=utf-8", HERE + "/flight/index.html"),
     "/live.css": ("text/css", HERE + "/flight/live.css"),
     "/live.js": ("text/javascript", HERE + "/flight/live.js"),
+    "/slice.js": ("text/javascript", HERE + "/flight/slice.js"),
+    "/objects.js": ("text/javascript", HERE + "/flight/objects.js"),
     "/common.css": ("text/css", HERE + "/common.css"),
     "/common.js": ("text/javascript", HERE + "/common.js")}
 STATUS = record.of_tree("testbench/status/sim_status.toml")
 SCHEMA = HERE + "/../cli/flight.schema.json"
+# The page loads only from its server, and no other page may frame it.
+POLICY = ("default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
+          "worker-src blob:; "  # timers of Ice for JavaScript
+          "frame-ancestors 'none'; base-uri 'none'; form-action 'none'")
 COUNTERS = ("ns", "cycles", "bytesUp", "bytesDown", "packets", "lost", "wallNs")
 WRITTEN = 2
 
@@ -158,11 +167,31 @@ def state(folder, slots):
     return shown
 
 
+def gateway(folder):
+    """Returns (host, port) of --gateway, or of the flight's first vehicle, or None."""
+    if Page.gateway:
+        return Page.gateway
+    live = objects.flight(folder)
+    found = live and re.search(r"-h (\S+) -p (\d+)", next(iter(live["vehicles"].values())))
+    return (found[1], int(found[2])) if found else None
+
+
+def described(build):
+    """Returns the vehicle's objects and the declarations of their interfaces."""
+    try:
+        catalogue = objects.Catalogue(build)
+    except Stop as stop:
+        return {"objects": [], "declarations": {}, "error": stop.text}
+    return {"objects": [{"identity": each.identity, "interface": each.interface}
+                        for each in catalogue.objects.values() if each.interface],
+            "declarations": catalogue.slices.declarations}
+
+
 class Page(http.server.BaseHTTPRequestHandler):
     """A request for the page of a mission."""
     protocol_version, timeout = "HTTP/1.1", PATIENCE
     error_message_format, error_content_type = "%(code)d %(message)s\n", "text/plain"
-    folder, slots = "", []
+    folder, slots, build, gateway = "", [], "", None
 
     def do_GET(self):
         port = self.server.socket.getsockname()[1]
@@ -170,20 +199,30 @@ class Page(http.server.BaseHTTPRequestHandler):
         # A page on another host may use another name for this address.
         if len(hosts) != 1 or hosts[0] not in (f"127.0.0.1:{port}", f"localhost:{port}"):
             return self.send_error(HTTPStatus.FORBIDDEN)
-        path = self.path.partition("?")[0]
+        path, _, query = self.path.partition("?")
+        if path == "/ice":
+            return bridge.serve(self, hosts[0], query, gateway(self.folder))
         frame = self.folder + "/before.png" if path == "/frame.png" else ""
         if vehicle := re.fullmatch(r"/vehicle(\d{1,2})\.png", path):
             frame = picture(self.folder, vehicle[1])
         kind, file = FILES.get(path, ("image/png", frame))
+        if path == "/ice.js":
+            kind, file = "text/javascript", self.build + "/page/ice.js"
         if path == "/state":
             kind, content = "application/json", json.dumps(state(self.folder, self.slots)).encode()
+        elif path == "/objects":
+            kind, content = "application/json", json.dumps(described(self.build)).encode()
         else:
             content = contents(file)
+        if path == "/":
+            content = content.replace(b"%TOKEN%", bridge.TOKEN.encode())
         if not content:
             return self.send_error(HTTPStatus.NOT_FOUND)
         self.send_response(HTTPStatus.OK)
         self.send_header("Content-Type", kind)
         self.send_header("Content-Length", str(len(content)))
+        self.send_header("Content-Security-Policy", POLICY)
+        self.send_header("X-Content-Type-Options", "nosniff")
         self.send_header("Connection", "close")
         self.end_headers()
         self.wfile.write(content)
@@ -205,6 +244,11 @@ def port_number(text):
     return port
 
 
+def place(text):
+    host, _, port = text.rpartition(":")
+    return host.strip("[]"), port_number(port)
+
+
 def main():
     parser = argparse.ArgumentParser(
         prog="icesoc-live",
@@ -214,12 +258,16 @@ def main():
     parser.add_argument("--registers", required=True,
                         help="file that lists the blocks' *.regs.json; map.regs.json says which is "
                         "in which slot")
+    parser.add_argument("--gateway", type=place, help="HOST:PORT of a gateway to call instead of "
+                        "the flight's")
     parser.add_argument("--port", type=port_number, default=0, help="0: any that is free")
     parser.add_argument("--try", dest="only_try", action="store_true",
                         help="only look whether the page can be served")
     words = parser.parse_args()
     try:
         Page.folder, Page.slots = words.dir, blocks_by_slot(words.registers)
+        Page.gateway = words.gateway
+        Page.build = os.path.dirname(os.path.dirname(os.path.abspath(words.registers)))
     except (OSError, ValueError, KeyError, Wrong) as error:
         sys.exit(f"icesoc-live: error: cannot read '{words.registers}': {error}")
     for number in (signal.SIGINT, signal.SIGTERM):
@@ -230,7 +278,9 @@ def main():
         sys.exit("icesoc-live: error: cannot listen on 127.0.0.1: is the port taken? PORT=0 takes "
                  "any that is free")
     if not words.only_try:
-        print(f"The mission as it runs: http://127.0.0.1:{server.server_address[1]}/", flush=True)
+        address = f"http://127.0.0.1:{server.server_address[1]}/"
+        print(f"The vehicle: {address}#objects" if words.gateway
+              else f"The mission as it runs: {address}", flush=True)
         server.serve_forever()
 
 

@@ -5,7 +5,12 @@
 #include "echo_uav.h"
 #include "Echo.h"
 #include "uav.h"
-#include "uav_private.h"
+#include "uav_cores.h"
+#include "uav_modem.h"
+#include "uav_os.h"
+#include "uav_radio_state.h"
+#include "uav_tasks.h"
+#include "ucos_ii.h"
 
 #define STACK_WORDS 1024
 #define PAUSE_TICKS (OS_TICKS_PER_SEC / 100U) /* while there is no message to send */

@@ -36,8 +36,7 @@ def build_firmware(values):
     """build the firmware for the STM32F2 (build/main/firmware); print flash, RAM and stacks"""
     build = BuildFolder(values.build, values).prepare()
     build.ninja("firmware")
-    run(["sw/sizes.py", "firmware", build / "firmware/uav.map", build / "sw/vehicle/uav.arm",
-         "build/firmware.json"])
+    run(["sw/sizes.py", "firmware", build / "firmware/uav.map", "build/firmware.json"])
 
 
 @command("build size", [BUILD, JOBS], make="size", brief="build size")

@@ -4,6 +4,7 @@ import json
 import math
 import os
 import queue
+import re
 import sys
 import time
 
@@ -20,7 +21,10 @@ from icesoc.util.errors import Interrupted, Stop
 def completed(prefix, parsed_args, **_):
     """Returns completions of a word: objects and operations, then parameters and their values."""
     values = {name.lstrip("-"): value for name, value in vars(parsed_args).items()}
-    words = list(values.get("call") or ())
+    # argcomplete does not pass the words before this one: they are in the shell's line.
+    line = os.environ.get("COMP_LINE", "")[:int(os.environ.get("COMP_POINT") or 0)]
+    before = line.partition(" call ")[2].split(" ")[:-1]
+    words = [word for word in before if "." in word and not word.startswith("-")]
     try:
         catalogue = Catalogue(values.get("build") or "build/main",
                               (values.get("slice") or "").split())
@@ -68,6 +72,7 @@ OPTIONS = [
     Option("oneway", SWITCH, "call without waiting for an answer"),
     Option("watch", SWITCH, "print calls of the vehicle to listeners, until Ctrl-C"),
     Option("events", COUNT, "with --watch: end after this number of events"),
+    Option("page", SWITCH, "with --gateway: serve a page with forms for all operations"),
     Option("repeat", COUNT, "number of calls; prints latency statistics", None),
     Option("timeout", number(0.001, 3600, "s", float), "time-out of a call and of connecting",
            30.0),
@@ -250,6 +255,8 @@ def call(options):
     the operation threw an exception, 4 no answer, 5 no such object or operation, 6 refused without
     a reason. docs/call.md explains arguments and targets."""
     words = options.call
+    if options.page:
+        return serve_page(options)
     if not words and not options.list:
         raise Stop("call: expected [OBJECT.]OPERATION; ./icesoc call --list lists all", 2)
     from_outside = [name for name in ("device", "gateway", "locator") if getattr(options, name)]
@@ -290,6 +297,20 @@ def call(options):
                        default=plain))
         return failure.status
     return None
+
+
+def serve_page(options):
+    """Serves the page of a flight for the vehicle of a gateway, until Ctrl-C."""
+    import tempfile
+    from icesoc.util.process import run, tool
+    if not re.fullmatch(r"(\[[0-9a-fA-F:.]+\]|[^\s:\[\]]+):\d{1,5}", options.gateway):
+        raise Stop(f"--page: expected --gateway HOST:PORT, got '{options.gateway}'", 2)
+    listed_registers = os.path.join(options.build, "gen/registers.list")
+    if not os.path.exists(listed_registers):
+        raise Stop(f"there is no {listed_registers}: ./icesoc build", 2)
+    with tempfile.TemporaryDirectory() as folder:
+        return run([*tool("web.live"), "--dir", folder, "--registers", listed_registers,
+                    "--gateway", options.gateway], check=False)
 
 
 def refuse_oneway(options, operation):

@@ -55,7 +55,7 @@ def fly_mission(values):
     if not build.built:
         build.set(CLK_HZ=str(values.clk_hz))
     build.ninja("mission", *(["firmware_minimal"] if values.app == "minimal" else []),
-                *(["gateway", "slice2c"] if values.live else []))
+                *(["gateway", "slice2c", "page_ice"] if values.live else []))
     flight.check_chip(values, build)
     flight.take_key(values, build)
     flight.take_observers_key(values)

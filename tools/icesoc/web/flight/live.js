@@ -2,9 +2,9 @@
 //
 // live: asks /state four times a second, and shows the answer.
 
-const $ = id => document.getElementById(id);
 const scale = 2; // screen pixels of the canvas for one of the frame
 let picture = null, pictureWanted = false;
+var corners = null; // those that a call of this page returned: {features, found}
 
 function row(cells) {
     const tr = element('tr');
@@ -13,6 +13,7 @@ function row(cells) {
 }
 
 function showFrame(state) {
+    state = {...state, ...corners};
     if (state.frame && !pictureWanted) {
         pictureWanted = true;
         const image = new Image();

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_memory: words of the board's memory by their place in backup.h.
+ * uav_backup: words of the board's memory by their place in backup.h.
  */
-#include "uav_memory.h"
+#include "uav_backup.h"
 
 static const UAV_Board* board;
 static void* boardContext;

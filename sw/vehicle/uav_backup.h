@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_memory: the vehicle's memory that a battery keeps (backup.h), its random numbers, and the
+ * uav_backup: the vehicle's memory that a battery keeps (backup.h), its random numbers, and the
  * state that is kept there: address and flight.
  */
 #pragma once

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_state: the state that the files of the radio share: peers, links' lock, the modem's settings.
- * It depends on none of them.
+ * uav_radio_state: the state that the files of the radio share: peers, links' lock, the modem's
+ * settings. It depends on none of them.
  */
+#include "uav_radio_state.h"
 #include "uav.h"
-#include "uav_links.h"
 #include "uav_peers.h"
+#include "uav_tasks.h"
 
 Link uav_link;
 UAV_Peer uav_peers[UAV_PEERS] = {{&uav_link, UAV_GROUND_ADDRESS}};

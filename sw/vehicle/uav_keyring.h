@@ -1,0 +1,10 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * uav_keyring: the servant by which a ground changes its key over the air.
+ */
+#pragma once
+
+#include "icec.h"
+
+/* Adds the servant "keys"; none in firmware without keys. */
+void UAV_startKeyRing(Ice_ObjectAdapterPtr adapter);

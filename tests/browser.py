@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: MIT
+"""browser: drives headless Chromium by its debugging pipe: opens pages, runs scripts in them,
+presses keys."""
+import json
+import os
+import subprocess
+import tempfile
+import time
+
+
+class Browser:
+    """A Chromium with one page. Used with `with`."""
+
+    def __init__(self, width=1400, height=1000, dark=False):
+        self.home = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
+        commands, self.send_to = os.pipe()
+        self.read_from, answers = os.pipe()
+
+        def connect():  # Chromium reads commands from 3 and writes answers to 4
+            high = os.dup(answers), os.dup(commands)
+            os.dup2(high[1], 3)
+            os.dup2(high[0], 4)
+
+        self.process = subprocess.Popen(
+            ["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
+             "--remote-debugging-pipe", f"--user-data-dir={self.home.name}",
+             f"--window-size={width},{height}", *(["--force-dark-mode"] if dark else []),
+             "about:blank"],
+            close_fds=False, preexec_fn=connect, stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL, env={**os.environ, "HOME": self.home.name})
+        os.close(commands)
+        os.close(answers)
+        self.stream, self.number, self.session, self.errors = b"", 0, None, []
+        target = next(each for each in self.ask("Target.getTargets")["targetInfos"]
+                      if each["type"] == "page")
+        self.session = self.ask("Target.attachToTarget", targetId=target["targetId"],
+                                flatten=True)["sessionId"]
+        for domain in "Page", "Runtime", "Log":
+            self.ask(f"{domain}.enable")
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.kill()
+        self.process.wait()
+        os.close(self.send_to)
+        os.close(self.read_from)
+        self.home.cleanup()
+
+    def receive(self):
+        while b"\0" not in self.stream:
+            data = os.read(self.read_from, 1 << 16)
+            if not data:
+                raise RuntimeError("Chromium has ended")
+            self.stream += data
+        text, _, self.stream = self.stream.partition(b"\0")
+        return json.loads(text)
+
+    def ask(self, method, **parameters):
+        """Returns the answer to a command of the DevTools protocol."""
+        self.number += 1
+        command = {"id": self.number, "method": method, "params": parameters}
+        if self.session:
+            command["sessionId"] = self.session
+        os.write(self.send_to, json.dumps(command).encode() + b"\0")
+        while (answer := self.receive()).get("id") != self.number:
+            if answer.get("method") == "Runtime.exceptionThrown":
+                self.errors.append(answer["params"]["exceptionDetails"])
+        if "error" in answer:
+            raise RuntimeError(f"{method}: {answer['error']}")
+        return answer["result"]
+
+    def open(self, address):
+        """Opens a page and waits until it is loaded."""
+        self.ask("Page.navigate", url=address)
+        self.until("document.readyState === 'complete'")
+
+    def run(self, script):
+        """Returns the value of an expression in the page; waits for a promise."""
+        answer = self.ask("Runtime.evaluate", expression=script, awaitPromise=True,
+                          returnByValue=True, userGesture=True)
+        if "exceptionDetails" in answer:
+            raise RuntimeError(answer["exceptionDetails"].get("exception", {}).get("description"))
+        return answer["result"].get("value")
+
+    def until(self, condition, seconds=60):
+        """Waits until an expression is true, and returns its value."""
+        end = time.monotonic() + seconds
+        while not (value := self.run(condition)):
+            if time.monotonic() > end:
+                raise RuntimeError(f"not true within {seconds} s: {condition}; the page has: "
+                                   + self.run("document.body.innerText")[-3000:])
+            time.sleep(0.05)
+        return value
+
+    def choose(self, selector, path):
+        """Gives a file to a file input."""
+        root = self.ask("DOM.getDocument")["root"]["nodeId"]
+        node = self.ask("DOM.querySelector", nodeId=root, selector=selector)["nodeId"]
+        self.ask("DOM.setFileInputFiles", nodeId=node, files=[str(path)])
+
+    def press(self, *keys):
+        """Presses keys by their names, such as Tab, or types a text of one letter each."""
+        codes = {"Tab": 9, "Enter": 13, " ": 32}
+        for key in keys:
+            text = "\r" if key == "Enter" else key if len(key) == 1 else ""
+            more = {"key": key, "windowsVirtualKeyCode": codes.get(key, 0)}
+            self.ask("Input.dispatchKeyEvent", type="keyDown", **more,
+                     **({"text": text} if text else {}))
+            self.ask("Input.dispatchKeyEvent", type="keyUp", **more)
+
+    def resize(self, width, height, dark=False):
+        self.ask("Emulation.setDeviceMetricsOverride", width=width, height=height,
+                 deviceScaleFactor=1, mobile=False)
+        self.ask("Emulation.setEmulatedMedia", features=[
+            {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])

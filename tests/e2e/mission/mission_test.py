@@ -115,6 +115,19 @@ class Cases(Script):
             self.fails(said, PING, "hwengine1:xbee-at -d /dev/null", "1",
                        f"--XBeeAT.KeyFile={self.out}/{name}.key")
 
+    def test_call(self):
+        """Calls from the shell by the modem, with the vehicle's key and with another one."""
+        os.umask(0o077)
+        for name, text in ("a", KEY), ("b", KEY[:-1] + "e"):
+            write(f"{name}.key", text + "\n")
+        call = (TREE / "icesoc", "call", "--build", BUILD, "--device", "{device}", "--guard",
+                "{guard}", "--key")
+        self.simulate(*call, self.out / "a.key", "uav.isAlive", "7", options=("--key", "a.key"))
+        self.has("^true$")
+        self.simulate(*call, self.out / "b.key", "uav.isAlive", "7", "--timeout", "3", status=4,
+                      options=("--key", "a.key"))
+        self.has("no answer from the vehicle 0x0001 at .* within 3 s: is it on, in reach")
+
     def test_loss(self):
         """Again from its recording, in which a user looks for the cause."""
         self.fly("--loss", "0.1", "--seed", os.environ.get("SEED", "1"))

@@ -184,7 +184,7 @@ class Mistakes(Work):
     def test_what_is_no_flight_is_refused_in_words(self):
         whole = {"version": flight.VERSION, **{
             option.field: option.default or flight.empty(option) for option in flight.FIELDS}}
-        for text, said in ((b"\xff", "is no JSON in UTF-8"), (b"[" * 100000, "too long"),
+        for text, said in ((b"\xff", "expected JSON in UTF-8"), (b"[" * 100000, "deeply nested"),
                            (json.dumps({**whole, "seed": True}).encode(), "'seed' is True"),
                            (json.dumps({**whole, "cores": [1]}).encode(), "'cores' is [1]")):
             (self.work / "flight.json").write_bytes(text)
@@ -230,7 +230,7 @@ class Mistakes(Work):
         status, text = ask("./icesoc", "build", ICESOC_TREE=str(self.work / "tree"), PATH=str(
             self.work / "bin"))
         self.assertEqual((status, text), (127, "icesoc: program 'cmake' not found: "
-                                          "./icesoc setup --tests installs what is missing\n"))
+                                          "./icesoc setup --tests installs missing packages\n"))
         self.assertEqual(ask("./icesoc", "commands", "--man", "/dev/full"),
                          (1, "icesoc: No space left on device\n"))
 

@@ -44,7 +44,7 @@ int main() {
     Vcounter top;
     for (int i = 0; i < 40; ++i) {
         top.clk_i = i & 1;
-        a property samples the values before the edge
+        if (!top.clk_i) { // a property samples the values before the edge
             bool shy = std::getenv("SHY") && top.count_o == 2;
             top.rst_i = (i < 4 || i > 26) && !shy;
             top.enable_i = !std::getenv("LAZY") && i % 3;

@@ -186,7 +186,7 @@ class Cases(Script):
         self.ask("make", "-s", "Top.h")
         self.has("remade")
         # An invalid file does not keep the others from being compiled.
-        self.slice2c("bad.ice slice/Lib/Base.ice --output-dir mixed", 1, "expected the module")
+        self.slice2c("bad.ice slice/Lib/Base.ice --output-dir mixed", 1, "expected the name of the module")
         self.assertTrue(Path("mixed/Base.h").exists())
         self.slice2c("names.ice --output-dir x", 1, "underscore")
         self.slice2c("--underscore --ice names.ice --output-dir x")

@@ -218,9 +218,9 @@ def write_junit(path, results, failures, begin, commit):
                                   time=f"{result.seconds:.3f}")
             if result.status == "failed":
                 failure = of[id(result)]
-                failure = xml.SubElement(case, kind_of(result),
-                                      message=f"{failure.reason} (SEED={result.seed})")
-                failure.text = "".join(
+                entry = xml.SubElement(case, kind_of(result),
+                                       message=f"{failure.reason} (SEED={result.seed})")
+                entry.text = "".join(
                     f"{key}: {value}\n" for key in ("changed", "log", "repeat", "wave")
                     if (value := getattr(failure, key)))
                 xml.SubElement(case, "system-out").text = result.log

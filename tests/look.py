@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""look: opens a page in headless Chromium and says whether a script of it ends by an error.
+"""look: opens a page in headless Chromium and reports whether one of its scripts failed.
 
 Usage: look.py page.html
 """

@@ -66,7 +66,7 @@ class Script(unittest.TestCase):
 
     def ask(self, *words, status=0, **how):
         """Runs a command, which must end with this exit status (None: any of a failure), and keeps
-        what it says."""
+        its output."""
         done = subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                               errors="replace", **{"stdin": subprocess.DEVNULL, **how})
         self.said = done.stdout
@@ -74,7 +74,7 @@ class Script(unittest.TestCase):
         self.assertTrue(right, f"exit status {done.returncode} of {words}: {self.said[-20000:]}")
 
     def make(self, *words, tree=TREE, build="build", **how):
-        """Runs a command by make, as a user does, in the whole tree or in a test's own small one;
+        """Runs a command by make, as a user does, in the whole tree or in a small one of the test;
         what it would build and install is there already, unless `build` is None."""
         ours = {
             name: value

@@ -81,7 +81,7 @@ module axis_filter #(
     reg         ends;      // and it is the last of the packet
     reg  [63:0] out;
     reg  [7:0]  out_keep;
-    reg  [BYTE_BITS-1:0] awaited; // bytes sent to the core whose output is missing
+    reg  [BYTE_BITS-1:0] awaited; // input bytes that still lack output
     wire        room      = bytes != ROOM[BYTE_BITS-1:0];
     wire        out_ready = writing && (write_ready || !room);
     wire        given     = full && out_ready;

@@ -63,8 +63,8 @@ module npi_arbiter #(
         .ack_o(npi_addr_ack_o)
     );
 
-    // The chosen request is an OR of all ports, so that the last port is no slower than the first.
-    // For two ports one bit suffices. Without a grant the result is not used.
+    // The chosen request is an OR over all ports, so that all ports have the same delay. For two
+    // ports one bit suffices. Without a grant the result is not used.
     wire [PORTS-1:0]    pick = PORTS == 2 ? {choice[PORTS-1:1], !choice[1]} : choice;
     reg [ADDR_WIDTH-1:0] addr;
     reg [2:0]           size;

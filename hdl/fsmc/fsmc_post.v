@@ -170,7 +170,7 @@ module fsmc_post #(
 
         if (past && !rst_i) begin
             assert (final_value == newest);
-            // Two writes may arrive before the processor can see that there is no room.
+            // Two writes may arrive before the processor can see the lack of room.
             assert (!wr_lost_o || !$past(room_o));
             assert (!(wr_lost_o && more)); // or three
             assert (none == (count == 0));

@@ -7,7 +7,7 @@
 // 11 D6  12 D7  13 AP  14 BD  15 CN  0 the modem changes its rate. modem_at_rows contains the
 // actions of each step; this block executes them. Step 1 is tried at the target rate, at 9600 (the
 // factory setting), then at all rates from BD 7 down and at 250,000; the wait for an answer serves
-// as the guard time of the next attempt. Any other command that is rejected or not answered is
+// as the guard time of the next attempt. Any other command which is rejected or not answered is
 // repeated twice.
 
 `default_nettype none

@@ -142,7 +142,8 @@ module camera (
         events    <= 7'd0;
         last_word <= words == width;
         last_line <= y + 12'd1 == height;
-        // Also by the end of a line, whose byte the next seven pixels push out: 56 enables depend
+        // Also by the end of a line: the next seven pixels push its byte out, and 56 enables depend
+        // on this.
         // on this.
         if (capturing && has_token && x != 3'd7)
             pixels <= {token[7:0], pixels[55:8]};

@@ -14,7 +14,7 @@
 
 typedef U16 Number[WORDS];
 
-/* Adds the carry beyond 2^256; after two calls there is none left. */
+/* Adds the carry beyond 2^256; after two calls the carry is 0. */
 static void fold(U16* r, U32 carry) {
     int i, again;
     for (again = 0; again < 2; ++again) {
@@ -98,7 +98,7 @@ static void multiplyA24(U16* r, const U16* a) {
     fold(r, carry + below);
 }
 
-/* Raises to the power p - 2, whose bits are all 1 except bits 2 and 4. */
+/* Raises to the power p - 2, which has only ones except at bits 2 and 4. */
 static void invert(U16* r, const U16* a) {
     Number z;
     int bit;

@@ -110,8 +110,9 @@
 /* Drivers: the time without an answer after which a packet counts as lost. */
 #define LINK_ANSWER_LAST 3000000U
 
-/* Choice of RN (Link_randomWait): in each span the bytes are counted, of which the air carries some
- * 5,000; at least this many make a stream, fewer than the second number end it. A loss counts for a
+/* Choice of RN (Link_randomWait): in each span the bytes are counted (the air carries about 5,000);
+ * at least the first number of bytes make a stream, fewer than the second end it. A loss counts for
+ * a while.
  * while. */
 #define LINK_WAIT_SHARED 2U    /* as set-up leaves it */
 #define LINK_WAIT_BOTH 3U      /* two streams */

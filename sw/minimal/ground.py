@@ -85,9 +85,9 @@ def fly(communicator, args):
                               capture_output=True, text=True).stdout
         expect("as many as the C++ reference", json.loads(text)["found"] == result.found)
 
-    nobody = communicator.stringToProxy("nobody" + where)
-    expect("an object that is not there is said not to be",
-           raises(Ice.ObjectNotExistException, nobody.ice_ping))
+    missing = communicator.stringToProxy("missing" + where)
+    expect("a missing object is reported",
+           raises(Ice.ObjectNotExistException, missing.ice_ping))
     facet = engine.ice_facet("none")
     expect("facets are not there", raises(Ice.ObjectNotExistException, facet.ice_ping))
     expect("ice_id is refused", raises(Ice.OperationNotExistException, engine.ice_id))

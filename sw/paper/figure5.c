@@ -2,7 +2,7 @@
  *
  * Figure 5 of the paper, upper half: the server on the UAV, as printed except for the marked lines:
  *
- *   [1] servants get `self`, so that two cores of a kind can be told apart, and `current`; they
+ *   [1] servants get `self`, so that two cores of a kind can be distinguished, and `current`; they
  *       return a status; Figure 3 calls the operation setParameterA
  *   [2] FSMC_write(...) is filled in: word 1 of the vision core's slot is its threshold
  *   [3] xbeeInit is called by the radio task (uav_modem.c, with the same xbeeConf), which also

@@ -3,7 +3,7 @@
 """Figure 5 of the paper, lower half: the client on the ground, as printed but for what is marked.
 
 [1] the figure has HwProcessEnginePrx and uncheckCast
-[2] the proxy says which serial port the ground's modem is on, the UAV's address, and how long
+[2] the proxy names the serial port of the ground's modem, the UAV's address, and how long
 setting up may take [3] results need a twoway proxy: "-o" is Ice's oneway flag
 """
 

@@ -11,7 +11,7 @@
 #   --xst        XST also synthesises soc, from the folder `verilog` (soc.edf is unused)
 set -eu
 usage() {
-    sed -n 's/^# \{0,1\}//; 6,12p' "$0"
+    sed -n 's/^# \{0,1\}//; 6,11p' "$0"
     exit "$1"
 }
 part=xc6slx16-2-csg324 whole='' xst_includes=''

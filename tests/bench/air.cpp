@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// air: the radio link over two modems and the air between them, without chip and kernel: goodput
-// one way and both ways at once, round trips, in the clear and encrypted (docs/link.md). Both
-// modems are in API mode, unless --api says how many; the ground's at 111,111 baud, the vehicle's
-// as the firmware's at 250,000. What one way goes is sent by the ground, what comes behind pictures
-// by the vehicle.
+// air: the radio link over two modems and the air between them, without chip and kernel: goodput in
+// one direction and in both at once, and round trips, unencrypted and encrypted (docs/link.md).
+// Both modems are in API mode, unless --api sets another number; the ground's modem at 111,111
+// baud, the vehicle's at 250,000, as in the firmware. In one direction the ground sends; pictures
+// are sent by the vehicle.
 
 #include "figures.h"
 #include "modem_pair.h"
@@ -17,7 +17,7 @@ unsigned rates[2] = {7, 250000};       // their BD in API mode: the ground's, th
 constexpr int pictures = 0, calls = 1; // channels
 const char* const key = "0123456789ABCDEF0123456789ABCDEF";
 
-// Encrypted by nobody, by the modems, or by the link layer with a key (docs/link.md).
+// Not encrypted, encrypted by the modems, or by the link layer with a key (docs/link.md).
 enum Mode { Clear, Encrypted, Keyed };
 const char* const names[] = {"in the clear", "encrypted", "with a key"};
 
@@ -122,8 +122,8 @@ double wantedShare(const std::string& what, bool both, double share) {
     return isClear ? 0.95 : isTried ? 0.92 : 0.9;
 }
 
-// The mean over some seeds: single runs differ by a tenth. The limit is of the same bytes, those of
-// a program: what the modems allow without the frames' own.
+// Measures the mean over several seeds, because single runs differ by a tenth. The limit counts the
+// same bytes, the bytes of a program: the modems' limit without the overhead of frames.
 void goodput(const std::string& what, const RfWeather& weather, Mode mode, bool both) {
     const unsigned runs = figures.brief ? 1 : 9;
     const double packet = mode == Encrypted ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME;

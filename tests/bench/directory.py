@@ -40,7 +40,7 @@ class Service:
         self.endpoint = found[1]
 
     def spent(self):
-        """Seconds of a processor so far."""
+        """CPU seconds so far."""
         words = pathlib.Path(f"/proc/{self.process.pid}/stat").read_text().rsplit(") ")[1].split()
         return (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")
 
@@ -75,7 +75,7 @@ def registry(ic, folder, work, count, calls):
         locator = Ice.LocatorPrx.checkedCast(
             ic.stringToProxy(f"IceGrid/Locator:{service.endpoint}"))
         book, entry = locator.getRegistry(), ic.stringToProxy(f"any:{HERE} -p 10000")
-        told = rate(service, [lambda i=i: book.setAdapterDirectProxyAsync(f"uav{i}", entry)
+        registered = rate(service, [lambda i=i: book.setAdapterDirectProxyAsync(f"uav{i}", entry)
                               for i in range(count)])
         found = rate(service, [lambda i=random.randrange(count):
                                locator.findAdapterByIdAsync(f"uav{i}") for _ in range(calls)])
@@ -83,7 +83,7 @@ def registry(ic, folder, work, count, calls):
             sys.exit("directory: the registry leads elsewhere")
     of = f"with {count} vehicles, a second of a processor"
     return [figure(f"{what} {of}", round(value), "")
-            for what, value in (("registrations", told), ("look-ups", found))]
+            for what, value in (("registrations", registered), ("look-ups", found))]
 
 
 class Counter(Ice.Blobject):

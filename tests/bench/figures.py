@@ -47,7 +47,7 @@ modems could transfer.
 
 
 def figure(name, value, unit, limit=None, peer=None, ratio=None):
-    """A figure, beside the limit that it is measured by, or beside a peer's."""
+    """A figure, with the limit or the peer's figure that it is compared with."""
     entry = {"name": name, "value": value, "unit": unit, "command": "make bench"}
     if limit:
         entry.update(limit=limit, share=round(value / limit, 3))
@@ -66,7 +66,7 @@ def number(value):
     return f"{value:,.4g}" if isinstance(value, float) and abs(value) < 1e4 else f"{value:,.0f}"
 
 
-def beside(entry):
+def compared(entry):
     if "limit" in entry:
         share = f", {100 * entry['share']:.1f} %" if "share" in entry else ""
         share += f" ({100 * entry['gross']:.1f} %)" if "gross" in entry else ""
@@ -86,7 +86,7 @@ def split(name):
 
 
 def tables(rows):
-    """Returns the lines of the tables of (name, value, unit, beside)."""
+    """Returns the lines of the tables of (name, value, unit, compared)."""
     series, plain = {}, []  # by axis and rest of the name: its cells
     for name, value, unit, limit in rows:
         key, column = split(name)
@@ -118,7 +118,7 @@ def main(words):
         content = json.load(open(path))
         entries = content["entries"] if isinstance(content, dict) else content
         name = os.path.splitext(os.path.basename(path))[0]
-        rows = [(e["name"], number(e["value"]), e["unit"], beside(e)) for e in entries]
+        rows = [(e["name"], number(e["value"]), e["unit"], compared(e)) for e in entries]
         note = [NOTES[name], ""] if name in NOTES else []
         lines += ["", f"## {TITLES.get(name, name)}", *note, *tables(rows)]
     with open(words[0], "w") as page:

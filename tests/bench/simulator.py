@@ -44,8 +44,8 @@ def main(source, build, output, brief=""):
     rate = {kind: rate for kind, (rate, _) in best.items()}
     active = {kind: rate * share / 100 for kind, (rate, share) in best.items()}
 
-    def row(name, value, unit="million clocks/s", **beside):
-        return figure(name, float(f"{value:.4g}"), unit, **beside)
+    def row(name, value, unit="million clocks/s", **compared):
+        return figure(name, float(f"{value:.4g}"), unit, **compared)
 
     def real_time(name, kind):
         return row(name, rate[kind], "million clocks/s, at least", limit=100)

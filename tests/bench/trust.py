@@ -47,7 +47,7 @@ def main(words):
         if name in HARM:
             failures = sum(len(test.get("failures", [])) for test in found)
             entries += [figure(text, value, name),
-                        figure(f"of these: {HARM[name]}", failures, "failures")]
+                        figure(f"harm: {HARM[name]}", failures, "failures")]
         else:
             entries.append(figure(text, value, name, limit=int(found[0]["mavlink"])))
     leave(words[2], entries)

@@ -126,7 +126,7 @@ class Cases(Script):
 
     def test_drawn(self):
         """A module with half a proof: mutants that it misses survive at their line, and those that
-        are no bug drop out. A test of a model that carries all survivors finds them."""
+        are not bugs are excluded. A test of a model that carries all survivors finds them."""
         pair = "hdl/small/pair.v"
         write(pair, PAIR)
         write("bus/none.v", "")

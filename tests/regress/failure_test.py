@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""failure_test: what the regression tool tells of a failed test: its reason, the changes since it
+"""failure_test: the regression tool's report of a failed test: its reason, the changes since it
 passed, its waveform.
 
 Usage: failure_test.py case work-folder build-folder
@@ -227,7 +227,7 @@ class Cases(Project):
                  ".* tests/room/t.sh")
 
     def test_waves(self):
-        """A test that runs beside a core, not below tests/, and a trace that is damaged: the
+        """A test that is next to a core, not below tests/, and a trace that is damaged: the
         report comes in any case."""
         join = "testbench/common/join_waves.sh"
         write(join, (TREE / join).read_text())

@@ -11,7 +11,7 @@ cd "$work/a"
 export XDG_CACHE_HOME="$work/cache" PATH="$work/bin:$PATH"
 unset FRESH
 # The test looks for b.vh in two folders as compilers do, counts the names in one, calls a tool, and
-# waits if told to.
+# waits on request.
 cat >tests/t.sh <<'END'
 #!/bin/sh
 own=$1

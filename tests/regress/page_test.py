@@ -161,7 +161,7 @@ top.document.body.append("wider: " + [...document.querySelectorAll(".tabulator-c
 
     def test_blocks(self):
         """A test, a module and a file belong to the block of the folder; the last green commit is
-        that of the last run with a test of the block after which none is left that had failed."""
+        the commit of the last run with a test of the block and without a remaining failure."""
         for file in ("hdl/fifo/fifo.v", "hdl/fifo/fifo_proof.vh", "hdl/wire/wire_in.v",
                      "ip/fir/fir.v", "sw/link/test/l.c"):
             write(file, "\n")

@@ -138,7 +138,7 @@ private:
         air_.weather = RfWeather::drawn(random_, 40);
         attacker_.hinder(attacked_ && !isFleet_ && random_.below(2));
         air_.weather.delayNs = random_.below(2) ? 0 : random_.below(20) * msNs;
-        // messages per ms: light, or more than the air carries, of which many links use more
+        // messages per ms: light, or more than the air carries; many links each use more of it
         rate_ = (random_.below(3) ? 0.08 : 0.8) / (isFleet_ ? 8 : 1);
     }
     // Draws a fault for one of the ends, more often if there are many.

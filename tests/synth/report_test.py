@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""report_test: the command `utilisation` on a small project of its own, as a user runs it; its
+"""report_test: the command `utilisation` on a separate small project, as a user runs it; its
 parts are tested by parts_test.py. What `counts` has synthesised is left in a folder where the other
 cases begin.
 

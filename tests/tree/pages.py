@@ -6,7 +6,7 @@
 
 A link leads to a file of the repository, and to a heading of it where it names one, a path in
 backquotes exists, an empty line ends a table, docs/architecture.md lists every page of docs/, and
-the figures in README.md are those of docs/figures.md and synth/baseline.json. Exit status 1, and a
+README.md has the same figures as docs/figures.md and synth/baseline.json. Exit status 1, and a
 line for each that does not hold.
 """
 import json

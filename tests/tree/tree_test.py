@@ -26,8 +26,8 @@ set_tests_properties(by_script by_gtest PROPERTIES SKIP_RETURN_CODE 77
 
 class Cases(Script):
     def test_setup(self):
-        """On a terminal set-up says what it would install and asks before it calls sudo; elsewhere
-        it goes on. The machine has one package, and knows of another; the user is not root."""
+        """On a terminal set-up lists what it would install and asks before it calls sudo; elsewhere
+        it continues. The machine has one package, and knows of another; the user is not root."""
         work, setup = fresh(WORK), TREE / "cmake/setup.sh"
         for name, does in (("dpkg-query", "echo ';installed cmake;;not-installed verilator;'"),
                            ("id", "echo 1000"),

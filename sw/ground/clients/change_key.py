@@ -33,7 +33,7 @@ def write(path, lines):
 
 
 def keys_of(lines, address):
-    """Returns the vehicle's line and its words, KEY [NEXT]; without one of its own, the line for
+    """Returns the vehicle's line and its words, KEY [NEXT]; without one, the line for
     all."""
     found = None
     for number, line in enumerate(lines):

@@ -34,7 +34,7 @@ def serve(args):
                 if found := re.search(r"port (\d+) leads to (\w+) ", line):
                     vehicles[found[2]] = f"tcp -h 127.0.0.1 -p {found[1]}"
                 if len(vehicles) == args.vehicles:
-                    with whole(path) as beside, open(beside, "w") as file:
+                    with whole(path) as temporary, open(temporary, "w") as file:
                         json.dump({"pid": os.getpid(), "vehicles": vehicles,
                                    "build": os.path.dirname(os.path.abspath(args.plugin))}, file)
                     vehicles = {}

@@ -97,7 +97,7 @@ int TcpEndpoint_refuse(TcpEndpoint_Connection* c, Ice_Int size) {
     return 1;
 }
 
-/* Returns whether a message is arriving whose loss cannot be reported to the peer. */
+/* Returns whether a message is arriving that cannot be reported to the peer if it is lost. */
 static int isArriving(const TcpEndpoint_Connection* c) {
     Ice_Byte byte;
     return c->have > 0 || c->skip > 0 || recv(c->fd, &byte, 1, MSG_PEEK | MSG_DONTWAIT) > 0;

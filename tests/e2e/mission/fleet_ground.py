@@ -6,7 +6,7 @@ vehicles starts the first frame of each.
 
     fleet_ground.py '{"out": FOLDER, ...}'      words_of has all of them
 
-FOLDER/fleet.json tells for each how many frames were started, answered and reported, and what the
+FOLDER/fleet.json lists for each how many frames were started, answered and reported, and what the
 second ground saw when. With "new_key" the vehicle "changed" is given its next key first, and has to
 have it alone at the end. With "rival" the second ground comes then, and has the first one's address
 and key."""

@@ -186,7 +186,7 @@ class Cases(Script):
 
     def test_other_chip(self):
         """Firmware built for other registers of the vision core: it does not serve the core and
-        tells the ground why."""
+        reports the reason to the ground."""
         lines = (BUILD / "gen/soc_cores.c").read_text().split("hw_contracts[")[1].split("\n")[1:]
         row = 1 + next(n for n, line in enumerate(lines) if '"vision"' in line)
         self.patched("other.elf", "hw_contracts", 20 * row - 4, b"\xff" * 4)  # last word of a row
@@ -349,7 +349,7 @@ class Cases(Script):
 
     def test_fleet(self):
         """Four vehicles at one modem, the first by the firmware's host build; then again. The first
-        asks the second, and tells its station."""
+        asks the second, and informs its station."""
         vehicles = 1, 2, 3, 4
         Path("fleet.key").write_text("".join(f"0x000{at} {str(at) * 32}\n" for at in vehicles))
         os.chmod("fleet.key", 0o600)

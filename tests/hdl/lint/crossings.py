@@ -6,8 +6,8 @@ Usage: crossings.py TOP CLOCK SOURCE GENERATED WORK PARAMETERS [SYNCHRONOUS-INPU
 
 Yosys flattens TOP but for the modules of hdl/cdc, with its commands PARAMETERS before. A register
 of CLOCK may see registers of CLOCK, the inputs named and outputs of hdl/cdc for that clock. A
-register whose clock is a pin may see pins (they come with it) and its own kind. Asynchronous resets
-are no data. Exit status 1: a crossing goes round hdl/cdc; each is told.
+register clocked by a pin may see pins (they come with it) and its own kind. Asynchronous resets
+are not data. Exit status 1: a crossing bypasses hdl/cdc; each is listed.
 """
 
 import json

@@ -6,7 +6,7 @@ agreement.py SLICE2C CASES.ice WORK   Each case, from a line "// ok: ...", "// w
     "// error: ..." to the next: both take it silently, take it with a warning, or refuse it, at the
     same first line. Then each keyword of Slice as a name of each kind.
 agreement.py SLICE2C FOLDER           ZeroC's own wrong files (icesoc.util.fetch zeroc), line by line:
-    each of which slice2cpp says something is one of which slice2c does, or has one of the REASONS.
+    each line with a message of slice2cpp has one of slice2c, or has one of the REASONS.
 """
 import collections
 import os

@@ -5,7 +5,7 @@
     names.py SLICE2C SW WORK
 
 The C of TEMPLATES gives the identifiers. Each of them takes the place of X in each template, in a
-module of its own; a kind of name is one Slice file, whose C must compile as C90 and whose header as
+separate module; a kind of name is one Slice file, whose C must compile as C90 and whose header as
 C++. slice2c may refuse a name with an underscore that would be one of C's file scope; names without
 one (Slice's default) must all be taken.
 """

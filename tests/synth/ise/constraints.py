@@ -5,8 +5,8 @@
 Usage: constraints.py SOURCE GENERATED WORK, three folders. Every path of chip.v, flattened, with
 MIG's core as a cell, from pad or clock to clock, to pad and to an asynchronous reset needs a
 PERIOD, an OFFSET, a FROM:TO, a MAXDELAY or a TIG; every pad but those of MIG a standard and a
-place. Then each such statement is taken away in turn: one without which nothing is missing is told,
-too. Exit status 1 if anything is told, or if merge_ucf.py renames MIG's constraints otherwise.
+place. Then each such statement is removed in turn: a statement that is not needed is also listed.
+Exit status 1 if anything is listed, or if merge_ucf.py renames MIG's constraints otherwise.
 """
 
 import json
@@ -48,7 +48,7 @@ def netlist():
 
 
 def renamed():
-    """Returns what merge_ucf.py says it renamed of a board's constraints, which have MIG's."""
+    """Returns the lines that merge_ucf.py reports as renamed in a board's constraints."""
     return subprocess.run([sys.executable, "-m", "icesoc.synth.merge_ucf", HERE / "mig.ucf", *FILES], check=True, text=True,
                           stdout=subprocess.DEVNULL, stderr=subprocess.PIPE).stderr
 

@@ -4,7 +4,7 @@
 
     debug      Debian's GDB on firmware and RTL: breakpoints, steps, registers, memory, the FPGA
     reverse    the same runs a recorded flight backwards, a secure one
-    strangers  a peer that is no debugger is sent away, and one that leaves or talks nonsense makes
+    strangers  a peer that is not a debugger is disconnected; one that leaves or sends garbage makes
                room for the next
 
 Usage: gdb_test.py icesoc-sim firmware.elf out-folder case

@@ -20,7 +20,7 @@ VEHICLE = {"uav": ("sw/vehicle/Autopilot.ice", "::Autopilot::Vehicle"),
            "fpga": ("sw/update/Update.ice", "::Update::Firmware")}
 REGISTERS = "::Hw::Registers"  # interface of a core that is called by its registers
 ACCESSES = {"get": ("ro", "rw", "w1c", "w1s"), "set": ("rw", "w1c", "w1s", "ws")}
-LIVE = "live.json"  # of a flight in progress, in its folder
+LIVE = "live.json"  # of a flight in progress, stored in its folder
 
 
 def read_json(path):

@@ -38,8 +38,8 @@ def rescue(built):
 
 
 def make_certificate(path):
-    """Makes a file (PEM) with a certificate, whose subject is CN=its name, and its private key,
-    P-256, for ten years. Returns False if it is there. Its authority's own key is authority.key."""
+    """Makes a file (PEM) with a certificate, with its name as CN, and its private key, P-256, valid
+    for ten years. Returns False if it exists. The key of its authority is authority.key."""
     path = Path(path)
     authority, signs = path.with_name("authority.pem"), path.with_name("authority.key")
     if os.path.lexists(path) or path == authority:

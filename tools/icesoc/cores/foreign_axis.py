@@ -2,7 +2,7 @@
 """foreign_axis: writes the files of a core with an AXI-Stream in and one out, for new_foreign.py
 (BUS=axis).
 
-The core gets the operation `process`: a sequence goes in, and what comes out is the answer.
+The core gets the operation `process`: its argument is the input sequence, its result the output.
 Wrapper, servant and proxies are generated from its Slice interface; axis_filter moves the words.
 """
 import re

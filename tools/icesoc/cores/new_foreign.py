@@ -7,8 +7,8 @@
 
 Reads the ports of the module or entity TOP and writes into FOLDER, which must not exist: NAME.v,
 which connects TOP to the slot; its registers, with the names that TOP has for their addresses; a
-test; its part of a mission; core.toml. ROLE=port overrides what a port's name says. Ports that
-are neither bus, clock, reset nor interrupt become pins. CLOCK: the core has a clock of its own, of
+test; its part of a mission; core.toml. ROLE=port overrides the meaning of a port's name. Ports that
+are neither bus, clock, reset nor interrupt become pins. CLOCK: the core has a separate clock, of
 that frequency at most.
 ADDRESS: what its address counts. GHDL: the program that reads VHDL (ghdl). LIBRARY: the
 VHDL library that its files say they are in. PARAM: a parameter or generic of TOP. DEFINE: a macro

@@ -6,8 +6,8 @@ names. Stock ZeroC Ice.
     capture.vcd
     gtkwave capture.vcd
 
-What is recorded is the line of the probe in ip/cores.list; --map is what the build made of it.
-Times are those of the chip's count of clocks, modulo 2**32 clocks.
+The recorded signals are in the probe's line in ip/cores.list; --map is a file from the build.
+Times are counts of the chip clock, modulo 2**32 clocks.
 """
 
 import argparse

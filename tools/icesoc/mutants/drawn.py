@@ -2,7 +2,7 @@
 """Draws mutants of each proven module with Yosys' `mutate` and expects the module's proof, or its
 tests, to fail (docs/regression.md#drawn-mutants).
 
-The score of a module is the share of mutants caught, without those that are no bug, over all its
+The score of a module is the share of mutants caught, without those that are not bugs, over all its
 proofs. Leaves build/mutants/drawn.json. Exit status 1: a module scores less than the gate.
 """
 import argparse, collections, functools, json, os, pathlib, re, shutil, subprocess, sys, time
@@ -200,7 +200,7 @@ def by_tests(rows, copy, pool):
     return bad
 
 
-def told(results, number):
+def progress(results, number):
     """Returns the results and prints the progress, a line each tenth."""
     start, rows = time.monotonic(), []
     for row in results:
@@ -225,7 +225,7 @@ def measure(proofs, options, out):
         lists = list(pool.map(lambda proof: proof.draw(options.number, options.seed), proofs))
         tasks = [(p, i, m) for p, drawn in zip(proofs, lists) for i, m in enumerate(drawn)]
         try:
-            rows = told(pool.map(lambda task: attempt(*task), tasks), len(tasks))
+            rows = progress(pool.map(lambda task: attempt(*task), tasks), len(tasks))
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise

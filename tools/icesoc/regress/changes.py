@@ -79,7 +79,7 @@ class Changes:
                 if path in inputs or path.startswith(tuple(f + "/" for f in folders))}
 
     def touched(self, test, last_pass):
-        """Whether a test's files differ from those of its last pass; if it has never passed here,
+        """Whether a test's files have changed since its last pass; if it has never passed here,
         from the commit."""
         since = last_pass[1].get("tree") if last_pass else "HEAD"
         return not self.tree or not since or self.differing(since) is None or \

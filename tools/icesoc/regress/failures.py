@@ -50,7 +50,7 @@ class Failure:
 
 
 def comparison(match):
-    """status is 5, not ICE_OK, which is 0: a literal stands behind what is none."""
+    """status is 5, not ICE_OK, which is 0: a literal follows the value."""
     a, of_a, b, of_b = match.groups()
     if not of_a:
         a, of_a, b, of_b = b, of_b, a, of_a
@@ -87,7 +87,7 @@ def reason_of(log):
 def find_assertion(failure):
     """Adds the assertion that fails to a proof's failure: its place and text, its instance, and
     whether that belongs to the proven module. Yosys names the assertion's cell by
-    instance, file and line, and beside it the lines of all cells around."""
+    instance, file and line, with the lines of all cells around it."""
     match = re.search(
         r"Assert failed in \S+: (\S+) \((?:\$flatten/)?(?:(\S*?)\.?\$assert\$(\S+)\$)?",
         failure.result.log)

@@ -59,7 +59,7 @@ class History:
 
     def usual(self, name):
         """Seconds that a test may take: the longest of its passes, at least what tests/costs.txt
-        says (the output of a kept one came at once); None: neither is known."""
+        states (a reused result takes no time); None if neither is known."""
         times = [end[1] for end, _ in self.ends[name] if end[0] == "p"]
         return max([*times, *self.costs.get(name, [])], default=None)
 

@@ -9,7 +9,7 @@ strace sees each file that the test's processes open, look for and list, program
 among them. A verdict is what the test printed, and the state that it left each of these in: files
 of the tree by content, others by size and time of change. It holds while all of them are as they
 were. The environment is the same for all: nothing else gets in. A test that fails leaves no
-verdict; nor does one that is killed, or a file of which changed meanwhile; FRESH=1 computes.
+verdict; nor does one that is killed, or one with a file that changed meanwhile; FRESH=1 computes.
 Verdicts are below XDG_CACHE_HOME (~/.cache), the newest four of a command, for all clones.
 """
 
@@ -43,7 +43,7 @@ def digest(data):
 
 
 def state(path, listed):
-    """Returns what a run can have seen of a path: nothing, a folder (and its names, where it was
+    """Returns the observable state of a path: nothing, a folder (and its names, where it was
     listed), a file."""
     try:
         status = os.stat(path)

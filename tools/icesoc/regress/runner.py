@@ -52,25 +52,25 @@ class Progress:
         """Names each test that takes three times its usual time (60 s if that is not known) with
         its age, and again at twice that age, until `done` is set. At ten times it ends it."""
         while not done.wait(1):
-            for name, told in self.late():
+            for name, age in self.late():
                 with contextlib.suppress(OSError, StopIteration, ValueError):  # it has ended
                     if process := process_of(name, self.running):
                         where, stacks = end_hang(process, build)
-                        self.hangs[name] = f"Hang, ended after {told}{where}", stacks
+                        self.hangs[name] = f"Hang, ended after {age}{where}", stacks
 
     def late(self):
         """Names tests that are late; (name, its age) of those that have taken ten times their usual
         time."""
         for name, begin in list(self.running.items()):
             age, usual = time.monotonic() - begin, self.usual.get(name)
-            told = f"{age:.0f} s, usually " + ("unknown" if usual is None else f"{usual:.1f} s")
+            text = f"{age:.0f} s, usually " + ("unknown" if usual is None else f"{usual:.1f} s")
             if age >= self.due[name]:
                 self.due[name] = 2 * age
-                self._line(f"{name} has run for {told}", True)
+                self._line(f"{name} has run for {text}", True)
             limit = max(SHORTEST_HANG, 10 * (60 if usual is None else usual))
             is_proof = name.startswith("formal.")  # limited by CPU time
             if age >= limit and not is_proof and name not in self.hangs:
-                yield name, told
+                yield name, text
 
     def end(self, name, status, seconds):
         self.running.pop(name, None)

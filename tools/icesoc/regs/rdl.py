@@ -4,7 +4,7 @@
     ./icesoc from-rdl --rdl spi.rdl --out FOLDER
 
 Reads a flat subset: addrmap, reg and field. Register n of an addrmap gets word FIRST + n, after the
-three words that every slot has; an addrmap that begins with ID, EVENT and MASK, as those of
+three words that every slot has; an addrmap that begins with ID, EVENT and MASK, as in
 icesoc.rdl, has them already; <SLOT>_PAGES has the words after the slot's PAGE. Anything that a
 register description cannot express is an error with its line (rdl_properties.py).
 """

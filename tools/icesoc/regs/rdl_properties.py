@@ -49,7 +49,7 @@ FLAGS = {"ispresent", "woclr", "woset", "singlepulse", "hwclr", "hwset", "swmod"
 
 def problem_of(kind, name, value, declared):
     """Returns why a property of a component cannot be taken, or "". `kind`: addrmap, reg, field;
-    root and defaults may have any. `declared`: names of the file's own properties."""
+    root and defaults may have any. `declared`: names of the properties declared in the file."""
     if name in declared:
         return ""
     if name not in TAKEN | WITHOUT_EFFECT | set(OFF):

@@ -149,7 +149,7 @@ def above_limits(row):
 
 def judge(row, baseline, yosys, goal):
     """(failures, notes) of a design. Its budget is the accepted figure and a little more, since
-    optimisation is no exact science: 3 % + 4 LUTs, 1 % + 2 flip-flops. A limit must be kept,
+    optimisation is not exact: 3 % + 4 LUTs, 1 % + 2 flip-flops. A limit must be kept,
     whatever is accepted. So must the clock (`goal`, MHz) by a design that was accepted with it; one
     that was accepted below it may lose a tenth."""
     name, f = row.design.name, row.figures

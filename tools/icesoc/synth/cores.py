@@ -23,7 +23,7 @@ def read_map(file):
 
 
 def slot_cost(library, options, map, wanted):
-    """The cost of a slot in the decoder: that of the chip's number of slots, minus that of one slot
+    """The cost of a slot in the decoder: with the chip's number of slots, minus with one slot
     fewer. `wanted` False: only from the cache, nothing if it lacks it."""
     runs = [Run(Design(f"bus_decoder{slots}", "bus_decoder", parameters={"SLOTS": slots}), "xc6s",
                 wanted) for slots in (map["SLOT_COUNT"], map["SLOT_COUNT"] - 1)]

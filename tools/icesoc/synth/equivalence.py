@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""equivalence: proves that a netlist does in each clock what its RTL does, from the first one on.
+"""equivalence: proves that a netlist behaves like its RTL in each clock, starting with the first.
 
-Yosys puts both side by side, with one output that says whether any of theirs differ
+Yosys puts both side by side, with one output that is high if any of theirs differ
 (synth/yosys/equivalence.ys); abc finds registers that are always equal (lcorr), then other signals
 (scorr), then the clock of a difference (bmc3) or the proof (pdr). What RTL leaves undefined,
 flip-flops have by the netlist at the start, else 0. Where there are several clocks, edges are
@@ -45,7 +45,7 @@ IN_RESET = "sim -clock in_clk_i -reset in_rst_i -rstlen 1 -n 1 -zinit -w miter"
 
 
 def attributes_of(module):
-    """Yosys commands that let registers begin with 1: by the RTL, and where it says nothing, by the
+    """Yosys commands that let registers begin with 1: by the RTL, otherwise by the
     netlist; and whether all registers have one clock's rising edge."""
     begin, ones, nets = {}, {}, module["netnames"]
     for net in nets.values():
@@ -68,7 +68,7 @@ def attributes_of(module):
 
 def prove(design, family, library, options, models, seconds):
     """(What is known, whether the netlist is equivalent, seconds that it took), of a proof of at
-    most so many seconds. What is decided is kept: a second run takes it from there."""
+    most this many seconds. Decided results are stored for the next run."""
     begin, run = time.monotonic(), runner.mapped(design, family, library, options)
     files = (run.netlist, *models, pathlib.Path(__file__), pathlib.Path(netlist.__file__),
              options.scripts / "equivalence.ys", options.scripts / "product.v")
@@ -119,7 +119,7 @@ def solved(file, commands, is_plain, options, seconds):
         has_state = aiger.readline().split()[3] != b"0"
     # bmc3 finds a difference soon, most before anything else, where pdr seeks a proof; sat decides
     # what newer versions of pdr do not: a miter in which scorr has left no register. -T is of the
-    # wall's clock, which a busy machine must not judge by: seconds of a processor are ulimit's.
+    # wall-clock time, which is useless on a busy machine; ulimit limits CPU seconds.
     whole, less = f"{file}.aig", f"{file}.less.aig"
     steps = ([(whole, "bmc3 -F 20 -T 10"),
               (whole, f"lcorr -C 30000; scorr; write_aiger {less}; bmc3 -F 50 -T {seconds // 5}"),
@@ -153,7 +153,7 @@ def simulated(tests, junit):
 
 def table_of(plan, library, options, models, o):
     """(A row for each design: its proof, or its block's tests on its netlist; how many failed). The
-    small ones are first; each proof is told when it ends."""
+    small ones are first; each proof is printed when it ends."""
     rows, failed = {}, []
 
     def work(design):

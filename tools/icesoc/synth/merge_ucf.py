@@ -4,7 +4,7 @@
 Usage: merge_ucf.py MIG.ucf OTHER.ucf... > all.ucf
  MIG writes its names as if its core were the top. Here it is the instance u_mig of chip.v: what is
 inside gets that prefix, c3_sys_clk and c3_sys_rst_i are the pads sys_clk_i and sys_rst_i, and a bit
-is <n>, as XST writes it. VCCAUX, places and standards of OTHER replace those of MIG. Each change is
+is <n>, as XST writes it. VCCAUX, places and standards of OTHER replace MIG's. Each change is
 printed on stderr. Exit status 1: a statement that is not understood, or two of OTHER that say
 different things. """
 

@@ -93,7 +93,7 @@ def place_in_vhdl(lines, declared, name):
 
 def place_of(n, signal):
     """File and line where a signal ("u_modem.state[3]") is declared; of a core in VHDL, where GHDL
-    says that it is made: names of intermediate values (n71_o) are GHDL's own. "": not known."""
+    says that it is made: names of intermediate values (n71_o) are made by GHDL. "" if unknown."""
     whole = without_index(signal.removeprefix(FOR_OWNER))
     name = whole.rpartition(".")[2]
     # "./hdl/soc.v:62.26-69.2|./hdl/modem/modem.v:97.88-97.94": locations of instances, then of the

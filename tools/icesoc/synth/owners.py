@@ -3,7 +3,7 @@
 source, and the cost of each.
 
 A flip-flop is its register's. Logic is the named wire's that it drives; where optimisation has left
-no name, it is whose logic it feeds most.
+no name, it belongs to the logic that it feeds most.
 """
 import re
 import typing
@@ -97,7 +97,7 @@ class Finder:
 def give_slot_reads(n, owners):
     """Gives the logic that reads a slot's registers to the block in the slot. It is one cone with
     the bus decoder's multiplexer, in which optimisation leaves no name, and so far the decoder's:
-    what has only one block's signals at its inputs, beside the decoder's own, is that block's."""
+    logic with inputs from only one block, besides the decoder's, belongs to that block."""
     behind = {}
 
     def block_of(cell):

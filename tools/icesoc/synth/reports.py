@@ -2,7 +2,7 @@
 """reports: the estimates held against published reports of XST, map and TRCE (synth/reports.json),
 which say how far they err (docs/utilisation.md).
 
-A report of map alone calibrates slices; one whose sources Yosys reads, too, has a netlist: its
+A report of map alone calibrates slices; one with sources that Yosys also reads has a netlist: its
 counts and the longest path of the report's clock, {type, fan-out, ns of the cell, of its net} a
 step and where it ends.
 """

@@ -182,8 +182,8 @@ def places_of(n, figures):
 
 
 def together(orders):
-    """The figures of a design of those of its netlist in several orders: the order with the median
-    of LUTs, but for time the one with the median clock, beside the paths of the slowest."""
+    """The figures of a design from its netlist in several orders: the order with the median
+    of LUTs, but for time the one with the median clock, with the paths of the slowest."""
     if len(orders) == 1:
         return orders[0] | {"luts": [orders[0]["lut"]], "clocks": [orders[0]["mhz"]]}
     by_lut = sorted(orders, key=lambda figures: figures["lut"])
@@ -237,8 +237,8 @@ def carry_out_one(run, library, options, version):
 
 def time_left(runs, options, now):
     """"11 of 55 designs, about 3:20 left: soc, vision". By its LUTs a design takes a time that is
-    that of an idle machine; those that have ended, or the load, say how much slower this one is. A
-    netlist in several orders says how many of them it has."""
+    of an idle machine; finished runs, or the load, show how much slower this one is. A
+    netlist in several orders shows their number."""
     def expected(run):
         return 1 + options.luts.get(run.design.name, 100) * (1 + run.orders) / 200
 

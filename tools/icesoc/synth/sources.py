@@ -190,7 +190,7 @@ class Plan:
 
 
 def sentence_of(file, module):
-    """"// name: one sentence" at the head of a file, or a converted core's own sentence."""
+    """"// name: one sentence" at the head of a file, or the sentence of a converted core."""
     begin = f"// {module}: "
     return next((line.removeprefix(begin) for line in read(file).split("\n", 8)[:8]
                  if line.startswith(begin)), "")
@@ -205,7 +205,7 @@ def read_json(file):
 
 
 def read_plan(file, library, root):
-    """The designs of the file, then every other module that has a file of its own; `*_rules` and
+    """The designs of the file, then every other module in a separate file; `*_rules` and
     `*_proof` are properties, not hardware."""
     j = read_json(file)
     designs = [Design(**design) for design in j["designs"]]

@@ -3,7 +3,7 @@
 
 Cell delays are those that XST 14.7 prints for speed grade -3; a net's delay depends on its fan-out
 alone. Grade -2 is slower by SLOW_GRADE. Clock skew, pads and placement are not known here: ROUTED
-says how far published designs ended from their estimate.
+is the ratio of published designs to their estimates.
 """
 import typing
 
@@ -48,7 +48,7 @@ def is_unclocked(cell):
 
 def is_read(address, output):
     """True if a memory's output follows this port: DOA follows ADDRA, DPO DPRA0.., SPO A0..; none
-    follows the write port, nor a port that is no address."""
+    follows the write port, nor a port other than an address."""
     if address.startswith("ADDR"):
         return len(output) < 3 or address[-1] == output[2]
     if address.startswith("DPRA"):
@@ -116,7 +116,7 @@ class Analysis:
 
     def net(self, bit, reader):
         """The delay of a net; none is needed from a LUT into the flip-flop, wide multiplexer or
-        carry beside it."""
+        adjacent carry."""
         source, to = self.n.driver_type(bit), self.n.cells[reader].type
         if source == "CARRY4" and to == "CARRY4":
             return 0
@@ -166,7 +166,7 @@ class Analysis:
 
 
 def start_name(n, owners, bit):
-    """The register or memory that drives a bit; without a name of its own, the name of its load."""
+    """The register or memory that drives a bit; without a name, the name of its load."""
     return n.name_of(bit) or (f"(for) {owners[n.driver[bit]]}" if bit in n.driver else "")
 
 

@@ -70,7 +70,7 @@ def rows_of(plan, runs, library, accepted, yosys):
 
 def tell_cores(library, options, o, accepted, runs):
     """Prints the cost of some cores in the chip, whatever the limits: in the synthesised one, the
-    only design wanted, or, without runs, in the accepted one. A missing core is no error. Returns 1
+    only design wanted, or, without runs, in the accepted one. Missing cores are allowed. Returns 1
     if the synthesis failed."""
     run = next((run for run in runs if run.wanted), None)
     if run and run.error:
@@ -200,7 +200,7 @@ def options_of(words):
                         help="record these figures in synth/baseline.json")
     parser.add_argument("--core", action="append", default=[],
                         help="only tell what this core costs in the accepted chip (may be "
-                             "repeated); with --design soc in the chip of now")
+                             "repeated); with --design soc in the current chip")
     parser.add_argument("--compare", type=folder, metavar="REPORT.JSON",
                         help="only tell how the last report differs from this one")
     parser.add_argument("--reports", action="store_true",

@@ -2,10 +2,10 @@
 """fetch: brings what the build uses and Debian's packages leave out, without touching the system.
 
 Usage: fetch.py THING FOLDER    puts it into FOLDER; `fetch.py --help` lists the things
-What has a checksum here is the file that was tested, or it is refused. Downloads are kept in
+A file with a checksum here must be the tested one, or it is refused. Downloads are kept in
 ${XDG_CACHE_HOME:-~/.cache}/icesoc, so that a second build needs no network. ICESOC_NPM, ICESOC_RAW:
 a mirror of registry.npmjs.org, of raw.githubusercontent.com.
-Exit status 77: there is no network, and only what is optional needs this thing.
+Exit status 77: no network, and only optional parts need this file.
 """
 
 import argparse

@@ -11,7 +11,7 @@ from icesoc.util.errors import Stop
 
 @contextlib.contextmanager
 def lock(path, busy=None, refuse=None):
-    """Holds a lock, a file whose folder it makes, or a folder, and returns its descriptor. If it is
+    """Holds a lock, a file (creating its folder) or a folder, and returns its descriptor. If it is
     taken: prints `busy` and waits, or ends with `refuse`."""
     Path(path).parent.mkdir(parents=True, exist_ok=True)
     fd = os.open(path, os.O_RDONLY if os.path.isdir(path) else os.O_RDWR | os.O_CREAT, 0o666)

@@ -17,8 +17,8 @@ NOISE = ("ninja: Entering directory", "ninja: no work to do", "- Verilator: ", "
 
 
 class Line:
-    """A build as one line: on a terminal it is written anew, elsewhere each tenth of the steps
-    gives one, but none in the first seconds: a build of nothing says nothing."""
+    """A build as one line: on a terminal it is rewritten, elsewhere each tenth of the steps
+    gives one, but none in the first seconds: a build without steps prints nothing."""
 
     def __init__(self):
         self.begin, self.told, self.is_shown = time.monotonic(), 0, False
@@ -79,7 +79,7 @@ def explained(text):
 
 
 def run_ninja(words, log, check=True, env=None):
-    """Runs ninja. What it says beside its steps is printed; its whole output goes to a file. If it
+    """Runs ninja. Prints its messages, not its steps; its whole output goes to a file. If it
     fails, the command ends, unless `check` is false."""
     line = Line()
     process = start(words, env={**(env or {}), "NINJA_STATUS": "[%f/%t] "}, text=True,

@@ -2,7 +2,7 @@
 """bridge: passes the WebSocket of a page to a TCP port of Ice, so that the browser is a stock Ice
 client of the gateway.
 
-Ice's own WebSocket transport does not look at the origin of a page, so any page that the user
+Ice's WebSocket transport does not look at the origin of a page, so any page that the user
 visits could call a gateway that listens for WebSockets. Here a connection needs three things:
 the host of this server (DNS rebinding has another), the origin of its page, and the page's token,
 which a page of another origin cannot read.
@@ -18,7 +18,7 @@ from http import HTTPStatus
 
 PROTOCOL = "ice.zeroc.com"
 MAGIC = "258EAFA5-E914-47DA-95CA-C5AB0DC85B11"  # RFC 6455, 1.3
-MOST_BYTES = 1 << 20  # of a frame: Ice's own limit of a message
+MOST_BYTES = 1 << 20  # of a frame; equals Ice's limit of a message
 MOST_CONNECTIONS = 16
 TOKEN = secrets.token_hex(16)
 CONTINUATION, TEXT, BINARY, CLOSE, PING, PONG = 0, 1, 2, 8, 9, 10
@@ -31,7 +31,7 @@ class Ended(Exception):
 
 
 def refusal(headers, query, host):
-    """Returns the reason why a connection is refused, or an empty text. host: that of the request,
+    """Returns the reason why a connection is refused, or an empty text. host: from the request,
     which the caller has checked."""
     if headers.get_all("Origin", []) != [f"http://{host}"]:
         return "a page of another origin"

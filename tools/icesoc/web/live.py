@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """live: serves the page that shows a mission as it runs, on the loopback interface only.
 
-Each connection has a thread of its own and one request: a slow, silent or endless client makes no
+Each connection has a separate thread and one request: a slow, silent or endless client makes no
 other wait, and ends after PATIENCE seconds of silence.
 """
 

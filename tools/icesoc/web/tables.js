@@ -7,7 +7,7 @@
 // of Tabulator's]: the value is sorted, filtered and downloaded; the cell (text or an element; by
 // default the value) is shown.
 //   options.id        of the table
-//   options.filter    placeholder of the filter box, which stands beside a button that downloads CSV
+//   options.filter    placeholder of the filter box, next to a button that downloads CSV
 //   options.children  (row) => the rows below it, which fold; options.open: (row) => whether they are open at first
 //   options.pick      (row, Tabulator's, if there is one): action of a click and Enter; arrow keys move from row to row, and fold
 //   options.picked    (row) => whether it is the picked row

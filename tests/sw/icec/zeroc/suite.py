@@ -5,7 +5,7 @@
 suite.py FOLDER SUITE RUN [--Ice.Property=value...] ENDPOINT|PORT
 
 A check is a call of the client's test(), true or not. The client stops at its first failure; here
-each statement goes on by itself, so that one failure hides no other one. expected.toml has the
+each statement is guarded, so that one failure hides no other. expected.toml has the
 reason of each failure, and the number of checks that must pass.
 """
 import argparse

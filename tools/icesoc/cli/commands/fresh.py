@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""fresh: what the README says, in its order, on an empty Debian 12 and 13.
+"""fresh: the steps of the README, in order, on an empty Debian 12 and 13.
 
 A machine is a folder that debootstrap fills, with a clone of this tree's HEAD and nothing else: no
 package, no cache. Its mounts and processes are its own and end with it.
@@ -45,7 +45,7 @@ def fresh(values):
     results = top / "results.json"
     rows = json.loads(results.read_text()) if results.exists() else []
     if values.list:
-        return say("\n".join(map(told, rows)) or f"no machine was made in {top}")
+        return say("\n".join(map(summary, rows)) or f"no machine was made in {top}")
     if os.geteuid():
         raise Stop("check fresh needs root: mount and chroot are not for others")
     for release in [values.release] if values.release else RELEASES:
@@ -63,7 +63,7 @@ def fresh(values):
     return failed
 
 
-def told(row):
+def summary(row):
     return (f"{RELEASES[row['release']]}: {row['step']}: exit status {row['status']}, "
             f"{row['minutes']} min, {row['commit']}")
 
@@ -108,6 +108,6 @@ def do(root, release, step):
         "release": release, "step": step, "status": status,
         "minutes": round((time.monotonic() - begun) / 60, 1), "commit": output([
             "git", "describe", "--always"]).strip()}
-    say(told(row) + f": {log}")
+    say(summary(row) + f": {log}")
     say("\n".join("    " + line for line in log.read_text(errors="replace").splitlines()[-12:]))
     return row

@@ -21,7 +21,7 @@ module bus_wrapper #(
     parameter        ZERO     = 0
 ) (
     `include "slot_ports.vh"
-    // the block's registers
+    // the block registers
     output wire              reg_write_o,
     output wire              reg_read_o,
     output wire [3:0]        reg_addr_o,

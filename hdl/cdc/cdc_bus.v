@@ -44,7 +44,7 @@ module cdc_bus #(
     reg past = 1'b0, was_src = 1'b1, was_clk = 1'b1, was_valid = 1'b0, known = 1'b0;
     reg [WIDTH-1:0] was_data = 0;
     reg was_given = 1'b0, gave = 1'b0;
-    // words not transferred yet; if there are none, `newer` is the last word
+    // words not transferred yet; if none, `newer` is the last word
     reg [WIDTH-1:0] older = 0, newer = 0;
     reg [1:0] count = 2'd0;
     reg [2:0] clocks = 3'd3;             // edges of dst_clk_i since the source edge of the last

@@ -303,7 +303,7 @@
         cover (cmd_valid_o && issued == mark && t_mine && t_read && moves && !t_next);
     end
 
-    // ---- The relation of the counts to the arbiter's registers
+    // ---- The relation of the counts to the arbiter registers
     wire [Q-1:0] head, move, issue, back;
     assign {head, move, issue, back} = \u_queue.f_places ;
     wire [Q-1:0] n_head = head - back, n_move = move - back, n_issue = issue - back,

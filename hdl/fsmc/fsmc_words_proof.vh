@@ -131,7 +131,7 @@
         cover (a_i == {its, 1'b1} && !beyond_i && half_may && !half_sure && !got_n);
     end
 
-    // ---- The harness's notes agree with the bridge's registers, all of this step
+    // ---- The harness's notes agree with the bridge registers, all of this step
     wire [3:0]  turn = turns[4:1] ^ turns[3:0];
     wire        s0 = \u_fsmc_bridge.u_access.bit_meta [4],
         s1 = \u_fsmc_bridge.u_access.bit_sync [4];

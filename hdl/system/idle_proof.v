@@ -4,7 +4,7 @@
 // only for the prover.
 //
 // When the gate closes, no register of the core takes another value, whatever the inputs are.
-// Gating is therefore invisible to the core. The core's clock is `closes` here: idle_registers.v
+// Gating is therefore invisible to the core. The core clock is `closes` here: idle_registers.v
 // adds this assertion for each flip-flop with this clock.
 
 `default_nettype none

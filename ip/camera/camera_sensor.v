@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// camera_sensor: converts the parallel port of a sensor, in the sensor's clock domain, into tokens
+// camera_sensor: converts the parallel port of a sensor, in the sensor clock domain, into tokens
 // for a FIFO (async_fifo).
 //
 // A token has 11 bits: LOST (earlier tokens found no room), kind, pixel. While the FIFO is full

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * camera_servant: Cores::Camera, which accesses the core's registers through the FSMC; informs
+ * camera_servant: Cores::Camera, which accesses the core registers through the FSMC; informs
  * other servants of the position of frames (Hw_Frames).
  */
 #include "camera_servant.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * probe_servant: Probes::Probe, which accesses the core's registers, and its ring in DDR3, through
+ * probe_servant: Probes::Probe, which accesses the core registers, and its ring in DDR3, through
  * the FSMC. */
 #include "probe_servant.h"
 #include "fsmc.h"

@@ -136,7 +136,7 @@ struct Declaration {
     std::vector<const Declaration*> implemented; // Class: interfaces
     std::vector<Operation> operations;           // Interface, Class: without inherited ones
     const Declaration* ofClass = nullptr;        // Interface: made for calls of this class
-    int compactId = -1;                          // Class; -1 if there is none
+    int compactId = -1;                          // Class; -1 if none
 
     // Facts about all values of a type; set when its definition is complete.
     struct Facts {

@@ -44,7 +44,7 @@ public:
     // was reported.
     Symbol* declare(const std::string& scope, const std::string& name, const Location& at,
                     bool& isNew);
-    // Finds the meaning of `written` in `scope`, from the inside out; returns 0 if there is none.
+    // Finds the meaning of `written` in `scope`, from the inside out; returns 0 if none.
     // `user`, a module or a type, must not give the name another meaning later.
     Symbol* resolve(const std::string& scope, const std::string& written, const Location& at,
                     const std::string& user);

@@ -9,7 +9,7 @@
 /* Loads and stores of the processor; the context is not used. */
 extern const FSMC_Port board_fsmc;
 
-/* Sets up the clock (120 MHz from a crystal of 25 MHz), flash wait states and the FSMC's pins. Uses
+/* Sets up the clock (120 MHz from a crystal of 25 MHz), flash wait states and the FSMC pins. Uses
  * no RAM. */
 void Board_start(void);
 /* Returns whether a jumper pulls PB1 low: the board is wired, without a modem. */

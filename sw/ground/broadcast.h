@@ -28,7 +28,7 @@ public:
     void stop() { most_ = copies_ = 0; } // sends no further copies
     U32 most() const { return most_; }   // bytes of a message; 0: the modem is not ready
     bool isBusy() const { return copies_ != 0; }
-    // Takes a message, unless busy. Returns false if this machine's clock is before 2026.
+    // Takes a message, unless busy. Returns false if the clock of this machine is before 2026.
     bool take(const U8* message, U32 size, U32 now) {
         const int64_t number = settings_.quarters();
         if (number <= 0)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// clock: the machine's clock, and loading of another one.
+// clock: the machine clock, and loading of another one.
 
 #include "clock.h"
 

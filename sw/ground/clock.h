@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// clock: the time base of an engine. Normally the machine's clock; a simulator provides another
+// clock: the time base of an engine. Normally the machine clock; a simulator provides another
 // one, so that a slow machine slows the mission down without early time-outs.
 
 #pragma once
@@ -22,7 +22,7 @@ public:
     // Works like poll: returns when a descriptor is ready or `us` have passed by this clock.
     virtual int wait(pollfd* fds, nfds_t count, uint32_t us) = 0;
 
-    // Keeping step only matters for simulated clocks; the machine's clock ignores these calls.
+    // Keeping step only matters for simulated clocks; the machine clock ignores these calls.
     //
     // Makes simulated time wait for this thread until leaveStep: time stops except during `wait`,
     // and until all bytes given to `serial` have been read. Has no effect if the simulator's modem
@@ -43,7 +43,7 @@ public:
 };
 
 // Returns the clock named by the environment variable XBEEAT_CLOCK as LIBRARY:ARGUMENT, or the
-// machine's clock if the variable is not set. LIBRARY is a shared library with a function
+// machine clock if the variable is not set. LIBRARY is a shared library with a function
 // createXBeeATClock, which gets ARGUMENT. Throws std::system_error.
 std::unique_ptr<Clock> makeClock();
 

@@ -30,9 +30,9 @@ typedef struct Hw_Frames {
     void (*processed)(U32 findings); /* called for each frame that was processed */
 } Hw_Frames;
 
-/* The port of a core's servant: waiting of its task, and resources shared with others. On uC/OS-II
- * a semaphore (OSSemPend, OSSemPost), one per operation if several tasks call operations that take
- * time. */
+/* Port of a core's servant to the system: functions that make its task wait, and the resources that
+ * it shares with other servants. On uC/OS-II waiting uses a semaphore (OSSemPend, OSSemPost), one
+ * per operation if several tasks call operations that take time. */
 typedef struct Hw_Port {
     /* Waits until post is called for the operation (returns 1), or `ms` have passed (0). A post
      * since the last wait counts. */

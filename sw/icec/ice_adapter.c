@@ -43,7 +43,7 @@ Ice_Status Ice_Communicator_createObjectAdapterWithEndpoints(Ice_CommunicatorPtr
     return status;
 }
 
-/* Returns the index of the entry with exactly this identity and facet; -1 if there is none. */
+/* Returns the index of the entry with exactly this identity and facet; -1 if none. */
 static int indexOf(Ice_ObjectAdapterPtr adapter, const Ice_Identity* id, const Ice_String* facet) {
     int s;
     for (s = 0; s < ICE_SERVANTS; ++s)

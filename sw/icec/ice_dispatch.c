@@ -27,7 +27,7 @@ static int match(const Ice_Servant* entry, const Ice_Current* current, Ice_Statu
 }
 
 /* Finds the servant for `current`, sets current->adapter, and counts an operation in progress.
- * Returns 0 with `status` if there is none; ICE_CONNECTION_CLOSED: after shutdown. */
+ * Returns 0 with `status` if none; ICE_CONNECTION_CLOSED: after shutdown. */
 static Ice_ObjectPtr find(Ice_CommunicatorPtr ic, Ice_Current* current, Ice_Status* status) {
     Ice_ObjectAdapterPtr adapter;
     Ice_ObjectPtr servant = 0;

@@ -72,7 +72,7 @@ static Ice_Status takeEvent(Ice_CommunicatorPtr ic, const Ice_Byte* in, const Ic
 }
 
 /* Finds a connection with callers that wait for an operation and are due a heartbeat, and records
- * the heartbeat; returns -1 if there is none. Shortens `waitMs` to the next heartbeat; under the
+ * the heartbeat; returns -1 if none. Shortens `waitMs` to the next heartbeat; under the
  * state lock. */
 static int heartbeatDue(Ice_CommunicatorPtr ic, U32 now, Ice_Int* waitMs) {
     int c, due = -1;

@@ -33,7 +33,7 @@ typedef struct Ice_Base Ice_Base;
 
 typedef struct Ice_Interface {
     const Ice_Operation* operations;
-    const Ice_Base* bases; /* 0 if there are none */
+    const Ice_Base* bases; /* 0 if none */
 } Ice_Interface;
 
 struct Ice_Base {

@@ -28,7 +28,7 @@ void icec_wake(Ice_CommunicatorPtr ic);
 /* Returns the options after a transport's name, and sets the transport; 0 if the text names
  * none. */
 const char* icec_optionsOf(Ice_CommunicatorPtr ic, const char* text, int* transport);
-/* Returns the text after the next colon outside quotes; 0 if there is none. */
+/* Returns the text after the next colon outside quotes; 0 if none. */
 const char* icec_nextEndpoint(const char* text);
 /* Adds an endpoint of a transport; `options` 0: the one on which it listens. ICE_LIMIT: more than
  * ICE_ENDPOINT_MAX. */
@@ -73,7 +73,7 @@ Ice_CallState icec_callState(Ice_CommunicatorPtr ic, int slot);
 
 /* Hands a reply, read up to its body, to the call that waits for it. */
 void icec_takeReply(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is);
-/* Finds an asynchronous call that has timed out, and its id; returns 0 if there is none. Shortens
+/* Finds an asynchronous call that has timed out, and its id; returns 0 if none. Shortens
  * `waitMs` to the next time-out; under the state lock. */
 Ice_Call* icec_expiredCall(Ice_CommunicatorPtr ic, U32 now, Ice_Int* id, Ice_Int* waitMs);
 /* Ends that call, unless it has already ended. */

@@ -198,6 +198,6 @@ void Ice_OutputStream_endSlice(Ice_OutputStreamPtr os, Ice_Int begin, Ice_Bool l
 void Ice_InputStream_startException(Ice_InputStreamPtr is);
 /* Begins to read a slice. Returns its type id, empty if there is no slice. */
 Ice_String Ice_InputStream_startSlice(Ice_InputStreamPtr is);
-/* Skips to the next slice. Returns 0 if there is none, or the format does not give its position. */
+/* Skips to the next slice. Returns 0 if none, or the format does not give its position. */
 Ice_Bool Ice_InputStream_skipSlice(Ice_InputStreamPtr is);
 void Ice_InputStream_endSlice(Ice_InputStreamPtr is);

@@ -35,13 +35,13 @@ typedef struct Ice_UnknownSlice {
 /* The begin of every class instance. */
 typedef struct Ice_Value {
     const Ice_ValueType* type;
-    const Ice_UnknownSlice* unknown; /* the most derived one; 0 if there is none */
+    const Ice_UnknownSlice* unknown; /* the most derived one; 0 if none */
 } Ice_Value;
 
 struct Ice_ValueType {
     const char* id;                                            /* "::M::C" */
-    const Ice_ValueType* base;                                 /* 0 if there is none */
-    Ice_Int compactId;                                         /* -1 if there is none */
+    const Ice_ValueType* base;                                 /* 0 if none */
+    Ice_Int compactId;                                         /* -1 if none */
     Ice_Int size;                                              /* bytes of the struct */
     Ice_Bool preserves;                                        /* it preserves unknown slices */
     void (*write)(const void* object, Ice_OutputStreamPtr os); /* own members */

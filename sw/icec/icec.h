@@ -133,7 +133,7 @@ Ice_Status Ice_ObjectAdapter_removeFacet(Ice_ObjectAdapterPtr adapter, const cha
                                          const char* facet);
 Ice_Status Ice_ObjectAdapter_removeDefaultServant(Ice_ObjectAdapterPtr adapter,
                                                   const char* category);
-/* Returns the servant of exactly this identity, without a facet; 0 if there is none. */
+/* Returns the servant of exactly this identity, without a facet; 0 if none. */
 Ice_ObjectPtr Ice_ObjectAdapter_find(Ice_ObjectAdapterPtr adapter, const char* identity);
 /* Activating makes the objects of an adapter exist for callers; deactivating and destroying end
  * that. */
@@ -299,7 +299,7 @@ void Ice_Communicator_waitForShutdown(Ice_CommunicatorPtr ic);
 /* Stops serving: no connections are accepted, and requests are not executed any more; their callers
  * are informed by closing. Calls of this side continue. */
 void Ice_Communicator_shutdown(Ice_CommunicatorPtr ic);
-/* Handles at most one event; for programs with a main loop. Returns ICE_TIMEOUT if there was none,
+/* Handles at most one event; for programs with a main loop. Returns ICE_TIMEOUT if none,
  * or if another task received all the time. */
 Ice_Status Ice_Communicator_poll(Ice_CommunicatorPtr ic, Ice_Int timeoutMs);
 /* Shuts down, and closes every connection gracefully: waits up to timeoutMs for operations in

@@ -67,7 +67,7 @@ void link_rewind(Link_Queue* queue, int isWiped) {
 /* Finds an entry of at most `most` bytes that may overtake the current long message: it is on a
  * different channel than all entries that it overtakes, keeps the order of the headers that the
  * peer learns, and does not follow another one that has overtaken. Sets `start` to the offset of
- * its bytes. Returns 0 if there is none. */
+ * its bytes. Returns 0 if none. */
 static Link_Entry* findAhead(Link_Queue* queue, U32 most, U32* start) {
     Link_Entry* entry = entryAt(queue, queue->cutEntry);
     U32 channels = 0;

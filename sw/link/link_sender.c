@@ -16,7 +16,7 @@
 #define IN_FLIGHT(sender) ((sender)->next - (sender)->base)
 #define FRAGMENT(sender, seq) (&(sender)->window[(seq) & (sender)->mask])
 
-/* Adds an entry to the queue. Returns 0 if there is no room. */
+/* Adds an entry to the queue. Returns 0 without room. */
 static Link_Entry* enqueue(Link_Sender* sender, U32 flags, U32 size) {
     Link_Entry* entry = link_enqueue(&sender->queue, flags, size, sender->pacing->longest);
     if (entry)
@@ -331,7 +331,7 @@ void link_onAnswer(Link_Sender* sender, U32 packet, int isDelivered) {
 }
 
 /* Finds the next fragment to send: a short message that overtakes, a lost one, or a new one.
- * Returns 0 if there is none. */
+ * Returns 0 if none. */
 static int nextFragment(Link_Sender* sender, U32* seq) {
     int isRepeated = 0;
     for (*seq = sender->base; *seq != sender->next; ++*seq)

@@ -164,7 +164,7 @@ void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs) {
 
 /* ---- sending ---- */
 
-/* Returns the next fragment's flags; 0 if there is none. Openings come first, closings after the
+/* Returns the next fragment's flags; 0 if none. Openings come first, closings after the
  * message. */
 static U32 cut(Link* link) {
     U32 size, channel, flags;

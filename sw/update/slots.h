@@ -86,13 +86,13 @@ const Slots_Header* Slots_keys(const Slots_Port* port);
 int Slots_isSigned(const Slots_Port* port, const Slots_Header* keys, const Slots_Header* header);
 /* Returns 1 if the image in the slot has the header's digest. */
 int Slots_isWhole(const Slots_Port* port, U32 slot, const Slots_Header* header);
-/* Returns the highest confirmed version; 0 if there is none. */
+/* Returns the highest confirmed version; 0 if none. */
 U32 Slots_confirmed(const Slots_Port* port, U32 product);
 /* Clears READY of a slot before it is erased, and logs its version if it was the highest confirmed
  * one. Therefore a half-erased image never starts, and an older one is never accepted. */
 int Slots_retire(const Slots_Port* port, U32 slot);
 
-/* Returns the slot to run; SLOTS_NONE if there is none: with `mayTry` a new image, once; else the
+/* Returns the slot to run; SLOTS_NONE if none: with `mayTry` a new image, once; else the
  * newest confirmed one; else any valid one. Each is signed and complete. */
 U32 Slots_choose(const Slots_Port* port, U32 product, int mayTry);
 

@@ -23,5 +23,5 @@ int UAV_offerCall(void);
 /* Returns the receiver of packets in API mode. */
 Radio_OnPacket UAV_receiver(void);
 
-/* Makes a proxy to the vehicle that this one calls. Returns 0 if there is none. */
+/* Makes a proxy to the vehicle that this one calls. Returns 0 if none. */
 int UAV_makeVehicleProxy(Ice_ObjectAdapterPtr adapter, Ice_ObjectPrxPtr other);

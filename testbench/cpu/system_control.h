@@ -109,7 +109,7 @@ public:
 
     uint32_t basepri() const { return basepri_; }
 
-    // Returns the exception that must be entered now; 0 if there is none.
+    // Returns the exception that must be entered now; 0 if none.
     unsigned deliverable() const { return bestPriority_ < runningPriority_ ? best_ : 0; }
     // Returns the current execution priority, including masks; `none` in thread mode without masks.
     int runningPriority() const { return runningPriority_; }

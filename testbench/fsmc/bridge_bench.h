@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// bridge_bench: the FSMC bridge alone, between the processor's pins, a bus slave with the system
+// bridge_bench: the FSMC bridge alone, between the processor pins, a bus slave with the system
 // slot's ID, and a memory.
 
 #pragma once

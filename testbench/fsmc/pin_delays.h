@@ -75,7 +75,7 @@ inline FsmcCorner cornerOf(unsigned index, unsigned hclk = 100) {
 
 class PinDelays {
 public:
-    // `near`: the processor's pins; `far`: the design's pins; clock periods in ps.
+    // `near`: the processor pins; `far`: the design pins; clock periods in ps.
     PinDelays(FsmcPins& near, FsmcPins& far, FsmcDesign design, const FsmcCorner& corner,
               uint64_t seed, int hclk, int clk)
         : near_(near), far_(far), design_(std::move(design)), corner_(corner), random_(seed),
@@ -83,7 +83,7 @@ public:
         nextEdge_ = 1 + static_cast<int64_t>(random_() % static_cast<uint64_t>(clk)); // any phase
     }
 
-    // Passes on changes of the processor's pins.
+    // Passes on changes of the processor pins.
     void show() {
         uint64_t levels = driven(near_);
         for (unsigned pin = 0; pin <= drives; ++pin)
@@ -125,7 +125,7 @@ public:
         }
         now_ = end;
     }
-    // True if the data at the processor's pins has been stable for the set-up time.
+    // True if the data at the processor pins has been stable for the set-up time.
     bool dataIsSetUp() const { return now_ - dataMoved_ >= corner_.readSetup + hclk_; }
 
 private:
@@ -177,7 +177,7 @@ private:
         design_.settle();
         settled();
     }
-    // Passes on changes of the design's pins.
+    // Passes on changes of the design pins.
     void settled() {
         uint32_t out = far_.dFromDesign | uint32_t(far_.dDriven) << drivenOut |
                        uint32_t(far_.nwaitN) << nwaitOut;

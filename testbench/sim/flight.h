@@ -74,7 +74,7 @@ public:
         std::shared_ptr<ReplayedLine> replayed; // flight to replay, if any
     };
 
-    // Creates the folder and the ground's files in it: the counters, before.png, and the recording
+    // Creates the folder and the ground files in it: the counters, before.png, and the recording
     // unless one is replayed. Throws std::runtime_error, before changing anything, if the options
     // or the picture are wrong.
     explicit Flight(const Options& options);

@@ -18,7 +18,7 @@ public:
     struct Config {
         std::string firmware; // ELF file
         // Processor clock (HCLK), Hz of simulated time. 120 MHz: the processor's work takes as long
-        // as on the board, although the fabric is slower. 0: 6/5 of the fabric's clock, as FSMC
+        // as on the board, although the fabric is slower. 0: 6/5 of the fabric clock, as FSMC
         // accesses always are; then cycle counts are as on the board, and the processor is slower
         // by the fabric's scale.
         uint32_t hclkHz = 120'000'000;

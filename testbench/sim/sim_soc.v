@@ -3,7 +3,7 @@
 // sim_soc: soc.v, its netlist or the netlist of table1.v (TABLE1), with the simulator's clocks.
 //
 // Each change of tick_i is one clock: clk_i rises with it and falls as soon as its edge is taken,
-// so that both edges need one evaluation. The memory's pins have flip-flops here and are driven
+// so that both edges need one evaluation. The memory pins have flip-flops here and are driven
 // before the edge with their values after it. Therefore no path leads from inputs through the
 // chip's logic, which the model would otherwise evaluate each time.
 
@@ -79,7 +79,7 @@ module sim_soc #(
 
 `ifdef RESTS
     // The simulator's copies of soc.v and platform.v use these clocks (rest.awk). The platform's
-    // clock stops while rests_i is high, the memory's clock while the memory would not move.
+    // clock stops while rests_i is high, the memory clock while the memory would not move.
     wire platform_clk = clk_i && !rests_i;
     wire memory_clk;
     core_gate #(.GATED(1)) u_gate_memory (

@@ -75,7 +75,7 @@ void SocModel::timeModels() {
     top_->modem_cts_n_i = line_.ctsN();
 }
 
-// Clocks until a model outside the chip is due, or a model at the platform's pins.
+// Clocks until a model outside the chip is due, or a model at the platform pins.
 QuietSpan::Clocks SocModel::mayBeQuiet() const {
     if (!skips_ || now() >= nextEvent_)
         return {};
@@ -109,7 +109,7 @@ void SocModel::wake() {
     span_.forget();
 }
 
-// Updates the processor's pins between two clock edges.
+// Updates the processor pins between two clock edges.
 void SocModel::settle() {
     wake();
     VSoc& top = *top_;
@@ -150,7 +150,7 @@ void SocModel::tick() {
 }
 
 void SocModel::evaluate(bool rests) {
-    // The design is settled. The memory's pins get their values after this clock.
+    // The design is settled. The memory pins get their values after this clock.
     VSoc& top = *top_;
     sampleMcb(top, memory_);
     driveMcb(top, memory_);

@@ -54,7 +54,7 @@ public:
         skips_ = !all;
     }
     uint64_t evaluated() const { return evaluated_; } // clocks
-    // Name of the core that moves in most of them; empty if there is none.
+    // Name of the core that moves in most of them; empty if none.
     std::string mover() const { return span_.mover(); }
 
     // Returns the complete current state of the chip.
@@ -100,7 +100,7 @@ public:
         return memory_;
     }
     XBee& modem() { return modem_; }
-    // Cable at the modem's pins, instead of the modem.
+    // Cable at the modem pins, instead of the modem.
     UartPins& line() { return line_; }
     void plugIn(Cable& cable) { cable_ = &cable; }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// fpga_pins: the FPGA's configuration and its flash at the processor's pins: SPI 1 (PA4 to PA7),
+// fpga_pins: the FPGA's configuration and its flash at the processor pins: SPI 1 (PA4 to PA7),
 // which the FPGA drives while it configures itself, PROGRAM_B and DONE. Without a flash the FPGA is
 // always configured.
 

@@ -22,7 +22,7 @@
 class Stm32F2 : private CpuBus {
 public:
     struct Config {
-        // Processor HCLK cycles per HCLK cycle at the FSMC's pins. More than 1 if the fabric's
+        // Processor HCLK cycles per HCLK cycle at the FSMC pins. More than 1 if the fabric's
         // clock is scaled down, because simulated time then has fewer cycles at the pins.
         unsigned coreCyclesPerHclk = 1;
         uint32_t hclkHz = 120'000'000; // processor clock in simulated time, Hz

@@ -110,7 +110,7 @@ private:
 // A vehicle or a ground station, and its program. It knows what others send only to check it.
 class End : public ModemEnd {
 public:
-    using MailOf = std::function<Mail*(int from, int to)>; // null if there is none
+    using MailOf = std::function<Mail*(int from, int to)>; // null if none
     End(RfChannel& air, Random& random, int name, bool isGround, const std::vector<int>& targets,
         const MailOf& mailOf)
         : ModemEnd(air, options(name & 0xFFFF), random.next(), targets), random_(random),

@@ -202,7 +202,7 @@ bool Forwarder::mayGo(const Client& client) const {
              lane.bytes + request.parameters.size() <= mostBytesUnderWay[number]));
 }
 
-// Returns a lane that has waiting requests and no connection; -1 if there is none.
+// Returns a lane that has waiting requests and no connection; -1 if none.
 int Forwarder::laneToConnect() const {
     for (const auto& [connection, client] : clients_) {
         if (client->requests.empty())

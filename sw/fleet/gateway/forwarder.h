@@ -66,7 +66,7 @@ public:
     // block at a time; further ones fail, and a one-way request that fails closes its connection.
     void take(std::shared_ptr<Request> request);
     // Passes a request of the vehicle to the only client that has passed a proxy of this identity
-    // to the vehicle; if there is none, to the only client with a two-way call in progress. Replies
+    // to the vehicle; if none, to the only client with a two-way call in progress. Replies
     // ObjectNotExistException if two clients qualify, or none.
     void takeCallback(std::shared_ptr<Request> request);
     // Sets the adapter that dispatches the vehicle's requests on the clients' connections.

@@ -33,7 +33,7 @@ Hw_Status Hw_Registers_Core_init(Hw_Registers_Core* self, U32 slot, U32 id,
 void Hw_Registers_Core_interrupt(Hw_Registers_Core* self);
 U32 Hw_Registers_Core_poll(Hw_Registers_Core* self, U32 nowMs);
 
-/* Compare the chip's registers with those that the firmware was built for, by each slot's hash,
+/* Compare the chip registers with those that the firmware was built for, by each slot's hash,
  * SYSTEM.CONTRACT (docs/bus.md). read: fills `found` with the `count` lines of `built`, and with
  * the hashes from the chip. hold: returns 1 if the slot is in the list, and both hashes agree. */
 void Hw_Contracts_read(Hw_Contract* found, const Hw_Contract* built, U32 count);

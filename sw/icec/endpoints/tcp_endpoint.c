@@ -212,7 +212,7 @@ static Ice_Status sendAll(void* context, int connection, const Ice_Byte* message
     return ends ? ICE_CONNECTION_LOST : ICE_OK;
 }
 
-/* Returns the connection made to this peer; -1 if there is none. */
+/* Returns the connection made to this peer; -1 if none. */
 static int connectionTo(TcpEndpoint* self, const TcpEndpoint_Place* to) {
     int slot, found = -1;
     lock(self);

@@ -15,7 +15,7 @@ typedef struct TcpEndpoint_Address {
     Ice_Bool compresses; /* offered, but not used by this side */
 } TcpEndpoint_Address;
 
-/* Reads the options of an endpoint; the host's data is 0 without -h. Returns 0 for unknown options,
+/* Reads the options of an endpoint; `host` is empty without -h. Returns 0 for unknown options,
  * or values out of range. */
 Ice_Bool TcpEndpoint_readOptions(const char* options, TcpEndpoint_Address* address);
 
@@ -59,7 +59,7 @@ Ice_Int TcpEndpoint_sendSome(int fd, const Ice_Byte* message, Ice_Int size, Ice_
  * one, and the rest of the message is skipped. Otherwise returns 0: the connection ends. */
 int TcpEndpoint_refuse(TcpEndpoint_Connection* c, Ice_Int size);
 /* Returns the accepted connection that a new one may displace first, and the time until it may; -1
- * if there is none. */
+ * if none. */
 int TcpEndpoint_idlest(TcpEndpoint* self, Ice_Int* left);
 /* Returns the listener if a connection can be accepted now; else -1, and shortens timeoutMs to the
  * time when one may be. */

@@ -195,7 +195,7 @@ static void endUnknown(Ice_InputStreamPtr is) {
 
 typedef struct SliceHead {
     Ice_String id;
-    Ice_Int compactId;         /* -1 if there is none */
+    Ice_Int compactId;         /* -1 if none */
     const Ice_ValueType* type; /* 0: not known */
     Ice_Bool isObject;         /* the base of all classes; it ends an instance of 1.0 */
 } SliceHead;

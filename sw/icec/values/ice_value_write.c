@@ -135,7 +135,7 @@ static void writeInstance(Ice_OutputStreamPtr os, const Ice_Value* v) {
     os->sliceFlags = flags;
 }
 
-/* Writes the instances referenced by a slice's members, after it. Returns 0 if there are none. */
+/* Writes the instances referenced by a slice's members, after it. Returns 0 if none. */
 static Ice_Bool writeTable(Ice_OutputStreamPtr os) {
     Ice_OutputValues* values = os->values;
     Ice_Int begin = values->tableBegin, end = values->tableEnd, i;

@@ -7,7 +7,7 @@
 
 #include "slots.h"
 
-/* Returns the slots of bitstreams, or 0 if there is no such flash. Before that, the FPGA loads a
+/* Returns the slots of bitstreams, or 0 without such a flash. Before that, the FPGA loads a
  * new bitstream (with `mayTry`), or the golden one if the new one was not confirmed or not
  * accepted, and DONE is awaited. With `mustLoad` the FPGA loads its bitstream again, so that its
  * reads are received. Before each load the FPGA is held empty until the bitstream was found signed

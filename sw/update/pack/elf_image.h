@@ -26,7 +26,7 @@ public:
     bool has(const std::string& symbol) const { return symbols_.count(symbol) != 0; }
     uint32_t symbol(const std::string& name) const; // throws for an unknown name
     uint32_t size(const std::string& name) const { return sizes_.at(name); }
-    // Returns the name of the function at an address; "?" if there is none.
+    // Returns the name of the function at an address; "?" if none.
     std::string functionAt(uint32_t address) const;
 
     // Writes the checksum of the words image_begin .. image_end into the file, at image_end.

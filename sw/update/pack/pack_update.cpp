@@ -48,7 +48,7 @@ void save(const std::string& path, const Bytes& bytes) {
         fail("cannot write '" + path + "'");
 }
 
-// Reads a private key's seed. Returns false if there is no such file.
+// Reads a private key's seed. Returns false without such a file.
 bool readSeed(const std::string& path, Bytes& seed) {
     const int in = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC); // a pipe must not block
     if (in < 0 && errno == ENOENT)

@@ -74,7 +74,7 @@ protected:
         bytes[0] = static_cast<uint8_t>(size - 5);
         return bytes;
     }
-    // Returns the oldest packet in the ring, empty if there is none; take() also releases it.
+    // Returns the oldest packet in the ring, empty if none; take() also releases it.
     std::vector<uint8_t> oldest() {
         const uint32_t get = bus_.read(MODEM_RX_GET);
         const bool isValid = get & MODEM_RX_GET_VALID_MASK;

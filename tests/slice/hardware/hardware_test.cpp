@@ -113,7 +113,7 @@ TEST_F(CalculatorServant, OtherCallsGoOnWhileALongOneIsUnderWay) {
     EXPECT_EQ(divide(8, 2), 4);
 }
 
-// 64-bit values, floating point, and words chosen by metadata, at the wrapper's pins.
+// 64-bit values, floating point, and words chosen by metadata, at the wrapper pins.
 class WideEchoServant : public ::testing::Test {
 protected:
     WideEchoServant() {
@@ -174,7 +174,7 @@ bool isSame(const Demo_Five& x, const Demo_Five& y) {
     return std::memcmp(&x, &y, sizeof x) == 0;
 }
 
-// 20 words in and 20 out of one operation, and three of another, at the wrapper's pins. (Its VHDL
+// 20 words in and 20 out of one operation, and three of another, at the wrapper pins. (Its VHDL
 // does the same: slice.hardware.vhdl.many.)
 class ManyServant : public ::testing::Test {
 protected:

@@ -113,7 +113,7 @@ TEST_F(Gateway, AFloodLeavesRoomForOthers) {
     EXPECT_LT(echo_->noted(), 1000) << "the flood went first";
 }
 
-// Returns the durations of calls by the rig's clock, in ms, sorted.
+// Returns the durations of calls by the rig clock, in ms, sorted.
 std::vector<double> timesOf(World& world, const std::shared_ptr<RadioTest::UavPrx>& echo,
                             int calls) {
     const auto now = [&world] {

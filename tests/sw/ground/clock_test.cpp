@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// clock_test: the engine's clock, from a simulator's counters and from the machine; and a program
+// clock_test: the engine clock, from a simulator's counters and from the machine; and a program
 // that keeps step with simulated time, on a machine that rarely lets it run: no simulated time
 // passes while it works, and no byte is late.
 

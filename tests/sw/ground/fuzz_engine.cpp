@@ -115,7 +115,7 @@ public:
             for (char c : {'O', 'K', '\r'})
                 toEngine.push_back(static_cast<uint8_t>(c));
     }
-    // Returns, like the engine's clock, when a descriptor is ready or `us` have passed.
+    // Returns, like the engine clock, when a descriptor is ready or `us` have passed.
     int wait(pollfd* fds, nfds_t count, uint32_t us) {
         std::unique_lock<std::mutex> lock(mutex_);
         changed_.wait(lock, [this] { return stage_ != Stage::Begins; });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // rig: the other end of the ground's serial port: a modem on a pty, the air, and a UAV made of a
-// modem and a link layer. Its thread follows the machine's clock, but waits for an engine that
+// modem and a link layer. Its thread follows the machine clock, but waits for an engine that
 // keeps step: if many tests run at once, time passes slowly and no time-out is early.
 
 #pragma once

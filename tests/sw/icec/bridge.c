@@ -78,7 +78,7 @@ static Ice_Status passWhole(Ice_ObjectPrxPtr far, const Ice_Current* current, Ic
     return Ice_ObjectPrx_end(far, status);
 }
 
-/* Returns the servant of the object's type; 0 with `status` if there is none. */
+/* Returns the servant of the object's type; 0 with `status` if none. */
 static Ice_ObjectPtr servantOf(const Ice_ObjectPrx* far, Ice_Status* status) {
     Ice_ObjectPrx asked = *far;
     Ice_ObjectPtr servant = 0;

@@ -2,7 +2,7 @@
 //
 // quiet_test: a flight in which quiet clocks are skipped and idle cores have no clock equals, clock
 // by clock, the one in which each is evaluated and each core clocked. COMPARE_MS=1000 compares a
-// second of it. In a second flight every core works, and the camera's pins change.
+// second of it. In a second flight every core works, and the camera pins change.
 
 #include "VSoc___024root.h"
 #include "core_pins.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// servo_test: the core's pins, accessed through the model that the proxy holds.
+// servo_test: the core pins, accessed through the model that the proxy holds.
 
 #include "Vservo_slot.h"
 #include "servo_proxy.h"

@@ -250,6 +250,29 @@ class Call(unittest.TestCase):
         with self.assertRaisesRegex(Stop, "no object 'fri'; did you mean fir"):
             Catalogue(str(BUILD)).find("fri.filter")
 
+    def test_registers(self):
+        """A core that is called by its registers: names and values are checked."""
+        build = Path(self.work.name, "build")
+        (build / "gen").mkdir(parents=True)
+        (build / "slice").symlink_to(BUILD / "slice")
+        (build / "gen/objects.json").write_text(json.dumps([{
+            "identity": "eye", "core": "eye", "registers": str(TREE / "ip/vision/vision.regs.json"),
+            "slice": [str(TREE / "sw/hw/registers/Registers.ice")],
+            "interface": "::Hw::Registers"}]))
+        for words, message in (
+                ("set THRESHOLD 300", "THRESHOLD: expected 0 to 255, got 300"),
+                ("set THRESHOLD -1", "THRESHOLD: expected 0 to 255, got -1"),
+                ("set TRESHOLD 3", "TRESHOLD: not a register; did you mean THRESHOLD?"),
+                ("set STATUS 3", "STATUS: ro: it cannot be written; expected "),
+                ("wait 600001", "ms: expected 0 to 600000, got 600001")):
+            status, _, err = self.ask(f"eye.{words}", "--check", "--build", str(build),
+                                      operation=False)
+            self.assertEqual((status, message in err), (2, True), err)
+        for words in "set THRESHOLD 255", "get 0x40", "get THRESHOLD":
+            self.assertEqual(self.ask(f"eye.{words}", "--check", "--build", str(build),
+                                      operation=False)[0], 0, words)
+        self.assertIn("name=THRESHOLD", choices(Catalogue(str(build)), ["eye.set"]))
+
     def test_speed(self):
         """The first call takes at most 1.5 times a program's own start and call."""
         program = ["/usr/bin/python3", "-c", f"""

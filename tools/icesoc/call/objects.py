@@ -124,7 +124,9 @@ def registers(each):
     except (Wrong, OSError):
         return found
     for register in block.registers:
-        found[register.name] = register.access, register.width
+        # Bits above the last field do nothing.
+        width = max((f.lsb + f.width for f in register.fields), default=register.width)
+        found[register.name] = register.access, width
         for field in register.fields:
             if field.name:
                 found[f"{register.name}.{field.name}"] = field.access, field.width

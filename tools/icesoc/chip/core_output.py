@@ -337,7 +337,8 @@ def objects_of(chip, registers, slices):
     registers: file by folder; slices: pairs of folder and file."""
     return json.dumps([
         {"identity": core.identity, "core": core.name, "registers": registers[core.folder],
-         "slice": [file for folder, file in slices if folder == core.folder]}
+         "slice": [file for folder, file in slices if folder == core.folder],
+         **({} if core.servant else {"interface": "::Hw::Registers"})}
         for core in chip.cores], indent=1) + "\n"
 
 

@@ -14,7 +14,7 @@
 #define TRANSMIT 9U
 #define RECEIVE 10U
 #define LIMIT 1000U /* time-out, units of 10 ms */
-#define LINE_BYTES 80U
+#define LINE_BYTES 88U
 #define JUMPER_PORT 2U /* PC2: wired to ground, it proves that the vehicle is open */
 #define JUMPER 2U
 
@@ -93,9 +93,10 @@ static void protect(void) {
 /* Executes the line. Returns the answer. */
 static const char* obey(const char* line) {
     const char *end, *answer = "ok\r\n";
-    U8 key[LINK_KEY_BYTES], old[LINK_KEY_BYTES], address[2] = {0, 0};
+    U8 key[LINK_KEY_BYTES], old[LINK_KEY_BYTES], address[2] = {0, 0}, call[4] = {0, 0, 0, 0};
     const int isFellow = strncmp(line, "fellow ", 7) == 0;
-    const int isGround = isFellow || strncmp(line, "ground ", 7) == 0;
+    const int isGroup = strncmp(line, "group ", 6) == 0;
+    const int isPeer = isFellow || isGroup || strncmp(line, "ground ", 7) == 0;
     int isKey = strncmp(line, "key ", 4) == 0;
     U32 number;
     int isProven = UAV_countKeys(0) == 0 || !(GPIO_IDR(JUMPER_PORT) >> JUMPER & 1UL);
@@ -103,8 +104,9 @@ static const char* obey(const char* line) {
         protect();
         return answer;
     }
-    if (isGround) {
-        end = readBytes(line + 7, address, sizeof address);
+    if (isPeer) {
+        end = isGroup ? readBytes(line + 6, call, sizeof call)
+                      : readBytes(line + 7, address, sizeof address);
         isKey = end && *end == ' ';
         end = isKey ? readBytes(end + 1, key, sizeof key) : end;
     } else {
@@ -117,18 +119,21 @@ static const char* obey(const char* line) {
         end = readBytes(end + 1, old, sizeof old);
         isProven |= end && UAV_isKey(old);
     }
-    number = (U32)address[0] << 8 | address[1];
+    number = isGroup ? UAV_EVERYBODY : (U32)address[0] << 8 | address[1];
     if (!end || *end)
         answer = "no: key or open, the key's 32 of 0..9a..f, the address's 4, a present key's; "
-                 "ground or fellow, its address, its key; or protect\r\n";
+                 "ground or fellow, its address, its key; group, the call's number, its key; or "
+                 "protect\r\n";
     else if (!isProven)
         answer = "no: it has a key; give that, too, or wire the jumper\r\n";
-    else if (!(isGround ? UAV_providePeer(isFellow                  ? UAV_VEHICLE
-                                          : number == UAV_EVERYBODY ? UAV_GROUP
-                                                                    : UAV_OBSERVER,
-                                          number, isKey ? key : 0)
-                        : UAV_provide(number, isKey ? key : 0)))
+    else if (!(isPeer ? UAV_providePeer(isFellow                  ? UAV_VEHICLE
+                                        : number == UAV_EVERYBODY ? UAV_GROUP
+                                                                  : UAV_OBSERVER,
+                                        number, isKey ? key : 0)
+                      : UAV_provide(number, isKey ? key : 0)))
         answer = "no: this firmware was built without keys or without several peers\r\n";
+    else if (isGroup)
+        UAV_setCallNumber((U32)call[0] << 24 | (U32)call[1] << 16 | (U32)call[2] << 8 | call[3]);
     Ascon_wipe(key, sizeof key);
     Ascon_wipe(old, sizeof old);
     return answer;

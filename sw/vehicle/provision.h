@@ -9,7 +9,8 @@
  * off, and waits ten seconds for one line:
  *   key KEY ADDRESS             sets the first ground's key and the vehicle's address (UAV_provide)
  *   open ADDRESS                the same without a key
- *   ground ADDRESS [KEY]        adds an observer, or for ffff the group (UAV_providePeer)
+ *   ground ADDRESS [KEY]        adds an observer (UAV_providePeer)
+ *   group NUMBER KEY            adds the group; calls to all need a higher number (eight digits)
  *   fellow ADDRESS [KEY]        adds another vehicle
  *   protect                     sets read protection
  * KEY has 32 hexadecimal digits, ADDRESS four. A vehicle with a key requires one of its current

@@ -32,12 +32,19 @@ int UAV_isOfGroup(void) {
     return is;
 }
 
+void UAV_setCallNumber(U32 number) {
+    UAV_store(NEWEST, number);
+}
+
 U32 UAV_openBroadcast(U8* packet, U32 size) {
+    const U32 newest = UAV_load(NEWEST);
     U8 key[LINK_KEY_BYTES];
     (void)readGroupKey(key);
-    size = Link_openBroadcast(packet, size, key, UAV_load(NEWEST));
+    size = Link_openBroadcast(packet, size, key, newest);
     Ascon_wipe(key, sizeof key);
-    if (size)
-        UAV_store(NEWEST, LINK_BROADCAST_NUMBER(packet));
+    if (!size ||
+        LINK_BROADCAST_NUMBER(packet) - newest > (newest ? UAV_MOST_AHEAD : UAV_FIRST_CALL))
+        return 0;
+    UAV_store(NEWEST, LINK_BROADCAST_NUMBER(packet));
     return size;
 }

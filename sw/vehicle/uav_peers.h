@@ -29,7 +29,16 @@ int UAV_providePeer(int role, U32 address, const U8* key);
 /* Returns 1 if the vehicle takes calls to all vehicles: it has the group's key, or is open. */
 int UAV_isOfGroup(void);
 
+/* Sets the number that calls to all vehicles must exceed: the current one (link_broadcast.h) when
+ * the vehicle receives its group's key. Recorded calls have lower numbers. */
+void UAV_setCallNumber(U32 number);
+
+/* Largest distance of a call's number from the previous one: 400 days in quarters of a second.
+ * Otherwise one call with the highest number would make the vehicle refuse all later ones. */
+#define UAV_MOST_AHEAD (400U * 24U * 3600U * 4U)
+#define UAV_FIRST_CALL 0x7FFFFFFFU /* highest number of the first call if no number was set */
+
 /* Decrypts a call to all vehicles and stores its number. Returns the message's size, or 0 if the
- * call must not be executed: it is not of the group, or this vehicle has seen it
- * (Link_openBroadcast). */
+ * call must not be executed: it is not of the group, this vehicle has seen it
+ * (Link_openBroadcast), or its number is too far ahead. */
 U32 UAV_openBroadcast(U8* packet, U32 size);

@@ -83,6 +83,16 @@ def read_key(path, vehicle):
     return key
 
 
+def call_number():
+    """Returns the current number of calls to all vehicles: quarters of a second since the start of
+    2026 (sw/link/link_broadcast.h). The vehicle refuses calls that are older than its key."""
+    number = int((time.time() - 1767225600) * 4)
+    if not 0 < number < 1 << 31:
+        raise Failed("this computer's clock is at %s: set it first, because calls to all vehicles "
+                     "are numbered by it" % time.strftime("%Y-%m-%d"))
+    return number
+
+
 def read_line(port, seconds):
     """Returns the bytes that arrive until the end of a line or the time-out."""
     text, end = b"", time.monotonic() + seconds
@@ -138,6 +148,7 @@ def main():
         owner = GROUP if args.ground == GROUP else args.address
         key = "" if args.protect or args.open else read_key(args.key, owner)
         command = ("protect" if args.protect else
+                   "group %08x %s" % (call_number(), key) if args.ground == GROUP else
                    ("ground %04x %s" % (args.ground, key)).strip() if args.ground is not None else
                    ("fellow %04x %s" % (args.fellow, key)).strip() if args.fellow is not None else
                    "%s %04x" % ("key " + key if key else "open", args.address))

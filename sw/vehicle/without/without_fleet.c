@@ -14,6 +14,10 @@ int UAV_providePeer(int role, U32 address, const U8* key) {
     return 0;
 }
 
+void UAV_setCallNumber(U32 number) {
+    (void)number;
+}
+
 int UAV_addPeers(void) {
     return 0;
 }

@@ -121,6 +121,30 @@ TEST(Keys, ASlotThatWasSpoiltIsEmpty) {
     EXPECT_EQ(UAV_countKeys(0), 1);
 }
 
+// A member of the group can send any number.
+TEST(Keys, AHighNumberDoesNotSilenceCallsToAll) {
+    Vehicle vehicle(1);
+    const auto opens = [](const Key& key, U32 number) {
+        U8 packet[LINK_MAX_FRAME] = {};
+        return UAV_openBroadcast(packet, Link_sealBroadcast(packet, 5, key.data(), number)) == 5;
+    };
+    const U32 now = 115'000'000; // November 2026
+    UAV_providePeer(UAV_GROUP, UAV_EVERYBODY, newKey.data());
+    EXPECT_FALSE(opens(newKey, 0xFFFFFFFF)) << "although no number is known yet";
+    UAV_setCallNumber(now);
+    EXPECT_FALSE(opens(newKey, now)) << "recorded before the vehicle joined";
+    EXPECT_TRUE(opens(newKey, now + 1));
+    EXPECT_FALSE(opens(newKey, 0xFFFFFFFF));
+    EXPECT_FALSE(opens(newKey, now + 2 + UAV_MOST_AHEAD));
+    EXPECT_TRUE(opens(newKey, now + 2));
+    EXPECT_TRUE(opens(newKey, now + 2 + UAV_MOST_AHEAD)) << "a year without a call";
+    EXPECT_FALSE(opens(newKey, now + 3));
+    UAV_providePeer(UAV_GROUP, UAV_EVERYBODY, oldKey.data());
+    UAV_setCallNumber(now + 3);
+    EXPECT_FALSE(opens(oldKey, now + 3));
+    EXPECT_TRUE(opens(oldKey, now + 4)) << "the group's new key starts at its own number";
+}
+
 TEST(Keys, TheGroupsKeyOpensEachCallOnceAndGoesWithANewVehiclesKey) {
     Vehicle vehicle(1);
     const auto opens = [](const Key& key, U32 number) {

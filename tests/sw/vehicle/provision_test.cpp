@@ -120,7 +120,10 @@ TEST_F(Provision, TakesASecondGroundWithAKeyOfItsOwn) {
 
 TEST_F(Provision, TakesTheGroupsKey) {
     startAndAnswer("key " + digits + at);
-    EXPECT_EQ(startAndAnswer("ground ffff " + std::string(32, 'a') + " " + digits), "ok\r\n");
+    EXPECT_EQ(startAndAnswer("group 06dacba9 " + std::string(32, 'a')).substr(0, 3), "no:");
+    EXPECT_EQ(chip.backup()[58], 0u) << "the present key is missing";
+    EXPECT_EQ(startAndAnswer("group 06dacba9 " + std::string(32, 'a') + " " + digits), "ok\r\n");
+    EXPECT_EQ(chip.backup()[58], 0x06DACBA9u);
     EXPECT_EQ(chip.backup()[48], 0xAAAAAAAAu);
     EXPECT_EQ(chip.backup()[27], ~0xFFFFFFFFu) << "no second ground";
     EXPECT_TRUE(has(key));

@@ -43,6 +43,11 @@ set(TOOLS ${CMAKE_SOURCE_DIR}/tools/icesoc)
 set(FETCH ${PYTHON} -m icesoc.util.fetch)
 set(FETCH_FILES ${TOOLS}/__init__.py ${TOOLS}/util/fetch.py)
 
+# Programs for any CPU of this architecture (packages), or for this one.
+set(TUNE -march=native)
+if(PORTABLE)
+  set(TUNE)
+endif()
 set(GEN_DIR ${CMAKE_BINARY_DIR}/gen)
 file(MAKE_DIRECTORY ${GEN_DIR})
 # gtest_discover_tests runs the binary at ctest time, so a build never runs a test.
@@ -241,6 +246,12 @@ function(icesoc_verilate name)
   if(A_FAST AND NOT COVERAGE AND NOT SANITIZE)
     set(compiler ${CLANGXX})
   endif()
+  # Messages of the simulator, which is installed, do not name this tree.
+  set(without_tree)
+  if(A_FAST)
+    set(without_tree COMMAND find ${dir} -name "*.cpp" -exec sed -i
+      "s|MT(\"${CMAKE_SOURCE_DIR}/|MT(\"|" {} +)
+  endif()
   # This code runs once; with counters it is several megabytes, and -O1 took minutes.
   set(slow -O1)
   if(COVERAGE)
@@ -251,9 +262,10 @@ function(icesoc_verilate name)
   # of ninja, not in the next one.
   add_custom_command(OUTPUT ${lib} BYPRODUCTS ${dir}/${class}.h ${dir}/${class}___024root.h
     COMMAND ${VERILATOR} ${flags} ${A_PARAMS} ${sources}
+    ${without_tree}
     COMMAND ${CMAKE_COMMAND} -E env CCACHE_DIR=$ENV{CCACHE_DIR}
             make -s -C ${dir} -f ${class}.mk ${class}__ALL.a
-            "CXX=${CCACHE} ${compiler}" "OPT_FAST=-O3 -march=native" OPT_GLOBAL=-O2
+            "CXX=${CCACHE} ${compiler}" "OPT_FAST=-O3 ${TUNE}" OPT_GLOBAL=-O2
             "OPT_SLOW=${slow}" "USER_CPPFLAGS=-fPIC" ARCHIVE=1
     DEPENDS ${deps} VERBATIM COMMENT "Verilating ${A_TOP} as ${name}")
   set(defines ${A_FLAGS})

@@ -78,6 +78,9 @@ python3-myst-parser reads its Markdown pages
 furo style of the documentation site
 python3-breathe C reference of the documentation site
 doxygen reads the C headers for it
+dpkg-dev finds the dependencies of the Debian packages
+file finds the programs in them
+lintian checks them
 man-db shows and checks the manual pages
 groff-base formats them
 '

@@ -102,6 +102,16 @@ std::vector<uint8_t> flashOf(const std::string& file, size_t size, const std::st
 
 } // namespace
 
+std::string fileOfSimulator(const std::string& installed, const std::string& built) {
+    const auto folder = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+    const auto file = folder / ".." / installed;
+    return (std::filesystem::exists(file) ? file : folder / built).lexically_normal();
+}
+
+std::string defaultFirmware() {
+    return fileOfSimulator("lib/icesoc/uav.elf", "../../firmware/uav.elf");
+}
+
 Flight::Flight(const Options& options)
     : o_(options), frame_(pictureFor(o_)), key_(keyOf(o_.key, 1)), weather_(weatherOf(o_)),
       air_(o_.seed), ground_(air_, modem("ground", o_.guard), prepared(o_, frame_), "", o_.replayed,
@@ -248,7 +258,9 @@ void Flight::watchRegisters() {
 
 void Flight::startProgram() {
     const std::string status = std::filesystem::absolute(o_.out + "/status");
-    setenv("XBEEAT_CLOCK", (SIM_CLOCK ":" + status).c_str(), 1);
+    const std::string clock =
+        fileOfSimulator("libexec/icesoc/libsimclock.so", "../status/libsimclock.so");
+    setenv("XBEEAT_CLOCK", (clock + ":" + status).c_str(), 1);
     if (!o_.command.empty())
         child_.start(o_.command, {{"{device}", ground_.pty.path()},
                                   {"{device2}", second_ ? second_->pty.path() : ""},

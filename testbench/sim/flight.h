@@ -50,14 +50,20 @@ private:
     Clock::duration slept_{};
 };
 
+// Returns a file that belongs to this simulator. `installed`: its path below the folder into which
+// the simulator is installed; `built`: its path from the folder where the simulator is built.
+std::string fileOfSimulator(const std::string& installed, const std::string& built);
+
+std::string defaultFirmware();
+
 class Flight {
 public:
     struct Options {
         // Fields of the flight's description, by their names there
         // (tools/icesoc/cli/flight.schema.json).
         std::string image, size = "320x240", out = ".", speed = "real", cpu = "host",
-                           firmware = FIRMWARE_ELF, key, observer, trouble, modem_key, pins, trace,
-                           flash, fpga_flash;
+                           firmware = defaultFirmware(), key, observer, trouble, modem_key, pins,
+                           trace, flash, fpga_flash;
         uint16_t guard = 1000;
         unsigned vehicles = 1;
         int gdb = -1;

@@ -15,8 +15,13 @@ using nlohmann::json;
 
 namespace {
 
+// Text of tools/icesoc/cli/flight.schema.json, so that the program runs anywhere.
+constexpr char schemaText[] =
+#include "flight_schema.inc"
+    ;
+
 json fields() {
-    return json::parse(readFile(FLIGHT_SCHEMA)).at("properties");
+    return json::parse(schemaText).at("properties");
 }
 
 // Converts a word to a value of its field's type; returns the text if that fails.

@@ -16,16 +16,21 @@ import sys
 
 import Ice
 
+import places
 import plugged
 import provide_key
 
 
 def write(path, lines):
-    """Writes the file with these lines atomically, readable by its owner only."""
+    """Writes a file with these lines next to `path`, readable only by the owner of `path`. Returns
+    its name."""
     temporary = path + ".new"
     with contextlib.suppress(FileNotFoundError):
         os.remove(temporary)
     with open(os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w") as f:
+        if os.geteuid() == 0:  # the file of the gateway's user keeps its owner
+            owner = os.stat(path)
+            os.chown(f.fileno(), owner.st_uid, owner.st_gid)
         f.write("\n".join(lines) + "\n")
         f.flush()
         os.fsync(f.fileno())
@@ -107,8 +112,9 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--device", required=True, help="serial port of the modem")
     parser.add_argument("--key", required=True, help="key file; it is rewritten")
-    parser.add_argument("--plugin", required=True, help="folder of libxbeeat.so.37")
-    parser.add_argument("--slice", required=True, help="Autopilot.ice")
+    parser.add_argument("--plugin", default=places.plugin(), help="folder of libxbeeat.so.37")
+    parser.add_argument("--slice", default=places.slice_file("Autopilot.ice"),
+                        help="Autopilot.ice")
     parser.add_argument("--address", type=lambda text: int(text, 0), default=1,
                         help="address of the vehicle")
     parser.add_argument("--guard", type=int, default=1000, help="guard time of the modem, ms")

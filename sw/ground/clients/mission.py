@@ -20,6 +20,7 @@ import threading
 
 import Ice
 
+import places
 import plugged
 import stay
 from mission_log import Air, Log, report, whole
@@ -28,7 +29,6 @@ from PIL import Image, ImageDraw
 # Corners of a complete result: a core that treats a pixel at the threshold as brighter passed with
 # 121 corners, and failed with 313.
 ENOUGH = 300
-IP = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../../ip")
 
 
 def parse_arguments():
@@ -37,8 +37,9 @@ def parse_arguments():
                         help="flight.json: threshold, key, cores, folder of the results (./icesoc "
                              "run writes it)")
     parser.add_argument("--device", required=True, help="serial port of the modem")
-    parser.add_argument("--plugin", required=True, help="folder of libxbeeat.so.37")
-    parser.add_argument("--slice", required=True, help="Autopilot.ice")
+    parser.add_argument("--plugin", default=places.plugin(), help="folder of libxbeeat.so.37")
+    parser.add_argument("--slice", default=places.slice_file("Autopilot.ice"),
+                        help="Autopilot.ice")
     parser.add_argument("--frame", required=True, help="the camera's frame, to draw on")
     parser.add_argument("--status", help="the simulator's counters")
     parser.add_argument("--observer-device", help="the same of a second ground, which looks at all "
@@ -56,7 +57,7 @@ def parse_arguments():
             "serial" if args.wire else "xbee-at", args.device)
     except (OSError, ValueError, KeyError) as error:
         sys.exit("mission: '%s' is not a flight: %r" % (args.flight, error))
-    args.cores = [os.path.join(IP, core) for core in flight["cores"]]
+    args.cores = [places.core(core) for core in flight["cores"]]
     return args
 
 
@@ -310,8 +311,7 @@ def fly(args):
     """Flies the mission; returns an exit status."""
     communicator = initialize(args)
     try:
-        registers = os.path.join(os.path.dirname(os.path.abspath(__file__)),
-                                 "../../hw/registers/Registers.ice")
+        registers = places.slice_file("Registers.ice")
         for file in [args.slice, registers, *(file for core in args.cores
                                               for file in glob.glob(os.path.join(core, "*.ice")))]:
             Ice.loadSlice("", ["-I" + (Ice.getSliceDir() or "."), file])

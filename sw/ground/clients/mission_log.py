@@ -11,6 +11,8 @@ import time
 
 import Ice
 
+import places
+
 RESULTS = ("after.png", "report.md", "report.json", "calls.jsonl")
 
 
@@ -23,8 +25,7 @@ class Air:
     def __init__(self, path):
         self.map = None
         if path:
-            from icesoc.util import record  # a simulation runs in the source tree
-            self.status = record.of_tree("testbench/status/sim_status.toml")
+            self.status = places.status_record()
             with open(path, "rb") as f:
                 self.map = mmap.mmap(f.fileno(), self.status.size, access=mmap.ACCESS_READ)
 

@@ -18,6 +18,7 @@ import time
 import Ice
 import lz4.block
 
+import places
 import plugged
 from mission_log import Air
 
@@ -258,8 +259,9 @@ def main():
     parser.add_argument("--proxy",
                         help="instead of --device: proxy of the object, as 'update:tcp -h host "
                              "-p 4061'")
-    parser.add_argument("--plugin", help="folder of libxbeeat.so.37")
-    parser.add_argument("--slice", required=True, help="Update.ice")
+    parser.add_argument("--plugin", help="folder of libxbeeat.so.37 (default: as built or "
+                        "installed; not loaded with --proxy)")
+    parser.add_argument("--slice", default=places.slice_file("Update.ice"), help="Update.ice")
     parser.add_argument("--status", help="the simulator's counters")
     parser.add_argument("--key", default="", help="file with the link's key; without: in the clear")
     parser.add_argument("--guard", type=int, default=1000, help="guard time of the modem, ms")
@@ -281,7 +283,8 @@ def main():
         import Update  # made by loadSlice
         settings = {"Ice.Default.InvocationTimeout": "60000", "Ice.ACM.Close": "0",
                     "Ice.RetryIntervals": "-1"}
-        communicator = plugged.initialize(settings, args.plugin, args.guard, args.key)
+        plugin = args.plugin or ("" if args.proxy else places.plugin())
+        communicator = plugged.initialize(settings, plugin, args.guard, args.key)
         first = images[0] if images else "update"
         where = args.proxy or "%s:xbee-at -d %s -a 0x0001 -s 0x0000 -t 60000" % (first, args.device)
         proxy = Update.FirmwarePrx.uncheckedCast(communicator.stringToProxy(where))

@@ -21,7 +21,7 @@ SECTIONS = {  # of the overview: commands and groups, by what a user wants to do
     "Fly": ("run", "call", "replay", "gdb", "key", "fly"),
     "Add cores, look at the chip": ("core", "contract", "synth"),
     "Build and test": ("build", "test", "regress", "bisect", "check", "bench", "nightly"),
-    "The project": ("setup", "docs", "release", "clean", "commands")}
+    "The project": ("setup", "docs", "package", "release", "clean", "commands")}
 ALIASES = {}  # other goals of make: a goal, and the switch that it sets
 
 

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""fresh: the steps of the README, in order, on an empty Debian 12 and 13.
+"""fresh: runs the README's commands, in order, on an empty Debian 12 and 13, and the packages that
+they build on another one.
 
 A machine is a folder that debootstrap fills, with a clone of this tree's HEAD and nothing else: no
-package, no cache. Its mounts and processes are its own and end with it.
+package, no cache. The machine for packages has no clone. Mounts and processes of a machine are
+separate and end with it.
 """
 import json
 import os
@@ -20,12 +22,13 @@ from icesoc.util.process import output, run
 
 RELEASES = {"bookworm": "Debian 12", "trixie": "Debian 13"}
 README = ["make run", "make test"]
+PACKAGES = "packages"  # the step that builds, installs and uses them
 MIRROR = "http://deb.debian.org/debian"
 CERTIFICATES = Path("/etc/ssl/certs/ca-certificates.crt")
 # First process of the machine, in a separate mount namespace.
 BOOT = """
 mount --make-rprivate / && mount -t proc proc "$1/proc" && mount --rbind /dev "$1/dev" &&
-mount --rbind /sys "$1/sys" && exec chroot "$1" /bin/sh -c "cd /root/icesoc && $2"
+mount --rbind /sys "$1/sys" && exec chroot "$1" /bin/sh -c "cd $3 && $2"
 """
 
 
@@ -33,14 +36,17 @@ mount --rbind /sys "$1/sys" && exec chroot "$1" /bin/sh -c "cd /root/icesoc && $
     Option("release", one_of(*RELEASES), "Debian release, bookworm or trixie; default: both", ""),
     Option("again", SWITCH, "reuse the existing systems, with the current HEAD"),
     Option("steps", TEXT, "commands to run instead of the README's, separated by ;",
-           "; ".join(README)),
+           "; ".join([*README, PACKAGES])),
+    Option("packages", FOLDER, "only install and use the Debian packages in this folder, on a "
+                               "machine of --release"),
     Option("folder", FOLDER, "folder for the systems and logs, 8 GB each", "/var/tmp/icesoc-fresh"),
     Option("list", SWITCH, "only print earlier results, with status and minutes")],
          brief="check fresh --list", long="check fresh", examples=[
-             "check fresh --release trixie", "check fresh --again --steps 'make test'"])
+             "check fresh --release trixie", "check fresh --again --steps 'make test'",
+             "check fresh --release bookworm --packages build/packages"])
 def fresh(values):
-    """run the README's commands on an empty Debian 12 and 13; needs root, debootstrap and a
-    network"""
+    """run the README's commands on an empty Debian 12 and 13, and use the packages without the
+    source tree; needs root, debootstrap and a network"""
     top, failed = Path(values.folder), 0
     results = top / "results.json"
     rows = json.loads(results.read_text()) if results.exists() else []
@@ -50,17 +56,43 @@ def fresh(values):
         raise Stop("check fresh needs root: mount and chroot are not for others")
     for release in [values.release] if values.release else RELEASES:
         root = top / release
-        if not (values.again and (root / "root").is_dir()):
-            empty_machine(root, release)
-        put_tree(root)
-        for step in values.steps.split(";"):
-            row = do(root, release, step.strip())
-            failed |= row["status"] != 0
-            rows = [
-                each for each in rows if (each["release"], each["step"]) != (release, row["step"])
-            ] + [row]
+        steps = [PACKAGES] if values.packages else [
+            step.strip() for step in values.steps.split(";")]
+        if not values.packages:
+            if not (values.again and (root / "root").is_dir()):
+                empty_machine(root, release)
+            put_tree(root)
+        for step in steps:
+            if step == PACKAGES:
+                done = use_packages(root, release, values)
+            else:
+                done = [do(root, release, step)]
+            for row in done:
+                failed |= row["status"] != 0
+                rows = [each for each in rows
+                        if (each["release"], each["step"]) != (release, row["step"])] + [row]
             results.write_text(json.dumps(rows, indent=1) + "\n")
     return failed
+
+
+def use_packages(root, release, values):
+    """Builds the packages in the machine with the clone, unless they are given, and uses them in an
+    empty one. Returns the results."""
+    rows, folder = [], values.packages
+    if not folder:
+        rows = [do(root, release, "./icesoc package --check")]
+        folder = root / "root/icesoc/build/packages"
+        if rows[0]["status"]:
+            return rows
+    machine = root.parent / f"{release}-packages"
+    if not (values.again and (machine / "root").is_dir()):
+        empty_machine(machine, release)
+    there = machine / "root/packages"
+    shutil.rmtree(there, ignore_errors=True)
+    shutil.copytree("tests/package", there)
+    for path in Path(folder).glob("*.deb"):
+        shutil.copy(path, there)
+    return [*rows, do(machine, release, "./machine.sh .", "/root/packages")]
 
 
 def summary(row):
@@ -92,8 +124,8 @@ def put_tree(root):
     return run(["git", "-C", clone, "reset", "--quiet", "--hard", "FETCH_HEAD"])
 
 
-def do(root, release, step):
-    """Carries out one step, and prints its last lines."""
+def do(root, release, step, folder="/root/icesoc"):
+    """Runs one step in a folder of the machine, and prints its last lines."""
     words = re.findall(r"[\w.]+", step)
     log = Path("-".join([str(root), *words]) + ".log")
     place = {"HOME": "/root", "PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "TERM": "dumb"}
@@ -102,8 +134,8 @@ def do(root, release, step):
     with open(log, "w") as file:
         status = run(["unshare", "--mount", "--pid", "--fork", "--kill-child", "env", "-i",
                       *(f"{name}={value}" for name, value in (kept | place).items()), "sh", "-c",
-                      BOOT, "sh", root, step], check=False, stdin=subprocess.DEVNULL, stdout=file,
-                     stderr=file)
+                      BOOT, "sh", root, step, folder], check=False, stdin=subprocess.DEVNULL,
+                     stdout=file, stderr=file)
     row = {
         "release": release, "step": step, "status": status,
         "minutes": round((time.monotonic() - begun) / 60, 1), "commit": output([

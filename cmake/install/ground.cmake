@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: MIT
+#
+# icesoc-ground: the plugin, the gateway with its service, the ground's programs and Slice files, and
+# the Python module `icesoc`.
+set(component icesoc-ground)
+set(module lib/python3/dist-packages/icesoc)
+install(TARGETS xbeeat xbeeat_cpp11 LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  COMPONENT ${component})
+install(TARGETS gateway RUNTIME COMPONENT ${component})
+# Copied because install(TARGETS) strips, but cannot rename.
+set(pack_update ${CMAKE_CURRENT_BINARY_DIR}/bin/icesoc-pack-update)
+add_custom_command(OUTPUT ${pack_update}
+  COMMAND ${CMAKE_STRIP} -o ${pack_update} $<TARGET_FILE:pack_update>
+  DEPENDS pack_update VERBATIM COMMENT "Stripping icesoc-pack-update")
+install(PROGRAMS ${pack_update} DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT ${component})
+list(APPEND installable xbeeat xbeeat_cpp11 gateway ${pack_update})
+
+# The module, and programs of it as commands.
+set(clients ${top}/sw/ground/clients)
+install(FILES ${top}/sw/ground/python/icesoc.py DESTINATION ${module} RENAME __init__.py
+  COMPONENT ${component})
+install(FILES ${clients}/places.py ${clients}/plugged.py ${clients}/mission_log.py ${clients}/stay.py
+  ${top}/tools/icesoc/util/record.py DESTINATION ${module} COMPONENT ${component})
+install(PROGRAMS ${clients}/mission.py ${clients}/provide_key.py ${clients}/change_key.py
+  ${clients}/update.py DESTINATION ${module} COMPONENT ${component})
+foreach(program mission provide_key change_key update)
+  string(REPLACE _ - command icesoc-${program})
+  set(link ${CMAKE_CURRENT_BINARY_DIR}/bin/${command})
+  file(MAKE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/bin)
+  file(CREATE_LINK ../${module}/${program}.py ${link} SYMBOLIC)
+  install(FILES ${link} DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT ${component})
+endforeach()
+
+install(FILES ${top}/sw/vehicle/Autopilot.ice ${top}/sw/hw/registers/Registers.ice
+  ${top}/sw/update/Update.ice DESTINATION ${SHARE}/slice COMPONENT ${component})
+install(FILES ${top}/testbench/status/sim_status.toml DESTINATION ${SHARE} COMPONENT ${component})
+# The cores' Slice files and their parts in a mission.
+foreach(core IN LISTS CHIP_CORES)
+  if(EXISTS ${top}/ip/${core})
+    file(GLOB files ${top}/ip/${core}/*.ice ${top}/ip/${core}/ground.py)
+    install(FILES ${files} DESTINATION ${SHARE}/ip/${core} COMPONENT ${component})
+  endif()
+endforeach()
+
+install(FILES ${here}/ground/icesoc-gateway@.service DESTINATION lib/systemd/system
+  COMPONENT ${component})
+install(FILES ${here}/ground/70-icesoc-modem.rules DESTINATION lib/udev/rules.d
+  COMPONENT ${component})
+install(FILES ${here}/ground/gateway.conf ${here}/ground/vehicles.conf ${clients}/ping.cpp
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${component}/examples COMPONENT ${component})
+
+icesoc_manual(${component} icesoc-gateway SECTION 8 DEPENDS gateway
+  PURPOSE "server in front of the radio for programs with ZeroC Ice in any language"
+  COMMAND $<TARGET_FILE:gateway>)
+icesoc_manual(${component} icesoc-pack-update DEPENDS ${pack_update}
+  PURPOSE "pack and sign firmware, bitstreams and lists of keys"
+  COMMAND ${pack_update})
+icesoc_manual(${component} icesoc-mission DEPENDS ${clients}/mission.py
+  PURPOSE "fly the example mission: find corners in the vehicle's picture"
+  COMMAND ${PYTHON} ${clients}/mission.py)
+icesoc_manual(${component} icesoc-provide-key DEPENDS ${clients}/provide_key.py
+  PURPOSE "give a vehicle its address and key over a cable"
+  COMMAND ${PYTHON} ${clients}/provide_key.py)
+icesoc_manual(${component} icesoc-change-key DEPENDS ${clients}/change_key.py
+  PURPOSE "give a vehicle a new key over the radio" COMMAND ${PYTHON} ${clients}/change_key.py)
+icesoc_manual(${component} icesoc-update DEPENDS ${clients}/update.py
+  PURPOSE "send firmware, a bitstream or keys to a vehicle" COMMAND ${PYTHON} ${clients}/update.py)
+add_custom_command(OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/man/icesoc-xbee-at.7.gz
+  COMMAND gzip -9nc ${top}/docs/man/icesoc-xbee-at.7
+          > ${CMAKE_CURRENT_BINARY_DIR}/man/icesoc-xbee-at.7.gz
+  DEPENDS ${top}/docs/man/icesoc-xbee-at.7 VERBATIM)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/man/icesoc-xbee-at.7.gz
+  DESTINATION ${CMAKE_INSTALL_MANDIR}/man7 COMPONENT ${component})
+list(APPEND installable ${CMAKE_CURRENT_BINARY_DIR}/man/icesoc-xbee-at.7.gz)

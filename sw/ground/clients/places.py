@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: MIT
+"""places: the files that the ground's programs need, in the source tree or installed.
+
+Installed, this module is part of the package `icesoc` in PREFIX/lib/python3/dist-packages.
+"""
+import os
+import sysconfig
+
+HERE = os.path.dirname(os.path.realpath(__file__))
+IS_INSTALLED = os.path.isfile(os.path.join(HERE, "__init__.py"))
+TOP = os.path.normpath(os.path.join(HERE, "../../../.." if IS_INSTALLED else "../../.."))
+SHARE = os.path.join(TOP, "share/icesoc")
+SLICE_FILES = {"Autopilot.ice": "sw/vehicle", "Registers.ice": "sw/hw/registers",
+               "Update.ice": "sw/update"}  # with their folders in the source tree
+
+
+def slice_file(name):
+    """Returns the path of a Slice file of SLICE_FILES."""
+    folder = os.path.join(SHARE, "slice") if IS_INSTALLED else os.path.join(TOP, SLICE_FILES[name])
+    return os.path.join(folder, name)
+
+
+def plugin():
+    """Returns the folder of libxbeeat.so.37."""
+    if not IS_INSTALLED:
+        return os.path.join(TOP, "build/main/ground")
+    multiarch = os.path.join(TOP, "lib", sysconfig.get_config_var("MULTIARCH") or "")
+    return multiarch if os.path.isdir(multiarch) else os.path.join(TOP, "lib")
+
+
+def core(name):
+    """Returns the folder of a core's Slice file and its part in a mission."""
+    return os.path.join(SHARE if IS_INSTALLED else TOP, "ip", name)
+
+
+def status_record():
+    """Returns the record of the simulator's counters (icesoc.util.record)."""
+    if IS_INSTALLED:
+        import record  # installed next to this file
+        return record.load(os.path.join(SHARE, "sim_status.toml"))
+    from icesoc.util import record
+    return record.of_tree("testbench/status/sim_status.toml")

@@ -1,0 +1,92 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""icesoc-fly: flies the mission in the simulator: a simulated vehicle, called by a ground station
+with stock ZeroC Ice over simulated modems.
+
+This is the installed form of `./icesoc run`, without the page of the flight. Pictures, a report and
+flight.json, which describes the flight, are written to the output folder.
+"""
+import argparse
+import json
+import os
+import secrets
+import sys
+from pathlib import Path
+
+PREFIX = Path(__file__).resolve().parents[1]
+SCHEMA = PREFIX / "share/icesoc/flight.schema.json"
+REFERENCE = PREFIX / "libexec/icesoc/vision-reference"
+# Fields of a flight that this program does not offer: those of other programs of the source tree.
+OTHER = {"app", "port", "live", "update", "clk_hz", "probe"}
+CONFIG = Path(os.environ.get("XDG_CONFIG_HOME") or Path.home() / ".config") / "icesoc"
+
+
+def fields():
+    """Returns the version of a flight's description, and its fields that have a default."""
+    known = json.loads(SCHEMA.read_text())["properties"]
+    return known["version"]["const"], {name: field for name, field in known.items()
+                                       if "default" in field}
+
+
+def arguments(known):
+    parser = argparse.ArgumentParser(
+        prog="icesoc-fly", description=__doc__.split("\n\n")[0].partition(": ")[2])
+    kinds = {"integer": int, "number": float}
+    for name, field in known.items():
+        if name in OTHER:
+            continue
+        kind, default = field.get("type", "string"), field["default"]
+        text = field["description"].replace("%", "%%")
+        if name == "out":
+            default = "icesoc-flight"
+        if default and "default" not in text:
+            text += f" (default: {default})"
+        more = {"boolean": {"action": "store_true"}, "array": {"nargs": "*"}}.get(
+            kind, {"type": kinds.get(kind, str), "choices": field.get("enum")})
+        parser.add_argument("--" + name.replace("_", "-"), default=default, help=text, **more)
+    return vars(parser.parse_args())
+
+
+def demo_key(name):
+    """Returns a key file of this user; makes it at first use."""
+    path = CONFIG / name
+    CONFIG.mkdir(parents=True, exist_ok=True)
+    try:
+        with open(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w") as file:
+            file.write(secrets.token_hex(16) + "\n")
+        print(f"icesoc-fly: made a demo key, {path}; --key takes yours, --open flies without one")
+    except FileExistsError:
+        pass
+    return str(path)
+
+
+def main():
+    version, known = fields()
+    flight = {name: field["default"] for name, field in known.items()} | arguments(known)
+    if flight["open"] and flight["key"]:
+        sys.exit("icesoc-fly: --open flies without a key: leave out --open or --key")
+    if not flight["open"]:
+        flight["key"] = flight["key"] or demo_key("demo.key")
+        if flight["vehicles"] > 1:
+            flight["observer"] = flight["observer"] or demo_key("observer.key")
+    if flight["camera"] and "camera" not in flight["cores"]:
+        flight["cores"].append("camera")
+    if not flight["firmware"]:
+        del flight["firmware"]  # the simulator knows the installed one
+    try:
+        out = Path(flight["out"])
+        out.mkdir(parents=True, exist_ok=True)
+        text = json.dumps({"version": version, **flight}, indent=1)
+        (out / "flight.json").write_text(text + "\n")
+    except OSError as error:
+        sys.exit(f"icesoc-fly: {error}")
+    simulator = str(PREFIX / "bin/icesoc-sim")
+    second = ["--observer-device", "{device2}"] if flight["vehicles"] > 1 else []
+    os.execv(simulator, [
+        simulator, "--flight", str(out / "flight.json"), "--", str(PREFIX / "bin/icesoc-mission"),
+        "{out}/flight.json", "--device", "{device}", "--frame", "{frame}", "--status", "{status}",
+        "--reference", str(REFERENCE), *second])
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: MIT
+"""package_test: what is installed works in another folder, without the source and build tree.
+
+Usage: package_test.py case out-folder build-folder
+"""
+import contextlib
+import gzip
+import os
+import re
+import shutil
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from script import TREE, Script, fresh, main, write
+
+BUILD = Path(sys.argv[3]).resolve()
+HERE = Path(__file__).resolve().parent
+COMPONENTS = "icesoc-ground", "icesoc-slice2c", "libicec-dev", "icesoc-sim", "icesoc-hdl"
+IMAGE = "/usr/share/xplanet/images/earth.jpg"
+
+
+def free_port():
+    with socket.socket() as s:
+        s.bind(("127.0.0.1", 0))
+        return str(s.getsockname()[1])
+
+
+class Cases(Script):
+    def setUp(self):
+        self.out = fresh(sys.argv[2])
+        self.prefix = self.out / "installed"
+        self.bin = self.prefix / "bin"
+        self.python = self.prefix / "lib/python3/dist-packages"
+        self.hdl = self.prefix / "share/icesoc/hdl"
+        # An environment that does not lead to the tree.
+        self.env = {"PATH": f"{self.bin}:/usr/bin:/bin", "HOME": str(self.out), "LC_ALL": "C.UTF-8",
+                    "PYTHONPATH": str(self.python), "PYTHONDONTWRITEBYTECODE": "1"}
+        if "CCACHE_DIR" in os.environ:
+            self.env["CCACHE_DIR"] = os.environ["CCACHE_DIR"]
+
+    def install(self, *components):
+        for component in components:
+            self.ask("cmake", "--install", BUILD, "--component", component, "--prefix", self.prefix,
+                     "--strip")
+
+    def use(self, *words, **how):
+        self.ask(*words, env={**self.env, **how.pop("env", {})}, **how)
+
+    def test_install(self):
+        """No installed file names the tree; programs start; each has a manual page."""
+        self.install(*COMPONENTS)
+        files = [path for path in self.prefix.rglob("*") if path.is_file()]
+        self.assertGreater(len(files), 80)
+        for path in files:
+            data = path.read_bytes()
+            if path.suffix == ".gz":
+                data = gzip.decompress(data)
+            for place in TREE, BUILD:
+                self.assertFalse(str(place).encode() in data, f"{path} names {place}")
+            if data[:4] == b"\x7fELF":
+                self.ask("readelf", "-d", path)
+                self.lacks("RPATH|RUNPATH")
+        programs = sorted(path.name for path in self.bin.iterdir())
+        pages = {path.name.partition(".")[0]: path for path in self.prefix.glob("share/man/*/*")}
+        self.assertIn("icesoc-update", programs)
+        for name in programs:
+            self.use(name, "--help")
+            self.ask("man", "--warnings", "-l", pages[name], env={**self.env, "MANWIDTH": "100"})
+            self.lacks("warning|error:|an-old.tmac")
+            self.has("^OPTIONS|options")
+
+    def test_fly(self):
+        """The mission, flown by the host build and by the ARM binary."""
+        self.install("icesoc-ground", "icesoc-sim")
+        for cpu in "host", "m3":
+            self.use("icesoc-fly", "--size", "96x64", "--guard", "20", "--out", cpu, "--cpu", cpu)
+            self.has("the result equals the C\\+\\+ reference", "ms simulated")
+            self.assertTrue((self.out / cpu / "after.png").stat().st_size)
+        self.assertEqual((self.out / ".config/icesoc/demo.key").stat().st_mode & 0o777, 0o600)
+
+    def test_gateway(self):
+        """A program of a user calls a core by the plugin, then by the gateway."""
+        self.install("icesoc-ground", "icesoc-sim")
+        write("vehicles.conf", "Vehicle.uav1=xbee-at -d modem -a 0x0001\nXBeeAT.Guard=20\n")
+        port = free_port()
+        write("gateway.conf", f"Vehicle.uav1=tcp -h 127.0.0.1 -p {port}\n")
+        write("by_plugin.sh", "#!/bin/sh\nset -e\nln -sf $1 modem\n"
+              f"ICESOC_VEHICLES=vehicles.conf python3 {HERE}/call.py uav1\n")
+        write("by_gateway.sh", "#!/bin/bash\nset -e\n"
+              f"icesoc-gateway -d $1 -g 20 -l 127.0.0.1:{port} &\n"
+              "trap 'kill $!' EXIT\n"
+              f"until true 2>/dev/null >/dev/tcp/127.0.0.1/{port}; do sleep 0.1; done\n"
+              f"ICESOC_VEHICLES=gateway.conf python3 {HERE}/call.py uav1\n")
+        for how in "by_plugin", "by_gateway":
+            self.use("icesoc-sim", "--image", IMAGE, "--size", "96x64", "--guard", "20", "--out",
+                     how, "--", f"./{how}.sh", "{device}")
+            self.has("^corners: 1[0-9][0-9]$")
+        self.use("python3", "-c", "import icesoc; icesoc.connect('uav9', 'vehicles.conf')",
+                 status=None)
+        self.has("vehicle 'uav9': expected one of uav1; or add a line Vehicle.uav9=")
+
+    @contextlib.contextmanager
+    def server(self, program):
+        port = free_port()
+        with subprocess.Popen([program, port], stdout=subprocess.PIPE, text=True) as server:
+            try:
+                self.assertEqual(server.stdout.readline(), "ready\n")
+                yield port
+            finally:
+                server.kill()
+
+    def answers(self, program):
+        """The server answers stock ZeroC Ice."""
+        with self.server(program) as port:
+            self.use("python3", "-c", f"""
+import Ice
+Ice.loadSlice("{HERE}/project/server/Thing.ice")
+import M
+with Ice.initialize() as ic:
+    thing = M.ThingPrx.checkedCast(ic.stringToProxy("thing:tcp -h 127.0.0.1 -p {port}"))
+    print("sum", thing.add(3, 4))
+    try:
+        thing.add(1, -1)
+    except M.Busy as busy:
+        print("busy:", busy.why)
+""")
+            self.has("^sum 7$", "^busy: b is negative$")
+
+    def test_icec(self):
+        """A project of ten lines by CMake, and the same by pkg-config."""
+        self.install("icesoc-slice2c", "libicec-dev")
+        self.use("cmake", "-S", HERE / "project/server", "-B", "cmake", "-G", "Ninja",
+                 f"-DCMAKE_PREFIX_PATH={self.prefix}")
+        self.use("ninja", "-C", "cmake")
+        self.answers("cmake/server")
+        folders = [path.parent for path in self.prefix.rglob("*.pc")]
+        write("make.sh", f"""#!/bin/sh
+set -ex
+$(pkg-config --variable=slice2c slice2c) {HERE}/project/server/Thing.ice --output-dir made
+cc -std=c90 -ffunction-sections -fdata-sections -o by_pkg_config -Imade \\
+    {HERE}/project/server/server.c made/*.c $(pkg-config --cflags --libs icec) \\
+    -Wl,--gc-sections
+""")
+        self.use("./make.sh", env={"PKG_CONFIG_PATH": ":".join(map(str, folders))})
+        self.answers("./by_pkg_config")
+
+    def test_hdl(self):
+        """Another project simulates the bridge from its file list; the lists are complete."""
+        self.install("icesoc-hdl")
+        bench, lists = HERE / "fsmc_bridge_tb.v", self.hdl / "fsmc_bridge.f"
+        hdl = {"ICESOC_HDL": str(self.hdl)}
+        self.use("iverilog", "-g2005", "-Wall", "-Wno-timescale", "-s", "fsmc_bridge_tb", "-o",
+                 "bridge.vvp", "-f", lists, bench, env=hdl)
+        self.assertEqual(self.said, "")
+        self.use("vvp", "-n", "bridge.vvp")
+        self.has("^PASS$")
+        self.use("verilator", "--binary", "--timing", "-Wno-fatal", "-O0", "--Mdir", "verilated",
+                 "--top-module", "fsmc_bridge_tb", "-f", lists, bench, env=hdl)
+        self.use("verilated/Vfsmc_bridge_tb")
+        self.has("^PASS$")
+        for path in sorted(self.hdl.glob("*.f")):
+            top = re.search(r"Top: (\w+)[.]", path.read_text())[1]
+            self.use("verilator", "--lint-only", "-Wall", "--top-module", top, "-f", path, env=hdl)
+            self.assertTrue((self.hdl / f"icesoc-{path.stem}.core").exists())
+        try:
+            import yaml
+        except ImportError:
+            self.skipTest("python3-yaml is missing: FuseSoC's core files were not read")
+        for path in self.hdl.glob("*.core"):
+            head, _, text = path.read_text().partition("\n")
+            self.assertEqual(head, "CAPI=2:")
+            for fileset in yaml.safe_load(text)["filesets"].values():
+                for file in fileset["files"]:
+                    name = file if isinstance(file, str) else next(iter(file))
+                    self.assertTrue((self.hdl / name).exists(), f"{path} names {name}")
+
+    def test_packages(self):
+        """Debian packages by component, with the files, scripts and dependencies that they need."""
+        if not shutil.which("dpkg-shlibdeps"):
+            self.skipTest("dpkg-dev is missing")
+        self.ask("cpack", "-G", "DEB", "-B", self.out, "--config", BUILD / "CPackConfig.cmake")
+        found = {path.name.partition("_")[0]: path for path in self.out.glob("*.deb")}
+        self.assertEqual(sorted(found), sorted(COMPONENTS))
+        for name, path in found.items():
+            self.ask("dpkg-deb", "--info", path)
+            print(name, path.stat().st_size, "bytes")
+        self.ask("dpkg-deb", "--info", found["icesoc-ground"])
+        self.has("Depends: .*python3-zeroc-ice", "libzeroc-ice3.7", "postinst")
+        self.ask("dpkg-deb", "--info", found["icesoc-hdl"])
+        self.has("Architecture: all")
+        self.ask("dpkg-deb", "--contents", found["icesoc-ground"])
+        self.has("usr/lib/[a-z0-9_]+-linux-gnu/libxbeeat.so.37", "systemd/system/icesoc-gateway@",
+                 "share/doc/icesoc-ground/copyright")
+
+
+if __name__ == "__main__":
+    main(Cases)

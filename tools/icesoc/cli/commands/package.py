@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: MIT
+"""package: Debian packages of the project, one for each role of a user (docs/install.md)."""
+from pathlib import Path
+
+from icesoc.cli.build_folder import BuildFolder
+from icesoc.cli.command import command
+from icesoc.cli.options import FOLDER, JOBS, SWITCH, Option
+from icesoc.util.console import say
+from icesoc.util.process import logged, run
+
+BUILD = "build/package"
+ROOMS = "bus;slice;ip;sw;hdl;testbench"
+
+
+@command("package", [
+    Option("build", FOLDER, "build folder; the default one has programs for any CPU of this "
+                            "architecture", BUILD),
+    Option("output", FOLDER, "folder for the packages", "build/packages"),
+    Option("check", SWITCH, "check the packages with lintian"), JOBS], make="package",
+         brief="package --build build/main --output build/brief/packages", examples=[
+             "package", "package --check", "package --output ~/packages"])
+def package(values):
+    """build the Debian packages for this release of Debian"""
+    own = ["-DPORTABLE=ON", f"-DROOMS={ROOMS}"] if values.build == BUILD else []
+    build = BuildFolder(values.build, values).prepare(*own, tests=True)
+    build.ninja("installable")
+    output = Path(values.output).absolute()
+    output.mkdir(parents=True, exist_ok=True)
+    for path in output.glob("*.deb"):
+        path.unlink()
+    logged(["cpack", "-G", "DEB", "-B", output, "--config", build / "CPackConfig.cmake"],
+           build / "package.log", "CPack failed")
+    found = sorted(output.glob("*.deb"))
+    for path in found:
+        say(f"{path.stat().st_size:>9} bytes  {path}")
+    if not values.check:
+        return 0
+    return run(["lintian", "--fail-on", "error", "--tag-display-limit", "0", *found], check=False)

@@ -65,7 +65,7 @@ static Ice_Status run(Ascon_Core* self, U32 control, const Cores_Bytes* associat
     set(self, ASCON_AD_SIZE, associatedSize);
     set(self, ASCON_SIZE, size);
     set(self, ASCON_EVENT,
-        ASCON_EVENT_DONE_MASK | ASCON_EVENT_REFUSED_MASK); /* of an abandoned operation */
+        ASCON_EVENT_DONE_MASK | ASCON_EVENT_REFUSED_MASK); /* left by an abandoned operation */
     self->core.done[DONE] = 0;
     self->core.done[REFUSED] = 0;
     set(self, ASCON_CONTROL, control);

@@ -188,7 +188,8 @@ TEST_F(AsconTest, ADigestWaitsForRoomInTheMemorysFifo) {
 
 TEST_F(AsconTest, CountsSizesOfUpTo16MiB) {
     put(ASCON_KEY, sixteen(0));
-    // A size bit that the core ignores makes an empty message, or one without a read.
+    // With a size bit that the core ignores, the message is empty, or one is processed without a
+    // read.
     auto goesOn = [&](uint32_t how) {
         uint64_t before = memory_.reads();
         put(ASCON_NONCE, sixteen(1));

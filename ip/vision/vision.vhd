@@ -222,7 +222,7 @@ begin
   score <= raw_score when score_x >= 6 and score_y >= 6 and score_y < resize(height, 17) and
                           fill >= SCORE_DELAY else to_unsigned(0, 12);
 
-  -- Centre of the frame's coordinates: three columns and lines back for the window.
+  -- Centre of the window in frame coordinates: three columns and lines before the kept score's.
   frame_x     <= resize(kept_x, 16) - 3;
   frame_y     <= resize(kept_y, 16) - 3;
   -- The block RAMs hold lines of an older frame until the first lines have passed.

@@ -78,8 +78,8 @@ bool throwsPreserved(const Unit& unit, const Operation& o) {
                        [](const Declaration* e) { return e->preserves(); });
 }
 
-// The first exception with a name keeps it unchanged: first the operation's exceptions, in order,
-// then the others. Therefore an additional exception does not rename it.
+// Returns whether an exception is the first one with its name, which it then keeps unchanged. The
+// exceptions of the operation come first, then the others, so adding one renames none of them.
 static bool isFirstOfName(const Operation& o, const std::vector<const Declaration*>& family,
                           const Declaration& exception) {
     for (const auto& list : {o.throws, family})

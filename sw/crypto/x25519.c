@@ -10,7 +10,7 @@
 #include <string.h>
 
 #define WORDS 16
-#define A24 121665U /* (486662 - 2) / 4, of the curve */
+#define A24 121665U /* constant of the curve, (486662 - 2) / 4 */
 
 typedef U16 Number[WORDS];
 

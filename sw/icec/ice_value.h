@@ -32,7 +32,7 @@ typedef struct Ice_UnknownSlice {
     }* values;
 } Ice_UnknownSlice;
 
-/* The begin of every class instance. */
+/* First member of every class instance. */
 typedef struct Ice_Value {
     const Ice_ValueType* type;
     const Ice_UnknownSlice* unknown; /* the most derived one; 0 if none */

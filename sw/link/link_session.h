@@ -26,7 +26,7 @@ void link_endSession(Link_Session* session, Link_State next);
 /* Ends a session that the peer's wish or silence has ended. */
 void link_lose(Link_Session* session);
 
-/* Ends the session, if there is one, by this side's wish, and sends BYE. */
+/* Ends the session, if any, on request of this side, and sends BYE. */
 void link_abort(Link_Session* session);
 
 /* Returns the cost of trying to open a plausible frame, rounds of Ascon; 0 if it is not for this

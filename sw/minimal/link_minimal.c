@@ -7,8 +7,8 @@
 #include <stddef.h>
 #include <string.h>
 
-/* A channel's state has these bits, and LINK_FIRST or LINK_LAST for a fragment about it that is
- * due. */
+/* Bits of a channel's state; LINK_FIRST or LINK_LAST is also set while an opening or closing
+ * fragment is due. */
 #define OPEN 1U
 #define CLOSING 2U /* closed here, the peer's closing has not arrived yet */
 #define DUE (LINK_FIRST | LINK_LAST)

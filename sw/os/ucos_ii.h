@@ -63,7 +63,7 @@ typedef struct os_stk_data {
     INT32U OSFree, OSUsed; /* sizes in OS_STK */
 } OS_STK_DATA;
 
-/* Tells how much of a task's stack has ever been in use. */
+/* Reports the largest use of a task's stack so far. */
 INT8U OSTaskStkChk(INT8U prio, OS_STK_DATA* p_stk_data);
 
 /* Returns the priority of the running task (OSPrioCur of uC/OS-II, as a function). */

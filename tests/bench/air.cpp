@@ -35,7 +35,7 @@ public:
     }
     U32 echoSize = 0, called = 0;                 // called: messages of channel `calls`
     uint64_t bytes = 0, lastAt = 0, calledAt = 0; // bytes, last one: of channel `pictures`
-    bool feed = false;                            // sends pictures as fast as they go
+    bool feed = false;                            // sends pictures continuously
     // Each picture is full of its number.
     void fill(U32 size = LINK_MAX_MESSAGE) {
         for (;; ++sent_) {

@@ -357,7 +357,7 @@ class Cases(Script):
             if age:
                 os.utime("out/sim/whole.v", (age, age))
         self.assertEqual(Path("out/sim/whole.v").stat().st_mtime, 100)
-        # Ninja hears from it which sources can change it.
+        # This file lists for Ninja the sources that can change it.
         self.has(rf"^{Path.cwd()}/out/sim/whole.v: .*/blocks/counter.v .*/blocks/store.v",
                  file="out/sim/whole.d")
 

@@ -177,7 +177,7 @@ class Ground:
         ic.destroy()
 
     def keep_new_key(self):
-        """Talks to the changed vehicle under its new key alone, as change_key.py does: from then on
+        """Calls the changed vehicle with its new key only, as change_key.py does: from then on
         it has but this one. Returns what is wrong."""
         lines = Path(self.args.key).read_text().split("\n")
         lines[self.args.changed - 1] = f"0x{self.args.changed:04x} {self.args.new_key}"

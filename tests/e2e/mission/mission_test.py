@@ -129,7 +129,7 @@ class Cases(Script):
         self.has("no answer from the vehicle 0x0001 at .* within 3 s: is it on, in reach")
 
     def test_loss(self):
-        """Again from its recording, in which a user looks for the cause."""
+        """Replays the recording, as a user does to find a cause."""
         self.fly("--loss", "0.1", "--seed", os.environ.get("SEED", "1"))
         self.replay(self.out, "--from", "0.5", "--to", "0.51")
         # Recordings cut short by a kill, altered, of another file, repeated into their own folder;

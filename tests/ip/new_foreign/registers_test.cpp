@@ -101,7 +101,7 @@ public:
     Port() : Served(MY_PORT_ID_VALUE, table) {}
 };
 
-// Fields and accesses that no foreign core's description has of itself.
+// Fields and accesses that generated descriptions of foreign cores do not contain.
 class Requests : public Served<Vmy_requests_slot> {
     static constexpr Hw_Register table[] = {MY_REQUESTS_TABLE,
                                             {{3, "ALL"}, Hw_rw, 8, 0, 32, 0},

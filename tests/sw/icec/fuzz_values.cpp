@@ -154,7 +154,7 @@ template <class What> Bytes described(const uint8_t* data, size_t size, Format f
         what.u.Failure.node = pick();
     }
     (void)write(what, format, bytes);
-    while (at + 2 < size && !bytes.empty()) { // damages also names: then slices are unknown
+    while (at + 2 < size && !bytes.empty()) { // may also damage names; then slices are unknown
         size_t where = (data[at] << 8 | data[at + 1]) % bytes.size();
         bytes[where] = data[at + 2];
         at += 3;

@@ -339,7 +339,7 @@ private:
 
 // ---- the tests ----
 
-// Two nonces a side: one for a session, one for another before or after it.
+// Two nonces per side: one for a session, one for an earlier or a later one.
 constexpr HandshakeModel::Limits withData = {2, 1, 0}, withPings = {2, 0, 1}, both = {2, 1, 1};
 
 TEST(HandshakeModel, KeepsItsPromisesInEveryState) {

@@ -148,7 +148,7 @@ private:
         }
     }
     void boot() {
-        runs_ = SLOTS_NONE; // the loader writes states of both
+        runs_ = SLOTS_NONE; // the loader writes the states of both slots
         U32 slot = 0;
         if (layout_.hasGolden) {
             Slots_settleFpga(&port_, flash_[0] & 1);

@@ -83,7 +83,7 @@ const Case cases[] = {
      {{5, 0}}},
     {"AnUndefinedInstructionIsAUsageFault", "Case_undefinedInstruction", "f.", {{0, 1 << 16}}},
     {"AJumpOutOfThumbStateIsAUsageFault", "Case_armState", "f.", {{0, 1 << 17}}}, // INVSTATE
-    // The frame is where PSP points; the handler has another stack; CONTROL.SPSEL is back.
+    // The frame is at PSP; the handler uses the other stack; CONTROL.SPSEL is restored afterwards.
     {"AnInterruptedProcessHasItsFrameOnItsOwnStack",
      "Case_process",
      "aA",

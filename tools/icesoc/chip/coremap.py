@@ -33,7 +33,7 @@ class Pin:
     internal: bool = False  # only for other cores, never a pin; unconnected inputs are 0
     lsb: int = 0  # first bit in core_pins_i or core_pins_o; number of bits
     source: str = ""  # instead of a pin: another core's output
-    places: list = field(default_factory=list)  # of its bits on the board, bit 0 first
+    places: list = field(default_factory=list)  # locations of its bits on the board, bit 0 first
 
     @property
     def is_pin(self):

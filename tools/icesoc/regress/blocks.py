@@ -41,7 +41,8 @@ class Blocks:
 
 
 def last_green(history, block_of):
-    """Returns {block: last commit at which one of its tests ran and none that had failed was
+    """Returns {block: newest commit at which one of its tests ran and none of its tests was
+    failing}.
     left}."""
     failing, green = collections.defaultdict(set), {}
     for run in history.runs:

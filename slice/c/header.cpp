@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// header: generates the header: types, constants, proxies, servants. The list of all generated files.
+// header: generates the header: types, constants, proxies, servants. The list of all generated
+// files.
 
 #include "c/context.h"
 #include "text/doc_comment.h"

@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <iostream>
 
-#ifndef PLUGIN_FOLDER
-#define PLUGIN_FOLDER "."
+#ifndef PLUGIN
+#define PLUGIN "xbeeat" // an installed plugin is in the folder of the system's libraries
 #endif
 
 int main(int argc, char** argv) {
@@ -21,7 +21,7 @@ int main(int argc, char** argv) {
     try {
         Ice::InitializationData data;
         data.properties = Ice::createProperties();
-        data.properties->setProperty("Ice.Plugin.XBeeAT", PLUGIN_FOLDER "/xbeeat:createXBeeAT");
+        data.properties->setProperty("Ice.Plugin.XBeeAT", PLUGIN ":createXBeeAT");
         data.properties->setProperty("Ice.Default.InvocationTimeout", "300000");
         data.properties->setProperty("Ice.ACM.Close", "0");
         const Ice::StringSeq words =

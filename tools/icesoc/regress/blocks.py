@@ -42,8 +42,7 @@ class Blocks:
 
 def last_green(history, block_of):
     """Returns {block: newest commit at which one of its tests ran and none of its tests was
-    failing}.
-    left}."""
+    failing}."""
     failing, green = collections.defaultdict(set), {}
     for run in history.runs:
         ran = collections.defaultdict(set)

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """nets: lists clocks, resets and the nets with the highest fan-out of a Spartan-6 netlist, and
-where each signal is declared in the sources.
-stands in the sources."""
+where each signal is declared in the sources."""
 import functools
 import os
 import re

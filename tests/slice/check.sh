@@ -2,11 +2,10 @@
 # SPDX-License-Identifier: MIT
 # check: golden|hardware|equal|errors|compile slice2c file.ice-or-folder work-folder source-folder
 #        [ghdl]
-# What is expected stands at the end of the file: the compiler's messages behind `//> `, and behind
+# The expected results are at the end of the file: the messages of the compiler after `//> `, and after
 # `//= ` lines of the generated header, then of the server's C, or of the registers, in their order.
 # golden: the C has no warnings.
 # hardware: the wrappers and new cores are Verilog without warnings, and without latches.
-# equal: each interface's VHDL wrapper, and the new core around it, are taken as VHDL-93 and -2008
 # equal: each interface's VHDL wrapper, and the new core around it, compile as VHDL-93 and -2008
 # without a warning. The wrapper behaves like the Verilog one: after reset, for any inputs, their
 # outputs are the same in every clock (proven, not bounded).

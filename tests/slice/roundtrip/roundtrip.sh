@@ -16,8 +16,8 @@ mkdir -p "$work"
 "$icec/bridge.py" "$work/Random.h" >"$work/bridged.c"
 # In a coverage run (COVERAGE_DIR) it also counts lines. With room for graphs and long sequences;
 # -O0, since most of the time is spent compiling. Variables without a value contain a pattern,
-# instead of zeros
-# chance zeros. shellcheck disable=SC2046
+# instead of zeros.
+# shellcheck disable=SC2046
 cc -O0 -w -ftrivial-auto-var-init=pattern ${COVERAGE_DIR:+--coverage} -fsanitize=address,undefined \
     -fno-sanitize-recover=undefined -DICE_ARENA_BYTES=262144 -DICE_MESSAGE_MAX=65536 \
     -DICE_REPLY_MAX=262144 -DICE_VALUES_MAX=64 -DICE_VALUE_TYPES_MAX=64 \

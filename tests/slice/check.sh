@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # check: golden|hardware|equal|errors|compile slice2c file.ice-or-folder work-folder source-folder
 #        [ghdl]
-# The expected results are at the end of the file: the messages of the compiler after `//> `, and after
+# The expected results are at the end of the file: messages of the compiler after `//> `, and after
 # `//= ` lines of the generated header, then of the server's C, or of the registers, in their order.
 # golden: the C has no warnings.
 # hardware: the wrappers and new cores are Verilog without warnings, and without latches.

@@ -31,7 +31,7 @@ struct Stm32F2::Peripheral {
     uint32_t (Stm32F2::*read)(uint32_t offset);
     void (Stm32F2::*write)(uint32_t offset, uint32_t value);
 
-    // Of GPIO each port has a bit.
+    // Each GPIO port has one bit.
     unsigned clockBit(uint32_t address) const {
         return base == gpio ? (address - gpio) / 0x400 : bit;
     }

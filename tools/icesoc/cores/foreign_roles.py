@@ -108,8 +108,8 @@ def role(name, port, bus):
 
 
 def roles_of(top, bus, ports, given):
-    """Returns each port's role, and the clocks until a core without `ack` answers, or None; `given`
-    is ROLE=port."""
+    """Returns the role of each port, and the number of clocks after which a core without `ack`
+    answers (None with `ack`). `given`: ROLE=port from the command line."""
     roles = {n: role(n, p, bus) for n, p in ports.items()}
     # The signal names of the bus are also accepted, if they are not the words for another role.
     words = {**{r: r for r in NEEDED[bus] + {"axil": AXI, "axis": foreign_axis.ROLES}.get(bus, [])},

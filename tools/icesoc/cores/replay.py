@@ -126,8 +126,8 @@ def words():
 
 
 def block(args, widths):
-    """Returns what the block's clocks and resets are connected to; and (name, width) of its inputs
-    and of its captured outputs."""
+    """Returns the connections of the block's clocks and resets, and (name, width) of its inputs and
+    of its captured outputs."""
     # read_module takes files and looks in their folders
     headers = [os.path.join(folder, "") for folder in args.I]
     ports, _ = foreign_files.read_module(args.top, args.files, headers, is_whole=False)

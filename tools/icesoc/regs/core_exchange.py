@@ -61,7 +61,7 @@ def svd_of(slots):
 
 
 def fields_of(r):
-    """Returns a register's fields; one without has the field WORD."""
+    """Returns a register's fields; a register without fields gets one named WORD."""
     return r.fields or [Field("WORD", 0, r.width, r.doc, r.access, r.reset)]
 
 

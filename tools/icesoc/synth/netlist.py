@@ -154,7 +154,7 @@ def read_netlist(file):
         n.ports.append(Port(name, port["direction"] != "output", port["direction"] != "input",
                             bits_of(port["bits"])))
     for name, cell in sorted(module["cells"].items()):
-        if cell["type"][0] == "$":  # scopes and the like, no hardware
+        if cell["type"][0] == "$":  # scopes and similar cells, which are not hardware
             continue
         pins = [Pin(port, cell["port_directions"][port] == "output", bits_of(bits))
                 for port, bits in sorted(cell["connections"].items())]

@@ -153,8 +153,8 @@ class Analysis:
         return best
 
     def steps(self, bit, reader):
-        """The way to a bit, [cell, net, fan-out, ns of the cell, of the net behind it] a step, and
-        the bit where it begins."""
+        """Returns the path to a bit, one step per cell: [cell, net, fan-out, ns of the cell, ns of
+        the net after it]; and the bit at which the path begins."""
         steps = []
         while True:
             arrival = self.at(bit)

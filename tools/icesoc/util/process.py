@@ -128,7 +128,7 @@ def collect(command, environment=None, on_line=None):
 
 
 def children(pid):
-    """The processes that one has begun and that have not ended, the oldest first."""
+    """Returns the running child processes of a process, oldest first."""
     found = []
     for path in pathlib.Path(f"/proc/{pid}/task").glob("*/children"):
         with contextlib.suppress(OSError):

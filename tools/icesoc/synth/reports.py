@@ -103,7 +103,7 @@ def paired(m):
 
 
 def text(reports):
-    """Returns the text of the comparison, and the figures that timing.py and slices.py take from it."""
+    """Returns the comparison as text, with the figures that timing.py and slices.py use."""
     rows = [["design", "device", "sites of map", "estimated", "MHz estimated", "XST", "routed",
              "XST / estimated", "routed / estimated"]]
     for report in (r for r in reports if "netlist" in r):

@@ -4,9 +4,9 @@
 # machine: installs the packages on an empty Debian by apt, and uses them as a user does: mission,
 # programs with stock ZeroC Ice in Python and C++, by plugin and by gateway, a C project by CMake,
 # simulation of a block; then removes and purges them. Run as root, on a machine for this test.
-# Usage: machine.sh FOLDER    with *.deb, and the files of tests/package
+# Usage: machine.sh [FOLDER]    with *.deb, and the files of tests/package; default: this one
 set -eu
-here=$(cd "$1" && pwd)
+here=$(cd "${1:-.}" && pwd)
 export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8
 step() { echo "== $*"; }
 fail() {
@@ -17,11 +17,11 @@ user() { runuser -u tester -- env HOME=/home/tester "$@"; }
 
 step "install"
 apt-get update -qq
-apt-get install -y -qq --no-install-recommends xplanet-images "$here"/*.deb >/dev/null
+apt-get install -y -qq --reinstall --no-install-recommends xplanet-images "$here"/*.deb >/dev/null
 dpkg-query -W -f '${Package} ${Version} ${Installed-Size} KiB\n' 'icesoc-*' libicec-dev
 [ "$(stat -c '%U:%G %a' /etc/icesoc)" = "root:icesoc 750" ] ||
     fail "/etc/icesoc: wrong owner or mode"
-useradd --create-home tester
+id -u tester >/dev/null 2>&1 || useradd --create-home tester
 cd /home/tester
 
 step "mission, by the host build and by the ARM binary"
@@ -107,6 +107,6 @@ apt-get remove -y -qq icesoc-ground icesoc-sim icesoc-slice2c libicec-dev icesoc
 apt-get purge -y -qq icesoc-ground icesoc-sim icesoc-slice2c libicec-dev icesoc-hdl >/dev/null
 [ "$(stat -c '%U %a' /etc/icesoc/uav1.key)" = "icesoc 600" ] || fail "purge took a key"
 [ ! -e /etc/icesoc/uav1.conf ] || fail "purge left settings"
-left=$(find /usr /lib -path '*icesoc*' -o -name '*xbeeat*' -o -path '*icec*')
+left=$(find /usr /lib -path '*icesoc*' -o -name '*xbeeat*' -o -path '*/icec/*' -o -name 'libicec*')
 [ -z "$left" ] || fail "files are left: $left"
 echo "machine: all steps passed"

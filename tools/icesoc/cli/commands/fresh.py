@@ -87,12 +87,12 @@ def use_packages(root, release, values):
     machine = root.parent / f"{release}-packages"
     if not (values.again and (machine / "root").is_dir()):
         empty_machine(machine, release)
-    there = machine / "root/packages"
+    there = machine / "srv/packages"  # readable for all users
     shutil.rmtree(there, ignore_errors=True)
     shutil.copytree("tests/package", there)
     for path in Path(folder).glob("*.deb"):
         shutil.copy(path, there)
-    return [*rows, do(machine, release, "./machine.sh .", "/root/packages")]
+    return [*rows, do(machine, release, "sh machine.sh", "/srv/packages")]
 
 
 def summary(row):

@@ -70,9 +70,9 @@ std::vector<Bytes> messagesOf(char side) {
 
 // A side with its program: the ground opens a channel, and both send a message each 200 ms.
 struct Program {
-    Program(char name, const uint64_t& now, const Bytes& withKey)
-        : name(name),
-          side(layer, now, name == 'a' ? 3 : 4, withKey, name == 'a' ? LINK_GROUND | 1u : 1u) {}
+    Program(char called, const uint64_t& now, const Bytes& withKey)
+        : name(called),
+          side(layer, now, called == 'a' ? 3 : 4, withKey, called == 'a' ? LINK_GROUND | 1u : 1u) {}
 
     void step(uint64_t since) {
         if (since == 0 && name == 'a')

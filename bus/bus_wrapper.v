@@ -16,9 +16,7 @@
 module bus_wrapper #(
     parameter [31:0] ID_VALUE = 32'd0,
     parameter [15:0] WORDS    = 16'hFFF8, // bit w: word w exists (bits 2..0 are ignored)
-    parameter        EVENTS   = 1,        // number of events, 1..32
-    // 1: reg_rdata_i is 0 for words 0..2 (word 0: or the ID, with ID_VALUE 0): not gated
-    parameter        ZERO     = 0
+    parameter        EVENTS   = 1         // number of events, 1..32
 ) (
     `include "slot_ports.vh"
     // the block registers
@@ -58,7 +56,7 @@ module bus_wrapper #(
         if (bus_addr_i == MASK)
             first[EVENTS-1:0] = mask;
     end
-    assign bus_rdata_o = first | (ZERO != 0 || (own && exists) ? reg_rdata_i : 32'd0);
+    assign bus_rdata_o = first | (own && exists ? reg_rdata_i : 32'd0);
 
     always @(posedge clk_i) begin
         sticky <= (sticky & ~clear) | event_i;
@@ -103,7 +101,7 @@ module bus_wrapper #(
         // A read returns the wrapper's word, the block's word, or 0.
         if (bus_addr_i > MASK)
             assert (bus_rdata_o == (exists ? reg_rdata_i : 32'd0));
-        else if (ZERO == 0)
+        else
             assert (bus_rdata_o ==
                     (bus_addr_i == ID ? ID_VALUE :
                      {{32-EVENTS{1'b0}}, bus_addr_i == EVENT ? sticky : mask}));

@@ -8,7 +8,8 @@ set(CORE_FOLDERS "" CACHE STRING "Folders of cores besides those in ip/")
 set(FOREIGN_CORES ${CMAKE_BINARY_DIR}/foreign
   CACHE PATH "Where icesoc.util.fetch put third-party cores")
 
-set(MANIFEST_FILES ${REGMAP_FILES} ${TOOLS}/chip/manifest.py ${TOOLS}/chip/core.schema.json)
+set(MANIFEST_FILES ${REGMAP_FILES} ${TOOLS}/chip/manifest.py ${TOOLS}/chip/core.schema.json
+  ${TOOLS}/util/schema.py)
 
 # Names in the list, for parts that are built only with a core: if("vision" IN_LIST CHIP_CORES)
 set(CHIP_CORES)
@@ -296,7 +297,8 @@ function(icesoc_chip)
             --base ${CMAKE_SOURCE_DIR}/bus/map.regs.json ${options}
             --block 0=system=${CMAKE_SOURCE_DIR}/hdl/system/system.regs.json
             --block 1=modem=${CMAKE_SOURCE_DIR}/hdl/modem/modem.regs.json --output-dir ${GEN_DIR}
-    DEPENDS ${MANIFEST_FILES} ${TOOLS}/chip/coremap.py ${TOOLS}/chip/core_output.py
+    DEPENDS ${MANIFEST_FILES} ${TOOLS}/chip/collisions.py ${TOOLS}/chip/coremap.py
+            ${TOOLS}/chip/core_output.py
             ${CORES} ${CMAKE_SOURCE_DIR}/bus/map.regs.json
             ${inputs} ${CMAKE_SOURCE_DIR}/hdl/system/system.regs.json
             ${CMAKE_SOURCE_DIR}/hdl/modem/modem.regs.json ${slice_files}

@@ -80,12 +80,10 @@ def deepest(build, layer):
     return max(((int(size), where.split(":")[3]) for where, size, *_ in lines), default=(0, ""))
 
 
-def excess(entries, source, only=""):
+def excess(entries, source):
     """Yields a sentence for each size above its limit in sw/size_budget.json."""
     budget = json.load(open(f"{source}/sw/size_budget.json"))
     for name, size in ((entry["name"], entry["value"]) for entry in entries):
-        if not name.startswith(only):
-            continue
         if name not in budget:
             yield f'size: sw/size_budget.json has no "{name}" (it is {size})'
         elif size > budget[name]:
@@ -119,27 +117,32 @@ def layers(source, generated, build, output):
     print("RAM of the minimal program with all objects: "
           f"{linked(image, 'app', r'[.](data|bss)|COMMON')} bytes, of generated code and servants: "
           f"{linked(image, 'app', r'[.](text|rodata)')} bytes of text")
-    entries += packages(build)
-    over += excess(entries, source, only="vehicle.")
+    added = packages(build)
+    entries += added
+    over += excess(added, source)
     written(output, entries)
     if over:
         sys.exit("\n".join(over))
 
 
+def parts(path):
+    """Yields (flash, RAM, kind of section, folder) of the parts of a linked firmware. The folder is
+    empty for the C library."""
+    for name, address, size, file in sections(path):
+        kind = re.match(r"\.(text|rodata|data|bss|vectors|noinit)", name)
+        if kind and address and size:
+            folder = os.path.basename(os.path.dirname(file)) if ".arm/" in file else ""
+            yield (size if kind[1] not in ("bss", "noinit") else 0,
+                   size if kind[1] in ("bss", "noinit", "data") else 0, kind[1], folder)
+
+
 def image_bytes(build, name):
     """Returns (flash, RAM, layers): bytes of a linked firmware, and of its flash what belongs to
     the paper's layers (PAPER)."""
-    flash = ram = part = 0
-    for name, address, size, file in sections(f"{build}/firmware/{name}.map"):
-        kind = re.match(r"\.(text|rodata|data|bss|vectors|noinit)", name)
-        if not kind or not address or not size:
-            continue
-        folder = os.path.basename(os.path.dirname(file))
-        flash += size if kind[1] not in ("bss", "noinit") else 0
-        ram += size if kind[1] in ("bss", "noinit", "data") else 0
-        if ".arm/" in file and folder in LAYER_FOLDERS and kind[1] in ("text", "rodata"):
-            part += size
-    return flash, ram, part
+    found = list(parts(f"{build}/firmware/{name}.map"))
+    return (sum(flash for flash, _, _, _ in found), sum(ram for _, ram, _, _ in found),
+            sum(flash for flash, _, kind, folder in found
+                if folder in LAYER_FOLDERS and kind in ("text", "rodata")))
 
 
 def packages(build):
@@ -164,13 +167,10 @@ def packages(build):
 
 def firmware(path, output):
     flash, ram = {}, {}
-    for name, address, size, file in sections(path):
-        kind = re.match(r"\.(text|rodata|data|bss|vectors|noinit)", name)
-        if kind and address and size:
-            folder = os.path.basename(os.path.dirname(file))
-            layer = TITLES.get(folder, folder) if ".arm/" in file else "C library"
-            flash[layer] = flash.get(layer, 0) + (size if kind[1] not in ("bss", "noinit") else 0)
-            ram[layer] = ram.get(layer, 0) + (size if kind[1] in ("bss", "noinit", "data") else 0)
+    for in_flash, in_ram, _, folder in parts(path):
+        layer = TITLES.get(folder, folder) or "C library"
+        flash[layer] = flash.get(layer, 0) + in_flash
+        ram[layer] = ram.get(layer, 0) + in_ram
     print("%-26s %8s %8s" % ("layer", "flash", "RAM"))
     for layer in flash:
         print("%-26s %8d %8d" % (layer, flash[layer], ram[layer]))

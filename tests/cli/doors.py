@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""doors: ./icesoc and make take the same options, report errors with advice, and pass no
-value to a shell; lists.py tests their lists."""
-import concurrent.futures, json, os, shutil, subprocess, sys, tempfile, time, unittest
+"""doors: ./icesoc and make take the same options, refuse what is wrong in words that help, and give
+no value to a shell; lists.py tests what they list."""
+import concurrent.futures, json, os, shutil, subprocess, tempfile, time, unittest
 from pathlib import Path
 
-TREE = Path(__file__).resolve().parent.parent.parent
+from icesoc import TREE
 from icesoc.cli import command, everything, flight  # noqa: F401
 from icesoc.cli.options import FLIGHT, SWITCH
 from icesoc.util.lock import lock
@@ -154,7 +154,7 @@ MISTAKES = {
     "./icesoc run --key no.key": "./icesoc key",
     "./icesoc run --again Makefile": "cannot read the flight",
     "./icesoc run --again tools/icesoc/cli/flight.schema.json":
-    "is not a flight: it is not of version 3",
+    "is not a flight: expected version 3",
     "./icesoc contract": "contract: expected a command: diff, from-rdl",
     "./icesoc contract dif": "contract has no command 'dif'; did you mean diff?",
     "./icesoc bench --only airr": "no bench is named 'airr': simulator, air",
@@ -184,9 +184,9 @@ class Mistakes(Work):
     def test_what_is_no_flight_is_refused_in_words(self):
         whole = {"version": flight.VERSION, **{
             option.field: option.default or flight.empty(option) for option in flight.FIELDS}}
-        for text, said in ((b"\xff", "expected JSON in UTF-8"), (b"[" * 100000, "deeply nested"),
-                           (json.dumps({**whole, "seed": True}).encode(), "'seed' is True"),
-                           (json.dumps({**whole, "cores": [1]}).encode(), "'cores' is [1]")):
+        for text, said in ((b"\xff", "is not JSON in UTF-8"), (b"[" * 100000, "too long"),
+                           (json.dumps({**whole, "seed": True}).encode(), "seed: expected a whole number, at least 0, got true"),
+                           (json.dumps({**whole, "cores": [1]}).encode(), "cores[0]: expected a text, got 1")):
             (self.work / "flight.json").write_bytes(text)
             status, text = ask("./icesoc", "run", "--again", str(self.work / "flight.json"))
             self.assertEqual(status, 2)

@@ -28,8 +28,8 @@ import time
 import traceback
 from pathlib import Path
 
-sys.dont_write_bytecode = True
-TREE = Path(__file__).resolve().parents[2]
+from icesoc import TREE
+
 DATA = TREE / "tests/bus/cores/data"
 BUILD, WORK = Path(), Path()  # the build folder; a folder of this run
 CORES = {path.name.split(".")[0]: f"{path.with_name(path.name.split('.')[0] + '.toml')}={path}"

@@ -107,7 +107,12 @@ has core_pins.ucf '^NET "core_pins_i<0>" LOC = "A4"; # eye.button_i\[0\]$' \
     '^# NET "core_pins_o<0>" LOC = "..."; # eye.led_o\[0\]$' \
     '^NET "core_pins_o<10>" LOC = "C9"; # mover.level_o\[8\]$'
 has soc_cores.vh 'led u_eye' 'mover #(.CLK_HZ(CLK_HZ)) u_mover'
-# Chip and firmware have the same hash of a core registers, which changes with the registers, and
+# Two cores, or a core and the platform, with one name in a generated file.
+refused "1: error: the platform and core 'rst' both become u_rst" 'led name=rst\n'
+refused "3: error: the platform and core 'fsmc' both become NPI_PORT_FSMC" 'led\nadder\nmover name=fsmc\n'
+refused "2: error: core 'a' and core 'a_start' both become core_a_start" 'led name=a\nled name=a_start\n'
+refused "2: error: core 'a' and core 'gate_a' both become u_gate_a" 'adder name=a gate=on\nled name=gate_a\n'
+# Chip and firmware have the same hash of a core's registers, which changes with the registers, and
 # not with their descriptions.
 contract() { sed -n "s/.*\"$1\"}, [0-9]*, 0, (Ice_Int)0x\([0-9A-F]*\)U.*/\1/p" "$out/soc_cores.c"; }
 before=$(contract mover)
@@ -177,10 +182,10 @@ described() { # message, rejected description
     ! regmap "$work/wrong.regs.json" --output-dir "$work" 2>"$work/messages" &&
         grep -q -- "$1" "$work/messages" || { cat "$work/messages" && fail "'$1' is not said: $2"; }
 }
-described 'the description: expected an object' '[]'
-described "the description: 'doc' is missing" '{"block": "b"}'
-described 'it is no JSON in UTF-8' '{"block": "\0377"}'
-described 'brackets are too long' "$(printf '[%.0s' $(seq 50000))"
+described 'expected an object of names and values, got \[\]' '[]'
+described "missing key 'doc'" '{"block": "b"}'
+described 'expected JSON in UTF-8' '{"block": "\0377"}'
+described 'deep brackets' "$(printf '[%.0s' $(seq 50000))"
 described 'block: expected a name .*, got "../b"' '{"block": "../b", "doc": "", "registers": []}'
 described 'doc: expected a text .*, got "\*/"' '{"block": "b", "doc": "*/", "registers": []}'
 described 'registers\[0\].word: expected a whole' '{"block": "b", "doc": "", "registers": [{"word": ""}]}'
@@ -188,8 +193,8 @@ described 'pins\[0\].name: expected' '{"block": "b", "doc": "", "registers": [],
 # A probe has its signals by name, at any depth, in Verilator and, flattened, in Yosys; the ground
 # gets their names.
 accepted probe 'adder\nprobe signals=u_adder.u_registers.u_wrapper.mask,u_modem.u_timer.clocks:17\nprobe name=other signals=u_adder.irq_o\n'
-yosys -q -p "verilog_defaults -add -I$out -I$gen $(for f in bus hdl/fsmc hdl/ddr hdl/modem \
-    hdl/system hdl/cdc; do printf -- '-I%s ' "$source/$f"; done)
+yosys -q -p "verilog_defaults -add -I$out -I$gen $(for f in bus hdl/fsmc hdl/ddr hdl/cdc; do \
+    printf -- '-I%s ' "$source/$f"; done)
     read_verilog $source/hdl/soc.v
     hierarchy -top soc $(for f in "$out" "$data" "$source/ip/probe" "$gen" "$source"/bus \
         "$source"/hdl/*; do [ ! -d "$f" ] || printf -- '-libdir %s ' "$f"; done)

@@ -50,7 +50,7 @@ libraries=$(for f in $folders "$gen"; do echo "-libdir $f"; done)
 each() { echo "$1" | tr , ' '; }
 verilate() { # variant [switches]
     # shellcheck disable=SC2086,SC2046
-    verilator --lint-only -Wall ${2-} $search -I"$gen" --top-module "$module" \
+    verilator --lint-only -Wall ${2-} $search --top-module "$module" \
         $(for p in $(each "$1"); do echo "-G$p"; done) "$file"
 }
 # Yosys' commands for one variant; modules below are found by their names.
@@ -83,4 +83,4 @@ for variant in $refused; do
     done
 done
 # shellcheck disable=SC2086
-iverilog -g2005 -Wall -Wno-timescale -I"$gen" -t null $search -s "$module" "$file"
+iverilog -g2005 -Wall -Wno-timescale -t null $search -s "$module" "$file"

@@ -12,9 +12,8 @@ import re
 import sys
 from dataclasses import dataclass, field
 
-sys.dont_write_bytecode = True
 from icesoc.regs import core_exchange
-from icesoc.chip import core_output, manifest
+from icesoc.chip import collisions, core_output, manifest
 from icesoc.regs.generate import save
 from icesoc.regs.model import Block, Wrong, check
 
@@ -377,6 +376,7 @@ def build(asked):
     chip = Chip(read(asked.list), base, manifests, descriptions)
     blocks = [parts("--block", b, "slot=name=file") for b in asked.block]
     slots = [(name, int(number), described(file)) for number, name, file in blocks]
+    collisions.check(chip, base, [block for _, _, block in slots])
     slots += [(core.name, core.slot, descriptions[core.folder]) for core in chip.cores]
     placed = [Slot(name, number, chip.registers + SLOT_BYTES * number, block)
               for name, number, block in slots]

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from icesoc.regs.model import Block, Wrong, check
+from icesoc.util import schema
 
 SCHEMA = json.loads(Path(__file__).with_name("core.schema.json").read_text())
 HEADERS = ".vh", ".svh", ".inc", ".h"
@@ -20,22 +21,6 @@ HEADERS = ".vh", ".svh", ".inc", ".h"
 # and exchange formats.
 DESCRIBED = "memory_port", "memory_bytes", "probe", "servant"
 FILE_LISTS = "verilog", "vhdl", "includes", "tests"
-
-
-def reason(error):
-    """Returns the message for a violation of the schema."""
-    where = "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in error.path)
-    where = where.lstrip(".")
-    before = f"{where}: " if where else ""
-    if error.validator == "additionalProperties":
-        known = error.schema["properties"]
-        name = next(n for n in error.instance if n not in known)
-        return f"{before}unknown key '{name}'; expected {', '.join(sorted(known))}"
-    if error.validator == "required":
-        name = next(n for n in error.schema["required"] if n not in error.instance)
-        return f"{before}missing key '{name}'"
-    got = json.dumps(error.instance, ensure_ascii=False, default=str)
-    return f"{before}expected {error.schema['description']}, got {got[:60]}"
 
 
 @dataclass
@@ -79,16 +64,11 @@ def parse(path):
 
 
 def read(path):
-    """Returns the Manifest of a file core.toml; raises Wrong with the reason and what to do.
-    Imports jsonschema here, because commands of an empty machine import this module before it is
-    installed."""
-    import jsonschema  # pylint: disable=import-outside-toplevel
+    """Returns the Manifest of a file core.toml; raises Wrong with the reason and what to do."""
     path = Path(path).absolute()
     facts = parse(path)
-    errors = sorted(jsonschema.Draft202012Validator(SCHEMA).iter_errors(facts),
-                    key=lambda e: [str(step) for step in e.path])
-    if errors:
-        raise Wrong("\n".join(f"{path}: {reason(e)}" for e in errors))
+    if found := schema.problems(facts, SCHEMA):
+        raise Wrong("\n".join(f"{path}: {text}" for text in found))
     manifest = Manifest(path, facts.get("name", path.parent.name), facts)
 
     def holds(condition, text):

@@ -16,6 +16,7 @@ from icesoc.cli.options import (CORE_FOLDERS, COUNT, FILE, FOLDER, FRAME, KEY_FI
                                 SHARE, SWITCH, TEXT, UCOS2, WORDS, Option, matching, number, one_of)
 from icesoc.util.console import say
 from icesoc.util.errors import Stop
+from icesoc.util.schema import limits, problems
 
 VERSION = 3
 FIELDS = [
@@ -129,24 +130,13 @@ def schema():
 
 
 def wrong(flight):
-    """Returns the first part that does not match the schema, or None."""
-    types: dict = {"string": str, "integer": int, "number": (int, float), "boolean": bool,
-                   "array": list}
-    rules = {name: rule for name, rule in schema()["properties"].items() if name not in INNER}
+    """Returns what does not fit the schema, or an empty text. The fields of the simulator alone are
+    not accepted."""
     if not isinstance(flight, dict) or flight.get("version") != VERSION:
-        return f"it is not of version {VERSION}"
-    for name in [*rules, *flight]:
-        if name not in flight or name not in rules:
-            return f"'{name}' is " + ("missing" if name in rules else "no field")
-        value, rule = flight[name], rules[name]
-        kind = rule.get("type", "integer" if name == "version" else "string")
-        fits = value in rule.get("enum", [value]) and isinstance(value, types[kind]) and (
-            isinstance(value, bool) == (kind == "boolean"))
-        fits = fits and (kind != "array" or all(isinstance(word, str) for word in value))
-        if not fits or not rule.get("minimum", 0) <= (value if "minimum" in rule else
-                                                      0) <= rule.get("maximum", float("inf")):
-            return f"'{name}' is {value!r}"
-    return None
+        return f"expected version {VERSION}"
+    own = schema()
+    own["properties"] = {name: own["properties"][name] for name in own["required"]}
+    return "; ".join(problems(flight, own, limits))
 
 
 def read(path):
@@ -158,8 +148,8 @@ def read(path):
     except (ValueError, RecursionError):
         raise Stop(f"the flight '{path}': expected JSON in UTF-8, got invalid or too deeply "
                    "nested text", 2) from None
-    if wrong(flight):
-        raise Stop(f"'{path}' is not a flight: {wrong(flight)}", 2)
+    if found := wrong(flight):
+        raise Stop(f"'{path}' is not a flight: {found}", 2)
     return flight
 
 

@@ -3,8 +3,6 @@
 built.
 
 All trees of a user share them, a copy of a tree has none, and no command removes one."""
-import contextlib
-import fcntl
 import filecmp
 import hashlib
 import os
@@ -14,6 +12,7 @@ from pathlib import Path
 
 from icesoc.util.console import say
 from icesoc.util.errors import Stop
+from icesoc.util.lock import lock
 from icesoc.util.process import run
 
 
@@ -48,7 +47,7 @@ def make_certificate(path):
         raise Stop(f"there is no folder '{path.parent}'", 2)
     before = os.umask(0o077)
     try:
-        with locked(path.parent), tempfile.TemporaryDirectory(dir=path.parent) as work:
+        with lock(path.parent), tempfile.TemporaryDirectory(dir=path.parent) as work:
             cert, key = Path(work, "cert"), Path(work, "key")
             check_authority(authority, signs)
             if not signs.exists():
@@ -64,18 +63,6 @@ def make_certificate(path):
     finally:
         os.umask(before)
     return True
-
-
-@contextlib.contextmanager
-def locked(place):
-    """Lets one process at a time create certificates in a folder, because each may create the
-    authority."""
-    fd = os.open(place, os.O_RDONLY | os.O_DIRECTORY)
-    try:
-        fcntl.flock(fd, fcntl.LOCK_EX)
-        yield
-    finally:
-        os.close(fd)
 
 
 def check_authority(authority, signs):

@@ -4,11 +4,11 @@
 All tools read register descriptions through Block.read. Format of the description: docs/bus.md.
 """
 import json
-import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from icesoc.regs import names
+from icesoc.util.schema import problems
 
 SCHEMA = json.loads(Path(__file__).with_name("regs.schema.json").read_text())
 WORDS_PER_SLOT = 16
@@ -40,31 +40,6 @@ class Wrong(Exception):
 def check(holds, text):
     if not holds:
         raise Wrong(text)
-
-
-def fit(value, part, where):
-    """Checks a part of a description by its part of the schema."""
-    part = SCHEMA["$defs"].get(part.get("$ref", "").rpartition("/")[2], part)
-    kind = part["type"]
-    if kind == "object":
-        check(isinstance(value, dict), f"{where}: expected an object of names and values")
-        for name, inner in part["properties"].items():
-            check(name in value or name not in part["required"], f"{where}: '{name}' is missing")
-            if name in value:
-                fit(value[name], inner, name if part is SCHEMA else f"{where}.{name}")
-        for name in value:
-            check(name in part["properties"], f"{where}: '{name}' is not a property; expected "
-                  f"{', '.join(part['properties'])}")
-    elif kind == "array":
-        check(isinstance(value, list), f"{where}: expected a list")
-        for i, each in enumerate(value):
-            fit(each, part["items"], f"{where}[{i}]")
-    else:
-        holds = type(value) is {"string": str, "integer": int, "boolean": bool}[kind] and (
-            re.fullmatch(part.get("pattern", ".*"), str(value), re.A | re.S)
-            if kind == "string" else
-            part.get("minimum", 0) <= value <= part.get("maximum", 1))
-        check(holds, f"{where}: expected {part['description']}, got {json.dumps(value)[:40]}")
 
 
 def reset_of(text):
@@ -137,8 +112,8 @@ class Register:
         return self.storage == "flip-flops"
 
     def holds(self, part):
-        """True if flip-flops of the register block hold the field."""
-        return self.storage == "flip-flops" and part.access != "ro"
+        """Flip-flops of the register block hold the field."""
+        return self.is_stored and part.access != "ro"
 
     @property
     def held_parts(self):
@@ -209,8 +184,10 @@ class Port:
 class Block:
     """The registers of a block."""
 
-    def __init__(self, description):
-        fit(description, SCHEMA, "the description")
+    def __init__(self, description, is_built=False):
+        """`is_built`: the build has already checked the description by its schema."""
+        if not is_built and (found := problems(description, SCHEMA)):
+            raise Wrong("; ".join(found))
         check(("type" in description) == ("version" in description),
               "a slot has a type and a version")
         self.description = description
@@ -239,13 +216,13 @@ class Block:
             raise Wrong(str(e)) from None
 
     @classmethod
-    def read(cls, path):
+    def read(cls, path, is_built=False):
         try:
-            return cls(json.loads(Path(path).read_text("utf-8-sig")))
+            return cls(json.loads(Path(path).read_text("utf-8-sig")), is_built)
         except (json.JSONDecodeError, OSError) as e:
             raise Wrong(str(e)) from None
         except (ValueError, RecursionError):
-            raise Wrong("it is no JSON in UTF-8, or its numbers or brackets are too long") from None
+            raise Wrong("expected JSON in UTF-8 without long numbers or deep brackets") from None
 
     def common_registers(self):
         """Returns the three registers that every slot begins with."""
@@ -320,7 +297,6 @@ def check_register(r, taken):
     check(not r.registered or r.pulses, f"{name}: registered is for a ws register with bits")
     check(not r.lock or r.is_written, f"{name}: lock is for a register that is written")
     for strobe in r.strobes:
-        check(strobe in ("read", "write"), f"{name}: strobes: expected read, write, got '{strobe}'")
         check(strobe == "read" or r.is_written, f"{name} is ro: it has no write strobe")
     used = 0
     for f in r.fields:

@@ -17,9 +17,11 @@ C_MACROS |= {f"{kind}_{what}" for kind in ("FLT", "DBL", "LDBL") for what in (
     "DIG", "EPSILON", "MANT_DIG", "MAX_EXP", "MAX_10_EXP", "MIN_EXP", "MIN_10_EXP")}
 # Prefixes of the project's headers: HW_OK, ICE_OK, MAP_SLOT_MODEM.
 PREFIXES = {"hw", "ice", "fsmc", "link", "uav", "os"}
-# Signals and ports that every register block has.
-BLOCK_SIGNALS = {"clk_i", "rst_i", "bus_valid_i", "bus_write_i", "bus_addr_i", "bus_wdata_i",
-                 "bus_ready_o", "bus_rdata_o", "bus_error_o"}
+# Ports that every register block begins with (bus/slot_ports.vh): name, output or not, width.
+SLOT_PORTS = (
+    ("clk_i", False, 1), ("rst_i", False, 1), ("bus_valid_i", False, 1), ("bus_write_i", False, 1),
+    ("bus_addr_i", False, 4), ("bus_wdata_i", False, 32), ("bus_ready_o", True, 1),
+    ("bus_rdata_o", True, 32), ("bus_error_o", True, 1))
 RDL_KEYWORDS = set("""
     abstract accesstype addressingtype addrmap alias all alternate bit boolean bothedge byte compact
     component componentwidth constraint default encode enum external false field fullalign hw inside
@@ -49,8 +51,9 @@ class Spelled:
         raise Collision(f"{other} and {owner} both become {first} in a generated file: rename one")
 
 
-def check_block(b):
-    """Rejects a block with colliding C, Verilog or VHDL constants."""
+def constants(b):
+    """Returns the names of a block's constants in C, Verilog and VHDL, without the block's prefix.
+    Rejects a block with two constants of one name."""
     spelled = Spelled()
     if b.is_slot:
         spelled.add("TABLE", "the table of a slot's registers")
@@ -63,6 +66,12 @@ def check_block(b):
         for f in r.fields:
             for end in ("LSB", "MASK", "WIDTH"):
                 spelled.add(f"{r.name}_{f.name}_{end}", full_name(r, f))
+    return spelled
+
+
+def check_block(b):
+    """Rejects a block whose constants have the name of another constant."""
+    spelled = constants(b)
     if b.name.lower() in PREFIXES:
         raise Collision(f"block {b.name}: the name is reserved by the project")
     for name in spelled.owners:
@@ -78,7 +87,7 @@ def full_name(register, field):
 def check_ports(b):
     """Rejects a block with a register block that would have two ports or signals of one name."""
     spelled = Spelled()
-    for name in BLOCK_SIGNALS:
+    for name, _, _ in SLOT_PORTS:
         spelled.add(name, f"the port {name} of every slot")
     for p in b.ports:
         spelled.add(p.name, p.owner)

@@ -55,12 +55,16 @@ def aligned(rows, mark):
     return [f"{left:{broad}}{mark}{right}" for left, right in rows]
 
 
+def write_signals(b):
+    """Returns (name, word, lock) of the pulses of writes."""
+    return [("event", "EVENT", ""), ("mask", "MASK", "")] + [
+        (r.lower, r.name, r.lock) for r in b.own_registers if r.is_written]
+
+
 def write_wires(b):
     """Returns the declarations of the pulses of writes."""
-    rows = [(f"{name}_write", f"write && bus_addr_i == {b.prefix}_{name.upper()};")
-            for name in ("event", "mask")]
-    rows += [(f"{r.lower}_write", f"write && bus_addr_i == {b.prefix}_{r.name}"
-              f"{f' && !{r.lock}_i' if r.lock else ''};") for r in b.own_registers if r.is_written]
+    rows = [(f"{name}_write", f"write && bus_addr_i == {b.prefix}_{word}"
+             f"{f' && !{lock}_i' if lock else ''};") for name, word, lock in write_signals(b)]
     return ["    wire " + line for line in aligned(rows, " = ")]
 
 
@@ -104,13 +108,17 @@ def declared(port, is_last):
     """Returns the lines of a port."""
     kind = "input  wire" if not port.is_out else "output reg " if port.is_reg else "output wire"
     line = f"    {kind} {span(port.width):6} {port.name}{'' if is_last else ','}"
-    lines = [*wrapped(port.group, "    // ", "    // "), line] if port.group else [line]
-    doc = plain(port.doc)
-    if doc and len(lines[-1]) + 4 + len(doc) <= COLUMNS:
-        lines[-1] += f" // {doc}"
-    elif doc:
-        lines[-1:] = [*wrapped(doc, "    // ", "    // "), line]
-    return lines
+    return commented(line, port.group, port.doc, "// ")
+
+
+def commented(line, group, doc, mark):
+    """Returns the lines of a port: the comment of the group that it begins, the port, and its own
+    comment after or before it."""
+    doc, before = plain(doc), "    " + mark
+    lines = wrapped(group, before, before) if group else []
+    if doc and len(line) + 1 + len(mark) + len(doc) > COLUMNS:
+        return [*lines, *wrapped(doc, before, before), line]
+    return [*lines, f"{line} {mark}{doc}" if doc else line]
 
 
 def wrapped(text, first, others):

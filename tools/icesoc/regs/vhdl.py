@@ -1,12 +1,7 @@
 # SPDX-License-Identifier: MIT
 """vhdl: expressions of a block's registers in VHDL, for the templates *.vhd.j2."""
-from icesoc.regs import verilog
-from icesoc.regs.verilog import aligned, wrapped
-
-SLOT_PORTS = (
-    ("clk_i", False, 1), ("rst_i", False, 1), ("bus_valid_i", False, 1), ("bus_write_i", False, 1),
-    ("bus_addr_i", False, 4), ("bus_wdata_i", False, 32), ("bus_ready_o", True, 1),
-    ("bus_rdata_o", True, 32), ("bus_error_o", True, 1))
+from icesoc.regs.names import SLOT_PORTS
+from icesoc.regs.verilog import aligned, commented, write_signals
 
 
 def kind(width):
@@ -32,28 +27,15 @@ def vhdl_ports(b):
     ports += [(p.name, p.is_out, p.width, p.doc, p.group) for p in b.ports]
     broad, lines = max(len(p[0]) for p in ports), []
     for n, (name, is_out, width, doc, group) in enumerate(ports):
-        if group:
-            lines += wrapped(group, "    -- ", "    -- ")
         line = f"    {name:{broad}} : {'out' if is_out else 'in '} {kind(width)}"
         line += ";" if n + 1 < len(ports) else ""
-        doc = verilog.plain(doc)
-        if doc and len(line) + 4 + len(doc) <= verilog.COLUMNS:
-            line += f" -- {doc}"
-        elif doc:
-            lines += wrapped(doc, "    -- ", "    -- ")
-        lines.append(line)
+        lines += commented(line, group, doc, "-- ")
     return lines
 
 
 def signals_of(b):
     """Returns the flip-flops of the block as (name, field, reset)."""
     return [(r.port(p) + "_value", p) for r in b.own_registers for p in r.held_parts]
-
-
-def write_signals(b):
-    """Returns (name, word, lock) for the write pulses."""
-    return [("event", "EVENT", ""), ("mask", "MASK", "")] + [
-        (r.lower, r.name, r.lock) for r in b.own_registers if r.is_written]
 
 
 def vhdl_writes(b):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """build: stages the pages of docs/ with the generated reference, and runs Doxygen and Sphinx."""
+import os
 import re
 import shutil
 import subprocess
@@ -57,7 +58,7 @@ def relink(text, source, target, moved):
         if re.match(r"[a-z]+:|#", link):
             return match[0]
         path, _, anchor = link.partition("#")
-        there = Path(*_resolved(Path(source).parent / path))
+        there = Path(os.path.normpath(Path(source).parent / path))
         page = moved.get(str(there))
         if page:
             up = "../" * (len(Path(target).parts) - 1)
@@ -69,17 +70,6 @@ def relink(text, source, target, moved):
     blocks = re.split(r"(^```.*?^```)", text, flags=re.S | re.M)
     return "".join(block if block.startswith("```") else
                    re.sub(r"!?\[([^]]*)\]\(([^)\s]+)\)", replaced, block) for block in blocks)
-
-
-def _resolved(path):
-    """Returns the parts of a relative path without `..`."""
-    parts = []
-    for part in path.parts:
-        if part == ".." and parts:
-            parts.pop()
-        elif part != ".":
-            parts.append(part)
-    return parts
 
 
 def stage(tree, pages, helps):

@@ -11,8 +11,9 @@ from icesoc.util.errors import Stop
 
 @contextlib.contextmanager
 def lock(path, busy=None, refuse=None):
-    """Holds a lock, a file (creating its folder) or a folder, and returns its descriptor. If it is
-    taken: prints `busy` and waits, or ends with `refuse`."""
+    """Holds a lock and returns its descriptor. The lock is a folder, or a file, which is made with
+    its folder. If another process holds it: ends with the message `refuse`, or prints `busy` and
+    waits."""
     Path(path).parent.mkdir(parents=True, exist_ok=True)
     fd = os.open(path, os.O_RDONLY if os.path.isdir(path) else os.O_RDWR | os.O_CREAT, 0o666)
     try:
@@ -21,7 +22,8 @@ def lock(path, busy=None, refuse=None):
         except BlockingIOError:
             if refuse:
                 raise Stop(refuse) from None
-            warn(busy)
+            if busy:
+                warn(busy)
             fcntl.flock(fd, fcntl.LOCK_EX)
         yield fd
     finally:

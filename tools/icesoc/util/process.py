@@ -17,6 +17,9 @@ from icesoc.util.console import warn
 from icesoc.util.errors import Interrupted, Stop
 
 
+ICESOC = [sys.executable, "-m", "icesoc"]  # the words that start a command of ./icesoc
+
+
 def hear_signals():
     def hear(number, _):
         for each in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
@@ -29,8 +32,8 @@ def hear_signals():
 
 
 def tool(name):
-    """Returns the words that start a module of this package, "regs.rdl"."""
-    return [sys.executable, "-m", "icesoc" if name == "__main__" else f"icesoc.{name}"]
+    """Returns the words that start a module of this package: "regs.rdl"."""
+    return [sys.executable, "-m", f"icesoc.{name}"]
 
 
 def start(words, env=None, **more):

@@ -22,6 +22,8 @@ import struct
 import sys
 import tomllib
 
+from icesoc import TREE
+
 BYTES = {"char": 1, "u8": 1, "u16": 2, "u32": 4, "u64": 8}
 FORMATS = {"char": "s", "u8": "B", "u16": "H", "u32": "I", "u64": "Q"}
 
@@ -113,7 +115,7 @@ def load(path):
 
 def of_tree(path):
     """Returns the record that a file of this source tree describes."""
-    return load(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../..", path))
+    return load(TREE / path)
 
 
 if __name__ == "__main__":

@@ -98,7 +98,7 @@ def blocks_by_slot(registers):
     """Returns [(slot, name, its block or None)]; `registers`: file that lists the blocks'
     *.regs.json, one a line."""
     with open(registers) as paths:
-        found = [Block.read(path) for path in filter(None, paths.read().split("\n"))]
+        found = [Block.read(path, is_built=True) for path in filter(None, paths.read().split("\n"))]
     blocks = {block.name: block for block in found}
     slots = []
     for constant in blocks["map"].constants:

@@ -17,7 +17,7 @@ from icesoc.release import version as product
 from icesoc.util.console import say
 from icesoc.util.errors import SKIPPED
 from icesoc.util.lock import lock
-from icesoc.util.process import run, tool
+from icesoc.util.process import ICESOC, run
 from icesoc.util.table import Table
 
 
@@ -93,7 +93,7 @@ def run_all(only):
         log = own.with_suffix(".log")
         with open(log, "w") as file, open(os.devnull) as nothing:
             for line in each.brief:
-                status = status or run([*tool("__main__"), *shlex.split(line)], check=False,
+                status = status or run([*ICESOC, *shlex.split(line)], check=False,
                                        stdin=nothing, stdout=file, stderr=file)
         lines = log.read_text(errors="replace").strip().splitlines() or [""]
         table.add(name, status, time.monotonic() - begin, lines[-1].strip()[:100])

@@ -25,7 +25,8 @@ module modem #(
     // An access waits a cycle, so that no path beyond it begins in the bus's address decoder.
     reg         turn;
     wire        set_configure, set_reset_modem, baud_write, net_write, settings_write;
-    reg  configure, reset_modem, rings_reset; // a cycle after the write, because their paths are long
+    // A cycle after the write, because their paths are long.
+    reg         configure, reset_modem, rings_reset;
 
     // Settings are stored in block RAM: words 0..15 are the registers with the ID, 28..31 the key.
     // A word is available one clock after its index. It is invalid after an index used by the
@@ -37,7 +38,8 @@ module modem #(
     wire [4:0]  at_word;
     wire [4:0]  ring_word;
     wire        at_busy;
-    wire [4:0]  word_index = bus_valid_i ? {1'b0, bus_addr_i} : at_word | (at_busy ? 5'd0 : ring_word);
+    wire [4:0]  word_index = bus_valid_i ? {1'b0, bus_addr_i} :
+                             at_word | (at_busy ? 5'd0 : ring_word);
     reg  [31:0] word;
     reg  [4:0]  word_at;
     reg         word_valid;
@@ -59,10 +61,13 @@ module modem #(
     reg         framing_waits, retry_waits; // pending events; counted one per clock
     wire        counts_retry = retry_waits && !rx_overrun;
     wire        counts_framing = framing_waits && !rx_overrun && !retry_waits;
-    wire [8:0]  counted = {1'b0, rx_overrun ? overruns : retry_waits ? retries : framing_errors} + 9'd1;
+    wire [8:0]  counted = {1'b0, rx_overrun  ? overruns :
+                                 retry_waits ? retries : framing_errors} + 9'd1;
     wire        cts_n_sync;
     wire        cts = !cts_n_sync;
-    cdc_bit #(.INITIAL(1'b1)) u_cts (.clk_i(clk_i), .bit_async_i(modem_cts_n_i), .bit_sync_o(cts_n_sync));
+    cdc_bit #(.INITIAL(1'b1)) u_cts (
+        .clk_i(clk_i), .bit_async_i(modem_cts_n_i), .bit_sync_o(cts_n_sync)
+    );
 
     // AT sequencer
     wire        at_done, at_failed, at_retried, at_tx_valid;
@@ -101,7 +106,8 @@ module modem #(
     assign bus_ready_o     = turn;
     assign modem_rts_n_o   = rx_free <= 5'd2;
     assign modem_reset_n_o = reset_n;
-    assign uart_valid = at_tx_valid || packet_tx_valid; // never both: not ready while the set-up runs
+    // Never both: packets are not ready while the set-up runs.
+    assign uart_valid = at_tx_valid || packet_tx_valid;
     assign uart_data  = at_tx_data | packet_tx_data;
     // `writes` is a register because it also addresses the word that the processor reads: a change
     // of ring waits one clock.
@@ -191,8 +197,8 @@ module modem #(
                 .valid_o(packet_tx_valid), .data_o(frame_data), .ready_i(tx_ready)
             );
             modem_api_rx u_api_rx (
-                .clk_i(clk_i), .rst_i(rst_i || !ready || !api), .valid_i(rx_valid), .data_i(rx_data),
-                .error_i(rx_error), .silent_i(silent),
+                .clk_i(clk_i), .rst_i(rst_i || !ready || !api),
+                .valid_i(rx_valid), .data_i(rx_data), .error_i(rx_error), .silent_i(silent),
                 .valid_o(frame_valid), .end_o(in_end), .bad_o(frame_bad)
             );
             assign in_valid = api ? frame_valid : rx_valid && ready;
@@ -213,8 +219,8 @@ module modem #(
         .clk_i(clk_i), .rst_i(rings_reset), .enable_i(ready), .encrypt_i(encrypt), .api_i(api),
         .packet_valid_i(tx_waits), .packet_bytes_i(tx_bytes), .sent_o(tx_sent),
         .rd_valid_o(rd_valid), .rd_index_o(rd_index), .rd_done_i(rd_done), .rd_data_i(rd_data),
-        .tx_valid_o(body_valid), .tx_data_o(body_data), .tx_ready_i(body_ready), .tx_last_o(body_last),
-        .cts_i(cts)
+        .tx_valid_o(body_valid), .tx_data_o(body_data), .tx_ready_i(body_ready),
+        .tx_last_o(body_last), .cts_i(cts)
     );
 
     modem_rx u_rx (
@@ -229,9 +235,10 @@ module modem #(
 
     modem_npi u_npi (
         .clk_i(clk_i), .rst_i(rst_i),
-        .base_i(word[31:11]), .base_valid_i(word_valid && word_at == ring_word && writes == wr_valid),
-        .wr_valid_i(wr_valid), .wr_addr_i({rx_next, wr_index[6:3]}), .wr_be_i(wr_be), .wr_data_i(wr_data),
-        .wr_ready_o(wr_ready), .wr_busy_o(wr_busy),
+        .base_i(word[31:11]),
+        .base_valid_i(word_valid && word_at == ring_word && writes == wr_valid),
+        .wr_valid_i(wr_valid), .wr_addr_i({rx_next, wr_index[6:3]}),
+        .wr_be_i(wr_be), .wr_data_i(wr_data), .wr_ready_o(wr_ready), .wr_busy_o(wr_busy),
         .rd_valid_i(rd_valid), .rd_addr_i({tx_buffer, rd_index}),
         .rd_done_o(rd_done), .rd_data_o(rd_data),
         .npi_addr_o(npi_addr_o), .npi_addr_req_o(npi_addr_req_o),
@@ -256,7 +263,8 @@ module modem #(
         rx_full  <= rx_free == 5'd0;
 
         if (key_write || settings_write)
-            words[{key_write, bus_addr_i[3:2], key_write ? key_index : bus_addr_i[1:0]}] <= bus_wdata_i;
+            words[{key_write, bus_addr_i[3:2], key_write ? key_index : bus_addr_i[1:0]}] <=
+                bus_wdata_i;
         key_index <= key_index + {1'b0, key_write};
         if (net_write) begin
             encrypt <= bus_wdata_i[MODEM_NET_ENCRYPT_LSB];

@@ -52,8 +52,9 @@ module modem_rx (
     wire       late    = (rx_valid_i || rx_error_i || rx_end_i || rx_bad_i) && pending && !taken &&
         !deaf;
     wire       done    = ending && !wr_busy_i;
-    // The index is at most 100, so four of its bits tell 99.
-    wire       longest = api_i ? &wr_index_o[6:4] : // modem_api_rx delivers no packet of this length
+    // The index is at most 100, so four of its bits identify 99. modem_api_rx never delivers a
+    // packet of this length.
+    wire       longest = api_i ? &wr_index_o[6:4] :
                          (wr_index_o[6] && wr_index_o[5] && wr_index_o[1] && wr_index_o[0]) ||
                          (near && wr_index_o[1:0] == length[1:0]);
     wire       cut     = api_i ? rx_end_i || rx_bad_i : rx_error_i || silent;

@@ -126,7 +126,8 @@ module system_slot #(
                 cycles[63:32] : cycles_high_latched));
             // The hash of a slot, 0 without one.
             if ($past(bus_valid_i && bus_write_i && bus_addr_i == SYSTEM_CONTRACT))
-                assert (contract == ((CONTRACTS >> {$past(bus_wdata_i[5:0]), 5'd0}) & 32'hFFFFFFFF));
+                assert (contract ==
+                        ((CONTRACTS >> {$past(bus_wdata_i[5:0]), 5'd0}) & 32'hFFFFFFFF));
             else
                 assert ($stable(contract));
         end

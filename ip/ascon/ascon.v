@@ -19,10 +19,11 @@ module ascon (
     // Initial values, sections 4 and 5: version, rounds, tag or digest bits, rate.
     localparam [63:0] IV_AEAD = 64'h00001000_808C0001, IV_HASH = 64'h00000801_00CC0002;
     localparam [3:0]  TWELVE_ROUNDS = 4'd0, EIGHT_ROUNDS = 4'd4, LAST_ROUND = 4'd11;
-    localparam [1:0]  ASSOCIATED = 2'd0, MESSAGE = 2'd1, WIPE = 2'd2; // kinds of data being processed
-    localparam [3:0]  WAIT_FOR_START = 4'd0, ROUNDS = 4'd1, FIRST_WORDS = 4'd2, ADD_KEY = 4'd3, LOAD_SIZE = 4'd4,
-                      SEPARATE = 4'd5, LOAD_TARGET = 4'd6, LOAD_SOURCE = 4'd7, WORD = 4'd8, FINAL_KEY = 4'd9,
-                      LOAD_TAG = 4'd10, TAG_WORD = 4'd11, DIGEST = 4'd12, FLUSH = 4'd13, DRAIN = 4'd14, CLEAR = 4'd15;
+    localparam [1:0]  ASSOCIATED = 2'd0, MESSAGE = 2'd1, WIPE = 2'd2; // kinds of data processed
+    localparam [3:0]  WAIT_FOR_START = 4'd0, ROUNDS = 4'd1, FIRST_WORDS = 4'd2, ADD_KEY = 4'd3,
+                      LOAD_SIZE = 4'd4, SEPARATE = 4'd5, LOAD_TARGET = 4'd6, LOAD_SOURCE = 4'd7,
+                      WORD = 4'd8, FINAL_KEY = 4'd9, LOAD_TAG = 4'd10, TAG_WORD = 4'd11,
+                      DIGEST = 4'd12, FLUSH = 4'd13, DRAIN = 4'd14, CLEAR = 4'd15;
 
     reg [3:0]   state, after;   // after: the state that follows ROUNDS
     // state is ROUNDS, WORD, LOAD_SOURCE, LOAD_TAG, TAG_WORD, WAIT_FOR_START: flip-flops, for their
@@ -124,7 +125,9 @@ module ascon (
         .write_base_i(setting[31:6]),
         .write_valid_i((step && writes && !none) || (tag_step && !decrypt) || digest_step),
         .write_data_i(sum), .write_be_i(be),
-        .write_ready_o(write_ready), .write_flush_i(state == FLUSH || state == FINAL_KEY), .write_idle_o(write_idle));
+        .write_ready_o(write_ready), .write_flush_i(state == FLUSH || state == FINAL_KEY),
+        .write_idle_o(write_idle)
+    );
     assign idle_o         = idle && both_idle && read_idle && write_idle;
 
     // ---- 320-bit state: a round, or one of its words plus an operand ----
@@ -134,21 +137,26 @@ module ascon (
     wire [63:0] operand  = (from_memory ? read_data : 64'd0) | (busy ? 64'd0 : {2{bus_wdata_i}}) |
                            (keyed && index[0] ? key[63:0] : 64'd0) |
                            (keyed && index[1] ? key[127:64] : 64'd0) |
-                           (use_iv && !hash ? IV_AEAD : 64'd0) | (use_iv && hash ? IV_HASH : 64'd0) |
+                           (use_iv && !hash ? IV_AEAD : 64'd0) |
+                           (use_iv && hash ? IV_HASH : 64'd0) |
                            {state == SEPARATE, 63'd0};
     wire        second   = index[0] && !hash;
     wire [63:0] chosen   = in_tag_word ? (second ? s[319:256] : s[255:192])
                                        : second ? s[127:64] : s[63:0];
-    wire [63:0] sum      = chosen ^ operand; // encrypted or decrypted bytes, a tag (its difference) or a digest
+    // Encrypted or decrypted bytes, a tag or its difference, or a digest.
+    wire [63:0] sum      = chosen ^ operand;
     (* keep *) wire [63:0] added    = ((deciphers ? sum : operand) & mask) ^ pad;
 
     // The bits of `takes` select the word halves that receive the sum.
     wire absorbs = step && !pass[1];
-    wire [9:0] takes = {{2{(state == ADD_KEY && index[1]) || state == SEPARATE}} | {put_nonce && nonce_words[1:0] == 2'd3,
-                                                                                   put_nonce && nonce_words[1:0] == 2'd2},
+    wire [9:0] takes = {{2{(state == ADD_KEY && index[1]) || state == SEPARATE}} |
+                            {put_nonce && nonce_words[1:0] == 2'd3,
+                             put_nonce && nonce_words[1:0] == 2'd2},
                         {2{(state == ADD_KEY && index[0]) || (state == FINAL_KEY && index[1])}} |
-                            {put_nonce && nonce_words[1:0] == 2'd1, put_nonce && nonce_words[1:0] == 2'd0},
-                        {2{(state == FIRST_WORDS && index == 2'd2) || (state == FINAL_KEY && index[0])}},
+                            {put_nonce && nonce_words[1:0] == 2'd1,
+                             put_nonce && nonce_words[1:0] == 2'd0},
+                        {2{(state == FIRST_WORDS && index == 2'd2) ||
+                           (state == FINAL_KEY && index[0])}},
                         {2{(state == FIRST_WORDS && index == 2'd1) || (absorbs && index[0])}},
                         {2{use_iv || (absorbs && !index[0])}}};
 
@@ -158,7 +166,8 @@ module ascon (
     always @(posedge clk_i) begin
         for (h = 0; h < 10; h = h + 1)
             if (in_rounds || takes[h])
-                s[32*h +: 32] <= in_rounds ? permuted[32*h +: 32] : s[32*h +: 32] ^ added[32*(h & 1) +: 32];
+                s[32*h +: 32] <= in_rounds ? permuted[32*h +: 32] :
+                                             s[32*h +: 32] ^ added[32*(h & 1) +: 32];
         if (clear)
             s <= 320'd0;
         if (put_key)
@@ -193,7 +202,8 @@ module ascon (
         none <= left[23:3] == {20'd0, step} && left[2:0] == 3'd0;
         case (state)
             WAIT_FOR_START: if (go) begin
-                decrypt <= aead && command[ASCON_CONTROL_DECRYPT_LSB] && !command[ASCON_CONTROL_ENCRYPT_LSB];
+                decrypt <= aead && command[ASCON_CONTROL_DECRYPT_LSB] &&
+                           !command[ASCON_CONTROL_ENCRYPT_LSB];
                 hash    <= !aead;
                 pass    <= aead ? ASSOCIATED : MESSAGE;
                 round   <= TWELVE_ROUNDS;
@@ -281,7 +291,8 @@ module ascon (
             end
             default: enter(after); // CLEAR
         endcase
-        if (abort && !idle && pass != WIPE && state != FLUSH && state != DRAIN && state != CLEAR) begin
+        if (abort && !idle && pass != WIPE && state != FLUSH && state != DRAIN &&
+            state != CLEAR) begin
             aborted <= 1'b1;
             valid   <= 1'b0;
             wipe    <= decrypt && pass == MESSAGE;
@@ -347,9 +358,12 @@ module ascon (
 `endif
 `ifdef COVER_POINTS
     refused_job: cover property (@(posedge clk_i) refused);
-    wrong_tag: cover property (@(posedge clk_i) tag_step && decrypt && index[0] && (differs || sum != 64'd0));
-    aborted_with_plaintext_out: cover property (@(posedge clk_i) abort && decrypt && pass == MESSAGE && !idle);
-    no_associated_data: cover property (@(posedge clk_i) in_source && pass == ASSOCIATED && left == 24'd0);
+    wrong_tag: cover property (@(posedge clk_i)
+        tag_step && decrypt && index[0] && (differs || sum != 64'd0));
+    aborted_with_plaintext_out: cover property (@(posedge clk_i)
+        abort && decrypt && pass == MESSAGE && !idle);
+    no_associated_data: cover property (@(posedge clk_i)
+        in_source && pass == ASSOCIATED && left == 24'd0);
     block_of_padding_only: cover property (@(posedge clk_i) step && none && last);
     memory_holds_up: cover property (@(posedge clk_i) in_word && writes && !none && !write_ready);
 `endif

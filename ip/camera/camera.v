@@ -25,8 +25,8 @@ module camera (
     `include "camera_regs.vh"
 
     localparam [1:0] PIXEL = 2'd0, LINE_END = 2'd1, FRAME_START = 2'd2;
-    localparam [2:0] OFF = 3'd0, WAIT_FOR_FRAME = 3'd1, WAIT_FOR_BUFFER = 3'd2, CAPTURE = 3'd3, FINISH = 3'd4,
-                     WAIT_FOR_MEMORY = 3'd5;
+    localparam [2:0] OFF = 3'd0, WAIT_FOR_FRAME = 3'd1, WAIT_FOR_BUFFER = 3'd2, CAPTURE = 3'd3,
+                     FINISH = 3'd4, WAIT_FOR_MEMORY = 3'd5;
 
     reg [2:0]  state;
     reg        capturing, listening; // state is CAPTURE; the state takes tokens
@@ -101,7 +101,8 @@ module camera (
     // ---- memory ----
     wire        write_ready, write_idle;
     // Buffers 1..3 lie at base, base + stride, base + 2 * stride.
-    wire [31:0] write_base = base + (writing == 2'd2 ? stride : writing == 2'd3 ? {stride[30:0], 1'b0} : 32'd0);
+    wire [31:0] write_base = base + (writing == 2'd2 ? stride :
+                                     writing == 2'd3 ? {stride[30:0], 1'b0} : 32'd0);
     wire        no_data, read_idle;
     wire [63:0] no_words;
     wire        eighth = capturing && has_token && !lost && is_pixel && room && x == 3'd7;
@@ -125,8 +126,10 @@ module camera (
     wire bad    = lost || (is_pixel && !room) || (ends_line && room) || starts;
     wire last   = ends_line && last_line;
     wire kept   = state == WAIT_FOR_MEMORY && write_idle && whole; // the whole frame is in memory
-    camera_buffers u_buffers (.clk_i(clk_i), .rst_i(rst_i), .active_i(state != OFF), .kept_i(kept),
-                              .writing_o(writing), .newest_o(newest), .offered_o(offered), .take_i(frame_take_i));
+    camera_buffers u_buffers (
+        .clk_i(clk_i), .rst_i(rst_i), .active_i(state != OFF), .kept_i(kept),
+        .writing_o(writing), .newest_o(newest), .offered_o(offered), .take_i(frame_take_i)
+    );
     assign frame_valid_o = offered;
     assign frame_index_o = newest;
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// probe: records signals of the chip into a ring in DDR3, one change at a time, around a trigger (ip/probe/README.md).
+// probe: records changes of the chip's signals in a ring in DDR3, around a trigger
+// (ip/probe/README.md).
 //
-// A change is the value of all signals with the clock in which they took it; while no signal
-// changes, nothing is stored. It has WORDS words of 64 bits. Word 0 contains in bits 31..0 the low
-// bits of cycles_i, two clocks after that clock, in bit 32 a flag that changes before it were lost,
-// and above them signals_i, bit 0 first, which continues in word 1. A FIFO of 512 changes lies
-// between the signals, which may change in every clock, and memory.
+// An entry of the ring is the value of all signals and the clock of their last change. Nothing is
+// stored while no signal changes. An entry has WORDS words of 64 bits:
+//   word 0, bits 31..0    low bits of cycles_i, two clocks after the change
+//   word 0, bit 32        1: changes before this one were lost
+//   word 0, bits 63..33   the first bits of signals_i; the others follow in word 1 and up
+// Signals may change in every clock, so a FIFO of 512 entries precedes the memory.
 
 `default_nettype none
 
@@ -35,7 +37,8 @@ module probe #(
 
     // ---- signals: own registers, so that the probe adds a wire to each signal, and no logic ----
     reg [WIDTH-1:0] now, last;
-    reg             changed, fits, fitted; // last differs from the value before it; it meets the trigger; so did the value before
+    reg             changed;      // last differs from the value before it
+    reg             fits, fitted; // last meets the trigger; the value before it did
     always @(posedge clk_i) begin
         now     <= signals_i;
         last    <= now;
@@ -48,11 +51,13 @@ module probe #(
     reg                 running, draining, done, triggered, wrapped;
     reg                 owed;  // an entry without a change: the first one, and the one after a loss
     reg                 lost;
-    reg                 half;  // cycles_i[31] at the last entry: one is stored in each half of its turn at least
+    reg                 half;  // cycles_i[31] at the last entry; each change of it makes an entry
     reg [LOG2_RING-1:0] next, trigger, left;
 
     wire full, empty, pop, room, stream_idle;
-    reg  [2:0] settled; // clocks for which the FIFO has been empty at the end: a word arrives in two, a flush ends in two more
+    // Clocks, up to 7, for which the FIFO has been empty at the end: a word needs two to reach
+    // it, and the stream is idle two clocks after a flush.
+    reg  [2:0] settled;
     wire arm    = set_arm && !running && !draining;
     wire ended  = triggered && left == {LOG2_RING{1'b0}};
     wire entry  = running && !ended && (changed || owed || half != cycles_i[31]);
@@ -131,19 +136,24 @@ module probe #(
     wire [31:0] unused_addr;
     wire        unused_valid, unused_read_idle;
     wire [63:0] unused_data;
-    npi_stream #(.ADDR_BITS(PROBE_LOG2_BYTES), .WORD_BITS(4)) u_stream ( // its address wraps at the end of the ring
+    // The stream's address wraps at the end of the ring.
+    npi_stream #(.ADDR_BITS(PROBE_LOG2_BYTES), .WORD_BITS(4)) u_stream (
         .clk_i(clk_i), .rst_i(rst_i),
-        .read_start_i(1'b0), .read_base_i({(PROBE_LOG2_BYTES - 6){1'b0}}), .read_words_i(4'd0), .read_stop_i(1'b0),
-        .read_valid_o(unused_valid), .read_data_o(unused_data), .read_take_i(1'b0), .read_idle_o(unused_read_idle),
+        .read_start_i(1'b0), .read_base_i({(PROBE_LOG2_BYTES - 6){1'b0}}), .read_words_i(4'd0),
+        .read_stop_i(1'b0), .read_valid_o(unused_valid), .read_data_o(unused_data),
+        .read_take_i(1'b0), .read_idle_o(unused_read_idle),
         .write_start_i(arm), .write_base_i({(PROBE_LOG2_BYTES - 6){1'b0}}),
         .write_valid_i(!empty), .write_data_i(word), .write_be_i(8'hFF), .write_ready_o(room),
         .write_flush_i(settled == 3'd4), .write_idle_o(stream_idle),
         .npi_addr_o(unused_addr), .npi_addr_req_o(npi_addr_req_o), .npi_addr_ack_i(npi_addr_ack_i),
-        .npi_rnw_o(npi_rnw_o), .npi_size_o(npi_size_o), .npi_rmw_o(npi_rmw_o), .npi_wr_data_o(npi_wr_data_o),
-        .npi_wr_be_o(npi_wr_be_o), .npi_wr_push_o(npi_wr_push_o), .npi_wr_empty_i(npi_wr_empty_i),
-        .npi_wr_almost_full_i(npi_wr_almost_full_i), .npi_wr_flush_o(npi_wr_flush_o), .npi_rd_data_i(npi_rd_data_i),
-        .npi_rd_word_i(npi_rd_word_i), .npi_rd_pop_o(npi_rd_pop_o), .npi_rd_empty_i(npi_rd_empty_i),
-        .npi_rd_flush_o(npi_rd_flush_o), .npi_init_done_i(npi_init_done_i));
+        .npi_rnw_o(npi_rnw_o), .npi_size_o(npi_size_o), .npi_rmw_o(npi_rmw_o),
+        .npi_wr_data_o(npi_wr_data_o), .npi_wr_be_o(npi_wr_be_o), .npi_wr_push_o(npi_wr_push_o),
+        .npi_wr_empty_i(npi_wr_empty_i), .npi_wr_almost_full_i(npi_wr_almost_full_i),
+        .npi_wr_flush_o(npi_wr_flush_o), .npi_rd_data_i(npi_rd_data_i),
+        .npi_rd_word_i(npi_rd_word_i), .npi_rd_pop_o(npi_rd_pop_o),
+        .npi_rd_empty_i(npi_rd_empty_i), .npi_rd_flush_o(npi_rd_flush_o),
+        .npi_init_done_i(npi_init_done_i)
+    );
     assign npi_addr_o     = {base[31:PROBE_LOG2_BYTES], unused_addr[PROBE_LOG2_BYTES-1:0]};
 
     // ---- registers ----
@@ -163,7 +173,8 @@ module probe #(
         .next_i({{(32 - LOG2_RING){1'b0}}, next}),
         .trigger_at_i({{(32 - LOG2_RING){1'b0}}, trigger}));
 
-    wire unused = &{1'b0, after, base, unused_addr, unused_valid, unused_data, unused_read_idle, 1'b0};
+    wire unused = &{1'b0, after, base, unused_addr, unused_valid, unused_data, unused_read_idle,
+                    1'b0};
 `ifdef COVER_POINTS
     loses_changes: cover property (@(posedge clk_i) entry && full);
     turns_round: cover property (@(posedge clk_i) push && &next);

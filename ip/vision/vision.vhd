@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: MIT
 --
--- vision: FAST-9 corners of a grey-scale frame in DDR3, one pixel a clock. Page: ip/vision/README.md.
+-- vision: FAST-9 corners of a grey-scale frame in DDR3, one pixel a clock (ip/vision/README.md).
 --
 -- Registers: ip/vision/vision.regs.json.
 
@@ -50,7 +50,7 @@ entity vision is
 end entity;
 
 architecture rtl of vision is
-  -- A score leaves vision_fast this many steps after its newest pixel, and vision_suppress two later.
+  -- Steps from the newest pixel of a score to the score at vision_fast; vision_suppress adds two.
   constant SCORE_DELAY : natural := 5;
   constant KEPT_DELAY  : natural := 2;
 
@@ -59,11 +59,12 @@ architecture rtl of vision is
 
   -- registers
   signal set_threshold : std_logic_vector(7 downto 0);
-  signal frame_base, result_base : std_logic_vector(31 downto 0); -- vision_memory takes them at START
+  -- vision_memory takes these at START.
+  signal frame_base, result_base : std_logic_vector(31 downto 0);
   signal frame_stride  : std_logic_vector(31 downto 0);
   signal follow        : std_logic;
   signal busy, done, done_pending, refused : std_logic;
-  signal taken         : std_logic_vector(1 downto 0); -- the buffer of the last frame, 0: FRAME_BASE itself
+  signal taken         : std_logic_vector(1 downto 0); -- buffer of the last frame; 0: FRAME_BASE
   signal set_width, set_height, set_result_max : std_logic_vector(15 downto 0);
   signal found, stored : unsigned(15 downto 0);
   -- settings of the current frame, loaded at START
@@ -87,7 +88,7 @@ architecture rtl of vision is
   signal lines_left    : unsigned(15 downto 0);
   signal score_x, kept_x : unsigned(9 downto 0);
   signal score_y, kept_y : unsigned(16 downto 0);
-  signal fill          : unsigned(3 downto 0); -- steps until the first score, then until the first kept score
+  signal fill          : unsigned(3 downto 0); -- steps to the first score, then to the first kept
   signal take, real_pixel, pixel_valid, pixel_take, last : std_logic;
   signal streaming     : std_logic; -- state = STREAM and not stop
   -- `step` is `take` one clock later: everything after the window moves by this register, which has
@@ -309,7 +310,7 @@ begin
   begin
     if rising_edge(clk_i) then
       if go = '1' then
-        -- Column and line of the first centre: one before (0, -1), counted from line 0 for unsigned.
+        -- Column and line of the first centre: one before (0, -1), as unsigned numbers.
         kept_x <= last_column;
         kept_y <= to_unsigned(131070, 17); -- -2
       elsif decide = '1' and fill = SCORE_DELAY + KEPT_DELAY then
@@ -333,7 +334,8 @@ begin
     );
 
   u_window : entity work.vision_window
-    port map (clk_i => clk_i, step_i => step, x_i => step_x, pixel_i => step_pixel, window_o => window);
+    port map (clk_i => clk_i, step_i => step, x_i => step_x, pixel_i => step_pixel,
+              window_o => window);
 
   u_fast : entity work.vision_fast
     port map (clk_i => clk_i, step_i => step, threshold_i => threshold, window_i => window,

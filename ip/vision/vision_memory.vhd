@@ -17,7 +17,7 @@ entity vision_memory is
     -- until start: the addresses are loaded in each cycle
     idle_i         : in  std_logic;
     start_i        : in  std_logic;                     -- one cycle, the first without idle_i
-    stop_i         : in  std_logic;                     -- no further reads; arriving words are dropped
+    stop_i         : in  std_logic;                     -- no further reads; later words are dropped
     frame_base_i   : in  std_logic_vector(31 downto 0);
     result_base_i  : in  std_logic_vector(31 downto 0);
     quiet_o        : out std_logic;                     -- no transfer is pending
@@ -53,7 +53,7 @@ architecture rtl of vision_memory is
   signal write_addr  : unsigned(31 downto 3);
   signal outstanding : unsigned(5 downto 0);   -- words requested and not popped yet
   signal word        : std_logic_vector(63 downto 0);
-  signal left        : std_logic_vector(7 downto 0); -- remaining bytes of `word`: one bit each, from bit 0
+  signal left        : std_logic_vector(7 downto 0); -- remaining bytes of `word`, one bit each
   signal slot        : std_logic_vector(63 downto 0); -- a record that waits
   signal slot_full   : std_logic;
   signal pushed      : std_logic;

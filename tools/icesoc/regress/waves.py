@@ -8,6 +8,7 @@ import os
 import pathlib
 import re
 
+from icesoc.util import vcd
 from icesoc.util.errors import Stop
 from icesoc.util.files import write
 from icesoc.util.process import collect
@@ -158,37 +159,22 @@ def shown(bits, width):
 
 
 def read_vcd(text):
-    """The signals of a VCD file (IEEE 1364-2005, 18.2), the first and the last moment. A signal
-    with several names has its outermost one."""
-    head, _, body = text.partition("$enddefinitions")
-    signals, scopes = {}, []
-    for kind, rest in re.findall(r"\$(scope|upscope|var)\s+(.*?)\s*\$end", head, re.S):
-        words = rest.split()
-        if kind == "scope":
-            scopes.append(words[1])
-        elif kind == "upscope":
-            scopes.pop()
-        elif not words[3].startswith("smt_"):  # signals of the solver
-            signal = Signal(scopes, words[3], int(words[1]) * (words[0] != "string"))
-            known = signals.get(words[2])
+    """Returns the signals of a VCD file that change, and its first and last moment. A signal with
+    several names has its outermost one."""
+    signals, moments = {}, []
+    _, variables, changes = vcd.read(text)
+    for each in variables:
+        if not each.name.startswith("smt_"):  # signals of the solver
+            signal = Signal(each.scopes, each.name, each.width * (each.kind != "string"))
+            known = signals.get(each.key)
             if not known or signal.depth < known.depth:
-                signals[words[2]] = signal
-    moments, now = [], 0
-    words = (word for line in body.splitlines() for word in line.split())
-    for word in words:
-        kind, value = word[0], word[1:]
-        if kind == "#":
-            now = int(value)
+                signals[each.key] = signal
+    for now, key, value in changes:
+        signal = signals.get(key)
+        if key is None:
             moments = [moments[0] if moments else now, now]
-            continue
-        if kind in "bs":
-            signal = signals.get(next(words))
-        elif kind in "01xz" and value:
-            signal, value = signals.get(value), kind
-        else:
-            continue
         # Proofs' traces repeat unchanged values at each step.
-        if signal and not (signal.changes and signal.changes[-1][1] == value):
+        elif signal and not (signal.changes and signal.changes[-1][1] == value):
             signal.changes.append((now, value))
     return [signal for signal in signals.values() if signal.changes], moments
 

@@ -2,10 +2,10 @@
 """nets: lists clocks, resets and the nets with the highest fan-out of a Spartan-6 netlist, and
 where each signal is declared in the sources."""
 import functools
-import os
 import re
 
 from icesoc.synth import netlist
+from icesoc.util import ghdl
 
 FOR_OWNER = "(for) "
 
@@ -65,31 +65,6 @@ def lines_of(file):
         return []
 
 
-def relative(file):
-    return os.path.relpath(file) if os.path.isabs(file) else os.path.normpath(file)
-
-
-def place_in_vhdl(lines, declared, name):
-    """The place in VHDL of a signal that GHDL declares at a line of its Verilog: it stands in the
-    comment before the statement that assigns it. A port has none, but its value
-    has."""
-    above = ""
-    for line in lines[declared:]:
-        if line == "endmodule":
-            break
-        comment = re.fullmatch(r" */\* (\S+\.vhdl?:\d+):\d+ +\*/", line)
-        if comment:
-            above = relative(comment[1])
-        elif f" {name} = " in line or f" {name} <= " in line:
-            copied = re.match(r" *assign \S+ = (\w+); // *\((module output|signal)\)", line)
-            if not above and copied and copied[1] != name:
-                return place_in_vhdl(lines, declared, copied[1])
-            return above
-        elif " always @" not in line and " case (" not in line:
-            above = ""
-    return ""
-
-
 def place_of(n, signal):
     """File and line where a signal ("u_modem.state[3]") is declared; of a core in VHDL, where GHDL
     says that it is made: names of intermediate values (n71_o) are made by GHDL. "" if unknown."""
@@ -101,7 +76,7 @@ def place_of(n, signal):
     for file, line, begin, last, end in places:
         if line == last and int(end) - int(begin) == len(name):
             lines = lines_of(file)
-            in_vhdl = (place_in_vhdl(lines, int(line), name)
-                       if lines and "by GHDL" in lines[0] else "")
-            return in_vhdl or f"{relative(file)}:{line}"
+            in_vhdl = (ghdl.place_of_signal(lines, int(line), name)
+                       if ghdl.is_converted(lines) else "")
+            return in_vhdl or f"{ghdl.relative(file)}:{line}"
     return ""

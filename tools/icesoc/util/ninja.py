@@ -7,6 +7,7 @@ import sys
 import time
 from pathlib import Path
 
+from icesoc.util import ghdl
 from icesoc.util.console import say
 from icesoc.util.errors import Stop
 from icesoc.util.process import end, start, wait
@@ -45,22 +46,14 @@ class Line:
 
 
 def in_vhdl(match):
-    """A place in Verilog that GHDL made, with that in the VHDL: it stands in a comment before what
-    assigns a signal."""
+    """Returns a place in Verilog, and in the VHDL that GHDL made it of."""
     try:
         lines = Path(match[1]).read_text(errors="replace").splitlines()
     except OSError:
         return match[0]
-    at = int(match[2]) - 1
-    if at >= len(lines) or "by GHDL" not in lines[0]:
-        return match[0]
-    declared = re.match(r" *(?:wire|reg) (?:\[.*?\] )?(\w+);", lines[at])
-    if declared:
-        at = next((n for n, line in enumerate(lines[at:], at)
-                   if re.match(rf" *(?:assign )?{declared[1]} <?= ", line)), at)
-    places = [found[1] for line in lines[at::-1]
-              if (found := re.fullmatch(r" */\* (\S+:\d+):\d+ +\*/", line))]
-    return f"{match[0]} ({places[0]})" if places else match[0]
+    place = ghdl.is_converted(lines) and int(match[2]) <= len(lines) and ghdl.place_of_line(
+        lines, int(match[2]))
+    return f"{match[0]} ({place})" if place else match[0]
 
 
 def explained(text):

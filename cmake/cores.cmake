@@ -9,7 +9,8 @@ set(FOREIGN_CORES ${CMAKE_BINARY_DIR}/foreign
   CACHE PATH "Where icesoc.util.fetch put third-party cores")
 
 set(MANIFEST_FILES ${REGMAP_FILES} ${TOOLS}/chip/manifest.py ${TOOLS}/chip/core.schema.json
-  ${TOOLS}/util/schema.py)
+  ${TOOLS}/util/schema.py ${TOOLS}/util/templates.py)
+file(GLOB MAP_TEMPLATES CONFIGURE_DEPENDS ${TOOLS}/chip/templates/*.j2)
 
 # Names in the list, for parts that are built only with a core: if("vision" IN_LIST CHIP_CORES)
 set(CHIP_CORES)
@@ -107,7 +108,8 @@ macro(icesoc_core_clock)
     set(hz ${A_CLOCK})
     add_custom_command(OUTPUT ${GEN_DIR}/${top}.v
       COMMAND ${PYTHON} -m icesoc.chip.clocked ${manifest} ${regs} ${GEN_DIR}/${top}.v
-      DEPENDS ${MANIFEST_FILES} ${TOOLS}/chip/clocked.py ${manifest} ${regs}
+      DEPENDS ${MANIFEST_FILES} ${TOOLS}/chip/clocked.py ${TOOLS}/chip/core_output.py
+        ${MAP_TEMPLATES} ${manifest} ${regs}
       VERBATIM COMMENT "${name} in its own clock")
     add_custom_target(${top}_verilog DEPENDS ${GEN_DIR}/${top}.v)
     list(APPEND files ${GEN_DIR}/${top}.v)
@@ -298,7 +300,7 @@ function(icesoc_chip)
             --block 0=system=${CMAKE_SOURCE_DIR}/hdl/system/system.regs.json
             --block 1=modem=${CMAKE_SOURCE_DIR}/hdl/modem/modem.regs.json --output-dir ${GEN_DIR}
     DEPENDS ${MANIFEST_FILES} ${TOOLS}/chip/collisions.py ${TOOLS}/chip/coremap.py
-            ${TOOLS}/chip/core_output.py
+            ${TOOLS}/chip/core_output.py ${MAP_TEMPLATES}
             ${CORES} ${CMAKE_SOURCE_DIR}/bus/map.regs.json
             ${inputs} ${CMAKE_SOURCE_DIR}/hdl/system/system.regs.json
             ${CMAKE_SOURCE_DIR}/hdl/modem/modem.regs.json ${slice_files}

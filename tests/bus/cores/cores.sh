@@ -144,8 +144,8 @@ grep -q '^    Hw_Core_interrupt(&core_adder.core);' "$work/soc_cores.c" &&
     fail 'a servant that waits for nothing is asked for its interrupt or poll'
 # Only a core with idle_o can have a gate; a core with a gate in the list also has it on the board.
 accepted gates 'adder gate=on\nadder name=other\nled\n'
-has soc_cores.vh 'core_gate #(.GATED(1)) u_gate_adder .*slot_valid\[2\].*clk_adder' \
-    '.clk_i(clk_adder)' 'core_gate #(.GATED(GATES)) u_gate_other'
+has soc_cores.vh 'core_gate #(.GATED(1)) u_gate_adder ($' 'access_i(slot_valid\[2\]),$' \
+    '.clk_o(clk_adder)$' '.clk_i(clk_adder)' 'core_gate #(.GATED(GATES)) u_gate_other'
 lacks soc_cores.vh u_gate_led
 has core_pins.ucf '^NET "u_soc/u_gate_adder.g_gate.run" MAXDELAY'
 # A separate clock of a core comes from a pin, from another core, or is made from the chip clock;

@@ -6,7 +6,8 @@
 import sys
 
 from icesoc.chip import manifest
-from icesoc.regs.generate import render, save
+from icesoc.chip.core_output import render
+from icesoc.regs.generate import save
 from icesoc.regs.model import Wrong, check
 
 

@@ -4,9 +4,13 @@
 The chip is coremap.Chip, slots are coremap.Slot.
 """
 import copy
+import functools
 import json
+from pathlib import Path
 
-CORE_PINS = 32  # pins in each direction
+from icesoc.regs.verilog import span
+from icesoc.util import templates
+
 HAND = "Generated from ip/cores.list: do not edit."
 
 
@@ -90,31 +94,24 @@ def probes_of(chip):
     return json.dumps(probes, separators=(",", ":")) + "\n"
 
 
-def probed(chip):
-    """Returns the signals of probes by hierarchical names.
+def signal_bits(probe):
+    """Returns the width of a probe's signals_i."""
+    return 64 * change_words(probe) - 33
 
-    Yosys joins a wire of such a name with the signal when it flattens the chip.
-    """
-    probes = [c for c in chip.cores if c.is_probe]
-    if not probes:
-        return ""
-    joined, in_yosys, elsewhere, ends = {}, "", "", ""
-    for c in probes:
-        taps = [(f"{c.name}_{i}", *s, s[1]) for i, s in enumerate(c.signals)]
-        count = (f"cycles_{c.name}", "u_system_slot.cycles", 64, 32)
-        for wire, signal, of, width in [*taps, count]:
-            joined.setdefault(signal, of)
-            part = f"[{width - 1}:0]" if width < of else ""
-            in_yosys += f"    {declared(width, wire)} = \\{signal} {part};\n"
-            elsewhere += f"    {declared(width, wire)} = {signal}{part};\n"
-        width = 64 * change_words(c) - 33
-        spare = width - sum(w for _, w in c.signals)
-        wires = ([f"{spare}'d0"] if spare else []) + [wire for wire, *_ in reversed(taps)]
-        ends += f"    {declared(width, 'signals_' + c.name)} = {{{', '.join(wires)}}};\n"
-    joins = "".join(f"    (* hierconn *) {declared(of, chr(92) + signal)} ;\n"
-                    for signal, of in joined.items())
-    return (f"    // What probes record.\n`ifdef YOSYS\n{joins}{in_yosys}`else\n{elsewhere}`endif\n"
-            f"{ends}\n")
+
+def recorded(probe):
+    """Returns the concatenation of a probe's signals, padded to the width of signals_i."""
+    spare = signal_bits(probe) - sum(width for _, width in probe.signals)
+    wires = [f"{probe.name}_{i}" for i in range(len(probe.signals))]
+    return ", ".join(([f"{spare}'d0"] if spare else []) + wires[::-1])
+
+
+def taps_of(probe):
+    """Returns (wire, hierarchical name, width of that signal, width of the wire) of what a probe
+    reads."""
+    return [*((f"{probe.name}_{i}", name, width, width)
+              for i, (name, width) in enumerate(probe.signals)),
+            (f"cycles_{probe.name}", "u_system_slot.cycles", 64, 32)]
 
 
 def parameters_of(core):
@@ -137,98 +134,27 @@ def net_of(core, pin):
     return f"{pin.width}'d0" if pin.internal else "core_pins_i" + bits(pin.lsb, pin.width)
 
 
-def slot_of(n):
-    """Returns the connections of the register bus of slot n."""
-    return f"""        .bus_valid_i(slot_valid[{n}]), .bus_write_i(slot_write),
-        .bus_addr_i(slot_addr[{4 * n} +: 4]), .bus_wdata_i(slot_wdata),
-        .bus_ready_o(slot_ready[{n}]), .bus_rdata_o(slot_rdata[{32 * n} +: 32]),
-        .bus_error_o(slot_error[{n}]),
-"""
-
-
-def port_of(n):
-    """Returns the connections of memory port n, without a comma at the end."""
-    return f"""        .npi_addr_o(npi_addr[{32 * n} +: 32]), .npi_addr_req_o(npi_addr_req[{n}]),
-        .npi_addr_ack_i(npi_addr_ack[{n}]), .npi_rnw_o(npi_rnw[{n}]),
-        .npi_size_o(npi_size[{4 * n} +: 4]), .npi_rmw_o(npi_rmw[{n}]),
-        .npi_wr_data_o(npi_wr_data[{64 * n} +: 64]), .npi_wr_be_o(npi_wr_be[{8 * n} +: 8]),
-        .npi_wr_push_o(npi_wr_push[{n}]), .npi_wr_empty_i(npi_wr_empty[{n}]),
-        .npi_wr_almost_full_i(npi_wr_almost_full[{n}]), .npi_wr_flush_o(npi_wr_flush[{n}]),
-        .npi_rd_data_i(npi_rd_data[{64 * n} +: 64]), .npi_rd_word_i(npi_rd_word[{4 * n} +: 4]),
-        .npi_rd_pop_o(npi_rd_pop[{n}]), .npi_rd_empty_i(npi_rd_empty[{n}]),
-        .npi_rd_flush_o(npi_rd_flush[{n}]), .npi_init_done_i(npi_init_done[{n}])"""
-
-
-def instance(core):
-    name, slot = core.name, core.slot
-    s = f"    // {name}: ip/{core.folder}\n"
-    if core.multiply:
-        s += (f"    wire clk_{name};\n    core_clock #(.MULTIPLY({core.multiply}), "
-              f".DIVIDE({core.divide})) u_clock_{name} (.clk_i(clk_i), .clk_o(clk_{name}));\n")
-    if core.says_idle:
-        s += (f"    wire clk_{name}, idle_{name};\n    core_gate #(.GATED("
-              f"{'1' if core.has_gate else 'GATES'})) u_gate_{name} (.clk_i(clk_i), .rst_i(rst), "
-              f".access_i(slot_valid[{slot}]), .idle_i(idle_{name}), .clk_o(clk_{name}));\n")
-    clock = f"clk_{name}" if core.says_idle else "clk_i"
-    module = core.folder + ("_clocked" if core.own_clock else "")
-    s += (f"    {module} {parameters_of(core)}u_{name} (\n        .clk_i({clock}), .rst_i(rst),\n"
-          f"{slot_of(slot)}        .irq_o(slot_irq[{slot}])")
-    s += ",\n" + port_of(core.port) if core.port >= 0 else ""
-    s += f",\n        .idle_o(idle_{name})" if core.says_idle else ""
-    if core.is_probe:
-        s += f",\n        .cycles_i(cycles_{name}), .signals_i(signals_{name})"
-    for pin in core.pins:
-        s += f",\n        .{pin.name}({net_of(core, pin)})"
-    return s + "\n    );\n"
-
-
-def empty(slot):
-    return f"""    // slot {slot} is empty
-    assign slot_ready[{slot}] = slot_valid[{slot}];
-    assign slot_rdata[32*{slot} +: 32] = 32'd0;
-    assign slot_error[{slot}] = 1'b1;
-    assign slot_irq[{slot}]   = 1'b0;
-
-"""
-
-
 def verilog_of(chip, slots):
+    """Returns the instances of cores, for soc.v. Probes have their signals by hierarchical names:
+    Yosys joins a wire of such a name with the signal when it flattens the chip."""
     contracts = [0] * chip.slots
     for slot in slots:
         contracts[slot.number] = contract_of(slot.block)
-    hashes = ", ".join(f"32'h{contract:08X}" for contract in reversed(contracts))
-    outputs = [(f"pin_{c.name}_{p.name}", p) for c in chip.cores for p in c.pins
-               if p.direction == "o"]
-    s = (f"// {HAND} Cores in their slots, for soc.v.\n\n"
-         f"    localparam [32*{chip.slots}-1:0] CONTRACTS = {{{hashes}}};\n"
-         "\n")
-    s += "".join(f"    {declared(pin.width, net)};\n" for net, pin in outputs)
-    s += probed(chip)
-    s += "".join(instance(core) + "\n" for core in chip.cores)
+    probes = [core for core in chip.cores if core.is_probe]
+    taps = [tap for probe in probes for tap in taps_of(probe)]
+    joined = {}
+    for _, name, width, _ in taps:
+        joined.setdefault(name, width)
     used = [core.slot for core in chip.cores]
-    s += "".join(empty(slot) for slot in range(chip.first, chip.slots) if slot not in used)
-    s += "".join(f"    assign core_pins_o{bits(pin.lsb, pin.width)} = {net};\n"
-                 for net, pin in outputs if not pin.internal)
-    spare = CORE_PINS - chip.pins["o"]
-    if spare:
-        s += f"    assign core_pins_o{bits(chip.pins['o'], spare)} = {spare}'d0;\n"
-    unused = "".join(f", {net}" for net, pin in outputs if pin.internal)
-    return s + f"    wire unused_pins = &{{1'b0, core_pins_i, GATES != 0{unused}, 1'b0}};\n"
-
-
-def pin_table_of(chip):
-    rows = "".join(f'    {{"{c.name}.{p.name}", {p.lsb}, {p.width}, '
-                   f'{"true" if p.direction == "o" else "false"}}},\n'
-                   for c in chip.cores for p in c.pins if p.is_pin)
-    return f"""// {HAND} Pins of cores, by name.
-struct CorePin {{
-    const char* name; // instance.port
-    unsigned lsb, width; // in core_pins_i or core_pins_o
-    bool isOut;
-}};
-constexpr CorePin corePins[] = {{
-{rows}    {{nullptr, 0, 0, false}}}};
-"""
+    return render(
+        "soc_cores.vh.j2", chip=chip, probes=probes,
+        contracts=[f"32'h{contract:08X}" for contract in reversed(contracts)],
+        outputs=[(f"pin_{c.name}_{p.name}", p) for c in chip.cores for p in c.pins
+                 if p.direction == "o"],
+        joined=joined.items(),
+        taps=[(wire, name, width, f"[{width - 1}:0]" if width < whole else "")
+              for wire, name, whole, width in taps],
+        empty=[slot for slot in range(chip.first, chip.slots) if slot not in used])
 
 
 def pads(pin):
@@ -280,56 +206,31 @@ def constraints_of(chip):
                        for c in chip.cores if c.has_gate)
 
 
-def servant_of(core):
-    """Returns the C of one core's servant: its own, or the one for a core without its own."""
-    name, upper = f"core_{core.name}", core.name.upper()
-    if core.servant:
-        table, kind, arguments = "", core.servant["type"], f"MAP_MEMORY_{upper}"
-    else:
-        block, kind = core.folder.upper(), "Hw_Registers_Core"
-        table = f"static const Hw_Register {name}_table[] = {{{block}_TABLE}};\n"
-        arguments = (f"{block}_ID_VALUE, {name}_table,\n"
-                     f"        (Ice_Int)(sizeof {name}_table / sizeof {name}_table[0])")
-    if core.servant and not core.servant.get("waits", True):  # no call of its waits for the core
-        interrupt, poll = f"Hw_Core_interrupt(&{name}.core)", "(void)nowMs;\n    return HW_NEVER"
-    else:
-        interrupt, poll = f"{kind}_interrupt(&{name})", f"return {kind}_poll(&{name}, nowMs)"
-    return f"""
-{table}static {kind} {name};
-static Hw_Status {name}_start(const Hw_Port *port, void *context) {{
-    return {kind}_init(&{name}, MAP_SLOT_{upper}, {arguments}, port, context);
-}}
-static void {name}_interrupt(void) {{
-    {interrupt};
-}}
-static U32 {name}_poll(U32 nowMs) {{
-    {poll};
-}}
-"""
+def waits(core):
+    """Returns whether a call of the core's servant may wait for the core."""
+    return not core.servant or core.servant.get("waits", True)
 
 
 def instances_of(chip, slots):
+    """Returns the firmware's table of cores. A core without its own servant has that of registers
+    by name."""
     headers = set()
-    table = ""
     for core in chip.cores:
         headers |= ({core.servant["header"]} if core.servant else
                     {core.folder + "_regs.h", "hw_registers.h"})
-        own = "core_" + core.name
-        table += (f'    {{"{core.identity}", MAP_SLOT_{core.name.upper()}, '
-                  f"(Ice_ObjectPtr)&{own}.servant, {own}_start, {own}_interrupt, {own}_poll}},\n")
-    contracts = ",".join(f'\n    {{{{{len(slot.name)}, "{slot.name}"}}, {slot.number}, 0, '
-                         f"(Ice_Int)0x{contract_of(slot.block):08X}U}}" for slot in slots)
-    includes = "".join(f'#include "{header}"\n' for header in sorted(headers))
-    return f"""/* {HAND}
- * The firmware's cores: what hw_instance.h declares. */
-#include "hw_instance.h"
-#include "map_regs.h"
-{includes}{"".join(map(servant_of, chip.cores))}
-const Hw_Instance hw_instances[] = {{
-{table}    {{0, 0, 0, 0, 0, 0}}}};
+    return render("soc_cores.c.j2", chip=chip, slots=slots, headers=sorted(headers))
 
-const Hw_Contract hw_contracts[MAP_CONTRACTS] = {{{contracts}}};
-"""
+
+@functools.cache
+def environment():
+    return templates.environment(
+        Path(__file__).with_name("templates"), HAND=HAND, bits=bits, declared=declared,
+        signal_bits=signal_bits, recorded=recorded, parameters_of=parameters_of, net_of=net_of,
+        waits=waits, contract_of=contract_of, span=span)
+
+
+def render(template, **values):
+    return environment().get_template(template).render(**values)
 
 
 def objects_of(chip, registers, slices):
@@ -345,5 +246,5 @@ def objects_of(chip, registers, slices):
 def files(chip, slots, base):
     """Returns the chip's files: name -> text."""
     return {"map.regs.json": map_of(chip, base), "probes.json": probes_of(chip),
-            "soc_pins.h": pin_table_of(chip), "core_pins.ucf": constraints_of(chip),
+            "soc_pins.h": render("soc_pins.h.j2", chip=chip), "core_pins.ucf": constraints_of(chip),
             "soc_cores.vh": verilog_of(chip, slots), "soc_cores.c": instances_of(chip, slots)}

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from icesoc.regs import names, verilog, vhdl
 from icesoc.regs.model import ACCESSES, Block, Wrong, check
+from icesoc.util import templates
 
 FILES = {"regs.vh.j2": "{}_regs.vh", "regs.h.j2": "{}_regs.h", "regs_pkg.vhd.j2": "{}_regs_pkg.vhd",
          "regs.md.j2": "{}_regs.md"}
@@ -38,15 +39,10 @@ def cell(text):
 
 @functools.cache
 def environment():
-    """Returns Jinja's environment. Jinja is imported here, because commands of an empty machine
-    import this module before it is installed."""
-    import jinja2  # pylint: disable=import-outside-toplevel
-    made = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"), trim_blocks=True,
-        lstrip_blocks=True, keep_trailing_newline=True, undefined=jinja2.StrictUndefined)
-    made.globals.update(verilog.GLOBALS | vhdl.GLOBALS, table_rows=table_rows, cell=cell,
-                        accesses=ACCESSES)
-    return made
+    """Returns Jinja's environment."""
+    return templates.environment(Path(__file__).with_name("templates"), **verilog.GLOBALS,
+                                 **vhdl.GLOBALS, table_rows=table_rows, cell=cell,
+                                 accesses=ACCESSES)
 
 
 def render(template, **values):

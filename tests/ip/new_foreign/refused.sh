@@ -79,7 +79,7 @@ refused "more than one port for rdata: wbs_dat_o, spare" wbs_names wishbone rdat
 echo 'module two(input clk, input [7:0] a_tdata, b_tdata, input a_tvalid, output [7:0] o_tdata, output o_tvalid, input o_tready); endmodule' >two.v
 echo 'module odd(input clk, input [23:0] i_tdata, input i_tvalid, output [7:0] o_tdata, output o_tvalid, input o_tready); endmodule' >odd.v
 refused 'more than one port for s_tdata: a_tdata, b_tdata' two axis two.v
-refused 'odd has 24 and 8 bits: it must be 8, 16, 32 or 64' odd axis odd.v
+refused 'odd has 24 and 8 bits: expected 8, 16, 32 or 64' odd axis odd.v
 refused 'has no port for s_tdata' wb_port axis wb_port.v
 refused "CLOCK=fast: the frequency" wb_port wishbone CLOCK=fast wb_port.v
 refused 'ADDRESS=fast: words or bytes' wb_port wishbone ADDRESS=fast wb_port.v

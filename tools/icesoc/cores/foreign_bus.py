@@ -7,7 +7,7 @@ core without acknowledge answers at once, after some clocks, or in APB's access 
 import json
 
 from icesoc.cores.foreign_roles import AXI, LOW, is_answer
-from icesoc.cores.foreign_files import ADAPTER, head, overrides, pin_name, vector
+from icesoc.cores.foreign_files import pin_name, render, vector
 
 BUSES = {"wishbone": "Wishbone", "apb": "APB", "axil": "AXI4-Lite",
          "memory": "select, address and data",
@@ -64,8 +64,9 @@ class Core:
             unit, reason = "words", f"it has {width} bits, and data {self.data_width}"
         else:
             unit, reason = "bytes", f"it has {width} bits"
-        self.unit = f"counts {unit}: {reason}" + ("" if reason == "as you say" else
-                                                  f"; if not, ADDRESS={'bytes' if unit == 'words' else 'words'}")
+        other = "bytes" if unit == "words" else "words"
+        self.unit = f"counts {unit}: {reason}" + (
+            "" if reason == "as you say" else f"; if not, ADDRESS={other}")
         self.counts_bytes = unit == "bytes"
         self.word_bits = width if unit == "words" else max(0, width + lsb - 2)
         self.adr_bits = max(self.adr_bits, self.word_bits + 2, width + lsb)
@@ -135,22 +136,16 @@ def answers(core):
         "memory", "own", "avalon") and "ack" not in core.by_role else {}
 
 
-def rules(core):
-    """Returns the checker of the APB rules; the adapters contain the checkers of the other
-    buses."""
-    return f"""`ifdef RULES
-    apb_rules #(.ADDR_WIDTH({core.adr_bits})) u_rules (
-        .clk_i(clk_i), .rst_i(rst_i), .psel_i(stb), .penable_i(enable), .pwrite_i(we), .paddr_i(adr), .pwdata_i(wdata),
-        .pstrb_i(strobes), .pready_i(ready), .abort_i(!bus_valid_i || bus_ready_o));
-`endif
-""" if core.bus == "apb" else ""
+def connected(core, name, port, interrupts):
+    """Returns what a port is connected to: a pin if it has no role."""
+    role = core.roles[name]
+    return connection(core, role, port, interrupts) if role else pin_name(name, port)
 
 
 def module(core):
     """Returns the slot's Verilog."""
     interrupts = []
-    connections = [f".{n}({connection(core, core.roles[n], p, interrupts) if core.roles[n] else pin_name(n, p)})"
-                   for n, p in core.ports.items()]
+    connections = [f".{n}({connected(core, n, p, interrupts)})" for n, p in core.ports.items()]
     wires, lines, made = answers(core)
     for s in core.signals:
         value = made.get(s) or (f"{core.width(s)}'d0" if is_answer(s)
@@ -164,9 +159,7 @@ def module(core):
     names = {s: ("axi_" if core.bus == "axil" else "wb_") + s for s in core.signals}
     if core.bus != "axil":
         names["wdata"] = names["rdata"] = "wb_dat"
-    adapter = ",\n        ".join([f"{ADAPTER}, .irq_i(interrupt)",
-                                  *(f".{names[s]}_{'i' if is_answer(s) else 'o'}({s})"
-                                    for s in core.signals)])
+    adapter = [f".{names[s]}_{'i' if is_answer(s) else 'o'}({s})" for s in core.signals]
     takes_strobes = core.bus == "own" and core.has_strobes or {"stall", "valid", "strobe"} & set(
         core.by_role)
     options = ", .PIPELINED(1)" if takes_strobes or core.latency else ""
@@ -174,22 +167,10 @@ def module(core):
     if core.clock:
         options += f", .TIMEOUT({max(2, 250 * core.clock // 100000000 - 6)})"
     kind = "bus_to_axi4lite" if core.bus == "axil" else "bus_to_wishbone"
-    separator, newline = ",\n        ", "\n"
-    return f"""{head(core.name, f"{core.top} behind {kind}", core.pins)}    `include "{core.name}_regs.vh"
-
-{newline.join(wires + lines)}
-    wire interrupt = {irq};
-
-    {kind} #(.ID_VALUE({core.name.upper()}_ID_VALUE), .ADDR_WIDTH({core.adr_bits}){options}) u_bus (
-        {adapter}
-    );
-
-    {core.top}{overrides(core.params)} u_core (
-        {separator.join(connections)}
-    );
-{rules(core)}    wire unused = &{{1'b0, {", ".join(s for s in core.signals if not is_answer(s))}, 1'b0}};
-endmodule
-"""
+    return render("bus.v.j2", name=core.name, what=f"{core.top} behind {kind}", pins=core.pins,
+                  has_memory=False, core=core, kind=kind, lines=wires + lines, irq=irq,
+                  options=options, adapter=adapter, connections=connections,
+                  unused=[s for s in core.signals if not is_answer(s)])
 
 
 def description(core, words):
@@ -208,63 +189,14 @@ def description(core, words):
                        {"name": "TIMEOUT", "bit": 1, "doc": "the core did not answer"}]}
 
 
-def test(name, first):
-    suite = "".join(w.capitalize() for w in name.split("_"))
-    return f"""// SPDX-License-Identifier: MIT
-//
-// {name}_test: the core answers behind its adapter, and its registers are apart. Pins: slot.bench_.top().<pin>.
-
-#include "V{name}_slot.h"
-#include "V{name}_slot___024root.h"
-#include "registers_apart.h"
-#include "V{name}_slot_state.h" // names of the model's signals
-extern "C" {{
-#include "{name}_regs.h"
-}}
-
-namespace {{
-
-const Hw_Register table[] = {{{name.upper()}_TABLE}};
-
-TEST({suite}, IsInItsSlotAndAnswers) {{
-    CoreSlot<V{name}_slot> slot;
-    EXPECT_EQ(slot.bus_.read(0), {name.upper()}_ID_VALUE);
-    slot.bus_.write({name.upper()}_PAGE, {name.upper()}_{first}_PAGE);
-    auto answer = slot.bus_.transfer(false, {name.upper()}_{first}, 0);
-    EXPECT_FALSE(answer.error) << "no answer, or an error: what does the core want at its reset and its pins?";
-    EXPECT_EQ(slot.bus_.read(1) & {name.upper()}_EVENT_TIMEOUT_MASK, 0u);
-}}
-
-TEST({suite}, RegistersAreApart) {{
-    CoreSlot<V{name}_slot> slot;
-    noteWhetherItRests(slot.bench_);
-    expectRegistersApart(slot, table, {name.upper()}_PAGE);
-}}
-
-}} // namespace
-"""
-
-
-def ground(name, first):
-    return f'''# SPDX-License-Identifier: MIT
-\"""{name}'s part of a mission: its registers are listed, and one is read.\"""
-
-
-def fly(log, proxy, report):
-    import Hw  # made by loadSlice
-
-    core = Hw.RegistersPrx.checkedCast(proxy("{name}"))
-    registers = log.call("ground -> UAV", "{name}.list()", core.list)
-    log.say("{name}: " + " ".join(r.name for r in registers))
-    value = log.call("ground -> UAV", "{name}.get({first})", lambda: core.get("{first}"))
-    log.say("{name}: {first} is 0x%X" % value)
-'''
-
-
 def texts(core, words):
     """Returns the files by name; `words` as returned by names_of, or empty."""
     words = words or {a: f"REG{a}" for a in range(min(32, 1 << core.word_bits))}
     first = next(iter(words.values()))
-    return {f"{core.name}.v": module(core), f"{core.name}_test.cpp": test(core.name, first),
+    suite = "".join(w.capitalize() for w in core.name.split("_"))
+    named = {"name": core.name, "first": first, "suite": suite}
+    return {f"{core.name}.v": module(core),
+            f"{core.name}_test.cpp": render("bus_test.cpp.j2", **named),
             f"{core.name}.regs.json": json.dumps(description(core, words), indent=2) + "\n",
-            "ground.py": ground(core.name, first)}, "registers: " + " ".join(words.values())
+            "ground.py": render("bus_ground.py.j2", **named)}, "registers: " + " ".join(
+                words.values())

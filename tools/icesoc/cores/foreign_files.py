@@ -2,6 +2,7 @@
 """foreign_files: reads the files of a third-party core for new_foreign.py (its modules, and the
 ports of TOP), and provides code common to all wrappers."""
 import codecs
+import functools
 import json
 import os
 import re
@@ -12,6 +13,7 @@ import xml.etree.ElementTree
 from pathlib import Path
 
 from icesoc import TREE
+from icesoc.util import templates
 
 KINDS = {".vhd": "vhdl", ".vhdl": "vhdl", ".v": "verilog", ".sv": "verilog",
          ".vh": "header", ".svh": "header", ".h": "header", ".inc": "header"}
@@ -321,9 +323,6 @@ def names_of(top, files, core):
 
 
 # ---- pieces of Verilog that the wrapper of every third-party core has ----
-ADAPTER = '`include "slot_connect.vh"\n        .irq_o(irq_o)'
-
-
 def vector(width):
     return f"[{width - 1}:0] " if width > 1 else ""
 
@@ -340,20 +339,15 @@ def overrides(params):
     return f" #({', '.join('.{}({})'.format(*p.split('=', 1)) for p in params)})" if params else ""
 
 
-def head(name, what, pins, memory=""):
-    """Returns the begin of a slot's module, with its port list."""
-    ports = "".join(f",\n    {p['direction']:6} wire {vector(len(p['bits']))}{n}" for n, p in pins)
-    return f"""// SPDX-License-Identifier: MIT
-//
-// {name}: a slot with the third-party core {what}.
+@functools.cache
+def environment():
+    return templates.environment(Path(__file__).with_name("templates"), vector=vector,
+                                 overrides=overrides)
 
-`default_nettype none
 
-module {name} (
-    `include "slot_ports.vh"
-{memory}    output wire irq_o{"," + chr(10) + "    // pins" + ports[1:] if pins else ""}
-);
-"""
+def render(template, **values):
+    """Returns a file of a slot's folder."""
+    return environment().get_template(template).render(**values)
 
 
 if __name__ == "__main__":  # foreign_files.py FILE...: the Verilog of all cores of a chip

@@ -157,9 +157,9 @@ def packages(build):
     print("\n%-10s %8s %8s %8s" % ("package", "flash", "RAM", "layers"))
     for name, sizes in rows:
         print("%-10s %8d %8d %8d" % (name, *sizes))
-    print("A package: what leaving it out of the vehicle saves (two may share code). layers: of the "
-          "flash, the layers above as linked;\nthe rest is the application, servants, generated "
-          "code, kernel, board and C library.")
+    print("A package: bytes saved by leaving it out of the vehicle (two may share code). layers: "
+          "flash of the layers above, as\nlinked; the rest is the application, servants, "
+          "generated code, kernel, board and C library.")
     return [{"name": f"vehicle.{name}.{what}", "value": size, "unit": "bytes",
              "command": "make size"} for name, sizes in rows
             for what, size in zip(("flash", "ram", "layers"), sizes)]

@@ -184,9 +184,11 @@ class Mistakes(Work):
     def test_what_is_no_flight_is_refused_in_words(self):
         whole = {"version": flight.VERSION, **{
             option.field: option.default or flight.empty(option) for option in flight.FIELDS}}
-        for text, said in ((b"\xff", "is not JSON in UTF-8"), (b"[" * 100000, "too long"),
-                           (json.dumps({**whole, "seed": True}).encode(), "seed: expected a whole number, at least 0, got true"),
-                           (json.dumps({**whole, "cores": [1]}).encode(), "cores[0]: expected a text, got 1")):
+        for text, said in ((b"\xff", "expected JSON in UTF-8"), (b"[" * 100000, "deeply"),
+                           (json.dumps({**whole, "seed": True}).encode(),
+                            "seed: expected a whole number, at least 0, got true"),
+                           (json.dumps({**whole, "cores": [1]}).encode(),
+                            "cores[0]: expected a text, got 1")):
             (self.work / "flight.json").write_bytes(text)
             status, text = ask("./icesoc", "run", "--again", str(self.work / "flight.json"))
             self.assertEqual(status, 2)

@@ -106,7 +106,8 @@ class Cases(Script):
             BUFG u_buffer (.I(pll_o), .O(clk)); // in the first, but not for the mapping
             always @(posedge clk) q_o <= !q_o;
             endmodule\n""")
-        cases = " ".join(f"{n}: o <= {n * n % 509};" for n in range(1024))  # a memory without an array
+        # A memory without an array.
+        cases = " ".join(f"{n}: o <= {n * n % 509};" for n in range(1024))
         write("gen/squares.v", "module squares (input clk_i, input [9:0] n_i, output reg [8:0] o); "
               f"always @(posedge clk_i) case (n_i) {cases} endcase endmodule\n")
         edit("project/synth/designs.json", '"designs"', '"xilinx": ["clocks"], "designs"')

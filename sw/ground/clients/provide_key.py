@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""provide_key: gives a vehicle its address and its key over the processor's serial port, in the factory or
-after a key was lost.
+"""provide_key: gives a vehicle its address and its key over the processor's serial port, in the
+factory or after a key was lost.
 
 Wire the port to PA9 and PA10, start this, and switch the vehicle on: it listens if the line is in a
 break while it starts.
@@ -136,7 +136,7 @@ def main():
                         help="address for the vehicle, and its line in the file (default: 0x0001)")
     second = parser.add_mutually_exclusive_group()
     second.add_argument("--ground", type=address, help="address of a second ground's modem, which "
-                        "the vehicle also serves, under this separate key")
+                        "the vehicle serves, too, under this key of its own")
     second.add_argument("--fellow", type=address, help="address of another vehicle, which it calls "
                         "and serves, under this key of the two")
     second.add_argument("--group", action="store_const", dest="ground", const=GROUP,

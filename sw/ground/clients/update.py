@@ -4,8 +4,8 @@
 Stock ZeroC Ice.
 
 The package is what pack_update has signed, or several of these in one file, which are sent in
-their order: lists of keys, firmware and bitstreams. It continues where a loss of the link, or of the
-vehicle's power, has left it; so does this program when it is started again. A refused package
+their order: lists of keys, firmware and bitstreams. After a loss of the link, or of the vehicle's
+power, it continues where it was; so does this program when it is started again. A refused package
 leaves the vehicle as it was.
 """
 

@@ -7,9 +7,11 @@ source=$1 slice2c=$2 work=$3
 rm -rf "$work"
 mkdir -p "$work/old/ip/a" "$work/old/ip/b" "$work/new/ip/a" "$work/bad/ip/a"
 cat >"$work/old/ip/a/a.regs.json" <<'END'
-{"block": "a", "doc": "old", "type": "0x4141", "version": "0x0100", "memory_bytes": 1024, "registers": [
+{"block": "a", "doc": "old", "type": "0x4141", "version": "0x0100", "memory_bytes": 1024,
+ "registers": [
   {"word": 3, "name": "CONTROL", "access": "ws", "doc": "", "fields": [
-    {"name": "START", "lsb": 0, "width": 1, "doc": ""}, {"name": "MODE", "lsb": 1, "width": 3, "doc": ""}]},
+    {"name": "START", "lsb": 0, "width": 1, "doc": ""},
+    {"name": "MODE", "lsb": 1, "width": 3, "doc": ""}]},
   {"word": 4, "name": "STATUS", "access": "ro", "doc": ""},
   {"word": 5, "name": "LIMIT", "access": "rw", "width": 16, "doc": ""},
   {"word": 8, "page": 32, "name": "KEY", "access": "rw", "doc": ""}],
@@ -22,7 +24,8 @@ run() { # exit status, trees
     wanted=$1
     shift
     status=0
-    "$source/tools/python" -m icesoc.chip.contract_diff "$slice2c" "$@" >"$work/out" 2>&1 || status=$?
+    "$source/tools/python" -m icesoc.chip.contract_diff "$slice2c" "$@" >"$work/out" 2>&1 ||
+        status=$?
     [ "$status" = "$wanted" ] && ! grep Traceback "$work/out" || { cat "$work/out" &&
         echo "exit status $status" && exit 1; }
 }

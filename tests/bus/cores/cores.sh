@@ -56,8 +56,9 @@ has() { # file of the chip, expected lines
 lacks() { ! grep -E -- "$2" "$out/$1" || fail "$1 contains a forbidden line (above: $2)"; }
 is() { has map_regs.h "^#define MAP_$1 $2U"; }
 
-# A byte order mark is not part of a name; form feeds and U+0085 in a comment do not end its line.
-chip marked '\0357\0273\0277led # a\014b \0302\0205c\n' || { cat "$out/messages" && fail 'a mark is refused'; }
+# A byte order mark is not a part of a name; form feeds and U+0085 in a comment do not end its line.
+chip marked '\0357\0273\0277led # a\014b \0302\0205c\n' ||
+    { cat "$out/messages" && fail 'a mark is refused'; }
 has soc_cores.vh led
 accepted none '# nothing\n\n'
 is SLOT_COUNT 0x2
@@ -65,7 +66,11 @@ is NPI_PORT_COUNT 0x2
 accepted one 'led\n'
 is SLOT_LED 0x2
 is SLOT_COUNT 0x3
-accepted several 'adder identity=eye # a comment\nled slot=5 button_i=camera.seen_o\nmover\nmover name=camera\n adder name=adder2\n'
+accepted several 'adder identity=eye # a comment
+led slot=5 button_i=camera.seen_o
+mover
+mover name=camera
+ adder name=adder2\n'
 is SLOT_ADDER 0x2
 is SLOT_LED 0x5
 is SLOT_MOVER 0x3
@@ -80,24 +85,33 @@ is MEMORY_CAMERA 0x1000800
 # addresses of the map.
 address=$(xmllint --xpath 'string(//peripheral[name="CAMERA"]/baseAddress)' "$out/icesoc.svd")
 [ "$address" = 0x64000100 ] || fail "CAMERA is at $address in the SVD file"
-[ "$(xmllint --xpath 'string(//peripheral[name="SYSTEM"]/registers/register[name="EVENT"]/modifiedWriteValues)' "$out/icesoc.svd")" = oneToClear ] ||
+event='//peripheral[name="SYSTEM"]/registers/register[name="EVENT"]'
+[ "$(xmllint --xpath "string($event/modifiedWriteValues)" "$out/icesoc.svd")" = oneToClear ] ||
     fail 'EVENT is not cleared by writing 1 in the SVD file'
 [ "$(xmllint --xpath 'count(//peripheral)' "$out/icesoc.svd")" = 6 ] ||
     fail 'the SVD file has not six peripherals'
-# Words behind PAGE have separate maps in SystemRDL, which converts them back, and in IP-XACT.
-"$source/tools/python" -m icesoc.regs.rdl "$out/icesoc.rdl" "$work/back" >"$work/rdl" 2>&1 || { cat "$work/rdl" &&
-    fail 'SystemRDL with pages'; }
+# Words behind PAGE have maps of their own in SystemRDL, which gives them back, and in IP-XACT.
+"$source/tools/python" -m icesoc.regs.rdl "$out/icesoc.rdl" "$work/back" >"$work/rdl" 2>&1 ||
+    { cat "$work/rdl" && fail 'SystemRDL with pages'; }
 for f in "$data/led.regs.json" "$work/back/led.regs.json"; do
-    python3 -c 'import json, sys; print(sorted(json.dumps(dict(r), sort_keys=True) for r in json.load(open(sys.argv[1]))["registers"]))' "$f"
+    python3 -c 'import json, sys
+registers = json.load(open(sys.argv[1]))["registers"]
+print(sorted(json.dumps(dict(r), sort_keys=True) for r in registers))' "$f"
 done | uniq | wc -l | grep -qx 1 || { cat "$work/back/led.regs.json" &&
     fail 'what comes back from SystemRDL is not what was there'; }
-[ "$(xmllint --xpath 'string(//*[local-name()="memoryMap"][*[local-name()="name"]="LED_PAGES"]//*[local-name()="register"][1]/*[local-name()="addressOffset"])' "$out/icesoc.ipxact.xml")" = "'h44" ] ||
+pages='//*[local-name()="memoryMap"][*[local-name()="name"]="LED_PAGES"]'
+offset='//*[local-name()="register"][1]/*[local-name()="addressOffset"]'
+[ "$(xmllint --xpath "string($pages$offset)" "$out/icesoc.ipxact.xml")" = "'h44" ] ||
     fail 'IP-XACT has not the words behind PAGE'
 is PIN_CAMERA_SEEN_O 0xB
 # The identity, and the servant of registers for a core without a servant.
 has soc_cores.c '"eye"' '{"camera", MAP_SLOT_CAMERA, .*core_camera_start' \
     'core_camera_table\[\] = {MOVER_TABLE}'
-accepted unwired 'mover\nmover name=a\nmover name=b level_o=none\nled button_i=none\nmover name=c level_o=none\n'
+accepted unwired 'mover
+mover name=a
+mover name=b level_o=none
+led button_i=none
+mover name=c level_o=none\n'
 has soc_pins.h '"a.level_o"'
 lacks soc_pins.h '"(c.level_o|led.button_i)"' # a signal that is not a pin has no location
 has soc_cores.vh "button_i(1'd0)"
@@ -109,9 +123,12 @@ has core_pins.ucf '^NET "core_pins_i<0>" LOC = "A4"; # eye.button_i\[0\]$' \
 has soc_cores.vh 'led u_eye' 'mover #(.CLK_HZ(CLK_HZ)) u_mover'
 # Two cores, or a core and the platform, with one name in a generated file.
 refused "1: error: the platform and core 'rst' both become u_rst" 'led name=rst\n'
-refused "3: error: the platform and core 'fsmc' both become NPI_PORT_FSMC" 'led\nadder\nmover name=fsmc\n'
-refused "2: error: core 'a' and core 'a_start' both become core_a_start" 'led name=a\nled name=a_start\n'
-refused "2: error: core 'a' and core 'gate_a' both become u_gate_a" 'adder name=a gate=on\nled name=gate_a\n'
+refused "3: error: the platform and core 'fsmc' both become NPI_PORT_FSMC" \
+    'led\nadder\nmover name=fsmc\n'
+refused "2: error: core 'a' and core 'a_start' both become core_a_start" \
+    'led name=a\nled name=a_start\n'
+refused "2: error: core 'a' and core 'gate_a' both become u_gate_a" \
+    'adder name=a gate=on\nled name=gate_a\n'
 # Chip and firmware have the same hash of a core's registers, which changes with the registers, and
 # not with their descriptions.
 contract() { sed -n "s/.*\"$1\"}, [0-9]*, 0, (Ice_Int)0x\([0-9A-F]*\)U.*/\1/p" "$out/soc_cores.c"; }
@@ -129,8 +146,8 @@ changed() { # sed's command for the mover's description: the hash with it
 }
 [ "$(changed 's/With a memory/Having a memory/')" = "$before" ] ||
     fail 'words of a description change the hash'
-[ "$(changed 's/"registers": /&[{"word": 3, "name": "A", "access": "rw", "doc": ""}], "events": /')" \
-    != "$before" ] ||
+added='{"word": 3, "name": "A", "access": "rw", "doc": ""}'
+[ "$(changed "s/\"registers\": /&[$added], \"events\": /")" != "$before" ] ||
     fail 'a register does not change the hash'
 # A servant without a waiting call has neither interrupt nor poll.
 for f in adder.regs.json adder.v; do cp "$data/$f" "$work"; done
@@ -148,9 +165,12 @@ has soc_cores.vh 'core_gate #(.GATED(1)) u_gate_adder ($' 'access_i(slot_valid\[
     '.clk_o(clk_adder)$' '.clk_i(clk_adder)' 'core_gate #(.GATED(GATES)) u_gate_other'
 lacks soc_cores.vh u_gate_led
 has core_pins.ucf '^NET "u_soc/u_gate_adder.g_gate.run" MAXDELAY'
-# A separate clock of a core comes from a pin, from another core, or is made from the chip clock;
-# ISE gets its period, and the crossings.
-accepted clocks 'led\ntuner clock_i=@A9\ntuner name=other clock_i=led.led_o\ntuner name=made clock=6/25\n'
+# A clock of a core's own comes from a pin, from another core, or is made of the chip's; ISE is told
+# its period, and what crosses.
+accepted clocks 'led
+tuner clock_i=@A9
+tuner name=other clock_i=led.led_o
+tuner name=made clock=6/25\n'
 is PIN_TUNER_CLOCK_I 0x2
 has soc_cores.vh '^    tuner_clocked u_tuner' 'clock_i(pin_led_led_o)' \
     'core_clock #(.MULTIPLY(6), .DIVIDE(25)) u_clock_made'
@@ -171,8 +191,10 @@ for f in mover.regs.json mover.v; do cp "$data/$f" "$work"; done
 # Registers and fields with names that collide in the headers.
 for names in 'A B A_B_LSB' 'A_B_LSB C A_B_LSB'; do
     # shellcheck disable=SC2086 # three words
-    printf '{"block": "b", "doc": "", "registers": [{"word": 0, "name": "%s", "access": "ro", "doc": "",
-        "fields": [{"name": "%s", "doc": "", "lsb": 0, "width": 1}]}, {"word": 1, "name": "%s", "access": "ro", "doc": ""}]}' $names >"$work/twice.regs.json"
+    printf '{"block": "b", "doc": "", "registers": [
+        {"word": 0, "name": "%s", "access": "ro", "doc": "",
+         "fields": [{"name": "%s", "doc": "", "lsb": 0, "width": 1}]},
+        {"word": 1, "name": "%s", "access": "ro", "doc": ""}]}' $names >"$work/twice.regs.json"
     ! regmap "$work/twice.regs.json" --output-dir "$work" 2>"$work/messages" &&
         grep -q 'both become A_B_LSB\|A_B_LSB: duplicate name' "$work/messages" ||
         fail "registers and fields of one name ($names)"
@@ -188,17 +210,22 @@ described 'expected JSON in UTF-8' '{"block": "\0377"}'
 described 'deep brackets' "$(printf '[%.0s' $(seq 50000))"
 described 'block: expected a name .*, got "../b"' '{"block": "../b", "doc": "", "registers": []}'
 described 'doc: expected a text .*, got "\*/"' '{"block": "b", "doc": "*/", "registers": []}'
-described 'registers\[0\].word: expected a whole' '{"block": "b", "doc": "", "registers": [{"word": ""}]}'
-described 'pins\[0\].name: expected' '{"block": "b", "doc": "", "registers": [], "pins": [{"name": "a"}]}'
+described 'registers\[0\].word: expected a whole' \
+    '{"block": "b", "doc": "", "registers": [{"word": ""}]}'
+described 'pins\[0\].name: expected' \
+    '{"block": "b", "doc": "", "registers": [], "pins": [{"name": "a"}]}'
 # A probe has its signals by name, at any depth, in Verilator and, flattened, in Yosys; the ground
-# gets their names.
-accepted probe 'adder\nprobe signals=u_adder.u_registers.u_wrapper.mask,u_modem.u_timer.clocks:17\nprobe name=other signals=u_adder.irq_o\n'
+# is told which they are.
+accepted probe 'adder
+probe signals=u_adder.u_registers.u_wrapper.mask,u_modem.u_timer.clocks:17
+probe name=other signals=u_adder.irq_o\n'
 yosys -q -p "verilog_defaults -add -I$out -I$gen $(for f in bus hdl/fsmc hdl/ddr hdl/cdc; do \
     printf -- '-I%s ' "$source/$f"; done)
     read_verilog $source/hdl/soc.v
     hierarchy -top soc $(for f in "$out" "$data" "$source/ip/probe" "$gen" "$source"/bus \
         "$source"/hdl/*; do [ ! -d "$f" ] || printf -- '-libdir %s ' "$f"; done)
-    proc; flatten; opt_clean; check -assert; select -assert-count 1 w:u_adder.u_registers.u_wrapper.mask" >"$work/yosys" 2>&1 ||
+    proc; flatten; opt_clean; check -assert
+    select -assert-count 1 w:u_adder.u_registers.u_wrapper.mask" >"$work/yosys" 2>&1 ||
     { cat "$work/yosys" && fail 'Yosys does not join a signal with the probe'; }
 hash=$(sed -n 's/.*"names":\([0-9]*\),"signals":\[\["u_adder.irq_o".*/\1/p' "$out/probes.json")
 grep -q "WORDS(1), .NAMES(32'h$(printf %08X "$hash"))) u_other" "$out/soc_cores.vh" ||

@@ -27,7 +27,9 @@ prints() { # each line of the log
 }
 echo 'module pads(input clk, inout sda); endmodule' >pads.v
 echo 'module outer(input clk); inner u(clk); endmodule' >outer.v
-echo 'module wide(input clk, clk_en, we, input [1:0] a, input [63:0] my_wide, output [31:0] q); assign q = my_wide[31:0]; endmodule' >wide.v
+echo 'module wide(input clk, clk_en, we, input [1:0] a, input [63:0] my_wide, output [31:0] q);
+    assign q = my_wide[31:0];
+endmodule' >wide.v
 echo 'module odd(input clk, input type_t [1:0] a); endmodule' >odd.sv
 echo 'module broken(input clk;' >broken.v
 refused 'usage: make new-foreign' wb_port wishbone
@@ -55,7 +57,8 @@ sed '1i `include "sizes.vh"' wb_port.v >head.v
 refused "sizes.vh.*" wb_port wishbone head.v
 refused 'FILES may name headers' wb_port wishbone head.v
 refused 'all Verilog or all VHDL' wb_port wishbone wb_port.v lamps.vhd
-refused "TOP: expected the name of a module or an entity, got 'wb_port; x'" 'wb_port; x' wishbone wb_port.v
+refused "TOP: expected the name of a module or an entity, got 'wb_port; x'" \
+    'wb_port; x' wishbone wb_port.v
 refused "no entity 'lamp' in FILES; there is lamps" lamp own lamps.vhd
 refused 'no port for write, wdata, rdata: .*PORTS=' req_words own cores.v
 refused "'grant': expected one of .*select, strobe" req_words own grant=gnt cores.v
@@ -67,7 +70,8 @@ refused "FILES lacks the file with module 'inner'" outer wishbone outer.v
 refused "PARAMS: axil_words has no 'WIDTH'" axil_words axil PARAM:WIDTH=8 axil_words.v
 refused "'my_wide' of .* has 64 bits" wide own select=clk_en write=we address=a wdata=my_wide \
     rdata=q wide.v
-echo 'module broad(input clk, we, input [31:0] d, output [31:0] q, output [127:0] pads, input [32:0] more); endmodule' >broad.v
+echo 'module broad(input clk, we, input [31:0] d, output [31:0] q, output [127:0] pads,
+    input [32:0] more); endmodule' >broad.v
 refused "'pads' of broad has 128 bits, and a pin at most 32: PORTS='open=pads low=more'" broad \
     own write=we wdata=d rdata=q broad.v
 refused 'include looks for timescale.v' apb_words apb "$here/apb_words.v"
@@ -76,8 +80,10 @@ refused 'Verilator does not elaborate odd' odd memory odd.sv
 refused "no port for ack: .*ack=1" wbs_names wishbone cores.v
 refused "more than one port for rdata: wbs_dat_o, spare" wbs_names wishbone rdata=spare ack=1 \
     cores.v
-echo 'module two(input clk, input [7:0] a_tdata, b_tdata, input a_tvalid, output [7:0] o_tdata, output o_tvalid, input o_tready); endmodule' >two.v
-echo 'module odd(input clk, input [23:0] i_tdata, input i_tvalid, output [7:0] o_tdata, output o_tvalid, input o_tready); endmodule' >odd.v
+echo 'module two(input clk, input [7:0] a_tdata, b_tdata, input a_tvalid, output [7:0] o_tdata,
+    output o_tvalid, input o_tready); endmodule' >two.v
+echo 'module odd(input clk, input [23:0] i_tdata, input i_tvalid, output [7:0] o_tdata,
+    output o_tvalid, input o_tready); endmodule' >odd.v
 refused 'more than one port for s_tdata: a_tdata, b_tdata' two axis two.v
 refused 'odd has 24 and 8 bits: expected 8, 16, 32 or 64' odd axis odd.v
 refused 'has no port for s_tdata' wb_port axis wb_port.v
@@ -98,14 +104,18 @@ prints 'wbs_clk: clock' 'rst_ni: resetn' 'gate_clk_pad_i: pin' 'clk_div: pin' \
     'wbs_cyc_i: cyc' 'wbs_adr_i: adr, counts words: it has 2 bits; if not, ADDRESS=bytes' \
     'wbs_cti_i: low' 'intr: interrupt' 'spare: open'
 # Macros that are multiples of 4 are byte addresses.
-printf '`define PORT_MODE 8\047h0\n  `define PORT_MODE_BITS 2\n`define PORT_LEVEL 8\047h8 // of pins\n' >macros.vh
-echo 'module macros(input clk, we, input [7:0] a, input [31:0] d, output [31:0] q); assign q = d ^ a; endmodule' >macros.v
+printf '%s\n' "\`define PORT_MODE 8'h0" '  `define PORT_MODE_BITS 2' \
+    "\`define PORT_LEVEL 8'h8 // of pins" >macros.vh
+echo 'module macros(input clk, we, input [7:0] a, input [31:0] d, output [31:0] q);
+    assign q = d ^ a;
+endmodule' >macros.v
 new my_port macros own macros write=we address=a wdata=d rdata=q macros.vh macros.v >log
 grep -q 'a: adr, counts bytes: PORT_MODE, PORT_LEVEL are multiples of 4; if not' log &&
     grep -q 'registers: MODE LEVEL' log && grep -q '"word": 10' macros/my_port.regs.json ||
     { cat log && exit 1; }
-# The user is asked about outputs that may be interrupts; an active-low one is reported.
-echo 'module asked(input clk, we, input [31:0] d, output [31:0] q, output TIMERINT, irq_no, point, output [3:0] rx_events); endmodule' >asked.v
+# Outputs that may be interrupts are asked about; one that is active low is told.
+echo 'module asked(input clk, we, input [31:0] d, output [31:0] q, output TIMERINT, irq_no, point,
+    output [3:0] rx_events); endmodule' >asked.v
 new my_port asked own asked write=we wdata=d rdata=q asked.v >log
 prints "TIMERINT: pin timerint_o; if it is an interrupt: PORTS='interrupt=TIMERINT'" \
     "rx_events: pin rx_events_o; if it is an interrupt: PORTS='interrupt=rx_events'" \
@@ -118,7 +128,8 @@ grep -q 'interrupt = !interrupt_0;' asked/my_port.v
 new my_port asked own spared write=we wdata=d rdata=q 'open=*' pin=point asked.v >log
 prints 'irq_no: interruptn$' 'rx_events: open$' 'point: pin point_o$'
 # OpenCores' level of a reset, whatever else has it for a name.
-echo 'module level #(parameter ARST_LVL = 0) (input clk, arst_i, we, input [31:0] d, output reg [31:0] q);
+echo 'module level #(parameter ARST_LVL = 0) (input clk, arst_i, we, input [31:0] d,
+        output reg [31:0] q);
     wire rst = arst_i ^ ARST_LVL[0];
     always @(posedge clk or negedge rst) if (!rst) q <= 0; else if (we) q <= d;
 endmodule' >level.v
@@ -151,7 +162,9 @@ prints 'state_o: pin state_o' "sv2v --top=system .*/widths.sv .*/sizes.sv .*/sys
     ! grep -q UNOPTFLAT system/core.toml ||
     { cat log system/my_port.v && exit 1; }
 # A register is as wide as its written, or read, data.
-echo 'module narrow(input clk, we, input [16:0] d, output [12:0] q); assign q = d[12:0]; endmodule' >narrow.v
+echo 'module narrow(input clk, we, input [16:0] d, output [12:0] q);
+    assign q = d[12:0];
+endmodule' >narrow.v
 new my_port narrow own narrow write=we wdata=d rdata=q narrow.v >log &&
     grep -q '"width": 17' narrow/my_port.regs.json ||
     { cat log && echo 'a register has not 17 bits' && exit 1; }

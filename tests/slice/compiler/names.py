@@ -21,24 +21,32 @@ COMMON = "struct qS { int qa; string qb; }; class qC { int qa; }; exception qE {
 
 TEMPLATES = {
     "member": """struct qS { int X; string qa; }; exception qE { int X; optional(1) string qa; };
-        exception qF extends qE { int qb; }; class qC { optional(1) int X; int qa; }; class qD extends qC { int qb; };
+        exception qF extends qE { int qb; }; class qC { optional(1) int X; int qa; };
+        class qD extends qC { int qb; };
         class qG { int qa; }; class qH extends qG { int X; }; exception qJ { int qa; };
-        exception qK extends qJ { int X; optional(2) int qc; }; ["preserve-slice"] exception qL { string X; };
+        exception qK extends qJ { int X; optional(2) int qc; };
+        ["preserve-slice"] exception qL { string X; };
         ["preserve-slice"] exception qM { int qa; }; exception qN extends qM { qC X; };
         interface qI { qS qop(qC qa, out qH qb) throws qE, qK, qL, qN; };""",
-    "parameter": COMMON + """interface qI { int qop(int X, qS qa, optional(1) string qb, qC qc, out qC qd) throws qE;
-        ["amd"] int qam(string X, optional(1) qC qc, out qC qd) throws qE; optional(3) int qopt(optional(1) qS X); };
-        interface qJ { optional(1) qS qo2(qC X) throws qE; ["amd"] optional(1) qS qo3(optional(2) qC X); };
+    "parameter": COMMON + """interface qI {
+        int qop(int X, qS qa, optional(1) string qb, qC qc, out qC qd) throws qE;
+        ["amd"] int qam(string X, optional(1) qC qc, out qC qd) throws qE;
+        optional(3) int qopt(optional(1) qS X); };
+        interface qJ { optional(1) qS qo2(qC X) throws qE;
+        ["amd"] optional(1) qS qo3(optional(2) qC X); };
         ["preserve-slice"] exception qP { int qa; }; interface qK { void qo4(qS X) throws qP; };""",
     "out_parameter": COMMON + """interface qI { void qop(int qa, qC qc, out int X) throws qE;
         int qo2(out optional(1) qC X) throws qE; ["amd"] qS qo3(out string X) throws qE;
-        optional(2) int qo4(int qa, out int X); ["amd"] optional(1) qC qo5(out qS X) throws qE; };""",
+        optional(2) int qo4(int qa, out int X);
+        ["amd"] optional(1) qC qo5(out qS X) throws qE; };""",
     "operation": COMMON + """interface qI { void X(int qa, out qS qb) throws qE; };
         interface qJ { ["amd"] int X(out qS qa) throws qE; }; interface qK extends qI { int qb(); };
-        interface qM { int qop(); }; interface qN extends qM { void X(); }; class qD { int X(qS qa); };""",
+        interface qM { int qop(); }; interface qN extends qM { void X(); };
+        class qD { int X(qS qa); };""",
     "exception": COMMON + """exception X { int qa; }; exception qF extends X { string qb; };
         interface qI { int qop() throws X; ["amd"] int qam() throws X, qE; };""",
-    "enumerator": """enum qE { X, qb }; ["c:scoped"] enum qF { X }; struct qS { qE qa = qE::X; qF qb; };
+    "enumerator": """enum qE { X, qb }; ["c:scoped"] enum qF { X };
+        struct qS { qE qa = qE::X; qF qb; };
         interface qI { qE qop(qF qa); };""",
     "long_constant": "const long X = 5; const int qa = 1; const string qb = \"a\";",
     "constant": "const int X = 5; struct qS { int qa = X; };",
@@ -46,7 +54,8 @@ TEMPLATES = {
     "class": COMMON +
     "class X { int qa; }; class qD extends X { X qb; }; interface qI { X qop(X qa, X* qb) throws "
     "qE; };",
-    "interface": COMMON + """interface X { int qa(X* qb) throws qE; }; interface qI extends X { void qop(); };
+    "interface": COMMON + """interface X { int qa(X* qb) throws qE; };
+        interface qI extends X { void qop(); };
         class qD implements X { int qb; };""",
     "sequence": "sequence<int> X; struct qS { X qa; }; [\"c:max:4\"] sequence<X> qT;",
     "dictionary": "dictionary<int, string> X; struct qS { X qa; };",
@@ -54,8 +63,9 @@ TEMPLATES = {
     "module": "module X { struct qS { int qa; }; exception qE { int qa; }; interface qI { int "
               "qop(qS qa) throws qE; }; };",
 }
-KEYWORDS = set("""module class interface exception struct sequence dictionary enum out extends implements throws void byte
-    bool short int long float double string Object LocalObject local const false true idempotent optional Value""".split())
+KEYWORDS = set("""module class interface exception struct sequence dictionary enum out extends
+    implements throws void byte bool short int long float double string Object LocalObject local
+    const false true idempotent optional Value""".split())
 
 
 def run(command, **more):

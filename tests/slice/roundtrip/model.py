@@ -131,7 +131,8 @@ class Model:
                 out.append(self.members(t))
         out += [self.members(e) for e in self.exceptions]
         if hidden:
-            out.append("class Lone { int number; Lone next; optional(1) string text; Object any; };")
+            out.append(
+                "class Lone { int number; Lone next; optional(1) string text; Object any; };")
         out += ["class Later; sequence<Later> Laters; interface Marker; interface Tag {};",
                 "interface SubTag extends Tag {};",
                 "interface Labelled { string label(); }; class Named { string name; };",

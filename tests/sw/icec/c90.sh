@@ -4,16 +4,16 @@
 #                      gcc, with every warning an error, in the full and the minimal run time.
 set -eu
 sw=$1/sw
-warnings='-std=c90 -pedantic -Wall -Wextra -Wconversion -Wno-sign-conversion -Wstrict-prototypes -Wmissing-prototypes
--Wdeclaration-after-statement -Werror -fsyntax-only'
+warnings='-std=c90 -pedantic -Wall -Wextra -Wconversion -Wno-sign-conversion -Wstrict-prototypes
+-Wmissing-prototypes -Wdeclaration-after-statement -Werror -fsyntax-only'
 full=$(echo "$sw"/icec/*.c "$sw"/icec/values/*.c "$sw"/icec/extra/*.c)
 minimal=$(sed "s,^,$sw/," "$sw/minimal/sources.txt")
 check() { # sources, flags: compiler first
     sources=$1
     shift
     # shellcheck disable=SC2086
-    "$@" $warnings -I"$sw/base" -I"$sw/icec" -I"$sw/minimal" -I"$sw/link" -I"$sw/icec/endpoints" $sources \
-        "$sw/icec/endpoints/xbee_endpoint.c"
+    "$@" $warnings -I"$sw/base" -I"$sw/icec" -I"$sw/minimal" -I"$sw/link" \
+        -I"$sw/icec/endpoints" $sources "$sw/icec/endpoints/xbee_endpoint.c"
     echo "C90: $*"
 }
 for compiler in gcc clang 'arm-none-eabi-gcc -mcpu=cortex-m3 -mthumb -Os'; do

@@ -5,8 +5,8 @@
 Usage: constraints.py SOURCE GENERATED WORK, three folders. Every path of chip.v, flattened, with
 MIG's core as a cell, from pad or clock to clock, to pad and to an asynchronous reset needs a
 PERIOD, an OFFSET, a FROM:TO, a MAXDELAY or a TIG; every pad but those of MIG a standard and a
-place. Then each such statement is removed in turn: a statement that is not needed is also listed.
-Exit status 1 if anything is listed, or if merge_ucf.py renames MIG's constraints otherwise.
+place. Then each such statement is taken away in turn: one without which nothing is missing is told,
+too. Exit status 1 if anything is told, or if merge_ucf.py renames MIG's constraints otherwise.
 """
 
 import json
@@ -49,14 +49,16 @@ def netlist():
 
 def renamed():
     """Returns the lines that merge_ucf.py reports as renamed in a board's constraints."""
-    return subprocess.run([sys.executable, "-m", "icesoc.synth.merge_ucf", HERE / "mig.ucf", *FILES], check=True, text=True,
-                          stdout=subprocess.DEVNULL, stderr=subprocess.PIPE).stderr
+    return subprocess.run(
+        [sys.executable, "-m", "icesoc.synth.merge_ucf", HERE / "mig.ucf", *FILES], check=True,
+        text=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE).stderr
 
 
 class Paths:
-    """The paths of the chip, pairs (start, end) in `pairs`, and its pads without MIG's in `pads`. A
-    start or an end is ("pad", name), ("clock", names of the net), a start ("ram", names of its
-    clock), an end ("reset", the clock of the reset register)."""
+    """The chip's paths, pairs (start, end) in `pairs`, and its pads without MIG's in `pads`.
+
+    A start or an end is ("pad", name) or ("clock", names of the net). A start may also be ("ram",
+    names of its clock), and an end ("reset", the clock of the reset register)."""
 
     def __init__(self, module):
         self.names, self.pads = {}, []

@@ -146,7 +146,8 @@ def packages_first(files):
 # Messages of Verilator and Yosys, and what to do about them.
 HINTS = {r"[Ii]nclude file:? (?:`)?([^\s']+)": "FILES may also name headers: `include looks for "
                                                "{0} in their folders (a timescale.v may be empty)",
-         r"(?:Module `\\|unknown type `|containing module: ')(\w+)": "FILES lacks the file with module '{0}'",
+         r"(?:Module `\\|unknown type `|containing module: ')(\w+)":
+         "FILES lacks the file with module '{0}'",
          r"object for defparam `(\w+)|no generic \"(\w+)\"": "PARAMS: {top} has no '{0}'",
          r"find resource library \"(\w+)\"": "add LIBRARY={0} if the files are in that library"}
 
@@ -221,7 +222,8 @@ def read_module(top, files, headers=(), params=(), defines=(), is_whole=True, gh
         elaborate = [f"{check} -top {top}"]
         if is_chosen:  # an instance of TOP: -chparam takes neither texts nor negative numbers
             instance = os.path.join(work, "instance.v")
-            Path(instance).write_text(f"module icesoc_top; {top}{overrides(params)} u (); endmodule")
+            Path(instance).write_text(
+                f"module icesoc_top; {top}{overrides(params)} u (); endmodule")
             elaborate = [f"read_verilog -sv {instance}", f"{check} -top icesoc_top",
                          "delete icesoc_top", "hierarchy -auto-top"]
         script = "; ".join([*reads, *elaborate, "proc", "flatten", "opt_expr",
@@ -235,7 +237,8 @@ def read_module(top, files, headers=(), params=(), defines=(), is_whole=True, gh
     module = next(m for n, m in modules.items() if m["attributes"].get("top") or n == top)
     for cell in module["cells"].values():
         for port in module["ports"].values():
-            if cell["connections"].get("ARST") == port["bits"] and "ARST_POLARITY" in cell["parameters"]:
+            if (cell["connections"].get("ARST") == port["bits"]
+                    and "ARST_POLARITY" in cell["parameters"]):
                 port["reset"] = cell["parameters"]["ARST_POLARITY"][-1]
     return module["ports"], True
 
@@ -272,7 +275,9 @@ def copies_for_verilator(top, files, headers, defines):
         older, names = {}, {}
         for f in files:
             if end_of(f) == ".v" and declared([f], "module"):
-                older[f] = f'`ifdef VERILATOR\n`begin_keywords "1364-2005"\n`endif\n{filled(f, defines)}\n`ifdef VERILATOR\n`end_keywords\n`endif\n'
+                older[f] = (f'`ifdef VERILATOR\n`begin_keywords "1364-2005"\n`endif\n'
+                            f"{filled(f, defines)}\n"
+                            "`ifdef VERILATOR\n`end_keywords\n`endif\n")
                 names[f] = os.path.join(work, os.path.basename(f))
                 with open(names[f], "w") as out:
                     out.write(older[f])
@@ -315,8 +320,8 @@ def names_of(top, files, core):
     for value, name in list(names.items()):
         word, first = re.fullmatch(r"(.*?)(\d*)", name).groups()
         for last, other in [(v, n) for v, n in names.items() if v > value]:
-            if first and re.fullmatch(rf"{word}\d+",
-                                      other) and int(other[len(word):]) - int(first) == last - value:
+            is_row = first and re.fullmatch(rf"{word}\d+", other)
+            if is_row and int(other[len(word):]) - int(first) == last - value:
                 names.update({value + i: f"{word}{int(first) + i}" for i in range(last - value)})
     return {v: ("CORE_" + n if n in ("ID", "EVENT", "MASK", "PAGE") or not n[0].isalpha() else n)
             for v, n in sorted(names.items())}

@@ -64,9 +64,9 @@ NEEDED = {"memory": ["stb", "we", "adr", "wdata", "rdata"],
 
 
 def is_answer(signal):
-    return signal in ("rdata", "ack", "err", "rty", "stall", "valid", "awready", "wready", "bvalid", "bresp",
-                      "arready", "rvalid", "rresp",
-                      "s_tready", "m_tdata", "m_tvalid")
+    return signal in ("rdata", "ack", "err", "rty", "stall", "valid", "awready", "wready",
+                      "bvalid", "bresp", "arready", "rvalid", "rresp", "s_tready", "m_tdata",
+                      "m_tvalid")
 
 
 def role(name, port, bus):

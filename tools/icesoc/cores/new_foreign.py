@@ -127,8 +127,8 @@ def slot_texts(asked, ports, params):
     if wide := [n for n, p in ports.items() if not roles[n] and len(p["bits"]) > 32]:
         left_out = " ".join(f"{'open' if ports[n]['direction'] == 'output' else 'low'}={n}"
                             for n in wide)
-        fail(f"'{wide[0]}' of {asked.top} has {len(ports[wide[0]]['bits'])} bits, and a pin at most "
-             f"32: PORTS='{left_out}' leaves out all of those")
+        fail(f"'{wide[0]}' of {asked.top} has {len(ports[wide[0]]['bits'])} bits, and a pin at "
+             f"most 32: PORTS='{left_out}' leaves out all of those")
     said = {n: roles[n] or "pin " + pin_name(n, p) for n, p in ports.items()}
     for n, p in ports.items():
         if not roles[n] and p["direction"] == "output" and ASKED.search(n):
@@ -218,8 +218,8 @@ def main(words):
     print(f"  {last}")
     if not asked.is_synthesised:
         print("  SystemVerilog that Yosys does not read: tests and flights have it as it is. For "
-              "make synth and the chip, FILES is what sv2v makes of it (github.com/zachjs/sv2v, not "
-              "in Debian):")
+              "make synth and the chip, FILES is what sv2v makes of it (github.com/zachjs/sv2v, "
+              "not in Debian):")
         print(f"  sv2v --top={asked.top} {' '.join('-I ' + d for d in folders_of(asked.headers))} "
               f"{' '.join('-D ' + d for d in asked.defines)} {' '.join(asked.files)} "
               f">{asked.top}.v")

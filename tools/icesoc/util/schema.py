@@ -8,9 +8,9 @@ import re
 
 @functools.cache
 def _validator():
-    """Returns the class of validators. Its patterns match whole texts, an integer is written without
-    a point, and a number is finite. Imports jsonschema here, because it takes 0.15 s and commands of
-    an empty machine import this module before it is installed."""
+    """Returns the class of validators: patterns match whole texts, an integer is written without a
+    point, and a number is finite. Imports jsonschema here, because the import takes 0.15 s and
+    commands of an empty machine import this module before it is installed."""
     import jsonschema  # pylint: disable=import-outside-toplevel
 
     def matches(_, pattern, value, __):

@@ -23,7 +23,8 @@ done
 for order in 'little middle big' 'little big middle' 'middle little big' 'middle big little' \
     'big little middle' 'big middle little'; do
     echo "$order" | tr ' ' '\n' >"$work/cores.list"
-    "$source/tools/python" -m icesoc.chip.coremap "$work/cores.list" --base "$source/bus/map.regs.json" \
+    "$source/tools/python" -m icesoc.chip.coremap "$work/cores.list" \
+        --base "$source/bus/map.regs.json" \
         --core "little=$work/little.toml=$work/little.regs.json" \
         --core "middle=$work/middle.toml=$work/middle.regs.json" \
         --core "big=$work/big.toml=$work/big.regs.json" --output-dir "$work"

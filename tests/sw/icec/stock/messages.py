@@ -71,7 +71,8 @@ CASES = {
     "an unknown optional before it": request("say", N7 + tag(3, 2) + N7 + HI),
     "an unknown optional after it": request("say", N7 + HI + tag(40, 5) + string("zz")),
     "an unknown optional alone": request("say", N7 + tag(9, 0) + b"x"),
-    "an unknown optional of 4 bytes and a size": request("say", N7 + HI + tag(300, 6) + number(3) + b"abc"),
+    "an unknown optional of 4 bytes and a size": request(
+        "say", N7 + HI + tag(300, 6) + number(3) + b"abc"),
     "an unknown optional that is cut": request("say", N7 + HI + tag(9, 3) + b"abc"),
     "tag 31": request("say", N7 + HI + bytes([31 << 3 | 2]) + N7),
     "tag 31 before tag 5": request("say", N7 + bytes([31 << 3]) + b"\1" + HI),

@@ -32,6 +32,7 @@ def waitForShutdown(self, wait=Ice.CommunicatorI.waitForShutdown):
 
 Ice.CommunicatorI.waitForShutdown = waitForShutdown
 TestHelper.TestHelper.createTestProperties = createTestProperties
-TestHelper.TestHelper.getTestEndpoint = lambda *_, num=0, **__: "tcp -h 127.0.0.1 -p %d" % (ports[num] if num < 2 else 0)
+TestHelper.TestHelper.getTestEndpoint = (
+    lambda *_, num=0, **__: "tcp -h 127.0.0.1 -p %d" % (ports[num] if num < 2 else 0))
 import Server  # noqa: E402
 Server.Server().run([])

@@ -125,8 +125,9 @@ class Finder(importlib.abc.MetaPathFinder):
 
     def find_spec(self, name, path, target=None):
         file = os.path.join(os.getcwd(), name + ".py")
-        return importlib.util.spec_from_file_location(name, file,
-                                                      loader=Loader(file)) if os.path.exists(file) else None
+        if not os.path.exists(file):
+            return None
+        return importlib.util.spec_from_file_location(name, file, loader=Loader(file))
 
 
 def expected(run):

@@ -11,10 +11,14 @@
 # PROVE_PDR: switches of pdr, if others are faster. PROVE_STEP=k: the assertions are inductive over
 # k clocks, but are too many for MiniSat: CaDiCaL does the step.
 # PROVE_BOUNDED=1: bounded only.
-# PROVE_READ: more arguments of read_verilog: defines, files; idle_proof's core.
+# PROVE_READ: more words of read_verilog: defines, files.
+# PROVE_CORE: the name of a core and its files: the core in idle_proof.
+# PROVE_SCRIPT: Yosys script that changes the flattened design; it may use idle_registers.v.
 # PROVE_MUTANT: Yosys commands before flattening (tools/icesoc/mutants/drawn.py); no trace then.
-# A failed assertion leaves <work>/trace.vcd. The module may instantiate modules of its folder, of
-# bus/, hdl/system/ and hdl/cdc/; a proof in testbench/sim/ may use hdl/ddr/ instead of its folder.
+# Leaves in <work> the parts of Yosys' script: state.ys, from modules to flip-flops, and gates.ys,
+# from flip-flops to AIGER's gates.
+# A failed assertion leaves <work>/trace.vcd. The module may instantiate others of its folder, of
+# bus/, hdl/system/ and hdl/cdc/; a proof in testbench/sim/ those of hdl/ddr/ instead of its folder.
 set -eu
 here=$(dirname "$(readlink -f "$0")")
 module=$1 depth=$2 source=$3 work=$4 parameters=${5:-}
@@ -40,52 +44,29 @@ files="$files $alone"
 # Several clocks (a proof with `gclk`): every edge is a separate input.
 clocks=async2sync
 ! grep -q gclk "$file" || clocks='memory_map; clk2fflogic'
-# A core with idle_o: its registers, without those of proofs, may not change.
-flat='' read=${PROVE_READ:-}
-case $module in idle_proof | memory_rest_proof)
-    flat="techmap -map $here/idle_registers.v r:SIZE>=256 # lines of pictures
-memory_map
-opt_clean
-techmap -map $here/idle_registers.v c:*u_core* w:*.f_* %ci1 %d" ;;
-esac
-[ "$module" != idle_proof ] || {
-    core=${read#-DCORE=}
-    rules=$source/ip/${core%% *}/idle_rules.vh # for a core in VHDL
-    own=${read#* } # files of the core, and npi_stream.v
+read=${PROVE_READ:-}
+[ -z "${PROVE_CORE:-}" ] || {
+    core=${PROVE_CORE%% *}
+    own=${PROVE_CORE#* } # its files
+    rules=$source/ip/$core/idle_rules.vh # of a core in VHDL
+    read="-DCORE=$core $own $source/hdl/ddr/npi_stream.v"
     # shellcheck disable=SC2086
-    ! grep -q 'memory_ports\|npi_addr_o' ${own% *} || read="-DMEMORY $read"
+    ! grep -q 'memory_ports\|npi_addr_o' $own || read="-DMEMORY $read"
     [ ! -e "$rules" ] || read="-DIDLE_RULES=\"$rules\" $read"
 }
-# A resting platform begins in any state. Its outputs to cores, memory and pins do not depend on its
-# counters. Its flip-flops on a pin's edge are held.
-[ "$module" != rest_proof ] || {
-    counters='w:*.cycles w:*.phase w:*.clocks %u %u'
-    onward="$counters %co*:-\$dff"
-    seen='w:u_soc.slot_* w:u_soc.*npi_* w:u_soc.fsmc_* w:u_soc.modem_* w:stirs %u %u %u %u'
-    flat="memory_map
-opt_clean
-setattr -unset init w:* w:later w:last %u %d
-select -assert-any $onward w:u_soc.slot_rdata %i
-select -assert-none $onward $seen w:u_soc.slot_rdata %d %i
-techmap -D HELD -map $here/idle_registers.v w:*u_write.src_data_o w:*u_cdc_pulse.turned %u %ci1
-techmap -D REST -map $here/idle_registers.v c:*u_soc* $counters w:u_soc.irq_o %u %ci1 %d \
-    c:*u_calib_done* %d"
+flat=''
+[ -z "${PROVE_SCRIPT:-}" ] || {
+    flat="script $PROVE_SCRIPT"
+    cp "$here/idle_registers.v" .
 }
 # -nosdff -nodffe: AIGER has plain flip-flops only. The module's outputs are dropped: abc would take
 # them for properties. What became undefined (a flip-flop without a clock) is free: newer AIGER
 # backends refuse it.
-gates='memory_map; opt -full; setundef -anyseq; techmap; opt -fast -nosdff -nodffe
-dfflegalize -cell $_DFF_P_ 01; delete -output w:*'
-aiger='opt_clean; abc -g AND -fast; opt_clean; write_aiger -zinit -map'
-# shellcheck disable=SC2086
-cat >prove.ys <<END
-verilog_defaults -add -formal -sv -DRULES -I${GEN_DIR:-.} -I$source/bus -I$source/hdl/ddr
-verilog_defaults -add -I$source/hdl/system -I$source/testbench/sim
-read_verilog $read $(echo $files)
-$parameters
-hierarchy -top $module -libdir ${GEN_DIR:-.}
-proc
-${PROVE_MUTANT:-}
+cat >gates.ys <<'END'
+memory_map; opt -full; setundef -anyseq; techmap; opt -fast -nosdff -nodffe
+dfflegalize -cell $_DFF_P_ 01; delete -output w:*
+END
+cat >state.ys <<END
 flatten
 prep -top $module -nordff
 memory_nordff
@@ -96,9 +77,21 @@ $flat
 setundef -anyseq -undriven
 opt_clean
 check -assert
+END
+aiger='opt_clean; abc -g AND -fast; opt_clean; write_aiger -zinit -map'
+# shellcheck disable=SC2086
+cat >prove.ys <<END
+verilog_defaults -add -formal -sv -DRULES -I${GEN_DIR:-.} -I$source/bus -I$source/hdl/ddr
+verilog_defaults -add -I$source/hdl/system -I$source/testbench/sim
+read_verilog $read $(echo $files)
+$parameters
+hierarchy -top $module -libdir ${GEN_DIR:-.}
+proc
+${PROVE_MUTANT:-}
+script state.ys
 write_smt2 -wires model.smt2
 write_rtlil model.il
-$gates
+script gates.ys
 design -save gates
 chformal -cover -remove
 $(echo $aiger) assert.map assert.aig

@@ -96,10 +96,9 @@ class Proof:
         # If parts are cut off, each named wire is an output, because those parts might have read
         # it.
         seen = "expose w:* w:$* %d\n" if any("delete" in text for text in self.parameters) else ""
-        # commands of prove.sh up to flip-flops and gates
-        script = (self.work / "prove.ys").read_text()
-        to_state = script.split("@source\n")[1].split("write_smt2")[0]
-        to_gates = script.split("write_rtlil model.il\n")[1].split("design -save")[0]
+        # prove.sh's own commands to flip-flops and gates
+        to_state = (self.work / "state.ys").read_text()
+        to_gates = (self.work / "gates.ys").read_text()
         side = functools.partial(SIDE.format, module=self.module, seen=seen,
                                  to_state=to_state.replace("setundef -anyseq -undriven\n", ""))
         (folder / "same.ys").write_text(

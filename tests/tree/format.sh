@@ -1,14 +1,15 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# format: fails on C and C++ files that .clang-format would change, and on scripts, Verilog and VHDL
-# with lines over 100 columns. Prints their names.
+# format: fails on C and C++ files that .clang-format would change, and on scripts, CMake files,
+# Verilog and VHDL with lines over 100 columns. Prints their names.
 # Versions differ in some lines; clang-format 19 is in Debian 12 and 13. Usage: format.sh TREE
 # To fix them all: clang-format-19 -i FILE...
 set -eu
 cd "$1"
 listed() { git grep --no-index --exclude-standard --no-color "$@"; }
-if listed -nE '^.{101}' -- '*.sh' '*.py' '*.v' '*.vh' '*.vhd'; then
+if listed -nE '^.{101}' -- '*.sh' '*.py' '*.cmake' '*CMakeLists.txt' '*.v' '*.vh' \
+    '*.vhd'; then
     echo "Over 100 columns (see above)."
     exit 1
 fi

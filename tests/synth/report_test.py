@@ -144,8 +144,10 @@ class Cases(Script):
         self.assertEqual(whole["lut"], sites + sum(int(row[1] or row[2]) for row in cells))
         # A core's cost in the accepted chip: the decoder for three slots minus that for two.
         shutil.copy(TREE / "bus/bus_decoder.v", "project/bus")
-        write("gen/map.regs.json", json.dumps({"constants": [
-            {"name": "SLOT_LOW", "value": 2}, {"name": "SLOT_COUNT", "value": 3}]}))
+        write("gen/map.regs.json", json.dumps({
+            "block": "map", "doc": "", "registers": [], "constants": [
+                {"name": "SLOT_LOW", "value": 2, "doc": ""},
+                {"name": "SLOT_COUNT", "value": 3, "doc": ""}]}))
         write("project/synth/baseline.json", json.dumps({"yosys": "", "designs": {"soc": {
             "lut": 9, "ff": 9, "slices": 9, "carry": 0, "dsp": 2, "ram": 1.5, "mhz": 99,
             "signals": {"u_low": {"sum": [7, 8, 1.5, 2]}}}}}))

@@ -3,10 +3,11 @@
 memory port."""
 import re
 
+from icesoc.regs.model import Block
 from icesoc.synth import report
 from icesoc.synth.owners import Cost
 from icesoc.synth.runner import Run, carry_out
-from icesoc.synth.sources import Design, read_json
+from icesoc.synth.sources import Design
 from icesoc.util.errors import Stop
 
 FIRST_SLOT = 2  # lower slots belong to the platform
@@ -17,9 +18,10 @@ class NotInChip(Stop):
 
 
 def read_map(file):
-    """Returns the numbers of the chip's map by name: SLOT_FIR, NPI_PORT_COUNT; {} if it is
-    missing."""
-    return {c["name"]: c["value"] for c in read_json(file)["constants"]} if file.exists() else {}
+    """Returns the numbers of the chip's map by name (SLOT_FIR, NPI_PORT_COUNT); {} without a map."""
+    if not file.exists():
+        return {}
+    return {c.name: c.value for c in Block.read(file, is_built=True).constants}
 
 
 def slot_cost(library, options, map, wanted):

@@ -111,11 +111,19 @@ def roles_of(top, bus, ports, given):
     """Returns the role of each port, and the number of clocks after which a core without `ack`
     answers (None with `ack`). `given`: ROLE=port from the command line."""
     roles = {n: role(n, p, bus) for n, p in ports.items()}
-    # The signal names of the bus are also accepted, if they are not the words for another role.
+    latency = take_given(top, bus, ports, roles, given)
+    check_needed(top, bus, ports, roles, latency)
+    check_limits(top, bus, ports, roles, latency)
+    return roles, latency
+
+
+def take_given(top, bus, ports, roles, given):
+    """Changes the roles of the ports that the user names. Returns the clocks of ack=CLOCKS, or
+    None."""
+    # The bus' own names, too, where they are no role's word.
     words = {**{r: r for r in NEEDED[bus] + {"axil": AXI, "axis": foreign_axis.ROLES}.get(bus, [])},
              **ROLES}
-    say = {v: k for k, v in ROLES.items()} if bus != "axis" else {}
-    known, latency, named = ", ".join(ports), None, set()
+    latency, named = None, set()
     for word in sorted(given, key=lambda word: "*" in word):
         what, port = word.split("=", 1)
         if what not in words:
@@ -130,7 +138,7 @@ def roles_of(top, bus, ports, given):
             roles.update(dict.fromkeys(found, words[what]))
             port = next(iter(found), port)
         if port not in ports:
-            fail(f"PORTS: {top} has no port '{port}': {known}")
+            fail(f"PORTS: {top} has no port '{port}': {', '.join(ports)}")
         if words[what] and is_output != (ports[port]["direction"] == "output"):
             fail(f"PORTS: {what} is an {'output' if is_output else 'input'} of a core, and "
                  f"'{port}' is not")
@@ -138,13 +146,19 @@ def roles_of(top, bus, ports, given):
             fail("PORTS: a setting requires BUS=axis; here an input outside the bus is a pin")
         roles[port] = words[what]
         named.add(port)
+    return latency
+
+
+def check_needed(top, bus, ports, roles, latency):
+    """Fails if the bus lacks a port, or has two ports for one signal."""
+    say = {v: k for k, v in ROLES.items()} if bus != "axis" else {}
     there = {*(r.removesuffix("_n") for r in roles.values()),
              *(["ack"] if latency or {"stall", "valid"} & set(roles.values()) else []),
              *(["adr"] if {"words", "bytes"} & set(roles.values()) else []),
              *(["stb"] if bus == "wishbone" and "cyc" in roles.values() else [])}
     missing = [say.get(r, r) for r in NEEDED[bus] + ["clock"] if r not in there]
     if missing:
-        fail(f"{top} has no port for {', '.join(missing)}: {known}; say which by "
+        fail(f"{top} has no port for {', '.join(missing)}: {', '.join(ports)}; say which by "
              f"PORTS='{missing[0]}=port ...'"
              + (", or by ack=1 that what is read is there a clock later"
                 if "ack" in missing else ""))
@@ -154,13 +168,16 @@ def roles_of(top, bus, ports, given):
         if len(same := [n for n in ports if roles[n] == r]) > 1:
             fail(f"{top} has more than one port for {say.get(r, r)}: {', '.join(same)}; what the "
                  f"others are by PORTS='pin={same[-1]} ...'")
+    if "strobe" in roles.values() and "ack" not in there:
+        fail("PORTS: a strobe of one clock needs an ack; what answers in the same clock has select")
+
+
+def check_limits(top, bus, ports, roles, latency):
+    """Fails if the adapter of the bus cannot serve the ports."""
     if bus == "apb" and latency:
         fail("PORTS: an APB core without PREADY ends each transfer in its access phase: ack= is "
              "not for it")
-    if "strobe" in roles.values() and "ack" not in there:
-        fail("PORTS: a strobe of one clock needs an ack; what answers in the same clock has select")
     if wide := [n for n in ports if bus != "axis" and roles[n] in ("wdata", "rdata")
                 and len(ports[n]["bits"]) > 32]:
         fail(f"'{wide[0]}' of {top} has {len(ports[wide[0]]['bits'])} bits: a slot's bus has 32; "
              "put a module between that halves the words")
-    return roles, latency

@@ -164,18 +164,24 @@ def mission(values, build, held):
         if shown:
             end(shown)
     if status:
-        signal_ended = f": signal {status - 128} ended the simulator, or the ground's program."
-        what = signal_ended if status > 128 else f" (exit status {status})."
-        text = f"The mission failed{what}\n"
-        span = flight.last_span(out) if flown() != before else None
-        if flown() != before and not span:
-            text += f"It cannot be flown again: {out}/flight.jsonl is cut, as by a full disk.\n"
-        if span:
-            text += f"Its end as a waveform: make run REPLAY='{out}' {span}\n"
-            if values.cpu == "m3":
-                text += f"Its end, and backwards from there: make gdb REPLAY='{out}'\n"
-        sys.stderr.write(text)
+        explain_failure(values, status, has_flown=flown() != before)
     return status
+
+
+def explain_failure(values, status, has_flown):
+    """Prints why a mission failed, and the commands that repeat its end."""
+    out = values.out
+    signal_ended = f": signal {status - 128} ended the simulator, or the ground's program."
+    what = signal_ended if status > 128 else f" (exit status {status})."
+    text = f"The mission failed{what}\n"
+    span = flight.last_span(out) if has_flown else None
+    if has_flown and not span:
+        text += f"It cannot be flown again: {out}/flight.jsonl is cut, as by a full disk.\n"
+    if span:
+        text += f"Its end as a waveform: make run REPLAY='{out}' {span}\n"
+        if values.cpu == "m3":
+            text += f"Its end, and backwards from there: make gdb REPLAY='{out}'\n"
+    sys.stderr.write(text)
 
 
 @command("replay", [

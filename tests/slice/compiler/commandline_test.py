@@ -120,7 +120,8 @@ class Cases(Script):
                          [{"name": "whom", "type": "::Lib::Later*"}])
         self.assertEqual(described["::Top::Service"]["operations"], [
             {"name": "go", "result": "void", "parameters": [
-                {"name": "points", "type": "::Lib::Points"}, {"name": "leaf", "type": "::Top::Leaf"}],
+                {"name": "points", "type": "::Lib::Points"},
+                {"name": "leaf", "type": "::Top::Leaf"}],
              "throws": ["::Top::Worse"]}])
         self.assertIn("::Cores::Fir", described)
         # An exception that no operation throws, alone or as a base of another.

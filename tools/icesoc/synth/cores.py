@@ -18,7 +18,7 @@ class NotInChip(Stop):
 
 
 def read_map(file):
-    """Returns the numbers of the chip's map by name (SLOT_FIR, NPI_PORT_COUNT); {} without a map."""
+    """Returns the numbers of the chip's map by name, such as SLOT_FIR; {} without a map."""
     if not file.exists():
         return {}
     return {c.name: c.value for c in Block.read(file, is_built=True).constants}

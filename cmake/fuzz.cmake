@@ -50,5 +50,5 @@ function(icesoc_fuzz name)
   endif()
   add_test(NAME fuzz.${name}
     COMMAND ${CMAKE_SOURCE_DIR}/cmake/fuzz.sh ${dir}/run ${A_RUNS} ${seeds} ${options})
-  set_tests_properties(fuzz.${name} PROPERTIES LABELS "${A_LABELS}")
+  set_tests_properties(fuzz.${name} PROPERTIES LABELS "${A_LABELS};fuzz")
 endfunction()

@@ -240,7 +240,7 @@ class Cases(Project):
         self.has("^(ip/fir/)?test_ip_fir$")
         self.assertLess(self.said.count("\n"), 20)
         # Programs that `make test` runs with sanitizers: one without the label would be missed.
-        for program in "test_os_cases", "test_link", "test_engine", "test_icec":
+        for program in "test_os_cases", "test_link", "test_ground_engine", "test_icec":
             labels, = BUILD.glob(f"tests/sw/*/{program}_labels.cmake")
             self.has("sanitized", file=labels)
 

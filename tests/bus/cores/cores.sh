@@ -81,7 +81,7 @@ is NPI_PORT_MOVER 0x2
 is NPI_PORT_CAMERA 0x3
 is MEMORY_MOVER 0x1000000
 is MEMORY_CAMERA 0x1000800
-# The files are valid XML (cores.svd checks the SVD against ARM's schema); the registers are at the
+# The files are valid XML (bus.svd checks the SVD against ARM's schema); the registers are at the
 # addresses of the map.
 address=$(xmllint --xpath 'string(//peripheral[name="CAMERA"]/baseAddress)' "$out/icesoc.svd")
 [ "$address" = 0x64000100 ] || fail "CAMERA is at $address in the SVD file"

@@ -3,7 +3,7 @@
 // gateway_test: icesoc-gateway between the radio and stock Ice programs without the plugin,
 // compared with ZeroC's forwarders: it preserves of a call what IceBridge preserves, also facets,
 // and programs reach it through a Glacier2 router. (Many at once: bench.load. A modem that
-// disappears and returns: test_engine.)
+// disappears and returns: test_ground_engine.)
 
 #include "gateway_rig.h"
 #include <Glacier2/Router.h>

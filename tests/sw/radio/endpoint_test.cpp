@@ -209,7 +209,7 @@ TEST_F(RadioEndpoint, ASecondGroundHasConnectionsOfItsOwn) {
     EXPECT_EQ(send(3, call), ICE_OK);
 }
 
-// Options are written as the ground's plugin writes them (test_radio_ice,
+// Options are written as the ground's plugin writes them (test_ground_ice,
 // EndpointsKeepTheirOptionsAsText...), so far as the UAV has them.
 TEST_F(RadioEndpoint, AProxyToAPeerIsEqualToThatOfItsString) {
     Ice_ObjectAdapter adapter;

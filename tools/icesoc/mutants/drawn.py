@@ -14,7 +14,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 GATE = 95  # per cent
 TESTS = {
-    "bus_": "test_ip_new_foreign", "npi_|mcb_": "test_memory",
+    "bus_": "test_ip_new_foreign", "npi_|mcb_": "test_ddr_memory",
     "axis_filter": "test_ip_foreign_axis", "modem_api_": "test_modem_api",
     "modem_": "test_modem test_modem_api", "camera_|async_fifo": "test_ip_camera",
     "fsmc_": "test_fsmc_bridge test_fsmc_modes", "cdc_": "test_fsmc_bridge"}

@@ -16,7 +16,7 @@ from icesoc.util.lock import lock
 from icesoc.util.process import output, run, tool
 
 GROUPS["check"] = "proofs, sanitizers, fuzzing, faults, coverage"
-GUARDED = ["test_engine", "gateway", "test_radio_ice", "test_icec"]
+GUARDED = ["test_ground_engine", "gateway", "test_ground_ice", "test_icec"]
 
 
 def one_more(status, other):
@@ -84,7 +84,7 @@ def sanitizers(values):
         folder.ninja(*GUARDED, env=environment)  # libmcpp leaks
         # ThreadSanitizer skips Python's libraries, because Python's locks are not instrumented.
         left = ["--gtest_filter=-*Python*"] if kind == "thread" else []
-        for test in ("ground/test_engine", "ground/ice/test_radio_ice", "icec/test_icec"):
+        for test in ("ground/test_ground_engine", "ground/ice/test_ground_ice", "icec/test_icec"):
             status = one_more(status, run([folder / "tests/sw" / test, "--gtest_brief=1", *left],
                                           check=False, env=environment))
     build.ninja("fuzz_gdb")
@@ -162,7 +162,7 @@ def soak(values):
     ground stations fly for the same number of simulated minutes, which takes a twentieth of that
     CPU time.
     """
-    build = configured(values, "soak", "test_chip_soak", "test_engine", "test_modem_soak",
+    build = configured(values, "soak", "test_chip_soak", "test_ground_engine", "test_modem_soak",
                        "test_link")
     seed, noise = {"SEED": values.seed}, {"SEED": values.seed, "BYTES": 10 * values.fuzzed}
     link = [build / "tests/soak/soak", "--minutes", values.minutes / 4, "--seed", values.seed]
@@ -174,7 +174,7 @@ def soak(values):
         env={**seed, "SOAK_SECONDS": 30 * values.minutes})
     run([build / "tests/sw/link/test_link", "--gtest_brief=1", "--gtest_filter=*TenMillion*"],
         env=noise)
-    run([build / "tests/sw/ground/test_engine", "--gtest_brief=1",
+    run([build / "tests/sw/ground/test_ground_engine", "--gtest_brief=1",
          "--gtest_filter=Engine.RandomBytes*"], env=noise)
     run([build / "tests/hdl/test_modem_soak", "--gtest_brief=1"],
         env={**seed, "SOAK_BYTES": values.fuzzed})

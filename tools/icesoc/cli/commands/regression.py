@@ -183,7 +183,7 @@ def nightly(values):
     The last steps are ZeroC's test suites and the long form of every command. Writes a table of the
     steps, build/nightly.md."""
     build, tests = BuildFolder(values.build, values), at_once(values)
-    # COMPARE_MS: test_quiet compares a second; HOSTILE: packets of test_link.
+    # COMPARE_MS: test_sim_quiet compares a second; HOSTILE: packets of test_link.
     long = {"FRESH": "1", "COMPARE_MS": "1000", "HOSTILE": "10000000"}
     program = [build / "tests/regress/regress", "--build", build.folder, "--jobs", tests, "--waves",
                values.waves, *selection(values)]

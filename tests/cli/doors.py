@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""doors: ./icesoc and make take the same options, refuse what is wrong in words that help, and give
-no value to a shell; lists.py tests what they list."""
+"""doors: ./icesoc and make take the same options, report errors with advice, and pass no
+value to a shell; lists.py tests their lists."""
 import concurrent.futures, json, os, shutil, subprocess, tempfile, time, unittest
 from pathlib import Path
 

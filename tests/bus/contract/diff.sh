@@ -81,7 +81,8 @@ run 2 "$work/old" "$work/bad"
 grep -q '^contract-diff: ip/a/a.regs.json: ' "$work/out" || { cat "$work/out" && exit 1; }
 git -C "$work" init -q
 run 2 "$work" nothing
-grep -q '^contract-diff: BASE=nothing: expected a commit' "$work/out" || { cat "$work/out" && exit 1; }
+grep -q '^contract-diff: BASE=nothing: expected a commit' "$work/out" ||
+    { cat "$work/out" && exit 1; }
 git -C "$work" add old && git -C "$work" mv old/ip ip && rm -rf "$work/old"
 git -C "$work" -c user.name=t -c user.email=t@t commit -qm old
 sed -i 's/"STATUS"/"STATE"/' "$work/ip/a/a.regs.json"

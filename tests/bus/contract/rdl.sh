@@ -23,7 +23,7 @@ for block in "$work"/new/ip/*.regs.json; do
 done
 said=$("$source/tools/python" -m icesoc.chip.contract_diff true "$work/old" "$work/new" 2>&1) ||
     true
-[ "$said" = 'no breaking change' ] || fail "what comes back is not what was there: $said"
+[ "$said" = 'no breaking change' ] || fail "the result differs from the source: $said"
 for file in icesoc.svd icesoc.ipxact.xml; do xmllint --noout "$gen/$file" ||
     fail "$file is not XML"; done
 registers=$(grep -c ' @ 0x[0-9A-F]\{1,2\};' "$gen/icesoc.rdl")
@@ -88,7 +88,7 @@ refused 'expected a name, got' 'addrmap { reg { field {} b; } x; } "../a";'
 refused 'x.b: duplicate name' 'addrmap a { reg { field {} b; field {} b; } x; };'
 refused 'has no address' 'addrmap A_PAGES { reg { field {} b; } x; };
     addrmap top { addrmap { reg { field {} b; } x; } A; };'
-refused "no text in UTF-8" "\\0377"
+refused "expected text in UTF-8" "\\0377"
 refused 'nested too deep' "$(printf 'addrmap a {%.0s' $(seq 1500))"
 ! rdl "$work/none.rdl" "$work" && grep -q 'No such file' "$work/log" ||
     fail 'a file that is not there is not said'

@@ -56,7 +56,7 @@ has() { # file of the chip, expected lines
 lacks() { ! grep -E -- "$2" "$out/$1" || fail "$1 contains a forbidden line (above: $2)"; }
 is() { has map_regs.h "^#define MAP_$1 $2U"; }
 
-# A byte order mark is not a part of a name; form feeds and U+0085 in a comment do not end its line.
+# A byte order mark is not part of a name; form feeds and U+0085 in a comment do not end its line.
 chip marked '\0357\0273\0277led # a\014b \0302\0205c\n' ||
     { cat "$out/messages" && fail 'a mark is refused'; }
 has soc_cores.vh led
@@ -90,7 +90,7 @@ event='//peripheral[name="SYSTEM"]/registers/register[name="EVENT"]'
     fail 'EVENT is not cleared by writing 1 in the SVD file'
 [ "$(xmllint --xpath 'count(//peripheral)' "$out/icesoc.svd")" = 6 ] ||
     fail 'the SVD file has not six peripherals'
-# Words behind PAGE have maps of their own in SystemRDL, which gives them back, and in IP-XACT.
+# Words behind PAGE have separate maps in SystemRDL, which converts them back, and in IP-XACT.
 "$source/tools/python" -m icesoc.regs.rdl "$out/icesoc.rdl" "$work/back" >"$work/rdl" 2>&1 ||
     { cat "$work/rdl" && fail 'SystemRDL with pages'; }
 for f in "$data/led.regs.json" "$work/back/led.regs.json"; do
@@ -165,8 +165,8 @@ has soc_cores.vh 'core_gate #(.GATED(1)) u_gate_adder ($' 'access_i(slot_valid\[
     '.clk_o(clk_adder)$' '.clk_i(clk_adder)' 'core_gate #(.GATED(GATES)) u_gate_other'
 lacks soc_cores.vh u_gate_led
 has core_pins.ucf '^NET "u_soc/u_gate_adder.g_gate.run" MAXDELAY'
-# A clock of a core's own comes from a pin, from another core, or is made of the chip's; ISE is told
-# its period, and what crosses.
+# A separate clock of a core comes from a pin, from another core, or is made from the chip clock;
+# ISE gets its period, and the crossings.
 accepted clocks 'led
 tuner clock_i=@A9
 tuner name=other clock_i=led.led_o
@@ -215,7 +215,7 @@ described 'registers\[0\].word: expected a whole' \
 described 'pins\[0\].name: expected' \
     '{"block": "b", "doc": "", "registers": [], "pins": [{"name": "a"}]}'
 # A probe has its signals by name, at any depth, in Verilator and, flattened, in Yosys; the ground
-# is told which they are.
+# gets their names.
 accepted probe 'adder
 probe signals=u_adder.u_registers.u_wrapper.mask,u_modem.u_timer.clocks:17
 probe name=other signals=u_adder.irq_o\n'

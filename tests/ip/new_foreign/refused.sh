@@ -113,7 +113,7 @@ new my_port macros own macros write=we address=a wdata=d rdata=q macros.vh macro
 grep -q 'a: adr, counts bytes: PORT_MODE, PORT_LEVEL are multiples of 4; if not' log &&
     grep -q 'registers: MODE LEVEL' log && grep -q '"word": 10' macros/my_port.regs.json ||
     { cat log && exit 1; }
-# Outputs that may be interrupts are asked about; one that is active low is told.
+# The user is asked about outputs that may be interrupts; an active-low one is reported.
 echo 'module asked(input clk, we, input [31:0] d, output [31:0] q, output TIMERINT, irq_no, point,
     output [3:0] rx_events); endmodule' >asked.v
 new my_port asked own asked write=we wdata=d rdata=q asked.v >log

@@ -5,8 +5,8 @@
 agreement.py SLICE2C CASES.ice WORK   Each case, from a line "// ok: ...", "// warning: ..." or
     "// error: ..." to the next: both take it silently, take it with a warning, or refuse it, at the
     same first line. Then each keyword of Slice as a name of each kind.
-agreement.py SLICE2C FOLDER           ZeroC's own wrong files (icesoc.util.fetch zeroc): slice2c
-    reports each line that slice2cpp reports, unless one of the REASONS holds.
+agreement.py SLICE2C FOLDER           ZeroC's own wrong files (icesoc.util.fetch zeroc): each line
+    with a message of slice2cpp has one of slice2c, or has one of the REASONS.
 """
 import collections
 import os

@@ -187,7 +187,8 @@ class Cases(Script):
         self.ask("make", "-s", "Top.h")
         self.has("remade")
         # An invalid file does not keep the others from being compiled.
-        self.slice2c("bad.ice slice/Lib/Base.ice --output-dir mixed", 1, "expected the name of the module")
+        self.slice2c("bad.ice slice/Lib/Base.ice --output-dir mixed", 1,
+                     "expected the name of the module")
         self.assertTrue(Path("mixed/Base.h").exists())
         self.slice2c("names.ice --output-dir x", 1, "underscore")
         self.slice2c("--underscore --ice names.ice --output-dir x")
@@ -211,7 +212,8 @@ class Cases(Script):
         self.slice2c("siblings/sub/low.ice --output-dir siblings/sub")
         self.has('^#include "../above.h"$', '^#include "next.h"$', file="siblings/sub/low.h")
         for words in "siblings/sub/low.ice", "-Isiblings top.ice":
-            self.slice2c(f"--depend {words}", 0, "^ siblings/above.ice ", "^ siblings/sub/next.ice$")
+            self.slice2c(f"--depend {words}", 0, "^ siblings/above.ice ",
+                         "^ siblings/sub/next.ice$")
 
 
 main(Cases)

@@ -121,8 +121,8 @@ def check_names(slot, top, files):
                  f"{os.path.relpath(file, room)}: give the slot another")
         if name in first and first[name][0] != file:
             fail(f"{first[name][0]}:{first[name][1]}: module '{name}' has the name of this "
-                 "project's "
-                 f"{os.path.relpath(file, room)}:{line}: give it another name, also where it is used")
+                 f"project's {os.path.relpath(file, room)}:{line}: give it another name, also "
+                 "where it is used")
     return top
 
 

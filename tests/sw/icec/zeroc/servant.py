@@ -4,7 +4,8 @@
 
 servant.py BODIES HEADER... >servant.c
 
-A generated header has each operation's signature already; BODIES contains only the operation's statements:
+A generated header has each operation's signature already; BODIES contains only the operation's
+statements:
 
     C, up to a line %%
     prefix Test_Thing_ Test_Derived_    the operations below are of these interfaces

@@ -121,14 +121,6 @@ has core_pins.ucf '^NET "core_pins_i<0>" LOC = "A4"; # eye.button_i\[0\]$' \
     '^# NET "core_pins_o<0>" LOC = "..."; # eye.led_o\[0\]$' \
     '^NET "core_pins_o<10>" LOC = "C9"; # mover.level_o\[8\]$'
 has soc_cores.vh 'led u_eye' 'mover #(.CLK_HZ(CLK_HZ)) u_mover'
-# Two cores, or a core and the platform, with one name in a generated file.
-refused "1: error: the platform and core 'rst' both become u_rst" 'led name=rst\n'
-refused "3: error: the platform and core 'fsmc' both become NPI_PORT_FSMC" \
-    'led\nadder\nmover name=fsmc\n'
-refused "2: error: core 'a' and core 'a_start' both become core_a_start" \
-    'led name=a\nled name=a_start\n'
-refused "2: error: core 'a' and core 'gate_a' both become u_gate_a" \
-    'adder name=a gate=on\nled name=gate_a\n'
 # Chip and firmware have the same hash of a core's registers, which changes with the registers, and
 # not with their descriptions.
 contract() { sed -n "s/.*\"$1\"}, [0-9]*, 0, (Ice_Int)0x\([0-9A-F]*\)U.*/\1/p" "$out/soc_cores.c"; }
@@ -159,6 +151,14 @@ coremap "$work/cores.list" --base "$source/bus/map.regs.json" \
 grep -q '^    Hw_Core_interrupt(&core_adder.core);' "$work/soc_cores.c" &&
     ! grep -q 'Demo_Adder_Core_\(interrupt\|poll\)' "$work/soc_cores.c" ||
     fail 'a servant that waits for nothing is asked for its interrupt or poll'
+# Two cores, or a core and the platform, with one name in a generated file.
+refused "1: error: the platform and core 'rst' both become u_rst" 'led name=rst\n'
+refused "3: error: the platform and core 'fsmc' both become NPI_PORT_FSMC" \
+    'led\nadder\nmover name=fsmc\n'
+refused "2: error: core 'a' and core 'a_start' both become core_a_start" \
+    'led name=a\nled name=a_start\n'
+refused "2: error: core 'a' and core 'gate_a' both become u_gate_a" \
+    'adder name=a gate=on\nled name=gate_a\n'
 # Only a core with idle_o can have a gate; a core with a gate in the list also has it on the board.
 accepted gates 'adder gate=on\nadder name=other\nled\n'
 has soc_cores.vh 'core_gate #(.GATED(1)) u_gate_adder ($' 'access_i(slot_valid\[2\]),$' \

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 #
-# icesoc-ground: the plugin, the gateway with its service, the ground's programs and Slice files, and
-# the Python module `icesoc`.
+# icesoc-ground: the plugin, the gateway with its service, programs and Slice files of the ground,
+# and the Python module `icesoc`.
 set(component icesoc-ground)
 set(module lib/python3/dist-packages/icesoc)
 install(TARGETS xbeeat xbeeat_cpp11 LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
@@ -19,8 +19,9 @@ list(APPEND installable xbeeat xbeeat_cpp11 gateway ${pack_update})
 set(clients ${top}/sw/ground/clients)
 install(FILES ${top}/sw/ground/python/icesoc.py DESTINATION ${module} RENAME __init__.py
   COMPONENT ${component})
-install(FILES ${clients}/places.py ${clients}/plugged.py ${clients}/mission_log.py ${clients}/stay.py
-  ${top}/tools/icesoc/util/record.py DESTINATION ${module} COMPONENT ${component})
+install(FILES ${clients}/places.py ${clients}/plugged.py ${clients}/mission_log.py
+  ${clients}/stay.py ${top}/tools/icesoc/util/record.py
+  DESTINATION ${module} COMPONENT ${component})
 install(PROGRAMS ${clients}/mission.py ${clients}/provide_key.py ${clients}/change_key.py
   ${clients}/update.py DESTINATION ${module} COMPONENT ${component})
 foreach(program mission provide_key change_key update)

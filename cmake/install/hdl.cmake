@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 #
-# icesoc-hdl: the reusable blocks of the FPGA. For each block a FuseSoC core file (CAPI 2) and a plain
-# file list are made from one declaration below.
+# icesoc-hdl: the reusable blocks of the FPGA. For each block a FuseSoC core file (CAPI 2) and a
+# plain file list are made from one declaration below.
 set(component icesoc-hdl)
 set(HDL ${SHARE}/hdl)
 set(hdl_out ${CMAKE_CURRENT_BINARY_DIR}/hdl)

@@ -75,8 +75,8 @@ class Vehicle:
 
 
 def connect(name, file=None, properties=None):
-    """Returns the Vehicle with this name. properties: Ice's, in addition to those of the file. Calls
-    fail after 10 s without a reply, unless Ice.Default.InvocationTimeout differs."""
+    """Returns the Vehicle with this name. properties: Ice's, in addition to those of the file.
+    Calls fail after 10 s without a reply, unless Ice.Default.InvocationTimeout differs."""
     path = settings_file(file)
     found = Ice.createProperties()
     found.load(path)

@@ -22,8 +22,6 @@ import struct
 import sys
 import tomllib
 
-from icesoc import TREE
-
 BYTES = {"char": 1, "u8": 1, "u16": 2, "u32": 4, "u64": 8}
 FORMATS = {"char": "s", "u8": "B", "u16": "H", "u32": "I", "u64": "Q"}
 
@@ -115,7 +113,7 @@ def load(path):
 
 def of_tree(path):
     """Returns the record that a file of this source tree describes."""
-    return load(TREE / path)
+    return load(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../..", path))
 
 
 if __name__ == "__main__":

@@ -180,8 +180,8 @@ has core_pins.ucf '^NET "core_pins_i<2>" TNM_NET = "tuner_clk";$' \
     '^TIMESPEC "TS_soc_to_other" = FROM "soc_clk" TO "other_clk" 8 ns DATAPATHONLY;$'
 refused 'clock=3/4: 75000000 Hz' 'tuner clock=3/4\n'
 refused 'clock=2/99: 2020202 Hz' 'tuner clock=2/99\n'
-refused 'clock=9/8: a part of' 'tuner clock=9/8\n'
-refused 'clock=x: a part of' 'tuner clock=x\n'
+refused 'clock=9/8: expected a fraction' 'tuner clock=9/8\n'
+refused 'clock=x: expected a fraction' 'tuner clock=x\n'
 refused "has no input pin 'clock'" 'led clock=6/25\n'
 sed '/^name/a clock_hz = 48000000' "$data/mover.toml" >"$work/mover.toml"
 for f in mover.regs.json mover.v; do cp "$data/$f" "$work"; done

@@ -49,13 +49,13 @@ refused "inout port 'sda'" pads wishbone pads.v
 refused 'has no port for awvalid' wb_port axil wb_port.v
 refused 'has a space in its name' wb_port wishbone 'a b.v'
 sed '1i // module wb_port' wb_port.v >again.v
-refused "again.v:6: module 'wb_port' is in .*/wb_port.v:5, too" wb_port wishbone wb_port.v again.v
+refused "again.v:6: module 'wb_port' is also in .*/wb_port.v:5" wb_port wishbone wb_port.v again.v
 echo 'module npi_fifo(input clk); endmodule' >ours.v
 refused "ours.v:1: module 'npi_fifo' has the name of .*hdl/ddr/npi_fifo.v:" wb_port wishbone \
     wb_port.v ours.v
 sed '1i `include "sizes.vh"' wb_port.v >head.v
 refused "sizes.vh.*" wb_port wishbone head.v
-refused 'FILES may name headers' wb_port wishbone head.v
+refused 'FILES may also name headers' wb_port wishbone head.v
 refused 'all Verilog or all VHDL' wb_port wishbone wb_port.v lamps.vhd
 refused "TOP: expected the name of a module or an entity, got 'wb_port; x'" \
     'wb_port; x' wishbone wb_port.v
@@ -92,11 +92,11 @@ refused 'ADDRESS=fast: words or bytes' wb_port wishbone ADDRESS=fast wb_port.v
 refused 'ack= is not for it' apb_words apb ack=1 pin=PREADY "$here/apb_words.v" timescale.v
 refused 'CLOCK: a core with AXI-Streams' axis_scale axis CLOCK=24000000 cores.v
 refused 'LIBRARY: .* these are Verilog' req_words own LIBRARY=lights cores.v
-refused 'a setting is for BUS=axis' req_words own setting=value cores.v
+refused 'a setting requires BUS=axis' req_words own setting=value cores.v
 refused "setting is an input of a core, and 'over' is not" axis_scale axis setting=over cores.v
 # Of two cores in one chip.
 ! "$source/tools/python" -m icesoc.cores.foreign_files wb_port.v again.v 2>log &&
-    grep -q "again.v:6: module 'wb_port' is in .*a chip has one of each" log ||
+    grep -q "again.v:6: module 'wb_port' is also in .*a chip has one of each" log ||
     { cat log && exit 1; }
 # Meanings of names.
 new my_port wbs_names wishbone names ack=2 open=spare cores.v >log

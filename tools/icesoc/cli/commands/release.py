@@ -2,7 +2,7 @@
 """release: makes the files of a release."""
 from pathlib import Path
 
-from icesoc.cli.command import COMMANDS, command
+from icesoc.cli.command import command
 from icesoc.cli.options import FOLDER, TEXT, WORDS, Option
 from icesoc.release import build
 from icesoc.util.console import say
@@ -26,11 +26,6 @@ def release(values):
         if part not in build.PARTS:
             raise Stop(f"only: expected parts out of {', '.join(build.PARTS)}, got '{part}'", 2)
     parts = values.only or list(build.PARTS)
-    if "packages" in parts and "package" not in COMMANDS:
-        if values.only:
-            raise Stop("release: the command that makes Debian packages does not exist yet", 2)
-        parts.remove("packages")
-        say("Without Debian packages: no command makes them yet.")
     out = Path(values.out).absolute()
     number, made = build.build(Path.cwd(), out, parts, values.key)
     for name in made:

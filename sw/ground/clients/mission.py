@@ -55,8 +55,10 @@ def parse_arguments():
             setattr(args, name, flight[name])
         args.endpoint = "%s -d %s -a 0x0001 -s 0x0000" % (
             "serial" if args.wire else "xbee-at", args.device)
-    except (OSError, ValueError, KeyError) as error:
-        sys.exit("mission: '%s' is not a flight: %r" % (args.flight, error))
+    except KeyError as error:
+        sys.exit("mission: '%s' is not a flight: the key %s is missing" % (args.flight, error))
+    except (OSError, ValueError, TypeError) as error:
+        sys.exit("mission: '%s' is not a flight: %s" % (args.flight, error))
     args.cores = [places.core(core) for core in flight["cores"]]
     return args
 

@@ -393,14 +393,17 @@ class Cases(Script):
             write("bad.json", text)
             self.fails("'bad.json' is not a flight", SIMULATOR, "--flight", "bad.json")
             self.lacks("exception")
-        write("flight.json", json.dumps(
-            dict(threshold=24, loss=0, guard=20, patience=300, key="", camera=False, cores=[],
-                 wire=False, vehicles=1, observer="", out=str(self.out))))
+        flight = dict(threshold=24, loss=0, guard=20, patience=300, key="", camera=False, cores=[],
+                      wire=False, vehicles=1, observer="", out=str(self.out))
+        client = ["/usr/bin/python3", CLIENTS / "mission.py", "flight.json", *INTERFACE,
+                  "--frame", "none", "--device"]
+        write("flight.json", json.dumps(flight))
+        self.fails("'flight.json' is not a flight: the key 'live' is missing", *client, "none")
+        write("flight.json", json.dumps({**flight, "live": False}))
         _, silent = pty.openpty()  # held only by this test
         for device, said in (("/dev/no-such-port", "cannot open serial port '/dev/no-such-port'"),
                              (os.ttyname(silent), "no modem answers on")):
-            self.fails(said, "/usr/bin/python3", CLIENTS / "mission.py", "flight.json", *INTERFACE,
-                       "--frame", "none", "--device", device)
+            self.fails(said, *client, device)
 
     def test_interrupted(self):
         with self.until("setting the ground", *self.words()) as run:

@@ -34,7 +34,8 @@ endforeach()
 
 install(FILES ${top}/sw/vehicle/Autopilot.ice ${top}/sw/hw/registers/Registers.ice
   ${top}/sw/update/Update.ice DESTINATION ${SHARE}/slice COMPONENT ${component})
-install(FILES ${top}/testbench/status/sim_status.toml DESTINATION ${SHARE} COMPONENT ${component})
+install(FILES ${top}/testbench/status/sim_status.toml ${top}/sw/update/slots_header.toml
+  DESTINATION ${SHARE} COMPONENT ${component})
 # The cores' Slice files and their parts in a mission.
 foreach(core IN LISTS CHIP_CORES)
   if(EXISTS ${top}/ip/${core})

@@ -90,7 +90,7 @@ class Names(unittest.TestCase):
     def test_names_of_c(self):
         self.refused(["INT_MAX"], register("MAX"), block="int")
         self.refused(["EXIT_SUCCESS"], register("SUCCESS"), block="exit")
-        self.refused(["HW", "project's own"], register("A"), block="HW")
+        self.refused(["HW", "reserved by the project"], register("A"), block="HW")
 
     def test_keywords_and_texts(self):
         """Keywords of each language as names, and texts that end a comment or hold a command."""

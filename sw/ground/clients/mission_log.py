@@ -25,7 +25,7 @@ class Air:
     def __init__(self, path):
         self.map = None
         if path:
-            self.status = places.status_record()
+            self.status = places.record_of("testbench/status/sim_status.toml")
             with open(path, "rb") as f:
                 self.map = mmap.mmap(f.fileno(), self.status.size, access=mmap.ACCESS_READ)
 

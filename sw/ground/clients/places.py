@@ -3,6 +3,7 @@
 
 Installed, this module is part of the package `icesoc` in PREFIX/lib/python3/dist-packages.
 """
+import importlib.util
 import os
 import sysconfig
 
@@ -33,10 +34,12 @@ def core(name):
     return os.path.join(SHARE if IS_INSTALLED else TOP, "ip", name)
 
 
-def status_record():
-    """Returns the record of the simulator's counters (icesoc.util.record)."""
-    if IS_INSTALLED:
-        import record  # installed next to this file
-        return record.load(os.path.join(SHARE, "sim_status.toml"))
-    from icesoc.util import record
-    return record.of_tree("testbench/status/sim_status.toml")
+def record_of(description):
+    """Returns the record that a TOML file of the tree describes (icesoc.util.record)."""
+    module = os.path.join(HERE if IS_INSTALLED else os.path.join(TOP, "tools/icesoc/util"),
+                          "record.py")
+    spec = importlib.util.spec_from_file_location("record", module)
+    record = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(record)
+    return record.load(os.path.join(SHARE, os.path.basename(description)) if IS_INSTALLED else
+                       os.path.join(TOP, description))

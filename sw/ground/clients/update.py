@@ -10,7 +10,6 @@ leaves the vehicle as it was.
 """
 
 import argparse
-import pathlib
 import sys
 import threading
 import time
@@ -22,11 +21,7 @@ import places
 import plugged
 from mission_log import Air
 
-TREE = pathlib.Path(__file__).resolve().parents[3]
-sys.path.insert(0, str(TREE / "tools"))
-from icesoc.util import record  # noqa: E402
-
-HEADER = record.load(TREE / "sw/update/slots_header.toml")
+HEADER = places.record_of("sw/update/slots_header.toml")
 MAGIC, KEYS = HEADER.constants["SLOTS_MAGIC"], HEADER.constants["SLOTS_KEYS"]
 OBJECTS = {HEADER.constants["LOADER_PRODUCT"]: "update",  # by product number
            HEADER.constants["FPGA_PRODUCT"]: "fpga", KEYS: "update"}

@@ -28,8 +28,8 @@ refused() { # message, arguments
 }
 refused 'make new-ip NAME=low_pass'
 refused 'make new-ip NAME=low_pass' '' --lang verilog
-refused 'LANG=verilog or LANG=vhdl' fir
-refused "not 'c'" fir --lang c
+refused 'expected verilog or vhdl (LANG=' fir
+refused "got 'c'" fir --lang c
 refused 'small letters' Fir --lang verilog
 refused 'small letters' 2fir --lang verilog
 refused 'small letters' a_b --lang verilog

@@ -198,9 +198,9 @@ TEST(RegistersApart, ACoreThatNeverRestsIsToldWithWhatMoves) {
         const std::string said = ::testing::internal::GetCapturedStdout();
         EXPECT_EQ(!said.empty(), every < 10);
         if (every == 1) {
-            EXPECT_EQ(said, "note: it does not rest: it moves in 1000 of 1000 clocks in which "
-                            "nobody calls it (most often u_core.count), so that a flight evaluates "
-                            "each clock, 5 million a second, and not 600. If it may stand still "
+            EXPECT_EQ(said, "note: it does not rest: it moves in 1000 of 1000 clocks without "
+                            "a call (most often u_core.count), so that a flight evaluates each "
+                            "clock, 5 million a second, and not 600. If it may stand still "
                             "then, let its slot say so by idle_o (docs/hw-mapping.md#idle); else "
                             "make run CLK_HZ=2000000 is quicker\n");
         }

@@ -164,7 +164,8 @@ class Cases(Project):
         self.has("1 tests passed|100% tests passed", "^test_ip_fir.Impulse: LEVELS: not read back$")
         self.bad("ip-test IP=nobody", "there is no core 'nobody': fir")
         self.elsewhere()
-        self.bad("bisect TEST=test_a.One GOOD=nonsense BAD=HEAD SEED=1", "unknown commit GOOD=nonsense")
+        self.bad("bisect TEST=test_a.One GOOD=nonsense BAD=HEAD SEED=1",
+                 "unknown commit GOOD=nonsense")
         self.good("clean")
         self.assertFalse(Path("build").exists())
 

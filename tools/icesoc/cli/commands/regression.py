@@ -15,7 +15,7 @@ from icesoc.cli.options import (BLOCK, BUILD, CORE_FOLDERS, COUNT, FRESH, JOBS, 
 from icesoc.util.console import say
 from icesoc.util.errors import Stop
 from icesoc.util.lock import lock
-from icesoc.util.process import ICESOC, output, run
+from icesoc.util.process import output, run
 from icesoc.util.table import Table
 from icesoc.util.tree import commit
 
@@ -196,7 +196,7 @@ def nightly(values):
 
     def whole(lines):
         day = time.strftime("%Y%m%d")
-        return max([run([*ICESOC, *shlex.split(line.format(day=day))], check=False,
+        return max([run(["./icesoc", *shlex.split(line.format(day=day))], check=False,
                         env=long) for line in lines])
 
     steps = {

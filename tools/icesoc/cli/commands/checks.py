@@ -24,12 +24,14 @@ def one_more(status, other):
     return status or other
 
 
-@command("check proofs", [BUILD, JOBS], make="proofs", brief="check proofs")
+@command("check proofs", [NAME, BUILD, JOBS], make="proofs", brief="check proofs --name cdc_bus")
 def proofs(values):
-    """run all formal proofs and print their total CPU time"""
+    """run the formal proofs again and print their total CPU time"""
     build = configured(values, "regmaps")
-    build.ctest("-L", "formal", tests=values.jobs, FRESH="1")
-    spent = [float(path.read_text()) for path in (build / "tests/hdl/formal").glob("*/cpu")]
+    chosen = ["-R", values.name] if values.name else []
+    build.ctest("-L", "formal", *chosen, tests=values.jobs, FRESH="1")
+    spent = [float(path.read_text()) for path in (build / "tests/hdl/formal").glob("*/cpu")
+             if re.search(values.name or "", f"formal.{path.parent.name}")]
     say(f"{len(spent)} proofs, {sum(spent):.0f} s of CPU time")
 
 

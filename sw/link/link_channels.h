@@ -14,7 +14,7 @@ typedef struct Link_Channels {
     U8 closeDue; /* closings of this side that are not queued yet */
 } Link_Channels;
 
-#define LINK_IS_OPEN(channels, channel) ((channels)->open >> (channel) & 1U)
+#define LINK_IS_OPEN(channels, channel) ((U32)(channels)->open >> (channel) & 1U)
 
 /* Closes all channels without notifying the peer. */
 #define LINK_RESET_CHANNELS(channels) \

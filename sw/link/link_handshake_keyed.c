@@ -61,7 +61,7 @@ static int expect(Link_Handshake* handshake, const U8* frame, U32 attempt, Link_
         seal->key = LINK_PEERS_KEY(&handshake->present, handshake);
         return attempt == 0;
     }
-    if (!(handshake->keys >> attempt & 1U)) /* an attempt for each slot */
+    if (!((U32)handshake->keys >> attempt & 1U)) /* an attempt for each slot */
         return 0;
     seal->key = handshake->secrets[attempt].hello;
     if (kind != LINK_KIND_HELLO) {

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from icesoc import TREE
-from icesoc.call.slices import Slices, hint, listed
-from icesoc.util.errors import Stop
+from icesoc.call.slices import Slices, listed
+from icesoc.util.errors import Stop, nearest
 
 # Objects of the firmware itself (sw/vehicle): file and interface
 VEHICLE = {"uav": ("sw/vehicle/Autopilot.ice", "::Autopilot::Vehicle"),
@@ -88,8 +88,8 @@ class Catalogue:
                        + listed(f"{each.identity}.{text}" for each in having), 2)
         every = {name for each in self.objects.values()
                  for name in self.slices.operations(each.interface)}
-        raise Stop(f"no object has an operation '{text}'{hint(text, every)}; ./icesoc call --list "
-                   "lists all", 2)
+        raise Stop(f"no object has an operation '{text}'{nearest(text, every)}; ./icesoc call "
+                   "--list lists all", 2)
 
     def unknown(self, identity, operation):
         """Returns an object that the build does not list. It has the interface of --slice that
@@ -97,7 +97,7 @@ class Catalogue:
         declare = [name for name in self.slices.interfaces()
                    if os.path.realpath(self.slices.get(name)["file"]) in self.given
                    and any(o["name"] == operation for o in self.slices.get(name)["operations"])]
-        if self.is_complete and not self.given and (near := hint(identity, self.objects)):
+        if self.is_complete and not self.given and (near := nearest(identity, self.objects)):
             raise Stop(f"the vehicle has no object '{identity}'{near}", 2)
         return Object(identity, declare[0] if len(declare) == 1 else "")
 
@@ -106,7 +106,7 @@ class Catalogue:
         found = self.slices.operations(each.interface)
         if name not in found:
             raise Stop(f"{each.identity} has no operation '{name}'"
-                       f"{hint(name, found) or '; it has ' + listed(found)}", 2)
+                       f"{nearest(name, found) or '; it has ' + listed(found)}", 2)
         return found[name]
 
     def interface_of(self, ids):
@@ -143,7 +143,7 @@ def check_register(each, operation, values):
     fitting = [one for one, (access, _) in known.items() if access in ACCESSES[operation]]
     if name not in fitting:
         reason = f"{known[name][0]}: it cannot be {'read' if operation == 'get' else 'written'}" \
-            if name in known else f"not a register{hint(name, fitting)}"
+            if name in known else f"not a register{nearest(name, fitting)}"
         raise Stop(f"{name}: {reason}; expected {listed(fitting)}", 2)
     most = (1 << known[name][1]) - 1
     if operation == "set" and not 0 <= values["value"] <= most:

@@ -3,7 +3,6 @@
 
 Shell and browser check values and show operations by this description.
 """
-import difflib
 import json
 import re
 import subprocess
@@ -22,12 +21,6 @@ OBJECT = [{"name": "ice_ping", "result": "void", "parameters": [],
            "doc": "Returns all interfaces of the object."},
           {"name": "ice_isA", "result": "bool", "parameters": [{"name": "id", "type": "string"}],
            "doc": "Checks whether the object has an interface, such as ::Cores::Fir."}]
-
-
-def hint(word, words):
-    """Returns the end of a message about an unknown word."""
-    close = difflib.get_close_matches(word, list(words), 1, 0.5)
-    return f"; did you mean {close[0]}?" if close else ""
 
 
 def listed(words, most=12):

@@ -10,8 +10,8 @@ import math
 import os
 import re
 
-from icesoc.call.slices import INTEGERS, hint, listed
-from icesoc.util.errors import Stop
+from icesoc.call.slices import INTEGERS, listed
+from icesoc.util.errors import Stop, nearest
 
 FLOAT_LIMIT = 3.4028234663852886e38
 DEEPEST = 100  # nesting of a value
@@ -200,7 +200,7 @@ class Reader:
     def enumerator(self, value, kind, where, metadata, depth):
         names = [one["name"] for one in self.slices.get(kind)["enumerators"]]
         if value not in names:
-            near = hint(value, names) if isinstance(value, str) else ""
+            near = nearest(value, names) if isinstance(value, str) else ""
             raise Refused(where, listed(names), short(value) + near)
         return value
 
@@ -212,7 +212,7 @@ class Reader:
         for name in value:
             if name not in names and name not in ignored:
                 raise Stop(f"{where}.{name}: {self.slices.named(kind)} has no such field"
-                           f"{hint(name, names) or '; it has ' + listed(names)}", 2)
+                           f"{nearest(name, names) or '; it has ' + listed(names)}", 2)
         made = {}
         for field in fields:
             name, inner = field["name"], f"{where}.{field['name']}"

@@ -6,13 +6,12 @@ is taken from the variable of its name in the environment, where make puts those
 line.
 """
 import argparse
-import difflib
 import os
 import re
 import typing
 
 from icesoc.cli.options import ARGUMENTS, BUILT, PATHS, SWITCH
-from icesoc.util.errors import Stop
+from icesoc.util.errors import Stop, nearest
 
 COMMANDS = {}  # command by name, such as "core new", in the order of the list
 GROUPS = {}  # help of each group, by the first word of its commands
@@ -107,12 +106,6 @@ def command(name, options=(), make=None, when=None, brief=(), long=(), examples=
         return function
 
     return declare
-
-
-def nearest(word, words):
-    """Returns the end of a message about an unknown word."""
-    close = difflib.get_close_matches(word, words, 1, 0.5)
-    return f"; did you mean {close[0]}?" if close else ""
 
 
 def find(words):

@@ -206,21 +206,20 @@ def read_module(top, files, headers=(), params=(), defines=(), is_whole=True, gh
     program that reads VHDL; `library`: name that the files have for their library."""
     with tempfile.TemporaryDirectory() as work:
         out = os.path.join(work, top + ".v")
-        is_chosen = bool(params) and not is_vhdl(files[0])
         if is_vhdl(files[0]):
             run_tool("GHDL does not convert", top,
                      [TREE / "cmake/vhdl_to_verilog.sh", "--foreign", "--library",
                       library or "work", *(word for p in params for word in ("--generic", p)),
                       ghdl, work, top, out, *files])
-            files = [out]
+            files, params = [out], ()  # converted with the generics
         folders = ["-I" + d for d in folders_of([*files, *headers])] + ["-D" + d for d in defines]
         originals = files
-        files = [f if not has_mark(f) else copy_without_mark(f, work) for f in files]
+        files = [copy_without_mark(f, work) if has_mark(f) else f for f in files]
         reads = [f"read_verilog -defer {'-sv' if end_of(f) == '.sv' else ''} {' '.join(folders)} "
                  f"{f}" for f in files]
         check = "hierarchy -check" if is_whole else "hierarchy"
         elaborate = [f"{check} -top {top}"]
-        if is_chosen:  # an instance of TOP: -chparam takes neither texts nor negative numbers
+        if params:  # an instance of TOP: -chparam takes neither texts nor negative numbers
             instance = os.path.join(work, "instance.v")
             Path(instance).write_text(
                 f"module icesoc_top; {top}{overrides(params)} u (); endmodule")

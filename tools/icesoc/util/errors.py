@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""errors: exceptions that end a command of the tools early."""
+"""errors: exceptions that end a command of the tools early, and a part of their messages."""
+import difflib
 
 SKIPPED = 77  # exit status of a command that needs a network and has none
 
@@ -17,3 +18,9 @@ class Interrupted(BaseException):
     def __init__(self, number):
         super().__init__(number)
         self.status = 128 + number
+
+
+def nearest(word, words):
+    """Returns the end of a message about an unknown word."""
+    close = difflib.get_close_matches(word, list(words), 1, 0.5)
+    return f"; did you mean {close[0]}?" if close else ""

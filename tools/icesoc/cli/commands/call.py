@@ -9,13 +9,13 @@ import sys
 import time
 
 from icesoc.call.objects import Catalogue, check_register, flights, registers, ACCESSES, REGISTERS
-from icesoc.call.slices import annotation, hint, listed
+from icesoc.call.slices import annotation, listed
 from icesoc.call.values import Reader, plain, readable
 from icesoc.cli.command import command
 from icesoc.cli.options import (ARGUMENTS, BUILD, COUNT, FILE, FOLDER, KEY_FILE, PATH, SWITCH, TEXT,
                                 Option, matching, number, one_of)
 from icesoc.util.console import say
-from icesoc.util.errors import Interrupted, Stop
+from icesoc.util.errors import Interrupted, Stop, nearest
 
 
 def completed(prefix, parsed_args, **_):
@@ -114,7 +114,7 @@ def assigned(words, operation):
             continue
         free = [each for each in positions if each not in texts]
         if not free:
-            near = hint(name, known) if equals else ""
+            near = nearest(name, known) if equals else ""
             raise Stop(f"{operation['name']}: expected {len(known)} arguments"
                        f"{' (' + listed(known) + ')' if known else ''}, got '{word}' as well{near}",
                        2)
@@ -148,7 +148,7 @@ def show_list(catalogue, only, as_json):
     shown = [each for each in catalogue.objects.values()
              if not only or each.identity == only.rstrip(".")]
     if not shown:
-        raise Stop(f"no object '{only}'{hint(only, catalogue.objects)}", 2)
+        raise Stop(f"no object '{only}'{nearest(only, catalogue.objects)}", 2)
     if as_json:
         return say(json.dumps({each.identity: {
             "interface": each.interface,

@@ -15,7 +15,7 @@ import re
 import subprocess
 import sys
 
-ROOMS = "hdl|bus|ip|slice|sw|testbench|synth|tests|tools|docs|cmake|examples"
+ROOMS = "hdl|bus|ip|slice|sw|testbench|synth|tests|tools|docs|cmake|examples|boards"
 
 
 def exists(tree, path, files):

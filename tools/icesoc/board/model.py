@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: MIT
+"""model: reads boards/NAME/board.toml with the modules and parts that it names.
+
+The facts of parts (boards/parts/*.csv) and of modules (boards/modules/*.toml) are read here and
+nowhere else. check.py judges what was read; the generators are in ucf.py and the files beside it.
+"""
+import csv
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from icesoc import TREE
+from icesoc.board.signals import SIGNALS, Signal
+from icesoc.chip.manifest import parse
+from icesoc.regs.model import Wrong
+from icesoc.util import schema
+from icesoc.util.errors import nearest
+
+SCHEMA = json.loads(Path(__file__).with_name("board.schema.json").read_text())
+BOARDS = TREE / "boards"
+
+
+@dataclass
+class Pin:
+    """A pin of a microcontroller, or a ball of an FPGA."""
+    name: str
+    number: str = ""  # number in the package; empty for a ball
+    functions: dict = field(default_factory=dict)  # alternate function: number
+    bank: int | None = None
+    description: str = ""  # Xilinx's name, such as IO_L41P_GCLK9_IRDY1_M1RASN_1, or a kind
+
+    @property
+    def is_io(self):
+        return self.description == "" or self.description.startswith("IO_")
+
+    @property
+    def is_clock(self):
+        return "_GCLK" in self.description
+
+
+@dataclass
+class Module:
+    """A circuit board with connectors, which holds the microcontroller, the FPGA or the modem."""
+    name: str
+    facts: dict
+
+    @property
+    def occupied(self):
+        return self.facts.get("occupied", {})
+
+    def place(self, pin, connectors):
+        """Returns the connector and number where a pin is, such as ("CN11", 34), or None. The
+        first of `connectors` that has the pin counts."""
+        for connector in connectors:
+            pins = self.facts["connectors"].get(connector, [])
+            if pin in pins:
+                return connector, pins.index(pin) + 1
+        return None
+
+
+@dataclass
+class Net:
+    """A wire of the board: its ends, and what is known about it."""
+    name: str
+    facts: dict
+
+    @property
+    def signal(self) -> Signal:
+        return SIGNALS[self.name]
+
+    @property
+    def function(self):
+        return self.facts.get("function", self.signal.function)
+
+    @property
+    def level(self):
+        return self.facts.get("level", 3.3)
+
+    def get(self, key, default=None):
+        return self.facts.get(key, default)
+
+
+@dataclass
+class Board:
+    """A board as read. `parts` and `modules` have the keys mcu, fpga and modem, if present."""
+    path: Path
+    name: str
+    facts: dict
+    parts: dict
+    modules: dict
+    nets: list
+
+    @property
+    def muxed(self):
+        return self.facts.get("fsmc", {}).get("muxed", False)
+
+    @property
+    def address_lines(self):
+        return self.facts.get("fsmc", {}).get("address_lines", 25)
+
+    @property
+    def banks(self):
+        return self.facts["fpga"].get("banks", [0.0] * 4)
+
+    @property
+    def ddr(self):
+        """Returns the facts of the memory in use, or None."""
+        module = self.modules.get("fpga")
+        used = self.facts["fpga"].get("ddr", False)
+        return module.facts.get("ddr") if used and module else None
+
+    def net(self, name):
+        return next((net for net in self.nets if net.name == name), None)
+
+    def place(self, net, end):
+        """Returns (connector, number) of a net's end, or None."""
+        module = self.modules.get(end)
+        connectors = self.facts.get(end, {}).get("connectors", [])
+        return module.place(net.get(end), connectors) if module and net.get(end) else None
+
+
+def names():
+    """Returns the names of all boards of the tree."""
+    return sorted(path.parent.name for path in BOARDS.glob("*/board.toml"))
+
+
+def rows(path):
+    """Returns the rows of a file of facts, without comments."""
+    if not path.is_file():
+        raise Wrong(f"{path}: no such part; expected "
+                    f"{', '.join(sorted(p.stem for p in path.parent.glob('*.csv')))}")
+    lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
+    return list(csv.DictReader(lines))
+
+
+def mcu_part(path):
+    """Returns the pins of a microcontroller by name."""
+    pins = {}
+    for row in rows(path):
+        words = row["functions"].split()
+        functions = {}
+        for word in words:
+            number, colon, function = word.partition(":")
+            if colon:
+                functions[function] = int(number)
+        kind = "" if functions or not words else words[0]
+        pins.setdefault(row["pin"], Pin(row["pin"], row["number"], functions, None, kind))
+    return pins
+
+
+def fpga_part(path):
+    """Returns the balls of an FPGA by name."""
+    return {row["ball"]: Pin(row["ball"], bank=int(row["bank"]) if row["bank"] else None,
+                             description=row["name"]) for row in rows(path)}
+
+
+def checked(path, kind):
+    """Returns the facts of a TOML file after a check by the schema."""
+    facts = parse(path)
+    if found := schema.problems(facts, {**SCHEMA["$defs"][kind], "$defs": SCHEMA["$defs"]}):
+        raise Wrong("\n".join(f"{path}: {text}" for text in found))
+    return facts
+
+
+def read(path, boards=BOARDS):
+    """Returns the Board of a file board.toml; raises Wrong with the reason and what to do.
+    `boards`: the folder with parts/ and modules/."""
+    path = Path(path)
+    facts = checked(path, "board")
+    parts, modules = {}, {}
+    for role, reader in (("mcu", mcu_part), ("fpga", fpga_part), ("modem", None)):
+        if role not in facts:
+            continue
+        if reader:
+            parts[role] = reader(boards / "parts" / f"{facts[role]['part']}.csv")
+        if name := facts[role].get("module"):
+            modules[role] = Module(name, checked(boards / "modules" / f"{name}.toml", "module"))
+    nets = []
+    for entry in facts["nets"]:
+        if entry["name"] not in SIGNALS:
+            raise Wrong(f"{path}: nets: unknown name {entry['name']}"
+                        + nearest(entry["name"], SIGNALS))
+        nets.append(Net(entry["name"], entry))
+    return Board(path, path.parent.name, facts, parts, modules, nets)
+
+
+def find(name, boards=BOARDS):
+    """Returns the Board of a name."""
+    path = boards / name / "board.toml"
+    if not path.is_file():
+        raise Wrong(f"no board '{name}'; expected {', '.join(names())}" + nearest(name, names()))
+    return read(path, boards)

@@ -8,8 +8,11 @@ import contextlib
 import datetime
 import fcntl
 import io
+import itertools
 import json
+import os
 import re
+import signal
 import subprocess
 import sys
 import types
@@ -106,21 +109,39 @@ class Cases(Project):
         for name in usual:
             progress.start(name)
         for age, said, hang in ((9, [], ""), (11, ["quick has run for 11 s, usually 0.1 s"], ""),
-                                (21, [], ""), (61, ["quick has run for 61 s, usually 0.1 s",
-                                                    "slow has run for 61 s, usually 20.0 s",
-                                                    "new has run for 61 s, usually unknown"], ""),
-                                (119, [], ""), (299, None, ""), (301, None, "quick slow"),
+                                (21, [], ""), (29, None, ""), (31, None, "quick"),
+                                (61, ["quick has run for 61 s, usually 0.1 s",
+                                      "slow has run for 61 s, usually 20.0 s",
+                                      "new has run for 61 s, usually unknown"], "quick"),
+                                (119, [], "quick"), (201, None, "quick slow"),
                                 (601, None, "quick slow new")):
             with contextlib.redirect_stdout(io.StringIO()) as out, \
                     unittest.mock.patch("time.monotonic", lambda: begun + age):
                 progress.running = dict.fromkeys(usual, begun)
-                self.assertEqual([name for name, _ in progress.late()], hang.split(), age)
+                self.assertEqual([name for name, _ in progress.late(lambda _: age)],
+                                 hang.split(), age)
             if said is not None:
                 self.assertEqual(out.getvalue().splitlines(), said, age)
+        self.idle_and_starved(progress, usual)
+
+    def idle_and_starved(self, progress, usual):
+        """A test that does not use the CPU for ten seconds hangs; one that gets a tenth of a CPU
+        does not, until its CPU time is ten times its usual time."""
+        for share, hangs in ((0.001, {"quick": 42, "slow": 212}), (0.15, {"quick": 201})):
+            progress.busy, first = {}, {}
+            for age in range(1, 300):
+                with contextlib.redirect_stdout(io.StringIO()), \
+                        unittest.mock.patch("time.monotonic", lambda: 2000.0 + age):
+                    progress.running = {name: 2000.0 for name in ("quick", "slow")}
+                    for name, _ in progress.late(lambda _: share * age):
+                        first.setdefault(name, age)
+            self.assertEqual(list(first), list(hangs))
+            for name, age in hangs.items():
+                self.assertAlmostEqual(first[name], age, delta=3)
 
     def test_hang(self):
         """A test that takes ten times its usual time is ended, with the stack of its program, as a
-        failure like others; here without the least of 300 s."""
+        failure like others; here without the least of 30 s."""
         write("hang.c", HANG)
         edit("CMakeLists.txt", "small NONE", "small C")
         self.tests("""add_executable(test_h ${CMAKE_SOURCE_DIR}/hang.c)
@@ -135,10 +156,35 @@ from icesoc.regress import regress, runner
 runner.SHORTEST_HANG = 2
 sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.has("^1 passed, 1 failed",
-                 "^1 x  Hang, ended after [2-9] s, usually 0.. s, in spin, called by main: Aborted")
+                 "^1 x  Hang, ended after [2-9] s of CPU time, usually 0.. s, in spin, called by "
+                 "main: Aborted")
         self.has("^Stack of test_h:$", "^#0 .*spin [(]",
                  file="build/regress/failures/script.Wraps-1.log")
         self.has('<error message="Hang, ended after', file="build/regress/junit.xml")
+
+    def test_stopped(self):
+        """Ctrl-C, or the end of the terminal: page, JUnit and history contain the finished tests,
+        and no process is left."""
+        self.tests("add_test(NAME script.Waits COMMAND sh -c 'sleep 1234 & wait')\n")
+        self.regress("--name 'a.One|formal'")
+        for number, status in ((signal.SIGINT, 130), (signal.SIGHUP, 129)):
+            run = subprocess.Popen([REGRESS, "--seed", "5"], stdout=subprocess.PIPE,
+                                   stderr=subprocess.STDOUT, text=True, start_new_session=True)
+            said = list(itertools.takewhile(lambda line: not line.startswith("6 of 7"), run.stdout))
+            os.killpg(run.pid, number)
+            self.said = "".join(said) + run.communicate(timeout=60)[0]
+            self.assertEqual(run.returncode, status, self.said)
+            left = ["pgrep", "--session", str(run.pid), "--runstates", "D,I,R,S,T,t"]
+            self.assertEqual(subprocess.run(left, stdout=subprocess.PIPE).stdout, b"")
+            self.has("^stopped after 6 of 7: 4 passed, 2 failed, 0 skipped in",
+                     "^1 x  value 5 is not 7 </script>$", "^tests  *red ",
+                     "^proofs *grey *stopped after 6 of 7: 1 passed$")
+            self.has("value 5 is not 7", file="build/regress/failures/test_b.Bad-5.log")
+            self.has('"stopped":"after 6 of 7"', file="build/regress/report.html")
+            self.has('tests="1" failures="1" ', 'name="stopped" value="after 6 of 7"',
+                     file="build/regress/junit.xml")
+        self.regress("--rerun-failed", 1)
+        self.has("^2 tests, SEED=1")
 
     def page_is_small(self):
         self.assertLess(Path("build/regress/report.html").stat().st_size, 2000000)

@@ -27,6 +27,8 @@ def of_tests(data, name):
     passed = sum(row[1] == "passed" for row in rows)
     if not bad and not passed:
         return missing(name, "none ran")
+    if not bad and data["stopped"]:
+        return light(name, "grey", f"stopped {data['stopped']}: {passed} passed")
     good = f"{passed} {'hold' if name == 'proofs' else 'passed'}"
     if kept := data["kept"][name]:
         good += f", {kept} of them as before, from unchanged files"

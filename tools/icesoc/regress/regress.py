@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Runs the regression: chosen tests, in parallel, with history, waveforms of failures and a page.
-Exit status 0: all passed; 1: some failed; 2: it could not run."""
+Exit status 0: all passed; 1: some failed; 2: it could not run; 130: stopped by Ctrl-C, with a
+report of the finished tests."""
 import argparse
 import collections
 import datetime
@@ -11,10 +12,11 @@ import re
 import sys
 import time
 
-from icesoc.util.errors import Stop
+from icesoc.util.errors import Interrupted, Stop
 from icesoc.util.lock import lock, only_one
 from icesoc.util.ninja import run_ninja
-from icesoc.util.process import adopt_orphans, collect, end_orphans
+from icesoc.util.process import (adopt_orphans, collect, end_descendants, end_orphans, hear_signals,
+                                 signals_held)
 from icesoc.util.tree import tree_state
 from icesoc.regress.changes import Changes
 from icesoc.regress.failures import examine
@@ -221,37 +223,62 @@ class Regression:
         changes, start = self.changes or self._changes(), time.monotonic()
         begin = datetime.datetime.now().astimezone().isoformat(timespec="seconds")
         adopt_orphans()
-        results = [result for seed_, some in rounds for result in
-                   run_tests(some, o.build, o.out, seed_, o.jobs, history)]
+        results, interrupted = [], None
+        for seed_, some in rounds:
+            more, interrupted = run_tests(some, o.build, o.out, seed_, o.jobs, history)
+            results += more
+            if interrupted:
+                break
+        stopped = interrupted and \
+            f"after {len(results)} of {sum(len(some) for _, some in rounds)}" or ""
+        known = {test.name: test for test in tests}
+        try:
+            with signals_held():
+                failures = self._examine(results, known, changes)
+                commit = self._note(chosen, results, failures, changes, stopped,
+                                    time.monotonic() - start)
+                if failures and not interrupted:  # waveforms may take minutes
+                    write_reports(gather(history, tests, results, failures, o.source), failures,
+                                  o.build / "page", o.out)
+                    print(f"{o.out}/report.html is there; waveforms come into it, if there are any",
+                          flush=True)
+            if not interrupted:
+                add_waves(failures, known, o.source, o.build, o.jobs, o.waves)
+        except Interrupted as stop:  # the waveforms are missing then
+            interrupted = stop
+            end_descendants()
+        with signals_held():
+            data = gather(history, tests, results, failures, o.source)
+            write_reports(data, failures, o.build / "page", o.out)
+            write_junit(o.out / "junit.xml", results, failures, begin, commit, stopped)
+            summary(data, failures, o.out)
+        return interrupted.status if interrupted else 1 if failures else 0
+
+    def _examine(self, results, known, changes):
+        """Returns the failures, with the changes that may be their causes. Names processes that
+        tests left, and files that changed while the tests ran."""
         for each in end_orphans():
             print("A test has left behind, and it was ended:", each)
         for each in changes.meanwhile():
             print("Changed while the tests ran, by one of them or by you:", each)
-        known = {test.name: test for test in tests}
-        failures = examine(results, known, o.out)
+        failures = examine(results, known, self.options.out)
         for failure in failures:
             if test := known.get(failure.result.name):
-                failure.changed = changes.since(history.last_pass(test.name), test,
+                failure.changed = changes.since(self.history.last_pass(test.name), test,
                                                 failure.result.seed)
-        git = ["git", "-C", o.source]
+        return failures
+
+    def _note(self, chosen, results, failures, changes, stopped, seconds):
+        """Adds the run to the history; returns the commit."""
+        git = ["git", "-C", self.options.source]
         status, commit = collect([*git, "describe", "--always", "--dirty", "--abbrev=10"])
         commit = "unknown" if status else commit.strip()
         subject = collect([*git, "log", "-1", "--format=%s"])
         reasons = {f.bucket: f"{f.result.name}: {f.reason[:120]}" for f in reversed(failures)}
-        history.add({**make_run(chosen, results, commit, time.monotonic() - start),
-                     "subject": "" if subject[0] else subject[1].strip(), "tree": changes.tree,
-                     "reasons": list(reversed(reasons.values()))[:5]})
-        if failures:  # waveforms may take minutes
-            write_reports(gather(history, tests, results, failures, o.source), failures,
-                          o.build / "page", o.out)
-            print(f"{o.out}/report.html is there; waveforms come into it, if there are any",
-                  flush=True)
-        add_waves(failures, known, o.source, o.build, o.jobs, o.waves)
-        data = gather(history, tests, results, failures, o.source)
-        summary(data, failures, o.out)
-        write_junit(o.out / "junit.xml", results, failures, begin, commit)
-        write_reports(data, failures, o.build / "page", o.out)
-        return 1 if failures else 0
+        self.history.add({**make_run(chosen, results, commit, seconds), "stopped": stopped,
+                          "subject": "" if subject[0] else subject[1].strip(),
+                          "tree": changes.tree, "reasons": list(reversed(reasons.values()))[:5]})
+        return commit
 
 
 def summary(data, failures, out):
@@ -273,12 +300,14 @@ def summary(data, failures, out):
     print("\nThe longest:", *(f"{name} {seconds:.1f} s" for seconds, name in longest))
     if data["seeds"]:
         print(f"\n{len(data['seeds'])} failing seeds are kept: make regress KEPT=1 runs them again")
-    print(f"\n{text_of(data['lights'])}{data['passed']} passed, {data['failed']} failed, "
+    stopped = f"stopped {data['stopped']}: " if data["stopped"] else ""
+    print(f"\n{text_of(data['lights'])}{stopped}{data['passed']} passed, {data['failed']} failed, "
           f"{data['skipped']} skipped in {data['seconds']:.0f} s; {out}/report.html", flush=True)
 
 
 def main(words):
     options = parse(words)
+    hear_signals()
     try:
         if options.tree is not None:
             print(tree_state(options.source, options.tree))
@@ -298,8 +327,8 @@ def main(words):
     except Stop as error:
         print(f"regress: {error}", file=sys.stderr)
         return 2
-    except KeyboardInterrupt:
-        return 130
+    except Interrupted as interrupted:
+        return interrupted.status
 
 
 if __name__ == "__main__":

@@ -73,12 +73,17 @@ def gather(history, tests, results, failures, source):
         name: getattr(f, name) for name in ("bucket", "reason", "repeat", "log", "wave", "save",
                                             "place", "changed", "clock")}} for f in failures]
     data["history"] = [[run["time"], run["commit"], run["passed"], run["failed"], run["seconds"],
-                        run.get("subject", ""), run.get("reasons", [])]
-                       for run in history.runs[-60:]]
+                        run.get("subject", ""), reasons_of(run)] for run in history.runs[-60:]]
     data["plan"] = judge_plan(read_plan(source), tests, history)
     data["lights"] = lights_of(data, source)
     data["blocks"] = blocks_of(data, tests, history, source)
     return data
+
+
+def reasons_of(run):
+    """Returns why a run of the history is not green: where it was stopped, and its failures."""
+    stopped = run.get("stopped")
+    return [*([f"stopped {stopped}"] if stopped else []), *run.get("reasons", [])]
 
 
 def write_reports(data, failures, libraries, out):

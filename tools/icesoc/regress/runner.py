@@ -13,11 +13,12 @@ import time
 import xml.etree.ElementTree as xml
 
 from icesoc.regress.tests import write_numbers
-from icesoc.util.errors import Stop
+from icesoc.util.errors import Interrupted, Stop
 from icesoc.util.files import write
-from icesoc.util.process import children, collect
+from icesoc.util.process import children, collect, descendants, end_descendants
 
-SHORTEST_HANG = 300  # seconds: no test is ended before
+SHORTEST_HANG = 30  # CPU time, or time without CPU use, before which no test is ended, s
+IDLE = 10  # time in which a test must use a second of CPU time, or it counts as idle, s
 
 
 @dataclasses.dataclass
@@ -40,6 +41,7 @@ class Progress:
         self.usual = {test.name: history.usual(test.name) for test in tests}
         self.running = {}  # name: when it began, the oldest first
         self.due = {}  # by name: age in seconds at which it is named
+        self.busy = {}  # by name: (CPU time, when it was reached), updated each second of CPU time
         self.hangs = {}  # name: (how it was ended, stacks)
         self.lock = threading.Lock()
 
@@ -50,27 +52,59 @@ class Progress:
 
     def watch(self, done, build):
         """Names each test that takes three times its usual time (60 s if that is not known) with
-        its age, and again at twice that age, until `done` is set. At ten times it ends it."""
+        its age, and again at twice that age, until `done` is set. Ends tests that hang."""
+        def cpu_of(name):
+            return cpu_time(process_of(name, self.running))
         while not done.wait(1):
-            for name, age in self.late():
-                with contextlib.suppress(OSError, StopIteration, ValueError):  # it has ended
+            self._show(keep=False)
+            for name, how in self.late(cpu_of):
+                with contextlib.suppress(*GONE):
                     if process := process_of(name, self.running):
                         where, stacks = end_hang(process, build)
-                        self.hangs[name] = f"Hang, ended after {age}{where}", stacks
+                        self.hangs[name] = f"Hang, ended after {how}{where}", stacks
 
-    def late(self):
-        """Names tests that are late; (name, its age) of those that have taken ten times their usual
-        time."""
+    def late(self, cpu_of):
+        """Names tests that are late; yields (name, time) of those that hang: their CPU time, or the
+        time for which they have run without using the CPU, is ten times their usual time. A test
+        that waits for a CPU is not ended. `cpu_of`: the CPU time of a running test by name."""
         for name, begin in list(self.running.items()):
-            age, usual = time.monotonic() - begin, self.usual.get(name)
-            text = f"{age:.0f} s, usually " + ("unknown" if usual is None else f"{usual:.1f} s")
+            now, usual = time.monotonic(), self.usual.get(name)
+            age, known = now - begin, "unknown" if usual is None else f"{usual:.1f} s"
             if age >= self.due[name]:
                 self.due[name] = 2 * age
-                self._line(f"{name} has run for {text}", True)
-            limit = max(SHORTEST_HANG, 10 * (60 if usual is None else usual))
+                self._line(f"{name} has run for {age:.0f} s, usually {known}", True)
+            limit = self.limit(name)
             is_proof = name.startswith("formal.")  # limited by CPU time
-            if age >= limit and not is_proof and name not in self.hangs:
-                yield name, text
+            if age < limit or is_proof or name in self.hangs:
+                continue
+            try:
+                used = cpu_of(name)
+            except GONE:
+                continue
+            if used >= limit:
+                yield name, f"{used:.0f} s of CPU time, usually {known}"
+            before = self.busy.get(name)
+            if not before or used >= before[0] + 1:
+                self.busy[name] = used, now
+            elif used < limit and now - before[1] >= IDLE:
+                yield name, f"{age:.0f} s without using the CPU, usually {known}"
+
+    def limit(self, name):
+        """Returns the time at which a test hangs, s."""
+        usual = self.usual.get(name)
+        return max(SHORTEST_HANG, 10 * (60 if usual is None else usual))
+
+    def left(self):
+        """Returns the estimated time left, the number of tests left if the times of some are
+        unknown, or for a test that is late the time at which it is ended."""
+        late = {name: time.monotonic() - begin for name, begin in list(self.running.items())
+                if time.monotonic() - begin >= max(10, 3 * (self.usual.get(name) or 20))}
+        known = all(each is not None for each in self.seconds.values())
+        if late:
+            seconds = int(max(self.limit(name) - age for name, age in late.items()))
+            return f"at most {max(0, seconds) // 60}:{max(0, seconds) % 60:02}"
+        seconds = int(sum(self.seconds.values()) / self.jobs) if known else 0
+        return f"{seconds // 60}:{seconds % 60:02}" if known else self.total - self.done
 
     def end(self, name, status, seconds):
         self.running.pop(name, None)
@@ -79,12 +113,12 @@ class Progress:
         if status == "failed":
             self.failed += 1
             self._line(f"FAILED {name} ({seconds:.1f} s)", True)
-        known = all(each is not None for each in self.seconds.values())
-        seconds = int(sum(self.seconds.values()) / self.jobs) if known else 0
-        left = f"{seconds // 60}:{seconds % 60:02}" if known else self.total - self.done
         tenth = 10 * self.done // self.total != 10 * (self.done - 1) // self.total
-        self._line(f"{self.done} of {self.total}, {self.failed} failed, {left} left: "
-                   f"{' '.join(sorted(self.running))}", tenth and not sys.stdout.isatty())
+        self._show(tenth and not sys.stdout.isatty())
+
+    def _show(self, keep):
+        self._line(f"{self.done} of {self.total}, {self.failed} failed, {self.left()} left: "
+                   f"{' '.join(sorted(self.running))}", keep)
 
     def _line(self, text, keep):
         with self.lock:
@@ -92,6 +126,19 @@ class Progress:
                 print(f"\r{text[:110]}\033[K", end="\n" if keep else "", flush=True)
             elif keep:
                 print(text, flush=True)
+
+
+GONE = (OSError, StopIteration, ValueError)  # errors about a test that has ended
+
+
+def cpu_time(process):
+    """Returns the CPU time of a process, its ended children and all processes below it, s."""
+    ticks = 0
+    for pid in [process, *descendants(process)] if process else ():
+        with contextlib.suppress(OSError):
+            fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+            ticks += sum(map(int, fields[11:15]))
+    return ticks / os.sysconf("SC_CLK_TCK")
 
 
 def process_of(name, running):
@@ -105,9 +152,7 @@ def process_of(name, running):
 def end_hang(process, build):
     """Ends a test's processes. Returns the functions in which the first of its programs was, and
     the stacks of all; aborted, they print the chip's state (testbench/common/tell_on_abort.h)."""
-    below = [process]
-    for pid in below:
-        below += children(pid)
+    below = [process, *descendants(process)]
     stacks = ""
     for pid in below:
         with contextlib.suppress(OSError):  # ended because of an earlier one
@@ -137,11 +182,12 @@ def readable(log):
 
 
 def run_tests(tests, build, out, seed, jobs, history):
-    """Runs tests in parallel, tests that failed last time first."""
+    """Runs tests in parallel, tests that failed last time first. Returns their results, and the
+    signal that interrupted them, or None: then these are the results of the finished tests."""
     chosen, junit = out / "tests.list", (out / f"junit-{seed}.xml").resolve()
     write_numbers(chosen, tests)
     junit.unlink(missing_ok=True)
-    progress, ends = Progress(tests, history, jobs), {}
+    progress, ends, interrupted = Progress(tests, history, jobs), {}, None
     print(f"{len(tests)} tests, SEED={seed}", flush=True)
 
     def on_line(line):
@@ -149,41 +195,83 @@ def run_tests(tests, build, out, seed, jobs, history):
             progress.start(begun[1])
         if ended := re.match(r" *\d+/\d+ Test +#\d+: (\S+) \.*(.*?) +([0-9.]+) sec", line):
             name, how = ended[1], ended[2]
-            ends[name] = how
-            progress.end(name, "passed" if "Passed" in how else
-                         "skipped" if "Skipped" in how else "failed", float(ended[3]))
+            ends[name] = how, float(ended[3])
+            progress.end(name, status_of(how), float(ended[3]))
+
+    def wait_for_log():
+        """Waits until CTest has logged the test that has just ended."""
+        for _ in range(40):
+            if all(log is not None for _, _, log in logged_cases(build, ends)):
+                break
+            time.sleep(0.05)
     done = threading.Event()
     watcher = threading.Thread(target=progress.watch, args=[done, str(build)], daemon=True)
     watcher.start()
     try:
+        # In a process group of its own: Ctrl-C would reach the tests, which CTest then reports as
+        # failed.
         status, text = collect(
             ["ctest", "--test-dir", build, "-I", chosen.resolve(), "-j", jobs, "--output-junit",
              junit, "--test-output-size-passed", 4096, "--test-output-size-failed", 200000,
-             "--test-output-truncation", "middle"], {"SEED": seed}, on_line)
+             "--test-output-truncation", "middle"], {"SEED": seed}, on_line, wait_for_log,
+            process_group=0)
+    except Interrupted as stop:
+        interrupted = stop
+        end_descendants()
     finally:
         done.set()
         watcher.join()  # it may be reading the stacks of a hang
     if sys.stdout.isatty():
         print("\r\033[K", end="")
+    if interrupted:
+        cases = [(name, status_of(how), seconds, log or "") for name, (how, seconds), log in
+                 logged_cases(build, ends)]
+    else:
+        cases = junit_cases(junit, status, text)
+    results = []
+    for name, how, seconds, log in cases:
+        log = readable(log)
+        if log.startswith("Unable to find"):  # its program
+            how = "failed"
+        end = ends.get(name, ("",))[0]
+        end = "" if end in ("***Failed", "***Not Run") else re.sub("[*]{3}(Exception: *)?", "", end)
+        if name in progress.hangs:
+            end, stacks = progress.hangs[name]
+            how, log = "failed", log + stacks
+        results.append(Result(name, how, seconds, log, end, seed))
+    return results, interrupted
+
+
+def status_of(how):
+    """Returns the status that CTest prints for a test: `Passed`, `***Failed`, `***Skipped`."""
+    return "passed" if "Passed" in how else "skipped" if "Skipped" in how else "failed"
+
+
+def junit_cases(junit, status, text):
+    """Yields (name, status, seconds, log) of the results that CTest wrote; `status` and `text`:
+    its exit status and output."""
     try:
         cases = xml.parse(junit).iter("testcase")
     except FileNotFoundError:
         raise Stop(f"ctest gave no results ({status}):\n{text}") from None
     except xml.ParseError as error:
         raise Stop(f"{junit}: {error}; is the disk full?") from None
-    results = []
     for case in cases:
-        log = readable(case.findtext("system-out") or "")
         how = {"run": "passed", "fail": "failed"}.get(case.get("status"), "skipped")
-        if log.startswith("Unable to find"):  # its program
-            how = "failed"
-        end = ends.get(case.get("name"), "")
-        end = "" if end in ("***Failed", "***Not Run") else re.sub("[*]{3}(Exception: *)?", "", end)
-        if case.get("name") in progress.hangs:
-            end, stacks = progress.hangs[case.get("name")]
-            how, log = "failed", log + stacks
-        results.append(Result(case.get("name"), how, float(case.get("time")), log, end, seed))
-    return results
+        yield (case.get("name"), how, float(case.get("time")),
+               case.findtext("system-out") or "")
+
+
+def logged_cases(build, ends):
+    """Yields (name, end, log) of finished tests from the log that CTest writes while it runs; None
+    if a test is not in it yet."""
+    path = pathlib.Path(build) / "Testing/Temporary/LastTest.log.tmp"
+    log = path.read_text(errors="replace") if path.exists() else ""
+    for name, end in ends.items():
+        line = "-" * 58 + "\n"
+        found = re.search(rf'^"{re.escape(name)}" start time: [^\n]*\nOutput:\n{line}(.*?)'
+                          r"^<end of output>\nTest time =", log, re.M | re.S)
+        yield name, end, found and found[1]
 
 
 def kind_of(result):
@@ -192,10 +280,10 @@ def kind_of(result):
                                                     "error" if result.end else "failure")
 
 
-def write_junit(path, results, failures, begin, commit):
-    """JUnit of all results, for CI systems: a suite for each program and seed, begun at `begin`
-    (RFC 3339); a failure's text says where to look. Jenkins' junit-10.xsd has no properties of a
-    test."""
+def write_junit(path, results, failures, begin, commit, stopped):
+    """Writes JUnit of all results, for CI systems: a suite for each program and seed, begun at
+    `begin` (RFC 3339). The text of a failure names its log and waveform. `stopped`: "after 52 of
+    57", or "". Jenkins' junit-10.xsd has no properties of a test."""
     of, suites = {id(failure.result): failure for failure in failures}, {}
     for result in results:
         suites.setdefault((result.name.split(".")[0], result.seed), []).append(result)
@@ -211,8 +299,9 @@ def write_junit(path, results, failures, begin, commit):
     for (name, seed), results_ in suites.items():
         suite = xml.SubElement(root, "testsuite", name=name, timestamp=begin, **totals(results_))
         properties = xml.SubElement(suite, "properties")
-        for key, value in (("seed", seed), ("commit", commit)):
-            xml.SubElement(properties, "property", name=key, value=value)
+        for key, value in (("seed", seed), ("commit", commit), ("stopped", stopped)):
+            if value:
+                xml.SubElement(properties, "property", name=key, value=value)
         for result in results_:
             case = xml.SubElement(suite, "testcase", name=result.name, classname=name,
                                   time=f"{result.seconds:.3f}")

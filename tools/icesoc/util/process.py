@@ -20,13 +20,16 @@ from icesoc.util.errors import Interrupted, Stop
 ICESOC = [sys.executable, "-m", "icesoc"]  # the words that start a command of ./icesoc
 
 
+INTERRUPTS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
 def hear_signals():
     def hear(number, _):
-        for each in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        for each in INTERRUPTS:
             signal.signal(each, signal.SIG_IGN)  # one is enough: the program is being ended
         raise Interrupted(number)
 
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    for number in INTERRUPTS:
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, hear)
 
@@ -113,17 +116,35 @@ def until(condition, process, seconds=0.05):
     return held or condition()
 
 
-def collect(command, environment=None, on_line=None):
-    """Runs a program to its end and returns (exit status, output). A signal that kills this process
-    ends the program as well."""
+@contextlib.contextmanager
+def signals_held():
+    """Delays signals that would interrupt this process until the end of a block. Programs started
+    in the block do not receive them."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, INTERRUPTS)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def collect(command, environment=None, on_line=None, before_kill=None, **more):
+    """Runs a program to its end and returns (exit status, output). A signal that ends this process
+    kills the program as well, after a call of `before_kill`."""
     words = ["setpriv", "--pdeathsig", "TERM", *map(str, command)]
     said = []
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                          errors="replace", env={**os.environ, **(environment or {})}) as process:
-        for line in process.stdout:
-            said.append(line)
-            if on_line:
-                on_line(line.rstrip("\n"))
+                          errors="replace", env={**os.environ, **(environment or {})},
+                          **more) as process:
+        try:
+            for line in process.stdout:
+                said.append(line)
+                if on_line:
+                    on_line(line.rstrip("\n"))
+        except BaseException:
+            if before_kill:
+                before_kill()
+            process.kill()
+            raise
     status = process.returncode
     if status in (126, 127):
         raise Stop(f"cannot run {command[0]}: {''.join(said)}")
@@ -137,6 +158,29 @@ def children(pid):
         with contextlib.suppress(OSError):
             found += map(int, path.read_text().split())
     return sorted(found)
+
+
+def descendants(pid):
+    """Returns the running processes below a process, parents before children."""
+    below = children(pid)
+    for each in below:
+        below += children(each)
+    return below
+
+
+def end_descendants():
+    """Ends all processes below this one: by SIGTERM, and after a second by SIGKILL."""
+    for attempt in range(100):
+        with contextlib.suppress(ChildProcessError):
+            while os.waitpid(-1, os.WNOHANG)[0]:
+                pass
+        left = descendants(os.getpid())
+        if not left:
+            return
+        for pid in left if attempt == 0 or attempt >= 20 else ():
+            with contextlib.suppress(OSError):
+                os.kill(pid, signal.SIGKILL if attempt else signal.SIGTERM)
+        time.sleep(0.05)
 
 
 def adopt_orphans():

@@ -165,7 +165,7 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
     def test_stopped(self):
         """Ctrl-C, or the end of the terminal: page, JUnit and history contain the finished tests,
         and no process is left."""
-        self.tests("add_test(NAME script.Waits COMMAND sh -c 'sleep 1234 & wait')\n")
+        self.tests('add_test(NAME script.Waits COMMAND sh -c "sleep 1234 & wait")\n')
         self.regress("--name 'a.One|formal'")
         for number, status in ((signal.SIGINT, 130), (signal.SIGHUP, 129)):
             run = subprocess.Popen([REGRESS, "--seed", "5"], stdout=subprocess.PIPE,

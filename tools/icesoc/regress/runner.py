@@ -265,8 +265,10 @@ def junit_cases(junit, status, text):
 def logged_cases(build, ends):
     """Yields (name, end, log) of finished tests from the log that CTest writes while it runs; None
     if a test is not in it yet."""
-    path = pathlib.Path(build) / "Testing/Temporary/LastTest.log.tmp"
-    log = path.read_text(errors="replace") if path.exists() else ""
+    folder = pathlib.Path(build) / "Testing/Temporary"
+    path = next((path for name in ("LastTest.log.tmp", "LastTest.log")
+                 if (path := folder / name).exists()), None)
+    log = path.read_text(errors="replace") if path else ""
     for name, end in ends.items():
         line = "-" * 58 + "\n"
         found = re.search(rf'^"{re.escape(name)}" start time: [^\n]*\nOutput:\n{line}(.*?)'

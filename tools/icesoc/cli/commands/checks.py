@@ -16,7 +16,9 @@ from icesoc.util.lock import lock
 from icesoc.util.process import output, run, tool
 
 GROUPS["check"] = "proofs, sanitizers, fuzzing, faults, coverage"
-GUARDED = ["test_ground_engine", "gateway", "test_ground_ice", "test_icec"]
+# Test programs that are built with sanitizers: their folder, and what else they start.
+GUARDED = {"test_icec": ("icec", []), "test_ground_engine": ("ground", []),
+           "test_ground_ice": ("ground/ice", ["gateway"])}
 
 
 def one_more(status, other):
@@ -67,28 +69,34 @@ def netlist(values):
 
 @command("check sanitizers",
          [Option("kinds", WORDS, "sanitizers to use: address or thread", ["address", "thread"]),
-           BUILD, JOBS],
-         make="sanitizers", brief="check sanitizers --kinds address", long="check sanitizers")
+          Option("programs", WORDS, f"test programs to run: {', '.join(GUARDED)}", list(GUARDED)),
+          BUILD, JOBS],
+         make="sanitizers", brief="check sanitizers --kinds address --programs test_icec",
+         long="check sanitizers", examples=["check sanitizers --kinds thread"])
 def sanitizers(values):
     """tests of IceC, engine, gateway and plugin with AddressSanitizer and with ThreadSanitizer;
     fuzzer of the debugger's stub"""
-    build, status, folders = configured(values, tests=True), 0, {
-        "address": ("sanitized", "ON"), "thread": ("thread", "thread")}
+    folders = {"address": ("sanitized", "ON"), "thread": ("thread", "thread")}
+    for what, known in (("kinds", folders), ("programs", GUARDED)):
+        if unknown := set(getattr(values, what)) - set(known):
+            raise Stop(f"{what.upper()}: expected {' or '.join(known)}, got "
+                       f"'{sorted(unknown)[0]}'", 2)
+    build, status = configured(values, tests=True), 0
     for name in values.kinds:  # build/sanitized belongs to the tests
-        if name not in folders:
-            raise Stop(f"there is no sanitizer '{name}': address, thread", 2)
         kind, option = folders[name]
         folder = BuildFolder(f"build/{kind}", values)
         folder.configure(f"-DSANITIZE={option}", f"-DROOMS={ROOMS_OF_PROGRAMS}")
         environment = {
-            "ASAN_OPTIONS": "detect_leaks=0",
+            "ASAN_OPTIONS": "detect_leaks=0",  # libmcpp leaks
             "TSAN_OPTIONS": f"suppressions={Path('tests/sw/ground/threads.supp').absolute()}"}
-        folder.ninja(*GUARDED, env=environment)  # libmcpp leaks
+        folder.ninja(*(target for program in values.programs
+                       for target in (program, *GUARDED[program][1])), env=environment)
         # ThreadSanitizer skips Python's libraries, because Python's locks are not instrumented.
         left = ["--gtest_filter=-*Python*"] if kind == "thread" else []
-        for test in ("ground/test_ground_engine", "ground/ice/test_ground_ice", "icec/test_icec"):
-            status = one_more(status, run([folder / "tests/sw" / test, "--gtest_brief=1", *left],
-                                          check=False, env=environment))
+        for program in values.programs:
+            path = folder / "tests/sw" / GUARDED[program][0] / program
+            status = one_more(status, run([path, "--gtest_brief=1", *left], check=False,
+                                          env=environment))
     build.ninja("fuzz_gdb")
     return one_more(status, build.ctest("-R", "^fuzz[.]gdb$", tests=1, check=False))
 

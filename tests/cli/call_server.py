@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """call_server: a server of stock Ice with the object `try` of call.ice, for call_test.py. Prints
-its port."""
+its port. Arguments are properties of Ice, such as --Trial.AdapterId=uav7."""
 import sys
 import threading
 import time
@@ -95,8 +95,13 @@ class Try(Trial.Try):
         pass
 
 
-with Ice.initialize(["--Ice.ThreadPool.Server.Size=4", "--Ice.Warn.Dispatch=0"]) as communicator:
-    adapter = communicator.createObjectAdapterWithEndpoints("Trial", "tcp -h 127.0.0.1")
+settings = ["call_server", "--Ice.ThreadPool.Server.Size=4", "--Ice.Warn.Dispatch=0",
+            "--Trial.Endpoints=tcp -h 127.0.0.1", *sys.argv[1:]]
+data = Ice.InitializationData()
+data.properties = Ice.createProperties(settings)
+data.properties.parseCommandLineOptions("Trial", settings)
+with Ice.initialize(data) as communicator:
+    adapter = communicator.createObjectAdapter("Trial")
     adapter.add(Try(), Ice.stringToIdentity("try"))
     adapter.addFacet(Try(), Ice.stringToIdentity("try"), "side")
     adapter.activate()

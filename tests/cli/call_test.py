@@ -147,7 +147,7 @@ class Call(unittest.TestCase):
         if operation:
             at = 1 if words[0] == "--json" else 0
             words[at] = f"try.{words[at]}"
-        if not {"--gateway", "--device"} & set(words):
+        if not {"--gateway", "--device", "--locator"} & set(words):
             words += ["--gateway", f"127.0.0.1:{self.port}"]
         words = ["call", *words, "--slice", str(HERE / "call.ice"), "--build", str(BUILD), *more]
         out, err = io.StringIO(), io.StringIO()
@@ -272,6 +272,42 @@ class Call(unittest.TestCase):
             self.assertEqual(self.ask(f"eye.{words}", "--check", "--build", str(build),
                                       operation=False)[0], 0, words)
         self.assertIn("name=THRESHOLD", choices(Catalogue(str(build)), ["eye.set"]))
+
+    def test_locator(self):
+        """The vehicle is found by its name in IceGrid."""
+        work, endpoint = Path(self.work.name, "registry"), "tcp -h 127.0.0.1"
+        work.mkdir()
+        log = open(Path(self.work.name, "registry.log"), "w+")
+        self.addCleanup(log.close)
+        registry = subprocess.Popen([
+            BUILD / "icegrid/icegridregistry", "--IceGrid.InstanceName=IceGrid",
+            *(f"--IceGrid.Registry.{side}.Endpoints={endpoint}"
+              for side in ("Internal", "Server", "Client")),
+            "--IceGrid.Registry.DynamicRegistration=1", "--IceGrid.Registry.Discovery.Enabled=0",
+            f"--IceGrid.Registry.LMDB.Path={work}", "--Ice.Trace.Network=1",
+            "--Ice.PrintAdapterReady=1"], stdout=log, stderr=log)
+        self.addCleanup(registry.wait, 20)
+        self.addCleanup(registry.terminate)
+        while "Registry.Client ready" not in (text := Path(log.name).read_text()):
+            self.assertIsNone(registry.poll(), text)
+            time.sleep(0.05)
+        port = re.findall(r"accepting tcp connections at .*:(\d+)", text)[-1]
+        locator = f"IceGrid/Locator:{endpoint} -p {port}"
+        server = subprocess.Popen(
+            ["/usr/bin/python3", HERE / "call_server.py", "--Trial.AdapterId=uav7",
+             f"--Ice.Default.Locator={locator}"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+            text=True)
+        server.stdout.readline()
+        for vehicle, wanted in (
+                ("uav7", (0, "3\n", "")),
+                ("uav8", (4, "", "try.add: IceGrid has no vehicle 'uav8': is its gateway "
+                          "running, and the vehicle in reach?"))):
+            status, out, err = self.ask(["add", "1", "2", "--locator", locator, "--vehicle",
+                                         vehicle])
+            self.assertEqual((status, out), wanted[:2], err)
+            self.assertIn(wanted[2], err)
+        server.communicate(timeout=20)
+        self.assertEqual(self.ask(["add", "1", "2", "--locator", f"x:{endpoint} -p 1"])[0], 4)
 
     def test_speed(self):
         """The first call takes at most 1.5 times a program's own start and call."""

@@ -137,6 +137,14 @@ class Cases(Script):
             browser.until("document.getElementById('found').innerText"
                           f".startsWith('{found} corners')")
             self.assertLess(int(found), 121)
+            # The registers of the core are next to its operations, and those that change marked.
+            beside = "document.querySelector('#cards [data-block=vision]')"
+            browser.until(f"/THRESHOLD\\s+0x0000003c/.test({beside}.innerText)")
+            browser.until(f"!{beside}.querySelector('.changed')")
+            browser.run("document.querySelector('[id=\"hwengine1.setParameterA.value\"]')"
+                        ".value = 61; document.querySelector('[id="
+                        "\"hwengine1.setParameterA.value\"]').closest('form').requestSubmit()")
+            browser.until(f"{beside}.querySelector('.changed')?.innerText.includes('0x0000003d')")
 
     def narrow(self, state):
         """At 420 pixels nothing is cut, or needs a scroll bar."""

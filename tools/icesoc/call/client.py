@@ -176,6 +176,9 @@ class Client:
         except Ice.UnknownException as error:
             raise Failure(f"the call was refused: {reason_of(error)}", REFUSED,
                           error.ice_id().lstrip(":").replace("::", ".")) from None
+        except Ice.NotRegisteredException as error:
+            raise Failure(f"IceGrid has no vehicle '{error.id}': is its gateway running, and the "
+                          "vehicle in reach?", SILENT, "Ice.NotRegisteredException") from None
         except (Ice.InvocationTimeoutException, Ice.TimeoutException):
             raise Failure(f"no answer from {self.target.place} within {self.options.timeout:g} s: "
                           "is it on, in reach, and has it the same key?", SILENT,

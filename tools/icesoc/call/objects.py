@@ -36,6 +36,7 @@ class Object:
     identity: str
     interface: str = ""  # empty: to be asked for
     registers: str = ""  # file *.regs.json of its core
+    core: str = ""  # name of its core, and of the core's block of registers
 
 
 def only_interface(slices, files):
@@ -68,7 +69,7 @@ class Catalogue:
         for core in cores:
             interface = core.get("interface") or only_interface(self.slices, core["slice"])
             self.objects[core["identity"]] = Object(core["identity"], interface,
-                                                    core["registers"])
+                                                    core["registers"], core["core"])
 
     def find(self, text):
         """Returns (object, operation) of OBJECT.OPERATION, or of an operation that only one object

@@ -42,6 +42,7 @@ FILES = {  # path: MIME type, file
     "/live.css": ("text/css", HERE + "/flight/live.css"),
     "/live.js": ("text/javascript", HERE + "/flight/live.js"),
     "/slice.js": ("text/javascript", HERE + "/flight/slice.js"),
+    "/fields.js": ("text/javascript", HERE + "/flight/fields.js"),
     "/objects.js": ("text/javascript", HERE + "/flight/objects.js"),
     "/common.css": ("text/css", HERE + "/common.css"),
     "/common.js": ("text/javascript", HERE + "/common.js")}
@@ -176,15 +177,18 @@ def gateway(folder):
     return (found[1], int(found[2])) if found else None
 
 
-def described(build):
-    """Returns the vehicle's objects and the declarations of their interfaces."""
+def described(build, address):
+    """Returns the vehicle's objects with the declarations of their interfaces, and the address at
+    which programs call them."""
     try:
         catalogue = objects.Catalogue(build)
     except Stop as stop:
         return {"objects": [], "declarations": {}, "error": stop.text}
-    return {"objects": [{"identity": each.identity, "interface": each.interface}
+    host, port = address or ("127.0.0.1", 10000)
+    return {"objects": [{"identity": each.identity, "interface": each.interface, "block": each.core}
                         for each in catalogue.objects.values() if each.interface],
-            "declarations": catalogue.slices.declarations}
+            "declarations": catalogue.slices.declarations, "endpoint": f"tcp -h {host} -p {port}",
+            "command": "./icesoc call"}
 
 
 class Page(http.server.BaseHTTPRequestHandler):
@@ -211,7 +215,8 @@ class Page(http.server.BaseHTTPRequestHandler):
         if path == "/state":
             kind, content = "application/json", json.dumps(state(self.folder, self.slots)).encode()
         elif path == "/objects":
-            kind, content = "application/json", json.dumps(described(self.build)).encode()
+            kind, content = "application/json", json.dumps(
+                described(self.build, gateway(self.folder))).encode()
         else:
             content = contents(file)
         if path == "/":

@@ -117,28 +117,45 @@ function showTimeline(state) {
     }), ...[0, 1, 2, 3, 4].map(i => shape('text', {x: left + (width - left - 50) * i / 4, y: height * (lanes.length + 1) - 5}, `${((begin + (end - begin) * i / 4) / 1e9).toFixed(2)} s`)));
 }
 
-function showSlots(slots) {
-    $('slots').replaceChildren(...slots.filter(s => s.words.length).map(s => {
-        const div = element('div'), table = element('table');
-        div.append(element('h3', `${s.slot}  ${s.block}`), table);
-        for (const w of s.words) {
-            const tr = row([[w.name], ['0x' + w.value.toString(16).padStart(8, '0'), 'n'], [w.written ? 'written' : 'read']]);
-            tr.title = w.doc || '';
-            table.append(tr);
-            if (!w.fields.length) continue;
-            const line = element('tr', undefined, 'fields'), cell = element('td');
-            cell.colSpan = 3;
-            for (const f of w.fields) {
-                const field = element('span', `${f.name} ${f.value}`, f.value && f.value !== 'cleared' ? 'set' : '');
-                field.title = f.doc;
-                cell.append(field, ' ');
-            }
-            line.append(cell);
-            table.append(line);
+// The registers of a slot; those whose values have changed in the last two seconds are marked.
+const known = new Map(); // slot and word: its value, and the time of its last change
+function registersOf(slot) {
+    const table = element('table');
+    for (const w of slot.words) {
+        const key = `${slot.slot}.${w.word}`, before = known.get(key), now = performance.now();
+        if (!before || before.value !== w.value) known.set(key, {value: w.value, at: before ? now : -Infinity});
+        const tr = row([[w.name], ['0x' + w.value.toString(16).padStart(8, '0'), 'n'], [w.written ? 'written' : 'read']]);
+        tr.title = w.doc || '';
+        tr.classList.toggle('changed', now - known.get(key).at < 2000);
+        table.append(tr);
+        if (!w.fields.length) continue;
+        const line = element('tr', undefined, 'fields'), cell = element('td');
+        cell.colSpan = 3;
+        for (const f of w.fields) {
+            const field = element('span', `${f.name} ${f.value}`, f.value && f.value !== 'cleared' ? 'set' : '');
+            field.title = f.doc;
+            cell.append(field, ' ');
         }
+        line.append(cell);
+        table.append(line);
+    }
+    return table;
+}
+
+// All slots in their section, and each core's next to the operations of its object.
+function showSlots(slots) {
+    const used = slots.filter(s => s.words.length);
+    $('slots').replaceChildren(...used.map(s => {
+        const div = element('div', undefined, 'registers');
+        div.append(element('h3', `${s.slot}  ${s.block}`), registersOf(s));
         div.title = s.doc;
         return div;
     }));
+    for (const place of document.querySelectorAll('#cards [data-block]')) {
+        const slot = used.find(s => s.block === place.dataset.block);
+        place.className = 'registers';
+        place.replaceChildren(...(slot ? [element('h4', 'Registers'), registersOf(slot)] : []));
+    }
 }
 
 async function look() {

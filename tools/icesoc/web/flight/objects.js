@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // objects: a card for each object of the vehicle, with a form for each of its operations, made from
-// Slice; calls by Ice for JavaScript, results, events, and a history.
+// Slice; calls by Ice for JavaScript, results, events, and a history. fields.js makes the fields.
 
 const $ = id => document.getElementById(id);
 const MOST_EVENTS = 200, MOST_CALLS = 50;
@@ -20,7 +20,7 @@ async function connect() {
     properties.setProperty('Ice.RetryIntervals', '-1');
     const data = new Ice.InitializationData();
     data.properties = properties;
-    station = {objects: described.objects, slice: new Slice(described.declarations), communicator: Ice.initialize(data), adapter: null};
+    station = {...described, slice: new Slice(described.declarations), communicator: Ice.initialize(data), adapter: null};
     return station;
 }
 
@@ -43,21 +43,6 @@ async function listenerProxy(proxy, interface_) {
     return station.adapter.addWithUUID(station.slice.listener(interface_, take)).ice_oneway();
 }
 
-// A file input for a picture; `take` gets width, height and grey levels.
-function pictureInput(name, take) {
-    const file = element('input');
-    Object.assign(file, {type: 'file', accept: 'image/*'});
-    file.setAttribute('aria-label', `${name} from a picture`);
-    file.onchange = async () => {
-        if (!file.files[0]) return;
-        const image = await createImageBitmap(file.files[0]), canvas = new OffscreenCanvas(image.width, image.height), pen = canvas.getContext('2d');
-        pen.drawImage(image, 0, 0);
-        const rgba = pen.getImageData(0, 0, image.width, image.height).data;
-        take([image.width, image.height, Uint8Array.from({length: rgba.length / 4}, (_, i) => 0.299 * rgba[4 * i] + 0.587 * rgba[4 * i + 1] + 0.114 * rgba[4 * i + 2])]);
-    };
-    return file;
-}
-
 // A picture in a result, as a canvas; null for anything else.
 function pictureOf(value, type) {
     const names = station.slice.picture(type);
@@ -72,102 +57,35 @@ function pictureOf(value, type) {
     return canvas;
 }
 
-// A field of a form: {node, get, set}; get returns what Slice.check() takes.
-function field(parameter, id) {
-    const slice = station.slice, type = parameter.type, its = slice.get(type), label = element('label');
-    const unit = slice.annotation(parameter.metadata, 'call:unit');
-    label.append(element('span', parameter.name), ' ', element('small', slice.named(type)), ' ');
-    const made = (node, get, set) => {
-        node.id = id;
-        label.append(node);
-        return {node: label, get, set};
-    };
-    if (type in INTEGERS) {
-        const [low, high] = slice.bounds(type, parameter.metadata), input = element('input');
-        Object.assign(input, {type: 'text', inputMode: 'numeric', value: String(parameter.default ?? (low > 0n ? low : 0)), size: 12});
-        const found = made(input, () => input.value.trim(), value => { input.value = String(value); if (slider) slider.value = value; });
-        let slider = null;
-        if (high - low <= 4096n) {
-            slider = element('input');
-            Object.assign(slider, {type: 'range', min: String(low), max: String(high), value: input.value});
-            slider.setAttribute('aria-label', `${parameter.name}, slider`);
-            slider.oninput = () => { input.value = slider.value; };
-            input.oninput = () => { slider.value = input.value; };
-            label.append(slider);
-        }
-        label.append(element('small', `${low} to ${high} ${unit}`));
-        return found;
-    }
-    if (type === 'bool') {
-        const input = element('input');
-        input.type = 'checkbox';
-        return made(input, () => input.checked, value => { input.checked = value; });
-    }
-    if (its.kind === 'enum') {
-        const select = element('select');
-        select.append(...its.enumerators.map(e => element('option', e.name)));
-        return made(select, () => select.value, value => { select.value = value; });
-    }
-    if (its.kind === 'struct') {
-        const set = element('fieldset'), inner = slice.fields(type).map(f => [f.name, field(f, `${id}.${f.name}`)]);
-        set.id = id;
-        set.append(element('legend', `${parameter.name} (${slice.named(type)})`), ...inner.map(([, f]) => f.node));
-        const names = slice.picture(type);
-        if (names) set.append(pictureInput(parameter.name, values => inner.forEach(([name, f]) => f.set(values[names.indexOf(name)]))));
-        return {node: set, get: () => Object.fromEntries(inner.map(([name, f]) => [name, f.get()])),
-            set: value => inner.forEach(([name, f]) => f.set(value[name]))};
-    }
-    if (type.endsWith('*')) {
-        const select = element('select');
-        select.append(element('option', 'watch: show events here'), element('option', 'null'));
-        return made(select, () => select.selectedIndex ? null : 'watch', value => { select.selectedIndex = value === null ? 1 : 0; });
-    }
-    if (type === 'string' || type === 'float' || type === 'double') {
-        const input = element('input');
-        input.value = type === 'string' ? '' : '0';
-        return made(input, () => input.value, value => { input.value = String(value); });
-    }
-    // JSON; bytes from a file, too.
-    const area = element('textarea');
-    area.rows = 2;
-    area.value = its.kind === 'dictionary' ? '{}' : '[]';
-    let bytes = null;
-    const found = made(area, () => {
-        if (bytes) return bytes;
-        try { return JSON.parse(area.value); } catch { throw new Error(`${parameter.name}: expected JSON, got ${area.value.slice(0, 60)}`); }
-    }, value => { bytes = null; area.value = json(value); });
-    if (slice.isBytes(type)) {
-        const file = element('input');
-        file.type = 'file';
-        file.setAttribute('aria-label', `${parameter.name} from a file`);
-        file.onchange = async () => { if (file.files[0]) found.set(new Uint8Array(await file.files[0].arrayBuffer())); };
-        label.append(file);
-    }
-    return found;
-}
-
-// Text of a call for the shell, and for Python.
+// Text of a call for the shell.
 const shellQuoted = text => /^[\w@%+=:,.\/-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`;
 function asShell(object, operation, values) {
     const words = Object.entries(values).map(([name, value]) => shellQuoted(`${name}=${typeof value === 'string' ? value : json(value)}`));
     const watch = Object.values(values).includes('watch') ? ['--watch'] : [];
-    return ['./icesoc call', shellQuoted(`${object.identity}.${operation.name}`), ...words, ...watch].join(' ');
+    return [station.command, shellQuoted(`${object.identity}.${operation.name}`), ...words, ...watch].join(' ');
 }
+// Text of a call as a program in Python.
 function asPython(object, operation, values) {
-    const slice = station.slice, module = object.interface.slice(2).replaceAll('::', '.');
-    const literal = (value, type) => {
-        const its = slice.get(type);
-        if (type.endsWith('*')) return value === null ? 'None' : 'listener';
+    const slice = station.slice, python = type => type.slice(2).replaceAll('::', '.');
+    const literal = (value, type, tag) => {
+        const its = slice.get(type), list = inner => `${python(inner)}(${slice.fields(inner).map(f => literal(value[f.name], f.type, f.tag)).join(', ')})`;
+        if (value === null) return tag === undefined ? 'None' : 'Ice.Unset';
+        if (type.endsWith('*')) return 'None';
         if (type === 'bool') return value ? 'True' : 'False';
-        if (its.kind === 'enum') return `${type.slice(2).replaceAll('::', '.')}.${value}`;
-        if (its.kind === 'struct') return `${type.slice(2).replaceAll('::', '.')}(${slice.fields(type).map(f => literal(value[f.name], f.type)).join(', ')})`;
+        if (its.kind === 'enum') return `${python(type)}.${value}`;
+        if (its.kind === 'struct' || its.kind === 'class') return list(value['@type'] ?? type);
         if (slice.isBytes(type)) return `bytes([${[...value].join(', ')}])`;
         if (its.kind === 'sequence') return `[${value.map(each => literal(each, its.element)).join(', ')}]`;
         if (its.kind === 'dictionary') return `{${value.map(([k, v]) => `${literal(k, its.key)}: ${literal(v, its.element)}`).join(', ')}}`;
         return typeof value === 'string' ? JSON.stringify(value) : String(value);
     };
-    const ins = operation.parameters.filter(p => !p.out).map(p => literal(values[p.name], p.type));
-    return `proxy = ${module}Prx.uncheckedCast(communicator.stringToProxy("${object.identity}:" + endpoint))\nprint(proxy.${operation.name}(${ins.join(', ')}))`;
+    const given = operation.parameters.filter(p => !p.out).map(p => literal(values[p.name], p.type, p.tag));
+    const file = slice.get(object.interface).file, place = JSON.stringify(`${object.identity}:${station.endpoint}`);
+    return [
+        'import Ice', `Ice.loadSlice("", ["-I" + Ice.getSliceDir(), ${JSON.stringify(file)}])`,
+        `import ${python(object.interface).split('.')[0]}`, 'with Ice.initialize() as communicator:',
+        `    proxy = ${python(object.interface)}Prx.uncheckedCast(communicator.stringToProxy(${place}))`,
+        `    print(proxy.${operation.name}(${given.join(', ')}))`, ''].join('\n');
 }
 
 function shown(results, operation) {
@@ -193,20 +111,20 @@ function draw(results) {
 }
 
 function operationForm(object, operation) {
-    const form = element('form'), slice = station.slice, output = element('output'), unfit = slice.unfitOperation(operation);
+    const form = element('form'), slice = station.slice, output = element('output'), unfit = operation.parameters.some(p => !p.out && p.type === 'Object');
     const outputs = operation.parameters.filter(p => p.out).map(p => `${p.name}: ${slice.named(p.type)}`);
     if (operation.result !== 'void') outputs.unshift(slice.named(operation.result));
     form.append(element('h4', operation.name + (outputs.length ? ` → ${outputs.join(', ')}` : '')));
     if (operation.doc) form.append(element('p', operation.doc, 'soft'));
     if (unfit) {
-        form.append(element('p', `This page does not pass ${unfit}; use ./icesoc call ${object.identity}.${operation.name}`, 'soft'));
+        form.append(element('p', `This page does not pass objects of unknown classes; use ${station.command} ${object.identity}.${operation.name}`, 'soft'));
         return form;
     }
     const fields = operation.parameters.filter(p => !p.out).map(p => [p, field(p, `${object.identity}.${operation.name}.${p.name}`)]);
     const button = element('button', 'Call');
     form.append(...fields.map(([, f]) => f.node), button, output);
     output.setAttribute('role', 'status');
-    const values = () => Object.fromEntries(fields.map(([p, f]) => [p.name, slice.check(f.get(), p.type, p.name, p.metadata)]));
+    const values = () => Object.fromEntries(fields.map(([p, f]) => [p.name, slice.checkMember(f.get(), p, p.name)]));
     for (const [text, make] of [['Copy as shell', asShell], ['Copy as Python', asPython]]) {
         const copy = element('button', text, 'plain');
         copy.type = 'button';
@@ -266,8 +184,11 @@ function card(object) {
     details.append(summary);
     details.dataset.names = `${object.identity} ${station.slice.operations(object.interface).map(o => o.name).join(' ')}`.toLowerCase();
     details.addEventListener('toggle', () => {
-        if (details.open && details.children.length === 1)
-            details.append(...station.slice.operations(object.interface).map(operation => operationForm(object, operation)));
+        if (!details.open || details.children.length > 1) return;
+        const forms = element('div'), registers = element('aside');
+        forms.append(...station.slice.operations(object.interface).map(operation => operationForm(object, operation)));
+        registers.dataset.block = object.block; // live.js fills it
+        details.append(forms, ...(object.block ? [registers] : []));
     });
     return details;
 }

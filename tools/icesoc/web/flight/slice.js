@@ -6,8 +6,13 @@
 const INTEGERS = {byte: [0n, 255n], short: [-(2n ** 15n), 2n ** 15n - 1n], int: [-(2n ** 31n), 2n ** 31n - 1n],
     long: [-(2n ** 63n), 2n ** 63n - 1n]};
 
+// An instance of a class, which arrives after the values that refer to it.
+class Later {
+    constructor() { this.instance = null; }
+}
+
 class Slice {
-    constructor(declarations) { this.declarations = declarations; this.exceptions = new Map(); }
+    constructor(declarations) { Object.assign(this, {declarations, exceptions: new Map(), values: new Map()}); }
 
     get(type) { return this.declarations[type] || {kind: ''}; }
     // A declaration and its bases, the most derived first.
@@ -44,17 +49,35 @@ class Slice {
         const fits = fields.length === 3 && bytes.length === 1 && ['width', 'height'].every(name => fields.some(f => f.name === name));
         return fits ? ['width', 'height', bytes[0].name] : null;
     }
-    // The part of a type that this page cannot pass, or ''.
-    unfit(type, depth = 0) {
+    // Whether values of a type may contain instances of classes.
+    holdsClasses(type, depth = 0) {
         const its = this.get(type);
-        if (type === 'Object' || its.kind === 'class' || depth > 20) return 'classes';
+        if (type === 'Object' || its.kind === 'class' || depth > 20) return true;
         const inner = [...(its.kind === 'struct' ? this.fields(type).map(f => f.type) : []),
             ...(its.element ? [its.element] : []), ...(its.key ? [its.key] : [])];
-        return inner.map(each => this.unfit(each, depth + 1)).find(Boolean) || '';
+        return inner.some(each => this.holdsClasses(each, depth + 1));
     }
-    unfitOperation(operation) {
-        if ('tag' in operation || operation.parameters.some(p => 'tag' in p)) return 'optional parameters';
-        return [operation.result, ...operation.parameters.map(p => p.type)].map(type => this.unfit(type)).find(Boolean) || '';
+    // Classes that a value of a class may have: itself and the derived ones.
+    classes(type) { return Object.keys(this.declarations).filter(id => this.lineage(id).includes(type)); }
+    // Bytes of a value, if all values of the type have the same size; else 0.
+    fixedSize(type) {
+        const sizes = {bool: 1, byte: 1, short: 2, int: 4, long: 8, float: 4, double: 8};
+        if (type in sizes) return sizes[type];
+        const inner = this.get(type).kind === 'struct' ? this.fields(type).map(f => this.fixedSize(f.type)) : [0];
+        return inner.every(Boolean) ? inner.reduce((sum, each) => sum + each, 0) : 0;
+    }
+    // Bytes of an element of a sequence or a dictionary; 0: they differ.
+    elementSize(its) {
+        const sizes = [its.element, ...(its.key ? [its.key] : [])].map(each => this.fixedSize(each));
+        return sizes.every(Boolean) ? sizes.reduce((sum, each) => sum + each) : 0;
+    }
+    // Name of the format in which Ice passes an optional value.
+    optionalFormat(type) {
+        const its = this.get(type), formats = {bool: 'F1', byte: 'F1', short: 'F2', int: 'F4', float: 'F4', long: 'F8', double: 'F8', string: 'VSize'};
+        if (type in formats) return formats[type];
+        if (its.kind === 'enum') return 'Size';
+        if (its.kind === 'class' || type === 'Object') return 'Class';
+        return (its.kind === 'struct' ? this.fixedSize(type) : its.element && this.elementSize(its)) ? 'VSize' : 'FSize';
     }
 
     // Returns the checked value; throws an Error "threshold: expected 0 to 255, got 300".
@@ -79,6 +102,7 @@ class Slice {
         }
         if (type === 'string') return typeof value === 'string' ? value : refuse('a text');
         if (type.endsWith('*')) return value;
+        if (its.kind === 'class' && value === null) return null;
         if (its.kind === 'enum') return its.enumerators.some(e => e.name === value) ? value : refuse(its.enumerators.map(e => e.name).join(', '));
         if (its.kind === 'sequence') {
             if (!Array.isArray(value) && !(value instanceof Uint8Array && its.element === 'byte')) refuse(`a list of ${this.named(its.element)}`);
@@ -93,10 +117,24 @@ class Slice {
             const pairs = Array.isArray(value) ? value : Object.entries(value);
             return pairs.map(([key, each]) => [this.check(key, its.key, `key of ${where}`), this.check(each, its.element, `${where}[${key}]`)]);
         }
-        const fields = this.fields(type);
+        let actual = type;
+        if (its.kind === 'class') {
+            actual = value['@type'] === undefined ? type : '::' + String(value['@type']).replace(/^::/, '').replaceAll('.', '::');
+            if (!this.lineage(actual).includes(type)) throw new Error(`${where}.@type: expected ${this.classes(type).map(id => this.named(id)).join(', ')}, got ${JSON.stringify(value['@type'])}`);
+        }
+        const fields = this.fields(actual), checked = its.kind === 'class' ? {'@type': actual} : {};
         for (const name of Object.keys(value))
-            if (!fields.some(f => f.name === name)) throw new Error(`${where}.${name}: ${this.named(type)} has no such field`);
-        return Object.fromEntries(fields.map(f => [f.name, this.check(f.name in value ? value[f.name] : f.default, f.type, `${where}.${f.name}`, f.metadata)]));
+            if (!fields.some(f => f.name === name) && !(name === '@type' && its.kind === 'class')) throw new Error(`${where}.${name}: ${this.named(actual)} has no such field`);
+        for (const f of fields) {
+            const given = f.name in value ? value[f.name] : f.default;
+            checked[f.name] = this.checkMember(given, f, `${where}.${f.name}`);
+        }
+        return checked;
+    }
+    // Returns the checked value of a parameter or a field; null for an optional one without a value.
+    checkMember(value, member, where) {
+        if ('tag' in member && (value === null || value === undefined)) return null;
+        return this.check(value, member.type, where, member.metadata);
     }
 
     write(os, value, type) {
@@ -107,6 +145,7 @@ class Slice {
         else if (type in scalars) os[scalars[type]](value);
         else if (type.endsWith('*')) os.writeProxy(value);
         else if (its.kind === 'enum') os.writeSize(its.enumerators.find(e => e.name === value).value);
+        else if (its.kind === 'class') os.writeValue(value === null ? null : new (this.valueClass(value['@type']))(value));
         else if (its.kind === 'struct') for (const f of this.fields(type)) this.write(os, value[f.name], f.type);
         else {
             os.writeSize(value.length);
@@ -133,10 +172,69 @@ class Slice {
             return found ? found.name : value;
         }
         if (its.kind === 'struct') return Object.fromEntries(this.fields(type).map(f => [f.name, this.read(is, f.type)]));
+        if (its.kind === 'class' || type === 'Object') {
+            const later = new Later();
+            is.readValue(instance => { later.instance = instance; }, type === 'Object' ? Ice.Value : this.valueClass(type));
+            return later;
+        }
         const count = is.readSize();
         if (its.element === 'byte' && its.kind === 'sequence') return new Uint8Array(is.readBlob(count));
         const pairs = Array.from({length: count}, () => its.kind === 'dictionary' ? [this.read(is, its.key), this.read(is, its.element)] : this.read(is, its.element));
         return its.kind === 'dictionary' && its.key === 'string' ? Object.fromEntries(pairs) : pairs;
+    }
+
+    // Parameters or fields in the order of Ice's encoding: optional ones last, by their tags.
+    ordered(members) {
+        const tagged = members.filter(m => 'tag' in m).sort((a, b) => a.tag - b.tag);
+        return [...members.filter(m => !('tag' in m)), ...tagged];
+    }
+    writeMembers(os, members, values) {
+        for (const m of this.ordered(members)) {
+            const value = values[m.name], its = this.get(m.type);
+            if (!('tag' in m)) { this.write(os, value, m.type); continue; }
+            const format = this.optionalFormat(m.type);
+            if (value === null || !os.writeOptional(m.tag, Ice.OptionalFormat[format])) continue;
+            const start = format === 'FSize' ? os.startSize() : 0;
+            if (format === 'VSize' && its.kind === 'struct') os.writeSize(this.fixedSize(m.type));
+            if (format === 'VSize' && its.element && this.elementSize(its) > 1) os.writeSize(value.length * this.elementSize(its) + (value.length > 254 ? 5 : 1));
+            this.write(os, value, m.type);
+            if (format === 'FSize') os.endSize(start);
+        }
+    }
+    // Returns [[name, value]].
+    readMembers(is, members) {
+        return this.ordered(members).map(m => {
+            if (!('tag' in m)) return [m.name, this.read(is, m.type)];
+            const its = this.get(m.type), format = this.optionalFormat(m.type);
+            if (!is.readOptional(m.tag, Ice.OptionalFormat[format])) return [m.name, null];
+            if (format === 'FSize') is.skip(4);
+            if (format === 'VSize' && (its.kind === 'struct' || (its.element && this.elementSize(its) > 1))) is.skipSize();
+            return [m.name, this.read(is, m.type)];
+        });
+    }
+    // Returns a result with instances of classes as their fields.
+    resolved(value, above = []) {
+        if (value instanceof Later) {
+            if (!value.instance) return null;
+            if (above.includes(value.instance)) return '(see above)';
+            return this.resolved(value.instance.fields || {}, [...above, value.instance]);
+        }
+        if (value === null || typeof value !== 'object' || value instanceof Uint8Array) return value;
+        if (Array.isArray(value)) return value.map(each => this.resolved(each, above));
+        return Object.fromEntries(Object.entries(value).map(([name, each]) => [name, this.resolved(each, above)]));
+    }
+    // Class of Ice for the instances of a class of Slice.
+    valueClass(id) {
+        if (this.values.has(id)) return this.values.get(id);
+        const slice = this, own = this.get(id).fields || [], base = this.get(id).bases?.[0];
+        const made = class extends (base ? this.valueClass(base) : Ice.Value) {
+            constructor(fields = {}) { super(); this.fields = fields; }
+            _iceWriteMemberImpl(os) { slice.writeMembers(os, own, this.fields); }
+            _iceReadMemberImpl(is) { this.fields = {...Object.fromEntries(slice.readMembers(is, own)), ...this.fields}; }
+        };
+        Ice.Slice.defineValue(made, id, false);
+        this.values.set(id, made);
+        return made;
     }
 
     // Declares an exception to Ice, which finds it by its module.
@@ -148,8 +246,8 @@ class Slice {
             static get _parent() { return base; }
             _mostDerivedType() { return made; }
             _readMemberImpl(is) {
-                // those of the base are read after those of the derived one
-                this.fields = {...Object.fromEntries((slice.get(id).fields || []).map(f => [f.name, slice.read(is, f.type)])), ...this.fields};
+                // Fields of the base are read after those of the derived exception.
+                this.fields = {...Object.fromEntries(slice.readMembers(is, slice.get(id).fields || [])), ...this.fields};
             }
         };
         const names = id.slice(2).split('::'), last = names.pop();
@@ -160,27 +258,44 @@ class Slice {
 
     // Calls an operation; `values`: checked, by name. Returns {results, bytes}, or throws.
     async call(proxy, operation, values) {
-        for (const id of Object.keys(this.declarations)) if (this.get(id).kind === 'exception') this.exception(id);
-        const ins = operation.parameters.filter(p => !p.out), outs = operation.parameters.filter(p => p.out);
-        const results = outs.map(p => [p.name, p.type]);
-        if (operation.result !== 'void') results.push(['result', operation.result]);
+        this.declare(proxy.ice_getCommunicator());
+        const ins = operation.parameters.filter(p => !p.out), results = operation.parameters.filter(p => p.out);
+        if (operation.result !== 'void') results.push({...operation, name: 'result', type: operation.result});
         const bytes = {up: 0, down: 0};
         const marshal = os => {
             const before = os.size;
-            for (const p of ins) this.write(os, values[p.name], p.type);
+            this.writeMembers(os, ins, values);
+            if (ins.some(p => this.holdsClasses(p.type))) os.writePendingValues();
             bytes.up = os.size - before;
         };
         const unmarshal = answer => {
             const is = answer.startReadParams(), before = is.pos;
-            const found = Object.fromEntries(results.map(([name, type]) => [name, this.read(is, type)]));
+            const found = Object.fromEntries(this.readMembers(is, results));
+            if (results.some(p => this.holdsClasses(p.type))) is.readPendingValues();
             bytes.down = is.pos - before;
             answer.endReadParams();
-            return found;
+            return this.resolved(found);
         };
         const mode = operation.idempotent ? Ice.OperationMode.Idempotent : Ice.OperationMode.Normal;
-        const found = await Ice.ObjectPrx._invoke(proxy, operation.name, mode, 0, undefined, ins.length ? marshal : null,
-            results.length ? unmarshal : null, [Ice.UserException], []);
-        return {results: found || {}, bytes};
+        try {
+            const found = await Ice.ObjectPrx._invoke(proxy, operation.name, mode, 0, undefined, ins.length ? marshal : null,
+                results.length ? unmarshal : null, [Ice.UserException], []);
+            return {results: found || {}, bytes};
+        } catch (error) {
+            if (error.fields) error.fields = this.resolved(error.fields);
+            throw error;
+        }
+    }
+    // Declares all exceptions and classes to Ice, once.
+    declare(communicator) {
+        if (this.isDeclared) return;
+        this.isDeclared = true;
+        for (const id of Object.keys(this.declarations)) {
+            if (this.get(id).kind === 'exception') this.exception(id);
+            if (this.get(id).kind !== 'class') continue;
+            const made = this.valueClass(id);
+            communicator.getValueFactoryManager().add(() => new made(), id);
+        }
     }
 
     // An object that takes the operations of an interface as events.
@@ -193,10 +308,11 @@ class Slice {
                 const ins = operation.parameters.filter(p => !p.out), found = {};
                 if (ins.length) {
                     const is = incoming.startReadParams();
-                    for (const p of ins) found[p.name] = slice.read(is, p.type);
+                    Object.assign(found, Object.fromEntries(slice.readMembers(is, ins)));
+                    if (ins.some(p => slice.holdsClasses(p.type))) is.readPendingValues();
                     incoming.endReadParams();
                 } else incoming.readEmptyParams();
-                take(operation.name, found);
+                take(operation.name, slice.resolved(found));
                 incoming.writeEmptyParams();
                 return null;
             }

@@ -6,6 +6,7 @@
 #include "core_pins.h"
 #include "files.h"
 #include "map_regs.h"
+#include "standstill.h"
 #include "uav_machine.h"
 #ifdef MAP_SLOT_VISION
 #include "vision_regs.h"
@@ -335,6 +336,7 @@ void Flight::runOnHost() {
     giveKeys(config, o_.vehicles, o_.key, o_.observer);
     machine.board = SimulatedBoard(o_.seed);
     provideKeys(machine.board, config);
+    const Standstill watch([this] { return soc_.now(); });
     machine.run();
 }
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """doors: ./icesoc and make take the same options, report errors with advice, and pass no
 value to a shell; lists.py tests their lists."""
-import concurrent.futures, json, os, shutil, subprocess, tempfile, time, unittest
+import concurrent.futures, importlib.util, json, os, shutil, subprocess, tempfile, time, unittest
 from pathlib import Path
 
 from icesoc import TREE
@@ -75,10 +75,11 @@ class Values(Work):
             options = [o for o in each.options if o.listed and not o.positional
                        and o.kind.metavar in samples and o.kind not in (SWITCH, FLIGHT)
                        and o.name not in ("loss", "interference")]
+            variables = {o.variable: o.choices(None)[0] if o.choices and o.is_checked
+                         else samples[o.kind.metavar] for o in options}
             words = [word for o in options
-                     for word in (f"--{o.name}", *samples[o.kind.metavar].split())]
+                     for word in (f"--{o.name}", *variables[o.variable].split())]
             given = each.values(vars(each.parser().parse_args(words)), None, os.getcwd())
-            variables = {o.variable: samples[o.kind.metavar] for o in options}
             os.environ.update(variables)
             made = each.values({}, list(variables), os.getcwd())
             for name in variables:
@@ -168,6 +169,18 @@ MISTAKES = {
     "make -s run LOSS=7": "LOSS: expected 0 to 1, got '7'",
     "make -s run CPU=x": "CPU: expected host or m3, got 'x'",
     "make -s run CORES=nobody": "core 'nobody' has no part in a mission",
+    "make -s run CORES=fri": "; did you mean fir?",
+    "./icesoc core test fri": "IP: expected the name of a core, got 'fri'; did you mean fir?",
+    "./icesoc synth --design modme": "the name of a design, got 'modme'; did you mean modem?",
+    "./icesoc synth edif --design socc": "got 'socc'; did you mean soc?",
+    "./icesoc test --label frmware": "got 'frmware'; did you mean firmware?",
+    "./icesoc regress --name Brust": "expected a word of a test's name, got 'Brust'; did you mean ",
+    "./icesoc check mutants --block busses": "got 'busses'; did you mean bus",
+    "./icesoc check sanitizers --kinds adress": "got 'adress'; did you mean address?",
+    "./icesoc check netlist --family ecp6": "--family: expected xc6s or ecp5, got 'ecp6'",
+    "./icesoc contract diff nowhere": "unknown commit BASE=nowhere",
+    "./icesoc core remove fri": "there is no ip/fri; did you mean fir?",
+    "./icesoc core new Fir --lang vhdl": "words of small letters and digits",
     "make -s run PROBE=fir.go=1": "PROBE='fir.go=1' is a trigger of a probe: give --cores probe",
     "make -s run OUT=/proc/none": "OUT='/proc/none': expected a folder",
     "make -s run UPDATE=/none CPU=m3": "cannot read '/none'",
@@ -197,16 +210,42 @@ class Mistakes(Work):
     def test_each_is_answered_in_words(self):
         for words, said in MISTAKES.items():
             status, text = ask(*words.split())
-            self.assertNotEqual(status, 0, words)
+            self.assertEqual(status, 2, words)
             self.assertIn(said, text, words)
             self.assertNotIn("Traceback", text, words)
 
     def test_nothing_is_built_before_what_is_wrong_is_said(self):
         self.script("tree/cmake/setup.sh", "echo set up\n")
-        for wrong in ("LOSS=7", "SIZE=1x1", "IMAGE=none", "SEED=-1", "CORES=nobody",
-                      "PROBE=u_fir.sent=1", "APP=minimal", "THRESHOLD=300"):
-            self.assertNotIn("set up", ask("make", "-s", "run", wrong,
-                                           ICESOC_TREE=str(self.work / "tree"))[1], wrong)
+        for folder in ("ip", "synth", "tests"):
+            shutil.copytree(TREE / folder, self.work / "tree" / folder, dirs_exist_ok=True)
+        for wrong in ("run LOSS=7", "run SIZE=1x1", "run IMAGE=none", "run SEED=-1",
+                      "run CORES=nobody", "run PROBE=u_fir.sent=1", "run APP=minimal",
+                      "run THRESHOLD=300", "ip-test IP=fri", "synth DESIGN=scs", "test LABEL=rlt",
+                      "regress NAME=Brust", "mutants BLOCK=busses", "contract-diff BASE=nowhere"):
+            status, text = ask("make", "-s", *wrong.split(), ICESOC_TREE=str(self.work / "tree"))
+            self.assertEqual(status, 2, wrong)
+            self.assertNotIn("set up", text, wrong)
+
+    def test_names_are_completed_at_both_doors(self):
+        for line, wanted in (("make ip-t", "ip-test"), ("make ip-test IP=f", "fir"),
+                             ("make run CP", "CPU="), ("make run CPU=", "host m3"),
+                             ("make test LABEL=firm", "firmware"),
+                             ("make synth DESIGN=modem_ba", "modem_baud"),
+                             ("make run CORES=as", "ascon"), ("make run NONE=", "")):
+            self.assertEqual(ask("./icesoc", _ICESOC_MAKE=line), (0, "\n".join(wanted.split())
+                                                                  + "\n"), line)
+        for line, wanted in (("./icesoc core test f", "fir"), ("./icesoc run --cpu ", "host"),
+                             ("./icesoc test --label firm", "firmware"),
+                             ("./icesoc synth --design modem_ba", "modem_baud"),
+                             ("./icesoc regress --name IsReportedOn", "IsReportedOnceWith")):
+            if importlib.util.find_spec("argcomplete"):
+                done = subprocess.run(
+                    ["bash", "-c", "./icesoc 8>&1 9>/dev/null >/dev/null 2>&1"], cwd=TREE,
+                    capture_output=True, text=True,
+                    env=clean(_ARGCOMPLETE="1", COMP_TYPE="9", _ARGCOMPLETE_IFS="\n",
+                              COMP_LINE=line, COMP_POINT=str(len(line)),
+                              _ARGCOMPLETE_SUPPRESS_SPACE="1"))
+                self.assertIn(wanted, done.stdout, line)
 
     def test_where_one_may_not_write_what_to_do_is_said(self):
         theirs = self.work / "theirs"
@@ -234,7 +273,7 @@ class Mistakes(Work):
         self.assertEqual((status, text), (127, "icesoc: program 'cmake' not found: "
                                           "./icesoc setup --tests installs missing packages\n"))
         self.assertEqual(ask("./icesoc", "commands", "--man", "/dev/full"),
-                         (1, "icesoc: No space left on device\n"))
+                         (1, "icesoc: No space left on device: /dev/full\n"))
 
     def test_an_interrupt_ends_all_with_one_message(self):
         self.script("tree/cmake/setup.sh", f"echo $$ >{self.work}/child\nexec sleep 5000\n")

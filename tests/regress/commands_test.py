@@ -163,7 +163,7 @@ class Cases(Project):
         self.bad("wave IP=fir TEST=Imp", "2 tests, not one of")
         self.good("ip-test IP=fir")
         self.has("1 tests passed|100% tests passed", "^test_ip_fir.Impulse: LEVELS: not read back$")
-        self.bad("ip-test IP=nobody", "there is no core 'nobody': fir")
+        self.bad("ip-test IP=nobody", "IP: expected the name of a core, got 'nobody'; .*fir")
         self.elsewhere()
         self.bad("bisect TEST=test_a.One GOOD=nonsense BAD=HEAD SEED=1",
                  "unknown commit GOOD=nonsense")
@@ -194,7 +194,7 @@ class Cases(Project):
         self.has("^CORE_FOLDERS.*=$", file="build/main/CMakeCache.txt")
         self.assertEqual(Path("ip/cores.list").read_text(), "fir\n")
         self.assertTrue((mine / "ground.py").exists())
-        self.bad("wave IP=mine TEST=Impulse", "there is no core 'mine': fir")
+        self.bad("wave IP=mine TEST=Impulse", "'mine'.*: fir")
 
     def test_commands_nightly(self):
         """Each step runs even if earlier ones failed, and each failure is reported."""

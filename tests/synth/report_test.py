@@ -336,7 +336,7 @@ class Cases(Script):
         self.has("'none'.*choose from")
         write("project/build/main/cores.known", "store\n")
         self.made("ip-synth", "IP=missing", status=None)
-        self.has("there is no core 'missing': store")
+        self.has("expected the name of a core, got 'missing'; known: store")
 
     def test_equivalent(self):
         """A netlist is proven equivalent to its RTL, once; one with a fault is not."""

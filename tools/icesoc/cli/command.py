@@ -11,6 +11,7 @@ import re
 import typing
 
 from icesoc.cli.options import ARGUMENTS, BUILT, PATHS, SWITCH
+from icesoc.util.console import warn
 from icesoc.util.errors import Stop, nearest
 
 COMMANDS = {}  # command by name, such as "core new", in the order of the list
@@ -66,9 +67,13 @@ class Command:
             action: typing.Any = parser.add_argument(name, **more)
             if option.completer:
                 action.completer = option.completer
+            elif option.choices or option.kind.words:
+                action.completer = option.completions
             if option.positional:  # also by its name, as with make
                 more["help"] = argparse.SUPPRESS
-                parser.add_argument(f"--{option.name}", dest=f"--{option.field}", **more)
+                again: typing.Any = parser.add_argument(f"--{option.name}",
+                                                        dest=f"--{option.field}", **more)
+                again.completer = getattr(action, "completer", None)
         return parser
 
     def values(self, given, makes, place):
@@ -97,6 +102,8 @@ class Command:
                     text = os.path.join(place, text)
                 value = option.value(text, called)
             setattr(values, option.field, value)
+        for option in self.options:
+            option.check_names(getattr(values, option.field), values)
         return values
 
 
@@ -190,9 +197,49 @@ def complete():
     for name, each in COMMANDS.items():
         first, _, last = name.rpartition(" ")
         if first not in within:
-            within[first] = within[""].add_parser(first, help=GROUPS[first]).add_subparsers()
+            group = within[""].add_parser(first, help=GROUPS[first])
+            if first in DEFAULTS:
+                COMMANDS[DEFAULTS[first]].parser(group)
+            within[first] = group.add_subparsers()
         each.parser(within[first].add_parser(last, help=each.help))
     argcomplete.autocomplete(top)
+
+
+def complete_make(line):
+    """Returns what may follow a command line of make: verbs, `VARIABLE=`, or values. Bash treats =
+    as the end of a word."""
+    words = line.split(" ")[1:]
+    last = words.pop()
+    goals = [word for word in words if word and "=" not in word and not word.startswith("-")]
+    commands = [each for each in COMMANDS.values() if each.make and each.make in goals]
+    options = {option.variable: option for each in commands for option in each.options
+               if option.listed}
+    name, has_value, prefix = last.partition("=")
+    if has_value:
+        return options[name].completions(prefix) if name in options else []
+    if commands:
+        return sorted(f"{variable}=" for variable in options if variable.startswith(last))
+    return sorted({each.make for each in COMMANDS.values() if (each.make or "").startswith(last)
+                   and each.make})
+
+
+def completion_code():
+    """The code that a shell evaluates to complete ./icesoc, and make in this project."""
+    code = """
+_icesoc_make() {
+    [ -x ./icesoc ] && grep -qs '^# Makefile: .*icesoc' Makefile || return
+    local IFS=$'\\n'
+    COMPREPLY=($(_ICESOC_MAKE="${COMP_LINE:0:$COMP_POINT}" ./icesoc 2>/dev/null))
+    [ ${#COMPREPLY[@]} != 1 ] || [ "${COMPREPLY[0]%=}" = "${COMPREPLY[0]}" ] || compopt -o nospace
+}
+complete -o bashdefault -o default -F _icesoc_make make
+"""
+    try:
+        from argcomplete import shellcode
+    except ImportError:
+        warn("./icesoc setup --tests installs python3-argcomplete, which completes ./icesoc")
+        return code
+    return shellcode(["./icesoc"], shell="bash") + code
 
 
 def short(text, width):

@@ -10,12 +10,12 @@ import re
 import secrets
 from pathlib import Path
 
-from icesoc.cli import keys
+from icesoc.cli import choices, keys
 from icesoc.cli.build_folder import BuildFolder
 from icesoc.cli.options import (CORE_FOLDERS, COUNT, FILE, FOLDER, FRAME, KEY_FILE, PATH, SEED,
                                 SHARE, SWITCH, TEXT, UCOS2, WORDS, Option, matching, number, one_of)
 from icesoc.util.console import say
-from icesoc.util.errors import Stop
+from icesoc.util.errors import Stop, nearest
 from icesoc.util.schema import limits, problems
 
 VERSION = 3
@@ -44,7 +44,8 @@ FIELDS = [
            "uav: the mission; minimal: the small program of Table II (needs --cpu m3)", "uav"),
     Option("port", number(0, 65535), "TCP port of the flight's page; 0 selects a free port", 0),
     Option("live", SWITCH, "keep page and vehicle until Ctrl-C, for ./icesoc call"),
-    Option("cores", WORDS, "cores to call during the flight (ip/*/ground.py)"),
+    Option("cores", WORDS, "cores to call during the flight (ip/*/ground.py)",
+           choices=choices.flown, is_checked=False),
     Option(
         "camera", SWITCH,
         "send the picture through the pins of the camera core instead of writing it to memory"
@@ -185,7 +186,8 @@ def complete(values):
     for at, core in enumerate(values.cores):
         folder = build.core(core)
         if not (folder / "ground.py").is_file():
-            raise Stop(f"core '{core}' has no part in a mission: there is no {folder}/ground.py", 2)
+            raise Stop(f"core '{core}' has no part in a mission: there is no {folder}/ground.py"
+                       + nearest(core, choices.flown()), 2)
         if folder.is_absolute():  # outside of ip/
             values.cores[at] = str(folder)
     try:
@@ -202,7 +204,7 @@ def check_chip(values, build):
     lines = re.findall(r"^\s*(\w+)", Path(listed).read_text(), re.M)
     for core in (Path(folder).name for folder in values.cores):
         if core not in lines:
-            raise Stop(f"the chip has no core '{core}': it needs a line '{core}' in {listed}")
+            raise Stop(f"the chip has no core '{core}': it needs a line '{core}' in {listed}", 2)
 
 
 def take_key(values, build):

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: MIT
 """main: the two entry points (./icesoc and make), the environment of all programs, and error
 handling."""
+import io
 import os
 import pwd
 import re
 import sys
+import traceback
+from pathlib import Path
 
 from icesoc import TREE
 from icesoc.cli import command
@@ -53,6 +56,8 @@ def act(words):
     declare(words)
     if "_ARGCOMPLETE" in os.environ:
         return command.complete()
+    if line := os.environ.get("_ICESOC_MAKE"):
+        return say("\n".join(command.complete_make(line)))
     if not words and (not made or made[0] == "help"):
         return say(command.overview())
     if made:
@@ -85,5 +90,19 @@ def main(words):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
     except OSError as error:
-        warn(f"{error.strerror}" + (f": {error.filename}" if error.filename else ""))
+        path = path_of(error)
+        warn(f"{error.strerror}" + (f": {path}" if path else ""))
         return 1
+
+
+def path_of(error):
+    """Returns the path of the file that an exception is about. Python omits it when a write fails,
+    as on a full disk: then it is the file open in the innermost function, or the path there."""
+    found = error.filename or ""
+    for frame, _ in [] if found else traceback.walk_tb(error.__traceback__):
+        local = frame.f_locals.values()
+        names = [getattr(each, "name", "") for each in local if isinstance(each, io.IOBase)]
+        names = [each for each in names if each and isinstance(each, str)]
+        names += [str(each) for each in local if isinstance(each, Path)]
+        found = names[0] if names else found
+    return found

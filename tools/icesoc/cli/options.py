@@ -9,7 +9,10 @@ import os
 import re
 import typing
 
-from icesoc.util.errors import Stop
+from icesoc.cli import choices
+from icesoc.util.errors import Stop, nearest
+
+MOST_LISTED = 20  # names in a message
 
 
 @dataclasses.dataclass
@@ -19,6 +22,7 @@ class Kind:
     expected: str  # completes "LOSS: expected ..."
     schema: dict = None  # JSON schema of the value in flight.json
     metavar: str = "VALUE"
+    words: tuple = ()  # all values, if they are few words
 
 
 @dataclasses.dataclass
@@ -31,6 +35,9 @@ class Option:
     variable: str = ""  # name as a make variable
     listed: bool = True  # False: hidden, for the tests of this project
     completer: typing.Callable = None  # of argcomplete
+    choices: typing.Callable = None  # known names, by the values of all options: choices.py
+    has_name: typing.Callable = None  # whether a value is valid in addition to the choices
+    is_checked: bool = True  # False: the choices are for completion only
 
     def __post_init__(self):
         self.variable = self.variable or self.name.upper().replace("-", "_")
@@ -49,6 +56,28 @@ class Option:
         except ValueError as error:
             raise Stop(str(error) or f"{called}: expected {self.kind.expected}, got '{text}'",
                        2) from None
+
+    def check_names(self, value, values):
+        """Refuses a name that is not among the choices, before anything is built. A tree without
+        choices has nothing to compare with."""
+        if not self.choices or not self.is_checked or not value:
+            return
+        names = None
+        for word in value if isinstance(value, list) else [value]:
+            if self.has_name and self.has_name(word):
+                continue
+            names = names or list(self.choices(values))
+            if names and word not in names:
+                called = self.name.upper() if self.positional else f"--{self.name}"
+                called = self.variable if values.given_by_make else called
+                known = f"; known: {', '.join(names)}" if len(names) <= MOST_LISTED else ""
+                raise Stop(f"{called}: expected {choices.noun(self.choices)}, got '{word}'"
+                           f"{nearest(word, names)}{known}", 2)
+
+    def completions(self, prefix, **_):
+        """Returns the words that may follow, for argcomplete."""
+        names = self.kind.words or (self.choices(None) if self.choices else ())
+        return [name for name in names if name.startswith(prefix)]
 
     def none(self):
         """Returns the value of an option that is not given."""
@@ -92,8 +121,10 @@ def number(low, high=None, unit="", convert=int):
 
 
 def one_of(*words):
-    return matching("|".join(map(re.escape, words)), " or ".join(words), schema={
+    kind = matching("|".join(map(re.escape, words)), " or ".join(words), schema={
         "enum": list(words)}, metavar="|".join(words))
+    kind.words = words
+    return kind
 
 
 def _switch(text):
@@ -156,11 +187,15 @@ JOBS = Option("jobs", COUNT, "parallel build processes", len(os.sched_getaffinit
 TESTS = Option("tests", COUNT,
                "parallel tests (default: CPUs + 2, since some tests wait for a clock)", None)
 SEED = Option("seed", number(0), "seed of all random numbers", 1)
-FAMILY = Option("family", TEXT, "FPGA family of netlists: xc6s (Spartan-6) or ecp5", "xc6s")
+FAMILY = Option("family", one_of("xc6s", "ecp5"), "FPGA family of netlists", "xc6s")
 NAME = Option("name", TEXT, "whole word in test names, or a regular expression")
+TEST_NAME = dataclasses.replace(NAME, choices=choices.words_of_tests,
+                                has_name=choices.may_name_test)
 LABEL = Option("label", TEXT,
-               "label of the tests: rtl, vhdl, formal, lint, firmware, slice, interop, e2e, ...")
-BLOCK = Option("block", TEXT, "block to test, such as bus or modem")
+               "label of the tests: rtl, vhdl, formal, lint, firmware, slice, interop, e2e, ...",
+               choices=choices.labels, has_name=choices.has_label)
+BLOCK = Option("block", TEXT, "block to test, such as bus or modem", choices=choices.blocks,
+               is_checked=False)
 UCOS2 = Option("ucos2", FOLDER,
                "folder of uC/OS-II sources, to build the firmware with this kernel in addition "
                "(docs/firmware.md)")

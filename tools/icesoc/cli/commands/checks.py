@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: MIT
 """check: proofs, sanitizers, seeded bugs, faults, hours of radio, measurements."""
+import dataclasses
 import json
 import re
 import shutil
 import sys
 from pathlib import Path
 
+from icesoc.cli import choices
 from icesoc.cli.build_folder import ROOMS_OF_PROGRAMS, BuildFolder, configured, netlists
 from icesoc.cli.command import GROUPS, command
 from icesoc.cli.options import (BLOCK, BUILD, COUNT, FAMILY, FRESH, JOBS, MINUTES, NAME, PATH, SEED,
@@ -68,7 +70,8 @@ def netlist(values):
 
 
 @command("check sanitizers",
-         [Option("kinds", WORDS, "sanitizers to use: address or thread", ["address", "thread"]),
+         [Option("kinds", WORDS, "sanitizers to use: address or thread", ["address", "thread"],
+                 choices=choices.sanitizers),
           Option("programs", WORDS, f"test programs to run: {', '.join(GUARDED)}", list(GUARDED)),
           BUILD, JOBS],
          make="sanitizers", brief="check sanitizers --kinds address --programs test_icec",
@@ -117,7 +120,8 @@ def fuzz(values):
 
 
 @command("check mutants", [
-    BLOCK,
+    dataclasses.replace(BLOCK, help="block with seeded bugs, or block/bug", choices=choices.seeded,
+                        is_checked=True),
     Option("draw", COUNT,
            "number of random mutants per proof, drawn by Yosys, instead of those in tests/mutants"),
      SEED,

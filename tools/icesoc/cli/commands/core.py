@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """core: begin a core, test it, look at it, take it away (docs/guides/core-new.md)."""
+import dataclasses
 import os
 import re
 import shutil
@@ -8,13 +9,14 @@ from pathlib import Path
 
 from icesoc import TREE
 from icesoc.chip import manifest
+from icesoc.cli import choices
 from icesoc.cli.build_folder import BuildFolder
 from icesoc.cli.command import GROUPS, command
 from icesoc.cli.commands.synth import utilisation
 from icesoc.cli.options import (BUILD, CORE_FOLDERS, FILE, FOLDER, JOBS, SEED, SWITCH, TEXT, Option,
                                 matching, one_of)
 from icesoc.util.console import say, warn
-from icesoc.util.errors import Stop
+from icesoc.util.errors import Stop, nearest
 from icesoc.util.process import logged, output, run
 from icesoc.util.reserved import REFUSAL, RESERVED
 
@@ -22,7 +24,8 @@ TEMPLATE = TREE / "tools/icesoc/cores/template"
 
 GROUPS["core"] = "cores: begin, test, view, remove"
 NAME = Option("name", TEXT, "name of the core, such as low_pass", "", positional=True)
-CORE = Option("ip", matching(r"\w+", "the name of a core"), "name of the core", "", positional=True)
+CORE = Option("ip", matching(r"\w+", "the name of a core"), "name of the core", "", positional=True,
+              choices=choices.cores)
 CHIP = Option("chip", SWITCH,
               "synthesise the current chip (takes minutes) instead of using the accepted figures")
 
@@ -31,23 +34,24 @@ def check_name(name, room="ip"):
     """Refuses a name that is invalid or taken, in the tree or in the folder `room`."""
     if not name:
         raise Stop("a core needs a name: ./icesoc core new low_pass --lang verilog "
-                   "(make new-ip NAME=low_pass LANG=verilog)")
+                   "(make new-ip NAME=low_pass LANG=verilog)", 2)
     if not re.fullmatch(r"[a-z][a-z0-9]*|[a-z][a-z0-9]+(_[a-z][a-z0-9]+)+", name):
         raise Stop(
-            f"'{name}': words of small letters and digits, joined by _, such as mixer or low_pass")
+            f"'{name}': words of small letters and digits, joined by _, such as mixer or low_pass",
+            2)
     if name in RESERVED:
-        raise Stop(f"'{name}' {REFUSAL}")
+        raise Stop(f"'{name}' {REFUSAL}", 2)
     for folder in (Path("ip", name), Path(room, name)):
         if os.path.lexists(folder):
-            raise Stop(f"{folder} is there already")
+            raise Stop(f"{folder} is there already", 2)
     for room in ("bus", "hdl", "ip", "sw", "testbench", "synth"):
         for path in sorted(Path(room).rglob("*")):
             if room != "synth" and path.name in (f"{name}.regs.json", f"{name}_wrapper.v"):
-                raise Stop(f"{path} has the name '{name}'")
+                raise Stop(f"{path} has the name '{name}'", 2)
             if room not in ("sw", "testbench") and path.suffix in (".v", ".vhd") and re.search(
                     rf"^ *(module|entity) +{name}(_wrapper)?\b", path.read_text(errors="replace"),
                     re.M | re.I):
-                raise Stop(f"there is a module '{name}' in {path}")
+                raise Stop(f"there is a module '{name}' in {path}", 2)
 
 
 def write_own(build, name, lang, ice, folder):
@@ -132,7 +136,7 @@ def new(values):
     """create a core: ip/NAME with interface, RTL and a test that passes"""
     name, lang = values.name, values.lang
     if name and not lang:
-        raise Stop("--lang: expected verilog or vhdl (LANG=...), got nothing")
+        raise Stop("--lang: expected verilog or vhdl (LANG=...), got nothing", 2)
     room = values.repository or "ip"
     check_name(name, room)
     build = BuildFolder(values.build, values).prepare()
@@ -176,13 +180,13 @@ def new(values):
 def known(values):
     """Returns the build folder that contains the core."""
     if not values.ip:
-        raise Stop("a core is needed: ./icesoc core test fir (make ip-test IP=fir)")
+        raise Stop("a core is needed: ./icesoc core test fir (make ip-test IP=fir)", 2)
     build = BuildFolder(values.build, values).prepare()
     if not values.built:
         build.ninja("build.ninja")  # CMake has not seen newer folders
     cores = (build / "cores.known").read_text().split()
     if values.ip not in cores:
-        raise Stop(f"there is no core '{values.ip}': {' '.join(cores)}")
+        raise Stop(f"there is no core '{values.ip}': {' '.join(cores)}", 2)
     return build
 
 
@@ -224,7 +228,8 @@ def one_test(program, text):
     found = [name for name in names if text in (name, name.partition(".")[2])] or [
         name for name in names if re.search(text, name)]
     if len(found) != 1:
-        raise Stop(f"TEST={text} is {len(found)} tests, not one of:\n{listed}")
+        raise Stop(f"TEST={text} is {len(found)} tests, not one of:\n{listed}"
+                   + nearest(text, names), 2)
     return found[0]
 
 
@@ -246,7 +251,7 @@ def wave(values):
     core = values.ip
     if not core or not values.test:
         raise Stop("wave needs a core and a test: ./icesoc core wave fir Impulse "
-                   "(make wave IP=fir TEST=Impulse)")
+                   "(make wave IP=fir TEST=Impulse)", 2)
     main = known(values)
     source = main.core(core) / f"{core}_test.cpp"
     if not source.exists():
@@ -290,7 +295,8 @@ def users_of(name):
             yield user
 
 
-@command("core remove", [NAME, Option("force", SWITCH, "remove it even with uncommitted changes"),
+@command("core remove", [dataclasses.replace(NAME, choices=choices.cores, is_checked=False),
+                         Option("force", SWITCH, "remove it even with uncommitted changes"),
                          BUILD, JOBS], make="rm-ip", brief=("core new brief_gone --lang verilog",
                                                             "core remove brief_gone --force"),
          examples=["core remove low_pass"])
@@ -300,9 +306,9 @@ def remove(values):
     name, core = values.name, build.core(values.name or ".")
     if not re.fullmatch(r"[a-z0-9_]+", name) or name == "template":
         raise Stop(
-            f"'{name}' is not a core: ./icesoc core remove low_pass (make rm-ip NAME=low_pass)")
+            f"'{name}' is not a core: ./icesoc core remove low_pass (make rm-ip NAME=low_pass)", 2)
     if not core.is_dir():
-        raise Stop(f"there is no {core}")
+        raise Stop(f"there is no {core}{nearest(name, choices.cores(values))}", 2)
     others = build.other_cores()
     changed = core not in others and output(
         ["git", "status", "--porcelain", "--ignored", "--", core], check=False, stderr=-3)

@@ -47,6 +47,7 @@ def fly_mission(values):
         raise Stop(f"a flight needs {DESCRIPTORS} file descriptors, the limit is {descriptors}: "
                    f"ulimit -n {DESCRIPTORS}")
     flight.complete(values)
+    flight.check_chip(values, BuildFolder(values.build, values))
     build = BuildFolder(values.build, values).prepare()
     if values.netlist:
         values.clk_hz = min(values.clk_hz, NETLIST_HZ)
@@ -56,7 +57,6 @@ def fly_mission(values):
         build.set(CLK_HZ=str(values.clk_hz))
     build.ninja("mission", *(["firmware_minimal"] if values.app == "minimal" else []),
                 *(["gateway", "slice2c", "page_ice"] if values.live else []))
-    flight.check_chip(values, build)
     flight.take_key(values, build)
     flight.take_observers_key(values)
     busy = (f"another flight is under way in {values.out}; give this one a separate folder: "

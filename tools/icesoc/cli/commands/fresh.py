@@ -53,7 +53,7 @@ def fresh(values):
     if values.list:
         return say("\n".join(map(summary, rows)) or f"no machine was made in {top}")
     if os.geteuid():
-        raise Stop("check fresh needs root: mount and chroot are not for others")
+        raise Stop("check fresh needs root: mount and chroot are not for others", 2)
     for release in [values.release] if values.release else RELEASES:
         root = top / release
         steps = [PACKAGES] if values.packages else [

@@ -10,10 +10,10 @@ from pathlib import Path
 
 from icesoc.cli.build_folder import ROOMS_OF_PROGRAMS, BuildFolder, configured
 from icesoc.cli.command import COMMANDS, command
-from icesoc.cli.options import (BLOCK, BUILD, CORE_FOLDERS, COUNT, FRESH, JOBS, LABEL, NAME, SEED,
-                                SWITCH, TESTS, TEXT, UCOS2, WORDS, Option, matching, number)
+from icesoc.cli.options import (BLOCK, BUILD, CORE_FOLDERS, COUNT, FRESH, JOBS, LABEL, SEED, SWITCH,
+                                TEST_NAME, TESTS, TEXT, UCOS2, WORDS, Option, matching, number)
 from icesoc.util.console import say
-from icesoc.util.errors import Stop
+from icesoc.util.errors import Stop, nearest
 from icesoc.util.lock import lock
 from icesoc.util.process import output, run
 from icesoc.util.table import Table
@@ -34,7 +34,7 @@ def selection(values, *more):
 
 @command("test", [
     Option("folder", TEXT, "folder of the tests, such as hdl/fsmc or ip/fir (default: all)", "",
-           positional=True), LABEL, NAME, SEED, FRESH, TESTS, UCOS2, BUILD, JOBS], make="test",
+           positional=True), LABEL, TEST_NAME, SEED, FRESH, TESTS, UCOS2, BUILD, JOBS], make="test",
          brief="test tree", examples=[
              "test hdl/fsmc", "test --label rtl", "test --name Burst --seed 7"])
 def test(values):
@@ -68,7 +68,7 @@ def test(values):
 
 
 @command("regress", [
-    NAME, LABEL, BLOCK,
+    TEST_NAME, LABEL, BLOCK,
     Option("changed", SWITCH, "only tests that depend on files changed since they passed"),
     Option("failed", SWITCH, "only tests that failed last time"),
     Option("kept", SWITCH, "only known failing tests, with their recorded seeds"),
@@ -173,8 +173,8 @@ def search(program, values, good, bad, tree):
 
 @command("nightly", [
     Option("nightly", COUNT, "number of new random seeds", 3),
-    Option("steps", WORDS, "names of the steps to run, as in the table", []), NAME, LABEL, WAVES,
-    TESTS, BUILD, JOBS], make="nightly",
+    Option("steps", WORDS, "names of the steps to run, as in the table", []), TEST_NAME, LABEL,
+    WAVES, TESTS, BUILD, JOBS], make="nightly",
          brief="nightly --steps kept random --nightly 1 --name ^tree[.]pages", examples=[
              "nightly", "nightly --steps kept check-mutants"])
 def nightly(values):
@@ -207,7 +207,7 @@ def nightly(values):
             for each in COMMANDS.values() if each.long}}
     for name in values.steps:
         if name not in steps:
-            raise Stop(f"there is no step '{name}': {', '.join(steps)}", 2)
+            raise Stop(f"there is no step '{name}': {', '.join(steps)}{nearest(name, steps)}", 2)
     build.prepare(tests=True).ninja()
     table = Table("build/nightly")
     for name in values.steps or steps:  # each runs, even if an earlier one failed

@@ -5,6 +5,7 @@ import json
 import subprocess
 from pathlib import Path
 
+from icesoc.cli import choices
 from icesoc.cli.build_folder import configured
 from icesoc.cli.command import DEFAULTS, GROUPS, command
 from icesoc.cli.options import BUILD, CORE_FOLDERS, FILE, FOLDER, JOBS, TEXT, WORDS, Option
@@ -20,7 +21,7 @@ GROUPS["contract"] = "registers: changes, import of SystemRDL"
 SHOWN = 10  # tests in a line of a pull request
 DESIGN = Option("design", WORDS,
                 "designs to measure, such as modem, table1 or soc; others are shown as last "
-                "measured")
+                "measured", choices=choices.designs)
 DIFF = tool("chip.contract_diff")
 GIT = ["git", "-c", "advice.detachedHead=false"]
 
@@ -65,7 +66,8 @@ def accept(values):
                        *with_name("--design", values.design))
 
 
-@command("synth edif", [Option("design", TEXT, "design to export", "soc"), BUILD, JOBS],
+@command("synth edif", [Option("design", TEXT, "design to export", "soc",
+                             choices=choices.designs), BUILD, JOBS],
          make="synth-edif", brief="synth edif --design npi_arbiter")
 def edif(values):
     """write the chip as EDIF for Xilinx ISE (build/synth/ise)"""
@@ -164,6 +166,8 @@ def contract_diff(values):
     """list changes of the cores' registers since a commit
 
     Exit status 1: software for that commit would break."""
+    if values.base:
+        commit(values.base)
     build = configured(values, "slice2c")
     return run([*DIFF, build / "slice/slice2c", ".", values.base], check=False)
 

@@ -59,12 +59,17 @@ def clean(values):
            "run the brief form of every command and write build/commands.md"),
     Option("only", TEXT, "only commands with this text in their name", ""),
     Option("man", PATH, "write the manual page to this file, such as icesoc.1", ""),
+    Option("completion", SWITCH, "print code for bash, and zsh with bashcompinit, that completes "
+                                 "./icesoc and make"),
     Option("schema", PATH, "write the JSON schema of a flight to this file "
                            "(tools/icesoc/cli/flight.schema.json)", "")],
          make="commands", brief="commands", examples=[
-             "commands --brief", "commands --man icesoc.1 && man ./icesoc.1"])
+             "commands --brief", "commands --man icesoc.1 && man ./icesoc.1",
+             "commands --completion"])
 def commands(values):
     """list all commands with their brief forms, or run the brief forms"""
+    if values.completion:
+        return say(doors.completion_code())
     if values.man:
         Path(values.man).write_text(manual())
     if values.schema:

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: MIT
+"""choices: the names that options take, found in the files of the tree: for completion, and for
+checks before anything is configured or built.
+
+Each function gets the values of a command's options, or None in a completion.
+"""
+import argparse
+import functools
+import json
+import os
+import re
+from pathlib import Path
+
+from icesoc.cli.build_folder import BuildFolder
+
+HARDWARE = ("bus", "hdl", "ip", "synth")
+SEARCHED = (*HARDWARE, "cmake", "slice", "sw", "testbench", "tests", "tools")
+MODULE = re.compile(r"^ *(?:module|entity) +(\w+)", re.M | re.I)
+CASE = re.compile(r"^ *(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)", re.M)
+
+
+def files(folders, *endings):
+    """Yields the files below folders with these endings."""
+    for folder in folders:
+        for place, _, names in os.walk(folder):
+            yield from (Path(place, name) for name in names if name.endswith(endings))
+
+
+@functools.cache
+def texts(folders, *endings):
+    """Returns the texts of the files below folders with these endings."""
+    return [path.read_text(errors="replace") for path in files(folders, *endings)]
+
+
+NOUNS = {}  # for messages, by function
+
+
+def expecting(noun):
+    """Declares what a function's names are, for messages."""
+    def declare(function):
+        NOUNS[function] = noun
+        return function
+    return declare
+
+
+def noun(function):
+    return NOUNS[function]
+
+
+@expecting("the name of a core")
+def cores(values=None):
+    """The cores of the tree, and those in the folders that the command or an earlier one named."""
+    found = {path.parent.name for path in Path("ip").glob("*/core.toml")}
+    if values is None:
+        values = argparse.Namespace(build="build/main", jobs=1, built=True)
+    build = BuildFolder(values.build, values)
+    known = build / "cores.known"  # written by CMake
+    found |= set(known.read_text().split()) if known.exists() else set()
+    return sorted(found | {folder.name for folder in build.other_cores()})
+
+
+def flown(values=None):
+    """The cores that a mission can call."""
+    return [name for name in cores() if Path("ip", name, "ground.py").is_file()]
+
+
+@expecting("the name of a design")
+def designs(values=None):
+    """What can be synthesised: designs of synth/designs.json, modules, entities, and modules that
+    the build generates."""
+    listed = Path("synth/designs.json")
+    found = json.loads(listed.read_text())["designs"] if listed.is_file() else []
+    names = {name for text in texts(HARDWARE, ".v", ".vhd") for name in MODULE.findall(text)}
+    names = {name for name in names if not name.endswith(("_rules", "_proof", "_tb"))}
+    names |= {path.name.replace(".regs.json", "_regs") for path in files(HARDWARE, ".regs.json")}
+    names |= {name for core in cores(values) for name in (core, f"{core}_wrapper")}
+    return sorted(names | {each["name"] for each in found})
+
+
+@expecting("a label of tests, or an expression that matches one")
+def labels(values=None):
+    """The labels of tests."""
+    text = "\n".join(texts(SEARCHED, "CMakeLists.txt", ".cmake"))
+    found = re.findall(r'\bLABELS "?([a-z0-9_;]+)', re.sub("#.*", "", text))
+    return sorted({label for each in found for label in each.split(";") if label})
+
+
+def has_label(text):
+    """Returns whether an expression matches a label."""
+    try:
+        return any(re.search(text, label) for label in labels())
+    except re.error:
+        return False
+
+
+@expecting("a block with seeded bugs, or block/bug")
+def seeded(values=None):
+    """The blocks with seeded bugs, and each bug as block/name."""
+    names = []
+    for path in sorted(Path("tests/mutants").glob("*.bugs.json")):
+        block = path.name.partition(".")[0]
+        names += [block, *(f"{block}/{name}" for name in json.loads(path.read_text()))]
+    return names
+
+
+@expecting("a sanitizer")
+def sanitizers(values=None):
+    return ["address", "thread"]
+
+
+def blocks(values=None):
+    """The folders of tests, as --block takes them."""
+    found = {path.parent.name for folder in ("tests", "ip")
+             for path in Path(folder).rglob("CMakeLists.txt")}
+    return sorted((found | set(cores())) - {"tests", "ip"})
+
+
+def cases(values=None):
+    """The cases of C++ tests: Suite.Case."""
+    return sorted({".".join(names) for text in texts(SEARCHED, "_test.cpp")
+                   for names in CASE.findall(text)})
+
+
+@expecting("a word of a test's name")
+def words_of_tests(values=None):
+    """The words of which names of tests are made."""
+    words = {word for names in cases() for word in names.split(".")}
+    text = "\n".join(texts(SEARCHED, "CMakeLists.txt", ".cmake", ".cmake.in", "core.toml"))
+    return sorted(words | set(re.findall(r"[A-Za-z]\w{2,}", text)))
+
+
+def may_name_test(text):
+    """Returns whether a test may match: an expression always, a plain word if each part of it is in
+    the source of a test."""
+    if not re.fullmatch(r"[A-Za-z]\w*", text):
+        return True
+    known = " ".join([*words_of_tests(), *texts(SEARCHED, "_test.cpp", "_test.py", ".sh", ".json")])
+    return all(part in known for part in re.findall("[A-Za-z]{3,}", text))

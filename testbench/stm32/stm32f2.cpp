@@ -43,6 +43,16 @@ void Stm32F2::load(const std::string& elf) {
         cpu_.loadFlash(s.address, s.bytes);
 }
 
+void Stm32F2::startInRam(const std::string& elf) {
+    image_.emplace(elf);
+    for (const ElfImage::Segment& s : image_->segments())
+        if (!cpu_.writeMemory(s.address, s.bytes.data(), static_cast<uint32_t>(s.bytes.size())))
+            throw std::runtime_error(elf + ": not a program for RAM");
+    const uint32_t vectors = image_->segments().at(0).address;
+    cpu_.setReg(CortexM3::Sp, cpu_.word(vectors));
+    cpu_.setReg(CortexM3::Pc, cpu_.word(vectors + 4));
+}
+
 void Stm32F2::powerOn() {
     ++resets_.power;
     resetFlags_ = padReset | powerReset;
@@ -187,6 +197,10 @@ void Stm32F2::requireFsmc() {
         return;
     if (!(stored(ahb3Enable) & 1))
         throw Error("the FSMC's clock is off (RCC_AHB3ENR)");
+    if (wires_) { // a pin that is not switched to the FSMC leaves its wire alone
+        fsmcUsable_ = true;
+        return;
+    }
     for (const Pins& p : fsmcPins)
         for (unsigned pin = 0; pin < 16; ++pin) {
             uint32_t base = gpio + 0x400 * p.port;

@@ -11,6 +11,7 @@
 #include "elf_image.h"
 #include "fpga_pins.h"
 #include "fsmc_master.h"
+#include "pin_wires.h"
 #include "random_block.h"
 #include "stm32_flash.h"
 #include <array>
@@ -36,6 +37,8 @@ public:
     const ElfImage* image() const { return image_ ? &*image_ : nullptr; }
 
     void load(const std::string& elf);
+    // Loads a program into RAM and starts it, as a debugger does, after powerOn().
+    void startInRam(const std::string& elf);
     void powerOn();
     CortexM3::Stop run(bool singleStep = false) { return cpu_.run(singleStep); }
     // Sets the level at a pin of port B, 0..4, which EXTI can listen to.
@@ -47,6 +50,11 @@ public:
     // The FPGA's flash, on SPI 1 (PA4..7), PROGRAM_B on PC0, DONE on PC1. The flash loses its power
     // together with the processor.
     FpgaPins fpga;
+
+    // The board's wires at all pins; 0: only the connections that this class knows.
+    void wire(PinWires* wires) { wires_ = wires; }
+    // Returns what a pin does by its GPIO registers. Port 0 is A.
+    PinSetting pinSetting(unsigned port, unsigned pin) const;
 
     // USART 1, at its rate: the bytes that the firmware receives (PA10), whether that line is in a
     // break, and the listener for the bytes that it sends.
@@ -108,6 +116,7 @@ private:
     FsmcMaster& fsmc_;
     std::function<uint64_t()> now_;
     Config config_;
+    PinWires* wires_ = nullptr;
     std::function<uint64_t()> onTime_;
     uint64_t wantedNs_ = 0; // the requested time of the next call
     CortexM3 cpu_;

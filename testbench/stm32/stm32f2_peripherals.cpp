@@ -93,16 +93,31 @@ uint32_t Stm32F2::readGpio(uint32_t offset) {
                    value = storedIn(gpio + 0x400 * port, offset % 0x400, 0x28);
     if (offset % 0x400 != input)
         return value;
-    switch (port) {
-    case 0: // port A
-        return (pins_[0] & ~0x400u) | uint32_t(!isSerialBreak) << 10;
-    case 1:
-        return pins_[1];
-    case 2:
-        return uint32_t(fpga.isDone()) << 1 | uint32_t(!isJumperWired) << 2;
-    default:
-        return 0;
-    }
+    uint32_t inside = 0;
+    if (port == 0)
+        inside = (pins_[0] & ~0x400u) | uint32_t(!isSerialBreak) << 10;
+    else if (port == 1)
+        inside = pins_[1];
+    else if (port == 2)
+        inside = uint32_t(fpga.isDone()) << 1 | uint32_t(!isJumperWired) << 2;
+    return wires_ ? wires_->levels(port, static_cast<uint16_t>(inside)) : inside;
+}
+
+PinSetting Stm32F2::pinSetting(unsigned port, unsigned pin) const {
+    const uint32_t base = gpio + 0x400 * port;
+    auto field = [this](uint32_t address, unsigned at, unsigned bits) {
+        auto found = registers_.find(address);
+        return found == registers_.end() ? 0u : found->second >> at & ((1u << bits) - 1);
+    };
+    PinSetting s;
+    s.mode = static_cast<PinSetting::Mode>(field(base, 2 * pin, 2));
+    s.openDrain = field(base + 0x04, pin, 1);
+    s.speed = field(base + 0x08, 2 * pin, 2);
+    const unsigned pull = field(base + 0x0C, 2 * pin, 2);
+    s.pull = pull == 1 ? 1 : pull == 2 ? -1 : 0;
+    s.level = field(base + 0x14, pin, 1);
+    s.function = field(base + 0x20 + 4 * (pin / 8), 4 * (pin % 8), 4);
+    return s;
 }
 
 void Stm32F2::writeGpio(uint32_t offset, uint32_t value) {
@@ -114,6 +129,8 @@ void Stm32F2::writeGpio(uint32_t offset, uint32_t value) {
     else
         written = value;
     fsmcUsable_ = false;
+    if (wires_)
+        wires_->changed(offset / 0x400);
     updateFpgaPins();
 }
 
@@ -152,7 +169,8 @@ uint32_t Stm32F2::readRcc(uint32_t offset) {
 }
 
 void Stm32F2::writeRcc(uint32_t offset, uint32_t value) {
-    stored(rcc + offset) = value;
+    constexpr uint32_t isReady = 0x0A020002; // read-only bits of CR
+    stored(rcc + offset) = offset == 0 ? value & ~isReady : value;
     fsmcUsable_ = false;
     if (offset == 8)
         checkWaitStates();

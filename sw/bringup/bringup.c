@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * bringup: a self-test for the first power-on of a board. It runs from RAM, without a kernel, and
+ * reports on the console's UART (console.h).
+ *
+ * Each step relies on the ones before it. The wires are tested with the FPGA loaded with
+ * line_tester, the rest with the chip itself.
+ */
+#include "bringup.h"
+#include "console.h"
+#include "lines.h"
+#include "program_memory.h"
+#include "stm32f2.h"
+#include "timing.h"
+
+Bringup_Limits bringup_limits = {BRINGUP_ALL, 1000, 1100, 0, 600};
+
+int main(void);
+void Reset_Handler(void);
+
+static void testClock(const Timing_Clock* clock) {
+    Report_step("supply", "the microcontroller runs from its crystal at 120 MHz");
+    if (!clock->isCrystal)
+        Report_fail("HSE", 0, "no-clock", "the crystal does not oscillate",
+                    "the crystal and its capacitors, or the clock of the ST-LINK and its solder"
+                    " bridges; later figures are within 1 % only");
+    if (Report_pass()) {
+        Console_number(clock->hclkHz / 1000000UL);
+        Console_text(" MHz");
+        Console_end();
+    }
+}
+
+/* Returns the channels on which line_tester answers. */
+static U32 testContact(void) {
+    U32 found = Lines_find();
+    Report_step("contact", "the FPGA answers with line_tester or with the chip");
+    if (found && Report_pass()) {
+        Console_text("line_tester");
+        Console_end();
+    }
+    return found;
+}
+
+static void testWires(U32 found) {
+    if (bringup_limits.steps & BRINGUP_WIRES) {
+        Lines_testAlone(found);
+        Lines_testThrough(found);
+    }
+    if (bringup_limits.steps & BRINGUP_CLOCK)
+        Lines_testClock();
+    if (bringup_limits.steps & BRINGUP_MODEM_WIRES)
+        Lines_testModem();
+}
+
+int main(void) {
+    const Timing_Clock* clock = Timing_start();
+    U32 found;
+    Console_start(clock->hclkHz / 2U);
+    Console_text("BOARD " BRINGUP_BOARD);
+    Console_end();
+    testClock(clock);
+    found = testContact();
+    if (found)
+        testWires(found);
+    else {
+        Report_fail("FPGA", 0, "silent", "neither line_tester nor the chip answers",
+                    "that a bitstream is loaded (DONE is high), and the supplies of the FPGA");
+        Lines_testAlone(0);
+    }
+    Lines_release(PULL_UP);
+    Console_text("END ");
+    Console_number(Report_failures());
+    Console_end();
+    return 0;
+}
+
+/* ---- start ---- */
+
+static void halt(void) {
+    for (;;)
+        __asm__ volatile("wfi");
+}
+
+static void fault(void) {
+    Console_text("FAIL program CPU fault: the program has stopped; check: the supply of the"
+                 " microcontroller");
+    Console_end();
+    halt();
+}
+
+__attribute__((section(".vectors"), used)) static const Vector vectors[16] = {
+    stack_top, /* initial stack pointer, not a function */
+    Reset_Handler, fault, fault, fault, fault, fault, 0, 0, 0, 0, fault, fault, 0, fault, fault};
+
+void Reset_Handler(void) {
+    SCB_VTOR = (U32)vectors;
+    startMemory();
+    (void)main();
+    halt();
+}

@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * bringup: the board that the self-test runs on, and limits that a debugger may change.
+ */
+#pragma once
+
+#include "base.h"
+
+#define BRINGUP_BOARD "nucleo-f207zg"
+#define BRINGUP_HSE_HZ 25000000UL   /* microcontroller's crystal, Hz; 0: none */
+#define BRINGUP_FPGA_HZ 100000000UL /* FPGA's clock input, Hz */
+
+/* Limits of the self-test. The defaults suit a board; a simulation shortens some. */
+typedef struct Bringup_Limits {
+    U32 steps;       /* groups of steps to run, BRINGUP_... */
+    U32 modemBootMs; /* longest start of a modem, ms */
+    U32 guardMs;     /* guard time of the modem's command mode, ms (GT) */
+    U32 patternKib;  /* tested memory, KiB; 0: all of DDR3 */
+    U32 loadSeconds; /* wait for the next bitstream, s; 0: ends instead */
+} Bringup_Limits;
+
+#define BRINGUP_WIRES 1UL /* between microcontroller and FPGA */
+#define BRINGUP_CLOCK 2UL
+#define BRINGUP_MODEM_WIRES 4UL
+#define BRINGUP_ALL 0xFFFFFFFFUL
+
+extern Bringup_Limits bringup_limits;

@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * lines: tests each wire between microcontroller and FPGA from both sides, with the FPGA loaded
+ * with line_tester (hdl/bringup/line_tester.v). The microcontroller moves its pins by hand, so
+ * neither the FSMC nor the board's clock has to work.
+ */
+#pragma once
+
+#include "base.h"
+
+#define LINES 50U     /* lines of the microcontroller */
+#define FPGA_PINS 55U /* of these and of the modem */
+#define CHANNELS 3U
+
+/* Numbers of lines and of the FPGA's pins; see line_tester.v. */
+enum {
+    LINE_D0 = 0,
+    LINE_A0 = 16,
+    LINE_NE1 = 41,
+    LINE_NE2,
+    LINE_NOE,
+    LINE_NWE,
+    LINE_NBL0,
+    LINE_NBL1,
+    LINE_NADV,
+    LINE_NWAIT,
+    LINE_IRQ,
+    PIN_RXD,
+    PIN_TXD,
+    PIN_CTS,
+    PIN_RTS,
+    PIN_RESET
+};
+
+typedef enum Pull { PULL_NONE, PULL_UP, PULL_DOWN } Pull;
+
+/* A bit for each of the FPGA's pins. */
+typedef struct Pins {
+    U8 bytes[(FPGA_PINS + 7U) / 8U];
+} Pins;
+
+typedef struct Answer {
+    U32 id, clocks, edges; /* clocks: units of 64 clocks of the board, modulo 65536 */
+    Pins pins;
+    Pins early; /* the modem's pins, shortly after the last frame drove its pins */
+} Answer;
+
+/* What the tester drives. */
+extern Pins lines_value, lines_enable;
+
+const char* Lines_name(U32 line);
+int Lines_isWired(U32 line);
+void Lines_input(U32 line, Pull pull);
+void Lines_drive(U32 line, int high);
+int Lines_read(U32 line);
+/* Makes all lines inputs with this pull. */
+void Lines_release(Pull pull);
+int Pins_get(const Pins* pins, U32 pin);
+void Pins_set(Pins* pins, U32 pin, int high);
+
+/* Looks for the tester on each channel. Returns a bit for each channel that answers, and keeps the
+ * first one for Lines_exchange. */
+U32 Lines_find(void);
+/* Returns 1 for the three lines of the channel in use. They work, since the tester answers. */
+int Lines_isChannels(U32 line);
+/* Gives the tester what to drive, and returns what it saw before. Returns 0 if it does not answer.
+ */
+int Lines_exchange(Answer* answer);
+
+/* The steps. `found`: Lines_find's channels, 0 if the tester does not answer. */
+void Lines_testAlone(U32 found);   /* stuck lines and shorts, without the FPGA */
+void Lines_testThrough(U32 found); /* open, swapped and inverted lines */
+void Lines_testClock(void);        /* the FPGA's clock, and the edges of NWE */
+void Lines_testModem(void);        /* the wires between FPGA and modem */

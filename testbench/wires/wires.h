@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+//
+// wires: nets between the chips of a board, with drivers and pulls at both ends, and faults.
+//
+// A net joins two ends: 0 the microcontroller's or the modem's, 1 the FPGA's. Each end has a
+// driver, which may be off, and a pull. A released wire follows a pull after a microsecond, and
+// keeps its level without one.
+
+#pragma once
+
+#include "wire_fault.h"
+#include <cstdint>
+#include <string>
+#include <vector>
+
+class Wires {
+public:
+    // A level, or none.
+    enum Level : int8_t { None = -1, Low = 0, High = 1 };
+    struct End {
+        Level driver = None, pull = None;
+        bool operator==(const End& o) const { return driver == o.driver && pull == o.pull; }
+    };
+
+    explicit Wires(std::vector<std::string> names);
+
+    // Plants a fault. Throws std::runtime_error if it names an unknown net.
+    void plant(const WireFault& fault);
+    unsigned net(const std::string& name) const;
+    size_t count() const { return names_.size(); }
+    const std::string& name(unsigned net) const { return names_[net]; }
+
+    // Sets what an end does, at this time.
+    void set(unsigned net, unsigned end, End what, uint64_t now);
+    // A further driver at end 0: another chip on the board.
+    void setOther(unsigned net, Level driver, uint64_t now);
+    // Returns the level that an end sees.
+    bool level(unsigned net, unsigned end, uint64_t now) {
+        settle(now);
+        return nodes_[nodeOf_[2 * net + end]].level != inverted_[2 * net + end];
+    }
+    // Time at which a pull moves a wire; ~0 if none does.
+    uint64_t nextChange() const { return due_; }
+    // Two drivers have worked against each other this many times. Faults cause it; a board without
+    // faults never does.
+    uint64_t fights() const { return fights_; }
+    // True if edges of this net arrive more than once.
+    bool isRinging(unsigned net) const { return ringing_[net]; }
+
+private:
+    static constexpr uint64_t pullNs = 1000;
+    struct Node {
+        bool level = false, pulled = false;
+        bool fixed = false, fixedLevel = false; // a short to a supply
+        uint64_t since = 0;                     // time since which a pull works against the level
+        bool moving = false, fighting = false;
+    };
+
+    void settle(uint64_t now);
+    void join(unsigned a, unsigned b);
+    unsigned newNode();
+
+    std::vector<std::string> names_;
+    std::vector<Node> nodes_;
+    std::vector<unsigned> nodeOf_; // of each end
+    std::vector<bool> inverted_;   // an end sees the opposite level
+    std::vector<bool> ringing_;
+    std::vector<End> ends_;
+    std::vector<Level> others_;
+    std::vector<int8_t> drive_, pull_; // of each node, while settling
+    std::vector<bool> fight_;
+    bool dirty_ = true;
+    uint64_t due_ = ~0ull, fights_ = 0;
+};

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+//
+// bringup_test: the self-test of a new board (sw/bringup) names the wire of every planted fault.
+
+#include "line_kit.h"
+#include <gtest/gtest.h>
+#include <iostream>
+
+extern "C" {
+#include "bringup_pins.h"
+}
+
+namespace {
+
+constexpr uint32_t wires = 1, clocks = 2, modemWires = 4, all = ~0u;
+
+struct Limits { // Bringup_Limits
+    uint32_t steps, modemBootMs = 2, guardMs = 10, patternKib = 64, loadSeconds = 0;
+};
+
+// Runs the self-test with line_tester and one fault. A board without faults: "".
+std::string report(const std::string& fault, uint32_t steps, const char* elf = BRINGUP_FLASH_ELF) {
+    LineKit::Options options;
+    if (!fault.empty())
+        options.faults.push_back(WireFault::parse(fault));
+    LineKit kit(options);
+    kit.onStart([steps](Stm32F2& stm32) {
+        const Limits limits{steps};
+        stm32.cpu().writeMemory(stm32.image()->symbol("bringup_limits"), &limits, sizeof limits);
+    });
+    const std::string text = kit.run(elf, 500);
+    if (fault.empty()) {
+        EXPECT_EQ(kit.wires().fights(), 0u) << "two drivers on one wire";
+    }
+    return text;
+}
+
+// Returns "wire kind" of each failure.
+std::vector<std::string> failures(const std::string& text) {
+    std::vector<std::string> found;
+    std::istringstream lines(text);
+    for (std::string line, word, step, wire, kind; std::getline(lines, line);) {
+        std::istringstream words(line);
+        if (words >> word >> step >> wire >> kind && word == "FAIL")
+            found.push_back(wire + " " + kind.substr(0, kind.find(':')));
+    }
+    return found;
+}
+
+std::vector<std::string> wiredLines() {
+    std::vector<std::string> names;
+#define LINE(name, port, pin) \
+    if (port != 255)          \
+        names.push_back(#name);
+    BRINGUP_LINES(LINE)
+#undef LINE
+    return names;
+}
+
+// The report of a board with this fault has this failure, and no other one.
+void expectNamed(uint32_t steps, const std::string& fault, const std::string& expected) {
+    const std::string text = report(fault, steps);
+    EXPECT_NE(text.find("\nEND "), std::string::npos) << fault << ": the self-test hangs";
+    EXPECT_EQ(failures(text), std::vector<std::string>{expected}) << fault << ":\n" << text;
+}
+
+TEST(Bringup, NamesEachOpenLine) {
+    for (const std::string& line : wiredLines())
+        expectNamed(wires, line + ":open", line + " open");
+}
+
+TEST(Bringup, NamesEachStuckLine) {
+    for (const std::string& line : wiredLines())
+        for (const std::string kind : {"stuck0", "stuck1"})
+            expectNamed(wires, line + ":" + kind, line + " " + kind);
+}
+
+TEST(Bringup, NamesEachPairOfNeighboursThatIsShorted) {
+    const std::vector<std::string> lines = wiredLines();
+    for (size_t i = 0; i + 1 < lines.size(); ++i) {
+        const std::string pair = lines[i] + "-" + lines[i + 1];
+        expectNamed(wires, pair + ":short", pair + " short");
+    }
+}
+
+TEST(Bringup, NamesEachPairOfNeighboursThatIsSwapped) {
+    const std::vector<std::string> lines = wiredLines();
+    for (size_t i = 0; i + 1 < lines.size(); ++i) {
+        const std::string pair = lines[i] + "-" + lines[i + 1];
+        expectNamed(wires, pair + ":swapped", pair + " swapped");
+    }
+}
+
+TEST(Bringup, NamesPairsThatAreNoNeighbours) {
+    for (const std::string pair : {"NE1-NWE", "NOE-NWE", "D0-IRQ", "A0-NWAIT", "NE2-NBL0"})
+        expectNamed(wires, pair + ":swapped", pair + " swapped");
+    for (const std::string pair : {"D15-A24", "D0-NWAIT", "NE1-NBL0"})
+        expectNamed(wires, pair + ":short", pair + " short");
+}
+
+TEST(Bringup, NamesInvertedAndRingingLines) {
+    expectNamed(all, "NWAIT:inverted", "NWAIT inverted");
+    expectNamed(all, "IRQ:inverted", "IRQ inverted");
+    expectNamed(all, "NWE:ringing", "NWE ringing");
+}
+
+TEST(Bringup, NamesAClockThatIsMissingOrWrong) {
+    expectNamed(clocks, "CLK:none", "CLK no-clock");
+    expectNamed(clocks, "CLK:off=2%", "CLK wrong-rate");
+    expectNamed(clocks, "CLK:off=-2%", "CLK wrong-rate");
+}
+
+TEST(Bringup, NamesEachLineOfTheModem) {
+    expectNamed(modemWires, "MODEM:none", "MODEM silent");
+    for (const std::string line : {"RXD", "TXD", "CTS", "RTS", "RESET"})
+        for (const std::string kind : {"open", "stuck0", "stuck1"})
+            expectNamed(modemWires, "MODEM_" + line + ":" + kind, "MODEM_" + line + " " + kind);
+    for (const std::string pair : {"RXD-MODEM_TXD", "CTS-MODEM_RTS", "RXD-MODEM_CTS"})
+        expectNamed(modemWires, "MODEM_" + pair + ":swapped", "MODEM_" + pair + " swapped");
+    for (const std::string pair : {"RXD-MODEM_TXD", "CTS-MODEM_RTS"})
+        expectNamed(modemWires, "MODEM_" + pair + ":short", "MODEM_" + pair + " short");
+}
+
+TEST(Bringup, AGoodBoardPasses) {
+    for (const char* elf : {BRINGUP_ELF, BRINGUP_FLASH_ELF}) {
+        const std::string text = report("", all, elf);
+        EXPECT_NE(text.find("END 0"), std::string::npos) << elf << ":\n" << text;
+    }
+}
+
+} // namespace

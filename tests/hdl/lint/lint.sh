@@ -6,7 +6,7 @@
 set -eu
 module=$1 source=$2 gen=$3
 folders=$source/bus
-for room in fsmc ddr modem system cdc; do folders="$folders $source/hdl/$room"; done
+for room in fsmc ddr modem system cdc bringup; do folders="$folders $source/hdl/$room"; done
 core=$(ls "$source"/ip/*/"$module.v" 2>/dev/null || true)
 [ -z "$core" ] || folders="$folders $(dirname "$core")"
 file=$(for f in $folders "$gen"; do ls "$f/$module.v" 2>/dev/null || true; done)

@@ -14,7 +14,7 @@ from icesoc.site import hdl, symbol
 # Folders with reusable RTL, and their titles.
 ROOMS = {"bus": "Register bus", "hdl/cdc": "Clock-domain crossings", "hdl/ddr": "Memory ports",
          "hdl/fsmc": "FSMC bridge", "hdl/modem": "Modem controller", "hdl/system": "Platform",
-         "hdl": "Chip"}
+         "hdl/bringup": "Tester of a new board", "hdl": "Chip"}
 # Files that contain properties or models, and no hardware.
 NOT_HARDWARE = re.compile(r"(_proof|_rules|cdc_skew|idle_proof)$")
 # Headers of the C API, by the component that a firmware links.

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "ice_messages.h"
+#include "link_program.h"
 #include "random.h"
 #include "soc_model.h"
 #include <cstring>
@@ -31,7 +32,7 @@ inline Script inOrder(std::vector<Script> steps) {
     };
 }
 
-class Ground {
+class Ground : private LinkProgram {
 public:
     struct Call {
         std::string object, operation;
@@ -56,8 +57,7 @@ public:
     }
     // Begins as a fresh program on the ground, without earlier state.
     void start() {
-        static const Link_Port port = {transmit, random, message, nothing, state, outcome, nullptr};
-        const Link_Config config = {&port, this, 1440, LINK_USE(*buffers_)};
+        const Link_Config config = {linkPort(), linkProgram(), 1440, LINK_USE(*buffers_)};
         Link_init(link_.get(), &config);
         if (!key.empty())
             Link_setKey(link_.get(), 0, key.data(), LINK_GROUND | 1);
@@ -130,34 +130,27 @@ public:
 
 private:
     U32 us() const { return static_cast<U32>(clock_ / 1000); }
-    static Ground& self(void* context) { return *static_cast<Ground*>(context); }
-    static int transmit(void* context, const U8* frame, U32 size) {
-        Ground& g = self(context);
-        g.line_.send({frame, frame + size}, g.now_);
-        return 0;
+    bool transmit(const U8* frame, U32 size) override {
+        line_.send({frame, frame + size}, now_);
+        return true;
     }
-    static U32 random(void* context) { return self(context).random_.next(); }
-    static int message(void* context, int, const U8* data, U32 size) {
-        Ground& g = self(context);
+    U32 random() override { return random_.next(); }
+    bool take(int, const U8* data, U32 size) override {
         if (size >= 14 && data[8] == 3)
-            g.validated = true;
+            validated = true;
         if (size >= 19 && data[8] == 2) {
-            g.replies[data[14] | data[15] << 8] = data[18];
-            g.messages[data[14] | data[15] << 8].assign(data, data + size);
+            replies[data[14] | data[15] << 8] = data[18];
+            messages[data[14] | data[15] << 8].assign(data, data + size);
         }
-        return 0;
+        return true;
     }
-    static void nothing(void*, int, int) {}
-    static void outcome(void* context, int, U32 size, Link_Outcome what) {
-        Ground& g = self(context);
-        g.backlog_ -= size;
+    void onOutcome(int, U32 size, Link_Outcome what) override {
+        backlog_ -= size;
         if (what == LINK_DELIVERED)
-            g.deliveredBytes += size;
-        ++(what == LINK_DELIVERED ? g.delivered : g.unknown);
+            deliveredBytes += size;
+        ++(what == LINK_DELIVERED ? delivered : unknown);
     }
-    static void state(void* context, Link_State) {
-        self(context).validated = self(context).isOpen_ = false;
-    }
+    void onState(Link_State) override { validated = isOpen_ = false; }
 
     Random random_;
     HostLine line_;

@@ -17,6 +17,7 @@
 //
 // With -DKEYED both have a key, and the fuzzer knows it.
 
+#include "link_program.h"
 #include <cstdint>
 #include <cstring>
 #include <deque>
@@ -43,7 +44,31 @@ constexpr bool isMinimal = false;
 #endif
 
 // A link with its program and its radio.
-struct Node {
+struct Node : LinkProgram {
+    bool transmit(const U8* frame, U32 size) override {
+        if (size < LINK_OVERHEAD || size > LINK_MAX_FRAME ||
+            (isMinimal && size != LINK_LENGTH(frame) + LINK_OVERHEAD)) // a packet is one frame
+            __builtin_trap();
+        if (out.size() > 50)
+            return false;
+        out.emplace_back(frame, frame + size);
+        return true;
+    }
+    U32 random() override { return nonce = nonce * 1664525u + 1013904223u; }
+    bool take(int channel, const U8* data, U32 size) override {
+        if (size < 1 || size > LINK_MAX_MESSAGE || channel < 0 || channel >= LINK_CHANNELS)
+            __builtin_trap();
+        for (U32 i = 0; i < size; ++i)
+            sum += data[i];
+        return !busy;
+    }
+    void onChannel(int channel, bool isOpen) override {
+        sum += static_cast<uint64_t>(channel) + isOpen;
+    }
+    void onState(Link_State state) override { sum += state; }
+    void onOutcome(int, U32 tag, Link_Outcome) override { sum += tag; }
+    void onWritable() override { ++sum; }
+
     std::unique_ptr<Link> link{new Link};
 #ifndef LINK_MINIMAL
     std::unique_ptr<Link_Buffers> buffers{new Link_Buffers};
@@ -54,35 +79,6 @@ struct Node {
     bool busy = false;
 };
 
-Node& node(void* c) {
-    return *static_cast<Node*>(c);
-}
-
-const Link_Port port = {
-    [](void* c, const U8* f, U32 n) {
-        if (n < LINK_OVERHEAD || n > LINK_MAX_FRAME ||
-            (isMinimal && n != LINK_LENGTH(f) + LINK_OVERHEAD)) // a packet is one frame
-            __builtin_trap();
-        if (node(c).out.size() > 50)
-            return 1;
-        node(c).out.emplace_back(f, f + n);
-        return 0;
-    },
-    [](void* c) { return node(c).nonce = node(c).nonce * 1664525u + 1013904223u; },
-    [](void* c, int channel, const U8* d, U32 n) {
-        if (n < 1 || n > LINK_MAX_MESSAGE || channel < 0 || channel >= LINK_CHANNELS)
-            __builtin_trap();
-        for (U32 i = 0; i < n; ++i)
-            node(c).sum += d[i];
-        return node(c).busy ? 1 : 0;
-    },
-    [](void* c, int channel, int isOpen) {
-        node(c).sum += static_cast<uint64_t>(channel + isOpen);
-    },
-    [](void* c, Link_State state) { node(c).sum += state; },
-    [](void* c, int, U32 tag, Link_Outcome) { node(c).sum += tag; },
-    [](void* c) { ++node(c).sum; }};
-
 const U8 key[LINK_KEY_BYTES] = {1, 2, 3};
 
 class Machine {
@@ -90,9 +86,10 @@ public:
     Machine() {
         for (Node* n : {&a_, &b_}) {
 #ifdef LINK_MINIMAL
-            const Link_Config config = {&port, n, 1440};
+            const Link_Config config = {Node::linkPort(), n->linkProgram(), 1440};
 #else
-            const Link_Config config = {&port, n, 1440, LINK_USE(*n->buffers)};
+            const Link_Config config = {Node::linkPort(), n->linkProgram(), 1440,
+                                        LINK_USE(*n->buffers)};
 #endif
             Link_init(n->link.get(), &config);
 #ifdef KEYED

@@ -8,6 +8,7 @@ extern "C" {
 #include "layer.h"
 }
 
+#include "link_program.h"
 #include "random.h"
 #include <deque>
 #include <map>
@@ -25,7 +26,7 @@ struct Weather {
 };
 
 // A link with its program and its radio. `now` is the time of the pair.
-class Side {
+class Side : private LinkProgram {
 public:
     Side(const Layer& of, const uint64_t& now, uint64_t seed, const Bytes& key, U32 side)
         : layer(of), now_(now), random_(seed), key_(key), side_(side),
@@ -35,9 +36,7 @@ public:
 
     // Forgets everything, like a reboot after a power cut.
     void boot() {
-        static const Link_Port port = {transmit, random,    onMessage, onChannel,
-                                       onState,  onOutcome, nullptr};
-        layer.init(link(), &port, this, byteTimeUs * 16);
+        layer.init(link(), linkPort(), linkProgram(), byteTimeUs * 16);
         if (!key_.empty())
             layer.setKey(link(), 0, key_.data(), side_);
         air.clear();
@@ -84,43 +83,41 @@ public:
 private:
     static constexpr U32 byteTimeUs = 90; // 111,111 baud
 
-    static Side& self(void* context) { return *static_cast<Side*>(context); }
     U32 us() const { return static_cast<U32>(now_); }
 
     // One serial port, then the air; four packets fit the modem and its ring.
-    static int transmit(void* context, const U8* frame, U32 size) {
-        Side& s = self(context);
-        if (s.serialFreeUs > s.now_ + 4 * 9000)
-            return 1;
-        s.serialFreeUs = std::max(s.serialFreeUs, s.now_) + size * byteTimeUs;
-        s.bytesSent += size;
-        if (s.random_.chance(s.weather.loss)) {
-            ++s.packetsLost;
-            return 0;
+    bool transmit(const U8* frame, U32 size) override {
+        if (serialFreeUs > now_ + 4 * 9000)
+            return false;
+        serialFreeUs = std::max(serialFreeUs, now_) + size * byteTimeUs;
+        bytesSent += size;
+        if (random_.chance(weather.loss)) {
+            ++packetsLost;
+            return true;
         }
-        Packet packet{s.serialFreeUs + s.weather.delayUs, Bytes(frame, frame + size)};
-        if (s.random_.chance(s.weather.corruption))
-            packet.bytes[s.random_.below(size)] ^= static_cast<uint8_t>(1 + s.random_.below(255));
-        s.air.push_back(packet);
-        if (s.random_.chance(s.weather.duplication))
-            s.air.push_back(packet);
-        return 0;
+        Packet packet{serialFreeUs + weather.delayUs, Bytes(frame, frame + size)};
+        if (random_.chance(weather.corruption))
+            packet.bytes[random_.below(size)] ^= static_cast<uint8_t>(1 + random_.below(255));
+        air.push_back(packet);
+        if (random_.chance(weather.duplication))
+            air.push_back(packet);
+        return true;
     }
-    static U32 random(void* context) { return self(context).random_.next(); }
-    static int onMessage(void* context, int channel, const U8* data, U32 size) {
-        if (!self(context).refuse)
-            self(context).received.emplace_back(channel, Bytes(data, data + size));
-        return self(context).refuse;
+    U32 random() override { return random_.next(); }
+    bool take(int channel, const U8* data, U32 size) override {
+        if (!refuse)
+            received.emplace_back(channel, Bytes(data, data + size));
+        return !refuse;
     }
-    static void onChannel(void* context, int channel, int isOpen) {
-        self(context).events.push_back((isOpen ? "open " : "close ") + std::to_string(channel));
+    void onChannel(int channel, bool isOpen) override {
+        events.push_back((isOpen ? "open " : "close ") + std::to_string(channel));
     }
-    static void onState(void* context, Link_State state) {
+    void onState(Link_State state) override {
         static const char* const names[] = {"idle", "connecting", "up"};
-        self(context).events.push_back(names[state]);
+        events.push_back(names[state]);
     }
-    static void onOutcome(void* context, int, U32 tag, Link_Outcome outcome) {
-        if (!self(context).outcomes.emplace(tag, outcome).second)
+    void onOutcome(int, U32 tag, Link_Outcome outcome) override {
+        if (!outcomes.emplace(tag, outcome).second)
             throw std::logic_error("two outcomes for message " + std::to_string(tag));
     }
 

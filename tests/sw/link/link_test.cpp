@@ -303,26 +303,21 @@ TEST_P(Limits, ASessionEndsAtTooManyWrongTagsAndBeginsAnew) {
 INSTANTIATE_TEST_SUITE_P(Vehicles, Limits, ::testing::Values(Variant{"limits", "limits", true}));
 
 TEST(FullLayer, LinksOverOneRadioShareWhatMayWaitForItsAnswers) {
-    static const Link_Port port = {[](void* c, const U8*, U32) {
-                                       ++*static_cast<unsigned*>(c);
-                                       return 0;
-                                   },
-                                   [](void*) { return U32(7); },
-                                   [](void*, int, const U8*, U32) { return 0; },
-                                   [](void*, int, int) {},
-                                   [](void*, Link_State) {},
-                                   nullptr,
-                                   nullptr};
+    struct Program : LinkProgram {
+        bool transmit(const U8*, U32) override { return ++packets; }
+        U32 random() override { return 7; }
+        unsigned packets = 0;
+    } programs[2];
     std::vector<Link> links(2);
     std::vector<Link_Buffers> buffers(2);
-    std::vector<unsigned> packets(2);
     const auto poll = [&](U32 now) {
         for (Link& link : links)
             Link_poll(&link, now);
-        return packets;
+        return std::vector<unsigned>{programs[0].packets, programs[1].packets};
     };
     for (size_t i = 0; i < 2; ++i) {
-        const Link_Config config = {&port, &packets[i], 1440, LINK_USE(buffers[i])};
+        const Link_Config config = {Program::linkPort(), programs[i].linkProgram(), 1440,
+                                    LINK_USE(buffers[i])};
         Link_init(&links[i], &config);
         Link_shareRadio(&links[i], &links[0]);
         Link_expectAnswers(&links[i], 1);

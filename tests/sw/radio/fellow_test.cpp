@@ -3,6 +3,7 @@
 // fellow_test: vehicles that call each other's objects through IceC's radio endpoint, while one of
 // them serves two ground stations. All have separate links and communicators, in simulated time.
 
+#include "link_program.h"
 #include "random.h"
 #include <deque>
 #include <functional>
@@ -33,7 +34,12 @@ struct World {
 };
 
 // One of three links, and the bytes on their way to it.
-struct End {
+struct End : LinkProgram {
+    bool transmit(const U8* frame, U32 size) override;
+    U32 random() override;
+    bool take(int channel, const U8* data, U32 size) override;
+    void onChannel(int channel, bool isOpen) override;
+
     Craft* craft = nullptr;
     int first = 0; // first of its connections
     Link link;
@@ -48,8 +54,6 @@ struct End {
 // vehicle's link to another vehicle.
 struct Craft {
     Craft(World& w, U16 address) : world(w), random(testSeed() + w.crafts.size()) {
-        static const Link_Port linkPort = {
-            transmit, draw, onMessage, onChannel, [](void*, Link_State) {}, nullptr, nullptr};
         static const XBeeATEndpoint_Port port = {
             [](void*) {},
             [](void*) {},
@@ -60,7 +64,7 @@ struct Craft {
         for (End& end : ends) {
             end.craft = this;
             end.first = static_cast<int>(&end - ends) * LINK_CHANNELS;
-            Link_Config config = {&linkPort, &end, 1440, LINK_USE(end.buffers)};
+            Link_Config config = {end.linkPort(), end.linkProgram(), 1440, LINK_USE(end.buffers)};
             if (&end == &ends[fellow]) {
                 config.sendBytes = 1024;
                 config.maxMessage = 512;
@@ -137,22 +141,6 @@ struct Craft {
         isBusy = false;
         return std::exchange(isSignalled, false);
     }
-    static int transmit(void* context, const U8* frame, U32 size) {
-        End& end = *static_cast<End*>(context);
-        ++end.sent;
-        if (end.peer && !end.craft->isAway && !end.peer->craft->isAway)
-            end.peer->coming.emplace_back(end.craft->world.ms + 10, Key(frame, frame + size));
-        return 0;
-    }
-    static U32 draw(void* end) { return static_cast<End*>(end)->craft->random.next(); }
-    static int onMessage(void* context, int channel, const U8* data, U32 size) {
-        End& end = *static_cast<End*>(context);
-        return XBeeATEndpoint_onMessage(&end.craft->endpoint, end.first + channel, data, size);
-    }
-    static void onChannel(void* context, int channel, int isOpen) {
-        End& end = *static_cast<End*>(context);
-        XBeeATEndpoint_onChannel(&end.craft->endpoint, end.first + channel, isOpen);
-    }
 
     struct Servant {
         Ice_Object object{};
@@ -169,6 +157,22 @@ struct Craft {
     unsigned replies = 0;
     bool isAway = false, isIdle = true, isBusy = false, isSignalled = false;
 };
+
+bool End::transmit(const U8* frame, U32 size) {
+    ++sent;
+    if (peer && !craft->isAway && !peer->craft->isAway)
+        peer->coming.emplace_back(craft->world.ms + 10, Key(frame, frame + size));
+    return true;
+}
+U32 End::random() {
+    return craft->random.next();
+}
+bool End::take(int channel, const U8* data, U32 size) {
+    return XBeeATEndpoint_onMessage(&craft->endpoint, first + channel, data, size) == 0;
+}
+void End::onChannel(int channel, bool isOpen) {
+    XBeeATEndpoint_onChannel(&craft->endpoint, first + channel, isOpen);
+}
 
 void World::step() {
     ++ms;

@@ -9,10 +9,10 @@
 /* Loads and stores of the processor; the context is not used. */
 extern const FSMC_Port board_fsmc;
 
-/* Sets up the clock (120 MHz from a crystal of 25 MHz), flash wait states and the FSMC pins. Uses
- * no RAM. */
+/* Sets up the clock (120 MHz), flash wait states and the FSMC pins, as board_pins.h describes the
+ * board. Uses no RAM. */
 void Board_start(void);
-/* Returns whether a jumper pulls PB1 low: the board is wired, without a modem. */
+/* Returns whether the jumper JUMPER_WIRED is closed: the board is wired, without a modem. */
 int Board_isWired(void);
 /* Starts SysTick, the FPGA's interrupt and the watchdog. To be called with interrupts masked,
  * before OSStart. */

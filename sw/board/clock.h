@@ -4,19 +4,19 @@
  */
 #pragma once
 
+#include "board_pins.h"
 #include "stm32f2.h"
 
-/* Switches to 120 MHz, from a 25 MHz crystal, with the flash's wait states. Does nothing if already
- * done. Uses no RAM. */
+/* Switches to 120 MHz, from the board's oscillator (board_pins.h), with the flash's wait states.
+ * Does nothing if already done. Uses no RAM. */
 static void Clock_start(void) {
     if ((RCC_CFGR & RCC_CFGR_SWS_MASK) == RCC_CFGR_SWS_PLL)
         return; /* the boot loader has done it */
-    RCC_CR |= RCC_CR_HSEON;
+    RCC_CR |= BOARD_HSE_ON;
     while (!(RCC_CR & RCC_CR_HSERDY))
         ;
-    /* The PLL makes 25 MHz / 25 * 240 / 2 = 120 MHz, and / 5 = 48 MHz for the random number
-     * generator. */
-    RCC_PLLCFGR = 25UL | 240UL << 6 | 0UL << 16 | 1UL << 22 | 5UL << 24;
+    /* The PLL makes 1 MHz * 240 / 2 = 120 MHz, and / 5 = 48 MHz for the random number generator. */
+    RCC_PLLCFGR = BOARD_HSE_MHZ | 240UL << 6 | 0UL << 16 | 1UL << 22 | 5UL << 24;
     RCC_CR |= RCC_CR_PLLON;
     while (!(RCC_CR & RCC_CR_PLLRDY))
         ;

@@ -12,6 +12,7 @@
 #define RCC_CR REG(0x40023800UL)
 #define RCC_CR_HSEON (1UL << 16)
 #define RCC_CR_HSERDY (1UL << 17)
+#define RCC_CR_HSEBYP (1UL << 18) /* a clock at OSC_IN, not a crystal */
 #define RCC_CR_PLLON (1UL << 24)
 #define RCC_CR_PLLRDY (1UL << 25)
 #define RCC_PLLCFGR REG(0x40023804UL) /* M 5..0, N 14..6, P 17..16, HSE as source 22, Q 27..24 */
@@ -96,7 +97,12 @@
 #define GPIO_BSRR(port) GPIO(port, 0x18UL) /* a bit a pin: sets 15..0, resets 31..16 */
 #define GPIO_AFR(port, half) GPIO(port, 0x20UL + 4UL * (half)) /* four bits a pin */
 #define GPIO_AF_USART1 7UL
-#define GPIO_AF_FSMC 12UL
+/* The same registers as indices of words, for a port's base address. */
+#define GPIO_MODE 0U
+#define GPIO_SPEED 2U
+#define GPIO_PULL 3U
+#define GPIO_AFRL 8U
+#define GPIO_AFRH 9U
 
 /* Pins that EXTI lines listen to, and the lines (RM0033, 7.2 and 8.3). */
 #define SYSCFG_EXTICR(n) REG(0x40013808UL + 4UL * (n)) /* four bits a line: the port */

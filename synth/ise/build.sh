@@ -7,7 +7,7 @@
 # core_pins.ucf board.ucf
 #   soc.edf      from `make synth-edif`
 #   mig-folder   user_design of a MIG core called "mig": its rtl/*.v and par/mig.ucf are used
-#   *.ucf        build/main/gen/core_pins.ucf, and your board's (synth/ise/board.ucf is an example)
+#   *.ucf        build/main/gen/core_pins.ucf, and your board's (./icesoc board make NAME)
 #   --xst        XST also synthesises soc, from the folder `verilog` (soc.edf is unused)
 set -eu
 usage() {

@@ -3,11 +3,14 @@
 // chip: top level for ISE: soc (from EDIF), the memory controller that MIG generates, pads.
 //
 // A template: `mig` and its ports have MIG 3.x's names for a core "mig" for the MCB of bank 3 with
-// one 64-bit port (UG388); c3_clk0 is the 100 MHz user clock that it makes from sys_clk_i.
+// one 64-bit port (UG388); c3_clk0 is the 100 MHz user clock that it makes from sys_clk_i. ROWS are
+// the memory's address lines: 13 for 1 Gbit, 14 for 2 Gbit (x16).
 
 `default_nettype none
 
-module chip (
+module chip #(
+    parameter ROWS = 14
+) (
     input  wire        sys_clk_i,
     input  wire        sys_rst_i,
     // FSMC pins
@@ -31,7 +34,7 @@ module chip (
     output wire [31:0] core_pins_o,
     // DDR3 pins
     inout  wire [15:0] mcb3_dram_dq,
-    output wire [12:0] mcb3_dram_a,
+    output wire [ROWS-1:0] mcb3_dram_a,
     output wire [2:0]  mcb3_dram_ba,
     output wire        mcb3_dram_ras_n,
     output wire        mcb3_dram_cas_n,

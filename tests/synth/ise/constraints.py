@@ -19,7 +19,7 @@ from pathlib import Path
 
 SOURCE, GENERATED, WORK = map(Path, sys.argv[1:])
 HERE, ISE = Path(__file__).resolve().parent, SOURCE / "synth/ise"
-FILES = [ISE / "chip.ucf", GENERATED / "core_pins.ucf", ISE / "board.ucf"]
+FILES = [ISE / "chip.ucf", GENERATED / "core_pins.ucf", GENERATED / "board.ucf"]
 from icesoc.synth.merge_ucf import statements
 
 fnmatchcase = lru_cache(None)(matches)
@@ -201,6 +201,9 @@ class Constraints:
     def missing(self, pads, pairs):
         found = {f"{tell(start)} to {tell(end)}: no constraint" for start, end in pairs
                  if not self.covers(start, end)}
+        if not any(self.groups[group][1] == ["sys_clk_i"] for group in self.periods
+                   if group in self.groups):
+            found.add("pad sys_clk_i: no PERIOD")
         for pad in pads:
             found |= {f"pad {pad}: no {word}" for word in ("IOSTANDARD", "LOC")
                       if not self.has_word(pad, word) and not (word == "LOC" and pad in unused)}

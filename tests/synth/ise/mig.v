@@ -11,7 +11,7 @@ module mig (
     input  wire        c3_sys_clk, c3_sys_rst_i,
     output wire        c3_clk0, c3_rst0, c3_calib_done,
     inout  wire [15:0] mcb3_dram_dq,
-    output wire [12:0] mcb3_dram_a,
+    output wire [13:0] mcb3_dram_a,
     output wire [2:0]  mcb3_dram_ba,
     output wire        mcb3_dram_ras_n, mcb3_dram_cas_n, mcb3_dram_we_n, mcb3_dram_odt,
     output wire        mcb3_dram_reset_n, mcb3_dram_cke, mcb3_dram_dm, mcb3_dram_udm,

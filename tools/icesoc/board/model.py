@@ -154,9 +154,32 @@ def fpga_part(path):
                              description=row["name"]) for row in rows(path)}
 
 
-def checked(path, kind):
-    """Returns the facts of a TOML file after a check by the schema."""
+def merged(base, facts):
+    """Returns the facts of a board that differs from its base: tables are merged, nets are replaced
+    by name, and those of `without` are left out."""
+    result = {**base, **facts}
+    for key, value in facts.items():
+        if isinstance(value, dict) and isinstance(base.get(key), dict):
+            result[key] = {**base[key], **value}
+    own = {net.get("name") for net in facts.get("nets", [])}
+    left_out = own | set(facts.get("without", []))
+    result["nets"] = [net for net in base["nets"] if net["name"] not in left_out]
+    result["nets"] += facts.get("nets", [])
+    return {key: value for key, value in result.items() if key not in ("base", "without")}
+
+
+def checked(path, kind, boards=BOARDS):
+    """Returns the facts of a TOML file after a check by the schema. A board with a `base` has the
+    facts of that board, except for what it changes."""
     facts = parse(path)
+    base = facts.get("base")
+    if kind == "board" and isinstance(base, str):
+        other = boards / base / "board.toml"
+        if not other.is_file():
+            raise Wrong(f"{path}: base: no board '{base}'" + nearest(base, names()))
+        if "base" in parse(other):
+            raise Wrong(f"{path}: base: expected a board without a base, got '{base}'")
+        facts = merged(checked(other, kind, boards), facts)
     if found := schema.problems(facts, {**SCHEMA["$defs"][kind], "$defs": SCHEMA["$defs"]}):
         raise Wrong("\n".join(f"{path}: {text}" for text in found))
     return facts
@@ -166,7 +189,7 @@ def read(path, boards=BOARDS):
     """Returns the Board of a file board.toml; raises Wrong with the reason and what to do.
     `boards`: the folder with parts/ and modules/."""
     path = Path(path)
-    facts = checked(path, "board")
+    facts = checked(path, "board", boards)
     parts, modules = {}, {}
     for role, reader in (("mcu", mcu_part), ("fpga", fpga_part), ("modem", None)):
         if role not in facts:

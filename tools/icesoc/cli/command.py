@@ -19,7 +19,7 @@ GROUPS = {}  # help of each group, by the first word of its commands
 DEFAULTS = {}  # command of a group that its first word alone selects
 SECTIONS = {  # of the overview: commands and groups, by what a user wants to do
     "Fly": ("run", "call", "replay", "gdb", "key", "fly"),
-    "Add cores, look at the chip": ("core", "contract", "synth"),
+    "Add cores, look at the chip": ("core", "contract", "synth", "board"),
     "Build and test": ("build", "test", "regress", "bisect", "check", "bench", "nightly"),
     "The project": ("setup", "docs", "package", "release", "clean", "commands")}
 ALIASES = {}  # other goals of make: a goal, and the switch that it sets

@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: MIT
+#
+# board.cmake: the board that the firmware and the simulator are built for: its pins (board_pins.h),
+# constraints (board.ucf) and wires (board_wires.inc), generated from boards/BOARD/board.toml.
+set(BOARD nucleo-qmtech CACHE STRING "Board of the firmware and the simulator: a folder of boards/")
+set(board_file ${CMAKE_SOURCE_DIR}/boards/${BOARD}/board.toml)
+if(NOT EXISTS ${board_file})
+  message(FATAL_ERROR "BOARD=${BOARD}: ${board_file} is missing; ./icesoc board list names the "
+    "boards")
+endif()
+file(GLOB board_inputs CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/boards/parts/*.csv
+     ${CMAKE_SOURCE_DIR}/boards/modules/*.toml ${TOOLS}/board/*.py)
+add_custom_command(
+  OUTPUT ${GEN_DIR}/board_pins.h ${GEN_DIR}/board.ucf ${GEN_DIR}/board.wires
+         ${GEN_DIR}/board_wires.inc
+  COMMAND ${PYTHON} -m icesoc.board.make ${board_file} ${GEN_DIR}
+  COMMAND ${CMAKE_COMMAND} -E touch ${GEN_DIR}/board_pins.h ${GEN_DIR}/board.ucf
+    ${GEN_DIR}/board.wires ${GEN_DIR}/board_wires.inc
+  DEPENDS ${board_file} ${board_inputs} ${TOOLS}/board/board.schema.json
+  VERBATIM COMMENT "Board: ${BOARD}")
+add_custom_target(board_files DEPENDS ${GEN_DIR}/board_pins.h)

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: MIT
+"""make: writes the generated files of a board into a folder.
+
+CMake: python -m icesoc.board.make BOARD.toml FOLDER writes board_pins.h, board.ucf, board.wires
+and board_wires.inc. `./icesoc board make NAME` writes all files."""
+import sys
+from pathlib import Path
+
+from icesoc.board import check, firmware, model, picture, simulator, ucf, wiring
+from icesoc.regs.model import Wrong
+
+
+def for_build(board):
+    """Returns the files that the build needs, name to text."""
+    if found := check.problems(board):
+        raise Wrong("\n  ".join([f"{board.path}: cannot be built:", *found]))
+    wires, constraints = simulator.wires(board), ucf.constraints(board)
+    return {"board_pins.h": firmware.header(board), "board.ucf": constraints, "board.wires": wires,
+            "board_wires.inc": simulator.literals(wires, constraints)}
+
+
+def for_bench(board):
+    """Returns the files for the bench, name to text."""
+    return {"wiring.html": wiring.table(board), "wiring.svg": picture.draw(board),
+            "bom.csv": wiring.bom(board), "openocd.cfg": firmware.openocd(board),
+            "page.md": wiring.page(board)}
+
+
+def write(files, folder):
+    """Writes files that have changed; leaves others as they are. Returns their paths."""
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, text in files.items():
+        path = folder / name
+        if not path.is_file() or path.read_text() != text:
+            path.write_text(text)
+    return [folder / name for name in files]
+
+
+def main():
+    try:
+        board = model.read(sys.argv[1])
+        write(for_build(board), sys.argv[2])
+    except Wrong as e:
+        sys.exit(str(e))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: MIT
+"""simulator: generates the wires of a board for the simulator (testbench/fsmc/board_wires.h)."""
+from icesoc.board.model import Board
+
+
+def wires(board: Board):
+    """Returns the text: the oscillator, then for each net the pin, the number and name of its
+    alternate function (- for none), the net, the ball, and the supply of its bank in V."""
+    lines = [f"# Wires of {board.name}: pin, alternate function, its name, net, ball, volts",
+             f"oscillator {board.facts['mcu']['hse_hz']}"]
+    pins, balls = board.parts["mcu"], board.parts["fpga"]
+    for net in board.nets:
+        pin, ball = net.get("mcu", "-"), net.get("fpga", "-")
+        number = pins[pin].functions.get(net.function, "-") if pin != "-" else "-"
+        bank = balls[ball].bank if ball != "-" else None
+        volts = board.banks[bank] if bank is not None else 0
+        end = pin if pin != "-" else net.get("modem", "-")
+        lines.append(f"{end} {number} {net.function or '-'} {net.name} {ball} {volts:g}")
+    return "\n".join(lines) + "\n"
+
+
+def literals(wires_text, ucf_text):
+    """Returns both texts as C++ string literals, for the simulator's default board."""
+    return (f'constexpr char defaultWires[] = R"board({wires_text})board";\n'
+            f'constexpr char defaultUcf[] = R"board({ucf_text})board";\n')

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: MIT
+"""ucf: generates a board's constraints for ngdbuild: places, supplies, pulls, the FPGA's clock.
+
+synth/ise/chip.ucf has what is the same on all boards: timing of the FSMC, crossings, standards."""
+from icesoc.board.check import multiplier
+from icesoc.board.model import Board
+
+PULLS = {"up": "PULLUP", "down": "PULLDOWN"}
+
+
+def head(board: Board):
+    """Yields the comment with the settings of MIG's core for this board."""
+    fpga = board.facts["fpga"]
+    clock = fpga["clock_hz"]
+    yield "# SPDX-License-Identifier: MIT"
+    yield "#"
+    yield f"# Generated from boards/{board.name}/board.toml: do not edit. {board.facts['title']}."
+    yield "#"
+    yield f"# MIG's core `mig`: clock {clock / 1e6:g} MHz, C3_CLKFBOUT_MULT = {multiplier(clock)},"
+    yield f"# C3_RST_ACT_LOW = {int(fpga.get('reset_low', False))}, memory clock 300 MHz (DDR3-600,"
+    yield "# 3333 ps), user clock C3_CLKOUT2_DIVIDE = 6 (100 MHz)."
+    if board.ddr:
+        yield f"# Memory: {board.ddr['part']} at bank {board.ddr['bank']}; its places come with"
+        yield f"# MIG's file. chip.v's parameter ROWS is {board.ddr['rows']}."
+
+
+def constraints(board: Board):
+    """Returns the text of the board's UCF."""
+    fpga = board.facts["fpga"]
+    lines = [*head(board), f"CONFIG VCCAUX = {fpga.get('vccaux', 3.3):g};"]
+    clock = board.net("CLOCK")
+    if clock:
+        lines += ["", "# The oscillator.",
+                  'NET "sys_clk_i" TNM_NET = "sys_clk";',
+                  f'TIMESPEC "TS_sys_clk" = PERIOD "sys_clk" {1e9 / fpga["clock_hz"]:g} ns '
+                  'HIGH 50%;']
+    bank = None
+    known = board.parts["fpga"]
+    placed = [net for net in board.nets if net.get("fpga") and net.signal.port]
+    for net in sorted(placed, key=lambda n: known[n.get("fpga")].bank):
+        ball = known[net.get("fpga")]
+        if ball.bank != bank:
+            bank = ball.bank
+            lines += ["", f"# Bank {bank}: {board.banks[bank]:g} V."]
+        pull = f" | {PULLS[net.get('pull')]}" if net.get("pull") else ""
+        lines.append(f'NET "{net.signal.port}" LOC = "{ball.name}"{pull};')
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: MIT
+"""board: list, show and check the boards of boards/, and generate their files."""
+from pathlib import Path
+
+from icesoc import TREE
+from icesoc.board import check, make, model, picture, wiring
+from icesoc.cli.command import GROUPS, command
+from icesoc.cli.options import FOLDER, SWITCH, TEXT, Option
+from icesoc.regs.model import Wrong
+from icesoc.util.console import say
+from icesoc.util.errors import Stop
+
+GROUPS["board"] = "boards: wires as data, constraints, pins"
+PAGES = TREE / "docs/boards"
+
+
+def complete_name(**_):
+    return model.names()
+
+
+NAME = Option("name", TEXT, "name of the board, such as nucleo-qmtech", "", positional=True,
+              completer=complete_name)
+
+
+def read(name):
+    """Returns the board of a name, or of a file board.toml."""
+    if not name:
+        raise Stop(f"expected the name of a board: {', '.join(model.names())}", 2)
+    try:
+        if name.endswith(".toml"):
+            return model.read(name)
+        return model.find(name)
+    except Wrong as error:
+        raise Stop(str(error)) from None
+
+
+@command("board list", [], examples=["board list"], brief="board list")
+def board_list(_):
+    """list the boards"""
+    for name in model.names():
+        board = read(name)
+        state = ("facts are missing; cannot be built" if board.facts.get("unknown")
+                 else board.facts["status"])
+        say(f"{name:22} {len(wiring.wires(board)):3} wires  {board.facts['title']} ({state})")
+
+
+@command("board show", [NAME], examples=["board show nucleo-qmtech"],
+         brief="board show nucleo-qmtech")
+def board_show(values):
+    """print a board: chips, wiring table, parts to order, notes"""
+    say(wiring.page(read(values.name)).rstrip())
+
+
+@command("board check", [NAME], examples=["board check nucleo-qmtech"],
+         brief="board check nucleo-qmtech")
+def board_check(values):
+    """reject what cannot work on a board, in words
+
+    NAME is a board of boards/, or a file board.toml. Checked are the functions of pins, pins that
+    are used twice or by something on a module, voltages of banks and levels, clock inputs, inputs
+    without a driver, and missing facts."""
+    board = read(values.name)
+    if found := check.problems(board):
+        raise Stop("\n".join([f"board check: {len(found)} problems of {board.path}",
+                              *(f"  {text}" for text in found)]))
+    say(f"{board.name}: {len(board.nets)} nets, no problem found")
+
+
+@command("board make", [
+    NAME, Option("out", FOLDER, "folder of the files (default: build/board/NAME)", ""),
+    Option("docs", SWITCH, "only write the page and the picture of the board into docs/boards")],
+         examples=["board make nucleo-qmtech", "board make nucleo-qmtech --out my/folder"],
+         brief="board make nucleo-qmtech --out build/brief/board")
+def board_make(values):
+    """generate a board's files: constraints, pins, wiring table, parts, OpenOCD, page
+
+    A board with unknown facts or problems is refused."""
+    board = read(values.name)
+    if values.docs:
+        made = make.write(documents(board), PAGES)
+    else:
+        folder = Path(values.out or f"build/board/{board.name}")
+        try:
+            made = make.write({**make.for_build(board), **make.for_bench(board)}, folder)
+        except Wrong as error:
+            raise Stop(f"board make: refused\n{error}") from None
+    for path in made:
+        say(str(path))
+
+
+def documents(board):
+    """Returns the files of docs/boards, name to text."""
+    found = {f"{board.name}.md": wiring.page(board)}
+    if board.modules:
+        found[f"{board.name}.svg"] = picture.draw(board)
+    return found

@@ -132,6 +132,7 @@ class Cases(Project):
         self.bad("test LABEL=nothing")
         self.good("test SEED=7")
         self.assertEqual(self.said.count("100% tests passed"), 2)  # again with sanitizers
+        self.unchanged_tests_are_left_out()
         write("leak", "")
         self.bad("test SEED=7", "test_s.Sane")
         Path("leak").unlink()
@@ -169,6 +170,19 @@ class Cases(Project):
                  "unknown commit GOOD=nonsense")
         self.good("clean")
         self.assertFalse(Path("build").exists())
+
+    def unchanged_tests_are_left_out(self):
+        """`make test` runs what has not passed with the present inputs: files, seed, packages."""
+        self.good("test SEED=7")
+        self.has("^build/main: [0-9]+ tests have passed with the present files and packages; --all",
+                 "^build/sanitized: 1 tests have")
+        self.lacks("tests passed")
+        self.good("test SEED=7 ALL=1")
+        self.assertEqual(self.said.count("100% tests passed"), 2)
+        write("note", "a file more")
+        self.good("test SEED=7")
+        self.assertEqual(self.said.count("100% tests passed"), 2)
+        Path("note").unlink()
 
     def elsewhere(self):
         """A core outside the tree is passed to one command, and then known to all."""

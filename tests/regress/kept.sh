@@ -19,6 +19,7 @@ mkdir "$own" || exit 1 # it was not emptied
 [ ! -e wait ] || { mkfifo "$own/gate" && touch "$own/waits" && read -r _ <"$own/gate"; }
 for f in first second; do [ ! -f $f/b.vh ] || { cat $f/b.vh; break; }; done
 echo "$(ls second | wc -l) names, $(tool), ${PROVE_LIMIT:-no limit}, ${OTHER:-nothing else}, $own"
+ls "$(dirname "$(command -v tool)")" >"$own/tools" # outside of the tree
 [ ! -e linked ] || { ln -s ../prog "$own/link" && "$own/link" 'by a link'; }
 ! grep -q wrong second/b.vh || exit 3
 END
@@ -48,6 +49,8 @@ OTHER=1 && export OTHER && same 'a variable that no test is given' 'nothing else
 echo 'b 3' >first/b.vh && computed 'a file that is found earlier' '^b 3$'
 rm first/b.vh && same 'that is gone' '^b 1$'
 touch second/c.vh && computed 'a name more in a folder that is listed' '^2 names'
+touch "$work/bin/game" && same 'a program of a package that it does not use' '^2 names'
+mkdir "$work/bin/__pycache__" && same 'a cache there' '^2 names'
 sed -i 's/one/three/' "$work/bin/tool" && computed 'another tool' 'three'
 PROVE_LIMIT=5 && export PROVE_LIMIT && computed 'another setting' ', 5,'
 FRESH=1 && export FRESH && run && ! grep -q '^kept:' "$work/said" || fail "FRESH=1"

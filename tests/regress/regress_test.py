@@ -21,7 +21,8 @@ import xml.etree.ElementTree as xml
 from pathlib import Path
 
 from project import BREAK, REGRESS, TREE, Project, append, commit, edit, git, main, write
-from icesoc.regress import runner
+from icesoc.regress import runner, unchanged
+from icesoc.regress.tests import Test
 
 NEEDS = """
 add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/tool COMMAND touch ${CMAKE_BINARY_DIR}/tool)
@@ -185,6 +186,49 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
                      file="build/regress/junit.xml")
         self.regress("--rerun-failed", 1)
         self.has("^2 tests, SEED=1")
+
+    def test_unchanged(self):
+        """Which inputs make a test run again: the files that a program names, all files of the tree
+        for a script, the build's packages and what they need; no other package."""
+        source, build = self.work, self.work / "build/main"
+        write("data/one.txt", "1")
+        write("build/main/digests.json", "damaged")
+        status = Path("build/status")
+
+        def package(name, version, needs=""):
+            append(status, f"Package: {name}\nStatus: install ok installed\nVersion: {version}\n"
+                   + (f"Depends: libx (>= 1), {needs}\n" if needs else "") + "\n")
+        write("cmake/setup.sh", "packages='\nyosys synthesis\n'\n")
+        write(build / "program", f"#!/bin/sh\ncat {source}/data {build}/out/result\n")
+        write("build/main/out/result", "r")
+        tests = {"program": Test(1, "test_a.One", [f"{build}/test_a"]),
+                 "script": Test(2, "lint.a", [str(source / "tests/room/t.sh")])}
+        os.rename(build / "program", build / "test_a")
+
+        def state():
+            inputs = unchanged.Inputs(source, build, "1")
+            inputs.packages = unchanged.packages(source, status)
+            found = {name: inputs.of(test) for name, test in tests.items()}
+            inputs.save()
+            return found
+        package("yosys", "1", "tcl")
+        package("tcl", "8")
+        before = state()
+        for what, act, changed in (
+                ("nothing", lambda: None, ""),
+                ("an unrelated package", lambda: package("game", "1"), ""),
+                ("what tests write", lambda: write("build/main/out/result", "s"), ""),
+                ("a file that it does not name", lambda: write("other.txt", "1"), "script"),
+                ("a file that it names", lambda: write("data/one.txt", "2"), "program script"),
+                ("a file more in a folder", lambda: write("data/two.txt", "2"), "program script"),
+                ("the program", lambda: append(build / "test_a", "#"), "program"),
+                ("a package that yosys needs", lambda: edit(status, "Version: 8", "Version: 9"),
+                 "program script")):
+            act()
+            now = state()
+            self.assertEqual([name for name in tests if now[name] != before[name]],
+                             changed.split(), what)
+            before = now
 
     def page_is_small(self):
         self.assertLess(Path("build/regress/report.html").stat().st_size, 2000000)

@@ -85,7 +85,7 @@ def labels(values=None):
     return sorted({label for each in found for label in each.split(";") if label})
 
 
-def has_label(text):
+def has_label(text, values):
     """Returns whether an expression matches a label."""
     try:
         return any(re.search(text, label) for label in labels())
@@ -129,10 +129,11 @@ def words_of_tests(values=None):
     return sorted(words | set(re.findall(r"[A-Za-z]\w{2,}", text)))
 
 
-def may_name_test(text):
+def may_name_test(text, values):
     """Returns whether a test may match: an expression always, a plain word if each part of it is in
-    the source of a test."""
-    if not re.fullmatch(r"[A-Za-z]\w*", text):
+    the source of a test. Tests of cores outside the tree may have any name."""
+    if not re.fullmatch(r"[A-Za-z]\w*", text) or \
+            BuildFolder(values.build, values).other_cores():
         return True
     known = " ".join([*words_of_tests(), *texts(SEARCHED, "_test.cpp", "_test.py", ".sh", ".json")])
     return all(part in known for part in re.findall("[A-Za-z]{3,}", text))

@@ -64,7 +64,7 @@ class Option:
             return
         names = None
         for word in value if isinstance(value, list) else [value]:
-            if self.has_name and self.has_name(word):
+            if self.has_name and self.has_name(word, values):
                 continue
             names = names or list(self.choices(values))
             if names and word not in names:

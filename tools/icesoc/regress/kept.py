@@ -8,9 +8,11 @@ Usage: kept.py OWN COMMAND [WORD...]   OWN: the test's work folder, emptied befo
 strace sees each file that the test's processes open, look for and list, programs and libraries
 among them. A verdict is what the test printed, and the state that it left each of these in: files
 of the tree by content, others by size and time of change. It holds while all of them are as they
-were. The environment is the same for all: nothing else gets in. A test that fails leaves no
-verdict; nor does one that is killed, or one with a file that changed meanwhile; FRESH=1 computes.
-Verdicts are below XDG_CACHE_HOME (~/.cache), the newest four of a command, for all clones.
+were. Outside the tree, the names in a folder do not count, nor do caches that every installation of
+a package writes: a package that has none of these files changes nothing. The environment is the
+same for all: nothing else gets in. A test that fails leaves no verdict; nor does one that is
+killed, or one with a file that changed meanwhile; FRESH=1 computes. Verdicts are below
+XDG_CACHE_HOME (~/.cache), the newest four of a command, for all clones.
 """
 
 import datetime
@@ -30,6 +32,8 @@ ROOT = str(pathlib.Path(__file__).resolve().parents[3])
 STRING = re.compile(r'"((?:[^"\\]|\\.)+)"')
 WRITES = re.compile(
     "O_(WRONLY|RDWR|CREAT|TRUNC)|(rename|unlink|link|mkdir|rmdir|chmod|utime)")
+# Caches of the system that each installation of a package rewrites
+CACHES = re.compile(r"^/etc/ld\.so\.cache$|^/var/(cache|lib/dpkg)/|/__pycache__(/|$)")
 TRACING = ("strace", "-f", "--seccomp-bpf", "-qq", "-y", "-e", "signal=none", "-e", "trace=%file")
 
 
@@ -123,6 +127,10 @@ def main():
                 path = os.path.realpath(path)  # a link from there
             if (path + "/").startswith((own or "/dev/", folder + "/", "/proc/", "/dev/", "/sys/")):
                 continue
+            if not path.startswith(ROOT + "/") and path != ROOT:
+                listed = False
+                if CACHES.search(path):
+                    continue
             read = not written and (listed or os.path.isfile(path)) and os.path.exists(path)
             if read and os.stat(path).st_mtime_ns > begin:
                 return 0  # another process has changed it since: the state that was read is unknown

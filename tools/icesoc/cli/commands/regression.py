@@ -12,6 +12,8 @@ from icesoc.cli.build_folder import ROOMS_OF_PROGRAMS, BuildFolder, configured
 from icesoc.cli.command import COMMANDS, command
 from icesoc.cli.options import (BLOCK, BUILD, CORE_FOLDERS, COUNT, FRESH, JOBS, LABEL, SEED, SWITCH,
                                 TEST_NAME, TESTS, TEXT, UCOS2, WORDS, Option, matching, number)
+from icesoc.regress.tests import write_numbers
+from icesoc.regress.unchanged import Passes
 from icesoc.util.console import say
 from icesoc.util.errors import Stop, nearest
 from icesoc.util.lock import lock
@@ -34,15 +36,18 @@ def selection(values, *more):
 
 @command("test", [
     Option("folder", TEXT, "folder of the tests, such as hdl/fsmc or ip/fir (default: all)", "",
-           positional=True), LABEL, TEST_NAME, SEED, FRESH, TESTS, UCOS2, BUILD, JOBS], make="test",
+           positional=True), LABEL, TEST_NAME,
+    Option("all", SWITCH, "run all tests, also those that have passed with their present inputs"),
+    SEED, FRESH, TESTS, UCOS2, BUILD, JOBS], make="test",
          brief="test tree", examples=[
-             "test hdl/fsmc", "test --label rtl", "test --name Burst --seed 7"])
+             "test hdl/fsmc", "test --label rtl", "test --name Burst --seed 7", "test --all"])
 def test(values):
     """run all tests, the tests of a folder, or tests selected by options
 
-    Without options it runs all tests of the build folder, then the tests of firmware, models and
-    IceC again with sanitizers. With a folder, a name or a label it builds only the programs of the
-    selected tests."""
+    Without options it runs the tests of the build folder, then the tests of firmware, models and
+    IceC again with sanitizers. It leaves out tests that have passed with their present inputs:
+    program, files, packages and seed. With a folder, a name or a label it builds only the programs
+    of the selected tests, and runs all of these."""
     build = BuildFolder(values.build, values).prepare(tests=True)
     some, tests, seed = values.folder or values.name or values.label, at_once(values), {
         "SEED": values.seed, "FRESH": "1" if values.fresh else ""}
@@ -58,13 +63,37 @@ def test(values):
         chosen = ["-I", numbers.absolute()]
     else:
         build.ninja()
+        return every_test(build, values, tests, seed)
     build.ctest(*chosen, tests=tests, **seed)
-    if not some:
+
+
+def every_test(build, values, tests, seed):
+    """Runs the tests whose inputs have changed since they passed, or all."""
+    status = changed_tests(build, values, tests, seed)
+    if not status:
         sanitized = BuildFolder("build/sanitized", values)
         sanitized.configure("-DSANITIZE=ON", f"-DROOMS={ROOMS_OF_PROGRAMS}")
         sanitized.follow(build)
         sanitized.ninja("sanitized")
-        sanitized.ctest("-L", "sanitized", tests=tests, **seed)
+        status = changed_tests(sanitized, values, tests, seed, label="sanitized")
+    return status
+
+
+def changed_tests(build, values, tests, seed, label=""):
+    """Runs the tests of a build folder, or of a label, that have not passed with their present
+    inputs; with --all and --fresh all of them. Notes the passes."""
+    passes = Passes(Path("."), build.folder, str(values.seed))
+    some, others = passes.changed(label, values.all or values.fresh)
+    if others:
+        say(f"{build.folder}: {others} tests have passed with the present files and packages; "
+            "--all (ALL=1) runs them again")
+    if not some:
+        return 0
+    numbers = build / "changed.tests"
+    write_numbers(numbers, some)
+    status = build.ctest("-I", numbers.absolute(), tests=tests, check=False, **seed)
+    passes.note(build / "junit.xml")
+    return status
 
 
 @command("regress", [

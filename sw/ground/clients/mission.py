@@ -23,7 +23,7 @@ import Ice
 import places
 import plugged
 import stay
-from mission_log import Air, Log, report, whole
+from mission_log import Air, Log, Patience, report, whole
 from PIL import Image, ImageDraw
 
 # Corners of a complete result: a core that treats a pixel at the threshold as brighter passed with
@@ -68,7 +68,7 @@ def initialize(args):
         "XBeeAT.Trace": str(args.trace),
         "Ice.ThreadPool.Client.Size": "2",
         "Ice.ThreadPool.Server.Size": "2",
-        "Ice.Default.InvocationTimeout": str(1000 * args.patience),
+        "Ice.Default.InvocationTimeout": "-1",  # mission_log.Patience counts simulated time
         "Ice.ACM.Close": "0",
         "Station.Endpoints": args.endpoint,
         # with two devices in one process: the device for proxies of the UAV
@@ -189,8 +189,15 @@ class Mission:
         self.parts = [part_of(folder) for folder in args.cores]
         self.air = Air(args.status)
         self.log = Log(self.air, args.out, os.path.dirname(os.path.abspath(args.plugin)))
-        self.timeout = 1000 * args.patience // 2  # Ice tries twice
+        self.communicators = [communicator]
+        self.log.patience, self.log.give_up = args.patience, self.give_up
+        self.timeout = 0x7FFFFFFF  # of connections, ms: Ice counts real time
         self.station = make_station(Autopilot, self.log, self.timeout)
+
+    def give_up(self):
+        """Ends all calls in progress with an exception."""
+        for communicator in self.communicators:
+            communicator.destroy()
 
     def proxy(self, identity, vehicle=1):
         endpoint = self.args.endpoint.replace("0x0001", f"0x{vehicle:04x}")
@@ -265,6 +272,7 @@ class Mission:
         with plugged.initialize({"XBeeAT.Trace": str(args.trace), "Ice.ACM.Close": "0",
                                  "XBeeAT.Device": device},
                                 args.plugin, args.guard, args.observer) as communicator:
+            self.communicators.append(communicator)
             for address in range(1, args.vehicles + 1):
                 vehicle = self.autopilot.VehiclePrx.uncheckedCast(communicator.stringToProxy(
                     f"uav:xbee-at -d {device} -a 0x{address:04x} -s 0x00f0 "
@@ -274,9 +282,11 @@ class Mission:
                 self.log.note(f"the observer sees uav{address}: {state}")
 
     def hear(self):
-        if not self.station.called.wait(self.args.patience):
-            raise RuntimeError("the UAV did not call Station.vehicleState within "
-                               f"{self.args.patience} s")
+        patience = Patience(self.air, self.args.patience)
+        while not self.station.called.wait(0.1):
+            if patience.is_over():
+                raise RuntimeError("the UAV did not call Station.vehicleState within "
+                                   f"{self.args.patience} s")
         if not self.station.alive:
             raise RuntimeError(f"uav.isAlive answered {self.station.alive!r}")
 
@@ -323,7 +333,7 @@ def fly(args):
         return 130
     except Ice.ObjectNotExistException as e:
         sys.exit("mission: " + explain(communicator, args, e))
-    except Ice.TimeoutException:
+    except (Ice.TimeoutException, Ice.CommunicatorDestroyedException):
         sys.exit("mission: no answer for %d s: is the UAV on, in reach, and has it the same key?" %
                  args.patience)
     except (Ice.Exception, RuntimeError, OSError, subprocess.CalledProcessError) as e:

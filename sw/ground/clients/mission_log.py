@@ -4,6 +4,7 @@
 import contextlib
 import glob
 import json
+import math
 import mmap
 import os
 import threading
@@ -33,6 +34,25 @@ class Air:
         return self.status.unpack(self.map, *self.COUNTERS) if self.map else None
 
 
+class Patience:
+    """A time-out in simulated time, or without a simulator in real time. It is also over when
+    simulated time has stood still for as many real seconds."""
+
+    def __init__(self, air, seconds):
+        self.air, self.seconds = air, seconds
+        self.begin, self.last, self.moved = self.now(), self.now(), time.monotonic()
+
+    def now(self):
+        counters = self.air.read()
+        return counters["ns"] / 1e9 if counters else time.monotonic()
+
+    def is_over(self):
+        now, real = self.now(), time.monotonic()
+        if now != self.last:
+            self.last, self.moved = now, real
+        return now - self.begin > self.seconds or real - self.moved > self.seconds
+
+
 @contextlib.contextmanager
 def whole(path):
     """Returns a temporary name for a file that is renamed to `path` when it is complete."""
@@ -50,6 +70,7 @@ class Log:
 
     def __init__(self, air, out, build):
         self.air, self.out, self.build = air, out, build  # folders: of the results, of the build
+        self.patience, self.give_up = math.inf, None  # time-out of a call, s; ends the mission
         self.rows = []
         followers = glob.glob(os.path.join(glob.escape(out), "after[0-9]*.png"))
         # Removes the results of the previous mission; of a link, only the link.
@@ -76,10 +97,17 @@ class Log:
         self.follow({"who": "ground", "what": text})
 
     def remind(self, what, answered):
-        seconds = 0
-        while not answered.wait(15):
-            seconds += 15
-            self.say("no answer to %s for %d s" % (what, seconds))
+        """Reports every 15 s that a call has no answer, and ends the mission when its patience is
+        over."""
+        begin, reported = time.monotonic(), 15
+        wait = Patience(self.air, self.patience)
+        while not answered.wait(0.5):
+            seconds = time.monotonic() - begin
+            if seconds >= reported:
+                reported += 15
+                self.say("no answer to %s for %d s" % (what, seconds))
+            if self.give_up and wait.is_over():
+                return self.give_up()
 
     def call(self, who, what, function):
         """Runs the call and returns its result; records the bytes on the air."""

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: MIT
+"""patience_test: the time-out of a mission's calls counts simulated time, however slow the PC is."""
+import unittest
+from unittest import mock
+
+import mission_log
+
+
+class Air:
+    """A simulator's counters."""
+
+    def __init__(self, ns):
+        self.ns = ns
+
+    def read(self):
+        return None if self.ns is None else {"ns": self.ns}
+
+
+class Patience(unittest.TestCase):
+    def setUp(self):
+        self.real = 1000.0
+        clock = mock.patch.object(mission_log.time, "monotonic", lambda: self.real)
+        clock.start()
+        self.addCleanup(clock.stop)
+
+    def test_real_time_does_not_count_while_simulated_time_moves(self):
+        air = Air(5 * 10**9)
+        patience = mission_log.Patience(air, 16)
+        for _ in range(160):  # ten times slower than real time
+            self.real += 1
+            air.ns += 10**8
+            self.assertFalse(patience.is_over())
+        air.ns += 10**8
+        self.assertTrue(patience.is_over())
+
+    def test_it_ends_if_simulated_time_stands_still(self):
+        patience = mission_log.Patience(Air(5 * 10**9), 16)
+        self.real += 16
+        self.assertFalse(patience.is_over())
+        self.real += 1
+        self.assertTrue(patience.is_over())
+
+    def test_real_hardware_has_only_real_time(self):
+        patience = mission_log.Patience(Air(None), 16)
+        self.real += 16
+        self.assertFalse(patience.is_over())
+        self.real += 1
+        self.assertTrue(patience.is_over())
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -7,10 +7,10 @@
 #include "picture.h"
 
 #include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <iterator>
 #include <memory>
-#include <sstream>
 #include <stdexcept>
 
 #define STB_IMAGE_IMPLEMENTATION
@@ -73,17 +73,49 @@ int orientationOf(const Bytes& file) {
     return 1;
 }
 
-// Returns the value of white in a binary PNM file; 255 of other files.
-int whiteOf(const Bytes& file) {
+// The header of a binary PNM file.
+struct PnmHeader {
+    size_t white = 255; // largest value of a sample
+    size_t end = 0;     // offset of the first sample
+    size_t bytes = 0;   // size of all samples
+};
+
+// Returns the header of a binary PNM file; of another file, the default.
+PnmHeader pnmHeader(const Bytes& file) {
+    PnmHeader header;
     if (file.size() < 2 || file[0] != 'P' || (file[1] != '5' && file[1] != '6'))
-        return 255;
-    std::string text(file.begin() + 2, file.begin() + std::min<long>(long(file.size()), 4096));
-    std::string line, words;
-    for (std::istringstream lines(text); std::getline(lines, line);)
-        words += line.substr(0, line.find('#')) + " "; // without comments
-    int width = 0, height = 0, white = 255;
-    std::istringstream(words) >> width >> height >> white;
-    return white > 0 ? white : 255;
+        return header;
+    size_t at = 2;
+    const auto next = [&] { // the next number; comments last until the end of their line
+        for (bool isComment = false; at < file.size(); ++at) {
+            isComment = file[at] == '#' || (isComment && file[at] != '\n');
+            if (!isComment && !std::isspace(file[at]))
+                break;
+        }
+        size_t number = 0;
+        for (; at < file.size() && std::isdigit(file[at]) && number < 65536; ++at)
+            number = 10 * number + (file[at] - '0');
+        return number;
+    };
+    const size_t width = next(), height = next();
+    header.white = std::clamp<size_t>(next(), 1, 65535);
+    header.end = std::min(at + 1, file.size());
+    header.bytes = width * height * (file[1] == '6' ? 3 : 1) * (header.white > 255 ? 2 : 1);
+    return header;
+}
+
+// Returns a PNM file whose samples have two bytes with one byte per sample: stb_image does not
+// read their byte order.
+Bytes inBytes(const Bytes& file, const PnmHeader& header) {
+    const std::string text(file.begin(), file.begin() + std::ptrdiff_t(header.end));
+    const size_t white = text.rfind(std::to_string(header.white));
+    const std::string first = text.substr(0, white) + "255\n";
+    Bytes to(first.begin(), first.end());
+    const Reader in{file};
+    for (size_t at = header.end; at + 2 <= file.size(); at += 2)
+        to.push_back(static_cast<uint8_t>(
+            std::min<size_t>(255, (in.number(at, 2) * 255 + header.white / 2) / header.white)));
+    return to;
 }
 
 // Returns the picture as EXIF's orientation means it.
@@ -111,33 +143,31 @@ Picture turned(const Picture& from, int orientation) {
 
 Picture readPicture(const std::string& path) {
     std::ifstream in(path, std::ios::binary);
-    const Bytes file((std::istreambuf_iterator<char>(in)), {});
+    Bytes file((std::istreambuf_iterator<char>(in)), {});
     if (!in.is_open() || in.bad() || file.empty())
         throw std::runtime_error("cannot read picture '" + path + "'");
-    const int white = whiteOf(file), size = static_cast<int>(file.size());
+    PnmHeader header = pnmHeader(file);
+    if (header.bytes > file.size() - header.end) // stb_image takes it
+        throw std::runtime_error("picture '" + path + "' is cut: expected " +
+                                 std::to_string(header.bytes) + " bytes of samples, got " +
+                                 std::to_string(file.size() - header.end));
+    if (header.white > 255) {
+        file = inBytes(file, header);
+        header.white = 255;
+    }
     Picture picture;
     int channels = 0;
-    const auto keep = [&](const auto* grey) {
-        if (!grey)
-            throw std::runtime_error("'" + path + "' is not a picture that can be read (" +
-                                     stbi_failure_reason() + "): give a PNG, JPEG or PGM file");
-        const size_t count = static_cast<size_t>(picture.width) * picture.height;
-        for (size_t i = 0; i < count; ++i)
-            picture.grey.push_back(
-                static_cast<uint8_t>(std::min(255, (grey[i] * 255 + white / 2) / white)));
-    };
-    if (white > 255) {
-        const std::unique_ptr<uint16_t, void (*)(void*)> grey(
-            stbi_load_16_from_memory(file.data(), size, &picture.width, &picture.height, &channels,
-                                     1),
-            stbi_image_free);
-        keep(grey.get());
-    } else {
-        const std::unique_ptr<uint8_t, void (*)(void*)> grey(
-            stbi_load_from_memory(file.data(), size, &picture.width, &picture.height, &channels, 1),
-            stbi_image_free);
-        keep(grey.get());
-    }
+    const std::unique_ptr<uint8_t, void (*)(void*)> grey(
+        stbi_load_from_memory(file.data(), static_cast<int>(file.size()), &picture.width,
+                              &picture.height, &channels, 1),
+        stbi_image_free);
+    if (!grey || picture.width == 0 || picture.height == 0)
+        throw std::runtime_error("'" + path + "' is not a picture that can be read (" +
+                                 (grey ? "no pixels" : stbi_failure_reason()) + "): give a PNG, JPEG or PGM file");
+    const size_t count = static_cast<size_t>(picture.width) * picture.height;
+    for (size_t i = 0; i < count; ++i)
+        picture.grey.push_back(static_cast<uint8_t>(std::min<size_t>(
+            255, (grey.get()[i] * size_t{255} + header.white / 2) / header.white)));
     const int orientation = orientationOf(file);
     return orientation == 1 ? picture : turned(picture, orientation);
 }

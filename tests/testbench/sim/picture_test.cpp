@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+//
+// picture_test: a photograph is upright and as bright as its file describes it.
+
+#include "picture.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace {
+
+using Bytes = std::vector<uint8_t>;
+
+// A JPEG file of 32 x 16 pixels without its first marker. Its quarters have the grey levels 20 and
+// 80 (upper half), 140 and 220 (lower half).
+const Bytes quarters = {
+    0xFF, 0xDB, 0x00, 0x43, 0x00, 0x10, 0x0B, 0x0C, 0x0E, 0x0C, 0x0A, 0x10, 0x0E, 0x0D, 0x0E,
+    0x12, 0x11, 0x10, 0x13, 0x18, 0x28, 0x1A, 0x18, 0x16, 0x16, 0x18, 0x31, 0x23, 0x25, 0x1D,
+    0x28, 0x3A, 0x33, 0x3D, 0x3C, 0x39, 0x33, 0x38, 0x37, 0x40, 0x48, 0x5C, 0x4E, 0x40, 0x44,
+    0x57, 0x45, 0x37, 0x38, 0x50, 0x6D, 0x51, 0x57, 0x5F, 0x62, 0x67, 0x68, 0x67, 0x3E, 0x4D,
+    0x71, 0x79, 0x70, 0x64, 0x78, 0x5C, 0x65, 0x67, 0x63, 0xFF, 0xC0, 0x00, 0x0B, 0x08, 0x00,
+    0x10, 0x00, 0x20, 0x01, 0x01, 0x11, 0x00, 0xFF, 0xC4, 0x00, 0x16, 0x00, 0x01, 0x01, 0x01,
+    0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x05,
+    0x06, 0xFF, 0xC4, 0x00, 0x14, 0x10, 0x01, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
+    0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xDA, 0x00, 0x08, 0x01, 0x01, 0x00,
+    0x00, 0x3F, 0x00, 0xC4, 0x8B, 0xC2, 0xF0, 0xD4, 0x0F, 0xFF, 0xD9,
+};
+
+class Pictures : public ::testing::Test {
+protected:
+    Pictures() {
+        std::string name = std::filesystem::temp_directory_path() / "picture_XXXXXX";
+        if (const int file = mkstemp(name.data()); file >= 0)
+            close(file);
+        path_ = name;
+    }
+    ~Pictures() override { std::filesystem::remove(path_); }
+
+    Picture read(const Bytes& file) {
+        std::ofstream(path_, std::ios::binary)
+            .write(reinterpret_cast<const char*>(file.data()), std::streamsize(file.size()));
+        return readPicture(path_);
+    }
+    Picture read(const std::string& file) { return read(Bytes(file.begin(), file.end())); }
+
+    // Adds an EXIF block with an orientation, in either byte order.
+    static Bytes oriented(int orientation, bool isLittle) {
+        const auto number = [&](size_t value, int bytes) {
+            Bytes number;
+            for (int i = 0; i < bytes; ++i)
+                number.push_back(uint8_t(value >> 8 * (isLittle ? i : bytes - 1 - i)));
+            return number;
+        };
+        Bytes file = {0xFF, 0xD8, 0xFF, 0xE1, 0, 46, 'E', 'x', 'i', 'f', 0, 0};
+        const auto add = [&](const Bytes& more) {
+            file.insert(file.end(), more.begin(), more.end());
+        };
+        add(isLittle ? Bytes{'I', 'I'} : Bytes{'M', 'M'});
+        add(number(42, 2));
+        add(number(8, 4));
+        add(number(2, 2)); // two entries
+        for (const auto& [tag, value] : {std::pair{0x0103, 6}, {0x0112, orientation}}) {
+            add(number(size_t(tag), 2));
+            add(number(3, 2)); // a short number
+            add(number(1, 4));
+            add(number(size_t(value), 2));
+            add({0, 0});
+        }
+        add(number(0, 4));
+        add(quarters);
+        return file;
+    }
+
+    std::string path_;
+};
+
+// Sides of the stored row 0 and column 0 in the upright picture by EXIF 2.3, tag 0x0112: 1 top
+// left, 2 top right, 3 bottom right, 4 bottom left, 5 left top, 6 right top, 7 right bottom, 8 left
+// bottom.
+TEST_F(Pictures, APhotographIsUprightInEachOfTheEightOrientations) {
+    const int upright[][4] = {{20, 80, 140, 220}, {80, 20, 220, 140}, {220, 140, 80, 20},
+                              {140, 220, 20, 80}, {20, 140, 80, 220}, {140, 20, 220, 80},
+                              {220, 80, 140, 20}, {80, 220, 20, 140}};
+    for (int orientation = 1; orientation <= 8; ++orientation)
+        for (const bool isLittle : {false, true}) {
+            const Picture picture = read(oriented(orientation, isLittle));
+            const bool isOnItsSide = orientation >= 5;
+            ASSERT_EQ(picture.width, isOnItsSide ? 16 : 32) << orientation;
+            ASSERT_EQ(picture.height, isOnItsSide ? 32 : 16) << orientation;
+            for (int i = 0; i < 4; ++i)
+                EXPECT_NEAR(picture.at(picture.width * (1 + 2 * (i % 2)) / 4,
+                                       picture.height * (1 + 2 * (i / 2)) / 4),
+                            upright[orientation - 1][i], 2)
+                    << orientation << ", quarter " << i;
+        }
+}
+
+TEST_F(Pictures, AnOrientationThatIsDamagedIsIgnored) {
+    for (const int orientation : {0, 9, 65535})
+        EXPECT_EQ(read(oriented(orientation, false)).width, 32);
+    Bytes cut = oriented(6, false);
+    cut[17] = 0xFF; // the directory would be far beyond the end
+    EXPECT_EQ(read(cut).width, 32);
+}
+
+TEST_F(Pictures, TheMaximumOfAPnmFileIsWhite) {
+    EXPECT_EQ(read(std::string("P5\n# maxval\n3 1\n100\n\0\x32\x64", 24)).grey,
+              (Bytes{0, 128, 255}));
+    EXPECT_EQ(read(std::string("P5 3 1 1\n\0\1\1", 12)).grey, (Bytes{0, 255, 255}));
+    EXPECT_EQ(read(std::string("P5 2 1 255\n\x0A\xFF", 13)).grey, (Bytes{10, 255}));
+    EXPECT_EQ(read(std::string("P5 2 1 1000\n\x01\xF4\x03\xE8", 16)).grey, (Bytes{128, 255}));
+    EXPECT_EQ(read(std::string("P6 1 1 100\n\x64\x64\x64", 14)).grey, (Bytes{255}));
+}
+
+TEST_F(Pictures, AFileThatIsCutIsRejectedWithItsName) {
+    for (const std::string& text :
+         {"P5", "P5 1 1 1000", "P5 9 9 255\n12345678", "P6 2 1 99999\n12345678901"})
+        try {
+            read(text);
+            ADD_FAILURE() << text;
+        } catch (const std::runtime_error& error) {
+            EXPECT_NE(std::string(error.what()).find(path_), std::string::npos) << error.what();
+        }
+}
+
+} // namespace

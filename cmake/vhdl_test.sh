@@ -3,7 +3,7 @@
 # vhdl_test: core GHDL vectors-program folder file.vhd ...   Runs entity <core>_tb by GHDL; the
 # first failure stops it.
 # vectors-program: gets the folder and SEED and writes the test bench's input there.
-# COVERAGE_DIR: folder for GHDL's file of lines that ran.
+# COVERAGE_DIR: folder for GHDL's file of lines that ran. WAVE: file for a waveform (*.fst).
 set -eu
 core=$1 ghdl=$2 vectors=$3 work=$4
 shift 4
@@ -14,7 +14,7 @@ mkdir -p "$work"
 cd "$work"
 # numeric_std would warn of every value that is undefined before the pipeline is full.
 status=0
-"$ghdl" --elab-run --std=08 --workdir="$work" ${COVERAGE_DIR:+--coverage} "${core}_tb" \
+"$ghdl" --elab-run --std=08 --workdir="$work" ${COVERAGE_DIR:+--coverage} "${core}_tb" ${WAVE:+"--fst=$WAVE"} \
     --assert-level=error --ieee-asserts=disable || status=$?
 [ $status = 0 ] || echo "$core: vectors of SEED=${SEED:-1}"
 [ -z "${COVERAGE_DIR:-}" ] || mv coverage-*.json "$COVERAGE_DIR/$core-vhdl.json"

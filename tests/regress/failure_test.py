@@ -260,6 +260,48 @@ add_custom_target(test_w)
         self.has("test_w.Wave-1.fst", r'"signals":\[\["top.u_post.#"',
                  file="build/regress/report.html")
 
+    def test_vhdl(self):
+        """A test by GHDL: only files that it compiles are blamed, and the first one's instance is
+        the first in the waveform."""
+        join = "testbench/common/join_waves.sh"
+        write(join, (TREE / join).read_text())
+        write("cmake/vhdl_test.sh", '#!/bin/sh\n[ ! -e wrong ] && exit\n'
+              'echo "core_tb.vhd:5:9:@120ns:(assertion error): differs"\n'
+              '[ -z "${WAVE:-}" ] || vcd2fst "${0%/*}/t.vcd" "$WAVE"\nexit 1\n')
+        scope, up = "$scope module ", "$upscope $end\n"
+        write("cmake/t.vcd", "$timescale 1ns $end\n" + "".join(
+            f"{scope}{name} $end\n$var wire 4 {key} {signal} $end\n" for name, key, signal in (
+                ("core_tb", "!", "count"), ("u_core", "#", "state"), ("u_inner", "&", "sum"),
+                ("u_leaf", "%", "carry"))) + 4 * up + "$enddefinitions $end\n#0\n" + "\n".join(
+            f"b{value:04b} {key}" if key else f"#{value}" for value, key in (
+                (0, "!"), (0, "#"), (0, "&"), (0, "%"), (50, ""), (1, "!"), (1, "#"), (1, "&"),
+                (1, "%"))) + "\n")
+        for name in "core_tb", "core", "inner", "leaf", "other":
+            write(f"ip/core/{name}.vhd", f"entity {name} is\nend;\n")
+        write("ip/core/core.vhd", "entity core is\nend;\narchitecture rtl of core is\nbegin\n"
+              "  U_Inner : entity work.inner\n    port map (a => a);\nend;\n")
+        write("ip/core/inner.vhd", "entity inner is\nend;\narchitecture rtl of inner is\nbegin\n"
+              "  u_leaf : leaf port map (a => a);\nend;\n")
+        write("hdl/a/other.v", "module other;\n    inner u_other (.a(a));\nendmodule\n")
+        files = " ".join(f"${{CMAKE_SOURCE_DIR}}/ip/core/{name}.vhd"
+                         for name in ("leaf", "inner", "core", "core_tb"))
+        self.tests("add_test(NAME vhdl.core COMMAND ${CMAKE_SOURCE_DIR}/cmake/vhdl_test.sh core "
+                   f"{files} WORKING_DIRECTORY ${{CMAKE_SOURCE_DIR}})\n")
+        commit("a core in VHDL")
+        self.regress("--name vhdl")
+        append("hdl/a/other.v", "// changed\n")
+        append("ip/core/other.vhd", "-- changed\n")
+        append("ip/core/inner.vhd", "-- a bug\n")
+        write("wrong", "")
+        self.regress("--name vhdl", 1)
+        self.has(r"^        changed since it passed at [0-9a-f]+: ip/core/inner.vhd:7 \(1 line\)$",
+                 "^Waveform of vhdl.core around clock 12 ")
+        self.has(r'"signals":\[\["core_tb.u_core.u_inner.sum"',
+                 file="build/regress/report.html")
+        rows = Path("build/regress/failures/vhdl.core-1.gtkw").read_text()
+        self.assertIn("\ncore_tb.u_core.u_inner.sum[3:0]\n", rows)
+        self.assertNotIn("u_leaf", rows)
+
     def test_flight(self):
         """A flight that fails is replayed around the last event of a core."""
         join = "testbench/common/join_waves.sh"

@@ -75,6 +75,8 @@ class Changes:
         inputs = set()
         if test.unbuilt or test.is_program(self.build.resolve()):
             inputs, folders = self.graph.inputs(test.program), (f"tests/{test.place}",)
+        elif files := test.compiles():
+            inputs, folders = set().union(*map(self.graph.inputs, files)), ()
         return {path: lines for path, lines in (self.differing(since) or {}).items()
                 if path in inputs or path.startswith(tuple(f + "/" for f in folders))}
 

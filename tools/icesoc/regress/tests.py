@@ -76,6 +76,11 @@ class Test:
             return ("slice", "tests/slice")
         return ("bus", "hdl", "ip", "slice", "sw", "testbench", "tools", own)
 
+    def compiles(self):
+        """Returns the files that a test by GHDL names, and its programs; empty for another test."""
+        return [word for word in self.command if word.startswith("/")] \
+            if self.name.startswith("vhdl.") else []
+
     def blocks(self):
         """Words that --block compares with: from the folder, and from the name up to the case."""
         kind, _, rest = self.name.partition(".")

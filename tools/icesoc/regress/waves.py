@@ -14,7 +14,9 @@ from icesoc.util.files import write
 from icesoc.util.process import collect
 
 CLOCKS_PER_SECOND = 1e8  # of the chip in a flight
+SECONDS = {"ms": 1e-3, "us": 1e-6, "ns": 1e-9, "ps": 1e-12, "fs": 1e-15}  # GHDL's units of time
 FIRST_CORE = 2  # slot
+SOURCES = (".v", ".sv", ".vh", ".vhd", ".vhdl")
 NAMELESS = re.compile(r"(^|[.])(n\d+(_o)?|_\d+_|\$\S*)$")  # names that GHDL and Yosys give to wires
 MOST_CHANGES, FEWEST_CHANGES, MOST_SIGNALS = 400, 25, 200  # limits of a drawing
 
@@ -22,7 +24,7 @@ MOST_CHANGES, FEWEST_CHANGES, MOST_SIGNALS = 400, 25, 200  # limits of a drawing
 @dataclasses.dataclass
 class Scene:
     """A repetition: a test's program, or a flight's recording, around a clock."""
-    program: str
+    program: str  # target of the build with waveforms; "" for a test by GHDL
     clock: int
     flight: str = ""  # folder of the recording
     slot: int = 0  # last core reported to the processor; 0 if there is none
@@ -50,6 +52,9 @@ def scene_of(failure, test):
                 scene.slot = slot if slot >= FIRST_CORE else 0
     elif match := re.search("at clock cycle ([0-9]+)", log):
         scene = Scene(failure.result.name.split(".")[0], int(match[1]))
+    elif failure.result.name.startswith("vhdl.") and (match := re.search(r"@(\d+)([munpf]s):", log)):
+        # GHDL runs up to the failure; its waveform has all clocks
+        scene = Scene("", int(int(match[1]) * CLOCKS_PER_SECOND * SECONDS[match[2]]))
     else:
         return None
     if "e2e" in test.labels:  # a mission's program works for longer than a block
@@ -65,23 +70,48 @@ def instance_in(slot, build):
     return match[1] if match else "u_modem"
 
 
-def blamed(changed, source):
-    """Returns the name of an instance of the first Verilog module in a text of changes; "" if there
-    is none."""
-    if match := re.search(r"(?:hdl|bus|ip)/\S*?(\w+)\.v:", changed):
-        use = re.compile(rf"^ *{match[1]} +(?:#\s*\([^;]*?\)\s*)?(u_\w+)", re.M)
-        for folder in ("hdl", "bus", "ip"):
-            for file in sorted((source / folder).rglob("*.v")):
-                if found := use.search(file.read_text()):
-                    return found[1]
-    return ""
+def instances(changed, source, build):
+    """Returns names of instances of the modules and entities in a text of changes, those of the
+    first file first. A model's top has the module's own name."""
+    texts = None
+    for path in re.findall(r"((?:hdl|bus|ip)/[^\s:,]*\.(?:sv|vhdl|v|vhd))(?=[:, ]|$)", changed):
+        file = source / path
+        text = file.read_text(errors="replace") if file.is_file() else ""
+        kind = "entity" if file.suffix.startswith(".vhd") else "module"
+        modules = re.findall(rf"^\s*{kind}\s+(\w+)", text, re.M | re.I) or [file.stem]
+        if texts is None:
+            texts = [each.read_text(errors="replace")
+                     for folder in (source / "hdl", source / "bus", source / "ip", build / "gen")
+                     for each in sorted(folder.rglob("*")) if each.suffix in SOURCES]
+        for module in modules:
+            use = re.compile(rf"^\s*{module}\s+(?:#\s*\([^;]*?\)\s*)?(\w+)\s*\(|"  # Verilog
+                             rf"\b(\w+)\s*:\s*(?:entity\s+|component\s+)?(?:\w+\.)?{module}\s",
+                             re.M | re.I)
+            yield from (match[1] or match[2] for text in texts for match in use.finditer(text))
+        yield from modules
 
 
-def save_file(wave, build, folder, has_program):
-    """GTKWave's save file: the program's rows, and the ports of the models below `folder` and below
-    the folder of the tested block: tests/hdl/fifo, hdl/fifo."""
-    rows = ["program.task", "program.interrupt", "program.function"] * has_program
-    for place in sorted({folder, folder.removeprefix("tests/")}):
+def scope_in(signals, names):
+    """Returns the first of these names that an instance in the waveform has, as the waveform spells
+    it (GHDL writes small letters); "" if it has none."""
+    scopes = {scope.lower(): scope for signal in signals for scope in signal.scopes}
+    return next((scopes[name.lower()] for name in names if name.lower() in scopes), "")
+
+
+def rows_below(scope, signals):
+    """Returns the rows of a save file for the signals of an instance, without words of memories."""
+    rows = [(signal.scopes, signal.name + (f"[{signal.width - 1}:0]" if signal.width > 1
+                                           and "[" not in signal.name else ""))
+            for signal in signals if signal.scopes[-1:] == [scope] and signal.kind != "parameter"]
+    return [".".join([*scopes, name]) for scopes, name in rows
+            if not NAMELESS.search(name) and not re.search(r"\[\d+\]$", name)]
+
+
+def save_file(wave, build, folder, first):
+    """GTKWave's save file: the first rows, and the ports of the models below `folder` and below the
+    folder of the tested block: tests/hdl/fifo, hdl/fifo."""
+    rows = [*first]
+    for place in sorted({folder, folder.removeprefix("tests/")}) if folder else []:
         for header in sorted((build / place).rglob("verilated_*/V*.h")):
             if header.parent.name == "verilated_" + header.stem[1:]:
                 ports = re.findall(r"VL_(?:IN|OUT)[0-9W]*\(&(\w+),(\d+),(\d+)", header.read_text())
@@ -91,36 +121,48 @@ def save_file(wave, build, folder, has_program):
         "".join(row + "\n" for row in rows)
 
 
-def add_wave(failure, test, scene, source, tested, jobs):
-    """Writes a waveform of a failure with the build in build/trace, or prints why this is
-    impossible."""
-    build = (source / "build/trace").resolve()
-    if not (build / "build.ninja").exists():
-        collect(["cmake", "-S", source, "-B", build, "-G", "Ninja", "-DTRACE=ON"])
-    status, text = collect(["ninja", "-C", build, "-j", jobs, scene.program])
-    if status:
-        raise Stop(f"it does not build with waveforms:\n{text}")
-    base = failure.log.removesuffix(".log")
-    wave = os.path.abspath(f"{base}.fst")
+def repeat(failure, scene, source, tested, jobs, wave):
+    """Repeats a failed test with a waveform. Returns the build folder and the names of instances
+    that may be shown first."""
     first, last = max(0, scene.clock - scene.before), scene.clock + scene.after
+    build = (source / "build/trace").resolve() if scene.program else tested
+    if scene.program:
+        if not (build / "build.ninja").exists():
+            collect(["cmake", "-S", source, "-B", build, "-G", "Ninja", "-DTRACE=ON"])
+        status, text = collect(["ninja", "-C", build, "-j", jobs, scene.program])
+        if status:
+            raise Stop(f"it does not build with waveforms:\n{text}")
+    names = [*instances(failure.changed, source, build)]
     if scene.flight:
         collect([build / "testbench/sim/icesoc-sim", "--replay", scene.flight, "--out",
-             f"{base}.replay", "--wave", wave, "--from", f"{first / CLOCKS_PER_SECOND:.6f}",
-             "--to", f"{last / CLOCKS_PER_SECOND:.6f}"])
-        failure.scope = instance_in(scene.slot, build)
-    else:
-        failure.scope = blamed(failure.changed, source)
-        collect(["ctest", "--test-dir", build, "--no-tests=error", "-R",
-             "^" + re.sub(r"([.+*?()\[\]{}|^$\\])", r"\\\1", failure.result.name) + "$"],
-            {"SEED": failure.result.seed, "WAVE": wave, "WAVE_FROM": str(first),
-             "WAVE_TO": str(last)})
+             f"{failure.log.removesuffix('.log')}.replay", "--wave", wave, "--from",
+             f"{first / CLOCKS_PER_SECOND:.6f}", "--to", f"{last / CLOCKS_PER_SECOND:.6f}"])
+        return build, [*names, instance_in(scene.slot, build)]
+    collect(["ctest", "--test-dir", build, "--no-tests=error", "-R",
+         "^" + re.sub(r"([.+*?()\[\]{}|^$\\])", r"\\\1", failure.result.name) + "$"],
+        {"SEED": failure.result.seed, "WAVE": wave, "WAVE_FROM": str(first),
+         "WAVE_TO": str(last)})
+    return build, names
+
+
+def add_wave(failure, test, scene, source, tested, jobs):
+    """Writes a waveform of a failure, with the build in build/trace for Verilog, or prints why this
+    is impossible."""
+    base = failure.log.removesuffix(".log")
+    wave = os.path.abspath(f"{base}.fst")
+    build, names = repeat(failure, scene, source, tested, jobs, wave)
     if not os.path.exists(wave):
         raise Stop("the test drove no traced model")
-    has_program = os.path.exists(wave + ".program.vcd")
+    rows = ["program.task", "program.interrupt", "program.function"] \
+        if os.path.exists(wave + ".program.vcd") else []
     collect([source / "testbench/common/join_waves.sh", wave])
+    signals = vcd.read(collect(["fst2vcd", "-f", wave])[1])[1]
+    failure.scope = scope_in(signals, names)
     failure.wave, failure.clock, failure.save = f"{base}.fst", scene.clock, f"{base}.gtkw"
-    folder = "testbench/sim" if scene.flight else os.path.relpath(test.folder, tested)
-    write(failure.save, save_file(wave, build, folder, has_program))
+    folder = "testbench/sim" if scene.flight else os.path.relpath(test.folder, tested) \
+        if scene.program else ""
+    write(failure.save, save_file(wave, build, folder,
+                                  rows + rows_below(failure.scope, signals)))
 
 
 def add_waves(failures, tests, source, build, jobs, limit):

@@ -9,12 +9,14 @@ add_custom_command(OUTPUT ${GHDL}
   DEPENDS ${FETCH_FILES} VERBATIM COMMENT "GHDL 5")
 add_custom_target(ghdl DEPENDS ${GHDL})
 
-# icesoc_vhdl(NAME entity SOURCES file... [REGS block...] [LIBRARY name] [GENERICS name=value...]
-#             [FOREIGN]): ${GEN_DIR}/<entity>.v, target <entity>_verilog. The files come in any
-# order. GHDL names them as it gets them: relative to the tree, so that copies of it elsewhere get
+# icesoc_vhdl(NAME entity SOURCES file... [REGS block...] [LIBRARY name] [LIBRARIES name=file...]
+#             [GENERICS name=value...] [FOREIGN]): ${GEN_DIR}/<entity>.v, target <entity>_verilog.
+# LIBRARY is the library of SOURCES. The files may be in any order. GHDL names them as it gets them: relative to the tree, so that copies of it elsewhere get
 # the same Verilog.
 function(icesoc_vhdl)
-  cmake_parse_arguments(A "FOREIGN" "NAME;LIBRARY" "SOURCES;REGS;GENERICS" ${ARGN})
+  cmake_parse_arguments(A "FOREIGN" "NAME;LIBRARY" "SOURCES;REGS;GENERICS;LIBRARIES" ${ARGN})
+  list(TRANSFORM A_LIBRARIES REPLACE "(.+)" "--in;\\1" OUTPUT_VARIABLE members)
+  list(TRANSFORM A_LIBRARIES REPLACE "^[^=]*=" "" OUTPUT_VARIABLE member_files)
   list(TRANSFORM A_GENERICS REPLACE "(.+)" "--generic;\\1" OUTPUT_VARIABLE generics)
   if(NOT A_LIBRARY)
     set(A_LIBRARY work)
@@ -41,9 +43,9 @@ function(icesoc_vhdl)
   file(MAKE_DIRECTORY ${work})
   add_custom_command(OUTPUT ${GEN_DIR}/${A_NAME}.v
     COMMAND ${CMAKE_SOURCE_DIR}/cmake/vhdl_to_verilog.sh ${foreign} --library ${A_LIBRARY}
-            ${generics} ${GHDL} ${work} ${A_NAME} ${GEN_DIR}/${A_NAME}.v ${named}
+            ${members} ${generics} ${GHDL} ${work} ${A_NAME} ${GEN_DIR}/${A_NAME}.v ${named}
     WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}
-    DEPENDS ${GHDL} ghdl ${packages} ${A_SOURCES} ${deps}
+    DEPENDS ${GHDL} ghdl ${packages} ${A_SOURCES} ${member_files} ${deps}
       ${CMAKE_SOURCE_DIR}/cmake/vhdl_to_verilog.sh
     VERBATIM COMMENT "VHDL to Verilog: ${A_NAME}")
   add_custom_target(${A_NAME}_verilog DEPENDS ${GEN_DIR}/${A_NAME}.v)

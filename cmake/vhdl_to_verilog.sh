@@ -2,20 +2,24 @@
 # SPDX-License-Identifier: MIT
 #
 # vhdl_to_verilog: converts an entity to Verilog with GHDL. A latch in the result is an error.
-# Usage: vhdl_to_verilog.sh [--foreign] [--library NAME] [--generic NAME=value]...
-#                           GHDL work-folder entity output.v file.vhd...
+# Usage: vhdl_to_verilog.sh [--foreign] [--library NAME] [--in NAME=file.vhd]...
+#                           [--generic NAME=value]... GHDL work-folder entity output.v file.vhd...
 # The files may be in any order.
 #   --foreign   third-party sources, which may use Synopsys' packages and what other tools allow;
 #               their assertions are for their own simulations
 #   --library   VHDL library of the files, if they refer to themselves by its name (default: work)
+#   --in        another library and a file in it
 #   --generic   value of a generic of the entity
 
 set -eu
-library=work options='--std=08' generics='' foreign=''
+library=work options='--std=08' generics='' foreign='' members=''
+newline='
+'
 while :; do
     case $1 in
     --foreign) foreign=--no-formal options='--std=08 -frelaxed -fsynopsys' ;;
     --library) library=$2 && shift ;;
+    --in) members="$members$2$newline" && shift ;;
     --generic) generics="$generics -g$2" && shift ;;
     *) break ;;
     esac
@@ -24,10 +28,14 @@ done
 ghdl=$1 work=$2 entity=$3 output=$4
 shift 4
 rm -f "$work"/*.cf
+printf %s "$members" | while IFS='=' read -r name file; do
+    # shellcheck disable=SC2086
+    "$ghdl" -i $options --work="$name" -P"$work" --workdir="$work" "$file"
+done
 # shellcheck disable=SC2086 # a list of words
-"$ghdl" -i $options --work="$library" --workdir="$work" "$@"
+"$ghdl" -i $options --work="$library" -P"$work" --workdir="$work" "$@"
 # shellcheck disable=SC2086
-"$ghdl" -m $options --work="$library" --workdir="$work" "$entity" >"$work/messages" 2>&1 || {
+"$ghdl" -m $options --work="$library" -P"$work" --workdir="$work" "$entity" >"$work/messages" 2>&1 || {
     cat "$work/messages" >&2
     exit 1
 }
@@ -36,8 +44,8 @@ rm -f "$work"/*.cf
     echo "/* verilator lint_off UNUSEDSIGNAL */ // a generated netlist has unused signals"
     echo "/* verilator lint_off DECLFILENAME */ // all entities of a core are in one file"
     # shellcheck disable=SC2086 # a list of words
-    "$ghdl" --synth $options --work="$library" --workdir="$work" $generics \
-        $foreign --out=verilog "$entity" 2>"$work/messages" &&
+    "$ghdl" --synth $options --work="$library" -P"$work" --workdir="$work" $generics $foreign \
+        --out=verilog "$entity" 2>"$work/messages" &&
         echo "/* verilator lint_on UNUSEDSIGNAL */" &&
         echo "/* verilator lint_on DECLFILENAME */"
 } >"$output.tmp" || {

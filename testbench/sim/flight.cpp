@@ -289,10 +289,11 @@ void Flight::adviseOnClock() {
         return;
     advised_ = true;
     fmt::print(
-        "icesoc-sim: '{}' moves in nearly every clock, so that hardly any is skipped: {:.2f} "
-        "million clocks/s (real time is {:.1f}){}\n",
+        "icesoc-sim: '{}' changes in nearly every clock, so almost no clock is skipped: {:.2f} "
+        "million clocks/s (real time needs {:.1f}). If its clock may stop between calls, give it "
+        "idle_o (docs/hw-mapping.md#idle){}\n",
         soc_.mover(), millionsPerSecond(), SocModel::clkHz / 1e6,
-        SocModel::clkHz > slow ? "; make run CLK_HZ=2000000 is quicker" : "");
+        SocModel::clkHz > slow ? "; otherwise make run CLK_HZ=2000000 is faster" : "");
     std::fflush(stdout);
 }
 

@@ -88,7 +88,7 @@ prints 'cores: all as expected'
 # capture by radio, read by GTKWave's tools, equals the simulator's trace of the replayed flight,
 # over the captured time.
 traced() {
-    prints "'(my_requests|servo)' moves in nearly every clock"
+    prints "'(my_requests|servo)' changes in nearly every clock"
     vcd2fst "$work/probe.vcd" "$work/probe.fst" >"$work/log"
     fst2vcd "$work/probe.fst" >"$work/captured.vcd"
     span=$(awk '/^#/ { t = substr($1, 2) / 1e9; if (!n++) first = t }

@@ -1,9 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# refused: source-folder work-folder   Input that make new-foreign refuses, with a reason and
+# refused: source-folder work-folder GHDL   Input that make new-foreign refuses, with a reason and
 # without writing files. It is a shell script because a case is a command and its output.
 set -eu
-source=$1 work=$2
+source=$1 work=$2 ghdl=$3
 new() { "$source/tools/python" -m icesoc.cores.new_foreign "$@"; }
 here=$(cd "$(dirname "$0")" && pwd)
 rm -rf "$work"
@@ -91,7 +91,7 @@ refused "CLOCK=fast: the frequency" wb_port wishbone CLOCK=fast wb_port.v
 refused 'ADDRESS=fast: words or bytes' wb_port wishbone ADDRESS=fast wb_port.v
 refused 'ack= is not for it' apb_words apb ack=1 pin=PREADY "$here/apb_words.v" timescale.v
 refused 'CLOCK: a core with AXI-Streams' axis_scale axis CLOCK=24000000 cores.v
-refused 'LIBRARY: .* these are Verilog' req_words own LIBRARY=lights cores.v
+refused 'LIBRARY: expected VHDL files, got Verilog' req_words own LIBRARY=lights cores.v
 refused 'a setting requires BUS=axis' req_words own setting=value cores.v
 refused "setting is an input of a core, and 'over' is not" axis_scale axis setting=over cores.v
 # Of two cores in one chip.
@@ -136,6 +136,111 @@ endmodule' >level.v
 new my_port level own level write=we wdata=d rdata=q level.v >log
 grep -q '^  arst_i: resetn' log && grep -q 'level u_core' level/my_port.v ||
     { cat log && echo 'the level of a reset is wrong' && exit 1; }
+# A narrow APB counts registers of its data width, unless its address begins at bit 2.
+for bits in 8 16; do
+    echo "module apb$bits(input pclk, psel, penable, pwrite, input [5:0] paddr,
+        input [$((bits - 1)):0] pwdata, output [$((bits - 1)):0] prdata);
+    endmodule" >apb$bits.v
+done
+new my_port apb8 apb apb8 apb8.v >log
+prints 'paddr: adr, counts bytes, each a register: the data of this APB has 8 bits; if not'
+grep -q 'paddr(adr\[7:2\])' apb8/my_port.v && grep -q 'at 0x1 in' apb8/my_port.regs.json || exit 1
+new my_port apb16 apb apb16 apb16.v >log
+grep -q 'paddr(adr\[6:1\])' apb16/my_port.v && grep -q 'at 0x2 in' apb16/my_port.regs.json || exit 1
+sed 's/5:0/7:2/' apb8.v >apb8_high.v
+new my_port apb8 apb apb8_high apb8_high.v >log
+prints 'paddr: adr, counts bytes: it begins at bit 2'
+# A memory of 64 KiB with its initial contents is read in seconds; Yosys is not asked to unroll the
+# loop. A loop in its reset is left to Verilator after a time, and is reported until then.
+cat >big.v <<'END'
+module big (input clk, rst_n, we, input [13:0] a, input [31:0] d, output reg [31:0] q);
+    reg [31:0] words [0:16383];
+    integer i;
+`ifdef EMPTY
+    initial begin : fill // "begin" in a comment
+        for (i = 0; i < 16384; i = i + 1)
+            if (i % 2 == 0) words[i] = 32'd0; else begin words[i] = 32'd1; end
+    end
+`endif
+    initial begin
+        for (i = 0; i < 16384; i = i + 1) begin
+            case (i % 2)
+                0: words[i] = 32'd0;
+                default: words[i] = 32'd1;
+            endcase
+        end
+        $display("initial ; end");
+    end
+    always @(posedge clk) begin
+        if (we) words[a] <= d;
+        q <= words[a];
+    end
+endmodule
+END
+big_ports='write=we address=a wdata=d rdata=q ADDRESS=words'
+# shellcheck disable=SC2086 # a list of words
+timeout 60 "$source/tools/python" -m icesoc.cores.new_foreign my_port big own big $big_ports \
+    DEFINE:EMPTY big.v >log 2>&1 && ! grep -q waiting log ||
+    { cat log && echo 'a large memory takes long' && exit 1; }
+prints 'rst_n: resetn'
+sed 's/if (we)/if (!rst_n) for (i = 0; i < 16384; i = i + 1) words[i] = 0;\
+    else if (we)/;s/words\[a\] <= d/words[a] = d/' big.v \
+    >cleared.v
+limited='import sys
+from icesoc.cores import foreign_ports, new_foreign
+foreign_ports.REPORT, foreign_ports.LIMIT = 1, 2
+new_foreign.main(sys.argv[1:])'
+# shellcheck disable=SC2086
+"$source/tools/python" -c "$limited" my_port big own cleared $big_ports cleared.v >log 2>&1 &&
+    grep -q 'waiting for Yosys to elaborate big: 1 s' log &&
+    grep -q 'Yosys has not elaborated big in 2 s: Verilator reads its ports' log ||
+    { cat log && echo 'a slow core is not reported' && exit 1; }
+prints 'd: wdata'
+# Packed structures: a bus in AXI's style with nested members; members by PORTS; one of pins.
+cat >nested.sv <<'END'
+package nested_types;
+    typedef struct packed {logic [7:0] addr; logic [2:0] prot;} address_t;
+    typedef struct packed {logic [31:0] data; logic [3:0] strb;} data_t;
+    typedef struct packed {
+        address_t aw; logic aw_valid; data_t w; logic w_valid, b_ready;
+        address_t ar; logic ar_valid, r_ready; } req_t;
+    typedef struct packed {logic [1:0] resp;} b_t;
+    typedef struct packed {logic [31:0] data; logic [1:0] resp;} r_t;
+    typedef struct packed {
+        logic aw_ready, w_ready, ar_ready, b_valid; b_t b; logic r_valid; r_t r; } resp_t;
+    typedef struct packed {logic on; logic [1:0] level;} pins_t;
+endpackage
+module nested import nested_types::*; (input logic clk, rst_n, input req_t req_i,
+        output resp_t resp_o, input pins_t pins_i, output pins_t state_o);
+    assign resp_o = '0, state_o = pins_i;
+endmodule
+END
+new my_port nested axil nested nested.sv >log
+prints 'req_i.aw.addr: awaddr' 'req_i.w.strb: wstrb' 'resp_o.r.resp: rresp' 'pins_i: pin pins_i$'
+grep -q 'resp_o({awready, wready, arready, bvalid, bresp, rvalid, rdata, rresp})' \
+    nested/my_port.v || { cat nested/my_port.v && exit 1; }
+new my_port nested axil parts open=state_o.on nested.sv >log
+prints 'state_o.on: open' 'state_o.level: pin state_level_o'
+grep -q 'state_o({unused_state_o_on, state_level_o})' parts/my_port.v || exit 1
+# A SystemVerilog interface as port is refused with the way out.
+echo 'interface bus_if (input logic clk); logic sel; modport slave (input clk, sel); endinterface
+module faced (input logic reset, bus_if.slave s); endmodule' >faced.sv
+refused "faced has the port 's', a SystemVerilog interface (bus_if.slave)" faced apb faced.sv
+refused 'bus_if s (...);' faced apb faced.sv
+# VHDL in several libraries.
+refused 'LIBRARY: util=none.vhd: expected a library.s name and a file of FILES' lamps own \
+    LIBRARY=util=none.vhd lamps.vhd
+if [ -x "$ghdl" ]; then # GHDL 5 is fetched by the build
+    cp "$here/lamps_types.vhd" .
+    sed 's/lights/types/' lamps.vhd >two_libraries.vhd
+    new my_port lamps own libraries GHDL="$ghdl" LIBRARY=main LIBRARY=types='*_types.vhd' \
+        PARAM:lamps_lit=4 read=request_rd write=request_wr address=request_a wdata=request_d \
+        rdata=q two_libraries.vhd lamps_types.vhd >log || { cat log && exit 1; }
+    grep -q '"types=.*/lamps_types.vhd"' libraries/core.toml &&
+        "$source/tools/python" -m icesoc.chip.manifest libraries/core.toml |
+        grep -q '"LIBRARIES" "types=.*/lamps_types.vhd"' ||
+        { cat libraries/core.toml && exit 1; }
+fi
 # SystemVerilog with packages, in any order, and a loop that Verilator reports.
 cat >system.sv <<'END'
 module system import sizes::*; #(parameter EXTRA = 1) (

@@ -100,6 +100,9 @@ def read(path):
     for key, files in [*((k, facts.get(k, [])) for k in ("verilog", "vhdl", "tests")),
                        ("servant.files", facts.get("servant", {}).get("files", [])),
                        *((f"entities.{n}.files", e["files"])
+                         for n, e in facts.get("entities", {}).items()),
+                       *((f"entities.{n}.libraries",
+                          [word.split("=", 1)[1] for word in e.get("libraries", [])])
                          for n, e in facts.get("entities", {}).items())]:
         for file in files:
             holds("@" in file or Path(manifest.file(file)).is_file(), f"{key}: no file {file}")
@@ -149,6 +152,10 @@ def cmake(manifest):
     def files(names):
         return [n if n.startswith(("/", "@")) else manifest.file(n) for n in names]
 
+    def in_libraries(words):
+        return [f"{library}={files([file])[0]}"
+                for library, file in (word.split("=", 1) for word in words)]
+
     for key in FILE_LISTS:
         add(key.upper(), files(facts.get(key, [])))
     add("ICE", files([facts["interface"]] if "interface" in facts else []))
@@ -164,6 +171,8 @@ def cmake(manifest):
         add(f"ENTITY_{name}", ["SOURCES", *files(entity["files"]),
                                *(["FOREIGN"] if entity.get("foreign") else []),
                                *(["LIBRARY", entity["library"]] if "library" in entity else []),
+                               *(["LIBRARIES", *in_libraries(entity["libraries"])]
+                                 if entity.get("libraries") else []),
                                *(["GENERICS", *entity["generics"]]
                                  if entity.get("generics") else [])])
     return s

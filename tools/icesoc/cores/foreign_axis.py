@@ -7,7 +7,7 @@ Wrapper, servant and proxies are generated from its Slice interface; axis_filter
 """
 import re
 
-from icesoc.cores.foreign_files import pin_name, render
+from icesoc.cores.foreign_files import connected_ports, pin_name, render
 
 SIGNALS = ("tdata", "tvalid", "tready", "tkeep", "tstrb", "tlast", "tuser", "tid", "tdest")
 ROLES = [f"{stream}_{signal}" for stream in "sm" for signal in SIGNALS]
@@ -85,6 +85,8 @@ def connection(core, name, port):
 def module(core):
     """Returns the slot's Verilog: wrapper, axis_filter, core."""
     keep = core.width // 8
+    connections, unused = connected_ports(core.ports,
+                                          lambda name, port: connection(core, name, port))
     return render(
         "axis.v.j2", name=core.name, what=f"{core.top}: buffers in DDR3 through its AXI-Streams",
         pins=core.pins, has_memory=True, core=core, room=BYTES, count_bits=core.most.bit_length(),
@@ -93,7 +95,7 @@ def module(core):
         constants=[(wire, value) for role, wire, value in (
             ("s_tready", "to_ready", "1'b1"), ("m_tkeep", "from_keep", f"{{{keep}{{1'b1}}}}"),
             ("m_tlast", "from_last", "1'b0")) if role not in core.by_role],
-        connections=[f".{n}({connection(core, n, p)})" for n, p in core.ports.items()])
+        connections=connections, unused_wires=unused)
 
 
 def texts(name, top, params, ports, roles):

@@ -7,7 +7,7 @@ core without acknowledge answers at once, after some clocks, or in APB's access 
 import json
 
 from icesoc.cores.foreign_roles import AXI, LOW, is_answer
-from icesoc.cores.foreign_files import pin_name, render, vector
+from icesoc.cores.foreign_files import connected_ports, pin_name, render, vector
 
 BUSES = {"wishbone": "Wishbone", "apb": "APB", "axil": "AXI4-Lite",
          "memory": "select, address and data",
@@ -35,7 +35,8 @@ class Core:
         self.data_width = max(len(self.by_role[r]["bits"]) for r in ("wdata", "rdata"))
         self.signals = AXI if bus == "axil" else WISHBONE
         self.has_strobes = bus == "avalon" or {"stb", "strobe"}.isdisjoint(self.by_role)
-        self.adr_bits, self.word_bits, self.unit, self.counts_bytes = 6, 0, "", False
+        self.adr_bits, self.word_bits, self.unit = 6, 0, ""
+        self.step = 1  # distance of the addresses of two words
         for n, p in ports.items():
             if roles[n] in ADDRESSES:
                 self.count_words(roles[n], p, address)
@@ -47,30 +48,37 @@ class Core:
 
     def count_words(self, role, port, address):
         """Detects whether an address counts words or bytes, and the number of bits that count
-        words."""
+        words. On a narrow APB, the registers follow each other without gaps."""
         width, lsb = len(port["bits"]), port.get("offset", 0)
+        step, reason = 4, "as you say"
         if address or role in ("words", "bytes"):
-            unit, reason = address or role, "as you say"
+            step = 1 if (address or role) == "words" else 4
+        elif lsb > 1:
+            reason = f"it begins at bit {lsb}"
+        elif self.bus == "apb" and self.data_width in (8, 16) and not self.macros:
+            step, reason = self.data_width // 8, f"the data of this APB has {self.data_width} bits"
         elif self.bus in ("apb", "axil", "avalon"):
-            unit = "words" if self.bus == "avalon" else "bytes"
-            reason = f"{BUSES[self.bus]} does"
+            step, reason = 1 if self.bus == "avalon" else 4, f"{BUSES[self.bus]} does"
         elif lsb:
-            unit, reason = "bytes", f"it begins at bit {lsb}"
+            reason = f"it begins at bit {lsb}"
         elif self.macros:
-            unit, reason = "bytes", f"{', '.join(self.macros)} are multiples of 4"
+            reason = f"{', '.join(self.macros)} are multiples of 4"
         elif width < 16 or width == 30:
-            unit, reason = "words", f"it has {width} bits"
+            step, reason = 1, f"it has {width} bits"
         elif width < 30 and self.data_width < 32:
-            unit, reason = "words", f"it has {width} bits, and data {self.data_width}"
+            step, reason = 1, f"it has {width} bits, and data {self.data_width}"
         else:
-            unit, reason = "bytes", f"it has {width} bits"
-        other = "bytes" if unit == "words" else "words"
+            reason = f"it has {width} bits"
+        unit, other = ("words", "bytes") if step == 1 else ("bytes", "words")
+        if step == 1 and self.bus == "apb" and not address and role not in ("words", "bytes"):
+            unit, other = "bytes, each a register", "bytes"  # of words of four bytes
         self.unit = f"counts {unit}: {reason}" + (
             "" if reason == "as you say" else f"; if not, ADDRESS={other}")
-        self.counts_bytes = unit == "bytes"
-        self.word_bits = width if unit == "words" else max(0, width + lsb - 2)
+        lsb = lsb if step > 1 else 0
+        self.step, gap = step, step.bit_length() - 1
+        self.word_bits = max(0, width + lsb - gap)
         self.adr_bits = max(self.adr_bits, self.word_bits + 2, width + lsb)
-        self.slice = f"[{width + 1}:2]" if unit == "words" else f"[{width + lsb - 1}:{lsb}]"
+        self.slice = f"[{width + lsb + 1 - gap}:{lsb + 2 - gap}]"
 
     def width(self, signal):
         return self.adr_bits if signal in ADDRESSES else WIDTHS.get(signal, 1)
@@ -145,8 +153,10 @@ def connected(core, name, port, interrupts):
 def module(core):
     """Returns the slot's Verilog."""
     interrupts = []
-    connections = [f".{n}({connected(core, n, p, interrupts)})" for n, p in core.ports.items()]
+    connections, unused = connected_ports(
+        core.ports, lambda name, port: connected(core, name, port, interrupts))
     wires, lines, made = answers(core)
+    wires += unused
     for s in core.signals:
         value = made.get(s) or (f"{core.width(s)}'d0" if is_answer(s)
                                 and s not in core.by_role else "")
@@ -181,7 +191,7 @@ def description(core, words):
                   "doc": "byte address in the core of word 8", "fields": [
         {"name": "ADDRESS", "lsb": 0, "width": core.adr_bits, "doc": "a multiple of 32"}]}]
     registers += [{"word": 8 + a % 8, "page": a // 8 * 32, "name": n, "access": "rw", **width,
-                   "doc": f"at {4 * a:#x} in the core"} for a, n in words.items()]
+                   "doc": f"at {core.step * a:#x} in the core"} for a, n in words.items()]
     return {"block": core.name, "doc": f"The third-party core {core.top}, by {BUSES[core.bus]}.",
             "type": f"0x{ord(letters[0]):02X}{ord(letters[1]):02X}", "version": "0x0100",
             "registers": registers,

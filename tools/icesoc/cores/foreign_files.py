@@ -1,15 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""foreign_files: reads the files of a third-party core for new_foreign.py (its modules, and the
-ports of TOP), and provides code common to all wrappers."""
+"""foreign_files: finds modules, names of registers and macros in the files of a third-party core,
+for new_foreign.py, and provides code common to all wrappers."""
 import codecs
 import functools
-import json
 import os
 import re
-import subprocess
 import sys
-import tempfile
-import xml.etree.ElementTree
 from pathlib import Path
 
 from icesoc import TREE
@@ -143,113 +139,6 @@ def packages_first(files):
     return ordered
 
 
-# Messages of Verilator and Yosys, and what to do about them.
-HINTS = {r"[Ii]nclude file:? (?:`)?([^\s']+)": "FILES may also name headers: `include looks for "
-                                               "{0} in their folders (a timescale.v may be empty)",
-         r"(?:Module `\\|unknown type `|containing module: ')(\w+)":
-         "FILES lacks the file with module '{0}'",
-         r"object for defparam `(\w+)|no generic \"(\w+)\"": "PARAMS: {top} has no '{0}'",
-         r"find resource library \"(\w+)\"": "add LIBRARY={0} if the files are in that library"}
-
-
-def run_tool(what, top, command):
-    """Runs a tool that reads the core; a refusal is an error, with advice. Without `what`: returns
-    whether the tool accepts it."""
-    run = subprocess.run(command, capture_output=True, text=True)
-    if run.returncode and what:
-        said = (run.stdout + run.stderr).rstrip()
-        lines = said.splitlines()
-        hints = [hint.format(*filter(None, m.groups()), top=top) for words, hint in HINTS.items()
-                 if (m := re.search(words, said))]
-        fail("\n".join([f"{what} {top}:", *lines[:12], *(["..."] if len(lines) > 12 else []),
-                        *hints]))
-    return run.returncode == 0
-
-
-def lint_of(top, files, defines):
-    """Returns Verilator's command for a core, but for what it shall do with which files."""
-    return ["verilator", *FLAGS, "--top-module", top, *("-I" + d for d in folders_of(files)),
-            *("-D" + d for d in defines)]
-
-
-def ports_by_verilator(top, words):
-    """Returns the ports of TOP as listed by Yosys, for SystemVerilog that Yosys cannot read."""
-    with tempfile.TemporaryDirectory() as work:
-        file = os.path.join(work, "top.xml")
-        run_tool("Verilator does not elaborate", top,
-                 [*words, "--xml-only", "--xml-output", file, "--Mdir", work])
-        tree = xml.etree.ElementTree.parse(file)
-    types = {t.get("id"): t for t in tree.find("netlist/typetable")}
-
-    def width(number):
-        t = types[number]
-        if t.tag == "structdtype":
-            return sum(width(member.get("sub_dtype_id")) for member in t)
-        ends = [int(c.get("name").split("h")[1], 16) for c in t.findall("range/const")]
-        if t.get("left"):
-            ends = [int(t.get("left")), int(t.get("right"))]
-        size = abs(ends[0] - ends[1]) + 1 if ends else 1
-        return size * (width(t.get("sub_dtype_id")) if t.get("sub_dtype_id") else 1)
-
-    module = next(m for m in tree.iter("module") if m.get("topModule"))
-    return {v.get("name"): {"direction": v.get("dir"), "bits": [0] * width(v.get("dtype_id")),
-                            "offset": int(types[v.get("dtype_id")].get("right") or 0)}
-            for v in module.findall("var") if v.get("dir")}
-
-
-def read_module(top, files, headers=(), params=(), defines=(), is_whole=True, ghdl="ghdl",
-                library=""):
-    """The module `top`: its ports in order, and whether Yosys reads it, not Verilator alone. A port
-    that resets registers asynchronously has "reset", the level at which it does. `headers`: files
-    in whose folders `include finds more. `params`: NAME=value of parameters or generics; `defines`:
-    NAME or NAME=value of macros. `is_whole`: all of its modules are in the files. `ghdl`: the
-    program that reads VHDL; `library`: name that the files have for their library."""
-    with tempfile.TemporaryDirectory() as work:
-        out = os.path.join(work, top + ".v")
-        if is_vhdl(files[0]):
-            run_tool("GHDL does not convert", top,
-                     [TREE / "cmake/vhdl_to_verilog.sh", "--foreign", "--library",
-                      library or "work", *(word for p in params for word in ("--generic", p)),
-                      ghdl, work, top, out, *files])
-            files, params = [out], ()  # converted with the generics
-        folders = ["-I" + d for d in folders_of([*files, *headers])] + ["-D" + d for d in defines]
-        originals = files
-        files = [copy_without_mark(f, work) if has_mark(f) else f for f in files]
-        reads = [f"read_verilog -defer {'-sv' if end_of(f) == '.sv' else ''} {' '.join(folders)} "
-                 f"{f}" for f in files]
-        check = "hierarchy -check" if is_whole else "hierarchy"
-        elaborate = [f"{check} -top {top}"]
-        if params:  # an instance of TOP: -chparam takes neither texts nor negative numbers
-            instance = os.path.join(work, "instance.v")
-            Path(instance).write_text(
-                f"module icesoc_top; {top}{overrides(params)} u (); endmodule")
-            elaborate = [f"read_verilog -sv {instance}", f"{check} -top icesoc_top",
-                         "delete icesoc_top", "hierarchy -auto-top"]
-        script = "; ".join([*reads, *elaborate, "proc", "flatten", "opt_expr",
-                            f"write_json {out}.json"])
-        is_system = any(end_of(f) == ".sv" for f in files)
-        if not run_tool("" if is_system else "Yosys does not elaborate", top,
-                        ["yosys", "-q", "-p", script]):
-            return ports_by_verilator(top, [*lint_of(top, [*originals, *headers], defines),
-                                            *("-G" + p for p in params), *originals]), False
-        modules = json.loads(text_of(out + ".json"))["modules"]
-    module = next(m for n, m in modules.items() if m["attributes"].get("top") or n == top)
-    for cell in module["cells"].values():
-        for port in module["ports"].values():
-            if (cell["connections"].get("ARST") == port["bits"]
-                    and "ARST_POLARITY" in cell["parameters"]):
-                port["reset"] = cell["parameters"]["ARST_POLARITY"][-1]
-    return module["ports"], True
-
-
-def copy_without_mark(file, folder):
-    """Copies a file into a folder without its byte order mark; returns the copy's path."""
-    copy = os.path.join(folder, "unmarked_" + os.path.basename(file))
-    with open(copy, "w") as f:
-        f.write(text_of(file))
-    return copy
-
-
 def filled(file, defines):
     """Returns the file's text with macros and absolute paths for $readmemh, since a simulation runs
     in any folder."""
@@ -261,28 +150,6 @@ def filled(file, defines):
         return text
     before = "".join(f"`define {d.replace('=', ' ', 1)}\n" for d in defines)
     return before + text + "".join(f"\n`undef {d.split('=')[0]}\n" for d in defines)
-
-
-def copies_for_verilator(top, files, headers, defines):
-    """Returns texts by the files that they replace, with macros, paths of data and, where Verilator
-    needs it, SystemVerilog's words as names."""
-    lint = lint_of(top, [*files, *headers], defines)
-    copies = {f: t for f in files if (t := filled(f, defines)) != text_of(f) or has_mark(f)}
-    if run_tool(None, top, [*lint, "--lint-only", *files]):
-        return copies
-    with tempfile.TemporaryDirectory() as work:
-        older, names = {}, {}
-        for f in files:
-            if end_of(f) == ".v" and declared([f], "module"):
-                older[f] = (f'`ifdef VERILATOR\n`begin_keywords "1364-2005"\n`endif\n'
-                            f"{filled(f, defines)}\n"
-                            "`ifdef VERILATOR\n`end_keywords\n`endif\n")
-                names[f] = os.path.join(work, os.path.basename(f))
-                with open(names[f], "w") as out:
-                    out.write(older[f])
-        if run_tool(None, top, [*lint, "--lint-only", *(names.get(f, f) for f in files)]):
-            return {**copies, **older}
-    run_tool("Verilator does not read", top, [*lint, "--lint-only", *files])
 
 
 def macros_of(files):
@@ -310,7 +177,7 @@ def names_of(top, files, core):
                  rf"(\w+)\s*=\s*{core.word_bits}'([hdb])([0-9a-fA-F_]+)", part, re.I)]
     if len(found) < 2 or len({v for _, v in found}) < len(found):
         found = [(n, v // 4) for n, v in core.macros.items()
-                 if core.counts_bytes and v < 4 << core.word_bits]
+                 if core.step == 4 and v < 4 << core.word_bits]
     if len(found) < 2:
         return {}
     prefix = os.path.commonprefix([n for n, _ in found])
@@ -334,8 +201,24 @@ def vector(width):
 def pin_name(name, port):
     """Returns the name of a port in the form of platform pins: in lower case, with _i or _o at its
     end."""
-    base = re.sub(r"^[io]_|_[io]$", "", name.lower())
+    base = "_".join(re.sub(r"^[io]_|_[io]$", "", part) for part in name.lower().split("."))
     return base + ("_i" if port["direction"] == "input" else "_o")
+
+
+def connected_ports(ports, connection):
+    """Returns the connections of an instance, and wires for unused parts of its outputs. A packed
+    structure is connected as the concatenation of its members. `connection` returns the connection
+    of a port or a member by name."""
+    parts, wires = {}, []
+    for name, port in ports.items():
+        whole, _, member = name.partition(".")
+        text = connection(name, port)
+        if member and not text:
+            text = f"unused_{name.replace('.', '_')}"
+            wires.append(f"    wire {vector(len(port['bits']))}{text};")
+        parts.setdefault(whole, []).append((member, text))
+    return [f".{whole}({{{', '.join(text for _, text in texts)}}})" if texts[0][0]
+            else f".{whole}({texts[0][1]})" for whole, texts in parts.items()], wires
 
 
 def overrides(params):

@@ -69,9 +69,29 @@ def is_answer(signal):
                       "m_tvalid")
 
 
+def with_members(ports, bus, given):
+    """Returns the ports with each packed structure replaced by its members, such as req_i.psel, if
+    one of them is a signal of the bus, or is named by the user. The members of a structure without
+    such a signal stay one port."""
+    found = {}
+    for name, port in ports.items():
+        members = {f"{name}.{member}": {"direction": port["direction"], "bits": [0] * bits}
+                   for member, bits in port.get("members", [])}
+        is_bus = not role(name, port, bus) and any(
+            role(member, part, bus) for member, part in members.items())
+        is_named = any(word.partition("=")[2].startswith(name + ".") for word in given)
+        found.update(members if is_bus or is_named else {name: port})
+    return found
+
+
 def role(name, port, bus):
-    """Returns a port's role: clock, reset, interrupt, a signal of the bus, or "" for a pin."""
-    tokens = name.lower().split("_")
+    """Returns a port's role: clock, reset, interrupt, a signal of the bus, or "" for a pin. A
+    member of a packed structure has the role of its name: aw.addr is AXI's awaddr."""
+    member = name.partition(".")[2]
+    name = (member or name).lower().replace(".", "_")
+    tokens = name.split("_")
+    if member and len(tokens) > 1:
+        tokens.append(name.replace("_", ""))
     is_input = port["direction"] == "input"
     if is_input and len(port["bits"]) == 1 and not NO_CLOCK & set(tokens):
         if any(re.fullmatch(CLOCK, t) for t in tokens):
@@ -85,7 +105,7 @@ def role(name, port, bus):
                                                           for t in tokens) else "reset"
     if bus == "axis":
         return foreign_axis.role(name, port) or ""
-    base = re.sub(r"^[io]_|_[io]$", "", name.lower())
+    base = re.sub(r"^[io]_|_[io]$", "", name)
     found = []
     if bus == "memory":
         found = [MEMORY[base]] if base in MEMORY else []

@@ -2,19 +2,21 @@
 """new_foreign: puts a third-party core in Verilog or VHDL into a slot.
 
     new_foreign.py NAME TOP wishbone|axil|apb|avalon|memory|own|axis FOLDER [CLOCK=Hz]
-                   [GHDL=program] [LIBRARY=name] [ADDRESS=words|bytes] [PARAM:NAME=value...]
-                   [DEFINE:NAME...] [ROLE=port...] FILE...
+                   [GHDL=program] [LIBRARY=name|name=file...] [ADDRESS=words|bytes]
+                   [PARAM:NAME=value...] [DEFINE:NAME...] [ROLE=port...] FILE...
 
 Reads the ports of the module or entity TOP and writes into FOLDER, which must not exist: NAME.v,
 which connects TOP to the slot; its registers, with the names that TOP has for their addresses; a
 test; its part of a mission; core.toml. ROLE=port overrides the meaning of a port's name. Ports that
 are neither bus, clock, reset nor interrupt become pins. CLOCK: the core has a separate clock, of
 that frequency at most.
-ADDRESS: what its address counts. GHDL: the program that reads VHDL (ghdl). LIBRARY: the
-VHDL library that its files say they are in. PARAM: a parameter or generic of TOP. DEFINE: a macro
+ADDRESS: what its address counts. GHDL: the program that reads VHDL (ghdl). LIBRARY: the VHDL
+library of its files; util=FILE puts one file, or those of a pattern, into another library. PARAM:
+a parameter or generic of TOP. DEFINE: a macro
 of its Verilog, NAME or NAME=value. A core with AXI-Streams (axis) has an operation instead of
 registers: foreign_axis.py.
 """
+import fnmatch
 import json
 import os
 import re
@@ -24,10 +26,11 @@ from pathlib import Path
 from icesoc.cores import foreign_axis
 from icesoc.cores import foreign_bus
 from icesoc.util.reserved import REFUSAL, RESERVED
-from icesoc.cores.foreign_files import (FLAGS, check_names, copies_for_verilator, fail, folders_of,
-                                        is_vhdl, kind_of, macros_of, names_of, packages_first,
-                                        pin_name, read_module, verilog_params)
-from icesoc.cores.foreign_roles import NEEDED, roles_of
+from icesoc.cores.foreign_files import (FLAGS, check_names, fail, folders_of, is_vhdl, kind_of,
+                                        macros_of, names_of, packages_first, pin_name,
+                                        verilog_params)
+from icesoc.cores.foreign_ports import copies_for_verilator, read_module
+from icesoc.cores.foreign_roles import NEEDED, roles_of, with_members
 
 HEAD = "# SPDX-License-Identifier: MIT\n"
 USAGE = ("usage: make new-foreign NAME=my_uart TOP=module "
@@ -56,8 +59,10 @@ class Request:
             else:
                 (self.ports if "=" in word else self.files).append(word)
         self.params, self.defines = options["PARAM:"], options["DEFINE:"]
-        self.clock, self.library, self.address, self.ghdl = (
-            next(iter(options[o]), "") for o in ("CLOCK=", "LIBRARY=", "ADDRESS=", "GHDL="))
+        self.library = next((o for o in options["LIBRARY="] if "=" not in o), "")
+        self.members = [o.split("=", 1) for o in options["LIBRARY="] if "=" in o]
+        self.clock, self.address, self.ghdl = (
+            next(iter(options[o]), "") for o in ("CLOCK=", "ADDRESS=", "GHDL="))
         self.ghdl = self.ghdl or "ghdl"
 
     def check(self):
@@ -90,12 +95,20 @@ class Request:
                      "its folder")
             if not kind_of(f) or not os.path.isfile(f):
                 fail(f"there is no Verilog or VHDL file '{f}'")
-        if self.library and not any(map(is_vhdl, files)):
-            fail("LIBRARY: the library that VHDL files say they are in; these are Verilog")
+        if (self.library or self.members) and not any(map(is_vhdl, files)):
+            fail("LIBRARY: expected VHDL files, got Verilog, which has no libraries")
+        self.libraries = []
+        for library, pattern in self.members:
+            found = [f for f in files if fnmatch.fnmatch(f, os.path.abspath(pattern))
+                     or fnmatch.fnmatch(os.path.basename(f), pattern)]
+            if not found or not re.fullmatch(r"[A-Za-z]\w*", library):
+                fail(f"LIBRARY: {library}={pattern}: expected a library's name and a file of FILES")
+            self.libraries += [f"{library}={f}" for f in found]
+            files = [f for f in files if f not in found]
         self.headers = [f for f in files if kind_of(f) == "header"]
         self.files = packages_first([f for f in files if f not in self.headers])
         if not self.files or len({is_vhdl(f) for f in self.files}) > 1:
-            fail("FILES are all Verilog or all VHDL, and at least one")
+            fail("FILES are all Verilog or all VHDL, and at least one is in the library of TOP")
         self.is_vhdl, self.is_synthesised = is_vhdl(self.files[0]), True
         if not self.is_vhdl:
             self.params = verilog_params(self.params)
@@ -106,13 +119,15 @@ def read_core(asked):
     """Returns TOP's ports, the parameters of its instance, and texts in place of files that
     Verilator does not take."""
     ports, is_synthesised = read_module(asked.top, asked.files, asked.headers, asked.params,
-                                        asked.defines, ghdl=asked.ghdl, library=asked.library)
+                                        asked.defines, ghdl=asked.ghdl, library=asked.library,
+                                        libraries=asked.libraries)
     if odd := [n for n in ports if not re.fullmatch(r"\w+", n)]:
         fail(f"{asked.top} has the port '{odd[0]}', an escaped name: put a module with plain "
              "names around it")
     if two_way := [n for n, p in ports.items() if p["direction"] == "inout"]:
         fail(f"{asked.top} has the inout port '{two_way[0]}': tri-states belong to the chip's "
              "pads; take a top without")
+    ports = with_members(ports, asked.bus, asked.ports)
     if asked.is_vhdl:
         return ports, [], {}
     asked.is_synthesised = is_synthesised
@@ -155,7 +170,7 @@ def slot_texts(asked, ports, params):
 def from_here(text, folder):
     """Makes names of files near the core's folder relative, because a repository may move."""
     room = re.escape(os.path.dirname(os.path.abspath(folder)))
-    return re.sub(rf'(?<=["I]){room}(?=/)', "@FOLDER@/..", text)
+    return re.sub(rf'(?<=["I=]){room}(?=/)', "@FOLDER@/..", text)
 
 
 def toml(value):
@@ -179,6 +194,8 @@ def manifest_of(asked, interface, pins, copies):
         entity = {"files": asked.files, "foreign": True}
         if asked.library:
             entity["library"] = asked.library
+        if asked.libraries:
+            entity["libraries"] = asked.libraries
         if asked.params:
             entity["generics"] = asked.params
     else:

@@ -17,7 +17,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from icesoc.cores import foreign_files
+from icesoc.cores import foreign_ports
 from icesoc.cores import foreign_roles
 from icesoc.util import vcd
 
@@ -123,7 +123,7 @@ def block(args, widths):
     of its captured outputs."""
     # read_module takes files and looks in their folders
     headers = [os.path.join(folder, "") for folder in args.I]
-    ports, _ = foreign_files.read_module(args.top, args.files, headers, is_whole=False)
+    ports, _ = foreign_ports.read_module(args.top, args.files, headers, is_whole=False)
     wiring, inputs, outputs = [], [], []
     for name, port in ports.items():
         width, there = len(port["bits"]), f"{args.scope}.{name}"

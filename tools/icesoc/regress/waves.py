@@ -52,7 +52,8 @@ def scene_of(failure, test):
                 scene.slot = slot if slot >= FIRST_CORE else 0
     elif match := re.search("at clock cycle ([0-9]+)", log):
         scene = Scene(failure.result.name.split(".")[0], int(match[1]))
-    elif failure.result.name.startswith("vhdl.") and (match := re.search(r"@(\d+)([munpf]s):", log)):
+    elif failure.result.name.startswith("vhdl.") and \
+            (match := re.search(r"@(\d+)([munpf]s):", log)):
         # GHDL runs up to the failure; its waveform has all clocks
         scene = Scene("", int(int(match[1]) * CLOCKS_PER_SECOND * SECONDS[match[2]]))
     else:

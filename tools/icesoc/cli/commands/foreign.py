@@ -16,9 +16,10 @@ from icesoc.util.process import run, tool
 
 def foreign_words(values):
     """Returns the arguments for cores/new_foreign.py."""
-    given = {name: getattr(values, name.lower()) for name in ("CLOCK", "LIBRARY", "ADDRESS")}
+    given = {name: getattr(values, name.lower()) for name in ("CLOCK", "ADDRESS")}
     return [values.name, values.top, values.bus, f"{values.repository or 'ip'}/{values.name}",
             *(f"{name}={value}" for name, value in given.items() if value),
+            *(f"LIBRARY={each}" for each in values.library),
             *(f"PARAM:{each}" for each in values.params),
             *(f"DEFINE:{each}" for each in values.defines), *values.ports, *values.files]
 
@@ -32,7 +33,7 @@ def foreign_words(values):
     Option("params", WORDS, "parameters of the top module, such as depth=16"),
     Option("defines", WORDS, "Verilog macros to define, such as wide"),
     Option("clock", COUNT, "frequency of a separate clock, Hz"),
-    Option("library", TEXT, "VHDL library of the files", ""),
+    Option("library", WORDS, "VHDL library of the files; util=FILE for files in another library"),
     Option("address", one_of("words", "bytes"),
            "unit of the core's address: words or bytes; detected by default"),
     REPOSITORY, BUILD, JOBS

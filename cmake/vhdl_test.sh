@@ -14,8 +14,8 @@ mkdir -p "$work"
 cd "$work"
 # numeric_std would warn of every value that is undefined before the pipeline is full.
 status=0
-"$ghdl" --elab-run --std=08 --workdir="$work" ${COVERAGE_DIR:+--coverage} "${core}_tb" ${WAVE:+"--fst=$WAVE"} \
-    --assert-level=error --ieee-asserts=disable || status=$?
+"$ghdl" --elab-run --std=08 --workdir="$work" ${COVERAGE_DIR:+--coverage} "${core}_tb" \
+    ${WAVE:+"--fst=$WAVE"} --assert-level=error --ieee-asserts=disable || status=$?
 [ $status = 0 ] || echo "$core: vectors of SEED=${SEED:-1}"
 [ -z "${COVERAGE_DIR:-}" ] || mv coverage-*.json "$COVERAGE_DIR/$core-vhdl.json"
 exit $status

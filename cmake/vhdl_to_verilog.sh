@@ -35,7 +35,8 @@ done
 # shellcheck disable=SC2086 # a list of words
 "$ghdl" -i $options --work="$library" -P"$work" --workdir="$work" "$@"
 # shellcheck disable=SC2086
-"$ghdl" -m $options --work="$library" -P"$work" --workdir="$work" "$entity" >"$work/messages" 2>&1 || {
+"$ghdl" -m $options --work="$library" -P"$work" --workdir="$work" "$entity" \
+    >"$work/messages" 2>&1 || {
     cat "$work/messages" >&2
     exit 1
 }

@@ -78,7 +78,11 @@ def stale(tree):
     hostile = count("hostile packets")
     firmware, bitstream = (count(f"new {what}: power losses, in each operation and later")
                            for what in ("firmware", "bitstream"))
-    for said in (str(count("minimal.all")),
+    unlinked = count("minimal.all without --gc-sections")
+    ram = count("full: RAM with all objects and all stacks, including the main stack")
+    if f" {ram:,} of the" not in " ".join(readme.split()):
+        yield f"README.md: the last command that measured wrote {ram:,} bytes of RAM"
+    for said in (f"{count('minimal.all')}; {unlinked} without `--gc-sections`",
                  f"{sites} / {table1['ff']} / {table1['slices']} ({mapped})",
                  f"0 of {hostile:,}", f"0 of {firmware}; 0 of {bitstream}"):
         if f"| {said} |" not in readme:

@@ -117,6 +117,9 @@ class Log:
         outcome = ""
         try:
             return function()
+        except Ice.CommunicatorDestroyedException:  # give_up
+            outcome = " has no answer"
+            raise
         except Ice.Exception as e:
             outcome = " failed: " + type(e).__name__
             raise

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""patience_test: the time-out of a mission's calls counts simulated time, however slow the PC is."""
+"""patience_test: the time-out of a mission's calls counts simulated time, also on a slow PC."""
 import unittest
 from unittest import mock
 

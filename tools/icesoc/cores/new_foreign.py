@@ -12,9 +12,8 @@ are neither bus, clock, reset nor interrupt become pins. CLOCK: the core has a s
 that frequency at most.
 ADDRESS: what its address counts. GHDL: the program that reads VHDL (ghdl). LIBRARY: the VHDL
 library of its files; util=FILE puts one file, or those of a pattern, into another library. PARAM:
-a parameter or generic of TOP. DEFINE: a macro
-of its Verilog, NAME or NAME=value. A core with AXI-Streams (axis) has an operation instead of
-registers: foreign_axis.py.
+a parameter or generic of TOP. DEFINE: a macro of its Verilog, NAME or NAME=value. A core with
+AXI-Streams (axis) has an operation instead of registers: foreign_axis.py.
 """
 import fnmatch
 import json

@@ -8,6 +8,7 @@
 #include "fir_regs.h"
 #include "model/fir_model.h"
 #include "random.h"
+#include "same.h"
 #include <vector>
 
 namespace {
@@ -24,7 +25,7 @@ protected:
         std::vector<Ice_Short> want;
         for (Ice_Short s : list)
             want.push_back(model_.step(s));
-        ASSERT_EQ(filter(list), want) << list.size() << " samples";
+        ASSERT_SAME(filter(list), want) << list.size() << " samples";
         EXPECT_EQ(saturations_, static_cast<int>(model_.saturations - before));
     }
     void set(unsigned shift, Random& random) {

@@ -31,6 +31,14 @@ REASONS = {
     "status is 5, not 0; after the call; a.cpp:7: the mode":
         "g.cpp:4: Failure\nExpected equality of these values:\n  status\n    Which is: 5\n  0\n"
         "after the call\nGoogle Test trace:\n../../a.cpp:7: the mode\n",
+    "list differs at [1]: expected 5, got 4":
+        "g.cpp:4: Failure\nExpected equality of these values:\n  list\n    Which is: { 3, 4 }\n"
+        "  want\n    Which is: { 3, 5 }\n",
+    "list differs at [2]: expected its end, got 7":
+        "g.cpp:4: Failure\nExpected equality of these values:\n  list\n"
+        "    Which is: { 3, 4, 7 }\n  want\n    Which is: { 3, 4 }\n",
+    "filter(list) differs at [40]: expected -3, got 7":
+        "g.cpp:4: Failure\nfilter(list) differs at [40]: expected -3, got 7\n",
     "call(1) is 5, not Ok, which is 0":
         "g.cpp:4: Failure\nExpected equality of these values:\n  call(1)\n    Which is: 5\n  Ok\n"
         "    Which is: 0\n",

@@ -8,6 +8,7 @@
 #include "my_scale_proxy.h"
 #include "my_scale_regs.h"
 #include "my_twice_proxy.h"
+#include "same.h"
 
 namespace {
 
@@ -33,7 +34,7 @@ TEST_F(Scale, EverySampleComesOutOnceScaled) {
             list.push_back(static_cast<Ice_Short>(i + n));
             wanted.push_back(static_cast<Ice_Short>(3 * (i + n)));
         }
-        EXPECT_EQ(scaled(list), wanted) << n << " samples";
+        EXPECT_SAME(scaled(list), wanted) << n << " samples";
     }
     EXPECT_FALSE(core_.bench_.top().over_o);
     scaled({0x7FFF});
@@ -58,7 +59,7 @@ TEST_F(Scale, GivesABeatAClockWhenTheMemoryKeepsUp) {
 TEST_F(Scale, AnEmptyPacketIsRefused) {
     EXPECT_THROW(scaled({}), CoreError);
     core_.setGainFactor(1);
-    EXPECT_EQ(scaled({7}), std::vector<Ice_Short>{7});
+    EXPECT_SAME(scaled({7}), std::vector<Ice_Short>{7});
 }
 
 TEST_F(Scale, WhatDoesNotEndIsGivenUpAndTheNextCallWorks) {
@@ -66,13 +67,13 @@ TEST_F(Scale, WhatDoesNotEndIsGivenUpAndTheNextCallWorks) {
     core_.memory_.hold(true);
     EXPECT_THROW(scaled(std::vector<Ice_Short>(300, 5)), CoreError);
     core_.memory_.hold(false);
-    EXPECT_EQ(scaled({1, 2, 3}), (std::vector<Ice_Short>{2, 4, 6}));
+    EXPECT_SAME(scaled({1, 2, 3}), (std::vector<Ice_Short>{2, 4, 6}));
     // In the middle of it, when words wait for the core.
     scaled(std::vector<Ice_Short>(512, 5));
     core_.bus_.write(MY_SCALE_CONTROL, 1u << 1); // again
     core_.bench_.tick(250);
     core_.bus_.write(MY_SCALE_CONTROL, 1u << 31);
-    EXPECT_EQ(scaled({1, 2, 3}), (std::vector<Ice_Short>{2, 4, 6}));
+    EXPECT_SAME(scaled({1, 2, 3}), (std::vector<Ice_Short>{2, 4, 6}));
 }
 
 class Twice : public ::testing::Test {

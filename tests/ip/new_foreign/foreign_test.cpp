@@ -26,6 +26,7 @@
 #include "my_port_regs.h"
 #include "my_requests_regs.h"
 #include "registers_apart.h"
+#include "same.h"
 #include <gtest/gtest-spi.h>
 
 namespace {
@@ -203,6 +204,15 @@ struct Counter {
 
 std::vector<StateMember> stateOf(const Counter::Root& root) {
     return {{root, root.rest, "u_core.rest"}, {root, root.count, "u_core.count"}};
+}
+
+TEST(Sequences, AFailureShowsTheFirstElementThatDiffers) {
+    static const std::vector<int> got = {3, 4, 5}, other = {3, 7, 5}, longer = {3, 4, 5, 6};
+    EXPECT_SAME(got, (std::vector<short>{3, 4, 5}));
+    EXPECT_NONFATAL_FAILURE(EXPECT_SAME(got, other), "got differs at [1]: expected 7, got 4");
+    EXPECT_NONFATAL_FAILURE(EXPECT_SAME(got, longer),
+                            "got differs at [3]: expected 6, got its end (expected 4 elements, "
+                            "got 3)");
 }
 
 TEST(RegistersApart, ACoreThatNeverRestsIsToldWithWhatMoves) {

@@ -50,8 +50,14 @@ class Failure:
 
 
 def comparison(match):
-    """status is 5, not ICE_OK, which is 0: a literal follows the value."""
+    """status is 5, not ICE_OK, which is 0: a literal follows the value. Of two lists, the first
+    element that differs: list differs at [2]: expected 5, got 4."""
     a, of_a, b, of_b = match.groups()
+    if of_a and of_b and of_a[0] == of_b[0] == "{":
+        got, expected = (text.strip("{ }").split(", ") for text in (of_a, of_b))
+        for index, (x, y) in enumerate(zip([*got, "its end"], [*expected, "its end"])):
+            if x != y and "..." not in (x, y):
+                return f"{a} differs at [{index}]: expected {y}, got {x}"
     if not of_a:
         a, of_a, b, of_b = b, of_b, a, of_a
     return (f"{a} is {of_a}" if of_a else a) + f", not {b}" + (f", which is {of_b}" if of_b else "")

@@ -120,8 +120,8 @@ def layers(source, generated, build, output):
     print("%-10s %8d %8d %8d" % ("all", small_all, sum(PAPER.values()), large_all))
     entry("minimal.all", small_all, sum(PAPER.values()))
     entry("minimal.all without --gc-sections", small_all + unused_all)
-    print(f"minimal without --gc-sections: {small_all + unused_all} bytes; the paper does not state "
-          "how it counted")
+    print(f"minimal without --gc-sections: {small_all + unused_all} bytes (the paper does not "
+          "state how it counted)")
     print("RAM of the minimal program with all objects: "
           f"{linked(image, 'app', r'[.](data|bss)|COMMON')} bytes, of generated code and servants: "
           f"{linked(image, 'app', r'[.](text|rodata)')} bytes of text")

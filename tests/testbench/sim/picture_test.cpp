@@ -49,10 +49,10 @@ protected:
     // Adds an EXIF block with an orientation, in either byte order.
     static Bytes oriented(int orientation, bool isLittle) {
         const auto number = [&](size_t value, int bytes) {
-            Bytes number;
+            Bytes text;
             for (int i = 0; i < bytes; ++i)
-                number.push_back(uint8_t(value >> 8 * (isLittle ? i : bytes - 1 - i)));
-            return number;
+                text.push_back(uint8_t(value >> 8 * (isLittle ? i : bytes - 1 - i)));
+            return text;
         };
         Bytes file = {0xFF, 0xD8, 0xFF, 0xE1, 0, 46, 'E', 'x', 'i', 'f', 0, 0};
         const auto add = [&](const Bytes& more) {
@@ -116,7 +116,7 @@ TEST_F(Pictures, TheMaximumOfAPnmFileIsWhite) {
 }
 
 TEST_F(Pictures, AFileThatIsCutIsRejectedWithItsName) {
-    for (const std::string& text :
+    for (const std::string text :
          {"P5", "P5 1 1 1000", "P5 9 9 255\n12345678", "P6 2 1 99999\n12345678901"})
         try {
             read(text);

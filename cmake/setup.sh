@@ -3,17 +3,19 @@
 #
 # setup: installs the Debian packages that `make run` needs and the machine lacks; on a terminal it
 # asks before it calls sudo. It is shell because an empty Debian has no Python.
-# Usage: cmake/setup.sh [--tests] [--check]
-# --tests: also those for tests, reports and debuggers
+# Usage: cmake/setup.sh [--packages] [--tests] [--check]
+# --packages: also those that make and check Debian packages
+# --tests: also those for tests, reports and debuggers, and for packages
 # --check: only lists missing ones (exit status 1 if there are any)
 
 set -eu
-tests='' check=''
+tests='' packaging='' check=''
 for word in "$@"; do
     case $word in
-    --tests) tests=1 ;;
+    --packages) packaging=1 ;;
+    --tests) tests=1 packaging=1 ;;
     --check) check=1 ;;
-    *) echo "setup: '$word' is not an option: --tests, --check" >&2 && exit 2 ;;
+    *) echo "setup: '$word' is not an option: --packages, --tests, --check" >&2 && exit 2 ;;
     esac
 done
 
@@ -58,6 +60,12 @@ libnewlib-arm-none-eabi C library for it
 clang fuzzers of the link layer (libFuzzer)
 libclang-rt-dev their run time, which clang only recommends
 '
+# packages that make and check Debian packages
+deb='
+dpkg-dev finds the dependencies of the Debian packages
+file finds the programs in them
+lintian checks them
+'
 # packages that tests, reports and debuggers need in addition
 rest='
 clang-format-19 holds the source to .clang-format
@@ -72,18 +80,17 @@ strace sees which files a proof reads, so that its verdict holds until one chang
 python3-yaml reads the workflows in tests
 ca-certificates checks whom what pages sort and draw with, and foreign cores, are fetched from
 gdb-multiarch debugs it there
+qemu-system-arm runs the examples of porting
 gtkwave shows waveforms, and converts waveforms of failures for the page
 python3-sphinx renders the documentation site
 python3-myst-parser reads its Markdown pages
 furo style of the documentation site
 python3-breathe C reference of the documentation site
 doxygen reads the C headers for it
-dpkg-dev finds the dependencies of the Debian packages
-file finds the programs in them
-lintian checks them
 man-db shows and checks the manual pages
 groff-base formats them
 '
+[ -z "$packaging" ] || packages="$packages$deb"
 [ -z "$tests" ] || packages="$packages$rest"
 # Debian 12's is too old; icesoc.util.fetch fetches Debian 13's.
 case $(sed -n 's/^VERSION_ID="*\([0-9]*\).*/\1/p' /etc/os-release 2>/dev/null) in

@@ -37,10 +37,11 @@ class BuildFolder:
     def __truediv__(self, name):
         return self.folder / name
 
-    def prepare(self, *arguments, tests=False):
-        """Set-up, then CMake, unless the folder is configured."""
+    def prepare(self, *arguments, tests=False, packages=False):
+        """Installs what is missing, also for tests or Debian packages; then runs CMake, unless the
+        folder is configured."""
         if not self.built:
-            run(["cmake/setup.sh", *(["--tests"] if tests else [])])
+            run(["cmake/setup.sh", *["--tests"] * tests, *["--packages"] * packages])
             self.configure(*arguments)
             if self.ucos2:
                 self.set(UCOS2=os.path.abspath(self.ucos2))

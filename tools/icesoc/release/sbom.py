@@ -29,7 +29,7 @@ def identifier(text):
 def debian(setup):
     """Returns the Debian packages that cmake/setup.sh lists: (name, purpose)."""
     found = []
-    for block in re.findall(r"^(?:packages|rest)='\n(.*?)'", setup, re.M | re.S):
+    for block in re.findall(r"^(?:packages|deb|rest)='\n(.*?)'", setup, re.M | re.S):
         found += [tuple(line.split(" ", 1)) for line in block.strip().splitlines()]
     return found
 

@@ -80,7 +80,7 @@ def use_packages(root, release, values):
     empty one. Returns the results."""
     rows, folder = [], values.packages
     if not folder:
-        rows = [do(root, release, "./icesoc package --check")]
+        rows = [do(root, release, "make package CHECK=1")]
         folder = root / "root/icesoc/build/packages"
         if rows[0]["status"]:
             return rows

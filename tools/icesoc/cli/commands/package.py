@@ -22,7 +22,7 @@ ROOMS = "bus;slice;ip;sw;hdl;testbench"
 def package(values):
     """build the Debian packages for this release of Debian"""
     own = ["-DPORTABLE=ON", f"-DROOMS={ROOMS}"] if values.build == BUILD else []
-    build = BuildFolder(values.build, values).prepare(*own, tests=True)
+    build = BuildFolder(values.build, values).prepare(*own, packages=True)
     build.ninja("installable")
     output = Path(values.output).absolute()
     output.mkdir(parents=True, exist_ok=True)

@@ -19,8 +19,8 @@ list(APPEND installable xbeeat xbeeat_cpp11 gateway ${pack_update})
 set(clients ${top}/sw/ground/clients)
 install(FILES ${top}/sw/ground/python/icesoc.py DESTINATION ${module} RENAME __init__.py
   COMPONENT ${component})
-install(FILES ${clients}/places.py ${clients}/plugged.py ${clients}/mission_log.py
-  ${clients}/stay.py ${top}/tools/icesoc/util/record.py
+install(FILES ${clients}/places.py ${clients}/plugged.py ${clients}/vehicles.py
+  ${clients}/mission_log.py ${clients}/stay.py ${top}/tools/icesoc/util/record.py
   DESTINATION ${module} COMPONENT ${component})
 install(PROGRAMS ${clients}/mission.py ${clients}/provide_key.py ${clients}/change_key.py
   ${clients}/update.py DESTINATION ${module} COMPONENT ${component})
@@ -31,6 +31,27 @@ foreach(program mission provide_key change_key update)
   file(CREATE_LINK ../${module}/${program}.py ${link} SYMBOLIC)
   install(FILES ${link} DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT ${component})
 endforeach()
+
+# icesoc-call: the modules of `./icesoc call`, and the objects of the default chip.
+set(tools ${top}/tools/icesoc)
+file(GLOB modules CONFIGURE_DEPENDS ${tools}/call/*.py)
+install(FILES ${tools}/__init__.py DESTINATION ${SHARE}/tools/icesoc COMPONENT ${component})
+install(FILES ${modules} DESTINATION ${SHARE}/tools/icesoc/call COMPONENT ${component})
+install(FILES ${tools}/cli/__init__.py ${tools}/cli/command.py ${tools}/cli/installed.py
+  ${tools}/cli/main.py ${tools}/cli/options.py DESTINATION ${SHARE}/tools/icesoc/cli
+  COMPONENT ${component})
+install(FILES ${tools}/cli/commands/__init__.py ${tools}/cli/commands/call.py
+  DESTINATION ${SHARE}/tools/icesoc/cli/commands COMPONENT ${component})
+install(FILES ${tools}/util/__init__.py ${tools}/util/console.py ${tools}/util/errors.py
+  ${tools}/util/process.py DESTINATION ${SHARE}/tools/icesoc/util COMPONENT ${component})
+install(PROGRAMS ${here}/ground/icesoc-call DESTINATION ${CMAKE_INSTALL_BINDIR}
+  COMPONENT ${component})
+set(objects ${CMAKE_CURRENT_BINARY_DIR}/objects.json)
+add_custom_command(OUTPUT ${objects}
+  COMMAND ${PYTHON} ${here}/objects.py ${GEN_DIR}/objects.json ${top} ${objects}
+  DEPENDS ${here}/objects.py ${GEN_DIR}/objects.json VERBATIM COMMENT "Objects for icesoc-call")
+install(FILES ${objects} DESTINATION ${SHARE}/gen COMPONENT ${component})
+list(APPEND installable ${objects})
 
 install(FILES ${top}/sw/vehicle/Autopilot.ice ${top}/sw/hw/registers/Registers.ice
   ${top}/sw/update/Update.ice DESTINATION ${SHARE}/slice COMPONENT ${component})
@@ -54,6 +75,10 @@ install(FILES ${here}/ground/gateway.conf ${here}/ground/vehicles.conf ${clients
 icesoc_manual(${component} icesoc-gateway SECTION 8 DEPENDS gateway
   PURPOSE "server in front of the radio for programs with ZeroC Ice in any language"
   COMMAND $<TARGET_FILE:gateway>)
+icesoc_manual(${component} icesoc-call DEPENDS ${tools}/cli/installed.py
+    ${tools}/cli/commands/call.py
+  PURPOSE "call any operation of a vehicle's objects"
+  COMMAND ${PYTHON} -m icesoc.cli.installed)
 icesoc_manual(${component} icesoc-pack-update DEPENDS ${pack_update}
   PURPOSE "pack and sign firmware, bitstreams and lists of keys"
   COMMAND ${pack_update})

@@ -22,9 +22,16 @@ def roff(text):
 
 
 def options(lines):
-    """Returns the parts of a help text: paragraphs as strings, options as pairs with their text."""
+    """Returns the parts of a help text: paragraphs as strings, options as lists with their text,
+    examples as a tuple of lines."""
     parts = []
     for line in lines:
+        if parts and isinstance(parts[-1], tuple):  # examples end the help
+            parts[-1] += (line.strip(), )
+            continue
+        if line == "examples:":
+            parts.append(())
+            continue
         option = re.match(r" {1,4}(-.*?)(?: {2,}(\S.*))?$", line)
         deeper = re.match(r" {5,}(\S.*)$", line)
         if option:
@@ -52,6 +59,8 @@ def page(name, section, purpose, version, text, program):
             if ".SH OPTIONS" not in lines and ".SH POSITIONALS" not in lines:
                 lines.append(".SH OPTIONS")
             lines += [".TP", f".B {roff(part[0])}", roff(part[1])]
+        elif isinstance(part, tuple):
+            lines += [".SH EXAMPLES", ".nf", *map(roff, filter(None, part)), ".fi"]
         elif re.fullmatch(r"[Oo]ptions:|positionals:|positional arguments:", part, re.I):
             lines.append(f".SH {part.rstrip(':').upper()}")
         else:

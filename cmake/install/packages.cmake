@@ -81,7 +81,8 @@ icesoc_package(icesoc-ground SECTION comm
 over XBee modems. A gateway serves programs in any language. The package has
 the service of the gateway, commands for keys and updates, Slice files, and
 the Python module icesoc."
-  DEPENDS "python3, python3-zeroc-ice, python3-pil, python3-lz4, zeroc-ice-slice, adduser"
+  DEPENDS "icesoc-slice2c (= ${ICESOC_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}), python3, \
+python3-zeroc-ice, python3-pil, python3-lz4, zeroc-ice-slice, adduser"
   SCRIPTS ${scripts}/postinst ${scripts}/prerm ${scripts}/postrm
     ${scripts}/shlibs ${scripts}/triggers)
 icesoc_package(icesoc-slice2c SECTION devel

@@ -102,6 +102,47 @@ class Cases(Script):
                  status=None)
         self.has("vehicle 'uav9': expected one of uav1; or add a line Vehicle.uav9=")
 
+    def test_call(self):
+        """icesoc-call calls cores by the gateway, by the radio, by a vehicle's name, and an object
+        that a Slice file describes; wrong arguments and unknown vehicles are refused."""
+        self.install("icesoc-ground", "icesoc-sim", "icesoc-slice2c")
+        port = free_port()
+        write("vehicles.conf", f"Vehicle.uav1=tcp -h 127.0.0.1 -p {port}\n")
+        write("radio.conf", "Vehicle.uav1=xbee-at -d modem -a 0x0001\nXBeeAT.Guard=20\n")
+        write("calls.sh", "#!/bin/bash\nset -e\nln -sf $1 modem\n"
+              "export ICESOC_VEHICLES=radio.conf\n"
+              "icesoc-call hwengine1.setParameterA 24\n"
+              "icesoc-call uav.isAlive 7 --device modem --guard 20 --json\n"
+              f"icesoc-gateway -d $1 -g 20 -l 127.0.0.1:{port} &\n"
+              "trap 'kill $!' EXIT\n"
+              f"until true 2>/dev/null >/dev/tcp/127.0.0.1/{port}; do sleep 0.1; done\n"
+              "export ICESOC_VEHICLES=vehicles.conf\n"
+              "icesoc-call hwengine1.startProcessing\n"
+              "icesoc-call hwengine1.getResult --json\n"
+              f"icesoc-call fir.filter '[100, 200]' --gateway 127.0.0.1:{port}\n"
+              "icesoc-call uav.isAlive 8 --repeat 3 --vehicle uav1\n")
+        self.use("icesoc-sim", "--image", IMAGE, "--size", "96x64", "--guard", "20", "--out",
+                 "flight", "--", "bash", "calls.sh", "{device}")
+        self.has('^{"result": true}$', '"found": 1[0-9][0-9],', "^calls 3, failures 0, min ")
+        self.use("icesoc-call", "--list", "hwengine1")
+        self.has("setParameterA\\(value: short 0..255 grey levels\\)")
+        self.use("icesoc-call", "hwengine1.setParameterA", "300", status=2)
+        self.has("value: expected 0 to 255, got 300")
+        self.use("icesoc-call", "uav.isAlive", "7", "--vehicle", "uav9", status=2,
+                 env={"ICESOC_VEHICLES": "vehicles.conf"})
+        self.has("vehicle 'uav9': expected one of uav1")
+        self.install("libicec-dev")
+        self.use("cmake", "-S", HERE / "project/server", "-B", "cmake", "-G", "Ninja",
+                 f"-DCMAKE_PREFIX_PATH={self.prefix}")
+        self.use("ninja", "-C", "cmake")
+        with self.server("cmake/server") as port:
+            thing = ["--slice", HERE / "project/server/Thing.ice", "--gateway",
+                     f"127.0.0.1:{port}"]
+            self.use("icesoc-call", "thing.add", "3", "4", *thing)
+            self.has("^7$")
+            self.use("icesoc-call", "thing.add", "1", "-1", *thing, status=3)
+            self.has("why = b is negative")
+
     @contextlib.contextmanager
     def server(self, program):
         port = free_port()

@@ -6,45 +6,23 @@
         engine = vehicle.proxy("hwengine1", "Autopilot.HwProcessingEngine")
         print(engine.getResult())
 
-A file of Ice properties lists the vehicles: FILE of connect(), else $ICESOC_VEHICLES, else
-~/.config/icesoc/vehicles.conf, else /etc/icesoc/vehicles.conf:
-
-    Vehicle.uav1=xbee-at -d /dev/icesoc-modem -a 0x0001
-    Vehicle.uav7=tcp -h gateway -p 10000
-    XBeeAT.KeyFile=/etc/icesoc/uav1.key
-
-A vehicle without a line is looked up in IceGrid, if the file sets Ice.Default.Locator.
+A file of Ice properties lists the vehicles (vehicles.py): FILE of connect(), else
+$ICESOC_VEHICLES, else ~/.config/icesoc/vehicles.conf, else /etc/icesoc/vehicles.conf.
 """
 import importlib
-import os
 
 import Ice
 
-from . import places, plugged
+from . import places, plugged, vehicles
+from .vehicles import Unknown
 
 __all__ = ["Vehicle", "Unknown", "connect", "load_slice"]
-FILES = ("~/.config/icesoc/vehicles.conf", "/etc/icesoc/vehicles.conf")
-
-
-class Unknown(LookupError):
-    """The vehicle, or the file that lists it, was not found; the text says what to do."""
 
 
 def load_slice(*files):
     """Makes the types of Slice files available; without names, those of the installed ones."""
     for file in files or map(places.slice_file, places.SLICE_FILES):
         Ice.loadSlice("", ["-I" + (Ice.getSliceDir() or "."), file])
-
-
-def settings_file(file):
-    """Returns the file that lists the vehicles."""
-    given = file or os.environ.get("ICESOC_VEHICLES")
-    for path in [given] if given else map(os.path.expanduser, FILES):
-        if os.path.isfile(path):
-            return path
-    raise Unknown("no file lists the vehicles: expected %s; write a line such as\n"
-                  "Vehicle.uav1=xbee-at -d /dev/icesoc-modem -a 0x0001" %
-                  (given or " or ".join(FILES)))
 
 
 class Vehicle:
@@ -77,22 +55,9 @@ class Vehicle:
 def connect(name, file=None, properties=None):
     """Returns the Vehicle with this name. properties: Ice's, in addition to those of the file.
     Calls fail after 10 s without a reply, unless Ice.Default.InvocationTimeout differs."""
-    path = settings_file(file)
-    found = Ice.createProperties()
-    found.load(path)
-    found = {"Ice.Default.InvocationTimeout": "10000",
-             **found.getPropertiesForPrefix(""), **(properties or {})}
-    prefix = "Vehicle."
-    vehicles = {key[len(prefix):]: found.pop(key) for key in list(found) if key.startswith(prefix)}
-    if name in vehicles:
-        place = ":" + vehicles[name]
-    elif found.get("Ice.Default.Locator"):
-        place = "@" + name
-    else:
-        raise Unknown("vehicle '%s': expected one of %s; or add a line Vehicle.%s=... to %s" %
-                      (name, ", ".join(sorted(vehicles)) or "none", name, path))
-    has_radio = vehicles.get(name, "").startswith(("xbee-at", "serial"))
-    communicator = plugged.initialize(found, places.plugin() if has_radio else None,
+    place, found = vehicles.find(name, file)
+    found = {"Ice.Default.InvocationTimeout": "10000", **found, **(properties or {})}
+    communicator = plugged.initialize(found, places.plugin() if vehicles.has_radio(place) else None,
                                       found.get("XBeeAT.Guard", 1000),
                                       found.get("XBeeAT.KeyFile", ""))
     load_slice()

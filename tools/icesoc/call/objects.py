@@ -8,16 +8,18 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+import places
+
 from icesoc import TREE
 from icesoc.call.slices import Slices, listed
 from icesoc.util.errors import Stop, nearest
 
 # Objects of the firmware itself (sw/vehicle): file and interface
-VEHICLE = {"uav": ("sw/vehicle/Autopilot.ice", "::Autopilot::Vehicle"),
-           "keys": ("sw/vehicle/Autopilot.ice", "::Autopilot::KeyRing"),
-           "chip": ("sw/hw/registers/Registers.ice", "::Hw::Chip"),
-           "update": ("sw/update/Update.ice", "::Update::Firmware"),
-           "fpga": ("sw/update/Update.ice", "::Update::Firmware")}
+VEHICLE = {"uav": ("Autopilot.ice", "::Autopilot::Vehicle"),
+           "keys": ("Autopilot.ice", "::Autopilot::KeyRing"),
+           "chip": ("Registers.ice", "::Hw::Chip"),
+           "update": ("Update.ice", "::Update::Firmware"),
+           "fpga": ("Update.ice", "::Update::Firmware")}
 REGISTERS = "::Hw::Registers"  # interface of a core that is called by its registers
 ACCESSES = {"get": ("ro", "rw", "w1c", "w1s"), "set": ("rw", "w1c", "w1s", "ws")}
 LIVE = "live.json"  # of a flight in progress, stored in its folder
@@ -56,7 +58,9 @@ class Catalogue:
         listed_cores = read_json(Path(build, "gen/objects.json")) if build else None
         self.is_complete = listed_cores is not None
         cores = listed_cores or []
-        own = [] if build is None else [str(TREE / file) for file, _ in VEHICLE.values()]
+        for core in cores:
+            core["slice"] = [str(TREE / file) for file in core["slice"]]
+        own = [] if build is None else [places.slice_file(file) for file, _ in VEHICLE.values()]
         all_files = [*files, *own, *(file for core in cores for file in core["slice"])]
         self.given = {os.path.realpath(file) for file in files}
         self.slices = Slices(all_files, compiler(build),
@@ -69,7 +73,7 @@ class Catalogue:
         for core in cores:
             interface = core.get("interface") or only_interface(self.slices, core["slice"])
             self.objects[core["identity"]] = Object(core["identity"], interface,
-                                                    core["registers"], core["core"])
+                                                    core.get("registers", ""), core["core"])
 
     def find(self, text):
         """Returns (object, operation) of OBJECT.OPERATION, or of an operation that only one object
@@ -89,8 +93,8 @@ class Catalogue:
                        + listed(f"{each.identity}.{text}" for each in having), 2)
         every = {name for each in self.objects.values()
                  for name in self.slices.operations(each.interface)}
-        raise Stop(f"no object has an operation '{text}'{nearest(text, every)}; ./icesoc call "
-                   "--list lists all", 2)
+        raise Stop(f"no object has an operation '{text}'{nearest(text, every)}; --list lists "
+                   "all", 2)
 
     def unknown(self, identity, operation):
         """Returns an object that the build does not list. It has the interface of --slice that
@@ -154,7 +158,7 @@ def check_register(each, operation, values):
 def compiler(build):
     """Returns the path of slice2c."""
     candidates = [Path(build, "slice/slice2c")] if build else []
-    candidates += [TREE / "build/main/slice/slice2c"]
+    candidates += [TREE / "build/main/slice/slice2c", Path(places.TOP, "bin/slice2c")]
     return next((path for path in candidates if path.exists()), "slice2c")
 
 

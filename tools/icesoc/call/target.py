@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
 """target: where the objects of a call are: in a flight in progress, behind a serial device, behind
-the gateway, or in IceGrid by name."""
+the gateway, in IceGrid by name, or at an endpoint that the installed settings list."""
 import re
 from dataclasses import dataclass, field
+
+import places
 
 from icesoc.call import objects
 from icesoc.util.errors import Stop
@@ -44,7 +46,8 @@ def of_flight(folder, vehicle):
 def of_device(values):
     """Returns the target behind a modem, or a cable, at a serial port."""
     kind = "serial" if values.wire else "xbee-at"
-    plugin = values.plugin or f"{values.build}/ground"
+    plugin = values.plugin or (
+        places.plugin() if places.IS_INSTALLED else f"{values.build}/ground")
     address = values.address
     return Target(
         f"the vehicle {address} at {values.device}",
@@ -64,8 +67,22 @@ def of_gateway(values):
     return Target(text, f':tcp -h "{found[1] or found[2]}" -p {found[3]}', build=values.build)
 
 
+def of_settings(values):
+    """Returns the target of a vehicle that is listed in vehicles.conf."""
+    import vehicles
+    try:
+        suffix, properties = vehicles.find(values.vehicle)
+    except vehicles.Unknown as error:
+        raise Stop(str(error), 2) from None
+    radio = re.match(r':(xbee-at|serial)\b.* (-d ("[^"]*"|\S+))', suffix)
+    return Target(f"'{values.vehicle}'" if values.vehicle else suffix[1:], suffix, properties,
+                  build=values.build, plugin=values.plugin or places.plugin() if radio else "",
+                  callbacks=f"{radio[1]} {radio[2]}" if radio else "")
+
+
 def of(values):
-    """Returns the target that the options name; without one, the flight in progress."""
+    """Returns the target that the options name; without one, the flight in progress, or the
+    installed settings."""
     given = [name for name in ("flight", "device", "gateway", "locator") if getattr(values, name)]
     if len(given) > 1:
         raise Stop(f"give one of {', '.join('--' + name for name in given)}", 2)
@@ -77,4 +94,6 @@ def of(values):
         return of_device(values)
     if values.gateway:
         return of_gateway(values)
+    if places.IS_INSTALLED:
+        return of_settings(values)
     return of_flight(values.flight, values.vehicle)

@@ -30,9 +30,12 @@ class Command:
 
     make: its verb there, if it has one. when: the variable that chooses this one of several with
     the same verb.
+    takes_environment: an option that is not given comes from the variable of its name.
     brief: a command line, or several, that runs all of its steps in short (commands --brief).
     long: what `nightly` runs of it, with {day} for a seed; none if the tests run the whole.
     """
+    takes_environment = True
+
     def __init__(self, function, name, options, make, when, brief, long, examples):
         self.function, self.name, self.make, self.when = function, name, make, when
         self.brief, self.long = ([lines] if isinstance(lines, str) else list(lines)
@@ -42,14 +45,20 @@ class Command:
         self.help = " ".join(text.split())
         self.examples = examples
 
+    @property
+    def program(self):
+        """Returns the words that start this command."""
+        return f"./icesoc {self.name}"
+
     def parser(self, into=None):
         parser = into or argparse.ArgumentParser()
-        parser.prog = f"./icesoc {self.name}"
+        parser.prog = self.program
         parser.formatter_class = argparse.RawDescriptionHelpFormatter
         parser.description = self.help + ("\n\n" + "\n".join(map(str.strip, self.more.split("\n")))
                                           if self.more else "")
         parser.epilog = "examples:\n" + "".join(
-            f"  ./icesoc {each}\n" for each in self.examples) if self.examples else None
+            f"  {self.program}{each.removeprefix(self.name)}\n"
+            for each in self.examples) if self.examples else None
         parser.allow_abbrev = False
         for option in self.options:
             if not option.listed:
@@ -57,7 +66,7 @@ class Command:
                                     help=argparse.SUPPRESS)
                 continue
             name = option.field if option.positional else f"--{option.name}"
-            more = {"help": option.explain(), "default": None}
+            more = {"help": self.explained(option), "default": None}
             if option.kind is SWITCH:
                 more.update(action="store_true")
             else:
@@ -76,6 +85,31 @@ class Command:
                 again.completer = getattr(action, "completer", None)
         return parser
 
+    def explained(self, option):
+        """Returns the help text of an option."""
+        return f"{option.explain()} [{option.variable}]"
+
+    def words(self, rest, place):
+        """Returns the values of a command line."""
+        parser = self.parser()
+
+        def refuse(text):
+            raise Stop(f"{self.name}: {text} ({self.program} --help)", 2)
+
+        parser.error = refuse
+        parse = parser.parse_known_args
+        if any(option.kind is ARGUMENTS for option in self.options):
+            # Options may stand between the arguments, and -1e3 is not one.
+            parse = parser.parse_known_intermixed_args
+            parser._negative_number_matcher = re.compile(r"-\.?\d")
+        given, left = parse(rest)
+        names = [name for action in parser._actions for name in action.option_strings]
+        for word in left:
+            what = f"has no option {word.partition('=')[0]}" if word.startswith(
+                "-") else f"takes no '{word}'"
+            raise Stop(f"{self.name} {what}{nearest(word.partition('=')[0], names)}", 2)
+        return self.values(vars(given), None, place)
+
     def values(self, given, makes, place):
         """The values of all options.
 
@@ -88,8 +122,8 @@ class Command:
             if text is not None and makes is None:
                 values.given.add(option.field)
                 called = option.name.upper() if option.positional else called
-            elif option.variable != "LANG" or option.variable in (
-                    makes or ()):  # LANG in the environment is the user's language
+            elif self.takes_environment and (option.variable != "LANG" or option.variable in (
+                    makes or ())):  # LANG in the environment is the user's language
                 text, called = os.environ.get(option.variable), option.variable
                 if text and option.variable in (makes or ()):
                     values.given.add(option.field)
@@ -141,24 +175,7 @@ def by_words(words, place):
     for each in COMMANDS.values():  # `run --replay`, as `make run REPLAY=`
         if each.when and each.make == found.make and f"--{each.when.lower()}" in flags:
             found = each
-    parser = found.parser()
-
-    def refuse(text):
-        raise Stop(f"{found.name}: {text} (./icesoc {found.name} --help)", 2)
-
-    parser.error = refuse
-    parse = parser.parse_known_args
-    if any(option.kind is ARGUMENTS for option in found.options):
-        # Options may stand between the arguments, and -1e3 is not one.
-        parse = parser.parse_known_intermixed_args
-        parser._negative_number_matcher = re.compile(r"-\.?\d")
-    given, left = parse(rest)
-    names = [name for action in parser._actions for name in action.option_strings]
-    for word in left:
-        what = f"has no option {word.partition('=')[0]}" if word.startswith(
-            "-") else f"takes no '{word}'"
-        raise Stop(f"{found.name} {what}{nearest(word.partition('=')[0], names)}", 2)
-    return found, found.values(vars(given), None, place)
+    return found, found.words(rest, place)
 
 
 def by_make(goal, goals, makes):

@@ -75,10 +75,11 @@ def act(words):
     return found.function(values)
 
 
-def main(words):
+def main(words, function=act):
+    """Returns the exit status of a function of the command line; prints its error."""
     hear_signals()
     try:
-        return act(words) or 0
+        return function(words) or 0
     except Stop as stop:
         if stop.text:
             warn(stop.text)

@@ -90,8 +90,7 @@ class Option:
         parts = [] if self.kind in (TEXT, WORDS, FILES, ARGUMENTS, SWITCH, FILE, KEY_FILE, FOLDER,
                                     PATH, FLIGHT) else [self.kind.expected]
         parts += [f"default {shown}"] if shown is not None and shown != "" else []
-        return (self.help + (f" ({'; '.join(parts)})" if parts
-                             else "") + f" [{self.variable}]").replace("%", "%%")
+        return (self.help + (f" ({'; '.join(parts)})" if parts else "")).replace("%", "%%")
 
 
 def matching(pattern, expected, convert=str, schema=None, metavar="VALUE"):

@@ -8,6 +8,8 @@ import re
 import sys
 import time
 
+import places
+
 from icesoc.call.objects import Catalogue, check_register, flights, registers, ACCESSES, REGISTERS
 from icesoc.call.slices import annotation, listed
 from icesoc.call.values import Reader, plain, readable
@@ -258,9 +260,9 @@ def call(options):
     if options.page:
         return serve_page(options)
     if not words and not options.list:
-        raise Stop("call: expected [OBJECT.]OPERATION; ./icesoc call --list lists all", 2)
+        raise Stop("call: expected [OBJECT.]OPERATION; --list lists all", 2)
     from_outside = [name for name in ("device", "gateway", "locator") if getattr(options, name)]
-    live = {} if from_outside or options.flight else flights()
+    live = {} if from_outside or options.flight or places.IS_INSTALLED else flights()
     if live:
         options.build = next(iter(live.values()))["build"]
     files = [os.path.join(options.place, file) for file in options.slice.split()]

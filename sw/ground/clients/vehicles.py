@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: MIT
+"""vehicles: finds a vehicle by its name, in a file of Ice properties that lists the vehicles.
+
+The file is FILE of find(), else $ICESOC_VEHICLES, else ~/.config/icesoc/vehicles.conf, else
+/etc/icesoc/vehicles.conf:
+
+    Vehicle.uav1=xbee-at -d /dev/icesoc-modem -a 0x0001
+    Vehicle.uav7=tcp -h gateway -p 10000
+    XBeeAT.KeyFile=/etc/icesoc/uav1.key
+
+A vehicle without a line is looked up in IceGrid, if the file sets Ice.Default.Locator.
+"""
+import os
+
+import Ice
+
+FILES = ("~/.config/icesoc/vehicles.conf", "/etc/icesoc/vehicles.conf")
+PREFIX = "Vehicle."
+
+
+class Unknown(LookupError):
+    """The vehicle, or the file that lists it, was not found; the text has the remedy."""
+
+
+def settings_file(file):
+    """Returns the file that lists the vehicles."""
+    given = file or os.environ.get("ICESOC_VEHICLES")
+    for path in [given] if given else map(os.path.expanduser, FILES):
+        if os.path.isfile(path):
+            return path
+    raise Unknown("no file lists the vehicles: expected %s; write a line such as\n"
+                  "Vehicle.uav1=xbee-at -d /dev/icesoc-modem -a 0x0001" %
+                  (given or " or ".join(FILES)))
+
+
+def find(name, file=None):
+    """Returns (place, properties) of the vehicle with this name. place: what follows an identity in
+    a proxy, such as ":tcp -h gateway -p 10000". Without a name: the only vehicle of the file."""
+    path = settings_file(file)
+    found = Ice.createProperties()
+    found.load(path)
+    properties = found.getPropertiesForPrefix("")
+    vehicles = {key[len(PREFIX):]: properties.pop(key) for key in list(properties)
+                if key.startswith(PREFIX)}
+    if not name and len(vehicles) == 1:
+        name = next(iter(vehicles))
+    if name in vehicles:
+        return ":" + vehicles[name], properties
+    if name and properties.get("Ice.Default.Locator"):
+        return "@" + name, properties
+    raise Unknown("vehicle '%s': expected one of %s; or add a line Vehicle.%s=... to %s" %
+                  (name, ", ".join(sorted(vehicles)) or "none", name or "NAME", path))
+
+
+def has_radio(place):
+    """Returns whether a place needs the radio plugin."""
+    return place.startswith((":xbee-at", ":serial"))

@@ -4,8 +4,9 @@
 
     objects.py BUILD/gen/objects.json TREE OUT
 
-Slice files get paths relative to TREE. Register descriptions are left out, since cores of the
-default chip have their own interfaces.
+Slice files get the installed paths, relative to share/icesoc: ip/CORE for those of cores, slice for
+those of the vehicle. Register descriptions are left out, since cores of the default chip have their
+own interfaces.
 """
 import json
 import os
@@ -16,10 +17,10 @@ with open(given) as file:
     cores = json.load(file)
 for core in cores:
     del core["registers"]
-    core["slice"] = [os.path.relpath(path, tree) for path in core["slice"]]
-    outside = [path for path in core["slice"] if path.startswith("..")]
-    if outside or "interface" in core:
-        sys.exit(f"objects: {core['core']}: expected a core of the default chip, got one with "
-                 + (f"Slice outside the tree, {outside[0]}" if outside else "registers only"))
+    if "interface" in core:
+        sys.exit(f"objects: {core['core']}: expected a core with its own interface")
+    paths = [os.path.relpath(path, tree) for path in core["slice"]]
+    core["slice"] = [path if path.startswith("ip/") else f"slice/{os.path.basename(path)}"
+                     for path in paths]
 with open(out, "w") as file:
     json.dump(cores, file, indent=1)

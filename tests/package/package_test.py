@@ -103,8 +103,8 @@ class Cases(Script):
         self.has("vehicle 'uav9': expected one of uav1; or add a line Vehicle.uav9=")
 
     def test_call(self):
-        """icesoc-call calls cores by the gateway, by the radio, by a vehicle's name, and an object
-        that a Slice file describes; wrong arguments and unknown vehicles are refused."""
+        """icesoc-call calls cores by the gateway, by the radio and by a vehicle's name; wrong
+        arguments and unknown vehicles are refused."""
         self.install("icesoc-ground", "icesoc-sim", "icesoc-slice2c")
         port = free_port()
         write("vehicles.conf", f"Vehicle.uav1=tcp -h 127.0.0.1 -p {port}\n")
@@ -131,17 +131,6 @@ class Cases(Script):
         self.use("icesoc-call", "uav.isAlive", "7", "--vehicle", "uav9", status=2,
                  env={"ICESOC_VEHICLES": "vehicles.conf"})
         self.has("vehicle 'uav9': expected one of uav1")
-        self.install("libicec-dev")
-        self.use("cmake", "-S", HERE / "project/server", "-B", "cmake", "-G", "Ninja",
-                 f"-DCMAKE_PREFIX_PATH={self.prefix}")
-        self.use("ninja", "-C", "cmake")
-        with self.server("cmake/server") as port:
-            thing = ["--slice", HERE / "project/server/Thing.ice", "--gateway",
-                     f"127.0.0.1:{port}"]
-            self.use("icesoc-call", "thing.add", "3", "4", *thing)
-            self.has("^7$")
-            self.use("icesoc-call", "thing.add", "1", "-1", *thing, status=3)
-            self.has("why = b is negative")
 
     @contextlib.contextmanager
     def server(self, program):
@@ -171,12 +160,19 @@ with Ice.initialize() as ic:
             self.has("^sum 7$", "^busy: b is negative$")
 
     def test_icec(self):
-        """A project of ten lines by CMake, and the same by pkg-config."""
-        self.install("icesoc-slice2c", "libicec-dev")
+        """A project of ten lines by CMake, and the same by pkg-config; icesoc-call calls it."""
+        self.install("icesoc-slice2c", "libicec-dev", "icesoc-ground")
         self.use("cmake", "-S", HERE / "project/server", "-B", "cmake", "-G", "Ninja",
                  f"-DCMAKE_PREFIX_PATH={self.prefix}")
         self.use("ninja", "-C", "cmake")
         self.answers("cmake/server")
+        with self.server("cmake/server") as port:
+            thing = ["--slice", HERE / "project/server/Thing.ice", "--gateway",
+                     f"127.0.0.1:{port}"]
+            self.use("icesoc-call", "thing.add", "3", "4", *thing)
+            self.has("^7$")
+            self.use("icesoc-call", "thing.add", "1", "-1", *thing, status=3)
+            self.has("why = b is negative")
         folders = [path.parent for path in self.prefix.rglob("*.pc")]
         write("make.sh", f"""#!/bin/sh
 set -ex

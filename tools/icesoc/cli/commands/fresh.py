@@ -92,7 +92,10 @@ def use_packages(root, release, values):
     shutil.copytree("tests/package", there)
     for path in Path(folder).glob("*.deb"):
         shutil.copy(path, there)
-    return [*rows, do(machine, release, "sh machine.sh", "/srv/packages")]
+    rows.append(do(machine, release, "sh machine.sh", "/srv/packages"))
+    if not rows[-1]["status"]:
+        rows.append(do(machine, release, "sh service.sh", "/srv/packages", booted=True))
+    return rows
 
 
 def summary(row):
@@ -124,18 +127,19 @@ def put_tree(root):
     return run(["git", "-C", clone, "reset", "--quiet", "--hard", "FETCH_HEAD"])
 
 
-def do(root, release, step, folder="/root/icesoc"):
-    """Runs one step in a folder of the machine, and prints its last lines."""
+def do(root, release, step, folder="/root/icesoc", booted=False):
+    """Runs one step in a folder of the machine, and prints its last lines. booted: with systemd."""
     words = re.findall(r"[\w.]+", step)
     log = Path("-".join([str(root), *words]) + ".log")
     place = {"HOME": "/root", "PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "TERM": "dumb"}
     kept = {name: value for name, value in os.environ.items() if name.lower().endswith("_proxy")}
+    words = ["sh", "tests/package/boot.sh", root, folder, step] if booted else [
+        "unshare", "--mount", "--pid", "--fork", "--kill-child", "env", "-i",
+        *(f"{name}={value}" for name, value in (kept | place).items()), "sh", "-c", BOOT, "sh",
+        root, step, folder]
     begun = time.monotonic()
     with open(log, "w") as file:
-        status = run(["unshare", "--mount", "--pid", "--fork", "--kill-child", "env", "-i",
-                      *(f"{name}={value}" for name, value in (kept | place).items()), "sh", "-c",
-                      BOOT, "sh", root, step, folder], check=False, stdin=subprocess.DEVNULL,
-                     stdout=file, stderr=file)
+        status = run(words, check=False, stdin=subprocess.DEVNULL, stdout=file, stderr=file)
     row = {
         "release": release, "step": step, "status": status,
         "minutes": round((time.monotonic() - begun) / 60, 1), "commit": output([

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """package: Debian packages of the project, one for each role of a user (docs/install.md)."""
+import shutil
 from pathlib import Path
 
 from icesoc.cli.build_folder import BuildFolder
@@ -30,6 +31,7 @@ def package(values):
         path.unlink()
     logged(["cpack", "-G", "DEB", "-B", output, "--config", build / "CPackConfig.cmake"],
            build / "package.log", "CPack failed")
+    shutil.rmtree(output / "_CPack_Packages")
     found = sorted(output.glob("*.deb"))
     for path in found:
         say(f"{path.stat().st_size:>9} bytes  {path}")

@@ -1,0 +1,111 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+#
+# service: uses the gateway's service on a machine that machine.sh has prepared: Python, C++ and
+# icesoc-call call a simulated vehicle through it, with a key. Then upgrades the packages, which
+# keeps keys, rights and settings and restarts the service; removes and purges them.
+# Run as root, with systemd running (boot.sh). Usage: service.sh [FOLDER]    as machine.sh
+set -eu
+here=$(cd "${1:-.}" && pwd)
+export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8
+step() { echo "== $*"; }
+fail() {
+    echo "service: $*" >&2
+    exit 1
+}
+[ -d /run/systemd/system ] || fail "systemd is not running: use boot.sh"
+cd /home/tester
+
+step "the modem's name"
+rule=/lib/udev/rules.d/70-icesoc-modem.rules
+if udevadm verify --help >/dev/null 2>&1; then
+    udevadm verify $rule
+fi
+mkdir -p /run/udev/rules.d
+echo 'SUBSYSTEM=="tty", KERNEL=="tty", ENV{ID_BUS}="usb", ENV{ID_VENDOR_ID}="0403", \
+ENV{ID_MODEL_ID}="6001", ENV{ID_SERIAL_SHORT}="A1B2"' >/run/udev/rules.d/69-adapter.rules
+udevadm test /sys/class/tty/tty 2>&1 | tee udev.log | grep -q "icesoc-modem-A1B2" ||
+    { cat udev.log && fail "the rule makes no name"; }
+
+step "the service does not start without a key"
+echo 'ICESOC_OPTIONS="-d /run/icesoc-modem -g 20 -l 127.0.0.1:11093"' >/etc/icesoc/uav1.conf
+chmod 640 /etc/icesoc/uav1.conf
+systemd-analyze verify --man=no icesoc-gateway@uav1.service
+systemctl start icesoc-gateway@uav1
+! systemctl is-active -q icesoc-gateway@uav1 || fail "the service runs without a key"
+
+step "Python, C++ and icesoc-call, by the service"
+umask 077
+od -An -tx1 -N16 /dev/urandom | tr -d ' ' >/etc/icesoc/uav1.key
+umask 022
+chown icesoc: /etc/icesoc/uav1.key
+echo "Vehicle.uav1=tcp -h 127.0.0.1 -p 11093" >/etc/icesoc/vehicles.conf
+cat >by_service <<'END'
+#!/bin/bash
+set -e
+trap 'touch ended' EXIT
+until [ -e device ]; do sleep 0.1; done
+ln -sf "$(cat device)" /run/icesoc-modem
+systemctl start icesoc-gateway@uav1
+until true 2>/dev/null >/dev/tcp/127.0.0.1/11093; do
+    systemctl is-active -q icesoc-gateway@uav1
+    sleep 0.1
+done
+python3 "$1/call.py" uav1
+./ping "hwengine1:tcp -h 127.0.0.1 -p 11093" 1
+echo "icesoc-call: $(icesoc-call uav.isAlive 7)"
+systemctl show -P User -P DynamicUser -P NoNewPrivileges -P ProtectSystem icesoc-gateway@uav1
+END
+rm -f device ended
+simulate="icesoc-sim --image /usr/share/xplanet/images/earth.jpg --size 96x64 --guard 20 --speed real"
+install -d -o icesoc /home/tester/service
+# The simulator runs as the gateway's user, because the modem belongs to who runs the simulator.
+runuser -u icesoc -- $simulate --key /etc/icesoc/uav1.key --out service -- \
+    sh -c 'echo "$0" >service/device; until [ -e ended ]; do sleep 0.1; done' '{device}' \
+    >simulator.log 2>&1 &
+ln -sf service/device device
+bash by_service "$here" >log 2>&1 || {
+    cat log simulator.log
+    journalctl --no-pager -u icesoc-gateway@uav1 | tail -20
+    fail "no answer by the service"
+}
+grep "^corners: 1" log
+grep "it is a ::Autopilot" log
+grep "^icesoc-call: true" log
+grep "^strict" log
+
+step "upgrade keeps keys, rights and settings, and restarts the service"
+state() { stat -c '%n %U:%G %a %Y' /etc/icesoc /etc/icesoc/*; sha256sum /etc/icesoc/*; }
+old=$(dpkg-query -W -f '${Version}' icesoc-ground)
+new=$(echo "$old" | sed 's/-/.99-/')
+chmod 710 /etc/icesoc # a choice of the administrator
+before=$(state) user=$(id icesoc)
+pid=$(systemctl show -P MainPID icesoc-gateway@uav1)
+rm -rf newer && mkdir newer
+for deb in "$here"/*.deb; do
+    dpkg-deb -R "$deb" tree
+    sed -i "s/$old/$new/" tree/DEBIAN/control
+    dpkg-deb -b tree newer >/dev/null
+    rm -r tree
+done
+apt-get install -y -qq --no-install-recommends ./newer/*.deb >/dev/null
+[ "$(dpkg-query -W -f '${Version}' icesoc-ground)" = "$new" ] || fail "$new was not installed"
+[ "$before" = "$(state)" ] || fail "the upgrade changed /etc/icesoc: $(state)"
+[ "$user" = "$(id icesoc)" ] || fail "the upgrade changed the user icesoc"
+after=$(systemctl show -P MainPID icesoc-gateway@uav1)
+[ "$after" != 0 ] && [ "$after" != "$pid" ] || fail "the service was not restarted: $pid, $after"
+echo "$old to $new; $(id icesoc)"
+
+step "remove stops the service and keeps keys and settings, purge keeps keys"
+apt-get remove -y -qq icesoc-ground icesoc-sim icesoc-slice2c libicec-dev icesoc-hdl >/dev/null
+! systemctl is-active -q icesoc-gateway@uav1 || fail "the service still runs"
+[ -s /etc/icesoc/uav1.key ] && [ -s /etc/icesoc/uav1.conf ] || fail "remove took keys or settings"
+apt-get purge -y -qq icesoc-ground >/dev/null # the others have nothing left to purge
+[ "$(stat -c '%U %a' /etc/icesoc/uav1.key)" = "icesoc 600" ] || fail "purge took a key"
+[ "$(ls /etc/icesoc)" = uav1.key ] || fail "purge left settings: $(ls /etc/icesoc)"
+left=$(find /usr /lib /etc/systemd -path '*icesoc-g*' -o -path '*/icesoc/*' -o -name '*xbeeat*' \
+    -o -path '*/icec/*' -o -name 'libicec*')
+[ -z "$left" ] || fail "files are left: $left"
+[ -z "$(dpkg-query -W -f '${db:Status-Abbrev} ${Package}\n' 'icesoc-*' libicec-dev 2>/dev/null |
+    grep -v '^un')" ] || fail "dpkg still knows a package"
+echo "service: all steps passed"

@@ -214,6 +214,24 @@ cc -std=c90 -ffunction-sections -fdata-sections -o by_pkg_config -Imade \\
                     name = file if isinstance(file, str) else next(iter(file))
                     self.assertTrue((self.hdl / name).exists(), f"{path} names {name}")
 
+    def test_fusesoc(self):
+        """FuseSoC finds each block with its dependencies, and lints it by Verilator."""
+        fusesoc = shutil.which("fusesoc")
+        if not fusesoc:
+            self.skipTest("fusesoc is missing: pip install fusesoc")
+        self.install("icesoc-hdl")
+        cores = [fusesoc, "--cores-root", self.hdl]
+        blocks = sorted(path.stem.removeprefix("icesoc-") for path in self.hdl.glob("*.core"))
+        self.ask(*cores, "core", "list")
+        self.has(*(f"^icesoc:hdl:{block}:[0-9]" for block in blocks))
+        for block in blocks:
+            self.ask(*cores, "run", "--target", "lint", f"icesoc:hdl:{block}")
+        self.ask(*cores, "run", "--setup", "--target", "synth", "--tool", "ise",
+                 "icesoc:hdl:fsmc_bridge", "--family", "spartan6", "--device", "xc6slx16",
+                 "--package", "ftg256", "--speed=-2")
+        scripts = "".join(path.read_text() for path in Path("build").rglob("*.tcl"))
+        self.assertIn("constraints/platform.ucf", scripts)
+
     def test_packages(self):
         """Debian packages by component, with the files, scripts and dependencies that they need."""
         if not shutil.which("dpkg-shlibdeps"):

@@ -1,10 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# changelog: writes a package's changelog in Debian's format; the date is SOURCE_DATE_EPOCH, else of
-# the newest commit. Usage: changelog.sh PACKAGE VERSION FILE.gz
+# changelog: writes a package's changelog in Debian's format. The date is that of the last commit
+# that changed CHANGELOG.md; without git it is SOURCE_DATE_EPOCH, or now.
+# Usage: changelog.sh PACKAGE VERSION FILE.gz
 set -eu
-date=${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct 2>/dev/null || date +%s)}
+date=$(git log -1 --format=%ct -- CHANGELOG.md 2>/dev/null || true)
+date=${date:-${SOURCE_DATE_EPOCH:-$(date +%s)}}
 mkdir -p "${3%/*}"
 gzip -9n >"$3" <<END
 $1 ($2) unstable; urgency=medium

@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: MIT
 """package: Debian packages of the project, one for each role of a user (docs/install.md)."""
+import os
 import shutil
 from pathlib import Path
+from subprocess import DEVNULL
 
 from icesoc.cli.build_folder import BuildFolder
 from icesoc.cli.command import command
 from icesoc.cli.options import FOLDER, JOBS, SWITCH, Option
 from icesoc.util.console import say
-from icesoc.util.process import logged, run
+from icesoc.util.process import logged, output as read, run
 
 BUILD = "build/package"
 ROOMS = "bus;slice;ip;sw;hdl;testbench"
@@ -29,8 +31,12 @@ def package(values):
     output.mkdir(parents=True, exist_ok=True)
     for path in output.glob("*.deb"):
         path.unlink()
+    # The files in the packages have the commit's time, so that the same commit gives the same bytes.
+    commit = read(["git", "log", "-1", "--format=%ct"], check=False, stderr=DEVNULL).strip()
     logged(["cpack", "-G", "DEB", "-B", output, "--config", build / "CPackConfig.cmake"],
-           build / "package.log", "CPack failed")
+           build / "package.log", "CPack failed",
+           env={"SOURCE_DATE_EPOCH": commit} if commit and "SOURCE_DATE_EPOCH" not in os.environ
+           else None)
     shutil.rmtree(output / "_CPack_Packages")
     found = sorted(output.glob("*.deb"))
     for path in found:

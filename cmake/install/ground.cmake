@@ -37,9 +37,9 @@ set(tools ${top}/tools/icesoc)
 file(GLOB modules CONFIGURE_DEPENDS ${tools}/call/*.py)
 install(FILES ${tools}/__init__.py DESTINATION ${SHARE}/tools/icesoc COMPONENT ${component})
 install(FILES ${modules} DESTINATION ${SHARE}/tools/icesoc/call COMPONENT ${component})
-install(FILES ${tools}/cli/__init__.py ${tools}/cli/command.py ${tools}/cli/installed.py
-  ${tools}/cli/main.py ${tools}/cli/options.py DESTINATION ${SHARE}/tools/icesoc/cli
-  COMPONENT ${component})
+install(FILES ${tools}/cli/__init__.py ${tools}/cli/choices.py ${tools}/cli/command.py
+  ${tools}/cli/installed.py ${tools}/cli/main.py ${tools}/cli/options.py
+  DESTINATION ${SHARE}/tools/icesoc/cli COMPONENT ${component})
 install(FILES ${tools}/cli/commands/__init__.py ${tools}/cli/commands/call.py
   DESTINATION ${SHARE}/tools/icesoc/cli/commands COMPONENT ${component})
 install(FILES ${tools}/util/__init__.py ${tools}/util/console.py ${tools}/util/errors.py

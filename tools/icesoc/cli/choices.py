@@ -11,8 +11,6 @@ import os
 import re
 from pathlib import Path
 
-from icesoc.cli.build_folder import BuildFolder
-
 HARDWARE = ("bus", "hdl", "ip", "synth")
 SEARCHED = (*HARDWARE, "cmake", "slice", "sw", "testbench", "tests", "tools")
 MODULE = re.compile(r"^ *(?:module|entity) +(\w+)", re.M | re.I)
@@ -53,6 +51,7 @@ def cores(values=None):
     found = {path.parent.name for path in Path("ip").glob("*/core.toml")}
     if values is None:
         values = argparse.Namespace(build="build/main", jobs=1, built=True)
+    from icesoc.cli.build_folder import BuildFolder  # icesoc-call is installed without it
     build = BuildFolder(values.build, values)
     known = build / "cores.known"  # written by CMake
     found |= set(known.read_text().split()) if known.exists() else set()

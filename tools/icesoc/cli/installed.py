@@ -18,7 +18,7 @@ from icesoc.cli.options import FILE, KEY_FILE
 TREE_ONLY = {"build": places.SHARE, "flight": "", "page": False, "plugin": ""}  # with their values
 TEXTS = {"vehicle": "name of the vehicle in vehicles.conf, or in IceGrid; default: the only one of "
                     "vehicles.conf",
-         "slice": "Slice files of objects that are not part of the default chip, separated by spaces"}
+         "slice": "Slice files of objects that the default chip does not have, separated by spaces"}
 HELP = """call an operation of any object of a vehicle
 
 The vehicle is one of ~/.config/icesoc/vehicles.conf or /etc/icesoc/vehicles.conf, or the options

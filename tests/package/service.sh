@@ -10,6 +10,7 @@ here=$(cd "${1:-.}" && pwd)
 export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8
 step() { echo "== $*"; }
 fail() {
+    touch ended
     echo "service: $*" >&2
     exit 1
 }
@@ -43,7 +44,6 @@ echo "Vehicle.uav1=tcp -h 127.0.0.1 -p 11093" >/etc/icesoc/vehicles.conf
 cat >by_service <<'END'
 #!/bin/bash
 set -e
-trap 'touch ended' EXIT
 until [ -e device ]; do sleep 0.1; done
 ln -sf "$(cat device)" /run/icesoc-modem
 systemctl start icesoc-gateway@uav1
@@ -95,6 +95,7 @@ apt-get install -y -qq --no-install-recommends ./newer/*.deb >/dev/null
 after=$(systemctl show -P MainPID icesoc-gateway@uav1)
 [ "$after" != 0 ] && [ "$after" != "$pid" ] || fail "the service was not restarted: $pid, $after"
 echo "$old to $new; $(id icesoc)"
+touch ended
 
 step "remove stops the service and keeps keys and settings, purge keeps keys"
 apt-get remove -y -qq icesoc-ground icesoc-sim icesoc-slice2c libicec-dev icesoc-hdl >/dev/null

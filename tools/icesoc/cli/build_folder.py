@@ -27,6 +27,12 @@ def writable(folder, otherwise):
         raise Stop(f"you may not write in {folder}, {otherwise}")
 
 
+def cores_in(folder):
+    """Returns a core's folder, or all cores of a repository, which has a cores.list."""
+    return sorted(path.parent for path in folder.glob("*/core.toml")) \
+        if (folder / "cores.list").is_file() else [folder]
+
+
 class BuildFolder:
     """A build folder, as a command's options name it."""
     def __init__(self, folder, values):
@@ -46,7 +52,8 @@ class BuildFolder:
             if self.ucos2:
                 self.set(UCOS2=os.path.abspath(self.ucos2))
             if self.core_folders:
-                self.set(CORE_FOLDERS=";".join(map(str, self.other_cores())))
+                self.set(CORE_FOLDERS=";".join(map(str, self.other_cores())),
+                         **({"CORES": str(self.chip_list())} if self.chip_list() else {}))
         return self
 
     def configure(self, *arguments):
@@ -67,7 +74,8 @@ class BuildFolder:
             if not (self / "build.ninja").exists():
                 run(["cmake", "-S", ".", "-B", self.folder, "-G", "Ninja", *arguments])
         commands = Path("compile_commands.json")
-        if not commands.exists():  # editors look for it here; not created in another user's tree
+        # Editors look for it here. A tree that only builds elsewhere stays as it is.
+        if not commands.exists() and self.folder.absolute().is_relative_to(Path.cwd()):
             with contextlib.suppress(OSError):
                 commands.unlink(missing_ok=True)
                 commands.symlink_to(os.path.relpath(self / commands))
@@ -102,7 +110,16 @@ class BuildFolder:
         if self.core_folders == "none":
             return []
         folders = self.core_folders or self.cached("CORE_FOLDERS")
-        return [Path(folder).absolute() for folder in folders.split(";") if folder]
+        return [core for folder in folders.split(";") if folder
+                for core in cores_in(Path(folder).absolute())]
+
+    def chip_list(self):
+        """The list of the chip's cores that the command selects: of the first repository among the
+        folders, or this tree's again; None if the command does not select one."""
+        if self.core_folders == "none":
+            return Path("ip/cores.list").absolute() if self.cached("CORES") else None
+        lists = (Path(folder).absolute() / "cores.list" for folder in self.core_folders.split(";"))
+        return next(filter(Path.is_file, lists), None) if self.core_folders else None
 
     def core(self, name):
         """The folder of a core."""

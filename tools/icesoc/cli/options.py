@@ -202,6 +202,6 @@ FRESH = Option("fresh", SWITCH,
                "recompute cached results of proofs, lints and synthesis")
 CORE_FOLDERS = Option(
     "core-folders", TEXT,
-    "folders of cores outside ip/, separated by ; and remembered for later commands; none forgets"
-    " them")
+    "folders of cores, or of repositories with their cores.list, outside ip/, separated by ; and"
+    " remembered for later commands; none forgets them")
 BUILT = Option("built", SWITCH, "use the existing build: no set-up, no build", listed=False)

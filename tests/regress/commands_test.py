@@ -161,6 +161,8 @@ class Cases(Project):
         self.has("^gtkwave .*/build/wave/fir.fst")
         self.has("^--gtest_filter=Fir.Impulse$", file="build/wave/fir.fst")
         self.good("wave IP=fir TEST=And")
+        self.good("wave IP=test_ip_fir TEST=Impulse")  # any program
+        self.has("^gtkwave .*/build/wave/test_ip_fir.fst")
         self.bad("wave IP=fir TEST=Imp", "2 tests, not one of")
         self.good("ip-test IP=fir")
         self.has("1 tests passed|100% tests passed", "^test_ip_fir.Impulse: LEVELS: not read back$")

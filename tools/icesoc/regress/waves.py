@@ -17,7 +17,6 @@ CLOCKS_PER_SECOND = 1e8  # of the chip in a flight
 SECONDS = {"ms": 1e-3, "us": 1e-6, "ns": 1e-9, "ps": 1e-12, "fs": 1e-15}  # GHDL's units of time
 FIRST_CORE = 2  # slot
 SOURCES = (".v", ".sv", ".vh", ".vhd", ".vhdl")
-NAMELESS = re.compile(r"(^|[.])(n\d+(_o)?|_\d+_|\$\S*)$")  # names that GHDL and Yosys give to wires
 MOST_CHANGES, FEWEST_CHANGES, MOST_SIGNALS = 400, 25, 200  # limits of a drawing
 
 
@@ -100,12 +99,8 @@ def scope_in(signals, names):
 
 
 def rows_below(scope, signals):
-    """Returns the rows of a save file for the signals of an instance, without words of memories."""
-    rows = [(signal.scopes, signal.name + (f"[{signal.width - 1}:0]" if signal.width > 1
-                                           and "[" not in signal.name else ""))
-            for signal in signals if signal.scopes[-1:] == [scope] and signal.kind != "parameter"]
-    return [".".join([*scopes, name]) for scopes, name in rows
-            if not NAMELESS.search(name) and not re.search(r"\[\d+\]$", name)]
+    """Returns the rows of a save file for the signals of an instance."""
+    return [signal.row for signal in signals if signal.scopes[-1:] == [scope] and signal.is_shown]
 
 
 def save_file(wave, build, folder, first):
@@ -246,7 +241,7 @@ def drawing_of(failure, room):
         blamed = bool(moves and failure.scope and within and not signal.name.endswith("]"))
         return (signal.bits != 0, not named, not blamed, not moves, signal.depth, signal.name)
     total = len(signals)
-    signals = sorted((s for s in signals if not NAMELESS.search(s.name)), key=rank)
+    signals = sorted((s for s in signals if not vcd.NAMELESS.search(s.name)), key=rank)
     first = sum(not all(rank(s)[:3]) for s in signals)
 
     def rows(count, changes):

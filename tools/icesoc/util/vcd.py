@@ -4,6 +4,9 @@ import dataclasses
 import re
 
 
+NAMELESS = re.compile(r"(^|[.])(n\d+(_o)?|_\d+_|\$\S*)$")  # names that GHDL and Yosys give to wires
+
+
 @dataclasses.dataclass
 class Variable:
     """A signal's declaration; several may share a key."""
@@ -12,6 +15,19 @@ class Variable:
     name: str
     width: int  # bits
     kind: str  # "wire", "reg", "string", ...
+
+    @property
+    def row(self):
+        """Its row in a save file of GTKWave."""
+        bits = f"[{self.width - 1}:0]" if self.width > 1 and "[" not in self.name else ""
+        return ".".join([*self.scopes, self.name + bits])
+
+    @property
+    def is_shown(self):
+        """Whether a reader looks for it: it is neither a parameter, nor a word of a memory, nor
+        named by a converter."""
+        return not (self.kind == "parameter" or NAMELESS.search(self.name)
+                    or re.search(r"\[\d+\]$", self.name))
 
 
 def read(text):

@@ -15,6 +15,7 @@ from icesoc.cli.command import GROUPS, command
 from icesoc.cli.commands.synth import utilisation
 from icesoc.cli.options import (BUILD, CORE_FOLDERS, FILE, FOLDER, JOBS, SEED, SWITCH, TEXT, Option,
                                 matching, one_of)
+from icesoc.util import vcd
 from icesoc.util.console import say, warn
 from icesoc.util.errors import Stop, nearest
 from icesoc.util.process import logged, output, run
@@ -241,41 +242,77 @@ def ports(build, core):
             yield f"TOP.{name}" + (f"[{high}:{low}]" if int(high) > int(low) else "")
 
 
-@command("core wave", [CORE, Option("test", TEXT,
-                                    "name of the test, or an expression that matches only this "
-                                    "test", "",
-                                    positional=True), CORE_FOLDERS, BUILD, JOBS], make="wave",
-         brief="core wave fir Impulse", examples=["core wave fir Impulse"])
-def wave(values):
-    """waveform of one test of a core, for GTKWave: build/wave/CORE.fst and .gtkw"""
-    core = values.ip
-    if not core or not values.test:
-        raise Stop("wave needs a core and a test: ./icesoc core wave fir Impulse "
-                   "(make wave IP=fir TEST=Impulse)", 2)
-    main = known(values)
-    source = main.core(core) / f"{core}_test.cpp"
-    if not source.exists():
-        raise Stop(f"there is no {source}")
+def rows_of(fst, build, core):
+    """Returns the rows of GTKWave's save file: the ports, then the signals of the first instances
+    below them, each instance under a comment with its name."""
+    _, signals, _ = vcd.read(output(["fst2vcd", "-f", fst], check=False, stderr=-3)
+                             if shutil.which("fst2vcd") else "")
+    rows, most, last = [*ports(build, core)], 200, []
+    for signal in sorted(filter(lambda s: s.is_shown, signals), key=lambda s: len(s.scopes)):
+        if signal.scopes == ["TOP"] and rows and not last:
+            continue  # a port that is listed
+        if signal.scopes != last:
+            last = signal.scopes
+            rows.append("-" + ".".join(last))
+        rows.append(signal.row)
+    return rows[:most]
+
+
+def traced(values):
+    """Returns the build folder of a test with a waveform, and the command that runs the test."""
+    what = values.ip
+    if what.startswith("vhdl."):  # GHDL writes the waveform by itself
+        build = BuildFolder(values.build, values).prepare()
+        build.ninja("ghdl", f"{what[5:]}_vectors")
+        return build, ["ctest", "--test-dir", build.folder, "--no-tests=error", "-R",
+                       f"^{re.escape(what)}$"]
+    if what.startswith("test_"):
+        main, target = BuildFolder(values.build, values).prepare(), what
+    else:
+        main, target = known(values), f"test_ip_{what}"
+        source = main.core(what) / f"{what}_test.cpp"
+        if not source.exists():
+            raise Stop(f"there is no {source}")
     build = BuildFolder("build/trace", values)
     if not values.built:
         build.configure("-DTRACE=ON")
         build.follow(main)
-    build.ninja(f"test_ip_{core}")
-    program = next(path for path in sorted(build.folder.rglob(f"test_ip_{core}"))
-                   if path.is_file() and os.access(path, os.X_OK))
-    name = one_test(program.absolute(), values.test)
+    build.ninja(target)
+    program = next(path for path in sorted(build.folder.rglob(target))
+                   if path.is_file() and os.access(path, os.X_OK)).absolute()
+    return build, [program, f"--gtest_filter={one_test(program, values.test)}"]
+
+
+@command("core wave", [dataclasses.replace(
+    CORE, kind=matching(r"(vhdl\.)?\w+", "a core, test_... or vhdl.CORE"), is_checked=False,
+    help="name of the core; or a test program, such as test_fsmc_bridge; or a test bench by GHDL, "
+         "such as vhdl.fir"), Option(
+    "test", TEXT, "name of the test, or an expression that matches only this test", "",
+    positional=True), CORE_FOLDERS, BUILD, JOBS], make="wave", brief="core wave fir Impulse",
+         examples=["core wave fir Impulse", "core wave test_fsmc_bridge TooEarly",
+                   "core wave vhdl.fir"])
+def wave(values):
+    """waveform of one test, for GTKWave: build/wave/NAME.fst and .gtkw
+
+    The save file lists the ports, then internal signals. For a core in VHDL, `vhdl.NAME` shows
+    GHDL's waveform, which has the names and types of the source."""
+    what = values.ip
+    if not what or not (values.test or what.startswith("vhdl.")):
+        raise Stop("wave needs a core, or a test program, and a test: ./icesoc core wave fir "
+                   "Impulse (make wave IP=fir TEST=Impulse), ./icesoc core wave vhdl.fir", 2)
+    build, words = traced(values)
     folder = Path("build/wave").absolute()
     folder.mkdir(parents=True, exist_ok=True)
-    fst, save, log = (folder / f"{core}{end}" for end in (".fst", ".gtkw", ".log"))
+    fst, save, log = (folder / f"{what}{end}" for end in (".fst", ".gtkw", ".log"))
     fst.unlink(missing_ok=True)
     with open(log, "w") as file:
-        status = run([program.absolute(), f"--gtest_filter={name}"], check=False, stdout=file,
-                     stderr=file, env={"WAVE": fst})
+        status = run(words, check=False, stdout=file, stderr=file, env={"WAVE": fst})
+    name = str(words[-1]).rpartition("=")[2]
     if not fst.exists() or not fst.stat().st_size:
         raise Stop(f"{log.read_text()}{name} wrote no waveform")
     save.write_text("\n".join([
         f"[*] {name}: generated by ./icesoc core wave", f'[dumpfile] "{fst}"',
-        f'[savefile] "{save}"', *ports(build, core)]) + "\n")
+        f'[savefile] "{save}"', *rows_of(fst, build, what)]) + "\n")
     if status:
         warn(f"{name} failed: {log}")
     if os.environ.get("DISPLAY") and shutil.which("gtkwave"):

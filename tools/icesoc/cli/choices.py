@@ -131,6 +131,7 @@ def words_of_tests(values=None):
 def may_name_test(text, values):
     """Returns whether a test may match: an expression always, a plain word if each part of it is in
     the source of a test. Tests of cores outside the tree may have any name."""
+    from icesoc.cli.build_folder import BuildFolder  # icesoc-call is installed without it
     if not re.fullmatch(r"[A-Za-z]\w*", text) or \
             BuildFolder(values.build, values).other_cores():
         return True

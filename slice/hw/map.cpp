@@ -86,14 +86,14 @@ private:
                            number(rest.substr(colon + 1), 1, mostPins, pin.width));
             if (!isGood)
                 error(d_.at, "[\"" + m +
-                                 "\"]: the name of the port in lower case, with _i or _o at "
-                                 "its end, and its width, 1.." +
+                                 "\"]: expected the name of the port in lower case, with _i or _o "
+                                 "at the end, and its width, 1.." +
                                  std::to_string(mostPins) + ": [\"hw:pin:pwm_o:4\"]");
             else if (isSlotPort(pin.name))
                 error(d_.at, "[\"" + m + "\"]: '" + pin.name + "' is a port of every core");
             else if (std::any_of(block_.pins.begin(), block_.pins.end(),
                                  [&](const Pin& p) { return p.name == pin.name; }))
-                error(d_.at, "[\"" + m + "\"]: the pin '" + pin.name + "' is there twice");
+                error(d_.at, "[\"" + m + "\"]: duplicate pin '" + pin.name + "'");
             block_.pins.push_back(pin);
         }
     }

@@ -138,7 +138,7 @@ class Values(Work):
 
 # Commands that are mistyped, each with a part of the answer.
 MISTAKES = {
-    "./icesoc rnu": "there is no command 'rnu'; did you mean run?",
+    "./icesoc rnu": "unknown command 'rnu'; did you mean run?",
     "./icesoc core nwe": "core has no command 'nwe'; did you mean new?",
     "./icesoc run --treshold 3": "run has no option --treshold; did you mean --threshold?",
     "./icesoc run --loss 2": "--loss: expected 0 to 1, got '2'",
@@ -159,9 +159,9 @@ MISTAKES = {
     "./icesoc contract": "contract: expected a command: diff, from-rdl",
     "./icesoc contract dif": "contract has no command 'dif'; did you mean diff?",
     "./icesoc bench --only airr": "no bench is named 'airr': simulator, air",
-    "./icesoc nightly --steps nothing --built": "there is no step 'nothing': kept, random",
-    "make -s rnu": "there is no 'make rnu'; did you mean run?",
-    "make -s run LOS=1": "there is no variable LOS of make run; did you mean LOSS?",
+    "./icesoc nightly --steps nothing --built": "unknown step 'nothing': expected one of kept, ran",
+    "make -s rnu": "unknown target 'make rnu'; did you mean run?",
+    "make -s run LOS=1": "make run has no variable LOS; did you mean LOSS?",
     "make -s run DRAW=3": "it is one of make mutants",
     "make -s run CAMERA=yes": "CAMERA: expected 1 or 0, got 'yes'",
     "make -s run SIZE=96x65k": "SIZE: expected WIDTHxHEIGHT",
@@ -179,7 +179,7 @@ MISTAKES = {
     "./icesoc check sanitizers --kinds adress": "got 'adress'; did you mean address?",
     "./icesoc check netlist --family ecp6": "--family: expected xc6s or ecp5, got 'ecp6'",
     "./icesoc contract diff nowhere": "unknown commit BASE=nowhere",
-    "./icesoc core remove fri": "there is no ip/fri; did you mean fir?",
+    "./icesoc core remove fri": "ip/fri not found; did you mean fir?",
     "./icesoc core new Fir --lang vhdl": "words of small letters and digits",
     "make -s run PROBE=fir.go=1": "PROBE='fir.go=1' is a trigger of a probe: give --cores probe",
     "make -s run OUT=/proc/none": "OUT='/proc/none': expected a folder",
@@ -286,7 +286,7 @@ class Mistakes(Work):
         run.send_signal(2)
         self.assertEqual(run.communicate()[1], "icesoc: stopped\n")
         self.assertEqual(run.returncode, 130)
-        # A child that had just been started gets the signal about its parent's end a little later.
+        # A child that had just been started gets the signal about the end of its parent later.
         while Path("/proc", child.read_text().strip()).exists():
             time.sleep(0.01)
 
@@ -307,11 +307,11 @@ class Mistakes(Work):
         said = (f"ninja: error: '{self.work}/a.v', needed by 'b', "
                 "missing and no known rule to make it")
         self.assertEqual(explained(said),
-                         f"{self.work}/CMakeLists.txt:2: there is no file {self.work}/a.v\n{said}")
+                         f"{self.work}/CMakeLists.txt:2: file {self.work}/a.v not found\n{said}")
         Path(self.work, "CMakeLists.txt").write_text("icesoc_core()\n")
         Path(self.work, "core.toml").write_text('verilog = [\n    "ba.v",\n    "a.v",\n]\n')
         self.assertEqual(explained(said),
-                         f"{self.work}/core.toml:3: there is no file {self.work}/a.v\n{said}")
+                         f"{self.work}/core.toml:3: file {self.work}/a.v not found\n{said}")
 
 
 class Trees(Work):

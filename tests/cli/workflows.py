@@ -159,7 +159,7 @@ class Cases(Script):
         self.has("^sample_verilog\nsecond$", file=mine / "cores.list")
         self.has("^changed$", file=mine / ".gitlab-ci.yml")
         self.ask(*new, "second", status=1)
-        self.has("second is there already")
+        self.has("second already exists")
         # The same for a third-party repository, with files that are found wherever it is.
         (mine / "others").mkdir()
         shutil.copy(TREE / "tests/ip/new_foreign/wb_port.v", mine / "others")

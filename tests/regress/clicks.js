@@ -30,7 +30,7 @@ const key = (node, key) => node.dispatchEvent(new KeyboardEvent("keydown", {key,
     {id: "few", children: r => r.below, pick: r => seen.push(`picked ${r.name}`)});
   const values = [1, null, 4], text = i => `no. ${i}`;
   chart(drawn, {labels: ["i", "ii", "iii"], limits: [{name: "l", value: 2, colour: "--bad"}],
-    series: [{name: "s", colour: "--good", values, says: text, bars: true}]});
+    series: [{name: "s", colour: "--good", values, label: text, bars: true}]});
   await wait();
   seen.push(`of 2000 ${all(".tabulator-row", many).length < 300 ? "some" : "all"}`);
   all(".tabulator-col", few)[1].click();
@@ -66,14 +66,14 @@ const key = (node, key) => node.dispatchEvent(new KeyboardEvent("keydown", {key,
   key(wave, "Enter");
   seen.push(`tree ${rows()}`);
   click(40, 3);
-  seen.push(`deeper ${rows()}`, `values ${cells()}`, `told${cursor.textContent}`);
+  seen.push(`deeper ${rows()}`, `values ${cells()}`, `readout${cursor.textContent}`);
   click(40, 4);
   seen.push(`unsigned ${cells()}`);
   key(wave, "Enter");
   seen.push(`signed ${cells()}`);
   key(wave, "ArrowLeft");
   key(wave, "ArrowLeft");
-  seen.push(`earlier ${cells()}`, `told${cursor.textContent}`);
+  seen.push(`earlier ${cells()}`, `readout${cursor.textContent}`);
   click(wave.clientWidth - 1, 2);
   seen.push(`later ${cells()}`);
   filter.value = "";

@@ -73,7 +73,7 @@ class Cases(Project):
         for words, said in (
             # before a simulator is built for it
             (f"run REPLAY={flight} FROM=x", "FROM: expected a number, at least 0 s, got 'x'"),
-            (f"run REPLAY={flight} FROM=2 TO=1", "FROM=2.0 TO=1.0 are no span"),
+            (f"run REPLAY={flight} FROM=2 TO=1", "FROM=2.0 TO=1.0: expected FROM before TO"),
             (f"run IMAGE=/none OUT={flight}", "cannot read '/none'"),
             ("synth BASE=none", "unknown commit BASE=none"),
             ("faults NAME=nonsense", "faults: none is called nonsense; there are clock_step")):
@@ -193,7 +193,7 @@ class Cases(Project):
         write("utilisation", '#!/bin/sh\necho "utilisation $*"\n')
         os.chmod("utilisation", 0o755)
         write("ip/cores.list", "fir\n")
-        self.bad(f"run CORES=mine CORE_FOLDERS={mine}", f"there is no {mine}/ground.py")
+        self.bad(f"run CORES=mine CORE_FOLDERS={mine}", f"{mine}/ground.py not found")
         write(mine / "ground.py", "")
         self.bad(f"run CORES=mine CORE_FOLDERS={os.path.relpath(mine)}",
                  "the chip has no core 'mine'")
@@ -210,7 +210,7 @@ class Cases(Project):
         self.has("^CORE_FOLDERS.*=$", file="build/main/CMakeCache.txt")
         self.assertEqual(Path("ip/cores.list").read_text(), "fir\n")
         self.assertTrue((mine / "ground.py").exists())
-        self.bad("wave IP=mine TEST=Impulse", "'mine'.*: fir")
+        self.bad("wave IP=mine TEST=Impulse", "'mine'.*fir")
 
     def test_commands_nightly(self):
         """Each step runs even if earlier ones failed, and each failure is reported."""

@@ -107,10 +107,10 @@ class Cases(Project):
             ">UAV_radioTask<", "; rows program.task \u25B8 top; "
             "tree program.task \u25BE top clk_i \u25B8 u_fifo; "  # the clock once
             "deeper program.task \u25BE top clk_i \u25BE u_fifo level mask; "
-            "values UAV_radioTask 1 a7 0a; told cursor at time 15, where it failed; "
+            "values UAV_radioTask 1 a7 0a; readout cursor at time 15, where it failed; "
             "0 to 15 are shown; "
             "unsigned UAV_radioTask 1 167 u 0a; signed UAV_radioTask 1 -89 s 0a; "
-            "earlier UAV_radioTask 0 0 s 0a; told cursor at time 0, 15 before the failure; .*; "
+            "earlier UAV_radioTask 0 0 s 0a; readout cursor at time 0, 15 before the failure; .*; "
             "later UAV_radioTask 1 -89 s 0a;",
             'id="results"', "test_c.Flicker",
             'id="runs".*>one<',  # the commit's subject

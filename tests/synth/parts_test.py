@@ -134,7 +134,7 @@ class Timing(unittest.TestCase):
         for suffix in ".part", ".1":  # two orders of five
             (folder / f"chip{suffix}").touch()
         shows("1 of 3 designs, about 0:30 left: chip")
-        chip.begun, chip.spent, small.begun, small.spent = 1, 290, 1, 0  # from the cache
+        chip.begun, chip.spent, small.begun, small.spent = 1, 290, 1, 0  # small is cached
         shows("3 of 3 designs, about 0:00 left: ")
 
 
@@ -196,7 +196,7 @@ class Reports(unittest.TestCase):
                 (lambda r: r.pop("device"), "no device"),
                 (lambda r: r["map"].pop("slices"), "map has no slices"),
                 (lambda r: r["netlist"].pop("end"), "netlist has no end"),
-                (lambda r: r.update(routed="4.9"), "a clock is no time"),
+                (lambda r: r.update(routed="4.9"), "clock: expected a time in ns"),
                 (lambda r: [r.pop(key) for key in ("routed", "synthesised")], "published clock"),
                 (lambda r: r.pop("netlist"), "clock without one"),
                 (lambda r: r.pop("map"), "no map")):

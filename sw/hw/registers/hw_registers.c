@@ -118,13 +118,13 @@ static const Hw_Register* lookUp(Hw_Registers_Core* self, Ice_String name, Hw_Re
         place->page = (Ice_Int)(address - address % WINDOW_BYTES);
         return place;
     }
-    sayText(self, "there is no '");
+    sayText(self, "unknown name '");
     say(self, name);
-    sayText(self, "'; there is ");
+    sayText(self, "'; expected ");
     if (page) {
-        sayText(self, "each word of the core by its byte address, 0x0 to ");
+        sayText(self, "the byte address of a word of the core, 0x0 to ");
         sayNumber(self, largest(page->width) - 3U);
-        sayText(self, " in hexadecimal, and ");
+        sayText(self, " in hexadecimal, or ");
     }
     for (i = 0; i < self->count; ++i) {
         if (i)

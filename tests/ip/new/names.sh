@@ -48,14 +48,15 @@ printf '#!/bin/sh\nexec "%s" "$@"\n' "$slice2c" >"$work/build/slice/slice2c"
 chmod +x "$work/build/slice/slice2c"
 refused "cannot read .*none.ice" fir --lang verilog --ice "$work/none.ice"
 printf '#include <b.ice>\n #  include "c/d.ice"\n' >"$work/a.ice"
-refused 'a.ice includes b.ice c/d.ice: a core has one Slice file' fir --lang verilog \
+refused 'a.ice includes b.ice c/d.ice: expected a Slice file without' fir --lang verilog \
     --ice "$work/a.ice"
 echo 'module M { interface Fir { void f(); }; };' >"$work/a.ice"
 refused 'is not an interface in hardware' fir --lang verilog --ice "$work/a.ice"
 echo 'module M { [":hw"] interface Fir { void f(string s); }; };' >"$work/a.ice"
 refused "^$work/a.ice:1:" fir --lang verilog --ice "$work/a.ice"
 echo 'module M { [":hw"] interface Iir { void f(); }; };' >"$work/a.ice"
-refused "has the cores iir: the name is that of the only one" fir --lang verilog --ice "$work/a.ice"
+refused 'expected one interface with \[":hw"\], named fir; got iir' fir --lang verilog \
+    --ice "$work/a.ice"
 echo 'module M { [":hw"] interface LowPass { ["hw:long"] int f(short a); }; };' >"$work/a.ice"
 for language in verilog vhdl; do
     new low_pass --lang $language --ice "$work/a.ice" >/dev/null
@@ -90,8 +91,8 @@ remove low_pass >/dev/null
 [ "$(cat "$work/ip/cores.list")" = 'taker b_i=low_pass.b_o' ] ||
     { echo 'rm-ip keeps the core, or takes another line' && exit 1; }
 rm -r "$work/ip/taker"
-for wrong in '' nobody template ../bus; do
-    ! remove "$wrong" 2>"$work/log" && grep -q 'not a core\|there is no ip/' "$work/log" ||
+for wrong in '' missing template ../bus; do
+    ! remove "$wrong" 2>"$work/log" && grep -q 'not a core\|ip/.* not found' "$work/log" ||
         { echo "rm-ip takes '$wrong'" && exit 1; }
 done
 # Uncommitted work is kept, unless forced.

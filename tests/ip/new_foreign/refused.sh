@@ -35,19 +35,19 @@ echo 'module broken(input clk;' >broken.v
 refused 'usage: make new-foreign' wb_port wishbone
 refused "got 'spi'" wb_port spi wb_port.v
 mkdir out
-! new my_port wb_port wishbone out wb_port.v >log 2>&1 && grep -q 'is there already' log ||
+! new my_port wb_port wishbone out wb_port.v >log 2>&1 && grep -q 'already exists' log ||
     { cat log && exit 1; }
 rmdir out
 named My 'small letters' wb_port wishbone wb_port.v
 named event "'event' is a reserved word" wb_port wishbone wb_port.v
 named npi_fifo "'npi_fifo' is the name of this project's module in hdl" wb_port wishbone wb_port.v
 named wb_port "'wb_port' is the name of a module of the core" wb_port wishbone wb_port.v
-refused 'no Verilog or VHDL file' wb_port wishbone none.v
-refused "no module 'nobody' in FILES; there is wb_port" nobody wishbone wb_port.v
+refused "'none.v': expected a Verilog or VHDL file" wb_port wishbone none.v
+refused "no module 'missing' in FILES; found wb_port" missing wishbone wb_port.v
 refused 'does not elaborate broken' broken wishbone broken.v
 refused "inout port 'sda'" pads wishbone pads.v
 refused 'has no port for awvalid' wb_port axil wb_port.v
-refused 'has a space in its name' wb_port wishbone 'a b.v'
+refused 'expected a path without spaces' wb_port wishbone 'a b.v'
 sed '1i // module wb_port' wb_port.v >again.v
 refused "again.v:6: module 'wb_port' is also in .*/wb_port.v:5" wb_port wishbone wb_port.v again.v
 echo 'module npi_fifo(input clk); endmodule' >ours.v

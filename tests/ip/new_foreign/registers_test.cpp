@@ -160,8 +160,8 @@ TEST(HwRegisters, WhatIsWrongIsSaidWithWhatThereIs) {
     Requests core;
     core.get("LEVEL");
     EXPECT_EQ(core.reason_,
-              "there is no 'LEVEL'; there is each word of the core by its byte address, 0x0 to 60 "
-              "in hexadecimal, and ID, ID.VERSION, ID.TYPE, EVENT, EVENT.CORE, EVENT.TIMEOUT, "
+              "unknown name 'LEVEL'; expected the byte address of a word of the core, 0x0 to 60 in "
+              "hexadecimal, or ID, ID.VERSION, ID.TYPE, EVENT, EVENT.CORE, EVENT.TIMEOUT, "
               "MASK, MASK.CORE, MASK.TIMEOUT, PAGE, PAGE.ADDRESS, REG0, REG1, REG2, REG3, ALL, "
               "ALL.LOW, ALL.HIGH, ACT");
     for (const char* name : {"0x2", "0x40", "0x", "0xG", "0x100000000", "", "REG"}) {

@@ -21,7 +21,7 @@ class Mapping:
     def __init__(self, slices, communicator):
         self.slices, self.communicator = slices, communicator
         self.loaded = set()
-        self.listeners = None  # makes a proxy that listens, from the interface's name
+        self.listeners = None  # function: name of an interface -> proxy of a listener
 
     def load(self, file):
         """Loads a Slice file once."""

@@ -22,11 +22,11 @@ VEHICLE = {"uav": ("Autopilot.ice", "::Autopilot::Vehicle"),
            "fpga": ("Update.ice", "::Update::Firmware")}
 REGISTERS = "::Hw::Registers"  # interface of a core that is called by its registers
 ACCESSES = {"get": ("ro", "rw", "w1c", "w1s"), "set": ("rw", "w1c", "w1s", "ws")}
-LIVE = "live.json"  # of a flight in progress, stored in its folder
+LIVE = "live.json"  # file in the folder of a flight, present during the flight
 
 
 def read_json(path):
-    """Returns the JSON in a file, or None if there is no such file."""
+    """Returns the JSON in a file, or None if the file does not exist."""
     try:
         return json.loads(Path(path).read_text())
     except (OSError, ValueError):
@@ -115,7 +115,7 @@ class Catalogue:
         return found[name]
 
     def interface_of(self, ids):
-        """Returns the most derived interface among an object's own that Slice declares."""
+        """Returns the most derived interface of an object among those that Slice declares."""
         known = [name for name in ids if name in self.slices.declarations]
         return max(known, key=lambda name: len(self.slices.lineage(name)), default="")
 

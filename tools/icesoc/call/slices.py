@@ -75,8 +75,8 @@ class Slices:
         return names
 
     def operations(self, interface):
-        """Returns the operations of an interface by name, those of its bases and of every object
-        included."""
+        """Returns the operations of an interface by name, including inherited operations and the
+        operations of every object (ice_ping, ...)."""
         found = {}
         for name in self.lineage(interface):
             for operation in self.get(name).get("operations", []):
@@ -86,7 +86,7 @@ class Slices:
         return found
 
     def fields(self, name):
-        """Returns the fields of a struct, or of a class or an exception with those of its bases."""
+        """Returns the fields of a struct, class or exception, including inherited fields."""
         return [field for each in reversed(self.lineage(name))
                 for field in self.get(each).get("fields", [])]
 

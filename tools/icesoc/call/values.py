@@ -15,7 +15,7 @@ from icesoc.util.errors import Stop, nearest
 
 FLOAT_LIMIT = 3.4028234663852886e38
 DEEPEST = 100  # nesting of a value
-SHOWN_BYTES = 64  # of a sequence<byte> in a text
+SHOWN_BYTES = 64  # bytes of a sequence<byte> that are shown
 
 
 class Refused(Stop):

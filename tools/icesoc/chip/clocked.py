@@ -14,8 +14,8 @@ from icesoc.regs.model import Wrong, check
 def clocked(block, has_clk_hz):
     """Returns a module with the ports of a slot around a block with a separate clock."""
     check(not block.description.get("memory_port"),
-          "a core with a memory port uses the chip clock, as the port does; for a separate clock "
-          "of a part of the core use hdl/cdc/async_fifo.v, as ip/camera does")
+          "a core with a memory port uses the chip clock, as the port does; for a part of the core "
+          "with a separate clock use hdl/cdc/async_fifo.v, as ip/camera does")
     return render("clocked.v.j2", b=block, has_clk_hz=has_clk_hz,
                   pins=block.description.get("pins", []))
 

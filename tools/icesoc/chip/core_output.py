@@ -212,8 +212,8 @@ def waits(core):
 
 
 def instances_of(chip, slots):
-    """Returns the firmware's table of cores. A core without its own servant has that of registers
-    by name."""
+    """Returns the firmware's table of cores. A core without a servant is served by the servant for
+    registers by name."""
     headers = set()
     for core in chip.cores:
         headers |= ({core.servant["header"]} if core.servant else
@@ -244,7 +244,7 @@ def objects_of(chip, registers, slices):
 
 
 def files(chip, slots, base):
-    """Returns the chip's files: name -> text."""
+    """Returns all files about the chip: name -> text."""
     return {"map.regs.json": map_of(chip, base), "probes.json": probes_of(chip),
             "soc_pins.h": render("soc_pins.h.j2", chip=chip), "core_pins.ucf": constraints_of(chip),
             "soc_cores.vh": verilog_of(chip, slots), "soc_cores.c": instances_of(chip, slots)}

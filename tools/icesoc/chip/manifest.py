@@ -76,7 +76,7 @@ def read(path):
 
     holds(re.fullmatch(SCHEMA["properties"]["name"]["pattern"], manifest.name),
           f"name: expected {SCHEMA['properties']['name']['description']}, got '{manifest.name}' "
-          "(the folder's name)")
+          "(name of the folder)")
     holds(("interface" in facts) != ("registers" in facts),
           "expected one of 'interface' (a Slice file) and 'registers' (a file *.regs.json)")
     holds("verilog" in facts or "vhdl" in facts, "expected 'verilog' or 'vhdl', a list of files")

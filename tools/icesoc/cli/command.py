@@ -2,8 +2,8 @@
 """command: the list of all commands, the parser of each, and its two doors.
 
 `./icesoc run --loss 0.1` and `make run LOSS=0.1` both end in `values`: an option that is not given
-is taken from the variable of its name in the environment, where make puts those of its command
-line.
+is taken from the environment variable of its name. make exports the variables of its command line
+there.
 """
 import argparse
 import os
@@ -17,7 +17,7 @@ from icesoc.util.errors import Stop, nearest
 COMMANDS = {}  # command by name, such as "core new", in the order of the list
 GROUPS = {}  # help of each group, by the first word of its commands
 DEFAULTS = {}  # command of a group that its first word alone selects
-SECTIONS = {  # of the overview: commands and groups, by what a user wants to do
+SECTIONS = {  # sections of the overview: commands and groups, by what a user wants to do
     "Fly": ("run", "call", "replay", "gdb", "key", "fly"),
     "Add cores, look at the chip": ("core", "contract", "synth", "board"),
     "Build and test": ("build", "test", "regress", "bisect", "check", "bench", "nightly"),
@@ -164,7 +164,7 @@ def find(words):
             raise Stop(f"{first}: expected a command: {', '.join(parts)}", 2)
         raise Stop(f"{first} has no command '{rest[0]}'" + nearest(rest[0], parts), 2)
     raise Stop(
-        f"there is no command '{first}'" + nearest(first, [*GROUPS, *COMMANDS])
+        f"unknown command '{first}'" + nearest(first, [*GROUPS, *COMMANDS])
         + " (./icesoc lists all)", 2)
 
 
@@ -190,7 +190,7 @@ def by_make(goal, goals, makes):
 
     if not of(goal):
         raise Stop(
-            f"there is no 'make {goal}'"
+            f"unknown target 'make {goal}'"
             + nearest(goal, [each.make for each in COMMANDS.values() if each.make]), 2)
     known = {"BUILD", "JOBS"} | {option.variable for each in goals for found in of(each)
                                  for option in found.options}
@@ -199,7 +199,7 @@ def by_make(goal, goals, makes):
             others = sorted({each.make for each in COMMANDS.values() if each.make
                              and name in (o.variable for o in each.options)})
             where = f"; it is one of make {', '.join(others)}" if others else nearest(name, known)
-            raise Stop(f"there is no variable {name} of make {' '.join(goals)}{where}; "
+            raise Stop(f"make {' '.join(goals)} has no variable {name}{where}; "
                        f"./icesoc {of(goal)[0].name} --help names them", 2)
     chosen = sorted(of(goal), key=lambda each: not (each.when and os.environ.get(each.when)))
     found = next(each for each in chosen if not each.when or os.environ.get(each.when))
@@ -275,7 +275,7 @@ def row(name, text):
 def overview():
     """The text of `./icesoc`: a line for each command or group of commands."""
     lines = ["usage: ./icesoc COMMAND [option...]", "",
-             "IceSoC: an FPGA and a microcontroller whose functions are ZeroC Ice objects."]
+             "IceSoC: the functions of an FPGA and a microcontroller as ZeroC Ice objects."]
     rest = dict.fromkeys(name.split()[0] for name in COMMANDS)
     for title, names in SECTIONS.items():
         lines += ["", f"{title}:"]

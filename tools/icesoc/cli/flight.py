@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """flight: the description of a flight, OUT/flight.json, which simulator, ground and page read.
 
-Each option below is a field of it. flight.schema.json beside this file is written from them
+Each option below is a field of it. flight.schema.json in this folder is written from them
 (./icesoc commands --schema).
 """
 import json
@@ -186,7 +186,7 @@ def complete(values):
     for at, core in enumerate(values.cores):
         folder = build.core(core)
         if not (folder / "ground.py").is_file():
-            raise Stop(f"core '{core}' has no part in a mission: there is no {folder}/ground.py"
+            raise Stop(f"core '{core}' has no part in a mission: {folder}/ground.py not found"
                        + nearest(core, choices.flown()), 2)
         if folder.is_absolute():  # outside of ip/
             values.cores[at] = str(folder)
@@ -255,8 +255,8 @@ def write(values, build):
 
 
 def last_span(out):
-    """FROM= and TO= of a flight's end, from its last checkpoint at least 10 ms before it; None if
-    the recording is cut, as by a full disk."""
+    """Returns FROM= and TO= for the end of a flight: from the last checkpoint at least 10 ms before
+    it. Returns None if the recording is cut, as by a full disk."""
     last = before = finish = 0.0
     recording = (Path(out) / "flight.jsonl").read_text()
     if not recording.endswith("\n"):

@@ -44,7 +44,7 @@ def make_certificate(path):
     if os.path.lexists(path) or path == authority:
         return False
     if not path.parent.is_dir():
-        raise Stop(f"there is no folder '{path.parent}'", 2)
+        raise Stop(f"folder '{path.parent}' not found; create it first", 2)
     before = os.umask(0o077)
     try:
         with lock(path.parent), tempfile.TemporaryDirectory(dir=path.parent) as work:
@@ -66,8 +66,8 @@ def make_certificate(path):
 
 
 def check_authority(authority, signs):
-    """Stops if the authority's files are not a pair of regular files, or its key is open to
-    others."""
+    """Stops unless certificate and key of the authority are regular files, and only their owner
+    can read the key."""
     if os.path.lexists(authority) != os.path.lexists(signs):
         raise Stop(f"of '{authority}' and '{signs}' one is missing: keep both, or neither")
     for path in authority, signs:
@@ -79,7 +79,7 @@ def check_authority(authority, signs):
 
 
 def sign(name, cert, key, constraint, *by):
-    # A plus sign or a slash in a file's name would begin another part of the subject.
+    # A plus sign or a slash in a name would begin another part of the subject.
     name = name.replace("\\", "\\\\").replace("+", "\\+").replace("/", "\\/")
     settings = cert.with_name("openssl.cnf")  # the machine's settings would allow every certificate
                                               # to sign

@@ -124,8 +124,8 @@ def answers(core):
     if core.latency:
         last = core.latency - 1
         shift = f"{{answered[{last - 1}:0], {taken}}}" if last else taken
-        return ([f"    reg [{last}:0] answered; // the core answers {core.latency} clocks after "
-                 "its strobe"],
+        return ([f"    reg [{last}:0] answered; // the core answers {core.latency} clocks after the"
+                 " strobe"],
                 [f"    always @(posedge clk_i) answered <= rst_i ? {core.latency}'d0 : {shift};"],
                 {"ack": f"answered[{last}]"})
     if "enable" in core.by_role:
@@ -145,7 +145,7 @@ def answers(core):
 
 
 def connected(core, name, port, interrupts):
-    """Returns what a port is connected to: a pin if it has no role."""
+    """Returns the connection of a port: a pin if it has no role."""
     role = core.roles[name]
     return connection(core, role, port, interrupts) if role else pin_name(name, port)
 
@@ -184,7 +184,7 @@ def module(core):
 
 
 def description(core, words):
-    """Returns *.regs.json; `words` are the names of the core's words by address."""
+    """Returns the register description (*.regs.json); `words`: names of words by address."""
     letters = (core.name.replace("_", "") + "x").upper()
     width = {} if core.data_width >= 32 else {"width": core.data_width}
     registers = [{"word": 3, "name": "PAGE", "access": "rw",

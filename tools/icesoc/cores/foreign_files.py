@@ -28,7 +28,7 @@ def end_of(file):
 
 
 def kind_of(file):
-    """"vhdl", "verilog", "header" or None, by the end of the file's name."""
+    """Returns "vhdl", "verilog", "header" or None, by the suffix of the file."""
     return KINDS.get(end_of(file))
 
 
@@ -103,9 +103,9 @@ def check_names(slot, top, files):
     if kind == "entity":  # its names have no case; GHDL writes them as declared
         top = next((n for n in names if n.lower() == top.lower()), top)
     if top not in names:
-        fail(f"there is no {kind} '{top}' in FILES; there is {', '.join(names) or 'none'}")
+        fail(f"no {kind} '{top}' in FILES; found {', '.join(names) or 'none'}")
     if slot in names:
-        fail(f"'{slot}' is the name of a {kind} of the core: give the slot another")
+        fail(f"'{slot}' is the name of a {kind} of the core: give the slot another name")
     first = only_once(there, "leave one of the files out") if kind == "module" else {}
     room = str(TREE)
     ours = [os.path.join(d, f) for r in ("bus", "hdl")
@@ -164,9 +164,9 @@ def macros_of(files):
 
 
 def names_of(top, files, core):
-    """Names of the core's words by their addresses: the constants of the file with `top` that are
-    as wide as its address, else its macros. KEY0 and KEY7 at a distance of 7 stand for those
-    between, too."""
+    """Returns the names of the core's words by address: the constants as wide as the address in the
+    file with `top`, otherwise its macros. KEY0 and KEY7 at a distance of 7 also name the words
+    between them."""
     text = next((t for t in map(text_of, files) if re.search(rf"^\s*module\s+{top}\b", t, re.M)),
                 "")
     text = re.sub(r"//.*", "", text)

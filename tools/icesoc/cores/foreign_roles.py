@@ -8,7 +8,7 @@ from icesoc.cores.foreign_files import fail
 
 CLOCK = r"[aph]?(clk|clock)g?"
 RESET = r"[aph]?n?(rst|reset)[nb]?"
-# Words in a signal's name that exclude these roles: clk_en, gate_clk_pad_i.
+# Words in the name of a signal that exclude these roles: clk_en, gate_clk_pad_i.
 NO_CLOCK = {"en", "ena", "enable", "ce", "sel", "div", "gate", "ext", "pad"}
 INTERRUPTS = {"int", "inta", "intr", "irq", "interrupt"}
 AXI = ["awvalid", "awready", "awaddr", "awprot", "wvalid", "wready", "wdata", "wstrb", "bvalid",
@@ -140,7 +140,7 @@ def roles_of(top, bus, ports, given):
 def take_given(top, bus, ports, roles, given):
     """Changes the roles of the ports that the user names. Returns the clocks of ack=CLOCKS, or
     None."""
-    # The bus' own names, too, where they are no role's word.
+    # Names of the bus also count, unless a role has the same name.
     words = {**{r: r for r in NEEDED[bus] + {"axil": AXI, "axis": foreign_axis.ROLES}.get(bus, [])},
              **ROLES}
     latency, named = None, set()

@@ -7,9 +7,9 @@
 
 Reads the ports of the module or entity TOP and writes into FOLDER, which must not exist: NAME.v,
 which connects TOP to the slot; its registers, with the names that TOP has for their addresses; a
-test; its part of a mission; core.toml. ROLE=port overrides the meaning of a port's name. Ports that
-are neither bus, clock, reset nor interrupt become pins. CLOCK: the core has a separate clock, of
-that frequency at most.
+test; its part of a mission; core.toml. ROLE=port gives a port a role if its name does not. Ports
+that are neither bus, clock, reset nor interrupt become pins. CLOCK: the core has a separate clock
+with at most this frequency.
 ADDRESS: what its address counts. GHDL: the program that reads VHDL (ghdl). LIBRARY: the VHDL
 library of its files; util=FILE puts one file, or those of a pattern, into another library. PARAM:
 a parameter or generic of TOP. DEFINE: a macro of its Verilog, NAME or NAME=value. A core with
@@ -81,7 +81,7 @@ class Request:
         if not re.fullmatch(r"[A-Za-z_]\w*", self.top):
             fail(f"TOP: expected the name of a module or an entity, got '{self.top}'")
         if os.path.exists(self.folder):
-            fail(f"{self.folder} is there already")
+            fail(f"{self.folder} already exists")
         if self.name in RESERVED:
             fail(f"'{self.name}' {REFUSAL}")
 
@@ -90,10 +90,10 @@ class Request:
         files = [os.path.abspath(f) for f in self.files]
         for f in files:
             if " " in f:
-                fail(f"'{f}' has a space in its name, which makefiles cannot have: rename it, or "
-                     "its folder")
+                fail(f"'{f}': expected a path without spaces, because makefiles cannot have them; "
+                     "rename the file or folder")
             if not kind_of(f) or not os.path.isfile(f):
-                fail(f"there is no Verilog or VHDL file '{f}'")
+                fail(f"'{f}': expected a Verilog or VHDL file")
         if (self.library or self.members) and not any(map(is_vhdl, files)):
             fail("LIBRARY: expected VHDL files, got Verilog, which has no libraries")
         self.libraries = []
@@ -135,8 +135,8 @@ def read_core(asked):
 
 
 def slot_texts(asked, ports, params):
-    """Returns the slot's files by their names, keys of core.toml for its registers or interface,
-    the meaning of each port, and the line that ends the report."""
+    """Returns the files of the slot by name, keys of core.toml for its registers or interface,
+    the meaning of each port, and the last line of the report."""
     roles, latency = roles_of(asked.top, asked.bus, ports, asked.ports)
     if wide := [n for n, p in ports.items() if not roles[n] and len(p["bits"]) > 32]:
         left_out = " ".join(f"{'open' if ports[n]['direction'] == 'output' else 'low'}={n}"

@@ -47,9 +47,8 @@ class Signals:
 
     def check(self, state):
         if state.names & 0xFFFFFFFF != self.names:
-            raise Failed("the chip's probe records other signals (hash 0x%08X) than --map says "
-                         "(0x%08X): give the "
-                         "probes.json of that chip's build" %
+            raise Failed("--map: expected signals with the hash 0x%08X (in the chip), got 0x%08X; "
+                         "give the probes.json of the build of this chip" %
                          (state.names & 0xFFFFFFFF, self.names))
 
     def trigger(self, text):
@@ -63,7 +62,7 @@ class Signals:
                     break
                 lsb += width
             else:
-                raise Failed("--trigger: there is no signal '%s', but %s" %
+                raise Failed("--trigger: unknown signal '%s': expected one of %s" %
                              (name, ", ".join(s for s, _ in self.list)))
             try:
                 value = int(number, 0)

@@ -65,8 +65,8 @@ def fail(text):
 
 
 def read_vcd(path):
-    """Returns a VCD file's head; by its keys, the names below soc and widths of signals; and each
-    moment's time and changes, {key: bits}."""
+    """Returns the header of a VCD file; names (below soc) and widths of signals by key; and for
+    each time its changes, {key: bits}."""
     try:
         head, variables, changes = vcd.read(Path(path).read_text())
     except (OSError, ValueError) as e:
@@ -139,7 +139,8 @@ def block(args, widths):
         else:
             (inputs if port["direction"] == "input" else outputs).append((name, width))
     if not outputs:
-        fail("the capture has no output of the block: there is nothing to compare")
+        fail("the capture has no output of the block, so nothing can be compared; record at least "
+             "one output")
     return wiring, inputs, outputs
 
 

@@ -96,7 +96,7 @@ class Proof:
         # If parts are cut off, each named wire is an output, because those parts might have read
         # it.
         seen = "expose w:* w:$* %d\n" if any("delete" in text for text in self.parameters) else ""
-        # prove.sh's own commands to flip-flops and gates
+        # commands of prove.sh that map to flip-flops and gates
         to_state = (self.work / "state.ys").read_text()
         to_gates = (self.work / "gates.ys").read_text()
         side = functools.partial(SIDE.format, module=self.module, seen=seen,
@@ -134,7 +134,7 @@ def attempt(proof, index, mutant):
     else:
         result = "caught" if status else "SURVIVED" if proof.differs(folder, mutant) else "same"
     said = re.findall(r"-(\w+) (\S+)", mutant)
-    first = dict(reversed(said))  # for an option that occurs more than once
+    first = dict(reversed(said))  # first value of an option that occurs more than once
     source = dict(said).get("src")
     line = re.sub(r"(:\d+)\..*", r"\1", os.path.relpath(source, proof.source)) if source else ""
     cell = first["cell"].split("$")
@@ -279,7 +279,7 @@ def main():
     # Without proofs of several modules together:
     proofs = [proof for proof in proofs if not proof.module.endswith("_proof")]
     if not proofs:
-        sys.exit(f"mutants: no proof's name begins with {options.block}: "
+        sys.exit(f"mutants: no proof has a name that begins with {options.block}: "
                  "ctest -N -L formal lists them")
     with only_one(out, "mutants"):
         return measure(proofs, options, out)

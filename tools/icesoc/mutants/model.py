@@ -37,7 +37,7 @@ write_verilog -noattr {folder}/{top}.v
 
 
 def module_of(name):
-    """Returns a module's name without its parameters."""
+    """Returns the name of a module without its parameters."""
     return re.sub(r"^\$paramod(\$[0-9a-f]+)?\\(\w+).*", r"\2", name)
 
 

@@ -53,8 +53,8 @@ class Bug:
             text = texts.get(file) or "\n" + (root / file).read_text()
             old, new = ("\n" + "".join(line + "\n" for line in part) for part in (before, after))
             if text.count(old) != 1 or old == new:
-                raise ValueError(f"its lines occur {text.count(old)} times in {file}: "
-                                 "expected 1; update them to the current source")
+                raise ValueError(f"its lines occur {text.count(old)} times in {file}; expected "
+                                 "once; update them to the current source")
             texts[file] = text.replace(old, new)
         return {file: text[1:] for file, text in texts.items()}
 

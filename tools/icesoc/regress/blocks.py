@@ -22,8 +22,8 @@ class Blocks:
         return "/".join(path.split("/")[:-1][:2])
 
     def of_module(self, name):
-        """The block of a module, or of the module with which a test's name begins, or of a module
-        that begins with its first word; "" if there is none."""
+        """Returns the block of a module. If `name` is not a module: the block of a module with
+        which it begins, or of a module that begins with its first word; "" if not found."""
         first = name.partition("_")[0] + "_"
         while name and name not in self.modules:
             name = name.rpartition("_")[0]
@@ -56,9 +56,10 @@ def last_green(history, block_of):
 
 
 def blocks_of(data, tests, history, source):
-    """Rows of report.py's data: {block, tests and proofs: [passed, failed, did not run], lines:
-    [covered, of, files below their gate], mutants: [caught, of], luts of the largest design, which
-    has the others: [used, budget, designs beyond theirs], green}; what is not known is left out."""
+    """Returns rows for the data of report.py: {block, tests and proofs: [passed, failed, did not
+    run], lines: [covered, total, files below their gate], mutants: [caught, total], luts: [LUTs and
+    budget of the largest design, number of designs over budget], green}; unknown values are left
+    out."""
     blocks, rows = Blocks(source), collections.defaultdict(dict)
 
     def add(block, what, *numbers):

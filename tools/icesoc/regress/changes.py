@@ -66,7 +66,7 @@ class Changes:
         return Graph(self.source, self.build)
 
     def forget_graph(self):
-        """Discards cached facts about ninja's files after a build has changed them."""
+        """Discards cached contents of the files of ninja, after a build has changed them."""
         self.__dict__.pop("graph", None)
 
     def of_test(self, test, since):
@@ -81,8 +81,8 @@ class Changes:
                 if path in inputs or path.startswith(tuple(f + "/" for f in folders))}
 
     def touched(self, test, last_pass):
-        """Whether a test's files have changed since its last pass; if it has never passed here,
-        from the commit."""
+        """Returns whether files of a test have changed since it last passed; if it has never passed
+        here, since the commit."""
         since = last_pass[1].get("tree") if last_pass else "HEAD"
         return not self.tree or not since or self.differing(since) is None or \
             bool(self.of_test(test, since))

@@ -10,8 +10,8 @@ import shutil
 from icesoc.regress.runner import Result
 from icesoc.util.files import write
 
-# Lines of a runner or of a flight's end, in which names, times and counts differ for the same
-# cause.
+# Lines printed by a runner, or at the end of a flight. Names, times and counts in them differ for
+# the same cause.
 RUNNERS = re.compile(
     r"^\[|^at clock cycle|tests? (ran|FAILED|PASSED)|^\s*\d+ FAILED|note:|trace: |Running main|"
     r"^The mission failed|^Its end|^icesoc-sim: Cortex-M3: |^icesoc-sim: [0-9.]+ s simulated|"
@@ -44,7 +44,7 @@ class Failure:
     wave: str = ""  # FST or VCD file, or ""
     about: str = ""  # text with the names of relevant signals: the assertion, or the reason
     scope: str = ""  # instance in which to look: "u_window.u_wrapper", or ""
-    own_assertion: bool = False  # for a proof: the assertion is in the proven module
+    own_assertion: bool = False  # proofs: the assertion is in the proven module
     save: str = ""  # GTKWave save file, or ""
     clock: int = 0  # clock of the failure in that waveform; 0: its end
 
@@ -145,7 +145,7 @@ def examine(results, tests, out):
         find_assertion(failure)
         if place := re.search(r"(?:^|\n)(?:[.][.]/)*(\S+:\d+): Failure\n", result.log):
             failure.place = os.path.relpath(place[1]) if place[1][0] == "/" else place[1]
-        trace = re.search(r"trace: (\S+[.]vcd)", result.log)  # for a proof
+        trace = re.search(r"trace: (\S+[.]vcd)", result.log)  # printed by proofs
         if trace and os.path.exists(trace[1]):
             failure.wave = f"{base}.vcd"
             shutil.copyfile(trace[1], failure.wave)

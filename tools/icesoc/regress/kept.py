@@ -103,7 +103,7 @@ def main():
             print(verdict["said"].replace("@ROOT@", ROOT), end="")
             return 0
     shutil.rmtree(own or "/dev/null/", ignore_errors=True)
-    begin = time.time_ns() - 50_000_000  # file times are as coarse as the kernel's clock
+    begin = time.time_ns() - 50_000_000  # file times are as coarse as the clock of the kernel
     with tempfile.TemporaryDirectory() as folder:
         trace, said = folder + "/trace", b""
         environment["TMPDIR"] = environment["HOME"] = folder

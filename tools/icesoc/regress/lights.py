@@ -67,7 +67,7 @@ def of_coverage(coverage):
 
 
 def of_entries(name, entries, command):
-    """Returns entries with a limit: a maximum, or a minimum if the unit says "at least"."""
+    """Returns entries with a limit: a maximum, or a minimum if the unit begins with "at least"."""
     limits = [each for each in entries if "limit" in each]
     bad = []
     for each in limits:
@@ -103,7 +103,7 @@ def of_plan(plan):
 
 
 def lights_of(data, source):
-    """Returns the status lights for report.py's data: [{name, state, text}]."""
+    """Returns the status lights for the data of report.py: [{name, state, text}]."""
     measured = [of_mutants(data["mutants"], data.get("drawn", {}), source),
                 of_coverage(data.get("coverage")), of_size(data.get("utilisation")),
                 of_entries("speed", data.get("speed", []), "make bench")]

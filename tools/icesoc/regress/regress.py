@@ -58,8 +58,8 @@ def parse(words):
     add("--block", help="one block: modem, link, bus, ...")
     add("--label", type=regex, default=regex(""), help="labels: rtl, formal, lint, firmware, ...")
     only = parser.add_mutually_exclusive_group()
-    only.add_argument("--changed", action="store_true", help="only tests that failed last, or "
-                      "whose program or sources differ from those of their last pass")
+    only.add_argument("--changed", action="store_true", help="only tests that failed last, and "
+                      "tests with a program or sources that have changed since they last passed")
     only.add_argument("--rerun-failed", action="store_true", help="only tests that failed last")
     only.add_argument("--kept", action="store_true", help="only tests that failed with some seed "
                       "and have not passed with it since, with these seeds")
@@ -282,7 +282,7 @@ class Regression:
 
 
 def summary(data, failures, out):
-    groups = collections.defaultdict(list)  # in the order of their first failures
+    groups = collections.defaultdict(list)  # ordered by first failure
     for failure in failures:
         groups[failure.bucket].append(failure)
     for members in groups.values():

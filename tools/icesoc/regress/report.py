@@ -53,8 +53,7 @@ def gather(history, tests, results, failures, source):
             "proofs": proofs_of(results)}
     del data["ends"]
     known = {test.name: test for test in tests}
-    now = {(r.name, r.seed) for r in results}  # with one seed the results already contain its
-                                               # failures
+    now = {(r.name, r.seed) for r in results}  # a run with one seed: its failures are in results
     data["seeds"] = [kept for test, kept in history.failing(tests).items()
                      if test not in now or len({r.seed for r in results}) > 1]
     data["results"] = []

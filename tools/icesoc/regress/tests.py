@@ -88,8 +88,8 @@ class Test:
         return set(re.findall("[A-Za-z0-9]+", f"{self.place}/{kind}/{more}"))
 
     def _may_begin(self, pattern):
-        """Whether a name that begins with the program's can match, where the pattern says by `^`
-        and letters how it begins."""
+        """Returns whether the name of a case of this program can match; the pattern begins with `^`
+        and letters."""
         for some in re.findall(r"(?:\([^()]*\)|[^|()])+", pattern):
             begins = re.match(r"\^(?:\(([\w|]+)\)(?![?*{])|((?:\w(?![?*{]))+))", some)
             if not begins or any(word.startswith(self.program) or self.program.startswith(word)
@@ -99,8 +99,8 @@ class Test:
 
     def may_hold(self, name, sources):
         """Returns whether a case of a program that is not built, or is older than its sources, may
-        match a Name. `sources`: texts of the program's files. The words of a case for several
-        values or types are in different places of the text. Suites and cases begin with
+        match a Name. `sources`: texts of the program's source files. The words of a case for
+        several values or types are in different places of the text. Suites and cases begin with
         capitals."""
         if not self._may_begin(name.pattern):
             return False

@@ -13,7 +13,7 @@ from icesoc.util.errors import Stop
 from icesoc.util.files import write
 from icesoc.util.process import collect
 
-CLOCKS_PER_SECOND = 1e8  # of the chip in a flight
+CLOCKS_PER_SECOND = 1e8  # frequency of the chip in a flight, Hz
 SECONDS = {"ms": 1e-3, "us": 1e-6, "ns": 1e-9, "ps": 1e-12, "fs": 1e-15}  # GHDL's units of time
 FIRST_CORE = 2  # slot
 SOURCES = (".v", ".sv", ".vh", ".vhd", ".vhdl")
@@ -26,7 +26,7 @@ class Scene:
     program: str  # target of the build with waveforms; "" for a test by GHDL
     clock: int
     flight: str = ""  # folder of the recording
-    slot: int = 0  # last core reported to the processor; 0 if there is none
+    slot: int = 0  # slot of the last core that the processor was told about; 0: no core
     before: int = 2000
     after: int = 20
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""core_exchange: writes the chip's registers for other tools (SystemRDL, IP-XACT).
+"""core_exchange: writes the registers of the chip for other tools (SystemRDL, IP-XACT).
 
 CMSIS-SVD 1.3, SystemRDL 2.0 and IP-XACT (IEEE 1685-2014). Slots are coremap.Slot.
 """

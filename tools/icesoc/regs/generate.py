@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""generate: writes the files about a block's registers that each side includes.
+"""generate: writes the files that describe the registers of a block to hardware and software.
 
 <block>_regs.vh (Verilog localparams), <block>_regs.h (C90 macros), <block>_regs_pkg.vhd (VHDL
 package) and <block>_regs.md (page for people). With --block also the register block itself:
@@ -50,7 +50,7 @@ def render(template, **values):
 
 
 def markdown(block):
-    """Returns the documentation page of a block's registers."""
+    """Returns the documentation page of a register block."""
     return render("regs.md.j2", b=block)
 
 
@@ -59,7 +59,7 @@ def views(block, has_block):
     files = dict(FILES)
     if has_block:
         check(block.has_register_block,
-              "a register block is made for a slot (type, version) whose registers have no page")
+              "register block: expected a slot (type, version), and registers without pages")
         try:
             names.check_ports(block)
         except names.Collision as e:

@@ -83,7 +83,7 @@ class Register:
     width: int = 32
     page: int = -1  # byte address of a core's register behind an adapter; -1: in the slot
     fields: list = field(default_factory=list)
-    reset: int | None = 0  # for a register without fields
+    reset: int | None = 0  # reset value of a register without fields
     storage: str = ""
     lock: str = ""  # input that blocks writes while high
     registered: bool = False  # pulses come from flip-flops, one clock after the write
@@ -120,7 +120,8 @@ class Register:
         return [p for p in self.parts if self.holds(p)]
 
     def port(self, part):
-        """Returns the stem of a field's ports: status_busy for STATUS.BUSY, page for PAGE.PAGE."""
+        """Returns the common part of the port names of a field: status_busy for STATUS.BUSY, page
+        for PAGE.PAGE."""
         alone = len(self.fields) <= 1 and part.name in ("", self.name)
         return self.lower if alone else f"{self.lower}_{part.name.lower()}"
 

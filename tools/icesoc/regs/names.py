@@ -39,7 +39,7 @@ class Spelled:
     """Names of one scope in the generated files, with the names in the description."""
 
     def __init__(self):
-        self.owners = {}  # by the name in upper case
+        self.owners = {}  # name in upper case -> owner
 
     def add(self, spelled, owner):
         if spelled.upper() not in self.owners:
@@ -56,7 +56,7 @@ def constants(b):
     Rejects a block with two constants of one name."""
     spelled = Spelled()
     if b.is_slot:
-        spelled.add("TABLE", "the table of a slot's registers")
+        spelled.add("TABLE", "the table of all registers")
     for c in b.constants:
         spelled.add(c.name, c.name)
     for r in b.registers:
@@ -70,7 +70,7 @@ def constants(b):
 
 
 def check_block(b):
-    """Rejects a block whose constants have the name of another constant."""
+    """Rejects a block if two of its constants have the same name."""
     spelled = constants(b)
     if b.name.lower() in PREFIXES:
         raise Collision(f"block {b.name}: the name is reserved by the project")

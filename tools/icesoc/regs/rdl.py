@@ -33,8 +33,8 @@ def number_of(component, name, otherwise):
         return number(text)
     except (ValueError, IndexError):
         fail(component.lines.get(name, component.line),
-             f"{name}: expected a number, got {text[:40]}; expressions and references are not part "
-             "of the flat subset")
+             f"{name}: expected a number, got {text[:40]}; the flat subset has no expressions and "
+             "references")
 
 
 def text_of(component):
@@ -225,8 +225,8 @@ def block_of(name, component, first):
             register["word"] += first
     for register in registers:
         if register["word"] > 15:
-            fail(lines[register["name"]], f"{register['name']} would be word {register['word']} of "
-                 "its slot, which has 16")
+            fail(lines[register["name"]], f"{register['name']}: expected a word from 0 to 15, got "
+                 f"{register['word']}; a slot has 16 words")
     return dict(block, registers=registers, **({"events": events} if events else {}))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""verilog: expressions of a block's registers in Verilog, for the templates *.v.j2."""
+"""verilog: Verilog expressions for register blocks, used by the templates *.v.j2."""
 import textwrap
 
 COLUMNS = 100

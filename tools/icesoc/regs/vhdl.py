@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""vhdl: expressions of a block's registers in VHDL, for the templates *.vhd.j2."""
+"""vhdl: VHDL expressions for register blocks, used by the templates *.vhd.j2."""
 from icesoc.regs.names import SLOT_PORTS
 from icesoc.regs.verilog import aligned, commented, write_signals
 

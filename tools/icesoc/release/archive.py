@@ -12,7 +12,7 @@ from pathlib import Path
 
 from icesoc.util.errors import Stop
 
-SIGNATURES = {".sec": ("minisign", ".minisig"), "": ("gpg", ".asc")}  # by the key's ending
+SIGNATURES = {".sec": ("minisign", ".minisig"), "": ("gpg", ".asc")}  # key: suffix of the key file
 
 
 def tar(path, folder, files, seconds, programs=()):
@@ -36,7 +36,7 @@ def tar_of_folder(path, folder, source, seconds):
 
 def zip_(path, files, seconds):
     """Writes a zip file with `files`, name to bytes."""
-    when = time.gmtime(max(seconds, 315532800))[:6]  # a zip file's time begins with 1980
+    when = time.gmtime(max(seconds, 315532800))[:6]  # times in zip files begin with 1980
     with zipfile.ZipFile(path, "w") as made:
         for name in sorted(files):
             entry = zipfile.ZipInfo(name, when)
@@ -46,7 +46,7 @@ def zip_(path, files, seconds):
 
 
 def sums(folder):
-    """Writes SHA256SUMS of a folder's files, as sha256sum does. Returns its path."""
+    """Writes SHA256SUMS for all files of a folder, as sha256sum does. Returns its path."""
     lines = [f"{hashlib.sha256(file.read_bytes()).hexdigest()}  {file.name}\n"
              for file in sorted(Path(folder).iterdir())
              if file.is_file() and not file.name.startswith("SHA256SUMS")]
@@ -64,7 +64,8 @@ def sign(path, key):
         raise Stop(f"release: {program} is missing: apt-get install "
                    + ("gnupg" if program == "gpg" else program), 2)
     signature.unlink(missing_ok=True)
-    # Without minisign's own comment, which has the time, a signature is a function of the file.
+    # The default comment of minisign contains the time; without it a signature depends only on the
+    # file.
     words = (["gpg", "--batch", "--yes", "--armor", "--local-user", key, "--output", signature,
               "--detach-sign", path] if program == "gpg" else
              ["minisign", "-S", "-s", key, "-t", path.name, "-x", signature, "-m", path])

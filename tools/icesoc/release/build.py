@@ -14,7 +14,7 @@ from icesoc.release import archive, packs, sbom, version
 from icesoc.util.errors import Stop
 from icesoc.util.process import output, run
 
-PARTS = {  # in the order in which they are made
+PARTS = {  # parts of a release, ordered as they are made
     "source": "icesoc-VERSION.tar.gz: all files of the commit",
     "icec": "icec-VERSION.tar.gz (single files, PlatformIO, Zephyr) and the CMSIS-Pack",
     "changes": "CHANGES-VERSION.md: the section of the changelog",
@@ -25,7 +25,7 @@ PARTS = {  # in the order in which they are made
 
 @dataclasses.dataclass
 class Release:
-    """What a release is made of."""
+    """Version, commit and files of a release."""
     version: str
     commit: str
     seconds: int  # time of the commit
@@ -40,7 +40,7 @@ class Release:
 
     @property
     def changes(self):
-        """The changes since the last version, or those of this version."""
+        """Returns the changes since the last version, or the changes of this version."""
         text = self.files["CHANGELOG.md"].decode()
         return version.unreleased(text) or dict(version.sections(text))[version.newest(text)]
 

@@ -30,7 +30,7 @@ README = """# IceC {version}
 Compile the C files that you need with your program, as C90 or later, with `src` as include path.
 Set limits such as `-DICE_MESSAGE_MAX=1024` for all files of the program; `src/icec.h` lists them.
 `slice2c` of IceSoC generates the code of your interfaces. The porting guide of IceSoC,
-`docs/porting.md`, describes what a new board or kernel has to supply.
+`docs/porting.md`, describes the functions that a new board or kernel has to supply.
 """
 
 

@@ -12,7 +12,7 @@ import time
 
 from icesoc.util import fetch
 
-# Licences of what the programs are linked with; the others are left to their packages.
+# Licences of the libraries that programs link to; other packages state their own licences.
 LICENCES = {
     "libzeroc-ice-dev": "GPL-2.0-only", "libsodium-dev": "ISC", "libmcpp-dev": "BSD-2-Clause",
     "libssl-dev": "Apache-2.0", "liblz4-dev": "BSD-2-Clause", "libfmt-dev": "MIT",

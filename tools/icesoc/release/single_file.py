@@ -3,8 +3,9 @@
 
     tools/python -m icesoc.release.single_file FOLDER [COMPONENT...]
 
-The C file has every source in turn. File-local names that two sources use get the source's name in
-front, and macros of a source end with it. The header has every header that programs include.
+The C file contains all sources, one after the other. A file-local name that two sources use gets
+the name of the source as a prefix, and each source ends by undefining its macros. The header
+contains every header that programs include.
 """
 import argparse
 import re
@@ -81,7 +82,7 @@ def renamed(text, names, stem):
 
 def full(text):
     """Returns the text without the parts for the minimal layers."""
-    lines, stack = [], []  # of each open #if: whether it is one of ours, and whether it is on
+    lines, stack = [], []  # stack: for each open #if, whether it is ours and whether it holds
     for line in text.splitlines(keepends=True):
         words = line.split()
         if words and words[0] in ("#if", "#ifdef", "#ifndef"):
@@ -194,7 +195,7 @@ class Joiner:
         return "".join(parts)
 
     def files(self, number):
-        """Returns the component's files, name to text."""
+        """Returns all files of the component: name -> text."""
         name, its = self.component.name, self.component
         holder = re.search(r"^Copyright \(c\) (.*)$", (self.tree / "LICENSE").read_text(), re.M)[1]
         head = (f"/* SPDX-License-Identifier: MIT\n * Copyright (c) {holder}; licence: LICENSE.\n"

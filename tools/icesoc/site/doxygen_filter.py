@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 """doxygen_filter: turns the project's plain C comments into Doxygen's.
 
-Usage: doxygen_filter.py FILE. A comment on separate lines documents the following code; one after
-code documents that code. The file's first comment documents the file.
+Usage: doxygen_filter.py FILE. A comment on separate lines documents the following code; a comment
+after code documents that code. The first comment documents the file.
 """
 import re
 import sys

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """hdl: reads the interface of a Verilog module or a VHDL entity, with its comments, from its file.
 
-A file begins with the SPDX line and a comment `name: what it is`. Comments above ports head a
-group; a comment behind a port or parameter is its meaning.
+A file begins with the SPDX line and a comment `name: purpose`. A comment above ports is the title
+of a group; a comment after a port or parameter is its meaning.
 """
 import dataclasses
 import re
@@ -45,7 +45,7 @@ class Entity:
     name: str
     path: Path
     summary: str
-    text: str  # remaining text of the file's first comment
+    text: str  # remaining text of the first comment
     parameters: list
     ports: list
 
@@ -103,8 +103,8 @@ def expand(text, root):
 
 
 def declarations(lines, mark, pattern):
-    """Yields (group, match) for each line that declares something. A comment that continues behind
-    a declaration's own, on a line of its own and indented further, belongs to that declaration."""
+    """Yields (group, match) for each line that declares something. The comment of a declaration may
+    continue on the following lines, if they are indented further."""
     group = ""
     for line in lines:
         stripped = line.strip()

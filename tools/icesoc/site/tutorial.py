@@ -15,7 +15,7 @@ from pathlib import Path
 @dataclasses.dataclass
 class Step:
     """A command of the page with its expected output, or a file with its content."""
-    line: int  # in the page, starting with 1
+    line: int  # line of the page, starting with 1
     command: str = ""
     expected: list = dataclasses.field(default_factory=list)
     status: int = 0

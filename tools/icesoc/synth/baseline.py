@@ -13,7 +13,7 @@ KEYS = ("lut", "ff", "slices", "carry", "dsp", "ram", "mhz")
 NAMED_CHANGES = 6
 
 MEASURED, ACCEPTED, CHANGED, NEVER = STATES = (
-    "measured now",         # with the current sources, in this run or cached
+    "measured now",         # figures of the current sources, from this run or from the cache
     "as accepted",          # not synthesised here, but these sources produced the accepted figures
     "changed since",        # its sources differ from the last figures', measured or accepted
     "never measured here")  # and the sources of its accepted figures, if any, are unknown

@@ -69,7 +69,7 @@ class Cell:
         return next((pin.bits for pin in self.pins if pin.port == port), [])
 
     def bit(self, port):
-        """Returns the only bit of a port; UNDEFINED if there is none."""
+        """Returns the only bit of a port; UNDEFINED if the port has no bits."""
         return (self.bits(port) or [UNDEFINED])[0]
 
 

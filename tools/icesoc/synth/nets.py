@@ -11,7 +11,7 @@ FOR_OWNER = "(for) "
 
 
 def name_or(n, owners, bit):
-    """Returns a net's name in the source, or "(for) " and the name of its load."""
+    """Returns the name of a net in the source, or "(for) " and the name of its load."""
     if bit not in n.driver and bit in n.names:
         return str(n.names[bit][-1])  # the name in the top module, not of an instance's input
     name = n.name_of(bit)
@@ -24,9 +24,9 @@ def without_index(signal):
 
 
 def nets_of(n, owners, by_clock, count=20):
-    """Lists of {name, kind, ends, flipFlops, ns}, most ends first; clocks are no fan-outs. kind: of
-    a reset, synchronous or asynchronous; else the type of the driver's cell. ns: of a clock, the
-    longest path that ends with it, grade -3."""
+    """Returns lists of {name, kind, ends, flipFlops, ns}, most ends first, without clocks. kind:
+    synchronous or asynchronous for a reset; otherwise the type of the cell that drives the net. ns:
+    longest path to a flip-flop of a clock, speed grade -3."""
     pins, clocked, clocks, resets = {}, set(), {}, {}
     for cell in n.cells:
         register = netlist.is_register(cell.type)
@@ -66,8 +66,9 @@ def lines_of(file):
 
 
 def place_of(n, signal):
-    """File and line where a signal ("u_modem.state[3]") is declared; of a core in VHDL, where GHDL
-    says that it is made: names of intermediate values (n71_o) are made by GHDL. "" if unknown."""
+    """Returns file and line of the declaration of a signal ("u_modem.state[3]"); "" if unknown. For
+    a core in VHDL it is the line that GHDL gives; GHDL also invents names for intermediate values
+    (n71_o)."""
     whole = without_index(signal.removeprefix(FOR_OWNER))
     name = whole.rpartition(".")[2]
     # "./hdl/soc.v:62.26-69.2|./hdl/modem/modem.v:97.88-97.94": locations of instances, then of the

@@ -95,9 +95,9 @@ class Finder:
 
 
 def give_slot_reads(n, owners):
-    """Gives the logic that reads a slot's registers to the block in the slot. It is one cone with
-    the bus decoder's multiplexer, in which optimisation leaves no name, and so far the decoder's:
-    logic with inputs from only one block, besides the decoder's, belongs to that block."""
+    """Assigns the logic that reads registers to the block in the slot. Optimisation merges this
+    logic with the multiplexer of the bus decoder and removes names, so all of it counts for the
+    decoder at first. Logic with inputs from one block and the decoder belongs to that block."""
     behind = {}
 
     def block_of(cell):

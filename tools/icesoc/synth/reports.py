@@ -2,9 +2,9 @@
 """reports: the estimates held against published reports of XST, map and TRCE (synth/reports.json),
 which say how far they err (docs/utilisation.md).
 
-A report of map alone calibrates slices; one with sources that Yosys also reads has a netlist: its
-counts and the longest path of the report's clock, {type, fan-out, ns of the cell, of its net} a
-step and where it ends.
+A report of map alone calibrates slices. A report with sources that Yosys also reads has a netlist:
+its counts, the longest path of the reported clock as steps {type, fan-out, delay of the cell, delay
+of its net, ns}, and the end of that path.
 """
 import math
 import statistics
@@ -31,7 +31,7 @@ def fault_of(report):
             return f"{key} has no {', '.join(missing)}"
     published = [report[key] for key in ("synthesised", "routed") if key in report]
     if not all(isinstance(ns, float) and ns > 0 for ns in published):
-        return "a clock is no time"
+        return "clock: expected a time in ns"
     if bool(published) != ("netlist" in report) or "map" not in report:
         return "no map, or a netlist without a published clock or a clock without one"
     return ""

@@ -2,9 +2,9 @@
 """runner: synthesis runs by Yosys, in parallel, each result kept under the hash of its sources, and
 the figures of a run.
 
-Figures are what the cache has in JSON: {"lut", "ff", ...: counts, "cells": by type as Yosys names
-them, "costs": {path: {signal: Cost}}, and of slices.py, timing.py, nets.py}. "mhz" is the clock
-that is judged, the median of all orders; "clocks" are those of all orders, rising.
+Figures, stored in the cache as JSON: {"lut", "ff", ...: counts; "cells": counts by Yosys cell type;
+"costs": {path: {signal: Cost}}; and the figures of slices.py, timing.py, nets.py}. "clocks" are the
+clocks of all orders, rising; "mhz" is their median, which is compared with the budget.
 """
 import concurrent.futures
 import dataclasses

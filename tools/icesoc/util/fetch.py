@@ -289,8 +289,8 @@ def icejs(target):
             text = f"/*! ice {version}, ZeroC, Inc., GPL-2.0 */\n{library}"
         (target / "ice.done").touch()
     except Unreachable as error:
-        print(f"fetch: {error}\nfetch: cannot get Ice for JavaScript, is there a network? The page "
-              "of a flight makes no calls; the next build tries again", file=sys.stderr)
+        print(f"fetch: {error}\nfetch: cannot get Ice for JavaScript; check the network. Without "
+              "it the page of a flight makes no calls; the next build tries again", file=sys.stderr)
     (target / "ice.js").write_text("\n".join(
         line for line in text.split("\n") if "sourceMappingURL=" not in line))
 

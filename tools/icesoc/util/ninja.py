@@ -67,7 +67,7 @@ def explained(text):
         lines = lists.read_text().splitlines() if lists.is_file() else []
         for number, line in enumerate(lines, 1):
             if re.search(rf"(?<![\w.]){file}(?![\w.])", line):
-                return f"{lists}:{number}: there is no file {missing[1]}\n{text}"
+                return f"{lists}:{number}: file {missing[1]} not found\n{text}"
     return text
 
 
@@ -78,8 +78,8 @@ def run_ninja(words, log, check=True, env=None):
     process = start(words, env={**(env or {}), "NINJA_STATUS": "[%f/%t] "}, text=True,
                     stdout=subprocess.PIPE, stderr=subprocess.STDOUT, errors="replace")
     try:
-        with open(log, "w", buffering=1) as file, process.stdout as said:
-            for text in said:
+        with open(log, "w", buffering=1) as file, process.stdout as lines:
+            for text in lines:
                 file.write(text)
                 step = re.match(r"\[(\d+)/(\d+)\] (.*)", text)
                 if step:

@@ -15,8 +15,8 @@ def commit(name, option="BASE"):
 
 
 def tracked(source):
-    """Returns paths of the tree's files, without those that .gitignore excludes; also works in a
-    copy."""
+    """Returns the paths of all files in the tree, except those that .gitignore excludes; also works
+    in a copy."""
     return collect(["git", "-C", source, "grep", "--no-index", "--exclude-standard", "--no-color",
                 "-l", ""])[1].splitlines()
 

@@ -18,7 +18,7 @@ from http import HTTPStatus
 
 PROTOCOL = "ice.zeroc.com"
 MAGIC = "258EAFA5-E914-47DA-95CA-C5AB0DC85B11"  # RFC 6455, 1.3
-MOST_BYTES = 1 << 20  # of a frame; equals Ice's limit of a message
+MOST_BYTES = 1 << 20  # longest frame, bytes; equals the longest message of Ice
 MOST_CONNECTIONS = 16
 TOKEN = secrets.token_hex(16)
 CONTINUATION, TEXT, BINARY, CLOSE, PING, PONG = 0, 1, 2, 8, 9, 10

@@ -139,8 +139,8 @@ def heading(folder):
 
 
 def state(folder, slots):
-    """Returns the page's data, from the files of simulator and ground station; missing files leave
-    it empty."""
+    """Returns the data of the page, read from files of simulator and ground station; fields of
+    missing files are empty."""
     shown = {"calls": [], "features": [], "slots": [], "flight": heading(folder)}
     status = contents(folder + "/status")
     if len(status) >= STATUS.size and status.startswith(STATUS.constants["SIM_MAGIC"].encode()):
@@ -169,7 +169,7 @@ def state(folder, slots):
 
 
 def gateway(folder):
-    """Returns (host, port) of --gateway, or of the flight's first vehicle, or None."""
+    """Returns (host, port) of --gateway, or of the first vehicle in the flight, or None."""
     if Page.gateway:
         return Page.gateway
     live = objects.flight(folder)
@@ -261,8 +261,8 @@ def main():
     parser.add_argument("--dir", required=True,
                         help="the mission's folder: status, calls.jsonl, before.png")
     parser.add_argument("--registers", required=True,
-                        help="file that lists the blocks' *.regs.json; map.regs.json says which is "
-                        "in which slot")
+                        help="file that lists the *.regs.json of all blocks; map.regs.json assigns "
+                        "blocks to slots")
     parser.add_argument("--gateway", type=place, help="HOST:PORT of a gateway to call instead of "
                         "the flight's")
     parser.add_argument("--port", type=port_number, default=0, help="0: any that is free")

@@ -122,14 +122,14 @@ function table(place, columns, rows, options = {}) {
 }
 
 // Draws series over points in `place`: {labels: of each point, on the axis; titles: of each, in the read-out below; series: [{name,
-// values, colour: of the page's "--good", bars: true or a line, says: (i) => text for the read-out}]; limits: [{name, value, colour}],
+// values, colour: of the page's "--good", bars: true or a line, label: (i) => text for the read-out}]; limits: [{name, value, colour}],
 // dashed; height in pixels}. The pointer and the arrow keys choose the point that is read out; at first it is the last.
 function chart(place, {labels, titles = labels, series, limits = [], height = 190}) {
   place.drawn?.destroy();
   place.replaceChildren();
   if (!labels.length) return;
   if (typeof uPlot === "undefined") {
-    table(place, [["point", i => titles[i]], ...series.map(({name, values, says}) => [name, i => values[i] === null ? "" : says?.(i) ?? values[i]])], [...labels.keys()]);
+    table(place, [["point", i => titles[i]], ...series.map(({name, values, label}) => [name, i => values[i] === null ? "" : label?.(i) ?? values[i]])], [...labels.keys()]);
     return;
   }
   const colour = name => () => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
@@ -141,8 +141,8 @@ function chart(place, {labels, titles = labels, series, limits = [], height = 19
     axes: [{...axis, size: 28, grid: {show: false}, space: 80, incrs: [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000], values: (u, at) => at.map(i => labels[i] ?? "")},
       {...axis, size: 56, grid: {stroke: colour("--line"), width: 1}}],
     series: [{label: "point", value: (u, v, s, i) => titles[i] ?? ""},
-      ...series.map(({name, colour: c, bars, says}) => ({label: name, stroke: colour(c), width: bars ? 0 : 2, points: {show: !bars},
-        value: (u, v, s, i) => i === null || v === null ? "" : says ? says(i) : String(v), ...(bars ? {fill: colour(c), paths: uPlot.paths.bars({size: [0.85, 34]})} : {})})),
+      ...series.map(({name, colour: c, bars, label}) => ({label: name, stroke: colour(c), width: bars ? 0 : 2, points: {show: !bars},
+        value: (u, v, s, i) => i === null || v === null ? "" : label ? label(i) : String(v), ...(bars ? {fill: colour(c), paths: uPlot.paths.bars({size: [0.85, 34]})} : {})})),
       ...limits.map(({name, colour: c}) => ({label: name, stroke: colour(c), dash: [6, 4], width: 1.5, points: {show: false}, value: (u, v) => v === null ? "" : String(v)}))],
     hooks: {setCursor: [u => { if (u.cursor.idx === null) u.setLegend({idx: last}, false); }]},
   }, [labels.map((_, i) => i), ...series.map(s => s.values), ...limits.map(l => labels.map(() => l.value))], place);

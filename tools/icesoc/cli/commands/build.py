@@ -115,7 +115,8 @@ def pictures(values):
                 width, height, file, part, by = PAGES[name]
                 page = Path(getattr(values, "from"), file)
                 if not page.exists():
-                    raise Stop(f"there is no {page}: ./icesoc {by}")
+                    raise Stop(f"{page} not found; ./icesoc {by} writes it")
                 shoot(path, width, height, f"file://{page.absolute()}{part}", profile)
             else:
-                raise Stop(f"there is no picture '{name}': mission, live, {', '.join(PAGES)}", 2)
+                raise Stop(f"unknown picture '{name}': expected mission, live, "
+                           f"{', '.join(PAGES)}", 2)

@@ -91,8 +91,8 @@ OPTIONS = [
            "with --device: address of the vehicle", "0x0001"),
     Option("guard", number(2, 3300, "ms"), "with --device: guard time of the modem", 1000),
     Option("wire", SWITCH, "with --device: a serial cable, without modems"),
-    Option("plugin", FOLDER, "with --device: folder of the radio plugin; default: that of the "
-                             "build", ""),
+    Option("plugin", FOLDER, "with --device: folder of the radio plugin (default: the build's "
+                             "folder)", ""),
     Option("slice", TEXT, "Slice files of objects that the build does not list, separated by "
                           "spaces", ""),
     Option("config", FILE, "file with Ice properties, such as IceSSL.CertFile", ""),
@@ -209,7 +209,7 @@ def watch(client, options):
 
 
 def unsubscribe(client, operation, prepared):
-    """Takes the listener away from a core, whose events would find nobody."""
+    """Removes the listener from a core: after the program has ended, nothing receives events."""
     marked = client.slices.get(client.each.interface).get("metadata", [])
     if ":hw" in marked and len(prepared) == 1:
         client.call(operation, [None])
@@ -309,14 +309,14 @@ def serve_page(options):
         raise Stop(f"--page: expected --gateway HOST:PORT, got '{options.gateway}'", 2)
     listed_registers = os.path.join(options.build, "gen/registers.list")
     if not os.path.exists(listed_registers):
-        raise Stop(f"there is no {listed_registers}: ./icesoc build", 2)
+        raise Stop(f"{listed_registers} not found; ./icesoc build writes it", 2)
     with tempfile.TemporaryDirectory() as folder:
         return run([*tool("web.live"), "--dir", folder, "--registers", listed_registers,
                     "--gateway", options.gateway], check=False)
 
 
 def refuse_oneway(options, operation):
-    """Refuses --oneway for an operation whose answer would be lost."""
+    """Refuses --oneway for an operation with a result."""
     outputs = [p for p in operation["parameters"] if p.get("out")]
     if options.oneway and (outputs or operation["result"] != "void" or operation.get("throws")):
         raise Stop(f"--oneway: expected an operation without results and exceptions, got "

@@ -44,7 +44,7 @@ def check_name(name, room="ip"):
         raise Stop(f"'{name}' {REFUSAL}", 2)
     for folder in (Path("ip", name), Path(room, name)):
         if os.path.lexists(folder):
-            raise Stop(f"{folder} is there already", 2)
+            raise Stop(f"{folder} already exists; choose another name, or remove it first", 2)
     for room in ("bus", "hdl", "ip", "sw", "testbench", "synth"):
         for path in sorted(Path(room).rglob("*")):
             if room != "synth" and path.name in (f"{name}.regs.json", f"{name}_wrapper.v"):
@@ -59,15 +59,16 @@ def write_own(build, name, lang, ice, folder):
     """Begins a core from the user's interface."""
     included = re.findall(r'^ *# *include *[<"]([^>"]*)', Path(ice).read_text(), re.M)
     if included:
-        raise Stop(f"{ice} includes {' '.join(included)}: a core has one Slice file; write into it "
-                   "what it needs of others")
+        raise Stop(f"{ice} includes {' '.join(included)}: expected a Slice file without includes; "
+                   "copy the declarations that it uses into it")
     work = folder.parent
     if run([build / "slice/slice2c", f"-I{Path(ice).absolute().parent}", ice, "--output-dir",
             work / "c", "--hw-regs", work / "regs", f"--hw-new-{lang}", work / "new"], check=False):
         raise Stop(f"{ice} is not an interface in hardware (above)")
     cores = sorted(path.name[:-len(".regs.json")] for path in (work / "regs").iterdir())
     if cores != [name]:
-        raise Stop(f"{ice} has the cores {' '.join(cores)}: the name is that of the only one")
+        raise Stop(f"{ice}: expected one interface with [\":hw\"], named {name}; got "
+                   f"{' '.join(cores) or 'none'}")
     for path in (work / "new").iterdir():
         shutil.copy(path, folder)
     shutil.copy(ice, folder / f"{name}.ice")
@@ -93,7 +94,7 @@ def interface_of(text):
 
 
 def fill(template, folder, name):
-    """Returns a file of a template for the core's name."""
+    """Fills a file of a template in for a core. Returns it."""
     text = template.read_text().replace("@NAME@", name).replace("@MODULE@", "Cores")
     path = folder / re.sub("^NAME", name, template.name[:-len(".in")])
     path.write_text(text.replace("@TYPE@", "".join(word.capitalize() for word in name.split("_"))))
@@ -105,7 +106,7 @@ REPOSITORY = Option("repository", FOLDER, "separate repository for the core inst
 
 
 def put_into_repository(room, name):
-    """Writes what the repository of the user's cores lacks; the workflows are those of this
+    """Adds missing files to the repository of the user's cores. Workflows are copied from this
     tree."""
     room = Path(room).absolute()
     origin = output(["git", "remote", "get-url", "origin"], check=False, stderr=-3).strip()
@@ -187,7 +188,7 @@ def known(values):
         build.ninja("build.ninja")  # CMake has not seen newer folders
     cores = (build / "cores.known").read_text().split()
     if values.ip not in cores:
-        raise Stop(f"there is no core '{values.ip}': {' '.join(cores)}", 2)
+        raise Stop(f"unknown core '{values.ip}': expected one of {' '.join(cores)}", 2)
     return build
 
 
@@ -345,7 +346,7 @@ def remove(values):
         raise Stop(
             f"'{name}' is not a core: ./icesoc core remove low_pass (make rm-ip NAME=low_pass)", 2)
     if not core.is_dir():
-        raise Stop(f"there is no {core}{nearest(name, choices.cores(values))}", 2)
+        raise Stop(f"{core} not found{nearest(name, choices.cores(values))}", 2)
     others = build.other_cores()
     changed = core not in others and output(
         ["git", "status", "--porcelain", "--ignored", "--", core], check=False, stderr=-3)
@@ -354,7 +355,7 @@ def remove(values):
                    f"all the same):\n{changed}")
     users = sorted(set(users_of(name)))
     if users:
-        raise Stop(f"in ip/cores.list the inputs of {' '.join(users)} are outputs of '{name}'; "
+        raise Stop(f"ip/cores.list connects inputs of {' '.join(users)} to outputs of '{name}'; "
                    "change these lines first")
     if core not in others:
         shutil.rmtree(core)

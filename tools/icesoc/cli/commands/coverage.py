@@ -11,14 +11,14 @@ from icesoc.util.console import say, warn
 from icesoc.util.errors import Stop
 from icesoc.util.process import output, run, tool
 
-COUNTED = "rtl|firmware|vhdl|models|slice|interop|e2e"  # labels of tests whose execution is counted
+COUNTED = "rtl|firmware|vhdl|models|slice|interop|e2e"  # labels of the tests that count
 # Fuzzers have separate counts; e2e.cores builds a separate chip.
 LEFT_OUT = "NOT_BUILT|^fuzz|^e2e.cores"
 
 
 @command("check coverage", [
     Option("name", NAME.kind,
-           "only tests whose name matches this expression; gates are not checked", ""), BUILD,
+           "only tests with a name that matches this expression; gates are not checked", ""), BUILD,
     JOBS], make="coverage", brief=["check coverage --name ^test_fsmc_corners[.]",
                              "check coverage --name ^vhdl[.]fir"],
          long="check coverage")

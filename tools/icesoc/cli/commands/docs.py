@@ -41,7 +41,7 @@ def docs(values):
 
 TUTORIAL = "docs/tutorial.md"
 CHIP = Path("ip/cores.list")
-BEGIN = "cd icesoc"  # the tutorial's last command before the ones that are run
+BEGIN = "cd icesoc"  # last command of the tutorial that is not run
 MADE = ["LowPass.ice", "ip/low_pass"]
 
 

@@ -196,8 +196,8 @@ def replay(values):
     built once. For a flight with --cpu m3 the waveform also shows task, interrupt and function."""
     span = values.given & {"from", "to"}
     if span and values.to is not None and values.to <= (getattr(values, "from") or 0):
-        raise Stop(f"FROM={getattr(values, 'from')} TO={values.to} are no span in seconds, such as "
-                   "FROM=1.5 TO=1.6", 2)
+        raise Stop(f"FROM={getattr(values, 'from')} TO={values.to}: expected FROM before TO, in "
+                   "seconds, such as FROM=1.5 TO=1.6", 2)
     build = BuildFolder(values.build, values).prepare()
     with open(Path(values.replay) / "flight.jsonl") as recorded:
         hz = re.search(r'"clkHz": *(\d+)', recorded.readline())
@@ -282,7 +282,7 @@ def key(values):
     """make a key for the radio link, or a certificate
 
     It also makes keys that sign updates, and lists of such keys. docs/security.md explains keys of
-    the link and certificates, docs/firmware.md those of updates."""
+    the link and certificates, docs/firmware.md keys of updates."""
     if not values.file:
         raise Stop("key needs the name of a file: ./icesoc key my.key", 2)
     parts = values.list, values.by, values.first
@@ -304,7 +304,7 @@ def key(values):
         return
     make = keys.make_certificate if values.certificate else flight.make_key
     if not make(values.file):
-        raise Stop(f"'{values.file}' is there already: a key is never overwritten")
+        raise Stop(f"'{values.file}' already exists: a key is never overwritten")
     used = "" if values.certificate else f": ./icesoc run --key {values.file}"
     say(f"made {values.file}, which only you may read{used}")
 

@@ -116,7 +116,8 @@ def examples(values):
     listed = json.loads(Path("examples/foreign/cores.json").read_text())
     known = {name for source in listed.values() for name in source["cores"]}
     if unknown := set(values.cores) - known:
-        raise Stop(f"CORES: there is no '{sorted(unknown)[0]}': {' '.join(sorted(known))}", 2)
+        raise Stop(f"CORES: unknown core '{sorted(unknown)[0]}': expected one of "
+                   f"{' '.join(sorted(known))}", 2)
     if not values.built:
         run(["cmake/setup.sh", "--tests"])
     with lock("build/foreign.lock", refuse="another one puts cores into slots in this folder"):

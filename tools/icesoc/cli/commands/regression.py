@@ -172,8 +172,8 @@ STEP = """mkdir -p build
 ([ -e build/main/build.ninja ] || cmake -S . -B build/main -G Ninja || exit 125
 exec setpriv --pdeathsig TERM "$0" "$@") >build/step.log 2>&1
 status=$?
-case $status in 0) told=passes ;; 1) told=fails ;; *) told='cannot be told' status=125 ;; esac
-git log -1 --format="%h %s: $told" >&2
+case $status in 0) result=passes ;; 1) result=fails ;; *) result='no result' status=125 ;; esac
+git log -1 --format="%h %s: $result" >&2
 exit $status
 """
 
@@ -236,7 +236,8 @@ def nightly(values):
             for each in COMMANDS.values() if each.long}}
     for name in values.steps:
         if name not in steps:
-            raise Stop(f"there is no step '{name}': {', '.join(steps)}{nearest(name, steps)}", 2)
+            raise Stop(f"unknown step '{name}': expected one of {', '.join(steps)}"
+                       f"{nearest(name, steps)}", 2)
     build.prepare(tests=True).ninja()
     table = Table("build/nightly")
     for name in values.steps or steps:  # each runs, even if an earlier one failed

@@ -11,8 +11,8 @@ from icesoc.util.errors import Stop
 
 @command("release", [
     Option("only", WORDS, "parts to make: " + ", ".join(build.PARTS) + " (default: all)"),
-    Option("key", TEXT, "key that signs SHA256SUMS: a key file of minisign (NAME.sec), or the name "
-                        "of a key of gpg", ""),
+    Option("key", TEXT, "key that signs SHA256SUMS: a key file of minisign (NAME.sec), or a gpg "
+                        "key by its name", ""),
     Option("out", FOLDER, "folder for the files, which is emptied first", "build/release")],
          brief="release --only source icec changes sbom --out build/brief/release/files", examples=[
              "release --key ~/.minisign/icesoc.sec", "release --only source icec"])

@@ -93,8 +93,8 @@ module bus_decoder #(
     assign bus_error_o  = !mapped || |(selected & slot_error_i);
 
 `ifdef FORMAL
-    // The rules of the master are assumed. The decoder's registers depend only on the previous
-    // clock, so the properties hold for all inputs.
+    // The rules of the master are assumed. The registers here depend only on the previous clock, so
+    // the properties hold for all inputs.
     reg             past = 1'b0;
     reg [10:0]      shown; // address and direction, a clock ago
     reg [SLOTS-1:0] one;   // any one slot

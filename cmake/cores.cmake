@@ -168,9 +168,10 @@ function(icesoc_read_manifests)
   cmake_language(EVAL CODE "${facts}")
 endfunction()
 
-# icesoc_core([FOLDER]): the core of core.toml in FOLDER (default: the current source folder); its
-# keys are in docs/hw-mapping.md. It is a module or entity of the manifest's name with a slot's
-# ports. A core with a test gets the target test_ip_<NAME> and the model V<NAME>_slot.
+# icesoc_core([FOLDER]): adds the core described by core.toml in FOLDER (default: the current source
+# folder); docs/hw-mapping.md lists the keys. The core is a module or entity with the name in the
+# manifest and the ports of a slot. A test adds the target test_ip_<NAME> and the model
+# V<NAME>_slot.
 function(icesoc_core)
   set(folder ${CMAKE_CURRENT_SOURCE_DIR})
   if(ARGC)

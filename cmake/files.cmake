@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Writes the list of the Verilog files that Verilator read for a model, for other tools. The folder
-# of each file is added to the include path, because some cores include a file with a name that ends
-# in .v. SystemVerilog packages come first.
+# of each file is added to the include path, because some cores include files *.v. SystemVerilog
+# packages are first.
 #
 #   cmake -DREAD=V__ver.d -DTO=list -DTOP=module "-DDEFINES=+define+NAME" -P files.cmake
 file(READ "${READ}" text)

@@ -52,8 +52,9 @@ function(icesoc_vhdl)
   set_property(GLOBAL APPEND PROPERTY ICESOC_VHDL_TARGETS ${A_NAME}_verilog)
 endfunction()
 
-# icesoc_vhdl_test(NAME core SOURCES file... [LIBS lib...]): the test vhdl.<core> runs <core>_tb.vhd
-# with the vectors that <core>_vectors.cpp writes; both are in this folder (cmake/vhdl_test.sh).
+# icesoc_vhdl_test(NAME core SOURCES file... [LIBS lib...]): adds the test vhdl.<core>, which runs
+# <core>_tb.vhd with vectors written by <core>_vectors.cpp, both in this folder
+# (cmake/vhdl_test.sh).
 function(icesoc_vhdl_test)
   cmake_parse_arguments(A "" "NAME" "SOURCES;LIBS" ${ARGN})
   add_executable(${A_NAME}_vectors ${A_NAME}_vectors.cpp)

@@ -53,8 +53,8 @@ done
     cat "$work/messages" >&2
     exit 1
 }
-# The names of the other entities get this one's name as a prefix, since another core may use the
-# same library.
+# The other entities get the name of this entity as a prefix, since another core may use the same
+# library.
 sed -n 's/^module \([A-Za-z0-9_]*\).*/\1/p' "$output.tmp" |
     grep -v "^$entity" >"$work/others" || true
 while read -r other; do

@@ -9,7 +9,7 @@ page=$1 build=$2
 shift 2
 status=0
 missing() {
-    echo "$page: there is no test $1" >&2
+    echo "$page: unknown test $1" >&2
     status=1
 }
 named() { grep -oE "\`$1\`" "$page" | tr -d '`' | sort -u; }

@@ -8,9 +8,10 @@
     sizes.py firmware MAP OUT.json                    flash and RAM of a firmware by layer; its
                                                       stacks, by the call graph
 
-layers: `minimal` is the program that flies (sw/minimal), with the minimal run time and link:
-of each layer what is in the image (text and read-only data; the C library and generated code are
-not counted, as in the paper). `full` is everything that the layer's files hold, linked or not.
+layers: `minimal` counts the parts of each layer in the image of the program that flies
+(sw/minimal), with the minimal run time and link (text and read-only data; the C library and
+generated code are not counted, as in the paper). `full` counts all files of the layer, linked or
+not.
 """
 import json
 import os

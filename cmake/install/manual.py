@@ -46,7 +46,7 @@ def options(lines):
 
 
 def page(name, section, purpose, version, text, program):
-    """Returns the page of a program whose help is `text`; `program` is its name in that text."""
+    """Returns the manual page of a program. `text`: its help; `program`: its name in that text."""
     text = re.sub(rf"\S*\b{re.escape(program)}\b", name, text)
     usage = re.search(r"^usage: *(.*(?:\n +\S.*)*)\n", text, re.M | re.I)
     rest = text.replace(usage[0], "", 1) if usage else text

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Calls third-party cores and two of one's own by radio: call.py DEVICE GUARD STATUS PLUGIN
-"NAME ..." cores.json Registers.ice File.ice ...
+"""Calls third-party cores and two cores of this project by radio. Usage:
+call.py DEVICE GUARD STATUS PLUGIN "NAME ..." cores.json Registers.ice File.ice ...
  The "calls" of each core in cores.json; keys and blocks of FIPS 197 for AES; packets through the
 COBS encoder's AXI-Streams; a CRC-32 of buffers in DDR3; a servo's pulses, which orders.sh measures
 at the pins. With stock ZeroC Ice. """

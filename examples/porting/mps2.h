@@ -9,7 +9,7 @@
 #include "icec_link.h"
 
 #define MPS2_HZ 25000000U     /* clock of the CPU, Hz */
-#define MPS2_UART_PRIORITY 5U /* of the interrupt, 0 (urgent) to 7 */
+#define MPS2_UART_PRIORITY 5U /* priority of its interrupt, 0 (urgent) to 7 */
 
 /* Switches the serial port and its receive interrupt on. */
 void Mps2_start(void);

@@ -156,7 +156,7 @@ module npi_stream #(
     reg       past = 1'b0;
     reg [5:0] f_pushed;         // words in the write FIFO
     reg [5:0] promised;         // words of acknowledged reads, not popped yet
-    reg [5:0] there;            // those of them in the read FIFO
+    reg [5:0] there;            // promised words that are in the read FIFO
     reg [6:0] f_owed;           // words of acknowledged writes that are still in the write FIFO
     (* anyseq *) wire may_move, may_come;
     wire      moved = may_move && f_owed != 7'd0;
@@ -174,7 +174,7 @@ module npi_stream #(
         assume (npi_wr_almost_full_i == (f_pushed == 6'd32));
         assume (npi_init_done_i || !f_ready);
     end
-    always @* if (!rst_i) begin // for the stream of a core these are proven (idle_proof)
+    always @* if (!rst_i) begin // idle_proof proves these for streams of cores
         core_takes:   assume (!read_take_i || read_valid_o);
         core_reads:   assume (!read_start_i || (read_idle_o && !read_stop_i));
         core_writes:  assume (!write_start_i || (write_idle_o && !write_valid_i && !write_flush_i));

@@ -276,7 +276,8 @@ module fsmc_memory #(
         end
 
         if (past && !rst_i) begin
-            // A read returns the processor's last write, or what others wrote before drop_i.
+            // A read returns the last write of the processor, or data that others wrote before
+            // drop_i.
             if (rd_hit_o && rd_addr_async_i == place && !untold)
                 assert (rd_data_o == newest);
             assert (!rd_safe_o || rd_hit_o);

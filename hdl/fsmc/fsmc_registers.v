@@ -154,7 +154,7 @@ module fsmc_registers (
         .error_i(bus_error_i)
     );
     reg        past = 1'b0;
-    reg [3:0]  patience;  // the bridge's time-out count, shorter
+    reg [3:0]  patience;  // time-out count, shorter than in the bridge
     reg [4:0]  stuck;     // clocks of this access without an answer
     reg [31:0] last_read; // the last word from the bus
     reg [15:0] last_low;  // low half written last
@@ -197,8 +197,8 @@ module fsmc_registers (
                 assert ($past(flushing));
             if (flushing && !$past(flushing))
                 assert ($past(idle && (wr_i || reading_i)));
-            // Words are atomic: a stored high half belongs to the word read last; a word is written
-            // with the low half of the write just before.
+            // Words are atomic: a stored high half belongs to the word read last, and a written
+            // word has the low half of the previous write.
             assert (!half_read || (word == last_read && low_read));
             assert (!half_read || $past(half_read) || $past(reading_i));
             assert (half_write == low_word);

@@ -5,8 +5,8 @@
 //
 // These hold for any sequence of completed or aborted accesses to registers, to addresses beyond
 // them and to memory:
-// - A word written to the bus, and its address, come from the processor's last two completed
-//   register accesses: low half, then high half of the same word. An aborted access writes nothing.
+// - A word written to the bus consists of the last two completed register accesses of the
+//   processor: low half, then high half of the same word. An aborted access writes nothing.
 // - A write of a high half, or beyond the slots, causes exactly one transfer or one error report,
 //   before the next register access continues: a transfer if the write of its low half was the
 //   access just before, without even an attempted read between; otherwise an error. A write of a

@@ -6,9 +6,9 @@
 // Steps (STATUS.STEP): 1 +++  2 MY  3 DH  4 DL  5 CH  6 ID  7 EE  8 KY (only with EE)  9 RN  10 RO
 // 11 D6  12 D7  13 AP  14 BD  15 CN  0 the modem changes its rate. modem_at_rows contains the
 // actions of each step; this block executes them. Step 1 is tried at the target rate, at 9600 (the
-// factory setting), then at all rates from BD 7 down and at 250,000; the wait for an answer serves
-// as the guard time of the next attempt. Any other command which is rejected or not answered is
-// repeated twice.
+// factory setting), then at all rates from BD 7 down and at 250,000; the time waited for an answer
+// is also the guard time of the next attempt. Any other command is repeated twice if it is rejected
+// or not answered.
 
 `default_nettype none
 `include "shift_order.vh"

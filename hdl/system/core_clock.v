@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// core_clock: generates a clock with the frequency of clk_i * MULTIPLY / DIVIDE, at most that of
+// core_clock: generates a clock with the frequency of clk_i * MULTIPLY / DIVIDE, not faster than
 // clk_i; on Xilinx FPGAs with a DCM_CLKGEN.
 //
 // It is unrelated to clk_i: crossings go through hdl/cdc. In simulation its edges are at edges of

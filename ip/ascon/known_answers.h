@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// known_answers: input bytes of the tests, and the known answers of NIST SP 800-232. The answers
-// that a test computes are written in the format of the standard's authors; the SHA-256 of the text
-// must equal that of the published file.
+// known_answers: input bytes of the tests, and the known answers of NIST SP 800-232. A test writes
+// its answers in the format of the authors of the standard; the text must have the SHA-256 of the
+// published file.
 
 #pragma once
 

@@ -38,7 +38,7 @@ module camera (
     reg [2:0]  x;                    // index of the next pixel in its word
     reg        room;                 // room for another pixel of this line
     reg        last_word, last_line; // words == width, y + 1 == height, one clock later
-    reg [31:0] base, stride;         // of the buffers in use
+    reg [31:0] base, stride;         // address and row length of the buffers in use
     reg [15:0] frames, dropped;
     reg [55:0] pixels;               // pixels of the incomplete word, newest on top
     reg        has_newest;

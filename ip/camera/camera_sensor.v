@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// camera_sensor: converts the parallel port of a sensor, in the sensor clock domain, into tokens
-// for a FIFO (async_fifo).
+// camera_sensor: converts the parallel port of a sensor into tokens, in the clock domain of the
+// sensor. The tokens go into an async_fifo.
 //
 // A token has 11 bits: LOST (earlier tokens found no room), kind, pixel. While the FIFO is full
 // pixels are lost; frame starts and line ends wait for room until the next one arrives.

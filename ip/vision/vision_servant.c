@@ -87,7 +87,7 @@ static Ice_Status finishFrame(Vision_Core* self) {
             !self->core.done[REFUSED]) {
             set(self, VISION_MODE, 0);
             set(self, VISION_CONTROL, VISION_CONTROL_ABORT_MASK);
-            /* A hung core stays busy; without a frame from the camera there is no frame to end. */
+            /* A hung core stays busy. A core that waits for a frame of the camera is idle again. */
             self->busy = (get(self, VISION_STATUS) & VISION_STATUS_BUSY_MASK) != 0;
             return ICE_TIMEOUT;
         }

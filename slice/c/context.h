@@ -20,15 +20,15 @@ bool isRuntimeName(const std::string& c);
 std::string cName(const Declaration& d);
 // Module_Sub_NamePrx, of an interface or a class
 std::string cProxy(const Declaration& d);
-// Names in a scope shared with names of generated code, which are listed in names.cpp, or begin
-// with "ice_" or "Ice_". A user's name that equals one of them, or a keyword of C, gets an
-// underscore appended. No name in Slice ends with an underscore.
+// Returns the C name for a name of the user. Generated code uses other names in the same scope:
+// they are listed in names.cpp, or begin with "ice_" or "Ice_". A name that equals one of them, or
+// a keyword of C, gets an underscore appended. No name in Slice ends with an underscore.
 std::string cIdentifier(const std::string& name);
 // The name of a member of struct, class or exception `d`.
 std::string cMember(const Declaration& d, const Field& member);
 // The name of a parameter: of functions, as a member of the asynchronous call, as a variable.
 std::string cParameter(const Operation& o, const Field& parameter);
-// Part of the names of an operation's functions, after the interface's name.
+// Returns the part of a function name that stands for the operation, after the interface.
 std::string cOperation(const std::string& name);
 // The C type of a value.
 std::string cType(const Type& type);
@@ -130,9 +130,9 @@ struct CContext {
     bool usesClasses() const;
     Writer begin(const std::string& what) const;
     Writer beginSource(const std::string& what) const;
-    // Returns the prefix ("M_I_op") of an operation's exception union: the prefix of the first
-    // operation in the file that throws the same exceptions, so that an exception can be rethrown
-    // by an assignment.
+    // Returns the prefix ("M_I_op") of the exception union of an operation. Operations that throw
+    // the same exceptions use the union of the first one in the file, so that an exception can be
+    // rethrown by an assignment.
     const std::string& thrownAs(const Operation& o) const { return thrown_.at(&o); }
 
     // Calls `f` for each declaration of this kind in the main file, except local ones.

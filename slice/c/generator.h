@@ -14,7 +14,7 @@ struct CFileNames {
     std::string headerExtension = "h"; // without the dot
     std::string sourceExtension = "c";
     std::string path;                  // "folder/Printer.h": the header, as in include directives
-    std::string includeDir;            // prefix of the header's name in the sources, may be empty
+    std::string includeDir;            // prefix of the header in include directives, may be empty
     std::vector<std::string> includes; // headers of the Slice files that the main file includes
 };
 

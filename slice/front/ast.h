@@ -3,7 +3,7 @@
 // ast: the declarations of a Slice file and of the files that it includes. The parser creates them,
 // with every name resolved and Slice's rules checked; the generators read them.
 //
-// Unit         declarations in source order, including those of included files
+// Unit         declarations in source order, including declarations of included files
 //   Declaration  one enum, struct, sequence, dictionary, interface, class, exception or constant
 //   Operation    of an interface;  Field: a member or a parameter;  Type: of a field
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// front: the front end of the Slice compiler: converts the text of a file into a unit; independent
-// of the command line.
+// front: the front end of the Slice compiler: converts the text of a file into a unit. It does not
+// depend on the command line.
 //
 // A file passes through these steps, each in a source file of that name:
 //

@@ -85,8 +85,9 @@ GeneratedFile proxyFile(const Block& b) {
            "_proxy: a Verilated core, or its wrapper alone, as an object with the operations of");
     w.line("// " + b.interface->id() +
            ", by the generated servant. A failure is thrown as CoreError, an exception");
-    w.line("// of the core as the operation's _Exception. Events: true, with their values, if "
-           "they were raised.");
+    w.line("// of the core as the operation's _Exception. Functions of events return whether the "
+           "event was");
+    w.line("// raised, and its values.");
     w.blank();
     w.line("#pragma once");
     w.blank();

@@ -291,9 +291,10 @@ GeneratedFile servantHeader(const Block& b) {
     w.line(
         "/* To be called when the slot's line is high, from the interrupt routine or a task. */");
     w.line("void " + type + "_interrupt(" + type + " *self);");
-    w.line("/* Answers what is done or too late, and tells of events; to be called by a task after "
-           "an");
-    w.line(" * interrupt, and within the ms that it returns (HW_NEVER: no need). */");
+    w.line("/* Replies to calls that have ended or timed out, and delivers events. To be called by "
+           "a task");
+    w.line(" * after an interrupt, and again within the returned ms unless HW_NEVER is returned. "
+           "*/");
     w.line("U32 " + type + "_poll(" + type + " *self, U32 nowMs);");
     for (const Call& c : b.calls)
         if (c.isAmd)

@@ -232,8 +232,8 @@ void wrapperHead(Writer& w, const Block& b, const std::string& mark) {
            " (docs/hw-mapping.md), one slot.");
     w.line(mark);
     w.line(mark +
-           " <operation>_start_o is high for one clock; parameters are stable from then on.");
-    w.line(mark + " Results hold from the clock after it, or from done, until the next start.");
+           " <operation>_start_o is high for one clock; then parameters are stable. Results must");
+    w.line(mark + " be valid from the next clock, or from done, until the next start.");
     if (b.memoryWord)
         w.line(mark + " <..>_base_o: DDR3 byte address of a sequence, a multiple of 128; "
                       "<..>_count: elements.");

@@ -67,7 +67,7 @@ json valueOf(const Literal& value) {
     case Literal::Kind::Floating:
         return value.floating;
     default:
-        return value.text; // a string, or an enumerator's name
+        return value.text; // a string, or the name of an enumerator
     }
 }
 

@@ -8,7 +8,7 @@
 #include "front/ast.h"
 #include <nlohmann/json.hpp>
 
-// Adds each declaration of the unit, those of included files among them, under its full name:
+// Adds each declaration of the unit and of included files under its full name:
 //
 //   "::Autopilot::Feature": {"kind": "struct", "file": "Autopilot.ice", "doc": "...", "fields":
 //   [...]}

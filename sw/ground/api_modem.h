@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// api_modem: a modem in API mode: each packet to it has a target, and the modem reports the result
-// of each. Its frames: 0x7E, length (2 bytes), contents, checksum. With AP 2 four byte values are
-// escaped.
+// api_modem: drives a modem in API mode. Each packet has a target, and the modem reports the result
+// of each packet. Frames: 0x7E, length (2 bytes), contents, checksum. With AP 2 four byte values
+// are escaped.
 //
 //   01 ID TARGET TARGET 00 DATA...          packet to send
 //   89 ID STATUS                            its result; 0: received by the other modem
@@ -108,7 +108,7 @@ private:
     static constexpr uint8_t delimiter = 0x7E, escape = 0x7D, escapeXor = 0x20;
     static constexpr size_t longest = 120; // contents: a packet from a 64-bit address, and more
 
-    // Returns the offset of a packet's data; 0 for other frames.
+    // Returns the offset of the data in a packet; 0 for other frames.
     static size_t headOf(uint8_t type) { return type == Packet ? 5 : type == Wide ? 11 : 0; }
     int sourceOf(size_t head) const {
         return head == 5 ? contents_[1] << 8 | contents_[2] : noAddress;

@@ -152,9 +152,8 @@ bool ModemSetup::command(const std::string& text) {
     return false;
 }
 
-// Returns whether a modem at this rate answers without +++: it is in API mode, or in command mode,
-// where a program that was killed during its set-up leaves it. No byte of the question needs to be
-// escaped.
+// Returns whether a modem at this rate answers without +++: it is in API mode, or still in command
+// mode because a program was killed during its set-up. No byte of the question needs to be escaped.
 bool ModemSetup::findWithoutGuard(int baud) {
     serial_.setSpeed(rate_ = baud);
     const int ms = apiReplyMs + 190000 / baud;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// packet_line: packets to and from the modem on a serial port, in API mode or transparent mode.
-// Peers are its senders and share the time on the air.
+// packet_line: sends and receives packets by the modem on a serial port, in API mode or transparent
+// mode. Several senders (peers) share the time on the air.
 
 #pragma once
 
@@ -20,7 +20,7 @@ namespace XBeeAT {
 
 class PacketLine {
 public:
-    // What the line needs to know about a peer.
+    // Interface of a peer, as the line uses it.
     class Sender {
     public:
         explicit Sender(int address) : address_(address) {}

@@ -29,7 +29,7 @@ public:
     // What all peers of an engine share.
     struct Host {
         const std::string device;
-        Settings settings; // for the next set-up
+        Settings settings; // settings of the next set-up
         Log log;
         const std::unique_ptr<Clock> ownClock;
         Clock& clock;
@@ -51,19 +51,19 @@ public:
 
     // ---- functions of programs ----
 
-    // Opens a connection to the peer, on channel 0..2 or any (-1). Returns the program's end of it,
-    // a socket, or -1 if no descriptor is left. The peer speaks once the link is up and a channel
-    // is free; programs wait their turn. A lost port is opened again. If there is no modem, the
-    // socket is closed. A message that the peer has not taken in `lateMs` is withdrawn by ending
-    // the session; one without room in the link, by ending the connection; -1 disables both.
+    // Opens a connection to the peer, on channel 0..2 or any (-1). Returns a socket for the
+    // program, or -1 if no descriptor is left. The peer speaks once the link is up and a channel is
+    // free; programs wait their turn. A lost port is opened again. Without a modem the socket is
+    // closed. A message that the peer has not taken in `lateMs` is withdrawn by ending the session;
+    // a message for which the link has no room, by ending the connection; -1 disables both.
     // Returns -1 with EBUSY while another ground station with the same address has the vehicle.
     int connect(int channel, int lateMs = -1);
     size_t waiting() const; // programs without a channel
     // Lets the peer open connections. Each makes the returned descriptor readable, also after the
     // port was lost and found again. Returns -1 if another program listens.
     int listen();
-    // Takes a connection that the peer opened. Returns the program's end of it, a socket, or -1 if
-    // there is none.
+    // Takes a connection that the peer opened. Returns a socket for the program, or -1 if the peer
+    // has not opened a connection.
     int accept();
     void stopListening();
     virtual std::string statistics() const = 0; // one line of text
@@ -99,7 +99,7 @@ protected:
     virtual void opened(ProgramConnection& program, U32 now) = 0;
     virtual void closeChannel(int channel) = 0;
     virtual U32 longestMessage() const = 0; // lock held
-    // Sends a connection's next message. Returns whether it was taken.
+    // Sends the next message of a connection. Returns whether it was taken.
     virtual bool send(int channel, U32 now) = 0;
     // Does the work due for the way to the vehicle. Returns the time of the next call, in
     // microseconds.

@@ -36,9 +36,8 @@ bool hasLeft(int fd) {
 
 } // namespace
 
-// Returns a channel for a program, `wanted` or any (-1): a free one, otherwise the channel of the
-// program that has been silent longest, if that is long enough to displace it. Returns -1 if there
-// is none.
+// Returns a channel for a program, `wanted` or any (-1): a free channel, otherwise the channel of
+// the program that has been silent longest, if that is long enough to displace it; otherwise -1.
 int Peer::freeChannel(int wanted, U32 now) {
     U32 longest =
         host_.settings.idleMs ? static_cast<U32>(host_.settings.idleMs) * 1000 - 1 : 0xFFFFFFFFu;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // plugin_connection: data shared by the endpoints of one communicator (defaults, logger, peers),
-// and the connections that Ice opens or accepts from the UAV; Ice uses the program's end of a
-// stream.
+// and the connections that Ice opens to the UAV or accepts from it. Ice reads and writes a socket.
 
 #pragma once
 
@@ -125,8 +124,8 @@ public:
         : IceInternal::NativeInfo(fd), peer_(peer) {}
     IceInternal::NativeInfoPtr getNativeInfo() override { return this; }
     IceInternal::SocketOperation initialize(IceInternal::Buffer&, IceInternal::Buffer&) override {
-        // Ice then waits for the peer's first message under the connect time-out: it means that the
-        // link is up.
+        // Ice then waits for the first message of the peer, at most for the connect time-out. The
+        // message means that the link is up.
         return IceInternal::SocketOperationNone;
     }
     IceInternal::SocketOperation closing(bool initiator, const Ice::LocalException&) override {

@@ -90,8 +90,8 @@ private:
     State state_ = State::Closed;
     std::string name_;
     int fd_ = -1;
-    std::vector<U8> out_; // from the program: less than one message plus one buffer
-    std::vector<U8> in_;  // to the program, not written yet
+    std::vector<U8> out_; // bytes read from the program: less than one message plus one buffer
+    std::vector<U8> in_;  // bytes not written to the program yet
     bool ended_ = false, isServer_ = false, greeted_ = false;
     bool owesSign_ = false; // the program has sent something since it last heard something,
     U32 owesSince_ = 0;     // since then

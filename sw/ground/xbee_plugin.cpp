@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // xbee_plugin: the xbee-at transport of ZeroC Ice 3.7: an endpoint, its options as text and on the
-// wire, and its factory. One source, two libraries: for the C++98 mapping (loaded by Python) and
-// for the C++11 mapping. It links to ZeroC Ice, which is GPL-2.0.
+// wire, and its factory. It is built twice, as libraries for the C++98 mapping (also used by
+// Python) and for the C++11 mapping. It links to ZeroC Ice, which is GPL-2.0.
 
 #include "plugin_connection.h"
 
@@ -130,7 +130,7 @@ protected:
         else if (option == "-k") { // a secret, never printed
             checkModemKey(argument, "an xbee-at endpoint");
             o_.serial.modemKey = argument;
-        } else if (option != "-h") // accepted and ignored, because there is no host
+        } else if (option != "-h") // -h is accepted and ignored, because radios have no host
             number(option[1], argument, endpoint);
         return true;
     }

@@ -42,7 +42,7 @@
 #define ICE_SERVANTS 8
 #endif
 
-/* Characters of a proxy's name, category and facet together: 52, at most 255. */
+/* Characters of name, category and facet of a proxy together: at most 255 (default 52). */
 #ifndef ICE_IDENTITY_MAX
 #define ICE_IDENTITY_MAX 52
 #endif

@@ -35,7 +35,7 @@ static Ice_Status open(Ice_ObjectPrxPtr self, const Ice_Byte* endpoint, Ice_Int 
     return status;
 }
 
-/* Tries the endpoints of the proxy in turn, and waits for the peer's first message. */
+/* Tries the endpoints of the proxy in turn, and waits for the first message of the peer. */
 static Ice_Status connect(Ice_ObjectPrxPtr self) {
     Ice_CommunicatorPtr ic = self->communicator;
     Ice_Status status = ICE_NO_ENDPOINT;
@@ -193,7 +193,7 @@ Ice_Status Ice_ObjectPrx_invokeAsync(Ice_ObjectPrxPtr self, Ice_Callback callbac
     Ice_Status status = sendAndUnlock(self, callback, cookie);
     if (status != ICE_OK || self->mode != ICE_TWOWAY)
         return Ice_ObjectPrx_end(self, status);
-    /* Wakes the receiving task, so that it sleeps at most until this call's time-out. */
+    /* Wakes the receiving task, so that it sleeps at most until this call times out. */
     if (isWaiting(ic, slot))
         icec_wake(ic);
     return ICE_OK;

@@ -4,7 +4,7 @@
  */
 #include "ice_private.h"
 
-/* Marks a connection as open for calls, after the peer's first message. */
+/* Marks a connection as open for calls, after the first message of the peer. */
 static void validate(Ice_CommunicatorPtr ic, int connection) {
     icec_lock(ic, ICE_LOCK_STATE);
     ic->connections[connection].state = ICE_CONNECTION_OPEN;
@@ -163,7 +163,7 @@ static Ice_Status receiveOne(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
 /* ---- which of several tasks receives ----
  * One task at a time holds the role: a server (waitForShutdown, poll) as soon as it can get it,
  * otherwise a task that waits for a reply (a leader), while it waits. `receiver` and `servers`
- * change only under the state lock. A task that gives up the role wakes another that may want it.
+ * change only under the state lock. A task that leaves the role wakes another one that may want it.
  */
 
 typedef enum Role {

@@ -16,7 +16,7 @@ struct Ice_ObjectAdapter {
     Ice_CommunicatorPtr communicator;
     Ice_ObjectAdapterPtr next;
     Ice_Byte active;
-    Ice_Byte transports; /* transports on which it listens, one bit each; 0: none */
+    Ice_Byte transports; /* transports on which it listens, one bit each */
     Ice_Servant servants[ICE_SERVANTS];
 };
 
@@ -24,7 +24,7 @@ typedef enum Ice_CallState {
     ICE_CALL_FREE,
     ICE_CALL_KEPT,     /* ended; its task may still use the results */
     ICE_CALL_BUILDING, /* its request is being written */
-    ICE_CALL_WAITING,  /* for the reply */
+    ICE_CALL_WAITING,  /* the reply is expected */
     ICE_CALL_DONE      /* the reply has arrived, or will never arrive */
 } Ice_CallState;
 
@@ -47,7 +47,7 @@ typedef struct Ice_Call {
 
 typedef enum Ice_ConnectionState {
     ICE_CONNECTION_NONE,
-    ICE_CONNECTION_VALIDATING, /* waiting for the peer's first message */
+    ICE_CONNECTION_VALIDATING, /* waiting for the first message of the peer */
     ICE_CONNECTION_OPEN
 } Ice_ConnectionState;
 

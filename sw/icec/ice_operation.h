@@ -38,7 +38,7 @@ typedef struct Ice_Interface {
 
 struct Ice_Base {
     const Ice_Interface* interface; /* 0 marks the end */
-    size_t offset;                  /* offset of its operations in those of the derived interface */
+    size_t offset;                  /* offset of its table of operations in the derived one */
 };
 
 /* Calls the operation that `current` names. ICE_PROTOCOL: it was called as idempotent and is not,

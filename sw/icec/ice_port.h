@@ -100,9 +100,9 @@ enum { ICE_LOCK_STATE, ICE_LOCK_SEND };
 typedef struct Ice_Os {
     void (*lock)(void* context, int which);
     void (*unlock)(void* context, int which);
-    /* Sleeps until wake of this slot (0..ICE_CALLS) or the time-out; an earlier wake counts. One
-     * task waits on each slot; any number waits on the last one, of which one is woken. Returns 1
-     * if woken. */
+    /* Sleeps until wake of this slot (0..ICE_CALLS) or the time-out; an earlier wake counts. Each
+     * slot has at most one waiting task, except the last slot: several tasks may wait on it, and a
+     * wake wakes one of them. Returns 1 if woken. */
     int (*wait)(void* context, int slot, Ice_Int timeoutMs);
     void (*wake)(void* context, int slot);
     /* Returns a number that differs from task to task, 0 or greater. */

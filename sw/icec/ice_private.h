@@ -25,8 +25,8 @@ void icec_wake(Ice_CommunicatorPtr ic);
 /* Spaces between the words of proxies and endpoints as strings, as in Ice. */
 #define ICEC_SPACES " \t\n\r"
 
-/* Returns the options after a transport's name, and sets the transport; 0 if the text names
- * none. */
+/* Returns the options after the name of a transport, and sets the transport; 0 if the text does not
+ * name a transport. */
 const char* icec_optionsOf(Ice_CommunicatorPtr ic, const char* text, int* transport);
 /* Returns the text after the next colon outside quotes; 0 if none. */
 const char* icec_nextEndpoint(const char* text);
@@ -66,8 +66,8 @@ void icec_giveArena(Ice_CommunicatorPtr ic, Ice_InputStreamPtr is);
 
 /* ---- ice_calls: the table of calls that wait for replies ---- */
 
-/* Takes a slot for a call that is being built: a free one, or the slot kept by this task's last
- * call. Returns -1 if all are taken. */
+/* Takes a slot for a call that is being built: a free slot, or the slot that the previous call of
+ * this task kept. Returns -1 if all slots are taken. */
 int icec_takeCall(Ice_CommunicatorPtr ic);
 Ice_CallState icec_callState(Ice_CommunicatorPtr ic, int slot);
 

@@ -209,7 +209,7 @@ static Ice_Status parseAdapter(const char* text, Ice_ObjectPrxPtr prx) {
 /* Parses an option before the endpoints, with its value (of size 0 without one). */
 static Ice_Status parseOption(char letter, Ice_String value, Ice_String* facet,
                               Ice_ObjectPrxPtr prx) {
-    static const char modes[] = "toOdD"; /* in the order of ICE_TWOWAY and the following */
+    static const char modes[] = "toOdD"; /* letters of ICE_TWOWAY and the following modes */
     const char* mode = letter ? strchr(modes, letter) : 0;
     int isRight = value.size != 0;
     if (mode) {

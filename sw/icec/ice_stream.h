@@ -89,7 +89,7 @@ typedef struct Ice_OutputStream {
         sliced; /* user exceptions in the sliced format: a peer can skip slices it does not know */
     Ice_Byte sliceFlags;             /* flags of the current slice */
     const char* bound;               /* reason as text, with ICE_FAILED_BOUND */
-    struct Ice_OutputValues* values; /* classes; 0 if there are none so far */
+    struct Ice_OutputValues* values; /* class instances; 0 before the first one */
 } Ice_OutputStream, *Ice_OutputStreamPtr;
 
 typedef struct Ice_InputStream {
@@ -103,7 +103,7 @@ typedef struct Ice_InputStream {
     U32* arena;                            /* for decoded sequences */
     Ice_Int arenaUsed, arenaSize;          /* in words of 4 bytes */
     struct Ice_Communicator* communicator; /* communicator of the proxies that are read */
-    struct Ice_InputValues* values;        /* classes; 0 if there are none so far */
+    struct Ice_InputValues* values;        /* class instances; 0 before the first one */
 } Ice_InputStream, *Ice_InputStreamPtr;
 
 /* ---- writing ---- */
@@ -196,7 +196,7 @@ Ice_Int Ice_OutputStream_startSlice(Ice_OutputStreamPtr os, const char* typeId, 
 void Ice_OutputStream_endSlice(Ice_OutputStreamPtr os, Ice_Int begin, Ice_Bool last);
 
 void Ice_InputStream_startException(Ice_InputStreamPtr is);
-/* Begins to read a slice. Returns its type id, empty if there is no slice. */
+/* Begins to read a slice. Returns its type id; empty after the last slice. */
 Ice_String Ice_InputStream_startSlice(Ice_InputStreamPtr is);
 /* Skips to the next slice. Returns 0 if none, or the format does not give its position. */
 Ice_Bool Ice_InputStream_skipSlice(Ice_InputStreamPtr is);

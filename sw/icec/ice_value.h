@@ -59,11 +59,11 @@ int Ice_Value_isA(const Ice_Value* v, const Ice_ValueType* type);
 void* Ice_Value_cast(const void* v, const Ice_ValueType* type);
 
 typedef struct Ice_OutputValues {
-    const Ice_Value* known[ICE_VALUES_MAX]; /* in the order of their numbers */
+    const Ice_Value* known[ICE_VALUES_MAX]; /* instances by their numbers */
     Ice_Int count, written;
     Ice_String types[ICE_VALUE_TYPES_MAX];
     Ice_Int typeCount;
-    const Ice_Value* table[ICE_VALUES_MAX]; /* of the current slices, one after the other */
+    const Ice_Value* table[ICE_VALUES_MAX]; /* indirection tables of the current slices */
     Ice_Int tableBegin, tableEnd;
     Ice_Bool pending; /* 1.0: instances follow; 0 if only optional parameters could hold one */
     Ice_Bool (*writeTable)(Ice_OutputStreamPtr os); /* for slices of exceptions */
@@ -86,7 +86,7 @@ typedef struct Ice_InputValues {
         Ice_Int number;
     } patches[ICE_VALUES_MAX]; /* for instances that arrive later */
     Ice_Int patchBegin, patchEnd;
-    struct Ice_LatePatch* late;               /* for instances whose type is not known yet */
+    struct Ice_LatePatch* late;               /* pointers to instances of types not known yet */
     Ice_UnknownSlice* unknown;                /* slices of the message, the last one first */
     Ice_Bool pending;                         /* as in Ice_OutputValues */
     void (*readTable)(Ice_InputStreamPtr is); /* for slices of exceptions */

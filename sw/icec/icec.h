@@ -265,8 +265,8 @@ void Ice_Communicator_setOs(Ice_CommunicatorPtr ic, const Ice_Os* os, void* cont
 void Ice_Communicator_setEndpoint(Ice_CommunicatorPtr ic, const Ice_Endpoint* endpoint,
                                   void* context);
 
-/* Releases the result of a task's last call, and the task's place among ICE_CALLS; `task` is a
- * number returned by Ice_Os's task. To be called from the kernel's hook when a task ends; a
+/* Releases the result of the last call of a task, and its place among ICE_CALLS; `task` is a
+ * number returned by the function task of Ice_Os. To be called by the kernel when a task ends; a
  * continuing task may call it when it does not need the result any more. It takes the state lock,
  * so a hook that may not wait must leave it to another task. Not within a call. Full run time. */
 void Ice_Communicator_endTask(Ice_CommunicatorPtr ic, int task);

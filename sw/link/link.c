@@ -188,7 +188,7 @@ U32 Link_deadline(const Link* link, U32 nowUs) {
     first = sooner(handshake->isAnswered, handshake->firstAnswer + LINK_NONCE_LIFE, first);
     if (handshake->state == LINK_STATE_UP) {
         first = sooner(1, link_livenessDeadline(&link->session.liveness), first);
-        if (!pacing->waiting) /* otherwise the radio's next result decides what is sent again */
+        if (!pacing->waiting) /* otherwise the next result of the radio decides about repetition */
             first = sooner(sender->base != sender->next, sender->timerAt, first);
         if (!pacing->mostWaiting || pacing->radio->waiting < pacing->mostWaiting) {
             first = sooner(pacing->packed, soon, first);

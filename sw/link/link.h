@@ -93,8 +93,7 @@ void Link_limitFrame(Link* link, U32 bytes);
  * answers a HELLO under either. Call it after Link_init. */
 void Link_setKey(Link* link, int slot, const U8* key, U32 side);
 
-/* Returns the slot of the key that made the current session; -1 if there is no session, or it has
- * no key. */
+/* Returns the slot of the key that made the current session; -1 without a session or a key. */
 int Link_keyInUse(const Link* link);
 #endif
 

@@ -22,7 +22,7 @@ typedef struct Link_Contention {
     U8 hasLost;          /* 1: `lostAt` is recent */
     U8 isCalled;         /* 1: the peer calls during an own stream */
     U8 isBusy;           /* 1: the radio has had a packet since its last answer */
-    U32 answeredAt;      /* time of the radio's last result, us */
+    U32 answeredAt;      /* time of the last result of the radio, us */
     U32 rest;            /* longest pause after the next loss, us */
     U32 usualUs;         /* mean time of a packet that arrives, us */
     U32 quick;           /* share of the last packets, of 65,536, lost within that time */

@@ -30,7 +30,7 @@ typedef struct Link_HeaderCache {
 typedef struct Link_Compressed {
     U8 bytes[8];
     U32 prefix, middle, tailAt;
-    U32 head; /* header that both sides cache (link_cacheHeader); 0: none */
+    U32 head; /* header that both sides cache (link_cacheHeader), or 0 */
 } Link_Compressed;
 
 /* Compresses a message. `to` is zeroed on entry, which represents the unchanged message. */

@@ -23,7 +23,7 @@ typedef struct Link_Unanswered {
 typedef struct Link_Pacing {
     U8 longest;         /* largest payload of a frame that is sent, bytes */
     U8 packed;          /* bytes in the packet */
-    U8 heard;           /* bytes of a frame received since the last packet was sent; 0: none */
+    U8 heard;           /* bytes of a frame received since the last packet was sent, or 0 */
     U8 isStream;        /* 1: several fragments are in flight, packets follow each other */
     U8 slow;            /* packets for which the modem still counts as slow, because it may hold
                          * packets */

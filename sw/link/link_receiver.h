@@ -39,7 +39,7 @@ typedef struct Link_Receiver {
     U8 packet;              /* packet of the last acknowledgement, as Link_Pacing.handed counts */
     U16 size;               /* bytes of the complete message */
     U16 longSize;           /* bytes of the long message so far */
-    U32 expected;           /* number of the peer's next fragment, sent in acknowledgements */
+    U32 expected;           /* number of the next fragment of the peer, sent in acknowledgements */
     U32 ackAt;              /* time at which the acknowledgement is due, us */
     U8* start;              /* start of the complete message */
     Link_HeaderCache heads; /* heads of received messages */

@@ -125,9 +125,9 @@ static void skip(Link_Search* search, const U8* frame, U32 left) {
  * bytes were checked before.
  *
  * Hostile bytes can pretend that a frame of the handshake ends with each portion that the caller
- * reads, and use up the search budget before the genuine frame arrives. Therefore a frame of the
- * handshake at the end of the bytes for which there is no budget is kept, and tried after a
- * silence. */
+ * reads, and use up the search budget before the genuine frame arrives. Therefore, if the budget
+ * does not suffice for a frame of the handshake at the end of the bytes, the frame is kept, and
+ * tried after a silence. */
 static U32 parse(Link_Search* search, const U8* bytes, U32 count, int isEnd) {
     int isSure = search->session->handshake.pacing->env.codec->isAuthenticated;
     U32 used = 0;

@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <string.h>
 
-/* Credit before the peer's first acknowledgement, fragments. */
+/* Credit before the first acknowledgement of the peer, fragments. */
 #define LEAST_WINDOW 8U
 
 /* Size of the longest acknowledgement, bytes. */

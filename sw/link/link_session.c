@@ -75,7 +75,7 @@ int link_expect(Link_Session* session, const U8* frame, U32 attempt, Link_Seal* 
     Link_Handshake* handshake = &session->handshake;
     const Link_Identity* present = &handshake->present;
     Link_Kind kind = LINK_KIND_OF(frame);
-    U32 expected = session->sender.base; /* for an ACK */
+    U32 expected = session->sender.base; /* expected number of an ACK */
     if (attempt || LINK_IS_HANDSHAKE(kind))
         return handshake->rules->expect(handshake, frame, attempt, seal);
     if (handshake->state != LINK_STATE_UP || !link_isOfEpoch(frame, present->key))

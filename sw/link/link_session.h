@@ -33,8 +33,8 @@ void link_abort(Link_Session* session);
  * side. */
 U32 link_costOf(const Link_Session* session, const U8* frame);
 
-/* Fills in the seal that a frame has if it is genuine. `attempt`: 0 or 1. Returns 0 if there is no
- * such seal. */
+/* Fills in the seal of a frame, on the assumption that it is genuine. `attempt`: 0 or 1. Returns 0
+ * if a genuine frame cannot have a seal. */
 int link_expect(Link_Session* session, const U8* frame, U32 attempt, Link_Seal* seal);
 
 /* Acts upon an opened frame; `attempt` is the one that opened it. */

@@ -26,7 +26,7 @@ typedef struct XBeeATEndpoint {
     U16 address;      /* address of this side's modem, MY */
     U32 events;       /* events to be delivered, one bit each */
     Ice_Int size;     /* bytes of the pending message */
-    Ice_Byte* buffer; /* buffer of the waiting task; 0: none, and the link keeps a message */
+    Ice_Byte* buffer; /* buffer of the waiting task; 0: the link keeps the message */
     Ice_Byte from;    /* channel of the pending message */
     Ice_Byte ownOpen; /* this side's channel is open */
 } XBeeATEndpoint;

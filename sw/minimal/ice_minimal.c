@@ -160,7 +160,7 @@ static Ice_Status connect(Ice_ObjectPrxPtr self) {
         return status;
     connection = ic->connections + self->connection;
     if (*connection != ICE_OK)
-        *connection = ICE_LATER; /* until the peer's first message */
+        *connection = ICE_LATER; /* until the first message of the peer */
     return await(self, connection);
 }
 
@@ -215,7 +215,7 @@ U32 Ice_numberOption(const char* options, char letter, U32 otherwise) {
     return otherwise;
 }
 
-/* Returns the options after the transport's name; 0 if the text names another transport. */
+/* Returns the options after the name of the transport; 0 if the text names another transport. */
 static const char* optionsOf(Ice_CommunicatorPtr ic, const char* text) {
     size_t size = strlen(ic->endpoint->name);
     return strncmp(text, ic->endpoint->name, size) == 0 && text[size] <= ' ' ? text + size : 0;

@@ -260,7 +260,7 @@ const Link_Statistics* Link_statistics(const Link* link) {
     return &none;
 }
 
-/* Returns the channel's state; 0 if there is no session, or no such channel. */
+/* Returns the state of the channel; 0 if the session or the channel does not exist. */
 static U8* channelOf(Link* link, int channel) {
     return link->state == LINK_STATE_UP && (U32)channel < LINK_CHANNELS ? link->channels + channel
                                                                         : 0;

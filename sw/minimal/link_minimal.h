@@ -17,7 +17,7 @@ struct Link {
     /* The following fields are 0 when a session begins. */
     U8 channels[LINK_CHANNELS]; /* OPEN, CLOSING, and due fragments */
     U8 ackDue;
-    U8 flags;           /* byte 2 of the fragment in flight; 0: none */
+    U8 flags;           /* byte 2 of the fragment in flight, or 0 */
     U8 channel;         /* channel of the message going out */
     U32 sendNext;       /* number of the fragment in flight, or of the next one: SEQ extended */
     U32 receiveNext;    /* number expected */

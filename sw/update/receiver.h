@@ -13,8 +13,8 @@ typedef enum Receiver_State {
     RECEIVER_PREPARING, /* checks the signature */
     RECEIVER_ERASING,
     RECEIVER_RECEIVING,
-    RECEIVER_CHECKING, /* of the complete image */
-    RECEIVER_READY     /* starts at the next reset */
+    RECEIVER_CHECKING, /* the complete image is being checked */
+    RECEIVER_READY     /* the image starts at the next reset */
 } Receiver_State;
 
 typedef enum Receiver_Reason {

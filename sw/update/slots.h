@@ -14,10 +14,10 @@
 #define SLOTS_NONE SLOTS_COUNT
 #define SLOTS_KEYS_AT 0x8000U /* offset of the lists of keys in the processor's flash, sector 2 */
 #define SLOTS_LISTS 64U
-#define SLOTS_IMAGE_AT 0x200U /* in a slot: Cortex-M3 vectors are aligned to 512 bytes */
+#define SLOTS_IMAGE_AT 0x200U /* offset in a slot: Cortex-M3 vectors are aligned to 512 bytes */
 
-/* A list of the two public keys whose owners may sign images and the next list. Lists are only
- * added, after the one written by a programmer; the last complete one is valid. */
+/* A list of two public keys. Their owners may sign images and the next list. The first list is
+ * written by a programmer; later lists are only added, and the last complete one is valid. */
 typedef struct Slots_Keys {
     Slots_Header list;
     U32 unused[23];
@@ -51,7 +51,7 @@ extern const Slots_Layout slots_firmware;
 /* Layout for the FPGA: slot 0 contains the golden bitstream, which is never written, slot 1 the one
  * that is tried first. READY is its sync word, without which the FPGA ignores it. */
 extern const Slots_Layout slots_fpga;
-#define SLOTS_SYNC_AT 16U /* in a bitstream */
+#define SLOTS_SYNC_AT 16U /* offset of the sync word in a bitstream */
 #define SLOTS_LOG_BYTES 0x1000U
 
 /* Reads bytes at an offset in flash. */

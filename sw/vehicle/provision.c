@@ -125,7 +125,7 @@ static const char* obey(const char* line) {
                  "ground or fellow, its address, its key; group, the call's number, its key; or "
                  "protect\r\n";
     else if (!isProven)
-        answer = "no: it has a key; give that, too, or wire the jumper\r\n";
+        answer = "no: it has a key; append it, or fit the jumper\r\n";
     else if (!(isPeer ? UAV_providePeer(isFellow                  ? UAV_VEHICLE
                                         : number == UAV_EVERYBODY ? UAV_GROUP
                                                                   : UAV_OBSERVER,
@@ -170,7 +170,7 @@ void Provision_listen(void) {
     GPIO_PUPDR(JUMPER_PORT) |= 1UL << 2U * JUMPER;
     say("icesoc: key?");
     if (!isProtected())
-        say(" (read protection is off: whoever opens the vehicle can read its key)");
+        say(" (read protection is off: anyone who opens the vehicle can read its key)");
     say("\r\n");
     if (readLine(line))
         say(obey(line));

@@ -13,7 +13,7 @@
 
 static int nextSlot[UAV_PEERS]; /* slot of the next key; -1: there is one key */
 
-/* Returns the index of a slot's first word. */
+/* Returns the index of the first word of a slot. */
 static U32 slotAt(int role, int slot) {
     return (U32)role * UAV_PEER_WORDS + (U32)slot * SLOT_WORDS;
 }

@@ -47,9 +47,8 @@ int UAV_hasGroundsPart(void);
 /* Gives a peer's link the keys of both slots; returns their number. */
 int UAV_giveKeys(int role, Link* link);
 
-/* Puts a peer's next key into the slot that is not in use. Returns 0 if the session has no key,
- * since everyone on the air could read the new one. The current key is accepted and changes
- * nothing. */
+/* Writes the next key of a peer into its unused slot. Returns 0 if the session has no key, because
+ * everyone on the air could read the new one. The current key is accepted and changes nothing. */
 int UAV_setNextKey(int role, Link* link, const U8* key);
 
 /* Removes the old key if the session uses the next one, since the peer then has it. Returns 1 if

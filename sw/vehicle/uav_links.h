@@ -13,7 +13,7 @@ extern const Link_Port uav_linkPort; /* its context is the UAV_Peer */
 /* Forgets all sessions. */
 void UAV_resetLinks(void);
 
-/* Sets the links' limits to those of the modem. */
+/* Sets the limits of the links to the limits of the modem. */
 void UAV_limitLinks(void);
 
 /* Gives a packet to the link of the peer that sent it; packets of others are dropped. */

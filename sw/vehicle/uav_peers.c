@@ -19,7 +19,7 @@ int UAV_providePeer(int role, U32 address, const U8* key) {
     return 1;
 }
 
-/* Reads the group's key: zeros if the slot is empty. Returns 0 if there is no key and the vehicle
+/* Reads the key of the group: zeros if the slot is empty. Returns 0 if it is empty and the vehicle
  * is not open. */
 static int readGroupKey(U8* key) {
     return UAV_readKey(UAV_GROUP, 0, key) || UAV_isOpen();

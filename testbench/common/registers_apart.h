@@ -95,7 +95,7 @@ void expectRegistersApart(CoreSlot<Module>& slot, const Hw_Register (&table)[N],
     std::vector<Register> hold;
     for (const Hw_Register& is : table) {
         if (is.word < 8)
-            continue; // in the system slot
+            continue; // registers of the system slot
         const U32 mask = is.width < 32 ? (1u << is.width) - 1 : ~0u;
         const Register r{is, (0x5A5A0001u + 0x01010101u * static_cast<U32>(&is - table)) & mask};
         const bool refused = access(true, r).error;

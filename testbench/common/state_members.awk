@@ -3,8 +3,8 @@
 # state_members: lists the signals in the header of a Verilated model's state that have names
 # beginning with `top`, one line each: MEMBER(name, "path"). With `class`, the type of the state, it
 # writes them as the function stateOf (registers_apart.h).
-# Random values read beyond an array's end, and the scratch variables for writes there, are not
-# state.
+# Not state: random values that reads beyond the end of an array return, and scratch variables for
+# writes there.
 
 BEGIN {
     if (class) {

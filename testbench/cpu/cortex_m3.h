@@ -16,10 +16,10 @@
 #include <unicorn/unicorn.h>
 #include <vector>
 
-// A Thumb-2 instruction for the CPU model: its length, its cycles, whether it stops, by the tables
-// of the ARMv7-M Architecture Reference Manual, chapter A5. Loads take 2 cycles even if the
-// pipeline would hide one. Divisions and long products take the middle of the range that the TRM
-// gives, because the real number depends on their operands.
+// A Thumb-2 instruction for the CPU model: its length, its cycles, and whether it stops. Source:
+// the tables of the ARMv7-M Architecture Reference Manual, chapter A5. Loads take 2 cycles even if
+// the pipeline would hide one. Divisions and long products take the middle of the range in the
+// TRM, because the real number depends on their operands.
 struct Instruction {
     enum Kind : uint8_t {
         Plain,
@@ -194,8 +194,8 @@ public:
     bool readMemory(uint32_t address, void* data, uint32_t bytes) const;
     bool writeMemory(uint32_t address, const void* data, uint32_t bytes);
     void loadFlash(uint32_t address, const std::vector<uint8_t>& bytes);
-    // Read and write for a debugger: memory directly; registers and windows by accesses like those
-    // that the processor makes.
+    // Read and write for a debugger. Memory is accessed directly; registers and windows by bus
+    // accesses, as by the processor.
     bool debugRead(uint32_t address, void* data, uint32_t bytes);
     bool debugWrite(uint32_t address, const void* data, uint32_t bytes);
     uint8_t* flash() { return flash_.get(); }
@@ -249,8 +249,8 @@ public:
     unsigned currentException() const;
     Exceptions& exceptions() { return exceptions_; }
 
-    // Longest time that the masks held back interrupts of `priority` and below, in cycles, and its
-    // end. Counted from this call on.
+    // Longest time since this call in which the masks blocked interrupts of `priority` and below,
+    // in cycles, and the end of that time.
     struct Masked {
         uint64_t cycles = 0;
         uint32_t from = 0, to = 0; // addresses of the instructions that masked and unmasked

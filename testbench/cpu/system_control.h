@@ -39,8 +39,7 @@ enum Exception : unsigned {
 
 class Exceptions {
 public:
-    static constexpr unsigned interrupts = 81; // for an STM32F2 (RM0033, table 61)
-                                               // 61)
+    static constexpr unsigned interrupts = 81; // number on an STM32F2 (RM0033, table 61)
     static constexpr unsigned count = FirstInterrupt + interrupts;
     static constexpr uint8_t priorityBits = 0xF0; // four bits are there
     static constexpr int none = 256;              // priority of thread mode

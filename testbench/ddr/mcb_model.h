@@ -13,7 +13,7 @@
 //
 // Behind the port, commands are carried out one after another, in bursts of 8 on a device of 16
 // bits at DDR3-800 (ddr3_timing.h), with four memory clocks per clock of the design: 100 MHz. By
-// Xilinx AR36413 a write waits for the end of the previous read's data, and so does an activate;
+// Xilinx AR36413 a write waits until the data of the previous read ends, and so does an activate;
 // otherwise a row is opened as soon as the previous burst has its command. Addresses are
 // ROW_BANK_COLUMN, MIG's default. The path through the FIFOs, both clock crossings and the PHY is
 // estimated by two constants (Timing): UG388 gives the read latency as a range that depends on the
@@ -66,7 +66,7 @@ public:
         uint8_t cmdInstr = 0, cmdBl = 0, wrMask = 0; // mask: 1 = byte not written; bl: words - 1
         uint32_t cmdByteAddr = 0;
         uint64_t wrData = 0;
-        // to the design
+        // outputs of the model
         bool cmdFull = false, cmdEmpty = true, wrFull = false, wrEmpty = true, rdFull = false,
              rdEmpty = true, calibDone = false;
         uint8_t wrCount = 0, rdCount = 0;
@@ -77,8 +77,8 @@ public:
     // Clocks of the design.
     struct Timing {
         unsigned calibration = 64; // shortened: a real start takes startClocks
-        unsigned commandWay = 6;   // from cmd_en to the memory's command
-        unsigned dataWay = 5;      // from the last word of a burst to rd_empty
+        unsigned commandWay = 6;   // clocks between cmd_en and the command on the memory bus
+        unsigned dataWay = 5;      // clocks between the last word of a burst and rd_empty
     };
 
     explicit McbModel(size_t bytes = size_t(128) << 20) : McbModel(bytes, Timing()) {}
@@ -153,7 +153,7 @@ private:
     // AR36413: memory clocks added to a refresh; memory clocks from the end of read data to a
     // write.
     static constexpr unsigned refreshLater = 2, readToWrite = 3;
-    uint64_t readEnd_ = 0; // memory clock in which the last read's data ends
+    uint64_t readEnd_ = 0; // memory clock in which the data of the last read ends
     bool lastWasRead_ = false;
     uint64_t free_ = 0;       // earliest memory clock of the next command
     unsigned promised_ = 0;   // words of the write FIFO claimed by commands

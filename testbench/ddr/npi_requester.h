@@ -159,7 +159,7 @@ private:
         unsigned number = 0;
         NpiTraffic traffic;
         Counters counters;
-        Request now, ahead; // `ahead`: next request, whose write words may be pushed early
+        Request now, ahead; // `ahead`: next request; its write words may be pushed early
         bool raised = false, willing = false, popping = false;
         uint32_t next = 0; // address of a sequential stream
         uint64_t since = 0;

@@ -36,9 +36,9 @@ public:
     GdbStub& operator=(const GdbStub&) = delete;
     uint16_t port() const { return port_; }
 
-    // Waits for a debugger while `mayWait` returns true, and obeys it; a peer that does not start
-    // with the protocol is disconnected. Returns true if the program must continue; false if the
-    // debugger has killed it, the simulation is over, or no debugger has connected.
+    // Waits for a debugger while `mayWait` returns true, and executes its commands. A peer that
+    // does not speak the protocol is disconnected. Returns true if the program must continue; false
+    // if the debugger has killed it, the simulation is over, or no debugger has connected.
     bool serve(const Target& target, const std::function<bool()>& mayWait);
     // True while the processor runs and must stop: the debugger has sent Ctrl-C, or has gone, or
     // another one waits.

@@ -27,7 +27,7 @@ public:
     }
 
     std::array<uint32_t, 1024> words{};
-    unsigned firstError = 1024; // words from this one on report an error
+    unsigned firstError = 1024; // this word and all later ones report an error
     bool hung = false;          // never answers
     unsigned clearWord = 1024;  // writing 1 clears there
 

@@ -32,7 +32,7 @@ void FsmcMaster::delay(const FsmcCorner& corner, FsmcPins& far, uint64_t seed, b
 
 void FsmcMaster::show() {
     if (delays_)
-        return delays_->show(); // for a few ns both sides may drive the data bus
+        return delays_->show(); // both sides may drive the data bus for a few ns
     design_.settle();
     if (pins_.dDriven && pins_.dOut)
         throw FsmcError("data bus driven by both sides");

@@ -21,8 +21,8 @@
 #include <string>
 #include <vector>
 
-// A link's record: CSV with the heading `time_s,loss,rssi_dbm,delay_ms`. A row is valid from its
-// time until the next row's time; the last row stays valid.
+// A record of a link: CSV with the heading `time_s,loss,rssi_dbm,delay_ms`. A row is valid until
+// the time of the next row; the last row stays valid.
 class RfTrace {
 public:
     struct Row {

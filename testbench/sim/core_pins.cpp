@@ -30,8 +30,8 @@ uint32_t maskOf(const CorePin& pin) {
     return static_cast<uint32_t>((uint64_t(1) << pin.width) - 1) << pin.lsb;
 }
 
-// The file ends after this process's last line: a copy that a debugger has taken back in time
-// overwrites the later lines.
+// The file ends after the last line of this process: if a debugger goes back in time, the process
+// that continues overwrites the later lines.
 class PinLog {
 public:
     explicit PinLog(const std::string& file)

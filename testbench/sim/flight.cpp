@@ -43,7 +43,7 @@ Frame pictureFor(const Flight::Options& o) {
     return loadFrame(o.image, width, height);
 }
 
-// Creates the folder of the flight's files, with the picture, and returns it.
+// Creates the folder for the files of the flight, with the picture, and returns it.
 std::string prepared(const Flight::Options& o, const Frame& frame) {
     std::filesystem::create_directories(o.out);
     savePng(o.out + "/before.png", frame);
@@ -92,7 +92,7 @@ std::vector<uint8_t> keyBytes(const std::string& digits) {
     return key;
 }
 
-// Returns a file's bytes for a flash; empty if there is no file.
+// Returns the bytes of a file for a flash; empty if no file is given.
 std::vector<uint8_t> flashOf(const std::string& file, size_t size, const std::string& owner) {
     const std::string bytes = file.empty() ? "" : readFile(file);
     if (!file.empty() && bytes.size() != size)

@@ -16,7 +16,8 @@ from pathlib import Path
 PREFIX = Path(__file__).resolve().parents[1]
 SCHEMA = PREFIX / "share/icesoc/flight.schema.json"
 REFERENCE = PREFIX / "libexec/icesoc/vision-reference"
-# Fields of a flight that this program does not offer: those of other programs of the source tree.
+# Fields of a flight that this program does not offer: they belong to other programs of the source
+# tree.
 OTHER = {"app", "port", "live", "update", "clk_hz", "probe"}
 CONFIG = Path(os.environ.get("XDG_CONFIG_HOME") or Path.home() / ".config") / "icesoc"
 

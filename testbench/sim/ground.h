@@ -126,7 +126,7 @@ public:
     std::vector<uint8_t> key; // key of the link, used from the next start; empty: unencrypted
     const Link_Statistics& statistics() const { return *Link_statistics(link_.get()); }
     bool validated = false, running = true;
-    unsigned hurry = 1; // factor by which the link's clock is sped up (UavMachine::hurry)
+    unsigned hurry = 1; // factor by which the clock of the link is sped up (UavMachine::hurry)
 
 private:
     U32 us() const { return static_cast<U32>(clock_ / 1000); }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// m3_machine: connects the chip's interrupt to PB0, and takes the processor's time from its FSMC
-// pins.
+// m3_machine: connects the interrupt of the chip to PB0, and derives the time of the processor from
+// its FSMC pins.
 
 #include "m3_machine.h"
 #include "tell_on_abort.h"
@@ -164,8 +164,8 @@ void M3Machine::debug(GdbStub& stub, bool canGoBack) {
     stub_ = nullptr;
 }
 
-// Runs as the debugger commands, and leaves copies: one per 50 ms at first, then one per sixteenth
-// of the elapsed time.
+// Runs as the debugger commands. Keeps copies of the process: at first one every 50 ms, later one
+// every sixteenth of the elapsed time.
 CortexM3::Stop M3Machine::resume(bool singleStep) {
     constexpr uint64_t copyNs = 50'000'000;
     isAtBegin_ = isAsked_ = false;
@@ -183,7 +183,7 @@ CortexM3::Stop M3Machine::resume(bool singleStep) {
 }
 
 // Goes back to the last place before this one at which the processor can stop, or to the last
-// breakpoint: one copy finds it, a second one goes there. Returns if there is no such place.
+// breakpoint: one copy finds it, a second one goes there. Returns if it does not exist.
 void M3Machine::goBack(bool singleStep) {
     const uint64_t here = cpu().instructions();
     if (checkpoints_->isFirst(here))

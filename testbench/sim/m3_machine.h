@@ -19,8 +19,8 @@ public:
         std::string firmware; // ELF file
         // Processor clock (HCLK), Hz of simulated time. 120 MHz: the processor's work takes as long
         // as on the board, although the fabric is slower. 0: 6/5 of the fabric clock, as FSMC
-        // accesses always are; then cycle counts are as on the board, and the processor is slower
-        // by the fabric's scale.
+        // accesses always are; then cycle counts are as on the board, and the processor is as much
+        // slower as the fabric.
         uint32_t hclkHz = 120'000'000;
         // Written to uav_guardMs (uav.h) after each start, as a debugger would, in ms; 0: not
         // written. A program without the variable is left alone.

@@ -184,8 +184,8 @@ int main(int argc, char** argv) {
             throw std::invalid_argument("--fpga-flash needs --flash: the boot loader's checks");
         if (o.cpu != "m3" && o.gdb >= 0)
             throw std::invalid_argument(
-                o.replayed ? "that flight was flown by the firmware's host build; GDB needs one of "
-                             "the ARM binary: make run CPU=m3"
+                o.replayed ? "--gdb: expected a flight with the ARM binary, got one with the host "
+                             "build; fly again with make run CPU=m3"
                            : "--gdb needs --cpu m3");
         writeWave(o);
         return Flight(o).run();

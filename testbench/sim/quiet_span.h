@@ -64,8 +64,8 @@ public:
     // those with a tick of the baud rate in progress, which must be evaluated.
     uint64_t pass(uint64_t clocks);
 
-    // Returns the name of the core that keeps the chip from being quiet: it has moved in most of
-    // the evaluated clocks. Empty if there is no such core.
+    // Returns the name of the core that keeps the chip from being quiet: it has changed in most of
+    // the evaluated clocks. Empty if no core did.
     std::string mover() const;
 
     // Forgets the recorded state; to be called when an input changes.
@@ -106,6 +106,6 @@ private:
     uint8_t rxStep_ = 0, txStep_ = 0;        // steps of the UART's tick counters per tick
     unsigned patience_ = 0, pause_ = 0;      // clocks before the next look at a busy chip
     uint64_t busyLooks_ = 0;                 // comparisons that found the chip busy
-    unsigned blamed_ = 0;                    // those of them in which movers were recorded
+    unsigned blamed_ = 0;                    // busy looks in which movers were recorded
     std::map<std::string, unsigned> movers_; // cores, by the looks in which they had moved
 };

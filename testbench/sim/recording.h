@@ -30,7 +30,7 @@
 
 // The events of a flight, with their times, as JSON Lines, for the mission's page and other
 // tools. One object a line:
-//   {"ns": t, "packet": bytes, "from": "ground" or "uav", "lost": bool}   a packet's end
+//   {"ns": t, "packet": bytes, "from": "ground" or "uav", "lost": bool}   end of a packet
 //   {"ns": t, "slot": n, "events": bits}   the processor has read these events of slot n, not 0
 //   {"ns": t, "task": name}    the firmware switches to this task (Cortex-M3 only)
 //   {"ns": t, "accesses": {"n": count}}    register accesses to slots in the 10 ms after t

@@ -6,10 +6,10 @@
 //
 // In the first clock the platform is in any state and only its counters move. The proof shows that
 // then only they move in all later clocks, by the same steps, whatever cores and memory do, as long
-// as stirs_o is low, the platform's pins are stable, and no counter has its event. The outputs of
-// the platform to cores, memory and pins do not depend on the counters
-// (tests/hdl/formal/platform_rests.ys). The chip's clock is `later` here: idle_registers.v makes an
-// assumption and an assertion of each flip-flop with this clock.
+// as stirs_o is low, the pins of the platform are stable, and no counter has its event. The outputs
+// of the platform to cores, memory and pins do not depend on the counters
+// (tests/hdl/formal/platform_rests.ys). The clock of the chip is `later` here: idle_registers.v
+// makes an assumption and an assertion of each flip-flop with this clock.
 
 `default_nettype none
 `include "rests.vh"
@@ -41,7 +41,7 @@ module rest_proof (
     wire stirs = `PLATFORM_STIRS(u_soc.u_platform);
     always @* assume (!stirs);
 
-    // The counters, and the counters whose event is a tick.
+    // All counters, and the counters with a tick as their event.
     (* hierconn *) wire [63:0] \u_soc.u_system_slot.cycles ;
     (* hierconn *) wire [18:0] \u_soc.u_modem.u_baud.phase ;
     (* hierconn *) wire [16:0] \u_soc.u_modem.u_timer.clocks ;

@@ -30,7 +30,7 @@ public:
     ~SocModel();
 
     // Resets the chip. Without `memoryStarts` the memory is ready at the end. With it the memory
-    // starts then, which takes a millisecond, as on a board whose processor does not wait for it.
+    // starts then, which takes a millisecond, as on a board with a processor that does not wait.
     void reset(bool memoryStarts = false);
     void tick(); // one clock cycle
 
@@ -80,7 +80,7 @@ public:
     uint32_t corePins() const { return top_->core_pins_o; }
 
     // Sets the driver of those pins. It is called before a clock, and returns the clock (cycles())
-    // of its next call.
+    // at which it is called again.
     void onClock(std::function<uint64_t()> drive) { drive_ = std::move(drive); }
     // Called at each change of the cores' outputs.
     void onCorePins(std::function<void(uint32_t)> changed) {

@@ -41,8 +41,8 @@ public:
 
     SimulatedBoard board; // board of the UAV's application
 
-    // Runs the firmware's clock this many times as fast as the fabric's, to shorten periods in
-    // which only the firmware's time-outs run. The modem's times are then too long for it.
+    // Runs the clock of the firmware this many times as fast as the clock of the fabric, to shorten
+    // periods in which only time-outs of the firmware run. Meanwhile the modem is too slow for it.
     void hurry(unsigned times);
 
 private:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// simulated_clock: makes a simulated modem's time the clock of an engine on the ground. A simulator
-// names this library in XBEEAT_CLOCK (clock.h) for the programs that it starts, with its SimStatus
-// file as the argument.
+// simulated_clock: lets an engine on the ground use the time of a simulated modem as its clock. A
+// simulator names this library in XBEEAT_CLOCK (clock.h) for the programs that it starts, with its
+// SimStatus file as the argument.
 
 #pragma once
 

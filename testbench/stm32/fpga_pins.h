@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// fpga_pins: the FPGA's configuration and its flash at the processor pins: SPI 1 (PA4 to PA7),
-// which the FPGA drives while it configures itself, PROGRAM_B and DONE. Without a flash the FPGA is
-// always configured.
+// fpga_pins: configuration of the FPGA and its flash, as seen at the pins of the processor: SPI 1
+// (PA4 to PA7; driven by the FPGA while it configures itself), PROGRAM_B and DONE. Without a flash
+// the FPGA is always configured.
 
 #pragma once
 

@@ -51,7 +51,7 @@ public:
     uint8_t transfer(uint8_t in) {
         settle();
         in_.push_back(in);
-        const size_t behind = in_.size() - 1; // bytes behind the instruction's first
+        const size_t behind = in_.size() - 1; // bytes after the first byte of the instruction
         if (!isSelected_ || behind == 0)
             return 0xFF;
         if (in_[0] == ReadStatus)

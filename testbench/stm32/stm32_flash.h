@@ -140,7 +140,7 @@ private:
             keyStep_ = 0;
         }
     }
-    // Option bytes, of which only the read protection is stored (PM0059, 2.5).
+    // Option bytes; only the read protection is stored (PM0059, 2.5).
     void unlockOptions(uint32_t key) {
         static constexpr uint32_t optionKeys[2] = {0x08192A3B, 0x4C5D6E7F};
         optionStep_ = optionStep_ < 2 && key == optionKeys[optionStep_] ? optionStep_ + 1 : 3;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// stm32f2_peripherals: the peripherals of Stm32F2, most of which only store written values.
+// stm32f2_peripherals: the peripherals of Stm32F2. Most of them only store written values.
 
 #include "stm32f2_map.h"
 #include <algorithm>

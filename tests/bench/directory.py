@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""directory: what IceGrid's registry and IceStorm take: look-ups, registrations and events in a
-second of a processor, which whatever else the machine does hardly changes.
+"""directory: measures IceGrid's registry and IceStorm: look-ups, registrations and events per
+second of CPU time, which hardly depends on the load of the machine.
 
     directory.py FOLDER OUTPUT.json [--brief]      FOLDER: where icesoc.util.fetch icegrid put both
 """
@@ -26,7 +26,7 @@ HERE = "tcp -h 127.0.0.1"
 
 
 class Service:
-    """A program with an object adapter, whose endpoint it prints as Ice traces it."""
+    """A program with an object adapter. Ice's trace prints its endpoint."""
 
     def __init__(self, adapter, *words):
         self.process = subprocess.Popen([*words], text=True, stdout=subprocess.PIPE,
@@ -81,7 +81,7 @@ def registry(ic, folder, work, count, calls):
                                locator.findAdapterByIdAsync(f"uav{i}") for _ in range(calls)])
         if locator.findAdapterById("uav1") != entry:
             sys.exit("directory: the registry leads elsewhere")
-    of = f"with {count} vehicles, a second of a processor"
+    of = f"with {count} vehicles, per second of CPU time"
     return [figure(f"{what} {of}", round(value), "")
             for what, value in (("registrations", registered), ("look-ups", found))]
 
@@ -116,7 +116,7 @@ def storm(ic, folder, subscribers, events):
             time.sleep(0.01)
         taken = events / max(service.spent() - begin, 0.01)
     adapter.destroy()
-    return figure(f"events to {subscribers} subscribers, a second of a processor", round(taken), "")
+    return figure(f"events to {subscribers} subscribers, per second of CPU time", round(taken), "")
 
 
 def main(folder, output, brief=""):

@@ -20,8 +20,8 @@ const Ground::Call isAlive = {"uav", "isAlive", 0, {7, 0}};
 // takes.
 class MeasuredFlight : public GroundAndChip {
 public:
-    // `scaled` 1: the board's ratio of clocks; 50: processor time scaled to radio time. `key`: key
-    // of the link, if any. `isTransparent`: mode of the vehicle's modem.
+    // `scaled` 1: ratio of clocks as on the board; 50: processor time scaled to radio time. `key`:
+    // key of the link, or empty. `isTransparent`: the modem of the vehicle is in transparent mode.
     MeasuredFlight(const std::string& elf, double scaled, const std::vector<uint8_t>& key = {},
                    bool isTransparent = false)
         : GroundAndChip(1), warp(scaled),
@@ -211,7 +211,7 @@ void measureStream(MeasuredFlight& f, const std::string& what) {
     const std::vector<uint8_t> load(1000, 0x55);
     auto feed = [&] {
         while (f.ground.backlog() < 12000)
-            f.ground.call(0, "nobody", "listen", 0, load);
+            f.ground.call(0, "missing", "listen", 0, load);
         return false;
     };
     double end = f.seconds() + 1; // calls in progress
@@ -230,8 +230,8 @@ void measureStream(MeasuredFlight& f, const std::string& what) {
     say(what + ": cycles per byte", (f.awake() - awake) / (goodput * took), "cycles");
 }
 
-// Measures a ping from the arrival of the message's last byte at IceC's endpoint to the first frame
-// of its reply.
+// Measures a ping: the time between the last byte of the request at the endpoint and the first
+// frame of the reply.
 void measurePings(MeasuredFlight& f, const std::string& program) {
     const ElfImage& image = *f.machine.stm32().image();
     const uint32_t message = image.symbol("XBeeATEndpoint_onMessage"),

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// fleet: calls per second on one channel, with vehicles called one after the other or all at once:
-// by one ground station, by separate ground stations, or by two that share them. Links, modems in
-// API mode and air as in air.cpp; a ground station shares its modem as the engine does.
+// fleet: measures calls per second on one channel. Vehicles are called one after the other or all
+// at once, by one ground station, by one ground station each, or by two that share them. Links,
+// modems in API mode and air as in air.cpp; a ground station shares its modem as the engine does.
 
 #include "figures.h"
 #include "modem_pair.h"

@@ -31,7 +31,7 @@ template <class Request> uint64_t directMcb(size_t bytes, const std::vector<Requ
     McbModel memory(bytes);
     while (!memory.pins.calibDone)
         memory.cycle();
-    size_t pushing = 0, issuing = 0; // request whose words are next; request whose command is next
+    size_t pushing = 0, issuing = 0; // next request to push words for; next one to issue
     unsigned pushed = 0, promised = 0;
     uint64_t words = 0, popped = 0, clocks = 0;
     for (const Request& r : requests)

@@ -74,8 +74,8 @@ private:
     uint8_t byte_ = 0;
 };
 
-// Settings of modem 0 or 1, which talks to the other; RN is `leastExponent`, except in API mode, in
-// which the end changes it.
+// Returns the settings of modem 0 or 1, which talks to the other one. RN is `leastExponent`; in API
+// mode the end changes it.
 inline XBee::Options modemOptions(unsigned address, bool encrypts = false,
                                   unsigned leastExponent = 2, bool isApi = false) {
     XBee::Options o;

@@ -179,7 +179,7 @@ class Call(unittest.TestCase):
         self.assertRegex(self.ask("nothing")[2], r"^done in [0-9.]+ ms\n$")
 
     def test_refused(self):
-        """Nothing is sent: there is no server at this address."""
+        """Nothing is sent: no server listens at this address."""
         for words, message in REFUSED.items():
             unknown = words.split()[0] in ("ad", "ice_pong")  # the object is asked
             target = () if unknown or {"--gateway", "--device"} & set(words.split()) \
@@ -310,7 +310,7 @@ class Call(unittest.TestCase):
         self.assertEqual(self.ask(["add", "1", "2", "--locator", f"x:{endpoint} -p 1"])[0], 4)
 
     def test_speed(self):
-        """The first call takes at most 1.5 times a program's own start and call."""
+        """The first call takes at most 1.5 times as long as a small program that makes it."""
         program = ["/usr/bin/python3", "-c", f"""
 import Ice
 Ice.loadSlice("", ["-I" + Ice.getSliceDir(), "{HERE}/call.ice"])

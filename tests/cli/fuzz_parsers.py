@@ -59,8 +59,8 @@ class Parser:
     module: str
     words: list  # FILE is replaced by the input, OUT by the folder of the output
     seeds: object  # patterns of files, or a function
-    function: str = "main"  # gets the file if there are no words
-    program: str = ""  # in the build folder: runs instead of the module
+    function: str = "main"  # gets the file if `words` is empty
+    program: str = ""  # program in the build folder that runs instead of the module
 
 
 def chip_rdl():

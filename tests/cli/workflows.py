@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""workflows: the commands of the container and of the workflows for GitHub and GitLab do what they
-say, here and in a user's own repository of cores.
+"""workflows: tests the commands of the container and of the workflows for GitHub and GitLab, here
+and in a user's repository of cores.
 
 Usage: workflows.py case work-folder build-folder
 """

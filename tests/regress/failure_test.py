@@ -163,7 +163,7 @@ class Cases(Project):
         self.assertEqual(Path("build/regress/history.jsonl").read_text().count("\n"), 2)
 
     def test_blame(self):
-        """One group per bug, with a test's last word, the failure nearest to the cause first."""
+        """One group per bug; the failure nearest to the cause is the first one."""
         self.tests(BLAME.replace("%s", IDEMPOTENT))
         write("hdl/a/broken_proof.vh", "begin\n    assert (full ||\n        !taken);\nend\n")
         self.regress("--name 'test_g|formal|ice'", 1)

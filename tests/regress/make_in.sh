@@ -8,5 +8,5 @@ source=$1 build=$3
 ICESOC_TREE=$(cd "$2" && pwd)
 export ICESOC_TREE
 shift 3
-unset MAKEFLAGS MFLAGS MAKELEVEL # from the make that runs the tests
+unset MAKEFLAGS MFLAGS MAKELEVEL # set by the make that runs the tests
 exec make -s -C "$source" BUILD="$build" BUILT=1 "$@"

@@ -229,7 +229,7 @@ add_subdirectory(library/zephyr)
             self.assertIn(its.get("condition"), conditions | {None})
 
     def test_guide(self):
-        """The code on the porting guide is that of the examples."""
+        """The code in the porting guide equals the code of the examples."""
         page = (TREE / "docs/porting.md").read_text()
         sources = "".join(path.read_text() for path in EXAMPLE.glob("*.c"))
         blocks = re.findall(r"^```c\n(.*?)^```", page, re.M | re.S)
@@ -246,8 +246,8 @@ add_subdirectory(library/zephyr)
             self.ask("xmllint", "--noout", "--schema", schema / "PACK.xsd", "a.pdsc")
 
     def test_contracts(self):
-        """A block's registers keep the contract of each recorded version with the same major
-        number. With RECORD in the environment, versions that are not recorded are written."""
+        """The registers of a block keep the contract of each recorded version with the same major
+        number. With RECORD in the environment, missing versions are recorded."""
         for path in sorted([*TREE.glob("hdl/*/*.regs.json"), *TREE.glob("ip/*/*.regs.json")]):
             block = Block.read(path)
             if not block.is_slot:
@@ -272,8 +272,8 @@ add_subdirectory(library/zephyr)
                  env={**os.environ, "ICESOC_TREE": str(tree), **environment})
 
     def test_same_bytes(self):
-        """Two runs in other surroundings give the same bytes; the archive has the commit's files,
-        and the bill of materials lists each."""
+        """Two runs in different environments give the same bytes; the archive has all files of the
+        commit, and the bill of materials lists each."""
         fresh(WORK)
         if not (TREE / ".git").exists():
             self.skipTest("this tree is not a git repository")
@@ -352,8 +352,8 @@ add_subdirectory(library/zephyr)
         self.ask(*release, "test@icesoc", env=home)
         self.has("SHA256SUMS.asc$", "^IceSoC 1.2.3, signed.$")
         self.ask("gpg", "--verify", "out/SHA256SUMS.asc", "out/SHA256SUMS", env=home)
-        self.ask(*release, "nobody@icesoc", status=1, env=home)
-        self.has("release: gpg could not sign with 'nobody@icesoc': ")
+        self.ask(*release, "missing@icesoc", status=1, env=home)
+        self.has("release: gpg could not sign with 'missing@icesoc': ")
         self.ask("gpgconf", "--kill", "all", env=home)
 
 

@@ -196,8 +196,8 @@ private:
         for (Mail* mail : in_[peer])
             if (mail && mail->arrived(channel, Bytes(data, data + size), isRival_))
                 return 0;
-        throw Fault(fmt::format("{}: a message of 0x{:04x} came that is wrong, came before, is out "
-                                "of order, or for another vehicle with this address",
+        throw Fault(fmt::format("{}: a message from 0x{:04x} is wrong, a duplicate, out of order, "
+                                "or for another vehicle with this address",
                                 modem.name(), target(peer)));
     }
 

@@ -79,8 +79,8 @@ public:
             pass(0);
         }
         if (!isWell())
-            throw Fault("in good weather a link does not recover, or a message is neither "
-                        "delivered nor reported");
+            throw Fault("with a good channel, a link does not recover, or a message is lost "
+                        "without a report");
     }
     const Totals& totals() const { return totals_; }
     uint64_t hostile() const { return attacker_.sent(); }
@@ -154,7 +154,7 @@ private:
         End& end = *ends_[random_.below(hosts)];
         switch (random_.below(isFleet_ ? 7 : attacked_ ? 6 : 3)) {
         case 0:
-            ++totals_.reboots; // of a vehicle, or another program replaces the ground's
+            ++totals_.reboots; // of a vehicle, or of the program on the ground
             end.boot(now_, attacked_);
             break;
         case 1:

@@ -51,7 +51,7 @@ seen.push("clock " + document.querySelector("#chip a").textContent + " " +
 seen.push("wider " + all(".tabulator-tableholder").filter(t => t.scrollWidth > t.clientWidth).length);
 seen.push("rounded " + [104.46, 104.44, 104].map(clockText));
 let slack = read("slack");
-for (let left = 20; left && / 0 *$/.test(slack); left--) { // to the last bar
+for (let left = 20; left && / 0 *$/.test(slack); left--) { // moves to the last bar
   key(document.getElementById("slack"), "ArrowLeft");
   await rest();
   slack = read("slack");

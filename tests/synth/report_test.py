@@ -103,7 +103,7 @@ class Cases(Script):
         write("gen/clocks.v", """module clocks (input clk_i, output pll_o, output reg q_o);
             wire clk;
             PLL_BASE u_pll (.CLKIN(clk_i), .CLKOUT0(pll_o)); // in Yosys' second library
-            BUFG u_buffer (.I(pll_o), .O(clk)); // in the first, but not for the mapping
+            BUFG u_buffer (.I(pll_o), .O(clk)); // in the first library, but not used by the mapping
             always @(posedge clk) q_o <= !q_o;
             endmodule\n""")
         # A memory without an array.
@@ -297,8 +297,7 @@ class Cases(Script):
         self.has(r"^Utilisation since .* \(The first one\):", grown, r"^\| wide \| gone \| gone \|",
                  r"^\| wider \| \d+ \(new\) \|", r"^\| \w+\+ \| not measured \|")
         self.has(r"^\| wider ", file=here / "build/summary.md")
-        # Over budget the difference matters most: it is printed, and the status is that of the
-        # budget.
+        # A design over budget: the difference is printed, and the exit status shows the excess.
         kept = designs.read_text()
         edit(designs, '"ff": 30', '"ff": 20')
         self.made("synth", "BASE=HEAD", status=None)

@@ -6,7 +6,7 @@ checks that each C file has its header, and that libraries have no circles.
     arrows.py TREE                the includes of TREE, a checkout
     arrows.py --circles LIBRARY [PREFIX...]
                                   the object files of a static library: none needs one that needs
-                                  it; files whose names begin with one PREFIX count as one
+                                  it; all files with names that begin with a PREFIX count as one
                                   (natural recursion)
 
 A room is a folder, the longest that fits a file. A file may include from its own room and from

@@ -58,7 +58,7 @@ class Cases(Script):
                  status=None)
 
     def test_tarball(self):
-        """Listing the tree's files also works in a copy that is not a clone."""
+        """The files of the tree can also be listed in a copy that is not a clone."""
         states = set()
         with tempfile.TemporaryDirectory() as copy:
             self.ask("sh", "-c", "git grep --no-index --exclude-standard --no-color -lz '' |"

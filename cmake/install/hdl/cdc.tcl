@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 #
 # cdc: constraints of the crossings of the block cdc, for Vivado. A value reaches the first flip-flop
-# of a synchroniser within a period of its clock. This file has not been run with Vivado. For ISE see
+# of a synchroniser in less than one period of its clock. Not run with Vivado yet. For ISE see
 # platform.ucf.
 foreach cell [get_cells -hierarchical -filter {NAME =~ *bit_meta_reg*}] {
     set clock [get_clocks -of_objects $cell]

@@ -90,8 +90,8 @@ std::shared_ptr<Client> Forwarder::clientOf(const Request& request) {
     return client;
 }
 
-// Ends the turns of a client that has nothing more to send, and those of its subject if none of the
-// subject's clients has.
+// Ends the turns of a client that has nothing more to send. Also ends the turns of its subject, if
+// no other client of the subject has anything to send.
 void Forwarder::restIfEmpty(const Client& client) {
     if (!client.requests.empty())
         return;

@@ -65,9 +65,9 @@ public:
     // it is the first request of one of the subject's 200 clients. At most 16 requests of a subject
     // block at a time; further ones fail, and a one-way request that fails closes its connection.
     void take(std::shared_ptr<Request> request);
-    // Passes a request of the vehicle to the only client that has passed a proxy of this identity
-    // to the vehicle; if none, to the only client with a two-way call in progress. Replies
-    // ObjectNotExistException if two clients qualify, or none.
+    // Passes a request of the vehicle to the only client that gave the vehicle a proxy with this
+    // identity; without such a client, to the only client with a two-way call in progress. Replies
+    // ObjectNotExistException if no client or several clients qualify.
     void takeCallback(std::shared_ptr<Request> request);
     // Sets the adapter that dispatches the vehicle's requests on the clients' connections.
     void setCallbacks(std::shared_ptr<Ice::ObjectAdapter> adapter);
@@ -89,9 +89,9 @@ private:
     enum { shortCalls, longCalls, lanes };
     struct Lane {
         Connection connection;
-        bool isConnecting = false, isMissing = false;  // no channel was free for it
-        std::deque<std::shared_ptr<Request>> underWay; // in the order sent
-        size_t requests = 0, bytes = 0;                // chosen or in flight
+        bool isConnecting = false, isMissing = false;  // isMissing: no channel was free
+        std::deque<std::shared_ptr<Request>> underWay; // requests sent, oldest first
+        size_t requests = 0, bytes = 0;                // requests chosen or in flight
         bool isConfirming = false;
     };
     struct Subject {

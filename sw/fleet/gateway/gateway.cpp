@@ -95,8 +95,8 @@ Take toStation(const std::shared_ptr<Ice::ObjectPrx>& station, const std::string
     };
 }
 
-// Returns the port of an adapter's first endpoint. Throws if an endpoint accepts unencrypted calls
-// from other machines.
+// Returns the port of the first endpoint of an adapter. Throws if an endpoint accepts unencrypted
+// calls from other machines.
 int checkedPort(const std::shared_ptr<Ice::ObjectAdapter>& adapter) {
     int port = 0;
     for (const auto& endpoint : adapter->getEndpoints()) {
@@ -220,7 +220,7 @@ void serve(const std::shared_ptr<Ice::Communicator>& ic, const Options& o) {
     std::list<Vehicle> vehicles;
     for (const auto& [name, address] : fleetOf(o))
         vehicles.emplace_back(ic, o, rights, name, address, int(vehicles.size()), publisher);
-    // Returns the registry's error; empty if it answers or there is no registry.
+    // Returns the error of the registry; empty if it answers, or if no registry is configured.
     const auto ask = [&](void (Registration::*question)()) -> std::string {
         try {
             for (Vehicle& vehicle : vehicles)

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: MIT
 """change_key: gives a vehicle a new key over the link, and the key file with it.
 
-Wherever this is cut off, vehicle and file have a key in common, and the next run goes on from
-there. The file has both keys before the vehicle gets the new one; the vehicle has both until a
-session has come up under the new one; then the file loses the old one.
+If this program is interrupted at any point, vehicle and file have a key in common, and the next run
+continues. The file has both keys before the vehicle gets the new one. The vehicle has both until
+a session with the new key is established; then the old key is removed from the file.
 """
 
 import argparse

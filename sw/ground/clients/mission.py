@@ -175,8 +175,8 @@ def explain(communicator, args, failure):
             "chip:" + args.endpoint)))
         if found:
             text += "; ".join(["", *found]) + (
-                ": build both anew from one ip/cores.list, the firmware by make firmware, the chip "
-                "by make synth-edif (docs/utilisation.md)")
+                ": build both again from one ip/cores.list, the firmware by make firmware, the "
+                "chip by make synth-edif (docs/utilisation.md)")
     return text
 
 
@@ -214,8 +214,8 @@ class Mission:
         self.log.say(f"{begun} {self.args.device}; the UAV has {self.args.patience} s to answer")
 
     def prepare(self):
-        """Tells the cores of the frame's size, and the first vehicle of four and more that the
-        second one, whose state it asks for and reports, flies."""
+        """Sends the size of the frame to the cores. With four or more vehicles, the first one also
+        learns that the second one flies; it asks for the state of the second one and reports it."""
         if self.args.camera:
             size = Image.open(self.args.frame).size
             for part in self.parts:

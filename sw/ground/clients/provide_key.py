@@ -88,8 +88,9 @@ def call_number():
     2026 (sw/link/link_broadcast.h). The vehicle refuses calls that are older than its key."""
     number = int((time.time() - 1767225600) * 4)
     if not 0 < number < 1 << 31:
-        raise Failed("this computer's clock is at %s: set it first, because calls to all vehicles "
-                     "are numbered by it" % time.strftime("%Y-%m-%d"))
+        raise Failed("the clock of this computer: expected a date after 2026-01-01, got %s; set it "
+                     "first, because calls to all vehicles are numbered by it" %
+                     time.strftime("%Y-%m-%d"))
     return number
 
 
@@ -112,8 +113,8 @@ def provide(port, command, patience):
         termios.tcflush(port, termios.TCIFLUSH)
         fcntl.ioctl(port, TIOCCBRK)
     if "protection is off" in asked:
-        print("provide_key: read protection is off: whoever opens the vehicle can read its key "
-              "(--protect)", file=sys.stderr)
+        print("provide_key: read protection is off: anyone who opens the vehicle can read its key "
+              "(--protect switches it on)", file=sys.stderr)
     os.write(port, command.encode() + b"\n")
     answer = read_line(port, 10)
     if answer != "ok":
@@ -135,10 +136,10 @@ def main():
     parser.add_argument("--address", type=address, default=1,
                         help="address for the vehicle, and its line in the file (default: 0x0001)")
     second = parser.add_mutually_exclusive_group()
-    second.add_argument("--ground", type=address, help="address of a second ground's modem, which "
-                        "the vehicle serves, too, under this key of its own")
-    second.add_argument("--fellow", type=address, help="address of another vehicle, which it calls "
-                        "and serves, under this key of the two")
+    second.add_argument("--ground", type=address, help="modem address of a second ground station; "
+                        "the key is for this ground station only")
+    second.add_argument("--fellow", type=address, help="modem address of another vehicle; the two "
+                        "vehicles call each other, and the key is for them only")
     second.add_argument("--group", action="store_const", dest="ground", const=GROUP,
                         help="gives it the key of calls to all vehicles, in the line 0xffff")
     parser.add_argument("--patience", type=int, default=120,

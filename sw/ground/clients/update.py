@@ -28,7 +28,7 @@ OBJECTS = {HEADER.constants["LOADER_PRODUCT"]: "update",  # by product number
 PIECE, PIECES_ON_THE_WAY, DICTIONARY = 4096, 3, 65535
 TEXT = {
     "foreignImage": "the package is not for this kind of vehicle, or not for its board",
-    "oldVersion": "its version must be greater than the vehicle's confirmed version",
+    "oldVersion": "the version must be greater than the confirmed version on the vehicle",
     "wrongSignature": "it is not signed with this vehicle's keys",
     "damagedImage": "the received bytes do not match the signature; try again",
     "busyNow": "another update is under way",
@@ -80,8 +80,8 @@ def read_package(path):
 
 
 def read_clock(air):
-    """Returns the vehicle's time, s, and the bytes on the air to it: from the simulator; otherwise
-    wall-clock time and no bytes."""
+    """Returns the time, s, and the number of bytes sent to the vehicle over the air, both from the
+    simulator; without a simulator, wall-clock time and no bytes."""
     counters = air.read()
     return (counters["ns"] / 1e9, counters["bytesUp"]) if counters else (time.monotonic(), 0)
 

@@ -20,7 +20,7 @@ __all__ = ["Vehicle", "Unknown", "connect", "load_slice"]
 
 
 def load_slice(*files):
-    """Makes the types of Slice files available; without names, those of the installed ones."""
+    """Makes the types of Slice files available; without names, the types of all installed files."""
     for file in files or map(places.slice_file, places.SLICE_FILES):
         Ice.loadSlice("", ["-I" + (Ice.getSliceDir() or "."), file])
 

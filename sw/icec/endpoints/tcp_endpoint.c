@@ -52,7 +52,7 @@ static void use(TcpEndpoint_Connection* c, int fd, Ice_Byte accepted) {
     memset(c, 0, sizeof *c);
     c->fd = fd;
     c->accepted = accepted;
-    c->told = !accepted;
+    c->reported = !accepted;
     c->usedMs = TcpEndpoint_nowMs(0);
     TcpEndpoint_tune(fd);
 }
@@ -86,8 +86,8 @@ static int ready(TcpEndpoint* self, Ice_Byte* buffer, Ice_Event* event) {
         event->connection = i;
         if (c->fd < 0 || c->over)
             continue;
-        if (!c->told) {
-            c->told = 1;
+        if (!c->reported) {
+            c->reported = 1;
             event->kind = ICE_EVENT_OPENED;
             return 1;
         }

@@ -25,7 +25,7 @@
 
 typedef struct TcpEndpoint_Connection {
     int fd;                       /* -1: free */
-    Ice_Byte accepted, told;      /* told: OPENED has been reported */
+    Ice_Byte accepted, reported;  /* reported: the event OPENED has been delivered */
     Ice_Byte sending, over;       /* over: closed, except for the task that still sends */
     Ice_Byte spoke;               /* this side has sent a message */
     Ice_Byte served;              /* a request or reply was sent or received */
@@ -33,7 +33,7 @@ typedef struct TcpEndpoint_Connection {
     U32 sentMs;                   /* time of the last message sent */
     U32 usedMs;                   /* time of the last request or reply */
     Ice_Int owed;                 /* replies due in either direction */
-    struct sockaddr_storage peer; /* for a connection made by this side */
+    struct sockaddr_storage peer; /* address of the peer, if this side made the connection */
     socklen_t peerSize;
     Ice_Int have;
     Ice_Byte data[ICE_MESSAGE_MAX];

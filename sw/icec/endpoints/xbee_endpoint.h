@@ -22,7 +22,7 @@
     (ICE_CONNECTIONS < 3 * LINK_CHANNELS ? ICE_CONNECTIONS < 2 * LINK_CHANNELS ? 1 : 2 : 3)
 #define XBEE_CONNECTIONS (XBEE_PEERS * LINK_CHANNELS)
 
-/* The endpoint's port to the application, whose radio task owns the link. */
+/* Functions of the application, which owns the link in its radio task. */
 typedef struct XBeeATEndpoint_Port {
     void (*lock)(void* context); /* is held during each use of the link and its callbacks */
     void (*unlock)(void* context);
@@ -40,7 +40,7 @@ typedef struct XBeeATEndpoint {
     U16 addresses[XBEE_PEERS]; /* addresses of the peers; the first ground has 0 */
     U32 events;                /* events to be delivered, one bit each */
     Ice_Int size;              /* bytes of the pending message */
-    Ice_Byte* buffer; /* buffer of the receiving task; 0: none, and the link keeps a message */
+    Ice_Byte* buffer; /* buffer of the receiving task; 0: the link keeps the message */
     Ice_Byte from;    /* connection of the pending message */
     Ice_Byte ownOpen; /* this side's channel is open, one bit for each peer */
     Ice_Byte held;    /* the link keeps a message that was not taken */

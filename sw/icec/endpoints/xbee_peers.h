@@ -12,8 +12,8 @@
 /* Returns the peer with this address; -1: unknown. */
 int XBeePeers_find(const XBeeATEndpoint* self, U16 address);
 
-/* Dials a vehicle for one call's time, starting now, or ends that. Returns 1 if it is dialed;
- * grounds are not. */
+/* Starts or stops dialing a vehicle; dialing ends by itself after the time of one call. Returns 1
+ * if the peer is dialed; ground stations are not. */
 int XBeePeers_setDialed(XBeeATEndpoint* self, int peer, int isDialed);
 
 /* Returns 1 if a session ended before anything arrived in it and the vehicle is dialed further. So

@@ -19,7 +19,7 @@ void Ice_OutputStream_beginValues(Ice_OutputStreamPtr os, Ice_OutputValues* valu
     os->values = values;
 }
 
-/* Returns the instance's place in `known`; -1 if it is new, and was added at the end. */
+/* Returns the index of the instance in `known`; -1 if it is new and was added at the end. */
 static Ice_Int placeOf(Ice_OutputStreamPtr os, const Ice_Value* v, Ice_Int* place) {
     Ice_OutputValues* values = os->values;
     Ice_Int i;
@@ -37,7 +37,8 @@ static Ice_Int placeOf(Ice_OutputStreamPtr os, const Ice_Value* v, Ice_Int* plac
     return 1;
 }
 
-/* Returns the number under which this type's name was written; 0 if it was not, and got one now. */
+/* Returns the number under which the name of this type was written; 0 if it was not written before;
+ * it then gets a number. */
 static Ice_Int typeNumber(Ice_OutputStreamPtr os, Ice_String id) {
     Ice_OutputValues* values = os->values;
     Ice_Int i;

@@ -32,7 +32,7 @@ namespace {
 
 using Bytes = std::vector<uint8_t>;
 
-uint32_t board[2] = {1, 1}, needs = 0; // from the command line
+uint32_t board[2] = {1, 1}, needs = 0; // options --board and --needs
 std::string second;
 bool isUnchecked = false;
 
@@ -233,7 +233,7 @@ void checkWhole(const std::string& path, const Bytes& file, size_t at) {
              std::to_string(file.size()) + " bytes without it");
     if (const size_t rest = packets.rest())
         fail("'" + path + "' has " + std::to_string(rest) +
-             " bytes after the bitstream's end: expected none");
+             " bytes after the end of the bitstream: expected none");
 }
 
 // Throws if a .bit file has more or fewer bytes than field 'e' of its header states (the format of

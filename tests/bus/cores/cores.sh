@@ -121,7 +121,7 @@ has core_pins.ucf '^NET "core_pins_i<0>" LOC = "A4"; # eye.button_i\[0\]$' \
     '^# NET "core_pins_o<0>" LOC = "..."; # eye.led_o\[0\]$' \
     '^NET "core_pins_o<10>" LOC = "C9"; # mover.level_o\[8\]$'
 has soc_cores.vh 'led u_eye' 'mover #(.CLK_HZ(CLK_HZ)) u_mover'
-# Chip and firmware have the same hash of a core's registers, which changes with the registers, and
+# Chip and firmware have the same hash for the registers of a core. It changes with the registers,
 # not with their descriptions.
 contract() { sed -n "s/.*\"$1\"}, [0-9]*, 0, (Ice_Int)0x\([0-9A-F]*\)U.*/\1/p" "$out/soc_cores.c"; }
 before=$(contract mover)

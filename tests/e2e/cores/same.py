@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 """same: compares a probe's capture with the simulator's trace: same.py capture.vcd trace.vcd
 nanoseconds-of-a-clock
- Compares each signal of the capture in each clock that both have. The trace (fst2vcd) has two
-moments a clock; its clocks are those of u_system_slot.cycles, which it has. """
+ Compares each signal of the capture in each clock that capture and trace contain. The trace
+(fst2vcd) has two times per clock; it contains u_system_slot.cycles, which numbers the clocks. """
 import sys
 
 from icesoc.cores.replay import read_vcd

@@ -159,7 +159,7 @@ def goes_on(m, otherwise):
 def without_page(m):
     """The page is only a view."""
     said = goes_on(m, "the mission needs the page")
-    expect(re.search("page.*signal 9", m.text()), m, "no message about the page's end")
+    expect(re.search("page.*signal 9", m.text()), m, "no message about the end of the page")
     return said
 
 
@@ -339,7 +339,7 @@ def main():
     parser.add_argument("--jobs", type=int, default=1, help="missions at a time")
     parser.add_argument("--deaths", type=float, default=LONGEST,
                         help="seconds in which all processes of a mission follow the first")
-    parser.add_argument("--only", default="", help="faults whose name contains this")
+    parser.add_argument("--only", default="", help="only faults with this text in the name")
     args = parser.parse_args()
     global CLOCK_STEP
     CLOCK_STEP = os.path.abspath(args.build) + "/tests/e2e/mission/libclock_step.so"

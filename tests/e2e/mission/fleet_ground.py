@@ -177,8 +177,8 @@ class Ground:
         ic.destroy()
 
     def keep_new_key(self):
-        """Calls the changed vehicle with its new key only, as change_key.py does: from then on
-        it has but this one. Returns what is wrong."""
+        """Calls the changed vehicle with its new key only, as change_key.py does; then it has only
+        this key. Returns the error, or an empty text."""
         lines = Path(self.args.key).read_text().split("\n")
         lines[self.args.changed - 1] = f"0x{self.args.changed:04x} {self.args.new_key}"
         Path(self.args.key).write_text("\n".join(lines))

@@ -146,7 +146,7 @@ class Cases(Script):
         self.fails("expected the recording of a flight, line 1", *replay, "other")
         self.fails("--out: expected a folder other than the recording's", SIMULATOR, "--replay",
                    self.out, "--out", self.out)
-        self.fails("flown by the firmware's host build", *replay, self.out, "--gdb", "0")
+        self.fails("expected a flight with the ARM binary", *replay, self.out, "--gdb", "0")
         self.fails("writes no waveforms", *replay, self.out, "--wave", "wave.fst")
 
     def test_cores(self):
@@ -191,7 +191,7 @@ class Cases(Script):
         row = 1 + next(n for n, line in enumerate(lines) if '"vision"' in line)
         self.patched("other.elf", "hw_contracts", 20 * row - 4, b"\xff" * 4)  # last word of a row
         self.refused("no object 'hwengine1'; vision: its registers have the hash 0x.* in the chip, "
-                     "0xFFFFFFFF in the firmware: build both anew from one ip/cores.list, the "
+                     "0xFFFFFFFF in the firmware: build both again from one ip/cores.list, the "
                      "firmware by make firmware", "--cpu", "m3", "--firmware", "other.elf")
 
     def pack(self, *words):
@@ -259,8 +259,8 @@ class Cases(Script):
                     "2 software, 0 watchdog", status=None)
 
     def bitstreams(self, stored):
-        """No bitstream at all, one that the FPGA refuses, one that nobody confirms, and one of full
-        size."""
+        """No bitstream at all, one that the FPGA refuses, one that is never confirmed, and one of
+        full size."""
         self.update(BUILD / "firmware/uav.bin", "has a sync word, AA 99 55 66", status=None)
         self.ask(STAND_IN, "new.bin", "2", "10000")
         damaged = bytearray(Path("new.bin").read_bytes())
@@ -276,8 +276,8 @@ class Cases(Script):
             self.update(bits, "runs and is confirmed")
 
     def test_slow(self):
-        """A machine that is four times too slow: the ground uses the simulator's clock, so it finds
-        the modem as fast."""
+        """A machine that is four times too slow: the ground uses the clock of the simulator, so the
+        modem answers in the usual time."""
         self.fly()  # to get its flight.json
         Path("after.png").unlink()
         self.ask(SIMULATOR, "--flight", "flight.json", "--speed", "0.25", "--", "/usr/bin/python3",

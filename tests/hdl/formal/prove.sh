@@ -17,8 +17,8 @@
 # PROVE_MUTANT: Yosys commands before flattening (tools/icesoc/mutants/drawn.py); no trace then.
 # Leaves in <work> the parts of Yosys' script: state.ys, from modules to flip-flops, and gates.ys,
 # from flip-flops to AIGER's gates.
-# A failed assertion leaves <work>/trace.vcd. The module may instantiate others of its folder, of
-# bus/, hdl/system/ and hdl/cdc/; a proof in testbench/sim/ those of hdl/ddr/ instead of its folder.
+# A failed assertion leaves <work>/trace.vcd. The module may instantiate modules of its folder, of
+# bus/, hdl/system/ and hdl/cdc/; for a proof in testbench/sim/, hdl/ddr/ replaces its folder.
 set -eu
 here=$(dirname "$(readlink -f "$0")")
 module=$1 depth=$2 source=$3 work=$4 parameters=${5:-}
@@ -48,7 +48,7 @@ read=${PROVE_READ:-}
 [ -z "${PROVE_CORE:-}" ] || {
     core=${PROVE_CORE%% *}
     own=${PROVE_CORE#* } # its files
-    rules=$source/ip/$core/idle_rules.vh # of a core in VHDL
+    rules=$source/ip/$core/idle_rules.vh # rules of a core in VHDL
     read="-DCORE=$core $own $source/hdl/ddr/npi_stream.v"
     # shellcheck disable=SC2086
     ! grep -q 'memory_ports\|npi_addr_o' $own || read="-DMEMORY $read"
@@ -135,8 +135,8 @@ replay() { # abc's counterexample, by smtbmc for names and a waveform
 # abc commands log
 limited() { (ulimit -t "$limit" && exec "$@"); }
 abc() { limited yosys-abc -c "$1" >"$2" 2>&1 || true; }
-# step clocks: from any state (no initial values), is there a failure after this many clocks without
-# one? Exit status 20: there is none. The assumptions hold in each of them.
+# step clocks: starting in any state (no initial values), searches for a failure after this number
+# of clocks without a failure. Exit status 20: not found. The assumptions hold in all clocks.
 step() {
     abc "read_aiger assert.aig; fold; strash; orpos; frames -F $(($1 + 1)); comb;
         write_blif frames.blif" step.log

@@ -43,7 +43,7 @@ template <class Bridge> void trafficIn(const Mode& mode, unsigned hclk, unsigned
                  " : " + std::to_string(clk) + ", SEED=" + std::to_string(testSeed()));
     BridgeBench<Bridge> b(testSeed(), 0.2, hclk, clk);
     Random random(testSeed() + hclk);
-    const uint32_t page = random.below(64); // of the memory; as stored in the system slot
+    const uint32_t page = random.below(64); // page of the memory, as stored in the system slot
     b.top.page_i = static_cast<uint8_t>(page);
     b.master.pauseWrites(random.chance(0.5));
     ASSERT_EQ(b.init(mode.bank), FSMC_OK);

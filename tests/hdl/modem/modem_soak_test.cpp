@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_soak_test: noise into the modem controller's UART: random bytes, gaps, breaks and glitches,
-// with a memory that stalls and software that takes packets at random. Its output must consist of
-// parts of its input, in order; other memory does not change; and afterwards it works.
+// modem_soak_test: sends noise into the UART of the modem controller: random bytes, gaps, breaks
+// and glitches. The memory stalls, and the software takes packets at random. The output must
+// consist of parts of the input, in order; other memory must not change; and afterwards the
+// controller works.
 //
 //   SOAK_BYTES=10000000 build/main/tests/hdl/test_modem_soak     (default 30000)
 

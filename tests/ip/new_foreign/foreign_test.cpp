@@ -247,7 +247,7 @@ TEST(RegistersApart, ACoreThatNeverRestsIsToldWithWhatMoves) {
 
 TEST(Late, AValueIsReadOnceAndAClockLater) {
     CoreSlot<Vmy_late_slot> slot;
-    EXPECT_EQ(slot.bus_.read(MY_LATE_REG2), 0x3222u) << "from its file, in any working directory";
+    EXPECT_EQ(slot.bus_.read(MY_LATE_REG2), 0x3222u) << "content of its file, in any directory";
     for (uint32_t i = 0; i < 4; ++i)
         slot.bus_.write(MY_LATE_REG0 + i, 0xA5C0 + i);
     for (uint32_t i = 0; i < 4; ++i) {
@@ -270,8 +270,8 @@ TEST(OwnClock, AnyRatioOfTheTwoClocksWillDo) {
     }
 }
 
-// The core's time-out is an event; its interrupt crosses, and is inactive when the write that
-// clears it has ended.
+// A time-out of the core is an event. Its interrupt crosses the clock domains, and is inactive when
+// the write that clears it has ended.
 TEST(OwnClock, TheInterruptComesAndGoes) {
     CoreSlot<Vmy_requests_slot> slot;
     slot.interrupt_ = [] {};

@@ -4,10 +4,10 @@
 
     names.py SLICE2C SW WORK
 
-The C of TEMPLATES gives the identifiers. Each of them takes the place of X in each template, in a
-separate module; a kind of name is one Slice file, whose C must compile as C90 and whose header as
-C++. slice2c may refuse a name with an underscore that would be one of C's file scope; names without
-one (Slice's default) must all be taken.
+The C of TEMPLATES gives the identifiers. Each identifier replaces X in each template, in a separate
+module. There is one Slice file per kind of name; its C must compile as C90, and its header as C++.
+slice2c may refuse a name with an underscore that already exists at file scope in C. It must accept
+all names without an underscore, which Slice forbids by default.
 """
 import os
 import re

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # linked: slice2c sw-folder work-folder   A program for the Cortex-M3 contains only the used parts
-# of an interface and of the run time: nm of a client of one operation and of a server of one
-# interface (docs/slice-mapping.md).
+# of an interface and of the run time. Checked by nm on a client of one operation and a server of
+# one interface (docs/slice-mapping.md).
 set -eu
 slice2c=$1 sw=$2 work=$3
 here=$(cd "$(dirname "$0")" && pwd)

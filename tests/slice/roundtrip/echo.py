@@ -117,8 +117,8 @@ def same_hidden(t, v, got, encoding):
 
 
 def unknown(echo, module, ic, encoding, t):
-    """Sends an instance of a type unknown to C; where the format does not tell its slice's end, it
-    is refused."""
+    """Sends an instance of a type unknown to C. It is refused if the format does not contain the
+    size of a slice."""
     v = getattr(module, "Hidden" + t.name)()
     graph = hide(v, t, module, ic, 15)
     v.other = v.same = model.value(t, module, ic, [15], graph)
@@ -160,8 +160,9 @@ def lone(echo, module, encoding):
 
 
 def declared(echo, module, encoding):
-    """Sends a class that the operation's file only declares, and interfaces by value, whose names
-    the compact format does not take from strangers. (In 1.0 Python does not send them on.)"""
+    """Sends a class that the file of the operation only declares, and interfaces by value. The
+    compact format does not allow unknown names of interfaces; with encoding 1.0 Python does not
+    return them."""
     for form in ("Compact", "Sliced"):
         sent = module.Later(7)
         sent.next = sent

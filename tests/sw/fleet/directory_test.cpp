@@ -250,7 +250,7 @@ TEST_F(Directory, OneOfTwoRegistriesIsKilledAndComesBack) {
     EXPECT_EQ(world_.echo->twice(), 0);
 }
 
-// Records the events it receives: the vehicle's name, its proxy, and the bytes of the other
+// Records the events that it receives: name of the vehicle, its proxy, and the bytes of the other
 // parameters.
 class Subscriber : public Ice::Blobject {
 public:

@@ -262,7 +262,7 @@ TEST_F(Gateway, MaintenanceIsReachedAtItsOwnDoor) {
     }
     EXPECT_EQ(whyFails(call("echo", door)), "");
     EXPECT_EQ(whyFails(call("echo", port_)), "");
-    EXPECT_EQ(whyFails(call("nobody", port_)), "::Ice::ObjectNotExistException");
+    EXPECT_EQ(whyFails(call("missing", port_)), "::Ice::ObjectNotExistException");
     EXPECT_EQ(servant->calls, 5) << "calls on the maintenance endpoint";
 }
 
@@ -418,7 +418,7 @@ TEST_F(Gateway, AOnewayThatWaitsTooLongIsNeverCarriedOut) {
         }
     EXPECT_EQ(noted, 0);
     stop();
-    int dropped = 0; // in one line, or in two
+    int dropped = 0; // sum of one line, or two
     for (size_t at = 0; (at = said().find("were not sent: ", at)) != std::string::npos;)
         dropped += std::atoi(said().c_str() + (at += 15));
     EXPECT_EQ(dropped, 3) << said();
@@ -482,7 +482,7 @@ public:
     }
 };
 
-// Returns the result of a call to the witness: its reply, or the exception's name.
+// Returns the result of a call to the witness: its reply, or the name of the exception.
 std::string ask(const std::shared_ptr<Ice::ObjectPrx>& proxy, const std::string& operation,
                 Ice::OperationMode mode = Ice::OperationMode::Normal,
                 const Ice::Context& context = {}, const std::vector<Ice::Byte>& in = {}) {
@@ -526,7 +526,7 @@ std::string tryAll(const Ice::CommunicatorPtr& communicator, const std::string& 
         add(ask(witness->ice_facet("a facet"), "faceted"));
         add(ask(at("echo -f nothing"), "ice_ping"));
     }
-    add(ask(at("nobody"), "ice_ping"));
+    add(ask(at("missing"), "ice_ping"));
     add(ask(at("echo"), "nothing"));
     const auto echo = Ice::uncheckedCast<RadioTest::UavPrx>(at("echo"));
     for (const auto& id : echo->ice_ids())
@@ -585,7 +585,7 @@ TEST_F(Gateway, IsReachedThroughAGlacier2Router) {
     session->createSession("pilot", "");
     const auto data = World::pattern(1, 100);
     EXPECT_EQ(proxy(ic.communicator())->repeat(1, data), data);
-    const auto other = ic->stringToProxy("nobody:" + endpoint());
+    const auto other = ic->stringToProxy("missing:" + endpoint());
     EXPECT_THROW(other->ice_ping(), Ice::ObjectNotExistException) << "the router's filter";
 }
 

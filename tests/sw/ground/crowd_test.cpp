@@ -10,7 +10,7 @@
 
 namespace {
 
-// A program's end of a connection; non-blocking.
+// A program at its end of a connection; non-blocking.
 class Program {
 public:
     explicit Program(int fd) : fd_(fd) {}
@@ -136,7 +136,7 @@ TEST_F(Crowd, AfterAFloodEveryNewProgramIsServed) {
                 program->write();
             return std::chrono::steady_clock::now() > end;
         });
-        flood.clear(); // in the middle of it
+        flood.clear(); // in the middle of a message
         for (int i = 0; i < 3; ++i) {
             unsigned openings = 2 * round + 1;
             Program next(engine_->connect(i));

@@ -9,7 +9,7 @@
 // next its argument n:
 //   0 n bytes of noise on the serial line    1 a frame of the peer's is harmed
 //   2 n frames are lost    3,4 a program (n mod 3) writes a message of the bytes behind
-//   5 it writes n bytes as they are    6 it leaves, and (n > 127) comes anew    7 8 n ms pass
+//   5 it writes n raw bytes    6 it disconnects, and (n > 127) connects again    7 8 n ms pass
 //
 // Clock and serial port are implemented here, so the engine's thread runs alone, in the input's
 // time.

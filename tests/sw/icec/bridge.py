@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""bridge: bridge.py HEADER... >bridged.c writes servants whose operations call Bridge_far.
+"""bridge: bridge.py HEADER... >bridged.c writes servants with operations that call Bridge_far.
 
 The headers are slice2c's. The servant of an interface passes each operation's parameters to the
 proxy of the same interface, and gives back what returns: results, status and exception.
@@ -20,7 +20,7 @@ def name_of(parameter):
 
 
 def operation(name, self, parameters, calls, servants, responses):
-    """Writes an operation. What only the call gives back is sent later: it answers
+    """Writes an operation. Results that the call returns are sent later: the servant answers
     asynchronously."""
     owner = max((s for s in servants if name.startswith(s + "_")), key=len)
     call = re.sub("(Disp)?$", "Prx", owner, count=1) + name[len(owner):]

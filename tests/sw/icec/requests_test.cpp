@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// requests_test: calls, and messages as bytes: answered, malformed, refused or skipped; the same
-// for the full and the minimal run time.
+// requests_test: tests calls, and messages as bytes: answered, malformed, refused or skipped. Full
+// and minimal run time must behave alike.
 
 #include "pair.h"
 

@@ -10,7 +10,7 @@
 
 namespace {
 
-enum Counted { ALL, LOOKING }; // every instruction, or those of the function that checks results
+enum Counted { ALL, LOOKING }; // every instruction, or only in the function that checks results
 
 // Runs a case, and pends the interrupt before instruction number `where` of those counted, starting
 // at the first caller. Returns their number.

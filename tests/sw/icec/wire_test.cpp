@@ -156,8 +156,8 @@ TEST(Stream, OptionalsOfEveryFormatAreSkipped) {
 TEST(Stream, ASliceOfAnyWrongSizeIsMalformed) {
     for (uint32_t size : {0x80000000U, 0x80000003U, 0xFFFFFFFFU, 0U, 3U, 5U, 0x7FFFFFFFU}) {
         Bytes wire = {0x39, 1, 'x', 4, 0, 0, 0, // the last slice: a name, a size, a table after it
-                      1,    1,                  // with one instance,
-                      0x31, 1, 'y'};            // in a slice with this name and this size
+                      1,    1,                  // the table has one instance,
+                      0x31, 1, 'y'};            // a slice with this name and this size
         for (int shift = 0; shift < 32; shift += 8)
             wire.push_back(static_cast<Ice_Byte>(size >> shift));
         Ice_InputStream is = over(wire);

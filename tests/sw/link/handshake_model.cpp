@@ -2,7 +2,7 @@
 //
 // handshake_model: explores all states of the secure link's handshake (docs/link.md) under attack.
 //
-// Two sides, each of which calls, answers, ends, and restarts at any time (after a restart,
+// Two sides. Each side calls, answers, ends, and restarts at any time (after a restart,
 // silence, or with an old nonce); and the attacker of Dolev and Yao, who controls the air: he may
 // deliver every frame that was ever sent, at any time, to either side, any number of times, or
 // never. He has no key: frames made by him have no valid tag, so that only a side with a bug
@@ -39,7 +39,7 @@ enum class Bug {
 class HandshakeModel {
 public:
     struct Limits {
-        unsigned nonces, data, pings; // of a side; data and pings that a side sends in a session
+        unsigned nonces, data, pings; // nonces of a side; data and pings it sends in a session
     };
     struct Result {
         std::string fault;            // the first broken rule; "" if none
@@ -78,7 +78,7 @@ public:
     }
 
 private:
-    static constexpr unsigned mostNonces = 3, mostNumbers = 2; // of a side; of a kind of frame
+    static constexpr unsigned mostNonces = 3, mostNumbers = 2; // per side; per kind of frame
     static constexpr uint8_t none = 2 * mostNonces;            // a nonce that no side has
     enum Kind { Hello, HelloAck, Confirm, Data, Ping, Answer, Bye, kinds };
 
@@ -87,8 +87,8 @@ private:
         uint8_t from, to, number; // nonces of its sender and of its receiver
     };
     struct Side {
-        uint8_t nonce, drawn, begun; // for the next session; number drawn; one bit each that began
-                                     // one
+        uint8_t nonce, drawn, begun; // nonce of the next session; nonces drawn; bit mask of the
+                                     // nonces that began a session
         uint8_t mine, peer;          // nonces of the present session
         uint8_t dataSent, dataTaken, pingsSent, pingsSeen, pingsAnswered, lives;
         bool isUp, isAnswered, isUnconfirmed, unused[2];
@@ -233,7 +233,7 @@ private:
                 return;
             s.isAnswered = true;
             if (s.isUp && (!s.isUnconfirmed || bug_ == Bug::UnconfirmedCalls)) {
-                send(state, {Hello, s.nonce, none, 1}); // from a side that is up
+                send(state, {Hello, s.nonce, none, 1}); // 1: the sender's session is up
                 return;
             }
             send(state, {HelloAck, s.nonce, f.from, 0});

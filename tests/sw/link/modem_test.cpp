@@ -166,8 +166,8 @@ TEST(LinkOverApi, APeerThatVanishesInMidSessionTakesLittleOfTheAir) {
         EXPECT_FALSE(pair.a.isUp());
         const double share = static_cast<double>(pair.air.counters().airNs - before) / 1e10;
         std::printf("a peer that vanishes takes %.2f %% of the air\n", 100 * share);
-        EXPECT_LT(share, 0.02) << (isCalled ? "in a call" : "idle");
-        EXPECT_GT(share, 0.002) << "it is sought";
+        EXPECT_LT(share, 0.02) << (isCalled ? "during a call" : "idle");
+        EXPECT_GT(share, 0.002) << "the link searches for it";
     }
 }
 

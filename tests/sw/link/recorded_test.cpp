@@ -115,7 +115,7 @@ void expectDelivered(const Program& program) {
         EXPECT_EQ(outcome, LINK_DELIVERED) << tag;
 }
 
-// Runs a session of today's code, and writes its packets.
+// Runs a session of the current code, and writes its packets.
 void record(const std::string& kind, const Bytes& withKey) {
     uint64_t now = start;
     Packets packets;
@@ -153,7 +153,7 @@ Packets read(const std::string& name) {
     return packets;
 }
 
-// Runs one side of today's code with the recorded packets of the other.
+// Runs one side with the current code and the recorded packets of the other side.
 void replay(char name, const std::string& kind, const Bytes& withKey) {
     const Packets packets = read(fileOf(kind));
     ASSERT_FALSE(packets.empty()) << "expected a recording in " << fileOf(kind)

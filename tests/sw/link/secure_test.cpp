@@ -142,7 +142,7 @@ TEST_P(Attacked, AFrameWithAnyBitWrongIsRefused) {
             offer(b, sentB, 3);
             return flip();
         },
-        8'000'000); // with a PING
+        8'000'000); // includes a PING
     b.stop();
     until([&] { return flip(); }, 100'000);
     for (int kind : {0, 1, 2, 3, 4, 5, 8})

@@ -226,7 +226,7 @@ static void mutexStranger(void) {
     OsCase_sayNumber(err);
     (void)OSMutexCreate(3, &err); /* taken by the mutex */
     OsCase_sayNumber(err);
-    (void)OSMutexCreate(6, &err); /* by this task */
+    (void)OSMutexCreate(6, &err); /* taken by this task */
     OsCase_sayNumber(err);
     (void)OSMutexCreate(OS_LOWEST_PRIO, &err);
     OsCase_sayNumber(err);

@@ -112,7 +112,7 @@ TEST_F(Fpga, ABitstreamThatIsNotConfirmedIsTriedOnce) {
     expectTriedOnce();
 }
 
-// Signed, but invalid: the FPGA hangs on it, and the processor's next start reverts it.
+// Signed, but invalid: the FPGA hangs on it, and the next start of the processor reverts it.
 TEST_F(Fpga, ABitstreamThatHangsTheFpgaIsTakenBack) {
     powerOn();
     Image image = imageOf(2);

@@ -7,12 +7,12 @@
 //
 // The first byte's lowest bit: slot 0 is golden, as the FPGA's. Then a byte names the step (mod 8),
 // the next its argument n:
-//   0 n bytes of the input lie in slots or log, from 64 n on
-//   1 an image of version n is there    2 an update to version n begins, or (n > 127) new keys
-//   3 a piece of 4 n bytes comes (n, if n is odd)    4 the update is finished    5 the image is
+//   0 the first n bytes of the input are written into slots or log, at offset 64 n
+//   1 an image of version n exists    2 an update to version n begins, or (n > 127) new keys
+//   3 a piece of 4 n bytes arrives (n, if n is odd)    4 the update is finished    5 the image is
 //   confirmed 6 the receiver works    7 the power was cut
-// The header of 1 and 2 is good, but for n / 8 % 4 bytes, each of which is named and changed by the
-// next two of the input; it is signed then if n / 32 is even.
+// The header of 1 and 2 is good, except for n / 8 % 4 bytes: for each, the next two bytes of the
+// input give place and value. It is signed after that if n / 32 is even.
 
 #include <algorithm>
 #include <cstddef>
@@ -38,7 +38,8 @@ void expect(bool condition) {
         std::abort();
 }
 
-// Replaces digest and, with a key's first byte, signature, so that an input can contain valid ones.
+// Replaces the digest, and the signature together with the first byte of a key, so that an input
+// can contain valid ones.
 uint64_t sumOf(const uint8_t* bytes, size_t count) {
     uint64_t sum = 0xCBF29CE484222325;
     for (size_t i = 0; i < count; ++i)

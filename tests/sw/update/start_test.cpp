@@ -84,8 +84,7 @@ protected:
         const uint32_t isTrue = SLOTS_TRUE;
         chip.cpu().writeMemory(at + SLOTS_READY, &isTrue, 4);
     }
-    // Switches the power on; returns the slot with the firmware whose first instruction is reached;
-    // -1 if none is.
+    // Switches the power on. Returns the slot of the firmware that starts; -1 if none starts.
     int boot() {
         chip.powerOn();
         const uint64_t begun = chip.cpu().cycles();
@@ -387,7 +386,7 @@ TEST_F(Packing, ABitstreamThatIsCutOrHasMoreThanItsEndIsNotSigned) {
         Bytes more = whole;
         more.resize(more.size() + 1001, 0x5A);
         folder.save("more", file(more));
-        refuses("bitstream more 5 key", "1001 bytes after the bitstream's end");
+        refuses("bitstream more 5 key", "1001 bytes after the end of the bitstream");
     }
     Bytes cut = bitFile(whole); // its header has the real size
     cut.resize(cut.size() - 4);

@@ -256,8 +256,8 @@ TEST(Update, AListIsSignedByTheOneBeforeAndCountsUpByOne) {
     EXPECT_EQ(vehicle.take(ours.list(4, third, ours)), RECEIVER_NEEDS_OTHER);
     EXPECT_EQ(vehicle.take(foreign), RECEIVER_FOREIGN);
     EXPECT_EQ(vehicle.take(changed), RECEIVER_UNSIGNED);
-    EXPECT_EQ(vehicle.take(ours.list(3, second, second)), RECEIVER_UNSIGNED); // of the previous
-                                                                              // list
+    // signed with keys of the previous list
+    EXPECT_EQ(vehicle.take(ours.list(3, second, second)), RECEIVER_UNSIGNED);
     EXPECT_EQ(vehicle.take(others.list(3, others, others)), RECEIVER_UNSIGNED);
     EXPECT_EQ(vehicle.memory, before);
     EXPECT_EQ(vehicle.operations(), operations);

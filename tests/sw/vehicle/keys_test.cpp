@@ -196,7 +196,7 @@ TEST(Keys, ASecondGroundHasKeysOfItsOwn) {
     UAV_provide(address, nullptr);
     EXPECT_EQ(UAV_countKeys(1), 0);
     UAV_providePeer(UAV_OBSERVER, 0xF0, nullptr);
-    EXPECT_EQ(UAV_addressOf(UAV_OBSERVER), 0xF0u) << "for an open vehicle";
+    EXPECT_EQ(UAV_addressOf(UAV_OBSERVER), 0xF0u) << "the vehicle is open";
 }
 
 TEST(Keys, OfTwoVehiclesTheOneWithTheLowerAddressHasTheGroundsPart) {

@@ -69,7 +69,7 @@ protected:
     Stm32F2 chip{fsmc, [this] { return fsmc.hclks() * 25 / 3; }, {}};
 };
 
-const std::string prompt = "icesoc: key? (read protection is off: whoever opens the vehicle can "
+const std::string prompt = "icesoc: key? (read protection is off: anyone who opens the vehicle can "
                            "read its key)\r\n";
 const std::string digits = "00112233445566778899aabbccddeeff", at = " 002a";
 const std::vector<uint8_t> key = {0x00, 0x11, 0x22, 0x33, 0x44, 0x55, 0x66, 0x77,
@@ -89,7 +89,7 @@ TEST_F(Provision, WhoHasNeitherTheOldKeyNorTheJumperChangesNothing) {
     startAndAnswer("key " + digits + at);
     for (const std::string& line : {"key " + other + at, "open" + at,
                                     "key " + other + at + " " + other, "open" + at + " " + other}) {
-        EXPECT_EQ(startAndAnswer(line), "no: it has a key; give that, too, or wire the jumper\r\n")
+        EXPECT_EQ(startAndAnswer(line), "no: it has a key; append it, or fit the jumper\r\n")
             << line;
         EXPECT_TRUE(has(key)) << line;
     }

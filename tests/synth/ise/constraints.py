@@ -4,9 +4,10 @@
 
 Usage: constraints.py SOURCE GENERATED WORK, three folders. Every path of chip.v, flattened, with
 MIG's core as a cell, from pad or clock to clock, to pad and to an asynchronous reset needs a
-PERIOD, an OFFSET, a FROM:TO, a MAXDELAY or a TIG; every pad but those of MIG a standard and a
-place. Then each such statement is taken away in turn: one without which nothing is missing is told,
-too. Exit status 1 if anything is told, or if merge_ucf.py renames MIG's constraints otherwise.
+PERIOD, an OFFSET, a FROM:TO, a MAXDELAY or a TIG. Every pad, except the pads of MIG, needs a
+standard and a place. Then each statement is removed in turn; it is reported as superfluous if
+nothing is missing without it. Exit status 1 if anything is reported, or if merge_ucf.py renames the
+constraints of MIG differently.
 """
 
 import json

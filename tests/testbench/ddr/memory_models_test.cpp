@@ -97,9 +97,9 @@ TEST_F(Mcb, AWriteWaitsForTheDataOfTheReadBefore) {
         return clocks;
     };
     (void)clocksUntilEmpty(true); // opens the row
-    // Memory clocks from the read's first command: the last of its four bursts has its command at
-    // 12 and its data ends at 12 + 6 + 4, so the write starts at 25; alone it would start at 4, one
-    // clock of the design later.
+    // Memory clocks since the first command of the read: the last of its four bursts has its
+    // command at 12, and its data ends at 12 + 6 + 4, so the write starts at 25. Without the read
+    // it would start at 4, one clock of the design later.
     EXPECT_EQ(clocksUntilEmpty(true), clocksUntilEmpty(false) + (25 - 4) / 4);
 }
 

@@ -68,7 +68,7 @@ public:
     size_t heard() const { return heard_.size(); }
 
 private:
-    static constexpr size_t mostBytes = 100; // of a packet
+    static constexpr size_t mostBytes = 100; // longest packet, bytes
     static constexpr uint16_t uav = 1, ground = 0;
 
     // The MAC of one packet: the attacker does not wait for its previous packet.

@@ -81,5 +81,5 @@ protected:
     RfChannel air{testSeed()};
     HostLine lineA, lineB;
     std::unique_ptr<XBee> a, b;
-    std::vector<Seen> packets; // in the order of their arrival
+    std::vector<Seen> packets; // packets, first arrival first
 };

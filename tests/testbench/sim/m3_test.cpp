@@ -42,7 +42,7 @@ struct Flight : GroundAndChip {
                                    {"hwengine1", "startProcessing"},
                                    {"hwengine1", "getResult"},
                                    {"uav", "isAlive", 0, {7, 0}},
-                                   {"nobody", "ice_ping", 2}});
+                                   {"missing", "ice_ping", 2}});
         return ground.calling(calls);
     }
     uint32_t scratch() {
@@ -192,8 +192,8 @@ TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
     EXPECT_EQ(f.scratch() >> 16 & 0xFF, 4u) << "starts since power-on";
 }
 
-// The memory holds its port: accesses end by the bridge's time-out, each is a bus error with its
-// address, without a reset; when the memory responds again, the flight continues.
+// The memory does not answer: accesses end by the time-out of the bridge. Each one is a bus error
+// with its address, without a reset. When the memory responds again, the flight continues.
 TEST(CortexM3Firmware, AHungMemoryIsReportedAndTheFlightGoesOn) {
     Flight f;
     uint64_t since = 0;

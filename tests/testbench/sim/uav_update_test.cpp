@@ -222,8 +222,7 @@ TEST_F(UavUpdate, InFlightImagesAndKeysAreRefusedAlsoAfterARestart) {
     }
 }
 
-// "keys" is added last: the adapter has room for all servants of the vehicle in addition to those
-// of the cores.
+// "keys" is added last: the adapter has room for all servants of the vehicle and of the cores.
 TEST_F(UavUpdate, WhereBothKindsOfImageAreTakenTheKeysAreServedToo) {
     uav_update[UAV_BITSTREAM] = {&flash.port, 0, product};
     EXPECT_TRUE(flies(soc, ground.pinging(1, "keys"), 4));

@@ -13,8 +13,8 @@
 #include "ucos_ii.h"
 
 #define STACK_WORDS 1024
-#define PAUSE_TICKS (OS_TICKS_PER_SEC / 100U) /* while there is no message to send */
-#define TIMEOUT_MS 20000                      /* for a call to the ground */
+#define PAUSE_TICKS (OS_TICKS_PER_SEC / 100U) /* pause if no message has to be sent */
+#define TIMEOUT_MS 20000                      /* time-out of a call to the ground */
 
 static OS_STK serverStack[STACK_WORDS], clientStack[STACK_WORDS], radioStack[STACK_WORDS],
     coresStack[STACK_WORDS];

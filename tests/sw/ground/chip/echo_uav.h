@@ -12,7 +12,7 @@ typedef struct EchoUav_Port {
     /* Called when an operation with an id has been executed here, with this data. */
     void (*executed)(void* context, int id, const U8* data, int size);
     /* Returns the next message to the ground: its id, its bytes written to `data`, and their
-     * number; -1 if there is none now. `isOneway`: as note(id), without bytes. */
+     * number; -1 if no message is due. `isOneway`: sent as note(id), without bytes. */
     int (*next)(void* context, int* id, U8* data, int* isOneway);
     /* Outcome of a call: `status` 0, and the bytes of the reply unless it was oneway; otherwise a
      * status of ice_status.c with its text. */

@@ -45,7 +45,7 @@ def request(op, params=b"", rid=1, version=(1, 1), more=0, **where):
     return message(0, number(rid) + target(op, **where) + encapsulation(params, version, more))
 
 
-def one(op, params=b""):  # in a batch
+def one(op, params=b""):  # a request inside a batch
     return target(op) + encapsulation(params)
 
 
@@ -224,7 +224,7 @@ class Server:
             status = body[4] if head[8] == 2 else 0
             answers.append((head[8], body[:5] if status > 4 else body))
         s.close()
-        time.sleep(0.05)  # for the last line about executed operations
+        time.sleep(0.05)  # until the last line about executed operations has arrived
         return answers, self.executed - before - 1
 
 

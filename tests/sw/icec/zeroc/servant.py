@@ -10,7 +10,7 @@ statements:
     C, up to a line %%
     prefix Test_Thing_ Test_Derived_    the operations below are of these interfaces
     echo op1 op2*                       each out parameter gets the in parameter of its type
-    op3 op4: statements;                go on in lines that begin with a blank
+    op3 op4: statements;                continued in lines that begin with a blank
 
 Names are shell patterns. Within statements the parameters have their Slice names, `result` is the
 result, `ex` the exception.

@@ -18,7 +18,7 @@ trap 'rm -f "$log"' EXIT
 files=$(listed -l '' -- '*.c' '*.h' '*.cpp' | grep -v -e /golden/ -e /errors/)
 # shellcheck disable=SC2086 # a list of words
 echo $files | xargs -n 60 -P 2 clang-format-19 --dry-run -Werror >"$log" 2>&1 || {
-    echo "Not as clang-format 19 writes them (mend: clang-format-19 -i FILE):"
+    echo "Not as clang-format 19 writes them (to fix: clang-format-19 -i FILE):"
     sed -n 's/^\([^:]*\):[0-9].*error.*/    \1/p' "$log" | sort -u
     grep -v '^[^:]*:[0-9]' "$log" | grep 'clang-format-19:' | head -3
     exit 1

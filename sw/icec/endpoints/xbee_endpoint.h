@@ -40,10 +40,10 @@ typedef struct XBeeATEndpoint {
     U16 addresses[XBEE_PEERS]; /* addresses of the peers; the first ground has 0 */
     U32 events;                /* events to be delivered, one bit each */
     Ice_Int size;              /* bytes of the pending message */
-    Ice_Byte* buffer; /* buffer of the receiving task; 0: the link keeps the message */
-    Ice_Byte from;    /* connection of the pending message */
-    Ice_Byte ownOpen; /* this side's channel is open, one bit for each peer */
-    Ice_Byte held;    /* the link keeps a message that was not taken */
+    Ice_Byte* buffer;          /* buffer of the receiving task; 0: the link keeps the message */
+    Ice_Byte from;             /* connection of the pending message */
+    Ice_Byte ownOpen;          /* this side's channel is open, one bit for each peer */
+    Ice_Byte held;             /* the link keeps a message that was not taken */
     Ice_Byte offered; /* connection of the message that is being sent, unless it has ended */
     /* For xbee_peers.c */
     Ice_Byte own[XBEE_PEERS];  /* connections that this side opens */

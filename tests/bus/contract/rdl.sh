@@ -75,7 +75,7 @@ refused 'parameters are not part of the flat subset' \
     'addrmap a { reg t #(longint N = 1) { field {} b; }; };'
 refused "'N' is not a number" 'addrmap a { reg { field {} b[N:0]; } x; };'
 refused "got 'the end'" 'addrmap a { reg { field {} b; } x;'
-refused 'x: expected a word from 0 to 15, got 16; a slot has' 'addrmap a { reg { field {} b; } x @ 0x34; };'
+refused 'x: expected a word from 0 to 15, got 16' 'addrmap a { reg { field {} b; } x @ 0x34; };'
 refused 'x has no field' 'addrmap a { reg { } x; };'
 refused 'x.b is at bits 39 to 0' 'addrmap a { reg { field {} b[40]; } x; };'
 refused 'expected an addrmap' '// nothing\n'

@@ -23,6 +23,20 @@ class Lists(unittest.TestCase):
                 self.assertTrue(found)
             self.assertTrue(each.help and name in command.find(name.split())[0].name)
 
+    def test_help_has_a_line_a_paragraph_options_and_three_examples(self):
+        for name, each in command.COMMANDS.items():
+            self.assertEqual(command.short(each.help, 67), each.help, f"{name}: too long for a list")
+            self.assertRegex(each.more, r"(?s)\w.*\w", f"{name}: no paragraph")
+            self.assertGreaterEqual(len(each.examples), 3, f"{name}: examples")
+            self.assertEqual([line for line in each.examples if name.split()[0] not in line], [])
+            for option in each.options:
+                if option.listed:
+                    text = option.explain()
+                    self.assertRegex(text, r"^\W?\w", f"{name} --{option.name}")
+                    self.assertNotRegex(
+                        text, r"^(of|that|in|from|by|which|whose|what|where|as) ",
+                        f"{name} --{option.name}: a noun or a verb comes first")
+
     def test_pages_name_commands_that_there_are(self):
         value = r"""[A-Z][A-Z0-9_]*=(?:'[^']*'|"[^"]*"|[^\s`'"]*)"""
         verbs = {each.make for each in command.COMMANDS.values()} | set(command.ALIASES)

@@ -41,7 +41,8 @@ class Command:
         self.brief, self.long = ([lines] if isinstance(lines, str) else list(lines)
                                  for lines in (brief, long))
         self.options = [*options, BUILT]
-        text, _, self.more = function.__doc__.partition("\n\n")
+        text, _, more = function.__doc__.partition("\n\n")
+        self.more = more.rstrip()
         self.help = " ".join(text.split())
         self.examples = examples
 

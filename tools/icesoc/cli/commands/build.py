@@ -18,30 +18,58 @@ DEFAULTS["build"] = "build all"
 
 
 @command("build all", [BUILD, JOBS, UCOS2], make="build", brief="build all", examples=[
-    "build all", "build all --jobs 2"])
+             "build all",
+             "build all --jobs 2",
+             "build all --ucos2 ~/uC-OS2"])
 def build_all(values):
-    """build everything: simulator, firmware, compiler, plugin, tests"""
+    """build everything: simulator, firmware, compiler, plugin, tests
+
+    Configures the build folder if necessary. The first build takes 5 to 20 minutes. Later
+    builds only compile what has changed.
+    """
     BuildFolder(values.build, values).prepare().ninja()
 
 
-@command("build configure", [BUILD, JOBS, UCOS2], make="configure", brief="build configure")
+@command("build configure", [BUILD, JOBS, UCOS2], make="configure", brief="build configure",
+         examples=[
+             "build configure",
+             "build configure --build build/other",
+             "build configure --ucos2 ~/uC-OS2"])
 def build_configure(values):
-    """only configure the build folder"""
+    """configure the build folder without building
+
+    Runs CMake. Afterwards `ninja -C build/main TARGET` builds single targets, and
+    compile_commands.json is current for editors.
+    """
     BuildFolder(values.build, values).prepare()
 
 
 @command("build firmware", [BUILD, JOBS, UCOS2], make="firmware", brief="build firmware", examples=[
-    "build firmware", "build firmware --ucos2 ~/uC-OS2"])
+             "build firmware",
+             "build firmware --jobs 2",
+             "build firmware --ucos2 ~/uC-OS2"])
 def build_firmware(values):
-    """build the firmware for the STM32F2 (build/main/firmware); print flash, RAM and stacks"""
+    """build the firmware for the STM32F2 (build/main/firmware)
+
+    Prints how much flash, RAM and stack each program uses, and fails if a program exceeds its
+    budget.
+    """
     build = BuildFolder(values.build, values).prepare()
     build.ninja("firmware")
     run(["sw/sizes.py", "firmware", build / "firmware/uav.map", "build/firmware.json"])
 
 
-@command("build size", [BUILD, JOBS], make="size", brief="build size")
+@command("build size", [BUILD, JOBS], make="size", brief="build size",
+         examples=[
+             "build size",
+             "build size --jobs 2",
+             "build size --build build/other"])
 def build_size(values):
-    """print the code size of each firmware layer next to the paper's"""
+    """print the code size of each firmware layer next to the paper's
+
+    Compares two variants with the paper: all files of a layer, and the parts that the minimal
+    program links. Writes build/size.json.
+    """
     configured(values).ninja("size")
 
 
@@ -97,9 +125,15 @@ def shoot_live(path, profile, icesoc):
     Option("from", FOLDER, "folder with the pages", "build"),
     Option("to", FOLDER, "output folder", "docs/pictures")], make="pictures",
          brief="build pictures mission --to build/brief", examples=[
-             "build pictures", "build pictures mission"])
+             "build pictures",
+             "build pictures mission",
+             "build pictures utilisation --to /tmp"])
 def pictures(values):
-    """retake the pictures of README.md and docs/"""
+    """retake the pictures of README.md and docs/
+
+    Flies a mission, takes screenshots of the generated pages with Chromium, and reduces each
+    picture to 100 KB or less. The page of a picture must exist.
+    """
     icesoc, to = ["./icesoc", "run", *(["--built"] if values.built else [])], Path(values.to)
     with tempfile.TemporaryDirectory() as profile:
         for name in values.pictures:

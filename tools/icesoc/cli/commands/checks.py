@@ -28,9 +28,17 @@ def one_more(status, other):
     return status or other
 
 
-@command("check proofs", [NAME, BUILD, JOBS], make="proofs", brief="check proofs --name cdc_bus")
+@command("check proofs", [NAME, BUILD, JOBS], make="proofs", brief="check proofs --name cdc_bus",
+         examples=[
+             "check proofs",
+             "check proofs --name cdc_bus",
+             "check proofs --name 'bus|modem'"])
 def proofs(values):
-    """run the formal proofs again and print their total CPU time"""
+    """run the formal proofs again and print their total CPU time
+
+    Each proof is run even if its module has not changed since it last passed. A failed proof
+    leaves a waveform in build/main/tests/hdl/formal.
+    """
     build = configured(values, "regmaps")
     chosen = ["-R", values.name] if values.name else []
     build.ctest("-L", "formal", *chosen, tests=values.jobs, FRESH="1")
@@ -43,9 +51,16 @@ def proofs(values):
          brief="check netlist --name 'cdc_bit|probe'",
          long=("check netlist", "check netlist --family ecp5 --name "
                "'^(cdc_bit|modem_uart_tx|bus_wrapper|modem_at_rows)$'"),
-         examples=["check netlist --name 'fir|modem'", "check netlist --family ecp5"])
+         examples=[
+             "check netlist",
+             "check netlist --name 'fir|modem'",
+             "check netlist --family ecp5"])
 def netlist(values):
-    """prove each netlist equivalent to its RTL, or run the tests of its block on it"""
+    """prove each netlist equivalent to its RTL
+
+    Small designs are proven by Yosys and abc. For large designs, the tests of the block run on
+    the netlist. Exit status 1: a netlist differs.
+    """
     simulated = json.loads(Path("synth/designs.json").read_text())["simulated"]
     build = netlists(values, "-DCLK_HZ=2000000", tests=True)
     build.ninja("synth_inputs")
@@ -75,10 +90,16 @@ def netlist(values):
           Option("programs", WORDS, f"test programs to run: {', '.join(GUARDED)}", list(GUARDED)),
           BUILD, JOBS],
          make="sanitizers", brief="check sanitizers --kinds address --programs test_icec",
-         long="check sanitizers", examples=["check sanitizers --kinds thread"])
+         long="check sanitizers", examples=[
+             "check sanitizers",
+             "check sanitizers --kinds thread",
+             "check sanitizers --kinds address --programs test_icec"])
 def sanitizers(values):
-    """tests of IceC, engine, gateway and plugin with AddressSanitizer and with ThreadSanitizer;
-    fuzzer of the debugger's stub"""
+    """run programs with AddressSanitizer and ThreadSanitizer
+
+    Builds IceC, engine, gateway and plugin with both sanitizers and runs their tests.
+    Afterwards it fuzzes the stub of the debugger.
+    """
     folders = {"address": ("sanitized", "ON"), "thread": ("thread", "thread")}
     if unknown := set(values.programs) - set(GUARDED):
         raise Stop(f"PROGRAMS: expected {' or '.join(GUARDED)}, got '{sorted(unknown)[0]}'", 2)
@@ -105,9 +126,16 @@ def sanitizers(values):
 @command("check fuzz", [
     Option("minutes", MINUTES, "run time of each fuzzer", 10.0), NAME, SEED, TESTS, BUILD, JOBS],
          make="fuzz", brief="check fuzz --minutes 0.05 --name 'update$|rdl$'",
-         long="check fuzz --seed {day}", examples=["check fuzz --name slice --minutes 60"])
+         long="check fuzz --seed {day}", examples=[
+             "check fuzz",
+             "check fuzz --name slice --minutes 60",
+             "check fuzz --seed 7"])
 def fuzz(values):
-    """fuzz every parser, starting with the inputs stored in ~/.cache/icesoc/fuzz"""
+    """fuzz every parser
+
+    Starts with the inputs of tests/ and of earlier runs, which are stored in
+    ~/.cache/icesoc/fuzz. Prints the bytes of an input that fails, and the command that repeats it.
+    """
     build = configured(values, "regress", tests=True)
     chosen = f"^fuzz[.].*({values.name or ''})"
     if not values.built:
@@ -125,9 +153,16 @@ def fuzz(values):
      SEED,
     FRESH, BUILD, JOBS], make="mutants", brief="check mutants --block bus/decoder_error_of_all",
          long=("check mutants", "check mutants --draw 8 --seed {day}"), examples=[
-             "check mutants --block bus", "check mutants --draw 20"])
+             "check mutants",
+             "check mutants --block bus",
+             "check mutants --draw 20 --seed 7"])
 def mutants(values):
-    """plant every seeded fault of tests/mutants and expect its test to fail"""
+    """plant faults into the sources and expect the tests to fail
+
+    Plants each fault of tests/mutants in a copy, and runs the test that must detect it. With
+    --draw, Yosys draws random faults instead, which the proofs or tests of the module must detect.
+    Exit status 1: a fault was not detected.
+    """
     build = configured(values, tests=True)
     build.ninja("regress", *(["regmaps"] if values.draw else []))
     drawn = [*tool("mutants.drawn"), "--build", build.folder, "--number", values.draw, "--seed",
@@ -143,9 +178,16 @@ def mutants(values):
     Option("name", NAME.kind, "only faults with this text in their name, such as killed", ""),
      BUILD, JOBS],
          make="faults", brief="check faults --name killed --moments 1",
-         long="check faults --seed {day}", examples=["check faults --name killed --moments 2"])
+         long="check faults --seed {day}", examples=[
+             "check faults",
+             "check faults --name killed --moments 2",
+             "check faults --seed 7 --seeds 3"])
 def faults(values):
-    """inject faults into missions and check the consequences listed in docs/regression.md"""
+    """inject faults into missions and check the consequences
+
+    Kills, stops or starves each process of a mission at random moments, and fills the disk.
+    docs/regression.md lists the expected consequences.
+    """
     build = configured(values)
     build.ninja("mission", "clock_step", "regress", "utilisation", "regmaps")
     if not values.name:
@@ -165,14 +207,17 @@ def faults(values):
            "bytes of noise sent to the modem controller; link and engine get ten times as many",
            1000000), SEED, BUILD, JOBS], make="soak",
          brief="check soak --minutes 0.01 --fuzzed 1000",
-         long="check soak --minutes 60 --seed {day}", examples=["check soak --minutes 60"])
+         long="check soak --minutes 60 --seed {day}", examples=[
+             "check soak",
+             "check soak --minutes 60",
+             "check soak --fuzzed 10000000 --seed 7"])
 def soak(values):
-    """endurance of the radio: messages and stock Ice's calls, bad weather, reboots, noise
+    """test the radio for a long time: bad channel, restarts, noise
 
-    A quarter of the time runs the link alone, another quarter the link under attack, and half of
-    it stock Ice through the plugin to IceC on the chip's RTL. In addition, ten vehicles and two
-    ground stations fly for the same number of simulated minutes, which takes a twentieth of that
-    CPU time.
+    A quarter of the time runs the link alone, another quarter the link under attack, and half
+    of it stock Ice through the plugin to IceC on the chip's RTL. In addition, ten vehicles and
+    two ground stations fly for the same number of simulated minutes, which takes a twentieth of
+    that CPU time.
     """
     build = configured(values, "soak", "test_chip_soak", "test_ground_engine", "test_modem_soak",
                        "test_link")
@@ -211,11 +256,15 @@ def measure(benches, folder):
     Option("only", WORDS, "names of the benches to run, without writing the page"),
     Option("page", PATH, "output page", "docs/figures.md"), BUILD, JOBS], make="bench",
          brief="bench --only slice", long="bench --page build/bench/figures.md", examples=[
-             "bench", "bench --only air plugin"])
+             "bench",
+             "bench --only air plugin",
+             "bench --page /tmp/figures.md"])
 def bench(values):
     """measure the figures of docs/figures.md
 
-    The benches are in tests/bench. Each leaves build/bench/NAME.json."""
+    The benches are in tests/bench. Each one writes build/bench/NAME.json. With --only the page
+    is not written.
+    """
     build = configured(values)
     benches = json.loads((build / "benches.json").read_text())
     for name in values.only:

@@ -135,7 +135,11 @@ def put_into_repository(room, name):
          examples=["core new low_pass --lang vhdl", "core new lamp --lang verilog --ice lamp.ice",
                    "core new low_pass --lang verilog --repository ~/cores"])
 def new(values):
-    """create a core: ip/NAME with interface, RTL and a test that passes"""
+    """create a core: ip/NAME with interface, RTL and a test that passes
+
+    The core is generated from a Slice interface: the example of docs/guides/core-new.md, or
+    your own with --ice. It is not in the chip until ip/cores.list names it.
+    """
     name, lang = values.name, values.lang
     if name and not lang:
         raise Stop("--lang: expected verilog or vhdl (LANG=...), got nothing", 2)
@@ -194,9 +198,15 @@ def known(values):
 
 @command("core test", [CORE, CORE_FOLDERS, SEED, BUILD, JOBS], make="ip-test",
          brief="core test fir", examples=[
-             "core test fir", "core test my_core --core-folders /path/to/my_core"])
+             "core test fir",
+             "core test fir --seed 7",
+             "core test my_core --core-folders ~/my_core"])
 def test(values):
-    """build and test one core: its block test, and its VHDL under GHDL"""
+    """build and test one core: its block test, and its VHDL under GHDL
+
+    Builds only what the tests of this core need. The core need not be in the chip. Exit status
+    8: a test failed.
+    """
     core, build = values.ip, known(values)
     programs = [name for name in build.targets() if name in (f"test_ip_{core}", f"{core}_vectors")]
     if not programs:
@@ -207,9 +217,16 @@ def test(values):
 
 
 @command("core synth", [CORE, CORE_FOLDERS, CHIP, BUILD, JOBS], make="ip-synth",
-         brief="core synth fir", examples=["core synth fir --chip"])
+         brief="core synth fir", examples=[
+             "core synth fir",
+             "core synth fir --chip",
+             "core synth my_core --core-folders ~/my_core"])
 def synth(values):
-    """utilisation of one core, alone and in the chip"""
+    """report the utilisation of one core, alone and in the chip
+
+    Prints LUTs, flip-flops, block RAM and DSP of the core and of its parts, and the share that
+    its slot and memory port add to the chip.
+    """
     build = known(values)
     build.ninja("synth_inputs")
     return utilisation(build, values, "--design", values.ip) or \
@@ -337,9 +354,16 @@ def users_of(name):
                          Option("force", SWITCH, "remove it even with uncommitted changes"),
                          BUILD, JOBS], make="rm-ip", brief=("core new brief_gone --lang verilog",
                                                             "core remove brief_gone --force"),
-         examples=["core remove low_pass"])
+         examples=[
+             "core remove low_pass",
+             "core remove low_pass --force",
+             "core remove my_core"])
 def remove(values):
-    """remove a core: its folder and its line in ip/cores.list; a folder outside ip/ is kept"""
+    """remove a core: its folder and its line in ip/cores.list
+
+    A folder outside ip/ is kept. Without --force, a core with uncommitted changes is not
+    removed.
+    """
     build = BuildFolder(values.build, values)
     name, core = values.name, build.core(values.name or ".")
     if not re.fullmatch(r"[a-z0-9_]+", name) or name == "template":

@@ -21,7 +21,11 @@ LEFT_OUT = "NOT_BUILT|^fuzz|^e2e.cores"
            "only tests with a name that matches this expression; gates are not checked", ""), BUILD,
     JOBS], make="coverage", brief=["check coverage --name ^test_fsmc_corners[.]",
                              "check coverage --name ^vhdl[.]fir"],
-         long="check coverage")
+         long="check coverage",
+         examples=[
+             "check coverage",
+             "check coverage --name '^vhdl[.]fir'",
+             "check coverage --jobs 2"])
 def coverage(values):
     """measure the lines, branches and toggles that the tests reach
 

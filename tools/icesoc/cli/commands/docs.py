@@ -18,7 +18,9 @@ PROGRAMS = {"sphinx-build": "python3-sphinx", "doxygen": "doxygen"}
 @command("docs", [Option("out", FOLDER, "folder of the site; the pages are in its html/",
                          "build/docs")],
          brief="docs --out build/brief/docs", examples=[
-             "docs", "docs --out /srv/www/icesoc"])
+             "docs",
+             "docs --out /srv/www/icesoc",
+             "docs --out /tmp/site"])
 def docs(values):
     """build the documentation as a site with search, in build/docs/html
 
@@ -51,12 +53,16 @@ MADE = ["LowPass.ice", "ip/low_pass"]
     Option("brief", SWITCH, "leave out flights and the waveform, which take minutes"),
     Option("list", SWITCH, "only list the commands of the page")],
          brief="check tutorial --list", long="check tutorial --clone", examples=[
-             "check tutorial", "check tutorial --clone"])
+             "check tutorial",
+             "check tutorial --brief",
+             "check tutorial --clone"])
 def check_tutorial(values):
-    """run every command of docs/tutorial.md and compare its output with the page
+    """run the tutorial and compare its output with the page
 
-    Without --clone it runs in this tree and uses what is built. It adds the core low_pass to the
-    tree, and removes it at the end."""
+    Runs every command of docs/tutorial.md, writes its files, and compares output and exit
+    status. Without --clone it runs in this tree and uses what is built. It adds the core
+    low_pass to the tree, and removes it at the end.
+    """
     page, folder = Path(TUTORIAL).absolute(), Path.cwd()
     if values.list:
         return say("\n".join(step.command or f"write {step.file}"

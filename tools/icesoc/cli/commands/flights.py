@@ -38,10 +38,11 @@ DEBUGGED = [option for option in flight.FIELDS if option.name in ("image", "size
              "run --image photo.jpg --size 640x480", "run --loss 0.1 --seed 7 --cores ascon fir",
              "run --again build/run/flight.json"])
 def fly_mission(values):
-    """fly the mission: simulated UAV, ZeroC Ice ground station, pictures in build/run
+    """fly the mission: simulated UAV, radio, ZeroC Ice ground station
 
     Prints the address of a page that shows the flight. OUT/flight.json describes the flight;
-    --again repeats it."""
+    --again repeats it.
+    """
     descriptors = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
     if descriptors < DESCRIPTORS:
         raise Stop(f"a flight needs {DESCRIPTORS} file descriptors, the limit is {descriptors}: "
@@ -188,12 +189,16 @@ def explain_failure(values, status, has_flown):
     Option("replay", FLIGHT, "folder of the flight", "build/run", positional=True), FROM, TO,
     Option("out", FOLDER, "output folder", "build/replay"), BUILD, JOBS], make="run",
          when="REPLAY", brief="replay build/brief/run --out build/brief/replay", examples=[
-             "replay build/run", "replay build/run --from 1.5 --to 1.51"])
+             "replay",
+             "replay build/run --from 1.5 --to 1.51",
+             "replay build/run --from 4.2 --out build/end"])
 def replay(values):
-    """repeat a recorded flight bit by bit; with a span, write its waveform
+    """repeat a recorded flight bit by bit, or write a part as waveform
 
-    With --from or --to, writes the waveform of that span to OUT/wave.fst, by a simulator that is
-    built once. For a flight with --cpu m3 the waveform also shows task, interrupt and function."""
+    Without --from and --to it repeats the flight and compares every result. With them it writes
+    the waveform of that part to OUT/wave.fst, by a simulator that is built once. For a flight
+    with --cpu m3 the waveform also shows task, interrupt and function.
+    """
     span = values.given & {"from", "to"}
     if span and values.to is not None and values.to <= (getattr(values, "from") or 0):
         raise Stop(f"FROM={getattr(values, 'from')} TO={values.to}: expected FROM before TO, in "
@@ -227,9 +232,16 @@ def replay(values):
     Option("out", FOLDER,
            "output folder; default build/run, for a replay build/replay"),
     BUILD, JOBS], make="gdb", brief="gdb --size 48x32 --out build/brief/gdb", examples=[
-        "gdb", "gdb --replay build/run"])
+             "gdb",
+             "gdb --replay build/run",
+             "gdb --size 48x32 --seed 7"])
 def gdb(values):
-    """debug the firmware's ARM binary against the RTL with gdb-multiarch"""
+    """debug the firmware's ARM binary against the RTL with gdb-multiarch
+
+    Starts a flight in which the debugger controls the processor; simulated time stops while the
+    processor is stopped. With --replay it debugs a recorded flight, forwards and backwards.
+    docs/firmware.md shows a session.
+    """
     build = configured(values, tests=True)
     build.ninja("mission")
     out = Path(values.out or ("build/replay" if values.replay else "build/run"))
@@ -312,9 +324,17 @@ def key(values):
 @command("fly", [
     Option("minutes", MINUTES, "simulated time; one hour takes about ten minutes of CPU time", 4.0),
     SEED, BUILD, JOBS], make="fly", brief="fly --minutes 0.01",
-         long="fly --minutes 60 --seed {day}", examples=["fly --minutes 60", "fly --seed 7"])
+         long="fly --minutes 60 --seed {day}", examples=[
+             "fly",
+             "fly --minutes 60",
+             "fly --seed 7"])
 def fly_for_long(values):
-    """fly for hours: calls with packet loss, and reboots of UAV, modems and ground"""
+    """fly for a long time, with packet loss and restarts
+
+    Vehicle and ground station call each other while packets are lost, and vehicle, modems and
+    ground station restart at random times. Prints the numbers of calls and restarts. Exit
+    status 1: a call was lost without a report, executed twice, or a link did not recover.
+    """
     build = configured(values, "test_chip_soak")
     run([build / "tests/sw/ground/chip/test_chip_soak", "--gtest_brief=1"], env={
         "SEED": values.seed, "SOAK_REST": 10, "SOAK_SECONDS": values.minutes * 60})

@@ -41,11 +41,16 @@ def foreign_words(values):
     "core foreign brief_foreign --top req_words --bus own --files tests/ip/new_foreign/cores.v "
     "--ports select=req write=wr address=where wdata=value rdata=held ack=gnt",
     "core remove brief_foreign --force"), examples=[
-        "core foreign my_uart --top wbuart --bus wishbone --files wbuart.v ufifo.v"])
+             "core foreign my_uart --top wbuart --bus wishbone --files wbuart.v ufifo.v",
+             "core foreign my_pwm --top apb_pwm --bus apb --files apb_pwm.v --params CHANNELS=2",
+             "core foreign my_spi --top spi --bus axil --files spi.vhd --clock 50000000"])
 def foreign_core(values):
     """put a third-party core into a slot: writes ip/NAME
 
-    With --repository, source files inside the repository are stored as relative paths."""
+    Reads the ports of the core's top module, connects them to a slot, and writes registers, a
+    test and a manifest. docs/guides/foreign-core.md lists the buses. With --repository, source
+    files inside the repository are stored as relative paths.
+    """
     build = BuildFolder(values.build, values).prepare()
     if any(file.lower().endswith((".vhd", ".vhdl")) for file in values.files):
         build.ninja("ghdl")
@@ -104,15 +109,20 @@ def put_and_fly(values, listed, known):
     Option("chip", SWITCH, "also print the cost of each core in the chip"), SEED,
     *(o for o in FIELDS if o.name == "image"), BUILD, JOBS], make="foreign",
          brief="core examples --cores foreign_i2c foreign_arbiter foreign_queue",
-         long="core examples --chip")
+         long="core examples --chip",
+         examples=[
+             "core examples",
+             "core examples --cores aes",
+             "core examples --chip --seed 7"])
 def examples(values):
-    """download public cores, put them into slots, test them and call them by radio
+    """download public cores, put them into slots and call them by radio
 
-    The cores have Wishbone, Avalon-MM, AXI4-Lite, AXI-Stream and plain buses, and are written in
-    Verilog, SystemVerilog (in a chip without a netlist) and VHDL. They are downloaded from Debian's
-    mirror and GitHub; a core that cannot be downloaded is skipped. Together with two cores of this
-    tree they form a chip, built in three orders of the list. Exit status 77: no core, or not every
-    core of --cores, could be downloaded."""
+    The cores have Wishbone, Avalon-MM, AXI4-Lite, AXI-Stream and plain buses, and are written
+    in Verilog, SystemVerilog (in a chip without a netlist) and VHDL. They are downloaded from
+    Debian's mirror and GitHub; a core that cannot be downloaded is skipped. Together with two
+    cores of this tree they form a chip, built in three orders of the list. Exit status 77: no
+    core, or not every core of --cores, could be downloaded.
+    """
     listed = json.loads(Path("examples/foreign/cores.json").read_text())
     known = {name for source in listed.values() for name in source["cores"]}
     if unknown := set(values.cores) - known:

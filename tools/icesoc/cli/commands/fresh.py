@@ -45,8 +45,11 @@ mount --rbind /sys "$1/sys" && exec chroot "$1" /bin/sh -c "cd $3 && $2"
              "check fresh --release trixie", "check fresh --again --steps 'make test'",
              "check fresh --release bookworm --packages build/packages"])
 def fresh(values):
-    """run the README's commands on an empty Debian 12 and 13, and use the packages without the
-    source tree; needs root, debootstrap and a network"""
+    """run the README's commands on an empty Debian 12 and 13
+
+    Also installs the packages there and uses them without the source tree. Needs root,
+    debootstrap and a network.
+    """
     top, failed = Path(values.folder), 0
     results = top / "results.json"
     rows = json.loads(results.read_text()) if results.exists() else []

@@ -23,7 +23,11 @@ ROOMS = "bus;slice;ip;sw;hdl;testbench"
          brief="package --build build/main --output build/brief/packages", examples=[
              "package", "package --check", "package --output ~/packages"])
 def package(values):
-    """build the Debian packages for this release of Debian"""
+    """build the Debian packages for this release of Debian
+
+    The packages hold programs, hardware sources and libraries for use without this tree.
+    docs/install.md describes them.
+    """
     own = ["-DPORTABLE=ON", f"-DROOMS={ROOMS}"] if values.build == BUILD else []
     build = BuildFolder(values.build, values).prepare(*own, packages=True)
     build.ninja("installable")

@@ -107,11 +107,15 @@ def changed_tests(build, values, tests, seed, label=""):
     BUILD, JOBS],
          make="regress",
          brief="regress --block bus", examples=[
-             "regress --changed", "regress --name Burst --seed random --repeat 20"])
+             "regress --changed",
+             "regress --name Burst --seed random --repeat 20",
+             "regress --block fir --waves 3"])
 def regress(values):
-    """run tests with history, causes and waveforms of failures, and a page
+    """run tests, with history, causes and waveforms of failures
 
-    Writes build/regress/report.html. Builds what the tests need first."""
+    Builds what the tests need first. Writes build/regress/report.html, a page with the state of
+    every test, requirement and block.
+    """
     build = configured(values, "regress", tests=True)
     switches = [
         f"--{word}" for word, on in (("changed", values.changed), ("rerun-failed", values.failed),
@@ -140,12 +144,15 @@ def last_good(test):
     Option("bad", TEXT, "commit at which the test fails", "HEAD"),
     Option("list", SWITCH, "only list the commits to search"), SEED, BUILD, JOBS],
          make="bisect", brief="bisect test_fifo.Fifo.Wraps --good HEAD~3 --list", examples=[
-             "bisect test_fifo.Fifo.Wraps --good HEAD~20"])
+             "bisect test_fifo.Fifo.Wraps --good HEAD~20",
+             "bisect test_fifo.Fifo.Wraps --good main~30 --bad main",
+             "bisect test_fifo.Fifo.Wraps --good HEAD~20 --seed 7"])
 def bisect(values):
     """find the commit since which a test fails, in a separate checkout
 
     Skips commits that do not build or lack the test. Exit status: 0 found, printed in the last
-    line; 1 not found; 2 could not start."""
+    line; 1 not found; 2 could not start.
+    """
     test = values.test
     if not test:
         raise Stop("TEST= names the test, as CTest does: ./icesoc bisect test_fifo.Fifo.Wraps", 2)
@@ -205,7 +212,9 @@ def search(program, values, good, bad, tree):
     Option("steps", WORDS, "names of the steps to run, as in the table", []), TEST_NAME, LABEL,
     WAVES, TESTS, BUILD, JOBS], make="nightly",
          brief="nightly --steps kept random --nightly 1 --name ^tree[.]pages", examples=[
-             "nightly", "nightly --steps kept check-mutants"])
+             "nightly",
+             "nightly --steps kept check-mutants",
+             "nightly --nightly 5 --name fir"])
 def nightly(values):
     """run the nightly suite: known failing seeds, new seeds, long forms
 

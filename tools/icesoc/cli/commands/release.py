@@ -15,12 +15,15 @@ from icesoc.util.errors import Stop
                         "key by its name", ""),
     Option("out", FOLDER, "folder for the files, which is emptied first", "build/release")],
          brief="release --only source icec changes sbom --out build/brief/release/files", examples=[
-             "release --key ~/.minisign/icesoc.sec", "release --only source icec"])
+             "release",
+             "release --only source icec",
+             "release --key ~/.minisign/icesoc.sec"])
 def release(values):
-    """make the files of a release: sources, IceC, packages, documentation, checksums
+    """make the files of a release: sources, packages, checksums
 
-    They are made of the last commit. The same commit gives the same bytes, except a signature of
-    gpg, which has the time.
+    Also makes IceC as single files and as packs, the documentation and a list of all
+    components. Everything is made from the last commit. The same commit gives the same bytes,
+    except for a signature by gpg, which contains the time.
     """
     for part in values.only:
         if part not in build.PARTS:

@@ -45,7 +45,12 @@ def utilisation(build, values, *words):
              "synth report --design modem", "synth report --family xc7 ecp5",
              "synth report --base main..mine"])
 def synth(values):
-    """LUTs, flip-flops, slices of the chip and each part, against limits and paper"""
+    """report LUTs, flip-flops, slices and clock of the chip and each part
+
+    Synthesises every design that has changed, by Yosys, and compares the figures with the
+    baseline, with the limits in synth/designs.json and with the paper. Writes
+    build/synth/report.html.
+    """
     first, between, last = values.base.partition("..")
     commits = [commit(name) for name in (first, last) if name]
     build = configured(values, "synth_inputs", *["slice2c"] * bool(commits), tests=True)
@@ -59,18 +64,32 @@ def synth(values):
 
 
 @command("synth accept", [DESIGN, BUILD, JOBS], make="synth-accept", examples=[
-    "synth accept --design modem"], brief="synth accept --design npi_arbiter")
+             "synth accept",
+             "synth accept --design modem",
+             "synth accept --design modem fir"], brief="synth accept --design npi_arbiter")
 def accept(values):
-    """accept the current utilisation as baseline (synth/baseline.json)"""
+    """accept the current utilisation as baseline (synth/baseline.json)
+
+    Later reports compare with the baseline, and fail if a design grows beyond it. Commit the
+    file with the change that explains the growth.
+    """
     return utilisation(configured(values, "synth_inputs"), values, "--accept",
                        *with_name("--design", values.design))
 
 
 @command("synth edif", [Option("design", TEXT, "design to export", "soc",
                              choices=choices.designs), BUILD, JOBS],
-         make="synth-edif", brief="synth edif --design npi_arbiter")
+         make="synth-edif", brief="synth edif --design npi_arbiter",
+         examples=[
+             "synth edif",
+             "synth edif --design modem",
+             "synth edif --build build/other"])
 def edif(values):
-    """write the chip as EDIF for Xilinx ISE (build/synth/ise)"""
+    """write the chip as EDIF for Xilinx ISE (build/synth/ise)
+
+    The folder also gets the Verilog of the netlist. docs/utilisation.md describes the way from
+    there to a bitstream.
+    """
     build = configured(values, "synth_inputs")
     return run([build / "synth/utilisation", "--generated", build / "gen", "--edif", values.design],
                check=False)
@@ -161,11 +180,16 @@ def compare(build, jobs, base, head=None):
 
 @command("contract diff",
          [Option("base", TEXT, "commit to compare with", "", positional=True), BUILD, JOBS],
-         make="contract-diff", brief="contract diff HEAD", examples=["contract diff main"])
+         make="contract-diff", brief="contract diff HEAD", examples=[
+             "contract diff main",
+             "contract diff HEAD~1",
+             "contract diff HEAD --build build/other"])
 def contract_diff(values):
     """list changes of the cores' registers since a commit
 
-    Exit status 1: software for that commit would break."""
+    Compares the registers of all cores in the chip with those of another commit. Exit status 1:
+    software for that commit would break.
+    """
     if values.base:
         commit(values.base)
     build = configured(values, "slice2c")
@@ -175,7 +199,14 @@ def contract_diff(values):
 @command("contract from-rdl", [Option("rdl", FILE, "SystemRDL file", "", positional=True),
                                Option("out", FOLDER, "output folder", "")],
          make="from-rdl", brief="contract from-rdl build/main/gen/icesoc.rdl --out build/brief/rdl",
-         examples=["contract from-rdl spi.rdl --out ip/spi"])
+         examples=[
+             "contract from-rdl spi.rdl",
+             "contract from-rdl spi.rdl --out ip/spi",
+             "contract from-rdl build/main/gen/icesoc.rdl --out /tmp/regs"])
 def from_rdl(values):
-    """convert SystemRDL into register descriptions (*.regs.json)"""
+    """convert SystemRDL into register descriptions (*.regs.json)
+
+    Reads a flat subset of SystemRDL 2.0: addrmap, reg, field and their properties, without
+    parameters and expressions. Errors name file and line.
+    """
     return run([*tool("regs.rdl"), values.rdl, values.out], check=False)

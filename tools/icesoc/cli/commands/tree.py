@@ -30,7 +30,11 @@ from icesoc.util.table import Table
          make="setup", brief="setup --check", examples=[
              "setup", "setup --tests", "setup --developer"])
 def setup(values):
-    """install the Debian packages that are needed and missing"""
+    """install missing Debian packages
+
+    cmake/setup.sh lists the packages. Installing needs root or sudo, and a network. With
+    --check nothing is installed; exit status 1: packages are missing.
+    """
     if values.developer:
         run(["git", "config", "core.hooksPath", ".ci/hooks"])
         say("git now runs .ci/hooks")
@@ -43,9 +47,17 @@ doors.ALIASES["setup-tests"] = ("setup", "WITH_TESTS")
 
 
 @command("clean", [Option("list", SWITCH, "only list what would be removed")], make="clean",
-         brief="clean --list")
+         brief="clean --list",
+         examples=[
+             "clean",
+             "clean --list",
+             "clean && ./icesoc build all"])
 def clean(values):
-    """remove all build output; keys are kept"""
+    """remove all build output; keys are kept
+
+    Removes the folder build/. Keys that earlier versions stored there are moved to the folder of
+    the keys first.
+    """
     if not values.list:
         keys.rescue("build")
     for path in sorted(Path("build").glob("*")):
@@ -64,10 +76,14 @@ def clean(values):
     Option("schema", PATH, "write the JSON schema of a flight to this file "
                            "(tools/icesoc/cli/flight.schema.json)", "")],
          make="commands", brief="commands", examples=[
-             "commands --brief", "commands --man icesoc.1 && man ./icesoc.1",
-             "commands --completion"])
+             "commands", "commands --brief --only core", "commands --completion",
+             "commands --man icesoc.1 && man ./icesoc.1"])
 def commands(values):
-    """list all commands with their brief forms, or run the brief forms"""
+    """list all commands with their brief forms, or run these
+
+    A brief form is a command line that runs all steps of a command in seconds or a few minutes.
+    CI runs all of them.
+    """
     if values.completion:
         return say(doors.completion_code())
     if values.man:

@@ -25,7 +25,7 @@ class Lists(unittest.TestCase):
 
     def test_help_has_a_line_a_paragraph_options_and_three_examples(self):
         for name, each in command.COMMANDS.items():
-            self.assertEqual(command.short(each.help, 67), each.help, f"{name}: too long for a list")
+            self.assertEqual(command.short(each.help, 67), each.help, f"{name}: too long")
             self.assertRegex(each.more, r"(?s)\w.*\w", f"{name}: no paragraph")
             self.assertGreaterEqual(len(each.examples), 3, f"{name}: examples")
             self.assertEqual([line for line in each.examples if name.split()[0] not in line], [])

@@ -38,7 +38,7 @@ refused 'small letters' 'fir x' --lang verilog
 refused 'reserved' signal --lang vhdl
 refused 'reserved' module --lang verilog
 refused 'reserved' template --lang verilog
-refused 'there already' old --lang verilog
+refused 'already exists' old --lang verilog
 refused 'modem.regs.json' modem --lang verilog
 refused 'a module' bus_thing --lang verilog
 refused 'a module' vhdl_thing --lang verilog

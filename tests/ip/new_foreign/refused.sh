@@ -42,7 +42,7 @@ named My 'small letters' wb_port wishbone wb_port.v
 named event "'event' is a reserved word" wb_port wishbone wb_port.v
 named npi_fifo "'npi_fifo' is the name of this project's module in hdl" wb_port wishbone wb_port.v
 named wb_port "'wb_port' is the name of a module of the core" wb_port wishbone wb_port.v
-refused "'none.v': expected a Verilog or VHDL file" wb_port wishbone none.v
+refused "none.v': expected a Verilog or VHDL file" wb_port wishbone none.v
 refused "no module 'missing' in FILES; found wb_port" missing wishbone wb_port.v
 refused 'does not elaborate broken' broken wishbone broken.v
 refused "inout port 'sda'" pads wishbone pads.v

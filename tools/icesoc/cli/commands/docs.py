@@ -52,7 +52,7 @@ MADE = ["LowPass.ice", "ip/low_pass"]
                             " built"),
     Option("brief", SWITCH, "leave out flights and the waveform, which take minutes"),
     Option("list", SWITCH, "only list the commands of the page")],
-         brief="check tutorial --list", long="check tutorial --clone", examples=[
+         brief="check tutorial --brief", long="check tutorial --clone", examples=[
              "check tutorial",
              "check tutorial --brief",
              "check tutorial --clone"])

@@ -204,7 +204,8 @@ class Cases(Script):
                  "typed.sv:1: ERROR: syntax error.*\n.*needs what sv2v makes of it")
         self.has('"broken: synthesis failed"', file="out/report.json")
         for name in "baseline", "designs":  # as left by a merge
-            write(f"project/synth/{name}.json", "{\n            self.run_program(status=None)
+            write(f"project/synth/{name}.json", "{\n<<<<<<< HEAD\n")
+            self.run_program(status=None)
             self.has(f"^utilisation: project/synth/{name}.json: .*line 2")
 
     def test_twice(self):
@@ -334,7 +335,6 @@ class Cases(Script):
         self.has("'none'.*choose from")
         write("project/build/main/cores.known", "store\n")
         self.made("ip-synth", "IP=missing", status=None)
-<<<<<<< HEAD
         self.has("expected the name of a core, got 'missing'; known: store")
 
     def test_equivalent(self):

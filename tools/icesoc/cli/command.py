@@ -200,8 +200,8 @@ def by_make(goal, goals, makes):
             others = sorted({each.make for each in COMMANDS.values() if each.make
                              and name in (o.variable for o in each.options)})
             where = f"; it is one of make {', '.join(others)}" if others else nearest(name, known)
-            raise Stop(f"make {' '.join(goals)} has no variable {name}{where}; "
-                       f"./icesoc {of(goal)[0].name} --help names them", 2)
+            raise Stop(f"make {' '.join(goals)} has no variable {name}{where} "
+                       f"(./icesoc {of(goal)[0].name} --help lists them)", 2)
     chosen = sorted(of(goal), key=lambda each: not (each.when and os.environ.get(each.when)))
     found = next(each for each in chosen if not each.when or os.environ.get(each.when))
     return found, found.values({}, makes, os.getcwd())

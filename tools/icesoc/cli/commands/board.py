@@ -36,7 +36,10 @@ def read(name):
 
 @command("board list", [], examples=["board list"], brief="board list")
 def board_list(_):
-    """list the boards"""
+    """list the boards that are described in boards/
+
+    Prints name, number of wires, title and state of each board. A board with missing facts cannot
+    be built."""
     for name in model.names():
         board = read(name)
         state = ("facts are missing; cannot be built" if board.facts.get("unknown")
@@ -44,21 +47,26 @@ def board_list(_):
         say(f"{name:22} {len(wiring.wires(board)):3} wires  {board.facts['title']} ({state})")
 
 
-@command("board show", [NAME], examples=["board show nucleo-qmtech"],
+@command("board show", [NAME], examples=[
+    "board show nucleo-qmtech", "board show nucleo-qmtech-muxed", "board show my/board.toml"],
          brief="board show nucleo-qmtech")
 def board_show(values):
-    """print a board: chips, wiring table, parts to order, notes"""
+    """print a board: chips, wiring table, parts to order, notes
+
+    NAME is a board of boards/, or a file board.toml. The text equals the board's page in the
+    documentation."""
     say(wiring.page(read(values.name)).rstrip())
 
 
-@command("board check", [NAME], examples=["board check nucleo-qmtech"],
+@command("board check", [NAME], examples=[
+    "board check nucleo-qmtech", "board check nucleo-qmtech-muxed", "board check my/board.toml"],
          brief="board check nucleo-qmtech")
 def board_check(values):
-    """reject what cannot work on a board, in words
+    """report the errors of a board description
 
-    NAME is a board of boards/, or a file board.toml. Checked are the functions of pins, pins that
-    are used twice or by something on a module, voltages of banks and levels, clock inputs, inputs
-    without a driver, and missing facts."""
+    NAME is a board of boards/, or a file board.toml. The command checks the functions of pins, pins
+    that are used twice or are taken on a module, voltages of banks and levels, clock inputs, inputs
+    without a driver, and missing facts. Exit status 1: an error was found."""
     board = read(values.name)
     if found := check.problems(board):
         raise Stop("\n".join([f"board check: {len(found)} problems of {board.path}",
@@ -69,12 +77,14 @@ def board_check(values):
 @command("board make", [
     NAME, Option("out", FOLDER, "folder of the files (default: build/board/NAME)", ""),
     Option("docs", SWITCH, "only write the page and the picture of the board into docs/boards")],
-         examples=["board make nucleo-qmtech", "board make nucleo-qmtech --out my/folder"],
+         examples=["board make nucleo-qmtech", "board make nucleo-qmtech --out my/folder",
+                   "board make nucleo-qmtech --docs"],
          brief="board make nucleo-qmtech --out build/brief/board")
 def board_make(values):
-    """generate a board's files: constraints, pins, wiring table, parts, OpenOCD, page
+    """generate the files of a board: constraints, pins, wiring, parts
 
-    A board with unknown facts or problems is refused."""
+    Also writes the settings of OpenOCD and a page. A board with unknown facts or errors is
+    refused; board check lists them."""
     board = read(values.name)
     if values.docs:
         made = make.write(documents(board), PAGES)

@@ -18,9 +18,10 @@ from icesoc.util.lock import lock
 from icesoc.util.process import output, run, tool
 
 GROUPS["check"] = "proofs, sanitizers, fuzzing, faults, coverage"
-# Test programs that are built with sanitizers: their folder, and what else they start.
-GUARDED = {"test_icec": ("icec", []), "test_ground_engine": ("ground", []),
-           "test_ground_ice": ("ground/ice", ["gateway"])}
+# Test programs that are built with sanitizers: folder, and other programs that they start.
+GUARDED: dict[str, tuple[str, list[str]]] = {
+    "test_icec": ("icec", []), "test_ground_engine": ("ground", []),
+    "test_ground_ice": ("ground/ice", ["gateway"])}
 
 
 def one_more(status, other):

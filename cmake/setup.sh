@@ -73,6 +73,7 @@ mypy checks the types of the tools in Python
 libxml2-utils checks the generated SVD file and pages
 lcov coverage pages
 chromium opens the report pages in tests
+libnss3-tools gives it certificates
 zeroc-icebridge a forwarder; a test compares the gateway with it
 zeroc-glacier2 a router, in front of the gateway in a test
 tshark reads the messages on the wire in tests

@@ -105,5 +105,8 @@ with Ice.initialize(data) as communicator:
     adapter.add(Try(), Ice.stringToIdentity("try"))
     adapter.addFacet(Try(), Ice.stringToIdentity("try"), "side")
     adapter.activate()
-    print(adapter.getEndpoints()[0].getInfo().port, flush=True)
+    info = adapter.getEndpoints()[0].getInfo()
+    while info.underlying:
+        info = info.underlying
+    print(info.port, flush=True)
     sys.stdin.read()  # until the test closes it

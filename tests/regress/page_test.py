@@ -11,7 +11,7 @@ from types import SimpleNamespace
 
 from project import BUILD, REGRESS, TREE, Project, edit, main, write
 from icesoc.regress import blocks
-import look
+from icesoc.util import browser
 
 VCD = """$timescale 1ns $end
 $scope module top $end $var wire 1 ! clk_i $end
@@ -70,7 +70,7 @@ WRITTEN = "build/regress/report.html"
 
 class Cases(Project):
     def browse(self, page):
-        self.said = look.browse(Path(page).resolve().as_uri())[0]
+        self.said = browser.elements(Path(page).resolve().as_uri())
 
     def test_page(self):
         write("t.vcd", VCD)
@@ -146,12 +146,12 @@ top.document.body.append("wider: " + [...document.querySelectorAll(".tabulator-c
   .filter(e => e.getBoundingClientRect().right > 421).map(e => e.innerText) + ";"), 1000);
 </script></body>"""))
         write("frame.html", '<iframe src="small.html" width="420" height="3000"></iframe>')
-        self.said = look.browse(Path("frame.html").resolve().as_uri(),
-                                "--allow-file-access-from-files")[0]
+        self.said = browser.elements(Path("frame.html").resolve().as_uri(),
+                                     "--allow-file-access-from-files")
         self.has("wider: ;")
-        self.assertEqual(look.fault(WRITTEN), "")
+        self.assertEqual(browser.fault(WRITTEN), "")
         write("wrong.html", page.replace("of data.lights", "of data.lihgts"))
-        self.assertRegex(look.fault("wrong.html"), "^wrong.html:[0-9]*: Uncaught TypeError: "
+        self.assertRegex(browser.fault("wrong.html"), "^wrong.html:[0-9]*: Uncaught TypeError: "
                          "data.lihgts is not iterable: for [(]const light")
         self.ask("env", "ICESOC_TREE=.", TREE / "icesoc", "build", "pictures", "--from", "build",
                  "--to", ".", "regression")
@@ -280,7 +280,7 @@ top.document.body.append("wider: " + [...document.querySelectorAll(".tabulator-c
         speed(60)
         measure(size="green", speed="green")
         size(40, state="changed since")
-        measure(size="grey   1 changed since, 0 never measured here: make synth")
+        measure(size="grey   1 of 1 designs changed since: make synth")
         size(41)
         measure(size="red   *1 beyond their limits: whole 41 [(]at most 40[)]", tests="green",
                 speed="green")

@@ -8,15 +8,18 @@
 // radio.
 
 #include "gateway_options.h"
+#include "pages.h"
 #include "registration.h"
 #include "rights.h"
 
 #include <IceSSL/IceSSL.h>
+#include <IceSSL/OpenSSL.h>
 #include <IceStorm/IceStorm.h>
 #include <algorithm>
 #include <csignal>
 #include <iostream>
 #include <list>
+#include <openssl/ssl.h>
 
 namespace {
 
@@ -47,13 +50,19 @@ std::string turnOf(const std::shared_ptr<Ice::Connection>& connection, const std
     return "";
 }
 
-// Returns a function that passes the clients' calls to the vehicle if --rights permits them.
+// Returns a function that passes the clients' calls to the vehicle if --rights permits them, and if
+// they are not of a foreign web page.
 // Without `allowsMaintenance` objects that change keys or programs are refused.
-Take toVehicle(Forwarder& forwarder, const Rights& rights, bool allowsMaintenance) {
-    return [&forwarder, &rights, allowsMaintenance](std::shared_ptr<Request> request) {
+Take toVehicle(Forwarder& forwarder, const Rights& rights, const Pages& pages,
+               bool allowsMaintenance) {
+    return [&forwarder, &rights, &pages, allowsMaintenance](std::shared_ptr<Request> request) {
         const Ice::Current& current = request->current;
         const std::string identity = Ice::identityToString(current.id);
         const std::string subject = subjectOf(current.con);
+        const std::string refusal = pages.refusal(current.con);
+        if (!refusal.empty())
+            return request->failed(std::make_exception_ptr(
+                Ice::UnknownException(__FILE__, __LINE__, "icesoc-gateway: " + refusal)));
         if (rights.permit(subject, identity, current.operation)) {
             request->subject = turnOf(current.con, subject);
             request->mayMaintain = allowsMaintenance;
@@ -93,6 +102,20 @@ Take toStation(const std::shared_ptr<Ice::ObjectPrx>& station, const std::string
             request->failed(why);
         });
     };
+}
+
+// Lets no TLS session be resumed: IceSSL knows the certificate of a client from a full handshake
+// only, and a browser resumes sessions.
+void refuseResumption(const std::shared_ptr<Ice::Communicator>& ic) {
+    try {
+        const auto plugin = ic->getPluginManager()->getPlugin("IceSSL");
+        if (const auto openSsl = std::dynamic_pointer_cast<IceSSL::OpenSSL::Plugin>(plugin)) {
+            SSL_CTX_set_session_cache_mode(openSsl->getContext(), SSL_SESS_CACHE_OFF);
+            SSL_CTX_set_options(openSsl->getContext(), SSL_OP_NO_TICKET);
+            SSL_CTX_set_num_tickets(openSsl->getContext(), 0);
+        }
+    } catch (const Ice::NotRegisteredException&) { // no TLS
+    }
 }
 
 // Returns the port of the first endpoint of an adapter. Throws if an endpoint accepts unencrypted
@@ -146,21 +169,25 @@ class Vehicle {
 public:
     // `place`: index of the vehicle in the fleet, which is added to the given ports.
     Vehicle(const std::shared_ptr<Ice::Communicator>& ic, const Options& o, const Rights& rights,
-            const std::string& name, int address, int place,
+            Pages& pages, const std::string& name, int address, int place,
             const std::shared_ptr<Ice::ObjectPrx>& publisher)
         : forwarder(ic->stringToProxy("any:" + radioEndpoint(o, address)),
                     std::chrono::seconds(o.wait)),
           events(name, publisher),
           registration(
               name, forwarder, events,
-              [=, &o, &rights] {
-                  return adapterOf(ic, named("Clients"), endpointsOf(o.listen, place),
-                                   toVehicle(forwarder, rights, false));
+              [=, &rights, &pages] {
+                  const auto properties = ic->getProperties();
+                  const bool hasCertificate = !properties->getProperty("IceSSL.CertFile").empty();
+                  return adapterOf(ic, named("Clients"),
+                                   endpointsOf(pages.endpoints(hasCertificate), place),
+                                   toVehicle(forwarder, rights, pages, false));
               },
               ic->getDefaultLocator()),
           place_(place) {
         const auto opened = registration.open();
         const int port = checkedPort(opened);
+        pages.add(name, opened);
         const auto reached = ic->getDefaultLocator()
                                  ? ic->stringToProxy("uav@" + name)
                                  : opened->createDirectProxy(Ice::stringToIdentity("uav"));
@@ -171,7 +198,7 @@ public:
         if (!o.maintenance.empty())
             adapters_.push_back(adapterOf(ic, named("Maintenance"),
                                           endpointsOf(o.maintenance, place),
-                                          toVehicle(forwarder, rights, true)));
+                                          toVehicle(forwarder, rights, pages, true)));
         const int maintenance = o.maintenance.empty() ? 0 : checkedPort(adapters_.back());
         forwarder.setCallbacks(adapterOf(ic, "", "", [this](std::shared_ptr<Request> request) {
             forwarder.takeCallback(std::move(request));
@@ -215,11 +242,17 @@ sigset_t endings() {
 
 // Passes requests until a signal stops the gateway.
 void serve(const std::shared_ptr<Ice::Communicator>& ic, const Options& o) {
+    refuseResumption(ic);
     const Rights rights = o.rights.empty() ? Rights() : Rights(o.rights);
     const auto publisher = publisherOf(ic, o.topics);
+    Pages pages(o);
+    if (!o.page.empty() && ic->getDefaultLocator())
+        throw std::runtime_error("--page: expected no --Ice.Default.Locator, since the ports of "
+                                 "registered vehicles change");
     std::list<Vehicle> vehicles;
     for (const auto& [name, address] : fleetOf(o))
-        vehicles.emplace_back(ic, o, rights, name, address, int(vehicles.size()), publisher);
+        vehicles.emplace_back(ic, o, rights, pages, name, address, int(vehicles.size()), publisher);
+    pages.start(ic->getProperties()->getProperty("IceSSL.CertFile"));
     // Returns the error of the registry; empty if it answers, or if no registry is configured.
     const auto ask = [&](void (Registration::*question)()) -> std::string {
         try {
@@ -234,6 +267,7 @@ void serve(const std::shared_ptr<Ice::Communicator>& ic, const Options& o) {
     const sigset_t signals = endings();
     const timespec pause{0, Registration::lookMs * 1'000'000};
     for (std::string before; sigtimedwait(&signals, nullptr, &pause) < 0;) {
+        pages.check();
         for (Vehicle& vehicle : vehicles)
             vehicle.forwarder.failLateRequests();
         const std::string trouble = ask(&Registration::look);

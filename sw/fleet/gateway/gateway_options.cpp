@@ -89,6 +89,13 @@ void addOptions(CLI::App& app, Options& o) {
     app.add_option("--maintenance", o.maintenance,
                    "HOST:PORT, or Ice's endpoints: the only ones at which objects for maintenance, "
                    "such as 'keys', 'update' and 'fpga', can be reached");
+    app.add_option("--page", o.page,
+                   "HOST:PORT of a web page with forms for all operations, opened by this HOST. "
+                   "Browsers call a ws endpoint, or wss with IceSSL.CertFile; without one in "
+                   "--listen, it is added");
+    app.add_option("--origin", o.origins,
+                   "origin of another page whose browsers may call, such as "
+                   "https://example.org:8443");
     app.add_option("--rights", o.rights,
                    "JSON file: which certificate may call which identities and operations");
     app.add_option("--wait", o.wait,
@@ -128,7 +135,8 @@ void setProperties(const std::shared_ptr<Ice::Properties>& p, const Options& o) 
         p->setProperty("XBeeAT.ModemKey", readModemKey(o.modemKeyFile));
     Ice::registerPluginFactory("XBeeAT", createXBeeAT, true);
     if ((o.listen + o.maintenance).find("ssl ") != std::string::npos ||
-        (o.listen + o.maintenance).find("wss ") != std::string::npos)
+        (o.listen + o.maintenance).find("wss ") != std::string::npos ||
+        (!o.page.empty() && !p->getProperty("IceSSL.CertFile").empty()))
         Ice::registerIceSSL();
 }
 

@@ -13,8 +13,9 @@
 namespace gateway {
 
 struct Options {
-    std::string device, keyFile, modemKeyFile, rights, station, maintenance, topics;
+    std::string device, keyFile, modemKeyFile, rights, station, maintenance, topics, page;
     std::vector<std::string> vehicles; // NAME=ADDRESS
+    std::vector<std::string> origins;  // of other web pages that may call
     std::string listen = "127.0.0.1:10000";
     int baud = 115200, target = 1, source = 0, rfChannel = 0x0C, pan = 0x3332, guardMs = 1000;
     int trace = 0, wait = 30;

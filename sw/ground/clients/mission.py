@@ -344,7 +344,7 @@ def fly(args):
 
 def main():
     args = parse_arguments()
-    return fly(args) or (stay.serve(args) if args.live else 0)
+    return fly(args) or (stay.serve(args) if stay.is_wanted(args) else 0)
 
 
 if __name__ == "__main__":

@@ -1,23 +1,68 @@
 # SPDX-License-Identifier: MIT
-"""stay: keeps a vehicle reachable after its mission. Starts the gateway at the mission's modem, and
-writes OUT/live.json, by which `./icesoc call` finds the flight:
+"""stay: keeps a vehicle reachable after its mission, until Ctrl-C (LIVE=1) or as long as the page
+of the flight is in use. Starts the gateway at the mission's modem, and writes OUT/live.json, by
+which `./icesoc call` finds the flight:
 
     {"pid": 4711, "build": "/.../build/main", "vehicles": {"uav1": "tcp -h 127.0.0.1 -p 40001"}}
+
+The page's server writes OUT/viewed about once per second while a browser shows the page, and
+removes it when the page is closed.
 """
 
 import contextlib
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
+import threading
+import time
 
 from mission_log import whole
+
+HIDDEN = 75  # s; browsers let the page of a hidden tab ask once per minute
+GRACE = 3  # s; another tab may still show the page after one was closed
+
+
+def is_viewed(folder):
+    """Returns whether a browser shows the page of the flight."""
+    try:
+        return time.time() - os.stat(os.path.join(folder, "viewed")).st_mtime < HIDDEN
+    except OSError:
+        return False
+
+
+def gateway_program(args):
+    """Returns the gateway of the build, or the installed one; None if there is neither."""
+    return shutil.which("icesoc-gateway", path=os.pathsep.join(
+        [args.plugin, os.environ.get("PATH", os.defpath)]))
+
+
+def is_wanted(args):
+    """Returns whether the vehicle is to stay after its mission."""
+    if not args.live and not is_viewed(args.out):
+        return False
+    if gateway_program(args):
+        return True
+    print("stay: the page makes no calls without the gateway: make run LIVE=1 builds it",
+          file=sys.stderr)
+    return False
+
+
+def end_with_page(folder, process):
+    """Ends a process when no browser has shown the page for a while."""
+    while process.poll() is None:
+        time.sleep(0.5)
+        if not is_viewed(folder):
+            time.sleep(GRACE)
+            if not is_viewed(folder):
+                process.terminate()
 
 
 def gateway(args):
     """Starts the gateway as a process that ends with this one."""
-    words = ["setpriv", "--pdeathsig", "TERM", "--", os.path.join(args.plugin, "icesoc-gateway"),
+    words = ["setpriv", "--pdeathsig", "TERM", "--", gateway_program(args),
              "--device", args.device, "--guard", str(args.guard), "--listen", "127.0.0.1:0",
              *(["--key", args.key] if args.key else []), *(["--wire"] if args.wire else [])]
     for address in range(1, args.vehicles + 1):
@@ -29,6 +74,8 @@ def serve(args):
     """Serves until a signal ends this program; returns an exit status."""
     path, vehicles = os.path.join(args.out, "live.json"), {}
     with gateway(args) as process:
+        if not args.live:
+            threading.Thread(target=end_with_page, args=(args.out, process), daemon=True).start()
         try:
             for line in process.stdout:
                 if found := re.search(r"port (\d+) leads to (\w+) ", line):
@@ -38,7 +85,10 @@ def serve(args):
                         json.dump({"pid": os.getpid(), "vehicles": vehicles,
                                    "build": os.path.dirname(os.path.abspath(args.plugin))}, file)
                     vehicles = {}
-            print(f"stay: the gateway ended (exit status {process.wait()})", file=sys.stderr)
+            status = process.wait()
+            if not args.live and not is_viewed(args.out):
+                return 0
+            print(f"stay: the gateway ended (exit status {status})", file=sys.stderr)
             return 1
         except KeyboardInterrupt:
             return 130

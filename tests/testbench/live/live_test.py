@@ -7,6 +7,7 @@ Usage: live_test.py mission|errors work-folder build-folder
 import contextlib
 import http.client
 import json
+import os
 import re
 import shutil
 import socket
@@ -16,9 +17,8 @@ import urllib.error
 import urllib.request
 from pathlib import Path
 
-from browser import Browser
 from script import TREE, Script, edit, fresh, main, write
-import look
+from icesoc.util.browser import Browser, elements
 
 BUILD = Path(sys.argv[3]).resolve()
 LIVE = [TREE / "tools/python", "-m", "icesoc.web.live"]
@@ -30,40 +30,51 @@ class Cases(Script):
         self.work = fresh(sys.argv[2])
 
     @contextlib.contextmanager
-    def serving(self, *words, until):
+    def serving(self, *words, until, **environment):
         """A process that serves its page: its port."""
-        with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                              text=True) as process:
+        with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                              env={**os.environ, **environment}) as self.process:
             try:
-                port, said = None, ""
-                for line in process.stdout:
-                    said += line
-                    found = re.search(r"http://127\.0\.0\.1:(\d+)/", line)
-                    port = int(found[1]) if found else port
-                    if until in line:
-                        break
-                else:
-                    self.fail(f"the page has ended: {said}")
-                yield port
+                yield int(re.search(r"http://127\.0\.0\.1:(\d+)/", self.hear(until))[1])
             finally:
-                process.terminate()
-                process.stdout.close()
-        self.ended = process.returncode
+                self.process.terminate()
+                self.process.stdout.close()
+        self.ended = self.process.returncode
+
+    def hear(self, text):
+        """Reads the output of the process up to a text, and returns it."""
+        said = ""
+        for line in self.process.stdout:
+            said += line
+            if text in line:
+                return said
+        self.fail(f"the process has ended: {said}")
 
     def test_mission(self):
+        """The page is opened with the flight, and keeps the vehicle until it is closed."""
+        write("browser", f"#!/bin/sh\necho \"$1\" >{self.work}/opened\n")
         flight = ("run", "--built", "--build", BUILD, "--size", "96x64", "--guard", "20", "--cpu",
-                  "m3", "--out", self.work, "--live")
-        with self.serving(TREE / "icesoc", *flight, until="The page stays") as port:
+                  "m3", "--out", self.work, "--show", "yes")
+        with self.serving(TREE / "icesoc", *flight, until="http://",
+                          BROWSER=f"{self.work}/browser %s") as port:
+            address = f"http://127.0.0.1:{port}/"
             # No name is resolved: resources of other hosts would be missing, and reported.
-            self.said, log = look.browse(f"http://127.0.0.1:{port}/",
-                                         "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
-                                         "--window-size=1280,1500", "--virtual-time-budget=4000")
-            page = self.said
-            state = urllib.request.urlopen(f"http://127.0.0.1:{port}/state").read().decode()
-            self.calls()
-            self.calls_of_the_page(port)
+            with Browser("--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
+                         width=1280, height=1500) as browser:
+                browser.open(address)
+                self.hear("The page stays until you close it")
+                self.assertEqual(Path("opened").read_text(), address + "\n")
+                browser.until("/equals/.test(document.getElementById('phase').innerText)")
+                page = browser.elements()
+                state = urllib.request.urlopen(address + "state").read().decode()
+                self.calls()
+                self.calls_of_the_page(browser)
+                self.assertEqual(browser.errors, [])
+                self.assertIsNone(self.process.poll())
+                browser.open("about:blank")
+            self.hear("The flight has ended")
+            self.assertEqual(self.process.wait(60), 0)
             self.said = page
-        self.assertNotRegex(log, "CONSOLE.*(rror|NOT_RESOLVED)")
         self.has(
             "the mission is over", '<p id="flight">size 96x64, cpu m3, guard 20</p>',
             r"hwengine1.getResult\(\)", r"Station.vehicleState\(uptimeMs",
@@ -110,41 +121,39 @@ class Cases(Script):
         self.has("maintenance")
         self.ask(*call, "update.getStatus", status=5)
 
-    def calls_of_the_page(self, port):
+    def calls_of_the_page(self, browser):
         """The page calls the vision core, and draws the corners that come back."""
         if not (BUILD / "page/ice.js").stat().st_size:
             return print("without a call of the page: Ice for JavaScript could not be fetched")
-        with Browser() as browser:
-            browser.open(f"http://127.0.0.1:{port}/")
-            browser.run("document.getElementById('objects').open = true")
-            browser.until("document.querySelectorAll('#cards details').length > 4")
-            browser.run("document.querySelectorAll('#cards details').forEach(d => d.open = true)")
-            browser.until("document.getElementById('hwengine1.setParameterA.value') !== null")
-            calls = browser.run("""(async () => {
-                const slider = document.querySelector(
-                    '[id="hwengine1.setParameterA.value"] ~ input');
-                slider.value = 60;
-                slider.dispatchEvent(new Event('input'));
-                const forms = [...slider.closest('details').querySelectorAll('form')];
-                for (const form of forms) {
-                    form.requestSubmit();
-                    while (!form.querySelector('output').innerText.includes('done in'))
-                        await new Promise(r => setTimeout(r, 10));
-                }
-                return forms.map(form => form.innerText);
-            })()""")
-            found = re.search(r'"found":(\d+)', calls[2])[1]
-            browser.until("document.getElementById('found').innerText"
-                          f".startsWith('{found} corners')")
-            self.assertLess(int(found), 121)
-            # The registers of the core are next to its operations, and those that change marked.
-            beside = "document.querySelector('#cards [data-block=vision]')"
-            browser.until(f"/THRESHOLD\\s+0x0000003c/.test({beside}.innerText)")
-            browser.until(f"!{beside}.querySelector('.changed')")
-            browser.run("document.querySelector('[id=\"hwengine1.setParameterA.value\"]')"
-                        ".value = 61; document.querySelector('[id="
-                        "\"hwengine1.setParameterA.value\"]').closest('form').requestSubmit()")
-            browser.until(f"{beside}.querySelector('.changed')?.innerText.includes('0x0000003d')")
+        browser.run("document.getElementById('objects').open = true")
+        browser.until("document.querySelectorAll('#cards details').length > 4")
+        browser.run("document.querySelectorAll('#cards details').forEach(d => d.open = true)")
+        browser.until("document.getElementById('hwengine1.setParameterA.value') !== null")
+        calls = browser.run("""(async () => {
+            const slider = document.querySelector(
+                '[id="hwengine1.setParameterA.value"] ~ input');
+            slider.value = 60;
+            slider.dispatchEvent(new Event('input'));
+            const forms = [...slider.closest('details').querySelectorAll('form')];
+            for (const form of forms) {
+                form.requestSubmit();
+                while (!form.querySelector('output').innerText.includes('done in'))
+                    await new Promise(r => setTimeout(r, 10));
+            }
+            return forms.map(form => form.innerText);
+        })()""")
+        found = re.search(r'"found":(\d+)', calls[2])[1]
+        browser.until("document.getElementById('found').innerText"
+                      f".startsWith('{found} corners')")
+        self.assertLess(int(found), 121)
+        # The registers of the core are next to its operations, and those that change marked.
+        beside = "document.querySelector('#cards [data-block=vision]')"
+        browser.until(f"/THRESHOLD\\s+0x0000003c/.test({beside}.innerText)")
+        browser.until(f"!{beside}.querySelector('.changed')")
+        browser.run("document.querySelector('[id=\"hwengine1.setParameterA.value\"]')"
+                    ".value = 61; document.querySelector('[id="
+                    "\"hwengine1.setParameterA.value\"]').closest('form').requestSubmit()")
+        browser.until(f"{beside}.querySelector('.changed')?.innerText.includes('0x0000003d')")
 
     def narrow(self, state):
         """At 420 pixels nothing is cut, or needs a scroll bar."""
@@ -158,14 +167,30 @@ setTimeout(() => top.document.body.append("cut: " + [...document.querySelectorAl
   e.getBoundingClientRect().right > 421 || getComputedStyle(e).overflowX !== "visible" &&
   e.scrollWidth > e.clientWidth + 1).map(e => e.tagName + e.id) + ";"), 1000);</script>{common}""")
         write("frame.html", '<iframe src="index.html" width="420"></iframe>')
-        self.said = look.browse((self.work / "frame.html").as_uri(),
-                                "--allow-file-access-from-files")[0]
+        self.said = elements((self.work / "frame.html").as_uri(),
+                             "--allow-file-access-from-files")
         self.has("cut: ;")
 
     def lines(self, name):
-        return [json.loads(line) for line in open(f"{name}.jsonl")]
+        return [json.loads(line) for line in Path(f"{name}.jsonl").read_text().splitlines()]
+
+    def contrasts(self):
+        """Bars, marks and texts of the pages have enough contrast with both backgrounds."""
+        def light(colour):
+            digits = colour[1:] if len(colour) == 7 else "".join(2 * d for d in colour[1:])
+            parts = [int(digits[i:i + 2], 16) / 255 for i in (0, 2, 4)]
+            parts = [p / 12.92 if p <= 0.03928 else ((p + 0.055) / 1.055) ** 2.4 for p in parts]
+            return 0.2126 * parts[0] + 0.7152 * parts[1] + 0.0722 * parts[2]
+
+        for theme in re.findall(":root {(.*?)}", (PAGE.parent / "common.css").read_text()):
+            colours = dict(re.findall("--([a-z]+): (#[0-9a-f]+)", theme))
+            for name in "bar", "mark", "good", "bad", "skip", "soft", "ink":
+                for ground in "paper", "wash":
+                    low, high = sorted((light(colours[name]), light(colours[ground])))
+                    self.assertGreaterEqual((high + 0.05) / (low + 0.05), 3, (name, ground))
 
     def test_errors(self):
+        self.contrasts()
         registers = BUILD / "gen/registers.list"
         page = *LIVE, "--dir", self.work, "--registers"
         self.ask(*LIVE, "--help")
@@ -223,8 +248,8 @@ setTimeout(() => top.document.body.append("cut: " + [...document.querySelectorAl
         self.assertEqual([call["who"] for call in state()["calls"]], ["a"])
         for name in "before2.png", "before3.png", "after3.png":
             shutil.copy(TREE / "docs/pictures/mission.png", name)
-        self.said = look.browse(base)[0]
-        self.has("uav2</figcaption>", "uav3, corners drawn</figcaption>")
+        self.said = elements(base)
+        self.has(r"uav2 \(0x0002\)</figcaption>", r"uav3 \(0x0003\), corners drawn<")
         self.assertEqual(urllib.request.urlopen(base + "vehicle3.png?after3.png").status, 200)
         crowd = [connect() for _ in range(400)]
         for connection in crowd[-20:]:

@@ -19,8 +19,8 @@ from pathlib import Path
 
 from PIL import Image
 
-from browser import Browser
 from script import TREE, Script, fresh, main, write
+from icesoc.util.browser import Browser
 
 BUILD = Path(sys.argv[3]).resolve()
 TRIAL = TREE / "tests/cli/call.ice"
@@ -147,8 +147,7 @@ class Cases(Script):
             window.form = document.getElementById('try.count.words').closest('form');
             document.getElementById('try.count.words').value = '[]';
             document.getElementById('try.count.words').dispatchEvent(new Event('input'));
-            window.add = [...form.querySelectorAll('button')].find(b => b.innerText === 'Add a row');
-            add.click();
+            [...form.querySelectorAll('button')].find(b => b.innerText === 'Add a row').click();
         })()""")
         browser.press(*"one")  # the new row has the focus
         browser.press("Tab")
@@ -218,8 +217,9 @@ class Cases(Script):
         for width, dark in (400, False), (400, True), (1400, True), (1400, False):
             browser.resize(width, 1000, dark)
             self.assertEqual(browser.run(
-                "[...document.querySelectorAll('#objects :not(.rows *)')].filter(e => e.offsetParent && "
-                f"e.getBoundingClientRect().right > {width} + 1).map(e => e.tagName + e.id)"), [])
+                "[...document.querySelectorAll('#objects :not(.rows *)')].filter(e => "
+                f"e.offsetParent && e.getBoundingClientRect().right > {width} + 1)"
+                ".map(e => e.tagName + e.id)"), [])
         took = browser.run("""(async () => {
             const begin = performance.now();
             const card = [...document.querySelectorAll('#cards details')]

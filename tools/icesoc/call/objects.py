@@ -23,6 +23,7 @@ VEHICLE = {"uav": ("Autopilot.ice", "::Autopilot::Vehicle"),
 REGISTERS = "::Hw::Registers"  # interface of a core that is called by its registers
 ACCESSES = {"get": ("ro", "rw", "w1c", "w1s"), "set": ("rw", "w1c", "w1s", "ws")}
 LIVE = "live.json"  # file in the folder of a flight, present during the flight
+VIEWED = "viewed"  # file in the same folder that is written while a browser shows the page
 
 
 def read_json(path):

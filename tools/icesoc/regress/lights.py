@@ -85,10 +85,12 @@ def of_size(utilisation):
     if utilisation["failures"]:
         return judge("size", "", "designs failed", utilisation["failures"])
     states = list(utilisation["states"].values())
-    changed, never = states.count("changed since"), states.count("never measured here")
-    if changed or never:
-        return light("size", "grey",
-                     f"{changed} changed since, {never} never measured here: make synth")
+    counts = [f"{states.count(state)} {state}" for state in ("changed since", "never measured here")
+              if state in states]
+    if counts:
+        number, _, state = counts[0].partition(" ")
+        text = ", ".join([f"{number} of {len(states)} designs {state}", *counts[1:]])
+        return light("size", "grey", text + ": make synth")
     return of_entries("size", utilisation["entries"], "make synth")
 
 

@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""live: serves the page that shows a mission as it runs, on the loopback interface only.
+"""live: serves the page that shows a mission as it runs, on the loopback interface only; for a
+gateway, as icesoc-page, the page that calls its vehicles.
+
+The page of a flight calls through this server (bridge.py). The page of a gateway calls the
+gateway itself, by ws or wss, as any other client does.
 
 Each connection has a separate thread and one request: a slow, silent or endless client makes no
 other wait, and ends after PATIENCE seconds of silence.
@@ -24,6 +28,11 @@ import json
 import os
 import re
 import signal
+import socket
+import ssl
+import threading
+import time
+import webbrowser
 from http import HTTPStatus
 
 from icesoc.call import objects
@@ -49,9 +58,11 @@ FILES = {  # path: MIME type, file
 STATUS = record.of_tree("testbench/status/sim_status.toml")
 SCHEMA = HERE + "/../cli/flight.schema.json"
 # The page loads only from its server, and no other page may frame it.
-POLICY = ("default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
+POLICY = ("connect-src 'self'%s; default-src 'self'; "
+          "img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
           "worker-src blob:; "  # timers of Ice for JavaScript
           "frame-ancestors 'none'; base-uri 'none'; form-action 'none'")
+COMMAND = "./icesoc call"
 COUNTERS = ("ns", "cycles", "bytesUp", "bytesDown", "packets", "lost", "wallNs")
 WRITTEN = 2
 
@@ -168,6 +179,35 @@ def state(folder, slots):
     return shown
 
 
+def mark_viewed(folder, is_viewed=True):
+    """Writes or removes the file by which the flight knows that a browser shows its page."""
+    path = os.path.join(folder, objects.VIEWED)
+    try:
+        if not is_viewed:
+            os.remove(path)
+        elif not os.path.exists(path) or time.time() - os.stat(path).st_mtime > 1:
+            with open(path, "w"):
+                os.utime(path)
+    except OSError:
+        pass  # the folder has gone, or another request was faster
+
+
+class Vehicle:
+    """A vehicle of a gateway: NAME=PROTOCOL:PORT, as the gateway passes it."""
+
+    def __init__(self, text):
+        found = re.fullmatch(r"([^=]+)=(wss?):(\d{1,5})", text)
+        if not found:
+            raise argparse.ArgumentTypeError(f"expected NAME=ws:PORT, got '{text}'")
+        self.name, self.protocol, self.port = found.groups()
+
+    def policy(self, host):
+        """Returns what the page at a host may connect to. A request by https comes first, by which
+        the browser chooses its certificate."""
+        plain = {"ws": "http", "wss": "https"}[self.protocol]
+        return f" {self.protocol}://{host}:{self.port} {plain}://{host}:{self.port}"
+
+
 def gateway(folder):
     """Returns (host, port) of --gateway, or of the first vehicle in the flight, or None."""
     if Page.gateway:
@@ -177,18 +217,15 @@ def gateway(folder):
     return (found[1], int(found[2])) if found else None
 
 
-def described(build, address):
-    """Returns the vehicle's objects with the declarations of their interfaces, and the address at
-    which programs call them."""
+def described(build):
+    """Returns the vehicle's objects, with the declarations of their interfaces."""
     try:
         catalogue = objects.Catalogue(build)
     except Stop as stop:
         return {"objects": [], "declarations": {}, "error": stop.text}
-    host, port = address or ("127.0.0.1", 10000)
     return {"objects": [{"identity": each.identity, "interface": each.interface, "block": each.core}
                         for each in catalogue.objects.values() if each.interface],
-            "declarations": catalogue.slices.declarations, "endpoint": f"tcp -h {host} -p {port}",
-            "command": "./icesoc call"}
+            "declarations": catalogue.slices.declarations}
 
 
 class Page(http.server.BaseHTTPRequestHandler):
@@ -196,15 +233,21 @@ class Page(http.server.BaseHTTPRequestHandler):
     protocol_version, timeout = "HTTP/1.1", PATIENCE
     error_message_format, error_content_type = "%(code)d %(message)s\n", "text/plain"
     folder, slots, build, gateway = "", [], "", None
+    names: tuple = ()  # of this host
+    vehicles: list = []  # of a gateway
+    secret = ""  # its cookie
 
     def do_GET(self):
         port = self.server.socket.getsockname()[1]
         hosts = self.headers.get_all("Host", [])
         # A page on another host may use another name for this address.
-        if len(hosts) != 1 or hosts[0] not in (f"127.0.0.1:{port}", f"localhost:{port}"):
+        if len(hosts) != 1 or not self.is_own(hosts[0], port):
             return self.send_error(HTTPStatus.FORBIDDEN)
         path, _, query = self.path.partition("?")
-        if path == "/ice":
+        if path == "/closed":
+            mark_viewed(self.folder, False)
+            return self.send_error(HTTPStatus.NO_CONTENT)
+        if path == "/ice" and not self.vehicles:
             return bridge.serve(self, hosts[0], query, gateway(self.folder))
         frame = self.folder + "/before.png" if path == "/frame.png" else ""
         if vehicle := re.fullmatch(r"/vehicle(\d{1,2})\.png", path):
@@ -213,24 +256,51 @@ class Page(http.server.BaseHTTPRequestHandler):
         if path == "/ice.js":
             kind, file = "text/javascript", self.build + "/page/ice.js"
         if path == "/state":
+            mark_viewed(self.folder)
             kind, content = "application/json", json.dumps(state(self.folder, self.slots)).encode()
         elif path == "/objects":
             kind, content = "application/json", json.dumps(
-                described(self.build, gateway(self.folder))).encode()
+                self.described(hosts[0].rpartition(":")[0] or hosts[0])).encode()
         else:
             content = contents(file)
         if path == "/":
             content = content.replace(b"%TOKEN%", bridge.TOKEN.encode())
+            content = content.replace(b"%KIND%", b"vehicle" if self.vehicles else b"flight")
         if not content:
             return self.send_error(HTTPStatus.NOT_FOUND)
         self.send_response(HTTPStatus.OK)
         self.send_header("Content-Type", kind)
         self.send_header("Content-Length", str(len(content)))
-        self.send_header("Content-Security-Policy", POLICY)
+        host = hosts[0].rpartition(":")[0] or hosts[0]
+        self.send_header("Content-Security-Policy", POLICY % "".join(
+            vehicle.policy(host) for vehicle in self.vehicles))
+        if self.vehicles and path == "/":
+            self.send_header("Set-Cookie", f"icesoc-{port}={self.secret}; Path=/; HttpOnly; "
+                             "SameSite=Strict")
         self.send_header("X-Content-Type-Options", "nosniff")
         self.send_header("Connection", "close")
         self.end_headers()
         self.wfile.write(content)
+
+    def described(self, host):
+        """Returns the vehicles with the endpoints of browser and programs, and their objects."""
+        port = self.server.socket.getsockname()[1]
+        vehicles = [{"name": each.name, "tls": each.protocol == "wss", "port": each.port,
+                     "browser": f"{each.protocol} -h {host} -p {each.port}",
+                     "program": f"{each.protocol} -h {host} -p {each.port}"}
+                    for each in self.vehicles]
+        if not vehicles:
+            address = gateway(self.folder) or ("127.0.0.1", 10000)
+            vehicles = [{"name": "", "tls": False, "program": "tcp -h %s -p %s" % address,
+                         "browser": f'ws -h {host} -p {port} -r "/ice?token={bridge.TOKEN}"'}]
+        target = [f"--gateway '{vehicles[0]['program']}'"] if Page.gateway or self.vehicles else []
+        return {**described(self.build), "vehicles": vehicles,
+                "command": " ".join([COMMAND, *target])}
+
+    def is_own(self, host, port):
+        """Returns whether a Host header names this server."""
+        return any(host in (f"{name}:{port}", *([name] if port in (80, 443) else []))
+                   for name in self.names)
 
     def log_message(self, *_):
         pass
@@ -241,6 +311,23 @@ class Server(http.server.ThreadingHTTPServer):
 
     def handle_error(self, *_):
         pass  # the client has gone, or is not worth waiting for
+
+
+def server_at(host, port, certificate):
+    """Returns the server; with a certificate, of https."""
+    kind = type("Server", (Server, ), {"address_family": socket.getaddrinfo(host, port)[0][0]})
+    server = kind((host, port), Page)
+    if certificate:
+        context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+        try:
+            context.load_cert_chain(certificate)
+        except (OSError, ssl.SSLError):
+            sys.exit(f"icesoc-live: error: '{certificate}': expected a PEM file with a certificate "
+                     "and its key; ./icesoc key FILE --certificate makes one")
+        # The handshake is made by the thread of the connection.
+        server.socket = context.wrap_socket(server.socket, server_side=True,
+                                            do_handshake_on_connect=False)
+    return server
 
 
 def port_number(text):
@@ -258,34 +345,52 @@ def main():
     parser = argparse.ArgumentParser(
         prog="icesoc-live",
         description="Serves the page that shows a mission as it runs, on 127.0.0.1.")
-    parser.add_argument("--dir", required=True,
-                        help="the mission's folder: status, calls.jsonl, before.png")
-    parser.add_argument("--registers", required=True,
+    parser.add_argument("--dir", default="",
+                        help="folder of the mission: status, calls.jsonl, before.png")
+    parser.add_argument("--registers",
                         help="file that lists the *.regs.json of all blocks; map.regs.json assigns "
                         "blocks to slots")
+    parser.add_argument("--build", help="build folder of the vehicle; default: that of --registers")
+    parser.add_argument("--vehicle", type=Vehicle, action="append", default=[],
+                        help="NAME=ws:PORT or NAME=wss:PORT: a vehicle of the gateway that started "
+                        "this program")
+    parser.add_argument("--listen", type=place, help="HOST:PORT of the page, opened by this HOST; "
+                        "default: 127.0.0.1 and --port")
+    parser.add_argument("--certificate", help="PEM file with certificate and key, for https")
     parser.add_argument("--gateway", type=place, help="HOST:PORT of a gateway to call instead of "
                         "the flight's")
     parser.add_argument("--port", type=port_number, default=0, help="0: any that is free")
+    parser.add_argument("--open", action="store_true", help="open the page in a browser")
     parser.add_argument("--try", dest="only_try", action="store_true",
                         help="only look whether the page can be served")
     words = parser.parse_args()
+    if not words.vehicle and not (words.dir and words.registers):
+        parser.error("the arguments --dir and --registers are required for the page of a flight")
+    host, port = words.listen or ("127.0.0.1", words.port)
+    Page.names = ("127.0.0.1", "localhost", "[::1]") if host in ("127.0.0.1", "localhost", "::1") \
+        else (f"[{host}]" if ":" in host else host, )
+    Page.folder, Page.gateway, Page.vehicles = words.dir, words.gateway, words.vehicle
+    Page.secret = os.environ.get("ICESOC_PAGE_SECRET", "")
     try:
-        Page.folder, Page.slots = words.dir, blocks_by_slot(words.registers)
-        Page.gateway = words.gateway
-        Page.build = os.path.dirname(os.path.dirname(os.path.abspath(words.registers)))
+        Page.slots = blocks_by_slot(words.registers) if words.registers else []
+        Page.build = words.build or os.path.dirname(os.path.dirname(os.path.abspath(
+            words.registers)))
     except (OSError, ValueError, KeyError, Wrong) as error:
         sys.exit(f"icesoc-live: error: cannot read '{words.registers}': {error}")
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: os._exit(0))
     try:
-        server = Server(("127.0.0.1", words.port), Page)
-    except OSError:
-        sys.exit("icesoc-live: error: cannot listen on 127.0.0.1: is the port taken? PORT=0 takes "
-                 "any that is free")
+        server = server_at(host, port, words.certificate)
+    except OSError as error:
+        sys.exit(f"icesoc-live: error: cannot listen on {host}: {error.strerror or error}: is the "
+                 "port taken? PORT=0 takes any that is free")
     if not words.only_try:
-        address = f"http://127.0.0.1:{server.server_address[1]}/"
-        print(f"The vehicle: {address}#objects" if words.gateway
+        shown = f"[{host}]" if ":" in host else host
+        address = f"http{'s' if words.certificate else ''}://{shown}:{server.server_address[1]}/"
+        print(f"The vehicle: {address}#objects" if words.gateway or words.vehicle
               else f"The mission as it runs: {address}", flush=True)
+        if words.open:
+            threading.Thread(target=webbrowser.open, args=(address, ), daemon=True).start()
         server.serve_forever()
 
 

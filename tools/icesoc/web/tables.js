@@ -51,6 +51,8 @@ function table(place, columns, rows, options = {}) {
   pen.font = `bold ${getComputedStyle(document.body).font}`;
   const widest = column => Math.max(12 + pen.measureText(column[0]).width, ...rows.slice(0, 100).map(row => content(row, column))
     .map(seen => pen.measureText((seen.querySelector?.("summary, div") ?? seen).textContent).width));
+  const wides = columns.map(column => Math.max(Math.min(widest(column) + 32, 700), column[3]?.minWidth ?? 0));
+  if (place.clientWidth >= 800) box.style.maxWidth = `${Math.ceil(wides.reduce((sum, wide) => sum + wide, 20))}px`;
   const narrow = place.clientWidth < 600 ? 0.55 : 1; // there, texts break sooner
   let marked;
   const mark = row => {

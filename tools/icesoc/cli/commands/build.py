@@ -9,6 +9,7 @@ from pathlib import Path
 from icesoc.cli.build_folder import BuildFolder, configured
 from icesoc.cli.command import DEFAULTS, GROUPS, command
 from icesoc.cli.options import BUILD, FOLDER, JOBS, UCOS2, WORDS, Option
+from icesoc.util.browser import Browser
 from icesoc.util.console import say
 from icesoc.util.errors import Stop
 from icesoc.util.process import end, logged, run, start
@@ -91,18 +92,33 @@ def small(path):
     raise Stop(f"{path} has 100 KB with eight colours: show less of it")
 
 
-def shoot(path, width, height, address, profile):
-    """Saves a screenshot of a page after three seconds of page time."""
-    logged([
-        "chromium", "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
-        "--hide-scrollbars", f"--user-data-dir={profile}/chromium", "--virtual-time-budget=3000",
-        f"--window-size={width},{height}", f"--screenshot={path.absolute()}", address],
-           f"{profile}/log", f"no picture of {address}", env={"HOME": profile})
+def shoot(path, width, height, address):
+    """Saves a picture of a page after three seconds of its timers."""
+    with Browser(width=width, height=height) as browser:
+        browser.open(address)
+        browser.pass_time(3000)
+        browser.shoot(path)
     small(path)
 
 
+# Calls an operation of the vision core by its form.
+CALL = """(async () => {
+    const wait = () => new Promise(done => setTimeout(done, 20));
+    const find = () => [...document.querySelectorAll('#cards details')]
+        .find(card => card.innerText.startsWith('hwengine1'));
+    while (!find()) await wait();
+    find().open = true;
+    const mine = () => [...find().querySelectorAll('form')]
+        .find(form => form.querySelector('h4').innerText.split(' ')[0] === '%s');
+    while (!mine()) await wait();
+    const output = mine().querySelector('output');
+    mine().requestSubmit();
+    while (!/done in/.test(output.innerText)) await wait();
+})()"""
+
+
 def shoot_live(path, profile, icesoc):
-    """Takes a picture of a mission's page after the flight."""
+    """Takes a picture of a flight's page, with calls of the vision core by its forms."""
     with open(f"{profile}/live.log", "w+") as log:
         flight = start([*icesoc, "--live", "--cpu", "m3", "--out", f"{profile}/live"], stdout=log,
                        stderr=log)
@@ -111,8 +127,14 @@ def shoot_live(path, profile, icesoc):
                 if flight.poll() is not None:
                     raise Stop(text)
                 time.sleep(1)
-            shoot(path, 1280, 1000,
-                  re.search("^The mission as it runs: (.*)$", text, re.M)[1], profile)
+            address = re.search("^The mission as it runs: (.*)$", text, re.M)[1]
+            with Browser(width=1280, height=1500) as browser:
+                browser.open(address + "#objects")
+                for form in "setParameterA", "startProcessing", "getResult":
+                    browser.run(CALL % form)
+                time.sleep(1)  # until the page has drawn the corners, and registers are not marked
+                browser.shoot(path)
+            small(path)
         finally:
             end(flight)
 
@@ -150,7 +172,7 @@ def pictures(values):
                 page = Path(getattr(values, "from"), file)
                 if not page.exists():
                     raise Stop(f"{page} not found; ./icesoc {by} writes it")
-                shoot(path, width, height, f"file://{page.absolute()}{part}", profile)
+                shoot(path, width, height, f"file://{page.absolute()}{part}")
             else:
                 raise Stop(f"unknown picture '{name}': expected mission, live, "
                            f"{', '.join(PAGES)}", 2)

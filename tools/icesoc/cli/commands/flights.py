@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """flights: fly the mission, fly it again, look at it in a debugger; send new firmware; make a key;
 fly for hours."""
+import os
 import re
 import resource
 import signal
@@ -9,12 +10,12 @@ import tempfile
 import time
 from pathlib import Path
 
-from icesoc.call.objects import LIVE
+from icesoc.call.objects import LIVE, VIEWED
 from icesoc.cli import flight, keys
 from icesoc.cli.build_folder import BuildFolder, configured, netlists
 from icesoc.cli.command import command
 from icesoc.cli.options import (BUILD, COUNT, FAMILY, FILE, FLIGHT, FOLDER, JOBS, MINUTES, PATH,
-                                SECONDS, SEED, SWITCH, Option)
+                                SECONDS, SEED, SWITCH, Option, one_of)
 from icesoc.util.console import say, warn
 from icesoc.util.errors import Interrupted, Stop
 from icesoc.util.lock import lock
@@ -26,10 +27,13 @@ DESCRIPTORS = 64  # per process; the program of the ground needs about thirty
 NETLIST = Option("netlist", SWITCH, "fly the netlist synthesised by Yosys, at 2 MHz with every "
                                     "clock evaluated")
 NETLIST_HZ = 2000000
+SHOW = Option("show", one_of("auto", "yes", "no"),
+              "open the page in a browser; auto: if a terminal with a display runs the command",
+              "auto")
 DEBUGGED = [option for option in flight.FIELDS if option.name in ("image", "size", "seed")]
 
 
-@command("run", [*flight.OPTIONS, NETLIST, FAMILY, BUILD, JOBS], make="run",
+@command("run", [*flight.OPTIONS, SHOW, NETLIST, FAMILY, BUILD, JOBS], make="run",
          brief="run --size 96x64 --guard 20 --out build/brief/run",
          long=("run --netlist --size 96x64 --guard 20 --patience 3000 --out build/netlist/run",
                "run --netlist --family ecp5 --size 96x64 --guard 20 --patience 3000 "
@@ -40,8 +44,9 @@ DEBUGGED = [option for option in flight.FIELDS if option.name in ("image", "size
 def fly_mission(values):
     """fly the mission: simulated UAV, radio, ZeroC Ice ground station
 
-    Prints the address of a page that shows the flight. OUT/flight.json describes the flight;
-    --again repeats it.
+    Opens a page that shows the flight, or prints its address. While a browser shows the page, the
+    vehicle stays after the mission, and the page calls it; LIVE=1 keeps it until Ctrl-C.
+    OUT/flight.json describes the flight; --again repeats it.
     """
     descriptors = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
     if descriptors < DESCRIPTORS:
@@ -57,7 +62,7 @@ def fly_mission(values):
     if not build.built:
         build.set(CLK_HZ=str(values.clk_hz))
     build.ninja("mission", *(["firmware_minimal"] if values.app == "minimal" else []),
-                *(["gateway", "slice2c", "page_ice"] if values.live else []))
+                *(["gateway", "slice2c", "page_ice"] if values.live or opens(values) else []))
     flight.take_key(values, build)
     flight.take_observers_key(values)
     busy = (f"another flight is under way in {values.out}; give this one a separate folder: "
@@ -110,6 +115,14 @@ def update(values, build, held):
                       *(["--key", values.key] if values.key else [])]))
 
 
+def opens(values):
+    """Returns whether the page is opened in a browser."""
+    if values.show == "auto":
+        display = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+        return bool(display) and sys.stdout.isatty() and not values.app == "minimal"
+    return values.show == "yes"
+
+
 def mission(values, build, held):
     """Flies the mission of the README, with its page."""
     out, status_file = Path(values.out), Path(values.out) / "status"
@@ -119,7 +132,8 @@ def mission(values, build, held):
     def flown():
         return status_file.stat().st_ctime_ns if status_file.exists() else None
 
-    (out / LIVE).unlink(missing_ok=True)
+    for name in LIVE, VIEWED:
+        (out / name).unlink(missing_ok=True)
     before = flown()
     trial = run([*page, "--try"], check=False)
     if 0 < trial <= 128:
@@ -134,26 +148,27 @@ def mission(values, build, held):
     shown = None
 
     def flies_on():  # after the mission
-        return values.live and (out / LIVE).exists()
+        return (out / LIVE).exists()
 
     try:
         # The page starts after the simulator has accepted its options: its address would hide a
         # refusal.
         if until(lambda: flown() != before, sim):
-            shown = start(page, pass_fds=[held])
+            shown = start([*page, *(["--open"] if opens(values) else [])], pass_fds=[held])
             if not until(lambda: sim.poll() is not None or flies_on(), shown):
                 ended = shown.returncode
                 how = f"signal {-ended}" if ended < 0 else f"exit status {ended}"
                 warn(f"the page has ended ({how}); the mission continues")
         results = f"Pictures and report: {out}/before.png {out}/after.png {out}/report.md"
-        if values.live and until(flies_on, sim):
+        if until(flies_on, sim):
             say(results)
-            say("The page stays until Ctrl-C, and so does the vehicle: ./icesoc call --list")
+            say(f"The page stays until {'' if values.live else 'you close it, or '}Ctrl-C, and so "
+                "does the vehicle: ./icesoc call --list")
             try:
                 status = wait(sim)
             except Interrupted:
                 status = 0
-                say("The flight has ended.")
+            say("The flight has ended.")
         else:
             status = wait(sim)
             if status == 0:

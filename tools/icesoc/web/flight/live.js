@@ -48,7 +48,7 @@ function showOthers(others) {
         const figure = element('figure'), image = new Image();
         image.src = `vehicle${address}.png?${name}`;
         image.alt = `the frame of vehicle ${address}`;
-        figure.append(image, element('figcaption', `uav${address}${name.startsWith('after') ? ', corners drawn' : ''}`));
+        figure.append(image, element('figcaption', `uav${address} (${hex(Number(address), 4)})${name.startsWith('after') ? ', corners drawn' : ''}`));
         return figure;
     }));
 }
@@ -85,7 +85,7 @@ function showTimeline(state) {
     const span = chosen === 'call' ? 1.5 * (end - first) : Number(chosen) * 1e9, begin = span ? Math.max(0, end - span) : 0;
     const x = ns => left + (width - left - 10) * (ns - begin) / (end - begin);
     const lanes = [];
-    const lane = name => lanes.find(l => l.name === name) ?? (lanes.push({name, mark: '', event: '', lost: '', calls: []}), lanes[lanes.length - 1]);
+    const lane = name => lanes.find(l => l.name === name) ?? (lanes.push({name, mark: '', event: '', lost: '', cap: '', calls: []}), lanes[lanes.length - 1]);
     const bar = (ns, share, wide = 1.5) => `M${x(ns).toFixed(1)} 0h${wide}v${-Math.max(2, 16 * share).toFixed(1)}h${-wide}z`;
     for (const name of ['ground to UAV', 'UAV to ground', 'calls, ground', 'calls, UAV']) lane(name);
     const names = new Map(state.slots.map(s => [s.slot, s.block])), nameOf = slot => names.get(Number(slot)) ?? `slot ${slot}`;
@@ -97,7 +97,13 @@ function showTimeline(state) {
     }
     for (const e of events) {
         if (e.ns < begin || e.task) continue;
-        if (e.packet !== undefined) lane(e.from === 'ground' ? 'ground to UAV' : 'UAV to ground')[e.lost ? 'lost' : 'mark'] += bar(e.ns, e.packet / 100);
+        if (e.packet !== undefined) {
+            const its = lane(e.from === 'ground' ? 'ground to UAV' : 'UAV to ground');
+            if (e.lost) {
+                its.lost += bar(e.ns, 1, 3); // full height, whatever its length, with a cap
+                its.cap += `M${(x(e.ns) - 2).toFixed(1)} -19h7v3h-7z`;
+            } else its.mark += bar(e.ns, e.packet / 100);
+        }
         else if (e.events) lane(nameOf(e.slot)).event += bar(e.ns, 1);
         else for (const [slot, n] of Object.entries(e.accesses ?? {})) lane(nameOf(slot)).mark += bar(e.ns, n / 20);
     }
@@ -106,7 +112,7 @@ function showTimeline(state) {
     svg.setAttribute('viewBox', `0 0 ${width} ${height * (lanes.length + 1)}`);
     svg.replaceChildren(...lanes.flatMap((l, i) => {
         const low = height * (i + 1), all = [shape('text', {x: 0, y: low - 5}, l.name), shape('line', {x1: left, x2: width, y1: low, y2: low})];
-        for (const kind of ['mark', 'event', 'lost'])
+        for (const kind of ['mark', 'event', 'lost', 'cap'])
             if (l[kind]) all.push(shape('path', {d: l[kind], class: kind, transform: `translate(0 ${low})`}));
         for (const c of l.calls) {
             const from = Math.max(left, x(c.ns - (c.simulated_ms ?? 0) * 1e6)), box = shape('rect', {x: from, y: low - 14, width: Math.max(2, x(c.ns) - from), height: 12, class: /failed:/.test(c.what) ? 'lost' : 'mark'});
@@ -117,22 +123,24 @@ function showTimeline(state) {
     }), ...[0, 1, 2, 3, 4].map(i => shape('text', {x: left + (width - left - 50) * i / 4, y: height * (lanes.length + 1) - 5}, `${((begin + (end - begin) * i / 4) / 1e9).toFixed(2)} s`)));
 }
 
-// The registers of a slot; those whose values have changed in the last two seconds are marked.
+const hex = (value, digits) => '0x' + value.toString(16).padStart(digits, '0');
+// The registers of a slot with their byte addresses in it; those whose values have changed in the last two seconds are marked.
 const known = new Map(); // slot and word: its value, and the time of its last change
 function registersOf(slot) {
     const table = element('table');
     for (const w of slot.words) {
         const key = `${slot.slot}.${w.word}`, before = known.get(key), now = performance.now();
         if (!before || before.value !== w.value) known.set(key, {value: w.value, at: before ? now : -Infinity});
-        const tr = row([[w.name], ['0x' + w.value.toString(16).padStart(8, '0'), 'n'], [w.written ? 'written' : 'read']]);
+        const tr = row([[hex(w.word * 4, 2), 'n'], [w.name], [hex(w.value, 8), 'n'], [w.written ? 'written' : 'read']]);
         tr.title = w.doc || '';
         tr.classList.toggle('changed', now - known.get(key).at < 2000);
         table.append(tr);
         if (!w.fields.length) continue;
         const line = element('tr', undefined, 'fields'), cell = element('td');
-        cell.colSpan = 3;
+        cell.colSpan = 4;
         for (const f of w.fields) {
-            const field = element('span', `${f.name} ${f.value}`, f.value && f.value !== 'cleared' ? 'set' : '');
+            const shown = typeof f.value === 'number' && f.value >= 0x10000 ? hex(f.value, 8) : f.value; // addresses
+            const field = element('span', `${f.name} ${shown}`, f.value && f.value !== 'cleared' ? 'set' : '');
             field.title = f.doc;
             cell.append(field, ' ');
         }
@@ -179,4 +187,9 @@ async function look() {
     }
     setTimeout(look, wait);
 }
-look();
+if (document.body.dataset.kind === 'flight') look();
+else {
+    $('phase').textContent = 'a vehicle behind its gateway';
+    $('objects').open = true;
+}
+addEventListener('pagehide', () => { fetch('closed', {keepalive: true}).catch(() => {}); });

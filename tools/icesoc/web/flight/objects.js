@@ -5,6 +5,7 @@
 
 const $ = id => document.getElementById(id);
 const MOST_EVENTS = 200, MOST_CALLS = 50;
+const now = () => { const date = new Date(); return new Date(date - 60000 * date.getTimezoneOffset()).toISOString().slice(0, 19).replace('T', ' '); };
 let station = null; // Slice, communicator, adapter of listeners
 
 // Returns JSON of a value: bytes as a list, 64-bit numbers as digits.
@@ -24,9 +25,17 @@ async function connect() {
     return station;
 }
 
-function proxyOf(object) {
-    const quoted = object.identity.replace(/[\\"]/g, '\\$&');
-    return station.communicator.stringToProxy(`"${quoted}":ws -h ${location.hostname} -p ${location.port} -r "/ice?token=${document.body.dataset.token}"`);
+// The vehicle that is called.
+const vehicle = () => station.vehicles[Math.max(0, $('vehicles').querySelector('select').selectedIndex)];
+
+async function proxyOf(object) {
+    const its = vehicle(), quoted = object.identity.replace(/[\\"]/g, '\\$&');
+    if (its.tls && !its.isChosen) {
+        // A browser chooses its certificate for a WebSocket only after a request by https.
+        await fetch(`https://${location.hostname}:${its.port}/`, {mode: 'no-cors', credentials: 'include'}).catch(() => {});
+        its.isChosen = true;
+    }
+    return station.communicator.stringToProxy(`"${quoted}":${its.browser}`);
 }
 
 async function listenerProxy(proxy, interface_) {
@@ -36,7 +45,7 @@ async function listenerProxy(proxy, interface_) {
         station.adapter.activate();
     }
     const take = (name, values) => {
-        const item = element('li', `${new Date().toLocaleTimeString()} ${interface_.split('::').pop()}.${name} ${json(values)}`);
+        const item = element('li', `${now()} ${interface_.split('::').pop()}.${name} ${json(values)}`);
         $('arrived').prepend(item);
         while ($('arrived').children.length > MOST_EVENTS) $('arrived').lastChild.remove();
     };
@@ -80,7 +89,7 @@ function asPython(object, operation, values) {
         return typeof value === 'string' ? JSON.stringify(value) : String(value);
     };
     const given = operation.parameters.filter(p => !p.out).map(p => literal(values[p.name], p.type, p.tag));
-    const file = slice.get(object.interface).file, place = JSON.stringify(`${object.identity}:${station.endpoint}`);
+    const file = slice.get(object.interface).file, place = JSON.stringify(`${object.identity}:${vehicle().program}`);
     return [
         'import Ice', `Ice.loadSlice("", ["-I" + Ice.getSliceDir(), ${JSON.stringify(file)}])`,
         `import ${python(object.interface).split('.')[0]}`, 'with Ice.initialize() as communicator:',
@@ -149,7 +158,7 @@ function operationForm(object, operation) {
             given = values();
             output.replaceChildren('calling ...');
             button.disabled = true;
-            const proxy = proxyOf(object), passed = {...given}, begin = performance.now();
+            const proxy = await proxyOf(object), passed = {...given}, begin = performance.now();
             for (const [p] of fields)
                 if (p.type.endsWith('*')) passed[p.name] = given[p.name] === 'watch' ? await listenerProxy(proxy, p.type.slice(0, -1)) : null;
             const {results, bytes} = await slice.call(proxy, operation, passed);
@@ -169,7 +178,7 @@ function operationForm(object, operation) {
 }
 
 function remember(object, operation, given, line, repeat) {
-    const item = element('li', `${new Date().toLocaleTimeString()} ${object.identity}.${operation.name} ${json(given).slice(0, 80)}: ${line} `);
+    const item = element('li', `${now()} ${object.identity}.${operation.name} ${json(given).slice(0, 80)}: ${line} `);
     const again = element('button', 'Repeat', 'plain');
     again.onclick = repeat;
     item.append(again);
@@ -197,6 +206,8 @@ $('objects').addEventListener('toggle', async () => {
     if (!$('objects').open || station) return;
     try {
         await connect();
+        $('vehicles').querySelector('select').append(...station.vehicles.map(v => element('option', v.name)));
+        $('vehicles').hidden = station.vehicles.length < 2;
         $('cards').replaceChildren(...station.objects.map(card));
     } catch (error) { $('cards').replaceChildren(element('p', error.message, 'bad')); }
 });

@@ -1,18 +1,23 @@
 # SPDX-License-Identifier: MIT
 """browser: drives headless Chromium by its debugging pipe: opens pages, runs scripts in them,
-presses keys."""
+presses keys, takes pictures. Chromium is started only here."""
+import base64
 import json
 import os
 import subprocess
 import tempfile
 import time
+from pathlib import Path
 
 
 class Browser:
-    """A Chromium with one page. Used with `with`."""
+    """A Chromium with one page. Used with `with`. `errors`: faults of scripts, and errors in the
+    page's log."""
 
-    def __init__(self, width=1400, height=1000, dark=False):
-        self.home = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
+    def __init__(self, *options, width=1400, height=1000, home=None):
+        """home: folder of its profile and certificates; default: a new one."""
+        self.home = home or tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
+        folder = home or self.home.name
         commands, self.send_to = os.pipe()
         self.read_from, answers = os.pipe()
 
@@ -23,11 +28,10 @@ class Browser:
 
         self.process = subprocess.Popen(
             ["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
-             "--remote-debugging-pipe", f"--user-data-dir={self.home.name}",
-             f"--window-size={width},{height}", *(["--force-dark-mode"] if dark else []),
-             "about:blank"],
+             "--remote-debugging-pipe", f"--user-data-dir={folder}",
+             "--hide-scrollbars", f"--window-size={width},{height}", *options, "about:blank"],
             close_fds=False, preexec_fn=connect, stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL, env={**os.environ, "HOME": self.home.name})
+            stderr=subprocess.DEVNULL, env={**os.environ, "HOME": str(folder)})
         os.close(commands)
         os.close(answers)
         self.stream, self.number, self.session, self.errors = b"", 0, None, []
@@ -46,7 +50,8 @@ class Browser:
         self.process.wait()
         os.close(self.send_to)
         os.close(self.read_from)
-        self.home.cleanup()
+        if isinstance(self.home, tempfile.TemporaryDirectory):
+            self.home.cleanup()
 
     def receive(self):
         while b"\0" not in self.stream:
@@ -65,11 +70,34 @@ class Browser:
             command["sessionId"] = self.session
         os.write(self.send_to, json.dumps(command).encode() + b"\0")
         while (answer := self.receive()).get("id") != self.number:
-            if answer.get("method") == "Runtime.exceptionThrown":
-                self.errors.append(answer["params"]["exceptionDetails"])
+            self.note(answer)
         if "error" in answer:
             raise RuntimeError(f"{method}: {answer['error']}")
         return answer["result"]
+
+    def note(self, event):
+        """Keeps what an event reports."""
+        if event.get("method") == "Runtime.exceptionThrown":
+            self.errors.append(event["params"]["exceptionDetails"])
+        elif event.get("method") == "Log.entryAdded":
+            if (entry := event["params"]["entry"])["level"] == "error":
+                self.errors.append(entry)
+
+    def pass_time(self, milliseconds):
+        """Lets the page's timers run for a time, without waiting for it."""
+        self.ask("Emulation.setVirtualTimePolicy", policy="pauseIfNetworkFetchesPending",
+                 budget=milliseconds)
+        while (event := self.receive()).get("method") != "Emulation.virtualTimeBudgetExpired":
+            self.note(event)
+
+    def elements(self):
+        """Returns the page's elements as HTML."""
+        return self.run("document.documentElement.outerHTML")
+
+    def shoot(self, path):
+        """Saves a picture of the window."""
+        data = self.ask("Page.captureScreenshot", format="png")["data"]
+        Path(path).write_bytes(base64.b64decode(data))
 
     def open(self, address):
         """Opens a page and waits until it is loaded."""
@@ -115,3 +143,25 @@ class Browser:
                  deviceScaleFactor=1, mobile=False)
         self.ask("Emulation.setEmulatedMedia", features=[
             {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
+
+
+def elements(address, *options, **size):
+    """Returns a page's elements after 20 s of its timers."""
+    with Browser(*options, **size) as browser:
+        browser.open(address)
+        browser.pass_time(20000)
+        return browser.elements()
+
+
+def fault(page):
+    """Returns the first error of a page's scripts, with line and text; empty if there is none."""
+    page = Path(page).resolve()
+    with Browser() as browser:
+        browser.open(page.as_uri())
+        browser.pass_time(20000)
+        found = next((each for each in browser.errors if "exception" in each), None)
+    if not found:
+        return ""
+    number, lines = found["lineNumber"], page.read_text().split("\n")
+    what = found["exception"].get("description", found["text"]).split("\n")[0]
+    return f"{page.name}:{number + 1}: Uncaught {what}: {lines[number].strip()[:120]}"

@@ -140,7 +140,7 @@ module modem_rx (
         past <= 1'b1;
         if (past)
             assume ($stable(api_i));
-        // modem_npi has one write at a time, whatever becomes of the packet.
+        // modem_npi has at most one write in progress, even if the packet is dropped.
         assume (!wr_ready_i || (wr_valid_o && !owed));
         assume (wr_busy_i == owed);
         owed <= write || (owed && !acknowledge);

@@ -122,8 +122,8 @@ std::string withoutLineEnds(const std::string& messages) {
     std::string kept;
     bool isSkipped = false;
     for (std::string line; std::getline(in, line);) {
-        bool continues = !line.empty() && line[0] == ' '; // the source line, or where it is
-                                                          // included
+        // true for the source line of a message, and for lines that name the including file
+        bool continues = !line.empty() && line[0] == ' ';
         isSkipped = (isSkipped && continues) ||
                     line.find(": warning: Converted [CR+LF] to [LF]") != std::string::npos ||
                     line.find(" with no newline, supplemented newline") != std::string::npos;

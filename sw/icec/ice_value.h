@@ -25,7 +25,7 @@ typedef struct Ice_UnknownSlice {
     Ice_Byte flags;       /* whether it has optional members, whether it is the last */
     const Ice_Byte* data; /* its members, in the message */
     Ice_Int size;
-    Ice_Int count; /* number of the instances that they refer to */
+    Ice_Int count; /* number of instances that the members refer to */
     union {
         Ice_Int number; /* valid until the end of the message */
         const struct Ice_Value* value;

@@ -84,8 +84,8 @@
 /* Silence after which half a frame is dropped. */
 #define LINK_FRAME_GAP (LINK_IS_FULL ? 25000U : 0x6200U)
 
-/* Under a key the search for frames in garbage may compute one round of Ascon per LINK_ROUND_EVERY,
- * and LINK_ROUNDS_AT_ONCE at once (at least 168: one frame of the handshake). */
+/* Budget of the search for frames in garbage, with a key: one round of Ascon per LINK_ROUND_EVERY
+ * us on average, and at most LINK_ROUNDS_AT_ONCE in a row (at least 168: one handshake frame). */
 #define LINK_ROUND_EVERY 30U
 #define LINK_ROUNDS_AT_ONCE 1000U
 

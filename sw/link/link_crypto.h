@@ -40,8 +40,8 @@ void link_deriveKeys(const Link_Secret* secret, const U8* vehicles, const U8* gr
  * both are called only for a peer that has the key, once per session. */
 void link_makePair(Link_KeyPair* pair, U32 (*random)(void* context), void* context);
 
-/* Turns the handshake's keys into the session's, by the peer's public key. Wipes the private key;
- * the public key stays. */
+/* Derives the keys of the session from the keys of the handshake and the public key of the peer.
+ * Overwrites the private key of the pair, and keeps its public key. */
 void link_mixKeys(Link_Keys* keys, Link_KeyPair* pair, const U8* peersPublic);
 
 /* Encrypts or decrypts bytes in place, and computes their tag of 16 bytes. */

@@ -57,7 +57,8 @@ echo "icesoc-call: $(icesoc-call uav.isAlive 7)"
 systemctl show -P User -P DynamicUser -P NoNewPrivileges -P ProtectSystem icesoc-gateway@uav1
 END
 rm -rf device ended service
-simulate="icesoc-sim --image /usr/share/xplanet/images/earth.jpg --size 96x64 --guard 20 --speed real"
+simulate="icesoc-sim --image /usr/share/xplanet/images/earth.jpg --size 96x64 --guard 20"
+simulate="$simulate --speed real"
 install -d -o icesoc /home/tester/service
 # The simulator runs as the gateway's user, because the modem belongs to who runs the simulator.
 runuser -u icesoc -- $simulate --key /etc/icesoc/uav1.key --out service -- \

@@ -72,8 +72,8 @@ void Case_storeMasked(void) {
     Case_say('2');
 }
 
-/* Handlers of interrupts 4 and 5, with a line that falls by a store: without a barrier after it,
- * and with one. */
+/* Handlers of interrupts 4 and 5. A store clears the interrupt line; the first handler has no
+ * barrier after the store, the second one has. */
 void __attribute__((naked)) Case_ack(void) {
     __asm__ volatile("mov r0, #0x60000000\n\t"
                      "str r0, [r0, #16]\n\t"

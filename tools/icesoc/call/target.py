@@ -12,7 +12,7 @@ from icesoc.util.errors import Stop
 
 @dataclass
 class Target:
-    """Properties of the communicator, and what follows an identity in a proxy."""
+    """Properties of the communicator, and the part of a proxy after the identity."""
     place: str  # for messages
     suffix: str = ""  # ":tcp -h ..." or "@uav1"
     properties: dict = field(default_factory=dict)

@@ -111,7 +111,7 @@ def empty(option):
 
 
 def schema_text():
-    """The schema, a line a field."""
+    """Returns the schema as text, with one line per field."""
     lines = json.dumps({**schema(), "properties": None}, indent=1).split("\n")
     fields = ",\n".join(f"  {json.dumps(name)}: {json.dumps(rule)}"
                         for name, rule in schema()["properties"].items())

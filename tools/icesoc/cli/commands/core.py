@@ -290,7 +290,7 @@ def traced(values):
         main, target = known(values), f"test_ip_{what}"
         source = main.core(what) / f"{what}_test.cpp"
         if not source.exists():
-            raise Stop(f"there is no {source}")
+            raise Stop(f"{source} not found; it is the core's test")
     build = BuildFolder("build/trace", values)
     if not values.built:
         build.configure("-DTRACE=ON")

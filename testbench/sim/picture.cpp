@@ -163,7 +163,8 @@ Picture readPicture(const std::string& path) {
         stbi_image_free);
     if (!grey || picture.width == 0 || picture.height == 0)
         throw std::runtime_error("'" + path + "' is not a picture that can be read (" +
-                                 (grey ? "no pixels" : stbi_failure_reason()) + "): give a PNG, JPEG or PGM file");
+                                 (grey ? "no pixels" : stbi_failure_reason()) +
+                                 "): give a PNG, JPEG or PGM file");
     const size_t count = static_cast<size_t>(picture.width) * picture.height;
     for (size_t i = 0; i < count; ++i)
         picture.grey.push_back(static_cast<uint8_t>(std::min<size_t>(

@@ -79,7 +79,7 @@ Standstill::Standstill(std::function<uint64_t()> now, double seconds) : now_(std
     theOne = this;
     void* first[1];
     backtrace(first, 1); // loads its library, which a signal's handler must not
-    struct sigaction action {};
+    struct sigaction action{};
     action.sa_sigaction = [](int, siginfo_t*, void* context) { theOne->onTick(context); };
     action.sa_flags = SA_RESTART | SA_SIGINFO;
     sigaction(SIGPROF, &action, nullptr);

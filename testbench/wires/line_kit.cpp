@@ -32,8 +32,7 @@ LineKit::LineKit(const Options& options)
     : options_(options), wires_(netNames()),
       // HCLK 120 MHz to the oscillator's 25 MHz
       fsmc_(fsmcPins_, {[this] { tick(); }, [] {}}, 24, 5),
-      stm32_(
-          fsmc_, [this] { return now_; }, Stm32F2::Config()) {
+      stm32_(fsmc_, [this] { return now_; }, Stm32F2::Config()) {
     context_.commandArgs(0, static_cast<const char**>(nullptr)); // cdc_bit looks for its option
     double mhz = options.fpgaMhz;
     for (const WireFault& fault : options.faults) {

@@ -39,8 +39,8 @@ module ascon (
     reg         key_came;       // a key word was written: key_words follows one clock later
     reg [3:0]   round;
     reg [23:0]  left;           // bytes left
-    reg         few, none;      // in WORD: fewer than eight bytes; none, so that the word is only
-                                // padding
+    reg         few, none;      // in WORD: fewer than eight bytes left; no bytes left, so that the
+                                // word consists of padding
     reg [1:0]   index;          // index of the word in its block, tag or digest; 1, 2: key word
     reg         differs, valid, aborted, wipe;
     reg         clear, acting;  // s becomes 0; that, or a command: an access waits

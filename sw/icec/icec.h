@@ -135,8 +135,8 @@ Ice_Status Ice_ObjectAdapter_removeDefaultServant(Ice_ObjectAdapterPtr adapter,
                                                   const char* category);
 /* Returns the servant of exactly this identity, without a facet; 0 if none. */
 Ice_ObjectPtr Ice_ObjectAdapter_find(Ice_ObjectAdapterPtr adapter, const char* identity);
-/* Activating makes the objects of an adapter exist for callers; deactivating and destroying end
- * that. */
+/* Activates or deactivates an adapter. Callers reach its objects only while it is active and not
+ * destroyed. */
 void Ice_ObjectAdapter_activate(Ice_ObjectAdapterPtr adapter);
 void Ice_ObjectAdapter_deactivate(Ice_ObjectAdapterPtr adapter);
 void Ice_ObjectAdapter_destroy(Ice_ObjectAdapterPtr adapter);

@@ -14,7 +14,7 @@
 #define TOKEN_LITERAL 0xA0U /* bits 1..0: 0 oneway, 1 next id, 2 id follows; length, head */
 #define TOKEN_REPLY 0xB0U   /* bit 1: id follows, else next; bit 0: status and body as they are */
 #define TOKEN_VALIDATE 0xC0U
-#define TOKEN_CLOSE 0xC1U /* or one more: with the compression byte set */
+#define TOKEN_CLOSE 0xC1U /* 0xC2: with the compression byte set */
 #define TOKEN_AS_IT_IS 0xFFU
 
 #define MAGIC 0x50656349U    /* "IceP" */

@@ -174,7 +174,8 @@ class Cases(Script):
         self.run_program()
 
     def test_partial(self):
-        """One design alone: others have changed; limits hold, whatever is accepted."""
+        """A report of one design while others have changed; limits also apply to accepted
+        figures."""
         self.run_program()
         edit(BLOCKS / "pair.v", "    wire [5:0] word;",
              "    wire [5:0] word;\n    wire unused = 1;")

@@ -7,13 +7,14 @@
  * line_tester, the rest with the chip itself.
  */
 #include "bringup.h"
+#include "bus.h"
 #include "console.h"
 #include "lines.h"
 #include "program_memory.h"
 #include "stm32f2.h"
 #include "timing.h"
 
-Bringup_Limits bringup_limits = {BRINGUP_ALL, 1000, 1100, 0, 600};
+Bringup_Limits bringup_limits = {BRINGUP_ALL, 1000, 1100, 0, 500};
 
 int main(void);
 void Reset_Handler(void);
@@ -53,6 +54,20 @@ static void testWires(U32 found) {
         Lines_testModem();
 }
 
+static void testChip(void) {
+    U32 steps = bringup_limits.steps;
+    if (steps & BRINGUP_BUS) {
+        Bus_testWrites();
+        Bus_testData();
+    }
+    if (steps & BRINGUP_MEMORY && Bus_testMemory() && steps & BRINGUP_TIMING)
+        Bus_testTiming();
+    if (steps & BRINGUP_BUS)
+        Bus_testInterrupt();
+    if (steps & BRINGUP_MODEM)
+        Bus_testModem();
+}
+
 int main(void) {
     const Timing_Clock* clock = Timing_start();
     U32 found;
@@ -61,14 +76,21 @@ int main(void) {
     Console_end();
     testClock(clock);
     found = testContact();
-    if (found)
+    if (found) {
         testWires(found);
-    else {
+        Console_text("NEXT load the chip's bitstream, and start the self-test again");
+        Console_end();
+    } else if (Bus_start()) {
+        if (Report_pass()) {
+            Console_text("chip");
+            Console_end();
+        }
+        testChip();
+    } else {
         Report_fail("FPGA", 0, "silent", "neither line_tester nor the chip answers",
                     "that a bitstream is loaded (DONE is high), and the supplies of the FPGA");
         Lines_testAlone(0);
     }
-    Lines_release(PULL_UP);
     Console_text("END ");
     Console_number(Report_failures());
     Console_end();

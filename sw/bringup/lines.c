@@ -14,6 +14,7 @@
 #define PINS_AT 40U
 #define EARLY_AT (PINS_AT + FPGA_PINS)
 #define ANSWER_BITS (EARLY_AT + 5U)
+#define AF_FSMC 12UL
 #define HALF_BIT 36U /* HCLK cycles: 300 ns, seven clocks of an oscillator of 25 MHz */
 
 typedef struct Line {
@@ -73,6 +74,28 @@ void Lines_release(Pull pull) {
     RCC_AHB1ENR |= 0x7FUL;
     for (i = 0; i < LINES; ++i)
         Lines_input(i, pull);
+}
+
+void Lines_useForFsmc(void) {
+    U32 i;
+    for (i = 0; i < LINES; ++i) {
+        const Line* l = &lines[i];
+        U32 at = 4U * (l->pin & 7U);
+        if (!Lines_isWired(i) || i == LINE_IRQ)
+            continue;
+        GPIO_OSPEEDR(l->port) |= 3UL << 2U * l->pin;
+        GPIO_AFR(l->port, l->pin >> 3) =
+            (GPIO_AFR(l->port, l->pin >> 3) & ~(15UL << at)) | AF_FSMC << at;
+        setMode(l, 2);
+    }
+}
+
+int Lines_idleNwait(void) {
+    int high;
+    Lines_input(LINE_NWAIT, PULL_NONE);
+    high = Lines_read(LINE_NWAIT);
+    Lines_useForFsmc();
+    return high;
 }
 
 int Pins_get(const Pins* pins, U32 pin) {

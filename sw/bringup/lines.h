@@ -55,6 +55,10 @@ void Lines_drive(U32 line, int high);
 int Lines_read(U32 line);
 /* Makes all lines inputs with this pull. */
 void Lines_release(Pull pull);
+/* Switches all lines but IRQ to the FSMC. */
+void Lines_useForFsmc(void);
+/* Returns the level of NWAIT without an access. */
+int Lines_idleNwait(void);
 int Pins_get(const Pins* pins, U32 pin);
 void Pins_set(Pins* pins, U32 pin, int high);
 

@@ -112,24 +112,62 @@ void McbModel::readBurst(uint32_t address, unsigned words, uint64_t cas) {
     uint64_t at = (readEnd_ + memoryClocks - 1) / memoryClocks + timing_.dataWay;
     for (unsigned w = 0; w < words; ++w) {
         uint64_t value;
-        std::memcpy(&value, memory_.data() + address + 8 * w, 8);
-        coming_.push({at, value});
+        std::memcpy(&value, memory_.data() + reached(address + 8 * w), 8);
+        coming_.push({at, isFaulty_ ? seen(value) : value});
     }
     wordsRead += words;
 }
 
 void McbModel::writeBurst(uint32_t address, unsigned words, uint64_t cas) {
     for (unsigned w = 0; w < words; ++w) {
-        uint8_t* where = memory_.data() + address + 8 * w;
+        uint8_t* where = memory_.data() + reached(address + 8 * w);
         const Write& word = write_.front();
+        const uint8_t mask = isFaulty_ ? masked(word.mask) : word.mask;
         for (unsigned b = 0; b < 8; ++b)
-            if (!(word.mask >> b & 1))
+            if (!(mask >> b & 1))
                 where[b] = static_cast<uint8_t>(word.data >> (8 * b));
         write_.pop();
     }
     releases_.push({(cas + device_.part().cwl) / memoryClocks + 1, words});
     promised_ -= words;
     wordsWritten += words;
+}
+
+// Joins the lines of a short: the low level wins.
+static uint32_t joined(uint32_t value, uint32_t lines) {
+    return lines && (value & lines) != lines ? value & ~lines : value;
+}
+
+// The place that an address reaches. Bits 10..1 are the column, 13..11 the bank, 26..14 the row.
+uint32_t McbModel::reached(uint32_t address) const {
+    if (!isFaulty_)
+        return address;
+    auto line = [this](uint32_t value) {
+        return joined(value & ~uint32_t(lines_.addressLow), lines_.addressShort);
+    };
+    const uint32_t column = address >> 1 & 0x3FF, bank = address >> 11 & 7, row = address >> 14;
+    return (line(column & ~7u) & 0x3F8) << 1 | (column & 7) << 1 |
+           joined(bank & ~uint32_t(lines_.bankLow), lines_.bankShort) << 11 |
+           (line(row) & 0x1FFF) << 14;
+}
+
+uint64_t McbModel::seen(uint64_t word) const {
+    uint64_t result = 0;
+    for (unsigned beat = 0; beat < 4; ++beat) {
+        uint32_t bits = static_cast<uint16_t>(word >> 16 * beat);
+        bits = joined((bits | lines_.dqHigh) & ~uint32_t(lines_.dqLow), lines_.dqShort);
+        noise_ = noise_ * 6364136223846793005u + 1442695040888963407u;
+        for (unsigned lane = 0; lane < 2; ++lane)
+            if (lines_.strobeOpen >> lane & 1)
+                bits = (bits & ~(0xFFu << 8 * lane)) | (noise_ >> 40 & 0xFF) << 8 * lane;
+        result |= uint64_t(bits) << 16 * beat;
+    }
+    return result;
+}
+
+uint8_t McbModel::masked(uint8_t mask) const {
+    const unsigned low = lines_.maskLow * 0x55u, high = lines_.maskHigh * 0x55u;
+    return static_cast<uint8_t>((mask | high) & ~low);
 }
 
 void McbModel::show() {

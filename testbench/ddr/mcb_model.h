@@ -112,6 +112,21 @@ public:
     // out after it.
     void hang(bool on) { hung_ = on; }
 
+    // Faults of the lines to the memory. A halfword is a beat on DQ15..DQ0; row and column share
+    // A9..A0.
+    struct Lines {
+        uint16_t dqLow = 0, dqHigh = 0;            // data lines that stay at a level
+        uint16_t dqShort = 0;                      // data lines that are joined
+        uint8_t maskLow = 0, maskHigh = 0;         // bit 0 LDM, 1 UDM: stay at a level
+        uint16_t addressLow = 0, addressShort = 0; // A12..A0
+        uint8_t strobeOpen = 0;                    // bit 0 LDQS, 1 UDQS: reads return noise
+        uint8_t bankLow = 0, bankShort = 0;        // BA2..BA0
+    };
+    void plant(const Lines& lines) {
+        lines_ = lines;
+        isFaulty_ = true;
+    }
+
     // Back door, for pictures and checks.
     uint8_t* data() { return memory_.data(); }
     size_t size() const { return memory_.size(); }
@@ -144,7 +159,13 @@ private:
     void readBurst(uint32_t address, unsigned words, uint64_t cas);
     void writeBurst(uint32_t address, unsigned words, uint64_t cas);
     void show();
+    uint32_t reached(uint32_t address) const;
+    uint64_t seen(uint64_t word) const;
+    uint8_t masked(uint8_t mask) const;
 
+    Lines lines_;
+    bool isFaulty_ = false;
+    mutable uint64_t noise_ = 1;
     std::vector<uint8_t> memory_;
     Timing timing_;
     Ddr3Timing device_;

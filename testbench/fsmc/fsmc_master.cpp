@@ -30,12 +30,37 @@ void FsmcMaster::delay(const FsmcCorner& corner, FsmcPins& far, uint64_t seed, b
     looksTwice_ = looksTwice;
 }
 
+void FsmcMaster::makeLate(const std::string& pin, int ps) {
+    tolerate();
+    delays_->addDelay(pin, ps);
+}
+
+void FsmcMaster::tolerate() {
+    tolerant_ = true;
+    if (delays_)
+        delays_->tolerate();
+}
+
+void FsmcMaster::setClocks(unsigned hclkPerUnit, unsigned clkPerUnit) {
+    hclkPerUnit_ = hclkPerUnit;
+    clkPerUnit_ = clkPerUnit;
+    phase_ = 0;
+    if (delays_)
+        delays_->setHclk(static_cast<int>(10000 * clkPerUnit_ / hclkPerUnit_));
+}
+
+// Reports a signal that comes at the wrong time, unless such are tolerated.
+void FsmcMaster::complain(const std::string& what) const {
+    if (!tolerant_)
+        throw FsmcError(what);
+}
+
 void FsmcMaster::show() {
     if (delays_)
         return delays_->show(); // both sides may drive the data bus for a few ns
     design_.settle();
     if (pins_.dDriven && pins_.dOut)
-        throw FsmcError("data bus driven by both sides");
+        complain("data bus driven by both sides");
 }
 
 void FsmcMaster::passHclk(unsigned cycles) {
@@ -49,7 +74,7 @@ void FsmcMaster::passHclk(unsigned cycles) {
         phase_ -= hclkPerUnit_;
         design_.tick();
         if (pins_.dDriven && pins_.dOut)
-            throw FsmcError("data bus driven by both sides");
+            complain("data bus driven by both sides");
     }
 }
 
@@ -169,7 +194,7 @@ void FsmcMaster::addressPhase(const Access& access, uint16_t value, uint8_t lane
     show();
     // The pins' delays leave no time for NWAIT that does not follow the strobe.
     if (free && isWaiting(access) && !delays_)
-        throw FsmcError(access.name + ": NWAIT went active after the strobe");
+        complain(access.name + ": NWAIT went active after the strobe");
 }
 
 // Advances the data phase by at most the given time, to two HCLK cycles before its end. NWAIT is
@@ -184,7 +209,7 @@ unsigned FsmcMaster::waitPhase(const Access& access) {
     bool free = !isWaiting(access);
     passHclk(access.timing.datast - 4);
     if (free && isWaiting(access) && !delays_)
-        throw FsmcError(access.name + ": NWAIT went active after the strobe");
+        complain(access.name + ": NWAIT went active after the strobe");
     for (unsigned waited = 0; isWaiting(access); ++waited) {
         if (waited > waitLimit)
             throw FsmcError(access.name + ": NWAIT has been active for " +
@@ -201,7 +226,7 @@ unsigned FsmcMaster::waitPhase(const Access& access) {
 // Checks the pins at the end of an access.
 void FsmcMaster::endOfAccess(const Access& access) {
     if (isWaiting(access))
-        throw FsmcError(access.name + ": NWAIT went active too late to be seen");
+        complain(access.name + ": NWAIT went active too late to be seen");
 }
 
 uint16_t FsmcMaster::readPins(uint32_t address) {
@@ -215,22 +240,23 @@ uint16_t FsmcMaster::readPins(uint32_t address) {
     uint16_t value = pins_.dFromDesign;
     passHclk(left);
     if (ours != pins_.dDriven)
-        throw FsmcError(access.name +
-                        (ours ? ": the data bus floats" : ": the FPGA drives the data bus"));
+        complain(access.name + (ours ? ": the data bus floats" : ": the FPGA drives the data bus"));
     if (delays_)
         value = pins_.dFromDesign;
     if (ours && (delays_ ? !delays_->dataIsSetUp() : pins_.dFromDesign != value)) {
         if (access.bank->bcr & bcrAsyncWait)
-            throw FsmcError(access.name + ": the data moved in its set-up time");
+            complain(access.name + ": the data moved in its set-up time");
         value = static_cast<uint16_t>(~pins_.dFromDesign); // the processor gets an undefined value
     }
+    if (ours && !pins_.dDriven)
+        value = static_cast<uint16_t>(~value); // a floating bus
     endOfAccess(access);
     pins_.noeN = true;
     pins_.neN = 0xF;
     pins_.nblN = 3;
     show();
     if (pins_.dDriven && !delays_)
-        throw FsmcError(access.name + ": the data bus is still driven after the access");
+        complain(access.name + ": the data bus is still driven after the access");
     return ours ? value : 0xFFFF; // another chip's bank: pulled up
 }
 

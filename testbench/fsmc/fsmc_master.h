@@ -54,6 +54,14 @@ public:
     // is looked at once, four HCLK before the end of the data phase, or again after it.
     void delay(const FsmcCorner& corner, FsmcPins& far, uint64_t seed, bool looksTwice);
 
+    // Makes the changes of a pin arrive later by these ps; needs delay(). From now on a signal that
+    // comes at the wrong time gives the processor wrong data, instead of an FsmcError.
+    void makeLate(const std::string& pin, int ps);
+    // The same, without a late pin.
+    void tolerate();
+    // Changes HCLK and the design's clock, in cycles per unit of time.
+    void setClocks(unsigned hclkPerUnit, unsigned clkPerUnit);
+
     // Whether BUSTURN also applies between two writes to a bank. RM0033 states that it does not. On
     // an STM32F407 it applies between the two halves of a word, with the value of BWTR if that is
     // in use (community.st.com, thread 309858).
@@ -107,6 +115,7 @@ private:
     void turnaround(const Access& access);
     void addressPhase(const Access& access, uint16_t value, uint8_t lanes);
     bool isWaiting(const Access& access) const;
+    void complain(const std::string& what) const;
     unsigned waitPhase(const Access& access);
     void endOfAccess(const Access& access);
     void abort(const Access& access, unsigned hclk);
@@ -118,7 +127,7 @@ private:
     unsigned hclkPerUnit_, clkPerUnit_; // cycles of each in one unit of time
     unsigned phase_ = 0;
     std::unique_ptr<PinDelays> delays_;
-    bool looksTwice_ = false, pausesWrites_ = true;
+    bool looksTwice_ = false, pausesWrites_ = true, tolerant_ = false;
     Bank banks_[4] = {{0x000030DB}, {0x000030D2}, {0x000030D2}, {0x000030D2}};
     // The previous access, for the turnaround.
     bool lastWrite_ = false, lastHeld_ = false;

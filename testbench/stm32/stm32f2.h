@@ -56,6 +56,9 @@ public:
     // Returns what a pin does by its GPIO registers. Port 0 is A.
     PinSetting pinSetting(unsigned port, unsigned pin) const;
 
+    // Called when the program changes HCLK, Hz; without it HCLK stays as in Config.
+    std::function<void(uint64_t hz)> onHclk;
+
     // USART 1, at its rate: the bytes that the firmware receives (PA10), whether that line is in a
     // break, and the listener for the bytes that it sends.
     std::deque<uint8_t> serialIn;
@@ -82,6 +85,7 @@ private:
 
     uint32_t readPeripheral(uint32_t address);
     void writePeripheral(uint32_t address, uint32_t value);
+    uint64_t hclk();
     void checkWaitStates();
     struct Peripheral;
     static const Peripheral peripherals[];

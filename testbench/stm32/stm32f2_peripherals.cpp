@@ -136,9 +136,8 @@ void Stm32F2::writeGpio(uint32_t offset, uint32_t value) {
 
 // ---- RCC: oscillators and PLL are ready immediately ----
 
-// Checks that the flash has the wait states for HCLK (RM0033, table 3): with fewer the chip reads
-// wrong instructions.
-void Stm32F2::checkWaitStates() {
+// HCLK in Hz, by the clock tree's registers.
+uint64_t Stm32F2::hclk() {
     const uint32_t pll = stored(rcc + 4), config = stored(rcc + 8);
     const uint64_t source = pll >> 22 & 1 ? crystalHz : hsiHz;
     const uint64_t divider = std::max<uint64_t>(pll & 0x3F, 1) * (2 * (pll >> 16 & 3) + 2);
@@ -146,7 +145,13 @@ void Stm32F2::checkWaitStates() {
                   : (config & 3) == 1 ? crystalHz
                                       : hsiHz;
     const unsigned ahb = config >> 4 & 15; // 8: half, 9: a quarter, ...
-    hz >>= ahb < 8 ? 0 : ahb < 12 ? ahb - 7 : ahb - 6;
+    return hz >> (ahb < 8 ? 0 : ahb < 12 ? ahb - 7 : ahb - 6);
+}
+
+// Checks that the flash has the wait states for HCLK (RM0033, table 3): with fewer the chip reads
+// wrong instructions.
+void Stm32F2::checkWaitStates() {
+    const uint64_t hz = hclk();
     const uint64_t needed = (hz - 1) / waitStateHz, given = flash_.read(Stm32Flash::Acr) & 7;
     if (given < needed)
         throw NotModelled("flash with " + std::to_string(given) + " wait states at " +
@@ -172,8 +177,11 @@ void Stm32F2::writeRcc(uint32_t offset, uint32_t value) {
     constexpr uint32_t isReady = 0x0A020002; // read-only bits of CR
     stored(rcc + offset) = offset == 0 ? value & ~isReady : value;
     fsmcUsable_ = false;
-    if (offset == 8)
+    if (offset == 8) {
         checkWaitStates();
+        if (onHclk)
+            onHclk(hclk());
+    }
     if (offset == csr - rcc && (value >> 24 & 1)) { // RMVF
         resetFlags_ = 0;
         stored(csr) = 0;

@@ -2,6 +2,7 @@
 //
 // bringup_test: the self-test of a new board (sw/bringup) names the wire of every planted fault.
 
+#include "chip_kit.h"
 #include "line_kit.h"
 #include <gtest/gtest.h>
 #include <iostream>
@@ -12,10 +13,11 @@ extern "C" {
 
 namespace {
 
-constexpr uint32_t wires = 1, clocks = 2, modemWires = 4, all = ~0u;
+constexpr uint32_t wires = 1, clocks = 2, modemWires = 4, bus = 8, memory = 16, timing = 32,
+                   all = ~0u; // BRINGUP_...
 
 struct Limits { // Bringup_Limits
-    uint32_t steps, modemBootMs = 2, guardMs = 10, patternKib = 64, loadSeconds = 0;
+    uint32_t steps, modemBootMs = 2, guardMs = 20, patternKib = 1, retentionMs = 1;
 };
 
 // Runs the self-test with line_tester and one fault. A board without faults: "".
@@ -70,9 +72,11 @@ TEST(Bringup, NamesEachOpenLine) {
 }
 
 TEST(Bringup, NamesEachStuckLine) {
-    for (const std::string& line : wiredLines())
-        for (const std::string kind : {"stuck0", "stuck1"})
-            expectNamed(wires, line + ":" + kind, line + " " + kind);
+    bool high = false;
+    for (const std::string& line : wiredLines()) {
+        const std::string kind = (high = !high) ? "stuck1" : "stuck0";
+        expectNamed(wires, line + ":" + kind, line + " " + kind);
+    }
 }
 
 TEST(Bringup, NamesEachPairOfNeighboursThatIsShorted) {
@@ -119,6 +123,62 @@ TEST(Bringup, NamesEachLineOfTheModem) {
         expectNamed(modemWires, "MODEM_" + pair + ":swapped", "MODEM_" + pair + " swapped");
     for (const std::string pair : {"RXD-MODEM_TXD", "CTS-MODEM_RTS"})
         expectNamed(modemWires, "MODEM_" + pair + ":short", "MODEM_" + pair + " short");
+}
+
+// ---- with the chip ----
+
+std::string chipReport(const std::string& fault, uint32_t steps) {
+    XBee::Options modem;
+    modem.set["GT"] = 10;
+    std::vector<WireFault> faults;
+    if (!fault.empty())
+        faults.push_back(WireFault::parse(fault));
+    ChipKit kit(faults, modem);
+    return kit.run(BRINGUP_FLASH_ELF, 5000, [steps](Stm32F2& stm32) {
+        const Limits limits{steps};
+        stm32.cpu().writeMemory(stm32.image()->symbol("bringup_limits"), &limits, sizeof limits);
+    });
+}
+
+void expectNamedWithChip(uint32_t steps, const std::string& fault, const std::string& expected) {
+    const std::string text = chipReport(fault, steps);
+    EXPECT_NE(text.find("\nEND "), std::string::npos) << fault << ": the self-test hangs";
+    EXPECT_EQ(failures(text), std::vector<std::string>{expected}) << fault << ":\n" << text;
+}
+
+TEST(Bringup, NamesALateStrobe) {
+    expectNamedWithChip(bus, "NWE:late=12ns", "NWE late");
+    for (const std::string line : {"NOE", "NE1", "NE2", "NWAIT"})
+        expectNamedWithChip(memory | timing, line + ":late=20ns", line + " late");
+}
+
+// Some of the data and address lines: a chip takes half a second.
+TEST(Bringup, NamesLinesOfTheMemory) {
+    for (unsigned line : {0, 7, 8, 15}) {
+        const std::string name = "DDR_DQ" + std::to_string(line);
+        expectNamedWithChip(memory, name + (line % 2 ? ":stuck0" : ":open"),
+                            name + (line % 2 ? " stuck0" : " stuck1"));
+    }
+    for (unsigned line : {0, 5, 9, 12}) {
+        const std::string name = "DDR_A" + std::to_string(line);
+        expectNamedWithChip(memory, name + ":open", name + " stuck");
+    }
+    for (const std::string name : {"DDR_BA0", "DDR_BA2"})
+        expectNamedWithChip(memory, name + ":open", name + " stuck");
+    for (const std::string name : {"DDR_LDM", "DDR_UDM"})
+        for (const std::string kind : {"stuck0", "stuck1"})
+            expectNamedWithChip(memory, name + ":" + kind, name + " " + kind);
+    for (const std::string name : {"DDR_LDQS", "DDR_UDQS"})
+        expectNamedWithChip(memory, name + ":open", name + " open");
+    for (const std::string pair : {"DDR_DQ3-DDR_DQ4", "DDR_A5-DDR_A6", "DDR_BA0-DDR_BA1"})
+        expectNamedWithChip(memory, pair + ":short", pair + " short");
+    expectNamedWithChip(memory, "DDR_CK:open", "DDR no-calibration");
+}
+
+TEST(Bringup, AGoodBoardPassesWithTheChip) {
+    const std::string text = chipReport("", all);
+    EXPECT_NE(text.find("END 0"), std::string::npos) << text;
+    EXPECT_NE(text.find("PASS modem"), std::string::npos) << text;
 }
 
 TEST(Bringup, AGoodBoardPasses) {

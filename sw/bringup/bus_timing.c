@@ -1,0 +1,186 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * bus_timing: measures how late NOE, NE1, NE2 and NWAIT are, by shortening accesses until they
+ * fail.
+ *
+ * Read path: the chip answers a read of a fetched block combinationally. An access of mode A with
+ * ADDSET 0 leaves (DATAST - 1) HCLK - 4 ns for NE1, NOE, address and data together; with ADDSET 3
+ * the time of NOE stays, and NE1 and the address have 3 HCLK more.
+ * NWAIT: in mode 1 it must be valid ADDSET HCLK after the beginning of an access.
+ */
+#include "bringup.h"
+#include "bus.h"
+#include "console.h"
+#include "lines.h"
+#include "map_regs.h"
+#include "system_regs.h"
+#include "timing.h"
+
+#define BLOCK_HALFWORDS 32U
+#define READ_SETUP 40U /* 0.1 ns: read set-up time of the FSMC, without one HCLK */
+#define DRIVER_ADDSET 2U
+#define MOST_ADDSET 12U
+
+typedef struct Point {
+    U8 datast, mhz;
+} Point;
+
+/* From the shortest read to the longest. */
+static const Point points[] = {{3, 120}, {3, 110}, {3, 100}, {3, 90}, {4, 120}, {4, 110}, {4, 100},
+                               {4, 90},  {4, 80},  {4, 70},  {4, 60}, {5, 60},  {6, 60}};
+#define POINTS (sizeof points / sizeof points[0])
+#define DRIVER_POINT 4U
+
+static U32 budget(const Point* p) { /* 0.1 ns */
+    return (p->datast - 1U) * 10000UL / p->mhz - READ_SETUP;
+}
+
+static U16 pattern(U32 i) {
+    return (U16)(i & 1U ? ~(0x0101UL * i) : 0x0101UL * i);
+}
+
+/* Returns the bits that were wrong in reads of a block that the chip has fetched. */
+static U32 readErrors(U32 addset, U32 datast) {
+    static const Bus_Timing patient = {15, 60, 0, 0};
+    Bus_Timing fast;
+    U32 i, wrong = 0, round;
+    fast.addset = addset;
+    fast.datast = datast;
+    fast.isModeA = 1;
+    fast.waits = 0;
+    for (round = 0; round < 4U; ++round) {
+        Bus_set(0, &patient);
+        (void)Bus_load(0);
+        (void)Bus_load(2U * BLOCK_HALFWORDS - 2U);
+        (void)Bus_load(0);
+        Bus_set(0, &fast);
+        for (i = 0; i < BLOCK_HALFWORDS; ++i)
+            wrong |= (U32)(Bus_load(2U * i) ^ pattern(i));
+    }
+    Bus_setSlow();
+    return wrong;
+}
+
+static U32 fastestRead(U32 addset, U32* bits) {
+    U32 i;
+    *bits = 0;
+    for (i = 0; i < POINTS; ++i) {
+        U32 wrong;
+        Timing_setHclk(points[i].mhz * 1000000UL);
+        wrong = readErrors(addset, points[i].datast);
+        if (!wrong)
+            break;
+        *bits = wrong;
+    }
+    return i;
+}
+
+static int testReads(void) {
+    U32 i, bits, later, unused;
+    for (i = 0; i < BLOCK_HALFWORDS; ++i)
+        Bus_store(2U * i, pattern(i));
+    (void)Bus_read(MAP_SLOT_SYSTEM, SYSTEM_ID);
+    i = fastestRead(0, &bits);
+    if (i > DRIVER_POINT) {
+        later = fastestRead(3, &unused);
+        Timing_setHclk(120000000UL);
+        Report_fail(later > DRIVER_POINT ? "NOE" : "NE1", 0, "late",
+                    "reads at the driver's fastest timing return wrong data",
+                    "the resistor, length and load of the wire; a buffer in it; for NE1 also those"
+                    " of the address lines");
+    }
+    Timing_setHclk(120000000UL);
+    if (i < POINTS) {
+        Console_text("INFO read path ns: ");
+        Console_fixed(i ? budget(&points[i - 1U]) : 0, 1);
+        Console_text(" to ");
+        Console_fixed(budget(&points[i]), 1);
+        Console_text(", allowed ");
+        Console_fixed(budget(&points[DRIVER_POINT]), 1);
+        Console_text("; bits that fail first: ");
+        Console_hex(bits, 4);
+        Console_end();
+    }
+    return i <= DRIVER_POINT;
+}
+
+static int registersAreRight(void) {
+    U32 i;
+    for (i = 0; i < 12U; ++i) {
+        if (Bus_read(MAP_SLOT_SYSTEM, SYSTEM_ID) != SYSTEM_ID_VALUE)
+            return 0;
+        if (Bus_read(MAP_SLOT_SYSTEM, SYSTEM_SCRATCH) != 0x2B6C9E51UL)
+            return 0;
+        Timing_pause(i);
+    }
+    return 1;
+}
+
+#define FAR_STEP 0x10000UL
+
+static int memoryIsRight(void) {
+    U32 i;
+    for (i = 0; i < 12U; ++i)
+        if (Bus_load(FAR_STEP * (i + 1U)) != pattern(3U * i + 1U))
+            return 0;
+    return 1;
+}
+
+/* Returns the least ADDSET with which accesses of a bank wait as they must. */
+static U32 leastAddset(U32 bank) {
+    Bus_Timing t;
+    int isRight = 0;
+    t.datast = 4;
+    t.isModeA = 0;
+    t.waits = 1;
+    for (t.addset = 0; t.addset < MOST_ADDSET; ++t.addset) {
+        Bus_set(bank, &t);
+        isRight = bank ? registersAreRight() : memoryIsRight();
+        Bus_setSlow();
+        (void)Bus_read(MAP_SLOT_SYSTEM, SYSTEM_ID);
+        if (isRight)
+            break;
+    }
+    return t.addset;
+}
+
+static void testNwait(void) {
+    U32 i, memory, registers;
+    const char* wire = 0;
+    if (!Lines_idleNwait()) {
+        Report_fail("NWAIT", 0, "stuck0", "low without an access",
+                    "this line with line_tester; WAITPOL and WAIT_HIGH");
+        return;
+    }
+    Bus_write(MAP_SLOT_SYSTEM, SYSTEM_SCRATCH, 0x2B6C9E51UL);
+    for (i = 0; i < 12U; ++i)
+        Bus_store(FAR_STEP * (i + 1U), pattern(3U * i + 1U));
+    (void)Bus_read(MAP_SLOT_SYSTEM, SYSTEM_ID);
+    memory = leastAddset(0);
+    registers = leastAddset(1);
+    if (memory > DRIVER_ADDSET && registers > DRIVER_ADDSET)
+        wire = "NWAIT";
+    else if (registers > DRIVER_ADDSET)
+        wire = "NE2";
+    else if (memory > DRIVER_ADDSET)
+        wire = "NE1";
+    if (wire)
+        Report_fail(wire, 0, "late", "the microcontroller sees NWAIT too late with ADDSET 2",
+                    "the resistor, length and load of the wire; a buffer in it");
+    Console_text("INFO least ADDSET for NWAIT: memory ");
+    Console_number(memory);
+    Console_text(", registers ");
+    Console_number(registers);
+    Console_text(", driver 2");
+    Console_end();
+}
+
+void Bus_testTiming(void) {
+    Report_step("timing", "the driver's fastest reads and its NWAIT are right at 120 MHz");
+    if (testReads())
+        testNwait();
+    if (Report_pass()) {
+        Console_text("reads and NWAIT");
+        Console_end();
+    }
+}

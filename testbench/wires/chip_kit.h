@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+//
+// chip_kit: a board whose FPGA is loaded with the chip: the microcontroller runs the self-test, and
+// reaches registers, DDR3 and modem through wires with delays.
+
+#pragma once
+
+#include "rf_channel.h"
+#include "soc_model.h"
+#include "stm32f2.h"
+#include "wire_fault.h"
+#include <string>
+#include <vector>
+
+class ChipKit : private PinWires {
+public:
+    explicit ChipKit(const std::vector<WireFault>& faults, XBee::Options modem = {});
+
+    // Loads the self-test and runs it until it prints a line that begins with END, or until this
+    // time (ms). `change` is called when it begins. Returns what it has printed.
+    std::string run(const std::string& elf, unsigned limitMs,
+                    const std::function<void(Stm32F2&)>& change);
+
+    SocModel& soc() { return soc_; }
+    Stm32F2& stm32() { return stm32_; }
+
+private:
+    void plant(const WireFault& fault);
+    uint16_t levels(unsigned port, uint16_t inside) override;
+    void changed(unsigned) override {}
+
+    RfChannel air_{1};
+    SocModel soc_;
+    Stm32F2 stm32_;
+    McbModel::Lines memory_;
+    bool hasMemoryFault_ = false, neverCalibrates_ = false;
+    std::string printed_;
+    bool ended_ = false;
+};

@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: MIT
+"""bringup: runs the self-test of a new board, on the board or on a simulated one."""
+import datetime
+import os
+import select
+import subprocess
+import termios
+import time
+from pathlib import Path
+
+from icesoc.board import bringup
+from icesoc.cli.build_folder import BuildFolder
+from icesoc.cli.command import command
+from icesoc.cli.commands.board import NAME, read
+from icesoc.cli.options import (BUILD, FOLDER, JOBS, SECONDS, SWITCH, TEXT, WORDS, Option)
+from icesoc.util.console import say
+from icesoc.util.errors import Stop
+
+SILENCE = 60  # s without a line, after which the report ends
+CONSOLE = "/dev/ttyUSB0"
+
+
+@command("board bringup", [
+    NAME,
+    Option("simulated", SWITCH, "run the self-test on a simulated board"),
+    Option("wire", WORDS, "faults of the simulated board, such as D3:open D1-D2:short "
+                          "NWE:late=12ns"),
+    Option("device", TEXT, "serial port of the board's console", CONSOLE),
+    Option("listen", SWITCH, "only listen: the self-test was started by hand"),
+    Option("silence", SECONDS, "time without a line after which the report ends", SILENCE),
+    Option("out", FOLDER, "folder of the report (default: build/board/NAME)", ""),
+    BUILD, JOBS],
+         examples=["board bringup nucleo-qmtech --simulated",
+                   "board bringup nucleo-qmtech --simulated --wire D3:open",
+                   "board bringup nucleo-qmtech --device /dev/ttyUSB0"],
+         brief="board bringup nucleo-qmtech --simulated --out build/brief/bringup")
+def board_bringup(values):
+    """test a new board: name each bad wire, and write a report
+
+    Loads the self-test into the microcontroller's RAM by OpenOCD, listens to the console, and
+    writes OUT/bringup.html and OUT/bringup.json. Run it twice: with the bitstream lines.bit, which
+    tests the wires, and with the chip's bitstream. --simulated does both on a model of the
+    board."""
+    board = read(values.name)
+    folder = Path(values.out or f"build/board/{board.name}")
+    report = bringup.Report(board)
+    report.data["date"] = datetime.datetime.now().strftime("%Y-%m-%d %H:%M")
+    build = BuildFolder(values.build, values).prepare()
+    if values.simulated:
+        build.ninja("icesoc-bringup", "firmware_bringup_flash")
+        report.data["how"] = " ".join(["Simulated.", *values.wire])
+        simulated(values, build, report)
+    else:
+        report.data["how"] = f"Board at {values.device}."
+        on_board(values, build, report, folder)
+    for path in bringup.write(report, folder):
+        say(str(path))
+    result = report.data["result"]
+    if result == "stopped":
+        step = report.steps[-1]["name"] if report.steps else "the start"
+        raise Stop(f"board bringup: the self-test stopped in {step}; expected a line END")
+    if result == "failed":
+        raise Stop(f"board bringup: {len(report.failures)} failures: "
+                   + ", ".join(f"{f['wire']} {f['kind']}" for f in report.failures))
+    say("passed")
+
+
+def follow(report, line):
+    if text := report.take(line):
+        say(text)
+
+
+def simulated(values, build, report):
+    """Runs the self-test on the models (testbench/wires)."""
+    words = [build / "testbench/wires/icesoc-bringup", build / "firmware/bringup_flash.elf"]
+    for fault in values.wire:
+        words += ["--wire", fault]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as process:
+        for line in process.stdout:
+            follow(report, line)
+    if process.returncode not in (0, 1):
+        raise Stop("board bringup: the simulated board has ended with an error")
+
+
+def on_board(values, build, report, folder):
+    """Starts the self-test in RAM by OpenOCD, and reads the console."""
+    build.ninja("firmware_bringup")
+    elf = build / "firmware/bringup.elf"
+    start = ["openocd", "-f", str(folder / "openocd.cfg"), "-c",
+             f"init; reset halt; load_image {elf}; "
+             "set v [read_memory 0x20000000 32 2]; reg msp [lindex $v 0]; "
+             "resume [lindex $v 1]; shutdown"]
+    try:
+        port = os.open(values.device, os.O_RDONLY | os.O_NOCTTY | os.O_NONBLOCK)
+    except OSError as error:
+        raise Stop(f"board bringup: cannot open the console {values.device}: {error.strerror}; "
+                   "give its name by --device") from None
+    try:
+        set_rate(port)
+        say("$ " + " ".join(f"'{word}'" if " " in word else word for word in start))
+        if not values.listen and subprocess.run(start, check=False).returncode:
+            raise Stop("board bringup: OpenOCD has failed; start it by hand and use --listen")
+        listen(port, values.silence, report)
+    finally:
+        os.close(port)
+
+
+def set_rate(port):
+    """Sets a serial port to 115,200 baud, 8N1, raw."""
+    if not os.isatty(port):
+        return
+    state = termios.tcgetattr(port)
+    state[0], state[1], state[3] = 0, 0, 0
+    state[2] = termios.CS8 | termios.CREAD | termios.CLOCAL
+    state[4] = state[5] = termios.B115200
+    termios.tcsetattr(port, termios.TCSANOW, state)
+
+
+def listen(port, silence, report):
+    """Takes lines until END, or until no line comes."""
+    pending, until = b"", time.monotonic() + silence
+    while time.monotonic() < until:
+        if not select.select([port], [], [], 0.5)[0]:
+            continue
+        if not (got := os.read(port, 4096)):
+            return
+        pending += got
+        *lines, pending = pending.split(b"\n")
+        for line in lines:
+            until = time.monotonic() + silence
+            follow(report, line.decode("ascii", "replace"))
+            if report.data["result"] != "stopped":
+                return

@@ -57,12 +57,13 @@ refused "^$work/a.ice:1:" fir --lang verilog --ice "$work/a.ice"
 echo 'module M { [":hw"] interface Iir { void f(); }; };' >"$work/a.ice"
 refused 'expected one interface with \[":hw"\], named fir; got iir' fir --lang verilog \
     --ice "$work/a.ice"
-echo 'module M { [":hw"] interface LowPass { ["hw:long"] int f(short a); }; };' >"$work/a.ice"
+echo '/* [":hw"] interface X */ module M { module N { [":hw"] interface LowPass {
+    ["hw:long"] int f(short a); }; }; };' >"$work/a.ice"
 for language in verilog vhdl; do
     new low_pass --lang $language --ice "$work/a.ice" >/dev/null
     grep -q "low_pass_wrapper" "$work"/ip/low_pass/low_pass.v* &&
         grep -q 'import M  #' "$work/ip/low_pass/ground.py" &&
-        grep -qF 'core = M.LowPassPrx.checkedCast(proxy("low_pass"))' \
+        grep -qF 'core = M.N.LowPassPrx.checkedCast(proxy("low_pass"))' \
             "$work/ip/low_pass/ground.py" &&
         grep -q 'core.f(a)' "$work/ip/low_pass/low_pass_test.cpp" ||
         { echo 'ip/low_pass is not made from its interface' && exit 1; }

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """core: begin a core, test it, look at it, take it away (docs/guides/core-new.md)."""
 import dataclasses
+import json
 import os
 import re
 import shutil
@@ -74,23 +75,20 @@ def write_own(build, name, lang, ice, folder):
     shutil.copy(ice, folder / f"{name}.ice")
     fill(TEMPLATE / lang / "core.toml.in", folder, name)
     ground = fill(TEMPLATE / "interface/ground.py.in", folder, name)
-    module, proxy = interface_of(Path(ice).read_text())
+    module, proxy = interface_of(json.loads(output([build / "slice/slice2c", "--describe", ice])))
     ground.write_text(ground.read_text().replace("@OWN@", module).replace("@PROXY@", proxy))
     readme = fill(TEMPLATE / "README.md.in", folder, name)
     readme.write_text(re.sub(r"^Adds an offset, and sums 1..count:",
                              "Answers every call with zeros:", readme.read_text(), flags=re.M))
 
 
-def interface_of(text):
-    """The outermost module of the interface in hardware, and the proxy's class in Python."""
-    text = re.sub(r"/\*.*?\*/|//[^\n]*", "", text, flags=re.S)
-    before, _, after = text.partition('":hw"')
-    modules = []
-    for module, brace in re.findall(r"(?:module\s+(\w+)\s*)?([{}])", before):
-        modules = modules[:-1] if brace == "}" else [*modules, module]
-    name = re.search(r"interface\s+\\?(\w+)", after)[1]
-    modules = [module for module in modules if module]
-    return modules[0], ".".join([*modules, name + "Prx"])
+def interface_of(described):
+    """Returns the outermost module of the interface in hardware, and the proxy's class in Python,
+    from a description by slice2c."""
+    name = next(name for name, facts in described.items() if facts["kind"] == "interface"
+                and any(word.startswith(":hw") for word in facts.get("metadata", [])))
+    modules = name.removeprefix("::").split("::")
+    return modules[0], ".".join(modules) + "Prx"
 
 
 def fill(template, folder, name):

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // table1: the content of the paper's Table I: FSMC bridge, memory controller with two NPI ports,
-// radio IP.
+// radio IP. MODEM_API = 1 is the content that flies (hdl/soc.v).
 //
 // The table does not contain the system slot (page register, errors): its signals are ports here,
 // and its slot answers as an empty slot does.
@@ -9,7 +9,8 @@
 `default_nettype none
 
 module table1 #(
-    parameter CLK_HZ = 100000000 // Hz
+    parameter CLK_HZ    = 100000000, // Hz
+    parameter MODEM_API = 0          // 1: with API frames, as the chip flies; 0: as published
 ) (
     input  wire        clk_i,
     input  wire        rst_i,
@@ -99,7 +100,7 @@ module table1 #(
         .mcb_calib_done_i(mcb_calib_done_i)
     );
 
-    modem #(.CLK_HZ(CLK_HZ), .API(0)) u_modem (
+    modem #(.CLK_HZ(CLK_HZ), .API(MODEM_API)) u_modem (
         .clk_i(clk_i), .rst_i(rst_i),
         .bus_valid_i(slot_valid[1]), .bus_write_i(slot_write),
         .bus_addr_i(slot_addr[4*1 +: 4]), .bus_wdata_i(slot_wdata),

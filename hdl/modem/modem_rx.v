@@ -178,6 +178,9 @@ module modem_rx (
             assert (!(overrun_o && $past(push_o && !late)));
             assert (!lost || (ending && dropping));
             assert (silence == ticks); // 256 are 3.2 characters
+            // After a loss, input is ignored until there is silence: the tail of a packet is not
+            // taken for a packet.
+            assert (deaf || !$past(deaf) || $past(silence[8]));
             // The packet has the length given by its first byte.
             if (wrote != 7'd0 && !dropping)
                 assert (length == announced);

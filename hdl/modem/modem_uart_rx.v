@@ -105,6 +105,12 @@ module modem_uart_rx (
                 assert (bits == (({1'b0, sent} << (4'd9 - got)) | (9'h100 >> got)));
             assert (armed || age == 7'd127 || age > 7'd77);
         end
+        // After a framing error (a break) no byte begins until the line has been high.
+        if (past && !$past(rst_i)) begin
+            assert (!framing_error_o || !armed);
+            assert (!armed || $past(armed || line));
+            assert (idle || !$past(idle) || $past(armed && !line));
+        end
         // A tick without a sample changes only `ticks`: the simulator skips it. Without a tick, or
         // while the line is idle, nothing changes.
         if (past && !$past(rst_i) && $past(busy && !(tick_i && ticks == 3'd7)))

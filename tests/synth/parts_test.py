@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: MIT
 """parts_test: the parts of the utilisation report, against published reports of Xilinx' tools and
 figures that can be added up by hand."""
-import copy, json, os, pathlib, statistics, tempfile, unittest, unittest.mock
+import copy, json, os, pathlib, statistics, tempfile, types, unittest, unittest.mock
 
 from icesoc.synth import (baseline, cores, equivalence, owners, report, reports, runner, slices,
                           sources, timing)
 from icesoc.util.errors import Stop
-from icesoc.synth.netlist import Cell, Name, Netlist, Pin, ZERO
+from icesoc.synth.netlist import Cell, Name, Netlist, Pin, Port, ZERO
 from icesoc.synth.owners import Cost
 
 YOSYS = "Yosys 0.23 (git sha1 7ce5011c24b)"
@@ -89,6 +89,26 @@ class Timing(unittest.TestCase):
             self.assertEqual(p["levels"], levels)
             self.assertAlmostEqual(p["ns"], ns)
 
+    def test_paths_of_pads_contain_their_buffers(self):
+        # A LUT of two pads drives a pad and a flip-flop, which drives another pad. XST's report of
+        # such a design: 5.645 ns from pad to pad with a fan-out of 8, 3.597 ns from register to pad.
+        n = Netlist([lut([10, 11], 12), cell("FDRE", {"C": 2, "D": 12}, {"Q": 13}),
+                             *(lut([10], 20 + i) for i in range(7))])
+        n.ports = [Port("a", True, False, [10]), Port("clk", True, False, [2]),
+                   Port("mcb_x", True, False, [11]),
+                   Port("y", False, True, [12]), Port("z", False, True, [13])]
+        found = {(p["kind"], p["port"]): p for p in timing.pads_of(n, [""] * len(n.cells))}
+        self.assertEqual(set(found), {("pad to pad", "y"), ("pad to register", "a"),
+                                      ("register to pad", "z")})
+        self.assertAlmostEqual(found["pad to pad", "y"]["ns"], 5.645, delta=0.3)
+        self.assertAlmostEqual(found["register to pad", "z"]["ns"], 3.597, delta=0.01)
+        self.assertEqual(timing.slowest_pad(found.values(), "z"), 0)
+        self.assertEqual(timing.delay_range(10), "6.4-10.9")
+        row = types.SimpleNamespace(figures={"timing": {"pads": list(found.values())}, "lut": 1},
+                                    design=sources.Design("d", "d", pads={"y": 6, "z": 1}))
+        self.assertEqual(baseline.above_limits(row), [
+            "d: 6.49 ns from a pad to y; the limit is 6 ns (-2)"])
+
     def test_a_loop_of_logic_ends_the_search_and_more_fan_out_is_never_faster(self):
         # The LUT reads itself.
         self.assertEqual(longest(chain([1, 1], "D", lut([10, 11], 11)))["levels"], 1)
@@ -97,12 +117,14 @@ class Timing(unittest.TestCase):
 
     def test_time_is_that_of_the_order_that_sets_the_clock(self):
         def order(lut, mhz):
-            return {"lut": lut, "mhz": mhz, "timing": {"paths": [mhz]}, "nets": mhz,
-                    "places": {"at": mhz}}
+            pad = {"kind": timing.PAD_TO_PAD, "port": "y", "ns": mhz / 10}
+            return {"lut": lut, "mhz": mhz, "timing": {"paths": [mhz], "pads": [pad]}, "nets": mhz,
+                    "places": {"at": mhz}, "sites": 2 * lut}
         f = runner.together([order(10, 102), order(12, 109), order(11, 108), order(13, 104),
                              order(14, 105)])
         self.assertEqual((f["lut"], f["mhz"], f["nets"]), (12, 105, 105))
-        self.assertEqual(f["timing"], {"paths": [105], "slowest": [102]})
+        self.assertEqual((f["timing"]["paths"], f["timing"]["slowest"]), ([105], [102]))
+        self.assertEqual((timing.slowest_pad(f["timing"]["pads"], "y"), f["sites"]), (10.9, 24))
         self.assertEqual(f["luts"], [10, 11, 12, 13, 14])
         self.assertEqual(f["clocks"], [102, 104, 105, 108, 109])
         self.assertEqual(report.clock_of(f), "105.0 (102.0-109.0)")
@@ -150,12 +172,16 @@ class Reports(unittest.TestCase):
         """Raises if a figure is not in the reports."""
         maps = [r["map"] for r in self.reports]
         for said, found in ((timing.ROUTED, reports.range_of(self.ratios("routed"))),
+                            (slices.SITES_OF_MAP, reports.range_of(self.sites())),
                             (slices.MAPPED, reports.slices_range(maps))):
             self.assertEqual(said.count, found.count)
             for figure, recomputed in zip(said, found):
                 self.assertAlmostEqual(figure, recomputed, delta=0.006)
         self.assertEqual(slices.USUAL_SHARE, reports.best_share(maps))
         self.assertLess(slices.USUAL_PAIRING, statistics.mean(map(reports.paired, maps)))
+
+    def sites(self):
+        return reports.site_ratios(self.reports)
 
     def ratios(self, kind):
         return reports.clock_ratios(self.reports, kind)

@@ -66,6 +66,8 @@ def stale(tree):
         "README.md", "docs/figures.md", "synth/baseline.json", "docs/utilisation.md"))
     table1 = json.loads(baseline)["designs"]["table1"]
     sites = re.search(r"it\s+is\s+about\s+(\d+)", utilisation)[1]
+    low, high = map(float, re.search(r"LUT sites by map \| [\d.]+ \| ([\d.]+) to ([\d.]+)",
+                                     utilisation).groups())
     mapped = re.search(r"the\s+slices\s+at\s+(\d+ to \d+)", utilisation)[1]
 
     def row(name):
@@ -83,7 +85,8 @@ def stale(tree):
     if f" {ram:,} of the" not in " ".join(readme.split()):
         yield f"README.md: the last command that measured wrote {ram:,} bytes of RAM"
     for said in (f"{count('minimal.all')}; {unlinked} without `--gc-sections`",
-                 f"{sites} / {table1['ff']} / {table1['slices']} ({mapped})",
+                 f"{sites} ({int(sites) * low:.0f} to {int(sites) * high:.0f}) / {table1['ff']} / "
+                 f"{table1['slices']} ({mapped})",
                  f"0 of {hostile:,}", f"0 of {firmware}; 0 of {bitstream}"):
         if f"| {said} |" not in readme:
             yield f"README.md: the last command that measured wrote {said}"

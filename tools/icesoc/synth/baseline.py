@@ -4,6 +4,7 @@ the state of each design, in one of four words."""
 import json
 import subprocess
 
+from icesoc.synth import timing
 from icesoc.synth.owners import Cost
 from icesoc.synth.sources import read_json
 from icesoc.util.errors import Stop
@@ -144,7 +145,11 @@ def above_limits(row):
     """A sentence for each limit of synth/designs.json that is exceeded."""
     return [f"{row.design.name}: {row.figures[key]} {key}, {row.figures[key] - limit} above the "
             f"limit of {limit}" for key, limit in row.design.limits.items()
-            if row.figures[key] > limit]
+            if row.figures[key] > limit] + [
+        f"{row.design.name}: {ns:.2f} ns from a pad to {port}; the limit is {limit} ns (-2)"
+        for port, limit in row.design.pads.items()
+        if (ns := timing.SLOW_GRADE * timing.slowest_pad(row.figures["timing"]["pads"], port))
+        > limit]
 
 
 def judge(row, baseline, yosys, goal):

@@ -83,7 +83,10 @@ def paper_table(plan, row):
     f = row.figures
     lines = [("flip-flops", "ff", f["ff"]), ("LUTs of the netlist", "lut", f["lut"]),
              ("LUTs and route-throughs, before map pairs them", "lut", f["lut"] + f["through"]),
-             ("LUTs as map counts them (estimate)", "lut", sites_of_map(f)),
+             (f"LUT sites, map's average pairing (estimate; as mapped "
+              f"{slices.SITES_OF_MAP.of(sites_of_map(f))})", "lut", sites_of_map(f)),
+             (f"LUT sites, pairs found individually (estimate; as mapped "
+              f"{slices.SITES_OF_MAP.of(f['sites'])})", "lut", f["sites"]),
              (f"slices (estimate; as mapped {slices.MAPPED.of(f['slices'])})", "slices",
               f["slices"])]
     table = []
@@ -162,6 +165,17 @@ def path_table(plan, row, count=5):
                   for p in row.figures["timing"]["paths"][:count]])
 
 
+def pads_table(row):
+    """The longest path of each pad, slowest first, with the range after routing."""
+    return Table(["paths of pads, estimated", "from", "to", "levels", "ns (-3)", "ns (-2)",
+                  "routed (-2)"],
+                 [[p["kind"], p["from"], f"{p['to']} {p['pin']}", p["levels"], f"{p['ns']:.2f}",
+                   f"{p['ns'] * timing.SLOW_GRADE:.2f}",
+                   timing.delay_range(p["ns"] * timing.SLOW_GRADE)]
+                  for p in sorted(row.figures["timing"]["pads"],
+                                  key=lambda p: (p["kind"], -p["ns"]))])
+
+
 def states_text(rows):
     """The number of designs in each state: "1 measured now, 65 as accepted"."""
     states = [row.state for row in rows]
@@ -175,7 +189,7 @@ def show(report):
     for row in wanted:
         if row.design.paper and row.figures:
             tables = [paper_table(report.plan, row), cost_table(report.library, row),
-                      path_table(report.plan, row)]
+                      path_table(report.plan, row), pads_table(row)]
             print("\n".join([row.design.title, *(table.plain() for table in tables)]))
     if report.cores:
         print(report.cores.plain())
@@ -225,6 +239,10 @@ def entries(report):
             add("clock", round(f["mhz"], 1),
                 f"MHz, estimated; as routed {timing.ROUTED.of(f['mhz'])}; at least",
                 {"limit": goal, "share": round(f["mhz"] / goal, 3)})
+        for port, limit in row.design.pads.items():
+            ns = round(timing.SLOW_GRADE * timing.slowest_pad(f["timing"]["pads"], port), 2)
+            add(f"pad to {port}", ns, f"ns (-2), estimated; as routed {timing.delay_range(ns)}; "
+                "at most", {"limit": limit, "share": round(ns / limit, 3)})
         for other in row.others:
             if other.figures:
                 add(f"lut {other.family}", other.figures["lut"], "LUT")

@@ -158,11 +158,12 @@ def figures_of(n, spartan6, files_along):
                "shift": sum(map(netlist.is_shift_register, types)),
                # Ports that leave the chip, without the ports of the memory controller.
                "pins": sum(len(p.bits) for p in n.ports if not p.name.startswith("mcb_")),
-               "costs": costs, "timing": {"paths": [], "ends": []},
+               "costs": costs, "timing": {"paths": [], "ends": [], "pads": []},
                "nets": {"fanouts": [], "clocks": [], "resets": []}, "places": {}, "mhz": 0,
                **slices.slices_of(n)}
     if spartan6:
         figures["timing"], by_clock = timing.timing_of(n, owner)
+        figures["timing"]["pads"] = timing.pads_of(n, owner)
         figures["nets"] = nets.nets_of(n, owner, by_clock)
         figures["places"] = places_of(n, figures)
         if figures["timing"]["paths"]:
@@ -189,8 +190,14 @@ def together(orders):
     by_lut = sorted(orders, key=lambda figures: figures["lut"])
     by_clock = sorted(orders, key=lambda figures: figures["mhz"])
     middle, setting, slowest = by_lut[len(orders) // 2], by_clock[len(orders) // 2], by_clock[0]
+    pads = {}  # (kind, port) -> the longest path of all orders
+    for path in (path for figures in orders for path in figures["timing"]["pads"]):
+        key = path["kind"], path["port"]
+        pads[key] = max(path, pads.get(key, path), key=lambda p: p["ns"])
     return middle | {
-        "timing": setting["timing"] | {"slowest": slowest["timing"]["paths"]},
+        "timing": setting["timing"] | {"slowest": slowest["timing"]["paths"],
+                                       "pads": list(pads.values())},
+        "sites": sorted(figures["sites"] for figures in orders)[len(orders) // 2],
         "nets": setting["nets"], "mhz": setting["mhz"],
         "places": slowest["places"] | setting["places"] | middle["places"],
         "luts": [f["lut"] for f in by_lut], "clocks": [f["mhz"] for f in by_clock]}

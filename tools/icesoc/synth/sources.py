@@ -170,7 +170,8 @@ class Design:
     title: str = ""
     file: str = ""  # path of the module's file in the project
     parameters: dict = dataclasses.field(default_factory=dict)
-    limits: dict = dataclasses.field(default_factory=dict)  # "lut", "ff", "slices"
+    limits: dict = dataclasses.field(default_factory=dict)  # "lut", "ff", "slices", "sites"
+    pads: dict = dataclasses.field(default_factory=dict)  # output port: ns from any pad, grade -2
     paper: bool = False  # the paper has figures for it
     orders: int = 0  # further orders of inputs and outputs for mapping, because a single clock
                      # result is luck

@@ -2,8 +2,9 @@
 """timing: the longest paths of a Spartan-6 netlist, by an estimate as XST makes before placement.
 
 Cell delays are those that XST 14.7 prints for speed grade -3; a net's delay depends on its fan-out
-alone. Grade -2 is slower by SLOW_GRADE. Clock skew, pads and placement are not known here: ROUTED
-is the ratio of published designs to their estimates.
+alone. Grade -2 is slower by SLOW_GRADE. Clock skew and placement are not known here: ROUTED is the
+ratio of published designs to their estimates. Paths between pads and registers contain XST's
+buffers (pads_of).
 """
 import typing
 
@@ -22,9 +23,17 @@ MULTIPLIER_CLOCK, MULTIPLIER_SETUP, MULTIPLY, MULTIPLIER_ADD = 4.700, 1.500, 4.5
 # Fan-out and delay of a net: points between which it is interpolated.
 NET_DELAYS = ((0, 0.0), (1, 0.580), (2, 0.617), (5, 0.715), (16, 1.004), (26, 1.207), (88, 1.799))
 
+# input and output buffer of LVCMOS
+PAD_IN, PAD_OUT = 1.222, 2.571
+
 # Ratio of published clock after routing to the estimate: median and 90 % range of `count` designs,
 # each predicted by the others (reports.py).
 ROUTED = Range(median=1.22, low=0.92, high=1.57, count=11)
+
+
+def delay_range(ns):
+    """The range of a delay after routing, as text: nine of ten published longest paths."""
+    return f"{ns / ROUTED.high:.1f}-{ns / ROUTED.low:.1f}"
 
 
 def net_delay(fanout):
@@ -102,13 +111,15 @@ class Arrival(typing.NamedTuple):
 
 
 class Analysis:
-    def __init__(self, n):
+    def __init__(self, n, pads=frozenset()):
+        """Paths begin at clocked cells or, if given, at these bits of input pads."""
         self.n = n
+        self.pads = pads
         self.known = {}
         self.nets = {bit: net_delay(len(readers)) for bit, readers in n.readers.items()}
 
     def at(self, bit):
-        """The latest Arrival at a bit that starts at a clocked cell; None without one."""
+        """The latest Arrival at a bit; None if no path leads there."""
         if bit not in self.known:
             self.known[bit] = None  # breaks a loop
             self.known[bit] = self.arrive(bit)
@@ -117,6 +128,8 @@ class Analysis:
     def net(self, bit, reader):
         """The delay of a net; none is needed from a LUT into the flip-flop, wide multiplexer or
         adjacent carry."""
+        if reader is None:  # an output pad
+            return net_delay(len(self.n.readers.get(bit, [])) + 1)
         source, to = self.n.driver_type(bit), self.n.cells[reader].type
         if source == "CARRY4" and to == "CARRY4":
             return 0
@@ -126,6 +139,8 @@ class Analysis:
         return self.nets.get(bit, 0)
 
     def arrive(self, bit):
+        if bit in self.pads:
+            return Arrival(PAD_IN, 0, None, None, PAD_IN)
         if bit not in self.n.driver:
             return None
         index = self.n.driver[bit]
@@ -133,7 +148,8 @@ class Analysis:
         memory, best = netlist.is_memory(cell.type), None
         if not is_unclocked(cell):
             delay = start_delay(cell.type)
-            best = Arrival(delay, 0, index, None, delay)
+            if not self.pads:
+                best = Arrival(delay, 0, index, None, delay)
             if not memory:
                 return best
         to, o = next((pin, pin.bits.index(bit)) for pin in cell.pins
@@ -158,7 +174,8 @@ class Analysis:
         steps = []
         while True:
             arrival = self.at(bit)
-            steps.insert(0, [self.n.cells[arrival.cell].type, self.n.name_of(bit),
+            type = "IBUF" if arrival.cell is None else self.n.cells[arrival.cell].type
+            steps.insert(0, [type, self.n.name_of(bit),
                              self.n.fanout(bit), arrival.delay, round(self.net(bit, reader), 3)])
             if arrival.before is None:
                 return steps, bit
@@ -221,3 +238,56 @@ def timing_of(n, owners, count=10):
         paths.append({"from": start_name(n, owners, begin), "to": to, "pin": pin, "levels": levels,
                       "ns": ns, "steps": steps})
     return {"paths": paths, "ends": ends}, by_clock
+
+
+PAD_TO_PAD, PAD_TO_REGISTER, REGISTER_TO_PAD = "pad to pad", "pad to register", "register to pad"
+
+
+def pads_of(n, owners):
+    """The longest path of each output port from input pads and from registers, and of each input
+    port to a register: dicts like the paths of timing_of, with their kind. Ports of the memory
+    controller (mcb_*) are not pads. A clock's path from its pad is not contained."""
+    ports = [port for port in n.ports if not port.name.startswith("mcb_")]
+    inputs = {bit: (port.name, i if len(port.bits) > 1 else -1)
+              for port in ports if port.input for i, bit in enumerate(port.bits) if bit >= 0}
+    from_pads, from_registers = Analysis(n, frozenset(inputs)), Analysis(n)
+    worst = {}  # (kind, port) -> (ns, to, pin, bit, reader, analysis)
+
+    def candidate(kind, port, ns, to, pin, bit, reader, analysis):
+        if (kind, port) not in worst or ns > worst[kind, port][0]:
+            worst[kind, port] = (ns, to, pin, bit, reader, analysis)
+
+    for port in (port for port in ports if port.output):
+        for bit in port.bits:
+            for kind, analysis in ((PAD_TO_PAD, from_pads), (REGISTER_TO_PAD, from_registers)):
+                arrival = analysis.at(bit) if bit >= 0 else None
+                if arrival is not None:
+                    ns = arrival.ns + net_delay(len(n.readers.get(bit, [])) + 1) + PAD_OUT
+                    candidate(kind, port.name, ns, port.name, "O", bit, None, analysis)
+    for index, cell in enumerate(n.cells):
+        if is_unclocked(cell):
+            continue
+        for pin, bit in path_ends(cell):
+            arrival = from_pads.at(bit)
+            if arrival is None or netlist.is_clock(pin):
+                continue
+            ns = arrival.ns + from_pads.net(bit, index) + end_delay(cell.type, pin)
+            begin = bit
+            while from_pads.at(begin).before is not None:
+                begin = from_pads.at(begin).before
+            candidate(PAD_TO_REGISTER, inputs[begin][0], ns, end_name(n, owners, index), pin, bit,
+                      index, from_pads)
+    paths = []
+    for (kind, port), (ns, to, pin, bit, reader, analysis) in sorted(
+            worst.items(), key=lambda item: (item[0][0], -item[1][0])):
+        steps, begin = analysis.steps(bit, reader)
+        start = str(netlist.Name(*inputs[begin])) if analysis is from_pads else \
+            start_name(n, owners, begin)
+        paths.append({"kind": kind, "port": port, "from": start, "to": to, "pin": pin,
+                      "levels": analysis.at(bit).levels, "ns": ns, "steps": steps})
+    return paths
+
+
+def slowest_pad(paths, port):
+    """The longest path, ns at grade -3, from a pad to an output port; 0 without one."""
+    return max((p["ns"] for p in paths if (p["kind"], p["port"]) == (PAD_TO_PAD, port)), default=0)

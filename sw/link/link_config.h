@@ -107,13 +107,17 @@
 
 #define LINK_MOST_WAITING 4U /* packets without an answer of the radio, of all its links */
 
+/* Time before the radio's expected answer at which the next packet of a stream is handed over while
+ * the peer calls: the packet's time on a line of 250,000 baud (4.3 ms), and a margin. */
+#define LINK_HAND_OVER_US 5000U
+#define LINK_HAND_OVER_ENCRYPTED_US 6000U /* if the modem encrypts */
+
 /* Drivers: the time without an answer after which a packet counts as lost. */
 #define LINK_ANSWER_LAST 3000000U
 
 /* Choice of RN (Link_randomWait): in each span the bytes are counted (the air carries about 5,000);
  * at least the first number of bytes make a stream, fewer than the second end it. A loss counts for
- * a while.
- * while. */
+ * a while. */
 #define LINK_WAIT_SHARED 2U    /* as set-up leaves it */
 #define LINK_WAIT_BOTH 3U      /* two streams */
 #define LINK_QUICK_MANY 12288U /* of 65,536 packets, lost without failed tries: considered many */

@@ -28,6 +28,9 @@ typedef struct Link_Contention {
     U32 quick;           /* share of the last packets, of 65,536, lost within that time */
 } Link_Contention;
 
+/* Returns whether the peer calls during an own stream, and sends none itself. */
+#define LINK_IS_CALLED(c) ((c)->isCalled && !(c)->peers.isStream)
+
 /* Records the radio's result for a packet at time `now`. `silence`: time since the peer was heard,
  * us. `isBusy`: the radio has further packets. Returns the longest pause before the next packet,
  * us; 0: no pause. */

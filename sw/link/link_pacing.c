@@ -137,6 +137,17 @@ U32 link_paceByAnswer(Link_Pacing* pacing, int isDelivered, U32 silence) {
     U32 rest =
         link_noteAnswer(&pacing->contention, env->now, isDelivered, silence, pacing->waiting != 0);
     pacing->paceUntil = env->now;
+    /* During calls only one packet is in front of a reply: the next one of a stream follows when
+     * the radio is about to need it. A slow line (more than two packets wait) has no such time. */
+    pacing->isHeld = 0;
+    if (pacing->waiting && pacing->mostWaiting == 2U && LINK_IS_CALLED(&pacing->contention)) {
+        U32 full = (U32)pacing->longest + env->codec->overhead;
+        U32 ahead = full > LINK_MAX_ENCRYPTED ? LINK_HAND_OVER_US : LINK_HAND_OVER_ENCRYPTED_US;
+        if (pacing->contention.usualUs > ahead) {
+            pacing->isHeld = 1;
+            pacing->paceUntil += pacing->contention.usualUs - ahead;
+        }
+    }
     if (rest) {
         pacing->paceUntil += env->port->random(env->context) % rest;
         pacing->early = 0xFFFFFFFFU; /* a frame from the peer ends the pause */

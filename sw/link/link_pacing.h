@@ -29,6 +29,7 @@ typedef struct Link_Pacing {
                          * packets */
     U8 mostWaiting;     /* packets that may wait for a result; 0: the radio reports none */
     U8 handed, waiting; /* packets handed over, modulo 256; packets without a result */
+    U8 isHeld;          /* 1: until paceUntil only a message that overtakes is sent */
     Link_Env env;
     const Link_Identity* session; /* identity that seals frames */
     Link_Unanswered* radio;
@@ -59,6 +60,12 @@ void link_limitPacket(Link_Pacing* pacing, U32 bytes);
 
 /* Lets the next packet be sent now: an old paceUntil could be read as a future time. */
 #define LINK_END_PAUSE(pacing) ((pacing)->paceUntil = (pacing)->env.now)
+
+/* Returns whether only a message that overtakes may be sent now. */
+#define LINK_IS_HELD(pacing)                                \
+    ((pacing)->isHeld && !(pacing)->packed &&               \
+     LINK_BEFORE((pacing)->env.now, (pacing)->paceUntil) && \
+     (pacing)->radio->waiting < (pacing)->mostWaiting)
 
 /* Notes a round trip. */
 void link_noteRoundTrip(Link_Pacing* pacing, U32 us);

@@ -377,8 +377,16 @@ int link_pollSender(Link_Sender* sender) {
         queueClosings(sender);
     if (IN_FLIGHT(sender) && !pollWindow(sender, sender->pacing->env.now))
         return 0;
-    while (sender->hasWork && link_isOpen(sender->pacing)) {
-        sender->hasWork = (U8)nextFragment(sender, &seq);
+    while (sender->hasWork) {
+        if (LINK_IS_HELD(sender->pacing)) {
+            if (!cut(sender, 1))
+                break;
+            seq = sender->next - 1U;
+        } else {
+            if (!link_isOpen(sender->pacing))
+                break;
+            sender->hasWork = (U8)nextFragment(sender, &seq);
+        }
         if (!sender->hasWork || !transmit(sender, seq))
             break;
         link_pollAck(sender->receiver);

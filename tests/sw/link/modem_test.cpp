@@ -12,10 +12,10 @@ constexpr uint64_t ms = 1'000'000;
 
 class End : public ModemEnd {
 public:
-    // `apiEnds`: ends in API mode: none, the first, both.
+    // `apiEnds`: ends in API mode: none, the first, both. `baud`: BD of the second.
     End(RfChannel& air, unsigned address, uint64_t seed, bool hasKey, unsigned apiEnds,
-        bool encrypts = false)
-        : ModemEnd(air, modemOptions(address, encrypts, 2, address < apiEnds), seed) {
+        bool encrypts = false, unsigned baud = 7)
+        : ModemEnd(air, optionsOf(address, encrypts, address < apiEnds, baud), seed) {
         static const U8 key[LINK_KEY_BYTES] = {1, 2, 3};
         if (hasKey)
             Link_setKey(link(), 0, key, address ? 0 : LINK_GROUND);
@@ -23,6 +23,12 @@ public:
     std::vector<std::vector<U8>> received;
 
 private:
+    static XBee::Options optionsOf(unsigned address, bool encrypts, bool isApi, unsigned baud) {
+        XBee::Options o = modemOptions(address, encrypts, 2, isApi);
+        if (address == 1)
+            o.set["BD"] = baud;
+        return o;
+    }
     int onMessage(size_t, int, const U8* message, U32 size) override {
         received.emplace_back(message, message + size);
         return 0;
@@ -169,6 +175,47 @@ TEST(LinkOverApi, APeerThatVanishesInMidSessionTakesLittleOfTheAir) {
         EXPECT_LT(share, 0.02) << (isCalled ? "during a call" : "idle");
         EXPECT_GT(share, 0.002) << "the link searches for it";
     }
+}
+
+// One packet of a stream is in front of a reply, besides the one on the air (here with lines of
+// 250,000 baud, as the vehicle's); the stream loses at most a twentieth.
+TEST(LinkOverApi, ACallDuringPicturesWaitsForOnePacketOfThem) {
+    const std::vector<U8> picture(LINK_MAX_MESSAGE, 1), call(1, 2);
+    double pictures[2] = {0, 0};
+    for (bool isCalled : {false, true}) {
+        ModemPair<End> pair(RfWeather(), testSeed(), 2, false, 2u, false, 250'000u);
+        std::vector<double> times;
+        auto answers = [&](End& end, const std::function<void()>& answer) {
+            for (const auto& message : end.received)
+                message.size() == 1 ? answer() : void(pictures[isCalled] += LINK_MAX_MESSAGE);
+            end.received.clear();
+        };
+        for (uint64_t i = 0; i < 80; ++i) {
+            bool isBack = false;
+            const uint64_t at = pair.now;
+            if (isCalled)
+                Link_send(pair.a.link(), 1, call.data(), 1, 0);
+            pair.until(
+                [&] {
+                    while (Link_send(pair.b.link(), 0, picture.data(), LINK_MAX_MESSAGE, 0) ==
+                           LINK_OK)
+                        continue;
+                    answers(pair.b, [&] { Link_send(pair.b.link(), 1, call.data(), 1, 0); });
+                    answers(pair.a, [&] {
+                        times.push_back(static_cast<double>(pair.now - at) / 1e6);
+                        isBack = true;
+                    });
+                    return pair.now > at + 200 * ms + i * 331'000;
+                },
+                10);
+            EXPECT_EQ(isBack, isCalled);
+        }
+        if (isCalled) {
+            std::nth_element(times.begin(), times.begin() + times.size() / 2, times.end());
+            EXPECT_LT(times[times.size() / 2], 41);
+        }
+    }
+    EXPECT_GT(pictures[1], 0.8 * pictures[0]); // the calls take a part as well
 }
 
 // Two modems in API mode, and the RN that the links have set.

@@ -39,8 +39,8 @@ def board_bringup(values):
 
     Loads the self-test into the microcontroller's RAM by OpenOCD, listens to the console, and
     writes OUT/bringup.html and OUT/bringup.json. Run it twice: with the bitstream of
-    synth/ise/lines.v, which tests the wires, and with the chip's bitstream. --simulated does both on a model of the
-    board."""
+    synth/ise/lines.v, which tests the wires, and with the chip's bitstream. --simulated does
+    both on a model of the board."""
     board = read(values.name)
     folder = Path(values.out or f"build/board/{board.name}")
     report = bringup.Report(board)

@@ -59,7 +59,7 @@ refused 'FILES may also name headers' wb_port wishbone head.v
 refused 'all Verilog or all VHDL' wb_port wishbone wb_port.v lamps.vhd
 refused "TOP: expected the name of a module or an entity, got 'wb_port; x'" \
     'wb_port; x' wishbone wb_port.v
-refused "no entity 'lamp' in FILES; there is lamps" lamp own lamps.vhd
+refused "no entity 'lamp' in FILES; found lamps" lamp own lamps.vhd
 refused 'no port for write, wdata, rdata: .*PORTS=' req_words own cores.v
 refused "'grant': expected one of .*select, strobe" req_words own grant=gnt cores.v
 refused "has no port 'go'" req_words own write=go cores.v

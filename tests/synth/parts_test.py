@@ -91,7 +91,8 @@ class Timing(unittest.TestCase):
 
     def test_paths_of_pads_contain_their_buffers(self):
         # A LUT of two pads drives a pad and a flip-flop, which drives another pad. XST's report of
-        # such a design: 5.645 ns from pad to pad with a fan-out of 8, 3.597 ns from register to pad.
+        # such a design: 5.645 ns from pad to pad with a fan-out of 8, 3.597 ns from register to
+        # pad.
         n = Netlist([lut([10, 11], 12), cell("FDRE", {"C": 2, "D": 12}, {"Q": 13}),
                              *(lut([10], 20 + i) for i in range(7))])
         n.ports = [Port("a", True, False, [10]), Port("clk", True, False, [2]),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// m3_machine: connects the interrupt of the chip to PB0, and derives the time of the processor from
-// its FSMC pins.
+// m3_machine: connects the processor to the wires of the board, and derives the time of the
+// processor from its FSMC pins.
 
 #include "m3_machine.h"
 #include "tell_on_abort.h"
@@ -12,14 +12,14 @@ namespace {
 
 constexpr uint64_t pinHclkHz = SocModel::clkHz * 6 / 5; // the frequency at which FsmcMaster runs
 
-Stm32F2::Config configOf(uint32_t hclkHz, uint64_t seed) {
+Stm32F2::Config configOf(uint32_t hclkHz, uint64_t seed, uint32_t oscillatorHz) {
     if (hclkHz == 0)
-        return {1, static_cast<uint32_t>(pinHclkHz), seed};
+        return {1, static_cast<uint32_t>(pinHclkHz), seed, oscillatorHz};
     if (hclkHz < pinHclkHz || hclkHz % pinHclkHz || hclkHz % 8000)
         throw std::runtime_error("HCLK of " + std::to_string(hclkHz) +
                                  " Hz: give 0 or a multiple of " + std::to_string(pinHclkHz) +
                                  " Hz");
-    return {static_cast<unsigned>(hclkHz / pinHclkHz), hclkHz, seed};
+    return {static_cast<unsigned>(hclkHz / pinHclkHz), hclkHz, seed, oscillatorHz};
 }
 
 // Names the current function, and the functions that return addresses on the stack belong to.
@@ -43,7 +43,9 @@ void provideKeys(SimulatedBoard& board, const M3Machine::Config& config) {
 
 M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> poll)
     : soc_(soc), poll_(std::move(poll)), fpgaFlash_([&soc] { return soc.now(); }, config.seed),
-      stm32_(soc.fsmc(), [&soc] { return soc.now(); }, configOf(config.hclkHz, config.seed)) {
+      stm32_(
+          soc.fsmc(), [&soc] { return soc.now(); },
+          configOf(config.hclkHz, config.seed, soc.wires().oscillatorHz())) {
     stm32_.load(config.firmware);
     SimulatedBoard board;
     provideKeys(board, config);
@@ -77,13 +79,20 @@ M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> 
             cpu().stop();
         return std::min(nextPoll_ * SocModel::clkNs, until_);
     });
-    soc_.onIrq([this](bool high) { stm32_.setPinB(0, high); });
+    stm32_.wire(&soc_.wires());
+    soc_.wires().follow(
+        [this](unsigned port, unsigned pin) { return stm32_.pinSetting(port, pin); });
+    soc_.onIrq([this](bool high) {
+        if (soc_.wires().reaches(BoardWires::Irq))
+            stm32_.setPinB(0, high);
+    });
     tellOnAbort(this, [this] { return stackOf(stm32_); });
 }
 
 M3Machine::~M3Machine() {
     tellers.erase(this);
     soc_.onIrq(nullptr);
+    soc_.wires().follow(nullptr);
 }
 
 void M3Machine::powerOn() {

@@ -71,8 +71,8 @@ void SocModel::timeModels() {
         nextEvent_ = std::min(nextEvent_, others_(time));
     if (top_->modem_rxd_i != line_.rxd() || top_->modem_cts_n_i != line_.ctsN())
         span_.forget();
-    top_->modem_rxd_i = line_.rxd();
-    top_->modem_cts_n_i = line_.ctsN();
+    top_->modem_rxd_i = !wires_.reaches(BoardWires::ModemRxd) || line_.rxd();
+    top_->modem_cts_n_i = wires_.reaches(BoardWires::ModemCts) && line_.ctsN();
 }
 
 // Clocks until a model outside the chip is due, or a model at the platform pins.
@@ -113,17 +113,29 @@ void SocModel::wake() {
 void SocModel::settle() {
     wake();
     VSoc& top = *top_;
-    top.fsmc_a_i = far_->a;
-    top.fsmc_d_i = far_->d;
-    top.fsmc_ne_n_i = far_->neN & 3;
-    top.fsmc_nbl_n_i = far_->nblN;
-    top.fsmc_noe_n_i = far_->noeN;
-    top.fsmc_nwe_n_i = far_->nweN;
-    top.fsmc_nadv_n_i = far_->nadvN;
+    const bool isStraight = wires_.isStraight();
+    FsmcPins bent;
+    if (!isStraight)
+        bent = wires_.atChip(*far_);
+    const FsmcPins& pins = isStraight ? *far_ : bent;
+    top.fsmc_a_i = pins.a;
+    top.fsmc_d_i = pins.d;
+    top.fsmc_ne_n_i = pins.neN & 3;
+    top.fsmc_nbl_n_i = pins.nblN;
+    top.fsmc_noe_n_i = pins.noeN;
+    top.fsmc_nwe_n_i = pins.nweN;
+    top.fsmc_nadv_n_i = pins.nadvN;
     top.eval();
-    far_->dFromDesign = top.fsmc_d_o;
-    far_->dDriven = top.fsmc_d_oe_o;
-    far_->nwaitN = top.fsmc_nwait_n_o;
+    showOutputs();
+}
+
+// Shows the processor the pins that the chip drives.
+void SocModel::showOutputs() {
+    far_->dFromDesign = top_->fsmc_d_o;
+    far_->dDriven = top_->fsmc_d_oe_o;
+    far_->nwaitN = top_->fsmc_nwait_n_o;
+    if (!wires_.isStraight())
+        wires_.toProcessor(FsmcPins(*far_), *far_);
 }
 
 void SocModel::tick() {
@@ -168,14 +180,17 @@ void SocModel::evaluate(bool rests) {
     }
     if (top.modem_txd_o != txd_) {
         txd_ = top.modem_txd_o;
-        line_.setTxd(txd_, now());
+        if (wires_.reaches(BoardWires::ModemTxd))
+            line_.setTxd(txd_, now());
         nextEvent_ = 0;
     }
     if (top.modem_reset_n_o != resetN_ || top.modem_rts_n_o != rtsN_) {
         resetN_ = top.modem_reset_n_o;
         rtsN_ = top.modem_rts_n_o;
-        modem_.resetPin(!resetN_, now());
-        line_.setRts(!rtsN_, now());
+        if (wires_.reaches(BoardWires::ModemReset))
+            modem_.resetPin(!resetN_, now());
+        if (wires_.reaches(BoardWires::ModemRts))
+            line_.setRts(!rtsN_, now());
         nextEvent_ = 0;
     }
     if (top.core_pins_o != corePins_) {
@@ -190,8 +205,6 @@ void SocModel::evaluate(bool rests) {
     }
     if (now() >= nextEvent_)
         timeModels();
-    far_->dFromDesign = top.fsmc_d_o;
-    far_->dDriven = top.fsmc_d_oe_o;
-    far_->nwaitN = top.fsmc_nwait_n_o;
+    showOutputs();
     span_.sample();
 }

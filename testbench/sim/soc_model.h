@@ -7,6 +7,7 @@
 #pragma once
 
 #include "VSoc.h"
+#include "board_wires.h"
 #include "fsmc_master.h"
 #include "mcb_model.h"
 #include "observer.h"
@@ -88,6 +89,8 @@ public:
     }
 
     FsmcMaster& fsmc() { return fsmc_; }
+    // The board's wires between the processor's pins, the modem and the chip.
+    BoardWires& wires() { return wires_; }
     // Adds delays to the FSMC's wires, at a clock of 100 MHz.
     void delay(const FsmcCorner& corner, uint64_t seed, bool looksTwice) {
         delayed_ = pins_;
@@ -116,6 +119,7 @@ public:
 private:
     void timeModels();
     void settle();
+    void showOutputs();
     void evaluate(bool rests = false);
     void pay();
     void wake();
@@ -131,6 +135,7 @@ private:
     uint64_t resting_ = 0; // clocks ahead in which the platform need not be evaluated
     uint64_t rested_ = 0;  // clocks that have passed in which it was not
     uint64_t evaluated_ = 0;
+    BoardWires wires_;
     FsmcPins pins_, delayed_;
     FsmcPins* far_ = &pins_; // pins at the chip
     FsmcMaster fsmc_;

@@ -70,6 +70,8 @@ void Stm32F2::resetPeripherals() {
     registers_[gpio] = 0xA8000000;    // debug pins of port A
     registers_[gpio + 0x400] = 0x280; // the same register of port B
     updateFpgaPins();
+    for (unsigned port = 0; wires_ && port < 9; ++port)
+        wires_->changed(port);
     watchdog_ = {};
     crc_ = 0xFFFFFFFF;
     pendingExti_ = 0;

@@ -26,8 +26,9 @@ public:
         // Processor HCLK cycles per HCLK cycle at the FSMC pins. More than 1 if the fabric's
         // clock is scaled down, because simulated time then has fewer cycles at the pins.
         unsigned coreCyclesPerHclk = 1;
-        uint32_t hclkHz = 120'000'000; // processor clock in simulated time, Hz
-        uint64_t seed = 1;             // seed of the random number generator
+        uint32_t hclkHz = 120'000'000;     // processor clock in simulated time, Hz
+        uint64_t seed = 1;                 // seed of the random number generator
+        uint32_t oscillatorHz = 8'000'000; // clock or crystal at OSC_IN (HSE)
     };
     // `now` is simulated time in ns.
     Stm32F2(FsmcMaster& fsmc, std::function<uint64_t()> now, Config config);

@@ -10,7 +10,7 @@ using namespace stm32f2;
 namespace {
 
 constexpr uint64_t lsiNs = 31'250; // one cycle of 32 kHz
-constexpr uint64_t crystalHz = 25'000'000, hsiHz = 16'000'000;
+constexpr uint64_t hsiHz = 16'000'000;
 constexpr uint64_t waitStateHz = 30'000'000; // HCLK for each wait state at 2.7 to 3.6 V
 constexpr unsigned extiVector = 6;           // vector of EXTI line 0; lines 0 to 4 have one each
 
@@ -139,11 +139,15 @@ void Stm32F2::writeGpio(uint32_t offset, uint32_t value) {
 // HCLK in Hz, by the clock tree's registers.
 uint64_t Stm32F2::hclk() {
     const uint32_t pll = stored(rcc + 4), config = stored(rcc + 8);
-    const uint64_t source = pll >> 22 & 1 ? crystalHz : hsiHz;
+    const uint64_t source = pll >> 22 & 1 ? config_.oscillatorHz : hsiHz;
     const uint64_t divider = std::max<uint64_t>(pll & 0x3F, 1) * (2 * (pll >> 16 & 3) + 2);
     uint64_t hz = (config & 3) == 2   ? source * (pll >> 6 & 0x1FF) / divider
-                  : (config & 3) == 1 ? crystalHz
+                  : (config & 3) == 1 ? config_.oscillatorHz
                                       : hsiHz;
+    const uint64_t input = source / std::max<uint64_t>(pll & 0x3F, 1);
+    if ((config & 3) == 2 && (input < 950'000 || input > 2'000'000))
+        throw NotModelled("PLL with an input of " + std::to_string(input / 1000) +
+                          " kHz, which takes 0.95 to 2 MHz (RM0033, 5.3.2)");
     const unsigned ahb = config >> 4 & 15; // 8: half, 9: a quarter, ...
     return hz >> (ahb < 8 ? 0 : ahb < 12 ? ahb - 7 : ahb - 6);
 }

@@ -1,6 +1,15 @@
 # SPDX-License-Identifier: MIT
 """simulator: generates the wires of a board for the simulator (testbench/fsmc/board_wires.h)."""
 from icesoc.board.model import Board
+from icesoc.board.signals import SIGNALS
+
+KNOWN = {signal.function for signal in SIGNALS.values() if signal.function.startswith("FSMC_")}
+
+
+def at_pin(pin, function):
+    """Returns the function that a pin has by its alternate functions, whatever its net expects: a
+    wire at the wrong pin carries that pin's signal."""
+    return next((name for name in pin.functions if name in KNOWN), function or "-")
 
 
 def wires(board: Board):
@@ -11,11 +20,12 @@ def wires(board: Board):
     pins, balls = board.parts["mcu"], board.parts["fpga"]
     for net in board.nets:
         pin, ball = net.get("mcu", "-"), net.get("fpga", "-")
-        number = pins[pin].functions.get(net.function, "-") if pin != "-" else "-"
+        function = at_pin(pins[pin], net.function) if pin != "-" else "-"
+        number = pins[pin].functions.get(function, "-") if pin != "-" else "-"
         bank = balls[ball].bank if ball != "-" else None
         volts = board.banks[bank] if bank is not None else 0
         end = pin if pin != "-" else net.get("modem", "-")
-        lines.append(f"{end} {number} {net.function or '-'} {net.name} {ball} {volts:g}")
+        lines.append(f"{end} {number} {function} {net.name} {ball} {volts:g}")
     return "\n".join(lines) + "\n"
 
 

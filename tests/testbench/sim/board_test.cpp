@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+//
+// board_test: the firmware flies through the kit's generated pins; a swapped pair, a wrong
+// alternate function, a bank without supply or a wrong place in the constraints makes a flight
+// fail.
+
+#include "ground.h"
+#include "m3_machine.h"
+#include <fstream>
+#include <gtest/gtest.h>
+#include <iterator>
+#include <regex>
+
+namespace {
+
+std::string textOf(const std::string& file) {
+    std::ifstream in(std::string(BOARD_FOLDER) + "/" + file);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// Replaces one text by another, which must exist.
+std::string with(std::string text, const std::string& old, const std::string& other) {
+    const size_t at = text.find(old);
+    EXPECT_NE(at, std::string::npos) << old;
+    return at == std::string::npos ? text : text.replace(at, old.size(), other);
+}
+
+// Exchanges two words.
+std::string swapped(const std::string& text, const std::string& a, const std::string& b) {
+    return with(with(with(text, a, "@"), b, a), "@", b);
+}
+
+struct Board {
+    std::string wires = textOf("board.wires"), ucf = textOf("board.ucf");
+};
+
+// Flies on a board until a call has been answered, the firmware has given up, or until this time.
+// Returns whether the call was answered.
+bool answersACall(const Board& board, double seconds) {
+    GroundAndChip flight;
+    flight.soc.wires() = BoardWires(board.wires, board.ucf);
+    flight.soc.reset(true);
+    auto script = flight.ground.pinging(1);
+    bool isAnswered = false;
+    M3Machine* running = nullptr;
+    M3Machine machine(flight.soc, {FIRMWARE_ELF, 120'000'000, Ground::guardMs}, [&] {
+        isAnswered = isAnswered || script();
+        const Stm32F2::Resets& resets = running->stm32().resets();
+        return !isAnswered && resets.software + resets.watchdog == 0 && flight.within(seconds);
+    });
+    running = &machine;
+    machine.run();
+    testing::Test::RecordProperty("ms", static_cast<int>(flight.soc.now() / 1'000'000));
+    return isAnswered;
+}
+
+constexpr double enough = 3; // s; the good board answers after 1.3 s
+
+TEST(BoardWires, AreStraightWhenTheFirmwaresTableHasSwitchedThePins) {
+    Board kit;
+    BoardWires wires(kit.wires, kit.ucf);
+    EXPECT_TRUE(wires.isStraight()) << "without pins all are switched";
+    bool isAlternate = false;
+    wires.follow([&](unsigned, unsigned) {
+        PinSetting setting;
+        setting.mode = isAlternate ? PinSetting::Alternate : PinSetting::Input;
+        setting.function = 12;
+        return setting;
+    });
+    EXPECT_FALSE(wires.isStraight());
+    FsmcPins near;
+    near.neN = 0xE; // NE1
+    near.noeN = false;
+    EXPECT_EQ(wires.atChip(near).neN & 3, 3) << "the chip's pull-ups";
+    EXPECT_TRUE(wires.atChip(near).noeN);
+    isAlternate = true;
+    for (unsigned port = 0; port < 9; ++port)
+        wires.changed(port);
+    EXPECT_TRUE(wires.isStraight());
+    EXPECT_EQ(wires.oscillatorHz(), 8'000'000u);
+    for (auto line : {BoardWires::Irq, BoardWires::ModemRxd, BoardWires::ModemTxd,
+                      BoardWires::ModemCts, BoardWires::ModemRts, BoardWires::ModemReset})
+        EXPECT_TRUE(wires.reaches(line)) << line;
+}
+
+TEST(BoardWires, ASwappedPairExchangesItsLevels) {
+    Board board;
+    board.ucf = swapped(board.ucf, "\"E12\"", "\"E13\""); // D0 and D1
+    BoardWires wires(board.wires, board.ucf);
+    EXPECT_FALSE(wires.isStraight());
+    FsmcPins near;
+    near.d = 0x8001;
+    EXPECT_EQ(wires.atChip(near).d, 0x8002);
+    FsmcPins chip, back;
+    chip.dFromDesign = 0x4002;
+    wires.toProcessor(chip, back);
+    EXPECT_EQ(back.dFromDesign, 0x4001);
+}
+
+TEST(BoardWires, ALineThatIsNotUnderstoodIsNamed) {
+    try {
+        BoardWires("PD14 12 FSMC_D0\n", "");
+        FAIL();
+    } catch (const std::runtime_error& e) {
+        EXPECT_STREQ(e.what(), "board.wires: expected pin, number, function, net, ball and volts, "
+                               "got 'PD14 12 FSMC_D0'");
+    }
+}
+
+TEST(BoardFlight, TheKitAnswersACallThroughItsGeneratedPins) {
+    EXPECT_TRUE(answersACall({}, enough));
+}
+
+TEST(BoardFlight, TwoDataWiresInEachOthersPlacesAreNoBoard) {
+    Board board;
+    board.wires = swapped(board.wires, " E12 ", " E13 ");
+    EXPECT_FALSE(answersACall(board, enough));
+}
+
+TEST(BoardFlight, TwoAddressPlacesSwappedInTheConstraintsAreNoBoard) {
+    Board board;
+    board.ucf = swapped(board.ucf, "\"K15\"", "\"K16\""); // A0 and A1
+    EXPECT_FALSE(answersACall(board, enough));
+}
+
+TEST(BoardFlight, ASignalOnAnotherAlternateFunctionDoesNotLeaveTheChip) {
+    Board board;
+    board.wires = with(board.wires, "PD4 12 FSMC_NOE", "PD4 11 FSMC_NOE");
+    EXPECT_FALSE(answersACall(board, enough));
+}
+
+TEST(BoardFlight, ABankWithoutSupplyIsNoBoard) {
+    Board board;
+    const std::regex bank1("( [B-T][0-9]+) 3.3\n");
+    board.wires = std::regex_replace(board.wires, bank1, "$1 0\n");
+    EXPECT_FALSE(answersACall(board, enough));
+}
+
+TEST(BoardFlight, TheModemsDataNeedsItsWire) {
+    Board board;
+    board.wires = with(board.wires, "DOUT - - MODEM_RXD N9 3.3\n", "");
+    EXPECT_FALSE(answersACall(board, enough));
+}
+
+TEST(BoardFlight, TheInterruptNeedsItsBall) {
+    Board board;
+    board.ucf = with(board.ucf, "NET \"irq_o\" LOC = \"K11\"", "NET \"irq_o\" LOC = \"T14\"");
+    EXPECT_FALSE(answersACall(board, enough));
+}
+
+TEST(BoardFlight, AnotherOscillatorIsNamed) {
+    Board board;
+    board.wires = with(board.wires, "oscillator 8000000", "oscillator 25000000");
+    try {
+        (void)answersACall(board, enough);
+        FAIL() << "the PLL has 3 MHz";
+    } catch (const std::exception& e) {
+        EXPECT_NE(std::string(e.what()).find("PLL with an input of 3125 kHz"), std::string::npos)
+            << e.what();
+    }
+}
+
+} // namespace

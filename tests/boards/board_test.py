@@ -2,6 +2,7 @@
 """board_test: the boards of the tree can be read; those without unknown facts can be built; their
 generated files fit the chip, the facts about parts, and the pages in docs/boards."""
 import re
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -84,6 +85,19 @@ class Boards(unittest.TestCase):
 
     def test_the_kit_has_fsmc_pins_on_four_ports_only(self):
         self.assertEqual(set(firmware.ports(KIT)), set("DEFG"))
+
+    def test_the_commands_of_the_page_do_what_it_shows(self):
+        text = (TREE / "docs/first-board.md").read_text()
+        commands = re.findall(r"^\./icesoc (board (?:list|check|make|show).*)$", text, re.M)
+        said = ""
+        for words in commands:
+            said += subprocess.run([TREE / "icesoc", *words.split()], cwd=TREE, check=True,
+                                   text=True, stdout=subprocess.PIPE).stdout
+        self.assertGreaterEqual(len(commands), 2)
+        for shown in re.findall(r"prints `(nucleo-qmtech: [^`]*)`", text):
+            self.assertIn(shown, said)
+        for file in re.findall(r"^\| `([a-z_.]+)` \|", text, re.M):
+            self.assertIn(f"build/board/nucleo-qmtech/{file}", said)
 
     def test_errors_name_the_place(self):
         cases = {

@@ -181,8 +181,8 @@ FsmcPins BoardWires::atChip(const FsmcPins& near) const {
 }
 
 void BoardWires::toProcessor(const FsmcPins& chip, FsmcPins& near) const {
-    // A data pin that the chip does not reach reads as low. No model of the processor can see that
-    // nobody drives it.
+    // A data pin that the chip does not reach reads as low, since a processor cannot see that
+    // nothing drives it.
     near.dFromDesign = 0;
     for (unsigned bit = 0; bit < 16; ++bit) {
         const int signal = from_[D + bit];
@@ -190,6 +190,6 @@ void BoardWires::toProcessor(const FsmcPins& chip, FsmcPins& near) const {
             near.dFromDesign = static_cast<uint16_t>(
                 near.dFromDesign | (chip.dFromDesign >> bit & 1) << (unsigned(signal) - D));
     }
-    near.dDriven = chip.dDriven || !near.dOut;
+    near.dDriven = chip.dDriven || (!near.noeN && !near.dOut && (near.neN & 3) != 3);
     near.nwaitN = from_[Nwait] == int(Nwait) && isSwitched_[Nwait] ? chip.nwaitN : true;
 }

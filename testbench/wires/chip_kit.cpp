@@ -14,8 +14,7 @@ const FsmcCorner kitDelays = {"kit", 2000, 3000, 1000, 500, 1500, 600, 2000, 250
 
 ChipKit::ChipKit(const std::vector<WireFault>& faults, XBee::Options modem)
     : soc_(air_, std::move(modem), 120, 100),
-      stm32_(
-          soc_.fsmc(), [this] { return soc_.now(); }, Stm32F2::Config()) {
+      stm32_(soc_.fsmc(), [this] { return soc_.now(); }, Stm32F2::Config()) {
     soc_.delay(kitDelays, 1, false);
     soc_.fsmc().tolerate();
     for (const WireFault& fault : faults)

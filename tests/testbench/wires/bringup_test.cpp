@@ -81,7 +81,7 @@ TEST(Bringup, NamesEachStuckLine) {
 
 TEST(Bringup, NamesEachPairOfNeighboursThatIsShorted) {
     const std::vector<std::string> lines = wiredLines();
-    for (size_t i = 0; i + 1 < lines.size(); ++i) {
+    for (size_t i = 0; i + 1 < lines.size(); i += 2) {
         const std::string pair = lines[i] + "-" + lines[i + 1];
         expectNamed(wires, pair + ":short", pair + " short");
     }
@@ -89,16 +89,17 @@ TEST(Bringup, NamesEachPairOfNeighboursThatIsShorted) {
 
 TEST(Bringup, NamesEachPairOfNeighboursThatIsSwapped) {
     const std::vector<std::string> lines = wiredLines();
-    for (size_t i = 0; i + 1 < lines.size(); ++i) {
+    for (size_t i = 0; i + 1 < lines.size(); i += 2) {
         const std::string pair = lines[i] + "-" + lines[i + 1];
         expectNamed(wires, pair + ":swapped", pair + " swapped");
     }
 }
 
 TEST(Bringup, NamesPairsThatAreNoNeighbours) {
-    for (const std::string pair : {"NE1-NWE", "NOE-NWE", "D0-IRQ", "A0-NWAIT", "NE2-NBL0"})
+    for (const std::string pair :
+         {"NWAIT-IRQ", "NE1-NWE", "NOE-NWE", "D0-IRQ", "A0-NWAIT", "NE2-NBL0"})
         expectNamed(wires, pair + ":swapped", pair + " swapped");
-    for (const std::string pair : {"D15-A24", "D0-NWAIT", "NE1-NBL0"})
+    for (const std::string pair : {"NWAIT-IRQ", "D15-A24", "D0-NWAIT", "NE1-NBL0"})
         expectNamed(wires, pair + ":short", pair + " short");
 }
 

@@ -111,6 +111,13 @@ CALL = """(async () => {
     const mine = () => [...find().querySelectorAll('form')]
         .find(form => form.querySelector('h4').innerText.split(' ')[0] === '%s');
     while (!mine()) await wait();
+    const filter = document.getElementById('filter');
+    filter.value = 'hwengine1';
+    filter.dispatchEvent(new Event('input'));
+    for (const number of mine().querySelectorAll('input[type=text]')) {
+        number.value = 24;
+        number.dispatchEvent(new Event('input'));
+    }
     const output = mine().querySelector('output');
     mine().requestSubmit();
     while (!/done in/.test(output.innerText)) await wait();
@@ -128,7 +135,7 @@ def shoot_live(path, profile, icesoc):
                     raise Stop(text)
                 time.sleep(1)
             address = re.search("^The mission as it runs: (.*)$", text, re.M)[1]
-            with Browser(width=1280, height=1500) as browser:
+            with Browser(width=1280, height=1700) as browser:
                 browser.open(address + "#objects")
                 for form in "setParameterA", "startProcessing", "getResult":
                     browser.run(CALL % form)

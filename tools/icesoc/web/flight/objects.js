@@ -197,7 +197,9 @@ function card(object) {
         const forms = element('div'), registers = element('aside');
         forms.append(...station.slice.operations(object.interface).map(operation => operationForm(object, operation)));
         registers.dataset.block = object.block; // live.js fills it
-        details.append(forms, ...(object.block ? [registers] : []));
+        const body = element('div', undefined, 'card');
+        body.append(forms, ...(object.block ? [registers] : []));
+        details.append(body);
     });
     return details;
 }

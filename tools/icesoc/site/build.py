@@ -108,7 +108,8 @@ def build(tree, out, helps):
         inputs=" ".join(f'"{folder}"' for folder in folders), output=f'"{out / "doxygen"}"',
         filter=Path(__file__).with_name("doxygen_filter.py")))
     run(["doxygen", out / "Doxyfile"], "doxygen", out / "doxygen.log")
-    run(["sphinx-build", "-q", "-W", "--keep-going", "-b", "html", "-D",
+    # Sphinx's cache, which names the folders of this run, is not part of the site.
+    run(["sphinx-build", "-q", "-W", "--keep-going", "-b", "html", "-d", out / "doctrees", "-D",
          f"breathe_projects.icesoc={out / 'doxygen/xml'}", out / "pages", out / "html"],
         "Sphinx", out / "sphinx.log")
     return out / "html/index.html"

@@ -7,6 +7,7 @@
  * line_tester, the rest with the chip itself.
  */
 #include "bringup.h"
+#include "board_pins.h"
 #include "bus.h"
 #include "console.h"
 #include "lines.h"
@@ -72,7 +73,7 @@ int main(void) {
     const Timing_Clock* clock = Timing_start();
     U32 found;
     Console_start(clock->hclkHz / 2U);
-    Console_text("BOARD " BRINGUP_BOARD);
+    Console_text("BOARD " BOARD_NAME);
     Console_end();
     testClock(clock);
     found = testContact();

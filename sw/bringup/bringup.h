@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * bringup: the board that the self-test runs on, and limits that a debugger may change.
+ * bringup: limits of the self-test, which a debugger may change. Facts of the board are in
+ * board_pins.h.
  */
 #pragma once
 
 #include "base.h"
-
-#define BRINGUP_BOARD "nucleo-f207zg"
-#define BRINGUP_HSE_HZ 25000000UL   /* microcontroller's crystal, Hz; 0: none */
-#define BRINGUP_FPGA_HZ 100000000UL /* FPGA's clock input, Hz */
 
 /* Limits of the self-test. The defaults suit a board; a simulation shortens some. */
 typedef struct Bringup_Limits {

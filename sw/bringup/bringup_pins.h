@@ -2,59 +2,61 @@
  *
  * bringup_pins: the microcontroller's pins of the lines to the FPGA.
  *
- * X(name, port, pin), in the order of the FPGA's pins in hdl/bringup/line_tester.v. Port 0 is A;
- * 255 stands for a line without a wire.
+ * X(name, place), in the order of the FPGA's pins in hdl/bringup/line_tester.v. A place is a port
+ * and a pin: port 0 is A, and 255 stands for a line without a wire.
  */
 #pragma once
 
-#define BRINGUP_LINES(X) \
-    X(D0, 3, 14)         \
-    X(D1, 3, 15)         \
-    X(D2, 3, 0)          \
-    X(D3, 3, 1)          \
-    X(D4, 4, 7)          \
-    X(D5, 4, 8)          \
-    X(D6, 4, 9)          \
-    X(D7, 4, 10)         \
-    X(D8, 4, 11)         \
-    X(D9, 4, 12)         \
-    X(D10, 4, 13)        \
-    X(D11, 4, 14)        \
-    X(D12, 4, 15)        \
-    X(D13, 3, 8)         \
-    X(D14, 3, 9)         \
-    X(D15, 3, 10)        \
-    X(A0, 5, 0)          \
-    X(A1, 5, 1)          \
-    X(A2, 5, 2)          \
-    X(A3, 5, 3)          \
-    X(A4, 5, 4)          \
-    X(A5, 5, 5)          \
-    X(A6, 5, 12)         \
-    X(A7, 5, 13)         \
-    X(A8, 5, 14)         \
-    X(A9, 5, 15)         \
-    X(A10, 6, 0)         \
-    X(A11, 6, 1)         \
-    X(A12, 6, 2)         \
-    X(A13, 6, 3)         \
-    X(A14, 6, 4)         \
-    X(A15, 6, 5)         \
-    X(A16, 3, 11)        \
-    X(A17, 3, 12)        \
-    X(A18, 3, 13)        \
-    X(A19, 4, 3)         \
-    X(A20, 4, 4)         \
-    X(A21, 4, 5)         \
-    X(A22, 4, 6)         \
-    X(A23, 4, 2)         \
-    X(A24, 6, 13)        \
-    X(NE1, 3, 7)         \
-    X(NE2, 6, 9)         \
-    X(NOE, 3, 4)         \
-    X(NWE, 3, 5)         \
-    X(NBL0, 4, 0)        \
-    X(NBL1, 4, 1)        \
-    X(NADV, 255, 0)      \
-    X(NWAIT, 3, 6)       \
-    X(IRQ, 1, 0)
+#include "board_pins.h"
+
+#define BRINGUP_LINES(X)     \
+    X(D0, BOARD_AT_D0)       \
+    X(D1, BOARD_AT_D1)       \
+    X(D2, BOARD_AT_D2)       \
+    X(D3, BOARD_AT_D3)       \
+    X(D4, BOARD_AT_D4)       \
+    X(D5, BOARD_AT_D5)       \
+    X(D6, BOARD_AT_D6)       \
+    X(D7, BOARD_AT_D7)       \
+    X(D8, BOARD_AT_D8)       \
+    X(D9, BOARD_AT_D9)       \
+    X(D10, BOARD_AT_D10)     \
+    X(D11, BOARD_AT_D11)     \
+    X(D12, BOARD_AT_D12)     \
+    X(D13, BOARD_AT_D13)     \
+    X(D14, BOARD_AT_D14)     \
+    X(D15, BOARD_AT_D15)     \
+    X(A0, BOARD_AT_A0)       \
+    X(A1, BOARD_AT_A1)       \
+    X(A2, BOARD_AT_A2)       \
+    X(A3, BOARD_AT_A3)       \
+    X(A4, BOARD_AT_A4)       \
+    X(A5, BOARD_AT_A5)       \
+    X(A6, BOARD_AT_A6)       \
+    X(A7, BOARD_AT_A7)       \
+    X(A8, BOARD_AT_A8)       \
+    X(A9, BOARD_AT_A9)       \
+    X(A10, BOARD_AT_A10)     \
+    X(A11, BOARD_AT_A11)     \
+    X(A12, BOARD_AT_A12)     \
+    X(A13, BOARD_AT_A13)     \
+    X(A14, BOARD_AT_A14)     \
+    X(A15, BOARD_AT_A15)     \
+    X(A16, BOARD_AT_A16)     \
+    X(A17, BOARD_AT_A17)     \
+    X(A18, BOARD_AT_A18)     \
+    X(A19, BOARD_AT_A19)     \
+    X(A20, BOARD_AT_A20)     \
+    X(A21, BOARD_AT_A21)     \
+    X(A22, BOARD_AT_A22)     \
+    X(A23, BOARD_AT_A23)     \
+    X(A24, BOARD_AT_A24)     \
+    X(NE1, BOARD_AT_NE1)     \
+    X(NE2, BOARD_AT_NE2)     \
+    X(NOE, BOARD_AT_NOE)     \
+    X(NWE, BOARD_AT_NWE)     \
+    X(NBL0, BOARD_AT_NBL0)   \
+    X(NBL1, BOARD_AT_NBL1)   \
+    X(NADV, BOARD_AT_NADV)   \
+    X(NWAIT, BOARD_AT_NWAIT) \
+    X(IRQ, BOARD_AT_IRQ)

@@ -22,7 +22,7 @@ typedef struct Line {
     U8 port, pin;
 } Line;
 
-#define ROW(name, port, pin) {#name, port, pin},
+#define ROW(name, place) {#name, place},
 static const Line lines[LINES] = {BRINGUP_LINES(ROW)};
 
 /* Clock, data and answer of each channel. */

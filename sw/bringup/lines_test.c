@@ -6,6 +6,7 @@
  * follows is shorted. Through the FPGA, each line carries a number of its own, bit by bit and then
  * inverted: the number that arrives names the line at the other end.
  */
+#include "board_pins.h"
 #include "bringup.h"
 #include "console.h"
 #include "lines.h"
@@ -314,8 +315,8 @@ void Lines_testClock(void) {
     if (khz == 0)
         Report_fail("CLK", 0, "no-clock", "the FPGA's clock input does not move",
                     "the oscillator, its supply and enable pin, and the pin's number in the UCF");
-    else if (khz < BRINGUP_FPGA_HZ / 1000UL * 995UL / 1000UL ||
-             khz > BRINGUP_FPGA_HZ / 1000UL * 1005UL / 1000UL) {
+    else if (khz < BOARD_FPGA_HZ / 1000UL * 995UL / 1000UL ||
+             khz > BOARD_FPGA_HZ / 1000UL * 1005UL / 1000UL) {
         Report_fail("CLK", 0, "wrong-rate", "the FPGA's clock has another rate",
                     "the oscillator's marking; the microcontroller's crystal");
         Console_text("INFO FPGA clock MHz: ");
@@ -326,7 +327,7 @@ void Lines_testClock(void) {
     if (Report_pass()) {
         Console_fixed(khz, 3);
         Console_text(" MHz, expected ");
-        Console_fixed(BRINGUP_FPGA_HZ / 1000UL, 3);
+        Console_fixed(BOARD_FPGA_HZ / 1000UL, 3);
         Console_end();
     }
 }

@@ -3,7 +3,7 @@
  * timing: clock tree and SysTick.
  */
 #include "timing.h"
-#include "bringup.h"
+#include "board_pins.h"
 #include "stm32f2.h"
 
 #define CYCLES_MASK 0xFFFFFFUL
@@ -34,7 +34,7 @@ void Timing_wait(U32 us) {
 
 /* Makes the PLL run at 2 * hz from an input of 1 MHz, and HCLK at hz. */
 static void startPll(U32 hz) {
-    U32 mhz = hz / 1000000UL, source = now.isCrystal ? BRINGUP_HSE_HZ : HSI_HZ;
+    U32 mhz = hz / 1000000UL, source = now.isCrystal ? BOARD_HSE_HZ : HSI_HZ;
     RCC_CFGR &= ~3UL; /* from HSI while the PLL changes */
     while (RCC_CFGR & RCC_CFGR_SWS_MASK)
         ;
@@ -59,12 +59,10 @@ static void startPll(U32 hz) {
 
 const Timing_Clock* Timing_start(void) {
     U32 polls;
-    if (BRINGUP_HSE_HZ) {
-        RCC_CR |= RCC_CR_HSEON;
-        for (polls = 0; polls < READY_POLLS && !(RCC_CR & RCC_CR_HSERDY); ++polls)
-            ;
-        now.isCrystal = (RCC_CR & RCC_CR_HSERDY) != 0;
-    }
+    RCC_CR |= BOARD_HSE_ON;
+    for (polls = 0; polls < READY_POLLS && !(RCC_CR & RCC_CR_HSERDY); ++polls)
+        ;
+    now.isCrystal = (RCC_CR & RCC_CR_HSERDY) != 0;
     startPll(120000000UL);
     SYST_RVR = CYCLES_MASK;
     SYST_CVR = 0;

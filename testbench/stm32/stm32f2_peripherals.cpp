@@ -144,6 +144,10 @@ uint64_t Stm32F2::hclk() {
     uint64_t hz = (config & 3) == 2   ? source * (pll >> 6 & 0x1FF) / divider
                   : (config & 3) == 1 ? config_.oscillatorHz
                                       : hsiHz;
+    const uint64_t input = source / std::max<uint64_t>(pll & 0x3F, 1);
+    if ((config & 3) == 2 && (input < 950'000 || input > 2'000'000))
+        throw NotModelled("PLL with an input of " + std::to_string(input / 1000) +
+                          " kHz, which takes 0.95 to 2 MHz (RM0033, 5.3.2)");
     const unsigned ahb = config >> 4 & 15; // 8: half, 9: a quarter, ...
     return hz >> (ahb < 8 ? 0 : ahb < 12 ? ahb - 7 : ahb - 6);
 }

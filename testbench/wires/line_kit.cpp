@@ -14,7 +14,7 @@ constexpr unsigned nwe = 44, rxd = 50, txd = 51, cts = 52, rts = 53, resetN = 54
 constexpr unsigned notWired = 255;
 
 std::vector<std::string> netNames() {
-#define NAME(name, port, pin) #name,
+#define NAME(name, place) #name,
     std::vector<std::string> names = {BRINGUP_LINES(NAME)};
 #undef NAME
     for (const char* name : {"RXD", "TXD", "CTS", "RTS", "RESET"})
@@ -24,7 +24,7 @@ std::vector<std::string> netNames() {
 
 } // namespace
 
-#define PLACE(name, port, pin) {port, pin},
+#define PLACE(name, place) {place},
 const LineKit::Place LineKit::places[lines] = {BRINGUP_LINES(PLACE)};
 #undef PLACE
 

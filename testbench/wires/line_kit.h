@@ -6,6 +6,7 @@
 #pragma once
 
 #include "VLineTester.h"
+#include "board_pins.h"
 #include "stm32f2.h"
 #include "wires.h"
 #include <functional>
@@ -17,7 +18,7 @@ class LineKit : private PinWires {
 public:
     struct Options {
         std::vector<WireFault> faults;
-        double fpgaMhz = 100;     // the FPGA's clock
+        double fpgaMhz = BOARD_FPGA_HZ / 1e6; // the FPGA's clock
         bool isConfigured = true; // line_tester is loaded; if not, the FPGA pulls its pins up
     };
     explicit LineKit(const Options& options);

@@ -148,4 +148,16 @@ TEST(BoardFlight, TheInterruptNeedsItsBall) {
     EXPECT_FALSE(answersACall(board, enough));
 }
 
+TEST(BoardFlight, AnotherOscillatorIsNamed) {
+    Board board;
+    board.wires = with(board.wires, "oscillator 8000000", "oscillator 25000000");
+    try {
+        (void)answersACall(board, enough);
+        FAIL() << "the PLL has 3 MHz";
+    } catch (const std::exception& e) {
+        EXPECT_NE(std::string(e.what()).find("PLL with an input of 3125 kHz"), std::string::npos)
+            << e.what();
+    }
+}
+
 } // namespace

@@ -51,8 +51,8 @@ std::vector<std::string> failures(const std::string& text) {
 
 std::vector<std::string> wiredLines() {
     std::vector<std::string> names;
-#define LINE(name, port, pin) \
-    if (port != 255)          \
+#define LINE(name, place)                        \
+    if (std::pair<int, int>{place}.first != 255) \
         names.push_back(#name);
     BRINGUP_LINES(LINE)
 #undef LINE

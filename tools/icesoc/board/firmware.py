@@ -3,6 +3,7 @@
 
 The table has the values of a port's registers, so that the firmware stores them as they are."""
 from icesoc.board.model import Board
+from icesoc.board.signals import SIGNALS
 
 SPEEDS = {"low": 0, "medium": 1, "high": 2, "fast": 3}
 PULLS = {"up": 1, "down": 2}
@@ -50,6 +51,7 @@ def header(board: Board):
         f" * board_pins: pins and clock of the board {board.name}. Generated from its board.toml:",
         " * do not edit.",
         " */", "#pragma once", "",
+        f'#define BOARD_NAME "{board.name}"', "",
         "/* Oscillator, MHz, and the bits of RCC_CR that start it. */",
         f"#define BOARD_HSE_MHZ {mcu['hse_hz'] // 1_000_000}UL",
         f"#define BOARD_HSE_ON {START[mcu.get('hse', 'crystal')]}",
@@ -67,10 +69,13 @@ def header(board: Board):
     lines += ["", "/* Register values of each port with pins of the FSMC: base address, MODER, "
               "OSPEEDR, PUPDR,", " * AFRL, AFRH. */", f"#define BOARD_PORTS {len(rows)}U",
               "#define BOARD_PINS \\", ", \\\n".join(rows)]
-    lines += ["", "/* X(net, port, pin) for each net with a pin of the microcontroller. */",
-              "#define BOARD_LINES(X) \\", " \\\n".join(
-                  f"    X({net.name}, {ord(net.get('mcu')[1]) - ord('A')}, {net.get('mcu')[2:]})"
-                  for net in board.nets if net.get("mcu"))]
+    lines += ["", "/* Port and pin of the microcontroller for each net; 255, 0: without a wire. */"]
+    for signal in SIGNALS.values():
+        if signal.function:
+            net = board.net(signal.name)
+            pin = net.get("mcu") if net else ""
+            place = f"{ord(pin[1]) - ord('A')}, {pin[2:]}" if pin else "255, 0"
+            lines.append(f"#define BOARD_AT_{signal.name} {place}")
     return "\n".join(lines) + "\n"
 
 

@@ -23,6 +23,27 @@
 
 namespace {
 
+// Returns why Ice failed, in words. Ice's own text begins with a place in its source.
+std::string reasonOf(const Ice::Exception& e) {
+    if (const auto* file = dynamic_cast<const Ice::FileException*>(&e))
+        return file->path + ": " + std::generic_category().message(file->error);
+    if (const auto* system = dynamic_cast<const Ice::SyscallException*>(&e))
+        return std::generic_category().message(system->error);
+    if (const auto* host = dynamic_cast<const Ice::DNSException*>(&e))
+        return host->host + ": host not found";
+    if (const auto* plugin = dynamic_cast<const Ice::PluginInitializationException*>(&e))
+        return plugin->reason;
+    if (const auto* start = dynamic_cast<const Ice::InitializationException*>(&e))
+        return start->reason;
+    if (const auto* security = dynamic_cast<const Ice::SecurityException*>(&e))
+        return security->reason;
+    if (const auto* endpoint = dynamic_cast<const Ice::EndpointParseException*>(&e))
+        return endpoint->str;
+    if (const auto* proxy = dynamic_cast<const Ice::ProxyParseException*>(&e))
+        return proxy->str;
+    return e.ice_id();
+}
+
 using namespace gateway;
 
 using Take = std::function<void(std::shared_ptr<Request>)>;
@@ -96,7 +117,7 @@ Take toStation(const std::shared_ptr<Ice::ObjectPrx>& station, const std::string
                 std::rethrow_exception(why);
             } catch (const Ice::SocketException& e) {
                 std::cerr << "gateway: the UAV calls, but no server listens at " + where + ": " +
-                                 e.what() + "\n";
+                                 reasonOf(e) + "\n";
             } catch (...) {
             }
             request->failed(why);
@@ -147,7 +168,13 @@ std::shared_ptr<Ice::ObjectPrx> publisherOf(const std::shared_ptr<Ice::Communica
                                             const std::string& topics) {
     if (topics.empty())
         return nullptr;
-    const auto manager = Ice::checkedCast<IceStorm::TopicManagerPrx>(ic->stringToProxy(topics));
+    const auto manager = [&] {
+        try {
+            return Ice::checkedCast<IceStorm::TopicManagerPrx>(ic->stringToProxy(topics));
+        } catch (const Ice::SocketException& e) {
+            throw std::runtime_error("--topics: " + reasonOf(e));
+        }
+    }();
     try {
         return manager->create("vehicles")->getPublisher();
     } catch (const IceStorm::TopicExists&) {
@@ -261,7 +288,7 @@ void serve(const std::shared_ptr<Ice::Communicator>& ic, const Options& o) {
                     (vehicle.registration.*question)();
             return "";
         } catch (const Ice::Exception& e) {
-            return e.ice_id();
+            return reasonOf(e);
         }
     };
     const sigset_t signals = endings();
@@ -305,8 +332,11 @@ int main(int argc, char** argv) {
         serve(ic.communicator(), o);
     } catch (const CLI::ParseError& e) {
         return app.exit(e);
-    } catch (const Ice::PluginInitializationException& e) {
-        std::cerr << "gateway: error: " << e.reason << "\n";
+    } catch (const Ice::ConnectFailedException& e) { // of the modem's line; the plugin logs more
+        std::cerr << "gateway: error: cannot use " << o.device << ": " << reasonOf(e) << "\n";
+        return 1;
+    } catch (const Ice::Exception& e) {
+        std::cerr << "gateway: error: " << reasonOf(e) << "\n";
         return 1;
     } catch (const std::exception& e) {
         std::cerr << "gateway: error: " << e.what() << "\n";

@@ -455,6 +455,8 @@ TEST(GatewayOptions, WrongOnesAreRefusedByName) {
         Server gateway(words);
         EXPECT_GT(gateway.wait(), 0) << said;
         EXPECT_NE(gateway.said().find(said), std::string::npos) << gateway.said();
+        for (const char* internal : {".h:", ".cpp:", "::Ice::"}) // a place in the source, a class
+            EXPECT_EQ(gateway.said().find(internal), std::string::npos) << gateway.said();
     }
 }
 

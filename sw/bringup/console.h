@@ -27,7 +27,7 @@ void Console_hex(U32 value, U32 digits);
 void Console_fixed(U32 value, U32 decimals);
 void Console_end(void); /* ends a line */
 
-/* Begins a step; its name is used by the next two. */
+/* Begins a step. Report_fail and Report_pass print its name. */
 void Report_step(const char* name, const char* passes);
 /* Reports a failure of the present step. `second` is 0, or the other wire of a pair. */
 void Report_fail(const char* wire, const char* second, const char* kind, const char* seen,

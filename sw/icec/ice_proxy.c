@@ -60,8 +60,8 @@ Ice_String Ice_ObjectPrx_getFacet(const Ice_ObjectPrx* prx) {
     return facet;
 }
 
-/* Sets the encoding of received endpoints of this program's transports to the message's, as Ice
- * does; other endpoints are unchanged. */
+/* Gives endpoints the encoding of their message, as Ice does, if this program has their transport.
+ * Other endpoints are unchanged. */
 static void adoptEncoding(Ice_CommunicatorPtr ic, Ice_Byte* endpoints, Ice_Byte minor) {
     Ice_Byte* at = endpoints + 1;
     int n;
@@ -116,7 +116,7 @@ void Ice_InputStream_readPrx(Ice_InputStreamPtr is, Ice_CommunicatorPtr ic, Ice_
         is->failed = ICE_FAILED_IDENTITY;
     prx->mode = Ice_InputStream_readByte(is);
     prx->secure = Ice_InputStream_readBool(is);
-    prx->minor = is->minor; /* an old peer omits it, and means its own */
+    prx->minor = is->minor; /* 1.0 sends no version: the stream's applies */
     if (ICEC_FULL)
         prx->versions[3] = is->minor;
     if (is->minor != 0) {
@@ -133,7 +133,7 @@ void Ice_InputStream_readPrx(Ice_InputStreamPtr is, Ice_CommunicatorPtr ic, Ice_
         if (!is->failed && !keep(is, begin, prx))
             is->failed = ICE_FAILED_ENDPOINT;
     }
-    /* Endpoints that do not fit are omitted, as long as one does. */
+    /* Endpoints that do not fit are omitted, if at least one endpoint fits. */
     for (; n > 0 && !is->failed; --n) {
         Ice_Int size;
         begin = is->position;

@@ -65,7 +65,9 @@ typedef struct Ice_OutputValues {
     Ice_Int typeCount;
     const Ice_Value* table[ICE_VALUES_MAX]; /* indirection tables of the current slices */
     Ice_Int tableBegin, tableEnd;
-    Ice_Bool pending; /* 1.0: instances follow; 0 if only optional parameters could hold one */
+    /* Encoding 1.0: 1 if instances follow the parameters; 0 if only optional parameters, which 1.0
+     * omits, have classes. */
+    Ice_Bool pending;
     Ice_Bool (*writeTable)(Ice_OutputStreamPtr os); /* for slices of exceptions */
 } Ice_OutputValues;
 

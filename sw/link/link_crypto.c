@@ -16,8 +16,8 @@ void link_cipher(const U8* key, const U8* nonce, U8* bytes, U32 size, int isDecr
     Ascon_end(&ascon, key, tag);
 }
 
-/* Writes the keystream of a nonce. It is never sent, so an attacker who learns one keystream learns
- * nothing about another. */
+/* Derives keys: the keystream of a nonce. This keystream is never sent, so an attacker who learns
+ * one keystream learns nothing about another. */
 static void derive(const U8* secret, const U8* nonce, U8* text, U32 size) {
     U8 tag[ASCON_TAG_BYTES];
     memset(text, 0, size);

@@ -55,9 +55,9 @@ Link_Entry* link_enqueue(Link_Queue* queue, U32 flags, U32 size, U32 longest);
 /* Appends bytes to the newest entry, and continues its check. */
 void link_put(Link_Queue* queue, const U8* data, U32 size);
 
-/* Cuts the next chunk, of at most `room` bytes, or of `reduced` unless it is a complete message.
- * `reduced` 0 allows only an entry that overtakes. `overtaker`: largest entry that may overtake,
- * bytes; 0 disables overtaking. Returns 0 if everything is cut. */
+/* Cuts the next chunk: a whole entry if it is shorter than `room` bytes, otherwise at most
+ * `reduced` bytes. If `reduced` is 0, only an entry that overtakes is cut. `overtaker`: largest
+ * entry that may overtake, bytes; 0 disables overtaking. Returns 0 if nothing was cut. */
 int link_cut(Link_Queue* queue, Link_Chunk* chunk, U32 room, U32 reduced, U32 overtaker);
 
 /* Copies the bytes of a chunk. */

@@ -40,7 +40,8 @@ int link_expect(Link_Session* session, const U8* frame, U32 attempt, Link_Seal* 
 /* Acts upon an opened frame; `attempt` is the one that opened it. */
 void link_onFrame(Link_Session* session, const U8* frame, U32 attempt);
 
-/* Notes that no seal has opened an expected frame. */
+/* Counts an expected frame that no key of the session could authenticate. A frame of the handshake
+ * wipes the candidate instead. */
 void link_onForgery(Link_Session* session, const U8* frame);
 
 /* Polls handshake and liveness; ends a session that is silent or has lasted too long. Returns 1 if

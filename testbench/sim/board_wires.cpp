@@ -11,7 +11,8 @@ namespace {
 
 #include "board_wires.inc"
 
-// Names of a signal: of the microcontroller's function or the modem's pin, and of the chip's port.
+// The two names of a signal: the microcontroller's function or the modem's pin (`end`), and the
+// chip's port (`port`).
 struct Name {
     const char *end, *port;
     unsigned line, count;

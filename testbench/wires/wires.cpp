@@ -52,7 +52,7 @@ void Wires::plant(const WireFault& fault) {
         ringing_[a] = true;
         break;
     default:
-        throw std::runtime_error("wire " + fault.wire + ": this fault is not one of levels");
+        throw std::runtime_error("wire " + fault.wire + ": this fault does not affect levels");
     }
 }
 
@@ -73,7 +73,7 @@ void Wires::setOther(unsigned net, Level driver, uint64_t now) {
     dirty_ = true;
 }
 
-// Combines a driver with the drivers of a node: low wins against high.
+// Computes the levels of all nodes if a driver has changed or a delay has ended.
 void Wires::settle(uint64_t now) {
     if (!dirty_ && now < due_)
         return;
@@ -82,6 +82,7 @@ void Wires::settle(uint64_t now) {
     drive_.assign(nodes_.size(), None);
     pull_.assign(nodes_.size(), None);
     fight_.assign(nodes_.size(), false);
+    // Combines a driver with the drivers of a node: low wins against high.
     auto combine = [this](unsigned node, Level level) {
         if (level == None)
             return;

@@ -16,7 +16,7 @@
  * connections, ends 27 s after a fragment that is not taken. Two answers of 8 KB take 4 s if three
  * of ten packets are lost. */
 #define RETRIES 1000
-#define OTHER_RETRIES 100 /* the same for other peers, for which the first ground waits */
+#define OTHER_RETRIES 100 /* tries for other peers: the first ground waits meanwhile */
 
 /* The head of an encoded endpoint: type, 13 bytes of encapsulation, encoding 1.1. */
 static const Ice_Byte head[HEAD] = {
@@ -134,7 +134,7 @@ static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ic
     if (self->events) {
         while (!(self->events >> first & 1U))
             ++first;
-        self->events &= self->events - 1U; /* without the lowest one */
+        self->events &= self->events - 1U; /* removes the lowest event */
         first = first ? first + XBEE_CONNECTIONS - 1U : self->from;
         event->kind = (Ice_EventKind)(ICE_EVENT_MESSAGE + first / XBEE_CONNECTIONS);
         event->connection = (int)(first % XBEE_CONNECTIONS);
@@ -151,7 +151,7 @@ static Link_Status openOwn(XBeeATEndpoint* self, int peer) {
     const int own = self->own[peer];
     if (!isOwnOpen(self, peer)) {
         status = Link_openChannel(self->links[peer], CHANNEL_OF(own));
-        if (status == LINK_OK) { /* the end of the last connection is not the end of this one */
+        if (status == LINK_OK) { /* a pending end belongs to the previous connection */
             setOwnOpen(self, peer, 1);
             self->events &= ~EVENT(ICE_EVENT_CLOSED, own);
         }
@@ -176,8 +176,8 @@ void XBeeATEndpoint_dial(XBeeATEndpoint* self, int peer, U32 nowUs) {
     }
 }
 
-/* Returns whether the connection of the offered message has ended, whether the receiver knows it or
- * not: its channel may already belong to another one. */
+/* Returns whether the connection of the offered message has ended, even if the receiver does not
+ * know this yet: the channel may already belong to another connection. */
 static int hasEnded(const XBeeATEndpoint* self, int connection) {
     return (self->events & EVENT(ICE_EVENT_CLOSED, connection)) || self->offered != connection;
 }
@@ -201,7 +201,7 @@ static Ice_Status offer(XBeeATEndpoint* self, int connection, const Ice_Byte* me
     int tries = 0;
     lock(self);
     if (message)
-        self->offered = (Ice_Byte)connection; /* one at a time, under ICE_LOCK_SEND */
+        self->offered = (Ice_Byte)connection; /* one message at a time, by ICE_LOCK_SEND */
     for (;;) {
         if (!message)
             status = openOwn(self, PEER_OF(connection));
@@ -249,7 +249,7 @@ static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size
 static void closeChannel(void* context, int connection) {
     XBeeATEndpoint* self = context;
     lock(self);
-    /* The peer may have closed it already, and the channel may belong to a new connection. */
+    /* The peer may have closed the connection already, and the channel may belong to a new one. */
     if (!cancel(self, ICE_EVENT_CLOSED, connection)) {
         (void)Link_closeChannel(self->links[PEER_OF(connection)], CHANNEL_OF(connection));
         end(self, connection);
@@ -301,7 +301,8 @@ static Ice_Bool print(void* context, const Ice_Byte* encoded, Ice_Int size,
 Ice_Status XBeeATEndpoint_makeProxy(Ice_ObjectAdapterPtr adapter, const char* identity, U16 address,
                                     Ice_ObjectPrxPtr prx) {
     const Ice_Status status = Ice_ObjectAdapter_createProxy(adapter, identity, prx);
-    prx->endpoints[1 + HEAD] = (Ice_Byte)address; /* after the number of endpoints: one */
+    /* endpoints[0] is the number of endpoints, 1. The address follows the head. */
+    prx->endpoints[1 + HEAD] = (Ice_Byte)address;
     prx->endpoints[2 + HEAD] = (Ice_Byte)(address >> 8);
     return status;
 }

@@ -16,6 +16,6 @@ int XBeePeers_find(const XBeeATEndpoint* self, U16 address);
  * if the peer is dialed; ground stations are not. */
 int XBeePeers_setDialed(XBeeATEndpoint* self, int peer, int isDialed);
 
-/* Returns 1 if a session ended before anything arrived in it and the vehicle is dialed further. So
- * it is if both sides have begun a session; no caller is informed. */
+/* Returns 1 if a session ended before anything arrived in it, and dialing continues. This happens
+ * if both sides have begun a session. Callers are not informed. */
 int XBeePeers_isDialedOn(const XBeeATEndpoint* self, int peer);

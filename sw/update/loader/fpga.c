@@ -12,21 +12,22 @@
 #include "ucos_ii.h"
 
 #define BUS 0U                   /* port A: chip select 4, clock 5, data in 6, data out 7 */
-#define BUS_PINS (0xFFUL << 8)   /* their bits of MODER */
-#define BUS_OURS (0xA9UL << 8)   /* an output, and three of SPI 1 */
-#define BUS_HEARS (0x8AUL << 8)  /* all but data in are SPI 1's */
+#define BUS_PINS (0xFFUL << 8)   /* the bits of these pins in MODER */
+#define BUS_OURS (0xA9UL << 8)   /* MODER: chip select an output, three pins of SPI 1 */
+#define BUS_HEARS (0x8AUL << 8)  /* MODER: all pins but data in are SPI 1's */
 #define BUS_SPI (0x5555UL << 16) /* alternate function 5 */
 #define SELECT 4U                /* chip select on port A, and its EXTI line */
 #define SELECT_VECTOR 10U
 #define ADDRESS_BYTES 4U /* the flash's instruction precedes it */
-#define POLLS 2000U      /* at least 10 cycles each; the address takes 32 us at 1 MHz */
+#define POLLS 2000U      /* polls of at least 10 cycles; the address takes 32 us at 1 MHz */
 #define CONTROL 2U       /* port C: PROGRAM_B 0, open drain; DONE 1 */
 #define DONE 1U
 #define NO_TASK 255U
 /* Longest wait for DONE, ticks of 10 ms: 3.7 Mbit take 1.9 s at 2 MHz, 3.7 s at half of it, and
  * there are at most four tries. */
 #define WAIT_TICKS 1600U
-#define QUIET_TICKS 100U /* without chip select: no reads, or no wire */
+/* Ticks without a chip select after which the FPGA does not read, or the wire is missing. */
+#define QUIET_TICKS 100U
 #define READS_A_PAUSE 64U
 
 static Slots_Port port;

@@ -68,8 +68,8 @@ def names_of(module):
 
 
 class Nets:
-    """What a module's nets come from: of a net its clock; what it depends on; and the sinks: name,
-    clock, nets."""
+    """Sources of a module's nets. clock: clock of a net; comb: nets on which a net depends; sinks:
+    (name, clock, nets) of each register and each input of a module of hdl/cdc."""
 
     def __init__(self, module, main_clock, synchronous):
         self.names, self.clock, self.comb, self.sinks = names_of(module), {}, {}, []
@@ -93,7 +93,7 @@ class Nets:
                 self.comb.update(dict.fromkeys(outs, needs))
 
     def add_crossing(self, name, kind, nets, ins):
-        """A module of hdl/cdc."""
+        """Adds an instance of a module of hdl/cdc."""
         for port in nets:
             of = cdc_clock(kind, port, nets)
             if port not in ins:
@@ -103,8 +103,8 @@ class Nets:
                 self.sinks.append((name + "." + port, of, nets[port]))
 
     def add_register(self, name, nets, ins):
-        """A register or a memory."""
-        own = (nets.get("CLK") or nets["WR_CLK"] or ["x"])[0]  # a ROM has none
+        """Adds a register or a memory."""
+        own = (nets.get("CLK") or nets["WR_CLK"] or ["x"])[0]  # a ROM has no clock
         self.sinks.append((name, own, [b for p in ins - NO_DATA - {"RD_ADDR"} for b in nets[p]]))
         for bit in nets.get("Q", nets.get("RD_DATA", [])):
             if "RD_ADDR" in nets:

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// fuzz_dispatch: libFuzzer on all messages of a peer: bytes behind a valid head, and on the parser
-// of proxy strings.
+// fuzz_dispatch: runs libFuzzer on the messages of a peer (bytes after a valid head), and on the
+// parser of proxy strings.
 //
-// The first byte selects the message's type, or a request with only the parameters fuzzed: in them,
-// two bytes select each read. A proxy that is read or parsed must survive conversion to its string
-// and its encoding and back. Afterwards the communicator must still answer a ping. With
-// ICEC_MINIMAL the same for the minimal run time, without the strings.
+// The first byte selects the type of the message, or a request of which only the parameters are
+// fuzzed. In the parameters, two bytes select each read. A proxy that is read or parsed must
+// survive conversion to a string and back, and to bytes and back. After each message the
+// communicator must still answer a ping. With ICEC_MINIMAL it tests the minimal run time, without
+// the strings.
 
 #include "ice_messages.h"
 #include "loop.h"
@@ -42,8 +43,8 @@ void sendProxy(const Ice_ObjectPrx& prx, Ice_Byte minor, Ice_ObjectPrx& received
         abort();
 }
 
-// `minor`: of the encoding in which it was read, since a proxy takes the encoding over in which it
-// is sent.
+// Checks that a proxy survives both conversions. `minor`: minor version of the encoding in which
+// the proxy was read; a received proxy takes over the encoding of its message.
 void checkProxy(const Ice_ObjectPrx& prx, Ice_Byte minor) {
     static char text[8192];
     Ice_ObjectPrx again;
@@ -52,9 +53,9 @@ void checkProxy(const Ice_ObjectPrx& prx, Ice_Byte minor) {
         abort();
     if (Ice_Communicator_stringToProxy(&ic, text, &again) != ICE_OK ||
         (!Ice_ObjectPrx_isNull(&prx) && !Ice_ObjectPrx_equals(&prx, &again))) {
-        // An endpoint of this transport prints in a canonical form, and unknown bytes in it are not
-        // kept; an empty opaque one has no string that Ice reads; octal escapes may be longer than
-        // the limit.
+        // Three differences are allowed. An endpoint of this transport prints in a canonical form,
+        // without unknown bytes. An empty opaque endpoint has no string that Ice reads. Octal
+        // escapes may be longer than the limit.
         size_t n = strlen(text);
         if (!prints(":loop") && !prints("\\") && !prints("-v :") &&
             (n < 3 || strcmp(text + n - 3, "-v ") != 0)) {
@@ -134,8 +135,8 @@ void inject(const Bytes& message) {
     loop->inject(ICE_EVENT_MESSAGE, 0, message);
 }
 
-// Delivers a message while a call of this side waits, so that replies are about something.
-// `answers`: with that call's id.
+// Delivers a message while a call of this side waits, so that a reply can belong to this call.
+// `answers`: the message has the id of the call.
 void messageDuringCall(Ice_Byte type, bool answers, Bytes body) {
     static Ice_ObjectPrx prx;
     Ice_InputStreamPtr is;
@@ -195,7 +196,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         rest.insert(rest.begin(), {1, 0, 0, 0});
     }
     messageDuringCall(types[choice], choice == 4, rest);
-    // The connection works again after any message: a new one, a ping, one reply.
+    // After any message a connection still works: it opens again, and a ping gets one reply.
     if (!loop->open[0] || data[0] & 8) {
         loop->inject(ICE_EVENT_OPENED, 0);
         (void)Ice_Communicator_poll(&ic, 0);

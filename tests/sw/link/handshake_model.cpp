@@ -25,21 +25,22 @@ enum class Bug {
     NonceIsNotEchoed,    // HELLO-ACK is accepted for any earlier nonce of the side
     OneKeyForBoth,       // the directions' keys are the same
     ResetIsNotAuthentic, // an RST from anyone ends a session
-    HelloEndsTheSession, // at once, before its sender has proved its presence
-    HelloMakesASession,  // without a CONFIRM
+    HelloEndsTheSession, // HELLO ends the session before the sender has proved its presence
+    HelloMakesASession,  // HELLO begins a session without a CONFIRM
     ConfirmIsNotAuthentic,
-    OwnNonceIsTaken,  // reflected
-    NonceServesTwice, // is not drawn again when a session begins
+    OwnNonceIsTaken,  // a reflected nonce of this side is accepted
+    NonceServesTwice, // no new nonce is drawn when a session begins
     UnconfirmedCalls, // a side calls while up, though its peer may not be in the session yet
-    OldDataIsTaken,   // a number is accepted again
-    OldPingIsLife,    // heard again, it proves that the peer is present
+    OldDataIsTaken,   // a number of a data frame is accepted again
+    OldPingIsLife,    // a repeated PING proves that the peer is present
     OldDataIsLife
 };
 
 class HandshakeModel {
 public:
     struct Limits {
-        unsigned nonces, data, pings; // nonces of a side; data and pings it sends in a session
+        // Limits for each side: nonces in all, data frames and PINGs in a session.
+        unsigned nonces, data, pings;
     };
     struct Result {
         std::string fault;            // the first broken rule; "" if none
@@ -78,18 +79,20 @@ public:
     }
 
 private:
-    static constexpr unsigned mostNonces = 3, mostNumbers = 2; // per side; per kind of frame
-    static constexpr uint8_t none = 2 * mostNonces;            // a nonce that no side has
+    // Most nonces per side, most numbers per kind of frame, and a nonce that no side has.
+    static constexpr unsigned mostNonces = 3, mostNumbers = 2;
+    static constexpr uint8_t none = 2 * mostNonces;
     enum Kind { Hello, HelloAck, Confirm, Data, Ping, Answer, Bye, kinds };
 
     struct Frame {
         Kind kind;
-        uint8_t from, to, number; // nonces of its sender and of its receiver
+        uint8_t from, to, number; // from, to: nonces of the sender and of the receiver
     };
     struct Side {
-        uint8_t nonce, drawn, begun; // nonce of the next session; nonces drawn; bit mask of the
-                                     // nonces that began a session
-        uint8_t mine, peer;          // nonces of the present session
+        // Nonce of the next session, number of nonces drawn, and a bit mask of the nonces that
+        // began a session.
+        uint8_t nonce, drawn, begun;
+        uint8_t mine, peer; // nonces of the present session
         uint8_t dataSent, dataTaken, pingsSent, pingsSeen, pingsAnswered, lives;
         bool isUp, isAnswered, isUnconfirmed, unused[2];
     };
@@ -330,11 +333,10 @@ private:
     const Bug bug_;
     const Limits limits_;
     Result result_;
-    // The states seen, in their order, each with its predecessor; the one that is looked at.
-    std::unordered_map<State, uint32_t, Hash> seen_;
-    std::vector<const State*> order_;
-    std::vector<std::pair<uint32_t, std::string>> from_;
-    uint32_t at_ = 0;
+    std::unordered_map<State, uint32_t, Hash> seen_;     // states found so far, by index in order_
+    std::vector<const State*> order_;                    // states in the order of discovery
+    std::vector<std::pair<uint32_t, std::string>> from_; // their predecessors, and the steps
+    uint32_t at_ = 0;                                    // index of the state being examined
 };
 
 // ---- the tests ----

@@ -12,7 +12,7 @@
 #endif
 
 typedef struct Layer {
-    U32 size;       /* size of a Link with its buffers, which it begins; bytes */
+    U32 size;       /* bytes of a Link and its buffers; the Link comes first */
     U32 maxMessage; /* largest message that can arrive, bytes */
     void (*init)(Link* link, const Link_Port* port, void* context, U32 byteTimeUs16);
     void (*setKey)(Link* link, int slot, const U8* key, U32 side);

@@ -42,7 +42,7 @@ extern OS_EVENT* osCase_sem;
 void OsCase_waitsForSem(void);
 void OsCase_created(void);
 
-/* Prepare a case, or are its interrupt routine. */
+/* Functions that prepare a case, or serve as its interrupt routine. */
 /* clang-format off */
 #define OS_CASES(X) \
     X(choosing) X(computing) X(counting) X(creating) X(delaying) X(handingOver) X(inheriting) \

@@ -229,13 +229,14 @@ TEST(Update, WithoutAKeyNothingIsTaken) {
     EXPECT_EQ(vehicle.begin(makeImage(2, 1)), RECEIVER_UNSIGNED);
 }
 
-// The first key is lost: the second one signs an image, and the list that names its successor.
+// The first key is lost. The second one signs an image, and a list that replaces the lost key by a
+// third.
 TEST(Update, TheSecondKeySignsImagesAndTheNextList) {
     Vehicle vehicle;
     vehicle.updateTo(2, second);
     EXPECT_EQ(vehicle.take(second.list(2, third, second)), RECEIVER_OK);
     EXPECT_EQ(vehicle.boot(), 2u);
-    EXPECT_EQ(vehicle.begin(makeImage(3, 0)), RECEIVER_UNSIGNED); // its key was withdrawn
+    EXPECT_EQ(vehicle.begin(makeImage(3, 0)), RECEIVER_UNSIGNED); // the first key was withdrawn
     vehicle.updateTo(3, third);
     EXPECT_EQ(vehicle.take(third.list(3, others, third)), RECEIVER_OK);
     EXPECT_EQ(vehicle.boot(), 3u);
@@ -400,7 +401,9 @@ TEST(Update, WhereverThePowerIsCutThereIsAnImageThatBoots) {
     ASSERT_GT(all, imageBytes / 4);
     cutAtEach(
         2, all, all, [](uint64_t seed) { return Vehicle(1, seed); },
-        [](Vehicle& vehicle) { return vehicle.receiver.running == 1; }); // some are in the trial
+        [](Vehicle& vehicle) {
+            return vehicle.receiver.running == 1;
+        }); // some cuts are in the trial
 }
 
 } // namespace

@@ -59,14 +59,15 @@ TEST_F(Buffers, CTSGoesOffWith17BytesLeftAndComesBackWith34Free) {
     power({{"BD", 7}});
     air.weather.delayNs = 100 * ms;
     send(std::string(100, 'x')); // in flight; the buffer is empty
-    send(std::string(184, 'y')); // 18 are left
+    send(std::string(184, 'y')); // 18 bytes are free
     EXPECT_TRUE(lineA.cts());
     send("y");
     EXPECT_FALSE(lineA.cts());
-    run(110 * ms); // the first has arrived, a hundred more leave: 85 are held
+    // The first packet has arrived, the next 100 bytes leave the buffer, 85 bytes remain.
+    run(110 * ms);
     EXPECT_TRUE(lineA.cts());
 
-    // The other edge: 169 held are 33 free, 168 are 34.
+    // The other edge: with 169 bytes in the buffer 33 are free, with 168 bytes 34.
     power({{"BD", 7}, {"EE", 1}});
     air.weather.delayNs = 100 * ms;
     send(std::string(95, 'x'));
@@ -109,7 +110,7 @@ TEST_F(Buffers, TheOutputBufferHolds202BytesAndWhatComesThenIsAcknowledgedAndLos
     EXPECT_EQ(heardB(), std::string(100, 'x') + std::string(100, 'y'));
 }
 
-// A host with a separate UART, bit by bit, `error` off the modem's rate.
+// A host whose UART is simulated bit by bit, so that its rate may differ from the modem's.
 class Wire : public ::testing::Test {
 protected:
     void connect(std::map<std::string, uint32_t> settings) {

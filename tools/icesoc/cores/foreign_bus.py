@@ -19,12 +19,12 @@ ADDRESSES = ("adr", "words", "bytes", "awaddr", "araddr")
 
 
 class Core:
-    """A third-party core: its ports by their roles; `latency`: the clocks after which it answers,
-    if it has no ack;
-    `address`: "words", "bytes" or None; `macros`: of macros_of."""
+    """A third-party core. `roles`: role of each port. `latency`: clocks after which a core without
+    ack answers. `address`: "words", "bytes" or None. `macros`: result of macros_of."""
 
     def __init__(self, name, top, bus, ports, roles, latency, params, clock, address, macros):
-        acks = [n for n in ports if roles[n] == "ack"]  # one of reads and one of writes, or both
+        # One ack for reads and one for writes, or one for both.
+        acks = [n for n in ports if roles[n] == "ack"]
         self.acks = {n: f"ack_{i}" for i, n in enumerate(acks)} if len(acks) > 1 else {}
         self.name, self.top, self.bus, self.ports = name, top, bus, ports
         self.roles = {**roles, **self.acks}
@@ -71,7 +71,7 @@ class Core:
             reason = f"it has {width} bits"
         unit, other = ("words", "bytes") if step == 1 else ("bytes", "words")
         if step == 1 and self.bus == "apb" and not address and role not in ("words", "bytes"):
-            unit, other = "bytes, each a register", "bytes"  # of words of four bytes
+            unit, other = "bytes, each a register", "bytes"  # byte addresses of words of four bytes
         self.unit = f"counts {unit}: {reason}" + (
             "" if reason == "as you say" else f"; if not, ADDRESS={other}")
         lsb = lsb if step > 1 else 0
@@ -113,8 +113,8 @@ def connection(core, role, port, interrupts):
 
 
 def answers(core):
-    """Returns declarations and lines that a core's missing answers need, and how ack and err are
-    made."""
+    """Returns the declarations, the lines, and the expressions of ack and err. For a core without
+    answers, they generate these."""
     if core.acks:
         acks = list(core.acks.values())
         return [f"    wire {', '.join(acks)};"], [], {"ack": " || ".join(acks)}
@@ -200,7 +200,7 @@ def description(core, words):
 
 
 def texts(core, words):
-    """Returns the files by name; `words` as returned by names_of, or empty."""
+    """Returns the files by name. `words`: names of words by address, or empty."""
     words = words or {a: f"REG{a}" for a in range(min(32, 1 << core.word_bits))}
     first = next(iter(words.values()))
     suite = "".join(w.capitalize() for w in core.name.split("_"))

@@ -13,7 +13,7 @@ from icesoc.util import templates
 
 KINDS = {".vhd": "vhdl", ".vhdl": "vhdl", ".v": "verilog", ".sv": "verilog",
          ".vh": "header", ".svh": "header", ".h": "header", ".inc": "header"}
-# Verilator's, for a core in anybody's style.
+# Verilator's options for a core, whatever the style of its source.
 FLAGS = ["-Wno-fatal", "-Wno-lint", "-Wno-style",
          *("-Wno-" + w for w in "TIMESCALEMOD SELRANGE COMBDLY INITIALDLY".split()),
          "-Werror-MODDUP", "--no-timing"]
@@ -95,12 +95,12 @@ def only_once(modules, what_to_do):
 
 
 def check_names(slot, top, files):
-    """Each module is in one file, and none has the name of the slot or of one of this project's: in
-    the chip there is one of each. Returns TOP as it is declared."""
+    """Checks that each module is in one file, and that none has the name of the slot or of a module
+    of this project, because names are unique in a chip. Returns TOP as it is declared."""
     kind = "entity" if is_vhdl(files[0]) else "module"
     there = declared(files, kind)
     names = [n for n, *_ in there]
-    if kind == "entity":  # its names have no case; GHDL writes them as declared
+    if kind == "entity":  # names in VHDL have no case; GHDL writes them as declared
         top = next((n for n in names if n.lower() == top.lower()), top)
     if top not in names:
         fail(f"no {kind} '{top}' in FILES; found {', '.join(names) or 'none'}")
@@ -140,8 +140,8 @@ def packages_first(files):
 
 
 def filled(file, defines):
-    """Returns the file's text with macros and absolute paths for $readmemh, since a simulation runs
-    in any folder."""
+    """Returns the file's text after definitions of the macros `defines`, and with absolute paths in
+    $readmemh, because a simulation may run in any folder."""
     def path(m):
         there = os.path.join(os.path.dirname(file), m.group(1))
         return f'"{there}"' if os.path.isfile(there) else m.group()
@@ -153,8 +153,8 @@ def filled(file, defines):
 
 
 def macros_of(files):
-    """Macros that are byte addresses of registers, by their values: those with a size in
-    hexadecimal, if all have the same and are different multiples of 4; else none."""
+    """Returns the macros that are byte addresses of registers: {name: value}. These are hexadecimal
+    numbers with a size, if all have the same size and are different multiples of 4; else none."""
     found = re.findall(r"^\s*`define\s+(\w+)\s+(\d+)'h([0-9a-fA-F_]+)\s*(?://.*)?$",
                        "\n".join(map(text_of, files)), re.M)
     values = {n: int(digits, 16) for n, _, digits in found}

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""ctest: CTest with these arguments.
+"""ctest: runs CTest with the given arguments.
 
-With `--output-junit FILE` the results stay there, for CI systems. At the end it prints the notes of
-tests that passed (lines that begin with `note: `), and names skipped tests, each with its reason.
+`--output-junit FILE` leaves the results in FILE, for CI systems. At the end, ctest.py prints the
+notes of tests that passed (lines that begin with `note: `), and each skipped test with the reason.
 """
 
 import pathlib
@@ -22,7 +22,7 @@ def reason(text):
 
 
 def main():
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # CTest ends on it, and reports it
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # CTest ends on SIGINT, and reports it
     with tempfile.TemporaryDirectory() as folder:
         words = sys.argv[1:]
         if "--output-junit" not in words:

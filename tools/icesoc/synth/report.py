@@ -20,7 +20,7 @@ class Row:
     design: Design
     main: Run  # Spartan-6
     others: list = dataclasses.field(default_factory=list)
-    sources: str = ""  # their hash
+    sources: str = ""  # hash of the sources
     state: str = MEASURED
     failures: list = dataclasses.field(default_factory=list)
     notes: list = dataclasses.field(default_factory=list)
@@ -99,7 +99,7 @@ def paper_table(plan, row):
 
 
 def ranged(value, values, text=str):
-    """A figure, and its range with the netlist in other orders: "863 (858-865)"."""
+    """Returns a figure and the range of it with the netlist in other orders: "863 (858-865)"."""
     return text(value) + (f" ({text(min(values))}-{text(max(values))})" if len(values) > 1 else "")
 
 
@@ -155,7 +155,7 @@ def cost_table(library, row, depth=2):
 
 
 def path_table(plan, row, count=5):
-    """The longest paths of the order of the netlist that sets the clock."""
+    """Returns the longest paths, with the netlist in the order whose clock is reported."""
     mhz = plan.chip["mhz"]
     return Table([f"longest paths, estimated, at {clock_text(row.figures['mhz'])} MHz", "to",
                   "levels", "ns (-3)", "ns (-2)", f"of {mhz:g} MHz"],
@@ -252,8 +252,9 @@ def entries(report):
 
 
 def differences(before, after):
-    """The differences between two files of entries as a table in Markdown. An entry of only
-    one of them is new or gone; one that is known but not measured has the word for that."""
+    """Returns the differences between two files of entries as a table in Markdown. A design in only
+    one file is shown as new or gone. If a design was not measured, its state is shown instead, such
+    as `changed since`."""
     designs = {}  # name: {kind of figure: [then, now]}
     for number, report in enumerate((before, after)):
         for entry in report["entries"]:
@@ -308,7 +309,7 @@ def page_design(report, row):
 
 
 def html(report, page, libraries):
-    """The page of the file `page`: "@STYLE@", "@SCRIPT@" and "@DATA@" in it are replaced.
+    """Returns the page: the file `page` with "@STYLE@", "@SCRIPT@" and "@DATA@" replaced.
     `libraries`: the folder of the pages' libraries from npm."""
     data = {"yosys": short_version(report.yosys), "commit": report.commit,
             "paper": report.plan.paper, "chip": report.plan.chip, "slowGrade": timing.SLOW_GRADE,

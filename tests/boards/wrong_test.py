@@ -120,7 +120,8 @@ WRONG = {
         "mcu.hse_hz: expected whole MHz, 4 to 26, got 12.288 MHz: the PLL divides to 1 MHz and "
         "makes 120 MHz of it"]),
     "an FPGA clock that makes no 100 MHz": (put("fpga", "clock_hz", 66_000_000), [
-        "fpga.clock_hz: MIG's PLL cannot make 100 MHz of 66 MHz (600 MHz is no multiple of it)"]),
+        "fpga.clock_hz: MIG's PLL cannot make 100 MHz of 66 MHz (600 MHz is not a multiple of "
+        "this)"]),
     "a strobe later than its data": (net("NWE", delay_ns=8.0), [
         "net D0: NWE arrives 8 ns after it; at most 5 ns, or the FPGA takes the next word's "
         "value"]),

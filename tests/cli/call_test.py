@@ -111,7 +111,7 @@ REFUSED = {
     "nothing --page --gateway x": "--page: expected --gateway HOST:PORT, got 'x'",
     "nothing --encoding 2.0": "--encoding: expected 1.0 or 1.1, got '2.0'",
     "nothing --gateway x": "--gateway: expected HOST:PORT",
-    "nothing --device /dev/null --flight x": "give one of --flight, --device",
+    "nothing --device /dev/null --flight x": "--flight, --device exclude each other: give only one",
     "echo " + "\udcff": "text: expected text in UTF-8",
 }
 # Failures: exit status and message
@@ -142,7 +142,7 @@ class Call(unittest.TestCase):
         cls.work.cleanup()
 
     def ask(self, words, *more, operation=True):
-        """(exit status, output, messages) of a call of `try` in this process."""
+        """Returns exit status, output and messages of a call of `try` in this process."""
         words = words.split(" ") if isinstance(words, str) else list(words)
         if operation:
             at = 1 if words[0] == "--json" else 0
@@ -159,7 +159,7 @@ class Call(unittest.TestCase):
         return status, out.getvalue(), err.getvalue()
 
     def test_values(self):
-        """Every type of Slice goes there and back."""
+        """Values of every Slice type reach the server and return unchanged."""
         for words, answer in CALLS:
             status, out, err = self.ask(words, "--json")
             self.assertEqual((status, json.loads(out or "0")), (0, answer), f"{words}: {err}")
@@ -210,7 +210,7 @@ class Call(unittest.TestCase):
         self.assertEqual((status, out), (3, "calls 0, failures 3\n"))
 
     def test_events(self):
-        """A listener is made, and called by the connection of the call."""
+        """`call` creates a listener, and the server calls it over the connection of the call."""
         status, out, err = self.ask("watch events=2 --watch --events 3", "--json")
         self.assertEqual(status, 0, err)
         self.assertEqual([json.loads(line) for line in out.splitlines()], [
@@ -322,7 +322,7 @@ with Ice.initialize() as communicator:
                   f"127.0.0.1:{self.port}", "--slice", HERE / "call.ice", "--build", BUILD]
 
         times = {"own": [], "ours": []}
-        for _ in range(5):  # by turns: the machine's load is the same for both
+        for _ in range(5):  # alternating: the load of the machine is the same for both
             for name, words in ("own", program), ("ours", called):
                 begin = time.perf_counter()
                 said = subprocess.run(words, capture_output=True, text=True)

@@ -386,7 +386,7 @@ class Cores(unittest.TestCase):
 
     def test_only_those_asked_for_are_told(self):
         self.assertEqual(len(self.rows("plain")), 2)
-        with self.assertRaisesRegex(cores.NotInChip, "gone is not in the chip of here: a line in"):
+        with self.assertRaisesRegex(cores.NotInChip, "gone is not in the chip of here: add the"):
             self.rows("plain", "gone")
 
     def test_logic_that_reads_one_slot_is_its_blocks(self):

@@ -118,7 +118,7 @@ class Cases(Script):
         # Nor has its generated Verilog, which identifies the sources of the accepted figures.
         for file in (PROGRAM.parents[1] / "gen").glob("*.v"):
             self.lacks(re.escape(f"{TREE}/"), file=file)
-        # The clock, and its range in other orders; and the LUTs.
+        # The clock and the LUTs, each with the range in other orders.
         self.has(r"^wide .* [0-9.]+ \([0-9.]*-[0-9.]*\) +[0-9]+-[0-9]+$",
                  r"nine of ten of [0-9]+ published reports of map, of [0-9]+ of TRCE",
                  r"^wide +[0-9]+ \([0-9]*-[0-9]*\) ")
@@ -142,7 +142,8 @@ class Cases(Script):
                            Path("stat").read_text(), re.M)
         sites = 4  # of LUT RAM
         self.assertEqual(whole["lut"], sites + sum(int(row[1] or row[2]) for row in cells))
-        # A core's cost in the accepted chip: the decoder for three slots minus that for two.
+        # In the baseline chip a core also costs its slot of the decoder: a decoder for three slots
+        # minus a decoder for two.
         shutil.copy(TREE / "bus/bus_decoder.v", "project/bus")
         write("gen/map.regs.json", json.dumps({
             "block": "map", "doc": "", "registers": [], "constants": [
@@ -152,17 +153,17 @@ class Cases(Script):
             "lut": 9, "ff": 9, "slices": 9, "carry": 0, "dsp": 2, "ram": 1.5, "mhz": 99,
             "signals": {"u_low": {"sum": [7, 8, 1.5, 2]}}}}}))
         self.run_program("--core", "low")
-        # A bit each of 32, a select, four of address.
+        # A slot: LUTs for 32 bits of read data, flip-flops for a select and four address bits.
         self.has(r"^low +[1-9]\d +13 +1.5 +2 +7 / 8 +[1-9]\d* / 5$",
                  "^The chip: 9 LUT, 9 FF, 1.5 block RAMs, 2 DSP")
         self.run_program("--core", "high")
-        self.has("high is not in the chip of synth/baseline.json: a line in ip/cores.list, then "
-                 "make ip-synth IP=high CHIP=1")
+        self.has("high is not in the chip of synth/baseline.json: add the line 'high' to "
+                 "ip/cores.list, then run make ip-synth IP=high CHIP=1")
         shutil.rmtree(KEPT, ignore_errors=True)
         shutil.copytree("out/cache", KEPT)
 
     def test_growth(self):
-        """A register more fails with its name; accepted it passes, and comes from the cache."""
+        """An additional register fails with its name. After --accept it passes, from the cache."""
         self.run_program("--accept")
         self.run_program()
         self.lacks(r"^\[")
@@ -210,7 +211,7 @@ class Cases(Script):
             self.has(f"^utilisation: project/synth/{name}.json: .*line 2")
 
     def test_twice(self):
-        """The first one's Yosys begins when the second waits, or after 20 s."""
+        """The first run starts Yosys when the second run waits, or after 20 s."""
         write("slow", SLOW)
         shutil.rmtree("out")
         words = (PROGRAM, "--source", "project", "--generated", "gen", "--output", "out",
@@ -274,7 +275,7 @@ class Cases(Script):
         self.has('"peer": 100', file="out/report.json")
 
     def test_compare(self):
-        """What has changed since another commit, or between two, as Markdown."""
+        """Differences from another commit, or between two commits, as Markdown."""
         self.users_tree()
         here = Path("project").resolve()
         write(here / "CMakeLists.txt", MADE)
@@ -339,7 +340,7 @@ class Cases(Script):
         self.has("expected the name of a core, got 'missing'; known: store")
 
     def test_equivalent(self):
-        """A netlist is proven equivalent to its RTL, once; one with a fault is not."""
+        """A netlist is proven equivalent to its RTL, once. A netlist with a fault is not."""
         for name, text in ("scaled", SCALED), ("deep", DEEP):
             write(BLOCKS / f"{name}.v", text)
         self.run_program("--equivalent")

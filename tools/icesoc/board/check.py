@@ -9,10 +9,10 @@ from icesoc.board.model import Board, Net
 from icesoc.board.signals import BOTH, FPGA, MCU, MODEM, OTHER, SIGNALS, needed
 
 IO_VOLTS = 3.3  # LVCMOS33 of synth/ise/chip.ucf
-MOST_VOLTS = 3.6  # most at an input of the FPGA, of the modem and at VDD of the microcontroller
+MOST_VOLTS = 3.6  # highest voltage at inputs of FPGA and modem, and at the MCU's VDD
 MCU_HZ = 120_000_000  # CPU clock, sw/board/clock.h
 SOC_HZ = 100_000_000  # clock of the chip, by MIG's PLL
-# Balls that configure the FPGA at start: another level on them, and it does not load (UG380).
+# Balls that configure the FPGA at start: with another level on one, the FPGA does not load (UG380).
 CONFIGURES = re.compile(r"HSWAPEN|_M0_|_M1_|CCLK|INIT_B|CSO_B|MOSI_CSI_B|DIN_MISO|PROGRAM|DONE")
 
 
@@ -87,7 +87,7 @@ def functions(board: Board):
 
 
 def where(pins, function):
-    """Returns the end of a message: pins with a function."""
+    """Returns text to append to an error message: the pins that have this function."""
     found = [name for name, pin in pins.items() if function in pin.functions]
     return f"; {function} is on {' or '.join(found)}" if found else ""
 
@@ -128,8 +128,8 @@ def twice(board: Board):
 
 
 def occupied(board: Board):
-    """Finds pins that a module uses itself, or that it does not bring to a connector. Leaves out
-    nets with another problem of the same pin."""
+    """Finds pins that the module uses itself, or does not lead to a connector. Leaves out nets with
+    another problem of the same pin."""
     judged = {text.split(":")[0].removeprefix("net ")
               for check in (functions, balls, memory) for text in check(board)}
     opened = set(board.facts.get("open", []))
@@ -156,7 +156,7 @@ def occupied(board: Board):
 
 
 def loads(use, net: Net, end):
-    """Returns whether what a module has on a pin only loads the net's output."""
+    """Returns whether the module's own part on a pin only loads the output that drives the net."""
     return use.get("load") and (net.signal.driver in (BOTH, MCU) if end == "mcu"
                                 else net.signal.driver in (BOTH, FPGA))
 
@@ -173,7 +173,7 @@ def memory(board: Board):
 
 
 def levels(board: Board):
-    """Finds voltages that do not fit: of nets, of banks, of supplies."""
+    """Finds nets, banks and supplies with an unsuitable voltage."""
     for net in board.nets:
         if net.level > MOST_VOLTS:
             ends_of = " and ".join(str(net.get(end)) for end in ("mcu", "fpga", "modem")
@@ -212,7 +212,7 @@ def clocks(board: Board):
         yield "fpga.clock_hz: missing; the frequency of the FPGA's oscillator in Hz"
     elif multiplier(clock) is None:
         yield (f"fpga.clock_hz: MIG's PLL cannot make {SOC_HZ // 1_000_000} MHz of "
-               f"{clock / 1e6:g} MHz (600 MHz is no multiple of it)")
+               f"{clock / 1e6:g} MHz (600 MHz is not a multiple of this)")
 
 
 def multiplier(clock):

@@ -20,7 +20,7 @@ class Target:
     plugin: str = ""  # folder of the radio plugin
     key: str = ""
     guard: int = 1000
-    callbacks: str = ""  # endpoints for calls of the vehicle; empty: its own connection
+    callbacks: str = ""  # endpoints for calls of the vehicle; empty: over the call's connection
 
     def proxy(self, identity, mode="", facet=""):
         quoted = identity.replace("\\", "\\\\").replace('"', '\\"')
@@ -85,7 +85,8 @@ def of(values):
     installed settings."""
     given = [name for name in ("flight", "device", "gateway", "locator") if getattr(values, name)]
     if len(given) > 1:
-        raise Stop(f"give one of {', '.join('--' + name for name in given)}", 2)
+        raise Stop(f"{', '.join('--' + name for name in given)} exclude each other: give only one",
+                   2)
     if values.locator:
         name = values.vehicle or "uav1"
         return Target(f"'{name}' in IceGrid", f"@{name}",

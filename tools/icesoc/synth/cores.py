@@ -25,8 +25,8 @@ def read_map(file):
 
 
 def slot_cost(library, options, map, wanted):
-    """The cost of a slot in the decoder: with the chip's number of slots, minus with one slot
-    fewer. `wanted` False: only from the cache, nothing if it lacks it."""
+    """Returns the cost of a slot in the decoder: the cost with the chip's number of slots, minus
+    the cost with one slot fewer. `wanted` False: only from the cache, zero if a cost is missing."""
     runs = [Run(Design(f"bus_decoder{slots}", "bus_decoder", parameters={"SLOTS": slots}), "xc6s",
                 wanted) for slots in (map["SLOT_COUNT"], map["SLOT_COUNT"] - 1)]
     carry_out(runs, library, options)
@@ -40,10 +40,10 @@ def slot_cost(library, options, map, wanted):
 
 
 def core_table(costs, map, slot, names, where):
-    """A row for each core of the map that the chip has, or only for `names`, the most LUTs first:
-    LUT, flip-flops, block RAM and DSP together, then LUT / flip-flops of its parts. A port's share
-    of the arbiter is the arbiter's by the number of ports. Raises NotInChip on a name that is not
-    there, `where` the chip is from."""
+    """Returns a row for each core of the map that the chip has, or only for `names`, the most LUTs
+    first: sums of LUT, flip-flops, block RAM and DSP, then LUT / flip-flops of each part of the
+    core. The cost of the arbiter is divided by the number of ports. Raises NotInChip if the chip
+    lacks a name; `where`: source of the chip's figures."""
     def cost_of(pattern):
         return sum((cost for path, signals in costs.items() if re.fullmatch(pattern, path)
                     for cost in signals.values()), Cost())
@@ -70,8 +70,8 @@ def core_table(costs, map, slot, names, where):
     cores = [name for _, name in slots if any(cost_of(rf"u_{name}(\..*)?"))]
     for name in names:
         if name not in cores:
-            raise NotInChip(f"{name} is not in the chip of {where}: a line in ip/cores.list, then "
-                            f"make ip-synth IP={name} CHIP=1")
+            raise NotInChip(f"{name} is not in the chip of {where}: add the line '{name}' to "
+                            f"ip/cores.list, then run make ip-synth IP={name} CHIP=1")
     return report.Table(["core in the chip", "LUT", "FF", "RAM16", "DSP", "itself", "registers",
                          f"slot {map['SLOT_COUNT']}", "memory port", "arbiter"],
                         sorted((row(name) for name in cores if not names or name in names),

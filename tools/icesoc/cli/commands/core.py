@@ -39,7 +39,7 @@ def check_name(name, room="ip"):
                    "(make new-ip NAME=low_pass LANG=verilog)", 2)
     if not re.fullmatch(r"[a-z][a-z0-9]*|[a-z][a-z0-9]+(_[a-z][a-z0-9]+)+", name):
         raise Stop(
-            f"'{name}': words of small letters and digits, joined by _, such as mixer or low_pass",
+            f"'{name}': expected words of small letters and digits, joined by _, such as low_pass",
             2)
     if name in RESERVED:
         raise Stop(f"'{name}' {REFUSAL}", 2)
@@ -165,7 +165,7 @@ def new(values):
     if values.repository:
         say(written)
         return put_into_repository(room, name)
-    # A build folder would notice the new one by itself; it must now, while the folder can still be
+    # A build would detect the new folder by itself. CMake runs now, while the folder can still be
     # removed.
     if (build / "build.ninja").exists():
         try:
@@ -245,7 +245,7 @@ def one_test(program, text):
     found = [name for name in names if text in (name, name.partition(".")[2])] or [
         name for name in names if re.search(text, name)]
     if len(found) != 1:
-        raise Stop(f"TEST={text} is {len(found)} tests, not one of:\n{listed}"
+        raise Stop(f"TEST={text} matches {len(found)} tests, not one of:\n{listed}"
                    + nearest(text, names), 2)
     return found[0]
 
@@ -314,8 +314,9 @@ def wave(values):
     GHDL's waveform, which has the names and types of the source."""
     what = values.ip
     if not what or not (values.test or what.startswith("vhdl.")):
-        raise Stop("wave needs a core, or a test program, and a test: ./icesoc core wave fir "
-                   "Impulse (make wave IP=fir TEST=Impulse), ./icesoc core wave vhdl.fir", 2)
+        raise Stop("wave needs the name of a core or test program, and of a test: ./icesoc core "
+                   "wave fir Impulse (make wave IP=fir TEST=Impulse); or only vhdl.CORE: ./icesoc "
+                   "core wave vhdl.fir", 2)
     build, words = traced(values)
     folder = Path("build/wave").absolute()
     folder.mkdir(parents=True, exist_ok=True)
@@ -337,8 +338,8 @@ def wave(values):
 
 
 def users_of(name):
-    """Cores with an input that this one drives. An input for other cores only ("internal") becomes
-    0; any other would become a pin of the chip."""
+    """Yields the cores with an input that core `name` drives. Without the core, an input for other
+    cores only ("internal") becomes 0; any other input would become a pin of the chip."""
     for line in Path("ip/cores.list").read_text().splitlines():
         user, *words = line.partition("#")[0].split() or [""]
         path = Path("ip", user, "core.toml")
@@ -373,8 +374,8 @@ def remove(values):
     changed = core not in others and output(
         ["git", "status", "--porcelain", "--ignored", "--", core], check=False, stderr=-3)
     if changed and not values.force:
-        raise Stop(f"ip/{name} has changes that are not committed (FORCE=1, --force, takes it away "
-                   f"all the same):\n{changed}")
+        raise Stop(f"ip/{name} has changes that are not committed (FORCE=1, --force, removes "
+                   f"it anyway):\n{changed}")
     users = sorted(set(users_of(name)))
     if users:
         raise Stop(f"ip/cores.list connects inputs of {' '.join(users)} to outputs of '{name}'; "

@@ -48,8 +48,8 @@ MADE = ["LowPass.ice", "ip/low_pass"]
 
 
 @command("check tutorial", [
-    Option("clone", SWITCH, "follow it in a new clone of HEAD, build/tutorial/icesoc, with nothing"
-                            " built"),
+    Option("clone", SWITCH, "follow the tutorial in a new clone of HEAD (build/tutorial/icesoc), "
+                            "without earlier builds"),
     Option("brief", SWITCH, "leave out flights and the waveform, which take minutes"),
     Option("list", SWITCH, "only list the commands of the page")],
          brief="check tutorial --brief", long="check tutorial --clone", examples=[

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""flights: fly the mission, fly it again, look at it in a debugger; send new firmware; make a key;
-fly for hours."""
+"""flights: commands that fly the mission, repeat and debug a flight, send new firmware, make keys,
+and fly for hours."""
 import os
 import re
 import resource
@@ -92,8 +92,8 @@ def minimal(values, build, held):
 
 
 def update(values, build, held):
-    """Sends firmware or a bitstream to a vehicle with the flash OUT/flash.bin, and its FPGA's
-    OUT/fpga.bin; makes both if missing."""
+    """Sends firmware or a bitstream to a vehicle. OUT/flash.bin is the flash of the vehicle, and
+    OUT/fpga.bin the flash of the FPGA; a missing file is created."""
     out, pack = Path(values.out), build / "sw/update/pack_update"
     keys.rescue(build.folder)
     signing = keys.folder() / "update.key"  # private, made at first use
@@ -151,8 +151,8 @@ def mission(values, build, held):
         return (out / LIVE).exists()
 
     try:
-        # The page starts after the simulator has accepted its options: its address would hide a
-        # refusal.
+        # The page starts after the simulator has accepted the options: the page's address would
+        # hide a refusal.
         if until(lambda: flown() != before, sim):
             shown = start([*page, *(["--open"] if opens(values) else [])], pass_fds=[held])
             if not until(lambda: sim.poll() is not None or flies_on(), shown):
@@ -314,8 +314,7 @@ def key(values):
         raise Stop("key needs the name of a file: ./icesoc key my.key", 2)
     parts = values.list, values.by, values.first
     if any((*parts, values.second)) and not all(parts):
-        raise Stop("a list of keys needs --list, its number, --by, a private key, and --first, a "
-                   "public one", 2)
+        raise Stop("a list of keys needs --list NUMBER, --by PRIVATE_KEY and --first PUBLIC_KEY", 2)
     if sum(map(bool, (values.certificate, values.signing, values.list))) > 1:
         raise Stop("give one of --certificate, --signing and --list", 2)
     if values.signing or values.list:

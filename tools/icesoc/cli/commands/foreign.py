@@ -61,8 +61,8 @@ def foreign_core(values):
 
 
 def into_slot(source, slot, words, folder, ghdl):
-    """Lets new_foreign.py write a slot's folder. `words`: module, bus, more; patterns of its files
-    in the source's folder."""
+    """Lets new_foreign.py write a slot's folder. `words`: module, bus, further arguments, and
+    patterns of the core's files in the source's folder."""
     top, bus, *more = words.split()
     rest = [part for word in more for part in (
         [word] if "=" in word or word.startswith("DEFINE:") else sorted(source.glob(word)))]
@@ -118,10 +118,11 @@ def examples(values):
     """download public cores, put them into slots and call them by radio
 
     The cores have Wishbone, Avalon-MM, AXI4-Lite, AXI-Stream and plain buses, and are written
-    in Verilog, SystemVerilog (in a chip without a netlist) and VHDL. They are downloaded from
-    Debian's mirror and GitHub; a core that cannot be downloaded is skipped. Together with two
-    cores of this tree they form a chip, built in three orders of the list. Exit status 77: no
-    core, or not every core of --cores, could be downloaded.
+    in Verilog, SystemVerilog and VHDL. They are downloaded from Debian's mirror and GitHub; a core
+    that cannot be downloaded is skipped. Together with two cores of this tree they form a chip,
+    built in three orders of the list. A core in SystemVerilog that Yosys cannot read flies in a
+    second chip, which is not synthesised. Exit status 77: no core, or not every core of --cores,
+    could be downloaded.
     """
     listed = json.loads(Path("examples/foreign/cores.json").read_text())
     known = {name for source in listed.values() for name in source["cores"]}

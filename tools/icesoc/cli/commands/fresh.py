@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""fresh: runs the README's commands, in order, on an empty Debian 12 and 13, and the packages that
-they build on another one.
+"""fresh: runs the README's commands, in order, on an empty Debian 12 and 13, and tests the packages
+that they build on another empty system.
 
 A machine is a folder that debootstrap fills, with a clone of this tree's HEAD and nothing else: no
 package, no cache. The machine for packages has no clone. Mounts and processes of a machine are
@@ -37,8 +37,8 @@ mount --rbind /sys "$1/sys" && exec chroot "$1" /bin/sh -c "cd $3 && $2"
     Option("again", SWITCH, "reuse the existing systems, with the current HEAD"),
     Option("steps", TEXT, "commands to run instead of the README's, separated by ;",
            "; ".join([*README, PACKAGES])),
-    Option("packages", FOLDER, "only install and use the Debian packages in this folder, on a "
-                               "machine of --release"),
+    Option("packages", FOLDER, "only test the Debian packages in this folder, in a new system of "
+                               "that --release"),
     Option("folder", FOLDER, "folder for the systems and logs, 8 GB each", "/var/tmp/icesoc-fresh"),
     Option("list", SWITCH, "only print earlier results, with status and minutes")],
          brief="check fresh --list", long="check fresh", examples=[
@@ -56,7 +56,7 @@ def fresh(values):
     if values.list:
         return say("\n".join(map(summary, rows)) or f"no machine was made in {top}")
     if os.geteuid():
-        raise Stop("check fresh needs root: mount and chroot are not for others", 2)
+        raise Stop("check fresh needs root, because it uses mount and chroot", 2)
     for release in [values.release] if values.release else RELEASES:
         root = top / release
         steps = [PACKAGES] if values.packages else [
@@ -115,7 +115,7 @@ def empty_machine(root, release):
         f"deb {MIRROR} {suite} main\n" for suite in (release, f"{release}-updates")))
     # The system is not kept: dpkg need not wait for the disk.
     (root / "etc/dpkg/dpkg.cfg.d/unsafe-io").write_text("force-unsafe-io\n")
-    # How this machine reaches its network: name servers, proxies, certificates.
+    # Network settings of this machine: name servers, proxies, certificates.
     shutil.copy("/etc/resolv.conf", root / "etc/resolv.conf")
     for file in Path("/etc/apt/apt.conf.d").iterdir():
         if any(word in file.read_text() for word in ("Proxy", "Check-Date")):
@@ -133,7 +133,8 @@ def put_tree(root):
 
 
 def do(root, release, step, folder="/root/icesoc", booted=False):
-    """Runs one step in a folder of the machine, and prints its last lines. booted: with systemd."""
+    """Runs one step in a folder of the machine, and prints the last lines of the output. `booted`:
+    with systemd."""
     words = re.findall(r"[\w.]+", step)
     log = Path("-".join([str(root), *words]) + ".log")
     place = {"HOME": "/root", "PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "TERM": "dumb"}

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""regression: the tests, with selection, history and a page; the commit since which one fails; what
-a timer runs."""
+"""regression: commands that run tests, with selection, history and a page; find the commit since
+which a test fails; and run the nightly suite."""
 import functools
 import json
 import re
@@ -29,7 +29,7 @@ def at_once(values):
 
 
 def selection(values, *more):
-    """Options of the regression tool that choose tests."""
+    """Returns options of the regression tool that choose tests."""
     return [word for name in ("name", "label", *more) if getattr(values, name)
             for word in (f"--{name}", getattr(values, name))]
 
@@ -127,14 +127,14 @@ def regress(values):
 
 
 def last_good(test):
-    """The last commit at which the test passed; a bisection cannot begin at a state that is not
-    committed."""
+    """Returns the last commit at which the test passed. Runs with uncommitted changes are ignored,
+    because a bisection cannot begin there."""
     history = Path("build/regress/history.jsonl")
     runs = map(json.loads, history.read_text().splitlines() if history.exists() else [])
     good = [each["commit"] for each in runs if "dirty" not in each["commit"]
             and {end[1] for end in each.get("ends", []) if end[0] == test} == {"p"}]
     if not good:
-        raise Stop(f"no run that is noted passed {test} at a commit: GOOD= names one (--good)", 2)
+        raise Stop(f"no recorded run passed {test} at a commit: name a commit by GOOD= (--good)", 2)
     return good[-1]
 
 
@@ -174,7 +174,7 @@ def bisect(values):
             run(["git", "worktree", "remove", "--force", tree], check=False)
 
 
-# Whether the present commit passes; 125: unknown. Its build stays for the next one.
+# Tests the present commit; exit status 125: no result. The build remains for the next commit.
 STEP = """mkdir -p build
 ([ -e build/main/build.ninja ] || cmake -S . -B build/main -G Ninja || exit 125
 exec setpriv --pdeathsig TERM "$0" "$@") >build/step.log 2>&1
@@ -202,7 +202,8 @@ def search(program, values, good, bad, tree):
     git("reset")
     first = re.search(r"^# first bad commit: \[(.*?)\]", log, re.M)
     if not first:
-        raise Stop("not found: the commits in between cannot be judged")
+        raise Stop("the first bad commit was not found: the test could not run at the commits in "
+                   "between")
     say("since " + output(["git", "log", "-1", "--format=%h %s (%an, %as)", first[1]]).strip())
     return 0
 
@@ -216,12 +217,12 @@ def search(program, values, good, bad, tree):
              "nightly --steps kept check-mutants",
              "nightly --nightly 5 --name fir"])
 def nightly(values):
-    """run the nightly suite: known failing seeds, new seeds, long forms
+    """run the nightly suite: known failing seeds, new seeds, slow commands
 
-    The last steps are ZeroC's test suites and the long form of every command. Writes a table of the
-    steps, build/nightly.md."""
+    Then runs ZeroC's test suites, the longest missions, and the slow variant of each command that
+    has one. Writes a table of the steps, build/nightly.md."""
     build, tests = BuildFolder(values.build, values), at_once(values)
-    # COMPARE_MS: test_sim_quiet compares a second; HOSTILE: packets of test_link.
+    # COMPARE_MS: simulated time that test_sim_quiet compares, ms. HOSTILE: packets in test_link.
     long = {"FRESH": "1", "COMPARE_MS": "1000", "HOSTILE": "10000000"}
     program = [build / "tests/regress/regress", "--build", build.folder, "--jobs", tests, "--waves",
                values.waves, *selection(values)]

@@ -115,8 +115,8 @@ void XBeeATEndpoint_onChannel(void* context, int channel, int isOpen) {
         report(self, EVENT(isOpen ? ICE_EVENT_OPENED : ICE_EVENT_CLOSED, channel));
 }
 
-/* Waits for one event. The link may write `buffer` only meanwhile; at other times the link keeps
- * messages. */
+/* Waits for one event. The link may write `buffer` only during this wait; at other times the link
+ * keeps messages. */
 static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ice_Event* event) {
     XBeeATEndpoint* self = context;
     U32 first = 0;
@@ -193,8 +193,7 @@ static int mostTries(int connection) {
 }
 
 /* Sends a message or, without one, opens this side's channel. Tries again while the link has no
- * room; after the last try it ends the connection, and the link informs the peer as soon as it can.
- */
+ * room. If the last try fails, the connection ends; the link then informs the peer. */
 static Ice_Status offer(XBeeATEndpoint* self, int connection, const Ice_Byte* message,
                         Ice_Int size) {
     Link_Status status;

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * fpga: the flash is on SPI 1 and on the FPGA's configuration pins. The FPGA leaves these pins
- * alone once it is configured, and while PROGRAM_B is low; the processor drives the bus during its
- * transactions only. While the FPGA loads its configuration, SPI 1 is a slave that receives the
- * addresses of its reads.
+ * alone after its configuration, and while PROGRAM_B is low. The processor drives the bus only
+ * during the processor's transactions. While the FPGA loads its configuration, SPI 1 is a slave
+ * that receives the addresses that the FPGA reads.
  */
 #include "fpga.h"
 #include "board.h"

@@ -2,10 +2,10 @@
 //
 // handshake_model: explores all states of the secure link's handshake (docs/link.md) under attack.
 //
-// Two sides. Each side calls, answers, ends, and restarts at any time (after a restart,
-// silence, or with an old nonce); and the attacker of Dolev and Yao, who controls the air: he may
-// deliver every frame that was ever sent, at any time, to either side, any number of times, or
-// never. He has no key: frames made by him have no valid tag, so that only a side with a bug
+// The model has two sides and an attacker. Each side calls, answers, ends, and restarts at any time
+// (after a restart, silence, or with an old nonce). The attacker of Dolev and Yao controls the air:
+// he may deliver every frame that was ever sent, at any time, to either side, any number of times,
+// or never. He has no key: frames made by him have no valid tag, so that only a side with a bug
 // accepts them. Keys follow from the two nonces of a session, one per direction, so the nonces
 // identify a frame.
 

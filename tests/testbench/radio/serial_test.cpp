@@ -58,7 +58,7 @@ TEST_F(Buffers, OnePacketIsInFlightAtATime) {
 TEST_F(Buffers, CTSGoesOffWith17BytesLeftAndComesBackWith34Free) {
     power({{"BD", 7}});
     air.weather.delayNs = 100 * ms;
-    send(std::string(100, 'x')); // in flight; the buffer is empty
+    send(std::string(100, 'x')); // in flight, so the buffer is empty
     send(std::string(184, 'y')); // 18 bytes are free
     EXPECT_TRUE(lineA.cts());
     send("y");
@@ -199,7 +199,7 @@ TEST_F(Wire, RepliesHaveTheModemsRateAndBDChangesAfterTheOK) {
 TEST_F(Wire, BDChangesAfterTheOKThoughMoreComesThanTheOldRateCarries) {
     connect({{"BD", 3}, {"GT", 2}});
     crowd_.header = true;
-    crowd_.bytes.assign(20, 'U'); // an edge a bit
+    crowd_.bytes.assign(20, 'U'); // one edge per bit
     step(now_ + 1'000'000);
     send("+++", 9600);
     step(now_ + 5'000'000);

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""report_test: the command `utilisation` on a separate small project, as a user runs it; its
-parts are tested by parts_test.py. What `counts` has synthesised is left in a folder where the other
-cases begin.
+"""report_test: runs the command `utilisation` on a separate small project, as a user does.
+parts_test.py tests the parts of the command. The case `counts` leaves its netlists in a folder,
+from which the other cases begin.
 
 Usage: report_test.py case utilisation-program work-folder kept-folder
 """
@@ -93,7 +93,7 @@ class Cases(Script):
         self.make(*words, tree="project", build="build/main", status=status)
 
     def test_counts(self):
-        """Figures are those that the blocks' sources promise, and Yosys' own `stat` counts them."""
+        """The figures agree with the sources of the blocks, and with Yosys' own `stat`."""
         # A package is read before the module that uses it, and is not a design.
         write("far/typed_sizes.sv", "package typed_sizes; typedef logic [2:0] t; endpackage\n")
         write("far/typed.sv", "module typed(input logic clk_i, input typed_sizes::t d_i, output "
@@ -115,7 +115,7 @@ class Cases(Script):
         self.run_program()
         # A checkout elsewhere, of the same sources, has the same netlists.
         self.lacks(str(Path.cwd()), file=next(Path("out/cache").glob("store.xc6s.*.ys")))
-        # Nor has its generated Verilog, which identifies the sources of the accepted figures.
+        # The generated Verilog, whose hash identifies the accepted figures, has no such path either.
         for file in (PROGRAM.parents[1] / "gen").glob("*.v"):
             self.lacks(re.escape(f"{TREE}/"), file=file)
         # The clock and the LUTs, each with the range in other orders.
@@ -140,7 +140,7 @@ class Cases(Script):
                  "-noiopad -noclkbuf -top pair; tee -q -o stat stat")
         cells = re.findall(r"^ +(?:(LUT\d|INV) +(\d+)|(\d+) +\S+ +(LUT\d|INV))$",
                            Path("stat").read_text(), re.M)
-        sites = 4  # of LUT RAM
+        sites = 4  # LUT sites used as RAM
         self.assertEqual(whole["lut"], sites + sum(int(row[1] or row[2]) for row in cells))
         # In the baseline chip a core also costs its slot of the decoder: a decoder for three slots
         # minus a decoder for two.
@@ -306,7 +306,7 @@ class Cases(Script):
         self.made("synth", "BASE=HEAD", status=None)
         self.has("^FAILED whole", grown)
         write(designs, kept)
-        # The same between two commits, whatever is checked out; each with its tests.
+        # The same comparison between two commits, whatever is checked out.
         write(here / "hdl/blocks/pair.regs.json", json.dumps({**registers, "registers": []}))
         with contextlib.chdir(here):
             commit("The second one")

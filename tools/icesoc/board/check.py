@@ -236,8 +236,8 @@ CHECKS = (complete, functions, balls, memory, twice, occupied, levels, clocks, s
 
 
 def problems(board: Board):
-    """Returns the problems of a board; an empty list if it can be built. What is missing is not
-    searched for on a board with unknown facts."""
+    """Returns the problems of a board; an empty list if the board can be built. If facts are
+    unknown, missing items are not reported."""
     unknown = [f"unknown: {text}" for text in board.facts.get("unknown", [])]
     found = list(unknown)
     for check in CHECKS:

@@ -47,7 +47,7 @@ class Report:
 
 
 class Table:
-    """Columns as wide as needed; the first is left-aligned."""
+    """A table with columns as wide as needed; the first column is left-aligned."""
 
     def __init__(self, head, rows=()):
         self.rows = [[str(cell) for cell in row] for row in [head, *rows]]
@@ -67,7 +67,7 @@ class Table:
 
 # Explains the ranges in the tables.
 ERRORS = (f"as mapped, routed: nine of ten of {slices.MAPPED.count} published reports of map, of "
-          f"{timing.ROUTED.count} of TRCE, are in this; their medians are "
+          f"{timing.ROUTED.count} of TRCE, are in this range; their medians are "
           f"{slices.MAPPED.median:.2f} and {timing.ROUTED.median:.2f} of the estimate")
 
 

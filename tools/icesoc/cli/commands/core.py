@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""core: begin a core, test it, look at it, take it away (docs/guides/core-new.md)."""
+"""core: commands that create, test, inspect and remove a core (docs/guides/core-new.md)."""
 import dataclasses
 import json
 import os

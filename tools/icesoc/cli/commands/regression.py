@@ -81,7 +81,7 @@ def every_test(build, values, tests, seed):
 
 def changed_tests(build, values, tests, seed, label=""):
     """Runs the tests of a build folder, or of a label, that have not passed with their present
-    inputs; with --all and --fresh all of them. Notes the passes."""
+    inputs; with --all or --fresh, all of them. Records which have passed."""
     passes = Passes(Path("."), build.folder, str(values.seed))
     some, others = passes.changed(label, values.all or values.fresh)
     if others:

@@ -115,7 +115,7 @@ class Cases(Script):
         self.run_program()
         # A checkout elsewhere, of the same sources, has the same netlists.
         self.lacks(str(Path.cwd()), file=next(Path("out/cache").glob("store.xc6s.*.ys")))
-        # The generated Verilog, whose hash identifies the accepted figures, has no such path either.
+        # The generated Verilog, whose hash identifies accepted figures, has no such path either.
         for file in (PROGRAM.parents[1] / "gen").glob("*.v"):
             self.lacks(re.escape(f"{TREE}/"), file=file)
         # The clock and the LUTs, each with the range in other orders.

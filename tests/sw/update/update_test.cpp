@@ -399,11 +399,10 @@ TEST(Update, WhereverThePowerIsCutThereIsAnImageThatBoots) {
     whole.updateTo(2);
     const uint64_t all = whole.operations();
     ASSERT_GT(all, imageBytes / 4);
+    // Some of these cuts are in the trial.
     cutAtEach(
         2, all, all, [](uint64_t seed) { return Vehicle(1, seed); },
-        [](Vehicle& vehicle) {
-            return vehicle.receiver.running == 1;
-        }); // some cuts are in the trial
+        [](Vehicle& vehicle) { return vehicle.receiver.running == 1; });
 }
 
 } // namespace

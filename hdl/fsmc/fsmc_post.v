@@ -3,10 +3,10 @@
 // fsmc_post: merges halfword writes into words of four, pushes closed words to the memory port and
 // queues their addresses.
 //
-// A halfword is merged into the open word if it belongs to it. A word is closed when it is
-// complete, when a write to another word arrives, or by flush_i. Its data then goes into the write
-// FIFO of the port, while its address waits here for its request. Only one word is therefore in
-// flip-flops; the others are in the RAM of the FIFO.
+// A halfword that belongs to the open word is merged into it. A word is closed when it is complete,
+// when a write to another word arrives, or by flush_i. The data then goes into the write FIFO of
+// the port, while the address waits here for its request. Only one word is therefore in flip-flops;
+// the others are in the RAM of the FIFO.
 
 `default_nettype none
 
@@ -25,11 +25,11 @@ module fsmc_post #(
     input  wire [1:0]           wr_be_i,
     output wire                 wr_lost_o, // high in the cycle of a wr_i without room
     output wire                 room_o,    // room for at least two halfwords
-    output wire                 more_room_o, // room for three
+    output wire                 more_room_o, // room for at least three halfwords
     input  wire                 flush_i,
     output wire                 idle_o,    // no word is open and none waits
     // a word is closed
-    output wire                 push_o,    // one cycle
+    output wire                 push_o,    // high for one cycle
     output reg  [4*WIDTH-1:0]   push_data_o,
     output wire [7:0]           push_be_o,
     // oldest closed word
@@ -40,8 +40,8 @@ module fsmc_post #(
     localparam WORD = ADDR_BITS - 2;
 
     reg [WORD-1:0] addrs [0:(1<<LOG2)-1];
-    // `count` closed words start at `head`. The initial value prevents Yosys from keeping head
-    // twice (npi_queue).
+    // `count` closed words start at `head`. The initial value prevents Yosys from duplicating the
+    // register head (as in npi_queue).
     reg [LOG2-1:0] head = 0, count;
     reg            open, none; // none: count == 0
     reg [WORD-1:0] open_addr;
@@ -100,11 +100,11 @@ module fsmc_post #(
 
 `ifdef FORMAL
     // Every accepted halfword reaches the memory, in order. `place` is the halfword under
-    // observation, which the prover chooses; others may write there while nothing waits.
+    // observation, which the prover chooses. Other masters may write it while nothing waits.
     (* anyconst *) reg [ADDR_BITS-1:0] place;
     (* anyseq *) reg foreign;
     (* anyseq *) reg [WIDTH-1:0] foreign_data;
-    reg [WIDTH-1:0] memory, newest; // the memory's value there; the value written there last
+    reg [WIDTH-1:0] memory, newest; // value at `place`: in memory; written last
     localparam HALF = WIDTH / 2, DEPTH = 1 << LOG2;
     reg past = 1'b0;
     wire [1:0] place_lane = place[1:0];
@@ -144,7 +144,7 @@ module fsmc_post #(
     wire [1:0] head_be;
     assign {head_be, head_data} = fifo[head];
 
-    reg more_was = 1'b0, more = 1'b0; // a clock ago, and two
+    reg more_was = 1'b0, more = 1'b0; // more_room_o one and two clocks ago
     always @(posedge clk_i) begin
         past <= 1'b1;
         {more, more_was} <= {more_was, more_room_o && past};
@@ -172,7 +172,7 @@ module fsmc_post #(
             assert (final_value == newest);
             // Two writes may arrive before the processor can see the lack of room.
             assert (!wr_lost_o || !$past(room_o));
-            assert (!(wr_lost_o && more)); // or three
+            assert (!(wr_lost_o && more)); // the same for three writes
             assert (none == (count == 0));
             // A complete word does not wait for another word or a flush.
             assert (push_o || !(open && push_be_o == 8'hFF && count != DEPTH - 1));

@@ -26,31 +26,31 @@ module ascon (
                       DIGEST = 4'd12, FLUSH = 4'd13, DRAIN = 4'd14, CLEAR = 4'd15;
 
     reg [3:0]   state, after;   // after: the state that follows ROUNDS
-    // state is ROUNDS, WORD, LOAD_SOURCE, LOAD_TAG, TAG_WORD, WAIT_FOR_START: flip-flops, for their
-    // fan-out; busy is !idle
+    // One flag for each of the states ROUNDS, WORD, LOAD_SOURCE, LOAD_TAG, TAG_WORD and
+    // WAIT_FOR_START. They are flip-flops because of their fan-out. busy is !idle.
     reg         in_rounds, in_word, in_source, in_tag, in_tag_word, idle, busy;
-    reg         keyed, from_memory; // the operand is a key word; a memory word
+    reg         keyed, from_memory; // source of the operand: a key word, a memory word
     reg         deciphers;          // the operand is ciphertext
     reg [1:0]   pass;
     reg         decrypt, hash;
     reg [319:0] s;              // S4 .. S0; while idle 0, except for the nonce in S4, S3
     reg [127:0] key;
-    reg [2:0]   key_words, nonce_words; // written, 4 at most
+    reg [2:0]   key_words, nonce_words; // number of words written, 0 to 4
     reg         key_came;       // a key word was written: key_words follows one clock later
     reg [3:0]   round;
     reg [23:0]  left;           // bytes left
-    reg         few, none;      // in WORD: fewer than eight bytes left; no bytes left, so that the
-                                // word consists of padding
+    reg         few, none;      // in WORD, few: fewer than eight bytes are left; none: no bytes are
+                                // left, and the word consists of padding
     reg [1:0]   index;          // index of the word in its block, tag or digest; 1, 2: key word
     reg         differs, valid, aborted, wipe;
-    reg         clear, acting;  // s becomes 0; that, or a command: an access waits
-    reg [5:0]   bad;            // settings that are misaligned or too long, as put_job
+    reg         clear, acting;  // clear: s becomes 0; acting: clear or a command, accesses wait
+    reg [5:0]   bad;            // misaligned or too long settings, bits as in put_job
 
     // ---- registers ----
     wire        control, put_key, nonce, ready, drained, done, refused;
-    wire [4:0]  command;        // the write to CONTROL, in the clock after
+    wire [4:0]  command;        // the write to CONTROL, one clock later
     wire [5:0]  put_job;        // writes to AD_SIZE, SIZE, AD_BASE, SOURCE, TARGET, TAG
-    wire [31:0] setting;        // the word of them that the state reads
+    wire [31:0] setting;        // the setting that the state reads
     reg  [2:0]  wanted;
 
     ascon_regs u_registers (
@@ -326,9 +326,9 @@ module ascon (
     end
 
 `ifdef FORMAL
-    // For formal.idle_ascon: the state flags; the stream is idle without a job, and before the
-    // first LOAD_SOURCE.
-    (* hierconn *) wire [23:0] \u_stream.to_give ; // the stream's
+    // Invariants for formal.idle_ascon. The flags agree with the state. The stream is idle while
+    // there is no job, and before the first LOAD_SOURCE.
+    (* hierconn *) wire [23:0] \u_stream.to_give ; // signals of u_stream
     (* hierconn *) wire [5:0]  \u_stream.outstanding ;
     (* hierconn *) wire [2:0]  \u_stream.filled , \u_stream.bursts ;
     (* hierconn *) wire        \u_stream.request ;

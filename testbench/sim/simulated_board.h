@@ -46,11 +46,11 @@ public:
 private:
     static SimulatedBoard& self(void* context) { return *static_cast<SimulatedBoard*>(context); }
     static const UAV_Board& port() {
-        static const UAV_Board board = {
+        static const UAV_Board callbacks = {
             [](void* c) -> U32 { return RandomBlock::next(self(c).random_); },
             [](void* c, U32 word) -> U32 { return self(c).words.at(word); },
             [](void* c, U32 word, U32 value) { self(c).words.at(word) = value; }};
-        return board;
+        return callbacks;
     }
     uint64_t random_;
 };

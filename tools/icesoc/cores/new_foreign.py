@@ -77,7 +77,7 @@ class Request:
         if self.bus not in NEEDED:
             fail(f"BUS: expected {', '.join(NEEDED)}, got '{self.bus}'")
         if not re.fullmatch(r"[a-z][a-z0-9]*(_[a-z0-9]+)*", self.name):
-            fail(f"'{self.name}': words of small letters and digits, joined by _")
+            fail(f"'{self.name}': expected words of small letters and digits, joined by _")
         if not re.fullmatch(r"[A-Za-z_]\w*", self.top):
             fail(f"TOP: expected the name of a module or an entity, got '{self.top}'")
         if os.path.exists(self.folder):

@@ -158,7 +158,7 @@ class Cases(Script):
         self.draw(status=2)
         self.has("no such thing", "^mutants: 1 do not run", "^pair  *100.0 %")
         self.draw(2, "nothing")
-        self.has("no proof.s name begins with nothing")
+        self.has("no proof has a name that begins with nothing")
 
     def the_model_carries(self, missed, pair):
         write("missed.json", json.dumps(missed))

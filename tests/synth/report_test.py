@@ -16,7 +16,7 @@ import sys
 import time
 from pathlib import Path
 
-from look import browse, fault
+from icesoc.util.browser import elements, fault
 from script import TREE, Script, append, commit, edit, fresh, git, main, repository, write
 
 CASE, PROGRAM, KEPT = sys.argv[1], Path(sys.argv[2]).resolve(), Path(sys.argv[4]).resolve()
@@ -228,8 +228,7 @@ class Cases(Script):
 
     def dump(self, page):
         """The page's elements when its scripts have run."""
-        return browse(f"{Path(page).resolve().as_uri()}#whole/u_store",
-                      "--window-size=1440,900")[0]
+        return elements(f"{Path(page).resolve().as_uri()}#whole/u_store", width=1440, height=900)
 
     def test_page(self):
         self.run_program("--family", "ecp5")

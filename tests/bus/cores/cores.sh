@@ -251,7 +251,7 @@ refused 'memory=1x: a byte address' 'mover memory=1x\n'
 refused 'a byte address in DDR3' "mover memory=1$(printf '%05000d' 0)\n"
 refused 'memory=0x1000000: a byte address in DDR3, for a core with buffers' 'led memory=0x1000000\n'
 refused "1: error: no core 'missing'" 'missing\n'
-refused "2: error: 'led' is on line 1 already; name=" 'led\nled\n'
+refused "2: error: 'led' is already on line 1; give one" 'led\nled\n'
 refused "3: error: slot 7 is taken on line 2" '#\nled slot=7\nadder slot=7\n'
 refused "slot=1: 2..63" 'led slot=1\n'
 refused "slot=64: 2..63" 'led slot=64\n'

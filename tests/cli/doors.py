@@ -75,7 +75,8 @@ class Values(Work):
             options = [o for o in each.options if o.listed and not o.positional
                        and o.kind.metavar in samples and o.kind not in (SWITCH, FLIGHT)
                        and o.name not in ("loss", "interference")]
-            variables = {o.variable: o.choices(None)[0] if o.choices and o.is_checked
+            # Names that are checked come from the tree's files; there is no tree here.
+            variables = {o.variable: (o.choices(None) or ["a"])[0] if o.choices and o.is_checked
                          else samples[o.kind.metavar] for o in options}
             words = [word for o in options
                      for word in (f"--{o.name}", *variables[o.variable].split())]

@@ -158,7 +158,7 @@ class Cases(Script):
         self.ask(*new, "second")
         self.has("^sample_verilog\nsecond$", file=mine / "cores.list")
         self.has("^changed$", file=mine / ".gitlab-ci.yml")
-        self.ask(*new, "second", status=1)
+        self.ask(*new, "second", status=2)
         self.has("second already exists")
         # The same for a third-party repository, with files that are found wherever it is.
         (mine / "others").mkdir()

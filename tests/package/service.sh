@@ -44,7 +44,10 @@ echo "Vehicle.uav1=tcp -h 127.0.0.1 -p 11093" >/etc/icesoc/vehicles.conf
 cat >by_service <<'END'
 #!/bin/bash
 set -e
-until [ -e device ]; do sleep 0.1; done
+until [ -e device ]; do
+    kill -0 "$2" # the simulator
+    sleep 0.1
+done
 ln -sf "$(cat device)" /run/icesoc-modem
 systemctl start icesoc-gateway@uav1
 until true 2>/dev/null >/dev/tcp/127.0.0.1/11093; do
@@ -60,12 +63,14 @@ rm -rf device ended service
 simulate="icesoc-sim --image /usr/share/xplanet/images/earth.jpg --size 96x64 --guard 20"
 simulate="$simulate --speed real"
 install -d -o icesoc /home/tester/service
+chmod a+x /home/tester # Debian 13 gives a user's folder to this user alone
 # The simulator runs as the gateway's user, because the modem belongs to who runs the simulator.
 runuser -u icesoc -- $simulate --key /etc/icesoc/uav1.key --out service -- \
     sh -c 'echo "$0" >service/device; until [ -e ended ]; do sleep 0.1; done' '{device}' \
     >simulator.log 2>&1 &
+simulator=$!
 ln -sf service/device device
-bash by_service "$here" >log 2>&1 || {
+bash by_service "$here" "$simulator" >log 2>&1 || {
     cat log simulator.log
     journalctl --no-pager -u icesoc-gateway@uav1 | tail -20
     fail "no answer by the service"

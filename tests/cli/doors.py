@@ -339,7 +339,7 @@ class Trees(Work):
         with open(new / "CMakeLists.txt", "a") as file:
             file.write('if(CORE_FOLDERS)\n'
                        '  message(FATAL_ERROR "CORE_FOLDERS is ${CORE_FOLDERS}")\nendif()\n')
-        status, text = ask("./icesoc", "core", "test", "fir", "--core-folders", "/here", "--build",
+        status, text = ask("./icesoc", "core", "test", "here", "--core-folders", "/here", "--build",
                            "build", ICESOC_TREE=str(new))
         self.assertIn("CORE_FOLDERS is /here", text)
         self.assertEqual(ask("cmake", str(new / "build"))[0], 0)

@@ -166,7 +166,7 @@ TEST(HwRegisters, WhatIsWrongIsSaidWithWhatThereIs) {
               "ALL.LOW, ALL.HIGH, ACT");
     for (const char* name : {"0x2", "0x40", "0x", "0xG", "0x100000000", "", "REG"}) {
         core.get(name);
-        EXPECT_THAT(core.reason_, HasSubstr(std::string("no '") + name + "'"));
+        EXPECT_THAT(core.reason_, HasSubstr(std::string("unknown name '") + name + "'"));
     }
     core.set("ID", 1);
     EXPECT_EQ(core.reason_, "ID is ro: it can be read only");

@@ -249,9 +249,11 @@ class Regression:
             end_descendants()
         with signals_held():
             data = gather(history, tests, results, failures, o.source)
-            write_reports(data, failures, o.build / "page", o.out)
-            write_junit(o.out / "junit.xml", results, failures, begin, commit, stopped)
-            summary(data, failures, o.out)
+            try:
+                write_reports(data, failures, o.build / "page", o.out)
+                write_junit(o.out / "junit.xml", results, failures, begin, commit, stopped)
+            finally:  # a full disk does not hide the results
+                summary(data, failures, o.out)
         return interrupted.status if interrupted else 1 if failures else 0
 
     def _examine(self, results, known, changes):

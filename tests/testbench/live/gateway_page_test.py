@@ -168,10 +168,13 @@ class Cases(Script):
                      "--rights", "rights.json", *security, wanted="The vehicle: https")
         context = ssl.create_default_context(cafile="authority.pem")
         context.check_hostname = False
-        with self.assertRaisesRegex(ssl.SSLError, "certificate"), \
-                context.wrap_socket(socket.create_connection(("127.0.0.1", calls))) as connection:
-            connection.sendall(b"GET / HTTP/1.1\r\n\r\n")  # without a certificate
-            connection.recv(1)
+        try:  # without a certificate: the gateway sends an alert, or has closed before it is read
+            with context.wrap_socket(socket.create_connection(("127.0.0.1", calls))) as connection:
+                connection.sendall(b"GET / HTTP/1.1\r\n\r\n")
+                answer = connection.recv(1)
+        except (ssl.SSLError, ConnectionError):
+            answer = b""
+        self.assertEqual(answer, b"")
         with Browser(trust, home=self.work / "home") as browser:
             browser.open(f"https://127.0.0.1:{page}/")
             self.assertIn("'CN=pilot' has no right to call setFlightState of 'uav'",

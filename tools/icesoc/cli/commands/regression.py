@@ -217,7 +217,7 @@ def search(program, values, good, bad, tree):
              "nightly --steps kept check-mutants",
              "nightly --nightly 5 --name fir"])
 def nightly(values):
-    """run the nightly suite: known failing seeds, new seeds, slow commands
+    """run the nightly suite: failing seeds, new seeds, slow commands
 
     Then runs ZeroC's test suites, the longest missions, and the slow variant of each command that
     has one. Writes a table of the steps, build/nightly.md."""

@@ -8,7 +8,7 @@
 #   --foreign   third-party sources, which may use Synopsys' packages and what other tools allow;
 #               their assertions are for their own simulations
 #   --library   VHDL library of the files, if they refer to themselves by its name (default: work)
-#   --in        another library and a file in it
+#   --in        name of a further library, and a file of it
 #   --generic   value of a generic of the entity
 
 set -eu

@@ -24,6 +24,12 @@ GUARDED: dict[str, tuple[str, list[str]]] = {
     "test_ground_ice": ("ground/ice", ["gateway"])}
 
 
+@choices.expecting("a test program that is built with sanitizers")
+def guarded(values=None):  # pylint: disable=unused-argument
+    """The test programs of check sanitizers."""
+    return list(GUARDED)
+
+
 def one_more(status, other):
     """The first status that is not 0."""
     return status or other
@@ -88,7 +94,8 @@ def netlist(values):
 @command("check sanitizers",
          [Option("kinds", WORDS, "sanitizers to use: address or thread", ["address", "thread"],
                  choices=choices.sanitizers),
-          Option("programs", WORDS, f"test programs to run: {', '.join(GUARDED)}", list(GUARDED)),
+          Option("programs", WORDS, f"test programs to run: {', '.join(GUARDED)}", list(GUARDED),
+                 choices=guarded),
           BUILD, JOBS],
          make="sanitizers", brief="check sanitizers --kinds address --programs test_icec",
          long="check sanitizers", examples=[
@@ -102,8 +109,6 @@ def sanitizers(values):
     Afterwards it fuzzes the stub of the debugger.
     """
     folders = {"address": ("sanitized", "ON"), "thread": ("thread", "thread")}
-    if unknown := set(values.programs) - set(GUARDED):
-        raise Stop(f"PROGRAMS: expected {' or '.join(GUARDED)}, got '{sorted(unknown)[0]}'", 2)
     build, status = configured(values, tests=True), 0
     for name in values.kinds:  # build/sanitized belongs to the tests
         kind, option = folders[name]

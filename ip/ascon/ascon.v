@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// ascon: Ascon-AEAD128 and Ascon-Hash256 (NIST SP 800-232) over buffers in DDR3, one round per
+// ascon: Ascon-AEAD128 and Ascon-Hash256 (NIST SP 800-232) for buffers in DDR3; one round per
 // clock. Registers: ascon.regs.json. Page: README.md.
 //
-// State, key and message move in 64-bit words, byte n of memory in bits 8n+7..8n, as in the
-// standard.
+// State, key and message are processed in 64-bit words. Byte n of memory is in bits 8n+7..8n, as in
+// the standard.
 
 `default_nettype none
 
@@ -16,7 +16,8 @@ module ascon (
 );
     `include "ascon_regs.vh"
 
-    // Initial values, sections 4 and 5: version, rounds, tag or digest bits, rate.
+    // Initial values, sections 4 and 5 of the standard. Their fields are version, numbers of
+    // rounds, bits of the tag or digest, and rate.
     localparam [63:0] IV_AEAD = 64'h00001000_808C0001, IV_HASH = 64'h00000801_00CC0002;
     localparam [3:0]  TWELVE_ROUNDS = 4'd0, EIGHT_ROUNDS = 4'd4, LAST_ROUND = 4'd11;
     localparam [1:0]  ASSOCIATED = 2'd0, MESSAGE = 2'd1, WIPE = 2'd2; // kinds of data processed
@@ -25,32 +26,38 @@ module ascon (
                       WORD = 4'd8, FINAL_KEY = 4'd9, LOAD_TAG = 4'd10, TAG_WORD = 4'd11,
                       DIGEST = 4'd12, FLUSH = 4'd13, DRAIN = 4'd14, CLEAR = 4'd15;
 
-    reg [3:0]   state, after;   // after: the state that follows ROUNDS
+    reg [3:0]   state, after;   // after: the state that follows the rounds
     // One flag for each of the states ROUNDS, WORD, LOAD_SOURCE, LOAD_TAG, TAG_WORD and
-    // WAIT_FOR_START. They are flip-flops because of their fan-out. busy is !idle.
+    // WAIT_FOR_START (idle). They are flip-flops because of their fan-out. busy is !idle.
     reg         in_rounds, in_word, in_source, in_tag, in_tag_word, idle, busy;
-    reg         keyed, from_memory; // source of the operand: a key word, a memory word
+    reg         keyed, from_memory; // keyed: the operand is a word of the key; from_memory: it is a
+                                    // word from memory
     reg         deciphers;          // the operand is ciphertext
     reg [1:0]   pass;
     reg         decrypt, hash;
-    reg [319:0] s;              // S4 .. S0; while idle 0, except for the nonce in S4, S3
+    reg [319:0] s;              // Ascon's words S4 .. S0; 0 while idle, except that S4 and S3 may
+                                // hold the nonce
     reg [127:0] key;
-    reg [2:0]   key_words, nonce_words; // number of words written, 0 to 4
-    reg         key_came;       // a key word was written: key_words follows one clock later
+    reg [2:0]   key_words, nonce_words; // 32-bit words of the key and of the nonce written so far,
+                                        // 0 to 4
+    reg         key_came;       // a word of the key was written; key_words counts it one clock
+                                // later
     reg [3:0]   round;
     reg [23:0]  left;           // bytes left
-    reg         few, none;      // in WORD, few: fewer than eight bytes are left; none: no bytes are
-                                // left, and the word consists of padding
-    reg [1:0]   index;          // index of the word in its block, tag or digest; 1, 2: key word
+    reg         few, none;      // in state WORD: few: fewer than eight bytes are left; none: no
+                                // bytes are left, and the word consists of padding
+    reg [1:0]   index;          // index of the word in its block, tag or digest; in ADD_KEY and
+                                // FINAL_KEY 1 or 2: half of the key
     reg         differs, valid, aborted, wipe;
-    reg         clear, acting;  // clear: s becomes 0; acting: clear or a command, accesses wait
-    reg [5:0]   bad;            // misaligned or too long settings, bits as in put_job
+    reg         clear, acting;  // clear: s becomes 0; acting: a clear or a command takes effect,
+                                // and bus accesses wait
+    reg [5:0]   bad;            // one bit per setting, as in put_job: it is misaligned or too long
 
     // ---- registers ----
     wire        control, put_key, nonce, ready, drained, done, refused;
-    wire [4:0]  command;        // the write to CONTROL, one clock later
-    wire [5:0]  put_job;        // writes to AD_SIZE, SIZE, AD_BASE, SOURCE, TARGET, TAG
-    wire [31:0] setting;        // the setting that the state reads
+    wire [4:0]  command;        // value written to CONTROL, one clock later
+    wire [5:0]  put_job;        // one bit per write to AD_SIZE, SIZE, AD_BASE, SOURCE, TARGET, TAG
+    wire [31:0] setting;        // register that the current state reads
     reg  [2:0]  wanted;
 
     ascon_regs u_registers (
@@ -71,8 +78,8 @@ module ascon (
         .source_write_o(put_job[3]), .target_write_o(put_job[4]), .tag_write_o(put_job[5]),
         .busy_i(!idle), .ram_addr_i(wanted), .ram_o(setting));
 
-    // Commands take effect one clock later, from registers: FORGET drives 448 flip-flops. No access
-    // can happen in between.
+    // Commands come from registers, one clock after their write, because FORGET drives 448
+    // flip-flops. No bus access can happen in between.
     wire start   = idle && |command[2:0] && command[4:3] == 2'd0;
     wire aead    = !command[ASCON_CONTROL_HASH_LSB];
     wire go      = start && bad == 6'd0 && (!aead || (key_words[2] && nonce_words[2]));
@@ -82,7 +89,8 @@ module ascon (
     assign refused = start && !go;
     assign bus_ready_o = ready && !acting;
 
-    wire clears  = (go && !aead) || forget || (idle && abort) || drained; // zeros go out in WIPE
+    // the wiped message is overwritten with zeros
+    wire clears  = (go && !aead) || forget || (idle && abort) || drained;
     always @(posedge clk_i) begin
         clear   <= rst_i || clears;
         acting  <= rst_i || clears || control;
@@ -98,17 +106,19 @@ module ascon (
 
     wire        read_valid, read_idle, write_ready, write_idle;
     wire [63:0] read_data;
-    reg         both_idle; // one clock ago: no state uses it in the clock after a start or a word
+    reg         both_idle; // the streams were idle one clock ago. No state reads this in the clock
+                           // after a start or a word, when it would be wrong
     wire [23:0] words = in_tag ? 24'd2 : {3'd0, left[23:3]} + {23'd0, |left[2:0]};
 
-    // Bytes of this word: all eight, or the remaining ones, padded with a one.
+    // Enabled bytes of this word: all eight, or the remaining ones. The padding adds a 1 bit after
+    // them.
     wire        last = in_word && few;
     wire [7:0]  be   = last ? ~(8'hFF << left[2:0]) : 8'hFF;
     wire [63:0] pad  = last ? 64'd1 << {left[2:0], 3'd0} : 64'd0;
     wire [63:0] mask = {{8{be[7]}}, {8{be[6]}}, {8{be[5]}}, {8{be[4]}},
                         {8{be[3]}}, {8{be[2]}}, {8{be[1]}}, {8{be[0]}}};
 
-    reg  writes; // writes results; set before the first word
+    reg  writes; // this pass writes results; set before its first word
     wire reads  = !pass[1] && !none;
     wire step   = in_word && (!reads || read_valid) && (!writes || none || write_ready);
     wire tag_step    = in_tag_word && (decrypt ? read_valid : write_ready);
@@ -130,9 +140,10 @@ module ascon (
     );
     assign idle_o         = idle && both_idle && read_idle && write_idle;
 
-    // ---- 320-bit state: a round, or one of its words plus an operand ----
-    // The operand is a word of the message, the key, the nonce or a constant. When decrypting, the
-    // sum sets the rate to the ciphertext. It is kept as a net, which saves 72 LUTs.
+    // ---- 320-bit state: each clock performs a round, or adds an operand to one word ----
+    // The operand is a word of the message, the key, the nonce or a constant. While decrypting, the
+    // added value replaces the word of the state by the ciphertext. The value is kept as a net of
+    // its own, which saves 72 LUTs.
     wire        use_iv   = state == FIRST_WORDS && index == 2'd0;
     wire [63:0] operand  = (from_memory ? read_data : 64'd0) | (busy ? 64'd0 : {2{bus_wdata_i}}) |
                            (keyed && index[0] ? key[63:0] : 64'd0) |
@@ -143,11 +154,12 @@ module ascon (
     wire        second   = index[0] && !hash;
     wire [63:0] chosen   = in_tag_word ? (second ? s[319:256] : s[255:192])
                                        : second ? s[127:64] : s[63:0];
-    // Encrypted or decrypted bytes, a tag or its difference, or a digest.
+    // Encrypted or decrypted bytes, a word of the tag or its difference from the expected tag, or a
+    // word of the digest.
     wire [63:0] sum      = chosen ^ operand;
     (* keep *) wire [63:0] added    = ((deciphers ? sum : operand) & mask) ^ pad;
 
-    // The bits of `takes` select the word halves that receive the sum.
+    // Each bit of `takes` adds `added` to one half of a 64-bit word of s.
     wire absorbs = step && !pass[1];
     wire [9:0] takes = {{2{(state == ADD_KEY && index[1]) || state == SEPARATE}} |
                             {put_nonce && nonce_words[1:0] == 2'd3,
@@ -209,7 +221,7 @@ module ascon (
                 round   <= TWELVE_ROUNDS;
                 index   <= 2'd0;
                 after   <= FIRST_WORDS;
-                enter(aead ? FIRST_WORDS : CLEAR); // a digest needs no nonce
+                enter(aead ? FIRST_WORDS : CLEAR); // hashing needs no nonce
                 differs <= 1'b0;
                 valid   <= 1'b0;
                 aborted <= 1'b0;
@@ -243,7 +255,8 @@ module ascon (
             end
             LOAD_TARGET: if (both_idle)
                 enter(pass == WIPE ? WORD : LOAD_SOURCE);
-            // idle since LOAD_TARGET, or since the start
+            // The stream has been idle since LOAD_TARGET or since the start, so LOAD_SOURCE needs
+            // no wait.
             LOAD_SOURCE: enter(pass == ASSOCIATED && left == 24'd0 ? SEPARATE : WORD);
             WORD: if (step) begin
                 left  <= last ? 24'd0 : left - 24'd8;

@@ -6,10 +6,10 @@
 #include "ascon_regs.h"
 #include "fsmc.h"
 
-#define TIMEOUT_MS 100U /* 1024 bytes take 2200 clocks */
+#define TIMEOUT_MS 100U /* ms; a message of 1024 bytes takes 2200 clocks */
 #define KEY_BYTES 16
 
-/* Buffers, from the core's memory address on. */
+/* Byte offsets of the buffers from the memory address of the core. */
 #define ASSOCIATED 0U
 #define MESSAGE 1024U
 #define RESULT 2048U
@@ -48,9 +48,9 @@ static int fits(const Cores_Bytes* bytes) {
     return bytes->size <= ASCON_LIMIT;
 }
 
-/* Returns 1 if the core hangs: an earlier message has not ended, because the memory does not
- * respond. The core would ignore a key, a nonce or a start, and the end of the old message would
- * look like the end of the next one. */
+/* Returns 1 if the core hangs: an earlier operation has not ended, because the memory does not
+ * respond. The core would ignore a new key, nonce or start, and the end of the earlier operation
+ * would look like the end of the new one. */
 static int hangs(const Ascon_Core* self) {
     return (FSMC_read(self->core.slot, ASCON_STATUS) & ASCON_STATUS_BUSY_MASK) != 0;
 }

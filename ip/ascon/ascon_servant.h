@@ -8,7 +8,7 @@
 #include "Ascon.h"
 #include "hw_core.h"
 
-#define ASCON_LIMIT 1024 /* bytes of a message, and of associated data */
+#define ASCON_LIMIT 1024 /* greatest length of a message and of its associated data, bytes */
 
 typedef struct Ascon_Core {
     Cores_Ascon servant;

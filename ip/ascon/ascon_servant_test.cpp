@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// ascon_servant_test: Cores::Ascon by the core, through the FSMC driver, against the model.
+// ascon_servant_test: compares Cores::Ascon, computed by the core through the FSMC driver, with the
+// model.
 
 #include "Vascon_slot.h"
 #include "core_slot.h"
@@ -12,7 +13,7 @@ extern "C" {
 
 namespace {
 
-// Returns a list as the sequence that the servant reads.
+// Returns a list of bytes as the sequence type that the servant reads.
 template <class List> Cores_Bytes bytes(const List& list) {
     return {static_cast<Ice_Int>(list.size()), const_cast<uint8_t*>(list.data())};
 }
@@ -70,7 +71,7 @@ TEST(AsconServant, WhileTheCoreHangsNothingIsTakenForAnAnswer) {
     ASSERT_EQ(Cores_Ascon_setKey(&core.servant, &k, nullptr), ICE_OK);
     slot.memory_.hold(true);
     EXPECT_EQ(Cores_Ascon_hash(&core.servant, &m, &got, nullptr), ICE_TIMEOUT);
-    // The core is still busy with that, and would ignore these.
+    // The core is still busy with the abandoned message, and would ignore a key or nonce.
     EXPECT_EQ(Cores_Ascon_setKey(&core.servant, &o, nullptr), ICE_TIMEOUT);
     EXPECT_EQ(Cores_Ascon_forget(&core.servant, nullptr), ICE_TIMEOUT);
     EXPECT_EQ(Cores_Ascon_hash(&core.servant, &m, &got, nullptr), ICE_TIMEOUT);
@@ -80,7 +81,7 @@ TEST(AsconServant, WhileTheCoreHangsNothingIsTakenForAnAnswer) {
     slot.memory_.hold(false);
     slot.bench_.waitFor([&] { return !(slot.bus_.read(ASCON_STATUS) & ASCON_STATUS_BUSY_MASK); },
                         "the core to abort", 1000);
-    // The reply to the abandoned call arrives after the next one has begun, before the interrupt.
+    // The abandoned message ends after the next call has begun, before the interrupt.
     ASSERT_EQ(Cores_Ascon_seal(&core.servant, &n, &m, &m, &text, &tag, nullptr), ICE_OK);
     auto want = asconEncrypt(key, nonce, message, message);
     EXPECT_EQ(hex(AsconBytes(text.data, text.data + text.size)), hex(want.text));

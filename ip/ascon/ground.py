@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""ascon's part of a mission: a report is sealed and opened by the core, a forged one is found
-out."""
+"""Runs ascon's part of a mission: the core seals a report and opens it, and detects a forged
+one."""
 import os
 
 

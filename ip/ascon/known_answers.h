@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// known_answers: input bytes of the tests, and the known answers of NIST SP 800-232. A test writes
-// its answers in the format of the authors of the standard; the text must have the SHA-256 of the
-// published file.
+// known_answers: inputs of the tests, and the known answers of NIST SP 800-232. A test writes all
+// its answers in the format of the published file; the text must have the SHA-256 of that file.
 
 #pragma once
 
@@ -36,8 +35,9 @@ template <class Bytes> std::string hex(const Bytes& bytes) {
     return text;
 }
 
-// The files of github.com/ascon/ascon-c: 1089 answers of crypto_aead/asconaead128,
-// LWC_AEAD_KAT_128_128.txt, and 1025 of crypto_hash/asconhash256, LWC_HASH_KAT_128_256.txt.
+// SHA-256 of two files of github.com/ascon/ascon-c: crypto_aead/asconaead128,
+// LWC_AEAD_KAT_128_128.txt (1089 answers) and crypto_hash/asconhash256, LWC_HASH_KAT_128_256.txt
+// (1025 answers).
 constexpr char aeadFile[] = "BBBC34692FE05E5FDA0A3B025585622AB3E3747495E5E3655B29AAE8C2A4BD33";
 constexpr char hashFile[] = "B7D6FBC51362F0D62BC7E57B21F3E83242983434A7C92320A4956D915749DF17";
 
@@ -47,7 +47,8 @@ inline std::string sha256(const std::string& text) {
     return hex(digest);
 }
 
-// `seal` returns the text followed by its tag, for key 00 01 .., nonce 10 11 .., and these.
+// Returns the text of the file of AEAD answers. `seal` returns the ciphertext followed by its tag,
+// for the key 00 01 .., the nonce 10 11 .. and its arguments.
 inline std::string aeadAnswers(const std::function<AsconBytes(const AsconBytes& associated,
                                                               const AsconBytes& message)>& seal) {
     std::string text;

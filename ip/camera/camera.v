@@ -12,11 +12,11 @@ module camera (
     `include "slot_ports.vh"
     `include "memory_ports.vh"
     output wire        irq_o,
-    // the core that uses the frames
+    // interface of the core that uses the frames
     output wire        frame_valid_o,
     output wire [1:0]  frame_index_o,
     input  wire        frame_take_i,
-    // sensor: its own clock
+    // sensor, in the clock domain pclk_i
     input  wire        pclk_i,
     input  wire        vsync_i,
     input  wire        href_i,
@@ -29,18 +29,20 @@ module camera (
                      FINISH = 3'd4, WAIT_FOR_MEMORY = 3'd5;
 
     reg [2:0]  state;
-    reg        capturing, listening; // state is CAPTURE; the state takes tokens
-    reg        stopping;             // no further frame
-    reg        whole;                // the frame that ends, or has ended, is complete
+    reg        capturing, listening; // capturing: state is CAPTURE; listening: the state accepts
+                                     // tokens
+    reg        stopping;             // STOP was written: no further frame is captured
+    reg        whole;                // the frame that is ending, or has ended, is complete
     reg        again;                // the next frame has already begun
-    reg [8:0]  width, words;         // words per line; number of the current word, starting at 1
+    reg [8:0]  width, words;         // words per line, and number of the current word, starting at
+                                     // 1
     reg [11:0] height, y;
     reg [2:0]  x;                    // index of the next pixel in its word
-    reg        room;                 // room for another pixel of this line
-    reg        last_word, last_line; // words == width, y + 1 == height, one clock later
-    reg [31:0] base, stride;         // address and row length of the buffers in use
+    reg        room;                 // the current line is not full yet
+    reg        last_word, last_line; // one clock late: words == width; y + 1 == height
+    reg [31:0] base, stride;         // address of buffer 1, and distance of the buffers, bytes
     reg [15:0] frames, dropped;
-    reg [55:0] pixels;               // pixels of the incomplete word, newest on top
+    reg [55:0] pixels;               // pixels of the incomplete word, the newest in the upper bits
     reg        has_newest;
     wire [1:0] writing, newest;
     wire       offered;
@@ -53,7 +55,7 @@ module camera (
     async_fifo #(.WIDTH(11), .LOG2(5)) u_fifo (
         .write_clk_i(pclk_i), .push_i(push), .data_i(token_in), .full_o(full),
         .read_clk_i(clk_i), .pop_i(fetch), .data_o(token_out), .empty_o(waits));
-    // The next token is in a register, because the path after it is already long.
+    // A register holds the next token, because the logic after it has long paths.
     reg [10:0] token;
     reg        has_token;
     wire       fetch = !waits && (!has_token || pop);
@@ -89,7 +91,7 @@ module camera (
         .frames_i(frames), .dropped_i(dropped));
 
     wire start = set_start && state == OFF;
-    // The settings are checked in the clock of START; the result counts in the next one.
+    // The settings are checked in the clock of START; the result is used one clock later.
     reg  asked, good;
     always @(posedge clk_i) begin
         asked <= start && !rst_i;
@@ -116,9 +118,10 @@ module camera (
         .write_ready_o(write_ready), .write_flush_i(state == FINISH), .write_idle_o(write_idle));
 
     // ---- frames ----
-    // Tokens wait while a buffer is selected and while a frame is finished; if a token waits too
-    // long, tokens are lost and reported. All kinds of token wait when an eighth pixel would: the
-    // kind arrives late.
+    // Tokens wait while a buffer is selected and while a frame is finished. If they wait until the
+    // FIFO is full, tokens are lost, which is reported. Any token, not only a pixel, waits while a
+    // word of eight pixels could not be written: the kind of a token is known too late to make a
+    // difference.
     wire ready  = x != 3'd7 || write_ready;
     assign pop  = has_token && listening && ready;
     wire begins = pop && starts;
@@ -145,9 +148,8 @@ module camera (
         events    <= 7'd0;
         last_word <= words == width;
         last_line <= y + 12'd1 == height;
-        // Also by the end of a line: the next seven pixels push its byte out, and 56 enables depend
-        // on this.
-        // on this.
+        // A line end also shifts a byte in. It does no harm, because the next pixels push that byte
+        // out; without this, 56 enables would depend on the kind of the token.
         if (capturing && has_token && x != 3'd7)
             pixels <= {token[7:0], pixels[55:8]};
         if (stop && state != OFF)
@@ -173,11 +175,12 @@ module camera (
                     enter(OFF);
                 else if (begins)
                     enter(WAIT_FOR_BUFFER);
-                if (pop && ends_line) // report this once
+                if (pop && ends_line) // the event is reported only once per frame
                     whole <= 1'b0;
                 events[CAMERA_EVENT_LONG_FRAME_LSB] <= pop && ends_line && whole;
             end
-            WAIT_FOR_BUFFER: begin // the clock of the choice; the frame before is in memory
+            WAIT_FOR_BUFFER: begin // A buffer is selected in this clock; the previous frame is in
+                                   // memory.
                 x     <= 3'd0;
                 y     <= 12'd0;
                 words <= 9'd1;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// camera_buffers: tracks which of the buffers 1..3 is being written, holds the newest complete
-// frame, or belongs to another core.
+// camera_buffers: keeps track of the three buffers, 1..3: one is being written, one contains the
+// newest complete frame, and one belongs to another core.
 
 `default_nettype none
 
@@ -9,12 +9,13 @@ module camera_buffers (
     input  wire       clk_i,
     input  wire       rst_i,
     input  wire       active_i,  // capture is on; otherwise no frame is offered
-    // the written frame is complete in memory: it is now the newest, and offered
+    // the frame being written is complete in memory; it becomes the newest and is offered
     input  wire       kept_i,
     output reg  [1:0] writing_o,
     output reg  [1:0] newest_o,
     output reg        offered_o,
-    input  wire       take_i     // the other core takes the newest buffer, and returns its old one
+    input  wire       take_i     // the other core takes the newest buffer and returns the one it
+                                 // had
 );
     reg [1:0] used; // buffer of the other core
 
@@ -24,7 +25,7 @@ module camera_buffers (
     always @(posedge clk_i) begin
         if (kept_i) begin
             newest_o  <= writing_o;
-            writing_o <= writing_o ^ reserved; // the buffer of 1, 2, 3 that is neither
+            writing_o <= writing_o ^ reserved; // the remaining one of the buffers 1, 2 and 3
         end
         offered_o <= kept_i || (offered_o && !taken && active_i);
         used      <= reserved;
@@ -37,11 +38,12 @@ module camera_buffers (
     end
 
 `ifdef FORMAL
-    // A buffer is complete from the clock in which it is kept until the next frame begins in it.
+    // whole: one bit per buffer: it contains a complete frame. The bit is set by kept_i, and
+    // cleared when the next frame begins in the buffer.
     reg       past = 1'b0;
     reg [3:1] whole = 3'b000;
     reg       has = 1'b0;  // the other core has taken a buffer
-    reg [1:0] held = 2'd0; // the buffer that it has taken
+    reg [1:0] held = 2'd0; // buffer that the other core has taken
     always @(posedge clk_i) begin
         past <= 1'b1;
         if (rst_i) begin
@@ -60,10 +62,11 @@ module camera_buffers (
     always @* begin
         assume (past || rst_i);
         if (past) begin
-            // Three buffers, three parts.
+            // The three roles always belong to three different buffers.
             assert (writing_o != 2'd0 && newest_o != 2'd0 && used != 2'd0 && writing_o != newest_o);
             assert (writing_o != used && (!offered_o || newest_o != used));
-            // The other core's buffer and the offered one are never written; both are complete.
+            // The other core's buffer and the offered buffer are never written, and both are
+            // complete.
             assert (!has || (held == used && held != writing_o && whole[held]));
             assert (!offered_o || whole[newest_o]);
             assert (!whole[writing_o]);

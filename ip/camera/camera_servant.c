@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * camera_servant: Cores::Camera, which accesses the core registers through the FSMC; informs
- * other servants of the position of frames (Hw_Frames).
+ * camera_servant: implements Cores::Camera with the registers of the core, accessed through the
+ * FSMC; gives the position of the frames to other servants (Hw_Frames).
  */
 #include "camera_servant.h"
 #include "camera_regs.h"
 #include "fsmc.h"
 
-#define STOP_READS 1000 /* reads of STATUS; a pending burst takes less time than one */
+#define STOP_READS 1000 /* limit of reads of STATUS; a pending burst ends within one read */
 
 static U32 get(const Camera_Core* self, U32 word) {
     return FSMC_read(self->core.slot, word);
@@ -23,7 +23,8 @@ Hw_Status Camera_Core_init(Camera_Core* self, U32 slot, U32 memory, const Hw_Por
     if (status != HW_OK)
         return status;
     self->core.memory = memory;
-    set(self, CAMERA_MASK, 0); /* the core counts frames, and no task waits for one */
+    set(self, CAMERA_MASK, 0); /* The core counts frames itself, and no task waits for a frame, so
+                                * all interrupts are masked. */
     Cores_Camera_init(&self->servant);
     return HW_OK;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// camera_test: a sensor with a separate, jittering clock, a memory that stalls, and every kind of
-// damaged frame.
+// camera_test: tests the core with a sensor whose clock is independent and jitters, with a memory
+// that stalls, and with every kind of damaged frame.
 
 #include "Vcamera_slot.h"
 #include "bench.h"
@@ -18,15 +18,15 @@ constexpr int width = 40, height = 12;
 class CameraTest : public ::testing::Test {
 protected:
     CameraTest() {
-        // Edges of the pixel clock fall before or after the edges of the fabric clock, 1 to 3 half
-        // periods apart.
+        // Time advances in half periods of the fabric clock. Edges of the pixel clock are 1 to 3 of
+        // them apart and fall before or after the fabric clock's edges.
         bench_.addModel([this] { edge(); }, [this] { edge(); });
         bench_.reset();
         bus_.write(CAMERA_MASK, 0x7F);
         place();
         configure(width, height);
     }
-    // Buffers anywhere in the address space, 64 KiB apart at least.
+    // Places the buffers at random addresses, at least 64 KiB apart.
     void place() {
         auto isFar = [](uint32_t distance) { return distance + 0x10000 >= 0x20000; };
         do
@@ -53,7 +53,8 @@ protected:
         }
     }
     std::vector<uint8_t> picture() { return random_.items<uint8_t>(width * height); }
-    // Returns the events until the sensor has sent all its frames and they have gone through.
+    // Waits until the sensor has sent all its frames and the core has processed them; returns the
+    // events.
     uint32_t drain() {
         for (int i = 0; i < 200000 && !sensor_.isIdle(); ++i)
             bench_.tick();
@@ -125,7 +126,8 @@ TEST_F(CameraTest, FramesMayBeAsWideAndAsHighAsTheRegistersSay) {
 }
 
 TEST_F(CameraTest, FramesAreCountedModulo65536) {
-    // Frames follow as fast as they can be dropped: each ends the previous one, which has no lines.
+    // Frames follow each other as fast as the core can drop them: each frame has no lines and is
+    // ended by the start of the next.
     slowest_ = 1;
     sensor_ = SensorModel({4, 2});
     start();
@@ -137,7 +139,7 @@ TEST_F(CameraTest, FramesAreCountedModulo65536) {
     }
     EXPECT_EQ(bus_.read(CAMERA_FRAMES), 0u);
     stop();
-    // Complete frames, as close as memory bursts and the FIFO allow.
+    // Complete frames follow each other as closely as the memory bursts and the FIFO allow.
     configure(8, 1);
     sensor_ = SensorModel({16, 1});
     memory_.setStall(0);
@@ -195,13 +197,15 @@ TEST_F(CameraTest, AMemoryThatIsTooSlowIsToldAndTheNextFrameIsRight) {
     start();
     memory_.hold(true);
     sensor_.addFrame(picture(), width, height);
-    sensor_.addFrame(picture(), width, height); // begins; its loss cannot be reported
+    sensor_.addFrame(picture(), width, height); // this frame begins, and its loss cannot be
+                                                // reported yet
     drain();
     memory_.hold(false);
     uint32_t events = drain();
     EXPECT_EQ(bus_.read(CAMERA_FRAMES), 0u) << events;
     auto pixels = picture();
-    sensor_.addFrame(picture(), width, height); // ends the frame left incomplete by the lost lines
+    sensor_.addFrame(picture(), width, height); // this frame ends the one that the lost lines left
+                                                // incomplete
     sensor_.addFrame(pixels, width, height);
     events |= drain();
     EXPECT_TRUE(events & CAMERA_EVENT_OVERFLOW_MASK);
@@ -234,19 +238,19 @@ TEST_F(CameraTest, TheFrameThatAnotherCoreHasIsNotOverwritten) {
     }
 }
 
-// One of these clocks is the clock in which the next frame is kept: the taken frame is complete,
-// and stays so until the next one is taken.
+// One of the clocks tried is the clock in which the next frame is kept. The taken frame must be
+// complete, and stay complete until the next one is taken.
 TEST_F(CameraTest, AnotherCoreTakesAFrameInAnyClock) {
     constexpr int w = 8, h = 1;
     slowest_ = 1;
     configure(w, h);
     start();
     auto& top = bench_.top();
-    uint32_t held = 0; // its buffer's address
+    uint32_t held = 0; // address of the taken buffer
     std::vector<uint8_t> pixels;
     for (int frames = 0; frames < 1500; ++frames) {
         sensor_.addFrame(std::vector<uint8_t>(w * h, static_cast<uint8_t>(frames)), w, h);
-        const uint32_t chosen = random_.below(150); // a frame takes about as long
+        const uint32_t chosen = random_.below(150); // a frame takes about this number of clocks
         for (uint32_t clocks = 0; clocks < 150; ++clocks) {
             top.frame_take_i = clocks == chosen;
             top.eval();
@@ -284,7 +288,8 @@ TEST_F(CameraTest, StopsAndStartsInTheMiddleOfAFrame) {
 TEST_F(CameraTest, RefusesWhatItCannotCapture) {
     auto refused = [&] {
         start();
-        bench_.tick(); // checked in the clock of START, reported in the next clock, then sticky
+        bench_.tick(); // the settings are checked in the clock of START; REFUSED is set in the next
+                       // clock and then stays set
         bench_.tick();
         return bus_.takeEvents() == CAMERA_EVENT_REFUSED_MASK && bus_.read(CAMERA_STATUS) == 0;
     };
@@ -325,8 +330,8 @@ TEST_F(CameraTest, APixelEachFabricClockWhenTheMemoryKeepsUp) {
     configure(wide, lines);
     bus_.write(CAMERA_STRIDE, wide * lines);
     sensor_ = SensorModel({60, 1});
-    // Clocks from the first to the last word of a line sent to memory, and the pixels of all words
-    // but the first.
+    // Counts the clocks from the first to the last word of each line that is sent to memory, and
+    // the pixels of all words except the first.
     uint64_t first = 0, clocks = 0, seen = 0;
     bench_.addModel(
         [&] {
@@ -357,10 +362,10 @@ TEST_F(CameraTest, APixelEachFabricClockWhenTheMemoryKeepsUp) {
         bench_.tick(100);
         return static_cast<double>((words - 1) * 8 * 3 * lines) / static_cast<double>(clocks);
     };
-    double rate = pixelsPerClock(1); // the pixel clock equals the fabric's
+    double rate = pixelsPerClock(1); // the pixel clock has the frequency of the fabric clock
     std::printf("%.3f pixels a clock, and none lost\n", rate);
     EXPECT_GE(rate, 0.999);
-    // A slower pixel clock shows in the figure: its edges are 1 or 2 half periods apart.
+    // A slower pixel clock lowers the rate: its edges are 1 or 2 half periods apart.
     EXPECT_NEAR(pixelsPerClock(2), 2.0 / 3, 0.02);
 }
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""camera's part of a mission: starts and stops the core; with a sensor, the vision core works on
-its frames."""
+"""Runs camera's part of a mission: starts and stops the core; with a sensor, the vision core
+processes its frames."""
 
 import Ice
 
@@ -17,7 +17,7 @@ def capture(log, camera, width, height):
 
 
 def prepare(log, proxy, width, height):
-    """Runs before the vision core starts: frames come from a sensor with this many pixels."""
+    """Runs before the vision core starts; `width` and `height` are the sensor's size in pixels."""
     capture(log, camera_of(proxy), width, height)
 
 

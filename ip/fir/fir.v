@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// fir: the FIR filter (fir_filter.vhd) over a buffer in DDR3; registers by the generated
-// fir_wrapper.
+// fir: applies the FIR filter (fir_filter.vhd) to a buffer in DDR3; the generated fir_wrapper
+// contains the registers.
 
 `default_nettype none
 
@@ -17,14 +17,15 @@ module fir (
     wire [8:0]  count;
 
     reg         busy, refused;
-    // clear the history; write a coefficient: a clock after the request
+    // one clock after the request: forget clears the history, put writes a coefficient
     reg         forget, put;
-    reg         begun, flushed;    // the streams have started; the last word is being flushed
-    // samples not sent to the filter yet; results not received yet
+    reg         begun, flushed;    // begun: the streams have started; flushed: the last word has
+                                   // been flushed
+    // to_send: samples not sent to the filter yet; to_take: results not received yet
     reg  [8:0]  to_send, to_take;
     reg  [1:0]  place;             // index of the next sample in its word
     reg  [63:0] packed_results;
-    reg  [2:0]  filled;            // results in it, 0..4
+    reg  [2:0]  filled;            // results in the current word, 0..4
     reg  [31:0] saturations;
 
     wire        bad = count == 9'd0;
@@ -67,7 +68,8 @@ module fir (
 
     npi_stream #(.ADDR_BITS(32), .WORD_BITS(7)) u_stream (
         `include "memory_connect.vh"
-        .clk_i(clk_i), .rst_i(rst_i), // not core_rst: requested words must still be taken
+        .clk_i(clk_i), .rst_i(rst_i), // not core_rst: words that were requested must still be
+                                      // received
         .read_start_i(go && !core_rst), .read_base_i(source[31:6]),
         .read_words_i(to_send[8:2] + {6'd0, |to_send[1:0]}), .read_stop_i(core_rst),
         .read_valid_o(read_valid), .read_data_o(read_data),
@@ -89,7 +91,7 @@ module fir (
             to_send     <= count;
             to_take     <= count;
         end
-        if (go) begin // not at `start`, which has a long path
+        if (go) begin // These are not loaded at `start`, because that signal has a long path.
             begun       <= 1'b1;
             saturations <= 32'd0;
             place       <= 2'd0;
@@ -127,7 +129,7 @@ module fir (
     wire unused =
         &{1'b0, unused_shift_start, shift[7:5], coefficient[31:18], source[5:0], target[5:0], 1'b0};
 `ifdef FORMAL
-    // For formal.idle_fir: without a call the core is empty.
+    // For formal.idle_fir: without a call the core contains no samples and no results.
     (* hierconn *) wire [4:0] \u_filter.full ; // signals of the parts
     (* hierconn *) wire [3:0] \u_wrapper.busy ;
     (* hierconn *) wire [6:0] \u_stream.to_give ;

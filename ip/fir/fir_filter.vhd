@@ -15,12 +15,12 @@ entity fir_filter is
   port (
     clk_i               : in  std_logic;
     rst_i               : in  std_logic;
-    -- settings; a coefficient counts for the samples after its write
+    -- settings; a coefficient applies to the samples after its write
     coefficient_write_i : in  std_logic;
     coefficient_index_i : in  std_logic_vector(3 downto 0);
     coefficient_i       : in  std_logic_vector(17 downto 0);
     shift_i             : in  std_logic_vector(4 downto 0);
-    -- sets earlier samples to 0; allowed only while the pipeline is empty
+    -- sets all earlier samples to 0; allowed only while the pipeline is empty
     clear_i             : in  std_logic;
     -- samples
     sample_valid_i      : in  std_logic;
@@ -36,7 +36,7 @@ end entity;
 
 architecture rtl of fir_filter is
   constant TAPS     : positive := 16;
-  constant SUM_BITS : positive := 18 + 16 + 4; -- 16 products of 34 bits
+  constant SUM_BITS : positive := 18 + 16 + 4; -- sum of 16 products of 34 bits
   type coefficients_t is array (0 to TAPS - 1) of signed(17 downto 0);
   type products_t is array (0 to TAPS - 1) of signed(33 downto 0);
   type sums_t is array (0 to TAPS) of signed(SUM_BITS - 1 downto 0);
@@ -44,12 +44,12 @@ architecture rtl of fir_filter is
   signal coefficients : coefficients_t;
   signal products     : products_t;
   signal sums         : sums_t; -- sums(0) is the newest result, sums(TAPS) is always 0
-  -- shifted by eights, with one more bit to round by
+  -- the sum, shifted by a multiple of 8, with one more bit for rounding
   signal coarse       : signed(SUM_BITS downto 0);
   signal scaled       : signed(SUM_BITS downto 0); -- shifted
   signal result       : signed(15 downto 0);
   signal saturated    : std_logic;
-  -- stages: products, sums, coarse, scaled, result
+  -- stages that contain a value: products, sums, coarse, scaled, result
   signal full         : std_logic_vector(1 to 5);
   signal step         : std_logic;
 begin
@@ -99,8 +99,9 @@ begin
         coarse <= shift_right(sums(0) & '0', to_integer(unsigned(shift_i(4 downto 3)) & "000"));
         scaled <= shift_right(coarse, to_integer(unsigned(shift_i(2 downto 0))));
         rounded := shift_right(scaled, 1) + signed'("0" & scaled(0));
-        -- It fits if all bits above the sign are like it. (GHDL 5 converts a comparison of more
-        -- than 32 bits with a negative integer wrongly.)
+        -- The value fits into 16 bits if all higher bits equal its sign bit. (This is not written
+        -- as a comparison, because GHDL 5 converts comparisons of more than 32 bits with a negative
+        -- integer wrongly.)
         overflow := '0';
         for b in 16 to SUM_BITS loop
           overflow := overflow or (rounded(b) xor rounded(15));

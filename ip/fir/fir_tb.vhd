@@ -1,6 +1,7 @@
 -- SPDX-License-Identifier: MIT
 --
--- fir_tb: the filter as VHDL against the model's results (vectors.txt), with gaps and stalls.
+-- fir_tb: compares the results of the VHDL filter with the model's results (vectors.txt), with gaps
+-- in the input and stalls of the output.
 
 library ieee;
 use ieee.std_logic_1164.all;

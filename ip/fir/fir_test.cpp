@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// fir_test: the core through its generated servant, with a memory that stalls, against the model.
+// fir_test: compares the core, called through its generated servant with a memory that stalls, with
+// the model.
 
 #include "Vfir_slot.h"
 #include "core_slot.h"
@@ -70,7 +71,7 @@ TEST_F(FirCore, TheAnswerToAnImpulseIsTheCoefficients) {
 
 TEST_F(FirCore, BuffersMayBeAnywhereInMemory) {
     Random random(testSeed());
-    core_.memory_.setLinger(0.95); // full now and then
+    core_.memory_.setLinger(0.95); // the FIFOs of the memory are sometimes full
     set(17, random);
     for (int round = 0; round < 12; ++round) {
         core_.memoryAt_ = random.next() & ~1023u;
@@ -95,7 +96,7 @@ TEST_F(FirCore, HasNoWordBehindItsResults) {
             EXPECT_EQ(core_.bus_.transfer(write, word, 0).error, word > FIR_FILTER_OUT1) << word;
 }
 
-TEST_F(FirCore, RefusesNothingAtAllAndTooMuch) { // a block has 256 samples at most
+TEST_F(FirCore, RefusesNothingAtAllAndTooMuch) { // a block has at most 256 samples
     auto statusOf = [&](size_t count) {
         try {
             filter(std::vector<Ice_Short>(count));
@@ -113,7 +114,7 @@ TEST_F(FirCore, WhatIsGivenUpLeavesTheMemoryPortInOrder) {
     Random random(testSeed());
     auto list = random.items<Ice_Short>(256);
     for (int clocks = 1; clocks < 190; clocks += 7) {
-        // The steps of the servant after a time-out: start, then reset the core.
+        // Does what the servant does after a time-out: start, then reset of the core.
         filter(list);
         core_.bus_.write(FIR_CONTROL, 1u << 3);
         for (int i = 0; i < clocks; ++i)
@@ -128,14 +129,14 @@ TEST_F(FirCore, WhatIsGivenUpLeavesTheMemoryPortInOrder) {
 
 TEST_F(FirCore, ACountWrittenBehindTheStartDoesNotChangeTheCall) {
     Random random(testSeed());
-    const uint32_t results = 512; // bytes after the samples
+    const uint32_t results = 512; // byte offset of the results, after the samples
     for (int clocks = 10; clocks < 100; clocks += 7) {
         set(16, random);
         filter(random.items<Ice_Short>(256));
         core_.bus_.write(FIR_CONTROL, 1u << 3);
         for (int i = 0; i < clocks; ++i)
             core_.tick();
-        // The next call waits for the words requested by this one.
+        // The next call waits until the words requested by this one have arrived.
         core_.bus_.write(FIR_CONTROL, 1u << 31);
         core_.bus_.write(FIR_CONTROL, 1u << 3);
         core_.bus_.write(FIR_FILTER_IN0, 8);
@@ -150,7 +151,8 @@ TEST_F(FirCore, ACountWrittenBehindTheStartDoesNotChangeTheCall) {
 
 TEST_F(FirCore, OneSampleAClockWhenTheMemoryKeepsUp) {
     core_.memory_.setStall(0);
-    // A long block against a short one, without the driver's copying.
+    // Compares a long block with a short one; the time in which the driver copies data is not
+    // counted.
     auto clocksOf = [&](size_t count) {
         filter(std::vector<Ice_Short>(count, 1));
         uint64_t before = core_.bench_.cycles();

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// fir_vectors: rounds of random coefficients and samples with the model's results, for the VHDL
-// test bench. Usage: fir_vectors folder seed. Writes vectors.txt, for each round: the shift, 16
-// coefficients, the number of samples, and a line "sample result" for each.
+// fir_vectors: writes random coefficients and samples, with the model's results, for the VHDL test
+// bench.
+// Usage: fir_vectors FOLDER SEED. Writes FOLDER/vectors.txt, which contains for each round the
+// shift, the 16 coefficients, the number of samples, and one line "sample result" per sample.
 
 #include "fir_model.h"
 #include "random.h"

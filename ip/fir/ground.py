@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""fir's part of a mission: a noisy step goes through a moving average of 16 samples."""
+"""Runs fir's part of a mission: a noisy step is filtered by a moving average of 16 samples."""
 
 
 def fly(log, proxy, report):

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""probe's part of a mission: it records while the cores named after it fly: build/run/probe.vcd."""
+"""Runs probe's part of a mission: records signals while the listed cores run, and writes
+build/run/probe.vcd."""
 import os
 
 from icesoc.cores import probe as tool
 
-NEWEST = 2000  # changes that are read without a trigger
+NEWEST = 2000  # number of changes that are read if the trigger condition was never met
 
 
 def fly(log, proxy, report):
@@ -15,7 +16,8 @@ def fly(log, proxy, report):
     mask, value = signals.trigger(trigger)
     probe = Probes.ProbePrx.uncheckedCast(proxy(signals.identity))
     signals.check(log.call("ground -> UAV", "probe.getState()", probe.getState))
-    # Without a trigger a condition that never occurs: the newest changes are kept.
+    # Without a trigger, a condition is set that never occurs: the ring then contains the newest
+    # changes.
     log.call(
         "ground -> UAV", "probe.arm(%s)" % (trigger or "no trigger"),
         lambda: probe.arm(tool.signed(mask), tool.signed(value if trigger else 1), True, NEWEST))

@@ -13,7 +13,8 @@
 `default_nettype none
 
 module probe #(
-    parameter        WORDS  = 2,         // words per change: 1, 2 or 4, for 31, 95 or 223 signals
+    parameter        WORDS  = 2,         // 64-bit words per change: 1, 2 or 4, for 31, 95 or 223
+                                         // signals
     parameter        CLK_HZ = 100000000, // Hz
     parameter [31:0] NAMES  = 32'd0      // hash of the signals' names and widths
 ) (
@@ -21,24 +22,27 @@ module probe #(
     `include "memory_ports.vh"
     output wire                 irq_o,
     // recorded signals
-    input  wire [31:0]          cycles_i,  // the low bits of the chip's count of clocks
+    input  wire [31:0]          cycles_i,  // low 32 bits of the chip's cycle counter
     input  wire [64*WORDS-34:0] signals_i
 );
     `include "probe_regs.vh"
 
     localparam WIDTH = 64 * WORDS - 33;
     localparam LOG2_WORDS = WORDS == 1 ? 0 : WORDS == 2 ? 1 : 2;
-    localparam LOG2_RING = PROBE_LOG2_BYTES - 3 - LOG2_WORDS; // changes in the ring
+    localparam LOG2_RING = PROBE_LOG2_BYTES - 3 - LOG2_WORDS; // log2 of the number of changes in
+                                                              // the ring
 
     wire [30:0] mask, wanted;
     wire [31:0] base;
     wire [14:0] after;
     wire        edge_only, set_arm, stop;
 
-    // ---- signals: own registers, so that the probe adds a wire to each signal, and no logic ----
+    // ---- signals: sampled by the probe's registers, so that each signal gets one more load and no
+    // logic ----
     reg [WIDTH-1:0] now, last;
-    reg             changed;      // last differs from the value before it
-    reg             fits, fitted; // last meets the trigger; the value before it did
+    reg             changed;      // last differs from its previous value
+    reg             fits, fitted; // fits: last meets the trigger condition; fitted: its previous
+                                  // value did
     always @(posedge clk_i) begin
         now     <= signals_i;
         last    <= now;
@@ -49,14 +53,16 @@ module probe #(
 
     // ---- capture ----
     reg                 running, draining, done, triggered, wrapped;
-    reg                 owed;  // an entry without a change: the first one, and the one after a loss
+    reg                 owed;  // an entry is due although no signal changed: the first entry, and
+                               // the one after a loss
     reg                 lost;
-    reg                 half;  // cycles_i[31] at the last entry; each change of it makes an entry
+    reg                 half;  // cycles_i[31] at the last entry; an entry is written when it
+                               // changes
     reg [LOG2_RING-1:0] next, trigger, left;
 
     wire full, empty, pop, room, stream_idle;
-    // Clocks, up to 7, for which the FIFO has been empty at the end: a word needs two to reach
-    // it, and the stream is idle two clocks after a flush.
+    // Clocks, up to 7, for which the FIFO has been empty at the end of a capture. A word needs two
+    // clocks to pass the FIFO, and write_idle_o is valid two clocks after a flush.
     reg  [2:0] settled;
     wire arm    = set_arm && !running && !draining;
     wire ended  = triggered && left == {LOG2_RING{1'b0}};
@@ -92,7 +98,8 @@ module probe #(
         end
         if (hit) begin
             triggered <= 1'b1;
-            trigger   <= next; // this clock's entry, or if that is lost the next
+            trigger   <= next; // index of this clock's entry or, if that entry is lost, of the next
+                               // one
             left      <= after[LOG2_RING-1:0];
         end
         if (running && (ended || stop)) begin
@@ -136,7 +143,7 @@ module probe #(
     wire [31:0] unused_addr;
     wire        unused_valid, unused_read_idle;
     wire [63:0] unused_data;
-    // The stream's address wraps at the end of the ring.
+    // The stream's address wraps around at the end of the ring.
     npi_stream #(.ADDR_BITS(PROBE_LOG2_BYTES), .WORD_BITS(4)) u_stream (
         .clk_i(clk_i), .rst_i(rst_i),
         .read_start_i(1'b0), .read_base_i({(PROBE_LOG2_BYTES - 6){1'b0}}), .read_words_i(4'd0),

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * probe_servant: Probes::Probe, which accesses the core registers, and its ring in DDR3, through
- * the FSMC. */
+ * probe_servant: implements Probes::Probe with the registers of the core and its ring in DDR3,
+ * accessed through the FSMC.
+ */
 #include "probe_servant.h"
 #include "fsmc.h"
 #include "probe_regs.h"
 
-#define STOP_READS 10000 /* reads of STATUS; emptying the FIFO takes less than a few hundred */
+/* limit of reads of STATUS; emptying the FIFO takes less than a few hundred reads */
+#define STOP_READS 10000
 
 static U32 get(const Probe_Core* self, U32 word) {
     return FSMC_read(self->core.slot, word);
@@ -28,7 +30,7 @@ Hw_Status Probe_Core_init(Probe_Core* self, U32 slot, U32 memory, const Hw_Port*
     if (memory & ((1U << PROBE_LOG2_BYTES) - 1U))
         return HW_UNALIGNED;
     self->core.memory = memory;
-    set(self, PROBE_MASK, 0); /* callers poll the state */
+    set(self, PROBE_MASK, 0); /* no interrupts: callers poll the state */
     set(self, PROBE_BASE, memory);
     Probes_Probe_init(&self->servant);
     return HW_OK;

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * probe_servant: Probes::Probe (Probe.ice) by the core in a slot.
+ * probe_servant: implements Probes::Probe (Probe.ice) with the probe core in a slot.
  */
 #pragma once
 
 #include "Probe.h"
 #include "hw_core.h"
 
-#define PROBE_READ_BYTES 4096 /* size of a reply */
+#define PROBE_READ_BYTES 4096 /* greatest number of bytes in a reply */
 
 typedef struct Probe_Core {
     Probes_Probe servant;

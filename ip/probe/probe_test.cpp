@@ -31,7 +31,7 @@ protected:
         slot_.bench_.addModel([] {}, [this] { drive(); });
         EXPECT_EQ(Probe_Core_init(&core_, coreSlot, coreMemory, &slot_.port, &slot_), HW_OK);
     }
-    // The signals of the next clock: a few bits move in one clock of `quiet_`.
+    // Sets the signals of the next clock: on average a few bits change in one of `quiet_` clocks.
     void drive() {
         auto& top = slot_.bench_.top();
         ++cycles_;
@@ -67,8 +67,8 @@ protected:
         bool gap;
         Value value;
     };
-    // The ring, starting at its oldest change, with full clock counts computed from their low 32
-    // bits.
+    // Returns the changes in the ring, oldest first, with complete clock counts computed from their
+    // low 32 bits.
     std::vector<Change> capture(const Probes_State& s) {
         std::vector<Ice_Byte> bytes;
         auto read = [&](int first, int end) {
@@ -90,15 +90,15 @@ protected:
             for (unsigned i = 0; i < c.value.size(); ++i)
                 c.value[i] = w[i + 1] >> 1 | (i + 2 < 2 * words ? w[i + 2] << 31 : 0);
             c.value.back() &= 0x7FFFFFFFu;
-            // The first is within half a turn of the first signal.
+            // The first change is at most 2^31 clocks from the first signal.
             const uint64_t last = all.empty() ? given_.begin()->first : all.back().clock;
             c.clock = last + static_cast<uint32_t>(c.clock - last);
             all.push_back(c);
         }
         return all;
     }
-    // Each clock from the first change to the last has the test's value; clocks after a loss are
-    // unknown.
+    // Checks that each clock from the first change to the last has the value that the test applied;
+    // clocks after a loss are not checked.
     void expectGiven(const std::vector<Change>& all, bool loses = false) {
         unsigned found = 0;
         for (size_t i = 0; i < all.size(); ++i) {
@@ -154,7 +154,7 @@ TYPED_TEST(ProbeTest, ALevelThatIsThereTriggersAtOnce) {
 }
 
 TYPED_TEST(ProbeTest, AnEdgeIsNoLevel) {
-    this->quiet_ = 1u << 31; // no signal changes without a call
+    this->quiet_ = 1u << 31; // signals change only when the test calls
     auto become = [&](uint32_t value) {
         this->value_[0] = value;
         for (int i = 0; i < 50; ++i)
@@ -170,12 +170,12 @@ TYPED_TEST(ProbeTest, AnEdgeIsNoLevel) {
     EXPECT_EQ(this->finish().trigger, 3);
 }
 
-// No test covers whether probe.v's `settled` stops at 7 or wraps: a capture would end up to 7
-// clocks later, and flushing again has no effect.
+// No test detects whether `settled` in probe.v stops at 7 or wraps around: the capture would end up
+// to 7 clocks later, and a second flush has no effect.
 TYPED_TEST(ProbeTest, TheRingKeepsTheNewest) {
     this->quiet_ = 2 * this->words;
     ASSERT_EQ(this->arm(0, 1, true, static_cast<int>(this->ring) - 100),
-              ICE_OK); // mask 0: never an edge
+              ICE_OK); // mask 0: the condition is always met, so its edge never occurs
     for (unsigned i = 0; i < this->ring * 3 * this->words; ++i)
         this->slot_.tick();
     EXPECT_EQ(this->state().phase, Probes_armed);

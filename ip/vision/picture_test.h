@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// picture: grey-scale frames to look for corners in.
+// picture: generates grey-scale frames with corners, for tests.
 
 #pragma once
 
@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <vector>
 
-// Noise, flat areas, and bright and dark squares: corners of every kind.
+// Returns noise, flat areas, and bright and dark squares, which have corners of every kind.
 inline std::vector<uint8_t> picture(int width, int height, Random& random) {
     std::vector<uint8_t> pixels(static_cast<size_t>(width * height));
     for (auto& p : pixels)

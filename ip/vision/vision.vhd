@@ -23,7 +23,7 @@ entity vision is
     bus_error_o          : out std_logic;
     irq_o                : out std_logic;
     idle_o               : out std_logic; -- no frame is being processed or awaited
-    -- frames of another core, in buffers 1..3 (FOLLOW)
+    -- frames that another core offers, in buffers 1..3 (used with MODE.FOLLOW)
     frame_valid_i        : in  std_logic := '0';
     frame_index_i        : in  std_logic_vector(1 downto 0) := "00";
     frame_take_o         : out std_logic;
@@ -50,7 +50,8 @@ entity vision is
 end entity;
 
 architecture rtl of vision is
-  -- Steps from the newest pixel of a score to the score at vision_fast; vision_suppress adds two.
+  -- Steps from the newest pixel of a window until its score is at the output of vision_fast;
+  -- vision_suppress adds two.
   constant SCORE_DELAY : natural := 5;
   constant KEPT_DELAY  : natural := 2;
 
@@ -59,12 +60,13 @@ architecture rtl of vision is
 
   -- registers
   signal set_threshold : std_logic_vector(7 downto 0);
-  -- vision_memory takes these at START.
+  -- vision_memory loads these at START.
   signal frame_base, result_base : std_logic_vector(31 downto 0);
   signal frame_stride  : std_logic_vector(31 downto 0);
   signal follow        : std_logic;
   signal busy, done, done_pending, refused : std_logic;
-  signal taken         : std_logic_vector(1 downto 0); -- buffer of the last frame; 0: FRAME_BASE
+  signal taken         : std_logic_vector(1 downto 0); -- buffer of the last frame; 0: the frame was
+                                                       -- at FRAME_BASE
   signal set_width, set_height, set_result_max : std_logic_vector(15 downto 0);
   signal found, stored : unsigned(15 downto 0);
   -- settings of the current frame, loaded at START
@@ -73,35 +75,38 @@ architecture rtl of vision is
   signal height, result_max : unsigned(15 downto 0);
   signal cycles        : unsigned(31 downto 0);
   signal aborted, stop : std_logic;
-  -- Commands take effect one clock after their write, so that address decoder and frame control are
-  -- not one path. Other registers written in between do not affect this frame, as intended.
+  -- Commands take effect one clock after their write, so that the address decoder and the frame
+  -- control are not on one path. Writes to other registers in between intentionally do not affect
+  -- this frame.
   signal start, abort  : std_logic;
   signal written       : std_logic; -- a register was written, so size_ok is outdated
-  signal size_ok       : std_logic; -- check of the registers, one clock ago
+  signal size_ok       : std_logic; -- result of the check of the registers, one clock ago
   signal idle, offered, accept : std_logic;
-  signal go            : std_logic; -- one clock after `accept`; settings are loaded until then
+  signal go            : std_logic; -- one clock after `accept`; the settings are loaded until then
   signal first_pixel, memory_base : std_logic_vector(31 downto 0);
 
-  -- stream: column of the pixel being taken, and number of lines including this one; then column
-  -- and row of the score, and of vision_suppress's output
+  -- stream: x is the column of the pixel being taken, lines_left the number of lines including this
+  -- one; score_x, score_y and kept_x, kept_y are the positions of the score and of the output of
+  -- vision_suppress
   signal x             : unsigned(9 downto 0);
   signal lines_left    : unsigned(15 downto 0);
   signal score_x, kept_x : unsigned(9 downto 0);
   signal score_y, kept_y : unsigned(16 downto 0);
-  signal fill          : unsigned(3 downto 0); -- steps to the first score, then to the first kept
+  signal fill          : unsigned(3 downto 0); -- steps since the start, up to those that the first
+                                               -- kept score needs
   signal take, real_pixel, pixel_valid, pixel_take, last : std_logic;
   signal streaming     : std_logic; -- state = STREAM and not stop
-  -- `step` is `take` one clock later: everything after the window moves by this register, which has
-  -- a whole clock for its fan-out.
+  -- `step` is `take` one clock later. Everything after the window advances with this register,
+  -- which has a whole clock for its fan-out.
   signal step          : std_logic;
-  signal decide        : std_logic; -- a copy of step for all decisions, with a small fan-out
+  signal decide        : std_logic; -- a copy of step with a small fan-out, for all decisions
   signal step_x        : unsigned(9 downto 0);
   signal pixel, step_pixel : std_logic_vector(7 downto 0);
   signal window        : std_logic_vector(391 downto 0);
   signal raw_score, score, centre_score : unsigned(11 downto 0);
   signal kept, is_corner, record_ready, record_push, quiet : std_logic;
-  -- kept_y was in the frame one step ago: this only differs in the first column of a line, where
-  -- all scores are 0
+  -- kept_y was inside the frame one step ago. The delay matters only in the first column of a line,
+  -- where all scores are 0.
   signal in_frame      : std_logic;
   signal data          : std_logic_vector(63 downto 0);
   signal frame_x, frame_y : unsigned(15 downto 0);
@@ -146,7 +151,8 @@ begin
   done    <= quiet when state = DRAIN else '0';
   refused <= ((start and idle) or offered) and not size_ok;
 
-  -- The next frame waits until the results of the last one have been read: DONE is cleared.
+  -- The next frame starts only after the results of the last one have been read, which is when DONE
+  -- has been cleared.
   offered <= follow and frame_valid_i and not written and not done_pending
              and idle;
   idle   <= '1' when state = WAIT_FOR_START and go = '0' else '0';
@@ -184,17 +190,18 @@ begin
 
   -- ---- stream ----
 
-  -- Lines below the frame are generated: their scores are 0, but they push the last corners out. A
-  -- record may be pushed one step after record_ready_o has fallen, but this does not happen: of two
-  -- successive scores vision_suppress keeps at most one, the first only if it is not less, the
-  -- second only if it is greater.
+  -- After the last line of the frame, lines are generated: their scores are 0, but they push the
+  -- last corners out of the pipeline. A record may be pushed one step after record_ready_o has
+  -- fallen, but two records never follow in successive steps: of two successive scores
+  -- vision_suppress keeps at most one. It keeps the first only if the first is not less than the
+  -- second, and the second only if the second is greater.
   take       <= streaming and (pixel_valid or not real_pixel) and record_ready;
   pixel_take <= streaming and pixel_valid and real_pixel and record_ready;
 
   taking : process (clk_i)
   begin
     if rising_edge(clk_i) then
-      step   <= take; -- no reset; otherwise synthesis would merge the two
+      step   <= take; -- no reset, otherwise synthesis would merge step and decide
       decide <= take;
       step_x <= x;
       step_pixel <= pixel and (7 downto 0 => real_pixel);
@@ -219,14 +226,16 @@ begin
     end if;
   end process;
 
-  -- The window of a score begins with column 6 and line 6 of the stream: elsewhere it wraps round.
+  -- A score is valid only from column 6 and line 6 of the stream on: before, its window would
+  -- contain pixels of the end of the previous line.
   score <= raw_score when score_x >= 6 and score_y >= 6 and score_y < resize(height, 17) and
                           fill >= SCORE_DELAY else to_unsigned(0, 12);
 
-  -- Centre of the window in frame coordinates: three columns and lines before the kept score's.
+  -- Centre of the window in frame coordinates: three columns and three lines before the position of
+  -- the kept score.
   frame_x     <= resize(kept_x, 16) - 3;
   frame_y     <= resize(kept_y, 16) - 3;
-  -- The block RAMs hold lines of an older frame until the first lines have passed.
+  -- The block RAMs contain lines of an older frame until the first lines have passed.
   is_corner   <= decide and kept and in_frame when fill = SCORE_DELAY + KEPT_DELAY else '0';
   record_push <= is_corner when stored < result_max else '0';
   data        <= x"00000" & std_logic_vector(centre_score) &
@@ -305,12 +314,13 @@ begin
     end if;
   end process;
 
-  -- The centre is one line and one column before the score that entered KEPT_DELAY steps ago.
+  -- The centre is one line and one column before the score that entered vision_suppress KEPT_DELAY
+  -- steps ago.
   kept_position : process (clk_i)
   begin
     if rising_edge(clk_i) then
       if go = '1' then
-        -- Column and line of the first centre: one before (0, -1), as unsigned numbers.
+        -- Position of the first centre, one column before (0, -1), written as unsigned numbers.
         kept_x <= last_column;
         kept_y <= to_unsigned(131070, 17); -- -2
       elsif decide = '1' and fill = SCORE_DELAY + KEPT_DELAY then

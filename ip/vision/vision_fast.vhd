@@ -1,11 +1,12 @@
 -- SPDX-License-Identifier: MIT
 --
--- vision_fast: FAST-9 score of the window's centre: 0 if it is not a corner.
+-- vision_fast: computes the FAST-9 score of the pixel in the centre of the window: 0 if it is not a
+-- corner.
 --
 -- The 16 pixels of the circle of radius 3 are brighter (> centre + threshold), darker (< centre -
--- threshold) or neither. Nine consecutive pixels of one kind make a corner; its score is the sum of
--- their distances beyond the threshold over all pixels of that kind. It is valid three steps after
--- the window.
+-- threshold) or neither. Nine consecutive brighter, or nine consecutive darker, pixels make a
+-- corner. Its score is the sum, over all pixels of that kind, of their distance beyond the
+-- threshold. The score is valid three steps after the window.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -23,7 +24,7 @@ end entity;
 
 architecture rtl of vision_fast is
   type coordinates_t is array (0 to 15) of integer range 0 to 6;
-  -- Clockwise from above the centre.
+  -- Coordinates of the circle, clockwise, starting above the centre.
   constant CIRCLE_X : coordinates_t := (3, 4, 5, 6, 6, 6, 5, 4, 3, 2, 1, 0, 0, 0, 1, 2);
   constant CIRCLE_Y : coordinates_t := (0, 0, 1, 2, 3, 4, 5, 6, 6, 6, 5, 4, 3, 2, 1, 0);
 

@@ -2,8 +2,8 @@
 --
 -- vision_memory: reads the frame pixel by pixel, and writes the records, through one memory port.
 --
--- Reads are bursts of 128 bytes, at most two outstanding; records are written one word each, before
--- further reads.
+-- A read is a burst of 128 bytes; at most two reads are outstanding. A record is a write of one
+-- word; waiting records are written before further reads.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -13,11 +13,12 @@ entity vision_memory is
   port (
     clk_i          : in  std_logic;
     rst_i          : in  std_logic;
-    -- control
-    -- until start: the addresses are loaded in each cycle
+    -- frame control is idle; the addresses are loaded in each clock until start
     idle_i         : in  std_logic;
-    start_i        : in  std_logic;                     -- one cycle, the first without idle_i
-    stop_i         : in  std_logic;                     -- no further reads; later words are dropped
+    start_i        : in  std_logic;                     -- high for one clock, the first one without
+                                                        -- idle_i
+    stop_i         : in  std_logic;                     -- no further reads; words that arrive later
+                                                        -- are dropped
     frame_base_i   : in  std_logic_vector(31 downto 0);
     result_base_i  : in  std_logic_vector(31 downto 0);
     quiet_o        : out std_logic;                     -- no transfer is pending
@@ -25,8 +26,8 @@ entity vision_memory is
     pixel_valid_o  : out std_logic;
     pixel_o        : out std_logic_vector(7 downto 0);
     pixel_take_i   : in  std_logic;
-    -- records
-    -- only if record_ready_o was 1 one clock ago, and never in two successive clocks
+    -- a record; allowed only if record_ready_o was 1 one clock ago, and never in two successive
+    -- clocks
     record_push_i  : in  std_logic;
     record_i       : in  std_logic_vector(63 downto 0);
     record_ready_o : out std_logic;
@@ -48,13 +49,14 @@ end entity;
 architecture rtl of vision_memory is
   type state_t is (WAIT_FOR_WORK, WAIT_FOR_READ, WAIT_FOR_WRITE);
   signal state       : state_t;
-  signal active      : std_logic;              -- between start and stop
+  signal active      : std_logic;              -- high between start and stop
   signal read_addr   : unsigned(31 downto 7);
   signal write_addr  : unsigned(31 downto 3);
-  signal outstanding : unsigned(5 downto 0);   -- words requested and not popped yet
+  signal outstanding : unsigned(5 downto 0);   -- words requested and not yet popped
   signal word        : std_logic_vector(63 downto 0);
-  signal left        : std_logic_vector(7 downto 0); -- remaining bytes of `word`, one bit each
-  signal slot        : std_logic_vector(63 downto 0); -- a record that waits
+  signal left        : std_logic_vector(7 downto 0); -- one bit for each byte of `word` that has not
+                                                     -- been taken yet
+  signal slot        : std_logic_vector(63 downto 0); -- a record that waits to be written
   signal slot_full   : std_logic;
   signal pushed      : std_logic;
   signal pop, refill : std_logic;
@@ -120,7 +122,7 @@ begin
         word <= x"00" & word(63 downto 8);
         left <= '0' & left(7 downto 1);
       end if;
-      -- `word` may load invalid data: only `left` depends on a word in the port.
+      -- `word` may be loaded with invalid data: only `left` shows whether the port had a word.
       if refill = '1' then
         word <= npi_rd_data_i;
       end if;

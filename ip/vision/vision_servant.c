@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * vision_servant: HwProcessingEngine by the vision core: its registers through the FSMC.
+ * vision_servant: implements HwProcessingEngine with the registers of the vision core, accessed
+ * through the FSMC.
  */
 #include "vision_servant.h"
 #include "fsmc.h"
 #include "vision_regs.h"
 
-#define FRAME_TIMEOUT_MS 5000U /* a frame takes a tenth of that; a slower core hangs */
+#define FRAME_TIMEOUT_MS                                                     \
+    5000U /* a frame takes a tenth of this time; after it the core counts as \
+           * hung */
 
 enum { DONE, REFUSED }; /* events */
 
@@ -34,7 +37,7 @@ Hw_Status Vision_Core_init(Vision_Core* self, U32 slot, U32 memory, const Hw_Por
 
 void Vision_Core_interrupt(Vision_Core* self) {
     set(self, VISION_MODE,
-        0); /* one frame for each start: the next would overwrite these records */
+        0); /* Each start takes one frame, because another frame would overwrite these records. */
     Hw_Core_interrupt(&self->core);
 }
 
@@ -44,7 +47,7 @@ U32 Vision_Core_poll(Vision_Core* self, U32 nowMs) {
     return HW_NEVER;
 }
 
-/* Inserts a corner: strongest first; of equal ones the first in scan order comes first. */
+/* Inserts a corner into the list: strongest first; equal ones stay in scan order. */
 static void insert(Vision_Core* self, const Autopilot_Feature* f) {
     Ice_Int at = self->bestCount;
     if (at == VISION_BEST) {
@@ -87,7 +90,8 @@ static Ice_Status finishFrame(Vision_Core* self) {
             !self->core.done[REFUSED]) {
             set(self, VISION_MODE, 0);
             set(self, VISION_CONTROL, VISION_CONTROL_ABORT_MASK);
-            /* A hung core stays busy. A core that waits for a frame of the camera is idle again. */
+            /* A hung core stays busy. A core that only waits for a frame of the camera becomes
+             * idle. */
             self->busy = (get(self, VISION_STATUS) & VISION_STATUS_BUSY_MASK) != 0;
             return ICE_TIMEOUT;
         }

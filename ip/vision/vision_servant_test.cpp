@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// vision_servant_test: HwProcessingEngine by the core, through the FSMC driver.
+// vision_servant_test: tests HwProcessingEngine, computed by the core, through the FSMC driver.
 
 #include "Vvision_slot.h"
 #include "core_slot.h"
@@ -24,7 +24,7 @@ void frameProcessed(U32 corners) {
 }
 Hw_Frames frames;
 
-// Waits as the application does: one semaphore for all events.
+// Waits as the application does: on one semaphore for all events.
 int waitForAny(void* context, U32, U32 ms) {
     auto& slot = *static_cast<CoreSlot<Vvision_slot>*>(context);
     for (U32 i = 0; i < ms * coreClocksOfMs && !slot.posted_; ++i)
@@ -116,7 +116,7 @@ TEST_F(VisionServant, TakesTheCamerasFramesWhereThereIsOne) {
         ASSERT_EQ(start(), ICE_OK);
         top.frame_index_i = static_cast<uint8_t>(buffer);
         top.frame_valid_i = 1;
-        ASSERT_EQ(result(), ICE_OK); // another frame is offered, but each start takes one
+        ASSERT_EQ(result(), ICE_OK); // another frame is offered, but each start takes only one
         expectCorners();
     }
 }

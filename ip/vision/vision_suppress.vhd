@@ -1,10 +1,10 @@
 -- SPDX-License-Identifier: MIT
 --
--- vision_suppress: keeps a score only if it is the greatest in its 3 x 3 neighbourhood.
+-- vision_suppress: keeps a score only if it is the greatest in its 3 x 3 neighbourhood; other
+-- scores become 0.
 --
--- The first of equal neighbours in scan order is kept. A score that enters at column x leaves, kept
--- or as 0, one line and one column later; kept_o then belongs to the previous score in the line
--- above.
+-- Of equal neighbours the first in scan order is kept. The result for a score appears one line and
+-- one column after the score entered; kept_o then belongs to the previous score in the line above.
 
 library ieee;
 use ieee.std_logic_1164.all;

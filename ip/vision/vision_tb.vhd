@@ -1,6 +1,7 @@
 -- SPDX-License-Identifier: MIT
 --
--- vision_tb: the core as VHDL, with a memory that stalls, against the model's records.
+-- vision_tb: compares the records of the VHDL core with the model's records, with a memory that
+-- stalls.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -50,7 +51,7 @@ begin
     variable memory : bytes_t := (others => x"00");
     variable pushed : std_logic_vector(63 downto 0);
     variable read_at, left : natural := 0;
-    variable next_at, next_left : natural := 0; -- a second burst that waits
+    variable next_at, next_left : natural := 0; -- address and length of a second burst that waits
     variable random : natural := 1;
     variable l : line;
     variable n, x, y, score : integer;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// vision_test: the converted core against its model, with a memory that stalls.
+// vision_test: compares the core, converted to Verilog, with its model, with a memory that stalls.
 
 #include "Vvision_slot.h"
 #include "bench.h"
@@ -21,7 +21,7 @@ protected:
         Random random(testSeed());
         place(random);
     }
-    // Buffers anywhere in the address space, 1 MiB apart at least.
+    // Places the buffers at random addresses, at least 1 MiB apart.
     void place(Random& random) {
         do {
             frameBase_ = random.next() & ~(127u);
@@ -160,7 +160,8 @@ TEST_F(VisionTest, FollowsAnotherCoresFramesAndWaitsForItsReader) {
         bench_.tick();
         EXPECT_FALSE(top.frame_take_o) << "taken once";
         bench_.waitFor([&] { return top.irq_o; }, "the core's interrupt", 100000);
-        for (int i = 0; i < 50; ++i) { // the next frame is offered, but these results were not read
+        for (int i = 0; i < 50; ++i) { // the next frame is offered, but the results of this one
+                                       // have not been read
             EXPECT_FALSE(top.frame_take_o);
             bench_.tick();
         }

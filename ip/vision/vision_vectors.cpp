@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// vision_vectors: a random picture and the model's records, for the VHDL test bench.
-// Usage: vision_vectors folder seed. Writes picture.txt (a pixel a line) and records.txt (x y
-// score).
+// vision_vectors: writes a random picture and the model's records, for the VHDL test bench.
+// Usage: vision_vectors FOLDER SEED. Writes FOLDER/picture.txt (one pixel per line) and
+// FOLDER/records.txt (one line "x y score" per record).
 
 #include "random.h"
 #include "vision_model.h"

@@ -1,8 +1,10 @@
 -- SPDX-License-Identifier: MIT
 --
--- vision_window: keeps the last seven lines of a pixel stream as a 7 x 7 window that moves with it.
+-- vision_window: stores the last seven lines of a pixel stream and outputs a 7 x 7 window that
+-- moves with the stream.
 --
--- One block RAM holds six pixels per column. window_o is complete two steps after its newest pixel.
+-- One block RAM stores six pixels per column. window_o is complete two steps after its newest
+-- pixel.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -11,10 +13,12 @@ use ieee.numeric_std.all;
 entity vision_window is
   port (
     clk_i    : in  std_logic;
-    step_i   : in  std_logic;                    -- a pixel arrives, everything moves by one step
+    step_i   : in  std_logic;                    -- a pixel arrives, and everything advances by one
+                                                 -- step
     x_i      : in  unsigned(9 downto 0);         -- its column
     pixel_i  : in  std_logic_vector(7 downto 0);
-    -- bits 8 * (7 * row + column) + 7 downto ...; row 0 is the oldest line, column 0 the oldest
+    -- pixel (row, column) is in bits 8 * (7 * row + column) + 7 downto 8 * (7 * row + column); row
+    -- 0 is the oldest line, column 0 the oldest column
     window_o : out std_logic_vector(391 downto 0)
   );
 end entity;
@@ -22,7 +26,8 @@ end entity;
 architecture rtl of vision_window is
   type ram_t is array (0 to 1023) of std_logic_vector(47 downto 0);
   signal ram    : ram_t;
-  signal above  : std_logic_vector(47 downto 0); -- six older pixels of the column, newest lowest
+  signal above  : std_logic_vector(47 downto 0); -- the six older pixels of the column, the newest
+                                                 -- in the lowest bits
   signal pixel  : std_logic_vector(7 downto 0);
   signal x      : unsigned(9 downto 0);
   signal window : std_logic_vector(391 downto 0);
@@ -46,7 +51,7 @@ begin
   begin
     if rising_edge(clk_i) then
       if step_i = '1' then
-        column := above & pixel; -- oldest line highest
+        column := above & pixel; -- the oldest line in the highest bits
         for row in 0 to 6 loop
           window(56 * row + 47 downto 56 * row) <= window(56 * row + 55 downto 56 * row + 8);
           window(56 * row + 55 downto 56 * row + 48) <= column(55 - 8 * row downto 48 - 8 * row);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// ascon_model: Ascon-AEAD128 and Ascon-Hash256 on the host, written from NIST SP 800-232: the
-// core's reference.
+// ascon_model: reference for the core: Ascon-AEAD128 and Ascon-Hash256 on the host, written from
+// NIST SP 800-232.
 
 #pragma once
 
@@ -10,7 +10,7 @@
 #include <vector>
 
 using AsconBytes = std::vector<uint8_t>;
-using AsconKey = std::array<uint8_t, 16>; // also a nonce, and a tag
+using AsconKey = std::array<uint8_t, 16>; // type of a key, of a nonce and of a tag
 struct AsconSealed {
     AsconBytes text;
     AsconKey tag;

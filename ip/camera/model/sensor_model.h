@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// sensor_model: the parallel port of an image sensor: its pins at each pixel clock, with faults on
-// request.
+// sensor_model: models the parallel port of an image sensor: returns the levels of its pins at each
+// pixel clock, and inserts faults on request.
 
 #pragma once
 
@@ -15,14 +15,14 @@ public:
         bool vsync = true, href = false;
         uint8_t data = 0;
     };
-    // Blanking in pixel clocks: before each frame, after each line.
+    // Blanking before each frame and after each line, in pixel clocks.
     struct Blanking {
         int frame = 60, line = 9;
     };
     struct Defect {
         int line = -1;  // current line
-        int pixels = 0; // .. this many pixels more, or less if negative
-        int lines = 0;  // this many lines more, or less if negative
+        int pixels = 0; // number of additional pixels in that line; missing pixels if negative
+        int lines = 0;  // number of additional lines in the frame; missing lines if negative
     };
 
     explicit SensorModel(Blanking blanking) : blanking_(blanking) {}
@@ -45,7 +45,8 @@ public:
         }
     }
     bool isIdle() const { return pins_.empty(); }
-    // Returns the pins at the next pixel clock; idle pins after all frames.
+    // Returns the levels of the pins at the next pixel clock; the pins are idle after the last
+    // frame.
     Pins next() {
         if (pins_.empty())
             return {};

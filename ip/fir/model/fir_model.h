@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// fir_model: the FIR filter's results on the host, bit by bit: the sum as the definition has it
-// (ip/fir/README.md).
+// fir_model: computes the results of the FIR filter on the host, exact to the bit, directly from
+// the definition (ip/fir/README.md).
 
 #pragma once
 
@@ -14,7 +14,7 @@ class FirModel {
 public:
     static constexpr size_t taps = 16;
 
-    std::array<int32_t, taps> coefficients{}; // 18 bits, of the newest sample first
+    std::array<int32_t, taps> coefficients{}; // 18 bits each; index 0 belongs to the newest sample
     unsigned shift = 0;                       // 0..31
     unsigned saturations = 0;
 
@@ -26,7 +26,7 @@ public:
         int64_t sum = 0;
         for (size_t k = 0; k < history_.size(); ++k)
             sum += int64_t(history_[k].coefficients[k]) * history_[k].sample;
-        // Floor of (sum + half) / 2^shift: to nearest, halves up.
+        // floor((sum + half) / 2^shift): rounds to nearest, halves up.
         int64_t unit = int64_t(1) << shift, value = sum + unit / 2;
         value = value >= 0 ? value / unit : -((-value + unit - 1) / unit);
         if (value > INT16_MAX || value < INT16_MIN) {
@@ -39,7 +39,7 @@ public:
 private:
     struct Past {
         int16_t sample;
-        std::array<int32_t, taps> coefficients; // as they were when the sample arrived
+        std::array<int32_t, taps> coefficients; // the coefficients when the sample arrived
     };
     std::deque<Past> history_; // newest first
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// vision_model: the vision core's result, computed on the host, bit by bit (ip/vision/README.md):
-// FAST-9 and non-maximum suppression, written for clearness.
+// vision_model: computes the result of the vision core on the host, exact to the bit
+// (ip/vision/README.md): FAST-9 and non-maximum suppression. Written for clarity, not speed.
 
 #pragma once
 
@@ -42,7 +42,7 @@ inline int scoreAt(const uint8_t* pixels, int width, int x, int y, int threshold
     return 0;
 }
 
-// Corners in scan order. `pixels`: width * height bytes, line by line.
+// Returns the corners in scan order. `pixels`: width * height bytes, line by line.
 inline std::vector<Feature> detectCorners(const uint8_t* pixels, int width, int height,
                                           int threshold) {
     std::vector<int> scores(static_cast<size_t>(width * height));
@@ -67,8 +67,7 @@ inline std::vector<Feature> detectCorners(const uint8_t* pixels, int width, int 
     return found;
 }
 
-// Returns the strongest `count`, strongest first; of equal ones the first in scan order comes
-// first.
+// Returns the `count` strongest features, strongest first; equal ones stay in scan order.
 inline std::vector<Feature> strongest(std::vector<Feature> features, size_t count) {
     std::stable_sort(features.begin(), features.end(),
                      [](const Feature& a, const Feature& b) { return a.score > b.score; });

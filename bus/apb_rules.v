@@ -18,7 +18,7 @@ module apb_rules #(
     input wire [31:0]           pwdata_i,
     input wire [3:0]            pstrb_i,
     input wire                  pready_i,
-    input wire                  abort_i // the requester may end the transfer in the next clock
+    input wire                  abort_i // the requester may abandon the transfer in the next clock
 );
     reg past = 1'b0;
     always @(posedge clk_i) begin

@@ -17,7 +17,7 @@ module bus_crossing #(
 ) (
     `include "slot_ports.vh"
     output wire        irq_o,
-    // the core: its clock, and the slot's signals in this clock
+    // the core's clock, and the signals of the slot in this clock domain
     input  wire        core_clk_i,
     output wire        core_rst_o,
     output wire        core_valid_o,
@@ -30,11 +30,11 @@ module bus_crossing #(
     input  wire        core_irq_i
 );
     // ---- clk_i
-    reg       owes;     // a request has been sent and is not answered yet
-    reg       asked;    // the current access has sent that request
-    // a clock after the answer: an interrupt that the access has ended is low by now
+    reg       owes;     // a request was sent to the core, and the core has not answered yet
+    reg       asked;    // the current access has sent the request that is pending
+    // the answer arrived one clock ago: an interrupt that the access has ended is low by now
     reg       answered;
-    reg       deaf;     // the last access timed out
+    reg       deaf;     // the last access timed out, and the core has not answered yet
     reg [7:0] patience;
     wire      handed, irq, error;
     wire [31:0] rdata;
@@ -71,8 +71,8 @@ module bus_crossing #(
     assign core_valid_o = busy && !core_rst_o;
     always @(posedge core_clk_i) begin
         busy     <= begins || (busy && !ends);
-        ended    <= ends;       // follows the access's effect on the interrupt
-        core_irq <= core_irq_i; // a flip-flop: no glitch of a LUT may cross
+        ended    <= ends;       // one clock after the access takes effect on the interrupt
+        core_irq <= core_irq_i; // a flip-flop, because a glitch of a LUT must not cross
         if (ends)
             answer <= {core_error_i || core_rst_o, core_rdata_i};
     end
@@ -114,7 +114,7 @@ module bus_crossing #(
         .addr_i({6'd0, bus_addr_i}), .wdata_i(bus_wdata_i), .ready_i(bus_ready_o),
         .rdata_i(bus_rdata_o), .error_i(bus_error_o));
     reg past = 1'b0;
-    reg [15:0] used = 16'd0; // clocks the access has waited before this one
+    reg [15:0] used = 16'd0; // number of clocks the access has waited before this one
     initial assume (rst_i);
     always @(posedge clk_i) begin
         past <= 1'b1;

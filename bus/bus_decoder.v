@@ -21,7 +21,7 @@ module bus_decoder #(
     output wire                bus_ready_o,
     output wire [31:0]         bus_rdata_o,
     output wire                bus_error_o,
-    // slots: 1, 4 or 32 bits per slot
+    // slots: 1, 4 or 32 bits per slot, slot 0 in the lowest bits
     output wire [SLOTS-1:0]    slot_valid_o,
     output wire                slot_write_o,
     output reg  [4*SLOTS-1:0]  slot_addr_o,
@@ -44,9 +44,9 @@ module bus_decoder #(
         write  <= bus_write_i;
     end
 
-    // Up to three slots an AND-OR is a LUT a bit. Above three, 8:1 multiplexers, two LUTs and a
-    // MUXF7 a bit, choose within groups of eight, and an AND-OR among the groups. Zeros fill the
-    // last group.
+    // With up to three slots, the answers are combined by AND and OR, one LUT per bit. With more,
+    // each group of eight slots has an 8:1 multiplexer (two LUTs and a MUXF7 per bit), and the
+    // groups are combined by AND and OR. Zeros fill the last group.
     generate
         if (SLOTS < 4) begin : g_few
             reg [31:0] rdata;
@@ -60,9 +60,10 @@ module bus_decoder #(
         end else begin : g_many
             localparam GROUPS = (SLOTS + 7) / 8;
             reg [2:0]            index;
-            // the selected group; a single one with room for zeros is always selected
+            // one bit per group: it is selected; a single incomplete group is always selected
             reg [GROUPS-1:0]     group;
-            reg [256*GROUPS-1:0] left;  // each bit of the number halves each group
+            reg [256*GROUPS-1:0] left;  // each bit of the slot number halves the candidates of each
+                                        // group
             reg [31:0]           rdata;
             integer g, b, i;
             always @(posedge clk_i) begin
@@ -96,8 +97,8 @@ module bus_decoder #(
     // The rules of the master are assumed. The registers here depend only on the previous clock, so
     // the properties hold for all inputs.
     reg             past = 1'b0;
-    reg [10:0]      shown; // address and direction, a clock ago
-    reg [SLOTS-1:0] one;   // any one slot
+    reg [10:0]      shown; // address and direction presented one clock ago
+    reg [SLOTS-1:0] one;   // any one slot, one-hot
     integer k;
     always @(posedge clk_i) begin
         past  <= 1'b1;

@@ -30,7 +30,7 @@ module bus_registers #(
     input  wire [32*13-1:0]  value_i,
     output wire [12:0]       strobe_o,
     output wire [31:0]       wdata_o,
-    input  wire [EVENTS-1:0] event_i, // one cycle each
+    input  wire [EVENTS-1:0] event_i, // events, high for one cycle each
     output wire              irq_o
 );
     wire        reg_write, reg_read;
@@ -44,7 +44,7 @@ module bus_registers #(
         .event_i(event_i), .irq_o(irq_o)
     );
 
-    wire [32*13-1:0] shown; // read value of each word
+    wire [32*13-1:0] shown; // value that a read of each word returns
     genvar w;
     generate
         for (w = 3; w < 16; w = w + 1) begin : g_word

@@ -24,13 +24,13 @@ module bus_rules #(
 );
 `ifdef FORMAL
     reg        past   = 1'b0;
-    reg [15:0] waited = 16'd0; // clocks for which valid has waited before this one
+    reg [15:0] waited = 16'd0; // number of clocks for which valid has waited before this one
     always @(posedge clk_i) begin
         past   <= 1'b1;
         waited <= valid_i && !ready_i && !rst_i ? waited + (waited != 16'hFFFF) : 16'd0;
     end
 
-    reg waiting = 1'b0; // a transfer was wanted and not answered in the clock before
+    reg waiting = 1'b0; // valid was high in the previous clock, and ready was not
     reg ended   = 1'b0; // a transfer happened in the clock before
     reg        write_was;
     reg [9:0]  addr_was;
@@ -42,7 +42,7 @@ module bus_rules #(
         addr_was  <= addr_i;
         wdata_was <= wdata_i;
     end
-    // The counter and the flag agree: an induction hint.
+    // Hint for induction: the counter and the flag agree.
     always @*
         assert (waiting == (waited != 16'd0));
 
@@ -50,7 +50,7 @@ module bus_rules #(
     wire stable    = !waiting || !valid_i
                      || (write_i == write_was && addr_i == addr_was &&
                          (!write_i || wdata_i == wdata_was));
-    // The address and the direction precede valid by a clock: the decoder relies on it.
+    // The address and the direction precede valid by one clock, because the decoder registers them.
     wire early     = !valid_i || !past || (addr_i == addr_was && write_i == write_was);
     // Valid is low between two transfers, because a write may take a clock to take effect.
     wire paused    = !valid_i || !ended;
@@ -67,7 +67,7 @@ module bus_rules #(
                 assert (paused);
                 assert (!withdrawn);
                 assume (!leaking);
-                // A slave may hang, so `late` is not excluded by an assumption.
+                // A slave may hang, so an assumption does not exclude `late`.
             end
         end else begin : g_slave
             always @* if (!rst_i) begin

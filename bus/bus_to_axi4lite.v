@@ -42,7 +42,7 @@ module bus_to_axi4lite #(
     wire [ADDR_WIDTH-1:0] addr;
     wire [31:0] wdata;
     reg  [ADDR_WIDTH-1:2] address;
-    reg  open; // a transfer has begun and its response is missing; no other access starts
+    reg  open; // a transfer has begun and its response has not arrived; no other access starts
 
     wire response = (axi_bvalid_i && axi_bready_o) || (axi_rvalid_i && axi_rready_o);
 
@@ -89,9 +89,9 @@ module bus_to_axi4lite #(
 
     wire unused = &{1'b0, addr[1:0], axi_bresp_i[0], axi_rresp_i[0], 1'b0};
 
-`ifdef RULES // for proofs and for tests of cores
-    // AXI4-Lite's handshakes as properties of a master (ARM IHI 0022, A3.1-A3.3, B1.1). The slave's
-    // side is assumed, with all its freedom: ready before, with or after valid, a response at any
+`ifdef RULES // included for proofs and for tests of cores
+    // Handshakes of AXI4-Lite as properties of a master (ARM IHI 0022, A3.1-A3.3, B1.1). The slave
+    // is assumed to use all its freedom: ready before, with or after valid, and a response at any
     // later time, or never.
     reg past = 1'b0;
     reg aw_taken = 1'b0, w_taken = 1'b0, ar_taken = 1'b0;
@@ -107,19 +107,19 @@ module bus_to_axi4lite #(
     end
 `ifdef FORMAL
     always @* if (!rst_i) begin
-`else // a simulator has glitches
+`else // in simulation the checks are clocked, because combinational signals have glitches
     always @(posedge clk_i) if (past && !rst_i) begin
 `endif
-        // Master: one transfer of each kind at a time.
+        // Master: at most one write and one read at a time.
         assert (!(axi_awvalid_o && aw_taken));
         assert (!(axi_wvalid_o && w_taken));
         assert (!(axi_arvalid_o && ar_taken));
-        // Slave (A3.3.1): no response before all of its transfer was taken.
+        // Slave (A3.3.1): responds only after it has taken the complete transfer.
         assume (!axi_bvalid_i || write_open);
         assume (!axi_rvalid_i || ar_taken);
     end
     always @(posedge clk_i) begin
-        if (past && $past(rst_i)) // A3.1.2: no valid after reset
+        if (past && $past(rst_i)) // A3.1.2: valid is low after a reset
             assert (!axi_awvalid_o && !axi_wvalid_o && !axi_arvalid_o);
         if (past && !rst_i && !$past(rst_i)) begin
             // A3.2.1: once valid is high, it stays high and the payload is stable until ready
@@ -138,7 +138,7 @@ module bus_to_axi4lite #(
     end
 `endif
 `ifdef FORMAL
-    // Each answered access is answered by its transfer, with the core's response.
+    // Each answered access was answered by its own transfer, with the core's response.
     wire window = bus_valid_i && bus_addr_i[3] && bus_ready_o && !bus_error_o;
     always @* if (!rst_i && window) begin
         assert (open && address[4:2] == bus_addr_i[2:0]);
@@ -146,14 +146,14 @@ module bus_to_axi4lite #(
                             : axi_rvalid_i && !axi_rresp_i[1] && bus_rdata_o == axi_rdata_i);
         assert (bus_write_i ? write_open : ar_taken);
     end
-    always @* begin // complete words of data
+    always @* begin // accesses to a data word write complete words
         assert (axi_wstrb_o == 4'hF && {axi_awprot_o, axi_arprot_o} == 6'd0);
         assert ({axi_awaddr_o[1:0], axi_araddr_o[1:0]} == 4'd0);
         if (!rst_i && bus_valid_i && bus_addr_i[3] && busy && open &&
             (bus_write_i ? axi_bvalid_i : axi_rvalid_i))
             assert (bus_ready_o); // the first response ends the access
     end
-    reg was_late = 1'b0; // a late response has been thrown away
+    reg was_late = 1'b0; // a late response has been discarded
     always @(posedge clk_i)
         was_late <= !rst_i && (was_late || (!busy && response));
     always @* if (!rst_i) begin

@@ -28,12 +28,12 @@ module bus_to_wishbone #(
     input  wire                  wb_ack_i,
     input  wire                  wb_err_i,
     input  wire                  wb_rty_i,
-    input  wire                  wb_stall_i, // classic: not used
+    input  wire                  wb_stall_i, // not used in classic mode
     input  wire                  irq_i       // interrupt line of the core, a level in clk_i
 );
     wire busy;
     reg  accepted; // pipelined: the core has taken the strobe
-    reg  pause;    // after RTY: one clock without CYC
+    reg  pause;    // one clock without CYC after RTY
 
     bus_window #(.ID_VALUE(ID_VALUE), .ADDR_WIDTH(ADDR_WIDTH), .TIMEOUT(TIMEOUT)) u_window (
         `include "slot_connect.vh"
@@ -51,7 +51,7 @@ module bus_to_wishbone #(
         accepted <= PIPELINED != 0 && wb_cyc_o && !wb_ack_i && !wb_err_i && !wb_rty_i
                     && (accepted || !wb_stall_i);
         pause    <= wb_cyc_o && wb_rty_i && !wb_ack_i && !wb_err_i;
-        // The access may end by time-out: the next one starts afresh.
+        // The access may end by time-out: the next access starts a new cycle.
         if (rst_i || (bus_valid_i && bus_ready_o)) begin
             accepted <= 1'b0;
             pause    <= 1'b0;
@@ -60,11 +60,11 @@ module bus_to_wishbone #(
 
     wire unused = &{1'b0, wb_stall_i, 1'b0};
 
-`ifdef RULES // for proofs and for tests of cores
+`ifdef RULES // included for proofs and for tests of cores
     // The Wishbone B4 handshakes as properties of a master with one transfer at a time. Numbers are
     // rule numbers of the standard (B4, 2010). The slave's behaviour is assumed.
     reg past = 1'b0;
-    reg outstanding = 1'b0; // pipelined: a strobe was taken and not answered
+    reg outstanding = 1'b0; // pipelined: a strobe was taken and is not answered yet
     // the cycle may end without an answer in the next clock
     wire abort  = !bus_valid_i || bus_ready_o;
     wire answer = wb_ack_i || wb_err_i || wb_rty_i;
@@ -77,15 +77,18 @@ module bus_to_wishbone #(
 
 `ifdef FORMAL
     always @* if (!rst_i) begin
-`else // a simulator has glitches
+`else // in simulation the checks are clocked, because combinational signals have glitches
     always @(posedge clk_i) if (past && !rst_i) begin
 `endif
-        assert (!wb_stb_o || wb_cyc_o);              // 3.25: CYC whenever STB
-        assert (!(wb_stb_o && outstanding));      // one at a time
-        assume (wb_ack_i + wb_err_i + wb_rty_i <= 1); // 3.45: one of ACK, ERR, RTY
-        // 3.55: outside a cycle a slave may hold its answer, so nothing is assumed then.
+        assert (!wb_stb_o || wb_cyc_o);              // 3.25: CYC is high whenever STB is
+        assert (!(wb_stb_o && outstanding));      // at most one transfer at a time
+        assume (wb_ack_i + wb_err_i + wb_rty_i <= 1); // 3.45: at most one of ACK, ERR and RTY is
+                                                      // high
+        // 3.55: outside a cycle the slave may keep its answer signals high, so nothing is assumed
+        // about them then.
         if (PIPELINED != 0 && wb_cyc_o && !outstanding && !taken)
-            assume (!answer);                   // 3.35: no answer before the strobe was taken
+            assume (!answer);                   // 3.35: the slave answers only after it has taken
+                                                // the strobe
     end
     always @(posedge clk_i) begin
         if (past && $past(rst_i))
@@ -97,20 +100,20 @@ module bus_to_wishbone #(
                 assert (wb_we_o == $past(wb_we_o) && wb_adr_o == $past(wb_adr_o));
                 assert (!wb_we_o || wb_dat_o == $past(wb_dat_o));
             end
-            // a taken strobe keeps the cycle open until its answer
+            // after a strobe was taken, the cycle stays open until its answer
             if ($past(PIPELINED != 0 && wb_cyc_o && (outstanding || taken) && !answer && !abort))
                 assert (wb_cyc_o);
         end
     end
 `endif
 `ifdef FORMAL
-    // Each answered access has had one strobe taken, and its answer is passed on unchanged.
+    // For each answered access exactly one strobe was taken, and its answer is passed on unchanged.
     always @* if (!rst_i && bus_valid_i && bus_addr_i[3] && bus_ready_o && !bus_error_o) begin
         assert (wb_cyc_o && wb_ack_i && !wb_err_i && bus_rdata_o == wb_dat_i);
         assert (wb_we_o == bus_write_i && wb_adr_o[4:2] == bus_addr_i[2:0]);
         assert (wb_stb_o || outstanding);
     end
-    always @* if (!rst_i) begin // complete words of the window
+    always @* if (!rst_i) begin // accesses to a word of the window write complete words
         assert (wb_sel_o == 4'hF && wb_adr_o[1:0] == 2'd0);
         assert (!wb_cyc_o || (bus_valid_i && bus_addr_i[3]));
         if (bus_valid_i && bus_addr_i[3] && wb_cyc_o)

@@ -22,7 +22,7 @@ module bus_window #(
 ) (
     `include "slot_ports.vh"
     output wire                  irq_o,
-    // the adapter: busy_o is high, with the other outputs stable, until done_i or the time-out
+    // to the adapter: busy_o stays high, and the other outputs stable, until done_i or the time-out
     input  wire                  idle_i,
     output reg                   busy_o,
     output wire                  write_o,
@@ -36,7 +36,8 @@ module bus_window #(
 );
     generate
         if (ADDR_WIDTH < 3 || ADDR_WIDTH > 32 || TIMEOUT < 1 || TIMEOUT > 255) begin : g_refused
-`ifdef VERILATOR // as in npi_arbiter
+`ifdef VERILATOR // as in npi_arbiter: $error for Verilator, the name of an unknown module for
+                 // others
             $error("bus_window: ADDR_WIDTH is 3..32, TIMEOUT 1..255");
 `elsif YOSYS
             $error("bus_window: ADDR_WIDTH is 3..32, TIMEOUT 1..255");
@@ -47,7 +48,7 @@ module bus_window #(
     endgenerate
 
     localparam [3:0] PAGE = 4'd3;
-    localparam WIDTH = ADDR_WIDTH > 5 ? ADDR_WIDTH : 6; // at least one page
+    localparam WIDTH = ADDR_WIDTH > 5 ? ADDR_WIDTH : 6; // at least one page, which has 32 bytes
 
     wire        own_ready, own_error, reg_write, reg_read;
     wire [31:0] own_rdata;
@@ -112,7 +113,7 @@ module bus_window #(
         .addr_i({6'd0, bus_addr_i}), .wdata_i(bus_wdata_i), .ready_i(bus_ready_o),
         .rdata_i(bus_rdata_o), .error_i(bus_error_o));
     reg past = 1'b0;
-    reg [15:0] used = 16'd0; // clocks the access has waited before this one
+    reg [15:0] used = 16'd0; // number of clocks the access has waited before this one
     (* hierconn *) wire [1:0] \u_wrapper.event_i ;
     wire answered = busy_o && done_i;
     always @(posedge clk_i)
@@ -134,15 +135,16 @@ module bus_window #(
         cover (past && !rst_i && given_up && answered && !error_i);
     end
     always @* if (!rst_i) begin
-        assert (!busy_o || wanted);          // it never lasts longer than the access
+        assert (!busy_o || wanted);          // a request to the adapter never lasts longer than the
+                                             // access
         assert (patience + used == TIMEOUT);
         if (bus_valid_i && !bus_write_i && bus_addr_i == PAGE)
             assert (bus_rdata_o == page_value);
         assert (!busy_o ||
                 (write_o == bus_write_i && addr_o == {page, bus_addr_i[2:0], 2'b00} &&
                  wdata_o == bus_wdata_i));
-        // It ends by the core's answer, which may be an error, or by the time-out, which sets an
-        // event.
+        // An access ends with the core's answer, which may be an error, or with the time-out, which
+        // sets an event.
         if (wanted) begin
             assert (bus_ready_o == (answered || used == TIMEOUT));
             assert (bus_error_o == !(answered && !error_i));

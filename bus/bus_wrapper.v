@@ -19,7 +19,7 @@ module bus_wrapper #(
     parameter        EVENTS   = 1         // number of events, 1..32
 ) (
     `include "slot_ports.vh"
-    // the block registers
+    // access to the registers of the block
     output wire              reg_write_o,
     output wire              reg_read_o,
     output wire [3:0]        reg_addr_o,
@@ -79,7 +79,8 @@ module bus_wrapper #(
     always @(posedge clk_i) begin
         past <= 1'b1;
         if (past && !$past(rst_i)) begin
-            // No event is lost, whatever is cleared at the same time; the mask follows writes only.
+            // No event is lost, even if it arrives while others are cleared; the mask changes only
+            // by writes.
             assert (sticky ==
                     (($past(sticky) &
                       ~($past(writes && bus_addr_i == EVENT) ? $past(bus_wdata_i[EVENTS-1:0]) :
@@ -94,11 +95,12 @@ module bus_wrapper #(
         cover (past && !rst_i && irq_o && write && bus_addr_i == EVENT && |(event_i & clear));
     end
     always @* begin
-        // A word that does not exist never strobes a register of the block: the access is an error.
+        // An access to a word that does not exist is an error and never strobes a register of the
+        // block.
         assert ({reg_write_o, reg_read_o} ==
                 ({writes, bus_valid_i && !bus_write_i} & {2{bus_addr_i > MASK && !bus_error_o}}));
         assert (bus_error_o == (bus_addr_i > MASK && !WORDS[bus_addr_i]));
-        // A read returns the wrapper's word, the block's word, or 0.
+        // A read returns the wrapper's word, the block's word, or 0 if the word does not exist.
         if (bus_addr_i > MASK)
             assert (bus_rdata_o == (exists ? reg_rdata_i : 32'd0));
         else

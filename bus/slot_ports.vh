@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// slot_ports: clock, reset and register bus of a core in a slot (docs/bus.md), to be included at
-// the beginning of a port list, before irq_o, a memory port (memory_ports.vh) and pins.
+// slot_ports: clock, reset and register bus of a core in a slot (docs/bus.md). Include it at the
+// beginning of a port list, before irq_o, the memory port (memory_ports.vh) and pins.
 
     input  wire        clk_i,
     input  wire        rst_i,

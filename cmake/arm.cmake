@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 #
-# arm.cmake: compiles C90 and assembly for the Cortex-M3 with GCC's bare-metal toolchain, in
-# addition to the build for the host.
+# arm.cmake: compiles C90 and assembly for the Cortex-M3 with GCC's bare-metal toolchain. The same
+# sources are also compiled for the host elsewhere.
 
 icesoc_needs(gcc-arm-none-eabi ARM_GCC program arm-none-eabi-gcc)
 icesoc_needs(binutils-arm-none-eabi ARM_SIZE program arm-none-eabi-size)
@@ -42,9 +42,8 @@ function(icesoc_arm_objects out name)
   set(${out} ${objects} PARENT_SCOPE)
 endfunction()
 
-# icesoc_arm_program(NAME SCRIPT file.ld OBJECTS ... [OPTIONS ...])
-# Links NAME.elf with its map in ${CMAKE_BINARY_DIR}/firmware, stamped with its checksum; target
-# firmware_NAME.
+# icesoc_arm_program(NAME SCRIPT file.ld OBJECTS ... [OPTIONS ...]): target firmware_NAME, which
+# links NAME.elf, with its checksum inside, and a map file in ${CMAKE_BINARY_DIR}/firmware.
 function(icesoc_arm_program name)
   cmake_parse_arguments(A "" "SCRIPT" "OBJECTS;OPTIONS" ${ARGN})
   set(dir ${CMAKE_BINARY_DIR}/firmware)

@@ -12,7 +12,7 @@ set(MANIFEST_FILES ${REGMAP_FILES} ${TOOLS}/chip/manifest.py ${TOOLS}/chip/core.
   ${TOOLS}/util/schema.py ${TOOLS}/util/templates.py)
 file(GLOB MAP_TEMPLATES CONFIGURE_DEPENDS ${TOOLS}/chip/templates/*.j2)
 
-# Names in the list, for parts that are built only with a core: if("vision" IN_LIST CHIP_CORES)
+# Names of the cores in the list. Parts that need a core test it: if("vision" IN_LIST CHIP_CORES)
 set(CHIP_CORES)
 set(instances 0)
 set_property(DIRECTORY ${CMAKE_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CORES})
@@ -24,10 +24,10 @@ foreach(line IN LISTS lines)
   endif()
 endforeach()
 list(REMOVE_DUPLICATES CHIP_CORES)
-# The object adapter has room for the servants of all cores in addition to the vehicle's servants: 8
-# servants by default (sw/icec/ice_config.h), more if there are more, on the host (the library icec)
-# and, by ARM_DEFINES, in the firmware. Each of them has four connections for a ground station, a
-# second one and another vehicle.
+# Number of servants in the object adapter: the vehicle's and those of all cores, but at least 8,
+# the default (sw/icec/ice_config.h). It is set for the library icec on the host and, in
+# ARM_DEFINES, for the firmware. Connections: four each for a ground station, a second one and
+# another vehicle.
 set(ARM_DEFINES ICE_CONNECTIONS=12)
 set(header ${CMAKE_SOURCE_DIR}/sw/vehicle/uav_tasks.h)
 set_property(DIRECTORY ${CMAKE_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${header})
@@ -38,8 +38,8 @@ if(servants GREATER 8)
   list(APPEND ARM_DEFINES ICE_SERVANTS=${servants})
 endif()
 
-# Parts of icesoc_core, in its scope: C code from a Slice file, in a folder of GEN_DIR; registers,
-# wrapper and servant; a separate clock; the block test.
+# Macros used by icesoc_core, in its scope, one for each part of a core: C code from a Slice file,
+# in a folder of GEN_DIR; registers, wrapper and servant; a separate clock; the block test.
 macro(icesoc_core_slice folder file)
   get_filename_component(base ${file} NAME_WE)
   set(slice ${GEN_DIR}/slice/${folder})
@@ -157,8 +157,9 @@ macro(icesoc_core_test)
   endif()
 endmacro()
 
-# icesoc_read_manifests(FILE...): reads manifests for icesoc_core(), which reads its own if needed.
-# Starting Python takes longer than reading, so a folder of cores is read at once.
+# icesoc_read_manifests(FILE...): reads the manifests of several cores for icesoc_core(), which
+# otherwise reads the manifest itself. Starting Python takes longer than reading, so all manifests
+# of a folder are read in one call.
 function(icesoc_read_manifests)
   execute_process(COMMAND ${PYTHON} -m icesoc.chip.manifest ${ARGN}
     OUTPUT_VARIABLE facts ERROR_VARIABLE error RESULT_VARIABLE status)
@@ -195,7 +196,7 @@ function(icesoc_core)
     set_property(GLOBAL APPEND PROPERTY ICESOC_IDLE_CORES ${name})
   endif()
   set(files ${A_VERILOG})
-  set(headers ${A_VERILOG}) # found by `include
+  set(headers ${A_VERILOG}) # headers are found by `include, so they are not sources
   list(FILTER files EXCLUDE REGEX "[.]([sS]?[vV]?[hH]|[iI][nN][cC])$")
   list(FILTER headers INCLUDE REGEX "[.]([sS]?[vV]?[hH]|[iI][nN][cC])$")
   set(targets ${A_DEPENDS})
@@ -215,7 +216,7 @@ function(icesoc_core)
                 ${CMAKE_SOURCE_DIR}/hdl/ddr/npi_stream_pkg.vhd ${registers})
     list(APPEND files ${GEN_DIR}/${name}.v)
     list(APPEND targets ${name}_verilog)
-    list(APPEND A_FLAGS -Wno-PINCONNECTEMPTY) # GHDL's way to write `open`
+    list(APPEND A_FLAGS -Wno-PINCONNECTEMPTY) # GHDL's way to write an `open` port
   endif()
   icesoc_core_clock()
   foreach(what files headers targets regs libs manifest slices arm_sources arm_includes arm_targets)
@@ -226,9 +227,8 @@ function(icesoc_core)
   icesoc_core_test()
 endfunction()
 
-# icesoc_core_folder(FOLDER BINARY): adds the core in FOLDER. Its manifest is enough. A core that
-# needs more than a manifest can say, such as models, has a CMakeLists.txt that begins with
-# icesoc_core().
+# icesoc_core_folder(FOLDER BINARY): adds the core in FOLDER. Most cores need only a manifest. A
+# core that needs more, such as models, has a CMakeLists.txt that begins with icesoc_core().
 function(icesoc_core_folder folder binary)
   if(NOT EXISTS ${folder}/CMakeLists.txt)
     set(text "# Generated: the core of ${folder}/core.toml.\nicesoc_core(${folder})\n")
@@ -238,7 +238,7 @@ function(icesoc_core_folder folder binary)
   add_subdirectory(${folder} ${binary})
 endfunction()
 
-# The files of one kind that the listed cores bring: icesoc_chip_property(OUT files)
+# icesoc_chip_property(OUT KIND): sets OUT to the files of this kind of all listed cores.
 function(icesoc_chip_property out what)
   set(all)
   foreach(name IN LISTS CHIP_CORES)
@@ -249,7 +249,8 @@ function(icesoc_chip_property out what)
   set(${out} ${all} PARENT_SCOPE)
 endfunction()
 
-# After all cores: the address map, soc_cores.vh, the library soc_cores with the firmware's table.
+# icesoc_chip(): called after all cores; generates the address map, soc_cores.vh and the library
+# soc_cores with the firmware's table of cores.
 function(icesoc_chip)
   get_property(known GLOBAL PROPERTY ICESOC_CORES)
   set(options)
@@ -271,7 +272,7 @@ function(icesoc_chip)
     file(GLOB own CONFIGURE_DEPENDS ${folder}/*.ucf)
     list(APPEND inputs ${manifest} ${regs} ${own})
   endforeach()
-  # Each module of the chip is in one file: checked when the chip is built.
+  # Checks, when the chip is built, that no two files contain a module of the same name.
   icesoc_chip_property(files files)
   icesoc_chip_property(targets targets)
   add_custom_command(OUTPUT ${GEN_DIR}/cores.checked
@@ -280,7 +281,7 @@ function(icesoc_chip)
     DEPENDS ${files} ${targets} ${TOOLS}/cores/foreign_files.py
     VERBATIM COMMENT "Modules of the chip's cores")
   add_custom_target(cores_checked DEPENDS ${GEN_DIR}/cores.checked)
-  # Slice files of all cores go into one program.
+  # The Slice files of all cores must be compatible, because one program contains all of them.
   icesoc_chip_property(slices slices)
   set(check)
   set(slice_files)

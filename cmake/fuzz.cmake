@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 #
-# fuzz.cmake: libFuzzer programs, by clang, with address and undefined-behaviour sanitizers.
+# fuzz.cmake: builds libFuzzer programs with clang, with address and undefined-behaviour sanitizers.
 
 # icesoc_fuzz(NAME HARNESS file.cpp SOURCES file... [INCLUDES dir...] [DEFINES name...] RUNS n
 #             [SEEDS file-or-folder] [DICT file] [LENGTH bytes] [LIBS file...] [LABELS ...]

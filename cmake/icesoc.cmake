@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 #
-# icesoc.cmake: defines once how each kind of source is built.
+# icesoc.cmake: the functions that build each kind of source.
 
 # icesoc_needs(PACKAGE VARIABLE program|library|path NAME): finds a file of a Debian package, or
-# stops with an error that names the package. Nothing is skipped silently: the list of tests is the
-# same on every machine. Programs that only a test script runs (gdb-multiarch, xmllint) are not
+# stops with an error that names the package. Nothing is skipped silently, so that the list of tests
+# is the same on every machine. Programs used only by a test script (gdb-multiarch, xmllint) are not
 # checked here.
 function(icesoc_needs package variable kind name)
   cmake_language(CALL find_${kind} ${variable} ${name})
@@ -12,7 +12,7 @@ function(icesoc_needs package variable kind name)
     message(FATAL_ERROR "${name} is missing (Debian: ${package}): run 'make setup'")
   endif()
 endfunction()
-# Installed, removed or upgraded packages trigger a new configuration.
+# CMake configures again after packages were installed, removed or upgraded.
 set(packages /var/lib/dpkg/status)
 if(DEFINED ENV{DPKG_ADMINDIR})
   set(packages $ENV{DPKG_ADMINDIR}/status)
@@ -37,13 +37,13 @@ icesoc_needs(clang CLANGXX program clang++)
 find_package(GTest REQUIRED)
 include(GoogleTest)
 
-# Python with the package of our tools: ${PYTHON} -m icesoc.regs.generate
+# Python that finds our tools: ${PYTHON} -m icesoc.regs.generate
 set(PYTHON ${CMAKE_SOURCE_DIR}/tools/python)
 set(TOOLS ${CMAKE_SOURCE_DIR}/tools/icesoc)
 set(FETCH ${PYTHON} -m icesoc.util.fetch)
 set(FETCH_FILES ${TOOLS}/__init__.py ${TOOLS}/util/fetch.py)
 
-# Programs for any CPU of this architecture (packages), or for this one.
+# Compiles for any CPU of this architecture (packages), or for the CPU of this machine.
 set(TUNE -march=native)
 if(PORTABLE)
   set(TUNE)
@@ -54,7 +54,8 @@ file(MAKE_DIRECTORY ${GEN_DIR})
 set(CMAKE_GTEST_DISCOVER_TESTS_DISCOVERY_MODE PRE_TEST)
 
 set(HOST_WARNINGS -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion)
-# Tools and tests compile longer than they run, mostly templates of libraries.
+# Tools and tests take longer to compile than to run, mostly because of library templates, so they
+# are optimised less.
 set(TOOL_OPTIONS ${HOST_WARNINGS} -O1)
 set(C90_WARNINGS -std=c90 -pedantic -Wall -Wextra -Wconversion -Wstrict-prototypes
     -Wmissing-prototypes -Wdeclaration-after-statement -Werror)
@@ -71,7 +72,8 @@ elseif(SANITIZE)
   add_link_options(-fsanitize=address,undefined)
 endif()
 
-# icesoc_folders(PATTERN...): adds the folders that have a CMakeLists.txt, by name.
+# icesoc_folders(PATTERN...): adds the folders that match and have a CMakeLists.txt, in the order of
+# their names.
 function(icesoc_folders)
   list(TRANSFORM ARGN APPEND /CMakeLists.txt)
   file(GLOB found CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} ${ARGN})
@@ -81,8 +83,8 @@ function(icesoc_folders)
   endforeach()
 endfunction()
 
-# icesoc_c90(NAME SOURCES... [INCLUDES dir...] [LIBS lib...])
-# A firmware layer as a static library, C90 to the letter.
+# icesoc_c90(NAME SOURCES... [INCLUDES dir...] [LIBS lib...]): static library of a firmware layer,
+# compiled as strict C90.
 function(icesoc_c90 name)
   cmake_parse_arguments(A "" "" "SOURCES;INCLUDES;LIBS" ${ARGN})
   add_library(${name} STATIC ${A_SOURCES})
@@ -93,9 +95,9 @@ function(icesoc_c90 name)
   endif()
 endfunction()
 
-# icesoc_test(NAME SOURCES... [LIBS lib...] [LABELS label...] [ARGS ...] [SANITIZED regexp])
-# A GoogleTest program with cases that CTest discovers. Labels select: `ctest -L rtl`. SANITIZED:
-# `make test` runs the cases with these names again, with sanitizers.
+# icesoc_test(NAME SOURCES... [LIBS lib...] [LABELS label...] [ARGS ...] [SANITIZED regexp]):
+# GoogleTest program; CTest discovers its cases. LABELS select tests: `ctest -L rtl`. SANITIZED:
+# `make test` runs the cases whose names match a second time, with sanitizers.
 function(icesoc_test name)
   cmake_parse_arguments(A "" "SANITIZED" "SOURCES;LIBS;LABELS;ARGS" ${ARGN})
   if(NOT TARGET clock_listener)
@@ -108,8 +110,8 @@ function(icesoc_test name)
   target_link_libraries(${name} PRIVATE ${A_LIBS} GTest::gtest GTest::gmock GTest::gtest_main)
   gtest_discover_tests(${name} TEST_PREFIX "${name}." EXTRA_ARGS ${A_ARGS}
                        DISCOVERY_TIMEOUT 60)
-  # CTest reads this after the cases are known; gtest_discover_tests itself uses only the first of
-  # several labels.
+  # CTest reads this file after the cases are known; gtest_discover_tests itself keeps only the
+  # first of several labels.
   set(labels ${CMAKE_CURRENT_BINARY_DIR}/${name}_labels.cmake)
   list(GET A_SOURCES 0 first)
   cmake_path(ABSOLUTE_PATH first)
@@ -128,14 +130,14 @@ function(icesoc_test name)
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${labels})
 endfunction()
 
-# icesoc_sanitized(TARGET...): programs that the target `sanitized` builds, for tests of that label.
+# icesoc_sanitized(TARGET...): adds programs to the target `sanitized`, for tests with that label.
 function(icesoc_sanitized)
   set_property(GLOBAL APPEND PROPERTY ICESOC_SANITIZED ${ARGN})
 endfunction()
 
-# icesoc_uncertain(PROGRAM seeds [gtest filter]): runs the cases of an icesoc_test again, with
-# synchronisers that take the old or the new value at random (hdl/cdc/cdc_random.vh): tests
-# cdc.<program>.<seed>. The numbers drawn depend on the seed and on SEED.
+# icesoc_uncertain(PROGRAM seeds [gtest filter]): adds tests cdc.<program>.<seed>, which run the
+# cases of an icesoc_test again. Their synchronisers sample the old or the new value at random
+# (hdl/cdc/cdc_random.vh). The random numbers depend on the seed and on SEED.
 function(icesoc_uncertain program seeds)
   set(filter ${ARGN})
   if(NOT filter)
@@ -144,17 +146,17 @@ function(icesoc_uncertain program seeds)
   foreach(seed RANGE 1 ${seeds})
     add_test(NAME cdc.${program}.${seed}
       COMMAND ${program} --gtest_brief=1 "--gtest_filter=${filter}")
-    # A filter that matches nothing fails.
+    # The test fails if the filter matches no case.
     set_tests_properties(cdc.${program}.${seed} PROPERTIES LABELS "rtl;cdc"
                          ENVIRONMENT "CDC_SEED=${seed};NEEDS=${program}"
                          FAIL_REGULAR_EXPRESSION "[^0-9]0 tests from")
   endforeach()
 endfunction()
 
-# icesoc_regmap(JSON [BLOCK]): registers of one block, from its *.regs.json, as a Verilog include, a
-# C header, a VHDL package and a Markdown page in ${GEN_DIR}; with BLOCK also the register block
-# <block>_regs.v, its proof and <block>_regs.vhd; target regmap_<block>, interface library
-# regs_<block>.
+# icesoc_regmap(JSON [BLOCK]): generates from a *.regs.json, in ${GEN_DIR}, a Verilog include, a C
+# header, a VHDL package and a Markdown page of the registers of one block. With BLOCK also the
+# register block <block>_regs.v, its proof and <block>_regs.vhd. Target regmap_<block>, interface
+# library regs_<block>.
 set(REGMAP ${PYTHON} -m icesoc.regs.generate)
 file(GLOB REGMAP_FILES CONFIGURE_DEPENDS ${TOOLS}/__init__.py ${TOOLS}/regs/*.py
   ${TOOLS}/regs/regs.schema.json ${TOOLS}/regs/templates/*.j2)
@@ -185,17 +187,17 @@ function(icesoc_regmap json)
   add_dependencies(regs_${block} regmap_${block})
 endfunction()
 
-# Waveforms and counters of icesoc_verilate, in its scope.
+# Adds waveforms and counters to icesoc_verilate, in its scope.
 macro(icesoc_verilate_observed)
-  set(definitions) # observer.h reads them
+  set(definitions) # observer.h reads these definitions
   if(TRACE)
     list(APPEND flags --trace-fst -DTRACED)
     list(APPEND definitions ICESOC_TRACE)
   endif()
   if(COVERAGE)
-    # --assert: without it newer Verilators omit cover properties. Verilator treats a cover point
-    # that reads a pin as a flip-flop of clk_i; if the pin is also an asynchronous reset, this would
-    # be a warning.
+    # --assert is needed because newer Verilators otherwise omit cover properties. Verilator treats
+    # a cover point that reads a pin as a flip-flop of clk_i; if the pin is also an asynchronous
+    # reset, this causes the warning SYNCASYNCNET.
     list(APPEND flags --coverage --assert -DCOVER_POINTS -Wno-SYNCASYNCNET)
     list(APPEND definitions ICESOC_COVERAGE)
     if(A_FAST)
@@ -209,10 +211,10 @@ endmacro()
 
 # icesoc_verilate(NAME TOP module SOURCES file... [PARAMS NAME=value...] [INCLUDES dir...]
 #                 [REGS block...] [DEPENDS target-or-file...] [FLAGS ...] [FAST] [CLASS class])
-# Verilated model of a module as a library NAME with the class V<NAME>, or V<CLASS>. Lint is on
-# (-Wall) and its warnings are errors. FAST, for the whole chip: compiled by clang (measured: 1.18
-# times the speed of the code of g++). With COVERAGE only soc.v is counted: the tests of each block
-# count the block, and with all counters seconds of flight took minutes.
+# Builds a Verilated model of a module as the library NAME with the class V<NAME>, or V<CLASS>. Lint
+# (-Wall) is on, and its warnings are errors. FAST compiles with clang, for the whole chip
+# (measured: 1.18 times the speed of code by g++). With COVERAGE only soc.v is counted here, because
+# the test of each block counts the block; with all counters, seconds of flight took minutes.
 function(icesoc_verilate name)
   cmake_parse_arguments(A "FAST" "TOP;CLASS" "SOURCES;PARAMS;INCLUDES;REGS;DEPENDS;FLAGS" ${ARGN})
   set(dir ${CMAKE_CURRENT_BINARY_DIR}/verilated_${name})
@@ -223,7 +225,7 @@ function(icesoc_verilate name)
   set(lib ${dir}/${class}__ALL.a)
   set(flags --cc -Wall --x-assign unique --x-initial unique -O3 --top-module ${A_TOP}
             --prefix ${class} --Mdir ${dir} -y ${GEN_DIR} -I${GEN_DIR} ${A_FLAGS})
-  set(library) # modules that -y may find
+  set(library) # modules that Verilator may find by -y
   foreach(i IN LISTS A_INCLUDES)
     list(APPEND flags -y ${i} -I${i})
     file(GLOB found CONFIGURE_DEPENDS ${i}/*.v ${i}/*.vh)
@@ -246,20 +248,21 @@ function(icesoc_verilate name)
   if(A_FAST AND NOT COVERAGE AND NOT SANITIZE)
     set(compiler ${CLANGXX})
   endif()
-  # Messages of the simulator, which is installed, do not name this tree.
+  # The simulator is installed, so its messages must not contain the path of this tree.
   set(without_tree)
   if(A_FAST)
     set(without_tree COMMAND find ${dir} -name "*.cpp" -exec sed -i
       "s|MT(\"${CMAKE_SOURCE_DIR}/|MT(\"|" {} +)
   endif()
-  # This code runs once; with counters it is several megabytes, and -O1 took minutes.
+  # This code runs only once. With counters it is several megabytes long, and compiling it with -O1
+  # took minutes.
   set(slow -O1)
   if(COVERAGE)
     set(slow -O0)
   endif()
   # Verilator's makefile appends -Os; OPT_FAST overrides it (measured: twice the speed). The headers
-  # are declared as by-products, so that files that include them are compiled again in the same run
-  # of ninja, not in the next one.
+  # are declared as by-products, so that ninja compiles the files that include them in the same run,
+  # not in the next one.
   add_custom_command(OUTPUT ${lib} BYPRODUCTS ${dir}/${class}.h ${dir}/${class}___024root.h
     COMMAND ${VERILATOR} ${flags} ${A_PARAMS} ${sources}
     ${without_tree}
@@ -289,9 +292,10 @@ endfunction()
 set(STATE_MEMBERS ${CMAKE_SOURCE_DIR}/testbench/common/state_members.awk)
 
 # icesoc_netlist(NAME DESIGN design [PARAMS NAME=value...] [DEPENDS target...] [TOP module SOURCES
-# file... INCLUDES dir...] [FLAGS ...] [CLASS class]): Verilated model, as above, of the netlist
-# that `make synth` measures for a design, or of the netlist with other parameters, with a model of
-# each primitive; or of a module around it.
+# file... INCLUDES dir...] [FLAGS ...] [CLASS class]): builds a Verilated model, like
+# icesoc_verilate, of the netlist that `make synth` measures for a design, or of a netlist with
+# other parameters. Each primitive has a model. With TOP, the model is of a module around the
+# netlist.
 function(icesoc_netlist name)
   cmake_parse_arguments(A "" "DESIGN;TOP;CLASS" "PARAMS;DEPENDS;SOURCES;INCLUDES;FLAGS" ${ARGN})
   if(NOT A_TOP)
@@ -312,7 +316,7 @@ function(icesoc_netlist name)
     DEPENDS ${scripts} ${made} ${A_DEPENDS}
     DEPFILE ${CMAKE_CURRENT_BINARY_DIR}/netlist_${name}/${A_DESIGN}.d
     VERBATIM COMMENT "Netlist of ${A_DESIGN}")
-  # Lint is of the RTL: this is Yosys' style.
+  # Lint checks the RTL only; here it would report the style of Yosys.
   icesoc_verilate(${name} TOP ${A_TOP} SOURCES ${A_SOURCES} ${netlist} INCLUDES ${A_INCLUDES}
     CLASS ${A_CLASS} FLAGS ${A_FLAGS} -Wno-lint -Wno-style -Wno-UNOPTFLAT)
 endfunction()

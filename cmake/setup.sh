@@ -19,7 +19,7 @@ for word in "$@"; do
     esac
 done
 
-# package: its purpose
+# list of lines "package: its purpose"
 packages='
 g++ C and C++ compiler
 make drives Verilator models
@@ -93,7 +93,7 @@ groff-base formats them
 '
 [ -z "$packaging" ] || packages="$packages$deb"
 [ -z "$tests" ] || packages="$packages$rest"
-# Debian 12's is too old; icesoc.util.fetch fetches Debian 13's.
+# Debian 12 has too old a version; icesoc.util.fetch gets the one of Debian 13.
 case $(sed -n 's/^VERSION_ID="*\([0-9]*\).*/\1/p' /etc/os-release 2>/dev/null) in
 1[3-9]) packages="$packages
 ghdl-mcode simulates and converts VHDL" ;;
@@ -108,7 +108,8 @@ fi
 
 # shellcheck disable=SC2046 # a list of words
 there=$(dpkg-query -W -f ';${db:Status-Status} ${Package};' $(echo "$packages" | sed 's/ .*//') \
-    2>/dev/null) || true # some are not known, or not-installed, if another package names them
+    2>/dev/null) || true # dpkg-query fails for packages that it does not know; packages that others
+                         # only mention are not-installed
 list=$(echo "$packages" | while read -r name why; do
     case "$name;$there" in
     ";"* | *";installed $name;"*) ;;

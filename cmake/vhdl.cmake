@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 #
-# vhdl.cmake: translates VHDL cores to Verilog by GHDL 5 and refuses latches.
+# vhdl.cmake: converts VHDL cores to Verilog with GHDL 5, and refuses latches.
 
 set(GHDL_DIR ${CMAKE_BINARY_DIR}/ghdl)
 set(GHDL ${GHDL_DIR}/ghdl)

@@ -12,7 +12,7 @@ mkdir -p "$work"
 "$vectors" "$work" "${SEED:-1}"
 "$ghdl" -a --std=08 --workdir="$work" "$@"
 cd "$work"
-# numeric_std would warn of every value that is undefined before the pipeline is full.
+# numeric_std would warn about every value that is undefined until the pipeline is full.
 status=0
 "$ghdl" --elab-run --std=08 --workdir="$work" ${COVERAGE_DIR:+--coverage} "${core}_tb" \
     ${WAVE:+"--fst=$WAVE"} --assert-level=error --ieee-asserts=disable || status=$?

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
 // table1: the content of the paper's Table I: FSMC bridge, memory controller with two NPI ports,
-// radio IP. MODEM_API = 1 is the content that flies (hdl/soc.v).
+// radio IP. With MODEM_API = 1 the modem is the one that flies (hdl/soc.v).
 //
-// The table does not contain the system slot (page register, errors): its signals are ports here,
-// and its slot answers as an empty slot does.
+// The table does not contain the system slot (page register, errors). Its signals are ports here,
+// and slot 0 answers as an empty slot does.
 
 `default_nettype none
 
@@ -120,7 +120,8 @@ module table1 #(
         .modem_rts_n_o(modem_rts_n_o), .modem_reset_n_o(modem_reset_n_o)
     );
 
-    assign slot_ready[0] = 1'b1, slot_error[0] = 1'b1, slot_rdata[31:0] = 32'd0; // slot 0 is empty
+    // slot 0 is empty: it answers immediately with an error
+    assign slot_ready[0] = 1'b1, slot_error[0] = 1'b1, slot_rdata[31:0] = 32'd0;
     always @(posedge clk_i) irq_o <= slot_irq[1];
     wire unused = &{1'b0, slot_valid[0], slot_addr[3:0], 1'b0};
 endmodule

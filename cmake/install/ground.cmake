@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
 #
-# icesoc-ground: the plugin, the gateway with its service, programs and Slice files of the ground,
-# and the Python module `icesoc`.
+# icesoc-ground: the component with the plugin, the gateway and its service, programs and Slice
+# files of the ground station, and the Python module `icesoc`.
 set(component icesoc-ground)
 set(module lib/python3/dist-packages/icesoc)
 install(TARGETS xbeeat xbeeat_cpp11 LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
   COMPONENT ${component})
 install(TARGETS gateway RUNTIME COMPONENT ${component})
-# Copied because install(TARGETS) strips, but cannot rename.
+# The file is copied, because install(TARGETS) strips it but cannot rename it.
 set(pack_update ${CMAKE_CURRENT_BINARY_DIR}/bin/icesoc-pack-update)
 add_custom_command(OUTPUT ${pack_update}
   COMMAND ${CMAKE_STRIP} -o ${pack_update} $<TARGET_FILE:pack_update>
@@ -15,7 +15,7 @@ add_custom_command(OUTPUT ${pack_update}
 install(PROGRAMS ${pack_update} DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT ${component})
 list(APPEND installable xbeeat xbeeat_cpp11 gateway ${pack_update})
 
-# The module, and programs of it as commands.
+# The Python module, and its programs as commands.
 set(clients ${top}/sw/ground/clients)
 install(FILES ${top}/sw/ground/python/icesoc.py DESTINATION ${module} RENAME __init__.py
   COMPONENT ${component})
@@ -32,7 +32,7 @@ foreach(program mission provide_key change_key update)
   install(FILES ${link} DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT ${component})
 endforeach()
 
-# icesoc-call: the modules of `./icesoc call`, and the objects of the default chip.
+# icesoc-call: the modules of `./icesoc call`, and the list of objects of the default chip.
 set(tools ${top}/tools/icesoc)
 file(GLOB modules CONFIGURE_DEPENDS ${tools}/call/*.py)
 install(FILES ${tools}/__init__.py DESTINATION ${SHARE}/tools/icesoc COMPONENT ${component})
@@ -57,7 +57,7 @@ install(FILES ${top}/sw/vehicle/Autopilot.ice ${top}/sw/hw/registers/Registers.i
   ${top}/sw/update/Update.ice DESTINATION ${SHARE}/slice COMPONENT ${component})
 install(FILES ${top}/testbench/status/sim_status.toml ${top}/sw/update/slots_header.toml
   DESTINATION ${SHARE} COMPONENT ${component})
-# The cores' Slice files and their parts in a mission.
+# The Slice files of the cores, and the Python code of each core for a mission.
 foreach(core IN LISTS CHIP_CORES)
   if(EXISTS ${top}/ip/${core})
     file(GLOB files ${top}/ip/${core}/*.ice ${top}/ip/${core}/ground.py)

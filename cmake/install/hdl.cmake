@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: MIT
 #
-# icesoc-hdl: the reusable blocks of the FPGA. For each block a FuseSoC core file (CAPI 2) and a
-# plain file list are made from one declaration below.
+# icesoc-hdl: the component with the reusable blocks of the FPGA. For each block, one declaration
+# below generates a FuseSoC core file (CAPI 2) and a plain file list.
 set(component icesoc-hdl)
 set(HDL ${SHARE}/hdl)
 set(hdl_out ${CMAKE_CURRENT_BINARY_DIR}/hdl)
 
 # icesoc_hdl_core(NAME TOP module PURPOSE text FILES file... [INCLUDES file...] [DEPENDS block...]
-#                 [CONSTRAINTS file...]): a block, with files of hdl/ by folder and name. bus/ and
-# generated files are in folders of the same kind. Sets CORE_FILES_<name> for the lists of others.
+#                 [CONSTRAINTS file...]): adds a block. Files of hdl/ are given by folder and name;
+# files of bus/ and generated files have folders in the same style. Sets CORE_FILES_<name>, which
+# the file lists of other blocks use.
 function(icesoc_hdl_core name)
   cmake_parse_arguments(A "" "TOP;PURPOSE" "FILES;INCLUDES;DEPENDS;CONSTRAINTS" ${ARGN})
   set(core "CAPI=2:\n# SPDX-License-Identifier: MIT\nname: icesoc:hdl:${name}:${ICESOC_VERSION}\n"

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 #
-# libicec-dev: IceC for programs on this machine (static libraries, headers, CMake and pkg-config
-# files), and its sources for programs on others. The libraries are compiled with the defaults of
-# ice_config.h, so that a program needs no definitions.
+# libicec-dev: the component with IceC for programs on this machine (static libraries, headers,
+# CMake and pkg-config files) and with its sources for other machines. The libraries are compiled
+# with the defaults of ice_config.h, so that a program needs no definitions.
 set(component libicec-dev)
 set(icec ${top}/sw/icec)
 file(GLOB sources CONFIGURE_DEPENDS ${icec}/*.c ${icec}/values/*.c ${icec}/extra/*.c)
@@ -13,14 +13,16 @@ set(headers ${icec}/icec.h ${icec}/ice_config.h ${icec}/ice_objects.h ${icec}/ic
 
 icesoc_c90(icec_host SOURCES ${sources} INCLUDES ${icec} ${top}/sw/base)
 icesoc_c90(icec_host_tcp SOURCES ${tcp_sources} INCLUDES ${icec} ${icec}/endpoints ${top}/sw/base)
-target_compile_options(icec_host_tcp PRIVATE -Wno-conversion) # htons and friends are macros
+target_compile_options(icec_host_tcp PRIVATE -Wno-conversion) # htons and similar functions are
+                                                              # macros that convert implicitly
 set_target_properties(icec_host PROPERTIES OUTPUT_NAME icec)
 set_target_properties(icec_host_tcp PROPERTIES OUTPUT_NAME icec_tcp)
 list(APPEND installable icec_host icec_host_tcp)
 install(TARGETS icec_host icec_host_tcp ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
   COMPONENT ${component})
 install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/icec COMPONENT ${component})
-# Sources for a target, in the folders of the source tree; endpoints for the radio need its link.
+# Sources for other machines, in the folders of the source tree; the radio endpoints need the
+# sources of the link.
 install(DIRECTORY ${icec} DESTINATION ${CMAKE_INSTALL_DATADIR}/icec/src COMPONENT ${component}
   FILES_MATCHING PATTERN *.c PATTERN *.h PATTERN xbee_* EXCLUDE)
 install(FILES ${top}/sw/base/base.h DESTINATION ${CMAKE_INSTALL_DATADIR}/icec/src/base

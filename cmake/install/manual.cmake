@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 #
-# manual.cmake: manual pages of programs, made from their --help.
+# manual.cmake: generates manual pages of programs from their --help.
 
 # icesoc_manual(COMPONENT name [SECTION 1] PURPOSE text COMMAND program...): installs the page
-# NAME.SECTION.gz. COMMAND --help prints the program's options.
+# NAME.SECTION.gz, generated from the output of COMMAND --help.
 function(icesoc_manual component name)
   cmake_parse_arguments(A "" "SECTION;PURPOSE" "COMMAND;DEPENDS" ${ARGN})
   if(NOT A_SECTION)

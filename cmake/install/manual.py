@@ -16,17 +16,17 @@ import sys
 
 
 def roff(text):
-    """Escapes a text for roff."""
+    """Escapes a text for the text formatter roff."""
     text = text.replace("\\", "\\e").replace("-", "\\-").replace("'", "\\(aq")
     return "\\&" + text if text.startswith(".") else text
 
 
 def options(lines):
-    """Returns the parts of a help text: paragraphs as strings, options as lists with their text,
-    examples as a tuple of lines."""
+    """Returns the parts of a help text in order: a paragraph as a string, options as a list with
+    their texts, examples as a tuple of lines."""
     parts = []
     for line in lines:
-        if parts and isinstance(parts[-1], tuple):  # examples end the help
+        if parts and isinstance(parts[-1], tuple):  # examples are the last part of a help text
             parts[-1] += (line.strip(), )
             continue
         if line == "examples:":
@@ -46,7 +46,8 @@ def options(lines):
 
 
 def page(name, section, purpose, version, text, program):
-    """Returns the manual page of a program. `text`: its help; `program`: its name in that text."""
+    """Returns the manual page of a program. `text`: its --help output; `program`: the name by which
+    this output calls it."""
     text = re.sub(rf"\S*\b{re.escape(program)}\b", name, text)
     usage = re.search(r"^usage: *(.*(?:\n +\S.*)*)\n", text, re.M | re.I)
     rest = text.replace(usage[0], "", 1) if usage else text

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""objects: makes the installed list of the chip's objects, for icesoc-call.
+"""objects: writes the installed list of the chip's objects, for icesoc-call.
 
     objects.py BUILD/gen/objects.json TREE OUT
 
-Slice files get the installed paths, relative to share/icesoc: ip/CORE for those of cores, slice for
-those of the vehicle. Register descriptions are left out, since cores of the default chip have their
-own interfaces.
+Slice files get their installed paths, relative to share/icesoc: ip/CORE for the cores' files, slice
+for the vehicle's. Register descriptions are left out, because the cores of the default chip are
+called through Slice interfaces.
 """
 import json
 import os

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 #
-# packages.cmake: CPack's description of the Debian packages, one for each component.
+# packages.cmake: describes the Debian packages to CPack, one for each component.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME icesoc)
 set(CPACK_PACKAGE_VENDOR "The IceSoC authors")
@@ -16,7 +16,8 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS OFF)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
-# 1.0.0-1~deb12 is older than 1.0.0-1~deb13: an upgrade of Debian upgrades the packages.
+# The version ends with Debian's release: 1.0.0-1~deb12 is older than 1.0.0-1~deb13, so that an
+# upgrade of Debian also upgrades the packages.
 file(STRINGS /etc/os-release release REGEX "^VERSION_ID=" LIMIT_COUNT 1)
 string(REGEX MATCH "[0-9]+" release "${release}")
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1~deb${release})

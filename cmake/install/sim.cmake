@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: MIT
 #
-# icesoc-sim: the simulator of the default chip, the firmware, the modem's model, and the command
-# that flies the mission.
+# icesoc-sim: the component with the simulator of the default chip, the firmware, the modem's model,
+# and the command that flies the mission.
 set(component icesoc-sim)
 install(TARGETS icesoc-sim icesoc-xbee RUNTIME COMPONENT ${component})
 install(TARGETS vision-reference RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/icesoc
   COMPONENT ${component})
-# The ground's programs load it to follow simulated time.
+# The programs of the ground station load this library to follow simulated time.
 install(TARGETS sim_clock LIBRARY DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/icesoc
   COMPONENT ${component})
 install(PROGRAMS ${top}/testbench/sim/fly.py DESTINATION ${CMAKE_INSTALL_BINDIR}
   RENAME icesoc-fly COMPONENT ${component})
-# The firmware without debug information, which names the folders of the build.
+# The firmware without debug information, because that contains paths of the build.
 set(elf ${CMAKE_CURRENT_BINARY_DIR}/uav.elf)
 add_custom_command(OUTPUT ${elf}
   COMMAND ${ARM_OBJCOPY} --strip-debug ${CMAKE_BINARY_DIR}/firmware/uav.elf ${elf}

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 #
-# icesoc-slice2c: the compiler from Slice to C90, its CMake function and pkg-config file.
+# icesoc-slice2c: the component with the compiler from Slice to C90, its CMake function and its
+# pkg-config file.
 set(component icesoc-slice2c)
 install(TARGETS slice2c RUNTIME COMPONENT ${component})
 install(FILES ${top}/sw/hw/registers/Registers.ice

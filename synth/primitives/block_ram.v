@@ -11,7 +11,8 @@
 `default_nettype none
 
 module block_ram #(
-    parameter integer ADDR_BITS = 14, // address of a bit: 14 for 16 Kbit, 13 for 8 Kbit
+    parameter integer ADDR_BITS = 14, // bits of the address of one bit: 14 for 16 Kbit, 13 for 8
+                                      // Kbit
     parameter integer WIDTH_A = 36,   // bits of a word: 0 (unused), 1, 2, 4, 9, 18 or 36
     parameter integer WIDTH_B = 36,
     parameter MODE_A = "WRITE_FIRST", // output of a port during a write
@@ -23,7 +24,7 @@ module block_ram #(
     parameter PRIORITY_A = "CE",      // "CE": a reset needs EN; "SR": it is independent of EN
     parameter PRIORITY_B = "CE",
     parameter [(1 << ADDR_BITS) - 1:0]     INIT   = 0,
-    parameter [(1 << ADDR_BITS) / 8 - 1:0] INIT_P = 0 // parity, a bit a byte
+    parameter [(1 << ADDR_BITS) / 8 - 1:0] INIT_P = 0 // parity, one bit per byte
 ) (
     input  wire                 clk_a_i,
     input  wire                 en_a_i,
@@ -88,7 +89,7 @@ module block_ram #(
     wire [35:0] mask_b  = WIDTH_B == 0 || !en_b_i ? 36'd0 : mask(WIDTH_B, place_b, we_b_i);
     wire [35:0] new_a   = (rows[row_a] & ~mask_a) | (placed(place_a, data_a_i) & mask_a);
     wire [35:0] new_b   = (rows[row_b] & ~mask_b) | (placed(place_b, data_b_i) & mask_b);
-    // Bits that the other port writes at the same edge.
+    // Bits that the other port overwrites at the same edge, so that this port reads invalid data.
     wire [35:0] lost_a  = row_a == row_b && MODE_B != "READ_FIRST" ? mask_b : 36'd0;
     wire [35:0] lost_b  = row_a == row_b && MODE_A != "READ_FIRST" ? mask_a : 36'd0;
     wire [35:0] wrong_a = (~rows[row_a] & 36'h555555555) | (~new_b & 36'haaaaaaaaa);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// product: maps a multiplier to rows of adders, the same way regardless of the names of its
-// operands. Yosys's mapping adds in the order of net names, so that RTL and netlist would have
-// different logic for the same product.
+// product: maps a multiplier to rows of adders that do not depend on the names of its operands. The
+// mapping of Yosys adds in the order of net names, so that RTL and netlist would get different
+// logic for the same product.
 
 (* techmap_celltype = "$mul" *)
 module product (A, B, Y);

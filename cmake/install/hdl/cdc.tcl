@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 #
-# cdc: constraints of the crossings of the block cdc, for Vivado. A value reaches the first flip-flop
-# of a synchroniser in less than one period of its clock. Not run with Vivado yet. For ISE see
-# platform.ucf.
+# cdc: Vivado constraints for the clock domain crossings of the block cdc. The path to the first
+# flip-flop of each synchroniser takes less than one period of the synchroniser's clock. This file
+# has not been run with Vivado yet. The constraints for ISE are in platform.ucf.
 foreach cell [get_cells -hierarchical -filter {NAME =~ *bit_meta_reg*}] {
     set clock [get_clocks -of_objects $cell]
     set_max_delay -datapath_only -to $cell [get_property PERIOD $clock]

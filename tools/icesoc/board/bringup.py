@@ -14,7 +14,7 @@ ENDS = {"mcu": "microcontroller", "fpga": "FPGA", "modem": "modem"}
 class Report:
     """A report, built line by line. `result` is passed, failed, or stopped."""
     def __init__(self, board):
-        self.board = board  # of board.model, or None
+        self.board = board  # a board of board.model, or None if unknown
         self.data = {"board": board.name if board else "", "result": "stopped", "steps": []}
         self.log = []
 

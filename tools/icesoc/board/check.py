@@ -8,11 +8,12 @@ import re
 from icesoc.board.model import Board, Net
 from icesoc.board.signals import BOTH, FPGA, MCU, MODEM, OTHER, SIGNALS, needed
 
-IO_VOLTS = 3.3  # LVCMOS33 of synth/ise/chip.ucf
-MOST_VOLTS = 3.6  # highest voltage at inputs of FPGA and modem, and at the MCU's VDD
+IO_VOLTS = 3.3  # V; supply of I/O banks for LVCMOS33 (synth/ise/chip.ucf)
+MOST_VOLTS = 3.6  # V; highest voltage at inputs of FPGA and modem, and at the MCU's VDD
 MCU_HZ = 120_000_000  # CPU clock, sw/board/clock.h
 SOC_HZ = 100_000_000  # clock of the chip, by MIG's PLL
-# Balls that configure the FPGA at start: with another level on one, the FPGA does not load (UG380).
+# Balls that configure the FPGA at start; if one of them has the wrong level, the FPGA does not load
+# its bitstream (UG380).
 CONFIGURES = re.compile(r"HSWAPEN|_M0_|_M1_|CCLK|INIT_B|CSO_B|MOSI_CSI_B|DIN_MISO|PROGRAM|DONE")
 
 
@@ -21,7 +22,8 @@ def who(net: Net):
 
 
 def complete(board: Board):
-    """Finds signals without a net, nets that are listed twice, and ends that are missing."""
+    """Finds signals without a net, nets that are listed twice, and nets without one of their
+    ends."""
     seen = set()
     for net in board.nets:
         if net.name in seen:
@@ -38,7 +40,8 @@ def complete(board: Board):
 
 
 def ends(net: Net):
-    """Finds the ends of a net that its signal needs or does not have."""
+    """Finds ends that a net lacks although its signal needs them, and ends that its signal does not
+    have."""
     signal = net.signal
     has = {end for end in ("mcu", "fpga", "modem", "to") if net.get(end)}
     if signal.port and "fpga" not in has:
@@ -64,7 +67,7 @@ def ends(net: Net):
 
 
 def functions(board: Board):
-    """Finds pins of the microcontroller without the function of their net."""
+    """Finds pins of the microcontroller that do not have the function that their net needs."""
     pins = board.parts["mcu"]
     for net in board.nets:
         name, function = net.get("mcu"), net.function
@@ -87,13 +90,14 @@ def functions(board: Board):
 
 
 def where(pins, function):
-    """Returns text to append to an error message: the pins that have this function."""
+    """Returns the end of an error message: the names of the pins that have this function."""
     found = [name for name, pin in pins.items() if function in pin.functions]
     return f"; {function} is on {' or '.join(found)}" if found else ""
 
 
 def balls(board: Board):
-    """Finds balls that are no I/O, that configure the FPGA, and clocks on ordinary inputs."""
+    """Finds balls that are not I/O, balls that configure the FPGA, and clocks on ordinary
+    inputs."""
     known = board.parts["fpga"]
     for net in board.nets:
         name = net.get("fpga")
@@ -128,8 +132,8 @@ def twice(board: Board):
 
 
 def occupied(board: Board):
-    """Finds pins that the module uses itself, or does not lead to a connector. Leaves out nets with
-    another problem of the same pin."""
+    """Finds pins that the module uses itself, or does not connect to a connector. Nets for which
+    the same pin has another problem are left out."""
     judged = {text.split(":")[0].removeprefix("net ")
               for check in (functions, balls, memory) for text in check(board)}
     opened = set(board.facts.get("open", []))
@@ -156,7 +160,8 @@ def occupied(board: Board):
 
 
 def loads(use, net: Net, end):
-    """Returns whether the module's own part on a pin only loads the output that drives the net."""
+    """Returns whether a part of the module on this pin is only a load for the output that drives
+    the net."""
     return use.get("load") and (net.signal.driver in (BOTH, MCU) if end == "mcu"
                                 else net.signal.driver in (BOTH, FPGA))
 
@@ -201,7 +206,7 @@ def levels(board: Board):
 
 
 def clocks(board: Board):
-    """Finds oscillators from which the clocks of the CPU and of the chip cannot be made."""
+    """Finds oscillators from which the clocks of the CPU and of the chip cannot be derived."""
     hse, clock = board.facts["mcu"].get("hse_hz"), board.facts["fpga"].get("clock_hz")
     if hse is None:
         yield "mcu.hse_hz: missing; the frequency of the microcontroller's clock in Hz"
@@ -216,7 +221,8 @@ def clocks(board: Board):
 
 
 def multiplier(clock):
-    """Returns C3_CLKFBOUT_MULT: MIG's PLL multiplies the clock to 600 MHz. None if it cannot."""
+    """Returns C3_CLKFBOUT_MULT, by which MIG's PLL multiplies this clock to get 600 MHz; None if it
+    cannot."""
     return 600_000_000 // clock if 600_000_000 % clock == 0 else None
 
 
@@ -236,8 +242,8 @@ CHECKS = (complete, functions, balls, memory, twice, occupied, levels, clocks, s
 
 
 def problems(board: Board):
-    """Returns the problems of a board; an empty list if the board can be built. If facts are
-    unknown, missing items are not reported."""
+    """Returns the problems of a board; the list is empty if the board can be built. If the
+    description says that facts are unknown, missing items are not reported."""
     unknown = [f"unknown: {text}" for text in board.facts.get("unknown", [])]
     found = list(unknown)
     for check in CHECKS:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""firmware: generates the firmware's pin table (board_pins.h) and OpenOCD's configuration.
+"""firmware: generates the firmware's pin table (board_pins.h) and the configuration of OpenOCD.
 
-The table has the values of a port's registers, so that the firmware stores them as they are."""
+The table contains the values of the registers of each port, which the firmware only stores."""
 from icesoc.board.model import Board
 from icesoc.board.signals import SIGNALS
 

@@ -11,7 +11,7 @@ from icesoc.regs.model import Wrong
 
 
 def for_build(board):
-    """Returns the files that the build needs, name to text."""
+    """Returns the files that the build needs, as {name: text}."""
     if found := check.problems(board):
         raise Wrong("\n  ".join([f"{board.path}: cannot be built:", *found]))
     wires, constraints = simulator.wires(board), ucf.constraints(board)
@@ -20,7 +20,7 @@ def for_build(board):
 
 
 def for_bench(board):
-    """Returns the files for the bench, name to text."""
+    """Returns the files that one needs at the bench, as {name: text}."""
     return {"wiring.html": wiring.table(board), "wiring.svg": picture.draw(board),
             "bom.csv": wiring.bom(board), "openocd.cfg": firmware.openocd(board),
             "page.md": wiring.page(board)}

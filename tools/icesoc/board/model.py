@@ -25,9 +25,10 @@ class Pin:
     """A pin of a microcontroller, or a ball of an FPGA."""
     name: str
     number: str = ""  # number in the package; empty for a ball
-    functions: dict = field(default_factory=dict)  # alternate function: number
+    functions: dict = field(default_factory=dict)  # name of each alternate function -> its number
     bank: int | None = None
-    description: str = ""  # Xilinx's name, such as IO_L41P_GCLK9_IRDY1_M1RASN_1, or a kind
+    description: str = ""  # Xilinx's name, such as IO_L41P_GCLK9_IRDY1_M1RASN_1, or the kind of the
+                           # ball
 
     @property
     def is_io(self):
@@ -49,8 +50,8 @@ class Module:
         return self.facts.get("occupied", {})
 
     def place(self, pin, connectors):
-        """Returns the connector and number where a pin is, such as ("CN11", 34), or None. The
-        first of `connectors` that has the pin counts."""
+        """Returns the connector and number of a pin, such as ("CN11", 34), or None. If several
+        connectors have the pin, the first in `connectors` is returned."""
         for connector in connectors:
             pins = self.facts["connectors"].get(connector, [])
             if pin in pins:
@@ -60,7 +61,7 @@ class Module:
 
 @dataclass
 class Net:
-    """A wire of the board: its ends, and what is known about it."""
+    """A wire of the board: its ends, and their known facts."""
     name: str
     facts: dict
 
@@ -155,8 +156,8 @@ def fpga_part(path):
 
 
 def merged(base, facts):
-    """Returns the facts of a board that differs from its base: tables are merged, nets are replaced
-    by name, and those of `without` are left out."""
+    """Returns the facts of a board that is derived from another one, its base: tables are merged,
+    nets are replaced by name, and the nets listed in `without` are left out."""
     result = {**base, **facts}
     for key, value in facts.items():
         if isinstance(value, dict) and isinstance(base.get(key), dict):
@@ -169,8 +170,8 @@ def merged(base, facts):
 
 
 def checked(path, kind, boards=BOARDS):
-    """Returns the facts of a TOML file after a check by the schema. A board with a `base` has the
-    facts of that board, except for what it changes."""
+    """Returns the facts in a TOML file after checking them against the schema. If the file names a
+    `base`, the facts of the base are included, except for those that the file changes."""
     facts = parse(path)
     base = facts.get("base")
     if kind == "board" and isinstance(base, str):
@@ -208,7 +209,7 @@ def read(path, boards=BOARDS):
 
 
 def find(name, boards=BOARDS):
-    """Returns the Board of a name."""
+    """Returns the Board with this name."""
     path = boards / name / "board.toml"
     if not path.is_file():
         raise Wrong(f"no board '{name}'; expected {', '.join(names())}" + nearest(name, names()))

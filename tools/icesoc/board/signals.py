@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""signals: names of nets in board.toml, and what follows from a name: the port of
-synth/ise/chip.v, the function of the microcontroller's pin, and who drives the net."""
+"""signals: names of nets in board.toml, and what each name implies: the port of synth/ise/chip.v,
+the function of the microcontroller's pin, and the side that drives the net."""
 from dataclasses import dataclass
 
 MCU, FPGA, BOTH, MODEM, OTHER = "mcu", "fpga", "both", "modem", "other"
@@ -9,14 +9,16 @@ MCU, FPGA, BOTH, MODEM, OTHER = "mcu", "fpga", "both", "modem", "other"
 @dataclass(frozen=True)
 class Signal:
     name: str
-    driver: str  # MCU, FPGA, BOTH, MODEM, or OTHER: what is named by `to`
-    port: str = ""  # pad of the chip, as UCF spells it; empty: not connected to the FPGA
-    function: str = ""  # function in ST's words, or GPIO; empty: not connected to the CPU
-    pin: str = ""  # pin that the firmware fixes (sw/), such as PA9; empty: any with the function
+    driver: str  # MCU, FPGA, BOTH, MODEM, or OTHER (the part that `to` names)
+    port: str = ""  # pad of the chip, spelled as in UCF; empty: not connected to the FPGA
+    function: str = ""  # function in the words of ST, or GPIO; empty: not connected to the CPU
+    pin: str = ""  # pin that the firmware requires (sw/), such as PA9; empty: any pin with the
+                   # function
     modem: str = ""  # pin of the modem's socket
     is_clock: bool = False  # an edge of the signal clocks registers of the FPGA
-    is_strobe: bool = False  # ends accesses: a slow or noisy edge is an access too many
-    needed: bool = True  # False: a board can leave it out
+    is_strobe: bool = False  # an edge of the signal ends an access, so a slow or noisy edge causes
+                             # an additional access
+    needed: bool = True  # False: a board need not connect the signal
 
 
 def _signals():

@@ -7,14 +7,15 @@ KNOWN = {signal.function for signal in SIGNALS.values() if signal.function.start
 
 
 def at_pin(pin, function):
-    """Returns the function that a pin has by its alternate functions, whatever its net expects: a
-    wire at the wrong pin carries that pin's signal."""
+    """Returns the function that a pin has among its alternate functions, even if its net expects
+    another one: a wire at the wrong pin carries the signal of that pin."""
     return next((name for name in pin.functions if name in KNOWN), function or "-")
 
 
 def wires(board: Board):
-    """Returns the text: the oscillator, then for each net the pin, the number and name of its
-    alternate function (- for none), the net, the ball, and the supply of its bank in V."""
+    """Returns the wires as text. First the oscillator, then for each net the pin, the number and
+    name of its alternate function (- for none), the net, the ball, and the supply of its bank in
+    V."""
     lines = [f"# Wires of {board.name}: pin, alternate function, its name, net, ball, volts",
              f"oscillator {board.facts['mcu']['hse_hz']}"]
     pins, balls = board.parts["mcu"], board.parts["fpga"]

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""ucf: generates a board's constraints for ngdbuild: places, supplies, pulls, the FPGA's clock.
+"""ucf: generates the constraints of a board for ngdbuild: pin locations, supplies, pulls, and the
+clock of the FPGA.
 
-synth/ise/chip.ucf has what is the same on all boards: timing of the FSMC, crossings, standards."""
+synth/ise/chip.ucf has the constraints that all boards share: FSMC timing, clock domain crossings,
+I/O standards."""
 from icesoc.board.check import multiplier
 from icesoc.board.model import Board
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""wiring: generates what one needs at the bench: wiring table, bill of materials, the board's
-page."""
+"""wiring: generates what one needs at the bench: the wiring table, the bill of materials, and the
+page of the board."""
 import csv
 import html
 import io
@@ -29,12 +29,12 @@ def wires(board: Board):
         roles = [role for role in ("mcu", "fpga", "modem") if net.get(role)]
         ends = [end(board, net, role) for role in roles]
         if len(ends) == 1 and not net.get("to"):
-            continue  # a pull only
+            continue  # this net has only a pull
         if len(ends) == 1:
             module = board.modules.get(roles[0])
             use = module.occupied.get(net.get(roles[0]), {}) if module else {}
             if use.get("drives"):
-                continue  # wired on the module
+                continue  # this net is wired on the module
             ends.append((("~", 0), net.get("to")))
         arrow = "←" if net.signal.driver in (MODEM, "other") else ARROWS[net.signal.driver]
         if roles[0] == "fpga":
@@ -44,7 +44,7 @@ def wires(board: Board):
 
 
 def remark(net: Net):
-    """Returns what is special about a wire."""
+    """Returns the remark about a wire that needs special attention."""
     words = [f"{net.get('series_ohm')} Ω in series" if net.get("series_ohm") else "",
              f"{net.get('length_mm')} mm" if net.get("length_mm") else "",
              f"pull-{net.get('pull')}" if net.get("pull") else "", net.get("note", "")]

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""client: calls an operation by stock Ice and returns what came of it; listens to events.
+"""client: calls an operation by stock Ice and returns the result; receives events.
 
-Exit statuses of a call that fails: 3 the operation threw an exception of its throws clause, 4 no
-answer (no connection, time-out), 5 the vehicle has no such object, facet or operation, 6 the
-operation refused the call without a reason; 2 stands for wrong arguments.
+Exit statuses of a call that fails: 2 wrong arguments; 3 the operation threw an exception that its
+throws clause declares; 4 no answer (no connection, time-out); 5 the vehicle has no such object,
+facet or operation; 6 the operation refused the call without a reason.
 """
 import os
 import queue
@@ -28,13 +28,13 @@ class Failure(Stop):
 
 
 class Events:
-    """Calls of the vehicle to listeners of this program, in the order of their arrival."""
+    """Calls that the vehicle makes to listeners of this program, in the order of their arrival."""
 
     def __init__(self, client):
         self.client, self.queue, self.adapter = client, queue.Queue(), None
 
     def listener(self, interface):
-        """Returns a proxy of a new object that takes each operation of an interface."""
+        """Returns a proxy of a new object that accepts every operation of an interface."""
         slices, mapping = self.client.slices, self.client.mapping
         members = {}
         for name, operation in slices.operations(interface).items():
@@ -45,7 +45,8 @@ class Events:
         return mapping.of(interface, "Prx").uncheckedCast(proxy)
 
     def open(self):
-        """Returns the object adapter; calls arrive by the connection of this program's calls."""
+        """Returns the object adapter. The vehicle calls it over the connection of this program's
+        calls."""
         if not self.adapter:
             target, communicator = self.client.target, self.client.communicator
             if target.callbacks:
@@ -113,7 +114,7 @@ class Client:
             settings, self.target.plugin, self.target.guard, self.target.key))
 
     def made(self):
-        """Returns the proxy of the object; asks for its interface if that is unknown."""
+        """Returns the proxy of the object; asks the object for its interface if that is unknown."""
         mode = " -o" if self.options.oneway else ""
         text = self.target.proxy(self.each.identity, mode, self.options.facet or "")
         try:
@@ -131,7 +132,8 @@ class Client:
         return self.mapping.of(self.each.interface, "Prx").uncheckedCast(plain)
 
     def arguments(self, operation, values):
-        """Returns the values of stock Ice for checked ones, by the operation's order."""
+        """Converts checked values to values of stock Ice, in the order of the operation's
+        parameters."""
         made = []
         for p in operation["parameters"]:
             if not p.get("out"):
@@ -140,7 +142,7 @@ class Client:
         return made
 
     def call(self, operation, arguments):
-        """Returns ({name: value} of the results, milliseconds)."""
+        """Calls the operation; returns ({name: value} of the results, duration in ms)."""
         name = operation["name"]
         method = getattr(self.proxy, name if name.startswith("ice_") else escaped(name))
         begin = time.perf_counter()
@@ -158,7 +160,7 @@ class Client:
                 for (called, kind), value in zip(outputs, answers)}, milliseconds
 
     def guarded(self, function, operation=None):
-        """Calls a function; turns each exception of Ice into a failure with a plain text."""
+        """Calls a function; turns each exception of Ice into a Failure with a plain text."""
         try:
             return function()
         except Ice.UserException as error:
@@ -188,7 +190,7 @@ class Client:
                           error.ice_id().lstrip(":").replace("::", ".")) from None
 
     def thrown(self, error):
-        """Returns the failure of an exception that Slice declares."""
+        """Returns the Failure for an exception that Slice declares."""
         name = error.ice_id()
         fields = self.mapping.object(error, name)
         text = ", ".join(f"{field} = {value}" for field, value in fields.items())
@@ -197,14 +199,14 @@ class Client:
 
 
 def properties_in(file):
-    """Returns Ice's properties in a file."""
+    """Returns the properties of Ice in a file."""
     found = Ice.createProperties()
     found.load(file)
     return found.getPropertiesForPrefix("")
 
 
 def reason_of(error):
-    """Returns an exception of Ice as a short text."""
+    """Returns a short text that describes an exception of Ice."""
     for field in ("unknown", "reason"):
         if getattr(error, field, ""):
             return getattr(error, field).strip().rpartition("\n")[2]

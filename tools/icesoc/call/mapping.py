@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""mapping: checked values as values of stock Ice for Python, and back. Its types come from
-Ice.loadSlice, without generated files."""
+"""mapping: converts checked values to values of stock Ice for Python, and back. The types come from
+Ice.loadSlice; no files are generated."""
 import importlib
 import keyword
 
@@ -11,17 +11,18 @@ from icesoc.util.errors import Stop
 
 
 def escaped(name):
-    """Returns a name of Slice as a name in Python."""
+    """Returns the name in Python for a name in Slice."""
     return "_" + name if keyword.iskeyword(name) or name in ("exec", "print", "self") else name
 
 
 class Mapping:
-    """The types of some Slice files in Python."""
+    """The Python types for some Slice files."""
 
     def __init__(self, slices, communicator):
         self.slices, self.communicator = slices, communicator
         self.loaded = set()
-        self.listeners = None  # function: name of an interface -> proxy of a listener
+        self.listeners = None  # function that returns the proxy of a listener for the name of an
+                               # interface
 
     def load(self, file):
         """Loads a Slice file once."""
@@ -36,14 +37,14 @@ class Mapping:
             raise Stop(f"'{file}': stock Ice cannot load it: {error}", 2) from None
 
     def of(self, name, suffix=""):
-        """Returns the class in Python of a name such as ::Cores::Fir."""
+        """Returns the Python class for a name such as ::Cores::Fir."""
         self.load(self.slices.get(name)["file"])
         *modules, last = name.lstrip(":").split("::")
         found = importlib.import_module(".".join(map(escaped, modules)))
         return getattr(found, last + suffix if suffix else escaped(last))
 
     def into(self, value, kind, where=""):
-        """Returns the value of stock Ice."""
+        """Converts a checked value to the value for stock Ice."""
         if kind.endswith("*"):
             return self.proxy(value, kind[:-1], where)
         its = self.slices.get(kind)
@@ -85,7 +86,7 @@ class Mapping:
         return self.of(interface, "Prx").uncheckedCast(found)
 
     def outof(self, value, kind):
-        """Returns what JSON has; bytes stay bytes."""
+        """Converts a value of stock Ice to a checked value: what JSON has; bytes stay bytes."""
         if kind.endswith("*"):
             return None if value is None else str(value)
         if value is None or value is Ice.Unset:
@@ -111,7 +112,7 @@ class Mapping:
         return value
 
     def object(self, value, kind):
-        """Returns a struct, a class or an exception by its fields."""
+        """Converts a struct, a class or an exception to a dict of its fields."""
         actual = value.ice_id() if hasattr(value, "ice_id") else kind
         found = self.slices.fields(actual if actual in self.slices.declarations else kind)
         return {field["name"]: self.outof(getattr(value, escaped(field["name"])), field["type"])

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """objects: the objects of a vehicle with their interfaces and Slice files, as the build lists them
-in gen/objects.json, and where a flight in progress is reached, as it writes it in OUT/live.json.
+in gen/objects.json; and the endpoints of a flight in progress, which the flight writes to
+OUT/live.json.
 """
 import json
 import os
@@ -14,16 +15,17 @@ from icesoc import TREE
 from icesoc.call.slices import Slices, listed
 from icesoc.util.errors import Stop, nearest
 
-# Objects of the firmware itself (sw/vehicle): file and interface
+# Objects of the firmware itself (sw/vehicle): identity -> file and interface
 VEHICLE = {"uav": ("Autopilot.ice", "::Autopilot::Vehicle"),
            "keys": ("Autopilot.ice", "::Autopilot::KeyRing"),
            "chip": ("Registers.ice", "::Hw::Chip"),
            "update": ("Update.ice", "::Update::Firmware"),
            "fpga": ("Update.ice", "::Update::Firmware")}
-REGISTERS = "::Hw::Registers"  # interface of a core that is called by its registers
+REGISTERS = "::Hw::Registers"  # interface of a core without a servant of its own, which is called
+                               # by its registers
 ACCESSES = {"get": ("ro", "rw", "w1c", "w1s"), "set": ("rw", "w1c", "w1s", "ws")}
 LIVE = "live.json"  # file in the folder of a flight, present during the flight
-VIEWED = "viewed"  # file in the same folder that is written while a browser shows the page
+VIEWED = "viewed"  # file in the same folder, written as long as a browser shows the page
 
 
 def read_json(path):
@@ -37,13 +39,14 @@ def read_json(path):
 @dataclass
 class Object:
     identity: str
-    interface: str = ""  # empty: to be asked for
-    registers: str = ""  # file *.regs.json of its core
-    core: str = ""  # name of its core, and of the core's block of registers
+    interface: str = ""  # empty: unknown, so the object is asked for it
+    registers: str = ""  # path of the *.regs.json of its core
+    core: str = ""  # name of its core and of the core's register block
 
 
 def only_interface(slices, files):
-    """Returns the interface of a core's servant: the one with [":hw"], or the only one."""
+    """Returns the interface of the servant of a core: the interface with [":hw"], or the only
+    one."""
     folders = {os.path.realpath(file) for file in files}
     found = [name for name in slices.interfaces()
              if os.path.realpath(slices.get(name)["file"]) in folders]
@@ -52,10 +55,11 @@ def only_interface(slices, files):
 
 
 class Catalogue:
-    """What can be called: objects, and the declarations of their interfaces."""
+    """Everything that can be called: the objects, and the declarations of their interfaces."""
 
     def __init__(self, build, files=()):
-        """build: build folder of the vehicle, or None; files: Slice files that replace its own."""
+        """build: build folder of the vehicle, or None; files: Slice files that replace those of the
+        vehicle."""
         listed_cores = read_json(Path(build, "gen/objects.json")) if build else None
         self.is_complete = listed_cores is not None
         cores = listed_cores or []
@@ -98,8 +102,9 @@ class Catalogue:
                    "all", 2)
 
     def unknown(self, identity, operation):
-        """Returns an object that the build does not list. It has the interface of --slice that
-        declares the operation; several or none: the object itself is asked later."""
+        """Returns an object that the build does not list. If exactly one interface in the files of
+        --slice declares the operation, the object has that interface; otherwise the object is asked
+        later."""
         declare = [name for name in self.slices.interfaces()
                    if os.path.realpath(self.slices.get(name)["file"]) in self.given
                    and any(o["name"] == operation for o in self.slices.get(name)["operations"])]
@@ -108,7 +113,7 @@ class Catalogue:
         return Object(identity, declare[0] if len(declare) == 1 else "")
 
     def operation(self, each, name):
-        """Returns an operation of an object."""
+        """Returns the operation with this name of an object."""
         found = self.slices.operations(each.interface)
         if name not in found:
             raise Stop(f"{each.identity} has no operation '{name}'"
@@ -116,7 +121,8 @@ class Catalogue:
         return found[name]
 
     def interface_of(self, ids):
-        """Returns the most derived interface of an object among those that Slice declares."""
+        """Returns the most derived interface that Slice declares among the type ids of an
+        object."""
         known = [name for name in ids if name in self.slices.declarations]
         return max(known, key=lambda name: len(self.slices.lineage(name)), default="")
 
@@ -140,7 +146,8 @@ def registers(each):
 
 
 def check_register(each, operation, values):
-    """Checks name and value of a call of Hw::Registers against the core's description."""
+    """Checks the name and the value in a call of Hw::Registers against the description of the
+    core."""
     if each.interface != REGISTERS or operation not in ACCESSES or not each.registers:
         return
     known, name = registers(each), values["name"]
@@ -164,7 +171,7 @@ def compiler(build):
 
 
 def flight(folder):
-    """Returns live.json of a flight in progress in this folder, or None."""
+    """Returns the content of live.json of a flight in progress in this folder, or None."""
     found = read_json(Path(folder, LIVE))
     try:
         os.kill(found["pid"], 0)
@@ -176,7 +183,8 @@ def flight(folder):
 
 
 def flights():
-    """Returns {folder: live.json} of all flights in progress below build/, the usual one first."""
+    """Returns {folder: content of live.json} of all flights in progress below build/, build/run
+    first."""
     folders = sorted(Path("build").glob("*/" + LIVE), key=lambda path: path.parent.name != "run")
     found = {str(path.parent): flight(path.parent) for path in folders}
     return {folder: live for folder, live in found.items() if live}

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""slices: the declarations of Slice files, as `slice2c --describe` prints them.
+"""slices: the declarations of Slice files, as printed by `slice2c --describe`.
 
-Shell and browser check values and show operations by this description.
+The command line and the page in the browser check values and show operations by them.
 """
 import json
 import re
@@ -12,7 +12,7 @@ from icesoc.util.errors import Stop
 
 INTEGERS = {"byte": (0, 255), "short": (-2**15, 2**15 - 1), "int": (-2**31, 2**31 - 1),
             "long": (-2**63, 2**63 - 1)}
-# Operations of every object
+# Operations that every object has
 OBJECT = [{"name": "ice_ping", "result": "void", "parameters": [],
            "doc": "Checks that the object exists."},
           {"name": "ice_id", "result": "string", "parameters": [],
@@ -24,14 +24,14 @@ OBJECT = [{"name": "ice_ping", "result": "void", "parameters": [],
 
 
 def listed(words, most=12):
-    """Returns words with commas, the first ones of many."""
+    """Returns words separated by commas; if there are many, only the first ones."""
     words = list(words)
     more = f", ... ({len(words)} in all)" if len(words) > most else ""
     return ", ".join(words[:most]) + more
 
 
 def annotation(metadata, name):
-    """Returns the text after "hw:max:" in metadata, or an empty text."""
+    """Returns the text after a prefix such as "hw:max:" in metadata, or an empty text."""
     return next((m[len(name) + 1:] for m in metadata or () if m.startswith(name + ":")), "")
 
 
@@ -91,7 +91,7 @@ class Slices:
                 for field in self.get(each).get("fields", [])]
 
     def bounds(self, kind, metadata=()):
-        """Returns the range of an integer, which ["call:range:LOW:HIGH"] makes narrower."""
+        """Returns the range of an integer type, narrowed by ["call:range:LOW:HIGH"]."""
         low, high = INTEGERS[kind]
         if given := annotation(metadata, "call:range"):
             found = re.fullmatch(r"(-?\d{1,19}):(-?\d{1,19})", given)
@@ -101,13 +101,13 @@ class Slices:
         return low, high
 
     def most(self, kind, metadata=()):
-        """Returns the most elements of a sequence, or None."""
+        """Returns the maximum number of elements of a sequence, or None."""
         limits = [annotation(metadata, "hw:max"), annotation(metadata, "c:max"),
                   annotation(self.get(kind).get("metadata"), "c:max")]
         return next((int(limit) for limit in limits if limit), None)
 
     def named(self, kind):
-        """Returns a type as people read it: without ::, a sequence by its element."""
+        """Returns the name of a type for people: without ::, a sequence by its element type."""
         each = self.get(kind)
         if each["kind"] == "sequence":
             return f"sequence<{self.named(each['element'])}>"
@@ -118,7 +118,7 @@ class Slices:
         return kind.lstrip(":").replace("::", ".")
 
     def signature(self, operation):
-        """Returns an operation as one line."""
+        """Returns the signature of an operation as one line."""
         inputs, outputs = [], []
         for parameter in operation["parameters"]:
             target = outputs if parameter.get("out") else inputs

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""target: where the objects of a call are: in a flight in progress, behind a serial device, behind
-the gateway, in IceGrid by name, or at an endpoint that the installed settings list."""
+"""target: finds the endpoint of a call: a flight in progress, a serial device, the gateway, a name
+in IceGrid, or an endpoint in the installed settings."""
 import re
 from dataclasses import dataclass, field
 
@@ -12,15 +12,17 @@ from icesoc.util.errors import Stop
 
 @dataclass
 class Target:
-    """Properties of the communicator, and the part of a proxy after the identity."""
+    """The target of a call: properties of the communicator, and the part of a proxy after the
+    identity."""
     place: str  # for messages
-    suffix: str = ""  # ":tcp -h ..." or "@uav1"
+    suffix: str = ""  # part of the proxy after the identity: ":tcp -h ..." or "@uav1"
     properties: dict = field(default_factory=dict)
     build: str = ""  # build folder of the vehicle; empty: unknown
     plugin: str = ""  # folder of the radio plugin
     key: str = ""
     guard: int = 1000
-    callbacks: str = ""  # endpoints for calls of the vehicle; empty: over the call's connection
+    callbacks: str = ""  # endpoints at which the vehicle calls this program; empty: it uses the
+                         # connection of the call
 
     def proxy(self, identity, mode="", facet=""):
         quoted = identity.replace("\\", "\\\\").replace('"', '\\"')
@@ -44,7 +46,7 @@ def of_flight(folder, vehicle):
 
 
 def of_device(values):
-    """Returns the target behind a modem, or a cable, at a serial port."""
+    """Returns the target at a serial port, with a modem or a cable."""
     kind = "serial" if values.wire else "xbee-at"
     plugin = values.plugin or (
         places.plugin() if places.IS_INSTALLED else f"{values.build}/ground")
@@ -57,7 +59,7 @@ def of_device(values):
 
 
 def of_gateway(values):
-    """Returns the target at HOST:PORT, or at Ice's endpoints."""
+    """Returns the target of a gateway at HOST:PORT, or at endpoints of Ice."""
     text = values.gateway
     if " " in text:
         return Target(text, ":" + text, build=values.build)
@@ -81,8 +83,8 @@ def of_settings(values):
 
 
 def of(values):
-    """Returns the target that the options name; without one, the flight in progress, or the
-    installed settings."""
+    """Returns the target that the options name. Without such an option it is the flight in
+    progress, or the installed settings."""
     given = [name for name in ("flight", "device", "gateway", "locator") if getattr(values, name)]
     if len(given) > 1:
         raise Stop(f"{', '.join('--' + name for name in given)} exclude each other: give only one",

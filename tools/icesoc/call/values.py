@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""values: arguments of a call, from texts to checked values and from there to values of stock Ice;
-results the other way.
+"""values: converts the arguments of a call from texts to checked values and then to values of stock
+Ice, and results in the other direction.
 
-A checked value consists of what JSON has, and bytes for a sequence<byte>. Everything is checked
-against Slice before a communicator exists: "threshold: expected 0 to 255, got 300".
+A checked value consists of types that JSON has, and of bytes for a sequence<byte>. Everything is
+checked against Slice before a communicator is created: "threshold: expected 0 to 255, got 300".
 """
 import json
 import math
@@ -14,8 +14,8 @@ from icesoc.call.slices import INTEGERS, listed
 from icesoc.util.errors import Stop, nearest
 
 FLOAT_LIMIT = 3.4028234663852886e38
-DEEPEST = 100  # nesting of a value
-SHOWN_BYTES = 64  # bytes of a sequence<byte> that are shown
+DEEPEST = 100  # greatest nesting depth of a value
+SHOWN_BYTES = 64  # number of bytes of a sequence<byte> that are printed
 
 
 class Refused(Stop):
@@ -26,7 +26,7 @@ class Refused(Stop):
 
 
 def short(value):
-    """Returns a value as a message shows it."""
+    """Returns a value in short form for a message."""
     text = value if isinstance(value, str) else json.dumps(value, default=repr)
     text = text.encode("utf-8", "replace").decode().replace("\n", " ")
     text = text if len(text) <= 60 else text[:57] + "..."
@@ -34,7 +34,7 @@ def short(value):
 
 
 def parse(text, where):
-    """Reads JSON; a name given twice is an error."""
+    """Parses JSON; a key that occurs twice is an error."""
     def pairs(found):
         names = [name for name, _ in found]
         if twice := next((n for n in names if names.count(n) > 1), None):
@@ -52,7 +52,7 @@ def parse(text, where):
 
 
 def contents(path, where):
-    """Returns the bytes of a file that an argument names by @."""
+    """Returns the bytes of a file that an argument names with @."""
     try:
         with open(path, "rb") as file:
             return file.read()
@@ -62,14 +62,14 @@ def contents(path, where):
 
 
 class Reader:
-    """Checks arguments against the types of Slice files."""
+    """Converts arguments and checks them against the types of Slice files."""
 
     def __init__(self, slices, place="."):
-        """place: folder of relative file names."""
+        """place: folder to which file names are relative."""
         self.slices, self.place = slices, place
 
     def argument(self, text, parameter):
-        """Returns the checked value of a parameter from the text of the command line."""
+        """Returns the checked value of a parameter for a text from the command line."""
         where, kind = parameter["name"], parameter["type"]
         metadata = parameter.get("metadata")
         if "tag" in parameter and text == "null":
@@ -92,7 +92,8 @@ class Reader:
         return self.check(parse(text, where), kind, where, metadata)
 
     def scalar(self, text, kind):
-        """Returns a number or a bool; the text itself if it is neither, for the message."""
+        """Returns the text as a number or a bool; if it is neither, the text itself, for the error
+        message."""
         if kind == "bool":
             return {"true": True, "false": False}.get(text, text)
         if re.fullmatch(r"[+-]?\d{1,40}", text, re.A) and (kind in INTEGERS or len(text) < 300):
@@ -108,8 +109,8 @@ class Reader:
             and self.slices.get(kind)["kind"] == "sequence"
 
     def of_file(self, path, kind, where, metadata):
-        """Returns the value in a file: bytes as they are, a picture for a struct of width, height
-        and pixels, and JSON for anything else."""
+        """Returns the value in a file: its bytes for a sequence<byte>; its picture for a struct of
+        width, height and pixels; the parsed JSON for any other type."""
         data = contents(path, where)
         if self.is_bytes(kind):
             return self.check(data, kind, where, metadata)
@@ -121,7 +122,8 @@ class Reader:
             raise Refused(where, f"JSON in '{path}'", "bytes that are not UTF-8") from None
 
     def picture_fields(self, kind):
-        """Returns the names of width, height and pixels if a struct consists of these."""
+        """Returns the names of the fields for width, height and pixels if a struct consists of
+        these."""
         if self.slices.get(kind)["kind"] != "struct":
             return None
         fields = {field["name"]: field["type"] for field in self.slices.fields(kind)}
@@ -141,7 +143,7 @@ class Reader:
         return dict(zip(names, (grey.width, grey.height, grey.tobytes())))
 
     def check(self, value, kind, where, metadata=(), depth=0):
-        """Returns the value if it fits the type."""
+        """Returns the value if it fits the type; raises Refused otherwise."""
         if depth > DEEPEST:
             raise Refused(where, f"at most {DEEPEST} levels", "more")
         if kind in INTEGERS:
@@ -227,7 +229,8 @@ class Reader:
         return made
 
     def instance(self, value, kind, where, metadata, depth):
-        """A class: an object, with "@type" for a derived one; or null."""
+        """Checks an instance of a class: a JSON object, with "@type" for a derived class, or
+        null."""
         if value is None:
             return None
         actual = value.get("@type", kind) if isinstance(value, dict) else kind
@@ -251,7 +254,8 @@ class Reader:
         return bytes(made) if element == "byte" else made
 
     def dictionary(self, value, kind, where, metadata, depth):
-        """A JSON object, or a list of pairs [key, value] for any type of key."""
+        """Checks a dictionary: a JSON object, or a list of pairs [key, value], which allows any
+        type of key."""
         its = self.slices.get(kind)
         if isinstance(value, dict):
             pairs = [(self.argument(key, {"name": f"key of {where}", "type": its["key"]}), inner)
@@ -269,7 +273,7 @@ class Reader:
 
 
 def readable(value, indent=""):
-    """Returns a value of JSON as text for people, a line a field, long lists in short."""
+    """Returns a value as text for people: one line per field, long lists shortened."""
     if isinstance(value, bytes):
         text = value[:SHOWN_BYTES].hex(" ")
         return f"{len(value)} bytes" + (f": {text}" if value else "") + (
@@ -285,5 +289,5 @@ def readable(value, indent=""):
 
 
 def plain(value):
-    """Returns bytes as JSON has them: a list of numbers."""
+    """Returns a value in which bytes are replaced by what JSON has: a list of numbers."""
     return list(value)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""clocked: generates NAME_clocked.v, which puts a core with a separate clock after bus_crossing.v.
+"""clocked: generates NAME_clocked.v, which connects a core with a separate clock to its slot
+through bus_crossing.v.
 
     python -m icesoc.chip.clocked core.toml NAME.regs.json NAME_clocked.v
 """
@@ -12,7 +13,7 @@ from icesoc.regs.model import Wrong, check
 
 
 def clocked(block, has_clk_hz):
-    """Returns a module with the ports of a slot around a block with a separate clock."""
+    """Returns a module with the ports of a slot that contains a block with a separate clock."""
     check(not block.description.get("memory_port"),
           "a core with a memory port uses the chip clock, as the port does; for a part of the core "
           "with a separate clock use hdl/cdc/async_fifo.v, as ip/camera does")

@@ -14,8 +14,8 @@ PLATFORM = "the platform"
 
 
 def platform_names(base):
-    """Yields (scope, name) of the platform's names: those in hdl/soc.v, its modules, and the
-    constants of bus/map.regs.json."""
+    """Yields (scope, name) for the names that the platform uses: those in hdl/soc.v, of its
+    modules, and of the constants of bus/map.regs.json."""
     text = re.sub("//.*", "", (TREE / "hdl/soc.v").read_text())
     yield from (("soc.v", name) for name in re.findall(r"[A-Za-z_]\w*", text))
     yield from (("modules", path.stem) for room in ("bus", "hdl")
@@ -25,7 +25,7 @@ def platform_names(base):
 
 
 def instance_names(core):
-    """Yields (scope, name) of what core_output.py names after a core of the chip."""
+    """Yields (scope, name) for everything that core_output.py names after a core of the chip."""
     name, upper = core.name, core.name.upper()
     yield from (("soc.v", stem + name) for stem in ("u_", "u_gate_", "u_clock_", "clk_", "idle_",
                                                     "cycles_", "signals_"))
@@ -39,14 +39,15 @@ def instance_names(core):
 
 
 def constant_names(block):
-    """Returns (name in C, name in the description) of a block's constants."""
+    """Returns pairs of the name in C and the name in the description for the constants of a
+    block."""
     return [(f"{block.prefix}_{name}", f"{block.name}.{owner}")
             for name, owner in constants(block).owners.values()]
 
 
 def check(chip, base, blocks):
-    """Raises Wrong, with the line of the second of two cores that would have one name. `blocks`:
-    the platform's register blocks."""
+    """Raises Wrong if two cores would have the same name in a generated file; the error names the
+    line of the second one. `blocks`: the register blocks of the platform."""
     scopes, registers = {}, Spelled()
     for block in blocks:
         for name, owner in constant_names(block):

@@ -28,7 +28,8 @@ def fail(text):
 
 
 def blocks_of(tree, slice2c, work):
-    """Returns the descriptions of blocks, both handwritten and generated from Slice files."""
+    """Returns the register descriptions of all blocks, written by hand or generated from Slice
+    files."""
     os.makedirs(work)
     files = [f for r in ROOMS for f in glob.glob(os.path.join(tree, r, "**", "*.regs.json"),
                                                  recursive=True)]
@@ -55,13 +56,14 @@ def blocks_of(tree, slice2c, work):
 
 
 def add_memory(block, facts):
-    """Adds the size of the buffers, which is part of the contract, from the core's manifest."""
+    """Adds the size of the buffers, which the core's manifest contains, to the description: it is
+    part of the contract."""
     if "memory_bytes" in facts:
         block.description["memory_bytes"] = facts["memory_bytes"]
 
 
 def places(block):
-    """Returns the position of each name: name -> (offset in words, width in bits, access)."""
+    """Returns {name: (offset in words, width in bits, access)} of the registers and fields."""
     there = {}
     for r in block.own_registers:
         word = f"word {r.word}" + (f", PAGE 0x{r.page:X}" if r.page >= 0 else "")
@@ -93,7 +95,7 @@ def compare(old, new):
             breaking.append(f"{name} has {now_width} bits, and had {width}")
         elif now_width > width:
             compatible.append(f"{name} has {now_width} bits, and had {width}")
-        # Making a read-only register writable breaks no software.
+        # A change from read-only to writable does not break software.
         register = name.split(".")[0]
         follows = "." in name and (access, now_access) == tuple(
             names.get(register, ("", 0, ""))[2] for names in (before, after))

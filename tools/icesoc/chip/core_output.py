@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""core_output: the chip's cores as address map, as instances in soc.v, and as the firmware's table.
+"""core_output: generates the files about the cores of the chip: address map, instances in soc.v,
+and the firmware's table.
 
-The chip is coremap.Chip, slots are coremap.Slot.
+The chip is a coremap.Chip, a slot a coremap.Slot.
 """
 import copy
 import functools
@@ -73,12 +74,13 @@ def contract_of(block):
         lines += [f"{r.name}.{f.name} {f.lsb} {f.width}"
                   f"{'' if f.access == r.access else ' ' + f.access}" for f in r.fields]
     lines += [f"{e.name} {e.bit}" for e in block.events]
-    # The order in the file does not matter.
+    # sorted: the order in the file does not matter
     return hash_of("".join(line + "\n" for line in sorted(lines)))
 
 
 def change_words(probe):
-    """Returns the 64-bit words of a probe's change: for 31, 95 or 223 bits (ip/probe/probe.v)."""
+    """Returns the number of 64-bit words in one entry of a probe: 1, 2 or 4, for 31, 95 or 223 bits
+    (ip/probe/probe.v)."""
     recorded = sum(width for _, width in probe.signals)
     return 1 if recorded <= 31 else 2 if recorded <= 95 else 4
 
@@ -95,7 +97,7 @@ def probes_of(chip):
 
 
 def signal_bits(probe):
-    """Returns the width of a probe's signals_i."""
+    """Returns the width of signals_i of a probe."""
     return 64 * change_words(probe) - 33
 
 
@@ -107,8 +109,8 @@ def recorded(probe):
 
 
 def taps_of(probe):
-    """Returns (wire, hierarchical name, width of that signal, width of the wire) of what a probe
-    reads."""
+    """Returns (wire, hierarchical name, width of that signal, width of the wire) for each signal
+    that a probe records."""
     return [*((f"{probe.name}_{i}", name, width, width)
               for i, (name, width) in enumerate(probe.signals)),
             (f"cycles_{probe.name}", "u_system_slot.cycles", 64, 32)]
@@ -124,7 +126,7 @@ def parameters_of(core):
 
 
 def net_of(core, pin):
-    """Returns the connection of a core's pin."""
+    """Returns the expression that is connected to a pin of a core."""
     if pin.source:
         return source_net(pin)
     if core.multiply and pin.name == "clock_i":
@@ -135,8 +137,8 @@ def net_of(core, pin):
 
 
 def verilog_of(chip, slots):
-    """Returns the instances of cores, for soc.v. Probes have their signals by hierarchical names:
-    Yosys joins a wire of such a name with the signal when it flattens the chip."""
+    """Returns the Verilog of the core instances, for soc.v. Signals of probes have hierarchical
+    names: when Yosys flattens the chip, it joins a wire of such a name with the signal."""
     contracts = [0] * chip.slots
     for slot in slots:
         contracts[slot.number] = contract_of(slot.block)
@@ -172,8 +174,8 @@ def places(core):
 
 
 def own_constraints(core):
-    """Returns the core's timing constraints: @name@ is the instance, @port@ its pads, a list for a
-    bus."""
+    """Returns the timing constraints of a core. In its file, @name@ stands for the instance and
+    @port@ for its pads, a list if the port is a bus."""
     s = core.constraints.replace("@name@", core.name)
     for pin in core.pins:
         s = s.replace(f"@{pin.name}@", '" : "'.join(pads(pin)) if pin.is_pin else "")
@@ -181,10 +183,10 @@ def own_constraints(core):
 
 
 def clock_constraints(core):
-    """Returns the period of a core's separate clock.
+    """Returns the timing constraints of the separate clock of a core: its period and its crossings.
 
-    Between it and the chip's a path has 8 ns, so two bits, or a word and its flag, arrive at most a
-    clock of 10 ns apart.
+    Paths between this clock and the chip clock have at most 8 ns, so two bits, or a word and its
+    flag, arrive at most one clock of 10 ns apart.
     """
     if not core.own_clock:
         return ""
@@ -207,13 +209,13 @@ def constraints_of(chip):
 
 
 def waits(core):
-    """Returns whether a call of the core's servant may wait for the core."""
+    """Returns whether a call of the servant of this core may wait for the core."""
     return not core.servant or core.servant.get("waits", True)
 
 
 def instances_of(chip, slots):
-    """Returns the firmware's table of cores. A core without a servant is served by the servant for
-    registers by name."""
+    """Returns the firmware's table of cores. A core without a servant gets the common servant that
+    accesses registers by name."""
     headers = set()
     for core in chip.cores:
         headers |= ({core.servant["header"]} if core.servant else
@@ -234,8 +236,8 @@ def render(template, **values):
 
 
 def objects_of(chip, registers, slices):
-    """Returns the cores' objects as JSON: identity, Slice files, and register description.
-    registers: file by folder; slices: pairs of folder and file."""
+    """Returns the objects of the cores as JSON: identity, Slice files, register description.
+    registers: register file by folder; slices: pairs of folder and Slice file."""
     return json.dumps([
         {"identity": core.identity, "core": core.name, "registers": registers[core.folder],
          "slice": [file for folder, file in slices if folder == core.folder],

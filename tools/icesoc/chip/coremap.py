@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""coremap: puts the cores of ip/cores.list, a line each, into the chip (docs/hw-mapping.md).
+"""coremap: builds the chip from the cores in ip/cores.list, one per line (docs/hw-mapping.md).
 
 Writes map.regs.json (slots, memory ports, buffers in DDR3, pins), soc_cores.vh (instances, for
 soc.v), soc_cores.c (servants), soc_pins.h (for the simulator), core_pins.ucf (for ISE), probes.json
-(the probes' signals), objects.json (for ./icesoc call), and the registers for other tools and for
-people.
+(the probes' signals), objects.json (for ./icesoc call), and register descriptions for other tools
+and for people.
 """
 import argparse
 import os
@@ -19,8 +19,9 @@ from icesoc.regs.model import Block, Wrong, check
 
 SLOT_LIMIT, PIN_LIMIT = 64, 32
 SLOT_BYTES = 64
-BUFFER_ALIGNMENT = 128  # the largest NPI burst, bytes
-# Slowest separate clock of a core, Hz: an access ends within bus_crossing's TIMEOUT.
+BUFFER_ALIGNMENT = 128  # size of the largest NPI burst, bytes
+# Lowest frequency of a core's separate clock, Hz; with a slower one an access would exceed the
+# TIMEOUT of bus_crossing.
 LEAST_HZ = 3e6
 PROBE_BITS = 223
 
@@ -29,9 +30,10 @@ PROBE_BITS = 223
 class Pin:
     name: str  # port of the core; its suffix gives the direction
     width: int = 1
-    internal: bool = False  # only for other cores, never a pin; unconnected inputs are 0
-    lsb: int = 0  # first bit in core_pins_i or core_pins_o; number of bits
-    source: str = ""  # instead of a pin: another core's output
+    internal: bool = False  # True: only for connections to other cores, never a pin; unconnected
+                            # inputs are 0
+    lsb: int = 0  # index of the first bit in core_pins_i or core_pins_o; number of bits
+    source: str = ""  # output of another core that drives this input, instead of a pin
     places: list = field(default_factory=list)  # locations of its bits on the board, bit 0 first
 
     @property
@@ -51,21 +53,22 @@ class Core:
     identity: str = ""
     slot: int = 0
     port: int = -1  # memory port; -1: no port
-    memory: int = 0  # DDR3 byte address of its buffers, a multiple of memory_bytes
-    memory_bytes: int = 0  # a power of two, or 0: no buffers
-    is_placed: bool = False  # memory= gives its address
-    servant: dict = None  # type and header; default: the servant of sw/hw/registers
+    memory: int = 0  # DDR3 byte address of the buffers, a multiple of memory_bytes
+    memory_bytes: int = 0  # size of the buffers in bytes, a power of two; 0: no buffers
+    is_placed: bool = False  # the address was given by memory= in the list
+    servant: dict = None  # C type and header of the servant; default: the servant of
+                          # sw/hw/registers
     pins: list = field(default_factory=list)
     constraints: str = ""  # text of its *.ucf
     has_clock: bool = False  # the module has the parameter CLK_HZ
     own_clock: int = 0  # highest frequency of its separate clock, Hz; 0: it uses the chip clock
-    # Ratio of its separate clock to the chip clock; 0: the clock comes from pin clock_i, its last
-    # pin.
+    # clock_hz is the chip clock * multiply / divide; 0: the clock comes from pin clock_i, the last
+    # pin of the core
     multiply: int = 0
     divide: int = 1
     says_idle: bool = False  # the module has the output idle_o
-    has_gate: bool = False  # its clock stops while it is idle, also on the board
-    is_probe: bool = False  # it has cycles_i and signals_i
+    has_gate: bool = False  # the clock of the core stops while the core is idle, also on the board
+    is_probe: bool = False  # the core is a probe: its module has cycles_i and signals_i
     signals: list = field(default_factory=list)  # signals of a probe, bit 0 first: (name below soc,
                                                  # width)
 
@@ -88,7 +91,7 @@ class Slot:
 
     name: str
     number: int
-    address: int  # the processor's
+    address: int  # byte address of the slot for the processor
     block: Block
     bytes: int = SLOT_BYTES
 
@@ -105,10 +108,11 @@ class Chip:
         self.ports = constants["NPI_PORT_COUNT"]
         self.registers = constants["CONTROL_WINDOW"]  # the processor's address of slot 0
         self.pins = {"i": 0, "o": 0}  # bits used of core_pins_i, core_pins_o
-        self.names = {n[5:].lower(): 0 for n in constants if n.startswith("SLOT_")}  # line number
-                                                                                     # by name
+        # names in use -> line number in the list
+        self.names = {n[5:].lower(): 0 for n in constants if n.startswith("SLOT_")}
         self.identities, self.places, self.cores = set(), {}, []
-        for n, line in enumerate(text.split("\n"), 1):  # unlike splitlines(), not at form feeds
+        for n, line in enumerate(text.split("\n"), 1):  # unlike splitlines(), does not split at
+                                                        # form feeds
             words = line.split("#")[0].split()
             if words:
                 self.cores.append(self.read(n, words[0], words[1:]))
@@ -181,7 +185,7 @@ class Chip:
         core.fail(f"no room in DDR3 for the {needed} bytes of '{core.folder}'")
 
     def set(self, core, key, value):
-        """Parses one word of a core's line."""
+        """Parses one word of the line of a core."""
         if key == "name":
             core.check(re.fullmatch("[a-z][a-z0-9_]*", value),
                        f"name={value}: small letters, digits and _")
@@ -200,7 +204,7 @@ class Chip:
                        f"memory={value}: a byte address in DDR3, for a core with buffers")
             core.memory, core.is_placed = int(value, 0), True
         elif key == "signals" and core.is_probe:
-            core.signals = []  # instead of the manifest's
+            core.signals = []  # these replace the manifest's signals
             self.set_signals(core, value)
         elif key == "clock" and core.own_clock:
             self.set_clock(core, value)
@@ -225,8 +229,8 @@ class Chip:
 
     @staticmethod
     def set_clock(core, value):
-        """Handles clock=3/8: a fraction of the chip clock, generated by a DCM_CLKGEN instead of
-        the pin clock_i."""
+        """Handles clock=3/8: the clock is this fraction of the chip clock, generated by a
+        DCM_CLKGEN, and the core has no pin clock_i."""
         match = re.fullmatch("([0-9]{1,3})/([0-9]{1,3})", value)
         core.multiply, core.divide = map(int, match.groups()) if match else (0, 0)
         core.check(2 <= core.multiply <= core.divide <= 256,
@@ -239,7 +243,8 @@ class Chip:
 
     @staticmethod
     def set_signals(core, value):
-        """signals=u_fir.busy,u_fir.count:9: their names in the simulator, below soc, and bits."""
+        """Handles signals=u_fir.busy,u_fir.count:9: hierarchical names below soc, and widths in
+        bits."""
         for word in value.split(","):
             match = re.fullmatch("([A-Za-z0-9_.]+)(?::([0-9]{1,3}))?", word)
             width = int(match[2] or 1) if match else 0
@@ -250,7 +255,7 @@ class Chip:
         core.check(bits <= PROBE_BITS, f"signals: {bits} bits; a probe has {PROBE_BITS}")
 
     def set_places(self, core, pin, value):
-        """pwm_o=@A4,B4: locations of the bits on the board, bit 0 first."""
+        """Handles pwm_o=@A4,B4: locations of the bits on the board, bit 0 first."""
         for place in value[1:].split(","):
             core.check(re.fullmatch("[A-Za-z0-9]+", place),
                        f"{pin.name}={value}: places are letters and digits, as @A4,B4")
@@ -274,10 +279,11 @@ class Chip:
             core.check(core.slot, f"all {SLOT_LIMIT} slots are taken")
 
     def give_memory(self):
-        """Places buffers.
+        """Assigns the addresses of the buffers in DDR3.
 
-        A wrapper keeps only the address bits above the size of its buffers, so each core's are at a
-        multiple of it. Buffers with memory= come first, the others into the gaps, in order.
+        A core's wrapper keeps only the address bits above the size of its buffers, so their address
+        is a multiple of this size. Buffers with memory= are placed first, the others then fill the
+        gaps, in the order of the list.
         """
         placed = []
 
@@ -309,13 +315,14 @@ class Chip:
                 placed.append(core)
 
     def connect(self, core):
-        """Wires pins of cores to other cores, and assigns bits of the chip pins to the rest."""
+        """Connects pins of a core to other cores, and assigns bits of the chip pins to the
+        remaining pins."""
         outputs = {f"{c.name}.{p.name}": p for c in self.cores for p in c.pins
                    if p.direction == "o"}
         names = [c.name for c in self.cores]
         for pin in core.pins:
             if pin.source and pin.internal and pin.source.split(".")[0] not in names:
-                pin.source = ""  # a neighbour that is not in the chip is ignored
+                pin.source = ""  # an input from a core that is not in the chip stays unconnected
             elif pin.source:
                 origin = outputs.get(pin.source)
                 core.check(origin and origin.width == pin.width,
@@ -350,7 +357,7 @@ def described(path):
 
 
 def of_core(file, registers):
-    """Returns a core's manifest and its block."""
+    """Returns the manifest of a core and its register block."""
     try:
         found = manifest.read(file)
         return found, manifest.block_of(found, registers)
@@ -365,7 +372,7 @@ def parts(option, text, form):
 
 
 def build(asked):
-    """Returns all files, name to text."""
+    """Returns all generated files as {name: text}."""
     manifests, descriptions, files = {}, {}, {}
     for folder, file, registers in (parts("--core", c, "folder=core.toml=file")
                                     for c in asked.core):

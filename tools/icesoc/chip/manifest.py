@@ -17,15 +17,16 @@ from icesoc.util import schema
 
 SCHEMA = json.loads(Path(__file__).with_name("core.schema.json").read_text())
 HEADERS = ".vh", ".svh", ".inc", ".h"
-# Facts of the manifest that are part of the block's description for the chip, the firmware's table
-# and exchange formats.
+# Keys of the manifest that become part of the block's description, for the chip, the firmware's
+# table and the exchange formats.
 DESCRIBED = "memory_port", "memory_bytes", "probe", "servant"
 FILE_LISTS = "verilog", "vhdl", "includes", "tests"
 
 
 @dataclass
 class Manifest:
-    """The facts of one core. Files are absolute; a registers or interface file is present."""
+    """The facts of one core. File names are absolute; either a registers file or an interface file
+    is present."""
 
     path: Path
     name: str
@@ -40,12 +41,12 @@ class Manifest:
         return str(self.folder / name)
 
     def pins(self):
-        """Returns the pins as a register description has them."""
+        """Returns the pins in the form of a register description."""
         return [{key: pin[key] for key in ("name", "width", "internal") if key in pin}
                 for pin in self.facts.get("pins", [])]
 
     def places(self):
-        """Returns the default places of pins: name to pads."""
+        """Returns the default locations of the pins: {name: pads}."""
         return {p["name"]: p["places"] for p in self.facts.get("pins", []) if "places" in p}
 
 
@@ -125,14 +126,15 @@ def block_of(manifest, registers):
 
 
 def quoted(words):
-    """Returns words as arguments of CMake; @NAME@ is replaced by the value of a variable."""
+    """Returns words as arguments for CMake, in which @NAME@ is replaced by the value of a
+    variable."""
     text = (str(word).replace("\\", "\\\\").replace('"', '\\"').replace("$", "\\$")
             .replace(";", "\\;") for word in words)
     return " ".join('"' + re.sub("@([A-Z_]+)@", r"${\1}", word) + '"' for word in text)
 
 
 def placed(value, folder):
-    """Returns the facts with @FOLDER@ replaced by the manifest's folder."""
+    """Returns a value in which @FOLDER@ is replaced by the folder of the manifest."""
     if isinstance(value, dict):
         return {key: placed(each, folder) for key, each in value.items()}
     if isinstance(value, list):
@@ -141,7 +143,7 @@ def placed(value, folder):
 
 
 def cmake(manifest):
-    """Returns CMake code that sets what icesoc_core (cmake/cores.cmake) reads."""
+    """Returns CMake code that sets the variables for icesoc_core (cmake/cores.cmake)."""
     facts = placed(manifest.facts, manifest.folder)
     s = f"set(name {quoted([manifest.name])})\n"
 

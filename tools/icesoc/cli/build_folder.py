@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""build_folder: set-up, CMake and ninja of a build folder. Two builds in one folder wait for each
-other."""
+"""build_folder: configures and builds a build folder with CMake and ninja. If two commands build in
+one folder, the second waits for the first."""
 import contextlib
 import os
 import re
@@ -18,7 +18,7 @@ ROOMS_OF_PROGRAMS = "bus;slice;sw;hdl;ip;testbench;tests"
 
 
 def writable(folder, otherwise):
-    """Makes a folder, or fails with the reason."""
+    """Creates a folder, or fails with the reason."""
     try:
         Path(folder).mkdir(parents=True, exist_ok=True)
     except OSError:
@@ -28,13 +28,14 @@ def writable(folder, otherwise):
 
 
 def cores_in(folder):
-    """Returns a core's folder, or all cores of a repository, which has a cores.list."""
+    """Returns the folder of one core, or the folders of all cores if it is a repository, which has
+    a cores.list."""
     return sorted(path.parent for path in folder.glob("*/core.toml")) \
         if (folder / "cores.list").is_file() else [folder]
 
 
 class BuildFolder:
-    """A build folder, as a command's options name it."""
+    """The build folder that the options of a command name."""
     def __init__(self, folder, values):
         self.folder, self.jobs, self.built = Path(folder), values.jobs, values.built
         self.ucos2 = getattr(values, "ucos2", "")
@@ -44,8 +45,8 @@ class BuildFolder:
         return self.folder / name
 
     def prepare(self, *arguments, tests=False, packages=False):
-        """Installs what is missing, also for tests or Debian packages; then runs CMake, unless the
-        folder is configured."""
+        """Installs missing packages, with `tests` or `packages` also those for tests or Debian
+        packages; then runs CMake, unless the folder is configured."""
         if not self.built:
             run(["cmake/setup.sh", *["--tests"] * tests, *["--packages"] * packages])
             self.configure(*arguments)
@@ -57,8 +58,8 @@ class BuildFolder:
         return self
 
     def configure(self, *arguments):
-        """Lets CMake make the folder, unless it has. CMake refuses a folder made for another place:
-        it is removed first."""
+        """Runs CMake, unless the folder is configured. If the folder was made for another path,
+        CMake refuses it, so it is removed first."""
         writable(self.folder, "where the build goes: take a clone of your own, or give --build "
                  "(BUILD=) a folder that is yours")
         cache = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.environ["HOME"], ".cache")
@@ -74,14 +75,15 @@ class BuildFolder:
             if not (self / "build.ninja").exists():
                 run(["cmake", "-S", ".", "-B", self.folder, "-G", "Ninja", *arguments])
         commands = Path("compile_commands.json")
-        # Editors look for it here. A tree that only builds elsewhere stays as it is.
+        # Editors look for compile_commands.json in the tree. If the build folder is outside, the
+        # tree is not changed.
         if not commands.exists() and self.folder.absolute().is_relative_to(Path.cwd()):
             with contextlib.suppress(OSError):
                 commands.unlink(missing_ok=True)
                 commands.symlink_to(os.path.relpath(self / commands))
 
     def cached(self, name):
-        """Returns a variable of CMake's cache; empty if it is not set."""
+        """Returns the value of a variable in CMake's cache; empty if it is not set."""
         try:
             found = re.search(rf"^{name}:\w+=(.*)$", (self / "CMakeCache.txt").read_text(), re.M)
         except OSError:
@@ -89,8 +91,8 @@ class BuildFolder:
         return found[1] if found else ""
 
     def set(self, **variables):
-        """Gives variables of CMake new values; if CMake refuses them, prints its reason and keeps
-        the old values."""
+        """Sets variables of CMake; if CMake refuses a value, prints the reason and restores the old
+        values."""
         if all(self.cached(name) == value for name, value in variables.items()):
             return
         words = ["cmake", *(f"-D{name}={value}" for name, value in variables.items()),
@@ -106,7 +108,8 @@ class BuildFolder:
             raise Stop("CMake refuses " + " ".join(words[1:-1]) + "\n" + "\n".join(reasons))
 
     def other_cores(self):
-        """Folders of cores outside of ip/: those that the command names, else those kept."""
+        """Returns the folders of cores outside ip/ that the command names, otherwise those of the
+        earlier configuration."""
         if self.core_folders == "none":
             return []
         folders = self.core_folders or self.cached("CORE_FOLDERS")
@@ -114,20 +117,21 @@ class BuildFolder:
                 for core in cores_in(Path(folder).absolute())]
 
     def chip_list(self):
-        """The list of the chip's cores that the command selects: of the first repository among the
-        folders, or this tree's again; None if the command does not select one."""
+        """Returns the list of the chip's cores that the command selects: that of the first
+        repository among the folders, or that of this tree; None if the command does not select
+        one."""
         if self.core_folders == "none":
             return Path("ip/cores.list").absolute() if self.cached("CORES") else None
         lists = (Path(folder).absolute() / "cores.list" for folder in self.core_folders.split(";"))
         return next(filter(Path.is_file, lists), None) if self.core_folders else None
 
     def core(self, name):
-        """The folder of a core."""
+        """Returns the folder of a core."""
         return next((folder for folder in self.other_cores() if folder.name == name),
                     Path("ip", name))
 
     def follow(self, other, **variables):
-        """Has the chip of another build folder."""
+        """Configures this folder with the chip of another build folder."""
         if other.cached("CMAKE_HOME_DIRECTORY"):
             variables["CORE_FOLDERS"] = other.cached("CORE_FOLDERS")
         if other.cached("CORES"):
@@ -148,19 +152,19 @@ class BuildFolder:
                              self.folder / "build.log", check, env)
 
     def ctest(self, *words, tests, check=True, junit="junit.xml", **env):
-        """Runs tests with CTest, and leaves their results in the build folder."""
+        """Runs tests with CTest, and writes their results into the build folder."""
         return run([*tool("regress.ctest"), "--test-dir", self.folder, "-j", tests,
                     "--output-on-failure", "--no-tests=error", "--output-junit",
                     (self / junit).absolute(), *words], env=env, check=check)
 
     def targets(self):
-        """Names of all targets."""
+        """Returns the names of all targets."""
         return re.findall(r"^(.*): phony$",
                           output(["ninja", "-C", self.folder, "-t", "targets", "all"]), re.M)
 
 
 def configured(values, *targets, tests=False):
-    """The build folder of a command, with targets built."""
+    """Returns the build folder of a command after building targets in it."""
     build = BuildFolder(values.build, values).prepare(tests=tests)
     if targets:
         build.ninja(*targets)
@@ -168,7 +172,7 @@ def configured(values, *targets, tests=False):
 
 
 def netlists(values, *words, **how):
-    """The build folder of netlists for the chips of --family."""
+    """Returns the build folder of netlists for the FPGA family in --family."""
     families = {"xc6s": "build/netlist", "ecp5": "build/netlist_ecp5"}
     return BuildFolder(families[values.family], values).prepare(
         "-DNETLIST=ON", f"-DNETLIST_FAMILY={values.family}", *words, **how)

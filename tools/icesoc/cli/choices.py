@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""choices: the names that options take, found in the files of the tree: for completion, and for
+"""choices: the names that options accept, as found in the files of the tree, for completion and for
 checks before anything is configured or built.
 
-Each function gets the values of a command's options, or None in a completion.
+Each function gets the values of a command's options, or None during completion.
 """
 import argparse
 import functools
@@ -30,11 +30,11 @@ def texts(folders, *endings):
     return [path.read_text(errors="replace") for path in files(folders, *endings)]
 
 
-NOUNS = {}  # for messages, by function
+NOUNS = {}  # names of the functions' results, for messages
 
 
 def expecting(noun):
-    """Declares what a function's names are, for messages."""
+    """Returns a decorator that stores the noun for a function's results, for messages."""
     def declare(function):
         NOUNS[function] = noun
         return function
@@ -47,11 +47,13 @@ def noun(function):
 
 @expecting("the name of a core")
 def cores(values=None):
-    """The cores of the tree, and those in the folders that the command or an earlier one named."""
+    """Returns the cores of the tree, and those in folders that this command or an earlier one
+    named."""
     found = {path.parent.name for path in Path("ip").glob("*/core.toml")}
     if values is None:
         values = argparse.Namespace(build="build/main", jobs=1, built=True)
-    from icesoc.cli.build_folder import BuildFolder  # icesoc-call is installed without it
+    from icesoc.cli.build_folder import BuildFolder  # the installed icesoc-call does not contain
+                                                     # this module
     build = BuildFolder(values.build, values)
     known = build / "cores.known"  # written by CMake
     found |= set(known.read_text().split()) if known.exists() else set()
@@ -59,14 +61,14 @@ def cores(values=None):
 
 
 def flown(values=None):
-    """The cores that a mission can call."""
+    """Returns the cores that a mission can call."""
     return [name for name in cores() if Path("ip", name, "ground.py").is_file()]
 
 
 @expecting("the name of a design")
 def designs(values=None):
-    """What can be synthesised: designs of synth/designs.json, modules, entities, and modules that
-    the build generates."""
+    """Returns the names that can be synthesised: designs of synth/designs.json, modules, entities,
+    and modules that the build generates."""
     listed = Path("synth/designs.json")
     found = json.loads(listed.read_text())["designs"] if listed.is_file() else []
     names = {name for text in texts(HARDWARE, ".v", ".vhd") for name in MODULE.findall(text)}
@@ -78,7 +80,7 @@ def designs(values=None):
 
 @expecting("a label of tests, or an expression that matches one")
 def labels(values=None):
-    """The labels of tests."""
+    """Returns the labels of tests."""
     text = "\n".join(texts(SEARCHED, "CMakeLists.txt", ".cmake"))
     found = re.findall(r'\bLABELS "?([a-z0-9_;]+)', re.sub("#.*", "", text))
     return sorted({label for each in found for label in each.split(";") if label})
@@ -94,7 +96,7 @@ def has_label(text, values):
 
 @expecting("a block with seeded bugs, or block/bug")
 def seeded(values=None):
-    """The blocks with seeded bugs, and each bug as block/name."""
+    """Returns the blocks with seeded bugs, and each bug as block/name."""
     names = []
     for path in sorted(Path("tests/mutants").glob("*.bugs.json")):
         block = path.name.partition(".")[0]
@@ -108,30 +110,31 @@ def sanitizers(values=None):
 
 
 def blocks(values=None):
-    """The folders of tests, as --block takes them."""
+    """Returns the folders of tests, in the form that --block takes."""
     found = {path.parent.name for folder in ("tests", "ip")
              for path in Path(folder).rglob("CMakeLists.txt")}
     return sorted((found | set(cores())) - {"tests", "ip"})
 
 
 def cases(values=None):
-    """The cases of C++ tests: Suite.Case."""
+    """Returns the cases of the C++ tests as Suite.Case."""
     return sorted({".".join(names) for text in texts(SEARCHED, "_test.cpp")
                    for names in CASE.findall(text)})
 
 
 @expecting("a word of a test's name")
 def words_of_tests(values=None):
-    """The words of which names of tests are made."""
+    """Returns the words that occur in names of tests."""
     words = {word for names in cases() for word in names.split(".")}
     text = "\n".join(texts(SEARCHED, "CMakeLists.txt", ".cmake", ".cmake.in", "core.toml"))
     return sorted(words | set(re.findall(r"[A-Za-z]\w{2,}", text)))
 
 
 def may_name_test(text, values):
-    """Returns whether a test may match: an expression always, a plain word if each part of it is in
-    the source of a test. Tests of cores outside the tree may have any name."""
-    from icesoc.cli.build_folder import BuildFolder  # icesoc-call is installed without it
+    """Returns whether a text may match a test: an expression always; a plain word if each part of
+    it is in the source of a test. Tests of cores outside the tree may have any name."""
+    from icesoc.cli.build_folder import BuildFolder  # the installed icesoc-call does not contain
+                                                     # this module
     if not re.fullmatch(r"[A-Za-z]\w*", text) or \
             BuildFolder(values.build, values).other_cores():
         return True

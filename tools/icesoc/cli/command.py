@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""command: the list of all commands, the parser of each, and its two doors.
+"""command: the list of all commands, and the parser of each for its two entry points.
 
-`./icesoc run --loss 0.1` and `make run LOSS=0.1` both end in `values`: an option that is not given
-is taken from the environment variable of its name. make exports the variables of its command line
-there.
+`./icesoc run --loss 0.1` and `make run LOSS=0.1` are equivalent: an option that is not given is
+read from the environment variable with its name, to which make exports the variables of its command
+line.
 """
 import argparse
 import os
@@ -14,25 +14,25 @@ from icesoc.cli.options import ARGUMENTS, BUILT, PATHS, SWITCH
 from icesoc.util.console import warn
 from icesoc.util.errors import Stop, nearest
 
-COMMANDS = {}  # command by name, such as "core new", in the order of the list
-GROUPS = {}  # help of each group, by the first word of its commands
-DEFAULTS = {}  # command of a group that its first word alone selects
-SECTIONS = {  # sections of the overview: commands and groups, by what a user wants to do
+COMMANDS = {}  # commands by name, such as "core new", in the order of their declaration
+GROUPS = {}  # help text of each group of commands, by the first word of their names
+DEFAULTS = {}  # command that the first word of a group selects when used alone
+SECTIONS = {  # sections of the overview by purpose: title -> commands and groups
     "Fly": ("run", "call", "replay", "gdb", "key", "fly"),
     "Add cores, look at the chip": ("core", "contract", "synth", "board"),
     "Build and test": ("build", "test", "regress", "bisect", "check", "bench", "nightly"),
     "The project": ("setup", "docs", "package", "release", "clean", "commands")}
-ALIASES = {}  # other goals of make: a goal, and the switch that it sets
+ALIASES = {}  # other goals of make: goal -> the switch that it sets
 
 
 class Command:
     """A command: a function of its options' values.
 
-    make: its verb there, if it has one. when: the variable that chooses this one of several with
-    the same verb.
-    takes_environment: an option that is not given comes from the variable of its name.
-    brief: a command line, or several, that runs all of its steps in short (commands --brief).
-    long: what `nightly` runs of it, with {day} for a seed; none if the tests run the whole.
+    make: its goal in make, if it has one. when: the variable that selects this command among
+    several with the same goal. takes_environment: an option that is not given is read from the
+    variable with its name. brief: one or several command lines that run all steps of the command in
+    short (commands --brief). long: the command line that `nightly` runs, with {day} for a seed;
+    None if the tests cover it.
     """
     takes_environment = True
 
@@ -79,7 +79,7 @@ class Command:
                 action.completer = option.completer
             elif option.choices or option.kind.words:
                 action.completer = option.completions
-            if option.positional:  # also by its name, as with make
+            if option.positional:  # the option can also be given by name, as with make
                 more["help"] = argparse.SUPPRESS
                 again: typing.Any = parser.add_argument(f"--{option.name}",
                                                         dest=f"--{option.field}", **more)
@@ -100,7 +100,7 @@ class Command:
         parser.error = refuse
         parse = parser.parse_known_args
         if any(option.kind is ARGUMENTS for option in self.options):
-            # Options may stand between the arguments, and -1e3 is not one.
+            # options may stand between the arguments, and -1e3 is a number, not an option
             parse = parser.parse_known_intermixed_args
             parser._negative_number_matcher = re.compile(r"-\.?\d")
         given, left = parse(rest)
@@ -112,10 +112,10 @@ class Command:
         return self.values(vars(given), None, place)
 
     def values(self, given, makes, place):
-        """The values of all options.
+        """Returns the values of all options.
 
-        given: texts by field; makes: variables of make's command line; place: the folder of
-        relative names of files, also a value itself."""
+        given: texts by field; makes: variables of make's command line; place: the folder to which
+        file names are relative, which is a value itself."""
         values = argparse.Namespace(given=set(), given_by_make=makes is not None, place=place)
         for option in self.options:
             text = given.get(option.field) or given.get(f"--{option.field}")
@@ -124,7 +124,7 @@ class Command:
                 values.given.add(option.field)
                 called = option.name.upper() if option.positional else called
             elif self.takes_environment and (option.variable != "LANG" or option.variable in (
-                    makes or ())):  # LANG in the environment is the user's language
+                    makes or ())):  # ignored: LANG in the environment is the language of the user
                 text, called = os.environ.get(option.variable), option.variable
                 if text and option.variable in (makes or ()):
                     values.given.add(option.field)
@@ -170,17 +170,17 @@ def find(words):
 
 
 def by_words(words, place):
-    """(command, values) of a command line."""
+    """Returns (command, values) of a command line."""
     found, rest = find(words)
     flags = {word.partition("=")[0] for word in rest}
-    for each in COMMANDS.values():  # `run --replay`, as `make run REPLAY=`
+    for each in COMMANDS.values():  # `run --replay` selects the same command as `make run REPLAY=`
         if each.when and each.make == found.make and f"--{each.when.lower()}" in flags:
             found = each
     return found, found.words(rest, place)
 
 
 def by_make(goal, goals, makes):
-    """(command, values) of one of make's goals."""
+    """Returns (command, values) of a goal of make."""
     def of(goal):
         if goal.endswith("/build.ninja"):
             os.environ["BUILD"], goal = os.path.dirname(goal), "configure"
@@ -208,7 +208,7 @@ def by_make(goal, goals, makes):
 
 
 def complete():
-    """Completes shell words, if Debian's argcomplete is installed."""
+    """Completes the words in a shell, if Debian's argcomplete is installed."""
     import argcomplete
     top = argparse.ArgumentParser()
     within = {"": top.add_subparsers()}
@@ -224,8 +224,8 @@ def complete():
 
 
 def complete_make(line):
-    """Returns what may follow a command line of make: verbs, `VARIABLE=`, or values. Bash treats =
-    as the end of a word."""
+    """Returns the words that may follow in a command line of make: goals, `VARIABLE=`, or values.
+    Bash treats = as the end of a word."""
     words = line.split(" ")[1:]
     last = words.pop()
     goals = [word for word in words if word and "=" not in word and not word.startswith("-")]
@@ -242,7 +242,7 @@ def complete_make(line):
 
 
 def completion_code():
-    """The code that a shell evaluates to complete ./icesoc, and make in this project."""
+    """Returns the code that a shell evaluates to complete ./icesoc, and make in this project."""
     code = """
 _icesoc_make() {
     [ -x ./icesoc ] && grep -qs '^# Makefile: .*icesoc' Makefile || return
@@ -261,8 +261,8 @@ complete -o bashdefault -o default -F _icesoc_make make
 
 
 def short(text, width):
-    """Returns the beginning of a help text, up to its first comma or semicolon if the result is
-    short."""
+    """Returns the beginning of a help text, up to its first comma or semicolon if that is short
+    enough."""
     while len(text) > width:
         text = re.sub(r"[,;:(][^,;:(]*$", "", text).rstrip() if re.search("[,;:(]", text) \
             else text[:width - 3] + "..."
@@ -274,7 +274,7 @@ def row(name, text):
 
 
 def overview():
-    """The text of `./icesoc`: a line for each command or group of commands."""
+    """Returns the output of `./icesoc` without arguments: one line per command or group."""
     lines = ["usage: ./icesoc COMMAND [option...]", "",
              "IceSoC: the functions of an FPGA and a microcontroller as ZeroC Ice objects."]
     rest = dict.fromkeys(name.split()[0] for name in COMMANDS)
@@ -291,7 +291,7 @@ def overview():
 
 
 def group_help(group):
-    """The help of a group: a line for each of its commands."""
+    """Returns the help of a group: one line per command."""
     lines = [f"usage: ./icesoc {group} COMMAND [option...]", "", GROUPS[group], ""]
     lines += [row(name.split()[1], each.help) for name, each in COMMANDS.items()
               if name.startswith(group + " ")]

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""flight: the description of a flight, OUT/flight.json, which simulator, ground and page read.
+"""flight: the description of a flight, OUT/flight.json, which the simulator, the ground program and
+the page read.
 
-Each option below is a field of it. flight.schema.json in this folder is written from them
-(./icesoc commands --schema).
+Each option below is a field of the description. flight.schema.json in this folder is generated from
+the options (./icesoc commands --schema).
 """
 import json
 import os
@@ -70,8 +71,8 @@ FIELDS = [
     Option("guard", number(2, 3300, "ms"), "guard time of both modems", 1000),
     Option("patience", number(1, unit="s"), "time-out for each answer of the vehicle", 300),
     Option("firmware", FILE, "firmware (ELF) to fly instead of the one from the build", ""), ]
-# Further options of the simulator, in a flight's description or as words; ./icesoc has separate
-# options for them.
+# Options that only the simulator has, in flight.json or as words of a command line; ./icesoc has
+# separate options for their purposes.
 _TEXT: dict = {"type": "string"}
 _TIME: dict = {"type": "number", "minimum": 0}
 _FLAG: dict = {"type": "boolean"}
@@ -105,7 +106,7 @@ OPTIONS = [*FIELDS, UCOS2, AGAIN, CORE_FOLDERS]
 
 
 def empty(option):
-    """The value in flight.json of an option that is not given."""
+    """Returns the value in flight.json for an option that is not given."""
     return {"boolean": False, "array": [], "string": ""}.get(option.kind.schema.get("type"),
                                                              option.default)
 
@@ -122,7 +123,7 @@ def schema_text():
 
 
 def schema():
-    """The JSON schema of flight.json."""
+    """Returns the JSON schema of flight.json."""
     fields = {option.field: {**option.kind.schema, "description": option.help,
                              "default": option.default or empty(option)} for option in FIELDS}
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "A flight",
@@ -131,8 +132,8 @@ def schema():
 
 
 def wrong(flight):
-    """Returns what does not fit the schema, or an empty text. The fields of the simulator alone are
-    not accepted."""
+    """Returns the first error of a description against the schema, or an empty text. Options that
+    only the simulator has are not accepted."""
     if not isinstance(flight, dict) or flight.get("version") != VERSION:
         return f"expected version {VERSION}"
     own = schema()
@@ -141,7 +142,7 @@ def wrong(flight):
 
 
 def read(path):
-    """A flight's description."""
+    """Returns the description of a flight in a file."""
     try:
         flight = json.loads(Path(path).read_text())
     except (OSError, json.JSONDecodeError) as error:
@@ -155,8 +156,8 @@ def read(path):
 
 
 def complete(values):
-    """Takes options that are not given from the repeated flight, and refuses options that exclude
-    each other."""
+    """Fills in options from the flight that is repeated, and refuses options that exclude each
+    other."""
     if values.again:
         given = values.given | ({"key", "open"} if values.given & {"key", "open"} else {"version"})
         for name, value in read(values.again).items():
@@ -188,7 +189,7 @@ def complete(values):
         if not (folder / "ground.py").is_file():
             raise Stop(f"core '{core}' has no part in a mission: {folder}/ground.py not found"
                        + nearest(core, choices.flown()), 2)
-        if folder.is_absolute():  # outside of ip/
+        if folder.is_absolute():  # the core is outside ip/
             values.cores[at] = str(folder)
     try:
         Path(values.out).mkdir(parents=True, exist_ok=True)
@@ -199,7 +200,8 @@ def complete(values):
 
 
 def check_chip(values, build):
-    """Refuses a core of the tree that the chip lacks: its call would fail only minutes later."""
+    """Refuses a core of the tree that is not in the chip, because its call would fail only minutes
+    later."""
     listed = build.cached("CORES") or "ip/cores.list"
     lines = re.findall(r"^\s*(\w+)", Path(listed).read_text(), re.M)
     for core in (Path(folder).name for folder in values.cores):
@@ -208,7 +210,7 @@ def check_chip(values, build):
 
 
 def take_key(values, build):
-    """Returns the demo key, created once, for a mission that is neither open nor has a key."""
+    """Returns the demo key, created once, if the mission is neither open nor has a key."""
     if values.open or values.key or values.app != "uav":
         return
     keys.rescue(build.folder.parent)
@@ -219,7 +221,7 @@ def take_key(values, build):
 
 
 def take_observers_key(values):
-    """A demo key for the second ground of several vehicles that have keys."""
+    """Returns a demo key for the second ground station, if the vehicles have keys."""
     if values.vehicles > 1 and values.key and not values.observer:
         values.observer = str(keys.folder() / "observer.key")
         make_key(values.observer)
@@ -255,8 +257,9 @@ def write(values, build):
 
 
 def last_span(out):
-    """Returns FROM= and TO= for the end of a flight: from the last checkpoint at least 10 ms before
-    it. Returns None if the recording is cut, as by a full disk."""
+    """Returns the options FROM= and TO= for the end of a flight, starting at the last checkpoint
+    that is at least 10 ms before the end. Returns None if the recording is incomplete, for example
+    after the disk was full."""
     last = before = finish = 0.0
     recording = (Path(out) / "flight.jsonl").read_text()
     if not recording.endswith("\n"):

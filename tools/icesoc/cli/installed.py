@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""installed: icesoc-call, which is `./icesoc call` without the source tree.
+"""installed: the program icesoc-call, which is `./icesoc call` without the source tree.
 
-The package icesoc-ground has this module and those that it imports. Options that need the source
-tree are left out, and variables of make in the environment are ignored.
+The package icesoc-ground contains this module and those that it imports. Options that need the
+source tree are left out, and make's variables in the environment are ignored.
 """
 import dataclasses
 import os
@@ -15,7 +15,8 @@ from icesoc.cli.commands.call import OPTIONS, call
 from icesoc.cli.main import main
 from icesoc.cli.options import FILE, KEY_FILE
 
-TREE_ONLY = {"build": places.SHARE, "flight": "", "page": False, "plugin": ""}  # with their values
+# options that need the source tree, with their values here
+TREE_ONLY = {"build": places.SHARE, "flight": "", "page": False, "plugin": ""}
 TEXTS = {"vehicle": "name of the vehicle in vehicles.conf, or in IceGrid; default: the only one of "
                     "vehicles.conf",
          "slice": "Slice files of objects that the default chip does not have, separated by spaces"}
@@ -55,7 +56,7 @@ class Installed(Command):
 
 
 def act(words):
-    """Makes the call of a command line."""
+    """Executes a command line."""
     os.environ["LC_ALL"] = "C.UTF-8"
     return call(Installed().words(words, os.getcwd()))
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""keys: certificates, and private keys in ~/.config/icesoc (XDG_CONFIG_HOME), outside of what is
-built.
+"""keys: manages certificates, and private keys in ~/.config/icesoc (or XDG_CONFIG_HOME), outside
+the build folders.
 
-All trees of a user share them, a copy of a tree has none, and no command removes one."""
+All trees of a user share the keys. A copy of a tree contains none of them, and no command deletes
+them."""
 import filecmp
 import hashlib
 import os
@@ -23,7 +24,8 @@ def folder():
 
 
 def rescue(built):
-    """Moves keys out of `build`, or a folder in it, where earlier versions kept them."""
+    """Moves keys out of the folder `built` or a folder in it, where earlier versions stored
+    them."""
     for pattern in ("demo.key", "update.key", "*/update.key"):
         for old in sorted(Path(built).glob(pattern)):
             new = folder() / old.name
@@ -37,8 +39,9 @@ def rescue(built):
 
 
 def make_certificate(path):
-    """Makes a file (PEM) with a certificate, with its name as CN, and its private key, P-256, valid
-    for ten years. Returns False if it exists. The key of its authority is authority.key."""
+    """Creates a PEM file with a certificate (CN: the name of the file) and its private key (P-256),
+    valid for ten years. Returns False if the file exists. The key of its authority is
+    authority.key."""
     path = Path(path)
     authority, signs = path.with_name("authority.pem"), path.with_name("authority.key")
     if os.path.lexists(path) or path == authority:
@@ -52,13 +55,13 @@ def make_certificate(path):
             check_authority(authority, signs)
             if not signs.exists():
                 sign("icesoc", cert, key, "CA:TRUE")
-                cert.chmod(0o644)  # it is public
+                cert.chmod(0o644)  # a certificate is public
                 key.rename(signs)
                 cert.rename(authority)
             sign(path.stem, cert, key, "CA:FALSE", "-CA", authority, "-CAkey", signs)
             cert.write_text(cert.read_text() + key.read_text())
             os.link(cert, path)
-    except FileExistsError:  # another process was faster
+    except FileExistsError:  # another process created it first
         return False
     finally:
         os.umask(before)
@@ -66,8 +69,8 @@ def make_certificate(path):
 
 
 def check_authority(authority, signs):
-    """Stops unless certificate and key of the authority are regular files, and only their owner
-    can read the key."""
+    """Fails unless certificate and key of the authority are regular files, and only their owner can
+    read the key."""
     if os.path.lexists(authority) != os.path.lexists(signs):
         raise Stop(f"of '{authority}' and '{signs}' one is missing: keep both, or neither")
     for path in authority, signs:
@@ -79,10 +82,10 @@ def check_authority(authority, signs):
 
 
 def sign(name, cert, key, constraint, *by):
-    # A plus sign or a slash in a name would begin another part of the subject.
+    # A plus sign or a slash in the name would start another part of the subject.
     name = name.replace("\\", "\\\\").replace("+", "\\+").replace("/", "\\/")
-    settings = cert.with_name("openssl.cnf")  # the machine's settings would allow every certificate
-                                              # to sign
+    settings = cert.with_name("openssl.cnf")  # the settings of the machine would allow every
+                                              # certificate to sign others
     settings.write_text("[req]\ndistinguished_name = name\n[name]\n")
     run(["openssl", "req", "-x509", "-config", settings, "-newkey", "ec", "-pkeyopt",
          "ec_paramgen_curve:P-256", "-nodes", "-days", "3650", "-subj", f"/CN={name}", "-addext",

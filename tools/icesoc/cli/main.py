@@ -17,9 +17,10 @@ from icesoc.util.process import hear_signals
 
 
 def surroundings():
-    """Sets the environment of all programs, and changes to the tree's folder. Returns the caller's
-    folder."""
-    place, tree = os.getcwd(), os.environ.pop("ICESOC_TREE", "")  # the tree of a test
+    """Sets the environment for all programs, and changes to the folder of the tree. Returns the
+    caller's folder."""
+    place, tree = os.getcwd(), os.environ.pop("ICESOC_TREE", "")  # ICESOC_TREE: a tree that a test
+                                                                  # uses instead
     os.chdir(tree or TREE)
     place = os.getcwd() if tree else place
     # ccache and icesoc.util.fetch store files in HOME, which a timer or a container may not set.
@@ -27,12 +28,13 @@ def surroundings():
     # Paths below this folder are relative in the compiler cache, so that it works for every clone.
     os.environ.update(CCACHE_BASEDIR=os.getcwd(), CCACHE_NOHASHDIR="1")
     os.environ[
-        "LC_ALL"] = "C.UTF-8"  # numbers have a point in every tool, whatever the user's language
+        "LC_ALL"] = "C.UTF-8"  # all tools print a decimal point, whatever the language of the user
     return place
 
 
 def make_gave():
-    """(goal, all goals, variables of its command line), or None if make has not called."""
+    """Returns (goal, all goals, variables of make's command line), or None if make is not the
+    caller."""
     goal, goals = os.environ.pop("ICESOC_GOAL", ""), os.environ.pop("ICESOC_GOALS", "").split()
     flags = os.environ.pop("MAKEFLAGS", "")
     for name in ("MFLAGS", "MAKELEVEL", "MAKEOVERRIDES"):
@@ -43,7 +45,7 @@ def make_gave():
 
 
 def declare(words):
-    """Declares the commands that a command line needs: a call must start quickly."""
+    """Declares only the commands that a command line needs, so that `call` starts quickly."""
     if words[:1] == ["call"] and "_ARGCOMPLETE" not in os.environ:
         from icesoc.cli.commands import call  # noqa: F401
     else:
@@ -69,14 +71,15 @@ def act(words):
         return say(tree.version())
     else:
         found, values = command.by_words(words, place)
-    # Programs do not see these variables; a command passes on the necessary ones.
+    # Programs do not see these variables; each command passes on those that are needed.
     for option in found.options:
         os.environ.pop(option.variable if option.variable != "LANG" else "", None)
     return found.function(values)
 
 
 def main(words, function=act):
-    """Returns the exit status of a function of the command line; prints its error."""
+    """Runs a function with the words of the command line; prints its error and returns its exit
+    status."""
     hear_signals()
     try:
         return function(words) or 0
@@ -97,8 +100,9 @@ def main(words, function=act):
 
 
 def path_of(error):
-    """Returns the path of the file that an exception is about. Python omits it when a write fails,
-    as on a full disk: then it is the file open in the innermost function, or the path there."""
+    """Returns the path of the file that an exception is about. Python omits the path when a write
+    fails, as on a full disk; then it is the path of the file that is open in the innermost
+    function, or a path there."""
     found = error.filename or ""
     for frame, _ in [] if found else traceback.walk_tb(error.__traceback__):
         local = frame.f_locals.values()

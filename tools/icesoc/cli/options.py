@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """options: defines an option, and the kinds of values that options take.
 
-An option is declared once. Its help, its check, its variable of make and its field of flight.json
-come from this declaration.
+An option is declared once; its help, its check, its make variable and its field in flight.json are
+derived from the declaration.
 """
 import dataclasses
 import os
@@ -12,17 +12,18 @@ import typing
 from icesoc.cli import choices
 from icesoc.util.errors import Stop, nearest
 
-MOST_LISTED = 20  # names in a message
+MOST_LISTED = 20  # greatest number of names in a message
 
 
 @dataclasses.dataclass
 class Kind:
-    """A kind of value. `read` converts a text, and raises ValueError for an invalid one."""
+    """A kind of value. `read` converts a text to a value, and raises ValueError if it is
+    invalid."""
     read: typing.Callable
-    expected: str  # completes "LOSS: expected ..."
+    expected: str  # end of the message "LOSS: expected ..."
     schema: dict = None  # JSON schema of the value in flight.json
     metavar: str = "VALUE"
-    words: tuple = ()  # all values, if they are few words
+    words: tuple = ()  # all possible values, if there are only a few
 
 
 @dataclasses.dataclass
@@ -33,10 +34,12 @@ class Option:
     default: object = None
     positional: bool = False
     variable: str = ""  # name as a make variable
-    listed: bool = True  # False: hidden, for the tests of this project
+    listed: bool = True  # False: not in the help; for the tests of this project
     completer: typing.Callable = None  # of argcomplete
-    choices: typing.Callable = None  # known names, by the values of all options: choices.py
-    has_name: typing.Callable = None  # whether a value is valid in addition to the choices
+    choices: typing.Callable = None  # function that returns the known names for the values of all
+                                     # options (choices.py)
+    has_name: typing.Callable = None  # function that returns whether a value is valid although it
+                                      # is not among the choices
     is_checked: bool = True  # False: the choices are for completion only
 
     def __post_init__(self):
@@ -45,7 +48,7 @@ class Option:
         self.many = self.kind in (WORDS, FILES, ARGUMENTS)
 
     def value(self, text, called):
-        """Returns the value of a text, or of a list of texts from argparse. `called` is the name
+        """Returns the value for a text, or for a list of texts from argparse. `called` is the name
         of the option in messages."""
         if self.kind is ARGUMENTS:
             return [text] if isinstance(text, str) else text
@@ -58,8 +61,8 @@ class Option:
                        2) from None
 
     def check_names(self, value, values):
-        """Refuses a name that is not among the choices, before anything is built. A tree without
-        choices has nothing to compare with."""
+        """Refuses a name that is not among the choices, before anything is built. If the tree has
+        no choices, nothing is refused."""
         if not self.choices or not self.is_checked or not value:
             return
         names = None
@@ -80,12 +83,12 @@ class Option:
         return [name for name in names if name.startswith(prefix)]
 
     def none(self):
-        """Returns the value of an option that is not given."""
+        """Returns the value for an option that is not given."""
         empty = False if self.kind is SWITCH else [] if self.many else None
         return empty if self.default is None else self.default
 
     def explain(self):
-        """Returns the help text: meaning, values, default."""
+        """Returns the help text: meaning, possible values, default."""
         shown = " ".join(self.default) if isinstance(self.default, list) else self.default
         parts = [] if self.kind in (TEXT, WORDS, FILES, ARGUMENTS, SWITCH, FILE, KEY_FILE, FOLDER,
                                     PATH, FLIGHT) else [self.kind.expected]
@@ -103,7 +106,7 @@ def matching(pattern, expected, convert=str, schema=None, metavar="VALUE"):
 
 
 def number(low, high=None, unit="", convert=int):
-    """Returns the kind of a number from `low` to `high`, or without an upper limit."""
+    """Returns the kind of a number from `low` to `high`; without `high` there is no upper limit."""
     kind = "number" if convert is float else "whole number"
     between = f"a {kind}, at least {low}" if high is None else f"{low} to {high}"
     pattern = r"\d{1,18}" if convert is int else r"\d+(\.\d*)?|\.\d+"
@@ -179,7 +182,8 @@ SHARE = number(0, 1, convert=float)
 COUNT = number(1)
 SECONDS = number(0, unit="s", convert=float)
 MINUTES = number(0.001, unit="minutes", convert=float)
-PATHS = (FILE, KEY_FILE, FOLDER, PATH, FLIGHT)  # relative to the caller's folder
+PATHS = (FILE, KEY_FILE, FOLDER, PATH, FLIGHT)  # kinds whose values are paths relative to the
+                                                # caller's folder
 
 BUILD = Option("build", FOLDER, "build folder", "build/main")
 JOBS = Option("jobs", COUNT, "parallel build processes", len(os.sched_getaffinity(0)))

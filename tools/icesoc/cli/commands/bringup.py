@@ -16,7 +16,7 @@ from icesoc.cli.options import (BUILD, FOLDER, JOBS, SECONDS, SWITCH, TEXT, WORD
 from icesoc.util.console import say
 from icesoc.util.errors import Stop
 
-SILENCE = 60  # s without a line, after which the report ends
+SILENCE = 60  # time without a line, s, after which the report ends
 CONSOLE = "/dev/ttyUSB0"
 
 
@@ -117,7 +117,7 @@ def set_rate(port):
 
 
 def listen(port, silence, report):
-    """Takes lines until END, or until no line comes."""
+    """Reads lines until END, or until no line arrives for `silence` seconds."""
     pending, until = b"", time.monotonic() + silence
     while time.monotonic() < until:
         if not select.select([port], [], [], 0.5)[0]:

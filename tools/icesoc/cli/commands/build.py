@@ -74,7 +74,7 @@ def build_size(values):
     configured(values).ninja("size")
 
 
-# Picture: its width and height, the page's file and part, and the command that writes the page.
+# Pictures: width and height, the file of the page, its part, and the command that writes the page.
 PAGES = {
     "utilisation": (1400, 1500, "synth/report.html", "#table1/u_modem", "synth report"),
     "regression": (1180, 1180, "regress/report.html", "", "regress"),
@@ -82,8 +82,8 @@ PAGES = {
 
 
 def small(path):
-    """Takes as many colours as fit into 100 KB, at most 64."""
-    from PIL import Image  # set-up installs it
+    """Reduces a picture to as many colours as fit into 100 KB, at most 64."""
+    from PIL import Image  # setup installs this module
     picture = Image.open(path).convert("RGB")
     for colours in (64, 48, 32, 24, 16, 8):
         picture.quantize(colours, dither=Image.Dither.NONE).save(path, optimize=True)
@@ -93,7 +93,7 @@ def small(path):
 
 
 def shoot(path, width, height, address):
-    """Saves a picture of a page after three seconds of its timers."""
+    """Saves a picture of a page, with the state of its timers after three seconds."""
     with Browser(width=width, height=height) as browser:
         browser.open(address)
         browser.pass_time(3000)
@@ -101,7 +101,7 @@ def shoot(path, width, height, address):
     small(path)
 
 
-# Calls an operation of the vision core by its form.
+# Script that calls an operation of the vision core with the form of the page.
 CALL = """(async () => {
     const wait = () => new Promise(done => setTimeout(done, 20));
     const find = () => [...document.querySelectorAll('#cards details')]
@@ -125,7 +125,8 @@ CALL = """(async () => {
 
 
 def shoot_live(path, profile, icesoc):
-    """Takes a picture of a flight's page, with calls of the vision core by its forms."""
+    """Takes a picture of the page of a flight in progress, after calls of the vision core with its
+    forms."""
     with open(f"{profile}/live.log", "w+") as log:
         flight = start([*icesoc, "--live", "--cpu", "m3", "--out", f"{profile}/live"], stdout=log,
                        stderr=log)
@@ -139,7 +140,8 @@ def shoot_live(path, profile, icesoc):
                 browser.open(address + "#objects")
                 for form in "setParameterA", "startProcessing", "getResult":
                     browser.run(CALL % form)
-                time.sleep(1)  # until the page has drawn the corners, and registers are not marked
+                time.sleep(1)  # s, in which the page draws the corners, and removes the marks of
+                               # changed registers
                 browser.shoot(path)
             small(path)
         finally:

@@ -21,9 +21,11 @@ from icesoc.util.errors import Interrupted, Stop, nearest
 
 
 def completed(prefix, parsed_args, **_):
-    """Returns completions of a word: objects and operations, then parameters and their values."""
+    """Returns the completions of a word: objects and operations, then parameters and their
+    values."""
     values = {name.lstrip("-"): value for name, value in vars(parsed_args).items()}
-    # argcomplete does not pass the words before this one: they are in the shell's line.
+    # argcomplete does not pass the words before the current one, so they are taken from the shell's
+    # line
     line = os.environ.get("COMP_LINE", "")[:int(os.environ.get("COMP_POINT") or 0)]
     before = line.partition(" call ")[2].split(" ")[:-1]
     words = [word for word in before if "." in word and not word.startswith("-")]
@@ -49,7 +51,8 @@ def choices(catalogue, words):
 
 
 def values_of(catalogue, each, operation, parameter):
-    """Returns the values of a parameter that can be listed; else an empty one to be filled in."""
+    """Returns the possible values of a parameter, if they can be listed; otherwise an empty value
+    to fill in."""
     its = catalogue.slices.get(parameter["type"])
     if its["kind"] == "enum":
         return [one["name"] for one in its["enumerators"]]
@@ -104,7 +107,7 @@ def inputs(operation):
 
 
 def assigned(words, operation):
-    """Returns {parameter: text} of arguments by position and by name."""
+    """Assigns arguments, by position or by name, to parameters; returns {parameter: text}."""
     known = {p["name"]: p for p in inputs(operation)}
     texts, positions = {}, list(known)
     for word in words:
@@ -125,7 +128,7 @@ def assigned(words, operation):
 
 
 def checked(catalogue, each, operation, words, options):
-    """Returns {parameter: checked value}."""
+    """Converts and checks the arguments; returns {parameter: checked value}."""
     reader = Reader(catalogue.slices, options.place)
     texts, values = assigned(words, operation), {}
     for p in inputs(operation):
@@ -179,7 +182,7 @@ def show(results, as_json):
 
 def show_statistics(times, failures, as_json):
     """Prints latencies in ms."""
-    import statistics  # takes 16 ms
+    import statistics  # imported only here, because it takes 16 ms
     ordered = sorted(times)
     figures = {"calls": len(times), "failures": failures}
     if ordered:
@@ -193,7 +196,7 @@ def show_statistics(times, failures, as_json):
 
 
 def watch(client, options):
-    """Prints events until Ctrl-C, or until the wanted number has arrived."""
+    """Prints events until Ctrl-C, or until the requested number has arrived."""
     left = options.events or math.inf
     while left > 0:
         try:
@@ -209,7 +212,8 @@ def watch(client, options):
 
 
 def unsubscribe(client, operation, prepared):
-    """Removes the listener from a core: after the program has ended, nothing receives events."""
+    """Removes the listener from the core, because nothing receives the events after this program
+    has ended."""
     marked = client.slices.get(client.each.interface).get("metadata", [])
     if ":hw" in marked and len(prepared) == 1:
         client.call(operation, [None])

@@ -18,7 +18,7 @@ from icesoc.util.lock import lock
 from icesoc.util.process import output, run, tool
 
 GROUPS["check"] = "proofs, sanitizers, fuzzing, faults, coverage"
-# Test programs that are built with sanitizers: folder, and other programs that they start.
+# Test programs that are built with sanitizers: name -> folder, and other programs that it starts.
 GUARDED: dict[str, tuple[str, list[str]]] = {
     "test_icec": ("icec", []), "test_ground_engine": ("ground", []),
     "test_ground_ice": ("ground/ice", ["gateway"])}
@@ -26,12 +26,12 @@ GUARDED: dict[str, tuple[str, list[str]]] = {
 
 @choices.expecting("a test program that is built with sanitizers")
 def guarded(values=None):  # pylint: disable=unused-argument
-    """The test programs of check sanitizers."""
+    """Returns the names of the test programs for check sanitizers."""
     return list(GUARDED)
 
 
 def one_more(status, other):
-    """The first status that is not 0."""
+    """Returns `status`, or `other` if `status` is 0."""
     return status or other
 
 
@@ -80,7 +80,8 @@ def netlist(values):
     tests = [test for name in chosen for test in simulated.get(name, "").split()]
     words = ["--equivalent", *(f"--design={name}" for name in chosen)]
     if tests:
-        # Proofs first, which are short and kept; the table takes them from there.
+        # Proofs run first, because they are short and cached; the table reads their results from
+        # the cache.
         proven = [f"--design={name}" for name in chosen if name not in simulated]
         if proven:
             output([*program, "--equivalent", *proven], check=False)
@@ -110,7 +111,8 @@ def sanitizers(values):
     """
     folders = {"address": ("sanitized", "ON"), "thread": ("thread", "thread")}
     build, status = configured(values, tests=True), 0
-    for name in values.kinds:  # build/sanitized belongs to the tests
+    for name in values.kinds:  # build/sanitized is the folder of the tests, so another one is used
+                               # here
         kind, option = folders[name]
         folder = BuildFolder(f"build/{kind}", values)
         folder.configure(f"-DSANITIZE={option}", f"-DROOMS={ROOMS_OF_PROGRAMS}")

@@ -57,7 +57,7 @@ def check_name(name, room="ip"):
 
 
 def write_own(build, name, lang, ice, folder):
-    """Begins a core from the user's interface."""
+    """Writes a new core for the interface of the user."""
     included = re.findall(r'^ *# *include *[<"]([^>"]*)', Path(ice).read_text(), re.M)
     if included:
         raise Stop(f"{ice} includes {' '.join(included)}: expected a Slice file without includes; "
@@ -83,8 +83,8 @@ def write_own(build, name, lang, ice, folder):
 
 
 def interface_of(described):
-    """Returns the outermost module of the interface in hardware, and the proxy's class in Python,
-    from a description by slice2c."""
+    """Returns, from a description by slice2c, the outermost module of the interface in hardware and
+    the Python class of its proxy."""
     name = next(name for name, facts in described.items() if facts["kind"] == "interface"
                 and any(word.startswith(":hw") for word in facts.get("metadata", [])))
     modules = name.removeprefix("::").split("::")
@@ -92,7 +92,7 @@ def interface_of(described):
 
 
 def fill(template, folder, name):
-    """Fills a file of a template in for a core. Returns it."""
+    """Returns the text of a template with the names of the core filled in."""
     text = template.read_text().replace("@NAME@", name).replace("@MODULE@", "Cores")
     path = folder / re.sub("^NAME", name, template.name[:-len(".in")])
     path.write_text(text.replace("@TYPE@", "".join(word.capitalize() for word in name.split("_"))))
@@ -108,7 +108,7 @@ def put_into_repository(room, name):
     tree."""
     room = Path(room).absolute()
     origin = output(["git", "remote", "get-url", "origin"], check=False, stderr=-3).strip()
-    origin = re.sub("(?<=://)[^/@]*@", "", origin)  # omit a name and a password
+    origin = re.sub("(?<=://)[^/@]*@", "", origin)  # without the user name and the password
     commit = output(["git", "rev-parse", "HEAD"], check=False, stderr=-3).strip()
     made = (TEMPLATE / "repository/Makefile.in").read_text()
     made = made.replace("@URL@", origin or os.getcwd()).replace("@COMMIT@", commit or "HEAD")
@@ -160,13 +160,14 @@ def new(values):
             text = readme.read_text().replace("../../docs", "../build/icesoc/docs")
             readme.write_text(text.replace(f"make ip-test IP={name}", "make test"))
         os.makedirs(room, exist_ok=True)
-        shutil.move(folder, f"{room}/{name}")  # the folder takes its place when it is complete
+        shutil.move(folder, f"{room}/{name}")  # the folder is moved to its place only when it is
+                                               # complete
     written = f"{room}/{name}: {' '.join(sorted(os.listdir(f'{room}/{name}')))}"
     if values.repository:
         say(written)
         return put_into_repository(room, name)
-    # A build would detect the new folder by itself. CMake runs now, while the folder can still be
-    # removed.
+    # A later build would detect the new folder by itself. CMake runs now, because on an error the
+    # folder can still be removed.
     if (build / "build.ninja").exists():
         try:
             logged(["cmake", build.folder], build / "new-ip.log",
@@ -187,7 +188,8 @@ def known(values):
         raise Stop("a core is needed: ./icesoc core test fir (make ip-test IP=fir)", 2)
     build = BuildFolder(values.build, values).prepare()
     if not values.built:
-        build.ninja("build.ninja")  # CMake has not seen newer folders
+        build.ninja("build.ninja")  # CMake may not have read folders that are newer than its last
+                                    # run
     cores = (build / "cores.known").read_text().split()
     if values.ip not in cores:
         raise Stop(f"unknown core '{values.ip}': expected one of {' '.join(cores)}", 2)
@@ -251,7 +253,7 @@ def one_test(program, text):
 
 
 def ports(build, core):
-    """Ports of the core's model, as GTKWave names them."""
+    """Returns the ports of the core's model, in the notation of GTKWave."""
     for header in build.folder.rglob(f"verilated_{core}_slot/V{core}_slot.h"):
         for name, high, low in re.findall(r"VL_(?:IN|OUT)[0-9W]*\(&(\w+),(\d+),(\d+)",
                                           header.read_text()):
@@ -266,7 +268,7 @@ def rows_of(fst, build, core):
     rows, most, last = [*ports(build, core)], 200, []
     for signal in sorted(filter(lambda s: s.is_shown, signals), key=lambda s: len(s.scopes)):
         if signal.scopes == ["TOP"] and rows and not last:
-            continue  # a port that is listed
+            continue  # a port is in the list already
         if signal.scopes != last:
             last = signal.scopes
             rows.append("-" + ".".join(last))
@@ -277,7 +279,7 @@ def rows_of(fst, build, core):
 def traced(values):
     """Returns the build folder of a test with a waveform, and the command that runs the test."""
     what = values.ip
-    if what.startswith("vhdl."):  # GHDL writes the waveform by itself
+    if what.startswith("vhdl."):  # GHDL writes the waveform itself
         build = BuildFolder(values.build, values).prepare()
         build.ninja("ghdl", f"{what[5:]}_vectors")
         return build, ["ctest", "--test-dir", build.folder, "--no-tests=error", "-R",

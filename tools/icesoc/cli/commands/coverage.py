@@ -11,8 +11,8 @@ from icesoc.util.console import say, warn
 from icesoc.util.errors import Stop
 from icesoc.util.process import output, run, tool
 
-COUNTED = "rtl|firmware|vhdl|models|slice|interop|e2e"  # labels of the tests that count
-# Fuzzers have separate counts; e2e.cores builds a separate chip.
+COUNTED = "rtl|firmware|vhdl|models|slice|interop|e2e"  # labels of the tests that are counted
+# Tests that are left out: fuzzers have separate counts, and e2e.cores builds a separate chip.
 LEFT_OUT = "NOT_BUILT|^fuzz|^e2e.cores"
 
 
@@ -60,7 +60,7 @@ def coverage(values):
 
 
 def run_tests(work, values):
-    """Runs the tests; returns the folder of their counts. Those that fail still count: the
+    """Runs the tests and returns the folder of their counts. Failed tests are counted as well; the
     regression reports them."""
     points = work / "points"
     for folder in (points, work / "html"):
@@ -78,7 +78,8 @@ def run_tests(work, values):
 
 
 def lcov(work, info, *words):
-    """Writes an info file of lcov. Returns its path in a list, which is empty if lcov refuses."""
+    """Writes an info file with lcov. Returns a list with its path; the list is empty if lcov
+    fails."""
     path = work / info
     with open(work / "lcov.log", "w") as log:
         status = run(["lcov", "--quiet", *words, "--output-file", path], check=False, stderr=log)
@@ -88,12 +89,13 @@ def lcov(work, info, *words):
 
 
 def own(work, info, source, rooms):
-    """Returns the files in these rooms of the tree; nothing in a build of few rooms."""
+    """Returns the info of the files in these folders of the tree; nothing if the build has none of
+    them."""
     return lcov(work, info, "--extract", source, *(f"{Path.cwd()}/{room}/*" for room in rooms))
 
 
 def of_host(work):
-    """Counts of C and C++."""
+    """Returns the counts of C and C++."""
     found = lcov(work, "all.info", "--capture", "--directory", work, "--ignore-errors",
                  "gcov,source")
     if not found:
@@ -102,7 +104,7 @@ def of_host(work):
 
 
 def of_rtl(work, points):
-    """Verilator's counts of Verilog."""
+    """Returns Verilator's counts of Verilog."""
     counts = sorted(points.glob("*.dat"))
     if not counts:
         return []

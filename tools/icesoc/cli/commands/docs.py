@@ -43,7 +43,7 @@ def docs(values):
 
 TUTORIAL = "docs/tutorial.md"
 CHIP = Path("ip/cores.list")
-BEGIN = "cd icesoc"  # last command of the tutorial that is not run
+BEGIN = "cd icesoc"  # last command of the tutorial that is skipped, because the tree exists already
 MADE = ["LowPass.ice", "ip/low_pass"]
 
 

@@ -23,7 +23,8 @@ from icesoc.util.process import end, run, start, tool, until, wait
 
 FROM = Option("from", SECONDS, "start of the waveform, simulated time")
 TO = Option("to", SECONDS, "end of the waveform, simulated time")
-DESCRIPTORS = 64  # per process; the program of the ground needs about thirty
+DESCRIPTORS = 64  # file descriptors per process; the program of the ground station needs about
+                  # thirty
 NETLIST = Option("netlist", SWITCH, "fly the netlist synthesised by Yosys, at 2 MHz with every "
                                     "clock evaluated")
 NETLIST_HZ = 2000000
@@ -67,14 +68,15 @@ def fly_mission(values):
     flight.take_observers_key(values)
     busy = (f"another flight is under way in {values.out}; give this one a separate folder: "
             "OUT=build/other (--out)")
-    with lock(Path(values.out) / "lock", refuse=busy) as held:  # until the last program has ended
+    with lock(Path(values.out) / "lock", refuse=busy) as held:  # the lock is held until the last
+                                                                # program has ended
         fly = minimal if values.app == "minimal" else update if values.update else mission
         return fly(values, build, held)
 
 
 def simulator(values, build, held, options, ground):
-    """Starts the simulator, with the ground's program as its child. The simulator replaces words
-    such as {out}."""
+    """Starts the simulator, which starts the program of the ground station as its child. The
+    simulator replaces words such as {out}."""
     flight.write(values, build)
     return start([build / "testbench/sim/icesoc-sim", "--flight", Path(values.out) / "flight.json",
                   *options, "--", "/usr/bin/python3", *ground], pass_fds=[held],
@@ -82,7 +84,7 @@ def simulator(values, build, held, options, ground):
 
 
 def minimal(values, build, held):
-    """Flies the program of Table II with its ground."""
+    """Flies the minimal program of Table II with its ground program."""
     return wait(
         simulator(values, build, held, [], [
             "sw/minimal/ground.py", "{device}", "--frame", "{frame}", "--reference",
@@ -96,11 +98,11 @@ def update(values, build, held):
     OUT/fpga.bin the flash of the FPGA; a missing file is created."""
     out, pack = Path(values.out), build / "sw/update/pack_update"
     keys.rescue(build.folder)
-    signing = keys.folder() / "update.key"  # private, made at first use
+    signing = keys.folder() / "update.key"  # private key, created when it is first needed
     if not (out / "flash.bin").exists():
         run([pack, "vehicle", build / "firmware/loader.elf", flight.firmware(values, build), 1,
              signing, out / "flash.bin"])
-    if not (out / "fpga.bin").exists():  # replaces ISE's golden bitstream
+    if not (out / "fpga.bin").exists():  # stands in for the golden bitstream by ISE
         run([build / "testbench/stm32/stand_in_bitstream", out / "golden.bin", 1, 10000])
         run([pack, "fpga", out / "golden.bin", 1, signing, out / "fpga.bin"])
     kind = "bitstream" if values.update.endswith((".bit", ".bin")) else "image"
@@ -116,7 +118,7 @@ def update(values, build, held):
 
 
 def opens(values):
-    """Returns whether the page is opened in a browser."""
+    """Returns whether a browser is opened with the page."""
     if values.show == "auto":
         display = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
         return bool(display) and sys.stdout.isatty() and not values.app == "minimal"
@@ -124,7 +126,7 @@ def opens(values):
 
 
 def mission(values, build, held):
-    """Flies the mission of the README, with its page."""
+    """Flies the mission that the README shows, with its page."""
     out, status_file = Path(values.out), Path(values.out) / "status"
     page = [*tool("web.live"), "--dir", out, "--port", values.port,
             "--registers", build / "gen/registers.list"]
@@ -147,12 +149,12 @@ def mission(values, build, held):
         *(["--observer-device", "{device2}"] if values.vehicles > 1 else [])])
     shown = None
 
-    def flies_on():  # after the mission
+    def flies_on():
         return (out / LIVE).exists()
 
     try:
-        # The page starts after the simulator has accepted the options: the page's address would
-        # hide a refusal.
+        # The page is opened only after the simulator has accepted the options, because the address
+        # of the page would hide an error message.
         if until(lambda: flown() != before, sim):
             shown = start([*page, *(["--open"] if opens(values) else [])], pass_fds=[held])
             if not until(lambda: sim.poll() is not None or flies_on(), shown):
@@ -185,7 +187,7 @@ def mission(values, build, held):
 
 
 def explain_failure(values, status, has_flown):
-    """Prints why a mission failed, and the commands that repeat its end."""
+    """Prints the reason why a mission failed, and the commands that repeat its end."""
     out = values.out
     signal_ended = f": signal {status - 128} ended the simulator, or the ground's program."
     what = signal_ended if status > 128 else f" (exit status {status})."
@@ -277,7 +279,7 @@ def gdb(values):
             print(text(), end="", flush=True)
             if not port:
                 raise Stop(status=wait(sim) or 1)
-            signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is GDB's: it stops the processor
+            signal.signal(signal.SIGINT, signal.SIG_IGN)  # GDB uses Ctrl-C to stop the processor
             words = ["gdb-multiarch", "-q", build / "firmware/uav.elf", "-ex",
                      "set remotetimeout unlimited", "-ex", f"target remote 127.0.0.1:{port[1]}"]
             return run(words, check=False,

@@ -61,8 +61,8 @@ def foreign_core(values):
 
 
 def into_slot(source, slot, words, folder, ghdl):
-    """Lets new_foreign.py write a slot's folder. `words`: module, bus, further arguments, and
-    patterns of the core's files in the source's folder."""
+    """Runs new_foreign.py to write the folder of a slot. `words`: module, bus, further arguments,
+    and patterns of the core's files in the folder `source`."""
     top, bus, *more = words.split()
     rest = [part for word in more for part in (
         [word] if "=" in word or word.startswith("DEFINE:") else sorted(source.glob(word)))]
@@ -72,13 +72,13 @@ def into_slot(source, slot, words, folder, ghdl):
 
 
 def put_and_fly(values, listed, known):
-    """Puts the chosen cores into slots, tests and flies them. Returns the status."""
+    """Puts the chosen cores into slots, then tests and flies them. Returns the exit status."""
     folder = Path("build/foreign-cores").absolute()
     missing = fetch("foreign", folder, check=False)
     if not missing:
         fetch("ghdl", folder / "ghdl5")
     shutil.rmtree(folder / "slots", ignore_errors=True)
-    chips = {}  # numbers of chips: folders of cores
+    chips = {}  # number of a chip -> folders of its cores
     for source, its in listed.items():
         for name, core in its["cores"].items():
             if name not in (values.cores or known) or not (

@@ -22,10 +22,10 @@ from icesoc.util.process import output, run
 
 RELEASES = {"bookworm": "Debian 12", "trixie": "Debian 13"}
 README = ["make run", "make test"]
-PACKAGES = "packages"  # the step that builds, installs and uses them
+PACKAGES = "packages"  # name of the step that builds, installs and uses the packages
 MIRROR = "http://deb.debian.org/debian"
 CERTIFICATES = Path("/etc/ssl/certs/ca-certificates.crt")
-# First process of the machine, in a separate mount namespace.
+# Script of the first process of a machine, in a separate mount namespace.
 BOOT = """
 mount --make-rprivate / && mount -t proc proc "$1/proc" && mount --rbind /dev "$1/dev" &&
 mount --rbind /sys "$1/sys" && exec chroot "$1" /bin/sh -c "cd $3 && $2"
@@ -79,8 +79,8 @@ def fresh(values):
 
 
 def use_packages(root, release, values):
-    """Builds the packages in the machine with the clone, unless they are given, and uses them in an
-    empty one. Returns the results."""
+    """Builds the packages in the machine with the clone, unless they are given; then uses them in
+    an empty machine. Returns the results."""
     rows, folder = [], values.packages
     if not folder:
         rows = [do(root, release, "make package CHECK=1")]
@@ -113,9 +113,9 @@ def empty_machine(root, release):
          MIRROR], stdout=open(f"{root}-debootstrap.log", "w"))
     (root / "etc/apt/sources.list").write_text("".join(
         f"deb {MIRROR} {suite} main\n" for suite in (release, f"{release}-updates")))
-    # The system is not kept: dpkg need not wait for the disk.
+    # The system is discarded afterwards, so dpkg need not wait for the disk.
     (root / "etc/dpkg/dpkg.cfg.d/unsafe-io").write_text("force-unsafe-io\n")
-    # Network settings of this machine: name servers, proxies, certificates.
+    # Copies the network settings of the host: name servers, proxies, certificates.
     shutil.copy("/etc/resolv.conf", root / "etc/resolv.conf")
     for file in Path("/etc/apt/apt.conf.d").iterdir():
         if any(word in file.read_text() for word in ("Proxy", "Check-Date")):
@@ -133,8 +133,8 @@ def put_tree(root):
 
 
 def do(root, release, step, folder="/root/icesoc", booted=False):
-    """Runs one step in a folder of the machine, and prints the last lines of the output. `booted`:
-    with systemd."""
+    """Runs one step in a folder of the machine, and prints the last lines of its output. `booted`:
+    with systemd running."""
     words = re.findall(r"[\w.]+", step)
     log = Path("-".join([str(root), *words]) + ".log")
     place = {"HOME": "/root", "PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "TERM": "dumb"}

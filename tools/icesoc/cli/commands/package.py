@@ -35,7 +35,8 @@ def package(values):
     output.mkdir(parents=True, exist_ok=True)
     for path in output.glob("*.deb"):
         path.unlink()
-    # Files in the packages have the commit's time: the same commit gives the same bytes.
+    # Files in the packages have the time of the commit, so that the same commit gives the same
+    # bytes.
     commit = read(["git", "log", "-1", "--format=%ct"], check=False, stderr=DEVNULL).strip()
     logged(["cpack", "-G", "DEB", "-B", output, "--config", build / "CPackConfig.cmake"],
            build / "package.log", "CPack failed",

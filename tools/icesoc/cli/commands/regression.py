@@ -29,7 +29,7 @@ def at_once(values):
 
 
 def selection(values, *more):
-    """Returns options of the regression tool that choose tests."""
+    """Returns those options of the regression tool that select tests."""
     return [word for name in ("name", "label", *more) if getattr(values, name)
             for word in (f"--{name}", getattr(values, name))]
 
@@ -52,7 +52,7 @@ def test(values):
     some, tests, seed = values.folder or values.name or values.label, at_once(values), {
         "SEED": values.seed, "FRESH": "1" if values.fresh else ""}
     chosen = []
-    if values.label == "zeroc":  # CTest lists these only with their configuration
+    if values.label == "zeroc":  # CTest lists these tests only in their configuration
         build.ninja()
         chosen = ["-C", "zeroc", "-L", "zeroc", *(["-R", values.name] if values.name else [])]
     elif some:
@@ -68,7 +68,7 @@ def test(values):
 
 
 def every_test(build, values, tests, seed):
-    """Runs the tests whose inputs have changed since they passed, or all."""
+    """Runs all tests, or only those whose inputs have changed since they passed."""
     status = changed_tests(build, values, tests, seed)
     if not status:
         sanitized = BuildFolder("build/sanitized", values)
@@ -80,8 +80,8 @@ def every_test(build, values, tests, seed):
 
 
 def changed_tests(build, values, tests, seed, label=""):
-    """Runs the tests of a build folder, or of a label, that have not passed with their present
-    inputs; with --all or --fresh, all of them. Records which have passed."""
+    """Runs the tests of a build folder, or of a label, that have not passed with their current
+    inputs; with --all or --fresh, all of them. Records the tests that have passed."""
     passes = Passes(Path("."), build.folder, str(values.seed))
     some, others = passes.changed(label, values.all or values.fresh)
     if others:
@@ -128,7 +128,7 @@ def regress(values):
 
 def last_good(test):
     """Returns the last commit at which the test passed. Runs with uncommitted changes are ignored,
-    because a bisection cannot begin there."""
+    because a bisection cannot start there."""
     history = Path("build/regress/history.jsonl")
     runs = map(json.loads, history.read_text().splitlines() if history.exists() else [])
     good = [each["commit"] for each in runs if "dirty" not in each["commit"]
@@ -174,7 +174,8 @@ def bisect(values):
             run(["git", "worktree", "remove", "--force", tree], check=False)
 
 
-# Tests the present commit; exit status 125: no result. The build remains for the next commit.
+# Script that tests the current commit; exit status 125: no result. The build is kept for the next
+# commit.
 STEP = """mkdir -p build
 ([ -e build/main/build.ninja ] || cmake -S . -B build/main -G Ninja || exit 125
 exec setpriv --pdeathsig TERM "$0" "$@") >build/step.log 2>&1
@@ -186,7 +187,7 @@ exit $status
 
 
 def search(program, values, good, bad, tree):
-    """Lets git bisect ask about commits until it finds the first bad one."""
+    """Runs git bisect until it finds the first bad commit."""
     step = [
         "setpriv", "--pdeathsig", "TERM", "sh", "-c", STEP, program, "--make", "--name",
         f"^{re.escape(values.test)}$", "--seed", values.seed, "--jobs", values.jobs, "--waves", 0]
@@ -222,7 +223,8 @@ def nightly(values):
     Then runs ZeroC's test suites, the longest missions, and the slow variant of each command that
     has one. Writes a table of the steps, build/nightly.md."""
     build, tests = BuildFolder(values.build, values), at_once(values)
-    # COMPARE_MS: simulated time that test_sim_quiet compares, ms. HOSTILE: packets in test_link.
+    # COMPARE_MS: simulated time that test_sim_quiet compares, ms. HOSTILE: number of packets in
+    # test_link.
     long = {"FRESH": "1", "COMPARE_MS": "1000", "HOSTILE": "10000000"}
     program = [build / "tests/regress/regress", "--build", build.folder, "--jobs", tests, "--waves",
                values.waves, *selection(values)]
@@ -250,7 +252,7 @@ def nightly(values):
                        f"{nearest(name, steps)}", 2)
     build.prepare(tests=True).ninja()
     table = Table("build/nightly")
-    for name in values.steps or steps:  # each runs, even if an earlier one failed
+    for name in values.steps or steps:  # every step runs, even if an earlier one failed
         begin = time.monotonic()
         table.add(name, steps[name](), time.monotonic() - begin)
     return table.end()

@@ -18,7 +18,7 @@ from icesoc.util.tree import commit
 GROUPS["synth"] = "synthesis: LUTs, flip-flops, clock"
 DEFAULTS["synth"] = "synth report"
 GROUPS["contract"] = "registers: changes, import of SystemRDL"
-SHOWN = 10  # tests in a line of a pull request
+SHOWN = 10  # number of tests listed in one line of a pull request
 DESIGN = Option("design", WORDS,
                 "designs to measure, such as modem, table1 or soc; others are shown as last "
                 "measured", choices=choices.designs)
@@ -96,7 +96,8 @@ def edif(values):
 
 
 def synthesise(program, jobs, base, folder):
-    """Builds and synthesises a commit in a separate checkout; this one does not change."""
+    """Builds and synthesises a commit in a separate checkout; the current checkout is not
+    changed."""
     folder = folder.absolute()
     if (folder / ".git").exists():
         run([*GIT, "-C", folder, "checkout", "-q", "--detach", base])
@@ -114,9 +115,10 @@ def synthesise(program, jobs, base, folder):
     with contextlib.suppress(FileNotFoundError):
         cache.unlink()
     cache.symlink_to(
-        Path("build/synth/cache").absolute())  # designs common to both are synthesised once
+        Path("build/synth/cache").absolute())  # designs that both commits have in common are
+                                               # synthesised once
     with open(folder / "build.log", "w") as log:
-        # Status 1: that commit exceeds its budget, which does not matter here.
+        # Status 1 means that the commit exceeds its budget, which does not matter here.
         if run([program, "--jobs", jobs], check=False, cwd=folder, stdout=log) > 1:
             raise Stop(status=2)
 
@@ -126,8 +128,8 @@ def named(base):
 
 
 def tests_of(names):
-    """The tests of two commits, each by its kept run with most tests, and those that end
-    otherwise."""
+    """Compares the tests of two commits, each by its stored run with the most tests; returns those
+    that end differently."""
     history = Path("build/regress/history.jsonl")
     kept = list(map(json.loads, history.read_text().splitlines())) if history.exists() else []
     runs = [max((each for each in kept if each["commit"] == name), default={},
@@ -150,8 +152,8 @@ def tests_of(names):
 
 
 def compare(build, jobs, base, head=None):
-    """The changes since a commit, or between two, of utilisation, registers and tests, as Markdown
-    for a pull request."""
+    """Returns the changes of utilisation, registers and tests since a commit, or between two, as
+    Markdown for a pull request."""
     program, folder = (build / "synth/utilisation").absolute(), Path("build/synth")
     with lock(folder / "base.lock", busy="waiting for another comparison in this folder ..."):
         run([*GIT, "worktree", "prune"])
@@ -160,7 +162,7 @@ def compare(build, jobs, base, head=None):
         if head:
             synthesise(program, jobs, head, folder / "head")
             after = folder / "head/build/synth"
-        registers = subprocess.run(  # status 1: something breaks
+        registers = subprocess.run(  # status 1: a change breaks existing software
             [*DIFF, build / "slice/slice2c", folder / "base", folder / "head" if head else "."],
             stdout=subprocess.PIPE, text=True).stdout
         lines = [

@@ -103,7 +103,7 @@ def commands(values):
 
 
 def run_all(only):
-    """Runs every brief form to its end, and writes a table of them. Stops at no failure."""
+    """Runs every brief form, even after a failure, and writes a table of the results."""
     table, folder = Table("build/commands"), Path("build/brief")
     for name, each in COMMANDS.items():
         if only not in name:
@@ -124,7 +124,7 @@ def run_all(only):
 
 
 def version():
-    """The versions of the project (CHANGELOG.md), of the protocol on the air, and of the chip's
+    """Returns the versions of the project (CHANGELOG.md), of the radio protocol, and of the chip's
     blocks."""
     newest = product.newest()
     link = re.search(r"LINK_VERSION (\d+)", (TREE / "sw/link/link_frame.h").read_text())[1]
@@ -137,7 +137,7 @@ def version():
 
 
 def manual():
-    """The manual page, made of the commands' help."""
+    """Returns the manual page, generated from the help of the commands."""
     def plain(text):
         return "".join(
             f"\\&{line}\n" for line in text.replace("\\", "\\e").replace("-", "\\-").splitlines())

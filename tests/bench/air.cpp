@@ -1,23 +1,25 @@
 // SPDX-License-Identifier: MIT
 //
-// air: the radio link over two modems and the air between them, without chip and kernel: goodput in
-// one direction and in both at once, and round trips, unencrypted and encrypted (docs/link.md).
-// Both modems are in API mode, unless --api sets another number; the ground's modem at 111,111
-// baud, the vehicle's at 250,000, as in the firmware. In one direction the ground sends; pictures
-// are sent by the vehicle.
+// air: measures the radio link over two modems and the air between them, without chip and kernel:
+// goodput in one direction and in both at once, and round trips, unencrypted and encrypted
+// (docs/link.md). Both modems are in API mode, unless --api gives another number. The ground modem
+// uses 111,111 baud and the vehicle modem 250,000, as with the firmware. In one direction the
+// ground sends; pictures are sent by the vehicle.
 
 #include "figures.h"
 #include "modem_pair.h"
 
 namespace {
 
-unsigned leastExponent = 2;            // RN, as controller and ground set it
-unsigned apiEnds = 2;                  // modems in API mode: none, the ground's, both
-unsigned rates[2] = {7, 250000};       // their BD in API mode: the ground's, the vehicle's
+unsigned leastExponent = 2;            // RN of the modems, set by controller and ground
+unsigned apiEnds = 2;                  // number of modems in API mode: 0; 1, the ground's; or 2
+unsigned rates[2] = {7, 250000};       // BD in API mode of the ground modem and of the vehicle
+                                       // modem
 constexpr int pictures = 0, calls = 1; // channels
 const char* const key = "0123456789ABCDEF0123456789ABCDEF";
 
-// Not encrypted, encrypted by the modems, or by the link layer with a key (docs/link.md).
+// Clear: not encrypted. Encrypted: by the modems. Keyed: by the link layer, with a key
+// (docs/link.md).
 enum Mode { Clear, Encrypted, Keyed };
 const char* const names[] = {"in the clear", "encrypted", "with a key"};
 
@@ -33,10 +35,12 @@ public:
             fill();
         return ModemEnd::advance(now);
     }
-    U32 echoSize = 0, called = 0;                 // called: messages of channel `calls`
-    uint64_t bytes = 0, lastAt = 0, calledAt = 0; // bytes, last one: of channel `pictures`
+    U32 echoSize = 0, called = 0;                 // size of the echo, bytes; number of messages
+                                                  // received on channel `calls`
+    uint64_t bytes = 0, lastAt = 0, calledAt = 0; // bytes received on channel `pictures` and time
+                                                  // of the last one; time of the last call
     bool feed = false;                            // sends pictures continuously
-    // Each picture is full of its number.
+    // Fills a picture with its number.
     void fill(U32 size = LINK_MAX_MESSAGE) {
         for (;; ++sent_) {
             const std::vector<U8> message(size, static_cast<U8>(sent_));
@@ -81,7 +85,7 @@ public:
 
 Figures figures("The radio link on a half-duplex air with the modems' own limits.");
 
-// Returns bytes a second that arrive at both modems together, within this many seconds.
+// Returns the bytes per second that arrive at both modems together during this time.
 double flow(World& w, bool both, uint64_t seconds) {
     const uint64_t start = w.now;
     w.until(
@@ -99,8 +103,8 @@ double flow(World& w, bool both, uint64_t seconds) {
     return rate;
 }
 
-// Returns the bytes a second that modems and air allow in this weather, with the best RN; a key of
-// the link changes nothing for them.
+// Returns the bytes per second that modems and air allow in this weather, with the best RN; a key
+// of the link does not change this limit.
 double limitOf(const std::string& what, const RfWeather& weather, bool isEncrypted, bool both) {
     static std::map<std::string, double> known;
     double& most = known[what + (isEncrypted ? ", encrypted" : "") + (both ? ", both ways" : "")];
@@ -110,8 +114,8 @@ double limitOf(const std::string& what, const RfWeather& weather, bool isEncrypt
     return most;
 }
 
-// The least share of the limit that the link must reach with API mode; both ways, by 5 points less
-// than one way.
+// Returns the smallest share of the limit that the link must reach in API mode; in both directions
+// it is 5 points lower than in one.
 double wantedShare(const std::string& what, bool both, double share) {
     static double oneWay;
     if (both)
@@ -122,8 +126,8 @@ double wantedShare(const std::string& what, bool both, double share) {
     return isClear ? 0.95 : isTried ? 0.92 : 0.9;
 }
 
-// Measures the mean over several seeds, because single runs differ by a tenth. The limit counts the
-// same bytes, the bytes of a program: the modems' limit without the overhead of frames.
+// Measures the mean over several seeds, because single runs differ by a tenth. Both the figure and
+// the limit count the bytes of a program, without the overhead of frames.
 void goodput(const std::string& what, const RfWeather& weather, Mode mode, bool both) {
     const unsigned runs = figures.brief ? 1 : 9;
     const double packet = mode == Encrypted ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME;
@@ -164,8 +168,8 @@ void allWeather(Mode mode) {
                 goodput(what, weather, mode, both);
 }
 
-// Calls `count` times with a message of `size` bytes, which comes back, and returns the times
-// in ms, sorted.
+// Makes `count` calls, each with a message of `size` bytes that is echoed. Returns the times in ms,
+// sorted.
 std::vector<double> callTimes(World& w, U32 size, int count) {
     std::vector<double> times;
     const std::vector<U8> message(size, 1);
@@ -193,31 +197,31 @@ void roundTrips(Mode mode) {
         const U32 check = mode == Keyed || size <= LINK_UNCHECKED ? 0 : LINK_CHECK;
         const U32 frames = size + check + overhead > packet ? 2 : 1;
         const U32 onLine = size + check + frames * overhead;
-        // The answer takes the acknowledgement along: a byte more.
+        // The reply also contains the acknowledgement, which takes one byte.
         const double floor = floorMs(onLine, onLine + 1, mode == Encrypted);
         figures.add("round trip of " + std::to_string(size) + " bytes " + names[mode], median, "ms",
                     floor);
     }
 }
 
-// MAVLink 2's COMMAND_LONG and COMMAND_ACK, as bare bytes that are never sent again, on the same
-// air; under a key signed.
+// Measures MAVLink 2's COMMAND_LONG and COMMAND_ACK, sent as plain bytes without retransmission
+// over the same air; with a key they are signed.
 void peers(Mode mode) {
     const bool isSigned = mode == Keyed;
     const double ms = floorMs(isSigned ? 58 : 45, isSigned ? 35 : 22, mode == Encrypted);
     World w(RfWeather(), mode);
-    const auto times = callTimes(w, 3, 31); // setParameterA(short) has 3 bytes
+    const auto times = callTimes(w, 3, 31); // setParameterA(short) takes 3 bytes
     const double own = times[times.size() / 2];
     figures.add(std::string("round trip of a command ") + names[mode] + ", limit: MAVLink 2", own,
                 "ms", ms);
 }
 
-// A call of one byte while the called side sends pictures of 8 KB, one after the other.
+// Measures calls of one byte while the called side continuously sends pictures of 8 KB.
 void headOfLine(Mode mode) {
     for (double loss : {0.0, 0.1}) {
         RfWeather weather;
         weather.loss = loss;
-        double median[2] = {0, 0}, late = 0; // late: one of twenty takes longer
+        double median[2] = {0, 0}, late = 0; // late: time that one call in twenty exceeds
         for (bool isBusy : {false, true}) {
             World w(weather, mode);
             w.b.feed = isBusy;

@@ -17,7 +17,8 @@ from pathlib import Path
 
 from figures import figure, leave
 
-FIGURES = (  # name, test, case, expression of the figure, bytes a clock for that figure
+FIGURES = (  # name, test, case, expression that finds the figure, bytes per clock that the figure
+             # stands for
     ("vision core, frame read", "vision", "OnePixelAClock", "^(.*) clocks a pixel",
      lambda clocks: 1 / clocks),
     ("Ascon-AEAD128, each direction", "ascon", "Speed", "AEAD128 (.*) bytes", float),
@@ -25,7 +26,7 @@ FIGURES = (  # name, test, case, expression of the figure, bytes a clock for tha
     ("FIR filter, each direction", "fir", "OneSampleAClock", "^(.*) clocks a sample",
      lambda clocks: 2 / clocks),
     ("camera, written", "camera", "APixelEach", "^(.*) pixels a clock", float))
-# A clock, as little as a program of Verilator's can do.
+# A minimal program around a Verilated model: it only advances the clock.
 PROGRAM = """#include "Vfir.h"
 int main() {
     Vfir top;
@@ -35,7 +36,7 @@ int main() {
 
 
 def seconds(*words):
-    """Seconds that a command takes, without ccache."""
+    """Measures the time in s of a command, without ccache."""
     begin = time.monotonic()
     done = subprocess.run(list(map(str, words)), stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                           text=True, env={**os.environ, "CCACHE_DISABLE": "1"})
@@ -43,7 +44,7 @@ def seconds(*words):
 
 
 def first_test(build, brief):
-    """How long the test of fir takes in a fresh clone, and Verilator alone with the same core and a
+    """Measures the test of fir in a fresh clone, and Verilator alone with the same core and a
     program that clocks it. Brief: the test in this build."""
     source = Path(__file__).resolve().parents[2]
     with tempfile.TemporaryDirectory() as work:
@@ -68,7 +69,7 @@ def main(build, output, *brief):
     entries = [first_test(build, brief)] if Path(build, "ip/fir/test_ip_fir").exists() else []
     for name, core, case, expression, bytes_of in FIGURES:
         program = Path(build, f"ip/{core}/test_ip_{core}")
-        if not program.exists():  # a core that is not there
+        if not program.exists():  # the chip of this build does not contain the core
             continue
         said = subprocess.run([program, f"--gtest_filter=*{case}*"], stdout=subprocess.PIPE,
                               text=True).stdout

@@ -19,9 +19,9 @@ import Ice
 from figures import figure, leave
 
 Ice.loadSlice(f"-I{Ice.getSliceDir()} {Ice.getSliceDir()}/IceStorm/IceStorm.ice")
-import IceStorm  # the module that the line above has made
+import IceStorm  # module defined by the line above
 
-UNDER_WAY = 64  # calls without an answer
+UNDER_WAY = 64  # number of calls in progress at the same time
 HERE = "tcp -h 127.0.0.1"
 
 
@@ -40,7 +40,7 @@ class Service:
         self.endpoint = found[1]
 
     def spent(self):
-        """CPU seconds so far."""
+        """Returns the CPU time used so far, s."""
         words = pathlib.Path(f"/proc/{self.process.pid}/stat").read_text().rsplit(") ")[1].split()
         return (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")
 
@@ -53,7 +53,8 @@ class Service:
 
 
 def rate(service, calls):
-    """Of calls that are given as functions: how many the service takes in its second."""
+    """Makes calls, given as functions, and returns the number that the service handles per second
+    of its CPU time."""
     begin, waiting = service.spent(), []
     for call in calls:
         if len(waiting) == UNDER_WAY:
@@ -65,7 +66,7 @@ def rate(service, calls):
 
 
 def registry(ic, folder, work, count, calls):
-    """Registers `count` vehicles, and looks them up."""
+    """Registers `count` vehicles and looks them up."""
     with Service("Registry.Client", folder / "icegridregistry", "--IceGrid.InstanceName=IceGrid",
                  "--IceGrid.Registry.DynamicRegistration=1",
                  *(f"--IceGrid.Registry.{side}.Endpoints={HERE}"
@@ -95,7 +96,8 @@ class Counter(Ice.Blobject):
 
 
 def storm(ic, folder, subscribers, events):
-    """Publishes events as long as a vehicle's, and counts them where they arrive."""
+    """Publishes events of the size that vehicles send, and counts those that arrive at the
+    subscribers."""
     adapter, counters = ic.createObjectAdapterWithEndpoints("", HERE), []
     adapter.activate()
     with Service("TopicManager", folder / "icebox",

@@ -29,7 +29,7 @@ public:
     CLI::App app;       // for options of a bench
     bool brief = false; // a short measurement; no figure is judged
 
-    // Adds a figure, and prints it. `limit` is compared with it: a physical bound, or a budget.
+    // Adds a figure and prints it, compared with `limit`, a physical bound or a budget.
     nlohmann::json& add(const std::string& name, double value, const std::string& unit,
                         double limit = 0) {
         nlohmann::json entry = {
@@ -43,7 +43,7 @@ public:
         std::puts("");
         return entries_.emplace_back(std::move(entry));
     }
-    // Reports an undesired figure; the bench then ends with status 1.
+    // Reports a figure that is too bad; the bench then ends with status 1.
     void miss(const std::string& what) {
         if (!brief)
             missed_ += app.get_name() + ": " + what + "\n";

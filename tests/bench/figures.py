@@ -26,12 +26,12 @@ TITLES = {
     "cores": "Cores", "slice": "Slice compiler", "size": "Bytes of the firmware's layers",
 }
 
-NOTES = {  # below the titles
+NOTES = {  # notes printed below the titles
     "size": "The limit of each layer is the paper's figure for it (Table II). A build also fails "
             "if a layer\nexceeds its smaller budget in "
             "[`sw/size_budget.json`](../sw/size_budget.json)."}
 
-# Parts of a name that become columns of a row, where there are two to six
+# Parts of a name that become columns of a table, if it has two to six of them
 AXES = [r"\d+ vehicles?", r"loss \d\.\d\d", r"bursts, \w+", r"\d+ m, fading", r"interferer \d+ %",
         "in the clear|encrypted|with a key", r"of \d+ bytes", r"\d+ ports", r"HCLK \d+ MHz"]
 HEAD = """# Figures
@@ -47,7 +47,8 @@ modems could transfer.
 
 
 def figure(name, value, unit, limit=None, peer=None, ratio=None):
-    """A figure, with the limit or the peer's figure that it is compared with."""
+    """Returns an entry with a figure, and the limit or another system's figure with which it is
+    compared."""
     entry = {"name": name, "value": value, "unit": unit, "command": "make bench"}
     if limit:
         entry.update(limit=limit, share=round(value / limit, 3))
@@ -77,7 +78,7 @@ def compared(entry):
 
 
 def split(name):
-    """Returns a name without its first axis, and the axis' text."""
+    """Splits a name; returns it without its first axis, and the text of the axis."""
     for axis in AXES:
         found = re.search(f",? ({axis})", name)
         if found:
@@ -87,7 +88,7 @@ def split(name):
 
 def tables(rows):
     """Returns the lines of the tables of (name, value, unit, compared)."""
-    series, plain = {}, []  # by axis and rest of the name: its cells
+    series, plain = {}, []  # cells by axis and by the rest of the name
     for name, value, unit, limit in rows:
         key, column = split(name)
         cells = series.setdefault((*key, unit), {})

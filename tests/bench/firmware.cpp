@@ -16,12 +16,13 @@ namespace {
 constexpr double hclk = 120e6; // the board's
 const Ground::Call isAlive = {"uav", "isAlive", 0, {7, 0}};
 
-// The vehicle's ARM binary in the air with its ground station, and the cycles that its processor
-// takes.
+// A flight of the vehicle's ARM binary with its ground station, which measures the cycles of the
+// vehicle's processor.
 class MeasuredFlight : public GroundAndChip {
 public:
-    // `scaled` 1: ratio of clocks as on the board; 50: processor time scaled to radio time. `key`:
-    // key of the link, or empty. `isTransparent`: the modem of the vehicle is in transparent mode.
+    // `scaled`: 1 for the ratio of clocks on the board; 50 for processor time scaled to radio time.
+    // `key`: key of the link, or empty. `isTransparent`: the modem of the vehicle is in transparent
+    // mode.
     MeasuredFlight(const std::string& elf, double scaled, const std::vector<uint8_t>& key = {},
                    bool isTransparent = false)
         : GroundAndChip(1), warp(scaled),
@@ -32,7 +33,8 @@ public:
         provide(48, 32, nullptr);
         until([this] { return ground.validated; }, 25, "the connection");
     }
-    // Runs until `done` returns true, called every simulated millisecond; fails after `seconds`.
+    // Runs until `done`, which is called every simulated millisecond, returns true; fails after
+    // `seconds`.
     void until(std::function<bool()> done, double seconds, const char* what) {
         done_ = std::move(done);
         uint64_t end = soc.now() + static_cast<uint64_t>(seconds * 1e9);
@@ -47,13 +49,13 @@ public:
         uint64_t end = soc.now() + static_cast<uint64_t>(seconds * 1e9);
         until([this, end] { return soc.now() >= end; }, seconds + 1, "waiting");
     }
-    // Makes calls, each after the answer of the one before.
+    // Makes the calls one after the other: each begins when the previous one has been answered.
     void inTurn(const std::vector<Ground::Call>& calls, double seconds) {
         ground.replies.clear();
         until(ground.calling(calls), seconds, "the calls");
     }
-    // Cycles on the board: while the processor was awake, and of these while it waited for the
-    // FSMC.
+    // Cycles on the board while the processor was awake, and the part of them in which it waited
+    // for the FSMC.
     double awake() { return own() + waiting(); }
     double waiting() { return static_cast<double>(cpu().busCycles()) / warp; }
     double own() {
@@ -88,7 +90,8 @@ private:
 
 constexpr double hclkPerClk = 1.2;
 constexpr double entering = 12,
-                 leaving = 10; // cycles of exceptions, which the model counts around its calls
+                 leaving = 10; // cycles of exceptions, which the model counts in addition to its
+                               // calls
 constexpr unsigned fpgaInterrupt = FirstInterrupt + 6; // EXTI0
 constexpr uint8_t fpgaPriority = 0x50;
 constexpr double serialLimit = 11'111; // bytes a second at 111,111 baud
@@ -126,7 +129,7 @@ void measureLatencies(MeasuredFlight& f) {
     auto switches = std::make_shared<Range>();
     auto routines = std::make_shared<Range>();
     auto rose =
-        std::make_shared<uint64_t>(0); // in fabric clocks: exact within an access, and in sleep
+        std::make_shared<uint64_t>(0); // in fabric clocks; exact during an access and during sleep
     auto begin = std::make_shared<std::array<double, Exceptions::count>>();
     f.soc.onIrq([&f, rose](bool high) {
         if (high)
@@ -204,8 +207,9 @@ void measureCalls(MeasuredFlight& f, unsigned calls, const std::string& what, do
 }
 
 void measureStream(MeasuredFlight& f, const std::string& what) {
-    // Floods the vehicle with one-way requests of 1 KB to a missing object, a window of the link
-    // and more in the queue: link and IceC's dispatcher work, no servant, no reply.
+    // Floods the vehicle with one-way requests of 1 KB to a missing object: a link window, and more
+    // in the queue. This loads the link and IceC's dispatcher, but no servant, and there are no
+    // replies.
     f.ground.replies.clear();
     uint64_t bytes = 0;
     const std::vector<uint8_t> load(1000, 0x55);
@@ -230,8 +234,8 @@ void measureStream(MeasuredFlight& f, const std::string& what) {
     say(what + ": cycles per byte", (f.awake() - awake) / (goodput * took), "cycles");
 }
 
-// Measures a ping: the time between the last byte of the request at the endpoint and the first
-// frame of the reply.
+// Measures a ping: the time from the last byte of the request at the endpoint to the first frame of
+// the reply.
 void measurePings(MeasuredFlight& f, const std::string& program) {
     const ElfImage& image = *f.machine.stm32().image();
     const uint32_t message = image.symbol("XBeeATEndpoint_onMessage"),
@@ -251,17 +255,19 @@ void measurePings(MeasuredFlight& f, const std::string& program) {
     f.inTurn(std::vector<Ground::Call>(20, {"hwengine1", "ice_ping", 2}), 60);
     stopListening(f);
     say(program + ": ping, message to first frame of the reply", took.mean(), "cycles");
-    // From the first variable to the top of the main stack, on which interrupts run.
+    // RAM is measured from the first variable to the top of the main stack, on which interrupts
+    // run.
     say(program + ": RAM with all objects and all stacks, including the main stack",
         image.symbol("stack_top") - image.symbol("data_begin"), "bytes", 131072);
 }
 
-// High-water marks: stacks are filled with zeros at the start.
+// High-water marks: stacks are filled with zeros at the start, and the bytes changed since are
+// counted.
 void measureStacks(MeasuredFlight& f, const std::string& what) {
     const ElfImage& image = *f.machine.stm32().image();
     for (const char* name : {"radioStack", "serverStack", "clientStack", "coresStack", "watchStack",
                              "idleStack", "OSTaskIdleStk"}) {
-        if (!image.has(name)) // another name in the real uC/OS-II
+        if (!image.has(name)) // the real uC/OS-II uses another name
             continue;
         uint32_t words = image.size(name) / 4, free = 0;
         while (free < words && f.cpu().word(image.symbol(name) + 4 * free) == 0)
@@ -270,7 +276,7 @@ void measureStacks(MeasuredFlight& f, const std::string& what) {
     }
 }
 
-// The one stack of the minimal program; RAM is zero at power-on.
+// Measures the only stack of the minimal program; RAM is zero at power-on.
 void measureMinimal(const std::string& elf) {
     MeasuredFlight f(elf, 1);
     measurePings(f, "minimal");

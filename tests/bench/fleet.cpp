@@ -12,10 +12,10 @@ namespace {
 
 Figures figures("Calls a second of several vehicles on one channel.");
 
-constexpr U32 callBytes = 3; // setParameterA(short), its head compressed
+constexpr U32 callBytes = 3; // size of setParameterA(short) with a compressed head
 
-// A ground station calls on each of its links as soon as the previous call is answered; a vehicle
-// replies with the call.
+// A ground station makes a new call on each of its links as soon as the previous one is answered; a
+// vehicle replies with the request's bytes.
 class Station : public ModemEnd {
 public:
     Station(RfChannel& air, int address, bool isGround, bool isKeyed,
@@ -23,7 +23,7 @@ public:
         : ModemEnd(air, options(address, isGround), seed, targets), isGround_(isGround),
           calls_(targets.size()) {
         for (size_t i = 0; i < peers(); ++i) {
-            const int vehicle = isGround ? targets[i] : address; // each has a separate key
+            const int vehicle = isGround ? targets[i] : address; // each vehicle has a separate key
             const std::vector<U8> key(LINK_KEY_BYTES, static_cast<U8>(vehicle));
             if (isKeyed)
                 Link_setKey(link(i), 0, key.data(),
@@ -37,7 +37,7 @@ public:
             call(i);
         return ModemEnd::advance(now);
     }
-    std::vector<double> times; // of calls, ms
+    std::vector<double> times; // durations of calls, ms
     bool calls = false;
 
 private:
@@ -78,7 +78,7 @@ private:
     std::vector<Call> calls_; // calls by peer
 };
 
-// Measures `grounds` ground stations that each call separate vehicles, `vehicles` in all.
+// Measures `grounds` ground stations that call separate vehicles, `vehicles` in all.
 void measure(const std::string& what, int grounds, int vehicles, bool isKeyed,
              double foundOutside) {
     std::vector<double> times;
@@ -137,7 +137,7 @@ void measure(const std::string& what, int grounds, int vehicles, bool isKeyed,
 
 int main(int argc, char** argv) {
     return figures.run(argc, argv, [&] {
-        // Compared with published results without encryption, for models of the same modems.
+        // Published results for models of the same modems, without encryption.
         const std::vector<std::tuple<int, double, double>> fleets = {
             {1, 34.6, 34.6}, {2, 60.4, 69}, {5, 78, 125}, {10, 80, 130}, {20, 80, 128}};
         for (bool isKeyed : {false, true})

@@ -45,8 +45,8 @@ double streams(unsigned hclk, uint64_t seed, uint32_t halfwords, bool& right) {
     std::vector<U16> in(halfwords);
     U32 repeated = 0;
     double least = 1;
-    // An access takes a whole number of HCLK: the limit of the pins follows from the driver's
-    // timing at this HCLK (docs/fsmc.md).
+    // An access takes a whole number of HCLK cycles, so the limit of the pins follows from the
+    // driver's timing at this HCLK (docs/fsmc.md).
     auto show = [&](const char* what, double clocks, unsigned cycles, double wanted) {
         double rate = halfwords / clocks * fabricHz, limit = hclk * 1e6 / cycles;
         figures.add(fmt::format("FSMC, HCLK {} MHz, {}", hclk, what), rate / 1e6,
@@ -110,9 +110,9 @@ void single(unsigned hclk, uint64_t seed, int count) {
         });
         figures.add(fmt::format("FSMC, HCLK {} MHz, {}", hclk, what), sum / count, "clocks", least);
     };
-    // Least time: ADDSET 2, DATAST 4 and 1 HCLK of hold or turnaround. A read that waits ends 4
-    // HCLK after NWAIT, passes two flip-flops (1 to 2 clocks, 1.5 on average), and takes one clock
-    // each to register, to request and to answer.
+    // Least time of an access: ADDSET 2, DATAST 4 and 1 HCLK of hold or turnaround. A read that
+    // waits ends 4 HCLK after NWAIT. Its request passes two flip-flops (1 to 2 clocks, 1.5 on
+    // average), and takes one clock each to be registered, requested and answered.
     double access = 7 * hclks, waits = (2 + 4 + 1) * hclks + 1.5;
     show("register word, 32 bits, write", 2 * access,
          [&] { master.write32(control + 4 * SYSTEM_SCRATCH, 1); });

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// load: many programs at the ground's engine, one after the other on its three channels, and many
-// clients at once at the gateway: no call is lost, duplicated or answered wrongly, and memory use
-// stays constant.
+// load: many programs use the ground's engine, one after the other on its three channels, and many
+// clients call through the gateway at once. No call may be lost, duplicated or answered wrongly,
+// and memory use must stay constant.
 
 #include "../sw/ground/ice/world.h"
 #include "../sw/ground/wire.h"
@@ -14,7 +14,7 @@
 namespace {
 
 constexpr size_t callBytes = 40;
-constexpr int patienceMs = 600'000; // a client waits for its channel
+constexpr int patienceMs = 600'000; // ms; greatest time for which a client waits for its channel
 
 double residentKiB(const std::string& process) {
     size_t pages = 0, resident = 0;
@@ -22,7 +22,7 @@ double residentKiB(const std::string& process) {
     return static_cast<double>(resident) * 4;
 }
 
-// Programs at the engine in this process, eight at a time; each call has a unique number.
+// Programs that use the engine in this process, eight at a time; each call has a unique number.
 class Programs {
 public:
     Programs(unsigned programs, unsigned calls)
@@ -101,7 +101,7 @@ private:
     Wire wire_;
     std::shared_ptr<XBeeAT::Peer> engine_ = wire_.engine();
     const unsigned programs_, calls_;
-    std::vector<float> latencies_; // allocated at the start, because memory is measured
+    std::vector<float> latencies_; // allocated at the start, because the use of memory is measured
     std::atomic<unsigned> next_{0}, answered_{0}, ended_{0};
 };
 
@@ -117,7 +117,7 @@ public:
             "echo:tcp -h 127.0.0.1 -t 600000 -p " + std::to_string(gateway_.port())));
     }
     void run(Figures& figures, unsigned callsEach) {
-        echo_->ice_ping(); // the modem is set up
+        echo_->ice_ping(); // after this call the modem is set up
         std::vector<double> alone, together;
         call(0, 20, alone);
         const double before = residentKiB(std::to_string(gateway_.pid()));
@@ -144,7 +144,7 @@ public:
     }
 
 private:
-    // Calls on a separate connection; adds the time of each correct reply.
+    // Makes calls on a separate connection; records the duration of each correct reply.
     void call(unsigned client, unsigned count, std::vector<double>& took) {
         auto echo = echo_->ice_connectionId(std::to_string(client));
         for (unsigned i = 0; i < count; ++i) {

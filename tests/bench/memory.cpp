@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// memory: speed, latency and fairness of the memory controller, next to the limit of the MCB.
+// memory: measures speed, latency and fairness of the memory controller, compared with the limit of
+// the MCB.
 
 #include "VMemoryMcb2.h"
 #include "VMemoryMcb4.h"
@@ -13,25 +14,27 @@ namespace {
 
 Figures figures("Speed, latency and fairness of the memory controller.");
 unsigned outstanding = 64; // words that a port may request ahead
-double leastFairness = 1;  // lowest fairness of the streams, Jain's index: 1 is equal
+double leastFairness = 1;  // lowest fairness of the streams, as Jain's index: 1 if all get the same
+                           // share
 
 struct Mix {
     const char* name;
-    double evenPorts, oddPorts; // share of writes
+    double evenPorts, oddPorts; // share of writes at ports with even and with odd numbers
 };
 constexpr Mix mixes[] = {{"reads", 0, 0},
                          {"writes", 1, 1},
                          {"even ports read, odd ports write", 0, 1},
                          {"each port reads and writes", 0.5, 0.5}};
 
-// Returns the clocks that the memory and its port need for the requests, from the first command to
-// the last word, with a driver that loses no clock and always has words and room. Request: any type
-// with address, words, read.
+// Returns the clocks that the MCB needs for the requests, from the first command to the last word,
+// with a driver that loses no clock and always has words and room. Request: any type with address,
+// words, read.
 template <class Request> uint64_t directMcb(size_t bytes, const std::vector<Request>& requests) {
     McbModel memory(bytes);
     while (!memory.pins.calibDone)
         memory.cycle();
-    size_t pushing = 0, issuing = 0; // next request to push words for; next one to issue
+    size_t pushing = 0, issuing = 0; // pushing: request whose words are pushed next; issuing:
+                                     // request that is issued next
     unsigned pushed = 0, promised = 0;
     uint64_t words = 0, popped = 0, clocks = 0;
     for (const Request& r : requests)
@@ -131,8 +134,8 @@ double streams(uint64_t cycles, uint64_t seed) {
     return worst;
 }
 
-// Measures from the request to the first word popped, with one port alone and with all others
-// streaming.
+// Measures the time from a request to the first word popped, with one port alone and with all other
+// ports streaming.
 template <class Module, unsigned ports> void latency(uint64_t cycles, uint64_t seed) {
     for (unsigned size = 0; size <= 5; ++size) {
         double mean[2];

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// modem: simulated time of the modem's set-up, by guard time and by the rate at which the modem is
-// found: by the modem controller, from CONFIGURE to CONFIGURED, and by the ground's engine.
+// modem: measures the simulated time of the modem's set-up for several guard times and rates at
+// which the modem is found: by the modem controller, from CONFIGURE to CONFIGURED, and by the
+// engine on the ground.
 
 #include "VModem.h"
 #include "bench.h"
@@ -19,7 +20,7 @@ namespace {
 
 constexpr uint64_t clkNs = 500;
 
-// ms; 0 if the set-up failed.
+// Returns the time of a set-up by the controller, ms; 0 if it failed.
 double setUpMs(uint32_t guardMs, uint32_t bd) {
     Bench<VModem> bench;
     BusMaster<VModem> bus(bench);
@@ -54,7 +55,8 @@ double setUpMs(uint32_t guardMs, uint32_t bd) {
     return done ? static_cast<double>((bench.cycles() - begin) * clkNs) / 1e6 : 0;
 }
 
-// The same by the program on the ground, on a pty; time passes in its pauses.
+// Returns the time of a set-up by the program on the ground, on a pty; simulated time passes while
+// the program pauses.
 double groundSetUpMs(uint32_t guardMs, uint32_t bd) {
     RfChannel air(1);
     PtyLine pty;

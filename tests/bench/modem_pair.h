@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_pair: link layers over modem models and the air between them, event by event. All ends are
-// like the ground's: link layer, pacer, serial line of 111,111 baud.
+// modem_pair: simulates link layers over modem models and the air between them, event by event. All
+// ends are like the ground: link layer, pacer, and a serial line at 111,111 baud.
 
 #pragma once
 
@@ -19,7 +19,7 @@ extern "C" {
 #include "link.h"
 }
 
-// A serial line to a modem that takes the time of a wire for each byte, and obeys CTS.
+// A serial line to a modem: each byte takes the time that it takes on a wire, and CTS is obeyed.
 class TimedLine : public SerialLine {
 public:
     void send(const uint8_t* bytes, size_t count, uint64_t now) {
@@ -28,12 +28,12 @@ public:
         out_.insert(out_.end(), bytes, bytes + count);
     }
     size_t waiting() const { return out_.size(); }
-    void forget() { // a host that restarts
+    void forget() { // Discards all bytes in transit, as a host does that restarts.
         out_.clear();
         received.clear();
     }
     std::vector<uint8_t> received;
-    bool hangs = false; // the host hangs: nothing is transferred
+    bool hangs = false; // true: the host hangs, and nothing is transferred
 
     void advance(uint64_t now) override {
         if (hangs)
@@ -74,7 +74,7 @@ private:
     uint8_t byte_ = 0;
 };
 
-// Returns the settings of modem 0 or 1, which talks to the other one. RN is `leastExponent`; in API
+// Returns the settings of modem 0 or 1, which send to each other. RN is `leastExponent`; in API
 // mode the end changes it.
 inline XBee::Options modemOptions(unsigned address, bool encrypts = false,
                                   unsigned leastExponent = 2, bool isApi = false) {
@@ -84,11 +84,11 @@ inline XBee::Options modemOptions(unsigned address, bool encrypts = false,
     return o;
 }
 
-// One end: a modem and its links, one per peer; as in the engine, the one that has used the least
-// air time is first. A derived class handles the messages; it calls Link_setKey and Link_start.
+// One end: a modem and its links, one per peer. As in the engine, the link that has used the least
+// air time sends first. A derived class handles the messages and calls Link_setKey and Link_start.
 class ModemEnd {
 public:
-    // `targets`: addresses of the peers; empty: its modem's DL.
+    // `targets`: addresses of the peers; empty: the only peer is the modem's DL.
     ModemEnd(RfChannel& air, const XBee::Options& options, uint64_t seed,
              std::vector<int> targets = {})
         : modem(line, air, options), encrypts_(options.set.at("EE") != 0),
@@ -108,7 +108,7 @@ public:
     virtual int onMessage(size_t peer, int channel, const U8* message, U32 size) = 0;
     virtual void onOutcome(size_t, U32, Link_Outcome) {}
 
-    // Begins as a fresh program, without earlier state.
+    // Begins without earlier state, as a program that has just been started.
     void begin() {
         if (modem.parameter("AP"))
             api_ = std::make_unique<XBeeAT::ApiModem>(modem.parameter("AP") == 2);
@@ -132,7 +132,7 @@ public:
         return std::all_of(peers_.begin(), peers_.end(),
                            [this](const auto& p) { return isUp(p->number); });
     }
-    // Returns the time of its next call.
+    // Advances this end to `now`; returns the time at which it must be called next.
     uint64_t advance(uint64_t now) {
         now_ = now;
         modem.advance(now);
@@ -152,14 +152,14 @@ public:
     }
     TimedLine line;
     XBee modem;
-    U32 longestRestUs = 1000; // between two polls
+    U32 longestRestUs = 1000; // us; longest time between two polls
 
 protected:
     U32 us() const { return static_cast<U32>(now_ / 1000); }
     uint64_t now_ = 0;
 
 private:
-    struct Target : LinkEnd { // a link to one of the peers
+    struct Target : LinkEnd { // the link to one of the peers
         Target(ModemEnd& e, size_t n, int t) : end(e), number(n), target(t) {}
         using LinkEnd::begin;
         bool transmit(const U8* frame, U32 size) override {
@@ -216,7 +216,7 @@ private:
     uint64_t nextPoll_ = 0, airUs_ = 0;
 };
 
-// Advances time until `done` returns true, or until `end`. Returns whether it is done.
+// Advances time until `done` returns true, or until `end`. Returns the last result of `done`.
 template <class Ends, class Done>
 bool passUntil(uint64_t& now, uint64_t end, RfChannel& air, Ends& ends, Done done) {
     while (!done()) {
@@ -231,8 +231,8 @@ bool passUntil(uint64_t& now, uint64_t end, RfChannel& air, Ends& ends, Done don
     return true;
 }
 
-// Two ends of a class derived from ModemEnd, and the air; the first has called, and both are up
-// with channels 0 to `channels` - 1 open.
+// Two ends of a class derived from ModemEnd, and the air between them. The first end has called;
+// both are up, with channels 0 to `channels` - 1 open.
 template <class End> class ModemPair {
 public:
     template <class... Arguments>
@@ -247,7 +247,7 @@ public:
         }
         pass(500'000'000);
     }
-    // Lets time pass until `done`. Returns whether that is within this many seconds.
+    // Advances time until `done` returns true. Returns false if this takes longer than `seconds`.
     template <class Done> bool until(Done done, double seconds) {
         return passUntil(now, now + static_cast<uint64_t>(seconds * 1e9), air, ends_, done);
     }
@@ -296,9 +296,9 @@ struct BareModems {
     uint64_t now = 1'000'000;
 };
 
-// Measures the lower bound of a round trip on half-duplex air (formula in docs/link.md). Returns
-// the median in ms of `out` bytes there and, after the last one has arrived, `back` bytes here;
-// each at most one packet. RN is 2.
+// Measures the lower bound of a round trip on half-duplex air (formula in docs/link.md): `out`
+// bytes are sent and, after the last of them has arrived, `back` bytes are returned. Each is at
+// most one packet. RN is 2. Returns the median in ms.
 inline double floorMs(size_t out, size_t back, bool isEncrypted = false) {
     BareModems w(RfWeather(), 1, isEncrypted, 2);
     const std::vector<uint8_t> bytes(std::max(out, back), 1);
@@ -325,9 +325,9 @@ inline double floorMs(size_t out, size_t back, bool isEncrypted = false) {
     return times[times.size() / 2];
 }
 
-// Returns the most bytes per second that two modems can transfer in this weather, in one direction
-// or both: full packets are always ready, and a lost one only costs its air time, as with a sender
-// that learns of losses at once.
+// Returns the greatest number of bytes per second that two modems can transfer in this weather, in
+// one direction or both. Full packets are always ready, and a lost packet only costs its air time,
+// as if its sender learned of the loss immediately.
 inline double mostBytesPerSecond(const RfWeather& weather, bool both, bool isEncrypted,
                                  unsigned leastExponent, uint64_t seconds, uint64_t seed) {
     BareModems w(weather, seed, isEncrypted, leastExponent);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// plugin: the radio's figures for a program: stock ZeroC Ice with the plugin, against IceC on the
-// chip's RTL; in simulated time, in the clear and under a key.
+// plugin: measures the radio link as a program sees it: stock ZeroC Ice with the plugin, and IceC
+// on the chip's RTL; in simulated time, with and without a key.
 
 #include "chip_world.h"
 #include "figures.h"
@@ -15,9 +15,10 @@ extern "C" {
 namespace {
 
 const char* const modes[] = {"in the clear", "with a key"}; // index: hasKey
-// Limit in one direction: full packets through the modem and RN 2 (docs/simulation.md).
+// Limit in one direction: full packets through the modem with RN 2 (docs/simulation.md).
 constexpr double mostBytesPerSecond = 100 / (4.688 + 1.5 * 0.320 + 5.312) * 1000;
-constexpr int size = 7900, messages = 6; // bytes of a sequence; a message has up to 8192
+constexpr int size = 7900, messages = 6; // size: bytes of the sequence in a message; a message may
+                                         // have 8192
 
 struct Heard {
     std::atomic<int> count{0};
@@ -55,7 +56,7 @@ public:
         std::snprintf(name, sizeof name, "Ice, goodput %s %s, loss %.2f",
                       down ? "UAV to ground" : "ground to UAV", modes[hasKey_], loss);
         figures_.add(name, rate, "bytes/s", mostBytesPerSecond);
-        echo_->ice_ping(); // late messages end before the next measurement
+        echo_->ice_ping(); // after this call, late messages no longer disturb the next measurement
     }
 
     // Makes small calls, one by one, and returns their times in ms, sorted.
@@ -64,15 +65,15 @@ public:
         for (int i = 0; i < (figures_.brief ? 4 : calls + 2); ++i) {
             const uint64_t begin = world_.ns();
             call();
-            if (i > 1) // the first calls transfer the head
+            if (i > 1) // the first calls are not counted, because they transfer the full head
                 ms.push_back(static_cast<double>(world_.ns() - begin) / 1e6);
             world_.sleep(0.06 + i * 0.0003);
         }
         std::sort(ms.begin(), ms.end());
         return ms;
     }
-    // `out`, `back`: bytes of the two frames (docs/link.md, heads of Ice messages); the reply also
-    // contains the acknowledgement.
+    // Measures round trips. `out`, `back`: bytes of the two frames (docs/link.md, heads of Ice
+    // messages); the reply also contains the acknowledgement.
     void roundTrip(const char* what, size_t out, size_t back, const std::function<void()>& call) {
         const size_t overhead = hasKey_ ? LINK_SECURE_OVERHEAD : LINK_OVERHEAD;
         const auto ms = times(31, call);
@@ -82,7 +83,8 @@ public:
         figures_.add(std::string("Ice, round trip of ") + what + " " + modes[hasKey_], median, "ms",
                      floor);
     }
-    // A small call on a separate connection while the UAV's pictures arrive continuously.
+    // Measures small calls on a separate connection while pictures from the UAV arrive
+    // continuously.
     void headOfLine() {
         const auto fast = world_.echo(ic_, "fast");
         const auto note = [&] { fast->note(1); };

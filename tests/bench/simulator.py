@@ -33,7 +33,8 @@ def main(source, build, output, brief=""):
              "every": (build, *IMAGE, "--duration", "0.02", "--every-clock"),
              "flight": (build, "--replay", f"{work.name}/host"),
              "flight m3": (build, "--replay", f"{work.name}/m3")}
-    best = dict.fromkeys(kinds, (0, 0))  # million clocks a second, percent of them evaluated
+    best = dict.fromkeys(kinds, (0, 0))  # millions of clocks per second, and percentage of clocks
+                                         # that were evaluated
     for run in range(runs):
         for kind, (folder, *options) in kinds.items():
             said = logged(f"{folder}/testbench/sim/icesoc-sim", "--speed", "max", "--out",

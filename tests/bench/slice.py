@@ -19,7 +19,7 @@ SLICES = pathlib.Path("/usr/share/ice/slice")
 
 
 def once(program, file, folder):
-    """Milliseconds of processor time that a run takes, of ten."""
+    """Returns the processor time of one run, ms, as the mean of ten runs."""
     spent = lambda: sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2])
     begin = spent()
     for _ in range(10):

@@ -15,7 +15,7 @@ from figures import figure, leave
 
 CALL = "Tags/CallBytes.ACallAndItsReplyTakeFewerThanMavlink/"
 HOSTILE = "Vehicles/Attacked.NothingHostileIsAcceptedAndNothingLegalLostOrDoubled/"
-FIGURES = [  # program, tests, property, text
+FIGURES = [  # program, names of tests, property, text in the table
     (0, "Update.WhereverThePowerIsCutThereIsAnImageThatBoots", "cuts",
      "new firmware: power losses, in each operation and later"),
     (0, "Fpga.WhereverThePowerIsCutABitstreamConfiguresIt", "cuts",
@@ -30,7 +30,7 @@ HARM = {"cuts": "vehicle or FPGA does not start again",
 
 
 def run(program, tests, hostile):
-    """Returns the tests' recorded properties, and expectations that failed."""
+    """Returns the properties that the tests recorded, and the expectations that failed."""
     with tempfile.NamedTemporaryFile() as out:
         subprocess.run([program, "--gtest_filter=" + tests, "--gtest_output=json:" + out.name],
                        env={**os.environ, "HOSTILE": hostile}, stdout=subprocess.DEVNULL)

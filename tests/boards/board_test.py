@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""board_test: the boards of the tree can be read; those without unknown facts can be built; their
-generated files fit the chip, the facts about parts, and the pages in docs/boards."""
+"""board_test: all boards of the tree can be read. Boards without unknown facts can be built, and
+their generated files agree with the chip, with the facts about parts, and with the pages in
+docs/boards."""
 import re
 import subprocess
 import sys

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """wrong_test: `board check` rejects boards that cannot work, each for the right reason and for no
-other. A line of WRONG is a change of the kit and the expected message."""
+other. Each line of WRONG contains a change of the kit and the expected message."""
 import copy
 import sys
 import unittest
@@ -42,7 +42,7 @@ def put(table, key, value):
 
 
 def shut(bridge):
-    """Returns a change that leaves a solder bridge closed."""
+    """Returns a change that keeps a solder bridge closed."""
     def change(facts):
         facts["open"].remove(bridge)
     return change
@@ -148,7 +148,7 @@ def case(change, expected):
 class Wrong(unittest.TestCase):
     @staticmethod
     def reason(text):
-        """Returns a message without names and figures: the kind of its reason."""
+        """Returns a message without names and figures, which identifies the kind of error."""
         return " ".join(word for word in text.partition(": ")[2].split()
                         if word.isalpha() and word.islower())[:14]
 

@@ -109,4 +109,4 @@ with Ice.initialize(data) as communicator:
     while info.underlying:
         info = info.underlying
     print(info.port, flush=True)
-    sys.stdin.read()  # until the test closes it
+    sys.stdin.read()  # runs until the test closes standard input

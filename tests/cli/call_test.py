@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""call_test: ./icesoc call against a server of stock Ice, without a flight: values of all types,
-hostile ones, options, exit statuses, events, completion.
+"""call_test: tests ./icesoc call with a server of stock Ice, without a flight: values of all types,
+including hostile ones, options, exit statuses, events, completion.
 
 Usage: call_test.py case build-folder
 """
@@ -30,7 +30,7 @@ from icesoc.cli.commands.call import choices  # noqa: E402
 from icesoc.call.objects import Catalogue  # noqa: E402
 from icesoc.util.errors import Stop  # noqa: E402
 
-# Arguments of `try`, and what is printed with --json.
+# Arguments of `try`, and the output with --json.
 CALLS = [
     ("add 1 2", {"result": 3}), ("add threshold=0x10 left=-5", {"result": 11}),
     ("add -32768 255", {"result": -32513}),
@@ -142,7 +142,7 @@ class Call(unittest.TestCase):
         cls.work.cleanup()
 
     def ask(self, words, *more, operation=True):
-        """Returns exit status, output and messages of a call of `try` in this process."""
+        """Calls `try` in this process; returns exit status, output and messages."""
         words = words.split(" ") if isinstance(words, str) else list(words)
         if operation:
             at = 1 if words[0] == "--json" else 0
@@ -171,7 +171,7 @@ class Call(unittest.TestCase):
                          {"result": 200200})
 
     def test_text(self):
-        """Results as people read them."""
+        """Results are printed in a form for people."""
         self.assertEqual(self.ask("add 1 2")[1], "3\n")
         self.assertEqual(self.ask("next green")[1], 'result: "blue"\nnumber: 5\n')
         self.assertEqual(self.ask("move @json 1")[1], "  x: 10\n  y: 7\n")
@@ -181,7 +181,9 @@ class Call(unittest.TestCase):
     def test_refused(self):
         """Nothing is sent: no server listens at this address."""
         for words, message in REFUSED.items():
-            unknown = words.split()[0] in ("ad", "ice_pong")  # the object is asked
+            unknown = words.split()[0] in ("ad", "ice_pong")  # an unknown operation is an error
+                                                              # only after the object was asked for
+                                                              # its interface
             target = () if unknown or {"--gateway", "--device"} & set(words.split()) \
                 else ("--gateway", "127.0.0.1:1")
             status, out, err = self.ask(words.split(" ") + list(target))
@@ -310,7 +312,8 @@ class Call(unittest.TestCase):
         self.assertEqual(self.ask(["add", "1", "2", "--locator", f"x:{endpoint} -p 1"])[0], 4)
 
     def test_speed(self):
-        """The first call takes at most 1.5 times as long as a small program that makes it."""
+        """The first call takes at most 1.5 times as long as in a small program that only makes this
+        call."""
         program = ["/usr/bin/python3", "-c", f"""
 import Ice
 Ice.loadSlice("", ["-I" + Ice.getSliceDir(), "{HERE}/call.ice"])
@@ -322,7 +325,7 @@ with Ice.initialize() as communicator:
                   f"127.0.0.1:{self.port}", "--slice", HERE / "call.ice", "--build", BUILD]
 
         times = {"own": [], "ours": []}
-        for _ in range(5):  # alternating: the load of the machine is the same for both
+        for _ in range(5):  # alternating, so that the load of the machine is the same for both
             for name, words in ("own", program), ("ours", called):
                 begin = time.perf_counter()
                 said = subprocess.run(words, capture_output=True, text=True)

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""doors: ./icesoc and make take the same options, report errors with advice, and pass no
-value to a shell; lists.py tests their lists."""
+"""doors: ./icesoc and make take the same options, report errors with advice, and never pass a value
+to a shell. lists.py tests the lists of commands."""
 import concurrent.futures, importlib.util, json, os, shutil, subprocess, tempfile, time, unittest
 from pathlib import Path
 
@@ -13,7 +13,8 @@ from icesoc.util.ninja import explained
 
 
 def clean(**more):
-    """An environment without a variable of any option, or of the make that runs the tests."""
+    """Returns an environment without the variables of options and of the make that runs the
+    tests."""
     ours = {option.variable for each in command.COMMANDS.values() for option in each.options}
     ours |= {"MAKEFLAGS", "MFLAGS", "MAKELEVEL"}
     return {**{name: value for name, value in os.environ.items() if name not in ours}, **more}
@@ -31,7 +32,7 @@ class Work(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.work = Path(folder.name)
-        # An empty tree: any command ends soon in it.
+        # An empty tree, in which every command ends soon.
         (self.work / "tree/cmake").mkdir(parents=True)
         (self.work / "tree/ip").mkdir()
         self.script("tree/cmake/setup.sh", "")
@@ -75,7 +76,7 @@ class Values(Work):
             options = [o for o in each.options if o.listed and not o.positional
                        and o.kind.metavar in samples and o.kind not in (SWITCH, FLIGHT)
                        and o.name not in ("loss", "interference")]
-            # Names that are checked come from the tree's files; there is no tree here.
+            # Names come from files of the tree, so there are no names to check here.
             variables = {o.variable: (o.choices(None) or ["a"])[0] if o.choices and o.is_checked
                          else samples[o.kind.metavar] for o in options}
             words = [word for o in options
@@ -287,7 +288,8 @@ class Mistakes(Work):
         run.send_signal(2)
         self.assertEqual(run.communicate()[1], "icesoc: stopped\n")
         self.assertEqual(run.returncode, 130)
-        # A child that had just been started gets the signal about the end of its parent later.
+        # The signal about the end of its parent reaches a child that had just been started a little
+        # later.
         while Path("/proc", child.read_text().strip()).exists():
             time.sleep(0.01)
 
@@ -316,7 +318,7 @@ class Mistakes(Work):
 
 
 class Trees(Work):
-    """What happens to build folders."""
+    """Tests of the handling of build folders."""
     def configure(self, tree):
         return ask("./icesoc", "build", "configure", "--build", "build", ICESOC_TREE=str(tree),
                    XDG_CONFIG_HOME=str(self.work / "config"))
@@ -358,7 +360,8 @@ class Trees(Work):
 
         def remove(text):
             (tree / "build/main").mkdir(parents=True, exist_ok=True)
-            (tree / "build/main/update.key").write_text(text)  # where earlier trees stored it
+            (tree / "build/main/update.key").write_text(text)  # folder in which earlier versions
+                                                               # stored the key
             ask("make", "-s", "clean", ICESOC_TREE=str(tree), XDG_CONFIG_HOME=str(config))
             self.assertFalse((tree / "build").exists())
             return sorted(key.read_text() for key in (config / "icesoc").glob("update*.key"))

@@ -1,14 +1,14 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""fuzz_parsers: a parser of files that people write gets mutated ones, most of them in this
-process.
+"""fuzz_parsers: gives mutated files to a parser of files that people write, mostly in this process.
 
     fuzz_parsers.py PARSER BUILD INPUTS [FILE...]
 
-A file is read, or refused: by a message in our words, with a status that is not 0, without a file
-written. Anything else is a finding, and so are 5 s of CPU time. Inputs that reach a new line of
-the parser are mutated further. FUZZ=600: for 600 s in place of INPUTS, from those that earlier runs
-kept (~/.cache/icesoc/fuzz). SEED (1) chooses the mutations. FILE: these alone, unchanged.
+A file must be read, or refused with a message in our own words and an exit status that is not 0,
+without a file written. Anything else is a finding, and so is more than 5 s of CPU time. Inputs that
+reach a new line of the parser are mutated further. FUZZ=600 runs for 600 s instead of INPUTS
+inputs, starting from those that earlier runs stored (~/.cache/icesoc/fuzz). SEED (default 1)
+selects the mutations. FILE: only these files are read, unchanged.
 """
 import contextlib
 import dataclasses
@@ -31,7 +31,7 @@ from pathlib import Path
 from icesoc import TREE
 
 DATA = TREE / "tests/bus/cores/data"
-BUILD, WORK = Path(), Path()  # the build folder; a folder of this run
+BUILD, WORK = Path(), Path()  # the build folder, and the work folder of this run
 CORES = {path.name.split(".")[0]: f"{path.with_name(path.name.split('.')[0] + '.toml')}={path}"
          for path in DATA.glob("*.regs.json")} | {
              "probe": f"{TREE}/ip/probe/core.toml={TREE}/ip/probe/probe.regs.json"}
@@ -58,8 +58,8 @@ FOREIGN = re.compile(
 class Parser:
     module: str
     words: list  # FILE is replaced by the input, OUT by the folder of the output
-    seeds: object  # patterns of files, or a function
-    function: str = "main"  # gets the file if `words` is empty
+    seeds: object  # patterns of files, or a function that returns them
+    function: str = "main"  # function that gets the file if `words` is empty
     program: str = ""  # program in the build folder that runs instead of the module
 
 
@@ -70,7 +70,7 @@ def chip_rdl():
 
 
 def manifests():
-    """Returns the manifests of the tree's cores, with empty files of the names that they have."""
+    """Returns the manifests of the tree's cores, and creates empty files for the names in them."""
     texts = []
     for pattern in ("ip/*/core.toml", "tests/bus/cores/data/*.toml", "tests/e2e/cores/*/core.toml"):
         for path in sorted(TREE.glob(pattern)):
@@ -108,7 +108,7 @@ PARSERS = {
 
 
 class TooLong(BaseException):
-    """The parser takes more than its time."""
+    """The parser has used more CPU time than allowed."""
 
 
 class Runner:
@@ -140,7 +140,7 @@ class Runner:
         return self.line
 
     def call(self):
-        """Returns (status, message); a status of at least 128 is a finding."""
+        """Runs the parser. Returns (status, message); a status of at least 128 is a finding."""
         if self.parser.program:
             run = subprocess.run([BUILD / self.parser.program, *self.words],
                                  capture_output=True, timeout=60)
@@ -172,7 +172,7 @@ class Runner:
         return status or 0, said.getvalue()
 
     def finding(self, data):
-        """What is wrong with the parser's answer, or None."""
+        """Returns the error in the parser's reaction to an input, or None."""
         self.file.write_bytes(data)
         for old in self.out.iterdir():
             old.unlink()
@@ -195,7 +195,7 @@ ODD = [b"9" * 25, b"9" * 5000, b"\xff", b"\0", b"\n", b"\xe0\xb9\x95", b"\xc2\xb
 
 
 def mutated(data, corpus, words, draw):
-    """Returns another input, mutated by a few changes of words, bytes or halves."""
+    """Returns an input derived from `data` by a few changes of words, bytes or halves."""
     tokens = TOKEN.findall(data) or [b""]
     for _ in range(draw.choice((1, 1, 1, 2, 3, 6))):
         at = draw.randrange(len(tokens) + 1)
@@ -230,7 +230,8 @@ def kept_in(name):
 
 
 def fuzz(name, runs, seconds):
-    """Mutates until the number or time is reached; returns (inputs run, findings by message)."""
+    """Mutates inputs until the number or the time is reached; returns (inputs run, findings by
+    message)."""
     runner, seed = Runner(PARSERS[name]), PARSERS[name].seeds
     corpus = [text.encode() for text in seed()] if callable(seed) else [
         path.read_bytes() for pattern in seed for path in sorted(TREE.glob(pattern))]

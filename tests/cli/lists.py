@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""lists: the list of commands, their help and manual, and the text that files and terminals get."""
+"""lists: tests the list of commands, their help and manual, and the output to files and
+terminals."""
 import contextlib, io, re, shlex, shutil, subprocess, sys, tempfile, unittest
 from pathlib import Path
 
@@ -91,7 +92,7 @@ class Lists(unittest.TestCase):
             self.assertEqual((status, said.count("OK")), (0, 2), said)
             subject = ask("openssl", "x509", "-noout", "-subject", "-in", f"{work}/pilot.pem")[1]
             self.assertRegex(subject, "subject=CN ?= ?pilot")
-            # It signs no other.
+            # The certificate cannot sign others.
             self.assertIn("CA:FALSE", ask("openssl", "x509", "-noout", "-text", "-in",
                                           f"{work}/pilot.pem")[1])
             self.assertEqual(Path(work, "pilot.pem").stat().st_mode & 0o777, 0o600)

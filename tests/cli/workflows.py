@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""workflows: tests the commands of the container and of the workflows for GitHub and GitLab, here
-and in a user's repository of cores.
+"""workflows: tests the commands of the container and of the workflows for GitHub and GitLab, in
+this tree and in a user's repository of cores.
 
 Usage: workflows.py case work-folder build-folder
 """
@@ -40,7 +40,7 @@ def workflows(tree):
 
 
 def linked(tree):
-    """A tree of links to this one, with separate folders ip and build."""
+    """Returns a tree of links to this tree, with separate folders ip and build."""
     for path in TREE.iterdir():
         if path.name not in ("build", "ip", ".git"):
             (tree / path.name).symlink_to(path)
@@ -52,14 +52,14 @@ def linked(tree):
 
 
 def entries(tree):
-    """Returns names, targets of links and times of change in a tree of links, below its folders."""
+    """Returns the names, link targets and modification times of the entries in a tree of links."""
     return sorted((str(path), os.readlink(path) if path.is_symlink() else path.stat().st_mtime_ns)
                   for folder in (tree, tree / "ip") for path in folder.iterdir())
 
 
 class Cases(Script):
     def test_repository_in_chip(self):
-        """A build folder has the cores of a repository, and its list, until it gets others."""
+        """A build folder keeps the cores of a repository, and its list, until it gets others."""
         work = fresh(WORK)
         mine, list_ = work / "mine", work / "mine/cores.list"
         for name in "first", "second":
@@ -81,8 +81,8 @@ class Cases(Script):
         self.assertEqual(folders("none"), ([], Path("ip/cores.list").absolute()))
 
     def test_container(self):
-        """Each command of the container is carried out with the files that it copies, on a machine
-        that lacks all packages."""
+        """Each command of the container is run with the files that it copies, on a machine that
+        lacks all packages."""
         work = fresh(WORK)
         write(work / "bin/dpkg-query", "#!/bin/sh\n")
         for program in ("apt-get", "git"):
@@ -104,7 +104,7 @@ class Cases(Script):
         self.has("^make run ", "podman build .* podman run", file=TREE / "README.md")
 
     def carried_out(self, tree, **environment):
-        """Carries out the commands of both workflows, and finds all that they keep."""
+        """Runs the commands of both workflows, and checks that all artifacts exist."""
         images = [rest for name, rest in container() if name == "FROM"]
         before = [rest for name, rest in container() if name == "RUN" and "setup" not in rest]
         for file, image, commands, kept in workflows(tree):
@@ -132,7 +132,8 @@ class Cases(Script):
         self.carried_out(tree, ICESOC_TREE=str(tree), NAME="^tree[.]pages$")
 
     def test_repository(self):
-        """A repository that `core new` writes. Its core has the name of one that is built."""
+        """A repository written by `core new`. Its core has the name of a core that is already
+        built."""
         work = fresh(WORK)
         icesoc, mine = work / "icesoc", work / "mine"
         icesoc.mkdir()
@@ -149,7 +150,7 @@ class Cases(Script):
         write(mine / "build/main/cores.known", f"{known}sample_verilog\n")
         before = entries(icesoc)
         self.carried_out(mine, ICESOC_TREE=str(icesoc), ICESOC=str(icesoc), CORES="fir")
-        self.assertEqual(entries(icesoc), before)  # the tree was only read
+        self.assertEqual(entries(icesoc), before)  # the tree itself was not changed
         self.has("^vision ", "^sample_verilog$", file=mine / "cores.list")
         self.lacks("@[A-Z]+@|make ip-test", file=mine / "Makefile")
         self.lacks(r"\.\./\.\./docs|ip-test", file=mine / "sample_verilog/README.md")
@@ -160,7 +161,8 @@ class Cases(Script):
         self.has("^changed$", file=mine / ".gitlab-ci.yml")
         self.ask(*new, "second", status=2)
         self.has("second already exists")
-        # The same for a third-party repository, with files that are found wherever it is.
+        # The same for a repository with a third-party core; its files are found wherever the
+        # repository is.
         (mine / "others").mkdir()
         shutil.copy(TREE / "tests/ip/new_foreign/wb_port.v", mine / "others")
         self.ask(TREE / "icesoc", "core", "foreign", "third", "--top", "wb_port", "--bus",
@@ -169,7 +171,7 @@ class Cases(Script):
         self.has("^third$", file=mine / "cores.list")
         self.has('"@FOLDER@/../others/wb_port.v"', file=mine / "third/core.toml")
         self.lacks(str(mine), file=mine / "third/core.toml")
-        # The clone is of this tree's origin, at its commit; a clone without that commit is removed.
+        # The origin of this tree is cloned at its commit; a clone without that commit is removed.
         if (TREE / ".git").exists():
             commit = git(f"-C {shlex.quote(str(TREE))} rev-parse HEAD")
             text = (mine / "Makefile").read_text()

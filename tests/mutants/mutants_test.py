@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""mutants_test: run.py and drawn.py on small designs.
+"""mutants_test: tests run.py and drawn.py with small designs.
 
 Usage: mutants_test.py run|drawn work-folder verilators-runtime.a
 """
@@ -69,13 +69,13 @@ class Cases(Script):
         self.work = fresh(sys.argv[2])
 
     def bugs(self, **bugs):
-        """Seeds bugs: removed line, added line."""
+        """Seeds bugs, each a removed line and an added line."""
         write("tests/mutants/tiny.bugs.json", json.dumps({
             name: {"does": "A bug.", "test": "test_tiny", "file": "tiny.c", "old": old, "new": new}
             for name, (old, new) in bugs.items()}))
 
     def test_run(self):
-        """Each result that a seeded bug can have, an interrupted run."""
+        """Each result that a seeded bug can have, and an interrupted run."""
         write("CMakeLists.txt", PROJECT.format("C") + "add_executable(test_tiny tiny.c)\n"
               "add_test(NAME test_tiny COMMAND test_tiny)\n")
         write("tiny.c", TINY)
@@ -88,7 +88,7 @@ class Cases(Script):
         self.has("^caught *tiny/wrong ")
         self.has("^tiny/wrong\tcaught\ttest_tiny\t", file="build/mutants/results.tsv")
 
-        # The bug of an interrupted run is removed; the tests would fail without a bug.
+        # The bug of an interrupted run is removed; otherwise the tests would fail without a bug.
         copies = [Path("build/mutants", number) for number in "01"]
         write(copies[0] / "tiny.c.orig", TINY)
         edit(copies[0] / "tiny.c", "2 *", "3 *")
@@ -125,8 +125,9 @@ class Cases(Script):
                   status=status)
 
     def test_drawn(self):
-        """A module with half a proof: mutants that it misses survive at their line, and those that
-        are not bugs are excluded. A test of a model that carries all survivors finds them."""
+        """A module whose proof covers half of it: mutants that the proof misses survive at their
+        line, and mutants that are not bugs are excluded. A test with a model that contains all
+        survivors finds them."""
         pair = "hdl/small/pair.v"
         write(pair, PAIR)
         write("bus/none.v", "")
@@ -138,7 +139,7 @@ class Cases(Script):
         self.draw(status=2)
         self.has("^SURVIVED .*formal.pair .*hdl/small/pair.v:[56] ", "^pair .* [1-9] the same$",
                  "below 95 %: pair$")
-        self.lacks("^SURVIVED .*pair.v:4 ")  # it changes nothing, or the proof detects it
+        self.lacks("^SURVIVED .*pair.v:4 ")  # the mutant changes nothing, or the proof detects it
         missed = json.loads(Path("build/mutants/drawn.json").read_text())["survived"]
         self.the_model_carries(missed, pair)
         edit(pair, "assert (same_o == a_i);",
@@ -170,7 +171,7 @@ class Cases(Script):
         include = f"{root.strip()}/include"
         self.ask("c++", "-Imodel", f"-I{include}", f"-I{include}/vltstd", "main.cpp",
                  *Path("model").glob("*.cpp"), sys.argv[3], *"-lz -lpthread -o test_pair".split())
-        self.ask("./test_pair")  # the model without a mutant is the module
+        self.ask("./test_pair")  # without a mutant the model equals the module
         for mutant in range(1, len(missed) + 1):
             self.ask("./test_pair", env={**os.environ, "MUTANT": str(mutant)}, status=3)
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""package_test: what is installed works in another folder, without the source and build tree.
+"""package_test: tests that the installed components work in another folder, without the source tree
+and the build tree.
 
 Usage: package_test.py case out-folder build-folder
 """
@@ -35,7 +36,7 @@ class Cases(Script):
         self.bin = self.prefix / "bin"
         self.python = self.prefix / "lib/python3/dist-packages"
         self.hdl = self.prefix / "share/icesoc/hdl"
-        # An environment that does not lead to the tree.
+        # An environment without paths to the tree.
         self.env = {"PATH": f"{self.bin}:/usr/bin:/bin", "HOME": str(self.out), "LC_ALL": "C.UTF-8",
                     "PYTHONPATH": str(self.python), "PYTHONDONTWRITEBYTECODE": "1"}
         if "CCACHE_DIR" in os.environ:
@@ -50,7 +51,8 @@ class Cases(Script):
         self.ask(*words, env={**self.env, **how.pop("env", {})}, **how)
 
     def test_install(self):
-        """No installed file names the tree; programs start; each has a manual page."""
+        """No installed file contains the path of the tree; programs start; each program has a
+        manual page."""
         self.install(*COMPONENTS)
         files = [path for path in self.prefix.rglob("*") if path.is_file()]
         self.assertGreater(len(files), 80)
@@ -82,7 +84,7 @@ class Cases(Script):
         self.assertEqual((self.out / ".config/icesoc/demo.key").stat().st_mode & 0o777, 0o600)
 
     def test_gateway(self):
-        """A program of a user calls a core by the plugin, then by the gateway."""
+        """A user's program calls a core through the plugin, then through the gateway."""
         self.install("icesoc-ground", "icesoc-sim")
         write("vehicles.conf", "Vehicle.uav1=xbee-at -d modem -a 0x0001\nXBeeAT.Guard=20\n")
         port = free_port()
@@ -103,7 +105,7 @@ class Cases(Script):
         self.has("vehicle 'uav9': expected one of uav1; or add a line Vehicle.uav9=")
 
     def test_call(self):
-        """icesoc-call calls cores by the gateway, by the radio and by a vehicle's name; wrong
+        """icesoc-call calls cores through the gateway, by radio and by a vehicle's name; wrong
         arguments and unknown vehicles are refused."""
         self.install("icesoc-ground", "icesoc-sim", "icesoc-slice2c")
         port = free_port()
@@ -143,7 +145,7 @@ class Cases(Script):
                 server.kill()
 
     def answers(self, program):
-        """The server answers stock ZeroC Ice."""
+        """Checks that the server answers stock ZeroC Ice."""
         with self.server(program) as port:
             self.use("python3", "-c", f"""
 import Ice
@@ -160,7 +162,7 @@ with Ice.initialize() as ic:
             self.has("^sum 7$", "^busy: b is negative$")
 
     def test_icec(self):
-        """A project of ten lines by CMake, and the same by pkg-config; icesoc-call calls it."""
+        """A project of ten lines is built with CMake, and with pkg-config; icesoc-call calls it."""
         self.install("icesoc-slice2c", "libicec-dev", "icesoc-ground")
         self.use("cmake", "-S", HERE / "project/server", "-B", "cmake", "-G", "Ninja",
                  f"-DCMAKE_PREFIX_PATH={self.prefix}")
@@ -215,7 +217,7 @@ cc -std=c90 -ffunction-sections -fdata-sections -o by_pkg_config -Imade \\
                     self.assertTrue((self.hdl / name).exists(), f"{path} names {name}")
 
     def test_fusesoc(self):
-        """FuseSoC finds each block with its dependencies, and lints it by Verilator."""
+        """FuseSoC finds each block with its dependencies, and lints the block with Verilator."""
         fusesoc = shutil.which("fusesoc")
         if not fusesoc:
             self.skipTest("fusesoc is missing: pip install fusesoc")

@@ -63,8 +63,9 @@ rm -rf device ended service
 simulate="icesoc-sim --image /usr/share/xplanet/images/earth.jpg --size 96x64 --guard 20"
 simulate="$simulate --speed real"
 install -d -o icesoc /home/tester/service
-chmod a+x /home/tester # Debian 13 gives a user's folder to this user alone
-# The simulator runs as the gateway's user, because the modem belongs to who runs the simulator.
+chmod a+x /home/tester # in Debian 13 only a user can enter the user's home folder
+# The simulator runs as the gateway's user, because the modem belongs to the user who runs the
+# simulator.
 runuser -u icesoc -- $simulate --key /etc/icesoc/uav1.key --out service -- \
     sh -c 'echo "$0" >service/device; until [ -e ended ]; do sleep 0.1; done' '{device}' \
     >simulator.log 2>&1 &
@@ -84,7 +85,7 @@ step "upgrade keeps keys, rights and settings, and restarts the service"
 state() { stat -c '%n %U:%G %a %Y' /etc/icesoc /etc/icesoc/*; sha256sum /etc/icesoc/*; }
 old=$(dpkg-query -W -f '${Version}' icesoc-ground)
 new=$(echo "$old" | sed 's/-/.99-/')
-chmod 710 /etc/icesoc # a choice of the administrator
+chmod 710 /etc/icesoc # a setting by the administrator, which an upgrade must keep
 before=$(state) user=$(id icesoc)
 pid=$(systemctl show -P MainPID icesoc-gateway@uav1)
 rm -rf newer && mkdir newer
@@ -107,7 +108,7 @@ step "remove stops the service and keeps keys and settings, purge keeps keys"
 apt-get remove -y -qq icesoc-ground icesoc-sim icesoc-slice2c libicec-dev icesoc-hdl >/dev/null
 ! systemctl is-active -q icesoc-gateway@uav1 || fail "the service still runs"
 [ -s /etc/icesoc/uav1.key ] && [ -s /etc/icesoc/uav1.conf ] || fail "remove took keys or settings"
-apt-get purge -y -qq icesoc-ground >/dev/null # the others have nothing left to purge
+apt-get purge -y -qq icesoc-ground >/dev/null # the other packages have nothing left to purge
 [ "$(stat -c '%U %a' /etc/icesoc/uav1.key)" = "icesoc 600" ] || fail "purge took a key"
 [ "$(ls /etc/icesoc)" = uav1.key ] || fail "purge left settings: $(ls /etc/icesoc)"
 left=$(find /usr /lib /etc/systemd -path '*icesoc-g*' -o -path '*/icesoc/*' -o -name '*xbeeat*' \

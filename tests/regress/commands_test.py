@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""commands_test: what commands do, by make, with each of their variables.
+"""commands_test: tests the effects of commands, started by make, with each of their variables.
 
 Usage: commands_test.py commands_... work-folder build-folder
 """
@@ -63,7 +63,7 @@ check_coverage check_fresh check_tutorial"""
 
 class Cases(Project):
     def user(self, words, *more, **how):
-        """Runs make in the whole tree, where everything is built."""
+        """Runs make in the whole tree, in which everything is built."""
         self.make(*words.split(), *more, build=BUILD, **how)
 
     def test_commands_run(self):
@@ -71,7 +71,7 @@ class Cases(Project):
         write(flight / "flight.jsonl", "{}\n")
         write(flight / "status", "up\n")
         for words, said in (
-            # before a simulator is built for it
+            # refused before a simulator is built for the replay
             (f"run REPLAY={flight} FROM=x", "FROM: expected a number, at least 0 s, got 'x'"),
             (f"run REPLAY={flight} FROM=2 TO=1", "FROM=2.0 TO=1.0: expected FROM before TO"),
             (f"run IMAGE=/none OUT={flight}", "cannot read '/none'"),
@@ -80,7 +80,7 @@ class Cases(Project):
             with self.subTest(words):
                 self.user(words, status=2)
                 self.has(said)
-                # A replay would be of an earlier flight, still in the folder.
+                # A replay would repeat an earlier flight that is still in the folder.
                 self.lacks("Traceback|--help" + ("|REPLAY=" if "IMAGE" in words else ""))
         with open(self.work / "commands", "w+") as commands:
             commands.write("print $pc\nkill\n")
@@ -93,7 +93,7 @@ class Cases(Project):
         self.has("^faults: 1 moments of seeds 3 to 3, 0 failed")
 
     def test_commands_radio(self):
-        """Runs moments of commands that take hours."""
+        """Runs short parts of commands that take hours."""
         # soak and fly both run test_chip_soak, which is a separate test; here only fly runs it.
         os.environ["GTEST_FILTER"] = "-ChipSoak*"
         self.user("soak MINUTES=0.01 FUZZED=1000")
@@ -104,7 +104,7 @@ class Cases(Project):
         self.has("^chip soak: .* simulated")
 
     def entrance(self):
-        """Adds to this project all that commands ask of a build."""
+        """Adds to this project everything that commands need from a build."""
         write("cmake/setup.sh", "#!/bin/sh\n")
         write("ip/fir/fir_test.cpp", "")
         write("tests/bench/figures.py", (TREE / "tests/bench/figures.py").read_text())
@@ -131,7 +131,8 @@ class Cases(Project):
         self.bad("test NAME=b.Bad SEED=3", "value 3 is not 7")
         self.bad("test LABEL=nothing")
         self.good("test SEED=7")
-        self.assertEqual(self.said.count("100% tests passed"), 2)  # again with sanitizers
+        self.assertEqual(self.said.count("100% tests passed"), 2)  # run a second time with
+                                                                   # sanitizers
         self.unchanged_tests_are_left_out()
         write("leak", "")
         self.bad("test SEED=7", "test_s.Sane")
@@ -144,7 +145,8 @@ class Cases(Project):
         self.bad("regress FAILED=1", "^1 tests")
         self.bad("regress KEPT=1", "^1 tests, SEED=2")
         self.good("regress CHANGED=1 NAME=a[.]")
-        # A bench that fails hides no other's figures, and its older figures do not count as new.
+        # If a bench fails, the figures of the others are still written, and its older figures do
+        # not count as new.
         figures = Path("docs/figures.md")
         figures.parent.mkdir()
         trip = "| trip | 20 ms | limit 40, 50.0 % |\n"
@@ -174,7 +176,8 @@ class Cases(Project):
         self.assertFalse(Path("build").exists())
 
     def unchanged_tests_are_left_out(self):
-        """`make test` runs what has not passed with the present inputs: files, seed, packages."""
+        """`make test` runs the tests that have not passed with the current inputs: files, seed,
+        packages."""
         self.good("test SEED=7")
         self.has("^build/main: [0-9]+ tests have passed with the present files and packages; --all",
                  "^build/sanitized: 1 tests have")
@@ -187,7 +190,7 @@ class Cases(Project):
         Path("note").unlink()
 
     def elsewhere(self):
-        """A core outside the tree is passed to one command, and then known to all."""
+        """A core outside the tree is passed to one command; all later commands know it."""
         mine = self.work / "elsewhere/mine"
         write(mine / "mine_test.cpp", "")
         write("utilisation", '#!/bin/sh\necho "utilisation $*"\n')
@@ -215,13 +218,13 @@ class Cases(Project):
     def test_commands_nightly(self):
         """Each step runs even if earlier ones failed, and each failure is reported."""
         self.entrance()
-        write("icesoc", STEPS)  # in place of the commands, which would take hours
+        write("icesoc", STEPS)  # replaces the commands, which would take hours
         os.chmod("icesoc", 0o755)
         edit("tests/room/t.sh", "value $SEED is not 7", "failed with $SEED")
         edit("tests/room/t.sh", '"$SEED" = 7', "! -e ../../../../bad")
         for failing, seeds, status in (("none", 2, 0), ("check_mutants", 2, 2), ("fly", 2, 2),
                                        ("check_fresh", 2, 2), ("a test", 2, 2),
-                                       ("a test", 4, 2)):  # and two that are kept
+                                       ("a test", 4, 2)):  # and two seeds that are stored
             write("done", "")
             write("failing", failing)
             if failing == "a test":
@@ -231,7 +234,7 @@ class Cases(Project):
             self.assertEqual(len(re.findall("^[0-9]* tests, SEED=", self.said, re.M)), seeds)
 
     def test_make(self):
-        """Set-up, downloads, and the needs of a test."""
+        """Set-up, downloads, and the targets that a test needs."""
         work = self.work / "made"
         # User names may contain an apostrophe.
         cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "icesoc"
@@ -258,7 +261,8 @@ class Cases(Project):
                  "--block", "fir")
         self.has("^(ip/fir/)?test_ip_fir$")
         self.assertLess(self.said.count("\n"), 20)
-        # Programs that `make test` runs with sanitizers: one without the label would be missed.
+        # Programs that `make test` runs with sanitizers; a program without the label would be left
+        # out.
         for program in "test_os_cases", "test_link", "test_ground_engine", "test_icec":
             labels, = BUILD.glob(f"tests/sw/*/{program}_labels.cmake")
             self.has("sanitized", file=labels)

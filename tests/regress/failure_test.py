@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""failure_test: the regression tool's report of a failed test: its reason, the changes since it
-passed, its waveform.
+"""failure_test: tests the regression tool's report of a failed test: the reason, the changes since
+the test passed, the waveform.
 
 Usage: failure_test.py case work-folder build-folder
 """
@@ -11,7 +11,7 @@ from pathlib import Path
 from project import BREAK, REGRESS, TREE, Project, append, commit, edit, git, main, write
 from icesoc.regress.failures import reason_of
 
-# A test that misbehaves: its action, and the message about it.
+# Tests that misbehave: the action, and the message about it.
 RUDE = {
     "Hang": ("exec sleep 1000", "^1 x  Timeout"),
     "Loud": ("yes 'a line' | head -c 1000000; echo; echo 'x is 3'; exit 1", "^1 x  x is 3$"),
@@ -24,7 +24,7 @@ RUDE = {
                r"\(in build/main/tests/room\)$"),
     "Writes": ("echo >../../../../written", "^Changed while the tests ran, .*: written$")}
 IDEMPOTENT = "! error: unexpected operation mode. expected Normal, received Idempotent"
-# The reason, and the log in which a tool writes it; {} in the log is the reason.
+# Reasons, each with the log in which a tool writes it; {} in the log stands for the reason.
 REASONS = {
     "busy is true, not false":
         "g.cpp:4: Failure\nValue of: busy\n  Actual: true\nExpected: false\ng.cpp:7: Failure",
@@ -163,7 +163,7 @@ class Cases(Project):
         self.assertEqual(Path("build/regress/history.jsonl").read_text().count("\n"), 2)
 
     def test_blame(self):
-        """One group per bug; the failure nearest to the cause is the first one."""
+        """Failures are grouped by bug; the failure nearest to the cause is the first."""
         self.tests(BLAME.replace("%s", IDEMPOTENT))
         write("hdl/a/broken_proof.vh", "begin\n    assert (full ||\n        !taken);\nend\n")
         self.regress("--name 'test_g|formal|ice'", 1)
@@ -179,25 +179,25 @@ class Cases(Project):
                  f"^wave: {trace}$", file="build/regress/junit.xml")
 
     def test_changed(self):
-        """The changed files of a failed test since it passed: committed or not, new or gone; for a
-        program its sources."""
+        """The files of a failed test that have changed since it passed: committed or not, added or
+        removed; for a program its sources."""
         files = {"hdl/fifo/fifo.v": "a\nb\nc\nd\n", "hdl/old.v": "1\n", "docs/page.md": "1\n",
                  "hdl/fifo/test.c": '#include "n.h"\nint main(void) { return LIMIT; }\n',
                  "hdl/fifo/n.h": "#define LIMIT 0\n"}
         for name, text in files.items():
             write(name, text)
         edit("CMakeLists.txt", "small NONE", "small C")
-        write("other.c", "int main(void) { return 0; }\n")  # of another program
+        write("other.c", "int main(void) { return 0; }\n")  # this file belongs to another program
         self.tests("add_test(NAME test_u.Unit COMMAND test_u)\n" + "".join(
             f"add_executable({name} ${{CMAKE_SOURCE_DIR}}/{source})\n"
             f"add_custom_command(TARGET {name} POST_BUILD BYPRODUCTS {name}.list COMMAND true)\n"
             for name, source in (("test_u", "hdl/fifo/test.c"), ("test_v", "other.c"))))
         self.ask("ninja", "-C", "build/main", "test_u")
         self.regress("--name 'a.One|u.Unit'")
-        write("docs/page.md", "0\n")  # no commit has the tree that was noted
+        write("docs/page.md", "0\n")  # no commit has the tree that was recorded
         commit("two")
         edit("tests/room/t.sh", *BREAK)
-        self.regress("--name b.Bad", 1)  # never passed: files that are not committed
+        self.regress("--name b.Bad", 1)  # the test has never passed: files that are not committed
         self.has("^        changed since the commit; it is not known to have passed: "
                  r"tests/room/t.sh:3 \(1 line\)$")
         write("hdl/fifo/fifo.v", "a\nB\nc\nD\nE\n")
@@ -207,19 +207,20 @@ class Cases(Project):
         commit("three")
         self.regress("--changed --prepare --list --name u.Unit")
         self.has("^Nothing to run")
-        write("hdl/new.v", "int g;\n")  # is not one of its inputs, a header is
+        write("hdl/new.v", "int g;\n")  # this file is not an input of the program, but a header is
         write("hdl/fifo/n.h", "#define LIMIT 3\n")
         self.regress("--changed --prepare --list --name u.Unit")
         self.has("^tests/room/test_u$")
         self.ask("ninja", "-C", "build/main", "test_u")
         self.regress("--name 'a.One|u.Unit' --seed 2", 1)
-        passed = git("rev-parse --short=10 HEAD~2")  # and files that were not committed then
+        passed = git("rev-parse --short=10 HEAD~2")  # and files that were not committed at that
+                                                     # time
         since, one = f"^        changed since it passed at {passed}", r"1 \(1 line\)"
         own = rf"hdl/fifo/n.h:{one}, "
         script = r"tests/room/t.sh:3 \(1 line\)$"
         self.has(f"{since} with SEED=1: {own}hdl/new.v:{one}, hdl/fifo/fifo.v:2 "
                  rf"\(3 lines\), hdl/old.v:{one}, {script}")  # mine first
-        self.has(f"{since} with SEED=1: {own}{script}")  # its program, its folder
+        self.has(f"{since} with SEED=1: {own}{script}")  # the program of the test, and its folder
         self.has("changed: changed since it passed",
                  file="build/regress/junit.xml")
         self.has('"changed":"changed since it passed', file="build/regress/report.html")
@@ -235,8 +236,8 @@ class Cases(Project):
                  ".* tests/room/t.sh")
 
     def test_waves(self):
-        """A test that is next to a core, not below tests/, and a trace that is damaged: the
-        report comes in any case."""
+        """A test next to a core, outside tests/, and a damaged trace: the report is written in any
+        case."""
         join = "testbench/common/join_waves.sh"
         write(join, (TREE / join).read_text())
         write("ip/core/wave.sh", '#!/bin/sh\necho "wrong at clock cycle 5"\n'
@@ -269,8 +270,8 @@ add_custom_target(test_w)
                  file="build/regress/report.html")
 
     def test_vhdl(self):
-        """A test by GHDL: only files that it compiles are blamed, and the first one's instance is
-        the first in the waveform."""
+        """A test by GHDL: only files that it compiles are listed, and the instance of the first one
+        is the first in the waveform."""
         join = "testbench/common/join_waves.sh"
         write(join, (TREE / join).read_text())
         write("cmake/vhdl_test.sh", '#!/bin/sh\n[ ! -e wrong ] && exit\n'
@@ -331,7 +332,7 @@ add_custom_target(test_w)
         left = "build/regress/failures/mission.x-1"
         self.has(f"^--replay fly --out {left}.replay --wave .*mission.x-1.fst --from 1.498500 "
                  "--to 1.500500$", file="asked")
-        self.has("141 corners", file="page")  # it was present before any waveform
+        self.has("141 corners", file="page")  # the value was present before any waveform
         self.ask("fst2vcd", f"{left}.fst")
         self.assertRegex(self.said.replace("\n", " "),
                          "#3 .*sidleTask .*#10 .*0. .*#20 .*1. .*sradioTask .*#33 sidleTask")

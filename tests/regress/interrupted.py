@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""interrupted: ends make regress, make synth and make new-ip at moments drawn from a seed, by
-Ctrl-C (INT to all), TERM or KILL. No process may be left, and the next run must be right.
+"""interrupted: interrupts make regress, make synth and make new-ip at moments drawn from a seed, by
+Ctrl-C (INT to all processes), TERM or KILL. No process may be left, and the next run must give the
+right result.
 
 Usage: interrupted.py source-folder build-folder work-folder moments tool... (new_ip, regress,
 synth)      SEED=1
@@ -16,7 +17,7 @@ import subprocess
 import sys
 import time
 
-LONGEST = 300  # time-out of a hang, s
+LONGEST = 300  # s; after this time a run counts as hanging
 source, build, work = (pathlib.Path(word).resolve() for word in sys.argv[1:4])
 moments, tools = int(sys.argv[4]), sys.argv[5:]
 
@@ -28,7 +29,7 @@ def members(session):
 
 
 def interrupt(command, number, moment, where):
-    """Starts it, and ends it; returns True if it was still running."""
+    """Starts a command and interrupts it; returns True if it was still running."""
     with open(work / "log", "w") as log:
         run = subprocess.Popen(command, cwd=where, stdout=log, stderr=log, start_new_session=True)
         try:
@@ -86,7 +87,7 @@ def main():
         right = result()
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL) * moments:
             moment = draw.uniform(0, longest)
-            shutil.rmtree(work / tool, ignore_errors=True)  # kept by the previous run
+            shutil.rmtree(work / tool, ignore_errors=True)  # result stored by the previous run
             cut = interrupt(command, number, moment, where)
             subprocess.run(command, cwd=where, check=True, stdout=subprocess.DEVNULL,
                            timeout=LONGEST)

@@ -15,11 +15,11 @@ unset FRESH
 cat >tests/t.sh <<'END'
 #!/bin/sh
 own=$1
-mkdir "$own" || exit 1 # it was not emptied
+mkdir "$own" || exit 1 # the folder should have been emptied
 [ ! -e wait ] || { mkfifo "$own/gate" && touch "$own/waits" && read -r _ <"$own/gate"; }
 for f in first second; do [ ! -f $f/b.vh ] || { cat $f/b.vh; break; }; done
 echo "$(ls second | wc -l) names, $(tool), ${PROVE_LIMIT:-no limit}, ${OTHER:-nothing else}, $own"
-ls "$(dirname "$(command -v tool)")" >"$own/tools" # outside of the tree
+ls "$(dirname "$(command -v tool)")" >"$own/tools" # a file outside the tree
 [ ! -e linked ] || { ln -s ../prog "$own/link" && "$own/link" 'by a link'; }
 ! grep -q wrong second/b.vh || exit 3
 END
@@ -29,7 +29,8 @@ echo 'b 1' >second/b.vh
 fail() { echo "kept: $*" >&2 && cat "$work/said" >&2 && exit 1; }
 kept=tools/icesoc/regress/kept.py
 run() { status=0; $kept "$PWD/own" tests/t.sh "$PWD/own" >"$work/said" 2>&1 || status=$?; }
-# reason, words in its output: the result is computed now, and reused the next time
+# computed REASON WORDS: expects that the result is computed now, with these words in its output,
+# and reused the next time
 computed() {
     sleep 0.1 # files just written are not trusted
     run

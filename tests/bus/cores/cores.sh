@@ -104,7 +104,7 @@ offset='//*[local-name()="register"][1]/*[local-name()="addressOffset"]'
 [ "$(xmllint --xpath "string($pages$offset)" "$out/icesoc.ipxact.xml")" = "'h44" ] ||
     fail 'IP-XACT has not the words behind PAGE'
 is PIN_CAMERA_SEEN_O 0xB
-# The identity, and the servant of registers for a core without a servant.
+# The identity of the core; a core without a servant has the common servant for registers.
 has soc_cores.c '"eye"' '{"camera", MAP_SLOT_CAMERA, .*core_camera_start' \
     'core_camera_table\[\] = {MOVER_TABLE}'
 accepted unwired 'mover
@@ -128,7 +128,8 @@ before=$(contract mover)
 [ -n "$before" ] && grep -q "CONTRACTS = {32'h$before, 32'h$(contract \
     eye), 32'h0\{8\}, 32'h$(contract system)};" "$out/soc_cores.vh" ||
     { cat "$out/soc_cores.vh" && fail 'the chip has other hashes than the firmware'; }
-changed() { # sed's command for the mover's description: the hash with it
+changed() { # changed EXPRESSION: the hash after this sed command has changed the description of
+            # mover
     mkdir -p "$work/changed"
     sed "$1" "$data/mover.regs.json" >"$work/changed/mover.regs.json"
     coremap "$out/cores.list" --base "$source/bus/map.regs.json" --core \
@@ -141,7 +142,7 @@ changed() { # sed's command for the mover's description: the hash with it
 added='{"word": 3, "name": "A", "access": "rw", "doc": ""}'
 [ "$(changed "s/\"registers\": /&[$added], \"events\": /")" != "$before" ] ||
     fail 'a register does not change the hash'
-# A servant without a waiting call has neither interrupt nor poll.
+# A servant without a waiting call needs neither interrupt nor polling.
 for f in adder.regs.json adder.v; do cp "$data/$f" "$work"; done
 sed '/^header/a waits = false' "$data/adder.toml" >"$work/adder.toml"
 echo adder >"$work/cores.list"
@@ -151,7 +152,7 @@ coremap "$work/cores.list" --base "$source/bus/map.regs.json" \
 grep -q '^    Hw_Core_interrupt(&core_adder.core);' "$work/soc_cores.c" &&
     ! grep -q 'Demo_Adder_Core_\(interrupt\|poll\)' "$work/soc_cores.c" ||
     fail 'a servant that waits for nothing is asked for its interrupt or poll'
-# Two cores, or a core and the platform, with one name in a generated file.
+# Two cores, or a core and the platform, that would have the same name in a generated file.
 refused "1: error: the platform and core 'rst' both become u_rst" 'led name=rst\n'
 refused "3: error: the platform and core 'fsmc' both become NPI_PORT_FSMC" \
     'led\nadder\nmover name=fsmc\n'
@@ -159,14 +160,14 @@ refused "2: error: core 'a' and core 'a_start' both become core_a_start" \
     'led name=a\nled name=a_start\n'
 refused "2: error: core 'a' and core 'gate_a' both become u_gate_a" \
     'adder name=a gate=on\nled name=gate_a\n'
-# Only a core with idle_o can have a gate; a core with a gate in the list also has it on the board.
+# Only a core with idle_o can have a gate. A gate in the list is also built on the board.
 accepted gates 'adder gate=on\nadder name=other\nled\n'
 has soc_cores.vh 'core_gate #(.GATED(1)) u_gate_adder ($' 'access_i(slot_valid\[2\]),$' \
     '.clk_o(clk_adder)$' '.clk_i(clk_adder)' 'core_gate #(.GATED(GATES)) u_gate_other'
 lacks soc_cores.vh u_gate_led
 has core_pins.ucf '^NET "u_soc/u_gate_adder.g_gate.run" MAXDELAY'
-# A separate clock of a core comes from a pin, from another core, or is made from the chip clock;
-# ISE gets its period, and the crossings.
+# The separate clock of a core comes from a pin, from another core, or is derived from the chip
+# clock. The constraints for ISE contain its period and its crossings.
 accepted clocks 'led
 tuner clock_i=@A9
 tuner name=other clock_i=led.led_o
@@ -214,8 +215,8 @@ described 'registers\[0\].word: expected a whole' \
     '{"block": "b", "doc": "", "registers": [{"word": ""}]}'
 described 'pins\[0\].name: expected' \
     '{"block": "b", "doc": "", "registers": [], "pins": [{"name": "a"}]}'
-# A probe has its signals by name, at any depth, in Verilator and, flattened, in Yosys; the ground
-# gets their names.
+# A probe records signals at any depth by their hierarchical names, in Verilog and after flattening
+# in Yosys. The ground gets these names.
 accepted probe 'adder
 probe signals=u_adder.u_registers.u_wrapper.mask,u_modem.u_timer.clocks:17
 probe name=other signals=u_adder.irq_o\n'

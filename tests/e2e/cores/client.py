@@ -57,11 +57,11 @@ data.properties.setProperty("Ice.Plugin.XBeeAT", plugin)
 data.properties.setProperty("XBeeAT.Clock", status)
 data.properties.setProperty("XBeeAT.Guard", guard)
 data.properties.setProperty("Ground.Endpoints", "xbee-at -d %s" % device)
-data.properties.setProperty("Ice.ACM.Close", "0")  # a netlist takes minutes for a call
+data.properties.setProperty("Ice.ACM.Close", "0")  # with a netlist, a call takes minutes
 with Ice.initialize(data) as ic:
     where = ":xbee-at -d %s -a 0x0001 -t 3000000" % device
-    # A probe records the first core's inputs and outputs; cores.sh compares that with the
-    # simulator's trace.
+    # A probe records the inputs and outputs of the first core; cores.sh compares the recording with
+    # the simulator's trace.
     said = []
     signals = probe.Signals(os.path.join(folder, "build/gen/probes.json"), "probe")
     prober = Probes.ProbePrx.checkedCast(ic.stringToProxy("probe" + where))
@@ -74,7 +74,7 @@ with Ice.initialize(data) as ic:
     while not said and recording.is_alive():
         threading.Event().wait(0.01)
     core = Cores.SampleVerilogPrx.uncheckedCast(ic.stringToProxy("sample_verilog" + where))
-    while recording.is_alive():  # calls without pauses: the trace covers few clocks
+    while recording.is_alive():  # calls without pauses, because the trace covers only a few clocks
         calls = [call for _ in range(3) for call in (core.setOffsetAsync(7), core.addAsync(42))]
         expect("add, recorded", [call.result() for call in calls], 3 * [None, 49])
     print(said)
@@ -94,7 +94,7 @@ with Ice.initialize(data) as ic:
         expect(identity + ".add", core.add(42), -58)
         expect(identity + ".sumTo", core.sumTo(100), 5050)
         fails(Ice.UnknownException, core.sumTo, 0)
-        # While a long call is in progress (it hangs, and is aborted after 100 ms) others are
+        # While a long call is in progress (it hangs, and is aborted after 100 ms), other calls are
         # answered.
         later = core.sumToAsync(2000000000)
         expect(identity + ".add meanwhile", core.add(1), -99)
@@ -116,7 +116,8 @@ with Ice.initialize(data) as ic:
         packet = bytes(i * i * 7 + 31 * i & 0xFF for i in range(length))
         expect("crc32 of %d bytes" % length, crc.crc(packet) & 0xFFFFFFFF, zlib.crc32(packet))
 
-    # The chip is the one that the firmware was built for. (mission.other_chip has another.)
+    # Checks that the chip is the one for which the firmware was built. (The case mission.other_chip
+    # has another chip.)
     vehicle = Hw.ChipPrx.checkedCast(ic.stringToProxy("chip" + where))
     contracts = vehicle.contracts()
     expect("blocks", sorted(c.block for c in contracts), sorted([
@@ -124,7 +125,7 @@ with Ice.initialize(data) as ic:
         "my_lamps", "sample_vhdl", "many", "probe"]))
     expect("contracts", mission.differences(vehicle), [])
 
-    # Third-party cores, with their registers as interface.
+    # Third-party cores, called by their registers.
     port = Hw.RegistersPrx.checkedCast(ic.stringToProxy("port" + where))
     expect("port.wait", port.wait(10000), ["CORE"])  # the simulator's script raises the pin
     expect("port.LEVELS", port.get("LEVELS"), 0x83)
@@ -149,7 +150,7 @@ with Ice.initialize(data) as ic:
     expect("my_lamps", [lamps.get("REG0"), lamps.get("REG1"), lamps.get("REG1")], [0x1234, 1, 2])
     expect("port.wait, still high", waits.result(), ["CORE"])
 
-    # More words than a slot has: behind PAGE.
+    # A core with more words than a slot has; they are accessed through PAGE.
     many = Demo.ManyPrx.checkedCast(ic.stringToProxy("many" + where))
     for seed in (1, 1000003):
         p, q = ([(seed * i * 0x123456789ABCDEF + i & 2**64 - 1) - 2**63 for i in range(n, n + 5)]

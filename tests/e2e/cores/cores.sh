@@ -5,12 +5,13 @@
 set -eu
 source=$1 build=$2 work=$3 chip=$4
 mkdir -p "$work/build"
-# Replaces NAME by fresh/NAME if they differ, so that unchanged files are not built again.
+# fresh NAME: replaces NAME by fresh/NAME if they differ, so that unchanged files are not built
+# again.
 fresh() {
     diff -r "$work/fresh/$1" "$work/$1" >/dev/null 2>&1 ||
         { rm -rf "${work:?}/$1" && mv "$work/fresh/$1" "$work/$1"; }
 }
-# A core of the mapping's tests: its folder for the list.
+# mapped NAME: copies a core of the tests of the mapping into the folder for the list.
 mapped() {
     mkdir -p "$work/fresh/$1"
     printf 'interface = "%s"\nverilog = ["%s"]\n' "$source/tests/slice/hardware/golden/$1.ice" \
@@ -46,7 +47,7 @@ golden=$source/tests/slice/hardware/golden
 folders="$samples/sample_verilog;$samples/sample_vhdl;$work/scaler;$here/servo;$here/crc32"
 folders="$folders;$work/many;$foreign/my_port;$foreign/my_requests;$work/my_lamps"
 mapped scaler # sequences, exceptions and events
-mapped many   # 46 words; a slot has 16
+mapped many   # 46 words, although a slot has only 16
 # A core in VHDL, put into a slot by make new-foreign. GHDL is fetched once.
 lamps=$source/tests/ip/new_foreign/lamps
 logged "$source/tools/python" -m icesoc.cores.new_foreign \
@@ -55,7 +56,7 @@ logged "$source/tools/python" -m icesoc.cores.new_foreign \
     wdata=request_d rdata=q "$lamps.vhd" "${lamps}_types.vhd"
 fresh my_lamps
 [ -e "$work/build/ghdl" ] || ln -s "$build/ghdl" "$work/build/ghdl"
-# CLK_HZ: the servo core counts in every clock, so no clock is skipped.
+# CLK_HZ is low because the servo core counts in every clock, so that no clock is skipped.
 logged cmake -S "$source" -B "$work/build" -G Ninja "-D$chip=ON" -DCLK_HZ=2000000 \
     "-DCORES=$work/cores.list" "-DCORE_FOLDERS=$folders" \
     "-DROOMS=bus;slice;ip;sw;hdl;synth;testbench"
@@ -74,8 +75,8 @@ logged "$simulator" --pins "$work/pins" --size 96x64 --image /usr/share/xplanet/
     "$samples/sample_verilog/sample_verilog.ice" "$golden/scaler.ice" "$golden/many.ice" \
     "$here/servo/servo.ice" "$here/crc32/crc32.ice" "$samples/sample_vhdl/sample_vhdl.ice" \
     "$source/sw/hw/registers/Registers.ice" "$source/ip/probe/Probe.ice"
-# Pulses of 1.5 ms, 20 ms apart, at any clock frequency; the fault pin ended at most one of them,
-# and moved the later ones.
+# Checks that pulses last 1.5 ms and are 20 ms apart, at any clock frequency. The fault pin has
+# ended at most one of them, and has moved the later ones.
 awk '$2 != "servo.pwm_o" { next }
      $3 == 4 { frames += up && $1 - last > 19.999 && $1 - last < 20.001; last = up = $1 }
      $3 == 0 && up { n += $1 - up > 1.499 && $1 - up < 1.501; all++ }
@@ -84,9 +85,9 @@ awk '$2 != "servo.pwm_o" { next }
 prints() { grep -Eq "$1" "$work/log" || { cat "$work/log" && echo "not said: $1" && exit 1; }; }
 prints 'cores: all as expected'
 
-# The simulator names a core that keeps the chip from being quiet: two never rest. The probe's
-# capture by radio, read by GTKWave's tools, equals the simulator's trace of the replayed flight,
-# over the captured time.
+# The simulator lists the cores that prevent clocks from being skipped: two are never idle. The
+# probe's capture by radio, read by GTKWave's tools, equals the simulator's trace of the replayed
+# flight, over the captured time.
 traced() {
     prints "'(my_requests|servo)' changes in nearly every clock"
     vcd2fst "$work/probe.vcd" "$work/probe.fst" >"$work/log"
@@ -101,8 +102,8 @@ traced() {
     fst2vcd "$work/trace.fst" >"$work/trace.vcd"
     "$source/tools/python" "$here/same.py" "$work/captured.vcd" "$work/trace.vcd" 500
 }
-[ "$chip" = NETLIST ] || traced # a netlist has other names
-# Its inputs, given to the core alone, bring forth its outputs.
+[ "$chip" = NETLIST ] || traced # the names in a netlist differ
+# The captured inputs, applied to the core alone, produce the captured outputs.
 "$source/tools/python" -m icesoc.cores.replay "$work/probe.vcd" \
     --scope u_sample_verilog --top sample_verilog \
     --out "$work/replay" -I "$work/build/gen" -I "$source/bus" \

@@ -10,7 +10,7 @@ from icesoc.cores.replay import read_vcd
 
 
 def clocks(moments, keys, clock_of):
-    """Returns the values of these keys' signals since a clock, at each moment."""
+    """Returns the values of the signals with these keys, from a clock on, at each moment."""
     values, found = dict.fromkeys(keys), {}
     for time, changes in moments:
         values = {key: int(changes[key], 2) if key in changes and "x" not in changes[key] else old

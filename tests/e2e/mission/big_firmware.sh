@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# big_firmware: fills this tree's firmware up to a size with code of newlib, which compresses like
-# other code.
+# big_firmware: enlarges the firmware of this tree to a given size with code of newlib, which
+# compresses like other code.
 # Usage: big_firmware.sh BUILD-FOLDER OUT.elf BYTES
 set -eu
 build=$(realpath "$1") out=$2 bytes=$3

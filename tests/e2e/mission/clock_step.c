@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * clock_step: preloaded, it makes the clock of the day step with each second: an hour forward, then
- * two back. Programs that wait or measure by it fail.
+ * clock_step: a library that a program preloads. It makes the time of day step each second: one
+ * hour forward, then two hours back. Programs that use the time of day to wait or to measure then
+ * fail.
  */
 
 #define _GNU_SOURCE

@@ -26,13 +26,14 @@ from icesoc.util.process import children
 
 STATUS = record.of_tree("testbench/status/sim_status.toml")
 IMAGE = "/usr/share/xplanet/images/earth.jpg"
-LONGEST = 240.0  # seconds of a mission on a busy machine
-REAL = 0.3  # seconds per moment, before simulated time starts
-LAST = 2.0  # moment; its share of this is the quantity of faults that have no moment
+LONGEST = 240.0  # s; time limit of a mission on a busy machine
+REAL = 0.3  # s of each moment that pass before simulated time starts
+LAST = 2.0  # latest moment; for faults without a moment, the moment's share of this sets the size
+            # of the fault
 
 
 def proc(pid, name):
-    """Returns the text of a process' file; "": it has ended."""
+    """Returns the text of a file of a process in /proc; "" if the process has ended."""
     try:
         return Path(f"/proc/{pid}/{name}").read_text()
     except (FileNotFoundError, ProcessLookupError):
@@ -52,12 +53,12 @@ def lives(pid):
 
 
 class Mission:
-    """A mission that runs, and its processes by name."""
+    """A mission in progress, and its processes by name."""
     NAMES = {"ground": "clients/mission.py", "simulator": "sim/icesoc-sim",
              "page": "icesoc.web.live(?!.* --try)", "page's trial": "icesoc.web.live.* --try"}
 
     def __init__(self, source, build, out, prefix=(), options=(), words=None):
-        """words: command instead of `./icesoc run` with its options."""
+        """words: the command, instead of `./icesoc run` with its options."""
         self.out, self.source, self.build = out, source, build
         os.makedirs(out, exist_ok=True)
         self.log = open(out + ".log", "w+")
@@ -66,13 +67,14 @@ class Mission:
         self.run = subprocess.Popen(
             [*(word.replace("$0", out) for word in prefix), *(words(self) if words else run)],
             stdout=self.log, stderr=subprocess.STDOUT, start_new_session=True,
-            env={**os.environ, "XDG_CONFIG_HOME": build + "/config"})  # keys of the tests' own
+            env={**os.environ, "XDG_CONFIG_HOME": build + "/config"})  # keys used only by the tests
 
     def all(self):
         return [self.run.pid] + descendants(self.run.pid)
 
     def find(self, name):
-        """Returns the process of that name when it exists; None if the mission ended first."""
+        """Returns the process of that name as soon as it exists; None if the mission ended
+        first."""
         while name != "run" and self.run.poll() is None:
             for pid in descendants(self.run.pid):
                 command = command_of(pid)
@@ -82,13 +84,13 @@ class Mission:
         return self.run.pid if name == "run" else None
 
     def pass_time(self, moment):
-        """Waits for that moment of the flight, or for its end."""
+        """Waits until that moment of the flight, or until its end."""
         time.sleep(min(moment, REAL))
         while self.run.poll() is None and self.simulated() < moment - REAL:
             time.sleep(0.002)
 
     def simulated(self):
-        """Returns simulated seconds, from the simulator's counters."""
+        """Returns the simulated time in s, from the simulator's counters."""
         try:
             return STATUS.unpack(Path(self.out, "status").read_bytes(), "ns")["ns"] / 1e9
         except (FileNotFoundError, struct.error):
@@ -144,7 +146,8 @@ def is_whole(out):
 
 
 def caught(start, name, moment):
-    """Returns a mission at a moment, and the process of that name; None if it is too late."""
+    """Starts a mission; returns it at a moment with the process of that name; None if the flight
+    ended before."""
     m = start()
     pid = m.find(name)
     m.pass_time(moment)
@@ -157,7 +160,7 @@ def goes_on(m, otherwise):
 
 
 def without_page(m):
-    """The page is only a view."""
+    """Kills the page server; the page is only a view, so the mission continues."""
     said = goes_on(m, "the mission needs the page")
     expect(re.search("page.*signal 9", m.text()), m, "no message about the end of the page")
     return said
@@ -213,7 +216,8 @@ def stopped(start, name, moment, deaths):
 
 
 def disk_full(start, name, moment, deaths):
-    """The folder is a separate file system with few blocks; its files are copied at the end."""
+    """The output folder is a separate file system with few blocks; its files are copied at the
+    end."""
     size = 4096 * int(1 + 7 * moment / LAST)
     script = (f"mount -t tmpfs -o size={size} none $0 || exit 9; status=0; \"$@\" || status=$?; "
               "cp -a $0 $0.kept; exit $status")
@@ -239,13 +243,13 @@ def port_taken(start, name, moment, deaths):
 
 
 def no_memory(start, name, moment, deaths):
-    """Limits each process to 8 to 800 MB of addresses."""
+    """Limits the address space of each process to 8 to 800 MB."""
     m = start(prefix=["prlimit", "--as=%d" % (8e6 * 100**(moment / LAST))])
     status = m.wait(LONGEST)
     expect(status is not None, m, "it hangs")
     expect(status != 0 or m.succeeded(), m, "it reports success")
     expect(status == 0 or m.text().strip(), m, "it fails without a word")
-    # An interpreter that cannot even start reports this itself, with a traceback.
+    # If the interpreter cannot even start, it reports this itself with a traceback.
     expect("Fatal Python error: init" in m.text() or
            not re.search("bad_alloc|Traceback", m.text()), m, "not a clear message")
     expect(is_whole(m.out), m, "a file is cut short")
@@ -253,7 +257,7 @@ def no_memory(start, name, moment, deaths):
 
 
 def clock_step(start, name, moment, deaths):
-    """Steps the time of day one hour forward and two back, repeatedly."""
+    """Steps the time of day one hour forward and two hours back, repeatedly."""
     m = start(prefix=["env", "LD_PRELOAD=" + CLOCK_STEP])
     said = goes_on(m, "it lives by the clock of the day")
     expect("cannot be preloaded" not in m.text(), m, "no clock was stepped")
@@ -271,11 +275,11 @@ def loss(start, name, moment, deaths):
 
 
 def fleet(start, name, moment, deaths):
-    """Nothing is lost, doubled, or another vehicle's, and who is not concerned notices nothing. A
-    ground with the first one's address and key has all vehicles until it ends, and then the first
-    one has them again."""
+    """No reply may be lost, duplicated, or from another vehicle, and programs that a fault does not
+    concern must not notice it. A ground station with the address and key of the first one takes
+    over all vehicles until it ends; then the first one has them again."""
     trouble, least, most = TROUBLE[name]
-    begin = 7 + moment  # all have sessions, also with the second ground
+    begin = 7 + moment  # by then all vehicles have sessions, also with the second ground station
     end = begin + least + (most - least) * moment / LAST
     m = start(words=lambda m: words_of(m, IMAGE, name, begin, end))
     expect(m.wait(5 * LONGEST) == 0, m, "a vehicle does not answer at the end, or it hangs")
@@ -305,7 +309,8 @@ FAULTS = [(killed, n) for n in ("ground", "simulator", "run", "page")] + \
 
 
 def undergo(args, fault, name, seed, number, moment):
-    """Tries one fault at one moment; true if the mission met the table."""
+    """Applies one fault at one moment; returns whether the mission had the consequences in the
+    table."""
     title = (fault.__name__ + " " + name).strip()
     missions = []
 

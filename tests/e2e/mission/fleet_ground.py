@@ -1,15 +1,15 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""fleet_ground: calls the vision cores of several vehicles again and again, and from a second
-ground their states, until a simulated time; then each has to answer once more. One call to all
-vehicles starts the first frame of each.
+"""fleet_ground: calls the vision cores of several vehicles repeatedly and, from a second ground
+station, asks for their states, until a given simulated time. Then each vehicle has to answer once
+more. At the beginning, one call to all vehicles starts the first frame of each.
 
-    fleet_ground.py '{"out": FOLDER, ...}'      words_of has all of them
+    fleet_ground.py '{"out": FOLDER, ...}'      words_of writes all options
 
-FOLDER/fleet.json lists for each how many frames were started, answered and reported, and what the
-second ground saw when. With "new_key" the vehicle "changed" is given its next key first, and has to
-have it alone at the end. With "rival" the second ground comes then, and has the first one's address
-and key."""
+FOLDER/fleet.json lists for each vehicle how many frames were started, answered and reported, and
+which states the second ground station received at what time. With "new_key", the vehicle "changed"
+gets its next key first, and must accept only this key at the end. With "rival", the second ground
+station starts at that time, with the address and key of the first one."""
 
 import json
 import os
@@ -26,12 +26,12 @@ import mission
 import plugged
 
 THRESHOLD = 40
-REST = 0.2  # simulated seconds between two frames
+REST = 0.2  # s; simulated time between two frames
 
 
-# Name of each fault of a fleet, its option of the simulator ("": a program causes it), and the
-# seconds that it lasts at least and at most. Vehicle 1 runs the firmware's host build, the others
-# run the ARM binary.
+# Faults of a fleet: name, option of the simulator ("": a program causes the fault), and shortest
+# and longest duration in s. Vehicle 1 runs the host build of the firmware, the others run the ARM
+# binary.
 TROUBLE = {"vehicle away": ("away:2", 0.5, 3), "vehicle gone": ("away:3", 11, 13),
            "twin": ("twin:2", 1, 3), "babbler": ("babble:1", 1, 3),
            "other ground": ("away:0", 2, 4), "new key": ("away:2", 11, 13),
@@ -40,8 +40,8 @@ VEHICLES, NEXT = 3, "7" * 32
 
 
 def words_of(m, image, name, begin, end):
-    """Returns the simulator's command, with several vehicles that are called all the time, each
-    under its own key."""
+    """Returns the command of the simulator for several vehicles that are called continuously, each
+    with its own key."""
     keys, isRival = {}, name == "rival ground"
     for file, digits in (("fleet", "123"), ("observer", "456")):
         lines = [f"0x{at:04x} {digit * 32}" for at, digit in enumerate(digits, 1)]
@@ -71,7 +71,8 @@ class Caller(threading.Thread):
     def __init__(self, ground, address):
         super().__init__(daemon=True)
         self.ground, self.address = ground, address
-        self.started, self.answered, self.wrong = 1, 0, 0  # the call to all started one
+        self.started, self.answered, self.wrong = 1, 0, 0  # `started` begins with 1: the call to
+                                                           # all vehicles started one frame
         self.reported, self.failure = [], None
         args = ground.args
         picture = f"{args.out}/before{address if address > 1 else ''}.png"
@@ -146,7 +147,8 @@ class Ground:
             f"{name}:xbee-at -d {self.args.device} -a 0x{address:04x} -t 120000")
 
     def observe(self):
-        """Asks each vehicle for its state, one after the other, from the second ground."""
+        """Asks the vehicles for their states, one after the other, from the second ground
+        station."""
         plugged.use_second_clock()
         observer = self.communicator(self.args.device2, self.args.key2)
         source = 0x0000 if self.args.rival else 0x00f0
@@ -165,8 +167,8 @@ class Ground:
         observer.destroy()
 
     def call_all(self):
-        """Starts a frame in each vehicle, once each has a session. They are on the air when their
-        communicator has ended."""
+        """Starts a frame in each vehicle, once each vehicle has a session. The calls have been sent
+        when their communicator has ended."""
         for address in range(1, self.args.vehicles + 1):
             self.proxy("uav", address).ice_ping()
         ic = self.communicator(self.args.device, self.args.key)
@@ -177,8 +179,8 @@ class Ground:
         ic.destroy()
 
     def keep_new_key(self):
-        """Calls the changed vehicle with its new key only, as change_key.py does; then it has only
-        this key. Returns the error, or an empty text."""
+        """Calls the changed vehicle with its new key, as change_key.py does; after that the vehicle
+        accepts only this key. Returns the error, or an empty text."""
         lines = Path(self.args.key).read_text().split("\n")
         lines[self.args.changed - 1] = f"0x{self.args.changed:04x} {self.args.new_key}"
         Path(self.args.key).write_text("\n".join(lines))

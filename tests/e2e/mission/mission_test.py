@@ -21,8 +21,8 @@ from script import TREE, Script, fresh, main, write
 
 CASE, BUILD = sys.argv[1], Path(sys.argv[3]).resolve()
 IMAGE = Path("/usr/share/xplanet/images/earth.jpg")
-# The modem's default guard time of a second passes four times: only cases that test it, and
-# vehicles with a flash memory, use it.
+# ms; the modem's default guard time of 1 s passes four times, so only cases that test it, and
+# vehicles with a flash memory, use it
 GUARD = 1000 if CASE in ("plain", "stopped", "update") else 20
 SIMULATOR, PING = BUILD / "testbench/sim/icesoc-sim", BUILD / "sw/ground/ground_ping"
 CLIENTS = TREE / "sw/ground/clients"
@@ -46,7 +46,7 @@ class Cases(Script):
                 "--size", "96x64", "--guard", str(GUARD), "--image", image, *options)
 
     def fly(self, *options, out=None):
-        """A mission that succeeds."""
+        """Flies a mission that succeeds."""
         self.ask(*self.words(*options, out=out))
         self.flew(out or self.out)
 
@@ -56,7 +56,7 @@ class Cases(Script):
         self.has("isAlive", file=folder / "report.md")
 
     def fails(self, said, *words):
-        """A command fails, with this text and no Python traceback."""
+        """Runs a command that fails with this text and without a Python traceback."""
         self.ask(*words, status=None)
         self.has(said)
         self.lacks("Traceback")
@@ -65,7 +65,7 @@ class Cases(Script):
         self.fails(said, *self.words(*options, **how))
 
     def simulator(self, *words, options=()):
-        """A vehicle in the simulator, and a program of the ground."""
+        """Runs a vehicle in the simulator, and a program of the ground station."""
         return (SIMULATOR, "--image", IMAGE, "--size", "96x64", "--out", self.out, "--guard",
                 str(GUARD), *options, "--", *words)
 
@@ -78,11 +78,11 @@ class Cases(Script):
         self.has(expected)
 
     def test_plain(self):
-        """Secure by default; only the user may read the recording and the key."""
+        """The link is secure by default; only the user may read the recording and the key."""
         self.make("run", f"IMAGE={IMAGE}", "SIZE=96x64", f"OUT={self.out}", build=BUILD)
         self.flew(self.out)
         self.has("121 corners leave much of the core untried: make ip-test IP=vision")
-        # It waits for the modem's set-up first, then for the vehicle.
+        # The ground waits first for the modem's set-up, then for the vehicle.
         steps = re.findall("modem ready on .* after [0-9]* ms|link connecting|link up, secure|"
                            "the UAV has .* s to answer", self.said)
         self.assertEqual([step.split()[0] for step in steps][:4], ["the", "modem", "link", "link"])
@@ -91,13 +91,14 @@ class Cases(Script):
             self.assertEqual(file.stat().st_mode & 0o777, 0o600)
 
     def test_open(self):
-        """Without encryption, by an option; of a picture of noise, with some 29,700 corners."""
+        """A flight without encryption, by an option; its picture is noise, with some 29,700
+        corners."""
         Path("noise.pgm").write_bytes(b"P5 640 480 255\n" + random.Random(1).randbytes(307200))
         self.fly("--open", "--image", self.out / "noise.pgm", "--size", "640x480")
         self.has('"key":""', file="flight.jsonl")
 
     def test_keys(self):
-        """Messages of the ground, the vehicle and their start about unfit keys."""
+        """Messages about unsuitable keys, from the ground, from the vehicle, and at their start."""
         os.umask(0o077)
         for name, text in ("a", KEY), ("b", KEY[:-1] + "e"), ("short", KEY[:10]):
             write(f"{name}.key", text + "\n")
@@ -106,7 +107,7 @@ class Cases(Script):
         for name, said in (("short", "32 hexadecimal digits"), ("others", "chmod 600"),
                            ("no", "create one with ./icesoc key '.*no.key'")):
             self.refused(said, "--key", f"{name}.key")
-        # No session with this vehicle begins with another key, or without one.
+        # The vehicle accepts no session with another key, or without one.
         for key in self.out / "b.key", "":
             self.simulate(PING, DEVICE + "-g {guard} -t 3000", "1", f"--XBeeAT.KeyFile={key}",
                           "--Ice.RetryIntervals=-1", options=("--key", "a.key"), status=None)
@@ -116,7 +117,8 @@ class Cases(Script):
                        f"--XBeeAT.KeyFile={self.out}/{name}.key")
 
     def test_call(self):
-        """Calls from the shell by the modem, with the vehicle's key and with another one."""
+        """Calls from the command line through the modem, with the vehicle's key and with another
+        key."""
         os.umask(0o077)
         for name, text in ("a", KEY), ("b", KEY[:-1] + "e"):
             write(f"{name}.key", text + "\n")
@@ -129,11 +131,11 @@ class Cases(Script):
         self.has("no answer from the vehicle 0x0001 at .* within 3 s: is it on, in reach")
 
     def test_loss(self):
-        """Replays the recording, as a user does to find a cause."""
+        """A flight with packet loss; its recording is replayed, as a user does to find a cause."""
         self.fly("--loss", "0.1", "--seed", os.environ.get("SEED", "1"))
         self.replay(self.out, "--from", "0.5", "--to", "0.51")
-        # Recordings cut short by a kill, altered, of another file, repeated into their own folder;
-        # waveforms need another build.
+        # Recordings that are cut short by a kill, altered, of another file, or replayed into their
+        # own folder are refused; waveforms need another build.
         flight = Path("flight.jsonl").read_text()
         for folder, text in (("cut", flight[:len(flight) // 2]),
                              ("other", flight.replace('"up":"2b', '"up":"2c'))):
@@ -150,7 +152,7 @@ class Cases(Script):
         self.fails("writes no waveforms", *replay, self.out, "--wave", "wave.fst")
 
     def test_cores(self):
-        """Every core that has a part in a mission."""
+        """A mission with every core that has a part in missions."""
         listed = re.findall(r"^\w+", (TREE / "ip/cores.list").read_text(), re.M)
         parts = [core for core in listed if (TREE / f"ip/{core}/ground.py").exists()]
         self.fly("--cores", " ".join(parts))
@@ -162,8 +164,8 @@ class Cases(Script):
         self.has(r"camera.capture\(96, 64\)", file="report.md")
 
     def test_m3(self):
-        """The ARM binary; its replay shows the program's tasks in the 2 ms around the first event
-        of a core."""
+        """A flight of the ARM binary; its replay shows the tasks of the program in the 2 ms around
+        the first event of a core."""
         self.fly("--cpu", "m3")
         self.has('"task":"UAV_radioTask"', file="events.jsonl")
         first = re.search(r'\{"events":\d*,"ns":(\d*)\d,"slot":[2-9]\}',
@@ -177,7 +179,7 @@ class Cases(Script):
                  file=f"{wave}.program.vcd")
 
     def patched(self, name, symbol, offset, value):
-        """The firmware with other bytes at a symbol."""
+        """Writes a copy of the firmware with other bytes at a symbol."""
         shutil.copy(FIRMWARE, name)
         there = f"{{unsigned char[{len(value)}]}}((char*)&{symbol} + {offset})"
         self.ask("gdb-multiarch", "-nx", "-batch", "--write", name, "-ex",
@@ -185,8 +187,8 @@ class Cases(Script):
         self.ask(BUILD / "sw/update/pack_update", "stamp", name)
 
     def test_other_chip(self):
-        """Firmware built for other registers of the vision core: it does not serve the core and
-        reports the reason to the ground."""
+        """If the firmware was built for other registers of the vision core, it does not serve the
+        core and reports the reason to the ground."""
         lines = (BUILD / "gen/soc_cores.c").read_text().split("hw_contracts[")[1].split("\n")[1:]
         row = 1 + next(n for n, line in enumerate(lines) if '"vision"' in line)
         self.patched("other.elf", "hw_contracts", 20 * row - 4, b"\xff" * 4)  # last word of a row
@@ -203,7 +205,8 @@ class Cases(Script):
         self.lacks("Traceback")
 
     def test_update(self):
-        """New firmware: a wrong file, a vehicle with another key, a loss of power during it."""
+        """Updates of the firmware: a wrong file, a vehicle with another key, a loss of power during
+        the update."""
         self.update(TREE / "Makefile", "not a 32-bit ARM ELF file", status=None)
         flash = Path("flash.bin")
         self.pack(*VEHICLE, "other.key", flash)
@@ -228,7 +231,7 @@ class Cases(Script):
         self.bitstreams(stored)
 
     def a_stolen_key(self, flash, stored):
-        """Firmware that the second key has signed, then a list without the first."""
+        """Sends firmware signed with the second key, then a list of keys without the first."""
         signing = self.keys / "spare.key"
         key = TREE / "icesoc", "key", "--built", "--build", BUILD
         self.ask(*key, signing, "--signing")
@@ -244,8 +247,8 @@ class Cases(Script):
         self.update(FIRMWARE, "not signed with this vehicle's keys", status=None)
 
     def big_and_broken(self, flash):
-        """256 KiB into three full sectors, within 30 s of air; firmware that crashes at its start,
-        from which the vehicle returns to the one before by itself."""
+        """Sends 256 KiB, which fill three sectors, within 30 s of air time; then firmware that
+        crashes at its start, after which the vehicle returns to the previous firmware by itself."""
         self.ask(TREE / "tests/e2e/mission/big_firmware.sh", BUILD, self.out / "big.elf", "262144")
         self.pack(*VEHICLE, self.keys / "update.key", flash)
         with open(flash, "r+b") as file:
@@ -259,8 +262,8 @@ class Cases(Script):
                     "2 software, 0 watchdog", status=None)
 
     def bitstreams(self, stored):
-        """No bitstream at all, one that the FPGA refuses, one that is never confirmed, and one of
-        full size."""
+        """The FPGA's flash has no bitstream, one that the FPGA refuses, one that is never
+        confirmed, and one of full size."""
         self.update(BUILD / "firmware/uav.bin", "has a sync word, AA 99 55 66", status=None)
         self.ask(STAND_IN, "new.bin", "2", "10000")
         damaged = bytearray(Path("new.bin").read_bytes())
@@ -276,9 +279,9 @@ class Cases(Script):
             self.update(bits, "runs and is confirmed")
 
     def test_slow(self):
-        """A machine that is four times too slow: the ground uses the clock of the simulator, so the
+        """The machine is four times too slow: the ground follows the simulator's clock, so the
         modem answers in the usual time."""
-        self.fly()  # to get its flight.json
+        self.fly()  # writes the flight.json used below
         Path("after.png").unlink()
         self.ask(SIMULATOR, "--flight", "flight.json", "--speed", "0.25", "--", "/usr/bin/python3",
                  CLIENTS / "mission.py", "flight.json", "--device", "{device}", "--frame",
@@ -288,7 +291,7 @@ class Cases(Script):
 
     @contextlib.contextmanager
     def until(self, said, *words):
-        """A process that has said this."""
+        """Starts a process and returns it as soon as it has printed this text."""
         with open("log", "w") as log:
             process = subprocess.Popen(words, stdout=log, stderr=log)
         try:
@@ -313,8 +316,9 @@ class Cases(Script):
         self.assertLess(float(seconds[1]), 5)
 
     def test_encrypted(self):
-        """Both modems with the same AES key: the controller sets one, the endpoint's -k the other.
-        By the C++11 library of the plugin, a C++ client, a proxy that goes through its string."""
+        """Both modems have the same AES key: the controller sets one, the endpoint's -k the other.
+        Uses the C++11 library of the plugin, a C++ client, and a proxy that is converted to a
+        string and back."""
         key = "00112233445566778899AABBCCDDEEFF"
         self.simulate(PING, f"{DEVICE}-k {key} -p 2 -g {{guard}} -t 300000", "3",
                       options=("--modem-key", key))
@@ -322,7 +326,7 @@ class Cases(Script):
         self.lacks(key)
 
     def test_new_key(self):
-        """A key is replaced over the link, and the old one then opens nothing."""
+        """A key is replaced over the link; the old key then opens no session."""
         os.umask(0o077)
         write("the.key", f"0x0001 {KEY}\n")
         self.simulate("/usr/bin/python3", CLIENTS / "change_key.py", "--device", "{device}",
@@ -334,12 +338,12 @@ class Cases(Script):
         self.lacks("000102030405", "the.key")
 
     def test_gateway(self):
-        """Two stock clients at once, through TCP."""
+        """Two clients of stock Ice at once, through TCP."""
         self.simulate(TREE / "tests/e2e/mission/gateway.sh", BUILD, "{device}", "{guard}", self.out)
 
     def test_wire(self):
-        """A wire in place of modems: on the Cortex-M3, again from its recording, and behind the
-        gateway, with the firmware's host build."""
+        """A cable replaces the modems: with the Cortex-M3, again from the recording, and through
+        the gateway with the host build of the firmware."""
         self.fly("--wire", "--cpu", "m3")
         self.replay(self.out)
         self.has(" 0 packets on the air")
@@ -348,8 +352,9 @@ class Cases(Script):
         self.refused("without modems and air: leave out --loss", "--wire", "--loss", "0.1")
 
     def test_fleet(self):
-        """Four vehicles at one modem, the first by the firmware's host build; then again. The first
-        asks the second, and informs its station."""
+        """Four vehicles at one modem, the first with the host build of the firmware; then the
+        flight is replayed. The first vehicle asks the second one, and informs its ground
+        station."""
         vehicles = 1, 2, 3, 4
         Path("fleet.key").write_text("".join(f"0x000{at} {str(at) * 32}\n" for at in vehicles))
         os.chmod("fleet.key", 0o600)
@@ -379,8 +384,8 @@ class Cases(Script):
         self.assertFalse(hit.exists())
 
     def test_mistakes(self):
-        """A refused start changes nothing in the folder. Neither picture, description, port nor
-        modem are what they should be; the last two without a simulator."""
+        """A refused start changes nothing in the folder. Picture, description, port and modem are
+        all wrong in turn; the last two without a simulator."""
         write("mine/report.md", "mine\n")
         shutil.copy("mine/report.md", ".")
         os.symlink(self.out / "mine/report.md", "calls.jsonl")
@@ -400,7 +405,7 @@ class Cases(Script):
         write("flight.json", json.dumps(flight))
         self.fails("'flight.json' is not a flight: the key 'live' is missing", *client, "none")
         write("flight.json", json.dumps({**flight, "live": False}))
-        _, silent = pty.openpty()  # held only by this test
+        _, silent = pty.openpty()  # a port that only this test has open
         for device, said in (("/dev/no-such-port", "cannot open serial port '/dev/no-such-port'"),
                              (os.ttyname(silent), "no modem answers on")):
             self.fails(said, *client, device)
@@ -408,15 +413,15 @@ class Cases(Script):
     def test_interrupted(self):
         with self.until("setting the ground", *self.words()) as run:
             self.refused("another flight is under way")
-            # The simulator; Ctrl-C would reach all processes.
+            # Interrupts only the simulator; Ctrl-C would reach all processes.
             self.ask("pkill", "-INT", "-f", f"icesoc-sim.*{self.out}")
             self.assertEqual(run.wait(), 130, Path("log").read_text())
-        # The command that it prints shows its end.
+        # The command that the failed mission prints shows the end of the flight.
         span = re.search(f"^Its end as a waveform: make run REPLAY='{self.out}' "
                          r"FROM=([\d.]+) TO=([\d.]+)$", Path("log").read_text(), re.M)
         self.replay(self.out, "--from", span[1], "--to", span[2],
                     expected="the recording ends here|bit by bit")
-        self.ask("pgrep", "-f", f"mission.py.*{self.out}", status=1)  # no ground station runs
+        self.ask("pgrep", "-f", f"mission.py.*{self.out}", status=1)  # the ground station has ended
 
 
 main(Cases)

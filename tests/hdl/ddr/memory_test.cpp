@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// memory_test: the memory controller with random traffic from all ports, compared with a reference
-// memory; and a port before the calibration.
+// memory_test: compares the memory controller with a reference memory under random traffic from all
+// ports; also tests a port before the calibration has ended.
 
 #include "VMemoryMcb2.h"
 #include "VMemoryMcb3.h"
@@ -22,7 +22,7 @@
 
 namespace {
 
-// A controller with its number of ports; bits: ADDR_WIDTH.
+// A controller with `count` ports; bits: ADDR_WIDTH.
 template <class Module, unsigned count, unsigned bits = 27> struct Kind {
     static constexpr unsigned ports = count, width = bits;
     using Bench = MemoryBench<Module, count>;

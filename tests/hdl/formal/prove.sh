@@ -22,7 +22,7 @@
 set -eu
 here=$(dirname "$(readlink -f "$0")")
 module=$1 depth=$2 source=$3 work=$4 parameters=${5:-}
-limit=${PROVE_SECONDS:-300} # CPU seconds; a proof that does not end is an error
+limit=${PROVE_SECONDS:-300} # CPU seconds; a proof that takes longer is an error
 mkdir -p "$work"
 cd "$work"
 rm -f ./*.aig ./*.map ./*.aiw ./*.vcd
@@ -48,7 +48,7 @@ read=${PROVE_READ:-}
 [ -z "${PROVE_CORE:-}" ] || {
     core=${PROVE_CORE%% *}
     own=${PROVE_CORE#* } # its files
-    rules=$source/ip/$core/idle_rules.vh # rules of a core in VHDL
+    rules=$source/ip/$core/idle_rules.vh # invariants of a core in VHDL
     read="-DCORE=$core $own $source/hdl/ddr/npi_stream.v"
     # shellcheck disable=SC2086
     ! grep -q 'memory_ports\|npi_addr_o' $own || read="-DMEMORY $read"
@@ -59,9 +59,9 @@ flat=''
     flat="script $PROVE_SCRIPT"
     cp "$here/idle_registers.v" .
 }
-# -nosdff -nodffe: AIGER has plain flip-flops only. The module's outputs are dropped: abc would take
-# them for properties. What became undefined (a flip-flop without a clock) is free: newer AIGER
-# backends refuse it.
+# -nosdff -nodffe: AIGER has only plain flip-flops. The outputs of the module are removed, because
+# abc would treat them as properties. Undefined values, such as those of a flip-flop without a
+# clock, become unconstrained, because newer AIGER backends refuse them.
 cat >gates.ys <<'END'
 memory_map; opt -full; setundef -anyseq; techmap; opt -fast -nosdff -nodffe
 dfflegalize -cell $_DFF_P_ 01; delete -output w:*
@@ -102,7 +102,7 @@ techmap -map cover.v t:\$cover
 simplemap
 $(echo $aiger) cover.map cover.aig
 END
-cat >cover.v <<'END' # a cover as an assertion that must fail
+cat >cover.v <<'END' # a cover statement becomes an assertion that must fail
 module \$cover (input A, input EN);
     \$assert _TECHMAP_REPLACE_ (.A(~A), .EN(EN));
 endmodule
@@ -124,7 +124,7 @@ failed() {
     echo "$module: $2" >&2
     exit 1
 }
-replay() { # abc's counterexample, by smtbmc for names and a waveform
+replay() { # replay: lets smtbmc replay abc's counterexample, which gives names and a waveform
     awk -v n="$(head -1 assert.aig | cut -d' ' -f3)" 'NR == 1 { print "1" }
         { print NR == 1 ? $0 : substr($0, 1, n) }' assert.aiw >replay.aiw 2>/dev/null || true
     timeout 100 yosys-smtbmc -s z3 --unroll --noprogress --aig assert.map:replay.aiw \
@@ -140,10 +140,10 @@ abc() { limited yosys-abc -c "$1" >"$2" 2>&1 || true; }
 step() {
     abc "read_aiger assert.aig; fold; strash; orpos; frames -F $(($1 + 1)); comb;
         write_blif frames.blif" step.log
-    # The first outputs of the model show whether an assertion fails in each clock; they become one,
-    # step: only the last clock failed.
+    # The first outputs of the model show whether an assertion fails in each clock. They become a
+    # single output: only in the last clock did an assertion fail.
     awk -v bads=$(($1 + 1)) '
-        /\\$/ { # a line continues in the next
+        /\\$/ { # a line that continues on the next line
             sub(/\\$/, "")
             line = line $0
             next
@@ -198,10 +198,10 @@ else
         status=0
         step "$clocks_of_step" || status=$?
         [ $status -ne 20 ] || carried="induction step of $clocks_of_step clock(s)"
-    elif [ "$clocks" = async2sync ]; then # inductive assertions: a second
+    elif [ "$clocks" = async2sync ]; then # for inductive assertions this takes a second
         limited yosys -q -l induct.log induct.ys >/dev/null 2>&1 || true
         ! grep -q 'Induction step proven: SUCCESS' induct.log || {
-            bounded 2 # the base begins after the first clock
+            bounded 2 # the base case begins after the first clock
             carried="$(grep -c 'Induction step failed' induct.log || true) + 1 steps"
         }
     fi
@@ -228,9 +228,10 @@ covers=$(grep -c . cover.names || true)
     echo "$module: no cover statement: nothing shows that the properties are reached" >&2
     exit 1
 }
-solve="bmc3 -g -F $((depth * 4))" # glucose: a quarter of the time where a cover is deep
+solve="bmc3 -g -F $((depth * 4))" # -g selects glucose, which takes a quarter of the time if a cover
+                                  # is deep
 [ "$(latches cover.aig)" -gt 0 ] || solve=sat
-# older abc drops the flip-flops of a cone without -s, newer has no -s
+# older versions of abc need -s, or they drop the flip-flops of a cone; newer versions have no -s
 cone=cone
 ! yosys-abc -c 'cone -h' 2>&1 | grep -q -- '^.*-s  ' || cone='cone -s'
 commands='' index=0

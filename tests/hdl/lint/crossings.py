@@ -36,7 +36,7 @@ def cdc_clock(kind, port, connections):
 
 
 def flattened(top, source, generated, work, parameters):
-    """Returns the module TOP as Yosys' JSON has it."""
+    """Returns the flattened module TOP from Yosys' JSON."""
     hdl = [source / "hdl" / part for part in ("fsmc", "ddr", "modem", "system", "cdc", "")]
     folders = [generated, *(source / "ip").glob("*/"), source / "bus", *hdl, source / "synth"]
     file = next(f / (top + ".v") for f in folders if (f / (top + ".v")).is_file())

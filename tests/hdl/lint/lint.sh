@@ -53,7 +53,8 @@ verilate() { # variant [switches]
     verilator --lint-only -Wall ${2-} $search --top-module "$module" \
         $(for p in $(each "$1"); do echo "-G$p"; done) "$file"
 }
-# Yosys' commands for one variant; modules below are found by their names.
+# elaboration VARIANT: prints Yosys' commands for one variant; modules below the top are found by
+# name.
 elaboration() { # variant
     set_parameter=$(for p in $(each "$1"); do echo "-set ${p%%=*} ${p#*=}"; done)
     echo "${set_parameter:+chparam $(echo $set_parameter) $module;}"
@@ -67,15 +68,15 @@ for variant in '' $variants; do
     checks="$checks log variant $(each "$variant"); design -load read; $(elaboration "$variant")
         proc; opt; check -assert; select -assert-none t:\$dlatch;"
 done
-# The design with cover points, which make coverage builds, is linted in addition: a signal must
-# also have a use without them.
+# The design is also linted with cover points, which coverage builds contain; without cover points,
+# each signal must still be used.
 verilate '' '-DCOVER_POINTS --coverage --assert -Wno-SYNCASYNCNET'
-# One process: its start costs more than a variant.
+# One process for all variants, because starting Yosys takes longer than a variant.
 yosys -q -p "$read_file design -save read; $checks"
 for variant in $refused; do
     for tool in verilate elaborate; do
         said=$($tool "$variant" 2>&1) && { echo "$module: $tool takes $variant" >&2; exit 1; }
-        # only because of its message
+        # the variant must be refused because of its own error message
         echo "$said" | grep -q "$module: [A-Z].*[0-9][.][.][0-9]" || {
             echo "$said" >&2
             exit 1

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// axis_core_test: third-party cores with AXI-Streams, as `make new-foreign BUS=axis` puts them into
-// slots, called through their generated servants.
+// axis_core_test: tests third-party cores with AXI-Streams, connected by `make new-foreign
+// BUS=axis`, through their generated servants.
 
 #include "Vmy_scale_slot.h"
 #include "Vmy_twice_slot.h"
@@ -47,7 +47,8 @@ TEST_F(Scale, GivesABeatAClockWhenTheMemoryKeepsUp) {
     auto clocksOf = [&](size_t count) {
         scaled(std::vector<Ice_Short>(count, 1));
         uint64_t before = core_.bench_.cycles();
-        core_.bus_.write(MY_SCALE_CONTROL, 1u << 1); // again, without the driver's copying
+        core_.bus_.write(MY_SCALE_CONTROL, 1u << 1); // starts once more, without the copying by the
+                                                     // driver
         core_.bench_.waitFor([&] { return core_.bench_.top().irq_o; }, "the core's interrupt",
                              9999);
         core_.bus_.write(MY_SCALE_EVENT, ~0u);
@@ -68,7 +69,7 @@ TEST_F(Scale, WhatDoesNotEndIsGivenUpAndTheNextCallWorks) {
     EXPECT_THROW(scaled(std::vector<Ice_Short>(300, 5)), CoreError);
     core_.memory_.hold(false);
     EXPECT_SAME(scaled({1, 2, 3}), (std::vector<Ice_Short>{2, 4, 6}));
-    // In the middle of it, when words wait for the core.
+    // In the middle of an operation, while words wait for the core.
     scaled(std::vector<Ice_Short>(512, 5));
     core_.bus_.write(MY_SCALE_CONTROL, 1u << 1); // again
     core_.bench_.tick(250);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// cores: third-party cores in self-contained files, as written by others.
+// cores: third-party cores of one file each, in the styles of other people.
 
 // memory_words: four words with select and write enable; read data is valid LATE clocks later.
 module memory_words #(parameter LATE = 0) (
@@ -29,8 +29,8 @@ module memory_words #(parameter LATE = 0) (
 endmodule
 
 // wb_words: Wishbone as in a pipelined core: it stalls each strobe for `stalls` clocks and answers
-// `late` clocks after taking one, in the same clock if 0. Without STALL it is a classic core, and
-// counts from the start of the strobe. Its addresses count bytes.
+// `late` clocks after taking it, in the same clock if late is 0. Without STALL it is a classic
+// core, and counts from the start of the strobe. Its addresses count bytes.
 module wb_words (
     input             wb_clk_i, wb_rst_i,
     input             wb_cyc_i, wb_stb_i, wb_we_i,
@@ -194,8 +194,8 @@ module avalon_words (
     end
 endmodule
 
-// two_ways: an address, a request of one clock and an acknowledge for reads, and others for writes,
-// which are counted.
+// two_ways: reads and writes have separate addresses, requests of one clock and acknowledges;
+// writes are counted.
 module two_ways (
     input             up_clk, up_rstn,
     input             up_wreq, up_rreq,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// foreign_test: third-party cores as connected by make new-foreign: registers, pins, interrupt; a
-// separate clock; cores that answer at any time allowed by their bus. Checkers of the bus rules
-// (bus/*_rules.v) end the test if a wrapper or a core breaks one.
+// foreign_test: tests third-party cores as connected by make new-foreign: registers, pins,
+// interrupt; a separate clock; cores that answer at any time that their bus allows. Checkers of the
+// bus rules (bus/*_rules.v) end the test if a wrapper or a core breaks a rule.
 
 #include "Va_bridge_slot.h"
 #include "Vmy_apb2_slot.h"
@@ -84,7 +84,7 @@ TEST(Avalon, ACoreWaitsAndAnswersWhenItLikes) {
             holdsRegisters(slot, 8,
                            std::to_string(waits) + " waits, data after " + std::to_string(late));
         }
-    CoreSlot<Vmy_fixed_slot> fixed; // it has neither waitrequest nor readdatavalid
+    CoreSlot<Vmy_fixed_slot> fixed; // this core has neither waitrequest nor readdatavalid
     fixed.bench_.top().waits_i = 0;
     fixed.bench_.top().late_i = 3;
     holdsRegisters(fixed, 8, "data after 3");
@@ -107,7 +107,7 @@ TEST(Axi4Lite, AChannelIsReadyAndAnsweredWhenItLikes) {
     CoreSlot<Vmy_words_slot> slot;
     auto& top = slot.bench_.top();
     const uint8_t clocks[] = {0, 1, 4};
-    for (uint8_t address : clocks) // before the data, with it, after it
+    for (uint8_t address : clocks) // the address is taken before the data, with it, or after it
         for (uint8_t data : clocks)
             for (uint8_t late : clocks) {
                 top.aw_late_i = address;
@@ -129,7 +129,7 @@ TEST(Apb, TransfersBeginWithoutEnableAndEndWithReady) {
     EXPECT_TRUE(slot.bus_.transfer(false, A_BRIDGE_REG3, 0).error) << "refused by PSLVERR";
     EXPECT_EQ(slot.bus_.read(A_BRIDGE_REG0), 5u);
     EXPECT_EQ(slot.bus_.read(1), 0u);
-    slot.bench_.top().clk_div_i = 3; // the second of its interrupts
+    slot.bench_.top().clk_div_i = 3; // the second of the core's interrupts
     slot.tick();
     slot.tick();
     EXPECT_EQ(slot.bus_.read(1), A_BRIDGE_EVENT_CORE_MASK);
@@ -161,7 +161,7 @@ TEST(Apb, RegistersOfOneByteAreReachedThroughPackedStructures) {
     EXPECT_TRUE(slot.bus_.transfer(false, MY_NARROW_REG9, 0).error) << "refused by PSLVERR";
 }
 
-// The generated test, with a table that names a register twice.
+// Runs the generated test with a table that lists one register twice.
 TEST(RegistersApart, OneThatHasTheValueOfAnotherIsFound) {
     CoreSlot<Vmy_memory_slot> slot;
     const Hw_Register table[] = {MY_MEMORY_TABLE},
@@ -236,7 +236,7 @@ TEST(RegistersApart, ACoreThatNeverRestsIsToldWithWhatMoves) {
         bool idle_o = true;
     };
     Counter::every = 1;
-    Bench<Idle> idle; // has a gate in the chip
+    Bench<Idle> idle; // this core has a clock gate in the chip
     Bench<Vmy_port_slot> bench;
     bench.reset();
     ::testing::internal::CaptureStdout();
@@ -270,8 +270,8 @@ TEST(OwnClock, AnyRatioOfTheTwoClocksWillDo) {
     }
 }
 
-// A time-out of the core is an event. Its interrupt crosses the clock domains, and is inactive when
-// the write that clears it has ended.
+// A time-out of the core is an event. The core's interrupt crosses the clock domains; when the
+// write that clears it has ended, it is inactive.
 TEST(OwnClock, TheInterruptComesAndGoes) {
     CoreSlot<Vmy_requests_slot> slot;
     slot.interrupt_ = [] {};
@@ -295,7 +295,8 @@ TEST(OwnClock, OneThatStandsStillIsAnErrorAndHangsNothing) {
         EXPECT_FALSE(slot.bench_.top().irq_o);
     }
     slot.ownClock_.run(24576000);
-    EXPECT_EQ(slot.bus_.read(0), MY_REQUESTS_ID_VALUE); // not the late answer to the previous read
+    EXPECT_EQ(slot.bus_.read(0), MY_REQUESTS_ID_VALUE); // must not be the late answer to the
+                                                        // previous read
     EXPECT_EQ(slot.bus_.read(MY_REQUESTS_REG0), 5u);
 }
 

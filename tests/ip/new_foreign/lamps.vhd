@@ -3,7 +3,7 @@
 -- lamps: a core in VHDL with strobes for reading and writing in a record of lamps_types.vhd; it
 -- counts reads. Its features: a Synopsys package, an attribute of an output, an assertion for
 -- simulation.
-library ieee, lights; -- the second one is its own
+library ieee, lights; -- the library `lights` contains the core's own package
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;
 use ieee.std_logic_misc.all;

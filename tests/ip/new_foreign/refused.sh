@@ -20,7 +20,7 @@ named() { # name of the core, message, top, bus, options and files
     [ ! -e out ] || { echo "something was written: $name $top $bus $*" && exit 1; }
 }
 refused() { named my_port "$@"; }
-prints() { # each line of the log
+prints() { # prints EXPRESSION...: checks that each expression matches a line of the log
     for line; do
         grep -q "^  $line" log || { cat log && echo "'$line' is not said" && exit 1; }
     done
@@ -94,11 +94,11 @@ refused 'CLOCK: a core with AXI-Streams' axis_scale axis CLOCK=24000000 cores.v
 refused 'LIBRARY: expected VHDL files, got Verilog' req_words own LIBRARY=lights cores.v
 refused 'a setting requires BUS=axis' req_words own setting=value cores.v
 refused "setting is an input of a core, and 'over' is not" axis_scale axis setting=over cores.v
-# Of two cores in one chip.
+# A module of one name in two cores of a chip is refused.
 ! "$source/tools/python" -m icesoc.cores.foreign_files wb_port.v again.v 2>log &&
     grep -q "again.v:6: module 'wb_port' is also in .*a chip has one of each" log ||
     { cat log && exit 1; }
-# Meanings of names.
+# Names of ports that reveal their roles.
 new my_port wbs_names wishbone names ack=2 open=spare cores.v >log
 prints 'wbs_clk: clock' 'rst_ni: resetn' 'gate_clk_pad_i: pin' 'clk_div: pin' \
     'wbs_cyc_i: cyc' 'wbs_adr_i: adr, counts words: it has 2 bits; if not, ADDRESS=bytes' \
@@ -124,10 +124,10 @@ new my_port asked own open write=we wdata=d rdata=q 'open=*t*' asked.v >log
 prints 'TIMERINT: pin' 'rx_events: open' 'point: open' 'irq_no: interruptn'
 refused "has no port 'TIMER\*'" asked own write=we wdata=d rdata=q 'low=TIMER*' asked.v
 grep -q 'interrupt = !interrupt_0;' asked/my_port.v
-# Many unneeded pins.
+# Many pins that are not needed.
 new my_port asked own spared write=we wdata=d rdata=q 'open=*' pin=point asked.v >log
 prints 'irq_no: interruptn$' 'rx_events: open$' 'point: pin point_o$'
-# OpenCores' level of a reset, whatever else has it for a name.
+# The level of a reset by OpenCores' parameter, whatever other signal uses the name.
 echo 'module level #(parameter ARST_LVL = 0) (input clk, arst_i, we, input [31:0] d,
         output reg [31:0] q);
     wire rst = arst_i ^ ARST_LVL[0];
@@ -150,8 +150,9 @@ grep -q 'paddr(adr\[6:1\])' apb16/my_port.v && grep -q 'at 0x2 in' apb16/my_port
 sed 's/5:0/7:2/' apb8.v >apb8_high.v
 new my_port apb8 apb apb8_high apb8_high.v >log
 prints 'paddr: adr, counts bytes: it begins at bit 2'
-# A memory of 64 KiB with its initial contents is read in seconds; Yosys is not asked to unroll the
-# loop. A loop in its reset is left to Verilator after a time, and is reported until then.
+# A memory of 64 KiB with initial contents is read in seconds, because Yosys need not unroll the
+# loop. A loop in the memory's reset is left to Verilator after a time; until then a message reports
+# the wait.
 cat >big.v <<'END'
 module big (input clk, rst_n, we, input [13:0] a, input [31:0] d, output reg [31:0] q);
     reg [31:0] words [0:16383];
@@ -196,7 +197,8 @@ new_foreign.main(sys.argv[1:])'
     grep -q 'Yosys has not elaborated big in 2 s: Verilator reads its ports' log ||
     { cat log && echo 'a slow core is not reported' && exit 1; }
 prints 'd: wdata'
-# Packed structures: a bus in AXI's style with nested members; members by PORTS; one of pins.
+# Packed structures: a bus in the style of AXI with nested members; members assigned by PORTS; a
+# structure of pins.
 cat >nested.sv <<'END'
 package nested_types;
     typedef struct packed {logic [7:0] addr; logic [2:0] prot;} address_t;
@@ -222,12 +224,12 @@ grep -q 'resp_o({awready, wready, arready, bvalid, bresp, rvalid, rdata, rresp})
 new my_port nested axil parts open=state_o.on nested.sv >log
 prints 'state_o.on: open' 'state_o.level: pin state_level_o'
 grep -q 'state_o({unused_state_o_on, state_level_o})' parts/my_port.v || exit 1
-# A SystemVerilog interface as port is refused with the way out.
+# A SystemVerilog interface as port is refused, with a message that shows the solution.
 echo 'interface bus_if (input logic clk); logic sel; modport slave (input clk, sel); endinterface
 module faced (input logic reset, bus_if.slave s); endmodule' >faced.sv
 refused "faced has the port 's', a SystemVerilog interface (bus_if.slave)" faced apb faced.sv
 refused 'bus_if s (...);' faced apb faced.sv
-# VHDL in several libraries.
+# VHDL files in several libraries.
 refused 'LIBRARY: util=none.vhd: expected a library.s name and a file of FILES' lamps own \
     LIBRARY=util=none.vhd lamps.vhd
 if [ -x "$ghdl" ]; then # GHDL 5 is fetched by the build
@@ -241,7 +243,7 @@ if [ -x "$ghdl" ]; then # GHDL 5 is fetched by the build
         grep -q '"LIBRARIES" "types=.*/lamps_types.vhd"' ||
         { cat libraries/core.toml && exit 1; }
 fi
-# SystemVerilog with packages, in any order, and a loop that Verilator reports.
+# SystemVerilog with packages, in any order, and a loop about which Verilator warns.
 cat >system.sv <<'END'
 module system import sizes::*; #(parameter EXTRA = 1) (
     input logic clk, input logic we, input logic [1:0][7:0] d, output pair_t q,
@@ -266,14 +268,14 @@ prints 'state_o: pin state_o' "sv2v --top=system .*/widths.sv .*/sizes.sv .*/sys
     grep -q '"width": 16' system/my_port.regs.json &&
     ! grep -q UNOPTFLAT system/core.toml ||
     { cat log system/my_port.v && exit 1; }
-# A register is as wide as its written, or read, data.
+# A register is as wide as the data written to it or, if wider, read from it.
 echo 'module narrow(input clk, we, input [16:0] d, output [12:0] q);
     assign q = d[12:0];
 endmodule' >narrow.v
 new my_port narrow own narrow write=we wdata=d rdata=q narrow.v >log &&
     grep -q '"width": 17' narrow/my_port.regs.json ||
     { cat log && echo 'a register has not 17 bits' && exit 1; }
-# Parameters as users type them, and a file that begins with a byte order mark.
+# Parameters in the forms that users type, and a file that begins with a byte order mark.
 cat >typed.v <<'END'
 module typed #(parameter MODE = "SLOW", parameter [31:0] INIT = 0, parameter signed [7:0] LOW = 0)
     (input clk, input we, input [(MODE == "FAST" ? 8 : 7) - LOW:0] d, output reg [31:0] q);
@@ -292,7 +294,7 @@ for value in FAST '"FAST"'; do
 done
 refused "PARAMS: INIT: expected a number such as .*, got '2[*]1'" typed own PARAM:INIT='2*1' \
     write=we wdata=d rdata=q typed.v
-# The same by make, and one that is taken.
+# The same by make, and a core whose name is taken.
 mkdir -p "$work/tree/ip"
 made() { "$source/tests/regress/make_in.sh" "$source" "$work/tree" build \
     new-foreign NAME=my_port TOP=req_words BUS=own FILES="$work/cores.v" "$@" >log 2>&1; }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// registers_test: Hw::Registers, the servant for the registers of any core, called by IceC's
-// proxies.
+// registers_test: tests Hw::Registers, the servant for the registers of any core, called through
+// IceC's proxies.
 
 #include "Vmy_port_slot.h"
 #include "Vmy_requests_slot.h"
@@ -52,7 +52,7 @@ public:
         Hw_Registers_set_Exception e;
         reason_ = check(Hw_RegistersPrx_set(&prx_, Ice_String_from(name), v, &e), e);
     }
-    // Begins to wait; `answer_` becomes the names of the events.
+    // Begins a call of wait; its answer sets `answer_` to the names of the events.
     void wait(Ice_Int ms) {
         answer_.reset();
         call_.completed = [](Hw_Registers_wait_Async* call) {
@@ -66,7 +66,7 @@ public:
         EXPECT_EQ(Hw_RegistersPrx_wait_async(&prx_, ms, &call_), ICE_OK);
         settle();
     }
-    // Advances time like the firmware's task, until the servant needs no more calls.
+    // Advances time as the firmware's task does, until the servant needs no more calls.
     void poll() {
         for (U32 next; (next = Hw_Registers_Core_poll(&core_, slot_.nowMs(&slot_))) != HW_NEVER;)
             slot_.wait(&slot_, 0, next + 1);
@@ -121,7 +121,7 @@ TEST(HwRegisters, NamesAndByteAddressesReachTheCore) {
     EXPECT_EQ(core.get("LEVELS"), 0x42u);
     EXPECT_EQ(core.get("0x0"), 0x42u);
     EXPECT_EQ(core.get("0x4"), 0xA5u);
-    core.set("0x24", 0x5A); // the core looks at the low bits of its addresses only
+    core.set("0x24", 0x5A); // the core uses only the low bits of its addresses
     EXPECT_EQ(core.slot_.bench_.top().port_out_o, 0x5A);
     EXPECT_EQ(core.get("PAGE"), 0x20u);
     EXPECT_EQ(core.get("DRIVEN"), 0x5Au);
@@ -201,12 +201,12 @@ TEST(HwRegisters, WaitTakesTheEventThatWasThereOrComes) {
     Port core;
     core.wait(100);
     EXPECT_FALSE(core.answer_);
-    core.set("DRIVEN", 1); // others are served meanwhile
+    core.set("DRIVEN", 1); // other calls are served meanwhile
     core.slot_.bench_.top().port_in_i = 0x80;
     core.poll();
     ASSERT_TRUE(core.answer_);
     EXPECT_THAT(*core.answer_, ElementsAre("CORE"));
-    // The line stays high: it interrupts once per wait, and is an event again.
+    // The interrupt line stays high: it interrupts once per wait, and the event occurs again.
     EXPECT_EQ(core.interrupts_, 1);
     core.slot_.wait(&core.slot_, 0, 5);
     EXPECT_EQ(core.interrupts_, 1);
@@ -244,8 +244,8 @@ TEST(HwRegisters, AnotherCoreInTheSlotIsNotServed) {
               HW_WRONG_CORE);
 }
 
-// A slot with different hashes of registers in chip and firmware is detected: the system slot of a
-// chip with hashes slot * 17.
+// Different hashes of registers in chip and firmware are detected. The system slot of this chip has
+// the hashes slot * 17.
 struct Chip {
     U32 slot = 0;
     static U32 read(void* context, U32 address) {

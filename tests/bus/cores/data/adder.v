@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// adder: a slot without registers of the core.
+// adder: a core in a slot without registers of its own.
 
 `default_nettype none
 

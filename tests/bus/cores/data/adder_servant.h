@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * adder_servant: a servant's outside, as slice2c's have it. */
+ *
+ * adder_servant: the interface of a servant, as slice2c generates it.
+ */
 #include "hw_core.h"
 #include "icec.h"
 typedef struct Demo_Adder_Core {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// mover: a slot with a memory port, which rests, and pins.
+// mover: a core with an unused memory port, and pins.
 
 `default_nettype none
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// crc32: the CRC-32 of zlib and Ethernet of a buffer in DDR3, a byte a clock.
+// crc32: computes the CRC-32 (as in zlib and Ethernet) of a buffer in DDR3, one byte per clock.
 
 `default_nettype none
 
@@ -33,7 +33,8 @@ module crc32 (
     wire write_ready, write_idle;
     npi_stream u_stream (
         `include "memory_connect.vh"
-        .clk_i(clk_i), .rst_i(rst_i), // not core_rst: requested words must still be taken
+        .clk_i(clk_i), .rst_i(rst_i), // not core_rst: words that were requested must still be
+                                      // received
         .read_start_i(go && !core_rst), .read_base_i(base[31:6]),
         .read_words_i({14'd0, left[12:3]} + {23'd0, |left[2:0]}), .read_stop_i(core_rst),
         .read_valid_o(read_valid), .read_data_o(read_data),
@@ -42,7 +43,7 @@ module crc32 (
         .write_be_i(8'd0), .write_ready_o(write_ready), .write_flush_i(1'b0),
         .write_idle_o(write_idle));
 
-    // The CRC with one more byte in it.
+    // Returns the CRC after one more byte.
     function [31:0] with_byte(input [31:0] old, input [7:0] value);
         integer i;
         begin

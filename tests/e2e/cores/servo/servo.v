@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// servo: pulses of given lengths on four pins, until the fault pin is high.
+// servo: generates pulses of given lengths on four pins, until the fault pin is high.
 
 `default_nettype none
 
@@ -27,10 +27,11 @@ module servo #(
         .clear_start_o(clear)
     );
 
-    // A microsecond is CLK_HZ / 1000000 clocks: the remainder is carried, whatever the clock.
+    // A microsecond takes CLK_HZ / 1000000 clocks; the remainder of the division is carried over,
+    // so any CLK_HZ is exact.
     reg [31:0] fraction;
     wire       next = fraction + 32'd1000000 >= CLK_HZ;
-    reg [14:0] now; // microseconds of the period
+    reg [14:0] now; // time since the start of the period, microseconds
     reg [1:0]  fault_meta;
     reg        fault;
     reg [15:0] length [0:3];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * server: an object "thing" over TCP, in a project that uses the installed IceC and slice2c.
+ * server: serves an object "thing" over TCP, in a project that uses the installed IceC and slice2c.
  * Usage: server PORT
  */
 #include "Thing.h"

@@ -16,31 +16,33 @@
 
 // True if IceC's headers use this name of C.
 bool isRuntimeName(const std::string& c);
-// Module_Sub_Name, with an underscore appended if IceC uses that name
+// Returns Module_Sub_Name, with an underscore appended if IceC uses that name.
 std::string cName(const Declaration& d);
-// Module_Sub_NamePrx, of an interface or a class
+// Returns Module_Sub_NamePrx, the proxy type of an interface or a class.
 std::string cProxy(const Declaration& d);
 // Returns the C name for a name of the user. Generated code uses other names in the same scope:
 // they are listed in names.cpp, or begin with "ice_" or "Ice_". A name that equals one of them, or
 // a keyword of C, gets an underscore appended. No name in Slice ends with an underscore.
 std::string cIdentifier(const std::string& name);
-// The name of a member of struct, class or exception `d`.
+// Returns the name of a member of the struct, class or exception `d`.
 std::string cMember(const Declaration& d, const Field& member);
-// The name of a parameter: of functions, as a member of the asynchronous call, as a variable.
+// Returns the name of a parameter, which functions, the asynchronous call's members and variables
+// share.
 std::string cParameter(const Operation& o, const Field& parameter);
 // Returns the part of a function name that stands for the operation, after the interface.
 std::string cOperation(const std::string& name);
-// The C type of a value.
+// Returns the C type of a value.
 std::string cType(const Type& type);
-// The name of an enumerator's constant.
+// Returns the name of an enumerator's constant.
 std::string cEnumerator(const Declaration& owner, const std::string& name);
-// A constant's value as an expression; a Long's is an initialiser {low, high}.
+// Returns a constant's value as an expression. The value of a Long is an initialiser {low, high}.
 std::string cValue(const Literal& value, const Type& type);
-// Name of an item that each Slice file has once: "Folder_File_what".
+// Returns "Folder_File_what": the name of an item that each Slice file has once.
 std::string cFileName(const CFileNames& names, const std::string& what);
 // True if icec.h declares the type itself; only its stream functions are generated.
 bool isRuntimeType(const Declaration& d);
-// The elements that a sequence or dictionary has room for; 0 if its data lies elsewhere.
+// Returns the number of elements for which a sequence or dictionary has room inside its struct; 0
+// if the elements are stored outside.
 int statedMaximum(const Declaration& d);
 
 // ---- types: pieces of C that pass, write and read values ----
@@ -49,9 +51,9 @@ int statedMaximum(const Declaration& d);
 // classes.
 bool isByPointer(const Type& type);
 bool isEnum(const Type& type);
-bool isClass(const Type& type); // a pointer to an Ice_Value
+bool isClass(const Type& type); // True if the type is a class, in C a pointer to an Ice_Value.
 
-// A declaration of `name`: "Ice_Int x", "M_Node *x".
+// Returns a declaration of `name`: "Ice_Int x", "M_Node *x".
 std::string cVariable(const Type& type, const std::string& name);
 
 // A value in a list of members or parameters for writing or reading.
@@ -61,22 +63,24 @@ struct Slot {
     std::string pointer; // its address
     bool isOptional = false;
     int tag = 0;
-    std::string has; // condition whether it is present when writing, an lvalue when reading
+    std::string has; // C expression that is true if the value is present: tested when writing,
+                     // assigned when reading
 };
 
-// Write or read slots in the order of the wire.
+// Generate the code that writes or reads slots in the order of the wire.
 void writeSlots(Writer& w, const std::vector<Slot>& slots);
 void readSlots(Writer& w, const std::vector<Slot>& slots);
 
 // ---- operations: operations and exceptions in C: signatures, lists of parameters ----
 
-// Base interfaces first, without repetition; the interface itself is last.
+// Returns an interface and all its bases, without repetition: the bases first, the interface last.
 std::vector<const Declaration*> lineage(const Declaration& interface);
 
-// Exceptions that an operation may throw: the declared ones, and exceptions derived from them in
-// this unit.
+// Returns the exceptions that an operation may throw: the declared ones, and the exceptions of this
+// unit that derive from them.
 std::vector<const Declaration*> mayThrow(const Unit& unit, const Operation& o);
-// Label of an exception in M_I_op_Exception (constant M_I_op_<label>), and its member in the union.
+// Returns the label of an exception: its part of the constant M_I_op_<label>, and its member in the
+// union.
 std::string exceptionLabel(const Operation& o, const std::vector<const Declaration*>& family,
                            const Declaration& exception);
 std::string exceptionMember(const Operation& o, const std::vector<const Declaration*>& family,
@@ -85,11 +89,11 @@ std::string exceptionMember(const Operation& o, const std::vector<const Declarat
 bool hasResults(const Operation& o);
 bool isAmd(const Declaration& owner, const Operation& o);
 bool isSliced(const Declaration& owner, const Operation& o);
-// True if classes are among the in parameters (sends), among the results (returns).
+// sendsClasses: true if an in parameter holds classes. returnsClasses: true if a result does.
 bool sendsClasses(const Operation& o);
 bool returnsClasses(const Operation& o);
-// True if one of the slots holds a class; if a required one does (encoding 1.0 then has a list of
-// instances).
+// True if a slot holds a class. With `isRequired`, true if a required slot does: encoding 1.0 then
+// has a list of instances.
 bool anyClass(const std::vector<Slot>& slots);
 bool anyRequiredClass(const std::vector<Slot>& slots);
 
@@ -97,21 +101,24 @@ bool anyRequiredClass(const std::vector<Slot>& slots);
 std::string operationName(const Declaration& owner, const Operation& o);
 std::string exceptionType(const Declaration& owner, const Operation& o);
 
-// Lists of C parameters, each preceded by a comma (", Ice_Int a, const M_S *b"): the in parameters;
-// out parameters and the result as pointers. Instances of a servant, which are sent, may be const.
+// Return lists of C parameters, each preceded by a comma (", Ice_Int a, const M_S *b"). The first
+// returns the in parameters, the second the out parameters and the result, as pointers. Class
+// instances that a servant returns may be const.
 std::string inParameters(const Operation& o);
 std::string outParameters(const Declaration& owner, const Operation& o, bool isSent);
 
 std::string proxySignature(const Declaration& d, const Operation& o);
 std::string asyncSignature(const Declaration& d, const Operation& o);
-// True if it may throw an exception that preserves unknown slices.
+// True if the operation may throw an exception that preserves unknown slices.
 bool throwsPreserved(const Unit& unit, const Operation& o);
-// `name` is a function, or "(*op)"; `self` the servant's type.
+// Returns the signature of a servant's function. `name` is the function's name, or "(*op)" for a
+// pointer; `self` is the servant's type.
 std::string servantSignature(const Declaration& owner, const Operation& o, const std::string& name);
 std::string responseSignature(const Declaration& d, const Operation& o);
 
-// Parameters as slots: in parameters of the proxy's function; as variables; results behind `object`
-// ("*" for pointers, "call->" for members, "" for variables); results of a response.
+// Return parameters as slots: the in parameters of the proxy's function; the in parameters as
+// variables; the results behind `object` ("*" for pointers, "call->" for members, "" for
+// variables); and the results of a response.
 std::vector<Slot> inSlots(const Operation& o);
 std::vector<Slot> inVariables(const Operation& o);
 std::vector<Slot> outSlots(const Operation& o, const std::string& object);
@@ -125,7 +132,8 @@ struct CContext {
 
     CContext(const Unit& ofFile, const CFileNames& ofFiles);
     std::string header() const;
-    // Name of the table of classes that this unit knows, and so can receive.
+    // Returns the name of the table of the classes that this unit knows. Only instances of these
+    // can be received.
     std::string valueTable() const;
     bool usesClasses() const;
     Writer begin(const std::string& what) const;
@@ -161,23 +169,24 @@ std::string clientFile(const CContext& c);
 std::string asyncFile(const CContext& c);
 std::string serverFile(const CContext& c);
 
-// M_D_find of a dictionary; empty where its keys cannot be compared.
+// Returns the signature of a dictionary's M_D_find; empty if its keys cannot be compared.
 std::string findSignature(const Declaration& d);
-// Write the functions of an exception and of an operation's exception union.
+// Write the functions for an exception, and for the union of an operation's exceptions.
 void exceptionFunctions(Writer& w, const Declaration& d);
 void thrownFunctions(Writer& w, const CContext& c, const Declaration& d, const Operation& o);
-// Write a class's descriptor with its functions, and the table of all descriptors.
+// Write the descriptor and the functions of a class, and the table of all descriptors.
 void classFunctions(Writer& w, const Declaration& d);
 void valueTypeTable(Writer& w, const CContext& c);
 
-// ---- members of a struct, class or exception: defaults, and marshalling with the table of
-// instances for classes among them ----
+// ---- members of structs, classes and exceptions: default values; marshalling, with the table of
+// instances for members that are classes ----
 
-// The function M_T_init, which sets every member to zero or its default.
+// Writes the function M_T_init, which sets every member to zero or its default.
 void initFunction(Writer& w, const Declaration& d);
 // Returns the members that `d` declares itself, as slots of the variable `v`.
 std::vector<Slot> memberSlots(const Declaration& d);
-// Writes or reads slots. If one holds a class, the variable `table` collects the instances.
+// Generate the code that writes or reads slots. If a slot holds a class, the variable `table`
+// collects the instances.
 void writeWithValues(Writer& w, const std::vector<Slot>& slots, const std::string& table);
 void readWithValues(Writer& w, const CContext& c, const std::vector<Slot>& slots,
                     const std::string& table);

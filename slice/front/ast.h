@@ -20,13 +20,13 @@
 
 // Position in a source, for errors and warnings.
 struct Location {
-    std::string_view file;    // stored by Diagnostics::intern
+    std::string_view file;    // file name, stored by Diagnostics::intern
     int line = 0, column = 0; // both from 1
 };
 
 class Diagnostics {
 public:
-    // Categories of warnings, as `[["suppress-warning:..."]]` names them.
+    // Categories of warnings, with the names used in `[["suppress-warning:..."]]`.
     enum Category { General, Deprecated, Metadata };
 
     explicit Diagnostics(std::ostream& out) : out_(out) {}
@@ -68,10 +68,11 @@ struct Type {
         Float,
         Double,
         String,
-        Named,      // `declaration`: enum, struct, sequence, dictionary or class
-        Proxy,      // `declaration`: the interface; 0 for Object*
-        Value,      // any class: Object or Value; with `declaration`, an interface by value
-        LocalObject // only in local definitions
+        Named,      // type defined by `declaration`: enum, struct, sequence, dictionary or class
+        Proxy,      // proxy to the interface `declaration`; 0 means Object*
+        Value,      // class instance: Object or Value (any class); with `declaration`, an interface
+                    // passed by value
+        LocalObject // local object; allowed in local definitions only
     };
     Kind kind = Kind::Void;
     Declaration* declaration = nullptr;
@@ -81,10 +82,11 @@ struct Type {
 struct Literal {
     enum class Kind { None, Bool, Integer, Floating, String, Enumerator };
     Kind kind = Kind::None;
-    int64_t integer = 0; // Bool, Integer; Enumerator: its value
-    double floating = 0; // Floating
+    int64_t integer = 0; // value of a Bool, an Integer or an Enumerator
+    double floating = 0; // text of a Floating as written; a String in UTF-8; the name of an
+                         // Enumerator
     std::string text;    // Floating as written; String in UTF-8; name of an Enumerator
-    const Declaration* owner = nullptr; // Enumerator's enum
+    const Declaration* owner = nullptr; // enum of an Enumerator
 };
 
 struct Field {
@@ -103,7 +105,8 @@ struct Operation {
     Type result; // Void if the operation returns nothing
     bool isResultOptional = false;
     int resultTag = 0;
-    std::vector<Field> parameters; // in source order, in before out
+    std::vector<Field> parameters; // parameters in source order, in parameters before out
+                                   // parameters
     std::vector<const Declaration*> throws;
     bool idempotent = false;
     Location at;
@@ -120,7 +123,7 @@ struct Declaration {
     enum class Kind { Enum, Struct, Sequence, Dictionary, Interface, Class, Exception, Constant };
     Kind kind = Kind::Enum;
     std::string name, doc;
-    std::vector<std::string> scope; // modules, outermost first
+    std::vector<std::string> scope; // enclosing modules, outermost first
     Location at;
     bool fromInclude = false;
     bool isLocal = false;
@@ -128,44 +131,50 @@ struct Declaration {
     std::vector<std::string> metadata;
 
     std::vector<Enumerator> enumerators;   // Enum
-    bool hasValues = false;                // Enum: some enumerators have a value
-    std::vector<Field> fields;             // Struct, Class, Exception: own members
-    Type key, element;                     // Dictionary; Sequence: element; Constant: its type
+    bool hasValues = false;                // Enum: true if an enumerator has an explicit value
+    std::vector<Field> fields;             // Struct, Class, Exception: members without inherited
+                                           // ones
+    Type key, element;                     // Dictionary: types of key and element; Sequence: type
+                                           // of the element; Constant: its type
     Literal value;                         // Constant
-    std::vector<const Declaration*> bases; // Interface: any; Class, Exception: at most one
-    std::vector<const Declaration*> implemented; // Class: interfaces
-    std::vector<Operation> operations;           // Interface, Class: without inherited ones
-    const Declaration* ofClass = nullptr;        // Interface: made for calls of this class
-    int compactId = -1;                          // Class; -1 if none
+    std::vector<const Declaration*> bases; // bases of an Interface: any number; of a Class or
+                                           // Exception: at most one
+    std::vector<const Declaration*> implemented; // Class: interfaces that it implements
+    std::vector<Operation> operations;           // Interface, Class: operations without inherited
+                                                 // ones
+    const Declaration* ofClass = nullptr;        // Interface: class for whose operations this
+                                                 // interface was generated
+    int compactId = -1;                          // Class: compact id; -1 if none
 
-    // Facts about all values of a type; set when its definition is complete.
+    // Facts about the type's values; set when its definition is complete.
     struct Facts {
         int leastWireSize = 1;  // bytes
-        bool isVariable = true; // longer values are possible
-        bool hasClass = false;  // a class is inside, at any depth
-        bool isKey = false;     // it can be the key of a dictionary
+        bool isVariable = true; // true if the encoded size varies
+        bool hasClass = false;  // true if a class is contained, at any depth
+        bool isKey = false;     // true if the type can be the key of a dictionary
         bool hasSequence = false;
-        bool isNumeric = true; // only numbers, enums, structs and sequences
+        bool isNumeric = true; // true if the type contains only numbers, enums, structs and
+                               // sequences
     } facts;
     void complete();
 
-    std::string id() const; // ::Module::Sub::Name
-    // True if it is `other` or derived from it.
+    std::string id() const; // returns ::Module::Sub::Name Returns whether this declaration is
+                            // `other` or derives from it.
     bool isA(const Declaration& other) const;
-    // True if slices of unknown derived types are preserved: ["preserve-slice"] is set here or on a
-    // base.
+    // Returns whether slices of unknown derived types are preserved: ["preserve-slice"] is set here
+    // or on a base.
     bool preserves() const;
     const Declaration* base() const { return bases.empty() ? nullptr : bases.front(); }
 };
 
 struct Unit {
-    std::string file; // as on the command line
+    std::string file; // main file, as named on the command line
     std::vector<std::unique_ptr<Declaration>> declarations;
-    std::vector<std::string> metadata; // [["..."]] of the main file
+    std::vector<std::string> metadata; // file metadata [["..."]] of the main file
 };
 
 Declaration::Facts factsOf(const Type& type);
 // Returns whether the directive is present.
 bool hasMetadata(const std::vector<std::string>& metadata, const std::string& directive);
-// Returns the text after "prefix:", or an empty string.
+// Returns the text after "prefix:" in a directive; an empty string if there is no such directive.
 std::string metadataValue(const std::vector<std::string>& metadata, const std::string& prefix);

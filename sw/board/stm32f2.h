@@ -12,17 +12,18 @@
 #define RCC_CR REG(0x40023800UL)
 #define RCC_CR_HSEON (1UL << 16)
 #define RCC_CR_HSERDY (1UL << 17)
-#define RCC_CR_HSEBYP (1UL << 18) /* a clock at OSC_IN, not a crystal */
+#define RCC_CR_HSEBYP (1UL << 18) /* the HSE input is a clock at OSC_IN, not a crystal */
 #define RCC_CR_PLLON (1UL << 24)
 #define RCC_CR_PLLRDY (1UL << 25)
-#define RCC_PLLCFGR REG(0x40023804UL) /* M 5..0, N 14..6, P 17..16, HSE as source 22, Q 27..24 */
+/* fields: M in bits 5..0, N 14..6, P 17..16, HSE as source 22, Q 27..24 */
+#define RCC_PLLCFGR REG(0x40023804UL)
 #define RCC_CFGR REG(0x40023808UL)
 #define RCC_CFGR_SW_PLL 2UL
 #define RCC_CFGR_SWS_MASK (3UL << 2)
 #define RCC_CFGR_SWS_PLL (2UL << 2)
 #define RCC_CFGR_APB1_DIV4 (5UL << 10)
 #define RCC_CFGR_APB2_DIV2 (4UL << 13)
-#define RCC_AHB1ENR REG(0x40023830UL) /* GPIOA 0 .. GPIOI 8, CRC 12 */
+#define RCC_AHB1ENR REG(0x40023830UL) /* bits: GPIOA 0 to GPIOI 8, CRC 12 */
 #define RCC_AHB1ENR_CRC (1UL << 12)
 #define RCC_AHB1ENR_BKPSRAM (1UL << 18)
 #define RCC_AHB2ENR REG(0x40023834UL)
@@ -36,11 +37,11 @@
 #define RCC_APB2ENR_SPI1 (1UL << 12)
 #define RCC_APB2ENR_SYSCFG (1UL << 14)
 #define RCC_CSR REG(0x40023874UL)
-#define RCC_CSR_RMVF (1UL << 24) /* clears the flags below */
+#define RCC_CSR_RMVF (1UL << 24) /* writing 1 clears the reset flags below */
 #define RCC_CSR_PORRST (1UL << 27)
 #define RCC_CSR_IWDGRST (1UL << 29)
 
-/* Flash interface (RM0033, 2.3; the PM0059): 3 wait states at 120 MHz and 3.3 V, caches and
+/* Flash interface (RM0033, 2.3; PM0059): 3 wait states at 120 MHz and 3.3 V, caches and
  * prefetch. */
 #define FLASH_ACR REG(0x40023C00UL)
 #define FLASH_ACR_120MHZ (3UL | 7UL << 8)
@@ -66,12 +67,12 @@
 #define FLASH_OPTCR_RDP_NONE 0xAA00UL
 #define FLASH_OPTCR_RDP_1 0x5500UL
 
-/* CRC unit (RM0033, 3.4): polynomial 0x04C11DB7, initial value 0xFFFFFFFF, words, most significant
- * bit first. */
+/* CRC unit (RM0033, 3.4): polynomial 0x04C11DB7, initial value 0xFFFFFFFF, input in words, most
+ * significant bit first. */
 #define CRC_DR REG(0x40023000UL)
 #define CRC_CR REG(0x40023008UL) /* 1: restart */
 
-/* Random number generator (RM0033, 20.4), from the PLL's 48 MHz. */
+/* Random number generator (RM0033, 20.4), clocked by the PLL's 48 MHz output. */
 #define RNG_CR REG(0x50060800UL)
 #define RNG_CR_RNGEN (1UL << 2)
 #define RNG_SR REG(0x50060804UL)
@@ -82,30 +83,33 @@
 
 /* Power control (RM0033, 4.4), and the 4 KiB backup SRAM kept by VBAT (4.1.2), in words. */
 #define PWR_CR REG(0x40007000UL)
-#define PWR_CR_DBP (1UL << 8) /* write enable of the backup domain */
+#define PWR_CR_DBP (1UL << 8) /* DBP: write access to the backup domain */
 #define PWR_CSR REG(0x40007004UL)
-#define PWR_CSR_BRE (1UL << 9) /* regulator that keeps the backup SRAM without VDD */
+#define PWR_CSR_BRE (1UL << 9) /* BRE: regulator that supplies the backup SRAM without VDD */
 #define BKPSRAM(word) REG(0x40024000UL + 4UL * (word))
 
-/* General-purpose pins (RM0033, 6.4). Port 0 is A. */
+/* General-purpose pins (RM0033, 6.4). Port number 0 is GPIOA. */
 #define GPIO(port, offset) REG(0x40020000UL + 0x400UL * (U32)(port) + (offset))
-#define GPIO_MODER(port) GPIO(port, 0x00UL)   /* two bits a pin: 0 input, 2 alternate function */
-#define GPIO_OTYPER(port) GPIO(port, 0x04UL)  /* a bit a pin: 1 is open drain */
-#define GPIO_OSPEEDR(port) GPIO(port, 0x08UL) /* two bits a pin: 3 is 100 MHz */
-#define GPIO_PUPDR(port) GPIO(port, 0x0CUL)   /* two bits a pin: 1 is up */
+/* two bits for each pin: 0 input, 2 alternate function */
+#define GPIO_MODER(port) GPIO(port, 0x00UL)
+#define GPIO_OTYPER(port) GPIO(port, 0x04UL)  /* one bit for each pin: 1 is open drain */
+#define GPIO_OSPEEDR(port) GPIO(port, 0x08UL) /* two bits for each pin: 3 is 100 MHz */
+#define GPIO_PUPDR(port) GPIO(port, 0x0CUL)   /* two bits for each pin: 1 is pull-up */
 #define GPIO_IDR(port) GPIO(port, 0x10UL)
-#define GPIO_BSRR(port) GPIO(port, 0x18UL) /* a bit a pin: sets 15..0, resets 31..16 */
-#define GPIO_AFR(port, half) GPIO(port, 0x20UL + 4UL * (half)) /* four bits a pin */
+/* one bit for each pin: bits 15..0 set, bits 31..16 reset */
+#define GPIO_BSRR(port) GPIO(port, 0x18UL)
+#define GPIO_AFR(port, half) GPIO(port, 0x20UL + 4UL * (half)) /* four bits for each pin */
 #define GPIO_AF_USART1 7UL
-/* The same registers as indices of words, for a port's base address. */
+/* The same registers as word indices relative to a port's base address. */
 #define GPIO_MODE 0U
 #define GPIO_SPEED 2U
 #define GPIO_PULL 3U
 #define GPIO_AFRL 8U
 #define GPIO_AFRH 9U
 
-/* Pins that EXTI lines listen to, and the lines (RM0033, 7.2 and 8.3). */
-#define SYSCFG_EXTICR(n) REG(0x40013808UL + 4UL * (n)) /* four bits a line: the port */
+/* External interrupt lines, and the port of each line (RM0033, 7.2 and 8.3). */
+/* four bits for each line: the number of the port */
+#define SYSCFG_EXTICR(n) REG(0x40013808UL + 4UL * (n))
 #define EXTI_IMR REG(0x40013C00UL)
 #define EXTI_RTSR REG(0x40013C08UL)
 #define EXTI_FTSR REG(0x40013C0CUL)
@@ -120,7 +124,8 @@
 #define USART1_BRR REG(0x40011008UL)
 #define USART1_BRR_115200 521UL
 #define USART1_CR1 REG(0x4001100CUL)
-#define USART1_CR1_ON 0x200CUL /* enabled, transmitter and receiver, 8 bits */
+/* UE, TE, RE: enabled, with transmitter and receiver; 8 data bits */
+#define USART1_CR1_ON 0x200CUL
 
 /* SPI 1 (RM0033, 25.5). */
 #define SPI1_CR1 REG(0x40013000UL)
@@ -135,16 +140,16 @@
 #define IWDG_KR_START 0xCCCCUL
 #define IWDG_KR_UNLOCK 0x5555UL
 #define IWDG_KR_REFRESH 0xAAAAUL
-#define IWDG_PR REG(0x40003004UL) /* prescaler 4 << n */
+#define IWDG_PR REG(0x40003004UL) /* prescaler: LSI / (4 << n) */
 #define IWDG_RLR REG(0x40003008UL)
 
-/* The core (ARMv7-M ARM, B3). */
+/* Core registers (ARMv7-M ARM, B3). */
 #define SYST_CSR REG(0xE000E010UL)
-#define SYST_CSR_ON 7UL /* clocked by HCLK, with interrupt */
+#define SYST_CSR_ON 7UL /* enabled, clocked by HCLK, with interrupt */
 #define SYST_CSR_POLLED 5UL
 #define SYST_RVR REG(0xE000E014UL)
 #define SYST_CVR REG(0xE000E018UL)
-#define SYST_CALIB REG(0xE000E01CUL) /* RM0033, 8.1.2: HCLK/8 ticks in one millisecond */
+#define SYST_CALIB REG(0xE000E01CUL) /* ticks of HCLK/8 in one millisecond (RM0033, 8.1.2) */
 #define SYST_MS ((SYST_CALIB & 0xFFFFFFUL) * 8UL) /* HCLK cycles per millisecond */
 #define NVIC_ISER(n) REG(0xE000E100UL + 4UL * (n))
 #define NVIC_ICER(n) REG(0xE000E180UL + 4UL * (n))
@@ -156,7 +161,8 @@
 #define SCB_VTOR REG(0xE000ED08UL)
 #define SCB_AIRCR REG(0xE000ED0CUL)
 #define SCB_AIRCR_RESET 0x05FA0004UL
-#define SCB_SHPR(n) (*(volatile U8*)(0xE000ED14UL + (n))) /* priority of exception n, 4..15 */
+/* priority of exception n, 4..15; one byte */
+#define SCB_SHPR(n) (*(volatile U8*)(0xE000ED14UL + (n)))
 #define SCB_SHCSR REG(0xE000ED24UL)
 #define SCB_SHCSR_FAULTS (7UL << 16) /* enables separate usage, bus and memory fault handlers */
 #define SCB_CFSR REG(0xE000ED28UL)
@@ -165,6 +171,7 @@
 #define SCB_MMFAR REG(0xE000ED34UL)
 #define SCB_BFAR REG(0xE000ED38UL)
 #define MPU_CTRL REG(0xE000ED94UL)
-#define MPU_CTRL_ON 5UL /* enabled, with the default map as background for privileged code */
+/* enabled, with the default memory map as background for privileged code */
+#define MPU_CTRL_ON 5UL
 #define MPU_RBAR REG(0xE000ED9CUL)
 #define MPU_RASR REG(0xE000EDA0UL)

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * fsmc: set-up of the FSMC, register words, and memory copies through the DDR3 window: by NWAIT,
- * and blocks at the bridge's full speed without it, which are checked, and repeated where needed.
+ * fsmc: sets up the FSMC, accesses registers, and copies memory through the DDR3 window. Copies use
+ * NWAIT; or they run at the bridge's full speed without NWAIT, are checked, and are repeated if
+ * needed.
  */
 #include "fsmc.h"
 
@@ -33,7 +34,7 @@
 #define BTR_BUSTURN(n) ((U32)(n) << 16)
 #define BTR_ACCMOD(n) ((U32)(n) << 28)
 
-/* The bits that all modes set: bank on, 16 bits, write enable. */
+/* Bits that all modes set: bank enabled, 16 bits, write enable. */
 #define BCR_ALWAYS (BCR_MBKEN | BCR_MWID_16 | BCR_RESERVED | BCR_WREN)
 /* FSMC_init's settings: mode 1 with NWAIT, active low. ADDSET 2: NWAIT, which follows the pins in
  * less than 16 ns, is valid when the data phase begins; DATAST 4 is the least with NWAIT
@@ -51,7 +52,8 @@ static U32 wordAddress(U32 slot, U32 word) {
     return MAP_CONTROL_WINDOW + ((slot & 63U) << 6 | (word & 15U) << 2);
 }
 
-/* Looks for the system slot, the last step of setting up. Returns FSMC_OK or FSMC_NO_DEVICE. */
+/* Looks for the system slot, which is the last step of the set-up. Returns FSMC_OK or
+ * FSMC_NO_DEVICE. */
 static FSMC_Status identify(void) {
     if (FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_ID) >> 16 != SYSTEM_ID_VALUE >> 16)
         return FSMC_NO_DEVICE;
@@ -79,7 +81,7 @@ void FSMC_write(U32 slot, U32 word, U32 value) {
     fsmcPort->write32(fsmcContext, wordAddress(slot, word), value);
 }
 
-/* Converts a DDR3 address to one in the window, and moves the page register if necessary. */
+/* Converts a DDR3 address to an address in the window, and moves the page register if necessary. */
 static U32 windowAddress(U32 address) {
     U32 page = address >> MAP_DDR_WINDOW_LOG2;
     if (page != fsmcPage) {
@@ -134,21 +136,23 @@ FSMC_Status FSMC_checkError(U32* where) {
 /* ---- streams ---- */
 
 /* Mode A without NWAIT: an access takes ADDSET + DATAST + 1 HCLK. The data phase of a write is 2
- * HCLK. BUSTURN of writes is 0, since some FSMCs also insert it between two writes. A read is only
- * a data phase, so that NOE falls with the address. */
+ * HCLK. BUSTURN of writes is 0, since some FSMCs also insert it between two writes. A read consists
+ * of a data phase only, so that NOE falls when the address changes. */
 #define STREAM_BCR (BCR_ALWAYS | BCR_EXTMOD)
 #define WRITE_DATAST 2U
-/* Highest access rates, per second (docs/fsmc.md): 33.3 ns between edges of NWE; a read has its
- * data 15 ns after the HCLK edge that moves its address, and the FSMC needs it HCLK + 4 ns before
- * the end. */
+/* Highest access rates, per second (docs/fsmc.md): 33.3 ns between edges of NWE; the data of a read
+ * is valid 15 ns after the HCLK edge that changes the address, and the FSMC needs the data one HCLK
+ * + 4 ns before the end of the access. */
 #define WRITE_HZ 30000000UL
 #define READ_HZ 25000000UL
-#define REGION 4096U /* bytes: the bridge does not read ahead beyond multiples of this */
+/* size in bytes of aligned regions; the bridge does not read ahead beyond their ends */
+#define REGION 4096U
 #define BLOCK 64U
 
-static U8 writeAddset = 15, readDatast = 17; /* until FSMC_setHclk: slow but safe */
+static U8 writeAddset = 15, readDatast = 17; /* values until FSMC_setHclk is called: slow but
+                                              * safe */
 
-/* HCLK cycles of an access, 4 at least. */
+/* Returns the HCLK cycles of an access, at least 4. */
 static U32 cyclesFor(U32 hclkHz, U32 accessHz) {
     U32 cycles = (U32)((hclkHz + accessHz - 1U) / accessHz);
     return cycles < 4U ? 4U : cycles > 18U ? 18U : cycles;
@@ -171,8 +175,8 @@ static void setBank(int fast) {
     }
 }
 
-/* Returns 1 if an access was too early since the last call. The register access also flushes posted
- * writes.
+/* Returns 1 if an access was too early since the last call. The access to the register also waits
+ * for posted writes.
  */
 static int wasLate(void) {
     if (!(FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_EVENT) & SYSTEM_EVENT_LATE_MASK))
@@ -181,7 +185,7 @@ static int wasLate(void) {
     return 1;
 }
 
-/* Returns the bytes up to the next multiple of `size`, at most `bytes`. */
+/* Returns the number of bytes up to the next multiple of `size`, at most `bytes`. */
 static U32 upTo(U32 address, U32 size, U32 bytes) {
     U32 left = size - (address & (size - 1U));
     return left < bytes ? left : bytes;
@@ -193,8 +197,8 @@ U32 FSMC_streamWrite(U32 address, const U16* data, U32 halfwords) {
     while (halfwords) {
         U32 i, part = upTo(address, 8U * REGION, 2U * halfwords) / 2U;
         U32 at = windowAddress(address);
-        (void)FSMC_read(MAP_SLOT_SYSTEM,
-                        SYSTEM_ID); /* register writes are posted, and NWAIT is off now */
+        (void)FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_ID); /* this read waits for posted register writes:
+                                                      * NWAIT is now off for the window */
         setBank(1);
         for (i = 0; i < part; ++i)
             fsmcPort->write16(fsmcContext, at + 2U * i, data[i]);
@@ -211,7 +215,7 @@ U32 FSMC_streamWrite(U32 address, const U16* data, U32 halfwords) {
     return repeated;
 }
 
-/* Reads with the bank's present timing. */
+/* Reads with the current timing of the bank. */
 static void readHalfwords(U32 at, U16* data, U32 halfwords) {
     U32 i;
     for (i = 0; i < halfwords; ++i)
@@ -225,8 +229,8 @@ U32 FSMC_streamRead(U32 address, U16* data, U32 halfwords) {
         U32 part = upTo(address, REGION, 2U * halfwords) / 2U;
         U32 at = windowAddress(address);
         if (address & (BLOCK - 1U)) {
-            /* A block is read from its beginning: only then the bridge has time to fetch the next
-             * one. */
+            /* Each block is read from its beginning, because only then does the bridge have time
+             * to fetch the next block. */
             part = upTo(address, BLOCK, 2U * part) / 2U;
             readHalfwords(at, data, part);
         } else {
@@ -275,7 +279,7 @@ static int isBad(const FSMC_Bank* bank) {
            (!isExtended(bank->writeMode) || timingIsBad(bank, &bank->write, bank->writeMode));
 }
 
-/* Returns a BTR or BWTR; its ACCMOD 0..3 are the modes A to D. */
+/* Returns a value for BTR or BWTR. ACCMOD 0..3 stands for modes A to D. */
 static U32 timing(const FSMC_Timing* time, U32 busturn, FSMC_Mode mode) {
     U32 accmod = isExtended(mode) ? (U32)mode - (U32)FSMC_MODE_A : 0U;
     return BTR_ADDSET(time->addset) | BTR_ADDHLD(time->addhld) | BTR_DATAST(time->datast) |

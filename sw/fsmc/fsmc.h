@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * fsmc: driver of the STM32F2's FSMC (RM0033, chapter 31) for the FPGA on bank 1, NE1 and NE2.
+ * fsmc: driver of the STM32F2's FSMC (RM0033, chapter 31) which connects the FPGA at bank 1 (NE1
+ * and NE2).
  *
  * NE1 is a 64 MiB window into DDR3, NE2 the control space of 64 slots with 16 words of 32 bits
  * each (bus/map.regs.json). Data is 16 bits wide; a 32-bit word is two accesses, low half first.
@@ -13,19 +14,19 @@
  *     }
  *
  * Register accesses are re-entrant. Memory accesses are re-entrant as long as all of them stay in
- * one page of 64 MiB (the driver moves the page register where one does not): else the callers
- * lock.
+ * one page of 64 MiB. For an address in another page the driver changes the page register; callers
+ * must then lock.
  */
 #pragma once
 
 #include "base.h"
 
-/* Loads and stores of the processor, which the driver needs. On the target they are volatile
- * accesses; on the host they go to the model of the FSMC peripheral and from there to the pins of
- * the RTL. Addresses are the Cortex-M3's: FSMC registers at 0xA0000000 (32 bits only), NE1 at
- * 0x60000000, NE2 at 0x64000000. The FSMC splits a 32-bit access to a window into two 16-bit
- * accesses, low half first, without an interrupt between them. FSMC_read and FSMC_write are one
- * such access each, so tasks and interrupt routines may both use them. An 8-bit access uses one
+/* Functions for loads and stores of the processor, which the driver calls. On the target they are
+ * volatile accesses; on the host they go to the model of the FSMC peripheral and from there to the
+ * pins of the RTL. Addresses are as on the Cortex-M3: FSMC registers at 0xA0000000 (32 bits only),
+ * NE1 at 0x60000000, NE2 at 0x64000000. The FSMC splits a 32-bit access to a window into two 16-bit
+ * accesses, low half first, without an interrupt between them. FSMC_read and FSMC_write make one
+ * 32-bit access each, so tasks and interrupt routines may both use them. An 8-bit access uses one
  * byte lane.
  */
 typedef struct FSMC_Port {
@@ -44,61 +45,65 @@ typedef enum FSMC_Status {
     FSMC_BAD_SETTING /* invalid setting of a bank (FSMC_initBanks) */
 } FSMC_Status;
 
-/* Programs BCRx and BTRx of both banks (asynchronous mode 1, 16 bits, NWAIT) and looks for the
- * system slot. `port` must stay valid. Returns FSMC_OK or FSMC_NO_DEVICE. */
+/* Programs BCRx and BTRx of both banks (asynchronous mode 1, 16 bits, NWAIT) and checks the ID of
+ * the system slot. `port` must stay valid. Returns FSMC_OK or FSMC_NO_DEVICE. */
 FSMC_Status FSMC_init(const FSMC_Port* port, void* context);
 
-/* Read and write a register: 32 bits, atomic. slot 0..63, word 0..15. */
+/* Read and write a register: 32 bits, in one atomic access. slot: 0..63; word: 0..15. */
 U32 FSMC_read(U32 slot, U32 word);
 void FSMC_write(U32 slot, U32 word, U32 value);
 
-/* Copy from and to DDR3: any byte address of the chip (the page register follows), any length. */
+/* Copy from and to DDR3, with any byte address of the chip and any length. The driver sets the
+ * page register. */
 void FSMC_readMemory(U32 address, U8* data, U32 bytes);
 void FSMC_writeMemory(U32 address, const U8* data, U32 bytes);
 
 /* Copy at the bridge's full speed, 24 to 30 million halfwords per second, without NWAIT. `address`
- * is even. The bridge's LATE event checks each part, and a part that was too early is repeated with
- * NWAIT. Returns the number of repeated halfwords (0 unless others keep the memory very busy). The
- * caller must lock the DDR3 window: no other code may use it meanwhile, not even interrupt
- * routines. Call FSMC_setHclk first (otherwise copying is slow): HCLK in Hz, at most 120
- * million. */
+ * must be even. After each part the driver checks the bridge's LATE event; a part that was accessed
+ * too early is repeated with NWAIT. Returns the number of repeated halfwords (0 unless other ports
+ * keep the memory very busy). The caller must lock the DDR3 window: no other code may use it during
+ * the copy, not even interrupt routines. Call FSMC_setHclk first, with HCLK in Hz, at most 120
+ * million; otherwise copying is slow. */
 void FSMC_setHclk(U32 hz);
 U32 FSMC_streamWrite(U32 address, const U16* data, U32 halfwords);
 U32 FSMC_streamRead(U32 address, U16* data, U32 halfwords);
 
-/* Reads and clears the bridge's error event. Returns FSMC_OK, or FSMC_BUS_ERROR: then `where`, if
- * not 0, becomes slot * 16 + word of the last such access, with bit 16 set for a write. */
+/* Reads and clears the bridge's error event. Returns FSMC_OK, or FSMC_BUS_ERROR: in the second case
+ * `where`, if it is not 0, is set to slot * 16 + word of the last access with an error; bit 16 is
+ * set for a write. */
 FSMC_Status FSMC_checkError(U32* where);
 
-/* Other modes, for bridges that are built for them: contents of a bank's BCR, BTR and BWTR (RM0033,
- * 31.5.6). Not needed with FSMC_init. */
+/* Settings for bridges that are built for another FSMC mode: contents of a bank's BCR, BTR and BWTR
+ * (RM0033, 31.5.6). Not needed with FSMC_init. */
 typedef enum FSMC_Mode {
-    FSMC_MODE_1, /* SRAM: read and write alike */
-    FSMC_MODE_2, /* NOR: read and write alike */
-    FSMC_MODE_A, /* A to D: EXTMOD, with separate mode and times for writes */
+    FSMC_MODE_1, /* SRAM mode; the same timing for reads and writes */
+    FSMC_MODE_2, /* NOR mode; the same timing for reads and writes */
+    FSMC_MODE_A, /* modes A to D: EXTMOD, with a separate mode and timing for writes */
     FSMC_MODE_B,
     FSMC_MODE_C,
     FSMC_MODE_D
 } FSMC_Mode;
 
-/* Times of an access in HCLK: ADDSET 0..15, ADDHLD 1..15 (mode D and multiplexed), DATAST 1..255 (4
- * at least with NWAIT). */
+/* Timing of an access, in HCLK cycles: ADDSET 0..15, ADDHLD 1..15 (mode D and multiplexed),
+ * DATAST 1..255 (at least 4 with NWAIT). */
 typedef struct FSMC_Timing {
     U8 addset, addhld, datast;
 } FSMC_Timing;
 
 typedef struct FSMC_Bank {
     FSMC_Mode mode;
-    FSMC_Mode writeMode;     /* for modes A to D */
+    FSMC_Mode writeMode;     /* mode of writes, for modes A to D */
     U8 psram;                /* MTYP for modes 1 and A: 1 PSRAM, 0 SRAM */
     U8 muxed;                /* MUXEN: address bits 15..0 on the data pins (the bridge's MUXED) */
-    U8 wait;                 /* ASYNCWAIT: asynchronous accesses look at NWAIT */
+    U8 wait;                 /* ASYNCWAIT: asynchronous accesses wait for NWAIT */
     U8 waitHigh;             /* WAITPOL: NWAIT is active high (WAIT_HIGH) */
-    U8 busturn;              /* BUSTURN, HCLK, 1..15 */
-    FSMC_Timing read, write; /* modes 1 and 2: only `read`, for both */
+    U8 busturn;              /* BUSTURN, HCLK cycles, 1..15 */
+    FSMC_Timing read, write; /* timing of reads and writes; modes 1 and 2 use only `read`, for
+                              * both */
 } FSMC_Bank;
 
-/* Initialises like FSMC_init, but with these settings of NE1 and NE2. Returns FSMC_BAD_SETTING, and
- * writes nothing, if a setting is reserved or out of range. Streams (FSMC_streamRead,
- * FSMC_streamWrite) only work with the plain bridge and the settings of FSMC_init. */
+/* Initialises the FSMC as FSMC_init does, but with the given settings of NE1 and NE2. If a setting
+ * is reserved or out of range, returns FSMC_BAD_SETTING and writes no register. Streams
+ * (FSMC_streamRead, FSMC_streamWrite) only work with the plain bridge and the settings of
+ * FSMC_init. */
 FSMC_Status FSMC_initBanks(const FSMC_Port* port, void* context, const FSMC_Bank banks[2]);

@@ -34,18 +34,18 @@ public:
     enum Type : uint8_t {
         Transmit = 0x01,
         Command = 0x08,
-        Wide = 0x80, // as Packet, but from a modem without a 16-bit address
+        Wide = 0x80, // received packet from a modem without a 16-bit address
         Packet = 0x81,
         Answer = 0x88,
         Status = 0x89,
         Event = 0x8A
     };
-    static constexpr int noAddress = -1; // a source without a 16-bit address
+    static constexpr int noAddress = -1; // value for a source without a 16-bit address
 
-    // `escapes`: AP is 2.
+    // `escapes` is true if AP is 2.
     explicit ApiFrames(bool escapes = false) : escapes_(escapes) {}
 
-    // Returns the frame of these contents.
+    // Returns a frame with these contents.
     Bytes pack(const Bytes& contents) const {
         Bytes frame = {delimiter};
         put(frame, static_cast<uint8_t>(contents.size() >> 8));
@@ -106,7 +106,8 @@ public:
 
 private:
     static constexpr uint8_t delimiter = 0x7E, escape = 0x7D, escapeXor = 0x20;
-    static constexpr size_t longest = 120; // contents: a packet from a 64-bit address, and more
+    static constexpr size_t longest = 120; // longest contents: those of a packet from a 64-bit
+                                           // address, with a margin
 
     // Returns the offset of the data in a packet; 0 for other frames.
     static size_t headOf(uint8_t type) { return type == Packet ? 5 : type == Wide ? 11 : 0; }
@@ -120,17 +121,18 @@ private:
             frame.push_back(escape);
         frame.push_back(isEscaped ? byte ^ escapeXor : byte);
     }
-    // Reads the contents received so far of the frame with its delimiter at `at`. Returns the
-    // number of bytes used; 0 if the frame is incomplete.
+    // Reads the contents received so far of the frame that has its delimiter at `at`. Returns the
+    // number of bytes used, or 0 if the frame is incomplete.
     size_t read(size_t at) {
-        Bytes& plain = contents_; // including length and checksum until the frame is complete
+        Bytes& plain = contents_; // these include the length, and the checksum once the frame is
+                                  // complete
         isWhole_ = false;
         plain.clear();
         size_t length = 0, used = 0, i = at + 1;
         for (; i < in_.size() && !used; ++i) {
             uint8_t byte = in_[i];
             if (escapes_ && byte == delimiter) {
-                used = i - at; // another frame begins
+                used = i - at; // the delimiter of another frame
                 break;
             }
             if (escapes_ && byte == escape) {
@@ -158,10 +160,11 @@ private:
     }
 
     bool escapes_;
-    Bytes in_;             // starting at the delimiter of the current frame
+    Bytes in_;             // bytes received, starting at the delimiter of the current frame
     Bytes contents_;       // contents of the last frame read
-    bool isWhole_ = false; // complete, with a correct checksum
-    size_t given_ = 0;     // bytes of the current frame's contents already passed on
+    bool isWhole_ = false; // true if the frame is complete and has a correct checksum
+    size_t given_ = 0;     // number of bytes of the current frame's contents that were already
+                           // passed on
 };
 
 // A modem in API mode; times in microseconds, 32 bits that wrap.
@@ -171,13 +174,14 @@ public:
 
     explicit ApiModem(bool escapes) : frames_(escapes) {}
 
-    // Returns the bytes for the line that send a packet, and first set RN if it changes.
+    // Returns the bytes for the line that send a packet. If RN changes, they first set RN.
     Bytes packet(int target, const uint8_t* data, size_t size, uint32_t rn, uint32_t now) {
         Bytes bytes;
         if (rn != rn_)
             bytes = frames_.command(0, "RN", {static_cast<uint8_t>(rn)});
         rn_ = rn;
-        const bool isAnswered = target != everybody; // else ID is 0
+        const bool isAnswered = target != everybody; // otherwise ID is 0, and the modem sends no
+                                                     // result
         if (isAnswered) {
             id_ = id_ == 0xFF ? 1 : id_ + 1;
             waiting_.push_back({id_, now});
@@ -187,8 +191,8 @@ public:
         bytes.insert(bytes.end(), frame.begin(), frame.end());
         return bytes;
     }
-    // Takes bytes from the modem. Calls `data(source, bytes, count)` with the bytes of packets, and
-    // `answer(isThere)` for each packet sent, in order.
+    // Processes bytes from the modem. Calls `data(source, bytes, count)` with the bytes of packets,
+    // and `answer(isThere)` for each sent packet, in order.
     template <class Data, class Answer>
     void feed(const uint8_t* bytes, size_t count, const Data& data, const Answer& answer) {
         frames_.feed(bytes, count, data, [&](const Bytes& frame) {
@@ -197,13 +201,14 @@ public:
                              [&](const Packet& p) { return p.id == frame[1]; }))
                 return;
             for (bool isLast = false; !isLast;) {
-                isLast = waiting_.front().id == frame[1]; // the line lost the other replies
+                isLast = waiting_.front().id == frame[1]; // the line lost the results of the
+                                                          // packets before this one
                 waiting_.pop_front();
                 answer(isLast && frame[2] == 0);
             }
         });
     }
-    // Calls `lost()` for each packet that the modem will not answer for any more.
+    // Calls `lost()` for each packet that the modem will no longer answer.
     template <class Lost> void expire(uint32_t now, const Lost& lost) {
         for (; !waiting_.empty() && now - waiting_.front().at >= LINK_ANSWER_LAST; lost())
             waiting_.pop_front();
@@ -212,12 +217,12 @@ public:
 private:
     struct Packet {
         uint8_t id;
-        uint32_t at; // time of hand-over
+        uint32_t at; // time at which the packet was handed over
     };
     ApiFrames frames_;
-    uint32_t rn_ = LINK_WAIT_SHARED; // as set-up leaves it
+    uint32_t rn_ = LINK_WAIT_SHARED; // RN of the modem; at first the value that set-up has written
     uint8_t id_ = 0;
-    std::deque<Packet> waiting_; // without an answer
+    std::deque<Packet> waiting_; // packets without a result
 };
 
 } // namespace XBeeAT

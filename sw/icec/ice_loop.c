@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_loop: handles what arrives on connections, and waits for it.
+ * ice_loop: waits for events of connections, and handles them.
  */
 #include "ice_private.h"
 
-/* Marks a connection as open for calls, after the first message of the peer. */
+/* Marks a connection as open for calls. This is done after the peer's first message. */
 static void validate(Ice_CommunicatorPtr ic, int connection) {
     icec_lock(ic, ICE_LOCK_STATE);
     ic->connections[connection].state = ICE_CONNECTION_OPEN;
@@ -12,8 +12,8 @@ static void validate(Ice_CommunicatorPtr ic, int connection) {
     icec_unlock(ic, ICE_LOCK_STATE);
 }
 
-/* Handles a message. Returns ICE_OK, or why the connection must be closed: a malformed message
- * loses it. */
+/* Handles a message. Returns ICE_OK, or the status with which the connection must be closed.
+ * After a malformed message the connection is lost. */
 static Ice_Status takeMessage(Ice_CommunicatorPtr ic, int connection, const Ice_Byte* in,
                               Ice_Int size) {
     Ice_InputStream is;
@@ -35,8 +35,8 @@ static Ice_Status takeMessage(Ice_CommunicatorPtr ic, int connection, const Ice_
     case ICEC_CLOSE:
         return ICE_CONNECTION_CLOSED;
     default:
-        /* A compressed request cannot be answered; closing informs its caller that it was not
-         * executed. */
+        /* A compressed request cannot be answered. Closing the connection informs its caller
+         * that the request was not executed. */
         if (type > 0xFF)
             (void)icec_sendHead(ic, connection, ICEC_CLOSE);
         return ICE_CONNECTION_LOST;
@@ -48,7 +48,8 @@ static Ice_Status takeEvent(Ice_CommunicatorPtr ic, const Ice_Byte* in, const Ic
     Ice_Status end = ICE_CONNECTION_LOST;
     if (event->kind == ICE_EVENT_NONE)
         return ICE_TIMEOUT;
-    if (event->kind == ICE_EVENT_OPENED) { /* the side that accepts a connection speaks first */
+    if (event->kind == ICE_EVENT_OPENED) { /* the side that accepts a connection sends the first
+                                            * message */
         int isRefused;
         icec_lock(ic, ICE_LOCK_STATE);
         isRefused = ic->stopping;
@@ -71,9 +72,9 @@ static Ice_Status takeEvent(Ice_CommunicatorPtr ic, const Ice_Byte* in, const Ic
     return ICE_OK;
 }
 
-/* Finds a connection with callers that wait for an operation and are due a heartbeat, and records
- * the heartbeat; returns -1 if none. Shortens `waitMs` to the next heartbeat; under the
- * state lock. */
+/* Finds a connection on which a heartbeat is due because callers wait for an operation, and
+ * records the heartbeat. Returns -1 if there is none. Shortens `waitMs` to the time until the
+ * next heartbeat. The caller holds the state lock. */
 static int heartbeatDue(Ice_CommunicatorPtr ic, U32 now, Ice_Int* waitMs) {
     int c, due = -1;
     for (c = 0; c < ICE_TRANSPORTS * ICE_CONNECTIONS && due < 0; ++c) {
@@ -93,7 +94,7 @@ static int heartbeatDue(Ice_CommunicatorPtr ic, U32 now, Ice_Int* waitMs) {
 }
 
 /* Sends the heartbeats that are due, and ends asynchronous calls that have timed out. Shortens
- * `waitMs` to the time until the next. Returns whether shutdown was called. */
+ * `waitMs` to the time until the next such event. Returns whether shutdown was called. */
 static int keepTimes(Ice_CommunicatorPtr ic, Ice_Int* waitMs) {
     for (;;) {
         U32 now = icec_nowMs(ic);
@@ -114,10 +115,11 @@ static int keepTimes(Ice_CommunicatorPtr ic, Ice_Int* waitMs) {
     }
 }
 
-/* Events after which a busy transport passes the turn to the others. */
+/* Number of events after which a busy transport gives the turn to the other transports. */
 #define TURN_EVENTS 32
 
-/* Receives from the transport with the turn; a silent one passes it on. */
+/* Receives from the transport that has the turn. If nothing arrives, the next transport gets the
+ * turn. */
 static Ice_Status receive(Ice_CommunicatorPtr ic, Ice_Byte* in, Ice_Int timeoutMs,
                           Ice_Event* event) {
     const Ice_Transport* t = ic->transports + (ICE_TRANSPORTS == 1 ? 0 : ic->turn);
@@ -135,12 +137,12 @@ static Ice_Status receive(Ice_CommunicatorPtr ic, Ice_Byte* in, Ice_Int timeoutM
     return status;
 }
 
-#define SERVE (-1) /* instead of a time: until shutdown is called */
+#define SERVE (-1) /* value for timeoutMs: until shutdown is called */
 #define POLL_MS 1000
 
-/* Handles at most one event, of the transport with the turn; for the task with the role of the
- * receiver. ICE_TIMEOUT: no event; ICE_LIMIT: ICE_NESTING; ICE_CONNECTION_CLOSED: the end of
- * SERVE. */
+/* Handles at most one event of the transport that has the turn. The calling task has the role of
+ * the receiver. Returns ICE_TIMEOUT without an event, ICE_LIMIT if ICE_NESTING is reached, and
+ * ICE_CONNECTION_CLOSED at the end of SERVE. */
 static Ice_Status receiveOne(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
     Ice_Event event;
     Ice_Status status;
@@ -161,19 +163,21 @@ static Ice_Status receiveOne(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
 }
 
 /* ---- which of several tasks receives ----
- * One task at a time holds the role: a server (waitForShutdown, poll) as soon as it can get it,
- * otherwise a task that waits for a reply (a leader), while it waits. `receiver` and `servers`
- * change only under the state lock. A task that leaves the role wakes another one that may want it.
+ * One task at a time has the role of the receiver. A server (waitForShutdown, poll) takes the role
+ * as soon as it can. Without a server, a task that waits for a reply (a leader) has the role while
+ * it waits. `receiver` and `servers` are only changed by a task that holds the state lock. A task
+ * that leaves the role wakes another one that may want it.
  */
 
 typedef enum Role {
-    ROLE_NONE,  /* another task has it */
-    ROLE_TAKEN, /* to be returned by giveRole */
-    ROLE_HAD    /* this task already had it: an operation makes the call */
+    ROLE_NONE,  /* another task has the role */
+    ROLE_TAKEN, /* this task has taken the role, and must return it with giveRole */
+    ROLE_HAD    /* this task already had the role: it makes the call within an operation */
 } Role;
-#define FOREVER 0x7FFFFFFF /* a time-out: until the role is free, or shutdown is called */
+/* time-out value: until the role is free, or until shutdown is called */
+#define FOREVER 0x7FFFFFFF
 
-/* Gives up the role, and wakes a task that may want it; under the state lock. */
+/* Gives up the role and wakes a task that may want it. The caller holds the state lock. */
 static void giveUp(Ice_CommunicatorPtr ic) {
     ic->receiver = -1;
     if (ic->servers)
@@ -191,7 +195,7 @@ static Role takeRole(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
     if (ic->receiver == task) {
         role = ROLE_HAD;
     } else {
-        ++ic->servers; /* a leader that sees this gives the role up */
+        ++ic->servers; /* a leader that reads this gives the role up */
         while (ic->receiver >= 0) {
             Ice_Int left = FOREVER;
             if (timeoutMs != FOREVER)
@@ -209,7 +213,8 @@ static Role takeRole(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
         else
             ic->receiver = task;
         if (ic->stopping && ic->servers)
-            ic->os->wake(ic->osContext, ICEC_SERVER_SLOT); /* the next server to leave */
+            ic->os->wake(ic->osContext, ICEC_SERVER_SLOT); /* wakes the next server that has to
+                                                            * leave */
     }
     icec_unlock(ic, ICE_LOCK_STATE);
     return role;
@@ -222,7 +227,7 @@ static void giveRole(Ice_CommunicatorPtr ic) {
 }
 
 /* Returns whether a task that waits for a reply must receive now. Such a task leads (`leads`) if no
- * other task has or wants the role, and hands it to a server that wants it. */
+ * other task has or wants the role, and gives the role to a server that wants it. */
 static int mayReceive(Ice_CommunicatorPtr ic, int* leads) {
     int task = ic->os->task(ic->osContext), may;
     icec_lock(ic, ICE_LOCK_STATE);
@@ -243,7 +248,7 @@ void Ice_Communicator_waitForShutdown(Ice_CommunicatorPtr ic) {
     while (role != ROLE_NONE && receiveOne(ic, SERVE) != ICE_CONNECTION_CLOSED) {
     }
     if (role == ROLE_TAKEN)
-        giveRole(ic); /* a task that waits for a reply receives it now */
+        giveRole(ic); /* gives the role to a task that waits for a reply */
 }
 
 Ice_Status Ice_Communicator_poll(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
@@ -283,6 +288,6 @@ Ice_Status icec_await(Ice_CommunicatorPtr ic, int (*waits)(Ice_CommunicatorPtr i
         status = ICE_OK;
     }
     if (leads)
-        giveRole(ic); /* the next one takes over */
+        giveRole(ic); /* gives the role to the next server */
     return status;
 }

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_stream: Ice's types, and their encodings 1.0 and 1.1. Errors stick: one check at the end is
- * enough.
+ * ice_stream: Ice's types, and their encodings 1.0 and 1.1. A failed stream stays failed, so one
+ * check at the end is enough.
  *
- * Streams do not allocate and share nothing: a stream is used by one task, different streams by
- * any.
+ * Streams allocate no memory and share nothing. One stream is used by one task; different tasks may
+ * use different streams.
  */
 #pragma once
 
@@ -22,7 +22,8 @@ typedef struct Ice_Long {
     S32 high;
 } Ice_Long;
 
-/* A string by its size: not terminated, it points into a message or at the caller's text. */
+/* A string with its size. It has no end mark, and points into a message or to text of the
+ * caller. */
 typedef struct Ice_String {
     Ice_Int size;
     const char* data;
@@ -30,7 +31,7 @@ typedef struct Ice_String {
 
 Ice_String Ice_String_from(const char* terminated);
 int Ice_String_equals(Ice_String a, const char* terminated);
-/* The same by pointer, which makes shorter code. */
+/* Compares a string, passed by pointer because that makes shorter code. */
 int Ice_String_is(const Ice_String* a, const char* terminated);
 int Ice_String_same(const Ice_String* a, const Ice_String* b);
 
@@ -41,7 +42,7 @@ int Ice_String_copy(Ice_String s, char* to, Ice_Int size);
  */
 #define ICE_PRINTF(s) (int)(s).size, (s).data ? (s).data : ""
 
-/* Converts Ice_Long from and to long long, if the compiler has it. */
+/* Converts Ice_Long from and to `long long`, if the compiler has this type. */
 #if (defined(__STDC_VERSION__) && __STDC_VERSION__ >= 199901L) || \
     (defined(__cplusplus) && __cplusplus >= 201103L)
 static inline Ice_Long Ice_Long_from(long long v) {
@@ -59,11 +60,11 @@ struct Ice_Communicator;
 struct Ice_OutputValues; /* ice_value.h */
 struct Ice_InputValues;
 
-/* Reasons for a stream's failure: malformed bytes, or the limit that was reached. The first
- * stays. */
+/* Reasons of a stream's failure: malformed bytes, or a limit. The first reason is kept. */
 typedef enum Ice_Failed {
     ICE_FAILED_MALFORMED = 1,
-    ICE_FAILED_RESULT, /* the buffer is full: ICE_RESULT_MAX unless stated otherwise */
+    ICE_FAILED_RESULT, /* the output buffer is full; its limit is ICE_RESULT_MAX unless stated
+                        * otherwise */
     ICE_FAILED_REQUEST,
     ICE_FAILED_REPLY,
     ICE_FAILED_ARENA,
@@ -71,25 +72,26 @@ typedef enum Ice_Failed {
     ICE_FAILED_VALUE_TYPES,
     ICE_FAILED_IDENTITY,
     ICE_FAILED_ENDPOINT,
-    ICE_FAILED_CALLS, /* of calls, not of streams: ICE_LIMIT */
+    ICE_FAILED_CALLS, /* the limit of calls: reason of an ICE_LIMIT, not of a stream */
     ICE_FAILED_CONNECTIONS,
     ICE_FAILED_NESTING,
     ICE_FAILED_BOUND /* limit of a type in Slice, ["c:max:N"], named by the stream's `bound` */
 } Ice_Failed;
 
-/* Returns the reason as text: the limit, its macro and its value. `bound`: the stream's. */
+/* Returns the reason as text: the limit, its macro and its value. `bound` is the field of the
+ * stream. */
 const char* Ice_Failed_text(Ice_Byte failed, const char* bound);
 
 typedef struct Ice_OutputStream {
     Ice_Byte* data;
     Ice_Int size, capacity;
-    Ice_Byte minor;  /* encoding 1.minor */
-    Ice_Byte failed; /* Ice_Failed; 0: no failure */
-    Ice_Byte
-        sliced; /* user exceptions in the sliced format: a peer can skip slices it does not know */
+    Ice_Byte minor;  /* minor version of the encoding: 1.minor */
+    Ice_Byte failed; /* reason of the failure (Ice_Failed); 0 without a failure */
+    Ice_Byte sliced; /* 1: user exceptions are in the sliced format, so that a peer can skip slices
+                      * it does not know */
     Ice_Byte sliceFlags;             /* flags of the current slice */
-    const char* bound;               /* reason as text, with ICE_FAILED_BOUND */
-    struct Ice_OutputValues* values; /* class instances; 0 before the first one */
+    const char* bound;               /* text of the reason ICE_FAILED_BOUND */
+    struct Ice_OutputValues* values; /* table of class instances; 0 before the first one */
 } Ice_OutputStream, *Ice_OutputStreamPtr;
 
 typedef struct Ice_InputStream {
@@ -98,12 +100,14 @@ typedef struct Ice_InputStream {
     Ice_Byte minor;
     Ice_Byte failed;
     Ice_Byte sliceFlags;                   /* flags of the current slice; 0 outside a slice */
-    const char* bound;                     /* reason as text, with ICE_FAILED_BOUND */
-    Ice_Int sliceEnd;                      /* 0: not known */
-    U32* arena;                            /* for decoded sequences */
-    Ice_Int arenaUsed, arenaSize;          /* in words of 4 bytes */
-    struct Ice_Communicator* communicator; /* communicator of the proxies that are read */
-    struct Ice_InputValues* values;        /* class instances; 0 before the first one */
+    const char* bound;                     /* text of the reason ICE_FAILED_BOUND */
+    Ice_Int sliceEnd;                      /* end of the current slice; 0 if it is not known */
+    U32* arena;                            /* memory for decoded sequences */
+    Ice_Int arenaUsed, arenaSize;          /* used part and size of the arena, in words of 4
+                                            * bytes */
+    struct Ice_Communicator* communicator; /* communicator of proxies that are read from the
+                                            * stream */
+    struct Ice_InputValues* values;        /* table of class instances; 0 before the first one */
 } Ice_InputStream, *Ice_InputStreamPtr;
 
 /* ---- writing ---- */
@@ -120,13 +124,14 @@ void Ice_OutputStream_writeDouble(Ice_OutputStreamPtr os, Ice_Double v);
 void Ice_OutputStream_writeSize(Ice_OutputStreamPtr os, Ice_Int v);
 void Ice_OutputStream_writeString(Ice_OutputStreamPtr os, Ice_String v);
 void Ice_OutputStream_writeText(Ice_OutputStreamPtr os, const char* terminated);
-/* Writes an enumerator; `largest`, the greatest one, chooses the width in encoding 1.0. */
+/* Writes an enumerator. `largest` is the enum's greatest value, which determines the width in
+ * encoding 1.0. */
 void Ice_OutputStream_writeEnum(Ice_OutputStreamPtr os, Ice_Int v, Ice_Int largest);
 /* An enumerator of a small enum is a byte in both encodings. */
 #define Ice_OutputStream_writeEnum(os, v, largest)                   \
     ((largest) < 127 ? Ice_OutputStream_writeByte(os, (Ice_Byte)(v)) \
                      : (Ice_OutputStream_writeEnum)(os, v, largest))
-/* Reserves a size of 4 bytes that does not count itself; endSize writes it. */
+/* Reserves 4 bytes for a size, which endSize writes. The size does not include these 4 bytes. */
 Ice_Int Ice_OutputStream_startSize(Ice_OutputStreamPtr os);
 void Ice_OutputStream_endSize(Ice_OutputStreamPtr os, Ice_Int begin);
 /* Overwrites the four bytes at `at`. */
@@ -135,7 +140,8 @@ void icec_patchInt(Ice_OutputStreamPtr os, Ice_Int at, Ice_Int value);
 /* ---- reading ---- */
 
 void Ice_InputStream_init(Ice_InputStreamPtr is, const Ice_Byte* data, Ice_Int size);
-const Ice_Byte* Ice_InputStream_readBlob(Ice_InputStreamPtr is, Ice_Int size); /* 0 on failure */
+const Ice_Byte* Ice_InputStream_readBlob(Ice_InputStreamPtr is, Ice_Int size); /* Returns 0 on
+                                                                                * failure. */
 Ice_Byte Ice_InputStream_readByte(Ice_InputStreamPtr is);
 Ice_Bool Ice_InputStream_readBool(Ice_InputStreamPtr is);
 Ice_Short Ice_InputStream_readShort(Ice_InputStreamPtr is);
@@ -150,8 +156,8 @@ Ice_Int Ice_InputStream_readEnum(Ice_InputStreamPtr is, Ice_Int largest);
 /* Reads the size of a sequence with elements of at least `least` bytes each. A size beyond the
  * message fails the stream. */
 Ice_Int Ice_InputStream_readSequence(Ice_InputStreamPtr is, Ice_Int least);
-/* Returns room for `count` elements of `bytes` each, aligned to 8; 0 without room, which fails the
- * stream. */
+/* Returns room for `count` elements of `bytes` bytes each, aligned to 8. Without room, returns 0
+ * and fails the stream. */
 void* Ice_InputStream_allocate(Ice_InputStreamPtr is, Ice_Int count, Ice_Int bytes);
 
 /* ---- optional values: encoding 1.1 only ---- */
@@ -162,42 +168,45 @@ enum {
     ICE_OPTIONAL_F4,
     ICE_OPTIONAL_F8,    /* 1, 2, 4, 8 bytes */
     ICE_OPTIONAL_SIZE,  /* an enum */
-    ICE_OPTIONAL_VSIZE, /* a size, then that many bytes */
-    ICE_OPTIONAL_FSIZE, /* the same with a size of 4 bytes */
+    ICE_OPTIONAL_VSIZE, /* a size, followed by that number of bytes */
+    ICE_OPTIONAL_FSIZE, /* a size of 4 bytes, followed by that number of bytes */
     ICE_OPTIONAL_CLASS
 };
 
-/* Begins a present value, after the required ones, by ascending tag. Returns 0 if the encoding has
- * no optional values: then write nothing. */
+/* Begins an optional value that is present. Optional values follow the required ones, in the order
+ * of their tags. Returns 0 if the encoding has no optional values: the caller then writes
+ * nothing. */
 Ice_Bool Ice_OutputStream_writeOptional(Ice_OutputStreamPtr os, Ice_Int tag, Ice_Int format);
-/* Returns 1 if the value is there: it follows. Unknown tags before it are skipped.
- */
+/* Returns 1 if the optional value with this tag is present; its bytes follow. Unknown tags
+ * before it are skipped. */
 Ice_Bool Ice_InputStream_readOptional(Ice_InputStreamPtr is, Ice_Int tag, Ice_Int format);
 /* Skips the remaining optional values of the slice or encapsulation. */
 void Ice_InputStream_skipOptionals(Ice_InputStreamPtr is);
 
 /* Ends the reading of parameters, results or an exception: skips remaining optional values, and
  * fails the stream if other bytes follow, as stock Ice does. Returns is->failed. The minimal run
- * time ignores what follows. */
+ * time ignores such bytes. */
 #ifdef ICEC_MINIMAL
 #define Ice_InputStream_end(is) ((is)->failed)
 #define Ice_InputStream_endEmpty(is) ((void)(is), 0)
 #else
 Ice_Bool Ice_InputStream_end(Ice_InputStreamPtr is);
-/* The same without parameters: 1.1 allows any that a newer peer has added, 1.0 none. */
+/* Ends the reading of parameters, results or an exception without members. In encoding 1.1
+ * optional values that a newer peer has added are skipped; encoding 1.0 has no optional values. */
 Ice_Bool Ice_InputStream_endEmpty(Ice_InputStreamPtr is);
 #endif
 
 /* ---- user exceptions: slices, the most derived one first ---- */
 
 void Ice_OutputStream_startException(Ice_OutputStreamPtr os, Ice_Bool usesClasses);
-/* Begins a slice. Returns endSlice's `begin`. */
+/* Begins a slice. Returns the position that endSlice needs as `begin`. */
 Ice_Int Ice_OutputStream_startSlice(Ice_OutputStreamPtr os, const char* typeId, Ice_Bool last);
 void Ice_OutputStream_endSlice(Ice_OutputStreamPtr os, Ice_Int begin, Ice_Bool last);
 
 void Ice_InputStream_startException(Ice_InputStreamPtr is);
-/* Begins to read a slice. Returns its type id; empty after the last slice. */
+/* Begins to read a slice. Returns its type id, or an empty string after the last slice. */
 Ice_String Ice_InputStream_startSlice(Ice_InputStreamPtr is);
-/* Skips to the next slice. Returns 0 if none, or the format does not give its position. */
+/* Skips to the next slice. Returns 0 if no slice follows, or if the format does not contain the
+ * position of the next one. */
 Ice_Bool Ice_InputStream_skipSlice(Ice_InputStreamPtr is);
 void Ice_InputStream_endSlice(Ice_InputStreamPtr is);

@@ -36,7 +36,7 @@
 #include "link_search.h"
 #endif
 
-typedef struct Link Link; /* its fields are private */
+typedef struct Link Link; /* an opaque type: its fields are private */
 
 /* Configuration of a link. It is copied; `port` and the buffers must stay valid. */
 typedef struct Link_Config {
@@ -45,14 +45,16 @@ typedef struct Link_Config {
     U32 byteTimeUs16; /* time of one byte on the slowest part of the path, 1/16 us (111,111 baud:
                        * 1440), for pacing and timers */
 #ifndef LINK_MINIMAL
-    U8* send;      /* queue of outgoing messages */
-    U32 sendBytes; /* its size, bytes: a power of two, at least 1024, at most 32,768. Messages up to
-                    * sendBytes - LINK_RESERVE - LINK_CHECK bytes can be sent */
-    U8* message;   /* message being assembled: LINK_ROOM(maxMessage) bytes */
-    U32 maxMessage;           /* largest message that can arrive, bytes; at most LINK_MAX_MESSAGE */
-    Link_Fragment* fragments; /* window of fragments in flight */
-    Link_ReorderSlot* slots;  /* fragments that arrived before their turn */
-    U32 window;               /* size of both arrays: a power of two, 4 to LINK_WINDOW */
+    U8* send;       /* ring for the queue of outgoing messages */
+    U32 sendBytes;  /* size of `send` in bytes: a power of two, 1024 to 32,768. The largest
+                     * message that can be sent has sendBytes - LINK_RESERVE - LINK_CHECK bytes */
+    U8* message;    /* buffer for the incoming message: LINK_ROOM(maxMessage) bytes */
+    U32 maxMessage; /* size of the largest message that can arrive, bytes; at most
+                     * LINK_MAX_MESSAGE */
+    Link_Fragment* fragments; /* array for the fragments in flight */
+    Link_ReorderSlot* slots;  /* array for fragments that arrived out of order */
+    U32 window;               /* number of elements of both arrays: a power of two, 4 to
+                               * LINK_WINDOW */
 #endif
 } Link_Config;
 
@@ -66,22 +68,23 @@ typedef struct Link_Config {
         U8 message[LINK_ROOM(maxMessage)];          \
     }
 
-/* Sets the fields of a Link_Config starting with `send` to such buffers. */
+/* Initialises the fields of a Link_Config from `send` to `window` with such buffers. */
 #define LINK_USE(buffers)                                                              \
     (buffers).send, sizeof(buffers).send, (buffers).message,                           \
         sizeof(buffers).message - LINK_ROOM(0U), (buffers).fragments, (buffers).slots, \
         sizeof(buffers).slots / sizeof(Link_ReorderSlot)
 
-/* Buffers of the sizes in link_config.h. */
+/* Buffers with the default sizes of link_config.h. */
 typedef LINK_BUFFERS(LINK_SEND_BYTES, LINK_MAX_MESSAGE, LINK_WINDOW) Link_Buffers;
 #endif
 
-/* Prepares `link`. */
+/* Initialises `link` with a copy of `config`. */
 void Link_init(Link* link, const Link_Config* config);
 
 #ifndef LINK_MINIMAL
-/* Limits the size of later frames, bytes, 32 (under a key 59) to LINK_MAX_FRAME: a modem that
- * encrypts splits packets longer than LINK_MAX_ENCRYPTED. The two sides may differ. */
+/* Limits the size of later frames, in bytes, from 32 (with a key, 59) to LINK_MAX_FRAME. A modem
+ * that encrypts splits packets longer than LINK_MAX_ENCRYPTED. The two sides may have different
+ * limits. */
 void Link_limitFrame(Link* link, U32 bytes);
 
 /* Sets the vehicle's key for slot 0 or 1: LINK_KEY_BYTES bytes shared by both sides; they are
@@ -89,17 +92,18 @@ void Link_limitFrame(Link* link, U32 bytes);
  * possible between a ground station and the vehicle with that address, even if others have the key.
  * `key` 0 wipes the slot, and ends a session made with it. After the first key, sessions are
  * authenticated and encrypted, and a peer without the key is refused permanently: with both slots
- * wiped no session is possible. The layer sends HELLO under the keys of both slots in turn and
- * answers a HELLO under either. Call it after Link_init. */
+ * wiped no session is possible. The layer sends HELLO frames with the keys of both slots in turn,
+ * and answers a HELLO with either key. Call it after Link_init. */
 void Link_setKey(Link* link, int slot, const U8* key, U32 side);
 
-/* Returns the slot of the key that made the current session; -1 without a session or a key. */
+/* Returns the slot of the key with which the current session was made; -1 without a session or
+ * without a key. */
 int Link_keyInUse(const Link* link);
 #endif
 
-/* Starts the handshake. Both sides may do so; the HELLO of either makes the session. A side that
- * never calls it still answers a HELLO. After the peer has vanished, the state is CONNECTING
- * again. */
+/* Starts the handshake. Either side or both may start it; one HELLO is enough to make the
+ * session. A side that never calls this function still answers a HELLO. If the peer disappears
+ * later, the state is CONNECTING again. */
 void Link_start(Link* link, U32 nowUs);
 
 /* Ends the session: informs the peer, reports messages in flight as LINK_UNKNOWN, goes to IDLE. */
@@ -116,15 +120,16 @@ Link_Status Link_openChannel(Link* link, int channel);
 Link_Status Link_closeChannel(Link* link, int channel);
 
 #ifndef LINK_MINIMAL
-/* Sets how many packets may wait for the radio's result (Link_answer); 0: the radio reports none.
- * Results pace packets, and the contents of a lost packet are sent again at once. Two packets fill
- * the air if the line to the modem is faster: one is on the air, one waits in the modem. A line of
- * 111,111 baud needs three. A call waits for all of them. */
+/* Sets how many packets may wait for the radio's result (Link_answer); 0 means that the radio
+ * reports no results. With results, packets are paced by them, and the contents of a lost packet
+ * are sent again at once. Two packets fill the air if the line to the modem is faster: one is on
+ * the air, one waits in the modem. With a line of 111,111 baud, three packets are needed. A call is
+ * sent only after all packets before it. */
 void Link_expectAnswers(Link* link, U32 packets);
 
-/* Lets a link share the radio of another: their packets wait for its answers together, and a call
- * of Link_answer for either is for the oldest packet of all. Call it after Link_init of both; give
- * both the same Link_expectAnswers. */
+/* Lets a link share the radio of another link. Packets of both then wait in one list for the
+ * radio's answers: a call of Link_answer for either link answers the oldest packet of both. Call
+ * this function after Link_init of both links, and give both the same Link_expectAnswers. */
 void Link_shareRadio(Link* link, Link* with);
 
 /* Returns the modem's RN for the current traffic: the smallest exponent of the random wait before
@@ -139,30 +144,30 @@ void Link_shareRadio(Link* link, Link* with);
  * `transmit` may call it. */
 U32 Link_randomWait(Link* link);
 
-/* Reports the radio's result for the oldest packet without one: delivered or lost. The driver also
- * reports a loss if the radio does not report (LINK_ANSWER_LAST). */
+/* Reports the radio's result for the oldest packet without a result: delivered or lost. If the
+ * radio sends no result in LINK_ANSWER_LAST, the driver reports a loss. */
 void Link_answer(Link* link, int isDelivered, U32 nowUs);
 #endif
 
 /* Queues a copy of a message of 1..LINK_MAX_MESSAGE bytes. `tag` is for the `outcome` callback. */
 Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag);
 
-/* Takes bytes from the radio, at least one, in any portions: packet boundaries do not matter.
- * Reports the messages that they complete. */
+/* Processes bytes from the radio, at least one. They may be split in any way; packet boundaries do
+ * not matter. Reports each message that becomes complete. */
 void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs);
 
-/* Sends due frames: fragments, acknowledgements, retransmissions, HELLO. */
+/* Sends the frames that are due: fragments, acknowledgements, retransmissions and HELLO. */
 void Link_poll(Link* link, U32 nowUs);
 
-/* Returns the time until Link_poll must be called, us; 0xFFFFFFFF: it need not be called. */
+/* Returns the time until Link_poll must be called, us; 0xFFFFFFFF if no call is needed. */
 U32 Link_deadline(const Link* link, U32 nowUs);
 
-/* Returns the counts, which continue to count. */
+/* Returns the counters. The link continues to update them. */
 const Link_Statistics* Link_statistics(const Link* link);
 
 #ifndef LINK_MINIMAL
-/* Parts of the link, from bottom to top: each uses only parts below it, and writes only its
- * fields. */
+/* Parts of the link, from the lowest layer to the highest. Each part uses only lower parts, and
+ * writes only its own fields. */
 struct Link {
     Link_Pacing pacing;
     Link_Session session;

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_config: the link layer's numbers that a project may change: here or, for those with #ifndef,
- * on the compiler's command line. Layers with different numbers are compatible, except for numbers
- * marked "both sides". Times are in us, sizes in bytes, limits in parentheses.
+ * link_config: numbers of the link layer that a project may change: in this file, or on the
+ * compiler's command line if the number has an #ifndef. Two peers with different numbers are
+ * compatible, except for numbers marked "both sides". Times are in us, sizes in bytes, limits in
+ * parentheses.
  */
 #pragma once
 
@@ -13,52 +14,60 @@
 #define LINK_IS_FULL 1
 #endif
 
-#ifndef LINK_TAG /* bytes of a frame's tag, both sides (4..16; docs/link.md: risk of 4) */
+/* size of a frame's tag; both sides (4..16; docs/link.md describes the risk of 4) */
+#ifndef LINK_TAG
 #define LINK_TAG 8U
 #endif
-#ifndef LINK_OUTCOMES /* minimal layer, 1: it calls `outcome` and `writable` */
+#ifndef LINK_OUTCOMES /* minimal layer: 1 to call `outcome` and `writable` */
 #define LINK_OUTCOMES 0
 #endif
-#ifndef LINK_MAX_MESSAGE /* size of one message (1..32,000); a longer one ends the session */
+/* size of the largest message (1..32,000); a longer one ends the session */
+#ifndef LINK_MAX_MESSAGE
 #define LINK_MAX_MESSAGE (LINK_IS_FULL ? 8192U : 1024U)
 #endif
-#ifndef LINK_WINDOW /* fragments in flight (a power of two, 8..64) */
+#ifndef LINK_WINDOW /* number of fragments in flight (a power of two, 8..64) */
 #define LINK_WINDOW 64U
 #endif
-/* Queue of outgoing messages, of all channels (a power of two, more than LINK_MAX_MESSAGE and
- * LINK_RESERVE together, at most 32,768). */
+/* Size of the queue of outgoing messages for all channels (a power of two, more than
+ * LINK_MAX_MESSAGE and LINK_RESERVE together, at most 32,768). */
 #ifndef LINK_SEND_BYTES
 #define LINK_SEND_BYTES 16384U
 #endif
 /* Bytes reserved for messages of one fragment, so that they do not wait behind long ones. */
 #define LINK_RESERVE 256U
 
-#ifndef LINK_SEND_MESSAGES /* messages, openings and closings in that queue (1..128) */
+#ifndef LINK_SEND_MESSAGES /* number of messages, openings and closings in that queue (1..128) */
 #define LINK_SEND_MESSAGES 32U
 #endif
-#ifndef LINK_LONGEST /* minimal layer: payload of a frame; 90 if the modem encrypts (27..95) */
+/* minimal layer: largest payload of a frame (27..95); 90 if the modem encrypts */
+#ifndef LINK_LONGEST
 #define LINK_LONGEST 95U
 #endif
 
-/* Time-out of retransmission before the first round trip, and its limits. */
+/* Time-out of retransmission: before the first round trip is measured, and its smallest and
+ * largest value. */
 #define LINK_RTO_FIRST 600000U
-#define LINK_RTO_MIN 60000U /* (more than a round trip takes) */
+#define LINK_RTO_MIN 60000U /* smallest value (longer than a round trip) */
 #define LINK_RTO_MAX 2000000U
 
-/* Silence after data before an unrequested acknowledgement (less than LINK_RTO_MIN, or fragments
- * are sent twice); ACK_WITHIN applies inside a message, since its rest will arrive. */
+/* Silence after data before an unrequested acknowledgement (less than LINK_RTO_MIN, otherwise
+ * fragments are sent twice). In the middle of a message ACK_WITHIN applies, because the
+ * remaining fragments will arrive. */
 #define LINK_ACK_DELAY 30000U
 #define LINK_ACK_WITHIN 80000U
 
-#define LINK_HELLO_FIRST 300000U /* between HELLOs, at first; doubled from one to the next */
-#define LINK_HELLO_LAST 2000000U /* largest interval: doubled until at least this, 2.4 s */
+/* first interval between HELLOs; each interval is twice the previous one */
+#define LINK_HELLO_FIRST 300000U
+/* the interval is doubled until it is at least this long: 2.4 s */
+#define LINK_HELLO_LAST 2000000U
 #define LINK_PING_AFTER 5000000U /* silence after which the peer is pinged */
 #define LINK_PING_EVERY 200000U  /* interval of pings */
-/* silence after which the peer is considered lost (more than LINK_PING_AFTER, below 2^31); the
- * times of the minimal layer have few one bits, so that a constant fits into an instruction */
+/* silence after which the peer is considered lost (more than LINK_PING_AFTER, below 2^31). In the
+ * minimal layer, times are constants with few one bits, so that each fits into an instruction */
 #define LINK_DEAD_AFTER (LINK_IS_FULL ? 9000000U : 0x890000U)
 
-/* The same under a key, for replies to pings: other frames may be an attacker's recording. */
+/* With a key: silence without an authenticated reply to a ping, after which the peer is
+ * considered lost. Other frames do not count, because they may be an attacker's recording. */
 #define LINK_PROOF_AFTER 5000000U
 #define LINK_PROOF_EVERY 1000000U
 #define LINK_PROOF_LAST 27000000U
@@ -67,12 +76,12 @@
  * call that its caller has abandoned (more than LINK_PING_AFTER, below 2^31). */
 #define LINK_AGE_LAST 27000000U
 
-/* Under a key: interval of replies to HELLO while a session is up, and time for which the nonce of
- * such a reply can make a session. */
+/* With a key: interval of replies to HELLO during a session, and time during which the nonce of
+ * such a reply can make a new session. */
 #define LINK_ANSWER_EVERY 100000U
 #define LINK_NONCE_LIFE 9000000U
 
-/* Counts at which a session under a key ends and a new one begins: fragments sent (below 2^32 -
+/* With a key: counts at which a session ends and a new one begins: fragments sent (below 2^32 -
  * 256), and frames with a wrong tag. */
 #ifndef LINK_LAST_NUMBER
 #define LINK_LAST_NUMBER 0xFFFF0000U
@@ -81,7 +90,7 @@
 #define LINK_MOST_FAILURES (LINK_TAG >= 8U ? 0x40000000U : 0x10000U)
 #endif
 
-/* Silence after which half a frame is dropped. */
+/* Silence after which an incomplete frame is dropped. */
 #define LINK_FRAME_GAP (LINK_IS_FULL ? 25000U : 0x6200U)
 
 /* Budget of the search for frames in garbage, with a key: one round of Ascon per LINK_ROUND_EVERY
@@ -89,49 +98,54 @@
 #define LINK_ROUND_EVERY 30U
 #define LINK_ROUNDS_AT_ONCE 1000U
 
-/* Shortest interval of Link_poll. */
+/* Shortest interval between calls of Link_poll. */
 #define LINK_POLL_EVERY 1000U  /* while the radio has no room */
-#define LINK_OFFER_EVERY 5000U /* while the program does not take a message */
+#define LINK_OFFER_EVERY 5000U /* while the program does not accept a message */
 
-/* Pacing (docs/simulation.md): time of a modem for a packet without its bytes, the same if it
- * encrypts, and time per byte on the air. */
+/* Pacing (docs/simulation.md): time that the modem needs for a packet without its bytes; the
+ * same time if the modem encrypts; and time per byte on the air. */
 #define LINK_PACKET_US 7250U
 #define LINK_PACKET_ENCRYPTED_US 13450U
 #define LINK_BYTE_US 32U
 
-/* Back-off of the next packet after one was heard, in quarters of the airtime (docs/link.md). */
+/* Wait before the next packet after a frame was heard, in quarters of the airtime
+ * (docs/link.md). */
 #define LINK_HEARD_QUARTERS 7U
 
-/* Extra wait after a short packet; otherwise a modem that still holds it joins the two. */
+/* Additional wait after a short packet. With less, a modem that still holds the short packet
+ * joins it with the next one. */
 #define LINK_SHORT_MARGIN 1500U
 
-#define LINK_MOST_WAITING 4U /* packets without an answer of the radio, of all its links */
+/* largest number of packets without an answer of the radio, for all its links together */
+#define LINK_MOST_WAITING 4U
 
-/* Time before the radio's expected answer at which the next packet of a stream is handed over while
- * the peer calls: the packet's time on a line of 250,000 baud (4.3 ms), and a margin. */
+/* Interval before the radio's expected answer: then the next packet of a stream is handed over
+ * while the peer calls. It is the packet's time on a line of 250,000 baud (4.3 ms) and a margin. */
 #define LINK_HAND_OVER_US 5000U
-#define LINK_HAND_OVER_ENCRYPTED_US 6000U /* if the modem encrypts */
+#define LINK_HAND_OVER_ENCRYPTED_US 6000U /* the same interval if the modem encrypts */
 
-/* Drivers: the time without an answer after which a packet counts as lost. */
+/* Time after which a driver counts a packet without an answer as lost. */
 #define LINK_ANSWER_LAST 3000000U
 
-/* Choice of RN (Link_randomWait): in each span the bytes are counted (the air carries about 5,000);
- * at least the first number of bytes make a stream, fewer than the second end it. A loss counts for
- * a while. */
-#define LINK_WAIT_SHARED 2U    /* as set-up leaves it */
-#define LINK_WAIT_BOTH 3U      /* two streams */
-#define LINK_QUICK_MANY 12288U /* of 65,536 packets, lost without failed tries: considered many */
+/* Choice of RN (Link_randomWait): the bytes in each span of time are counted (the air carries about
+ * 5,000). A stream begins with at least the first number of bytes in a span, and ends with fewer
+ * than the second number. A loss has an effect for a limited time. */
+#define LINK_WAIT_SHARED 2U /* RN that the modem has after set-up */
+#define LINK_WAIT_BOTH 3U   /* two streams */
+/* packets, of 65,536, that were lost without failed tries: more are considered many */
+#define LINK_QUICK_MANY 12288U
 #define LINK_SPAN 500000U
 #define LINK_SPAN_MANY 1000U
 #define LINK_SPAN_FEW 500U
 #define LINK_LOSS_COUNTS 10000000U
 
-/* Rest after a loss, of a side that sends little: at most this much at first, and at last, where
- * four times the peer's silence is added. */
+/* Longest pause after a loss, of a side that sends little: at first, and at last. To the last
+ * value four times the peer's silence is added. */
 #define LINK_REST_FIRST 8000U
 #define LINK_REST_LAST 200000U
 
-#define LINK_SILENCE 4U /* characters of silence after which the modem sends a short packet */
+/* silence after which the modem sends an incomplete packet, in character times */
+#define LINK_SILENCE 4U
 
 #if LINK_TAG < 4 || LINK_TAG > 16
 #error "LINK_TAG is 4..16 bytes"

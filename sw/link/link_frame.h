@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * link_frame: the fields of a frame, and the checksums and numbers of the wire format
- * (docs/link.md). The full layer and the minimal one share it.
+ * (docs/link.md). The full layer and the minimal layer share this file.
  */
 #pragma once
 
@@ -12,11 +12,12 @@
 #define LINK_MAX_FRAME 100U    /* largest RF packet, bytes: 5 of overhead, up to 95 of payload */
 #define LINK_MAX_ENCRYPTED 95U /* largest RF packet of a modem that encrypts (Link_limitFrame) */
 #define LINK_KEY_BYTES 16U
-#define LINK_GROUND 0x80000000U /* flag for the ground in `side` of Link_setKey; 0: the vehicle */
-#define LINK_KEYS 2             /* slots for keys, so that a new key can replace the old one */
+/* flag in `side` of Link_setKey that selects the ground; without it, the vehicle */
+#define LINK_GROUND 0x80000000U
+#define LINK_KEYS 2 /* slots for keys, so that a new key can replace the old one */
 
 #define LINK_VERSION 9U
-#define LINK_VERSION_UP 0x80U /* flag in a HELLO under a key: its sender has a session */
+#define LINK_VERSION_UP 0x80U /* flag in a HELLO with a key: its sender has a session */
 #define LINK_HEADER 3U
 #define LINK_CRC 2U
 #define LINK_BITMAP 8U /* largest bitmap of an acknowledgement, bytes */
@@ -30,19 +31,21 @@
 #define LINK_CONTROL 0x80U
 #define LINK_LENGTH_OF(header) ((header) & 0x7FU)
 #define LINK_LENGTH(frame) LINK_LENGTH_OF((frame)[0])
-#define LINK_FILL 0xFFU /* padding byte, instead of byte 0 */
+#define LINK_FILL 0xFFU /* padding byte in the place of byte 0 of a frame */
 
-/* Byte 2: flags of data frames, channel and epoch; kind of control frames. */
+/* Byte 2 of a data frame: flags, channel and epoch. Byte 2 of a control frame: its kind. */
 #define LINK_FIRST 0x80U
 #define LINK_LAST 0x40U
 #define LINK_ACK_NOW 0x20U
-#define LINK_READY 0x10U  /* inverted in a complete message that may be taken out of order */
-#define LINK_EARLY 0x100U /* this property in the flags of a received frame */
+/* bit that is inverted if the frame is a complete message that may be delivered out of order */
+#define LINK_READY 0x10U
+/* flag of a received frame: it is a complete message that may be delivered out of order */
+#define LINK_EARLY 0x100U
 #define LINK_CHANNEL(flags) ((flags) & 3U)
 #define LINK_EPOCH(frame) ((U32)(frame)[2] >> 2 & 7U)
 #define LINK_KIND_BITS(kind) ((U32)(kind) << 5)
 
-/* Makes a number of the three bytes of a header, low byte first. */
+/* Makes a number from the three bytes of a header, low byte first. */
 #define LINK_HEADER_OF(byte0, byte1, byte2) ((byte0) | (U32)(byte1) << 8 | (U32)(byte2) << 16)
 #define LINK_CONTROL_HEADER(kind, byte1, size) \
     LINK_HEADER_OF(LINK_CONTROL | (size), byte1, LINK_KIND_BITS(kind))
@@ -52,7 +55,8 @@
 #define LINK_FEATURE_COMPRESSION 1U
 #define LINK_FEATURE_PIGGYBACK 2U
 #define LINK_FEATURES (LINK_FEATURE_COMPRESSION | LINK_FEATURE_PIGGYBACK)
-#define LINK_PING_ANSWER 1U /* bit of byte 2 under a key: this PING answers one */
+/* flag in byte 2 of a PING with a key: this PING answers another PING */
+#define LINK_PING_ANSWER 1U
 
 typedef enum Link_Kind {
     LINK_KIND_ACK,
@@ -62,40 +66,43 @@ typedef enum Link_Kind {
     LINK_KIND_BYE,
     LINK_KIND_PING,
     LINK_KIND_PIGGYBACK,     /* complete message of one fragment, with an acknowledgement */
-    LINK_KIND_PIGGYBACK_ASK, /* the same, with LINK_ACK_NOW */
-    LINK_KIND_DATA           /* not a control frame */
+    LINK_KIND_PIGGYBACK_ASK, /* PIGGYBACK, and the receiver must acknowledge at once
+                              * (LINK_ACK_NOW) */
+    LINK_KIND_DATA           /* value for frames that are not control frames */
 } Link_Kind;
 
 #define LINK_KIND_OF(frame) \
     ((frame)[0] & LINK_CONTROL ? (Link_Kind)((frame)[2] >> 5) : LINK_KIND_DATA)
 
-/* Key of a session, made of both nonces: bits 31..29 are the epoch, bits 15..0 the seed of the
- * CRCs. The seed of HELLO, HELLO-ACK and RST is all ones. */
+/* Key of a session, computed from both nonces: bits 31..29 are the epoch, bits 15..0 the seed of
+ * the CRCs. The seed of HELLO, HELLO-ACK and RST is all ones. */
 #define LINK_KEY_EPOCH(key) ((key) >> 29)
 #define LINK_EPOCH_KEY(epoch) ((U32)(epoch) << 29)
 #define LINK_NO_SEED 0xFFFFU
-#define LINK_KIND_CONFIRM LINK_KIND_RST /* answer to HELLO-ACK under a key, which has no RST */
+/* answer to a HELLO-ACK with a key; RST, which has the same number, does not exist with a key */
+#define LINK_KIND_CONFIRM LINK_KIND_RST
 #define LINK_IS_PIGGYBACK(kind) ((U32)(kind) - (U32)LINK_KIND_PIGGYBACK <= 1U)
 #define LINK_IS_HANDSHAKE(kind) ((U32)(kind) - (U32)LINK_KIND_HELLO <= 2U)
 
-/* A message of more than LINK_UNCHECKED bytes ends with LINK_CHECK bytes of check. */
+/* Reads the check of LINK_CHECK bytes, which ends each message of more than LINK_UNCHECKED
+ * bytes. */
 #define LINK_CHECK_AT(p) ((p)[0] | (U32)(p)[1] << 8)
 #define LINK_UNCHECKED 20U
 #define LINK_CHECK 2U
 
-/* Returns whether time or count `a` precedes `b`; both may wrap (serial arithmetic, RFC 1982). */
+/* Returns whether time or count `a` precedes `b`. Both may wrap (serial arithmetic, RFC 1982). */
 #define LINK_BEFORE(a, b) ((S32)((a) - (b)) < 0)
 
-/* Returns the CRC-16/CCITT of `size` bytes, seeded with the low 16 bits of `key`; 0 for a frame
- * including its CRC. */
+/* Returns the CRC-16/CCITT of `size` bytes, seeded with the low 16 bits of `key`; the result is 0
+ * for an intact frame including its CRC. */
 U32 link_crc(U32 key, const U8* bytes, U32 size);
 
 /* Writes header and CRC around the payload that `frame` already holds, and adds the epoch of `key`
  * to `header`. Returns the frame's size in bytes. */
 U32 link_seal(U8* frame, U32 header, U32 key);
 
-/* Continues the check of a message over `size` bytes; it begins with 0. The check is Fletcher's two
- * sums, which a message carries low byte first. */
+/* Continues the check of a message with `size` bytes; `sums` is 0 at first. The check consists
+ * of Fletcher's two sums; in a message the low byte is first. */
 U32 link_sum(U32 sums, const U8* bytes, U32 size);
 
 /* Read and write 32 bits, low byte first. */
@@ -105,11 +112,11 @@ void link_put32(U8* p, U32 value);
 /* Returns the session's key for two nonces, in either order. */
 U32 link_sessionKey(U32 nonce, U32 peerNonce);
 
-/* Returns the number with the lowest byte `byte` that is nearest to the expected one. */
+/* Returns the number nearest to `expected` that has `byte` as its lowest byte. */
 U32 link_extend(U32 expected, U32 byte);
 
-/* Returns the bits of EPOCH in which a frame differs from a session's key. */
+/* Returns the bits of EPOCH in which a frame differs from the epoch in `key`. */
 U32 link_epochBits(const U8* frame, U32 key);
 
-/* Returns whether a frame, not one of the handshake, has the epoch of a session's key. */
+/* Returns whether a frame is not a handshake frame and has the epoch of a session's key. */
 int link_isOfEpoch(const U8* frame, U32 key);

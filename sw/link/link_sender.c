@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <string.h>
 
-/* Credit before the first acknowledgement of the peer, fragments. */
+/* Credit before the peer's first acknowledgement, in fragments. */
 #define LEAST_WINDOW 8U
 
 /* Size of the longest acknowledgement, bytes. */
@@ -16,7 +16,7 @@
 #define IN_FLIGHT(sender) ((sender)->next - (sender)->base)
 #define FRAGMENT(sender, seq) (&(sender)->window[(seq) & (sender)->mask])
 
-/* Adds an entry to the queue. Returns 0 without room. */
+/* Adds an entry to the queue. Returns 0 if the queue has no room. */
 static Link_Entry* enqueue(Link_Sender* sender, U32 flags, U32 size) {
     Link_Entry* entry = link_enqueue(&sender->queue, flags, size, sender->pacing->longest);
     if (entry)
@@ -59,8 +59,8 @@ Link_Status link_queueMessage(Link_Sender* sender, int channel, const U8* data, 
     return LINK_OK;
 }
 
-/* Queues the closings that had no room before. The peer waits for each before the channel can be
- * opened again. */
+/* Queues the closings for which the queue had no room before. A channel can be opened again
+ * after the peer has acknowledged its closing. */
 static void queueClosings(Link_Sender* sender) {
     Link_Channels* channels = &sender->receiver->channels;
     U32 channel;
@@ -69,13 +69,13 @@ static void queueClosings(Link_Sender* sender) {
             LINK_NOTE_CLOSING(channels, channel);
 }
 
-/* Ends an entry of the queue, and reports a message's outcome and room in the queue. */
+/* Removes an entry from the queue. Reports the message's outcome, and that the queue has room. */
 static void endEntry(Link_Sender* sender, U32 index, Link_Outcome outcome) {
     Link_Env* env = &sender->pacing->env;
     Link_Queue* queue = &sender->queue;
     Link_Entry ended = queue->entries[index];
     link_dequeue(queue, index);
-    if (ended.size) { /* a message, not an opening or closing */
+    if (ended.size) { /* the entry is a message, not an opening or closing */
         env->statistics.messagesSent += outcome == LINK_DELIVERED;
         if (env->port->outcome)
             env->port->outcome(env->context, (int)LINK_CHANNEL(ended.flags), ended.tag, outcome);
@@ -97,8 +97,8 @@ void link_resetSender(Link_Sender* sender, int isWiped) {
     LINK_FORGET_ROUND_TRIPS(sender->pacing);
 }
 
-/* Cuts the next fragment from the queue into the window; `onlyAhead`: only one that overtakes.
- * Returns 0 if there is nothing to cut, or no room. */
+/* Cuts the next fragment from the queue into the window. With `onlyAhead`, only a message that
+ * overtakes is cut. Returns 0 if nothing can be cut or the window has no room. */
 static int cut(Link_Sender* sender, int onlyAhead) {
     Link_Fragment* f = FRAGMENT(sender, sender->next);
     const Link_Pacing* pacing = sender->pacing;
@@ -106,7 +106,8 @@ static int cut(Link_Sender* sender, int onlyAhead) {
     U32 room = link_room(pacing);
     /* An acknowledgement that is due is sent in the same packet. */
     U32 reduced = sender->receiver->ackNow ? room - ACK_ROOM(sender) : room;
-    /* One fragment goes out even without credit: its acknowledgement brings new credit. */
+    /* One fragment may be sent even without credit, because its acknowledgement brings new
+     * credit. */
     if ((inFlight && inFlight >= sender->credit) ||
         !link_cut(&sender->queue, &f->chunk, room, onlyAhead ? 0 : reduced,
                   pacing->session->features & LINK_FEATURE_PIGGYBACK ? pacing->longest : 0U))
@@ -119,9 +120,9 @@ static int cut(Link_Sender* sender, int onlyAhead) {
     return 1;
 }
 
-/* Returns n, so that one of n transmissions requests an acknowledgement, which costs a turn of the
- * air. n is smaller while losses stop the window, while a message that has overtaken is not
- * acknowledged, and while short messages fill the queue before the window. */
+/* Returns n: one of n transmissions requests an acknowledgement, which costs time on the air. n
+ * is smaller in three cases: losses stop the window; a message that has overtaken is not
+ * acknowledged yet; or short messages fill the queue before they fill the window. */
 static U32 askEvery(const Link_Sender* sender) {
     U32 ahead = sender->ahead;
     if (!sender->pacing->mostWaiting &&
@@ -133,8 +134,8 @@ static U32 askEvery(const Link_Sender* sender) {
     return sender->fullCredit / 4U * 3U;
 }
 
-/* Returns whether the peer should acknowledge a fragment at once: one of every n, the last one
- * within the credit, and the last one that is sent again. */
+/* Returns whether the peer should acknowledge a fragment at once: one of every n fragments, the
+ * last one within the credit, and the last one that is retransmitted. */
 static int mustAsk(const Link_Sender* sender, U32 seq) {
     if (sender->unasked + 1U >= askEvery(sender) || seq - sender->base + 1U >= sender->credit)
         return 1;
@@ -146,9 +147,9 @@ static int mustAsk(const Link_Sender* sender, U32 seq) {
     return 1;
 }
 
-/* Returns whether the peer may take a message of one fragment although earlier ones are missing: it
- * has all earlier ones of the channel, and learns no head from fragments that are not in order
- * yet. */
+/* Returns whether the peer may accept a message of one fragment before earlier fragments arrive.
+ * This is the case if the peer has all earlier fragments of the channel, and if the peer's
+ * header cache learns only from fragments that are in order. */
 static int isReady(const Link_Sender* sender, U32 seq, U32 flags) {
     const Link_Entry* entries = sender->queue.entries;
     const Link_Fragment* f = FRAGMENT(sender, seq);
@@ -162,8 +163,8 @@ static int isReady(const Link_Sender* sender, U32 seq, U32 flags) {
     return 0;
 }
 
-/* Puts a fragment's payload into a frame. Returns the header: of a data frame, or of a PIGGYBACK
- * for a complete short message while an acknowledgement is due. */
+/* Puts a fragment's payload into a frame. Returns the header of a data frame. For a complete
+ * short message, while an acknowledgement is due, returns the header of a PIGGYBACK. */
 static U32 build(const Link_Sender* sender, U32 seq, int isAsked, U8* frame) {
     const Link_Pacing* pacing = sender->pacing;
     const Link_Chunk* chunk = &FRAGMENT(sender, seq)->chunk;
@@ -185,7 +186,7 @@ static U32 build(const Link_Sender* sender, U32 seq, int isAsked, U8* frame) {
     return header;
 }
 
-/* Sends a fragment. Returns 1 if it is in a packet. */
+/* Sends a fragment. Returns 1 if the fragment is in a packet. */
 static int transmit(Link_Sender* sender, U32 seq) {
     Link_Env* env = &sender->pacing->env;
     Link_Fragment* f = FRAGMENT(sender, seq);
@@ -210,13 +211,13 @@ static int transmit(Link_Sender* sender, U32 seq) {
     f->packet = sender->pacing->handed;
     sender->unasked = (U8)(isAsked ? 0U : sender->unasked + 1U);
     if (IN_FLIGHT(sender) >= sender->fullCredit &&
-        wait > sender->srtt) /* only an acknowledgement helps */
+        wait > sender->srtt) /* the sender cannot continue without an acknowledgement */
         wait = sender->srtt < LINK_RTO_MIN ? LINK_RTO_MIN : sender->srtt;
     sender->timerAt = env->now + wait;
     return 1;
 }
 
-/* Adds a round trip to the estimate (RFC 6298). */
+/* Adds a measured round trip to the estimate (RFC 6298). */
 static void sample(Link_Sender* sender, U32 roundTrip) {
     if (!sender->hasSample) {
         sender->srtt = roundTrip;
@@ -233,7 +234,7 @@ static void sample(Link_Sender* sender, U32 roundTrip) {
     sender->pacing->env.statistics.roundTripUs = sender->srtt;
 }
 
-/* Restarts the retransmission timer after an answer. */
+/* Restarts the retransmission timer after an acknowledgement. */
 static void setTimer(Link_Sender* sender) {
     U32 rto = sender->hasSample ? sender->srtt + 2U * sender->rttvar : LINK_RTO_FIRST;
     if (rto < LINK_RTO_MIN)
@@ -244,7 +245,8 @@ static void setTimer(Link_Sender* sender) {
     sender->timerAt = sender->pacing->env.now + rto;
 }
 
-/* Marks unacknowledged fragments that were sent before `order` as lost: they are sent again. */
+/* Marks unacknowledged fragments that were sent before `order` as lost, so that they are
+ * retransmitted. */
 static void sendAgain(Link_Sender* sender, U32 order) {
     U32 seq;
     for (seq = sender->base; seq != sender->next; ++seq) {
@@ -257,8 +259,8 @@ static void sendAgain(Link_Sender* sender, U32 order) {
 }
 
 /* Marks acknowledged fragments: the first `advance`, and those in the bitmap, where bit n is the
- * fragment at advance + 1 + n. Other fragments that were sent before the newest of these are
- * lost. */
+ * fragment at advance + 1 + n. Fragments that were sent before the newest acknowledged one, and
+ * that are not acknowledged, count as lost. */
 static int markAcked(Link_Sender* sender, U32 advance, const U8* bitmap, U32 size) {
     const Link_Fragment* newest = 0;
     int isNew = 0;
@@ -273,8 +275,9 @@ static int markAcked(Link_Sender* sender, U32 advance, const U8* bitmap, U32 siz
         f->state = LINK_ACKED;
         isNew = 1;
         if (f->tries != 1U && elapsed < sender->srtt - sender->srtt / 4U) {
-            /* Too soon for a round trip: this acknowledges an earlier transmission. If the radio
-             * reports losses, it is the first transmission, and the peer now takes longer. */
+            /* The time is too short for a round trip, so this acknowledges an earlier
+             * transmission of the fragment. If the radio reports losses, that is the first
+             * transmission, and the peer has become slower. */
             elapsed = sender->pacing->env.now - f->firstAt;
             if (sender->pacing->mostWaiting && !sender->pacing->contention.own.isStream &&
                 elapsed < LINK_RTO_FIRST)
@@ -298,7 +301,7 @@ int link_onAck(Link_Sender* sender, U32 cumulative, U32 credit, const U8* bitmap
     U32 advance = (U8)(cumulative - sender->base);
     int isNew;
     if (advance > IN_FLIGHT(sender))
-        return 0; /* an old acknowledgement arrived late */
+        return 0; /* this acknowledgement is old and arrived late */
     sender->credit = (U8)(credit <= sender->mask ? credit : sender->mask + 1U);
     if (sender->fullCredit < sender->credit)
         sender->fullCredit = sender->credit;
@@ -330,8 +333,8 @@ void link_onAnswer(Link_Sender* sender, U32 packet, int isDelivered) {
         link_scheduleAck(sender->receiver);
 }
 
-/* Finds the next fragment to send: a short message that overtakes, a lost one, or a new one.
- * Returns 0 if none. */
+/* Finds the next fragment to send: a short message that overtakes, a lost fragment, or a new
+ * one. Returns 0 if there is no such fragment. */
 static int nextFragment(Link_Sender* sender, U32* seq) {
     int isRepeated = 0;
     for (*seq = sender->base; *seq != sender->next; ++*seq)
@@ -347,8 +350,9 @@ static int nextFragment(Link_Sender* sender, U32* seq) {
     return 1;
 }
 
-/* Repeats the oldest fragment in flight when the timer has expired. Returns 0 if it was sent so
- * long ago that the session must end, before the peer executes an abandoned message. */
+/* Retransmits the oldest fragment in flight when the timer has expired. Returns 0 if this
+ * fragment was first sent so long ago that the session must end; otherwise the peer could
+ * execute an abandoned message. */
 static int pollWindow(Link_Sender* sender, U32 now) {
     Link_Fragment* oldest = FRAGMENT(sender, sender->base);
     U32 age = oldest->tries ? now - oldest->firstAt : 0;
@@ -358,13 +362,13 @@ static int pollWindow(Link_Sender* sender, U32 now) {
         return 1;
     sender->timerAt = now + sender->rto;
     if (sender->pacing->mostWaiting && sender->pacing->packed)
-        return 1;                 /* not sent yet */
-    oldest->state = LINK_TO_SEND; /* its acknowledgement also reports the others */
+        return 1;                 /* the oldest fragment was not sent yet */
+    oldest->state = LINK_TO_SEND; /* the acknowledgement of this fragment also reports the others */
     sender->hasWork = sender->isLate = 1;
     sender->rto += sender->rto / 4U;
     if (sender->rto > LINK_RTO_MAX)
         sender->rto = LINK_RTO_MAX;
-    if (age >= LINK_PING_AFTER) /* otherwise the session ends soon */
+    if (age >= LINK_PING_AFTER) /* the session would end soon */
         sender->rto = LINK_PING_EVERY;
     sender->timerAt = now + sender->rto;
     return 1;

@@ -20,7 +20,7 @@
 
 #include "base.h"
 
-#ifndef RADIO_API /* 1: API mode can be selected; 0: it is not compiled in */
+#ifndef RADIO_API /* 1: API mode can be selected; 0: API mode is not compiled in */
 #define RADIO_API 1
 #endif
 
@@ -35,8 +35,9 @@ typedef enum Radio_Baud {
     XBEE_BD_38400,
     XBEE_BD_57600,
     XBEE_BD_115200,
-    RADIO_250000 = 0x3D090,     /* for API mode; 111,111 if the controller has no API mode */
-    RADIO_WIRE_115200 = 0x80007 /* a cable to a serial port instead of a modem, at 111,111 baud */
+    RADIO_250000 = 0x3D090,     /* baud rate for API mode; the rate is 111,111 if the controller
+                                 * has no API mode */
+    RADIO_WIRE_115200 = 0x80007 /* a cable to a serial port replaces the modem, at 111,111 baud */
 } Radio_Baud;
 
 /* Receives the modem's result for a sent packet: delivered to the target's modem, or lost. */
@@ -50,9 +51,9 @@ typedef struct XBeeInitTypeDef {
     U16 target;  /* DL, address of the ground station's modem */
     U8 channel;  /* CH, default 0x0C */
     U16 pan;     /* ID, default 0x3332 */
-    U16 guardMs; /* current guard time of the modem around +++, ms; default 1000 */
-    /* KY, AES key of the network, 16 bytes; 0 disables encryption (EE is 0). An encrypted packet
-     * carries 95 bytes instead of 100 (Link_limitFrame). */
+    U16 guardMs; /* guard time around +++ that the modem has now, ms; default 1000 */
+    /* KY, AES key of the network, 16 bytes; with 0, the modem does not encrypt (EE is 0). An
+     * encrypted packet carries 95 bytes instead of 100 (Link_limitFrame). */
     const U8* key;
     /* 0 selects transparent mode. Otherwise API mode is used, if controller and modem support it
      * (Radio_answers): Radio_receive calls this function for each sent packet, oldest first, and
@@ -62,19 +63,21 @@ typedef struct XBeeInitTypeDef {
 
 typedef enum Radio_Status {
     RADIO_OK = 0,
-    RADIO_NO_DEVICE, /* the slot is not a modem controller */
-    RADIO_NO_MODEM,  /* no answer at any baud rate */
+    RADIO_NO_DEVICE, /* the slot does not contain a modem controller */
+    RADIO_NO_MODEM,  /* the modem did not answer at any baud rate */
     RADIO_REFUSED    /* the modem rejected a command; see Radio_failedStep */
 } Radio_Status;
 
 /* Counts since the start. */
 typedef struct Radio_Counters {
     U32 framesSent, framesReceived;
-    U32 bytesCopiedOut, bytesCopiedIn;   /* over the FSMC */
-    U32 ringFull;                        /* frames that found no free buffer */
+    U32 bytesCopiedOut, bytesCopiedIn;   /* bytes copied over the FSMC to and from the DDR3 */
+    U32 ringFull;                        /* frames that were not copied because no buffer was
+                                          * free */
     U32 interrupts;                      /* calls of Radio_interrupt */
     U32 hardwareOverruns, framingErrors; /* counters of the controller (docs/modem.md) */
-    U32 delivered, lost;                 /* API mode: sent packets by the modem's answer */
+    U32 delivered, lost;                 /* API mode: sent packets, by the result that the modem
+                                          * reported */
     U8 signal;                           /* API mode: RSSI of the last packet, -dBm */
 } Radio_Counters;
 
@@ -84,45 +87,47 @@ typedef struct Radio_Memory {
 } Radio_Memory;
 
 /* Resets the modem and sets controller and modem up. Blocks the calling task: about 4 s with a
- * guard time of 1 s, up to 40 s if no modem answers, half a second for a wire. `memory` is copied.
+ * guard time of 1 s, up to 40 s if no modem answers, half a second for a cable instead of a modem.
+ * `memory` is copied.
  */
 Radio_Status xbeeInit(const XBeeInitTypeDef* conf, const Radio_Memory* memory);
 
 /* Returns whether xbeeInit selected API mode, and controller and modem support it. */
 int Radio_answers(void);
 
-/* Returns the step of the set-up that failed, after RADIO_NO_MODEM or RADIO_REFUSED, as STATUS.STEP
- * of the controller counts them (docs/modem.md). */
+/* After RADIO_NO_MODEM or RADIO_REFUSED, returns the step of the set-up that failed. Steps are
+ * counted as in the controller's STATUS.STEP (docs/modem.md). */
 U32 Radio_failedStep(void);
 
 /* Copies a frame of 1..128 bytes into the output ring. Returns 0, or 1 if no buffer is free.
- * `context` is not used: the function fits Link_Port.transmit. */
+ * `context` is not used; with it the function has the type of Link_Port.transmit. */
 int Radio_transmit(void* context, const U8* frame, U32 size);
 
-/* Sets the modem's RN, the exponent of its random wait, in API mode, after the packets queued so
- * far. Set-up sets it to RADIO_WAIT. */
+/* API mode: sets the modem's RN, the exponent of its random wait, for packets that are queued
+ * later. Set-up sets RN to RADIO_WAIT. */
 #define RADIO_WAIT 2U
 void Radio_setWait(U32 exponent);
 
 /* API mode: sets the target address of the following packets. */
 void Radio_setTarget(U16 target);
 
-/* API mode: returns the source address of the packet that onPacket is called with. */
+/* API mode: returns the source address of the current packet; to be called by onPacket. */
 U16 Radio_source(void);
 
-/* Returns the number of packets in the output ring that were not sent; they wait for the modem. */
+/* Returns the number of packets in the output ring that have not been sent yet. */
 U32 Radio_waiting(void);
 
-/* Takes a packet; `bytes` are valid during the call only. */
+/* Receives a packet; `bytes` are valid during the call only. */
 typedef void (*Radio_OnPacket)(void* context, const U8* bytes, U32 size);
 
 /* Takes the packets out of the receive ring, oldest first, and calls onPacket(context, ...) for
  * each. Returns the number of packets. */
 U32 Radio_receive(Radio_OnPacket onPacket, void* context);
 
-/* Acknowledges the controller's interrupt. Returns the events that it reads and clears
- * (MODEM_EVENT_...); if non-zero, the task has work. For interrupt routines. */
+/* Acknowledges the controller's interrupt. Reads, clears and returns the controller's events
+ * (MODEM_EVENT_...). If they are not zero, the task must call Radio_receive. For interrupt
+ * routines. */
 U32 Radio_interrupt(void);
 
-/* Returns the counters; they are not reset. */
+/* Returns the counters, which are never reset. */
 const Radio_Counters* Radio_counters(void);

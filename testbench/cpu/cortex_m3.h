@@ -23,21 +23,22 @@
 struct Instruction {
     enum Kind : uint8_t {
         Plain,
-        If,        // IT: executed as one unit with the `conditional` instructions after it
+        If,        // IT: executed as one unit with the next `conditional` instructions
         Sleep,     // WFI
         Barrier,   // DSB, DMB: wait for the write buffer
         Masks,     // CPS or MSR: may change PRIMASK, BASEPRI, FAULTMASK or CONTROL
         Exclusive, // LDREX: opens the exclusive monitor
-        Refused    // WFE, SEV, YIELD: the model has no event register
+        Refused    // WFE, SEV, YIELD: not supported, because the model has no event register
     };
     static constexpr uint8_t noBase = 15;
     uint8_t bytes = 2;       // 2 or 4
-    uint8_t cycles = 1;      // Cortex-M3 TRM r2p1, table 3-1, without the refill of a taken branch
+    uint8_t cycles = 1;      // cycles by table 3-1 of the Cortex-M3 TRM r2p1, without the refill
+                             // after a taken branch
     uint8_t conditional = 0; // number of conditional instructions after an IT, 1..4
     Kind kind = Plain;
     // Alignment check of an access (A3.2.1): base register, and the address bits that must be zero.
     uint8_t base = noBase, alignment = 0;
-    uint8_t special = 0; // the register of MSR: SYSm
+    uint8_t special = 0; // number of the special register of an MSR (SYSm)
 };
 
 // Cycles of refilling the pipeline after a taken branch (TRM: P is 1..3).
@@ -74,12 +75,13 @@ inline Instruction narrowInstruction(uint16_t op) {
     case 4:
         return takes(op & 0x0800 ? 2 : 1); // LDR literal
     case 5:
-        return takes(2); // register offset
+        return takes(2); // address with a register offset
     case 6:
     case 7:
     case 8:
     case 9:
-        return takes(op & 0x0800 ? 2 : 1); // immediate offset: a store is buffered
+        return takes(op & 0x0800 ? 2 : 1); // address with an immediate offset; a store goes to the
+                                           // write buffer
     case 12:                               // LDM, STM
         i.base = static_cast<uint8_t>(op >> 8 & 7);
         i.alignment = 3;
@@ -94,9 +96,9 @@ inline unsigned wideCycles(uint16_t first, uint16_t second) {
         return 1 + ones(second);
     if ((first & 0xFFF0) == 0xE8D0 && (second & 0xFFE0) == 0xF000) // TBB, TBH
         return 2;
-    if ((first & 0xFE40) == 0xE840) // LDRD, STRD; exclusive
+    if ((first & 0xFE40) == 0xE840) // LDRD, STRD, and exclusive accesses
         return (first & 0x0120) ? 3 : 2;
-    if ((first & 0xFE00) == 0xF800) { // one register
+    if ((first & 0xFE00) == 0xF800) { // one register is transferred
         bool load = first & 0x0010, registerOffset = !(first & 0x0080) && !(second & 0x0800);
         return load || registerOffset ? 2 : 1;
     }
@@ -107,8 +109,8 @@ inline unsigned wideCycles(uint16_t first, uint16_t second) {
     return 1;
 }
 
-// LDM, STM, LDRD, STRD, LDREX, STREX and their kin. Offsets are multiples of the alignment; SP is
-// always aligned.
+// Sets the alignment check of LDM, STM, LDRD, STRD, LDREX, STREX and similar instructions. Their
+// offsets are multiples of the alignment; SP is always aligned.
 inline void decodeAligned(Instruction& i, uint16_t first, uint16_t second) {
     const bool isTable = (first & 0xFFF0) == 0xE8D0 && (second & 0xFFE0) == 0xF000; // TBB, TBH
     const bool isMultiple = !(first & 0x0040), isDouble = !isMultiple && (first & 0x0120);
@@ -122,7 +124,7 @@ inline void decodeAligned(Instruction& i, uint16_t first, uint16_t second) {
     i.base = base == 13 ? Instruction::noBase : base;
 }
 
-// `first` and `second`: the halfword at the instruction's address and the one after it.
+// Decodes the instruction in `first`, the halfword at its address, and `second`, the next halfword.
 inline Instruction decodeInstruction(uint16_t first, uint16_t second) {
     if (first >> 11 < 0x1D)
         return narrowInstruction(first);
@@ -145,41 +147,42 @@ inline Instruction decodeInstruction(uint16_t first, uint16_t second) {
     return i;
 }
 
-// CpuBus is everything around the processor. Addresses are the processor's.
+// CpuBus is everything around the processor. Addresses are as the processor sees them.
 class CpuBus {
 public:
     virtual ~CpuBus() = default;
-    // Thrown by the bus for a failed access: it becomes a BusFault with this text.
+    // Thrown by the bus for a failed access, which becomes a BusFault with this text.
     class Error : public std::runtime_error {
     public:
         using std::runtime_error::runtime_error;
     };
     virtual uint32_t read(uint32_t address, unsigned bytes) = 0; // 1, 2 or 4 bytes
     virtual void write(uint32_t address, unsigned bytes, uint32_t value) = 0;
-    // `cycles` of HCLK pass without an access. Not called recursively.
+    // Lets `cycles` of HCLK pass without an access. Not called recursively.
     virtual void pass(unsigned cycles) = 0;
-    // The processor sleeps: up to `limit` cycles pass, fewer if an interrupt line has changed.
-    // Returns how many have passed, at least 1.
+    // Lets up to `limit` cycles pass while the processor sleeps, or fewer if an interrupt line
+    // changes. Returns the number of cycles that passed, at least 1.
     virtual unsigned sleep(unsigned limit) {
         pass(1);
         return limit ? 1 : 0;
     }
-    // A store to flash at this offset; the bus performs it.
+    // Performs a store to flash at this offset.
     virtual void writeFlash(uint32_t, unsigned, uint32_t) {
         throw Error("flash is not written by stores");
     }
-    // HCLK cycles of the last access, for which the processor waited.
+    // Returns the HCLK cycles that the processor waited for the last access.
     virtual unsigned takeWaited() = 0;
 };
 
 class CortexM3 {
 public:
     struct Config {
-        uint32_t flashBase = 0x08000000, flashBytes = 0x100000; // also seen at address 0
+        uint32_t flashBase = 0x08000000,
+                 flashBytes = 0x100000; // flash, which is also mapped to address 0
         uint32_t ramBase = 0x20000000, ramBytes = 0x20000;
-        uint32_t calibration = 15000; // SYST_CALIB: HCLK/8 ticks a millisecond
+        uint32_t calibration = 15000; // value of SYST_CALIB: ticks of HCLK/8 in a millisecond
     };
-    // Windows that go to the bus.
+    // Address ranges whose accesses go to the bus.
     struct Window {
         uint32_t base, bytes;
     };
@@ -199,32 +202,35 @@ public:
     bool debugRead(uint32_t address, void* data, uint32_t bytes);
     bool debugWrite(uint32_t address, const void* data, uint32_t bytes);
     uint8_t* flash() { return flash_.get(); }
-    // Bytes of flash have changed; called by the bus.
+    // Reports that bytes of flash have changed; called by the bus.
     void flashChanged(uint32_t offset, uint32_t bytes);
-    // No instruction can be fetched from flash for this many cycles; called by the bus.
+    // Blocks instruction fetches from flash for this many cycles; called by the bus.
     void stallFlash(uint64_t cycles) { flashFree_ = this->cycles() + cycles; }
-    uint32_t word(uint32_t address) const; // 0 if the address is not memory
+    uint32_t word(uint32_t address) const; // Returns the word at `address`; 0 if the address is not
+                                           // memory.
 
     // Performs a power-on or system reset: registers from the vector table; RAM is kept.
     void reset();
     // Runs until stop(), a breakpoint, or an exception of the bus other than CpuBus::Error.
     enum class Stop { Asked, Breakpoint, Stepped };
     Stop run(bool singleStep = false);
-    // Stops (Stop::Stepped) also when `instructions()` reaches this count; 0 disables it. It cannot
-    // stop within an IT block.
+    // Makes run() also stop (Stop::Stepped) when `instructions()` reaches this count; 0 disables
+    // it. The processor cannot stop within an IT block.
     void setLimit(uint64_t instructions) { limit_ = instructions; }
-    // The last count of instructions before the present one at which the processor could stop.
+    // Returns the latest earlier count of instructions at which the processor could have stopped.
     uint64_t lastStop() const { return boundaries_[0]; }
-    // Called by the bus or a listener: run() returns before the next instruction.
+    // Makes run() return before the next instruction; called by the bus or a listener.
     void stop() { stopAsked_ = attention_ = true; }
-    // Requests a reset from outside (a watchdog), before the next instruction.
+    // Requests a reset from outside the processor (such as a watchdog), before the next
+    // instruction.
     void requestReset() { resetAsked_ = attention_ = true; }
 
     // Sets the level of an interrupt line; called by the bus.
     void setInterrupt(unsigned number, bool high);
     void pendInterrupt(unsigned number);
 
-    // R0..R12, SP, LR, PC, xPSR as 0..16; then MSP, PSP, PRIMASK, BASEPRI, FAULTMASK, CONTROL.
+    // Registers: R0..R12, SP, LR, PC, xPSR are 0..16; then MSP, PSP, PRIMASK, BASEPRI, FAULTMASK,
+    // CONTROL.
     enum Register {
         Sp = 13,
         Lr,
@@ -244,13 +250,16 @@ public:
     uint64_t cycles() const { return control_.cycles(); }
     uint64_t instructions() const { return instructions_; }
     uint64_t sleepingCycles() const { return sleeping_; }
-    uint64_t busCycles() const { return waited_; } // waiting for windows
+    uint64_t busCycles() const {
+        return waited_;
+    } // cycles in which the processor waited for
+      // windows
     bool isLockedUp() const { return lockedUp_; }
     unsigned currentException() const;
     Exceptions& exceptions() { return exceptions_; }
 
-    // Longest time since this call in which the masks blocked interrupts of `priority` and below,
-    // in cycles, and the end of that time.
+    // Longest time, in cycles, in which the masks blocked interrupts of `priority` and lower, since
+    // the last call; and the end of that time.
     struct Masked {
         uint64_t cycles = 0;
         uint32_t from = 0, to = 0; // addresses of the instructions that masked and unmasked
@@ -258,14 +267,14 @@ public:
     void countMasked(uint8_t priority);
     const Masked& longestMasked() const { return longest_; }
 
-    std::set<uint32_t> breakpoints; // addresses, bit 0 clear
-    std::string lastFault;          // text of the last fault, for people
+    std::set<uint32_t> breakpoints; // breakpoint addresses, with bit 0 clear
+    std::string lastFault;          // text of the last fault, for a message to the user
 
     // Called when an exception is entered or left, and before a system reset is carried out.
     struct Listener {
         std::function<void(unsigned number)> entered, left;
         std::function<void()> systemReset;
-        std::function<void(uint32_t address)> instruction; // before it; costly
+        std::function<void(uint32_t address)> instruction; // called before each instruction; slow
     } listener;
 
 private:
@@ -290,7 +299,8 @@ private:
     void setSynchronous(uint32_t address, unsigned number, uint32_t cfsrBits, const char* text);
     void clearExclusive();
     void fixBasepri();
-    // Handlers of HardFault and NMI, and code under FAULTMASK, run without the MPU (B3.5.1).
+    // True in handlers of HardFault and NMI, and under FAULTMASK: such code runs without the MPU
+    // (B3.5.1).
     bool isMpuOff() const { return exceptions_.runningPriority() < 0; }
     bool isSplit(uint32_t address, unsigned bytes);
     bool isBitBand(uint32_t address) const;
@@ -318,9 +328,9 @@ private:
     Config config_;
     uc_engine* uc_ = nullptr;
     std::unique_ptr<uint8_t[], void (*)(void*)> flash_, ram_;
-    std::vector<Instruction> decoded_; // decoded flash, one slot per halfword; bytes 0: not decoded
-                                       // yet
-    Instruction scratch_;              // decoded instruction outside flash
+    std::vector<Instruction> decoded_; // decoded flash, one element per halfword; `bytes` is 0 if
+                                       // the halfword is not decoded yet
+    Instruction scratch_;              // decoded instruction at an address outside flash
     struct MappedWindow {
         CortexM3* cpu;
         uint32_t base;
@@ -330,12 +340,12 @@ private:
     SystemControl control_{exceptions_, 0};
 
     uint32_t pc_ = 0, executing_ = 0, expected_ = 0, unitEnd_ = 0;
-    unsigned skipped_ = 0; // conditional instructions of the current IT block that were not
-                           // executed yet
+    unsigned skipped_ = 0; // number of conditional instructions of the current IT block that are
+                           // still to be executed
     bool masksChanged_ = false;
     uint8_t special_ = 0;     // special register of the last MSR
     bool exclusive_ = false;  // the exclusive monitor may be open
-    bool isClearing_ = false; // the model's inserted CLREX is being executed
+    bool isClearing_ = false; // true while the CLREX that the model inserts is being executed
     bool attention_ = false, stopAsked_ = false, resetAsked_ = false, stepped_ = false,
          breakpointHit_ = false;
     bool singleStep_ = false, passBreakpoint_ = false;
@@ -345,24 +355,26 @@ private:
         unsigned number = 0;
         uint32_t cfsrBits = 0;
         std::string text;
-    } synchronous_; // fault of the current instruction
-    // The write buffer of one entry (TRM r2p1, 3.5): a pending store to a window.
+    } synchronous_; // fault that the current instruction caused The write buffer of one entry (TRM
+                    // r2p1, 3.5): a
+    // pending store to a window.
     struct BufferedStore {
         uint32_t address = 0, value = 0;
-        unsigned bytes = 0; // 0: the buffer is empty
+        unsigned bytes = 0; // size of the pending store; 0 means that the buffer is empty
         uint64_t due = 0;   // cycle count
     } store_;
     std::exception_ptr failure_;
     uint64_t instructions_ = 0, sleeping_ = 0, waited_ = 0;
-    // libunicorn carries out a store to flash by itself: the old bytes are restored, and the bus
-    // then applies the write.
+    // Bytes before a store to flash. libunicorn performs the store by itself; the model restores
+    // these bytes, and the bus then applies the write.
     struct FlashStore {
         uint32_t offset;
         unsigned bytes;
         uint8_t was[8];
     };
     std::vector<FlashStore> stores_; // stores of the current instruction
-    bool staleCode_ = false;         // translated code differs from flash
+    bool staleCode_ = false;         // true if libunicorn has translated code that differs from
+                                     // flash
     uint64_t flashFree_ = 0;
     uint64_t limit_ = 0, boundaries_[2] = {0, 0};
     uint8_t watchedPriority_ = 0xFF;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// system_control: SysTick as a due time, NVIC and SCB (ARMv7-M ARM, B3.2) as views of Exceptions,
-// the MPU (B3.5) as a list of guards.
+// system_control: models SysTick as the time at which it is due, NVIC and SCB (ARMv7-M ARM, B3.2)
+// as views of the class Exceptions, and the MPU (B3.5) as a list of regions.
 
 #include "system_control.h"
 #include <cstdio>
@@ -11,8 +11,8 @@ namespace {
 constexpr uint32_t dwt = 0xE0001000, scs = 0xE000E000;
 constexpr uint32_t keyIn = 0x05FA, keyOut = 0xFA05;
 
-// Priorities of exceptions 4..15 are in SHPR1..3. True for the exceptions that exist, and for
-// interrupts.
+// True if the exception has a priority: interrupts, and those of exceptions 4..15 (SHPR1..3) that
+// exist.
 bool hasPriority(unsigned number) {
     return number >= FirstInterrupt || (number >= MemManage && number <= UsageFault) ||
            number == SupervisorCall || number == DebugMonitor || number == PendSv ||
@@ -35,31 +35,34 @@ std::string hex(uint32_t value) {
     return text;
 }
 
-constexpr uint32_t traceEnabled = 1u << 24, comparators = 4u << 28; // DEMCR.TRCENA, DWT_CTRL
+constexpr uint32_t traceEnabled = 1u << 24,
+                   comparators = 4u << 28; // bits of DEMCR (TRCENA) and of DWT_CTRL
 
-// RASR.AP for privileged code: 0 no access; 5 to 7 read only.
+// Returns whether RASR.AP forbids the access to privileged code: 0 means no access, 5 to 7 mean
+// read only.
 bool forbids(uint32_t rasr, bool write) {
     uint32_t access = rasr >> 24 & 7;
     return access == 0 || (write && access >= 5);
 }
 
-// RASR.XN, or no access at all.
+// Returns whether RASR forbids execution: XN, or no access at all.
 bool forbidsToExecute(uint32_t rasr) {
     return (rasr >> 28 & 1) || forbids(rasr, false);
 }
 
 } // namespace
 
-// Registers that only store the written value. A value with unknown bits is not modelled.
+// Registers that only store the written value. Writing a bit that is not known here is reported as
+// not modelled.
 struct SystemControl::Stored {
     uint32_t at;
     uint32_t SystemControl::* value;
     uint32_t kept = ~0u, unknown = 0;
-    bool clears = false; // writing 1 clears a bit
+    bool clears = false; // true: writing 1 to a bit clears it
 };
 const SystemControl::Stored SystemControl::stored[] = {
     {0x008, &SystemControl::actlr_, ~0u, ~2u}, // DISDEFWBUF is modelled
-    // 97 vectors: the table is aligned to 512 bytes.
+    // the table has 97 vectors, so it is aligned to 512 bytes.
     {0xD08, &SystemControl::vtor_, 0x3FFFFF80, 0x1FF},
     {0xD10, &SystemControl::scr_, 0, 0x16}, // SLEEPONEXIT, SLEEPDEEP, SEVONPEND
     // NONBASETHRDENA, USERSETMPEND, traps of unaligned accesses and divisions by zero, BFHFNMIGN
@@ -121,7 +124,7 @@ void SystemControl::write(uint32_t address, unsigned size, uint32_t value) {
             refuse();
         return;
     }
-    // The priority registers and CFSR can be written by byte (B3.1.1, B3.2.15).
+    // The priority registers and CFSR can also be written by byte (B3.1.1, B3.2.15).
     const uint32_t at = address - scs;
     const bool priorities = (at >= 0x400 && at < 0x4F0) || (at >= 0xD18 && at < 0xD24);
     const bool status = at >= 0xD28 && at < 0xD2C;
@@ -146,10 +149,10 @@ void SystemControl::controlCycleCounter(uint32_t demcr, uint32_t control) {
 }
 
 bool SystemControl::accessWord(uint32_t address, bool write, uint32_t& value) {
-    const bool isTraced = demcr_ & traceEnabled; // else DWT ignores writes
+    const bool isTraced = demcr_ & traceEnabled; // otherwise DWT ignores writes
     if (address == dwt) {
         if (write && isTraced && (value & 0x0FFFFFFE))
-            return false; // other counters, samples of the PC
+            return false; // other counters and PC sampling are not modelled
         if (write && isTraced)
             controlCycleCounter(demcr_, value & 1);
         else if (!write)
@@ -227,7 +230,7 @@ void SystemControl::setFaultAddress(uint32_t cfsrBits, uint32_t address) {
 
 uint32_t SystemControl::interruptState() const {
     const Exceptions& all = *exceptions_;
-    bool isPending = false; // an interrupt
+    bool isPending = false; // the bits belong to interrupts
     for (unsigned n = FirstInterrupt; n < Exceptions::count; ++n)
         isPending = isPending || all[n].pending;
     return all.current() | uint32_t(all.activeCount() <= 1) << 11 | all.firstPending() << 12 |
@@ -268,7 +271,7 @@ bool SystemControl::accessOther(uint32_t at, bool write, uint32_t& value) {
         if (write)
             loadSysTick(given & 0xFFFFFF);
         break;
-    case 0x018: // writing any value clears the counter; it reloads at the next tick
+    case 0x018: // writing any value clears the counter, which reloads at the next tick
         shown = currentTicks();
         if (!write)
             break;
@@ -280,7 +283,7 @@ bool SystemControl::accessOther(uint32_t at, bool write, uint32_t& value) {
     case 0x01C:
         shown = calibration_;
         break;
-    case 0xD00: // CPUID: r2p0, an STM32F2's
+    case 0xD00: // CPUID of an STM32F2: r2p0
         shown = 0x412FC230;
         break;
     case 0xD04: // ICSR
@@ -292,7 +295,7 @@ bool SystemControl::accessOther(uint32_t at, bool write, uint32_t& value) {
     case 0xD0C:
         shown = keyOut << 16 | exceptions_->grouping() << 8;
         if (given >> 16 != keyIn)
-            break; // ignored without the key
+            break; // the write is ignored without the key
         if (given & 3)
             return false; // VECTRESET and VECTCLRACTIVE are for debuggers
         exceptions_->setGrouping(given >> 8);
@@ -301,14 +304,14 @@ bool SystemControl::accessOther(uint32_t at, bool write, uint32_t& value) {
     case 0xD24:
         shown = handlerState();
         if (write && ((given ^ shown) & 0xFFFF))
-            return false; // writes that change the pending or active state
+            return false; // writing these bits would change the pending or active state
         for (unsigned number : {MemManage, BusFault, UsageFault})
             if (write)
                 exceptions_->enable(number, given >> (12 + number) & 1);
         break;
-    case 0xD3C: // AFSR: no bit
+    case 0xD3C: // AFSR has no implemented bits
         break;
-    case 0xDFC: // DEMCR; its other bits are for debuggers
+    case 0xDFC: // DEMCR; only TRCENA is modelled, the other bits are for debuggers
         shown = demcr_;
         if (given & ~traceEnabled)
             return false;
@@ -326,7 +329,8 @@ bool SystemControl::accessOther(uint32_t at, bool write, uint32_t& value) {
     return true;
 }
 
-// A new reload value takes effect when the counter next reaches zero; if it is zero, at once.
+// A new reload value takes effect when the counter next reaches zero, or at once if the counter is
+// zero.
 void SystemControl::loadSysTick(uint32_t value) {
     load_ = value;
     if ((control_ & 1) && tickDue_ == ~0ull && stoppedAt_ == 0 && value)
@@ -347,14 +351,15 @@ void SystemControl::controlSysTick(uint32_t value) {
 }
 
 bool SystemControl::accessMpu(uint32_t at, bool write, uint32_t& value) {
-    if (at >= 0x14) // three aliases of RBAR and RASR
+    if (at >= 0x14) // RBAR and RASR have three aliases
         at = 0xC + (at - 0xC) % 8;
     switch (at) {
     case 0x0: // TYPE, read only
         value = regions << 8;
         return true;
     case 0x4:
-        // Without the default map as background, or for the handlers of hard faults and NMI.
+        // Not modelled: the MPU without the default map as background, and the MPU enabled in the
+        // handlers of hard faults and NMI.
         if (write && (value & 1) && (value & 6) != 4)
             return false;
         write ? mpuControl_ = value& 7 : value = mpuControl_;
@@ -370,7 +375,7 @@ bool SystemControl::accessMpu(uint32_t at, bool write, uint32_t& value) {
     case 0xC:
         if (write && (value & 0x10) && (value & 0xF) >= regions)
             return false;
-        if (write && (value & 0x10)) // VALID: REGION is in the low bits
+        if (write && (value & 0x10)) // VALID is set: the low bits contain REGION
             mpuRegion_ = value & 7;
         if (write)
             region_[mpuRegion_].rbar = value & ~0x1Fu;
@@ -412,12 +417,12 @@ void SystemControl::checkRegion(const Region& r) const {
                           ", RASR " + hex(r.rasr));
 }
 
-// Returns the region that decides: the one with the highest number (B3.5.3). A region of 256 bytes
-// and more has eight subregions, which SRD disables one by one.
+// Returns the region that applies: the one with the highest number (B3.5.3). A region of at least
+// 256 bytes has eight subregions, which SRD can disable one by one.
 const SystemControl::Region* SystemControl::regionAt(uint32_t address) const {
     for (unsigned n = regions; n--;) {
         const Region& r = region_[n];
-        const unsigned size = r.rasr >> 1 & 0x1F; // 2^(size + 1) bytes
+        const unsigned size = r.rasr >> 1 & 0x1F; // size of the region: 2^(size + 1) bytes
         if (!(r.rasr & 1) || (size < 31 && (address ^ r.rbar) >> (size + 1)))
             continue;
         const unsigned part = size >= 7 ? address >> (size - 2) & 7 : 0;
@@ -428,7 +433,8 @@ const SystemControl::Region* SystemControl::regionAt(uint32_t address) const {
 }
 
 bool SystemControl::hitsGuard(uint32_t start, uint32_t bytes, bool write) const {
-    for (uint64_t at = start; at < uint64_t(start) + bytes; at = (at | 0x1F) + 1) { // least region
+    for (uint64_t at = start; at < uint64_t(start) + bytes;
+         at = (at | 0x1F) + 1) { // steps of the smallest region, 32 bytes
         const Region* r = regionAt(static_cast<uint32_t>(at));
         if (r && forbids(r->rasr, write))
             return true;

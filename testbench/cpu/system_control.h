@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // system_control: registers of a Cortex-M3's private peripheral bus (0xE0000000): SysTick, NVIC,
-// SCB, MPU, and DWT's cycle counter, after the ARMv7-M ARM (DDI 0403), chapter B3. A register, a
-// bit or a value that is not modelled stops the simulation with a message (NotModelled).
+// SCB, MPU, and DWT's cycle counter, as in the ARMv7-M ARM (DDI 0403), chapter B3. An access to a
+// register, bit or value that is not modelled stops the simulation with a message (NotModelled).
 
 #pragma once
 
@@ -20,7 +20,8 @@ public:
         : std::runtime_error("not modelled: " + what + " (docs/simulation.md)") {}
 };
 
-// Which exception of a Cortex-M3 is pending, active, enabled, and which may run now.
+// Exceptions of a Cortex-M3: which of them are pending, active and enabled, and which one may run
+// now.
 //
 // ARMv7-M Architecture Reference Manual, B1.5. Numbers: 1 Reset .. 15 SysTick, 16 + n is interrupt
 // n.
@@ -39,20 +40,22 @@ enum Exception : unsigned {
 
 class Exceptions {
 public:
-    static constexpr unsigned interrupts = 81; // number on an STM32F2 (RM0033, table 61)
+    static constexpr unsigned interrupts = 81; // number of interrupts of an STM32F2 (RM0033, table
+                                               // 61)
     static constexpr unsigned count = FirstInterrupt + interrupts;
-    static constexpr uint8_t priorityBits = 0xF0; // four bits are there
+    static constexpr uint8_t priorityBits = 0xF0; // implemented bits of a priority: the upper four
     static constexpr int none = 256;              // priority of thread mode
 
     struct State {
         bool pending = false, active = false, enabled = false;
-        bool level = false; // state of the line; while it is high the interrupt becomes pending
-                            // again
+        bool level = false; // level of the interrupt line; while it is high, the interrupt becomes
+                            // pending again
         uint8_t priority = 0;
     };
 
     void reset() { *this = Exceptions(), update(); }
-    // A line that is still high makes its interrupt pending again at once, unless it is active.
+    // Makes an exception pending, or not. An interrupt with a line that is still high becomes
+    // pending again at once, unless it is active.
     void pend(unsigned number, bool pending = true) {
         State& s = states_[number];
         s.pending = pending || (s.level && !s.active);
@@ -66,7 +69,7 @@ public:
         states_[number].priority = priority & priorityBits;
         update();
     }
-    // Sets PRIGROUP.
+    // Sets PRIGROUP, the split of priorities into group and subpriority.
     void setGrouping(unsigned group) {
         group_ = group & 7;
         update();
@@ -95,10 +98,10 @@ public:
     }
     const State& operator[](unsigned number) const { return states_[number]; }
     unsigned activeCount() const { return static_cast<unsigned>(active_.size()); }
-    // Returns the exception that runs; 0 in thread mode.
+    // Returns the exception that is running; 0 in thread mode.
     unsigned current() const { return active_.empty() ? 0 : active_.back(); }
 
-    // The masks of the processor.
+    // Sets the processor's masks.
     void setMasks(uint32_t primask, uint32_t basepri, uint32_t faultmask) {
         primask_ = primask & 1;
         basepri_ = basepri & priorityBits;
@@ -108,13 +111,14 @@ public:
 
     uint32_t basepri() const { return basepri_; }
 
-    // Returns the exception that must be entered now; 0 if none.
+    // Returns the exception that must be entered now; 0 if there is none.
     unsigned deliverable() const { return bestPriority_ < runningPriority_ ? best_ : 0; }
     // Returns the current execution priority, including masks; `none` in thread mode without masks.
     int runningPriority() const { return runningPriority_; }
-    // Returns the pending exception to enter if BASEPRI and FAULTMASK do not mask it; else 0.
+    // Returns the pending exception that is entered next if BASEPRI and FAULTMASK do not mask it;
+    // otherwise 0.
     unsigned firstPending() const { return bestPriority_ < maskPriority_ ? best_ : 0; }
-    // WFI wakes by an exception that would preempt with PRIMASK 0 (B1.5.19).
+    // True if a pending exception ends WFI: it would preempt if PRIMASK were 0 (B1.5.19).
     bool wakes() const { return bestPriority_ < sleepPriority_; }
     int priorityOf(unsigned number) const {
         switch (number) {
@@ -158,7 +162,7 @@ private:
     }
 
     std::array<State, count> states_;
-    std::vector<uint8_t> active_; // the last one runs
+    std::vector<uint8_t> active_; // numbers of the active exceptions; the last one is running
     unsigned group_ = 0;
     uint32_t primask_ = 0, basepri_ = 0, faultmask_ = 0;
     unsigned best_ = 0;
@@ -168,41 +172,45 @@ private:
 
 class SystemControl {
 public:
-    // `calibration`: SYST_CALIB.TENMS; on an STM32F2 ticks of HCLK/8 in one millisecond
-    // (RM0033, 8.1.2).
+    // `calibration` is SYST_CALIB.TENMS. On an STM32F2 this is the number of ticks of HCLK/8 in one
+    // millisecond (RM0033, 8.1.2).
     SystemControl(Exceptions& exceptions, uint32_t calibration)
         : exceptions_(&exceptions), calibration_(calibration) {}
 
     void reset();
-    // 32-bit registers; 8- and 16-bit accesses use part of one. Throw NotModelled.
+    // Read and write 32-bit registers; accesses of 8 or 16 bits use a part of a register. Throw
+    // NotModelled.
     uint32_t read(uint32_t address, unsigned size);
     void write(uint32_t address, unsigned size, uint32_t value);
 
-    // Time passes; SysTick pends when it runs through zero.
+    // Lets cycles pass. SysTick becomes pending when its counter reaches zero.
     void pass(unsigned cycles) {
         cycles_ += cycles;
         if (cycles_ >= tickDue_)
             tick();
     }
     uint64_t cycles() const { return cycles_; }
-    // Cycles until SysTick becomes pending, at least 1; a large number if SysTick is off.
+    // Returns the cycles until SysTick becomes pending, at least 1; a large number if SysTick is
+    // off.
     uint64_t untilTick() const { return tickDue_ > cycles_ ? tickDue_ - cycles_ : 1; }
 
     uint32_t vectorTable() const { return vtor_; }
     bool takeResetRequest();
-    bool buffersStores() const { return !(actlr_ & 1u << 1); } // ACTLR.DISDEFWBUF
+    bool buffersStores() const {
+        return !(actlr_ & 1u << 1);
+    } // true unless ACTLR.DISDEFWBUF is set
     bool alignsStack() const { return ccr_ & 1u << 9; }
 
-    // Returns whether the MPU forbids a data access to these bytes.
+    // Returns whether the MPU forbids a data access to `bytes` at `start`.
     bool isForbidden(uint32_t start, uint32_t bytes, bool write) const {
         return guards_ && hitsGuard(start, bytes, write);
     }
-    // Returns whether the MPU forbids to execute the instruction at an address.
+    // Returns whether the MPU forbids executing the instruction at an address.
     bool isExecuteNever(uint32_t address) const {
         return address >= neverFrom_ && address <= neverTo_ && hitsExecuteNever(address);
     }
 
-    // Fault status, for the processor to fill in: bits of CFSR and HFSR, and the address.
+    // Set the fault status for the processor: bits of CFSR and HFSR, and the address of the fault.
     void reportFault(uint32_t cfsrBits) { cfsr_ |= cfsrBits; }
     void reportHardFault(uint32_t hfsrBits) { hfsr_ |= hfsrBits; }
     void setFaultAddress(uint32_t cfsrBits, uint32_t address);
@@ -219,7 +227,7 @@ private:
     struct Region {
         uint32_t rbar = 0, rasr = 0;
     };
-    // Read into `value`, or write it.
+    // Reads a register into `value`, or writes `value` into it.
     bool accessWord(uint32_t address, bool write, uint32_t& value);
     bool accessInterrupts(uint32_t offset, bool write, uint32_t& value);
     bool accessPriorities(unsigned first, bool write, uint32_t& value);
@@ -228,7 +236,7 @@ private:
     bool accessOther(uint32_t offset, bool write, uint32_t& value);
     bool accessMpu(uint32_t offset, bool write, uint32_t& value);
     void tick();
-    // Ticks of SysTick from one zero to the next; 0: the counter stays at zero.
+    // Returns the ticks of SysTick from one zero to the next; 0 if the counter stays at zero.
     uint64_t reload() const { return load_ ? uint64_t(load_) + 1 : 0; }
     void startSysTick(uint64_t ticks);
     void controlSysTick(uint32_t value);
@@ -237,7 +245,10 @@ private:
     void controlCycleCounter(uint32_t demcr, uint32_t control);
     const Region* regionAt(uint32_t address) const;
     void checkRegion(const Region& region) const;
-    uint64_t tickUnit() const { return control_ & 4 ? 1 : 8; } // CLKSOURCE: HCLK or HCLK/8
+    uint64_t tickUnit() const {
+        return control_ & 4 ? 1 : 8;
+    } // HCLK cycles per tick; CLKSOURCE selects
+      // HCLK or HCLK/8
     uint32_t currentTicks() const;
     bool hitsExecuteNever(uint32_t address) const;
     bool hitsGuard(uint32_t start, uint32_t bytes, bool write) const;
@@ -254,10 +265,11 @@ private:
              bfar_ = 0;
     uint32_t demcr_ = 0, dwtControl_ = 0;
     uint64_t cycleCountFrom_ = 0;
-    uint32_t stoppedCount_ = 0; // CYCCNT while it is stopped
+    uint32_t stoppedCount_ = 0; // value of CYCCNT while it is stopped
     bool resetRequested_ = false;
     uint32_t mpuControl_ = 0, mpuRegion_ = 0;
     Region region_[regions];
-    unsigned guards_ = 0;                  // enabled regions with restrictions
-    uint32_t neverFrom_ = 1, neverTo_ = 0; // bounds of all regions without execution
+    unsigned guards_ = 0;                  // number of enabled regions with restrictions
+    uint32_t neverFrom_ = 1, neverTo_ = 0; // lowest and highest address of all execute-never
+                                           // regions
 };

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
-// mcb_model: a 64-bit user port of the Spartan-6 memory controller block (UG388) with DDR3 behind
-// it.
+// mcb_model: a 64-bit user port of the Spartan-6 memory controller block (UG388), and the DDR3 that
+// it controls.
 //
-// The user port: a command FIFO of 4, data FIFOs of 64 words, flags like the real one's. Where the
-// real one sets an error flag or loses data, this also throws McbError, so that a test fails:
-//   a command while the FIFO is full (the real one ignores it) or before calibration is done
-//   an address that is not a multiple of 8, or beyond the memory
-//   a write command before its words are in the FIFO (wr_underrun, wr_error)
-//   a word into the full write FIFO (ignored), out of the empty read FIFO (rd_error)
-//   a word that comes from the memory while the read FIFO is full (rd_overflow)
+// The user port: a command FIFO of 4, data FIFOs of 64 words, and the flags of the real port. When
+//   the real port sets an error flag or loses data, the model also throws McbError, so that a test
+//   fails: a command while the FIFO is full (the real one ignores it) or before calibration is done
+//   an address that is not a multiple of 8, or beyond the memory a write command before its words
+//   are in the FIFO (wr_underrun, wr_error) a word into the full write FIFO (ignored), out of the
+//   empty read FIFO (rd_error) a word that comes from the memory while the read FIFO is full
+//   (rd_overflow)
 //
 // Behind the port, commands are carried out one after another, in bursts of 8 on a device of 16
 // bits at DDR3-800 (ddr3_timing.h), with four memory clocks per clock of the design: 100 MHz. By
@@ -57,13 +57,15 @@ class McbModel {
 public:
     static constexpr unsigned commandDepth = 4, dataDepth = 64;
     static constexpr unsigned memoryClocks = 4; // memory clocks per clock of the design
-    // JESD79-3, 3.3.1: 200 us in reset and 500 us until CKE; calibration: an estimate, 300 us.
+                                                // JESD79-3, 3.3.1: 200 us in reset and 500 us until
+                                                // CKE; calibration: an estimate, 300 us.
     static constexpr unsigned startClocks = 100'000;
 
     // Pins of the user port; the design's side is set before cycle().
     struct Pins {
         bool cmdEn = false, wrEn = false, rdEn = false;
-        uint8_t cmdInstr = 0, cmdBl = 0, wrMask = 0; // mask: 1 = byte not written; bl: words - 1
+        uint8_t cmdInstr = 0, cmdBl = 0, wrMask = 0; // wrMask: 1 in a bit means that the byte is
+                                                     // not written; cmdBl: number of words - 1
         uint32_t cmdByteAddr = 0;
         uint64_t wrData = 0;
         // outputs of the model
@@ -74,9 +76,10 @@ public:
         uint64_t rdData = 0;
     } pins;
 
-    // Clocks of the design.
+    // Clocks of the design for parts of an access.
     struct Timing {
-        unsigned calibration = 64; // shortened: a real start takes startClocks
+        unsigned calibration = 64; // clocks of the calibration; shorter than a real start, which
+                                   // takes startClocks
         unsigned commandWay = 6;   // clocks between cmd_en and the command on the memory bus
         unsigned dataWay = 5;      // clocks between the last word of a burst and rd_empty
     };
@@ -85,7 +88,8 @@ public:
     McbModel(size_t bytes, Timing timing)
         : memory_(bytes), timing_(timing), device_(mt41j64m16, refreshLater) {}
 
-    // One clock cycle: the design's inputs at the edge, then its outputs after it.
+    // Computes one clock cycle: takes the design's inputs at the edge, then sets its outputs after
+    // the edge.
     void cycle() {
         if (pins.wrEn | pins.cmdEn | pins.rdEn)
             takeInputs();
@@ -94,32 +98,34 @@ public:
             work();
     }
 
-    // Clocks to the next event, minus 1; and a function that skips clocks in which the design is
-    // idle.
+    // untilEvent returns the clocks to the next event, minus 1. skip passes clocks in which the
+    // design is idle.
     uint64_t untilEvent() const {
         return hung_ ? ~0ull : nextEvent_ > now_ + 1 ? nextEvent_ - now_ - 1 : 0;
     }
     void pass(uint64_t clocks) { now_ += clocks; }
 
-    // Restarts the memory, as after power-on; the start takes these clocks.
+    // Restarts the memory as after power-on; the start takes `clocks`.
     void restart(unsigned clocks) {
         timing_.calibration = static_cast<unsigned>(now_) + clocks;
         pins.calibDone = false;
         nextEvent_ = 0;
     }
 
-    // Injects a fault: until it ends, no command begins and no word moves; waiting ones are carried
-    // out after it.
+    // Injects a fault, or ends it. During the fault no command begins and no word moves; waiting
+    // commands are carried out afterwards.
     void hang(bool on) { hung_ = on; }
 
-    // Faults of the lines to the memory. A halfword is a beat on DQ15..DQ0; row and column share
-    // A9..A0.
+    // Faults of the lines to the memory. Each halfword of data is one transfer on DQ15..DQ0; row
+    // and column addresses share A9..A0.
     struct Lines {
-        uint16_t dqLow = 0, dqHigh = 0;            // data lines that stay at a level
-        uint16_t dqShort = 0;                      // data lines that are joined
-        uint8_t maskLow = 0, maskHigh = 0;         // bit 0 LDM, 1 UDM: stay at a level
+        uint16_t dqLow = 0, dqHigh = 0;            // data lines that are stuck at a level
+        uint16_t dqShort = 0;                      // data lines that are shorted to each other
+        uint8_t maskLow = 0, maskHigh = 0;         // data masks that are stuck at a level: bit 0
+                                                   // LDM, bit 1 UDM
         uint16_t addressLow = 0, addressShort = 0; // A12..A0
-        uint8_t strobeOpen = 0;                    // bit 0 LDQS, 1 UDQS: reads return noise
+        uint8_t strobeOpen = 0;                    // open strobes: bit 0 LDQS, bit 1 UDQS; reads
+                                                   // then return noise
         uint8_t bankLow = 0, bankShort = 0;        // BA2..BA0
     };
     void plant(const Lines& lines) {
@@ -127,7 +133,7 @@ public:
         isFaulty_ = true;
     }
 
-    // Back door, for pictures and checks.
+    // Direct access to the memory, for pictures and checks.
     uint8_t* data() { return memory_.data(); }
     size_t size() const { return memory_.size(); }
     const Ddr3Timing& device() const { return device_; }
@@ -136,7 +142,7 @@ public:
 
 private:
     struct Command {
-        uint64_t at; // arrival at the memory's side
+        uint64_t at; // time at which the command arrives at the memory
         uint32_t address;
         uint8_t instruction, words;
     };
@@ -177,7 +183,7 @@ private:
     uint64_t readEnd_ = 0; // memory clock in which the data of the last read ends
     bool lastWasRead_ = false;
     uint64_t free_ = 0;       // earliest memory clock of the next command
-    unsigned promised_ = 0;   // words of the write FIFO claimed by commands
+    unsigned promised_ = 0;   // words of the write FIFO that accepted commands will use
     unsigned writeCount_ = 0; // words in the write FIFO, as the user port reports them
     Ring<Command, commandDepth> commands_;
     Ring<Write, dataDepth> write_; // writes not yet carried out
@@ -186,7 +192,8 @@ private:
     Ring<uint64_t, dataDepth> read_;
 };
 
-// The two below connect a Verilated module's MCB user port with an McbModel, around one clock edge.
+// ---- functions that connect a Verilated module's MCB user port with an McbModel, around one clock
+// edge ----
 
 // Samples the design's settled outputs before the edge.
 template <class Module> void sampleMcb(Module& top, McbModel& memory) {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_master: the STM32F2's FSMC peripheral, bank 1 (RM0033, chapter 31), on the pins to the FPGA.
+// fsmc_master: the STM32F2's FSMC peripheral, bank 1 (RM0033, chapter 31), which drives the pins to
+// the FPGA.
 //
 // Programmed through BCRx, BTRx and BWTRx like the real one. Asynchronous modes 1, A, 2, B, C, D
-// and multiplexed, with ASYNCWAIT. An access runs the clock of the design while it lasts. HCLK and
-// that clock stand in a fixed ratio (120 MHz to 100 MHz by default), kept exactly; pins change on
-// HCLK edges, between clock edges.
+// and multiplexed, with ASYNCWAIT. During an access the model runs the clock of the design. HCLK
+// and that clock have an exact fixed ratio (120 MHz to 100 MHz by default); pins change on HCLK
+// edges, between clock edges.
 //
 // It throws FsmcError where a real system would fail: both sides driving the data bus, no side
 // driving it in a read, read data that moves within its set-up time, NWAIT too late to be seen or
@@ -19,11 +20,12 @@
 #include <memory>
 #include <string>
 
-// Addresses and bits of its registers (RM0033, 31.5.6).
+// Addresses and bits of the FSMC's registers (RM0033, 31.5.6).
 namespace fsmc {
 
 constexpr uint32_t registersAt = 0xA0000000, windowsAt = 0x60000000, windowBytes = 0x04000000;
-constexpr unsigned waitLimit = 20000; // HCLK cycles of NWAIT before the model reports an error
+constexpr unsigned waitLimit = 20000; // HCLK cycles during which NWAIT may stop an access before
+                                      // the model reports an error
 
 // BCR
 constexpr uint32_t bcrEnable = 1u << 0, bcrMuxed = 1u << 1, bcrTypePsram = 1u << 2,
@@ -32,7 +34,7 @@ constexpr uint32_t bcrEnable = 1u << 0, bcrMuxed = 1u << 1, bcrTypePsram = 1u <<
                    bcrWaitEnable = 1u << 13, bcrExtended = 1u << 14, bcrAsyncWait = 1u << 15;
 constexpr unsigned typeNor = 2;
 
-// BTR and BWTR: HCLK cycles; ACCMOD 0..3 for modes A..D.
+// Returns a value for BTR or BWTR. Times are in HCLK cycles; ACCMOD 0..3 selects modes A..D.
 constexpr uint32_t timing(unsigned addset, unsigned datast, unsigned busturn = 0,
                           unsigned addhld = 1, unsigned accmod = 0) {
     return addset | addhld << 4 | datast << 8 | busturn << 16 | accmod << 28;
@@ -49,25 +51,28 @@ public:
     FsmcMaster(FsmcPins& pins, Design design, unsigned hclkPerUnit = 6, unsigned clkPerUnit = 5);
     ~FsmcMaster();
 
-    // Adds delays to the pins (pin_delays.h): `far` are the pins at the design, `pins` stay
-    // the processor's. `looksTwice` chooses between two readings of RM0033's rule about NWAIT: it
-    // is looked at once, four HCLK before the end of the data phase, or again after it.
+    // Adds delays to the pins (pin_delays.h): `far` are the pins at the design, `pins` those of the
+    // processor. `looksTwice` selects one of two interpretations of RM0033's rule about NWAIT: the
+    // FSMC samples NWAIT only once, four HCLK before the end of the data phase; or it also samples
+    // NWAIT after that.
     void delay(const FsmcCorner& corner, FsmcPins& far, uint64_t seed, bool looksTwice);
 
-    // Makes the changes of a pin arrive later by these ps; needs delay(). From now on a signal that
-    // comes at the wrong time gives the processor wrong data, instead of an FsmcError.
+    // Delays the changes of a pin by `ps`, in addition to delay(), which must have been called.
+    // After this call, a signal that comes at the wrong time gives the processor wrong data instead
+    // of an FsmcError.
     void makeLate(const std::string& pin, int ps);
-    // The same, without a late pin.
+    // Has the same effect on errors as makeLate(), without a late pin.
     void tolerate();
     // Changes HCLK and the design's clock, in cycles per unit of time.
     void setClocks(unsigned hclkPerUnit, unsigned clkPerUnit);
 
-    // Whether BUSTURN also applies between two writes to a bank. RM0033 states that it does not. On
-    // an STM32F407 it applies between the two halves of a word, with the value of BWTR if that is
-    // in use (community.st.com, thread 309858).
+    // Sets whether BUSTURN also applies between two writes to a bank. According to RM0033 it does
+    // not. On an STM32F407 it applies between the two halves of a word, with the value in BWTR if
+    // the bank uses BWTR (community.st.com, thread 309858).
     void pauseWrites(bool pauses) { pausesWrites_ = pauses; }
 
-    // Loads and stores of the processor. A 32-bit one to a window is two accesses, low half first.
+    // Loads and stores of the processor. A 32-bit load or store to a window is two accesses, low
+    // half first.
     uint8_t read8(uint32_t address);
     void write8(uint32_t address, uint8_t value);
     uint16_t read16(uint32_t address);
@@ -78,13 +83,13 @@ public:
     // Called after each 32-bit access to a window, for observers.
     std::function<void(uint32_t address, uint32_t value, bool isWrite)> onWord;
 
-    // Begin an access that a reset of the processor aborts: NE and strobe rise together, NE
-    // first, after these HCLK cycles of the data phase, whatever NWAIT is. Asynchronous modes.
+    // Begin an access that a reset of the processor aborts: after `hclk` cycles of the data phase,
+    // NE and the strobe rise (NE first), whatever NWAIT is. Only in asynchronous modes.
     void abortRead(uint32_t address, unsigned hclk);
     void abortWrite(uint32_t address, uint16_t value, unsigned hclk);
-    // Passes HCLK cycles without an access.
+    // Lets HCLK cycles pass without an access.
     void idle(unsigned hclk) { passHclk(hclk); }
-    // Passes HCLK cycles, and about these ns at most, as far as the design is quiet. Returns the
+    // Lets at most `hclk` cycles and about `ns` pass, as long as the design is quiet. Returns the
     // number of passed cycles.
     unsigned idleQuiet(unsigned hclk, uint64_t ns);
 
@@ -93,19 +98,20 @@ public:
 
 private:
     struct Bank {
-        uint32_t bcr, btr = 0x0FFFFFFF, bwtr = 0x0FFFFFFF; // reset values
+        uint32_t bcr, btr = 0x0FFFFFFF, bwtr = 0x0FFFFFFF; // registers of a bank with their reset
+                                                           // values
     };
     struct Timing {
         unsigned addset, addhld, datast, busturn;
     };
     struct Access {
         Bank* bank;
-        unsigned index;    // 0: NE1 .. 3: NE4
+        unsigned index;    // number of the bank: 0 for NE1 to 3 for NE4
         uint32_t halfword; // address
         bool write, muxed;
-        char mode; // '1' 'A' '2' 'B' 'C' 'D'
+        char mode; // mode of the access: '1', 'A', '2', 'B', 'C' or 'D'
         Timing timing;
-        std::string name; // used in messages
+        std::string name; // name of the bank for messages
     };
 
     Access decode(uint32_t address, bool write);
@@ -124,12 +130,13 @@ private:
 
     FsmcPins& pins_;
     Design design_;
-    unsigned hclkPerUnit_, clkPerUnit_; // cycles of each in one unit of time
+    unsigned hclkPerUnit_, clkPerUnit_; // cycles of HCLK and of the design's clock in one unit of
+                                        // time
     unsigned phase_ = 0;
     std::unique_ptr<PinDelays> delays_;
     bool looksTwice_ = false, pausesWrites_ = true, tolerant_ = false;
     Bank banks_[4] = {{0x000030DB}, {0x000030D2}, {0x000030D2}, {0x000030D2}};
-    // The previous access, for the turnaround.
+    // State of the previous access, for the bus turnaround.
     bool lastWrite_ = false, lastHeld_ = false;
     unsigned lastIndex_ = 0, lastBusturn_ = 0;
     uint64_t accesses_ = 0, hclks_ = 0;

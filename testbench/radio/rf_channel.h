@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// rf_channel: the air between modems. It is half duplex and shared, so frames collide; the weather
-// loses, damages, delays and doubles them, by seed.
+// rf_channel: the air between modems. The air is half duplex and shared, so frames collide. The
+// simulated weather loses, damages, delays and duplicates frames at random; a seed makes it
+// repeatable.
 
 #pragma once
 
@@ -27,11 +28,11 @@ class RfTrace {
 public:
     struct Row {
         uint64_t ns;
-        double loss;      // share of packets that are lost after the MAC's tries
+        double loss;      // share of packets that are lost although the MAC has retried
         double rssi;      // dBm
-        uint64_t delayNs; // beyond the time on the air
+        uint64_t delayNs; // delay in addition to the time on the air, ns
     };
-    // Reads a file; throws std::runtime_error that names file, line and fault.
+    // Reads a file. Throws std::runtime_error with the file, the line and the error.
     explicit RfTrace(const std::string& path) {
         std::ifstream file(path);
         std::string line;
@@ -75,12 +76,15 @@ private:
 
 // Weather of the air; fields are probabilities unless stated otherwise.
 struct RfWeather {
-    // Residual packet loss in one direction, after the MAC's tries; costs no additional air time.
+    // Probability that a packet is lost in one direction although the MAC has retried; takes no
+    // additional air time.
     double loss = 0;
-    double burstBegin = 0, burstEnd = 0.2, burstLoss = 0.9; // Gilbert-Elliott, per packet or 10 ms
+    double burstBegin = 0, burstEnd = 0.2,
+           burstLoss = 0.9; // bursts of loss (Gilbert-Elliott model),
+                            // decided for each packet or each 10 ms
     double duplication = 0, corruption = 0;
-    uint64_t delayNs = 0; // beyond the time on the air
-    // Loss at the MAC: of one try, or of its acknowledgement; the MAC then retries.
+    uint64_t delayNs = 0; // delay in addition to the time on the air, ns Loss at the MAC: of one
+                          // try, or of its acknowledgement; the MAC then retries.
     double tryLoss = 0, ackLoss = 0;
     // Distance in free space with Rayleigh fading per try, m; 0 disables it.
     double distance = 0;
@@ -88,14 +92,14 @@ struct RfWeather {
     // that overlaps it is lost. A microwave oven: about half of 20 ms (50 Hz).
     double interference = 0;
     uint64_t interferencePeriodNs = 20'000'000;
-    // A link's record, instead of loss and delay above.
+    // Recorded link; it replaces `loss` and the delay above.
     std::shared_ptr<const RfTrace> trace;
-    // Perfect air, for unit tests: both directions at once, no carrier sense, no collisions, no
-    // processing time in the modems. No real radio behaves like this.
+    // Perfect air, for unit tests: frames may be sent in both directions at once, without carrier
+    // sense, collisions or processing time in the modems. No real radio behaves like this.
     bool perfect = false;
 
-    // Losses in bursts as on flights, and tries lost as in the field; distance in the clear; an
-    // interferer. Sources: docs/simulation.md.
+    // Published kinds of weather: losses in bursts as on flights, tries lost as in field tests,
+    // distance in open terrain, an interferer. Sources: docs/simulation.md.
     static const std::vector<std::pair<std::string, RfWeather>>& published() {
         static const auto all = [] {
             std::vector<std::pair<std::string, RfWeather>> list;
@@ -119,8 +123,8 @@ struct RfWeather {
         }();
         return all;
     }
-    // Draws one of these weathers, with independent losses below `mostLoss` percent, or none; now
-    // and then with doubled and damaged packets.
+    // Draws one of the published kinds of weather, with independent losses below `mostLoss`
+    // percent, or no weather; sometimes with duplicated and damaged packets.
     static RfWeather drawn(Random& random, unsigned mostLoss) {
         RfWeather w;
         const size_t kind = random.below(static_cast<uint32_t>(3 * published().size()));
@@ -140,31 +144,33 @@ struct RfWeather {
         uint64_t phase = from % interferencePeriodNs;
         return phase < on || phase + (to - from) >= interferencePeriodNs;
     }
-    // Returns the strength in dBm of a modem of 0 dBm at `distance`.
+    // Returns the received strength, in dBm, of a modem that sends with 0 dBm at `distance`.
     double meanRssi() const {
-        constexpr double lossOfFirstMetre = 40; // dB, free space at 2.4 GHz
+        constexpr double lossOfFirstMetre = 40; // loss of the first metre in dB: free space at 2.4
+                                                // GHz
         return -lossOfFirstMetre - 20 * std::log10(std::max(distance, 1.0));
     }
 };
 
-// What the air delivers packets to.
+// A receiver to which the air delivers packets.
 class RfReceiver {
 public:
     virtual ~RfReceiver() = default;
-    virtual bool hears(const RfPacket& packet) const = 0; // whether the packet is for it
-    // Absent: the modem is off or boots. NoRoom: acknowledged but lost, because the buffer to the
-    // host is full.
+    virtual bool
+    hears(const RfPacket& packet) const = 0; // Returns whether the packet is addressed to this
+                                             // receiver. Absent: the modem is off or boots.
+    // NoRoom: acknowledged but lost, because the buffer to the host is full.
     enum class Reception { Absent, NoRoom, Taken };
     virtual Reception receive(const RfPacket& packet, uint64_t now) = 0;
 };
 
-// What the air calls while a packet is sent.
+// A sender that the air calls while a packet is sent.
 class RfSender {
 public:
     virtual ~RfSender() = default;
-    virtual void wake(uint64_t now) = 0; // at the requested time
+    virtual void wake(uint64_t now) = 0; // called at the requested time
     virtual void ended(uint64_t now, const RfPacket& arrived, RfOutcome outcome,
-                       bool isAnswered) = 0; // result of a frame
+                       bool isAnswered) = 0; // Called at the end of a frame with its result.
 };
 
 class RfChannel {
@@ -174,7 +180,7 @@ public:
     struct Counters {
         uint64_t packets = 0, bytes = 0, lost = 0, duplicated = 0, corrupted = 0;
         uint64_t retries = 0, collisions = 0, noClearChannel = 0;
-        uint64_t airNs = 0; // time of the tries
+        uint64_t airNs = 0; // time that the tries took on the air, ns
     };
     using Listener = std::function<void(uint64_t now, const RfPacket&, Outcome)>;
 
@@ -189,18 +195,19 @@ public:
     void leave(RfReceiver* modem);
     // Moves a modem out of reach of all others, or back into reach.
     void carryAway(const RfReceiver* modem, bool isAway);
-    // Returns a processing time of a modem, varied by up to a twentieth; 0 in perfect air.
+    // Returns the processing time `ns` of a modem, varied at random by up to 5 %; 0 in perfect air.
     uint64_t jittered(uint64_t ns);
     void advance(uint64_t now);
     uint64_t nextEvent() const { return events_.empty() ? ~uint64_t(0) : events_.begin()->first; }
 
-    // Time on the air of n payload bytes from one 16-bit address to another, with the maker's
-    // header, carrier sense, the MAC's acknowledgement and the gap after it: docs/simulation.md.
+    // Returns the time on the air for `bytes` of payload between modems with 16-bit addresses. It
+    // includes the maker's header, carrier sense, the MAC's acknowledgement and the gap after it:
+    // docs/simulation.md.
     static uint64_t airTimeNs(size_t bytes);
 
     // For the MACs of the modems:
 
-    // Draws the weather of a new packet: its strength and its outcome.
+    // Draws the weather for a new packet: its strength and its outcome.
     Outcome announce(const RfReceiver& from, RfPacket& packet, uint64_t now);
     // Returns whether carrier sense finds the channel clear from `from` to `to`.
     bool isClear(uint8_t channel, uint64_t from, uint64_t to) const;
@@ -217,18 +224,20 @@ public:
     uint32_t below(uint32_t limit) { return random_.below(limit); }
 
 private:
-    struct Frame { // one try on the air
+    struct Frame { // A try of a packet on the air.
         RfPacket packet;
-        Outcome drawn; // the weather's decision
+        Outcome drawn; // outcome that the weather has drawn
         const RfReceiver* from;
         uint64_t begin, frameEnd, end; // times of the frame and of its acknowledgement
         bool collided = false;
-        // Returns when the air is free again: a collided frame is not acknowledged.
+        // Returns when the air is free again. A collided frame has no acknowledgement.
         uint64_t over() const { return collided ? frameEnd : end; }
     };
     struct Event {
-        RfSender* sender; // null for a duplicate, and if the sender was reset or has gone
-        std::shared_ptr<Frame> frame; // null: the sender's wake() is due
+        RfSender* sender; // sender of the frame; null for a duplicate, or if the sender was reset
+                          // or removed
+        std::shared_ptr<Frame> frame; // frame that ends at this time; null if the sender's wake()
+                                      // is due instead
     };
     void land(RfSender* sender, Frame& frame, uint64_t now);
     bool isMissed(Frame& frame);

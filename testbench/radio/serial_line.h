@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// serial_line: the modem's side of a serial port: UART pins of a design, or a pty for a program.
+// serial_line: serial lines between a modem and its host: UART pins of a design, a pty for a
+// program, or C++ in the same process.
 
 #pragma once
 
@@ -13,12 +14,13 @@
 
 constexpr uint64_t never = ~uint64_t(0);
 
-// The modem's side of a line: takes and gives bytes.
+// The modem as the client of a line: it accepts and returns bytes.
 class SerialClient {
 public:
     virtual void fromHost(uint8_t byte, uint64_t now) = 0;
     virtual void framingError(uint64_t now) = 0;
-    virtual bool nextToHost(uint8_t& byte) = 0; // returns false if there is nothing to send
+    virtual bool nextToHost(uint8_t& byte) = 0; // Returns the modem's next byte to the host;
+                                                // returns false if there is no byte
 
 protected:
     ~SerialClient() = default;
@@ -28,14 +30,14 @@ class SerialLine {
 public:
     virtual ~SerialLine() = default;
     void attach(SerialClient* client) { client_ = client; }
-    // Takes effect when no byte is on the line.
+    // Sets the bit time in ns. It takes effect when no byte is on the line.
     virtual void setBitTime(double ns) { bitNs_ = ns; }
     virtual void setCts(bool accepts) { cts_ = accepts; }
-    // True if the host's RTS stops the modem (D6); a line without RTS ignores it.
+    // Sets whether the host's RTS can stop the modem (D6). A line without RTS ignores this.
     void setHeedRts(bool heeds) { heedsRts_ = heeds; }
     virtual void advance(uint64_t now) = 0;
     virtual uint64_t nextEvent() const = 0;
-    // The modem has bytes to send: nextToHost gives them.
+    // Reports that the modem has bytes to send, which nextToHost returns.
     virtual void wake(uint64_t now) = 0;
 
 protected:
@@ -44,7 +46,8 @@ protected:
     bool cts_ = true, heedsRts_ = false;
 };
 
-// Serial pins of a design. setTxd reports each change of the design's TXD; RXD and CTS are read.
+// Serial pins of a design. setTxd reports each change of the design's TXD; RXD and CTS are outputs
+// of this class.
 class UartPins : public SerialLine {
 public:
     void setTxd(bool level, uint64_t now) {
@@ -76,8 +79,8 @@ public:
         if (rxBit_ == 0 && txBit_ == 0)
             bitNs_ = wantedBitNs_;
     }
-    // Time of the next stop bit of a byte from the design, or of the next RXD edge; between TXD
-    // edges nothing else is due.
+    // Returns the time of the next event: the next stop bit of a byte from the design, or the next
+    // RXD edge. Nothing else can happen between two edges of TXD.
     uint64_t nextEvent() const override {
         double at = 1e300;
         if (rxBit_)
@@ -92,10 +95,11 @@ public:
     }
 
 private:
-    static constexpr unsigned stopBit = 10; // bit 1 is the start bit, 2..9 data
+    static constexpr unsigned stopBit = 10; // index of the stop bit; bit 1 is the start bit, 2..9
+                                            // are data
 
     bool mayTalk() const { return rts_ || !heedsRts_; }
-    // Samples TXD, unchanged since then, up to `now`.
+    // Samples TXD up to `now`; TXD has not changed since the last call.
     void receive(uint64_t now) {
         while (rxBit_ && rxAt_ <= static_cast<double>(now))
             sample(now);
@@ -123,7 +127,7 @@ private:
         txBit_ = 1;
         txAt_ = at + bitNs_;
     }
-    // Level after the start bit or a data bit.
+    // Returns the level after the start bit or a data bit.
     bool levelAfter(unsigned bit) const { return bit > 8 || (txByte_ >> (bit - 1) & 1); }
     double nextEdge() const {
         unsigned bit = txBit_;
@@ -152,7 +156,7 @@ private:
     uint8_t rxByte_ = 0, txByte_ = 0;
 };
 
-// A line without a wire: the host is C++ in the same process, which calls send and reads
+// A line without a wire. The host is C++ code in the same process, which calls send and reads
 // `received`.
 class HostLine : public SerialLine {
 public:
@@ -161,7 +165,7 @@ public:
             client_->fromHost(byte, now);
     }
     std::vector<uint8_t> received;
-    bool paused = false; // nothing is sent to the host
+    bool paused = false; // true: nothing is sent to the host
     bool cts() const { return cts_; }
 
     void advance(uint64_t) override {
@@ -174,8 +178,8 @@ public:
 };
 
 // A pseudo-terminal, for programs that talk to a serial port. Bytes move at the modem's baud rate;
-// while CTS is off none is read, which is the flow control. If the program has set a speed more
-// than 4.5 % off the modem's, bytes are damaged, as on a wire.
+// while CTS is off, no bytes are read, which is the flow control. If the speed set by the program
+// differs from the modem's by more than 4.5 %, bytes are damaged, as on a wire.
 class PtyLine : public SerialLine {
 public:
     PtyLine(); // throws std::system_error
@@ -184,15 +188,16 @@ public:
     PtyLine& operator=(const PtyLine&) = delete;
     const std::string& path() const { return path_; }
 
-    // A program may report how many bytes it has written and read; then no byte is late because the
-    // machine is busy (testbench/radio/ground_step.h).
+    // A program may report how many bytes it has written and read; then no byte is late only
+    // because the machine is busy (testbench/radio/ground_step.h).
     struct Count {
-        std::function<uint64_t()> keeper; // the program's session, 0: none; its counts start at 0
+        std::function<uint64_t()> keeper; // number of the program's session, 0 without one; counts
+                                          // start at 0 in each session
         std::function<void(uint64_t keeper, size_t bytes)> toProgram;
         std::function<uint64_t()> fromProgram;
     };
     void keepCount(Count count) { count_ = std::move(count); }
-    // Returns how many of these the line has carried.
+    // Returns how many of the counted bytes the line has carried.
     uint64_t carried() const { return fetched_ - std::min<uint64_t>(fetched_, ahead_.size()); }
 
     void advance(uint64_t now) override;
@@ -201,8 +206,8 @@ public:
 
 private:
     bool speedFits() const;
-    // Returns the time (ns) in which an idle wire may have carried unseen bytes: one poll period
-    // and one byte.
+    // Returns the time (ns) in which an idle wire may have carried bytes that were not noticed: one
+    // poll period and one byte.
     double lookBack() const { return 1e6 + 10 * bitNs_; }
     void readAhead(uint64_t now);
     size_t fetch(uint8_t* bytes, size_t room);
@@ -213,16 +218,16 @@ private:
                                     // no hang-up
     std::string path_;
     uint64_t nextPoll_ = 0;
-    double rxFree_ = 0, txFree_ = 0; // time from which the wire is free, each way
+    double rxFree_ = 0, txFree_ = 0; // times at which the wire is free, in each direction
     std::vector<uint8_t> unwritten_;
     Count count_;
     bool txIdle_ = true;
-    uint64_t counter_ = 0;      // the counting session
+    uint64_t counter_ = 0;      // session of the program to which the counts belong
     uint64_t fetched_ = 0;      // number of counted bytes fetched
     std::deque<uint8_t> ahead_; // bytes read that the wire has not carried yet
 };
 
-// Joins two serial lines by a wire each way, without modems.
+// Connects two serial lines by a wire in each direction, without modems.
 class Cable {
 public:
     // `bitNs`: bit time of both hosts. `carried` is called for each byte with the line that sent
@@ -258,7 +263,8 @@ private:
             carried(line);
             other->line.wake(now);
         }
-        void framingError(uint64_t) override {} // a broken byte; the link's check finds the loss
+        void framingError(uint64_t) override {} // drops a byte with a framing error; the link's
+                                                // check detects the loss
         bool nextToHost(uint8_t& byte) override {
             if (bytes.empty())
                 return false;

@@ -3,8 +3,8 @@
 // recording: stores all inputs of a flight, with their times, in a file, so that it can be replayed
 // bit by bit, without the ground's program.
 //
-// The simulator is deterministic except for the bytes of the ground's program on its serial port,
-// and their times. The file is JSON Lines, one object each:
+// The simulator is deterministic except for the bytes that the ground's program sends on its serial
+// port, and their times. The file has JSON Lines, with one object in each line:
 //   {"flight": {flight.json}, "clkHz": n, "hashes": {file: hash}}   the first line
 //   {"ns": time, "up": "hexadecimal"}        bytes from the program to its modem
 //   {"ns": time, "spoilt": n}                bytes with a wrong stop bit
@@ -28,10 +28,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-// The events of a flight, with their times, as JSON Lines, for the mission's page and other
-// tools. One object a line:
+// The events of a flight, with their times, as JSON Lines, for the mission's page and other tools.
+// One object in each line:
 //   {"ns": t, "packet": bytes, "from": "ground" or "uav", "lost": bool}   end of a packet
-//   {"ns": t, "slot": n, "events": bits}   the processor has read these events of slot n, not 0
+//   {"ns": t, "slot": n, "events": bits}   the processor has read these events of slot n; bits is
+//   not 0
 //   {"ns": t, "task": name}    the firmware switches to this task (Cortex-M3 only)
 //   {"ns": t, "accesses": {"n": count}}    register accesses to slots in the 10 ms after t
 class Events {
@@ -47,7 +48,7 @@ public:
 
     void task(uint64_t ns, const std::string& name) { put({{"ns", ns}, {"task", name}}); }
 
-    // Records a register access; `word`: slot * 16 + word.
+    // Records a register access. `word` is slot * 16 + word.
     void access(uint64_t ns, uint32_t word, uint32_t value, bool isWrite) {
         constexpr uint64_t binNs = 10'000'000;
         constexpr uint32_t event = 1;
@@ -79,7 +80,7 @@ private:
     std::array<unsigned, 64> accesses_{};
 };
 
-// A hash that grows with each bus access: its clock, address, value and direction (FNV-1a).
+// A hash over all bus accesses so far, with their clock, address, value and direction (FNV-1a).
 class AccessDigest {
 public:
     void add(uint64_t clock, uint32_t address, uint32_t value, bool isWrite) {
@@ -93,7 +94,7 @@ private:
 };
 
 // Sits between a modem and its line, passes on all bytes and records them. A line of the file is
-// written when the next begins, so the recording of a killed simulator is usable.
+// written when the next line begins, so the recording of a killed simulator is usable.
 class RecordedLine : public SerialLine, SerialClient {
     using json = nlohmann::json;
 
@@ -144,7 +145,8 @@ private:
         count("down");
         return true;
     }
-    // Counts a byte of this kind; of another kind, or at another time, it begins a new line.
+    // Counts a byte of kind `what`. If the kind or the time differs from the current line, begins a
+    // new line.
     void count(const char* what) {
         if (what_ && std::strcmp(what_, what) != 0)
             write();
@@ -171,18 +173,18 @@ private:
     SerialLine& line_;
     std::ofstream file_;
     uint64_t now_ = 0;
-    // Key and value of the line being written, of time `now_`.
+    // Kind and value of the line being written; its time is `now_`.
     const char* what_ = nullptr;
     std::string bytes_;
     unsigned count_ = 0;
 };
 
-// A recording, read back: the line of a modem without its program.
+// A recording that is replayed: it replaces the program at a modem's line.
 class ReplayedLine : public SerialLine {
     using json = nlohmann::json;
 
 public:
-    // Throws std::runtime_error, with the line, if the file is malformed.
+    // Throws std::runtime_error with the line number if the file is malformed.
     explicit ReplayedLine(const std::string& file) {
         std::ifstream in(file);
         std::string text;
@@ -219,7 +221,7 @@ public:
 
     const json& head() const { return head_; }
     uint64_t endNs() const { return endNs_; }
-    // Throws std::runtime_error, with the time, if a digest or the final state differs from the
+    // Throws std::runtime_error with the time if a digest or the final state differs from the
     // recorded flight.
     void compare(uint64_t ns, const char* what, const json& value) {
         if (mark_ == marks_.size())
@@ -257,7 +259,7 @@ private:
     };
     json head_;
     std::vector<Move> moves_;
-    std::vector<json> marks_; // digests and the end
+    std::vector<json> marks_; // recorded digests and the final state
     size_t at_ = 0, mark_ = 0;
     uint64_t endNs_ = 0, agreedNs_ = 0;
     bool whole_ = false;

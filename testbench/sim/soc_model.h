@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// soc_model: the Verilated chip with its memory, its modem and its processor's FSMC: one clock.
-// Clocks in which only counters of the chip would move are not evaluated: they count at once as
-// passed, and are added to the chip's counters before anything reads it (quiet_span.h).
+// soc_model: the Verilated chip with its memory, its modem and the FSMC of its processor. tick()
+// computes one clock. Clocks in which only counters of the chip would change are not evaluated.
+// They are counted as passed, and are added to the chip's counters before anything reads the chip
+// (quiet_span.h).
 
 #pragma once
 
@@ -22,20 +23,24 @@
 
 class SocModel {
 public:
-    static constexpr uint64_t clkHz = SOC_CLK_HZ; // make run CLK_HZ=
+    static constexpr uint64_t clkHz = SOC_CLK_HZ; // frequency of the design's clock, set by `make
+                                                  // run CLK_HZ=`
     static constexpr uint64_t clkNs = 1'000'000'000 / clkHz;
 
-    // Ratio of HCLK to clkHz: by default 120 MHz to 100 MHz, scaled down.
+    // `hclkPerUnit` and `clkPerUnit` are the ratio of HCLK to clkHz: by default that of 120 MHz to
+    // 100 MHz.
     SocModel(RfChannel& air, XBee::Options modemOptions, unsigned hclkPerUnit = 6,
              unsigned clkPerUnit = 5);
     ~SocModel();
 
-    // Resets the chip. Without `memoryStarts` the memory is ready at the end. With it the memory
-    // starts then, which takes a millisecond, as on a board with a processor that does not wait.
+    // Resets the chip. Without `memoryStarts`, the memory is ready when this function returns. With
+    // `memoryStarts`, the memory begins its start at that time, and needs a millisecond; this is
+    // the case of a processor that does not wait for the memory.
     void reset(bool memoryStarts = false);
-    void tick(); // one clock cycle
+    void tick(); // computes one clock cycle
 
-    // Skips clock cycles as far as the chip is quiet, up to clock `until`. Returns their number.
+    // Skips clock cycles while the chip is quiet, up to clock `until`. Returns the number of
+    // skipped cycles.
     uint64_t passQuiet(uint64_t until) {
         const uint64_t clocks = until > cycles_ ? std::min(quiet_, until - cycles_) : 0;
         quiet_ -= clocks;
@@ -49,13 +54,16 @@ public:
         const char* option = "+ungated";
         context_->commandArgsAdd(1, &option);
     }
-    // Evaluates every clock if `all`; for comparisons.
+    // With `all`, evaluates every clock instead of skipping; used for comparisons.
     void evaluateAll(bool all) {
         wake();
         skips_ = !all;
     }
-    uint64_t evaluated() const { return evaluated_; } // clocks
-    // Name of the core that moves in most of them; empty if none.
+    uint64_t evaluated() const {
+        return evaluated_;
+    } // number of clocks that were evaluated Returns the name of the core that changed in most of
+      // these
+      // clocks; empty if no core did.
     std::string mover() const { return span_.mover(); }
 
     // Returns the complete current state of the chip.
@@ -67,8 +75,9 @@ public:
     uint64_t now() const { return cycles_ * clkNs; }
     bool irq() const { return top_->irq_o; }
 
-    // Sets the input pins of cores (MAP_PIN_...) from the next settling. With `sampled` they only
-    // lead to flip-flops, as a sensor's do: a resting platform then continues to rest.
+    // Sets the input pins of cores (MAP_PIN_...), starting with the next evaluation. `sampled`
+    // means that the pins only lead to flip-flops, as those of a sensor do: a resting platform then
+    // continues to rest.
     void setCorePins(uint32_t value, bool sampled = false) {
         if (!sampled) {
             wake();
@@ -80,18 +89,18 @@ public:
     }
     uint32_t corePins() const { return top_->core_pins_o; }
 
-    // Sets the driver of those pins. It is called before a clock, and returns the clock (cycles())
-    // at which it is called again.
+    // Sets the driver of the cores' input pins. It is called before a clock, and returns the clock
+    // (cycles()) at which it must be called next.
     void onClock(std::function<uint64_t()> drive) { drive_ = std::move(drive); }
-    // Called at each change of the cores' outputs.
+    // Sets a function that is called at each change of the cores' output pins.
     void onCorePins(std::function<void(uint32_t)> changed) {
         corePinsChanged_ = std::move(changed);
     }
 
     FsmcMaster& fsmc() { return fsmc_; }
-    // The board's wires between the processor's pins, the modem and the chip.
+    // The wires of the board between processor, modem and chip.
     BoardWires& wires() { return wires_; }
-    // Adds delays to the FSMC's wires, at a clock of 100 MHz.
+    // Adds delays to the FSMC's wires; only with a clock of 100 MHz.
     void delay(const FsmcCorner& corner, uint64_t seed, bool looksTwice) {
         delayed_ = pins_;
         far_ = &delayed_;
@@ -99,18 +108,19 @@ public:
         fsmc_.pauseWrites(looksTwice);
     }
     McbModel& memory() {
-        wake(); // the caller may start or end a hang
+        wake(); // the caller may start or end a fault of the memory
         return memory_;
     }
     XBee& modem() { return modem_; }
-    // Cable at the modem pins, instead of the modem.
+    // Returns the cable at the modem pins that replaces the modem.
     UartPins& line() { return line_; }
     void plugIn(Cable& cable) { cable_ = &cable; }
 
-    // Replaces the function that advances the air at each update of the models. Several chips share
-    // one.
+    // Replaces the function that advances the air at each update of the models. It is needed if
+    // several chips share the air.
     void onAir(std::function<void(uint64_t now)> advance) { advanceAir_ = std::move(advance); }
-    // Adds a model with events in simulated time (the ground's modem); it is called when due.
+    // Adds a model with events in simulated time, such as the ground's modem. The function is
+    // called when its event is due, and returns the time of the next one.
     void onTime(std::function<uint64_t(uint64_t now)> advance) { others_ = std::move(advance); }
 
     // Sets the listener for edges of the interrupt line.
@@ -130,14 +140,14 @@ private:
     std::unique_ptr<VSoc> top_;
     QuietSpan span_;
     bool skips_ = true;
-    uint64_t quiet_ = 0;   // clocks ahead that need not be evaluated
-    uint64_t owed_ = 0;    // clocks that have passed and were not
-    uint64_t resting_ = 0; // clocks ahead in which the platform need not be evaluated
-    uint64_t rested_ = 0;  // clocks that have passed in which it was not
+    uint64_t quiet_ = 0;   // future clocks that need not be evaluated
+    uint64_t owed_ = 0;    // clocks that have passed without evaluation
+    uint64_t resting_ = 0; // future clocks in which the platform need not be evaluated
+    uint64_t rested_ = 0;  // clocks that have passed in which the platform was not evaluated
     uint64_t evaluated_ = 0;
     BoardWires wires_;
     FsmcPins pins_, delayed_;
-    FsmcPins* far_ = &pins_; // pins at the chip
+    FsmcPins* far_ = &pins_; // the FSMC's pins at the chip
     FsmcMaster fsmc_;
     McbModel memory_;
     RfChannel& air_;
@@ -146,7 +156,7 @@ private:
     XBee modem_;
     Cable* cable_ = nullptr;
     std::function<uint64_t()> drive_;
-    uint64_t driveAt_ = 0; // clock of its next call
+    uint64_t driveAt_ = 0; // clock at which the pins' driver is called next
     std::function<void(uint32_t)> corePinsChanged_;
     uint32_t corePins_ = 0;
     std::function<uint64_t(uint64_t)> others_;

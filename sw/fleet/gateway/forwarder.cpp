@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// forwarder: the clients' queues, their turns, and the two lanes to the vehicle.
+// forwarder: the clients' queues, the order in which they are served, and the two lanes
+// (connections) to the vehicle.
 
 #include "forwarder.h"
 #include "passed_proxies.h"
@@ -15,10 +16,11 @@ struct Client {
     std::shared_ptr<Ice::Connection> connection;
     std::string subject;
     std::deque<std::shared_ptr<Request>> requests;
-    size_t underWay = 0;  // requests that may not have reached the vehicle yet
-    int lane = 0;         // all on this lane
+    size_t underWay = 0;  // number of requests that may not have reached the vehicle yet
+    int lane = 0;         // lane on which these requests were sent
     size_t objects = 0;   // number of objects that it has passed to the vehicle
-    bool hasLeft = false; // only one-way requests remain
+    bool hasLeft = false; // true if the client has disconnected and only its one-way requests
+                          // remain
 };
 
 namespace {
@@ -26,18 +28,22 @@ namespace {
 const char* const maintenanceType = "::IceSoC::Maintenance"; // selected by metadata
                                                              // [":maintenance"]
 
-constexpr size_t longBytes = 512;  // size of a call or reply that takes the lane for long ones
+constexpr size_t longBytes = 512;  // size in bytes above which a call or reply uses the lane for
+                                   // long messages
 constexpr size_t mostUnderWay = 8; // requests of a lane
 // Bytes in flight, short lane and long lane; a single longer request is allowed.
 constexpr size_t mostBytesUnderWay[] = {1536, 8192};
-constexpr size_t mostUnconfirmed = 4;          // one-way requests before a ping must confirm their
-                                               // arrival
-constexpr size_t mostQueued = size_t{1} << 18; // bytes of a subject
-constexpr size_t mostClients = 200;            // clients of a subject, each with a first request
-constexpr size_t mostBlocked = 16;             // threads that wait for room for one subject
-constexpr size_t mostKnown = 1000;             // objects and operations that are remembered
-constexpr size_t requestCost = 100;            // cost of a request in a turn, in addition to its
-                                               // bytes
+constexpr size_t mostUnconfirmed = 4;          // one-way requests after which a ping must confirm
+                                               // their arrival
+constexpr size_t mostQueued = size_t{1} << 18; // largest number of queued bytes of one subject
+constexpr size_t mostClients = 200;            // largest number of clients of one subject; each may
+                                               // queue at least one request
+constexpr size_t mostBlocked = 16;             // largest number of threads that wait for room for
+                                               // one subject
+constexpr size_t mostKnown = 1000;             // largest number of objects and operations that are
+                                               // remembered
+constexpr size_t requestCost = 100;            // fixed cost of a request when turns are computed,
+                                               // in addition to its bytes
 
 size_t costOf(const Request& request) {
     return request.parameters.size() + requestCost;
@@ -61,7 +67,8 @@ void Request::sendTo(const std::shared_ptr<Ice::ObjectPrx>& target, Response onR
     object = object->ice_encodingVersion(current.encoding);
     object = isOneway() ? object->ice_oneway() : object->ice_twoway();
     const Parameters in{parameters.data(), parameters.data() + parameters.size()};
-    std::function<void(bool)> sent; // the only callback for a one-way request
+    std::function<void(bool)> sent; // called when Ice has sent a one-way request, which has no
+                                    // other result
     if (isOneway())
         sent = [onResponse](bool) { onResponse(true, {}); };
     object->ice_invokeAsync(current.operation, current.mode, in, std::move(onResponse),
@@ -69,7 +76,9 @@ void Request::sendTo(const std::shared_ptr<Ice::ObjectPrx>& target, Response onR
 }
 
 Forwarder::Forwarder(const std::shared_ptr<Ice::ObjectPrx>& vehicle, std::chrono::seconds wait)
-    : vehicle_(vehicle->ice_connectionCached(false)), wait_(wait) {} // else it gives a lost one
+    : vehicle_(vehicle->ice_connectionCached(false)), wait_(wait) {
+} // without cached connection, Ice could
+  // return a connection that has been lost
 
 void Forwarder::setCallbacks(std::shared_ptr<Ice::ObjectAdapter> adapter) {
     callbacks_ = std::move(adapter);
@@ -156,7 +165,8 @@ void Forwarder::take(std::shared_ptr<Request> request) {
         if (!hasRoom(*request) && !stopped_) {
             if (subjects_[request->subject].blocked == mostBlocked) {
                 lock.unlock();
-                if (request->isOneway()) // only a closed connection reports the loss
+                if (request->isOneway()) // a one-way request has no reply: its loss is only noticed
+                                         // when the connection closes
                     request->current.con->close(Ice::ConnectionClose::Forcefully);
                 throw Ice::UnknownException(__FILE__, __LINE__,
                                             "icesoc-gateway: '" + request->subject +
@@ -224,7 +234,7 @@ std::shared_ptr<Request> Forwarder::pop(const std::shared_ptr<Client>& client) {
     return request;
 }
 
-// Returns the next request by turn, if one may be sent now; the mutex is held.
+// Returns the next request in turn if it may be sent now. The caller holds the mutex.
 std::shared_ptr<Request> Forwarder::nextRequest() {
     std::shared_ptr<Client> next;
     uint64_t least = 0;
@@ -264,7 +274,7 @@ std::shared_ptr<Request> Forwarder::nextRequest() {
     return request;
 }
 
-// Records that a request has arrived, or never will.
+// Records that a request has arrived, or that it can no longer arrive.
 void Forwarder::release(Request& request) {
     if (!request.isCounted)
         return;
@@ -334,7 +344,8 @@ void Forwarder::ask(const Connection& connection, const Object& object) {
             std::rethrow_exception(why);
         } catch (const Ice::RequestFailedException&) { // the object may exist later
             answered(object, false, false, nullptr);
-        } catch (const Ice::MarshalException&) { // an object that answers anything
+        } catch (const Ice::MarshalException&) { // the object answers any request, but not with a
+                                                 // type
             answered(object, true, false, nullptr);
         } catch (...) {
             answered(object, false, false, why);
@@ -353,8 +364,8 @@ void Forwarder::ask(const Connection& connection, const Object& object) {
     }
 }
 
-// Sends the requests that waited for an object's type, or fails them: if the object is for
-// maintenance, or with `why` if the type is unknown.
+// Sends the requests that waited for an object's type, or fails them, if the object is for
+// maintenance. If the type remains unknown, they fail with `why`.
 void Forwarder::answered(const Object& object, bool isKnown, bool isMaintenance,
                          std::exception_ptr why) {
     Requests waiting;
@@ -367,7 +378,8 @@ void Forwarder::answered(const Object& object, bool isKnown, bool isMaintenance,
         if (isKnown && lanes_[shortCalls].connection)
             isMaintenance_[object] = isMaintenance;
         for (const auto& request : waiting) {
-            request->mayMaintain = !isMaintenance; // sent without asking again
+            request->mayMaintain = !isMaintenance; // this request is sent without asking for the
+                                                   // type again
             if (!why && !isMaintenance)
                 ready_.push_back(request);
         }
@@ -393,14 +405,14 @@ void Forwarder::recordProxies(const Request& request) {
             client.objects += owners_[object].insert(client.connection).second;
 }
 
-// Sends a request on its lane. Only the thread that is in send() calls it.
+// Sends a request on its lane. It is called only by the thread that is in send().
 void Forwarder::sendOne(const std::shared_ptr<Request>& request) {
     recordProxies(*request);
     const auto failed = [this, request](std::exception_ptr why) {
         finish(request, false, [&] { fail({request}, why); });
     };
     Connection connection;
-    bool isUnsure = false; // it is unknown whether one-way requests have arrived
+    bool isUnsure = false; // true if one-way requests were sent of which the arrival is unknown
     {
         std::lock_guard<std::mutex> lock(mutex_);
         Lane& lane = lanes_[request->lane];
@@ -431,7 +443,7 @@ void Forwarder::sendOne(const std::shared_ptr<Request>& request) {
         confirm(request->lane, request->current);
 }
 
-// Sends a ping, unless one is pending: its reply confirms all earlier requests.
+// Sends a ping unless one is pending. Its reply confirms that all earlier requests have arrived.
 void Forwarder::confirm(int number, const Ice::Current& of) {
     const auto done = [this, number] {
         std::lock_guard<std::mutex> lock(mutex_);
@@ -465,7 +477,7 @@ void Forwarder::confirm(int number, const Ice::Current& of) {
 // Ends a request. If it has arrived, requests sent before it have also arrived.
 void Forwarder::finish(const std::shared_ptr<Request>& request, bool hasArrived,
                        const std::function<void()>& answer) {
-    bool isAwaited; // false after giveUp
+    bool isAwaited; // false after giveUp: nobody waits for the connection any more
     {
         std::lock_guard<std::mutex> lock(mutex_);
         auto& underWay = lanes_[request->lane].underWay;
@@ -494,8 +506,9 @@ void Forwarder::opened(int lane, const Connection& connection) {
         lanes_[lane].isConnecting = false;
         connections_ += lane == shortCalls;
     }
-    connection->setCloseCallback(
-        [this, lane](const Connection& over) { closed(lane, over); }); // may be called immediately
+    connection->setCloseCallback([this, lane](const Connection& over) {
+        closed(lane, over);
+    }); // this function may be called immediately
     send();
 }
 
@@ -526,7 +539,7 @@ void Forwarder::connect(int lane) {
     const auto failed = [this, lane](std::exception_ptr why) {
         if (lane == shortCalls)
             return failAll(std::move(why));
-        { // the vehicle or this ground station has no free channel
+        { // the vehicle or this ground station has no free channel for a lane
             std::lock_guard<std::mutex> lock(mutex_);
             lanes_[lane].isConnecting = false;
             lanes_[lane].isMissing = true;
@@ -626,7 +639,7 @@ void Forwarder::failLateRequests() {
     failWaiting(std::chrono::steady_clock::now() - wait_,
                 unknown("waited " + std::to_string(wait_.count()) +
                         " s for the radio (--wait); the vehicle has not got this call"));
-    // Calls that the vehicle answers late keep a lane full: a ping shows that they have arrived.
+    // Calls that the vehicle answers late fill a lane. A ping shows that they have arrived.
     for (int number = 0; number < lanes; ++number) {
         Ice::Current last;
         {
@@ -651,7 +664,7 @@ void Forwarder::stop() {
         stopped_ = true;
         room_.notify_all();
     }
-    // Ice waits for the answers when it stops.
+    // When Ice stops, it waits for the answers of all requests.
     failAll(std::make_exception_ptr(Ice::CommunicatorDestroyedException(__FILE__, __LINE__)));
 }
 
@@ -664,7 +677,7 @@ void Forwarder::takeCallback(std::shared_ptr<Request> request) {
         std::lock_guard<std::mutex> lock(mutex_);
         const auto owner = owners_.find(current.id);
         if (owner != owners_.end()) {
-            if (owner->second.size() == 1) // otherwise the owner is ambiguous
+            if (owner->second.size() == 1) // with several owners, the client to call is ambiguous
                 addressee = *owner->second.begin();
         } else {
             std::set<Connection> callers;

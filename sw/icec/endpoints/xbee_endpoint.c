@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * xbee_endpoint: messages between IceC's tasks and the radio task's link.
+ * xbee_endpoint: passes messages between IceC's tasks and the link of the radio task.
  */
 #include "xbee_endpoint.h"
 
@@ -12,17 +12,18 @@
 #define NOBODY 255
 #define HEAD 8
 #define BODY 7
-/* Tries to send while the link has no room, 20 ms apart, for 20 s: the session, with all its
- * connections, ends 27 s after a fragment that is not taken. Two answers of 8 KB take 4 s if three
- * of ten packets are lost. */
+/* Number of tries to send while the link has no room, 20 ms apart: 20 s in total. After 27 s
+ * without acknowledgement of a fragment, the session would end with all its connections. Two
+ * answers of 8 KB take 4 s if three of ten packets are lost. */
 #define RETRIES 1000
-#define OTHER_RETRIES 100 /* tries for other peers: the first ground waits meanwhile */
+/* number of tries for other peers, since the first ground has to wait meanwhile */
+#define OTHER_RETRIES 100
 
-/* The head of an encoded endpoint: type, 13 bytes of encapsulation, encoding 1.1. */
+/* Beginning of an encoded endpoint: type, encapsulation of 13 bytes, encoding 1.1. */
 static const Ice_Byte head[HEAD] = {
     XBEE_ENDPOINT_TYPE & 0xFF, XBEE_ENDPOINT_TYPE >> 8, 6 + BODY, 0, 0, 0, 1, 1};
 
-/* Pending events, one bit each, delivered lowest bit first: a message has bit 0. */
+/* Bit of a pending event. The lowest bit is delivered first; the event of a message is bit 0. */
 #define EVENT(kind, channel) \
     (2U << (((U32)(kind) - ICE_EVENT_CLOSED) * XBEE_CONNECTIONS + (U32)(channel)))
 
@@ -42,7 +43,8 @@ static int isOwn(const XBeeATEndpoint* self, int connection) {
     return connection == self->own[PEER_OF(connection)];
 }
 
-/* Records whether the link keeps a message that was not taken. Returns the last record. */
+/* Records whether the link keeps a message that could not be delivered. Returns the previous
+ * record. */
 static int setHeld(XBeeATEndpoint* self, Ice_Byte held) {
     const int before = self->held;
     if (held != before)
@@ -63,7 +65,7 @@ static void report(XBeeATEndpoint* self, U32 events) {
     self->port->signal(self->context);
 }
 
-/* Cancels a report. Returns 1 if it was not delivered yet. */
+/* Cancels an event. Returns 1 if the event was not delivered yet. */
 static int cancel(XBeeATEndpoint* self, Ice_EventKind kind, int channel) {
     if (!(self->events & EVENT(kind, channel)))
         return 0;
@@ -71,8 +73,8 @@ static int cancel(XBeeATEndpoint* self, Ice_EventKind kind, int channel) {
     return 1;
 }
 
-/* Records the end of a connection: nothing more may be sent on its channel, which may soon belong
- * to another one. */
+/* Records the end of a connection: nothing more may be sent on its channel, because the channel may
+ * soon belong to another connection. */
 static void end(XBeeATEndpoint* self, int channel) {
     if (isOwn(self, channel)) {
         setOwnOpen(self, PEER_OF(channel), 0);
@@ -84,7 +86,8 @@ static void end(XBeeATEndpoint* self, int channel) {
 
 int XBeeATEndpoint_onMessage(void* context, int channel, const U8* data, U32 size) {
     XBeeATEndpoint* self = context;
-    /* Opening and closing come first, so no other event can be pending. */
+    /* Openings and closings are delivered before messages, so a message is only accepted while
+     * no other event is pending. */
     if (!self->buffer || self->events) {
         (void)setHeld(self, 1);
         return 1;
@@ -109,8 +112,8 @@ void XBeeATEndpoint_onChannel(void* context, int channel, int isOpen) {
     }
     if (!isOpen)
         end(self, channel);
-    /* A closing cancels an unseen opening, so at most a closing and then an opening are pending for
-     * a channel, however often the ground restarts. */
+    /* A closing cancels an opening that was not delivered. So at most one closing and one later
+     * opening are pending for a channel, even if the ground restarts often. */
     if (isOpen || !cancel(self, ICE_EVENT_OPENED, channel))
         report(self, EVENT(isOpen ? ICE_EVENT_OPENED : ICE_EVENT_CLOSED, channel));
 }
@@ -134,7 +137,7 @@ static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ic
     if (self->events) {
         while (!(self->events >> first & 1U))
             ++first;
-        self->events &= self->events - 1U; /* removes the lowest event */
+        self->events &= self->events - 1U; /* removes the lowest event from the set */
         first = first ? first + XBEE_CONNECTIONS - 1U : self->from;
         event->kind = (Ice_EventKind)(ICE_EVENT_MESSAGE + first / XBEE_CONNECTIONS);
         event->connection = (int)(first % XBEE_CONNECTIONS);
@@ -144,14 +147,14 @@ static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ic
     return ICE_OK;
 }
 
-/* Opens this side's channel to a peer. A vehicle without a session is dialed, and gets the channel
- * later: its first message ends the caller's wait. */
+/* Opens this side's channel to a peer. A vehicle without a session is dialed, and the channel is
+ * opened later; the vehicle's first message then ends the caller's wait. */
 static Link_Status openOwn(XBeeATEndpoint* self, int peer) {
     Link_Status status = LINK_OK;
     const int own = self->own[peer];
     if (!isOwnOpen(self, peer)) {
         status = Link_openChannel(self->links[peer], CHANNEL_OF(own));
-        if (status == LINK_OK) { /* a pending end belongs to the previous connection */
+        if (status == LINK_OK) { /* a pending closing belongs to the previous connection */
             setOwnOpen(self, peer, 1);
             self->events &= ~EVENT(ICE_EVENT_CLOSED, own);
         }
@@ -176,13 +179,13 @@ void XBeeATEndpoint_dial(XBeeATEndpoint* self, int peer, U32 nowUs) {
     }
 }
 
-/* Returns whether the connection of the offered message has ended, even if the receiver does not
- * know this yet: the channel may already belong to another connection. */
+/* Returns whether the connection of the offered message has ended, even if this was not yet
+ * reported to the receiver. The channel may already belong to another connection. */
 static int hasEnded(const XBeeATEndpoint* self, int connection) {
     return (self->events & EVENT(ICE_EVENT_CLOSED, connection)) || self->offered != connection;
 }
 
-/* Ends a connection, since the link has no room for its message. */
+/* Ends a connection because the link has no room for its message. */
 static void giveUp(XBeeATEndpoint* self, int connection) {
     (void)Link_closeChannel(self->links[PEER_OF(connection)], CHANNEL_OF(connection));
     XBeeATEndpoint_onChannel(self, connection, 0);
@@ -200,7 +203,8 @@ static Ice_Status offer(XBeeATEndpoint* self, int connection, const Ice_Byte* me
     int tries = 0;
     lock(self);
     if (message)
-        self->offered = (Ice_Byte)connection; /* one message at a time, by ICE_LOCK_SEND */
+        self->offered = (Ice_Byte)connection; /* only one message is offered at a time, because
+                                               * the caller holds ICE_LOCK_SEND */
     for (;;) {
         if (!message)
             status = openOwn(self, PEER_OF(connection));
@@ -218,7 +222,8 @@ static Ice_Status offer(XBeeATEndpoint* self, int connection, const Ice_Byte* me
         (void)self->port->wait(self->context, 20);
         lock(self);
     }
-    /* A wait here may have taken an event that the receiver waits for. */
+    /* The wait above may have consumed a signal for the receiver, so the receiver is signalled
+     * again. */
     if (tries)
         self->port->signal(self->context);
     return status == LINK_OK ? ICE_OK : status == LINK_TOO_LONG ? ICE_LIMIT : ICE_CONNECTION_LOST;
@@ -229,7 +234,7 @@ static Ice_Status sendMessage(void* context, int connection, const Ice_Byte* mes
     return offer(context, connection, message, size);
 }
 
-/* Returns the peer with an encoded endpoint's address; -1: unknown. */
+/* Returns the peer with the address in an encoded endpoint; -1 if there is no such peer. */
 static int peerOf(const XBeeATEndpoint* self, const Ice_Byte* encoded, Ice_Int size) {
     if (size < HEAD + 2)
         return 0;
@@ -242,13 +247,14 @@ static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size
     if (size < 2 || encoded[0] != head[0] || encoded[1] != head[1] || peer < 0)
         return ICE_NO_ENDPOINT;
     *connection = self->own[peer];
-    return offer(self, *connection, 0, 0); /* the last closing may not be delivered yet */
+    return offer(self, *connection, 0, 0); /* the last closing may not have been delivered yet */
 }
 
 static void closeChannel(void* context, int connection) {
     XBeeATEndpoint* self = context;
     lock(self);
-    /* The peer may have closed the connection already, and the channel may belong to a new one. */
+    /* The peer may have closed the connection already, and the channel may belong to a new
+     * connection. */
     if (!cancel(self, ICE_EVENT_CLOSED, connection)) {
         (void)Link_closeChannel(self->links[PEER_OF(connection)], CHANNEL_OF(connection));
         end(self, connection);
@@ -259,7 +265,7 @@ static void closeChannel(void* context, int connection) {
 
 static Ice_Status listenTo(void* context, const char* options) {
     (void)context;
-    (void)options; /* the radio is always open */
+    (void)options; /* the radio is always open, so there is nothing to do */
     return ICE_OK;
 }
 

@@ -25,7 +25,7 @@ module soc #(
     input  wire        fsmc_nadv_n_i,
     output wire        fsmc_nwait_n_o,
     // modem pins
-    input  wire        modem_rxd_i, // from the modem
+    input  wire        modem_rxd_i, // serial line from the modem
     output wire        modem_txd_o,
     input  wire        modem_cts_n_i,
     output wire        modem_rts_n_o,
@@ -149,5 +149,5 @@ module soc #(
     // The processor's interrupt input is edge-sensitive, so no glitch of a LUT may reach it.
     always @(posedge clk_i) irq_o <= irq;
 
-    wire unused = &{1'b0, slot_addr, 1'b0}; // addresses of empty slots
+    wire unused = &{1'b0, slot_addr, 1'b0}; // addresses of empty slots, which nothing uses
 endmodule

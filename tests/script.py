@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""script: shared code of tests of commands: a command, its output, the files that it needs.
+"""script: code shared by the tests of commands: runs a command, checks its output, and writes the
+files that it needs.
 
-A test's program ends with `script.main(Cases)`. CTest gives it the name of a case, then what the
-case reads from sys.argv[2:].
+A test program ends with `script.main(Cases)`. CTest passes the name of a case, then the arguments
+that the case reads from sys.argv[2:].
 """
 import os
 import re
@@ -17,7 +18,7 @@ TREE = Path(__file__).resolve().parents[1]
 
 
 def write(path, text):
-    """Writes a file, and its folders; a script becomes a program."""
+    """Writes a file, and creates its folders; a script is made executable."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text)
@@ -31,14 +32,14 @@ def append(path, text):
 
 
 def edit(path, old, new):
-    """Replaces one text in a file, which must have it."""
+    """Replaces a text in a file; fails if the file does not contain it."""
     text = Path(path).read_text()
     assert old in text, f"{path} has no {old!r}"
     Path(path).write_text(text.replace(old, new))
 
 
 def fresh(folder):
-    """An empty folder, which becomes the current one."""
+    """Creates an empty folder and changes to it."""
     shutil.rmtree(folder, ignore_errors=True)
     os.makedirs(folder)
     os.chdir(folder)
@@ -50,7 +51,7 @@ def git(words, *more):
 
 
 def repository():
-    """Makes the current folder a separate repository."""
+    """Makes the current folder a git repository."""
     git("init -q .")
     git("config user.email a@b")
     git("config user.name a")
@@ -65,8 +66,8 @@ class Script(unittest.TestCase):
     said = ""  # output of the last command
 
     def ask(self, *words, status=0, **how):
-        """Runs a command, which must end with this exit status (None: any of a failure), and keeps
-        its output."""
+        """Runs a command, checks its exit status (None: any failure), and stores its output in
+        `said`."""
         done = subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                               errors="replace", **{"stdin": subprocess.DEVNULL, **how})
         self.said = done.stdout
@@ -74,8 +75,8 @@ class Script(unittest.TestCase):
         self.assertTrue(right, f"exit status {done.returncode} of {words}: {self.said[-20000:]}")
 
     def make(self, *words, tree=TREE, build="build", **how):
-        """Runs a command by make, as a user does, in the whole tree or in a small one of the test;
-        what it would build and install is there already, unless `build` is None."""
+        """Runs a command with make, as a user does, in the whole tree or in a small tree of the
+        test. The files that it would build and install exist already, unless `build` is None."""
         ours = {
             name: value
             for name, value in os.environ.items()
@@ -84,7 +85,8 @@ class Script(unittest.TestCase):
                  *words, env={**ours, "ICESOC_TREE": str(Path(tree).resolve())}, **how)
 
     def has(self, *patterns, file=None):
-        """The last command has said, or the file has, a line for each of these expressions."""
+        """Checks that the output of the last command, or the file, has a line that matches each of
+        these expressions."""
         text = Path(file).read_text(errors="replace") if file else self.said
         for pattern in patterns:
             self.assertTrue(re.search(pattern, text, re.M),

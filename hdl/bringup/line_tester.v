@@ -1,24 +1,28 @@
 // SPDX-License-Identifier: MIT
 //
 // line_tester: lets the microcontroller read and drive every pin of the FPGA, to find bad wires on
-// a new board. It is a design of its own (synth/ise/lines.v) and needs neither the board's clock
-// nor DDR3.
+// a new board. It is a separate design (synth/ise/lines.v) and needs neither the board's clock nor
+// DDR3.
 //
-// The microcontroller moves three lines by hand, as in a shift register; there are three such
-// channels, without a line in common, so that a bad wire or a bad pair leaves one of them.
+// The microcontroller uses three GPIO lines as a serial interface, as for a shift register: clock,
+// data in and answer. There are three such channels, which share no line, so that at least one
+// channel works although a wire is broken or two wires are shorted.
 //
-//   start       the data line falls while the clock line is high: all pins are captured
-//   bits        taken at rising edges of the clock line, lowest bit first; the data line may only
-//               move while the clock line is low. The answer's bit is valid before that edge.
-//   stop        the data line rises while the clock line is high: the pins are driven as sent, if
-//               the frame has the right length and began with the key
+//   start       data line falls while the clock line is high: the levels of all pins are captured
+//   bits        sampled at rising edges of the clock line, lowest bit first; the data line may
+//               change only while the clock line is low. The answer's bit is valid before that
+//               edge.
+//   stop        data line rises while the clock line is high: the pins are driven with the values
+//               sent, if the frame has the right length and began with the key
 //
 //   bits sent       16 KEY, LINES values, LINES output enables, a 0
-//   bits answered   16 undriven (the key is being sent), 16 ID, 16 clock count, 8 NWE count, LINES
-//                   pins, the modem's 5 pins EARLY clocks after the last stop
+//   bits answered   16 not driven (while the key is sent), 16 ID, 16 clock count, 8 NWE count,
+//                   levels of LINES pins, levels of the modem's 5 pins EARLY clocks after the last
+//                   stop
 //
-// The clock count counts units of 64 clocks of the board's clock. The early levels distinguish a
-// driver, which moves a released pin at once, from a pull, which takes a microsecond.
+// The clock count counts units of 64 clocks of the board's clock. The levels after EARLY clocks
+// distinguish a driver, which moves a released pin immediately, from a pull resistor, which takes a
+// microsecond.
 //
 //   pin  0..15 D0..D15   16..40 A0..A24   41 NE1   42 NE2   43 NOE   44 NWE   45 NBL0   46 NBL1
 //        47 NADV   48 NWAIT   49 IRQ   50 MODEM_RXD   51 MODEM_TXD   52 MODEM_CTS   53 MODEM_RTS
@@ -28,7 +32,8 @@
 
 module line_tester #(
     parameter LINES     = 55,
-    parameter UNIT_LOG2 = 6 // the clock count counts 2^n clocks; a simulation divides by itself
+    parameter UNIT_LOG2 = 6 // log2 of the clocks in one unit of the clock count; simulations use a
+                            // smaller value
 ) (
     input  wire             osc_i, // the FPGA's internal oscillator, about 50 MHz
     input  wire             clk_i, // the board's clock, which is only measured
@@ -42,7 +47,7 @@ module line_tester #(
     localparam MODEM = 50, MODEM_PINS = 5, EARLY = 6;
     localparam SENT = 17 + 2 * LINES, ANSWER = 40 + LINES + MODEM_PINS;
 
-    // ---- board's clock: a bit that changes once per unit
+    // ---- board's clock: the upper bit of the divider changes once per unit
     reg  [UNIT_LOG2:0] divider = 0;
     always @(posedge clk_i) divider <= divider + 1;
     wire       slow;
@@ -55,12 +60,12 @@ module line_tester #(
             clocks <= clocks + 16'd1;
     end
 
-    // ---- rising edges of NWE, however close: a strobe that rings counts more than once. The
-    // microcontroller moves NWE only while no frame is captured.
+    // ---- rising edges of NWE, however close to each other: a strobe that rings is counted more
+    // than once. The microcontroller moves NWE only while no frame is captured.
     reg [7:0] edges = 8'd0;
     always @(posedge pins_i[NWE]) edges <= edges + 8'd1;
 
-    // ---- channels: each line of the three as it is now, and a clock ago
+    // ---- channels: level of each of the three clock and data lines now, and one clock ago
     wire [2:0] clock, data;
     reg  [2:0] clock_was = 3'd0, data_was = 3'd0;
     cdc_bit #(.WIDTH(3)) u_clock (.clk_i(osc_i),
@@ -77,14 +82,15 @@ module line_tester #(
     wire [2:0] rises  = clock & ~clock_was;
 
     // ---- frame
-    reg [2:0]        channel = 3'd0; // the one of the frame; 0 without a frame
-    reg [2*LINES:0]  sent = 0;       // the last bits taken
+    reg [2:0]        channel = 3'd0; // channel on which the current frame arrives, one-hot; 0: no
+                                     // frame
+    reg [2*LINES:0]  sent = 0;       // the bits of the frame received last
     reg [ANSWER-1:0] answer = 0;
     reg [7:0]        count = 8'd0;   // bits taken
-    reg              keyed = 1'b0;   // the frame began with the key
+    reg              keyed = 1'b0;   // the current frame began with the key
     reg [LINES-1:0]  value = 0, enable = 0;
     wire             bit_in = |(channel & data);
-    reg [3:0]            since = 4'd0; // clocks since the pins were driven, up to EARLY
+    reg [3:0]            since = 4'd0; // clocks since the pins were driven, at most EARLY
     reg [MODEM_PINS-1:0] early = 0;
 
     always @(posedge osc_i) begin
@@ -115,7 +121,7 @@ module line_tester #(
         end
     end
 
-    // ---- pins: the answer has its line while a frame with a key lasts
+    // ---- pins: the answer line of a channel is driven while a frame with the key lasts
     wire [2:0] answers = channel & {3{keyed}};
     wire [LINES-1:0] line = {{LINES-1{1'b0}}, 1'b1};
     wire [LINES-1:0] busy = (answers[0] ? line << NWAIT : 0) | (answers[1] ? line << IRQ : 0) |

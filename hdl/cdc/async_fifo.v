@@ -16,18 +16,19 @@ module async_fifo #(
 ) (
     // writer
     input  wire             write_clk_i,
-    input  wire             push_i,     // allowed only while full_o is low
+    input  wire             push_i,     // push a word; allowed only while full_o is low
     input  wire [WIDTH-1:0] data_i,
     output wire             full_o,
     // reader
     input  wire             read_clk_i,
-    input  wire             pop_i,      // allowed only while empty_o is low
+    input  wire             pop_i,      // take the word on data_o; allowed only while empty_o is
+                                        // low
     output wire [WIDTH-1:0] data_o,     // valid while empty_o is low
     output wire             empty_o
 );
     reg [WIDTH-1:0] words [0:(1<<LOG2)-1];
     reg [LOG2:0]  written, taken;       // pointers, one bit wider than the address
-    // the same in Gray code, in the clock of the side that sends them
+    // the same pointers in Gray code, registered in the clock of the side that sends them
     reg [LOG2:0]  to_reader, to_writer;
     wire [LOG2:0] to_reader_async, to_writer_async;
     wire [LOG2:0] to_reader_sync, to_writer_sync;
@@ -40,8 +41,8 @@ module async_fifo #(
 
     // ---- writer
     wire [LOG2:0] next_written = written + 1'b1;
-    // Full is one whole turn ahead: in Gray code the two upper bits differ and the others are
-    // equal.
+    // The FIFO is full if the write pointer is one whole turn ahead of the read pointer: in Gray
+    // code the two upper bits then differ and the others are equal.
     assign full_o  = to_reader == {~to_writer_sync[LOG2:LOG2-1], to_writer_sync[LOG2-2:0]};
     always @(posedge write_clk_i)
         if (push_i) begin

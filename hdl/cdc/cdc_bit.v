@@ -3,21 +3,22 @@
 // cdc_bit: two-stage synchroniser for bits from another clock domain or from pins.
 //
 // Each bit arrives independently, one to three clocks late. A level is certain to be seen if it
-// lasts for two clocks. A bus may pass only in Gray code, or as independent bits. With TOGETHER the
-// bits depend on each other: constraints keep their skew below the time for which they are stable
-// (docs/fsmc.md). The module has no reset: the output is INITIAL for the first two clocks.
-// Constraint: at most a period of clk_i to bit_meta (FROM:TO), and the whole period from bit_meta
-// to bit_sync. In proofs, and in simulation with +cdc_random, bit_meta may take the input of the
-// previous clock; metastability and routing have no other effect.
+// lasts for two clocks. A bus may use this module only in Gray code, or if its bits are
+// independent. With TOGETHER the bits depend on each other: constraints keep the skew between them
+// below the time for which they are stable (docs/fsmc.md). The module has no reset: the output is
+// INITIAL for the first two clocks. Constraint: at most one period of clk_i to bit_meta (FROM:TO),
+// and the whole period from bit_meta to bit_sync. In proofs, and in simulation with +cdc_random,
+// bit_meta may take the input of the previous clock; metastability and routing have no other
+// effect.
 
 `default_nettype none
 
 module cdc_bit #(
     parameter             WIDTH    = 1,
-    // number of upper bits; a change of one of them delays all bits together, the lower bits follow
-    // clk_i
+    // number of upper bits that share one delay: if one of them changes, all bits are delayed
+    // together; the lower bits follow clk_i
     parameter             TOGETHER = 0,
-    // 1: no bit is late here, because a cdc_skew before it delays the bits
+    // 1: no bit is delayed in this module, because a cdc_skew before it delays the bits
     parameter             EXACT    = 0,
     parameter [WIDTH-1:0] INITIAL  = 0
 ) (
@@ -45,7 +46,7 @@ module cdc_bit #(
     end
 `elsif FORMAL
     reg  [WIDTH-1:0] bit_was;
-    wire [WIDTH-1:0] late; // free for the prover
+    wire [WIDTH-1:0] late; // chosen freely by the prover
     wire [WIDTH-1:0] old = EXACT != 0 ? {WIDTH{1'b0}} : TOGETHER != 0 ? {WIDTH{late[0]}} : late;
     initial bit_was = INITIAL;
     always @(posedge clk_i) begin

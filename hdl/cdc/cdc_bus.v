@@ -15,7 +15,7 @@ module cdc_bus #(
     input  wire             src_clk_i,
     input  wire             src_valid_i,
     input  wire [WIDTH-1:0] src_data_i,
-    output reg  [WIDTH-1:0] src_data_o,     // last accepted word, in src_clk_i
+    output reg  [WIDTH-1:0] src_data_o,     // last accepted word, in the clock src_clk_i
     input  wire             dst_clk_i,
     output wire             dst_valid_o,    // one cycle
     // valid from dst_valid_o until src_clk_i takes the next word
@@ -44,7 +44,7 @@ module cdc_bus #(
     reg past = 1'b0, was_src = 1'b1, was_clk = 1'b1, was_valid = 1'b0, known = 1'b0;
     reg [WIDTH-1:0] was_data = 0;
     reg was_given = 1'b0, gave = 1'b0;
-    // words not transferred yet; if none, `newer` is the last word
+    // words that have not been transferred yet; if there are none, `newer` is the last word
     reg [WIDTH-1:0] older = 0, newer = 0;
     reg [1:0] count = 2'd0;
     reg [2:0] clocks = 3'd3;             // edges of dst_clk_i since the source edge of the last
@@ -52,7 +52,7 @@ module cdc_bus #(
     wire rise        = past && src_clk_i && !was_src;
     wire edge_of_clk = past && dst_clk_i && !was_clk;
     wire writes      = rise && was_given;
-    wire handed      = edge_of_clk && was_valid; // the user has seen dst_valid_o
+    wire handed      = edge_of_clk && was_valid; // the user of the module has seen dst_valid_o
     wire rings       = writes && clocks == 3'd0 && count != 2'd0 && was_data == newer;
     wire new_write   = writes && !rings;
     always @(posedge step) begin
@@ -73,12 +73,12 @@ module cdc_bus #(
         end else if (edge_of_clk && clocks != 3'd7) begin
             clocks <= clocks + 3'd1;
         end
-        // Two edges of src_clk_i that hand over are at least three edges of dst_clk_i apart;
-        // ringing is closer.
+        // Two edges of src_clk_i that send a word are at least three edges of dst_clk_i apart;
+        // ringing has closer edges.
         assume (!new_write || clocks >= 3'd3);
     end
-    wire [1:0] left  = count - {1'b0, handed}; // words left after this step
-    wire       gives = edge_of_clk ? was_valid : gave; // the clock after dst_valid_o
+    wire [1:0] left  = count - {1'b0, handed}; // number of words left after this step
+    wire       gives = edge_of_clk ? was_valid : gave; // high in the clock after dst_valid_o
     always @* if (past) begin
         // Each word is pending immediately and is transferred once, in order, unchanged.
         assert (!handed || count != 2'd0);
@@ -90,10 +90,10 @@ module cdc_bus #(
             assert (dst_data_o == (left == 2'd2 ? older : newer));
         end
         assert (left == 2'd0 || clocks + {2'd0, edge_of_clk} <= 3'd3 || (clocks == 3'd3 && handed));
-        // The source word is stable from its edge to the next.
+        // The word of the source is stable from its edge to the next edge.
         if (known || new_write)
             assert (src_data_o == (new_write ? was_data : newer));
-        // The copy of the last word is stable until the next.
+        // The copy of the last word is stable until the next word arrives.
         if (known && left == 2'd0)
             assert (dst_data_o == newer);
         cover (rings);

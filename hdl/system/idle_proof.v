@@ -24,7 +24,7 @@ module idle_proof (
     always @(posedge clk_i)
         cover (closes);
 
-    `CORE u_core ( // its pins are free
+    `CORE u_core ( // the pins of the core are unconstrained
         .clk_i(closes), .rst_i(rst_i),
         .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
         .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),

@@ -9,9 +9,10 @@
 `default_nettype none
 
 module platform #(
-    parameter             SLOTS     = 3, // 1 to 64
-    parameter             PORTS     = 2, // 2 to 8
-    parameter [PORTS-1:0] READ_FIFO = 0  // memory ports that need a FIFO for read words
+    parameter             SLOTS     = 3, // number of slots, 1 to 64
+    parameter             PORTS     = 2, // number of memory ports, 2 to 8
+    parameter [PORTS-1:0] READ_FIFO = 0  // one bit per memory port: the port needs a FIFO for read
+                                         // words
 ) (
     input  wire                 clk_i,
     input  wire                 rst_i,

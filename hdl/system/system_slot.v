@@ -8,7 +8,7 @@
 `default_nettype none
 
 module system_slot #(
-    parameter SLOTS  = 3,         // populated slots, this one included
+    parameter SLOTS  = 3,         // number of populated slots, including this one
     parameter CLK_HZ = 100000000, // Hz
     parameter [32*SLOTS-1:0] CONTRACTS = {SLOTS{32'd0}} // hashes of the register maps, slot 0 first
 ) (
@@ -19,8 +19,10 @@ module system_slot #(
     // FSMC bridge
     output wire [5:0]       page_o,         // DDR3 address bits 31..26
     input  wire             access_error_i, // one cycle
-    input  wire             error_memory_i, // the error is of memory, and shown as 0x3FF
-    input  wire [9:0]       error_addr_i,   // the register of the error, otherwise
+    input  wire             error_memory_i, // the error happened in an access to memory, and is
+                                            // reported as register address 0x3FF
+    input  wire [9:0]       error_addr_i,   // address of the register whose access failed, if the
+                                            // error is not of memory
     input  wire             error_write_i,
     input  wire             late_i
 );
@@ -31,7 +33,7 @@ module system_slot #(
     reg [63:0] cycles;
     reg [9:0]  error_addr;
     reg        error_write;
-    reg [31:0] contract;      // the hash of the requested slot
+    reg [31:0] contract;      // register contract hash of the requested slot
     wire [63:0] lines = {{(64-SLOTS){1'b0}}, slot_irq_i, own_irq};
     wire [31:0] scratch;
 
@@ -49,7 +51,7 @@ module system_slot #(
 
     assign irq_o = |lines;
 
-    // looked up on write, so that a read comes from a register
+    // hash is looked up when the slot number is written, so that a read comes from a register
     reg [31:0] asked;
     integer    s;
     always @* begin
@@ -64,8 +66,8 @@ module system_slot #(
             cycles_high_latched <= cycles[63:32];
         if (contract_write)
             contract <= asked;
-        // The first error is stored until its event has been cleared; an error in the clock of the
-        // clear is a new one.
+        // The first error is stored until its event has been cleared. An error in the clock in
+        // which the event is cleared counts as a new one.
         if (access_error_i && (!error_open || clearing)) begin
             error_addr  <= error_memory_i ? 10'h3FF : error_addr_i;
             error_write <= error_write_i;
@@ -114,17 +116,17 @@ module system_slot #(
             assert ({cycles, cycles_high_latched, error_addr, error_write} == 0);
             assert (contract == CONTRACTS[31:0]);
         end else if (past && !rst_i) begin
-            // The reported location is the oldest error since the event was last clear.
+            // The reported location belongs to the oldest error since the event was last clear.
             if ($past(access_error_i && (!error_open || clearing)))
                 assert ({error_addr, error_write} ==
                         $past({error_addr_i | {10{error_memory_i}}, error_write_i}));
             else
                 assert ({error_addr, error_write} == $past({error_addr, error_write}));
-            // The high word keeps its value from when the low word was read.
+            // The high word keeps the value that it had when the low word was read.
             assert (cycles_high_latched == $past(
                 bus_valid_i && !bus_write_i && bus_addr_i == SYSTEM_CYCLES_LO ?
                 cycles[63:32] : cycles_high_latched));
-            // The hash of a slot, 0 without one.
+            // The hash of a slot; 0 if the slot does not exist.
             if ($past(bus_valid_i && bus_write_i && bus_addr_i == SYSTEM_CONTRACT))
                 assert (contract ==
                         ((CONTRACTS >> {$past(bus_wdata_i[5:0]), 5'd0}) & 32'hFFFFFFFF));

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""project: a small project with tests that pass, fail, flicker and crash, for the regression tool.
+"""project: a small project for tests of the regression tool; its tests pass, fail, crash or give
+varying results.
 
-Its tests get: case work-folder build-folder. A case begins in the project, as it is committed.
+The programs get: case work-folder build-folder. Each case begins with the project as committed.
 """
 import os
 import shlex
@@ -48,7 +49,8 @@ formal)
 esac
 """,
     ".gitignore": "build\n"}
-BREAK = ("case $1 in\n", "case $1 in\na.One) exit 1 ;;\n")  # an edit of t.sh: test_a.One fails
+BREAK = ("case $1 in\n", "case $1 in\na.One) exit 1 ;;\n")  # edit of t.sh that makes test_a.One
+                                                            # fail
 
 
 class Project(Script):
@@ -62,7 +64,7 @@ class Project(Script):
         commit("one")
 
     def tests(self, text):
-        """Adds tests, and configures."""
+        """Adds tests to the project, and configures it."""
         append("tests/room/CMakeLists.txt", text)
         self.ask("cmake", "-S", ".", "-B", "build/main", "-G", "Ninja")
 

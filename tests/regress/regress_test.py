@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""regress_test: the regression tool on a small project: results, choice of tests, history.
+"""regress_test: tests the regression tool with a small project: results, selection of tests,
+history.
 
 Usage: regress_test.py case work-folder build-folder
 """
@@ -72,8 +73,8 @@ class Cases(Project):
         self.page_is_small()
 
     def junit_is_valid(self):
-        """As Jenkins' junit-10.xsd has it: elements, attributes (the needed ones first), children;
-        GitLab reads the names, times, failures and outputs of these."""
+        """Checks JUnit files against Jenkins' junit-10.xsd: elements, attributes (required ones
+        first), children. GitLab reads the names, times, failures and outputs in them."""
         schema = {
             "testsuites": ("", "name time tests failures errors", "testsuite"),
             "testsuite": ("name tests failures errors", "time skipped timestamp",
@@ -100,8 +101,8 @@ class Cases(Project):
             "test_a": "0", "test_b": "1", "test_c": "0", "test_d": "0", "formal": "0"})
 
     def test_ages(self):
-        """A test that takes three times its usual time is named with its age, and once more when
-        it is twice as old; without history at 60 s."""
+        """A test that takes three times its usual time is reported with its age, and again at twice
+        that age; without history, first at 60 s."""
         usual = {"quick": 0.1, "slow": 20.0, "new": None, "formal.long": 40.0}
         tests = [types.SimpleNamespace(name=name) for name in usual]
         progress = runner.Progress(tests, types.SimpleNamespace(seconds=usual.get,
@@ -126,7 +127,7 @@ class Cases(Project):
         self.idle_and_starved(progress, usual)
 
     def idle_and_starved(self, progress, usual):
-        """A test that does not use the CPU for ten seconds hangs; one that gets a tenth of a CPU
+        """A test that does not use the CPU for ten seconds hangs. A test that gets a tenth of a CPU
         does not, until its CPU time is ten times its usual time."""
         for share, hangs in ((0.001, {"quick": 42, "slow": 212}), (0.15, {"quick": 201})):
             progress.busy, first = {}, {}
@@ -141,8 +142,8 @@ class Cases(Project):
                 self.assertAlmostEqual(first[name], age, delta=3)
 
     def test_hang(self):
-        """A test that takes ten times its usual time is ended, with the stack of its program, as a
-        failure like others; here without the least of 30 s."""
+        """A test that takes ten times its usual time is ended, with the stack of its program, and
+        counts as a failure. Here the minimum of 30 s is disabled."""
         write("hang.c", HANG)
         edit("CMakeLists.txt", "small NONE", "small C")
         self.tests("""add_executable(test_h ${CMAKE_SOURCE_DIR}/hang.c)
@@ -188,8 +189,8 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.has("^2 tests, SEED=1")
 
     def test_unchanged(self):
-        """Which inputs make a test run again: the files that a program names, all files of the tree
-        for a script, the build's packages and what they need; no other package."""
+        """Inputs that make a test run again: the files that a program contains as paths, all files
+        of the tree for a script, the build's packages and their dependencies; no other package."""
         source, build = self.work, self.work / "build/main"
         write("data/one.txt", "1")
         write("build/main/digests.json", "damaged")
@@ -234,7 +235,8 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.assertLess(Path("build/regress/report.html").stat().st_size, 2000000)
 
     def test_plan(self):
-        """Which requirement is proven, failed, has not run with these sources, or has no test."""
+        """Each requirement is reported as proven, failed, not run with these sources, or without a
+        test."""
         plan = Path("tests/plan.toml")
         lines = ('[thing]\n"It works" = "test_a.* formal.thing"\n'
                  '"It stands" = "test_a.One test_b.*"\n')
@@ -260,7 +262,7 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.has("^plan  *grey   *0 of 2 requirements")
         self.tests(LATE)
         append(plan, '"It comes" = "test_late.One"\n')
-        self.regress("--plan")  # a program that is not built may have any test
+        self.regress("--plan")  # a program that is not built may contain any test
         append(plan, '"It has no test" = ""\n')
         self.regress("--plan", 2)
         self.has("plan.toml: It has no test: not")
@@ -271,14 +273,14 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
     def test_company(self):
         """Progress, one run at a time, messages about mistyped words, no needless builds."""
         self.regress("--name 'a.One|formal'")
-        self.has("^1 of 2, 0 failed, 1 left",  # their duration is unknown
+        self.has("^1 of 2, 0 failed, 1 left",  # the duration of the tests is unknown
                  "^2 of 2, 0 failed, 0:00 left", "^tests  *green  1 passed, 4 did not run$",
                  "^proofs  *green  1 hold, 1 of them")
         self.regress("--jobs none", 2)
         self.has("^regress: .*see --help")
         self.tests("add_test(NAME test_a.OneMore COMMAND true)\n")
         self.regress("--name test_a.One")
-        self.has("^1 passed")  # an exact name is one test
+        self.has("^1 passed")  # an exact name selects only one test
         write("tame.cpp", "// unused\nTEST_F(Tame, Eats) {}\n")
         write("built.cpp", "int main() {}\n")
         edit("CMakeLists.txt", "small NONE", "small CXX")
@@ -287,9 +289,9 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
             ("--name '^script.whole'", "all"), ("--name '^script.says'", "other tools"),
             ("--name '^test_a'", ""), ("--name '^absent'", "all"),
             ("--name 'soon\\.'", "test_soon"),
-            ("--name 'script\\.after'", "tool"),  # by words before it
-            ("--name One", "test_radio test_soon"),  # with unknown cases
-            ("--name '^One|^(script|docs).says'", "other tools"),  # no name begins so
+            ("--name 'script\\.after'", "tool"),  # the test is selected by words before the case
+            ("--name One", "test_radio test_soon"),  # programs with unknown cases are built
+            ("--name '^One|^(script|docs).says'", "other tools"),  # no name begins with these words
             ("--name '^test_tame.*Eat'", "test_tame"),
             ("--label 'rtl|radio'", "test_radio"),
             ("--name rue", "test_radio test_soon"),
@@ -314,8 +316,8 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         git("checkout -q HEAD~1 tests/room/CMakeLists.txt")
         self.tests(LATE)
         self.regress("--label formal", 1)
-        self.has("1 passed, 1 failed")  # programs that are not built may have that label
-        # Another run has the lock until this one has printed that it waits.
+        self.has("1 passed, 1 failed")  # programs that are not built may have tests with that label
+        # Another run holds the lock until this run has printed that it waits.
         with open("build/regress/lock", "w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
             run = subprocess.Popen([REGRESS, "--name", "a.One"], stdout=subprocess.PIPE,
@@ -326,8 +328,8 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.assertEqual(run.returncode, 0)
 
     def a_plain_word_is_a_whole_one(self):
-        """`fir` is not in `first`. A case that is new in a program's source is found although the
-        program is there."""
+        """The word `fir` does not select `first`. A new case in the source of a program is found
+        although the program has already been built."""
         self.ask("ninja", "-C", "build/main", "test_built")
         self.regress("--name Fir --list")
         self.assertIn("test_built.Fir.Works\n", self.said)
@@ -363,13 +365,15 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.has("6 tests, SEED=1")
         self.regress("--name a.One --repeat 3 --seed 7")
         self.has("SEED=9", "3 passed, 0 failed")
-        # A removed bug: the failed tests run, and the sources of the last pass count as that pass.
+        # A bug is removed again: the tests that failed run, and a pass counts for the sources with
+        # which the test had passed.
         write("tests/plan.toml", '[thing]\n"It works" = "test_a.One"\n')
         edit("tests/room/t.sh", *BREAK)
         self.regress("--changed --name a[.]", 1)
         self.has("^2 tests", "^plan  *red")
         self.regress("--name formal")
-        self.has('"test": "test_a.One"', file="build/regress/report.json")  # a kept seed
+        # a recorded failing seed
+        self.has('"test": "test_a.One"', file="build/regress/report.json")
         edit("tests/room/t.sh", *reversed(BREAK))
         self.regress("--name formal")
         self.has("^plan  *green")
@@ -393,31 +397,33 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.regress("--name 'test_[ab]' --seed random --repeat 2", 1)
         seeds = re.findall("^3 tests, SEED=(.*)", self.said, re.M)
         self.assertEqual(len(seeds), 2)
-        self.regress("--name 'test_[ab]' --seed 7")  # passes; the failing seeds stay recorded
+        self.regress("--name 'test_[ab]' --seed 7")  # the tests pass; the failing seeds stay
+                                                     # recorded
         self.has("2 failing seeds are kept")
         page = Path("build/regress/report.html")
         before = page.read_bytes()
-        self.regress("--kept --name 'a[.]'")  # none of these: the page of another run is unchanged
+        self.regress("--kept --name 'a[.]'")  # no test has a recorded seed, so the page of the
+                                              # earlier run is unchanged
         self.has("no seed is kept")
         self.assertEqual(page.read_bytes(), before)
         self.regress("--kept", 1)
         self.has("0 passed, 2 failed", *(f"^1 tests, SEED={seed}" for seed in seeds))
         self.has(*(rf'"seed":"{seed}","since":\d+,"test":"test_b.Bad","times":2' for seed in seeds),
                  file=page)
-        edit("tests/room/t.sh", "[ \"$SEED\" = 7 ]", "true")  # the bug is mended
+        edit("tests/room/t.sh", "[ \"$SEED\" = 7 ]", "true")  # removes the bug
         self.regress("--kept")
         self.regress("--kept")
         self.has("no seed is kept")
 
     def test_bisect(self):
-        """Of five commits the third breaks test_a.One, the second does not configure; the checkout
-        stays as it is."""
+        """Of five commits, the second does not configure and the third breaks test_a.One; the
+        checkout is not changed."""
         write("change", "")
         commit("something else")
         append("CMakeLists.txt", "broken(\n")
         commit("does not configure")
         git("revert --no-edit HEAD")
-        self.regress("--name a.One")  # passes, and is noted
+        self.regress("--name a.One")  # the test passes, and the run is recorded
         edit("tests/room/t.sh", *BREAK)
         commit("breaks it")
         for later in "12":
@@ -439,7 +445,7 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
             self.assertFalse(Path("build/bisect/tree").exists())
 
     def test_large(self):
-        """More tests than this project has: the page stays small."""
+        """With more tests than this project has, the page stays small."""
         write("long.vcd", "$scope module top $end\n" +
               "".join(f"$var wire 16 s{s} a_signal_{s} $end\n" for s in range(100)) +
               "$upscope $end $enddefinitions $end\n" + "".join(

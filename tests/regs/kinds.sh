@@ -30,7 +30,7 @@ sed 's/"block": "kinds"/"block": "memory"/
 verilator --lint-only -Wall -I"$source/bus" -I"$work/memory" --top-module memory_regs \
     "$work/memory/memory_regs.v"
 
-# The same, word by word, from VHDL.
+# The register block in VHDL gives the same results, word by word.
 "$source/cmake/vhdl_to_verilog.sh" "$ghdl" "$work/vhdl" kinds_regs "$work/vhdl/kinds_regs.v" \
     "$work/kinds_regs_pkg.vhd" "$work/kinds_regs.vhd"
 same() { # vhdl folder

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""names_test: names that collide in a generated file, or that a language does not take, are
-rejected with both names before anything is written; texts cannot break a comment."""
+"""names_test: names that collide in a generated file, or that are not allowed in a language, are
+rejected before anything is written, and the message contains both names. Texts cannot end a
+comment."""
 import json
 import subprocess
 import sys
@@ -93,7 +94,8 @@ class Names(unittest.TestCase):
         self.refused(["HW", "reserved by the project"], register("A"), block="HW")
 
     def test_keywords_and_texts(self):
-        """Keywords of each language as names, and texts that end a comment or hold a command."""
+        """Keywords of each language are used as names, and texts end a comment or contain a
+        command."""
         texts = ["ends in a backslash \\", "a /* comment", "a trigraph ??/", "verilator lint_off X",
                  "synthesis translate_off", "a | b **c** `d` <e>", "// x", "-- y",
                  "gr\u00f6\u00dfer"]

@@ -73,7 +73,7 @@ class Newcomer(unittest.TestCase):
         self.assertIn("**EXPOSURE**", markdown(block))
         shown = live.register(block, 11, 5, live.WRITTEN)
         self.assertEqual((shown["name"], shown["doc"]), ("EXPOSURE", "lines of exposure"))
-        # In hardware it is reset, written and read.
+        # In hardware, the register is reset, written and read.
         bench = self.out / "bench.v"
         bench.write_text(BENCH)
         includes = [f"-I{TREE / 'bus'}", f"-I{self.out}"]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""rdl_test: every property of SystemRDL 2.0 is taken over, without effect, or an error with its
-line; nothing is read as something else."""
+"""rdl_test: every property of SystemRDL 2.0 is converted, has no effect, or is an error with its
+line; no property is misread."""
 import sys
 import tempfile
 import unittest

@@ -29,7 +29,7 @@ STRICT = "-std=c90 -pedantic -Wall -Wextra -Wconversion -Werror".split()
 ARM = "arm-none-eabi-gcc -mcpu=cortex-m3 -mthumb -Os".split()
 GENERATED = ["Meter_types.c", "Meter_server.c", "Station_types.c", "Station_client.c"]
 PROGRAM = ["icec.c", "icec_link.c", "icec_radio.c", EXAMPLE / "meter.c", EXAMPLE / "mps2.c"]
-# Layers of the build, and the components that have their files.
+# Layers of the build, and for each the component with the same files.
 LAYERS = {"icec": "icec", "icec_tcp": "icec_tcp", "link_layer": "icec_link", "crypto": "icec_link",
           "icec_xbee": "icec_radio", "fsmc": "icec_fsmc"}
 SMALL = "# Changelog\n\n## Unreleased\n{}\n## 1.2.3\n\n- second\n\n## 1.2.2\n\n- first\n"
@@ -41,14 +41,14 @@ def write_all(files, folder="."):
 
 
 def symbols(file):
-    """The functions and data that an object file defines."""
+    """Returns the names of the functions and data that an object file defines."""
     said = subprocess.check_output(["nm", file], text=True)
     return [re.sub(r"\.\d+$", "", name)
             for name in re.findall(r"^\w+ [tTdDbBrR] (\S+)$", said, re.M)]
 
 
 def undocumented(value):
-    """A description without its texts."""
+    """Returns a description without its texts."""
     if isinstance(value, list):
         return [undocumented(each) for each in value]
     if isinstance(value, dict):
@@ -58,7 +58,7 @@ def undocumented(value):
 
 class Cases(Script):
     def test_components(self):
-        """Each layer of the build has the files of its component."""
+        """Each layer of the build has the same files as its component."""
         known, found = components.read(), {}
         for line in (BUILD / "tests/release/layers.txt").read_text().splitlines():
             layer, *files = line.split()
@@ -74,8 +74,8 @@ class Cases(Script):
             self.ask(BUILD / "slice/slice2c", EXAMPLE / f"{name}.ice", "--output-dir", ".")
 
     def test_single_file(self):
-        """The single files compile without a warning for three compilers, have every function of
-        the sources, and a program of them answers stock Ice over TCP."""
+        """The single files compile without a warning with three compilers and have every function
+        of the sources. A program made of them answers stock Ice over TCP."""
         fresh(WORK)
         self.examples()
         known = components.read()
@@ -110,8 +110,8 @@ class Cases(Script):
                 host.kill()
 
     def fly(self, elf, kernel):
-        """A program on QEMU's MPS2 board is called by stock Ice through the ground's plugin, and
-        calls back."""
+        """Checks that stock Ice calls a program on QEMU's MPS2 board through the ground's plugin,
+        and that the program calls back."""
         with subprocess.Popen(
                 ["qemu-system-arm", "-M", "mps2-an385", "-kernel", elf, "-display", "none",
                  "-monitor", "none", "-serial", "pty"], stdin=subprocess.DEVNULL,
@@ -137,7 +137,8 @@ class Cases(Script):
             self.skipTest("qemu-system-arm is missing: apt-get install qemu-system-arm")
 
     def fetched(self, thing):
-        """The folder of what icesoc.util.fetch brings; the case is skipped without a network."""
+        """Returns the folder of a download by icesoc.util.fetch; without a network the case is
+        skipped."""
         done = subprocess.run([TREE / "tools/python", "-m", "icesoc.util.fetch", thing, thing],
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         if done.returncode == 77:
@@ -164,14 +165,14 @@ class Cases(Script):
         for path in "tasks.c", "queue.c", "list.c", f"{port}/port.c":
             objects.append(Path(path).with_suffix(".o").name)
             self.ask(*ARM, "-w", f"-I{EXAMPLE}", *folders, "-c", kernel / path, "-o", objects[-1])
-        # The kernel's headers need C99.
+        # The headers of the kernel need C99.
         self.ask(*ARM, *STRICT[2:], "-std=gnu99", "-I.", f"-I{EXAMPLE}", *folders, "-c",
                  EXAMPLE / "freertos.c")
         self.link("freertos.elf", "freertos.o", *objects)
         self.fly("freertos.elf", "FreeRTOS")
 
     def test_packs(self):
-        """Each form names the files that it has, and they compile."""
+        """Each form lists exactly the files that it contains, and they compile."""
         fresh(WORK)
         write_all(packs.library("1.2.3"), "library")
         manifest = json.loads(Path("library/library.json").read_text())
@@ -184,7 +185,7 @@ class Cases(Script):
         options = re.findall(r"^config (\w+)$", Path("library/zephyr/Kconfig").read_text(), re.M)
         used = set(re.findall(r"CONFIG_(\w+)", Path("library/zephyr/CMakeLists.txt").read_text()))
         self.assertEqual(used, set(options))
-        # Zephyr's functions, as far as the module calls them
+        # stubs of the functions of Zephyr that the module calls
         write("CMakeLists.txt", """cmake_minimum_required(VERSION 3.20)
 project(zephyr C)
 macro(zephyr_library_named name)
@@ -272,8 +273,8 @@ add_subdirectory(library/zephyr)
                  env={**os.environ, "ICESOC_TREE": str(tree), **environment})
 
     def test_same_bytes(self):
-        """Two runs in different environments give the same bytes; the archive has all files of the
-        commit, and the bill of materials lists each."""
+        """Two runs in different environments give the same bytes. The archive contains all files of
+        the commit, and the bill of materials lists each of them."""
         fresh(WORK)
         if not (TREE / ".git").exists():
             self.skipTest("this tree is not a git repository")
@@ -310,15 +311,15 @@ add_subdirectory(library/zephyr)
             self.assertIn("IceSoC.IceC.pdsc", pack.namelist())
 
     def small(self, unreleased):
-        """Makes the work folder a repository with a changelog."""
+        """Turns the work folder into a repository with a changelog."""
         fresh(WORK / "small")
         repository()
         write("CHANGELOG.md", SMALL.format(unreleased))
         commit("First")
 
     def test_versions(self):
-        """A commit with unreleased changes has the last version and its own number; a released
-        version belongs to one commit."""
+        """The version of a commit with unreleased changes consists of the last version and the
+        number of the commit; a released version belongs to one commit."""
         self.assertEqual(version.newest(), re.search(r"badge/version-([\d.]+)-",
                                                      (TREE / "README.md").read_text())[1])
         self.small("\n- third\n")
@@ -340,7 +341,7 @@ add_subdirectory(library/zephyr)
         self.has("only: expected parts out of source, .*, got 'sauce'")
 
     def test_signature(self):
-        """The signature of SHA256SUMS holds, and a missing key is an error."""
+        """The signature of SHA256SUMS is valid; a missing key is an error."""
         if not shutil.which("gpg"):
             self.skipTest("gpg is missing: apt-get install gnupg")
         self.small("")

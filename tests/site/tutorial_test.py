@@ -59,7 +59,7 @@ class Cases(Script):
         tutorial.follow(WORK / "page.md", WORK, execute, "cd icesoc", brief)
 
     def test_right(self):
-        """A page is followed in its order."""
+        """The steps of a page are executed in their order."""
         self.follow(PAGE)
         self.assertEqual((WORK / "greeting").read_text(), "hello, radio\n")
         self.assertTrue((WORK / "log").exists())
@@ -67,7 +67,7 @@ class Cases(Script):
         self.assertFalse((WORK / "log").exists())
 
     def test_wrong(self):
-        """A wrong command, line, missing line, further line or exit status is reported with its
+        """A wrong command, line, missing line, additional line or exit status is reported with its
         line in the page."""
         for old, new, message in (
                 ("$ cat greeting", "$ cat greetings",
@@ -85,7 +85,8 @@ class Cases(Script):
                 self.follow(PAGE.replace(old, new))
 
     def test_page(self):
-        """The tutorial writes files and quotes the output of each command but silent ones."""
+        """The tutorial writes files, and quotes the output of each command that prints
+        something."""
         steps = tutorial.steps((TREE / "docs/tutorial.md").read_text())
         self.assertGreater(len([step for step in steps if step.file]), 2)
         for step in steps:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// ends: vehicles and ground stations of the soak, and the messages between them, which contain what
-// is needed to check them.
+// ends: the vehicles and ground stations of the soak, and the messages between them, whose content
+// allows to check them.
 
 #pragma once
 
@@ -26,11 +26,12 @@ struct Totals {
     uint64_t babbles = 0, rivals = 0;
 };
 
-// Messages from one end to another: numbered; each channel has every fourth one.
+// Messages from one end to another. They are numbered, and take the channels in turn, so each
+// channel carries every fourth one.
 class Mail {
 public:
     Mail(int from, int to, Totals& totals) : from_(from), to_(to), totals_(totals) {}
-    // The next message, until `sent`.
+    // Returns the next message; it stays the next one until `sent`.
     Bytes next() const { return message(next_); }
     U32 number() const { return next_; }
     int channel() const { return static_cast<int>(next_ % LINK_CHANNELS); }
@@ -48,13 +49,14 @@ public:
         ++(outcome == LINK_DELIVERED ? totals_.delivered : totals_.unknown);
         outstanding_.erase(it);
     }
-    // Messages on their way when the power fails: their program cannot know their outcome.
+    // Forgets the messages that are in transit when the power fails: the program cannot know their
+    // outcome.
     void forget() {
         totals_.unknown += outstanding_.size();
         outstanding_.clear();
     }
-    // Checks a message for the receiver: it is the next or a later one of this mail and channel,
-    // complete, and the receiver's rival has not had it. Returns false otherwise.
+    // Checks a message for its receiver. It must be the next or a later message of this mail and
+    // channel, complete, and not delivered to the receiver's rival. Returns false otherwise.
     bool arrived(int channel, const Bytes& bytes, bool isRival) {
         uint32_t& expected = expected_[isRival][channel];
         uint32_t id = expected;
@@ -66,7 +68,7 @@ public:
         auto it = outstanding_.find(id);
         if (it != outstanding_.end())
             it->second = true;
-        // The sender must not consider a skipped message as on its way.
+        // The sender must not count a skipped message as in transit.
         for (; expected < id; expected += LINK_CHANNELS)
             if (outstanding_.count(expected))
                 fault("was skipped", expected);
@@ -80,7 +82,7 @@ private:
     [[noreturn]] void fault(const std::string& what, uint32_t id) const {
         throw Fault(fmt::format("from 0x{:04x} to 0x{:04x}: message {} {}", from_, to_, id, what));
     }
-    // Every byte follows from the sides and the number.
+    // Returns a message; its bytes are determined by sender, receiver and number.
     Bytes message(uint32_t id) const {
         Random r(uint64_t(from_) << 48 | uint64_t(to_) << 32 | uint64_t(from_ >> 16) << 31 | id);
         uint32_t kind = r.below(10);
@@ -103,11 +105,12 @@ private:
     Totals& totals_;
     uint32_t next_ = 0, expected_[2][LINK_CHANNELS] = {{0, 1, 2, 3}, {0, 1, 2, 3}};
     std::vector<bool> hasCome_;                      // each message
-    std::unordered_map<uint32_t, bool> outstanding_; // not reported yet, with whether it has
-                                                     // arrived
+    std::unordered_map<uint32_t, bool> outstanding_; // messages not reported yet -> whether they
+                                                     // have arrived
 };
 
-// A vehicle or a ground station, and its program. It knows what others send only to check it.
+// A vehicle or a ground station, and its program. It knows the messages that others send only in
+// order to check them.
 class End : public ModemEnd {
 public:
     using MailOf = std::function<Mail*(int from, int to)>; // null if none
@@ -121,8 +124,10 @@ public:
             out_.push_back(mailOf(name, target));
         }
     }
-    static constexpr int rival = 0x10000; // name of the one with the first ground's address, 0
-    // `hasKeys`: one of each vehicle and ground, with the number of its changes.
+    static constexpr int rival = 0x10000; // address in this test of the rival, which uses address 0
+                                          // of the first ground station
+    // `hasKeys`: there is one key per pair of vehicle and ground station, which depends on the
+    // number of changes.
     void boot(uint64_t now, bool hasKeys) {
         now_ = now;
         begin();
@@ -137,19 +142,19 @@ public:
         }
     }
     unsigned keyOf(size_t peer) const { return keys_[peer]; } // its number
-    // The ground has two keys, the present and the next one; the vehicle's session ends.
+    // Gives the ground two keys, the current and the next one; the session of the vehicle ends.
     void takeNextKey(size_t peer) {
         setKey(peer, ++keys_[peer], true);
         if (!isGround_)
             setKey(peer, keys_[peer] - 1, false);
     }
-    // Makes one step of a program: with this chance it sends a message to each peer.
+    // Makes one step of a program: sends a message to each peer with this probability.
     void work(double rate) {
         for (size_t peer = 0; peer < peers(); ++peer)
             if (out_[peer] && isUp(peer) && random_.chance(rate))
                 offer(peer);
         if (random_.chance(0.002))
-            isBusy_ = random_.chance(0.1); // takes no message for a while
+            isBusy_ = random_.chance(0.1); // the program accepts no message for a while
     }
     bool isWell() const {
         for (size_t peer = 0; peer < peers(); ++peer)
@@ -204,8 +209,8 @@ private:
     Random& random_;
     const bool isGround_, isRival_;
     const int address_;
-    std::vector<std::array<Mail*, 2>> in_; // by peer, and its rival
+    std::vector<std::array<Mail*, 2>> in_; // mail to this end, by peer, and from the peer's rival
     std::vector<Mail*> out_;
-    std::vector<unsigned> keys_; // number of changes by peer
+    std::vector<unsigned> keys_; // number of key changes by peer
     bool isBusy_ = false;
 };

@@ -24,7 +24,7 @@ public:
     Soak(uint64_t seed, bool attacked, int vehicles, int grounds)
         : random_(seed), air_(seed + 1), attacked_(attacked || vehicles * grounds > 1),
           attacker_(air_, seed + 2) {
-        std::vector<int> all[2]; // addresses of vehicles, of grounds
+        std::vector<int> all[2]; // addresses of the vehicles, and of the ground stations
         for (int i = 0; i < vehicles; ++i)
             all[0].push_back(1 + i);
         for (int i = 0; i < grounds; ++i)
@@ -58,13 +58,13 @@ public:
             end->boot(now_, attacked_);
         sendGuestsAway();
     }
-    // Passes one simulated second with random events.
+    // Simulates one second with random events.
     void second() {
         weather();
         misfortune();
         pass(rate_ / static_cast<double>(2 * vehicles_ * grounds_));
     }
-    // Good weather, no new messages: all pending ones must be reported.
+    // Simulates good weather without new messages, until all pending ones have been reported.
     void settle() {
         air_.weather = {};
         attacker_.hinder(false);
@@ -108,7 +108,7 @@ private:
         return std::all_of(ends_.begin(), ends_.end(),
                            [](auto& end) { return end->isGone() || end->isWell(); });
     }
-    // Passes a second, in which programs and the attacker act each millisecond.
+    // Simulates one second, in which programs and the attacker act each millisecond.
     void pass(double rate) {
         for (const uint64_t end = now_ + secondNs; now_ < end;) {
             air_.advance(now_);
@@ -138,10 +138,11 @@ private:
         air_.weather = RfWeather::drawn(random_, 40);
         attacker_.hinder(attacked_ && !isFleet_ && random_.below(2));
         air_.weather.delayNs = random_.below(2) ? 0 : random_.below(20) * msNs;
-        // messages per ms: light, or more than the air carries; many links each use more of it
+        // messages per ms: a low rate, or more than the air can carry; in a fleet an eighth of that,
+        // because many links share the air
         rate_ = (random_.below(3) ? 0.08 : 0.8) / (isFleet_ ? 8 : 1);
     }
-    // Draws a fault for one of the ends, more often if there are many.
+    // Injects a random fault at one of the ends, more often if there are many ends.
     void misfortune() {
         for (auto& end : ends_)
             if (end->awayUntil && end->awayUntil <= now_) {
@@ -154,7 +155,7 @@ private:
         End& end = *ends_[random_.below(hosts)];
         switch (random_.below(isFleet_ ? 7 : attacked_ ? 6 : 3)) {
         case 0:
-            ++totals_.reboots; // of a vehicle, or of the program on the ground
+            ++totals_.reboots; // reboot of a vehicle, or of the program on the ground
             end.boot(now_, attacked_);
             break;
         case 1:
@@ -163,7 +164,8 @@ private:
             end.modem.resetPin(false, now_ + 1000);
             break;
         case 2:
-            ++totals_.absences; // out of reach, for a second or until the session has died
+            ++totals_.absences; // an end is out of reach, for a second or until its session has
+                                // ended
             end.modem.power(false, now_);
             end.awayUntil = now_ + (random_.below(3) ? 1 : random_.below(40)) * secondNs;
             break;
@@ -229,7 +231,7 @@ void report(const Soak& soak, Clock::time_point start) {
     std::fflush(stdout);
 }
 
-// Goes on until `isDone`.
+// Repeats the soak until `isDone` returns true.
 void endure(Soak& soak, const std::function<bool()>& isDone, Clock::time_point start) {
     double said = 0;
     for (int second = 1; !isDone(); ++second) {

@@ -17,7 +17,8 @@ import sys
 import tempfile
 
 NEXT = "slice2c reports the line of the name, slice2cpp the line of the bracket after it"
-REASONS = {  # regular expression of "FILE:LINE: message": why slice2c does not report it
+REASONS = {  # regular expression for "FILE:LINE: message" -> the reason why slice2c does not report
+             # it
     "only at module scope|IdentAsKeyword.*(syntax error|capitalization from (dict|enum))":
         "after a syntax error slice2cpp has lost the module; slice2c continues in it",
     "metadata `cpp:": "metadata of C++ alone",
@@ -37,7 +38,7 @@ NAMES = """struct % { int a; };|struct S# { int %; };|enum % { x# };|enum E# { %
 
 
 def said(compiler, file, work="out"):
-    """Returns the exit status, and {line: its messages} in order, for one compiler."""
+    """Returns the exit status of a compiler, and {line: messages in their order}."""
     words = [compiler, "--output-dir", work, file.name]
     words += ["--underscore"] * ("Underscore" in file.name)
     run = subprocess.run(words, cwd=file.parent, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
@@ -67,7 +68,7 @@ def cases(compiler, file, work):
                 (ours[0], list(ours[1])[:1]) != (theirs[0], list(theirs[1])[:1]):
             differ += 1
             print(f"{text}\nslice2c: {ours}\nslice2cpp: {theirs}")
-    for form in NAMES:  # slice2cpp refuses each as it is, and accepts it after a backslash
+    for form in NAMES:  # slice2cpp refuses each keyword as it is, and accepts it after a backslash
         for escape, wanted in ("", len(KEYWORDS)), ("\\", 0):
             line = f"module A# {{ {form.strip()} }};\n"
             ours, theirs = both("".join(

@@ -41,7 +41,7 @@ module Top {
     interface Service extends Lib::Named { void go(Lib::Points points, Leaf leaf) throws Worse; };
 };
 """,
-    # Two files with the same name go into one program; a name may begin with a digit.
+    # Two files of the same name become part of one program; a file name may begin with a digit.
     "slice/2nd/Base.ice": "module Second { class Node { int x; }; };\n",
     "slice/Both.ice": "#include <Lib/Base.ice>\n#include <2nd/Base.ice>\n"
                       "module Both { struct S { Lib::Node a; Second::Node b; }; };\n",
@@ -100,7 +100,7 @@ class Cases(Script):
                                       stderr=subprocess.PIPE, text=True)
             self.assertNotEqual(said.returncode, 0, option)
             self.assertIn("cannot write", said.stderr)
-        # Files of one program: no two names of theirs are one name in C.
+        # Files of one program: no two names in them may become the same name in C.
         one = "--one-program one/fir.ice"
         self.slice2c(f"{one} one/crc.ice", 1, "crc.ice:2:31: error: '::Cores::Bytes' becomes "
                      "'Cores_Bytes' in C, as one/fir.ice:1 does")
@@ -149,7 +149,7 @@ class Cases(Script):
         for compiler in "gcc", "clang":
             for file in Path("out").rglob("*.c"):
                 self.ask(compiler, *STRICT, *INCLUDES, "-Iout", "-Iout/Lib", file)
-        # A header is one for C++ too.
+        # The generated header also compiles as C++.
         write("top.cpp",
               '#include "Top.h"\nint main() { Top_Leaf leaf; return sizeof leaf == 0; }\n')
         self.ask("g++", "-std=c++17", "-Wall", "-Werror", "-fsyntax-only", *INCLUDES, "-Iout",
@@ -180,13 +180,14 @@ class Cases(Script):
                      "Top.h Top_types.c Top_client.c Top_async.c Top_server.c:")
         self.slice2c("--depend-file deps -Islice slice/Top.ice")
         self.has("Top_client.c", file="deps")
-        # Make understands it, and remakes the header when an included file changes.
+        # Make reads the file of dependencies, and runs the rule for the header when an included
+        # file has changed.
         write("Makefile", "include deps\nTop.h:\n\t@echo remade\n")
         write("Top.h", "")
         self.ask("touch", "-d", "+1 hour", "slice/Lib/Base.ice")
         self.ask("make", "-s", "Top.h")
         self.has("remade")
-        # An invalid file does not keep the others from being compiled.
+        # An invalid file does not prevent the others from being compiled.
         self.slice2c("bad.ice slice/Lib/Base.ice --output-dir mixed", 1,
                      "expected the name of the module")
         self.assertTrue(Path("mixed/Base.h").exists())
@@ -199,7 +200,7 @@ class Cases(Script):
         self.slice2c("-I . includes.ice", 1, f"long.ice:1: {too_long}")
         self.slice2c("joined.ice", 1, f"joined.ice:[0-9]*: {too_long}")
         self.slice2c("-I . crlf.ice without.ice --output-dir x")
-        self.assertEqual(self.said, "")  # line ends are not reported
+        self.assertEqual(self.said, "")  # line ends of any kind are accepted without a message
         self.slice2c("-I . twice.ice", 1, "crlf.ice:2:9: error: .S. is defined already: this file "
                      "is included twice; begin it with #pragma once")
         self.slice2c("text.ice", 1, "^1 error$", "text.ice:1:[0-9]*: error: a string of 510 bytes; "

@@ -28,7 +28,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         blocks = hw::mapHardware(unit, diagnostics);
     if (diagnostics.errors() > 0) {
         if (out.str().empty())
-            std::abort(); // errors without a message
+            std::abort(); // a failure without an error message
         return 0;
     }
     if (generateC(unit, names).empty())

@@ -15,7 +15,7 @@ import subprocess
 import sys
 
 SLICE2C, SW, WORK = sys.argv[1:4]
-C_FLAGS = ["-std=c90", "-pedantic", "-Werror"]  # optimisation would take most of the time
+C_FLAGS = ["-std=c90", "-pedantic", "-Werror"]  # optimisation would take most of the test's time
 INCLUDES = [f"-I{SW}/base", f"-I{SW}/icec"]
 COMMON = "struct qS { int qa; string qb; }; class qC { int qa; }; exception qE { int qa; };"
 
@@ -93,7 +93,7 @@ def identifiers(folder):
 def is_slice_name(name):
     return re.match("[A-Za-z]", name) and not (name.endswith(("_", "Helper", "Holder", "Prx",
                                                               "Ptr")) or "__" in name
-                or re.fullmatch(r"q\w{1,3}(Disp)?", name))  # the templates' own
+                or re.fullmatch(r"q\w{1,3}(Disp)?", name))  # these names belong to the templates
 
 
 def written(module, template, name):

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// hardware_test: generated servants call cores behind generated wrappers, through the FSMC driver
-// and a port to the register bus of a slot.
+// hardware_test: generated servants call cores through the FSMC driver, a port to the register bus
+// of a slot, and generated wrappers.
 
 #include "VCalculatorSlot.h"
 #include "VManySlot.h"
@@ -174,8 +174,8 @@ bool isSame(const Demo_Five& x, const Demo_Five& y) {
     return std::memcmp(&x, &y, sizeof x) == 0;
 }
 
-// 20 words in and 20 out of one operation, and three of another, at the wrapper pins. (Its VHDL
-// does the same: slice.hardware.vhdl.many.)
+// An operation with 20 words of parameters and 20 words of results, and another with three, at the
+// pins of the wrapper. (The VHDL wrapper behaves the same: slice.hardware.vhdl.many.)
 class ManyServant : public ::testing::Test {
 protected:
     ManyServant() {
@@ -199,7 +199,7 @@ protected:
     ~ManyServant() override { EXPECT_EQ(rig_.errors_, 0u) << "accesses to no register"; }
     static Ice_Long number(U32 n) { return {n * 0x9E3779B9U, static_cast<Ice_Int>(n * 77 + 1)}; }
     static Ice_Long inverted(Ice_Long n) { return {~n.low, ~n.high}; }
-    // Each call has other values, so that stale ones are wrong.
+    // Each call has different values, so that a stale value is detected.
     void turn() {
         Ice_Long n[10];
         for (Ice_Long& one : n)

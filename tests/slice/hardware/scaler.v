@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// scaler: adds an offset to the samples of one buffer in DDR3 into another, a sample a clock.
-// 0x7777 hangs it.
+// scaler: adds an offset to the samples in one buffer in DDR3 and writes them to another, one
+// sample per clock. The offset 0x7777 makes the core hang.
 
 `default_nettype none
 

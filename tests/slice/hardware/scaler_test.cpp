@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// scaler_test: sequences in DDR3, exceptions, calls that are answered later, events; and the
-// generated proxy, which drives the pins of a wrapper.
+// scaler_test: tests sequences in DDR3, exceptions, calls that are answered later, and events; also
+// the generated proxy, which drives the pins of a wrapper.
 
 #include "VScalerSlot.h"
 #include "VScalerWrapper.h"

@@ -29,13 +29,14 @@ def same(t, a, b, encoding, seen):
         return all(same(ft, getattr(a, n), getattr(b, n), encoding, seen) for n, ft, _ in t.fields)
     if t.kind == "class":
         if id(a) in seen:
-            return seen[id(a)] is b  # shared instances stay shared
+            return seen[id(a)] is b  # instances that were shared must be shared afterwards
         if type(a) is not type(b):
             return False
         seen[id(a)] = b
         t = next(d for d in model.declared if d.name == type(a).__name__)
         return members(t, a, b, encoding, seen)
-    if t.kind == "proxy" and encoding == "1.0":  # 1.0 does not carry a proxy's encoding
+    if t.kind == "proxy" and encoding == "1.0":  # encoding 1.0 does not transfer the encoding of a
+                                                 # proxy
         return a.ice_encodingVersion(Ice.Encoding_1_0) == b.ice_encodingVersion(Ice.Encoding_1_0)
     return a == b
 
@@ -98,9 +99,10 @@ def thrown(echo, module, ic, encoding, form, e):
 
 
 def hide(v, t, module, ic, values):
-    """Fills an instance of the class or exception Hidden...; `values`: how many the members of `t`
-    may have."""
-    graph = [(v, t)] if t.kind == "class" else []  # its members may refer to it
+    """Fills an instance of the class or exception Hidden...; `values`: number of values that the
+    members of `t` may have."""
+    graph = [(v, t)] if t.kind == "class" else []  # members of the class may refer to the instance
+                                                   # itself
     for name, ft, tag in t.all_fields():
         setattr(v, name, model.value(ft, module, ic, [values], graph))
     v.more, v.last = "unknown to C", Ice.Unset if model.random.random() < 0.5 else 5
@@ -174,14 +176,14 @@ def declared(echo, module, encoding):
 
 
 class Thrower:
-    """Throws `what` when the server forwards a call here."""
+    """Throws `what` when the server forwards a call to this object."""
 
     def forward(self, to, current):
         raise self.what
 
 
 def forwarded(echo, module, ic, encoding, thrower, own, e):
-    """Lets the server throw an exception of a type unknown to C, which throws it on."""
+    """Makes the server throw an exception whose type C does not know; C must pass it on."""
     thrower.what = sent = getattr(module, "Hidden" + e.name)()
     hide(sent, e, module, ic, 15)
     sent.other = module.Lone(7)
@@ -197,7 +199,7 @@ def forwarded(echo, module, ic, encoding, thrower, own, e):
 
 
 def raiser(module, e):
-    def throw(self, *values):  # the last one is Current
+    def throw(self, *values):  # the last argument is the Current
         thrown = getattr(module, e.name)()
         for (name, _, _), value in zip(e.all_fields(), values):
             setattr(thrown, name, value)
@@ -212,7 +214,7 @@ def forwarder(module, e):
 
 
 def server(module):
-    """Returns what it receives, until `shutdown`."""
+    """Returns every value it receives, until `shutdown` is called."""
     def echo(self, v, current):
         return v, v
 

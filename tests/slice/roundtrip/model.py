@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""model: random Slice types from a seed: their Slice text, and random values."""
+"""model: generates random Slice types from a seed, their Slice text, and random values of them."""
 
 import random
 import string
@@ -30,7 +30,7 @@ class Type:
         return (self.base.all_fields() if self.base else []) + self.fields
 
     def preserves(self):
-        """Slices of unknown derived types are preserved."""
+        """Returns whether slices of unknown derived types are preserved."""
         return self.preserve or (self.base is not None and self.base.preserves())
 
     def legal_key(self):
@@ -114,7 +114,8 @@ class Model:
     # ---- Slice
 
     def slice_text(self, hidden=False):
-        """`hidden`: with classes that the C side does not know."""
+        """Returns the Slice text; with `hidden`, including classes that the C side does not
+        know."""
         out = ["module T {"]
         for t in self.declared:
             most = '["c:max:%d"] ' % t.maximum if t.maximum else ""
@@ -166,7 +167,7 @@ class Model:
         out.append("};")
         return '[["underscore", "suppress-warning:deprecated"]]\n' + "\n".join(out) + "\n"
 
-    # Defines declarations of the other file.
+    # File that defines the types which the other file only declares.
     DEFINER = """module T {
 class Later { int id; Later next; };
 interface Marker { void op(); };
@@ -209,8 +210,8 @@ interface Marker { void op(); };
     # ---- values
 
     def value(self, t, module, ic, budget, graph):
-        """`budget`: [values that may still be made]; `graph`: instances made so far, which may be
-        shared."""
+        """Returns a random value. `budget`: [number of values that may still be created]; `graph`:
+        instances created so far, which may be shared."""
         r = self.random
         budget[0] -= 1
         if t.kind in SCALARS or t.kind == "proxy":

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""relay: stands between a client and a server on 127.0.0.1, prints its own port, runs until it is
-killed. relay.py PCAP PORT: every byte as TCP over IPv4, with openings and ends, as a capture would
-hold it."""
+"""relay: forwards connections between a client and a server on 127.0.0.1, prints its own port, and
+runs until it is killed. relay.py PCAP PORT: writes every byte to PCAP as TCP over IPv4, including
+the start and end of each connection."""
 import asyncio
 import socket
 import struct
@@ -41,7 +41,7 @@ async def connection(reader, writer):
     """Passes on bytes from both sides until one ends."""
     try:
         server_reader, server_writer = await asyncio.open_connection("127.0.0.1", PORT)
-    except OSError:  # it does not listen any more
+    except OSError:  # the server no longer listens
         writer.close()
         return
     capture = Capture(writer.get_extra_info("peername")[1])

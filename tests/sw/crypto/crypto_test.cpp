@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// crypto_test: the firmware's Ascon-AEAD128 gives the known answers of the standard's authors, and
-// takes no message with a wrong bit; its X25519 gives the standard's answers, and OpenSSL's for any
-// numbers.
+// crypto_test: the firmware's Ascon-AEAD128 gives the known answers of Ascon's authors, and rejects
+// a message with a wrong bit. Its X25519 gives the answers of the standard and, for random numbers,
+// those of OpenSSL.
 
 #include "known_answers.h"
 #include "random.h"
@@ -83,7 +83,7 @@ Value multiply(const Value& number, const U8* point) {
     return result;
 }
 
-// RFC 7748, 5.2: iterates a number and a point, starting with 9.
+// RFC 7748, 5.2: multiplies repeatedly, starting with 9 as number and as point.
 TEST(X25519Code, GivesTheStandardsAnswerAfterAThousandTimes) {
     Value number = {9}, point = {9};
     for (int i = 0; i < 1000; ++i) {
@@ -97,8 +97,8 @@ TEST(X25519Code, GivesTheStandardsAnswerAfterAThousandTimes) {
     EXPECT_EQ(number, expected);
 }
 
-// The points are random, or near 2^255, where some are not below p. OpenSSL refuses points that
-// give 0.
+// The points are random or near 2^255, where some are not below the prime p. OpenSSL refuses points
+// for which the result is 0.
 TEST(X25519Code, AgreesWithOpenSsl) {
     using Key = std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)>;
     using Context = std::unique_ptr<EVP_PKEY_CTX, decltype(&EVP_PKEY_CTX_free)>;

@@ -32,7 +32,7 @@ int freePort() {
         }
 }
 
-// A folder that is removed with it.
+// A folder that is removed together with this object.
 struct Folder {
     explicit Folder(const std::string& name)
         : path(testing::TempDir() + name + "." + std::to_string(getpid())) {
@@ -45,7 +45,8 @@ struct Folder {
 // A registry of IceGrid, which may be killed and restarted.
 class Registry {
 public:
-    // `protocol`: tcp or ssl. `more`: the certificate; in a replica, the master's locator.
+    // `protocol`: tcp or ssl. `more`: options of the certificate; for a replica also the locator of
+    // the master.
     Registry(const std::string& name, const std::string& protocol, const Words& more)
         : here_(protocol + " -h 127.0.0.1"), folder_("registry." + name),
           words_(with({PROGRAMS "/icegridregistry", "--IceGrid.InstanceName=IceGrid",
@@ -81,7 +82,7 @@ private:
 
 class Directory : public Gateway {
 protected:
-    // `isSecure`: between machines by TLS, to the vehicle under a key.
+    // `isSecure`: TLS between machines, and a key for the vehicle.
     explicit Directory(bool isSecure = false) : isSecure_(isSecure) {
         rig_.placeOther(rig_.elsewhere);
     }
@@ -202,7 +203,7 @@ TEST_F(SecureDirectory, ClientsFollowAVehicleFromOneGroundToAnother) {
         << "without a certificate";
 }
 
-// Both hear the vehicle, and have one address and one key.
+// Both ground stations can hear the vehicle, and have the same address and key.
 TEST_F(Directory, AGroundThatTakesOverKeepsTheVehicleUntilItEnds) {
     rig_.placeOther(rig_.air);
     const std::string file = key();
@@ -240,7 +241,7 @@ TEST_F(Directory, OneOfTwoRegistriesIsKilledAndComesBack) {
         Ice::CommunicatorHolder late(client());
         EXPECT_EQ(callOn(echoOf(late.communicator())), 0) << "one that asks the replica";
     }
-    fly(false); // no registry can be updated before the master is back
+    fly(false); // the registry cannot be updated until the master is back
     ASSERT_TRUE(other->hear("does not answer")) << other->said();
     master_.start();
     ASSERT_TRUE(other->hear("uav1 is here")) << other->said();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// gateway_rig: icesoc-gateway between the radio and programs without the plugin.
+// gateway_rig: runs icesoc-gateway between the radio and programs without the plugin.
 
 #pragma once
 
@@ -9,7 +9,7 @@
 
 class Gateway : public ::testing::Test {
 protected:
-    // Runs the gateway; `port_` and `echo_` lead to it.
+    // Runs the gateway; `port_` and `echo_` then refer to it.
     void start(std::vector<std::string> more = {}, const std::string& at = "127.0.0.1:0") {
         more.insert(more.begin(), GATEWAY);
         more.insert(more.end(),
@@ -25,7 +25,7 @@ protected:
     bool hasPrinted(const std::string& text) const {
         return said().find(text) != std::string::npos;
     }
-    // A program without the plugin.
+    // Returns the communicator of a program without the plugin.
     static Ice::CommunicatorPtr plain() {
         return program(
             {{"Ice.Default.InvocationTimeout", "1800000"}, {"Ice.RetryIntervals", "-1"}});
@@ -39,7 +39,7 @@ protected:
     void expectAnswer(int id = 1) {
         EXPECT_EQ(echo_->repeat(id, {1, 2}), (RadioTest::Bytes{1, 2}));
     }
-    // Asks for the number of notes, one turn each, until it has reached `wanted`.
+    // Asks repeatedly for the number of notes, until it has reached `wanted`.
     void expectNoted(int wanted) {
         int noted = 0;
         for (int calls = 0; calls < 1000 && noted < wanted; ++calls)

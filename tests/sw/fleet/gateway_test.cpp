@@ -60,11 +60,11 @@ TEST_F(Gateway, TheStationGetsAProxyByWhichItReachesTheVehicle) {
     auto info =
         std::dynamic_pointer_cast<Ice::TCPEndpointInfo>(adapter->getEndpoints()[0]->getInfo());
     start({"--station", "127.0.0.1:" + std::to_string(info->port)});
-    expectAnswer(2); // the link has a session
+    expectAnswer(2); // wait until the link has a session
     const auto vehicles = world_.uav->getCommunicator();
     Ice::OutputStream out(vehicles);
     out.startEncapsulation();
-    // Its own endpoint leads nowhere on the ground.
+    // The endpoint of this proxy does not exist on the ground.
     out.write(vehicles->stringToProxy("echo:opaque -t 16728 -e 1.1 -v AQD/ECcAAA=="));
     out.writeSize(0);
     out.endEncapsulation();
@@ -89,7 +89,7 @@ TEST_F(Gateway, ListensAtAnIPv6Address) {
 // ---- sharing the radio ----
 
 TEST_F(Gateway, WhatAProgramHasSentArrivesAlthoughItLeaves) {
-    start({"--wait", "600"}); // none is late, however slow the machine is
+    start({"--wait", "600"}); // a call that is served late does not fail, even on a slow machine
     constexpr int count = 1000;
     {
         Ice::CommunicatorHolder ic(plain());
@@ -179,7 +179,7 @@ TEST_F(Gateway, AHundredFloodingConnectionsLeaveAGoodClientItsTurns) {
 
 // Ice 3.8 closes a connection on which nothing arrives for a minute.
 TEST_F(Gateway, AnIdleClientGetsHeartbeats) {
-    start({"--Ice.ACM.Timeout=2"}); // s; heartbeats are sent twice as often
+    start({"--Ice.ACM.Timeout=2"}); // s; heartbeats are sent after half of this time
     const int client = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     sockaddr_in to{};
     to.sin_family = AF_INET;
@@ -188,7 +188,7 @@ TEST_F(Gateway, AnIdleClientGetsHeartbeats) {
     ASSERT_EQ(connect(client, reinterpret_cast<sockaddr*>(&to), sizeof to), 0);
     const timeval patience{30, 0};
     setsockopt(client, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-    for (int message = 0; message < 3; ++message) { // the first one opens the connection
+    for (int message = 0; message < 3; ++message) { // the first message opens the connection
         unsigned char header[14] = {};
         ASSERT_EQ(recv(client, header, sizeof header, MSG_WAITALL), ssize_t(sizeof header))
             << "message " << message;
@@ -253,7 +253,8 @@ TEST_F(Gateway, MaintenanceIsReachedAtItsOwnDoor) {
         const std::string facet = name == "faceted" ? "f" : "";
         world_.uav->addFacet(servant, id, facet);
         const std::string proxy = name + (facet.empty() ? "" : " -f f");
-        for (int turn = 0; turn < 2; ++turn) // asked, then cached
+        for (int turn = 0; turn < 2; ++turn) // in the first turn the gateway asks the object, in
+                                             // the second it uses the cached answer
             expectRefusal(call(proxy, port_), "'" + name + "' is for maintenance");
         EXPECT_EQ(whyFails(call(proxy, door)), "");
         const auto oneway = ic_->stringToProxy(proxy + " -o:" + endpoint());
@@ -268,7 +269,8 @@ TEST_F(Gateway, MaintenanceIsReachedAtItsOwnDoor) {
 
 // ---- the vehicle's calls ----
 
-// Both have an object with this name, and the vehicle calls it while it serves one of them.
+// Both programs have an object with this name, and the vehicle calls it while it serves one of the
+// two programs.
 TEST_F(Gateway, TheVehiclesCallGoesToItsAddresseeAlone) {
     start();
     struct Program {
@@ -295,7 +297,7 @@ TEST_F(Gateway, TheVehiclesCallGoesToItsAddresseeAlone) {
     EXPECT_EQ(one.heard->calls, 6);
     EXPECT_EQ(two.heard->calls, 6);
     EXPECT_EQ(idle.heard->calls, 0);
-    // One passes a proxy of the object, as if the vehicle were to call it later.
+    // A program passes a proxy of the object, as if the vehicle were to call it later.
     const auto passes = [](const Program& program, const std::string& operation) {
         Ice::OutputStream out(program.ic.communicator());
         out.startEncapsulation();
@@ -310,7 +312,7 @@ TEST_F(Gateway, TheVehiclesCallGoesToItsAddresseeAlone) {
         } catch (const Ice::LocalException&) { // the operation has no such parameter
         }
     };
-    passes(idle, "ice_ping"); // allowed for every client: it passes no objects
+    passes(idle, "ice_ping"); // allowed for every client, because ice_ping passes no objects
     EXPECT_EQ(two.echo->callBack(1), 10);
     passes(one, "fetch");
     EXPECT_EQ(two.echo->callBack(1), 1) << "only one has passed this object";
@@ -408,17 +410,18 @@ TEST_F(Gateway, AOnewayThatWaitsTooLongIsNeverCarriedOut) {
     batch->note(2);
     batch->note(3);
     batch->ice_flushBatchRequests();
-    expectRefusal([&] { echo_->ice_ping(); }, "waited 3 s for the radio"); // behind the others
+    // this call waits after the others
+    expectRefusal([&] { echo_->ice_ping(); }, "waited 3 s for the radio");
     power(true);
     int noted = -1;
-    for (int tries = 0; tries < 50 && noted < 0; ++tries) // until there is a session
+    for (int tries = 0; tries < 50 && noted < 0; ++tries) // until the link has a session
         try {
             noted = echo_->noted();
         } catch (const Ice::LocalException&) {
         }
     EXPECT_EQ(noted, 0);
     stop();
-    int dropped = 0; // sum of one line, or two
+    int dropped = 0; // sum of the numbers in one or two lines of the log
     for (size_t at = 0; (at = said().find("were not sent: ", at)) != std::string::npos;)
         dropped += std::atoi(said().c_str() + (at += 15));
     EXPECT_EQ(dropped, 3) << said();
@@ -455,7 +458,9 @@ TEST(GatewayOptions, WrongOnesAreRefusedByName) {
         Server gateway(words);
         EXPECT_GT(gateway.wait(), 0) << said;
         EXPECT_NE(gateway.said().find(said), std::string::npos) << gateway.said();
-        for (const char* internal : {".h:", ".cpp:", "::Ice::"}) // a place in the source, a class
+        for (const char* internal : {".h:", ".cpp:", "::Ice::"}) // texts that must not appear: a
+                                                                 // place in the source, the name of
+                                                                 // a class
             EXPECT_EQ(gateway.said().find(internal), std::string::npos) << gateway.said();
     }
 }
@@ -506,7 +511,7 @@ std::string ask(const std::shared_ptr<Ice::ObjectPrx>& proxy, const std::string&
     }
 }
 
-// Returns the results that a program gets at an endpoint: one line per call.
+// Returns the results that a program gets at an endpoint, one line per call.
 std::string tryAll(const Ice::CommunicatorPtr& communicator, const std::string& endpoint,
                    bool facets = true) {
     const Ice::CommunicatorHolder ic(communicator);
@@ -550,7 +555,7 @@ std::string tryAll(const Ice::CommunicatorPtr& communicator, const std::string& 
     return seen;
 }
 
-// A server of ZeroC's that prints its endpoints.
+// Returns the port of a server by ZeroC, from the endpoints that it prints.
 int portOf(Server& server) {
     return server.port("127.0.0.1 -p ", " -t");
 }
@@ -562,7 +567,7 @@ TEST_F(Gateway, KeepsOfACallWhatIceBridgeKeepsAndFacets) {
                    "--IceBridge.Target.Endpoints=" + vehicle, "--Ice.Trace.Network=2"});
     const int port = portOf(bridge);
     ASSERT_GT(port, 0) << bridge.said();
-    const bool noFacets = false; // IceBridge 3.7.8 drops them
+    const bool noFacets = false; // IceBridge 3.7.8 drops facets
     EXPECT_EQ(tryAll(plain(), endpoint(port), noFacets), tryAll(plain(), vehicle, noFacets));
     start();
     EXPECT_EQ(tryAll(plain(), endpoint()), tryAll(plain(), vehicle));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// api_test: frames of a modem in API mode, and its answers.
+// api_test: tests the frames of a modem in API mode, and its answers.
 
 #include "api_modem.h"
 #include "random.h"
@@ -12,14 +12,14 @@ using XBeeAT::ApiFrames;
 using XBeeAT::ApiModem;
 using Bytes = ApiFrames::Bytes;
 
-// Output of a modem in API mode: data and their source, '+' for an acknowledged packet, and '-' for
-// a lost one.
+// Output of a modem in API mode: data with their source; '+' for an acknowledged packet, '-' for a
+// lost one.
 struct Heard {
     Bytes data;
     int source = 0;
     std::string answers;
     void feed(ApiModem& modem, const Bytes& bytes) {
-        for (uint8_t byte : bytes) // one at a time
+        for (uint8_t byte : bytes) // one byte at a time
             modem.feed(
                 &byte, 1,
                 [&](int from, const uint8_t* d, size_t count) {
@@ -57,7 +57,7 @@ TEST(Api, PacketsOfAllBytesArriveWithAndWithoutEscapes) {
     EXPECT_EQ(std::count(bytes.begin(), bytes.end(), 0x13), 0);
 }
 
-// Data are passed on at once: a short packet at the front need not wait for the others.
+// Data are passed on at once: a short packet does not wait for the packets after it.
 TEST(Api, DataAreGivenAsTheyCome) {
     ApiModem modem(false);
     Heard heard;
@@ -105,14 +105,15 @@ TEST(Api, APacketThatIsNotAnsweredForThreeSecondsIsLost) {
 TEST(Api, AnswersComeInTheOrderOfPacketsAndALostOneCountsAsALoss) {
     ApiModem modem(false);
     Heard heard;
-    for (int i = 0; i < 300; ++i) // numbers go round
+    for (int i = 0; i < 300; ++i) // the frame numbers wrap around
         modem.packet(1, Bytes{1}.data(), 1, 2, 0);
     for (int i = 0; i < 296; ++i)
         heard.feed(modem, ApiFrames().pack({0x89, static_cast<uint8_t>(i % 255 + 1), 0}));
     EXPECT_EQ(heard.answers, std::string(296, '+'));
     heard.answers.clear();
     heard.feed(modem, ApiFrames().pack({0x89, 298 % 255, 2}));
-    heard.feed(modem, ApiFrames().pack({0x89, 298 % 255, 0})); // no packet waits for it
+    heard.feed(modem, ApiFrames().pack({0x89, 298 % 255, 0})); // an answer for which no packet
+                                                               // waits
     Bytes spoilt = ApiFrames().pack({0x89, 299 % 255, 0});
     spoilt.back() ^= 1;
     heard.feed(modem, spoilt);

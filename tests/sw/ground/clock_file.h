@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// clock_file: simulated time that programs on the ground keep step with. XBEEAT_CLOCK names the
-// file, which has no name on the disk, while this object lives.
+// clock_file: simulated time for programs on the ground. XBEEAT_CLOCK contains the path of the
+// file, which has no name on the disk, while this object exists.
 
 #pragma once
 
@@ -12,8 +12,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-// A file in memory, mode 0600, that this process and its children open by path. A killed test
-// leaves nothing of it.
+// A file in memory, mode 0600, that this process and its children open by a path. If the test is
+// killed, the file disappears.
 class UnnamedFile {
 public:
     UnnamedFile() { fchmod(fd_, 0600); }

@@ -55,7 +55,7 @@ TEST_F(ClockOfASimulator, WaitLastsUntilSimulatedTimeHasPassed) {
     pollfd fds[] = {{pipe_[0], POLLIN, 0}};
     std::atomic<bool> isOver{false};
     std::thread simulator([&] {
-        for (uint64_t us = 100; !isOver; us += 100) { // ten times too slow
+        for (uint64_t us = 100; !isOver; us += 100) { // time passes ten times too slowly
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
             show(us);
         }
@@ -135,7 +135,7 @@ protected:
         answer_.erase(answer_.begin());
         return true;
     }
-    // Simulated time as fast as it goes, until `done`.
+    // Simulates as fast as possible, until `done` returns true.
     void simulate(const std::function<bool()>& done, double patience = 60) {
         GroundStep step(*status_, pty_, [&] { return !done(); }, patience);
         while (!done()) {
@@ -144,7 +144,7 @@ protected:
             step.wait(status_->ns);
         }
     }
-    // Runs a program that keeps step in parallel, until it returns.
+    // Runs a program that keeps step with simulated time, in parallel, until it returns.
     void alongside(const std::function<void(Clock&, SerialPort&)>& program) {
         std::atomic<bool> over{false};
         std::thread thread([&] {
@@ -157,7 +157,7 @@ protected:
             port.open(pty_.path());
             port.setSpeed(115200);
             clock.keepStep(port.fd(), pty_.path());
-            ASSERT_EQ(clock.wait(&none_, 1, 1000), 0); // the pty has been polled by then
+            ASSERT_EQ(clock.wait(&none_, 1, 1000), 0); // by then the pty has been polled
             program(clock, port);
         });
         simulate([&] { return over.load(); });
@@ -190,7 +190,7 @@ TEST_F(Step, NoTimePassesWhileTheProgramWorksAndNoByteIsLate) {
         Random random(testSeed());
         for (uint8_t i = 0; i < 60; ++i) {
             const uint32_t begin = clock.nowUs();
-            if (i % 4 == 0) // the machine does other work
+            if (i % 4 == 0) // the machine runs other programs
                 std::this_thread::sleep_for(std::chrono::milliseconds(random.below(20)));
             ASSERT_EQ(clock.nowUs(), begin) << "time passed while the program worked";
             ASSERT_EQ(port.write(&i, 1), 1);
@@ -247,7 +247,8 @@ TEST_F(Step, AnotherPortsProgramIsNotWaitedFor) {
     simulate([&] { return status_->ns >= end; });
 }
 
-// The program is alive, and does nothing: time continues without it, and stderr reports it.
+// The program is alive but does nothing: time continues without waiting for it, and a message on
+// stderr reports this.
 TEST_F(Step, WhoHoldsTimeForTooLongIsWaitedForNoLonger) {
     SimulatedClock clock(status_.path());
     SerialPort port(clock);
@@ -283,7 +284,7 @@ TEST_F(Step, WhoIsHeldByADebuggerIsWaitedFor) {
     close(ready[1]);
 }
 
-// A simulation that must end checks once whether it continues, and then waits for no program.
+// A simulation that must end checks once whether it should continue, and then waits for no program.
 TEST_F(Step, NobodyIsWaitedForAfterTheStop) {
     SimulatedClock clock(status_.path());
     SerialPort port(clock);

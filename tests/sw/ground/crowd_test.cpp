@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // crowd_test: programs at one engine that do not read, that send more than the link carries, or
-// that disconnect; heartbeats for one that closes silent connections, in simulated time.
+// that disconnect. Also heartbeats for a program that closes silent connections, in simulated time.
 
 #include "program_connection.h"
 #include "wire.h"
@@ -10,7 +10,7 @@
 
 namespace {
 
-// A program at its end of a connection; non-blocking.
+// A program's end of a connection; reads and writes do not block.
 class Program {
 public:
     explicit Program(int fd) : fd_(fd) {}
@@ -48,7 +48,7 @@ private:
 
 class Crowd : public ::testing::Test {
 protected:
-    // A call and its answer.
+    // Makes a call and reads the reply.
     void echoes(Program& program, size_t size = 30) {
         const size_t want = program.got + size;
         program.send(message(1, size));
@@ -93,7 +93,7 @@ TEST_F(Crowd, WhatAProgramHasWrittenArrivesAlthoughItLeaves) {
     const Bytes oneway = message(1);
     for (unsigned i = 0; i < count; ++i)
         program.send(oneway);
-    size_t most = 0; // bytes between the program and the peer
+    size_t most = 0; // greatest number of bytes in transit between the program and the peer
     ASSERT_TRUE(wire_.until([&] {
         program.write();
         most = std::max(most, program.written - wire_.received[0] * oneway.size());
@@ -154,7 +154,7 @@ TEST_F(Crowd, AfterAFloodEveryNewProgramIsServed) {
 // message. A fourth that waits gets one of the channels after a while.
 class Keepers : public ::testing::Test {
 protected:
-    // The fourth gets a reply, while the three repeat `meanwhile`.
+    // Checks that the fourth program gets a reply while the other three repeat `meanwhile`.
     template <class F> void theFourthIsServed(F meanwhile) {
         Program fourth(engine_->connect(-1));
         fourth.send(message(1));
@@ -178,7 +178,7 @@ protected:
 TEST_F(Keepers, AnswersThatAreNotRead) {
     for (auto& keeper : keepers_)
         for (int i = 0; i < 10; ++i)
-            keeper->send(message(1, 4000)); // more than the socket takes, less than a complete
+            keeper->send(message(1, 4000)); // more than the socket accepts, but not a complete
                                             // message
     theFourthIsServed([](Program& keeper) { keeper.write(); });
 }
@@ -251,7 +251,7 @@ public:
             stream.taken(seconds * 1000000);
         }
     }
-    // The second passes. `isNew`: the program is of Ice 3.8.
+    // Lets seconds pass. `isNew`: the program uses Ice 3.8.
     void pass(U32 seconds, bool isNew) {
         if (isNew && seconds - wroteAt_ >= 30)
             send(3, seconds);
@@ -265,7 +265,7 @@ public:
 
     ProgramConnection stream;
     unsigned onTheAir = 0, heard = 0;
-    U32 silence = 0; // the longest, in seconds
+    U32 silence = 0; // s; longest time without a byte
 
 private:
     int fd_ = -1;
@@ -284,7 +284,7 @@ TEST(ProgramConnection, AndWhileItSendsAndNothingComesBack) {
     Timed program;
     for (U32 second = 1; second < 1200; ++second) {
         if (second % 7 == 0)
-            program.send(1, second); // a batch, which is not answered
+            program.send(1, second); // a batch request, which has no reply
         program.pass(second, true);
     }
     EXPECT_LT(program.silence, 45u);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// engine_test: the ground's engine on a pty with a modem.
+// engine_test: tests the ground's engine on a pty with a modem.
 
 #include "engine.h"
 #include "rig.h"
@@ -32,7 +32,7 @@ protected:
     std::shared_ptr<XBeeAT::Peer> start(const XBeeAT::Settings& settings) {
         return XBeeAT::Engine::get(settings, log_.taker());
     }
-    // A call and its answer, byte by byte.
+    // Makes a call and compares the reply byte by byte.
     void echoes(int fd, uint8_t tag, size_t size = 30) {
         writeAll(fd, message(tag, size));
         Bytes got = rig_.read(fd, size);
@@ -40,7 +40,7 @@ protected:
             << got.size() << " of " << size << " bytes; the engine's log:\n"
             << log_.text();
     }
-    // A call of the UAV's reaches the listener.
+    // Checks that a call of the UAV reaches the program that listens.
     void isCalled(XBeeAT::Peer& engine, int ready) {
         rig_.with([&] {
             Link_openChannel(rig_.uav.link(), 3);
@@ -67,7 +67,7 @@ TEST_F(EngineTest, MoreProgramsThanChannelsWaitTheirTurn) {
     EXPECT_EQ(engine->waiting(), 3u);
     close(gone);
     close(fds[2]);
-    echoes(next, 2); // not the one that has disconnected
+    echoes(next, 2); // the reply must not go to the program that has disconnected
     close(fds[0]);
     close(fds[1]);
     echoes(last, 3);
@@ -108,7 +108,8 @@ TEST_F(EngineTest, AMessageThatIsTooLongEndsItsConnectionOnly) {
     close(bad);
 }
 
-// Neither the message that the UAV's program does not take nor the next one is taken later.
+// The UAV's program does not accept a message in time; neither this message nor the next one is
+// delivered later.
 TEST_F(EngineTest, WhatIsLateIsWithdrawnAndItsSenderIsTold) {
     auto engine = start();
     const int other = engine->connect(0), fd = engine->connect(1, 2000);
@@ -177,7 +178,7 @@ TEST_F(EngineTest, HeartbeatsTakeNoAir) {
     for (int i = 0; i < 10; ++i)
         writeAll(fd, heartbeat);
     EXPECT_EQ(rig_.read(fd, 14),
-              heartbeat); // after 5 s, from the engine, because the UAV is silent
+              heartbeat); // after 5 s, sent by the engine, because the UAV is silent
     rig_.with([&] {
         EXPECT_EQ(rig_.uav.received.size(), 1u) << "a heartbeat crossed the air";
         Bytes reply = message(1, 30);
@@ -353,7 +354,7 @@ TEST(Engine, RandomBytesFromTheLineAndFromProgramsAreSurvived) {
             byte = static_cast<uint8_t>(random.next());
         wire.flood(noise);
         int fd = engine->connect(0);
-        if (fd >= 0) { // garbage instead of a message ends the connection
+        if (fd >= 0) { // an invalid message ends the connection
             (void)!send(fd, noise.data(), noise.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
             close(fd);
         }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// fleet_test: several vehicles on one modem of the ground, and calls to all of them.
+// fleet_test: tests several vehicles on one modem of the ground, and calls to all of them.
 
 #include "engine.h"
 #include "rig.h"
@@ -27,7 +27,7 @@ struct Program {
     const int fd = peer->connect(-1);
 };
 
-// A vehicle that hears calls to all vehicles; its modem is in API mode.
+// A vehicle that receives calls to all vehicles; its modem is in API mode.
 class Hearer {
 public:
     Hearer(Rig& rig, int address, const XBeeAT::LinkKey& key) : rig_(rig), key_(key) {
@@ -44,7 +44,8 @@ public:
         line_.received.clear();
     }
 
-    std::vector<Rig::Bytes> packets, calls; // received bytes, and calls to execute
+    std::vector<Rig::Bytes> packets, calls; // received packets, and the calls in them that must be
+                                            // executed
 
 private:
     void take(Rig::Bytes packet) {
@@ -70,7 +71,8 @@ protected:
         settings_.device = rig_.pty.path();
         settings_.guardMs = Rig::guardMs;
         rig_.with([&] {
-            rig_.uav.modem->power(false, rig_.ns()); // this file's vehicles are its own
+            rig_.uav.modem->power(false, rig_.ns()); // this file adds its own vehicles, so the
+                                                     // rig's is off
             rig_.step = [this] {
                 for (auto& [place, vehicle] : vehicles_)
                     vehicle->advance(rig_.ns());
@@ -109,7 +111,7 @@ protected:
     unsigned sessions(int place) {
         return rig_.with([&] { return vehicles_[place]->sessions(); });
     }
-    // Makes a call; the reply contains the vehicle that received it; -1: no reply.
+    // Makes a call and checks the vehicle in the reply; -1: no reply.
     void answers(int fd, int vehicle) {
         writeAll(fd, message(1));
         const Bytes answer = rig_.read(fd, 30);
@@ -121,8 +123,8 @@ protected:
             sum += bytes;
         return sum;
     }
-    // Simulated seconds in which the vehicles take this many bytes, with all programs writing as
-    // much as is taken. Their connections end.
+    // Returns the simulated seconds in which the vehicles receive this many bytes while all
+    // programs write as much as is accepted. Then their connections end.
     double secondsFor(const std::list<Program>& programs, size_t bytes) {
         std::atomic<bool> stop{false};
         std::list<std::thread> writers;
@@ -150,7 +152,7 @@ protected:
     EngineLog log_;
     XBeeAT::Settings settings_;
     Rig rig_{testSeed()};
-    std::map<int, size_t> taken_; // bytes, by address
+    std::map<int, size_t> taken_; // received bytes, by address
     std::map<int, std::unique_ptr<Uav>> vehicles_;
     std::list<Hearer> hearers_; // receivers of calls to all vehicles
     std::list<Program> programs_;
@@ -287,7 +289,7 @@ TEST_P(TwinGrounds, TheNewerOneKeepsTheVehicleAndTheOlderOneHasItAgainAfterIt) {
     answers(Program(older).fd, 1);
 }
 
-// A vehicle that loses its power leaves a cut frame, which belongs to no session.
+// A vehicle that loses its power leaves a truncated frame, which belongs to no session.
 TEST_P(TwinGrounds, AVehicleThatFallsSilentInAFrameHasNoOtherGround) {
     fly(1, GetParam());
     const auto ground = peer(1, GetParam());
@@ -354,7 +356,7 @@ Bytes callOf(uint8_t tag, uint8_t id = 0, size_t size = 40, uint8_t type = 0) {
     return m;
 }
 
-// Five receivers, the last with another key, and programs that call all vehicles.
+// Five receivers, the last one with another key, and programs that call all vehicles.
 class BroadcastTest : public FleetTest {
 protected:
     BroadcastTest() {

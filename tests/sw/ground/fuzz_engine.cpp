@@ -37,7 +37,7 @@ void expect(bool condition) {
         std::abort();
 }
 
-// Takes the engine's output for a program, in any pieces.
+// The program's end of a connection; takes the output of the engine in pieces of any size.
 class Program {
 public:
     ~Program() { leave(); }
@@ -91,7 +91,8 @@ public:
         settings.random = [this] { return random(); };
         std::unique_lock<std::mutex> lock(mutex_);
         engine_ = XBeeAT::Engine::get(settings, [this](int, const std::string& text) {
-            if (text.find("tries again") != std::string::npos) // it waits for a new connection
+            if (text.find("tries again") != std::string::npos) // the link waits for a new
+                                                               // connection
                 end();
         });
         engine_->listen();
@@ -111,7 +112,7 @@ public:
 
     void fromEngine(const uint8_t* bytes, size_t size) {
         Link_receive(link(), bytes, static_cast<U32>(size), now);
-        if (bytes[0] == 'A' || bytes[0] == '+') // a modem would understand it
+        if (bytes[0] == 'A' || bytes[0] == '+') // a modem would interpret such bytes as a command
             for (char c : {'O', 'K', '\r'})
                 toEngine.push_back(static_cast<uint8_t>(c));
     }
@@ -129,7 +130,7 @@ public:
                     ready += !fds[i].revents;
                     fds[i].revents |= POLLIN;
                 }
-            now += 10; // even an engine that is always busy reaches the end of the input
+            now += 10; // time also passes for an engine that is always busy, so that the input ends
             if (ready && ++busy_ % 64)
                 return ready;
             const uint32_t step = std::min(us, at_ < end_ ? 10'000u : 200'000u);

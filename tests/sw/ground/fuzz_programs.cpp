@@ -149,8 +149,8 @@ private:
 
     int ends_[2];
     U32 now_ = 0xFFFFF000u;
-    bool validatesComeThrough_; // the first: a server's greeting
-    std::vector<U8> sent_;      // not taken yet
+    bool validatesComeThrough_; // the first bytes are a server's greeting
+    std::vector<U8> sent_;      // sent bytes that have not been taken yet
     std::vector<U8> got_;
     ProgramConnection stream_;
 };

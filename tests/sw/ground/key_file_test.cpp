@@ -24,7 +24,7 @@ protected:
         chmod(path_, mode);
         return KeyFile(path_);
     }
-    // Returns the message about a refused file; no digit of a key is ever in it.
+    // Returns the message about a rejected file, after checking that it contains no digit of a key.
     std::string refusal(const std::string& text, mode_t mode = 0600) {
         try {
             read(text, mode);

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""package_test: update.py reads all packages in a file, in their order, and rejects a damaged
-file."""
+"""package_test: update.py reads all update packages in a file, in their order, and rejects a
+damaged file."""
 import tempfile
 import unittest
 from pathlib import Path
@@ -13,7 +13,7 @@ FIRMWARE, FPGA, KEYS = (HEADER.constants[name]
 
 
 def package(product, version, base=0, image=b"", **more):
-    """Returns a header of pack_update, and the image."""
+    """Returns a package: the header that pack_update writes, and the image."""
     fields = {"magic": update.MAGIC, "product": product, "version": version, "base": base,
               "bytes": len(image), **more}
     return HEADER.pack(**fields) + image

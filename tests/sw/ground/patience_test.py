@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""patience_test: the time-out of a mission's calls counts simulated time, also on a slow PC."""
+"""patience_test: the time-out of the calls in a mission counts simulated time, also on a slow
+PC."""
 import unittest
 from unittest import mock
 

@@ -22,7 +22,7 @@
 #include <sys/socket.h>
 #include <thread>
 
-// Uav is a modem and the link that uses it.
+// The UAV: a modem and the link layer that uses it.
 class Uav : public LinkEnd {
 public:
     using Bytes = std::vector<uint8_t>;
@@ -31,7 +31,7 @@ public:
         move(air);
         begin();
     }
-    // Moves it into reach of the modems of an air.
+    // Moves the UAV into reach of the modems of an air.
     void move(RfChannel& to) {
         XBee::Options options;
         options.name = "uav " + std::to_string(address_);
@@ -54,7 +54,8 @@ public:
 
     std::unique_ptr<XBee> modem;
     std::vector<std::pair<int, Bytes>> received;
-    std::vector<std::pair<int, int>> opened; // channel, 1 open, 0 close
+    std::vector<std::pair<int, int>> opened; // channel, and 1 if it was opened or 0 if it was
+                                             // closed
     bool echo = false, refuse = false, runs = true;
     // If set, takes messages instead of `received`; called in the rig's thread, locked.
     std::function<int(int channel, const U8* data, U32 size)> taking;
@@ -104,7 +105,7 @@ public:
     void replaceGround(std::map<std::string, uint32_t> set) {
         place(ground, pty, air, std::move(set));
     }
-    // Puts another ground's modem into an air.
+    // Puts the modem of another ground station into an air.
     void placeOther(RfChannel& where) { place(other, otherPty, where, {}); }
     // Runs `f` between two steps of the models.
     template <class F> auto with(F f) {
@@ -154,7 +155,7 @@ public:
     uint64_t ns() const { return now_; }
 
     static constexpr uint32_t guardMs = 20;
-    RfChannel air, elsewhere; // the second is out of the first one's reach
+    RfChannel air, elsewhere; // a modem in one of them is out of reach of a modem in the other
     PtyLine pty, otherPty;
     std::unique_ptr<XBee> ground, other; // `other` is null until it is placed
     Uav uav;
@@ -173,7 +174,8 @@ private:
     }
     void run() {
         using Steady = std::chrono::steady_clock;
-        constexpr uint64_t longestNs = 1'000'000; // between two looks at the models
+        constexpr uint64_t longestNs = 1'000'000; // ns; longest time between two steps of the
+                                                  // models
         for (auto last = Steady::now(); !stop_;) {
             waiting_ = Steady::now();
             step_.wait(now_);
@@ -196,7 +198,7 @@ private:
         }
     }
 
-    // An engine with a thread that waits for the test is not waited for.
+    // The rig does not wait for an engine with a thread that itself waits for the test.
     bool goesOn() const {
         return !stop_ && std::chrono::steady_clock::now() - waiting_ < std::chrono::seconds(5);
     }

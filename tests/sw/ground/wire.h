@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// wire: a serial port with a link layer and without a modem, as fast as bytes are taken; and
-// helpers for programs' sockets.
+// wire: a serial port with a link layer at the other end and no modem, as fast as bytes are taken;
+// and functions for programs' sockets.
 
 #pragma once
 
@@ -41,7 +41,7 @@ inline void writeAll(int fd, const Bytes& bytes) {
     }
 }
 
-// Log of engines: one line each, which begins with the level.
+// Log of the engines: one line per message, which begins with the level.
 class EngineLog {
 public:
     XBeeAT::Log taker() {
@@ -64,7 +64,7 @@ private:
 class Wire : private LinkEnd {
 public:
     Wire() {
-        begin(16); // a fast path: no pacing needed
+        begin(16); // 16 us: the path is fast, so no pacing is needed
         Link_start(link(), us());
         if (openpty(&master_, &slave_, name_, nullptr, nullptr) != 0)
             throw std::runtime_error("no pty");
@@ -89,7 +89,7 @@ public:
     }
     std::string path() const { return name_; }
     std::string log() { return log_.text(); }
-    // Puts bytes on the wire, drops the answer.
+    // Puts bytes on the wire and discards the answer.
     void flood(const Bytes& bytes) {
         for (size_t done = 0; done < bytes.size();) {
             pollfd p{master_, POLLIN | POLLOUT, 0};

@@ -36,7 +36,7 @@ static Ice_Status aim(const Ice_Current* current, Ice_ObjectPrxPtr far) {
     int n, connection;
     Ice_Status status = Ice_ObjectPrx_ice_getConnection(&server, &connection);
     if (current->connection == connection)
-        connection = client; /* the server calls back */
+        connection = client; /* over the client's connection, because the server calls back */
     else
         client = current->connection;
     id.name = current->name;
@@ -58,7 +58,7 @@ static Ice_Status aim(const Ice_Current* current, Ice_ObjectPrxPtr far) {
     return status;
 }
 
-/* Passes on an operation that every object has, with parameters that need no decoding. */
+/* Passes on one of the operations that every object has; its parameters need no decoding. */
 static Ice_Status passWhole(Ice_ObjectPrxPtr far, const Ice_Current* current, Ice_InputStreamPtr is,
                             Ice_OutputStreamPtr os) {
     Ice_InputStreamPtr back;
@@ -78,7 +78,7 @@ static Ice_Status passWhole(Ice_ObjectPrxPtr far, const Ice_Current* current, Ic
     return Ice_ObjectPrx_end(far, status);
 }
 
-/* Returns the servant of the object's type; 0 with `status` if none. */
+/* Returns the servant for the type of the object; null, with `status`, if there is none. */
 static Ice_ObjectPtr servantOf(const Ice_ObjectPrx* far, Ice_Status* status) {
     Ice_ObjectPrx asked = *far;
     Ice_ObjectPtr servant = 0;
@@ -109,7 +109,7 @@ static Ice_Status pass(Ice_ObjectPtr self, const Ice_Current* current, Ice_Input
     servant = servantOf(&far, &status);
     if (!servant)
         return status;
-    status = aim(current, &Bridge_far); /* requests that arrived meanwhile have changed it */
+    status = aim(current, &Bridge_far); /* requests that arrived meanwhile have changed the proxy */
     if (status == ICE_OK)
         status = servant->dispatch(servant, current, is, os);
     if (status == ICE_CONNECTION_LOST)

@@ -26,7 +26,7 @@ def operation(name, self, parameters, calls, servants, responses):
     call = re.sub("(Disp)?$", "Prx", owner, count=1) + name[len(owner):]
     own = parameters.split(", ")[1:]
     later = calls.get(call, parameters).split(", ")[len(own) + 1:]
-    given = ["(void*)" * ("**" in p) + name_of(p) for p in own]  # an instance is const here
+    given = ["(void*)" * ("**" in p) + name_of(p) for p in own]  # an instance is const in this call
     print(f"\nIce_Status {name}({self}{parameters}, const Ice_Current* current) {{")
     for result in later:
         print(f"    {result.replace('*', '', 1)};")
@@ -38,7 +38,8 @@ def operation(name, self, parameters, calls, servants, responses):
     print(f"    status = {call}({', '.join(arguments)});")
     if later:
         names = [name_of(p) for p in later]
-        own = {name_of(p) for p in later if p.count("*") == 1}  # no classes, which are pointers
+        own = {name_of(p) for p in later if p.count("*") == 1}  # not classes, because these are
+                                                                # pointers
         own &= {name_of(p) for p in responses[name].split(", ") if "*" in p}
         results = ", ".join(["&reply"] + [
             f"has_{n} ? &{n} : 0" if "has_" + n in names else "&" * (n in own) + n

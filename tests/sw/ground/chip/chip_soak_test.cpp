@@ -69,7 +69,7 @@ private:
     std::set<Ice::CommunicatorPtr> ended_;
 };
 
-// Messages have numbers that rise with each of their sender's: the sender in the upper bits.
+// Messages have numbers that increase for each sender; the upper bits are the sender.
 class Book {
 public:
     void arrived(int id, const RadioTest::Bytes& data) {
@@ -124,7 +124,7 @@ protected:
     static int next(void* context, int* id, U8* data, int* isOneway) {
         ChipSoak& s = self(context);
         Random& random = s.uavRandom_;
-        // Now and then: the call before has taken its time.
+        // The UAV calls now and then, but not before its previous call has ended.
         if (s.uavStops_ || random.below(4) || s.world_.ns() < s.uavDue_)
             return -1;
         s.uavDue_ = s.world_.ns() + static_cast<uint64_t>(1e9 * rest(random));
@@ -192,7 +192,7 @@ protected:
             });
         });
     }
-    // Calls the next core in turn; two-way, so that it works before the next call.
+    // Calls the cores in turn. The calls are two-way, so that a core works before the next call.
     void callCore(const Ice::CommunicatorPtr& ground, int worker) {
         using Bytes = std::vector<Ice::Byte>;
         static const Bytes size = {64, 1, 240, 0}, one = {0, 0, 0, 1, 0}, key(17, 16), text(41, 40),
@@ -244,7 +244,7 @@ protected:
             ++modemResets_;
             break;
         case 3:
-            ground_.end(); // and with it the engine, as at the end of a program
+            ground_.end(); // also ends the engine, as at the end of a program
             startGround();
             ++groundStarts_;
             break;
@@ -259,7 +259,8 @@ protected:
         auto said = std::chrono::steady_clock::now();
         for (unsigned events = 0; world_.ns() < end; ++events) {
             misfortune(random,
-                       events < 4 ? (events * 2 + 3) % 5 : random.below(6)); // 3 0 2 4, then any
+                       // first the events 3 0 2 4, then random ones
+                       events < 4 ? (events * 2 + 3) % 5 : random.below(6));
             world_.sleep((0.7 + random.below(1000) / 1000.0) * (1 + rest()));
             if (std::chrono::steady_clock::now() - said > std::chrono::seconds(15)) {
                 said = std::chrono::steady_clock::now();
@@ -271,7 +272,7 @@ protected:
         for (int id = (8 << 24) + 1; id <= (8 << 24) + 20; ++id) {
             try {
                 const auto data = pattern(id, 500);
-                // Takes one of the three connections: a fourth would wait.
+                // Uses one of the three connections; a fourth program would wait.
                 if (world_.echo(ground_.get(), "1")->repeat(id, data) == data)
                     return true;
             } catch (const Ice::Exception&) {
@@ -324,7 +325,7 @@ protected:
     Random uavRandom_{testSeed() + 7};
     RadioTest::Bytes uavMessage_;
     int uavSent_ = 0;
-    uint64_t uavDue_ = 0; // ns, its next call
+    uint64_t uavDue_ = 0; // ns; time of the UAV's next call
     std::map<std::string, unsigned> uavReports_;
     unsigned reboots_ = 0, modemResets_ = 0, groundStarts_ = 0;
     std::mutex mutex_;
@@ -336,18 +337,18 @@ protected:
 };
 
 TEST_F(ChipSoak, EveryMessageIsRightOnceInOrderOrReported) {
-    struct AtEnd { // also after an exception: the workers are stopped before they are joined
+    struct AtEnd { // also runs after an exception: the workers are stopped before they are joined
         ~AtEnd() { stop = true; }
         std::atomic<bool>& stop;
     };
     startGround();
-    std::vector<std::future<void>> workers; // joined in every case
+    std::vector<std::future<void>> workers; // joined in any case
     for (int w = 1; w <= 3; ++w)
         workers.push_back(std::async(std::launch::async, [this, w] { work(w); }));
     AtEnd atEnd{stop_};
     if (rest() > 0)
         connectCamera();
-    world_.sleep(2); // set-up, and some good weather
+    world_.sleep(2); // time for the set-up, and for some good weather
     endure();
     stop_ = true;
     world_.with([&] { world_.air.weather = {}; });

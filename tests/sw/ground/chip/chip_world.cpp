@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// chip_world: the thread in which simulated time passes.
+// chip_world: implements the thread in which simulated time passes.
 
 #include "chip_world.h"
 #include <condition_variable>
@@ -70,8 +70,8 @@ void ChipWorld::run() {
             machine.board.provide(std::vector<uint8_t>(key_ ? LINK_KEY_BYTES : 0, 0x55));
             machine.run();
         }
-    } catch (const std::exception& e) { // a model reports an error of the chip: the test cannot
-                                        // continue
+    } catch (const std::exception& e) { // A model reports an error of the chip, so the test cannot
+                                        // continue.
         std::fprintf(stderr, "chip: error: %s\n", e.what());
         std::_Exit(1);
     }
@@ -112,7 +112,7 @@ Ice::CommunicatorPtr ChipWorld::client(std::map<std::string, std::string> more) 
         {"XBeeAT.Guard", std::to_string(guardMs_)},
         {"XBeeAT.Down", "2"},
         {"Station.Endpoints", endpoint()},
-        {"Station.ThreadPool.Size", "1"}}; // so that the order is visible
+        {"Station.ThreadPool.Size", "1"}}; // one thread, so that the order of calls is visible
     if (key_)
         all["XBeeAT.KeyFile"] = key_->path();
     for (auto& [name, value] : more)

@@ -14,7 +14,7 @@
 
 #define STACK_WORDS 1024
 #define PAUSE_TICKS (OS_TICKS_PER_SEC / 100U) /* pause if no message has to be sent */
-#define TIMEOUT_MS 20000                      /* time-out of a call to the ground */
+#define TIMEOUT_MS 20000                      /* ms; time-out of a call to the ground */
 
 static OS_STK serverStack[STACK_WORDS], clientStack[STACK_WORDS], radioStack[STACK_WORDS],
     coresStack[STACK_WORDS];
@@ -25,7 +25,7 @@ static U8 irqEnabled;
 static const EchoUav_Port* port;
 static void* portContext;
 static Ice_Byte sent[ECHO_UAV_LONGEST], fetched[8192];
-static U32 replyBuffer[2 * 8192 / 4]; /* a reply, and its decoded sequence */
+static U32 replyBuffer[2 * 8192 / 4]; /* buffer for a reply, and buffer for the decoded sequence */
 
 void EchoUav_setPort(const EchoUav_Port* tests, void* context) {
     port = tests;

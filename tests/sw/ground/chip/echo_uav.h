@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * echo_uav: a firmware that serves Echo over the radio and calls the ground's Echo, on IceC, link,
- * driver and kernel as the UAV's application has them.
+ * echo_uav: firmware that serves Echo over the radio and calls the ground's Echo. It uses IceC,
+ * link, driver and kernel in the same way as the UAV's application.
  */
 #pragma once
 
 #include "fsmc.h"
 
-/* The test's callbacks: its permissions and its observations. The firmware's tasks call them. */
+/* Callbacks of the test: they decide what the firmware does, and observe it. The tasks of the
+ * firmware call them. */
 typedef struct EchoUav_Port {
     /* Called when an operation with an id has been executed here, with this data. */
     void (*executed)(void* context, int id, const U8* data, int size);
@@ -20,7 +21,7 @@ typedef struct EchoUav_Port {
                     int size);
 } EchoUav_Port;
 
-#define ECHO_UAV_LONGEST 4000 /* bytes of a message to the ground */
+#define ECHO_UAV_LONGEST 4000 /* greatest number of bytes of a message to the ground */
 
 /* Sets the program up; to be called before the first boot. */
 void EchoUav_setPort(const EchoUav_Port* port, void* context);

@@ -53,7 +53,7 @@ TEST_F(StockIce, WhatIsMeantForAnotherVehicleDoesNotReachThisOne) {
     EXPECT_EQ(world_.proxy(ic.communicator())->repeat(2, {}).size(), 0u);
 }
 
-// A closing goes to the UAV and back, and takes its channel that long.
+// Closing a connection needs a message to the UAV and back; its channel is in use until then.
 TEST_F(StockIce, WhoOpensWhileTheLastConnectionsStillCloseWaitsItsTurn) {
     Ice::CommunicatorHolder ic(world_.client());
     auto named = [&](const char* name) { return world_.proxy(ic.communicator(), name); };
@@ -75,7 +75,8 @@ TEST_F(StockIce, MoreProgramsThanChannelsShareThem) {
             world_.client({{"XBeeAT.Idle", "1"}, {"Ice.RetryIntervals", "0"}})));
         world_.proxy(programs.back()->communicator())->ice_ping();
     }
-    world_.proxy(programs[0]->communicator())->ice_ping(); // its connection was the first to go
+    world_.proxy(programs[0]->communicator())->ice_ping(); // the connection of this program was the
+                                                           // first to be closed
 }
 
 TEST_F(StockIce, AUavThatIsOffIsAConnectTimeout) {

@@ -43,10 +43,10 @@ public:
         argv.push_back(nullptr);
         pid_ = fork();
         if (pid_ == 0) {
-            prctl(PR_SET_PDEATHSIG, SIGKILL); // a killed test leaves no server
+            prctl(PR_SET_PDEATHSIG, SIGKILL); // if the test is killed, the server ends as well
             dup2(ends[1], 1);
             dup2(ends[1], 2);
-            close_range(3, ~0u, 0); // Ice's sockets are inherited otherwise
+            close_range(3, ~0u, 0); // otherwise the server would inherit Ice's sockets
             execvp(argv[0], argv.data());
             _exit(127);
         }
@@ -65,7 +65,7 @@ public:
         const size_t at = heard_;
         return hear(after) ? std::atoi(said_.c_str() + at) : -1;
     }
-    // Ends it; its exit status.
+    // Ends the server; returns its exit status.
     int stop() {
         kill(pid_, SIGINT);
         return wait();
@@ -80,7 +80,7 @@ public:
     }
     pid_t pid() const { return pid_; }
     const std::string& said() const { return said_; }
-    // Reads until it prints `text` again. Returns false if the program ends without it.
+    // Reads the output until `text` occurs again. Returns false if the program ends before that.
     bool hear(const std::string& text) {
         size_t at;
         while ((at = said_.find(text, heard_)) == std::string::npos)
@@ -101,7 +101,7 @@ private:
     pid_t pid_ = 0;
     int out_ = -1;
     std::string said_;
-    size_t heard_ = 0; // position in said_, by hear
+    size_t heard_ = 0; // position in said_ up to which hear has read
 };
 
 // The rig's UAV passes each channel of its link to an Ice server on 127.0.0.1, and a connection of
@@ -145,7 +145,8 @@ private:
     static constexpr int ownChannel = 3;
     struct Line {
         int fd = -1;
-        Rig::Bytes in, out; // from TCP, not a complete message yet; to TCP, not written yet
+        Rig::Bytes in, out; // in: bytes from TCP that are not a complete message yet; out: bytes
+                            // for TCP that are not written yet
     };
 
     static sockaddr_in local(int port) {
@@ -180,7 +181,7 @@ private:
     }
     static int take(Line& line, const U8* data, U32 count) {
         if (line.out.size() > 32768)
-            return 1; // the server is slow
+            return 1; // the server is slow, so the message is taken later
         if (line.fd >= 0)
             line.out.insert(line.out.end(), data, data + count);
         return 0;
@@ -201,7 +202,7 @@ private:
             }
         }
     }
-    // Bytes of the socket; false: it has ended.
+    // Transfers bytes of the socket; returns false if the connection has ended.
     static bool move(Line& line) {
         if (!line.out.empty()) {
             ssize_t count = send(line.fd, line.out.data(), line.out.size(), MSG_NOSIGNAL);
@@ -302,7 +303,8 @@ public:
     }
     ~World() { server_->destroy(); }
 
-    // A program on the ground; several share the serial port's engine.
+    // Returns the communicator of a program on the ground; several share the engine of the serial
+    // port.
     Ice::CommunicatorPtr client(std::map<std::string, std::string> more = {}) {
         more.insert({{"Ice.Plugin.XBeeAT", PLUGIN_FOLDER "/xbeeat:createXBeeAT"},
                      {"Ice.Default.InvocationTimeout", "1800000"},

@@ -138,8 +138,8 @@ private:
         air_.weather = RfWeather::drawn(random_, 40);
         attacker_.hinder(attacked_ && !isFleet_ && random_.below(2));
         air_.weather.delayNs = random_.below(2) ? 0 : random_.below(20) * msNs;
-        // messages per ms: a low rate, or more than the air can carry; in a fleet an eighth of that,
-        // because many links share the air
+        // messages per ms: a low rate, or more than the air can carry; in a fleet an eighth of
+        // that, because many links share the air
         rate_ = (random_.below(3) ? 0.08 : 0.8) / (isFleet_ ? 8 : 1);
     }
     // Injects a random fault at one of the ends, more often if there are many ends.

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""sizes: bytes of the firmware's layers, from linkers' maps and objects.
+"""sizes: measures the bytes of the firmware's layers, from maps of the linker and objects.
 
     sizes.py layers SOURCE GENERATED BUILD OUT.json   each layer on a Cortex-M3 at -Os, with the
                                                       paper's Table II; RAM and largest frames;
@@ -8,10 +8,9 @@
     sizes.py firmware MAP OUT.json                    flash and RAM of a firmware by layer; its
                                                       stacks, by the call graph
 
-layers: `minimal` counts the parts of each layer in the image of the program that flies
-(sw/minimal), with the minimal run time and link (text and read-only data; the C library and
-generated code are not counted, as in the paper). `full` counts all files of the layer, linked or
-not.
+layers: `minimal` counts the bytes of each layer in the image of the program sw/minimal, which has
+the minimal run time and link (text and read-only data; the C library and generated code are not
+counted, as in the paper). `full` counts all files of the layer, linked or not.
 """
 import json
 import os
@@ -21,9 +20,9 @@ import subprocess
 import sys
 import tempfile
 
-# its layers, and two of ours
+# bytes of layers in the paper's Table II, and two layers that only we have
 PAPER = {"fsmc": 1116, "radio": 1795, "crypto": 0, "link": 1307, "icec": 2622, "endpoint": 0}
-# sources of a layer that are not just its folder's
+# sources of layers that are not exactly the files of one folder
 FILES = {"icec": ["icec/*.c", "icec/values/*.c", "icec/extra/*.c"],
          "endpoint": ["icec/endpoints/xbee_endpoint.c", "icec/endpoints/xbee_peers.c"]}
 LAYER_FOLDERS = ("fsmc", "radio", "crypto", "link", "icec", "values", "extra", "endpoints")
@@ -41,7 +40,7 @@ def sections(path, dropped=False):
     head, _, text = open(path).read().partition("Linker script and memory map")
     if dropped:
         text = head.partition("Discarded input sections")[2]
-    # long names are on a separate line
+    # a long section name has a separate line
     text = re.sub(r"^( \.?[A-Za-z_]\S*)\n +(?=0x)", r"\1 ", text, flags=re.M)
     for name, address, size, file in re.findall(r"^ (\.?[A-Za-z_]\S*) +0x(\w+) +0x(\w+) (\S.*)$",
                                                 text, re.M):
@@ -77,7 +76,7 @@ def whole(patterns, source, generated):
 
 
 def deepest(build, layer):
-    """(bytes, function) of the minimal program's largest frame."""
+    """Returns (bytes, function) of the largest stack frame in the minimal program."""
     lines = [line.split("\t")
              for su in pathlib.Path(build, "sw/minimal").glob(f"minimal_{layer}.arm/**/*.su")
              for line in open(su)]
@@ -85,7 +84,7 @@ def deepest(build, layer):
 
 
 def excess(entries, source):
-    """Yields a sentence for each size above its limit in sw/size_budget.json."""
+    """Yields a sentence for each size that exceeds its limit in sw/size_budget.json."""
     budget = json.load(open(f"{source}/sw/size_budget.json"))
     for name, size in ((entry["name"], entry["value"]) for entry in entries):
         if name not in budget:
@@ -146,8 +145,8 @@ def parts(path):
 
 
 def image_bytes(build, name):
-    """Returns (flash, RAM, layers): bytes of a linked firmware, and of its flash what belongs to
-    the paper's layers (PAPER)."""
+    """Returns (flash, RAM, layers) of a linked firmware, in bytes. `layers` is the part of the
+    flash that belongs to the paper's layers (PAPER)."""
     found = list(parts(f"{build}/firmware/{name}.map"))
     return (sum(flash for flash, _, _, _ in found), sum(ram for _, ram, _, _ in found),
             sum(flash for flash, _, kind, folder in found
@@ -207,7 +206,7 @@ def stacks(path):
     known = {}
 
     def depth(function):
-        """(bytes, call path) of the deepest stack; a recursion is counted once."""
+        """Returns (bytes, call path) of the deepest stack; a recursion is counted once."""
         if function not in known:
             known[function] = (0, [])
             below, way = max((depth(called) for called in calls.get(function, ())

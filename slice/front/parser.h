@@ -12,30 +12,31 @@
 #include <string_view>
 #include <vector>
 
-// A token of preprocessed Slice text, with its place in the original file.
+// A token of preprocessed Slice text, with its position in the original file.
 struct Token {
     enum class Kind { Identifier, Integer, Float, String, Symbol, End };
     Kind kind;
-    std::string_view text; // as written; for a string, the text between the quotes
-    std::string_view doc;  // the doc comment before it, without /** and */
-    std::string comment;   // // lines directly above it
+    std::string_view text; // text as written; for a string, the text between the quotes
+    std::string_view doc;  // doc comment before the token, without /** and */
+    std::string comment;   // text of the // lines directly above the token
     Location at;
-    bool escaped; // identifier written with a backslash
+    bool escaped; // true for an identifier written with a backslash
 };
 
-// Tokens point into `text`. The last one is End.
+// Splits `text` into tokens, which point into `text`. The last token is End.
 std::vector<Token> tokenize(std::string_view text, std::string_view file, Diagnostics& diagnostics);
 
-// "struct"; "int", "::M::I*"
+// Return names for messages: "struct" for a kind; "int", "::M::I*" for a type.
 const char* kindName(Declaration::Kind kind);
 std::string typeName(const Type& type);
 
 // ---- values of tokens (literals.cpp)
 
-// Decimal, 0octal or 0xhex, signed; out of range or malformed is an error, and 0.
+// Returns the value of a signed number in decimal, 0octal or 0xhex. Reports an error and returns 0
+// if it is malformed or out of range.
 int64_t integerValue(const Token& token, Diagnostics& diagnostics);
 double floatingValue(const Token& token, Diagnostics& diagnostics);
-// Returns the bytes of a string literal, its escapes replaced; \u and \U become UTF-8.
+// Returns the bytes of a string literal with its escapes replaced; \u and \U become UTF-8.
 std::string stringValue(const Token& token, Diagnostics& diagnostics);
 
 class Parser {
@@ -72,11 +73,11 @@ private:
     void expectEnd(const std::string& what); // expects a '}'
     [[noreturn]] void fail(const std::string& expected);
     void error(const Location& at, const std::string& text) { diagnostics_.error(at, text); }
-    // Reads a name that this declares, and checks it.
+    // Reads a name that is being declared, and checks it.
     std::string name(const std::string& what);
     std::string scopedName(const std::string& what);
     void recover();
-    // Runs a rule; after a syntax error continues after the next ';' or '}'.
+    // Runs a grammar rule. After a syntax error, continues after the next ';' or '}'.
     template <class Rule> void guarded(Rule rule);
     template <class Rule> void braces(const Declaration& d, Rule rule);
     std::string doc();
@@ -104,7 +105,7 @@ private:
     void constant();
     void interface();
 
-    // ---- their parts
+    // ---- parts of definitions
     void member(Declaration& d, bool mayBeOptional);
     void checkMember(const Declaration& d, const Field& f);
     void checkMemberOfClass(const Declaration& d, const Field& f);
@@ -124,7 +125,7 @@ private:
     Symbol* ownEnumerator(const Declaration& d, const std::string& name, const Location& at);
     Literal namedLiteral(const Type& type, const std::string& what);
     Literal convert(Literal value, const Type& type, const std::string& what, const Location& at);
-    // Reads a number that is not negative; returns -1 after an error.
+    // Reads a number that is not negative. Returns -1 after an error.
     int32_t number(const std::string& what, bool mayBeEnumerator);
     Symbol* resolve(const std::string& written, const Location& at);
     Symbol* resolveValue(const std::string& written, const Location& at);
@@ -138,12 +139,12 @@ private:
     size_t position_ = 0;
     std::vector<std::string> scope_;
     std::string scopeId_; // "::A::B"
-    std::string user_;    // the enclosing type: it uses names for itself, not for the module
+    std::string user_;    // enclosing type: names are used by this type, not by the module
     std::map<std::string_view, bool> isMain_;
     std::set<std::string_view> begun_; // files with at least one definition so far
     std::map<int, std::string> compactIds_;
-    std::set<std::string> unknown_; // names of types that have been reported
-    // State of the current definition.
+    std::set<std::string>
+        unknown_; // names of unknown types that have been reported State of the current definition.
     Metadata metadata_;
     std::string doc_;
     bool local_ = false;
@@ -158,12 +159,12 @@ template <class Rule> void Parser::guarded(Rule rule) {
         recover();
     }
     if (position_ == before)
-        ++position_; // a stray '}': reported and skipped
+        ++position_; // a '}' without '{' is reported and skipped
 }
 
 // Parses { rule rule ... } with an optional ';' after it.
 template <class Rule> void Parser::braces(const Declaration& d, Rule rule) {
-    if (isSymbol(":")) // the syntax of Ice 3.8
+    if (isSymbol(":")) // this is the syntax of Ice 3.8
         fail("'{'; in Ice 3.7 a base follows 'extends', not ':'");
     expect("{");
     user_ = d.id();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// engine: the devices in use, and the thread of an engine, which serves its serial port, the modem
-// there, and the peers in turn.
+// engine: manages the devices in use. Each engine has a thread, which serves a serial port, the
+// modem at this port, and the peers in turn.
 
 #include "engine.h"
 #include "broadcast_peer.h"
@@ -20,7 +20,8 @@ namespace XBeeAT {
 
 namespace {
 
-constexpr std::chrono::seconds retryEvery{5}; // while only a listener waits for the modem
+constexpr std::chrono::seconds retryEvery{5}; // interval of tries while a program listens and no
+                                              // program connects
 
 std::mutex registryMutex;
 std::map<std::string, std::weak_ptr<Engine>>& registry() {
@@ -57,7 +58,8 @@ std::shared_ptr<Peer> Engine::get(const Settings& settings, const Log& log) {
 Peer& Engine::peer(const Settings& wanted) {
     std::lock_guard<std::mutex> lock(mutex);
     std::unique_ptr<Peer>& peer = peers_[wanted.target];
-    // A program with a key never talks unencrypted because an earlier program did.
+    // A peer with other keys is a separate peer, so a program with a key never communicates
+    // unencrypted because of an earlier program.
     if (peer && peer->keys() != wanted.keys)
         refuse(EBUSY, "'" + device +
                           "' is in use with other keys: all who share a vehicle give the same key "
@@ -109,10 +111,11 @@ void Engine::wake() {
     changed_.notify_all();
 }
 
-// ---- the modem's life ----
+// ---- set-up and failures of the modem ----
 
 int Engine::waitMs(int ms, bool forBytes) {
-    // The wait also ends when the port is lost: after its simulator has ended, time stands still.
+    // The wait also ends when the port is lost: simulated time no longer advances after the
+    // simulator has ended.
     pollfd fds[] = {{wakePipe_[0], POLLIN, 0},
                     {serial_.fd(), static_cast<short>(forBytes ? POLLIN : 0), 0}};
     const U32 begin = clock.nowUs(), us = static_cast<U32>(ms) * 1000;
@@ -142,7 +145,7 @@ void Engine::fail(const std::string& text) {
         peer->fail();
 }
 
-// Returns why the modem cannot be used; empty: it can.
+// Returns the reason why the modem cannot be used; an empty text if it can be used.
 std::string Engine::prepareModem(const Settings& wanted) {
     const U32 begin = clock.nowUs();
     ModemSetup setup(serial_, wanted, log,
@@ -172,8 +175,8 @@ bool Engine::any(bool (Peer::*is)() const) const {
                        [is](const auto& p) { return (*p.second.*is)(); });
 }
 
-// Runs the links repeatedly: a lost port or a silent modem is retried for a program that connects
-// or listens.
+// Runs the links repeatedly. If the port is lost or the modem does not answer, tries again as long
+// as a program connects or listens.
 void Engine::run() {
     std::unique_lock<std::mutex> lock(mutex);
     while (!stop_) {
@@ -193,8 +196,9 @@ void Engine::waitForReason(std::unique_lock<std::mutex>& lock) {
 }
 
 // Runs the links until the port is lost. A modem that was reset in flight has its stored settings
-// again, since set-up does not write to its memory, and looks like a silent peer. Therefore the
-// modem is set up again after a while, less and less often if nothing changes.
+// again, because the set-up does not store settings in the modem. Such a modem cannot be
+// distinguished from a silent peer. Therefore the modem is set up again after some time of silence,
+// and less often if this does not help.
 void Engine::fly(std::unique_lock<std::mutex>& lock) {
     const Settings wanted = settings;
     const U32 down = static_cast<U32>(wanted.downMs) * 1000;
@@ -205,7 +209,7 @@ void Engine::fly(std::unique_lock<std::mutex>& lock) {
     } catch (const std::system_error& e) {
         return fail(e.what());
     }
-    // Keeps step: a simulator waits for this thread while it runs.
+    // Keeps simulated time in step: the simulator waits for this thread while it runs.
     struct Step {
         Step(Clock& c, int serial, const std::string& device) : clock(c) {
             clock.keepStep(serial, device);
@@ -256,21 +260,22 @@ void Engine::readSerial(U32 now) {
         fail("serial port '" + device + "': " + (count == 0 ? "closed" : std::strerror(errno)));
 }
 
-// Gives bytes to the peer that sent them. Only a single peer can have a modem without a 16-bit
-// address.
+// Passes bytes to the peer that sent them. A modem without a 16-bit address can only be that of a
+// single peer.
 void Engine::deliver(int source, const U8* bytes, size_t size, U32 now) {
     for (auto& [address, peer] : peers_)
         if (address == source || (source == ApiFrames::noAddress && !hasMany))
             peer->receive(bytes, size, now);
 }
 
-// All links share the results; a call to all vehicles has none.
+// Passes a result of the radio to the links, which share the results. A call to all vehicles has no
+// result.
 void Engine::answer(bool isThere, U32 now) {
     if (radio)
         Link_answer(radio, isThere, now);
 }
 
-// Polls all peers, first the one that has used the least air time. Returns the time of the next
+// Polls all peers; the peer that has used the least air time is first. Returns the time of the next
 // call, in microseconds.
 U32 Engine::pollPeers(U32 now) {
     std::vector<Peer*> order;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_setup: AT commands, each reply checked.
+// modem_setup: sets up the modem by AT commands, and checks each reply.
 
 #include "modem_setup.h"
 #include "api_modem.h"
@@ -16,10 +16,11 @@ namespace {
 
 const int rates[] = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200};
 constexpr int factoryRate = 9600, fastestRate = 250000, replyMs = 500, tries = 3;
-constexpr int apiReplyMs = 100; // in addition to the time on the line
+constexpr int apiReplyMs = 100; // time-out for a reply in API mode, in addition to the time on the
+                                // line, ms
 constexpr int mostGuard = 3300; // ms, of ATGT
 
-// Returns the value of BD: a code, or the rate itself.
+// Returns the value of the parameter BD for a rate: a code, or the rate itself.
 int codeOf(int baud) {
     for (int code = 0; code < 8; ++code)
         if (rates[code] == baud)
@@ -45,8 +46,8 @@ bool ModemSetup::pause(int ms) {
     return !stopped_;
 }
 
-// Returns the one of `words` with which the reply ends; "" after a time-out. Bytes received by
-// radio arrive before a reply, and may contain carriage returns.
+// Returns the word of `words` with which the reply ends; "" after a time-out. Bytes received by
+// radio may precede a reply, and may contain carriage returns.
 std::string ModemSetup::readReply(int timeoutMs, std::initializer_list<std::string> words) {
     std::string reply;
     for (int leftUs = timeoutMs * 1000;;) {
@@ -69,7 +70,7 @@ std::string ModemSetup::readReply(int timeoutMs, std::initializer_list<std::stri
     return "";
 }
 
-// A wait in vain for an answer is the silence before the next +++ already.
+// If the wait for an answer ends without one, it counts as the silence before the next +++.
 bool ModemSetup::enterCommandMode(int guardMs) {
     int guard = guardMs + guardMs / 8 + 5;
     if (silentMs_ < guard && !pause(guard - silentMs_))
@@ -89,15 +90,15 @@ std::string ModemSetup::ask(const std::string& text, std::initializer_list<std::
     if (serial_.write(line.data(), line.size()) != static_cast<ssize_t>(line.size()))
         return "";
     std::string reply = readReply(replyMs, words);
-    // A key is secret: its command is not logged.
+    // The key is secret, so its command is logged without the value.
     log_(2, "AT" + (text.compare(0, 2, "KY") ? text : text.substr(0, 2)) + ": " + reply);
     return reply;
 }
 
-// Sets a parameter, or reads it (no value), of a modem in API mode. Returns OK, ERROR or the value
-// in hexadecimal; "": no answer arrived in time. With `endsLine`, a carriage return follows: a
-// modem in command mode takes the frame for a command line, and "COMMAND" is returned when it
-// refuses the line. A modem in API mode ignores bytes between frames.
+// Sets a parameter of a modem in API mode, or reads it if no value is given. Returns OK, ERROR or
+// the value in hexadecimal; "" if no answer arrives in time. With `endsLine`, a carriage return
+// follows the frame. A modem in command mode then handles the frame as a command line and refuses
+// it; "COMMAND" is returned in this case. A modem in API mode ignores bytes between frames.
 std::string ModemSetup::askApi(const std::string& letters, const std::string& value, int timeoutMs,
                                bool endsLine) {
     constexpr uint8_t id = 0xA5;
@@ -164,9 +165,10 @@ bool ModemSetup::findWithoutGuard(int baud) {
     return isApi_ || reply == "COMMAND";
 }
 
-// Tries the target rate first, at which a modem set up earlier is found, then the factory's rate.
-// Then tries both with a longer guard time, because a modem keeps its ATGT and a simulated one may
-// be slower than the clock; then all rates. Times: docs/modem.md.
+// Searches for the modem. The target rate is tried first, because a modem that was set up earlier
+// uses it; then the factory's rate. Then both are tried with a longer guard time, because a modem
+// keeps its ATGT, and a simulated modem may be slower than the clock. Finally all rates are tried.
+// Times: docs/modem.md.
 bool ModemSetup::find() {
     const int guard = settings_.guardMs, longer = std::min(3 * guard, mostGuard);
     std::vector<std::pair<int, int>> candidates = {{settings_.baud, guard},
@@ -211,7 +213,7 @@ bool ModemSetup::run() {
     return isApi_ ? finishApi() : finish();
 }
 
-// Leaves command mode, into API mode if that is wanted and the modem has it.
+// Leaves command mode. Changes to API mode if this is wanted and the modem supports it.
 bool ModemSetup::finish() {
     const bool api = settings_.isApi && ask("AP1", {"OK", "ERROR"}) == "OK";
     if (!command("BD" + hex(codeOf(settings_.baud))) || !command("CN"))
@@ -221,8 +223,9 @@ bool ModemSetup::finish() {
     return pause(10); // the modem changes its rate after sending the last OK
 }
 
-// Sets rate and mode of a modem that was found in API mode; AP 2 is kept, and so is the mode of a
-// modem that rejects the other. Each takes effect at once, so the reply may arrive at either rate.
+// Sets rate and mode of a modem that was found in API mode. AP 2 is kept, as well as the mode of a
+// modem that rejects the other mode. Each setting takes effect at once, so the reply may arrive at
+// either rate.
 bool ModemSetup::finishApi() {
     const int found = rate_;
     for (int attempt = 0; attempt < tries && rate_ != settings_.baud; ++attempt) {

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_dispatch: brings a request to its servant, and the answer back.
+ * ice_dispatch: passes a request to its servant, and sends the reply.
  */
 #include "ice_operation.h"
 #include "ice_private.h"
 
 #include <string.h>
 
-/* Ranks a servant's entry for a target: an exact entry comes before the default servant of its
- * category, which comes before the default servant of all. */
+/* Rank of a servant's entry for a target. An exact entry is preferred to the default servant of
+ * the category, which is preferred to the default servant of all categories. */
 enum { NO_MATCH, DEFAULT_OF_ALL, DEFAULT_OF_CATEGORY, EXACT };
 
 static int match(const Ice_Servant* entry, const Ice_Current* current, Ice_Status* status) {
@@ -27,7 +27,8 @@ static int match(const Ice_Servant* entry, const Ice_Current* current, Ice_Statu
 }
 
 /* Finds the servant for `current`, sets current->adapter, and counts an operation in progress.
- * Returns 0 with `status` if none; ICE_CONNECTION_CLOSED: after shutdown. */
+ * Returns 0 and sets `status` if there is no servant; the status is ICE_CONNECTION_CLOSED after
+ * shutdown. */
 static Ice_ObjectPtr find(Ice_CommunicatorPtr ic, Ice_Current* current, Ice_Status* status) {
     Ice_ObjectAdapterPtr adapter;
     Ice_ObjectPtr servant = 0;
@@ -88,8 +89,8 @@ Ice_Status Ice_Object_invoke(Ice_ObjectPtr servant, const Ice_Current* current,
     return ICE_OK;
 }
 
-/* Runs an operation that its connection counts. `answers` is set to 0 if no reply is sent now: it
- * is sent later, or the caller has disconnected. */
+/* Runs an operation that is counted for its connection. `answers` is set to 0 if no reply is
+ * sent now, because the reply is sent later or the caller has disconnected. */
 static Ice_Status runCounted(Ice_ObjectPtr servant, const Ice_Current* current,
                              Ice_InputStreamPtr is, Ice_OutputStreamPtr os, int* answers) {
     Ice_CommunicatorPtr ic = current->communicator;
@@ -108,8 +109,8 @@ static Ice_Status runCounted(Ice_ObjectPtr servant, const Ice_Current* current,
     return status;
 }
 
-/* Reads a request after its id, and narrows `is` to the parameters. Returns the same as
- * icec_enterEncapsulation. */
+/* Reads the fields of a request after its id, and narrows `is` to the parameters. Returns the same
+ * as icec_enterEncapsulation. */
 static Ice_Status readRequest(Ice_InputStreamPtr is, Ice_Current* current, Icec_Target* target) {
     Ice_Int begin = is->position;
     target->data = is->data + begin;
@@ -120,12 +121,13 @@ static Ice_Status readRequest(Ice_InputStreamPtr is, Ice_Current* current, Icec_
     target->size = is->position - begin;
     current->mode = Ice_InputStream_readByte(is);
     current->context = *is;
-    icec_skipStrings(is, 2U * (U32)Ice_InputStream_readSize(is)); /* more than fit are malformed */
+    icec_skipStrings(is, 2U * (U32)Ice_InputStream_readSize(is)); /* a facet with more than one
+                                                                   * string is malformed */
     return icec_enterEncapsulation(is);
 }
 
-/* Writes the reply's head. It is written last, since another reply may have used its place
- * before. */
+/* Writes the header of the reply. It is written last, because a reply in between may have used
+ * the same bytes. */
 static void writeHead(Ice_OutputStreamPtr os, Ice_Int id) {
     Ice_OutputStream head;
     Ice_OutputStream_init(&head, os->data, ICEC_REPLY_HEAD);
@@ -134,15 +136,16 @@ static void writeHead(Ice_OutputStreamPtr os, Ice_Int id) {
     icec_beginReply(&head, id);
 }
 
-/* Sends the results at ICEC_REPLY_HEAD of `os`, or the failure `status` with its reason as text;
- * under ICE_LOCK_SEND. `target` 0: the target is not known any more. */
+/* Sends the results at ICEC_REPLY_HEAD of `os`, or the failure `status` with its reason as text.
+ * The caller holds ICE_LOCK_SEND. `target` is 0 if the target is not known any more. */
 static Ice_Status sendReply(Ice_CommunicatorPtr ic, int connection, Ice_OutputStreamPtr os,
                             Ice_Int id, Ice_Status status, const Icec_Target* target) {
     const char* reason;
     if (os->failed)
         status = ICE_MARSHAL;
     reason = os->failed ? Ice_Failed_text(os->failed, os->bound) : Ice_Status_text(status);
-    /* The request has gone, and with it the names that this failure would repeat. */
+    /* The request's bytes no longer exist, nor the names that the reply with this failure would
+     * repeat. */
     if (!target && status >= ICE_OBJECT_NOT_EXIST && status <= ICE_OPERATION_NOT_EXIST)
         status = ICE_UNKNOWN_EXCEPTION;
     writeHead(os, id);
@@ -155,7 +158,7 @@ static Ice_Status sendReply(Ice_CommunicatorPtr ic, int connection, Ice_OutputSt
     return icec_send(ic, connection, os);
 }
 
-/* Executes the request after the id, and leaves `is` at the end of its parameters. */
+/* Executes the request that follows the id, and leaves `is` at the end of its parameters. */
 static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is,
                            Ice_Int id) {
     Ice_OutputStream os;
@@ -179,7 +182,7 @@ static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStre
         if (servant) {
             status = runCounted(servant, &current, is, &os, &answers);
         } else if (status == ICE_CONNECTION_CLOSED) {
-            icec_askToClose(ic, connection); /* it was not executed */
+            icec_askToClose(ic, connection); /* the request was not executed */
             answers = 0;
         }
     }
@@ -213,7 +216,7 @@ int Ice_markBroadcast(Ice_Byte* message, Ice_Int size) {
     Ice_InputStream_init(&is, message, size);
     if (icec_readHead(&is) != ICEC_REQUEST || Ice_InputStream_readInt(&is) != 0)
         return 0;
-    icec_skipStrings(&is, 2); /* identity, facet, operation */
+    icec_skipStrings(&is, 2); /* the identity; facet and operation follow */
     icec_skipStrings(&is, (U32)Ice_InputStream_readSize(&is) + 1U);
     if (is.failed || is.position == size)
         return 0;
@@ -287,6 +290,6 @@ void* Ice_Current_allocate(const Ice_Current* current, Ice_Int bytes) {
     void* room;
     is->failed = 0;
     room = bytes > 0 ? Ice_InputStream_allocate(is, bytes, 1) : 0;
-    is->failed = failed; /* the servant handles the lack of room */
+    is->failed = failed; /* a lack of room is the servant's failure, not the stream's */
     return room;
 }

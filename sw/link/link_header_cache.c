@@ -6,15 +6,21 @@
 
 #include <string.h>
 
-#define HEADER 14U       /* magic, versions, type, compression, size */
-#define ENCAPSULATION 6U /* size and encoding version of the parameters */
+/* bytes of an Ice message's header: magic, versions, type, compression, size */
+#define HEADER 14U
+/* bytes before the parameters: their size and the version of the encoding */
+#define ENCAPSULATION 6U
 #define MOST_HEAD (LINK_HEAD_BYTES - 2U)
 
-#define TOKEN_REQUEST 0x80U /* bit 4: next id of the channel, else oneway; bits 3..0: index */
-#define TOKEN_LITERAL 0xA0U /* bits 1..0: 0 oneway, 1 next id, 2 id follows; length, head */
-#define TOKEN_REPLY 0xB0U   /* bit 1: id follows, else next; bit 0: status and body as they are */
+/* bit 4: 1 if the id is the next one of the channel, 0 for oneway; bits 3..0: index in the cache */
+#define TOKEN_REQUEST 0x80U
+/* bits 1..0: 0 oneway, 1 next id, 2 the id follows; then length and header */
+#define TOKEN_LITERAL 0xA0U
+/* bit 1: 1 if the id follows, 0 if it is the next one; bit 0: 1 if status and body follow
+ * unchanged */
+#define TOKEN_REPLY 0xB0U
 #define TOKEN_VALIDATE 0xC0U
-#define TOKEN_CLOSE 0xC1U /* 0xC2: with the compression byte set */
+#define TOKEN_CLOSE 0xC1U /* close message; 0xC2 if its compression byte is set */
 #define TOKEN_AS_IT_IS 0xFFU
 
 #define MAGIC 0x50656349U    /* "IceP" */
@@ -22,7 +28,7 @@
 
 enum { REQUEST = 0, REPLY = 2, VALIDATE = 3, CLOSE = 4 };
 
-#define IS_REPLY 1U /* instead of a head's size, which is larger */
+#define IS_REPLY 1U /* result for a reply; the size of a header is larger */
 
 /* Returns the type of a complete message; -1 if it is not an Ice message. */
 static int typeOf(const U8* m, U32 size) {
@@ -32,8 +38,8 @@ static int typeOf(const U8* m, U32 size) {
                : -1;
 }
 
-/* Returns the size of the head that the peer learns from a request, identity to context; IS_REPLY
- * for a reply, which only has an id; 0 if there is nothing to learn. */
+/* Returns the size of the header that the peer learns from a request: identity to context.
+ * Returns IS_REPLY for a reply, from which only the id is learned, and 0 if nothing is learned. */
 static U32 headOf(const U8* m, U32 size, int type) {
     U32 at = LINK_HEAD_AT;
     int strings;
@@ -41,7 +47,8 @@ static U32 headOf(const U8* m, U32 size, int type) {
         return size > LINK_HEAD_AT ? IS_REPLY : 0;
     if (type != REQUEST || size < LINK_HEAD_AT || m[9] != 0)
         return 0;
-    for (strings = 0; strings < 4; ++strings) { /* name, category, facet, operation */
+    for (strings = 0; strings < 4; ++strings) { /* the strings are name, category, facet and
+                                                 * operation */
         if (strings == 2) {
             if (at >= size || m[at] > 1)
                 return 0;
@@ -54,13 +61,13 @@ static U32 headOf(const U8* m, U32 size, int type) {
     }
     ++at; /* mode */
     if (at >= size || m[at++] != 0)
-        return 0; /* contexts seldom repeat */
+        return 0; /* contexts seldom repeat, so they are not cached */
     if (at + ENCAPSULATION > size || link_get32(m + at) != size - at)
         return 0;
     return at - LINK_HEAD_AT <= MOST_HEAD ? at - LINK_HEAD_AT : 0;
 }
 
-/* Returns the index of this head and encoding in the cache; LINK_HEADS if it is missing. */
+/* Returns the index of this header and encoding in the cache; LINK_HEADS if it is missing. */
 static U32 find(const Link_HeaderCache* cache, const U8* head, U32 size, const U8* version) {
     U32 slot;
     for (slot = 0; slot < LINK_HEADS; ++slot)
@@ -88,7 +95,7 @@ void link_cacheHeader(Link_HeaderCache* cache, int channel, const U8* m, U32 hea
     }
 }
 
-/* Begins the compressed message with a token, and with an id if `hasId`. */
+/* Begins the compressed message with a token; the id follows if `hasId`. */
 static void setToken(Link_Compressed* to, U32 token, int hasId, U32 id) {
     to->bytes[0] = (U8)token;
     to->prefix = hasId ? 5U : 1U;
@@ -108,7 +115,7 @@ static void packRequest(const Link_HeaderCache* cache, int channel, const U8* m,
     setToken(to, TOKEN_LITERAL | mode, mode == 2U, id);
     to->bytes[to->prefix++] = (U8)head;
     to->middle = head;
-    to->tailAt -= 2U; /* the encoding's version */
+    to->tailAt -= 2U; /* the version of the encoding follows */
 }
 
 static void packReply(const Link_HeaderCache* cache, int channel, const U8* m, U32 size,
@@ -138,8 +145,8 @@ void link_compress(const Link_HeaderCache* cache, int channel, const U8* m, U32 
     }
 }
 
-/* Expands the token and prefix of a request at `p` to the fields before its body. Returns their
- * start; 0 if the request is malformed. */
+/* Expands a request's token and prefix at `p` to the fields before the body. Returns the start
+ * of these fields; 0 if the request is malformed. */
 static U8* unpackRequest(Link_HeaderCache* cache, U32 channel, U8* p, const U8* end) {
     U8 head[LINK_HEAD_BYTES]; /* a copy, because the output may overwrite it */
     U32 token = *p++;
@@ -163,7 +170,7 @@ static U8* unpackRequest(Link_HeaderCache* cache, U32 channel, U8* p, const U8* 
         p += n;
     }
     if (n < 2U)
-        return 0; /* no head there */
+        return 0; /* the cache has no header at this index */
     p -= 2;
     memcpy(p, head + n - 2U, 2);
     p -= 4;
@@ -175,7 +182,7 @@ static U8* unpackRequest(Link_HeaderCache* cache, U32 channel, U8* p, const U8* 
     return p;
 }
 
-/* Expands the token and prefix of a reply likewise. */
+/* Expands a reply's token and prefix at `p` in the same way. */
 static U8* unpackReply(const Link_HeaderCache* cache, U32 channel, U8* p, const U8* end) {
     U32 token = *p++;
     U32 id = cache->lastReply[channel] + 1U;
@@ -198,7 +205,7 @@ static U8* unpackReply(const Link_HeaderCache* cache, U32 channel, U8* p, const 
     return p;
 }
 
-/* Restores the message at `p`. Returns its start; 0 if it is malformed. */
+/* Restores the message at `p`. Returns its start; 0 if the message is malformed. */
 static U8* unpack(Link_HeaderCache* cache, U32 channel, U8* p, U8* end) {
     U32 token = *p;
     U32 type = REQUEST;

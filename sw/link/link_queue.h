@@ -1,24 +1,27 @@
 /* SPDX-License-Identifier: MIT
  *
  * link_queue: holds outgoing messages, openings and closings until they are delivered, and cuts
- * them into chunks for fragments. They leave in their order, except that a short one may overtake a
- * long one.
+ * them into chunks for fragments. Messages leave in the order in which they were queued, except
+ * that a short message may overtake a long one.
  */
 #pragma once
 
 #include "link_frame.h"
 
-/* A message; without bytes an entry opens (LINK_FIRST) or closes a channel. */
+/* An entry of the queue: a message. An entry without bytes opens (LINK_FIRST) or closes a
+ * channel. */
 typedef struct Link_Entry {
     U32 tag;  /* Link_send's */
     U16 size; /* bytes */
-    U8 flags; /* LINK_FIRST, channel, LINK_ENTRY_... */
+    U8 flags; /* flags: LINK_FIRST, the channel, LINK_ENTRY_... */
 } Link_Entry;
-#define LINK_ENTRY_LEARNS 4U /* the peer learns a header from it: it must stay in order */
-#define LINK_ENTRY_AHEAD 8U  /* it has overtaken earlier entries */
-#define LINK_ENTRY_ENDED 16U /* its outcome is known; it waits for earlier entries */
+/* the peer learns a header from this message, so it must stay in order */
+#define LINK_ENTRY_LEARNS 4U
+#define LINK_ENTRY_AHEAD 8U /* this message has overtaken earlier entries */
+/* the outcome of this entry is known; it is removed after earlier entries */
+#define LINK_ENTRY_ENDED 16U
 
-/* Part of an entry, for one fragment. */
+/* Part of an entry that fits into one fragment. */
 typedef struct Link_Chunk {
     U32 start; /* offset in the queue's bytes */
     U8 size;   /* bytes */
@@ -28,46 +31,48 @@ typedef struct Link_Chunk {
 
 typedef struct Link_Queue {
     U8 first, count; /* index of the oldest entry; number of entries */
-    U8 wasFull;      /* 1: link_enqueue found no room */
-    U8 isSummed;     /* 1: the newest message gets a check */
+    U8 wasFull;      /* 1: link_enqueue had no room */
+    U8 isSummed;     /* 1: a check is computed for the newest message */
     U8 isAhead;      /* 1: the newest chunk has overtaken a long message */
-    U8 cutEntry;     /* entry of the next chunk in order, counted from `first` */
-    U16 cutBytes;    /* bytes of that entry that are cut already */
-    U32 cutAt;       /* offset of that chunk */
+    U8 cutEntry;     /* entry from which the next chunk in order is cut, counted from `first` */
+    U16 cutBytes;    /* number of bytes of that entry that were cut already */
+    U32 cutAt;       /* offset of the next chunk in the queue's bytes */
     U32 sums;        /* check of the newest message so far */
     U32 head, tail;  /* bytes removed and added so far, not reduced modulo the buffer's size */
-    U32 mask;        /* size of the buffer less one */
-    U8* bytes;       /* the caller's buffer */
+    U32 mask;        /* size of the buffer minus 1 */
+    U8* bytes;       /* buffer, owned by the caller */
     Link_Entry entries[LINK_SEND_MESSAGES];
 } Link_Queue;
 
-/* Prepares a zeroed queue with a buffer of `size` bytes, a power of two. */
+/* Initialises a zeroed queue with a buffer of `size` bytes, a power of two. */
 #define LINK_INIT_QUEUE(queue, buffer, size) \
     ((queue)->bytes = (buffer), (queue)->mask = (size) - 1U)
 
-/* Adds an entry for `size` bytes, which the caller appends. `longest`: largest chunk, bytes.
- * Returns 0 without room. */
+/* Adds an entry for `size` bytes, which the caller then appends. `longest` is the size of the
+ * largest chunk in bytes. Returns 0 if there is no room. */
 Link_Entry* link_enqueue(Link_Queue* queue, U32 flags, U32 size, U32 longest);
 
-/* Begins the bytes of the newest entry. `isSummed`: link_put computes its check. */
+/* Begins to append bytes to the newest entry. With `summed`, link_put computes the check of the
+ * message. */
 #define LINK_BEGIN_ENTRY(queue, summed) ((queue)->sums = 0, (queue)->isSummed = (U8)(summed))
 
-/* Appends bytes to the newest entry, and continues its check. */
+/* Appends bytes to the newest entry, and updates its check. */
 void link_put(Link_Queue* queue, const U8* data, U32 size);
 
 /* Cuts the next chunk: a whole entry if it is shorter than `room` bytes, otherwise at most
- * `reduced` bytes. If `reduced` is 0, only an entry that overtakes is cut. `overtaker`: largest
- * entry that may overtake, bytes; 0 disables overtaking. Returns 0 if nothing was cut. */
+ * `reduced` bytes. If `reduced` is 0, only an entry that overtakes is cut. `overtaker` is the size
+ * of the largest entry that may overtake, in bytes; 0 disables overtaking. Returns 0 if nothing was
+ * cut. */
 int link_cut(Link_Queue* queue, Link_Chunk* chunk, U32 room, U32 reduced, U32 overtaker);
 
-/* Copies the bytes of a chunk. */
+/* Copies the bytes of a chunk to `to`. */
 void link_copy(const Link_Queue* queue, const Link_Chunk* chunk, U8* to);
 
-/* Ends an entry, and removes the oldest entries that have ended. */
+/* Marks an entry as ended, and removes the oldest entries if they have ended. */
 void link_dequeue(Link_Queue* queue, U32 entry);
 
-/* Returns whether link_enqueue has found no room since the last call. */
+/* Returns whether link_enqueue had no room since the last call of this function. */
 int link_wasFull(Link_Queue* queue);
 
-/* Forgets the bytes of an empty queue, and wipes them if `isWiped`. */
+/* Resets the offsets of an empty queue; wipes its bytes if `isWiped` is not 0. */
 void link_rewind(Link_Queue* queue, int isWiped);

@@ -16,15 +16,15 @@ void link_resetReceiver(Link_Receiver* receiver, int isWiped) {
         memset(receiver->message, 0, LINK_HEAD_ROOM + receiver->longest);
 }
 
-/* Takes an opening or closing of the peer. */
+/* Processes an opening or closing of a channel by the peer. */
 static void onChannel(Link_Receiver* receiver, U32 channel, U32 isOpen) {
     const Link_Env* env = &receiver->pacing->env;
     if (link_onPeersChannel(&receiver->channels, channel, isOpen))
         env->port->channel(env->context, (int)channel, (int)isOpen);
 }
 
-/* Offers a complete message to the program; a message on a channel that was closed here is dropped.
- * If the program does not take a message, its last fragment counts as not received. */
+/* Offers a complete message to the program. A message on a channel that was closed here is
+ * dropped. If the program does not accept the message, its last fragment counts as not received. */
 static void deliver(Link_Receiver* receiver) {
     Link_Env* env = &receiver->pacing->env;
     receiver->isHeld = 0;
@@ -39,7 +39,7 @@ static void deliver(Link_Receiver* receiver) {
 }
 
 /* Adds a fragment to its message; a message of one fragment may arrive between the fragments of a
- * long one. Returns 0 if the fragment does not belong there. */
+ * long one. Returns 0 if the fragment violates the protocol. */
 static int append(Link_Receiver* receiver, U32 flags, const U8* data, U32 size) {
     U8* to = receiver->brief + LINK_HEAD_ROOM;
     receiver->start = to;
@@ -73,7 +73,7 @@ static int uncheck(Link_Receiver* receiver) {
     return link_sum(0, receiver->start, size) == LINK_CHECK_AT(receiver->start + size);
 }
 
-/* Restores the head of the complete message. Returns 0 if the message is malformed. */
+/* Restores the header of the complete message. Returns 0 if the message is malformed. */
 static int expand(Link_Receiver* receiver) {
     U8* end = receiver->start + receiver->size;
     U8* start =
@@ -85,7 +85,7 @@ static int expand(Link_Receiver* receiver) {
     return 1;
 }
 
-/* Takes the next fragment in order. Returns 0 if the peer broke the rules. */
+/* Processes the next fragment in order. Returns 0 if the peer violated the protocol. */
 static int accept(Link_Receiver* receiver, U32 flags, const U8* data, U32 size) {
     ++receiver->expected;
     if (size == 0) {
@@ -106,9 +106,10 @@ static int accept(Link_Receiver* receiver, U32 flags, const U8* data, U32 size) 
     return 1;
 }
 
-/* Takes a complete message out of its slot before its turn: the missing fragments belong to other
- * channels. The message continues to wait if an earlier one of its channel waits, or if the program
- * does not take it now. Returns 0 if the peer broke the rules. */
+/* Delivers a complete message from its slot before earlier fragments, because the missing
+ * fragments belong to other channels. The message stays in its slot if an earlier message of its
+ * channel waits, or if the program does not accept it now. Returns 0 if the peer violated the
+ * protocol. */
 static int takeEarly(Link_Receiver* receiver, U32 seq) {
     Link_HeaderCache* heads = &receiver->heads;
     Link_ReorderSlot* slot = SLOT(receiver, seq);
@@ -122,7 +123,8 @@ static int takeEarly(Link_Receiver* receiver, U32 seq) {
         if (other->flags && other->size != LINK_TAKEN && LINK_CHANNEL(other->flags) == channel)
             return 1;
     }
-    --receiver->expected; /* the acknowledgement in order does not change */
+    --receiver->expected; /* undoes the count by accept: the acknowledgement in order does not
+                           * change */
     if (!accept(receiver, slot->flags, slot->bytes, slot->size))
         return 0;
     receiver->expected = expected;
@@ -136,8 +138,8 @@ static int takeEarly(Link_Receiver* receiver, U32 seq) {
     return 1;
 }
 
-/* Takes fragments in order out of the slots, unless a message is held. Returns 0 if the peer broke
- * the rules. */
+/* Processes fragments from the slots that are now in order, unless a message waits for the
+ * program. Returns 0 if the peer violated the protocol. */
 static int drain(Link_Receiver* receiver) {
     for (;;) {
         Link_ReorderSlot* slot = SLOT(receiver, receiver->expected);
@@ -161,7 +163,8 @@ int link_onData(Link_Receiver* receiver, U32 seq, U32 flags, const U8* data, U32
         receiver->pacing->env.now + (flags & LINK_LAST ? LINK_ACK_DELAY : LINK_ACK_WITHIN);
     if (flags & LINK_ACK_NOW)
         receiver->ackNow = 1;
-    if (ahead == 0 && !receiver->isHeld) /* the usual case: straight into the message */
+    if (ahead == 0 && !receiver->isHeld) /* the usual case: the fragment is in order and is
+                                          * appended to the message directly */
         return accept(receiver, flags, data, size) && drain(receiver);
     if (ahead != 0 && ahead <= receiver->mask && !slot->flags) {
         ++receiver->waiting;
@@ -175,14 +178,14 @@ int link_onData(Link_Receiver* receiver, U32 seq, U32 flags, const U8* data, U32
         }
     } else {
         ++receiver->pacing->env.statistics
-              .duplicates; /* the acknowledgement was lost, or is late */
+              .duplicates; /* the earlier acknowledgement was lost or is late */
         receiver->ackNow = 1;
     }
     return 1;
 }
 
-/* Writes the bitmap of fragments that have arrived after the next expected one; bit n: SEQ + 1 + n.
- * Returns its size in bytes up to the last one. */
+/* Writes the bitmap of fragments that arrived after the next expected one: bit n is fragment SEQ
+ * + 1 + n. Returns the size of the bitmap in bytes, up to its last set bit. */
 static U32 gaps(const Link_Receiver* receiver, U8* bitmap) {
     U32 size = 0;
     U32 i;
@@ -217,7 +220,7 @@ int link_pollReceiver(Link_Receiver* receiver) {
     deliver(receiver);
     if (receiver->isHeld)
         return 1;
-    link_scheduleAck(receiver); /* the credit has changed */
+    link_scheduleAck(receiver); /* the peer must learn the new credit */
     return drain(receiver);
 }
 
@@ -229,7 +232,7 @@ void link_pollAck(Link_Receiver* receiver) {
         (!receiver->ackNow && LINK_BEFORE(receiver->pacing->env.now, receiver->ackAt)))
         return;
     size = gaps(receiver, payload + 1);
-    /* A message that the program does not take closes the window. */
+    /* A message that the program does not accept closes the window. */
     payload[0] = (U8)((receiver->isHeld ? receiver->waiting : receiver->mask) + 1U);
     if (link_sendControl(receiver->pacing, frame, LINK_KIND_BITS(LINK_KIND_ACK), receiver->expected,
                          size + 1U))

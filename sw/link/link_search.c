@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_search: the search for frames.
+ * link_search: finds frames in the bytes that the radio delivers.
  */
 #include "link_search.h"
 
@@ -23,12 +23,13 @@ static int isPlausible(const Link_Codec* codec, const U8* frame) {
 }
 
 /* Takes the cost of one frame, in rounds of Ascon, from the search budget. Returns whether the
- * budget was sufficient: hostile bytes cannot keep the CPU busy, however many headers they
- * contain. */
+ * budget was sufficient. The budget prevents hostile bytes with many headers from keeping the CPU
+ * busy. */
 static int mayTry(Link_Search* search, U32 rounds) {
     U32 now = search->session->handshake.pacing->env.now;
     U32 debt = search->paidAt - now;
-    if (debt > LINK_ROUNDS_AT_ONCE * LINK_ROUND_EVERY) /* older debt is paid */
+    if (debt > LINK_ROUNDS_AT_ONCE * LINK_ROUND_EVERY) /* older debt is paid by the time that has
+                                                        * passed */
         debt = 0;
     debt += rounds * LINK_ROUND_EVERY;
     if (debt > LINK_ROUNDS_AT_ONCE * LINK_ROUND_EVERY)
@@ -37,8 +38,9 @@ static int mayTry(Link_Search* search, U32 rounds) {
     return 1;
 }
 
-/* Opens a plausible frame. Returns it, opened, in place or in `copy`, and the attempt that opened
- * it; 0 if no seal matches. */
+/* Opens a plausible frame with the seal that it should have. Returns the opened frame, which is
+ * either in place or in `copy`, and sets the attempt that opened it. Returns 0 if no seal
+ * matches. */
 static const U8* unseal(const Link_Search* search, const U8* frame, U8* copy, U32* attempt) {
     const Link_Codec* codec = search->session->handshake.pacing->env.codec;
     const U8* opened;
@@ -50,9 +52,9 @@ static const U8* unseal(const Link_Search* search, const U8* frame, U8* copy, U3
     return 0;
 }
 
-/* Returns whether a frame found by the search can be trusted without a tag, since it might be a
- * coincidence: it is at the end of the bytes, or a valid one follows. 1: yes, 0: no, -1: not known
- * yet. */
+/* Returns whether a frame without a tag, found by the search, can be trusted; its checksum might
+ * match by coincidence. It is trusted if the bytes end after it, or if a valid frame follows. 1:
+ * yes, 0: no, -1: not known yet. */
 static int isConfirmed(const Link_Search* search, const U8* next, U32 left, int isEnd) {
     const Link_Codec* codec = search->session->handshake.pacing->env.codec;
     U32 size, attempt;
@@ -68,8 +70,9 @@ static int isConfirmed(const Link_Search* search, const U8* next, U32 left, int 
     return isPlausible(codec, next) && unseal(search, next, 0, &attempt);
 }
 
-/* Takes a complete frame, with `left` bytes after it. `isSearch`: no frame ends just before it.
- * Returns 1: taken, 0: not a frame for this side, -1: not known yet. */
+/* Processes a complete frame with `left` bytes after it. `isSearch` is 1 if no frame ends
+ * directly before it. Returns 1 if the frame was processed, 0 if it is not a frame for this
+ * side, -1 if this is not known yet. */
 static int take(Link_Search* search, const U8* frame, U32 left, int isSearch, int isEnd) {
     Link_Session* session = search->session;
     Link_Env* env = &session->handshake.pacing->env;
@@ -87,7 +90,7 @@ static int take(Link_Search* search, const U8* frame, U32 left, int isSearch, in
         if (isHandshake && left)
             return 0;
         if (!mayTry(search, rounds))
-            return isHandshake ? -1 : 0; /* the budget fills during a silence */
+            return isHandshake ? -1 : 0; /* the budget is refilled during a silence */
     }
     opened = unseal(search, frame, copy, &attempt);
     if (!opened && env->codec->isAuthenticated)
@@ -105,7 +108,7 @@ static int take(Link_Search* search, const U8* frame, U32 left, int isSearch, in
 }
 
 /* Counts a byte at which no frame begins. The first such byte after a frame may begin a frame of an
- * unknown session, which is then answered. It is not answered if its length is impossible for a
+ * unknown session, which is then answered. There is no answer if the length is impossible for a
  * frame, as in a broadcast. */
 static void skip(Link_Search* search, const U8* frame, U32 left) {
     Link_Env* env = &search->session->handshake.pacing->env;
@@ -116,13 +119,13 @@ static void skip(Link_Search* search, const U8* frame, U32 left) {
     ++env->statistics.bytesSkipped;
 }
 
-/* Takes all complete frames in the bytes. `isEnd`: a silence follows, so an incomplete frame stays
- * incomplete. Returns the number of bytes used.
+/* Processes all complete frames in the bytes. `isEnd` is 1 if a silence follows: an incomplete
+ * frame then stays incomplete. Returns the number of bytes used.
  *
- * Without a key an incomplete frame holds up the bytes after it. A tag needs no confirmation, so
- * under a key a frame is taken when its last byte arrives, even after the beginning of another:
- * that beginning may come from an attacker who wants to delay it. Frames that end within the kept
- * bytes were checked before.
+ * Without a key, the bytes after an incomplete frame must wait. With a key, a frame has a tag and
+ * needs no confirmation. It is processed when its last byte arrives, even if its bytes follow the
+ * beginning of another frame: that beginning may come from an attacker who wants to delay the
+ * genuine frame. Frames that end within the kept bytes were checked before.
  *
  * Hostile bytes can pretend that a frame of the handshake ends with each portion that the caller
  * reads, and use up the search budget before the genuine frame arrives. Therefore, if the budget
@@ -157,7 +160,7 @@ static U32 parse(Link_Search* search, const U8* bytes, U32 count, int isEnd) {
     return used;
 }
 
-/* Parses the kept bytes, currently `count`, and keeps an incomplete frame. */
+/* Parses the kept bytes, `count` of them, and keeps an incomplete frame. */
 static void parseKept(Link_Search* search, U32 count, int isEnd) {
     U32 used = parse(search, search->bytes, count, isEnd);
     search->count = (U8)(count - used);
@@ -177,7 +180,7 @@ void link_pollSearch(Link_Search* search) {
 void link_takeBytes(Link_Search* search, const U8* bytes, U32 size) {
     link_pollSearch(search);
     if (size == 0)
-        return; /* otherwise silences would not be detected; bytes may be null */
+        return; /* an empty portion would hide a silence; `bytes` may be null */
     search->at = search->session->handshake.pacing->env.now;
     if (search->count == 0) { /* the usual case: a complete frame is read in place */
         U32 used = parse(search, bytes, size, 0);

@@ -10,56 +10,60 @@
 
 typedef enum Link_FragmentState { LINK_TO_SEND, LINK_SENT, LINK_ACKED } Link_FragmentState;
 
-/* A fragment that was cut from the queue and is not acknowledged in order yet. */
+/* A fragment that was cut from the queue and is in the window: not all fragments up to it are
+ * acknowledged. */
 typedef struct Link_Fragment {
     Link_Chunk chunk;
     U32 firstAt, sentAt; /* times of its first and its last transmission, us */
-    U32 order;           /* number of its last transmission */
-    U8 tries;            /* transmissions: 0, 1, 2 for more */
-    U8 state;            /* Link_FragmentState */
-    U8 packet;           /* packet of its last transmission, as Link_Pacing.handed counts */
+    U32 order;           /* number of its last transmission, as `order` counts */
+    U8 tries;            /* number of transmissions: 0, 1, or 2 for more */
+    U8 state;            /* state, a Link_FragmentState */
+    U8 packet;           /* number of the packet of its last transmission, as Link_Pacing.handed
+                          * counts */
 } Link_Fragment;
 
 typedef struct Link_Sender {
     Link_Pacing* pacing;
-    Link_Receiver* receiver; /* its acknowledgements ride on fragments */
-    Link_Fragment* window;   /* the caller's */
-    U8 mask;                 /* fragments in the window less one */
+    Link_Receiver* receiver; /* receiver, whose acknowledgements may be sent on this sender's
+                              * fragments */
+    Link_Fragment* window;   /* window of fragments, owned by the caller */
+    U8 mask;                 /* number of fragments in the window minus 1 */
     /* The following fields are 0 when a session begins. */
-    U8 credit;     /* fragments that may be in flight now */
+    U8 credit;     /* number of fragments that may be in flight now */
     U8 fullCredit; /* largest credit so far */
     U8 hasWork;    /* 1: there may be something to send */
-    U8 isLossy;    /* 1: the newest acknowledgement had gaps */
+    U8 isLossy;    /* 1: the newest acknowledgement reported missing fragments */
     U8 isLate;     /* 1: the timer has expired since the last acknowledgement */
-    U8 unasked;   /* transmissions since the last request for an acknowledgement, or the last one */
-    U8 hasSample; /* 1: srtt and rttvar are valid */
-    U32 base;     /* number of the oldest unacknowledged fragment; its lowest byte is SEQ */
-    U32 next;     /* number of the next new fragment */
-    U32 ahead;    /* number of the newest fragment that has overtaken */
-    U32 rto, srtt, rttvar;  /* as named in RFC 6298, us */
+    U8 unasked;    /* number of transmissions since the last request for an acknowledgement, or
+                    * since the last acknowledgement */
+    U8 hasSample;  /* 1: srtt and rttvar are valid */
+    U32 base;      /* number of the oldest unacknowledged fragment; its lowest byte is SEQ */
+    U32 next;      /* number of the next new fragment */
+    U32 ahead;     /* number of the newest fragment that has overtaken */
+    U32 rto, srtt, rttvar;  /* time-out, smoothed round trip and its variation as in RFC 6298, us */
     U32 timerAt;            /* time at which the retransmission timer expires, us */
-    U32 order;              /* transmissions so far */
-    Link_HeaderCache heads; /* heads of sent messages */
+    U32 order;              /* number of transmissions so far */
+    Link_HeaderCache heads; /* headers of sent messages, for compression */
     /* End of the fields that begin at 0. */
     Link_Queue queue;
 } Link_Sender;
 
-/* Resets to the state without a session: reports queued messages as LINK_UNKNOWN. Wipes their bytes
- * if `isWiped`. */
+/* Resets the sender to its state without a session: reports queued messages as LINK_UNKNOWN, and
+ * wipes their bytes if `isWiped` is not 0. */
 void link_resetSender(Link_Sender* sender, int isWiped);
 
-/* Queues an opening (LINK_FIRST) or closing of a channel. Returns 0 without room. */
+/* Queues an opening (LINK_FIRST) or a closing of a channel. Returns 0 if the queue has no room. */
 int link_queueChannel(Link_Sender* sender, U32 flags);
 
 /* Queues a copy of a message. Returns LINK_OK, LINK_FULL or LINK_TOO_LONG. */
 Link_Status link_queueMessage(Link_Sender* sender, int channel, const U8* data, U32 size, U32 tag);
 
-/* Takes an acknowledgement. `bitmap` has `size` bytes, as in the frame. Returns whether it
- * acknowledges a fragment for the first time. */
+/* Processes an acknowledgement. `bitmap` has `size` bytes, as in the frame. Returns whether a
+ * fragment is acknowledged for the first time. */
 int link_onAck(Link_Sender* sender, U32 cumulative, U32 credit, const U8* bitmap, U32 size);
 
-/* Takes the radio's result for a packet: the contents of a lost one are sent again. */
+/* Processes the radio's result for a packet. The contents of a lost packet are sent again. */
 void link_onAnswer(Link_Sender* sender, U32 packet, int isDelivered);
 
-/* Sends fragments that are due. Returns 0 if one is so old that the session must end. */
+/* Sends the fragments that are due. Returns 0 if a fragment is so old that the session must end. */
 int link_pollSender(Link_Sender* sender);

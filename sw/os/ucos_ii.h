@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * ucos_ii: the part of uC/OS-II's API (2.9x) that the firmware uses, with its names, argument
- * orders, error codes and blocking rules, so that the real kernel drops in. Manual: "MicroC/OS-II,
- * The Real-Time Kernel", chapter 16. Time-outs and delays count ticks of 1/OS_TICKS_PER_SEC s.
+ * orders, error codes and blocking rules, so that the real kernel can replace this one. Manual:
+ * "MicroC/OS-II, The Real-Time Kernel", chapter 16. Time-outs and delays count ticks of
+ * 1/OS_TICKS_PER_SEC s.
  */
 #pragma once
 
@@ -19,7 +20,7 @@ typedef U32 INT32U;
 #define OS_TRUE 1U
 
 #define OS_ERR_NONE 0U
-#define OS_ERR_EVENT_TYPE 1U /* the event is of another type */
+#define OS_ERR_EVENT_TYPE 1U /* the event has another type */
 #define OS_ERR_PEND_ISR 2U   /* a task-only call was made from an interrupt */
 #define OS_ERR_POST_NULL_PTR 3U
 #define OS_ERR_PEVENT_NULL 4U
@@ -38,12 +39,12 @@ typedef U32 INT32U;
 #define OS_ERR_TASK_NOT_EXIST 67U
 #define OS_ERR_TASK_OPT 69U /* created without OS_TASK_OPT_STK_CHK */
 #define OS_ERR_NOT_MUTEX_OWNER 100U
-#define OS_ERR_PIP_LOWER 120U /* the owner's priority is above the mutex's ceiling */
+#define OS_ERR_PIP_LOWER 120U /* the owner's priority is higher than the ceiling of the mutex */
 
 typedef struct os_event OS_EVENT;
 
 void OSInit(void);
-/* Runs the tasks; does not return on the target. */
+/* Runs the tasks. On the target it does not return. */
 void OSStart(void);
 
 /* Creates a task. `prio` is 0 (highest) .. OS_LOWEST_PRIO - 1, one task each; `ptos` is the highest
@@ -51,8 +52,8 @@ void OSStart(void);
 INT8U OSTaskCreate(void (*task)(void* p_arg), void* p_arg, OS_STK* ptos, INT8U prio);
 
 #define OS_TASK_OPT_NONE 0U
-#define OS_TASK_OPT_STK_CHK 1U /* OSTaskStkChk may be used */
-#define OS_TASK_OPT_STK_CLR 2U /* the stack is filled with zeros, which OSTaskStkChk counts */
+#define OS_TASK_OPT_STK_CHK 1U /* allows OSTaskStkChk for this task */
+#define OS_TASK_OPT_STK_CLR 2U /* fills the stack with zeros, which OSTaskStkChk counts */
 
 /* Creates a task like OSTaskCreate, with the bounds of its stack: `pbos` is its lowest address,
  * `stk_size` its size in OS_STK. `id` and `pext` are accepted as in uC/OS-II, and not used. */
@@ -60,22 +61,23 @@ INT8U OSTaskCreateExt(void (*task)(void* p_arg), void* p_arg, OS_STK* ptos, INT8
                       OS_STK* pbos, INT32U stk_size, void* pext, INT16U opt);
 
 typedef struct os_stk_data {
-    INT32U OSFree, OSUsed; /* sizes in OS_STK */
+    INT32U OSFree, OSUsed; /* sizes of the free and the used part of the stack, in OS_STK */
 } OS_STK_DATA;
 
-/* Reports the largest use of a task's stack so far. */
+/* Reports the largest use of a task's stack until now. */
 INT8U OSTaskStkChk(INT8U prio, OS_STK_DATA* p_stk_data);
 
-/* Returns the priority of the running task (OSPrioCur of uC/OS-II, as a function). */
+/* Returns the priority of the running task. In uC/OS-II this is the variable OSPrioCur. */
 INT8U OSTaskPrio(void);
 
-extern INT8U OSPrioCur; /* priority at which the running task runs; not to be written */
+extern INT8U OSPrioCur; /* priority with which the current task is running; read only */
 
 void OSTimeDly(INT32U ticks);
 INT32U OSTimeGet(void);
 void OSTimeTick(void); /* called by the tick interrupt, between OSIntEnter and OSIntExit */
 
-/* timeout 0: wait forever. *perr: OS_ERR_NONE, OS_ERR_TIMEOUT, or the error of the call. */
+/* A timeout of 0 waits for ever. *perr is set to OS_ERR_NONE, OS_ERR_TIMEOUT, or the error of
+ * the call. */
 OS_EVENT* OSSemCreate(INT16U cnt);
 void OSSemPend(OS_EVENT* pevent, INT32U timeout, INT8U* perr);
 INT8U OSSemPost(OS_EVENT* pevent);

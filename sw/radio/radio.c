@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * radio: set-up of controller and modem, the circular output buffer, the receive ring.
+ * radio: sets up controller and modem, and manages the output ring and the receive ring.
  */
 #include "radio.h"
 #include "fsmc.h"
@@ -9,42 +9,42 @@
 #include "ucos_ii.h"
 
 #define BUFFERS MODEM_RING_BUFFERS
-/* Used buffers of the output ring. */
+/* Number of used buffers in the output ring. */
 #define BUSY (BUFFERS - (get(MODEM_TX_STATE) & MODEM_TX_STATE_FREE_MASK))
 #define DEFAULT_CHANNEL 0x0CU
 #define DEFAULT_PAN 0x3332U
 #define DEFAULT_GUARD_MS 1000U
 #define ANSWERS (RADIO_API && radio.onAnswer)
 #define POLL_TICKS (OS_TICKS_PER_SEC / 100U)
-#define MODE_STEP 13U /* step of the set-up: ATAP */
+#define MODE_STEP 13U /* step ATAP of the set-up */
 
-/* API mode: a buffer holds a frame's contents: its type, and here four bytes more before a packet.
- *   01 ID TARGET TARGET 00 DATA...          packet to send
- *   89 ID STATUS                            its result: 0 received by the target's modem
- *   08 00 'R' 'N' VALUE                     a setting, without a reply
- *   81 SOURCE SOURCE RSSI OPTIONS DATA...   received packet */
+/* API mode: each buffer holds the contents of a frame: its type, and in a sent packet four more
+ *   bytes before the data. 01 ID TARGET TARGET 00 DATA...          packet to send 89 ID STATUS
+ *   its result: 0 received by the target's modem 08 00 'R' 'N' VALUE                     a setting,
+ *   without a reply 81 SOURCE SOURCE RSSI OPTIONS DATA...   received packet */
 #define TRANSMIT 0x01U
 #define COMMAND 0x08U
 #define STATUS 0x89U
 #define PACKET 0x81U
 #define HEAD 5U
-#define ID_BASE 0x80U /* so that an id is never 0, which would request no report */
+#define ID_BASE 0x80U /* offset of ids, so that an id is never 0, which would request no report */
 #define ID_MASK 0x7FU
 #define SILENT_TICKS (3U * OS_TICKS_PER_SEC) /* time-out for the modem's answer */
 
 typedef enum BufferState { BUFFER_FREE, BUFFER_SENDING } BufferState;
 
 static struct {
-    BufferState output[BUFFERS]; /* the fixed control vector: one entry a DDR3 buffer */
-    U32 head, used;              /* oldest being sent; how many are */
+    BufferState output[BUFFERS]; /* control vector of the paper: one entry for each buffer in
+                                  * DDR3 */
+    U32 head, used;              /* oldest buffer that is being sent; number of such buffers */
     Radio_Memory memory;
     Radio_Counters counters;
     U32 failedStep;
-    Radio_OnAnswer onAnswer; /* 0: transparent mode */
+    Radio_OnAnswer onAnswer; /* callback for results; 0 in transparent mode */
     U16 target, source;      /* target of the next packet; source of the last received one */
     U8 handed, answered;     /* packets queued, and packets answered, modulo 256 */
     U8 wait;                 /* RN */
-    U32 handedAt;            /* time at which the last packet was handed over */
+    U32 handedAt;            /* time at which the last packet was handed to the controller */
 } radio;
 
 static U32 get(U32 word) {
@@ -55,7 +55,7 @@ static void set(U32 word, U32 value) {
     FSMC_write(MAP_SLOT_MODEM, word, value);
 }
 
-/* Writes the words of the key, highest first. */
+/* Writes the words of the key, the highest word first. */
 static void setKey(const U8* key) {
     U32 i;
     for (i = 0; i < 16U; i += 4U)
@@ -93,14 +93,15 @@ Radio_Status xbeeInit(const XBeeInitTypeDef* conf, const Radio_Memory* memory) {
     if (RADIO_API) {
         radio.onAnswer = get(MODEM_STATUS) & MODEM_STATUS_API_MASK ? conf->onAnswer : 0;
         radio.target = conf->target;
-        radio.handed = radio.answered = 0; /* the modem also drops its packets */
+        radio.handed = radio.answered = 0; /* the reset modem also drops its packets */
         radio.wait = RADIO_WAIT;
     }
     radio.head = radio.used = 0;
     for (i = 0; i < BUFFERS; ++i)
         radio.output[i] = BUFFER_FREE;
     setUpController(conf);
-    /* The controller always finishes: after about 40 s, with all rates tried. */
+    /* The controller always ends the configuration: after about 40 s at the latest, when all
+     * rates have been tried. */
     while (!(events & (MODEM_EVENT_CONFIGURED_MASK | MODEM_EVENT_CONFIGURE_FAILED_MASK))) {
         OSTimeDly(POLL_TICKS);
         events = get(MODEM_EVENT);
@@ -154,8 +155,8 @@ static U32 writeHead(U32 address) {
     return HEAD;
 }
 
-/* Puts a packet, or the contents of a frame, into the output ring. Returns 0, or 1 if no buffer is
- * free. */
+/* Puts a packet, or the contents of another frame, into the output ring. Returns 0, or 1 if no
+ * buffer is free. */
 static int put(const U8* bytes, U32 size, int isPacket) {
     U32 buffer, address, head = 0;
     buffer = (radio.head + radio.used) % BUFFERS;
@@ -201,8 +202,8 @@ U16 Radio_source(void) {
 
 #endif
 
-/* Reports the result of a packet; earlier packets without one are lost, since results arrive in the
- * order of packets. */
+/* Reports the result of a packet. Results arrive in the order of packets, so earlier packets
+ * without a result count as lost. */
 static void takeStatus(U8 id, int isDelivered) {
     U32 before = (U32)(id - radio.answered) & ID_MASK;
     if (before >= (U8)(radio.handed - radio.answered))
@@ -217,13 +218,13 @@ static void takeStatus(U8 id, int isDelivered) {
     }
 }
 
-/* Counts unanswered packets as lost. */
+/* Counts packets that were not answered in time as lost. */
 static void expire(void) {
     if (radio.handed != radio.answered && OSTimeGet() - radio.handedAt >= SILENT_TICKS)
         takeStatus((U8)(radio.handed - 1U), 0);
 }
 
-/* Takes the contents of a frame. */
+/* Processes the contents of a received frame. */
 static void takeFrame(const U8* frame, U32 bytes, Radio_OnPacket onPacket, void* context) {
     if (frame[0] == STATUS && bytes == 3U) {
         takeStatus(frame[1], frame[2] == 0);

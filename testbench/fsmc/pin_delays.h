@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// pin_delays: the wires between the FSMC and the design: each change of each pin has a separate
-// delay, and a flip-flop throws if its data moves in its set-up or hold time.
+// pin_delays: models the wires between the FSMC and the design. Each change of a pin has a separate
+// delay. FsmcError is thrown if the data of a flip-flop changes in its set-up or hold time.
 
 #pragma once
 
@@ -14,31 +14,34 @@
 #include <random>
 #include <string>
 
-// A delay in ps, random between two bounds, or exact: no skew.
+// A delay in ps: random between two bounds, or exact (without skew).
 struct PinDelay {
     constexpr PinDelay(int exact) : least(exact), most(exact) {}
     constexpr PinDelay(int atLeast, int atMost) : least(atLeast), most(atMost) {}
     int least, most;
 };
 
-// A corner of delays: the STM32F2's pads (from HCLK's edge to the pin), the board, and Spartan-6's
-// pads and routing up to the first flip-flop or LUT, and from the last one. The chip's share is the
-// limit in synth/ise/chip.ucf.
+// A corner of delays: the STM32F2's pads (from HCLK's edge to the pin), the board, and the FPGA.
+// The FPGA's delays are its pads and routing, up to the first flip-flop or LUT and from the last
+// one; their limits are in synth/ise/chip.ucf.
 struct FsmcCorner {
     const char* name;
     PinDelay address, data, lanes, select, strobe; // processor
-    PinDelay board;                                // delay of the board's tracks, each way
-    PinDelay padIn, clockIn;                       // clockIn: NWE, NADV, as clocks
-    PinDelay padOut;                               // LUTs and pad
+    PinDelay board;                                // delay of the board's tracks in each direction
+    PinDelay padIn, clockIn;                       // clockIn: delay of NWE and NADV, which the
+                                                   // design uses as clocks
+    PinDelay padOut;                               // delay of LUTs and pad
     int setup, hold;                               // set-up and hold time of the design's capture
                                                    // by NWE
-    int readSetup = 4000;                          // read set-up time of the FSMC, without one HCLK
+    int readSetup = 4000;                          // set-up time of the FSMC for read data, in
+                                                   // addition to one HCLK
 };
 
 // The tables of the two data sheets (STM32F2, "FSMC characteristics"; Spartan-6, DS162, IOB and
-// CLB switching) could not be had. The pads' values are from memory, rounded to the safe side.
-// Routing in the chip is what synth/ise/chip.ucf allows; boards are 2 cm to 8 cm. Address to
-// read data and NE to NWAIT are at most 10 ns through the chip, and 15 ns with the rest.
+// CLB switching) were not available. The values of the pads are from memory, rounded to the safe
+// side. The routing delays in the chip are the limits in synth/ise/chip.ucf; boards are 2 cm to 8
+// cm. From address to read data, and from NE to NWAIT, a signal needs at most 10 ns through the
+// chip, and 15 ns including the other delays.
 inline const FsmcCorner fsmcCorners[] = {
     {"no delay", 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0},
     {"fast", 0, 0, 0, 0, 500, 100, 1000, 1500, 2500, 1000, 500},
@@ -59,9 +62,10 @@ inline const FsmcCorner fsmcCorners[] = {
      500},
 };
 
-// A corner. With late synchronisers (tests cdc.*) the address comes no later than NOE, its bits
-// together, and NWE's way into the chip is as long at each edge: the lateness, a whole clock,
-// stands for all delays (docs/fsmc.md). At 60 MHz its bits may come apart, before NOE.
+// Returns a corner. With late synchronisers (tests cdc.*), the lateness of a whole clock stands for
+// all delays (docs/fsmc.md). Therefore the address then comes no later than NOE, its bits arrive
+// together, and NWE's delay into the chip is equal at both edges. At 60 MHz the bits of the address
+// may arrive at different times before NOE.
 inline FsmcCorner cornerOf(unsigned index, unsigned hclk = 100) {
     FsmcCorner corner = fsmcCorners[index];
     if (std::getenv("CDC_SEED")) {
@@ -77,7 +81,7 @@ inline FsmcCorner cornerOf(unsigned index, unsigned hclk = 100) {
 
 class PinDelays {
 public:
-    // `near`: the processor pins; `far`: the design pins; clock periods in ps.
+    // `near` are the processor's pins, `far` the design's pins; clock periods are in ps.
     PinDelays(FsmcPins& near, FsmcPins& far, FsmcDesign design, const FsmcCorner& corner,
               uint64_t seed, int hclk, int clk)
         : near_(near), far_(far), design_(std::move(design)), corner_(corner), random_(seed),
@@ -85,7 +89,7 @@ public:
         nextEdge_ = 1 + static_cast<int64_t>(random_() % static_cast<uint64_t>(clk)); // any phase
     }
 
-    // Passes on changes of the processor pins.
+    // Passes changes of the processor's pins on to the design.
     void show() {
         uint64_t levels = driven(near_);
         for (unsigned pin = 0; pin <= drives; ++pin)
@@ -94,7 +98,7 @@ public:
         sent_ = levels;
         pass(0);
     }
-    // Lets time pass; clocks the design meanwhile.
+    // Lets time pass, and clocks the design during it.
     void pass(unsigned hclks) {
         int64_t end = now_ + int64_t(hclks) * hclk_;
         for (;;) {
@@ -127,9 +131,9 @@ public:
         }
         now_ = end;
     }
-    // Changes the period of HCLK, ps.
+    // Sets the period of HCLK, ps.
     void setHclk(int hclk) { hclk_ = hclk; }
-    // Adds to the delay of a pin, ps: one of the processor's outputs by its bit below, or NWAIT.
+    // Adds a delay, ps, to a pin: one of the processor's outputs, or NWAIT.
     void addDelay(const std::string& pin, int ps) {
         static const std::map<std::string, unsigned> bits = {
             {"NE1", selectBit}, {"NE2", selectBit + 1}, {"NWE", nwe},  {"NOE", noe},
@@ -144,9 +148,9 @@ public:
         else
             throw std::runtime_error("late " + pin + ": expected a line of the FSMC");
     }
-    // Pins that move at the wrong time are taken as they are, instead of an FsmcError.
+    // Accepts pins that change at the wrong time as they are, instead of throwing FsmcError.
     void tolerate() { tolerant_ = true; }
-    // True if the data at the processor pins has been stable for the set-up time.
+    // Returns whether the data at the processor's pins has been stable for the set-up time.
     bool dataIsSetUp() const { return now_ - dataMoved_ >= corner_.readSetup + hclk_; }
 
 private:
@@ -181,7 +185,7 @@ private:
         return extra_[pin] + between(processor) + between(corner_.board) +
                between(clock ? corner_.clockIn : corner_.padIn);
     }
-    // Lets a pin's change arrive at the design or at the processor.
+    // Applies a pin's change at the design or at the processor.
     void arrive(unsigned pin, bool level) {
         bool selected = (arrived_ >> selectBit & 3) != 3;
         if (level && selected && pin == nwe) {
@@ -198,7 +202,7 @@ private:
         design_.settle();
         settled();
     }
-    // Passes on changes of the design pins.
+    // Passes changes of the design's pins on to the processor.
     void settled() {
         uint32_t out = far_.dFromDesign | uint32_t(far_.dDriven) << drivenOut |
                        uint32_t(far_.nwaitN) << nwaitOut;
@@ -209,7 +213,7 @@ private:
                    pin, out >> pin & 1, false);
         shown_ = out;
     }
-    // Schedules a pin's change; its changes keep their order.
+    // Schedules a change of a pin. The changes of one pin keep their order.
     void at(int64_t time, unsigned pin, bool level, bool toDesign) {
         int64_t& last = toDesign ? last_[pin] : lastOut_[pin];
         last = std::max(time, last);
@@ -230,7 +234,7 @@ private:
     int nwaitExtra_ = 0;
     bool tolerant_ = false;
     uint64_t sent_, arrived_;
-    uint32_t shown_ = 1u << 17; // the design's present outputs: data, its driver, NWAIT
+    uint32_t shown_ = 1u << 17; // current outputs of the design: data, data enable, NWAIT
     int64_t last_[64] = {}, lastOut_[18] = {};
     std::multimap<int64_t, Change> changes_;
 };

@@ -21,19 +21,25 @@ class XBee : public Mac::Modem, private SerialClient {
 public:
     struct Options {
         std::string name = "xbee";
-        uint64_t bootNs = 50'000'000;        // 50..500 ms by firmware
-        std::map<std::string, uint32_t> set; // parameters that differ from the factory's
+        uint64_t bootNs = 50'000'000;        // time of the boot, 50..500 ms depending on the
+                                             // modem's firmware
+        std::map<std::string, uint32_t> set; // parameters with values that differ from the factory
+                                             // settings
         std::string key;                     // KY, 32 hexadecimal digits
     };
     struct Counters {
         uint64_t bytesFromHost = 0, bytesToHost = 0;
-        uint64_t overflow = 0;      // bytes lost: the serial input buffer was full
-        uint64_t framingErrors = 0; // wrong stop bit, or the host's baud rate is too far off
+        uint64_t overflow = 0;      // bytes lost because the serial input buffer was full
+        uint64_t framingErrors = 0; // bytes with a wrong stop bit, or with a baud rate of the host
+                                    // that differs too much
         uint64_t commands = 0, refused = 0;
         uint64_t packetsSent = 0, packetsReceived = 0;
-        uint64_t packetsDropped = 0;    // acknowledged, but the buffer to the host was full
-        uint64_t packetsUnreadable = 0; // encrypted while EE is 0 here, or the other way round
-        uint64_t duplicatesDropped = 0, badFrames = 0; // API frames with a wrong checksum or type
+        uint64_t packetsDropped = 0;    // packets that were acknowledged, but lost because the
+                                        // buffer to the host was full
+        uint64_t packetsUnreadable = 0; // packets that were encrypted while EE is 0 here, or the
+                                        // reverse
+        uint64_t duplicatesDropped = 0, badFrames = 0; // duplicates; API frames with a wrong
+                                                       // checksum or type
     };
 
     XBee(SerialLine& line, RfChannel& channel, Options options);
@@ -44,11 +50,12 @@ public:
     void advance(uint64_t now);
     uint64_t nextEvent() const;
 
-    // The reset pin: `low` for at least 200 ns resets.
+    // Sets the reset pin. `low` for at least 200 ns resets the modem.
     void resetPin(bool low, uint64_t now);
-    // Power off and on: settings that were not written by WR are lost.
+    // Switches the power. Settings that were not stored by WR are lost.
     void power(bool on, uint64_t now);
-    // Replies ERROR to this command, as a firmware without it does ("" disables this).
+    // Makes the modem reply ERROR to this command, like a firmware without the command; "" disables
+    // this.
     void refuseCommand(const std::string& letters) { refuse_ = letters; }
 
     const std::string& name() const { return options_.name; }
@@ -59,7 +66,7 @@ public:
     bool cts() const { return cts_; }
     const Counters& counters() const { return counters_; }
 
-    // The air and the MAC call these.
+    // ---- functions that the air and the MAC call ----
     bool hears(const RfPacket& packet) const override;
     Reception receive(const RfPacket& packet, uint64_t now) override;
     uint64_t busyUntil() const override { return busyUntil_; }
@@ -114,24 +121,27 @@ private:
     SerialLine& line_;
     RfChannel& channel_;
     Options options_;
-    Parameters written_, pending_, active_; // saved by WR; set by commands; in force
+    Parameters written_, pending_, active_; // parameters saved by WR; set by commands but not
+                                            // applied yet; in effect
     Mode mode_ = Mode::Off;
     uint64_t bootDone_ = 0, lastByte_ = 0, commandUntil_ = 0, resetLowSince_ = 0;
     bool resetLow_ = false;
-    unsigned pluses_ = 0; // length so far of a sequence that may enter command mode
+    unsigned pluses_ = 0; // number of characters so far of a sequence that may enter command mode
     uint64_t firstPlus_ = 0;
     std::string commandLine_;
-    std::deque<uint8_t> input_;  // bytes from the host, to be sent
-    size_t flushCount_ = 0;      // number of them that must be sent now
+    std::deque<uint8_t> input_;  // bytes from the host that are not sent yet
+    size_t flushCount_ = 0;      // number of bytes in input_ that must be sent now
     std::deque<uint8_t> output_; // bytes to the host
-    double nextBaud_ = 0;        // rate of the line after the bytes held for the host have left:
-    size_t atOldRate_ = 0;       // this many bytes, the OK of the change last
+    double nextBaud_ = 0;  // rate of the line that takes effect when the following number of bytes
+                           // has been sent to the host
+    size_t atOldRate_ = 0; // number of bytes that are still sent at the old rate; the last
+                           // one belongs to the OK of the change
     bool inFlight_ = false, cts_ = true;
     Mac mac_;
     uint64_t busyUntil_ = 0;
     uint16_t sequence_ = 0;
-    uint32_t frameCounter_ = 0;                 // counter of encrypted packets since power on
-    std::map<uint16_t, uint16_t> lastSequence_; // last sequence number by sender
+    uint32_t frameCounter_ = 0;                 // number of encrypted packets since power-on
+    std::map<uint16_t, uint16_t> lastSequence_; // last sequence number of each sender
     std::string refuse_;
     std::string key_, writtenKey_;
     // API
@@ -142,6 +152,6 @@ private:
     Bytes frame_;
     bool inFrame_ = false, escaped_ = false;
     std::deque<ApiPacket> apiQueue_;
-    uint8_t apiId_ = 0; // frame id of the packet in flight
+    uint8_t apiId_ = 0; // frame id of the API packet in flight
     Counters counters_;
 };

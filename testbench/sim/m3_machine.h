@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// m3_machine: runs the firmware's ARM binary on a SocModel: the Cortex-M3, its FSMC on the RTL's
-// pins.
+// m3_machine: runs the firmware's ARM binary on a SocModel: the Cortex-M3, with its FSMC connected
+// to the pins of the RTL.
 
 #pragma once
 
@@ -16,50 +16,53 @@
 class M3Machine {
 public:
     struct Config {
-        std::string firmware; // ELF file
-        // Processor clock (HCLK), Hz of simulated time. 120 MHz: the processor's work takes as long
-        // as on the board, although the fabric is slower. 0: 6/5 of the fabric clock, as FSMC
-        // accesses always are; then cycle counts are as on the board, and the processor is as much
-        // slower as the fabric.
+        std::string firmware; // ELF file Processor clock (HCLK), Hz in simulated time. With 120
+                              // MHz, the processor's work takes
+        // as long as on the board, although the FPGA's clock is slower. With 0, HCLK is 6/5 of the
+        // FPGA's clock, as it always is for FSMC accesses: cycle counts are then as on the board,
+        // and the processor is slowed down by the same factor as the FPGA.
         uint32_t hclkHz = 120'000'000;
-        // Written to uav_guardMs (uav.h) after each start, as a debugger would, in ms; 0: not
-        // written. A program without the variable is left alone.
+        // Guard time in ms, written to uav_guardMs (uav.h) after each start, as a debugger would
+        // do; 0: not written. A program without this variable is not changed.
         uint16_t guardMs = 0;
-        // Contents of flash, instead of the program, which then only provides its symbols.
+        // Contents of the flash; empty: the flash contains the program. With contents, the program
+        // only provides its symbols.
         std::vector<uint8_t> flash = {};
-        // Key of the link as set by the factory, 16 bytes; empty: the vehicle is open.
+        // Key of the link that the factory has set, 16 bytes; empty: the vehicle is open.
         std::vector<uint8_t> key = {};
         uint64_t seed = 1; // seed of the random number generator
         // Contents of the FPGA's configuration flash; empty: the FPGA needs no configuration.
         std::vector<uint8_t> fpgaFlash = {};
-        bool isWired = false;                         // the jumper of PB1 (board.h)
-        uint32_t address = 1;                         // address of the vehicle, also set by the
-                                                      // factory
-        std::vector<SimulatedBoard::Peer> peers = {}; // peers served in addition to its ground
-                                                      // station
-        bool isTransparent = false;                   // written to uav_transparent, as guardMs is
+        bool isWired = false;                         // true if the jumper of PB1 is set (board.h)
+        uint32_t address = 1;                         // address of the vehicle that the factory has
+                                                      // set
+        std::vector<SimulatedBoard::Peer> peers = {}; // peers that the vehicle serves in addition
+                                                      // to its ground station
+        bool isTransparent = false;                   // written to uav_transparent in the same way
+                                                      // as guardMs
     };
     // `poll` is called about once per simulated millisecond; when it returns false, run() ends.
     M3Machine(SocModel& soc, const Config& config, std::function<bool()> poll);
     ~M3Machine();
 
-    // Runs until `poll` returns false; the first call begins with power-on. Exceptions of the
-    // models propagate.
+    // Runs until `poll` returns false. The first call begins with power-on. Exceptions of the
+    // models are passed to the caller.
     void run();
-    // Runs up to this time, or an instruction beyond; the first call begins with power-on.
+    // Runs up to this time, or one instruction longer. The first call begins with power-on.
     void advance(uint64_t ns);
-    // Prints what the processor executed, and the reason if it stopped.
+    // Prints which instructions the processor executed, and the reason if it stopped.
     void report();
 
-    // Runs as a debugger commands. It begins when one connects, runs freely when it detaches, and
-    // obeys the next one. `canGoBack`: nothing outside of this process takes part, so the debugger
-    // may run it backwards, also from its end.
+    // Runs as a debugger commands. Execution begins when a debugger connects. After it detaches,
+    // the program runs freely until the next debugger connects. `canGoBack` is true if nothing
+    // outside of this process takes part: the debugger may then run the program backwards, even
+    // from its end.
     void debug(GdbStub& stub, bool canGoBack);
 
     Stm32F2& stm32() { return stm32_; }
     const std::vector<uint8_t>& fpgaFlash() const { return fpgaFlash_.memory; }
     CortexM3& cpu() { return stm32_.cpu(); }
-    // State of the program; empty if flash was given, since that program is unknown.
+    // state of the program; empty if a flash was given, because that program is unknown
     std::optional<ProgramTrace> program;
 
 private:

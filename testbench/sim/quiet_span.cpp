@@ -11,25 +11,29 @@
 #include <cstring>
 #include <set>
 
-#pragma GCC diagnostic ignored "-Winvalid-offsetof" // one class without bases that matter
+#pragma GCC diagnostic ignored "-Winvalid-offsetof" // offsetof is valid here: the class has no
+                                                    // bases that matter
 
 namespace {
 
-constexpr uint32_t phaseMask = (1u << 18) - 1, phaseCarry = 1u << 18; // modem_baud.v
-constexpr uint32_t timerLast = (1u << 17) - 1; // count before modem_timer.v's tick
+constexpr uint32_t phaseMask = (1u << 18) - 1, phaseCarry = 1u << 18; // width and carry of the
+                                                                      // phase in modem_baud.v
+constexpr uint32_t timerLast = (1u << 17) - 1; // count at which the timer of modem_timer.v ticks
 constexpr unsigned everyCarryTicks = 5;        // lowest code of the baud rate with which every
                                                // carry is a tick
-constexpr uint8_t lastTick = 7;                // modem_uart_rx.v, modem_uart_tx.v
-constexpr uint64_t worth = 4;                  // fewer clocks than these are evaluated
-constexpr uint64_t margin = 2;                 // clocks before an event that are evaluated
-constexpr uint64_t settling = 8;     // clocks after a carry during which its tick may still have
-                                     // effects
-constexpr uint64_t least = 8;        // clocks that a platform rests alone at first
-constexpr unsigned longest = 32;     // clocks between two tests of a busy chip
-constexpr uint64_t blameEvery = 256; // tests of a busy chip
-// blocks of soc.v other than its cores
+// number of the last tick of a bit in modem_uart_rx.v and modem_uart_tx.v
+constexpr uint8_t lastTick = 7;
+constexpr uint64_t worth = 4;    // fewest clocks that are worth skipping; fewer
+                                 // clocks are evaluated
+constexpr uint64_t margin = 2;   // clocks before an event that are always evaluated
+constexpr uint64_t settling = 8; // clocks after a carry during which its tick may still have
+                                 // effects
+constexpr uint64_t least = 8;    // clocks that the platform is skipped alone at first
+constexpr unsigned longest = 32; // largest number of clocks between two tests of a busy chip
+constexpr uint64_t blameEvery =
+    256; // number of tests of a busy chip blocks of soc.v other than its cores
 const std::set<std::string> platform = {"u_platform", "u_modem", "u_system_slot"};
-// the blocks that get no clock while the platform rests (testbench/sim/CMakeLists.txt)
+// blocks that get no clock while the platform rests (testbench/sim/CMakeLists.txt)
 const char* const resting[] = {"u_platform.u_fsmc_bridge.", "u_platform.u_bus_decoder.", "u_modem.",
                                "u_system_slot."};
 
@@ -50,7 +54,7 @@ const struct Member {
 #include "soc_members.inc"
 };
 
-// Copies one member of `from` into the image of another moment.
+// Copies one member of `from` into the image of another time.
 template <class T>
 void copyInto(std::vector<unsigned char>& image, const VSoc___024root& from, const T& member) {
     auto at = reinterpret_cast<const unsigned char*>(&member) -
@@ -104,7 +108,7 @@ void QuietSpan::takeImage() {
     nullAge_ = 0;
 }
 
-// True if all state of the platform except the counters equals the image.
+// Returns whether all state of the platform except the counters equals the image.
 bool QuietSpan::isPlatformLikeImage() {
     const VSoc___024root& r = *top_.rootp;
     copyInto(image_, r, r.tick_i);
@@ -128,7 +132,7 @@ void QuietSpan::beginPause() {
     pause_ = patience_;
 }
 
-// Records, now and then, which cores have moved since the image.
+// Records, in some of the tests, which cores have changed since the image was taken.
 void QuietSpan::blame() {
     if (++busyLooks_ % blameEvery)
         return;
@@ -137,7 +141,8 @@ void QuietSpan::blame() {
     for (const std::string& path : SocState::differences(image_, SocState::of(*top_.rootp)))
         blocks.insert(path.substr(0, path.find('.')));
     for (const std::string& block : blocks)
-        if (block.rfind("u_", 0) == 0 && !platform.count(block)) // u_clock_fir: the clock of fir
+        if (block.rfind("u_", 0) == 0 &&
+            !platform.count(block)) // u_clock_fir is the clock of the core fir
             ++movers_[block.substr(block.rfind("u_clock_", 0) == 0 ? 8 : 2)];
 }
 
@@ -156,12 +161,13 @@ uint64_t QuietSpan::age(uint64_t phase) const {
     return step_ ? (phase & phaseMask) / step_ : ~0ull;
 }
 
-// Clocks until a counter has its event, less the margin.
+// Returns the clocks until a counter reaches its event, minus the margin.
 uint64_t QuietSpan::untilEvent(const Counters& now, uint64_t most, bool passesTicks) const {
     uint64_t clocks = most;
     if (timerRuns_)
         clocks = std::min<uint64_t>(clocks, timerLast - now.timer);
-    uint64_t carries = nullAge_ && passesTicks ? ~0ull >> 32 : 0; // carries that may be skipped
+    uint64_t carries =
+        nullAge_ && passesTicks ? ~0ull >> 32 : 0; // number of carries that may be skipped
     if (rxStep_)
         carries = std::min<uint64_t>(carries, lastTick - now.rx);
     if (txStep_)
@@ -172,11 +178,11 @@ uint64_t QuietSpan::untilEvent(const Counters& now, uint64_t most, bool passesTi
     return clocks > margin ? clocks - margin : 0;
 }
 
-// Learns how the counters move from the clocks since the last comparison. Returns false if they
-// have moved in an unknown way.
+// Learns, from the clocks since the last comparison, by which steps the counters change. Returns
+// false if they have changed in an unknown way.
 bool QuietSpan::learn(const Counters& now) {
     const uint8_t rx = (now.rx - before_.rx) & lastTick, tx = (now.tx - before_.tx) & lastTick;
-    if (!isFixed_) { // the clock after the image was taken
+    if (!isFixed_) { // this is the clock after the image was taken
         uint32_t timerStep = now.timer - before_.timer;
         step_ = (now.phase - before_.phase) & phaseMask;
         timerRuns_ = timerStep == 1;
@@ -217,7 +223,7 @@ QuietSpan::Clocks QuietSpan::look(Clocks most) {
     }
     if (!isPlatformLikeImage() || !learn(now)) {
         blame();
-        if (isFixed_ && age(now.phase) < settling) // the tick had an effect
+        if (isFixed_ && age(now.phase) < settling) // the tick had an effect on other state
             takeImage();
         else
             beginPause();
@@ -236,7 +242,7 @@ QuietSpan::Clocks QuietSpan::look(Clocks most) {
     since_ = 0;
     if (isLike) {
         rest_ = least;
-        return isAllFixed_ ? clocks : Clocks{}; // otherwise check again in the next clock
+        return isAllFixed_ ? clocks : Clocks{}; // otherwise the next clock is checked again
     }
     blame();
     std::memcpy(image_.data(), top_.rootp, image_.size());

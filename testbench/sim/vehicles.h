@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// vehicles: further vehicles and a second ground station in a flight, and fault injection for them.
+// vehicles: additional vehicles and a second ground station in a flight, and injection of faults
+// that need them.
 
 #pragma once
 
@@ -14,8 +15,8 @@
 #include <cstdlib>
 #include <sstream>
 
-// One more vehicle in the air of a flight: a separate chip, with the firmware's ARM binary. It
-// follows the first vehicle, which runs the air: otherwise pins would move too early.
+// An additional vehicle in a flight: a separate chip, with the firmware's ARM binary. It must run
+// after the first vehicle, which also runs the air; otherwise its pins would change too early.
 class Follower {
 public:
     Follower(RfChannel& air, const XBee::Options& modem, const M3Machine::Config& config)
@@ -24,7 +25,7 @@ public:
         soc.onTime([this](uint64_t now) { return std::max(until_, now + 1); });
         soc.reset(true);
     }
-    // Runs up to this time. The air has delivered nothing later than the last call.
+    // Runs up to this time. The air has delivered no packet since the last call.
     void advance(uint64_t now) {
         until_ = now;
         machine_.advance(now);
@@ -37,12 +38,12 @@ private:
 };
 
 // A ground station in the air of a flight: a modem on a pty, or on the recording of a replayed
-// flight, with a separate clock and recording. Simulated time waits for its program.
+// flight, with a separate clock and recording. Simulated time waits for the station's program.
 struct Station {
-    static constexpr uint32_t second = 0x00F0; // address of a second one's modem
+    static constexpr uint32_t second = 0x00F0; // modem address of a second ground station
 
-    // `out`: folder of its files; `number`: appended to their names; `head`: first line of the
-    // recording.
+    // `out` is the folder for the station's files; `number` is appended to their names; `head` is
+    // the first line of the recording.
     Station(RfChannel& air, const XBee::Options& options, const std::string& out,
             const std::string& number, std::shared_ptr<ReplayedLine> from,
             const nlohmann::json& head, std::function<bool()> goOn)
@@ -52,11 +53,12 @@ struct Station {
                                   pty, out + "/flight" + number + ".jsonl", head)),
           modem(line(), air, options), step(*status, pty, std::move(goOn)) {}
     SerialLine& line() { return replayed ? static_cast<SerialLine&>(*replayed) : *recorded; }
-    // Returns the time of its next call. A cable may replace the modem.
+    // Advances the station. Returns the time at which it must be called next. With `isWired`, a
+    // cable replaces the modem.
     uint64_t advance(uint64_t now, bool isWired = false) {
         if (!isWired)
             modem.advance(now);
-        status.set(now); // clock of its program
+        status.set(now); // clock of the station's program
         step.wait(now);
         return std::min(isWired ? never : modem.nextEvent(), std::max(step.nextEvent(), now + 1));
     }
@@ -64,12 +66,13 @@ struct Station {
     StatusFile status;
     PtyLine pty;
     const std::shared_ptr<ReplayedLine> replayed;
-    const std::unique_ptr<RecordedLine> recorded; // empty in a replay
+    const std::unique_ptr<RecordedLine> recorded; // null in a replay
     XBee modem;
     GroundStep step;
 };
 
-// Returns a vehicle's key from a file, if any; the old one while a next key is pending.
+// Returns a vehicle's key from a file, or an empty key. While a next key is pending, returns the
+// old key.
 inline std::vector<uint8_t> keyOf(const std::string& file, int address) {
     if (file.empty())
         return {};
@@ -77,15 +80,16 @@ inline std::vector<uint8_t> keyOf(const std::string& file, int address) {
     return {key.begin(), key.end()};
 }
 
-// Gives a vehicle its keys, from the ground's file and from the observer's: a second ground where
-// there are several vehicles; of four and more the first two each other.
+// Gives a vehicle its keys from the ground's file. With several vehicles it also gets the keys of
+// the observer, a second ground station; with four or more, the first two vehicles get each other's
+// key.
 inline void giveKeys(M3Machine::Config& config, unsigned vehicles, const std::string& file,
                      const std::string& observer) {
     config.key = keyOf(file, static_cast<int>(config.address));
     try {
         if (auto key = keyOf(file, XBeeAT::everybody); !key.empty())
             config.peers.push_back({UAV_GROUP, UAV_EVERYBODY, key});
-    } catch (const std::exception&) { // the file has no line for it
+    } catch (const std::exception&) { // the file has no line for this address
     }
     if (vehicles > 1)
         config.peers.push_back(
@@ -94,10 +98,9 @@ inline void giveKeys(M3Machine::Config& config, unsigned vehicles, const std::st
         config.peers.push_back({UAV_VEHICLE, 3 - config.address, keyOf(observer, 1)});
 }
 
-// Trouble takes effect by a text: `away:2:1.5:3` takes the modem with the
-// address 2 out of reach, 1.5 s after the beginning, for 3 s; `twin:2:...` brings one more vehicle
-// into reach, with this address and another key; `babble:2:...` a modem that sends noise to this
-// address as fast as it can.
+// A fault, described by a text: `away:2:1.5:3` takes the modem with the address 2 out of reach, 1.5
+// s after the beginning, for 3 s; `twin:2:...` brings another vehicle into reach, with this address
+// and a different key; `babble:2:...` adds a modem that continuously sends noise to this address.
 class Trouble {
 public:
     explicit Trouble(const std::string& text) {
@@ -111,7 +114,7 @@ public:
         from_ = static_cast<uint64_t>(std::atof(from.c_str()) * 1e9);
         until_ = from_ + static_cast<uint64_t>(std::atof(seconds.c_str()) * 1e9);
     }
-    // `modem`: the modem with this address, or the twin's; null for babble.
+    // `modem` is the modem with this address, or the twin's modem; null for babble.
     void begin(RfChannel& air, const XBee* modem) {
         air_ = &air;
         modem_ = modem;
@@ -119,7 +122,7 @@ public:
         options.set = {{"MY", 0x0BAB}, {"DL", static_cast<uint32_t>(address)}, {"BD", 7}};
         babbler_ = std::make_unique<XBee>(line_, air, options);
     }
-    // Returns the time of its next call.
+    // Advances the fault. Returns the time at which it must be called next.
     uint64_t advance(uint64_t now) {
         const bool isOn = now >= from_ && now < until_;
         if (modem_)

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
 // stm32_flash: the 1 MiB flash memory of an STM32F2, and the registers of its interface (ST's
-// PM0059, and the data sheet's table of erase and programming times). It has one bank: every read
-// waits until an erase or a write is done. Programming only clears bits. After a reset or a loss of
-// power in an operation a seed decides the bits.
+// PM0059, and the data sheet's table of erase and programming times). The flash has one bank, so
+// every read waits until an erase or a write has ended. Programming can only clear bits. If a reset
+// or a loss of power interrupts an operation, the affected bits are random; a seed makes them
+// repeatable.
 
 #pragma once
 
@@ -18,7 +19,7 @@ public:
     static constexpr uint32_t bytes = 0x100000, sectors = 12;
     // Returns the offset of a sector.
     static uint32_t sectorAt(unsigned n) { return n <= 4 ? n * 0x4000u : (n - 4) * 0x20000u; }
-    // Returns its size: 4 sectors of 16 KiB, one of 64 KiB, 7 of 128 KiB.
+    // Returns the size of a sector: 4 sectors have 16 KiB, one has 64 KiB, 7 have 128 KiB.
     static uint32_t sectorBytes(unsigned n) { return n < 4 ? 0x4000 : n == 4 ? 0x10000 : 0x20000; }
     static unsigned sectorOf(uint32_t offset) {
         return offset < 0x10000 ? offset / 0x4000 : offset < 0x20000 ? 4 : 4 + offset / 0x20000;
@@ -33,13 +34,14 @@ public:
         Pgserr = 1u << 7,
         Bsy = 1u << 16
     };
-    // A wrong key: on the chip a bus error, and the register stays locked until the next reset.
+    // Thrown for a wrong key. On the chip this is a bus error, and the register stays locked until
+    // the next reset.
     class WrongKey : public std::runtime_error {
     public:
         using std::runtime_error::runtime_error;
     };
 
-    // `memory` has `bytes` bytes; `now` is in ns.
+    // `memory` has `bytes` bytes; `now` returns the time in ns.
     Stm32Flash(uint8_t* memory, std::function<uint64_t()> now, uint64_t seed = 1)
         : memory_(memory), now_(std::move(now)), random_(seed) {}
 
@@ -55,7 +57,7 @@ public:
         case Optcr:
             return optcr_;
         default:
-            return 0; // the keys' registers
+            return 0; // the key registers read as 0
         }
     }
     void write(uint32_t reg, uint32_t value) {
@@ -70,7 +72,7 @@ public:
             unlockOptions(value);
         else if (reg == Optcr && !(optcr_ & 1))
             setOptions(value);
-        if (reg != Cr || (cr_ & Lock) || operation_.under) // writes are ignored
+        if (reg != Cr || (cr_ & Lock) || operation_.under) // the write is ignored
             return;
         cr_ = value & ~Strt;
         if (!(value & Strt) || !(value & Ser))
@@ -82,10 +84,10 @@ public:
             begin({0, sectorAt(sector), sectorBytes(sector), 0, false, true},
                   eraseMs[kind] * millisecond);
     }
-    // A store of 1, 2 or 4 bytes to flash.
+    // Stores 1, 2 or 4 bytes to flash.
     void store(uint32_t offset, unsigned size, uint32_t value) {
         settle();
-        if (operation_.under) // the bus waits
+        if (operation_.under) // the bus waits for the current operation
             finish();
         if (!(cr_ & Pg))
             sr_ |= Pgserr;
@@ -101,7 +103,7 @@ public:
         const uint64_t now = now_();
         return operation_.under && operation_.end > now ? operation_.end - now : 0;
     }
-    // Cuts the current operation, as a reset or a loss of power does.
+    // Interrupts the current operation, like a reset or a loss of power.
     void reset() {
         settle();
         if (operation_.under)
@@ -111,11 +113,15 @@ public:
         optcr_ = erasedOptions | uint32_t(protection_) << 8 | 1;
     }
 
-    uint8_t protection() const { return protection_; }  // 0xAA: not protected
-    uint64_t operations() const { return operations_; } // erases and writes that have begun
-    // Called when an erase or a write has begun.
+    uint8_t protection() const {
+        return protection_;
+    } // level of the read protection; 0xAA: not
+      // protected
+    uint64_t operations() const {
+        return operations_;
+    } // number of erases and writes that have begun Called when an erase or a write has begun.
     std::function<void()> onOperation;
-    // Called when bytes have changed.
+    // Called when bytes of the flash have changed.
     std::function<void(uint32_t offset, uint32_t size)> onChange;
 
 private:
@@ -132,7 +138,7 @@ private:
     };
     void unlock(uint32_t key) {
         if (keyStep_ > 1 || key != keys[keyStep_]) {
-            keyStep_ = 3; // until the next reset
+            keyStep_ = 3; // locked until the next reset
             throw WrongKey("a wrong key, or one too many: the flash stays locked until a reset");
         }
         if (++keyStep_ == 2) {
@@ -174,8 +180,9 @@ private:
         if (operation_.under && now_() >= operation_.end)
             finish();
     }
-    // Leaves a cut write with some of its bits cleared. An erase first clears all bits and then
-    // sets them; if cut, it leaves rows of 64 bytes old, cleared, erased, or in between.
+    // Leaves an interrupted write with some of its bits cleared. An erase first clears all bits and
+    // then sets them. If it is interrupted, each row of 64 bytes is unchanged, cleared, erased, or
+    // partly erased.
     void cut() {
         operation_.under = false;
         const auto [end, offset, size, value, under, erases] = operation_;

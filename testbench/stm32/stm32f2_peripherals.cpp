@@ -9,10 +9,12 @@ using namespace stm32f2;
 
 namespace {
 
-constexpr uint64_t lsiNs = 31'250; // one cycle of 32 kHz
+constexpr uint64_t lsiNs = 31'250; // period of the LSI oscillator, 32 kHz
 constexpr uint64_t hsiHz = 16'000'000;
-constexpr uint64_t waitStateHz = 30'000'000; // HCLK for each wait state at 2.7 to 3.6 V
-constexpr unsigned extiVector = 6;           // vector of EXTI line 0; lines 0 to 4 have one each
+constexpr uint64_t waitStateHz = 30'000'000; // HCLK frequency for each wait state of the flash at
+                                             // 2.7 to 3.6 V
+constexpr unsigned extiVector = 6;           // vector of EXTI line 0; each of the lines 0 to 4 has
+                                             // its own vector
 
 } // namespace
 
@@ -23,15 +25,15 @@ bool Stm32F2::isSet(uint32_t address, unsigned bit) const {
 
 // ---- the table of peripherals ----
 
-// A peripheral: the addresses of its registers, the bit of RCC that enables its clock (enable 0:
-// always on), and functions that read and write a word.
+// A peripheral: the addresses of its registers; the bit of RCC that enables its clock (`enable` 0:
+// the clock is always on); and functions that read and write a word.
 struct Stm32F2::Peripheral {
     uint32_t base, bytes, enable;
     unsigned bit;
     uint32_t (Stm32F2::*read)(uint32_t offset);
     void (Stm32F2::*write)(uint32_t offset, uint32_t value);
 
-    // Each GPIO port has one bit.
+    // Returns the clock bit of the peripheral; each GPIO port has a separate bit.
     unsigned clockBit(uint32_t address) const {
         return base == gpio ? (address - gpio) / 0x400 : bit;
     }
@@ -52,7 +54,7 @@ const Stm32F2::Peripheral Stm32F2::peripherals[] = {
     {iwdg, 0x10, 0, 0, &Stm32F2::readWatchdog, &Stm32F2::writeWatchdog},
 };
 
-// Returns the peripheral at an address, which has its clock.
+// Returns the peripheral at an address. Its clock must be enabled.
 const Stm32F2::Peripheral& Stm32F2::peripheralAt(uint32_t address) const {
     for (const Peripheral& p : peripherals) {
         if (!isIn(address, p.base, p.bytes))
@@ -78,7 +80,8 @@ void Stm32F2::writePeripheral(uint32_t address, uint32_t value) {
     (this->*p.write)(address - p.base, value);
 }
 
-// Returns a register that only stores, one of the first `bytes` of a peripheral.
+// Returns a register that only stores a value: one of the registers in the first `bytes` of a
+// peripheral.
 uint32_t& Stm32F2::storedIn(uint32_t base, uint32_t offset, uint32_t bytes) {
     if (offset >= bytes)
         throw noRegister();
@@ -136,7 +139,7 @@ void Stm32F2::writeGpio(uint32_t offset, uint32_t value) {
 
 // ---- RCC: oscillators and PLL are ready immediately ----
 
-// HCLK in Hz, by the clock tree's registers.
+// Returns HCLK in Hz, computed from the registers of the clock tree.
 uint64_t Stm32F2::hclk() {
     const uint32_t pll = stored(rcc + 4), config = stored(rcc + 8);
     const uint64_t source = pll >> 22 & 1 ? config_.oscillatorHz : hsiHz;
@@ -148,12 +151,12 @@ uint64_t Stm32F2::hclk() {
     if ((config & 3) == 2 && (input < 950'000 || input > 2'000'000))
         throw NotModelled("PLL with an input of " + std::to_string(input / 1000) +
                           " kHz, which takes 0.95 to 2 MHz (RM0033, 5.3.2)");
-    const unsigned ahb = config >> 4 & 15; // 8: half, 9: a quarter, ...
+    const unsigned ahb = config >> 4 & 15; // values 8 and above divide: 8 by 2, 9 by 4, ...
     return hz >> (ahb < 8 ? 0 : ahb < 12 ? ahb - 7 : ahb - 6);
 }
 
-// Checks that the flash has the wait states for HCLK (RM0033, table 3): with fewer the chip reads
-// wrong instructions.
+// Checks that the flash has the wait states for HCLK (RM0033, table 3): with fewer wait states the
+// chip would read wrong instructions.
 void Stm32F2::checkWaitStates() {
     const uint64_t hz = hclk();
     const uint64_t needed = (hz - 1) / waitStateHz, given = flash_.read(Stm32Flash::Acr) & 7;
@@ -168,7 +171,7 @@ uint32_t Stm32F2::readRcc(uint32_t offset) {
     switch (offset) {
     case 0: // CR
         return value | (value & 0x05010001) << 1;
-    case 8: // CFGR: the switch has happened
+    case 8: // CFGR reports that the clock switch is complete
         return (value & ~0xCu) | (value & 3) << 2;
     case csr - rcc:
         return (value & 0x00FFFFFF) | resetFlags_;
@@ -253,7 +256,7 @@ void Stm32F2::writeCrc(uint32_t offset, uint32_t value) {
     }
 }
 
-uint32_t Stm32F2::readPower(uint32_t offset) { // the regulator is ready immediately
+uint32_t Stm32F2::readPower(uint32_t offset) { // the regulator is always ready
     const uint32_t value = stored(power + offset);
     return value | (value >> 6 & 8);
 }
@@ -267,11 +270,11 @@ uint32_t Stm32F2::readBackup(uint32_t offset) {
 }
 
 void Stm32F2::writeBackup(uint32_t offset, uint32_t value) {
-    if (isSet(power, 8)) // PWR_CR.DBP; without it the write is lost, as on the chip
+    if (isSet(power, 8)) // PWR_CR.DBP is set; without it the write has no effect, as on the chip
         backup_[offset / 4] = value;
 }
 
-uint32_t Stm32F2::readRandom(uint32_t offset) { // the PLL makes its clock
+uint32_t Stm32F2::readRandom(uint32_t offset) { // the generator is clocked by the PLL
     return random_.read(offset, now_(), isSet(rcc, 24));
 }
 
@@ -282,7 +285,7 @@ void Stm32F2::writeRandom(uint32_t offset, uint32_t value) {
 // ---- USART 1 and SPI 1 ----
 
 uint32_t Stm32F2::readUsart(uint32_t offset) {
-    if (offset == 0) // a written byte is sent immediately
+    if (offset == 0) // a written byte is sent at once
         return 0xC0 | uint32_t(!serialIn.empty()) << 5;
     if (offset != 4)
         return storedIn(usart, offset, 0x1C);
@@ -299,7 +302,7 @@ void Stm32F2::writeUsart(uint32_t offset, uint32_t value) {
         onSerial(static_cast<uint8_t>(value));
 }
 
-// A master's byte is transferred as soon as it is written. A slave that is too slow loses bytes.
+// A master's byte is transferred when it is written. A slave that reads too slowly loses bytes.
 uint32_t Stm32F2::readSpi(uint32_t offset) {
     uint32_t& value = storedIn(spi, offset, 0x24);
     const bool isMaster = stored(spi) & 4;
@@ -315,7 +318,7 @@ uint32_t Stm32F2::readSpi(uint32_t offset) {
 void Stm32F2::writeSpi(uint32_t offset, uint32_t value) {
     if (offset == 12) {
         spiIn_ = fpga.transfer(static_cast<uint8_t>(value));
-        waited_ += 32; // at half of PCLK2, as the driver sets it
+        waited_ += 32; // the transfer takes 32 cycles, because the driver selects half of PCLK2
         return;
     }
     storedIn(spi, offset, 0x24) = value;
@@ -326,7 +329,8 @@ void Stm32F2::writeSpi(uint32_t offset, uint32_t value) {
 // ---- watchdog (RM0033, 18.3) ----
 
 uint64_t Stm32F2::watchdogNs() const {
-    const uint32_t divider = 4u << std::min(watchdog_.prescaler, 6u); // 6 and 7: 256
+    const uint32_t divider =
+        4u << std::min(watchdog_.prescaler, 6u); // codes 6 and 7 both divide by 256
     return (uint64_t(watchdog_.reload) + 1) * divider * lsiNs;
 }
 

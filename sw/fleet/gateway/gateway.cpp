@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// gateway: a stock Ice server that passes requests to the vehicle. Ice programs in any language and
-// of any version, several at a time, reach the vehicle's objects through it, and the vehicle's
+// gateway: a stock Ice server that passes requests to the vehicle. Through the gateway, several Ice
+// programs at a time, in any language and of any version, call the vehicle's objects. The vehicle's
 // calls reach a server on the ground.
 //
 // Endpoints, TLS, WebSocket, compression and connections are handled by Ice; forwarder.h shares the
@@ -23,7 +23,7 @@
 
 namespace {
 
-// Returns why Ice failed, in words. Ice's own text begins with a place in its source.
+// Returns in words why Ice failed. Ice's own text begins with a position in its source code.
 std::string reasonOf(const Ice::Exception& e) {
     if (const auto* file = dynamic_cast<const Ice::FileException*>(&e))
         return file->path + ": " + std::generic_category().message(file->error);
@@ -48,7 +48,7 @@ using namespace gateway;
 
 using Take = std::function<void(std::shared_ptr<Request>)>;
 
-// Servant dispatches the calls of all objects of an adapter.
+// Servant dispatches the calls for all objects of an adapter.
 class Servant : public Ice::BlobjectArrayAsync {
 public:
     explicit Servant(Take take) : take_(std::move(take)) {}
@@ -61,7 +61,8 @@ private:
     const Take take_;
 };
 
-// Returns the subject that requests of a connection count for: the certificate's, else the host.
+// Returns the subject to which requests of a connection are assigned: the subject of the client's
+// certificate, or the host without one.
 std::string turnOf(const std::shared_ptr<Ice::Connection>& connection, const std::string& subject) {
     if (!subject.empty())
         return subject;
@@ -72,8 +73,8 @@ std::string turnOf(const std::shared_ptr<Ice::Connection>& connection, const std
 }
 
 // Returns a function that passes the clients' calls to the vehicle if --rights permits them, and if
-// they are not of a foreign web page.
-// Without `allowsMaintenance` objects that change keys or programs are refused.
+// they do not come from a foreign web page. Without `allowsMaintenance` objects that change keys or
+// programs are refused.
 Take toVehicle(Forwarder& forwarder, const Rights& rights, const Pages& pages,
                bool allowsMaintenance) {
     return [&forwarder, &rights, &pages, allowsMaintenance](std::shared_ptr<Request> request) {
@@ -97,7 +98,7 @@ Take toVehicle(Forwarder& forwarder, const Rights& rights, const Pages& pages,
 }
 
 // Returns a function that passes the vehicle's calls to the station at `where`, or to a topic.
-// `vehicle`: a proxy by which programs on the ground reach the vehicle.
+// `vehicle` is a proxy with which programs on the ground reach the vehicle.
 Take toStation(const std::shared_ptr<Ice::ObjectPrx>& station, const std::string& where,
                const Events* events, const std::shared_ptr<Ice::ObjectPrx>& vehicle) {
     return [=](const std::shared_ptr<Request>& request) {
@@ -125,8 +126,8 @@ Take toStation(const std::shared_ptr<Ice::ObjectPrx>& station, const std::string
     };
 }
 
-// Lets no TLS session be resumed: IceSSL knows the certificate of a client from a full handshake
-// only, and a browser resumes sessions.
+// Prevents the resumption of TLS sessions. IceSSL receives a client's certificate only in a full
+// handshake, and browsers resume sessions.
 void refuseResumption(const std::shared_ptr<Ice::Communicator>& ic) {
     try {
         const auto plugin = ic->getPluginManager()->getPlugin("IceSSL");
@@ -163,7 +164,8 @@ int checkedPort(const std::shared_ptr<Ice::ObjectAdapter>& adapter) {
     return port;
 }
 
-// Returns the publisher of the topic "vehicles" of an IceStorm service; null without --topics.
+// Returns the publisher of the topic "vehicles" of an IceStorm service; null without the option
+// --topics.
 std::shared_ptr<Ice::ObjectPrx> publisherOf(const std::shared_ptr<Ice::Communicator>& ic,
                                             const std::string& topics) {
     if (topics.empty())
@@ -191,10 +193,10 @@ std::shared_ptr<Ice::ObjectAdapter> adapterOf(const std::shared_ptr<Ice::Communi
     return made;
 }
 
-// Vehicle is one vehicle reached by the modem, and the adapters that lead to it.
+// Vehicle is one vehicle that the modem reaches, with the adapters for its clients.
 class Vehicle {
 public:
-    // `place`: index of the vehicle in the fleet, which is added to the given ports.
+    // `place` is the index of the vehicle in the fleet; it is added to the given ports.
     Vehicle(const std::shared_ptr<Ice::Communicator>& ic, const Options& o, const Rights& rights,
             Pages& pages, const std::string& name, int address, int place,
             const std::shared_ptr<Ice::ObjectPrx>& publisher)
@@ -219,7 +221,7 @@ public:
                                  ? ic->stringToProxy("uav@" + name)
                                  : opened->createDirectProxy(Ice::stringToIdentity("uav"));
         if (ic->getDefaultLocator())
-            opened->destroy(); // until the vehicle is connected
+            opened->destroy(); // returns when the vehicle is connected
         else
             adapters_.push_back(opened);
         if (!o.maintenance.empty())
@@ -280,7 +282,8 @@ void serve(const std::shared_ptr<Ice::Communicator>& ic, const Options& o) {
     for (const auto& [name, address] : fleetOf(o))
         vehicles.emplace_back(ic, o, rights, pages, name, address, int(vehicles.size()), publisher);
     pages.start(ic->getProperties()->getProperty("IceSSL.CertFile"));
-    // Returns the error of the registry; empty if it answers, or if no registry is configured.
+    // Returns the error of a call of the registry; empty if the registry answers, or if no registry
+    // is configured.
     const auto ask = [&](void (Registration::*question)()) -> std::string {
         try {
             for (Vehicle& vehicle : vehicles)
@@ -305,13 +308,14 @@ void serve(const std::shared_ptr<Ice::Communicator>& ic, const Options& o) {
     ask(&Registration::leave);
     for (Vehicle& vehicle : vehicles)
         vehicle.forwarder.stop();
-    ic->destroy(); // while the objects used by its callbacks exist
+    ic->destroy(); // the objects that Ice's callbacks use still exist here
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
-    const sigset_t signals = endings(); // blocked in all threads; sigtimedwait takes them
+    const sigset_t signals = endings(); // these signals are blocked in all threads; sigtimedwait
+                                        // receives them
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
     CLI::App app{"A stock Ice server that passes requests to the UAV: Ice programs reach its "
@@ -332,7 +336,8 @@ int main(int argc, char** argv) {
         serve(ic.communicator(), o);
     } catch (const CLI::ParseError& e) {
         return app.exit(e);
-    } catch (const Ice::ConnectFailedException& e) { // of the modem's line; the plugin logs more
+    } catch (const Ice::ConnectFailedException& e) { // error of the modem's serial port; the plugin
+                                                     // has logged the details
         std::cerr << "gateway: error: cannot use " << o.device << ": " << reasonOf(e) << "\n";
         return 1;
     } catch (const Ice::Exception& e) {

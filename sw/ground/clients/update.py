@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""update: sends new firmware, a bitstream, or keys to a vehicle, sees it start, and confirms it.
-Stock ZeroC Ice.
+"""update: sends new firmware, a bitstream, or keys to a vehicle, waits until the new version runs,
+and confirms it. It uses stock ZeroC Ice.
 
-The package is what pack_update has signed, or several of these in one file, which are sent in
-their order: lists of keys, firmware and bitstreams. After a loss of the link, or of the vehicle's
-power, it continues where it was; so does this program when it is started again. A refused package
-leaves the vehicle as it was.
+The package is a file made by pack_update, or several such files in one, which are sent in their
+order: lists of keys, firmware and bitstreams. After a loss of the link, or of the vehicle's power,
+the update continues where it was interrupted; it also continues if this program is started again. A
+refused package leaves the vehicle as it was.
 """
 
 import argparse
@@ -23,7 +23,7 @@ from mission_log import Air
 
 HEADER = places.record_of("sw/update/slots_header.toml")
 MAGIC, KEYS = HEADER.constants["SLOTS_MAGIC"], HEADER.constants["SLOTS_KEYS"]
-OBJECTS = {HEADER.constants["LOADER_PRODUCT"]: "update",  # by product number
+OBJECTS = {HEADER.constants["LOADER_PRODUCT"]: "update",  # names of objects by product number
            HEADER.constants["FPGA_PRODUCT"]: "fpga", KEYS: "update"}
 PIECE, PIECES_ON_THE_WAY, DICTIONARY = 4096, 3, 65535
 TEXT = {
@@ -45,12 +45,13 @@ IN_FLIGHT = "the vehicle flies: it takes no update before it has landed"
 
 
 class Failed(Exception):
-    """The update has ended; the text is the reason."""
+    """Raised when the update has ended; the text is the reason."""
 
 
 def read_package(path):
-    """Returns the parts of a package in their order: "keys" and the lists, or the object that takes
-    an image, and its (header, image) by the image's offset in flash."""
+    """Returns the parts of a package in their order, as pairs. A pair is "keys" and the lists; or
+    the name of the object that receives an image, and a dictionary with (header, image) for each
+    offset in flash."""
     with open(path, "rb") as f:
         data = f.read()
     parts, at, last = [], 0, None
@@ -80,14 +81,14 @@ def read_package(path):
 
 
 def read_clock(air):
-    """Returns the time, s, and the number of bytes sent to the vehicle over the air, both from the
-    simulator; without a simulator, wall-clock time and no bytes."""
+    """Returns the time in s and the number of bytes sent to the vehicle over the air, as counted by
+    the simulator. Without a simulator, returns wall-clock time and no bytes."""
     counters = air.read()
     return (counters["ns"] / 1e9, counters["bytesUp"]) if counters else (time.monotonic(), 0)
 
 
 class Watch(threading.Thread):
-    """Calls the vehicle during an update, and records the longest time to an answer."""
+    """Calls the vehicle during an update, and records the longest time to a reply."""
 
     def __init__(self, proxy, air):
         super().__init__(daemon=True)
@@ -140,8 +141,8 @@ class Vehicle:
             raise Failed(TEXT.get(str(reason), str(reason)))
 
     def wait_while(self, *phases):
-        """Returns the status once the vehicle is in none of these phases, with the reason where it
-        refused."""
+        """Waits until the vehicle is in none of these phases. Returns the status, with the reason
+        if the vehicle refused."""
         while True:
             status = self.status()
             if str(status.phase) not in phases:
@@ -185,7 +186,7 @@ def send_keys(vehicle, lists, say):
 
 
 def transfer(vehicle, header, image, say, air):
-    """Sends an image, also over links that are lost, until the vehicle has begun to check it."""
+    """Sends an image until the vehicle has begun to check it, even over links that are lost."""
     # The vehicle's processor cannot read the FPGA's flash as memory.
     dictionary = DICTIONARY if vehicle.proxy.ice_getIdentity().name == "update" else 0
 
@@ -220,8 +221,8 @@ def await_start(vehicle, version):
 
 
 def update(vehicle, images, say, air, rehearses):
-    """Brings the vehicle to the package's version, confirmed. A rehearsal sees it start and go
-    back."""
+    """Updates the vehicle to the package's version and confirms it. A rehearsal does not confirm:
+    it observes the new version start, and the vehicle return to the old one."""
     version = HEADER.unpack(next(iter(images.values()))[0])["version"]
     status = vehicle.status()
     say("the vehicle runs version %d%s" % (status.running, ", on trial" if status.trial else ""))
@@ -275,7 +276,7 @@ def main():
         parts = read_package(args.package)
         images = [name for name, _ in parts if name != "keys"]
         Ice.loadSlice("", ["-I" + (Ice.getSliceDir() or "."), args.slice])
-        import Update  # made by loadSlice
+        import Update  # generated by loadSlice
         settings = {"Ice.Default.InvocationTimeout": "60000", "Ice.ACM.Close": "0",
                     "Ice.RetryIntervals": "-1"}
         plugin = args.plugin or ("" if args.proxy else places.plugin())
@@ -284,14 +285,15 @@ def main():
         where = args.proxy or "%s:xbee-at -d %s -a 0x0001 -s 0x0000 -t 60000" % (first, args.device)
         proxy = Update.FirmwarePrx.uncheckedCast(communicator.stringToProxy(where))
         for name, part in parts:
-            # A given proxy names the object itself if there is only one.
+            # With only one object, a given proxy refers to this object.
             own = proxy if name == first else proxy.ice_identity(
                 Ice.stringToIdentity("update" if name == "keys" else name))
             vehicle = Vehicle(Update.FirmwarePrx.uncheckedCast(own), args.patience)
             if name != "keys":
                 update(vehicle, part, say, Air(args.status), args.rehearse)
             elif not args.rehearse or part is parts[0][1]:
-                # A rehearsal does not send keys that follow an image: the vehicle drops that image.
+                # A rehearsal does not send keys that follow an image, because the vehicle drops
+                # that image.
                 send_keys(vehicle, part, say)
         return 0
     except KeyboardInterrupt:

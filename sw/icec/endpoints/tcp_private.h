@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * tcp_private: declares what the files of the tcp transport share.
+ * tcp_private: declarations that the files of the tcp transport share.
  */
 #pragma once
 
@@ -9,21 +9,21 @@
 /* ---- tcp_address: endpoints on the wire, names and sockets ---- */
 
 typedef struct TcpEndpoint_Address {
-    Ice_String host; /* a numeric address or a name, in the encoded endpoint */
+    Ice_String host; /* host in the encoded endpoint: a numeric address or a name */
     Ice_Int port;
-    Ice_Int timeoutMs;   /* for connecting; negative: unlimited */
-    Ice_Bool compresses; /* offered, but not used by this side */
+    Ice_Int timeoutMs;   /* time-out for connecting, ms; negative: unlimited */
+    Ice_Bool compresses; /* 1: the endpoint offers compression, which this side does not use */
 } TcpEndpoint_Address;
 
-/* Reads the options of an endpoint; `host` is empty without -h. Returns 0 for unknown options,
- * or values out of range. */
+/* Reads the options of an endpoint; `host` is empty without -h. Returns 0 if an option is unknown
+ * or a value is out of range. */
 Ice_Bool TcpEndpoint_readOptions(const char* options, TcpEndpoint_Address* address);
 
 /* `encode` and `print` of Ice_Endpoint. */
 void TcpEndpoint_encode(void* context, const char* options, Ice_OutputStreamPtr os);
 Ice_Bool TcpEndpoint_print(void* context, const Ice_Byte* encoded, Ice_Int size,
                            Ice_OutputStreamPtr text);
-/* Decodes an endpoint. Returns 0 for another transport's endpoint, or a malformed one. */
+/* Decodes an endpoint. Returns 0 if it is malformed or belongs to another transport. */
 int TcpEndpoint_decode(const Ice_Byte* encoded, Ice_Int size, TcpEndpoint_Address* address);
 
 /* Resolves a numeric address or a name to its first TCP_PLACES addresses, IPv4 first as in Ice.
@@ -34,33 +34,37 @@ typedef struct TcpEndpoint_Place {
     socklen_t size;
 } TcpEndpoint_Place;
 int TcpEndpoint_resolve(const TcpEndpoint_Address* address, TcpEndpoint_Place* places);
-/* Connects with a time limit. Returns the socket; -1: refused, or not in time. */
+/* Connects with a time limit. Returns the socket, or -1 if the peer refuses or the time is over. */
 int TcpEndpoint_open(const TcpEndpoint_Place* to, Ice_Int timeoutMs);
 
-/* Sets a connection's options: no delay, and a vanished peer is noticed. */
+/* Sets the options of a connection: no delay, and detection of a peer that has vanished. */
 void TcpEndpoint_tune(int fd);
 
-/* ---- tcp_traffic: traffic of a connection; all but nowMs and sendSome under the lock ---- */
+/* ---- tcp_traffic: traffic of a connection. The caller holds the lock, except for nowMs and
+ * sendSome. ---- */
 
 U32 TcpEndpoint_nowMs(void* context);
-/* Returns a free slot; -1 if all are taken. */
+/* Returns a free slot; -1 if all slots are taken. */
 int TcpEndpoint_freeSlot(const TcpEndpoint* self);
 
-/* Records a message sent or received; a heartbeat does not count as use of its connection. */
+/* Records that a message was sent or received. A heartbeat does not count as use of its
+ * connection. */
 void TcpEndpoint_note(TcpEndpoint_Connection* c, const Ice_Byte* message, Ice_Int size);
-/* Sends a message without a body, if the system takes it at once. */
+/* Sends a message without a body, if the system accepts it at once. */
 void TcpEndpoint_sendHead(TcpEndpoint_Connection* c, Ice_Byte type);
-/* Sends the heartbeats that are due. Returns the time until the next, at most timeoutMs. */
+/* Sends the heartbeats that are due. Returns the time until the next heartbeat, at most
+ * timeoutMs. */
 Ice_Int TcpEndpoint_keepUp(TcpEndpoint* self, Ice_Int timeoutMs);
-/* Sends for at most `ms`. Returns the number of bytes that the system took. */
+/* Sends for at most `ms` milliseconds. Returns the number of bytes that the system accepted. */
 Ice_Int TcpEndpoint_sendSome(int fd, const Ice_Byte* message, Ice_Int size, Ice_Int ms);
 
-/* Refuses the message with its first `have` bytes in c->data. A caller that waits for a reply gets
- * one, and the rest of the message is skipped. Otherwise returns 0: the connection ends. */
+/* Refuses a message; c->data contains its first `have` bytes. If the caller waits for a reply,
+ * sends an error, and skips the rest of the message. Otherwise returns 0, and the connection
+ * must end. */
 int TcpEndpoint_refuse(TcpEndpoint_Connection* c, Ice_Int size);
-/* Returns the accepted connection that a new one may displace first, and the time until it may; -1
- * if none. */
+/* Returns the accepted connection that a new connection may displace first, and sets `left` to
+ * the time until then. Returns -1 if there is no such connection. */
 int TcpEndpoint_idlest(TcpEndpoint* self, Ice_Int* left);
-/* Returns the listener if a connection can be accepted now; else -1, and shortens timeoutMs to the
- * time when one may be. */
+/* Returns the listening socket if a connection can be accepted now. Otherwise returns -1, and
+ * shortens timeoutMs to the time when a connection can be accepted. */
 int TcpEndpoint_listenerFor(TcpEndpoint* self, Ice_Int* timeoutMs);

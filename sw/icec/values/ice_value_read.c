@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_value_read: classes and their types, and instances read from a stream. ice_value_write.c has
- * their layout.
+ * ice_value_read: reads class instances from a stream, and handles the types of classes.
+ * ice_value_write.c describes the layout.
  */
 #include "ice_slice.h"
 
@@ -120,8 +120,8 @@ static void skip(Ice_InputStreamPtr is) {
         (void)readInstance(is, number);
 }
 
-/* Reads the table after a slice: the instances to which its members, the patches from patchBegin,
- * refer. */
+/* Reads the indirection table after a slice. It contains the instances to which the slice's
+ * members refer; these are the patches starting with patchBegin. */
 static void readTable(Ice_InputStreamPtr is) {
     Ice_InputValues* values = is->values;
     Ice_Int count = Ice_InputStream_readSequence(is, 1), first = values->patchBegin;
@@ -140,8 +140,8 @@ static void readTable(Ice_InputStreamPtr is) {
     values->patchEnd = first;
 }
 
-/* Preserves the current slice, in 1.1, and skips it. Returns 0 if it has no end, or without
- * room. */
+/* Preserves the current slice and skips it; only in encoding 1.1. Returns 0 if the end of the
+ * slice is not known, or if there is no room. */
 static Ice_UnknownSlice* keepSlice(Ice_InputStreamPtr is, Ice_String id, Ice_Int compactId) {
     Ice_Byte flags = is->sliceFlags, optionals = (flags & ICE_SLICE_OPTIONALS) != 0;
     Ice_UnknownSlice* slice;
@@ -157,12 +157,13 @@ static Ice_UnknownSlice* keepSlice(Ice_InputStreamPtr is, Ice_String id, Ice_Int
     slice->compactId = compactId;
     slice->flags = flags & (ICE_SLICE_OPTIONALS | ICE_SLICE_LAST);
     slice->data = is->data + is->position;
-    slice->size = is->sliceEnd - is->position - optionals; /* their end is written again */
+    /* the end marker of optional members is written again when the slice is sent */
+    slice->size = is->sliceEnd - is->position - optionals;
     is->position = is->sliceEnd;
     if (flags & ICE_SLICE_TABLE) {
         Ice_Int count = Ice_InputStream_readSequence(is, 1), i;
         void* room = Ice_InputStream_allocate(is, count, (Ice_Int)sizeof *slice->values);
-        memcpy(&slice->values, &room, sizeof room); /* its type has no name */
+        memcpy(&slice->values, &room, sizeof room); /* a slice with a compact id has no type name */
         for (i = 0; i < count && !is->failed; ++i)
             slice->values[i].number = readInstance(is, Ice_InputStream_readSize(is));
         slice->count = is->failed ? 0 : count;
@@ -183,7 +184,7 @@ Ice_Bool Ice_InputStream_keepSlice(Ice_InputStreamPtr is, Ice_String id, Ice_Unk
     return slice && !(slice->flags & ICE_SLICE_LAST) && is->position < is->size;
 }
 
-/* Sets the targets of preserved slices; at the end of the message. */
+/* Sets the targets of preserved slices; called at the end of the message. */
 static void endUnknown(Ice_InputStreamPtr is) {
     Ice_InputValues* values = is->values;
     Ice_UnknownSlice* slice;
@@ -196,8 +197,9 @@ static void endUnknown(Ice_InputStreamPtr is) {
 typedef struct SliceHead {
     Ice_String id;
     Ice_Int compactId;         /* -1 if none */
-    const Ice_ValueType* type; /* 0: not known */
-    Ice_Bool isObject;         /* the base of all classes; it ends an instance of 1.0 */
+    const Ice_ValueType* type; /* 0 if the type is not known */
+    Ice_Bool isObject;         /* true for ::Ice::Object, the base of all classes, which ends an
+                                * instance in encoding 1.0 */
 } SliceHead;
 
 static Ice_String typeByIndex(Ice_InputStreamPtr is) {
@@ -218,7 +220,7 @@ static Ice_String typeByName(Ice_InputStreamPtr is) {
     return id;
 }
 
-/* Reads the head of an instance's slice. */
+/* Reads the header of an instance's slice. */
 static void startSlice(Ice_InputStreamPtr is, SliceHead* head) {
     const Ice_ValueType* const* type = is->values->types;
     head->id = Ice_String_from("");
@@ -239,7 +241,7 @@ static void startSlice(Ice_InputStreamPtr is, SliceHead* head) {
         case ICE_SLICE_TYPE_STRING:
             head->id = typeByName(is);
             break;
-        default: /* a base, in the compact format */
+        default: /* the slice of a base in the compact format, which has no type */
             break;
         }
     }
@@ -253,21 +255,23 @@ static void startSlice(Ice_InputStreamPtr is, SliceHead* head) {
             head->type = *type;
 }
 
-/* Reads the last slice of an instance of 1.0, the slice of ::Ice::Object, with a size of 0. */
+/* Reads the last slice of an instance in encoding 1.0: the slice of ::Ice::Object, with a size
+ * of 0. */
 static void readEnd10(Ice_InputStreamPtr is) {
     if (Ice_InputStream_readSize(is) != 0)
         icec_failRead(is, ICE_FAILED_MALFORMED);
 }
 
-/* Skips slices down to one of a known type. Without one the instance becomes an Ice_Value_type
- * without a slice; in 1.0, which cannot preserve slices, it is dropped. */
+/* Skips slices until the slice of a known type. If there is none, the instance becomes an
+ * Ice_Value_type without a slice. In encoding 1.0, which cannot preserve slices, such an
+ * instance is dropped. */
 static const Ice_ValueType* knownType(Ice_InputStreamPtr is, Ice_UnknownSlice** list) {
     Ice_Bool isFirst;
     for (isFirst = 1;; isFirst = 0) {
         SliceHead head;
         startSlice(is, &head);
         if (is->minor == 0 && head.isObject && !isFirst) {
-            readEnd10(is); /* must not be referenced */
+            readEnd10(is); /* no pointer may refer to a dropped instance */
             return 0;
         }
         if (is->failed || (head.isObject && !isFirst)) {
@@ -277,7 +281,8 @@ static const Ice_ValueType* knownType(Ice_InputStreamPtr is, Ice_UnknownSlice** 
         if (head.type)
             return head.type;
         if (is->sliceEnd == 0) {
-            icec_failRead(is, ICE_FAILED_MALFORMED); /* the format does not give its end */
+            icec_failRead(is, ICE_FAILED_MALFORMED); /* the format does not contain the end of
+                                                      * the slice */
             return 0;
         }
         if (is->minor == 0) {
@@ -293,7 +298,7 @@ static const Ice_ValueType* knownType(Ice_InputStreamPtr is, Ice_UnknownSlice** 
     }
 }
 
-/* Reads the slices of one instance, which gets this number. */
+/* Reads the slices of one instance and assigns it this number. */
 static void readSlices(Ice_InputStreamPtr is, Ice_Int number) {
     Ice_UnknownSlice* unknown = 0;
     const Ice_ValueType* type = knownType(is, &unknown);
@@ -313,7 +318,7 @@ static void readSlices(Ice_InputStreamPtr is, Ice_Int number) {
         return;
     }
     if (type == &Ice_Value_type && unknown)
-        return; /* the last slice was an unknown one */
+        return; /* the last slice had an unknown type */
     for (; type && !is->failed; type = type->base) {
         type->read(v, is);
         Ice_InputStream_endSlice(is);
@@ -330,8 +335,8 @@ static void readSlices(Ice_InputStreamPtr is, Ice_Int number) {
     }
 }
 
-/* Reads an instance's number on the wire; 1 precedes an instance. Returns the instance's number,
- * from 1. */
+/* Reads the number of an instance; 1 on the wire means that a new instance follows. Returns the
+ * instance's number, counted from 1. */
 static Ice_Int readInstance(Ice_InputStreamPtr is, Ice_Int number) {
     Ice_InputValues* values = is->values;
     Ice_Byte flags = is->sliceFlags;

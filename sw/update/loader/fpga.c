@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * fpga: the flash is on SPI 1 and on the FPGA's configuration pins. The FPGA leaves these pins
- * alone after its configuration, and while PROGRAM_B is low. The processor drives the bus only
- * during the processor's transactions. While the FPGA loads its configuration, SPI 1 is a slave
- * that receives the addresses that the FPGA reads.
+ * fpga: accesses the FPGA's flash, and makes the FPGA load its bitstream. The flash is connected to
+ * SPI 1 of the processor and to the configuration pins of the FPGA. The FPGA does not drive these
+ * pins after its configuration, nor while PROGRAM_B is low. The processor drives the bus only
+ * during its own transactions. While the FPGA loads its configuration, SPI 1 is a slave that
+ * receives the addresses that the FPGA reads.
  */
 #include "fpga.h"
 #include "board.h"
@@ -11,22 +12,26 @@
 #include "stm32f2.h"
 #include "ucos_ii.h"
 
-#define BUS 0U                   /* port A: chip select 4, clock 5, data in 6, data out 7 */
-#define BUS_PINS (0xFFUL << 8)   /* the bits of these pins in MODER */
-#define BUS_OURS (0xA9UL << 8)   /* MODER: chip select an output, three pins of SPI 1 */
-#define BUS_HEARS (0x8AUL << 8)  /* MODER: all pins but data in are SPI 1's */
-#define BUS_SPI (0x5555UL << 16) /* alternate function 5 */
-#define SELECT 4U                /* chip select on port A, and its EXTI line */
+#define BUS 0U                 /* pins on port A: chip select 4, clock 5, data in 6, data out 7 */
+#define BUS_PINS (0xFFUL << 8) /* the bits of these pins in MODER */
+/* MODER for transactions of the processor: chip select is an output, three pins belong to SPI 1 */
+#define BUS_OURS (0xA9UL << 8)
+#define BUS_HEARS (0x8AUL << 8)  /* MODER for listening: all pins except data in belong to SPI 1 */
+#define BUS_SPI (0x5555UL << 16) /* alternate function 5 (SPI 1) for three pins */
+#define SELECT 4U                /* pin of chip select on port A, and its EXTI line */
 #define SELECT_VECTOR 10U
-#define ADDRESS_BYTES 4U /* the flash's instruction precedes it */
-#define POLLS 2000U      /* polls of at least 10 cycles; the address takes 32 us at 1 MHz */
-#define CONTROL 2U       /* port C: PROGRAM_B 0, open drain; DONE 1 */
+/* bytes up to the end of the address: the instruction of the flash, and three bytes of address */
+#define ADDRESS_BYTES 4U
+/* number of polls of at least 10 cycles; the address takes 32 us at 1 MHz */
+#define POLLS 2000U
+#define CONTROL 2U /* pins on port C: PROGRAM_B 0 (open drain), DONE 1 */
 #define DONE 1U
 #define NO_TASK 255U
-/* Longest wait for DONE, ticks of 10 ms: 3.7 Mbit take 1.9 s at 2 MHz, 3.7 s at half of it, and
- * there are at most four tries. */
+/* Longest wait for DONE, ticks of 10 ms: loading 3.7 Mbit takes 1.9 s at 2 MHz, 3.7 s at 1 MHz, and
+ * the FPGA makes at most four tries. */
 #define WAIT_TICKS 1600U
-/* Ticks without a chip select after which the FPGA does not read, or the wire is missing. */
+/* Time without a chip select, in ticks, after which the FPGA does not read, or the wire is
+ * missing. */
 #define QUIET_TICKS 100U
 #define READS_A_PAUSE 64U
 
@@ -54,7 +59,7 @@ static void pause(void) {
 
 static const SpiNor_Bus bus = {select, transfer, pause};
 
-/* Reads, with pauses for other tasks, the watchdog's among them. */
+/* Reads the flash, with pauses for other tasks, including the one that serves the watchdog. */
 static void read(void* context, U32 offset, U8* bytes, U32 count) {
     static U32 reads;
     SpiNor_read(context, offset, bytes, count);
@@ -88,7 +93,7 @@ static int isSelected(void) {
     return !(GPIO_IDR(BUS) >> SELECT & 1UL);
 }
 
-/* Empties the receiver, which starts with the next chip select. */
+/* Empties the receiver of SPI 1, which starts at the next chip select. */
 static void arm(void) {
     SPI1_CR1 = 0;
     (void)SPI1_DR;
@@ -96,7 +101,7 @@ static void arm(void) {
     SPI1_CR1 = SPI1_CR1_SLAVE;
 }
 
-/* Returns the address that the FPGA now sends to its flash; 0 after a time-out. */
+/* Returns the address that the FPGA is sending to its flash; 0 after a time-out. */
 static U32 hear(void) {
     U32 address = 0, polls = 0, i;
     for (i = 0; i < ADDRESS_BYTES; ++i) {
@@ -109,7 +114,8 @@ static U32 hear(void) {
 }
 
 /* Lets the FPGA load its configuration, and sleeps until DONE is high or the time is over. SysTick
- * and chip select wake the processor, but are not served. Returns the address of the last read. */
+ * and chip select wake the processor, but their interrupt routines do not run. Returns the address
+ * of the last read. */
 static U32 load(void) {
     U32 i, edge = 0, heard = 0;
     __asm__ volatile("cpsid i");
@@ -147,18 +153,18 @@ static U32 load(void) {
     SPI1_CR1 = SPI1_CR1_MASTER;
     __asm__ volatile("cpsie i");
     if (!isDone() && isSelected())
-        hold(); /* the FPGA hangs: this frees the bus */
+        hold(); /* the FPGA hangs: clearing it frees the bus */
     return heard;
 }
 
-/* Returns 1 if the FPGA hangs, or has gone back to the golden bitstream. */
+/* Returns 1 if the FPGA hangs, or has loaded the golden bitstream instead. */
 static int loadsAnother(void) {
     const U32 from = load();
     return !isDone() || from == Slots_at(&slots_fpga, 0) + SLOTS_IMAGE_AT;
 }
 
-/* Makes the FPGA load again, so that all its reads are received, if the bitstream is signed and
- * complete. Returns 1 if it is not, otherwise the result of loadsAnother. */
+/* If the bitstream is signed and complete, makes the FPGA load again, so that all its reads are
+ * observed, and returns the result of loadsAnother. Otherwise returns 1. */
 static int loadsAnotherAgain(void) {
     hold();
     SPI1_CR1 = SPI1_CR1_MASTER;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// pack_update: signs a firmware for both slots of a vehicle, or the next list of keys, fills the
-// flash of a new vehicle, or writes a firmware's checksum.
+// pack_update: signs a firmware for both slots of a vehicle, or a new list of keys. It also writes
+// the flash contents of a new vehicle, and the checksum of a firmware.
 //
-// A package is, for each slot, the signed header (sw/update/slots.h) and the image linked for it. A
-// list of keys is a header alone.
+// A package contains, for each slot, the signed header (sw/update/slots.h) and the image that is
+// linked for this slot. A list of keys is a header alone.
 
 #include "elf_image.h"
 #include <CLI/CLI.hpp>
@@ -32,7 +32,7 @@ namespace {
 
 using Bytes = std::vector<uint8_t>;
 
-uint32_t board[2] = {1, 1}, needs = 0; // options --board and --needs
+uint32_t board[2] = {1, 1}, needs = 0; // values of the options --board and --needs
 std::string second;
 bool isUnchecked = false;
 
@@ -48,9 +48,10 @@ void save(const std::string& path, const Bytes& bytes) {
         fail("cannot write '" + path + "'");
 }
 
-// Reads a private key's seed. Returns false without such a file.
+// Reads the seed of a private key. Returns false if the file does not exist.
 bool readSeed(const std::string& path, Bytes& seed) {
-    const int in = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC); // a pipe must not block
+    const int in = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC); // O_NONBLOCK: opening a
+                                                                          // pipe must not block
     if (in < 0 && errno == ENOENT)
         return false;
     if (in < 0)
@@ -70,13 +71,15 @@ bool readSeed(const std::string& path, Bytes& seed) {
     return true;
 }
 
-// Reads a private key from a file, which contains its seed, or creates it.
+// A private key, read from a file that contains its seed. If the file does not exist, a key is
+// created.
 struct Keys {
     explicit Keys(const std::string& path) {
         Bytes seed(crypto_sign_SEEDBYTES);
         if (!readSeed(path, seed)) {
             randombytes_buf(seed.data(), seed.size());
-            // The file is renamed when it is complete: all trees of a user share it.
+            // The file gets its name when it is complete, because all source trees of a user share
+            // it.
             std::string temporary = path + ".XXXXXX";
             const int out = mkstemp(temporary.data()); // mode 0600
             const bool made = out >= 0 &&
@@ -87,7 +90,8 @@ struct Keys {
             if (made)
                 std::cout << "pack_update: made a new key pair: " << path
                           << " signs for vehicles that are filled with it\n";
-            else if (why != EEXIST || !readSeed(path, seed)) // another process was faster
+            else if (why != EEXIST ||
+                     !readSeed(path, seed)) // another process created the file first
                 fail("cannot write the private key '" + path + "'");
         }
         crypto_sign_seed_keypair(open_.data(), secret.data(), seed.data());
@@ -134,7 +138,7 @@ Bytes signedHeader(const Slots_Header& header, const Keys& keys) {
     return bytes;
 }
 
-// A signed list of one or two public keys.
+// Returns a signed list of one or two public keys.
 Bytes listOf(const std::vector<Bytes>& open, uint32_t number, const Keys& signer) {
     Slots_Header list{};
     list.magic = SLOTS_MAGIC;
@@ -147,7 +151,7 @@ Bytes listOf(const std::vector<Bytes>& open, uint32_t number, const Keys& signer
     return signedHeader(list, signer);
 }
 
-// The signed header of an image for a slot, and the image.
+// Returns the signed header of an image for a slot, and the image.
 std::pair<Bytes, Bytes> sign(const Bytes& image, const Slots_Layout& layout, uint32_t slot,
                              uint32_t product, uint32_t version, const Keys& keys) {
     Slots_Header header{};
@@ -179,20 +183,20 @@ constexpr uint8_t sync[] = {0xAA, 0x99, 0x55, 0x66};
 class Packets {
 public:
     Packets(const Bytes& file, size_t at) : file_(file), at_(at) {}
-    // Skips to the end of the packet with command DESYNC, the last one. Returns false if there is
-    // none.
+    // Skips to the end of the last packet, the command DESYNC. Returns false if the packet is
+    // missing.
     bool toDesync() {
         while (at_ + 2 <= file_.size()) {
             const uint32_t head = word(), type = head >> 13, reg = head >> 5 & 63;
             if (type == 1 && (head >> 11 & 3) == 0)
-                continue; // no operation
+                continue; // a no-operation word
             if ((type != 1 && type != 2) || (head >> 11 & 3) != write)
                 return false;
             size_t words = head & 31;
             if (type == 2)
                 words = size_t{word()} << 16 | word();
             if (reg == fdri)
-                words += 2; // including its CRC
+                words += 2; // the packet has two more words: its CRC
             if (words > (file_.size() - std::min(at_, file_.size())) / 2)
                 return false;
             const bool isCommand = type == 1 && reg == cmd && words == 1;
@@ -202,7 +206,7 @@ public:
         }
         return false;
     }
-    // Returns how many bytes follow, without no operations and erased flash.
+    // Returns how many bytes follow, except no-operation words and erased flash.
     size_t rest() {
         size_t end = file_.size();
         while (at_ + 2 <= end && file_[at_] == 0x20 && file_[at_ + 1] == 0)
@@ -223,8 +227,8 @@ private:
     size_t at_;
 };
 
-// Throws if a bitstream is cut or has bytes after its end: a cut one would hang a vehicle's FPGA,
-// and BitGen appends no bytes.
+// Throws if a bitstream is incomplete or has bytes after its end. An incomplete bitstream would
+// hang a vehicle's FPGA, and BitGen appends no bytes.
 void checkWhole(const std::string& path, const Bytes& file, size_t at) {
     Packets packets(file, at);
     if (!packets.toDesync())
@@ -246,7 +250,7 @@ void checkHeader(const std::string& path, const Bytes& file) {
         return value;
     };
     if (number(0, 2) != 9)
-        return; // a .bin has no header
+        return; // a .bin file has no header
     size_t at = 13;
     for (; at + 3 <= file.size() && file[at] >= 'a' && file[at] < 'e'; at += 3 + number(at + 1, 2))
         ;
@@ -258,8 +262,8 @@ void checkHeader(const std::string& path, const Bytes& file) {
              " bytes of bitstream, as its header counts, got " + std::to_string(follow));
 }
 
-// Reads a bitstream, starting SLOTS_SYNC_AT bytes before its sync word, without that word, which
-// the vehicle adds.
+// Reads a bitstream, starting SLOTS_SYNC_AT bytes before its sync word. The sync word is left out;
+// the vehicle adds it.
 Bytes readBitstream(const std::string& path) {
     std::ifstream in(path, std::ios::binary);
     const Bytes file((std::istreambuf_iterator<char>(in)), {});
@@ -288,20 +292,20 @@ void packBitstream(const std::string& path, uint32_t version, const std::string&
     save(output, header);
 }
 
-// The header at address 0 sends the FPGA to slot 1, and if that fails to slot 0 (UG380, chapter 7).
+// The header at address 0 makes the FPGA load slot 1, and slot 0 if that fails (UG380, chapter 7).
 void fillFpga(const std::string& path, uint32_t version, const std::string& key,
               const std::string& output) {
     Bytes flash(2 << 20, 0xFF);
     const uint32_t slots[2] = {Slots_at(&slots_fpga, 0), Slots_at(&slots_fpga, 1)},
                    next = slots[1] + SLOTS_IMAGE_AT, golden = slots[0] + SLOTS_IMAGE_AT,
-                   read = 0x0300;                          // the flash's instruction
+                   read = 0x0300;                          // read instruction of the flash
     const uint32_t words[] = {0xAA99, 0x5566,              // sync word
                               0x3261, next & 0xFFFF,       // GENERAL1
                               0x3281, read | next >> 16,   // GENERAL2
                               0x32A1, golden & 0xFFFF,     // GENERAL3
                               0x32C1, read | golden >> 16, // GENERAL4
                               0x30A1, 0x000E,              // CMD: IPROG
-                              0x2000, 0x2000};             // no operation
+                              0x2000, 0x2000};             // no-operation words
     auto at = flash.begin() + SLOTS_SYNC_AT;
     for (uint32_t word : words) {
         *at++ = static_cast<uint8_t>(word >> 8);

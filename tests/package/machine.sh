@@ -16,6 +16,9 @@ fail() {
 user() { runuser -u tester -- env HOME=/home/tester "$@"; }
 
 step "install"
+# An earlier run that was stopped can have left packages, keys and rights.
+apt-get purge -y -qq 'icesoc-*' libicec-dev >/dev/null 2>&1 || true
+rm -rf /etc/icesoc
 apt-get update -qq
 apt-get install -y -qq --no-install-recommends systemd-sysv udev dbus xplanet-images >/dev/null
 apt-get install -y -qq --reinstall --no-install-recommends "$here"/*.deb >/dev/null

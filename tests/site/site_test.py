@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 from icesoc.site import build, doxygen_filter, hdl, symbol
+from icesoc.util.browser import Browser
 from script import TREE, Script, fresh, main, write
 
 WORK = Path(sys.argv[2])
@@ -74,7 +75,8 @@ class Cases(Script):
                          "typedef struct All All;\n")
 
     def test_broken_link(self):
-        """A link to a page that does not exist fails the build and is named."""
+        """A site is read from files, without a server: its scripts run, and light and dark can be
+        chosen. A link to a page that does not exist fails the build and is named."""
         tree = fresh(WORK) / "tree"
         for part in ("docs/conf.py", "docs/_static/site.css", "sw/fsmc/fsmc.h",
                      "synth/baseline.json", "synth/ise/chip.ucf"):
@@ -82,6 +84,13 @@ class Cases(Script):
         write(tree / "docs/index.md", "# Site\n\n```{toctree}\n:glob:\n*\nreference/**\n```\n")
         write(tree / "docs/bus.md", "# Bus\n\n[site](index.md)\n")
         build.build(tree, WORK / "site", {"run": "help"})
+        with Browser(width=1400, height=1000) as browser:
+            browser.open((WORK / "site/html/bus.html").absolute().as_uri())
+            browser.until("document.querySelector('.theme-toggle') !== null")
+            before = browser.run("document.body.dataset.theme")
+            browser.run("document.querySelector('.theme-toggle').click()")
+            self.assertNotEqual(browser.run("document.body.dataset.theme"), before)
+            self.assertEqual(browser.errors, [])
         write(tree / "docs/bus.md", "# Bus\n\n[lost](no_such_page.md)\n")
         with self.assertRaisesRegex(build.SiteError, "no_such_page.md"):
             build.build(tree, WORK / "site", {"run": "help"})

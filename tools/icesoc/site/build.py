@@ -99,6 +99,32 @@ def run(words, what, log):
                         "\n".join(Path(log).read_text().splitlines()[-20:]))
 
 
+def make_self_contained(html):
+    """Repairs what Debian's package of the theme takes from a web server of the machine.
+
+    Its style sheet imports /javascript/normalize.css, and its script is a module that imports
+    another one. A browser loads neither from files, so the menu that follows the reader and the
+    choice between light and dark would not work. Raises SiteError if another file is named by
+    an absolute path.
+    """
+    style = html / "_static/styles/furo.css"
+    text = style.read_text()
+    shared = "/javascript/normalize.css/normalize.css"
+    if shared in text:
+        shutil.copy("/usr/share" + shared, style.with_name("normalize.css"))
+        style.write_text(text.replace(f"@import url({shared})", "@import url(normalize.css)"))
+    script = html / "_static/scripts/furo.js"
+    first, _, rest = script.read_text().partition("\n")
+    if first.startswith("import Gumshoe from"):
+        script.write_text(script.with_name("gumshoe-patched.js").read_text() + rest)
+    for path in sorted(html.rglob("*")):
+        if path.suffix in (".html", ".css"):
+            found = re.search(r"(?:src|href)=\"(/[^\"]*)|url\([\"']?(/[^)]*)", path.read_text())
+            if found:
+                raise SiteError(f"{path}: expected only relative paths, got "
+                                f"{found[1] or found[2]}: the site cannot be read from files")
+
+
 def build(tree, out, helps):
     """Builds the site into `out`/html. Broken links and orphan pages are errors."""
     out.mkdir(parents=True, exist_ok=True)
@@ -112,4 +138,5 @@ def build(tree, out, helps):
     run(["sphinx-build", "-q", "-W", "--keep-going", "-b", "html", "-d", out / "doctrees", "-D",
          f"breathe_projects.icesoc={out / 'doxygen/xml'}", out / "pages", out / "html"],
         "Sphinx", out / "sphinx.log")
+    make_self_contained(out / "html")
     return out / "html/index.html"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""parts_test: the parts of the utilisation report, against published reports of Xilinx' tools and
-figures that can be added up by hand."""
+"""parts_test: compares parts of the utilisation report with published reports of Xilinx' tools, and
+with figures that can be added up by hand."""
 import copy, json, os, pathlib, statistics, tempfile, types, unittest, unittest.mock
 
 from icesoc.synth import (baseline, cores, equivalence, owners, report, reports, runner, slices,
@@ -14,7 +14,7 @@ YOSYS = "Yosys 0.23 (git sha1 7ce5011c24b)"
 
 
 def cell(type, inputs, outputs, name=""):
-    """Inputs and outputs: {port: bit}."""
+    """Returns a cell. Inputs and outputs: {port: bit}."""
     pins = [Pin(port, False, [bit]) for port, bit in inputs.items()]
     pins += [Pin(port, True, [bit]) for port, bit in outputs.items()]
     return Cell(name or type, type, pins, bool(name))
@@ -43,7 +43,7 @@ class Slices(unittest.TestCase):
 
 
 def chain(fanouts, end_pin, middle=None):
-    """A path of one-input LUTs between two flip-flops, each net with its fan-out."""
+    """Returns a path of one-input LUTs between two flip-flops; each net has the given fan-out."""
     n = Netlist([cell("FDRE", {"C": 2}, {"Q": 10})])
     for bit, fanout in enumerate(fanouts, 10):
         n.readers.setdefault(bit, []).extend([0] * (fanout - 1))  # other readers
@@ -59,7 +59,7 @@ def longest(n):
 
 
 class Timing(unittest.TestCase):
-    """Longest paths, and the reported clock of several orders."""
+    """Tests of the longest paths, and of the clock reported for several orders."""
 
     def test_a_path_is_the_sum_of_its_cells_and_nets(self):
         p = longest(chain([4, 1, 88, 26, 2, 5, 16], "CE"))
@@ -72,7 +72,7 @@ class Timing(unittest.TestCase):
     def test_each_register_is_counted_once_by_its_longest_path(self):
         t = timing.timing_of(chain([4, 1, 88, 26, 2, 5, 16], "CE"), [""] * 8)[0]
         bins = int(2 * timing.SLOW_GRADE * t["paths"][0]["ns"])
-        self.assertEqual(t["ends"], [0] * bins + [1])  # nothing ends at the first register
+        self.assertEqual(t["ends"], [0] * bins + [1])  # no path ends at the first register
 
     def test_through_a_memory_only_the_address_of_that_output_leads(self):
         # ADDRD belongs to the write port: the path ends there, another begins at the memory.
@@ -111,7 +111,7 @@ class Timing(unittest.TestCase):
             "d: 6.49 ns from a pad to y; the limit is 6 ns (-2)"])
 
     def test_a_loop_of_logic_ends_the_search_and_more_fan_out_is_never_faster(self):
-        # The LUT reads itself.
+        # A LUT that reads its own output.
         self.assertEqual(longest(chain([1, 1], "D", lut([10, 11], 11)))["levels"], 1)
         delays = [timing.net_delay(fanout) for fanout in range(1, 152)]
         self.assertEqual(delays, sorted(delays))
@@ -148,16 +148,17 @@ class Timing(unittest.TestCase):
         def shows(text, load=0):
             with unittest.mock.patch("os.getloadavg", lambda: (load * os.cpu_count(), 0, 0)):
                 self.assertEqual(runner.time_left([chip, large, small], options, 30), text)
-        shows("0 of 3 designs, about 1:20 left: ")  # 146, 11 and 2 s by two
+        shows("0 of 3 designs, about 1:20 left: ")  # 146 s, 11 s and 2 s of work by two processes
         shows("0 of 3 designs, about 3:58 left: ", load=3)
         chip.begun = 10
         shows("0 of 3 designs, about 2:06 left: chip")
         large.begun, large.spent = 1, 22  # twice as long
         shows("1 of 3 designs, about 4:32 left: chip")
-        for suffix in ".part", ".1":  # two orders of five
+        for suffix in ".part", ".1":  # two of five orders are finished
             (folder / f"chip{suffix}").touch()
         shows("1 of 3 designs, about 0:30 left: chip")
-        chip.begun, chip.spent, small.begun, small.spent = 1, 290, 1, 0  # small is cached
+        # the result of `small` is cached
+        chip.begun, chip.spent, small.begun, small.spent = 1, 290, 1, 0
         shows("3 of 3 designs, about 0:00 left: ")
 
 
@@ -189,7 +190,7 @@ class Reports(unittest.TestCase):
 
     def test_the_errors_that_are_stated_are_those_of_the_reports(self):
         self.stated()
-        for key, ns in ("routed", 99.0), ("synthesised", 99.0):  # a broken entry
+        for key, ns in ("routed", 99.0), ("synthesised", 99.0):  # an entry whose figures are wrong
             broken = next(r for r in self.designs if key in r)
             kept, broken[key] = broken[key], ns
             before = reports.range_of(self.ratios(key))
@@ -277,7 +278,7 @@ class Baseline(unittest.TestCase):
         self.assertEqual(self.judged(), ([], []))
 
     def test_growth_within_the_budget_passes_and_so_does_shrinking(self):
-        for luts, flip_flops in (7, 2), (-57, -27):  # 3 % and 4; 1 % and 2
+        for luts, flip_flops in (7, 2), (-57, -27):  # budget: 3 % and 4 LUTs; 1 % and 2 flip-flops
             self.grow(luts, flip_flops)
             self.passes()
 
@@ -339,7 +340,7 @@ class Baseline(unittest.TestCase):
         run = self.row.main
         self.assertEqual(baseline.state_of(run, "abc", None), "measured now")
         run.wanted, run.figures = False, None
-        older = self.accepted | {"sources": ""}  # accepted before the file had this
+        older = self.accepted | {"sources": ""}  # accepted before the file contained this key
         for hash, accepted, state in (
                 ("abc", self.accepted, "as accepted"), ("other", self.accepted, "changed since"),
                 ("abc", None, "never measured here"), ("abc", older, "never measured here")):
@@ -390,7 +391,8 @@ class Cores(unittest.TestCase):
             self.rows("plain", "gone")
 
     def test_logic_that_reads_one_slot_is_its_blocks(self):
-        """Two LUTs read a register of a block each, one reads both; the decoder's choice."""
+        """Two LUTs read one register of a block each, and a third reads both, which is the
+        decoder's selection."""
         names = "u_a.count", "u_b.u_part.state", "u_platform.u_bus_decoder.index"
         n = Netlist([*(cell("FDRE", {}, {"Q": bit}, name) for bit, name in enumerate(names, 2)),
                      lut([2, 4], 5), lut([3, 4], 6), lut([2, 3, 4], 7), lut([5], 8),

@@ -41,7 +41,7 @@ DEEP = """module deep (input clk_i, write_i, input [3:0] at_i, from_i, input [31
     end
 endmodule
 """
-# A register with the sign three times, behind a multiplier's adder.
+# A register after the adder of a multiplier; its upper bits repeat the sign.
 SCALED = """module scaled (input clk_i, en_i, input signed [17:0] a_i, input signed [15:0] b_i,
                input signed [33:0] c_i, output reg signed [37:0] o);
     reg signed [33:0] product;
@@ -56,7 +56,7 @@ endmodule
 
 
 def grow(folder):
-    """Twelve flip-flops more."""
+    """Adds twelve flip-flops to a design."""
     edit(folder / "pair.v", "    wire [5:0] word;", "    wire [5:0] word;\n    reg [11:0] extra;")
     edit(folder / "pair.v", "        data_o <= word",
          "        extra <= {extra[5:0], word};\n        data_o <= extra[11:6] ^ word")
@@ -64,7 +64,7 @@ def grow(folder):
 
 class Cases(Script):
     def setUp(self):
-        # Names of files are relative, since they are part of a design's identity.
+        # Names of files must be relative, because they are part of a design's identity.
         fresh(sys.argv[3])
         shutil.copytree(TREE / "tests/synth/project", "project")
         for folder in "bus", "ip":
@@ -81,7 +81,7 @@ class Cases(Script):
                  status=status)
 
     def users_tree(self):
-        """The project becomes a tree that make runs commands in."""
+        """Turns the project into a tree in which make can run commands."""
         for folder in "build/main/synth", "build/synth":
             Path("project", folder).mkdir(parents=True)
         Path("project/build/main/synth/utilisation").symlink_to(PROGRAM)
@@ -89,7 +89,7 @@ class Cases(Script):
         Path("out/cache").rename("project/build/synth/cache")
 
     def made(self, *words, status=0):
-        """In the project, as a user."""
+        """Runs make in the project, as a user does."""
         self.make(*words, tree="project", build="build/main", status=status)
 
     def test_counts(self):
@@ -106,7 +106,7 @@ class Cases(Script):
             BUFG u_buffer (.I(pll_o), .O(clk)); // in the first library, but not used by the mapping
             always @(posedge clk) q_o <= !q_o;
             endmodule\n""")
-        # A memory without an array.
+        # A memory that Yosys infers although no array is declared.
         cases = " ".join(f"{n}: o <= {n * n % 509};" for n in range(1024))
         write("gen/squares.v", "module squares (input clk_i, input [9:0] n_i, output reg [8:0] o); "
               f"always @(posedge clk_i) case (n_i) {cases} endcase endmodule\n")
@@ -142,8 +142,8 @@ class Cases(Script):
                            Path("stat").read_text(), re.M)
         sites = 4  # LUT sites used as RAM
         self.assertEqual(whole["lut"], sites + sum(int(row[1] or row[2]) for row in cells))
-        # In the baseline chip a core also costs its slot of the decoder: a decoder for three slots
-        # minus a decoder for two.
+        # In the accepted chip a core also costs its slot of the decoder: the decoder for three
+        # slots minus the decoder for two.
         shutil.copy(TREE / "bus/bus_decoder.v", "project/bus")
         write("gen/map.regs.json", json.dumps({
             "block": "map", "doc": "", "registers": [], "constants": [
@@ -218,7 +218,8 @@ class Cases(Script):
                  "--design", "wide", "--yosys", Path("slow").resolve())
         with open("first", "w") as first, open("second", "w") as second:
             begun = subprocess.Popen(words, stdout=first, stderr=first)
-            while not Path("out/cache").exists() and begun.poll() is None:  # it holds the folder
+            # the first run holds the folder
+            while not Path("out/cache").exists() and begun.poll() is None:
                 time.sleep(0.1)
             waited = subprocess.run(words, stdout=second, stderr=second)
         self.assertEqual((begun.wait(), waited.returncode), (0, 0))
@@ -227,7 +228,7 @@ class Cases(Script):
         self.lacks(r"^\[", file="second")
 
     def dump(self, page):
-        """The page's elements when its scripts have run."""
+        """Returns the elements of the page after its scripts have run."""
         return elements(f"{Path(page).resolve().as_uri()}#whole/u_store", width=1440, height=900)
 
     def test_page(self):
@@ -253,7 +254,7 @@ class Cases(Script):
                  r"project/hdl/blocks/counter.v:13 .* now 15 11 7 [0-9.]+ this run ")
         if not (PROGRAM.parents[1] / "page/libraries.js").stat().st_size:
             self.skipTest("Tabulator and uPlot could not be fetched")
-        # A second script clicks like a user and writes what it then sees.
+        # A second script clicks as a user does, and writes what is then visible.
         clicks = (TREE / "tests/synth/clicks.js").read_text()
         write("clicked.html", text.replace(
             "</body>", f'<p id="seen"></p><script>{clicks}</script></body>'))
@@ -266,7 +267,7 @@ class Cases(Script):
                 "tree pair u_storestore u_countercounter; here Signals of u_store;",
                 "paths 1; step project/hdl/blocks/[a-z]*.v:1[23]; on the way to x,y,y,z; "
                 r"slow Longest paths, at 104.5 MHz; clock ([0-9.]+) Longest paths, at \1 MHz, "
-                r"by [1-9]\d*; wider 0; rounded 104.5,104.4,104.0; "  # as parts_test.py has it
+                r"by [1-9]\d*; wider 0; rounded 104.5,104.4,104.0; "  # as checked in parts_test.py
                 r"slack [0-9.]+ to [0-9.]+ ns left of 10 [1-9]\d* ; "
                 "history now  this run 15 11 7;"):
             self.has(part)
@@ -399,7 +400,8 @@ class Cases(Script):
             self.assertTrue(inside, cell)
         self.has(r"\(design (pair|whole)", file=ise / "whole.edf")
         self.assertTrue((ise / "verilog/store.v").exists(), "the Verilog for XST")
-        # A primitive's port is connected by the bits that only it has.
+        # A port of a primitive that exists in two forms is connected by the bits that only one form
+        # has.
         write("project/hdl/blocks/deep.v", DEEP)
         self.made("synth-edif", "DESIGN=deep")
         self.has("cellRef RAMB8BWER", file=ise / "deep.edf")

@@ -91,8 +91,7 @@ public:
         settings.random = [this] { return random(); };
         std::unique_lock<std::mutex> lock(mutex_);
         engine_ = XBeeAT::Engine::get(settings, [this](int, const std::string& text) {
-            if (text.find("tries again") != std::string::npos) // the link waits for a new
-                                                               // connection
+            if (text.find("tries again") != std::string::npos) // the engine has failed
                 end();
         });
         engine_->listen();

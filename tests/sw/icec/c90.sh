@@ -8,7 +8,7 @@ warnings='-std=c90 -pedantic -Wall -Wextra -Wconversion -Wno-sign-conversion -Ws
 -Wmissing-prototypes -Wdeclaration-after-statement -Werror -fsyntax-only'
 full=$(echo "$sw"/icec/*.c "$sw"/icec/values/*.c "$sw"/icec/extra/*.c)
 minimal=$(sed "s,^,$sw/," "$sw/minimal/sources.txt")
-check() { # sources, flags: compiler first
+check() { # check SOURCES FLAGS: compiles the sources; the first of FLAGS is the compiler
     sources=$1
     shift
     # shellcheck disable=SC2086

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// calls_test: calls between two communicators: servants, facets, one-way, batches, contexts, sizes,
-// asynchronous calls.
+// calls_test: tests calls between two communicators: servants, facets, one-way calls, batches,
+// contexts, sizes, asynchronous calls.
 
 #include "pair.h"
 
@@ -151,7 +151,7 @@ TEST_F(Calls, ABatchIsOneMessageAndIsSentWhenFullOrFlushed) {
     settle();
     EXPECT_EQ(got, std::vector<int>({0, 1, 2, 3, 4}));
     EXPECT_EQ(messages, 1);
-    for (int i = 0; i < 20; ++i) // more than fits
+    for (int i = 0; i < 20; ++i) // more batched requests than fit
         EXPECT_EQ(call(prx_, "op", i), ICE_OK);
     EXPECT_EQ(Ice_ObjectPrx_ice_flushBatchRequests(&prx_), ICE_OK);
     settle();
@@ -187,7 +187,7 @@ TEST_F(Calls, EveryLimitIsSaidWithItsNameAndValue) {
     servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
         if (str(current.operation) == "arena") {
             (void)Ice_InputStream_allocate(is, 1000, 8);
-            return ICE_MARSHAL; // as in generated code
+            return ICE_MARSHAL; // the status that generated code returns
         }
         if (str(current.operation) == "bound") {
             is->failed = ICE_FAILED_BOUND;

@@ -196,7 +196,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         rest.insert(rest.begin(), {1, 0, 0, 0});
     }
     messageDuringCall(types[choice], choice == 4, rest);
-    // After any message a connection still works: it opens again, and a ping gets one reply.
+    // After any message the connection still works: it can be opened again, and a ping gets one
+    // reply.
     if (!loop->open[0] || data[0] & 8) {
         loop->inject(ICE_EVENT_OPENED, 0);
         (void)Ice_Communicator_poll(&ic, 0);

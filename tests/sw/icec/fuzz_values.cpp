@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// fuzz_values: libFuzzer on graphs of instances and on exceptions, through generated code.
+// fuzz_values: libFuzzer target of graphs of instances and of exceptions, through generated code.
 //
-// An input is read as a message; every second one is first converted to a valid message with a
+// An input is read as a message; every second input is first converted to a valid message with a
 // graph described by its bytes, and then damaged. The instances read are written in each encoding
 // and format; if the result can be read again, writing it must give the same bytes.
 
@@ -74,7 +74,7 @@ bool write(const Parameters& p, Format format, Bytes& bytes) {
     return !os.failed;
 }
 
-// ---- an operation's exceptions
+// ---- exceptions of an operation
 
 bool read(Graph_Maker_make_Exception& ex, const Bytes& bytes, Ice_Byte minor, size_t arenaBegin) {
     Ice_InputStream is = reader(bytes, minor, arenaBegin);
@@ -92,8 +92,7 @@ template <class What> void roundTrip(const What& what) {
     for (Format format : formats) {
         Bytes first, second;
         What again{};
-        // A limit of the run time (instances, types, waiting pointers) may be reached on the way
-        // back.
+        // The second write may exceed a limit of the run time (instances, types, waiting pointers).
         if (!write(what, format, first) ||
             !read(again, first, format.minor, sizeof arena / sizeof *arena / 2))
             continue;
@@ -154,7 +153,8 @@ template <class What> Bytes described(const uint8_t* data, size_t size, Format f
         what.u.Failure.node = pick();
     }
     (void)write(what, format, bytes);
-    while (at + 2 < size && !bytes.empty()) { // may also damage names; then slices are unknown
+    while (at + 2 < size && !bytes.empty()) { // may also damage names; the slices are then of
+                                              // unknown types
         size_t where = (data[at] << 8 | data[at + 1]) % bytes.size();
         bytes[where] = data[at + 2];
         at += 3;

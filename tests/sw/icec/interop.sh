@@ -1,7 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# interop: command -- command ...   Each prints its port, which is appended to the next command. The
-# exit status of the last one counts, and the status of the first, which the last must have ended.
+# interop: command -- command ...
+#
+# Runs the commands in their order. Each prints its port, which becomes the last argument of the
+# next command. The exit status is that of the last command, or that of the first one, which the
+# last must have ended.
 set -eu
 work=$(mktemp -d)
 pids=''

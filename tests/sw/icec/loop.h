@@ -40,7 +40,7 @@ public:
                 Ice_OutputStream_writeByte(
                     os, static_cast<Ice_Byte>(Ice_numberOption(options, 'c', 0)));
             },
-            [](void*) {}, // one task: it is awake
+            [](void*) {}, // wakes the task: nothing to do, because the only task is awake
             [](void* c) { return of(c).nowMs(); },
             [](void*, const Ice_Byte* encoded, Ice_Int size, Ice_OutputStreamPtr text) {
                 if (!isLoop(encoded, size))
@@ -69,8 +69,8 @@ public:
     U32 nowMs() const { return clock_->ownMs_; }
 
     bool open[ICE_CONNECTIONS] = {};
-    bool silent = false; // connections can be made, but are not answered
-    // Sees every message that is sent.
+    bool silent = false; // true: connections can be made, but the peer does not answer
+    // Called with every message that is sent.
     std::function<void(const Bytes& message)> tap;
 
 private:
@@ -130,8 +130,8 @@ private:
         return ICE_OK;
     }
     void close(int connection) {
-        // The peer may have closed already: its report is withdrawn, since the connection may
-        // already be a new one.
+        // The peer may already have closed the connection. Its report is withdrawn, because the
+        // number may now belong to a new connection.
         for (Event& e : events_)
             if (e.kind == ICE_EVENT_CLOSED && e.connection == connection) {
                 e.kind = ICE_EVENT_NONE;
@@ -145,7 +145,7 @@ private:
     Ice_Communicator& ic_;
     Loop *peer_ = nullptr, *clock_ = this;
     U32 ownMs_ = 0;
-    int first_ = 0; // connections that this side makes: this number, and this + 2
+    int first_ = 0; // first connection that this side makes; the other one is this + 2
     bool running_ = false;
     std::deque<Event> events_;
 };

@@ -130,7 +130,8 @@ TEST_F(Manual, CurrentTellsWhatIsAsked) {
     EXPECT_EQ(seen, "/thing -f  note mode 0 encoding 1.1 on 0 one-way");
 }
 
-TEST_F(Manual, AServantWithoutTypeIdsIsAskedEverything) { // forwards requests for unknown objects
+TEST_F(Manual, AServantWithoutTypeIdsIsAskedEverything) { // The servant forwards requests for
+                                                          // unknown objects.
     static Ice_ObjectPtr target;
     static std::vector<std::string> seen;
     target = &servant_.base;
@@ -156,7 +157,7 @@ TEST_F(Manual, AServantWithoutTypeIdsIsAskedEverything) { // forwards requests f
     EXPECT_EQ(call(prx, "secret"), ICE_OPERATION_NOT_EXIST);
     EXPECT_EQ(seen, (std::vector<std::string>{"ice_ping", "ice_isA", "ice_id", "op", "secret"}));
     EXPECT_EQ(servant_.calls, 1);
-    // The target does not exist any more: its forwarder reports this, also for ice_ping.
+    // The target no longer exists. Its forwarder reports this, also for ice_ping.
     forwarder.dispatch = [](Ice_ObjectPtr, const Ice_Current*, Ice_InputStreamPtr,
                             Ice_OutputStreamPtr) { return ICE_OBJECT_NOT_EXIST; };
     EXPECT_EQ(Ice_ObjectPrx_ice_ping(&prx), ICE_OBJECT_NOT_EXIST);
@@ -295,7 +296,7 @@ TEST_F(Calls, WhoWaitsForALongOperationGetsSignsOfLife) {
     servant_.answerLater(later);
     prx_.timeoutMs = 5 * ICE_HEARTBEAT_MS + 100;
     EXPECT_EQ(call(prx_, "op"), ICE_TIMEOUT);
-    EXPECT_EQ(beats, 1 + 5); // the first opened the connection
+    EXPECT_EQ(beats, 1 + 5); // the first call opened the connection
     (void)Ice_Reply_begin(&later);
     EXPECT_EQ(Ice_Reply_end(&later, ICE_OK), ICE_OK);
     beats = 0;
@@ -318,7 +319,7 @@ TEST_F(Calls, DestroyWaitsForAnswersThatComeLater) {
     Ice_Status status = ICE_LIMIT;
     callAsync(prx_, "op", status);
     settle();
-    // A call of the other side, which fails while that side destroys itself.
+    // A call by the other side, which fails when that side destroys its communicator.
     Ice_ObjectPrx own = there().proxy("missing:loop");
     ASSERT_NE(Ice_ObjectPrx_begin(&own, "op", 0), nullptr);
     ASSERT_EQ(Ice_ObjectPrx_invokeAsync(

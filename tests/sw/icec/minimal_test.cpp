@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// minimal_test: calls of the minimal run time, and its refusals.
+// minimal_test: tests calls of the minimal run time, and requests that it refuses.
 
 #include "pair.h"
 
@@ -63,7 +63,8 @@ TEST_F(Minimal, StringsThatAreNoProxiesSaySo) {
                      1, 1,   1,   0x50, 0x4C, 7,   0, 0, 0, 1, 1, 0}));
 }
 
-// Plays a peer by hand: connection 0 is the one that this side makes.
+// Plays the peer of a communicator with prepared messages. Connection 0 is made by the
+// communicator.
 class MinimalPeer : public ::testing::Test {
 protected:
     MinimalPeer() {
@@ -109,7 +110,7 @@ TEST_F(MinimalPeer, RepliesToOtherCallsArePassedOver) {
     EXPECT_EQ(call(prx_, "op"), ICE_TIMEOUT);
     answer_ = [&](const Bytes& id) {
         arrives(2, late, {7, 0});
-        arrives(message(3, {})); // a sign of life
+        arrives(message(3, {})); // a heartbeat
         arrives(2, id, seven_);
     };
     EXPECT_EQ(ask(prx_, "op", 0), 7);
@@ -152,10 +153,10 @@ TEST_F(MinimalPeer, RepliesThatAreMalformedSaySo) {
         {{6, 0}, ICE_UNKNOWN_USER_EXCEPTION},
         {{}, ICE_MARSHAL},                          // no status
         {{8}, ICE_MARSHAL},                         // unknown status
-        {{0, 6, 0, 0}, ICE_MARSHAL},                // half an encapsulation
-        {{0, 7, 0, 0, 0, 1, 1}, ICE_MARSHAL},       // longer than the message
+        {{0, 6, 0, 0}, ICE_MARSHAL},                // the encapsulation is truncated
+        {{0, 7, 0, 0, 0, 1, 1}, ICE_MARSHAL},       // the encapsulation is longer than the message
         {{0, 6, 0, 0, 0, 2, 0}, ICE_PROTOCOL},      // encoding 2.0
-        {{0, 8, 0, 0, 0, 1, 1, 7, 0}, ICE_MARSHAL}, // too short for the result
+        {{0, 8, 0, 0, 0, 1, 1, 7, 0}, ICE_MARSHAL}, // the encapsulation is too short for the result
     };
     for (const auto& reply : replies) {
         answer_ = [&](const Bytes& id) { arrives(2, id, reply.first); };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// pair: two communicators joined by the loop-back transport, or one and messages as bytes, and a
-// servant that the tests steer.
+// pair: two communicators joined by the loop-back transport, or one communicator that gets messages
+// as bytes; and a servant that the tests control.
 
 #pragma once
 
@@ -27,9 +27,9 @@ inline Operation returns(Ice_Status status) {
     return [=](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr) { return status; };
 }
 
-// A servant with `run` as every operation.
+// A servant that runs the function `run` for every operation.
 struct Servant {
-    Ice_Object base; // first: IceC calls with its address
+    Ice_Object base; // must be the first member: IceC calls with its address
     Operation run = returns(ICE_OK);
     int calls = 0;
 
@@ -100,7 +100,7 @@ inline std::string reason(const Ice_ObjectPrx& prx) {
     return str(failure.unknown);
 }
 
-// Makes a call without parameters that sets `status` when its reply is there.
+// Makes a call without parameters that sets `status` when its reply arrives.
 inline void callAsync(Ice_ObjectPrx& prx, const char* operation, Ice_Status& status) {
     ASSERT_NE(Ice_ObjectPrx_begin(&prx, operation, 0), nullptr);
     auto done = [](void* cookie, Ice_Status s, Ice_InputStreamPtr) {
@@ -121,7 +121,7 @@ protected:
     }
     Side& here() { return *here_; }
     Side& there() { return *there_; }
-    // Lets the other side handle its received messages.
+    // Lets the other side process the messages that it has received.
     void settle() {
         while (Ice_Communicator_poll(&there_->ic, 0) == ICE_OK ||
                Ice_Communicator_poll(&here_->ic, 0) == ICE_OK)
@@ -134,19 +134,20 @@ private:
     std::unique_ptr<Side> here_, there_;
 };
 
-// Tests of several files are of this suite.
+// A suite with tests in several files.
 class Calls : public Pair {};
 
 using namespace IceMessages;
 
-// Sends messages as bytes to a communicator, and returns its answers.
+// Sends messages as bytes to a communicator, and returns its replies.
 class Wire : public ::testing::Test {
 protected:
     Wire() : side_(std::make_unique<Side>()) {
         EXPECT_EQ(Ice_ObjectAdapter_add(&side_->adapter, &servant_.base, "thing"), ICE_OK);
         side_->loop.tap = [this](const Bytes& m) { sent_.push_back(m); };
     }
-    // Opens a connection, sends the message, returns the answer after the validation.
+    // Opens a connection, sends the message, and returns the reply that follows the validation
+    // message.
     std::vector<Bytes> exchange(const Bytes& m) {
         inject(ICE_EVENT_OPENED, {});
         EXPECT_EQ(sent_, std::vector<Bytes>({message(3, {})}));

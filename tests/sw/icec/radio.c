@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * radio: a test's servants as the firmware of the simulated UAV.
+ * radio: makes a test's servants the firmware of the simulated UAV.
  */
 #include "paper.h"
 #include "serve.h"

@@ -70,7 +70,7 @@ TEST_F(Calls, AnAdapterIsFullAtItsLimitAndDeafUntilActive) {
     EXPECT_EQ(call(prx, "op"), ICE_OK);
 }
 
-// The figures of the protocol's description: a ping is 39 bytes out and 25 back.
+// Figures in the description of the protocol: a ping has 39 bytes, its reply 25.
 TEST_F(Wire, APingIsAnsweredAsIceDoes) {
     auto back = exchange(request(7, requestBody("thing", "ice_ping")));
     ASSERT_EQ(back.size(), 1u);
@@ -118,12 +118,12 @@ TEST_F(Wire, MalformedMessagesCloseTheConnection) {
     bad[1][4] = 2;                  // protocol 2.0
     bad[2][8] = 5;                  // type
     bad[3][10] = 13;                // size
-    bad[4][10]++;                   // size that is not the message's
-    bad[5][18] = 200;               // name longer than the message
-    bad[6][good.size() - 10]++;     // encapsulation longer than the message
-    bad[7][good.size() - 10] = 5;   // or too short for its own head
+    bad[4][10]++;                   // the size in the header differs from the message's
+    bad[5][18] = 200;               // the name is longer than the message
+    bad[6][good.size() - 10]++;     // the encapsulation is longer than the message
+    bad[7][good.size() - 10] = 5;   // the encapsulation is too short for its own header
     bad[8][good.size() - 7] = 0x80; // or negative
-    bad[9].resize(13);              // less than a head
+    bad[9].resize(13);              // shorter than a header
     bad[10].resize(0);
     for (size_t i = 0; i < bad.size(); ++i) {
         EXPECT_TRUE(exchange(bad[i]).empty()) << i;

@@ -13,7 +13,7 @@
 
 #include <string.h>
 
-#define WORDS 1024 /* size of a task's stack */
+#define WORDS 1024 /* size of a task's stack, words */
 #define WOKEN 7    /* priorities: two tasks woken by the interrupt, the server, two others */
 #define SERVER 9
 #define LOW 10
@@ -193,7 +193,7 @@ static void call(char letter, Ice_Int id) {
           "instance ");
 }
 
-/* `p`: the task's number. */
+/* `p`: number of the task. */
 static void callsOnce(void* p) {
     unsigned number = (unsigned)((char*)p - os_said);
     call((char)('a' + number), (Ice_Int)(100 * number));

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * serve: the servants of a test, for server.c over tcp and radio.c over the air.
+ * serve: functions of a test's servants, for server.c over tcp and radio.c over the air.
  */
 #pragma once
 
@@ -8,9 +8,9 @@
 
 /* Adds the servants to an adapter. */
 Ice_Status Suite_serve(Ice_ObjectAdapterPtr adapter);
-extern const char* suite_argument; /* the first one of server.c's program */
+extern const char* suite_argument; /* first argument of the program server.c */
 
-/* Object behind the bridge for the current request. */
+/* Proxy of the object on the other side of the bridge, for the current request. */
 extern Ice_ObjectPrx Bridge_far;
 /* Returns the servant of interface `number`, counted from 0, of those that bridge.py generates;
  * null after the last one. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * server: a test's servants over tcp. Prints its port, serves until `shutdown`.
+ * server: serves a test's servants over tcp. Prints its port, and serves until `shutdown` is
+ * called.
  */
 #include "serve.h"
 #include "tcp_endpoint.h"

@@ -35,7 +35,7 @@ Ice_Status Graph_Maker_make(Graph_MakerPtr, const Graph_Node* a, const Ice_Value
 
 namespace {
 
-// Ice_Os on threads.
+// Implements Ice_Os with threads.
 struct Threads {
     std::mutex locks[2], waiting;
     std::condition_variable changed[ICE_CALLS + 1];
@@ -122,7 +122,7 @@ protected:
         serving_.join();
         answering_.join();
     }
-    // Another task than the one that dispatches.
+    // Sends the reply from another task than the one that dispatched the operation.
     void answer() {
         for (;;) {
             std::unique_lock<std::mutex> lock(laterMutex_);
@@ -141,7 +141,7 @@ protected:
         held_ = held;
         laterCame_.notify_one();
     }
-    // The client's proxy of a server's object.
+    // Returns a proxy of the client for an object of the server.
     Ice_ObjectPrx proxy(const std::string& identity = "thing",
                         const std::string& host = "127.0.0.1") {
         Ice_ObjectPrx prx;
@@ -151,7 +151,7 @@ protected:
         prx.timeoutMs = 60000;
         return prx;
     }
-    // Does something while tasks of the client's program serve.
+    // Calls `what` while tasks of the client's program serve.
     template <class What> void whileServing(int tasks, What what) {
         std::vector<std::thread> serving;
         for (int t = 0; t < tasks; ++t)
@@ -188,14 +188,14 @@ protected:
     std::thread serving_, answering_;
 };
 
-// Parameter: number of tasks that serve; without one, the calling tasks receive in turns.
+// Parameter: number of tasks that serve; if it is 0, the calling tasks receive in turns.
 class TasksThatServe : public Tasks, public ::testing::WithParamInterface<int> {};
 TEST_P(TasksThatServe, LetOthersCallAtOnce) {
     whileServing(GetParam(), [this] { callFromThreads(ICE_CALLS); });
 }
 INSTANTIATE_TEST_SUITE_P(Tasks, TasksThatServe, ::testing::Values(0, 1, 2));
 
-// Six tasks, one after the other, each with a result that it keeps until it ends.
+// Six tasks, one after the other; each keeps its result until it ends.
 TEST_F(Tasks, OneThatHasEndedLeavesItsPlaceToOthers) {
     for (int i = 0; i < ICE_CALLS + 2; ++i)
         std::thread([&] {
@@ -212,8 +212,8 @@ TEST_F(Tasks, OneThatHasEndedLeavesItsPlaceToOthers) {
     EXPECT_EQ(ask(prx, "op", 2), 4);
 }
 
-// A task that polls takes the leader's role from one that waits for a reply, and gives it back,
-// over and over.
+// A task that polls repeatedly takes the role of the receiving task from one that waits for a
+// reply, and gives it back.
 TEST_F(Tasks, CallWhileTwoPollNowAndThen) {
     std::atomic<bool> over{false};
     auto poll = [&] {
@@ -255,8 +255,8 @@ TEST_F(Tasks, AServerTakesTheRoleFromACallThatWaits) {
     server.join();
 }
 
-// The server listens on the second of the name's addresses only (manual_test.cpp resolves it);
-// the next call finds the connection.
+// The server listens only on the second address of the name (manual_test.cpp resolves it). The next
+// call uses the existing connection.
 TEST_F(Tasks, TryEachAddressOfAName) {
     Ice_ObjectPrx prx = proxy("thing", "twofold.test");
     for (int i = 0; i < 3; ++i)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// tcp_test: IceC's tcp transport and peers: many at once, silent, dead or greedy ones, and peers
-// that close a silent connection (Ice 3.8).
+// tcp_test: tests IceC's tcp transport with many peers at once, with silent, dead or greedy peers,
+// and with peers that close a silent connection (Ice 3.8).
 
 #include "pair.h"
 
@@ -60,7 +60,7 @@ public:
     bool send(const Bytes& m) {
         return ::send(fd_, m.data(), m.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(m.size());
     }
-    // The next message; empty if none arrives within `ms`, or at the end.
+    // Returns the next message; empty if none arrives within `ms`, or if the connection ends.
     Bytes receive(int ms) {
         Bytes m(14);
         if (!read(m.data(), 14, ms))
@@ -89,7 +89,7 @@ private:
     const int fd_;
 };
 
-// A server that is not an Ice program listens here.
+// Listens for connections, as a server that is not an Ice program.
 struct Listener {
     Listener() {
         sockaddr_in at = local(0);
@@ -134,7 +134,8 @@ protected:
                 (void)Ice_Communicator_poll(ic_.get(), 20);
         });
     }
-    // Sends a ping and waits for its reply; heartbeats in between are passed over.
+    // Sends a ping and waits for its reply; skips heartbeats in between. Returns false after a
+    // time-out.
     static bool ping(Peer& peer, int ms = 3000) {
         if (!peer.isConnected(ms) || !peer.send(request(7, requestBody("thing", "ice_ping"))))
             return false;
@@ -166,7 +167,7 @@ TEST_F(Tcp, AHundredClientsAtOnceAreServed) {
     for (Peer& peer : peers)
         ASSERT_TRUE(peer.isConnected(100)) << "the system keeps them until they are accepted";
     serve();
-    while (!peers.empty()) { // served peers make room
+    while (!peers.empty()) { // peers that have been served disconnect, so that others can connect
         ASSERT_TRUE(ping(peers.front())) << peers.size() << " to come";
         peers.pop_front();
     }
@@ -180,7 +181,7 @@ TEST_F(Tcp, AMessageMayComeByteByByte) {
             ASSERT_TRUE(peer.send({byte}));
             (void)Ice_Communicator_poll(ic_.get(), 1000);
         }
-    serve(); // takes the last byte, where accepting took a turn
+    serve(); // reads the last byte; the previous turn accepted the connection
     EXPECT_EQ(peer.receive(20000), message(3, {}));
     for (int turn = 0; turn < 2; ++turn)
         EXPECT_EQ(peer.receive(20000), message(2, {7, 0, 0, 0, 0, 6, 0, 0, 0, 1, 1}));
@@ -302,7 +303,8 @@ TEST_F(Tcp, APeerWhoseOperationIsUnderWayIsNotDisplaced) {
     EXPECT_TRUE(peers[0].receive(100).empty()) << "it still waits";
 }
 
-TEST_F(Tcp, AConnectionWithoutCallsCarriesHeartbeats) { // with Ice 3.8 it would be closed
+TEST_F(Tcp, AConnectionWithoutCallsCarriesHeartbeats) { // with Ice 3.8, a connection without
+                                                        // heartbeats would be closed
     tcp_->heartbeatMs = 50;
     serve();
     Peer peer(port());
@@ -326,7 +328,7 @@ TEST_F(Tcp, AServerThatCutsSilentConnectionsKeepsThisOne) {
     const int connection = prx.connection;
     serve();
     for (int i = 0; i < 6; ++i)
-        EXPECT_EQ(peer.receive(20000), message(3, {})) << i; // its idle time-out
+        EXPECT_EQ(peer.receive(20000), message(3, {})) << i; // ms; its idle time-out
     std::thread second(ping);
     Bytes asked;
     while ((asked = peer.receive(20000)) == message(3, {}))
@@ -340,7 +342,7 @@ TEST_F(Tcp, ACallWhoseReplyIsCutIsLostAndTheNextOneConnectsAgain) {
     constexpr int calls = 20;
     Listener listener;
     std::thread server([&] {
-        for (int i = 0; i < calls; ++i) { // the reply is cut anywhere, or complete
+        for (int i = 0; i < calls; ++i) { // the reply arrives truncated at any point, or complete
             Peer peer(listener.fd, true);
             peer.send(message(3, {}));
             const Bytes reply = replyTo(peer.receive(20000));

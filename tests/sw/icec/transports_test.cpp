@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// transports_test: a communicator with two transports at once, tcp and the loop between two
+// transports_test: tests a communicator with two transports at once: tcp, and the loop between two
 // communicators. Built with ICE_TRANSPORTS=2.
 
 #include "pair.h"
@@ -32,7 +32,7 @@ struct Both {
 
 enum { LOOP, TCP };
 
-// The servant of `there_` is called from `here_`; the loop of `here_` also runs `there_`.
+// A servant of `there_` is called from `here_`. The loop of `here_` also runs `there_`.
 class Transports : public ::testing::Test {
 protected:
     Transports() : here_(std::make_unique<Both>()), there_(std::make_unique<Both>()) {
@@ -82,7 +82,7 @@ TEST_F(Transports, AnAdaptersProxyHasAnEndpointOfEachTransportItListensOn) {
     EXPECT_EQ(print(prx), "thing -t -e 1.1:loop -c 0");
 }
 
-// These are as stock Ice's proxyToString(stringToProxy(...)) gives them.
+// The expected strings are those of stock Ice's proxyToString(stringToProxy(...)).
 TEST_F(Transports, StringsOfProxiesAreReadAndPrintedAsByIce) {
     const std::pair<const char*, const char*> cases[] = {
         {"plain", "plain -t -e 1.1"},
@@ -165,7 +165,7 @@ TEST_F(Transports, ABusyOneDoesNotKeepTheOtherFromBeingHeard) {
     for (int i = 0; i < 500; ++i)
         there_->loop.inject(ICE_EVENT_MESSAGE, 1, heartbeat);
     int polls = 0;
-    for (; polls < 5; ++polls) // the loop has the turn now
+    for (; polls < 5; ++polls) // now it is the loop's turn to be polled
         EXPECT_EQ(Ice_Communicator_poll(&there_->ic, 0), ICE_OK);
     ASSERT_EQ(call(oneway, "op"), ICE_OK);
     for (came_ = -1; came_ < 0 && polls < 500; ++polls)

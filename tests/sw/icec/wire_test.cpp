@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// wire_test: messages as bytes that only the full run time supports; proxies as strings; streams.
+// wire_test: tests messages as bytes that only the full run time supports, proxies as strings, and
+// streams.
 
 #include "pair.h"
 #include <cstdio>
@@ -136,7 +137,7 @@ TEST_F(Wire, StringsThatAreNoProxiesSaySo) {
 }
 
 TEST(Stream, OptionalsOfEveryFormatAreSkipped) {
-    // tag 1 of each format in turn, then tag 2 = 7 (a byte)
+    // a member with tag 1 in each format in turn, then tag 2 with the byte 7
     const std::vector<Bytes> values = {{1}, {1, 2},    {1, 2, 3, 4},       {1, 2, 3, 4, 5, 6, 7, 8},
                                        {5}, {2, 1, 2}, {2, 0, 0, 0, 1, 2}, {0}};
     for (size_t format = 0; format < values.size(); ++format) {
@@ -152,11 +153,12 @@ TEST(Stream, OptionalsOfEveryFormatAreSkipped) {
     }
 }
 
-// A peer's size may be the smallest possible; subtractions from it must not wrap.
+// The size that a peer sends may be the smallest possible; subtractions from it must not wrap.
 TEST(Stream, ASliceOfAnyWrongSizeIsMalformed) {
     for (uint32_t size : {0x80000000U, 0x80000003U, 0xFFFFFFFFU, 0U, 3U, 5U, 0x7FFFFFFFU}) {
-        Bytes wire = {0x39, 1, 'x', 4, 0, 0, 0, // the last slice: a name, a size, a table after it
-                      1,    1,                  // the table has one instance,
+        Bytes wire = {0x39, 1, 'x', 4, 0, 0, 0, // the last slice: a name, a size, and a table after
+                                                // it
+                      1, 1,                     // the table contains one instance,
                       0x31, 1, 'y'};            // a slice with this name and this size
         for (int shift = 0; shift < 32; shift += 8)
             wire.push_back(static_cast<Ice_Byte>(size >> shift));

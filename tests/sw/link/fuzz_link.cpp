@@ -47,7 +47,8 @@ constexpr bool isMinimal = false;
 struct Node : LinkProgram {
     bool transmit(const U8* frame, U32 size) override {
         if (size < LINK_OVERHEAD || size > LINK_MAX_FRAME ||
-            (isMinimal && size != LINK_LENGTH(frame) + LINK_OVERHEAD)) // a packet is one frame
+            // each packet contains exactly one frame
+            (isMinimal && size != LINK_LENGTH(frame) + LINK_OVERHEAD))
             __builtin_trap();
         if (out.size() > 50)
             return false;
@@ -73,9 +74,9 @@ struct Node : LinkProgram {
 #ifndef LINK_MINIMAL
     std::unique_ptr<Link_Buffers> buffers{new Link_Buffers};
 #endif
-    std::deque<Bytes> out; // frames on their way
+    std::deque<Bytes> out; // frames in transit
     uint32_t nonce = 1;
-    uint64_t sum = 0; // a sum, which reads every byte handed over
+    uint64_t sum = 0; // sum of all received bytes, which makes sure that each of them is read
     bool busy = false;
 };
 
@@ -116,7 +117,7 @@ public:
             p += take;
             size -= take;
             if (isMinimal && step > 1 && step < 5)
-                now_ += 30000; // a silence, so that the frame is seen
+                now_ += 30000; // a pause, so that the receiver recognises the end of the frame
             if (step < 2)
                 feed(bytes);
             else if (step < 5)
@@ -150,8 +151,8 @@ private:
     U32 sessionKey() const { return a_.link->session.handshake.present.key; }
     U32 expected() const { return a_.link->session.receiver.expected; }
     U32 overhead() const { return a_.link->pacing.env.codec->overhead; }
-    // Returns the frame under a key. A HELLO uses a separate one; the other frames of the handshake
-    // are for the current nonce, from a peer with the nonce in the input.
+    // Returns the frame, encrypted with a key. HELLO uses a separate key. The other frames of the
+    // handshake use the current nonce, and the nonce of the peer that the input contains.
     Bytes sealed(Bytes bytes, bool isHandshake) const {
         const Link* link = a_.link.get();
         const U8* under = LINK_PEERS_KEY(&link->session.handshake.present, keys);
@@ -191,7 +192,7 @@ private:
         return bytes;
     }
 #endif
-    // A frame that A takes for its peer's if its contents make sense.
+    // Returns a frame that A accepts as its peer's if its content is valid.
     Bytes frame(Bytes bytes, int step) const {
         const bool isHandshake = step == 4;
         const size_t most = LINK_MAX_FRAME - overhead() + LINK_HEADER;
@@ -211,7 +212,7 @@ private:
     static Bytes hello(uint8_t nonce) {
         return checked({0x84, LINK_VERSION, 0x20, nonce, 2, 3, 4}, LINK_NO_SEED);
     }
-    // The frame with its checksum.
+    // Returns the frame with a checksum appended.
     static Bytes checked(Bytes frame, U32 seed) {
         const U32 crc = link_crc(seed, frame.data(), static_cast<U32>(frame.size()));
         frame.push_back(static_cast<uint8_t>(crc >> 8));

@@ -19,39 +19,39 @@
 
 namespace {
 
-// Bugs that a side may have.
+// Bugs that the model can give to a side.
 enum class Bug {
     None,
-    NonceIsNotEchoed,    // HELLO-ACK is accepted for any earlier nonce of the side
-    OneKeyForBoth,       // the directions' keys are the same
-    ResetIsNotAuthentic, // an RST from anyone ends a session
-    HelloEndsTheSession, // HELLO ends the session before the sender has proved its presence
-    HelloMakesASession,  // HELLO begins a session without a CONFIRM
+    NonceIsNotEchoed,    // a HELLO-ACK is accepted for any earlier nonce of the side
+    OneKeyForBoth,       // both directions use the same key
+    ResetIsNotAuthentic, // an RST that is not authenticated ends a session
+    HelloEndsTheSession, // a HELLO ends the session before its sender has proved that it is present
+    HelloMakesASession,  // a HELLO begins a session without a CONFIRM
     ConfirmIsNotAuthentic,
-    OwnNonceIsTaken,  // a reflected nonce of this side is accepted
-    NonceServesTwice, // no new nonce is drawn when a session begins
-    UnconfirmedCalls, // a side calls while up, though its peer may not be in the session yet
-    OldDataIsTaken,   // a number of a data frame is accepted again
-    OldPingIsLife,    // a repeated PING proves that the peer is present
+    OwnNonceIsTaken,  // a nonce of this side is accepted if it is reflected
+    NonceServesTwice, // no new nonce is generated when a session begins
+    UnconfirmedCalls, // a side makes a call although its peer may not be in the session yet
+    OldDataIsTaken,   // the number of an earlier data frame is accepted again
+    OldPingIsLife,    // a repeated PING counts as proof that the peer is present
     OldDataIsLife
 };
 
 class HandshakeModel {
 public:
     struct Limits {
-        // Limits for each side: nonces in all, data frames and PINGs in a session.
+        // Limits for each side: nonces in total; data frames and PINGs per session.
         unsigned nonces, data, pings;
     };
     struct Result {
-        std::string fault;            // the first broken rule; "" if none
-        std::vector<std::string> way; // the steps that led to it
+        std::string fault;            // the first violated rule; "" if there is none
+        std::vector<std::string> way; // the steps that led to the violation
         size_t states = 0;
         bool bothWereUp = false, dataArrived = false;
     };
 
     HandshakeModel(Bug bug, Limits limits) : bug_(bug), limits_(limits) {}
 
-    // Visits every state that can be reached, breadth first, until a rule is broken.
+    // Visits every reachable state, breadth first, until a rule is violated.
     Result explore() {
         State first{};
         draw(first, 0);
@@ -79,7 +79,8 @@ public:
     }
 
 private:
-    // Most nonces per side, most numbers per kind of frame, and a nonce that no side has.
+    // Greatest number of nonces per side and of numbers per kind of frame; and a nonce that no side
+    // has.
     static constexpr unsigned mostNonces = 3, mostNumbers = 2;
     static constexpr uint8_t none = 2 * mostNonces;
     enum Kind { Hello, HelloAck, Confirm, Data, Ping, Answer, Bye, kinds };
@@ -92,13 +93,14 @@ private:
         // Nonce of the next session, number of nonces drawn, and a bit mask of the nonces that
         // began a session.
         uint8_t nonce, drawn, begun;
-        uint8_t mine, peer; // nonces of the present session
+        uint8_t mine, peer; // nonces of the current session
         uint8_t dataSent, dataTaken, pingsSent, pingsSeen, pingsAnswered, lives;
         bool isUp, isAnswered, isUnconfirmed, unused[2];
     };
     struct State {
         Side side[2];
-        std::bitset<kinds*(none + 1) * (none + 1) * mostNumbers> air; // all frames ever sent
+        // set of all frames that have ever been sent
+        std::bitset<kinds*(none + 1) * (none + 1) * mostNumbers> air;
 
         std::string_view bytes() const {
             static_assert(sizeof(State) == sizeof side + sizeof air, "no padding");
@@ -133,7 +135,8 @@ private:
         s.isAnswered = false;
     }
 
-    // Only one of the two sides, or silence, ends a session; an attack never does.
+    // Checks the end of a session: only one of the two sides, or silence, may end it, never an
+    // attack.
     void end(State& state, int who, bool byAttack) {
         Side &s = state.side[who], &other = state.side[1 - who];
         if (!s.isUp)
@@ -169,7 +172,7 @@ private:
             result_.bothWereUp || (other.isUp && other.mine == peer && other.peer == mine);
     }
 
-    // Each sign of life is one that the peer has given in this session.
+    // Checks that each proof of presence was sent by the peer in this session.
     void live(State& state, int who) {
         Side& s = state.side[who];
         unsigned given = 0;
@@ -236,7 +239,8 @@ private:
                 return;
             s.isAnswered = true;
             if (s.isUp && (!s.isUnconfirmed || bug_ == Bug::UnconfirmedCalls)) {
-                send(state, {Hello, s.nonce, none, 1}); // 1: the sender's session is up
+                send(state, {Hello, s.nonce, none, 1}); // the last field is 1: the session of the
+                                                        // sender is up
                 return;
             }
             send(state, {HelloAck, s.nonce, f.from, 0});
@@ -335,13 +339,14 @@ private:
     Result result_;
     std::unordered_map<State, uint32_t, Hash> seen_;     // states found so far, by index in order_
     std::vector<const State*> order_;                    // states in the order of discovery
-    std::vector<std::pair<uint32_t, std::string>> from_; // their predecessors, and the steps
+    std::vector<std::pair<uint32_t, std::string>> from_; // predecessor of each state, and the step
+                                                         // from it
     uint32_t at_ = 0;                                    // index of the state being examined
 };
 
 // ---- the tests ----
 
-// Two nonces per side: one for a session, one for an earlier or a later one.
+// Two nonces per side: one for the session, and an earlier or a later one.
 constexpr HandshakeModel::Limits withData = {2, 1, 0}, withPings = {2, 0, 1}, both = {2, 1, 1};
 
 TEST(HandshakeModel, KeepsItsPromisesInEveryState) {

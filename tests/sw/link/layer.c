@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * layer: the table of the link layer that this file is compiled with.
+ * layer: defines the table of the link layer with which this file is compiled.
  */
 #include "layer.h"
 

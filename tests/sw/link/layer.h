@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * layer: a table of a link layer's functions and sizes, so that a test can join layers that were
+ * layer: table of the functions and sizes of a link layer, so that one test can connect layers
  * compiled with different options.
  */
 #pragma once
@@ -28,5 +28,5 @@ typedef struct Layer {
     const Link_Statistics* (*statistics)(const Link* link);
 } Layer;
 
-/* The layer that this file is compiled with. */
+/* Table of the layer with which this file is compiled. */
 extern const Layer layer;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// link_pair: two link layers joined by a radio that loses, doubles, spoils and delays packets.
+// link_pair: two link layers connected by a radio that loses, duplicates, corrupts and delays
+// packets.
 
 #pragma once
 
@@ -17,7 +18,7 @@ extern "C" {
 #include <vector>
 
 using Bytes = std::vector<uint8_t>;
-using Messages = std::vector<std::pair<int, Bytes>>; // channel and contents of each
+using Messages = std::vector<std::pair<int, Bytes>>; // channel and content of each message
 
 // The radio's faults, with the probability of each for a packet.
 struct Weather {
@@ -34,7 +35,7 @@ public:
         boot();
     }
 
-    // Forgets everything, like a reboot after a power cut.
+    // Discards all state, as a reboot after a power failure does.
     void boot() {
         layer.init(link(), linkPort(), linkProgram(), byteTimeUs * 16);
         if (!key_.empty())
@@ -44,7 +45,7 @@ public:
     }
     Link* link() { return reinterpret_cast<Link*>(memory_.data()); }
     bool isUp() { return layer.state(link()) == LINK_STATE_UP; }
-    // Returns how many sessions have begun.
+    // Returns the number of sessions that have begun.
     unsigned sessions() const {
         unsigned count = 0;
         for (auto& event : events)
@@ -72,11 +73,11 @@ public:
 
     const Layer& layer;
     Weather weather;
-    std::deque<Packet> air; // towards the peer, in order of arrival
+    std::deque<Packet> air; // packets in transit to the peer, in order of arrival
     Messages received;
     std::map<U32, Link_Outcome> outcomes;
     std::vector<std::string> events;
-    bool refuse = false; // the program takes no message
+    bool refuse = false; // true: the program accepts no message
     uint64_t serialFreeUs = 0, bytesSent = 0;
     unsigned packetsLost = 0;
 
@@ -85,7 +86,7 @@ private:
 
     U32 us() const { return static_cast<U32>(now_); }
 
-    // One serial port, then the air; four packets fit the modem and its ring.
+    // One serial port, then the air. The modem and its ring hold up to four packets.
     bool transmit(const U8* frame, U32 size) override {
         if (serialFreeUs > now_ + 4 * 9000)
             return false;
@@ -124,7 +125,7 @@ private:
     const uint64_t& now_;
     Random random_;
     const Bytes key_;
-    const U32 side_; // as for Link_setKey
+    const U32 side_; // side, as for Link_setKey
     std::vector<uint64_t> memory_;
 };
 
@@ -137,8 +138,8 @@ public:
 
     void setWeather(const Weather& weather) { a.weather = b.weather = weather; }
 
-    // Lets time pass, in steps of the firmware's tick, until something is so. Returns whether it
-    // was within `limitUs`.
+    // Advances time, in steps of the firmware's tick, until `done` returns true. Returns false
+    // after `limitUs`.
     template <class Done> bool until(Done done, uint64_t limitUs) {
         for (uint64_t end = now + limitUs; now < end; now += 1000) {
             deliver(a, b);
@@ -159,7 +160,7 @@ public:
         return until([this] { return bothUp(); }, 30'000'000);
     }
 
-    uint64_t now = 0xFFFF0000u; // the 32-bit time then wraps in every test
+    uint64_t now = 0xFFFF0000u; // near its end, so that the 32-bit time wraps in every test
     Side a, b;
 
 private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// link_test: sessions, channels and messages, one fault at a time: a ground station with the full
-// layer and vehicles with the full one, unencrypted and with a key, or the minimal one.
+// link_test: tests sessions, channels and messages, one fault at a time. The ground station has the
+// full layer. The vehicles have the full one, unencrypted and with a key, or the minimal one.
 
 #include "link_variants.h"
 
@@ -17,7 +17,7 @@ TEST_P(LinkLayer, ChannelsOpenAndCloseFromBothSidesInOrder) {
     ASSERT_EQ(b.open(3), LINK_OK);
     ASSERT_EQ(b.send(3, Bytes(300, 2), 2), LINK_OK);
     if (isMinimal()) {
-        EXPECT_EQ(b.close(3), LINK_FULL); // its opening has not gone out
+        EXPECT_EQ(b.close(3), LINK_FULL); // the opening of the channel has not been sent yet
     }
     ASSERT_TRUE(until([&] { return b.close(3) == LINK_OK; }, 1'000'000));
     ASSERT_TRUE(until([&] { return b.outcomes.count(2) && a.outcomes.count(1); }, 2'000'000));
@@ -26,7 +26,7 @@ TEST_P(LinkLayer, ChannelsOpenAndCloseFromBothSidesInOrder) {
     EXPECT_EQ(a.events, (std::vector<std::string>{"connecting", "up", "open 3", "close 3"}));
     EXPECT_EQ(a.received, (Messages{{3, Bytes(300, 2)}}));
     EXPECT_EQ(b.received, (Messages{{1, {1}}}));
-    EXPECT_EQ(a.open(1), LINK_OK); // both sides have reported it as closed
+    EXPECT_EQ(a.open(1), LINK_OK); // both sides have reported the channel as closed
     EXPECT_EQ(b.open(3), LINK_OK);
 }
 
@@ -68,7 +68,7 @@ TEST_P(LinkLayer, AChannelThatNobodyHasOpenedIsRefused) {
     EXPECT_EQ(a.close(1), LINK_CLOSED);
     ASSERT_EQ(a.open(1), LINK_OK);
     EXPECT_EQ(a.send(1, {1}, 1), LINK_OK);
-    EXPECT_EQ(b.send(1, {1}, 2), LINK_CLOSED); // not connected yet
+    EXPECT_EQ(b.send(1, {1}, 2), LINK_CLOSED); // the channel is not connected yet
     ASSERT_TRUE(until([&] { return a.outcomes.count(1) != 0; }, 1'000'000));
     EXPECT_EQ(b.send(1, {1}, 3), LINK_OK);
     a.close(1);
@@ -78,8 +78,8 @@ TEST_P(LinkLayer, AChannelThatNobodyHasOpenedIsRefused) {
     EXPECT_EQ(b.received.size(), 1u);
 }
 
-// Random bytes in a session, between messages: no fault, and the link continues. BYTES sets their
-// number for the full layer.
+// Random bytes arrive during a session, between messages: nothing fails, and the link continues.
+// BYTES sets their number for the full layer.
 TEST_P(LinkLayer, TenMillionRandomBytesAreSurvived) {
     const char* given = std::getenv("BYTES");
     const unsigned long bytes = isMinimal() || GetParam().hasKey ? 1'000'000
@@ -126,7 +126,7 @@ TEST_P(LinkLayer, AVanishedPeerIsNoticedAndAReturningOneFound) {
     EXPECT_TRUE(a.received.empty() && b.received.empty());
 }
 
-// The ground is informed by its next frame, not after 9 s of silence.
+// The next frame informs the ground, which does not need to wait for 9 s of silence.
 TEST_P(LinkLayer, ARebootOfTheVehicleIsNoticedByTheNextFrame) {
     ASSERT_TRUE(connect());
     a.open(0);
@@ -138,7 +138,7 @@ TEST_P(LinkLayer, ARebootOfTheVehicleIsNoticedByTheNextFrame) {
     EXPECT_TRUE(until([&] { return bothUp(); }, 1'000'000));
 }
 
-// The time of the last PING is so old that it would read as a future time.
+// The last PING is so long ago that its time would be taken for a future time.
 TEST_P(LinkLayer, ASilenceAfterFortyMinutesOfTrafficIsAskedAbout) {
     ASSERT_TRUE(connect());
     ASSERT_EQ(a.open(0), LINK_OK);
@@ -229,24 +229,24 @@ INSTANTIATE_TEST_SUITE_P(Vehicles, LinkLayer, ::testing::ValuesIn(vehicles(1)));
 
 class MinimalLayer : public Variants {};
 
-// The link works if Link_poll is called only at the times of Link_deadline.
+// The link also works if Link_poll is called only at the times that Link_deadline returns.
 TEST_P(MinimalLayer, TheDeadlineIsWhenSomethingIsToBeDone) {
     ASSERT_TRUE(connect());
     ASSERT_EQ(b.open(3), LINK_OK);
     EXPECT_LE(b.deadline(), 1000u);
     run(100'000);
-    EXPECT_GT(b.deadline(), 1'000'000u); // the ground's silence
+    EXPECT_GT(b.deadline(), 1'000'000u); // time until the ground counts as silent
     setWeather({1, 0, 0});
     ASSERT_EQ(b.send(3, {1}, 1), LINK_OK);
     run(2000);
-    EXPECT_GT(b.deadline(), 100'000u); // sent again after 144 ms
+    EXPECT_GT(b.deadline(), 100'000u); // time until the frame is sent again, after 144 ms
     EXPECT_LE(b.deadline(), 144'000u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Vehicles, MinimalLayer,
                          ::testing::Values(Variant{"full", "minimal", false}));
 
-// Layers with sessions that end at 60 fragments in a direction, or at 50 wrong tags.
+// Layers whose sessions end after 60 fragments in one direction, or after 50 wrong tags.
 class Limits : public Variants {
 protected:
     Limits() { usualSize = longestSize = 40; } // one fragment
@@ -255,7 +255,8 @@ protected:
             std::count_if(side.outcomes.begin(), side.outcomes.end(),
                           [](auto& tagged) { return tagged.second == LINK_DELIVERED; }));
     }
-    // Sends until `least` messages are delivered each way, like a program that repeats all others.
+    // Sends until `least` messages have been delivered each way; messages that were reported lost
+    // are sent again.
     template <class... Meanwhile> void deliver(size_t least, Meanwhile... meanwhile) {
         for (size_t most = least; delivered(a) < least || delivered(b) < least; most += 10) {
             ASSERT_LT(most, 4 * least);
@@ -288,12 +289,13 @@ TEST_P(Limits, ASessionEndsAtTooManyWrongTagsAndBeginsAnew) {
     frame.back() ^= 1;
     unsigned guesses = 0;
     for (; b.isUp() && guesses < 200; ++guesses) {
-        now += 100'000; // the rest of an incomplete frame is dropped
+        now += 100'000; // the bytes of an incomplete frame are dropped
         b.poll();
         b.receive(frame);
         b.poll();
     }
-    EXPECT_GT(guesses, 20u); // the search continues inside a frame, so each may count several times
+    EXPECT_GT(guesses, 20u); // the receiver searches for frames inside a frame, so each may count
+                             // several times
     EXPECT_LE(guesses, 50u);
     deliver(20);
     EXPECT_EQ(a.sessions(), 2u);
@@ -326,7 +328,7 @@ TEST(FullLayer, LinksOverOneRadioShareWhatMayWaitForItsAnswers) {
     EXPECT_EQ(poll(0), (std::vector<unsigned>{1, 0})); // each calls
     Link_answer(&links[1], 1, 1000);                   // the first one's packet
     EXPECT_EQ(poll(1000), (std::vector<unsigned>{1, 1}));
-    EXPECT_EQ(poll(400'000), (std::vector<unsigned>{1, 1})); // the first one calls again
+    EXPECT_EQ(poll(400'000), (std::vector<unsigned>{1, 1})); // the first link calls again
     Link_answer(&links[0], 0, 400'000);
     EXPECT_EQ(poll(400'000), (std::vector<unsigned>{2, 1}));
 }
@@ -336,7 +338,7 @@ TEST(FullLayer, TheQueueHasAReserveForShortMessages) {
     ASSERT_TRUE(pair.connect());
     ASSERT_EQ(pair.a.open(0), LINK_OK);
     EXPECT_EQ(pair.a.send(0, Bytes(LINK_MAX_MESSAGE), 0), LINK_OK);
-    // The check of each takes two more bytes.
+    // The check of each message takes two more bytes.
     const U32 rest = LINK_SEND_BYTES - LINK_RESERVE - LINK_MAX_MESSAGE - 4;
     EXPECT_EQ(pair.a.send(0, Bytes(rest + 1), 1), LINK_FULL);
     EXPECT_EQ(pair.a.send(0, Bytes(rest), 1), LINK_OK);
@@ -349,14 +351,14 @@ TEST(FullLayer, TheQueueHasAReserveForShortMessages) {
     EXPECT_EQ(pair.b.received[1].second.size(), rest);
 }
 
-// Answers faster than modems mean a wire, which needs no turns.
+// If answers arrive faster than modems can send them, the path is a wire, which needs no turns.
 TEST(FullLayer, OverAWireACallWaitsForNoTurn) {
     Pair pair(testSeed());
     pair.setWeather({0, 0, 0, 0});
     ASSERT_TRUE(pair.connect());
     pair.a.open(0);
     pair.run(100'000);
-    // Makes calls, each after the previous reply; returns microseconds.
+    // Makes calls one after the other; returns the time in us.
     auto take = [&](unsigned calls) {
         const uint64_t start = pair.now;
         for (unsigned i = 0; i < calls; ++i)
@@ -368,7 +370,7 @@ TEST(FullLayer, OverAWireACallWaitsForNoTurn) {
             }
         return pair.now - start;
     };
-    take(20); // both now know the speed of the path
+    take(20); // both sides then know the speed of the path
     EXPECT_LE(take(20), 20 * 12'000u);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// link_variants: the fixture of tests for link layers of different kinds, and messages in both
+// link_variants: test fixture for link layers of different kinds, which sends messages in both
 // directions between them.
 
 #pragma once
@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 #include <tuple>
 
-// Names of the layers of a and b (CMakeLists.txt), and whether both have a key.
+// Names of the layers of sides a and b (CMakeLists.txt), and whether both have a key.
 struct Variant {
     std::string a, b;
     bool hasKey = false;
@@ -25,7 +25,7 @@ inline void PrintTo(const Variant& v, std::ostream* out) {
         *out << "_" << v.seed;
 }
 
-// Vehicles under a key.
+// Returns variants of vehicles with a key.
 inline std::vector<Variant> keyed(unsigned seeds) {
     std::vector<Variant> all;
     for (unsigned seed = 0; seed < seeds; ++seed)
@@ -33,7 +33,7 @@ inline std::vector<Variant> keyed(unsigned seeds) {
     return all;
 }
 
-// The same, and vehicles in the clear with the full and the minimal layer.
+// Returns the same, and vehicles without encryption with the full and the minimal layer.
 inline std::vector<Variant> vehicles(unsigned seeds) {
     std::vector<Variant> all = keyed(seeds);
     for (const char* vehicle : {"full", "minimal"})
@@ -58,8 +58,8 @@ protected:
 
     static bool isMinimal() { return GetParam().b.find("minimal") == 0; }
 
-    // Offers the next message of a side on a random channel: random bytes, or an Ice message with
-    // them as parameters, with increasing ids and operations that the peer knows.
+    // Offers the next message of a side on a random channel: random bytes, or an Ice message that
+    // contains them as parameters, with increasing ids and operations that the peer knows.
     void offer(Side& from, Messages& sent, size_t most) {
         if (sent.size() >= most)
             return;
@@ -82,7 +82,7 @@ protected:
             from.open(channel);
     }
     // Sends messages in both directions until their number is reached and all are reported, or the
-    // time is over.
+    // time has elapsed.
     template <class Meanwhile>
     bool traffic(size_t messages, uint64_t limitUs, Meanwhile meanwhile) {
         return until(
@@ -97,9 +97,9 @@ protected:
     bool traffic(size_t messages, uint64_t limitUs) {
         return traffic(messages, limitUs, [] {});
     }
-    // The received messages are a subset of those sent, in order and unchanged, and include all
-    // that were reported as delivered. Between full layers a short one may overtake on another
-    // channel.
+    // Checks that the received messages are a subset of the sent ones, in order and unchanged, and
+    // include all that were reported as delivered. Between full layers a short message may overtake
+    // one on another channel.
     static void check(const Messages& sent, const Side& sender, const Side& receiver) {
         ASSERT_EQ(sender.outcomes.size(), sent.size()) << "messages not reported";
         auto order = [](int channel) { return isMinimal() ? 0 : channel; };
@@ -134,7 +134,7 @@ protected:
     Random random{testSeed() * 77 + GetParam().seed};
 
 private:
-    std::map<std::tuple<const Side*, int, uint32_t>, uint32_t> ids_; // the last of each kind
+    std::map<std::tuple<const Side*, int, uint32_t>, uint32_t> ids_; // last id of each kind
 };
 
 // Returns the Link_Kind of a frame.

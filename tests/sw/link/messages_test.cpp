@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// messages_test: Ice's messages between full layers: their heads are omitted if the peer knows
-// them, and other messages cross unchanged; only short ones overtake, and only the rest of a long
-// one on another channel.
+// messages_test: tests Ice's messages between full layers. Heads that the peer knows are omitted;
+// other messages cross unchanged. Only short messages overtake, and only the rest of a long message
+// on another channel.
 
 #include "ice_messages.h"
 #include "link_variants.h"
@@ -23,7 +23,7 @@ TEST_P(CallBytes, ACallAndItsReplyTakeFewerThanMavlink) {
     ASSERT_TRUE(connect());
     a.open(0);
     run(400'000);
-    for (uint32_t i = 0; i < 4; ++i) { // the last two are oneway
+    for (uint32_t i = 0; i < 4; ++i) { // the last two calls are oneway
         const uint64_t before = a.bytesSent + b.bytesSent;
         const uint32_t id = i < 2 ? i + 1 : 0;
         a.send(0, request(id, "hwengine1", "setParameterA", {24, 0}), i);
@@ -38,8 +38,11 @@ TEST_P(CallBytes, ACallAndItsReplyTakeFewerThanMavlink) {
     RecordProperty("bytes", static_cast<int>(took[1]));
     RecordProperty("mavlink", static_cast<int>(mavlink));
     EXPECT_LT(took[0], mavlink);
-    EXPECT_EQ(took[1], 21 + 3 * (tag - LINK_CRC)); // 5 + 3, 5 + 1 + an acknowledgement's 1, 6
-    EXPECT_EQ(took[3], 14 + 2 * (tag - LINK_CRC)); // 5 + 3, 6
+    EXPECT_EQ(took[1], 21 + 3 * (tag - LINK_CRC)); // bytes: 5 + 3 for the request, 5 + 1 and 1 of
+                                                   // an acknowledgement for the reply, 6 for the
+                                                   // last acknowledgement
+    EXPECT_EQ(took[3], 14 + 2 * (tag - LINK_CRC)); // bytes: 5 + 3 for the request, 6 for the
+                                                   // acknowledgement
 }
 
 INSTANTIATE_TEST_SUITE_P(Tags, CallBytes,
@@ -78,7 +81,8 @@ TEST_F(Heads, CallsInARowCarryEachOthersAcknowledgements) {
     for (uint32_t id = 2; id < 52; ++id)
         call(id);
     settle();
-    // 9 + 7 each: the request takes the acknowledgement of the last reply along.
+    // A call takes 9 + 7 bytes, because the request also contains the acknowledgement of the
+    // previous reply.
     EXPECT_LE(bytes() - before, 50u * 16u + 6u);
 }
 
@@ -122,7 +126,7 @@ TEST_F(Heads, MoreHeadsThanThereAreSlots) {
     EXPECT_EQ(bytes() - before, 5u + 2u + 6u);
 }
 
-// A peer that breaks the rules: both sides start a new session, and continue.
+// If a peer violates the rules, both sides start a new session and continue.
 TEST_F(Heads, ATokenThatMakesNoSenseEndsTheSession) {
     send(a, b, {0x41});                               // crosses unchanged
     a.link()->session.handshake.present.features = 0; // A then sends this token unmarked
@@ -133,7 +137,7 @@ TEST_F(Heads, ATokenThatMakesNoSenseEndsTheSession) {
     EXPECT_TRUE(until([&] { return bothUp(); }, 20'000'000));
 }
 
-// The arrived messages: channel and size of each.
+// channel and size of each message that has arrived
 using Arrived = std::vector<std::pair<int, size_t>>;
 
 class Overtaking : public Variants {
@@ -145,7 +149,7 @@ protected:
         run(500'000);
     }
     void send(int channel, const Bytes& m) { ASSERT_EQ(a.send(channel, m, tag_++), LINK_OK); }
-    // Returns the microseconds of one message of 10 bytes.
+    // Returns the time of one message of 10 bytes, us.
     uint64_t call() {
         const size_t before = b.received.size();
         const uint64_t start = now;
@@ -154,7 +158,7 @@ protected:
         EXPECT_EQ(b.received.back(), std::make_pair(1, Bytes(10, 2)));
         return now - start;
     }
-    // Waits until all is reported as delivered.
+    // Waits until all messages are reported as delivered.
     Arrived arrived() {
         EXPECT_TRUE(until([&] { return a.outcomes.size() == tag_; }, 60'000'000));
         for (auto& [tag, outcome] : a.outcomes)
@@ -173,7 +177,7 @@ TEST_P(FullOvertaking, ACallTakesAtMostThreeTimesAsLongBehindAPicture) {
     const uint64_t idle = call();
     run(200'000);
     for (int i = 0; i < 5; ++i) {
-        send(0, Bytes(1000, 1)); // a picture, 90 ms of the line each
+        send(0, Bytes(1000, 1)); // pictures, each of which takes 90 ms on the line
         send(0, Bytes(1000, 1));
         run(30'000);
         EXPECT_LE(call(), 3 * idle);
@@ -220,7 +224,7 @@ TEST_P(FullOvertaking, ManyShortOnesLeaveTheLongOneHalf) {
             return b.received.size() && b.received.back().first == 0;
         },
         5'000'000));
-    EXPECT_LE(b.received.size(), 12u); // as many as it has fragments
+    EXPECT_LE(b.received.size(), 12u); // at most as many as the message has fragments
     EXPECT_GE(b.received.size(), 6u);
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// mischief: frames that can be sent without the key: copies of received ones, changed, cut or
-// joined; control frames and data with a guessed tag; frames of the open protocol.
+// mischief: frames that an attacker can send without the key: recorded frames, unchanged, altered,
+// truncated or joined; control frames and data with a guessed tag; frames of the unencrypted
+// protocol.
 
 #pragma once
 
@@ -13,8 +14,8 @@ extern "C" {
 #include "link.h"
 }
 
-// Returns hostile bytes of a random kind; `any` gives some that were heard. No frame in them has a
-// good tag but for copies.
+// Returns hostile bytes of a random kind; `any` returns some recorded ones. Only copies contain
+// frames with a valid tag.
 inline std::vector<uint8_t> mischief(Random& random,
                                      const std::function<const std::vector<uint8_t>&()>& any) {
     auto byte = [&] { return static_cast<uint8_t>(random.next()); };
@@ -22,7 +23,7 @@ inline std::vector<uint8_t> mischief(Random& random,
     switch (random.below(8)) {
     case 0: // replay, reflection, reordering: unchanged, at any time
         break;
-    case 1: // several of them in a row
+    case 1: // several recorded frames in a row
         for (const std::vector<uint8_t>& more : {any(), any()})
             frame.insert(frame.end(), more.begin(), more.end());
         break;
@@ -33,7 +34,7 @@ inline std::vector<uint8_t> mischief(Random& random,
     case 3: // cut
         frame.resize(1 + random.below(static_cast<uint32_t>(frame.size())));
         break;
-    case 4: // the attacker's header around a heard payload
+    case 4: // the attacker's header with a recorded payload
         for (size_t i = 0; i < LINK_HEADER && i < frame.size(); ++i)
             if (random.below(2))
                 frame[i] = byte();
@@ -50,14 +51,14 @@ inline std::vector<uint8_t> mischief(Random& random,
             frame.push_back(i < sizes[kind] && i + 3 < heard.size() ? heard[i + 3] : byte());
         break;
     }
-    case 6: // a data frame in order, guessed
+    case 6: // the data frame that is expected next, with a guessed tag
         frame.resize(LINK_SECURE_OVERHEAD +
                      random.below(LINK_MAX_FRAME - LINK_SECURE_OVERHEAD + 1));
         for (uint8_t& each : frame)
             each = byte();
         frame[0] = static_cast<uint8_t>(frame.size() - LINK_OVERHEAD);
         break;
-    default: // the open protocol's RST, HELLO and PING
+    default: // RST, HELLO and PING of the unencrypted protocol
         frame = {
             static_cast<uint8_t>(random.below(2) ? 0x80 : 0x84), LINK_VERSION, byte(), 1, 2, 3, 4};
         frame.resize(LINK_LENGTH(frame) ? 7 : 3);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_test: two link layers over two modem models and the air between them: packets that modems
-// lose after their acknowledgement, the published weathers, the example of a trace.
+// modem_test: tests two link layers over two modem models and the air between them: packets that
+// modems lose after acknowledging them, published weather conditions, and the example of a trace.
 
 #include "modem_pair.h"
 #include <gtest/gtest.h>
@@ -12,7 +12,8 @@ constexpr uint64_t ms = 1'000'000;
 
 class End : public ModemEnd {
 public:
-    // `apiEnds`: ends in API mode: none, the first, both. `baud`: BD of the second.
+    // `apiEnds`: number of ends in API mode: none, the first, or both. `baud`: BD of the second
+    // end.
     End(RfChannel& air, unsigned address, uint64_t seed, bool hasKey, unsigned apiEnds,
         bool encrypts = false, unsigned baud = 7)
         : ModemEnd(air, optionsOf(address, encrypts, address < apiEnds, baud), seed) {
@@ -37,7 +38,7 @@ private:
 
 class LinkOverModems : public ::testing::TestWithParam<std::pair<bool, unsigned>> {
 protected:
-    // Sends messages each way, and expects all of them, once, in order.
+    // Sends messages each way, and expects each of them once, in order.
     void expectAll(unsigned count, unsigned seconds, const std::function<void()>& meanwhile = {}) {
         std::vector<std::vector<U8>> messages;
         for (unsigned i = 0; i < count; ++i)
@@ -67,15 +68,15 @@ protected:
     End &a_ = pair_.a, &b_ = pair_.b;
 };
 
-// The hosts hang for up to 200 ms now and then: their modems acknowledge packets that no longer
-// fit, and drop them.
+// The hosts hang for up to 200 ms now and then. Their modems then acknowledge packets that no
+// longer fit, and drop them.
 TEST_P(LinkOverModems, WhatAModemAcknowledgesAndThenDropsIsSentAgain) {
     Random random(testSeed());
     uint64_t drawn = pair_.now, wakesAt[2] = {0, 0};
     expectAll(60, 120, [&] {
         for (; drawn < pair_.now; drawn += ms / 4)
             for (uint64_t& at : wakesAt)
-                if (random.chance(0.002)) // eight times a second
+                if (random.chance(0.002)) // on average eight times a second
                     at = drawn + random.below(200) * ms;
         a_.line.hangs = pair_.now < wakesAt[0];
         b_.line.hangs = pair_.now < wakesAt[1];
@@ -117,8 +118,8 @@ TEST_P(LinkOverModems, TheTraceOfTheExampleIsFlown) {
     EXPECT_GT(air_.counters().lost - lost, 100u);
 }
 
-// An idle link pings after five seconds, which costs few bytes, and again soon without a reply. It
-// never drops a living peer in an hour of any weather, or with 30 % loss.
+// An idle link sends a PING after five seconds, which costs few bytes, and another soon if there is
+// no reply. It never drops a living peer in an hour of any weather, or with 30 % loss.
 TEST_P(LinkOverModems, AnIdleSessionLastsInBadWeather) {
     a_.longestRestUs = b_.longestRestUs = 100'000;
     const U32 before = a_.statistics().bytesSent + b_.statistics().bytesSent;
@@ -135,8 +136,8 @@ TEST_P(LinkOverModems, AnIdleSessionLastsInBadWeather) {
     }
 }
 
-// A modem in API mode reports losses: a lost packet is sent again at once, once, before the
-// receiver has reported anything; nothing else is.
+// A modem in API mode reports losses. A lost packet is sent again immediately and once, before the
+// receiver has reported anything; other packets are not sent again.
 TEST(LinkOverApi, WhatTheModemSaysIsLostAndNothingElseIsSentAgain) {
     ModemPair<End> pair(RfWeather(), testSeed(), 1, false, 1u);
     pair.air.weather.loss = 0.3;
@@ -153,7 +154,7 @@ TEST(LinkOverApi, WhatTheModemSaysIsLostAndNothingElseIsSentAgain) {
                 ++sent;
             return pair.b.received.size() == 10;
         },
-        20)); // including the lost packets, these take 13 s of air time
+        20)); // s; with the lost packets, these take 13 s of air time
     EXPECT_GT(lost, 250u);
     EXPECT_NEAR(pair.a.statistics().fragmentsResent, lost, lost * 0.05);
 }
@@ -215,7 +216,7 @@ TEST(LinkOverApi, ACallDuringPicturesWaitsForOnePacketOfThem) {
             EXPECT_LT(times[times.size() / 2], 41);
         }
     }
-    EXPECT_GT(pictures[1], 0.8 * pictures[0]); // the calls take a part as well
+    EXPECT_GT(pictures[1], 0.8 * pictures[0]); // the calls also take a part of the bandwidth
 }
 
 // Two modems in API mode, and the RN that the links have set.
@@ -245,7 +246,7 @@ TEST_F(RandomWait, WhoTalksAloneDoesNotWaitAndTwoThatTalkDo) {
     talk(pair, 2000, 0);
     EXPECT_EQ(rn(pair.a), 0u);
     EXPECT_EQ(rn(pair.b), 2u);
-    talk(pair, 2000, 1); // the other side calls
+    talk(pair, 2000, 1); // the other side makes calls
     EXPECT_EQ(rn(pair.a), 2u);
     talk(pair, 2000, 2000);
     EXPECT_EQ(rn(pair.a), 3u);
@@ -263,7 +264,7 @@ TEST_F(RandomWait, WhoSendsLittleWaitsWherePacketsAreLost) {
     pair.air.weather.loss = 0.5;
     talk(pair, 1, 0);
     EXPECT_EQ(rn(pair.a), 2u);
-    talk(pair, 2000, 0); // a stream has a packet for each quiet moment
+    talk(pair, 2000, 0); // a stream has a packet ready whenever the air is idle
     EXPECT_EQ(rn(pair.a), 0u);
     pair.air.weather.loss = 0;
     pair.pass(20'000 * ms);
@@ -271,7 +272,7 @@ TEST_F(RandomWait, WhoSendsLittleWaitsWherePacketsAreLost) {
     EXPECT_EQ(rn(pair.a), 0u);
 }
 
-// Tries that fail tell of collisions, packets that are lost without any do not.
+// Failed tries indicate collisions; packets that are lost without failed tries do not.
 TEST_F(RandomWait, TwoStreamsDoNotWaitWherePacketsAreLostWithoutFailedTries) {
     ModemPair<End> pair(RfWeather(), testSeed(), 1, false, 2u);
     const auto stream = [&] {
@@ -283,7 +284,7 @@ TEST_F(RandomWait, TwoStreamsDoNotWaitWherePacketsAreLostWithoutFailedTries) {
     EXPECT_EQ(stream(), 0u);
     pair.air.weather = RfWeather();
     EXPECT_EQ(stream(), 3u);
-    pair.air.weather.distance = 400; // a third is lost, each after four tries
+    pair.air.weather.distance = 400; // a third of the packets is lost, each after four tries
     EXPECT_EQ(stream(), 3u);
 }
 

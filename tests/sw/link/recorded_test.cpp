@@ -48,7 +48,7 @@ Bytes message(uint8_t type, Bytes body) {
 std::vector<Bytes> messagesOf(char side) {
     std::vector<Bytes> messages;
     if (side == 'b')
-        messages.push_back(message(3, {})); // the connection is valid
+        messages.push_back(message(3, {})); // validates the connection
     for (uint8_t n = 1; n <= 3; ++n) {
         const Bytes request = {n,   0,   0, 0, 5,  'm', 'e', 't', 'e', 'r', 0, 0, 3, 'a',
                                'd', 'd', 0, 0, 10, 0,   0,   0,   1,   1,   n, 0, 0, 0};
@@ -64,7 +64,7 @@ std::vector<Bytes> messagesOf(char side) {
         messages.push_back(m);
     }
     if (side == 'a')
-        messages.push_back(message(4, {})); // the connection closes
+        messages.push_back(message(4, {})); // closes the connection
     return messages;
 }
 
@@ -95,7 +95,7 @@ struct Program {
     U32 sent = 0;
 };
 
-// Moves what has arrived by now to `to`, and notes it.
+// Moves the packets that have arrived by now to `to`, and records them.
 void deliver(Program& from, Program& to, uint64_t now, Packets& packets) {
     while (!from.side.air.empty() && from.side.air.front().arrives <= now) {
         packets.push_back({now, from.name, from.side.air.front().bytes});
@@ -170,7 +170,7 @@ void replay(char name, const std::string& kind, const Bytes& withKey) {
     expectDelivered(program);
 }
 
-// Replays a side; with RECORD in the environment, records first.
+// Replays one side; with RECORD in the environment, records the session first.
 void check(char name, bool isKeyed) {
     const std::string kind = isKeyed ? "keyed" : "clear";
     const Bytes withKey = isKeyed ? key : Bytes();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// secure_test: sessions with a key, and an attacker without it: a third radio that hears
-// everything and sends any bytes.
+// secure_test: tests sessions with a key, and an attacker who does not have it: a third radio that
+// hears everything and can send any bytes.
 
 #include "link_variants.h"
 #include "mischief.h"
@@ -13,17 +13,17 @@ extern "C" {
 
 namespace {
 
-// Ground, vehicle, and the attacker between.
+// A ground station, a vehicle, and an attacker between them.
 class Attacked : public Variants {
 protected:
-    // The attacker hears all new packets of a side.
+    // Records all new packets of both sides, as the attacker hears them.
     void listen() {
         for (size_t side = 0; side < 2; ++side) {
             Side& from = side ? b : a;
             for (auto& packet : from.air)
                 if (packet.arrives > heardUntil_[side])
                     for (Bytes& frame : framesOf(packet.bytes)) {
-                        // The modem controller counts a packet's bytes by its first one.
+                        // The modem controller takes the length of a packet from its first byte.
                         EXPECT_EQ(frame.size(), LINK_LENGTH(frame) + LINK_OVERHEAD);
                         recorded_.push_back({side == 0, std::move(frame)});
                     }
@@ -35,7 +35,7 @@ protected:
         to.receive(bytes);
         ++hostile_;
     }
-    // One hostile packet to a random side.
+    // Sends one hostile packet to a random side.
     void hostile() {
         Side& to = random.below(2) ? a : b;
         attack(to, mischief(random, [this]() -> const Bytes& {
@@ -46,7 +46,7 @@ protected:
         if (!recorded_.empty() && random.chance(0.5))
             hostile();
     }
-    // Sends messages in both directions.
+    // Sends messages in both directions under attack. Returns whether all were delivered in time.
     bool attackedTraffic(size_t messages, uint64_t limitUs) {
         return traffic(messages, limitUs, [&] {
             listen();
@@ -63,7 +63,7 @@ protected:
     uint64_t hostile_ = 0;
 };
 
-// HOSTILE=10000000 sends more.
+// HOSTILE=10000000 sends that number of hostile packets.
 TEST_P(Attacked, NothingHostileIsAcceptedAndNothingLegalLostOrDoubled) {
     const char* more = std::getenv("HOSTILE");
     const uint64_t most = (more ? std::strtoull(more, nullptr, 10) : 60000) / 2;
@@ -90,7 +90,7 @@ TEST_P(Attacked, RecordingsOfEarlierSessionsAreWorthNothing) {
                 maybeHostile();
                 return false;
             },
-            12'000'000); // longer than the other side's session
+            12'000'000); // us; longer than the session of the other side lasts
         EXPECT_EQ(a.received.size(), before[0]);
         EXPECT_EQ(b.received.size(), before[1]);
         ASSERT_TRUE(until([&] { return bothUp(); }, 30'000'000)) << "boot " << boot;
@@ -102,7 +102,7 @@ TEST_P(Attacked, RecordingsOfEarlierSessionsAreWorthNothing) {
     }
 }
 
-// Before each kind of frame arrives, copies with each single bit wrong arrive.
+// Before each kind of frame arrives, copies arrive in which one bit is wrong, for each bit.
 TEST_P(Attacked, AFrameWithAnyBitWrongIsRefused) {
     std::map<int, unsigned> kinds;
     auto flip = [&] {
@@ -112,7 +112,7 @@ TEST_P(Attacked, AFrameWithAnyBitWrongIsRefused) {
                     const int kind = kindOf(frame);
                     if (kinds[kind]++ > 2)
                         continue;
-                    auto rest = [&] { // the bytes kept of an incomplete frame are dropped
+                    auto rest = [&] { // drops the bytes that are kept of an incomplete frame
                         now += 26'000;
                         to->poll();
                     };
@@ -142,7 +142,7 @@ TEST_P(Attacked, AFrameWithAnyBitWrongIsRefused) {
             offer(b, sentB, 3);
             return flip();
         },
-        8'000'000); // includes a PING
+        8'000'000); // us; in this time a PING is sent
     b.stop();
     until([&] { return flip(); }, 100'000);
     for (int kind : {0, 1, 2, 3, 4, 5, 8})
@@ -161,7 +161,7 @@ TEST_P(Attacked, AFloodOfHellosCostsFewAnswersAndNoSession) {
                 hellos.push_back(heard.bytes);
     }
     ASSERT_GE(hellos.size(), 12u);
-    run(20'000'000); // both are in the last session
+    run(20'000'000); // both sides are in the last session
     ASSERT_TRUE(bothUp());
     a.events.clear(), b.events.clear();
     recorded_.clear();
@@ -182,12 +182,12 @@ TEST_P(Attacked, AFloodOfHellosCostsFewAnswersAndNoSession) {
                 static_cast<double>(now - start) / 1e6, answers);
 }
 
-// A delayed frame that arrives long after its sender has gone finds no session.
+// A delayed frame that arrives long after its sender has disappeared belongs to no session.
 TEST_P(Attacked, WhoOnlyReplaysDoesNotKeepASessionAlive) {
     ASSERT_TRUE(connect());
     ASSERT_TRUE(traffic(10, 60'000'000));
-    until([&] { return listen(), false; }, 6'000'000); // a PING among it
-    setWeather({1, 0, 0});                             // A is gone
+    until([&] { return listen(), false; }, 6'000'000); // the recorded frames include a PING
+    setWeather({1, 0, 0});                             // A has disappeared
     ASSERT_TRUE(until(
         [&] {
             for (const Heard& heard : recorded_)
@@ -210,7 +210,7 @@ TEST_P(Attacked, AConfirmThatWasHeldBackMakesNoSession) {
         listen();
         Bytes held = recorded_.back().bytes;
         ASSERT_EQ(kindOf(held), LINK_KIND_CONFIRM);
-        a.boot(); // nothing of it arrives
+        a.boot(); // no frame of A arrives
         if (isGone) {
             run(LINK_NONCE_LIFE);
         } else {
@@ -224,8 +224,8 @@ TEST_P(Attacked, AConfirmThatWasHeldBackMakesNoSession) {
     }
 }
 
-// The attacker lets everything pass except the fragments of one side's message, and delivers them
-// later: their sender has then been informed, and they are not accepted.
+// The attacker lets everything pass except the fragments of one side's message, and delivers these
+// later. By then their sender has been informed of the loss, and the receiver does not accept them.
 TEST_P(Attacked, AMessageThatIsHeldBackIsReportedAndNeverTaken) {
     for (bool isFromA : {true, false}) {
         Side &from = isFromA ? a : b, &to = isFromA ? b : a;
@@ -259,7 +259,8 @@ TEST_P(Attacked, AMessageThatIsHeldBackIsReportedAndNeverTaken) {
     }
 }
 
-// Counts the recorded frames of a session, except handshake frames, that the keys open.
+// Returns the number of recorded frames of a session, without those of the handshake, that the keys
+// decrypt.
 int opened(const std::vector<std::pair<bool, Bytes>>& frames, const Link_Keys& keys) {
     int count = 0;
     for (auto [isFromGround, frame] : frames) {
@@ -315,7 +316,7 @@ TEST_P(Attacked, WhoLearnsTheKeyLaterOpensNoRecordedSession) {
               Bytes(LINK_PUBLIC_BYTES, 0));
 }
 
-// Returns whether any 8 bytes in a row of a secret are in a side's memory.
+// Returns whether the memory of a side contains any 8 consecutive bytes of a secret.
 bool remains(Side& side, const U8* secret, size_t size) {
     const U8* memory = reinterpret_cast<const U8*>(side.link());
     for (size_t at = 0; at + 8 <= size; ++at)
@@ -374,7 +375,7 @@ TEST_P(Attacked, OldHellosMakeNobodyMultiplyPoints) {
     b.boot();
     setWeather({1, 0, 0}); // A does not receive the replies
     Link_KeyPair first = {};
-    for (int i = 0; i < 400; ++i, run(100'000)) { // more than four lives of a nonce
+    for (int i = 0; i < 400; ++i, run(100'000)) { // longer than four lifetimes of a nonce
         attack(b, hellos[size_t(i) % hellos.size()]);
         if (i == 0)
             first = b.link()->session.handshake.pair;
@@ -398,7 +399,7 @@ protected:
         if (bothCall)
             b.start();
     }
-    // Sends bytes to both sides when a packet has crossed, or is lost.
+    // Sends bytes to both sides after each packet, whether it arrives or is lost.
     void addBehindAll(const Bytes& bytes) {
         for (Side* from : {&a, &b})
             if (uint64_t& heard = heardUntil_[from == &b]; from->bytesSent > heard) {
@@ -533,10 +534,10 @@ TEST_P(Hindered, FramesThatSeemToEndWithEachPortionOfTheLinePreventNoSession) {
 INSTANTIATE_TEST_SUITE_P(Vehicles, Attacked, ::testing::ValuesIn(keyed(2)));
 INSTANTIATE_TEST_SUITE_P(Vehicles, Hindered, ::testing::ValuesIn(keyed(2)));
 
-// Whoever meets, both have the key.
+// Two parties that meet; both have the key.
 struct Meeting {
     U32 sideA, sideB;
-    bool isOfSides; // a ground station and its vehicle
+    bool isOfSides; // the parties are a ground station and its vehicle
 };
 
 void PrintTo(const Meeting& m, std::ostream* out) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// weather_test: traffic in both directions over a bad radio, reboots, garbage: no message is wrong,
-// duplicated, out of order or unreported, for all combinations of layers; and the goodput is
-// sufficient.
+// weather_test: tests traffic in both directions over a bad radio, with reboots and garbage, for
+// all combinations of layers: no message is wrong, duplicated, out of order or unreported, and the
+// goodput is sufficient.
 
 #include "link_variants.h"
 
@@ -20,14 +20,14 @@ TEST_P(Met, NothingIsLostDoubledOrReorderedInBadWeather) {
     expectAllDelivered();
 }
 
-// Fragments beyond the peer's window would be sent twice.
+// The window of the peer is never exceeded; fragments beyond it would be sent twice.
 TEST_P(Met, OnlyWhatIsLostIsSentAgain) {
     ASSERT_TRUE(connect());
     a.open(1);
     run(200'000);
     const Bytes call(1, 7), picture(1024, 7);
     for (U32 tag = 0; tag < 6; ++tag) {
-        ASSERT_EQ(a.send(1, call, tag), LINK_OK); // the answer takes its acknowledgement along
+        ASSERT_EQ(a.send(1, call, tag), LINK_OK); // the reply contains the acknowledgement
         ASSERT_TRUE(until([&] { return b.received.size() == 2 * tag + 1; }, 1'000'000));
         b.send(1, call, tag);
         ASSERT_TRUE(until([&] { return a.outcomes.count(tag) != 0; }, 1'000'000));
@@ -44,7 +44,7 @@ TEST_P(Met, OnlyWhatIsLostIsSentAgain) {
 TEST_P(Met, AMessageThatIsTooLongForThePeerIsReported) {
     const U32 most = b.layer.maxMessage;
     if (a.layer.maxMessage <= most)
-        return; // it cannot be sent
+        return; // the message cannot be sent now
     ASSERT_TRUE(connect());
     a.open(0);
     a.send(0, Bytes(most + 200, 7), 5);
@@ -75,7 +75,7 @@ TEST_P(Seeds, RebootsAreNoticedAndMessagesInFlightReported) {
         const bool isA = random.below(2) != 0;
         Side& side = isA ? a : b;
         side.boot();
-        // Counts messages in flight as lost, like an application.
+        // Counts messages in transit as lost, as an application does.
         for (U32 i = 0; i < (isA ? sentA : sentB).size(); ++i)
             side.outcomes.emplace(i, LINK_UNKNOWN);
         side.start();
@@ -99,7 +99,7 @@ TEST_P(Seeds, GarbageOnTheLineDoesNotDisturbTheSession) {
     EXPECT_EQ(b.events.front(), "up");
     EXPECT_TRUE(b.isUp());
     EXPECT_EQ(b.sessions(), 1u);
-    if (!isMinimal()) { // the minimal layer does not count
+    if (!isMinimal()) { // the minimal layer has no counters
         EXPECT_GT(b.statistics().bytesSkipped, 0u);
     }
 }
@@ -124,7 +124,7 @@ INSTANTIATE_TEST_SUITE_P(Vehicles, Seeds, ::testing::ValuesIn(vehicles(4)));
 
 class Speed : public Variants {};
 
-// Sequence numbers wrap hundreds of times.
+// Enough messages for the sequence numbers to wrap hundreds of times.
 TEST_P(Speed, TenThousandMessagesInBadWeather) {
     usualSize = longestSize = 40;
     ASSERT_TRUE(connect());
@@ -137,8 +137,8 @@ INSTANTIATE_TEST_SUITE_P(Vehicles, Speed, ::testing::ValuesIn(vehicles(1)));
 
 class InTheClear : public Variants {};
 
-// A wrong message with a valid CRC-16 occurs once in 65,536 times; here the polynomial is added to
-// get one at once.
+// A wrong message has a valid CRC-16 once in 65,536 times. Here the polynomial is added to a
+// message, which gives such a message immediately.
 TEST_P(InTheClear, AWrongMessageWithARightChecksumIsReportedAndNotDelivered) {
     ASSERT_TRUE(connect());
     for (uint32_t size : {21u, 60u, 95u, 300u}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// cases_test: the cases of os_cases.c on the host's port, and cases of that port alone.
+// cases_test: runs the cases of os_cases.c on the host's port, and additional cases for that port.
 
 #include "os_host.h"
 #include <gtest/gtest.h>

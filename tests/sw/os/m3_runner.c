@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * m3_runner: runs one case on a Cortex-M3: vectors, tick, the interrupt, and a breakpoint at the
- * end.
+ * m3_runner: runs one case on a Cortex-M3; contains the vectors, the tick, the interrupt, and a
+ * breakpoint at the end.
  */
 #include "boot.h"
 #include "os_cases.h"

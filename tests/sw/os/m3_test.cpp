@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// m3_test: the cases of os_cases.c on the Cortex-M3's port: the ARM binary on the model of the
-// processor.
+// m3_test: runs the cases of os_cases.c with the Cortex-M3's port: the ARM binary on the model of
+// the processor.
 
 #include "plain_bus.h"
 #include <cstdlib>
@@ -15,7 +15,7 @@ namespace {
 
 class OsM3Cases : public ::testing::TestWithParam<unsigned> {};
 
-// UCOS2_CASES names a build of the same program on the real uC/OS-II (docs/firmware.md).
+// UCOS2_CASES is the path of a build of the same program with the real uC/OS-II (docs/firmware.md).
 std::string program() {
     const char* other = std::getenv("UCOS2_CASES");
     return other ? other : CASES_ELF;
@@ -45,7 +45,7 @@ TEST(OsM3, ASwitchAtAnyInstructionLosesNoRegister) {
             if (++n == where)
                 m3.cpu.pendInterrupt(0);
             said = said || (where == 0 && n % 64 == 0 && !m3.text("os_said").empty());
-            instructions += where == 0 && !said; // until the computation has ended
+            instructions += where == 0 && !said; // counts until the computation has ended
         };
         m3.setVariable("selected_case", number);
         ASSERT_EQ(m3.run(1'000'000), 1)

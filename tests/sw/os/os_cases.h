@@ -10,9 +10,9 @@
 
 typedef struct OsCase {
     const char* name;
-    void (*prepare)(void);   /* between OSInit and OSStart */
-    void (*interrupt)(void); /* its routine, between OSIntEnter and OSIntExit; or 0 */
-    unsigned ticks;          /* length of the case */
+    void (*prepare)(void); /* function that prepares the case, called between OSInit and OSStart */
+    void (*interrupt)(void); /* interrupt routine, called between OSIntEnter and OSIntExit; or 0 */
+    unsigned ticks;          /* length of the case, ticks */
     const char* expected;    /* the expected output */
 } OsCase;
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_cases_events: semaphores, queues, mutexes and time-outs.
+ * os_cases_events: cases about semaphores, queues, mutexes and time-outs.
  */
 #include "os_cases.h"
 
@@ -100,10 +100,11 @@ static void sayMessage(void* message) {
 static void usesQueue(void) {
     int i;
     for (i = 0; i < 4; ++i)
-        OsCase_sayNumber(OSQPost(queue, &messages[i])); /* the fourth does not fit */
+        OsCase_sayNumber(OSQPost(queue, &messages[i])); /* the fourth message does not fit */
     for (i = 0; i < 3; ++i)
         sayMessage(OSQPend(queue, 0, &err));
-    OsCase_sayNumber(OSQPost(queue, &messages[3])); /* wraps around the end of the array */
+    OsCase_sayNumber(OSQPost(queue, &messages[3])); /* its place wraps around to the start of the
+                                                     * array */
     sayMessage(OSQPend(queue, 1, &err));
     sayMessage(OSQPend(queue, 1, &err));
     OsCase_sayNumber(err);
@@ -171,7 +172,8 @@ void OsCase_inheriting(void) {
     (void)OsCase_task(middle, 10);
 }
 
-/* The owner waits for another event while it inherits: it is also moved in that list. */
+/* The owner waits for another event while it inherits a priority; it must also be moved in the list
+ * of that event. */
 static void ownerWaits(void) {
     OSMutexPend(mutex, 0, &err);
     OSSemPend(sem, 0, &err);
@@ -211,7 +213,7 @@ void OsCase_inheritingInAList(void) {
 static void mutexOwner(void) {
     OSMutexPend(mutex, 0, &err);
     OsCase_sayNumber(err);
-    OSMutexPend(mutex2, 0, &err); /* its ceiling is below this task's priority */
+    OSMutexPend(mutex2, 0, &err); /* the mutex's ceiling is below this task's priority */
     OsCase_sayNumber(err);
     OsCase_sayNumber(OSMutexPost(mutex2));
 }
@@ -224,9 +226,9 @@ static void mutexStranger(void) {
     OsCase_sayNumber(err);
     OSMutexPend(sem, 0, &err);
     OsCase_sayNumber(err);
-    (void)OSMutexCreate(3, &err); /* taken by the mutex */
+    (void)OSMutexCreate(3, &err); /* the priority is taken by the mutex */
     OsCase_sayNumber(err);
-    (void)OSMutexCreate(6, &err); /* taken by this task */
+    (void)OSMutexCreate(6, &err); /* the priority is taken by this task */
     OsCase_sayNumber(err);
     (void)OSMutexCreate(OS_LOWEST_PRIO, &err);
     OsCase_sayNumber(err);

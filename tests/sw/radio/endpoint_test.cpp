@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// endpoint_test: reports of IceC's radio endpoint about connections that open and close unobserved.
+// endpoint_test: tests what IceC's radio endpoint reports about connections that open and close
+// while nobody polls it.
 
 #include "link_pair.h"
 #include <functional>
@@ -31,7 +32,7 @@ protected:
         Ice_initialize(&ic_);
         XBeeATEndpoint_init(&ic_, "xbee-at", &endpoint_, pair_.b.link(), 1, &port, this);
     }
-    // All messages of the endpoint have one tag, for which a side may get one outcome.
+    // All messages of the endpoint have the same tag; a side can get one outcome for it.
     void run(U32 ms) {
         for (; ms; --ms) {
             pair_.b.outcomes.clear();
@@ -73,7 +74,7 @@ protected:
     Ice_Communicator ic_;
     XBeeATEndpoint endpoint_;
     Ice_Byte buffer_[ICE_MESSAGE_MAX];
-    std::function<void()> atWait_; // called when a task waits next
+    std::function<void()> atWait_; // called when a task waits the next time
 };
 
 using Kinds = std::vector<std::pair<Ice_EventKind, int>>;
@@ -118,7 +119,7 @@ TEST_F(RadioEndpoint, TheEndOfTheLastOwnConnectionDoesNotEndTheNext) {
     open();
     pair_.a.close(3);
     pair_.run(500000);
-    XBeeATEndpoint_onChannel(&endpoint_, 3, 0); // not checked yet
+    XBeeATEndpoint_onChannel(&endpoint_, 3, 0); // the endpoint has not checked it yet
     ASSERT_EQ(connect(), ICE_OK);
     EXPECT_EQ(events(), Kinds{});
 }
@@ -162,7 +163,7 @@ TEST_F(RadioEndpoint, AConnectionThatTheLinkHasNoRoomForTooLongIsClosedOnBothSid
 TEST_F(RadioEndpoint, AMessageForAConnectionThatHasEndedNeverReachesTheNextOnItsChannel) {
     ASSERT_TRUE(pair_.connect());
     const Bytes answer(7930, 7);
-    auto again = [&] { // another program takes the ground's channel
+    auto again = [&] { // another program takes over the channel of the ground
         for (int isOpen : {0, 1})
             XBeeATEndpoint_onChannel(&endpoint_, 1, isOpen);
     };
@@ -173,7 +174,8 @@ TEST_F(RadioEndpoint, AMessageForAConnectionThatHasEndedNeverReachesTheNextOnIts
     pair_.a.refuse = true; // the queue fills
     while (pair_.b.send(1, answer, 0) == LINK_OK) {
     }
-    atWait_ = [&] { // and while the next one waits, the other task detects the end
+    atWait_ = [&] { // while the next message waits, the other task detects the end of the
+                    // connection
         again();
         EXPECT_EQ(events(), (Kinds{{ICE_EVENT_CLOSED, 1}, {ICE_EVENT_OPENED, 1}}));
         pair_.a.refuse = false;
@@ -181,7 +183,7 @@ TEST_F(RadioEndpoint, AMessageForAConnectionThatHasEndedNeverReachesTheNextOnIts
     EXPECT_EQ(send(1, answer), ICE_CONNECTION_LOST);
     run(10000);
     EXPECT_EQ(send(1, answer), ICE_OK);
-    again(); // not checked yet
+    again(); // the endpoint has not checked it yet
     EXPECT_EQ(send(1, answer), ICE_CONNECTION_LOST);
 }
 
@@ -204,7 +206,7 @@ TEST_F(RadioEndpoint, ASecondGroundHasConnectionsOfItsOwn) {
     pair_.run(500'000);
     EXPECT_EQ(other.a.received, (Messages{{3, call}}));
     EXPECT_EQ(pair_.a.received, Messages{});
-    XBeeATEndpoint_onChannel(&endpoint_, 7, 0); // as after the end of its session
+    XBeeATEndpoint_onChannel(&endpoint_, 7, 0); // as after the end of the peer's session
     EXPECT_EQ(events(), (Kinds{{ICE_EVENT_CLOSED, 7}}));
     EXPECT_EQ(send(3, call), ICE_OK);
 }

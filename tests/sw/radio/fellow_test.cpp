@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// fellow_test: vehicles that call each other's objects through IceC's radio endpoint, while one of
-// them serves two ground stations. All have separate links and communicators, in simulated time.
+// fellow_test: tests vehicles that call each other's objects through IceC's radio endpoint, while
+// one of them serves two ground stations. Each has separate links and a separate communicator; time
+// is simulated.
 
 #include "link_program.h"
 #include "random.h"
@@ -21,7 +22,7 @@ namespace {
 using Key = std::vector<U8>;
 struct Craft;
 
-// The parties and their time, which passes while one of them waits.
+// The parties, and their common time, which advances while one of them waits.
 struct World {
     void step();
     void run(U32 times) {
@@ -33,7 +34,7 @@ struct World {
     std::function<void()> atStep = [] {};
 };
 
-// One of three links, and the bytes on their way to it.
+// One of three links, and the bytes in transit to it.
 struct End : LinkProgram {
     bool transmit(const U8* frame, U32 size) override;
     U32 random() override;
@@ -41,7 +42,7 @@ struct End : LinkProgram {
     void onChannel(int channel, bool isOpen) override;
 
     Craft* craft = nullptr;
-    int first = 0; // first of its connections
+    int first = 0; // number of the first of its connections
     Link link;
     Link_Buffers buffers;
     End* peer = nullptr;
@@ -84,7 +85,7 @@ struct Craft {
         Ice_ObjectAdapter_add(&adapter, &servant.object, "it");
         w.crafts.push_back(this);
     }
-    // Has a link to the vehicle of this address.
+    // Adds a link to the vehicle with this address.
     void meets(Craft& other, U16 address, int place, bool isGround, const Key& key, U32 side) {
         End& end = ends[fellow];
         XBeeATEndpoint_addPeer(&endpoint, fellow, &end.link, address);
@@ -107,7 +108,7 @@ struct Craft {
         (void)Ice_ObjectPrx_begin(&prx, "op", 0);
         return Ice_ObjectPrx_end(&prx, Ice_ObjectPrx_invoke(&prx, &is));
     }
-    // Calls without waiting for the reply, which is counted.
+    // Makes a call without waiting for the reply; the reply is counted.
     void callAsync(const char* text) {
         Ice_ObjectPrx prx = proxy(text);
         isIdle = false;

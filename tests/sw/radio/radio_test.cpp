@@ -18,7 +18,7 @@ extern "C" {
 
 namespace {
 
-constexpr int guardMs = 20; // of both modems, so that tests are short
+constexpr int guardMs = 20; // ms; guard time of both modems, short to shorten the tests
 
 XBee::Options quick(std::map<std::string, uint32_t> more, const std::string& key = "") {
     XBee::Options options;
@@ -29,7 +29,7 @@ XBee::Options quick(std::map<std::string, uint32_t> more, const std::string& key
     return options;
 }
 
-// A link that stores its messages; `send` sends its frames and returns 0.
+// A link end that stores its messages; `send` sends its frames and returns 0.
 class MessageLink : public LinkEnd {
 public:
     explicit MessageLink(std::function<int(const U8*, U32)> send, uint32_t seed)
@@ -55,7 +55,7 @@ private:
 
 class Radio : public ::testing::Test {
 protected:
-    // A far modem that encrypts, or not.
+    // `farKey`: AES key of the far modem; empty: no encryption.
     explicit Radio(const std::string& farKey = "")
         : far_(farLine_, air_,
                quick({{"BD", 7}, {"MY", 0}, {"DL", 1}, {"EE", farKey.empty() ? 0 : 1}}, farKey)) {}
@@ -105,7 +105,7 @@ protected:
         irqOn_ = status == RADIO_OK;
         return status;
     }
-    // Lets a register of the controller read without these bits, until FSMC_init.
+    // Hides these bits of a controller's register from the driver until FSMC_init.
     void hide(U32 word, U32 bits) {
         static const FSMC_Port* real;
         static FSMC_Port lying;
@@ -120,7 +120,7 @@ protected:
         ASSERT_EQ(FSMC_init(&lying, &soc_), FSMC_OK);
     }
     static U32 us() { return OSTimeGet() * (1000000U / OS_TICKS_PER_SEC); }
-    // Runs the near link on the driver until `done`.
+    // Runs the near link with the driver until `done` returns true.
     template <class Done> bool talk(Done done, int limitMs) {
         for (int i = 0; i < limitMs; ++i) {
             Radio_receive(nearPeer_.onPacket, &nearPeer_);
@@ -137,7 +137,7 @@ protected:
         return talk([&] { return nearPeer_.isUp() && farPeer_.isUp(); }, limitMs);
     }
 
-    // Sends five messages of this byte each way, at once.
+    // Sends five messages with this byte each way at the same time.
     void exchange(uint8_t byte) {
         const std::vector<uint8_t> message(700, byte);
         ASSERT_TRUE(connect());
@@ -257,7 +257,7 @@ TEST_F(Radio, ATaskThatSleepsLosesNoMessage) {
             std::vector<uint8_t> message(300, static_cast<uint8_t>(i));
             ASSERT_EQ(Link_send(farPeer_.link(), 0, message.data(), 300, i), LINK_OK);
         }
-        OSTimeDly(OS_TICKS_PER_SEC); // more packets arrive than the ring has room for
+        OSTimeDly(OS_TICKS_PER_SEC); // more packets arrive than fit into the ring
         ASSERT_TRUE(talk([&] { return nearPeer_.received.size() == 30; }, 20000));
         for (size_t i = 0; i < 30; ++i)
             EXPECT_EQ(nearPeer_.received[i], std::vector<uint8_t>(300, static_cast<uint8_t>(i)));
@@ -277,7 +277,7 @@ protected:
         return init(
             0, 0, nullptr, [](int isDelivered) { answers_ += isDelivered ? '+' : '-'; }, baud);
     }
-    // Sends a packet, and waits until packets so far have answers.
+    // Sends a packet, and waits until this number of packets has answers.
     void sendOne(size_t answers) {
         const U8 frame[3] = {'a', 'b', 'c'};
         ASSERT_EQ(Radio_transmit(nullptr, frame, 3), 0);
@@ -306,7 +306,7 @@ TEST_F(ApiRadio, EachPacketIsAnsweredForAndAnAnswerThatIsLostCountsAsALoss) {
     run([&] {
         ASSERT_EQ(initApi(), RADIO_OK);
         const U32 delivered = Radio_counters()->delivered, lost = Radio_counters()->lost;
-        for (size_t i = 1; i <= 300; ++i) // their numbers go round twice
+        for (size_t i = 1; i <= 300; ++i) // enough packets for their numbers to wrap around twice
             sendOne(i);
         EXPECT_EQ(answers_, std::string(300, '+'));
         const U8 frame[3] = {'a', 'b', 'c'};
@@ -319,12 +319,13 @@ TEST_F(ApiRadio, EachPacketIsAnsweredForAndAnAnswerThatIsLostCountsAsALoss) {
         EXPECT_EQ(answers_.substr(300), "-+-");
         soc_.modem().power(false, soc_.now());
         sendOne(304);
-        OSTimeDly(3 * OS_TICKS_PER_SEC); // a silent modem has lost its packets
+        OSTimeDly(3 * OS_TICKS_PER_SEC); // after a time without an answer, packets count as lost
         Radio_receive([](void*, const U8*, U32) {}, nullptr);
         EXPECT_EQ(answers_.substr(303), "-");
         sendOne(305);
         soc_.modem().power(true, soc_.now());
-        ASSERT_EQ(initApi(), RADIO_OK); // packets without a result get none
+        ASSERT_EQ(initApi(), RADIO_OK); // packets that have no result yet get none after a new
+                                        // set-up
         far_.power(true, soc_.now());
         OSTimeDly(OS_TICKS_PER_SEC / 10);
         sendOne(1);

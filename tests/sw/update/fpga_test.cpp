@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// fpga_test: a new bitstream on its way into the FPGA's flash: the power is cut at every erase and
-// every written page, and there is always a bitstream that configures the FPGA.
+// fpga_test: tests the update of the bitstream in the FPGA's flash: the power is cut at every erase
+// and every written page, and there is always a bitstream that configures the FPGA.
 
 #include "keys.h"
 #include "spartan6_boot.h"
@@ -21,7 +21,7 @@ constexpr uint32_t product = 0x46504731, chunk = 4096;
 const uint32_t golden = Slots_at(&slots_fpga, 0) + SLOTS_IMAGE_AT,
                multiBoot = Slots_at(&slots_fpga, 1) + SLOTS_IMAGE_AT;
 
-// The bitstream of a version, without its sync word, and with its header.
+// Returns the bitstream of a version, with its header and without its sync word.
 const Image& bitstream(uint32_t version, uint32_t slot = 1) {
     static std::map<std::pair<uint32_t, uint32_t>, Image> images;
     auto at = images.find({version, slot});
@@ -68,8 +68,8 @@ public:
         }
         std::copy(header.begin(), header.end(), at(0));
     }
-    // Switches the power on, or restarts the processor; returns the version that configures the
-    // FPGA.
+    // Switches the power on, or restarts the processor; returns the version of the bitstream that
+    // configures the FPGA.
     uint32_t boot() override {
         if (Slots_settleFpga(&port, 0))
             fpga.configure(flash.memory);
@@ -112,7 +112,8 @@ TEST_F(Fpga, ABitstreamThatIsNotConfirmedIsTriedOnce) {
     expectTriedOnce();
 }
 
-// Signed, but invalid: the FPGA hangs on it, and the next start of the processor reverts it.
+// The bitstream is signed, but invalid: the FPGA hangs, and the next start of the processor reverts
+// to the previous bitstream.
 TEST_F(Fpga, ABitstreamThatHangsTheFpgaIsTakenBack) {
     powerOn();
     Image image = imageOf(2);
@@ -138,7 +139,7 @@ TEST_F(Fpga, ABitstreamThatTheFpgaRefusesIsNamedAndDoesNotCountAsRunning) {
     updateTo(3);
 }
 
-// The rest is as for firmware (update_test.cpp).
+// The other rules are the same as for firmware (update_test.cpp).
 TEST_F(Fpga, NothingGoesOverTheGoldenBitstream) {
     updateTo(5);
     const Bytes before = flash.memory;
@@ -149,7 +150,7 @@ TEST_F(Fpga, NothingGoesOverTheGoldenBitstream) {
 TEST_F(Fpga, AVersionThatWasConfirmedIsRememberedWhenItIsErased) {
     updateTo(5);
     EXPECT_EQ(begin(imageOf(6)), RECEIVER_OK);
-    EXPECT_EQ(powerOn(), 1u); // 5 is erased, 6 has not arrived
+    EXPECT_EQ(powerOn(), 1u); // version 5 is erased, 6 has not arrived
     EXPECT_EQ(begin(imageOf(4)), RECEIVER_OLD);
     updateTo(6);
 }
@@ -179,7 +180,7 @@ TEST_F(Fpga, OnlyWhatIsSignedAndWholeIsLoaded) {
     EXPECT_FALSE(Slots_isLoadable(&port, product));
 }
 
-// Over an older bitstream.
+// An update that replaces an older bitstream.
 TEST_F(Fpga, WhereverThePowerIsCutABitstreamConfiguresIt) {
     updateTo(2);
     const uint64_t before = flash.operations();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// keys: a pair of keys that signs images, and the ground's part of an update, of firmware as of a
-// bitstream.
+// keys: a pair of keys that signs images, and the ground station's part of an update of firmware or
+// of a bitstream.
 
 #pragma once
 
@@ -29,7 +29,7 @@ struct Keys {
         crypto_sign_detached(header.signature, nullptr, reinterpret_cast<const uint8_t*>(&header),
                              SLOTS_SIGNED_BYTES, secret.data());
     }
-    // A list that has this key and another.
+    // Returns a list of keys that contains this key and another one.
     Slots_Header list(uint32_t version, const Keys& second, const Keys& signer) const {
         Slots_Header list{SLOTS_MAGIC, SLOTS_KEYS, version, 0, 0, {board[0], board[1]}, 0, {}, {}};
         std::copy(open.begin(), open.end(), list.digest);
@@ -97,7 +97,8 @@ public:
         EXPECT_EQ(begin(image), RECEIVER_OK);
         EXPECT_EQ(send(image), RECEIVER_OK);
     }
-    // Does the ground's part until this version is confirmed, whatever runs now.
+    // Does the ground station's part of an update until this version is confirmed, whichever
+    // version is running.
     void updateTo(uint32_t version, const Keys& signer = ours) {
         for (uint32_t runs = powerOn(); runs != version && !::testing::Test::HasFailure();
              runs = boot())
@@ -105,7 +106,7 @@ public:
         ASSERT_EQ(Receiver_confirm(&receiver), RECEIVER_OK);
     }
     void expectTriedAndConfirmed() {
-        for (uint32_t version : {2u, 3u}) { // and back into the first slot
+        for (uint32_t version : {2u, 3u}) { // the second update goes back into the first slot
             updateTo(version);
             EXPECT_EQ(powerOn(), version);
             EXPECT_EQ(receiver.isOnTrial, 0);
@@ -116,13 +117,14 @@ public:
         receive(imageOf(2));
         EXPECT_EQ(boot(), 2u);
         EXPECT_EQ(receiver.isOnTrial, 1);
-        EXPECT_EQ(begin(imageOf(3)), RECEIVER_ON_TRIAL); // it would erase the way back
+        EXPECT_EQ(begin(imageOf(3)), RECEIVER_ON_TRIAL); // it would erase the previous image, which
+                                                         // may still be needed
         EXPECT_EQ(boot(), 1u);
         EXPECT_EQ(receiver.reason, RECEIVER_WENT_BACK);
         EXPECT_EQ(powerOn(), 1u);
     }
     Receiver receiver{};
-    uint64_t cutAt = 0; // operation of the flash
+    uint64_t cutAt = 0; // number of the flash operation at which the power is cut
 
 protected:
     Receiver_Reason outcome(Receiver_Reason reason) {
@@ -150,7 +152,8 @@ void cutAtEach(uint32_t version, uint64_t all, uint64_t tries, Fresh fresh, Went
     uint64_t cuts = 0, back = 0;
     Random random(testSeed());
     for (uint64_t i = 0; i < tries; ++i) {
-        const uint64_t first = 1 + (i < all ? i : i % 5); // erases, which leave anything
+        const uint64_t first = 1 + (i < all ? i : i % 5); // erase operations, after which the
+                                                          // content is arbitrary
         auto&& vehicle = fresh(testSeed() * 1000 + i);
         vehicle.cutAt = vehicle.operations() + first;
         for (;;) {

@@ -25,7 +25,7 @@ namespace {
 using Bytes = std::vector<uint8_t>;
 constexpr uint32_t flashBase = 0x08000000;
 
-// Folder of one test, in which pack_update runs: tests run in parallel.
+// Folder of one test for pack_update, because tests run in parallel.
 struct VehicleFolder {
     VehicleFolder() { std::filesystem::create_directories(path); }
     ~VehicleFolder() { std::filesystem::remove_all(path); }
@@ -68,7 +68,7 @@ protected:
 
 class Loader : public Vehicle {
 protected:
-    // Leaves a complete update in the second slot.
+    // Writes a complete update into the second slot.
     void receive(int version, const char* key = "key", const char* more = "") {
         ASSERT_EQ(folder.pack("image " FIRMWARE "uav.elf " + std::to_string(version) + " " + key +
                               " update" + more),
@@ -120,7 +120,7 @@ TEST_F(Loader, StartsTheFirmwareOfANewVehicle) {
     EXPECT_EQ(boot(), 0);
     EXPECT_EQ(vectorTable(), flashBase + Slots_at(&slots_firmware, 0) + SLOTS_IMAGE_AT);
     EXPECT_EQ(chip.cpu().reg(CortexM3::Sp), chip.cpu().word(vectorTable()));
-    EXPECT_LT(cycles, 60'000'000u); // half a second
+    EXPECT_LT(cycles, 60'000'000u); // cycles in half a second
     RecordProperty("cycles", static_cast<int>(cycles));
 }
 
@@ -132,7 +132,7 @@ TEST_F(Loader, TriesANewOneOnceAndGoesBack) {
     EXPECT_EQ(boot(), 0);
 }
 
-// The time for one that the second key has signed is one more check of a signature.
+// If the second key has signed the firmware, one more signature has to be checked.
 TEST_F(Loader, StartsOneOfEitherKeyUntilItIsWithdrawn) {
     ASSERT_EQ(folder.pack("public spare spare.pub"), 0) << folder.said();
     fill(" --second spare.pub");
@@ -147,7 +147,7 @@ TEST_F(Loader, StartsOneOfEitherKeyUntilItIsWithdrawn) {
     ASSERT_EQ(folder.pack("keys 2 spare spare.pub list"), 0) << folder.said();
     const uint32_t at = flashBase + SLOTS_KEYS_AT + sizeof(Slots_Keys);
     chip.cpu().loadFlash(at, folder.read("list"));
-    receive(9, "key");    // over the one that is confirmed
+    receive(9, "key");    // replaces the confirmed one
     EXPECT_EQ(boot(), 1); // the list is not valid yet
     receive(9, "key");
     chip.cpu().writeMemory(at + offsetof(Slots_Keys, isComplete), &isTrue, 4);
@@ -234,7 +234,7 @@ protected:
             return now() + 1'000'000;
         });
     }
-    // Writes to the FPGA's flash what a complete update writes.
+    // Writes to the FPGA's flash what a complete update would write.
     void receive(const Bytes& bits, const std::string& more = "") {
         folder.save("new.bin", bits);
         ASSERT_EQ(folder.pack("bitstream new.bin 2 key update" + more), 0) << folder.said();
@@ -282,7 +282,7 @@ TEST_F(FpgaStart, ANewBitstreamIsTriedAndOneNotConfirmedGoes) {
     EXPECT_FALSE(is(SLOTS_REFUSED));
 }
 
-// Someone has written to the flash: the data would run, its CRC is valid.
+// Someone else has written to the flash. The FPGA would accept the data, whose CRC is valid.
 TEST_F(FpgaStart, ABitstreamThatIsNotSignedNeverRuns) {
     receive(standInBitstream(2, frameWords));
     confirm();
@@ -358,7 +358,7 @@ protected:
         EXPECT_NE(folder.said().find(why), std::string::npos) << words << ": " << folder.said();
         EXPECT_TRUE(folder.read("out").empty()) << words;
     }
-    // A bitstream as BitGen's .bit: a header with its length, and the bitstream.
+    // Returns a bitstream as a .bit file by BitGen: a header with the length, and the bitstream.
     static Bytes bitFile(const Bytes& bits) {
         Bytes file = {0, 9, 0x0F, 0xF0, 0x0F, 0xF0, 0x0F, 0xF0, 0x0F, 0xF0, 0, 0, 1};
         for (const char field : {'a', 'b', 'c', 'd'})
@@ -388,7 +388,7 @@ TEST_F(Packing, ABitstreamThatIsCutOrHasMoreThanItsEndIsNotSigned) {
         folder.save("more", file(more));
         refuses("bitstream more 5 key", "1001 bytes after the end of the bitstream");
     }
-    Bytes cut = bitFile(whole); // its header has the real size
+    Bytes cut = bitFile(whole); // the length in its header is still that of the whole bitstream
     cut.resize(cut.size() - 4);
     folder.save("short", cut);
     refuses("bitstream short 5 key", "as its header counts");

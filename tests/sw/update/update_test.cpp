@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// update_test: slots and receiver over the model of the STM32F2's flash: the power is cut at every
-// erase and every written word, and there is always an image that boots.
+// update_test: tests slots and receiver with the model of the STM32F2's flash: the power is cut at
+// every erase and every written word, and there is always an image that boots.
 
 #include "keys.h"
 #include "stm32_flash.h"
@@ -25,7 +25,7 @@ Image makeImage(uint32_t version, uint32_t slot, uint32_t size = imageBytes,
     return {slots_firmware, product, version, slot, bytes, signer};
 }
 
-// The flash with its power, and the firmware that boots from it.
+// The flash and its power supply, and the firmware that boots from the flash.
 class Vehicle : public Updated {
 public:
     // State left by a programmer, at its first start: slot 0 has a confirmed image, slot 1 other
@@ -78,7 +78,7 @@ public:
     Image imageOf(uint32_t version, const Keys& signer = ours) override {
         return makeImage(version, receiver.slot, imageBytes, signer);
     }
-    // Sends a list of keys.
+    // Sends a list of keys; returns the reason of a refusal.
     Receiver_Reason take(const Slots_Header& list) {
         return outcome(Receiver_begin(&receiver, &list));
     }
@@ -166,7 +166,8 @@ TEST(Update, WhatIsNotForThisVehicleLeavesItUntouched) {
     ++unsignedOne.header.version;
     others.sign(otherKey.header);
     EXPECT_EQ(vehicle.begin(foreign), RECEIVER_FOREIGN);
-    EXPECT_EQ(vehicle.begin(makeImage(6, 0)), RECEIVER_FOREIGN); // linked for the other slot
+    EXPECT_EQ(vehicle.begin(makeImage(6, 0)), RECEIVER_FOREIGN); // the image is linked for the
+                                                                 // other slot
     EXPECT_EQ(vehicle.begin(makeImage(5, 1)), RECEIVER_OLD);
     EXPECT_EQ(vehicle.begin(makeImage(4, 1)), RECEIVER_OLD);
     EXPECT_EQ(vehicle.begin(unsignedOne), RECEIVER_UNSIGNED);
@@ -194,7 +195,7 @@ TEST(Update, ItsCounterpartMustRunAndBeConfirmed) {
     EXPECT_EQ(vehicle.begin(image), RECEIVER_OK);
 }
 
-// The newest image has rotted, and the power is cut at each operation that replaces it.
+// The newest image is damaged, and the power is cut at each operation that replaces it.
 TEST(Update, NoLossOfPowerLowersTheConfirmedVersion) {
     for (uint64_t cut = 1; cut < 12; ++cut) {
         Vehicle vehicle(5);
@@ -283,7 +284,7 @@ TEST(Update, NoListStopsWhatRuns) {
     EXPECT_EQ(vehicle.boot(), 2u);
 }
 
-// Cuts the power at each word of a list, and at a random one of the next try.
+// Cuts the power at each word while a list is written, and at a random word of the next try.
 TEST(Update, WhereverThePowerIsCutAListCountsOrTheOneBefore) {
     constexpr unsigned words = sizeof(Slots_Header) / 4 + 1;
     Random random(testSeed());
@@ -321,7 +322,7 @@ TEST(Update, ADamagedOrCutImageIsNotStarted) {
     image.bytes[700] ^= 4;
     EXPECT_EQ(vehicle.send(image), RECEIVER_DAMAGED);
     EXPECT_EQ(vehicle.boot(), 1u);
-    vehicle.updateTo(2); // and it can be sent again
+    vehicle.updateTo(2); // and the update can be sent again
     EXPECT_EQ(vehicle.boot(), 2u);
 }
 
@@ -399,7 +400,7 @@ TEST(Update, WhereverThePowerIsCutThereIsAnImageThatBoots) {
     whole.updateTo(2);
     const uint64_t all = whole.operations();
     ASSERT_GT(all, imageBytes / 4);
-    // Some of these cuts are in the trial.
+    // Some of these cuts happen during the trial of the new image.
     cutAtEach(
         2, all, all, [](uint64_t seed) { return Vehicle(1, seed); },
         [](Vehicle& vehicle) { return vehicle.receiver.running == 1; });

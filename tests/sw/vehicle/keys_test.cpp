@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// keys_test: the vehicle's key slots: a change of keys, with the power cut at every written word,
-// and a ground station that stops at every step.
+// keys_test: tests a change of keys in the vehicle's key slots: the power is cut at every written
+// word, and the ground station stops at every step.
 
 #include "link_pair.h"
 #include <array>
@@ -22,7 +22,7 @@ constexpr Key oldKey = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16},
               foreignKey = {9};
 constexpr U32 address = 0x1234;
 
-// A vehicle (b) with its slots, and a ground (a) with a key file.
+// A vehicle (b) with its key slots, and a ground station (a) with a key file.
 class Vehicle : public Pair {
 public:
     explicit Vehicle(uint64_t seed) : Pair(seed) {
@@ -44,7 +44,7 @@ public:
             Link_setKey(a.link(), static_cast<int>(slot), file[slot].data(), LINK_GROUND | address);
         a.start();
         const U32 sessions = Link_statistics(b.link())->sessions;
-        auto isOver = [&] { // the vehicle is also in the new session
+        auto isOver = [&] { // the vehicle is in the new session as well
             UAV_confirmKey(0, b.link());
             return isDead || (bothUp() && Link_statistics(b.link())->sessions != sessions);
         };
@@ -52,8 +52,8 @@ public:
         UAV_confirmKey(0, b.link());
         return isMet && !isDead;
     }
-    // The whole change, as made by sw/ground/clients/change_key.py, or its first steps. Returns the
-    // resulting content of the ground's file.
+    // Changes the key as sw/ground/clients/change_key.py does, or only its first steps. Returns the
+    // resulting content of the ground station's key file.
     std::vector<Key> change(int steps = 3) {
         const std::vector<Key> before = {oldKey}, both = {newKey, oldKey}, after = {newKey};
         if (steps < 1)
@@ -72,7 +72,7 @@ public:
 
     static constexpr unsigned never = ~0u;
     std::array<U32, BACKUP_WORDS> words{};
-    unsigned stores = 0, cutAfter = never; // then power fails
+    unsigned stores = 0, cutAfter = never; // number of stores after which the power fails
     bool isDead = false;
     int keys = 0;
 
@@ -121,7 +121,7 @@ TEST(Keys, ASlotThatWasSpoiltIsEmpty) {
     EXPECT_EQ(UAV_countKeys(0), 1);
 }
 
-// A member of the group can send any number.
+// A member of the group could send any sequence number.
 TEST(Keys, AHighNumberDoesNotSilenceCallsToAll) {
     Vehicle vehicle(1);
     const auto opens = [](const Key& key, U32 number) {
@@ -275,11 +275,11 @@ TEST(Keys, PowerThatFailsAtAnyWordLeavesAKeyThatWorks) {
         ASSERT_GE(vehicle.keys, 1) << "after " << cut << " words";
         ASSERT_TRUE(vehicle.meets(file)) << "after " << cut << " words";
         vehicle.bootVehicle();
-        if (vehicle.hasKey(newKey)) { // the old key goes, as in a complete change
+        if (vehicle.hasKey(newKey)) { // the old key is removed, as in a complete change
             ASSERT_TRUE(vehicle.meets({newKey})) << "after " << cut << " words";
             EXPECT_EQ(UAV_countKeys(0), 1) << "after " << cut << " words";
         }
-        // And the change can be made again.
+        // The change can be repeated.
         ASSERT_TRUE(vehicle.meets({newKey, oldKey})) << "after " << cut << " words";
         ASSERT_TRUE(UAV_setNextKey(0, vehicle.b.link(), newKey.data()));
         ASSERT_TRUE(vehicle.meets({newKey})) << "after " << cut << " words";

@@ -27,7 +27,7 @@ protected:
             return uint64_t(0);
         });
     }
-    // Runs until a line has been sent, or for these cycles; returns the line.
+    // Runs until the firmware has sent a line, or for this number of cycles; returns the line.
     std::string run(uint64_t cycles = 10'000'000) {
         said.clear();
         limit = chip.cpu().cycles() + cycles;
@@ -46,7 +46,7 @@ protected:
         chip.serialIn.insert(chip.serialIn.end(), line.begin(), line.end());
         return run();
     }
-    // The same, of a firmware that starts with the line in a break.
+    // Does the same with firmware that starts while a break is on the line.
     std::string startAndAnswer(const std::string& line) {
         start();
         return answerTo(line + "\n");
@@ -179,7 +179,8 @@ TEST_F(Provision, TheGroundsProgramGivesIt) {
     const int port = posix_openpt(O_RDWR | O_NOCTTY);
     ASSERT_TRUE(port >= 0 && grantpt(port) == 0 && unlockpt(port) == 0);
     const std::string name = ptsname(port);
-    const int held = open(name.c_str(), O_RDWR | O_NOCTTY); // or a write would be lost before
+    const int held = open(name.c_str(), O_RDWR | O_NOCTTY); // keep it open; otherwise a write
+                                                            // before this would be lost
     const pid_t child = fork();
     if (child == 0) {
         execl("/usr/bin/python3", "python3", PROVIDE_KEY, "--port", name.c_str(), "--key",

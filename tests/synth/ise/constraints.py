@@ -33,7 +33,7 @@ def pad_name(port, index, width):
 
 
 def netlist():
-    """Returns the flattened chip as Yosys' JSON has it."""
+    """Returns the flattened chip from Yosys' JSON."""
     WORK.mkdir(parents=True, exist_ok=True)
     folders = [GENERATED, SOURCE / "bus", SOURCE / "hdl"]
     folders += [f for room in ("hdl", "ip") for f in (SOURCE / room).iterdir() if f.is_dir()]

@@ -28,7 +28,8 @@ void Case_busFault(void) {
     Case_say('.');
 }
 
-/* The fault of a store: by then other instructions are through; DSB waits for it. */
+/* A store that faults: the fault arrives after other instructions have been executed; DSB waits for
+ * it. */
 static void storeAndGoOn(void) {
     SCB_SHCSR = SCB_SHCSR_FAULTS;
     SCB_BFAR = 0;
@@ -90,7 +91,7 @@ void __attribute__((naked)) Case_ackWait(void) {
 void Case_lateAck(void) {
     Case_priority(4, 0);
     Case_priority(5, 0);
-    REG(0x60000000UL) = 4; /* the test's line of this number rises */
+    REG(0x60000000UL) = 4; /* the test then raises the interrupt line with this number */
     __asm__ volatile("dsb\n\tisb");
     REG(0x60000000UL) = 5;
     __asm__ volatile("dsb\n\tisb");
@@ -101,7 +102,8 @@ void Case_noMemory(void) {
     Case_action[5] = skip;
     REG(0x10000000UL) = 1;
     Case_say('.');
-    *(volatile U32*)((U32)selected & ~3UL) = 1; /* its own code: flash is not written like this */
+    *(volatile U32*)((U32)selected & ~3UL) = 1; /* the address of its own code, because flash is not
+                                                 * written in this way */
     Case_say('.');
 }
 

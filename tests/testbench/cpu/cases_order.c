@@ -166,8 +166,8 @@ void Case_process(void) {
     value[3] = value[7]; /* EXC_RETURN */
 }
 
-void Case_alignment(
-    void) { /* a stack pointer that is a multiple of 4 only is put right, and back */
+void Case_alignment(void) { /* a stack pointer that is only a multiple of 4 is aligned on entry and
+                             * restored on return */
     U32 before, after;
     Case_priority(0, 0x80);
     Case_action[16] = noteStacks;

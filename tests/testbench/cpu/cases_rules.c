@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * cases_rules: what the architecture forbids or restricts: exclusive accesses, alignment, memory
- * that is not executed, bits that are not there, and parts that the model does not have.
+ * cases_rules: cases about what the architecture forbids or restricts: exclusive accesses,
+ * alignment, memory that must not be executed, bits that do not exist, and parts that the model
+ * does not have.
  */
 #include "cpu_cases.h"
 
@@ -73,10 +74,11 @@ void Case_executeNever(void) {
     call((U32)&word[8]);
     Case_say('1');
     MPU_RBAR = (U32)word | 0x11UL;
-    MPU_RASR = 3UL << 24 | 8UL << 1 | 1UL; /* a higher region decides */
+    MPU_RASR = 3UL << 24 | 8UL << 1 | 1UL; /* the region with the higher number decides */
     call((U32)word);
     Case_say('2');
-    MPU_RASR = 1UL << 28 | 2UL << 8 | 3UL << 24 | 8UL << 1 | 1UL; /* 512 bytes, without 64..127 */
+    MPU_RASR = 1UL << 28 | 2UL << 8 | 3UL << 24 | 8UL << 1 | 1UL; /* 512 bytes, except for bytes
+                                                                   * 64..127 */
     call((U32)&word[64]);
     call((U32)&word[16]);
     MPU_CTRL = 0;
@@ -99,7 +101,7 @@ void Case_basepriBits(void) {
 void Case_cycleCounter(void) {
     U32 start = DWT_CYCCNT;
     value[0] = DWT_CTRL;
-    DWT_CTRL = 1; /* without TRCENA it cannot be written */
+    DWT_CTRL = 1; /* without TRCENA the register cannot be written */
     __asm__ volatile("nop\n\tnop");
     value[1] = DWT_CYCCNT - start;
     DEMCR = 1UL << 24;
@@ -116,17 +118,17 @@ void Case_cycleCounter(void) {
 void Case_tickRules(void) {
     SYST_RVR = 0;
     SYST_CVR = 0;
-    SYST_CSR = 7; /* stays at zero without a reload value */
+    SYST_CSR = 7; /* without a reload value the counter stays at zero */
     __asm__ volatile("nop\n\tnop\n\tnop");
     SYST_RVR = 999;
     value[0] = SYST_CVR > 900UL;
     SYST_CSR = 1; /* the eighth */
     value[1] = SYST_CVR > 900UL;
     SYST_CVR = 5;
-    value[2] = SYST_CVR; /* any write clears it, until the next tick */
+    value[2] = SYST_CVR; /* any write clears the counter, until the next tick */
     SYST_CSR = 0;
     value[3] = SYST_CVR;
-    SYST_CALIB = 1; /* is read only */
+    SYST_CALIB = 1; /* the register is read only */
     Case_say('.');
 }
 
@@ -158,7 +160,7 @@ void Case_bitBand(void) {
     value[0] = bits[0];
     value[1] = alias[3];
     value[2] = alias[32 + 7];
-    alias[32 + 7] = 2; /* bit 0 counts */
+    alias[32 + 7] = 2; /* only bit 0 of the value counts */
     value[3] = bits[1];
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * cpu_cases: start-up, handlers of all exceptions. The test selects a case by its symbol.
+ * cpu_cases: start-up code and handlers of all exceptions. The test selects a case by its symbol.
  */
 #include "cpu_cases.h"
 #include "program_memory.h"
@@ -13,7 +13,7 @@ volatile U32 boots __attribute__((section(".noinit")));
 char said[128];
 U32 value[8]; /* results of a case */
 static U32 at;
-Action Case_action[16 + 4]; /* by exception, called by its handler */
+Action Case_action[16 + 4]; /* action of each exception, called by its handler */
 U32* Case_frame;            /* frame of the current exception */
 
 void Case_say(char c) {
@@ -63,7 +63,7 @@ void Case_pend(U32 irq) {
 __attribute__((section(".vectors"), used)) static const Vector vectors[] = {
     stack_top, Reset_Handler, Handler, Handler, Handler, Handler, Handler, 0, 0, 0, 0, Handler,
     Handler, 0, Handler, Handler, Handler, Handler, Handler, Handler, Case_ack, Case_ackWait,
-    /* The cases, after the interrupt vectors: the linker drops unreferenced functions. */
+    /* Addresses of the cases, because the linker would drop functions that nothing refers to. */
     CASES(NAMED)};
 
 void Reset_Handler(void) {

@@ -13,7 +13,7 @@ typedef void (*Action)(void);
 extern volatile Action selected; /* the case; written by the test */
 extern volatile U32 boots;       /* survives a reset */
 extern U32 value[8];             /* results of a case; [7]: EXC_RETURN of the last exception */
-extern Action Case_action[20];   /* by exception, called by its handler */
+extern Action Case_action[20];   /* action of each exception, called by its handler */
 extern U32* Case_frame;          /* frame of the current exception */
 
 void Case_say(char c);
@@ -26,7 +26,7 @@ void Case_ackWait(void);
 U32 Work_asm(U32 rounds);
 void Case_countCycles(void); /* starts DWT's cycle counter */
 
-/* System registers that the board's header does not have. */
+/* System registers that the header of the board does not define. */
 #define DEMCR REG(0xE000EDFCUL)
 #define DEMCR_TRCENA (1UL << 24)
 #define DWT_CTRL REG(0xE0001000UL)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// cpu_test: the CPU model against the ARMv7-M Architecture Reference Manual and the Cortex-M3 TRM.
+// cpu_test: compares the CPU model with the ARMv7-M Architecture Reference Manual and the Cortex-M3
+// TRM.
 
 #include "plain_bus.h"
 #include <gtest/gtest.h>
@@ -11,7 +12,7 @@ namespace {
 class Cpu : public ::testing::Test {
 protected:
     static void select(PlainCpu& m, const std::string& name) {
-        m.setVariable("selected", m.image.symbol(name) | 1); // in Thumb state
+        m.setVariable("selected", m.image.symbol(name) | 1); // bit 0: Thumb state
     }
     // Runs a case and returns its output.
     std::string run(const std::string& name) {
@@ -216,7 +217,7 @@ TEST_F(Cpu, AResetRequestStartsAgainAndKeepsMemory) {
     EXPECT_EQ(m3.variable("boots"), 2u);
 }
 
-// The strongest one: two nested interrupts before each single instruction of a computation.
+// The strongest test: two nested interrupts before each single instruction of a computation.
 TEST_F(Cpu, AnInterruptAtAnyInstructionDoesNotChangeAResult) {
     run("Case_work");
     const uint32_t expected = value(0);
@@ -250,7 +251,7 @@ TEST_F(Cpu, InterruptEntryTakesTwelveCyclesAndTailChainingSix) {
     EXPECT_EQ(run("Case_samePriority"), "aAbB");
     ASSERT_EQ(entered.size(), 2u);
     EXPECT_EQ(first - entered[0], 12u);
-    EXPECT_EQ(entered[1], left[0]); // and then 6 cycles until the first instruction
+    EXPECT_EQ(entered[1], left[0]); // and then it takes 6 cycles until the first instruction
 }
 
 TEST_F(Cpu, MaskedTimeIsMeasured) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// memory_models_test: the MCB model's user port: order, flags, and everything that it refuses; and
-// the device's times, compared with sums of data-sheet figures worked out by hand.
+// memory_models_test: tests the user port of the MCB model (order, flags, and what it refuses), and
+// compares the times of the memory device with sums of data-sheet figures that were worked out by
+// hand.
 
 #include "ddr3_timing.h"
 #include "mcb_model.h"
@@ -76,7 +77,8 @@ TEST_F(Mcb, ReadsWhatWasWrittenWithItsMask) {
 
 TEST_F(Mcb, ReadLatencyIsTheSumOfItsParts) {
     command(read, 0, 1);
-    // 6 clocks in; then in memory clocks tRCD 6, CL 6, burst 4: 16 are 4 clocks; 5 clocks out
+    // 6 clocks into the controller; then, in memory clocks, tRCD 6, CL 6, burst 4: 16 memory clocks
+    // are 4 clocks; 5 clocks out
     EXPECT_EQ(waitForWord() + 1, 6u + 4 + 5);
     pop();
     command(read, 0, 1);

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""messages: IceC answers hostile and odd messages as stock Ice does: what is executed, what is
-answered, and whether the connection ends.
+"""messages: compares the reactions of IceC and of stock Ice to hostile and unusual messages: the
+operations executed, the replies, and whether the connection ends.
 
 usage: messages.py PROGRAM ECHO_ICE
        messages.py --serve ECHO_ICE     (the stock server)"""
@@ -45,7 +45,7 @@ def request(op, params=b"", rid=1, version=(1, 1), more=0, **where):
     return message(0, number(rid) + target(op, **where) + encapsulation(params, version, more))
 
 
-def one(op, params=b""):  # a request inside a batch
+def one(op, params=b""):  # Returns a request inside a batch.
     return target(op) + encapsulation(params)
 
 
@@ -167,7 +167,8 @@ CASES = {
     "a close, then a call": message(4, b"") + COUNT,
 }
 
-# Where the two differ on purpose, or since stock Ice has a fault: (answers of IceC, executed, why).
+# Messages for which the two differ on purpose, or because stock Ice has a fault: (replies of IceC,
+# operations executed, reason).
 FAILED = [(2, b"\x01\0\0\0\x05"), "open"], 0  # UnknownLocalException
 CLOSED = [""], 0
 IN_PYTHON = "stock Ice in Python has another exception, or none; in C++ it has this one"
@@ -209,7 +210,7 @@ class Server:
         before = self.executed
         s = self.connect()
         s.sendall(data)
-        other = self.connect()  # after its reply, all earlier messages are handled
+        other = self.connect()  # when its reply arrives, all earlier messages have been handled
         other.sendall(COUNT)
         read(other, 25)
         other.close()
@@ -224,7 +225,7 @@ class Server:
             status = body[4] if head[8] == 2 else 0
             answers.append((head[8], body[:5] if status > 4 else body))
         s.close()
-        time.sleep(0.05)  # until the last line about executed operations has arrived
+        time.sleep(0.05)  # wait until the last line about executed operations has arrived
         return answers, self.executed - before - 1
 
 
@@ -302,7 +303,7 @@ def main():
         mine = ours.ask(data)
         try:
             theirs = stock.ask(data)
-        except OSError:  # it crashed on this message
+        except OSError:  # the server crashed on this message
             theirs = "died", 0
             stock.process.kill()
             stock = Server([sys.executable, __file__, "--serve", sys.argv[2]])

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * server: an IceC server of Echo.ice over tcp, for messages.py. Prints its port, then a line for
- * each operation that is executed.
+ * server: an IceC server of Echo.ice over tcp, for messages.py. Prints its port, then one line per
+ * executed operation.
  */
 #include "Echo.h"
 #include "tcp_endpoint.h"

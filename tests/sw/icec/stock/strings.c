@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * strings: reads proxy strings, one line of hexadecimal digits each, and prints each proxy as IceC
- * prints it; "error" and the status if it is invalid. For strings.py. */
+ * strings: reads proxy strings, one line of hexadecimal digits each, for strings.py. Prints each
+ * proxy as IceC formats it; for an invalid string prints "error" and the status.
+ */
 #include "icec.h"
 #include "tcp_endpoint.h"
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""strings: proxy strings are read and printed by IceC as by stock Ice: cases by hand, and many more
-that are put together from parts by a seed.
+"""strings: checks that IceC reads and prints proxy strings as stock Ice does: cases written by
+hand, and many more that are composed at random from parts.
 
 usage: strings.py PROGRAM [SEED] [COUNT]"""
 import random
@@ -11,8 +11,8 @@ import sys
 
 import Ice
 
-# Differences by design (docs/icec.md): IceC lacks these transports, and does not bind a source
-# address; in endpoints quotes surround whole words, and "-timeout" is not accepted for "-t".
+# Differences by design (docs/icec.md): IceC lacks these transports and does not bind a source
+# address. In endpoints quotes must surround whole words, and "-timeout" is not accepted for "-t".
 NOT_HERE = ("udp", "ws", "wss", "ssl", "--sourceAddress")
 STRICTER = re.compile(r"""[^\s:]["'][^\s:@]|["'][^\s:]+["']\S|\s-[tzev][^\s:]""")
 
@@ -97,7 +97,7 @@ def main():
             try:
                 proxy = ic.stringToProxy(text)
                 stock = "=" + (str(proxy) if proxy else "")
-            except Exception as e:  # stock Ice raises several kinds
+            except Exception as e:  # stock Ice raises exceptions of several kinds
                 stock = "error " + type(e).__name__
             if mine.startswith("error") and (stock.startswith("error") or STRICTER.search(text)):
                 continue

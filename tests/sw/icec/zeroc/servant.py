@@ -1,19 +1,18 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""servant: the C of a servant from the bodies of its operations.
+"""servant: generates a servant in C from the statements of its operations.
 
 servant.py BODIES HEADER... >servant.c
 
-A generated header has each operation's signature already; BODIES contains only the operation's
-statements:
+The generated header contains the signatures; BODIES contains only the statements of the operations:
 
     C, up to a line %%
     prefix Test_Thing_ Test_Derived_    the operations below are of these interfaces
     echo op1 op2*                       each out parameter gets the in parameter of its type
     op3 op4: statements;                continued in lines that begin with a blank
 
-Names are shell patterns. Within statements the parameters have their Slice names, `result` is the
-result, `ex` the exception.
+Names are shell patterns. In statements the parameters have their Slice names, `result` is the
+result, and `ex` the exception.
 """
 import fnmatch
 import re
@@ -30,7 +29,8 @@ def parameters(text):
 
 
 def echo(found, classes):
-    """Copies in parameters to the out parameters of their types, in order."""
+    """Returns statements that copy the in parameters to the out parameters of the same types, in
+    order."""
     plain = lambda t: t.replace("const", "").replace("*", "").strip()
     isOut = lambda t: "**" in t if plain(t) in classes else "const" not in t and "*" in t
     sources = [(t, n) for t, n in found if not isOut(t)]

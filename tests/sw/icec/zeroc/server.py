@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""server: ZeroC's own server of a suite: server.py FOLDER SUITE ENCODING. Prints its adapters'
-ports, two, serves until `shutdown`."""
+"""server: runs ZeroC's own server of a suite: server.py FOLDER SUITE ENCODING. Prints the ports of
+its two adapters, and serves until `shutdown` is called."""
 import os
 import socket
 import sys

@@ -4,9 +4,9 @@
 
 suite.py FOLDER SUITE RUN [--Ice.Property=value...] ENDPOINT|PORT
 
-A check is a call of the client's test(), true or not. The client stops at its first failure; here
-each statement is guarded, so that one failure hides no other. expected.toml has the
-reason of each failure, and the number of checks that must pass.
+A check is a call of the client's function test(), whether true or false. The original client stops
+at its first failure; here each statement is guarded, so that one failure does not hide others.
+expected.toml contains the reason of each failure, and the number of checks that must pass.
 """
 import argparse
 import ast
@@ -25,7 +25,7 @@ passed = 0
 failures = {}  # "File.py:line": text
 lock = threading.Lock()
 PATIENCE = 3  # seconds
-TURNS = 200  # iterations of a loop that waits for the server
+TURNS = 200  # greatest number of iterations of a loop that waits for the server
 
 
 def check(truth):
@@ -47,15 +47,15 @@ def failed(where, error):
 
 
 def turn(turns):
-    """Ends a loop that waits in vain."""
+    """Ends a loop that waits in vain, after TURNS iterations."""
     turns.append(0)
     if len(turns) > TURNS:
         raise RuntimeError("waited for %d turns" % TURNS)
 
 
 def wait(self, timeout=None, wait=threading.Condition.wait):
-    """The clients' callbacks signal a condition: the wait for it is bounded, since one may have
-    failed."""
+    """Waits for a condition that a callback of the client signals, but not for ever, because the
+    callback may have failed."""
     if not wait(self, timeout or PATIENCE) and timeout is None:
         raise RuntimeError("nothing came")
 
@@ -67,7 +67,7 @@ class Guard(ast.NodeTransformer):
         self.name = name
 
     def visit_Try(self, node):
-        return self.guarded(node)  # it contains the expectations of exceptions
+        return self.guarded(node)  # this statement contains expectations of exceptions
 
     def visit_FunctionDef(self, node):
         node.body = [self.visit(s) for s in node.body]
@@ -86,7 +86,7 @@ class Guard(ast.NodeTransformer):
     def visit_While(self, node):
         begin, turn = ast.parse("__turns__ = []\n__turn__(__turns__)").body
         node.body.insert(0, turn)
-        return self.guarded(node, begin)  # it may wait for a failed call
+        return self.guarded(node, begin)  # this statement may wait for a call that has failed
 
     def visit_If(self, node):
         node.body = [self.visit(s) for s in node.body]
@@ -121,7 +121,7 @@ class Loader(importlib.abc.Loader):
 
 
 class Finder(importlib.abc.MetaPathFinder):
-    """The modules of the suite, each statement guarded."""
+    """Loads the modules of the suite with each statement guarded."""
 
     def find_spec(self, name, path, target=None):
         file = os.path.join(os.getcwd(), name + ".py")
@@ -131,7 +131,8 @@ class Finder(importlib.abc.MetaPathFinder):
 
 
 def expected(run):
-    """Returns how many checks must pass in this run, and {place: reason} of exempt ones."""
+    """Returns the number of checks that must pass in this run, and {place: reason} of checks that
+    need not."""
     with open(os.path.join(OWN, "expected.toml"), "rb") as file:
         known = tomllib.load(file)
     wanted = [n for runs, n in known["passed"].items() if fnmatch.fnmatch(run, runs)]
@@ -194,7 +195,8 @@ def main():
     print("%s: %d checks passed (%d expected), %d by design, %d failed"
           % (a.run, passed, wanted, len(failures) - unknown, unknown))
     sys.stdout.flush()
-    os._exit(0 if unknown == 0 and passed >= wanted else 1)  # a suite may leave waiting threads
+    os._exit(0 if unknown == 0 and passed >= wanted else 1)  # threads that a suite has started may
+                                                             # still be waiting
 
 
 main()

@@ -64,6 +64,9 @@ module line_tester #(
     // than once. The microcontroller moves NWE only while no frame is captured.
     reg [7:0] edges = 8'd0;
     always @(posedge pins_i[NWE]) edges <= edges + 8'd1;
+    // Stable when captured: a frame starts two clocks or more after the last edge of NWE.
+    wire [7:0] nwe_count;
+    cdc_copy #(.WIDTH(8)) u_edges (.clk_i(osc_i), .bus_async_i(edges), .bus_sync_o(nwe_count));
 
     // ---- channels: level of each of the three clock and data lines now, and one clock ago
     wire [2:0] clock, data;
@@ -100,7 +103,7 @@ module line_tester #(
             early <= pins_i[MODEM +: MODEM_PINS];
         if (|starts) begin
             channel <= starts & (~starts + 3'd1);
-            answer  <= {early, pins_i, edges, clocks, ID};
+            answer  <= {early, pins_i, nwe_count, clocks, ID};
             count   <= 8'd0;
             keyed   <= 1'b0;
         end else if (|(channel & stops)) begin
